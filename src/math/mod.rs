@@ -1,0 +1,13 @@
+//! Frames, boxes, roots of polynomials and maps from the unit square: the mathematics that the physics stands on.
+
+mod aabb;
+mod frame;
+mod roots;
+mod sampling;
+
+pub use aabb::Aabb;
+pub use frame::Frame;
+pub use roots::{Roots, quadratic};
+pub use sampling::{
+    cone_direction, cosine_hemisphere, cosine_power_hemisphere, disk, uniform_sphere,
+};

@@ -1,0 +1,161 @@
+//! Analytic surfaces in f64, one file each.
+//!
+//! A shape is a trimmed, oriented surface: its normal is the *front*. A shape knows where a ray crosses it, nothing
+//! of finishes, solids or photons. There are no epsilons: a ray that starts on a quadric is told so ([`Start::On`])
+//! and the root at the start is taken out of the equation, not compared with a small number.
+//!
+//! Every shape has a chart: it unrolls the surface into a rectangle of millimetres, for flux maps on curved walls.
+
+mod cylinder;
+mod flat;
+
+pub use cylinder::Cylinder;
+pub use flat::{Flat, Region};
+
+use crate::math::Aabb;
+use crate::scene::Ray;
+use glam::{DVec2, DVec3};
+
+/// Whether a ray starts on the very surface that is asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Start {
+    /// The origin is elsewhere: every root counts.
+    Elsewhere,
+    /// The origin lies on this surface: the root at the origin is none.
+    On,
+}
+
+/// A place where a ray crosses a surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Crossing {
+    /// Distance along the ray, mm; may be negative.
+    pub t: f64,
+    /// Which way the ray goes through.
+    pub toward: Toward,
+}
+
+/// Which way a ray goes through a surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Toward {
+    /// Along the normal: out of a solid.
+    Front,
+    /// Against the normal: into a solid.
+    Back,
+}
+
+impl Toward {
+    /// The side toward which `dir` leaves a surface with `normal`.
+    #[inline]
+    pub fn of(dir: DVec3, normal: DVec3) -> Self {
+        if dir.dot(normal) > 0.0 { Self::Front } else { Self::Back }
+    }
+}
+
+/// The points on one side of a plane: `normal · p <= offset`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HalfSpace {
+    /// Unit normal, out of the half space.
+    pub normal: DVec3,
+    /// Distance of the plane from the origin along the normal, mm.
+    pub offset: f64,
+}
+
+impl HalfSpace {
+    /// The half space behind the plane through `point` with `normal`.
+    pub fn behind(point: DVec3, normal: DVec3) -> Self {
+        let normal = normal.normalize();
+        Self { normal, offset: point.dot(normal) }
+    }
+
+    /// Whether a point is inside or on the plane.
+    #[inline]
+    pub fn contains(&self, p: DVec3) -> bool {
+        self.normal.dot(p) <= self.offset
+    }
+}
+
+/// A rectangle of the unrolled surface, mm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ChartRect {
+    /// Smallest (u, v).
+    pub min: DVec2,
+    /// Largest (u, v).
+    pub max: DVec2,
+}
+
+/// A trimmed, oriented analytic surface.
+#[derive(Debug, Clone)]
+pub enum Shape {
+    /// A piece of a plane: disk, annulus, ellipse or polygon.
+    Flat(Flat),
+    /// A piece of a circular cylinder's wall.
+    Cylinder(Cylinder),
+}
+
+impl Shape {
+    /// A box around the shape, mm.
+    pub fn bounds(&self) -> Aabb {
+        match self {
+            Self::Flat(shape) => shape.bounds(),
+            Self::Cylinder(shape) => shape.bounds(),
+        }
+    }
+
+    /// Calls `visit` for every crossing of the ray's whole line with the surface, in any order.
+    #[inline]
+    pub fn crossings(&self, ray: &Ray, start: Start, visit: impl FnMut(Crossing)) {
+        match self {
+            Self::Flat(shape) => shape.crossings(ray, start, visit),
+            Self::Cylinder(shape) => shape.crossings(ray, start, visit),
+        }
+    }
+
+    /// Unit normal of the front at a point of the surface.
+    #[inline]
+    pub fn normal(&self, p: DVec3) -> DVec3 {
+        match self {
+            Self::Flat(shape) => shape.normal(),
+            Self::Cylinder(shape) => shape.normal(p),
+        }
+    }
+
+    /// Area, mm².
+    pub fn area(&self) -> f64 {
+        match self {
+            Self::Flat(shape) => shape.area(),
+            Self::Cylinder(shape) => shape.area(),
+        }
+    }
+
+    /// A point of the surface, uniform over its area for uniform `u`.
+    pub fn sample(&self, u: [f64; 2]) -> DVec3 {
+        match self {
+            Self::Flat(shape) => shape.sample(u),
+            Self::Cylinder(shape) => shape.sample(u),
+        }
+    }
+
+    /// Unrolled coordinates (u, v) of a point of the surface, mm.
+    pub fn chart(&self, p: DVec3) -> DVec2 {
+        match self {
+            Self::Flat(shape) => shape.chart(p),
+            Self::Cylinder(shape) => shape.chart(p),
+        }
+    }
+
+    /// The rectangle that the chart covers, mm.
+    pub fn chart_bounds(&self) -> ChartRect {
+        match self {
+            Self::Flat(shape) => shape.chart_bounds(),
+            Self::Cylinder(shape) => shape.chart_bounds(),
+        }
+    }
+
+    /// Area of the surface whose chart lies in `rect`, mm².
+    pub fn area_in(&self, rect: ChartRect) -> f64 {
+        match self {
+            Self::Flat(shape) => shape.area_in(rect),
+            Self::Cylinder(shape) => shape.area_in(rect),
+        }
+    }
+}

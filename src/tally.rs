@@ -1,0 +1,99 @@
+//! Means with their standard error, from independent batches.
+
+use serde::{Deserialize, Serialize};
+
+/// A running mean over independent samples (batches of paths, passes), never over bounces.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Tally {
+    count: u64,
+    mean: f64,
+    /// Sum of squared deviations from the mean.
+    m2: f64,
+}
+
+impl Tally {
+    /// The tally of a set of samples.
+    pub fn of(samples: impl IntoIterator<Item = f64>) -> Self {
+        let mut tally = Self::default();
+        for sample in samples {
+            tally.add(sample);
+        }
+        tally
+    }
+
+    /// Adds one sample (Welford, Technometrics 4 (1962) 419).
+    pub fn add(&mut self, x: f64) {
+        self.count += 1;
+        let delta = x - self.mean;
+        self.mean += delta / self.count as f64;
+        self.m2 += delta * (x - self.mean);
+    }
+
+    /// Adds all samples of another tally (Chan, Golub & LeVeque, Am. Stat. 37 (1983) 242).
+    pub fn merge(&mut self, other: &Self) {
+        if other.count == 0 {
+            return;
+        }
+        let total = (self.count + other.count) as f64;
+        let delta = other.mean - self.mean;
+        self.m2 += other.m2 + delta * delta * self.count as f64 * other.count as f64 / total;
+        self.mean += delta * other.count as f64 / total;
+        self.count += other.count;
+    }
+
+    /// Number of samples.
+    pub fn count(&self) -> u64 {
+        self.count
+    }
+
+    /// Mean of the samples; 0 without any.
+    pub fn mean(&self) -> f64 {
+        self.mean
+    }
+
+    /// Standard error of the mean; infinite with fewer than two samples.
+    pub fn std_error(&self) -> f64 {
+        if self.count < 2 {
+            return f64::INFINITY;
+        }
+        (self.m2 / (self.count - 1) as f64 / self.count as f64).sqrt()
+    }
+
+    /// How many standard errors the mean lies from `expected`; 0 when they are equal.
+    pub fn sigmas_from(&self, expected: f64) -> f64 {
+        sigmas(self.mean, self.std_error(), expected)
+    }
+}
+
+/// Deviation of `value` from `expected` in units of `std_error`; 0 when they are equal.
+pub fn sigmas(value: f64, std_error: f64, expected: f64) -> f64 {
+    let deviation = value - expected;
+    if deviation == 0.0 { 0.0 } else { deviation / std_error }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn mean_and_error_of_a_known_set() {
+        let tally = Tally::of([1.0, 2.0, 3.0, 4.0]);
+        assert_eq!(tally.mean(), 2.5);
+        assert!((tally.std_error() - (5.0f64 / 3.0 / 4.0).sqrt()).abs() < 1e-15);
+    }
+
+    #[test]
+    fn merging_equals_adding() {
+        let all = Tally::of((0..100).map(|i| f64::from(i * i % 17)));
+        let mut halves = Tally::of((0..37).map(|i| f64::from(i * i % 17)));
+        halves.merge(&Tally::of((37..100).map(|i| f64::from(i * i % 17))));
+        assert_eq!(all.count(), halves.count());
+        assert!((all.mean() - halves.mean()).abs() < 1e-13);
+        assert!((all.std_error() - halves.std_error()).abs() < 1e-13);
+    }
+
+    #[test]
+    fn a_single_sample_has_no_error_bar() {
+        assert_eq!(Tally::of([3.0]).std_error(), f64::INFINITY);
+    }
+}

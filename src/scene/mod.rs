@@ -1,4 +1,138 @@
-//! What is in the room.
+//! What is in the room: media, finishes, solids, sheets, sources and sensors, and what a ray meets next.
+//!
+//! Every solid is closed and has a medium and a priority; a path knows which solids it is in. Sheets are open and
+//! two-sided. Both are made of smooth patches (and triangles of meshes) with named faces. Coordinates are millimetres
+//! about the middle of the scene ([`Scene::origin`] leads back to the user's).
+//!
+//! This layer knows neither paths nor photons, and no file format.
+
+mod accel;
+mod build;
+mod emission;
+mod face;
+mod grid;
+mod ids;
+mod inside;
+mod interface;
+mod intersect;
+pub mod plan;
 mod ray;
+mod sensor;
 pub mod shape;
+mod source;
+
+pub use accel::Accel;
+pub use build::{Builder, FaceSpec, Piece};
+pub use emission::{Emission, EmitterKind};
+pub use face::{Face, Owner, Patch};
+pub use grid::Grid;
+pub use ids::{FaceId, FinishId, MediumId, PrimId, SensorId, SolidId, SourceId};
+pub use inside::Inside;
+pub use interface::{Interface, Visibility};
+pub use intersect::{Hits, Just, PrimHit};
 pub use ray::Ray;
+pub use sensor::{Counts, Goniometer, Place, Sensor, SensorKind, Sides, SurfaceSensor, Views};
+pub use source::{EmitSide, Emitted, Emitter, Source, Start};
+
+use crate::math::Aabb;
+use crate::optics::{Bsdf, Medium};
+use crate::units::FluxUnit;
+use glam::DVec3;
+
+/// Relative to the size of the scene: faces closer than this are one face.
+pub const COINCIDENCE: f64 = 1e-12;
+
+/// A solid: a closed set of faces around a medium.
+#[derive(Debug, Clone)]
+pub struct Solid {
+    /// Name in the scene file.
+    pub name: String,
+    /// What it is made of.
+    pub medium: MediumId,
+    /// Where solids overlap, the one of higher priority counts.
+    pub priority: i32,
+    /// Box around it, mm.
+    pub bounds: Aabb,
+    /// Volume, mm³, where it is known in closed form.
+    pub volume: Option<f64>,
+}
+
+/// A finish with its name.
+#[derive(Debug, Clone)]
+pub struct Finish {
+    /// Name in the scene file, or a description of an inline one.
+    pub name: String,
+    /// What it does.
+    pub bsdf: Bsdf,
+}
+
+/// Everything a path can meet, ready to be traced. Made by [`Builder`].
+#[derive(Debug, Clone)]
+pub struct Scene {
+    /// The user's coordinates of the internal origin, mm.
+    pub origin: DVec3,
+    /// Box around everything, sources and sensors included, mm.
+    pub bounds: Aabb,
+    /// Whether fluxes are luminous or radiant.
+    pub unit: FluxUnit,
+    /// All media; the surroundings are [`Scene::surroundings`].
+    pub media: Vec<Medium>,
+    /// The medium outside every solid.
+    pub surroundings: MediumId,
+    /// All finishes.
+    pub finishes: Vec<Finish>,
+    /// All solids.
+    pub solids: Vec<Solid>,
+    /// All faces: of solids, of sheets, and open ports.
+    pub faces: Vec<Face>,
+    /// Analytic pieces of solids and sheets.
+    pub patches: Vec<Patch>,
+    /// Pieces of open ports and virtual sensors: light passes.
+    pub ports: Vec<Patch>,
+    /// All sources.
+    pub sources: Vec<Source>,
+    /// All sensors.
+    pub sensors: Vec<Sensor>,
+    /// Faces closer than this are one, mm.
+    pub tolerance: f64,
+    accel: Accel,
+}
+
+impl Scene {
+    /// Sum of the flux of all sources, lm or W.
+    pub fn source_flux(&self) -> f64 {
+        self.sources.iter().map(|source| source.flux).sum()
+    }
+
+    /// The face of a name such as `pipe.exit`.
+    pub fn face_named(&self, name: &str) -> Option<FaceId> {
+        self.faces.iter().position(|face| face.name == name).map(FaceId::new)
+    }
+
+    /// Area of a face, mm².
+    pub fn face_area(&self, face: FaceId) -> f64 {
+        self.face_patches(face).iter().map(|patch| patch.shape.area()).sum()
+    }
+
+    /// The pieces of a face.
+    pub fn face_patches(&self, face: FaceId) -> &[Patch] {
+        let face = &self.faces[face.index()];
+        match face.owner {
+            Owner::Solid(_) | Owner::Sheet => &self.patches[face.patches.clone()],
+            Owner::Port => &self.ports[face.patches.clone()],
+        }
+    }
+
+    /// The medium that counts at a point inside the given solids.
+    #[inline]
+    pub fn medium_in(&self, inside: &Inside) -> MediumId {
+        let mut best: Option<&Solid> = None;
+        for id in inside.iter() {
+            let solid = &self.solids[id.index()];
+            if best.is_none_or(|best| solid.priority > best.priority) {
+                best = Some(solid);
+            }
+        }
+        best.map_or(self.surroundings, |solid| solid.medium)
+    }
+}

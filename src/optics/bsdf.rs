@@ -1,0 +1,329 @@
+//! What a face does to light that meets it.
+//!
+//! A closed set of finishes. Mirrors and total internal reflection draw no random numbers; a dielectric draws one to
+//! choose between the reflected and the refracted part. Everything that a finish does not send on is absorbed by it.
+
+use crate::math::{Frame, cosine_hemisphere};
+use crate::optics::{Gaussian, fresnel};
+use crate::rng::{Dimension, Sampler};
+use glam::DVec3;
+
+/// Light arriving at a face.
+#[derive(Debug, Clone, Copy)]
+pub struct Incidence {
+    /// Unit direction of travel.
+    pub dir: DVec3,
+    /// Unit normal on the side from which the light comes: `dir · normal` is negative.
+    pub normal: DVec3,
+    /// Refractive index of the medium it comes from.
+    pub index_from: f64,
+    /// Refractive index of the medium behind the face.
+    pub index_to: f64,
+}
+
+impl Incidence {
+    /// Cosine of the angle of incidence, in 0..=1.
+    #[inline]
+    pub fn cos(&self) -> f64 {
+        (-self.dir.dot(self.normal)).clamp(0.0, 1.0)
+    }
+}
+
+/// Which side of a face light leaves to, seen from where it came.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// Back to the side it came from.
+    Reflected,
+    /// Through the face.
+    Transmitted,
+}
+
+/// Whether a direction was one of a discrete few or drawn from a density.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Lobe {
+    /// A discrete direction: mirrored, refracted or straight on.
+    Specular,
+    /// A direction drawn from a density over solid angle.
+    Diffuse,
+}
+
+/// Light that goes on from a face.
+#[derive(Debug, Clone, Copy)]
+pub struct Scattered {
+    /// New direction of travel, not yet normalised.
+    pub dir: DVec3,
+    /// Share of the arriving flux that this path goes on with; 1 - factor is absorbed by the face.
+    pub factor: f64,
+    /// Reflected or transmitted.
+    pub side: Side,
+    /// Discrete or drawn.
+    pub lobe: Lobe,
+}
+
+/// A finish: what a face does to light.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Bsdf {
+    /// The smooth interface of the two media: Fresnel for unpolarised light, Snell, total reflection.
+    Smooth,
+    /// A mirror, or a beam splitter, with the same shares at every angle; transmitted light goes straight on.
+    Specular {
+        /// Share that is mirrored, 0..=1.
+        reflectance: f64,
+        /// Share that goes straight on, 0..=1 with the reflectance.
+        transmittance: f64,
+    },
+    /// A bare metal of complex index n + ik.
+    Metal {
+        /// Real part of the index.
+        n: f64,
+        /// Imaginary part of the index, positive.
+        k: f64,
+    },
+    /// Takes everything.
+    Absorber,
+    /// Nothing is there: light goes straight on.
+    Open,
+    /// Diffuse reflection and transmission by Lambert's law.
+    Lambertian {
+        /// Share that is reflected, 0..=1.
+        reflectance: f64,
+        /// Share that is transmitted, 0..=1 with the reflectance.
+        transmittance: f64,
+    },
+    /// Gaussian scatter about the mirrored and the straight direction, with shares that do not depend on the angle.
+    GaussianSheet {
+        /// The lobe.
+        lobe: Gaussian,
+        /// Share that is reflected, 0..=1.
+        reflectance: f64,
+        /// Share that is transmitted, 0..=1 with the reflectance.
+        transmittance: f64,
+    },
+    /// A rough dielectric: shares by Fresnel, Gaussian scatter about the mirrored and the refracted direction.
+    GaussianDielectric {
+        /// The lobe.
+        lobe: Gaussian,
+    },
+    /// Each photon meets one of several finishes, chosen by weight.
+    Mixture(Vec<(f64, Bsdf)>),
+}
+
+impl Bsdf {
+    /// Whether all directions that leave are discrete.
+    pub fn is_specular(&self) -> bool {
+        match self {
+            Self::Smooth
+            | Self::Specular { .. }
+            | Self::Metal { .. }
+            | Self::Absorber
+            | Self::Open => true,
+            Self::Lambertian { .. }
+            | Self::GaussianSheet { .. }
+            | Self::GaussianDielectric { .. } => false,
+            Self::Mixture(parts) => parts.iter().all(|(_, part)| part.is_specular()),
+        }
+    }
+
+    /// Sends a photon on, or absorbs it (`None`).
+    #[inline]
+    pub fn scatter(&self, incidence: &Incidence, sampler: &mut Sampler) -> Option<Scattered> {
+        match self {
+            Self::Smooth => Some(smooth(incidence, sampler)),
+            Self::Specular { reflectance, transmittance } => {
+                let side = choose_side(*reflectance, *transmittance, sampler)?;
+                Some(specular(straight(incidence, side), reflectance + transmittance, side))
+            }
+            Self::Metal { n, k } => {
+                let factor =
+                    fresnel::conductor(incidence.cos(), incidence.index_from, *n, *k).unpolarised();
+                Some(specular(straight(incidence, Side::Reflected), factor, Side::Reflected))
+            }
+            Self::Absorber => None,
+            Self::Open => Some(specular(incidence.dir, 1.0, Side::Transmitted)),
+            Self::Lambertian { reflectance, transmittance } => {
+                let side = choose_side(*reflectance, *transmittance, sampler)?;
+                let local = cosine_hemisphere(sampler.pair(Dimension::Scatter));
+                let dir =
+                    Frame::from_axis(DVec3::ZERO, leaving_normal(incidence, side)).to_world(local);
+                Some(Scattered {
+                    dir,
+                    factor: reflectance + transmittance,
+                    side,
+                    lobe: Lobe::Diffuse,
+                })
+            }
+            Self::GaussianSheet { lobe, reflectance, transmittance } => {
+                let side = choose_side(*reflectance, *transmittance, sampler)?;
+                let dir = lobe.sample(
+                    straight(incidence, side),
+                    leaving_normal(incidence, side),
+                    sampler,
+                );
+                Some(Scattered {
+                    dir,
+                    factor: reflectance + transmittance,
+                    side,
+                    lobe: Lobe::Diffuse,
+                })
+            }
+            Self::GaussianDielectric { lobe } => {
+                let Scattered { dir, side, .. } = smooth(incidence, sampler);
+                let dir = lobe.sample(dir.normalize(), leaving_normal(incidence, side), sampler);
+                Some(Scattered { dir, factor: 1.0, side, lobe: Lobe::Diffuse })
+            }
+            Self::Mixture(parts) => pick(parts, sampler).scatter(incidence, sampler),
+        }
+    }
+}
+
+/// Fresnel and Snell at a smooth interface; one draw, none under total reflection or between equal indices.
+#[inline]
+fn smooth(incidence: &Incidence, sampler: &mut Sampler) -> Scattered {
+    let Incidence { dir, normal, index_from, index_to } = *incidence;
+    if index_from == index_to {
+        return specular(dir, 1.0, Side::Transmitted);
+    }
+    let cos_i = incidence.cos();
+    if let Some(cos_t) = fresnel::cos_transmitted(cos_i, index_from, index_to) {
+        let reflectance =
+            fresnel::dielectric_refracting(cos_i, cos_t, index_from, index_to).unpolarised();
+        if sampler.one(Dimension::Lobe) >= reflectance {
+            let refracted = fresnel::refracted(dir, normal, cos_i, cos_t, index_from / index_to);
+            return specular(refracted, 1.0, Side::Transmitted);
+        }
+    }
+    specular(fresnel::mirrored(dir, normal, cos_i), 1.0, Side::Reflected)
+}
+
+#[inline]
+fn specular(dir: DVec3, factor: f64, side: Side) -> Scattered {
+    Scattered { dir, factor, side, lobe: Lobe::Specular }
+}
+
+/// Reflected or transmitted in proportion to the shares; no draw where only one is possible.
+#[inline]
+fn choose_side(reflectance: f64, transmittance: f64, sampler: &mut Sampler) -> Option<Side> {
+    if transmittance == 0.0 {
+        return (reflectance > 0.0).then_some(Side::Reflected);
+    }
+    let reflected = reflectance > 0.0
+        && sampler.one(Dimension::Lobe) * (reflectance + transmittance) < reflectance;
+    Some(if reflected { Side::Reflected } else { Side::Transmitted })
+}
+
+/// The discrete direction of a thin sheet: mirrored, or straight on.
+#[inline]
+fn straight(incidence: &Incidence, side: Side) -> DVec3 {
+    match side {
+        Side::Reflected => fresnel::mirrored(incidence.dir, incidence.normal, incidence.cos()),
+        Side::Transmitted => incidence.dir,
+    }
+}
+
+/// The normal of the side to which light leaves.
+#[inline]
+fn leaving_normal(incidence: &Incidence, side: Side) -> DVec3 {
+    match side {
+        Side::Reflected => incidence.normal,
+        Side::Transmitted => -incidence.normal,
+    }
+}
+
+fn pick<'a>(parts: &'a [(f64, Bsdf)], sampler: &mut Sampler) -> &'a Bsdf {
+    let total: f64 = parts.iter().map(|(weight, _)| weight).sum();
+    let mut left = sampler.one(Dimension::Lobe) * total;
+    for (weight, part) in &parts[..parts.len() - 1] {
+        left -= weight;
+        if left < 0.0 {
+            return part;
+        }
+    }
+    &parts[parts.len() - 1].1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tally::Tally;
+
+    fn incidence(angle_deg: f64, index_from: f64, index_to: f64) -> Incidence {
+        let angle = angle_deg.to_radians();
+        Incidence {
+            dir: DVec3::new(angle.sin(), 0.0, -angle.cos()),
+            normal: DVec3::Z,
+            index_from,
+            index_to,
+        }
+    }
+
+    fn finishes() -> Vec<Bsdf> {
+        let lobe = Gaussian::new(0.2);
+        vec![
+            Bsdf::Smooth,
+            Bsdf::Specular { reflectance: 0.5, transmittance: 0.3 },
+            Bsdf::Metal { n: 0.8, k: 5.9 },
+            Bsdf::Absorber,
+            Bsdf::Open,
+            Bsdf::Lambertian { reflectance: 0.6, transmittance: 0.4 },
+            Bsdf::GaussianSheet { lobe: lobe.clone(), reflectance: 0.9, transmittance: 0.05 },
+            Bsdf::GaussianDielectric { lobe },
+            Bsdf::Mixture(vec![
+                (0.3, Bsdf::Absorber),
+                (0.7, Bsdf::Specular { reflectance: 1.0, transmittance: 0.0 }),
+            ]),
+        ]
+    }
+
+    #[test]
+    fn no_finish_creates_light_and_each_leaves_on_the_side_it_says() {
+        for bsdf in finishes() {
+            for angle in [0.0, 30.0, 60.0, 85.0, 89.99] {
+                let incidence = incidence(angle, 1.49, 1.0);
+                for index in 0..200 {
+                    let mut sampler = Sampler::for_path(1, 0, index);
+                    let Some(out) = bsdf.scatter(&incidence, &mut sampler) else { continue };
+                    assert!((0.0..=1.0).contains(&out.factor), "{bsdf:?}");
+                    match out.side {
+                        Side::Reflected => assert!(out.dir.z >= 0.0, "{bsdf:?} at {angle}"),
+                        Side::Transmitted => assert!(out.dir.z <= 0.0, "{bsdf:?} at {angle}"),
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn mirrors_and_total_reflection_draw_no_numbers() {
+        let mirror = Bsdf::Specular { reflectance: 0.9, transmittance: 0.0 };
+        for (bsdf, incidence) in
+            [(mirror, incidence(20.0, 1.0, 1.0)), (Bsdf::Smooth, incidence(60.0, 1.49, 1.0))]
+        {
+            let mut used = Sampler::for_path(1, 0, 0);
+            let mut fresh = used.clone();
+            assert!(bsdf.scatter(&incidence, &mut used).is_some());
+            assert_eq!(used.one(Dimension::Lobe), fresh.one(Dimension::Lobe));
+        }
+    }
+
+    #[test]
+    fn shares_of_a_mixture_follow_the_weights() {
+        let bsdf = finishes().pop().unwrap();
+        let survived = Tally::of((0..20_000).map(|index| {
+            let mut sampler = Sampler::for_path(9, 0, index);
+            bsdf.scatter(&incidence(10.0, 1.0, 1.0), &mut sampler).map_or(0.0, |out| out.factor)
+        }));
+        assert!(survived.sigmas_from(0.7).abs() < 4.0, "{survived:?}");
+    }
+
+    #[test]
+    fn a_smooth_interface_reflects_the_share_that_fresnel_says() {
+        let incidence = incidence(40.0, 1.49, 1.0);
+        let expected = fresnel::dielectric(incidence.cos(), 1.49, 1.0).unpolarised();
+        let reflected = Tally::of((0..50_000).map(|index| {
+            let mut sampler = Sampler::for_path(2, 0, index);
+            let out = Bsdf::Smooth.scatter(&incidence, &mut sampler).unwrap();
+            if out.side == Side::Reflected { 1.0 } else { 0.0 }
+        }));
+        assert!(reflected.sigmas_from(expected).abs() < 4.0, "{reflected:?}, expected {expected}");
+    }
+}

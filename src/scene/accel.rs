@@ -1,0 +1,94 @@
+//! Which surfaces a ray may meet, nearest first. The only file that names obvhs.
+//!
+//! Boxes are f32, padded outward, and cull only: shapes intersect in f64 inside the closure. Up to a handful of shapes
+//! a linear scan is faster. (obvhs's own triangle test and its 8-wide traversal are not used: the first rejects
+//! u = -0.0, the second has a fixed epsilon that loses paths in other units.)
+
+use crate::math::Aabb;
+use crate::scene::Ray;
+use obvhs::aabb::Aabb as Box32;
+use obvhs::bvh2::Bvh2;
+use obvhs::bvh2::builder::build_bvh2;
+use obvhs::ray::{Ray as Ray32, RayHit};
+use obvhs::{BvhBuildParams, fast_stack};
+use std::fmt;
+use std::time::Duration;
+
+/// Up to this many surfaces are scanned one after the other.
+const LINEAR_LIMIT: usize = 4;
+/// Boxes grow by this many f32 ulp of the largest coordinate: rounding of the box, of the ray's origin, and of the slab test.
+const PADDING_ULP: f64 = 8.0;
+
+/// A culling structure over the boxes of all surfaces.
+#[derive(Clone)]
+pub enum Accel {
+    /// A scan over this many surfaces.
+    Linear(usize),
+    /// A binary tree of boxes.
+    Tree(Box<Bvh2>),
+}
+
+impl fmt::Debug for Accel {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Linear(count) => write!(out, "Linear({count})"),
+            Self::Tree(tree) => write!(out, "Tree({} nodes)", tree.nodes.len()),
+        }
+    }
+}
+
+impl Accel {
+    /// A structure over `boxes`; ray origins will have coordinates up to `largest_coordinate`, mm.
+    pub fn new(boxes: &[Aabb], largest_coordinate: f64) -> Self {
+        if boxes.len() <= LINEAR_LIMIT {
+            return Self::Linear(boxes.len());
+        }
+        let padding = PADDING_ULP * f64::from(f32::EPSILON) * largest_coordinate;
+        let boxes: Vec<Box32> = boxes.iter().map(|bounds| to_f32(bounds.grown(padding))).collect();
+        Self::Tree(Box::new(build_bvh2(
+            &boxes,
+            BvhBuildParams::medium_build(),
+            &mut Duration::default(),
+        )))
+    }
+
+    /// Calls `visit` with the index of every surface whose box the ray meets before the distance that the last
+    /// `visit` returned: beyond it nothing is of interest.
+    #[inline]
+    pub fn visit(&self, ray: &Ray, mut visit: impl FnMut(usize) -> f64) {
+        match self {
+            Self::Linear(count) => {
+                for index in 0..*count {
+                    visit(index);
+                }
+            }
+            Self::Tree(tree) => {
+                let ray = Ray32::new_inf(ray.origin().as_vec3a(), ray.dir().as_vec3a());
+                let mut hit = RayHit::none();
+                fast_stack!(u32, (96, 192), tree.max_depth, stack, {
+                    tree.ray_traverse_dynamic(&mut stack, ray, &mut hit, |node, ray, _| {
+                        for slot in node.first_index..node.first_index + node.prim_count {
+                            let limit = visit(tree.primitive_indices[slot as usize] as usize);
+                            ray.tmax = ray.tmax.min(round_up(limit));
+                        }
+                        true
+                    });
+                });
+            }
+        }
+    }
+}
+
+/// The next f32 above a value, so that culling never takes a hit away.
+#[inline]
+fn round_up(value: f64) -> f32 {
+    (value as f32).next_up()
+}
+
+fn to_f32(bounds: Aabb) -> Box32 {
+    let (min, max) = (bounds.min.as_vec3a(), bounds.max.as_vec3a());
+    Box32::new(
+        glam::Vec3A::new(min.x.next_down(), min.y.next_down(), min.z.next_down()),
+        glam::Vec3A::new(max.x.next_up(), max.y.next_up(), max.z.next_up()),
+    )
+}

@@ -1,0 +1,151 @@
+//! Putting a scene together: tables first, then the whole.
+
+use crate::math::Aabb;
+use crate::optics::{Bsdf, Medium};
+use crate::scene::shape::Shape;
+use crate::scene::{
+    Accel, COINCIDENCE, Face, FaceId, Finish, FinishId, MediumId, Owner, Patch, Scene, Sensor,
+    SensorId, SensorKind, Solid, SolidId, Source, SourceId,
+};
+use crate::units::FluxUnit;
+use glam::{DVec2, DVec3};
+
+/// Collects the parts of a scene. Coordinates are about `origin` of the user's.
+#[derive(Debug)]
+pub struct Builder {
+    scene: Scene,
+}
+
+/// A face to be added.
+#[derive(Debug)]
+pub struct FaceSpec {
+    /// Dotted name.
+    pub name: String,
+    /// What it belongs to.
+    pub owner: Owner,
+    /// Finish met from the front.
+    pub front: Option<FinishId>,
+    /// Finish met from the back.
+    pub back: Option<FinishId>,
+    /// The smooth pieces it consists of.
+    pub pieces: Vec<Piece>,
+}
+
+/// A smooth piece of a face to be added.
+#[derive(Debug, Clone)]
+pub struct Piece {
+    /// The surface.
+    pub shape: Shape,
+    /// Tangent-continuous pieces share this number within their solid or sheet.
+    pub smooth: u32,
+    /// Leads from the shape's chart to that of the whole face, mm.
+    pub chart_offset: DVec2,
+}
+
+impl Piece {
+    /// A piece that is a face of its own.
+    pub fn whole(shape: Shape) -> Self {
+        Self { shape, smooth: 0, chart_offset: DVec2::ZERO }
+    }
+}
+
+impl Builder {
+    /// An empty scene about `origin` [mm of the user's coordinates], in a medium.
+    pub fn new(origin: DVec3, surroundings: Medium, unit: FluxUnit) -> Self {
+        let scene = Scene {
+            origin,
+            bounds: Aabb::EMPTY,
+            unit,
+            media: vec![surroundings],
+            surroundings: MediumId::new(0),
+            finishes: Vec::new(),
+            solids: Vec::new(),
+            faces: Vec::new(),
+            patches: Vec::new(),
+            ports: Vec::new(),
+            sources: Vec::new(),
+            sensors: Vec::new(),
+            tolerance: 0.0,
+            accel: Accel::new(&[], 0.0),
+        };
+        Self { scene }
+    }
+
+    /// What has been added so far.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Adds a medium.
+    pub fn add_medium(&mut self, medium: Medium) -> MediumId {
+        self.scene.media.push(medium);
+        MediumId::new(self.scene.media.len() - 1)
+    }
+
+    /// Adds a finish.
+    pub fn add_finish(&mut self, name: &str, bsdf: Bsdf) -> FinishId {
+        self.scene.finishes.push(Finish { name: name.to_owned(), bsdf });
+        FinishId::new(self.scene.finishes.len() - 1)
+    }
+
+    /// Adds a solid; its faces follow.
+    pub fn add_solid(&mut self, solid: Solid) -> SolidId {
+        self.scene.solids.push(solid);
+        SolidId::new(self.scene.solids.len() - 1)
+    }
+
+    /// Adds a face with its pieces.
+    pub fn add_face(&mut self, spec: FaceSpec) -> FaceId {
+        let face = FaceId::new(self.scene.faces.len());
+        let table = match spec.owner {
+            Owner::Solid(_) | Owner::Sheet => &mut self.scene.patches,
+            Owner::Port => &mut self.scene.ports,
+        };
+        let first = table.len();
+        let mut bounds = Aabb::EMPTY;
+        for piece in spec.pieces {
+            bounds = bounds.union(piece.shape.bounds());
+            let Piece { shape, smooth, chart_offset } = piece;
+            table.push(Patch { shape, face, owner: spec.owner, smooth, chart_offset });
+        }
+        let patches = first..table.len();
+        if let Owner::Solid(solid) = spec.owner {
+            let solid = &mut self.scene.solids[solid.index()];
+            solid.bounds = solid.bounds.union(bounds);
+        }
+        self.scene.bounds = self.scene.bounds.union(bounds);
+        self.scene.faces.push(Face {
+            name: spec.name,
+            owner: spec.owner,
+            front: spec.front,
+            back: spec.back,
+            patches,
+        });
+        face
+    }
+
+    /// Adds a source.
+    pub fn add_source(&mut self, source: Source) -> SourceId {
+        self.scene.bounds = self.scene.bounds.union(source.emitter.bounds());
+        self.scene.sources.push(source);
+        SourceId::new(self.scene.sources.len() - 1)
+    }
+
+    /// Adds a sensor whose faces have been added.
+    pub fn add_sensor(&mut self, sensor: Sensor) -> SensorId {
+        if let SensorKind::Goniometer(goniometer) = &sensor.kind {
+            self.scene.bounds = self.scene.bounds.union(goniometer.bounds());
+        }
+        self.scene.sensors.push(sensor);
+        SensorId::new(self.scene.sensors.len() - 1)
+    }
+
+    /// The scene, ready to be traced.
+    pub fn build(self) -> Scene {
+        let mut scene = self.scene;
+        let boxes: Vec<Aabb> = scene.patches.iter().map(|patch| patch.shape.bounds()).collect();
+        scene.tolerance = COINCIDENCE * scene.bounds.diagonal();
+        scene.accel = Accel::new(&boxes, scene.bounds.largest_coordinate());
+        scene
+    }
+}

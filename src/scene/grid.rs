@@ -1,0 +1,171 @@
+//! Cells of a sensor in the unrolled coordinates of its face.
+
+use crate::scene::Patch;
+use crate::scene::shape::ChartRect;
+use glam::DVec2;
+use std::f64::consts::TAU;
+
+/// How a face is divided into cells. Cells are numbered row by row.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Grid {
+    /// `nu` columns by `nv` rows over a rectangle of the chart.
+    Cartesian {
+        /// The rectangle, mm.
+        rect: ChartRect,
+        /// Number of columns, along u.
+        nu: usize,
+        /// Number of rows, along v.
+        nv: usize,
+    },
+    /// Rings of equal width and sectors of equal angle about the chart's origin.
+    Polar {
+        /// Outer radius, mm.
+        radius: f64,
+        /// Number of rings, from the centre outward.
+        rings: usize,
+        /// Number of sectors, from +u counter-clockwise.
+        sectors: usize,
+    },
+}
+
+impl Grid {
+    /// Number of cells.
+    pub fn cells(&self) -> usize {
+        match self {
+            Self::Cartesian { nu, nv, .. } => nu * nv,
+            Self::Polar { rings, sectors, .. } => rings * sectors,
+        }
+    }
+
+    /// Columns and rows of a table of the cells: (u, v), or (sectors, rings).
+    pub fn shape(&self) -> (usize, usize) {
+        match self {
+            Self::Cartesian { nu, nv, .. } => (*nu, *nv),
+            Self::Polar { rings, sectors, .. } => (*sectors, *rings),
+        }
+    }
+
+    /// The cell of a point of the chart; `None` outside the grid.
+    #[inline]
+    pub fn cell(&self, uv: DVec2) -> Option<usize> {
+        match self {
+            Self::Cartesian { rect, nu, nv } => {
+                let place = (uv - rect.min) / (rect.max - rect.min);
+                let column = bin(place.x, *nu)?;
+                Some(bin(place.y, *nv)? * nu + column)
+            }
+            Self::Polar { radius, rings, sectors } => {
+                let ring = bin(uv.length() / radius, *rings)?;
+                let sector = bin(uv.y.atan2(uv.x).rem_euclid(TAU) / TAU, *sectors)?;
+                Some(ring * sectors + sector)
+            }
+        }
+    }
+
+    /// Middle of a cell: (u, v) in mm, or (radius in mm, angle in rad).
+    pub fn center(&self, cell: usize) -> DVec2 {
+        match self {
+            Self::Cartesian { rect, nu, nv } => {
+                let place = DVec2::new((cell % nu) as f64 + 0.5, (cell / nu) as f64 + 0.5);
+                rect.min + place / DVec2::new(*nu as f64, *nv as f64) * (rect.max - rect.min)
+            }
+            Self::Polar { radius, rings, sectors } => DVec2::new(
+                radius * ((cell / sectors) as f64 + 0.5) / *rings as f64,
+                TAU * ((cell % sectors) as f64 + 0.5) / *sectors as f64,
+            ),
+        }
+    }
+
+    /// The rectangle of the chart that the grid covers, mm.
+    pub fn rect(&self) -> ChartRect {
+        match self {
+            Self::Cartesian { rect, .. } => *rect,
+            Self::Polar { radius, .. } => {
+                ChartRect { min: DVec2::splat(-radius), max: DVec2::splat(*radius) }
+            }
+        }
+    }
+
+    /// Area of the sensor in every cell, mm²: cells cut by its rim count what is left of them.
+    pub fn cell_areas(&self, patches: &[&Patch]) -> Vec<f64> {
+        match self {
+            Self::Cartesian { rect, nu, nv } => {
+                let step = (rect.max - rect.min) / DVec2::new(*nu as f64, *nv as f64);
+                (0..self.cells())
+                    .map(|cell| {
+                        let min =
+                            rect.min + step * DVec2::new((cell % nu) as f64, (cell / nu) as f64);
+                        patches
+                            .iter()
+                            .map(|patch| area_in(patch, ChartRect { min, max: min + step }))
+                            .sum()
+                    })
+                    .collect()
+            }
+            Self::Polar { radius, rings, sectors } => {
+                let width = radius / *rings as f64;
+                (0..self.cells())
+                    .map(|cell| {
+                        let ring = (cell / sectors) as f64;
+                        // π(r₂² - r₁²)/sectors with r = ring · width.
+                        0.5 * TAU * width * width * (2.0 * ring + 1.0) / *sectors as f64
+                    })
+                    .collect()
+            }
+        }
+    }
+}
+
+/// Area of a patch whose chart on the face lies in `rect`, mm².
+fn area_in(patch: &Patch, rect: ChartRect) -> f64 {
+    patch.shape.area_in(ChartRect {
+        min: rect.min - patch.chart_offset,
+        max: rect.max - patch.chart_offset,
+    })
+}
+
+/// The bin of a place in 0..=1; the far end belongs to the last bin, up to rounding of points on the rim.
+#[inline]
+fn bin(place: f64, bins: usize) -> Option<usize> {
+    // A point computed to lie on a rim may be a few ulp beyond it.
+    const RIM: f64 = 1e-12;
+    if !(-RIM..=1.0 + RIM).contains(&place) {
+        return None;
+    }
+    Some(((place * bins as f64) as usize).min(bins - 1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn centres_lie_in_their_cells() {
+        let rect = ChartRect { min: DVec2::new(-1.0, 2.0), max: DVec2::new(3.0, 5.0) };
+        let cartesian = Grid::Cartesian { rect, nu: 7, nv: 3 };
+        for cell in 0..cartesian.cells() {
+            assert_eq!(cartesian.cell(cartesian.center(cell)), Some(cell));
+        }
+        let polar = Grid::Polar { radius: 2.0, rings: 4, sectors: 6 };
+        for cell in 0..polar.cells() {
+            let center = polar.center(cell);
+            assert_eq!(polar.cell(DVec2::from_angle(center.y) * center.x), Some(cell));
+        }
+    }
+
+    #[test]
+    fn points_outside_have_no_cell_and_the_rim_has_one() {
+        let rect = ChartRect { min: DVec2::ZERO, max: DVec2::ONE };
+        let grid = Grid::Cartesian { rect, nu: 2, nv: 2 };
+        assert_eq!(grid.cell(DVec2::ONE), Some(3));
+        assert_eq!(grid.cell(DVec2::new(1.1, 0.5)), None);
+        assert_eq!(grid.cell(DVec2::new(0.5, -0.1)), None);
+    }
+
+    #[test]
+    fn rings_add_up_to_the_disk() {
+        let grid = Grid::Polar { radius: 2.0, rings: 5, sectors: 3 };
+        let total: f64 = grid.cell_areas(&[]).iter().sum();
+        assert!((total - std::f64::consts::PI * 4.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,100 @@
+//! From the surfaces that meet at one place to the one interface that light sees.
+//!
+//! All enterings and leavings are applied first; the interface is then between the medium before and the medium
+//! after. A face inside a solid of higher priority does nothing; of several faces, a declared finish acts before an
+//! undeclared one, a sheet before a solid, the higher priority before the lower.
+
+use crate::scene::shape::Toward;
+use crate::scene::{FinishId, Hits, Inside, MediumId, Owner, PrimHit, Scene};
+
+/// What light sees where faces meet.
+#[derive(Debug, Clone)]
+pub struct Interface {
+    /// The surface whose normal and finish act.
+    pub acting: PrimHit,
+    /// Its declared finish on the side the light comes from; `None` is the smooth interface of the media.
+    pub finish: Option<FinishId>,
+    /// The medium the light comes from.
+    pub from: MediumId,
+    /// The medium behind.
+    pub to: MediumId,
+    /// The solids behind.
+    pub beyond: Inside,
+    /// Whether nothing happens to light here: equal media and no finish, or a face buried in another solid.
+    pub visibility: Visibility,
+}
+
+/// Whether an interface does anything.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Visibility {
+    /// A finish or a step of the index acts.
+    Visible,
+    /// Light goes straight on.
+    Invisible,
+}
+
+impl Scene {
+    /// The interface at a hit, for a path inside `inside` in medium `from`. `hits` holds at least one surface.
+    #[inline]
+    pub fn interface(&self, hits: &Hits, inside: &Inside, from: MediumId) -> Interface {
+        let mut beyond = inside.clone();
+        for hit in hits.all() {
+            if let Owner::Solid(solid) = hit.owner {
+                match hit.toward {
+                    Toward::Front => beyond.leave(solid),
+                    Toward::Back => beyond.enter(solid),
+                }
+            }
+        }
+        let to = if beyond == *inside { from } else { self.medium_in(&beyond) };
+        let mut acting = hits.all()[0];
+        let mut finish = None;
+        let mut best = None;
+        for hit in hits.all() {
+            let declared = self.declared_finish(hit);
+            let rank = self.rank(hit, inside, &beyond).map(|rank| (declared.is_some(), rank));
+            if rank > best {
+                (best, acting, finish) = (rank, *hit, declared);
+            }
+        }
+        let passes = finish.is_none() && (from == to || self.same_index(from, to));
+        let visibility =
+            if best.is_none() || passes { Visibility::Invisible } else { Visibility::Visible };
+        Interface { acting, finish, from, to, beyond, visibility }
+    }
+
+    /// The finish that a face declares for light arriving at it.
+    #[inline]
+    fn declared_finish(&self, hit: &PrimHit) -> Option<FinishId> {
+        let face = &self.faces[self.patch(hit.prim).face.index()];
+        match hit.toward {
+            // Light going toward the front meets the back.
+            Toward::Front => face.back,
+            Toward::Back => face.front,
+        }
+    }
+
+    /// How strongly a face claims to act; `None` when it is buried in a solid of higher priority.
+    #[inline]
+    fn rank(&self, hit: &PrimHit, inside: &Inside, beyond: &Inside) -> Option<i64> {
+        match hit.owner {
+            Owner::Sheet | Owner::Port => Some(i64::MAX),
+            Owner::Solid(solid) => {
+                let priority = self.solids[solid.index()].priority;
+                let buried = inside.iter().any(|other| {
+                    other != solid
+                        && self.solids[other.index()].priority > priority
+                        && beyond.contains(other)
+                });
+                (!buried).then_some(i64::from(priority))
+            }
+        }
+    }
+
+    /// Two media of equal index at every wavelength make no interface.
+    fn same_index(&self, a: MediumId, b: MediumId) -> bool {
+        // The index is constant; the wavelength does not matter.
+        let index = |medium: MediumId| self.media[medium.index()].index(0.0);
+        index(a) == index(b)
+    }
+}

@@ -1,0 +1,204 @@
+//! Virtual sensors: where and how flux is counted. They never bend or stop light, unless their face absorbs.
+
+use crate::math::{Aabb, Frame};
+use crate::scene::shape::Toward;
+use crate::scene::{FaceId, Grid, Ray};
+use glam::DVec3;
+use std::f64::consts::TAU;
+
+/// A sensor with its name and its aim.
+#[derive(Debug, Clone)]
+pub struct Sensor {
+    /// Name in the scene file.
+    pub name: String,
+    /// What is measured.
+    pub kind: SensorKind,
+    /// Faces or open ports through which a remote sensor is lit; empty: from anywhere.
+    pub aim: Vec<FaceId>,
+    /// The port whose entering flux the transmission is counted against.
+    pub entering: Option<FaceId>,
+}
+
+/// What a sensor measures.
+#[derive(Debug, Clone)]
+pub enum SensorKind {
+    /// Flux on a surface, divided into cells; with views also into directions.
+    Surface(SurfaceSensor),
+    /// Flux on a goniometric sphere.
+    Goniometer(Goniometer),
+}
+
+impl Sensor {
+    /// Number of values: cells, times views for a luminance sensor.
+    pub fn cells(&self) -> usize {
+        match &self.kind {
+            SensorKind::Surface(surface) => surface.cells(),
+            SensorKind::Goniometer(goniometer) => goniometer.cells(),
+        }
+    }
+}
+
+/// Flux through or on faces.
+#[derive(Debug, Clone)]
+pub struct SurfaceSensor {
+    /// The faces that make the sensor.
+    pub faces: Vec<FaceId>,
+    /// Whether they are faces of the scene or a port in free space.
+    pub place: Place,
+    /// Light that arrives, or light that leaves.
+    pub counts: Counts,
+    /// On which sides.
+    pub sides: Sides,
+    /// The cells, in the chart of the faces.
+    pub grid: Grid,
+    /// Area of each cell, mm².
+    pub areas: Vec<f64>,
+    /// Directions of a luminance sensor.
+    pub views: Option<Views>,
+    /// For drawings and files: middle and axes of a flat sensor.
+    pub frame: Option<Frame>,
+}
+
+impl SurfaceSensor {
+    /// Number of values.
+    pub fn cells(&self) -> usize {
+        self.grid.cells() * self.views.as_ref().map_or(1, |views| views.directions.len())
+    }
+
+    /// Area of the sensor, mm².
+    pub fn area(&self) -> f64 {
+        self.areas.iter().sum()
+    }
+}
+
+/// Where a surface sensor is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// On material faces of the scene: counted at the interface.
+    Face,
+    /// On a port: light passes through it, counted along its way.
+    Port,
+}
+
+/// Which light counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Counts {
+    /// Light before the interface acts.
+    Incident,
+    /// Light after it: transmitted and reflected.
+    Leaving,
+}
+
+/// On which sides of a face light counts: the side it arrives from, or leaves to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sides {
+    /// The side of the normal.
+    Front,
+    /// The other side.
+    Back,
+    /// Both.
+    Both,
+}
+
+impl Sides {
+    /// Whether light travelling `toward` a side counts, arriving (it comes from the opposite side) or leaving.
+    #[inline]
+    pub fn include(self, counts: Counts, toward: Toward) -> bool {
+        let front = match counts {
+            Counts::Incident => toward == Toward::Back,
+            Counts::Leaving => toward == Toward::Front,
+        };
+        match self {
+            Self::Front => front,
+            Self::Back => !front,
+            Self::Both => true,
+        }
+    }
+}
+
+/// The directions of a luminance sensor: unit vectors away from the face, and one acceptance cone.
+#[derive(Debug, Clone)]
+pub struct Views {
+    /// Away from the face: toward where arriving light comes from, or where leaving light goes to.
+    pub directions: Vec<DVec3>,
+    /// Half-angle of the acceptance cone, rad.
+    pub half_angle: f64,
+    /// Projected solid angle of each cone on the face, sr.
+    pub projected: Vec<f64>,
+}
+
+impl Views {
+    /// The views that take in light along `away`, a unit vector away from the face.
+    #[inline]
+    pub fn accepting(&self, away: DVec3) -> impl Iterator<Item = usize> + '_ {
+        // |a - b| = 2 sin(θ/2) keeps the digits of narrow cones.
+        let reach = 2.0 * (0.5 * self.half_angle).sin();
+        self.directions
+            .iter()
+            .enumerate()
+            .filter(move |(_, direction)| away.distance_squared(**direction) <= reach * reach)
+            .map(|(view, _)| view)
+    }
+}
+
+/// A goniometric sphere of type C: γ from the pole (+z of the frame), C about it from +x.
+#[derive(Debug, Clone)]
+pub struct Goniometer {
+    /// Centre, pole (+z) and C0 (+x).
+    pub frame: Frame,
+    /// Number of sectors in C.
+    pub c_cells: usize,
+    /// Number of rings in γ, from the pole.
+    pub gamma_cells: usize,
+    /// Radius, mm; `None` is the far field, where only directions count.
+    pub radius: Option<f64>,
+}
+
+impl Goniometer {
+    /// Number of cells.
+    pub fn cells(&self) -> usize {
+        self.c_cells * self.gamma_cells
+    }
+
+    /// The cell of a direction of light: ring by ring from the pole.
+    #[inline]
+    pub fn cell(&self, dir: DVec3) -> usize {
+        let local = self.frame.to_local(dir);
+        // atan2 keeps the digits near the poles.
+        let gamma = local.truncate().length().atan2(local.z);
+        let c = local.y.atan2(local.x).rem_euclid(TAU);
+        let ring = ((gamma / std::f64::consts::PI * self.gamma_cells as f64) as usize)
+            .min(self.gamma_cells - 1);
+        let sector = ((c / TAU * self.c_cells as f64) as usize).min(self.c_cells - 1);
+        ring * self.c_cells + sector
+    }
+
+    /// Solid angle of a cell, sr.
+    pub fn solid_angle(&self, cell: usize) -> f64 {
+        let edge =
+            |ring: usize| (std::f64::consts::PI * ring as f64 / self.gamma_cells as f64).cos();
+        let ring = cell / self.c_cells;
+        (edge(ring) - edge(ring + 1)) * TAU / self.c_cells as f64
+    }
+
+    /// Where a ray leaves the finite sphere within `length`: its direction from the centre.
+    #[inline]
+    pub fn leaving(&self, ray: &Ray, length: f64) -> Option<DVec3> {
+        let radius = self.radius?;
+        let from = ray.origin() - self.frame.origin;
+        let half_b = from.dot(ray.dir());
+        let c = from.length_squared() - radius * radius;
+        let discriminant = half_b * half_b - c;
+        if discriminant < 0.0 {
+            return None;
+        }
+        // The further root is the way out; a start beyond it has it behind.
+        let t = -half_b + discriminant.sqrt();
+        (t > 0.0 && t <= length).then(|| (ray.at(t) - self.frame.origin) / radius)
+    }
+
+    /// Box around a finite sphere, mm; empty for the far field.
+    pub fn bounds(&self) -> Aabb {
+        self.radius.map_or(Aabb::EMPTY, |radius| Aabb::of([self.frame.origin]).grown(radius))
+    }
+}

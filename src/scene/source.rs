@@ -1,0 +1,211 @@
+//! Sources: where light starts.
+
+use crate::math::{Aabb, Frame, disk};
+use crate::rng::{Dimension, Sampler};
+use crate::scene::emission::EmitterKind;
+use crate::scene::intersect::Just;
+use crate::scene::shape::Shape;
+use crate::scene::{Emission, Inside, PrimId, Ray, Scene, SolidId};
+use glam::DVec3;
+
+/// A source of light.
+#[derive(Debug, Clone)]
+pub struct Source {
+    /// Name in the scene file.
+    pub name: String,
+    /// Emitted flux, lm or W.
+    pub flux: f64,
+    /// What emits.
+    pub emitter: Emitter,
+    /// In which directions.
+    pub emission: Emission,
+    /// How the solids around a start point are found.
+    pub start: Start,
+    /// The surface of the source's own body, or the face it sits on: light does not meet it at its start.
+    pub on: Vec<PrimId>,
+}
+
+/// What emits.
+#[derive(Debug, Clone)]
+pub enum Emitter {
+    /// A point; +z of the frame is its axis.
+    Point(Frame),
+    /// A thin line along z of the frame, centred; Lambertian means intensity ∝ sin of the angle to the line.
+    Line {
+        /// Middle and direction.
+        frame: Frame,
+        /// Length, mm.
+        length: f64,
+    },
+    /// Surfaces, emitting along their normals, evenly over their area.
+    Surface {
+        /// The surfaces with the area up to and including each, mm².
+        shapes: Vec<(Shape, f64)>,
+        /// Along the normal, or against it.
+        side: EmitSide,
+        /// For tilted cones and beams: the frame that a flat source's directions refer to.
+        frame: Option<Frame>,
+    },
+    /// The inside of a solid.
+    Volume {
+        /// The solid.
+        solid: SolidId,
+        /// Box around it, mm.
+        bounds: Aabb,
+    },
+}
+
+/// From which side of its surface a source emits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EmitSide {
+    /// Along the normal.
+    Front,
+    /// Against the normal.
+    Back,
+}
+
+/// How the solids around a start point are found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Start {
+    /// The source touches no solid: all paths start outside.
+    Outside,
+    /// Asked for every path, just ahead of the start: a source on a face emits beyond it.
+    Ahead,
+    /// Asked for every path, just behind the start: light still has to cross a face that the source lies on.
+    Behind,
+}
+
+/// The start of a photon path.
+#[derive(Debug, Clone)]
+pub struct Emitted {
+    /// Where and in which direction.
+    pub ray: Ray,
+    /// The solids it starts in.
+    pub inside: Inside,
+}
+
+impl Emitter {
+    /// The emitter made of some surfaces.
+    pub fn surface(shapes: Vec<Shape>, side: EmitSide, frame: Option<Frame>) -> Self {
+        let mut area = 0.0;
+        let shapes = shapes
+            .into_iter()
+            .map(|shape| {
+                area += shape.area();
+                (shape, area)
+            })
+            .collect();
+        Self::Surface { shapes, side, frame }
+    }
+
+    /// Emitting area, mm²; `None` for points, lines and volumes.
+    pub fn area(&self) -> Option<f64> {
+        match self {
+            Self::Point(_) | Self::Line { .. } | Self::Volume { .. } => None,
+            Self::Surface { shapes, .. } => shapes.last().map(|(_, area)| *area),
+        }
+    }
+
+    /// Box around the emitter, mm.
+    pub fn bounds(&self) -> Aabb {
+        match self {
+            Self::Point(frame) => Aabb::of([frame.origin]),
+            Self::Line { frame, length } => Aabb::of([
+                frame.origin - 0.5 * length * frame.z,
+                frame.origin + 0.5 * length * frame.z,
+            ]),
+            Self::Surface { shapes, .. } => {
+                shapes.iter().fold(Aabb::EMPTY, |bounds, (shape, _)| bounds.union(shape.bounds()))
+            }
+            Self::Volume { bounds, .. } => *bounds,
+        }
+    }
+}
+
+impl Source {
+    /// Starts a photon path.
+    pub fn emit(&self, scene: &Scene, sampler: &mut Sampler) -> Emitted {
+        let ray = match &self.emitter {
+            Emitter::Point(frame) => Ray::new(
+                frame.origin,
+                frame.to_world(self.emission.sample(EmitterKind::Point, sampler)),
+            ),
+            Emitter::Line { frame, length } => self.emit_from_line(frame, *length, sampler),
+            Emitter::Surface { shapes, side, frame } => {
+                self.emit_from_surface(shapes, *side, frame.as_ref(), sampler)
+            }
+            Emitter::Volume { solid, bounds } => {
+                self.emit_from_volume(scene, *solid, bounds, sampler)
+            }
+        };
+        let inside = match self.start {
+            Start::Outside => Inside::default(),
+            Start::Ahead => scene.inside_at(&ray, Just::Ahead),
+            Start::Behind => scene.inside_at(&ray, Just::Behind),
+        };
+        Emitted { ray, inside }
+    }
+
+    fn emit_from_line(&self, frame: &Frame, length: f64, sampler: &mut Sampler) -> Ray {
+        let along = length * (sampler.one(Dimension::EmitPosition) - 0.5);
+        let local = match self.emission {
+            // A coordinate of a uniform point of the disk has density ∝ sqrt(1 - c²) = sin θ: Lambertian for a thin line.
+            Emission::Lambertian => {
+                let u = sampler.pair(Dimension::EmitDirection);
+                let cos = disk(u).x;
+                let around = sampler.one(Dimension::EmitDirection) * std::f64::consts::TAU;
+                let sin = (1.0 - cos * cos).sqrt();
+                DVec3::new(sin * around.cos(), sin * around.sin(), cos)
+            }
+            Emission::CosinePower(_)
+            | Emission::Cone { .. }
+            | Emission::Collimated { .. }
+            | Emission::Isotropic => self.emission.sample(EmitterKind::Point, sampler),
+        };
+        Ray::new(frame.origin + along * frame.z, frame.to_world(local))
+    }
+
+    fn emit_from_surface(
+        &self,
+        shapes: &[(Shape, f64)],
+        side: EmitSide,
+        reference: Option<&Frame>,
+        sampler: &mut Sampler,
+    ) -> Ray {
+        let shape = if shapes.len() == 1 {
+            &shapes[0].0
+        } else {
+            let area = sampler.one(Dimension::EmitPosition) * shapes[shapes.len() - 1].1;
+            &shapes[shapes.partition_point(|(_, up_to)| *up_to <= area).min(shapes.len() - 1)].0
+        };
+        let point = shape.sample(sampler.pair(Dimension::EmitPosition));
+        let normal = match side {
+            EmitSide::Front => shape.normal(point),
+            EmitSide::Back => -shape.normal(point),
+        };
+        let frame = match reference {
+            Some(reference) => *reference,
+            None => Frame::from_axis(DVec3::ZERO, normal),
+        };
+        Ray::new(point, frame.to_world(self.emission.sample(EmitterKind::Surface, sampler)))
+    }
+
+    fn emit_from_volume(
+        &self,
+        scene: &Scene,
+        solid: SolidId,
+        bounds: &Aabb,
+        sampler: &mut Sampler,
+    ) -> Ray {
+        loop {
+            let [u, v] = sampler.pair(Dimension::EmitPosition);
+            let w = sampler.one(Dimension::EmitPosition);
+            let point = bounds.min + DVec3::new(u, v, w) * (bounds.max - bounds.min);
+            let local = self.emission.sample(EmitterKind::Volume, sampler);
+            let ray = Ray::new(point, local);
+            if scene.inside_at(&ray, Just::Ahead).contains(solid) {
+                return ray;
+            }
+        }
+    }
+}

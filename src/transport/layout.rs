@@ -1,0 +1,113 @@
+//! Where each scalar of the readings stands in the row of sums.
+//!
+//! The order is fixed by the scene alone, so that readings made elsewhere from the same scene can be added.
+
+use crate::scene::{FaceId, MediumId, Scene, SensorId, SourceId};
+
+/// Depths for which the flux of deeper paths is kept, in interfaces met.
+pub const TAILS: [u32; 6] = [10, 50, 100, 200, 500, 1000];
+
+/// The place of every scalar.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Layout {
+    sources: usize,
+    faces: usize,
+    media: usize,
+    sensors: usize,
+}
+
+impl Layout {
+    /// The layout of a scene's readings.
+    pub fn new(scene: &Scene) -> Self {
+        Self {
+            sources: scene.sources.len(),
+            faces: scene.faces.len(),
+            media: scene.media.len(),
+            sensors: scene.sensors.len(),
+        }
+    }
+
+    /// Number of scalars.
+    pub fn len(&self) -> usize {
+        self.sensor_base(self.sensors)
+    }
+
+    /// Whether there are none; never, there is always the balance.
+    pub fn is_empty(&self) -> bool {
+        false
+    }
+
+    /// Flux that started, by source.
+    pub fn emitted(&self, source: SourceId) -> usize {
+        source.index()
+    }
+
+    /// Flux absorbed by a face.
+    #[inline]
+    pub fn absorbed_by_face(&self, face: FaceId) -> usize {
+        self.sources + face.index()
+    }
+
+    /// Flux absorbed in a medium.
+    #[inline]
+    pub fn absorbed_in_medium(&self, medium: MediumId) -> usize {
+        self.sources + self.faces + medium.index()
+    }
+
+    /// Flux that escaped, by the solid face it last left through; `None`: it never left a solid.
+    pub fn escaped(&self, face: Option<FaceId>) -> usize {
+        self.sources + self.faces + self.media + face.map_or(self.faces, FaceId::index)
+    }
+
+    /// Flux cut by the bounce limit.
+    pub fn cut(&self) -> usize {
+        self.sources + 2 * self.faces + self.media + 1
+    }
+
+    /// Flux that roulette took, less what its survivors gained.
+    pub fn roulette(&self) -> usize {
+        self.cut() + 1
+    }
+
+    /// Flux lost through holes in the geometry.
+    pub fn leaked(&self) -> usize {
+        self.cut() + 2
+    }
+
+    /// Flux on a sensor, by source.
+    #[inline]
+    pub fn sensor_flux(&self, sensor: SensorId, source: SourceId) -> usize {
+        self.sensor_base(sensor.index()) + source.index()
+    }
+
+    /// Flux on a sensor that did not come through its aim.
+    pub fn outside_aim(&self, sensor: SensorId) -> usize {
+        self.sensor_base(sensor.index()) + self.sources
+    }
+
+    /// Flux on the side of a one-sided sensor that does not count.
+    pub fn other_side(&self, sensor: SensorId) -> usize {
+        self.outside_aim(sensor) + 1
+    }
+
+    /// Flux that entered by the sensor's entry port.
+    pub fn entering(&self, sensor: SensorId) -> usize {
+        self.outside_aim(sensor) + 2
+    }
+
+    /// Flux on a sensor times the depth of its paths.
+    #[inline]
+    pub fn depth_weighted(&self, sensor: SensorId) -> usize {
+        self.outside_aim(sensor) + 3
+    }
+
+    /// Flux on a sensor by paths deeper than entry `tail` of [`TAILS`].
+    #[inline]
+    pub fn deeper(&self, sensor: SensorId, tail: usize) -> usize {
+        self.outside_aim(sensor) + 4 + tail
+    }
+
+    fn sensor_base(&self, sensor: usize) -> usize {
+        self.leaked() + 1 + sensor * (self.sources + 4 + TAILS.len())
+    }
+}

@@ -1,0 +1,44 @@
+//! The state of a path.
+
+use crate::scene::{Emitted, Inside, MediumId, PrimId, Ray, Scene, SourceId};
+use smallvec::SmallVec;
+
+/// Wavelength of all light for now, nm: the peak of V(λ), CIE 018:2019.
+pub const WAVELENGTH: f64 = 555.0;
+
+/// Everything a path takes with it from one interface to the next.
+#[derive(Debug, Clone)]
+pub struct Path {
+    /// Where it is and where it goes.
+    pub ray: Ray,
+    /// Factor picked up since the start, 1.
+    pub throughput: f64,
+    /// Wavelength, nm.
+    pub wavelength: f64,
+    /// Where its light comes from.
+    pub source: SourceId,
+    /// The solids it is in.
+    pub inside: Inside,
+    /// The medium it is in.
+    pub medium: MediumId,
+    /// The surfaces it starts on.
+    pub on: SmallVec<[PrimId; 2]>,
+    /// Number of visible interfaces met so far.
+    pub depth: u32,
+}
+
+impl Path {
+    /// A photon path at its source.
+    pub fn emitted(scene: &Scene, source: SourceId, emitted: Emitted) -> Self {
+        Self {
+            ray: emitted.ray,
+            throughput: 1.0,
+            wavelength: WAVELENGTH,
+            source,
+            medium: scene.medium_in(&emitted.inside),
+            inside: emitted.inside,
+            on: SmallVec::from_slice(&scene.sources[source.index()].on),
+            depth: 0,
+        }
+    }
+}

@@ -1,0 +1,204 @@
+//! The one bounce loop. Visitors see what happens and decide nothing but when to end.
+//!
+//! It does not know what is counted: the forward estimator counts photons, a gather path would look for its end.
+
+use crate::optics::{Incidence, Scattered, Side};
+use crate::rng::{Dimension, Sampler};
+use crate::scene::shape::Toward;
+use crate::scene::{Hits, Interface, MediumId, Ray, Scene, Visibility};
+use crate::transport::Path;
+use glam::DVec3;
+use std::ops::ControlFlow;
+
+/// Below this throughput a path survives with probability throughput/threshold and then has the threshold's:
+/// the mean is kept, and mirrors above it cost no random number. 1.
+const ROULETTE_BELOW: f64 = 1e-3;
+
+/// A straight piece of a path, in one medium.
+#[derive(Debug)]
+pub struct Segment<'a> {
+    /// Start and direction.
+    pub ray: &'a Ray,
+    /// Length, mm; infinite when nothing is hit.
+    pub length: f64,
+    /// The medium.
+    pub medium: MediumId,
+    /// Throughput at its start.
+    pub throughput: f64,
+    /// Throughput at its end.
+    pub arriving: f64,
+}
+
+/// The meeting of a path with an interface.
+#[derive(Debug)]
+pub struct Vertex<'a> {
+    /// Where, mm.
+    pub point: DVec3,
+    /// Unit direction of travel before it.
+    pub dir: DVec3,
+    /// All surfaces that meet there.
+    pub hits: &'a Hits,
+    /// The interface they make.
+    pub interface: &'a Interface,
+    /// Throughput arriving.
+    pub throughput: f64,
+}
+
+/// How a path goes on from a vertex.
+#[derive(Debug)]
+pub struct Departure {
+    /// Unit direction of travel.
+    pub dir: DVec3,
+    /// Throughput leaving.
+    pub throughput: f64,
+    /// Reflected or transmitted.
+    pub side: Side,
+}
+
+/// What happens to a path, in this order: travel, arrive, depart, travel, ...
+#[derive(Debug)]
+pub enum Event<'a> {
+    /// It went straight through a medium.
+    Travel(&'a Segment<'a>),
+    /// It met an interface; nothing has been decided.
+    Arrive(&'a Vertex<'a>),
+    /// The interface sent it on; what its throughput lost, the acting face absorbed.
+    Depart(&'a Vertex<'a>, &'a Departure),
+    /// The acting face absorbed all of it.
+    Absorbed(&'a Vertex<'a>),
+    /// Roulette took this throughput away; negative where a survivor gained it.
+    Roulette(f64),
+    /// It left the scene.
+    Escaped(f64),
+    /// It met the bounce limit with this throughput.
+    Cut(f64),
+    /// It was inside a solid and met nothing: a hole in the geometry, at the ray's origin.
+    Leaked(&'a Ray, f64),
+}
+
+/// Follows a path until it ends or the visitor breaks.
+#[inline]
+pub fn walk(
+    scene: &Scene,
+    mut path: Path,
+    bounce_limit: u32,
+    sampler: &mut Sampler,
+    mut visit: impl FnMut(&Path, Event<'_>) -> ControlFlow<()>,
+) {
+    loop {
+        let hits = scene.next_hit(&path.ray, &path.on, &path.inside);
+        let length = hits.distance().unwrap_or(f64::INFINITY);
+        let medium = &scene.media[path.medium.index()];
+        let arriving = path.throughput * medium.transmittance(path.wavelength, length);
+        let segment = Segment {
+            ray: &path.ray,
+            length,
+            medium: path.medium,
+            throughput: path.throughput,
+            arriving,
+        };
+        if visit(&path, Event::Travel(&segment)).is_break() {
+            return;
+        }
+        path.throughput = arriving;
+        if hits.all().is_empty() {
+            let event = if path.inside.is_empty() {
+                Event::Escaped(path.throughput)
+            } else {
+                Event::Leaked(&path.ray, path.throughput)
+            };
+            // The path ends here whatever the visitor says.
+            if visit(&path, event).is_break() {}
+            return;
+        }
+        if bounce(scene, &mut path, &hits, length, sampler, &mut visit).is_break() {
+            return;
+        }
+        if path.depth >= bounce_limit {
+            if visit(&path, Event::Cut(path.throughput)).is_break() {}
+            return;
+        }
+        if path.throughput < ROULETTE_BELOW {
+            let survives = sampler.one(Dimension::Roulette) * ROULETTE_BELOW < path.throughput;
+            let after = if survives { ROULETTE_BELOW } else { 0.0 };
+            if visit(&path, Event::Roulette(path.throughput - after)).is_break() || !survives {
+                return;
+            }
+            path.throughput = after;
+        }
+    }
+}
+
+/// Takes a path through the interface it has met.
+#[inline]
+fn bounce(
+    scene: &Scene,
+    path: &mut Path,
+    hits: &Hits,
+    length: f64,
+    sampler: &mut Sampler,
+    visit: &mut impl FnMut(&Path, Event<'_>) -> ControlFlow<()>,
+) -> ControlFlow<()> {
+    let interface = scene.interface(hits, &path.inside, path.medium);
+    let vertex = Vertex {
+        point: path.ray.at(length),
+        dir: path.ray.dir(),
+        hits,
+        interface: &interface,
+        throughput: path.throughput,
+    };
+    visit(path, Event::Arrive(&vertex))?;
+    let out = match interface.visibility {
+        Visibility::Invisible => straight_on(vertex.dir),
+        Visibility::Visible => {
+            path.depth += 1;
+            let Some(out) = scatter(scene, path, &vertex, sampler) else {
+                visit(path, Event::Absorbed(&vertex))?;
+                return ControlFlow::Break(());
+            };
+            out
+        }
+    };
+    path.on.clear();
+    path.on.extend(hits.all().iter().map(|hit| hit.prim));
+    path.ray = Ray::new(vertex.point, out.dir);
+    path.throughput *= out.factor;
+    let departure = Departure { dir: path.ray.dir(), throughput: path.throughput, side: out.side };
+    visit(path, Event::Depart(&vertex, &departure))?;
+    if out.side == Side::Transmitted {
+        path.medium = interface.to;
+        path.inside = interface.beyond;
+    }
+    ControlFlow::Continue(())
+}
+
+fn straight_on(dir: DVec3) -> Scattered {
+    Scattered { dir, factor: 1.0, side: Side::Transmitted, lobe: crate::optics::Lobe::Specular }
+}
+
+/// Asks the acting finish.
+#[inline]
+fn scatter(
+    scene: &Scene,
+    path: &Path,
+    vertex: &Vertex<'_>,
+    sampler: &mut Sampler,
+) -> Option<Scattered> {
+    let interface = vertex.interface;
+    let outward = scene.normal(interface.acting.prim, vertex.point);
+    let normal = match interface.acting.toward {
+        Toward::Front => -outward,
+        Toward::Back => outward,
+    };
+    let index = |medium: MediumId| scene.media[medium.index()].index(path.wavelength);
+    let incidence = Incidence {
+        dir: vertex.dir,
+        normal,
+        index_from: index(interface.from),
+        index_to: index(interface.to),
+    };
+    match interface.finish {
+        Some(finish) => scene.finishes[finish.index()].bsdf.scatter(&incidence, sampler),
+        None => crate::optics::Bsdf::Smooth.scatter(&incidence, sampler),
+    }
+}

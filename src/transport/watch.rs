@@ -1,0 +1,81 @@
+//! Which sensors watch what: looked up once per run, asked at every event.
+
+use crate::scene::{
+    FaceId, Goniometer, Owner, Patch, Place, Scene, SensorId, SensorKind, SurfaceSensor,
+};
+
+/// The sensors of a scene, by where light can meet them.
+#[derive(Debug)]
+pub(crate) struct Watch<'s> {
+    /// Sensors on ports: every segment is tested against their patches.
+    pub(crate) ports: Vec<OnPort<'s>>,
+    /// For every face, the sensors on it.
+    pub(crate) faces: Vec<Vec<(SensorId, &'s SurfaceSensor)>>,
+    /// Far-field goniometers: escaping light is counted.
+    pub(crate) far: Vec<(SensorId, &'s Goniometer)>,
+    /// Goniometers of finite radius: every segment is tested.
+    pub(crate) near: Vec<(SensorId, &'s Goniometer)>,
+    /// For every face, the sensors whose transmission counts what enters through it.
+    pub(crate) entries: Vec<Vec<SensorId>>,
+    /// Open ports that are such entries.
+    pub(crate) entry_ports: Vec<(FaceId, &'s [Patch])>,
+}
+
+/// A sensor on a port.
+#[derive(Debug)]
+pub(crate) struct OnPort<'s> {
+    /// The sensor.
+    pub(crate) id: SensorId,
+    /// What it counts.
+    pub(crate) sensor: &'s SurfaceSensor,
+    /// The pieces of its port.
+    pub(crate) patches: Vec<&'s Patch>,
+}
+
+impl<'s> Watch<'s> {
+    /// Sorts the sensors of a scene.
+    pub(crate) fn new(scene: &'s Scene) -> Self {
+        let mut watch = Self {
+            ports: Vec::new(),
+            faces: vec![Vec::new(); scene.faces.len()],
+            far: Vec::new(),
+            near: Vec::new(),
+            entries: vec![Vec::new(); scene.faces.len()],
+            entry_ports: Vec::new(),
+        };
+        for (index, sensor) in scene.sensors.iter().enumerate() {
+            let id = SensorId::new(index);
+            match &sensor.kind {
+                SensorKind::Surface(surface) => watch.add_surface(scene, id, surface),
+                SensorKind::Goniometer(goniometer) if goniometer.radius.is_some() => {
+                    watch.near.push((id, goniometer));
+                }
+                SensorKind::Goniometer(goniometer) => watch.far.push((id, goniometer)),
+            }
+            if let Some(face) = sensor.entering {
+                if scene.faces[face.index()].owner == Owner::Port
+                    && watch.entries[face.index()].is_empty()
+                {
+                    watch.entry_ports.push((face, scene.face_patches(face)));
+                }
+                watch.entries[face.index()].push(id);
+            }
+        }
+        watch
+    }
+
+    fn add_surface(&mut self, scene: &'s Scene, id: SensorId, sensor: &'s SurfaceSensor) {
+        match sensor.place {
+            Place::Port => {
+                let patches =
+                    sensor.faces.iter().flat_map(|face| scene.face_patches(*face)).collect();
+                self.ports.push(OnPort { id, sensor, patches });
+            }
+            Place::Face => {
+                for face in &sensor.faces {
+                    self.faces[face.index()].push((id, sensor));
+                }
+            }
+        }
+    }
+}

@@ -1,4 +1,5 @@
 //! What is in the room.
+pub mod mesh;
 mod ray;
 pub mod shape;
 pub use ray::Ray;

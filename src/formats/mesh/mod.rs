@@ -10,11 +10,13 @@ mod from_gltf;
 mod from_obj;
 mod from_stl;
 mod gltf_buffers;
+mod gltf_nodes;
 mod health;
 #[cfg(test)]
 pub(crate) mod samples;
 pub mod topology;
 
+pub(crate) use health::normals_agree;
 pub use health::{Facets, MeshHealth, health};
 
 use crate::math::Aabb;

@@ -221,7 +221,11 @@ fn faces(mesh: &TriangleMesh, corners: &[[DVec3; 3]]) -> Vec<Face> {
 mod tests {
     use super::*;
     use crate::formats::mesh::samples::{Normals, block, icosphere, rod};
+    use crate::formats::mesh::{LengthUnit, read};
+    use crate::math::cone_direction;
     use crate::rng::{Dimension, Sampler};
+    use crate::scene::shape::Toward;
+    use std::path::Path;
 
     /// Largest error of the shading normal, rad, over a point of each triangle of an ellipsoid with half axes 6, 3, 3.
     fn worst_normal(level: u32) -> f64 {
@@ -321,5 +325,49 @@ mod tests {
         assert_eq!(patches(&rod(2.0, 40.0, 48, Normals::None)), 50);
         assert_eq!(patches(&block(DVec3::ONE)), 6);
         assert_eq!(patches(&icosphere(1.0, 2, Normals::Smooth)), 1);
+    }
+
+    /// The nearest way out of a mesh that a path inside meets, other than the triangle that it is on.
+    fn next_exit(mesh: &Mesh, ray: &Ray, on: usize) -> Option<(usize, f64)> {
+        let line = Line::of(ray);
+        (0..mesh.triangle_count())
+            .filter(|triangle| *triangle != on)
+            .filter_map(|triangle| Some((triangle, mesh.crossing_of(triangle, &line)?)))
+            .filter(|(_, crossing)| crossing.toward == Toward::Front && crossing.t > 0.0)
+            .map(|(triangle, crossing)| (triangle, crossing.t))
+            .min_by(|one, other| one.1.total_cmp(&other.1))
+    }
+
+    #[test]
+    fn light_in_the_guide_of_the_scenes_stays_in_until_an_end() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/meshes/lightguide.glb");
+        let mesh = Mesh::new(&read(&path, LengthUnit::Metre).unwrap(), &Frame::WORLD);
+        let face = |name| mesh.face_names().position(|other| other == name).unwrap();
+        let (entry, wall, exit) = (face("entry"), face("wall"), face("exit"));
+        assert!(mesh.chart_plane(entry).is_some() && mesh.chart_plane(exit).is_some());
+        assert_eq!((0..mesh.triangle_count()).map(|t| mesh.smooth_id(t)).max(), Some(2));
+        let mut bounces = 0;
+        for index in 0..40 {
+            let mut sampler = Sampler::for_path(41, 0, index);
+            let start = mesh.sample(entry, sampler.pair(Dimension::EmitPosition)).unwrap();
+            // Inside acrylic: within 42 degrees of the axis.
+            let dir = cone_direction(0.73, sampler.pair(Dimension::EmitDirection));
+            let (mut ray, mut on) = (Ray::new(start.point, dir), start.triangle);
+            loop {
+                let (triangle, t) = next_exit(&mesh, &ray, on).expect("a leak");
+                if mesh.face_of(triangle) != wall {
+                    assert!([entry, exit].contains(&mesh.face_of(triangle)));
+                    break;
+                }
+                let (point, facet) = (ray.at(t), mesh.facet_normal(triangle));
+                let mut dir = ray.dir().reflect(mesh.shading_normal(triangle, point));
+                if dir.dot(facet) >= 0.0 {
+                    dir = dir.reflect(facet);
+                }
+                (ray, on) = (Ray::new(point, dir), triangle);
+                bounces += 1;
+            }
+        }
+        assert!(bounces > 200, "{bounces}");
     }
 }

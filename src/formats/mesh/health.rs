@@ -4,11 +4,11 @@ use crate::formats::mesh::topology::{Groups, HalfEdge, half_edges, same_edge};
 use crate::formats::mesh::{TriangleMesh, area_vector};
 use glam::DVec3;
 
-/// Below this turn [deg] two facets belong to a flat face of rounded coordinates.
+/// Below this turn, degrees, two facets belong to a flat face of rounded coordinates.
 const FLAT_DEG: f64 = 0.1;
-/// Above this turn [deg] an edge is meant to be one.
+/// Above this turn, degrees, an edge is meant to be one.
 const SHARP_DEG: f64 = 45.0;
-/// Corner normals nearer than this [rad] were one normal before they were rounded to 16 bits or more.
+/// Corner normals nearer than this, rad, were one normal before they were rounded to 16 bits or more.
 pub(crate) const SAME_NORMAL: f64 = 1.0e-4;
 
 /// What there is to say about a mesh before light is traced through it.

@@ -1,5 +1,6 @@
 //! Photometric sensor data for light tubes and light guides.
 pub mod error;
+pub mod formats;
 pub mod math;
 pub mod optics;
 pub mod rng;

@@ -4,7 +4,7 @@
 //! traced it or in what order. Numbers are asked for by purpose ([`Dimension`]): a low-discrepancy set can later
 //! answer the first of them without a change to the callers.
 //!
-//! Generator: xoshiro256++ (Blackman & Vigna, ACM Trans. Math. Softw. 47 (2021) 36), seeded by SplitMix64.
+//! Generator: xoshiro256++ (Blackman & Vigna, ACM Trans. Math. Softw. 47 (2021) 36), seeded by `SplitMix64`.
 
 use rand_core::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -52,7 +52,7 @@ impl Sampler {
     }
 }
 
-/// One step of SplitMix64 (Steele, Lea & Flood, OOPSLA 2014, fig. 17).
+/// One step of `SplitMix64` (Steele, Lea & Flood, OOPSLA 2014, fig. 17).
 fn split_mix(state: u64) -> u64 {
     let mut z = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

@@ -29,7 +29,7 @@ impl Tally {
         self.m2 += delta * (x - self.mean);
     }
 
-    /// Adds all samples of another tally (Chan, Golub & LeVeque, Am. Stat. 37 (1983) 242).
+    /// Adds all samples of another tally (Chan, Golub and Le Veque, Am. Stat. 37 (1983) 242).
     pub fn merge(&mut self, other: &Self) {
         if other.count == 0 {
             return;

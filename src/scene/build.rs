@@ -2,9 +2,10 @@
 
 use crate::math::Aabb;
 use crate::optics::{Bsdf, Medium};
+use crate::scene::mesh::Mesh;
 use crate::scene::shape::Shape;
 use crate::scene::{
-    Accel, COINCIDENCE, Face, FaceId, Finish, FinishId, MediumId, Owner, Patch, Scene, Sensor,
+    Accel, COINCIDENCE, Extent, Face, FaceId, Finish, FinishId, MediumId, MeshBody, Owner, Patch, Scene, Sensor,
     SensorId, SensorKind, Solid, SolidId, Source, SourceId,
 };
 use crate::units::FluxUnit;
@@ -62,6 +63,7 @@ impl Builder {
             solids: Vec::new(),
             faces: Vec::new(),
             patches: Vec::new(),
+            meshes: Vec::new(),
             ports: Vec::new(),
             sources: Vec::new(),
             sensors: Vec::new(),
@@ -108,20 +110,62 @@ impl Builder {
             let Piece { shape, smooth, chart_offset } = piece;
             table.push(Patch { shape, face, owner: spec.owner, smooth, chart_offset });
         }
-        let patches = first..table.len();
-        if let Owner::Solid(solid) = spec.owner {
-            let solid = &mut self.scene.solids[solid.index()];
-            solid.bounds = solid.bounds.union(bounds);
-        }
-        self.scene.bounds = self.scene.bounds.union(bounds);
+        let range = first..table.len();
+        let extent = match spec.owner {
+            Owner::Solid(_) | Owner::Sheet => Extent::Patches(range),
+            Owner::Port => Extent::Ports(range),
+        };
+        self.grow(spec.owner, bounds);
         self.scene.faces.push(Face {
             name: spec.name,
             owner: spec.owner,
             front: spec.front,
             back: spec.back,
-            patches,
+            extent,
         });
         face
+    }
+
+    /// Adds a closed mesh as the boundary of a solid; `finishes` has an entry for each of its faces, and the names
+    /// of the faces are those of the mesh behind `prefix`.
+    pub fn add_mesh(
+        &mut self,
+        prefix: &str,
+        solid: SolidId,
+        mesh: Mesh,
+        finishes: &[Option<FinishId>],
+    ) -> Vec<FaceId> {
+        let owner = Owner::Solid(solid);
+        let triangles = 0..mesh.triangle_count();
+        self.grow(owner, triangles.fold(Aabb::EMPTY, |sum, triangle| sum.union(mesh.bounds(triangle))));
+        let first_face = self.scene.faces.len();
+        for (index, (name, finish)) in mesh.face_names().zip(finishes).enumerate() {
+            self.scene.faces.push(Face {
+                name: format!("{prefix}.{name}"),
+                owner,
+                front: *finish,
+                back: *finish,
+                extent: Extent::Mesh { mesh: self.scene.meshes.len(), face: index },
+            });
+        }
+        let faces: Vec<FaceId> = (first_face..self.scene.faces.len()).map(FaceId::new).collect();
+        let planes = (0..faces.len()).map(|face| mesh.chart_plane(face)).collect();
+        // The number of the first triangle is known when all patches are.
+        self.scene.meshes.push(MeshBody { mesh, owner, faces: faces.clone(), planes, first: 0 });
+        faces
+    }
+
+    fn grow(&mut self, owner: Owner, bounds: Aabb) {
+        if let Owner::Solid(solid) = owner {
+            let solid = &mut self.scene.solids[solid.index()];
+            solid.bounds = solid.bounds.union(bounds);
+        }
+        self.scene.bounds = self.scene.bounds.union(bounds);
+    }
+
+    /// Sets the medium outside every solid; it is the one given to [`Builder::new`] otherwise.
+    pub fn set_surroundings(&mut self, medium: MediumId) {
+        self.scene.surroundings = medium;
     }
 
     /// Adds a source.
@@ -143,7 +187,11 @@ impl Builder {
     /// The scene, ready to be traced.
     pub fn build(self) -> Scene {
         let mut scene = self.scene;
-        let boxes: Vec<Aabb> = scene.patches.iter().map(|patch| patch.shape.bounds()).collect();
+        let mut boxes: Vec<Aabb> = scene.patches.iter().map(|patch| patch.shape.bounds()).collect();
+        for body in &mut scene.meshes {
+            body.first = boxes.len();
+            boxes.extend((0..body.mesh.triangle_count()).map(|triangle| body.mesh.bounds(triangle)));
+        }
         scene.tolerance = COINCIDENCE * scene.bounds.diagonal();
         scene.accel = Accel::new(&boxes, scene.bounds.largest_coordinate());
         scene

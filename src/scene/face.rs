@@ -1,5 +1,7 @@
 //! Faces: the named parts of solids and sheets, and the smooth pieces they are made of.
 
+use crate::math::Frame;
+use crate::scene::mesh::Mesh;
 use crate::scene::shape::Shape;
 use crate::scene::{FaceId, FinishId, SolidId};
 use glam::{DVec2, DVec3};
@@ -27,8 +29,39 @@ pub struct Face {
     pub front: Option<FinishId>,
     /// Finish met from the back.
     pub back: Option<FinishId>,
-    /// Its pieces in the scene's table of patches (of ports, for a port).
-    pub patches: Range<usize>,
+    /// Its pieces.
+    pub extent: Extent,
+}
+
+/// Where the pieces of a face are.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Extent {
+    /// In the scene's table of patches.
+    Patches(Range<usize>),
+    /// In the scene's table of ports.
+    Ports(Range<usize>),
+    /// In a mesh.
+    Mesh {
+        /// Which mesh of the scene.
+        mesh: usize,
+        /// Which of its faces.
+        face: usize,
+    },
+}
+
+/// A closed body of triangles.
+#[derive(Debug, Clone)]
+pub struct MeshBody {
+    /// Its triangles.
+    pub mesh: Mesh,
+    /// What its faces belong to.
+    pub owner: Owner,
+    /// The scene's face of each face of the mesh.
+    pub faces: Vec<FaceId>,
+    /// The plane of each face of the mesh that is flat.
+    pub planes: Vec<Option<Frame>>,
+    /// Number of its first triangle among all surfaces.
+    pub first: usize,
 }
 
 /// A smooth piece of a face.

@@ -66,7 +66,7 @@ impl Scene {
     /// The finish that a face declares for light arriving at it.
     #[inline]
     fn declared_finish(&self, hit: &PrimHit) -> Option<FinishId> {
-        let face = &self.faces[self.patch(hit.prim).face.index()];
+        let face = &self.faces[self.face_of(hit.prim).index()];
         match hit.toward {
             // Light going toward the front meets the back.
             Toward::Front => face.back,

@@ -6,8 +6,9 @@
 //! Surfaces within [`Scene::tolerance`] of the nearest hit are one event.
 
 use crate::scene::shape::{Crossing, Start, Toward};
-use crate::scene::{Inside, Owner, Patch, PrimId, Ray, Scene};
-use glam::DVec3;
+use crate::scene::mesh::Line;
+use crate::scene::pieces::Surface;
+use crate::scene::{Inside, Owner, PrimId, Ray, Scene};
 use smallvec::SmallVec;
 
 /// One of the surfaces met at a hit.
@@ -70,14 +71,14 @@ impl Scene {
     #[inline]
     pub fn next_hit(&self, ray: &Ray, from: &[PrimId], inside: &Inside) -> Hits {
         let mut hits = Hits::default();
+        let line = self.line(ray);
         self.accel.visit(ray, |index| {
             let prim = PrimId::new(index);
             let start = if from.contains(&prim) { Start::On } else { Start::Elsewhere };
-            let patch = &self.patches[index];
-            patch.shape.crossings(ray, start, |crossing| {
-                if self.counts(patch.owner, crossing, inside) {
+            self.crossings(prim, ray, line.as_ref(), start, |owner, crossing| {
+                if self.counts(owner, crossing, inside) {
                     let Crossing { t, toward } = crossing;
-                    hits.offer(PrimHit { prim, owner: patch.owner, t, toward }, self.tolerance);
+                    hits.offer(PrimHit { prim, owner, t, toward }, self.tolerance);
                 }
             });
             hits.limit(self.tolerance)
@@ -94,16 +95,16 @@ impl Scene {
             Just::Ahead => self.tolerance,
             Just::Behind => -self.tolerance,
         };
+        let line = self.line(ray);
         self.accel.visit(ray, |index| {
-            let patch = &self.patches[index];
-            if let Owner::Solid(solid) = patch.owner {
-                patch.shape.crossings(ray, Start::Elsewhere, |crossing| {
+            self.crossings(PrimId::new(index), ray, line.as_ref(), Start::Elsewhere, |owner, crossing| {
+                if let Owner::Solid(solid) = owner {
                     let slot = &mut nearest[solid.index()];
                     if crossing.t > beyond && crossing.t < slot.0 {
                         *slot = (crossing.t, crossing.toward);
                     }
-                });
-            }
+                }
+            });
             f64::INFINITY
         });
         nearest
@@ -112,6 +113,35 @@ impl Scene {
             .filter(|(_, (_, toward))| *toward == Toward::Front)
             .map(|(index, _)| crate::scene::SolidId::new(index))
             .collect()
+    }
+
+    /// The form of a ray that triangles are asked with, made once; none without meshes.
+    #[inline]
+    fn line(&self, ray: &Ray) -> Option<Line> {
+        (!self.meshes.is_empty()).then(|| Line::of(ray))
+    }
+
+    /// Every crossing of a ray's line with a surface. A triangle is never met again from itself.
+    #[inline]
+    fn crossings(
+        &self,
+        prim: PrimId,
+        ray: &Ray,
+        line: Option<&Line>,
+        start: Start,
+        mut visit: impl FnMut(Owner, Crossing),
+    ) {
+        match (self.surface(prim), line) {
+            (Surface::Patch(patch), _) => {
+                patch.shape.crossings(ray, start, |crossing| visit(patch.owner, crossing));
+            }
+            (Surface::Triangle(body, triangle), Some(line)) if start == Start::Elsewhere => {
+                if let Some(crossing) = body.mesh.crossing_of(triangle, line) {
+                    visit(body.owner, crossing);
+                }
+            }
+            (Surface::Triangle(..), _) => {}
+        }
     }
 
     #[inline]
@@ -124,18 +154,6 @@ impl Scene {
             Owner::Sheet => crossing.t > 0.0,
             Owner::Port => false,
         }
-    }
-
-    /// Unit normal of the front of a surface at one of its points.
-    #[inline]
-    pub fn normal(&self, prim: PrimId, point: DVec3) -> DVec3 {
-        self.patch(prim).shape.normal(point)
-    }
-
-    /// The patch of a surface.
-    #[inline]
-    pub fn patch(&self, prim: PrimId) -> &Patch {
-        &self.patches[prim.index()]
     }
 }
 

@@ -15,7 +15,9 @@ mod ids;
 mod inside;
 mod interface;
 mod intersect;
+pub mod mesh;
 pub mod plan;
+mod pieces;
 mod ray;
 mod sensor;
 pub mod shape;
@@ -24,7 +26,7 @@ mod source;
 pub use accel::Accel;
 pub use build::{Builder, FaceSpec, Piece};
 pub use emission::{Emission, EmitterKind};
-pub use face::{Face, Owner, Patch};
+pub use face::{Extent, Face, MeshBody, Owner, Patch};
 pub use grid::Grid;
 pub use ids::{FaceId, FinishId, MediumId, PrimId, SensorId, SolidId, SourceId};
 pub use inside::Inside;
@@ -87,6 +89,8 @@ pub struct Scene {
     pub faces: Vec<Face>,
     /// Analytic pieces of solids and sheets.
     pub patches: Vec<Patch>,
+    /// Bodies of triangles; their triangles are numbered after the patches.
+    pub meshes: Vec<MeshBody>,
     /// Pieces of open ports and virtual sensors: light passes.
     pub ports: Vec<Patch>,
     /// All sources.
@@ -102,25 +106,6 @@ impl Scene {
     /// Sum of the flux of all sources, lm or W.
     pub fn source_flux(&self) -> f64 {
         self.sources.iter().map(|source| source.flux).sum()
-    }
-
-    /// The face of a name such as `pipe.exit`.
-    pub fn face_named(&self, name: &str) -> Option<FaceId> {
-        self.faces.iter().position(|face| face.name == name).map(FaceId::new)
-    }
-
-    /// Area of a face, mm².
-    pub fn face_area(&self, face: FaceId) -> f64 {
-        self.face_patches(face).iter().map(|patch| patch.shape.area()).sum()
-    }
-
-    /// The pieces of a face.
-    pub fn face_patches(&self, face: FaceId) -> &[Patch] {
-        let face = &self.faces[face.index()];
-        match face.owner {
-            Owner::Solid(_) | Owner::Sheet => &self.patches[face.patches.clone()],
-            Owner::Port => &self.ports[face.patches.clone()],
-        }
     }
 
     /// The medium that counts at a point inside the given solids.

@@ -209,7 +209,7 @@ impl<'r, 's> Counter<'r, 's> {
         aim.is_empty()
             || aim.iter().any(|&face| match scene.faces[face.index()].owner {
                 Owner::Solid(_) | Owner::Sheet => {
-                    path.on.iter().any(|&prim| scene.patch(prim).face == face)
+                    path.on.iter().any(|&prim| scene.face_of(prim) == face)
                 }
                 Owner::Port => scene.face_patches(face).iter().any(|patch| {
                     let mut crossed = false;
@@ -245,7 +245,7 @@ impl<'r, 's> Counter<'r, 's> {
         if transmitted {
             for hit in vertex.hits.all() {
                 if let (Owner::Solid(_), Toward::Front) = (hit.owner, hit.toward) {
-                    self.last_left = Some(self.run.scene.patch(hit.prim).face);
+                    self.last_left = Some(self.run.scene.face_of(hit.prim));
                 }
             }
         }
@@ -267,8 +267,7 @@ impl<'r, 's> Counter<'r, 's> {
     ) {
         let run = self.run;
         for hit in vertex.hits.all() {
-            let patch = run.scene.patch(hit.prim);
-            let face = patch.face.index();
+            let face = run.scene.face_of(hit.prim).index();
             if side == Some(Side::Transmitted) && hit.toward == Toward::Back {
                 for id in &run.watch.entries[face] {
                     self.add(run.layout.entering(*id), throughput);
@@ -277,18 +276,12 @@ impl<'r, 's> Counter<'r, 's> {
             for &(id, sensor) in
                 run.watch.faces[face].iter().filter(|(_, sensor)| sensor.counts == counts)
             {
-                let normal = patch.shape.normal(vertex.point);
+                let normal = run.scene.normal(hit.prim, vertex.point);
                 // Light is reflected to the side it came from: its direction tells the side it leaves to.
                 let toward = if side.is_none() { hit.toward } else { Toward::of(dir, normal) };
                 let seen = Seen { counts, toward, point: vertex.point, dir };
-                self.count_on_surface(
-                    path,
-                    id,
-                    sensor,
-                    patch.chart(vertex.point),
-                    &seen,
-                    throughput,
-                );
+                let uv = run.scene.chart(hit.prim, vertex.point);
+                self.count_on_surface(path, id, sensor, uv, &seen, throughput);
             }
         }
     }
@@ -370,7 +363,7 @@ impl<'r, 's> Counter<'r, 's> {
 
     #[inline]
     fn acting_face(&self, vertex: &Vertex<'_>) -> FaceId {
-        self.run.scene.patch(vertex.interface.acting.prim).face
+        self.run.scene.face_of(vertex.interface.acting.prim)
     }
 
     #[inline]
@@ -437,7 +430,7 @@ mod tests {
             on: Vec::new(),
         });
         let grid = Grid::Cartesian { rect: disk(0.0).chart_bounds(), nu: 32, nv: 32 };
-        let areas = grid.cell_areas(&builder.scene().face_patches(port).iter().collect::<Vec<_>>());
+        let areas = grid.cell_areas(|rect| builder.scene().face_area_in(port, rect));
         builder.add_sensor(Sensor {
             name: "exit".into(),
             kind: SensorKind::Surface(SurfaceSensor {

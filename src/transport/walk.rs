@@ -2,7 +2,7 @@
 //!
 //! It does not know what is counted: the forward estimator counts photons, a gather path would look for its end.
 
-use crate::optics::{Incidence, Scattered, Side};
+use crate::optics::{Bsdf, Incidence, Lobe, Scattered, Side};
 use crate::rng::{Dimension, Sampler};
 use crate::scene::shape::Toward;
 use crate::scene::{Hits, Interface, MediumId, Ray, Scene, Visibility};
@@ -108,14 +108,14 @@ pub fn walk(
                 Event::Leaked(&path.ray, path.throughput)
             };
             // The path ends here whatever the visitor says.
-            if visit(&path, event).is_break() {}
+            _ = visit(&path, event);
             return;
         }
         if bounce(scene, &mut path, &hits, length, sampler, &mut visit).is_break() {
             return;
         }
         if path.depth >= bounce_limit {
-            if visit(&path, Event::Cut(path.throughput)).is_break() {}
+            _ = visit(&path, Event::Cut(path.throughput));
             return;
         }
         if path.throughput < ROULETTE_BELOW {
@@ -173,7 +173,7 @@ fn bounce(
 }
 
 fn straight_on(dir: DVec3) -> Scattered {
-    Scattered { dir, factor: 1.0, side: Side::Transmitted, lobe: crate::optics::Lobe::Specular }
+    Scattered { dir, factor: 1.0, side: Side::Transmitted, lobe: Lobe::Specular }
 }
 
 /// Asks the acting finish.
@@ -185,11 +185,15 @@ fn scatter(
     sampler: &mut Sampler,
 ) -> Option<Scattered> {
     let interface = vertex.interface;
-    let outward = scene.normal(interface.acting.prim, vertex.point);
-    let normal = match interface.acting.toward {
+    // The normal on the side the light comes from.
+    let facing = |outward: DVec3| match interface.acting.toward {
         Toward::Front => -outward,
         Toward::Back => outward,
     };
+    let facet = facing(scene.normal(interface.acting.prim, vertex.point));
+    // An interpolated normal may face away from grazing light; then the facet's own is taken.
+    let shading = scene.shading_normal(interface.acting.prim, vertex.point).map(facing);
+    let normal = shading.filter(|normal| normal.dot(vertex.dir) < 0.0).unwrap_or(facet);
     let index = |medium: MediumId| scene.media[medium.index()].index(path.wavelength);
     let incidence = Incidence {
         dir: vertex.dir,
@@ -197,8 +201,18 @@ fn scatter(
         index_from: index(interface.from),
         index_to: index(interface.to),
     };
-    match interface.finish {
-        Some(finish) => scene.finishes[finish.index()].bsdf.scatter(&incidence, sampler),
-        None => crate::optics::Bsdf::Smooth.scatter(&incidence, sampler),
-    }
+    let bsdf = interface.finish.map_or(&Bsdf::Smooth, |finish| &scene.finishes[finish.index()].bsdf);
+    let out = bsdf.scatter(&incidence, sampler)?;
+    Some(if shading.is_some() { kept_on_its_side(out, facet) } else { out })
+}
+
+/// With an interpolated normal light may leave into the facet that it should leave: it is mirrored once more about
+/// the facet.
+fn kept_on_its_side(out: Scattered, facet: DVec3) -> Scattered {
+    let along = out.dir.dot(facet);
+    let wrong = match out.side {
+        Side::Reflected => along < 0.0,
+        Side::Transmitted => along > 0.0,
+    };
+    if wrong { Scattered { dir: out.dir - 2.0 * along * facet, ..out } } else { out }
 }

@@ -83,6 +83,13 @@ pub struct ChartRect {
     pub max: DVec2,
 }
 
+impl ChartRect {
+    /// The smallest rectangle around both.
+    pub fn union(self, other: Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+}
+
 /// A trimmed, oriented analytic surface.
 #[derive(Debug, Clone)]
 pub enum Shape {

@@ -1,0 +1,346 @@
+//! glTF 2.0 and GLB: all triangles of the scene, with the transforms of their nodes applied in f64.
+//!
+//! Every index is looked up with its bound: the crate's own validation is not used, because it indexes an accessor
+//! out of bounds on bad files and refuses harmless ones. Skins, morph targets and animations are not followed.
+//! Source: Khronos, glTF 2.0 Specification (2021), sections 3.5-3.7 and 4.
+
+use crate::formats::mesh::builder::Builder;
+use crate::formats::mesh::gltf_buffers::{Buffers, Elements, broken};
+use crate::formats::mesh::gltf_nodes::{cofactors, placed_nodes};
+use crate::formats::mesh::{LengthUnit, MeshError, TriangleMesh, UNNAMED_FACE};
+use glam::{DAffine3, DMat3, DVec3};
+use gltf::json::Root;
+use gltf::json::accessor::{ComponentType, Type};
+use gltf::json::mesh::{Mode, Primitive, Semantic};
+use gltf::json::validation::Checked;
+use std::path::Path;
+
+/// Length of a GLB's header, bytes.
+const GLB_HEADER: usize = 12;
+
+/// Reads a glTF document or a GLB; files that it names are looked for in `folder`.
+pub(crate) fn read(
+    bytes: &[u8],
+    folder: &Path,
+    unit: LengthUnit,
+) -> Result<TriangleMesh, MeshError> {
+    let glb = if bytes.starts_with(b"glTF") { Some(open_glb(bytes)?) } else { None };
+    let json = glb.as_ref().map_or(bytes, |glb| &glb.json);
+    let root = Root::from_slice(json).map_err(|error| broken(error.to_string()))?;
+    refuse_unknown_extensions(&root)?;
+    let blob = glb.as_ref().and_then(|glb| glb.bin.as_deref());
+    let buffers = Buffers::load(&root, blob, folder)?;
+    let mut builder = Builder::default();
+    for (node, to_scene) in placed_nodes(&root)? {
+        let to_scene = DAffine3::from_scale(DVec3::splat(unit.millimetres())) * to_scene;
+        let Some(mesh) = node.mesh else { continue };
+        if node.skin.is_some() {
+            return Err(MeshError::Unsupported {
+                what: "the glTF file has a mesh with a skin".into(),
+                remedy: "apply the armature before exporting",
+            });
+        }
+        let mesh = root.get(mesh);
+        let mesh = mesh.ok_or_else(|| broken("a node names a mesh that does not exist".into()))?;
+        for primitive in &mesh.primitives {
+            add_primitive(&mut builder, &root, &buffers, primitive, &to_scene)?;
+        }
+    }
+    builder.finish()
+}
+
+fn open_glb(bytes: &[u8]) -> Result<gltf::Glb<'_>, MeshError> {
+    // The crate subtracts the header from this length unchecked.
+    let announced = bytes.get(8..GLB_HEADER).map_or(0, |length| {
+        u32::from_le_bytes([length[0], length[1], length[2], length[3]]) as usize
+    });
+    if announced < GLB_HEADER || announced > bytes.len() {
+        return Err(broken(format!("it announces {announced} bytes and holds {}", bytes.len())));
+    }
+    gltf::Glb::from_slice(bytes).map_err(|error| broken(error.to_string()))
+}
+
+/// Required extensions that only describe looks do no harm; others may hide geometry.
+fn refuse_unknown_extensions(root: &Root) -> Result<(), MeshError> {
+    let harmless = |name: &str| name.starts_with("KHR_materials_") || name.contains("_texture_");
+    match root.extensions_required.iter().find(|name| !harmless(name)) {
+        Some(name) => Err(MeshError::Unsupported {
+            what: format!("the glTF file needs the extension {name}"),
+            remedy: "export without compression and extensions",
+        }),
+        None => Ok(()),
+    }
+}
+
+/// Positions and normals of a primitive, where they belong in the scene.
+struct Vertices<'a> {
+    positions: Elements<'a>,
+    normals: Option<Elements<'a>>,
+    to_scene: DAffine3,
+    normal_to_scene: DMat3,
+}
+
+impl Vertices<'_> {
+    fn position(&self, index: usize) -> Option<DVec3> {
+        Some(self.to_scene.transform_point3(vector3(self.positions.get(index)?)?))
+    }
+
+    fn normal(&self, index: usize) -> Option<DVec3> {
+        Some(self.normal_to_scene * vector3(self.normals?.get(index)?)?)
+    }
+}
+
+fn add_primitive(
+    builder: &mut Builder,
+    root: &Root,
+    buffers: &Buffers<'_>,
+    primitive: &Primitive,
+    to_scene: &DAffine3,
+) -> Result<(), MeshError> {
+    if primitive.mode != Checked::Valid(Mode::Triangles) {
+        return Err(MeshError::Unsupported {
+            what: "the glTF file has points, lines, strips or fans".into(),
+            remedy: "export separate triangles only",
+        });
+    }
+    let vertices = vertices(buffers, primitive, to_scene)?;
+    let face = face_name(root, primitive)?;
+    let indices = match primitive.indices {
+        Some(accessor) => Some(buffers.elements(accessor, Type::Scalar)?),
+        None => None,
+    };
+    let count = indices.map_or(vertices.positions.count(), |(elements, _)| elements.count());
+    if !count.is_multiple_of(3) {
+        return Err(broken(format!("a primitive has {count} corners, not three per triangle")));
+    }
+    let mirrored = to_scene.matrix3.determinant() < 0.0;
+    for first in (0..count).step_by(3) {
+        // A mirror image turns the other way round.
+        let corners = if mirrored { [0, 2, 1] } else { [0, 1, 2] }.map(|corner| {
+            let index = match indices {
+                Some((elements, component)) => unsigned(elements.get(first + corner)?, component)?,
+                None => first + corner,
+            };
+            Some((vertices.position(index)?, vertices.normal(index)))
+        });
+        let [Some(a), Some(b), Some(c)] = corners else {
+            return Err(broken("an index names a vertex that does not exist".into()));
+        };
+        let normals = match (a.1, b.1, c.1) {
+            (Some(a), Some(b), Some(c)) => Some([a, b, c]),
+            _ => None,
+        };
+        builder.add([a.0, b.0, c.0], normals, &face)?;
+    }
+    Ok(())
+}
+
+fn vertices<'a>(
+    buffers: &'a Buffers<'_>,
+    primitive: &Primitive,
+    to_scene: &DAffine3,
+) -> Result<Vertices<'a>, MeshError> {
+    let attribute = |semantic: Semantic| match primitive.attributes.get(&Checked::Valid(semantic)) {
+        Some(accessor) => match buffers.elements(*accessor, Type::Vec3)? {
+            (elements, ComponentType::F32) => Ok(Some(elements)),
+            _ => Err(MeshError::Unsupported {
+                what: "the glTF file has quantised positions or normals".into(),
+                remedy: "export without mesh quantisation",
+            }),
+        },
+        None => Ok(None),
+    };
+    let positions = attribute(Semantic::Positions)?;
+    let positions = positions.ok_or_else(|| broken("a primitive has no positions".into()))?;
+    let normals = attribute(Semantic::Normals)?;
+    if normals.is_some_and(|normals| normals.count() != positions.count()) {
+        return Err(broken("a primitive has not as many normals as positions".into()));
+    }
+    Ok(Vertices {
+        positions,
+        normals,
+        to_scene: *to_scene,
+        normal_to_scene: cofactors(to_scene.matrix3),
+    })
+}
+
+fn face_name(root: &Root, primitive: &Primitive) -> Result<String, MeshError> {
+    let Some(index) = primitive.material else { return Ok(UNNAMED_FACE.to_owned()) };
+    let number = index.value();
+    let material = root.get(index);
+    let material = material.ok_or_else(|| broken(format!("material {number} does not exist")))?;
+    Ok(material.name.clone().unwrap_or_else(|| format!("material_{number}")))
+}
+
+fn vector3(bytes: &[u8]) -> Option<DVec3> {
+    match bytes.as_chunks::<4>().0 {
+        [x, y, z] => Some(DVec3::from_array([x, y, z].map(|c| f64::from(f32::from_le_bytes(*c))))),
+        _ => None,
+    }
+}
+
+fn unsigned(bytes: &[u8], component: ComponentType) -> Option<usize> {
+    match component {
+        ComponentType::U8 => Some(usize::from(*bytes.first()?)),
+        ComponentType::U16 => Some(usize::from(u16::from_le_bytes(bytes.try_into().ok()?))),
+        ComponentType::U32 => Some(u32::from_le_bytes(bytes.try_into().ok()?) as usize),
+        ComponentType::I8 | ComponentType::I16 | ComponentType::F32 => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formats::mesh::health;
+    use crate::formats::mesh::samples::{Normals, glb, glb_of, gltf_parts, mutants, rod};
+    use serde_json::{Value, json};
+
+    fn read_json(json: &Value, blob: &[u8]) -> Result<TriangleMesh, MeshError> {
+        read(&glb(json, blob), Path::new(""), LengthUnit::Millimetre)
+    }
+
+    /// The rod under test, its document and its buffer.
+    fn rod_parts() -> (TriangleMesh, Value, Vec<u8>) {
+        let rod = rod(2.0, 40.0, 24, Normals::Smooth);
+        let (json, blob) = gltf_parts(&rod);
+        (rod, json, blob)
+    }
+
+    #[test]
+    fn a_rod_comes_back_with_names_and_normals() {
+        let (rod, json, blob) = rod_parts();
+        let mesh = read_json(&json, &blob).unwrap();
+        assert_eq!(mesh.faces, ["wall", "entry", "exit"]);
+        assert_eq!(mesh.triangles.len(), rod.triangles.len());
+        let health = health(&mesh);
+        assert!(health.is_sound() && health.opposed_normals == 0, "{health:?}");
+        let metres = read(&glb(&json, &blob), Path::new(""), LengthUnit::Metre).unwrap();
+        assert!((metres.bounds().max.z - 40_000.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn buffers_may_be_data_uris_or_files_beside_the_document() {
+        let (_, mut json, blob) = rod_parts();
+        let expected = read_json(&json, &blob).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("the rod.bin"), &blob).unwrap();
+        json["buffers"][0]["uri"] = json!("the%20rod.bin");
+        let text = json.to_string();
+        let mesh = read(text.as_bytes(), folder.path(), LengthUnit::Millimetre).unwrap();
+        assert_eq!(mesh, expected);
+        let error = read(text.as_bytes(), Path::new("/no/where"), LengthUnit::Millimetre);
+        let error = error.unwrap_err().to_string();
+        assert!(error.contains("`the%20rod.bin` cannot be read"), "{error}");
+        json["buffers"][0]["byteLength"] = json!(3);
+        json["buffers"][0]["uri"] = json!("data:application/octet-stream;base64,AAAA");
+        let error = read_json(&json, &blob).unwrap_err().to_string();
+        assert!(error.contains("reaches beyond its buffer"), "{error}");
+        for uri in ["/etc/hostname", "http://a.b/c.bin", "data:text/plain,abc"] {
+            json["buffers"][0]["uri"] = json!(uri);
+            assert!(matches!(read_json(&json, &blob), Err(MeshError::Broken { .. })), "{uri}");
+        }
+    }
+
+    #[test]
+    fn transforms_of_parents_add_up_and_mirrors_keep_the_outside_out() {
+        let (_, mut json, blob) = rod_parts();
+        let upright = health(&read_json(&json, &blob).unwrap());
+        json["nodes"] = json!([
+            { "children": [1], "translation": [1, 2, 3], "scale": [-1, 2, 1] },
+            { "children": [2], "rotation": [0.5, 0.5, 0.5, 0.5] },
+            { "mesh": 0, "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2, 0, 0, 0, 5, 1] },
+        ]);
+        let mesh = read_json(&json, &blob).unwrap();
+        let health = health(&mesh);
+        assert!(health.is_sound() && health.opposed_normals == 0, "{health:?}");
+        // z doubled and moved by 5, then x -> y -> z -> x, then x mirrored and y doubled.
+        assert!((health.signed_volume_mm3 / upright.signed_volume_mm3 - 4.0).abs() < 1e-12);
+        let bounds = mesh.bounds();
+        let expected = [DVec3::new(-84.0, -2.0, 1.0), DVec3::new(-4.0, 6.0, 5.0)];
+        assert!((bounds.min - expected[0]).length() < 1e-6, "{bounds:?}");
+        assert!((bounds.max - expected[1]).length() < 1e-6, "{bounds:?}");
+    }
+
+    #[test]
+    fn bad_documents_are_told_what_is_wrong() {
+        type Change = fn(&mut Value);
+        let cases: [(&str, Change); 16] = [
+            ("accessor 77", |j| {
+                j["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = json!(77);
+            }),
+            ("accessor 78", |j| j["meshes"][0]["primitives"][0]["indices"] = json!(78)),
+            ("is a Vec3, expected Scalar", |j| j["accessors"][2]["type"] = json!("VEC3")),
+            ("reaches beyond its buffer", |j| j["accessors"][0]["count"] = json!(u64::MAX)),
+            ("reaches beyond its buffer", |j| j["bufferViews"][0]["byteOffset"] = json!(u64::MAX)),
+            ("reaches beyond its buffer", |j| j["bufferViews"][0]["byteStride"] = json!(0)),
+            ("names a vertex that does not exist", |j| {
+                j["accessors"][0]["count"] = json!(3);
+                j["accessors"][1]["count"] = json!(3);
+            }),
+            ("not as many normals", |j| j["accessors"][1]["count"] = json!(3)),
+            ("not three per triangle", |j| j["accessors"][2]["count"] = json!(4)),
+            ("separate triangles only", |j| j["meshes"][0]["primitives"][0]["mode"] = json!(5)),
+            ("material 9 does not exist", |j| {
+                j["meshes"][0]["primitives"][0]["material"] = json!(9);
+            }),
+            ("node 0 is its own ancestor", |j| j["nodes"][0]["children"] = json!([0])),
+            ("node 5 does not exist", |j| j["nodes"][0]["children"] = json!([5])),
+            ("makes everything flat", |j| j["nodes"][0]["scale"] = json!([1, 0, 1])),
+            ("it has no scene", |j| j["scenes"] = json!([])),
+            ("needs the extension KHR_draco", |j| {
+                j["extensionsRequired"] =
+                    json!(["KHR_materials_ior", "KHR_draco_mesh_compression"]);
+            }),
+        ];
+        for (expected, change) in cases {
+            let (_, mut json, blob) = rod_parts();
+            change(&mut json);
+            let error = read_json(&json, &blob).unwrap_err().to_string();
+            assert!(error.contains(expected), "{expected}: {error}");
+        }
+    }
+
+    #[test]
+    fn a_long_chain_of_nodes_does_not_overflow_the_stack() {
+        let (_, mut json, blob) = rod_parts();
+        let last = 100_000;
+        let chain = (0..last).map(|node| json!({ "children": [node + 1] }));
+        json["nodes"] = chain.chain([json!({ "mesh": 0 })]).collect();
+        assert!(read_json(&json, &blob).is_ok());
+    }
+
+    #[test]
+    fn headers_with_impossible_lengths_are_refused() {
+        let (_, json, blob) = rod_parts();
+        for length in [0u32, 11, u32::MAX] {
+            let mut bytes = glb(&json, &blob);
+            bytes[8..12].copy_from_slice(&length.to_le_bytes());
+            let error = read(&bytes, Path::new(""), LengthUnit::Metre).unwrap_err().to_string();
+            assert!(error.contains("it announces"), "{error}");
+        }
+        for end in 0..40 {
+            assert!(read(&glb(&json, &blob)[..end], Path::new(""), LengthUnit::Metre).is_err());
+        }
+    }
+
+    #[test]
+    fn mutated_files_never_panic_and_good_results_are_finite() {
+        let (json, blob) = gltf_parts(&rod(2.0, 40.0, 4, Normals::Smooth));
+        let (mut good, mut bad) = (0, 0);
+        // The document is shorter than the whole, so that damage hits it often.
+        for original in [glb(&json, &blob), json.to_string().into_bytes()] {
+            for (index, bytes) in mutants(&original, 400, 9).enumerate() {
+                let bytes = if original.starts_with(b"{") { glb_of(&bytes, &blob) } else { bytes };
+                match read(&bytes, Path::new("/no/where"), LengthUnit::Metre) {
+                    Ok(mesh) => {
+                        good += 1;
+                        assert!(mesh.positions.iter().all(|p| p.is_finite()), "mutant {index}");
+                    }
+                    Err(_) => bad += 1,
+                }
+            }
+        }
+        // Both must occur, or the damage is too small or too great to test anything.
+        assert!(good > 20 && bad > 20, "{good} good, {bad} bad");
+    }
+}

@@ -1,0 +1,72 @@
+//! Where the nodes of a glTF document stand in its scene. Broken trees are refused: a node has one parent at most.
+
+use crate::formats::mesh::MeshError;
+use crate::formats::mesh::gltf_buffers::broken;
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+use gltf::json::scene::Node;
+use gltf::json::{Index, Root};
+
+/// All nodes of the scene in the order of the file, with their transforms to the scene.
+pub(crate) fn placed_nodes(root: &Root) -> Result<Vec<(&Node, DAffine3)>, MeshError> {
+    let scene = match root.scene {
+        Some(index) => root.get(index),
+        None => root.scenes.first(),
+    };
+    let scene = scene.ok_or_else(|| broken("it has no scene".into()))?;
+    let mut seen = vec![false; root.nodes.len()];
+    let mut placed = Vec::new();
+    // A stack of our own: a chain of nodes may be longer than the thread's stack.
+    let mut open: Vec<(Index<Node>, DAffine3)> =
+        scene.nodes.iter().rev().map(|node| (*node, DAffine3::IDENTITY)).collect();
+    while let Some((index, parent)) = open.pop() {
+        let number = index.value();
+        let node =
+            root.get(index).ok_or_else(|| broken(format!("node {number} does not exist")))?;
+        if std::mem::replace(&mut seen[number], true) {
+            return Err(broken(format!("node {number} is its own ancestor or has two parents")));
+        }
+        let to_scene = parent
+            * local_transform(node)
+                .map_err(|problem| broken(format!("the transform of node {number} {problem}")))?;
+        let children = node.children.iter().flatten().rev();
+        open.extend(children.map(|child| (*child, to_scene)));
+        placed.push((node, to_scene));
+    }
+    Ok(placed)
+}
+
+fn local_transform(node: &Node) -> Result<DAffine3, &'static str> {
+    let vector = |v: [f32; 3]| DVec3::from_array(v.map(f64::from));
+    let transform = if let Some(m) = node.matrix {
+        if [m[3], m[7], m[11], m[15]] != [0.0, 0.0, 0.0, 1.0] {
+            return Err("is not affine");
+        }
+        let column = |i: usize| vector([m[i], m[i + 1], m[i + 2]]);
+        DAffine3 {
+            matrix3: DMat3::from_cols(column(0), column(4), column(8)),
+            translation: column(12),
+        }
+    } else {
+        let rotation = DQuat::from_array(node.rotation.unwrap_or_default().0.map(f64::from));
+        if !(rotation.is_finite() && rotation.length_squared() > 0.0) {
+            return Err("has a rotation of no length");
+        }
+        let scale = vector(node.scale.unwrap_or([1.0; 3]));
+        let rotation = DMat3::from_quat(rotation.normalize());
+        DAffine3 {
+            matrix3: rotation * DMat3::from_diagonal(scale),
+            translation: vector(node.translation.unwrap_or_default()),
+        }
+    };
+    let volume = transform.matrix3.determinant();
+    if !transform.is_finite() || !volume.is_finite() {
+        return Err("is not finite");
+    }
+    if volume == 0.0 { Err("makes everything flat") } else { Ok(transform) }
+}
+
+/// What takes normals along: the inverse transpose times the size of the determinant, so that nothing is divided.
+pub(crate) fn cofactors(matrix: DMat3) -> DMat3 {
+    let (x, y, z) = (matrix.x_axis, matrix.y_axis, matrix.z_axis);
+    DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * matrix.determinant().signum()
+}

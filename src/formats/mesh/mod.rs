@@ -1,0 +1,266 @@
+//! Triangle meshes from files: glTF and GLB, STL, OBJ.
+//!
+//! All readers give the same [`TriangleMesh`]: millimetres in f64, positions welded where they coincide exactly,
+//! normals per corner, and a face name for every triangle. A reader never trusts a count or an index of the file:
+//! broken or hostile data is a [`MeshError`], never a panic. Whether the mesh is closed and the right way out is
+//! asked afterwards ([`health`]). What a face does to light is not known here.
+
+mod builder;
+mod from_gltf;
+mod from_obj;
+mod from_stl;
+mod gltf_buffers;
+mod gltf_nodes;
+mod health;
+#[cfg(test)]
+pub(crate) mod samples;
+pub mod topology;
+
+pub(crate) use health::normals_agree;
+pub use health::{Facets, MeshHealth, health};
+
+use crate::math::Aabb;
+use glam::DVec3;
+use std::fmt;
+use std::fs;
+use std::io::Read;
+use std::path::Path;
+
+/// Most triangles that a mesh may have: 5 GB as a [`TriangleMesh`] with normals.
+pub const MAX_TRIANGLES: usize = 50_000_000;
+/// Longest file that is read, bytes: 50 million triangles of binary STL fit in.
+pub const MAX_FILE_BYTES: u64 = 4 << 30;
+/// Largest coordinate, mm: a thousand kilometres. Squares and cubes of it are far from overflow.
+pub const MAX_COORDINATE_MM: f64 = 1.0e9;
+/// Name of the face of triangles that have neither material nor group.
+pub const UNNAMED_FACE: &str = "surface";
+
+/// Triangles as a file gives them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TriangleMesh {
+    /// Vertices, mm; no two are equal.
+    pub positions: Vec<DVec3>,
+    /// Three indices into `positions` each; counter-clockwise seen from outside, if the file is right.
+    pub triangles: Vec<[u32; 3]>,
+    /// Unit normals of the three corners of each triangle, if the file has normals.
+    pub normals: Option<Vec<[DVec3; 3]>>,
+    /// Index into `faces` of each triangle.
+    pub face_of: Vec<u32>,
+    /// Names of materials or groups, in order of appearance; every one has triangles.
+    pub faces: Vec<String>,
+}
+
+impl TriangleMesh {
+    /// The three vertices of a triangle, mm.
+    pub fn corners(&self, triangle: usize) -> [DVec3; 3] {
+        self.triangles[triangle].map(|index| self.positions[index as usize])
+    }
+
+    /// The smallest box around all vertices, mm.
+    pub fn bounds(&self) -> Aabb {
+        Aabb::of(self.positions.iter().copied())
+    }
+}
+
+/// Twice the area of a triangle times its unit normal, mm².
+pub fn area_vector([a, b, c]: [DVec3; 3]) -> DVec3 {
+    (b - a).cross(c - a)
+}
+
+/// The length that 1 in the file stands for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LengthUnit {
+    /// 1 mm.
+    Millimetre,
+    /// 10 mm.
+    Centimetre,
+    /// 1,000 mm, as glTF prescribes.
+    Metre,
+    /// 25.4 mm.
+    Inch,
+}
+
+impl LengthUnit {
+    /// Millimetres in one unit.
+    pub fn millimetres(self) -> f64 {
+        match self {
+            Self::Millimetre => 1.0,
+            Self::Centimetre => 10.0,
+            Self::Metre => 1000.0,
+            Self::Inch => 25.4,
+        }
+    }
+}
+
+/// File formats that hold meshes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MeshFormat {
+    /// glTF 2.0, as JSON or as GLB.
+    Gltf,
+    /// Stereolithography, binary or ASCII.
+    Stl,
+    /// Wavefront OBJ.
+    Obj,
+}
+
+impl MeshFormat {
+    /// The format that the ending of a file name stands for.
+    pub fn of(path: &Path) -> Result<Self, MeshError> {
+        let ending = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+        match ending.as_str() {
+            "glb" | "gltf" => Ok(Self::Gltf),
+            "stl" => Ok(Self::Stl),
+            "obj" => Ok(Self::Obj),
+            _ => Err(MeshError::UnknownFormat { ending }),
+        }
+    }
+}
+
+impl fmt::Display for MeshFormat {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(match self {
+            Self::Gltf => "glTF",
+            Self::Stl => "STL",
+            Self::Obj => "OBJ",
+        })
+    }
+}
+
+/// Why a mesh could not be read.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum MeshError {
+    /// The operating system refuses the file.
+    #[error("the file cannot be read: {0}; check the name and the permissions")]
+    Unreadable(#[from] std::io::Error),
+    /// The ending of the name is none of a mesh.
+    #[error("`.{ending}` is not the ending of a known mesh format; use .glb, .gltf, .stl or .obj")]
+    UnknownFormat {
+        /// The ending, without its dot.
+        ending: String,
+    },
+    /// The file is not what its format prescribes.
+    #[error("not a usable {format} file: {problem}; export the mesh again")]
+    Broken {
+        /// The format.
+        format: MeshFormat,
+        /// What is wrong, with the place.
+        problem: String,
+    },
+    /// The file is right, but uses something that is not read here.
+    #[error("{what}; {remedy}")]
+    Unsupported {
+        /// What the file uses.
+        what: String,
+        /// What to change on export.
+        remedy: &'static str,
+    },
+    /// A buffer of a glTF file lies in another file, which cannot be read.
+    #[error(
+        "the buffer file `{uri}` cannot be read: {source}; keep it beside the .gltf file or export a .glb"
+    )]
+    BufferFile {
+        /// The name as the file gives it.
+        uri: String,
+        /// What the operating system said.
+        source: std::io::Error,
+    },
+    /// The file, or the files together, are longer than [`MAX_FILE_BYTES`].
+    #[error("the file has more than {} GiB; export a coarser mesh with smooth normals", MAX_FILE_BYTES >> 30)]
+    FileTooLong,
+    /// There are more triangles than [`MAX_TRIANGLES`].
+    #[error(
+        "the mesh has more than {} million triangles; export a coarser mesh with smooth normals",
+        MAX_TRIANGLES / 1_000_000
+    )]
+    TooManyTriangles,
+    /// There is nothing to trace.
+    #[error("the file holds no triangles; export the solid as a triangle mesh")]
+    NoTriangles,
+    /// A coordinate or a component of a normal is infinite or not a number.
+    #[error(
+        "triangle {triangle} has a {what} that is not a finite number; repair the mesh and export it again"
+    )]
+    NotFinite {
+        /// The triangle, counted from 1.
+        triangle: usize,
+        /// `vertex` or `normal`.
+        what: &'static str,
+    },
+    /// A vertex lies beyond [`MAX_COORDINATE_MM`].
+    #[error("triangle {triangle} has a vertex beyond 1000 km; check the unit of the mesh")]
+    TooFar {
+        /// The triangle, counted from 1.
+        triangle: usize,
+    },
+}
+
+/// Reads a mesh whose lengths are in `unit`; the ending of the name tells the format.
+pub fn read(path: &Path, unit: LengthUnit) -> Result<TriangleMesh, MeshError> {
+    let format = MeshFormat::of(path)?;
+    let bytes = read_file(path, MAX_FILE_BYTES)?;
+    match format {
+        MeshFormat::Gltf => {
+            from_gltf::read(&bytes, path.parent().unwrap_or_else(|| Path::new("")), unit)
+        }
+        MeshFormat::Stl => from_stl::read(&bytes, unit),
+        MeshFormat::Obj => from_obj::read(&bytes, unit),
+    }
+}
+
+/// All bytes of a regular file that has at most `limit` of them.
+fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, MeshError> {
+    let about = fs::metadata(path)?;
+    // A pipe or a device may never end.
+    if !about.is_file() {
+        return Err(std::io::Error::other("it is not a regular file").into());
+    }
+    if about.len() > limit {
+        return Err(MeshError::FileTooLong);
+    }
+    let mut bytes = Vec::new();
+    fs::File::open(path)?.take(limit).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::{PI, TAU};
+
+    #[test]
+    fn the_ending_tells_the_format_and_others_are_named() {
+        assert_eq!(MeshFormat::of(Path::new("a/B.GLB")).unwrap(), MeshFormat::Gltf);
+        assert_eq!(MeshFormat::of(Path::new("rod.Stl")).unwrap(), MeshFormat::Stl);
+        let error = MeshFormat::of(Path::new("rod.step")).unwrap_err().to_string();
+        assert_eq!(
+            error,
+            "`.step` is not the ending of a known mesh format; use .glb, .gltf, .stl or .obj"
+        );
+    }
+
+    #[test]
+    fn a_missing_file_a_folder_and_a_long_file_are_errors() {
+        let folder = tempfile::tempdir().unwrap();
+        for path in [folder.path(), &folder.path().join("missing.stl")] {
+            assert!(matches!(read_file(path, MAX_FILE_BYTES), Err(MeshError::Unreadable(_))));
+        }
+        let path = folder.path().join("long.stl");
+        fs::write(&path, [0; 100]).unwrap();
+        assert!(matches!(read_file(&path, 99), Err(MeshError::FileTooLong)));
+        assert_eq!(read_file(&path, 100).unwrap().len(), 100);
+    }
+
+    #[test]
+    fn the_light_guide_of_the_scenes_is_sound() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/meshes/lightguide.glb");
+        let mesh = read(&path, LengthUnit::Metre).unwrap();
+        assert_eq!(mesh.faces, ["entry", "wall", "exit"]);
+        let health = health(&mesh);
+        assert!(health.is_sound(), "{health:?}");
+        assert_eq!((health.shells, health.opposed_normals, &health.facets), (1, 0, &None));
+        // A bent rod is as big as a straight one (Pappus): π r² L, less what 96 facets cut off.
+        let share = health.signed_volume_mm3 / (PI * 4.0 * 40.0);
+        assert!((share - (TAU / 96.0).sin() / (TAU / 96.0)).abs() < 1e-4, "{share}");
+    }
+}

@@ -1,0 +1,137 @@
+//! Which triangles meet at which edge, and which belong together.
+
+/// A triangle's side of an edge.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct HalfEdge {
+    /// The smaller index of the two vertices.
+    pub low: u32,
+    /// The larger one.
+    pub high: u32,
+    /// The triangle.
+    pub triangle: u32,
+    /// The corner of the triangle at which its traversal of the edge begins.
+    pub corner: u8,
+}
+
+impl HalfEdge {
+    /// Whether the triangle walks from `low` to `high`.
+    pub fn is_upward(&self, triangles: &[[u32; 3]]) -> bool {
+        triangles[self.triangle as usize][usize::from(self.corner)] == self.low
+    }
+
+    /// The corner of the triangle that is not on the edge.
+    pub fn opposite_corner(&self) -> usize {
+        usize::from(self.corner + 2) % 3
+    }
+
+    /// The corners of the triangle at `low` and at `high`.
+    pub fn corners(&self, triangles: &[[u32; 3]]) -> [usize; 2] {
+        let (from, to) = (usize::from(self.corner), usize::from(self.corner + 1) % 3);
+        if self.is_upward(triangles) { [from, to] } else { [to, from] }
+    }
+}
+
+/// All half edges, sorted so that those of one edge are neighbours: `half_edges.chunk_by(same_edge)`.
+/// Triangles that name a vertex twice have none: whatever is left of them closes upon itself.
+pub fn half_edges(triangles: &[[u32; 3]]) -> Vec<HalfEdge> {
+    let mut all = Vec::with_capacity(3 * triangles.len());
+    for (index, triangle) in triangles.iter().enumerate() {
+        if is_collapsed(triangle) {
+            continue;
+        }
+        for corner in 0..3u8 {
+            let (from, to) = (triangle[usize::from(corner)], triangle[usize::from(corner + 1) % 3]);
+            all.push(HalfEdge {
+                low: from.min(to),
+                high: from.max(to),
+                triangle: index as u32,
+                corner,
+            });
+        }
+    }
+    all.sort_unstable();
+    all
+}
+
+/// Whether two half edges join the same vertices.
+pub fn same_edge(one: &HalfEdge, other: &HalfEdge) -> bool {
+    one.low == other.low && one.high == other.high
+}
+
+/// Whether a triangle names a vertex twice.
+pub fn is_collapsed([a, b, c]: &[u32; 3]) -> bool {
+    a == b || b == c || c == a
+}
+
+/// Disjoint sets of things numbered from 0 (Tarjan, J. ACM 22 (1975) 215; path halving).
+#[derive(Debug, Clone)]
+pub struct Groups {
+    parent: Vec<u32>,
+}
+
+impl Groups {
+    /// `count` things, each in a group of its own.
+    pub fn new(count: usize) -> Self {
+        Self { parent: (0..count as u32).collect() }
+    }
+
+    /// Makes one group of the groups of two things.
+    pub fn join(&mut self, one: u32, other: u32) {
+        let (one, other) = (self.root(one), self.root(other));
+        // The smaller index leads, so that the result does not depend on the order of the calls.
+        self.parent[one.max(other) as usize] = one.min(other);
+    }
+
+    /// The group of each thing, numbered from 0 in order of appearance.
+    pub fn numbered(mut self) -> Vec<u32> {
+        let mut number = vec![0; self.parent.len()];
+        let mut next = 0;
+        for thing in 0..self.parent.len() as u32 {
+            let root = self.root(thing);
+            // A root is the smallest of its group, so it comes first.
+            if root == thing {
+                number[thing as usize] = next;
+                next += 1;
+            } else {
+                number[thing as usize] = number[root as usize];
+            }
+        }
+        number
+    }
+
+    fn root(&mut self, mut thing: u32) -> u32 {
+        while self.parent[thing as usize] != thing {
+            let above = self.parent[thing as usize];
+            self.parent[thing as usize] = self.parent[above as usize];
+            thing = above;
+        }
+        thing
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_shared_edge_is_walked_both_ways_by_oriented_triangles() {
+        let triangles = [[0, 1, 2], [2, 1, 3], [4, 4, 1]];
+        let half_edges = half_edges(&triangles);
+        assert_eq!(half_edges.len(), 6);
+        let shared = half_edges.chunk_by(same_edge).find(|edge| edge.len() == 2).unwrap();
+        assert_eq!((shared[0].low, shared[0].high), (1, 2));
+        assert!(shared[0].is_upward(&triangles) && !shared[1].is_upward(&triangles));
+        assert_eq!(shared[0].opposite_corner(), 0);
+        assert_eq!(shared[1].opposite_corner(), 2);
+        assert_eq!(shared[1].corners(&triangles), [1, 0]);
+    }
+
+    #[test]
+    fn groups_are_numbered_by_their_first_member() {
+        let mut groups = Groups::new(6);
+        groups.join(5, 1);
+        groups.join(3, 5);
+        groups.join(4, 2);
+        assert_eq!(groups.numbered(), [0, 1, 2, 1, 2, 1]);
+    }
+}

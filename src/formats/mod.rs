@@ -1,0 +1,3 @@
+//! Foreign files, read and written; this layer knows no scene.
+
+pub mod mesh;

@@ -1,0 +1,203 @@
+//! The test of a line against a triangle that leaves no gap between neighbours.
+//!
+//! Vertices are seen along the line, as points of a plane about it; a triangle is passed if the line's point is on
+//! the same side of its three edges. The point of a vertex does not depend on the triangle, and the side of an edge is
+//! the sign of a difference of two products: rounding is monotonic, so the sign is right or zero, and zero counts as
+//! passed on both sides. So the plane is covered without gaps whatever the rounding
+//! (Woop, Benthin & Wald, JCGT 2 (2013) 1, section 3; there by shear, here by an orthonormal pair).
+
+use crate::scene::Ray;
+use crate::scene::shape::Toward;
+use glam::{DVec2, DVec3};
+
+/// The line of a ray, prepared for many triangles.
+#[derive(Debug, Clone, Copy)]
+pub struct Line {
+    origin: DVec3,
+    dir: DVec3,
+    /// Two directions across the line; with `dir` they form a right-handed frame.
+    across: [DVec3; 2],
+}
+
+impl Line {
+    /// The line of a ray.
+    #[inline]
+    pub fn of(ray: &Ray) -> Self {
+        let (x, y) = ray.dir().any_orthonormal_pair();
+        Self { origin: ray.origin(), dir: ray.dir(), across: [x, y] }
+    }
+
+    /// Which way the line goes through a triangle, if it does. Edges and vertices count, triangles seen edge-on do not.
+    #[inline]
+    pub(super) fn passes(&self, corners: &[DVec3; 3]) -> Option<Toward> {
+        let [a, b, c] = corners.map(|corner| self.seen(corner));
+        let sides = [side(b, c), side(c, a), side(a, b)];
+        // Seen along the line, a triangle that faces along it runs counter-clockwise in the right-handed frame.
+        if sides.iter().all(|side| *side >= 0.0) && sides.iter().any(|side| *side > 0.0) {
+            Some(Toward::Front)
+        } else if sides.iter().all(|side| *side <= 0.0) && sides.iter().any(|side| *side < 0.0) {
+            Some(Toward::Back)
+        } else {
+            None
+        }
+    }
+
+    /// Distance to the plane of a triangle that the line passes, mm, kept between the nearest and the farthest vertex:
+    /// at grazing incidence the plane alone would be wrong, for a triangle without area undefined.
+    #[inline]
+    pub(super) fn distance(&self, corners: &[DVec3; 3], normal: DVec3) -> f64 {
+        let along = corners.map(|corner| (corner - self.origin).dot(self.dir));
+        let nearest = along[0].min(along[1]).min(along[2]);
+        let farthest = along[0].max(along[1]).max(along[2]);
+        let t = (corners[0] - self.origin).dot(normal) / self.dir.dot(normal);
+        // `max` also replaces an undefined t.
+        t.max(nearest).min(farthest)
+    }
+
+    #[inline]
+    fn seen(&self, vertex: DVec3) -> DVec2 {
+        let from = vertex - self.origin;
+        DVec2::new(from.dot(self.across[0]), from.dot(self.across[1]))
+    }
+}
+
+/// Positive if the origin is to the left of the way from p to q; exactly the opposite for the way back.
+#[inline]
+fn side(p: DVec2, q: DVec2) -> f64 {
+    p.x * q.y - p.y * q.x
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formats::mesh::samples::{Normals, block, icosphere, rod};
+    use crate::formats::mesh::{TriangleMesh, area_vector};
+    use crate::math::{Frame, uniform_sphere};
+    use crate::rng::{Dimension, Sampler};
+    use crate::scene::mesh::Mesh;
+    use crate::scene::shape::Crossing;
+
+    /// Crossings of a ray's line with all triangles.
+    fn all_crossings(mesh: &Mesh, ray: &Ray) -> Vec<Crossing> {
+        (0..mesh.triangle_count()).filter_map(|triangle| mesh.crossing(triangle, ray)).collect()
+    }
+
+    fn count(crossings: &[Crossing], toward: Toward) -> usize {
+        crossings.iter().filter(|crossing| crossing.toward == toward).count()
+    }
+
+    /// Möller & Trumbore, J. Graphics Tools 2 (1997) 21: t and both weights, from the definition.
+    fn by_definition([a, b, c]: &[DVec3; 3], ray: &Ray) -> Option<(f64, DVec3)> {
+        let (ab, ac, from) = (*b - *a, *c - *a, ray.origin() - *a);
+        let p = ray.dir().cross(ac);
+        let q = from.cross(ab);
+        let scale = 1.0 / ab.dot(p);
+        let (u, v) = (from.dot(p) * scale, ray.dir().dot(q) * scale);
+        let inside = u >= 0.0 && v >= 0.0 && u + v <= 1.0;
+        inside.then_some((ac.dot(q) * scale, DVec3::new(1.0 - u - v, u, v)))
+    }
+
+    fn placed(mesh: &TriangleMesh) -> Mesh {
+        // An oblique frame, so that no coordinate is round.
+        let at = Frame::from_axis(DVec3::new(12.3, -4.5, 6.7), DVec3::new(0.3, -0.5, 0.8));
+        Mesh::new(mesh, &at)
+    }
+
+    #[test]
+    fn random_rays_cross_where_the_definition_says() {
+        let mesh = placed(&icosphere(3.0, 3, Normals::None));
+        let mut hits = 0;
+        for index in 0..300 {
+            let mut sampler = Sampler::for_path(21, 0, index);
+            let origin = DVec3::new(12.3, -4.5, 6.7)
+                + 5.0 * uniform_sphere(sampler.pair(Dimension::EmitPosition));
+            let ray = Ray::new(origin, uniform_sphere(sampler.pair(Dimension::EmitDirection)));
+            for triangle in 0..mesh.triangle_count() {
+                let corners = mesh.corners(triangle);
+                let ours = mesh.crossing(triangle, &ray);
+                let expected = by_definition(corners, &ray);
+                let Some((t, weights)) = expected else {
+                    // Allowed only where rounding decides: none of these rays is that near to an edge.
+                    assert_eq!(ours, None);
+                    continue;
+                };
+                let ours = ours.unwrap();
+                hits += 1;
+                assert!(weights.min_element() > 1e-12);
+                assert!((ours.t - t).abs() < 1e-9, "{} {t}", ours.t);
+                assert_eq!(ours.toward, Toward::of(ray.dir(), area_vector(*corners)));
+            }
+        }
+        assert!(hits > 50, "{hits}");
+    }
+
+    /// Points of a closed mesh at which rounding is most likely to go wrong.
+    fn delicate_points(mesh: &Mesh) -> Vec<DVec3> {
+        let of_triangle = |triangle: usize| {
+            let [a, b, c] = *mesh.corners(triangle);
+            let on_edge =
+                |from: DVec3, to: DVec3| [0.5, 0.1, 1.0 / 3.0].map(|s| from + s * (to - from));
+            [vec![a, b, c], on_edge(a, b).into(), on_edge(b, c).into(), on_edge(c, a).into()]
+                .concat()
+        };
+        (0..mesh.triangle_count()).flat_map(of_triangle).collect()
+    }
+
+    #[test]
+    fn rays_at_edges_and_vertices_never_slip_through() {
+        let meshes = [
+            icosphere(3.0, 2, Normals::None),
+            block(DVec3::new(1.0, 2.0, 3.0)),
+            rod(2.0, 40.0, 24, Normals::None),
+        ];
+        for (number, sample) in meshes.iter().enumerate() {
+            for mesh in [placed(sample), Mesh::new(sample, &Frame::WORLD)] {
+                let inside = (0..mesh.triangle_count())
+                    .map(|triangle| mesh.corners(triangle).iter().sum::<DVec3>() / 3.0)
+                    .sum::<DVec3>()
+                    / mesh.triangle_count() as f64;
+                for (index, target) in delicate_points(&mesh).into_iter().enumerate() {
+                    let mut sampler = Sampler::for_path(22, number as u64, index as u64);
+                    let away = uniform_sphere(sampler.pair(Dimension::EmitDirection));
+                    for origin in [inside, inside + 1e-3 * away, target + 1e-9 * (inside - target)]
+                    {
+                        // Convex and started inside: out ahead of the ray, in behind it.
+                        let ray = Ray::new(origin, target - origin);
+                        let crossings = all_crossings(&mesh, &ray);
+                        let ahead: Vec<_> =
+                            crossings.iter().filter(|c| c.t > 0.0).copied().collect();
+                        assert!(count(&ahead, Toward::Front) >= 1, "{number} {target}");
+                        assert_eq!(count(&ahead, Toward::Back), 0, "{number} {target}");
+                        assert!(count(&crossings, Toward::Back) >= 1, "{number} {target}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn lines_that_touch_from_outside_go_in_as_often_as_out() {
+        let mesh = placed(&icosphere(3.0, 2, Normals::None));
+        for (index, target) in delicate_points(&mesh).into_iter().enumerate() {
+            let mut sampler = Sampler::for_path(23, 0, index as u64);
+            let origin = target + 7.0 * uniform_sphere(sampler.pair(Dimension::EmitDirection));
+            let crossings = all_crossings(&mesh, &Ray::new(origin, target - origin));
+            let (front, back) =
+                (count(&crossings, Toward::Front) > 0, count(&crossings, Toward::Back) > 0);
+            assert_eq!(front, back, "{target}: {crossings:?}");
+        }
+    }
+
+    #[test]
+    fn axis_parallel_rays_through_the_edges_of_a_block_hit_every_triangle_there() {
+        let mesh = Mesh::new(&block(DVec3::ONE), &Frame::WORLD);
+        // Through the diagonals of two opposite sides, and along an edge.
+        let middle = Ray::new(DVec3::new(0.5, 0.5, 0.5), DVec3::Z);
+        let crossings = all_crossings(&mesh, &middle);
+        assert_eq!((count(&crossings, Toward::Front), count(&crossings, Toward::Back)), (2, 2));
+        let edge = Ray::new(DVec3::new(0.0, 0.0, 0.5), DVec3::Z);
+        let crossings = all_crossings(&mesh, &edge);
+        assert!(count(&crossings, Toward::Front) >= 1 && count(&crossings, Toward::Back) >= 1);
+        assert!(crossings.iter().all(|crossing| crossing.t.abs() == 0.5));
+    }
+}

@@ -1,0 +1,31 @@
+//! Which triangles are one smooth surface.
+
+use crate::formats::mesh::topology::{Groups, HalfEdge, half_edges, same_edge};
+use crate::formats::mesh::{TriangleMesh, area_vector, normals_agree};
+
+/// The smooth patch of each triangle, numbered from 0 in order of appearance; `flatness` is how far, mm, a vertex of a
+/// plane may lie off it.
+pub(super) fn smooth_ids(mesh: &TriangleMesh, flatness: f64) -> Vec<u32> {
+    let mut groups = Groups::new(mesh.triangles.len());
+    for edge in half_edges(&mesh.triangles).chunk_by(same_edge) {
+        // Where more than two meet, none continues another.
+        let [one, other] = edge else { continue };
+        if normals_agree(mesh, one, other) || in_one_plane(mesh, one, other, flatness) {
+            groups.join(one.triangle, other.triangle);
+        }
+    }
+    groups.numbered()
+}
+
+/// Whether each triangle's far vertex lies in the plane of the other one, and both face the same way.
+fn in_one_plane(mesh: &TriangleMesh, one: &HalfEdge, other: &HalfEdge, flatness: f64) -> bool {
+    let [a, b] = [one, other].map(|side| mesh.corners(side.triangle as usize));
+    let [normal_a, normal_b] = [a, b].map(|corners| area_vector(corners).normalize_or_zero());
+    let off = |far: &HalfEdge, corners: [glam::DVec3; 3], normal: glam::DVec3| {
+        let vertex = mesh.corners(far.triangle as usize)[far.opposite_corner()];
+        (vertex - corners[0]).dot(normal).abs()
+    };
+    normal_a.dot(normal_b) > 0.0
+        && off(other, a, normal_a) <= flatness
+        && off(one, b, normal_b) <= flatness
+}

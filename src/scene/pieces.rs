@@ -1,0 +1,149 @@
+//! Questions about surfaces, whether they are analytic patches or triangles of a mesh.
+
+use crate::math::Frame;
+use crate::scene::shape::{ChartRect, Shape};
+use crate::scene::{Extent, FaceId, MeshBody, Owner, Patch, PrimId, Scene};
+use glam::{DVec2, DVec3};
+
+/// A surface that a ray can hit.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Surface<'s> {
+    /// An analytic piece.
+    Patch(&'s Patch),
+    /// A triangle of a mesh, by its number there.
+    Triangle(&'s MeshBody, usize),
+}
+
+impl Scene {
+    /// The surface of a number.
+    #[inline]
+    pub(crate) fn surface(&self, prim: PrimId) -> Surface<'_> {
+        let index = prim.index();
+        match self.patches.get(index) {
+            Some(patch) => Surface::Patch(patch),
+            None => {
+                let body = match self.meshes.as_slice() {
+                    [body] => body,
+                    bodies => &bodies[bodies.partition_point(|body| body.first <= index) - 1],
+                };
+                Surface::Triangle(body, index - body.first)
+            }
+        }
+    }
+
+    /// The face that a surface belongs to.
+    #[inline]
+    pub fn face_of(&self, prim: PrimId) -> FaceId {
+        match self.surface(prim) {
+            Surface::Patch(patch) => patch.face,
+            Surface::Triangle(body, triangle) => body.faces[body.mesh.face_of(triangle)],
+        }
+    }
+
+    /// Unit normal of the front at a point of a surface: of the triangle itself, for a mesh.
+    #[inline]
+    pub fn normal(&self, prim: PrimId, point: DVec3) -> DVec3 {
+        match self.surface(prim) {
+            Surface::Patch(patch) => patch.shape.normal(point),
+            Surface::Triangle(body, triangle) => body.mesh.facet_normal(triangle),
+        }
+    }
+
+    /// Unit normal of the surface that a mesh stands for, interpolated; `None` where the surface itself is exact.
+    #[inline]
+    pub fn shading_normal(&self, prim: PrimId, point: DVec3) -> Option<DVec3> {
+        match self.surface(prim) {
+            Surface::Patch(_) => None,
+            Surface::Triangle(body, triangle) => Some(body.mesh.shading_normal(triangle, point)),
+        }
+    }
+
+    /// Unrolled coordinates of a point on its face, mm.
+    #[inline]
+    pub fn chart(&self, prim: PrimId, point: DVec3) -> DVec2 {
+        match self.surface(prim) {
+            Surface::Patch(patch) => patch.chart(point),
+            Surface::Triangle(body, triangle) => body.planes[body.mesh.face_of(triangle)]
+                .map_or(DVec2::ZERO, |plane| plane.point_to_local(point).truncate()),
+        }
+    }
+
+    /// The face of a name such as `pipe.exit`.
+    pub fn face_named(&self, name: &str) -> Option<FaceId> {
+        self.faces.iter().position(|face| face.name == name).map(FaceId::new)
+    }
+
+    /// The analytic pieces of a face; none for a face of a mesh.
+    pub fn face_patches(&self, face: FaceId) -> &[Patch] {
+        match &self.faces[face.index()].extent {
+            Extent::Patches(range) => &self.patches[range.clone()],
+            Extent::Ports(range) => &self.ports[range.clone()],
+            Extent::Mesh { .. } => &[],
+        }
+    }
+
+    /// Area of a face, mm².
+    pub fn face_area(&self, face: FaceId) -> f64 {
+        match self.mesh_face(face) {
+            Some((body, index)) => body.mesh.face_area(index),
+            None => self.face_patches(face).iter().map(|patch| patch.shape.area()).sum(),
+        }
+    }
+
+    /// Area of the part of a face whose chart lies in `rect`, mm².
+    pub fn face_area_in(&self, face: FaceId, rect: ChartRect) -> f64 {
+        match self.mesh_face(face) {
+            Some((body, index)) => {
+                body.planes[index].map_or(0.0, |plane| body.mesh.chart_area_in(index, &plane, rect))
+            }
+            None => self
+                .face_patches(face)
+                .iter()
+                .map(|patch| {
+                    let shifted =
+                        ChartRect { min: rect.min - patch.chart_offset, max: rect.max - patch.chart_offset };
+                    patch.shape.area_in(shifted)
+                })
+                .sum(),
+        }
+    }
+
+    /// The rectangle that a face's chart covers, mm; `None` for a curved face of a mesh.
+    pub fn face_rect(&self, face: FaceId) -> Option<ChartRect> {
+        match self.mesh_face(face) {
+            Some((body, index)) => body.planes[index].map(|plane| body.mesh.chart_bounds(index, &plane)),
+            None => self
+                .face_patches(face)
+                .iter()
+                .map(|patch| {
+                    let rect = patch.shape.chart_bounds();
+                    ChartRect { min: rect.min + patch.chart_offset, max: rect.max + patch.chart_offset }
+                })
+                .reduce(ChartRect::union),
+        }
+    }
+
+    /// The frame of a flat face: its middle, z along the outward normal, and the axes of its chart.
+    pub fn face_plane(&self, face: FaceId) -> Option<Frame> {
+        if let Some((body, index)) = self.mesh_face(face) {
+            return body.planes[index];
+        }
+        match self.face_patches(face) {
+            [Patch { shape: Shape::Flat(flat), .. }] => Some(*flat.frame()),
+            _ => None,
+        }
+    }
+
+    /// What a face belongs to.
+    #[inline]
+    pub fn owner(&self, face: FaceId) -> Owner {
+        self.faces[face.index()].owner
+    }
+
+    fn mesh_face(&self, face: FaceId) -> Option<(&MeshBody, usize)> {
+        match self.faces[face.index()].extent {
+            Extent::Mesh { mesh, face } => Some((&self.meshes[mesh], face)),
+            Extent::Patches(_) | Extent::Ports(_) => None,
+        }
+    }
+}

@@ -2,6 +2,7 @@
 
 mod aabb;
 mod frame;
+pub mod planar;
 mod roots;
 mod sampling;
 

@@ -8,9 +8,11 @@
 
 mod cylinder;
 mod flat;
+mod wedge;
 
 pub use cylinder::Cylinder;
-pub use flat::{Flat, Region};
+pub use flat::{Flat, Polygon, Region};
+pub use wedge::Wedge;
 
 use crate::math::Aabb;
 use crate::scene::Ray;
@@ -49,6 +51,15 @@ impl Toward {
     pub fn of(dir: DVec3, normal: DVec3) -> Self {
         if dir.dot(normal) > 0.0 { Self::Front } else { Self::Back }
     }
+
+    /// The other way.
+    #[inline]
+    pub fn opposite(self) -> Self {
+        match self {
+            Self::Front => Self::Back,
+            Self::Back => Self::Front,
+        }
+    }
 }
 
 /// The points on one side of a plane: `normal · p <= offset`.
@@ -81,6 +92,29 @@ pub struct ChartRect {
     pub min: DVec2,
     /// Largest (u, v).
     pub max: DVec2,
+}
+
+impl ChartRect {
+    /// What both rectangles share; empty when they are apart.
+    pub fn intersection(&self, other: &Self) -> Self {
+        Self { min: self.min.max(other.min), max: self.max.min(other.max) }
+    }
+
+    /// Whether the rectangle has no area.
+    pub fn is_empty(&self) -> bool {
+        !self.min.cmplt(self.max).all()
+    }
+
+    /// Area of the rectangle itself, mm²; 0 when it is empty.
+    pub fn area(&self) -> f64 {
+        (self.max - self.min).max(DVec2::ZERO).element_product()
+    }
+
+    /// The corners, counter-clockwise from the smallest.
+    pub fn corners(&self) -> [DVec2; 4] {
+        let (min, max) = (self.min, self.max);
+        [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)]
+    }
 }
 
 /// A trimmed, oriented analytic surface.

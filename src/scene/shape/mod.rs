@@ -6,10 +6,12 @@
 //!
 //! Every shape has a chart: it unrolls the surface into a rectangle of millimetres, for flux maps on curved walls.
 
+mod cone;
 mod cylinder;
 mod flat;
 mod wedge;
 
+pub use cone::Cone;
 pub use cylinder::Cylinder;
 pub use flat::{Flat, Polygon, Region};
 pub use wedge::Wedge;
@@ -124,6 +126,8 @@ pub enum Shape {
     Flat(Flat),
     /// A piece of a circular cylinder's wall.
     Cylinder(Cylinder),
+    /// A piece of a cone frustum's wall.
+    Cone(Cone),
 }
 
 impl Shape {
@@ -132,6 +136,7 @@ impl Shape {
         match self {
             Self::Flat(shape) => shape.bounds(),
             Self::Cylinder(shape) => shape.bounds(),
+            Self::Cone(shape) => shape.bounds(),
         }
     }
 
@@ -141,6 +146,7 @@ impl Shape {
         match self {
             Self::Flat(shape) => shape.crossings(ray, start, visit),
             Self::Cylinder(shape) => shape.crossings(ray, start, visit),
+            Self::Cone(shape) => shape.crossings(ray, start, visit),
         }
     }
 
@@ -150,6 +156,7 @@ impl Shape {
         match self {
             Self::Flat(shape) => shape.normal(),
             Self::Cylinder(shape) => shape.normal(p),
+            Self::Cone(shape) => shape.normal(p),
         }
     }
 
@@ -158,6 +165,7 @@ impl Shape {
         match self {
             Self::Flat(shape) => shape.area(),
             Self::Cylinder(shape) => shape.area(),
+            Self::Cone(shape) => shape.area(),
         }
     }
 
@@ -166,6 +174,7 @@ impl Shape {
         match self {
             Self::Flat(shape) => shape.sample(u),
             Self::Cylinder(shape) => shape.sample(u),
+            Self::Cone(shape) => shape.sample(u),
         }
     }
 
@@ -174,6 +183,7 @@ impl Shape {
         match self {
             Self::Flat(shape) => shape.chart(p),
             Self::Cylinder(shape) => shape.chart(p),
+            Self::Cone(shape) => shape.chart(p),
         }
     }
 
@@ -182,6 +192,7 @@ impl Shape {
         match self {
             Self::Flat(shape) => shape.chart_bounds(),
             Self::Cylinder(shape) => shape.chart_bounds(),
+            Self::Cone(shape) => shape.chart_bounds(),
         }
     }
 
@@ -190,6 +201,7 @@ impl Shape {
         match self {
             Self::Flat(shape) => shape.area_in(rect),
             Self::Cylinder(shape) => shape.area_in(rect),
+            Self::Cone(shape) => shape.area_in(rect),
         }
     }
 }

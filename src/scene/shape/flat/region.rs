@@ -186,25 +186,25 @@ mod tests {
 
     #[test]
     fn cells_add_up_to_the_area_and_agree_with_a_count_of_points() {
-        let (n, fine) = (7, 60);
-        let edge = |i: usize, n: usize| -2.6 + 5.2 * i as f64 / n as f64;
+        let (n, fine) = (7u32, 60u32);
+        let edge = |i: u32| -2.6 + 5.2 * f64::from(i) / f64::from(n);
         for (region, area) in regions() {
             assert!((region.area() - area).abs() < 1e-13, "{region:?}");
             let mut sum = 0.0;
             for cell in 0..n * n {
                 let (i, j) = (cell / n, cell % n);
                 let rect = ChartRect {
-                    min: DVec2::new(edge(i, n), edge(j, n)),
-                    max: DVec2::new(edge(i + 1, n), edge(j + 1, n)),
+                    min: DVec2::new(edge(i), edge(j)),
+                    max: DVec2::new(edge(i + 1), edge(j + 1)),
                 };
                 let part = region.area_in(rect);
                 let inside = (0..fine * fine)
                     .filter(|k| {
-                        let u = DVec2::new((k / fine) as f64 + 0.5, (k % fine) as f64 + 0.5);
-                        region.contains(rect.min + u / fine as f64 * (rect.max - rect.min))
+                        let u = DVec2::new(f64::from(k / fine) + 0.5, f64::from(k % fine) + 0.5);
+                        region.contains(rect.min + u / f64::from(fine) * (rect.max - rect.min))
                     })
                     .count();
-                let counted = rect.area() * inside as f64 / (fine * fine) as f64;
+                let counted = rect.area() * inside as f64 / f64::from(fine * fine);
                 assert!((part - counted).abs() < 0.02 * rect.area(), "{region:?} {rect:?} {part}");
                 sum += part;
             }

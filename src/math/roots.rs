@@ -24,29 +24,45 @@ pub fn quadratic(a: f64, half_b: f64, c: f64) -> Option<[f64; 2]> {
     Some(if one < two { [one, two] } else { [two, one] })
 }
 
-/// Real roots of `Σ coefficients[i] tⁱ` in the finite interval [`lo`, `hi`], ascending.
+/// Real roots of `Σ coefficients[i] tⁱ`, up to t³, in the finite interval [`lo`, `hi`], ascending; see [`quartic`].
+pub fn cubic(coefficients: [f64; 4], lo: f64, hi: f64) -> Roots {
+    in_units_of(coefficients, lo, hi, unscaled_cubic)
+}
+
+/// Real roots of `Σ coefficients[i] tⁱ`, up to t⁴, in the finite interval [`lo`, `hi`], ascending.
 ///
 /// The roots are the places where the sign changes, zero counting as positive: a root of even order is given twice
 /// or not at all, and a root at an end only if the polynomial is negative beside it. Between two neighbouring roots
 /// of its derivative a polynomial is monotonic, so each piece holds one root or none. Leading coefficients may be
 /// zero or tiny; the zero polynomial and one with coefficients that are not finite have no roots.
-pub fn polynomial_roots(coefficients: &[f64], lo: f64, hi: f64) -> Roots {
-    // In units of the interval and of the largest term, nothing overflows or underflows that matters; powers of two
-    // do not round.
+pub fn quartic(coefficients: [f64; 5], lo: f64, hi: f64) -> Roots {
+    in_units_of(coefficients, lo, hi, |[e, d, c, b, a], lo, hi| {
+        let critical = unscaled_cubic([d, 2.0 * c, 3.0 * b, 4.0 * a], lo, hi);
+        roots_of_pieces([e, d, c, b, a], lo, hi, &critical)
+    })
+}
+
+/// Roots in units of the interval and of the largest term: nothing that matters overflows or underflows. The units
+/// are powers of two, which do not round.
+#[inline]
+fn in_units_of<const N: usize>(
+    mut terms: [f64; N],
+    lo: f64,
+    hi: f64,
+    solve: impl FnOnce([f64; N], f64, f64) -> Roots,
+) -> Roots {
     let unit = power_of_two_below(lo.abs().max(hi.abs()));
-    let mut power = 1.0;
-    let mut terms = SmallVec::<[f64; 5]>::new();
-    for c in coefficients {
-        terms.push(c * power);
+    let (mut power, mut sum) = (1.0, 0.0);
+    for term in &mut terms {
+        *term *= power;
         power *= unit;
+        sum += term.abs();
     }
-    let largest = terms.iter().fold(0.0, |largest: f64, term| largest.max(term.abs()));
-    if largest == 0.0 || !terms.iter().all(|term| term.is_finite()) {
+    if sum == 0.0 || !sum.is_finite() {
         return Roots::new();
     }
-    let scale = 1.0 / power_of_two_below(largest);
-    terms.iter_mut().for_each(|term| *term *= scale);
-    let mut roots = roots_by_monotonic_pieces(&terms, lo / unit, hi / unit);
+    let scale = 1.0 / power_of_two_below(sum);
+    let mut roots = solve(terms.map(|term| term * scale), lo / unit, hi / unit);
     roots.iter_mut().for_each(|root| *root *= unit);
     roots
 }
@@ -58,27 +74,29 @@ fn power_of_two_below(x: f64) -> f64 {
     f64::from_bits(x.max(f64::MIN_POSITIVE).to_bits() & EXPONENT_BITS)
 }
 
-fn roots_by_monotonic_pieces(coefficients: &[f64], lo: f64, hi: f64) -> Roots {
+#[inline]
+fn unscaled_cubic([d, c, b, a]: [f64; 4], lo: f64, hi: f64) -> Roots {
+    // Roots of the derivative beyond the interval, infinite or undefined for a = 0, split nothing.
+    let all = quadratic(3.0 * a, b, c).into_iter().flatten();
+    let critical: Roots = all.filter(|t| (lo..=hi).contains(t)).collect();
+    roots_of_pieces([d, c, b, a], lo, hi, &critical)
+}
+
+/// The roots of a polynomial that is monotonic between the ends and the `critical` points.
+#[inline]
+fn roots_of_pieces<const N: usize>(
+    coefficients: [f64; N],
+    lo: f64,
+    hi: f64,
+    critical: &[f64],
+) -> Roots {
     let mut roots = Roots::new();
-    let critical = match coefficients {
-        [] | [_] => return roots,
-        [lower @ .., 0.0] => return roots_by_monotonic_pieces(lower, lo, hi),
-        [c, b, a] => {
-            let both = quadratic(*a, 0.5 * b, *c).into_iter().flatten();
-            return both.filter(|t| (lo..=hi).contains(t)).collect();
-        }
-        [_, higher @ ..] => {
-            let derivative: SmallVec<[f64; 4]> =
-                (1u32..).zip(higher).map(|(power, c)| f64::from(power) * c).collect();
-            roots_by_monotonic_pieces(&derivative, lo, hi)
-        }
-    };
     let mut left = lo;
-    let mut left_is_negative = polynomial(coefficients, lo).0 < 0.0;
-    for right in critical.into_iter().chain([hi]) {
-        let right_is_negative = polynomial(coefficients, right).0 < 0.0;
+    let mut left_is_negative = polynomial(&coefficients, lo).0 < 0.0;
+    for &right in critical.iter().chain([&hi]) {
+        let right_is_negative = polynomial(&coefficients, right).0 < 0.0;
         if left_is_negative != right_is_negative {
-            roots.push(bracketed_root(left, right, |t| polynomial(coefficients, t)));
+            roots.push(bracketed_root(left, right, |t| polynomial(&coefficients, t)));
         }
         (left, left_is_negative) = (right, right_is_negative);
     }
@@ -87,7 +105,7 @@ fn roots_by_monotonic_pieces(coefficients: &[f64], lo: f64, hi: f64) -> Roots {
 
 /// Value and derivative at `t`, by Horner's rule.
 #[inline]
-fn polynomial(coefficients: &[f64], t: f64) -> (f64, f64) {
+fn polynomial<const N: usize>(coefficients: &[f64; N], t: f64) -> (f64, f64) {
     coefficients
         .iter()
         .rev()
@@ -163,8 +181,9 @@ fn newton_inward(from: f64, limit: f64, f: impl Fn(f64) -> (f64, f64)) -> Option
         if (next - limit) * inward > 0.0 {
             return None;
         }
-        // Also true for 0/0, a root of even order.
-        if !((next - t) * inward > f64::EPSILON * t.abs()) {
+        let step = (next - t) * inward;
+        // 0/0: a root of even order.
+        if step <= f64::EPSILON * t.abs() || step.is_nan() {
             return Some(t);
         }
         t = next;
@@ -177,6 +196,17 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
     use proptest::test_runner::RngSeed;
+
+    /// The real roots of a polynomial of degree 4 or less; those of degree 3 or less by both functions.
+    fn polynomial_roots(coefficients: &[f64], lo: f64, hi: f64) -> Roots {
+        let padded = |i: usize| coefficients.get(i).copied().unwrap_or(0.0);
+        let roots = quartic(std::array::from_fn(padded), lo, hi);
+        if coefficients.len() < 5 {
+            let same = cubic(std::array::from_fn(padded), lo, hi);
+            assert_eq!(roots.len(), same.len(), "{coefficients:?}");
+        }
+        roots
+    }
 
     /// Coefficients of `∏ (t - root)`.
     fn with_roots(roots: &[f64]) -> Vec<f64> {
@@ -193,7 +223,9 @@ mod tests {
     /// Rounding error that a root must have at least: an ulp of every term, over the slope.
     fn conditioning(coefficients: &[f64], t: f64) -> f64 {
         let terms: f64 = coefficients.iter().rev().fold(0.0, |sum, c| sum * t.abs() + c.abs());
-        f64::EPSILON * (terms / polynomial(coefficients, t).1.abs() + t.abs())
+        let padded = std::array::from_fn(|i| coefficients.get(i).copied().unwrap_or(0.0));
+        let slope = polynomial::<5>(&padded, t).1;
+        f64::EPSILON * (terms / slope.abs() + t.abs())
     }
 
     proptest! {

@@ -8,9 +8,14 @@
 
 mod cylinder;
 mod flat;
+mod support;
+#[cfg(test)]
+mod testing;
+mod torus;
 
 pub use cylinder::Cylinder;
 pub use flat::{Flat, Region};
+pub use torus::Torus;
 
 use crate::math::Aabb;
 use crate::scene::Ray;
@@ -90,6 +95,8 @@ pub enum Shape {
     Flat(Flat),
     /// A piece of a circular cylinder's wall.
     Cylinder(Cylinder),
+    /// The wall of a bent round tube.
+    Torus(Torus),
 }
 
 impl Shape {
@@ -98,6 +105,7 @@ impl Shape {
         match self {
             Self::Flat(shape) => shape.bounds(),
             Self::Cylinder(shape) => shape.bounds(),
+            Self::Torus(shape) => shape.bounds(),
         }
     }
 
@@ -107,6 +115,7 @@ impl Shape {
         match self {
             Self::Flat(shape) => shape.crossings(ray, start, visit),
             Self::Cylinder(shape) => shape.crossings(ray, start, visit),
+            Self::Torus(shape) => shape.crossings(ray, start, visit),
         }
     }
 
@@ -116,6 +125,7 @@ impl Shape {
         match self {
             Self::Flat(shape) => shape.normal(),
             Self::Cylinder(shape) => shape.normal(p),
+            Self::Torus(shape) => shape.normal(p),
         }
     }
 
@@ -124,6 +134,7 @@ impl Shape {
         match self {
             Self::Flat(shape) => shape.area(),
             Self::Cylinder(shape) => shape.area(),
+            Self::Torus(shape) => shape.area(),
         }
     }
 
@@ -132,6 +143,7 @@ impl Shape {
         match self {
             Self::Flat(shape) => shape.sample(u),
             Self::Cylinder(shape) => shape.sample(u),
+            Self::Torus(shape) => shape.sample(u),
         }
     }
 
@@ -140,6 +152,7 @@ impl Shape {
         match self {
             Self::Flat(shape) => shape.chart(p),
             Self::Cylinder(shape) => shape.chart(p),
+            Self::Torus(shape) => shape.chart(p),
         }
     }
 
@@ -148,6 +161,7 @@ impl Shape {
         match self {
             Self::Flat(shape) => shape.chart_bounds(),
             Self::Cylinder(shape) => shape.chart_bounds(),
+            Self::Torus(shape) => shape.chart_bounds(),
         }
     }
 
@@ -156,6 +170,7 @@ impl Shape {
         match self {
             Self::Flat(shape) => shape.area_in(rect),
             Self::Cylinder(shape) => shape.area_in(rect),
+            Self::Torus(shape) => shape.area_in(rect),
         }
     }
 }

@@ -9,11 +9,16 @@
 mod cone;
 mod cylinder;
 mod flat;
+mod support;
+#[cfg(test)]
+mod testing;
+mod torus;
 mod wedge;
 
 pub use cone::Cone;
 pub use cylinder::Cylinder;
 pub use flat::{Flat, Polygon, Region};
+pub use torus::Torus;
 pub use wedge::Wedge;
 
 use crate::math::Aabb;
@@ -128,6 +133,8 @@ pub enum Shape {
     Cylinder(Cylinder),
     /// A piece of a cone frustum's wall.
     Cone(Cone),
+    /// The wall of a bent round tube.
+    Torus(Torus),
 }
 
 impl Shape {
@@ -137,6 +144,7 @@ impl Shape {
             Self::Flat(shape) => shape.bounds(),
             Self::Cylinder(shape) => shape.bounds(),
             Self::Cone(shape) => shape.bounds(),
+            Self::Torus(shape) => shape.bounds(),
         }
     }
 
@@ -147,6 +155,7 @@ impl Shape {
             Self::Flat(shape) => shape.crossings(ray, start, visit),
             Self::Cylinder(shape) => shape.crossings(ray, start, visit),
             Self::Cone(shape) => shape.crossings(ray, start, visit),
+            Self::Torus(shape) => shape.crossings(ray, start, visit),
         }
     }
 
@@ -157,6 +166,7 @@ impl Shape {
             Self::Flat(shape) => shape.normal(),
             Self::Cylinder(shape) => shape.normal(p),
             Self::Cone(shape) => shape.normal(p),
+            Self::Torus(shape) => shape.normal(p),
         }
     }
 
@@ -166,6 +176,7 @@ impl Shape {
             Self::Flat(shape) => shape.area(),
             Self::Cylinder(shape) => shape.area(),
             Self::Cone(shape) => shape.area(),
+            Self::Torus(shape) => shape.area(),
         }
     }
 
@@ -175,6 +186,7 @@ impl Shape {
             Self::Flat(shape) => shape.sample(u),
             Self::Cylinder(shape) => shape.sample(u),
             Self::Cone(shape) => shape.sample(u),
+            Self::Torus(shape) => shape.sample(u),
         }
     }
 
@@ -184,6 +196,7 @@ impl Shape {
             Self::Flat(shape) => shape.chart(p),
             Self::Cylinder(shape) => shape.chart(p),
             Self::Cone(shape) => shape.chart(p),
+            Self::Torus(shape) => shape.chart(p),
         }
     }
 
@@ -193,6 +206,7 @@ impl Shape {
             Self::Flat(shape) => shape.chart_bounds(),
             Self::Cylinder(shape) => shape.chart_bounds(),
             Self::Cone(shape) => shape.chart_bounds(),
+            Self::Torus(shape) => shape.chart_bounds(),
         }
     }
 
@@ -202,6 +216,7 @@ impl Shape {
             Self::Flat(shape) => shape.area_in(rect),
             Self::Cylinder(shape) => shape.area_in(rect),
             Self::Cone(shape) => shape.area_in(rect),
+            Self::Torus(shape) => shape.area_in(rect),
         }
     }
 }

@@ -6,11 +6,20 @@
 //!
 //! Every shape has a chart: it unrolls the surface into a rectangle of millimetres, for flux maps on curved walls.
 
+mod cone;
 mod cylinder;
 mod flat;
+mod support;
+#[cfg(test)]
+mod testing;
+mod torus;
+mod wedge;
 
+pub use cone::Cone;
 pub use cylinder::Cylinder;
-pub use flat::{Flat, Region};
+pub use flat::{Flat, Polygon, Region};
+pub use torus::Torus;
+pub use wedge::Wedge;
 
 use crate::math::Aabb;
 use crate::scene::Ray;
@@ -48,6 +57,15 @@ impl Toward {
     #[inline]
     pub fn of(dir: DVec3, normal: DVec3) -> Self {
         if dir.dot(normal) > 0.0 { Self::Front } else { Self::Back }
+    }
+
+    /// The other way.
+    #[inline]
+    pub fn opposite(self) -> Self {
+        match self {
+            Self::Front => Self::Back,
+            Self::Back => Self::Front,
+        }
     }
 }
 
@@ -88,6 +106,27 @@ impl ChartRect {
     pub fn union(self, other: Self) -> Self {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
+
+    /// What both rectangles share; empty when they are apart.
+    pub fn intersection(&self, other: &Self) -> Self {
+        Self { min: self.min.max(other.min), max: self.max.min(other.max) }
+    }
+
+    /// Whether the rectangle has no area.
+    pub fn is_empty(&self) -> bool {
+        !self.min.cmplt(self.max).all()
+    }
+
+    /// Area of the rectangle itself, mm²; 0 when it is empty.
+    pub fn area(&self) -> f64 {
+        (self.max - self.min).max(DVec2::ZERO).element_product()
+    }
+
+    /// The corners, counter-clockwise from the smallest.
+    pub fn corners(&self) -> [DVec2; 4] {
+        let (min, max) = (self.min, self.max);
+        [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)]
+    }
 }
 
 /// A trimmed, oriented analytic surface.
@@ -97,6 +136,10 @@ pub enum Shape {
     Flat(Flat),
     /// A piece of a circular cylinder's wall.
     Cylinder(Cylinder),
+    /// A piece of a cone frustum's wall.
+    Cone(Cone),
+    /// The wall of a bent round tube.
+    Torus(Torus),
 }
 
 impl Shape {
@@ -105,6 +148,8 @@ impl Shape {
         match self {
             Self::Flat(shape) => shape.bounds(),
             Self::Cylinder(shape) => shape.bounds(),
+            Self::Cone(shape) => shape.bounds(),
+            Self::Torus(shape) => shape.bounds(),
         }
     }
 
@@ -114,6 +159,8 @@ impl Shape {
         match self {
             Self::Flat(shape) => shape.crossings(ray, start, visit),
             Self::Cylinder(shape) => shape.crossings(ray, start, visit),
+            Self::Cone(shape) => shape.crossings(ray, start, visit),
+            Self::Torus(shape) => shape.crossings(ray, start, visit),
         }
     }
 
@@ -123,6 +170,8 @@ impl Shape {
         match self {
             Self::Flat(shape) => shape.normal(),
             Self::Cylinder(shape) => shape.normal(p),
+            Self::Cone(shape) => shape.normal(p),
+            Self::Torus(shape) => shape.normal(p),
         }
     }
 
@@ -131,6 +180,8 @@ impl Shape {
         match self {
             Self::Flat(shape) => shape.area(),
             Self::Cylinder(shape) => shape.area(),
+            Self::Cone(shape) => shape.area(),
+            Self::Torus(shape) => shape.area(),
         }
     }
 
@@ -139,6 +190,8 @@ impl Shape {
         match self {
             Self::Flat(shape) => shape.sample(u),
             Self::Cylinder(shape) => shape.sample(u),
+            Self::Cone(shape) => shape.sample(u),
+            Self::Torus(shape) => shape.sample(u),
         }
     }
 
@@ -147,6 +200,8 @@ impl Shape {
         match self {
             Self::Flat(shape) => shape.chart(p),
             Self::Cylinder(shape) => shape.chart(p),
+            Self::Cone(shape) => shape.chart(p),
+            Self::Torus(shape) => shape.chart(p),
         }
     }
 
@@ -155,6 +210,8 @@ impl Shape {
         match self {
             Self::Flat(shape) => shape.chart_bounds(),
             Self::Cylinder(shape) => shape.chart_bounds(),
+            Self::Cone(shape) => shape.chart_bounds(),
+            Self::Torus(shape) => shape.chart_bounds(),
         }
     }
 
@@ -163,6 +220,8 @@ impl Shape {
         match self {
             Self::Flat(shape) => shape.area_in(rect),
             Self::Cylinder(shape) => shape.area_in(rect),
+            Self::Cone(shape) => shape.area_in(rect),
+            Self::Torus(shape) => shape.area_in(rect),
         }
     }
 }

@@ -87,6 +87,11 @@ impl<'s> Run<'s> {
         self.last_wave.is_some_and(|last| self.waves >= last)
     }
 
+    /// Paths traced so far.
+    pub fn paths(&self) -> u64 {
+        self.waves * GROUPS * self.forward.shares.iter().sum::<u64>()
+    }
+
     /// Paths asked for, rounded up to whole batches; `None` without such a rule.
     pub fn planned_paths(&self) -> Option<u64> {
         let batch: u64 = self.forward.shares.iter().sum();

@@ -1,0 +1,349 @@
+//! The command line: arguments, progress, exit codes. The only file that prints.
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "this is the program's face")]
+
+use crate::error::{Diagnostic, Error};
+use crate::input::{self, Settings};
+use crate::pipeline::{self, Existing, Output, Progress, Stop};
+use crate::report::Outcome;
+use crate::transport::Interrupt;
+use clap::{Args, CommandFactory, Parser, Subcommand};
+use indicatif::{ProgressBar, ProgressStyle};
+use std::io::{IsTerminal, Write};
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Duration;
+
+/// Photometric sensor data for light tubes and light guides: flux, uniformity, maps and far fields with error bars.
+#[derive(Debug, Parser)]
+#[command(name = "lumiduct", version, about, after_help = EXIT_CODES)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const EXIT_CODES: &str = "Exit codes: 0 good; 1 a check was missed; 2 not run (usage or input); 3 internal or I/O \
+error; 130 stopped by Ctrl-C.";
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Trace a scene and write its report.
+    Run(RunArgs),
+    /// Validate a scene, print what is in it, and draw a cross-section with 50 traced paths.
+    Check(CheckArgs),
+    /// List scenes and sensor files in a folder.
+    List {
+        /// The folder to look in.
+        #[arg(default_value = ".")]
+        folder: PathBuf,
+    },
+    /// Print the JSON Schema of scene files.
+    Schema,
+    /// Print a completion script.
+    Completions {
+        /// The shell to print it for.
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual page.
+    Man,
+}
+
+#[derive(Debug, Args)]
+struct RunArgs {
+    /// The scene file.
+    scene: PathBuf,
+    /// Folder of the report [default: reports/NAME].
+    #[arg(short = 'o', long = "output", value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Set a key of the scene, such as -D solids.pipe.sweep.path.0.straight_mm=20.
+    #[arg(short = 'D', value_name = "KEY=VALUE")]
+    define: Vec<String>,
+    /// How flux is estimated.
+    #[arg(long, value_parser = ["forward"])]
+    estimator: Option<String>,
+    /// Stop at this relative standard error of the target measure, such as 0.5%; the first sensor's flux if the scene
+    /// names no measure.
+    #[arg(long, value_parser = parse_fraction, value_name = "PERCENT")]
+    target: Option<f64>,
+    /// Stop after this many paths, such as 2M.
+    #[arg(long, value_parser = parse_count, value_name = "COUNT")]
+    paths: Option<u64>,
+    /// Stop after this time, such as 60s or 5min.
+    #[arg(long, value_parser = parse_time, value_name = "TIME")]
+    time: Option<Duration>,
+    /// Seed of the random numbers.
+    #[arg(long)]
+    seed: Option<u64>,
+    /// Number of threads [default: all cores].
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Replace a report that is there.
+    #[arg(long)]
+    overwrite: bool,
+    /// Print nothing but errors.
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+#[derive(Debug, Args)]
+struct CheckArgs {
+    /// The scene file.
+    scene: PathBuf,
+    /// Set a key of the scene.
+    #[arg(short = 'D', value_name = "KEY=VALUE")]
+    define: Vec<String>,
+    /// The cross-section's PNG [default: NAME.check.png in this folder].
+    #[arg(short = 'o', long = "output", value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Replace a picture that is there.
+    #[arg(long)]
+    overwrite: bool,
+}
+
+/// Runs the program on the arguments of the process.
+pub fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => {
+            // Help and version are no errors; a closed pipe is nobody's.
+            _ = error.print();
+            return ExitCode::from(if error.use_stderr() { 2 } else { 0 });
+        }
+    };
+    match cli.command {
+        Command::Run(args) => run(&args),
+        Command::Check(args) => check(&args),
+        Command::List { folder } => finish(input::list(&folder)),
+        Command::Schema => finish(Ok(format!("{:#}\n", input::schema::json_schema()))),
+        Command::Completions { shell } => {
+            let mut script = Vec::new();
+            clap_complete::generate(shell, &mut Cli::command(), "lumiduct", &mut script);
+            finish(Ok(String::from_utf8_lossy(&script).into_owned()))
+        }
+        Command::Man => {
+            let mut page = Vec::new();
+            let rendered = clap_mangen::Man::new(Cli::command()).render(&mut page);
+            finish(
+                rendered
+                    .map(|()| String::from_utf8_lossy(&page).into_owned())
+                    .map_err(|reason| Error::Output { what: "manual page".into(), reason: reason.to_string() }),
+            )
+        }
+    }
+}
+
+fn run(args: &RunArgs) -> ExitCode {
+    if let Some(threads) = args.threads
+        && let Err(reason) = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build_global()
+    {
+        return fail(&Error::Usage(format!("--threads {threads}: {reason}")));
+    }
+    let interrupt = Interrupt::default();
+    let on_signal = interrupt.clone();
+    // Without a handler Ctrl-C ends the program at once: worse, but no reason not to run.
+    _ = ctrlc::set_handler(move || {
+        if on_signal.is_raised() {
+            std::process::exit(130);
+        }
+        on_signal.raise();
+    });
+    let settings = Settings {
+        overrides: args.define.clone(),
+        target: args.target,
+        paths: args.paths,
+        time: args.time,
+        seed: args.seed,
+    };
+    let existing = if args.overwrite { Existing::Replace } else { Existing::Keep };
+    let output = Output { dir: args.output.clone(), existing };
+    let mut display = Display::new(args.quiet);
+    let outcome =
+        pipeline::run_one(&args.scene, &settings, &output, &interrupt, &mut |progress| display.show(progress));
+    display.close();
+    match outcome {
+        Ok(finished) => {
+            if !args.quiet {
+                warn(&finished.warnings);
+                print(&crate::report::terminal(&finished.report, &finished.dir));
+            }
+            exit_code(finished.report.stop(), finished.report.outcome())
+        }
+        Err(error) => fail(&error),
+    }
+}
+
+fn exit_code(stop: Stop, outcome: Outcome) -> ExitCode {
+    match (stop, outcome) {
+        (Stop::Interrupted, _) => ExitCode::from(130),
+        (Stop::Paths | Stop::Time | Stop::Target, Outcome::Missed) => ExitCode::from(1),
+        (Stop::Paths | Stop::Time | Stop::Target, Outcome::Good) => ExitCode::SUCCESS,
+    }
+}
+
+fn check(args: &CheckArgs) -> ExitCode {
+    let existing = if args.overwrite { Existing::Replace } else { Existing::Keep };
+    match pipeline::check(&args.scene, &args.define, args.output.as_deref(), existing) {
+        Ok(checked) => {
+            warn(&checked.warnings);
+            print(&checked.text);
+            ExitCode::SUCCESS
+        }
+        Err(error) => fail(&error),
+    }
+}
+
+/// Prints a text, or says why there is none.
+fn finish(text: crate::error::Result<String>) -> ExitCode {
+    match text {
+        Ok(text) => {
+            print(&text);
+            ExitCode::SUCCESS
+        }
+        Err(error) => fail(&error),
+    }
+}
+
+/// Prints to stdout; a reader that closed the pipe has seen enough.
+fn print(text: &str) {
+    _ = std::io::stdout().write_all(text.as_bytes());
+}
+
+fn warn(warnings: &[Diagnostic]) {
+    if !warnings.is_empty() {
+        eprint!("{}", input::diagnostic::render(warnings));
+    }
+}
+
+fn fail(error: &Error) -> ExitCode {
+    match error {
+        Error::Input(diagnostics) => {
+            eprint!("{}", input::diagnostic::render(diagnostics));
+            ExitCode::from(2)
+        }
+        Error::Usage(message) => {
+            eprintln!("error: {message}");
+            ExitCode::from(2)
+        }
+        Error::Io { .. } | Error::Output { .. } => {
+            eprintln!("error: {error}");
+            ExitCode::from(3)
+        }
+    }
+}
+
+/// A count with an optional k, M or G.
+fn parse_count(text: &str) -> Result<u64, String> {
+    let (digits, factor) = match text.char_indices().last() {
+        Some((at, 'k' | 'K')) => (&text[..at], 1e3),
+        Some((at, 'm' | 'M')) => (&text[..at], 1e6),
+        Some((at, 'g' | 'G')) => (&text[..at], 1e9),
+        _ => (text, 1.0),
+    };
+    let value: f64 = digits.parse().map_err(|_| format!("`{text}` is no count; try 500k or 2M"))?;
+    let count = value * factor;
+    // Beyond 2^53 a count is no longer exact, and no run is that long.
+    if !(1.0..=9e15).contains(&count) {
+        return Err(format!("`{text}` is out of range, expected 1 to 9e15"));
+    }
+    Ok(count.round() as u64)
+}
+
+/// A relative error: 0.5% or 0.005.
+fn parse_fraction(text: &str) -> Result<f64, String> {
+    let (digits, factor) = text.strip_suffix('%').map_or((text, 1.0), |digits| (digits, 0.01));
+    let value: f64 = digits.trim().parse().map_err(|_| format!("`{text}` is no percentage; try 0.5%"))?;
+    let fraction = value * factor;
+    if fraction > 0.0 && fraction < 1.0 {
+        Ok(fraction)
+    } else {
+        Err(format!("`{text}` is out of range, expected above 0 and below 100%"))
+    }
+}
+
+/// A time: 60s, 5min or 1h; plain numbers are seconds.
+fn parse_time(text: &str) -> Result<Duration, String> {
+    let (digits, factor) = if let Some(digits) = text.strip_suffix("min") {
+        (digits, 60.0)
+    } else if let Some(digits) = text.strip_suffix('h') {
+        (digits, 3600.0)
+    } else {
+        (text.strip_suffix('s').unwrap_or(text), 1.0)
+    };
+    let value: f64 = digits.trim().parse().map_err(|_| format!("`{text}` is no time; try 60s or 5min"))?;
+    let seconds = value * factor;
+    if seconds > 0.0
+        && let Ok(time) = Duration::try_from_secs_f64(seconds)
+    {
+        return Ok(time);
+    }
+    Err(format!("`{text}` is out of range, expected a time above 0"))
+}
+
+/// Progress on stderr: a bar on a terminal, a line now and then elsewhere, nothing when quiet.
+enum Display {
+    Quiet,
+    Bar(ProgressBar),
+    Lines { next: Duration },
+}
+
+impl Display {
+    /// Seconds between two lines when stderr is no terminal.
+    const LINE_EVERY: Duration = Duration::from_secs(10);
+
+    fn new(quiet: bool) -> Self {
+        if quiet {
+            return Self::Quiet;
+        }
+        if !std::io::stderr().is_terminal() {
+            return Self::Lines { next: Self::LINE_EVERY };
+        }
+        let bar = ProgressBar::new(1000);
+        let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}");
+        Self::Bar(match style {
+            Ok(style) => bar.with_style(style),
+            Err(_) => bar,
+        })
+    }
+
+    fn show(&mut self, progress: &Progress) {
+        match self {
+            Self::Quiet => {}
+            Self::Bar(bar) => {
+                bar.set_position((1000.0 * progress.fraction()) as u64);
+                bar.set_message(progress.sentence());
+            }
+            Self::Lines { next } => {
+                if progress.elapsed >= *next {
+                    eprintln!("{}", progress.sentence());
+                    *next = progress.elapsed + Self::LINE_EVERY;
+                }
+            }
+        }
+    }
+
+    fn close(&self) {
+        if let Self::Bar(bar) = self {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_fractions_and_times_are_read_with_their_units() {
+        assert_eq!(parse_count("2M"), Ok(2_000_000));
+        assert_eq!(parse_count("1.5k"), Ok(1500));
+        assert!(parse_count("0").is_err() && parse_count("nan").is_err() && parse_count("M").is_err());
+        assert_eq!(parse_fraction("0.5%"), Ok(0.005));
+        assert!(parse_fraction("100%").is_err() && parse_fraction("-1%").is_err());
+        assert_eq!(parse_time("5min"), Ok(Duration::from_secs(300)));
+        assert!(parse_time("0s").is_err() && parse_time("inf").is_err());
+    }
+
+    #[test]
+    fn the_arguments_make_sense_together() {
+        Cli::command().debug_assert();
+    }
+}

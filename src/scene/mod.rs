@@ -19,6 +19,7 @@ pub mod mesh;
 pub mod plan;
 mod pieces;
 mod ray;
+mod section;
 mod sensor;
 pub mod shape;
 mod source;
@@ -33,6 +34,7 @@ pub use inside::Inside;
 pub use interface::{Interface, Visibility};
 pub use intersect::{Hits, Just, PrimHit};
 pub use ray::Ray;
+pub use section::Outline;
 pub use sensor::{Counts, Goniometer, Place, Sensor, SensorKind, Sides, SurfaceSensor, Views};
 pub use source::{EmitSide, Emitted, Emitter, Source, Start};
 

@@ -6,15 +6,23 @@
 //!
 //! Every shape has a chart: it unrolls the surface into a rectangle of millimetres, for flux maps on curved walls.
 
+mod compound_parabola;
 mod cylinder;
 mod flat;
+mod parabolic_cylinder;
+mod paraboloid;
+mod sphere;
 mod support;
 #[cfg(test)]
 mod testing;
 mod torus;
 
+pub use compound_parabola::CompoundParabola;
 pub use cylinder::Cylinder;
 pub use flat::{Flat, Region};
+pub use parabolic_cylinder::ParabolicCylinder;
+pub use paraboloid::Paraboloid;
+pub use sphere::Sphere;
 pub use torus::Torus;
 
 use crate::math::Aabb;
@@ -54,6 +62,15 @@ impl Toward {
     pub fn of(dir: DVec3, normal: DVec3) -> Self {
         if dir.dot(normal) > 0.0 { Self::Front } else { Self::Back }
     }
+
+    /// The other way.
+    #[inline]
+    pub fn opposite(self) -> Self {
+        match self {
+            Self::Front => Self::Back,
+            Self::Back => Self::Front,
+        }
+    }
 }
 
 /// The points on one side of a plane: `normal · p <= offset`.
@@ -88,6 +105,29 @@ pub struct ChartRect {
     pub max: DVec2,
 }
 
+impl ChartRect {
+    /// What both rectangles share; empty when they are apart.
+    pub fn intersection(&self, other: &Self) -> Self {
+        Self { min: self.min.max(other.min), max: self.max.min(other.max) }
+    }
+
+    /// Whether the rectangle has no area.
+    pub fn is_empty(&self) -> bool {
+        !self.min.cmplt(self.max).all()
+    }
+
+    /// Area of the rectangle itself, mm²; 0 when it is empty.
+    pub fn area(&self) -> f64 {
+        (self.max - self.min).max(DVec2::ZERO).element_product()
+    }
+
+    /// The corners, counter-clockwise from the smallest.
+    pub fn corners(&self) -> [DVec2; 4] {
+        let (min, max) = (self.min, self.max);
+        [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)]
+    }
+}
+
 /// A trimmed, oriented analytic surface.
 #[derive(Debug, Clone)]
 pub enum Shape {
@@ -97,6 +137,14 @@ pub enum Shape {
     Cylinder(Cylinder),
     /// The wall of a bent round tube.
     Torus(Torus),
+    /// A zone of a sphere.
+    Sphere(Sphere),
+    /// A zone of a paraboloid of revolution.
+    Paraboloid(Paraboloid),
+    /// A piece of a parabolic trough.
+    ParabolicCylinder(ParabolicCylinder),
+    /// The wall of a compound parabolic concentrator.
+    CompoundParabola(CompoundParabola),
 }
 
 impl Shape {
@@ -106,6 +154,10 @@ impl Shape {
             Self::Flat(shape) => shape.bounds(),
             Self::Cylinder(shape) => shape.bounds(),
             Self::Torus(shape) => shape.bounds(),
+            Self::Sphere(shape) => shape.bounds(),
+            Self::Paraboloid(shape) => shape.bounds(),
+            Self::ParabolicCylinder(shape) => shape.bounds(),
+            Self::CompoundParabola(shape) => shape.bounds(),
         }
     }
 
@@ -116,6 +168,10 @@ impl Shape {
             Self::Flat(shape) => shape.crossings(ray, start, visit),
             Self::Cylinder(shape) => shape.crossings(ray, start, visit),
             Self::Torus(shape) => shape.crossings(ray, start, visit),
+            Self::Sphere(shape) => shape.crossings(ray, start, visit),
+            Self::Paraboloid(shape) => shape.crossings(ray, start, visit),
+            Self::ParabolicCylinder(shape) => shape.crossings(ray, start, visit),
+            Self::CompoundParabola(shape) => shape.crossings(ray, start, visit),
         }
     }
 
@@ -126,6 +182,10 @@ impl Shape {
             Self::Flat(shape) => shape.normal(),
             Self::Cylinder(shape) => shape.normal(p),
             Self::Torus(shape) => shape.normal(p),
+            Self::Sphere(shape) => shape.normal(p),
+            Self::Paraboloid(shape) => shape.normal(p),
+            Self::ParabolicCylinder(shape) => shape.normal(p),
+            Self::CompoundParabola(shape) => shape.normal(p),
         }
     }
 
@@ -135,6 +195,10 @@ impl Shape {
             Self::Flat(shape) => shape.area(),
             Self::Cylinder(shape) => shape.area(),
             Self::Torus(shape) => shape.area(),
+            Self::Sphere(shape) => shape.area(),
+            Self::Paraboloid(shape) => shape.area(),
+            Self::ParabolicCylinder(shape) => shape.area(),
+            Self::CompoundParabola(shape) => shape.area(),
         }
     }
 
@@ -144,6 +208,10 @@ impl Shape {
             Self::Flat(shape) => shape.sample(u),
             Self::Cylinder(shape) => shape.sample(u),
             Self::Torus(shape) => shape.sample(u),
+            Self::Sphere(shape) => shape.sample(u),
+            Self::Paraboloid(shape) => shape.sample(u),
+            Self::ParabolicCylinder(shape) => shape.sample(u),
+            Self::CompoundParabola(shape) => shape.sample(u),
         }
     }
 
@@ -153,6 +221,10 @@ impl Shape {
             Self::Flat(shape) => shape.chart(p),
             Self::Cylinder(shape) => shape.chart(p),
             Self::Torus(shape) => shape.chart(p),
+            Self::Sphere(shape) => shape.chart(p),
+            Self::Paraboloid(shape) => shape.chart(p),
+            Self::ParabolicCylinder(shape) => shape.chart(p),
+            Self::CompoundParabola(shape) => shape.chart(p),
         }
     }
 
@@ -162,6 +234,10 @@ impl Shape {
             Self::Flat(shape) => shape.chart_bounds(),
             Self::Cylinder(shape) => shape.chart_bounds(),
             Self::Torus(shape) => shape.chart_bounds(),
+            Self::Sphere(shape) => shape.chart_bounds(),
+            Self::Paraboloid(shape) => shape.chart_bounds(),
+            Self::ParabolicCylinder(shape) => shape.chart_bounds(),
+            Self::CompoundParabola(shape) => shape.chart_bounds(),
         }
     }
 
@@ -171,6 +247,10 @@ impl Shape {
             Self::Flat(shape) => shape.area_in(rect),
             Self::Cylinder(shape) => shape.area_in(rect),
             Self::Torus(shape) => shape.area_in(rect),
+            Self::Sphere(shape) => shape.area_in(rect),
+            Self::Paraboloid(shape) => shape.area_in(rect),
+            Self::ParabolicCylinder(shape) => shape.area_in(rect),
+            Self::CompoundParabola(shape) => shape.area_in(rect),
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Photometric sensor data for light tubes and light guides.
 pub mod error;
+pub mod input;
 pub mod math;
 pub mod rng;
 pub mod scene;

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use crate::input::sources::{Origin, SourceKind, Sources};
+use crate::input::sources::{Origin, Sources};
 use crate::input::tree::{Node, Value};
 
 /// A path through tables and arrays, such as `solids.pipe.sweep.path.0.straight_mm`.
@@ -126,12 +126,10 @@ impl Places {
     /// that of the scene.
     pub fn folder(&self, key: &Key) -> PathBuf {
         let (origin, _) = self.walk(key);
-        let folder = |kind: &SourceKind| match kind {
-            SourceKind::File(path) => path.parent().map(PathBuf::from),
-            SourceKind::Argument => None,
-        };
-        let own = folder(self.sources.get(origin.source).kind());
-        own.or_else(|| folder(self.sources.get(self.root.origin.source).kind())).unwrap_or_default()
+        let own = self.sources.folder(origin);
+        own.or_else(|| self.sources.folder(&self.root.origin))
+            .map(PathBuf::from)
+            .unwrap_or_default()
     }
 
     /// The innermost value on the way to a key, and how many steps lead to it.

@@ -20,7 +20,9 @@ impl Override {
     /// Whether it names the file of a sensor, which is to be known before the file is read.
     pub fn names_a_sensor_file(&self) -> bool {
         match self.key.segments() {
-            [Segment::Field(family), _, Segment::Field(key)] => family == "sensors" && key == "file",
+            [Segment::Field(family), _, Segment::Field(key)] => {
+                family == "sensors" && key == "file"
+            }
             _ => false,
         }
     }
@@ -41,9 +43,13 @@ pub fn read(arguments: &[String], sources: &mut Sources, problems: &mut Problems
     overrides
 }
 
-fn read_one(sources: &Sources, source: SourceId) -> Result<Override, (String, std::ops::Range<usize>)> {
+fn read_one(
+    sources: &Sources,
+    source: SourceId,
+) -> Result<Override, (String, std::ops::Range<usize>)> {
     let text = sources.get(source).text();
-    let usage = || ("expected KEY=VALUE, such as sources.led.disk.flux_lm=3".to_owned(), 0..text.len());
+    let usage =
+        || ("expected KEY=VALUE, such as sources.led.disk.flux_lm=3".to_owned(), 0..text.len());
     let (segments, equals) = read_key(text).ok_or_else(usage)?;
     let rest = &text[equals + 1..];
     let start = equals + 1 + (rest.len() - rest.trim_start().len());
@@ -55,11 +61,18 @@ fn read_one(sources: &Sources, source: SourceId) -> Result<Override, (String, st
         }
         Err(_) => {
             let end = start + rest.trim().len();
-            Node { origin: Origin { source, span: start..end }, value: Value::String(rest.trim().into()) }
+            Node {
+                origin: Origin { source, span: start..end },
+                value: Value::String(rest.trim().into()),
+            }
         }
     };
     let key = segments.into_iter().fold(Key::root(), |key, segment| key.step(segment));
-    Ok(Override { key, key_origin: Origin { source, span: 0..text[..equals].trim_end().len() }, node })
+    Ok(Override {
+        key,
+        key_origin: Origin { source, span: 0..text[..equals].trim_end().len() },
+        node,
+    })
 }
 
 /// The steps before the first `=` outside quotes, and where that is. A step of digits only is an index.
@@ -112,9 +125,11 @@ pub fn apply(one: &Override, root: &mut Node, problems: &mut Problems) {
         };
         key = key.step(segment.clone());
     }
-    if let (Value::Table(entries), Segment::Field(_) | Segment::Index(_)) = (&mut node.value, last) {
+    if let (Value::Table(entries), Segment::Field(_) | Segment::Index(_)) = (&mut node.value, last)
+    {
         let name = name_of(last);
-        let key = entries.get(&name).map_or_else(|| one.key_origin.clone(), |entry| entry.key.clone());
+        let key =
+            entries.get(&name).map_or_else(|| one.key_origin.clone(), |entry| entry.key.clone());
         let key = if one.node.table().is_some() { one.key_origin.clone() } else { key };
         entries.insert(name, Entry { key, node: one.node.clone() });
         return;
@@ -132,7 +147,10 @@ fn step<'a>(node: &'a mut Node, segment: &Segment) -> Result<&'a mut Node, (Stri
         (Value::Table(entries), _) => {
             let name = name_of(segment);
             if !entries.contains_key(&name) {
-                return Err(("there is no such key in the scene".into(), name_hint(&name, entries.keys().map(String::as_str))));
+                return Err((
+                    "there is no such key in the scene".into(),
+                    name_hint(&name, entries.keys().map(String::as_str)),
+                ));
             }
             let entry = entries.get_mut(&name).expect("asked just before");
             Ok(&mut entry.node)
@@ -157,7 +175,10 @@ fn step<'a>(node: &'a mut Node, segment: &Segment) -> Result<&'a mut Node, (Stri
             | Value::Datetime
             | Value::Unreadable,
             _,
-        ) => Err(("there is no such key in the scene".into(), "what is there is a single value, not a table".into())),
+        ) => Err((
+            "there is no such key in the scene".into(),
+            "what is there is a single value, not a table".into(),
+        )),
     }
 }
 
@@ -170,7 +191,10 @@ fn name_of(segment: &Segment) -> String {
 }
 
 fn empty_table(origin: &Origin) -> Entry {
-    Entry { key: origin.clone(), node: Node { origin: origin.clone(), value: Value::Table(Default::default()) } }
+    Entry {
+        key: origin.clone(),
+        node: Node { origin: origin.clone(), value: Value::Table(Default::default()) },
+    }
 }
 
 #[cfg(test)]
@@ -207,7 +231,10 @@ mod tests {
             "solids.\"pipe\".sweep.medium='pmma'",
         ]);
         assert_eq!(problems, [""; 0]);
-        assert_eq!(json["solids"]["pipe"]["sweep"]["path"][0], serde_json::json!({ "straight_mm": 20, "end_scale": 0.5 }));
+        assert_eq!(
+            json["solids"]["pipe"]["sweep"]["path"][0],
+            serde_json::json!({ "straight_mm": 20, "end_scale": 0.5 })
+        );
         assert_eq!(json["title"], "two words");
         assert_eq!(json["run"]["seed"], 7);
         assert_eq!(json["solids"]["pipe"]["sweep"]["medium"], "pmma");

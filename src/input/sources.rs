@@ -100,8 +100,16 @@ impl Sources {
             .position(|source| matches!(&source.kind, SourceKind::File(file) if file == path));
         match known {
             Some(index) => Ok(SourceId(index)),
-            None => Ok(self.add(SourceKind::File(path.to_path_buf()), read(path)?)),
+            None => {
+                let text = read(path)?;
+                Ok(self.add_text(path, &text))
+            }
         }
+    }
+
+    /// Takes a text as that of a file, without looking at the file.
+    pub fn add_text(&mut self, path: &Path, text: &str) -> SourceId {
+        self.add(SourceKind::File(path.to_path_buf()), text.into())
     }
 
     /// Takes an argument of the command line, without the `-D`.
@@ -117,6 +125,14 @@ impl Sources {
     /// One text. Ids of another `Sources` are not to be used here.
     pub fn get(&self, id: SourceId) -> &Source {
         &self.list[id.0]
+    }
+
+    /// The folder of the file of a place; `None` on the command line.
+    pub fn folder(&self, origin: &Origin) -> Option<&Path> {
+        match &self.get(origin.source).kind {
+            SourceKind::File(path) => path.parent(),
+            SourceKind::Argument => None,
+        }
     }
 
     /// All texts in the order in which they were first met.

@@ -16,6 +16,7 @@
 
 pub mod error;
 pub mod formats;
+pub mod input;
 pub mod math;
 pub mod optics;
 pub mod rng;

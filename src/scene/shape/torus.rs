@@ -150,8 +150,7 @@ impl Torus {
 /// Parameters of all crossings of a line with the torus of major radius 1 and minor radius `tube`.
 ///
 /// With A = |p|² + 1 - r² the torus is A² = 4 (x² + y²). From the line's point q nearest to the centre, q·d = 0, the
-/// quartic has no cubic term: A(t) = A + d² t². (d² differs from 1 by the rounding of the frame; left out, its errors
-/// all have one sign and add up over a thousand bounces.)
+/// quartic has no cubic term: A(t) = A + d² t². (d² differs from 1 by the rounding of the frame.)
 fn all_roots(from: DVec3, dir: DVec3, tube: f64) -> Roots {
     let dir2 = dir.length_squared();
     let coarse = -from.dot(dir) / dir2;

@@ -112,9 +112,9 @@ impl Sphere {
 mod tests {
     use super::*;
     use crate::scene::shape::testing::{
-        Truth, assert_bounds_are_tight, assert_crossings_match_a_scan, assert_hit_from_far_away,
-        assert_samples_are_uniform, assert_scales, assert_starting_on_it_drops_only_the_start,
-        bounce, crossings_of, tilted,
+        Truth, assert_bounds_are_tight, assert_crossings_match_a_scan,
+        assert_grazing_rays_come_back, assert_hit_from_far_away, assert_samples_are_uniform,
+        assert_scales, assert_starting_on_it_drops_only_the_start, bounce, crossings_of, tilted,
     };
     use crate::scene::shape::{HalfSpace, Shape};
     use std::f64::consts::PI;
@@ -140,6 +140,12 @@ mod tests {
             let height = z_max.min(2.0) - z_min.max(-2.0);
             assert!((shape.area() - 2.0 * PI * 2.0 * height).abs() < 1e-13);
         }
+    }
+
+    #[test]
+    fn a_ray_that_grazes_the_ball_inward_always_comes_back_to_it() {
+        let ball = Sphere::zone(tilted(1.0), 2.0, -2.0, 2.0);
+        assert_grazing_rays_come_back(&Shape::Sphere(ball));
     }
 
     #[test]

@@ -172,6 +172,28 @@ pub(super) fn bounce(
     }
 }
 
+/// Rays into a closed shape at 1 to 1e-14 rad from the wall reach it again.
+pub(super) fn assert_grazing_rays_come_back(shape: &Shape) {
+    const RAYS: u64 = 50_000;
+    let mut inward = 0;
+    for index in 0..RAYS {
+        let mut sampler = Sampler::for_path(SEED, 7, index);
+        let p = shape.sample(sampler.pair(Dimension::EmitPosition));
+        let normal = shape.normal(p);
+        let along = uniform_sphere(sampler.pair(Dimension::EmitDirection)).cross(normal);
+        let angle = 10f64.powf(-14.0 * sampler.one(Dimension::Scatter));
+        let ray = Ray::new(p, along.normalize() - angle * normal);
+        // At the smallest angles rounding turns some rays out.
+        if Toward::of(ray.dir(), normal) == Toward::Front || ray.dir().dot(normal) == 0.0 {
+            continue;
+        }
+        inward += 1;
+        let comes_back = |c: &Crossing| c.t > 0.0 && c.toward == Toward::Front;
+        assert!(crossings_of(shape, &ray, Start::On).iter().any(comes_back), "{angle}: {ray:?}");
+    }
+    assert!(inward > RAYS * 9 / 10);
+}
+
 /// Samples lie on the surface, inside its bounds and its chart, and fall into cells of the chart by their areas.
 pub(super) fn assert_samples_are_uniform(truth: &Truth, tolerance: f64) {
     const CELLS: usize = 9;

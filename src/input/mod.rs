@@ -19,7 +19,9 @@ pub mod check;
 pub mod convert;
 pub mod diagnostic;
 pub mod include;
+mod job;
 pub mod keys;
+mod lower;
 pub mod overrides;
 pub mod problems;
 pub mod schema;
@@ -27,6 +29,8 @@ pub mod sources;
 pub mod spec;
 pub mod tree;
 pub mod validate;
+
+pub use job::{Job, Settings, load};
 
 /// A scene that was read without errors.
 #[derive(Debug, Clone, PartialEq)]

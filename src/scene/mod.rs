@@ -23,6 +23,7 @@ mod section;
 mod sensor;
 pub mod shape;
 mod source;
+pub mod sweep;
 
 pub use accel::Accel;
 pub use build::{Builder, FaceSpec, Piece};

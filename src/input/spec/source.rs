@@ -102,6 +102,9 @@ pub struct SourceCommonSpec {
     /// Azimuth of a tilted direction about the axis: 0 is toward the local +x.
     #[serde(default)]
     pub azimuth_deg: f64,
+    /// How light starts where the source touches a face: `optical` starts it beyond the face, as through glue; `air`
+    /// lets it cross the face first. Omitted: `optical`.
+    pub contact: Option<ContactSpec>,
     /// What happens to light that meets the emitter.
     #[serde(default)]
     pub body: BodySpec,
@@ -166,6 +169,16 @@ pub enum FaceSide {
     Front,
     /// The other side.
     Back,
+}
+
+/// How light starts where a source touches a face.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ContactSpec {
+    /// Beyond the face, in the medium ahead: a source in optical contact.
+    Optical,
+    /// On the near side: light crosses the face, with its reflection and refraction.
+    Air,
 }
 
 /// How light is spread over directions.

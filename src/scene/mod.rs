@@ -1,4 +1,5 @@
 //! What is in the room.
 mod ray;
 pub mod shape;
+pub mod sweep;
 pub use ray::Ray;

@@ -1,0 +1,3 @@
+//! What is handed to the user: pictures and text.
+
+pub mod number;

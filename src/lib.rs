@@ -19,6 +19,7 @@ pub mod formats;
 pub mod input;
 pub mod math;
 pub mod optics;
+pub mod report;
 pub mod rng;
 pub mod scene;
 pub mod tally;

@@ -28,7 +28,8 @@ pub fn sources_of(diagnostics: &[Diagnostic]) -> Sources {
 pub fn render(diagnostics: &[Diagnostic], sources: &Sources, colour: Colour) -> String {
     let mut sorted: Vec<_> = diagnostics.iter().collect();
     sorted.sort_by_key(|diagnostic| {
-        (&diagnostic.file, diagnostic.line, diagnostic.span.as_ref().map(|s| s.start))
+        let start = diagnostic.span.as_ref().map(|span| span.start);
+        (diagnostic.file.is_none(), &diagnostic.file, diagnostic.line, start)
     });
     sorted.into_iter().map(|diagnostic| render_one(diagnostic, sources, colour)).collect()
 }

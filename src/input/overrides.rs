@@ -159,12 +159,16 @@ fn step<'a>(node: &'a mut Node, segment: &Segment) -> Result<&'a mut Node, (Stri
             let count = items.len();
             let hint = match count {
                 0 => "the array is empty".into(),
+                1 => "the array has one entry, 0".into(),
                 _ => format!("the array has {count} entries, 0 to {}", count - 1),
             };
             items.get_mut(*index).ok_or_else(|| (format!("index {index} is out of range"), hint))
         }
         (Value::Array(items), Segment::Field(_)) => {
-            let hint = format!("write the number of one of the {} entries, from 0", items.len());
+            let hint = format!(
+                "write the number of an entry, from 0 to {}",
+                items.len().saturating_sub(1)
+            );
             Err(("expected an index into an array".into(), hint))
         }
         (
@@ -253,8 +257,8 @@ mod tests {
         ]);
         let expected = [
             "-D solids.pip.sweep.path.0.straight_mm=20: `solids.pip`: there is no such key in the scene; did you mean `pipe`?",
-            "-D solids.pipe.sweep.path.1.straight_mm=20: `solids.pipe.sweep.path.1`: index 1 is out of range; the array has 1 entries, 0 to 0",
-            "-D solids.pipe.sweep.path.first.straight_mm=20: `solids.pipe.sweep.path.first`: expected an index into an array; write the number of one of the 1 entries, from 0",
+            "-D solids.pipe.sweep.path.1.straight_mm=20: `solids.pipe.sweep.path.1`: index 1 is out of range; the array has one entry, 0",
+            "-D solids.pipe.sweep.path.first.straight_mm=20: `solids.pipe.sweep.path.first`: expected an index into an array; write the number of an entry, from 0 to 0",
             "-D title.a=1: `title.a`: there is no such key in the scene; what is there is a single value, not a table",
             "-D title: expected KEY=VALUE, such as sources.led.disk.flux_lm=3",
         ];

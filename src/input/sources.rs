@@ -196,10 +196,10 @@ pub enum Unreadable {
 impl fmt::Display for Unreadable {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Missing => write!(out, "there is no such file"),
-            Self::NotAFile => write!(out, "is not a file"),
-            Self::TooLarge => write!(out, "is larger than {} MiB", MAX_FILE_BYTES >> 20),
-            Self::NotUtf8 { line } => write!(out, "is not UTF-8 text, first in line {line}"),
+            Self::Missing => write!(out, "no such file"),
+            Self::NotAFile => write!(out, "not a file"),
+            Self::TooLarge => write!(out, "larger than {} MiB", MAX_FILE_BYTES >> 20),
+            Self::NotUtf8 { line } => write!(out, "not UTF-8 text, first in line {line}"),
             Self::Io(error) => write!(out, "cannot be read: {error}"),
         }
     }

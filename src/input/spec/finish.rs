@@ -106,6 +106,7 @@ pub struct MixturePartSpec {
 /// A finish: the name of one in `finishes`, a predefined one (`polished`, `black`, `open`), or a finish table in place.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
+#[schemars(rename = "FinishReference")]
 pub enum FinishRef {
     /// Name of a finish.
     Name(String),

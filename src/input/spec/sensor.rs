@@ -81,13 +81,13 @@ pub struct PlaneSpec {
     /// A round area about the position.
     pub disk: Option<CircleSpec>,
     /// Cells along the local x and y, over the bounding rectangle of the area.
-    #[schemars(inner(range(min = 1)))]
+    #[schemars(inner(range(min = 1, max = 100_000_000)))]
     pub cells: Option<[u32; 2]>,
     /// Rings of equal width about the centre, for a round area.
-    #[schemars(range(min = 1))]
+    #[schemars(range(min = 1, max = 100_000_000))]
     pub rings: Option<u32>,
     /// Sectors of equal angle; the first begins at the local +x.
-    #[schemars(range(min = 1))]
+    #[schemars(range(min = 1, max = 100_000_000))]
     pub sectors: Option<u32>,
 }
 
@@ -115,7 +115,7 @@ pub struct LuminanceSpec {
     /// A round area about the position.
     pub disk: Option<CircleSpec>,
     /// Cells along the local x and y, over the bounding rectangle of the area.
-    #[schemars(inner(range(min = 1)))]
+    #[schemars(inner(range(min = 1, max = 100_000_000)))]
     pub cells: [u32; 2],
     /// Directions to look from.
     #[schemars(length(min = 1))]

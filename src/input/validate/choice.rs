@@ -1,14 +1,11 @@
 //! Values of which the schema allows several kinds.
 
-use indexmap::IndexMap;
 use serde_json::{Map, Value as Json};
 
 use crate::input::problems::name_hint;
 use crate::input::schema::Choice;
-use crate::input::tree::{Entry, Node, Value};
-use crate::input::validate::{At, Completeness, Walk, wording};
-
-type Entries = IndexMap<String, Entry>;
+use crate::input::tree::{Node, Value};
+use crate::input::validate::{At, Completeness, Entries, Walk, unknown, wording};
 
 impl Walk<'_> {
     pub(crate) fn choice(
@@ -152,8 +149,10 @@ impl Walk<'_> {
                 {
                     self.unknown_key(markers.clone(), at, &at.field(name, Some(entry)), name);
                 }
-                if self.completeness == Completeness::Whole {
-                    let list = wording::list(markers.into_iter());
+                let is_misspelt =
+                    |key: &&str| unknown::is_misspelt(key, entries, markers.iter().copied());
+                if self.completeness == Completeness::Whole && !markers.iter().any(is_misspelt) {
+                    let list = wording::list(markers.iter().copied());
                     let origin = at.key.unwrap_or(&node.origin);
                     self.problems.error(&at.to_key(), format!("needs one of {list}")).at(origin);
                 }

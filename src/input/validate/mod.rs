@@ -16,6 +16,8 @@ mod table;
 mod unknown;
 mod wording;
 
+type Entries = indexmap::IndexMap<String, Entry>;
+
 /// Whether a tree holds everything that its files say.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Completeness {

@@ -1,13 +1,10 @@
 //! The keys of one table: known, missing, and as many as there must be.
 
-use indexmap::IndexMap;
 use serde_json::{Map, Value as Json};
 
 use crate::input::schema::{self, RequiredSet};
 use crate::input::tree::{Entry, Node, Value};
-use crate::input::validate::{At, Completeness, Walk, unknown, wording};
-
-type Entries = IndexMap<String, Entry>;
+use crate::input::validate::{At, Completeness, Entries, Walk, unknown, wording};
 
 impl Walk<'_> {
     pub(crate) fn table(&mut self, node: &Node, entries: &Entries, schema: &Json, at: &At<'_>) {
@@ -40,19 +37,18 @@ impl Walk<'_> {
 
     fn missing_keys(&mut self, node: &Node, entries: &Entries, schema: &Json, at: &At<'_>) {
         let required = schema["required"].as_array().into_iter().flatten().filter_map(Json::as_str);
+        let known = known_keys(schema);
         for name in required.filter(|name| !entries.contains_key(*name)) {
+            if unknown::is_misspelt(name, entries, known.iter().copied()) {
+                continue;
+            }
             let field = at.field(name, None);
             let wanted = schema::resolve(self.schema, &schema["properties"][name]);
             let expected = wording::expected(self.schema, wanted, field.unit);
-            let near = unknown::misspelt(entries, &schema["properties"], name);
             let origin = at.key.unwrap_or(&node.origin);
-            let problem = self
-                .problems
+            self.problems
                 .error(&field.to_key(), format!("missing, expected {expected}"))
                 .at(origin);
-            if let Some(near) = near {
-                problem.hint(format!("is `{near}` meant to be it?"));
-            }
         }
     }
 
@@ -64,7 +60,9 @@ impl Walk<'_> {
         };
         let given: Vec<_> = keys.iter().filter_map(|key| entries.get_key_value(*key)).collect();
         let list = wording::list(keys.iter().copied());
-        if given.is_empty() && self.is_whole(entries) {
+        let known = known_keys(schema);
+        let is_misspelt = |key: &&str| unknown::is_misspelt(key, entries, known.iter().copied());
+        if given.is_empty() && self.is_whole(entries) && !keys.iter().any(is_misspelt) {
             let origin = at.key.unwrap_or(&node.origin);
             self.problems.error(&at.to_key(), format!("needs {words} of {list}")).at(origin);
         }
@@ -78,4 +76,8 @@ impl Walk<'_> {
             }
         }
     }
+}
+
+fn known_keys(schema: &Json) -> Vec<&str> {
+    schema["properties"].as_object().into_iter().flatten().map(|(name, _)| name.as_str()).collect()
 }

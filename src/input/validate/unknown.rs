@@ -1,12 +1,8 @@
 //! Keys that the schema does not know, and what was probably meant.
 
-use indexmap::IndexMap;
-use serde_json::Value as Json;
-
 use crate::input::problems::{name_hint, nearest};
 use crate::input::schema;
-use crate::input::tree::Entry;
-use crate::input::validate::{At, Walk, choice, wording};
+use crate::input::validate::{At, Entries, Walk, choice, wording};
 
 /// Endings by which a user may have named another unit.
 const FOREIGN_UNITS: [&str; 36] = [
@@ -83,16 +79,19 @@ fn stem(key: &str) -> &str {
     FOREIGN_UNITS.iter().filter_map(ending).min_by_key(|stem| stem.len()).unwrap_or(key)
 }
 
-/// A key of the file that is unknown and looks like a missing one.
-pub(crate) fn misspelt<'a>(
-    entries: &'a IndexMap<String, Entry>,
-    known: &Json,
+/// The known key that was most likely meant by an unknown one.
+fn meant<'a>(name: &str, known: impl Iterator<Item = &'a str> + Clone) -> Option<&'a str> {
+    other_unit(name, known.clone()).or_else(|| nearest(name, known))
+}
+
+/// Whether a key is missing only because it is misspelt, which is said where it stands.
+pub(crate) fn is_misspelt<'a>(
     missing: &str,
-) -> Option<&'a str> {
-    let is_unknown = |name: &&str| known.get(*name).is_none();
-    let unknown: Vec<_> = entries.keys().map(String::as_str).filter(is_unknown).collect();
-    let same_stem = unknown.iter().copied().find(|name| stem(name) == stem(missing));
-    same_stem.or_else(|| unknown.into_iter().find(|name| nearest(name, [missing]).is_some()))
+    entries: &Entries,
+    known: impl Iterator<Item = &'a str> + Clone,
+) -> bool {
+    let is_unknown = |name: &&String| !known.clone().any(|known| known == *name);
+    entries.keys().filter(is_unknown).any(|name| meant(name, known.clone()) == Some(missing))
 }
 
 #[cfg(test)]

@@ -86,6 +86,7 @@ pub(crate) fn length(schema: &Json, unit: Option<&str>) -> String {
         Some("number") => "number",
         Some("integer") => "integer",
         Some("string") => "text",
+        Some("array") if schema["items"]["maxItems"] == 2 => "pair",
         Some("array") => "array",
         Some(_) | None => "table",
     };

@@ -2,9 +2,10 @@
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "this is the program's face")]
 
 use crate::error::{Diagnostic, Error};
+use crate::input::diagnostic::{self, Colour};
 use crate::input::{self, Settings};
-use crate::pipeline::{self, Existing, Output, Progress, Stop};
-use crate::report::Outcome;
+use crate::pipeline::{self, Output, Progress, Stop};
+use crate::report::{Existing, Outcome};
 use crate::transport::Interrupt;
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -165,7 +166,7 @@ fn run(args: &RunArgs) -> ExitCode {
                 warn(&finished.warnings);
                 print(&crate::report::terminal(&finished.report, &finished.dir));
             }
-            exit_code(finished.report.stop(), finished.report.outcome())
+            exit_code(finished.stop, finished.report.outcome())
         }
         Err(error) => fail(&error),
     }
@@ -181,7 +182,8 @@ fn exit_code(stop: Stop, outcome: Outcome) -> ExitCode {
 
 fn check(args: &CheckArgs) -> ExitCode {
     let existing = if args.overwrite { Existing::Replace } else { Existing::Keep };
-    match pipeline::check(&args.scene, &args.define, args.output.as_deref(), existing) {
+    let settings = Settings { overrides: args.define.clone(), ..Settings::default() };
+    match pipeline::check(&args.scene, &settings, args.output.as_deref(), existing) {
         Ok(checked) => {
             warn(&checked.warnings);
             print(&checked.text);
@@ -209,14 +211,20 @@ fn print(text: &str) {
 
 fn warn(warnings: &[Diagnostic]) {
     if !warnings.is_empty() {
-        eprint!("{}", input::diagnostic::render(warnings));
+        eprint!("{}", rendered(warnings));
     }
+}
+
+/// Diagnostics with the lines they are about, in colour on a terminal.
+fn rendered(diagnostics: &[Diagnostic]) -> String {
+    let colour = if std::io::stderr().is_terminal() { Colour::Always } else { Colour::Never };
+    diagnostic::render(diagnostics, &diagnostic::sources_of(diagnostics), colour)
 }
 
 fn fail(error: &Error) -> ExitCode {
     match error {
         Error::Input(diagnostics) => {
-            eprint!("{}", input::diagnostic::render(diagnostics));
+            eprint!("{}", rendered(diagnostics));
             ExitCode::from(2)
         }
         Error::Usage(message) => {

@@ -1,11 +1,13 @@
 //! The flow, one call per step: a scene file becomes a report.
 
-use crate::error::Result;
+use crate::error::{Diagnostic, Result};
 use crate::input::{self, Job, Settings};
 use crate::measure::{self, Measure};
-use crate::report::{self, Report};
+use crate::report::{
+    self, CheckResult, Existing, Folder, Report, RunFacts, SceneFacts, TargetFacts, inventory, write_whole,
+};
 use crate::scene::plan::RunPlan;
-use crate::transport::{Interrupt, Run};
+use crate::transport::{Interrupt, Readings, Run, tracks};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -16,15 +18,6 @@ pub struct Output {
     pub dir: Option<PathBuf>,
     /// What to do with a report that is there.
     pub existing: Existing,
-}
-
-/// What to do with a report that is there.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Existing {
-    /// Refuse to run.
-    Keep,
-    /// Replace its files when the new ones are complete.
-    Replace,
 }
 
 /// Why a run ended.
@@ -84,7 +77,7 @@ impl Progress {
         let paths = self.planned_paths.map_or(0.0, |planned| self.paths as f64 / planned as f64);
         let time = self.time_limit.map_or(0.0, |limit| self.elapsed.as_secs_f64() / limit.as_secs_f64());
         // The error falls as one over the square root of the paths.
-        let target = self.target.as_ref().map_or(0.0, |target| (target.wanted / target.relative_error()).powi(2));
+        let target = self.target.as_ref().map_or(0.0, |target| (target.wanted / target.reached.relative_error()).powi(2));
         paths.max(time).max(target).min(1.0)
     }
 
@@ -93,7 +86,7 @@ impl Progress {
         let seconds = self.elapsed.as_secs_f64();
         let mut text = format!("{:.3e} paths, {:.2e} paths/s", self.paths as f64, self.paths as f64 / seconds);
         if let Some(target) = &self.target {
-            let (reached, error) = (&target.reached, 100.0 * target.relative_error());
+            let (reached, error) = (&target.reached, 100.0 * target.reached.relative_error());
             let wanted = 100.0 * target.wanted;
             text += &format!(", {} {:.4} ± {error:.3} % of {wanted:.3} %", target.measure, reached.value);
         }
@@ -102,13 +95,6 @@ impl Progress {
             text += &format!(", {:.0} s left", seconds * (1.0 - fraction) / fraction);
         }
         text
-    }
-}
-
-impl TargetProgress {
-    /// Standard error over value; infinite without a value.
-    pub fn relative_error(&self) -> f64 {
-        if self.reached.value == 0.0 { f64::INFINITY } else { (self.reached.std_error / self.reached.value).abs() }
     }
 }
 
@@ -121,12 +107,12 @@ pub fn run_one(
     watch: &mut dyn FnMut(&Progress),
 ) -> Result<Finished> {
     let job = input::load(scene, settings)?;
-    let folder = report::Folder::open(&output_dir(scene, output), output.existing == Existing::Replace)?;
-    let (readings, stop, elapsed) = trace(&job, interrupt, watch);
-    let measures = measure::measure(&job.scene, &readings);
-    let report = Report::new(&job, measures, stop);
-    report::write(&report, &job, &folder, elapsed)?;
-    Ok(Finished { report, dir: folder.path().to_path_buf(), warnings: job.warnings })
+    let folder = Folder::open(&output_dir(scene, output), output.existing)?;
+    let traced = trace(&job, interrupt, watch);
+    let report = compose(&job, &traced.readings, traced.stop);
+    folder.write(&report::files(&report, &job.text)?)?;
+    timing::write(&folder, &traced)?;
+    Ok(Finished { report, stop: traced.stop, dir: folder.path().to_path_buf(), warnings: job.warnings })
 }
 
 /// A run that has written its report.
@@ -134,40 +120,83 @@ pub fn run_one(
 pub struct Finished {
     /// What the report says.
     pub report: Report,
-    /// Where it lies.
+    /// Why the run ended.
+    pub stop: Stop,
+    /// Where the report lies.
     pub dir: PathBuf,
     /// Remarks on the scene file.
-    pub warnings: Vec<crate::error::Diagnostic>,
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// The report of what was counted.
+pub fn compose(job: &Job, readings: &Readings, stop: Stop) -> Report {
+    let measures = measure::measure(&job.scene, readings);
+    let checks = job
+        .checks
+        .iter()
+        .map(|check| CheckResult { check: check.clone(), verdict: measure::verdict(check, &measures) })
+        .collect();
+    let mut warnings: Vec<String> = job.warnings.iter().map(|warning| warning.message.clone()).collect();
+    warnings.extend(report::remarks(&measures));
+    let target = job.run.stop.target.as_ref().map(|target| TargetFacts::new(target, &measures));
+    Report {
+        scene: SceneFacts {
+            name: job.name.clone(),
+            title: job.title.clone(),
+            description: job.description.clone(),
+            hash: job.hash.clone(),
+            overrides: job.overrides.clone(),
+        },
+        run: RunFacts {
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            seed: job.run.seed,
+            estimator: job.run.estimator,
+            partial: stop == Stop::Interrupted,
+            stopped: stop.reason().to_owned(),
+            target,
+            bounce_limit: job.run.bounce_limit,
+            leaks: report::leak_places(&readings.leaks, job.scene.origin),
+        },
+        measures,
+        checks,
+        warnings,
+    }
+}
+
+/// What tracing gave.
+#[derive(Debug)]
+pub struct Traced {
+    /// Everything that was counted.
+    pub readings: Readings,
+    /// Why it ended.
+    pub stop: Stop,
+    /// How long it took.
+    pub elapsed: Duration,
 }
 
 /// Traces rounds until a stop rule holds.
-fn trace(
-    job: &Job,
-    interrupt: &Interrupt,
-    watch: &mut dyn FnMut(&Progress),
-) -> (crate::transport::Readings, Stop, Duration) {
+pub fn trace(job: &Job, interrupt: &Interrupt, watch: &mut dyn FnMut(&Progress)) -> Traced {
     let start = Instant::now();
     let mut run = Run::new(&job.scene, &job.run);
+    let mut target = None;
     let stop = loop {
         let round_end = run.round_end();
         let mut early = None;
         while run.waves() < round_end && early.is_none() {
             run.next_wave();
             early = stop_between_waves(&job.run, &run, start.elapsed(), interrupt);
-            watch(&progress(&job.run, &run, start.elapsed(), None));
+            watch(&progress(&job.run, &run, start.elapsed(), target.clone()));
         }
         if let Some(stop) = early {
             break stop;
         }
-        if let Some(target) = target_progress(job, &run) {
-            let met = target.relative_error() <= target.wanted;
-            watch(&progress(&job.run, &run, start.elapsed(), Some(target)));
-            if met {
-                break Stop::Target;
-            }
+        target = target_progress(job, &run);
+        watch(&progress(&job.run, &run, start.elapsed(), target.clone()));
+        if target.as_ref().is_some_and(|target| target.reached.relative_error() <= target.wanted) {
+            break Stop::Target;
         }
     };
-    (run.readings(), stop, start.elapsed())
+    Traced { readings: run.readings(), stop, elapsed: start.elapsed() }
 }
 
 /// The rules that may end a run after any wave.
@@ -200,4 +229,46 @@ fn progress(plan: &RunPlan, run: &Run<'_>, elapsed: Duration, target: Option<Tar
 /// `reports/NAME` after the scene file, unless told otherwise.
 fn output_dir(scene: &Path, output: &Output) -> PathBuf {
     output.dir.clone().unwrap_or_else(|| Path::new("reports").join(scene.file_stem().unwrap_or_default()))
+}
+
+/// Paths that a check draws.
+const CHECK_PATHS: usize = 50;
+
+/// What a check found.
+#[derive(Debug)]
+pub struct Checked {
+    /// What is in the scene.
+    pub text: String,
+    /// Remarks on the scene file.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// Validates a scene, lists what is in it, and draws its cross-section with some traced paths.
+pub fn check(scene: &Path, settings: &Settings, picture: Option<&Path>, existing: Existing) -> Result<Checked> {
+    let job = input::load(scene, settings)?;
+    let default = PathBuf::from(format!("{}.check.png", job.name));
+    let picture = picture.unwrap_or(&default);
+    let tracks = tracks(&job.scene, job.run.seed, job.run.bounce_limit, CHECK_PATHS);
+    let bytes = report::scene_picture(&job.title, &job.scene, &tracks)?;
+    write_whole(picture, &bytes, existing)?;
+    let text = format!("{}\n{}picture: {}\n", job.title, inventory(&job.scene), picture.display());
+    Ok(Checked { text, warnings: job.warnings })
+}
+
+/// Seconds, outside of the reproducible set of files.
+mod timing {
+    use crate::error::Result;
+    use crate::pipeline::Traced;
+    use crate::report::{Existing, Folder, write_whole};
+
+    pub(super) fn write(folder: &Folder, traced: &Traced) -> Result<()> {
+        let seconds = traced.elapsed.as_secs_f64();
+        let (paths, segments) = (traced.readings.paths() as f64, traced.readings.segments as f64);
+        let text = format!(
+            "seconds,paths_per_s,segments_per_s\n{seconds:.3},{:.0},{:.0}\n",
+            paths / seconds,
+            segments / seconds
+        );
+        write_whole(&folder.path().join("timing.csv"), text.as_bytes(), Existing::Replace)
+    }
 }

@@ -1,4 +1,51 @@
-//! What is handed to the user: pictures and text.
+//! What is handed to the user: one record, and pure functions that turn it into files.
+//!
+//! A report depends on the scene, the seed and the number of paths alone: no clock, no thread count and no machine is
+//! known here, but for `timing.csv`, which lies outside of the reproducible set.
 
+mod csv;
+mod figures;
+mod folder;
+mod inventory;
+mod markdown;
 pub mod number;
 pub mod png;
+mod record;
+mod summary;
+mod terminal;
+
+pub use figures::scene_picture;
+pub use folder::{Existing, Folder, write_whole};
+pub use inventory::inventory;
+pub use record::{CheckResult, Outcome, Report, RunFacts, SceneFacts, TargetFacts, leak_places, remarks};
+pub use terminal::terminal;
+
+use crate::error::Result;
+
+/// A file of a report: its name and its bytes.
+#[derive(Debug)]
+pub struct OutputFile {
+    /// Name within the folder.
+    pub name: String,
+    /// Contents.
+    pub bytes: Vec<u8>,
+}
+
+impl OutputFile {
+    fn text(name: impl Into<String>, text: String) -> Self {
+        Self { name: name.into(), bytes: text.into_bytes() }
+    }
+}
+
+/// All files of a report, in the reproducible order: pictures and tables first, so that the page can name them.
+pub fn files(report: &Report, scene_text: &str) -> Result<Vec<OutputFile>> {
+    let mut files = csv::files(report)?;
+    files.extend(figures::files(report)?);
+    files.push(OutputFile::text(format!("{}.toml", report.scene.name), scene_text.to_owned()));
+    let names: Vec<&str> = files.iter().map(|file| file.name.as_str()).collect();
+    let page = markdown::markdown(report, &names);
+    let summary = summary::json(report, &names)?;
+    files.push(OutputFile::text("report.md", page));
+    files.push(OutputFile::text("summary.json", summary));
+    Ok(files)
+}

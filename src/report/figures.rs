@@ -1,0 +1,239 @@
+//! Which pictures a report has, and what is on them.
+
+use crate::error::Result;
+use crate::measure::{Axes, Balance, IntensityTable, SensorMap, SensorPaths};
+use crate::report::csv::map_name;
+use crate::report::number::{format_value, format_with_error};
+use crate::report::png::{
+    Bar, BarChart, ColourMap, CrossSection, Curve, ErrorForm, HeatMap, LinePlot, Outline, PolarPlot, Pole, RayEnd,
+    RayPath, Scale, Series, SeriesForm, SeriesPoint, bar_chart, cross_section, heat_map, line_plot, polar_plot,
+};
+use crate::report::{OutputFile, Report};
+use crate::scene::Scene;
+use crate::scene::shape::ChartRect;
+use crate::transport::{Track, TrackEnd};
+use glam::{DVec2, DVec3};
+use ndarray::Axis;
+
+/// All pictures of a report.
+pub(crate) fn files(report: &Report) -> Result<Vec<OutputFile>> {
+    let measures = &report.measures;
+    let mut files = Vec::new();
+    for map in &measures.maps {
+        files.push(OutputFile { name: format!("{}.png", map_name(map)), bytes: map_picture(map)? });
+    }
+    for table in &measures.intensities {
+        files.push(OutputFile { name: format!("{}.intensity.png", table.sensor), bytes: polar_picture(table)? });
+    }
+    for paths in measures.sensor_paths.iter().filter(|paths| !paths.depths.is_empty()) {
+        let bytes = bounce_picture(paths, measures.unit.flux())?;
+        files.push(OutputFile { name: format!("{}.bounces.png", paths.sensor), bytes });
+    }
+    let bytes = balance_picture(&measures.balance, measures.source_flux, measures.unit.flux())?;
+    files.push(OutputFile { name: "balance.png".into(), bytes });
+    Ok(files)
+}
+
+/// Name for a title: the sensor, and the view of a luminance sensor.
+fn map_title(map: &SensorMap) -> String {
+    let view = map.view.map_or(String::new(), |view| format!(", view {view}"));
+    format!("{}: {}{view}", map.sensor, map.quantity)
+}
+
+fn map_picture(map: &SensorMap) -> Result<Vec<u8>> {
+    let average = &map.summary.all.avg;
+    let subtitle = format!("mean {} {}", format_with_error(average.value, average.std_error), map.unit);
+    match &map.axes {
+        Axes::Cartesian { u_mm, v_mm } => heat_map(&HeatMap {
+            title: map_title(map),
+            subtitle,
+            x_label: "u in mm".into(),
+            y_label: "v in mm".into(),
+            x_range: ends(u_mm),
+            y_range: ends(v_mm),
+            values: map.values.clone(),
+            unit: map.unit.clone(),
+            scale: Scale::Linear,
+            colours: ColourMap::Sequential,
+            limits: None,
+        }),
+        Axes::Polar { radius_mm, sector_deg } => line_plot(&LinePlot {
+            title: map_title(map),
+            subtitle,
+            x_label: "radius in mm".into(),
+            y_label: format!("{} in {}", map.quantity, map.unit),
+            x_scale: Scale::Linear,
+            y_scale: Scale::Linear,
+            series: map
+                .values
+                .axis_iter(Axis(1))
+                .zip(map.std_errors.axis_iter(Axis(1)))
+                .enumerate()
+                .map(|(sector, (values, errors))| Series {
+                    name: format!("{:.0}° to {:.0}°", sector_deg[sector], sector_deg[sector + 1]),
+                    points: values
+                        .iter()
+                        .zip(errors)
+                        .enumerate()
+                        .map(|(ring, (&y, &std_error))| SeriesPoint {
+                            x: 0.5 * (radius_mm[ring] + radius_mm[ring + 1]),
+                            y,
+                            std_error,
+                        })
+                        .collect(),
+                    form: SeriesForm::Line,
+                    errors: ErrorForm::Bars,
+                })
+                .collect(),
+        }),
+    }
+}
+
+fn ends(edges: &[f64]) -> [f64; 2] {
+    [edges.first().copied().unwrap_or(0.0), edges.last().copied().unwrap_or(1.0)]
+}
+
+/// Curves through the planes C0-C180 and C90-C270, or the mean over C of a goniometer without sectors.
+fn polar_picture(table: &IntensityTable) -> Result<Vec<u8>> {
+    let sectors = table.c_deg.len() - 1;
+    let curves = if sectors >= 4 && sectors.is_multiple_of(4) {
+        [(0, "C0 to C180"), (sectors / 4, "C90 to C270")]
+            .map(|(sector, name)| plane_curve(table, name, sector, (sector + sectors / 2) % sectors))
+            .into()
+    } else {
+        let both = |sign: f64| {
+            table.ring_gamma_deg.iter().zip(&table.ring_values).map(move |(gamma, value)| (sign * gamma, *value))
+        };
+        let (left, right): (Vec<_>, Vec<_>) = (both(-1.0).collect(), both(1.0).collect());
+        let points = left.into_iter().rev().chain(right).collect();
+        let errors = table.ring_std_errors.iter().rev().chain(&table.ring_std_errors).copied().collect();
+        vec![Curve { name: "mean over C".into(), points, std_errors: errors }]
+    };
+    let distance = table.radius_mm.map_or("far field".to_owned(), |radius| format!("at {} mm", format_value(radius)));
+    polar_plot(&PolarPlot {
+        title: format!("{}: intensity", table.sensor),
+        subtitle: distance,
+        unit: table.unit.clone(),
+        pole: Pole::Up,
+        curves,
+    })
+}
+
+/// A curve through the sector right of the pole and the one opposite.
+fn plane_curve(table: &IntensityTable, name: &str, right: usize, left: usize) -> Curve {
+    let rings = 0..table.ring_gamma_deg.len();
+    let order = rings.clone().rev().map(|ring| (ring, left, -1.0)).chain(rings.map(|ring| (ring, right, 1.0)));
+    let (points, std_errors) = order
+        .map(|(ring, sector, sign)| {
+            let value = table.values[[ring, sector]];
+            ((sign * table.ring_gamma_deg[ring], value), table.std_errors[[ring, sector]])
+        })
+        .unzip();
+    Curve { name: name.into(), points, std_errors }
+}
+
+fn bounce_picture(paths: &SensorPaths, unit: &str) -> Result<Vec<u8>> {
+    let points = paths
+        .depths
+        .iter()
+        .map(|bin| SeriesPoint {
+            x: 0.5 * (bin.from + bin.to) as f64,
+            // Bins of several depths show the mean of one.
+            y: bin.flux / (bin.to - bin.from + 1) as f64,
+            std_error: bin.std_error / (bin.to - bin.from + 1) as f64,
+        })
+        .collect();
+    line_plot(&LinePlot {
+        title: format!("{}: flux by number of bounces", paths.sensor),
+        subtitle: String::new(),
+        x_label: "interfaces met".into(),
+        y_label: format!("flux in {unit}"),
+        x_scale: Scale::Linear,
+        y_scale: Scale::Linear,
+        series: vec![Series { name: paths.sensor.clone(), points, form: SeriesForm::Steps, errors: ErrorForm::Hidden }],
+    })
+}
+
+/// Colours of the kinds of losses, as places in the palette.
+mod kind {
+    pub(super) const ESCAPED: usize = 0;
+    pub(super) const FACE: usize = 1;
+    pub(super) const MEDIUM: usize = 2;
+    pub(super) const LOST: usize = 3;
+}
+
+fn balance_picture(balance: &Balance, source_flux: f64, unit: &str) -> Result<Vec<u8>> {
+    let mut bars = Vec::new();
+    let mut bar = |name: String, measure: &crate::measure::Measure, colour: usize| {
+        if measure.value != 0.0 {
+            bars.push(Bar { name, value: measure.value, std_error: Some(measure.std_error), colour });
+        }
+    };
+    for (face, measure) in &balance.escaped {
+        bar(format!("escaped by {face}"), measure, kind::ESCAPED);
+    }
+    bar("escaped, never in a solid".into(), &balance.escaped_directly, kind::ESCAPED);
+    for (face, measure) in &balance.absorbed {
+        bar(format!("absorbed by {face}"), measure, kind::FACE);
+    }
+    for (medium, measure) in &balance.absorbed_medium {
+        bar(format!("absorbed in {medium}"), measure, kind::MEDIUM);
+    }
+    bar("cut by the bounce limit".into(), &balance.cut, kind::LOST);
+    bar("leaked".into(), &balance.leaked, kind::LOST);
+    bar_chart(&BarChart {
+        title: "Where the light went".into(),
+        subtitle: format!("of {} {unit} emitted", format_value(source_flux)),
+        unit: unit.to_owned(),
+        whole: Some(source_flux),
+        bars,
+    })
+}
+
+/// The cross-section of a scene with some traced paths.
+pub fn scene_picture(title: &str, scene: &Scene, tracks: &[Track]) -> Result<Vec<u8>> {
+    let plane = scene.section_plane();
+    let to_plane = |point: DVec3| plane.point_to_local(point).truncate();
+    let corners = [scene.bounds.min, scene.bounds.max].map(to_plane);
+    let margin = DVec2::splat(0.06 * scene.bounds.diagonal());
+    let window = ChartRect { min: corners[0].min(corners[1]) - margin, max: corners[0].max(corners[1]) + margin };
+    // Axes show the user's coordinates.
+    let origin = DVec2::new((plane.origin + scene.origin).dot(plane.x), (plane.origin + scene.origin).dot(plane.y));
+    let shown = |point: DVec2| (point + origin).to_array();
+    let outlines = scene
+        .section(&plane, window)
+        .into_iter()
+        .enumerate()
+        .map(|(colour, outline)| Outline {
+            name: scene.faces[outline.face.index()].name.clone(),
+            colour,
+            points: outline.points.into_iter().map(shown).collect(),
+        })
+        .collect();
+    let rays = tracks
+        .iter()
+        .map(|track| RayPath {
+            points: track.points.iter().map(|point| shown(to_plane(*point))).collect(),
+            end: match track.end {
+                TrackEnd::Absorbed => RayEnd::Absorbed,
+                TrackEnd::Escaped => RayEnd::Escaped,
+                TrackEnd::Cut | TrackEnd::Leaked => RayEnd::Lost,
+            },
+        })
+        .collect();
+    let label = |axis: DVec3| {
+        let name = ["x", "y", "z"][axis.abs().to_array().iter().position(|part| *part > 0.5).unwrap_or(0)];
+        format!("{name} in mm")
+    };
+    let [low, high] = [window.min, window.max].map(shown);
+    cross_section(&CrossSection {
+        title: title.to_owned(),
+        subtitle: format!("{} paths, projected onto the section", tracks.len()),
+        x_label: label(plane.x),
+        y_label: label(plane.y),
+        x_range: [low[0], high[0]],
+        y_range: [low[1], high[1]],
+        outlines,
+        rays,
+    })
+}

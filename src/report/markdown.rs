@@ -1,0 +1,191 @@
+//! `report.md`: the page for people.
+
+use crate::measure::{Measure, Outcome, PathClass, SensorMap, SensorPaths, Statistic, Status};
+use crate::report::csv::map_name;
+use crate::report::number::{format_percent, format_value, format_with_error};
+use crate::report::{CheckResult, Report};
+use std::fmt::Write;
+
+/// Path classes that are listed for a sensor.
+const CLASSES_SHOWN: usize = 8;
+
+/// The whole page. `files` are the other files of the report.
+pub(crate) fn markdown(report: &Report, files: &[&str]) -> String {
+    let mut page = format!("# {}\n\n", report.scene.title);
+    if let Some(description) = &report.scene.description {
+        page += &format!("{}\n\n", description.trim());
+    }
+    if report.run.partial {
+        page += "**This report is partial: the run was interrupted.**\n\n";
+    }
+    page += &checks(&report.checks);
+    page += &warnings(&report.warnings);
+    page += &overview(report);
+    for paths in &report.measures.sensor_paths {
+        page += &sensor(report, paths, files);
+    }
+    page += &balance(report);
+    page += &run(report);
+    page
+}
+
+/// A value with its error and unit.
+pub(crate) fn quantity(measure: &Measure) -> String {
+    let number = format_with_error(measure.value, measure.std_error);
+    let unit = if measure.unit == "1" { String::new() } else { format!(" {}", measure.unit) };
+    format!("{number}{unit}{}", remark(measure.status))
+}
+
+fn remark(status: Status) -> &'static str {
+    match status {
+        Status::Ok => "",
+        Status::NoSignal => " (nothing counted)",
+        Status::TooFew => " (too few counts for an error bar)",
+        Status::NoiseLimited => " (limited by noise)",
+    }
+}
+
+fn checks(results: &[CheckResult]) -> String {
+    if results.is_empty() {
+        return String::new();
+    }
+    let mut text = "## Checks\n\n| check | result | why |\n|---|---|---|\n".to_owned();
+    for result in results {
+        let word = match result.verdict.outcome {
+            Outcome::Passed => "passed",
+            Outcome::Undecided => "**undecided**",
+            Outcome::Failed => "**failed**",
+            Outcome::Unknown => "**unknown measure**",
+        };
+        text += &format!("| {} | {word} | {} |\n", result.check.measure, result.verdict.reason);
+    }
+    text + "\n"
+}
+
+fn warnings(warnings: &[String]) -> String {
+    if warnings.is_empty() {
+        return String::new();
+    }
+    let lines: String = warnings.iter().map(|warning| format!("- {warning}\n")).collect();
+    format!("## Remarks\n\n{lines}\n")
+}
+
+/// The totals of every sensor in one table.
+fn overview(report: &Report) -> String {
+    let mut text = "## Sensors\n\n| sensor | flux | efficiency |\n|---|---|---|\n".to_owned();
+    for paths in &report.measures.sensor_paths {
+        let cell = |name: &str| {
+            report.measures.values.get(&format!("{}.{name}", paths.sensor)).map_or("".into(), quantity)
+        };
+        text += &format!("| {} | {} | {} |\n", paths.sensor, cell("flux"), cell("efficiency"));
+    }
+    text + "\n"
+}
+
+fn sensor(report: &Report, paths: &SensorPaths, files: &[&str]) -> String {
+    let name = &paths.sensor;
+    let mut text = format!("## Sensor `{name}`\n\n");
+    for map in report.measures.maps.iter().filter(|map| map.sensor == *name) {
+        text += &format!("![{}]({}.png)\n\n", map.quantity, map_name(map));
+        text += &uniformity(map);
+    }
+    let prefix = format!("{name}.");
+    for file in files.iter().filter(|file| file.starts_with(&prefix) && file.ends_with(".png")) {
+        let drawn = report.measures.maps.iter().any(|map| format!("{}.png", map_name(map)) == **file);
+        if !drawn {
+            text += &format!("![{file}]({file})\n\n");
+        }
+    }
+    text += "| measure | value |\n|---|---|\n";
+    for (key, measure) in &report.measures.values {
+        // Single cells and rings are in the tables of numbers.
+        let listed = key.strip_prefix(&prefix).is_some_and(|rest| !rest.starts_with("cell.") && !rest.starts_with("ring."));
+        if listed {
+            text += &format!("| {key} | {} |\n", quantity(measure));
+        }
+    }
+    text + "\n" + &classes(&paths.classes)
+}
+
+fn uniformity(map: &SensorMap) -> String {
+    let summary = &map.summary;
+    let [width, height] = summary.cell_size_mm;
+    let mut text = format!(
+        "Uniformity over {} cells of {} mm x {} mm; extremes are corrected for noise, intervals hold 95 %.\n\n",
+        summary.cells,
+        format_value(width),
+        format_value(height)
+    );
+    text += "| over | min/avg | min/max | max/min |\n|---|---|---|---|\n";
+    let sets = [("all cells", Some(&summary.all)), ("9 points", summary.nine.as_ref()), ("13 points", summary.thirteen.as_ref())];
+    for (name, set) in sets {
+        if let Some(set) = set {
+            let row = [&set.min_avg, &set.min_max, &set.max_min].map(statistic);
+            _ = writeln!(text, "| {name} | {} |", row.join(" | "));
+        }
+    }
+    _ = writeln!(text, "\nCV (standard deviation over mean, noise taken out): {}\n", statistic(&summary.cv));
+    text
+}
+
+fn statistic(value: &Statistic) -> String {
+    let [low, high] = value.interval;
+    let number = format_with_error(value.value, value.std_error);
+    format!("{number} [{}, {}]{}", format_value(low), format_value(high), remark(value.status))
+}
+
+fn classes(classes: &[PathClass]) -> String {
+    if classes.is_empty() {
+        return String::new();
+    }
+    let mut text = "How the light came (R reflected, T transmitted, steps in a row taken once):\n\n".to_owned();
+    text += "| share | mean bounces | path |\n|---|---|---|\n";
+    for class in classes.iter().take(CLASSES_SHOWN) {
+        text += &format!(
+            "| {} | {} | {} |\n",
+            format_percent(class.share),
+            format_value(class.bounces_mean),
+            class.describe()
+        );
+    }
+    text + "\n"
+}
+
+fn balance(report: &Report) -> String {
+    let mut text = "## Flux balance\n\n![flux balance](balance.png)\n\n| line | flux | share |\n|---|---|---|\n".to_owned();
+    let whole = report.measures.source_flux;
+    for (name, measure) in report.measures.values.iter().filter(|(name, _)| name.starts_with("balance.")) {
+        if measure.value != 0.0 || name.ends_with(".leaked") || name.ends_with(".residual") {
+            let share = format_percent(measure.value / whole);
+            text += &format!("| {name} | {} | {share} |\n", quantity(measure));
+        }
+    }
+    text + "\nVirtual sensors let light pass: they are no lines of the balance.\n\n"
+}
+
+fn run(report: &Report) -> String {
+    let (run, measures) = (&report.run, &report.measures);
+    let mut lines = vec![
+        format!("scene `{}`, hash {}", report.scene.name, report.scene.hash),
+        format!("lumiduct {}, estimator {}, seed {}", run.version, run.estimator.name(), run.seed),
+        format!("{} paths in {} batches, {} segments", measures.paths, measures.batches, measures.segments),
+        format!("ended because {}; bounce limit {}", run.stopped, run.bounce_limit),
+        "unpolarised light: the mean of both polarisations at every interface".to_owned(),
+    ];
+    if let Some(target) = &run.target {
+        let reached = target.reached.map_or("unknown".into(), format_percent);
+        lines.push(format!(
+            "target {}: wanted {}, reached {reached}",
+            target.measure,
+            format_percent(target.wanted)
+        ));
+    }
+    if !report.scene.overrides.is_empty() {
+        lines.push(format!("overrides: {}", report.scene.overrides.join(", ")));
+    }
+    for leak in &run.leaks {
+        lines.push(format!("leak at [{}, {}, {}] mm", leak.x, leak.y, leak.z));
+    }
+    let list: String = lines.iter().map(|line| format!("- {line}\n")).collect();
+    format!("## Run\n\n{list}")
+}

@@ -1,0 +1,134 @@
+//! The one record that all formats of a report are made from.
+
+use crate::measure::{self, Measures, Verdict};
+use crate::scene::plan::{Check, Estimator, Target};
+use crate::transport::Leak;
+use glam::DVec3;
+use serde::Serialize;
+
+/// Everything a report says.
+#[derive(Debug, Clone, Serialize)]
+pub struct Report {
+    /// The scene.
+    pub scene: SceneFacts,
+    /// How it was run.
+    pub run: RunFacts,
+    /// What was measured.
+    pub measures: Measures,
+    /// What was expected, and what came of it.
+    pub checks: Vec<CheckResult>,
+    /// Remarks on the scene and on the results.
+    pub warnings: Vec<String>,
+}
+
+/// The scene of a report.
+#[derive(Debug, Clone, Serialize)]
+pub struct SceneFacts {
+    /// Name: that of the file without its ending.
+    pub name: String,
+    /// Title.
+    pub title: String,
+    /// What it is for.
+    pub description: Option<String>,
+    /// Identifies scene file, included files and overrides.
+    pub hash: String,
+    /// Overrides of the command line.
+    pub overrides: Vec<String>,
+}
+
+/// How a scene was run.
+#[derive(Debug, Clone, Serialize)]
+pub struct RunFacts {
+    /// Version of the program.
+    pub version: String,
+    /// Seed of the random numbers.
+    pub seed: u64,
+    /// How flux was estimated.
+    pub estimator: Estimator,
+    /// Whether the run ended by itself, or the user ended it.
+    pub partial: bool,
+    /// Why it ended.
+    pub stopped: String,
+    /// The target, and whether it was reached.
+    pub target: Option<TargetFacts>,
+    /// Bounce limit.
+    pub bounce_limit: u32,
+    /// Places of leaks in the user's coordinates, mm.
+    pub leaks: Vec<DVec3>,
+}
+
+/// The target of a run.
+#[derive(Debug, Clone, Serialize)]
+pub struct TargetFacts {
+    /// The measure.
+    pub measure: String,
+    /// The relative error wanted, 1.
+    pub wanted: f64,
+    /// The relative error reached, 1; `None` when it is unknown.
+    pub reached: Option<f64>,
+}
+
+/// A check and its verdict.
+#[derive(Debug, Clone, Serialize)]
+pub struct CheckResult {
+    /// What was expected.
+    pub check: Check,
+    /// What came of it.
+    pub verdict: Verdict,
+}
+
+/// Whether a run is what its scene asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// No check was missed.
+    Good,
+    /// A check was missed, or the run is partial or off its target while there are checks.
+    Missed,
+}
+
+impl Report {
+    /// Whether the run is what its scene asked for.
+    pub fn outcome(&self) -> Outcome {
+        let missed = self.checks.iter().any(|result| result.verdict.outcome != measure::Outcome::Passed);
+        let off_target = self.run.target.as_ref().is_some_and(|target| !target.is_reached());
+        let incomplete = !self.checks.is_empty() && (self.run.partial || off_target);
+        if missed || incomplete { Outcome::Missed } else { Outcome::Good }
+    }
+}
+
+impl TargetFacts {
+    /// The target of a plan, held against what was measured.
+    pub fn new(target: &Target, measures: &Measures) -> Self {
+        let reached = measure::relative_error(measures, &target.measure).filter(|error| error.is_finite());
+        Self { measure: target.measure.clone(), wanted: target.relative_error, reached }
+    }
+
+    /// Whether the error is as small as wanted.
+    pub fn is_reached(&self) -> bool {
+        self.reached.is_some_and(|reached| reached <= self.wanted)
+    }
+}
+
+/// Places of leaks in the user's coordinates, mm.
+pub fn leak_places(leaks: &[Leak], origin: DVec3) -> Vec<DVec3> {
+    leaks.iter().map(|leak| leak.point + origin).collect()
+}
+
+/// Remarks that the results ask for.
+pub fn remarks(measures: &Measures) -> Vec<String> {
+    let mut remarks = Vec::new();
+    let value = |name: &str| measures.values.get(name).map_or(0.0, |measure| measure.value);
+    if value("balance.leaked") > 0.0 {
+        remarks.push("light leaked through holes in the geometry: see balance.leaked".to_owned());
+    }
+    for paths in &measures.sensor_paths {
+        let sensor = &paths.sensor;
+        let (flux, other) = (value(&format!("{sensor}.flux")), value(&format!("{sensor}.flux_other_side")));
+        if flux == 0.0 && other > 0.0 {
+            remarks.push(format!(
+                "sensor `{sensor}` was lit on its other side only: turn its axis, or set `side`"
+            ));
+        }
+    }
+    remarks
+}

@@ -1,0 +1,48 @@
+//! `summary.json`: the record for programs. `measures` maps dotted names to numbers with their errors.
+
+use crate::error::{Error, Result};
+use crate::report::Report;
+use serde::Serialize;
+
+/// Version of the layout of this file.
+const FORMAT: u32 = 1;
+
+#[derive(Serialize)]
+struct Summary<'r> {
+    lumiduct_summary: u32,
+    scene: &'r crate::report::SceneFacts,
+    run: &'r crate::report::RunFacts,
+    unit: crate::units::FluxUnit,
+    source_flux: f64,
+    paths: u64,
+    batches: u64,
+    segments: u64,
+    measures: &'r indexmap::IndexMap<String, crate::measure::Measure>,
+    checks: &'r [crate::report::CheckResult],
+    paths_to_sensors: &'r [crate::measure::SensorPaths],
+    warnings: &'r [String],
+    files: &'r [&'r str],
+}
+
+/// The record as JSON. `files` are the other files of the report.
+pub(crate) fn json(report: &Report, files: &[&str]) -> Result<String> {
+    let measures = &report.measures;
+    let summary = Summary {
+        lumiduct_summary: FORMAT,
+        scene: &report.scene,
+        run: &report.run,
+        unit: measures.unit,
+        source_flux: measures.source_flux,
+        paths: measures.paths,
+        batches: measures.batches,
+        segments: measures.segments,
+        measures: &measures.values,
+        checks: &report.checks,
+        paths_to_sensors: &measures.sensor_paths,
+        warnings: &report.warnings,
+        files,
+    };
+    serde_json::to_string_pretty(&summary)
+        .map(|text| text + "\n")
+        .map_err(|reason| Error::Output { what: "summary.json".into(), reason: reason.to_string() })
+}

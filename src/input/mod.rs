@@ -20,6 +20,7 @@ pub mod convert;
 pub mod diagnostic;
 pub mod include;
 pub mod keys;
+pub mod manual;
 pub mod overrides;
 pub mod problems;
 pub mod schema;

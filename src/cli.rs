@@ -123,18 +123,17 @@ pub fn main() -> ExitCode {
         Command::Man => {
             let mut page = Vec::new();
             let rendered = clap_mangen::Man::new(Cli::command()).render(&mut page);
-            finish(
-                rendered
-                    .map(|()| String::from_utf8_lossy(&page).into_owned())
-                    .map_err(|reason| Error::Output { what: "manual page".into(), reason: reason.to_string() }),
-            )
+            finish(rendered.map(|()| String::from_utf8_lossy(&page).into_owned()).map_err(
+                |reason| Error::Output { what: "manual page".into(), reason: reason.to_string() },
+            ))
         }
     }
 }
 
 fn run(args: &RunArgs) -> ExitCode {
     if let Some(threads) = args.threads
-        && let Err(reason) = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build_global()
+        && let Err(reason) =
+            rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build_global()
     {
         return fail(&Error::Usage(format!("--threads {threads}: {reason}")));
     }
@@ -157,8 +156,9 @@ fn run(args: &RunArgs) -> ExitCode {
     let existing = if args.overwrite { Existing::Replace } else { Existing::Keep };
     let output = Output { dir: args.output.clone(), existing };
     let mut display = Display::new(args.quiet);
-    let outcome =
-        pipeline::run_one(&args.scene, &settings, &output, &interrupt, &mut |progress| display.show(progress));
+    let outcome = pipeline::run_one(&args.scene, &settings, &output, &interrupt, &mut |progress| {
+        display.show(progress)
+    });
     display.close();
     match outcome {
         Ok(finished) => {
@@ -258,7 +258,8 @@ fn parse_count(text: &str) -> Result<u64, String> {
 /// A relative error: 0.5% or 0.005.
 fn parse_fraction(text: &str) -> Result<f64, String> {
     let (digits, factor) = text.strip_suffix('%').map_or((text, 1.0), |digits| (digits, 0.01));
-    let value: f64 = digits.trim().parse().map_err(|_| format!("`{text}` is no percentage; try 0.5%"))?;
+    let value: f64 =
+        digits.trim().parse().map_err(|_| format!("`{text}` is no percentage; try 0.5%"))?;
     let fraction = value * factor;
     if fraction > 0.0 && fraction < 1.0 {
         Ok(fraction)
@@ -276,7 +277,8 @@ fn parse_time(text: &str) -> Result<Duration, String> {
     } else {
         (text.strip_suffix('s').unwrap_or(text), 1.0)
     };
-    let value: f64 = digits.trim().parse().map_err(|_| format!("`{text}` is no time; try 60s or 5min"))?;
+    let value: f64 =
+        digits.trim().parse().map_err(|_| format!("`{text}` is no time; try 60s or 5min"))?;
     let seconds = value * factor;
     if seconds > 0.0
         && let Ok(time) = Duration::try_from_secs_f64(seconds)
@@ -343,7 +345,9 @@ mod tests {
     fn counts_fractions_and_times_are_read_with_their_units() {
         assert_eq!(parse_count("2M"), Ok(2_000_000));
         assert_eq!(parse_count("1.5k"), Ok(1500));
-        assert!(parse_count("0").is_err() && parse_count("nan").is_err() && parse_count("M").is_err());
+        assert!(
+            parse_count("0").is_err() && parse_count("nan").is_err() && parse_count("M").is_err()
+        );
         assert_eq!(parse_fraction("0.5%"), Ok(0.005));
         assert!(parse_fraction("100%").is_err() && parse_fraction("-1%").is_err());
         assert_eq!(parse_time("5min"), Ok(Duration::from_secs(300)));

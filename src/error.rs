@@ -50,7 +50,7 @@ impl Error {
 pub struct Diagnostic {
     /// Error or warning.
     pub kind: DiagnosticKind,
-    /// The file, or `None` for the command line.
+    /// The file, or the argument `-D key=value`; `None` for the command line as a whole.
     pub file: Option<PathBuf>,
     /// Line in the file, from 1.
     pub line: Option<usize>,

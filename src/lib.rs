@@ -14,11 +14,14 @@
 //! wavelengths nanometres. +z of a local frame is the normal; directions are unit vectors. Units of files and reports
 //! are part of the names there.
 
+pub mod cli;
 pub mod error;
 pub mod formats;
 pub mod input;
 pub mod math;
+pub mod measure;
 pub mod optics;
+pub mod pipeline;
 pub mod report;
 pub mod rng;
 pub mod scene;

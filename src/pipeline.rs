@@ -4,7 +4,8 @@ use crate::error::{Diagnostic, Result};
 use crate::input::{self, Job, Settings};
 use crate::measure::{self, Measure};
 use crate::report::{
-    self, CheckResult, Existing, Folder, Report, RunFacts, SceneFacts, TargetFacts, inventory, write_whole,
+    self, CheckResult, Existing, Folder, Report, RunFacts, SceneFacts, TargetFacts, inventory,
+    write_whole,
 };
 use crate::scene::plan::RunPlan;
 use crate::transport::{Interrupt, Readings, Run, tracks};
@@ -75,20 +76,28 @@ impl Progress {
     /// How much of the work is done, by the rule that is nearest to its end; 0..=1.
     pub fn fraction(&self) -> f64 {
         let paths = self.planned_paths.map_or(0.0, |planned| self.paths as f64 / planned as f64);
-        let time = self.time_limit.map_or(0.0, |limit| self.elapsed.as_secs_f64() / limit.as_secs_f64());
+        let time =
+            self.time_limit.map_or(0.0, |limit| self.elapsed.as_secs_f64() / limit.as_secs_f64());
         // The error falls as one over the square root of the paths.
-        let target = self.target.as_ref().map_or(0.0, |target| (target.wanted / target.reached.relative_error()).powi(2));
+        let target = self
+            .target
+            .as_ref()
+            .map_or(0.0, |target| (target.wanted / target.reached.relative_error()).powi(2));
         paths.max(time).max(target).min(1.0)
     }
 
     /// Paths per second, the target's value and error, and the time left.
     pub fn sentence(&self) -> String {
         let seconds = self.elapsed.as_secs_f64();
-        let mut text = format!("{:.3e} paths, {:.2e} paths/s", self.paths as f64, self.paths as f64 / seconds);
+        let mut text =
+            format!("{:.3e} paths, {:.2e} paths/s", self.paths as f64, self.paths as f64 / seconds);
         if let Some(target) = &self.target {
             let (reached, error) = (&target.reached, 100.0 * target.reached.relative_error());
             let wanted = 100.0 * target.wanted;
-            text += &format!(", {} {:.4} ± {error:.3} % of {wanted:.3} %", target.measure, reached.value);
+            text += &format!(
+                ", {} {:.4} ± {error:.3} % of {wanted:.3} %",
+                target.measure, reached.value
+            );
         }
         let fraction = self.fraction();
         if fraction > 0.0 {
@@ -112,7 +121,12 @@ pub fn run_one(
     let report = compose(&job, &traced.readings, traced.stop);
     folder.write(&report::files(&report, &job.text)?)?;
     timing::write(&folder, &traced)?;
-    Ok(Finished { report, stop: traced.stop, dir: folder.path().to_path_buf(), warnings: job.warnings })
+    Ok(Finished {
+        report,
+        stop: traced.stop,
+        dir: folder.path().to_path_buf(),
+        warnings: job.warnings,
+    })
 }
 
 /// A run that has written its report.
@@ -134,9 +148,13 @@ pub fn compose(job: &Job, readings: &Readings, stop: Stop) -> Report {
     let checks = job
         .checks
         .iter()
-        .map(|check| CheckResult { check: check.clone(), verdict: measure::verdict(check, &measures) })
+        .map(|check| CheckResult {
+            check: check.clone(),
+            verdict: measure::verdict(check, &measures),
+        })
         .collect();
-    let mut warnings: Vec<String> = job.warnings.iter().map(|warning| warning.message.clone()).collect();
+    let mut warnings: Vec<String> =
+        job.warnings.iter().map(|warning| warning.message.clone()).collect();
     warnings.extend(report::remarks(&measures));
     let target = job.run.stop.target.as_ref().map(|target| TargetFacts::new(target, &measures));
     Report {
@@ -200,7 +218,12 @@ pub fn trace(job: &Job, interrupt: &Interrupt, watch: &mut dyn FnMut(&Progress))
 }
 
 /// The rules that may end a run after any wave.
-fn stop_between_waves(plan: &RunPlan, run: &Run<'_>, elapsed: Duration, interrupt: &Interrupt) -> Option<Stop> {
+fn stop_between_waves(
+    plan: &RunPlan,
+    run: &Run<'_>,
+    elapsed: Duration,
+    interrupt: &Interrupt,
+) -> Option<Stop> {
     if interrupt.is_raised() {
         return Some(Stop::Interrupted);
     }
@@ -216,7 +239,12 @@ fn target_progress(job: &Job, run: &Run<'_>) -> Option<TargetProgress> {
     Some(TargetProgress { measure: target.measure.clone(), reached, wanted: target.relative_error })
 }
 
-fn progress(plan: &RunPlan, run: &Run<'_>, elapsed: Duration, target: Option<TargetProgress>) -> Progress {
+fn progress(
+    plan: &RunPlan,
+    run: &Run<'_>,
+    elapsed: Duration,
+    target: Option<TargetProgress>,
+) -> Progress {
     Progress {
         paths: run.paths(),
         planned_paths: run.planned_paths(),
@@ -228,7 +256,10 @@ fn progress(plan: &RunPlan, run: &Run<'_>, elapsed: Duration, target: Option<Tar
 
 /// `reports/NAME` after the scene file, unless told otherwise.
 fn output_dir(scene: &Path, output: &Output) -> PathBuf {
-    output.dir.clone().unwrap_or_else(|| Path::new("reports").join(scene.file_stem().unwrap_or_default()))
+    output
+        .dir
+        .clone()
+        .unwrap_or_else(|| Path::new("reports").join(scene.file_stem().unwrap_or_default()))
 }
 
 /// Paths that a check draws.
@@ -244,7 +275,12 @@ pub struct Checked {
 }
 
 /// Validates a scene, lists what is in it, and draws its cross-section with some traced paths.
-pub fn check(scene: &Path, settings: &Settings, picture: Option<&Path>, existing: Existing) -> Result<Checked> {
+pub fn check(
+    scene: &Path,
+    settings: &Settings,
+    picture: Option<&Path>,
+    existing: Existing,
+) -> Result<Checked> {
     let job = input::load(scene, settings)?;
     let default = PathBuf::from(format!("{}.check.png", job.name));
     let picture = picture.unwrap_or(&default);

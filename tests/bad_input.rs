@@ -5,6 +5,8 @@
 //! `#~-D key=value` sets a value on the command line, `#~include file` expects the problems that another file states.
 //! Every problem is to be reported, and nothing else.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
+
 use std::path::{Path, PathBuf};
 
 use lumiduct::error::{Diagnostic, Error};
@@ -134,6 +136,31 @@ fn a_good_scene_is_read_without_a_word() {
     assert_eq!(loaded.spec.sheets.len(), 8);
     assert_eq!(loaded.spec.sources.len(), 8);
     assert_eq!(loaded.spec.sensors.len(), 5);
+}
+
+#[test]
+fn a_spec_that_is_written_out_reads_back_as_it_was() {
+    let loaded = input::read(&folder().join("include/good.toml"), &[]).unwrap();
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::copy(folder().join("include/good_sensor.toml"), dir.path().join("good_sensor.toml"))
+        .unwrap();
+    let file = dir.path().join("again.toml");
+    std::fs::write(&file, toml::to_string(&loaded.spec).unwrap()).unwrap();
+    let again = input::read(&file, &[]).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(again.spec, loaded.spec);
+}
+
+#[test]
+fn relative_paths_start_at_the_folder_of_the_file_that_names_them() {
+    let good = folder().join("include/good.toml");
+    let loaded = input::read(&good, &["solids.housing.mesh.unit=\"mm\"".into()]).unwrap();
+    let key = input::keys::Key::of(&["solids", "housing", "mesh"]);
+    assert_eq!(loaded.places.folder(&key.field("file")), folder().join("include"));
+    assert_eq!(loaded.places.folder(&key.field("unit")), folder().join("include"));
+    assert_eq!(loaded.places.line(&key.field("unit")), None);
+    assert_eq!(loaded.places.line(&key.field("file")), Some(45));
+    let cells = input::keys::Key::of(&["sensors", "exit", "plane", "rectangle", "width_mm"]);
+    assert_eq!(loaded.places.line(&cells), Some(1));
 }
 
 /// Numbers that look random and are the same in every run (Steele et al., OOPSLA 2014, SplitMix).

@@ -67,7 +67,8 @@ fn modules_use_only_lower_layers() {
         };
         for (line, text) in code(&path) {
             for used in text.split("crate::").skip(1) {
-                let name: String = used.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+                let name: String =
+                    used.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
                 if let Some(other) = layer(&name)
                     && name != module
                     && other >= own
@@ -102,8 +103,14 @@ fn every_scene_has_a_report_and_a_check() {
         let path = entry.unwrap().path();
         if path.extension().is_some_and(|extension| extension == "toml") {
             let name = path.file_stem().unwrap().to_string_lossy().into_owned();
-            assert!(root.join("reports").join(&name).join("report.md").is_file(), "no report of {name}");
-            assert!(std::fs::read_to_string(&path).unwrap().contains("[[check]]"), "no check in {name}");
+            assert!(
+                root.join("reports").join(&name).join("report.md").is_file(),
+                "no report of {name}"
+            );
+            assert!(
+                std::fs::read_to_string(&path).unwrap().contains("[[check]]"),
+                "no check in {name}"
+            );
         }
     }
 }

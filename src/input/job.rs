@@ -84,7 +84,8 @@ fn apply(settings: &Settings, scene: &Scene, run: &mut RunPlan) {
         return;
     }
     let measure = run.stop.target.as_ref().map(|target| target.measure.clone());
-    let measure = measure.or_else(|| scene.sensors.first().map(|sensor| format!("{}.flux", sensor.name)));
+    let measure =
+        measure.or_else(|| scene.sensors.first().map(|sensor| format!("{}.flux", sensor.name)));
     let target = settings.target.zip(measure);
     run.stop = StopRules {
         paths: settings.paths,

@@ -21,7 +21,9 @@ pub mod diagnostic;
 pub mod include;
 mod job;
 pub mod keys;
+mod list;
 mod lower;
+pub mod manual;
 pub mod overrides;
 pub mod problems;
 pub mod schema;
@@ -31,6 +33,7 @@ pub mod tree;
 pub mod validate;
 
 pub use job::{Job, Settings, load};
+pub use list::list;
 
 /// A scene that was read without errors.
 #[derive(Debug, Clone, PartialEq)]

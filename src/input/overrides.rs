@@ -146,14 +146,13 @@ fn step<'a>(node: &'a mut Node, segment: &Segment) -> Result<&'a mut Node, (Stri
     match (&mut node.value, segment) {
         (Value::Table(entries), _) => {
             let name = name_of(segment);
-            if !entries.contains_key(&name) {
-                return Err((
-                    "there is no such key in the scene".into(),
-                    name_hint(&name, entries.keys().map(String::as_str)),
-                ));
+            match entries.get_index_of(&name) {
+                Some(index) => Ok(&mut entries[index].node),
+                None => {
+                    let hint = name_hint(&name, entries.keys().map(String::as_str));
+                    Err(("there is no such key in the scene".into(), hint))
+                }
             }
-            let entry = entries.get_mut(&name).expect("asked just before");
-            Ok(&mut entry.node)
         }
         (Value::Array(items), Segment::Index(index)) => {
             let count = items.len();

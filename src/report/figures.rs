@@ -5,8 +5,9 @@ use crate::measure::{Axes, Balance, IntensityTable, SensorMap, SensorPaths};
 use crate::report::csv::map_name;
 use crate::report::number::{format_value, format_with_error};
 use crate::report::png::{
-    Bar, BarChart, ColourMap, CrossSection, Curve, ErrorForm, HeatMap, LinePlot, Outline, PolarPlot, Pole, RayEnd,
-    RayPath, Scale, Series, SeriesForm, SeriesPoint, bar_chart, cross_section, heat_map, line_plot, polar_plot,
+    Bar, BarChart, ColourMap, CrossSection, Curve, ErrorForm, HeatMap, LinePlot, Outline,
+    PolarPlot, Pole, RayEnd, RayPath, Scale, Series, SeriesForm, SeriesPoint, bar_chart,
+    cross_section, heat_map, line_plot, polar_plot,
 };
 use crate::report::{OutputFile, Report};
 use crate::scene::Scene;
@@ -23,7 +24,10 @@ pub(crate) fn files(report: &Report) -> Result<Vec<OutputFile>> {
         files.push(OutputFile { name: format!("{}.png", map_name(map)), bytes: map_picture(map)? });
     }
     for table in &measures.intensities {
-        files.push(OutputFile { name: format!("{}.intensity.png", table.sensor), bytes: polar_picture(table)? });
+        files.push(OutputFile {
+            name: format!("{}.intensity.png", table.sensor),
+            bytes: polar_picture(table)?,
+        });
     }
     for paths in measures.sensor_paths.iter().filter(|paths| !paths.depths.is_empty()) {
         let bytes = bounce_picture(paths, measures.unit.flux())?;
@@ -42,7 +46,8 @@ fn map_title(map: &SensorMap) -> String {
 
 fn map_picture(map: &SensorMap) -> Result<Vec<u8>> {
     let average = &map.summary.all.avg;
-    let subtitle = format!("mean {} {}", format_with_error(average.value, average.std_error), map.unit);
+    let subtitle =
+        format!("mean {} {}", format_with_error(average.value, average.std_error), map.unit);
     match &map.axes {
         Axes::Cartesian { u_mm, v_mm } => heat_map(&HeatMap {
             title: map_title(map),
@@ -98,18 +103,27 @@ fn polar_picture(table: &IntensityTable) -> Result<Vec<u8>> {
     let sectors = table.c_deg.len() - 1;
     let curves = if sectors >= 4 && sectors.is_multiple_of(4) {
         [(0, "C0 to C180"), (sectors / 4, "C90 to C270")]
-            .map(|(sector, name)| plane_curve(table, name, sector, (sector + sectors / 2) % sectors))
+            .map(|(sector, name)| {
+                plane_curve(table, name, sector, (sector + sectors / 2) % sectors)
+            })
             .into()
     } else {
         let both = |sign: f64| {
-            table.ring_gamma_deg.iter().zip(&table.ring_values).map(move |(gamma, value)| (sign * gamma, *value))
+            table
+                .ring_gamma_deg
+                .iter()
+                .zip(&table.ring_values)
+                .map(move |(gamma, value)| (sign * gamma, *value))
         };
         let (left, right): (Vec<_>, Vec<_>) = (both(-1.0).collect(), both(1.0).collect());
         let points = left.into_iter().rev().chain(right).collect();
-        let errors = table.ring_std_errors.iter().rev().chain(&table.ring_std_errors).copied().collect();
+        let errors =
+            table.ring_std_errors.iter().rev().chain(&table.ring_std_errors).copied().collect();
         vec![Curve { name: "mean over C".into(), points, std_errors: errors }]
     };
-    let distance = table.radius_mm.map_or("far field".to_owned(), |radius| format!("at {} mm", format_value(radius)));
+    let distance = table
+        .radius_mm
+        .map_or("far field".to_owned(), |radius| format!("at {} mm", format_value(radius)));
     polar_plot(&PolarPlot {
         title: format!("{}: intensity", table.sensor),
         subtitle: distance,
@@ -122,7 +136,11 @@ fn polar_picture(table: &IntensityTable) -> Result<Vec<u8>> {
 /// A curve through the sector right of the pole and the one opposite.
 fn plane_curve(table: &IntensityTable, name: &str, right: usize, left: usize) -> Curve {
     let rings = 0..table.ring_gamma_deg.len();
-    let order = rings.clone().rev().map(|ring| (ring, left, -1.0)).chain(rings.map(|ring| (ring, right, 1.0)));
+    let order = rings
+        .clone()
+        .rev()
+        .map(|ring| (ring, left, -1.0))
+        .chain(rings.map(|ring| (ring, right, 1.0)));
     let (points, std_errors) = order
         .map(|(ring, sector, sign)| {
             let value = table.values[[ring, sector]];
@@ -150,7 +168,12 @@ fn bounce_picture(paths: &SensorPaths, unit: &str) -> Result<Vec<u8>> {
         y_label: format!("flux in {unit}"),
         x_scale: Scale::Linear,
         y_scale: Scale::Linear,
-        series: vec![Series { name: paths.sensor.clone(), points, form: SeriesForm::Steps, errors: ErrorForm::Hidden }],
+        series: vec![Series {
+            name: paths.sensor.clone(),
+            points,
+            form: SeriesForm::Steps,
+            errors: ErrorForm::Hidden,
+        }],
     })
 }
 
@@ -166,7 +189,12 @@ fn balance_picture(balance: &Balance, source_flux: f64, unit: &str) -> Result<Ve
     let mut bars = Vec::new();
     let mut bar = |name: String, measure: &crate::measure::Measure, colour: usize| {
         if measure.value != 0.0 {
-            bars.push(Bar { name, value: measure.value, std_error: Some(measure.std_error), colour });
+            bars.push(Bar {
+                name,
+                value: measure.value,
+                std_error: Some(measure.std_error),
+                colour,
+            });
         }
     };
     for (face, measure) in &balance.escaped {
@@ -196,9 +224,15 @@ pub fn scene_picture(title: &str, scene: &Scene, tracks: &[Track]) -> Result<Vec
     let to_plane = |point: DVec3| plane.point_to_local(point).truncate();
     let corners = [scene.bounds.min, scene.bounds.max].map(to_plane);
     let margin = DVec2::splat(0.06 * scene.bounds.diagonal());
-    let window = ChartRect { min: corners[0].min(corners[1]) - margin, max: corners[0].max(corners[1]) + margin };
+    let window = ChartRect {
+        min: corners[0].min(corners[1]) - margin,
+        max: corners[0].max(corners[1]) + margin,
+    };
     // Axes show the user's coordinates.
-    let origin = DVec2::new((plane.origin + scene.origin).dot(plane.x), (plane.origin + scene.origin).dot(plane.y));
+    let origin = DVec2::new(
+        (plane.origin + scene.origin).dot(plane.x),
+        (plane.origin + scene.origin).dot(plane.y),
+    );
     let shown = |point: DVec2| (point + origin).to_array();
     let outlines = scene
         .section(&plane, window)
@@ -222,7 +256,8 @@ pub fn scene_picture(title: &str, scene: &Scene, tracks: &[Track]) -> Result<Vec
         })
         .collect();
     let label = |axis: DVec3| {
-        let name = ["x", "y", "z"][axis.abs().to_array().iter().position(|part| *part > 0.5).unwrap_or(0)];
+        let name =
+            ["x", "y", "z"][axis.abs().to_array().iter().position(|part| *part > 0.5).unwrap_or(0)];
         format!("{name} in mm")
     };
     let [low, high] = [window.min, window.max].map(shown);

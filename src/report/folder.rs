@@ -59,9 +59,13 @@ impl Folder {
 /// Writes one file, whole or not at all.
 pub fn write_whole(path: &Path, bytes: &[u8], existing: Existing) -> Result<()> {
     if existing == Existing::Keep && path.exists() {
-        return Err(Error::Usage(format!("{} exists; use --overwrite to replace it", path.display())));
+        return Err(Error::Usage(format!(
+            "{} exists; use --overwrite to replace it",
+            path.display()
+        )));
     }
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder =
+        path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     fs::create_dir_all(folder).map_err(|source| Error::io(folder, source))?;
     stage(folder, bytes)?.persist(path).map_err(|error| Error::io(path, error.error))?;
     Ok(())

@@ -14,8 +14,13 @@ pub fn inventory(scene: &Scene) -> String {
     }
     for solid in &scene.solids {
         let medium = scene.media[solid.medium.index()].name();
-        let volume = solid.volume.map_or("unknown".into(), |volume| format!("{} mm³", format_value(volume)));
-        _ = writeln!(text, "solid {}: {medium}, priority {}, volume {volume}", solid.name, solid.priority);
+        let volume =
+            solid.volume.map_or("unknown".into(), |volume| format!("{} mm³", format_value(volume)));
+        _ = writeln!(
+            text,
+            "solid {}: {medium}, priority {}, volume {volume}",
+            solid.name, solid.priority
+        );
     }
     for (index, face) in scene.faces.iter().enumerate() {
         let area = format_value(scene.face_area(FaceId::new(index)));
@@ -50,14 +55,20 @@ fn sources(scene: &Scene, text: &mut String) {
         if let Some(area) = source.emitter.area() {
             _ = write!(text, ", area {} mm²", format_value(area));
             let projected = match source.emission {
-                Emission::Lambertian | Emission::Cone { .. } => source.emission.projected_solid_angle(),
+                Emission::Lambertian | Emission::Cone { .. } => {
+                    source.emission.projected_solid_angle()
+                }
                 // Light in every direction of the half space, however it is spread.
                 Emission::CosinePower(_) | Emission::Isotropic => Some(PI),
                 Emission::Collimated { .. } => Some(0.0),
             };
             let index = scene.media[MediumId::index(scene.surroundings)].index(0.0);
             if let Some(projected) = projected {
-                _ = write!(text, ", etendue {} mm² sr", format_value(index * index * area * projected));
+                _ = write!(
+                    text,
+                    ", etendue {} mm² sr",
+                    format_value(index * index * area * projected)
+                );
             }
         }
         _ = writeln!(text);

@@ -1,6 +1,9 @@
 //! `report.md`: the page for people.
 
-use crate::measure::{Measure, Outcome, PathClass, SensorMap, SensorPaths, Statistic, Status};
+use crate::measure::{
+    Action, Extent, Measure, Outcome, PathClass, PathStep, SensorMap, SensorPaths, Statistic,
+    Status,
+};
 use crate::report::csv::map_name;
 use crate::report::number::{format_percent, format_value, format_with_error};
 use crate::report::{CheckResult, Report};
@@ -75,7 +78,11 @@ fn overview(report: &Report) -> String {
     let mut text = "## Sensors\n\n| sensor | flux | efficiency |\n|---|---|---|\n".to_owned();
     for paths in &report.measures.sensor_paths {
         let cell = |name: &str| {
-            report.measures.values.get(&format!("{}.{name}", paths.sensor)).map_or("".into(), quantity)
+            report
+                .measures
+                .values
+                .get(&format!("{}.{name}", paths.sensor))
+                .map_or("".into(), quantity)
         };
         text += &format!("| {} | {} | {} |\n", paths.sensor, cell("flux"), cell("efficiency"));
     }
@@ -91,7 +98,8 @@ fn sensor(report: &Report, paths: &SensorPaths, files: &[&str]) -> String {
     }
     let prefix = format!("{name}.");
     for file in files.iter().filter(|file| file.starts_with(&prefix) && file.ends_with(".png")) {
-        let drawn = report.measures.maps.iter().any(|map| format!("{}.png", map_name(map)) == **file);
+        let drawn =
+            report.measures.maps.iter().any(|map| format!("{}.png", map_name(map)) == **file);
         if !drawn {
             text += &format!("![{file}]({file})\n\n");
         }
@@ -99,7 +107,9 @@ fn sensor(report: &Report, paths: &SensorPaths, files: &[&str]) -> String {
     text += "| measure | value |\n|---|---|\n";
     for (key, measure) in &report.measures.values {
         // Single cells and rings are in the tables of numbers.
-        let listed = key.strip_prefix(&prefix).is_some_and(|rest| !rest.starts_with("cell.") && !rest.starts_with("ring."));
+        let listed = key
+            .strip_prefix(&prefix)
+            .is_some_and(|rest| !rest.starts_with("cell.") && !rest.starts_with("ring."));
         if listed {
             text += &format!("| {key} | {} |\n", quantity(measure));
         }
@@ -117,14 +127,22 @@ fn uniformity(map: &SensorMap) -> String {
         format_value(height)
     );
     text += "| over | min/avg | min/max | max/min |\n|---|---|---|---|\n";
-    let sets = [("all cells", Some(&summary.all)), ("9 points", summary.nine.as_ref()), ("13 points", summary.thirteen.as_ref())];
+    let sets = [
+        ("all cells", Some(&summary.all)),
+        ("9 points", summary.nine.as_ref()),
+        ("13 points", summary.thirteen.as_ref()),
+    ];
     for (name, set) in sets {
         if let Some(set) = set {
             let row = [&set.min_avg, &set.min_max, &set.max_min].map(statistic);
             _ = writeln!(text, "| {name} | {} |", row.join(" | "));
         }
     }
-    _ = writeln!(text, "\nCV (standard deviation over mean, noise taken out): {}\n", statistic(&summary.cv));
+    _ = writeln!(
+        text,
+        "\nCV (standard deviation over mean, noise taken out): {}\n",
+        statistic(&summary.cv)
+    );
     text
 }
 
@@ -138,23 +156,42 @@ fn classes(classes: &[PathClass]) -> String {
     if classes.is_empty() {
         return String::new();
     }
-    let mut text = "How the light came (R reflected, T transmitted, steps in a row taken once):\n\n".to_owned();
+    let mut text =
+        "How the light came (R reflected, T transmitted, steps in a row taken once):\n\n"
+            .to_owned();
     text += "| share | mean bounces | path |\n|---|---|---|\n";
     for class in classes.iter().take(CLASSES_SHOWN) {
         text += &format!(
             "| {} | {} | {} |\n",
             format_percent(class.share),
             format_value(class.bounces_mean),
-            class.describe()
+            steps(class)
         );
     }
     text + "\n"
 }
 
+/// The steps of a class: `pipe.entry T, pipe.wall R`.
+fn steps(class: &PathClass) -> String {
+    let step = |step: &PathStep| match step.action {
+        Action::Reflected => format!("{} R", step.face),
+        Action::Transmitted => format!("{} T", step.face),
+    };
+    let text = class.steps.iter().map(step).collect::<Vec<_>>().join(", ");
+    match class.extent {
+        Extent::Whole if text.is_empty() => "direct".into(),
+        Extent::Whole => text,
+        Extent::CutOff => text + ", ...",
+        Extent::Others => "all weaker classes".into(),
+    }
+}
+
 fn balance(report: &Report) -> String {
     let mut text = "## Flux balance\n\n![flux balance](balance.png)\n\n| line | flux | share |\n|---|---|---|\n".to_owned();
     let whole = report.measures.source_flux;
-    for (name, measure) in report.measures.values.iter().filter(|(name, _)| name.starts_with("balance.")) {
+    for (name, measure) in
+        report.measures.values.iter().filter(|(name, _)| name.starts_with("balance."))
+    {
         if measure.value != 0.0 || name.ends_with(".leaked") || name.ends_with(".residual") {
             let share = format_percent(measure.value / whole);
             text += &format!("| {name} | {} | {share} |\n", quantity(measure));
@@ -168,7 +205,10 @@ fn run(report: &Report) -> String {
     let mut lines = vec![
         format!("scene `{}`, hash {}", report.scene.name, report.scene.hash),
         format!("lumiduct {}, estimator {}, seed {}", run.version, run.estimator.name(), run.seed),
-        format!("{} paths in {} batches, {} segments", measures.paths, measures.batches, measures.segments),
+        format!(
+            "{} paths in {} batches, {} segments",
+            measures.paths, measures.batches, measures.segments
+        ),
         format!("ended because {}; bounce limit {}", run.stopped, run.bounce_limit),
         "unpolarised light: the mean of both polarisations at every interface".to_owned(),
     ];

@@ -17,7 +17,9 @@ mod terminal;
 pub use figures::scene_picture;
 pub use folder::{Existing, Folder, write_whole};
 pub use inventory::inventory;
-pub use record::{CheckResult, Outcome, Report, RunFacts, SceneFacts, TargetFacts, leak_places, remarks};
+pub use record::{
+    CheckResult, Outcome, Report, RunFacts, SceneFacts, TargetFacts, leak_places, remarks,
+};
 pub use terminal::terminal;
 
 use crate::error::Result;

@@ -89,7 +89,8 @@ pub enum Outcome {
 impl Report {
     /// Whether the run is what its scene asked for.
     pub fn outcome(&self) -> Outcome {
-        let missed = self.checks.iter().any(|result| result.verdict.outcome != measure::Outcome::Passed);
+        let missed =
+            self.checks.iter().any(|result| result.verdict.outcome != measure::Outcome::Passed);
         let off_target = self.run.target.as_ref().is_some_and(|target| !target.is_reached());
         let incomplete = !self.checks.is_empty() && (self.run.partial || off_target);
         if missed || incomplete { Outcome::Missed } else { Outcome::Good }
@@ -99,7 +100,8 @@ impl Report {
 impl TargetFacts {
     /// The target of a plan, held against what was measured.
     pub fn new(target: &Target, measures: &Measures) -> Self {
-        let reached = measure::relative_error(measures, &target.measure).filter(|error| error.is_finite());
+        let reached =
+            measure::relative_error(measures, &target.measure).filter(|error| error.is_finite());
         Self { measure: target.measure.clone(), wanted: target.relative_error, reached }
     }
 
@@ -123,7 +125,8 @@ pub fn remarks(measures: &Measures) -> Vec<String> {
     }
     for paths in &measures.sensor_paths {
         let sensor = &paths.sensor;
-        let (flux, other) = (value(&format!("{sensor}.flux")), value(&format!("{sensor}.flux_other_side")));
+        let (flux, other) =
+            (value(&format!("{sensor}.flux")), value(&format!("{sensor}.flux_other_side")));
         if flux == 0.0 && other > 0.0 {
             remarks.push(format!(
                 "sensor `{sensor}` was lit on its other side only: turn its axis, or set `side`"

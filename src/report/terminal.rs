@@ -8,10 +8,18 @@ use std::path::Path;
 /// Sensors, checks and where the report lies.
 pub fn terminal(report: &Report, dir: &Path) -> String {
     let measures = &report.measures;
-    let mut text = format!("{}\n{} paths, {}\n", report.scene.title, measures.paths, report.run.stopped);
+    let mut text =
+        format!("{}\n{} paths, {}\n", report.scene.title, measures.paths, report.run.stopped);
     for paths in &measures.sensor_paths {
-        let value = |name: &str| measures.values.get(&format!("{}.{name}", paths.sensor)).map_or("".into(), quantity);
-        text += &format!("  {}: flux {}, efficiency {}\n", paths.sensor, value("flux"), value("efficiency"));
+        let value = |name: &str| {
+            measures.values.get(&format!("{}.{name}", paths.sensor)).map_or("".into(), quantity)
+        };
+        text += &format!(
+            "  {}: flux {}, efficiency {}\n",
+            paths.sensor,
+            value("flux"),
+            value("efficiency")
+        );
     }
     for result in &report.checks {
         let word = match result.verdict.outcome {

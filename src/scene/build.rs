@@ -6,8 +6,8 @@ use crate::scene::mesh::Mesh;
 use crate::scene::shape::Shape;
 use crate::scene::sweep::WallChart;
 use crate::scene::{
-    Accel, COINCIDENCE, Extent, Face, FaceId, Finish, FinishId, MediumId, MeshBody, Owner, Patch, Scene, Sensor,
-    SensorId, SensorKind, Solid, SolidId, Source, SourceId,
+    Accel, COINCIDENCE, Extent, Face, FaceId, Finish, FinishId, MediumId, MeshBody, Owner, Patch,
+    Scene, Sensor, SensorId, SensorKind, Solid, SolidId, Source, SourceId,
 };
 use crate::units::FluxUnit;
 use glam::DVec3;
@@ -138,7 +138,10 @@ impl Builder {
     ) -> Vec<FaceId> {
         let owner = Owner::Solid(solid);
         let triangles = 0..mesh.triangle_count();
-        self.grow(owner, triangles.fold(Aabb::EMPTY, |sum, triangle| sum.union(mesh.bounds(triangle))));
+        self.grow(
+            owner,
+            triangles.fold(Aabb::EMPTY, |sum, triangle| sum.union(mesh.bounds(triangle))),
+        );
         let first_face = self.scene.faces.len();
         for (index, (name, finish)) in mesh.face_names().zip(finishes).enumerate() {
             self.scene.faces.push(Face {
@@ -191,7 +194,8 @@ impl Builder {
         let mut boxes: Vec<Aabb> = scene.patches.iter().map(|patch| patch.shape.bounds()).collect();
         for body in &mut scene.meshes {
             body.first = boxes.len();
-            boxes.extend((0..body.mesh.triangle_count()).map(|triangle| body.mesh.bounds(triangle)));
+            boxes
+                .extend((0..body.mesh.triangle_count()).map(|triangle| body.mesh.bounds(triangle)));
         }
         scene.tolerance = COINCIDENCE * scene.bounds.diagonal();
         scene.accel = Accel::new(&boxes, scene.bounds.largest_coordinate());

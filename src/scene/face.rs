@@ -89,11 +89,15 @@ impl Patch {
 
     /// The rectangle that the chart covers, mm.
     pub fn chart_bounds(&self) -> ChartRect {
-        self.chart.as_ref().map_or_else(|| self.shape.chart_bounds(), |chart| chart.bounds(&self.shape))
+        self.chart
+            .as_ref()
+            .map_or_else(|| self.shape.chart_bounds(), |chart| chart.bounds(&self.shape))
     }
 
     /// Area of the part whose chart lies in `rect`, mm².
     pub fn area_in(&self, rect: ChartRect) -> f64 {
-        self.chart.as_ref().map_or_else(|| self.shape.area_in(rect), |chart| chart.area_in(&self.shape, rect))
+        self.chart
+            .as_ref()
+            .map_or_else(|| self.shape.area_in(rect), |chart| chart.area_in(&self.shape, rect))
     }
 }

@@ -1,6 +1,5 @@
 //! Cells of a sensor in the unrolled coordinates of its face.
 
-
 use crate::scene::shape::ChartRect;
 use glam::DVec2;
 use std::f64::consts::TAU;

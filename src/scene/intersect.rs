@@ -5,9 +5,9 @@
 //! a hair beyond an edge is still caught. Of the surface the ray starts on, the root at the start is no root.
 //! Surfaces within [`Scene::tolerance`] of the nearest hit are one event.
 
-use crate::scene::shape::{Crossing, Start, Toward};
 use crate::scene::mesh::Line;
 use crate::scene::pieces::Surface;
+use crate::scene::shape::{Crossing, Start, Toward};
 use crate::scene::{Inside, Owner, PrimId, Ray, Scene};
 use smallvec::SmallVec;
 
@@ -97,14 +97,20 @@ impl Scene {
         };
         let line = self.line(ray);
         self.accel.visit(ray, |index| {
-            self.crossings(PrimId::new(index), ray, line.as_ref(), Start::Elsewhere, |owner, crossing| {
-                if let Owner::Solid(solid) = owner {
-                    let slot = &mut nearest[solid.index()];
-                    if crossing.t > beyond && crossing.t < slot.0 {
-                        *slot = (crossing.t, crossing.toward);
+            self.crossings(
+                PrimId::new(index),
+                ray,
+                line.as_ref(),
+                Start::Elsewhere,
+                |owner, crossing| {
+                    if let Owner::Solid(solid) = owner {
+                        let slot = &mut nearest[solid.index()];
+                        if crossing.t > beyond && crossing.t < slot.0 {
+                            *slot = (crossing.t, crossing.toward);
+                        }
                     }
-                }
-            });
+                },
+            );
             f64::INFINITY
         });
         nearest
@@ -120,7 +126,9 @@ impl Scene {
         let line = self.line(ray);
         self.accel.visit(ray, |index| {
             let prim = PrimId::new(index);
-            self.crossings(prim, ray, line.as_ref(), Start::Elsewhere, |_, crossing| visit(prim, crossing));
+            self.crossings(prim, ray, line.as_ref(), Start::Elsewhere, |_, crossing| {
+                visit(prim, crossing)
+            });
             f64::INFINITY
         });
     }

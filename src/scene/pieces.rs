@@ -96,23 +96,19 @@ impl Scene {
             Some((body, index)) => {
                 body.planes[index].map_or(0.0, |plane| body.mesh.chart_area_in(index, &plane, rect))
             }
-            None => self
-                .face_patches(face)
-                .iter()
-                .map(|patch| patch.area_in(rect))
-                .sum(),
+            None => self.face_patches(face).iter().map(|patch| patch.area_in(rect)).sum(),
         }
     }
 
     /// The rectangle that a face's chart covers, mm; `None` for a curved face of a mesh.
     pub fn face_rect(&self, face: FaceId) -> Option<ChartRect> {
         match self.mesh_face(face) {
-            Some((body, index)) => body.planes[index].map(|plane| body.mesh.chart_bounds(index, &plane)),
-            None => self
-                .face_patches(face)
-                .iter()
-                .map(Patch::chart_bounds)
-                .reduce(ChartRect::union),
+            Some((body, index)) => {
+                body.planes[index].map(|plane| body.mesh.chart_bounds(index, &plane))
+            }
+            None => {
+                self.face_patches(face).iter().map(Patch::chart_bounds).reduce(ChartRect::union)
+            }
         }
     }
 
@@ -132,7 +128,11 @@ impl Scene {
         match self.face_patches(face) {
             [Patch { shape: Shape::Flat(flat), .. }] => match flat.region() {
                 Region::Annulus { inner, outer } if *inner == 0.0 => Some(*outer),
-                Region::Annulus { .. } | Region::Rectangle { .. } | Region::Polygon(_) | Region::Ellipse { .. } | Region::Sector { .. } => None,
+                Region::Annulus { .. }
+                | Region::Rectangle { .. }
+                | Region::Polygon(_)
+                | Region::Ellipse { .. }
+                | Region::Sector { .. } => None,
             },
             _ => None,
         }

@@ -38,8 +38,9 @@ impl Scene {
 
     /// Where every face meets the plane z = 0 of `plane`, within `window` of its axes, mm.
     pub fn section(&self, plane: &Frame, window: ChartRect) -> Vec<Outline> {
-        let mut outlines: Vec<Outline> =
-            (0..self.faces.len()).map(|face| Outline { face: FaceId::new(face), points: Vec::new() }).collect();
+        let mut outlines: Vec<Outline> = (0..self.faces.len())
+            .map(|face| Outline { face: FaceId::new(face), points: Vec::new() })
+            .collect();
         let size = window.max - window.min;
         for ray in 0..RAYS {
             let share = (ray as f64 + 0.5) / RAYS as f64;

@@ -201,7 +201,8 @@ fn scatter(
         index_from: index(interface.from),
         index_to: index(interface.to),
     };
-    let bsdf = interface.finish.map_or(&Bsdf::Smooth, |finish| &scene.finishes[finish.index()].bsdf);
+    let bsdf =
+        interface.finish.map_or(&Bsdf::Smooth, |finish| &scene.finishes[finish.index()].bsdf);
     let out = bsdf.scatter(&incidence, sampler)?;
     Some(if shading.is_some() { kept_on_its_side(out, facet) } else { out })
 }

@@ -91,7 +91,7 @@ fn check_area(key: &Key, kind: &str, area: Area, sensor: &SensorSpec, problems: 
 fn check_plane(key: &Key, plane: &PlaneSpec, problems: &mut Problems) {
     match (plane.cells, plane.rings, plane.sectors) {
         (Some([nx, ny]), None, None) => {
-            check_cells(&key.field("cells"), f64::from(nx) * f64::from(ny), problems)
+            check_cells(&key.field("cells"), f64::from(nx) * f64::from(ny), problems);
         }
         (None, Some(rings), Some(sectors)) => {
             check_cells(&key.field("rings"), f64::from(rings) * f64::from(sectors), problems);

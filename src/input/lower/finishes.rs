@@ -8,7 +8,9 @@ use crate::scene::FinishId;
 impl Context<'_> {
     /// Adds the named finishes, the predefined ones first; a definition of the same name wins.
     pub(super) fn lower_finishes(&mut self) {
-        for (name, bsdf) in [("polished", Bsdf::Smooth), ("black", Bsdf::Absorber), ("open", Bsdf::Open)] {
+        for (name, bsdf) in
+            [("polished", Bsdf::Smooth), ("black", Bsdf::Absorber), ("open", Bsdf::Open)]
+        {
             let id = self.builder.add_finish(name, bsdf);
             self.finishes.insert(name.to_owned(), id);
         }
@@ -44,7 +46,10 @@ impl Context<'_> {
             }
             FinishSpec::Gaussian(spec) => gaussian(spec),
             FinishSpec::Mixture(parts) => Bsdf::Mixture(
-                parts.iter().map(|part| (part.weight, self.referenced(&part.finish, depth + 1))).collect(),
+                parts
+                    .iter()
+                    .map(|part| (part.weight, self.referenced(&part.finish, depth + 1)))
+                    .collect(),
             ),
         }
     }
@@ -57,10 +62,9 @@ impl Context<'_> {
             FinishRef::Inline(spec) if depth <= DEEPEST => self.bsdf(spec, depth),
             FinishRef::Name(name) if depth <= DEEPEST => match self.spec.finishes.get(name) {
                 Some(spec) => self.bsdf(spec, depth),
-                None => self
-                    .finishes
-                    .get(name)
-                    .map_or(Bsdf::Absorber, |id| self.builder.scene().finishes[id.index()].bsdf.clone()),
+                None => self.finishes.get(name).map_or(Bsdf::Absorber, |id| {
+                    self.builder.scene().finishes[id.index()].bsdf.clone()
+                }),
             },
             FinishRef::Inline(_) | FinishRef::Name(_) => Bsdf::Absorber,
         }

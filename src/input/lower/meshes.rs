@@ -48,13 +48,19 @@ impl Context<'_> {
             (health.inconsistent_edges, "edges whose two triangles face opposite sides"),
         ];
         for (count, what) in defects.into_iter().filter(|(count, _)| *count > 0) {
-            self.problems
-                .error(key, format!("`{name}` has {count} {what}"))
-                .hint("repair the mesh: a solid needs a closed surface that faces outward everywhere");
+            self.problems.error(key, format!("`{name}` has {count} {what}")).hint(
+                "repair the mesh: a solid needs a closed surface that faces outward everywhere",
+            );
         }
         if health.open_edges == 0 && health.signed_volume_mm3 < 0.0 {
             self.problems
-                .error(key, format!("`{name}` is inside out: its volume is {:.4} mm³", health.signed_volume_mm3))
+                .error(
+                    key,
+                    format!(
+                        "`{name}` is inside out: its volume is {:.4} mm³",
+                        health.signed_volume_mm3
+                    ),
+                )
                 .hint("flip the orientation of its triangles");
         }
         if health.degenerate_triangles > 0 {
@@ -95,7 +101,10 @@ impl Context<'_> {
                 None => {
                     let hint = name_hint(face, known.iter().copied());
                     self.problems
-                        .error(&key.field("faces").field(face), format!("`{name}` has no face `{face}`"))
+                        .error(
+                            &key.field("faces").field(face),
+                            format!("`{name}` has no face `{face}`"),
+                        )
                         .hint(hint);
                 }
             }

@@ -93,13 +93,18 @@ fn position(at: Option<&PlacementSpec>) -> Option<DVec3> {
 
 /// Lumens, unless a source is given in watts.
 fn flux_unit(spec: &SceneSpec) -> FluxUnit {
-    if spec.sources.values().any(|source| source.common().flux_w.is_some()) { FluxUnit::Watt } else { FluxUnit::Lumen }
+    if spec.sources.values().any(|source| source.common().flux_w.is_some()) {
+        FluxUnit::Watt
+    } else {
+        FluxUnit::Lumen
+    }
 }
 
 impl Context<'_> {
     fn lower_media(&mut self) {
         for (name, medium) in &self.spec.media {
-            let id = self.builder.add_medium(Medium::new(name, medium.index, medium.absorption_per_mm));
+            let id =
+                self.builder.add_medium(Medium::new(name, medium.index, medium.absorption_per_mm));
             self.media.insert(name.clone(), id);
         }
         // Validated: the surroundings are a known medium.
@@ -110,17 +115,22 @@ impl Context<'_> {
 
     /// Builds solids and sheets, each after what it stands at.
     fn lower_bodies(&mut self) {
-        let mut waiting: Vec<Body> = self.spec.solids.keys().map(|name| Body::Solid(name.clone())).collect();
+        let mut waiting: Vec<Body> =
+            self.spec.solids.keys().map(|name| Body::Solid(name.clone())).collect();
         waiting.extend(self.spec.sheets.keys().map(|name| Body::Sheet(name.clone())));
         while !waiting.is_empty() {
-            let (ready, blocked): (Vec<Body>, Vec<Body>) = waiting.iter().cloned().partition(|body| {
-                let support = self.support(body);
-                !waiting.iter().any(|other| Some(other.name()) == support.as_deref())
-            });
+            let (ready, blocked): (Vec<Body>, Vec<Body>) =
+                waiting.iter().cloned().partition(|body| {
+                    let support = self.support(body);
+                    !waiting.iter().any(|other| Some(other.name()) == support.as_deref())
+                });
             if ready.is_empty() {
                 for body in &blocked {
                     self.problems
-                        .error(&body.key().field("at"), "stands at a face of a thing that stands at its own")
+                        .error(
+                            &body.key().field("at"),
+                            "stands at a face of a thing that stands at its own",
+                        )
                         .hint("give one of them a position_mm");
                 }
                 return;

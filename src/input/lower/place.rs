@@ -17,7 +17,12 @@ pub(super) enum Facing {
 
 impl Context<'_> {
     /// The frame of a placement, about the scene's origin; the origin of the user when none is given.
-    pub(super) fn place(&mut self, at: Option<&PlacementSpec>, key: &Key, facing: Facing) -> Option<Frame> {
+    pub(super) fn place(
+        &mut self,
+        at: Option<&PlacementSpec>,
+        key: &Key,
+        facing: Facing,
+    ) -> Option<Frame> {
         match at {
             None => Some(Frame::WORLD.shifted(-self.builder.scene().origin)),
             Some(PlacementSpec::InSpace(space)) => self.in_space(space, &key.field("at")),
@@ -28,7 +33,9 @@ impl Context<'_> {
     fn in_space(&mut self, space: &SpacePlacementSpec, key: &Key) -> Option<Frame> {
         let origin = DVec3::from(space.position_mm) - self.builder.scene().origin;
         let Some(axis) = DVec3::from(space.axis).try_normalize() else {
-            self.problems.error(&key.field("axis"), "a direction of length zero").hint("for example [0, 0, 1]");
+            self.problems
+                .error(&key.field("axis"), "a direction of length zero")
+                .hint("for example [0, 0, 1]");
             return None;
         };
         let frame = match space.x_axis {
@@ -36,7 +43,8 @@ impl Context<'_> {
             Some(x) => match Frame::from_axis_and_x(origin, axis, DVec3::from(x)) {
                 Some(frame) => frame,
                 None => {
-                    self.problems.error(&key.field("x_axis"), "is parallel to the axis, or of length zero");
+                    self.problems
+                        .error(&key.field("x_axis"), "is parallel to the axis, or of length zero");
                     return None;
                 }
             },
@@ -57,7 +65,10 @@ impl Context<'_> {
                 .hint("use position_mm and axis instead");
             return None;
         };
-        let origin = plane.origin + at.offset_mm[0] * plane.x + at.offset_mm[1] * plane.y + at.gap_mm * plane.z;
+        let origin = plane.origin
+            + at.offset_mm[0] * plane.x
+            + at.offset_mm[1] * plane.y
+            + at.gap_mm * plane.z;
         let frame = match facing {
             Facing::Away => Frame { origin, ..plane },
             // Half a turn about x.

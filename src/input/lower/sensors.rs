@@ -5,15 +5,15 @@ use crate::input::lower::Context;
 use crate::input::lower::place::Facing;
 use crate::input::lower::surfaces::tilted;
 use crate::input::spec::sensor::{
-    CountsSpec, DirectionSpec, GoniometerSpec, LuminanceSpec, PlaneSpec, SensorKind as KindSpec, SensorSide,
-    SensorSpec,
+    CountsSpec, DirectionSpec, GoniometerSpec, LuminanceSpec, PlaneSpec, SensorKind as KindSpec,
+    SensorSide, SensorSpec,
 };
 use crate::input::spec::sweep::{CircleSpec, RectangleSpec};
 use crate::math::Frame;
 use crate::scene::shape::{ChartRect, Flat, Region, Shape};
 use crate::scene::{
-    Counts, FaceId, FaceSpec, Goniometer, Grid, Owner, Piece, Place, Scene, Sensor, SensorKind, Sides,
-    SurfaceSensor, Views,
+    Counts, FaceId, FaceSpec, Goniometer, Grid, Owner, Piece, Place, Scene, Sensor, SensorKind,
+    Sides, SurfaceSensor, Views,
 };
 use std::f64::consts::PI;
 
@@ -36,10 +36,15 @@ impl Context<'_> {
         let kind = match kind {
             KindSpec::Plane(plane) => {
                 let division = division(plane);
-                self.surface(name, spec, plane.rectangle, plane.disk, division, key).map(SensorKind::Surface)
+                self.surface(name, spec, plane.rectangle, plane.disk, division, key)
+                    .map(SensorKind::Surface)
             }
-            KindSpec::Luminance(luminance) => self.luminance(name, spec, luminance, key).map(SensorKind::Surface),
-            KindSpec::Goniometer(goniometer) => self.goniometer(spec, goniometer, key).map(SensorKind::Goniometer),
+            KindSpec::Luminance(luminance) => {
+                self.luminance(name, spec, luminance, key).map(SensorKind::Surface)
+            }
+            KindSpec::Goniometer(goniometer) => {
+                self.goniometer(spec, goniometer, key).map(SensorKind::Goniometer)
+            }
         };
         let aim = self.aim(spec, key);
         let entering = match &spec.entering {
@@ -66,10 +71,14 @@ impl Context<'_> {
         key: &Key,
     ) -> Option<SurfaceSensor> {
         let division = Division::Cells(luminance.cells);
-        let mut sensor = self.surface(name, spec, luminance.rectangle, luminance.disk, division, key)?;
+        let mut sensor =
+            self.surface(name, spec, luminance.rectangle, luminance.disk, division, key)?;
         let Some(frame) = sensor.frame else {
             self.problems
-                .error(&key.field("on"), "a luminance sensor needs a flat face: its directions refer to one normal")
+                .error(
+                    &key.field("on"),
+                    "a luminance sensor needs a flat face: its directions refer to one normal",
+                )
                 .hint("choose an end face, or a plane of its own by `at`");
             return None;
         };
@@ -77,7 +86,12 @@ impl Context<'_> {
         Some(sensor)
     }
 
-    fn goniometer(&mut self, spec: &SensorSpec, goniometer: &GoniometerSpec, key: &Key) -> Option<Goniometer> {
+    fn goniometer(
+        &mut self,
+        spec: &SensorSpec,
+        goniometer: &GoniometerSpec,
+        key: &Key,
+    ) -> Option<Goniometer> {
         let frame = self.place(spec.at.as_ref(), key, Facing::Toward)?;
         Some(Goniometer {
             frame,
@@ -122,10 +136,13 @@ impl Context<'_> {
                 Division::Rings(..) => "rings and sectors need a round, flat sensor",
                 Division::Cells(_) => "a curved face of a mesh cannot be unrolled into cells",
             };
-            self.problems.error(key, wanted).hint("use `cells = [nx, ny]` on a face that is flat or swept");
+            self.problems
+                .error(key, wanted)
+                .hint("use `cells = [nx, ny]` on a face that is flat or swept");
             return None;
         };
-        let areas = grid.cell_areas(|rect| faces.iter().map(|face| scene.face_area_in(*face, rect)).sum());
+        let areas =
+            grid.cell_areas(|rect| faces.iter().map(|face| scene.face_area_in(*face, rect)).sum());
         Some(SurfaceSensor { faces, place, counts, sides, grid, areas, views: None, frame })
     }
 
@@ -147,13 +164,16 @@ impl Context<'_> {
     ) -> Option<(Vec<FaceId>, Place)> {
         let frame = self.place(spec.at.as_ref(), key, Facing::Toward)?;
         let region = match (rectangle, disk) {
-            (Some(r), _) => Region::Rectangle { half_x: 0.5 * r.width_mm, half_y: 0.5 * r.height_mm },
+            (Some(r), _) => {
+                Region::Rectangle { half_x: 0.5 * r.width_mm, half_y: 0.5 * r.height_mm }
+            }
             (None, Some(disk)) => Region::Annulus { inner: 0.0, outer: disk.radius_mm },
             // Validated: a free sensor has a shape.
             (None, None) => return None,
         };
         let black = self.finishes.get("black").copied().filter(|_| spec.absorbing);
-        let (owner, place) = if spec.absorbing { (Owner::Sheet, Place::Face) } else { (Owner::Port, Place::Port) };
+        let (owner, place) =
+            if spec.absorbing { (Owner::Sheet, Place::Face) } else { (Owner::Port, Place::Port) };
         let face = self.builder.add_face(FaceSpec {
             name: name.to_owned(),
             owner,
@@ -180,7 +200,9 @@ fn grid(scene: &Scene, faces: &[FaceId], division: &Division) -> Option<Grid> {
     let rects: Option<Vec<ChartRect>> = faces.iter().map(|face| scene.face_rect(*face)).collect();
     let rect = rects?.into_iter().reduce(ChartRect::union)?;
     match division {
-        Division::Cells([nu, nv]) => Some(Grid::Cartesian { rect, nu: *nu as usize, nv: *nv as usize }),
+        Division::Cells([nu, nv]) => {
+            Some(Grid::Cartesian { rect, nu: *nu as usize, nv: *nv as usize })
+        }
         Division::Rings(rings, sectors) => {
             let [face] = faces else { return None };
             let radius = scene.face_disk_radius(*face)?;
@@ -194,7 +216,11 @@ fn views(luminance: &LuminanceSpec, frame: &Frame) -> Views {
     let half_angle = luminance.acceptance_half_angle_deg.to_radians();
     let local = |direction: &DirectionSpec| tilted(direction.theta_deg, direction.phi_deg);
     Views {
-        directions: luminance.directions.iter().map(|direction| frame.to_world(local(direction))).collect(),
+        directions: luminance
+            .directions
+            .iter()
+            .map(|direction| frame.to_world(local(direction)))
+            .collect(),
         half_angle,
         projected: luminance
             .directions

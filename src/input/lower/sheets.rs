@@ -36,7 +36,8 @@ impl Context<'_> {
     fn add_duct(&mut self, name: &str, surfaces: Surfaces, common: &DuctCommonSpec, key: &Key) {
         let inner = self.finish(&common.finish);
         let outer = self.finish(&common.outer);
-        let finishes = self.face_finishes(name, &surfaces.faces, &common.faces, &key.field("faces"));
+        let finishes =
+            self.face_finishes(name, &surfaces.faces, &common.faces, &key.field("faces"));
         self.add_faces(name, Owner::Sheet, surfaces.faces, |part, face| match part {
             // The front is outside.
             BodyPart::Wall => (outer, finishes.get(face).copied().or(inner)),
@@ -47,7 +48,9 @@ impl Context<'_> {
     fn sheet_surfaces(&mut self, sheet: &SheetSpec, frame: Frame, key: &Key) -> Option<Surfaces> {
         let flat = |region| Some(single(Shape::Flat(Flat::new(frame, region))));
         match sheet {
-            SheetSpec::Disk(disk) => flat(Region::Annulus { inner: 0.0, outer: disk.shape.radius_mm }),
+            SheetSpec::Disk(disk) => {
+                flat(Region::Annulus { inner: 0.0, outer: disk.shape.radius_mm })
+            }
             SheetSpec::Annulus(ring) => {
                 let (inner, outer) = (ring.shape.inner_radius_mm, ring.shape.outer_radius_mm);
                 if inner >= outer {
@@ -59,9 +62,10 @@ impl Context<'_> {
                 }
                 flat(Region::Annulus { inner, outer })
             }
-            SheetSpec::Rectangle(r) => {
-                flat(Region::Rectangle { half_x: 0.5 * r.shape.width_mm, half_y: 0.5 * r.shape.height_mm })
-            }
+            SheetSpec::Rectangle(r) => flat(Region::Rectangle {
+                half_x: 0.5 * r.shape.width_mm,
+                half_y: 0.5 * r.shape.height_mm,
+            }),
             SheetSpec::SphericalCap(cap) => {
                 let radius = cap.shape.sphere.radius_mm;
                 let z_min = radius * cap.shape.half_angle_deg.to_radians().cos();
@@ -70,8 +74,10 @@ impl Context<'_> {
             SheetSpec::ParabolicCylinder(trough) => {
                 let spec = &trough.shape;
                 if spec.x_min_mm >= spec.x_max_mm {
-                    self.problems
-                        .error(&key.field("x_min_mm"), format!("is not below x_max_mm, {} mm", spec.x_max_mm));
+                    self.problems.error(
+                        &key.field("x_min_mm"),
+                        format!("is not below x_max_mm, {} mm", spec.x_max_mm),
+                    );
                     return None;
                 }
                 let shape = ParabolicCylinder::new(

@@ -2,12 +2,14 @@
 
 use crate::input::keys::Key;
 use crate::input::lower::Context;
-use crate::input::problems::name_hint;
 use crate::input::lower::place::Facing;
 use crate::input::lower::surfaces::{BodyPart, Ends, NamedFace, Surfaces, disk_facing};
+use crate::input::problems::name_hint;
 use crate::input::spec::finish::FinishRef;
 use crate::input::spec::solid::{BoxSpec, CylinderSpec, LensSpec, SolidSpec};
-use crate::input::spec::sweep::{CircleSpec, LegSpec, ProfileSpec, RectangleSpec, StraightSpec, SweepSpec};
+use crate::input::spec::sweep::{
+    CircleSpec, LegSpec, ProfileSpec, RectangleSpec, StraightSpec, SweepSpec,
+};
 use crate::math::{Aabb, Frame};
 use crate::scene::shape::{Cylinder, Shape, Sphere};
 use crate::scene::{FaceId, FaceSpec, FinishId, Owner, Solid, SolidId};
@@ -35,7 +37,8 @@ impl Context<'_> {
         }
         let Some(surfaces) = self.solid_surfaces(solid, frame, &key) else { return };
         let id = self.add_solid(name, medium, common.priority, surfaces.volume);
-        let finishes = self.face_finishes(name, &surfaces.faces, &common.faces, &key.field("faces"));
+        let finishes =
+            self.face_finishes(name, &surfaces.faces, &common.faces, &key.field("faces"));
         self.add_faces(name, Owner::Solid(id), surfaces.faces, |_, face| {
             let finish = finishes.get(face).copied();
             (finish, finish)
@@ -49,13 +52,21 @@ impl Context<'_> {
         priority: i32,
         volume: Option<f64>,
     ) -> SolidId {
-        self.builder.add_solid(Solid { name: name.to_owned(), medium, priority, bounds: Aabb::EMPTY, volume })
+        self.builder.add_solid(Solid {
+            name: name.to_owned(),
+            medium,
+            priority,
+            bounds: Aabb::EMPTY,
+            volume,
+        })
     }
 
     fn solid_surfaces(&mut self, solid: &SolidSpec, frame: Frame, key: &Key) -> Option<Surfaces> {
         match solid {
             SolidSpec::Sweep(sweep) => self.sweep_surfaces(&sweep.shape, frame, key),
-            SolidSpec::Cylinder(cylinder) => self.sweep_surfaces(&cylinder_sweep(&cylinder.shape), frame, key),
+            SolidSpec::Cylinder(cylinder) => {
+                self.sweep_surfaces(&cylinder_sweep(&cylinder.shape), frame, key)
+            }
             SolidSpec::Box(cuboid) => self.sweep_surfaces(&box_sweep(&cuboid.shape), frame, key),
             SolidSpec::Sphere(sphere) => {
                 let radius = sphere.shape.radius_mm;
@@ -74,13 +85,18 @@ impl Context<'_> {
     /// A lens: two caps or disks and the edge between them.
     fn lens_surfaces(&mut self, lens: &LensSpec, frame: Frame, key: &Key) -> Option<Surfaces> {
         let rim = 0.5 * lens.diameter_mm;
-        for (field, radius) in [("entry_radius_mm", lens.entry_radius_mm), ("exit_radius_mm", lens.exit_radius_mm)] {
+        for (field, radius) in
+            [("entry_radius_mm", lens.entry_radius_mm), ("exit_radius_mm", lens.exit_radius_mm)]
+        {
             if let Some(radius) = radius
                 && radius.abs() < rim
             {
                 self.problems.error(
                     &key.field(field),
-                    format!("a sphere of radius {} mm does not reach the rim at {rim} mm", radius.abs()),
+                    format!(
+                        "a sphere of radius {} mm does not reach the rim at {rim} mm",
+                        radius.abs()
+                    ),
                 );
                 return None;
             }
@@ -93,7 +109,10 @@ impl Context<'_> {
         let no_edge = 1e-12 * lens.diameter_mm;
         if edge < -no_edge {
             self.problems
-                .error(&key.field("thickness_mm"), format!("the two ends cross before the rim, by {:.6} mm", -edge))
+                .error(
+                    &key.field("thickness_mm"),
+                    format!("the two ends cross before the rim, by {:.6} mm", -edge),
+                )
                 .hint("make the lens thicker, its diameter smaller or its ends flatter");
             return None;
         }
@@ -118,12 +137,16 @@ impl Context<'_> {
             let Some(finish) = self.finish(reference) else { continue };
             let named: Vec<&NamedFace> = faces
                 .iter()
-                .filter(|face| face.name == *name || (name == "wall" && face.part == BodyPart::Wall))
+                .filter(|face| {
+                    face.name == *name || (name == "wall" && face.part == BodyPart::Wall)
+                })
                 .collect();
             if named.is_empty() {
                 let known: Vec<&str> = faces.iter().map(|face| face.name.as_str()).collect();
                 let hint = name_hint(name, known.iter().copied());
-                self.problems.error(&key.field(name), format!("`{body}` has no face `{name}`")).hint(hint);
+                self.problems
+                    .error(&key.field(name), format!("`{body}` has no face `{name}`"))
+                    .hint(hint);
             }
             for face in named {
                 if face.name == *name {
@@ -150,7 +173,13 @@ impl Context<'_> {
             let open = owner == Owner::Sheet && face.part == BodyPart::End;
             let name = format!("{body}.{}", face.name);
             let owner = if open { Owner::Port } else { owner };
-            let id = self.builder.add_face(FaceSpec { name: name.clone(), owner, front, back, pieces: face.pieces });
+            let id = self.builder.add_face(FaceSpec {
+                name: name.clone(),
+                owner,
+                front,
+                back,
+                pieces: face.pieces,
+            });
             if face.part == BodyPart::Wall {
                 walls.push(id);
             }

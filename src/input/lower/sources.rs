@@ -14,7 +14,8 @@ use crate::optics::Bsdf;
 use crate::rng::Sampler;
 use crate::scene::shape::{Cylinder, Flat, Region, Shape, Sphere};
 use crate::scene::{
-    EmitSide, Emission, Emitter, Extent, FaceSpec, FinishId, Owner, Piece, PrimId, Scene, SolidId, Source, Start,
+    Emission, EmitSide, Emitter, Extent, FaceSpec, FinishId, Owner, Piece, PrimId, Scene, SolidId,
+    Source, Start,
 };
 use crate::units::{FluxUnit, per_m2_to_per_mm2};
 
@@ -44,32 +45,51 @@ impl Context<'_> {
         if start == Start::Behind {
             on.clear();
         }
-        self.builder.add_source(Source { name: name.to_owned(), flux, emitter, emission, start, on });
+        self.builder.add_source(Source {
+            name: name.to_owned(),
+            flux,
+            emitter,
+            emission,
+            start,
+            on,
+        });
     }
 
     fn emission(&mut self, source: &SourceSpec, key: &Key) -> Option<Emission> {
         let common = source.common();
         let axis = tilted(common.tilt_deg, common.azimuth_deg);
-        let default = if matches!(source, SourceSpec::Volume(_)) { EmissionSpec::Isotropic } else { EmissionSpec::Lambertian };
+        let default = if matches!(source, SourceSpec::Volume(_)) {
+            EmissionSpec::Isotropic
+        } else {
+            EmissionSpec::Lambertian
+        };
         let emission = match common.emission.unwrap_or(default) {
             EmissionSpec::Lambertian => Emission::Lambertian,
             EmissionSpec::Isotropic => Emission::Isotropic,
             EmissionSpec::Collimated => Emission::Collimated { axis },
             EmissionSpec::CosinePower(power) => Emission::CosinePower(power),
-            EmissionSpec::ConeHalfAngleDeg(degrees) => Emission::Cone { half_angle: degrees.to_radians(), axis },
+            EmissionSpec::ConeHalfAngleDeg(degrees) => {
+                Emission::Cone { half_angle: degrees.to_radians(), axis }
+            }
         };
         match emission {
             Emission::Cone { half_angle, .. } => {
                 let reach = half_angle.to_degrees() + common.tilt_deg;
                 let surface = matches!(
                     source,
-                    SourceSpec::Disk(_) | SourceSpec::Rectangle(_) | SourceSpec::Sphere(_)
-                        | SourceSpec::Cylinder(_) | SourceSpec::Face(_)
+                    SourceSpec::Disk(_)
+                        | SourceSpec::Rectangle(_)
+                        | SourceSpec::Sphere(_)
+                        | SourceSpec::Cylinder(_)
+                        | SourceSpec::Face(_)
                 );
                 // Rounding of 90 degrees to radians and back.
                 if surface && reach > 90.0 + 1e-9 {
                     self.problems
-                        .error(&key.field("tilt_deg"), format!("the tilted cone reaches {reach} deg, below the surface"))
+                        .error(
+                            &key.field("tilt_deg"),
+                            format!("the tilted cone reaches {reach} deg, below the surface"),
+                        )
                         .hint("keep tilt_deg plus the cone's half-angle at 90 or less");
                     return None;
                 }
@@ -78,7 +98,10 @@ impl Context<'_> {
             Emission::Lambertian | Emission::Isotropic | Emission::CosinePower(_) => {
                 if common.tilt_deg != 0.0 {
                     self.problems
-                        .error(&key.field("tilt_deg"), "only a cone or a collimated beam can be tilted")
+                        .error(
+                            &key.field("tilt_deg"),
+                            "only a cone or a collimated beam can be tilted",
+                        )
                         .hint("turn the source itself by `at.axis`");
                     return None;
                 }
@@ -88,7 +111,12 @@ impl Context<'_> {
     }
 
     /// What emits, and the surfaces of the scene it lies on.
-    fn emitter(&mut self, source: &SourceSpec, frame: Frame, key: &Key) -> Option<(Emitter, Vec<PrimId>)> {
+    fn emitter(
+        &mut self,
+        source: &SourceSpec,
+        frame: Frame,
+        key: &Key,
+    ) -> Option<(Emitter, Vec<PrimId>)> {
         let flat = |region| {
             let shape = Shape::Flat(Flat::new(frame, region));
             Some((Emitter::surface(vec![shape], EmitSide::Front, Some(frame)), Vec::new()))
@@ -109,25 +137,36 @@ impl Context<'_> {
                 }
                 flat(Region::Annulus { inner, outer })
             }
-            SourceSpec::Rectangle(r) => {
-                flat(Region::Rectangle { half_x: 0.5 * r.shape.width_mm, half_y: 0.5 * r.shape.height_mm })
-            }
+            SourceSpec::Rectangle(r) => flat(Region::Rectangle {
+                half_x: 0.5 * r.shape.width_mm,
+                half_y: 0.5 * r.shape.height_mm,
+            }),
             SourceSpec::Sphere(sphere) => {
                 let radius = sphere.shape.radius_mm;
                 let shape = Shape::Sphere(Sphere::zone(frame, radius, -radius, radius));
                 Some((Emitter::surface(vec![shape], EmitSide::Front, None), Vec::new()))
             }
             SourceSpec::Cylinder(cylinder) => {
-                let shape =
-                    Shape::Cylinder(Cylinder::new(frame, cylinder.shape.radius_mm, cylinder.shape.length_mm));
+                let shape = Shape::Cylinder(Cylinder::new(
+                    frame,
+                    cylinder.shape.radius_mm,
+                    cylinder.shape.length_mm,
+                ));
                 Some((Emitter::surface(vec![shape], EmitSide::Front, None), Vec::new()))
             }
-            SourceSpec::Face(face) => self.face_emitter(&face.shape.of, face.shape.side, &key.field("of")),
+            SourceSpec::Face(face) => {
+                self.face_emitter(&face.shape.of, face.shape.side, &key.field("of"))
+            }
             SourceSpec::Volume(volume) => self.volume_emitter(&volume.shape.of, &key.field("of")),
         }
     }
 
-    fn face_emitter(&mut self, of: &str, side: FaceSide, key: &Key) -> Option<(Emitter, Vec<PrimId>)> {
+    fn face_emitter(
+        &mut self,
+        of: &str,
+        side: FaceSide,
+        key: &Key,
+    ) -> Option<(Emitter, Vec<PrimId>)> {
         let faces = self.faces_named(of, key)?;
         let side = match side {
             FaceSide::Front => EmitSide::Front,
@@ -172,7 +211,13 @@ impl Context<'_> {
     }
 
     /// Flux in lm or W from whichever amount is given.
-    fn flux(&mut self, common: &SourceCommonSpec, emitter: &Emitter, law: Emission, key: &Key) -> Option<f64> {
+    fn flux(
+        &mut self,
+        common: &SourceCommonSpec,
+        emitter: &Emitter,
+        law: Emission,
+        key: &Key,
+    ) -> Option<f64> {
         let unit = self.builder.scene().unit;
         if unit == FluxUnit::Watt && common.flux_w.is_none() {
             self.problems
@@ -187,7 +232,10 @@ impl Context<'_> {
             let per_luminance = emitter.area().zip(law.projected_solid_angle());
             let Some((area, projected)) = per_luminance else {
                 self.problems
-                    .error(&key.field("luminance_cd_m2"), "needs a source with an area and a `lambertian` or cone emission")
+                    .error(
+                        &key.field("luminance_cd_m2"),
+                        "needs a source with an area and a `lambertian` or cone emission",
+                    )
                     .hint("give flux_lm instead");
                 return None;
             };
@@ -239,7 +287,8 @@ fn patch_range(extent: &Extent) -> std::ops::Range<usize> {
 
 /// Sources that touch no solid start all their paths outside, without asking.
 pub(super) fn settle_starts(spec: &SceneSpec, scene: &mut Scene) {
-    let boxes: Vec<_> = scene.solids.iter().map(|solid| solid.bounds.grown(scene.tolerance)).collect();
+    let boxes: Vec<_> =
+        scene.solids.iter().map(|solid| solid.bounds.grown(scene.tolerance)).collect();
     for source in &mut scene.sources {
         let bounds = source.emitter.bounds();
         debug_assert!(spec.sources.contains_key(&source.name), "sources come from the spec");
@@ -262,11 +311,17 @@ pub(super) fn check_starts(spec: &SceneSpec, scene: &Scene, problems: &mut Probl
         let starts: Vec<_> = (0..LOOKS)
             .map(|look| source.emit(scene, &mut Sampler::for_path(0, u64::MAX, look)))
             .collect();
-        let buried = |solid: SolidId| starts.iter().all(|start| start.inside.contains(solid)) && is_opaque(scene, solid);
-        if let Some(solid) = (0..scene.solids.len()).map(SolidId::new).find(|solid| buried(*solid)) {
+        let buried = |solid: SolidId| {
+            starts.iter().all(|start| start.inside.contains(solid)) && is_opaque(scene, solid)
+        };
+        if let Some(solid) = (0..scene.solids.len()).map(SolidId::new).find(|solid| buried(*solid))
+        {
             let name = &scene.solids[solid.index()].name;
             problems
-                .error(&key, format!("lies inside the opaque solid `{name}`: none of its light gets out"))
+                .error(
+                    &key,
+                    format!("lies inside the opaque solid `{name}`: none of its light gets out"),
+                )
                 .hint("move the source, or give a face of the solid another finish");
         }
     }
@@ -277,5 +332,9 @@ fn is_opaque(scene: &Scene, solid: SolidId) -> bool {
     let absorbs = |finish: Option<FinishId>| {
         finish.is_some_and(|finish| scene.finishes[finish.index()].bsdf == Bsdf::Absorber)
     };
-    scene.faces.iter().filter(|face| face.owner == Owner::Solid(solid)).all(|face| absorbs(face.back))
+    scene
+        .faces
+        .iter()
+        .filter(|face| face.owner == Owner::Solid(solid))
+        .all(|face| absorbs(face.back))
 }

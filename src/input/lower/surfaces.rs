@@ -2,7 +2,9 @@
 
 use crate::input::keys::Key;
 use crate::input::lower::Context;
-use crate::input::spec::sweep::{CompoundParabolicSpec, LegSpec, ParaboloidSpec, ProfileSpec, SweepSpec};
+use crate::input::spec::sweep::{
+    CompoundParabolicSpec, LegSpec, ParaboloidSpec, ProfileSpec, SweepSpec,
+};
 use crate::math::Frame;
 use crate::scene::Piece;
 use crate::scene::shape::{CompoundParabola, Flat, Paraboloid, Region, Shape};
@@ -49,7 +51,12 @@ impl NamedFace {
 
 impl Context<'_> {
     /// The faces of a profile carried along a path.
-    pub(super) fn sweep_surfaces(&mut self, spec: &SweepSpec, frame: Frame, key: &Key) -> Option<Surfaces> {
+    pub(super) fn sweep_surfaces(
+        &mut self,
+        spec: &SweepSpec,
+        frame: Frame,
+        key: &Key,
+    ) -> Option<Surfaces> {
         let profile = self.profile(&spec.profile, &key.field("profile"))?;
         let legs: Vec<Leg> = spec.path.iter().map(leg).collect();
         let swept = match sweep(frame, &profile, &legs) {
@@ -66,10 +73,13 @@ impl Context<'_> {
         for part in &swept.parts {
             let name = match part.wall {
                 Wall::Round => "wall".to_owned(),
-                Wall::Edge(side) => sides.get(side).cloned().unwrap_or_else(|| format!("wall_{}", side + 1)),
+                Wall::Edge(side) => {
+                    sides.get(side).cloned().unwrap_or_else(|| format!("wall_{}", side + 1))
+                }
                 Wall::Mitre => "wall_mitre".to_owned(),
             };
-            let piece = Piece { shape: part.shape.clone(), smooth: part.smooth, chart: Some(part.chart) };
+            let piece =
+                Piece { shape: part.shape.clone(), smooth: part.smooth, chart: Some(part.chart) };
             match faces.iter_mut().find(|face| face.name == name) {
                 Some(face) => face.pieces.push(piece),
                 None => faces.push(NamedFace { name, part: BodyPart::Wall, pieces: vec![piece] }),
@@ -103,7 +113,10 @@ impl Context<'_> {
         let length = spec.length_mm.unwrap_or(full);
         if length > full * (1.0 + 1e-12) {
             self.problems
-                .error(&key.field("length_mm"), format!("{length} is longer than the full length, {full:.6} mm"))
+                .error(
+                    &key.field("length_mm"),
+                    format!("{length} is longer than the full length, {full:.6} mm"),
+                )
                 .hint("leave length_mm out for the full length");
             return None;
         }
@@ -118,10 +131,18 @@ impl Context<'_> {
     }
 
     /// The faces of a paraboloid.
-    pub(super) fn paraboloid(&mut self, spec: &ParaboloidSpec, frame: Frame, key: &Key) -> Option<Surfaces> {
+    pub(super) fn paraboloid(
+        &mut self,
+        spec: &ParaboloidSpec,
+        frame: Frame,
+        key: &Key,
+    ) -> Option<Surfaces> {
         let (focal, hole, rim) = (spec.focal_length_mm, spec.hole_radius_mm, spec.radius_mm);
         if hole >= rim {
-            self.problems.error(&key.field("hole_radius_mm"), format!("the hole, {hole} mm, reaches the rim, {rim} mm"));
+            self.problems.error(
+                &key.field("hole_radius_mm"),
+                format!("the hole, {hole} mm, reaches the rim, {rim} mm"),
+            );
             return None;
         }
         let height = |radius: f64| radius * radius / (4.0 * focal);
@@ -130,10 +151,12 @@ impl Context<'_> {
             NamedFace::end("exit", disk_facing(frame, height(rim), rim, Ends::Exit)),
         ];
         if hole > 0.0 {
-            faces.push(NamedFace::end("entry", disk_facing(frame, height(hole), hole, Ends::Entry)));
+            faces
+                .push(NamedFace::end("entry", disk_facing(frame, height(hole), hole, Ends::Entry)));
         }
         // Half of base times height, less that of the tip that the hole cuts off.
-        let volume = 0.5 * std::f64::consts::PI * (rim * rim * height(rim) - hole * hole * height(hole));
+        let volume =
+            0.5 * std::f64::consts::PI * (rim * rim * height(rim) - hole * hole * height(hole));
         Some(Surfaces { faces, volume: Some(volume) })
     }
 }
@@ -196,9 +219,15 @@ fn leg(spec: &LegSpec) -> Leg {
 fn side_names(profile: &ProfileSpec) -> Vec<String> {
     match profile {
         ProfileSpec::Circle(_) => Vec::new(),
-        ProfileSpec::Rectangle(_) => ["wall_minus_y", "wall_plus_x", "wall_plus_y", "wall_minus_x"].map(String::from).into(),
-        ProfileSpec::RegularPolygon(p) => (1..=p.sides).map(|side| format!("wall_{side}")).collect(),
-        ProfileSpec::Polygon(p) => (1..=p.points_mm.len()).map(|side| format!("wall_{side}")).collect(),
+        ProfileSpec::Rectangle(_) => {
+            ["wall_minus_y", "wall_plus_x", "wall_plus_y", "wall_minus_x"].map(String::from).into()
+        }
+        ProfileSpec::RegularPolygon(p) => {
+            (1..=p.sides).map(|side| format!("wall_{side}")).collect()
+        }
+        ProfileSpec::Polygon(p) => {
+            (1..=p.points_mm.len()).map(|side| format!("wall_{side}")).collect()
+        }
     }
 }
 

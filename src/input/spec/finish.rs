@@ -21,7 +21,7 @@ pub struct MediumSpec {
 pub enum FinishSpec {
     /// A smooth interface between two media: Fresnel reflection and refraction, total internal reflection.
     Smooth(EmptySpec),
-    /// A mirror with a constant reflectance, or a window with a constant transmittance.
+    /// A mirror with a constant reflectance, or a window with a constant transmittance. The rest is absorbed.
     Specular(SpecularSpec),
     /// A smooth metal by its complex refractive index.
     Metal(MetalSpec),
@@ -29,9 +29,11 @@ pub enum FinishSpec {
     Absorber(EmptySpec),
     /// Nothing is there: light passes, unbent.
     Open(EmptySpec),
-    /// Perfectly diffuse reflection or transmission.
+    /// Perfectly diffuse reflection and transmission; together above 0 and at most 1. The rest is absorbed.
     Lambertian(LambertianSpec),
-    /// Scatter about the mirrored direction and the direction straight through.
+    /// Scatter about the mirrored direction and the direction straight through. With neither reflectance nor
+    /// transmittance given it is a rough interface between two media: the flux is split as at a smooth one, and
+    /// scattered about the mirrored and the refracted direction.
     Gaussian(GaussianSpec),
     /// Several finishes side by side on a scale too small to see.
     Mixture(#[schemars(length(min = 1))] Vec<MixturePartSpec>),
@@ -41,7 +43,7 @@ pub enum FinishSpec {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 pub struct EmptySpec {}
 
-/// A mirror with a constant reflectance. What is neither reflected nor transmitted is absorbed.
+/// A mirror with a constant reflectance.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SpecularSpec {
     /// Share of the flux that is mirrored, at every angle.
@@ -64,7 +66,7 @@ pub struct MetalSpec {
     pub k: f64,
 }
 
-/// Perfectly diffuse reflection and transmission. Together above 0 and at most 1; the rest is absorbed.
+/// Perfectly diffuse reflection and transmission.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LambertianSpec {
     /// Share of the flux that is reflected diffusely.
@@ -77,9 +79,7 @@ pub struct LambertianSpec {
     pub transmittance: f64,
 }
 
-/// Scatter about the mirrored direction and the direction straight through. With neither reflectance nor
-/// transmittance given it is a rough interface between two media: the flux is split as at a smooth one, and scattered
-/// about the mirrored and the refracted direction.
+/// Scatter about the mirrored direction and the direction straight through.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct GaussianSpec {
     /// Standard deviation of the scatter.

@@ -6,7 +6,7 @@
 use serde_json::{Map, Value as Json};
 
 use crate::input::keys::{Key, Segment};
-use crate::input::problems::Problems;
+use crate::input::problems::{Problem, Problems};
 use crate::input::schema;
 use crate::input::sources::{Origin, Sources};
 use crate::input::tree::{Entry, Node, Value};
@@ -14,7 +14,7 @@ use crate::input::tree::{Entry, Node, Value};
 mod choice;
 mod table;
 mod unknown;
-mod wording;
+pub(crate) mod wording;
 
 type Entries = indexmap::IndexMap<String, Entry>;
 
@@ -116,19 +116,14 @@ impl Walk<'_> {
             (Some("array"), Value::Array(items)) => self.array(node, items, schema, at),
             (Some("number"), Value::Float(number)) => self.number(node, *number, schema, at),
             (Some("number" | "integer"), Value::Integer(number)) => {
-                self.integer(node, *number, schema, at)
+                self.integer(node, *number, schema, at);
             }
             (Some("string"), Value::String(_)) | (Some("boolean"), Value::Boolean(_)) => {}
             _ => self.wrong_type(node, schema, at),
         }
     }
 
-    fn error(
-        &mut self,
-        node: &Node,
-        at: &At<'_>,
-        message: String,
-    ) -> &mut crate::input::problems::Problem {
+    fn error(&mut self, node: &Node, at: &At<'_>, message: String) -> &mut Problem {
         self.problems.error(&at.to_key(), message).at(&node.origin)
     }
 

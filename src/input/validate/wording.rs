@@ -71,8 +71,8 @@ pub(crate) fn range(schema: &Json) -> Option<String> {
     (!parts.is_empty()).then(|| parts.join(", "))
 }
 
-/// A limit without a needless ".0".
-fn short(limit: &Json) -> String {
+/// A number without a needless ".0".
+pub(crate) fn short(limit: &Json) -> String {
     limit
         .as_i64()
         .map(|limit| limit.to_string())

@@ -7,13 +7,33 @@ use glam::DVec2;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum WallChart {
     /// Shifted and scaled: `offset + scale * (u, v)`.
-    Along { offset: DVec2, scale: DVec2 },
+    Along {
+        /// Where the shape's (0, 0) comes to lie, mm.
+        offset: DVec2,
+        /// Factors along u and v.
+        scale: DVec2,
+    },
     /// The shape's v goes around and its u along: `offset + scale * (v, u)`.
-    Across { offset: DVec2, scale: DVec2 },
+    Across {
+        /// Where the shape's (0, 0) comes to lie, mm.
+        offset: DVec2,
+        /// Factors along the sweep's u and v.
+        scale: DVec2,
+    },
     /// A flat trapezoid whose parallel sides are sections.
-    Trapezoid { target: ChartRect, trapezoid: Trapezoid },
+    Trapezoid {
+        /// The rectangle it fills, mm.
+        target: ChartRect,
+        /// Its corners.
+        trapezoid: Trapezoid,
+    },
     /// A flat sector about a bend axis.
-    Sector { target: ChartRect, sector: Sector },
+    Sector {
+        /// The rectangle it fills, mm.
+        target: ChartRect,
+        /// Its radii and angle.
+        sector: Sector,
+    },
 }
 
 /// The corners of a trapezoid with sides at y = 0 and y = `height`, mm.

@@ -21,7 +21,7 @@ pub use profile::{Profile, ProfileError};
 
 use crate::math::Frame;
 use crate::scene::shape::{ChartRect, Flat, Region, Shape};
-pub use chart::WallChart;
+pub use chart::{Sector, Sense, Trapezoid, WallChart};
 use glam::{DVec2, DVec3};
 
 /// The surfaces of a swept profile.

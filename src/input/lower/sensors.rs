@@ -92,7 +92,8 @@ impl Context<'_> {
         goniometer: &GoniometerSpec,
         key: &Key,
     ) -> Option<Goniometer> {
-        let frame = self.place(spec.at.as_ref(), key, Facing::Toward)?;
+        // The pole is where the light of the face goes.
+        let frame = self.place(spec.at.as_ref(), key, Facing::Away)?;
         Some(Goniometer {
             frame,
             // Validated: the steps divide 360 and 180.

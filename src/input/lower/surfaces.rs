@@ -5,7 +5,7 @@ use crate::input::lower::Context;
 use crate::input::spec::sweep::{
     CompoundParabolicSpec, LegSpec, ParaboloidSpec, ProfileSpec, SweepSpec,
 };
-use crate::math::Frame;
+use crate::math::{Frame, planar};
 use crate::scene::Piece;
 use crate::scene::shape::{CompoundParabola, Flat, Paraboloid, Region, Shape};
 use crate::scene::sweep::{CornerKind, Leg, Profile, ProfileError, Wall, sweep};
@@ -220,7 +220,7 @@ fn side_names(profile: &ProfileSpec) -> Vec<String> {
     match profile {
         ProfileSpec::Circle(_) => Vec::new(),
         ProfileSpec::Rectangle(_) => {
-            ["wall_minus_y", "wall_plus_x", "wall_plus_y", "wall_minus_x"].map(String::from).into()
+            ["wall_plus_x", "wall_plus_y", "wall_minus_x", "wall_minus_y"].map(String::from).into()
         }
         ProfileSpec::RegularPolygon(p) => {
             (1..=p.sides).map(|side| format!("wall_{side}")).collect()

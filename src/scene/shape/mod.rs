@@ -140,7 +140,7 @@ impl ChartRect {
 /// A trimmed, oriented analytic surface.
 #[derive(Debug, Clone)]
 pub enum Shape {
-    /// A piece of a plane: disk, annulus, ellipse or polygon.
+    /// A piece of a plane: disk, ring, sector, ellipse, rectangle or polygon.
     Flat(Flat),
     /// A piece of a circular cylinder's wall.
     Cylinder(Cylinder),

@@ -2,10 +2,8 @@
 
 use crate::math::{Aabb, planar};
 use crate::scene::shape::Polygon;
-use crate::scene::sweep::Profile;
-use crate::scene::sweep::path::{
-    End, Form, Path, Piece, SweepError, SweepProblem, bend_frame, direction, unit,
-};
+use crate::scene::sweep::path::{End, Form, Path, Piece, bend_frame, direction, unit};
+use crate::scene::sweep::{Profile, SweepError, SweepProblem};
 use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
 
@@ -13,7 +11,7 @@ use std::f64::consts::TAU;
 const MARGIN: f64 = 1e-9;
 /// The most sections of a piece, and the most points of a section, at which an overlap is looked for.
 const MAX_SECTIONS: usize = 400;
-const MAX_SECTION_POINTS: usize = 32;
+const MAX_SECTION_POINTS: usize = 64;
 
 /// The first reason why the pieces of `path` make no sweep of `profile`.
 pub(super) fn check(profile: &Profile, path: &Path) -> Result<(), SweepError> {
@@ -147,7 +145,7 @@ fn distance(q: DVec2, a: DVec2, b: DVec2) -> f64 {
 fn samples(outline: &Outline, piece: &Piece) -> Vec<DVec3> {
     let start = &piece.start;
     let size = outline.size * start.scale;
-    let count = |length: f64| (4.0 * length / size).ceil().clamp(2.0, MAX_SECTIONS as f64) as usize;
+    let count = |length: f64| (4.0 * length / size).ceil().clamp(8.0, MAX_SECTIONS as f64) as usize;
     let shares = |n: usize| (0..=n).map(move |i| i as f64 / n as f64);
     let at = |q: DVec2, z: f64| start.frame.origin + direction(&start.frame, q) + z * start.frame.z;
     let mut points = Vec::new();
@@ -208,5 +206,113 @@ fn holds(outline: &Outline, piece: &Piece, p: DVec3) -> bool {
             between(azimuth * from_axis, 0.0, angle * from_axis) && outline.holds(q, start.scale)
         }
         Form::Corner { .. } => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Frame;
+    use crate::scene::sweep::{CornerKind, Leg, sweep};
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    fn straight(length: f64) -> Leg {
+        Leg::Straight { length, end_scale: 1.0 }
+    }
+
+    fn taper(length: f64, end_scale: f64) -> Leg {
+        Leg::Straight { length, end_scale }
+    }
+
+    fn bend(angle: f64, radius: f64) -> Leg {
+        Leg::Bend { angle, radius, toward: 0.0 }
+    }
+
+    fn corner(angle: f64, toward: f64, kind: CornerKind) -> Leg {
+        Leg::Corner { angle, toward, kind }
+    }
+
+    fn plain(angle: f64) -> Leg {
+        corner(angle, 0.0, CornerKind::Plain)
+    }
+
+    fn frame() -> Frame {
+        Frame::from_axis(DVec3::new(3.0, -2.0, 5.0), DVec3::new(0.3, 0.4, 0.7))
+    }
+
+    fn problem(profile: &Profile, legs: &[Leg]) -> (Option<usize>, SweepProblem) {
+        let error = sweep(frame(), profile, legs).unwrap_err();
+        (error.leg, error.problem)
+    }
+
+    #[test]
+    fn paths_that_make_no_sweep_are_refused_at_their_leg() {
+        let circle = Profile::circle(1.5).unwrap();
+        let square = Profile::rectangle(2.0, 2.0).unwrap();
+        assert_eq!(problem(&circle, &[]), (None, SweepProblem::NoLegs));
+        for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            for leg in [straight(bad), taper(1.0, bad), bend(1.0, bad)] {
+                let (at, problem) = problem(&circle, &[straight(1.0), leg]);
+                assert!(at == Some(1) && matches!(problem, SweepProblem::OutOfRange { .. }));
+            }
+            for leg in [bend(bad, 9.0), plain(bad)] {
+                let (at, problem) = problem(&circle, &[leg]);
+                assert!(at == Some(0) && matches!(problem, SweepProblem::Angle { .. }));
+            }
+        }
+        assert!(matches!(problem(&circle, &[plain(PI)]).1, SweepProblem::Angle { .. }));
+        assert!(matches!(
+            problem(&circle, &[corner(1.0, f64::NAN, CornerKind::Plain)]).1,
+            SweepProblem::Angle { .. }
+        ));
+        let shrinking = [taper(1.0, 1e-4), taper(1.0, 1e-4)];
+        assert!(matches!(problem(&circle, &shrinking), (Some(1), SweepProblem::Scaled { .. })));
+        let tight = [straight(1.0), bend(1.0, 1.5)];
+        let expected = SweepProblem::TightBend { radius: 1.5, reach: 1.5 };
+        assert_eq!(problem(&circle, &tight), (Some(1), expected));
+        // The plate of a mitre by 45° reaches cot(22.5°) = 2.41 back into the leg, 2 mm more than the corner is long.
+        let short = [straight(1.9), corner(0.25 * PI, 0.0, CornerKind::Mitred), straight(5.0)];
+        let (at, SweepProblem::TooShort { missing }) = problem(&square, &short) else { panic!() };
+        assert!(at == Some(0) && (missing - 0.1).abs() < 1e-12, "{missing}");
+        assert!(
+            sweep(
+                frame(),
+                &square,
+                &[straight(2.1), corner(0.25 * PI, 0.0, CornerKind::Mitred), straight(5.0)]
+            )
+            .is_ok()
+        );
+    }
+
+    #[test]
+    fn paths_that_run_through_themselves_are_refused() {
+        let circle = Profile::circle(1.0).unwrap();
+        let square = Profile::rectangle(2.0, 2.0).unwrap();
+        let ell = [(-1.0, -1.0), (2.0, -1.0), (2.0, 0.2), (0.4, 0.2), (0.4, 1.5), (-1.0, 1.5)];
+        let ell = Profile::polygon(ell.map(DVec2::from).to_vec()).unwrap();
+        for profile in [&circle, &square, &ell] {
+            assert_eq!(problem(profile, &[bend(TAU, 5.0)]).1, SweepProblem::ClosedRing);
+            let loops = [straight(20.0), bend(1.5 * PI, 5.0), straight(20.0)];
+            let (at, found) = problem(profile, &loops);
+            assert!(
+                at == Some(2) && matches!(found, SweepProblem::Overlap { other: 1, .. }),
+                "{found}"
+            );
+            let spiral = [bend(1.9 * PI, 5.0), straight(5.0)];
+            assert!(matches!(problem(profile, &spiral).1, SweepProblem::Overlap { other: 1, .. }));
+            let knot = [
+                straight(6.0),
+                plain(FRAC_PI_2),
+                straight(3.0),
+                plain(FRAC_PI_2),
+                straight(3.0),
+                plain(FRAC_PI_2),
+                straight(9.0),
+            ];
+            assert!(matches!(problem(profile, &knot).1, SweepProblem::Overlap { .. }));
+        }
+        // Side by side, wall on wall, is no overlap.
+        let hairpin = [straight(9.0), plain(FRAC_PI_2), plain(FRAC_PI_2), straight(9.0)];
+        assert!(sweep(frame(), &square, &hairpin).is_ok());
     }
 }

@@ -5,10 +5,10 @@ use crate::math::{Frame, planar};
 use crate::scene::shape::{ChartRect, Cone, Cylinder, Flat, Region, Shape};
 use crate::scene::sweep::chart::{Sector, Sense, Trapezoid, WallChart};
 use crate::scene::sweep::path::{
-    CornerKind, End, Form, Path, Section, bend_frame, direction, mitre_frame, unit,
+    End, Form, Path, Section, bend_frame, direction, mitre_frame, unit,
 };
 use crate::scene::sweep::smooth::Smooth;
-use crate::scene::sweep::{Part, Wall};
+use crate::scene::sweep::{CornerKind, Part, Wall};
 use glam::DVec2;
 
 /// Below this share of the size, a difference is rounding: an edge is parallel, a wall has no height.

@@ -8,6 +8,7 @@
 mod chart;
 mod check;
 mod faceted;
+mod leg;
 mod path;
 mod profile;
 mod round;
@@ -16,7 +17,7 @@ mod smooth;
 mod tests;
 mod volume;
 
-pub use path::{CornerKind, Leg, SweepError, SweepProblem};
+pub use leg::{CornerKind, Leg, SweepError, SweepProblem};
 pub use profile::{Profile, ProfileError};
 
 use crate::math::Frame;

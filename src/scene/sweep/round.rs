@@ -2,11 +2,9 @@
 
 use crate::scene::shape::{Cone, Cylinder, Flat, HalfSpace, Region, Shape, Torus};
 use crate::scene::sweep::chart::WallChart;
-use crate::scene::sweep::path::{
-    CornerKind, End, Form, Path, Section, bend_frame, direction, mitre_frame,
-};
+use crate::scene::sweep::path::{End, Form, Path, Section, bend_frame, direction, mitre_frame};
 use crate::scene::sweep::smooth::Smooth;
-use crate::scene::sweep::{Part, Wall};
+use crate::scene::sweep::{CornerKind, Part, Wall};
 use glam::{DVec2, DVec3};
 
 /// The walls along `path` of the circle of `radius` at the entry, mm.

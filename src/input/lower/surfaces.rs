@@ -226,7 +226,12 @@ fn side_names(profile: &ProfileSpec) -> Vec<String> {
             (1..=p.sides).map(|side| format!("wall_{side}")).collect()
         }
         ProfileSpec::Polygon(p) => {
-            (1..=p.points_mm.len()).map(|side| format!("wall_{side}")).collect()
+            let points: Vec<DVec2> = p.points_mm.iter().map(|p| DVec2::from(*p)).collect();
+            let sides = points.len();
+            // Clockwise points are swept in reverse; sides are named in the order of the file.
+            let clockwise = planar::signed_area(&points) < 0.0;
+            let in_file = |side: usize| if clockwise { (2 * sides - 2 - side) % sides } else { side };
+            (0..sides).map(|side| format!("wall_{}", in_file(side) + 1)).collect()
         }
     }
 }

@@ -18,6 +18,7 @@ pub mod error;
 pub mod formats;
 pub mod input;
 pub mod math;
+pub mod measure;
 pub mod optics;
 pub mod rng;
 pub mod scene;

@@ -22,6 +22,8 @@ pub enum Dimension {
     Scatter,
     /// Whether a path of small throughput survives.
     Roulette,
+    /// Noise that is added to a result to learn its error.
+    Resampling,
 }
 
 /// A stream of numbers in [0, 1) that belongs to one path.

@@ -1,0 +1,290 @@
+//! Goniometers: intensity by direction, beam and field angles, and flux by zones.
+//!
+//! Intensity is flux over solid angle, a mean over each cell of the goniometric sphere (type C: γ from the pole, C
+//! about it). A cell stands for the γ that halves its solid angle, cos γ = (cos γ₁ + cos γ₂)/2. Cells are taken as
+//! independent, which makes the errors of large shares of the flux too large rather than too small.
+
+use crate::measure::evidence::{Evidence, counted};
+use crate::measure::extremes::{Extreme, Noisy, maximum};
+use crate::measure::{Measure, Status, beam};
+use crate::scene::{Goniometer, SensorId};
+use indexmap::IndexMap;
+use ndarray::Array2;
+use serde::Serialize;
+use std::f64::consts::{PI, TAU};
+
+/// Width of the zones that flux is added up over, deg.
+const ZONE_DEG: usize = 10;
+/// Rings have names of their own up to this number.
+const NAMED_RINGS: usize = 180;
+/// Planes C0-C180 and C90-C270 are looked at from this number of sectors on.
+const SECTORS_FOR_PLANES: usize = 4;
+/// Shares of the maximum that bound the beam and the field (ANSI/IES LS-1; CIE S 017: half of the maximum).
+const BEAM: f64 = 0.5;
+const FIELD: f64 = 0.1;
+
+/// What a goniometer has seen, cell by cell.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct IntensityTable {
+    /// Name of the sensor.
+    pub sensor: String,
+    /// Unit of intensity, such as `cd`.
+    pub unit: String,
+    /// Rings (γ, from the pole) by sectors (C), in `unit`.
+    pub values: Array2<f64>,
+    /// Standard errors, likewise.
+    pub std_errors: Array2<f64>,
+    /// Edges of the rings, deg.
+    pub gamma_deg: Vec<f64>,
+    /// Edges of the sectors, deg.
+    pub c_deg: Vec<f64>,
+    /// The γ that each ring stands for, deg.
+    pub ring_gamma_deg: Vec<f64>,
+    /// Mean intensity over C of each ring, in `unit`.
+    pub ring_values: Vec<f64>,
+    /// Their standard errors.
+    pub ring_std_errors: Vec<f64>,
+    /// Radius of the sphere, mm; `None` for the far field.
+    pub radius_mm: Option<f64>,
+}
+
+/// Flux per cell of a sphere with its standard error, lm or W.
+struct Sphere<'a> {
+    goniometer: &'a Goniometer,
+    flux: Vec<(f64, f64)>,
+    /// Flux of one count, lm or W.
+    count: f64,
+}
+
+impl<'a> Sphere<'a> {
+    fn of(evidence: &Evidence<'_>, id: SensorId, goniometer: &'a Goniometer) -> Self {
+        let flux = evidence.cell_flux(id, 0..goniometer.cells());
+        let count = evidence.count_flux(&flux);
+        Self { goniometer, flux, count }
+    }
+
+    /// Flux over some rings and sectors.
+    fn flux(&self, rings: std::ops::Range<usize>, sectors: &[usize]) -> Noisy {
+        let all = rings.flat_map(|ring| sectors.iter().map(move |&sector| (ring, sector)));
+        let cells = all.map(|(ring, sector)| self.flux[ring * self.goniometer.c_cells + sector]);
+        let (sum, variance) = cells.fold((0.0, 0.0), |(sum, variance), (mean, error)| {
+            (sum + mean, variance + error * error)
+        });
+        Noisy { value: sum, std_error: variance.sqrt(), count: self.count }
+    }
+
+    /// Mean intensity of a ring over some sectors.
+    fn intensity(&self, ring: usize, sectors: &[usize]) -> Noisy {
+        let flux = self.flux(ring..ring + 1, sectors);
+        let cell = self.goniometer.solid_angle(ring * self.goniometer.c_cells);
+        let over = 1.0 / (cell * sectors.len() as f64);
+        Noisy {
+            value: flux.value * over,
+            std_error: flux.std_error * over,
+            count: flux.count * over,
+        }
+    }
+
+    fn all_sectors(&self) -> Vec<usize> {
+        (0..self.goniometer.c_cells).collect()
+    }
+
+    /// Mean intensity over C of each ring.
+    fn curve(&self) -> Vec<Noisy> {
+        let all = self.all_sectors();
+        (0..self.goniometer.gamma_cells).map(|ring| self.intensity(ring, &all)).collect()
+    }
+
+    /// The intensity of each ring in a half-plane: of the sector it lies in, or of both where it lies between two.
+    fn half_plane(&self, c: f64) -> Vec<Noisy> {
+        let sectors = self.goniometer.c_cells;
+        let place = (c / TAU * sectors as f64).rem_euclid(sectors as f64);
+        // A plane that is computed to lie on an edge may be a few ulp beside it.
+        let on_edge = (place - place.round()).abs() < 1e-9;
+        let at = if on_edge {
+            let edge = place.round() as usize % sectors;
+            vec![edge, (edge + sectors - 1) % sectors]
+        } else {
+            vec![place as usize]
+        };
+        (0..self.goniometer.gamma_cells).map(|ring| self.intensity(ring, &at)).collect()
+    }
+}
+
+/// The γ that each ring stands for, rad.
+fn ring_gammas(rings: usize) -> Vec<f64> {
+    let edge = |ring: usize| (PI * ring as f64 / rings as f64).cos();
+    (0..rings).map(|ring| (0.5 * (edge(ring) + edge(ring + 1))).acos()).collect()
+}
+
+/// The intensities of a goniometer.
+pub(crate) fn table(
+    evidence: &Evidence<'_>,
+    id: SensorId,
+    goniometer: &Goniometer,
+) -> IntensityTable {
+    let sphere = Sphere::of(evidence, id, goniometer);
+    let (rings, sectors) = (goniometer.gamma_cells, goniometer.c_cells);
+    let cells = |f: fn(Noisy) -> f64| {
+        Array2::from_shape_fn((rings, sectors), |(ring, c)| f(sphere.intensity(ring, &[c])))
+    };
+    let edges = |to: f64, bins: usize| (0..=bins).map(|i| to * i as f64 / bins as f64).collect();
+    let curve = sphere.curve();
+    IntensityTable {
+        sensor: evidence.scene.sensors[id.index()].name.clone(),
+        unit: evidence.scene.unit.intensity().to_owned(),
+        values: cells(|cell| cell.value),
+        std_errors: cells(|cell| cell.std_error),
+        gamma_deg: edges(180.0, rings),
+        c_deg: edges(360.0, sectors),
+        ring_gamma_deg: ring_gammas(rings).into_iter().map(f64::to_degrees).collect(),
+        ring_values: curve.iter().map(|ring| ring.value).collect(),
+        ring_std_errors: curve.iter().map(|ring| ring.std_error).collect(),
+        radius_mm: goniometer.radius,
+    }
+}
+
+/// What is read off the sphere, by the last part of the dotted names.
+pub(crate) fn measures(
+    evidence: &Evidence<'_>,
+    id: SensorId,
+    goniometer: &Goniometer,
+) -> IndexMap<String, Measure> {
+    let sphere = Sphere::of(evidence, id, goniometer);
+    let curve = sphere.curve();
+    let unit = evidence.scene.unit;
+    let mut out = IndexMap::new();
+    out.insert("intensity_max".into(), largest(evidence, &sphere));
+    out.insert("intensity_axis".into(), single(evidence, curve[0], unit.intensity()));
+    angles(evidence, &sphere, &curve, &mut out);
+    let rings = goniometer.gamma_cells;
+    if (rings * ZONE_DEG).is_multiple_of(180) {
+        let per_zone = rings * ZONE_DEG / 180;
+        for zone in 0..180 / ZONE_DEG {
+            let flux = sphere.flux(zone * per_zone..(zone + 1) * per_zone, &sphere.all_sectors());
+            let name = format!("zonal_flux.{}-{}", zone * ZONE_DEG, (zone + 1) * ZONE_DEG);
+            out.insert(name, single(evidence, flux, unit.flux()));
+        }
+    }
+    if rings <= NAMED_RINGS {
+        for (ring, intensity) in curve.iter().enumerate() {
+            out.insert(format!("ring.{ring}"), single(evidence, *intensity, unit.intensity()));
+        }
+    }
+    out
+}
+
+/// The largest intensity of any cell, corrected for noise.
+fn largest(evidence: &Evidence<'_>, sphere: &Sphere<'_>) -> Measure {
+    let sectors = sphere.goniometer.c_cells;
+    let cells: Vec<Noisy> = (0..sphere.flux.len())
+        .map(|cell| sphere.intensity(cell / sectors, &[cell % sectors]))
+        .collect();
+    let Extreme { value, std_error, bias, .. } = maximum(&cells);
+    let found = Noisy { value, std_error, count: 0.0 };
+    Measure { bias: Some(bias), ..single(evidence, found, evidence.scene.unit.intensity()) }
+}
+
+/// Beam and field angle on the mean curve over C, and in the planes C0-C180 and C90-C270.
+fn angles(
+    evidence: &Evidence<'_>,
+    sphere: &Sphere<'_>,
+    curve: &[Noisy],
+    out: &mut IndexMap<String, Measure>,
+) {
+    let gammas = ring_gammas(curve.len());
+    let mut profiles = vec![(String::new(), curve.to_vec(), curve.to_vec())];
+    if sphere.goniometer.c_cells >= SECTORS_FOR_PLANES {
+        for plane in [0, 90] {
+            let c = f64::from(plane).to_radians();
+            profiles.push((format!(".c{plane}"), sphere.half_plane(c), sphere.half_plane(c + PI)));
+        }
+    }
+    for (name, share) in [("beam_angle", BEAM), ("field_angle", FIELD)] {
+        for (plane, ahead, behind) in &profiles {
+            let found = beam::full_angle(&gammas, [ahead, behind], share);
+            let measure = match found {
+                Some(angle) => {
+                    let (value, error) = (angle.value.to_degrees(), angle.std_error.to_degrees());
+                    evidence.measure(value, error, "deg", angle.status)
+                }
+                None => evidence.measure(0.0, f64::INFINITY, "deg", Status::NoSignal),
+            };
+            out.insert(format!("{name}{plane}"), measure);
+        }
+    }
+}
+
+/// A value as a measure; one that counted nothing is known to one count.
+fn single(evidence: &Evidence<'_>, found: Noisy, unit: &str) -> Measure {
+    let status = counted(found.value, found.std_error);
+    let std_error = if status == Status::NoSignal { found.count } else { found.std_error };
+    evidence.measure(found.value, std_error, unit, status)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::measure::measure;
+    use crate::measure::samples::{goniometer, readings, scene};
+    use crate::scene::{Scene, SensorKind};
+    use crate::transport::Readings;
+
+    /// Readings without noise of an intensity I(C, γ) [cd], exact over each cell for intensities ∝ cos^m γ.
+    fn cosine_power(scene: &Scene, m: f64) -> Readings {
+        let SensorKind::Goniometer(sphere) = &scene.sensors[0].kind else { panic!("no sphere") };
+        let edge = |ring: usize| {
+            let cos = (std::f64::consts::PI * ring as f64 / sphere.gamma_cells as f64).cos();
+            cos.max(0.0).powf(m + 1.0)
+        };
+        readings(scene, 2, |_, _, batch| {
+            for cell in 0..sphere.cells() {
+                let ring = cell / sphere.c_cells;
+                let flux = (edge(ring) - edge(ring + 1)) / sphere.c_cells as f64;
+                batch.sensors[0].cells.add(cell, flux);
+            }
+        })
+    }
+
+    #[test]
+    fn a_cosine_power_source_has_its_axis_intensity_and_half_angle() {
+        let scene = scene(&[("led", 1.0)], vec![("far", goniometer(8, 720))]);
+        let measures = measure(&scene, &cosine_power(&scene, 5.0));
+        let value = |name: &str| measures.values[name].value;
+        // I₀ = (m + 1)/2π per lumen.
+        let axis = 6.0 / std::f64::consts::TAU;
+        assert!((value("far.intensity_axis") / axis - 1.0).abs() < 5e-5);
+        assert!((value("far.intensity_max") / axis - 1.0).abs() < 5e-5);
+        // acos(0.5^(1/5)) = 29.477 deg.
+        for name in ["far.beam_angle", "far.beam_angle.c0", "far.beam_angle.c90"] {
+            assert!((value(name) - 2.0 * 29.477).abs() < 3e-3, "{name}: {}", value(name));
+        }
+        let tenth = 2.0 * 0.1f64.powf(0.2).acos().to_degrees();
+        assert!((value("far.field_angle") - tenth).abs() < 3e-3);
+    }
+
+    #[test]
+    fn zones_and_rings_add_up_to_all_of_the_flux() {
+        let scene = scene(&[("led", 1.0)], vec![("far", goniometer(24, 90))]);
+        let measures = measure(&scene, &cosine_power(&scene, 1.0));
+        let zones = (0..18).map(|zone| format!("far.zonal_flux.{}-{}", 10 * zone, 10 * zone + 10));
+        let total: f64 = zones.map(|name| measures.values[&name].value).sum();
+        assert!((total - 1.0).abs() < 1e-12);
+        // Lambertian: sin² 20° - sin² 10°.
+        let second = 20f64.to_radians().sin().powi(2) - 10f64.to_radians().sin().powi(2);
+        assert!((measures.values["far.zonal_flux.10-20"].value - second).abs() < 1e-12);
+        let table = &measures.intensities[0];
+        assert_eq!(table.values.dim(), (90, 24));
+        assert_eq!(table.ring_values[40], measures.values["far.ring.40"].value);
+        assert!((table.values[[40, 3]] - table.ring_values[40]).abs() < 1e-12);
+        assert_eq!((table.gamma_deg[1], table.c_deg[1]), (2.0, 15.0));
+    }
+
+    #[test]
+    fn zones_that_do_not_fit_the_rings_are_left_out() {
+        let scene = scene(&[("led", 1.0)], vec![("far", goniometer(3, 12))]);
+        let measures = measure(&scene, &cosine_power(&scene, 1.0));
+        assert!(measures.values.keys().all(|name| !name.contains("zonal_flux")));
+        // Three sectors are too few to tell planes apart.
+        assert!(measures.values.keys().all(|name| !name.ends_with(".c0")));
+    }
+}

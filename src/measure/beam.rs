@@ -1,0 +1,159 @@
+//! The angle over which a beam keeps a share of its largest intensity.
+//!
+//! A plane through the pole has two half-planes. In each, the edge of the beam is where the intensity, interpolated
+//! linearly between rings, first falls below the level on the way outward from that half-plane's own maximum: a
+//! maximum off the axis, or a dip on it, is inside the beam, and weak lobes further out are not. Where one half-plane
+//! never reaches the level, the beam lies wholly in the other, and the inner edge there bounds it. The level is a
+//! share of the largest intensity in the plane, corrected for noise. A curve that never falls below the level gives
+//! 360 deg.
+
+use crate::measure::Status;
+use crate::measure::evidence::counted;
+use crate::measure::extremes::{Noisy, Normal, maximum};
+use crate::tally::Tally;
+use std::f64::consts::PI;
+
+/// Times the curve is drawn anew with its noise to learn the error of the angle: good to 1/sqrt(2 · 100) = 7 %.
+const REPLICAS: usize = 100;
+
+/// A full angle, rad.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct FullAngle {
+    pub(crate) value: f64,
+    pub(crate) std_error: f64,
+    pub(crate) status: Status,
+}
+
+/// Full angle at `share` of the maximum; `gammas` are the angles of the rings from the pole, rad. `None` in the dark.
+pub(crate) fn full_angle(gammas: &[f64], halves: [&[Noisy]; 2], share: f64) -> Option<FullAngle> {
+    let plane: Vec<Noisy> = halves.concat();
+    let most = maximum(&plane);
+    if most.raw == 0.0 {
+        return None;
+    }
+    let values = |half: &[Noisy]| half.iter().map(|ring| ring.value).collect::<Vec<_>>();
+    let value = width(gammas, [&values(halves[0]), &values(halves[1])], share * most.value);
+    let mut normal = Normal::new();
+    let mut draw = |value: f64, std_error: f64| value + std_error * normal.draw();
+    let drawn = Tally::of((0..REPLICAS).map(|_| {
+        let mut again = |half: &[Noisy]| -> Vec<f64> {
+            half.iter().map(|ring| draw(ring.value, ring.std_error)).collect()
+        };
+        let ahead = again(halves[0]);
+        // A curve that is the same on both sides is noisy in the same way, too.
+        let behind = if halves[0] == halves[1] { ahead.clone() } else { again(halves[1]) };
+        width(gammas, [&ahead, &behind], share * draw(most.value, most.std_error))
+    }));
+    let peak = plane[highest(&values(&plane))];
+    Some(FullAngle {
+        value,
+        // The spread of the replicas is the error, not that of their mean.
+        std_error: drawn.std_error() * (REPLICAS as f64).sqrt(),
+        status: counted(peak.value, peak.std_error),
+    })
+}
+
+/// Angle between the two edges, rad.
+fn width(gammas: &[f64], halves: [&[f64]; 2], level: f64) -> f64 {
+    let edges =
+        [edge(gammas, halves[0], halves[1], level), edge(gammas, halves[1], halves[0], level)];
+    (edges[0] + edges[1]).max(0.0)
+}
+
+/// γ of the beam's edge in a half-plane, rad; negative if the beam lies wholly in the other one.
+fn edge(gammas: &[f64], own: &[f64], other: &[f64], level: f64) -> f64 {
+    let peak = highest(own);
+    if own[peak] >= level {
+        let below = (peak + 1..own.len()).find(|&ring| own[ring] < level);
+        return below.map_or(PI, |ring| crossing(gammas, own, ring, level));
+    }
+    let peak = highest(other);
+    let below = (0..peak).rev().find(|&ring| other[ring] < level);
+    // Without an inner edge the beam ends at the pole.
+    -below.map_or(0.0, |ring| crossing(gammas, other, ring + 1, level))
+}
+
+/// Where the line from the ring before to this one passes the level, rad.
+fn crossing(gammas: &[f64], values: &[f64], ring: usize, level: f64) -> f64 {
+    let (before, after) = (values[ring - 1], values[ring]);
+    let part = if before == after { 0.5 } else { (before - level) / (before - after) };
+    gammas[ring - 1] + part.clamp(0.0, 1.0) * (gammas[ring] - gammas[ring - 1])
+}
+
+fn highest(values: &[f64]) -> usize {
+    (1..values.len()).fold(0, |best, ring| if values[ring] > values[best] { ring } else { best })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn gammas(rings: usize) -> Vec<f64> {
+        (0..rings).map(|ring| PI * (ring as f64 + 0.5) / rings as f64).collect()
+    }
+
+    fn curve(gammas: &[f64], noise: f64, f: impl Fn(f64) -> f64) -> Vec<Noisy> {
+        gammas
+            .iter()
+            .map(|&gamma| Noisy { value: f(gamma), std_error: noise * f(gamma), count: 0.0 })
+            .collect()
+    }
+
+    fn degrees(gammas: &[f64], ahead: &[Noisy], behind: &[Noisy], share: f64) -> f64 {
+        full_angle(gammas, [ahead, behind], share).unwrap().value.to_degrees()
+    }
+
+    #[test]
+    fn a_cosine_power_has_the_known_half_angles() {
+        // cos^5: half at acos(0.5^(1/5)) = 29.477 deg, a tenth at acos(0.1^(1/5)) = 50.88 deg.
+        let gammas = gammas(1800);
+        let beam = curve(&gammas, 0.0, |gamma| gamma.cos().max(0.0).powi(5));
+        assert!((degrees(&gammas, &beam, &beam, 0.5) - 2.0 * 29.477).abs() < 2e-3);
+        let tenth = 0.1f64.powf(0.2).acos().to_degrees();
+        assert!((degrees(&gammas, &beam, &beam, 0.1) - 2.0 * tenth).abs() < 2e-3);
+    }
+
+    #[test]
+    fn a_batwing_is_as_wide_as_its_outer_edges() {
+        let gammas = gammas(1800);
+        // Peaks at 40 deg, a dip below half on the axis, a weak lobe at 120 deg.
+        let bell = |gamma: f64, at: f64| (-(gamma.to_degrees() - at).powi(2) / 200.0).exp();
+        let wing = curve(&gammas, 0.0, |gamma| bell(gamma, 40.0) + 0.3 * bell(gamma, 120.0));
+        // exp(-x²/200) = 1/2 at x = 11.774.
+        assert!((degrees(&gammas, &wing, &wing, 0.5) - 2.0 * 51.774).abs() < 0.01);
+    }
+
+    #[test]
+    fn a_tilted_beam_is_measured_across_itself() {
+        let gammas = gammas(1800);
+        let bell =
+            |at: f64| curve(&gammas, 0.0, move |g| (-(g.to_degrees() - at).powi(2) / 200.0).exp());
+        // Centred at 30 deg in one half-plane, at -30 deg seen from the other.
+        assert!((degrees(&gammas, &bell(30.0), &bell(-30.0), 0.5) - 2.0 * 11.774).abs() < 0.01);
+        assert!((degrees(&gammas, &bell(5.0), &bell(-5.0), 0.5) - 2.0 * 11.774).abs() < 0.01);
+    }
+
+    #[test]
+    fn an_even_sphere_is_all_beam_and_a_dark_one_none() {
+        let gammas = gammas(18);
+        let even = curve(&gammas, 0.0, |_| 2.0);
+        assert_eq!(degrees(&gammas, &even, &even, 0.5), 360.0);
+        let dark = curve(&gammas, 0.0, |_| 0.0);
+        assert_eq!(full_angle(&gammas, [&dark, &dark], 0.5), None);
+    }
+
+    #[test]
+    fn noise_gives_an_error_of_the_right_size() {
+        // One crossing of a straight slope: I = 1 - γ/γ₀ falls to half with slope 1/γ₀, so an error of ε in the two
+        // rings about it and in the maximum moves each edge by about ε γ₀.
+        let gammas = gammas(90);
+        let slope = |gamma: f64| (1.0 - gamma / 1.5).max(0.0);
+        let noisy: Vec<Noisy> = gammas
+            .iter()
+            .map(|&gamma| Noisy { value: slope(gamma), std_error: 0.01, count: 0.0 })
+            .collect();
+        let found = full_angle(&gammas, [&noisy, &noisy], 0.5).unwrap();
+        assert!(found.std_error > 0.015 && found.std_error < 0.05, "{}", found.std_error);
+        assert_eq!(found.status, Status::Ok);
+    }
+}

@@ -1,0 +1,329 @@
+//! Maps of surface sensors: illuminance per cell, or luminance per cell and view, and how even they are.
+
+use crate::measure::cells::SensorCells;
+use crate::measure::evidence::Evidence;
+use crate::measure::extremes::Noisy;
+use crate::measure::flux::flux_slots;
+use crate::measure::points;
+use crate::measure::uniformity::{
+    Field, Part, Uniformity, UniformitySummary, coefficient_of_variation, uniformity,
+};
+use crate::scene::{Grid, SensorId, SurfaceSensor};
+use ndarray::Array2;
+use serde::Serialize;
+use std::f64::consts::PI;
+
+/// What a surface sensor has seen, cell by cell.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SensorMap {
+    /// Name of the sensor.
+    pub sensor: String,
+    /// Which view of a luminance sensor, from 0.
+    pub view: Option<usize>,
+    /// What is mapped, such as `illuminance`.
+    pub quantity: String,
+    /// Its unit, such as `lx`.
+    pub unit: String,
+    /// Rows (v, or rings) by columns (u, or sectors), in `unit`; NaN outside the sensor.
+    pub values: Array2<f64>,
+    /// Standard errors, likewise.
+    pub std_errors: Array2<f64>,
+    /// Where the cells are.
+    pub axes: Axes,
+    /// Area of the sensor, mm².
+    pub area_mm2: f64,
+    /// Extremes and uniformity.
+    pub summary: UniformitySummary,
+}
+
+/// Where the cells of a map are, on the unrolled face.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Axes {
+    /// Columns and rows.
+    Cartesian {
+        /// Edges of the columns, mm.
+        u_mm: Vec<f64>,
+        /// Edges of the rows, mm.
+        v_mm: Vec<f64>,
+    },
+    /// Rings and sectors.
+    Polar {
+        /// Edges of the rings, mm.
+        radius_mm: Vec<f64>,
+        /// Edges of the sectors, deg from +u.
+        sector_deg: Vec<f64>,
+    },
+}
+
+/// The map of a surface sensor, or one for each view.
+pub(crate) fn maps(
+    evidence: &Evidence<'_>,
+    id: SensorId,
+    sensor: &SurfaceSensor,
+) -> Vec<SensorMap> {
+    match &sensor.views {
+        None => vec![map(evidence, id, sensor, None)],
+        Some(views) => {
+            (0..views.directions.len()).map(|view| map(evidence, id, sensor, Some(view))).collect()
+        }
+    }
+}
+
+/// The map of a view, or of all light.
+fn map(
+    evidence: &Evidence<'_>,
+    id: SensorId,
+    sensor: &SurfaceSensor,
+    view: Option<usize>,
+) -> SensorMap {
+    let unit = evidence.scene.unit;
+    let (quantity, symbol) = match view {
+        None => (unit.illuminance_name(), unit.illuminance()),
+        Some(_) => (unit.luminance_name(), unit.luminance()),
+    };
+    let seen = SensorCells::of(evidence, id, sensor, view);
+    let (columns, rows) = sensor.grid.shape();
+    let table = |f: &dyn Fn(usize) -> f64| {
+        let at = |cell| if seen.is_on(cell) { f(cell) } else { f64::NAN };
+        Array2::from_shape_fn((rows, columns), |(row, column)| at(row * columns + column))
+    };
+    SensorMap {
+        sensor: evidence.scene.sensors[id.index()].name.clone(),
+        view,
+        quantity: quantity.to_owned(),
+        unit: symbol.to_owned(),
+        values: table(&|cell| seen.at(cell).value),
+        std_errors: table(&|cell| seen.at(cell).std_error),
+        axes: axes(&sensor.grid),
+        area_mm2: seen.area,
+        summary: summary(evidence, id, sensor, &seen),
+    }
+}
+
+fn summary(
+    evidence: &Evidence<'_>,
+    id: SensorId,
+    sensor: &SurfaceSensor,
+    seen: &SensorCells<'_>,
+) -> UniformitySummary {
+    let cells = || 0..seen.areas.len();
+    let full: Vec<Noisy> =
+        cells().filter(|&cell| seen.is_full(cell)).map(|cell| seen.at(cell)).collect();
+    let field = Field {
+        cells: &full,
+        avg: average(evidence, id, seen),
+        counts: seen.counts_per_cell(full.len()),
+        batches: evidence.readings.batch_count(),
+    };
+    let parts = cells().filter(|&cell| seen.is_on(cell)).map(|cell| {
+        let Noisy { value, std_error, .. } = seen.at(cell);
+        Part { value, std_error, share: seen.areas[cell] / seen.area }
+    });
+    let on_points = |points: Option<Vec<Vec<usize>>>| {
+        let points = points?;
+        points
+            .iter()
+            .flatten()
+            .all(|&cell| seen.is_full(cell))
+            .then(|| at_points(&points, seen, &field))
+    };
+    UniformitySummary {
+        cells: full.len(),
+        cell_size_mm: cell_size(&sensor.grid),
+        all: uniformity(&field),
+        cv: coefficient_of_variation(parts, &field),
+        nine: on_points(points::nine(&sensor.grid)),
+        thirteen: on_points(points::thirteen(&sensor.grid)),
+    }
+}
+
+/// Average over the sensor with its standard error: from groups of batches where the sensor's flux is all light.
+fn average(evidence: &Evidence<'_>, id: SensorId, seen: &SensorCells<'_>) -> [f64; 2] {
+    if seen.all_light {
+        let factor = seen.factor / seen.area;
+        let mean = evidence.sum(&flux_slots(evidence, id), factor, "");
+        return [mean.value, mean.std_error];
+    }
+    let mean = seen.mean(0..seen.areas.len());
+    [mean.value, mean.std_error]
+}
+
+fn at_points(points: &[Vec<usize>], seen: &SensorCells<'_>, field: &Field<'_>) -> Uniformity {
+    let read: Vec<Noisy> = points.iter().map(|cells| seen.mean(cells.iter().copied())).collect();
+    let n = read.len() as f64;
+    let sum: f64 = read.iter().map(|point| point.value).sum();
+    let variance: f64 = read.iter().map(|point| point.std_error.powi(2)).sum();
+    // Points that read the same cells are one for the extremes.
+    let mut distinct: Vec<Noisy> = Vec::new();
+    for (index, point) in read.iter().enumerate() {
+        if !points[..index].contains(&points[index]) {
+            distinct.push(*point);
+        }
+    }
+    uniformity(&Field { cells: &distinct, avg: [sum / n, variance.sqrt() / n], ..*field })
+}
+
+fn axes(grid: &Grid) -> Axes {
+    let edges = |from: f64, to: f64, bins: usize| -> Vec<f64> {
+        (0..=bins).map(|i| from + (to - from) * i as f64 / bins as f64).collect()
+    };
+    match grid {
+        Grid::Cartesian { rect, nu, nv } => Axes::Cartesian {
+            u_mm: edges(rect.min.x, rect.max.x, *nu),
+            v_mm: edges(rect.min.y, rect.max.y, *nv),
+        },
+        Grid::Polar { radius, rings, sectors } => Axes::Polar {
+            radius_mm: edges(0.0, *radius, *rings),
+            sector_deg: edges(0.0, 360.0, *sectors),
+        },
+    }
+}
+
+fn cell_size(grid: &Grid) -> [f64; 2] {
+    match grid {
+        Grid::Cartesian { rect, nu, nv } => {
+            let size = rect.max - rect.min;
+            [size.x / *nu as f64, size.y / *nv as f64]
+        }
+        Grid::Polar { radius, rings, sectors } => {
+            // The mean radius of all rings is half the outer one.
+            [radius / *rings as f64, PI * radius / *sectors as f64]
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::measure::samples::{add, disk, luminance, readings, rectangle, rings, scene};
+    use crate::measure::{Measures, Status, measure};
+    use crate::scene::{Scene, SensorId, SensorKind, SourceId};
+    use crate::transport::Readings;
+    use glam::DVec2;
+
+    /// Readings without noise of a field over the first sensor: illuminance at the middle of each cell, lm/mm².
+    fn exactly(scene: &Scene, field: impl Fn(DVec2) -> f64) -> Readings {
+        let SensorKind::Surface(sensor) = &scene.sensors[0].kind else { panic!("no surface") };
+        // The sums over two equal batches are exact.
+        readings(scene, 2, |_, layout, batch| {
+            for (cell, area) in sensor.areas.iter().enumerate() {
+                let flux = field(sensor.grid.center(cell)) * area;
+                batch.sensors[0].cells.add(cell, flux);
+                add(batch, layout.sensor_flux(SensorId::new(0), SourceId::new(0)), flux);
+            }
+        })
+    }
+
+    fn assert_value(measures: &Measures, name: &str, expected: f64, tolerance: f64) {
+        let found = &measures.values[name];
+        assert!((found.value - expected).abs() <= tolerance, "{name}: {found}, not {expected}");
+    }
+
+    #[test]
+    fn cos4_on_25_cells_has_the_reference_statistics() {
+        // Reference case PH-07 (b): Lambertian point at height 1 over the unit square, 5 x 5 points.
+        let scene = scene(&[("led", 1.0)], vec![("exit", rectangle(1.0, 5, 5))]);
+        let cos4 = |p: DVec2| 1e-6 / (1.0 + p.length_squared()).powi(2);
+        let measures = measure(&scene, &exactly(&scene, cos4));
+        assert_value(&measures, "exit.illuminance_avg", 0.758_058_856_3, 1e-9);
+        assert_value(&measures, "exit.uniformity_min_avg", 0.757_092_966_7, 1e-9);
+        assert_value(&measures, "exit.uniformity_min_max", 0.573_921_028_5, 1e-9);
+        assert_value(&measures, "exit.cv", 0.162_151_587, 1e-9);
+        assert_value(&measures, "exit.illuminance_center", 1.0, 1e-12);
+        assert_value(&measures, "exit.illuminance_min", 1.0 / 1.32f64.powi(2), 1e-12);
+        // Corner, edge and middle points of nine: r² of 0.32, 0.16 and 0.
+        let (corner, edge) = (1.0 / 1.32f64.powi(2), 1.0 / 1.16f64.powi(2));
+        let mean = (4.0 * corner + 4.0 * edge + 1.0) / 9.0;
+        assert_value(&measures, "exit.uniformity9_min_avg", corner / mean, 1e-12);
+        assert_value(&measures, "exit.uniformity9_max_min", 1.0 / corner, 1e-12);
+        let mean = (8.0 * corner + 4.0 * edge + 1.0) / 13.0;
+        assert_value(&measures, "exit.uniformity13_min_avg", corner / mean, 1e-12);
+        assert_eq!(measures.maps[0].summary.cell_size_mm, [0.2, 0.2]);
+    }
+
+    #[test]
+    fn cells_cut_by_the_rim_are_in_the_map_but_not_among_the_extremes() {
+        let scene = scene(&[("led", 1.0)], vec![("exit", disk(2.0, 20))]);
+        let even = |_: DVec2| 3e-6;
+        let measures = measure(&scene, &exactly(&scene, even));
+        for name in ["min", "max", "avg", "center"] {
+            assert_value(&measures, &format!("exit.illuminance_{name}"), 3.0, 1e-9);
+        }
+        assert_value(&measures, "exit.cv", 0.0, 1e-7);
+        let map = &measures.maps[0];
+        assert!(map.values[[0, 0]].is_nan(), "a corner of the square is off the disk");
+        let on = map.values.iter().filter(|value| !value.is_nan()).count();
+        assert!(map.summary.cells < on, "{} of {on}", map.summary.cells);
+        assert!((map.area_mm2 - std::f64::consts::PI * 4.0).abs() < 1e-9);
+        // Light on cells whose middle is off the disk changes the average, not the maximum.
+        let bright = |p: DVec2| if p.length() > 2.0 { 30e-6 } else { 3e-6 };
+        let measures = measure(&scene, &exactly(&scene, bright));
+        assert_value(&measures, "exit.illuminance_max", 3.0, 1e-9);
+        assert!(measures.values["exit.illuminance_avg"].value > 3.01);
+    }
+
+    #[test]
+    fn rings_have_their_mean_illuminance() {
+        let scene = scene(&[("led", 1.0)], vec![("exit", rings(1.0, 4, 6))]);
+        // The middle of a polar cell is given as radius and angle.
+        let cone = |p: DVec2| 1e-6 * (1.0 - 0.5 * p.x) * (1.0 + 0.1 * p.y.cos());
+        let measures = measure(&scene, &exactly(&scene, cone));
+        for ring in 0..4 {
+            let expected = 1.0 - 0.5 * (f64::from(ring) + 0.5) / 4.0;
+            assert_value(&measures, &format!("exit.ring.{ring}"), expected, 1e-12);
+        }
+        assert_value(&measures, "exit.illuminance_center", 0.9375, 1e-12);
+        let angle = 30f64.to_radians().cos();
+        assert_value(&measures, "exit.cell.0.3", 0.5625 * (1.0 + 0.1 * angle), 1e-12);
+    }
+
+    #[test]
+    fn luminance_is_flux_over_area_and_projected_solid_angle() {
+        let scene = scene(&[("led", 1.0)], vec![("eye", luminance(2.0, 2, 2, &[0.02, 0.05]))]);
+        let readings = readings(&scene, 128, |_, _, batch| {
+            for cell in 0..4 {
+                batch.sensors[0].cells.add(cell, 1e-6 * (cell + 1) as f64);
+                batch.sensors[0].cells.add(4 + cell, 1e-6);
+            }
+        });
+        let measures = measure(&scene, &readings);
+        // Cells of 1 mm²: 1e-6 lm / (1e-6 m² 0.02 sr) = 50 cd/m².
+        assert_value(&measures, "eye.luminance_min.0", 50.0, 1e-6);
+        assert_value(&measures, "eye.luminance_avg.0", 125.0, 1e-6);
+        assert_value(&measures, "eye.cell.1.1.0", 200.0, 1e-6);
+        assert_value(&measures, "eye.luminance_avg.1", 20.0, 1e-6);
+        assert_value(&measures, "eye.uniformity_min_avg.1", 1.0, 1e-6);
+        assert_eq!(measures.values["eye.luminance_avg.1"].unit, "cd/m²");
+        assert_eq!(measures.maps.len(), 2);
+    }
+
+    #[test]
+    fn cells_have_the_error_of_the_mean_over_batches() {
+        let scene = scene(&[("led", 1.0)], vec![("exit", rectangle(2.0, 2, 1))]);
+        let readings = readings(&scene, 128, |index, _, batch| {
+            batch.sensors[0].cells.add(0, if index % 2 == 0 { 1e-6 } else { 3e-6 });
+            if index == 7 {
+                batch.sensors[0].cells.add(1, 1e-6);
+            }
+        });
+        let measures = measure(&scene, &readings);
+        // 2e-6 lm on 2 mm²; standard deviation 1e-6 √(128/127), over √128.
+        let cell = &measures.values["exit.cell.0.0"];
+        assert!((cell.value - 1.0).abs() < 1e-12);
+        assert!((cell.std_error - 0.5 / 127f64.sqrt()).abs() < 1e-12);
+        assert_eq!(measures.values["exit.cell.1.0"].status, Status::TooFew);
+    }
+
+    #[test]
+    fn a_dark_map_has_no_signal_and_says_what_one_path_would_be() {
+        let scene = scene(&[("led", 5.0)], vec![("exit", rectangle(2.0, 3, 3))]);
+        let measures = measure(&scene, &readings(&scene, 128, |_, _, _| {}));
+        for (name, measure) in measures.values.iter().filter(|(name, _)| name.starts_with("exit")) {
+            assert_eq!(measure.status, Status::NoSignal, "{name}");
+        }
+        let path = 5.0 / 128_000.0;
+        assert!((measures.values["exit.flux"].std_error - path).abs() < 1e-18);
+        let cell = measures.values["exit.cell.1.1"].std_error;
+        assert!((cell - path / (4.0 / 9.0) * 1e6).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,349 @@
+//! From readings to photometric measures with uncertainty.
+//!
+//! Pure functions of a scene and its readings: the same readings give the same bits. Each quantity has a dotted name,
+//! such as `exit.flux` or `balance.leaked`, and the set of names depends on the scene alone, not on what was counted.
+//! Units are made here on the way out: lx, cd, cd/m², deg (W/m², W/sr, W/(m² sr) in radiometric runs). This layer
+//! does not know how light was traced, and draws and writes nothing.
+
+mod angular;
+mod balance;
+mod beam;
+mod cells;
+mod check;
+mod evidence;
+mod extremes;
+mod flux;
+mod map;
+mod paths;
+mod points;
+mod readout;
+mod record;
+#[cfg(test)]
+mod samples;
+mod uniformity;
+
+pub use angular::IntensityTable;
+pub use balance::Balance;
+pub use check::{Outcome, Verdict, nearest, verdict};
+pub use map::{Axes, SensorMap};
+pub use paths::{Action, DepthBin, Extent, PathClass, PathStep, SensorPaths};
+pub use record::{Measure, Status};
+pub use uniformity::{Statistic, Uniformity, UniformitySummary};
+
+use crate::measure::evidence::Evidence;
+use crate::scene::{Scene, SensorId, SensorKind};
+use crate::transport::{Layout, Readings};
+use crate::units::FluxUnit;
+use indexmap::IndexMap;
+use serde::Serialize;
+
+/// Everything measured in a run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Measures {
+    /// All measures by their dotted names, sensor by sensor, then the balance.
+    pub values: IndexMap<String, Measure>,
+    /// Where the light went.
+    pub balance: Balance,
+    /// Maps of surface sensors, one for each view of a luminance sensor.
+    pub maps: Vec<SensorMap>,
+    /// Intensities of goniometers.
+    pub intensities: Vec<IntensityTable>,
+    /// How the light came to each sensor.
+    pub sensor_paths: Vec<SensorPaths>,
+    /// Whether fluxes are luminous or radiant.
+    pub unit: FluxUnit,
+    /// Flux of all sources, lm or W.
+    pub source_flux: f64,
+    /// Batches traced.
+    pub batches: u64,
+    /// Paths traced.
+    pub paths: u64,
+    /// Straight pieces traced.
+    pub segments: u64,
+}
+
+/// Measures everything. Linear in the number of cells.
+pub fn measure(scene: &Scene, readings: &Readings) -> Measures {
+    let evidence = Evidence::new(scene, readings);
+    let mut values = IndexMap::new();
+    let (mut maps, mut intensities, mut sensor_paths) = (Vec::new(), Vec::new(), Vec::new());
+    for (index, sensor) in scene.sensors.iter().enumerate() {
+        let id = SensorId::new(index);
+        add(&mut values, &sensor.name, flux::totals(&evidence, id));
+        match &sensor.kind {
+            SensorKind::Surface(surface) => {
+                let own = map::maps(&evidence, id, surface);
+                add(&mut values, &sensor.name, readout::measures(&evidence, id, surface, &own));
+                maps.extend(own);
+            }
+            SensorKind::Goniometer(goniometer) => {
+                add(&mut values, &sensor.name, angular::measures(&evidence, id, goniometer));
+                intensities.push(angular::table(&evidence, id, goniometer));
+            }
+        }
+        sensor_paths.push(paths::paths(scene, readings, id));
+    }
+    let balance = balance::balance(&evidence);
+    values.extend(balance.measures());
+    Measures {
+        values,
+        balance,
+        maps,
+        intensities,
+        sensor_paths,
+        unit: scene.unit,
+        source_flux: scene.source_flux(),
+        batches: readings.batch_count(),
+        paths: readings.paths(),
+        segments: readings.segments,
+    }
+}
+
+/// One measure by its dotted name, at no more cost than it needs: maps are not looked at for the flux of a sensor.
+pub fn value_of(scene: &Scene, readings: &Readings, name: &str) -> Option<Measure> {
+    let evidence = Evidence::new(scene, readings);
+    let (first, rest) = name.split_once('.')?;
+    if let Some(index) = scene.sensors.iter().position(|sensor| sensor.name == first) {
+        let id = SensorId::new(index);
+        return flux::totals(&evidence, id).swap_remove(rest).or_else(|| {
+            let mut read = match &scene.sensors[index].kind {
+                SensorKind::Surface(surface) => {
+                    let maps = map::maps(&evidence, id, surface);
+                    readout::measures(&evidence, id, surface, &maps)
+                }
+                SensorKind::Goniometer(goniometer) => angular::measures(&evidence, id, goniometer),
+            };
+            read.swap_remove(rest)
+        });
+    }
+    balance::balance(&evidence).measures().swap_remove(name)
+}
+
+/// The dotted names of all measures of a scene.
+pub fn names(scene: &Scene) -> Vec<String> {
+    let nothing = Readings::of_batch(scene, &Layout::new(scene), 0, 1, 0);
+    measure(scene, &nothing).values.into_keys().collect()
+}
+
+/// Total error of a measure over its value: what the target of a run is held against. Infinite where there is no
+/// error bar to rely on, `None` for an unknown name.
+pub fn relative_error(measures: &Measures, name: &str) -> Option<f64> {
+    measures.values.get(name).map(Measure::relative_error)
+}
+
+fn add(values: &mut IndexMap<String, Measure>, sensor: &str, measures: IndexMap<String, Measure>) {
+    values.extend(measures.into_iter().map(|(name, m)| (format!("{sensor}.{name}"), m)));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Frame;
+    use crate::measure::samples::{
+        add, disk, goniometer, luminance, readings, rectangle, rings, scene,
+    };
+    use crate::optics::Medium;
+    use crate::scene::plan::{Estimator, RunPlan, StopRules};
+    use crate::scene::shape::{Flat, Region, Shape};
+    use crate::scene::{
+        Builder, Emission, EmitSide, Emitter, FaceSpec, Owner, Piece, Sensor, Sides, Source,
+        SourceId, Start,
+    };
+    use crate::transport::Run;
+    use glam::DVec3;
+    use std::f64::consts::TAU;
+
+    fn many_sensors() -> Scene {
+        scene(
+            &[("led", 3.0), ("lamp", 1.0)],
+            vec![
+                ("exit", rectangle(2.0, 6, 4)),
+                ("port", disk(1.0, 32)),
+                ("rings", rings(1.0, 5, 6)),
+                ("eye", luminance(1.0, 3, 3, &[0.1, 0.2])),
+                ("far", goniometer(8, 36)),
+            ],
+        )
+    }
+
+    /// Uneven light everywhere, different in every batch.
+    fn some_light(scene: &Scene) -> Readings {
+        readings(scene, 128, |index, layout, batch| {
+            for (place, sum) in batch.groups[0].sums.iter_mut().enumerate() {
+                *sum = 1e-3 * ((place % 7 + 1) as f64 + (index % 5) as f64);
+            }
+            assert!(layout.len() > 50);
+            for sensor in &mut batch.sensors {
+                for cell in 0..sensor.cells.len() {
+                    sensor.cells.add(cell, 1e-4 * ((cell % 3 + 2) as f64 + (index % 2) as f64));
+                }
+            }
+        })
+    }
+
+    #[test]
+    fn the_names_depend_on_the_scene_alone() {
+        let scene = many_sensors();
+        let lit = measure(&scene, &some_light(&scene));
+        assert_eq!(names(&scene), lit.values.keys().cloned().collect::<Vec<_>>());
+        for name in [
+            "exit.flux",
+            "exit.flux.from.led",
+            "exit.efficiency.from.lamp",
+            "exit.transmission",
+            "exit.flux_outside_aim",
+            "exit.flux_other_side",
+            "exit.illuminance_avg",
+            "exit.illuminance_center",
+            "exit.cell.5.3",
+            "exit.uniformity13_min_max",
+            "exit.share_deeper_than_1000",
+            "port.uniformity9_min_avg",
+            "rings.ring.4",
+            "eye.luminance_avg.1",
+            "eye.cell.2.2.0",
+            "eye.uniformity_min_avg.1",
+            "far.beam_angle.c90",
+            "far.zonal_flux.170-180",
+            "far.ring.35",
+            "balance.absorbed.wall.surface",
+            "balance.absorbed_medium.air",
+            "balance.emitted.lamp",
+            "balance.residual",
+        ] {
+            assert!(lit.values.contains_key(name), "{name} is missing");
+        }
+        // The corners of a square about a disk are not on it, and 32 x 32 cells are too many to be named.
+        assert!(!lit.values.contains_key("port.uniformity13_min_avg"));
+        assert!(!lit.values.contains_key("port.cell.16.16"));
+        assert!(!lit.values.contains_key("eye.illuminance_avg"));
+    }
+
+    #[test]
+    fn one_measure_alone_is_the_same_as_among_all() {
+        let scene = many_sensors();
+        let readings = some_light(&scene);
+        for (name, measure) in measure(&scene, &readings).values {
+            assert_eq!(value_of(&scene, &readings, &name), Some(measure), "{name}");
+        }
+        for name in ["exit", "exit.", "exit.nothing", "nothing.flux", "balance.absorbed.exit", ""] {
+            assert_eq!(value_of(&scene, &readings, name), None, "{name}");
+        }
+    }
+
+    #[test]
+    fn everything_can_be_written_as_json() {
+        let scene = many_sensors();
+        let json = serde_json::to_value(measure(&scene, &some_light(&scene))).unwrap();
+        assert_eq!(json["values"]["exit.flux"]["unit"], "lm");
+        assert_eq!(json["unit"], "lumen");
+        assert!(json["maps"].as_array().is_some_and(|maps| maps.len() == 5));
+    }
+
+    #[test]
+    fn the_target_of_a_run_is_error_over_value() {
+        let scene = scene(&[("led", 2.0)], vec![("exit", rectangle(1.0, 1, 1))]);
+        let readings = readings(&scene, 128, |index, layout, batch| {
+            let slot = layout.sensor_flux(SensorId::new(0), SourceId::new(0));
+            add(batch, slot, if index % 2 == 0 { 0.9 } else { 1.1 });
+        });
+        let measures = measure(&scene, &readings);
+        // Standard deviation 0.1 √(128/127), over √128.
+        let error = relative_error(&measures, "exit.flux").unwrap();
+        assert!((error - 0.1 / 127f64.sqrt()).abs() < 1e-12, "{error}");
+        assert_eq!(relative_error(&measures, "exit.uniformity_min_avg"), Some(f64::INFINITY));
+        assert_eq!(relative_error(&measures, "exit.flus"), None);
+    }
+
+    /// A Lambertian disk of radius 1 facing a square of side 2 at distance 1 in free space.
+    fn facing_square(cells: usize) -> Scene {
+        let mut builder = Builder::new(DVec3::ZERO, Medium::new("air", 1.0, 0.0), FluxUnit::Lumen);
+        let at = |z: f64| Frame::WORLD.shifted(DVec3::new(0.0, 0.0, z));
+        let disk = Shape::Flat(Flat::new(at(0.0), Region::Annulus { inner: 0.0, outer: 1.0 }));
+        let square = Region::Rectangle { half_x: 1.0, half_y: 1.0 };
+        let port = builder.add_face(FaceSpec {
+            name: "exit".into(),
+            owner: Owner::Port,
+            front: None,
+            back: None,
+            pieces: vec![Piece::whole(Shape::Flat(Flat::new(at(1.0), square)))],
+        });
+        builder.add_source(Source {
+            name: "led".into(),
+            flux: 1.0,
+            emitter: Emitter::surface(vec![disk], EmitSide::Front, None),
+            emission: Emission::Lambertian,
+            start: Start::Outside,
+            on: Vec::new(),
+        });
+        let SensorKind::Surface(mut sensor) = rectangle(2.0, cells, cells) else { unreachable!() };
+        (sensor.faces, sensor.sides) = (vec![port], Sides::Back);
+        builder.add_sensor(Sensor {
+            name: "exit".into(),
+            kind: SensorKind::Surface(sensor),
+            aim: Vec::new(),
+            entering: None,
+        });
+        builder.build()
+    }
+
+    /// Illuminance [lx] at `r` mm from the axis: E = M/2 (1 - (r² + h² - a²)/√((r² + h² + a²)² - 4 r² a²)) under a
+    /// Lambertian disk of radius a = 1 mm at h = 1 mm with exitance M = 1/π lm/mm² (Foote, Bull. Bureau of
+    /// Standards 12 (1915) 583).
+    fn under_disk(r2: f64) -> f64 {
+        1e6 / TAU * (1.0 - r2 / ((r2 + 2.0).powi(2) - 4.0 * r2).sqrt())
+    }
+
+    #[test]
+    fn errors_of_a_traced_field_are_what_they_say() {
+        let cells = 5;
+        let scene = facing_square(cells);
+        // Mean over a cell by the midpoint rule; its error is below 1e-4.
+        let mean = |column: usize, row: usize| {
+            let place = |cell: usize, i: usize| (cell as f64 + (i as f64 + 0.5) / 40.0) * 0.4 - 1.0;
+            let at = |i: usize| place(column, i % 40).powi(2) + place(row, i / 40).powi(2);
+            (0..1600).map(|i| under_disk(at(i))).sum::<f64>() / 1600.0
+        };
+        let exact: Vec<f64> = (0..25).map(|i| mean(i % 5, i / 5)).collect();
+        let avg = exact.iter().sum::<f64>() / 25.0;
+        let cv = (exact.iter().map(|e| (e - avg).powi(2)).sum::<f64>() / 25.0).sqrt() / avg;
+        let mut squares = IndexMap::<&str, f64>::new();
+        let seeds = 40;
+        for seed in 1..=seeds {
+            let plan = RunPlan {
+                estimator: Estimator::Forward,
+                seed,
+                bounce_limit: 10,
+                stop: StopRules { paths: Some(40_000), ..StopRules::default() },
+            };
+            let mut run = Run::new(&scene, &plan);
+            run.next_wave();
+            let measures = measure(&scene, &run.readings());
+            for (name, expected) in [
+                ("exit.illuminance_avg", avg),
+                ("exit.efficiency", avg * 4e-6),
+                ("exit.cell.0.0", exact[0]),
+                ("exit.cell.2.1", exact[7]),
+                ("exit.uniformity_min_avg", exact[0] / avg),
+                ("exit.uniformity9_min_avg", 9.0 * exact[0] / nine_of(&exact).sum::<f64>()),
+                ("exit.illuminance_max", exact[12]),
+                ("exit.cv", cv),
+            ] {
+                let found = &measures.values[name];
+                assert_eq!(found.status, Status::Ok, "{name}");
+                let z = (found.value - expected) / found.total_error();
+                assert!(z.abs() < 4.0, "seed {seed}: {name} = {found}, not {expected}");
+                *squares.entry(name).or_default() += z * z / seeds as f64;
+            }
+        }
+        for (name, square) in squares {
+            // Mean square of 40 normal numbers: 1 ± 0.22; extremes are given more room than they need.
+            let least = if name.contains("min") || name.contains("max") { 0.1 } else { 0.4 };
+            assert!(square > least && square < 1.9, "{name}: {square}");
+        }
+    }
+
+    fn nine_of(cells: &[f64]) -> impl Iterator<Item = f64> {
+        [0, 2, 4, 10, 12, 14, 20, 22, 24].into_iter().map(|cell| cells[cell])
+    }
+}

@@ -1,0 +1,93 @@
+//! What is read off the maps of a sensor: extremes, uniformity, the middle, and single cells and rings by name.
+
+use crate::measure::cells::SensorCells;
+use crate::measure::evidence::{Evidence, counted};
+use crate::measure::extremes::Noisy;
+use crate::measure::map::SensorMap;
+use crate::measure::uniformity::Statistic;
+use crate::measure::{Measure, Status, points};
+use crate::scene::{Grid, SensorId, SurfaceSensor};
+use indexmap::IndexMap;
+
+/// Cells and rings have names of their own up to this number.
+const NAMED_CELLS: usize = 100;
+
+/// What is read off the maps of a sensor, by the last part of the dotted names.
+pub(crate) fn measures(
+    evidence: &Evidence<'_>,
+    id: SensorId,
+    sensor: &SurfaceSensor,
+    maps: &[SensorMap],
+) -> IndexMap<String, Measure> {
+    let mut out = IndexMap::new();
+    for map in maps {
+        let view = map.view.map_or(String::new(), |view| format!(".{view}"));
+        let seen = SensorCells::of(evidence, id, sensor, map.view);
+        let mut add = |name: &str, measure| {
+            out.insert(format!("{name}{view}"), measure);
+        };
+        summary_measures(evidence, map, &mut add);
+        let middle = points::center(&sensor.grid);
+        if middle.iter().any(|&cell| seen.is_on(cell)) {
+            let center = cell_measure(evidence, map, seen.mean(middle));
+            add(&format!("{}_center", map.quantity), center);
+        }
+        cell_measures(evidence, sensor, map, &seen, &mut add);
+    }
+    out
+}
+
+fn summary_measures(evidence: &Evidence<'_>, map: &SensorMap, add: &mut impl FnMut(&str, Measure)) {
+    let of = |statistic: &Statistic, unit: &str| Measure {
+        bias: statistic.bias,
+        ..evidence.measure(statistic.value, statistic.std_error, unit, statistic.status)
+    };
+    let summary = &map.summary;
+    let quantity = &map.quantity;
+    if map.view.is_some() {
+        add(&format!("{quantity}_avg"), of(&summary.all.avg, &map.unit));
+    }
+    add(&format!("{quantity}_min"), of(&summary.all.min, &map.unit));
+    add(&format!("{quantity}_max"), of(&summary.all.max, &map.unit));
+    let sets = [("", Some(&summary.all)), ("9", summary.nine.as_ref())];
+    for (points, set) in sets.into_iter().chain([("13", summary.thirteen.as_ref())]) {
+        let Some(set) = set else { continue };
+        add(&format!("uniformity{points}_min_avg"), of(&set.min_avg, "1"));
+        add(&format!("uniformity{points}_min_max"), of(&set.min_max, "1"));
+        add(&format!("uniformity{points}_max_min"), of(&set.max_min, "1"));
+    }
+    add("cv", of(&summary.cv, "1"));
+}
+
+/// Names for the cells of small grids and the rings of polar ones.
+fn cell_measures(
+    evidence: &Evidence<'_>,
+    sensor: &SurfaceSensor,
+    map: &SensorMap,
+    seen: &SensorCells<'_>,
+    add: &mut impl FnMut(&str, Measure),
+) {
+    let (columns, rows) = sensor.grid.shape();
+    if columns * rows <= NAMED_CELLS {
+        for cell in (0..columns * rows).filter(|&cell| seen.is_on(cell)) {
+            let measure = cell_measure(evidence, map, seen.at(cell));
+            add(&format!("cell.{}.{}", cell % columns, cell / columns), measure);
+        }
+    }
+    match &sensor.grid {
+        Grid::Polar { rings, sectors, .. } if *rings <= NAMED_CELLS => {
+            for ring in 0..*rings {
+                let mean = seen.mean(ring * sectors..(ring + 1) * sectors);
+                add(&format!("ring.{ring}"), cell_measure(evidence, map, mean));
+            }
+        }
+        Grid::Polar { .. } | Grid::Cartesian { .. } => {}
+    }
+}
+
+/// A cell as a measure; one that counted nothing is known to one count.
+fn cell_measure(evidence: &Evidence<'_>, map: &SensorMap, cell: Noisy) -> Measure {
+    let status = counted(cell.value, cell.std_error);
+    let std_error = if status == Status::NoSignal { cell.count } else { cell.std_error };
+    evidence.measure(cell.value, std_error, &map.unit, status)
+}

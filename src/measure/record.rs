@@ -1,0 +1,171 @@
+//! One number with its error bar, and how far that error bar can be trusted.
+
+use crate::scene::plan::Estimator;
+use serde::Serialize;
+use std::fmt;
+
+/// A measured quantity. Infinite values and errors are written as null.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Measure {
+    /// The value, in `unit`.
+    pub value: f64,
+    /// Standard error of the value, in `unit`; infinite where nothing is known about it.
+    pub std_error: f64,
+    /// How far off the value may be on top of the noise, in `unit`; `None` for unbiased estimates.
+    pub bias: Option<f64>,
+    /// Unit, such as `lm`; `1` for ratios.
+    pub unit: String,
+    /// Number of batches behind it.
+    pub batches: u64,
+    /// Number of paths behind it.
+    pub paths: u64,
+    /// How it was estimated.
+    pub estimator: Estimator,
+    /// Whether value and error can be relied on.
+    pub status: Status,
+}
+
+/// Whether a value and its error can be relied on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Status {
+    /// Both can.
+    Ok,
+    /// Nothing was counted. The error of a flux is then the flux of one path: three of them are the 95 % upper limit
+    /// ("rule of three", Hanley & Lippman-Hand, JAMA 249 (1983) 1743).
+    NoSignal,
+    /// Fewer than ten batches or paths contribute: the error bar itself is uncertain.
+    TooFew,
+    /// An extreme of a map that is mostly noise: the correction for it exceeds a tenth of the value.
+    NoiseLimited,
+}
+
+impl Status {
+    /// The worse of two: the earlier in the order no signal, too few, noise limited, good.
+    pub(crate) fn worst(self, other: Self) -> Self {
+        let rank = |status| match status {
+            Self::NoSignal => 0,
+            Self::TooFew => 1,
+            Self::NoiseLimited => 2,
+            Self::Ok => 3,
+        };
+        if rank(self) <= rank(other) { self } else { other }
+    }
+}
+
+impl Measure {
+    /// Standard error and bias together, in `unit`.
+    pub fn total_error(&self) -> f64 {
+        self.std_error.hypot(self.bias.unwrap_or(0.0))
+    }
+
+    /// Total error over value, 1; infinite where there is no value or no error bar to rely on.
+    pub fn relative_error(&self) -> f64 {
+        match self.status {
+            Status::Ok if self.value != 0.0 && self.value.is_finite() => {
+                (self.total_error() / self.value).abs()
+            }
+            Status::Ok | Status::NoSignal | Status::TooFew | Status::NoiseLimited => f64::INFINITY,
+        }
+    }
+}
+
+impl fmt::Display for Measure {
+    /// `0.51084 ± 0.00023 lm`: two digits of the error, and as many places of the value.
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let error = self.total_error();
+        if !self.value.is_finite() {
+            write!(out, "unknown")?;
+        } else if !error.is_finite() {
+            write!(out, "{} with unknown error", plain(self.value))?;
+        } else if error == 0.0 {
+            write!(out, "{}", plain(self.value))?;
+        } else {
+            with_error(self.value, error, out)?;
+        }
+        if self.unit == "1" { Ok(()) } else { write!(out, " {}", self.unit) }
+    }
+}
+
+/// Powers of ten outside of which numbers are written with an exponent.
+const PLAIN: std::ops::Range<i32> = -4..7;
+
+fn plain(value: f64) -> String {
+    // Seven digits tell all that a Monte Carlo value can hold.
+    let exponent = exponent(value);
+    if value == 0.0 {
+        "0".to_owned()
+    } else if PLAIN.contains(&exponent) {
+        let text = format!("{value:.*}", (6 - exponent) as usize);
+        if text.contains('.') {
+            text.trim_end_matches('0').trim_end_matches('.').to_owned()
+        } else {
+            text
+        }
+    } else {
+        format!("{value:.6e}")
+    }
+}
+
+fn with_error(value: f64, error: f64, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+    let scale = exponent(value.abs().max(error));
+    if PLAIN.contains(&scale) {
+        let places = (1 - exponent(error)).clamp(0, 12) as usize;
+        return write!(out, "{value:.places$} ± {error:.places$}");
+    }
+    let places = (scale - exponent(error) + 1).clamp(0, 12) as usize;
+    let unit = 10f64.powi(scale);
+    write!(out, "({:.places$} ± {:.places$})e{scale}", value / unit, error / unit)
+}
+
+/// Power of ten of the first digit.
+fn exponent(value: f64) -> i32 {
+    if value == 0.0 { 0 } else { value.abs().log10().floor() as i32 }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    pub(crate) fn measure(value: f64, std_error: f64, unit: &str) -> Measure {
+        Measure {
+            value,
+            std_error,
+            bias: None,
+            unit: unit.to_owned(),
+            batches: 128,
+            paths: 1_000_000,
+            estimator: Estimator::Forward,
+            status: Status::Ok,
+        }
+    }
+
+    #[test]
+    fn a_measure_is_written_with_two_digits_of_its_error() {
+        assert_eq!(measure(0.510_84, 0.000_226, "lm").to_string(), "0.51084 ± 0.00023 lm");
+        assert_eq!(measure(12_345.6, 123.0, "lx").to_string(), "12346 ± 123 lx");
+        assert_eq!(measure(0.75, 0.0, "1").to_string(), "0.75");
+        assert_eq!(measure(3e-9, 2.2e-10, "lm").to_string(), "(3.00 ± 0.22)e-9 lm");
+        assert_eq!(measure(2.0, f64::INFINITY, "1").to_string(), "2 with unknown error");
+        assert_eq!(measure(1200.0, 0.0, "lx").to_string(), "1200 lx");
+    }
+
+    #[test]
+    fn status_is_a_word_and_an_unknown_error_is_null_in_json() {
+        let mut unlit = measure(0.0, f64::INFINITY, "1");
+        unlit.status = Status::NoSignal;
+        let json = serde_json::to_value(&unlit).unwrap();
+        assert_eq!(json["status"], "no_signal");
+        assert_eq!(json["estimator"], "forward");
+        assert!(json["std_error"].is_null() && json["bias"].is_null());
+        assert_eq!(unlit.relative_error(), f64::INFINITY);
+    }
+
+    #[test]
+    fn bias_and_noise_add_in_quadrature() {
+        let mut biased = measure(10.0, 0.3, "lm");
+        biased.bias = Some(0.4);
+        assert!((biased.total_error() - 0.5).abs() < 1e-15);
+        assert!((biased.relative_error() - 0.05).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,128 @@
+//! Scenes and readings made by hand, for the tests of this layer.
+
+use crate::math::Frame;
+use crate::optics::{Bsdf, Medium};
+use crate::scene::shape::{ChartRect, Flat, Region, Shape};
+use crate::scene::{
+    Builder, Counts, Emission, EmitSide, Emitter, FaceSpec, Goniometer, Grid, Owner, Piece, Place,
+    Scene, Sensor, SensorKind, Sides, Source, Start, SurfaceSensor, Views,
+};
+use crate::transport::{Layout, Readings};
+use crate::units::FluxUnit;
+use glam::{DVec2, DVec3};
+
+/// A scene with a black sheet `wall.surface` and the named sources and sensors; surface sensors are ports of their own.
+pub(crate) fn scene(sources: &[(&str, f64)], sensors: Vec<(&str, SensorKind)>) -> Scene {
+    let mut builder = Builder::new(DVec3::ZERO, Medium::new("air", 1.0, 0.0), FluxUnit::Lumen);
+    let black = builder.add_finish("black", Bsdf::Absorber);
+    let wall = Flat::new(Frame::WORLD, Region::Rectangle { half_x: 1.0, half_y: 1.0 });
+    let wall = builder.add_face(FaceSpec {
+        name: "wall.surface".into(),
+        owner: Owner::Sheet,
+        front: Some(black),
+        back: Some(black),
+        pieces: vec![Piece::whole(Shape::Flat(wall))],
+    });
+    for (name, flux) in sources {
+        let disk = Flat::new(Frame::WORLD, Region::Annulus { inner: 0.0, outer: 1.0 });
+        builder.add_source(Source {
+            name: (*name).into(),
+            flux: *flux,
+            emitter: Emitter::surface(vec![Shape::Flat(disk)], EmitSide::Front, None),
+            emission: Emission::Lambertian,
+            start: Start::Outside,
+            on: Vec::new(),
+        });
+    }
+    for (name, kind) in sensors {
+        builder.add_sensor(Sensor {
+            name: name.into(),
+            kind,
+            aim: vec![wall],
+            entering: Some(wall),
+        });
+    }
+    builder.build()
+}
+
+/// A one-sided sensor of `size` mm with these cells.
+pub(crate) fn rectangle(size: f64, nu: usize, nv: usize) -> SensorKind {
+    let half = DVec2::splat(0.5 * size);
+    let grid = Grid::Cartesian { rect: ChartRect { min: -half, max: half }, nu, nv };
+    let areas = grid.cell_areas(|rect| (rect.max - rect.min).element_product());
+    SensorKind::Surface(surface(grid, areas))
+}
+
+/// A disk of `radius` mm under square cells.
+pub(crate) fn disk(radius: f64, cells: usize) -> SensorKind {
+    let half = DVec2::splat(radius);
+    let grid = Grid::Cartesian { rect: ChartRect { min: -half, max: half }, nu: cells, nv: cells };
+    let shape = Flat::new(Frame::WORLD, Region::Annulus { inner: 0.0, outer: radius });
+    let areas = grid.cell_areas(|rect| Shape::Flat(shape.clone()).area_in(rect));
+    SensorKind::Surface(surface(grid, areas))
+}
+
+/// A disk of `radius` mm in rings and sectors.
+pub(crate) fn rings(radius: f64, rings: usize, sectors: usize) -> SensorKind {
+    let grid = Grid::Polar { radius, rings, sectors };
+    let areas = grid.cell_areas(|_| 0.0);
+    SensorKind::Surface(surface(grid, areas))
+}
+
+/// A luminance sensor: a rectangle with views of these projected solid angles [sr].
+pub(crate) fn luminance(size: f64, nu: usize, nv: usize, projected: &[f64]) -> SensorKind {
+    match rectangle(size, nu, nv) {
+        SensorKind::Surface(mut surface) => {
+            surface.views = Some(Views {
+                directions: vec![DVec3::Z; projected.len()],
+                half_angle: 0.1,
+                projected: projected.to_vec(),
+            });
+            SensorKind::Surface(surface)
+        }
+        SensorKind::Goniometer(_) => unreachable!("a rectangle is a surface"),
+    }
+}
+
+/// A far-field goniometer.
+pub(crate) fn goniometer(c_cells: usize, gamma_cells: usize) -> SensorKind {
+    SensorKind::Goniometer(Goniometer { frame: Frame::WORLD, c_cells, gamma_cells, radius: None })
+}
+
+fn surface(grid: Grid, areas: Vec<f64>) -> SurfaceSensor {
+    SurfaceSensor {
+        faces: Vec::new(),
+        place: Place::Port,
+        counts: Counts::Incident,
+        sides: Sides::Front,
+        grid,
+        areas,
+        views: None,
+        frame: None,
+    }
+}
+
+/// Readings of some batches of 1000 paths, each filled in by `fill`, which knows the number of the batch.
+pub(crate) fn readings(
+    scene: &Scene,
+    batches: u64,
+    mut fill: impl FnMut(u64, &Layout, &mut Readings),
+) -> Readings {
+    let layout = Layout::new(scene);
+    let mut all: Option<Readings> = None;
+    for index in 0..batches {
+        let mut batch = Readings::of_batch(scene, &layout, 1, 1000, index);
+        fill(index, &layout, &mut batch);
+        batch.close_batch();
+        all = Some(match all {
+            None => batch,
+            Some(sum) => sum.merge(&batch),
+        });
+    }
+    all.expect("tests ask for at least one batch")
+}
+
+/// Adds to a scalar of a batch.
+pub(crate) fn add(batch: &mut Readings, slot: usize, flux: f64) {
+    batch.groups[0].sums[slot] += flux;
+}

@@ -55,7 +55,7 @@ fn judge(check: &Check, measure: &Measure) -> Verdict {
     findings.extend(check.max.map(|max| limit(measure, max, Bound::Greatest)));
     findings.extend(check.equals.map(|expected| equality(check, measure, expected)));
     if let Some(wanted) = check.max_std_error
-        && !(measure.std_error <= wanted)
+        && (measure.std_error > wanted || measure.std_error.is_nan())
     {
         let text = format!("its standard error is not below {wanted}");
         findings.push((Outcome::Undecided, text));

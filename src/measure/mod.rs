@@ -138,10 +138,20 @@ fn add(values: &mut IndexMap<String, Measure>, sensor: &str, measures: IndexMap<
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::Frame;
     use crate::measure::samples::{
         add, disk, goniometer, luminance, readings, rectangle, rings, scene,
     };
-    use crate::scene::SourceId;
+    use crate::optics::Medium;
+    use crate::scene::plan::{Estimator, RunPlan, StopRules};
+    use crate::scene::shape::{Flat, Region, Shape};
+    use crate::scene::{
+        Builder, Emission, EmitSide, Emitter, FaceSpec, Owner, Piece, Sensor, Sides, Source,
+        SourceId, Start,
+    };
+    use crate::transport::Run;
+    use glam::DVec3;
+    use std::f64::consts::TAU;
 
     fn many_sensors() -> Scene {
         scene(
@@ -243,5 +253,97 @@ mod tests {
         assert!((error - 0.1 / 127f64.sqrt()).abs() < 1e-12, "{error}");
         assert_eq!(relative_error(&measures, "exit.uniformity_min_avg"), Some(f64::INFINITY));
         assert_eq!(relative_error(&measures, "exit.flus"), None);
+    }
+
+    /// A Lambertian disk of radius 1 facing a square of side 2 at distance 1 in free space.
+    fn facing_square(cells: usize) -> Scene {
+        let mut builder = Builder::new(DVec3::ZERO, Medium::new("air", 1.0, 0.0), FluxUnit::Lumen);
+        let at = |z: f64| Frame::WORLD.shifted(DVec3::new(0.0, 0.0, z));
+        let disk = Shape::Flat(Flat::new(at(0.0), Region::Annulus { inner: 0.0, outer: 1.0 }));
+        let square = Region::Rectangle { half_x: 1.0, half_y: 1.0 };
+        let port = builder.add_face(FaceSpec {
+            name: "exit".into(),
+            owner: Owner::Port,
+            front: None,
+            back: None,
+            pieces: vec![Piece::whole(Shape::Flat(Flat::new(at(1.0), square)))],
+        });
+        builder.add_source(Source {
+            name: "led".into(),
+            flux: 1.0,
+            emitter: Emitter::surface(vec![disk], EmitSide::Front, None),
+            emission: Emission::Lambertian,
+            start: Start::Outside,
+            on: Vec::new(),
+        });
+        let SensorKind::Surface(mut sensor) = rectangle(2.0, cells, cells) else { unreachable!() };
+        (sensor.faces, sensor.sides) = (vec![port], Sides::Back);
+        builder.add_sensor(Sensor {
+            name: "exit".into(),
+            kind: SensorKind::Surface(sensor),
+            aim: Vec::new(),
+            entering: None,
+        });
+        builder.build()
+    }
+
+    /// Illuminance [lx] at `r` mm from the axis: E = M/2 (1 - (r² + h² - a²)/√((r² + h² + a²)² - 4 r² a²)) under a
+    /// Lambertian disk of radius a = 1 mm at h = 1 mm with exitance M = 1/π lm/mm² (Foote, Bull. Bureau of
+    /// Standards 12 (1915) 583).
+    fn under_disk(r2: f64) -> f64 {
+        1e6 / TAU * (1.0 - r2 / ((r2 + 2.0).powi(2) - 4.0 * r2).sqrt())
+    }
+
+    #[test]
+    fn errors_of_a_traced_field_are_what_they_say() {
+        let cells = 5;
+        let scene = facing_square(cells);
+        // Mean over a cell by the midpoint rule; its error is below 1e-4.
+        let mean = |column: usize, row: usize| {
+            let place = |cell: usize, i: usize| (cell as f64 + (i as f64 + 0.5) / 40.0) * 0.4 - 1.0;
+            let at = |i: usize| place(column, i % 40).powi(2) + place(row, i / 40).powi(2);
+            (0..1600).map(|i| under_disk(at(i))).sum::<f64>() / 1600.0
+        };
+        let exact: Vec<f64> = (0..25).map(|i| mean(i % 5, i / 5)).collect();
+        let avg = exact.iter().sum::<f64>() / 25.0;
+        let cv = (exact.iter().map(|e| (e - avg).powi(2)).sum::<f64>() / 25.0).sqrt() / avg;
+        let mut squares = IndexMap::<&str, f64>::new();
+        let seeds = 40;
+        for seed in 1..=seeds {
+            let plan = RunPlan {
+                estimator: Estimator::Forward,
+                seed,
+                bounce_limit: 10,
+                stop: StopRules { paths: Some(40_000), ..StopRules::default() },
+            };
+            let mut run = Run::new(&scene, &plan);
+            run.next_wave();
+            let measures = measure(&scene, &run.readings());
+            for (name, expected) in [
+                ("exit.illuminance_avg", avg),
+                ("exit.efficiency", avg * 4e-6),
+                ("exit.cell.0.0", exact[0]),
+                ("exit.cell.2.1", exact[7]),
+                ("exit.uniformity_min_avg", exact[0] / avg),
+                ("exit.uniformity9_min_avg", 9.0 * exact[0] / nine_of(&exact).sum::<f64>()),
+                ("exit.illuminance_max", exact[12]),
+                ("exit.cv", cv),
+            ] {
+                let found = &measures.values[name];
+                assert_eq!(found.status, Status::Ok, "{name}");
+                let z = (found.value - expected) / found.total_error();
+                assert!(z.abs() < 4.0, "seed {seed}: {name} = {found}, not {expected}");
+                *squares.entry(name).or_default() += z * z / seeds as f64;
+            }
+        }
+        for (name, square) in squares {
+            // Mean square of 40 normal numbers: 1 ± 0.22; extremes are given more room than they need.
+            let least = if name.contains("min") || name.contains("max") { 0.1 } else { 0.4 };
+            assert!(square > least && square < 1.9, "{name}: {square}");
+        }
+    }
+
+    fn nine_of(cells: &[f64]) -> impl Iterator<Item = f64> {
+        [0, 2, 4, 10, 12, 14, 20, 22, 24].into_iter().map(|cell| cells[cell])
     }
 }

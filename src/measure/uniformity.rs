@@ -291,7 +291,7 @@ mod tests {
             let trials = 200;
             let (mut held, mut sum) = (0, 0.0);
             for _ in 0..trials {
-                let level = |i: usize| if i % 2 == 0 { 1.0 - d } else { 1.0 + d };
+                let level = |i: u32| if i.is_multiple_of(2) { 1.0 - d } else { 1.0 + d };
                 let cells: Vec<_> =
                     (0..1024).map(|i| cell(level(i) + noise * normal.draw(), noise)).collect();
                 let found = coefficient_of_variation(parts(&cells), &field(&cells));

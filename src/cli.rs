@@ -55,7 +55,7 @@ struct RunArgs {
     /// Folder of the report [default: reports/NAME].
     #[arg(short = 'o', long = "output", value_name = "DIR")]
     output: Option<PathBuf>,
-    /// Set a key of the scene, such as -D solids.pipe.sweep.path.0.straight_mm=20.
+    /// Set a key of the scene, such as `-D solids.pipe.sweep.path.0.straight_mm=20`.
     #[arg(short = 'D', value_name = "KEY=VALUE")]
     define: Vec<String>,
     /// How flux is estimated.
@@ -157,7 +157,7 @@ fn run(args: &RunArgs) -> ExitCode {
     let output = Output { dir: args.output.clone(), existing };
     let mut display = Display::new(args.quiet);
     let outcome = pipeline::run_one(&args.scene, &settings, &output, &interrupt, &mut |progress| {
-        display.show(progress)
+        display.show(progress);
     });
     display.close();
     match outcome {

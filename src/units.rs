@@ -1,7 +1,7 @@
 //! Units at the border.
 //!
 //! Inside, lengths are millimetres, angles radians, flux lumens (watts in radiometric runs), wavelengths nanometres.
-//! Illuminance [lm/mm²] and luminance [lm/(mm² sr)] become lx and cd/m² here, on the way out.
+//! Illuminance, in lm/mm², and luminance [lm/(mm² sr)] become lx and cd/m² here, on the way out.
 
 use serde::{Deserialize, Serialize};
 

@@ -163,7 +163,7 @@ fn relative_paths_start_at_the_folder_of_the_file_that_names_them() {
     assert_eq!(loaded.places.line(&cells), Some(1));
 }
 
-/// Numbers that look random and are the same in every run (Steele et al., OOPSLA 2014, SplitMix).
+/// Numbers that look random and are the same in every run (Steele et al., OOPSLA 2014, `SplitMix64`).
 fn random(state: &mut u64) -> u64 {
     *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let mut z = *state;

@@ -1,5 +1,7 @@
 //! The layer order of the crate: a module uses only modules of lower layers, and children never reach for `super::`.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 use std::path::{Path, PathBuf};
 
 /// Layers from the bottom up; modules of one layer do not see each other, but for the foundation's own order.

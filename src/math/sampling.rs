@@ -10,24 +10,24 @@ pub fn disk(u: [f64; 2]) -> DVec3 {
     DVec3::new(r * cos, r * sin, 0.0)
 }
 
-/// A direction of the upper half space with density cosθ/π [1/sr].
+/// A direction of the upper half space with density cosθ/π, in 1/sr.
 pub fn cosine_hemisphere(u: [f64; 2]) -> DVec3 {
     let p = disk(u);
     // u[0] < 1 keeps z above zero.
     DVec3::new(p.x, p.y, (1.0 - u[0]).sqrt())
 }
 
-/// A direction of the upper half space with density (m+1) cos^m θ / 2π [1/sr].
+/// A direction of the upper half space with density (m+1) cos^m θ / 2π, in 1/sr.
 pub fn cosine_power_hemisphere(power: f64, u: [f64; 2]) -> DVec3 {
     from_cosine((1.0 - u[0]).powf(1.0 / (power + 1.0)), u[1])
 }
 
-/// A direction, uniform over the sphere, density 1/4π [1/sr].
+/// A direction, uniform over the sphere, density 1/4π, in 1/sr.
 pub fn uniform_sphere(u: [f64; 2]) -> DVec3 {
     from_cosine(1.0 - 2.0 * u[0], u[1])
 }
 
-/// A direction, uniform in solid angle over the cone of `half_angle` [rad] about +z.
+/// A direction, uniform in solid angle over the cone of `half_angle`, in rad, about +z.
 pub fn cone_direction(half_angle: f64, u: [f64; 2]) -> DVec3 {
     // 1 - cos θ = 2 sin²(θ/2) keeps its digits for a cone as narrow as the sun's.
     let one_minus_cos = u[0] * 2.0 * (0.5 * half_angle).sin().powi(2);

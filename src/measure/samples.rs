@@ -69,7 +69,7 @@ pub(crate) fn rings(radius: f64, rings: usize, sectors: usize) -> SensorKind {
     SensorKind::Surface(surface(grid, areas))
 }
 
-/// A luminance sensor: a rectangle with views of these projected solid angles [sr].
+/// A luminance sensor: a rectangle with views of these projected solid angles, in sr.
 pub(crate) fn luminance(size: f64, nu: usize, nv: usize, projected: &[f64]) -> SensorKind {
     match rectangle(size, nu, nv) {
         SensorKind::Surface(mut surface) => {

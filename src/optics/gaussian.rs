@@ -20,12 +20,12 @@ pub struct Gaussian {
     sigma: f64,
     /// Elevation at the last node of `norms`, rad.
     reach: f64,
-    /// Integral of exp(-θ²/2σ²) above the horizon [sr], against the elevation of the mean direction.
+    /// Integral of exp(-θ²/2σ²) above the horizon, in sr, against the elevation of the mean direction.
     norms: Vec<f64>,
 }
 
 impl Gaussian {
-    /// A lobe of standard deviation `sigma` [rad] per angular coordinate.
+    /// A lobe of standard deviation `sigma`, in rad, per angular coordinate.
     pub fn new(sigma: f64) -> Self {
         let reach = (REACH * sigma).min(FRAC_PI_2);
         let norms =
@@ -38,7 +38,7 @@ impl Gaussian {
         self.sigma
     }
 
-    /// Density [1/sr] of scattering into `dir` about `mean`, both on the side of `normal`; 0 below the horizon.
+    /// Density, in 1/sr, of scattering into `dir` about `mean`, both on the side of `normal`; 0 below the horizon.
     pub fn pdf(&self, mean: DVec3, dir: DVec3, normal: DVec3) -> f64 {
         if dir.dot(normal) <= 0.0 {
             return 0.0;

@@ -9,7 +9,7 @@ pub struct Medium {
 }
 
 impl Medium {
-    /// A medium of constant refractive index and absorption coefficient [1/mm] (natural logarithm).
+    /// A medium of constant refractive index and absorption coefficient, in 1/mm, (natural logarithm).
     pub fn new(name: &str, index: f64, absorption_per_mm: f64) -> Self {
         Self { name: name.to_owned(), index, absorption: absorption_per_mm }
     }
@@ -19,13 +19,13 @@ impl Medium {
         &self.name
     }
 
-    /// Refractive index at a wavelength [nm]; 1.
+    /// Refractive index at a wavelength, in nm; 1.
     #[inline]
     pub fn index(&self, _wavelength: f64) -> f64 {
         self.index
     }
 
-    /// Absorption coefficient at a wavelength [nm]; 1/mm.
+    /// Absorption coefficient at a wavelength, in nm; 1/mm.
     #[inline]
     pub fn absorption(&self, _wavelength: f64) -> f64 {
         self.absorption

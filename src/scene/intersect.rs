@@ -127,7 +127,7 @@ impl Scene {
         self.accel.visit(ray, |index| {
             let prim = PrimId::new(index);
             self.crossings(prim, ray, line.as_ref(), Start::Elsewhere, |_, crossing| {
-                visit(prim, crossing)
+                visit(prim, crossing);
             });
             f64::INFINITY
         });

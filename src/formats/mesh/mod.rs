@@ -3,7 +3,7 @@
 //! All readers give the same [`TriangleMesh`]: millimetres in f64, positions welded where they coincide exactly,
 //! normals per corner, and a face name for every triangle. A reader never trusts a count or an index of the file:
 //! broken or hostile data is a [`MeshError`], never a panic. Whether the mesh is closed and the right way out is
-//! asked afterwards ([`health`]). What a face does to light is not known here.
+//! asked afterwards ([`health()`]). What a face does to light is not known here.
 
 mod builder;
 mod from_gltf;

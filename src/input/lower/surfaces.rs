@@ -230,7 +230,8 @@ fn side_names(profile: &ProfileSpec) -> Vec<String> {
             let sides = points.len();
             // Clockwise points are swept in reverse; sides are named in the order of the file.
             let clockwise = planar::signed_area(&points) < 0.0;
-            let in_file = |side: usize| if clockwise { (2 * sides - 2 - side) % sides } else { side };
+            let in_file =
+                |side: usize| if clockwise { (2 * sides - 2 - side) % sides } else { side };
             (0..sides).map(|side| format!("wall_{}", in_file(side) + 1)).collect()
         }
     }

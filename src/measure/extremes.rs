@@ -22,12 +22,12 @@ use std::f64::consts::TAU;
 const SEED: u64 = 0x6d65_6173;
 const STREAM: u64 = 0;
 /// Times that noise is added: the mean reading is then good to a tenth of a cell's error.
-const REPLICAS: usize = 200;
-/// On large maps fewer, so that about this many normal numbers are drawn, but no fewer than [`MIN_REPLICAS`].
+const REPLICAS: u32 = 200;
+/// On large maps no further once this many normal numbers were drawn, but at least [`MIN_REPLICAS`] times.
 const DRAWS: usize = 4_000_000;
-const MIN_REPLICAS: usize = 16;
-/// Cells further than this from the extreme, in their own errors and in its own, are not drawn: the chance that one
-/// of them would be picked is below 1e-6 each.
+const MIN_REPLICAS: u32 = 16;
+/// Noise beyond this many standard errors is left out of account, where that saves looking at a cell; it has a
+/// chance of 3e-7.
 const REACH: f64 = 5.0;
 /// How far the value goes from the raw extreme to the fair reading.
 const TOWARD_FAIR: f64 = 0.8;
@@ -132,39 +132,62 @@ fn extreme(cells: &[Noisy], side: Side, interval: [f64; 2]) -> Extreme {
 }
 
 /// The mean reading of the cells that noise of their own error picks, and its standard error: with p the share of
-/// times a cell is picked, (Σ p² σ²)^½, up to the noise in p.
+/// times a cell is picked, (Σ p² σ²)^½, up to the noise in p. Values are taken times `sign`.
 fn fair_reading(cells: &[Noisy], sign: f64) -> (f64, f64) {
-    let nearest = cells
-        .iter()
-        .map(|cell| sign * cell.value + REACH * cell.std_error)
-        .fold(f64::INFINITY, f64::min);
-    let candidates: Vec<(f64, f64)> = cells
-        .iter()
-        .map(|cell| (sign * cell.value, cell.std_error))
-        .filter(|(value, error)| value - REACH * error <= nearest)
-        .collect();
-    let replicas = (DRAWS / candidates.len()).clamp(MIN_REPLICAS, REPLICAS);
+    let candidates = candidates(cells, sign);
     let mut normal = Normal::new();
     let mut picked = vec![0u32; candidates.len()];
-    let mut sum = 0.0;
-    for _ in 0..replicas {
+    let (mut sum, mut replicas, mut draws) = (0.0, 0, 0);
+    while replicas < MIN_REPLICAS || (replicas < REPLICAS && draws < DRAWS) {
         let (mut best, mut at, mut reading) = (f64::INFINITY, 0, 0.0);
-        for (index, (value, error)) in candidates.iter().enumerate() {
-            let noise = error * normal.draw();
-            if value + noise < best {
-                (best, at, reading) = (value + noise, index, value - noise);
+        for (index, cell) in candidates.iter().enumerate() {
+            if cell.least > best {
+                break;
+            }
+            draws += 1;
+            let noise = cell.std_error * normal.draw();
+            if cell.value + noise < best {
+                (best, at, reading) = (cell.value + noise, index, cell.value - noise);
             }
         }
         picked[at] += 1;
         sum += reading;
+        replicas += 1;
     }
-    let share = |times: u32| f64::from(times) / replicas as f64;
+    let share = |times: u32| f64::from(times) / f64::from(replicas);
     let variance: f64 = candidates
         .iter()
         .zip(&picked)
-        .map(|((_, error), &times)| (share(times) * error).powi(2))
+        .map(|(cell, &times)| (share(times) * cell.std_error).powi(2))
         .sum();
-    (sign * sum / replicas as f64, variance.sqrt())
+    (sign * sum / f64::from(replicas), variance.sqrt())
+}
+
+/// A cell that noise may pick.
+struct Candidate {
+    value: f64,
+    std_error: f64,
+    /// The least that the cell may read with noise.
+    least: f64,
+}
+
+/// The cells that noise may pick, those that may read least first.
+fn candidates(cells: &[Noisy], sign: f64) -> Vec<Candidate> {
+    let nearest = cells
+        .iter()
+        .map(|cell| sign * cell.value + REACH * cell.std_error)
+        .fold(f64::INFINITY, f64::min);
+    let mut candidates: Vec<Candidate> = cells
+        .iter()
+        .map(|cell| {
+            let (value, std_error) = (sign * cell.value, cell.std_error);
+            Candidate { value, std_error, least: value - REACH * std_error }
+        })
+        .filter(|candidate| candidate.least <= nearest)
+        .collect();
+    // A stable sort: equal cells keep their order, and the same map gives the same bits.
+    candidates.sort_by(|a, b| a.least.total_cmp(&b.least));
+    candidates
 }
 
 /// Standard normal numbers from a fixed stream (Box & Muller, Ann. Math. Stat. 29 (1958) 610).

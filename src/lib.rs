@@ -4,7 +4,7 @@
 //! in f64 and counts it on virtual sensors: flux, efficiency, illuminance maps, uniformity, intensity and luminance,
 //! each with an error bar, beside a flux balance that closes.
 //!
-//! The flow, top to bottom in [`pipeline`]:
+//! The flow, top to bottom in [`crate::pipeline`]:
 //!
 //! ```text
 //! scene file -> Scene -> paths -> readings -> measures with uncertainty -> report

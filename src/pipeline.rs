@@ -1,6 +1,8 @@
 //! The flow, one call per step: a scene file becomes a report.
 
 use crate::error::{Diagnostic, Result};
+use crate::input::keys::Key;
+use crate::input::problems::Problems;
 use crate::input::{self, Job, Settings};
 use crate::measure::{self, Measure};
 use crate::report::{
@@ -119,6 +121,7 @@ pub fn run_one(
     watch: &mut dyn FnMut(&Progress),
 ) -> Result<Finished> {
     let job = input::load(scene, settings)?;
+    expect_measures(&job)?;
     let folder = Folder::open(&output_dir(scene, output), output.existing, recipe(&job).as_ref())?;
     let traced = trace(&job, interrupt, watch);
     let report = compose(&job, &traced.readings, traced.stop);
@@ -131,6 +134,27 @@ pub fn run_one(
         dir: folder.path().to_path_buf(),
         warnings: job.warnings,
     })
+}
+
+/// Refuses checks and targets that name no measure of the scene, before any work is done.
+fn expect_measures(job: &Job) -> Result<()> {
+    let names = measure::names(&job.scene);
+    let target = job
+        .run
+        .stop
+        .target
+        .iter()
+        .map(|target| (Key::of(&["run", "target", "measure"]), &target.measure));
+    let check = |index| Key::of(&["check"]).index(index).field("measure");
+    let checks = job.checks.iter().enumerate().map(|(index, one)| (check(index), &one.measure));
+    let mut problems = Problems::default();
+    for (key, name) in target.chain(checks).filter(|(_, name)| !names.contains(name)) {
+        let nearest = measure::nearest(name, names.iter().map(String::as_str));
+        problems
+            .error(&key, format!("there is no measure `{name}`"))
+            .hint(format!("near names: {}", nearest.join(", ")));
+    }
+    problems.finish(&job.places).map(|_| ())
 }
 
 /// A run that has written its report.
@@ -299,6 +323,7 @@ pub fn check(
     existing: Existing,
 ) -> Result<Checked> {
     let job = input::load(scene, settings)?;
+    expect_measures(&job)?;
     let default = PathBuf::from(format!("{}.check.png", job.name));
     let picture = picture.unwrap_or(&default);
     let tracks = tracks(&job.scene, job.run.seed, job.run.bounce_limit, CHECK_PATHS);

@@ -1,6 +1,7 @@
 //! The whole way from a scene file to a job: read, lowered, with the wishes of the command line.
 
 use crate::error::{Diagnostic, Result};
+use crate::input::keys::Places;
 use crate::input::lower::{Lowered, lower};
 use crate::input::sources::Source;
 use crate::input::{Draft, draft};
@@ -41,6 +42,8 @@ pub struct Job {
     pub checks: Vec<Check>,
     /// The scene file, byte for byte.
     pub text: String,
+    /// Where the files say it.
+    pub places: Places,
     /// Overrides of the command line, as given.
     pub overrides: Vec<String>,
     /// Identifies scene file, included files and overrides: 64-bit FNV-1a, in hexadecimal.
@@ -69,6 +72,7 @@ pub fn load(path: &Path, settings: &Settings) -> Result<Job> {
         run,
         checks,
         text,
+        places,
         overrides: settings.overrides.clone(),
         hash,
         warnings,

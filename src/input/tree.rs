@@ -243,7 +243,7 @@ mod tests {
 
     #[test]
     fn every_broken_line_is_reported_and_the_rest_is_read() {
-        let (root, errors) = parsed("a = \nb = 2\nb = 3\nc = [1, 2]\nd = 4\n");
+        let (root, errors) = parsed("a = \nb = 2\nb = 3\nc = [1,, 2]\nd = 4\n");
         assert_eq!(errors.len(), 3, "{errors:?}");
         assert_eq!(errors[1].key, "b");
         assert_eq!(root.get("d").unwrap().value, Value::Integer(4));

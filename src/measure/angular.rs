@@ -204,10 +204,15 @@ fn angles(
         for (plane, ahead, behind) in &profiles {
             let found = beam::full_angle(&gammas, [ahead, behind], share);
             let measure = match found {
-                Some(angle) => {
-                    let (value, error) = (angle.value.to_degrees(), angle.std_error.to_degrees());
-                    evidence.measure(value, error, "deg", angle.status)
-                }
+                Some(angle) => Measure {
+                    bias: Some(angle.bias.to_degrees()),
+                    ..evidence.measure(
+                        angle.value.to_degrees(),
+                        angle.std_error.to_degrees(),
+                        "deg",
+                        angle.status,
+                    )
+                },
                 None => evidence.measure(0.0, f64::INFINITY, "deg", Status::NoSignal),
             };
             out.insert(format!("{name}{plane}"), measure);

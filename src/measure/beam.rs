@@ -21,6 +21,8 @@ const REPLICAS: usize = 100;
 pub(crate) struct FullAngle {
     pub(crate) value: f64,
     pub(crate) std_error: f64,
+    /// What the bias of the largest intensity makes of it, rad.
+    pub(crate) bias: f64,
     pub(crate) status: Status,
 }
 
@@ -32,7 +34,9 @@ pub(crate) fn full_angle(gammas: &[f64], halves: [&[Noisy]; 2], share: f64) -> O
         return None;
     }
     let values = |half: &[Noisy]| half.iter().map(|ring| ring.value).collect::<Vec<_>>();
-    let value = width(gammas, [&values(halves[0]), &values(halves[1])], share * most.value);
+    let read = [values(halves[0]), values(halves[1])];
+    let at = |level: f64| width(gammas, [&read[0], &read[1]], share * level);
+    let value = at(most.value);
     let mut normal = Normal::new();
     let mut draw = |value: f64, std_error: f64| value + std_error * normal.draw();
     let drawn = Tally::of((0..REPLICAS).map(|_| {
@@ -49,6 +53,7 @@ pub(crate) fn full_angle(gammas: &[f64], halves: [&[Noisy]; 2], share: f64) -> O
         value,
         // The spread of the replicas is the error, not that of their mean.
         std_error: drawn.std_error() * (REPLICAS as f64).sqrt(),
+        bias: (at(most.value + most.bias) - value).abs(),
         status: counted(peak.value, peak.std_error),
     })
 }

@@ -105,18 +105,20 @@ mod tests {
     use crate::measure::{Measures, Status, measure};
     use crate::scene::{SensorId, SourceId};
 
-    const EXIT: fn() -> SensorId = || SensorId::new(0);
+    fn exit() -> SensorId {
+        SensorId::new(0)
+    }
 
     /// Two sources, of which the exit gets 0.6 of 3 lm and 0.1 of 1 lm, with a swing that both fluxes share.
     fn measured(batches: u64) -> Measures {
         let scene = scene(&[("led", 3.0), ("lamp", 1.0)], vec![("exit", rectangle(10.0, 1, 1))]);
         let readings = readings(&scene, batches, |index, layout, batch| {
             let swing = if index % 2 == 0 { 0.9 } else { 1.1 };
-            add(batch, layout.sensor_flux(EXIT(), SourceId::new(0)), 1.8 * swing);
-            add(batch, layout.sensor_flux(EXIT(), SourceId::new(1)), 0.1 * swing);
-            add(batch, layout.entering(EXIT()), 2.0 * swing);
-            add(batch, layout.depth_weighted(EXIT()), 1.9 * 12.0 * swing);
-            add(batch, layout.deeper(EXIT(), 0), 1.9 * 0.25 * swing);
+            add(batch, layout.sensor_flux(exit(), SourceId::new(0)), 1.8 * swing);
+            add(batch, layout.sensor_flux(exit(), SourceId::new(1)), 0.1 * swing);
+            add(batch, layout.entering(exit()), 2.0 * swing);
+            add(batch, layout.depth_weighted(exit()), 1.9 * 12.0 * swing);
+            add(batch, layout.deeper(exit(), 0), 1.9 * 0.25 * swing);
         });
         measure(&scene, &readings)
     }

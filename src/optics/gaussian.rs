@@ -78,17 +78,27 @@ impl Gaussian {
     }
 }
 
-/// ∫ exp(-θ²/2σ²) dω above the horizon, for a mean direction at `elevation`, by Simpson's rule over θ.
+/// ∫ exp(-θ²/2σ²) dω above the horizon, for a mean direction at `elevation`.
 fn norm(sigma: f64, elevation: f64) -> f64 {
     let end = (9.0 * sigma).min(PI);
-    let steps = 2000;
-    let h = end / f64::from(steps);
-    let integrand = |i: i32| {
-        let theta = h * f64::from(i);
+    let integrand = |theta: f64| {
         (-0.5 * (theta / sigma).powi(2)).exp() * theta.sin() * azimuth_above(theta, elevation)
     };
-    let inner: f64 = (1..steps).map(|i| if i % 2 == 1 { 4.0 } else { 2.0 } * integrand(i)).sum();
-    (integrand(0) + inner + integrand(steps)) * h / 3.0
+    // The horizon begins to cut the circle of angle θ at θ = elevation and leaves nothing of it from π - elevation on.
+    let cut = elevation.min(end);
+    simpson(0.0, cut, integrand) + simpson(cut, (PI - elevation).min(end).max(cut), integrand)
+}
+
+/// Simpson's rule over `from..to`; the ends are taken from within, where a kink lies on them.
+fn simpson(from: f64, to: f64, f: impl Fn(f64) -> f64) -> f64 {
+    if to.next_down() <= from.next_up() {
+        return 0.0;
+    }
+    let steps = 2000;
+    let h = (to - from) / f64::from(steps);
+    let at = |i: i32| f((from + h * f64::from(i)).clamp(from.next_up(), to.next_down()));
+    let inner: f64 = (1..steps).map(|i| if i % 2 == 1 { 4.0 } else { 2.0 } * at(i)).sum();
+    (at(0) + inner + at(steps)) * h / 3.0
 }
 
 /// How much azimuth of the circle at angle `theta` about the mean lies above the horizon, rad.

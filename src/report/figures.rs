@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::measure::{Axes, Balance, IntensityTable, SensorMap, SensorPaths};
 use crate::report::csv::map_name;
-use crate::report::number::{format_value, format_with_error};
+use crate::report::number::{format_percent, format_value, format_with_error};
 use crate::report::png::{
     Bar, BarChart, ColourMap, CrossSection, Curve, ErrorForm, HeatMap, LinePlot, Outline,
     PolarPlot, Pole, RayEnd, RayPath, Scale, Series, SeriesForm, SeriesPoint, bar_chart,
@@ -150,20 +150,36 @@ fn plane_curve(table: &IntensityTable, name: &str, right: usize, left: usize) ->
     Curve { name: name.into(), points, std_errors }
 }
 
+/// Share of the flux that the histogram of bounces shows; a few paths go on for thousands.
+const BOUNCES_SHOWN: f64 = 0.995;
+
 fn bounce_picture(paths: &SensorPaths, unit: &str) -> Result<Vec<u8>> {
-    let points = paths
-        .depths
-        .iter()
-        .map(|bin| SeriesPoint {
-            x: 0.5 * (bin.from + bin.to) as f64,
+    let total: f64 = paths.depths.iter().map(|bin| bin.flux).sum();
+    let mut so_far = 0.0;
+    let shown = paths.depths.iter().take_while(|bin| {
+        let before = so_far;
+        so_far += bin.flux;
+        before < BOUNCES_SHOWN * total
+    });
+    let points: Vec<SeriesPoint> = shown
+        .map(|bin| {
             // Bins of several depths show the mean of one.
-            y: bin.flux / (bin.to - bin.from + 1) as f64,
-            std_error: bin.std_error / (bin.to - bin.from + 1) as f64,
+            let width = (bin.to - bin.from + 1) as f64;
+            SeriesPoint {
+                x: 0.5 * (bin.from + bin.to) as f64,
+                y: bin.flux / width,
+                std_error: bin.std_error / width,
+            }
         })
         .collect();
+    let deepest = paths.depths.last().map_or(0, |bin| bin.to);
+    let shown_to = points.last().map_or(0.0, |point| point.x);
     line_plot(&LinePlot {
         title: format!("{}: flux by number of bounces", paths.sensor),
-        subtitle: String::new(),
+        subtitle: format!(
+            "{shown_to:.0} bounces and less bring {}; the deepest path met {deepest} or fewer",
+            format_percent(BOUNCES_SHOWN)
+        ),
         x_label: "interfaces met".into(),
         y_label: format!("flux in {unit}"),
         x_scale: Scale::Linear,

@@ -3,6 +3,7 @@
 //! Things that stand at faces of other things are placed after them. Every function notes what is wrong and goes on,
 //! so that all problems of a scene are reported together; what could not be built is left out.
 
+mod consistency;
 mod finishes;
 mod meshes;
 mod place;
@@ -69,6 +70,8 @@ pub(crate) fn lower(spec: &SceneSpec, places: &Places, problems: &mut Problems) 
     let mut scene = context.builder.build();
     sources::settle_starts(spec, &mut scene);
     sources::check_starts(spec, &scene, context.problems);
+    consistency::check_overlaps(spec, &scene, context.problems);
+    consistency::check_open_faces(spec, &scene, context.problems);
     plan::check_measures(spec, &scene, context.problems);
     context.problems.is_free_of_errors().then_some(Lowered { scene, run, checks })
 }
@@ -98,6 +101,11 @@ fn flux_unit(spec: &SceneSpec) -> FluxUnit {
     } else {
         FluxUnit::Lumen
     }
+}
+
+/// The key of a thing's table, such as `solids.pipe.sweep`.
+fn kind_key(family: &str, name: &str, kind: &str) -> Key {
+    Key::of(&[family, name, kind])
 }
 
 impl Context<'_> {

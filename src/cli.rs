@@ -25,6 +25,9 @@ struct Cli {
 const EXIT_CODES: &str = "Exit codes: 0 good; 1 a check was missed; 2 not run (usage or input); 3 internal or I/O \
 error; 130 stopped by Ctrl-C.";
 
+/// What shells give for a program that was stopped by Ctrl-C: 128 and the number of the signal.
+const INTERRUPTED: u8 = 130;
+
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Trace a scene and write its report.
@@ -142,7 +145,7 @@ fn run(args: &RunArgs) -> ExitCode {
     // Without a handler Ctrl-C ends the program at once: worse, but no reason not to run.
     _ = ctrlc::set_handler(move || {
         if on_signal.is_raised() {
-            std::process::exit(130);
+            std::process::exit(INTERRUPTED.into());
         }
         on_signal.raise();
     });
@@ -164,9 +167,13 @@ fn run(args: &RunArgs) -> ExitCode {
         Ok(finished) => {
             if !args.quiet {
                 warn(&finished.warnings);
-                print(&crate::report::terminal(&finished.report, &finished.dir));
+                print(&crate::report::terminal(&finished.report, &finished.dir, finished.written));
             }
             exit_code(finished.stop, finished.report.outcome())
+        }
+        Err(error) if interrupt.is_raised() => {
+            fail(&error);
+            ExitCode::from(INTERRUPTED)
         }
         Err(error) => fail(&error),
     }
@@ -174,7 +181,7 @@ fn run(args: &RunArgs) -> ExitCode {
 
 fn exit_code(stop: Stop, outcome: Outcome) -> ExitCode {
     match (stop, outcome) {
-        (Stop::Interrupted, _) => ExitCode::from(130),
+        (Stop::Interrupted, _) => ExitCode::from(INTERRUPTED),
         (Stop::Paths | Stop::Time | Stop::Target, Outcome::Missed) => ExitCode::from(1),
         (Stop::Paths | Stop::Time | Stop::Target, Outcome::Good) => ExitCode::SUCCESS,
     }

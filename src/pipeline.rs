@@ -6,13 +6,16 @@ use crate::input::problems::Problems;
 use crate::input::{self, Job, Settings};
 use crate::measure::{self, Measure};
 use crate::report::{
-    self, CheckResult, Existing, Folder, Report, RunFacts, SceneFacts, TargetFacts, inventory,
-    write_whole,
+    self, CheckResult, Existing, Folder, Recipe, Report, RunFacts, SceneFacts, TargetFacts,
+    Written, inventory, write_whole,
 };
 use crate::scene::plan::RunPlan;
 use crate::transport::{Interrupt, Readings, Run, tracks};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
+
+/// Version of the program, for reports.
+const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// Where the report goes, and whether one that is there may be replaced.
 #[derive(Debug, Clone)]
@@ -119,13 +122,14 @@ pub fn run_one(
 ) -> Result<Finished> {
     let job = input::load(scene, settings)?;
     expect_measures(&job)?;
-    let folder = Folder::open(&output_dir(scene, output), output.existing)?;
+    let folder = Folder::open(&output_dir(scene, output), output.existing, recipe(&job).as_ref())?;
     let traced = trace(&job, interrupt, watch);
     let report = compose(&job, &traced.readings, traced.stop);
-    folder.write(&report::files(&report, &job.text)?)?;
+    let written = folder.write(&report::files(&report, &job.text)?)?;
     timing::write(&folder, &traced)?;
     Ok(Finished {
         report,
+        written,
         stop: traced.stop,
         dir: folder.path().to_path_buf(),
         warnings: job.warnings,
@@ -158,12 +162,24 @@ fn expect_measures(job: &Job) -> Result<()> {
 pub struct Finished {
     /// What the report says.
     pub report: Report,
+    /// Whether it was there before.
+    pub written: Written,
     /// Why the run ended.
     pub stop: Stop,
     /// Where the report lies.
     pub dir: PathBuf,
     /// Remarks on the scene file.
     pub warnings: Vec<Diagnostic>,
+}
+
+/// What decides the bytes of a job's report; nothing does when the clock stops the run.
+fn recipe(job: &Job) -> Option<Recipe> {
+    job.run.stop.time.is_none().then(|| Recipe {
+        version: VERSION.to_owned(),
+        scene_hash: job.hash.clone(),
+        seed: job.run.seed,
+        asked: report::asked(&job.run.stop),
+    })
 }
 
 /// The report of what was counted.
@@ -190,10 +206,11 @@ pub fn compose(job: &Job, readings: &Readings, stop: Stop) -> Report {
             overrides: job.overrides.clone(),
         },
         run: RunFacts {
-            version: env!("CARGO_PKG_VERSION").to_owned(),
+            version: VERSION.to_owned(),
             seed: job.run.seed,
             estimator: job.run.estimator,
             partial: stop == Stop::Interrupted,
+            asked: report::asked(&job.run.stop),
             stopped: stop.reason().to_owned(),
             target,
             bounce_limit: job.run.bounce_limit,
@@ -320,7 +337,7 @@ pub fn check(
 mod timing {
     use crate::error::Result;
     use crate::pipeline::Traced;
-    use crate::report::{Existing, Folder, write_whole};
+    use crate::report::Folder;
 
     pub(super) fn write(folder: &Folder, traced: &Traced) -> Result<()> {
         let seconds = traced.elapsed.as_secs_f64();
@@ -330,6 +347,6 @@ mod timing {
             paths / seconds,
             segments / seconds
         );
-        write_whole(&folder.path().join("timing.csv"), text.as_bytes(), Existing::Replace)
+        folder.write_beside("timing.csv", text.as_bytes())
     }
 }

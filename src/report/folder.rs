@@ -1,41 +1,54 @@
 //! Writing files whole or not at all.
 
 use crate::error::{Error, Result};
-use crate::report::OutputFile;
+use crate::report::{OutputFile, Recipe};
 use std::fs;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 /// What to do with output that is there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Existing {
-    /// Refuse.
+    /// Refuse to change it.
     Keep,
     /// Replace the files of the same name when the new ones are complete.
     Replace,
+}
+
+/// What writing changed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Written {
+    /// At least one file is new or replaced.
+    New,
+    /// Everything was there before, the same to the byte.
+    Same,
 }
 
 /// The folder of a report.
 #[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
+    existing: Existing,
 }
 
 impl Folder {
-    /// Makes sure, before any work is done, that a report can be written to `path`: the folder is made, and it is empty
-    /// unless its files may be replaced.
-    pub fn open(path: &Path, existing: Existing) -> Result<Self> {
+    /// Makes sure, before any work is done, that a report can be written to `path`: the folder is made, and it is
+    /// empty, or its files may be replaced, or it holds the report of this very `recipe`, which is going to be the
+    /// same. A run that the clock stops has no recipe.
+    pub fn open(path: &Path, existing: Existing, recipe: Option<&Recipe>) -> Result<Self> {
         fs::create_dir_all(path).map_err(|source| Error::io(path, source))?;
         let mut entries = fs::read_dir(path).map_err(|source| Error::io(path, source))?;
-        if existing == Existing::Keep && entries.next().is_some() {
+        let is_kept = existing == Existing::Keep && entries.next().is_some();
+        if is_kept && (recipe.is_none() || Recipe::read(path).as_ref() != recipe) {
             return Err(Error::Usage(format!(
-                "{} is not empty; use --overwrite to replace the report in it, or -o for another folder",
+                "{} is not empty and holds no report of this very run; use --overwrite to replace the files in it, \
+                 or -o for another folder",
                 path.display()
             )));
         }
         // A file that can be made tells more than permissions do.
         tempfile::tempfile_in(path).map_err(|source| Error::io(path, source))?;
-        Ok(Self { path: path.to_path_buf() })
+        Ok(Self { path: path.to_path_buf(), existing })
     }
 
     /// Where it is.
@@ -43,32 +56,81 @@ impl Folder {
         &self.path
     }
 
-    /// Writes all files, each under a temporary name first; none takes its place before all are complete.
-    pub fn write(&self, files: &[OutputFile]) -> Result<()> {
-        let mut staged = Vec::new();
+    /// Writes all files, each under a temporary name first; none takes its place before all are complete. A file that
+    /// is there with the same bytes is left alone. Where one differs that may not be replaced, none is written.
+    pub fn write(&self, files: &[OutputFile]) -> Result<Written> {
+        let (mut staged, mut differing) = (Vec::new(), Vec::new());
         for file in files {
-            staged.push((self.path.join(&file.name), stage(&self.path, &file.bytes)?));
+            let path = self.path.join(&file.name);
+            match (compare(&path, &file.bytes)?, self.existing) {
+                (Comparison::Same, _) => {}
+                (Comparison::Different, Existing::Keep) => differing.push(file.name.as_str()),
+                (Comparison::Different, Existing::Replace) | (Comparison::Missing, _) => {
+                    staged.push((stage(&self.path, &file.bytes)?, path));
+                }
+            }
         }
-        for (path, temporary) in staged {
+        if !differing.is_empty() {
+            return Err(Error::Output {
+                what: self.path.display().to_string(),
+                reason: format!(
+                    "this run came out different from the report that is there, which is kept; use --overwrite to \
+                     replace it, or -o for another folder; different are {}",
+                    differing.join(", ")
+                ),
+            });
+        }
+        let written = if staged.is_empty() { Written::Same } else { Written::New };
+        for (temporary, path) in staged {
             temporary.persist(&path).map_err(|error| Error::io(&path, error.error))?;
         }
+        Ok(written)
+    }
+
+    /// Writes a file that lies outside of the reproducible set. One that is there stays, unless it may be replaced.
+    pub fn write_beside(&self, name: &str, bytes: &[u8]) -> Result<()> {
+        let path = self.path.join(name);
+        if self.existing == Existing::Keep && path.exists() {
+            return Ok(());
+        }
+        stage(&self.path, bytes)?.persist(&path).map_err(|error| Error::io(&path, error.error))?;
         Ok(())
     }
 }
 
-/// Writes one file, whole or not at all.
+/// Writes one file, whole or not at all. One that is there with the same bytes is left alone.
 pub fn write_whole(path: &Path, bytes: &[u8], existing: Existing) -> Result<()> {
-    if existing == Existing::Keep && path.exists() {
-        return Err(Error::Usage(format!(
-            "{} exists; use --overwrite to replace it",
-            path.display()
-        )));
+    match (compare(path, bytes)?, existing) {
+        (Comparison::Same, _) => return Ok(()),
+        (Comparison::Different, Existing::Keep) => {
+            return Err(Error::Usage(format!(
+                "{} exists with other contents; use --overwrite to replace it",
+                path.display()
+            )));
+        }
+        (Comparison::Different, Existing::Replace) | (Comparison::Missing, _) => {}
     }
     let folder =
         path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     fs::create_dir_all(folder).map_err(|source| Error::io(folder, source))?;
     stage(folder, bytes)?.persist(path).map_err(|error| Error::io(path, error.error))?;
     Ok(())
+}
+
+/// How a file on the disk compares with what is to be written.
+enum Comparison {
+    Missing,
+    Same,
+    Different,
+}
+
+fn compare(path: &Path, bytes: &[u8]) -> Result<Comparison> {
+    match fs::read(path) {
+        Ok(old) if old == bytes => Ok(Comparison::Same),
+        Ok(_) => Ok(Comparison::Different),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(Comparison::Missing),
+        Err(source) => Err(Error::io(path, source)),
+    }
 }
 
 /// A complete file under a temporary name, readable as any other file the user makes.
@@ -96,17 +158,81 @@ mod tests {
         OutputFile { name: name.into(), bytes: text.into() }
     }
 
+    fn recipe(seed: u64) -> Recipe {
+        let (version, scene_hash) = ("0.1.0".to_owned(), "e9a5".to_owned());
+        Recipe { version, scene_hash, seed, asked: "20 paths".to_owned() }
+    }
+
+    fn summary(seed: u64, partial: &str) -> String {
+        format!(
+            r#"{{"scene": {{"hash": "e9a5"}},
+                "run": {{"version": "0.1.0", "seed": {seed}, "partial": {partial}, "asked": "20 paths"}}}}"#
+        )
+    }
+
     #[test]
     fn a_report_is_not_replaced_unless_asked_and_other_files_stay() {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("report");
-        Folder::open(&path, Existing::Keep).unwrap().write(&[file("a.csv", "1")]).unwrap();
-        assert!(matches!(Folder::open(&path, Existing::Keep), Err(Error::Usage(_))));
+        let open = |existing| Folder::open(&path, existing, Some(&recipe(1)));
+        open(Existing::Keep).unwrap().write(&[file("a.csv", "1")]).unwrap();
+        assert!(matches!(open(Existing::Keep), Err(Error::Usage(_))));
         fs::write(path.join("notes.txt"), "mine").unwrap();
-        Folder::open(&path, Existing::Replace).unwrap().write(&[file("a.csv", "2")]).unwrap();
+        let written = open(Existing::Replace).unwrap().write(&[file("a.csv", "2")]).unwrap();
+        assert_eq!(written, Written::New);
         assert_eq!(fs::read_to_string(path.join("a.csv")).unwrap(), "2");
         assert_eq!(fs::read_to_string(path.join("notes.txt")).unwrap(), "mine");
         assert_eq!(fs::read_dir(&path).unwrap().count(), 2, "a temporary file was left");
+    }
+
+    #[test]
+    fn a_report_of_the_same_recipe_may_be_run_again_and_must_come_out_the_same() {
+        let dir = tempfile::tempdir().unwrap();
+        let open = |recipe: Option<&Recipe>| Folder::open(dir.path(), Existing::Keep, recipe);
+        let files = [file("summary.json", &summary(1, "false")), file("a.csv", "1")];
+        open(None).unwrap().write(&files).unwrap();
+        assert_eq!(open(Some(&recipe(1))).unwrap().write(&files).unwrap(), Written::Same);
+        assert!(open(Some(&recipe(2))).is_err() && open(None).is_err());
+
+        let other = [file("new.csv", "3"), file("a.csv", "2")];
+        let refusal = open(Some(&recipe(1))).unwrap().write(&other).unwrap_err();
+        assert!(refusal.to_string().ends_with("different are a.csv"), "{refusal}");
+        assert_eq!(fs::read_to_string(dir.path().join("a.csv")).unwrap(), "1");
+        assert_eq!(
+            fs::read_dir(dir.path()).unwrap().count(),
+            2,
+            "a file was written in spite of it"
+        );
+    }
+
+    #[test]
+    fn a_partial_report_is_not_run_over() {
+        let dir = tempfile::tempdir().unwrap();
+        fs::write(dir.path().join("summary.json"), summary(1, "true")).unwrap();
+        assert!(Folder::open(dir.path(), Existing::Keep, Some(&recipe(1))).is_err());
+    }
+
+    #[test]
+    fn a_file_beside_the_report_stays_unless_it_may_be_replaced() {
+        let dir = tempfile::tempdir().unwrap();
+        let read = || fs::read_to_string(dir.path().join("timing.csv")).unwrap();
+        let folder = |existing| Folder { path: dir.path().to_path_buf(), existing };
+        folder(Existing::Keep).write_beside("timing.csv", b"1").unwrap();
+        folder(Existing::Keep).write_beside("timing.csv", b"2").unwrap();
+        assert_eq!(read(), "1");
+        folder(Existing::Replace).write_beside("timing.csv", b"2").unwrap();
+        assert_eq!(read(), "2");
+    }
+
+    #[test]
+    fn a_single_file_is_replaced_only_when_asked_or_when_it_is_the_same() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("new").join("a.png");
+        write_whole(&path, b"1", Existing::Keep).unwrap();
+        write_whole(&path, b"1", Existing::Keep).unwrap();
+        assert!(matches!(write_whole(&path, b"2", Existing::Keep), Err(Error::Usage(_))));
+        write_whole(&path, b"2", Existing::Replace).unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"2");
     }
 
     #[test]
@@ -114,6 +240,6 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("report");
         fs::write(&path, "a file").unwrap();
-        assert!(matches!(Folder::open(&path, Existing::Keep), Err(Error::Io { .. })));
+        assert!(matches!(Folder::open(&path, Existing::Keep, None), Err(Error::Io { .. })));
     }
 }

@@ -209,7 +209,8 @@ fn run(report: &Report) -> String {
             "{} paths in {} batches, {} segments",
             measures.paths, measures.batches, measures.segments
         ),
-        format!("ended because {}; bounce limit {}", run.stopped, run.bounce_limit),
+        format!("asked for {}; ended because {}", run.asked, run.stopped),
+        format!("bounce limit {}", run.bounce_limit),
         "unpolarised light: the mean of both polarisations at every interface".to_owned(),
     ];
     if let Some(target) = &run.target {

@@ -10,15 +10,17 @@ mod inventory;
 mod markdown;
 pub mod number;
 pub mod png;
+mod recipe;
 mod record;
 mod summary;
 mod terminal;
 
 pub use figures::scene_picture;
-pub use folder::{Existing, Folder, write_whole};
+pub use folder::{Existing, Folder, Written, write_whole};
 pub use inventory::inventory;
+pub use recipe::Recipe;
 pub use record::{
-    CheckResult, Outcome, Report, RunFacts, SceneFacts, TargetFacts, leak_places, remarks,
+    CheckResult, Outcome, Report, RunFacts, SceneFacts, TargetFacts, asked, leak_places, remarks,
 };
 pub use terminal::terminal;
 

@@ -1,7 +1,7 @@
 //! The one record that all formats of a report are made from.
 
 use crate::measure::{self, Measures, Verdict};
-use crate::scene::plan::{Check, Estimator, Target};
+use crate::scene::plan::{Check, Estimator, StopRules, Target};
 use crate::transport::Leak;
 use glam::DVec3;
 use serde::Serialize;
@@ -47,6 +47,8 @@ pub struct RunFacts {
     pub estimator: Estimator,
     /// Whether the run ended by itself, or the user ended it.
     pub partial: bool,
+    /// The stop rules, in words: see [`asked`].
+    pub asked: String,
     /// Why it ended.
     pub stopped: String,
     /// The target, and whether it was reached.
@@ -109,6 +111,17 @@ impl TargetFacts {
     pub fn is_reached(&self) -> bool {
         self.reached.is_some_and(|reached| reached <= self.wanted)
     }
+}
+
+/// Stop rules in words, with all their digits: "2000000 paths or exit.flux to 0.005".
+pub fn asked(stop: &StopRules) -> String {
+    let paths = stop.paths.map(|paths| format!("{paths} paths"));
+    let time = stop.time.map(|time| format!("{} s", time.as_secs_f64()));
+    let target = stop
+        .target
+        .as_ref()
+        .map(|target| format!("{} to {}", target.measure, target.relative_error));
+    [paths, time, target].into_iter().flatten().collect::<Vec<_>>().join(" or ")
 }
 
 /// Places of leaks in the user's coordinates, mm.

@@ -1,12 +1,12 @@
 //! The few lines that a run prints when it is done.
 
 use crate::measure::Outcome;
-use crate::report::Report;
 use crate::report::markdown::quantity;
+use crate::report::{Report, Written};
 use std::path::Path;
 
 /// Sensors, checks and where the report lies.
-pub fn terminal(report: &Report, dir: &Path) -> String {
+pub fn terminal(report: &Report, dir: &Path, written: Written) -> String {
     let measures = &report.measures;
     let mut text =
         format!("{}\n{} paths, {}\n", report.scene.title, measures.paths, report.run.stopped);
@@ -33,5 +33,9 @@ pub fn terminal(report: &Report, dir: &Path) -> String {
     for warning in &report.warnings {
         text += &format!("  note: {warning}\n");
     }
-    text + &format!("report: {}\n", dir.join("report.md").display())
+    let remark = match written {
+        Written::New => "",
+        Written::Same => " (was there already, the same to the byte)",
+    };
+    text + &format!("report: {}{remark}\n", dir.join("report.md").display())
 }

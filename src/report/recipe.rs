@@ -1,0 +1,36 @@
+//! What decides the bytes of a report, so that a run over its own report is told from a run over another one.
+
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+
+/// Two runs of one recipe write the same bytes, with the same binary on the same kind of machine.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Recipe {
+    /// Version of the program.
+    pub version: String,
+    /// Identifies scene file, included files and overrides.
+    pub scene_hash: String,
+    /// Seed of the random numbers.
+    pub seed: u64,
+    /// The stop rules, in words.
+    pub asked: String,
+}
+
+impl Recipe {
+    /// The recipe of the report in a folder; `None` if there is no report, or a partial one.
+    pub(crate) fn read(folder: &Path) -> Option<Self> {
+        let summary: Value =
+            serde_json::from_slice(&fs::read(folder.join("summary.json")).ok()?).ok()?;
+        let text = |place| summary.pointer(place).and_then(Value::as_str).map(str::to_owned);
+        if summary.pointer("/run/partial")?.as_bool()? {
+            return None;
+        }
+        Some(Self {
+            version: text("/run/version")?,
+            scene_hash: text("/scene/hash")?,
+            seed: summary.pointer("/run/seed")?.as_u64()?,
+            asked: text("/run/asked")?,
+        })
+    }
+}

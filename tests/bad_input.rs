@@ -54,7 +54,8 @@ fn overrides(file: &Path) -> Vec<String> {
 }
 
 fn diagnostics(file: &Path) -> Vec<Diagnostic> {
-    match input::read(file, &overrides(file)) {
+    let settings = input::Settings { overrides: overrides(file), ..input::Settings::default() };
+    match input::load(file, &settings) {
         Ok(_) => Vec::new(),
         Err(Error::Input(diagnostics)) => diagnostics,
         Err(other) => panic!("{}: {other}", file.display()),

@@ -136,7 +136,7 @@ impl Context<'_> {
                 for body in &blocked {
                     self.problems
                         .error(
-                            &body.key().field("at"),
+                            &body.key(self.spec).field("at"),
                             "stands at a face of a thing that stands at its own",
                         )
                         .hint("give one of them a position_mm");
@@ -191,10 +191,10 @@ impl Body {
         }
     }
 
-    fn key(&self) -> Key {
+    fn key(&self, spec: &SceneSpec) -> Key {
         match self {
-            Self::Solid(name) => Key::of(&["solids", name]),
-            Self::Sheet(name) => Key::of(&["sheets", name]),
+            Self::Solid(name) => kind_key("solids", name, spec.solids[name.as_str()].kind()),
+            Self::Sheet(name) => kind_key("sheets", name, spec.sheets[name.as_str()].kind()),
         }
     }
 }

@@ -53,13 +53,6 @@ impl Context<'_> {
             }
             SheetSpec::Annulus(ring) => {
                 let (inner, outer) = (ring.shape.inner_radius_mm, ring.shape.outer_radius_mm);
-                if inner >= outer {
-                    self.problems.error(
-                        &key.field("inner_radius_mm"),
-                        format!("the hole, {inner} mm, reaches the rim, {outer} mm"),
-                    );
-                    return None;
-                }
                 flat(Region::Annulus { inner, outer })
             }
             SheetSpec::Rectangle(r) => flat(Region::Rectangle {
@@ -73,13 +66,6 @@ impl Context<'_> {
             }
             SheetSpec::ParabolicCylinder(trough) => {
                 let spec = &trough.shape;
-                if spec.x_min_mm >= spec.x_max_mm {
-                    self.problems.error(
-                        &key.field("x_min_mm"),
-                        format!("is not below x_max_mm, {} mm", spec.x_max_mm),
-                    );
-                    return None;
-                }
                 let shape = ParabolicCylinder::new(
                     frame,
                     spec.focal_length_mm,
@@ -91,7 +77,7 @@ impl Context<'_> {
             }
             SheetSpec::Tube(tube) => self.sweep_surfaces(&tube.shape, frame, key),
             SheetSpec::CompoundParabolic(cpc) => self.compound_parabolic(&cpc.shape, frame, key),
-            SheetSpec::Paraboloid(paraboloid) => self.paraboloid(&paraboloid.shape, frame, key),
+            SheetSpec::Paraboloid(paraboloid) => Some(self.paraboloid(&paraboloid.shape, frame)),
         }
     }
 }

@@ -76,7 +76,7 @@ impl Context<'_> {
             }
             SolidSpec::Lens(lens) => self.lens_surfaces(&lens.shape, frame, key),
             SolidSpec::CompoundParabolic(cpc) => self.compound_parabolic(&cpc.shape, frame, key),
-            SolidSpec::Paraboloid(paraboloid) => self.paraboloid(&paraboloid.shape, frame, key),
+            SolidSpec::Paraboloid(paraboloid) => Some(self.paraboloid(&paraboloid.shape, frame)),
             // Meshes bring their faces from a file.
             SolidSpec::Mesh(_) => None,
         }

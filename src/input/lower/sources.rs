@@ -17,7 +17,7 @@ use crate::scene::{
     Emission, EmitSide, Emitter, Extent, FaceSpec, FinishId, Owner, Piece, PrimId, Scene, SolidId,
     Source, Start,
 };
-use crate::units::{FluxUnit, per_m2_to_per_mm2};
+use crate::units::per_m2_to_per_mm2;
 
 impl Context<'_> {
     pub(super) fn lower_sources(&mut self) {
@@ -72,39 +72,19 @@ impl Context<'_> {
                 Emission::Cone { half_angle: degrees.to_radians(), axis }
             }
         };
-        match emission {
-            Emission::Cone { half_angle, .. } => {
-                let reach = half_angle.to_degrees() + common.tilt_deg;
-                let surface = matches!(
-                    source,
-                    SourceSpec::Disk(_)
-                        | SourceSpec::Rectangle(_)
-                        | SourceSpec::Sphere(_)
-                        | SourceSpec::Cylinder(_)
-                        | SourceSpec::Face(_)
-                );
-                // Rounding of 90 degrees to radians and back.
-                if surface && reach > 90.0 + 1e-9 {
-                    self.problems
-                        .error(
-                            &key.field("tilt_deg"),
-                            format!("the tilted cone reaches {reach} deg, below the surface"),
-                        )
-                        .hint("keep tilt_deg plus the cone's half-angle at 90 or less");
-                    return None;
-                }
-            }
-            Emission::Collimated { .. } => {}
-            Emission::Lambertian | Emission::Isotropic | Emission::CosinePower(_) => {
-                if common.tilt_deg != 0.0 {
-                    self.problems
-                        .error(
-                            &key.field("tilt_deg"),
-                            "only a cone or a collimated beam can be tilted",
-                        )
-                        .hint("turn the source itself by `at.axis`");
-                    return None;
-                }
+        if let Emission::Cone { half_angle, .. } = emission
+            && emits_from_a_surface(source)
+        {
+            let reach = half_angle.to_degrees() + common.tilt_deg;
+            // Rounding of 90 degrees to radians and back.
+            if reach > 90.0 + 1e-9 {
+                self.problems
+                    .error(
+                        &key.field("tilt_deg"),
+                        format!("the tilted cone reaches {reach} deg, below the surface"),
+                    )
+                    .hint("keep tilt_deg plus the cone's half-angle at 90 or less");
+                return None;
             }
         }
         Some(emission)
@@ -128,13 +108,6 @@ impl Context<'_> {
             }
             SourceSpec::Disk(disk) => {
                 let (inner, outer) = (disk.shape.inner_radius_mm, disk.shape.radius_mm);
-                if inner >= outer {
-                    self.problems.error(
-                        &key.field("inner_radius_mm"),
-                        format!("the dark middle, {inner} mm, reaches the rim, {outer} mm"),
-                    );
-                    return None;
-                }
                 flat(Region::Annulus { inner, outer })
             }
             SourceSpec::Rectangle(r) => flat(Region::Rectangle {
@@ -218,13 +191,6 @@ impl Context<'_> {
         law: Emission,
         key: &Key,
     ) -> Option<f64> {
-        let unit = self.builder.scene().unit;
-        if unit == FluxUnit::Watt && common.flux_w.is_none() {
-            self.problems
-                .error(key, "sources in lm and in W are mixed")
-                .hint("give all sources in one unit; spectra that could convert them are not supported yet");
-            return None;
-        }
         if let Some(flux) = common.flux_lm.or(common.flux_w) {
             return Some(flux);
         }
@@ -274,6 +240,18 @@ impl Context<'_> {
         });
         self.faces.insert(format!("{name}.body"), vec![face]);
         patch_range(&self.builder.scene().faces[face.index()].extent).map(PrimId::new).collect()
+    }
+}
+
+/// Whether directions are counted from a surface's normal.
+fn emits_from_a_surface(source: &SourceSpec) -> bool {
+    match source {
+        SourceSpec::Disk(_)
+        | SourceSpec::Rectangle(_)
+        | SourceSpec::Sphere(_)
+        | SourceSpec::Cylinder(_)
+        | SourceSpec::Face(_) => true,
+        SourceSpec::Point(_) | SourceSpec::Line(_) | SourceSpec::Volume(_) => false,
     }
 }
 

@@ -131,20 +131,8 @@ impl Context<'_> {
     }
 
     /// The faces of a paraboloid.
-    pub(super) fn paraboloid(
-        &mut self,
-        spec: &ParaboloidSpec,
-        frame: Frame,
-        key: &Key,
-    ) -> Option<Surfaces> {
+    pub(super) fn paraboloid(&self, spec: &ParaboloidSpec, frame: Frame) -> Surfaces {
         let (focal, hole, rim) = (spec.focal_length_mm, spec.hole_radius_mm, spec.radius_mm);
-        if hole >= rim {
-            self.problems.error(
-                &key.field("hole_radius_mm"),
-                format!("the hole, {hole} mm, reaches the rim, {rim} mm"),
-            );
-            return None;
-        }
         let height = |radius: f64| radius * radius / (4.0 * focal);
         let mut faces = vec![
             NamedFace::wall("wall", Shape::Paraboloid(Paraboloid::new(frame, focal, hole, rim))),
@@ -157,7 +145,7 @@ impl Context<'_> {
         // Half of base times height, less that of the tip that the hole cuts off.
         let volume =
             0.5 * std::f64::consts::PI * (rim * rim * height(rim) - hole * hole * height(hole));
-        Some(Surfaces { faces, volume: Some(volume) })
+        Surfaces { faces, volume: Some(volume) }
     }
 }
 

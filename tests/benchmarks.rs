@@ -1,6 +1,10 @@
 //! The benchmark scenes with exact values: each must pass its own checks, lose nothing and close its balance.
 
-#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test fails by panicking and shows its figures")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test fails by panicking and shows its figures"
+)]
 
 use lumiduct::input::{self, Settings};
 use lumiduct::measure::Outcome;

@@ -18,4 +18,4 @@ pub use readings::{
     ClassSum, DEPTH_BINS, GROUPS, Group, Leak, Readings, SensorReading, Step, Trail,
 };
 pub use rounds::{Interrupt, Run};
-pub use walk::{Departure, Event, Segment, Vertex, walk};
+pub use walk::{Departure, Event, ROULETTE_BELOW, Segment, Vertex, walk};

@@ -12,7 +12,7 @@ use std::ops::ControlFlow;
 
 /// Below this throughput a path survives with probability throughput/threshold and then has the threshold's:
 /// the mean is kept, and mirrors above it cost no random number. 1.
-const ROULETTE_BELOW: f64 = 1e-3;
+pub const ROULETTE_BELOW: f64 = 1e-3;
 
 /// A straight piece of a path, in one medium.
 #[derive(Debug)]

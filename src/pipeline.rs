@@ -78,6 +78,33 @@ pub struct TargetProgress {
     pub wanted: f64,
 }
 
+impl Progress {
+    /// How much of the work is done, by the rule that is nearest to its end; 0..=1.
+    pub fn fraction(&self) -> f64 {
+        let paths = self.planned_paths.map_or(0.0, |planned| self.paths as f64 / planned as f64);
+        let time = self.time_limit.map_or(0.0, |limit| self.elapsed.as_secs_f64() / limit.as_secs_f64());
+        // The error falls as one over the square root of the paths.
+        let target = self.target.as_ref().map_or(0.0, |target| (target.wanted / target.relative_error()).powi(2));
+        paths.max(time).max(target).min(1.0)
+    }
+
+    /// Paths per second, the target's value and error, and the time left.
+    pub fn sentence(&self) -> String {
+        let seconds = self.elapsed.as_secs_f64();
+        let mut text = format!("{:.3e} paths, {:.2e} paths/s", self.paths as f64, self.paths as f64 / seconds);
+        if let Some(target) = &self.target {
+            let (reached, error) = (&target.reached, 100.0 * target.relative_error());
+            let wanted = 100.0 * target.wanted;
+            text += &format!(", {} {:.4} ± {error:.3} % of {wanted:.3} %", target.measure, reached.value);
+        }
+        let fraction = self.fraction();
+        if fraction > 0.0 {
+            text += &format!(", {:.0} s left", seconds * (1.0 - fraction) / fraction);
+        }
+        text
+    }
+}
+
 impl TargetProgress {
     /// Standard error over value; infinite without a value.
     pub fn relative_error(&self) -> f64 {

@@ -10,6 +10,16 @@ pub fn edges(polygon: &[DVec2]) -> impl Iterator<Item = (DVec2, DVec2)> + '_ {
     polygon.iter().zip(polygon.iter().cycle().skip(1)).map(|(&a, &b)| (a, b))
 }
 
+/// Whether a simple counter-clockwise polygon has no inward corner.
+pub fn is_convex(polygon: &[DVec2]) -> bool {
+    let n = polygon.len();
+    let turn = |i: usize| {
+        let [a, b, c] = [polygon[i], polygon[(i + 1) % n], polygon[(i + 2) % n]];
+        (b - a).perp_dot(c - b)
+    };
+    (0..n).all(|i| turn(i) >= 0.0)
+}
+
 /// Area, mm²; positive when the vertices run counter-clockwise.
 pub fn signed_area(polygon: &[DVec2]) -> f64 {
     let Some(&base) = polygon.first() else { return 0.0 };

@@ -118,7 +118,11 @@ pub fn bracketed_root(lo: f64, hi: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
     // Usually 5 to 10 steps; a root 2^-k of the interval long needs some 2.4 k (Newton's method on t⁴: 3/4 a step).
     const MAX_STEPS: u32 = 1000;
     let (mut lo, mut hi) = (lo, hi);
-    let rises = f(lo).0 < 0.0;
+    let at_lo = f(lo).0;
+    if at_lo == 0.0 {
+        return lo;
+    }
+    let rises = at_lo < 0.0;
     let mut t = 0.5 * (lo + hi);
     let mut last_step = hi - lo;
     for _ in 0..MAX_STEPS {
@@ -132,7 +136,7 @@ pub fn bracketed_root(lo: f64, hi: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
             hi = t;
         }
         let newton = t - value / slope;
-        let good = newton >= lo && newton <= hi && (newton - t).abs() < 0.5 * last_step;
+        let good = newton >= lo && newton <= hi && (newton - t).abs() <= 0.5 * last_step;
         let next = if good { newton } else { 0.5 * (lo + hi) };
         last_step = (next - t).abs();
         t = next;
@@ -283,6 +287,13 @@ mod tests {
             prop_assert_eq!(convex_roots(middle, 4.0, f)[0], None);
             prop_assert!((convex_roots(middle, 4.0, f)[1].unwrap() - leave.unwrap()).abs() < 1e-14);
         }
+    }
+
+    #[test]
+    fn a_root_at_an_end_of_its_bracket_is_found_there() {
+        let line = |t: f64| (t - 1.0, 1.0);
+        assert_eq!(bracketed_root(1.0, 5.0, line), 1.0);
+        assert_eq!(bracketed_root(-5.0, 1.0, line), 1.0);
     }
 
     #[test]

@@ -4,12 +4,13 @@ use crate::math::Aabb;
 use crate::optics::{Bsdf, Medium};
 use crate::scene::mesh::Mesh;
 use crate::scene::shape::Shape;
+use crate::scene::sweep::WallChart;
 use crate::scene::{
     Accel, COINCIDENCE, Extent, Face, FaceId, Finish, FinishId, MediumId, MeshBody, Owner, Patch, Scene, Sensor,
     SensorId, SensorKind, Solid, SolidId, Source, SourceId,
 };
 use crate::units::FluxUnit;
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 /// Collects the parts of a scene. Coordinates are about `origin` of the user's.
 #[derive(Debug)]
@@ -39,14 +40,14 @@ pub struct Piece {
     pub shape: Shape,
     /// Tangent-continuous pieces share this number within their solid or sheet.
     pub smooth: u32,
-    /// Leads from the shape's chart to that of the whole face, mm.
-    pub chart_offset: DVec2,
+    /// Leads from the shape's chart to that of the whole sweep; `None` where they are the same.
+    pub chart: Option<WallChart>,
 }
 
 impl Piece {
     /// A piece that is a face of its own.
     pub fn whole(shape: Shape) -> Self {
-        Self { shape, smooth: 0, chart_offset: DVec2::ZERO }
+        Self { shape, smooth: 0, chart: None }
     }
 }
 
@@ -107,8 +108,8 @@ impl Builder {
         let mut bounds = Aabb::EMPTY;
         for piece in spec.pieces {
             bounds = bounds.union(piece.shape.bounds());
-            let Piece { shape, smooth, chart_offset } = piece;
-            table.push(Patch { shape, face, owner: spec.owner, smooth, chart_offset });
+            let Piece { shape, smooth, chart } = piece;
+            table.push(Patch { shape, face, owner: spec.owner, smooth, chart });
         }
         let range = first..table.len();
         let extent = match spec.owner {

@@ -2,7 +2,8 @@
 
 use crate::math::Frame;
 use crate::scene::mesh::Mesh;
-use crate::scene::shape::Shape;
+use crate::scene::shape::{ChartRect, Shape};
+use crate::scene::sweep::WallChart;
 use crate::scene::{FaceId, FinishId, SolidId};
 use glam::{DVec2, DVec3};
 use std::ops::Range;
@@ -75,13 +76,24 @@ pub struct Patch {
     pub owner: Owner,
     /// Tangent-continuous patches share this number.
     pub smooth: u32,
-    /// Leads from the shape's chart to that of the whole face, mm.
-    pub chart_offset: DVec2,
+    /// Leads from the shape's chart to that of the whole sweep; `None` where they are the same.
+    pub chart: Option<WallChart>,
 }
 
 impl Patch {
     /// Unrolled coordinates on the face, mm.
     pub fn chart(&self, p: DVec3) -> DVec2 {
-        self.shape.chart(p) + self.chart_offset
+        let uv = self.shape.chart(p);
+        self.chart.as_ref().map_or(uv, |chart| chart.of(uv))
+    }
+
+    /// The rectangle that the chart covers, mm.
+    pub fn chart_bounds(&self) -> ChartRect {
+        self.chart.as_ref().map_or_else(|| self.shape.chart_bounds(), |chart| chart.bounds(&self.shape))
+    }
+
+    /// Area of the part whose chart lies in `rect`, mm².
+    pub fn area_in(&self, rect: ChartRect) -> f64 {
+        self.chart.as_ref().map_or_else(|| self.shape.area_in(rect), |chart| chart.area_in(&self.shape, rect))
     }
 }

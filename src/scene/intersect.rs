@@ -115,6 +115,16 @@ impl Scene {
             .collect()
     }
 
+    /// Every crossing ahead of a ray with the surfaces of solids and sheets, in any order.
+    pub(crate) fn all_crossings(&self, ray: &Ray, mut visit: impl FnMut(PrimId, Crossing)) {
+        let line = self.line(ray);
+        self.accel.visit(ray, |index| {
+            let prim = PrimId::new(index);
+            self.crossings(prim, ray, line.as_ref(), Start::Elsewhere, |_, crossing| visit(prim, crossing));
+            f64::INFINITY
+        });
+    }
+
     /// The form of a ray that triangles are asked with, made once; none without meshes.
     #[inline]
     fn line(&self, ray: &Ray) -> Option<Line> {

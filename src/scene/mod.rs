@@ -19,9 +19,11 @@ pub mod mesh;
 pub mod plan;
 mod pieces;
 mod ray;
+mod section;
 mod sensor;
 pub mod shape;
 mod source;
+pub mod sweep;
 
 pub use accel::Accel;
 pub use build::{Builder, FaceSpec, Piece};
@@ -33,6 +35,7 @@ pub use inside::Inside;
 pub use interface::{Interface, Visibility};
 pub use intersect::{Hits, Just, PrimHit};
 pub use ray::Ray;
+pub use section::Outline;
 pub use sensor::{Counts, Goniometer, Place, Sensor, SensorKind, Sides, SurfaceSensor, Views};
 pub use source::{EmitSide, Emitted, Emitter, Source, Start};
 

@@ -1,7 +1,7 @@
 //! Questions about surfaces, whether they are analytic patches or triangles of a mesh.
 
 use crate::math::Frame;
-use crate::scene::shape::{ChartRect, Shape};
+use crate::scene::shape::{ChartRect, Region, Shape};
 use crate::scene::{Extent, FaceId, MeshBody, Owner, Patch, PrimId, Scene};
 use glam::{DVec2, DVec3};
 
@@ -99,11 +99,7 @@ impl Scene {
             None => self
                 .face_patches(face)
                 .iter()
-                .map(|patch| {
-                    let shifted =
-                        ChartRect { min: rect.min - patch.chart_offset, max: rect.max - patch.chart_offset };
-                    patch.shape.area_in(shifted)
-                })
+                .map(|patch| patch.area_in(rect))
                 .sum(),
         }
     }
@@ -115,10 +111,7 @@ impl Scene {
             None => self
                 .face_patches(face)
                 .iter()
-                .map(|patch| {
-                    let rect = patch.shape.chart_bounds();
-                    ChartRect { min: rect.min + patch.chart_offset, max: rect.max + patch.chart_offset }
-                })
+                .map(Patch::chart_bounds)
                 .reduce(ChartRect::union),
         }
     }
@@ -130,6 +123,17 @@ impl Scene {
         }
         match self.face_patches(face) {
             [Patch { shape: Shape::Flat(flat), .. }] => Some(*flat.frame()),
+            _ => None,
+        }
+    }
+
+    /// Radius of a face that is one flat disk, mm.
+    pub fn face_disk_radius(&self, face: FaceId) -> Option<f64> {
+        match self.face_patches(face) {
+            [Patch { shape: Shape::Flat(flat), .. }] => match flat.region() {
+                Region::Annulus { inner, outer } if *inner == 0.0 => Some(*outer),
+                Region::Annulus { .. } | Region::Rectangle { .. } | Region::Polygon(_) | Region::Ellipse { .. } | Region::Sector { .. } => None,
+            },
             _ => None,
         }
     }

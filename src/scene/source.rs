@@ -21,7 +21,7 @@ pub struct Source {
     pub emission: Emission,
     /// How the solids around a start point are found.
     pub start: Start,
-    /// The surface of the source's own body, or the face it sits on: light does not meet it at its start.
+    /// For each of its shapes the surface of the scene that it is, if it is one: light does not meet it at its start.
     pub on: Vec<PrimId>,
 }
 
@@ -82,6 +82,8 @@ pub struct Emitted {
     pub ray: Ray,
     /// The solids it starts in.
     pub inside: Inside,
+    /// The surface of the scene that it starts on.
+    pub on: Option<PrimId>,
 }
 
 impl Emitter {
@@ -125,17 +127,19 @@ impl Emitter {
 impl Source {
     /// Starts a photon path.
     pub fn emit(&self, scene: &Scene, sampler: &mut Sampler) -> Emitted {
-        let ray = match &self.emitter {
-            Emitter::Point(frame) => Ray::new(
-                frame.origin,
-                frame.to_world(self.emission.sample(EmitterKind::Point, sampler)),
-            ),
-            Emitter::Line { frame, length } => self.emit_from_line(frame, *length, sampler),
+        let (ray, on) = match &self.emitter {
+            Emitter::Point(frame) => {
+                let dir = frame.to_world(self.emission.sample(EmitterKind::Point, sampler));
+                (Ray::new(frame.origin, dir), None)
+            }
+            Emitter::Line { frame, length } => (self.emit_from_line(frame, *length, sampler), None),
             Emitter::Surface { shapes, side, frame } => {
-                self.emit_from_surface(shapes, *side, frame.as_ref(), sampler)
+                let shape = choose_shape(shapes, sampler);
+                let ray = self.emit_from_surface(&shapes[shape].0, *side, frame.as_ref(), sampler);
+                (ray, self.on.get(shape).copied())
             }
             Emitter::Volume { solid, bounds } => {
-                self.emit_from_volume(scene, *solid, bounds, sampler)
+                (self.emit_from_volume(scene, *solid, bounds, sampler), None)
             }
         };
         let inside = match self.start {
@@ -143,7 +147,7 @@ impl Source {
             Start::Ahead => scene.inside_at(&ray, Just::Ahead),
             Start::Behind => scene.inside_at(&ray, Just::Behind),
         };
-        Emitted { ray, inside }
+        Emitted { ray, inside, on }
     }
 
     fn emit_from_line(&self, frame: &Frame, length: f64, sampler: &mut Sampler) -> Ray {
@@ -167,17 +171,11 @@ impl Source {
 
     fn emit_from_surface(
         &self,
-        shapes: &[(Shape, f64)],
+        shape: &Shape,
         side: EmitSide,
         reference: Option<&Frame>,
         sampler: &mut Sampler,
     ) -> Ray {
-        let shape = if shapes.len() == 1 {
-            &shapes[0].0
-        } else {
-            let area = sampler.one(Dimension::EmitPosition) * shapes[shapes.len() - 1].1;
-            &shapes[shapes.partition_point(|(_, up_to)| *up_to <= area).min(shapes.len() - 1)].0
-        };
         let point = shape.sample(sampler.pair(Dimension::EmitPosition));
         let normal = match side {
             EmitSide::Front => shape.normal(point),
@@ -208,4 +206,14 @@ impl Source {
             }
         }
     }
+}
+
+/// One of the shapes, in proportion to their areas; no draw for a single one.
+fn choose_shape(shapes: &[(Shape, f64)], sampler: &mut Sampler) -> usize {
+    let last = shapes.len() - 1;
+    if last == 0 {
+        return 0;
+    }
+    let area = sampler.one(Dimension::EmitPosition) * shapes[last].1;
+    shapes.partition_point(|(_, up_to)| *up_to <= area).min(last)
 }

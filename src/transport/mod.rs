@@ -8,6 +8,7 @@ mod layout;
 mod path;
 mod readings;
 mod rounds;
+mod tracks;
 mod walk;
 mod watch;
 
@@ -18,4 +19,5 @@ pub use readings::{
     ClassSum, DEPTH_BINS, GROUPS, Group, Leak, Readings, SensorReading, Step, Trail,
 };
 pub use rounds::{Interrupt, Run};
+pub use tracks::{Track, TrackEnd, tracks};
 pub use walk::{Departure, Event, ROULETTE_BELOW, Segment, Vertex, walk};

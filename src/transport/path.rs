@@ -37,7 +37,7 @@ impl Path {
             source,
             medium: scene.medium_in(&emitted.inside),
             inside: emitted.inside,
-            on: SmallVec::from_slice(&scene.sources[source.index()].on),
+            on: emitted.on.into_iter().collect(),
             depth: 0,
         }
     }

@@ -6,18 +6,26 @@
 //!
 //! Every shape has a chart: it unrolls the surface into a rectangle of millimetres, for flux maps on curved walls.
 
+mod compound_parabola;
 mod cone;
 mod cylinder;
 mod flat;
+mod parabolic_cylinder;
+mod paraboloid;
+mod sphere;
 mod support;
 #[cfg(test)]
 mod testing;
 mod torus;
 mod wedge;
 
+pub use compound_parabola::CompoundParabola;
 pub use cone::Cone;
 pub use cylinder::Cylinder;
 pub use flat::{Flat, Polygon, Region};
+pub use parabolic_cylinder::ParabolicCylinder;
+pub use paraboloid::Paraboloid;
+pub use sphere::Sphere;
 pub use torus::Torus;
 pub use wedge::Wedge;
 
@@ -140,6 +148,14 @@ pub enum Shape {
     Cone(Cone),
     /// The wall of a bent round tube.
     Torus(Torus),
+    /// A zone of a sphere.
+    Sphere(Sphere),
+    /// A zone of a paraboloid of revolution.
+    Paraboloid(Paraboloid),
+    /// A piece of a parabolic trough.
+    ParabolicCylinder(ParabolicCylinder),
+    /// The wall of a compound parabolic concentrator.
+    CompoundParabola(CompoundParabola),
 }
 
 impl Shape {
@@ -150,6 +166,10 @@ impl Shape {
             Self::Cylinder(shape) => shape.bounds(),
             Self::Cone(shape) => shape.bounds(),
             Self::Torus(shape) => shape.bounds(),
+            Self::Sphere(shape) => shape.bounds(),
+            Self::Paraboloid(shape) => shape.bounds(),
+            Self::ParabolicCylinder(shape) => shape.bounds(),
+            Self::CompoundParabola(shape) => shape.bounds(),
         }
     }
 
@@ -161,6 +181,10 @@ impl Shape {
             Self::Cylinder(shape) => shape.crossings(ray, start, visit),
             Self::Cone(shape) => shape.crossings(ray, start, visit),
             Self::Torus(shape) => shape.crossings(ray, start, visit),
+            Self::Sphere(shape) => shape.crossings(ray, start, visit),
+            Self::Paraboloid(shape) => shape.crossings(ray, start, visit),
+            Self::ParabolicCylinder(shape) => shape.crossings(ray, start, visit),
+            Self::CompoundParabola(shape) => shape.crossings(ray, start, visit),
         }
     }
 
@@ -172,6 +196,10 @@ impl Shape {
             Self::Cylinder(shape) => shape.normal(p),
             Self::Cone(shape) => shape.normal(p),
             Self::Torus(shape) => shape.normal(p),
+            Self::Sphere(shape) => shape.normal(p),
+            Self::Paraboloid(shape) => shape.normal(p),
+            Self::ParabolicCylinder(shape) => shape.normal(p),
+            Self::CompoundParabola(shape) => shape.normal(p),
         }
     }
 
@@ -182,6 +210,10 @@ impl Shape {
             Self::Cylinder(shape) => shape.area(),
             Self::Cone(shape) => shape.area(),
             Self::Torus(shape) => shape.area(),
+            Self::Sphere(shape) => shape.area(),
+            Self::Paraboloid(shape) => shape.area(),
+            Self::ParabolicCylinder(shape) => shape.area(),
+            Self::CompoundParabola(shape) => shape.area(),
         }
     }
 
@@ -192,6 +224,10 @@ impl Shape {
             Self::Cylinder(shape) => shape.sample(u),
             Self::Cone(shape) => shape.sample(u),
             Self::Torus(shape) => shape.sample(u),
+            Self::Sphere(shape) => shape.sample(u),
+            Self::Paraboloid(shape) => shape.sample(u),
+            Self::ParabolicCylinder(shape) => shape.sample(u),
+            Self::CompoundParabola(shape) => shape.sample(u),
         }
     }
 
@@ -202,6 +238,10 @@ impl Shape {
             Self::Cylinder(shape) => shape.chart(p),
             Self::Cone(shape) => shape.chart(p),
             Self::Torus(shape) => shape.chart(p),
+            Self::Sphere(shape) => shape.chart(p),
+            Self::Paraboloid(shape) => shape.chart(p),
+            Self::ParabolicCylinder(shape) => shape.chart(p),
+            Self::CompoundParabola(shape) => shape.chart(p),
         }
     }
 
@@ -212,6 +252,10 @@ impl Shape {
             Self::Cylinder(shape) => shape.chart_bounds(),
             Self::Cone(shape) => shape.chart_bounds(),
             Self::Torus(shape) => shape.chart_bounds(),
+            Self::Sphere(shape) => shape.chart_bounds(),
+            Self::Paraboloid(shape) => shape.chart_bounds(),
+            Self::ParabolicCylinder(shape) => shape.chart_bounds(),
+            Self::CompoundParabola(shape) => shape.chart_bounds(),
         }
     }
 
@@ -222,6 +266,10 @@ impl Shape {
             Self::Cylinder(shape) => shape.area_in(rect),
             Self::Cone(shape) => shape.area_in(rect),
             Self::Torus(shape) => shape.area_in(rect),
+            Self::Sphere(shape) => shape.area_in(rect),
+            Self::Paraboloid(shape) => shape.area_in(rect),
+            Self::ParabolicCylinder(shape) => shape.area_in(rect),
+            Self::CompoundParabola(shape) => shape.area_in(rect),
         }
     }
 }

@@ -1,6 +1,7 @@
-//! The box around a shape from its support function: how far it reaches in a direction.
+//! What convex surfaces share: the box from how far they reach in a direction, and the side that is the front.
 
 use crate::math::{Aabb, Frame};
+use crate::scene::shape::Toward;
 use glam::DVec3;
 
 /// The box around a shape given in `frame`; `reach(e)` is the largest `p · e` over its points, in the frame, mm.
@@ -16,4 +17,13 @@ pub(super) fn box_by_reach(frame: &Frame, reach: impl Fn(DVec3) -> f64) -> Aabb 
 /// Sine of the angle between a unit direction and the z axis: a circle of radius r about z reaches r times as far.
 pub(super) fn across(e: DVec3) -> f64 {
     e.truncate().length()
+}
+
+/// The front normal of a surface that is left as `leaving` by rays that go outward.
+#[inline]
+pub(super) fn front(outward: DVec3, leaving: Toward) -> DVec3 {
+    match leaving {
+        Toward::Front => outward,
+        Toward::Back => -outward,
+    }
 }

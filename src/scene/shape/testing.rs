@@ -1,6 +1,6 @@
 //! What every shape has to fulfil, for the tests of the shapes.
 
-use crate::math::{Aabb, uniform_sphere};
+use crate::math::{Aabb, Frame, uniform_sphere};
 use crate::rng::{Dimension, Sampler};
 use crate::scene::Ray;
 use crate::scene::shape::{ChartRect, Crossing, HalfSpace, Shape, Start, Toward};
@@ -16,6 +16,11 @@ pub(super) struct Truth<'a> {
     pub(super) implicit: &'a dyn Fn(DVec3) -> f64,
     /// Distance by which a point lies inside the trims, mm (any smooth measure); negative outside.
     pub(super) inside_trim: &'a dyn Fn(DVec3) -> f64,
+}
+
+/// A frame like any other, away from the origin.
+pub(super) fn tilted(scale: f64) -> Frame {
+    Frame::from_axis(scale * DVec3::new(3.0, -2.0, 5.0), DVec3::new(0.3, 0.9, -0.4))
 }
 
 /// All crossings, sorted.
@@ -167,6 +172,28 @@ pub(super) fn bounce(
     }
 }
 
+/// Rays into a closed shape at 1 to 1e-14 rad from the wall reach it again.
+pub(super) fn assert_grazing_rays_come_back(shape: &Shape) {
+    const RAYS: u64 = 50_000;
+    let mut inward = 0;
+    for index in 0..RAYS {
+        let mut sampler = Sampler::for_path(SEED, 7, index);
+        let p = shape.sample(sampler.pair(Dimension::EmitPosition));
+        let normal = shape.normal(p);
+        let along = uniform_sphere(sampler.pair(Dimension::EmitDirection)).cross(normal);
+        let angle = 10f64.powf(-14.0 * sampler.one(Dimension::Scatter));
+        let ray = Ray::new(p, along.normalize() - angle * normal);
+        // At the smallest angles rounding turns some rays out.
+        if Toward::of(ray.dir(), normal) == Toward::Front || ray.dir().dot(normal) == 0.0 {
+            continue;
+        }
+        inward += 1;
+        let comes_back = |c: &Crossing| c.t > 0.0 && c.toward == Toward::Front;
+        assert!(crossings_of(shape, &ray, Start::On).iter().any(comes_back), "{angle}: {ray:?}");
+    }
+    assert!(inward > RAYS * 9 / 10);
+}
+
 /// Samples lie on the surface, inside its bounds and its chart, and fall into cells of the chart by their areas.
 pub(super) fn assert_samples_are_uniform(truth: &Truth, tolerance: f64) {
     const CELLS: usize = 9;
@@ -213,6 +240,34 @@ pub(super) fn assert_bounds_are_tight(shape: &Shape, slack: f64) {
         (sampled.max - bounds.max).abs().max_element() < slack * size,
         "{sampled:?} {bounds:?}"
     );
+}
+
+/// Rays aimed at points of the surface from far away hit them to the rounding of their origin; `steepness` is the
+/// largest gradient of the implicit function on the surface.
+pub(super) fn assert_hit_from_far_away(truth: &Truth, steepness: f64) {
+    const RAYS: u64 = 300;
+    let shape = truth.shape;
+    for distance in [1e2, 1e4, 1e6] {
+        let rounding = 8.0 * f64::EPSILON * (distance + 100.0);
+        let mut found = 0;
+        for index in 0..RAYS {
+            let mut sampler = Sampler::for_path(SEED, 6, index);
+            let target = shape.sample(sampler.pair(Dimension::EmitPosition));
+            let dir = uniform_sphere(sampler.pair(Dimension::EmitDirection));
+            let ray = Ray::new(target - distance * dir, dir);
+            let crossings = crossings_of(shape, &ray, Start::Elsewhere);
+            for crossing in &crossings {
+                let off = (truth.implicit)(ray.at(crossing.t)).abs();
+                assert!(off < steepness * rounding, "from {distance}: {off}");
+            }
+            let cos = dir.dot(shape.normal(target)).abs();
+            if crossings.iter().any(|c| (c.t - distance).abs() * cos < 2.0 * rounding) {
+                found += 1;
+            }
+        }
+        // Few are so near to a rim or so grazing that they may miss.
+        assert!(found >= RAYS - 2, "from {distance}: {found}");
+    }
 }
 
 /// The same shape a thousand times larger or smaller is crossed at distances a thousand times larger or smaller.

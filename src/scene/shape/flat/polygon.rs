@@ -1,6 +1,6 @@
 //! A simple polygon, made ready for many point tests.
 
-use crate::math::planar::{clip_to_rectangle, edges, signed_area, triangulate};
+use crate::math::planar::{clip_to_rectangle, edges, is_convex, signed_area, triangulate};
 use crate::scene::shape::ChartRect;
 use glam::DVec2;
 
@@ -62,7 +62,7 @@ impl Polygon {
             })
             .collect();
         let edges = edges(&vertices).map(|(a, b)| Edge::new(a, b)).collect();
-        let outline = outline(&vertices);
+        let outline = if is_convex(&vertices) { Outline::Convex } else { Outline::Free };
         Self { vertices, bounds, edges, outline, triangles, areas }
     }
 
@@ -132,12 +132,6 @@ impl Edge {
     fn is_right_of(&self, p: DVec2) -> bool {
         self.low.y <= p.y && p.y < self.high.y && self.side(p) == Side::Left
     }
-}
-
-fn outline(vertices: &[DVec2]) -> Outline {
-    let turns = edges(vertices).zip(edges(vertices).skip(1).chain(edges(vertices)));
-    let left = turns.map(|((a, b), (_, c))| (b - a).perp_dot(c - b));
-    if left.into_iter().all(|turn| turn >= 0.0) { Outline::Convex } else { Outline::Free }
 }
 
 #[cfg(test)]

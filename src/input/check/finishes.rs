@@ -1,0 +1,88 @@
+//! Finishes give back no more light than they get.
+
+use crate::input::check::{Scene, references};
+use crate::input::keys::Key;
+use crate::input::problems::Problems;
+use crate::input::spec::finish::{FinishRef, FinishSpec};
+
+/// Rounding that a sum of decimal fractions may have.
+const SUM_TOLERANCE: f64 = 1e-12;
+
+pub(crate) fn check(scene: Scene<'_>, problems: &mut Problems) {
+    for (name, finish) in &scene.spec.finishes {
+        check_one(&Key::of(&["finishes", name]), finish, problems);
+    }
+    for (key, finish) in references::finish_refs(scene) {
+        if let FinishRef::Inline(finish) = finish {
+            check_one(&key, finish, problems);
+        }
+    }
+}
+
+fn check_one(key: &Key, finish: &FinishSpec, problems: &mut Problems) {
+    match finish {
+        FinishSpec::Specular(spec) => {
+            check_sum(
+                &key.field("specular"),
+                spec.reflectance,
+                spec.transmittance,
+                Least::Zero,
+                problems,
+            );
+        }
+        FinishSpec::Lambertian(spec) => {
+            check_sum(
+                &key.field("lambertian"),
+                spec.reflectance,
+                spec.transmittance,
+                Least::AboveZero,
+                problems,
+            );
+        }
+        FinishSpec::Gaussian(spec) => {
+            if spec.reflectance.is_some() || spec.transmittance.is_some() {
+                let (reflectance, transmittance) =
+                    (spec.reflectance.unwrap_or(0.0), spec.transmittance.unwrap_or(0.0));
+                check_sum(
+                    &key.field("gaussian"),
+                    reflectance,
+                    transmittance,
+                    Least::AboveZero,
+                    problems,
+                );
+            }
+        }
+        FinishSpec::Smooth(_)
+        | FinishSpec::Metal(_)
+        | FinishSpec::Absorber(_)
+        | FinishSpec::Open(_)
+        | FinishSpec::Mixture(_) => {}
+    }
+}
+
+/// The least that reflectance and transmittance may add up to.
+#[derive(Clone, Copy, PartialEq)]
+enum Least {
+    Zero,
+    AboveZero,
+}
+
+fn check_sum(
+    key: &Key,
+    reflectance: f64,
+    transmittance: f64,
+    least: Least,
+    problems: &mut Problems,
+) {
+    let sum = reflectance + transmittance;
+    if sum > 1.0 + SUM_TOLERANCE {
+        let message = format!(
+            "reflectance {reflectance} and transmittance {transmittance} add up to {sum}, expected at most 1"
+        );
+        problems.error(key, message);
+    }
+    if sum == 0.0 && least == Least::AboveZero {
+        let message = "reflectance and transmittance are both 0, expected a sum above 0";
+        problems.error(key, message).hint("a finish that absorbs everything is `absorber = {}`");
+    }
+}

@@ -1,0 +1,27 @@
+//! Expectations that can be met.
+
+use crate::input::check::Scene;
+use crate::input::keys::Key;
+use crate::input::problems::Problems;
+
+pub(crate) fn check(scene: Scene<'_>, problems: &mut Problems) {
+    for (i, check) in scene.spec.check.iter().enumerate() {
+        let key = Key::of(&["check"]).index(i);
+        if let (Some(min), Some(max)) = (check.min, check.max)
+            && min > max
+        {
+            problems.error(&key.field("min"), format!("{min} is above `max`, which is {max}"));
+        }
+        if check.equals.is_none() {
+            for (name, is_given) in
+                [("within", check.within.is_some()), ("sigmas", check.sigmas.is_some())]
+            {
+                if is_given {
+                    problems
+                        .error(&key.field(name), "is only for `equals`")
+                        .hint(format!("remove `{name}`"));
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! The whole way from a scene file to a job: read, lowered, with the wishes of the command line.
+
+use crate::error::{Diagnostic, Result};
+use crate::input::lower::{Lowered, lower};
+use crate::input::sources::Source;
+use crate::input::{Draft, draft};
+use crate::scene::Scene;
+use crate::scene::plan::{Check, RunPlan, StopRules, Target};
+use std::path::Path;
+use std::time::Duration;
+
+/// What the command line asks for beside the scene file.
+#[derive(Debug, Clone, Default)]
+pub struct Settings {
+    /// `key=value` for keys of the scene.
+    pub overrides: Vec<String>,
+    /// Relative error of the target measure.
+    pub target: Option<f64>,
+    /// Number of paths.
+    pub paths: Option<u64>,
+    /// Time of the run.
+    pub time: Option<Duration>,
+    /// Seed of the random numbers.
+    pub seed: Option<u64>,
+}
+
+/// A scene to be run.
+#[derive(Debug)]
+pub struct Job {
+    /// Name: that of the file without its ending.
+    pub name: String,
+    /// Title for reports.
+    pub title: String,
+    /// What the scene is for.
+    pub description: Option<String>,
+    /// What is traced.
+    pub scene: Scene,
+    /// How, and when to stop.
+    pub run: RunPlan,
+    /// What is expected.
+    pub checks: Vec<Check>,
+    /// The scene file, byte for byte.
+    pub text: String,
+    /// Overrides of the command line, as given.
+    pub overrides: Vec<String>,
+    /// Identifies scene file, included files and overrides: 64-bit FNV-1a, in hexadecimal.
+    pub hash: String,
+    /// Remarks on the scene.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// Loads a scene file and everything it names.
+pub fn load(path: &Path, settings: &Settings) -> Result<Job> {
+    let Draft { spec, places, text, mut problems } = draft(path, &settings.overrides)?;
+    let whole = problems.is_free_of_errors();
+    let lowered = if whole { lower(&spec, &places, &mut problems) } else { None };
+    let hash = hash(places.sources().iter().map(Source::text));
+    let warnings = problems.finish(&places)?;
+    // Without an error there is a scene.
+    let Some(Lowered { scene, mut run, checks }) = lowered else {
+        return Err(crate::error::Error::Input(warnings));
+    };
+    apply(settings, &scene, &mut run);
+    Ok(Job {
+        name: path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
+        title: spec.title,
+        description: spec.description,
+        scene,
+        run,
+        checks,
+        text,
+        overrides: settings.overrides.clone(),
+        hash,
+        warnings,
+    })
+}
+
+/// The stop rules of the command line replace those of the file, all together.
+fn apply(settings: &Settings, scene: &Scene, run: &mut RunPlan) {
+    if let Some(seed) = settings.seed {
+        run.seed = seed;
+    }
+    if settings.paths.is_none() && settings.time.is_none() && settings.target.is_none() {
+        return;
+    }
+    let measure = run.stop.target.as_ref().map(|target| target.measure.clone());
+    let measure = measure.or_else(|| scene.sensors.first().map(|sensor| format!("{}.flux", sensor.name)));
+    let target = settings.target.zip(measure);
+    run.stop = StopRules {
+        paths: settings.paths,
+        time: settings.time,
+        target: target.map(|(relative_error, measure)| Target { measure, relative_error }),
+    };
+}
+
+/// FNV-1a over all texts, each with its length (Fowler, Noll & Vo; draft-eastlake-fnv).
+fn hash<'a>(texts: impl Iterator<Item = &'a str>) -> String {
+    let mut state: u64 = 0xcbf2_9ce4_8422_2325;
+    for text in texts {
+        for byte in text.len().to_le_bytes().into_iter().chain(text.bytes()) {
+            state = (state ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
+        }
+    }
+    format!("{state:016x}")
+}

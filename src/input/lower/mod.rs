@@ -1,0 +1,182 @@
+//! From what the file says to what the program traces.
+//!
+//! Things that stand at faces of other things are placed after them. Every function notes what is wrong and goes on,
+//! so that all problems of a scene are reported together; what could not be built is left out.
+
+mod finishes;
+mod meshes;
+mod place;
+mod plan;
+mod sensors;
+mod sheets;
+mod solids;
+mod sources;
+mod surfaces;
+
+use crate::input::keys::{Key, Places};
+use crate::input::problems::{Problems, name_hint};
+use crate::input::spec::SceneSpec;
+use crate::input::spec::placement::PlacementSpec;
+use crate::optics::Medium;
+use crate::scene::plan::{Check, RunPlan};
+use crate::scene::{Builder, FaceId, FinishId, MediumId, Scene};
+use crate::units::FluxUnit;
+use glam::DVec3;
+use indexmap::IndexMap;
+
+/// What lowering makes of a scene file.
+#[derive(Debug)]
+pub(crate) struct Lowered {
+    pub(crate) scene: Scene,
+    pub(crate) run: RunPlan,
+    pub(crate) checks: Vec<Check>,
+}
+
+/// Everything that the parts of the lowering share.
+pub(crate) struct Context<'a> {
+    pub(crate) spec: &'a SceneSpec,
+    pub(crate) places: &'a Places,
+    pub(crate) problems: &'a mut Problems,
+    pub(crate) builder: Builder,
+    media: IndexMap<String, MediumId>,
+    finishes: IndexMap<String, FinishId>,
+    /// Faces by dotted name; a name such as `duct.wall` may stand for several.
+    faces: IndexMap<String, Vec<FaceId>>,
+}
+
+/// Lowers a validated spec. `None` when a problem left nothing to trace.
+pub(crate) fn lower(spec: &SceneSpec, places: &Places, problems: &mut Problems) -> Option<Lowered> {
+    let air = Medium::new(crate::input::spec::AIR, 1.0, 0.0);
+    let mut context = Context {
+        spec,
+        places,
+        problems,
+        builder: Builder::new(origin(spec), air, flux_unit(spec)),
+        media: IndexMap::from([(crate::input::spec::AIR.to_owned(), MediumId::new(0))]),
+        finishes: IndexMap::new(),
+        faces: IndexMap::new(),
+    };
+    context.lower_media();
+    context.lower_finishes();
+    context.lower_bodies();
+    context.lower_sources();
+    context.lower_sensors();
+    let run = plan::run(spec);
+    let checks = spec.check.iter().map(plan::check).collect();
+    if !context.problems.is_free_of_errors() {
+        return None;
+    }
+    let mut scene = context.builder.build();
+    sources::settle_starts(spec, &mut scene);
+    sources::check_starts(spec, &scene, context.problems);
+    plan::check_measures(spec, &scene, context.problems);
+    context.problems.is_free_of_errors().then_some(Lowered { scene, run, checks })
+}
+
+/// The middle of the positions that the file names: internal coordinates are about it, so that a scene far from the
+/// user's origin keeps its digits.
+fn origin(spec: &SceneSpec) -> DVec3 {
+    let solids = spec.solids.values().map(|solid| solid.common().at.as_ref());
+    let sheets = spec.sheets.values().map(|sheet| sheet.common().at());
+    let free: Vec<DVec3> = solids.chain(sheets).filter_map(position).collect();
+    if free.is_empty() { DVec3::ZERO } else { free.iter().sum::<DVec3>() / free.len() as f64 }
+}
+
+/// The position of a thing that stands in space.
+fn position(at: Option<&PlacementSpec>) -> Option<DVec3> {
+    match at {
+        None => Some(DVec3::ZERO),
+        Some(PlacementSpec::InSpace(space)) => Some(DVec3::from(space.position_mm)),
+        Some(PlacementSpec::AtFace(_)) => None,
+    }
+}
+
+/// Lumens, unless a source is given in watts.
+fn flux_unit(spec: &SceneSpec) -> FluxUnit {
+    if spec.sources.values().any(|source| source.common().flux_w.is_some()) { FluxUnit::Watt } else { FluxUnit::Lumen }
+}
+
+impl Context<'_> {
+    fn lower_media(&mut self) {
+        for (name, medium) in &self.spec.media {
+            let id = self.builder.add_medium(Medium::new(name, medium.index, medium.absorption_per_mm));
+            self.media.insert(name.clone(), id);
+        }
+        // Validated: the surroundings are a known medium.
+        if let Some(&surroundings) = self.media.get(&self.spec.surroundings) {
+            self.builder.set_surroundings(surroundings);
+        }
+    }
+
+    /// Builds solids and sheets, each after what it stands at.
+    fn lower_bodies(&mut self) {
+        let mut waiting: Vec<Body> = self.spec.solids.keys().map(|name| Body::Solid(name.clone())).collect();
+        waiting.extend(self.spec.sheets.keys().map(|name| Body::Sheet(name.clone())));
+        while !waiting.is_empty() {
+            let (ready, blocked): (Vec<Body>, Vec<Body>) = waiting.iter().cloned().partition(|body| {
+                let support = self.support(body);
+                !waiting.iter().any(|other| Some(other.name()) == support.as_deref())
+            });
+            if ready.is_empty() {
+                for body in &blocked {
+                    self.problems
+                        .error(&body.key().field("at"), "stands at a face of a thing that stands at its own")
+                        .hint("give one of them a position_mm");
+                }
+                return;
+            }
+            for body in &ready {
+                match body {
+                    Body::Solid(name) => self.lower_solid(name),
+                    Body::Sheet(name) => self.lower_sheet(name),
+                }
+            }
+            waiting = blocked;
+        }
+    }
+
+    /// The name of the thing at whose face a body stands.
+    fn support(&self, body: &Body) -> Option<String> {
+        let at = match body {
+            Body::Solid(name) => self.spec.solids[name.as_str()].common().at.as_ref(),
+            Body::Sheet(name) => self.spec.sheets[name.as_str()].common().at(),
+        };
+        match at {
+            Some(PlacementSpec::AtFace(at)) => at.face.split('.').next().map(str::to_owned),
+            Some(PlacementSpec::InSpace(_)) | None => None,
+        }
+    }
+
+    /// The faces of a dotted name, or an error with the nearest known names.
+    fn faces_named(&mut self, name: &str, key: &Key) -> Option<Vec<FaceId>> {
+        if let Some(faces) = self.faces.get(name) {
+            return Some(faces.clone());
+        }
+        let known: Vec<&str> = self.faces.keys().map(String::as_str).collect();
+        let hint = name_hint(name, known.iter().copied());
+        self.problems.error(key, format!("unknown face `{name}`")).hint(hint);
+        None
+    }
+}
+
+/// A solid or sheet by name.
+#[derive(Debug, Clone, PartialEq)]
+enum Body {
+    Solid(String),
+    Sheet(String),
+}
+
+impl Body {
+    fn name(&self) -> &str {
+        match self {
+            Self::Solid(name) | Self::Sheet(name) => name,
+        }
+    }
+
+    fn key(&self) -> Key {
+        match self {
+            Self::Solid(name) => Key::of(&["solids", name]),
+            Self::Sheet(name) => Key::of(&["sheets", name]),
+        }
+    }
+}

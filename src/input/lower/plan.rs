@@ -1,0 +1,66 @@
+//! The run and the checks.
+
+use crate::input::keys::Key;
+use crate::input::problems::{Problems, name_hint};
+use crate::input::spec::SceneSpec;
+use crate::input::spec::run::{CheckSpec, EstimatorSpec};
+use crate::scene::Scene;
+use crate::scene::plan::{Check, Estimator, RunPlan, StopRules, Target};
+use std::time::Duration;
+
+/// Paths of a run that names no stop rule.
+const DEFAULT_PATHS: u64 = 2_000_000;
+
+pub(super) fn run(spec: &SceneSpec) -> RunPlan {
+    let run = &spec.run;
+    let target = run.target.as_ref().map(|target| Target {
+        measure: target.measure.clone(),
+        relative_error: target.relative_error,
+    });
+    let none = run.paths.is_none() && run.time_s.is_none() && target.is_none();
+    RunPlan {
+        estimator: match run.estimator {
+            EstimatorSpec::Forward => Estimator::Forward,
+        },
+        seed: run.seed,
+        bounce_limit: run.bounce_limit,
+        stop: StopRules {
+            paths: if none { Some(DEFAULT_PATHS) } else { run.paths },
+            // Validated as positive; a time beyond what a clock can hold is no limit.
+            time: run.time_s.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok()),
+            target,
+        },
+    }
+}
+
+pub(super) fn check(spec: &CheckSpec) -> Check {
+    Check {
+        measure: spec.measure.clone(),
+        min: spec.min,
+        max: spec.max,
+        equals: spec.equals,
+        within: spec.within,
+        sigmas: spec.sigmas,
+        max_std_error: spec.max_std_error,
+        source: spec.source.clone(),
+    }
+}
+
+/// Notes checks and targets whose measure cannot exist: the first word must be a sensor or `balance`.
+pub(super) fn check_measures(spec: &SceneSpec, scene: &Scene, problems: &mut Problems) {
+    let mut known: Vec<&str> = scene.sensors.iter().map(|sensor| sensor.name.as_str()).collect();
+    known.push("balance");
+    let mut judge = |measure: &str, key: &Key| {
+        let first = measure.split('.').next().unwrap_or_default();
+        if !known.contains(&first) {
+            let hint = name_hint(first, known.iter().copied());
+            problems.error(key, format!("`{measure}` names no sensor")).hint(hint);
+        }
+    };
+    if let Some(target) = &spec.run.target {
+        judge(&target.measure, &Key::of(&["run", "target", "measure"]));
+    }
+    for (index, check) in spec.check.iter().enumerate() {
+        judge(&check.measure, &Key::of(&["check"]).index(index).field("measure"));
+    }
+}

@@ -1,0 +1,96 @@
+//! Open sheets and hollow ducts.
+
+use crate::input::keys::Key;
+use crate::input::lower::Context;
+use crate::input::lower::place::Facing;
+use crate::input::lower::surfaces::{BodyPart, NamedFace, Surfaces};
+use crate::input::spec::sheet::{DuctCommonSpec, SheetCommon, SheetCommonSpec, SheetSpec};
+use crate::math::Frame;
+use crate::scene::Owner;
+use crate::scene::shape::{Flat, ParabolicCylinder, Region, Shape, Sphere};
+
+impl Context<'_> {
+    /// Builds a sheet or duct with its faces.
+    pub(super) fn lower_sheet(&mut self, name: &str) {
+        let spec = self.spec;
+        let sheet = &spec.sheets[name];
+        let key = Key::of(&["sheets", name, sheet.kind()]);
+        let common = sheet.common();
+        let Some(frame) = self.place(common.at(), &key, Facing::Away) else { return };
+        let Some(surfaces) = self.sheet_surfaces(sheet, frame, &key) else { return };
+        match common {
+            SheetCommon::Sheet(common) => self.add_sheet(name, surfaces, common),
+            SheetCommon::Duct(common) => self.add_duct(name, surfaces, common, &key),
+        }
+    }
+
+    fn add_sheet(&mut self, name: &str, surfaces: Surfaces, common: &SheetCommonSpec) {
+        let front = self.finish(&common.finish);
+        let back = match &common.back {
+            Some(back) => self.finish(back),
+            None => front,
+        };
+        self.add_faces(name, Owner::Sheet, surfaces.faces, |_, _| (front, back));
+    }
+
+    fn add_duct(&mut self, name: &str, surfaces: Surfaces, common: &DuctCommonSpec, key: &Key) {
+        let inner = self.finish(&common.finish);
+        let outer = self.finish(&common.outer);
+        let finishes = self.face_finishes(name, &surfaces.faces, &common.faces, &key.field("faces"));
+        self.add_faces(name, Owner::Sheet, surfaces.faces, |part, face| match part {
+            // The front is outside.
+            BodyPart::Wall => (outer, finishes.get(face).copied().or(inner)),
+            BodyPart::End => (None, None),
+        });
+    }
+
+    fn sheet_surfaces(&mut self, sheet: &SheetSpec, frame: Frame, key: &Key) -> Option<Surfaces> {
+        let flat = |region| Some(single(Shape::Flat(Flat::new(frame, region))));
+        match sheet {
+            SheetSpec::Disk(disk) => flat(Region::Annulus { inner: 0.0, outer: disk.shape.radius_mm }),
+            SheetSpec::Annulus(ring) => {
+                let (inner, outer) = (ring.shape.inner_radius_mm, ring.shape.outer_radius_mm);
+                if inner >= outer {
+                    self.problems.error(
+                        &key.field("inner_radius_mm"),
+                        format!("the hole, {inner} mm, reaches the rim, {outer} mm"),
+                    );
+                    return None;
+                }
+                flat(Region::Annulus { inner, outer })
+            }
+            SheetSpec::Rectangle(r) => {
+                flat(Region::Rectangle { half_x: 0.5 * r.shape.width_mm, half_y: 0.5 * r.shape.height_mm })
+            }
+            SheetSpec::SphericalCap(cap) => {
+                let radius = cap.shape.sphere.radius_mm;
+                let z_min = radius * cap.shape.half_angle_deg.to_radians().cos();
+                Some(single(Shape::Sphere(Sphere::zone(frame, radius, z_min, radius))))
+            }
+            SheetSpec::ParabolicCylinder(trough) => {
+                let spec = &trough.shape;
+                if spec.x_min_mm >= spec.x_max_mm {
+                    self.problems
+                        .error(&key.field("x_min_mm"), format!("is not below x_max_mm, {} mm", spec.x_max_mm));
+                    return None;
+                }
+                let shape = ParabolicCylinder::new(
+                    frame,
+                    spec.focal_length_mm,
+                    spec.x_min_mm,
+                    spec.x_max_mm,
+                    spec.length_mm,
+                );
+                Some(single(Shape::ParabolicCylinder(shape)))
+            }
+            SheetSpec::Tube(tube) => self.sweep_surfaces(&tube.shape, frame, key),
+            SheetSpec::CompoundParabolic(cpc) => self.compound_parabolic(&cpc.shape, frame, key),
+            SheetSpec::Paraboloid(paraboloid) => self.paraboloid(&paraboloid.shape, frame, key),
+        }
+    }
+}
+
+/// A sheet of one face.
+fn single(shape: Shape) -> Surfaces {
+    Surfaces { faces: vec![NamedFace::wall("surface", shape)], volume: None }
+}

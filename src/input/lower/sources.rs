@@ -1,0 +1,281 @@
+//! Sources: shapes, laws of emission and amounts of light.
+
+use crate::input::keys::Key;
+use crate::input::lower::Context;
+use crate::input::lower::place::Facing;
+use crate::input::lower::surfaces::tilted;
+use crate::input::problems::{Problems, name_hint};
+use crate::input::spec::SceneSpec;
+use crate::input::spec::source::{
+    BodySpec, ContactSpec, EmissionSpec, FaceSide, SourceCommonSpec, SourceSpec,
+};
+use crate::math::Frame;
+use crate::optics::Bsdf;
+use crate::rng::Sampler;
+use crate::scene::shape::{Cylinder, Flat, Region, Shape, Sphere};
+use crate::scene::{
+    EmitSide, Emission, Emitter, Extent, FaceSpec, FinishId, Owner, Piece, PrimId, Scene, SolidId, Source, Start,
+};
+use crate::units::{FluxUnit, per_m2_to_per_mm2};
+
+impl Context<'_> {
+    pub(super) fn lower_sources(&mut self) {
+        let spec = self.spec;
+        for (name, source) in &spec.sources {
+            let key = Key::of(&["sources", name, source.kind()]);
+            self.lower_source(name, source, &key);
+        }
+    }
+
+    fn lower_source(&mut self, name: &str, source: &SourceSpec, key: &Key) {
+        let common = source.common();
+        let Some(emission) = self.emission(source, key) else { return };
+        let Some(frame) = self.place(common.at.as_ref(), key, Facing::Toward) else { return };
+        let Some((emitter, mut on)) = self.emitter(source, frame, key) else { return };
+        let Some(flux) = self.flux(common, &emitter, emission, key) else { return };
+        if let Some(finish) = self.body_finish(&common.body) {
+            on = self.add_body(name, &emitter, finish);
+        }
+        // Whether paths have to be asked for their solids is settled when all is built.
+        let start = match common.contact {
+            Some(ContactSpec::Air) => Start::Behind,
+            Some(ContactSpec::Optical) | None => Start::Ahead,
+        };
+        if start == Start::Behind {
+            on.clear();
+        }
+        self.builder.add_source(Source { name: name.to_owned(), flux, emitter, emission, start, on });
+    }
+
+    fn emission(&mut self, source: &SourceSpec, key: &Key) -> Option<Emission> {
+        let common = source.common();
+        let axis = tilted(common.tilt_deg, common.azimuth_deg);
+        let default = if matches!(source, SourceSpec::Volume(_)) { EmissionSpec::Isotropic } else { EmissionSpec::Lambertian };
+        let emission = match common.emission.unwrap_or(default) {
+            EmissionSpec::Lambertian => Emission::Lambertian,
+            EmissionSpec::Isotropic => Emission::Isotropic,
+            EmissionSpec::Collimated => Emission::Collimated { axis },
+            EmissionSpec::CosinePower(power) => Emission::CosinePower(power),
+            EmissionSpec::ConeHalfAngleDeg(degrees) => Emission::Cone { half_angle: degrees.to_radians(), axis },
+        };
+        match emission {
+            Emission::Cone { half_angle, .. } => {
+                let reach = half_angle.to_degrees() + common.tilt_deg;
+                let surface = matches!(
+                    source,
+                    SourceSpec::Disk(_) | SourceSpec::Rectangle(_) | SourceSpec::Sphere(_)
+                        | SourceSpec::Cylinder(_) | SourceSpec::Face(_)
+                );
+                // Rounding of 90 degrees to radians and back.
+                if surface && reach > 90.0 + 1e-9 {
+                    self.problems
+                        .error(&key.field("tilt_deg"), format!("the tilted cone reaches {reach} deg, below the surface"))
+                        .hint("keep tilt_deg plus the cone's half-angle at 90 or less");
+                    return None;
+                }
+            }
+            Emission::Collimated { .. } => {}
+            Emission::Lambertian | Emission::Isotropic | Emission::CosinePower(_) => {
+                if common.tilt_deg != 0.0 {
+                    self.problems
+                        .error(&key.field("tilt_deg"), "only a cone or a collimated beam can be tilted")
+                        .hint("turn the source itself by `at.axis`");
+                    return None;
+                }
+            }
+        }
+        Some(emission)
+    }
+
+    /// What emits, and the surfaces of the scene it lies on.
+    fn emitter(&mut self, source: &SourceSpec, frame: Frame, key: &Key) -> Option<(Emitter, Vec<PrimId>)> {
+        let flat = |region| {
+            let shape = Shape::Flat(Flat::new(frame, region));
+            Some((Emitter::surface(vec![shape], EmitSide::Front, Some(frame)), Vec::new()))
+        };
+        match source {
+            SourceSpec::Point(_) => Some((Emitter::Point(frame), Vec::new())),
+            SourceSpec::Line(line) => {
+                Some((Emitter::Line { frame, length: line.shape.length_mm }, Vec::new()))
+            }
+            SourceSpec::Disk(disk) => {
+                let (inner, outer) = (disk.shape.inner_radius_mm, disk.shape.radius_mm);
+                if inner >= outer {
+                    self.problems.error(
+                        &key.field("inner_radius_mm"),
+                        format!("the dark middle, {inner} mm, reaches the rim, {outer} mm"),
+                    );
+                    return None;
+                }
+                flat(Region::Annulus { inner, outer })
+            }
+            SourceSpec::Rectangle(r) => {
+                flat(Region::Rectangle { half_x: 0.5 * r.shape.width_mm, half_y: 0.5 * r.shape.height_mm })
+            }
+            SourceSpec::Sphere(sphere) => {
+                let radius = sphere.shape.radius_mm;
+                let shape = Shape::Sphere(Sphere::zone(frame, radius, -radius, radius));
+                Some((Emitter::surface(vec![shape], EmitSide::Front, None), Vec::new()))
+            }
+            SourceSpec::Cylinder(cylinder) => {
+                let shape =
+                    Shape::Cylinder(Cylinder::new(frame, cylinder.shape.radius_mm, cylinder.shape.length_mm));
+                Some((Emitter::surface(vec![shape], EmitSide::Front, None), Vec::new()))
+            }
+            SourceSpec::Face(face) => self.face_emitter(&face.shape.of, face.shape.side, &key.field("of")),
+            SourceSpec::Volume(volume) => self.volume_emitter(&volume.shape.of, &key.field("of")),
+        }
+    }
+
+    fn face_emitter(&mut self, of: &str, side: FaceSide, key: &Key) -> Option<(Emitter, Vec<PrimId>)> {
+        let faces = self.faces_named(of, key)?;
+        let side = match side {
+            FaceSide::Front => EmitSide::Front,
+            FaceSide::Back => EmitSide::Back,
+        };
+        let scene = self.builder.scene();
+        let mut shapes = Vec::new();
+        let mut on = Vec::new();
+        for &face in &faces {
+            shapes.extend(scene.face_patches(face).iter().map(|patch| patch.shape.clone()));
+            let entry = &scene.faces[face.index()];
+            {
+                on.extend(patch_range(&entry.extent).map(PrimId::new));
+            }
+        }
+        // A flat face has axes that a tilted beam can refer to; its z must be the direction of emission.
+        let plane = match faces.as_slice() {
+            [face] => scene.face_plane(*face),
+            _ => None,
+        };
+        let frame = plane.map(|plane| match side {
+            EmitSide::Front => plane,
+            EmitSide::Back => Frame { y: -plane.y, z: -plane.z, ..plane },
+        });
+        if shapes.is_empty() {
+            self.problems.error(key, format!("`{of}` is part of a mesh; it cannot emit"));
+            return None;
+        }
+        Some((Emitter::surface(shapes, side, frame), on))
+    }
+
+    fn volume_emitter(&mut self, of: &str, key: &Key) -> Option<(Emitter, Vec<PrimId>)> {
+        let scene = self.builder.scene();
+        if let Some(index) = scene.solids.iter().position(|solid| solid.name == of) {
+            let bounds = scene.solids[index].bounds;
+            return Some((Emitter::Volume { solid: SolidId::new(index), bounds }, Vec::new()));
+        }
+        let known: Vec<&str> = scene.solids.iter().map(|solid| solid.name.as_str()).collect();
+        let hint = name_hint(of, known.iter().copied());
+        self.problems.error(key, format!("unknown solid `{of}`")).hint(hint);
+        None
+    }
+
+    /// Flux in lm or W from whichever amount is given.
+    fn flux(&mut self, common: &SourceCommonSpec, emitter: &Emitter, law: Emission, key: &Key) -> Option<f64> {
+        let unit = self.builder.scene().unit;
+        if unit == FluxUnit::Watt && common.flux_w.is_none() {
+            self.problems
+                .error(key, "sources in lm and in W are mixed")
+                .hint("give all sources in one unit; spectra that could convert them are not supported yet");
+            return None;
+        }
+        if let Some(flux) = common.flux_lm.or(common.flux_w) {
+            return Some(flux);
+        }
+        if let Some(luminance) = common.luminance_cd_m2 {
+            let per_luminance = emitter.area().zip(law.projected_solid_angle());
+            let Some((area, projected)) = per_luminance else {
+                self.problems
+                    .error(&key.field("luminance_cd_m2"), "needs a source with an area and a `lambertian` or cone emission")
+                    .hint("give flux_lm instead");
+                return None;
+            };
+            return Some(per_m2_to_per_mm2(luminance) * area * projected);
+        }
+        let intensity = common.intensity_cd?;
+        let per_intensity = match emitter {
+            Emitter::Point(_) => law.flux_per_peak_intensity(),
+            Emitter::Line { .. } | Emitter::Surface { .. } | Emitter::Volume { .. } => None,
+        };
+        if per_intensity.is_none() {
+            self.problems
+                .error(&key.field("intensity_cd"), "needs a `point` source that is not collimated")
+                .hint("give flux_lm instead");
+        }
+        per_intensity.map(|solid_angle| intensity * solid_angle)
+    }
+
+    fn body_finish(&mut self, body: &BodySpec) -> Option<FinishId> {
+        match body {
+            BodySpec::Transparent => None,
+            BodySpec::Absorbing => self.finishes.get("black").copied(),
+            BodySpec::Finish(reference) => self.finish(reference),
+        }
+    }
+
+    /// Makes the emitter's surfaces a sheet that light meets.
+    fn add_body(&mut self, name: &str, emitter: &Emitter, finish: FinishId) -> Vec<PrimId> {
+        let Emitter::Surface { shapes, .. } = emitter else { return Vec::new() };
+        let face = self.builder.add_face(FaceSpec {
+            name: format!("{name}.body"),
+            owner: Owner::Sheet,
+            front: Some(finish),
+            back: Some(finish),
+            pieces: shapes.iter().map(|(shape, _)| Piece::whole(shape.clone())).collect(),
+        });
+        self.faces.insert(format!("{name}.body"), vec![face]);
+        patch_range(&self.builder.scene().faces[face.index()].extent).map(PrimId::new).collect()
+    }
+}
+
+/// The patches of a face that light can meet.
+fn patch_range(extent: &Extent) -> std::ops::Range<usize> {
+    match extent {
+        Extent::Patches(range) => range.clone(),
+        Extent::Ports(_) | Extent::Mesh { .. } => 0..0,
+    }
+}
+
+/// Sources that touch no solid start all their paths outside, without asking.
+pub(super) fn settle_starts(spec: &SceneSpec, scene: &mut Scene) {
+    let boxes: Vec<_> = scene.solids.iter().map(|solid| solid.bounds.grown(scene.tolerance)).collect();
+    for source in &mut scene.sources {
+        let bounds = source.emitter.bounds();
+        debug_assert!(spec.sources.contains_key(&source.name), "sources come from the spec");
+        if !boxes.iter().any(|solid| solid.overlaps(&bounds)) {
+            source.start = Start::Outside;
+        }
+    }
+}
+
+/// Notes sources that start where their light cannot get out.
+pub(super) fn check_starts(spec: &SceneSpec, scene: &Scene, problems: &mut Problems) {
+    /// Starts that are looked at, per source.
+    const LOOKS: u64 = 64;
+    for source in &scene.sources {
+        let Some(kind) = spec.sources.get(&source.name).map(SourceSpec::kind) else { continue };
+        let key = Key::of(&["sources", &source.name, kind]);
+        if source.start == Start::Outside {
+            continue;
+        }
+        let starts: Vec<_> = (0..LOOKS)
+            .map(|look| source.emit(scene, &mut Sampler::for_path(0, u64::MAX, look)))
+            .collect();
+        let buried = |solid: SolidId| starts.iter().all(|start| start.inside.contains(solid)) && is_opaque(scene, solid);
+        if let Some(solid) = (0..scene.solids.len()).map(SolidId::new).find(|solid| buried(*solid)) {
+            let name = &scene.solids[solid.index()].name;
+            problems
+                .error(&key, format!("lies inside the opaque solid `{name}`: none of its light gets out"))
+                .hint("move the source, or give a face of the solid another finish");
+        }
+    }
+}
+
+/// Whether every face of a solid takes all light.
+fn is_opaque(scene: &Scene, solid: SolidId) -> bool {
+    let absorbs = |finish: Option<FinishId>| {
+        finish.is_some_and(|finish| scene.finishes[finish.index()].bsdf == Bsdf::Absorber)
+    };
+    scene.faces.iter().filter(|face| face.owner == Owner::Solid(solid)).all(|face| absorbs(face.back))
+}

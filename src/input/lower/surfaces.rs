@@ -1,0 +1,210 @@
+//! Named surfaces that solids and ducts share: sweeps and reflectors of revolution.
+
+use crate::input::keys::Key;
+use crate::input::lower::Context;
+use crate::input::spec::sweep::{CompoundParabolicSpec, LegSpec, ParaboloidSpec, ProfileSpec, SweepSpec};
+use crate::math::Frame;
+use crate::scene::Piece;
+use crate::scene::shape::{CompoundParabola, Flat, Paraboloid, Region, Shape};
+use crate::scene::sweep::{CornerKind, Leg, Profile, ProfileError, Wall, sweep};
+use glam::{DVec2, DVec3};
+
+/// A named face of a body that is being built.
+#[derive(Debug)]
+pub(super) struct NamedFace {
+    /// Name without that of the body.
+    pub(super) name: String,
+    /// Whether it is the wall, or an end that ducts leave open.
+    pub(super) part: BodyPart,
+    /// What it consists of.
+    pub(super) pieces: Vec<Piece>,
+}
+
+/// Which part of a body a face is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum BodyPart {
+    /// The wall, or a side of it.
+    Wall,
+    /// An end: a face of a solid, an open port of a duct.
+    End,
+}
+
+/// The faces of a body and its volume.
+#[derive(Debug)]
+pub(super) struct Surfaces {
+    pub(super) faces: Vec<NamedFace>,
+    /// Volume, mm³, where known.
+    pub(super) volume: Option<f64>,
+}
+
+impl NamedFace {
+    pub(super) fn wall(name: &str, shape: Shape) -> Self {
+        Self { name: name.to_owned(), part: BodyPart::Wall, pieces: vec![Piece::whole(shape)] }
+    }
+
+    pub(super) fn end(name: &str, shape: Shape) -> Self {
+        Self { name: name.to_owned(), part: BodyPart::End, pieces: vec![Piece::whole(shape)] }
+    }
+}
+
+impl Context<'_> {
+    /// The faces of a profile carried along a path.
+    pub(super) fn sweep_surfaces(&mut self, spec: &SweepSpec, frame: Frame, key: &Key) -> Option<Surfaces> {
+        let profile = self.profile(&spec.profile, &key.field("profile"))?;
+        let legs: Vec<Leg> = spec.path.iter().map(leg).collect();
+        let swept = match sweep(frame, &profile, &legs) {
+            Ok(swept) => swept,
+            Err(error) => {
+                let place = key.field("path");
+                let place = error.leg.map_or(place.clone(), |leg| place.index(leg));
+                self.problems.error(&place, error.to_string());
+                return None;
+            }
+        };
+        let sides = side_names(&spec.profile);
+        let mut faces: Vec<NamedFace> = Vec::new();
+        for part in &swept.parts {
+            let name = match part.wall {
+                Wall::Round => "wall".to_owned(),
+                Wall::Edge(side) => sides.get(side).cloned().unwrap_or_else(|| format!("wall_{}", side + 1)),
+                Wall::Mitre => "wall_mitre".to_owned(),
+            };
+            let piece = Piece { shape: part.shape.clone(), smooth: part.smooth, chart: Some(part.chart) };
+            match faces.iter_mut().find(|face| face.name == name) {
+                Some(face) => face.pieces.push(piece),
+                None => faces.push(NamedFace { name, part: BodyPart::Wall, pieces: vec![piece] }),
+            }
+        }
+        let [entry, exit] = &swept.ports;
+        faces.push(NamedFace::end("entry", entry.shape.clone()));
+        faces.push(NamedFace::end("exit", exit.shape.clone()));
+        Some(Surfaces { faces, volume: Some(swept.volume) })
+    }
+
+    fn profile(&mut self, spec: &ProfileSpec, key: &Key) -> Option<Profile> {
+        match profile_of(spec) {
+            Ok(profile) => Some(profile),
+            Err(error) => {
+                self.problems.error(key, error.to_string());
+                None
+            }
+        }
+    }
+
+    /// The faces of a compound parabolic concentrator.
+    pub(super) fn compound_parabolic(
+        &mut self,
+        spec: &CompoundParabolicSpec,
+        frame: Frame,
+        key: &Key,
+    ) -> Option<Surfaces> {
+        let angle = spec.acceptance_half_angle_deg.to_radians();
+        let full = CompoundParabola::full_length(spec.small_radius_mm, angle);
+        let length = spec.length_mm.unwrap_or(full);
+        if length > full * (1.0 + 1e-12) {
+            self.problems
+                .error(&key.field("length_mm"), format!("{length} is longer than the full length, {full:.6} mm"))
+                .hint("leave length_mm out for the full length");
+            return None;
+        }
+        let wall = CompoundParabola::new(frame, spec.small_radius_mm, angle, length);
+        let wide = wall.radius_at(length);
+        let faces = vec![
+            NamedFace::wall("wall", Shape::CompoundParabola(wall)),
+            NamedFace::end("entry", disk_facing(frame, 0.0, spec.small_radius_mm, Ends::Entry)),
+            NamedFace::end("exit", disk_facing(frame, length, wide, Ends::Exit)),
+        ];
+        Some(Surfaces { faces, volume: None })
+    }
+
+    /// The faces of a paraboloid.
+    pub(super) fn paraboloid(&mut self, spec: &ParaboloidSpec, frame: Frame, key: &Key) -> Option<Surfaces> {
+        let (focal, hole, rim) = (spec.focal_length_mm, spec.hole_radius_mm, spec.radius_mm);
+        if hole >= rim {
+            self.problems.error(&key.field("hole_radius_mm"), format!("the hole, {hole} mm, reaches the rim, {rim} mm"));
+            return None;
+        }
+        let height = |radius: f64| radius * radius / (4.0 * focal);
+        let mut faces = vec![
+            NamedFace::wall("wall", Shape::Paraboloid(Paraboloid::new(frame, focal, hole, rim))),
+            NamedFace::end("exit", disk_facing(frame, height(rim), rim, Ends::Exit)),
+        ];
+        if hole > 0.0 {
+            faces.push(NamedFace::end("entry", disk_facing(frame, height(hole), hole, Ends::Entry)));
+        }
+        // Half of base times height, less that of the tip that the hole cuts off.
+        let volume = 0.5 * std::f64::consts::PI * (rim * rim * height(rim) - hole * hole * height(hole));
+        Some(Surfaces { faces, volume: Some(volume) })
+    }
+}
+
+/// Which end of a body a disk closes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Ends {
+    /// At the start; its outward normal is against the axis.
+    Entry,
+    /// At the end; its outward normal is along the axis.
+    Exit,
+}
+
+/// A disk across the axis at height `z`, facing out of the body.
+pub(super) fn disk_facing(frame: Frame, z: f64, radius: f64, end: Ends) -> Shape {
+    let frame = frame.shifted(z * frame.z);
+    let frame = match end {
+        Ends::Exit => frame,
+        Ends::Entry => Frame { y: -frame.y, z: -frame.z, ..frame },
+    };
+    Shape::Flat(Flat::new(frame, Region::Annulus { inner: 0.0, outer: radius }))
+}
+
+fn profile_of(spec: &ProfileSpec) -> Result<Profile, ProfileError> {
+    match spec {
+        ProfileSpec::Circle(circle) => Profile::circle(circle.radius_mm),
+        ProfileSpec::Rectangle(r) => Profile::rectangle(r.width_mm, r.height_mm),
+        ProfileSpec::RegularPolygon(p) => {
+            let half_angle = std::f64::consts::PI / f64::from(p.sides);
+            // Validated: one of the two is given.
+            let flats = p.across_flats_mm.map(|flats| 0.5 * flats / half_angle.cos());
+            let radius = p.radius_mm.or(flats).unwrap_or_default();
+            Profile::regular(p.sides as usize, radius, p.rotation_deg.to_radians())
+        }
+        ProfileSpec::Polygon(polygon) => {
+            Profile::polygon(polygon.points_mm.iter().map(|p| DVec2::from(*p)).collect())
+        }
+    }
+}
+
+fn leg(spec: &LegSpec) -> Leg {
+    match spec {
+        LegSpec::Straight(straight) => {
+            Leg::Straight { length: straight.straight_mm, end_scale: straight.end_scale }
+        }
+        LegSpec::Bend(bend) => Leg::Bend {
+            angle: bend.bend_deg.to_radians(),
+            radius: bend.radius_mm,
+            toward: bend.toward_deg.to_radians(),
+        },
+        LegSpec::Corner(corner) => Leg::Corner {
+            angle: corner.corner_deg.to_radians(),
+            toward: corner.toward_deg.to_radians(),
+            kind: if corner.mitred { CornerKind::Mitred } else { CornerKind::Plain },
+        },
+    }
+}
+
+/// Names of the sides of a polygonal wall; empty for a round one.
+fn side_names(profile: &ProfileSpec) -> Vec<String> {
+    match profile {
+        ProfileSpec::Circle(_) => Vec::new(),
+        ProfileSpec::Rectangle(_) => ["wall_minus_y", "wall_plus_x", "wall_plus_y", "wall_minus_x"].map(String::from).into(),
+        ProfileSpec::RegularPolygon(p) => (1..=p.sides).map(|side| format!("wall_{side}")).collect(),
+        ProfileSpec::Polygon(p) => (1..=p.points_mm.len()).map(|side| format!("wall_{side}")).collect(),
+    }
+}
+
+/// Direction of a tilted axis in a local frame.
+pub(super) fn tilted(tilt_deg: f64, azimuth_deg: f64) -> DVec3 {
+    let (sin, cos) = tilt_deg.to_radians().sin_cos();
+    let (sin_azimuth, cos_azimuth) = azimuth_deg.to_radians().sin_cos();
+    DVec3::new(sin * cos_azimuth, sin * sin_azimuth, cos)
+}

@@ -1,0 +1,148 @@
+//! From a scene file to validated, typed specs.
+//!
+//! The file becomes a tree that knows its places, the tree is held against the schema, becomes a [`SceneSpec`], and
+//! the spec is held against the rules that span several keys. Every problem is noted on the way and all are given back
+//! together. Geometry and optics are not known here, but for what the lowering of a spec needs.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use crate::error::{Diagnostic, DiagnosticKind, Error, Result};
+use crate::input::keys::{Key, Places};
+use crate::input::problems::Problems;
+use crate::input::sources::Sources;
+use crate::input::spec::{FORMAT_VERSION, SceneSpec};
+use crate::input::tree::{Node, SyntaxError, Value};
+use crate::input::validate::Completeness;
+
+pub mod check;
+pub mod convert;
+pub mod diagnostic;
+pub mod include;
+mod job;
+pub mod keys;
+mod lower;
+pub mod overrides;
+pub mod problems;
+pub mod schema;
+pub mod sources;
+pub mod spec;
+pub mod tree;
+pub mod validate;
+
+pub use job::{Job, Settings, load};
+
+/// A scene that was read without errors.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Loaded {
+    /// What the files say.
+    pub spec: SceneSpec,
+    /// Where they say it; holds the texts of all files, too.
+    pub places: Places,
+    /// The scene file, byte for byte.
+    pub text: String,
+    /// Remarks that do not stop a run.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// A scene with what is wrong with it so far.
+#[derive(Debug)]
+pub struct Draft {
+    /// What the files say. An entry with an error is left out.
+    pub spec: SceneSpec,
+    /// Where they say it; holds the texts of all files, too.
+    pub places: Places,
+    /// The scene file, byte for byte.
+    pub text: String,
+    /// What is wrong.
+    pub problems: Problems,
+}
+
+/// Reads a scene file. Each override is `key=value`, as after `-D` on the command line. All problems come as one
+/// [`Error::Input`].
+pub fn read(path: &Path, overrides: &[String]) -> Result<Loaded> {
+    let Draft { spec, places, text, problems } = draft(path, overrides)?;
+    let warnings = problems.finish(&places)?;
+    Ok(Loaded { spec, places, text, warnings })
+}
+
+/// Reads a scene file as far as it goes, so that further problems can be found in what is good. Fails only if there
+/// is nothing to go on with: the file cannot be read or is of another format.
+pub fn draft(path: &Path, overrides: &[String]) -> Result<Draft> {
+    let mut sources = Sources::default();
+    let mut problems = Problems::default();
+    let scene = sources.add_file(path).map_err(|reason| unreadable(path, &reason.to_string()))?;
+    let (mut root, mut breaks) = tree::parse(&sources, scene);
+    let text = sources.get(scene).text().to_owned();
+
+    let overrides = overrides::read(overrides, &mut sources, &mut problems);
+    let (early, late): (Vec<_>, Vec<_>) =
+        overrides.iter().partition(|one| one.names_a_sensor_file());
+    early.into_iter().for_each(|one| overrides::apply(one, &mut root, &mut problems));
+    breaks.extend(include::join_sensor_files(&mut root, &mut sources, &mut problems));
+    late.into_iter().for_each(|one| overrides::apply(one, &mut root, &mut problems));
+
+    if has_other_version(&root, &mut problems) {
+        return Err(Error::Input(problems.into_diagnostics(&Places::new(root, sources))));
+    }
+    note_differences(&root, &sources, &breaks, &mut problems);
+    note_breaks(&breaks, &mut problems);
+    let spec = convert::scene(&root, &mut problems);
+    let places = Places::new(root, sources);
+    // With a break of the syntax, names may be missing that are only out of sight.
+    if breaks.is_empty() {
+        check::check(&spec, &places, &mut problems);
+    }
+    Ok(Draft { spec, places, text, problems })
+}
+
+fn unreadable(path: &Path, reason: &str) -> Error {
+    Error::Input(vec![Diagnostic {
+        kind: DiagnosticKind::Error,
+        file: Some(path.to_path_buf()),
+        line: None,
+        span: None,
+        key: String::new(),
+        message: reason.into(),
+        hint: None,
+    }])
+}
+
+/// Whether the file is of another version; then it is not to be measured by this schema.
+fn has_other_version(root: &Node, problems: &mut Problems) -> bool {
+    match root.get("lumiduct") {
+        Some(Node { value: Value::Integer(version), origin })
+            if *version != i64::from(FORMAT_VERSION) =>
+        {
+            let message =
+                format!("format version {version} is not known, expected {FORMAT_VERSION}");
+            problems.error(&Key::of(&["lumiduct"]), message).at(origin);
+            true
+        }
+        Some(_) | None => false,
+    }
+}
+
+fn note_breaks(breaks: &[SyntaxError], problems: &mut Problems) {
+    for error in breaks {
+        let key = if error.key.is_empty() { Key::root() } else { Key::of(&[&error.key]) };
+        problems.error(&key, error.message.clone()).at(&error.origin);
+    }
+}
+
+/// Holds the tree against the schema, and drops what stands in a line whose syntax is broken.
+fn note_differences(
+    root: &Node,
+    sources: &Sources,
+    breaks: &[SyntaxError],
+    problems: &mut Problems,
+) {
+    let completeness = if breaks.is_empty() { Completeness::Whole } else { Completeness::Broken };
+    let mut found = Problems::default();
+    validate::validate(root, sources, completeness, &mut found);
+    let line = |origin: &sources::Origin| {
+        (origin.source, sources.get(origin.source).line(origin.span.start))
+    };
+    let broken: BTreeSet<_> = breaks.iter().map(|error| line(&error.origin)).collect();
+    problems.append(found, |origin| broken.contains(&line(origin)));
+}

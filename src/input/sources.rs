@@ -1,0 +1,267 @@
+//! The texts that input comes from: files and arguments of the command line.
+//!
+//! Knows nothing of what the texts say. A file is read whole, once, within a limit of size.
+
+use std::fmt;
+use std::fs::File;
+use std::io::{ErrorKind, Read};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+/// Largest file that is read, bytes.
+pub const MAX_FILE_BYTES: u64 = 16 << 20;
+
+/// One of the texts of a [`Sources`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct SourceId(usize);
+
+/// A stretch of bytes in one of the texts.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Origin {
+    /// The text.
+    pub source: SourceId,
+    /// Bytes of it.
+    pub span: Range<usize>,
+}
+
+/// Where a text comes from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum SourceKind {
+    /// A file.
+    File(PathBuf),
+    /// An argument `-D key=value`; the text is what follows `-D`.
+    Argument,
+}
+
+/// A text with its lines.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Source {
+    kind: SourceKind,
+    text: String,
+    /// Offset of the first byte of each line.
+    line_starts: Vec<usize>,
+}
+
+impl Source {
+    fn new(kind: SourceKind, text: String) -> Self {
+        let line_starts = std::iter::once(0)
+            .chain(text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(i, _)| i + 1));
+        let line_starts = line_starts.collect();
+        Self { kind, text, line_starts }
+    }
+
+    /// Where the text comes from.
+    pub fn kind(&self) -> &SourceKind {
+        &self.kind
+    }
+
+    /// The whole text.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// How a message names the text: the path, or the argument.
+    pub fn label(&self) -> PathBuf {
+        match &self.kind {
+            SourceKind::File(path) => path.clone(),
+            SourceKind::Argument => format!("-D {}", self.text.escape_debug()).into(),
+        }
+    }
+
+    /// The line of a byte, from 1; `None` for an argument, which has no lines.
+    pub fn line(&self, offset: usize) -> Option<usize> {
+        match self.kind {
+            SourceKind::File(_) => Some(self.line_starts.partition_point(|start| *start <= offset)),
+            SourceKind::Argument => None,
+        }
+    }
+
+    /// The bytes of a line counted from 1, without its line end; `None` beyond the last.
+    pub fn line_span(&self, line: usize) -> Option<Range<usize>> {
+        let start = *self.line_starts.get(line.checked_sub(1)?)?;
+        let end = self.line_starts.get(line).map_or(self.text.len(), |next| next - 1);
+        let text = self.text.get(start..end)?;
+        Some(start..start + text.trim_end_matches('\r').len())
+    }
+}
+
+/// All texts that one scene is made of.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Sources {
+    list: Vec<Source>,
+}
+
+impl Sources {
+    /// Reads a file, or finds it if it was read before.
+    pub fn add_file(&mut self, path: &Path) -> Result<SourceId, Unreadable> {
+        let known = self
+            .list
+            .iter()
+            .position(|source| matches!(&source.kind, SourceKind::File(file) if file == path));
+        match known {
+            Some(index) => Ok(SourceId(index)),
+            None => {
+                let text = read(path)?;
+                Ok(self.add_text(path, &text))
+            }
+        }
+    }
+
+    /// Takes a text as that of a file, without looking at the file.
+    pub fn add_text(&mut self, path: &Path, text: &str) -> SourceId {
+        self.add(SourceKind::File(path.to_path_buf()), text.into())
+    }
+
+    /// Takes an argument of the command line, without the `-D`.
+    pub fn add_argument(&mut self, text: &str) -> SourceId {
+        self.add(SourceKind::Argument, text.into())
+    }
+
+    fn add(&mut self, kind: SourceKind, text: String) -> SourceId {
+        self.list.push(Source::new(kind, text));
+        SourceId(self.list.len() - 1)
+    }
+
+    /// One text. Ids of another `Sources` are not to be used here.
+    pub fn get(&self, id: SourceId) -> &Source {
+        &self.list[id.0]
+    }
+
+    /// The folder of the file of a place; `None` on the command line.
+    pub fn folder(&self, origin: &Origin) -> Option<&Path> {
+        match &self.get(origin.source).kind {
+            SourceKind::File(path) => path.parent(),
+            SourceKind::Argument => None,
+        }
+    }
+
+    /// All texts in the order in which they were first met.
+    pub fn iter(&self) -> impl Iterator<Item = &Source> {
+        self.list.iter()
+    }
+
+    /// The text of a file, if it was read.
+    pub fn file(&self, path: &Path) -> Option<&Source> {
+        self.list
+            .iter()
+            .find(|source| matches!(&source.kind, SourceKind::File(file) if file == path))
+    }
+
+    /// The files that diagnostics name, read again for their lines. What cannot be read is left out.
+    pub fn of_files<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Self {
+        let mut sources = Self::default();
+        for path in paths {
+            // A file that has gone leaves a message without its line, which is still a message.
+            let _ = sources.add_file(path);
+        }
+        sources
+    }
+
+    /// The text at a place, on one line and no longer than 40 characters.
+    pub fn excerpt(&self, origin: &Origin) -> String {
+        let text = self.get(origin.source).text.get(origin.span.clone()).unwrap_or_default();
+        let line = text.lines().next().unwrap_or_default();
+        if line.chars().count() > EXCERPT_CHARS || line.len() < text.trim_end().len() {
+            let cut: String = line.chars().take(EXCERPT_CHARS - 3).collect();
+            return format!("{}...", cut.escape_debug());
+        }
+        // Quotes stay as the user wrote them; only what a terminal could take for a command is escaped.
+        line.chars()
+            .map(|c| if c.is_control() { c.escape_debug().to_string() } else { c.to_string() })
+            .collect()
+    }
+}
+
+/// Longest piece of a file that is quoted in a message, characters.
+const EXCERPT_CHARS: usize = 40;
+
+/// Why a file could not be read.
+#[derive(Debug)]
+pub enum Unreadable {
+    /// There is no such file.
+    Missing,
+    /// It is a directory, a device or a pipe.
+    NotAFile,
+    /// It is larger than [`MAX_FILE_BYTES`].
+    TooLarge,
+    /// It is not UTF-8, first in this line.
+    NotUtf8 {
+        /// Line, from 1.
+        line: usize,
+    },
+    /// The system says why.
+    Io(std::io::Error),
+}
+
+impl fmt::Display for Unreadable {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Missing => write!(out, "no such file"),
+            Self::NotAFile => write!(out, "not a file"),
+            Self::TooLarge => write!(out, "larger than {} MiB", MAX_FILE_BYTES >> 20),
+            Self::NotUtf8 { line } => write!(out, "not UTF-8 text, first in line {line}"),
+            Self::Io(error) => write!(out, "cannot be read: {error}"),
+        }
+    }
+}
+
+fn read(path: &Path) -> Result<String, Unreadable> {
+    let failed = |error: std::io::Error| match error.kind() {
+        ErrorKind::NotFound => Unreadable::Missing,
+        _ => Unreadable::Io(error),
+    };
+    // Asked before opening: opening a pipe waits for its writer.
+    if !std::fs::metadata(path).map_err(failed)?.is_file() {
+        return Err(Unreadable::NotAFile);
+    }
+    let mut bytes = Vec::new();
+    File::open(path)
+        .map_err(failed)?
+        .take(MAX_FILE_BYTES + 1)
+        .read_to_end(&mut bytes)
+        .map_err(failed)?;
+    if bytes.len() as u64 > MAX_FILE_BYTES {
+        return Err(Unreadable::TooLarge);
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        Unreadable::NotUtf8 { line: 1 + good.iter().filter(|b| **b == b'\n').count() }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_counted_from_one_and_end_before_the_line_break() {
+        let source = Source::new(SourceKind::File("a".into()), "one\r\ntwo\nthree".into());
+        assert_eq!((source.line(0), source.line(4), source.line(5)), (Some(1), Some(1), Some(2)));
+        let lines: Vec<_> =
+            (0..5).map(|line| source.line_span(line).map(|span| &source.text[span])).collect();
+        assert_eq!(lines, [None, Some("one"), Some("two"), Some("three"), None]);
+    }
+
+    #[test]
+    fn what_is_no_text_file_is_refused_without_waiting() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut sources = Sources::default();
+        assert!(matches!(sources.add_file(folder.path()), Err(Unreadable::NotAFile)));
+        assert!(matches!(sources.add_file(&folder.path().join("gone")), Err(Unreadable::Missing)));
+        let binary = folder.path().join("binary");
+        std::fs::write(&binary, b"a\nb\xff").unwrap();
+        assert!(matches!(sources.add_file(&binary), Err(Unreadable::NotUtf8 { line: 2 })));
+        let huge = folder.path().join("huge");
+        File::create(&huge).unwrap().set_len(MAX_FILE_BYTES + 1).unwrap();
+        assert!(matches!(sources.add_file(&huge), Err(Unreadable::TooLarge)));
+    }
+
+    #[test]
+    fn excerpts_are_short_and_harmless() {
+        let mut sources = Sources::default();
+        let long = sources.add_argument(&"x".repeat(100));
+        let bell = sources.add_argument("'\u{1b}[31m'");
+        assert_eq!(sources.excerpt(&Origin { source: long, span: 0..100 }).len(), 40);
+        assert_eq!(sources.excerpt(&Origin { source: bell, span: 0..7 }), r"'\u{1b}[31m'");
+    }
+}

@@ -1,0 +1,81 @@
+//! What a scene file says, key by key: a mirror of the file in types.
+//!
+//! The JSON Schema, the page `docs/scene_format.md` and the validation of a file are all made from these types, so
+//! the comments here are read by users. Nothing is computed here, and no rule that spans several keys is known here
+//! (see `input::check`).
+
+use indexmap::IndexMap;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+pub mod finish;
+pub mod placement;
+pub mod run;
+pub mod sensor;
+pub mod sheet;
+pub mod solid;
+pub mod source;
+pub mod sweep;
+
+use finish::{FinishSpec, MediumSpec};
+use run::{CheckSpec, RunSpec};
+use sensor::SensorSpec;
+use sheet::SheetSpec;
+use solid::SolidSpec;
+use source::SourceSpec;
+
+/// The version of the format that this program reads.
+pub const FORMAT_VERSION: u32 = 1;
+
+/// A scene: a light guide, its sources, the sensors that look at it, and what is expected of it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(title = "Lumiduct scene")]
+pub struct SceneSpec {
+    /// Version of the scene format.
+    #[schemars(extend("const" = 1))]
+    pub lumiduct: u32,
+    /// One line that names the scene in reports.
+    pub title: String,
+    /// What the scene is for, in as many lines as it takes.
+    pub description: Option<String>,
+    /// Name of the medium outside every solid.
+    #[serde(default = "air")]
+    pub surroundings: String,
+    /// Transparent media by name.
+    #[serde(default)]
+    pub media: IndexMap<String, MediumSpec>,
+    /// Finishes by name: what a face does to light.
+    #[serde(default)]
+    pub finishes: IndexMap<String, FinishSpec>,
+    /// Closed bodies by name, each filled with a medium.
+    #[serde(default)]
+    pub solids: IndexMap<String, SolidSpec>,
+    /// Open surfaces by name: mirrors, baffles, hollow tubes and reflectors.
+    #[serde(default)]
+    pub sheets: IndexMap<String, SheetSpec>,
+    /// Light sources by name.
+    #[serde(default)]
+    pub sources: IndexMap<String, SourceSpec>,
+    /// Sensors by name.
+    #[serde(default)]
+    pub sensors: IndexMap<String, SensorSpec>,
+    /// How long to compute, and with which random numbers.
+    #[serde(default)]
+    pub run: RunSpec,
+    /// What is expected of the results, in any number of `[[check]]` tables.
+    #[serde(default)]
+    pub check: Vec<CheckSpec>,
+}
+
+/// The medium that is there when nothing is said.
+pub const AIR: &str = "air";
+
+/// Media that need no definition.
+pub const PREDEFINED_MEDIA: [&str; 1] = [AIR];
+
+/// Finishes that need no definition.
+pub const PREDEFINED_FINISHES: [&str; 3] = ["polished", "black", "open"];
+
+fn air() -> String {
+    AIR.into()
+}

@@ -1,0 +1,166 @@
+//! Sensors as a scene file states them.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::input::spec::placement::PlacementSpec;
+use crate::input::spec::sweep::{CircleSpec, RectangleSpec};
+
+/// A sensor; exactly one of `plane`, `goniometer` and `luminance`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(extend("oneOf" = [
+    { "required": ["plane"] },
+    { "required": ["goniometer"] },
+    { "required": ["luminance"] }
+]))]
+pub struct SensorSpec {
+    /// A sensor file whose keys are taken over; keys given here win. Relative to the scene file.
+    pub file: Option<String>,
+    /// A map of illuminance over a flat area or a face.
+    pub plane: Option<PlaneSpec>,
+    /// A sphere of directions: intensity in type C angles.
+    pub goniometer: Option<GoniometerSpec>,
+    /// A map of luminance seen from one or more directions.
+    pub luminance: Option<LuminanceSpec>,
+    /// The face that is the sensor, as `NAME.FACE`. For `plane` and `luminance`; not together with `at`.
+    pub on: Option<String>,
+    /// Whether light is counted as it leaves the face or as it arrives at it. Needed with `on`.
+    pub counts: Option<CountsSpec>,
+    /// The side that counts. Omitted: `front`, and `both` with `counts = "incident"`.
+    pub side: Option<SensorSide>,
+    /// Where the sensor stands.
+    pub at: Option<PlacementSpec>,
+    /// Faces through which a remote sensor is lit, as `NAME.FACE`; the rest of its light is reported apart.
+    #[schemars(length(min = 1))]
+    pub aim: Option<Vec<String>>,
+    /// Whether the sensor absorbs what it counts. Only for a `plane` that is not `on` a face.
+    #[serde(default)]
+    pub absorbing: bool,
+    /// The port, as `NAME.FACE`, against whose entering flux `transmission` is counted.
+    pub entering: Option<String>,
+}
+
+/// The kind of a sensor, with its keys.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SensorKind<'a> {
+    /// Illuminance over an area.
+    Plane(&'a PlaneSpec),
+    /// Intensity over directions.
+    Goniometer(&'a GoniometerSpec),
+    /// Luminance over an area and directions.
+    Luminance(&'a LuminanceSpec),
+}
+
+impl SensorKind<'_> {
+    /// The key of the kind.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Plane(_) => "plane",
+            Self::Goniometer(_) => "goniometer",
+            Self::Luminance(_) => "luminance",
+        }
+    }
+}
+
+impl SensorSpec {
+    /// The kind; `None` in a spec that was never validated.
+    pub fn kind(&self) -> Option<SensorKind<'_>> {
+        let plane = self.plane.as_ref().map(SensorKind::Plane);
+        let goniometer = self.goniometer.as_ref().map(SensorKind::Goniometer);
+        let luminance = self.luminance.as_ref().map(SensorKind::Luminance);
+        plane.or(goniometer).or(luminance)
+    }
+}
+
+/// A grid of cells over a flat area or a face: `cells`, or `rings` and `sectors`. A `rectangle` or a `disk` gives the
+/// area; a sensor `on` a face has the area of the face.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct PlaneSpec {
+    /// A rectangular area about the position.
+    pub rectangle: Option<RectangleSpec>,
+    /// A round area about the position.
+    pub disk: Option<CircleSpec>,
+    /// Cells along the local x and y, over the bounding rectangle of the area.
+    #[schemars(inner(range(min = 1, max = 100_000_000)))]
+    pub cells: Option<[u32; 2]>,
+    /// Rings of equal width about the centre, for a round area.
+    #[schemars(range(min = 1, max = 100_000_000))]
+    pub rings: Option<u32>,
+    /// Sectors of equal angle; the first begins at the local +x.
+    #[schemars(range(min = 1, max = 100_000_000))]
+    pub sectors: Option<u32>,
+}
+
+/// A sphere of directions about the position, with the polar axis along the axis.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct GoniometerSpec {
+    /// Step of the C planes; divides 360.
+    #[serde(default = "c_step")]
+    #[schemars(extend("exclusiveMinimum" = 0.0), range(max = 360.0))]
+    pub c_step_deg: f64,
+    /// Step of the angle from the axis; divides 180.
+    #[serde(default = "gamma_step")]
+    #[schemars(extend("exclusiveMinimum" = 0.0), range(max = 180.0))]
+    pub gamma_step_deg: f64,
+    /// Radius of a sphere at a finite distance. Omitted: the far field.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub radius_mm: Option<f64>,
+}
+
+/// A grid of cells over a flat area or a face, looked at from one or more directions.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct LuminanceSpec {
+    /// A rectangular area about the position.
+    pub rectangle: Option<RectangleSpec>,
+    /// A round area about the position.
+    pub disk: Option<CircleSpec>,
+    /// Cells along the local x and y, over the bounding rectangle of the area.
+    #[schemars(inner(range(min = 1, max = 100_000_000)))]
+    pub cells: [u32; 2],
+    /// Directions to look from.
+    #[schemars(length(min = 1))]
+    pub directions: Vec<DirectionSpec>,
+    /// Half-angle of the cone about each direction over which luminance is averaged.
+    #[schemars(extend("exclusiveMinimum" = 0.0), range(max = 90.0))]
+    pub acceptance_half_angle_deg: f64,
+}
+
+/// A direction in the local frame of a sensor.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct DirectionSpec {
+    /// Angle from the normal.
+    #[schemars(range(min = 0.0), extend("exclusiveMaximum" = 90.0))]
+    pub theta_deg: f64,
+    /// Azimuth about the normal: 0 is toward the local +x.
+    pub phi_deg: f64,
+}
+
+/// What a sensor on a face counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum CountsSpec {
+    /// Light that leaves the face, after it was reflected, refracted or scattered there.
+    Leaving,
+    /// Light that arrives at the face, whatever becomes of it.
+    Incident,
+}
+
+/// Which side of a sensor counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SensorSide {
+    /// The side that the axis or outward normal points to.
+    Front,
+    /// The other side.
+    Back,
+    /// Both sides, added up.
+    Both,
+}
+
+fn c_step() -> f64 {
+    15.0
+}
+
+fn gamma_step() -> f64 {
+    2.0
+}

@@ -1,0 +1,244 @@
+//! A cut through the geometry with paths of light in it.
+
+use crate::error::Result;
+use crate::report::png::axis::{Axis, Scale};
+use crate::report::png::canvas::{Canvas, Ink, Pen};
+use crate::report::png::geometry::{Point, Rect};
+use crate::report::png::layout::{
+    Aspect, Axes, Header, Legend, MARGIN, Mark, SQUEEZED_REMARK, Sample, draw_mark, plot_size,
+    remark,
+};
+use crate::report::png::palette::{Rgb, outline_colour};
+use crate::report::png::text::TICK;
+
+/// A cut through the geometry, seen along its normal.
+#[derive(Debug, Clone)]
+pub struct CrossSection {
+    /// What is shown.
+    pub title: String,
+    /// Which plane it is; may be empty.
+    pub subtitle: String,
+    /// Name and unit of the horizontal axis: "x in mm".
+    pub x_label: String,
+    /// Name and unit of the vertical axis.
+    pub y_label: String,
+    /// Least and greatest x of the picture, mm.
+    pub x_range: [f64; 2],
+    /// Least and greatest y of the picture, mm.
+    pub y_range: [f64; 2],
+    /// Surfaces in the plane.
+    pub outlines: Vec<Outline>,
+    /// Paths of light, seen along the normal of the plane.
+    pub rays: Vec<RayPath>,
+}
+
+/// A surface in the plane, as dots.
+#[derive(Debug, Clone)]
+pub struct Outline {
+    /// Its name in the legend; may be empty.
+    pub name: String,
+    /// Outlines of one kind have the same number and colour; 0 is the darkest.
+    pub colour: usize,
+    /// Points of the surface, mm.
+    pub points: Vec<[f64; 2]>,
+}
+
+/// A path of light.
+#[derive(Debug, Clone)]
+pub struct RayPath {
+    /// Its start, its bounces and its end, mm.
+    pub points: Vec<[f64; 2]>,
+    /// What became of it.
+    pub end: RayEnd,
+}
+
+/// What became of a path.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RayEnd {
+    /// It reached a sensor.
+    Sensor,
+    /// A surface or a medium took it.
+    Absorbed,
+    /// It left the scene.
+    Escaped,
+    /// It leaked, or was cut by the bounce limit or by roulette.
+    Lost,
+}
+
+impl RayEnd {
+    const ALL: [Self; 4] = [Self::Sensor, Self::Absorbed, Self::Escaped, Self::Lost];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Sensor => "to a sensor",
+            Self::Absorbed => "absorbed",
+            Self::Escaped => "escaped",
+            Self::Lost => "lost",
+        }
+    }
+
+    fn colour(self) -> Rgb {
+        match self {
+            Self::Sensor => [0, 114, 178],
+            Self::Absorbed => [213, 94, 0],
+            Self::Escaped => [0, 158, 115],
+            Self::Lost => [190, 0, 120],
+        }
+    }
+
+    fn mark(self) -> Mark {
+        match self {
+            Self::Sensor => Mark::Dot,
+            Self::Absorbed => Mark::Cross,
+            Self::Escaped => Mark::Ring,
+            Self::Lost => Mark::Square,
+        }
+    }
+}
+
+/// Largest size of the plot itself, pixels.
+const MOST: [f64; 2] = [780.0, 640.0];
+/// A plot longer than this is squeezed.
+const LONGEST: f64 = 10.0;
+/// Radius of the dots of an outline, pixels.
+const DOT: f64 = 1.1;
+
+/// Draws outlines as dots and paths of light as thin lines, each path with a mark at its end.
+pub fn cross_section(section: &CrossSection) -> Result<Vec<u8>> {
+    let axes = [section.x_range, section.y_range].map(|[a, b]| Axis::new(a, b, Scale::Linear));
+    let size = plot_size(axes, MOST, LONGEST);
+    let frame = Axes::new(axes, [&section.x_label, &section.y_label], [size.width, size.height])?;
+    let content = MARGIN + frame.left_margin() + size.width + MARGIN + 6.0;
+    let width = content.max(620.0).ceil();
+    let left = (MARGIN + frame.left_margin() + 0.5 * (width - content)).round();
+    let header = Header::new(&section.title, &section.subtitle, width - 2.0 * MARGIN)?;
+    let names = legend_names(section);
+    let entries: Vec<(Sample, &str)> =
+        names.iter().map(|(sample, name)| (*sample, name.as_str())).collect();
+    let legend = Legend::new(&entries, width - 2.0 * MARGIN)?;
+    let top = (MARGIN + header.height() + legend.height()).round();
+    let below = match size.aspect {
+        Aspect::True => 0.0,
+        Aspect::Squeezed => TICK.line_step() + 8.0,
+    };
+    let bottom = top + size.height + frame.bottom_margin();
+    let mut canvas = Canvas::new(width as usize, (bottom + below + MARGIN - 6.0) as usize);
+    let area = Rect::new(left, top, size.width, size.height);
+    header.draw(&mut canvas, MARGIN, MARGIN - 4.0)?;
+    legend.draw(&mut canvas, MARGIN, MARGIN + header.height() - 8.0)?;
+    frame.draw_grid(&mut canvas, area);
+    canvas.clip_to(area);
+    draw_outlines(&mut canvas, &frame, area, &section.outlines);
+    draw_rays(&mut canvas, &frame, area, &section.rays);
+    canvas.clip_to_all();
+    frame.draw(&mut canvas, area)?;
+    if size.aspect == Aspect::Squeezed {
+        remark(&mut canvas, SQUEEZED_REMARK, [MARGIN, bottom + TICK.line_step()])?;
+    }
+    canvas.into_png()
+}
+
+/// One entry per name of an outline and per end of a path that occurs, with the number of paths.
+fn legend_names(section: &CrossSection) -> Vec<(Sample, String)> {
+    let mut entries: Vec<(Sample, String)> = Vec::new();
+    for outline in &section.outlines {
+        let entry = (Sample::Dot(outline_colour(outline.colour), 4.0), outline.name.clone());
+        if !entries.contains(&entry) {
+            entries.push(entry);
+        }
+    }
+    for end in RayEnd::ALL {
+        let count = section.rays.iter().filter(|ray| ray.end == end).count();
+        if count > 0 {
+            entries.push((
+                Sample::MarkedLine(pen(end), end.mark()),
+                format!("{} ({count})", end.name()),
+            ));
+        }
+    }
+    entries
+}
+
+fn pen(end: RayEnd) -> Pen {
+    Pen { ink: Ink { colour: end.colour(), opacity: 0.6 }, width: 1.1, dash: &[] }
+}
+
+fn draw_outlines(canvas: &mut Canvas, frame: &Axes, area: Rect, outlines: &[Outline]) {
+    for outline in outlines {
+        let ink = Ink::opaque(outline_colour(outline.colour));
+        for point in &outline.points {
+            canvas.dot(frame.place(area, *point), DOT, ink);
+        }
+    }
+}
+
+fn draw_rays(canvas: &mut Canvas, frame: &Axes, area: Rect, rays: &[RayPath]) {
+    for ray in rays {
+        let places: Vec<Point> = ray.points.iter().map(|point| frame.place(area, *point)).collect();
+        canvas.line(&places, &pen(ray.end));
+    }
+    for ray in rays {
+        if let Some(last) = ray.points.last() {
+            draw_mark(canvas, ray.end.mark(), frame.place(area, *last), ray.end.colour());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::png::tests::Decoded;
+
+    fn section(x_range: [f64; 2], points: Vec<[f64; 2]>, rays: Vec<RayPath>) -> Decoded {
+        let section = CrossSection {
+            title: "Pipe".to_string(),
+            subtitle: "plane y = 0".to_string(),
+            x_label: "x in mm".to_string(),
+            y_label: "z in mm".to_string(),
+            x_range,
+            y_range: [-10.0, 10.0],
+            outlines: vec![Outline { name: String::new(), colour: 2, points }],
+            rays,
+        };
+        Decoded::new(&cross_section(&section).unwrap())
+    }
+
+    fn circle() -> Vec<[f64; 2]> {
+        (0..2000)
+            .map(|step| (f64::from(step) * std::f64::consts::TAU / 2000.0).sin_cos())
+            .map(|(sin, cos)| [8.0 * cos, 8.0 * sin])
+            .collect()
+    }
+
+    #[test]
+    fn a_circle_is_round() {
+        for x_range in [[-10.0, 10.0], [-20.0, 60.0], [-9.0, 150.0]] {
+            let [left, top, right, bottom] =
+                section(x_range, circle(), Vec::new()).bounds(outline_colour(2));
+            assert!((right - left).abs_diff(bottom - top) <= 2, "{x_range:?}");
+        }
+    }
+
+    #[test]
+    fn very_long_scenes_are_squeezed_and_stay_tall_enough_to_be_read() {
+        let [left, top, right, bottom] =
+            section([-9.0, 991.0], circle(), Vec::new()).bounds(outline_colour(2));
+        assert!(bottom - top > 50 && right - left < 20);
+    }
+
+    #[test]
+    fn paths_end_in_the_mark_of_their_fate() {
+        let ray = |y: f64, end: RayEnd| RayPath { points: vec![[-9.0, y], [5.0, y]], end };
+        let rays = vec![ray(-4.0, RayEnd::Sensor), ray(4.0, RayEnd::Lost)];
+        let picture = section([-10.0, 10.0], Vec::new(), rays);
+        // The lines are translucent: the full colour is found in the marks only, here and in the legend.
+        let sensor = picture.places(RayEnd::Sensor.colour());
+        let lost = picture.places(RayEnd::Lost.colour());
+        assert!(sensor.len() > 20 && lost.len() > 20);
+        // The lowest places are in the plot, not in the legend.
+        let (sensor, lost) = (sensor[sensor.len() - 1], lost[lost.len() - 1]);
+        assert!(sensor.0.abs_diff(lost.0) <= 3);
+        assert!(sensor.1 > lost.1, "y grows upward");
+        assert!(picture.places(RayEnd::Absorbed.colour()).is_empty());
+    }
+}

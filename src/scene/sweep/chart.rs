@@ -1,0 +1,143 @@
+//! From the chart of one surface to the chart of the whole sweep: u around the profile, v along the path.
+
+use crate::scene::shape::{ChartRect, Shape};
+use glam::DVec2;
+
+/// How the chart of a part's shape is laid into the chart of its sweep.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum WallChart {
+    /// Shifted and scaled: `offset + scale * (u, v)`.
+    Along { offset: DVec2, scale: DVec2 },
+    /// The shape's v goes around and its u along: `offset + scale * (v, u)`.
+    Across { offset: DVec2, scale: DVec2 },
+    /// A flat trapezoid whose parallel sides are sections.
+    Trapezoid { target: ChartRect, trapezoid: Trapezoid },
+    /// A flat sector about a bend axis.
+    Sector { target: ChartRect, sector: Sector },
+}
+
+/// The corners of a trapezoid with sides at y = 0 and y = `height`, mm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Trapezoid {
+    /// First and last x of the side at y = 0.
+    pub(super) bottom: [f64; 2],
+    /// First and last x of the side at y = `height`.
+    pub(super) top: [f64; 2],
+    pub(super) height: f64,
+}
+
+/// A sector of a ring, from the x axis counter-clockwise.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sector {
+    /// Radius where the profile's edge starts and where it ends, mm.
+    pub(super) radii: [f64; 2],
+    /// Azimuth of the end of the sector, rad.
+    pub(super) angle: f64,
+    pub(super) sense: Sense,
+}
+
+/// Which way a sector's azimuth counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sense {
+    /// Along the path.
+    Forward,
+    /// Against the path.
+    Backward,
+}
+
+impl WallChart {
+    /// The sweep's (u, v) of the shape's (u, v), mm.
+    pub(crate) fn of(&self, at: DVec2) -> DVec2 {
+        match self {
+            Self::Along { offset, scale } => offset + scale * at,
+            Self::Across { offset, scale } => offset + scale * DVec2::new(at.y, at.x),
+            Self::Trapezoid { target, trapezoid } => target.at_share(trapezoid.share_of(at)),
+            Self::Sector { target, sector } => target.at_share(sector.share_of(at)),
+        }
+    }
+
+    /// The rectangle of the sweep's chart that `shape` covers, mm.
+    pub(crate) fn bounds(&self, shape: &Shape) -> ChartRect {
+        match self {
+            Self::Along { .. } | Self::Across { .. } => {
+                let own = shape.chart_bounds();
+                spanned([self.of(own.min), self.of(own.max)])
+            }
+            Self::Trapezoid { target, .. } | Self::Sector { target, .. } => *target,
+        }
+    }
+
+    /// Area of `shape` whose (u, v) in the sweep's chart lie in `rect`, mm².
+    pub(crate) fn area_in(&self, shape: &Shape, rect: ChartRect) -> f64 {
+        match self {
+            Self::Along { offset, scale } => {
+                shape.area_in(spanned([rect.min, rect.max].map(|p| (p - offset) / scale)))
+            }
+            Self::Across { offset, scale } => {
+                let corners = [rect.min, rect.max].map(|p| (p - offset) / scale);
+                shape.area_in(spanned(corners.map(|p| DVec2::new(p.y, p.x))))
+            }
+            Self::Trapezoid { target, trapezoid } => trapezoid.area_of(target.share_in(rect)),
+            Self::Sector { target, sector } => sector.area_of(target.share_in(rect)),
+        }
+    }
+}
+
+impl ChartRect {
+    /// The point at a share of the rectangle's width and height.
+    fn at_share(&self, share: DVec2) -> DVec2 {
+        self.min + share * (self.max - self.min)
+    }
+
+    /// The part of this rectangle that lies in another one, in shares of width and height; may be empty.
+    fn share_in(&self, other: ChartRect) -> ChartRect {
+        let size = self.max - self.min;
+        let common = self.intersection(&other);
+        ChartRect { min: (common.min - self.min) / size, max: (common.max - self.min) / size }
+    }
+}
+
+impl Trapezoid {
+    /// First x and width at a share of the height, mm.
+    fn side(&self, share: f64) -> (f64, f64) {
+        let [from, to] =
+            [0, 1].map(|end| self.bottom[end] + share * (self.top[end] - self.bottom[end]));
+        (from, to - from)
+    }
+
+    fn share_of(&self, at: DVec2) -> DVec2 {
+        let share = at.y / self.height;
+        let (from, width) = self.side(share);
+        DVec2::new((at.x - from) / width, share)
+    }
+
+    fn area_of(&self, share: ChartRect) -> f64 {
+        let (_, mean_width) = self.side(0.5 * (share.min.y + share.max.y));
+        share.area() * mean_width * self.height
+    }
+}
+
+impl Sector {
+    fn share_of(&self, at: DVec2) -> DVec2 {
+        // Counted from the middle, the azimuth of a sector has no jump.
+        let middle = DVec2::from_angle(0.5 * self.angle);
+        let turned = middle.perp_dot(at).atan2(middle.dot(at)) / self.angle;
+        let along = match self.sense {
+            Sense::Forward => 0.5 + turned,
+            Sense::Backward => 0.5 - turned,
+        };
+        let [first, last] = self.radii;
+        DVec2::new((at.length() - first) / (last - first), along)
+    }
+
+    fn area_of(&self, share: ChartRect) -> f64 {
+        let [first, last] = self.radii;
+        let mean_radius = first + 0.5 * (share.min.x + share.max.x) * (last - first);
+        share.area() * (last - first).abs() * mean_radius * self.angle
+    }
+}
+
+/// The rectangle between two opposite corners in any order.
+fn spanned([a, b]: [DVec2; 2]) -> ChartRect {
+    ChartRect { min: a.min(b), max: a.max(b) }
+}

@@ -1,0 +1,54 @@
+//! Which parts continue each other without an edge.
+
+use crate::scene::sweep::path::{Form, Piece};
+use glam::DVec2;
+
+/// The numbers of the smooth surfaces that the walls of a sweep belong to, as the path goes on.
+pub(super) struct Smooth {
+    /// One for each wall.
+    ids: Vec<u32>,
+    next: u32,
+    /// Growth of the scale per length of the piece before, 1/mm; `None` at the entry.
+    growth: Option<f64>,
+}
+
+impl Smooth {
+    pub(super) fn new(walls: usize) -> Self {
+        Self { ids: (0u32..).take(walls).collect(), next: walls as u32, growth: None }
+    }
+
+    /// Goes on to the next piece. `turns(wall, toward)` says whether a corner toward an azimuth changes the direction of a
+    /// wall; the walls along the plane of the corner go through it.
+    pub(super) fn enter(&mut self, piece: &Piece, turns: impl Fn(usize, DVec2) -> bool) {
+        let growth = match &piece.form {
+            Form::Corner { toward, .. } => {
+                for wall in 0..self.ids.len() {
+                    if turns(wall, *toward) {
+                        self.ids[wall] = self.fresh();
+                    }
+                }
+                return;
+            }
+            Form::Taper { length, end_scale } => (end_scale - piece.start.scale) / length,
+            Form::Prism { .. } | Form::Bend { .. } => 0.0,
+        };
+        let before = self.growth.replace(growth).unwrap_or(growth);
+        // Equal but for rounding: two legs of one cone.
+        if (growth - before).abs() > 1e-9 * growth.abs().max(before.abs()) {
+            for wall in 0..self.ids.len() {
+                self.ids[wall] = self.fresh();
+            }
+        }
+    }
+
+    /// The number of a wall on the present piece.
+    pub(super) fn id(&self, wall: usize) -> u32 {
+        self.ids[wall]
+    }
+
+    /// A number of its own.
+    pub(super) fn fresh(&mut self) -> u32 {
+        self.next += 1;
+        self.next - 1
+    }
+}

@@ -1,0 +1,109 @@
+//! The layer order of the crate: a module uses only modules of lower layers, and children never reach for `super::`.
+
+use std::path::{Path, PathBuf};
+
+/// Layers from the bottom up; modules of one layer do not see each other, but for the foundation's own order.
+const LAYERS: &[&[&str]] = &[
+    &["error"],
+    &["units", "math", "rng", "tally"],
+    &["formats"],
+    &["optics"],
+    &["scene"],
+    &["input", "transport"],
+    &["measure"],
+    &["report"],
+    &["pipeline"],
+    &["cli"],
+    &["main"],
+];
+
+fn layer(module: &str) -> Option<usize> {
+    LAYERS.iter().position(|layer| layer.contains(&module))
+}
+
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            files.extend(sources(&path));
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            files.push(path);
+        }
+    }
+    files.sort();
+    files
+}
+
+/// Lines of a file before its tests, comments left out.
+fn code(path: &Path) -> Vec<(usize, String)> {
+    let text = std::fs::read_to_string(path).unwrap();
+    text.lines()
+        .enumerate()
+        .take_while(|(_, line)| !line.starts_with("#[cfg(test)]"))
+        .map(|(number, line)| (number + 1, line.split("//").next().unwrap_or_default().to_owned()))
+        .collect()
+}
+
+/// The top-level module that a source file belongs to.
+fn module_of(path: &Path, root: &Path) -> String {
+    let relative = path.strip_prefix(root).unwrap();
+    let first = relative.components().next().unwrap();
+    Path::new(first.as_os_str()).file_stem().unwrap().to_string_lossy().into_owned()
+}
+
+#[test]
+fn modules_use_only_lower_layers() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut wrong = Vec::new();
+    for path in sources(&root) {
+        let module = module_of(&path, &root);
+        if module == "lib" {
+            continue;
+        }
+        let Some(own) = layer(&module) else {
+            wrong.push(format!("{}: module `{module}` has no layer", path.display()));
+            continue;
+        };
+        for (line, text) in code(&path) {
+            for used in text.split("crate::").skip(1) {
+                let name: String = used.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+                if let Some(other) = layer(&name)
+                    && name != module
+                    && other >= own
+                {
+                    wrong.push(format!("{}:{line}: `{module}` uses `{name}`", path.display()));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "upward imports:\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn children_do_not_reach_up() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut wrong = Vec::new();
+    for path in sources(&root) {
+        for (line, text) in code(&path) {
+            // `pub(super)` names a visibility, not a path.
+            if text.contains("super::") {
+                wrong.push(format!("{}:{line}", path.display()));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "`super::` outside tests:\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn every_scene_has_a_report_and_a_check() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for entry in std::fs::read_dir(root.join("scenes")).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|extension| extension == "toml") {
+            let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+            assert!(root.join("reports").join(&name).join("report.md").is_file(), "no report of {name}");
+            assert!(std::fs::read_to_string(&path).unwrap().contains("[[check]]"), "no check in {name}");
+        }
+    }
+}

@@ -5,10 +5,9 @@
 //! a hair beyond an edge is still caught. Of the surface the ray starts on, the root at the start is no root.
 //! Surfaces within [`Scene::tolerance`] of the nearest hit are one event.
 
-use crate::scene::shape::{Crossing, Start, Toward};
 use crate::scene::mesh::Line;
-use crate::scene::pieces::Surface;
-use crate::scene::{Inside, Owner, PrimId, Ray, Scene};
+use crate::scene::shape::{Crossing, Start, Toward};
+use crate::scene::{Accel, FaceId, Inside, Owner, PrimId, Ray, Scene, SolidId};
 use smallvec::SmallVec;
 
 /// One of the surfaces met at a hit.
@@ -16,6 +15,8 @@ use smallvec::SmallVec;
 pub struct PrimHit {
     /// Which surface.
     pub prim: PrimId,
+    /// Its face.
+    pub face: FaceId,
     /// What its face belongs to.
     pub owner: Owner,
     /// Distance along the ray, mm.
@@ -41,21 +42,36 @@ impl Hits {
         &self.0
     }
 
-    /// Takes in a candidate: keeps those within `tolerance` of the nearest, the nearest first.
+    /// Whether a face of `solid` is among them.
     #[inline]
-    fn offer(&mut self, hit: PrimHit, tolerance: f64) {
-        let Some(nearest) = self.0.first().map(|first| first.t) else {
-            self.0.push(hit);
-            return;
-        };
-        if hit.t > nearest + tolerance {
-            return;
+    pub fn meet(&self, solid: SolidId) -> bool {
+        self.0.iter().any(|hit| hit.owner == Owner::Solid(solid))
+    }
+
+    /// Takes a path through all of them.
+    #[inline]
+    pub fn cross(&self, inside: &mut Inside) {
+        for hit in &self.0 {
+            if let Owner::Solid(solid) = hit.owner {
+                match hit.toward {
+                    Toward::Front => inside.leave(solid),
+                    Toward::Back => inside.enter(solid),
+                }
+            }
         }
-        if hit.t < nearest {
-            self.0.retain(|kept| kept.t <= hit.t + tolerance);
-            self.0.insert(0, hit);
-        } else {
-            self.0.push(hit);
+    }
+
+    /// Takes in a candidate within [`Self::limit`]: keeps those within `tolerance` of the nearest, the nearest first.
+    #[inline]
+    fn take(&mut self, hit: PrimHit, tolerance: f64) {
+        match self.0.as_mut_slice() {
+            // Usually a nearer surface puts the only one so far out of reach.
+            [only] if only.t > hit.t + tolerance => *only = hit,
+            [first, ..] if hit.t < first.t => {
+                self.0.retain(|kept| kept.t <= hit.t + tolerance);
+                self.0.insert(0, hit);
+            }
+            _ => self.0.push(hit),
         }
     }
 
@@ -67,23 +83,47 @@ impl Hits {
 }
 
 impl Scene {
-    /// What a ray meets next that starts on the surfaces `from`, inside the solids `inside`.
+    /// What a ray meets next that starts on the surfaces `from`, inside the solids `inside`; `hits` is filled anew,
+    /// in place.
     #[inline]
-    pub fn next_hit(&self, ray: &Ray, from: &[PrimId], inside: &Inside) -> Hits {
-        let mut hits = Hits::default();
-        let line = self.line(ray);
-        self.accel.visit(ray, |index| {
-            let prim = PrimId::new(index);
-            let start = if from.contains(&prim) { Start::On } else { Start::Elsewhere };
-            self.crossings(prim, ray, line.as_ref(), start, |owner, crossing| {
-                if self.counts(owner, crossing, inside) {
-                    let Crossing { t, toward } = crossing;
-                    hits.offer(PrimHit { prim, owner, t, toward }, self.tolerance);
+    pub fn find_next(&self, ray: &Ray, from: &[PrimId], inside: &Inside, hits: &mut Hits) {
+        hits.0.clear();
+        match &self.accel {
+            Accel::Scan(count) => {
+                for index in 0..*count {
+                    self.meet(PrimId::new(index), ray, None, from, inside, hits);
                 }
-            });
-            hits.limit(self.tolerance)
+            }
+            Accel::Tree(tree) => {
+                let line = self.line(ray);
+                tree.visit(ray, |index| {
+                    self.meet(PrimId::new(index), ray, line.as_ref(), from, inside, hits);
+                    hits.limit(self.tolerance)
+                });
+            }
+        }
+    }
+
+    /// Adds the crossings of a ray with a surface that count and are no farther than the nearest so far.
+    #[inline(always)]
+    fn meet(
+        &self,
+        prim: PrimId,
+        ray: &Ray,
+        line: Option<&Line>,
+        from: &[PrimId],
+        inside: &Inside,
+        hits: &mut Hits,
+    ) {
+        let start = if from.contains(&prim) { Start::On } else { Start::Elsewhere };
+        let surface = self.surface(prim);
+        surface.crossings(ray, line, start, |crossing| {
+            let Crossing { t, toward } = crossing;
+            if t <= hits.limit(self.tolerance) && self.counts(surface.owner(), crossing, inside) {
+                let (face, owner) = (surface.face(), surface.owner());
+                hits.take(PrimHit { prim, face, owner, t, toward }, self.tolerance);
+            }
         });
-        hits
     }
 
     /// The solids in which a path finds itself just ahead of its start (`Toward::Front` of the start) or just behind.
@@ -97,8 +137,9 @@ impl Scene {
         };
         let line = self.line(ray);
         self.accel.visit(ray, |index| {
-            self.crossings(PrimId::new(index), ray, line.as_ref(), Start::Elsewhere, |owner, crossing| {
-                if let Owner::Solid(solid) = owner {
+            let surface = self.surface(PrimId::new(index));
+            surface.crossings(ray, line.as_ref(), Start::Elsewhere, |crossing| {
+                if let Owner::Solid(solid) = surface.owner() {
                     let slot = &mut nearest[solid.index()];
                     if crossing.t > beyond && crossing.t < slot.0 {
                         *slot = (crossing.t, crossing.toward);
@@ -120,7 +161,8 @@ impl Scene {
         let line = self.line(ray);
         self.accel.visit(ray, |index| {
             let prim = PrimId::new(index);
-            self.crossings(prim, ray, line.as_ref(), Start::Elsewhere, |_, crossing| visit(prim, crossing));
+            let visit = |crossing| visit(prim, crossing);
+            self.surface(prim).crossings(ray, line.as_ref(), Start::Elsewhere, visit);
             f64::INFINITY
         });
     }
@@ -129,29 +171,6 @@ impl Scene {
     #[inline]
     fn line(&self, ray: &Ray) -> Option<Line> {
         (!self.meshes.is_empty()).then(|| Line::of(ray))
-    }
-
-    /// Every crossing of a ray's line with a surface. A triangle is never met again from itself.
-    #[inline]
-    fn crossings(
-        &self,
-        prim: PrimId,
-        ray: &Ray,
-        line: Option<&Line>,
-        start: Start,
-        mut visit: impl FnMut(Owner, Crossing),
-    ) {
-        match (self.surface(prim), line) {
-            (Surface::Patch(patch), _) => {
-                patch.shape.crossings(ray, start, |crossing| visit(patch.owner, crossing));
-            }
-            (Surface::Triangle(body, triangle), Some(line)) if start == Start::Elsewhere => {
-                if let Some(crossing) = body.mesh.crossing_of(triangle, line) {
-                    visit(body.owner, crossing);
-                }
-            }
-            (Surface::Triangle(..), _) => {}
-        }
     }
 
     #[inline]

@@ -1,7 +1,9 @@
 //! Questions about surfaces, whether they are analytic patches or triangles of a mesh.
 
 use crate::math::Frame;
-use crate::scene::shape::{ChartRect, Region, Shape};
+use crate::scene::Ray;
+use crate::scene::mesh::Line;
+use crate::scene::shape::{ChartRect, Crossing, Region, Shape, Start};
 use crate::scene::{Extent, FaceId, MeshBody, Owner, Patch, PrimId, Scene};
 use glam::{DVec2, DVec3};
 
@@ -12,6 +14,47 @@ pub(crate) enum Surface<'s> {
     Patch(&'s Patch),
     /// A triangle of a mesh, by its number there.
     Triangle(&'s MeshBody, usize),
+}
+
+impl Surface<'_> {
+    /// The face that it belongs to.
+    #[inline]
+    pub(crate) fn face(self) -> FaceId {
+        match self {
+            Self::Patch(patch) => patch.face,
+            Self::Triangle(body, triangle) => body.faces[body.mesh.face_of(triangle)],
+        }
+    }
+
+    /// What its face belongs to.
+    #[inline]
+    pub(crate) fn owner(self) -> Owner {
+        match self {
+            Self::Patch(patch) => patch.owner,
+            Self::Triangle(body, _) => body.owner,
+        }
+    }
+
+    /// Every crossing of a ray's line; `line` is that of the ray where there are triangles.
+    /// A triangle is never met again from itself.
+    #[inline]
+    pub(crate) fn crossings(
+        self,
+        ray: &Ray,
+        line: Option<&Line>,
+        start: Start,
+        mut visit: impl FnMut(Crossing),
+    ) {
+        match (self, line) {
+            (Self::Patch(patch), _) => patch.shape.crossings(ray, start, visit),
+            (Self::Triangle(body, triangle), Some(line)) if start == Start::Elsewhere => {
+                if let Some(crossing) = body.mesh.crossing_of(triangle, line) {
+                    visit(crossing);
+                }
+            }
+            (Self::Triangle(..), _) => {}
+        }
+    }
 }
 
 impl Scene {
@@ -34,10 +77,7 @@ impl Scene {
     /// The face that a surface belongs to.
     #[inline]
     pub fn face_of(&self, prim: PrimId) -> FaceId {
-        match self.surface(prim) {
-            Surface::Patch(patch) => patch.face,
-            Surface::Triangle(body, triangle) => body.faces[body.mesh.face_of(triangle)],
-        }
+        self.surface(prim).face()
     }
 
     /// Unit normal of the front at a point of a surface: of the triangle itself, for a mesh.

@@ -121,7 +121,7 @@ impl<'r, 's> Counter<'r, 's> {
             Event::Arrive(vertex) => self.arrive(path, vertex),
             Event::Depart(vertex, departure) => self.depart(path, vertex, departure),
             Event::Absorbed(vertex) => {
-                let face = self.acting_face(vertex);
+                let face = vertex.interface.acting.face;
                 self.add(layout.absorbed_by_face(face), vertex.throughput);
             }
             Event::Roulette(lost) => self.add(layout.roulette(), lost),
@@ -228,7 +228,7 @@ impl<'r, 's> Counter<'r, 's> {
 
     #[inline]
     fn depart(&mut self, path: &Path, vertex: &Vertex<'_>, departure: &Departure) {
-        let face = self.acting_face(vertex);
+        let face = vertex.interface.acting.face;
         let absorbed = vertex.throughput - departure.throughput;
         if absorbed > 0.0 {
             self.add(self.run.layout.absorbed_by_face(face), absorbed);
@@ -245,7 +245,7 @@ impl<'r, 's> Counter<'r, 's> {
         if transmitted {
             for hit in vertex.hits.all() {
                 if let (Owner::Solid(_), Toward::Front) = (hit.owner, hit.toward) {
-                    self.last_left = Some(self.run.scene.face_of(hit.prim));
+                    self.last_left = Some(hit.face);
                 }
             }
         }
@@ -267,7 +267,7 @@ impl<'r, 's> Counter<'r, 's> {
     ) {
         let run = self.run;
         for hit in vertex.hits.all() {
-            let face = run.scene.face_of(hit.prim).index();
+            let face = hit.face.index();
             if side == Some(Side::Transmitted) && hit.toward == Toward::Back {
                 for id in &run.watch.entries[face] {
                     self.add(run.layout.entering(*id), throughput);
@@ -359,11 +359,6 @@ impl<'r, 's> Counter<'r, 's> {
             self.trail.pop();
         }
         self.trail.push((!full).then_some(step));
-    }
-
-    #[inline]
-    fn acting_face(&self, vertex: &Vertex<'_>) -> FaceId {
-        self.run.scene.face_of(vertex.interface.acting.prim)
     }
 
     #[inline]

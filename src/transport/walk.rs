@@ -85,8 +85,9 @@ pub fn walk(
     sampler: &mut Sampler,
     mut visit: impl FnMut(&Path, Event<'_>) -> ControlFlow<()>,
 ) {
+    let mut hits = Hits::default();
     loop {
-        let hits = scene.next_hit(&path.ray, &path.on, &path.inside);
+        scene.find_next(&path.ray, &path.on, &path.inside, &mut hits);
         let length = hits.distance().unwrap_or(f64::INFINITY);
         let medium = &scene.media[path.medium.index()];
         let arriving = path.throughput * medium.transmittance(path.wavelength, length);
@@ -159,15 +160,17 @@ fn bounce(
             out
         }
     };
-    path.on.clear();
-    path.on.extend(hits.all().iter().map(|hit| hit.prim));
+    match (path.on.as_mut_slice(), hits.all()) {
+        ([on], [hit]) => *on = hit.prim,
+        _ => path.on = hits.all().iter().map(|hit| hit.prim).collect(),
+    }
     path.ray = Ray::new(vertex.point, out.dir);
     path.throughput *= out.factor;
     let departure = Departure { dir: path.ray.dir(), throughput: path.throughput, side: out.side };
     visit(path, Event::Depart(&vertex, &departure))?;
     if out.side == Side::Transmitted {
         path.medium = interface.to;
-        path.inside = interface.beyond;
+        hits.cross(&mut path.inside);
     }
     ControlFlow::Continue(())
 }

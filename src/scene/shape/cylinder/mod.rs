@@ -3,7 +3,7 @@
 
 mod unrolled;
 
-use crate::math::{Aabb, Frame, quadratic};
+use crate::math::{Aabb, Frame, quadratic, unit};
 use crate::scene::Ray;
 use crate::scene::shape::wedge::{Wedge, arc_bounds, azimuth, point_on_circle, turn};
 use crate::scene::shape::{ChartRect, Crossing, HalfSpace, Start, Toward};
@@ -122,7 +122,7 @@ impl Cylinder {
     #[inline]
     pub(super) fn normal(&self, p: DVec3) -> DVec3 {
         let from = p - self.frame.origin;
-        let outward = (from - from.dot(self.frame.z) * self.frame.z).normalize();
+        let outward = unit((1.0 / self.radius) * (from - from.dot(self.frame.z) * self.frame.z));
         match self.leaving {
             Toward::Front => outward,
             Toward::Back => -outward,

@@ -36,14 +36,16 @@ impl Scene {
     #[inline]
     pub fn interface(&self, hits: &Hits, inside: &Inside, from: MediumId) -> Interface {
         let to = self.medium_beyond(hits, inside, from);
-        let mut acting = hits.all()[0];
-        let mut finish = None;
-        let mut best = None;
-        for hit in hits.all() {
-            let declared = self.declared_finish(hit);
-            let rank = self.rank(hit, hits, inside).map(|rank| (declared.is_some(), rank));
-            if rank > best {
-                (best, acting, finish) = (rank, *hit, declared);
+        let claim = |hit: &PrimHit| {
+            let finish = self.declared_finish(hit);
+            (self.rank(hit, hits, inside).map(|rank| (finish.is_some(), rank)), *hit, finish)
+        };
+        let (first, others) = hits.first_and_others();
+        let (mut best, mut acting, mut finish) = claim(first);
+        for hit in others {
+            let other = claim(hit);
+            if other.0 > best {
+                (best, acting, finish) = other;
             }
         }
         let passes = finish.is_none() && (from == to || self.same_index(from, to));

@@ -6,8 +6,9 @@
 //! Surfaces within [`Scene::tolerance`] of the nearest hit are one event.
 
 use crate::scene::mesh::Line;
-use crate::scene::shape::{Crossing, Start, Toward};
-use crate::scene::{Accel, FaceId, Inside, Owner, PrimId, Ray, Scene, SolidId};
+use crate::scene::shape::{Crossing, Start, Toward, Wanted};
+use crate::scene::accel::{Accel, Tree};
+use crate::scene::{FaceId, Inside, Owner, PrimId, Ray, Scene, SolidId};
 use smallvec::SmallVec;
 
 /// One of the surfaces met at a hit.
@@ -27,7 +28,7 @@ pub struct PrimHit {
 
 /// The nearest hit: all surfaces at one place.
 #[derive(Debug, Clone, Default)]
-pub struct Hits(SmallVec<[PrimHit; 2]>);
+pub struct Hits(SmallVec<[PrimHit; 1]>);
 
 impl Hits {
     /// Distance to the place, mm; `None` when nothing is hit. Never negative.
@@ -40,6 +41,12 @@ impl Hits {
     #[inline]
     pub fn all(&self) -> &[PrimHit] {
         &self.0
+    }
+
+    /// The nearest of at least one surface, and the others.
+    #[inline]
+    pub(crate) fn first_and_others(&self) -> (&PrimHit, &[PrimHit]) {
+        self.0.split_first().expect("a ray that meets nothing makes no interface")
     }
 
     /// Whether a face of `solid` is among them.
@@ -60,70 +67,133 @@ impl Hits {
             }
         }
     }
+}
 
-    /// Takes in a candidate within [`Self::limit`]: keeps those within `tolerance` of the nearest, the nearest first.
+/// The search for the nearest hit.
+#[derive(Debug, Clone, Copy)]
+struct Nearest {
+    prim: PrimId,
+    crossing: Crossing,
+    /// Distance of the next one, as far as it was seen, mm.
+    runner_up: f64,
+}
+
+impl Nearest {
+    const NONE: Self = Self {
+        prim: PrimId::new(0),
+        crossing: Crossing { t: f64::INFINITY, toward: Toward::Front },
+        runner_up: f64::INFINITY,
+    };
+
     #[inline]
-    fn take(&mut self, hit: PrimHit, tolerance: f64) {
-        match self.0.as_mut_slice() {
-            // Usually a nearer surface puts the only one so far out of reach.
-            [only] if only.t > hit.t + tolerance => *only = hit,
-            [first, ..] if hit.t < first.t => {
-                self.0.retain(|kept| kept.t <= hit.t + tolerance);
-                self.0.insert(0, hit);
-            }
-            _ => self.0.push(hit),
+    fn consider(&mut self, prim: PrimId, crossing: Crossing) {
+        if crossing.t < self.crossing.t {
+            *self = Self { prim, crossing, runner_up: self.crossing.t };
+        } else {
+            self.runner_up = self.runner_up.min(crossing.t);
         }
-    }
-
-    /// Beyond this distance nothing can matter any more, mm.
-    #[inline]
-    fn limit(&self, tolerance: f64) -> f64 {
-        self.0.first().map_or(f64::INFINITY, |first| first.t + tolerance)
     }
 }
 
 impl Scene {
-    /// What a ray meets next that starts on the surfaces `from`, inside the solids `inside`; `hits` is filled anew,
-    /// in place.
-    #[inline]
-    pub fn find_next(&self, ray: &Ray, from: &[PrimId], inside: &Inside, hits: &mut Hits) {
+    /// What a ray meets next that starts on the surfaces `from`, inside the solids `inside`: fills `hits` anew and
+    /// returns the distance, mm; infinite when nothing is hit, never negative.
+    #[inline(always)]
+    pub fn find_next(&self, ray: &Ray, from: &[PrimId], inside: &Inside, hits: &mut Hits) -> f64 {
         hits.0.clear();
-        match &self.accel {
-            Accel::Scan(count) => {
-                for index in 0..*count {
-                    self.meet(PrimId::new(index), ray, None, from, inside, hits);
-                }
-            }
-            Accel::Tree(tree) => {
-                let line = self.line(ray);
-                tree.visit(ray, |index| {
-                    self.meet(PrimId::new(index), ray, line.as_ref(), from, inside, hits);
-                    hits.limit(self.tolerance)
-                });
+        let nearest = match &self.accel {
+            Accel::Scan(_) => self.nearest_by_scan(ray, from, inside),
+            Accel::Tree(tree) => self.nearest_in_tree(tree, ray, from, inside),
+        };
+        let Nearest { prim, crossing, runner_up } = nearest;
+        if crossing.t < f64::INFINITY {
+            hits.0.push(self.hit(prim, crossing));
+            if runner_up <= crossing.t + self.tolerance {
+                self.find_others(ray, from, inside, hits);
             }
         }
+        crossing.t.max(0.0)
     }
 
-    /// Adds the crossings of a ray with a surface that count and are no farther than the nearest so far.
     #[inline(always)]
-    fn meet(
+    fn nearest_by_scan(&self, ray: &Ray, from: &[PrimId], inside: &Inside) -> Nearest {
+        let mut nearest = Nearest::NONE;
+        for (index, patch) in self.patches.iter().enumerate() {
+            let prim = PrimId::new(index);
+            let limit = nearest.crossing.t + self.tolerance;
+            let Some(wanted) = self.wanted(patch.owner, inside, limit) else { continue };
+            if let Some(crossing) = patch.shape.first_crossing(ray, start_on(prim, from), &wanted) {
+                nearest.consider(prim, crossing);
+            }
+        }
+        nearest
+    }
+
+    fn nearest_in_tree(&self, tree: &Tree, ray: &Ray, from: &[PrimId], inside: &Inside) -> Nearest {
+        let line = self.line(ray);
+        let mut nearest = Nearest::NONE;
+        tree.visit(ray, |index| {
+            let prim = PrimId::new(index);
+            let limit = nearest.crossing.t + self.tolerance;
+            if let Some(crossing) = self.crossing(prim, ray, line.as_ref(), from, inside, limit) {
+                nearest.consider(prim, crossing);
+            }
+            nearest.crossing.t + self.tolerance
+        });
+        nearest
+    }
+
+    /// Adds the other surfaces at the place of the nearest hit.
+    #[cold]
+    fn find_others(&self, ray: &Ray, from: &[PrimId], inside: &Inside, hits: &mut Hits) {
+        let nearest = hits.0[0];
+        let limit = nearest.t + self.tolerance;
+        let line = self.line(ray);
+        self.accel.visit(ray, |index| {
+            let prim = PrimId::new(index);
+            if prim != nearest.prim {
+                let crossing = self.crossing(prim, ray, line.as_ref(), from, inside, limit);
+                hits.0.extend(crossing.map(|crossing| self.hit(prim, crossing)));
+            }
+            limit
+        });
+        hits.0[1..].sort_unstable_by_key(|hit| hit.prim);
+    }
+
+    /// The first crossing of a ray with a surface that counts, up to a distance.
+    #[inline]
+    fn crossing(
         &self,
         prim: PrimId,
         ray: &Ray,
         line: Option<&Line>,
         from: &[PrimId],
         inside: &Inside,
-        hits: &mut Hits,
-    ) {
-        let start = if from.contains(&prim) { Start::On } else { Start::Elsewhere };
+        limit: f64,
+    ) -> Option<Crossing> {
         let surface = self.surface(prim);
-        surface.crossings(ray, line, start, |crossing| {
-            let Crossing { t, toward } = crossing;
-            if t <= hits.limit(self.tolerance) && self.counts(surface.owner(), crossing, inside) {
-                let (face, owner) = (surface.face(), surface.owner());
-                hits.take(PrimHit { prim, face, owner, t, toward }, self.tolerance);
+        let wanted = self.wanted(surface.owner(), inside, limit)?;
+        surface.first_crossing(ray, line, start_on(prim, from), &wanted)
+    }
+
+    /// Which crossings count: of a solid, those whose orientation fits.
+    #[inline]
+    fn wanted(&self, owner: Owner, inside: &Inside, max: f64) -> Option<Wanted> {
+        let (toward, min) = match owner {
+            Owner::Solid(solid) if inside.contains(solid) => {
+                (Some(Toward::Front), -self.tolerance)
             }
-        });
+            Owner::Solid(_) => (Some(Toward::Back), -self.tolerance),
+            Owner::Sheet => (None, 0.0f64.next_up()),
+            Owner::Port => return None,
+        };
+        Some(Wanted { toward, min, max })
+    }
+
+    #[inline]
+    fn hit(&self, prim: PrimId, Crossing { t, toward }: Crossing) -> PrimHit {
+        let surface = self.surface(prim);
+        PrimHit { prim, face: surface.face(), owner: surface.owner(), t, toward }
     }
 
     /// The solids in which a path finds itself just ahead of its start (`Toward::Front` of the start) or just behind.
@@ -172,18 +242,12 @@ impl Scene {
     fn line(&self, ray: &Ray) -> Option<Line> {
         (!self.meshes.is_empty()).then(|| Line::of(ray))
     }
+}
 
-    #[inline]
-    fn counts(&self, owner: Owner, crossing: Crossing, inside: &Inside) -> bool {
-        match owner {
-            Owner::Solid(solid) => {
-                crossing.t >= -self.tolerance
-                    && inside.contains(solid) == (crossing.toward == Toward::Front)
-            }
-            Owner::Sheet => crossing.t > 0.0,
-            Owner::Port => false,
-        }
-    }
+/// Whether a ray that starts on the surfaces `from` starts on this one.
+#[inline]
+fn start_on(prim: PrimId, from: &[PrimId]) -> Start {
+    if from.contains(&prim) { Start::On } else { Start::Elsewhere }
 }
 
 /// On which side of its start point a path is asked about.

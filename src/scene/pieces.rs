@@ -3,7 +3,7 @@
 use crate::math::Frame;
 use crate::scene::Ray;
 use crate::scene::mesh::Line;
-use crate::scene::shape::{ChartRect, Crossing, Region, Shape, Start};
+use crate::scene::shape::{ChartRect, Crossing, Region, Shape, Start, Wanted};
 use crate::scene::{Extent, FaceId, MeshBody, Owner, Patch, PrimId, Scene};
 use glam::{DVec2, DVec3};
 
@@ -36,23 +36,46 @@ impl Surface<'_> {
     }
 
     /// Every crossing of a ray's line; `line` is that of the ray where there are triangles.
-    /// A triangle is never met again from itself.
-    #[inline]
     pub(crate) fn crossings(
         self,
         ray: &Ray,
         line: Option<&Line>,
         start: Start,
-        mut visit: impl FnMut(Crossing),
+        visit: impl FnMut(Crossing),
     ) {
-        match (self, line) {
-            (Self::Patch(patch), _) => patch.shape.crossings(ray, start, visit),
-            (Self::Triangle(body, triangle), Some(line)) if start == Start::Elsewhere => {
-                if let Some(crossing) = body.mesh.crossing_of(triangle, line) {
-                    visit(crossing);
-                }
+        match self {
+            Self::Patch(patch) => patch.shape.crossings(ray, start, visit),
+            Self::Triangle(body, triangle) => {
+                body.crossing(triangle, line, start).into_iter().for_each(visit);
             }
-            (Self::Triangle(..), _) => {}
+        }
+    }
+
+    /// The first crossing of a ray's line that is `wanted`.
+    #[inline]
+    pub(crate) fn first_crossing(
+        self,
+        ray: &Ray,
+        line: Option<&Line>,
+        start: Start,
+        wanted: &Wanted,
+    ) -> Option<Crossing> {
+        match self {
+            Self::Patch(patch) => patch.shape.first_crossing(ray, start, wanted),
+            Self::Triangle(body, triangle) => {
+                body.crossing(triangle, line, start).filter(|crossing| wanted.includes(crossing))
+            }
+        }
+    }
+}
+
+impl MeshBody {
+    /// Where a line crosses a triangle; never the one that it starts from.
+    #[inline]
+    fn crossing(&self, triangle: usize, line: Option<&Line>, start: Start) -> Option<Crossing> {
+        match start {
+            Start::On => None,
+            Start::Elsewhere => self.mesh.crossing_of(triangle, line?),
         }
     }
 }
@@ -89,12 +112,16 @@ impl Scene {
         }
     }
 
-    /// Unit normal of the surface that a mesh stands for, interpolated; `None` where the surface itself is exact.
+    /// The same, and of a mesh also the unit normal of the surface that it stands for, interpolated; `None` where the
+    /// surface itself is exact.
     #[inline]
-    pub fn shading_normal(&self, prim: PrimId, point: DVec3) -> Option<DVec3> {
+    pub fn normals(&self, prim: PrimId, point: DVec3) -> (DVec3, Option<DVec3>) {
         match self.surface(prim) {
-            Surface::Patch(_) => None,
-            Surface::Triangle(body, triangle) => Some(body.mesh.shading_normal(triangle, point)),
+            Surface::Patch(patch) => (patch.shape.normal(point), None),
+            Surface::Triangle(body, triangle) => {
+                let shading = body.mesh.shading_normal(triangle, point);
+                (body.mesh.facet_normal(triangle), Some(shading))
+            }
         }
     }
 

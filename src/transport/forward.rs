@@ -6,7 +6,7 @@
 use crate::optics::Side;
 use crate::rng::Sampler;
 use crate::scene::shape::{Crossing, Start, Toward};
-use crate::scene::{Counts, FaceId, Owner, Scene, SensorId, SourceId, SurfaceSensor};
+use crate::scene::{Counts, FaceId, Owner, PrimHit, Scene, SensorId, SourceId, SurfaceSensor};
 use crate::transport::readings::{SensorReading, Step, Trail};
 use crate::transport::watch::{OnPort, Watch};
 use crate::transport::{
@@ -59,8 +59,7 @@ impl<'s> Forward<'s> {
                 index += 1;
             }
         }
-        counter.readings.close_batch();
-        counter.readings
+        counter.finish()
     }
 }
 
@@ -75,6 +74,8 @@ fn shares(scene: &Scene, batch_paths: u64) -> Vec<u64> {
 struct Counter<'r, 's> {
     run: &'r Forward<'s>,
     readings: Readings,
+    /// The scalars of the readings, until it is finished.
+    sums: Vec<f64>,
     /// Flux of the photon being traced at throughput 1, lm or W.
     flux: f64,
     source: SourceId,
@@ -84,9 +85,10 @@ struct Counter<'r, 's> {
 }
 
 impl<'r, 's> Counter<'r, 's> {
-    fn new(run: &'r Forward<'s>, readings: Readings) -> Self {
+    fn new(run: &'r Forward<'s>, mut readings: Readings) -> Self {
         Self {
             run,
+            sums: std::mem::take(&mut readings.groups[0].sums),
             readings,
             flux: 0.0,
             source: SourceId::new(0),
@@ -94,6 +96,12 @@ impl<'r, 's> Counter<'r, 's> {
             trail: Trail::new(),
             last_left: None,
         }
+    }
+
+    fn finish(mut self) -> Readings {
+        self.readings.groups[0].sums = self.sums;
+        self.readings.close_batch();
+        self.readings
     }
 
     fn trace(&mut self, source: SourceId, flux: f64, index: u64) {
@@ -265,24 +273,39 @@ impl<'r, 's> Counter<'r, 's> {
         throughput: f64,
         side: Option<Side>,
     ) {
-        let run = self.run;
         for hit in vertex.hits.all() {
-            let face = hit.face.index();
-            if side == Some(Side::Transmitted) && hit.toward == Toward::Back {
-                for id in &run.watch.entries[face] {
-                    self.add(run.layout.entering(*id), throughput);
-                }
+            if self.run.watch.watched[hit.face.index()] {
+                self.on_face(path, vertex.point, hit, counts, dir, throughput, side);
             }
-            for &(id, sensor) in
-                run.watch.faces[face].iter().filter(|(_, sensor)| sensor.counts == counts)
-            {
-                let normal = run.scene.normal(hit.prim, vertex.point);
-                // Light is reflected to the side it came from: its direction tells the side it leaves to.
-                let toward = if side.is_none() { hit.toward } else { Toward::of(dir, normal) };
-                let seen = Seen { counts, toward, point: vertex.point, dir };
-                let uv = run.scene.chart(hit.prim, vertex.point);
-                self.count_on_surface(path, id, sensor, uv, &seen, throughput);
+        }
+    }
+
+    fn on_face(
+        &mut self,
+        path: &Path,
+        point: DVec3,
+        hit: &PrimHit,
+        counts: Counts,
+        dir: DVec3,
+        throughput: f64,
+        side: Option<Side>,
+    ) {
+        let run = self.run;
+        let face = hit.face.index();
+        if side == Some(Side::Transmitted) && hit.toward == Toward::Back {
+            for id in &run.watch.entries[face] {
+                self.add(run.layout.entering(*id), throughput);
             }
+        }
+        for &(id, sensor) in
+            run.watch.faces[face].iter().filter(|(_, sensor)| sensor.counts == counts)
+        {
+            let normal = run.scene.normal(hit.prim, point);
+            // Light is reflected to the side it came from: its direction tells the side it leaves to.
+            let toward = if side.is_none() { hit.toward } else { Toward::of(dir, normal) };
+            let seen = Seen { counts, toward, point, dir };
+            let uv = run.scene.chart(hit.prim, point);
+            self.count_on_surface(path, id, sensor, uv, &seen, throughput);
         }
     }
 
@@ -363,7 +386,7 @@ impl<'r, 's> Counter<'r, 's> {
 
     #[inline]
     fn add(&mut self, slot: usize, throughput: f64) {
-        self.readings.groups[0].sums[slot] += self.flux * throughput;
+        self.sums[slot] += self.flux * throughput;
     }
 }
 

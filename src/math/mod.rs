@@ -12,3 +12,13 @@ pub use roots::{Roots, bracketed_root, convex_roots, cubic, quadratic, quartic};
 pub use sampling::{
     cone_direction, cosine_hemisphere, cosine_power_hemisphere, disk, uniform_sphere,
 };
+
+use glam::DVec3;
+
+/// The unit vector along `v`, quickly where `v` is one but for rounding.
+#[inline]
+pub fn unit(v: DVec3) -> DVec3 {
+    let excess = v.length_squared() - 1.0;
+    // 1/sqrt(1 + e) = 1 - e/2 + 3/8 e² - ...
+    if excess.abs() < 1e-8 { (1.0 - 0.5 * excess) * v } else { v.normalize() }
+}

@@ -15,41 +15,39 @@ use std::fmt;
 use std::time::Duration;
 
 /// Up to this many surfaces are scanned one after the other.
-const LINEAR_LIMIT: usize = 4;
+const SCAN_LIMIT: usize = 4;
 /// Boxes grow by this many f32 ulp of the largest coordinate: rounding of the box, of the ray's origin, and of the slab test.
 const PADDING_ULP: f64 = 8.0;
 
 /// A culling structure over the boxes of all surfaces.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub enum Accel {
     /// A scan over this many surfaces.
-    Linear(usize),
-    /// A binary tree of boxes.
-    Tree(Box<Bvh2>),
+    Scan(usize),
+    /// A tree over more.
+    Tree(Tree),
 }
 
-impl fmt::Debug for Accel {
+/// A binary tree of boxes.
+#[derive(Clone)]
+pub struct Tree(Box<Bvh2>);
+
+impl fmt::Debug for Tree {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Linear(count) => write!(out, "Linear({count})"),
-            Self::Tree(tree) => write!(out, "Tree({} nodes)", tree.nodes.len()),
-        }
+        write!(out, "Tree({} nodes)", self.0.nodes.len())
     }
 }
 
 impl Accel {
     /// A structure over `boxes`; ray origins will have coordinates up to `largest_coordinate`, mm.
     pub fn new(boxes: &[Aabb], largest_coordinate: f64) -> Self {
-        if boxes.len() <= LINEAR_LIMIT {
-            return Self::Linear(boxes.len());
+        if boxes.len() <= SCAN_LIMIT {
+            return Self::Scan(boxes.len());
         }
         let padding = PADDING_ULP * f64::from(f32::EPSILON) * largest_coordinate;
         let boxes: Vec<Box32> = boxes.iter().map(|bounds| to_f32(bounds.grown(padding))).collect();
-        Self::Tree(Box::new(build_bvh2(
-            &boxes,
-            BvhBuildParams::medium_build(),
-            &mut Duration::default(),
-        )))
+        let params = BvhBuildParams::medium_build();
+        Self::Tree(Tree(Box::new(build_bvh2(&boxes, params, &mut Duration::default()))))
     }
 
     /// Calls `visit` with the index of every surface whose box the ray meets before the distance that the last
@@ -57,25 +55,32 @@ impl Accel {
     #[inline]
     pub fn visit(&self, ray: &Ray, mut visit: impl FnMut(usize) -> f64) {
         match self {
-            Self::Linear(count) => {
+            Self::Scan(count) => {
                 for index in 0..*count {
                     visit(index);
                 }
             }
-            Self::Tree(tree) => {
-                let ray = Ray32::new_inf(ray.origin().as_vec3a(), ray.dir().as_vec3a());
-                let mut hit = RayHit::none();
-                fast_stack!(u32, (96, 192), tree.max_depth, stack, {
-                    tree.ray_traverse_dynamic(&mut stack, ray, &mut hit, |node, ray, _| {
-                        for slot in node.first_index..node.first_index + node.prim_count {
-                            let limit = visit(tree.primitive_indices[slot as usize] as usize);
-                            ray.tmax = ray.tmax.min(round_up(limit));
-                        }
-                        true
-                    });
-                });
-            }
+            Self::Tree(tree) => tree.visit(ray, visit),
         }
+    }
+}
+
+impl Tree {
+    /// As [`Accel::visit`], nearer boxes first.
+    #[inline]
+    pub fn visit(&self, ray: &Ray, mut visit: impl FnMut(usize) -> f64) {
+        let tree = &self.0;
+        let ray = Ray32::new_inf(ray.origin().as_vec3a(), ray.dir().as_vec3a());
+        let mut hit = RayHit::none();
+        fast_stack!(u32, (96, 192), tree.max_depth, stack, {
+            tree.ray_traverse_dynamic(&mut stack, ray, &mut hit, |node, ray, _| {
+                for slot in node.first_index..node.first_index + node.prim_count {
+                    let limit = visit(tree.primitive_indices[slot as usize] as usize);
+                    ray.tmax = ray.tmax.min(round_up(limit));
+                }
+                true
+            });
+        });
     }
 }
 

@@ -11,7 +11,7 @@ macro_rules! ids {
         impl $name {
             /// The id of entry `index` of its table.
             #[inline]
-            pub fn new(index: usize) -> Self {
+            pub const fn new(index: usize) -> Self {
                 Self(index as u32)
             }
 

@@ -1,43 +1,66 @@
-//! Which solids a path is in, and which medium that makes.
+//! Which solids a path is in.
 
 use crate::scene::SolidId;
 use smallvec::SmallVec;
 
-/// The set of solids that a point lies in.
+/// The set of solids that a point lies in: a bit for each of the first 64, a list for any others.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Inside(SmallVec<[SolidId; 4]>);
+pub struct Inside {
+    first: u64,
+    others: SmallVec<[SolidId; 2]>,
+}
+
+/// The bit of a solid; `None` for one that is listed.
+#[inline]
+fn bit(solid: SolidId) -> Option<u64> {
+    1u64.checked_shl(solid.index() as u32)
+}
 
 impl Inside {
     /// Whether the point lies in no solid.
     #[inline]
     pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        self.first == 0 && self.others.is_empty()
     }
 
     /// Whether the point lies in `solid`.
     #[inline]
     pub fn contains(&self, solid: SolidId) -> bool {
-        self.0.contains(&solid)
+        match bit(solid) {
+            Some(bit) => self.first & bit != 0,
+            None => self.others.contains(&solid),
+        }
     }
 
     /// Adds a solid.
     #[inline]
     pub fn enter(&mut self, solid: SolidId) {
-        if !self.contains(solid) {
-            self.0.push(solid);
+        match bit(solid) {
+            Some(bit) => self.first |= bit,
+            None if self.others.contains(&solid) => {}
+            None => self.others.push(solid),
         }
     }
 
     /// Removes a solid.
     #[inline]
     pub fn leave(&mut self, solid: SolidId) {
-        self.0.retain(|inside| *inside != solid);
+        match bit(solid) {
+            Some(bit) => self.first &= !bit,
+            None => self.others.retain(|inside| *inside != solid),
+        }
     }
 
-    /// The solids, in the order in which they were entered.
+    /// The solids.
     #[inline]
     pub fn iter(&self) -> impl Iterator<Item = SolidId> + '_ {
-        self.0.iter().copied()
+        let mut bits = self.first;
+        let first = std::iter::from_fn(move || {
+            let index = bits.trailing_zeros();
+            bits &= bits.wrapping_sub(1);
+            (index < u64::BITS).then(|| SolidId::new(index as usize))
+        });
+        first.chain(self.others.iter().copied())
     }
 }
 
@@ -48,5 +71,25 @@ impl FromIterator<SolidId> for Inside {
             inside.enter(solid);
         }
         inside
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_solids_and_later_ones_are_entered_and_left_alike() {
+        let solids = [0, 5, 63, 64, 65, 70_000].map(SolidId::new);
+        let mut inside: Inside = solids.into_iter().collect();
+        inside.enter(solids[3]);
+        assert_eq!(inside.iter().collect::<Vec<_>>(), solids);
+        for (count, solid) in solids.into_iter().enumerate() {
+            assert!(inside.contains(solid) && !inside.is_empty());
+            inside.leave(solid);
+            assert!(!inside.contains(solid));
+            assert_eq!(inside.iter().count(), solids.len() - 1 - count);
+        }
+        assert_eq!(inside, Inside::default());
     }
 }

@@ -8,7 +8,7 @@ use crate::scene::shape::Toward;
 use crate::scene::{FinishId, Hits, Inside, MediumId, Owner, PrimHit, Scene};
 
 /// What light sees where faces meet.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 pub struct Interface {
     /// The surface whose normal and finish act.
     pub acting: PrimHit,
@@ -18,8 +18,6 @@ pub struct Interface {
     pub from: MediumId,
     /// The medium behind.
     pub to: MediumId,
-    /// The solids behind.
-    pub beyond: Inside,
     /// Whether nothing happens to light here: equal media and no finish, or a face buried in another solid.
     pub visibility: Visibility,
 }
@@ -37,36 +35,43 @@ impl Scene {
     /// The interface at a hit, for a path inside `inside` in medium `from`. `hits` holds at least one surface.
     #[inline]
     pub fn interface(&self, hits: &Hits, inside: &Inside, from: MediumId) -> Interface {
-        let mut beyond = inside.clone();
-        for hit in hits.all() {
-            if let Owner::Solid(solid) = hit.owner {
-                match hit.toward {
-                    Toward::Front => beyond.leave(solid),
-                    Toward::Back => beyond.enter(solid),
-                }
-            }
-        }
-        let to = if beyond == *inside { from } else { self.medium_in(&beyond) };
-        let mut acting = hits.all()[0];
-        let mut finish = None;
-        let mut best = None;
-        for hit in hits.all() {
-            let declared = self.declared_finish(hit);
-            let rank = self.rank(hit, inside, &beyond).map(|rank| (declared.is_some(), rank));
-            if rank > best {
-                (best, acting, finish) = (rank, *hit, declared);
+        let to = self.medium_beyond(hits, inside, from);
+        let claim = |hit: &PrimHit| {
+            let finish = self.declared_finish(hit);
+            (self.rank(hit, hits, inside).map(|rank| (finish.is_some(), rank)), *hit, finish)
+        };
+        let (first, others) = hits.first_and_others();
+        let (mut best, mut acting, mut finish) = claim(first);
+        for hit in others {
+            let other = claim(hit);
+            if other.0 > best {
+                (best, acting, finish) = other;
             }
         }
         let passes = finish.is_none() && (from == to || self.same_index(from, to));
         let visibility =
             if best.is_none() || passes { Visibility::Invisible } else { Visibility::Visible };
-        Interface { acting, finish, from, to, beyond, visibility }
+        Interface { acting, finish, from, to, visibility }
+    }
+
+    /// The medium behind a hit: solids that the path was in are left, others are entered.
+    #[inline]
+    fn medium_beyond(&self, hits: &Hits, inside: &Inside, from: MediumId) -> MediumId {
+        let entered = hits.all().iter().filter_map(|hit| match hit.owner {
+            Owner::Solid(solid) if !inside.contains(solid) => Some(solid),
+            Owner::Solid(_) | Owner::Sheet | Owner::Port => None,
+        });
+        if hits.all().iter().any(|hit| matches!(hit.owner, Owner::Solid(_))) {
+            self.medium_of(inside.iter().filter(|solid| !hits.meet(*solid)).chain(entered))
+        } else {
+            from
+        }
     }
 
     /// The finish that a face declares for light arriving at it.
     #[inline]
     fn declared_finish(&self, hit: &PrimHit) -> Option<FinishId> {
-        let face = &self.faces[self.face_of(hit.prim).index()];
+        let face = &self.faces[hit.face.index()];
         match hit.toward {
             // Light going toward the front meets the back.
             Toward::Front => face.back,
@@ -76,7 +81,7 @@ impl Scene {
 
     /// How strongly a face claims to act; `None` when it is buried in a solid of higher priority.
     #[inline]
-    fn rank(&self, hit: &PrimHit, inside: &Inside, beyond: &Inside) -> Option<i64> {
+    fn rank(&self, hit: &PrimHit, hits: &Hits, inside: &Inside) -> Option<i64> {
         match hit.owner {
             Owner::Sheet | Owner::Port => Some(i64::MAX),
             Owner::Solid(solid) => {
@@ -84,7 +89,7 @@ impl Scene {
                 let buried = inside.iter().any(|other| {
                     other != solid
                         && self.solids[other.index()].priority > priority
-                        && beyond.contains(other)
+                        && !hits.meet(other)
                 });
                 (!buried).then_some(i64::from(priority))
             }

@@ -5,10 +5,10 @@
 //! a hair beyond an edge is still caught. Of the surface the ray starts on, the root at the start is no root.
 //! Surfaces within [`Scene::tolerance`] of the nearest hit are one event.
 
+use crate::scene::accel::{Accel, Tree};
 use crate::scene::mesh::Line;
-use crate::scene::pieces::Surface;
-use crate::scene::shape::{Crossing, Start, Toward};
-use crate::scene::{Inside, Owner, PrimId, Ray, Scene};
+use crate::scene::shape::{Crossing, Start, Toward, Wanted};
+use crate::scene::{FaceId, Inside, Owner, PrimId, Ray, Scene, SolidId};
 use smallvec::SmallVec;
 
 /// One of the surfaces met at a hit.
@@ -16,6 +16,8 @@ use smallvec::SmallVec;
 pub struct PrimHit {
     /// Which surface.
     pub prim: PrimId,
+    /// Its face.
+    pub face: FaceId,
     /// What its face belongs to.
     pub owner: Owner,
     /// Distance along the ray, mm.
@@ -26,7 +28,7 @@ pub struct PrimHit {
 
 /// The nearest hit: all surfaces at one place.
 #[derive(Debug, Clone, Default)]
-pub struct Hits(SmallVec<[PrimHit; 2]>);
+pub struct Hits(SmallVec<[PrimHit; 1]>);
 
 impl Hits {
     /// Distance to the place, mm; `None` when nothing is hit. Never negative.
@@ -41,49 +43,155 @@ impl Hits {
         &self.0
     }
 
-    /// Takes in a candidate: keeps those within `tolerance` of the nearest, the nearest first.
+    /// The nearest of at least one surface, and the others.
     #[inline]
-    fn offer(&mut self, hit: PrimHit, tolerance: f64) {
-        let Some(nearest) = self.0.first().map(|first| first.t) else {
-            self.0.push(hit);
-            return;
-        };
-        if hit.t > nearest + tolerance {
-            return;
-        }
-        if hit.t < nearest {
-            self.0.retain(|kept| kept.t <= hit.t + tolerance);
-            self.0.insert(0, hit);
-        } else {
-            self.0.push(hit);
-        }
+    pub(crate) fn first_and_others(&self) -> (&PrimHit, &[PrimHit]) {
+        self.0.split_first().expect("a ray that meets nothing makes no interface")
     }
 
-    /// Beyond this distance nothing can matter any more, mm.
+    /// Whether a face of `solid` is among them.
     #[inline]
-    fn limit(&self, tolerance: f64) -> f64 {
-        self.0.first().map_or(f64::INFINITY, |first| first.t + tolerance)
+    pub fn meet(&self, solid: SolidId) -> bool {
+        self.0.iter().any(|hit| hit.owner == Owner::Solid(solid))
+    }
+
+    /// Takes a path through all of them.
+    #[inline]
+    pub fn cross(&self, inside: &mut Inside) {
+        for hit in &self.0 {
+            if let Owner::Solid(solid) = hit.owner {
+                match hit.toward {
+                    Toward::Front => inside.leave(solid),
+                    Toward::Back => inside.enter(solid),
+                }
+            }
+        }
+    }
+}
+
+/// The search for the nearest hit.
+#[derive(Debug, Clone, Copy)]
+struct Nearest {
+    prim: PrimId,
+    crossing: Crossing,
+    /// Distance of the next one, as far as it was seen, mm.
+    runner_up: f64,
+}
+
+impl Nearest {
+    const NONE: Self = Self {
+        prim: PrimId::new(0),
+        crossing: Crossing { t: f64::INFINITY, toward: Toward::Front },
+        runner_up: f64::INFINITY,
+    };
+
+    #[inline]
+    fn consider(&mut self, prim: PrimId, crossing: Crossing) {
+        if crossing.t < self.crossing.t {
+            *self = Self { prim, crossing, runner_up: self.crossing.t };
+        } else {
+            self.runner_up = self.runner_up.min(crossing.t);
+        }
     }
 }
 
 impl Scene {
-    /// What a ray meets next that starts on the surfaces `from`, inside the solids `inside`.
-    #[inline]
-    pub fn next_hit(&self, ray: &Ray, from: &[PrimId], inside: &Inside) -> Hits {
-        let mut hits = Hits::default();
+    /// What a ray meets next that starts on the surfaces `from`, inside the solids `inside`: fills `hits` anew and
+    /// returns the distance, mm; infinite when nothing is hit, never negative.
+    #[inline(always)]
+    pub fn find_next(&self, ray: &Ray, from: &[PrimId], inside: &Inside, hits: &mut Hits) -> f64 {
+        hits.0.clear();
+        let nearest = match &self.accel {
+            Accel::Scan(_) => self.nearest_by_scan(ray, from, inside),
+            Accel::Tree(tree) => self.nearest_in_tree(tree, ray, from, inside),
+        };
+        let Nearest { prim, crossing, runner_up } = nearest;
+        if crossing.t < f64::INFINITY {
+            hits.0.push(self.hit(prim, crossing));
+            if runner_up <= crossing.t + self.tolerance {
+                self.find_others(ray, from, inside, hits);
+            }
+        }
+        crossing.t.max(0.0)
+    }
+
+    #[inline(always)]
+    fn nearest_by_scan(&self, ray: &Ray, from: &[PrimId], inside: &Inside) -> Nearest {
+        let mut nearest = Nearest::NONE;
+        for (index, patch) in self.patches.iter().enumerate() {
+            let prim = PrimId::new(index);
+            let limit = nearest.crossing.t + self.tolerance;
+            let Some(wanted) = self.wanted(patch.owner, inside, limit) else { continue };
+            if let Some(crossing) = patch.shape.first_crossing(ray, start_on(prim, from), &wanted) {
+                nearest.consider(prim, crossing);
+            }
+        }
+        nearest
+    }
+
+    fn nearest_in_tree(&self, tree: &Tree, ray: &Ray, from: &[PrimId], inside: &Inside) -> Nearest {
+        let line = self.line(ray);
+        let mut nearest = Nearest::NONE;
+        tree.visit(ray, |index| {
+            let prim = PrimId::new(index);
+            let limit = nearest.crossing.t + self.tolerance;
+            if let Some(crossing) = self.crossing(prim, ray, line.as_ref(), from, inside, limit) {
+                nearest.consider(prim, crossing);
+            }
+            nearest.crossing.t + self.tolerance
+        });
+        nearest
+    }
+
+    /// Adds the other surfaces at the place of the nearest hit.
+    #[cold]
+    fn find_others(&self, ray: &Ray, from: &[PrimId], inside: &Inside, hits: &mut Hits) {
+        let nearest = hits.0[0];
+        let limit = nearest.t + self.tolerance;
         let line = self.line(ray);
         self.accel.visit(ray, |index| {
             let prim = PrimId::new(index);
-            let start = if from.contains(&prim) { Start::On } else { Start::Elsewhere };
-            self.crossings(prim, ray, line.as_ref(), start, |owner, crossing| {
-                if self.counts(owner, crossing, inside) {
-                    let Crossing { t, toward } = crossing;
-                    hits.offer(PrimHit { prim, owner, t, toward }, self.tolerance);
-                }
-            });
-            hits.limit(self.tolerance)
+            if prim != nearest.prim {
+                let crossing = self.crossing(prim, ray, line.as_ref(), from, inside, limit);
+                hits.0.extend(crossing.map(|crossing| self.hit(prim, crossing)));
+            }
+            limit
         });
-        hits
+        hits.0[1..].sort_unstable_by_key(|hit| hit.prim);
+    }
+
+    /// The first crossing of a ray with a surface that counts, up to a distance.
+    #[inline]
+    fn crossing(
+        &self,
+        prim: PrimId,
+        ray: &Ray,
+        line: Option<&Line>,
+        from: &[PrimId],
+        inside: &Inside,
+        limit: f64,
+    ) -> Option<Crossing> {
+        let surface = self.surface(prim);
+        let wanted = self.wanted(surface.owner(), inside, limit)?;
+        surface.first_crossing(ray, line, start_on(prim, from), &wanted)
+    }
+
+    /// Which crossings count: of a solid, those whose orientation fits.
+    #[inline]
+    fn wanted(&self, owner: Owner, inside: &Inside, max: f64) -> Option<Wanted> {
+        let (toward, min) = match owner {
+            Owner::Solid(solid) if inside.contains(solid) => (Some(Toward::Front), -self.tolerance),
+            Owner::Solid(_) => (Some(Toward::Back), -self.tolerance),
+            Owner::Sheet => (None, 0.0f64.next_up()),
+            Owner::Port => return None,
+        };
+        Some(Wanted { toward, min, max })
+    }
+
+    #[inline]
+    fn hit(&self, prim: PrimId, Crossing { t, toward }: Crossing) -> PrimHit {
+        let surface = self.surface(prim);
+        PrimHit { prim, face: surface.face(), owner: surface.owner(), t, toward }
     }
 
     /// The solids in which a path finds itself just ahead of its start (`Toward::Front` of the start) or just behind.
@@ -97,20 +205,15 @@ impl Scene {
         };
         let line = self.line(ray);
         self.accel.visit(ray, |index| {
-            self.crossings(
-                PrimId::new(index),
-                ray,
-                line.as_ref(),
-                Start::Elsewhere,
-                |owner, crossing| {
-                    if let Owner::Solid(solid) = owner {
-                        let slot = &mut nearest[solid.index()];
-                        if crossing.t > beyond && crossing.t < slot.0 {
-                            *slot = (crossing.t, crossing.toward);
-                        }
+            let surface = self.surface(PrimId::new(index));
+            surface.crossings(ray, line.as_ref(), Start::Elsewhere, |crossing| {
+                if let Owner::Solid(solid) = surface.owner() {
+                    let slot = &mut nearest[solid.index()];
+                    if crossing.t > beyond && crossing.t < slot.0 {
+                        *slot = (crossing.t, crossing.toward);
                     }
-                },
-            );
+                }
+            });
             f64::INFINITY
         });
         nearest
@@ -126,9 +229,8 @@ impl Scene {
         let line = self.line(ray);
         self.accel.visit(ray, |index| {
             let prim = PrimId::new(index);
-            self.crossings(prim, ray, line.as_ref(), Start::Elsewhere, |_, crossing| {
-                visit(prim, crossing);
-            });
+            let visit = |crossing| visit(prim, crossing);
+            self.surface(prim).crossings(ray, line.as_ref(), Start::Elsewhere, visit);
             f64::INFINITY
         });
     }
@@ -138,41 +240,12 @@ impl Scene {
     fn line(&self, ray: &Ray) -> Option<Line> {
         (!self.meshes.is_empty()).then(|| Line::of(ray))
     }
+}
 
-    /// Every crossing of a ray's line with a surface. A triangle is never met again from itself.
-    #[inline]
-    fn crossings(
-        &self,
-        prim: PrimId,
-        ray: &Ray,
-        line: Option<&Line>,
-        start: Start,
-        mut visit: impl FnMut(Owner, Crossing),
-    ) {
-        match (self.surface(prim), line) {
-            (Surface::Patch(patch), _) => {
-                patch.shape.crossings(ray, start, |crossing| visit(patch.owner, crossing));
-            }
-            (Surface::Triangle(body, triangle), Some(line)) if start == Start::Elsewhere => {
-                if let Some(crossing) = body.mesh.crossing_of(triangle, line) {
-                    visit(body.owner, crossing);
-                }
-            }
-            (Surface::Triangle(..), _) => {}
-        }
-    }
-
-    #[inline]
-    fn counts(&self, owner: Owner, crossing: Crossing, inside: &Inside) -> bool {
-        match owner {
-            Owner::Solid(solid) => {
-                crossing.t >= -self.tolerance
-                    && inside.contains(solid) == (crossing.toward == Toward::Front)
-            }
-            Owner::Sheet => crossing.t > 0.0,
-            Owner::Port => false,
-        }
-    }
+/// Whether a ray that starts on the surfaces `from` starts on this one.
+#[inline]
+fn start_on(prim: PrimId, from: &[PrimId]) -> Start {
+    if from.contains(&prim) { Start::On } else { Start::Elsewhere }
 }
 
 /// On which side of its start point a path is asked about.

@@ -112,10 +112,15 @@ impl Scene {
     }
 
     /// The medium that counts at a point inside the given solids.
-    #[inline]
     pub fn medium_in(&self, inside: &Inside) -> MediumId {
+        self.medium_of(inside.iter())
+    }
+
+    /// The medium of the highest priority; the surroundings without any solid.
+    #[inline]
+    fn medium_of(&self, solids: impl Iterator<Item = SolidId>) -> MediumId {
         let mut best: Option<&Solid> = None;
-        for id in inside.iter() {
+        for id in solids {
             let solid = &self.solids[id.index()];
             if best.is_none_or(|best| solid.priority > best.priority) {
                 best = Some(solid);

@@ -1,7 +1,9 @@
 //! Questions about surfaces, whether they are analytic patches or triangles of a mesh.
 
 use crate::math::Frame;
-use crate::scene::shape::{ChartRect, Region, Shape};
+use crate::scene::Ray;
+use crate::scene::mesh::Line;
+use crate::scene::shape::{ChartRect, Crossing, Region, Shape, Start, Wanted};
 use crate::scene::{Extent, FaceId, MeshBody, Owner, Patch, PrimId, Scene};
 use glam::{DVec2, DVec3};
 
@@ -12,6 +14,70 @@ pub(crate) enum Surface<'s> {
     Patch(&'s Patch),
     /// A triangle of a mesh, by its number there.
     Triangle(&'s MeshBody, usize),
+}
+
+impl Surface<'_> {
+    /// The face that it belongs to.
+    #[inline]
+    pub(crate) fn face(self) -> FaceId {
+        match self {
+            Self::Patch(patch) => patch.face,
+            Self::Triangle(body, triangle) => body.faces[body.mesh.face_of(triangle)],
+        }
+    }
+
+    /// What its face belongs to.
+    #[inline]
+    pub(crate) fn owner(self) -> Owner {
+        match self {
+            Self::Patch(patch) => patch.owner,
+            Self::Triangle(body, _) => body.owner,
+        }
+    }
+
+    /// Every crossing of a ray's line; `line` is that of the ray where there are triangles.
+    pub(crate) fn crossings(
+        self,
+        ray: &Ray,
+        line: Option<&Line>,
+        start: Start,
+        visit: impl FnMut(Crossing),
+    ) {
+        match self {
+            Self::Patch(patch) => patch.shape.crossings(ray, start, visit),
+            Self::Triangle(body, triangle) => {
+                body.crossing(triangle, line, start).into_iter().for_each(visit);
+            }
+        }
+    }
+
+    /// The first crossing of a ray's line that is `wanted`.
+    #[inline]
+    pub(crate) fn first_crossing(
+        self,
+        ray: &Ray,
+        line: Option<&Line>,
+        start: Start,
+        wanted: &Wanted,
+    ) -> Option<Crossing> {
+        match self {
+            Self::Patch(patch) => patch.shape.first_crossing(ray, start, wanted),
+            Self::Triangle(body, triangle) => {
+                body.crossing(triangle, line, start).filter(|crossing| wanted.includes(crossing))
+            }
+        }
+    }
+}
+
+impl MeshBody {
+    /// Where a line crosses a triangle; never the one that it starts from.
+    #[inline]
+    fn crossing(&self, triangle: usize, line: Option<&Line>, start: Start) -> Option<Crossing> {
+        match start {
+            Start::On => None,
+            Start::Elsewhere => self.mesh.crossing_of(triangle, line?),
+        }
+    }
 }
 
 impl Scene {
@@ -34,10 +100,7 @@ impl Scene {
     /// The face that a surface belongs to.
     #[inline]
     pub fn face_of(&self, prim: PrimId) -> FaceId {
-        match self.surface(prim) {
-            Surface::Patch(patch) => patch.face,
-            Surface::Triangle(body, triangle) => body.faces[body.mesh.face_of(triangle)],
-        }
+        self.surface(prim).face()
     }
 
     /// Unit normal of the front at a point of a surface: of the triangle itself, for a mesh.
@@ -49,12 +112,16 @@ impl Scene {
         }
     }
 
-    /// Unit normal of the surface that a mesh stands for, interpolated; `None` where the surface itself is exact.
+    /// The same, and of a mesh also the unit normal of the surface that it stands for, interpolated; `None` where the
+    /// surface itself is exact.
     #[inline]
-    pub fn shading_normal(&self, prim: PrimId, point: DVec3) -> Option<DVec3> {
+    pub fn normals(&self, prim: PrimId, point: DVec3) -> (DVec3, Option<DVec3>) {
         match self.surface(prim) {
-            Surface::Patch(_) => None,
-            Surface::Triangle(body, triangle) => Some(body.mesh.shading_normal(triangle, point)),
+            Surface::Patch(patch) => (patch.shape.normal(point), None),
+            Surface::Triangle(body, triangle) => {
+                let shading = body.mesh.shading_normal(triangle, point);
+                (body.mesh.facet_normal(triangle), Some(shading))
+            }
         }
     }
 

@@ -1,5 +1,6 @@
 //! Rays with unit directions.
 
+use crate::math::unit;
 use glam::DVec3;
 
 /// A half line; its direction is a unit vector by construction, so that parameters along it are millimetres.
@@ -16,7 +17,7 @@ impl Ray {
     /// A ray from `origin`, mm, along `dir`, which need not be normalised but not be zero.
     #[inline]
     pub fn new(origin: DVec3, dir: DVec3) -> Self {
-        Self { origin, dir: dir.normalize() }
+        Self { origin, dir: unit(dir) }
     }
 
     /// Where the ray starts, mm.

@@ -6,7 +6,7 @@
 use crate::optics::Side;
 use crate::rng::Sampler;
 use crate::scene::shape::{Crossing, Start, Toward};
-use crate::scene::{Counts, FaceId, Owner, Scene, SensorId, SourceId, SurfaceSensor};
+use crate::scene::{Counts, FaceId, Owner, PrimHit, Scene, SensorId, SourceId, SurfaceSensor};
 use crate::transport::readings::{SensorReading, Step, Trail};
 use crate::transport::watch::{OnPort, Watch};
 use crate::transport::{
@@ -59,8 +59,7 @@ impl<'s> Forward<'s> {
                 index += 1;
             }
         }
-        counter.readings.close_batch();
-        counter.readings
+        counter.finish()
     }
 }
 
@@ -75,6 +74,8 @@ fn shares(scene: &Scene, batch_paths: u64) -> Vec<u64> {
 struct Counter<'r, 's> {
     run: &'r Forward<'s>,
     readings: Readings,
+    /// The scalars of the readings, until it is finished.
+    sums: Vec<f64>,
     /// Flux of the photon being traced at throughput 1, lm or W.
     flux: f64,
     source: SourceId,
@@ -84,9 +85,10 @@ struct Counter<'r, 's> {
 }
 
 impl<'r, 's> Counter<'r, 's> {
-    fn new(run: &'r Forward<'s>, readings: Readings) -> Self {
+    fn new(run: &'r Forward<'s>, mut readings: Readings) -> Self {
         Self {
             run,
+            sums: std::mem::take(&mut readings.groups[0].sums),
             readings,
             flux: 0.0,
             source: SourceId::new(0),
@@ -94,6 +96,12 @@ impl<'r, 's> Counter<'r, 's> {
             trail: Trail::new(),
             last_left: None,
         }
+    }
+
+    fn finish(mut self) -> Readings {
+        self.readings.groups[0].sums = self.sums;
+        self.readings.close_batch();
+        self.readings
     }
 
     fn trace(&mut self, source: SourceId, flux: f64, index: u64) {
@@ -121,7 +129,7 @@ impl<'r, 's> Counter<'r, 's> {
             Event::Arrive(vertex) => self.arrive(path, vertex),
             Event::Depart(vertex, departure) => self.depart(path, vertex, departure),
             Event::Absorbed(vertex) => {
-                let face = self.acting_face(vertex);
+                let face = vertex.interface.acting.face;
                 self.add(layout.absorbed_by_face(face), vertex.throughput);
             }
             Event::Roulette(lost) => self.add(layout.roulette(), lost),
@@ -223,29 +231,34 @@ impl<'r, 's> Counter<'r, 's> {
 
     #[inline]
     fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>) {
-        self.on_faces(path, vertex, Counts::Incident, vertex.dir, vertex.throughput, None);
+        let light = Light {
+            counts: Counts::Incident,
+            dir: vertex.dir,
+            throughput: vertex.throughput,
+            side: None,
+        };
+        self.on_faces(path, vertex, &light);
     }
 
     #[inline]
     fn depart(&mut self, path: &Path, vertex: &Vertex<'_>, departure: &Departure) {
-        let face = self.acting_face(vertex);
+        let face = vertex.interface.acting.face;
         let absorbed = vertex.throughput - departure.throughput;
         if absorbed > 0.0 {
             self.add(self.run.layout.absorbed_by_face(face), absorbed);
         }
-        self.on_faces(
-            path,
-            vertex,
-            Counts::Leaving,
-            departure.dir,
-            departure.throughput,
-            Some(departure.side),
-        );
+        let light = Light {
+            counts: Counts::Leaving,
+            dir: departure.dir,
+            throughput: departure.throughput,
+            side: Some(departure.side),
+        };
+        self.on_faces(path, vertex, &light);
         let transmitted = departure.side == Side::Transmitted;
         if transmitted {
             for hit in vertex.hits.all() {
                 if let (Owner::Solid(_), Toward::Front) = (hit.owner, hit.toward) {
-                    self.last_left = Some(self.run.scene.face_of(hit.prim));
+                    self.last_left = Some(hit.face);
                 }
             }
         }
@@ -256,33 +269,32 @@ impl<'r, 's> Counter<'r, 's> {
 
     /// Counts light on the sensors of all faces that meet at a vertex.
     #[inline]
-    fn on_faces(
-        &mut self,
-        path: &Path,
-        vertex: &Vertex<'_>,
-        counts: Counts,
-        dir: DVec3,
-        throughput: f64,
-        side: Option<Side>,
-    ) {
-        let run = self.run;
+    fn on_faces(&mut self, path: &Path, vertex: &Vertex<'_>, light: &Light) {
         for hit in vertex.hits.all() {
-            let face = run.scene.face_of(hit.prim).index();
-            if side == Some(Side::Transmitted) && hit.toward == Toward::Back {
-                for id in &run.watch.entries[face] {
-                    self.add(run.layout.entering(*id), throughput);
-                }
+            if self.run.watch.watched[hit.face.index()] {
+                self.on_face(path, vertex.point, hit, light);
             }
-            for &(id, sensor) in
-                run.watch.faces[face].iter().filter(|(_, sensor)| sensor.counts == counts)
-            {
-                let normal = run.scene.normal(hit.prim, vertex.point);
-                // Light is reflected to the side it came from: its direction tells the side it leaves to.
-                let toward = if side.is_none() { hit.toward } else { Toward::of(dir, normal) };
-                let seen = Seen { counts, toward, point: vertex.point, dir };
-                let uv = run.scene.chart(hit.prim, vertex.point);
-                self.count_on_surface(path, id, sensor, uv, &seen, throughput);
+        }
+    }
+
+    fn on_face(&mut self, path: &Path, point: DVec3, hit: &PrimHit, light: &Light) {
+        let Light { counts, dir, throughput, side } = *light;
+        let run = self.run;
+        let face = hit.face.index();
+        if side == Some(Side::Transmitted) && hit.toward == Toward::Back {
+            for id in &run.watch.entries[face] {
+                self.add(run.layout.entering(*id), throughput);
             }
+        }
+        for &(id, sensor) in
+            run.watch.faces[face].iter().filter(|(_, sensor)| sensor.counts == counts)
+        {
+            let normal = run.scene.normal(hit.prim, point);
+            // Light is reflected to the side it came from: its direction tells the side it leaves to.
+            let toward = if side.is_none() { hit.toward } else { Toward::of(dir, normal) };
+            let seen = Seen { counts, toward, point, dir };
+            let uv = run.scene.chart(hit.prim, point);
+            self.count_on_surface(path, id, sensor, uv, &seen, throughput);
         }
     }
 
@@ -362,14 +374,19 @@ impl<'r, 's> Counter<'r, 's> {
     }
 
     #[inline]
-    fn acting_face(&self, vertex: &Vertex<'_>) -> FaceId {
-        self.run.scene.face_of(vertex.interface.acting.prim)
-    }
-
-    #[inline]
     fn add(&mut self, slot: usize, throughput: f64) {
-        self.readings.groups[0].sums[slot] += self.flux * throughput;
+        self.sums[slot] += self.flux * throughput;
     }
+}
+
+/// Light arriving at, or leaving, the faces of a vertex.
+struct Light {
+    counts: Counts,
+    /// Unit direction of travel.
+    dir: DVec3,
+    throughput: f64,
+    /// How it leaves; `None` of arriving light.
+    side: Option<Side>,
 }
 
 /// Light at a surface sensor.

@@ -12,7 +12,7 @@ use std::ops::ControlFlow;
 
 /// Below this throughput a path survives with probability throughput/threshold and then has the threshold's:
 /// the mean is kept, and mirrors above it cost no random number. 1.
-const ROULETTE_BELOW: f64 = 1e-3;
+pub const ROULETTE_BELOW: f64 = 1e-3;
 
 /// A straight piece of a path, in one medium.
 #[derive(Debug)]
@@ -85,9 +85,11 @@ pub fn walk(
     sampler: &mut Sampler,
     mut visit: impl FnMut(&Path, Event<'_>) -> ControlFlow<()>,
 ) {
+    let mut hits = Hits::default();
+    // A copy of the path's that no visitor sees: it stays in registers from bounce to bounce.
+    let mut ray = path.ray;
     loop {
-        let hits = scene.next_hit(&path.ray, &path.on, &path.inside);
-        let length = hits.distance().unwrap_or(f64::INFINITY);
+        let length = scene.find_next(&ray, &path.on, &path.inside, &mut hits);
         let medium = &scene.media[path.medium.index()];
         let arriving = path.throughput * medium.transmittance(path.wavelength, length);
         let segment = Segment {
@@ -101,7 +103,7 @@ pub fn walk(
             return;
         }
         path.throughput = arriving;
-        if hits.all().is_empty() {
+        if length == f64::INFINITY {
             let event = if path.inside.is_empty() {
                 Event::Escaped(path.throughput)
             } else {
@@ -111,8 +113,9 @@ pub fn walk(
             _ = visit(&path, event);
             return;
         }
-        if bounce(scene, &mut path, &hits, length, sampler, &mut visit).is_break() {
-            return;
+        match bounce(scene, &mut path, &ray, &hits, length, sampler, &mut visit) {
+            ControlFlow::Continue(next) => ray = next,
+            ControlFlow::Break(()) => return,
         }
         if path.depth >= bounce_limit {
             _ = visit(&path, Event::Cut(path.throughput));
@@ -129,47 +132,46 @@ pub fn walk(
     }
 }
 
-/// Takes a path through the interface it has met.
-#[inline]
+/// Takes a path through the interface it has met: the ray on which it goes on.
+#[inline(always)]
 fn bounce(
     scene: &Scene,
     path: &mut Path,
+    ray: &Ray,
     hits: &Hits,
     length: f64,
     sampler: &mut Sampler,
     visit: &mut impl FnMut(&Path, Event<'_>) -> ControlFlow<()>,
-) -> ControlFlow<()> {
+) -> ControlFlow<(), Ray> {
     let interface = scene.interface(hits, &path.inside, path.medium);
-    let vertex = Vertex {
-        point: path.ray.at(length),
-        dir: path.ray.dir(),
-        hits,
-        interface: &interface,
-        throughput: path.throughput,
-    };
+    let (point, dir) = (ray.at(length), ray.dir());
+    let vertex = Vertex { point, dir, hits, interface: &interface, throughput: path.throughput };
     visit(path, Event::Arrive(&vertex))?;
     let out = match interface.visibility {
-        Visibility::Invisible => straight_on(vertex.dir),
+        Visibility::Invisible => straight_on(dir),
         Visibility::Visible => {
             path.depth += 1;
-            let Some(out) = scatter(scene, path, &vertex, sampler) else {
+            let Some(out) = scatter(scene, path, &interface, point, dir, sampler) else {
                 visit(path, Event::Absorbed(&vertex))?;
                 return ControlFlow::Break(());
             };
             out
         }
     };
-    path.on.clear();
-    path.on.extend(hits.all().iter().map(|hit| hit.prim));
-    path.ray = Ray::new(vertex.point, out.dir);
+    match (path.on.as_mut_slice(), hits.all()) {
+        ([on], [hit]) => *on = hit.prim,
+        _ => path.on = hits.all().iter().map(|hit| hit.prim).collect(),
+    }
+    let next = Ray::new(point, out.dir);
+    path.ray = next;
     path.throughput *= out.factor;
-    let departure = Departure { dir: path.ray.dir(), throughput: path.throughput, side: out.side };
+    let departure = Departure { dir: next.dir(), throughput: path.throughput, side: out.side };
     visit(path, Event::Depart(&vertex, &departure))?;
     if out.side == Side::Transmitted {
         path.medium = interface.to;
-        path.inside = interface.beyond;
+        hits.cross(&mut path.inside);
     }
-    ControlFlow::Continue(())
+    ControlFlow::Continue(next)
 }
 
 fn straight_on(dir: DVec3) -> Scattered {
@@ -177,30 +179,27 @@ fn straight_on(dir: DVec3) -> Scattered {
 }
 
 /// Asks the acting finish.
-#[inline]
+#[inline(always)]
 fn scatter(
     scene: &Scene,
     path: &Path,
-    vertex: &Vertex<'_>,
+    interface: &Interface,
+    point: DVec3,
+    dir: DVec3,
     sampler: &mut Sampler,
 ) -> Option<Scattered> {
-    let interface = vertex.interface;
     // The normal on the side the light comes from.
     let facing = |outward: DVec3| match interface.acting.toward {
         Toward::Front => -outward,
         Toward::Back => outward,
     };
-    let facet = facing(scene.normal(interface.acting.prim, vertex.point));
+    let (facet, shading) = scene.normals(interface.acting.prim, point);
+    let (facet, shading) = (facing(facet), shading.map(facing));
     // An interpolated normal may face away from grazing light; then the facet's own is taken.
-    let shading = scene.shading_normal(interface.acting.prim, vertex.point).map(facing);
-    let normal = shading.filter(|normal| normal.dot(vertex.dir) < 0.0).unwrap_or(facet);
+    let normal = shading.filter(|normal| normal.dot(dir) < 0.0).unwrap_or(facet);
     let index = |medium: MediumId| scene.media[medium.index()].index(path.wavelength);
-    let incidence = Incidence {
-        dir: vertex.dir,
-        normal,
-        index_from: index(interface.from),
-        index_to: index(interface.to),
-    };
+    let incidence =
+        Incidence { dir, normal, index_from: index(interface.from), index_to: index(interface.to) };
     let bsdf =
         interface.finish.map_or(&Bsdf::Smooth, |finish| &scene.finishes[finish.index()].bsdf);
     let out = bsdf.scatter(&incidence, sampler)?;

@@ -9,6 +9,8 @@ use crate::scene::{
 pub(crate) struct Watch<'s> {
     /// Sensors on ports: every segment is tested against their patches.
     pub(crate) ports: Vec<OnPort<'s>>,
+    /// For every face, whether anything is counted on it.
+    pub(crate) watched: Vec<bool>,
     /// For every face, the sensors on it.
     pub(crate) faces: Vec<Vec<(SensorId, &'s SurfaceSensor)>>,
     /// Far-field goniometers: escaping light is counted.
@@ -37,6 +39,7 @@ impl<'s> Watch<'s> {
     pub(crate) fn new(scene: &'s Scene) -> Self {
         let mut watch = Self {
             ports: Vec::new(),
+            watched: Vec::new(),
             faces: vec![Vec::new(); scene.faces.len()],
             far: Vec::new(),
             near: Vec::new(),
@@ -61,6 +64,9 @@ impl<'s> Watch<'s> {
                 watch.entries[face.index()].push(id);
             }
         }
+        watch.watched = (watch.faces.iter().zip(&watch.entries))
+            .map(|(sensors, entries)| !sensors.is_empty() || !entries.is_empty())
+            .collect();
         watch
     }
 

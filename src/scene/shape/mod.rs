@@ -51,6 +51,30 @@ pub struct Crossing {
     pub toward: Toward,
 }
 
+/// Which crossings of a ray matter to the one who asks.
+#[derive(Debug, Clone, Copy)]
+pub struct Wanted {
+    /// Those that go through this way only.
+    pub toward: Option<Toward>,
+    /// Smallest distance along the ray, mm.
+    pub min: f64,
+    /// Largest distance, mm.
+    pub max: f64,
+}
+
+impl Wanted {
+    /// Whether a crossing matters.
+    #[inline]
+    pub fn includes(&self, crossing: &Crossing) -> bool {
+        self.includes_way(crossing.toward) && crossing.t >= self.min && crossing.t <= self.max
+    }
+
+    #[inline]
+    fn includes_way(&self, toward: Toward) -> bool {
+        self.toward.is_none_or(|wanted| wanted == toward)
+    }
+}
+
 /// Which way a ray goes through a surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Toward {
@@ -186,6 +210,32 @@ impl Shape {
             Self::ParabolicCylinder(shape) => shape.crossings(ray, start, visit),
             Self::CompoundParabola(shape) => shape.crossings(ray, start, visit),
         }
+    }
+
+    /// The first crossing of the ray's line that is `wanted`. Planes and cylinders, most of all surfaces, answer it
+    /// sooner than a list of all crossings.
+    #[inline(always)]
+    pub fn first_crossing(&self, ray: &Ray, start: Start, wanted: &Wanted) -> Option<Crossing> {
+        match self {
+            Self::Flat(shape) => shape.first_crossing(ray, start, wanted),
+            Self::Cylinder(shape) => shape.first_crossing(ray, start, wanted),
+            Self::Cone(_)
+            | Self::Torus(_)
+            | Self::Sphere(_)
+            | Self::Paraboloid(_)
+            | Self::ParabolicCylinder(_)
+            | Self::CompoundParabola(_) => self.first_of_all(ray, start, wanted),
+        }
+    }
+
+    fn first_of_all(&self, ray: &Ray, start: Start, wanted: &Wanted) -> Option<Crossing> {
+        let mut first: Option<Crossing> = None;
+        self.crossings(ray, start, |crossing| {
+            if wanted.includes(&crossing) && first.is_none_or(|first| crossing.t < first.t) {
+                first = Some(crossing);
+            }
+        });
+        first
     }
 
     /// Unit normal of the front at a point of the surface.

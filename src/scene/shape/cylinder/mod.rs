@@ -3,10 +3,10 @@
 
 mod unrolled;
 
-use crate::math::{Aabb, Frame, quadratic};
+use crate::math::{Aabb, Frame, quadratic, unit};
 use crate::scene::Ray;
 use crate::scene::shape::wedge::{Wedge, arc_bounds, azimuth, point_on_circle, turn};
-use crate::scene::shape::{ChartRect, Crossing, HalfSpace, Start, Toward};
+use crate::scene::shape::{ChartRect, Crossing, HalfSpace, Start, Toward, Wanted};
 use glam::{DVec2, DVec3};
 use unrolled::{Strip, Unrolled};
 
@@ -23,6 +23,13 @@ pub struct Cylinder {
     leaving: Toward,
     /// `None` for the plain wall, so that the usual ray asks one question only.
     trims: Option<Box<Trims>>,
+}
+
+/// A ray along the axis of the cylinder: z = origin + t dir.
+#[derive(Debug, Clone, Copy)]
+struct Along {
+    origin: f64,
+    dir: f64,
 }
 
 /// Further conditions for points of the wall, all to be fulfilled.
@@ -64,39 +71,63 @@ impl Cylinder {
     }
 
     #[inline]
-    pub(super) fn crossings(&self, ray: &Ray, start: Start, mut visit: impl FnMut(Crossing)) {
+    pub(super) fn crossings(&self, ray: &Ray, start: Start, visit: impl FnMut(Crossing)) {
+        let Some((along, first, second)) = self.roots(ray, start) else { return };
+        let on_wall = |crossing: &Crossing| self.holds(ray, &along, crossing);
+        [Some(first), second].into_iter().flatten().filter(on_wall).for_each(visit);
+    }
+
+    #[inline(always)]
+    pub(super) fn first_crossing(
+        &self,
+        ray: &Ray,
+        start: Start,
+        wanted: &Wanted,
+    ) -> Option<Crossing> {
+        let (along, first, second) = self.roots(ray, start)?;
+        if wanted.includes(&first) && self.holds(ray, &along, &first) {
+            return Some(first);
+        }
+        second.filter(|second| wanted.includes(second) && self.holds(ray, &along, second))
+    }
+
+    /// Where the line of a ray crosses the endless cylinder, in ascending order; the second is missing for a ray that
+    /// starts on the wall: it is the start.
+    #[inline(always)]
+    fn roots(&self, ray: &Ray, start: Start) -> Option<(Along, Crossing, Option<Crossing>)> {
         let axis = self.frame.z;
         let from = ray.origin() - self.frame.origin;
-        let (along_origin, along_dir) = (from.dot(axis), ray.dir().dot(axis));
+        let along = Along { origin: from.dot(axis), dir: ray.dir().dot(axis) };
         // Perpendicular parts as vectors: 1 - (d·a)² would lose the digits of rays nearly along the axis.
-        let across_origin = from - along_origin * axis;
-        let across_dir = ray.dir() - along_dir * axis;
+        let across_origin = from - along.origin * axis;
+        let across_dir = ray.dir() - along.dir * axis;
         let a = across_dir.length_squared();
         if a == 0.0 {
-            return;
+            return None;
         }
         let half_b = across_origin.dot(across_dir);
-        let mut offer = |t: f64, toward: Toward| {
-            let z = along_origin + t * along_dir;
-            if z >= self.z_min && z <= self.z_max && self.keeps(ray, t) {
-                visit(Crossing { t, toward });
-            }
-        };
         match start {
             // On the wall c = 0, so the other root is -2b/a, whatever the angle.
             Start::On => {
                 let t = -2.0 * half_b / a;
                 // The further root leaves the cylinder, the nearer one enters it.
-                offer(t, if t > 0.0 { self.leaving } else { self.leaving.opposite() });
+                let toward = if t > 0.0 { self.leaving } else { self.leaving.opposite() };
+                Some((along, Crossing { t, toward }, None))
             }
             Start::Elsewhere => {
                 let c = across_origin.length_squared() - self.radius * self.radius;
-                if let Some([enter, leave]) = quadratic(a, half_b, c) {
-                    offer(enter, self.leaving.opposite());
-                    offer(leave, self.leaving);
-                }
+                let [enter, leave] = quadratic(a, half_b, c)?;
+                let enter = Crossing { t: enter, toward: self.leaving.opposite() };
+                Some((along, enter, Some(Crossing { t: leave, toward: self.leaving })))
             }
         }
+    }
+
+    /// Whether a point of the endless cylinder belongs to this wall.
+    #[inline]
+    fn holds(&self, ray: &Ray, along: &Along, crossing: &Crossing) -> bool {
+        let z = along.origin + crossing.t * along.dir;
+        z >= self.z_min && z <= self.z_max && self.keeps(ray, crossing.t)
     }
 
     /// Whether the point of the wall at distance `t` fulfils the further conditions.
@@ -122,7 +153,7 @@ impl Cylinder {
     #[inline]
     pub(super) fn normal(&self, p: DVec3) -> DVec3 {
         let from = p - self.frame.origin;
-        let outward = (from - from.dot(self.frame.z) * self.frame.z).normalize();
+        let outward = unit((1.0 / self.radius) * (from - from.dot(self.frame.z) * self.frame.z));
         match self.leaving {
             Toward::Front => outward,
             Toward::Back => -outward,

@@ -8,7 +8,7 @@ pub use region::Region;
 
 use crate::math::{Aabb, Frame};
 use crate::scene::Ray;
-use crate::scene::shape::{ChartRect, Crossing, Start, Toward};
+use crate::scene::shape::{ChartRect, Crossing, Start, Toward, Wanted};
 use glam::{DVec2, DVec3};
 
 /// A piece of the plane z = 0 of a frame; the front is +z.
@@ -42,15 +42,30 @@ impl Flat {
 
     #[inline]
     pub(super) fn crossings(&self, ray: &Ray, start: Start, mut visit: impl FnMut(Crossing)) {
-        if start == Start::On {
-            return;
+        let any = Wanted { toward: None, min: f64::MIN, max: f64::MAX };
+        if let Some(crossing) = self.first_crossing(ray, start, &any) {
+            visit(crossing);
         }
+    }
+
+    /// The crossing, if it is wanted: the cheap questions come first.
+    #[inline(always)]
+    pub(super) fn first_crossing(
+        &self,
+        ray: &Ray,
+        start: Start,
+        wanted: &Wanted,
+    ) -> Option<Crossing> {
         let across = ray.dir().dot(self.frame.z);
-        let t = (self.frame.origin - ray.origin()).dot(self.frame.z) / across;
-        // Parallel rays give an infinite or undefined t.
-        if t.is_finite() && self.contains(ray.at(t)) {
-            visit(Crossing { t, toward: if across > 0.0 { Toward::Front } else { Toward::Back } });
+        let toward = if across > 0.0 { Toward::Front } else { Toward::Back };
+        if start == Start::On || !wanted.includes_way(toward) {
+            return None;
         }
+        let t = (self.frame.origin - ray.origin()).dot(self.frame.z) / across;
+        // Parallel rays give an infinite or undefined t, which no finite limit includes.
+        let crossing = Crossing { t, toward };
+        (wanted.includes(&crossing) && t < f64::INFINITY && self.contains(ray.at(t)))
+            .then_some(crossing)
     }
 
     #[inline]

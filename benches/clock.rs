@@ -1,0 +1,50 @@
+//! How benches measure: seconds of one thread's CPU, two programs in turn, medians of many pairs.
+//!
+//! Other work on the machine takes time away, but hardly any CPU seconds: so the clock is that of the thread, and
+//! two programs are compared within a pair of runs, not by their means.
+
+use std::fs;
+use std::hint::black_box;
+use std::time::Instant;
+
+/// CPU seconds that this thread has used, where the system tells (Linux; exact to a tick of the scheduler, 1 to 10 ms).
+fn thread_cpu_seconds() -> Option<f64> {
+    let stat = fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    let nanoseconds: f64 = stat.split_whitespace().next()?.parse().ok()?;
+    Some(nanoseconds * 1e-9)
+}
+
+/// CPU seconds of a piece of work that stays on this thread (elapsed seconds where they are not told), and its result.
+pub(crate) fn cpu_seconds<T>(work: impl FnOnce() -> T) -> (f64, T) {
+    let (cpu, wall) = (thread_cpu_seconds(), Instant::now());
+    let result = black_box(work());
+    let seconds = match (cpu, thread_cpu_seconds()) {
+        (Some(before), Some(after)) => after - before,
+        _ => wall.elapsed().as_secs_f64(),
+    };
+    (seconds, result)
+}
+
+/// Elapsed seconds of a piece of work, and its result.
+pub(crate) fn wall_seconds<T>(work: impl FnOnce() -> T) -> (f64, T) {
+    let start = Instant::now();
+    let result = black_box(work());
+    (start.elapsed().as_secs_f64(), result)
+}
+
+/// Median, smallest and largest of a series.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Spread {
+    pub(crate) median: f64,
+    pub(crate) min: f64,
+    pub(crate) max: f64,
+}
+
+impl Spread {
+    /// The spread of at least one value.
+    pub(crate) fn of(values: impl IntoIterator<Item = f64>) -> Self {
+        let mut values: Vec<f64> = values.into_iter().collect();
+        values.sort_by(f64::total_cmp);
+        Self { median: values[values.len() / 2], min: values[0], max: values[values.len() - 1] }
+    }
+}

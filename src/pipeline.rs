@@ -242,8 +242,8 @@ pub fn trace(job: &Job, interrupt: &Interrupt, watch: &mut dyn FnMut(&Progress))
         let round_end = run.round_end();
         let mut early = None;
         while run.waves() < round_end && early.is_none() {
-            run.next_wave();
-            early = stop_between_waves(&job.run, &run, start.elapsed(), interrupt);
+            run.next_piece();
+            early = stop_between_pieces(&job.run, &run, start.elapsed(), interrupt);
             watch(&progress(&job.run, &run, start.elapsed(), target.clone()));
         }
         if let Some(stop) = early {
@@ -258,8 +258,8 @@ pub fn trace(job: &Job, interrupt: &Interrupt, watch: &mut dyn FnMut(&Progress))
     Traced { readings: run.readings(), stop, elapsed: start.elapsed() }
 }
 
-/// The rules that may end a run after any wave.
-fn stop_between_waves(
+/// The rules that may end a run after any piece of work.
+fn stop_between_pieces(
     plan: &RunPlan,
     run: &Run<'_>,
     elapsed: Duration,

@@ -317,7 +317,9 @@ mod tests {
                 stop: StopRules { paths: Some(40_000), ..StopRules::default() },
             };
             let mut run = Run::new(&scene, &plan);
-            run.next_wave();
+            while !run.is_complete() {
+                run.next_piece();
+            }
             let measures = measure(&scene, &run.readings());
             for (name, expected) in [
                 ("exit.illuminance_avg", avg),

@@ -1,8 +1,9 @@
 //! Rounds of work: bounded waves of batches over all threads, folded in a fixed order.
 //!
-//! A wave is one batch of each group. Batches are folded in a binary tree over their index, whatever thread traced
-//! them and in whatever waves they came, so the result has the same bits for any number of threads. Only the partial
-//! sums of that tree are kept: memory does not grow with the number of paths.
+//! A wave is one batch of each group, traced in pieces between which a run may stop. Batches are folded in a binary
+//! tree over their index, whatever thread traced them and in whatever pieces they came, so the result has the same
+//! bits for any number of threads. Only the partial sums of that tree are kept: memory does not grow with the number
+//! of paths.
 
 use crate::scene::Scene;
 use crate::scene::plan::RunPlan;
@@ -13,10 +14,16 @@ use rayon::prelude::*;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Paths in a batch, unless fewer were asked for.
+/// Straight pieces that a batch should hold: long enough that summing up costs little, short enough to stop soon.
+const BATCH_SEGMENTS: u64 = 1 << 16;
+/// Most paths in a batch.
 const BATCH_PATHS: u64 = 4096;
+/// Paths from which the length of paths is learnt before a run.
+const PILOT_PATHS: u64 = 64;
+/// Batches of a piece per thread: threads wait for the last batch of a piece.
+const PIECE_BATCHES: u64 = 4;
 
-/// A flag that asks a run to stop after the wave it is in.
+/// A flag that asks a run to stop.
 #[derive(Debug, Clone, Default)]
 pub struct Interrupt(Arc<AtomicBool>);
 
@@ -36,39 +43,50 @@ impl Interrupt {
 #[derive(Debug)]
 pub struct Run<'s> {
     forward: Forward<'s>,
-    /// Partial sums of the tree: each covers a power of two of batches, larger ones first.
-    partial: Vec<Readings>,
+    /// Partial sums of the tree over whole waves.
+    done: Vec<Readings>,
+    /// Partial sums of the tree over the batches of the wave in progress.
+    wave: Vec<Readings>,
     waves: u64,
     last_wave: Option<u64>,
 }
 
 impl<'s> Run<'s> {
-    /// Prepares a run; nothing is traced yet.
+    /// Prepares a run; nothing is counted yet.
     pub fn new(scene: &'s Scene, plan: &RunPlan) -> Self {
-        let waves = plan.stop.paths.map(|paths| paths.div_ceil(GROUPS * BATCH_PATHS).max(1));
+        let forward = |paths| Forward::new(scene, plan.seed, plan.bounce_limit, paths);
+        let pilot = forward(PILOT_PATHS).batch(0);
+        let segments = pilot.segments.div_ceil(pilot.paths()).max(1);
+        let usual = (BATCH_SEGMENTS / segments).clamp(1, BATCH_PATHS);
+        let waves = plan.stop.paths.map(|paths| paths.div_ceil(GROUPS * usual).max(1));
         let batch_paths = match (plan.stop.paths, waves) {
             (Some(paths), Some(waves)) => paths.div_ceil(GROUPS * waves).max(1),
-            _ => BATCH_PATHS,
+            _ => usual,
         };
         Self {
-            forward: Forward::new(scene, plan.seed, plan.bounce_limit, batch_paths),
-            partial: Vec::new(),
+            forward: forward(batch_paths),
+            done: Vec::new(),
+            wave: Vec::new(),
             waves: 0,
             last_wave: waves,
         }
     }
 
-    /// Traces one wave.
-    pub fn next_wave(&mut self) {
-        let first = self.waves * GROUPS;
-        let batches: Vec<Readings> = (first..first + GROUPS)
+    /// Traces the next piece of a wave: a few batches for each thread.
+    pub fn next_piece(&mut self) {
+        let first = self.batches_of_wave();
+        let piece = PIECE_BATCHES * rayon::current_num_threads() as u64;
+        let end = (first + piece).min(GROUPS);
+        let before = self.waves * GROUPS;
+        let batches: Vec<Readings> = (before + first..before + end)
             .into_par_iter()
             .map(|batch| self.forward.batch(batch))
             .collect();
-        for batch in batches {
-            self.fold(batch);
+        batches.into_iter().for_each(|batch| fold(&mut self.wave, batch));
+        if end == GROUPS {
+            self.wave.drain(..).for_each(|wave| fold(&mut self.done, wave));
+            self.waves += 1;
         }
-        self.waves += 1;
     }
 
     /// Waves after which the next test of the stop rules is due: rounds grow by a quarter.
@@ -77,7 +95,7 @@ impl<'s> Run<'s> {
         self.last_wave.map_or(next, |last| next.min(last))
     }
 
-    /// Waves traced so far.
+    /// Whole waves traced so far.
     pub fn waves(&self) -> u64 {
         self.waves
     }
@@ -87,21 +105,22 @@ impl<'s> Run<'s> {
         self.last_wave.is_some_and(|last| self.waves >= last)
     }
 
-    /// Paths traced so far.
+    /// Paths traced so far, those of a wave in progress included.
     pub fn paths(&self) -> u64 {
-        self.waves * GROUPS * self.forward.shares.iter().sum::<u64>()
+        (self.waves * GROUPS + self.batches_of_wave()) * self.batch_paths()
     }
 
     /// Paths asked for, rounded up to whole batches; `None` without such a rule.
     pub fn planned_paths(&self) -> Option<u64> {
-        let batch: u64 = self.forward.shares.iter().sum();
-        self.last_wave.map(|last| last * GROUPS * batch)
+        self.last_wave.map(|last| last * GROUPS * self.batch_paths())
     }
 
-    /// Everything counted so far. At least one wave has been traced.
+    /// Everything counted in whole waves, so that all groups have equally many batches; in a first wave that was
+    /// stopped, in all of its batches so far. At least one piece has been traced.
     pub fn readings(&self) -> Readings {
-        let mut partial = self.partial.iter().rev();
-        let mut sum = partial.next().expect("a wave has been traced").clone();
+        let partial = if self.done.is_empty() { &self.wave } else { &self.done };
+        let mut partial = partial.iter().rev();
+        let mut sum = partial.next().expect("a piece has been traced").clone();
         // The right edge of the tree: smaller subtrees join the larger ones on their left.
         for left in partial {
             sum = left.clone().merge(&sum);
@@ -109,13 +128,20 @@ impl<'s> Run<'s> {
         sum
     }
 
-    /// Adds a batch as a leaf of the tree; neighbours that cover equally many batches become one.
-    fn fold(&mut self, batch: Readings) {
-        let mut node = batch;
-        while let Some(left) = self.partial.pop_if(|left| left.batch_count() == node.batch_count())
-        {
-            node = left.merge(&node);
-        }
-        self.partial.push(node);
+    fn batches_of_wave(&self) -> u64 {
+        self.wave.iter().map(Readings::batch_count).sum()
     }
+
+    fn batch_paths(&self) -> u64 {
+        self.forward.shares.iter().sum()
+    }
+}
+
+/// Adds a node to the partial sums of a tree, each of which covers a power of two of batches, larger ones first;
+/// neighbours that cover equally many become one.
+fn fold(partial: &mut Vec<Readings>, mut node: Readings) {
+    while let Some(left) = partial.pop_if(|left| left.batch_count() == node.batch_count()) {
+        node = left.merge(&node);
+    }
+    partial.push(node);
 }

@@ -5,7 +5,7 @@ use crate::error::{Diagnostic, Error};
 use crate::input::diagnostic::{self, Colour};
 use crate::input::{self, Settings};
 use crate::pipeline::{self, Output, Progress, Stop};
-use crate::report::{Existing, Outcome};
+use crate::report::{Existing, Outcome, Written};
 use crate::transport::Interrupt;
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -55,7 +55,7 @@ enum Command {
 struct RunArgs {
     /// The scene file.
     scene: PathBuf,
-    /// Folder of the report [default: reports/NAME].
+    /// Folder of the report [default: reports/NAME below this folder].
     #[arg(short = 'o', long = "output", value_name = "DIR")]
     output: Option<PathBuf>,
     /// Set a key of the scene, such as `-D solids.pipe.sweep.path.0.straight_mm=20`.
@@ -66,7 +66,7 @@ struct RunArgs {
     estimator: Option<String>,
     /// Stop at this relative standard error of the target measure, such as 0.5%; the first sensor's flux if the scene
     /// names no measure.
-    #[arg(long, value_parser = parse_fraction, value_name = "PERCENT")]
+    #[arg(long, value_parser = parse_percent, value_name = "PERCENT")]
     target: Option<f64>,
     /// Stop after this many paths, such as 2M.
     #[arg(long, value_parser = parse_count, value_name = "COUNT")]
@@ -98,7 +98,7 @@ struct CheckArgs {
     /// The cross-section's PNG [default: NAME.check.png in this folder].
     #[arg(short = 'o', long = "output", value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Replace a picture that is there.
+    /// Replace a FILE that is there; NAME.check.png is replaced in any case.
     #[arg(long)]
     overwrite: bool,
 }
@@ -165,11 +165,19 @@ fn run(args: &RunArgs) -> ExitCode {
     display.close();
     match outcome {
         Ok(finished) => {
+            let is_kept = matches!(finished.written, Written::Nothing { .. });
+            let text = crate::report::terminal(&finished.report, &finished.dir, &finished.written);
             if !args.quiet {
                 warn(&finished.warnings);
-                print(&crate::report::terminal(&finished.report, &finished.dir, finished.written));
+                print(&text);
+            } else if is_kept {
+                eprint!("{}", text.lines().last().unwrap_or_default());
             }
-            exit_code(finished.stop, finished.report.outcome())
+            if is_kept {
+                ExitCode::from(3)
+            } else {
+                exit_code(finished.stop, finished.report.outcome())
+            }
         }
         Err(error) if interrupt.is_raised() => {
             fail(&error);
@@ -262,12 +270,10 @@ fn parse_count(text: &str) -> Result<u64, String> {
     Ok(count.round() as u64)
 }
 
-/// A relative error: 0.5% or 0.005.
-fn parse_fraction(text: &str) -> Result<f64, String> {
-    let (digits, factor) = text.strip_suffix('%').map_or((text, 1.0), |digits| (digits, 0.01));
-    let value: f64 =
-        digits.trim().parse().map_err(|_| format!("`{text}` is no percentage; try 0.5%"))?;
-    let fraction = value * factor;
+/// A relative error with its percent sign: without one, 0.5 might be taken for a half of a percent or for a half.
+fn parse_percent(text: &str) -> Result<f64, String> {
+    let value = text.strip_suffix('%').and_then(|digits| digits.trim().parse::<f64>().ok());
+    let fraction = 0.01 * value.ok_or_else(|| format!("`{text}` is no percentage; try 0.5%"))?;
     if fraction > 0.0 && fraction < 1.0 {
         Ok(fraction)
     } else {
@@ -349,14 +355,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn counts_fractions_and_times_are_read_with_their_units() {
+    fn counts_percentages_and_times_are_read_with_their_units() {
         assert_eq!(parse_count("2M"), Ok(2_000_000));
         assert_eq!(parse_count("1.5k"), Ok(1500));
         assert!(
             parse_count("0").is_err() && parse_count("nan").is_err() && parse_count("M").is_err()
         );
-        assert_eq!(parse_fraction("0.5%"), Ok(0.005));
-        assert!(parse_fraction("100%").is_err() && parse_fraction("-1%").is_err());
+        assert_eq!(parse_percent("0.5%"), Ok(0.005));
+        for wrong in ["100%", "-1%", "0.5", "%", "nan%"] {
+            assert!(parse_percent(wrong).is_err(), "{wrong}");
+        }
         assert_eq!(parse_time("5min"), Ok(Duration::from_secs(300)));
         assert!(parse_time("0s").is_err() && parse_time("inf").is_err());
     }

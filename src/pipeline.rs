@@ -1,10 +1,15 @@
 //! The flow, one call per step: a scene file becomes a report.
 
+mod progress;
+mod timing;
+
+pub use progress::{Progress, TargetProgress};
+
 use crate::error::{Diagnostic, Result};
 use crate::input::keys::Key;
 use crate::input::problems::Problems;
 use crate::input::{self, Job, Settings};
-use crate::measure::{self, Measure};
+use crate::measure;
 use crate::report::{
     self, CheckResult, Existing, Folder, Recipe, Report, RunFacts, SceneFacts, TargetFacts,
     Written, inventory, write_whole,
@@ -48,67 +53,6 @@ impl Stop {
             Self::Target => "the target error was reached",
             Self::Interrupted => "interrupted: this report is partial",
         }
-    }
-}
-
-/// How far a run has come: for progress displays.
-#[derive(Debug, Clone)]
-pub struct Progress {
-    /// Paths traced.
-    pub paths: u64,
-    /// Paths asked for, when that is a stop rule.
-    pub planned_paths: Option<u64>,
-    /// Time since the start of tracing.
-    pub elapsed: Duration,
-    /// The time asked for, when that is a stop rule.
-    pub time_limit: Option<Duration>,
-    /// The target: name, value, relative error reached and wanted; at the end of a round.
-    pub target: Option<TargetProgress>,
-}
-
-/// How well the target measure is known.
-#[derive(Debug, Clone)]
-pub struct TargetProgress {
-    /// Dotted name.
-    pub measure: String,
-    /// Its value and error.
-    pub reached: Measure,
-    /// The relative error wanted, 1.
-    pub wanted: f64,
-}
-
-impl Progress {
-    /// How much of the work is done, by the rule that is nearest to its end; 0..=1.
-    pub fn fraction(&self) -> f64 {
-        let paths = self.planned_paths.map_or(0.0, |planned| self.paths as f64 / planned as f64);
-        let time =
-            self.time_limit.map_or(0.0, |limit| self.elapsed.as_secs_f64() / limit.as_secs_f64());
-        // The error falls as one over the square root of the paths.
-        let target = self
-            .target
-            .as_ref()
-            .map_or(0.0, |target| (target.wanted / target.reached.relative_error()).powi(2));
-        paths.max(time).max(target).min(1.0)
-    }
-
-    /// Paths per second, the target's value and error, and the time left.
-    pub fn sentence(&self) -> String {
-        let seconds = self.elapsed.as_secs_f64();
-        let mut text =
-            format!("{:.3e} paths, {:.2e} paths/s", self.paths as f64, self.paths as f64 / seconds);
-        if let Some(target) = &self.target {
-            let (reached, error) = (&target.reached, 100.0 * target.reached.relative_error());
-            let wanted = 100.0 * target.wanted;
-            text += &format!(
-                ", {} {:.4} ± {error:.3} % of {wanted:.3} %",
-                target.measure, reached.value
-            );
-        }
-        let fraction = self.fraction();
-        if fraction > 0.0 {
-            text += &format!(", {:.0} s left", seconds * (1.0 - fraction) / fraction);
-        }
-        text
     }
 }
 
@@ -196,6 +140,7 @@ pub fn compose(job: &Job, readings: &Readings, stop: Stop) -> Report {
     let mut warnings: Vec<String> =
         job.warnings.iter().map(|warning| warning.message.clone()).collect();
     warnings.extend(report::remarks(&measures));
+    warnings.extend(report::remark_on_paths(job.run.stop.paths, measures.paths));
     let target = job.run.stop.target.as_ref().map(|target| TargetFacts::new(target, &measures));
     Report {
         scene: SceneFacts {
@@ -244,13 +189,13 @@ pub fn trace(job: &Job, interrupt: &Interrupt, watch: &mut dyn FnMut(&Progress))
         while run.waves() < round_end && early.is_none() {
             run.next_piece();
             early = stop_between_pieces(&job.run, &run, start.elapsed(), interrupt);
-            watch(&progress(&job.run, &run, start.elapsed(), target.clone()));
+            watch(&Progress::of(&job.run, &run, start.elapsed(), target.clone()));
         }
         if let Some(stop) = early {
             break stop;
         }
-        target = target_progress(job, &run);
-        watch(&progress(&job.run, &run, start.elapsed(), target.clone()));
+        target = TargetProgress::of(job, &run);
+        watch(&Progress::of(&job.run, &run, start.elapsed(), target.clone()));
         if target.as_ref().is_some_and(|target| target.reached.relative_error() <= target.wanted) {
             break Stop::Target;
         }
@@ -272,27 +217,6 @@ fn stop_between_pieces(
         return Some(Stop::Paths);
     }
     plan.stop.time.is_some_and(|limit| elapsed >= limit).then_some(Stop::Time)
-}
-
-fn target_progress(job: &Job, run: &Run<'_>) -> Option<TargetProgress> {
-    let target = job.run.stop.target.as_ref()?;
-    let reached = measure::value_of(&job.scene, &run.readings(), &target.measure)?;
-    Some(TargetProgress { measure: target.measure.clone(), reached, wanted: target.relative_error })
-}
-
-fn progress(
-    plan: &RunPlan,
-    run: &Run<'_>,
-    elapsed: Duration,
-    target: Option<TargetProgress>,
-) -> Progress {
-    Progress {
-        paths: run.paths(),
-        planned_paths: run.planned_paths(),
-        elapsed,
-        time_limit: plan.stop.time,
-        target,
-    }
 }
 
 /// `reports/NAME` after the scene file, unless told otherwise.
@@ -325,28 +249,12 @@ pub fn check(
     let job = input::load(scene, settings)?;
     expect_measures(&job)?;
     let default = PathBuf::from(format!("{}.check.png", job.name));
-    let picture = picture.unwrap_or(&default);
+    // The default name belongs to this program: it is drawn anew at every check.
+    let (picture, existing) =
+        picture.map_or((&*default, Existing::Replace), |path| (path, existing));
     let tracks = tracks(&job.scene, job.run.seed, job.run.bounce_limit, CHECK_PATHS);
     let bytes = report::scene_picture(&job.title, &job.scene, &tracks)?;
     write_whole(picture, &bytes, existing)?;
     let text = format!("{}\n{}picture: {}\n", job.title, inventory(&job.scene), picture.display());
     Ok(Checked { text, warnings: job.warnings })
-}
-
-/// Seconds, outside of the reproducible set of files.
-mod timing {
-    use crate::error::Result;
-    use crate::pipeline::Traced;
-    use crate::report::Folder;
-
-    pub(super) fn write(folder: &Folder, traced: &Traced) -> Result<()> {
-        let seconds = traced.elapsed.as_secs_f64();
-        let (paths, segments) = (traced.readings.paths() as f64, traced.readings.segments as f64);
-        let text = format!(
-            "seconds,paths_per_s,segments_per_s\n{seconds:.3},{:.0},{:.0}\n",
-            paths / seconds,
-            segments / seconds
-        );
-        folder.write_beside("timing.csv", text.as_bytes())
-    }
 }

@@ -1,14 +1,16 @@
-//! From a validated tree to the spec types, entry by entry, so that a bad entry does not hide the others.
+//! From a validated tree to the spec types, entry by entry, so that a bad entry does not hide the others, and a bad
+//! key does not hide the rest of its entry.
 
 use indexmap::IndexMap;
 use serde::de::DeserializeOwned;
+use serde_json::Value as Json;
 
-use crate::input::keys::Key;
+use crate::input::keys::{Key, Segment};
 use crate::input::problems::Problems;
 use crate::input::spec::{AIR, FORMAT_VERSION, SceneSpec};
 use crate::input::tree::{Node, Value};
 
-/// The spec that a tree says. What has an error is left out, or has its default.
+/// The spec that a tree says. A key with an error is left out, and with it an entry that is nothing without the key.
 pub fn scene(root: &Node, problems: &mut Problems) -> SceneSpec {
     SceneSpec {
         lumiduct: FORMAT_VERSION,
@@ -47,15 +49,38 @@ fn entries<T: DeserializeOwned>(
 }
 
 fn one<T: DeserializeOwned>(node: &Node, key: &Key, problems: &mut Problems) -> Option<T> {
-    if problems.has_error_within(key) || has_unreadable(node) {
+    if has_unreadable(node) {
         return None;
     }
-    match serde_json::from_value(node.to_json()) {
+    let mut json = node.to_json();
+    let mut is_whole = true;
+    for wrong in problems.error_keys().filter(|wrong| wrong.is_within(key)) {
+        is_whole = false;
+        drop_key(&mut json, &wrong.segments()[key.segments().len()..]);
+    }
+    match serde_json::from_value(json) {
         Ok(spec) => Some(spec),
         Err(reason) => {
-            problems.error(key, reason.to_string()).at(&node.origin);
+            if is_whole {
+                problems.error(key, reason.to_string()).at(&node.origin);
+            }
             None
         }
+    }
+}
+
+/// Takes a key out of a table. An item of an array stays: without it, those after it would have other numbers.
+fn drop_key(json: &mut Json, path: &[Segment]) {
+    let Some((last, around)) = path.split_last() else {
+        *json = Json::Null;
+        return;
+    };
+    let table = around.iter().try_fold(json, |json, segment| match segment {
+        Segment::Field(name) => json.get_mut(name),
+        Segment::Index(index) => json.get_mut(index),
+    });
+    if let (Some(Json::Object(entries)), Segment::Field(name)) = (table, last) {
+        entries.shift_remove(name);
     }
 }
 

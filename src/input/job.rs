@@ -1,9 +1,9 @@
 //! The whole way from a scene file to a job: read, lowered, with the wishes of the command line.
 
 use crate::error::{Diagnostic, Result};
+use crate::input::digest::Digest;
 use crate::input::keys::Places;
 use crate::input::lower::{Lowered, lower};
-use crate::input::sources::Source;
 use crate::input::{Draft, draft};
 use crate::scene::Scene;
 use crate::scene::plan::{Check, RunPlan, StopRules, Target};
@@ -46,7 +46,7 @@ pub struct Job {
     pub places: Places,
     /// Overrides of the command line, as given.
     pub overrides: Vec<String>,
-    /// Identifies scene file, included files and overrides: 64-bit FNV-1a, in hexadecimal.
+    /// Identifies scene file, included files, meshes and overrides: 64-bit FNV-1a, in hexadecimal.
     pub hash: String,
     /// Remarks on the scene.
     pub warnings: Vec<Diagnostic>,
@@ -57,12 +57,14 @@ pub fn load(path: &Path, settings: &Settings) -> Result<Job> {
     let Draft { spec, places, text, mut problems } = draft(path, &settings.overrides)?;
     let whole = problems.is_free_of_errors();
     let lowered = if whole { lower(&spec, &places, &mut problems) } else { None };
-    let hash = hash(places.sources().iter().map(Source::text));
     let warnings = problems.finish(&places)?;
     // Without an error there is a scene.
-    let Some(Lowered { scene, mut run, checks }) = lowered else {
+    let Some(Lowered { scene, mut run, checks, meshes }) = lowered else {
         return Err(crate::error::Error::Input(warnings));
     };
+    let mut hash = Digest::default();
+    places.sources().iter().for_each(|source| hash.add(source.text().as_bytes()));
+    hash.add(meshes.to_string().as_bytes());
     apply(settings, &scene, &mut run);
     Ok(Job {
         name: path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
@@ -74,7 +76,7 @@ pub fn load(path: &Path, settings: &Settings) -> Result<Job> {
         text,
         places,
         overrides: settings.overrides.clone(),
-        hash,
+        hash: hash.to_string(),
         warnings,
     })
 }
@@ -96,15 +98,4 @@ fn apply(settings: &Settings, scene: &Scene, run: &mut RunPlan) {
         time: settings.time,
         target: target.map(|(relative_error, measure)| Target { measure, relative_error }),
     };
-}
-
-/// FNV-1a over all texts, each with its length (Fowler, Noll & Vo; draft-eastlake-fnv).
-fn hash<'a>(texts: impl Iterator<Item = &'a str>) -> String {
-    let mut state: u64 = 0xcbf2_9ce4_8422_2325;
-    for text in texts {
-        for byte in text.len().to_le_bytes().into_iter().chain(text.bytes()) {
-            state = (state ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
-        }
-    }
-    format!("{state:016x}")
 }

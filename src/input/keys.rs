@@ -54,6 +54,11 @@ impl Key {
         &self.segments
     }
 
+    /// The table or array around it; of the whole file, itself.
+    pub fn parent(&self) -> Self {
+        Self { segments: self.segments[..self.segments.len().saturating_sub(1)].to_vec() }
+    }
+
     /// Whether this is `other` or lies inside it.
     pub fn is_within(&self, other: &Self) -> bool {
         self.segments.starts_with(&other.segments)

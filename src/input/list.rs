@@ -9,6 +9,9 @@ const DEPTH: usize = 4;
 
 /// A line for each scene, with its title, and for each sensor file, in the order of their paths.
 pub fn list(folder: &Path) -> Result<String> {
+    if !folder.is_dir() {
+        return Err(Error::Usage(format!("{} is no folder", folder.display())));
+    }
     let mut lines = Vec::new();
     collect(folder, DEPTH, &mut lines)?;
     if lines.is_empty() {
@@ -26,11 +29,11 @@ fn collect(folder: &Path, depth: usize, lines: &mut Vec<(String, String)>) -> Re
     for path in paths {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         if path.is_dir() {
-            // Build products and reports hold copies of scenes.
-            if depth > 0
-                && !name.starts_with('.')
-                && !["target", "reports"].contains(&name.as_str())
-            {
+            // Reports hold copies of scenes, wherever they lie; build products and tests hold none to be run.
+            let is_report = path.join("summary.json").is_file();
+            let is_passed_by =
+                name.starts_with('.') || ["target", "tests"].contains(&name.as_str());
+            if depth > 0 && !is_report && !is_passed_by {
                 collect(&path, depth - 1, lines)?;
             }
         } else if path.extension().is_some_and(|extension| extension == "toml")
@@ -42,9 +45,15 @@ fn collect(folder: &Path, depth: usize, lines: &mut Vec<(String, String)>) -> Re
     Ok(())
 }
 
-/// The title of a scene, or the kind of a sensor file; `None` for anything else.
+/// The title of a scene, or the kind of a sensor file, or that it cannot be read; `None` for anything else.
 fn describe(path: &Path) -> Option<String> {
-    let table: toml::Table = fs::read_to_string(path).ok()?.parse().ok()?;
+    let table = match fs::read_to_string(path) {
+        Ok(text) => text.parse::<toml::Table>(),
+        Err(reason) => return Some(format!("(cannot be read: {reason})")),
+    };
+    let Ok(table) = table else {
+        return Some("(no valid TOML: `lumiduct check` tells where)".to_owned());
+    };
     if table.contains_key("lumiduct") {
         return Some(
             table.get("title").and_then(toml::Value::as_str).unwrap_or("(no title)").to_owned(),

@@ -18,6 +18,7 @@ use crate::input::validate::Completeness;
 pub mod check;
 pub mod convert;
 pub mod diagnostic;
+mod digest;
 pub mod include;
 mod job;
 pub mod keys;
@@ -51,7 +52,7 @@ pub struct Loaded {
 /// A scene with what is wrong with it so far.
 #[derive(Debug)]
 pub struct Draft {
-    /// What the files say. An entry with an error is left out.
+    /// What the files say. A key with an error is left out, and an entry that is nothing without it.
     pub spec: SceneSpec,
     /// Where they say it; holds the texts of all files, too.
     pub places: Places,
@@ -94,7 +95,8 @@ pub fn draft(path: &Path, overrides: &[String]) -> Result<Draft> {
     let places = Places::new(root, sources);
     // With a break of the syntax, names may be missing that are only out of sight.
     if breaks.is_empty() {
-        check::check(&spec, &places, &mut problems);
+        note_broken_rules(&spec, &places, &mut problems);
+        check::check_names(&spec, &places, &mut problems);
     }
     Ok(Draft { spec, places, text, problems })
 }
@@ -133,6 +135,18 @@ fn note_breaks(breaks: &[SyntaxError], problems: &mut Problems) {
     }
 }
 
+/// Holds the spec against the rules. One about a table that has a wrong key may hold once the key is right.
+fn note_broken_rules(spec: &SceneSpec, places: &Places, problems: &mut Problems) {
+    let mut found = Problems::default();
+    check::check_rules(spec, places, &mut found);
+    // The tables of entries and those inside them: one entry says nothing about its neighbours.
+    let wrong = problems.error_keys().map(Key::parent);
+    let tables: Vec<Key> = wrong.filter(|table| table.segments().len() > 1).collect();
+    problems.append(found, |problem| {
+        tables.iter().any(|table| *table == *problem.key() || *table == problem.key().parent())
+    });
+}
+
 /// Holds the tree against the schema, and drops what stands in a line whose syntax is broken.
 fn note_differences(
     root: &Node,
@@ -147,5 +161,7 @@ fn note_differences(
         (origin.source, sources.get(origin.source).line(origin.span.start))
     };
     let broken: BTreeSet<_> = breaks.iter().map(|error| line(&error.origin)).collect();
-    problems.append(found, |origin| broken.contains(&line(origin)));
+    problems.append(found, |problem| {
+        problem.origin().is_some_and(|origin| broken.contains(&line(origin)))
+    });
 }

@@ -33,6 +33,16 @@ impl Problem {
         Self { kind, key: key.clone(), origin: None, message, hint: None }
     }
 
+    /// The key that it is about.
+    pub fn key(&self) -> &Key {
+        &self.key
+    }
+
+    /// The place, where it is not that of the key's value.
+    pub fn origin(&self) -> Option<&Origin> {
+        self.origin.as_ref()
+    }
+
     /// What to do about it.
     pub fn hint(&mut self, hint: impl Into<String>) -> &mut Self {
         self.hint = Some(hint.into());
@@ -68,11 +78,10 @@ impl Problems {
         &mut self.list[last]
     }
 
-    /// Whether an error was noted at this key or inside it.
-    pub fn has_error_within(&self, key: &Key) -> bool {
-        self.list
-            .iter()
-            .any(|problem| problem.kind == DiagnosticKind::Error && problem.key.is_within(key))
+    /// The keys of the errors, in the order in which they were noted.
+    pub fn error_keys(&self) -> impl Iterator<Item = &Key> {
+        let errors = self.list.iter().filter(|problem| problem.kind == DiagnosticKind::Error);
+        errors.map(Problem::key)
     }
 
     /// Whether nothing is wrong so far.
@@ -80,10 +89,10 @@ impl Problems {
         self.errors == 0
     }
 
-    /// Adds what was found elsewhere, but for what stands where `is_echo` holds.
-    pub fn append(&mut self, other: Self, is_echo: impl Fn(&Origin) -> bool) {
+    /// Adds what was found elsewhere, but for what is an echo of something known.
+    pub fn append(&mut self, other: Self, is_echo: impl Fn(&Problem) -> bool) {
         for problem in other.list.into_iter().chain(other.spare) {
-            if !problem.origin.as_ref().is_some_and(&is_echo) {
+            if !is_echo(&problem) {
                 self.push(problem);
             }
         }

@@ -8,6 +8,8 @@ use serde::Serialize;
 
 /// A limit nearer to the value than this many total errors is undecided.
 const LIMIT_ERRORS: f64 = 3.0;
+/// From this many errors on it does not matter how many they are.
+const FAR_ERRORS: f64 = 100.0;
 /// Deviation from `equals` that passes, in total errors, where the check names neither `sigmas` nor `within`.
 const DEFAULT_SIGMAS: f64 = 4.0;
 /// Number of known names that are suggested for an unknown one.
@@ -102,11 +104,9 @@ fn limit(measure: &Measure, limit: f64, bound: Bound) -> (Outcome, String) {
             format!("{wanted} is wanted, which is within {LIMIT_ERRORS} errors"),
         );
     }
-    let apart = if error > 0.0 {
-        format!(", {:.1} errors away", room.abs() / error)
-    } else {
-        String::new()
-    };
+    let errors = room.abs() / error;
+    let apart =
+        if errors < FAR_ERRORS { format!(", {errors:.1} errors away") } else { String::new() };
     if room >= 0.0 {
         (Outcome::Passed, format!("{wanted} is wanted{apart}"))
     } else {

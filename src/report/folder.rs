@@ -16,12 +16,17 @@ pub enum Existing {
 }
 
 /// What writing changed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Written {
     /// At least one file is new or replaced.
     New,
     /// Everything was there before, the same to the byte.
     Same,
+    /// Nothing: these files are there with other contents and may not be replaced.
+    Nothing {
+        /// Their names.
+        differing: Vec<String>,
+    },
 }
 
 /// The folder of a report.
@@ -36,6 +41,9 @@ impl Folder {
     /// empty, or its files may be replaced, or it holds the report of this very `recipe`, which is going to be the
     /// same. A run that the clock stops has no recipe.
     pub fn open(path: &Path, existing: Existing, recipe: Option<&Recipe>) -> Result<Self> {
+        if path.is_file() {
+            return Err(Error::Usage(format!("{} is a file, not a folder", path.display())));
+        }
         fs::create_dir_all(path).map_err(|source| Error::io(path, source))?;
         let mut entries = fs::read_dir(path).map_err(|source| Error::io(path, source))?;
         let is_kept = existing == Existing::Keep && entries.next().is_some();
@@ -64,21 +72,14 @@ impl Folder {
             let path = self.path.join(&file.name);
             match (compare(&path, &file.bytes)?, self.existing) {
                 (Comparison::Same, _) => {}
-                (Comparison::Different, Existing::Keep) => differing.push(file.name.as_str()),
+                (Comparison::Different, Existing::Keep) => differing.push(file.name.clone()),
                 (Comparison::Different, Existing::Replace) | (Comparison::Missing, _) => {
                     staged.push((stage(&self.path, &file.bytes)?, path));
                 }
             }
         }
         if !differing.is_empty() {
-            return Err(Error::Output {
-                what: self.path.display().to_string(),
-                reason: format!(
-                    "this run came out different from the report that is there, which is kept; use --overwrite to \
-                     replace it, or -o for another folder; different are {}",
-                    differing.join(", ")
-                ),
-            });
+            return Ok(Written::Nothing { differing });
         }
         let written = if staged.is_empty() { Written::Same } else { Written::New };
         for (temporary, path) in staged {
@@ -195,8 +196,8 @@ mod tests {
         assert!(open(Some(&recipe(2))).is_err() && open(None).is_err());
 
         let other = [file("new.csv", "3"), file("a.csv", "2")];
-        let refusal = open(Some(&recipe(1))).unwrap().write(&other).unwrap_err();
-        assert!(refusal.to_string().ends_with("different are a.csv"), "{refusal}");
+        let written = open(Some(&recipe(1))).unwrap().write(&other).unwrap();
+        assert_eq!(written, Written::Nothing { differing: vec!["a.csv".into()] });
         assert_eq!(fs::read_to_string(dir.path().join("a.csv")).unwrap(), "1");
         assert_eq!(
             fs::read_dir(dir.path()).unwrap().count(),
@@ -240,6 +241,8 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("report");
         fs::write(&path, "a file").unwrap();
-        assert!(matches!(Folder::open(&path, Existing::Keep, None), Err(Error::Io { .. })));
+        assert!(matches!(Folder::open(&path, Existing::Keep, None), Err(Error::Usage(_))));
+        let below = path.join("below");
+        assert!(matches!(Folder::open(&below, Existing::Keep, None), Err(Error::Io { .. })));
     }
 }

@@ -34,9 +34,13 @@ pub(crate) fn markdown(report: &Report, files: &[&str]) -> String {
 
 /// A value with its error and unit.
 pub(crate) fn quantity(measure: &Measure) -> String {
-    let number = format_with_error(measure.value, measure.std_error);
     let unit = if measure.unit == "1" { String::new() } else { format!(" {}", measure.unit) };
-    format!("{number}{unit}{}", remark(measure.status))
+    let (value, error) = (measure.value, measure.std_error);
+    if measure.status == Status::NoSignal && value == 0.0 && error.is_finite() {
+        // The error of nothing is what a single path or count would have brought.
+        return format!("0{unit} (nothing counted; one path is {}{unit})", format_value(error));
+    }
+    format!("{}{unit}{}", format_with_error(value, error), remark(measure.status))
 }
 
 fn remark(status: Status) -> &'static str {
@@ -101,7 +105,8 @@ fn sensor(report: &Report, paths: &SensorPaths, files: &[&str]) -> String {
         let drawn =
             report.measures.maps.iter().any(|map| format!("{}.png", map_name(map)) == **file);
         if !drawn {
-            text += &format!("![{file}]({file})\n\n");
+            let stem = file.trim_end_matches(".png");
+            text += &format!("![{}]({file})\n\n", stem.replace('.', ": "));
         }
     }
     text += "| measure | value |\n|---|---|\n";
@@ -214,12 +219,7 @@ fn run(report: &Report) -> String {
         "unpolarised light: the mean of both polarisations at every interface".to_owned(),
     ];
     if let Some(target) = &run.target {
-        let reached = target.reached.map_or("unknown".into(), format_percent);
-        lines.push(format!(
-            "target {}: wanted {}, reached {reached}",
-            target.measure,
-            format_percent(target.wanted)
-        ));
+        lines.push(target.sentence());
     }
     if !report.scene.overrides.is_empty() {
         lines.push(format!("overrides: {}", report.scene.overrides.join(", ")));

@@ -20,7 +20,8 @@ pub use folder::{Existing, Folder, Written, write_whole};
 pub use inventory::inventory;
 pub use recipe::Recipe;
 pub use record::{
-    CheckResult, Outcome, Report, RunFacts, SceneFacts, TargetFacts, asked, leak_places, remarks,
+    CheckResult, Outcome, Report, RunFacts, SceneFacts, TargetFacts, asked, leak_places,
+    remark_on_paths, remarks,
 };
 pub use terminal::terminal;
 

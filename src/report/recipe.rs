@@ -9,7 +9,7 @@ use std::path::Path;
 pub struct Recipe {
     /// Version of the program.
     pub version: String,
-    /// Identifies scene file, included files and overrides.
+    /// Identifies scene file, included files, meshes and overrides.
     pub scene_hash: String,
     /// Seed of the random numbers.
     pub seed: u64,

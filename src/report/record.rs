@@ -1,6 +1,7 @@
 //! The one record that all formats of a report are made from.
 
 use crate::measure::{self, Measures, Verdict};
+use crate::report::number::format_percent;
 use crate::scene::plan::{Check, Estimator, StopRules, Target};
 use crate::transport::Leak;
 use glam::DVec3;
@@ -30,7 +31,7 @@ pub struct SceneFacts {
     pub title: String,
     /// What it is for.
     pub description: Option<String>,
-    /// Identifies scene file, included files and overrides.
+    /// Identifies scene file, included files, meshes and overrides.
     pub hash: String,
     /// Overrides of the command line.
     pub overrides: Vec<String>,
@@ -107,6 +108,16 @@ impl TargetFacts {
         Self { measure: target.measure.clone(), wanted: target.relative_error, reached }
     }
 
+    /// What was wanted, and what was reached.
+    pub fn sentence(&self) -> String {
+        let reached = self.reached.map_or("unknown".into(), format_percent);
+        format!(
+            "target {}: wanted {}, reached {reached}",
+            self.measure,
+            format_percent(self.wanted)
+        )
+    }
+
     /// Whether the error is as small as wanted.
     pub fn is_reached(&self) -> bool {
         self.reached.is_some_and(|reached| reached <= self.wanted)
@@ -129,12 +140,23 @@ pub fn leak_places(leaks: &[Leak], origin: DVec3) -> Vec<DVec3> {
     leaks.iter().map(|leak| leak.point + origin).collect()
 }
 
+/// Share of the flux cut by the bounce limit that is worth a remark, 1.
+const CUT_SHARE: f64 = 1e-3;
+
 /// Remarks that the results ask for.
 pub fn remarks(measures: &Measures) -> Vec<String> {
     let mut remarks = Vec::new();
     let value = |name: &str| measures.values.get(name).map_or(0.0, |measure| measure.value);
     if value("balance.leaked") > 0.0 {
         remarks.push("light leaked through holes in the geometry: see balance.leaked".to_owned());
+    }
+    let cut = value("balance.cut") / measures.source_flux;
+    if cut > CUT_SHARE {
+        remarks.push(format!(
+            "{} of the light was still on its way at the bounce limit: see balance.cut; raise run.bounce_limit, or \
+             give walls and media their losses",
+            format_percent(cut)
+        ));
     }
     for paths in &measures.sensor_paths {
         let sensor = &paths.sensor;
@@ -147,4 +169,12 @@ pub fn remarks(measures: &Measures) -> Vec<String> {
         }
     }
     remarks
+}
+
+/// A remark where a run had to trace noticeably more paths than it was asked for.
+pub fn remark_on_paths(asked: Option<u64>, traced: u64) -> Option<String> {
+    let asked = asked.filter(|&asked| traced > asked + asked / 10)?;
+    Some(format!(
+        "{traced} paths were traced where {asked} were asked for: each of the 128 batches has at least one per source"
+    ))
 }

@@ -6,7 +6,7 @@ use crate::report::{Report, Written};
 use std::path::Path;
 
 /// Sensors, checks and where the report lies.
-pub fn terminal(report: &Report, dir: &Path, written: Written) -> String {
+pub fn terminal(report: &Report, dir: &Path, written: &Written) -> String {
     let measures = &report.measures;
     let mut text =
         format!("{}\n{} paths, {}\n", report.scene.title, measures.paths, report.run.stopped);
@@ -30,12 +30,22 @@ pub fn terminal(report: &Report, dir: &Path, written: Written) -> String {
         };
         text += &format!("  check {}: {word}, {}\n", result.check.measure, result.verdict.reason);
     }
+    if let Some(target) = report.run.target.as_ref().filter(|target| !target.is_reached()) {
+        text += &format!("  note: {}\n", target.sentence());
+    }
     for warning in &report.warnings {
         text += &format!("  note: {warning}\n");
     }
-    let remark = match written {
-        Written::New => "",
-        Written::Same => " (was there already, the same to the byte)",
-    };
-    text + &format!("report: {}{remark}\n", dir.join("report.md").display())
+    let page = dir.join("report.md");
+    let page = page.display();
+    text + &match written {
+        Written::New => format!("report: {page}\n"),
+        Written::Same => format!("report: {page} (was there already, the same to the byte)\n"),
+        Written::Nothing { differing } => format!(
+            "no report: {} holds one that differs in {}, which is kept; use --overwrite to replace it, or -o for \
+             another folder\n",
+            dir.display(),
+            differing.join(", ")
+        ),
+    }
 }

@@ -9,6 +9,9 @@ use std::ops::ControlFlow;
 /// Stream of random numbers of the paths that are drawn.
 const STREAM: u64 = 2;
 
+/// Bounces that are drawn of a path: more only blacken the picture.
+const BOUNCES_DRAWN: u32 = 500;
+
 /// How a drawn path ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TrackEnd {
@@ -16,7 +19,7 @@ pub enum TrackEnd {
     Absorbed,
     /// It left the scene.
     Escaped,
-    /// It was cut by the bounce limit or by roulette.
+    /// It was cut by the bounce limit or by roulette, or goes on undrawn.
     Cut,
     /// It was lost through a hole in the geometry.
     Leaked,
@@ -45,7 +48,7 @@ fn track(scene: &Scene, source: SourceId, seed: u64, bounce_limit: u32, index: u
     let emitted = scene.sources[source.index()].emit(scene, &mut sampler);
     let mut track = Track { points: vec![emitted.ray.origin()], end: TrackEnd::Cut };
     let path = Path::emitted(scene, source, emitted);
-    walk(scene, path, bounce_limit, &mut sampler, |path, event| {
+    walk(scene, path, bounce_limit.min(BOUNCES_DRAWN), &mut sampler, |path, event| {
         match event {
             Event::Arrive(vertex) => track.points.push(vertex.point),
             Event::Absorbed(_) => track.end = TrackEnd::Absorbed,

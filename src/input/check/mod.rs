@@ -15,11 +15,16 @@ mod sensors;
 mod shapes;
 mod sources;
 
-/// Notes every broken rule.
-pub fn check(spec: &SceneSpec, places: &Places, problems: &mut Problems) {
+/// Notes names that are taken twice, and names of things that are not there.
+pub fn check_names(spec: &SceneSpec, places: &Places, problems: &mut Problems) {
     let scene = Scene { spec, places };
     names::check(places, problems);
     references::check(scene, problems);
+}
+
+/// Notes every broken rule about the keys of one table.
+pub fn check_rules(spec: &SceneSpec, places: &Places, problems: &mut Problems) {
+    let scene = Scene { spec, places };
     finishes::check(scene, problems);
     placements::check(scene, problems);
     shapes::check(scene, problems);

@@ -32,6 +32,7 @@ impl Context<'_> {
                 return None;
             }
         };
+        self.meshes.add_mesh(&mesh);
         if spec.normals == MeshNormals::Facet {
             mesh.normals = None;
         }

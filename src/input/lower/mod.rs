@@ -14,6 +14,7 @@ mod solids;
 mod sources;
 mod surfaces;
 
+use crate::input::digest::Digest;
 use crate::input::keys::{Key, Places};
 use crate::input::problems::{Problems, name_hint};
 use crate::input::spec::SceneSpec;
@@ -31,6 +32,8 @@ pub(crate) struct Lowered {
     pub(crate) scene: Scene,
     pub(crate) run: RunPlan,
     pub(crate) checks: Vec<Check>,
+    /// Tells apart what the mesh files said.
+    pub(crate) meshes: Digest,
 }
 
 /// Everything that the parts of the lowering share.
@@ -39,6 +42,7 @@ pub(crate) struct Context<'a> {
     pub(crate) places: &'a Places,
     pub(crate) problems: &'a mut Problems,
     pub(crate) builder: Builder,
+    meshes: Digest,
     media: IndexMap<String, MediumId>,
     finishes: IndexMap<String, FinishId>,
     /// Faces by dotted name; a name such as `duct.wall` may stand for several.
@@ -53,6 +57,7 @@ pub(crate) fn lower(spec: &SceneSpec, places: &Places, problems: &mut Problems) 
         places,
         problems,
         builder: Builder::new(origin(spec), air, flux_unit(spec)),
+        meshes: Digest::default(),
         media: IndexMap::from([(crate::input::spec::AIR.to_owned(), MediumId::new(0))]),
         finishes: IndexMap::new(),
         faces: IndexMap::new(),
@@ -64,6 +69,7 @@ pub(crate) fn lower(spec: &SceneSpec, places: &Places, problems: &mut Problems) 
     context.lower_sensors();
     let run = plan::run(spec);
     let checks = spec.check.iter().map(plan::check).collect();
+    let meshes = context.meshes;
     if !context.problems.is_free_of_errors() {
         return None;
     }
@@ -73,7 +79,7 @@ pub(crate) fn lower(spec: &SceneSpec, places: &Places, problems: &mut Problems) 
     consistency::check_overlaps(spec, &scene, context.problems);
     consistency::check_open_faces(spec, &scene, context.problems);
     plan::check_measures(spec, &scene, context.problems);
-    context.problems.is_free_of_errors().then_some(Lowered { scene, run, checks })
+    context.problems.is_free_of_errors().then_some(Lowered { scene, run, checks, meshes })
 }
 
 /// The middle of the positions that the file names: internal coordinates are about it, so that a scene far from the

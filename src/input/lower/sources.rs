@@ -6,6 +6,7 @@ use crate::input::lower::place::Facing;
 use crate::input::lower::surfaces::tilted;
 use crate::input::problems::{Problems, name_hint};
 use crate::input::spec::SceneSpec;
+use crate::input::spec::placement::PlacementSpec;
 use crate::input::spec::source::{
     BodySpec, ContactSpec, EmissionSpec, FaceSide, SourceCommonSpec, SourceSpec,
 };
@@ -37,6 +38,7 @@ impl Context<'_> {
         if let Some(finish) = self.body_finish(&common.body) {
             on = self.add_body(name, &emitter, finish);
         }
+        self.note_joint(common, key);
         // Whether paths have to be asked for their solids is settled when all is built.
         let start = match common.contact {
             Some(ContactSpec::Air) => Start::Behind,
@@ -53,6 +55,17 @@ impl Context<'_> {
             start,
             on,
         });
+    }
+
+    /// Without a gap there may be glue or a hair of air, which is not the same light: told unless it is said.
+    fn note_joint(&mut self, common: &SourceCommonSpec, key: &Key) {
+        if let (Some(PlacementSpec::AtFace(at)), None) = (&common.at, common.contact)
+            && at.gap_mm == 0.0
+        {
+            self.problems
+                .warning(key, format!("touches `{}` and is joined to it optically, as by glue", at.face))
+                .hint("write contact = \"optical\" if so, contact = \"air\" for a hair of air, or a gap_mm");
+        }
     }
 
     fn emission(&mut self, source: &SourceSpec, key: &Key) -> Option<Emission> {

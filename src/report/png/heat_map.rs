@@ -48,8 +48,7 @@ const LONGEST: f64 = 4.0;
 /// Space between the map and the colour bar, pixels.
 const BAR_GAP: f64 = 26.0;
 
-/// Draws a map with axes, colour bar and a line with the least, mean and greatest of its cells (mean of the cells
-/// as they are, whatever their areas).
+/// Draws a map with axes, colour bar and a line with the least and greatest of its cells.
 ///
 /// Zero is an end of a linear bar where the values come near it. At most one cell in a thousand that sticks out
 /// tenfold does not stretch the bar, which then has a tip. A logarithmic bar spans at most six decades.
@@ -129,12 +128,10 @@ fn remarks(values: &[f64], unit: &str, aspect: Aspect) -> Vec<String> {
     let with_unit = |value: f64| format!("{} {unit}", format_value(value)).trim().to_string();
     let mut lines = vec![match (values.first(), values.last()) {
         (Some(&least), Some(&greatest)) => {
-            // Divided first: a sum of large values might overflow.
-            let mean: f64 = values.iter().map(|value| value / values.len() as f64).sum();
             let cells =
                 if values.len() == 1 { "1 cell" } else { &format!("{} cells", values.len()) };
-            let [least, mean, greatest] = [least, mean, greatest].map(with_unit);
-            format!("min {least}   ·   mean {mean}   ·   max {greatest}   ·   {cells}")
+            let [least, greatest] = [least, greatest].map(with_unit);
+            format!("min {least}   ·   max {greatest}   ·   {cells}")
         }
         (None, _) | (_, None) => "No cell has a value.".to_string(),
     }];

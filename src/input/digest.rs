@@ -1,0 +1,88 @@
+//! A number that tells inputs apart: 64-bit FNV-1a (Fowler, Noll & Vo; draft-eastlake-fnv).
+
+use crate::formats::mesh::TriangleMesh;
+use glam::DVec3;
+use std::fmt;
+
+/// A digest of everything that was added so far, in that order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Digest(u64);
+
+impl Default for Digest {
+    fn default() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+}
+
+impl Digest {
+    /// Adds a piece with its length, so that it matters where one piece ends.
+    pub(crate) fn add(&mut self, piece: &[u8]) {
+        self.add_bytes(&piece.len().to_le_bytes());
+        self.add_bytes(piece);
+    }
+
+    /// Adds what was read of a mesh.
+    pub(crate) fn add_mesh(&mut self, mesh: &TriangleMesh) {
+        self.add_bytes(&mesh.positions.len().to_le_bytes());
+        mesh.positions.iter().for_each(|position| self.add_vector(*position));
+        self.add_bytes(&mesh.triangles.len().to_le_bytes());
+        for index in mesh.triangles.iter().flatten().chain(&mesh.face_of) {
+            self.add_bytes(&index.to_le_bytes());
+        }
+        mesh.normals.iter().flatten().flatten().for_each(|normal| self.add_vector(*normal));
+        mesh.faces.iter().for_each(|face| self.add(face.as_bytes()));
+    }
+
+    fn add_vector(&mut self, vector: DVec3) {
+        vector.to_array().iter().for_each(|x| self.add_bytes(&x.to_le_bytes()));
+    }
+
+    fn add_bytes(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3);
+        }
+    }
+}
+
+impl fmt::Display for Digest {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(out, "{:016x}", self.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(pieces: &[&str]) -> Digest {
+        let mut digest = Digest::default();
+        pieces.iter().for_each(|piece| digest.add(piece.as_bytes()));
+        digest
+    }
+
+    #[test]
+    fn the_end_of_a_piece_counts() {
+        assert_eq!(of(&["ab", "c"]), of(&["ab", "c"]));
+        assert_ne!(of(&["ab", "c"]), of(&["a", "bc"]));
+        assert_ne!(of(&["ab"]), of(&["ab", ""]));
+    }
+
+    #[test]
+    fn a_vertex_that_moves_by_the_last_bit_counts() {
+        let mut mesh = TriangleMesh {
+            positions: vec![DVec3::ZERO, DVec3::X, DVec3::Y],
+            triangles: vec![[0, 1, 2]],
+            normals: None,
+            face_of: vec![0],
+            faces: vec!["wall".into()],
+        };
+        let digest = |mesh: &TriangleMesh| {
+            let mut digest = Digest::default();
+            digest.add_mesh(mesh);
+            digest
+        };
+        let before = digest(&mesh);
+        mesh.positions[1].x = 1f64.next_up();
+        assert_ne!(digest(&mesh), before);
+    }
+}

@@ -1,0 +1,93 @@
+//! How far a run has come.
+
+use crate::input::Job;
+use crate::measure::{self, Measure};
+use crate::scene::plan::RunPlan;
+use crate::transport::Run;
+use std::time::Duration;
+
+/// How far a run has come: for progress displays.
+#[derive(Debug, Clone)]
+pub struct Progress {
+    /// Paths traced.
+    pub paths: u64,
+    /// Paths asked for, when that is a stop rule.
+    pub planned_paths: Option<u64>,
+    /// Time since the start of tracing.
+    pub elapsed: Duration,
+    /// The time asked for, when that is a stop rule.
+    pub time_limit: Option<Duration>,
+    /// The target: name, value, relative error reached and wanted; at the end of a round.
+    pub target: Option<TargetProgress>,
+}
+
+/// How well the target measure is known.
+#[derive(Debug, Clone)]
+pub struct TargetProgress {
+    /// Dotted name.
+    pub measure: String,
+    /// Its value and error.
+    pub reached: Measure,
+    /// The relative error wanted, 1.
+    pub wanted: f64,
+}
+
+impl TargetProgress {
+    /// How well the target of a job is known; `None` without one.
+    pub(super) fn of(job: &Job, run: &Run<'_>) -> Option<Self> {
+        let target = job.run.stop.target.as_ref()?;
+        let reached = measure::value_of(&job.scene, &run.readings(), &target.measure)?;
+        Some(Self { measure: target.measure.clone(), reached, wanted: target.relative_error })
+    }
+}
+
+impl Progress {
+    /// How far a run has come after `elapsed`; `target` as it was at the end of the last round.
+    pub(super) fn of(
+        plan: &RunPlan,
+        run: &Run<'_>,
+        elapsed: Duration,
+        target: Option<TargetProgress>,
+    ) -> Self {
+        Self {
+            paths: run.paths(),
+            planned_paths: run.planned_paths(),
+            elapsed,
+            time_limit: plan.stop.time,
+            target,
+        }
+    }
+
+    /// How much of the work is done, by the rule that is nearest to its end; 0..=1.
+    pub fn fraction(&self) -> f64 {
+        let paths = self.planned_paths.map_or(0.0, |planned| self.paths as f64 / planned as f64);
+        let time =
+            self.time_limit.map_or(0.0, |limit| self.elapsed.as_secs_f64() / limit.as_secs_f64());
+        // The error falls as one over the square root of the paths.
+        let target = self
+            .target
+            .as_ref()
+            .map_or(0.0, |target| (target.wanted / target.reached.relative_error()).powi(2));
+        paths.max(time).max(target).min(1.0)
+    }
+
+    /// Paths per second, the target's value and error, and the time left.
+    pub fn sentence(&self) -> String {
+        let seconds = self.elapsed.as_secs_f64();
+        let mut text =
+            format!("{:.3e} paths, {:.2e} paths/s", self.paths as f64, self.paths as f64 / seconds);
+        if let Some(target) = &self.target {
+            let (reached, error) = (&target.reached, 100.0 * target.reached.relative_error());
+            let wanted = 100.0 * target.wanted;
+            text += &format!(
+                ", {} {:.4} ± {error:.3} % of {wanted:.3} %",
+                target.measure, reached.value
+            );
+        }
+        let fraction = self.fraction();
+        if fraction > 0.0 {
+            text += &format!(", {:.0} s left", seconds * (1.0 - fraction) / fraction);
+        }
+        text
+    }
+}

@@ -1,0 +1,17 @@
+//! Seconds, outside of the reproducible set of files.
+
+use crate::error::Result;
+use crate::pipeline::Traced;
+use crate::report::Folder;
+
+/// Writes `timing.csv` beside a report.
+pub(super) fn write(folder: &Folder, traced: &Traced) -> Result<()> {
+    let seconds = traced.elapsed.as_secs_f64();
+    let (paths, segments) = (traced.readings.paths() as f64, traced.readings.segments as f64);
+    let text = format!(
+        "seconds,paths_per_s,segments_per_s\n{seconds:.3},{:.0},{:.0}\n",
+        paths / seconds,
+        segments / seconds
+    );
+    folder.write_beside("timing.csv", text.as_bytes())
+}

@@ -1,0 +1,50 @@
+//! The other commands.
+
+use crate::*;
+
+#[test]
+fn a_check_lists_the_scene_and_draws_it() {
+    let place = Place::new();
+    let said = place.good("check rod.toml");
+    for words in ["Short rod", "rod.exit", "12.57 mm²", "etendue", "rod.check.png"] {
+        assert!(said.contains(words), "no {words} in {said}");
+    }
+    assert!(fs::read(place.path("rod.check.png")).unwrap().starts_with(b"\x89PNG"));
+    place.good("check rod.toml");
+    let longer = "check rod.toml -D solids.rod.cylinder.length_mm=20";
+    place.good(longer);
+    place.good(&format!("{longer} -o pictures/rod.png"));
+    let longest = "check rod.toml -D solids.rod.cylinder.length_mm=40 -o pictures/rod.png";
+    assert!(place.bad(2, longest).contains("--overwrite"));
+    place.good(&format!("{longest} --overwrite"));
+}
+
+#[test]
+fn the_schema_is_json_with_a_title() {
+    let schema: Value = serde_json::from_str(&Place::new().good("schema")).unwrap();
+    assert!(!schema["title"].as_str().unwrap().is_empty());
+    assert!(schema["properties"]["solids"].is_object());
+}
+
+#[test]
+fn completions_and_the_manual_page_know_the_commands() {
+    let place = Place::new();
+    for arguments in ["completions bash", "completions zsh", "completions fish", "man"] {
+        let text = place.good(arguments);
+        assert!(text.contains("lumiduct") && text.contains("check"), "{arguments}");
+    }
+}
+
+#[test]
+fn a_list_finds_scenes_and_sensor_files_and_no_reports() {
+    let place = Place::new();
+    fs::write(place.path("cell.toml"), "plane = { cells = [1, 1] }\n").unwrap();
+    place.good("run rod.toml -q");
+    let said = place.good("list");
+    assert!(said.contains("rod.toml") && said.contains("Short rod"), "{said}");
+    assert!(said.contains("cell.toml") && said.contains("sensor file: plane"), "{said}");
+    assert_eq!(said.lines().count(), 2, "{said}");
+    fs::write(place.path("broken.toml"), "lumiduct = 1\ntitle =\n").unwrap();
+    assert!(place.good("list").contains("no valid TOML"), "a broken scene is not passed over");
+    assert!(place.bad(2, "list nowhere").contains("nowhere"));
+}

@@ -1,0 +1,184 @@
+//! Runs that do what they are asked to.
+
+use crate::*;
+
+#[test]
+fn a_run_writes_every_file_of_its_report() {
+    let place = Place::new();
+    let said = place.good("run rod.toml");
+    assert!(said.contains("efficiency") && said.contains("reports/rod/report.md"), "{said}");
+    let expected = [
+        "balance.png",
+        "exit.bounces.csv",
+        "exit.bounces.png",
+        "exit.illuminance.csv",
+        "exit.illuminance.png",
+        "far.bounces.csv",
+        "far.bounces.png",
+        "far.intensity.csv",
+        "far.intensity.png",
+        "measures.csv",
+        "report.md",
+        "rod.toml",
+        "summary.json",
+        "timing.csv",
+    ];
+    let report = place.path("reports/rod");
+    assert_eq!(names(&report), expected);
+    assert_eq!(
+        fs::read(report.join("rod.toml")).unwrap(),
+        fs::read(place.path("rod.toml")).unwrap()
+    );
+    let page = fs::read_to_string(report.join("report.md")).unwrap();
+    for picture in expected.iter().filter(|name| name.ends_with(".png")) {
+        assert!(page.contains(&format!("({picture})")), "{picture} is not on the page");
+        assert!(fs::read(report.join(picture)).unwrap().starts_with(b"\x89PNG"), "{picture}");
+    }
+    let listed = &place.summary("reports/rod")["files"];
+    for name in listed.as_array().unwrap() {
+        assert!(expected.contains(&name.as_str().unwrap()), "{name} is named but not there");
+    }
+}
+
+#[test]
+fn numbers_in_summary_and_balance_make_sense() {
+    let place = Place::new();
+    place.good("run rod.toml -o out -q");
+    let summary = place.summary("out");
+    let measure = |name: &str| summary["measures"][name]["value"].as_f64().unwrap();
+    // Fresnel losses of two faces take some 15 % of the flux, and nothing can be gained.
+    assert!((7.0..9.0).contains(&flux(&summary)), "{}", flux(&summary));
+    assert!((measure("exit.efficiency") - flux(&summary) / 10.0).abs() < 1e-12);
+    assert!(measure("balance.residual").abs() < 1e-9 * 10.0 && measure("balance.leaked") == 0.0);
+    assert_eq!(summary["measures"]["exit.flux"]["unit"], "lm");
+}
+
+#[test]
+fn a_missed_check_ends_with_1_and_a_met_one_with_0() {
+    let check = |demand: &str| format!("[[check]]\nmeasure = \"exit.efficiency\"\n{demand}\n");
+    assert!(Place::with(&check("min = 0.5")).good("run rod.toml").contains("passed"));
+    let missed = Place::with(&check("min = 0.99"));
+    let output = missed.run("run rod.toml");
+    assert_eq!(code(&output), 1);
+    assert!(String::from_utf8_lossy(&output.stdout).contains("FAILED"));
+    assert!(missed.path("reports/rod/report.md").is_file(), "the report tells what was missed");
+    // The standard error of 20,000 paths is some 1e-3.
+    let open = Place::with(&check("equals = 0.85\nsigmas = 4\nmax_std_error = 1e-6"));
+    assert_eq!(code(&open.run("run rod.toml -q")), 1, "undecided counts as missed");
+}
+
+#[test]
+fn a_run_off_its_target_ends_with_1_where_there_are_checks() {
+    let check = "[[check]]\nmeasure = \"exit.flux\"\nmin = 1\n";
+    let place = Place::with(check);
+    assert_eq!(code(&place.run("run rod.toml --target 0.0001% --paths 20k -q -o a")), 1);
+    assert_eq!(code(&place.run("run rod.toml --target 10% --paths 1M -q -o b")), 0);
+    assert_eq!(place.summary("b")["run"]["stopped"], "the target error was reached");
+}
+
+#[test]
+fn an_override_changes_the_result_and_is_named_in_the_report() {
+    let place = Place::new();
+    place.good("run rod.toml -o a -q");
+    place.good("run rod.toml -o b -q -D sources.led.disk.flux_lm=20 -D title=Twice");
+    let (one, two) = (place.summary("a"), place.summary("b"));
+    assert!((flux(&two) / flux(&one) - 2.0).abs() < 1e-12, "the same paths with twice the flux");
+    assert_eq!(two["scene"]["overrides"][0], "sources.led.disk.flux_lm=20");
+    assert_ne!(one["scene"]["hash"], two["scene"]["hash"]);
+    let page = fs::read_to_string(place.path("b/report.md")).unwrap();
+    assert!(page.starts_with("# Twice") && page.contains("sources.led.disk.flux_lm=20"));
+}
+
+#[test]
+fn the_same_seed_gives_the_same_bytes_on_any_number_of_threads() {
+    let place = Place::new();
+    place.good("run rod.toml -o a -q --seed 7 --threads 1");
+    place.good("run rod.toml -o b -q --seed 7 --threads 2");
+    place.good("run rod.toml -o c -q --seed 8 --threads 2");
+    let (one, two, other) =
+        (contents(&place.path("a")), contents(&place.path("b")), contents(&place.path("c")));
+    assert_eq!(one, two);
+    assert_ne!(one["exit.illuminance.csv"], other["exit.illuminance.csv"]);
+}
+
+#[test]
+fn a_quiet_run_says_nothing() {
+    let output = Place::new().run("run rod.toml -q");
+    assert!(output.stdout.is_empty() && output.stderr.is_empty());
+}
+
+/// Sends Ctrl-C's signal by the system's own tool: the code of this package is free of `unsafe`.
+#[cfg(unix)]
+#[test]
+fn ctrl_c_leaves_a_partial_report_and_ends_with_130() {
+    use std::process::{Command, Stdio};
+    use std::time::{Duration, Instant};
+
+    let place = Place::new();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_lumiduct"))
+        .current_dir(place.0.path())
+        .args(["run", "rod.toml", "-o", "out", "--paths", "1G"])
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // The folder is made when the scene has been read, which is after the handler is set.
+    let start = Instant::now();
+    while !place.path("out").is_dir() {
+        assert!(start.elapsed() < Duration::from_secs(20), "the run has not begun");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(sent.success());
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert_eq!(place.summary("out")["run"]["partial"], true);
+    let page = fs::read_to_string(place.path("out/report.md")).unwrap();
+    assert!(page.contains("partial"), "the page does not say so");
+}
+
+#[test]
+fn a_slow_run_stops_at_its_time_and_not_at_its_next_million_paths() {
+    // Half of the light is caught by total reflection in a lossless rod, and goes on to the bounce limit.
+    let place = Place::new();
+    let scene = SCENE.replace(
+        "at = { face = \"rod.entry\", gap_mm = 0.1 }",
+        "at = { face = \"rod.entry\" }\ncontact = \"optical\"",
+    );
+    fs::write(place.path("rod.toml"), scene).unwrap();
+    let said = place.good("run rod.toml -o out --time 0.2s");
+    assert!(said.contains("time limit") && said.contains("balance.cut"), "{said}");
+    let paths = place.summary("out")["paths"].as_u64().unwrap();
+    assert!(paths < 1_000_000, "{paths} paths");
+}
+
+#[test]
+fn what_a_run_did_otherwise_than_asked_is_said() {
+    let place = Place::new();
+    let said = place.good("run rod.toml -o a --paths 1");
+    assert!(said.contains("128 paths were traced where 1 were asked for"), "{said}");
+    let said = place.good("run rod.toml -o b --target 0.0001% --paths 20k");
+    assert!(said.contains("target exit.flux: wanted 0.00 %"), "{said}");
+    let joined = place.run("check rod.toml -D sources.led.disk.at.gap_mm=0");
+    assert!(errors(&joined).contains("optically"), "{}", errors(&joined));
+}
+
+#[test]
+fn a_mesh_that_changed_makes_another_scene() {
+    let place = Place::new();
+    let hash = |size: f64| {
+        fs::write(place.path("box.obj"), cube(size)).unwrap();
+        place.good("run rod.toml -o out -q --overwrite");
+        place.summary("out")["scene"]["hash"].as_str().unwrap().to_owned()
+    };
+    let mesh = "[solids.block.mesh]\nfile = \"box.obj\"\nunit = \"mm\"\nmedium = \"acrylic\"\n";
+    let far = "at = { position_mm = [90, 0, 0] }\n";
+    fs::write(place.path("rod.toml"), format!("{SCENE}{mesh}{far}")).unwrap();
+    assert_ne!(hash(1.0), hash(2.0));
+}
+
+/// A closed box as an OBJ file.
+fn cube(size: f64) -> String {
+    let corner = |i: usize| [i & 1, i >> 1 & 1, i >> 2].map(|bit| bit as f64 * size);
+    let vertices: String = (0..8).map(corner).map(|[x, y, z]| format!("v {x} {y} {z}\n")).collect();
+    let faces = ["1 3 4 2", "5 6 8 7", "1 2 6 5", "3 7 8 4", "1 5 7 3", "2 4 8 6"];
+    vertices + &faces.map(|face| format!("f {face}\n")).concat()
+}

@@ -188,7 +188,7 @@ pub fn trace(job: &Job, interrupt: &Interrupt, watch: &mut dyn FnMut(&Progress))
         let mut early = None;
         while run.waves() < round_end && early.is_none() {
             run.next_piece();
-            early = stop_between_pieces(&job.run, &run, start.elapsed(), interrupt);
+            early = early_stop(&job.run, &run, start.elapsed(), interrupt);
             watch(&Progress::of(&job.run, &run, start.elapsed(), target.clone()));
         }
         if let Some(stop) = early {
@@ -203,8 +203,8 @@ pub fn trace(job: &Job, interrupt: &Interrupt, watch: &mut dyn FnMut(&Progress))
     Traced { readings: run.readings(), stop, elapsed: start.elapsed() }
 }
 
-/// The rules that may end a run after any piece of work.
-fn stop_between_pieces(
+/// What may end a run before its round is over.
+fn early_stop(
     plan: &RunPlan,
     run: &Run<'_>,
     elapsed: Duration,
@@ -212,6 +212,9 @@ fn stop_between_pieces(
 ) -> Option<Stop> {
     if interrupt.is_raised() {
         return Some(Stop::Interrupted);
+    }
+    if !run.is_between_waves() {
+        return None;
     }
     if run.is_complete() {
         return Some(Stop::Paths);

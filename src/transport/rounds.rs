@@ -1,6 +1,7 @@
 //! Rounds of work: bounded waves of batches over all threads, folded in a fixed order.
 //!
-//! A wave is one batch of each group, traced in pieces between which a run may stop. Batches are folded in a binary
+//! A wave is one batch of each group: stop rules act after whole waves, so that asking for the number of paths that
+//! a run did repeats it. Waves are traced in pieces, between which a run can be interrupted. Batches are folded in a binary
 //! tree over their index, whatever thread traced them and in whatever pieces they came, so the result has the same
 //! bits for any number of threads. Only the partial sums of that tree are kept: memory does not grow with the number
 //! of paths.
@@ -15,7 +16,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Straight pieces that a batch should hold: long enough that summing up costs little, short enough to stop soon.
-const BATCH_SEGMENTS: u64 = 1 << 16;
+const BATCH_SEGMENTS: u64 = 1 << 15;
 /// Most paths in a batch.
 const BATCH_PATHS: u64 = 4096;
 /// Paths from which the length of paths is learnt before a run.
@@ -98,6 +99,11 @@ impl<'s> Run<'s> {
     /// Whole waves traced so far.
     pub fn waves(&self) -> u64 {
         self.waves
+    }
+
+    /// Whether no wave is in progress.
+    pub fn is_between_waves(&self) -> bool {
+        self.wave.is_empty()
     }
 
     /// Whether all paths that were asked for have been traced.

@@ -146,8 +146,11 @@ fn a_slow_run_stops_at_its_time_and_not_at_its_next_million_paths() {
     fs::write(place.path("rod.toml"), scene).unwrap();
     let said = place.good("run rod.toml -o out --time 0.2s");
     assert!(said.contains("time limit") && said.contains("balance.cut"), "{said}");
-    let paths = place.summary("out")["paths"].as_u64().unwrap();
+    let summary = place.summary("out");
+    let paths = summary["paths"].as_u64().unwrap();
     assert!(paths < 1_000_000, "{paths} paths");
+    place.good(&format!("run rod.toml -o again -q --paths {paths}"));
+    assert_eq!(place.summary("again")["measures"], summary["measures"], "the same paths again");
 }
 
 #[test]

@@ -98,6 +98,12 @@ pub(crate) fn uniformity(field: &Field<'_>) -> Uniformity {
         let max_min = Statistic { value: f64::INFINITY, ..level };
         return Uniformity { min: level, max: level, avg, min_avg: ratio, min_max: ratio, max_min };
     }
+    if let [_] = field.cells {
+        // One cell is all three, however noisy it is.
+        let (value, std_error, interval) = (1.0, 0.0, [1.0, 1.0]);
+        let even = Statistic { value, std_error, interval, ..avg };
+        return Uniformity { min: avg, max: avg, avg, min_avg: even, min_max: even, max_min: even };
+    }
     let (least, most) = (minimum(field.cells), maximum(field.cells));
     let min = extreme(&least, avg.value, status);
     let max = extreme(&most, most.raw, status);
@@ -267,6 +273,15 @@ mod tests {
         assert_eq!((found.min.status, found.min.correction), (Status::Ok, 0.0));
         let cv = coefficient_of_variation(parts(&cells), &field(&cells));
         assert!((cv.value - (1.5f64).sqrt() / 2.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_single_cell_is_even_and_its_extremes_are_its_value() {
+        let found = uniformity(&field(&[cell(0.3, 0.1)]));
+        assert_eq!([found.min.value, found.max.value], [0.3; 2]);
+        assert_eq!([found.min.std_error, found.max.std_error], [0.1; 2]);
+        let ratios = [found.min_avg, found.min_max, found.max_min];
+        assert!(ratios.iter().all(|ratio| (ratio.value, ratio.std_error) == (1.0, 0.0)));
     }
 
     #[test]

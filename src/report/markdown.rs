@@ -40,6 +40,9 @@ pub(crate) fn quantity(measure: &Measure) -> String {
         // The error of nothing is what a single path or count would have brought.
         return format!("0{unit} (nothing counted; one path is {}{unit})", format_value(error));
     }
+    if measure.status == Status::NoSignal && error.is_infinite() {
+        return "unknown (nothing counted)".into();
+    }
     format!("{}{unit}{}", format_with_error(value, error), remark(measure.status))
 }
 

@@ -10,7 +10,8 @@ pub struct RunSpec {
     /// Number of paths.
     #[schemars(range(min = 1))]
     pub paths: Option<u64>,
-    /// Time. A run that stops by time does not repeat exactly; its report says how many paths it did.
+    /// Time. Another run of the same time differs; the report says how many paths it did, and `paths` with that number
+    /// repeats it.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub time_s: Option<f64>,
     /// Uncertainty to reach.

@@ -3,9 +3,10 @@
 use crate::math::{Aabb, Frame, Roots, bracketed_root, cubic, quartic};
 use crate::scene::Ray;
 use crate::scene::shape::support::{across, box_by_reach};
+use crate::scene::shape::wedge::{Wedge, turn};
 use crate::scene::shape::{ChartRect, Crossing, Start, Toward};
 use glam::{DVec2, DVec3};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 /// An arc of a torus about the z axis of its frame; the front is outside of the tube.
 ///
@@ -18,9 +19,8 @@ pub struct Torus {
     frame: Frame,
     major_radius: f64,
     minor_radius: f64,
-    angle: f64,
-    /// (cos, sin) of `angle`.
-    arc_end: DVec2,
+    /// The arc; `None` for the whole torus.
+    arc: Option<Wedge>,
     section_zero: f64,
 }
 
@@ -28,8 +28,8 @@ impl Torus {
     /// The wall of a tube of radius `minor_radius` whose centre line is the arc of radius `major_radius`, mm, about the
     /// z axis of `frame`, from its x axis by `angle`, rad, up to 2π. The minor radius must be the smaller one.
     pub fn new(frame: Frame, major_radius: f64, minor_radius: f64, angle: f64) -> Self {
-        let arc_end = DVec2::from_angle(angle);
-        Self { frame, major_radius, minor_radius, angle, arc_end, section_zero: 0.0 }
+        let arc = Wedge::new(angle);
+        Self { frame, major_radius, minor_radius, arc, section_zero: 0.0 }
     }
 
     /// The same wall with the zero of the chart's u moved to the section angle `section_zero`, rad, counted like φ.
@@ -42,15 +42,9 @@ impl Torus {
     }
 
     pub(super) fn bounds(&self) -> Aabb {
-        let arc_start = DVec2::X;
         box_by_reach(&self.frame, |e| {
-            let in_plane = e.truncate();
             // R m + r sqrt(m² + e_z²) with m = (direction to the section) · e grows with m, as r < R.
-            let m = if self.arc_contains(in_plane) {
-                across(e)
-            } else {
-                arc_start.dot(in_plane).max(self.arc_end.dot(in_plane))
-            };
+            let m = self.arc.map_or_else(|| across(e), |arc| arc.range(e.truncate())[1]);
             self.major_radius * m + self.minor_radius * m.hypot(e.z)
         })
     }
@@ -78,15 +72,12 @@ impl Torus {
     /// Whether the half plane through the axis and a point, in the frame, cuts the arc.
     #[inline]
     fn arc_contains(&self, p: DVec2) -> bool {
-        let after_start = p.y >= 0.0;
-        let before_end = self.arc_end.perp_dot(p) <= 0.0;
-        if self.angle >= TAU {
-            true
-        } else if self.angle > PI {
-            after_start || before_end
-        } else {
-            after_start && before_end
-        }
+        self.arc.is_none_or(|arc| arc.contains(p))
+    }
+
+    /// Length of the arc, rad.
+    fn angle(&self) -> f64 {
+        turn(self.arc.as_ref())
     }
 
     #[inline]
@@ -111,7 +102,7 @@ impl Torus {
             (phi + ratio * sin - TAU * u[0], 1.0 + ratio * cos)
         });
         let (sin, cos) = phi.sin_cos();
-        let outward = DVec2::from_angle(u[1] * self.angle);
+        let outward = DVec2::from_angle(u[1] * self.angle());
         let center_distance = self.major_radius + self.minor_radius * cos;
         self.frame.point_to_world((center_distance * outward).extend(-self.minor_radius * sin))
     }
@@ -122,14 +113,14 @@ impl Torus {
         let phi = (-p.z).atan2(p.truncate().length() - self.major_radius) - self.section_zero;
         let theta = p.y.atan2(p.x).rem_euclid(TAU);
         // The start of an arc may be rounded to just below a full turn.
-        let theta = if theta > 0.5 * (self.angle + TAU) { theta - TAU } else { theta };
+        let theta = if theta > 0.5 * (self.angle() + TAU) { theta - TAU } else { theta };
         DVec2::new(self.minor_radius * phi.rem_euclid(TAU), self.major_radius * theta)
     }
 
     pub(super) fn chart_bounds(&self) -> ChartRect {
         ChartRect {
             min: DVec2::ZERO,
-            max: DVec2::new(TAU * self.minor_radius, self.angle * self.major_radius),
+            max: DVec2::new(TAU * self.minor_radius, self.angle() * self.major_radius),
         }
     }
 
@@ -260,6 +251,7 @@ mod tests {
         assert_scales, assert_starting_on_it_drops_only_the_start, bounce, crossings_of, tilted,
     };
     use crate::scene::shape::{Cylinder, Shape};
+    use std::f64::consts::PI;
 
     /// Signed distance to the wall of the whole torus.
     fn distance(frame: &Frame, major: f64, minor: f64, p: DVec3) -> f64 {
@@ -277,7 +269,7 @@ mod tests {
     #[test]
     fn arcs_of_thin_and_fat_tubes_keep_the_contract_of_shapes() {
         for (major, minor, angle) in
-            [(8.0, 1.5, 0.5 * PI), (8.0, 0.1, 4.0), (3.0, 2.9, 2.0), (3.0, 1.0, TAU)]
+            [(8.0, 1.5, 0.25 * TAU), (8.0, 0.1, 4.0), (3.0, 2.9, 2.0), (3.0, 1.0, TAU)]
         {
             let frame = tilted(1.0);
             let shape = Shape::Torus(Torus::new(frame, major, minor, angle).with_section_zero(0.4));
@@ -345,8 +337,8 @@ mod tests {
 
     #[test]
     fn the_area_is_pappus() {
-        let torus = Torus::new(Frame::WORLD, 8.0, 1.5, 0.5 * PI);
-        assert!((torus.area() - 0.5 * PI * 8.0 * TAU * 1.5).abs() < 1e-12);
+        let torus = Torus::new(Frame::WORLD, 8.0, 1.5, 0.25 * TAU);
+        assert!((torus.area() - 0.25 * TAU * 8.0 * TAU * 1.5).abs() < 1e-12);
         // The outer half of the section is larger by 4 r² per radian.
         let outer =
             |u: f64| ChartRect { min: DVec2::new(u, 0.0), max: DVec2::new(u + 0.75 * PI, 100.0) };

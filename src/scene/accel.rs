@@ -15,7 +15,7 @@ use std::fmt;
 use std::time::Duration;
 
 /// Up to this many surfaces are scanned one after the other.
-const SCAN_LIMIT: usize = 4;
+const SCAN_LIMIT: usize = 12;
 /// Boxes grow by this many f32 ulp of the largest coordinate: rounding of the box, of the ray's origin, and of the slab test.
 const PADDING_ULP: f64 = 8.0;
 

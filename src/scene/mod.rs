@@ -34,6 +34,7 @@ pub use ids::{FaceId, FinishId, MediumId, PrimId, SensorId, SolidId, SourceId};
 pub use inside::Inside;
 pub use interface::{Interface, Visibility};
 pub use intersect::{Hits, Just, PrimHit};
+pub(crate) use pieces::Surface;
 pub use ray::Ray;
 pub use section::Outline;
 pub use sensor::{Counts, Goniometer, Place, Sensor, SensorKind, Sides, SurfaceSensor, Views};

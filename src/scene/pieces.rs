@@ -112,19 +112,6 @@ impl Scene {
         }
     }
 
-    /// The same, and of a mesh also the unit normal of the surface that it stands for, interpolated; `None` where the
-    /// surface itself is exact.
-    #[inline]
-    pub fn normals(&self, prim: PrimId, point: DVec3) -> (DVec3, Option<DVec3>) {
-        match self.surface(prim) {
-            Surface::Patch(patch) => (patch.shape.normal(point), None),
-            Surface::Triangle(body, triangle) => {
-                let shading = body.mesh.shading_normal(triangle, point);
-                (body.mesh.facet_normal(triangle), Some(shading))
-            }
-        }
-    }
-
     /// Unrolled coordinates of a point on its face, mm.
     #[inline]
     pub fn chart(&self, prim: PrimId, point: DVec3) -> DVec2 {

@@ -212,6 +212,28 @@ impl Shape {
         }
     }
 
+    /// Calls `visit` for every crossing of the ray's line that is `wanted`, in any order.
+    #[inline]
+    pub fn wanted_crossings(
+        &self,
+        ray: &Ray,
+        start: Start,
+        wanted: &Wanted,
+        mut visit: impl FnMut(Crossing),
+    ) {
+        if let Self::Flat(shape) = self {
+            if let Some(crossing) = shape.first_crossing(ray, start, wanted) {
+                visit(crossing);
+            }
+            return;
+        }
+        self.crossings(ray, start, |crossing| {
+            if wanted.includes(&crossing) {
+                visit(crossing);
+            }
+        });
+    }
+
     /// The first crossing of the ray's line that is `wanted`. Planes and cylinders, most of all surfaces, answer it
     /// sooner than a list of all crossings.
     #[inline(always)]
@@ -224,10 +246,11 @@ impl Shape {
             | Self::Sphere(_)
             | Self::Paraboloid(_)
             | Self::ParabolicCylinder(_)
-            | Self::CompoundParabola(_) => self.first_of_all(ray, start, wanted),
+            | Self::CompoundParabola(_) => self.first_of_all(&ray.lent(), start, wanted),
         }
     }
 
+    #[inline(never)]
     fn first_of_all(&self, ray: &Ray, start: Start, wanted: &Wanted) -> Option<Crossing> {
         let mut first: Option<Crossing> = None;
         self.crossings(ray, start, |crossing| {
@@ -239,7 +262,6 @@ impl Shape {
     }
 
     /// Unit normal of the front at a point of the surface.
-    #[inline]
     pub fn normal(&self, p: DVec3) -> DVec3 {
         match self {
             Self::Flat(shape) => shape.normal(),
@@ -250,6 +272,26 @@ impl Shape {
             Self::Paraboloid(shape) => shape.normal(p),
             Self::ParabolicCylinder(shape) => shape.normal(p),
             Self::CompoundParabola(shape) => shape.normal(p),
+        }
+    }
+
+    /// Unit normal on the side from which a ray comes that goes through `toward`. Planes and cylinders answer in
+    /// registers; a factor in every arm keeps a normal that was returned in memory from spoiling that.
+    #[inline(always)]
+    pub fn normal_against(&self, toward: Toward, p: DVec3) -> DVec3 {
+        let sign = match toward {
+            Toward::Front => -1.0,
+            Toward::Back => 1.0,
+        };
+        match self {
+            Self::Flat(shape) => sign * shape.normal(),
+            Self::Cylinder(shape) => sign * shape.normal(p),
+            Self::Cone(_)
+            | Self::Torus(_)
+            | Self::Sphere(_)
+            | Self::Paraboloid(_)
+            | Self::ParabolicCylinder(_)
+            | Self::CompoundParabola(_) => sign * self.normal(p),
         }
     }
 

@@ -213,7 +213,7 @@ fn smooth(incidence: &Incidence, sampler: &mut Sampler) -> Scattered {
             return specular(refracted, 1.0, Side::Transmitted);
         }
     }
-    specular(fresnel::mirrored(dir, normal, cos_i), 1.0, Side::Reflected)
+    specular(fresnel::mirrored(dir, normal), 1.0, Side::Reflected)
 }
 
 #[inline]
@@ -236,7 +236,7 @@ fn choose_side(reflectance: f64, transmittance: f64, sampler: &mut Sampler) -> O
 #[inline]
 fn straight(incidence: &Incidence, side: Side) -> DVec3 {
     match side {
-        Side::Reflected => fresnel::mirrored(incidence.dir, incidence.normal, incidence.cos()),
+        Side::Reflected => fresnel::mirrored(incidence.dir, incidence.normal),
         Side::Transmitted => incidence.dir,
     }
 }

@@ -14,7 +14,7 @@ use obvhs::{BvhBuildParams, fast_stack};
 use std::fmt;
 use std::time::Duration;
 
-/// Up to this many surfaces are scanned one after the other.
+/// Up to this many patches are scanned one after the other.
 const SCAN_LIMIT: usize = 12;
 /// Boxes grow by this many f32 ulp of the largest coordinate: rounding of the box, of the ray's origin, and of the slab test.
 const PADDING_ULP: f64 = 8.0;
@@ -22,9 +22,9 @@ const PADDING_ULP: f64 = 8.0;
 /// A culling structure over the boxes of all surfaces.
 #[derive(Debug, Clone)]
 pub enum Accel {
-    /// A scan over this many surfaces.
+    /// A scan over this many patches.
     Scan(usize),
-    /// A tree over more.
+    /// A tree over more, or over triangles.
     Tree(Tree),
 }
 
@@ -39,10 +39,11 @@ impl fmt::Debug for Tree {
 }
 
 impl Accel {
-    /// A structure over `boxes`; ray origins will have coordinates up to `largest_coordinate`, mm.
-    pub fn new(boxes: &[Aabb], largest_coordinate: f64) -> Self {
-        if boxes.len() <= SCAN_LIMIT {
-            return Self::Scan(boxes.len());
+    /// A structure over `boxes`, of which the first `patches` are those of patches, others those of triangles; ray
+    /// origins will have coordinates up to `largest_coordinate`, mm.
+    pub fn new(boxes: &[Aabb], patches: usize, largest_coordinate: f64) -> Self {
+        if boxes.len() == patches && patches <= SCAN_LIMIT {
+            return Self::Scan(patches);
         }
         let padding = PADDING_ULP * f64::from(f32::EPSILON) * largest_coordinate;
         let boxes: Vec<Box32> = boxes.iter().map(|bounds| to_f32(bounds.grown(padding))).collect();

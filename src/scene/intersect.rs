@@ -8,7 +8,7 @@
 use crate::scene::accel::{Accel, Tree};
 use crate::scene::mesh::Line;
 use crate::scene::shape::{Crossing, Start, Toward, Wanted};
-use crate::scene::{FaceId, Inside, Owner, PrimId, Ray, Scene, SolidId};
+use crate::scene::{FaceId, Inside, On, Owner, PrimId, Ray, Scene, SolidId};
 use smallvec::SmallVec;
 use std::iter;
 
@@ -108,7 +108,7 @@ impl Nearest {
 impl Scene {
     /// What a ray meets next that starts on the surfaces `from`, inside the solids `inside`.
     #[inline(always)]
-    pub fn find_next(&self, ray: &Ray, from: &[PrimId], inside: &Inside) -> Option<Hits> {
+    pub fn find_next(&self, ray: &Ray, from: &On, inside: &Inside) -> Option<Hits> {
         let nearest = match &self.accel {
             Accel::Scan(_) => self.nearest_by_scan(ray, from, inside),
             Accel::Tree(tree) => self.nearest_in_tree(tree, &ray.lent(), from, inside),
@@ -127,7 +127,7 @@ impl Scene {
     }
 
     #[inline(always)]
-    fn nearest_by_scan(&self, ray: &Ray, from: &[PrimId], inside: &Inside) -> Nearest {
+    fn nearest_by_scan(&self, ray: &Ray, from: &On, inside: &Inside) -> Nearest {
         let mut nearest = Nearest::NONE;
         for (index, patch) in self.patches.iter().enumerate() {
             let prim = PrimId::new(index);
@@ -141,7 +141,7 @@ impl Scene {
     }
 
     #[inline(never)]
-    fn nearest_in_tree(&self, tree: &Tree, ray: &Ray, from: &[PrimId], inside: &Inside) -> Nearest {
+    fn nearest_in_tree(&self, tree: &Tree, ray: &Ray, from: &On, inside: &Inside) -> Nearest {
         let line = self.line(ray);
         let mut nearest = Nearest::NONE;
         tree.visit(ray, |index| {
@@ -160,7 +160,7 @@ impl Scene {
     fn find_others(
         &self,
         ray: &Ray,
-        from: &[PrimId],
+        from: &On,
         inside: &Inside,
         nearest: &Nearest,
     ) -> Box<[PrimHit]> {
@@ -186,7 +186,7 @@ impl Scene {
         prim: PrimId,
         ray: &Ray,
         line: Option<&Line>,
-        from: &[PrimId],
+        from: &On,
         inside: &Inside,
         limit: f64,
     ) -> Option<Crossing> {
@@ -196,7 +196,7 @@ impl Scene {
     }
 
     /// Which crossings count: of a solid, those whose orientation fits.
-    #[inline]
+    #[inline(always)]
     fn wanted(&self, owner: Owner, inside: &Inside, max: f64) -> Option<Wanted> {
         let (toward, min) = match owner {
             Owner::Solid(solid) if inside.contains(solid) => (Some(Toward::Front), -self.tolerance),
@@ -262,9 +262,9 @@ impl Scene {
 }
 
 /// Whether a ray that starts on the surfaces `from` starts on this one.
-#[inline]
-fn start_on(prim: PrimId, from: &[PrimId]) -> Start {
-    if from.contains(&prim) { Start::On } else { Start::Elsewhere }
+#[inline(always)]
+fn start_on(prim: PrimId, from: &On) -> Start {
+    if from.contains(prim) { Start::On } else { Start::Elsewhere }
 }
 
 /// On which side of its start point a path is asked about.

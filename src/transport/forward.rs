@@ -5,7 +5,7 @@
 
 use crate::optics::Side;
 use crate::rng::Sampler;
-use crate::scene::shape::{Crossing, Start, Toward, Wanted};
+use crate::scene::shape::{Crossing, Start, Toward};
 use crate::scene::{Counts, FaceId, Owner, PrimHit, Scene, SensorId, SourceId, SurfaceSensor};
 use crate::transport::readings::{SensorReading, Step, Trail};
 use crate::transport::watch::{OnPort, Watch};
@@ -125,6 +125,18 @@ impl<'r, 's> Counter<'r, 's> {
             let slot = self.run.layout.absorbed_in_medium(segment.medium);
             self.add(slot, segment.throughput - segment.arriving);
         }
+        let watch = &self.run.watch;
+        if watch.ports.iter().any(|port| port.may_be_crossed(segment))
+            || !watch.near.is_empty()
+            || !watch.entry_ports.is_empty()
+        {
+            self.travel_watched(path, segment);
+        }
+    }
+
+    /// Counts light that passes through ports and out of goniometers on its way.
+    #[inline(never)]
+    fn travel_watched(&mut self, path: &Path, segment: &Segment<'_>) {
         let run = self.run;
         for port in &run.watch.ports {
             self.cross_port(path, segment, port);
@@ -135,11 +147,12 @@ impl<'r, 's> Counter<'r, 's> {
             }
         }
         for (face, patches) in &run.watch.entry_ports {
-            let entering = Wanted { toward: Some(Toward::Back), ..self.within(segment) };
             for patch in *patches {
-                patch.shape.wanted_crossings(segment.ray, Start::Elsewhere, &entering, |_| {
-                    for id in &run.watch.entries[face.index()] {
-                        self.add(run.layout.entering(*id), segment.throughput);
+                patch.shape.crossings(segment.ray, Start::Elsewhere, |Crossing { t, toward }| {
+                    if toward == Toward::Back && self.within(segment, t) {
+                        for id in &run.watch.entries[face.index()] {
+                            self.add(run.layout.entering(*id), segment.throughput);
+                        }
                     }
                 });
             }
@@ -147,13 +160,13 @@ impl<'r, 's> Counter<'r, 's> {
     }
 
     /// Counts light that passes through a port sensor on its way.
-    #[inline]
     fn cross_port(&mut self, path: &Path, segment: &Segment<'_>, port: &OnPort<'s>) {
-        let OnPort { id, sensor, patches } = port;
-        let within = self.within(segment);
+        let OnPort { id, sensor, patches, .. } = port;
         for patch in patches {
-            let start = Start::Elsewhere;
-            patch.shape.wanted_crossings(segment.ray, start, &within, |Crossing { t, toward }| {
+            patch.shape.crossings(segment.ray, Start::Elsewhere, |Crossing { t, toward }| {
+                if !self.within(segment, t) {
+                    return;
+                }
                 let medium = &self.run.scene.media[segment.medium.index()];
                 let throughput = segment.throughput * medium.transmittance(path.wavelength, t);
                 let seen = Seen {
@@ -172,11 +185,11 @@ impl<'r, 's> Counter<'r, 's> {
         }
     }
 
-    /// The crossings that belong to a segment: light at its end counts, light at its start has counted before.
+    /// Whether a crossing belongs to this segment: light at its end counts, light at its start has counted before.
     #[inline]
-    fn within(&self, segment: &Segment<'_>) -> Wanted {
+    fn within(&self, segment: &Segment<'_>, t: f64) -> bool {
         let tolerance = self.run.scene.tolerance;
-        Wanted { toward: None, min: tolerance.next_up(), max: segment.length + tolerance }
+        t > tolerance && t <= segment.length + tolerance
     }
 
     /// Whether light that meets a sensor at distance `t` came through one of the faces or ports it is aimed at.
@@ -186,7 +199,7 @@ impl<'r, 's> Counter<'r, 's> {
         aim.is_empty()
             || aim.iter().any(|&face| match scene.faces[face.index()].owner {
                 Owner::Solid(_) | Owner::Sheet => {
-                    path.on.iter().any(|&prim| scene.face_of(prim) == face)
+                    path.on.iter().any(|prim| scene.face_of(prim) == face)
                 }
                 Owner::Port => scene.face_patches(face).iter().any(|patch| {
                     let mut crossed = false;

@@ -5,7 +5,7 @@
 use crate::optics::{Bsdf, Incidence, Lobe, Scattered, Side};
 use crate::rng::{Dimension, Sampler};
 use crate::scene::shape::Toward;
-use crate::scene::{Hits, Interface, MediumId, Ray, Scene, Surface, Visibility};
+use crate::scene::{Hits, Interface, MediumId, On, Ray, Scene, Surface, Visibility};
 use crate::transport::Path;
 use glam::DVec3;
 use std::ops::ControlFlow;
@@ -171,10 +171,7 @@ fn bounce(
             out
         }
     };
-    match (path.on.as_mut_slice(), hits.others()) {
-        ([on], []) => *on = hits.nearest().prim,
-        _ => path.on = hits.all().map(|hit| hit.prim).collect(),
-    }
+    path.on = On::hits(hits);
     let next = Ray::new(point, out.dir);
     path.ray = next;
     path.throughput *= out.factor;

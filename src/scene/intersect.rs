@@ -8,7 +8,7 @@
 use crate::scene::accel::{Accel, Tree};
 use crate::scene::mesh::Line;
 use crate::scene::shape::{Crossing, Start, Toward, Wanted};
-use crate::scene::{FaceId, Inside, On, Owner, PrimId, Ray, Scene, SolidId};
+use crate::scene::{FaceId, Inside, On, Owner, PrimId, Ray, Scene, SolidId, Surface};
 use smallvec::SmallVec;
 use std::iter;
 
@@ -180,7 +180,7 @@ impl Scene {
     }
 
     /// The first crossing of a ray with a surface that counts, up to a distance.
-    #[inline]
+    #[inline(always)]
     fn crossing(
         &self,
         prim: PrimId,
@@ -190,9 +190,18 @@ impl Scene {
         inside: &Inside,
         limit: f64,
     ) -> Option<Crossing> {
-        let surface = self.surface(prim);
-        let wanted = self.wanted(surface.owner(), inside, limit)?;
-        surface.first_crossing(ray, line, start_on(prim, from), &wanted)
+        match self.surface(prim) {
+            Surface::Patch(patch) => {
+                let wanted = self.wanted(patch.owner, inside, limit)?;
+                patch.shape.first_crossing(ray, start_on(prim, from), &wanted)
+            }
+            Surface::Triangle(body, triangle) => {
+                // Most triangles are missed: what counts is asked of the others.
+                let crossing = body.mesh.crossing_of(triangle, line?)?;
+                let wanted = self.wanted(body.owner, inside, limit)?;
+                (wanted.includes(&crossing) && !from.contains(prim)).then_some(crossing)
+            }
+        }
     }
 
     /// Which crossings count: of a solid, those whose orientation fits.

@@ -3,7 +3,7 @@
 use crate::math::Frame;
 use crate::scene::Ray;
 use crate::scene::mesh::Line;
-use crate::scene::shape::{ChartRect, Crossing, Region, Shape, Start, Wanted};
+use crate::scene::shape::{ChartRect, Crossing, Region, Shape, Start};
 use crate::scene::{Extent, FaceId, MeshBody, Owner, Patch, PrimId, Scene};
 use glam::{DVec2, DVec3};
 
@@ -47,23 +47,6 @@ impl Surface<'_> {
             Self::Patch(patch) => patch.shape.crossings(ray, start, visit),
             Self::Triangle(body, triangle) => {
                 body.crossing(triangle, line, start).into_iter().for_each(visit);
-            }
-        }
-    }
-
-    /// The first crossing of a ray's line that is `wanted`.
-    #[inline]
-    pub(crate) fn first_crossing(
-        self,
-        ray: &Ray,
-        line: Option<&Line>,
-        start: Start,
-        wanted: &Wanted,
-    ) -> Option<Crossing> {
-        match self {
-            Self::Patch(patch) => patch.shape.first_crossing(ray, start, wanted),
-            Self::Triangle(body, triangle) => {
-                body.crossing(triangle, line, start).filter(|crossing| wanted.includes(crossing))
             }
         }
     }

@@ -11,8 +11,8 @@ use glam::DVec3;
 use std::ops::ControlFlow;
 
 /// Below this throughput a path survives with probability throughput/threshold and then has the threshold's:
-/// the mean is kept, and mirrors above it cost no random number. 1.
-pub const ROULETTE_BELOW: f64 = 1e-3;
+/// the mean is kept, and mirrors above it cost no random number. 1. Chosen by measurement: ARCHITECTURE.md.
+pub const ROULETTE_BELOW: f64 = 0.1;
 
 /// A straight piece of a path, in one medium.
 #[derive(Debug)]

@@ -213,7 +213,7 @@ fn add_source(builder: &mut Builder, center: DVec3, radius: f64) {
     builder.add_source(Source {
         name: "led".into(),
         flux: 1.0,
-        emitter: Emitter::surface(vec![disk(center, radius)], EmitSide::Front, None),
+        emitter: Emitter::surface(vec![disk(center, radius)], EmitSide::Front, Some(Frame::WORLD)),
         emission: Emission::Lambertian,
         start: Start::Outside,
         on: Vec::new(),

@@ -3,7 +3,7 @@
 //! A closed set of finishes. Mirrors and total internal reflection draw no random numbers; a dielectric draws one to
 //! choose between the reflected and the refracted part. Everything that a finish does not send on is absorbed by it.
 
-use crate::math::{Frame, cosine_hemisphere};
+use crate::math::{Frame, cosine_hemisphere, unit};
 use crate::optics::{Gaussian, fresnel};
 use crate::rng::{Dimension, Sampler};
 use glam::DVec3;
@@ -25,7 +25,9 @@ impl Incidence {
     /// Cosine of the angle of incidence, in 0..=1.
     #[inline]
     pub fn cos(&self) -> f64 {
-        (-self.dir.dot(self.normal)).clamp(0.0, 1.0)
+        let cos = -self.dir.dot(self.normal);
+        let cos = if cos < 1.0 { cos } else { 1.0 };
+        if cos > 0.0 { cos } else { 0.0 }
     }
 }
 
@@ -125,7 +127,7 @@ impl Bsdf {
     }
 
     /// Sends a photon on, or absorbs it (`None`).
-    #[inline]
+    #[inline(always)]
     pub fn scatter(&self, incidence: &Incidence, sampler: &mut Sampler) -> Option<Scattered> {
         match self {
             Self::Smooth => Some(smooth(incidence, sampler)),
@@ -133,6 +135,25 @@ impl Bsdf {
                 let side = choose_side(*reflectance, *transmittance, sampler)?;
                 Some(specular(straight(incidence, side), reflectance + transmittance, side))
             }
+            Self::Metal { .. }
+            | Self::Absorber
+            | Self::Open
+            | Self::Lambertian { .. }
+            | Self::GaussianSheet { .. }
+            | Self::GaussianDielectric { .. }
+            | Self::Mixture(_) => {
+                let out = self.scatter_rarely(incidence, sampler)?;
+                // Normalised here, not copied: so what mirrors send on need not go through memory either.
+                Some(Scattered { dir: unit(out.dir), ..out })
+            }
+        }
+    }
+
+    /// The same out of line, so that the loop around mirrors and smooth faces stays small.
+    #[inline(never)]
+    fn scatter_rarely(&self, incidence: &Incidence, sampler: &mut Sampler) -> Option<Scattered> {
+        match self {
+            Self::Smooth | Self::Specular { .. } => self.scatter(incidence, sampler),
             Self::Metal { n, k } => {
                 let factor =
                     fresnel::conductor(incidence.cos(), incidence.index_from, *n, *k).unpolarised();
@@ -192,7 +213,7 @@ fn smooth(incidence: &Incidence, sampler: &mut Sampler) -> Scattered {
             return specular(refracted, 1.0, Side::Transmitted);
         }
     }
-    specular(fresnel::mirrored(dir, normal, cos_i), 1.0, Side::Reflected)
+    specular(fresnel::mirrored(dir, normal), 1.0, Side::Reflected)
 }
 
 #[inline]
@@ -215,7 +236,7 @@ fn choose_side(reflectance: f64, transmittance: f64, sampler: &mut Sampler) -> O
 #[inline]
 fn straight(incidence: &Incidence, side: Side) -> DVec3 {
     match side {
-        Side::Reflected => fresnel::mirrored(incidence.dir, incidence.normal, incidence.cos()),
+        Side::Reflected => fresnel::mirrored(incidence.dir, incidence.normal),
         Side::Transmitted => incidence.dir,
     }
 }

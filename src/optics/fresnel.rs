@@ -73,10 +73,10 @@ pub fn critical_angle(n_i: f64, n_t: f64) -> Option<f64> {
     (n_t < n_i).then(|| (n_t / n_i).asin())
 }
 
-/// Mirrored direction; `normal` points against `dir`, `cos_i` is their angle's cosine.
+/// Direction mirrored at a unit normal, whichever way that points.
 #[inline]
-pub fn mirrored(dir: DVec3, normal: DVec3, cos_i: f64) -> DVec3 {
-    dir + 2.0 * cos_i * normal
+pub fn mirrored(dir: DVec3, normal: DVec3) -> DVec3 {
+    dir - 2.0 * dir.dot(normal) * normal
 }
 
 /// Refracted direction; `normal` points against `dir`.

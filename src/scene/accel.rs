@@ -14,17 +14,17 @@ use obvhs::{BvhBuildParams, fast_stack};
 use std::fmt;
 use std::time::Duration;
 
-/// Up to this many surfaces are scanned one after the other.
-const SCAN_LIMIT: usize = 4;
+/// Up to this many patches are scanned one after the other.
+const SCAN_LIMIT: usize = 12;
 /// Boxes grow by this many f32 ulp of the largest coordinate: rounding of the box, of the ray's origin, and of the slab test.
 const PADDING_ULP: f64 = 8.0;
 
 /// A culling structure over the boxes of all surfaces.
 #[derive(Debug, Clone)]
 pub enum Accel {
-    /// A scan over this many surfaces.
+    /// A scan over this many patches.
     Scan(usize),
-    /// A tree over more.
+    /// A tree over more, or over triangles.
     Tree(Tree),
 }
 
@@ -39,10 +39,11 @@ impl fmt::Debug for Tree {
 }
 
 impl Accel {
-    /// A structure over `boxes`; ray origins will have coordinates up to `largest_coordinate`, mm.
-    pub fn new(boxes: &[Aabb], largest_coordinate: f64) -> Self {
-        if boxes.len() <= SCAN_LIMIT {
-            return Self::Scan(boxes.len());
+    /// A structure over `boxes`, of which the first `patches` are those of patches, others those of triangles; ray
+    /// origins will have coordinates up to `largest_coordinate`, mm.
+    pub fn new(boxes: &[Aabb], patches: usize, largest_coordinate: f64) -> Self {
+        if boxes.len() == patches && patches <= SCAN_LIMIT {
+            return Self::Scan(patches);
         }
         let padding = PADDING_ULP * f64::from(f32::EPSILON) * largest_coordinate;
         let boxes: Vec<Box32> = boxes.iter().map(|bounds| to_f32(bounds.grown(padding))).collect();
@@ -74,10 +75,11 @@ impl Tree {
         let mut hit = RayHit::none();
         fast_stack!(u32, (96, 192), tree.max_depth, stack, {
             tree.ray_traverse_dynamic(&mut stack, ray, &mut hit, |node, ray, _| {
+                let mut limit = f64::INFINITY;
                 for slot in node.first_index..node.first_index + node.prim_count {
-                    let limit = visit(tree.primitive_indices[slot as usize] as usize);
-                    ray.tmax = ray.tmax.min(round_up(limit));
+                    limit = visit(tree.primitive_indices[slot as usize] as usize);
                 }
+                ray.tmax = ray.tmax.min(round_up(limit));
                 true
             });
         });
@@ -96,4 +98,43 @@ fn to_f32(bounds: Aabb) -> Box32 {
         glam::Vec3A::new(min.x.next_down(), min.y.next_down(), min.z.next_down()),
         glam::Vec3A::new(max.x.next_up(), max.y.next_up(), max.z.next_up()),
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::formats::mesh::TriangleMesh;
+    use crate::math::{Aabb, Frame};
+    use crate::optics::Medium;
+    use crate::scene::mesh::Mesh;
+    use crate::scene::{Builder, Inside, On, Ray, Solid};
+    use crate::units::FluxUnit;
+    use glam::DVec3;
+
+    #[test]
+    fn a_body_of_as_few_triangles_as_possible_is_met() {
+        let mut builder = Builder::new(DVec3::ZERO, Medium::new("air", 1.0, 0.0), FluxUnit::Lumen);
+        let medium = builder.add_medium(Medium::new("glass", 1.5, 0.0));
+        let solid = builder.add_solid(Solid {
+            name: "tetrahedron".into(),
+            medium,
+            priority: 0,
+            bounds: Aabb::EMPTY,
+            volume: None,
+        });
+        let mesh = TriangleMesh {
+            positions: vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z],
+            triangles: vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
+            normals: None,
+            face_of: vec![0; 4],
+            faces: vec!["all".into()],
+        };
+        builder.add_mesh("tetrahedron", solid, Mesh::new(&mesh, &Frame::WORLD), &[None]);
+        let scene = builder.build();
+        let ray = Ray::new(DVec3::new(0.2, 0.3, -1.0), DVec3::Z);
+        let entry = scene.find_next(&ray, &On::default(), &Inside::default()).unwrap();
+        assert!((entry.distance() - 1.0).abs() < 1e-12);
+        let within: Inside = [solid].into_iter().collect();
+        let exit = scene.find_next(&ray.advanced(1.0), &On::hits(&entry), &within).unwrap();
+        assert!((exit.distance() - 0.5).abs() < 1e-12);
+    }
 }

@@ -69,7 +69,7 @@ impl Builder {
             sources: Vec::new(),
             sensors: Vec::new(),
             tolerance: 0.0,
-            accel: Accel::new(&[], 0.0),
+            accel: Accel::new(&[], 0, 0.0),
         };
         Self { scene }
     }
@@ -198,7 +198,7 @@ impl Builder {
                 .extend((0..body.mesh.triangle_count()).map(|triangle| body.mesh.bounds(triangle)));
         }
         scene.tolerance = COINCIDENCE * scene.bounds.diagonal();
-        scene.accel = Accel::new(&boxes, scene.bounds.largest_coordinate());
+        scene.accel = Accel::new(&boxes, scene.patches.len(), scene.bounds.largest_coordinate());
         scene
     }
 }

@@ -32,6 +32,12 @@ impl Inside {
         }
     }
 
+    /// Whether the point lies in no solid but perhaps `solid`.
+    #[inline]
+    pub fn holds_no_other(&self, solid: SolidId) -> bool {
+        self.others.is_empty() && bit(solid).is_some_and(|bit| self.first & !bit == 0)
+    }
+
     /// Adds a solid.
     #[inline]
     pub fn enter(&mut self, solid: SolidId) {

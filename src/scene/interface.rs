@@ -9,9 +9,9 @@ use crate::scene::{FinishId, Hits, Inside, MediumId, Owner, PrimHit, Scene};
 
 /// What light sees where faces meet.
 #[derive(Debug, Clone, Copy)]
-pub struct Interface {
+pub struct Interface<'h> {
     /// The surface whose normal and finish act.
-    pub acting: PrimHit,
+    pub acting: &'h PrimHit,
     /// Its declared finish on the side the light comes from; `None` is the smooth interface of the media.
     pub finish: Option<FinishId>,
     /// The medium the light comes from.
@@ -32,36 +32,73 @@ pub enum Visibility {
 }
 
 impl Scene {
-    /// The interface at a hit, for a path inside `inside` in medium `from`. `hits` holds at least one surface.
-    #[inline]
-    pub fn interface(&self, hits: &Hits, inside: &Inside, from: MediumId) -> Interface {
+    /// The interface at a hit, for a path inside `inside` in medium `from`.
+    #[inline(always)]
+    pub fn interface<'h>(&self, hits: &'h Hits, inside: &Inside, from: MediumId) -> Interface<'h> {
+        // One face, and no solid around it but perhaps its own: the usual case needs no ranks.
+        let hit = hits.nearest();
+        let to = match (hit.owner, hits.others()) {
+            (Owner::Sheet | Owner::Port, []) => from,
+            (Owner::Solid(solid), []) if inside.holds_no_other(solid) => match hit.toward {
+                Toward::Front => self.surroundings,
+                Toward::Back => self.solids[solid.index()].medium,
+            },
+            (Owner::Solid(_) | Owner::Sheet | Owner::Port, _) => {
+                return self.interface_of_several(hits, inside, from);
+            }
+        };
+        self.interface_of(hit, self.declared_finish(hit), from, to)
+    }
+
+    /// The interface where several faces or solids meet.
+    #[inline(never)]
+    fn interface_of_several<'h>(
+        &self,
+        hits: &'h Hits,
+        inside: &Inside,
+        from: MediumId,
+    ) -> Interface<'h> {
         let to = self.medium_beyond(hits, inside, from);
         let claim = |hit: &PrimHit| {
             let finish = self.declared_finish(hit);
-            (self.rank(hit, hits, inside).map(|rank| (finish.is_some(), rank)), *hit, finish)
+            (self.rank(hit, hits, inside).map(|rank| (finish.is_some(), rank)), finish)
         };
-        let (first, others) = hits.first_and_others();
-        let (mut best, mut acting, mut finish) = claim(first);
-        for hit in others {
+        let mut acting = hits.nearest();
+        let (mut best, mut finish) = claim(acting);
+        for hit in hits.others() {
             let other = claim(hit);
             if other.0 > best {
-                (best, acting, finish) = other;
+                (best, finish) = other;
+                acting = hit;
             }
         }
+        let interface = self.interface_of(acting, finish, from, to);
+        if best.is_none() {
+            return Interface { visibility: Visibility::Invisible, ..interface };
+        }
+        interface
+    }
+
+    #[inline(always)]
+    fn interface_of<'h>(
+        &self,
+        acting: &'h PrimHit,
+        finish: Option<FinishId>,
+        from: MediumId,
+        to: MediumId,
+    ) -> Interface<'h> {
         let passes = finish.is_none() && (from == to || self.same_index(from, to));
-        let visibility =
-            if best.is_none() || passes { Visibility::Invisible } else { Visibility::Visible };
+        let visibility = if passes { Visibility::Invisible } else { Visibility::Visible };
         Interface { acting, finish, from, to, visibility }
     }
 
     /// The medium behind a hit: solids that the path was in are left, others are entered.
-    #[inline]
     fn medium_beyond(&self, hits: &Hits, inside: &Inside, from: MediumId) -> MediumId {
-        let entered = hits.all().iter().filter_map(|hit| match hit.owner {
+        let entered = hits.all().filter_map(|hit| match hit.owner {
             Owner::Solid(solid) if !inside.contains(solid) => Some(solid),
             Owner::Solid(_) | Owner::Sheet | Owner::Port => None,
         });
-        if hits.all().iter().any(|hit| matches!(hit.owner, Owner::Solid(_))) {
+        if hits.all().any(|hit| matches!(hit.owner, Owner::Solid(_))) {
             self.medium_of(inside.iter().filter(|solid| !hits.meet(*solid)).chain(entered))
         } else {
             from
@@ -80,7 +117,6 @@ impl Scene {
     }
 
     /// How strongly a face claims to act; `None` when it is buried in a solid of higher priority.
-    #[inline]
     fn rank(&self, hit: &PrimHit, hits: &Hits, inside: &Inside) -> Option<i64> {
         match hit.owner {
             Owner::Sheet | Owner::Port => Some(i64::MAX),

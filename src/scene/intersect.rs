@@ -8,8 +8,9 @@
 use crate::scene::accel::{Accel, Tree};
 use crate::scene::mesh::Line;
 use crate::scene::shape::{Crossing, Start, Toward, Wanted};
-use crate::scene::{FaceId, Inside, Owner, PrimId, Ray, Scene, SolidId};
+use crate::scene::{FaceId, Inside, On, Owner, PrimId, Ray, Scene, SolidId, Surface};
 use smallvec::SmallVec;
+use std::iter;
 
 /// One of the surfaces met at a hit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,45 +21,54 @@ pub struct PrimHit {
     pub face: FaceId,
     /// What its face belongs to.
     pub owner: Owner,
-    /// Distance along the ray, mm.
-    pub t: f64,
     /// Which way the ray goes through it.
     pub toward: Toward,
 }
 
 /// The nearest hit: all surfaces at one place.
-#[derive(Debug, Clone, Default)]
-pub struct Hits(SmallVec<[PrimHit; 1]>);
+#[derive(Debug, Clone)]
+pub struct Hits {
+    distance: f64,
+    nearest: PrimHit,
+    /// Mostly none: on the heap, so that the usual hit stays in registers.
+    others: Box<[PrimHit]>,
+}
 
 impl Hits {
-    /// Distance to the place, mm; `None` when nothing is hit. Never negative.
+    /// Distance to the place, mm, never negative.
     #[inline]
-    pub fn distance(&self) -> Option<f64> {
-        self.0.first().map(|first| first.t.max(0.0))
+    pub fn distance(&self) -> f64 {
+        self.distance
     }
 
-    /// The surfaces that meet there.
+    /// The surface met first.
     #[inline]
-    pub fn all(&self) -> &[PrimHit] {
-        &self.0
+    pub fn nearest(&self) -> &PrimHit {
+        &self.nearest
     }
 
-    /// The nearest of at least one surface, and the others.
+    /// Other surfaces at the same place.
     #[inline]
-    pub(crate) fn first_and_others(&self) -> (&PrimHit, &[PrimHit]) {
-        self.0.split_first().expect("a ray that meets nothing makes no interface")
+    pub fn others(&self) -> &[PrimHit] {
+        &self.others
+    }
+
+    /// All surfaces that meet there.
+    #[inline]
+    pub fn all(&self) -> impl Iterator<Item = &PrimHit> {
+        iter::once(&self.nearest).chain(&self.others)
     }
 
     /// Whether a face of `solid` is among them.
     #[inline]
     pub fn meet(&self, solid: SolidId) -> bool {
-        self.0.iter().any(|hit| hit.owner == Owner::Solid(solid))
+        self.all().any(|hit| hit.owner == Owner::Solid(solid))
     }
 
     /// Takes a path through all of them.
     #[inline]
     pub fn cross(&self, inside: &mut Inside) {
-        for hit in &self.0 {
+        for hit in self.all() {
             if let Owner::Solid(solid) = hit.owner {
                 match hit.toward {
                     Toward::Front => inside.leave(solid),
@@ -96,27 +106,28 @@ impl Nearest {
 }
 
 impl Scene {
-    /// What a ray meets next that starts on the surfaces `from`, inside the solids `inside`: fills `hits` anew and
-    /// returns the distance, mm; infinite when nothing is hit, never negative.
+    /// What a ray meets next that starts on the surfaces `from`, inside the solids `inside`.
     #[inline(always)]
-    pub fn find_next(&self, ray: &Ray, from: &[PrimId], inside: &Inside, hits: &mut Hits) -> f64 {
-        hits.0.clear();
+    pub fn find_next(&self, ray: &Ray, from: &On, inside: &Inside) -> Option<Hits> {
         let nearest = match &self.accel {
             Accel::Scan(_) => self.nearest_by_scan(ray, from, inside),
-            Accel::Tree(tree) => self.nearest_in_tree(tree, ray, from, inside),
+            Accel::Tree(tree) => self.nearest_in_tree(tree, &ray.lent(), from, inside),
         };
         let Nearest { prim, crossing, runner_up } = nearest;
-        if crossing.t < f64::INFINITY {
-            hits.0.push(self.hit(prim, crossing));
-            if runner_up <= crossing.t + self.tolerance {
-                self.find_others(ray, from, inside, hits);
-            }
+        if crossing.t == f64::INFINITY {
+            return None;
         }
-        crossing.t.max(0.0)
+        let others = if runner_up <= crossing.t + self.tolerance {
+            self.find_others(&ray.lent(), from, inside, &nearest)
+        } else {
+            Box::default()
+        };
+        let nearest = self.hit(prim, crossing.toward);
+        Some(Hits { distance: crossing.t.max(0.0), nearest, others })
     }
 
     #[inline(always)]
-    fn nearest_by_scan(&self, ray: &Ray, from: &[PrimId], inside: &Inside) -> Nearest {
+    fn nearest_by_scan(&self, ray: &Ray, from: &On, inside: &Inside) -> Nearest {
         let mut nearest = Nearest::NONE;
         for (index, patch) in self.patches.iter().enumerate() {
             let prim = PrimId::new(index);
@@ -129,7 +140,8 @@ impl Scene {
         nearest
     }
 
-    fn nearest_in_tree(&self, tree: &Tree, ray: &Ray, from: &[PrimId], inside: &Inside) -> Nearest {
+    #[inline(never)]
+    fn nearest_in_tree(&self, tree: &Tree, ray: &Ray, from: &On, inside: &Inside) -> Nearest {
         let line = self.line(ray);
         let mut nearest = Nearest::NONE;
         tree.visit(ray, |index| {
@@ -143,41 +155,57 @@ impl Scene {
         nearest
     }
 
-    /// Adds the other surfaces at the place of the nearest hit.
-    #[cold]
-    fn find_others(&self, ray: &Ray, from: &[PrimId], inside: &Inside, hits: &mut Hits) {
-        let nearest = hits.0[0];
-        let limit = nearest.t + self.tolerance;
+    /// The other surfaces at the place of the nearest hit.
+    #[inline(never)]
+    fn find_others(
+        &self,
+        ray: &Ray,
+        from: &On,
+        inside: &Inside,
+        nearest: &Nearest,
+    ) -> Box<[PrimHit]> {
+        let limit = nearest.crossing.t + self.tolerance;
         let line = self.line(ray);
+        let mut others = Vec::new();
         self.accel.visit(ray, |index| {
             let prim = PrimId::new(index);
             if prim != nearest.prim {
                 let crossing = self.crossing(prim, ray, line.as_ref(), from, inside, limit);
-                hits.0.extend(crossing.map(|crossing| self.hit(prim, crossing)));
+                others.extend(crossing.map(|crossing| self.hit(prim, crossing.toward)));
             }
             limit
         });
-        hits.0[1..].sort_unstable_by_key(|hit| hit.prim);
+        others.sort_unstable_by_key(|hit: &PrimHit| hit.prim);
+        others.into()
     }
 
     /// The first crossing of a ray with a surface that counts, up to a distance.
-    #[inline]
+    #[inline(always)]
     fn crossing(
         &self,
         prim: PrimId,
         ray: &Ray,
         line: Option<&Line>,
-        from: &[PrimId],
+        from: &On,
         inside: &Inside,
         limit: f64,
     ) -> Option<Crossing> {
-        let surface = self.surface(prim);
-        let wanted = self.wanted(surface.owner(), inside, limit)?;
-        surface.first_crossing(ray, line, start_on(prim, from), &wanted)
+        match self.surface(prim) {
+            Surface::Patch(patch) => {
+                let wanted = self.wanted(patch.owner, inside, limit)?;
+                patch.shape.first_crossing(ray, start_on(prim, from), &wanted)
+            }
+            Surface::Triangle(body, triangle) => {
+                // Most triangles are missed: what counts is asked of the others.
+                let crossing = body.mesh.crossing_of(triangle, line?)?;
+                let wanted = self.wanted(body.owner, inside, limit)?;
+                (wanted.includes(&crossing) && !from.contains(prim)).then_some(crossing)
+            }
+        }
     }
 
     /// Which crossings count: of a solid, those whose orientation fits.
-    #[inline]
+    #[inline(always)]
     fn wanted(&self, owner: Owner, inside: &Inside, max: f64) -> Option<Wanted> {
         let (toward, min) = match owner {
             Owner::Solid(solid) if inside.contains(solid) => (Some(Toward::Front), -self.tolerance),
@@ -189,9 +217,9 @@ impl Scene {
     }
 
     #[inline]
-    fn hit(&self, prim: PrimId, Crossing { t, toward }: Crossing) -> PrimHit {
+    fn hit(&self, prim: PrimId, toward: Toward) -> PrimHit {
         let surface = self.surface(prim);
-        PrimHit { prim, face: surface.face(), owner: surface.owner(), t, toward }
+        PrimHit { prim, face: surface.face(), owner: surface.owner(), toward }
     }
 
     /// The solids in which a path finds itself just ahead of its start (`Toward::Front` of the start) or just behind.
@@ -243,9 +271,9 @@ impl Scene {
 }
 
 /// Whether a ray that starts on the surfaces `from` starts on this one.
-#[inline]
-fn start_on(prim: PrimId, from: &[PrimId]) -> Start {
-    if from.contains(&prim) { Start::On } else { Start::Elsewhere }
+#[inline(always)]
+fn start_on(prim: PrimId, from: &On) -> Start {
+    if from.contains(prim) { Start::On } else { Start::Elsewhere }
 }
 
 /// On which side of its start point a path is asked about.

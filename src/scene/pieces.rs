@@ -3,7 +3,7 @@
 use crate::math::Frame;
 use crate::scene::Ray;
 use crate::scene::mesh::Line;
-use crate::scene::shape::{ChartRect, Crossing, Region, Shape, Start, Wanted};
+use crate::scene::shape::{ChartRect, Crossing, Region, Shape, Start};
 use crate::scene::{Extent, FaceId, MeshBody, Owner, Patch, PrimId, Scene};
 use glam::{DVec2, DVec3};
 
@@ -50,23 +50,6 @@ impl Surface<'_> {
             }
         }
     }
-
-    /// The first crossing of a ray's line that is `wanted`.
-    #[inline]
-    pub(crate) fn first_crossing(
-        self,
-        ray: &Ray,
-        line: Option<&Line>,
-        start: Start,
-        wanted: &Wanted,
-    ) -> Option<Crossing> {
-        match self {
-            Self::Patch(patch) => patch.shape.first_crossing(ray, start, wanted),
-            Self::Triangle(body, triangle) => {
-                body.crossing(triangle, line, start).filter(|crossing| wanted.includes(crossing))
-            }
-        }
-    }
 }
 
 impl MeshBody {
@@ -109,19 +92,6 @@ impl Scene {
         match self.surface(prim) {
             Surface::Patch(patch) => patch.shape.normal(point),
             Surface::Triangle(body, triangle) => body.mesh.facet_normal(triangle),
-        }
-    }
-
-    /// The same, and of a mesh also the unit normal of the surface that it stands for, interpolated; `None` where the
-    /// surface itself is exact.
-    #[inline]
-    pub fn normals(&self, prim: PrimId, point: DVec3) -> (DVec3, Option<DVec3>) {
-        match self.surface(prim) {
-            Surface::Patch(patch) => (patch.shape.normal(point), None),
-            Surface::Triangle(body, triangle) => {
-                let shading = body.mesh.shading_normal(triangle, point);
-                (body.mesh.facet_normal(triangle), Some(shading))
-            }
         }
     }
 

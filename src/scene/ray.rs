@@ -38,6 +38,12 @@ impl Ray {
         self.origin + t * self.dir
     }
 
+    /// A copy to lend to code out of line: a ray that is lent itself has to live in memory, and the inner loop waits.
+    #[inline(always)]
+    pub(crate) fn lent(&self) -> Self {
+        *self
+    }
+
     /// The same line, started at distance `t`, mm.
     #[inline]
     pub fn advanced(&self, t: f64) -> Self {

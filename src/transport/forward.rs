@@ -10,7 +10,7 @@ use crate::scene::{Counts, FaceId, Owner, PrimHit, Scene, SensorId, SourceId, Su
 use crate::transport::readings::{SensorReading, Step, Trail};
 use crate::transport::watch::{OnPort, Watch};
 use crate::transport::{
-    Departure, Event, Layout, Leak, Path, Readings, Segment, TAILS, Vertex, walk,
+    Departure, Event, Layout, Leak, Path, Readings, Segment, TAILS, Vertex, Visitor, walk,
 };
 use glam::{DVec2, DVec3};
 use std::ops::ControlFlow;
@@ -115,45 +115,28 @@ impl<'r, 's> Counter<'r, 's> {
         self.last_left = None;
         self.add(self.run.layout.emitted(source), 1.0);
         let path = Path::emitted(scene, source, emitted);
-        walk(scene, path, self.run.bounce_limit, &mut sampler, |path, event| {
-            self.see(path, event);
-            ControlFlow::Continue(())
-        });
+        walk(scene, path, self.run.bounce_limit, &mut sampler, self);
     }
 
-    #[inline]
-    fn see(&mut self, path: &Path, event: Event<'_>) {
-        let layout = self.run.layout;
-        match event {
-            Event::Travel(segment) => self.travel(path, segment),
-            Event::Arrive(vertex) => self.arrive(path, vertex),
-            Event::Depart(vertex, departure) => self.depart(path, vertex, departure),
-            Event::Absorbed(vertex) => {
-                let face = vertex.interface.acting.face;
-                self.add(layout.absorbed_by_face(face), vertex.throughput);
-            }
-            Event::Roulette(lost) => self.add(layout.roulette(), lost),
-            Event::Escaped(throughput) => {
-                self.add(layout.escaped(self.last_left), throughput);
-                for &(id, goniometer) in &self.run.watch.far {
-                    self.count(path, id, goniometer.cell(path.ray.dir()), throughput);
-                }
-            }
-            Event::Cut(throughput) => self.add(layout.cut(), throughput),
-            Event::Leaked(ray, throughput) => {
-                self.add(layout.leaked(), throughput);
-                self.readings.leaks.push(Leak { point: ray.origin(), dir: ray.dir() });
-            }
-        }
-    }
-
-    #[inline]
+    #[inline(always)]
     fn travel(&mut self, path: &Path, segment: &Segment<'_>) {
         self.readings.segments += 1;
         if segment.arriving < segment.throughput {
             let slot = self.run.layout.absorbed_in_medium(segment.medium);
             self.add(slot, segment.throughput - segment.arriving);
         }
+        let watch = &self.run.watch;
+        if watch.ports.iter().any(|port| port.may_be_crossed(segment))
+            || !watch.near.is_empty()
+            || !watch.entry_ports.is_empty()
+        {
+            self.travel_watched(path, segment);
+        }
+    }
+
+    /// Counts light that passes through ports and out of goniometers on its way.
+    #[inline(never)]
+    fn travel_watched(&mut self, path: &Path, segment: &Segment<'_>) {
         let run = self.run;
         for port in &run.watch.ports {
             self.cross_port(path, segment, port);
@@ -177,9 +160,8 @@ impl<'r, 's> Counter<'r, 's> {
     }
 
     /// Counts light that passes through a port sensor on its way.
-    #[inline]
     fn cross_port(&mut self, path: &Path, segment: &Segment<'_>, port: &OnPort<'s>) {
-        let OnPort { id, sensor, patches } = port;
+        let OnPort { id, sensor, patches, .. } = port;
         for patch in patches {
             patch.shape.crossings(segment.ray, Start::Elsewhere, |Crossing { t, toward }| {
                 if !self.within(segment, t) {
@@ -217,7 +199,7 @@ impl<'r, 's> Counter<'r, 's> {
         aim.is_empty()
             || aim.iter().any(|&face| match scene.faces[face.index()].owner {
                 Owner::Solid(_) | Owner::Sheet => {
-                    path.on.iter().any(|&prim| scene.face_of(prim) == face)
+                    path.on.iter().any(|prim| scene.face_of(prim) == face)
                 }
                 Owner::Port => scene.face_patches(face).iter().any(|patch| {
                     let mut crossed = false;
@@ -229,7 +211,7 @@ impl<'r, 's> Counter<'r, 's> {
             })
     }
 
-    #[inline]
+    #[inline(always)]
     fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>) {
         let light = Light {
             counts: Counts::Incident,
@@ -237,10 +219,10 @@ impl<'r, 's> Counter<'r, 's> {
             throughput: vertex.throughput,
             side: None,
         };
-        self.on_faces(path, vertex, &light);
+        self.on_faces(path, vertex, light);
     }
 
-    #[inline]
+    #[inline(always)]
     fn depart(&mut self, path: &Path, vertex: &Vertex<'_>, departure: &Departure) {
         let face = vertex.interface.acting.face;
         let absorbed = vertex.throughput - departure.throughput;
@@ -253,7 +235,7 @@ impl<'r, 's> Counter<'r, 's> {
             throughput: departure.throughput,
             side: Some(departure.side),
         };
-        self.on_faces(path, vertex, &light);
+        self.on_faces(path, vertex, light);
         let transmitted = departure.side == Side::Transmitted;
         if transmitted {
             for hit in vertex.hits.all() {
@@ -267,9 +249,17 @@ impl<'r, 's> Counter<'r, 's> {
         }
     }
 
-    /// Counts light on the sensors of all faces that meet at a vertex.
-    #[inline]
-    fn on_faces(&mut self, path: &Path, vertex: &Vertex<'_>, light: &Light) {
+    /// Counts light on the sensors of all faces that meet at a vertex; most have none.
+    #[inline(always)]
+    fn on_faces(&mut self, path: &Path, vertex: &Vertex<'_>, light: Light) {
+        let hits = vertex.hits;
+        if self.run.watch.watched[hits.nearest().face.index()] || !hits.others().is_empty() {
+            self.on_watched_faces(path, vertex, light);
+        }
+    }
+
+    #[inline(never)]
+    fn on_watched_faces(&mut self, path: &Path, vertex: &Vertex<'_>, light: Light) {
         for hit in vertex.hits.all() {
             if self.run.watch.watched[hit.face.index()] {
                 self.on_face(path, vertex.point, hit, light);
@@ -277,8 +267,8 @@ impl<'r, 's> Counter<'r, 's> {
         }
     }
 
-    fn on_face(&mut self, path: &Path, point: DVec3, hit: &PrimHit, light: &Light) {
-        let Light { counts, dir, throughput, side } = *light;
+    fn on_face(&mut self, path: &Path, point: DVec3, hit: &PrimHit, light: Light) {
+        let Light { counts, dir, throughput, side } = light;
         let run = self.run;
         let face = hit.face.index();
         if side == Some(Side::Transmitted) && hit.toward == Toward::Back {
@@ -373,13 +363,43 @@ impl<'r, 's> Counter<'r, 's> {
         self.trail.push((!full).then_some(step));
     }
 
-    #[inline]
+    #[inline(always)]
     fn add(&mut self, slot: usize, throughput: f64) {
         self.sums[slot] += self.flux * throughput;
     }
 }
 
+impl Visitor for Counter<'_, '_> {
+    #[inline(always)]
+    fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
+        let layout = self.run.layout;
+        match event {
+            Event::Travel(segment) => self.travel(path, segment),
+            Event::Arrive(vertex) => self.arrive(path, vertex),
+            Event::Depart(vertex, departure) => self.depart(path, vertex, departure),
+            Event::Absorbed(vertex) => {
+                let face = vertex.interface.acting.face;
+                self.add(layout.absorbed_by_face(face), vertex.throughput);
+            }
+            Event::Roulette(lost) => self.add(layout.roulette(), lost),
+            Event::Escaped(throughput) => {
+                self.add(layout.escaped(self.last_left), throughput);
+                for &(id, goniometer) in &self.run.watch.far {
+                    self.count(path, id, goniometer.cell(path.ray.dir()), throughput);
+                }
+            }
+            Event::Cut(throughput) => self.add(layout.cut(), throughput),
+            Event::Leaked(ray, throughput) => {
+                self.add(layout.leaked(), throughput);
+                self.readings.leaks.push(Leak { point: ray.origin(), dir: ray.dir() });
+            }
+        }
+        ControlFlow::Continue(())
+    }
+}
+
 /// Light arriving at, or leaving, the faces of a vertex.
+#[derive(Clone, Copy)]
 struct Light {
     counts: Counts,
     /// Unit direction of travel.

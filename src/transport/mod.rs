@@ -20,4 +20,4 @@ pub use readings::{
 };
 pub use rounds::{Interrupt, Run};
 pub use tracks::{Track, TrackEnd, tracks};
-pub use walk::{Departure, Event, ROULETTE_BELOW, Segment, Vertex, walk};
+pub use walk::{Departure, Event, ROULETTE_BELOW, Segment, Vertex, Visitor, walk};

@@ -1,7 +1,6 @@
 //! The state of a path.
 
-use crate::scene::{Emitted, Inside, MediumId, PrimId, Ray, Scene, SourceId};
-use smallvec::SmallVec;
+use crate::scene::{Emitted, Inside, MediumId, On, Ray, Scene, SourceId};
 
 /// Wavelength of all light for now, nm: the peak of V(λ), CIE 018:2019.
 pub const WAVELENGTH: f64 = 555.0;
@@ -22,7 +21,7 @@ pub struct Path {
     /// The medium it is in.
     pub medium: MediumId,
     /// The surfaces it starts on.
-    pub on: SmallVec<[PrimId; 2]>,
+    pub on: On,
     /// Number of visible interfaces met so far.
     pub depth: u32,
 }
@@ -37,7 +36,7 @@ impl Path {
             source,
             medium: scene.medium_in(&emitted.inside),
             inside: emitted.inside,
-            on: emitted.on.into_iter().collect(),
+            on: emitted.on.into(),
             depth: 0,
         }
     }

@@ -48,7 +48,8 @@ fn track(scene: &Scene, source: SourceId, seed: u64, bounce_limit: u32, index: u
     let emitted = scene.sources[source.index()].emit(scene, &mut sampler);
     let mut track = Track { points: vec![emitted.ray.origin()], end: TrackEnd::Cut };
     let path = Path::emitted(scene, source, emitted);
-    walk(scene, path, bounce_limit.min(BOUNCES_DRAWN), &mut sampler, |path, event| {
+    let limit = bounce_limit.min(BOUNCES_DRAWN);
+    walk(scene, path, limit, &mut sampler, &mut |path: &Path, event: Event<'_>| {
         match event {
             Event::Arrive(vertex) => track.points.push(vertex.point),
             Event::Absorbed(_) => track.end = TrackEnd::Absorbed,

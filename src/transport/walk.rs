@@ -5,14 +5,14 @@
 use crate::optics::{Bsdf, Incidence, Lobe, Scattered, Side};
 use crate::rng::{Dimension, Sampler};
 use crate::scene::shape::Toward;
-use crate::scene::{Hits, Interface, MediumId, Ray, Scene, Visibility};
+use crate::scene::{Hits, Interface, MediumId, On, Ray, Scene, Surface, Visibility};
 use crate::transport::Path;
 use glam::DVec3;
 use std::ops::ControlFlow;
 
 /// Below this throughput a path survives with probability throughput/threshold and then has the threshold's:
-/// the mean is kept, and mirrors above it cost no random number. 1.
-pub const ROULETTE_BELOW: f64 = 1e-3;
+/// the mean is kept, and mirrors above it cost no random number. 1. Chosen by measurement: ARCHITECTURE.md.
+pub const ROULETTE_BELOW: f64 = 0.1;
 
 /// A straight piece of a path, in one medium.
 #[derive(Debug)]
@@ -39,7 +39,7 @@ pub struct Vertex<'a> {
     /// All surfaces that meet there.
     pub hits: &'a Hits,
     /// The interface they make.
-    pub interface: &'a Interface,
+    pub interface: &'a Interface<'a>,
     /// Throughput arriving.
     pub throughput: f64,
 }
@@ -76,6 +76,19 @@ pub enum Event<'a> {
     Leaked(&'a Ray, f64),
 }
 
+/// Someone who watches a path; a closure is one.
+pub trait Visitor {
+    /// Sees what happens; a break ends the path. Inlined into the loop it saves a tenth of a mirror bounce.
+    fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()>;
+}
+
+impl<F: FnMut(&Path, Event<'_>) -> ControlFlow<()>> Visitor for F {
+    #[inline]
+    fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
+        self(path, event)
+    }
+}
+
 /// Follows a path until it ends or the visitor breaks.
 #[inline]
 pub fn walk(
@@ -83,13 +96,13 @@ pub fn walk(
     mut path: Path,
     bounce_limit: u32,
     sampler: &mut Sampler,
-    mut visit: impl FnMut(&Path, Event<'_>) -> ControlFlow<()>,
+    visitor: &mut impl Visitor,
 ) {
-    let mut hits = Hits::default();
     // A copy of the path's that no visitor sees: it stays in registers from bounce to bounce.
     let mut ray = path.ray;
     loop {
-        let length = scene.find_next(&ray, &path.on, &path.inside, &mut hits);
+        let hits = scene.find_next(&ray, &path.on, &path.inside);
+        let length = hits.as_ref().map_or(f64::INFINITY, Hits::distance);
         let medium = &scene.media[path.medium.index()];
         let arriving = path.throughput * medium.transmittance(path.wavelength, length);
         let segment = Segment {
@@ -99,32 +112,33 @@ pub fn walk(
             throughput: path.throughput,
             arriving,
         };
-        if visit(&path, Event::Travel(&segment)).is_break() {
+        if visitor.see(&path, Event::Travel(&segment)).is_break() {
             return;
         }
         path.throughput = arriving;
-        if length == f64::INFINITY {
+        let Some(hits) = &hits else {
             let event = if path.inside.is_empty() {
                 Event::Escaped(path.throughput)
             } else {
                 Event::Leaked(&path.ray, path.throughput)
             };
             // The path ends here whatever the visitor says.
-            _ = visit(&path, event);
+            _ = visitor.see(&path, event);
             return;
-        }
-        match bounce(scene, &mut path, &ray, &hits, length, sampler, &mut visit) {
+        };
+        match bounce(scene, &mut path, &ray, hits, sampler, visitor) {
             ControlFlow::Continue(next) => ray = next,
             ControlFlow::Break(()) => return,
         }
         if path.depth >= bounce_limit {
-            _ = visit(&path, Event::Cut(path.throughput));
+            _ = visitor.see(&path, Event::Cut(path.throughput));
             return;
         }
         if path.throughput < ROULETTE_BELOW {
             let survives = sampler.one(Dimension::Roulette) * ROULETTE_BELOW < path.throughput;
             let after = if survives { ROULETTE_BELOW } else { 0.0 };
-            if visit(&path, Event::Roulette(path.throughput - after)).is_break() || !survives {
+            if visitor.see(&path, Event::Roulette(path.throughput - after)).is_break() || !survives
+            {
                 return;
             }
             path.throughput = after;
@@ -139,34 +153,30 @@ fn bounce(
     path: &mut Path,
     ray: &Ray,
     hits: &Hits,
-    length: f64,
     sampler: &mut Sampler,
-    visit: &mut impl FnMut(&Path, Event<'_>) -> ControlFlow<()>,
+    visitor: &mut impl Visitor,
 ) -> ControlFlow<(), Ray> {
     let interface = scene.interface(hits, &path.inside, path.medium);
-    let (point, dir) = (ray.at(length), ray.dir());
+    let (point, dir) = (ray.at(hits.distance()), ray.dir());
     let vertex = Vertex { point, dir, hits, interface: &interface, throughput: path.throughput };
-    visit(path, Event::Arrive(&vertex))?;
+    visitor.see(path, Event::Arrive(&vertex))?;
     let out = match interface.visibility {
         Visibility::Invisible => straight_on(dir),
         Visibility::Visible => {
             path.depth += 1;
             let Some(out) = scatter(scene, path, &interface, point, dir, sampler) else {
-                visit(path, Event::Absorbed(&vertex))?;
+                visitor.see(path, Event::Absorbed(&vertex))?;
                 return ControlFlow::Break(());
             };
             out
         }
     };
-    match (path.on.as_mut_slice(), hits.all()) {
-        ([on], [hit]) => *on = hit.prim,
-        _ => path.on = hits.all().iter().map(|hit| hit.prim).collect(),
-    }
+    path.on = On::hits(hits);
     let next = Ray::new(point, out.dir);
     path.ray = next;
     path.throughput *= out.factor;
     let departure = Departure { dir: next.dir(), throughput: path.throughput, side: out.side };
-    visit(path, Event::Depart(&vertex, &departure))?;
+    visitor.see(path, Event::Depart(&vertex, &departure))?;
     if out.side == Side::Transmitted {
         path.medium = interface.to;
         hits.cross(&mut path.inside);
@@ -183,27 +193,34 @@ fn straight_on(dir: DVec3) -> Scattered {
 fn scatter(
     scene: &Scene,
     path: &Path,
-    interface: &Interface,
+    interface: &Interface<'_>,
     point: DVec3,
     dir: DVec3,
     sampler: &mut Sampler,
 ) -> Option<Scattered> {
-    // The normal on the side the light comes from.
-    let facing = |outward: DVec3| match interface.acting.toward {
-        Toward::Front => -outward,
-        Toward::Back => outward,
-    };
-    let (facet, shading) = scene.normals(interface.acting.prim, point);
-    let (facet, shading) = (facing(facet), shading.map(facing));
-    // An interpolated normal may face away from grazing light; then the facet's own is taken.
-    let normal = shading.filter(|normal| normal.dot(dir) < 0.0).unwrap_or(facet);
+    let toward = interface.acting.toward;
     let index = |medium: MediumId| scene.media[medium.index()].index(path.wavelength);
-    let incidence =
-        Incidence { dir, normal, index_from: index(interface.from), index_to: index(interface.to) };
+    let (index_from, index_to) = (index(interface.from), index(interface.to));
     let bsdf =
         interface.finish.map_or(&Bsdf::Smooth, |finish| &scene.finishes[finish.index()].bsdf);
-    let out = bsdf.scatter(&incidence, sampler)?;
-    Some(if shading.is_some() { kept_on_its_side(out, facet) } else { out })
+    match scene.surface(interface.acting.prim) {
+        Surface::Patch(patch) => {
+            let normal = patch.shape.normal_against(toward, point);
+            bsdf.scatter(&Incidence { dir, normal, index_from, index_to }, sampler)
+        }
+        Surface::Triangle(body, triangle) => {
+            let facing = |outward: DVec3| match toward {
+                Toward::Front => -outward,
+                Toward::Back => outward,
+            };
+            let facet = facing(body.mesh.facet_normal(triangle));
+            let shading = facing(body.mesh.shading_normal(triangle, point));
+            // An interpolated normal may face away from grazing light; then the facet's own is taken.
+            let normal = if shading.dot(dir) < 0.0 { shading } else { facet };
+            let out = bsdf.scatter(&Incidence { dir, normal, index_from, index_to }, sampler)?;
+            Some(kept_on_its_side(out, facet))
+        }
+    }
 }
 
 /// With an interpolated normal light may leave into the facet that it should leave: it is mirrored once more about

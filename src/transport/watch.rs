@@ -1,8 +1,10 @@
 //! Which sensors watch what: looked up once per run, asked at every event.
 
+use crate::math::Aabb;
 use crate::scene::{
     FaceId, Goniometer, Owner, Patch, Place, Scene, SensorId, SensorKind, SurfaceSensor,
 };
+use crate::transport::Segment;
 
 /// The sensors of a scene, by where light can meet them.
 #[derive(Debug)]
@@ -32,6 +34,19 @@ pub(crate) struct OnPort<'s> {
     pub(crate) sensor: &'s SurfaceSensor,
     /// The pieces of its port.
     pub(crate) patches: Vec<&'s Patch>,
+    /// A box around them, with room for rounding.
+    bounds: Aabb,
+}
+
+impl OnPort<'_> {
+    /// Whether a segment comes near the port; most do not, and are not asked further.
+    #[inline(always)]
+    pub(crate) fn may_be_crossed(&self, segment: &Segment<'_>) -> bool {
+        let (start, end) = (segment.ray.origin(), segment.ray.at(segment.length));
+        // Written so that an undefined end, of a ray along a plane of coordinates that meets nothing, is near.
+        !(start.max(end).cmplt(self.bounds.min).any()
+            || start.min(end).cmpgt(self.bounds.max).any())
+    }
 }
 
 impl<'s> Watch<'s> {
@@ -73,9 +88,13 @@ impl<'s> Watch<'s> {
     fn add_surface(&mut self, scene: &'s Scene, id: SensorId, sensor: &'s SurfaceSensor) {
         match sensor.place {
             Place::Port => {
-                let patches =
+                let patches: Vec<&Patch> =
                     sensor.faces.iter().flat_map(|face| scene.face_patches(*face)).collect();
-                self.ports.push(OnPort { id, sensor, patches });
+                let bounds = patches
+                    .iter()
+                    .fold(Aabb::EMPTY, |bounds, patch| bounds.union(patch.shape.bounds()))
+                    .grown(2.0 * scene.tolerance);
+                self.ports.push(OnPort { id, sensor, patches, bounds });
             }
             Place::Face => {
                 for face in &sensor.faces {

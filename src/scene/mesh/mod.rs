@@ -115,7 +115,7 @@ impl Mesh {
     }
 
     /// Where a line crosses a triangle.
-    #[inline]
+    #[inline(always)]
     pub fn crossing_of(&self, triangle: usize, line: &Line) -> Option<Crossing> {
         let corners = &self.corners[triangle];
         let toward = line.passes(corners)?;

@@ -88,7 +88,8 @@ impl Cylinder {
         if wanted.includes(&first) && self.holds(ray, &along, &first) {
             return Some(first);
         }
-        second.filter(|second| wanted.includes(second) && self.holds(ray, &along, second))
+        let second = second?;
+        (wanted.includes(&second) && self.holds(ray, &along, &second)).then_some(second)
     }
 
     /// Where the line of a ray crosses the endless cylinder, in ascending order; the second is missing for a ray that
@@ -124,23 +125,20 @@ impl Cylinder {
     }
 
     /// Whether a point of the endless cylinder belongs to this wall.
-    #[inline]
+    #[inline(always)]
     fn holds(&self, ray: &Ray, along: &Along, crossing: &Crossing) -> bool {
         let z = along.origin + crossing.t * along.dir;
         z >= self.z_min && z <= self.z_max && self.keeps(ray, crossing.t)
     }
 
     /// Whether the point of the wall at distance `t` fulfils the further conditions.
-    #[inline]
+    #[inline(always)]
     fn keeps(&self, ray: &Ray, t: f64) -> bool {
-        match &self.trims {
-            None => true,
-            Some(trims) => {
-                let p = ray.at(t);
-                trims.wedge.is_none_or(|wedge| wedge.contains(self.across(p)))
-                    && trims.cuts.iter().all(|cut| cut.contains(p))
-            }
-        }
+        self.trims.as_ref().is_none_or(|trims| {
+            let p = ray.at(t);
+            trims.wedge.is_none_or(|wedge| wedge.contains(self.across(p)))
+                && trims.cuts.iter().all(|cut| cut.contains(p))
+        })
     }
 
     /// The frame's x and y of a point.
@@ -150,14 +148,14 @@ impl Cylinder {
         DVec2::new(from.dot(self.frame.x), from.dot(self.frame.y))
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn normal(&self, p: DVec3) -> DVec3 {
         let from = p - self.frame.origin;
-        let outward = unit((1.0 / self.radius) * (from - from.dot(self.frame.z) * self.frame.z));
-        match self.leaving {
-            Toward::Front => outward,
-            Toward::Back => -outward,
-        }
+        let sign = match self.leaving {
+            Toward::Front => 1.0,
+            Toward::Back => -1.0,
+        };
+        unit((sign / self.radius) * (from - from.dot(self.frame.z) * self.frame.z))
     }
 
     pub(super) fn area(&self) -> f64 {

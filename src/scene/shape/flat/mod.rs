@@ -58,7 +58,7 @@ impl Flat {
     ) -> Option<Crossing> {
         let across = ray.dir().dot(self.frame.z);
         let toward = if across > 0.0 { Toward::Front } else { Toward::Back };
-        if start == Start::On || !wanted.includes_way(toward) {
+        if !wanted.includes_way(toward) || start == Start::On {
             return None;
         }
         let t = (self.frame.origin - ray.origin()).dot(self.frame.z) / across;
@@ -68,7 +68,7 @@ impl Flat {
             .then_some(crossing)
     }
 
-    #[inline]
+    #[inline(always)]
     fn contains(&self, p: DVec3) -> bool {
         self.region.contains(self.chart(p))
     }
@@ -86,7 +86,7 @@ impl Flat {
         self.frame.point_to_world(self.region.sample(u).extend(0.0))
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn chart(&self, p: DVec3) -> DVec2 {
         let from = p - self.frame.origin;
         DVec2::new(from.dot(self.frame.x), from.dot(self.frame.y))

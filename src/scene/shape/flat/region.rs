@@ -10,6 +10,7 @@ use std::f64::consts::PI;
 
 /// A part of a plane, lengths in mm.
 #[derive(Debug, Clone, PartialEq)]
+#[repr(u8)]
 pub enum Region {
     /// Between two radii; a disk when `inner` is 0.
     Annulus {
@@ -59,8 +60,22 @@ impl Region {
         Self::Polygon(Polygon::new(vertices))
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn contains(&self, p: DVec2) -> bool {
+        match self {
+            Self::Annulus { inner, outer } => {
+                let r2 = p.length_squared();
+                r2 <= outer * outer && r2 >= inner * inner
+            }
+            Self::Rectangle { half_x, half_y } => p.x.abs() <= *half_x && p.y.abs() <= *half_y,
+            Self::Sector { .. } | Self::Ellipse { .. } | Self::Polygon(_) => {
+                self.contains_out_of_line(p)
+            }
+        }
+    }
+
+    #[inline(never)]
+    fn contains_out_of_line(&self, p: DVec2) -> bool {
         let within = |inner: f64, outer: f64| {
             let r2 = p.length_squared();
             r2 <= outer * outer && r2 >= inner * inner

@@ -181,7 +181,7 @@ fn trace(case: &Case, seed: u64) -> Outcome {
     };
     let mut run = Run::new(&case.scene, &plan);
     while !run.is_complete() {
-        run.next_piece();
+        run.next_wave();
     }
     outcome(&case.scene, &run.readings())
 }

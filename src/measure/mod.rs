@@ -318,7 +318,7 @@ mod tests {
             };
             let mut run = Run::new(&scene, &plan);
             while !run.is_complete() {
-                run.next_piece();
+                run.next_wave();
             }
             let measures = measure(&scene, &run.readings());
             for (name, expected) in [

@@ -90,6 +90,14 @@ impl<'s> Run<'s> {
         }
     }
 
+    /// Traces the rest of a wave, or a whole one.
+    pub fn next_wave(&mut self) {
+        self.next_piece();
+        while !self.is_between_waves() {
+            self.next_piece();
+        }
+    }
+
     /// Waves after which the next test of the stop rules is due: rounds grow by a quarter.
     pub fn round_end(&self) -> u64 {
         let next = (self.waves + 1).max(self.waves * 5 / 4);

@@ -90,10 +90,13 @@ fn check_area(key: &Key, kind: &str, area: Area, sensor: &SensorSpec, problems: 
 
 fn check_plane(key: &Key, plane: &PlaneSpec, problems: &mut Problems) {
     match (plane.cells, plane.rings, plane.sectors) {
+        // Without a division it is one cell.
+        (None, None, None) => {}
         (Some([nx, ny]), None, None) => {
             check_cells(&key.field("cells"), f64::from(nx) * f64::from(ny), problems);
         }
-        (None, Some(rings), Some(sectors)) => {
+        (None, Some(rings), sectors) => {
+            let sectors = sectors.unwrap_or(1);
             check_cells(&key.field("rings"), f64::from(rings) * f64::from(sectors), problems);
             if plane.rectangle.is_some() {
                 problems
@@ -101,18 +104,10 @@ fn check_plane(key: &Key, plane: &PlaneSpec, problems: &mut Problems) {
                     .hint("give `cells`, or a `disk`");
             }
         }
-        (None, Some(_), None) => {
-            problems
-                .error(&key.field("rings"), "needs `sectors` beside it")
-                .hint("sectors = 1 makes whole rings");
-        }
         (None, None, Some(_)) => {
-            problems.error(&key.field("sectors"), "needs `rings` beside it");
-        }
-        (None, None, None) => {
             problems
-                .error(key, "needs `cells`, or `rings` and `sectors`")
-                .hint("such as cells = [32, 32]");
+                .error(&key.field("sectors"), "needs `rings` beside it")
+                .hint("rings = 1 makes plain sectors");
         }
         (Some(_), Some(_), _) | (Some(_), None, Some(_)) => {
             let name = if plane.rings.is_some() { "rings" } else { "sectors" };

@@ -72,8 +72,8 @@ impl SensorSpec {
     }
 }
 
-/// A grid of cells over a flat area or a face: `cells`, or `rings` and `sectors`. A `rectangle` or a `disk` gives the
-/// area; a sensor `on` a face has the area of the face.
+/// A grid of cells over a flat area or a face: `cells`, or `rings` and `sectors`; one cell without them. A `rectangle` or
+/// a `disk` gives the area; a sensor `on` a face has the area of the face.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PlaneSpec {
     /// A rectangular area about the position.
@@ -86,7 +86,7 @@ pub struct PlaneSpec {
     /// Rings of equal width about the centre, for a round area.
     #[schemars(range(min = 1, max = 100_000_000))]
     pub rings: Option<u32>,
-    /// Sectors of equal angle; the first begins at the local +x.
+    /// Sectors of equal angle in each ring; the first begins at the local +x. Omitted: rings are whole.
     #[schemars(range(min = 1, max = 100_000_000))]
     pub sectors: Option<u32>,
 }

@@ -77,7 +77,7 @@ fn run(scene: &Scene, paths: u64) -> Readings {
     };
     let mut run = Run::new(scene, &plan);
     while !run.is_complete() {
-        run.next_piece();
+        run.next_wave();
     }
     run.readings()
 }

@@ -1,0 +1,263 @@
+//! What must not change: the answer with the unit and the place of a scene, the skew of a ray with its bounces, and the
+//! sum of all light in any scene.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
+
+use lumiduct::input::{self, Job, Settings};
+use lumiduct::measure::{self, Measures};
+use lumiduct::rng::Sampler;
+use lumiduct::scene::SourceId;
+use lumiduct::transport::{Event, Path as LightPath, Run, walk};
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+/// Paths of a run here: a single one that goes another way shows as 1e-5 of the flux.
+const PATHS: u64 = 100_000;
+/// Curved walls spread rounding by a factor at every bounce, so the last digit sends one of the longest paths elsewhere
+/// now and then: the most of them here. Noise alone would be some hundreds of paths.
+const ASTRAY: f64 = 5e-5;
+/// Segments over all shipped scenes in which none may leak, and those of a scene with a mesh, which takes ten times as
+/// long for one.
+const SEGMENTS: u64 = 100_000_000;
+const MESH_SEGMENTS: u64 = 5_000_000;
+
+/// A folder of scenes that ends with the test.
+struct Scenes(tempfile::TempDir);
+
+impl Scenes {
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    fn load(&self, text: &str) -> Job {
+        let path = self.0.path().join("scene.toml");
+        std::fs::write(&path, text).unwrap();
+        load(&path, &[])
+    }
+}
+
+fn load(path: &Path, overrides: &[&str]) -> Job {
+    let overrides = overrides.iter().map(|one| (*one).to_owned()).collect();
+    let settings = Settings { overrides, paths: Some(PATHS), ..Settings::default() };
+    match input::load(path, &settings) {
+        Ok(job) => job,
+        Err(error) => panic!("{}: {error}", path.display()),
+    }
+}
+
+fn run(job: &Job) -> Measures {
+    let mut run = Run::new(&job.scene, &job.run);
+    while !run.is_complete() {
+        run.next_wave();
+    }
+    measure::measure(&job.scene, &run.readings())
+}
+
+/// Fluxes and lines of the balance are the same, whatever the size of the scene.
+fn assert_same(what: &str, expected: &Measures, found: &Measures) {
+    let mut compared = 0;
+    for (name, measure) in expected.values.iter().filter(|(_, measure)| measure.unit == "lm") {
+        let other = &found.values[name.as_str()];
+        let off = (measure.value - other.value).abs();
+        assert!(off <= ASTRAY, "{what}: {name} {measure} {other}, off by {off:e}");
+        compared += 1;
+    }
+    assert!(compared > 10, "{what}: only {compared} measures");
+    assert!(found.values["exit.flux"].value > 0.1, "{what}: the exit is dark");
+}
+
+/// A bent, tapered rod that absorbs, behind a lens, with its lengths times `scale` and at `place` (mm).
+fn rod(scale: f64, place: [f64; 3]) -> String {
+    let at = |z: f64| format!("[{}, {}, {}]", place[0], place[1], place[2] + z * scale);
+    format!(
+        r#"
+lumiduct = 1
+title = "bent rod behind a lens"
+
+[media]
+pmma = {{ index = 1.49, absorption_per_mm = {absorption} }}
+
+[solids.lens.lens]
+diameter_mm = {diameter}
+thickness_mm = {thickness}
+entry_radius_mm = {curvature}
+medium = "pmma"
+at = {{ position_mm = {lens} }}
+
+[solids.rod.sweep]
+profile = {{ circle = {{ radius_mm = {radius} }} }}
+path = [{{ straight_mm = {leg}, end_scale = 0.8 }}, {{ bend_deg = 70, radius_mm = {bend} }}, {{ straight_mm = {leg} }}]
+medium = "pmma"
+at = {{ position_mm = {start} }}
+
+[sources.led.disk]
+radius_mm = {led}
+at = {{ position_mm = {source} }}
+flux_lm = 1
+
+[sensors]
+exit = {{ plane = {{ cells = [4, 4] }}, on = "rod.exit", counts = "leaving" }}
+"#,
+        absorption = 0.001 / scale,
+        diameter = 4.0 * scale,
+        thickness = 1.2 * scale,
+        curvature = 3.0 * scale,
+        radius = 1.5 * scale,
+        leg = 10.0 * scale,
+        bend = 8.0 * scale,
+        led = 0.5 * scale,
+        source = at(-1.0),
+        lens = at(0.0),
+        start = at(1.5),
+    )
+}
+
+/// A hexagonal mirror duct with a corner and a rough end plate, likewise.
+fn duct(scale: f64, place: [f64; 3]) -> String {
+    let at = |z: f64| format!("[{}, {}, {}]", place[0], place[1], place[2] + z * scale);
+    format!(
+        r#"
+lumiduct = 1
+title = "hexagonal duct with a corner"
+
+[finishes]
+mirror = {{ specular = {{ reflectance = 0.95 }} }}
+rough = {{ gaussian = {{ sigma_deg = 5, reflectance = 0.4, transmittance = 0.5 }} }}
+
+[sheets.duct.tube]
+profile = {{ regular_polygon = {{ sides = 6, across_flats_mm = {flats} }} }}
+path = [{{ straight_mm = {leg} }}, {{ corner_deg = 60 }}, {{ straight_mm = {leg} }}]
+finish = "mirror"
+at = {{ position_mm = {start} }}
+
+[sheets.plate.disk]
+radius_mm = {plate}
+finish = "rough"
+at = {{ position_mm = {middle} }}
+
+[sources.led.rectangle]
+width_mm = {led}
+height_mm = {led}
+at = {{ position_mm = {start} }}
+flux_lm = 1
+
+[sensors]
+exit = {{ plane = {{ cells = [4, 4] }}, on = "duct.exit", counts = "leaving" }}
+"#,
+        flats = 10.0 * scale,
+        leg = 20.0 * scale,
+        plate = 3.0 * scale,
+        led = 5.0 * scale,
+        start = at(0.0),
+        middle = at(8.0),
+    )
+}
+
+#[test]
+fn answers_do_not_depend_on_the_size_of_a_scene() {
+    let scenes = Scenes::new();
+    for scene in [rod, duct] {
+        let expected = run(&scenes.load(&scene(1.0, [0.0; 3])));
+        for scale in [1e3, 1e-3, 25.4] {
+            let found = run(&scenes.load(&scene(scale, [0.0; 3])));
+            assert_same(&format!("{scale} times"), &expected, &found);
+        }
+    }
+}
+
+#[test]
+fn answers_do_not_depend_on_the_place_of_a_scene() {
+    let scenes = Scenes::new();
+    for scene in [rod, duct] {
+        let expected = run(&scenes.load(&scene(1.0, [0.0; 3])));
+        for place in [[10_000.0, -10_000.0, 10_000.0], [1234.567, 0.0, -9876.543]] {
+            let found = run(&scenes.load(&scene(1.0, place)));
+            assert_same(&format!("at {place:?}"), &expected, &found);
+        }
+    }
+}
+
+/// Largest change of x dy - y dx about the z axis over the vertices of some paths, mm, with the number of vertices of
+/// the shortest path. The scene's solids and sheets stand at the origin.
+fn drift_of_skew(job: &Job) -> (f64, usize) {
+    const LOOKS: u64 = 50;
+    let (mut drift, mut shortest) = (0.0f64, usize::MAX);
+    for look in 0..LOOKS {
+        let mut sampler = Sampler::for_path(1, 0, look);
+        let source = &job.scene.sources[0];
+        let emitted = source.emit(&job.scene, &mut sampler);
+        let skew = |point: glam::DVec3, dir: glam::DVec3| point.x * dir.y - point.y * dir.x;
+        let at_start = skew(emitted.ray.origin(), emitted.ray.dir());
+        let path = LightPath::emitted(&job.scene, SourceId::new(0), emitted);
+        let mut bounces = 0;
+        walk(
+            &job.scene,
+            path,
+            job.run.bounce_limit,
+            &mut sampler,
+            &mut |_: &LightPath, event: Event<'_>| {
+                if let Event::Arrive(vertex) = event {
+                    bounces += 1;
+                    drift = drift.max((skew(vertex.point, vertex.dir) - at_start).abs());
+                }
+                ControlFlow::Continue(())
+            },
+        );
+        shortest = shortest.min(bounces);
+    }
+    (drift, shortest)
+}
+
+#[test]
+fn the_skew_of_a_ray_survives_a_thousand_bounces() {
+    // A mirror tube of 5 mm radius at 80 degrees, a rod of 1 mm radius at 50 degrees inside: both totally reflect.
+    let tube =
+        ["sheets.duct.tube.path.0.straight_mm=3000", "finishes.mirror.specular.reflectance=1"];
+    let tube = [tube[0], tube[1], "sources.led.disk.tilt_deg=80"];
+    let rod = [
+        "solids.rod.sweep.path.0.straight_mm=4000",
+        "sources.led.face.emission=collimated",
+        "sources.led.face.tilt_deg=45",
+    ];
+    for (scene, overrides, radius) in [("mt_01", tube, 5.0), ("sr_03", rod, 1.0)] {
+        let job = load(&scenes("validation").join(scene).with_extension("toml"), &overrides);
+        let (drift, bounces) = drift_of_skew(&job);
+        assert!(bounces >= 1000, "{scene}: only {bounces} bounces");
+        assert!(drift <= 1e-12 * radius, "{scene}: drift {drift:e} mm over {bounces} bounces");
+    }
+}
+
+#[test]
+fn no_shipped_scene_leaks_in_a_hundred_million_segments_and_every_balance_closes() {
+    let shipped: Vec<PathBuf> = std::fs::read_dir(scenes(""))
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
+        .collect();
+    assert!(shipped.len() >= 6, "{} scenes", shipped.len());
+    let mut segments = 0;
+    for path in &shipped {
+        let job = load(path, &[]);
+        let mut run = Run::new(&job.scene, &job.run);
+        let enough = if path.to_string_lossy().contains("mesh") {
+            MESH_SEGMENTS
+        } else {
+            SEGMENTS.div_ceil(shipped.len() as u64 - 1)
+        };
+        run.next_wave();
+        while run.readings().segments < enough {
+            run.next_wave();
+        }
+        let measures = measure::measure(&job.scene, &run.readings());
+        segments += measures.segments;
+        let (balance, name) = (&measures.balance, path.display());
+        assert_eq!(balance.leaked.value, 0.0, "{name} leaks {}", balance.leaked);
+        let open = balance.residual.value.abs() / job.scene.source_flux();
+        assert!(open <= 1e-9, "{name}: the balance is open by {open:e}");
+    }
+    assert!(segments >= SEGMENTS, "{segments} segments");
+}
+
+fn scenes(folder: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(folder)
+}

@@ -1,0 +1,199 @@
+//! Reference values that do not come from this program: every value is traced until its error is small enough, and
+//! must be met. `docs/validation.md` is made of the results; `UPDATE_GOLDEN=1` rewrites it.
+
+#![allow(
+    clippy::print_stdout,
+    reason = "a line for each value, shown by --nocapture and on failure"
+)]
+
+mod formulas;
+mod page;
+mod run;
+mod table;
+
+use crate::page::Waiting;
+use crate::run::Finding;
+use crate::table::Table;
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::sync::{Mutex, OnceLock};
+
+/// A table of cases with its results.
+struct Family {
+    name: &'static str,
+    table: &'static str,
+    findings: OnceLock<Vec<Finding>>,
+}
+
+impl Family {
+    const fn new(name: &'static str, table: &'static str) -> Self {
+        Self { name, table, findings: OnceLock::new() }
+    }
+}
+
+static FAMILIES: [Family; 7] = [
+    Family::new("benchmarks", include_str!("benchmarks.toml")),
+    Family::new("photometry", include_str!("photometry.toml")),
+    Family::new("fresnel", include_str!("fresnel.toml")),
+    Family::new("mirror_tubes", include_str!("mirror_tubes.toml")),
+    Family::new("ducts", include_str!("ducts.toml")),
+    Family::new("rods", include_str!("rods.toml")),
+    Family::new("diffuse", include_str!("diffuse.toml")),
+];
+
+/// Seeds of a family start at its number times this.
+const SEEDS: u64 = 1000;
+
+/// What the runs of a family found; they are made once, and one family at a time, for each run takes all threads.
+fn findings(number: usize) -> &'static [Finding] {
+    static TRACING: Mutex<()> = Mutex::new(());
+    let family = &FAMILIES[number];
+    family.findings.get_or_init(|| {
+        let _alone = TRACING.lock();
+        let mut seed = number as u64 * SEEDS;
+        let mut findings = Vec::new();
+        for case in &Table::parse(family.table).case {
+            for variant in case.variants() {
+                seed += 1;
+                let found = run::run(case, variant, seed);
+                found.iter().for_each(|finding| println!("{}", line(finding)));
+                findings.extend(found);
+            }
+        }
+        findings
+    })
+}
+
+fn line(finding: &Finding) -> String {
+    let Finding { case, name, expected, ours, deviation, faults, .. } = finding;
+    let deviation = deviation.map_or("-".to_owned(), |z| format!("{z:+.2}"));
+    let (paths, faults) = (ours.paths, faults.join("; "));
+    format!(
+        "{case} {name}: {ours}, expected {expected:?}, {deviation} sigmas, {paths} paths {faults}"
+    )
+}
+
+/// All findings, in the order of the page.
+fn all_findings() -> Vec<&'static Finding> {
+    (0..FAMILIES.len()).flat_map(findings).collect()
+}
+
+fn waiting() -> Waiting {
+    toml::from_str(include_str!("waiting.toml")).expect("the list beside this file is valid")
+}
+
+/// All values of a family are met.
+fn check(name: &str) {
+    let number = FAMILIES.iter().position(|family| family.name == name).expect("a known family");
+    let wrong: Vec<String> =
+        findings(number).iter().filter(|finding| !finding.faults.is_empty()).map(line).collect();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn benchmarks() {
+    check("benchmarks");
+}
+
+#[test]
+fn photometry() {
+    check("photometry");
+}
+
+#[test]
+fn fresnel() {
+    check("fresnel");
+}
+
+#[test]
+fn mirror_tubes() {
+    check("mirror_tubes");
+}
+
+#[test]
+fn ducts() {
+    check("ducts");
+}
+
+#[test]
+fn rods() {
+    check("rods");
+}
+
+#[test]
+fn diffuse() {
+    check("diffuse");
+}
+
+#[test]
+fn functions_give_the_values_of_the_formulas() {
+    for value in formulas::computed() {
+        assert!(value.deviation().abs() <= formulas::LIMIT, "{value:?}");
+    }
+}
+
+#[test]
+fn deviations_look_like_a_standard_normal() {
+    let deviations = page::deviations(&all_findings());
+    let rms = page::rms(&deviations);
+    assert!(deviations.len() > 100, "{} runs are too few to tell", deviations.len());
+    assert!((0.8..=1.3).contains(&rms), "rms {rms} of {} runs", deviations.len());
+}
+
+/// Number of values in the reference, those of the benchmark scenes (cases B1 to B4) apart.
+const REFERENCE_VALUES: usize = 444;
+
+#[test]
+fn no_value_of_the_reference_is_forgotten() {
+    let mut names = BTreeSet::new();
+    let mut add = |case: &str, name: &str| {
+        assert!(names.insert(format!("{case} {name}")), "{case} {name} is listed twice");
+    };
+    for family in &FAMILIES {
+        for case in Table::parse(family.table)
+            .case
+            .iter()
+            .filter(|case| !case.id.starts_with('B') || case.id.starts_with("BD"))
+        {
+            for variant in case.variants() {
+                case.values.iter().for_each(|value| add(value.case(case), &value.name(variant)));
+            }
+        }
+    }
+    formulas::computed().iter().for_each(|value| add(value.case, &value.name));
+    for reason in waiting().all() {
+        reason.values.iter().for_each(|name| add(&reason.case, name));
+    }
+    assert_eq!(names.len(), REFERENCE_VALUES);
+}
+
+#[test]
+fn every_scene_is_used() {
+    let used: BTreeSet<String> = FAMILIES
+        .iter()
+        .flat_map(|family| Table::parse(family.table).case)
+        .map(|case| case.scene)
+        .collect();
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join("validation");
+    let there: BTreeSet<String> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path().file_stem().unwrap().to_string_lossy().into_owned())
+        .collect();
+    assert_eq!(used, there);
+}
+
+#[test]
+fn the_page_of_results_is_current() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs").join("validation.md");
+    let page = page::page(&all_findings(), &formulas::computed(), &waiting());
+    if std::env::var_os("UPDATE_GOLDEN").is_some() {
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(&path, &page).unwrap();
+    }
+    let written = std::fs::read_to_string(&path).unwrap_or_default();
+    let differs = page.lines().zip(written.lines()).find(|(new, old)| new != old);
+    assert!(
+        page == written,
+        "docs/validation.md is not what comes out, first at {differs:?}; UPDATE_GOLDEN=1 rewrites it"
+    );
+}

@@ -1,0 +1,221 @@
+//! One run of a scene, until every value is known as well as its class demands.
+
+use crate::table::{Case, Class, Value, Variant};
+use lumiduct::input::{self, Job, Settings};
+use lumiduct::measure::{self, Measure};
+use lumiduct::scene::plan::{Check, RunPlan, StopRules};
+use lumiduct::tally::sigmas;
+use lumiduct::transport::{Readings, Run};
+use std::path::{Path, PathBuf};
+
+/// Paths after which a run that has not reached its errors has failed.
+const MOST_PATHS: u64 = 600_000_000;
+/// The flux balance must close to this share of the source flux.
+const BALANCE: f64 = 1e-9;
+/// Deviation that passes, in standard errors; for class M.
+const SIGMAS: f64 = 4.0;
+const SIGMAS_MONTE_CARLO: f64 = 3.0;
+/// Rounding of values without noise, relative.
+const ROUNDING: f64 = 1e-9;
+
+/// What a run found for one value.
+#[derive(Debug)]
+pub(crate) struct Finding {
+    pub(crate) case: String,
+    pub(crate) name: String,
+    pub(crate) scene: String,
+    pub(crate) over: String,
+    pub(crate) class: Class,
+    /// Why it is known less well than its class asks; empty where it is not.
+    pub(crate) why: String,
+    /// Where the reference has it from.
+    pub(crate) source: String,
+    /// What the reference says.
+    pub(crate) expected: Expected,
+    /// Ours, normalised as the reference is.
+    pub(crate) ours: Measure,
+    /// Deviation in standard errors, that of the reference included; `None` for values without noise.
+    pub(crate) deviation: Option<f64>,
+    /// Whether it is the first value with noise of its run: those of different runs are independent.
+    pub(crate) independent: bool,
+    /// What is wrong with it.
+    pub(crate) faults: Vec<String>,
+}
+
+/// What the reference says.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Expected {
+    Value(f64),
+    Most(f64),
+}
+
+/// Runs a variant of a case.
+pub(crate) fn run(case: &Case, variant: &Variant, seed: u64) -> Vec<Finding> {
+    let settings =
+        Settings { overrides: case.overrides(variant), seed: Some(seed), ..Settings::default() };
+    let job = match input::load(&scene_file(&case.scene), &settings) {
+        Ok(job) => job,
+        Err(error) => panic!("{} {settings:?}: {error}", case.id),
+    };
+    let wanted: Vec<Wanted<'_>> = case
+        .values
+        .iter()
+        .enumerate()
+        .map(|(place, value)| Wanted::new(&job, place, value, variant))
+        .collect();
+    let (readings, reached) = trace(&job, &wanted);
+    let mut faults = books(&job, &readings);
+    if !reached {
+        faults.push("the error of its class was not reached".to_owned());
+    }
+    let mut findings: Vec<Finding> =
+        wanted.iter().map(|wanted| judge(case, &job, &readings, wanted)).collect();
+    findings[0].faults.append(&mut faults);
+    if let Some(first) = findings.iter_mut().find(|finding| finding.deviation.is_some()) {
+        first.independent = true;
+    }
+    findings
+}
+
+/// A scene of the validation.
+pub(crate) fn scene_file(name: &str) -> PathBuf {
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join("validation");
+    scenes.join(name).with_extension("toml")
+}
+
+/// A value that is looked for.
+struct Wanted<'a> {
+    value: &'a Value,
+    check: &'a Check,
+    name: String,
+    uncertainty: f64,
+    /// Standard error that must be reached, in the unit of the measure.
+    std_error: f64,
+}
+
+impl<'a> Wanted<'a> {
+    fn new(job: &'a Job, place: usize, value: &'a Value, variant: &Variant) -> Self {
+        let name = value.name(variant);
+        let check = &job.checks[value.check.unwrap_or(place)];
+        assert!(check.source.is_some(), "{}: a check without a source", job.name);
+        let scale = value.scale.or(check.equals).or(check.max).expect("a value or a limit");
+        // Nothing of the source's light: held against all of it.
+        let scale = if scale == 0.0 { 1.0 } else { scale };
+        let std_error = value.reach.unwrap_or(value.class.std_error()) * scale;
+        Self { value, check, name, uncertainty: value.uncertainty(variant), std_error }
+    }
+
+    /// The standard error, over the one that must be reached.
+    fn error_left(&self, job: &Job, readings: &Readings) -> f64 {
+        let error = self.measure(job, readings).total_error();
+        if error.is_finite() { error / self.std_error } else { f64::INFINITY }
+    }
+
+    fn measure(&self, job: &Job, readings: &Readings) -> Measure {
+        let name = &self.check.measure;
+        measure::value_of(&job.scene, readings, name)
+            .unwrap_or_else(|| panic!("{}: no measure `{name}`", job.name))
+    }
+}
+
+/// Traces whole rounds until all errors are reached, or too many paths are traced.
+fn trace(job: &Job, wanted: &[Wanted<'_>]) -> (Readings, bool) {
+    // Which errors are reached is looked at here, not by a rule of the scene.
+    let plan = RunPlan { stop: StopRules::default(), ..job.run.clone() };
+    let mut run = Run::new(&job.scene, &plan);
+    loop {
+        run.next_wave();
+        let readings = run.readings();
+        let most = |most: f64, wanted: &Wanted<'_>| most.max(wanted.error_left(job, &readings));
+        let left = wanted.iter().fold(0.0, most);
+        if left <= 1.0 || run.paths() > MOST_PATHS {
+            return (readings, left <= 1.0);
+        }
+        // Errors fall as one over the square root of the paths: no look before half of what is missing is traced.
+        let missing = run.waves() as f64 * (left * left - 1.0);
+        for _ in 0..(0.5 * missing).min(run.waves() as f64) as u64 {
+            run.next_wave();
+        }
+    }
+}
+
+/// Faults in the books of a run: light lost in the geometry, or a balance that does not close.
+fn books(job: &Job, readings: &Readings) -> Vec<String> {
+    let balance = measure::measure(&job.scene, readings).balance;
+    let mut faults = Vec::new();
+    if balance.leaked.value != 0.0 {
+        faults.push(format!("leaked {} at {:?}", balance.leaked, readings.leaks));
+    }
+    if balance.residual.value.abs() > BALANCE * job.scene.source_flux() {
+        faults.push(format!("the balance is open by {:e}", balance.residual.value));
+    }
+    faults
+}
+
+fn judge(case: &Case, job: &Job, readings: &Readings, wanted: &Wanted<'_>) -> Finding {
+    let Wanted { value, check, name, uncertainty, .. } = wanted;
+    let ours = normalised(wanted.measure(job, readings), value.per);
+    let mut faults = Vec::new();
+    let mut deviation = None;
+    let expected = match (check.equals, check.max) {
+        (Some(equals), _) => {
+            let expected = equals / value.per;
+            let error = ours.total_error().hypot(*uncertainty);
+            let allowed = allowed(value, expected, ours.total_error(), error);
+            let off = ours.value - expected;
+            if off.abs() > allowed {
+                faults.push(format!("off by {off:e}, allowed {allowed:e}"));
+            }
+            if ours.value != 0.0 && ours.std_error > ROUNDING * ours.value.abs() {
+                deviation = Some(sigmas(ours.value, error, expected));
+            }
+            Expected::Value(expected)
+        }
+        (None, Some(most)) => {
+            let most = most / value.per;
+            let error = ours.total_error();
+            let beyond = ours.value - most;
+            if beyond > SIGMAS * error {
+                faults.push(format!("beyond {most:e} by {beyond:e}, with an error of {error:e}"));
+            }
+            Expected::Most(most)
+        }
+        (None, None) => panic!("{}: a check without a value", job.name),
+    };
+    Finding {
+        case: value.case(case).to_owned(),
+        name: name.clone(),
+        scene: case.scene.clone(),
+        over: value.over.clone(),
+        class: value.class,
+        why: value.why.clone(),
+        source: check.source.clone().unwrap_or_default(),
+        expected,
+        ours,
+        deviation,
+        independent: false,
+        faults,
+    }
+}
+
+/// A measure as the reference states it.
+fn normalised(measure: Measure, per: f64) -> Measure {
+    let unit = if per == 1.0 { measure.unit.clone() } else { "1".to_owned() };
+    let bias = measure.bias.map(|bias| bias / per);
+    Measure {
+        value: measure.value / per,
+        std_error: measure.std_error / per,
+        bias,
+        unit,
+        ..measure
+    }
+}
+
+/// Deviation that is allowed.
+fn allowed(value: &Value, expected: f64, std_error: f64, error: f64) -> f64 {
+    let limit = value.class.limit() * value.scale.unwrap_or(expected.abs());
+    match value.class {
+        Class::M => SIGMAS_MONTE_CARLO * error + limit,
+        Class::F | Class::I | Class::X => (SIGMAS * std_error).max(limit),
+    }
+}

@@ -21,7 +21,7 @@ const REPLICAS: usize = 100;
 pub(crate) struct FullAngle {
     pub(crate) value: f64,
     pub(crate) std_error: f64,
-    /// What the bias of the largest intensity makes of it, rad.
+    /// What the bias of the largest intensity makes of it, that of noise and that of rings of finite width, rad.
     pub(crate) bias: f64,
     pub(crate) status: Status,
 }
@@ -49,13 +49,27 @@ pub(crate) fn full_angle(gammas: &[f64], halves: [&[Noisy]; 2], share: f64) -> O
         width(gammas, [&ahead, &behind], share * draw(most.value, most.std_error))
     }));
     let peak = plane[highest(&values(&plane))];
+    let shift = |more: f64| at(most.value + more) - value;
     Some(FullAngle {
         value,
         // The spread of the replicas is the error, not that of their mean.
         std_error: drawn.std_error() * (REPLICAS as f64).sqrt(),
-        bias: (at(most.value + most.bias) - value).abs(),
+        bias: shift(most.bias).hypot(shift(flattening(&read))),
         status: counted(peak.value, peak.std_error),
     })
+}
+
+/// How much higher the curve may rise than its highest ring, which holds the mean over its width.
+///
+/// By the parabola through that ring and its neighbours, with the second difference d: d/4 at the pole (mean γ² of the
+/// first ring is h²/2, of the second 5h²/2), at most d/8 + d/24 elsewhere (top between two rings, mean over one).
+fn flattening(halves: &[Vec<f64>; 2]) -> f64 {
+    let [ahead, behind] = halves;
+    let line: Vec<f64> = behind.iter().rev().chain(ahead).copied().collect();
+    let top = highest(&line);
+    let beside =
+        |place: Option<usize>| place.and_then(|p| line.get(p)).map_or(0.0, |v| line[top] - v);
+    0.25 * (beside(top.checked_sub(1)) + beside(Some(top + 1)))
 }
 
 /// Angle between the two edges, rad.
@@ -116,6 +130,24 @@ mod tests {
         assert!((degrees(&gammas, &beam, &beam, 0.5) - 2.0 * 29.477).abs() < 2e-3);
         let tenth = 0.1f64.powf(0.2).acos().to_degrees();
         assert!((degrees(&gammas, &beam, &beam, 0.1) - 2.0 * tenth).abs() < 2e-3);
+    }
+
+    #[test]
+    fn what_wide_rings_hide_of_the_top_is_in_the_bias() {
+        // Means of cos^20 over rings of 2 and 1 degrees; half of it is at acos(0.5^(1/20)) = 14.998 deg.
+        for rings in [90, 180] {
+            let gammas = gammas(rings);
+            let half = 0.5 * PI / f64::from(rings as u32);
+            let mean = |gamma: f64| {
+                let [inner, outer] = [gamma - half, gamma + half].map(f64::cos);
+                (inner.powi(21) - outer.powi(21)) / (21.0 * (inner - outer))
+            };
+            let beam = curve(&gammas[..rings / 2], 0.0, mean);
+            let found = full_angle(&gammas, [&beam, &beam], 0.5).unwrap();
+            let off = (found.value.to_degrees() - 2.0 * 14.99767).abs();
+            let bias = found.bias.to_degrees();
+            assert!(off > 0.3 * bias && off < 1.5 * bias, "off by {off}, bias {bias}");
+        }
     }
 
     #[test]

@@ -157,7 +157,9 @@ fn judge(case: &Case, job: &Job, readings: &Readings, wanted: &Wanted<'_>) -> Fi
     let ours = normalised(wanted.measure(job, readings), value.per);
     let mut faults = Vec::new();
     let mut deviation = None;
-    let expected = match (check.equals, check.max) {
+    // Zero within so much is a limit for what is never negative.
+    let most = check.within.filter(|_| check.equals == Some(0.0)).or(check.max);
+    let expected = match (check.equals.filter(|equals| *equals != 0.0), most) {
         (Some(equals), _) => {
             let expected = equals / value.per;
             let error = ours.total_error().hypot(*uncertainty);

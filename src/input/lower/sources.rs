@@ -61,11 +61,19 @@ impl Context<'_> {
     fn note_joint(&mut self, common: &SourceCommonSpec, key: &Key) {
         if let (Some(PlacementSpec::AtFace(at)), None) = (&common.at, common.contact)
             && at.gap_mm == 0.0
+            && self.is_face_of_a_solid(&at.face)
         {
             self.problems
                 .warning(key, format!("touches `{}` and is joined to it optically, as by glue", at.face))
                 .hint("write contact = \"optical\" if so, contact = \"air\" for a hair of air, or a gap_mm");
         }
+    }
+
+    fn is_face_of_a_solid(&self, name: &str) -> bool {
+        let faces = self.faces.get(name).into_iter().flatten();
+        faces
+            .into_iter()
+            .any(|face| matches!(self.builder.scene().faces[face.index()].owner, Owner::Solid(_)))
     }
 
     fn emission(&mut self, source: &SourceSpec, key: &Key) -> Option<Emission> {

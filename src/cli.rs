@@ -9,7 +9,7 @@ use crate::report::{Existing, Outcome, Written};
 use crate::transport::Interrupt;
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
-use std::io::{IsTerminal, Write};
+use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
@@ -167,16 +167,19 @@ fn run(args: &RunArgs) -> ExitCode {
         Ok(finished) => {
             let is_kept = matches!(finished.written, Written::Nothing { .. });
             let text = crate::report::terminal(&finished.report, &finished.dir, &finished.written);
-            if !args.quiet {
-                warn(&finished.warnings);
-                print(&text);
-            } else if is_kept {
-                eprint!("{}", text.lines().last().unwrap_or_default());
-            }
-            if is_kept {
-                ExitCode::from(3)
+            let printed = if args.quiet {
+                Ok(())
             } else {
-                exit_code(finished.stop, finished.report.outcome())
+                warn(&finished.warnings);
+                print(&text)
+            };
+            match printed {
+                Err(error) => fail(&error),
+                Ok(()) if is_kept => {
+                    eprintln!("error: {}", text.lines().last().unwrap_or_default());
+                    ExitCode::from(3)
+                }
+                Ok(()) => exit_code(finished.stop, finished.report.outcome()),
             }
         }
         Err(error) if interrupt.is_raised() => {
@@ -188,10 +191,12 @@ fn run(args: &RunArgs) -> ExitCode {
 }
 
 fn exit_code(stop: Stop, outcome: Outcome) -> ExitCode {
-    match (stop, outcome) {
-        (Stop::Interrupted, _) => ExitCode::from(INTERRUPTED),
-        (Stop::Paths | Stop::Time | Stop::Target, Outcome::Missed) => ExitCode::from(1),
-        (Stop::Paths | Stop::Time | Stop::Target, Outcome::Good) => ExitCode::SUCCESS,
+    if stop == Stop::Interrupted {
+        return ExitCode::from(INTERRUPTED);
+    }
+    match outcome {
+        Outcome::Missed => ExitCode::from(1),
+        Outcome::Good => ExitCode::SUCCESS,
     }
 }
 
@@ -201,8 +206,7 @@ fn check(args: &CheckArgs) -> ExitCode {
     match pipeline::check(&args.scene, &settings, args.output.as_deref(), existing) {
         Ok(checked) => {
             warn(&checked.warnings);
-            print(&checked.text);
-            ExitCode::SUCCESS
+            finish(Ok(checked.text))
         }
         Err(error) => fail(&error),
     }
@@ -210,18 +214,21 @@ fn check(args: &CheckArgs) -> ExitCode {
 
 /// Prints a text, or says why there is none.
 fn finish(text: crate::error::Result<String>) -> ExitCode {
-    match text {
-        Ok(text) => {
-            print(&text);
-            ExitCode::SUCCESS
-        }
+    match text.and_then(|text| print(&text)) {
+        Ok(()) => ExitCode::SUCCESS,
         Err(error) => fail(&error),
     }
 }
 
 /// Prints to stdout; a reader that closed the pipe has seen enough.
-fn print(text: &str) {
-    _ = std::io::stdout().write_all(text.as_bytes());
+fn print(text: &str) -> Result<(), Error> {
+    let mut stdout = std::io::stdout();
+    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+        Err(reason) if reason.kind() != ErrorKind::BrokenPipe => {
+            Err(Error::Output { what: "standard output".into(), reason: reason.to_string() })
+        }
+        Ok(()) | Err(_) => Ok(()),
+    }
 }
 
 fn warn(warnings: &[Diagnostic]) {

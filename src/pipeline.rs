@@ -40,6 +40,10 @@ pub enum Stop {
     Time,
     /// The target is met.
     Target,
+    /// The noise is well below the target, and what is left is a bias that more paths do not take away.
+    Bias,
+    /// Nothing of the target's measure was found in very many paths.
+    Dark,
     /// The user asked to stop.
     Interrupted,
 }
@@ -51,6 +55,8 @@ impl Stop {
             Self::Paths => "all requested paths were traced",
             Self::Time => "the time limit was reached",
             Self::Target => "the target error was reached",
+            Self::Bias => "more paths would not help: the target is below the bias of its measure",
+            Self::Dark => "more paths would hardly help: the target's measure is still nothing",
             Self::Interrupted => "interrupted: this report is partial",
         }
     }
@@ -65,7 +71,7 @@ pub fn run_one(
     watch: &mut dyn FnMut(&Progress),
 ) -> Result<Finished> {
     let job = input::load(scene, settings)?;
-    expect_measures(&job)?;
+    expect_sense(&job)?;
     let folder = Folder::open(&output_dir(scene, output), output.existing, recipe(&job).as_ref())?;
     let traced = trace(&job, interrupt, watch);
     let report = compose(&job, &traced.readings, traced.stop);
@@ -80,8 +86,8 @@ pub fn run_one(
     })
 }
 
-/// Refuses checks and targets that name no measure of the scene, before any work is done.
-fn expect_measures(job: &Job) -> Result<()> {
+/// Refuses a scene without light, and checks and targets that name no measure of it, before any work is done.
+fn expect_sense(job: &Job) -> Result<()> {
     let names = measure::names(&job.scene);
     let target = job
         .run
@@ -92,6 +98,11 @@ fn expect_measures(job: &Job) -> Result<()> {
     let check = |index| Key::of(&["check"]).index(index).field("measure");
     let checks = job.checks.iter().enumerate().map(|(index, one)| (check(index), &one.measure));
     let mut problems = Problems::default();
+    if job.scene.sources.is_empty() {
+        problems
+            .error(&Key::of(&["sources"]), "nothing emits light: there is no source to trace")
+            .hint("add a table such as [sources.led.disk]");
+    }
     for (key, name) in target.chain(checks).filter(|(_, name)| !names.contains(name)) {
         let nearest = measure::nearest(name, names.iter().map(String::as_str));
         problems
@@ -137,8 +148,11 @@ pub fn compose(job: &Job, readings: &Readings, stop: Stop) -> Report {
             verdict: measure::verdict(check, &measures),
         })
         .collect();
-    let mut warnings: Vec<String> =
-        job.warnings.iter().map(|warning| warning.message.clone()).collect();
+    let mut warnings: Vec<String> = job
+        .warnings
+        .iter()
+        .map(|warning| format!("`{}` {}", warning.key, warning.message))
+        .collect();
     warnings.extend(report::remarks(&measures));
     warnings.extend(report::remark_on_paths(job.run.stop.paths, measures.paths));
     let target = job.run.stop.target.as_ref().map(|target| TargetFacts::new(target, &measures));
@@ -196,11 +210,29 @@ pub fn trace(job: &Job, interrupt: &Interrupt, watch: &mut dyn FnMut(&Progress))
         }
         target = TargetProgress::of(job, &run);
         watch(&Progress::of(&job.run, &run, start.elapsed(), target.clone()));
-        if target.as_ref().is_some_and(|target| target.reached.relative_error() <= target.wanted) {
-            break Stop::Target;
+        if let Some(stop) = target.as_ref().and_then(|target| target_stop(target, run.paths())) {
+            break stop;
         }
     };
     Traced { readings: run.readings(), stop, elapsed: start.elapsed() }
+}
+
+/// A run to a target gives up on one that its bias keeps from it once the noise is this share of what is wanted, 1.
+const NOISE_DONE: f64 = 0.3;
+/// Paths after which a run to a target gives up on a measure that is nothing.
+const DARK_PATHS: u64 = 200_000_000;
+
+/// What the target of a run says about its end.
+fn target_stop(target: &TargetProgress, paths: u64) -> Option<Stop> {
+    let (reached, wanted) = (&target.reached, target.wanted);
+    if reached.relative_error() <= wanted {
+        return Some(Stop::Target);
+    }
+    let noise_done = NOISE_DONE * wanted * reached.value.abs();
+    if reached.value != 0.0 && reached.std_error <= noise_done {
+        return Some(Stop::Bias);
+    }
+    (reached.value == 0.0 && paths >= DARK_PATHS).then_some(Stop::Dark)
 }
 
 /// What may end a run before its round is over.
@@ -250,7 +282,7 @@ pub fn check(
     existing: Existing,
 ) -> Result<Checked> {
     let job = input::load(scene, settings)?;
-    expect_measures(&job)?;
+    expect_sense(&job)?;
     let default = PathBuf::from(format!("{}.check.png", job.name));
     // The default name belongs to this program: it is drawn anew at every check.
     let (picture, existing) =

@@ -4,7 +4,7 @@
 
 use std::path::{Path, PathBuf};
 
-/// Layers from the bottom up; modules of one layer do not see each other, but for the foundation's own order.
+/// Layers from the bottom up; modules of one layer do not see each other.
 const LAYERS: &[&[&str]] = &[
     &["error"],
     &["units", "math", "rng", "tally"],
@@ -44,7 +44,7 @@ fn code(path: &Path) -> Vec<(usize, String)> {
     let text = std::fs::read_to_string(path).unwrap();
     text.lines()
         .enumerate()
-        .take_while(|(_, line)| !line.starts_with("#[cfg(test)]"))
+        .take_while(|(_, line)| !line.ends_with("mod tests {"))
         .map(|(number, line)| (number + 1, line.split("//").next().unwrap_or_default().to_owned()))
         .collect()
 }

@@ -1,6 +1,6 @@
 //! The whole way from a scene file to a job: read, lowered, with the wishes of the command line.
 
-use crate::error::{Diagnostic, Result};
+use crate::error::{Diagnostic, Error, Result};
 use crate::input::digest::Digest;
 use crate::input::keys::Places;
 use crate::input::lower::{Lowered, lower};
@@ -60,12 +60,12 @@ pub fn load(path: &Path, settings: &Settings) -> Result<Job> {
     let warnings = problems.finish(&places)?;
     // Without an error there is a scene.
     let Some(Lowered { scene, mut run, checks, meshes }) = lowered else {
-        return Err(crate::error::Error::Input(warnings));
+        return Err(Error::Input(warnings));
     };
     let mut hash = Digest::default();
     places.sources().iter().for_each(|source| hash.add(source.text().as_bytes()));
     hash.add(meshes.to_string().as_bytes());
-    apply(settings, &scene, &mut run);
+    apply(settings, &scene, &mut run)?;
     Ok(Job {
         name: path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
         title: spec.title,
@@ -82,20 +82,23 @@ pub fn load(path: &Path, settings: &Settings) -> Result<Job> {
 }
 
 /// The stop rules of the command line replace those of the file, all together.
-fn apply(settings: &Settings, scene: &Scene, run: &mut RunPlan) {
+fn apply(settings: &Settings, scene: &Scene, run: &mut RunPlan) -> Result<()> {
     if let Some(seed) = settings.seed {
         run.seed = seed;
     }
     if settings.paths.is_none() && settings.time.is_none() && settings.target.is_none() {
-        return;
+        return Ok(());
     }
     let measure = run.stop.target.as_ref().map(|target| target.measure.clone());
     let measure =
         measure.or_else(|| scene.sensors.first().map(|sensor| format!("{}.flux", sensor.name)));
-    let target = settings.target.zip(measure);
-    run.stop = StopRules {
-        paths: settings.paths,
-        time: settings.time,
-        target: target.map(|(relative_error, measure)| Target { measure, relative_error }),
+    let target = match (settings.target, measure) {
+        (Some(relative_error), Some(measure)) => Some(Target { measure, relative_error }),
+        (Some(_), None) => {
+            return Err(Error::Usage("--target needs a sensor, and the scene has none".into()));
+        }
+        (None, _) => None,
     };
+    run.stop = StopRules { paths: settings.paths, time: settings.time, target };
+    Ok(())
 }

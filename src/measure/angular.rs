@@ -11,7 +11,7 @@ use crate::scene::{Goniometer, SensorId};
 use indexmap::IndexMap;
 use ndarray::Array2;
 use serde::Serialize;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Width of the zones that flux is added up over, deg.
 const ZONE_DEG: usize = 10;
@@ -44,8 +44,23 @@ pub struct IntensityTable {
     pub ring_values: Vec<f64>,
     /// Their standard errors.
     pub ring_std_errors: Vec<f64>,
+    /// The curves in the planes C0-C180 and C90-C270; none with fewer than four sectors.
+    pub planes: Vec<PlaneCurve>,
     /// Radius of the sphere, mm; `None` for the far field.
     pub radius_mm: Option<f64>,
+}
+
+/// Intensity in a plane through the pole.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PlaneCurve {
+    /// C of its first half, deg; the second lies opposite.
+    pub c_deg: f64,
+    /// γ of each ring, from the pole; negative in the second half; ascending, deg.
+    pub gamma_deg: Vec<f64>,
+    /// Intensity, in the unit of the table.
+    pub values: Vec<f64>,
+    /// Standard errors, likewise.
+    pub std_errors: Vec<f64>,
 }
 
 /// Flux per cell of a sphere with its standard error, lm or W.
@@ -111,6 +126,25 @@ impl<'a> Sphere<'a> {
     }
 }
 
+/// The curve in the plane of C, rad, and the half opposite.
+fn plane_curve(sphere: &Sphere<'_>, c: f64) -> PlaneCurve {
+    let gammas = ring_gammas(sphere.goniometer.gamma_cells);
+    let [ahead, behind] = [sphere.half_plane(c), sphere.half_plane(c + PI)];
+    let second = gammas.iter().map(|gamma| -gamma).zip(behind).rev();
+    let line: Vec<(f64, Noisy)> = second.chain(gammas.iter().copied().zip(ahead)).collect();
+    PlaneCurve {
+        c_deg: c.to_degrees(),
+        gamma_deg: line.iter().map(|(gamma, _)| gamma.to_degrees()).collect(),
+        values: line.iter().map(|(_, ring)| ring.value).collect(),
+        std_errors: line.iter().map(|(_, ring)| ring.std_error).collect(),
+    }
+}
+
+/// C of the planes that are looked at, rad; none of a goniometer with few sectors.
+fn planes(goniometer: &Goniometer) -> &'static [f64] {
+    if goniometer.c_cells >= SECTORS_FOR_PLANES { &[0.0, FRAC_PI_2] } else { &[] }
+}
+
 /// The γ that each ring stands for, rad.
 fn ring_gammas(rings: usize) -> Vec<f64> {
     let edge = |ring: usize| (PI * ring as f64 / rings as f64).cos();
@@ -140,6 +174,7 @@ pub(crate) fn table(
         ring_gamma_deg: ring_gammas(rings).into_iter().map(f64::to_degrees).collect(),
         ring_values: curve.iter().map(|ring| ring.value).collect(),
         ring_std_errors: curve.iter().map(|ring| ring.std_error).collect(),
+        planes: planes(goniometer).iter().map(|c| plane_curve(&sphere, *c)).collect(),
         radius_mm: goniometer.radius,
     }
 }
@@ -194,11 +229,9 @@ fn angles(
 ) {
     let gammas = ring_gammas(curve.len());
     let mut profiles = vec![(String::new(), curve.to_vec(), curve.to_vec())];
-    if sphere.goniometer.c_cells >= SECTORS_FOR_PLANES {
-        for plane in [0, 90] {
-            let c = f64::from(plane).to_radians();
-            profiles.push((format!(".c{plane}"), sphere.half_plane(c), sphere.half_plane(c + PI)));
-        }
+    for c in planes(sphere.goniometer) {
+        let name = format!(".c{:.0}", c.to_degrees());
+        profiles.push((name, sphere.half_plane(*c), sphere.half_plane(c + PI)));
     }
     for (name, share) in [("beam_angle", BEAM), ("field_angle", FIELD)] {
         for (plane, ahead, behind) in &profiles {

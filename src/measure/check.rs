@@ -42,7 +42,7 @@ pub enum Outcome {
 ///
 /// * `min` and `max`: undecided within 3 total errors (noise and bias) of the limit.
 /// * `equals`: passes within `within`, or within `sigmas` total errors; either suffices. Without both, 4 total errors.
-/// * `max_std_error`: a larger standard error leaves the check undecided, whatever the value is.
+/// * `max_std_error`: a larger standard error leaves a check undecided that would pass.
 /// * A value that cannot be relied on is undecided, but for one thing: nothing counted is at most three paths' flux.
 pub fn verdict(check: &Check, measures: &Measures) -> Verdict {
     match measures.values.get(&check.measure) {
@@ -98,7 +98,10 @@ fn limit(measure: &Measure, limit: f64, bound: Bound) -> (Outcome, String) {
     let wanted = format!("at {word} {limit} {unit}");
     let wanted = wanted.trim_end();
     let error = measure.total_error();
-    if room.is_nan() || error.is_nan() || room.abs() < LIMIT_ERRORS * error {
+    if !room.is_finite() || !error.is_finite() {
+        return (Outcome::Undecided, format!("{wanted} is wanted, which is not known"));
+    }
+    if room.abs() < LIMIT_ERRORS * error {
         return (
             Outcome::Undecided,
             format!("{wanted} is wanted, which is within {LIMIT_ERRORS} errors"),

@@ -27,7 +27,7 @@ impl<'a> Evidence<'a> {
         Self { scene, readings, layout: Layout::new(scene) }
     }
 
-    /// Mean flux of one path, lm or W: no path carries more than its source gives it.
+    /// Mean flux of one path, lm or W.
     pub(crate) fn path_flux(&self) -> f64 {
         self.scene.source_flux() / self.readings.paths() as f64
     }

@@ -153,11 +153,13 @@ fn at_points(points: &[Vec<usize>], seen: &SensorCells<'_>, field: &Field<'_>) -
     let read: Vec<Noisy> = points.iter().map(|cells| seen.mean(cells.iter().copied())).collect();
     let n = read.len() as f64;
     let sum: f64 = read.iter().map(|point| point.value).sum();
-    let variance: f64 = read.iter().map(|point| point.std_error.powi(2)).sum();
-    // Points that read the same cells are one for the extremes.
+    // Points that read the same cells are one for the extremes, and their noise is the same noise.
     let mut distinct: Vec<Noisy> = Vec::new();
+    let mut variance = 0.0;
     for (index, point) in read.iter().enumerate() {
         if !points[..index].contains(&points[index]) {
+            let times = points.iter().filter(|cells| **cells == points[index]).count() as f64;
+            variance += (times * point.std_error).powi(2);
             distinct.push(*point);
         }
     }

@@ -22,7 +22,7 @@ mod record;
 mod samples;
 mod uniformity;
 
-pub use angular::IntensityTable;
+pub use angular::{IntensityTable, PlaneCurve};
 pub use balance::Balance;
 pub use check::{Outcome, Verdict, nearest, verdict};
 pub use map::{Axes, SensorMap};

@@ -104,7 +104,11 @@ pub(crate) fn uniformity(field: &Field<'_>) -> Uniformity {
         let even = Statistic { value, std_error, interval, ..avg };
         return Uniformity { min: avg, max: avg, avg, min_avg: even, min_max: even, max_min: even };
     }
-    let (least, most) = (minimum(field.cells), maximum(field.cells));
+    let (mut least, mut most) = (minimum(field.cells), maximum(field.cells));
+    // No correction takes an extreme beyond the mean of these cells.
+    let mean = field.cells.iter().map(|cell| cell.value).sum::<f64>() / field.cells.len() as f64;
+    least.value = least.value.min(mean);
+    most.value = most.value.max(mean);
     let min = extreme(&least, avg.value, status);
     let max = extreme(&most, most.raw, status);
     let min_avg = over(&min, &avg).at_most_one();
@@ -138,7 +142,7 @@ fn extreme(found: &Extreme, scale: f64, status: Status) -> Statistic {
     }
 }
 
-/// A ratio of two statistics, their errors taken as independent. The denominator is not zero.
+/// A ratio of two statistics, their errors taken as independent. The denominator is at least an average, not zero.
 fn over(part: &Statistic, whole: &Statistic) -> Statistic {
     let value = part.value / whole.value;
     let with = |a: f64, b: f64| (a / whole.value).hypot(value * b / whole.value);
@@ -318,6 +322,15 @@ mod tests {
             // Mean of the squares: clamping at zero can only raise it, by at most the error of one trial.
             assert!(sum.abs() < noise * noise / 16.0, "d {d} noise {noise}: {sum}");
         }
+    }
+
+    #[test]
+    fn the_largest_of_single_counts_is_not_corrected_to_nothing() {
+        let cells: Vec<_> =
+            (0..1000).map(|i| if i % 10 == 0 { cell(1.0, 1.0) } else { cell(0.0, 0.0) }).collect();
+        let found = uniformity(&field(&cells));
+        assert!(found.max.value >= 0.1 - 1e-12, "{:?}", found.max);
+        assert!(found.min_max.std_error > 1.0 && found.min_max.status == Status::NoiseLimited);
     }
 
     #[test]

@@ -126,6 +126,22 @@ impl Bsdf {
         }
     }
 
+    /// Whether light can go through without being bent, as if both sides were of one index.
+    pub fn passes_straight(&self) -> bool {
+        match self {
+            Self::Open => true,
+            Self::Specular { transmittance, .. } | Self::GaussianSheet { transmittance, .. } => {
+                *transmittance > 0.0
+            }
+            Self::Smooth
+            | Self::Metal { .. }
+            | Self::Absorber
+            | Self::Lambertian { .. }
+            | Self::GaussianDielectric { .. } => false,
+            Self::Mixture(parts) => parts.iter().any(|(_, part)| part.passes_straight()),
+        }
+    }
+
     /// Sends a photon on, or absorbs it (`None`).
     #[inline(always)]
     pub fn scatter(&self, incidence: &Incidence, sampler: &mut Sampler) -> Option<Scattered> {

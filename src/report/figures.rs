@@ -1,7 +1,7 @@
 //! Which pictures a report has, and what is on them.
 
 use crate::error::Result;
-use crate::measure::{Axes, Balance, IntensityTable, SensorMap, SensorPaths};
+use crate::measure::{Axes, Balance, IntensityTable, PlaneCurve, SensorMap, SensorPaths};
 use crate::report::csv::map_name;
 use crate::report::number::{format_percent, format_value, format_with_error};
 use crate::report::png::{
@@ -100,13 +100,13 @@ fn ends(edges: &[f64]) -> [f64; 2] {
 
 /// Curves through the planes C0-C180 and C90-C270, or the mean over C of a goniometer without sectors.
 fn polar_picture(table: &IntensityTable) -> Result<Vec<u8>> {
-    let sectors = table.c_deg.len() - 1;
-    let curves = if sectors >= 4 && sectors.is_multiple_of(4) {
-        [(0, "C0 to C180"), (sectors / 4, "C90 to C270")]
-            .map(|(sector, name)| {
-                plane_curve(table, name, sector, (sector + sectors / 2) % sectors)
-            })
-            .into()
+    let curves = if !table.planes.is_empty() {
+        let curve = |plane: &PlaneCurve| Curve {
+            name: format!("C{} to C{}", plane.c_deg, plane.c_deg + 180.0),
+            points: plane.gamma_deg.iter().copied().zip(plane.values.iter().copied()).collect(),
+            std_errors: plane.std_errors.clone(),
+        };
+        table.planes.iter().map(curve).collect()
     } else {
         let both = |sign: f64| {
             table
@@ -133,23 +133,6 @@ fn polar_picture(table: &IntensityTable) -> Result<Vec<u8>> {
     })
 }
 
-/// A curve through the sector right of the pole and the one opposite.
-fn plane_curve(table: &IntensityTable, name: &str, right: usize, left: usize) -> Curve {
-    let rings = 0..table.ring_gamma_deg.len();
-    let order = rings
-        .clone()
-        .rev()
-        .map(|ring| (ring, left, -1.0))
-        .chain(rings.map(|ring| (ring, right, 1.0)));
-    let (points, std_errors) = order
-        .map(|(ring, sector, sign)| {
-            let value = table.values[[ring, sector]];
-            ((sign * table.ring_gamma_deg[ring], value), table.std_errors[[ring, sector]])
-        })
-        .unzip();
-    Curve { name: name.into(), points, std_errors }
-}
-
 /// Share of the flux that the histogram of bounces shows; a few paths go on for thousands.
 const BOUNCES_SHOWN: f64 = 0.995;
 
@@ -173,11 +156,11 @@ fn bounce_picture(paths: &SensorPaths, unit: &str) -> Result<Vec<u8>> {
         })
         .collect();
     let deepest = paths.depths.last().map_or(0, |bin| bin.to);
-    let shown_to = points.last().map_or(0.0, |point| point.x);
+    let shown_to = points.len().checked_sub(1).map_or(0, |last| paths.depths[last].to);
     line_plot(&LinePlot {
         title: format!("{}: flux by number of bounces", paths.sensor),
         subtitle: format!(
-            "{shown_to:.0} bounces and less bring {}; the deepest path met {deepest} or fewer",
+            "{shown_to} bounces and less bring {}; the deepest path met {deepest} or fewer",
             format_percent(BOUNCES_SHOWN)
         ),
         x_label: "interfaces met".into(),

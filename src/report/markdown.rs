@@ -12,6 +12,9 @@ use std::fmt::Write;
 /// Path classes that are listed for a sensor.
 const CLASSES_SHOWN: usize = 8;
 
+/// A bias is told from this share of the standard error on, 1.
+const BIAS_TOLD: f64 = 0.3;
+
 /// The whole page. `files` are the other files of the report.
 pub(crate) fn markdown(report: &Report, files: &[&str]) -> String {
     let mut page = format!("# {}\n\n", report.scene.title);
@@ -43,7 +46,12 @@ pub(crate) fn quantity(measure: &Measure) -> String {
     if measure.status == Status::NoSignal && error.is_infinite() {
         return "unknown (nothing counted)".into();
     }
-    format!("{}{unit}{}", format_with_error(value, error), remark(measure.status))
+    // A bias well below the noise is no news.
+    let bias = measure
+        .bias
+        .filter(|bias| *bias > BIAS_TOLD * error)
+        .map_or(String::new(), |bias| format!(", bias up to {}{unit}", format_value(bias)));
+    format!("{}{unit}{bias}{}", format_with_error(value, error), remark(measure.status))
 }
 
 fn remark(status: Status) -> &'static str {

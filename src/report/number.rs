@@ -6,6 +6,10 @@
 const FIRST_SMALL_EXPONENT: i32 = -4;
 /// Exponents of ten from here on are written out: 10⁵.
 const FIRST_LARGE_EXPONENT: i32 = 5;
+/// Percentages below this have no digits left at two decimals.
+const LEAST_PERCENT: f64 = 0.01;
+/// Percentages below this are rounding.
+const FAINT_PERCENT: f64 = 1e-9;
 /// More digits than these are not written beside an error bar.
 const MOST_DIGITS: i32 = 9;
 
@@ -53,10 +57,13 @@ pub fn format_with_error(value: f64, std_error: f64) -> String {
     }
 }
 
-/// A share of a whole, as percent with two decimals: "84.19 %".
+/// A share of a whole, as percent with two decimals: "84.19 %"; more for what would be nothing by them: "1.25×10⁻⁴ %".
 pub fn format_percent(share: f64) -> String {
-    if share.is_finite() {
-        format!("{} %", format_fixed(100.0 * share, 2))
+    let percent = 100.0 * share;
+    if share.is_finite() && (FAINT_PERCENT..LEAST_PERCENT).contains(&percent.abs()) {
+        format!("{} %", format_value(percent))
+    } else if share.is_finite() {
+        format!("{} %", format_fixed(percent, 2))
     } else {
         not_finite(share).to_string()
     }
@@ -226,7 +233,8 @@ mod tests {
     #[test]
     fn shares_are_percent() {
         assert_eq!(format_percent(0.841_905), "84.19 %");
-        assert_eq!(format_percent(-1e-9), "0.00 %");
+        assert_eq!(format_percent(-1e-13), "0.00 %");
+        assert_eq!(format_percent(1.25e-6), "1.25×10⁻⁴ %");
         assert_eq!(format_percent(f64::NAN), "n/a");
     }
 

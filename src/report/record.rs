@@ -3,7 +3,7 @@
 use crate::measure::{self, Measures, Verdict};
 use crate::report::number::format_percent;
 use crate::scene::plan::{Check, Estimator, StopRules, Target};
-use crate::transport::Leak;
+use crate::transport::{GROUPS, Leak};
 use glam::DVec3;
 use serde::Serialize;
 
@@ -175,6 +175,6 @@ pub fn remarks(measures: &Measures) -> Vec<String> {
 pub fn remark_on_paths(asked: Option<u64>, traced: u64) -> Option<String> {
     let asked = asked.filter(|&asked| traced > asked + asked / 10)?;
     Some(format!(
-        "{traced} paths were traced where {asked} were asked for: each of the 128 batches has at least one per source"
+        "{traced} paths were traced where {asked} were asked for: each of the {GROUPS} batches has at least one per source"
     ))
 }

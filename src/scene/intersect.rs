@@ -222,7 +222,7 @@ impl Scene {
         PrimHit { prim, face: surface.face(), owner: surface.owner(), toward }
     }
 
-    /// The solids in which a path finds itself just ahead of its start (`Toward::Front` of the start) or just behind.
+    /// The solids in which a path finds itself just ahead of its start or just behind.
     pub fn inside_at(&self, ray: &Ray, when: Just) -> Inside {
         // The nearest crossing of each solid beyond the start tells: leaving it means having been in it.
         let mut nearest: SmallVec<[(f64, Toward); 8]> =

@@ -36,7 +36,7 @@ impl Estimator {
 /// When a run ends. At least one rule is set.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct StopRules {
-    /// After this many paths (rounded up to whole batches).
+    /// After this many paths (rounded up to whole batches, 128 at least).
     pub paths: Option<u64>,
     /// After this time.
     pub time: Option<Duration>,

@@ -19,8 +19,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 const BATCH_SEGMENTS: u64 = 1 << 15;
 /// Most paths in a batch.
 const BATCH_PATHS: u64 = 4096;
-/// Paths from which the length of paths is learnt before a run.
+/// Paths from which the length of paths is learnt before a run, and bounces of them that are looked at.
 const PILOT_PATHS: u64 = 64;
+const PILOT_BOUNCES: u32 = 10_000;
 /// Batches of a piece per thread: threads wait for the last batch of a piece.
 const PIECE_BATCHES: u64 = 4;
 
@@ -55,17 +56,19 @@ pub struct Run<'s> {
 impl<'s> Run<'s> {
     /// Prepares a run; nothing is counted yet.
     pub fn new(scene: &'s Scene, plan: &RunPlan) -> Self {
-        let forward = |paths| Forward::new(scene, plan.seed, plan.bounce_limit, paths);
-        let pilot = forward(PILOT_PATHS).batch(0);
-        let segments = pilot.segments.div_ceil(pilot.paths()).max(1);
-        let usual = (BATCH_SEGMENTS / segments).clamp(1, BATCH_PATHS);
+        let forward = |limit, paths| Forward::new(scene, plan.seed, limit, paths);
+        let pilot = forward(plan.bounce_limit.min(PILOT_BOUNCES), PILOT_PATHS).batch(0);
+        let segments = pilot.segments.div_ceil(pilot.paths().max(1)).max(1);
+        // A path of each source at least.
+        let sources = scene.sources.len().max(1) as u64;
+        let usual = (BATCH_SEGMENTS / segments).clamp(1, BATCH_PATHS).max(sources);
         let waves = plan.stop.paths.map(|paths| paths.div_ceil(GROUPS * usual).max(1));
         let batch_paths = match (plan.stop.paths, waves) {
-            (Some(paths), Some(waves)) => paths.div_ceil(GROUPS * waves).max(1),
+            (Some(paths), Some(waves)) => paths.div_ceil(GROUPS * waves).max(sources),
             _ => usual,
         };
         Self {
-            forward: forward(batch_paths),
+            forward: forward(plan.bounce_limit, batch_paths),
             done: Vec::new(),
             wave: Vec::new(),
             waves: 0,

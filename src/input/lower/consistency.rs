@@ -4,7 +4,6 @@ use crate::input::keys::Key;
 use crate::input::lower::kind_key;
 use crate::input::problems::Problems;
 use crate::input::spec::SceneSpec;
-use crate::optics::Bsdf;
 use crate::rng::{Dimension, Sampler};
 use crate::scene::{Just, Owner, Ray, Scene, Solid, SolidId};
 use glam::DVec3;
@@ -54,21 +53,24 @@ fn common_point(scene: &Scene, first: SolidId, second: SolidId) -> Option<DVec3>
     })
 }
 
-/// Notes faces of solids that are declared open though the medium changes there: light would have to bend.
+/// Notes faces of solids that light passes unbent though the index changes there.
 pub(super) fn check_open_faces(spec: &SceneSpec, scene: &Scene, problems: &mut Problems) {
     let index = |medium: crate::scene::MediumId| scene.media[medium.index()].index(0.0);
     for face in &scene.faces {
         let (Owner::Solid(solid), Some(finish)) = (face.owner, face.front) else { continue };
         let solid = &scene.solids[solid.index()];
         let steps = index(solid.medium) != index(scene.surroundings);
-        if steps && scene.finishes[finish.index()].bsdf == Bsdf::Open {
+        if steps && scene.finishes[finish.index()].bsdf.passes_straight() {
             let (inside, outside) = (index(solid.medium), index(scene.surroundings));
             problems
                 .error(
                     &solid_key(spec, solid).field("faces"),
-                    format!("`{}` is open, but the index steps from {inside} to {outside} there", face.name),
+                    format!(
+                        "`{}` lets light pass straight on, but the index steps from {inside} to {outside} there",
+                        face.name
+                    ),
                 )
-                .hint("`open` is for sheets and for solids of the surrounding medium; leave the face polished");
+                .hint("such a finish is for sheets and for solids of the surrounding medium; leave the face polished");
         }
     }
 }

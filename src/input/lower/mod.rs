@@ -176,6 +176,13 @@ impl Context<'_> {
         if let Some(faces) = self.faces.get(name) {
             return Some(faces.clone());
         }
+        // What could not be built has been told, and has no faces.
+        let owner = name.split('.').next().unwrap_or_default();
+        let is_due = self.spec.solids.contains_key(owner) || self.spec.sheets.contains_key(owner);
+        let has_faces = self.faces.keys().any(|face| face.split('.').next() == Some(owner));
+        if is_due && !has_faces && !self.problems.is_free_of_errors() {
+            return None;
+        }
         let known: Vec<&str> = self.faces.keys().map(String::as_str).collect();
         let hint = name_hint(name, known.iter().copied());
         self.problems.error(key, format!("unknown face `{name}`")).hint(hint);

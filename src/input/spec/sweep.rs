@@ -110,7 +110,8 @@ pub struct BendSpec {
     pub toward_deg: f64,
 }
 
-/// A sharp corner between two legs.
+/// A sharp corner between two legs. The legs end at the sections through its inner edge, as at a bend: with half the
+/// profile's width h on the inner side it adds h tan(angle/2) before and after the crossing of the centre lines.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CornerSpec {
     /// Angle turned through.

@@ -166,11 +166,19 @@ impl Goniometer {
         let local = self.frame.to_local(dir);
         // atan2 keeps the digits near the poles.
         let gamma = local.truncate().length().atan2(local.z);
-        let c = local.y.atan2(local.x).rem_euclid(TAU);
         let ring = ((gamma / std::f64::consts::PI * self.gamma_cells as f64) as usize)
             .min(self.gamma_cells - 1);
-        let sector = ((c / TAU * self.c_cells as f64) as usize).min(self.c_cells - 1);
-        ring * self.c_cells + sector
+        ring * self.c_cells + self.sector(local)
+    }
+
+    /// The sector in C of a direction in the frame.
+    #[inline]
+    fn sector(&self, local: DVec3) -> usize {
+        if self.c_cells == 1 {
+            return 0;
+        }
+        let c = local.y.atan2(local.x).rem_euclid(TAU);
+        ((c / TAU * self.c_cells as f64) as usize).min(self.c_cells - 1)
     }
 
     /// Solid angle of a cell, sr.

@@ -3,17 +3,19 @@
 //! Every photon carries flux; sensors add it up per cell. What surfaces and media take, what escapes and what is cut
 //! is counted independently, so that the balance can be checked, not enforced.
 
+mod surfaces;
+
 use crate::optics::Side;
 use crate::rng::Sampler;
-use crate::scene::shape::{Crossing, Start, Toward};
-use crate::scene::{Counts, FaceId, Owner, PrimHit, Scene, SensorId, SourceId, SurfaceSensor};
+use crate::scene::shape::Toward;
+use crate::scene::{Counts, FaceId, Owner, Scene, SensorId, SourceId};
 use crate::transport::readings::{SensorReading, Step, Trail};
-use crate::transport::watch::{OnPort, Watch};
+use crate::transport::watch::Watch;
 use crate::transport::{
     Departure, Event, Layout, Leak, Path, Readings, Segment, TAILS, Vertex, Visitor, walk,
 };
-use glam::{DVec2, DVec3};
 use std::ops::ControlFlow;
+use surfaces::Light;
 
 /// Stream of random numbers of the forward photons.
 const STREAM: u64 = 1;
@@ -134,83 +136,6 @@ impl<'r, 's> Counter<'r, 's> {
         }
     }
 
-    /// Counts light that passes through ports and out of goniometers on its way.
-    #[inline(never)]
-    fn travel_watched(&mut self, path: &Path, segment: &Segment<'_>) {
-        let run = self.run;
-        for port in &run.watch.ports {
-            self.cross_port(path, segment, port);
-        }
-        for &(id, goniometer) in &run.watch.near {
-            if let Some(direction) = goniometer.leaving(segment.ray, segment.length) {
-                self.count(path, id, goniometer.cell(direction), segment.throughput);
-            }
-        }
-        for (face, patches) in &run.watch.entry_ports {
-            for patch in *patches {
-                patch.shape.crossings(segment.ray, Start::Elsewhere, |Crossing { t, toward }| {
-                    if toward == Toward::Back && self.within(segment, t) {
-                        for id in &run.watch.entries[face.index()] {
-                            self.add(run.layout.entering(*id), segment.throughput);
-                        }
-                    }
-                });
-            }
-        }
-    }
-
-    /// Counts light that passes through a port sensor on its way.
-    fn cross_port(&mut self, path: &Path, segment: &Segment<'_>, port: &OnPort<'s>) {
-        let OnPort { id, sensor, patches, .. } = port;
-        for patch in patches {
-            patch.shape.crossings(segment.ray, Start::Elsewhere, |Crossing { t, toward }| {
-                if !self.within(segment, t) {
-                    return;
-                }
-                let medium = &self.run.scene.media[segment.medium.index()];
-                let throughput = segment.throughput * medium.transmittance(path.wavelength, t);
-                let seen = Seen {
-                    counts: sensor.counts,
-                    toward,
-                    point: segment.ray.at(t),
-                    dir: segment.ray.dir(),
-                };
-                if self.through_aim(path, *id, t) {
-                    let uv = patch.chart(seen.point);
-                    self.count_on_surface(path, *id, sensor, uv, &seen, throughput);
-                } else if sensor.sides.include(seen.counts, toward) {
-                    self.add(self.run.layout.outside_aim(*id), throughput);
-                }
-            });
-        }
-    }
-
-    /// Whether a crossing belongs to this segment: light at its end counts, light at its start has counted before.
-    #[inline]
-    fn within(&self, segment: &Segment<'_>, t: f64) -> bool {
-        let tolerance = self.run.scene.tolerance;
-        t > tolerance && t <= segment.length + tolerance
-    }
-
-    /// Whether light that meets a sensor at distance `t` came through one of the faces or ports it is aimed at.
-    fn through_aim(&self, path: &Path, sensor: SensorId, t: f64) -> bool {
-        let scene = self.run.scene;
-        let aim = &scene.sensors[sensor.index()].aim;
-        aim.is_empty()
-            || aim.iter().any(|&face| match scene.faces[face.index()].owner {
-                Owner::Solid(_) | Owner::Sheet => {
-                    path.on.iter().any(|prim| scene.face_of(prim) == face)
-                }
-                Owner::Port => scene.face_patches(face).iter().any(|patch| {
-                    let mut crossed = false;
-                    patch.shape.crossings(&path.ray, Start::Elsewhere, |crossing| {
-                        crossed |= crossing.t >= -scene.tolerance && crossing.t < t;
-                    });
-                    crossed
-                }),
-            })
-    }
-
     #[inline(always)]
     fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>) {
         let light = Light {
@@ -253,73 +178,10 @@ impl<'r, 's> Counter<'r, 's> {
     #[inline(always)]
     fn on_faces(&mut self, path: &Path, vertex: &Vertex<'_>, light: Light) {
         let hits = vertex.hits;
-        if self.run.watch.watched[hits.nearest().face.index()] || !hits.others().is_empty() {
-            self.on_watched_faces(path, vertex, light);
-        }
-    }
-
-    #[inline(never)]
-    fn on_watched_faces(&mut self, path: &Path, vertex: &Vertex<'_>, light: Light) {
-        for hit in vertex.hits.all() {
-            if self.run.watch.watched[hit.face.index()] {
-                self.on_face(path, vertex.point, hit, light);
-            }
-        }
-    }
-
-    fn on_face(&mut self, path: &Path, point: DVec3, hit: &PrimHit, light: Light) {
-        let Light { counts, dir, throughput, side } = light;
-        let run = self.run;
-        let face = hit.face.index();
-        if side == Some(Side::Transmitted) && hit.toward == Toward::Back {
-            for id in &run.watch.entries[face] {
-                self.add(run.layout.entering(*id), throughput);
-            }
-        }
-        for &(id, sensor) in
-            run.watch.faces[face].iter().filter(|(_, sensor)| sensor.counts == counts)
+        if self.run.watch.watched[hits.nearest().face.index()].includes(light.counts)
+            || !hits.others().is_empty()
         {
-            let normal = run.scene.normal(hit.prim, point);
-            // Light is reflected to the side it came from: its direction tells the side it leaves to.
-            let toward = if side.is_none() { hit.toward } else { Toward::of(dir, normal) };
-            let seen = Seen { counts, toward, point, dir };
-            let uv = run.scene.chart(hit.prim, point);
-            self.count_on_surface(path, id, sensor, uv, &seen, throughput);
-        }
-    }
-
-    /// Counts light on a cell of a surface sensor, and in the views that take it in.
-    #[inline]
-    fn count_on_surface(
-        &mut self,
-        path: &Path,
-        id: SensorId,
-        sensor: &SurfaceSensor,
-        uv: DVec2,
-        seen: &Seen,
-        throughput: f64,
-    ) {
-        if !sensor.sides.include(seen.counts, seen.toward) {
-            self.add(self.run.layout.other_side(id), throughput);
-            return;
-        }
-        let Some(cell) = sensor.grid.cell(uv) else { return };
-        let Some(views) = &sensor.views else {
-            self.count(path, id, cell, throughput);
-            return;
-        };
-        // Away from the face: back along arriving light, along leaving light.
-        let away = if seen.counts == Counts::Incident { -seen.dir } else { seen.dir };
-        let cells = sensor.grid.cells();
-        let mut first = true;
-        for view in views.accepting(away) {
-            if first {
-                self.count_totals(path, id, throughput);
-                first = false;
-            }
-            self.readings.sensors[id.index()]
-                .cells
-                .add(view * cells + cell, self.flux * throughput);
+            self.on_watched_faces(path, vertex, light);
         }
     }
 
@@ -396,25 +258,6 @@ impl Visitor for Counter<'_, '_> {
         }
         ControlFlow::Continue(())
     }
-}
-
-/// Light arriving at, or leaving, the faces of a vertex.
-#[derive(Clone, Copy)]
-struct Light {
-    counts: Counts,
-    /// Unit direction of travel.
-    dir: DVec3,
-    throughput: f64,
-    /// How it leaves; `None` of arriving light.
-    side: Option<Side>,
-}
-
-/// Light at a surface sensor.
-struct Seen {
-    counts: Counts,
-    toward: Toward,
-    point: DVec3,
-    dir: DVec3,
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Which part of a plane a flat surface covers.
 
 use crate::math::planar::disk_overlap;
-use crate::math::{disk, planar};
+use crate::math::{circle, disk, planar};
 use crate::scene::shape::ChartRect;
 use crate::scene::shape::flat::polygon::Polygon;
 use crate::scene::shape::wedge::Wedge;
@@ -116,13 +116,14 @@ impl Region {
         }
     }
 
+    #[inline]
     pub(super) fn sample(&self, u: [f64; 2]) -> DVec2 {
         // Uniform in r² between two radii.
         let radius = |inner: f64, outer: f64| {
             (inner * inner + u[0] * (outer * outer - inner * inner)).sqrt()
         };
         match self {
-            Self::Annulus { inner, outer } => radius(*inner, *outer) * disk([1.0, u[1]]).truncate(),
+            Self::Annulus { inner, outer } => radius(*inner, *outer) * circle(u[1]),
             Self::Sector { inner, outer, wedge } => {
                 radius(*inner, *outer) * DVec2::from_angle(u[1] * wedge.angle())
             }

@@ -2,6 +2,7 @@
 
 use crate::math::Aabb;
 use crate::optics::{Bsdf, Medium};
+use crate::scene::convex::Convex;
 use crate::scene::mesh::Mesh;
 use crate::scene::shape::Shape;
 use crate::scene::sweep::WallChart;
@@ -70,6 +71,7 @@ impl Builder {
             sensors: Vec::new(),
             tolerance: 0.0,
             accel: Accel::new(&[], 0, 0.0),
+            convex: Vec::new(),
         };
         Self { scene }
     }
@@ -199,6 +201,13 @@ impl Builder {
         }
         scene.tolerance = COINCIDENCE * scene.bounds.diagonal();
         scene.accel = Accel::new(&boxes, scene.patches.len(), scene.bounds.largest_coordinate());
+        scene.convex = match scene.accel {
+            Accel::Scan(_) => {
+                let solids = (0..scene.solids.len()).map(SolidId::new);
+                solids.map(|solid| Convex::of(&scene, solid)).collect()
+            }
+            Accel::Tree(_) => vec![None; scene.solids.len()],
+        };
         scene
     }
 }

@@ -81,22 +81,22 @@ impl Hits {
 
 /// The search for the nearest hit.
 #[derive(Debug, Clone, Copy)]
-struct Nearest {
-    prim: PrimId,
-    crossing: Crossing,
+pub(crate) struct Nearest {
+    pub(crate) prim: PrimId,
+    pub(crate) crossing: Crossing,
     /// Distance of the next one, as far as it was seen, mm.
     runner_up: f64,
 }
 
 impl Nearest {
-    const NONE: Self = Self {
+    pub(crate) const NONE: Self = Self {
         prim: PrimId::new(0),
         crossing: Crossing { t: f64::INFINITY, toward: Toward::Front },
         runner_up: f64::INFINITY,
     };
 
-    #[inline]
-    fn consider(&mut self, prim: PrimId, crossing: Crossing) {
+    #[inline(always)]
+    pub(crate) fn consider(&mut self, prim: PrimId, crossing: Crossing) {
         if crossing.t < self.crossing.t {
             *self = Self { prim, crossing, runner_up: self.crossing.t };
         } else {
@@ -128,16 +128,35 @@ impl Scene {
 
     #[inline(always)]
     fn nearest_by_scan(&self, ray: &Ray, from: &On, inside: &Inside) -> Nearest {
+        if let Some(solid) = inside.only()
+            && let Some(convex) = &self.convex[solid.index()]
+            && let Some(mut nearest) = convex.exit(ray, from, self.tolerance)
+        {
+            self.scan(convex.others().iter().copied(), ray, from, inside, &mut nearest);
+            return nearest;
+        }
         let mut nearest = Nearest::NONE;
-        for (index, patch) in self.patches.iter().enumerate() {
-            let prim = PrimId::new(index);
+        self.scan((0..self.patches.len()).map(PrimId::new), ray, from, inside, &mut nearest);
+        nearest
+    }
+
+    #[inline(always)]
+    fn scan(
+        &self,
+        prims: impl Iterator<Item = PrimId>,
+        ray: &Ray,
+        from: &On,
+        inside: &Inside,
+        nearest: &mut Nearest,
+    ) {
+        for prim in prims {
+            let patch = &self.patches[prim.index()];
             let limit = nearest.crossing.t + self.tolerance;
             let Some(wanted) = self.wanted(patch.owner, inside, limit) else { continue };
             if let Some(crossing) = patch.shape.first_crossing(ray, start_on(prim, from), &wanted) {
                 nearest.consider(prim, crossing);
             }
         }
-        nearest
     }
 
     #[inline(never)]

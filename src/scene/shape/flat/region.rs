@@ -104,6 +104,18 @@ impl Region {
         ChartRect { min: -half, max: half }
     }
 
+    /// The largest p · e over its points, mm; of a sector that of the whole disk.
+    pub(super) fn reach(&self, e: DVec2) -> f64 {
+        match self {
+            Self::Annulus { outer, .. } | Self::Sector { outer, .. } => outer * e.length(),
+            Self::Ellipse { half_x, half_y } => (e * DVec2::new(*half_x, *half_y)).length(),
+            Self::Rectangle { half_x, half_y } => half_x * e.x.abs() + half_y * e.y.abs(),
+            Self::Polygon(polygon) => {
+                polygon.vertices().iter().map(|p| p.dot(e)).fold(f64::NEG_INFINITY, f64::max)
+            }
+        }
+    }
+
     pub(super) fn area(&self) -> f64 {
         match self {
             Self::Annulus { inner, outer } => PI * (outer * outer - inner * inner),

@@ -8,7 +8,7 @@ use crate::scene::shape::Shape;
 use crate::scene::sweep::WallChart;
 use crate::scene::{
     Accel, COINCIDENCE, Extent, Face, FaceId, Finish, FinishId, MediumId, MeshBody, Owner, Patch,
-    Scene, Sensor, SensorId, SensorKind, Solid, SolidId, Source, SourceId,
+    PrimId, Scene, Sensor, SensorId, SensorKind, Solid, SolidId, Source, SourceId,
 };
 use crate::units::FluxUnit;
 use glam::DVec3;
@@ -72,6 +72,7 @@ impl Builder {
             tolerance: 0.0,
             accel: Accel::new(&[], 0, 0.0),
             convex: Vec::new(),
+            loose: Vec::new(),
         };
         Self { scene }
     }
@@ -201,13 +202,13 @@ impl Builder {
         }
         scene.tolerance = COINCIDENCE * scene.bounds.diagonal();
         scene.accel = Accel::new(&boxes, scene.patches.len(), scene.bounds.largest_coordinate());
-        scene.convex = match scene.accel {
-            Accel::Scan(_) => {
-                let solids = (0..scene.solids.len()).map(SolidId::new);
-                solids.map(|solid| Convex::of(&scene, solid)).collect()
-            }
-            Accel::Tree(_) => vec![None; scene.solids.len()],
-        };
+        if let Accel::Scan(_) = scene.accel {
+            let solids = (0..scene.solids.len()).map(SolidId::new);
+            scene.convex = solids.filter_map(|solid| Convex::of(&scene, solid)).collect();
+        }
+        let convex: Vec<PrimId> = scene.convex.iter().flat_map(Convex::faces).collect();
+        scene.loose = (0..scene.patches.len()).map(PrimId::new).collect();
+        scene.loose.retain(|prim| !convex.contains(prim));
         scene
     }
 }

@@ -1,7 +1,7 @@
 //! Solids that are all that lies behind their own surfaces: boxes, pyramids, prisms, round rods.
 //!
-//! A path inside one leaves through the surface that is nearest ahead, wherever the edges of that surface are: no
-//! edge need be looked at, and none can be missed. Parallel faces are asked together, as a slab (Kay & Kajiya, SIGGRAPH
+//! A path inside one leaves through the surface that is nearest ahead, a path outside enters through the last surface
+//! that it comes behind, wherever the edges are: no edge need be looked at, and none can be missed. Parallel faces are asked together, as a slab (Kay & Kajiya, SIGGRAPH
 //! 1986, section 3.1). It knows nothing of other solids.
 
 use crate::scene::intersect::Nearest;
@@ -19,8 +19,7 @@ const SAME: f64 = 1e-6;
 pub(crate) struct Convex {
     slabs: Vec<Slab>,
     round: Option<(PrimId, Cylinder)>,
-    /// The patches of everything else in the scene.
-    others: Vec<PrimId>,
+    solid: SolidId,
 }
 
 /// The points between two parallel faces; where there is only one, the other is beyond reach.
@@ -44,6 +43,16 @@ impl Slab {
         let t = (self.half.copysign(across) - from_middle) / across;
         (t, self.faces[usize::from(across > 0.0)])
     }
+
+    /// The distances at which a ray enters and leaves, and through which face it enters.
+    #[inline(always)]
+    fn span(&self, ray: &Ray) -> (f64, f64, PrimId) {
+        let across = ray.dir().dot(self.normal);
+        let from_middle = ray.origin().dot(self.normal) - self.middle;
+        let half = self.half.copysign(across);
+        let enter = (-half - from_middle) / across;
+        (enter, (half - from_middle) / across, self.faces[usize::from(across <= 0.0)])
+    }
 }
 
 impl Convex {
@@ -53,11 +62,11 @@ impl Convex {
         if scene.meshes.iter().any(|body| body.owner == owner) {
             return None;
         }
-        let (mut flats, mut round, mut others) = (Vec::new(), None, Vec::new());
+        let (mut flats, mut round) = (Vec::new(), None);
         for (index, patch) in scene.patches.iter().enumerate() {
             let prim = PrimId::new(index);
             match &patch.shape {
-                _ if patch.owner != owner => others.push(prim),
+                _ if patch.owner != owner => {}
                 Shape::Flat(flat) => flats.push((prim, flat)),
                 Shape::Cylinder(cylinder) if round.is_none() && cylinder.is_whole() => {
                     round = Some((prim, cylinder.clone()));
@@ -71,7 +80,7 @@ impl Convex {
                 | Shape::CompoundParabola(_) => return None,
             }
         }
-        let mut convex = Self { slabs: Vec::new(), round, others };
+        let mut convex = Self { slabs: Vec::new(), round, solid };
         for (prim, flat) in &flats {
             // Twice the diagonal is out of reach of any ray inside.
             convex.add_plane(*prim, flat, 2.0 * scene.bounds.diagonal())?;
@@ -118,10 +127,19 @@ impl Convex {
                 .is_none_or(|round| flats.iter().all(|(_, flat)| round.encloses(flat, tolerance)))
     }
 
-    /// The patches of everything else in the scene.
+    /// Which solid it is.
     #[inline(always)]
-    pub(crate) fn others(&self) -> &[PrimId] {
-        &self.others
+    pub(crate) fn solid(&self) -> SolidId {
+        self.solid
+    }
+
+    /// All its faces.
+    pub(crate) fn faces(&self) -> impl Iterator<Item = PrimId> + '_ {
+        let flats = self.slabs.iter().flat_map(|slab| match slab.faces {
+            [against, along] if against == along => [Some(along), None],
+            faces => faces.map(Some),
+        });
+        flats.flatten().chain(self.round.iter().map(|(prim, _)| *prim))
     }
 
     /// Where a ray inside leaves; `None` where rounding has put it beyond a face, or where it starts on the face that
@@ -142,6 +160,28 @@ impl Convex {
             nearest.consider(*prim, Crossing { t, toward: Toward::Front });
         }
         (nearest.crossing.t >= -tolerance).then_some(nearest)
+    }
+
+    /// Where a ray outside enters. One that starts on a face has left the solid and does not come back.
+    #[inline(always)]
+    pub(crate) fn entry(&self, ray: &Ray, from: &On, tolerance: f64) -> Option<(PrimId, Crossing)> {
+        let (mut enter, mut leave) = (f64::NEG_INFINITY, f64::INFINITY);
+        let mut face = None;
+        if let Some((prim, round)) = &self.round {
+            [enter, leave] = round.span(ray)?;
+            face = Some(*prim);
+        }
+        for slab in &self.slabs {
+            let (t, out, prim) = slab.span(ray);
+            leave = if out < leave { out } else { leave };
+            if t > enter {
+                (enter, face) = (t, Some(prim));
+            }
+        }
+        let enters =
+            enter <= leave && enter >= -tolerance && !self.faces().any(|own| from.contains(own));
+        let crossing = Crossing { t: enter, toward: Toward::Back };
+        face.filter(|_| enters).map(|face| (face, crossing))
     }
 }
 
@@ -223,8 +263,9 @@ mod tests {
     fn rays_leave_convex_solids_where_the_edges_of_their_faces_say() {
         for scene in [rod(), prism(3), prism(4), prism(5), prism(6)].map(solid_of) {
             let mut by_edges = scene.clone();
-            by_edges.convex = vec![None];
-            assert!(scene.convex[0].is_some());
+            by_edges.convex.clear();
+            by_edges.loose = (0..scene.patches.len()).map(PrimId::new).collect();
+            assert_eq!((scene.convex.len(), scene.loose.len()), (1, 0));
             let inside: Inside = [SolidId::new(0)].into_iter().collect();
             for index in 0..4000 {
                 let mut sampler = Sampler::for_path(5, 0, index);
@@ -248,6 +289,41 @@ mod tests {
                     ray = Ray::new(point, if into.dot(normal) < 0.0 { into } else { -into });
                 }
             }
+        }
+    }
+
+    #[test]
+    fn rays_enter_convex_solids_where_the_edges_of_their_faces_say() {
+        for scene in [rod(), prism(3), prism(4), prism(5), prism(6)].map(solid_of) {
+            let mut by_edges = scene.clone();
+            by_edges.convex.clear();
+            by_edges.loose = (0..scene.patches.len()).map(PrimId::new).collect();
+            let (mut met, axis) = (0, frame().z);
+            for index in 0..8000 {
+                let mut sampler = Sampler::for_path(6, 0, index);
+                let mut pair = || sampler.pair(Dimension::EmitPosition);
+                let start = frame().point_to_world(4.0 * LENGTH * uniform_sphere(pair()));
+                let across = frame().to_world(1.5 * RADIUS * crate::math::disk(pair()));
+                let target = frame().origin + across + pair()[0] * LENGTH * axis;
+                // Also rays along the axis, that no wall is met by.
+                let ray = if index % 4 == 0 {
+                    Ray::new(target - 2.0 * LENGTH * axis, axis)
+                } else {
+                    Ray::new(start, target - start)
+                };
+                let find =
+                    |scene: &Scene| scene.find_next(&ray, &On::default(), &Inside::default());
+                let (found, expected) = (find(&scene), find(&by_edges));
+                assert_eq!(found.is_some(), expected.is_some());
+                if let (Some(found), Some(expected)) = (found, expected) {
+                    met += 1;
+                    assert_eq!(found.nearest(), expected.nearest());
+                    let normal = scene.normal(found.nearest().prim, ray.at(found.distance()));
+                    let apart = found.distance() - expected.distance();
+                    assert!((apart * ray.dir().dot(normal)).abs() < 1e-13, "{apart}");
+                }
+            }
+            assert!((2000..8000).contains(&met), "{met}");
         }
     }
 

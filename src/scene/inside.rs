@@ -38,13 +38,6 @@ impl Inside {
         self.others.is_empty() && bit(solid).is_some_and(|bit| self.first & !bit == 0)
     }
 
-    /// The solid, if the point lies in a single one.
-    #[inline]
-    pub fn only(&self) -> Option<SolidId> {
-        (self.first.is_power_of_two() && self.others.is_empty())
-            .then(|| SolidId::new(self.first.trailing_zeros() as usize))
-    }
-
     /// Adds a solid.
     #[inline]
     pub fn enter(&mut self, solid: SolidId) {

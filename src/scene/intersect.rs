@@ -100,8 +100,14 @@ impl Nearest {
         if crossing.t < self.crossing.t {
             *self = Self { prim, crossing, runner_up: self.crossing.t };
         } else {
-            self.runner_up = self.runner_up.min(crossing.t);
+            self.consider_runner_up(crossing.t);
         }
+    }
+
+    #[inline(always)]
+    fn consider_runner_up(&mut self, t: f64) {
+        // Not `min`, which would ask both for numbers that are none.
+        self.runner_up = if t < self.runner_up { t } else { self.runner_up };
     }
 }
 
@@ -128,18 +134,32 @@ impl Scene {
 
     #[inline(always)]
     fn nearest_by_scan(&self, ray: &Ray, from: &On, inside: &Inside) -> Nearest {
-        if let Some(solid) = inside.only()
-            && let Some(convex) = &self.convex[solid.index()]
-            && let Some(mut nearest) = convex.exit(ray, from, self.tolerance)
-        {
-            self.scan(convex.others().iter().copied(), ray, from, inside, &mut nearest);
-            return nearest;
+        let mut nearest = Nearest::NONE;
+        for convex in &self.convex {
+            if !inside.contains(convex.solid()) {
+                if let Some((prim, crossing)) = convex.entry(ray, from, self.tolerance) {
+                    nearest.consider(prim, crossing);
+                }
+            } else if let Some(exit) = convex.exit(ray, from, self.tolerance) {
+                nearest.consider(exit.prim, exit.crossing);
+                nearest.consider_runner_up(exit.runner_up);
+            } else {
+                return self.nearest_by_edges(&ray.lent(), from, inside);
+            }
         }
+        self.scan(self.loose.iter().copied(), ray, from, inside, &mut nearest);
+        nearest
+    }
+
+    /// The same with all edges asked, for a path of which rounding has it that it is not quite where it should be.
+    #[inline(never)]
+    fn nearest_by_edges(&self, ray: &Ray, from: &On, inside: &Inside) -> Nearest {
         let mut nearest = Nearest::NONE;
         self.scan((0..self.patches.len()).map(PrimId::new), ray, from, inside, &mut nearest);
         nearest
     }
 
+    /// Asks patches one after the other.
     #[inline(always)]
     fn scan(
         &self,

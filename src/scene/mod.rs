@@ -109,8 +109,10 @@ pub struct Scene {
     /// Faces closer than this are one, mm.
     pub tolerance: f64,
     accel: Accel,
-    /// For every solid, its form for paths inside it if it is convex and all patches are scanned.
-    convex: Vec<Option<Convex>>,
+    /// Solids that are convex, where all patches are scanned.
+    convex: Vec<Convex>,
+    /// The patches of everything else.
+    loose: Vec<PrimId>,
 }
 
 impl Scene {

@@ -97,6 +97,19 @@ impl Cylinder {
         }
     }
 
+    /// The distances between which a line is in the endless cylinder, mm; infinite along the axis.
+    #[inline(always)]
+    pub(crate) fn span(&self, ray: &Ray) -> Option<[f64; 2]> {
+        match self.roots(ray, Start::Elsewhere) {
+            Some((_, enter, leave)) => Some([enter.t, leave?.t]),
+            None => {
+                let along = ray.dir().cross(self.frame.z) == DVec3::ZERO;
+                let within = self.across(ray.origin()).length() <= self.radius;
+                (along && within).then_some([f64::NEG_INFINITY, f64::INFINITY])
+            }
+        }
+    }
+
     pub(super) fn bounds(&self) -> Aabb {
         [self.z_min, self.z_max]
             .map(|z| arc_bounds(&self.frame, self.radius, z, self.wedge()))

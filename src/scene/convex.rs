@@ -149,7 +149,7 @@ impl Convex {
         let mut nearest = Nearest::NONE;
         for slab in &self.slabs {
             let (t, prim) = slab.exit(ray);
-            nearest.consider(prim, Crossing { t, toward: Toward::Front });
+            nearest.choose(prim, Crossing { t, toward: Toward::Front });
         }
         if from.contains(nearest.prim) || nearest.crossing.t < -tolerance {
             return None;

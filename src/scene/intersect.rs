@@ -10,6 +10,7 @@ use crate::scene::mesh::Line;
 use crate::scene::shape::{Crossing, Start, Toward, Wanted};
 use crate::scene::{FaceId, Inside, On, Owner, PrimId, Ray, Scene, SolidId, Surface};
 use smallvec::SmallVec;
+use std::hint::select_unpredictable;
 use std::iter;
 
 /// One of the surfaces met at a hit.
@@ -102,6 +103,19 @@ impl Nearest {
         } else {
             self.consider_runner_up(crossing.t);
         }
+    }
+
+    /// The same by choices instead of jumps, where it cannot be foreseen which is nearer.
+    #[inline(always)]
+    pub(crate) fn choose(&mut self, prim: PrimId, crossing: Crossing) {
+        let nearer = crossing.t < self.crossing.t;
+        let further = if nearer { self.crossing.t } else { crossing.t };
+        self.consider_runner_up(further);
+        self.prim = select_unpredictable(nearer, prim, self.prim);
+        self.crossing = Crossing {
+            t: select_unpredictable(nearer, crossing.t, self.crossing.t),
+            toward: select_unpredictable(nearer, crossing.toward, self.crossing.toward),
+        };
     }
 
     #[inline(always)]

@@ -34,10 +34,17 @@ pub struct Sampler {
 
 impl Sampler {
     /// The stream of path `index` of `stream` (a pass, or a purpose) under `seed`.
+    #[inline]
     pub fn for_path(seed: u64, stream: u64, index: u64) -> Self {
         // Each word is mixed before the next comes in: neighbouring indices share no structure.
         let key = split_mix(split_mix(split_mix(seed) ^ stream) ^ index);
-        Self { generator: Xoshiro256PlusPlus::seed_from_u64(key) }
+        // The four words are the next numbers of SplitMix64; written out, they need not go through memory one by one.
+        let mut seed = [0; 32];
+        for (step, word) in (0u64..).zip(seed.chunks_exact_mut(8)) {
+            let state = key.wrapping_add(step.wrapping_mul(GOLDEN_GAMMA));
+            word.copy_from_slice(&split_mix(state).to_le_bytes());
+        }
+        Self { generator: Xoshiro256PlusPlus::from_seed(seed) }
     }
 
     /// One number in [0, 1), 53 bits.
@@ -54,9 +61,13 @@ impl Sampler {
     }
 }
 
+/// By how much the state of `SplitMix64` grows from number to number: 2^64 over the golden ratio.
+const GOLDEN_GAMMA: u64 = 0x9e37_79b9_7f4a_7c15;
+
 /// One step of `SplitMix64` (Steele, Lea & Flood, OOPSLA 2014, fig. 17).
+#[inline]
 fn split_mix(state: u64) -> u64 {
-    let mut z = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let mut z = state.wrapping_add(GOLDEN_GAMMA);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     z ^ (z >> 31)
@@ -75,6 +86,16 @@ mod tests {
         assert_ne!(first(1, 2, 3), first(1, 3, 3));
         assert_ne!(first(1, 2, 3), first(1, 2, 4));
         assert_ne!(first(1, 2, 3), first(1, 3, 2));
+    }
+
+    #[test]
+    fn the_stream_is_that_of_the_generator_seeded_by_its_key() {
+        let key = split_mix(split_mix(split_mix(9) ^ 1) ^ 1234);
+        let mut reference = Xoshiro256PlusPlus::seed_from_u64(key);
+        let mut sampler = Sampler::for_path(9, 1, 1234);
+        for _ in 0..8 {
+            assert_eq!(sampler.generator.next_u64(), reference.next_u64());
+        }
     }
 
     #[test]

@@ -10,7 +10,7 @@ pub use aabb::Aabb;
 pub use frame::Frame;
 pub use roots::{Roots, bracketed_root, convex_roots, cubic, quadratic, quartic};
 pub use sampling::{
-    cone_direction, cosine_hemisphere, cosine_power_hemisphere, disk, uniform_sphere,
+    circle, cone_direction, cosine_hemisphere, cosine_power_hemisphere, disk, uniform_sphere,
 };
 
 use glam::DVec3;

@@ -41,8 +41,11 @@ pub fn dielectric(cos_i: f64, n_i: f64, n_t: f64) -> Polarised {
 /// As [`dielectric`], for a refracted angle that is known.
 #[inline]
 pub fn dielectric_refracting(cos_i: f64, cos_t: f64, n_i: f64, n_t: f64) -> Polarised {
-    let s = (n_i * cos_i - n_t * cos_t) / (n_i * cos_i + n_t * cos_t);
-    let p = (n_t * cos_i - n_i * cos_t) / (n_t * cos_i + n_i * cos_t);
+    let (s_less, s_sum) = (n_i * cos_i - n_t * cos_t, n_i * cos_i + n_t * cos_t);
+    let (p_less, p_sum) = (n_t * cos_i - n_i * cos_t, n_t * cos_i + n_i * cos_t);
+    // One division for both: a bounce waits for it.
+    let inverse = 1.0 / (s_sum * p_sum);
+    let (s, p) = (s_less * p_sum * inverse, p_less * s_sum * inverse);
     Polarised { s: s * s, p: p * p }
 }
 

@@ -47,10 +47,15 @@ impl Folder {
         fs::create_dir_all(path).map_err(|source| Error::io(path, source))?;
         let mut entries = fs::read_dir(path).map_err(|source| Error::io(path, source))?;
         let is_kept = existing == Existing::Keep && entries.next().is_some();
-        if is_kept && (recipe.is_none() || Recipe::read(path).as_ref() != recipe) {
+        let found = if is_kept { Recipe::read(path) } else { None };
+        if is_kept && (recipe.is_none() || found.as_ref() != recipe) {
+            let what = match (found, recipe) {
+                (Some(found), Some(recipe)) => recipe.difference_of(&found),
+                (Some(_), None) => "a report, and a run that the clock stops never repeats one",
+                (None, _) => "files that are no complete report",
+            };
             return Err(Error::Usage(format!(
-                "{} is not empty and holds no report of this very run; use --overwrite to replace the files in it, \
-                 or -o for another folder",
+                "{} holds {what}; use --overwrite to replace the files in it, or -o for another folder",
                 path.display()
             )));
         }

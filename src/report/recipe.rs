@@ -18,6 +18,19 @@ pub struct Recipe {
 }
 
 impl Recipe {
+    /// How another recipe, which is not the same, differs from this one.
+    pub(crate) fn difference_of(&self, other: &Self) -> &'static str {
+        if other.version != self.version {
+            "a report by another version of the program"
+        } else if other.scene_hash != self.scene_hash {
+            "a report of another scene: the file, a file that it names, or -D differs"
+        } else if other.seed != self.seed {
+            "a report with another seed"
+        } else {
+            "a report with other stop rules"
+        }
+    }
+
     /// The recipe of the report in a folder; `None` if there is no report, or a partial one.
     pub(crate) fn read(folder: &Path) -> Option<Self> {
         let summary: Value =

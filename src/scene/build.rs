@@ -2,12 +2,13 @@
 
 use crate::math::Aabb;
 use crate::optics::{Bsdf, Medium};
+use crate::scene::convex::Convex;
 use crate::scene::mesh::Mesh;
 use crate::scene::shape::Shape;
 use crate::scene::sweep::WallChart;
 use crate::scene::{
     Accel, COINCIDENCE, Extent, Face, FaceId, Finish, FinishId, MediumId, MeshBody, Owner, Patch,
-    Scene, Sensor, SensorId, SensorKind, Solid, SolidId, Source, SourceId,
+    PrimId, Scene, Sensor, SensorId, SensorKind, Solid, SolidId, Source, SourceId,
 };
 use crate::units::FluxUnit;
 use glam::DVec3;
@@ -70,6 +71,8 @@ impl Builder {
             sensors: Vec::new(),
             tolerance: 0.0,
             accel: Accel::new(&[], 0, 0.0),
+            convex: Vec::new(),
+            loose: Vec::new(),
         };
         Self { scene }
     }
@@ -199,6 +202,13 @@ impl Builder {
         }
         scene.tolerance = COINCIDENCE * scene.bounds.diagonal();
         scene.accel = Accel::new(&boxes, scene.patches.len(), scene.bounds.largest_coordinate());
+        if let Accel::Scan(_) = scene.accel {
+            let solids = (0..scene.solids.len()).map(SolidId::new);
+            scene.convex = solids.filter_map(|solid| Convex::of(&scene, solid)).collect();
+        }
+        let convex: Vec<PrimId> = scene.convex.iter().flat_map(Convex::faces).collect();
+        scene.loose = (0..scene.patches.len()).map(PrimId::new).collect();
+        scene.loose.retain(|prim| !convex.contains(prim));
         scene
     }
 }

@@ -10,6 +10,7 @@ use crate::scene::mesh::Line;
 use crate::scene::shape::{Crossing, Start, Toward, Wanted};
 use crate::scene::{FaceId, Inside, On, Owner, PrimId, Ray, Scene, SolidId, Surface};
 use smallvec::SmallVec;
+use std::hint::select_unpredictable;
 use std::iter;
 
 /// One of the surfaces met at a hit.
@@ -81,27 +82,46 @@ impl Hits {
 
 /// The search for the nearest hit.
 #[derive(Debug, Clone, Copy)]
-struct Nearest {
-    prim: PrimId,
-    crossing: Crossing,
+pub(crate) struct Nearest {
+    pub(crate) prim: PrimId,
+    pub(crate) crossing: Crossing,
     /// Distance of the next one, as far as it was seen, mm.
     runner_up: f64,
 }
 
 impl Nearest {
-    const NONE: Self = Self {
+    pub(crate) const NONE: Self = Self {
         prim: PrimId::new(0),
         crossing: Crossing { t: f64::INFINITY, toward: Toward::Front },
         runner_up: f64::INFINITY,
     };
 
-    #[inline]
-    fn consider(&mut self, prim: PrimId, crossing: Crossing) {
+    #[inline(always)]
+    pub(crate) fn consider(&mut self, prim: PrimId, crossing: Crossing) {
         if crossing.t < self.crossing.t {
             *self = Self { prim, crossing, runner_up: self.crossing.t };
         } else {
-            self.runner_up = self.runner_up.min(crossing.t);
+            self.consider_runner_up(crossing.t);
         }
+    }
+
+    /// The same by choices instead of jumps, where it cannot be foreseen which is nearer.
+    #[inline(always)]
+    pub(crate) fn choose(&mut self, prim: PrimId, crossing: Crossing) {
+        let nearer = crossing.t < self.crossing.t;
+        let further = if nearer { self.crossing.t } else { crossing.t };
+        self.consider_runner_up(further);
+        self.prim = select_unpredictable(nearer, prim, self.prim);
+        self.crossing = Crossing {
+            t: select_unpredictable(nearer, crossing.t, self.crossing.t),
+            toward: select_unpredictable(nearer, crossing.toward, self.crossing.toward),
+        };
+    }
+
+    #[inline(always)]
+    fn consider_runner_up(&mut self, t: f64) {
+        // Not `min`, which would ask both for numbers that are none.
+        self.runner_up = if t < self.runner_up { t } else { self.runner_up };
     }
 }
 
@@ -129,15 +149,48 @@ impl Scene {
     #[inline(always)]
     fn nearest_by_scan(&self, ray: &Ray, from: &On, inside: &Inside) -> Nearest {
         let mut nearest = Nearest::NONE;
-        for (index, patch) in self.patches.iter().enumerate() {
-            let prim = PrimId::new(index);
+        for convex in &self.convex {
+            if !inside.contains(convex.solid()) {
+                if let Some((prim, crossing)) = convex.entry(ray, from, self.tolerance) {
+                    nearest.consider(prim, crossing);
+                }
+            } else if let Some(exit) = convex.exit(ray, from, self.tolerance) {
+                nearest.consider(exit.prim, exit.crossing);
+                nearest.consider_runner_up(exit.runner_up);
+            } else {
+                return self.nearest_by_edges(&ray.lent(), from, inside);
+            }
+        }
+        self.scan(self.loose.iter().copied(), ray, from, inside, &mut nearest);
+        nearest
+    }
+
+    /// The same with all edges asked, for a path of which rounding has it that it is not quite where it should be.
+    #[inline(never)]
+    fn nearest_by_edges(&self, ray: &Ray, from: &On, inside: &Inside) -> Nearest {
+        let mut nearest = Nearest::NONE;
+        self.scan((0..self.patches.len()).map(PrimId::new), ray, from, inside, &mut nearest);
+        nearest
+    }
+
+    /// Asks patches one after the other.
+    #[inline(always)]
+    fn scan(
+        &self,
+        prims: impl Iterator<Item = PrimId>,
+        ray: &Ray,
+        from: &On,
+        inside: &Inside,
+        nearest: &mut Nearest,
+    ) {
+        for prim in prims {
+            let patch = &self.patches[prim.index()];
             let limit = nearest.crossing.t + self.tolerance;
             let Some(wanted) = self.wanted(patch.owner, inside, limit) else { continue };
             if let Some(crossing) = patch.shape.first_crossing(ray, start_on(prim, from), &wanted) {
                 nearest.consider(prim, crossing);
             }
         }
-        nearest
     }
 
     #[inline(never)]

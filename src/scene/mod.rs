@@ -8,6 +8,7 @@
 
 mod accel;
 mod build;
+mod convex;
 mod emission;
 mod face;
 mod grid;
@@ -41,6 +42,8 @@ pub use ray::Ray;
 pub use section::Outline;
 pub use sensor::{Counts, Goniometer, Place, Sensor, SensorKind, Sides, SurfaceSensor, Views};
 pub use source::{EmitSide, Emitted, Emitter, Source, Start};
+
+use convex::Convex;
 
 use crate::math::Aabb;
 use crate::optics::{Bsdf, Medium};
@@ -106,6 +109,10 @@ pub struct Scene {
     /// Faces closer than this are one, mm.
     pub tolerance: f64,
     accel: Accel,
+    /// Solids that are convex, where all patches are scanned.
+    convex: Vec<Convex>,
+    /// The patches of everything else.
+    loose: Vec<PrimId>,
 }
 
 impl Scene {

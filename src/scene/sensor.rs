@@ -166,11 +166,19 @@ impl Goniometer {
         let local = self.frame.to_local(dir);
         // atan2 keeps the digits near the poles.
         let gamma = local.truncate().length().atan2(local.z);
-        let c = local.y.atan2(local.x).rem_euclid(TAU);
         let ring = ((gamma / std::f64::consts::PI * self.gamma_cells as f64) as usize)
             .min(self.gamma_cells - 1);
-        let sector = ((c / TAU * self.c_cells as f64) as usize).min(self.c_cells - 1);
-        ring * self.c_cells + sector
+        ring * self.c_cells + self.sector(local)
+    }
+
+    /// The sector in C of a direction in the frame.
+    #[inline]
+    fn sector(&self, local: DVec3) -> usize {
+        if self.c_cells == 1 {
+            return 0;
+        }
+        let c = local.y.atan2(local.x).rem_euclid(TAU);
+        ((c / TAU * self.c_cells as f64) as usize).min(self.c_cells - 1)
     }
 
     /// Solid angle of a cell, sr.
@@ -181,9 +189,9 @@ impl Goniometer {
         (edge(ring) - edge(ring + 1)) * TAU / self.c_cells as f64
     }
 
-    /// Where a ray leaves the finite sphere within `length`: its direction from the centre.
+    /// Where a ray leaves the finite sphere within `length`: distance along it, mm, and direction from the centre.
     #[inline]
-    pub fn leaving(&self, ray: &Ray, length: f64) -> Option<DVec3> {
+    pub fn leaving(&self, ray: &Ray, length: f64) -> Option<(f64, DVec3)> {
         let radius = self.radius?;
         let from = ray.origin() - self.frame.origin;
         let half_b = from.dot(ray.dir());
@@ -194,7 +202,7 @@ impl Goniometer {
         }
         // The further root is the way out; a start beyond it has it behind.
         let t = -half_b + discriminant.sqrt();
-        (t > 0.0 && t <= length).then(|| (ray.at(t) - self.frame.origin) / radius)
+        (t > 0.0 && t <= length).then(|| (t, (ray.at(t) - self.frame.origin) / radius))
     }
 
     /// Box around a finite sphere, mm; empty for the far field.

@@ -3,17 +3,19 @@
 //! Every photon carries flux; sensors add it up per cell. What surfaces and media take, what escapes and what is cut
 //! is counted independently, so that the balance can be checked, not enforced.
 
+mod surfaces;
+
 use crate::optics::Side;
 use crate::rng::Sampler;
-use crate::scene::shape::{Crossing, Start, Toward};
-use crate::scene::{Counts, FaceId, Owner, PrimHit, Scene, SensorId, SourceId, SurfaceSensor};
+use crate::scene::shape::Toward;
+use crate::scene::{Counts, FaceId, Owner, Scene, SensorId, SourceId};
 use crate::transport::readings::{SensorReading, Step, Trail};
-use crate::transport::watch::{OnPort, Watch};
+use crate::transport::watch::Watch;
 use crate::transport::{
     Departure, Event, Layout, Leak, Path, Readings, Segment, TAILS, Vertex, Visitor, walk,
 };
-use glam::{DVec2, DVec3};
 use std::ops::ControlFlow;
+use surfaces::Light;
 
 /// Stream of random numbers of the forward photons.
 const STREAM: u64 = 1;
@@ -54,7 +56,9 @@ impl<'s> Forward<'s> {
         for (source, &paths) in self.shares.iter().enumerate() {
             let source = SourceId::new(source);
             let flux = self.scene.sources[source.index()].flux / paths as f64;
-            for _ in 0..paths {
+            for place in 0..paths {
+                // Shifted by the batch, so that a source of few paths has its share of classes, too.
+                counter.classed = (place + batch).is_multiple_of(CLASS_EVERY);
                 counter.trace(source, flux, index);
                 index += 1;
             }
@@ -63,11 +67,30 @@ impl<'s> Forward<'s> {
     }
 }
 
-/// Paths per batch of each source: by flux, at least one each.
+/// Paths per batch of each source: at least one each, by flux, what rounding leaves to those that miss most of a path.
+/// Their sum is `batch_paths` where there are no more sources than that.
 fn shares(scene: &Scene, batch_paths: u64) -> Vec<u64> {
     let total = scene.source_flux();
-    let share = |flux: f64| ((batch_paths as f64 * flux / total).round() as u64).max(1);
-    scene.sources.iter().map(|source| share(source.flux)).collect()
+    let wanted: Vec<f64> =
+        scene.sources.iter().map(|source| batch_paths as f64 * source.flux / total).collect();
+    let mut shares: Vec<u64> = wanted.iter().map(|wanted| (wanted.floor() as u64).max(1)).collect();
+    let missing = |shares: &[u64], place: usize| wanted[place] - shares[place] as f64;
+    let places = 0..shares.len();
+    loop {
+        let sum: u64 = shares.iter().sum();
+        let by_missing =
+            |a: &usize, b: &usize| missing(&shares, *a).total_cmp(&missing(&shares, *b));
+        if sum < batch_paths {
+            let Some(most) = places.clone().max_by(by_missing) else { return shares };
+            shares[most] += 1;
+        } else if sum > batch_paths {
+            let shared = places.clone().filter(|place| shares[*place] > 1);
+            let Some(least) = shared.min_by(by_missing) else { return shares };
+            shares[least] -= 1;
+        } else {
+            return shares;
+        }
+    }
 }
 
 /// Counts one batch.
@@ -80,8 +103,18 @@ struct Counter<'r, 's> {
     flux: f64,
     source: SourceId,
     classed: bool,
+    travel_start: TravelStart,
     trail: Trail,
     last_left: Option<FaceId>,
+}
+
+/// Where a straight piece starts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum TravelStart {
+    /// At the source: what it crosses at its start has not been counted.
+    Source,
+    /// At an interface, at the end of a piece that has counted what is there.
+    Interface,
 }
 
 impl<'r, 's> Counter<'r, 's> {
@@ -93,6 +126,7 @@ impl<'r, 's> Counter<'r, 's> {
             flux: 0.0,
             source: SourceId::new(0),
             classed: false,
+            travel_start: TravelStart::Source,
             trail: Trail::new(),
             last_left: None,
         }
@@ -110,7 +144,7 @@ impl<'r, 's> Counter<'r, 's> {
         let emitted = scene.sources[source.index()].emit(scene, &mut sampler);
         self.flux = flux;
         self.source = source;
-        self.classed = index.is_multiple_of(CLASS_EVERY);
+        self.travel_start = TravelStart::Source;
         self.trail.clear();
         self.last_left = None;
         self.add(self.run.layout.emitted(source), 1.0);
@@ -132,83 +166,7 @@ impl<'r, 's> Counter<'r, 's> {
         {
             self.travel_watched(path, segment);
         }
-    }
-
-    /// Counts light that passes through ports and out of goniometers on its way.
-    #[inline(never)]
-    fn travel_watched(&mut self, path: &Path, segment: &Segment<'_>) {
-        let run = self.run;
-        for port in &run.watch.ports {
-            self.cross_port(path, segment, port);
-        }
-        for &(id, goniometer) in &run.watch.near {
-            if let Some(direction) = goniometer.leaving(segment.ray, segment.length) {
-                self.count(path, id, goniometer.cell(direction), segment.throughput);
-            }
-        }
-        for (face, patches) in &run.watch.entry_ports {
-            for patch in *patches {
-                patch.shape.crossings(segment.ray, Start::Elsewhere, |Crossing { t, toward }| {
-                    if toward == Toward::Back && self.within(segment, t) {
-                        for id in &run.watch.entries[face.index()] {
-                            self.add(run.layout.entering(*id), segment.throughput);
-                        }
-                    }
-                });
-            }
-        }
-    }
-
-    /// Counts light that passes through a port sensor on its way.
-    fn cross_port(&mut self, path: &Path, segment: &Segment<'_>, port: &OnPort<'s>) {
-        let OnPort { id, sensor, patches, .. } = port;
-        for patch in patches {
-            patch.shape.crossings(segment.ray, Start::Elsewhere, |Crossing { t, toward }| {
-                if !self.within(segment, t) {
-                    return;
-                }
-                let medium = &self.run.scene.media[segment.medium.index()];
-                let throughput = segment.throughput * medium.transmittance(path.wavelength, t);
-                let seen = Seen {
-                    counts: sensor.counts,
-                    toward,
-                    point: segment.ray.at(t),
-                    dir: segment.ray.dir(),
-                };
-                if self.through_aim(path, *id, t) {
-                    let uv = patch.chart(seen.point);
-                    self.count_on_surface(path, *id, sensor, uv, &seen, throughput);
-                } else if sensor.sides.include(seen.counts, toward) {
-                    self.add(self.run.layout.outside_aim(*id), throughput);
-                }
-            });
-        }
-    }
-
-    /// Whether a crossing belongs to this segment: light at its end counts, light at its start has counted before.
-    #[inline]
-    fn within(&self, segment: &Segment<'_>, t: f64) -> bool {
-        let tolerance = self.run.scene.tolerance;
-        t > tolerance && t <= segment.length + tolerance
-    }
-
-    /// Whether light that meets a sensor at distance `t` came through one of the faces or ports it is aimed at.
-    fn through_aim(&self, path: &Path, sensor: SensorId, t: f64) -> bool {
-        let scene = self.run.scene;
-        let aim = &scene.sensors[sensor.index()].aim;
-        aim.is_empty()
-            || aim.iter().any(|&face| match scene.faces[face.index()].owner {
-                Owner::Solid(_) | Owner::Sheet => {
-                    path.on.iter().any(|prim| scene.face_of(prim) == face)
-                }
-                Owner::Port => scene.face_patches(face).iter().any(|patch| {
-                    let mut crossed = false;
-                    patch.shape.crossings(&path.ray, Start::Elsewhere, |crossing| {
-                        crossed |= crossing.t >= -scene.tolerance && crossing.t < t;
-                    });
-                    crossed
-                }),
-            })
+        self.travel_start = TravelStart::Interface;
     }
 
     #[inline(always)]
@@ -253,73 +211,10 @@ impl<'r, 's> Counter<'r, 's> {
     #[inline(always)]
     fn on_faces(&mut self, path: &Path, vertex: &Vertex<'_>, light: Light) {
         let hits = vertex.hits;
-        if self.run.watch.watched[hits.nearest().face.index()] || !hits.others().is_empty() {
-            self.on_watched_faces(path, vertex, light);
-        }
-    }
-
-    #[inline(never)]
-    fn on_watched_faces(&mut self, path: &Path, vertex: &Vertex<'_>, light: Light) {
-        for hit in vertex.hits.all() {
-            if self.run.watch.watched[hit.face.index()] {
-                self.on_face(path, vertex.point, hit, light);
-            }
-        }
-    }
-
-    fn on_face(&mut self, path: &Path, point: DVec3, hit: &PrimHit, light: Light) {
-        let Light { counts, dir, throughput, side } = light;
-        let run = self.run;
-        let face = hit.face.index();
-        if side == Some(Side::Transmitted) && hit.toward == Toward::Back {
-            for id in &run.watch.entries[face] {
-                self.add(run.layout.entering(*id), throughput);
-            }
-        }
-        for &(id, sensor) in
-            run.watch.faces[face].iter().filter(|(_, sensor)| sensor.counts == counts)
+        if self.run.watch.watched[hits.nearest().face.index()].includes(light.counts)
+            || !hits.others().is_empty()
         {
-            let normal = run.scene.normal(hit.prim, point);
-            // Light is reflected to the side it came from: its direction tells the side it leaves to.
-            let toward = if side.is_none() { hit.toward } else { Toward::of(dir, normal) };
-            let seen = Seen { counts, toward, point, dir };
-            let uv = run.scene.chart(hit.prim, point);
-            self.count_on_surface(path, id, sensor, uv, &seen, throughput);
-        }
-    }
-
-    /// Counts light on a cell of a surface sensor, and in the views that take it in.
-    #[inline]
-    fn count_on_surface(
-        &mut self,
-        path: &Path,
-        id: SensorId,
-        sensor: &SurfaceSensor,
-        uv: DVec2,
-        seen: &Seen,
-        throughput: f64,
-    ) {
-        if !sensor.sides.include(seen.counts, seen.toward) {
-            self.add(self.run.layout.other_side(id), throughput);
-            return;
-        }
-        let Some(cell) = sensor.grid.cell(uv) else { return };
-        let Some(views) = &sensor.views else {
-            self.count(path, id, cell, throughput);
-            return;
-        };
-        // Away from the face: back along arriving light, along leaving light.
-        let away = if seen.counts == Counts::Incident { -seen.dir } else { seen.dir };
-        let cells = sensor.grid.cells();
-        let mut first = true;
-        for view in views.accepting(away) {
-            if first {
-                self.count_totals(path, id, throughput);
-                first = false;
-            }
-            self.readings.sensors[id.index()]
-                .cells
-                .add(view * cells + cell, self.flux * throughput);
+            self.on_watched_faces(path, vertex, light);
         }
     }
 
@@ -385,7 +280,13 @@ impl Visitor for Counter<'_, '_> {
             Event::Escaped(throughput) => {
                 self.add(layout.escaped(self.last_left), throughput);
                 for &(id, goniometer) in &self.run.watch.far {
-                    self.count(path, id, goniometer.cell(path.ray.dir()), throughput);
+                    self.count_on_sphere(
+                        path,
+                        id,
+                        goniometer.cell(path.ray.dir()),
+                        f64::INFINITY,
+                        throughput,
+                    );
                 }
             }
             Event::Cut(throughput) => self.add(layout.cut(), throughput),
@@ -396,25 +297,6 @@ impl Visitor for Counter<'_, '_> {
         }
         ControlFlow::Continue(())
     }
-}
-
-/// Light arriving at, or leaving, the faces of a vertex.
-#[derive(Clone, Copy)]
-struct Light {
-    counts: Counts,
-    /// Unit direction of travel.
-    dir: DVec3,
-    throughput: f64,
-    /// How it leaves; `None` of arriving light.
-    side: Option<Side>,
-}
-
-/// Light at a surface sensor.
-struct Seen {
-    counts: Counts,
-    toward: Toward,
-    point: DVec3,
-    dir: DVec3,
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use crate::math::Aabb;
 use crate::scene::{
-    FaceId, Goniometer, Owner, Patch, Place, Scene, SensorId, SensorKind, SurfaceSensor,
+    Counts, FaceId, Goniometer, Owner, Patch, Place, Scene, SensorId, SensorKind, SurfaceSensor,
 };
 use crate::transport::Segment;
 
@@ -11,8 +11,8 @@ use crate::transport::Segment;
 pub(crate) struct Watch<'s> {
     /// Sensors on ports: every segment is tested against their patches.
     pub(crate) ports: Vec<OnPort<'s>>,
-    /// For every face, whether anything is counted on it.
-    pub(crate) watched: Vec<bool>,
+    /// For every face, which light is counted on it.
+    pub(crate) watched: Vec<Watched>,
     /// For every face, the sensors on it.
     pub(crate) faces: Vec<Vec<(SensorId, &'s SurfaceSensor)>>,
     /// Far-field goniometers: escaping light is counted.
@@ -23,6 +23,24 @@ pub(crate) struct Watch<'s> {
     pub(crate) entries: Vec<Vec<SensorId>>,
     /// Open ports that are such entries.
     pub(crate) entry_ports: Vec<(FaceId, &'s [Patch])>,
+}
+
+/// Which light is counted on a face.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Watched {
+    incident: bool,
+    leaving: bool,
+}
+
+impl Watched {
+    /// Whether arriving or leaving light is.
+    #[inline(always)]
+    pub(crate) fn includes(self, counts: Counts) -> bool {
+        match counts {
+            Counts::Incident => self.incident,
+            Counts::Leaving => self.leaving,
+        }
+    }
 }
 
 /// A sensor on a port.
@@ -80,7 +98,14 @@ impl<'s> Watch<'s> {
             }
         }
         watch.watched = (watch.faces.iter().zip(&watch.entries))
-            .map(|(sensors, entries)| !sensors.is_empty() || !entries.is_empty())
+            .map(|(sensors, entries)| {
+                let any = |counts| sensors.iter().any(|(_, sensor)| sensor.counts == counts);
+                // Light enters where it leaves the face inward.
+                Watched {
+                    incident: any(Counts::Incident),
+                    leaving: any(Counts::Leaving) || !entries.is_empty(),
+                }
+            })
             .collect();
         watch
     }

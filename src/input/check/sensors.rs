@@ -56,6 +56,10 @@ fn check_place(key: &Key, sensor: &SensorSpec, problems: &mut Problems) {
             .error(&key.field("on"), message)
             .hint("add counts = \"leaving\" or counts = \"incident\"");
     }
+    if sensor.on.is_some() && sensor.aim.is_some() {
+        let message = "a sensor `on` a face is lit through that face, and takes no `aim`";
+        problems.error(&key.field("aim"), message).hint("remove `aim`");
+    }
     if sensor.on.is_none() && sensor.counts.is_some() {
         problems
             .error(&key.field("counts"), "is only for a sensor `on` a face")

@@ -118,3 +118,18 @@ fn readings_have_the_same_bits_on_any_number_of_threads() {
         assert!(one == on(threads), "{threads} threads differ");
     }
 }
+
+#[test]
+fn sources_share_a_batch_by_flux_and_none_goes_without() {
+    let mut scene = mirror_tube(0.95, 10.0);
+    let fluxes = [1.0, 1.0, 0.5, 1e-6];
+    let source = scene.sources[0].clone();
+    scene.sources = fluxes.map(|flux| crate::scene::Source { flux, ..source.clone() }).to_vec();
+    for batch_paths in [4, 5, 37, 100, 4096] {
+        let shares = crate::transport::forward::shares(&scene, batch_paths);
+        assert_eq!(shares.iter().sum::<u64>(), batch_paths);
+        assert!(shares.iter().all(|share| *share > 0), "{shares:?}");
+        assert!(shares[0].abs_diff(shares[1]) <= 1, "{shares:?}");
+    }
+    assert_eq!(crate::transport::forward::shares(&scene, 1), [1; 4]);
+}

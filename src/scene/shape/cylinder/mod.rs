@@ -6,7 +6,7 @@ mod unrolled;
 use crate::math::{Aabb, Frame, quadratic, unit};
 use crate::scene::Ray;
 use crate::scene::shape::wedge::{Wedge, arc_bounds, azimuth, point_on_circle, turn};
-use crate::scene::shape::{ChartRect, Crossing, HalfSpace, Start, Toward, Wanted};
+use crate::scene::shape::{ChartRect, Crossing, Flat, HalfSpace, Region, Start, Toward, Wanted};
 use glam::{DVec2, DVec3};
 use unrolled::{Strip, Unrolled};
 
@@ -61,6 +61,53 @@ impl Cylinder {
     /// The same wall with its front toward the axis.
     pub fn inward(self) -> Self {
         Self { leaving: Toward::Back, ..self }
+    }
+
+    /// Whether it is the plain wall all around, its front outside.
+    pub(crate) fn is_whole(&self) -> bool {
+        self.leaving == Toward::Front && self.trims.is_none()
+    }
+
+    /// The largest coordinate of its points along a unit vector, mm, as if it were the wall all around.
+    pub(crate) fn reach(&self, along: DVec3) -> f64 {
+        let lean = along.dot(self.frame.z);
+        let across = (along - lean * self.frame.z).length();
+        self.frame.origin.dot(along)
+            + (self.z_min * lean).max(self.z_max * lean)
+            + self.radius * across
+    }
+
+    /// Whether a disk across the axis lies within the endless cylinder; any other flat is taken not to.
+    pub(crate) fn encloses(&self, flat: &Flat, tolerance: f64) -> bool {
+        let (plane, Region::Annulus { outer, .. }) = (flat.frame(), flat.region()) else {
+            return false;
+        };
+        let (lean, aside) =
+            (plane.z.dot(self.frame.z) * self.frame.z, self.across(plane.origin).length());
+        (plane.z - lean).length() * outer <= tolerance && aside + outer <= self.radius + tolerance
+    }
+
+    /// The distance at which a ray inside leaves the endless cylinder, mm; infinite along the axis.
+    #[inline(always)]
+    pub(crate) fn exit(&self, ray: &Ray, start: Start) -> f64 {
+        match self.roots(ray, start) {
+            Some((_, _, Some(exit))) => exit.t,
+            Some((_, Crossing { t, .. }, None)) if t > 0.0 => t,
+            Some((_, _, None)) | None => f64::INFINITY,
+        }
+    }
+
+    /// The distances between which a line is in the endless cylinder, mm; infinite along the axis.
+    #[inline(always)]
+    pub(crate) fn span(&self, ray: &Ray) -> Option<[f64; 2]> {
+        match self.roots(ray, Start::Elsewhere) {
+            Some((_, enter, leave)) => Some([enter.t, leave?.t]),
+            None => {
+                let along = ray.dir().cross(self.frame.z) == DVec3::ZERO;
+                let within = self.across(ray.origin()).length() <= self.radius;
+                (along && within).then_some([f64::NEG_INFINITY, f64::INFINITY])
+            }
+        }
     }
 
     pub(super) fn bounds(&self) -> Aabb {

@@ -36,6 +36,12 @@ impl Flat {
         &self.region
     }
 
+    /// The largest coordinate of its points along a unit vector, mm.
+    pub(crate) fn reach(&self, along: DVec3) -> f64 {
+        let across = DVec2::new(along.dot(self.frame.x), along.dot(self.frame.y));
+        self.frame.origin.dot(along) + self.region.reach(across)
+    }
+
     pub(super) fn bounds(&self) -> Aabb {
         Aabb::of(self.chart_bounds().corners().map(|p| self.frame.point_to_world(p.extend(0.0))))
     }

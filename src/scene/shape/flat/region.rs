@@ -1,7 +1,7 @@
 //! Which part of a plane a flat surface covers.
 
 use crate::math::planar::disk_overlap;
-use crate::math::{disk, planar};
+use crate::math::{circle, disk, planar};
 use crate::scene::shape::ChartRect;
 use crate::scene::shape::flat::polygon::Polygon;
 use crate::scene::shape::wedge::Wedge;
@@ -104,6 +104,18 @@ impl Region {
         ChartRect { min: -half, max: half }
     }
 
+    /// The largest p · e over its points, mm; of a sector that of the whole disk.
+    pub(super) fn reach(&self, e: DVec2) -> f64 {
+        match self {
+            Self::Annulus { outer, .. } | Self::Sector { outer, .. } => outer * e.length(),
+            Self::Ellipse { half_x, half_y } => (e * DVec2::new(*half_x, *half_y)).length(),
+            Self::Rectangle { half_x, half_y } => half_x * e.x.abs() + half_y * e.y.abs(),
+            Self::Polygon(polygon) => {
+                polygon.vertices().iter().map(|p| p.dot(e)).fold(f64::NEG_INFINITY, f64::max)
+            }
+        }
+    }
+
     pub(super) fn area(&self) -> f64 {
         match self {
             Self::Annulus { inner, outer } => PI * (outer * outer - inner * inner),
@@ -116,13 +128,14 @@ impl Region {
         }
     }
 
+    #[inline]
     pub(super) fn sample(&self, u: [f64; 2]) -> DVec2 {
         // Uniform in r² between two radii.
         let radius = |inner: f64, outer: f64| {
             (inner * inner + u[0] * (outer * outer - inner * inner)).sqrt()
         };
         match self {
-            Self::Annulus { inner, outer } => radius(*inner, *outer) * disk([1.0, u[1]]).truncate(),
+            Self::Annulus { inner, outer } => radius(*inner, *outer) * circle(u[1]),
             Self::Sector { inner, outer, wedge } => {
                 radius(*inner, *outer) * DVec2::from_angle(u[1] * wedge.angle())
             }

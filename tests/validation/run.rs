@@ -159,7 +159,8 @@ fn judge(case: &Case, job: &Job, readings: &Readings, wanted: &Wanted<'_>) -> Fi
     let mut deviation = None;
     // Zero within so much is a limit for what is never negative.
     let most = check.within.filter(|_| check.equals == Some(0.0)).or(check.max);
-    let expected = match (check.equals.filter(|equals| *equals != 0.0), most) {
+    let equals = check.equals.filter(|equals| *equals != 0.0 || most.is_none());
+    let expected = match (equals, most) {
         (Some(equals), _) => {
             let expected = equals / value.per;
             let error = ours.total_error().hypot(*uncertainty);

@@ -19,9 +19,9 @@ pub fn circle(turns: f64) -> DVec2 {
     DVec2::new(sign * right, sign * up)
 }
 
-/// (-1)^k / (2k + 1)!: sin x = x Σ terms[k] x^2k.
+/// `(-1)^k / (2k + 1)!`: `sin x = x Σ terms[k] x^2k`.
 const SIN_TERMS: [f64; 9] = alternating_inverse_factorials(1);
-/// (-1)^k / (2k)!: cos x = Σ terms[k] x^2k.
+/// `(-1)^k / (2k)!`: `cos x = Σ terms[k] x^2k`.
 const COS_TERMS: [f64; 9] = alternating_inverse_factorials(0);
 
 /// (-1)^k / (2k + first)!
@@ -37,7 +37,7 @@ const fn alternating_inverse_factorials(first: u64) -> [f64; 9] {
     terms
 }
 
-/// Σ terms[k] x^k, by Horner's rule in x² for even and odd terms at once: half the waiting.
+/// `Σ terms[k] x^k`, by Horner's rule in x² for even and odd terms at once: half the waiting.
 #[inline]
 fn series(x: f64, terms: &[f64; 9]) -> f64 {
     let x2 = x * x;

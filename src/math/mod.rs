@@ -1,12 +1,14 @@
 //! Frames, boxes, roots of polynomials and maps from the unit square: the mathematics that the physics stands on.
 
 mod aabb;
+mod cap;
 mod frame;
 pub mod planar;
 mod roots;
 mod sampling;
 
 pub use aabb::Aabb;
+pub use cap::{cap_solid_angle_above, projected_cap};
 pub use frame::Frame;
 pub use roots::{Roots, bracketed_root, convex_roots, cubic, quadratic, quartic};
 pub use sampling::{

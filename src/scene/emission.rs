@@ -1,11 +1,12 @@
 //! How a source spreads its flux over directions.
 
 use crate::math::{
-    Frame, cone_direction, cosine_hemisphere, cosine_power_hemisphere, uniform_sphere,
+    Frame, cone_direction, cosine_hemisphere, cosine_power_hemisphere, projected_cap,
+    uniform_sphere,
 };
 use crate::rng::{Dimension, Sampler};
 use glam::DVec3;
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 /// A law of emission about an axis (the normal of a surface).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,6 +61,26 @@ impl Emission {
         }
     }
 
+    /// Density, in 1/sr, with which [`Emission::sample`] draws the unit vector `dir`; 0 where it never does. `None` for
+    /// a collimated beam, which has one direction and no density. Lines draw Lambertian light by a law of their own.
+    pub fn density(&self, kind: EmitterKind, dir: DVec3) -> Option<f64> {
+        let density = match (self, kind) {
+            (Self::Collimated { .. }, _) => return None,
+            (Self::Lambertian, _) => above(dir, dir.z / PI),
+            (Self::CosinePower(power), _) => above(dir, (power + 1.0) * dir.z.powf(*power) / TAU),
+            (Self::Isotropic, EmitterKind::Point | EmitterKind::Volume) => 0.25 / PI,
+            (Self::Isotropic, EmitterKind::Surface) => above(dir, 1.0 / TAU),
+            (Self::Cone { half_angle, axis }, _) if !in_cone(*half_angle, *axis, dir) => 0.0,
+            (Self::Cone { half_angle, .. }, EmitterKind::Point | EmitterKind::Volume) => {
+                1.0 / (4.0 * PI * (0.5 * half_angle).sin().powi(2))
+            }
+            (Self::Cone { half_angle, axis }, EmitterKind::Surface) => {
+                above(dir, dir.z / projected_cap(axis.z, *half_angle))
+            }
+        };
+        Some(density)
+    }
+
     /// Flux per luminance and area of a surface, sr: the projected solid angle ∫ cos θ dω of the law.
     /// `None` where luminance is not the same in all its directions.
     pub fn projected_solid_angle(&self) -> Option<f64> {
@@ -82,6 +103,16 @@ impl Emission {
             Self::Collimated { .. } => None,
         }
     }
+}
+
+/// A density that is 0 in the lower half space.
+fn above(dir: DVec3, density: f64) -> f64 {
+    if dir.z > 0.0 { density } else { 0.0 }
+}
+
+fn in_cone(half_angle: f64, axis: DVec3, dir: DVec3) -> bool {
+    // |a - b| = 2 sin(θ/2) keeps the digits of narrow cones.
+    dir.distance(axis) <= 2.0 * (0.5 * half_angle).sin()
 }
 
 /// Uniform radiance over a cone in front of a surface: density ∝ cos θ to the normal, by rejection from the cone.
@@ -122,5 +153,92 @@ mod tests {
             (0..20_000).map(|i| law.sample(EmitterKind::Point, &mut Sampler::for_path(4, 0, i)).z),
         );
         assert!(mean.sigmas_from(0.5 * (1.0 + 0.5f64.cos())).abs() < 4.0);
+    }
+
+    /// Direction at angles to `axis`: 1 - cos θ, so that equal steps are equal solid angles, and the azimuth in turns.
+    fn direction(axis: DVec3, one_minus_cos: f64, turns: f64) -> DVec3 {
+        let sin = (one_minus_cos * (2.0 - one_minus_cos)).sqrt();
+        let local = (sin * crate::math::circle(turns)).extend(1.0 - one_minus_cos);
+        Frame::from_axis(DVec3::ZERO, axis).to_world(local)
+    }
+
+    const RINGS: usize = 10;
+    const SECTORS: usize = 8;
+    const CELLS: usize = RINGS * SECTORS;
+
+    /// Chi-square of samples against the density over cells that fill the cone of `half_angle` about `axis`.
+    fn samples_against_density(law: Emission, kind: EmitterKind, axis: DVec3, half_angle: f64) {
+        let what = format!("{law:?} of a {kind:?}");
+        let extent = 2.0 * (0.5 * half_angle).sin().powi(2);
+        let sub = 100;
+        let (rows, columns) = (RINGS * sub, SECTORS * sub);
+        let mut expected = [0.0; CELLS];
+        for row in 0..rows {
+            for column in 0..columns {
+                let ring = (row as f64 + 0.5) / rows as f64;
+                let dir = direction(axis, extent * ring, (column as f64 + 0.5) / columns as f64);
+                let mass = law.density(kind, dir).unwrap() * TAU * extent / (rows * columns) as f64;
+                expected[row / sub * SECTORS + column / sub] += mass;
+            }
+        }
+        let total: f64 = expected.iter().sum();
+        assert!((total - 1.0).abs() < 1e-3, "{what}: the density integrates to {total}");
+        let n = 50_000;
+        let mut seen = [0.0; CELLS];
+        let frame = Frame::from_axis(DVec3::ZERO, axis);
+        for index in 0..n {
+            let dir = law.sample(kind, &mut Sampler::for_path(31, 0, index));
+            assert!(law.density(kind, dir).unwrap() > 0.0, "{what}: draws {dir} of density 0");
+            let ring = 0.5 * dir.distance_squared(axis) / extent * RINGS as f64;
+            let local = frame.to_local(dir);
+            let sector = (local.y.atan2(local.x).rem_euclid(TAU) / TAU * SECTORS as f64) as usize;
+            seen[(ring as usize).min(RINGS - 1) * SECTORS + sector.min(SECTORS - 1)] += 1.0;
+        }
+        let (mut chi2, mut freedom) = (0.0, 0.0);
+        for (share, count) in expected.iter().zip(seen) {
+            let mean = share * n as f64;
+            if mean > 10.0 {
+                chi2 += (count - mean).powi(2) / mean;
+                freedom += 1.0;
+            } else {
+                assert!(count < 40.0, "{what}: {count} where {mean} were expected");
+            }
+        }
+        assert!(freedom > 10.0, "{what}: {freedom} cells");
+        assert!(chi2 < freedom + 4.0 * f64::sqrt(2.0 * freedom), "{what}: {chi2} of {freedom}");
+    }
+
+    #[test]
+    fn samples_of_every_law_follow_its_density() {
+        for kind in [EmitterKind::Point, EmitterKind::Surface, EmitterKind::Volume] {
+            for law in [
+                Emission::Lambertian,
+                Emission::CosinePower(0.5),
+                Emission::CosinePower(12.0),
+                Emission::Isotropic,
+            ] {
+                samples_against_density(law, kind, DVec3::Z, PI);
+            }
+            // Half-angle and tilt: straight, wholly above, cut by the surface, the axis below it.
+            for (half_angle, tilt) in [
+                (0.0047, 0.0f64),
+                (0.0047, 0.5),
+                (0.5, 0.6),
+                (0.5, 1.3),
+                (0.5, 1.8),
+                (1.5, 1.0),
+                (0.0047, 1.57),
+            ] {
+                let axis = DVec3::new(tilt.sin(), 0.0, tilt.cos());
+                let law = Emission::Cone { half_angle, axis };
+                samples_against_density(law, kind, axis, half_angle);
+            }
+        }
+    }
+
+    #[test]
+    fn a_beam_of_one_direction_has_no_density() {
+        let beam = Emission::Collimated { axis: DVec3::Z };
+        assert_eq!(beam.density(EmitterKind::Surface, DVec3::Z), None);
     }
 }

@@ -232,14 +232,19 @@ fn smooth(incidence: &Incidence, sampler: &mut Sampler) -> Scattered {
     specular(fresnel::mirrored(dir, normal), 1.0, Side::Reflected)
 }
 
+/// Light that goes on in a discrete direction.
 #[inline]
-fn specular(dir: DVec3, factor: f64, side: Side) -> Scattered {
+pub(crate) fn specular(dir: DVec3, factor: f64, side: Side) -> Scattered {
     Scattered { dir, factor, side, lobe: Lobe::Specular }
 }
 
 /// Reflected or transmitted in proportion to the shares; no draw where only one is possible.
 #[inline]
-fn choose_side(reflectance: f64, transmittance: f64, sampler: &mut Sampler) -> Option<Side> {
+pub(crate) fn choose_side(
+    reflectance: f64,
+    transmittance: f64,
+    sampler: &mut Sampler,
+) -> Option<Side> {
     if transmittance == 0.0 {
         return (reflectance > 0.0).then_some(Side::Reflected);
     }
@@ -250,7 +255,7 @@ fn choose_side(reflectance: f64, transmittance: f64, sampler: &mut Sampler) -> O
 
 /// The discrete direction of a thin sheet: mirrored, or straight on.
 #[inline]
-fn straight(incidence: &Incidence, side: Side) -> DVec3 {
+pub(crate) fn straight(incidence: &Incidence, side: Side) -> DVec3 {
     match side {
         Side::Reflected => fresnel::mirrored(incidence.dir, incidence.normal),
         Side::Transmitted => incidence.dir,
@@ -259,14 +264,15 @@ fn straight(incidence: &Incidence, side: Side) -> DVec3 {
 
 /// The normal of the side to which light leaves.
 #[inline]
-fn leaving_normal(incidence: &Incidence, side: Side) -> DVec3 {
+pub(crate) fn leaving_normal(incidence: &Incidence, side: Side) -> DVec3 {
     match side {
         Side::Reflected => incidence.normal,
         Side::Transmitted => -incidence.normal,
     }
 }
 
-fn pick<'a>(parts: &'a [(f64, Bsdf)], sampler: &mut Sampler) -> &'a Bsdf {
+/// One of the parts of a mixture, by its weight.
+pub(crate) fn pick<'a>(parts: &'a [(f64, Bsdf)], sampler: &mut Sampler) -> &'a Bsdf {
     let total: f64 = parts.iter().map(|(weight, _)| weight).sum();
     let mut left = sampler.one(Dimension::Lobe) * total;
     for (weight, part) in &parts[..parts.len() - 1] {

@@ -48,6 +48,12 @@ impl Gaussian {
         (-0.5 * (theta / self.sigma).powi(2)).exp() / self.norm_at(mean.dot(normal))
     }
 
+    /// p(a|b) / p(b|a) for two directions of cosines `cos_a` and `cos_b` to the normal: the shape is the same, the
+    /// norms are not. 1.
+    pub fn exchange(&self, cos_a: f64, cos_b: f64) -> f64 {
+        self.norm_at(cos_a) / self.norm_at(cos_b)
+    }
+
     /// A direction about `mean` on the side of `normal`, with the density of [`Gaussian::pdf`].
     pub fn sample(&self, mean: DVec3, normal: DVec3, sampler: &mut Sampler) -> DVec3 {
         let frame = Frame::from_axis(DVec3::ZERO, mean);
@@ -200,8 +206,9 @@ mod tests {
     fn exchanging_the_directions_changes_only_the_norm() {
         let lobe = Gaussian::new(10f64.to_radians());
         let (a, b) = (mean_at(0.1), mean_at(0.4));
-        let forth = lobe.pdf(a, b, DVec3::Z) * lobe.norm_at(a.z);
-        let back = lobe.pdf(b, a, DVec3::Z) * lobe.norm_at(b.z);
-        assert!((forth / back - 1.0).abs() < 1e-12);
+        // pdf(mean, dir) is p(dir|mean).
+        let ratio = lobe.pdf(b, a, DVec3::Z) / lobe.pdf(a, b, DVec3::Z);
+        assert!((ratio / lobe.exchange(a.z, b.z) - 1.0).abs() < 1e-12);
+        assert!((lobe.exchange(a.z, b.z) - 1.0).abs() > 0.1, "the case tells them apart");
     }
 }

@@ -3,11 +3,19 @@
 //! This layer knows no scene, no path and no sensor. Media and finishes are asked at a wavelength, so that dispersion
 //! needs no other interface.
 
+mod adjoint;
 mod bsdf;
+mod evaluate;
 pub mod fresnel;
 mod gaussian;
 mod medium;
+mod shares;
+mod spread;
 
+pub use adjoint::{Faces, scatter_radiance};
 pub use bsdf::{Bsdf, Incidence, Lobe, Scattered, Side};
+pub use evaluate::evaluate;
 pub use gaussian::Gaussian;
 pub use medium::Medium;
+pub use shares::{Shares, shares};
+pub use spread::Spread;

@@ -1,0 +1,195 @@
+//! What a face does to a gather path, which follows light backwards and carries basic radiance L* = L/n².
+//!
+//! A photon of direction i scatters into o with the density `f(i→o) cos θ_o` of its finish. The gather path arrives
+//! along -o and has to choose i: `L*_o = ∫ (n_i²/n_o²) f(i→o) cos θ_i L*_i dω_i`, and the factor of a drawn i is the
+//! integrand without `L*_i` over its density (Veach, Robust Monte Carlo Methods for Light Transport Simulation, 1997, section 5.2,
+//! there for L). For the finishes this gives:
+//!
+//! * Smooth: n² cos θ dω is kept by refraction and Fresnel's R and T are the same from both sides. What a photon does,
+//!   the gather path does, without a factor.
+//! * Light that passes without being bent, whatever the indices are, keeps cos θ dω and not n² cos θ dω; and a diffuser
+//!   mixes radiance, not basic radiance. Then `n_i²/n_o²` stays.
+//! * Gaussian scatter: a photon meets a smooth face or a thin sheet first and the lobe afterwards, so the gather path
+//!   meets the lobe first. It draws the mean direction m of the photon from p(m|o), which costs
+//!   `p(o|m) cos θ_m / (p(m|o) cos θ_o)`, and goes on from m as from a face without scatter. So every photon direction
+//!   that scatters into o is drawn, also through a face that totally reflects the gather path's own direction, and
+//!   nothing is drawn that does not.
+
+use crate::math::{Frame, cosine_hemisphere, unit};
+use crate::optics::bsdf::{choose_side, leaving_normal, pick, specular, straight};
+use crate::optics::shares::smooth_direction;
+use crate::optics::{Bsdf, Gaussian, Incidence, Lobe, Scattered, Shares, Side, shares};
+use crate::rng::{Dimension, Sampler};
+use glam::DVec3;
+
+#[cfg(test)]
+mod tests;
+
+/// The finishes that a gather path meets at a face.
+#[derive(Debug, Clone, Copy)]
+pub struct Faces<'a> {
+    /// Acts on light that arrives from the side from which the gather path comes: on what is reflected.
+    pub own: &'a Bsdf,
+    /// Acts on light that arrives from the other side: on what is transmitted.
+    pub behind: &'a Bsdf,
+}
+
+/// Sends a gather path on to where its light came from, or ends it where there is none (`None`).
+///
+/// `incidence` is that of the gather path: it travels along `dir`, the light it collects leaves along `-dir`, and
+/// `index_to` is that of the medium from which transmitted light came. The `factor` of what is returned is that on
+/// basic radiance; unlike a photon's it can exceed 1.
+#[inline]
+pub fn scatter_radiance(
+    faces: Faces<'_>,
+    incidence: &Incidence,
+    sampler: &mut Sampler,
+) -> Option<Scattered> {
+    match (faces.own, faces.behind) {
+        (Bsdf::Smooth, Bsdf::Smooth) => Bsdf::Smooth.scatter(incidence, sampler),
+        (own, behind) if std::ptr::eq(own, behind) => by_one_finish(own, incidence, sampler),
+        (own, behind) => by_two_finishes(own, behind, incidence, sampler),
+    }
+}
+
+fn by_one_finish(bsdf: &Bsdf, incidence: &Incidence, sampler: &mut Sampler) -> Option<Scattered> {
+    match bsdf {
+        Bsdf::Smooth | Bsdf::Metal { .. } | Bsdf::Absorber => bsdf.scatter(incidence, sampler),
+        Bsdf::Specular { .. } | Bsdf::Open | Bsdf::Lambertian { .. } => {
+            bsdf.scatter(incidence, sampler).map(|out| unrefracted(out, incidence))
+        }
+        Bsdf::GaussianSheet { lobe, reflectance, transmittance } => {
+            let (mean, factor) = scattered_from(lobe, incidence, sampler)?;
+            let side = choose_side(*reflectance, *transmittance, sampler)?;
+            let out = specular(straight(&mean, side), reflectance + transmittance, side);
+            Some(diffused(unrefracted(out, incidence), factor))
+        }
+        Bsdf::GaussianDielectric { lobe } => {
+            let (mean, factor) = scattered_from(lobe, incidence, sampler)?;
+            Bsdf::Smooth.scatter(&mean, sampler).map(|out| diffused(out, factor))
+        }
+        Bsdf::Mixture(parts) => by_one_finish(pick(parts, sampler), incidence, sampler),
+    }
+}
+
+/// A two-sided face: reflection by one finish, transmission by the other, chosen in proportion to their shares.
+fn by_two_finishes(
+    own: &Bsdf,
+    behind: &Bsdf,
+    incidence: &Incidence,
+    sampler: &mut Sampler,
+) -> Option<Scattered> {
+    let reflected = chances(own, incidence).reflected;
+    let transmitted = chances(behind, incidence).transmitted;
+    let side = choose_side(reflected, transmitted, sampler)?;
+    let (bsdf, chance) = match side {
+        Side::Reflected => (own, reflected),
+        Side::Transmitted => (behind, transmitted),
+    };
+    let out = toward(bsdf, side, incidence, sampler)?;
+    Some(Scattered { factor: out.factor * ((reflected + transmitted) / chance), ..out })
+}
+
+/// About the shares of [`shares()`], nowhere 0 where the adjoint is not: scatter of a rough dielectric reaches
+/// directions that are themselves totally reflected, or hardly reflected.
+fn chances(bsdf: &Bsdf, incidence: &Incidence) -> Shares {
+    match bsdf {
+        Bsdf::GaussianDielectric { .. } if incidence.index_from != incidence.index_to => {
+            let reflected = shares(bsdf, incidence).reflected.clamp(0.1, 0.9);
+            Shares { reflected, transmitted: 1.0 - reflected }
+        }
+        Bsdf::Mixture(parts) => {
+            let mut sum = Shares { reflected: 0.0, transmitted: 0.0 };
+            for (weight, part) in parts {
+                let of_part = chances(part, incidence);
+                sum.reflected += weight * of_part.reflected;
+                sum.transmitted += weight * of_part.transmitted;
+            }
+            let total: f64 = parts.iter().map(|(weight, _)| weight).sum();
+            Shares { reflected: sum.reflected / total, transmitted: sum.transmitted / total }
+        }
+        Bsdf::Smooth
+        | Bsdf::Specular { .. }
+        | Bsdf::Metal { .. }
+        | Bsdf::Absorber
+        | Bsdf::Open
+        | Bsdf::Lambertian { .. }
+        | Bsdf::GaussianSheet { .. }
+        | Bsdf::GaussianDielectric { .. } => shares(bsdf, incidence),
+    }
+}
+
+/// The part of the adjoint that goes to one side: the factor holds the share of that side.
+fn toward(
+    bsdf: &Bsdf,
+    side: Side,
+    incidence: &Incidence,
+    sampler: &mut Sampler,
+) -> Option<Scattered> {
+    match bsdf {
+        Bsdf::Smooth => smooth_toward(side, incidence),
+        Bsdf::Specular { .. } | Bsdf::Metal { .. } | Bsdf::Absorber | Bsdf::Open => {
+            let share = shares(bsdf, incidence).of(side);
+            let out = specular(straight(incidence, side), share, side);
+            (share > 0.0).then(|| unrefracted(out, incidence))
+        }
+        Bsdf::Lambertian { .. } => {
+            let share = shares(bsdf, incidence).of(side);
+            let frame = Frame::from_axis(DVec3::ZERO, leaving_normal(incidence, side));
+            let dir = frame.to_world(cosine_hemisphere(sampler.pair(Dimension::Scatter)));
+            let out = Scattered { dir, factor: share, side, lobe: Lobe::Diffuse };
+            (share > 0.0).then(|| unrefracted(out, incidence))
+        }
+        Bsdf::GaussianSheet { lobe, .. } => {
+            let share = shares(bsdf, incidence).of(side);
+            let (mean, factor) = scattered_from(lobe, incidence, sampler)?;
+            let out = specular(straight(&mean, side), share, side);
+            (share > 0.0).then(|| diffused(unrefracted(out, incidence), factor))
+        }
+        Bsdf::GaussianDielectric { lobe } => {
+            let (mean, factor) = scattered_from(lobe, incidence, sampler)?;
+            smooth_toward(side, &mean).map(|out| diffused(out, factor))
+        }
+        Bsdf::Mixture(parts) => toward(pick(parts, sampler), side, incidence, sampler),
+    }
+}
+
+fn smooth_toward(side: Side, incidence: &Incidence) -> Option<Scattered> {
+    let dir = smooth_direction(incidence, side)?;
+    let share = shares(&Bsdf::Smooth, incidence).of(side);
+    (share > 0.0).then(|| specular(dir, share, side))
+}
+
+/// The gather path before it met a lobe: as if it had come along the mean direction of the photons whose scatter it
+/// collects; and the factor `p(o|m) cos θ_m / (p(m|o) cos θ_o)`. `None` along the face, where it has no value.
+fn scattered_from(
+    lobe: &Gaussian,
+    incidence: &Incidence,
+    sampler: &mut Sampler,
+) -> Option<(Incidence, f64)> {
+    let cos = incidence.cos();
+    if cos == 0.0 {
+        return None;
+    }
+    let mean = unit(lobe.sample(-incidence.dir, incidence.normal, sampler));
+    let inner = Incidence { dir: -mean, ..*incidence };
+    // p(o|m) / p(m|o)
+    let exchange = lobe.exchange(cos, inner.cos());
+    Some((inner, exchange * inner.cos() / cos))
+}
+
+/// What passes a face without being bent, or is mixed by a diffuser, keeps radiance and not basic radiance.
+#[inline]
+fn unrefracted(out: Scattered, incidence: &Incidence) -> Scattered {
+    match out.side {
+        Side::Reflected => out,
+        Side::Transmitted => {
+            let ratio = incidence.index_to / incidence.index_from;
+            Scattered { factor: out.factor * ratio * ratio, ..out }
+        }
+    }
+}
+
+fn diffused(out: Scattered, factor: f64) -> Scattered {
+    Scattered { dir: unit(out.dir), factor: out.factor * factor, lobe: Lobe::Diffuse, ..out }
+}

@@ -1,0 +1,123 @@
+//! What share of arriving light a finish sends to each side, and about which direction.
+
+use crate::optics::{Bsdf, Incidence, Side, fresnel};
+use glam::DVec3;
+
+/// Shares of the arriving flux that leave to the two sides; the rest is absorbed. 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shares {
+    /// Share that goes back.
+    pub reflected: f64,
+    /// Share that goes through.
+    pub transmitted: f64,
+}
+
+impl Shares {
+    /// The share that leaves to one side, 1.
+    #[inline]
+    pub fn of(self, side: Side) -> f64 {
+        match side {
+            Side::Reflected => self.reflected,
+            Side::Transmitted => self.transmitted,
+        }
+    }
+}
+
+/// The shares of a finish for light that arrives as `incidence` says.
+pub fn shares(bsdf: &Bsdf, incidence: &Incidence) -> Shares {
+    match bsdf {
+        Bsdf::Smooth | Bsdf::GaussianDielectric { .. } => smooth(incidence),
+        Bsdf::Specular { reflectance, transmittance }
+        | Bsdf::Lambertian { reflectance, transmittance }
+        | Bsdf::GaussianSheet { reflectance, transmittance, .. } => {
+            Shares { reflected: *reflectance, transmitted: *transmittance }
+        }
+        Bsdf::Metal { n, k } => Shares {
+            reflected: fresnel::conductor(incidence.cos(), incidence.index_from, *n, *k)
+                .unpolarised(),
+            transmitted: 0.0,
+        },
+        Bsdf::Absorber => Shares { reflected: 0.0, transmitted: 0.0 },
+        Bsdf::Open => Shares { reflected: 0.0, transmitted: 1.0 },
+        Bsdf::Mixture(parts) => {
+            let mut mean = Shares { reflected: 0.0, transmitted: 0.0 };
+            let total: f64 = parts.iter().map(|(weight, _)| weight).sum();
+            for (weight, part) in parts {
+                let of_part = shares(part, incidence);
+                mean.reflected += weight / total * of_part.reflected;
+                mean.transmitted += weight / total * of_part.transmitted;
+            }
+            mean
+        }
+    }
+}
+
+/// Fresnel's shares; between equal indices all goes through, also along the face.
+fn smooth(incidence: &Incidence) -> Shares {
+    let Incidence { index_from, index_to, .. } = *incidence;
+    let reflected = if index_from == index_to {
+        0.0
+    } else {
+        fresnel::dielectric(incidence.cos(), index_from, index_to).unpolarised()
+    };
+    Shares { reflected, transmitted: 1.0 - reflected }
+}
+
+/// The discrete direction of a smooth interface, a unit vector but for rounding: mirrored, or refracted (`None` under
+/// total reflection).
+pub(crate) fn smooth_direction(incidence: &Incidence, side: Side) -> Option<DVec3> {
+    let Incidence { dir, normal, index_from, index_to } = *incidence;
+    match side {
+        Side::Reflected => Some(fresnel::mirrored(dir, normal)),
+        Side::Transmitted if index_from == index_to => Some(dir),
+        Side::Transmitted => {
+            let cos_i = incidence.cos();
+            let cos_t = fresnel::cos_transmitted(cos_i, index_from, index_to)?;
+            Some(fresnel::refracted(dir, normal, cos_i, cos_t, index_from / index_to))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::Gaussian;
+    use crate::rng::Sampler;
+    use crate::tally::Tally;
+
+    #[test]
+    fn photons_go_to_each_side_in_the_shares_that_are_told() {
+        let sheet = Bsdf::Specular { reflectance: 0.5, transmittance: 0.3 };
+        let finishes = [
+            Bsdf::Smooth,
+            sheet.clone(),
+            Bsdf::Metal { n: 0.8, k: 5.9 },
+            Bsdf::Absorber,
+            Bsdf::Open,
+            Bsdf::Lambertian { reflectance: 0.2, transmittance: 0.4 },
+            Bsdf::GaussianDielectric { lobe: Gaussian::new(0.2) },
+            Bsdf::Mixture(vec![(1.0, sheet), (2.0, Bsdf::Smooth), (1.0, Bsdf::Absorber)]),
+        ];
+        for bsdf in &finishes {
+            for (angle, index_from, index_to) in
+                [(0.9f64, 1.0, 1.49), (0.65, 1.49, 1.0), (1.0, 1.49, 1.0), (0.3, 1.2, 1.2)]
+            {
+                let dir = DVec3::new(angle.sin(), 0.0, -angle.cos());
+                let incidence = Incidence { dir, normal: DVec3::Z, index_from, index_to };
+                for side in [Side::Reflected, Side::Transmitted] {
+                    let told = shares(bsdf, &incidence).of(side);
+                    let seen = Tally::of((0..10_000).map(|index| {
+                        let mut sampler = Sampler::for_path(5, 0, index);
+                        bsdf.scatter(&incidence, &mut sampler)
+                            .filter(|out| out.side == side)
+                            .map_or(0.0, |out| out.factor)
+                    }));
+                    // A constant share is met but for rounding.
+                    let met =
+                        (seen.mean() - told).abs() < 1e-9 || seen.sigmas_from(told).abs() < 4.0;
+                    assert!(met, "{bsdf:?} at {angle}, {side:?}: {seen:?}, told {told}");
+                }
+            }
+        }
+    }
+}

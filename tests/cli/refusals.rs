@@ -6,7 +6,7 @@ use crate::*;
 fn bad_input_ends_with_2_and_writes_nothing() {
     let place = Place::with("[media.glass]\nindx = 1.5\n");
     let said = place.bad(2, "run rod.toml");
-    for words in ["rod.toml:20", "indx", "index"] {
+    for words in ["rod.toml:21", "indx", "index"] {
         assert!(said.contains(words), "no {words} in {said}");
     }
     place.bad(2, "check rod.toml");

@@ -26,7 +26,7 @@ pub use angular::{IntensityTable, PlaneCurve};
 pub use balance::Balance;
 pub use check::{Outcome, Verdict, nearest, verdict};
 pub use map::{Axes, SensorMap};
-pub use paths::{Action, DepthBin, Extent, PathClass, PathStep, SensorPaths};
+pub use paths::{Action, DepthBin, Extent, PathClass, PathStep, SensorPaths, strongest};
 pub use record::{Measure, Status};
 pub use uniformity::{Statistic, Uniformity, UniformitySummary};
 

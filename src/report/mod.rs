@@ -8,7 +8,6 @@ mod figures;
 mod folder;
 mod inventory;
 mod markdown;
-pub mod number;
 pub mod png;
 mod recipe;
 mod record;

@@ -1,7 +1,7 @@
 //! The one record that all formats of a report are made from.
 
 use crate::measure::{self, Measures, Verdict};
-use crate::report::number::format_percent;
+use crate::number::format_percent;
 use crate::scene::plan::{Check, Estimator, StopRules, Target};
 use crate::transport::{GROUPS, Leak};
 use glam::DVec3;

@@ -51,6 +51,10 @@ fn numbers_in_summary_and_balance_make_sense() {
     assert!((measure("exit.efficiency") - flux(&summary) / 10.0).abs() < 1e-12);
     assert!(measure("balance.residual").abs() < 1e-9 * 10.0 && measure("balance.leaked") == 0.0);
     assert_eq!(summary["measures"]["exit.flux"]["unit"], "lm");
+    let paths = &summary["paths_to_sensors"][0];
+    assert!(paths["depths"].is_null(), "the histogram is in exit.bounces.csv");
+    let shares = paths["classes"].as_array().unwrap().iter().map(|class| class["share"].as_f64());
+    assert!((shares.map(Option::unwrap).sum::<f64>() - 1.0).abs() < 1e-12);
 }
 
 #[test]

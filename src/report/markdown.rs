@@ -229,6 +229,9 @@ fn run(report: &Report) -> String {
         format!("bounce limit {}", run.bounce_limit),
         "unpolarised light: the mean of both polarisations at every interface".to_owned(),
     ];
+    if !run.gather.is_empty() {
+        lines.push(format!("wishes for gathering: {}", run.gather));
+    }
     if let Some(target) = &run.target {
         lines.push(target.sentence());
     }

@@ -14,7 +14,7 @@ use clock::{Spread, cpu_seconds, wall_seconds};
 use guides::{B1_P10, B1_P100, B2, B4, mesh_scene, rod_mesh, rod_scene, tube_scene};
 use lumiduct::math::Frame;
 use lumiduct::scene::mesh::Mesh;
-use lumiduct::scene::plan::{Estimator, RunPlan, StopRules};
+use lumiduct::scene::plan::{GatherPlan, Request, RunPlan, StopRules};
 use lumiduct::scene::{Scene, SensorId, SourceId};
 use lumiduct::tally::Tally;
 use lumiduct::transport::{Layout, ROULETTE_BELOW, Readings, Run};
@@ -174,7 +174,8 @@ impl Series {
 
 fn trace(case: &Case, seed: u64) -> Outcome {
     let plan = RunPlan {
-        estimator: Estimator::Forward,
+        estimator: Request::Forward,
+        gather: GatherPlan::default(),
         seed,
         bounce_limit: 100_000,
         stop: StopRules { paths: Some(BATCHES * case.batch_paths), ..StopRules::default() },

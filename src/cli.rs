@@ -1,11 +1,17 @@
 //! The command line: arguments, progress, exit codes. The only file that prints.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "this is the program's face")]
 
+mod values;
+
+use crate::cli::values::{
+    parse_angle, parse_count, parse_percent, parse_radius, parse_time, words,
+};
 use crate::error::{Diagnostic, Error};
 use crate::input::diagnostic::{self, Colour};
-use crate::input::{self, Settings};
+use crate::input::{self, GatherSettings, Settings};
 use crate::pipeline::{self, Output, Progress, Stop};
 use crate::report::{Existing, Outcome, Written};
+use crate::scene::plan::{Request, Schedule};
 use crate::transport::Interrupt;
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -61,9 +67,9 @@ struct RunArgs {
     /// Set a key of the scene, such as `-D solids.pipe.sweep.path.0.straight_mm=20`.
     #[arg(short = 'D', value_name = "KEY=VALUE")]
     define: Vec<String>,
-    /// How flux is estimated.
-    #[arg(long, value_parser = ["forward"])]
-    estimator: Option<String>,
+    /// How flux is estimated; auto chooses for every sensor by a short trial.
+    #[arg(long, value_parser = words(Request::ALL.map(Request::name), Request::named))]
+    estimator: Option<Request>,
     /// Stop at this relative standard error of the target measure, such as 0.5%; the first sensor's flux if the scene
     /// names no measure.
     #[arg(long, value_parser = parse_percent, value_name = "PERCENT")]
@@ -86,6 +92,33 @@ struct RunArgs {
     /// Print nothing but errors.
     #[arg(short, long)]
     quiet: bool,
+    // The last one: its heading holds for everything that follows.
+    #[command(flatten)]
+    gather: GatherArgs,
+}
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Gather")]
+struct GatherArgs {
+    /// Depth at which gather paths end at the latest, up to 1000; the first surface has depth 0 [default: chosen by a
+    /// short trial, as for the other numbers here].
+    #[arg(long, value_parser = clap::value_parser!(u32).range(..=1000))]
+    depth: Option<u32>,
+    /// Radius of the window in the first pass, in mm.
+    #[arg(long, value_parser = parse_radius, value_name = "MM")]
+    radius_mm: Option<f64>,
+    /// Half-angle of the window in the first pass, in degrees below 90.
+    #[arg(long, value_parser = parse_angle, value_name = "DEG")]
+    angle_deg: Option<f64>,
+    /// Gather paths in a pass, such as 100k.
+    #[arg(long, value_parser = parse_count, value_name = "COUNT")]
+    records: Option<u64>,
+    /// Photon paths in a pass, such as 5M.
+    #[arg(long, value_parser = parse_count, value_name = "COUNT")]
+    photons: Option<u64>,
+    /// How the window shrinks: in stages of many passes, or a little from pass to pass [default: stages].
+    #[arg(long, value_parser = words(Schedule::ALL.map(Schedule::name), Schedule::named))]
+    schedule: Option<Schedule>,
 }
 
 #[derive(Debug, Args)]
@@ -151,6 +184,15 @@ fn run(args: &RunArgs) -> ExitCode {
     });
     let settings = Settings {
         overrides: args.define.clone(),
+        estimator: args.estimator,
+        gather: GatherSettings {
+            depth: args.gather.depth,
+            radius_mm: args.gather.radius_mm,
+            angle_deg: args.gather.angle_deg,
+            records: args.gather.records,
+            photons: args.gather.photons,
+            schedule: args.gather.schedule,
+        },
         target: args.target,
         paths: args.paths,
         time: args.time,
@@ -260,54 +302,6 @@ fn fail(error: &Error) -> ExitCode {
     }
 }
 
-/// A count with an optional k, M or G.
-fn parse_count(text: &str) -> Result<u64, String> {
-    let (digits, factor) = match text.char_indices().last() {
-        Some((at, 'k' | 'K')) => (&text[..at], 1e3),
-        Some((at, 'm' | 'M')) => (&text[..at], 1e6),
-        Some((at, 'g' | 'G')) => (&text[..at], 1e9),
-        _ => (text, 1.0),
-    };
-    let value: f64 = digits.parse().map_err(|_| format!("`{text}` is no count; try 500k or 2M"))?;
-    let count = value * factor;
-    // Beyond 2^53 a count is no longer exact, and no run is that long.
-    if !(1.0..=9e15).contains(&count) {
-        return Err(format!("`{text}` is out of range, expected 1 to 9e15"));
-    }
-    Ok(count.round() as u64)
-}
-
-/// A relative error with its percent sign: without one, 0.5 might be taken for a half of a percent or for a half.
-fn parse_percent(text: &str) -> Result<f64, String> {
-    let value = text.strip_suffix('%').and_then(|digits| digits.trim().parse::<f64>().ok());
-    let fraction = 0.01 * value.ok_or_else(|| format!("`{text}` is no percentage; try 0.5%"))?;
-    if fraction > 0.0 && fraction < 1.0 {
-        Ok(fraction)
-    } else {
-        Err(format!("`{text}` is out of range, expected above 0 and below 100%"))
-    }
-}
-
-/// A time: 60s, 5min or 1h; plain numbers are seconds.
-fn parse_time(text: &str) -> Result<Duration, String> {
-    let (digits, factor) = if let Some(digits) = text.strip_suffix("min") {
-        (digits, 60.0)
-    } else if let Some(digits) = text.strip_suffix('h') {
-        (digits, 3600.0)
-    } else {
-        (text.strip_suffix('s').unwrap_or(text), 1.0)
-    };
-    let value: f64 =
-        digits.trim().parse().map_err(|_| format!("`{text}` is no time; try 60s or 5min"))?;
-    let seconds = value * factor;
-    if seconds > 0.0
-        && let Ok(time) = Duration::try_from_secs_f64(seconds)
-    {
-        return Ok(time);
-    }
-    Err(format!("`{text}` is out of range, expected a time above 0"))
-}
-
 /// Progress on stderr: a bar on a terminal, a line now and then elsewhere, nothing when quiet.
 enum Display {
     Quiet,
@@ -360,21 +354,6 @@ impl Display {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn counts_percentages_and_times_are_read_with_their_units() {
-        assert_eq!(parse_count("2M"), Ok(2_000_000));
-        assert_eq!(parse_count("1.5k"), Ok(1500));
-        assert!(
-            parse_count("0").is_err() && parse_count("nan").is_err() && parse_count("M").is_err()
-        );
-        assert_eq!(parse_percent("0.5%"), Ok(0.005));
-        for wrong in ["100%", "-1%", "0.5", "%", "nan%"] {
-            assert!(parse_percent(wrong).is_err(), "{wrong}");
-        }
-        assert_eq!(parse_time("5min"), Ok(Duration::from_secs(300)));
-        assert!(parse_time("0s").is_err() && parse_time("inf").is_err());
-    }
 
     #[test]
     fn the_arguments_make_sense_together() {

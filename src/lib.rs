@@ -10,6 +10,23 @@
 //! scene file -> Scene -> paths -> readings -> measures with uncertainty -> report
 //! ```
 //!
+//! A scene in a file, and one of its measures:
+//!
+//! ```
+//! use lumiduct::input::{self, Settings};
+//! use lumiduct::transport::Interrupt;
+//! use lumiduct::{measure, pipeline};
+//! use std::path::Path;
+//!
+//! let settings = Settings { paths: Some(20_000), ..Settings::default() };
+//! let job = input::load(Path::new("scenes/led_indicator.toml"), &settings)?;
+//! let traced = pipeline::trace(&job, &Interrupt::default(), &mut |_| {});
+//! let measures = measure::measure(&job.scene, &traced.readings);
+//! let efficiency = &measures.values["exit.efficiency"];
+//! assert!(0.0 < efficiency.value && efficiency.value < 1.0 && efficiency.std_error < 0.01);
+//! # Ok::<(), lumiduct::error::Error>(())
+//! ```
+//!
 //! Inside, lengths are millimetres, angles radians, solid angles steradians, flux lumens (watts in radiometric runs),
 //! wavelengths nanometres. +z of a local frame is the normal; directions are unit vectors. Units of files and reports
 //! are part of the names there.
@@ -20,6 +37,7 @@ pub mod formats;
 pub mod input;
 pub mod math;
 pub mod measure;
+pub mod number;
 pub mod optics;
 pub mod pipeline;
 pub mod report;

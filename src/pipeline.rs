@@ -133,6 +133,8 @@ fn recipe(job: &Job) -> Option<Recipe> {
         version: VERSION.to_owned(),
         scene_hash: job.hash.clone(),
         seed: job.run.seed,
+        estimator: job.run.estimator.name().to_owned(),
+        gather: report::wishes(&job.run.gather),
         asked: report::asked(&job.run.stop),
     })
 }
@@ -168,6 +170,7 @@ pub fn compose(job: &Job, readings: &Readings, stop: Stop) -> Report {
             version: VERSION.to_owned(),
             seed: job.run.seed,
             estimator: job.run.estimator,
+            gather: report::wishes(&job.run.gather),
             partial: stop == Stop::Interrupted,
             asked: report::asked(&job.run.stop),
             stopped: stop.reason().to_owned(),

@@ -56,7 +56,7 @@ fn overrides(file: &Path) -> Vec<String> {
 fn diagnostics(file: &Path) -> Vec<Diagnostic> {
     let settings = input::Settings { overrides: overrides(file), ..input::Settings::default() };
     match input::load(file, &settings) {
-        Ok(_) => Vec::new(),
+        Ok(job) => job.warnings,
         Err(Error::Input(diagnostics)) => diagnostics,
         Err(other) => panic!("{}: {other}", file.display()),
     }

@@ -29,9 +29,10 @@ impl Scenes {
         Self(tempfile::tempdir().unwrap())
     }
 
+    /// Loads a scene that lacks its head.
     fn load(&self, text: &str) -> Job {
         let path = self.0.path().join("scene.toml");
-        std::fs::write(&path, text).unwrap();
+        std::fs::write(&path, format!("lumiduct = 1\ntitle = \"Invariance\"\n{text}")).unwrap();
         load(&path, &[])
     }
 }
@@ -66,14 +67,16 @@ fn assert_same(what: &str, expected: &Measures, found: &Measures) {
     assert!(found.values["exit.flux"].value > 0.1, "{what}: the exit is dark");
 }
 
+/// A position `z` mm along the axis of a scene with its lengths times `scale`, at `place` (mm).
+fn along(scale: f64, place: [f64; 3], z: f64) -> String {
+    format!("[{}, {}, {}]", place[0], place[1], place[2] + z * scale)
+}
+
 /// A bent, tapered rod that absorbs, behind a lens, with its lengths times `scale` and at `place` (mm).
 fn rod(scale: f64, place: [f64; 3]) -> String {
-    let at = |z: f64| format!("[{}, {}, {}]", place[0], place[1], place[2] + z * scale);
+    let at = |z: f64| along(scale, place, z);
     format!(
         r#"
-lumiduct = 1
-title = "bent rod behind a lens"
-
 [media]
 pmma = {{ index = 1.49, absorption_per_mm = {absorption} }}
 
@@ -114,12 +117,9 @@ exit = {{ plane = {{ cells = [4, 4] }}, on = "rod.exit", counts = "leaving" }}
 
 /// A hexagonal mirror duct with a corner and a rough end plate, likewise.
 fn duct(scale: f64, place: [f64; 3]) -> String {
-    let at = |z: f64| format!("[{}, {}, {}]", place[0], place[1], place[2] + z * scale);
+    let at = |z: f64| along(scale, place, z);
     format!(
         r#"
-lumiduct = 1
-title = "hexagonal duct with a corner"
-
 [finishes]
 mirror = {{ specular = {{ reflectance = 0.95 }} }}
 rough = {{ gaussian = {{ sigma_deg = 5, reflectance = 0.4, transmittance = 0.5 }} }}

@@ -2,11 +2,13 @@
 
 use crate::error::{Diagnostic, Error, Result};
 use crate::input::digest::Digest;
+use crate::input::gather::{GatherSettings, check_radius, check_use};
 use crate::input::keys::Places;
 use crate::input::lower::{Lowered, lower};
+use crate::input::problems::Problems;
 use crate::input::{Draft, draft};
 use crate::scene::Scene;
-use crate::scene::plan::{Check, RunPlan, StopRules, Target};
+use crate::scene::plan::{Check, Request, RunPlan, StopRules, Target};
 use std::path::Path;
 use std::time::Duration;
 
@@ -15,6 +17,10 @@ use std::time::Duration;
 pub struct Settings {
     /// `key=value` for keys of the scene.
     pub overrides: Vec<String>,
+    /// How flux is to be estimated.
+    pub estimator: Option<Request>,
+    /// Wishes for the gather estimator.
+    pub gather: GatherSettings,
     /// Relative error of the target measure.
     pub target: Option<f64>,
     /// Number of paths.
@@ -56,7 +62,10 @@ pub struct Job {
 pub fn load(path: &Path, settings: &Settings) -> Result<Job> {
     let Draft { spec, places, text, mut problems } = draft(path, &settings.overrides)?;
     let whole = problems.is_free_of_errors();
-    let lowered = if whole { lower(&spec, &places, &mut problems) } else { None };
+    let mut lowered = if whole { lower(&spec, &places, &mut problems) } else { None };
+    if let Some(Lowered { scene, run, .. }) = &mut lowered {
+        apply_method(settings, scene, run, &mut problems);
+    }
     let warnings = problems.finish(&places)?;
     // Without an error there is a scene.
     let Some(Lowered { scene, mut run, checks, meshes }) = lowered else {
@@ -79,6 +88,16 @@ pub fn load(path: &Path, settings: &Settings) -> Result<Job> {
         hash: hash.to_string(),
         warnings,
     })
+}
+
+/// The command line's estimator and wishes for it go over those of the file.
+fn apply_method(settings: &Settings, scene: &Scene, run: &mut RunPlan, problems: &mut Problems) {
+    run.estimator = settings.estimator.unwrap_or(run.estimator);
+    check_use(run.estimator, &run.gather, &settings.gather, problems);
+    run.gather = settings.gather.over(&run.gather);
+    if run.estimator.may_gather() {
+        check_radius(&run.gather, &settings.gather, scene, problems);
+    }
 }
 
 /// The stop rules of the command line replace those of the file, all together.

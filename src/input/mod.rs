@@ -19,6 +19,7 @@ pub mod check;
 pub mod convert;
 pub mod diagnostic;
 mod digest;
+mod gather;
 pub mod include;
 mod job;
 pub mod keys;
@@ -33,6 +34,7 @@ pub mod spec;
 pub mod tree;
 pub mod validate;
 
+pub use gather::GatherSettings;
 pub use job::{Job, Settings, load};
 pub use list::list;
 

@@ -26,7 +26,7 @@ pub use angular::{IntensityTable, PlaneCurve};
 pub use balance::Balance;
 pub use check::{Outcome, Verdict, nearest, verdict};
 pub use map::{Axes, SensorMap};
-pub use paths::{Action, DepthBin, Extent, PathClass, PathStep, SensorPaths};
+pub use paths::{Action, DepthBin, Extent, PathClass, PathStep, SensorPaths, strongest};
 pub use record::{Measure, Status};
 pub use uniformity::{Statistic, Uniformity, UniformitySummary};
 
@@ -143,7 +143,7 @@ mod tests {
         add, disk, goniometer, luminance, readings, rectangle, rings, scene,
     };
     use crate::optics::Medium;
-    use crate::scene::plan::{Estimator, RunPlan, StopRules};
+    use crate::scene::plan::{GatherPlan, Request, RunPlan, StopRules};
     use crate::scene::shape::{Flat, Region, Shape};
     use crate::scene::{
         Builder, Emission, EmitSide, Emitter, FaceSpec, Owner, Piece, Sensor, Sides, Source,
@@ -311,7 +311,8 @@ mod tests {
         let seeds = 40;
         for seed in 1..=seeds {
             let plan = RunPlan {
-                estimator: Estimator::Forward,
+                estimator: Request::Forward,
+                gather: GatherPlan::default(),
                 seed,
                 bounce_limit: 10,
                 stop: StopRules { paths: Some(40_000), ..StopRules::default() },

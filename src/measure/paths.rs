@@ -6,15 +6,20 @@ use serde::Serialize;
 
 /// Depths from here on share a bin with others: one bin for each doubling.
 const SINGLE_DEPTHS: usize = 1024;
+/// Path classes that are told one by one, for each sensor.
+const CLASSES: usize = 20;
 
 /// How the light came to a sensor.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SensorPaths {
     /// Name of the sensor.
     pub sensor: String,
-    /// Flux by the number of interfaces met, from none up to the deepest that brought any.
+    /// Flux by the number of interfaces met, from none up to the deepest that brought any. A table of its own
+    /// (`SENSOR.bounces.csv`), and no part of the record for programs.
+    #[serde(skip)]
     pub depths: Vec<DepthBin>,
-    /// Path classes, the strongest first: a sample of the paths, shares without error bars.
+    /// The strongest path classes, in descending order, and all others as one: a sample of the paths, shares without
+    /// error bars.
     pub classes: Vec<PathClass>,
 }
 
@@ -95,8 +100,27 @@ pub(crate) fn paths(scene: &Scene, readings: &Readings, id: SensorId) -> SensorP
     SensorPaths {
         sensor: scene.sensors[id.index()].name.clone(),
         depths: depths.collect(),
-        classes,
+        classes: strongest(&classes, CLASSES),
     }
+}
+
+/// The first `count` of sorted classes, and all others as one at the end.
+pub fn strongest(classes: &[PathClass], count: usize) -> Vec<PathClass> {
+    let (named, mut rest): (Vec<&PathClass>, Vec<&PathClass>) =
+        classes.iter().partition(|class| class.extent != Extent::Others);
+    rest.extend(named.iter().skip(count));
+    let mut kept: Vec<PathClass> = named.into_iter().take(count).cloned().collect();
+    let share: f64 = rest.iter().map(|class| class.share).sum();
+    if share > 0.0 {
+        let bounces: f64 = rest.iter().map(|class| class.share * class.bounces_mean).sum();
+        kept.push(PathClass {
+            steps: Vec::new(),
+            extent: Extent::Others,
+            share,
+            bounces_mean: bounces / share,
+        });
+    }
+    kept
 }
 
 /// Least and greatest depth of a bin of the histogram.
@@ -129,6 +153,26 @@ fn class(scene: &Scene, trail: &Trail, sum: &ClassSum, total: f64) -> PathClass 
 mod tests {
     use super::*;
     use crate::transport::{DEPTH_BINS, SensorReading};
+
+    #[test]
+    fn the_strongest_classes_stay_and_the_others_are_one_with_all_their_light() {
+        let class = |face: &str, extent, share, bounces_mean| {
+            let steps = vec![PathStep { face: face.to_owned(), action: Action::Reflected }];
+            PathClass { steps, extent, share, bounces_mean }
+        };
+        let classes = [
+            class("a", Extent::Whole, 0.4, 1.0),
+            class("", Extent::Others, 0.3, 10.0),
+            class("b", Extent::CutOff, 0.2, 2.0),
+            class("c", Extent::Whole, 0.1, 6.0),
+        ];
+        let [first, second, others] = &strongest(&classes, 2)[..] else { panic!("not three") };
+        assert_eq!((first, second), (&classes[0], &classes[2]));
+        assert_eq!((others.extent, others.steps.len()), (Extent::Others, 0));
+        assert!((others.share - 0.4).abs() < 1e-15 && (others.bounces_mean - 9.0).abs() < 1e-14);
+        assert_eq!(strongest(&classes[..1], 2), classes[..1]);
+        assert_eq!(strongest(&strongest(&classes, 3), 2), strongest(&classes, 2));
+    }
 
     #[test]
     fn bins_hold_the_depths_that_are_counted_in_them() {

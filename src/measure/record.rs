@@ -1,5 +1,6 @@
 //! One number with its error bar, and how far that error bar can be trusted.
 
+use crate::number::{format_exact, format_with_error};
 use crate::scene::plan::Estimator;
 use serde::Serialize;
 use std::fmt;
@@ -71,56 +72,20 @@ impl Measure {
 }
 
 impl fmt::Display for Measure {
-    /// `0.51084 ± 0.00023 lm`: two digits of the error, and as many places of the value.
+    /// `0.51084 ± 0.00023 lm`: the value with its total error.
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         let error = self.total_error();
         if !self.value.is_finite() {
             write!(out, "unknown")?;
         } else if !error.is_finite() {
-            write!(out, "{} with unknown error", plain(self.value))?;
+            write!(out, "{} with unknown error", format_exact(self.value))?;
         } else if error == 0.0 {
-            write!(out, "{}", plain(self.value))?;
+            write!(out, "{}", format_exact(self.value))?;
         } else {
-            with_error(self.value, error, out)?;
+            write!(out, "{}", format_with_error(self.value, error))?;
         }
         if self.unit == "1" { Ok(()) } else { write!(out, " {}", self.unit) }
     }
-}
-
-/// Powers of ten outside of which numbers are written with an exponent.
-const PLAIN: std::ops::Range<i32> = -4..7;
-
-fn plain(value: f64) -> String {
-    // Seven digits tell all that a Monte Carlo value can hold.
-    let exponent = exponent(value);
-    if value == 0.0 {
-        "0".to_owned()
-    } else if PLAIN.contains(&exponent) {
-        let text = format!("{value:.*}", (6 - exponent) as usize);
-        if text.contains('.') {
-            text.trim_end_matches('0').trim_end_matches('.').to_owned()
-        } else {
-            text
-        }
-    } else {
-        format!("{value:.6e}")
-    }
-}
-
-fn with_error(value: f64, error: f64, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-    let scale = exponent(value.abs().max(error));
-    if PLAIN.contains(&scale) {
-        let places = (1 - exponent(error)).clamp(0, 12) as usize;
-        return write!(out, "{value:.places$} ± {error:.places$}");
-    }
-    let places = (scale - exponent(error) + 1).clamp(0, 12) as usize;
-    let unit = 10f64.powi(scale);
-    write!(out, "({:.places$} ± {:.places$})e{scale}", value / unit, error / unit)
-}
-
-/// Power of ten of the first digit.
-fn exponent(value: f64) -> i32 {
-    if value == 0.0 { 0 } else { value.abs().log10().floor() as i32 }
 }
 
 #[cfg(test)]
@@ -141,11 +106,11 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn a_measure_is_written_with_two_digits_of_its_error() {
+    fn a_measure_is_written_with_the_digits_that_its_error_leaves() {
         assert_eq!(measure(0.510_84, 0.000_226, "lm").to_string(), "0.51084 ± 0.00023 lm");
-        assert_eq!(measure(12_345.6, 123.0, "lx").to_string(), "12346 ± 123 lx");
+        assert_eq!(measure(12_345.6, 123.0, "lx").to_string(), "12350 ± 120 lx");
         assert_eq!(measure(0.75, 0.0, "1").to_string(), "0.75");
-        assert_eq!(measure(3e-9, 2.2e-10, "lm").to_string(), "(3.00 ± 0.22)e-9 lm");
+        assert_eq!(measure(3e-9, 2.2e-10, "lm").to_string(), "(3.00 ± 0.22)×10⁻⁹ lm");
         assert_eq!(measure(2.0, f64::INFINITY, "1").to_string(), "2 with unknown error");
         assert_eq!(measure(1200.0, 0.0, "lx").to_string(), "1200 lx");
     }

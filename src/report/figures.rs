@@ -2,8 +2,8 @@
 
 use crate::error::Result;
 use crate::measure::{Axes, Balance, IntensityTable, PlaneCurve, SensorMap, SensorPaths};
+use crate::number::{format_percent, format_value, format_with_error};
 use crate::report::csv::map_name;
-use crate::report::number::{format_percent, format_value, format_with_error};
 use crate::report::png::{
     Bar, BarChart, ColourMap, CrossSection, Curve, ErrorForm, HeatMap, LinePlot, Outline,
     PolarPlot, Pole, RayEnd, RayPath, Scale, Series, SeriesForm, SeriesPoint, bar_chart,

@@ -166,13 +166,15 @@ mod tests {
 
     fn recipe(seed: u64) -> Recipe {
         let (version, scene_hash) = ("0.1.0".to_owned(), "e9a5".to_owned());
-        Recipe { version, scene_hash, seed, asked: "20 paths".to_owned() }
+        let (estimator, gather) = ("gather".to_owned(), "depth 8".to_owned());
+        Recipe { version, scene_hash, seed, estimator, gather, asked: "20 paths".to_owned() }
     }
 
     fn summary(seed: u64, partial: &str) -> String {
         format!(
             r#"{{"scene": {{"hash": "e9a5"}},
-                "run": {{"version": "0.1.0", "seed": {seed}, "partial": {partial}, "asked": "20 paths"}}}}"#
+                "run": {{"version": "0.1.0", "seed": {seed}, "estimator": "gather", "gather": "depth 8",
+                         "partial": {partial}, "asked": "20 paths"}}}}"#
         )
     }
 

@@ -1,6 +1,6 @@
 //! What is in a scene: solids with volumes, faces with areas, sources with etendue, sensors with cells.
 
-use crate::report::number::format_value;
+use crate::number::format_value;
 use crate::scene::{Emission, FaceId, MediumId, Owner, Scene, SensorKind};
 use std::f64::consts::PI;
 use std::fmt::Write;

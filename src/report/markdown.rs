@@ -2,14 +2,14 @@
 
 use crate::measure::{
     Action, Extent, Measure, Outcome, PathClass, PathStep, SensorMap, SensorPaths, Statistic,
-    Status,
+    Status, strongest,
 };
+use crate::number::{format_percent, format_value, format_with_error};
 use crate::report::csv::map_name;
-use crate::report::number::{format_percent, format_value, format_with_error};
 use crate::report::{CheckResult, Report};
 use std::fmt::Write;
 
-/// Path classes that are listed for a sensor.
+/// Path classes that are listed one by one for a sensor.
 const CLASSES_SHOWN: usize = 8;
 
 /// A bias is told from this share of the standard error on, 1.
@@ -176,7 +176,7 @@ fn classes(classes: &[PathClass]) -> String {
         "How the light came (R reflected, T transmitted, steps in a row taken once):\n\n"
             .to_owned();
     text += "| share | mean bounces | path |\n|---|---|---|\n";
-    for class in classes.iter().take(CLASSES_SHOWN) {
+    for class in &strongest(classes, CLASSES_SHOWN) {
         text += &format!(
             "| {} | {} | {} |\n",
             format_percent(class.share),
@@ -229,6 +229,9 @@ fn run(report: &Report) -> String {
         format!("bounce limit {}", run.bounce_limit),
         "unpolarised light: the mean of both polarisations at every interface".to_owned(),
     ];
+    if !run.gather.is_empty() {
+        lines.push(format!("wishes for gathering: {}", run.gather));
+    }
     if let Some(target) = &run.target {
         lines.push(target.sentence());
     }

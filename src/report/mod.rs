@@ -8,7 +8,6 @@ mod figures;
 mod folder;
 mod inventory;
 mod markdown;
-pub mod number;
 pub mod png;
 mod recipe;
 mod record;
@@ -21,7 +20,7 @@ pub use inventory::inventory;
 pub use recipe::Recipe;
 pub use record::{
     CheckResult, Outcome, Report, RunFacts, SceneFacts, TargetFacts, asked, leak_places,
-    remark_on_paths, remarks,
+    remark_on_paths, remarks, wishes,
 };
 pub use terminal::terminal;
 

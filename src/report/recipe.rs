@@ -13,6 +13,10 @@ pub struct Recipe {
     pub scene_hash: String,
     /// Seed of the random numbers.
     pub seed: u64,
+    /// Name of the estimator that was asked for.
+    pub estimator: String,
+    /// Wishes for the gather estimator, in words.
+    pub gather: String,
     /// The stop rules, in words.
     pub asked: String,
 }
@@ -24,6 +28,8 @@ impl Recipe {
             "a report by another version of the program"
         } else if other.scene_hash != self.scene_hash {
             "a report of another scene: the file, a file that it names, or -D differs"
+        } else if (&other.estimator, &other.gather) != (&self.estimator, &self.gather) {
+            "a report with another estimator or other wishes for it"
         } else if other.seed != self.seed {
             "a report with another seed"
         } else {
@@ -43,6 +49,8 @@ impl Recipe {
             version: text("/run/version")?,
             scene_hash: text("/scene/hash")?,
             seed: summary.pointer("/run/seed")?.as_u64()?,
+            estimator: text("/run/estimator")?,
+            gather: text("/run/gather").unwrap_or_default(),
             asked: text("/run/asked")?,
         })
     }

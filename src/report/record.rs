@@ -1,8 +1,8 @@
 //! The one record that all formats of a report are made from.
 
 use crate::measure::{self, Measures, Verdict};
-use crate::report::number::format_percent;
-use crate::scene::plan::{Check, Estimator, StopRules, Target};
+use crate::number::{format_exact, format_percent};
+use crate::scene::plan::{Check, GatherPlan, Request, Schedule, StopRules, Target};
 use crate::transport::{GROUPS, Leak};
 use glam::DVec3;
 use serde::Serialize;
@@ -44,8 +44,11 @@ pub struct RunFacts {
     pub version: String,
     /// Seed of the random numbers.
     pub seed: u64,
-    /// How flux was estimated.
-    pub estimator: Estimator,
+    /// How flux was to be estimated.
+    pub estimator: Request,
+    /// Wishes for the gather estimator, in words: see [`wishes`]. Empty without any.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub gather: String,
     /// Whether the run ended by itself, or the user ended it.
     pub partial: bool,
     /// The stop rules, in words: see [`asked`].
@@ -133,6 +136,24 @@ pub fn asked(stop: &StopRules) -> String {
         .as_ref()
         .map(|target| format!("{} to {}", target.measure, target.relative_error));
     [paths, time, target].into_iter().flatten().collect::<Vec<_>>().join(" or ")
+}
+
+/// Wishes for the gather estimator in words: "depth 8, radius 0.5 mm, angle 0.15 deg".
+pub fn wishes(gather: &GatherPlan) -> String {
+    let schedule = match gather.schedule {
+        Schedule::Stages => None,
+        other @ Schedule::PerPass => Some(format!("schedule {}", other.name())),
+    };
+    let all = [
+        gather.depth.map(|depth| format!("depth {depth}")),
+        gather.radius.map(|radius| format!("radius {radius} mm")),
+        // Nine digits hide that degrees came by way of radians.
+        gather.theta_max.map(|angle| format!("angle {} deg", format_exact(angle.to_degrees()))),
+        gather.records.map(|records| format!("{records} records")),
+        gather.photons.map(|photons| format!("{photons} photons")),
+        schedule,
+    ];
+    all.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
 /// Places of leaks in the user's coordinates, mm.

@@ -1,8 +1,8 @@
 //! Solids that are all that lies behind their own surfaces: boxes, pyramids, prisms, round rods.
 //!
 //! A path inside one leaves through the surface that is nearest ahead, a path outside enters through the last surface
-//! that it comes behind, wherever the edges are: no edge need be looked at, and none can be missed. Parallel faces are asked together, as a slab (Kay & Kajiya, SIGGRAPH
-//! 1986, section 3.1). It knows nothing of other solids.
+//! that it comes behind, wherever the edges are: no edge need be looked at, and none can be missed. Parallel faces are
+//! asked together, as a slab (Kay & Kajiya, SIGGRAPH 1986, section 3.1). It knows nothing of other solids.
 
 use crate::scene::intersect::Nearest;
 use crate::scene::shape::{Crossing, Cylinder, Flat, Shape, Start, Toward};

@@ -1,4 +1,4 @@
-//! What a scene file asks of a run besides the scene: when to stop, and what to check.
+//! What a scene file asks of a run besides the scene: how to estimate, when to stop, and what to check.
 
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
@@ -6,8 +6,10 @@ use std::time::Duration;
 /// How to trace and when to stop.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunPlan {
-    /// How flux is estimated.
-    pub estimator: Estimator,
+    /// How flux is to be estimated.
+    pub estimator: Request,
+    /// Wishes for the gather estimator.
+    pub gather: GatherPlan,
     /// Seed of all random streams.
     pub seed: u64,
     /// Paths are cut after this many interfaces; the flux they carry is a line of the balance.
@@ -16,20 +18,120 @@ pub struct RunPlan {
     pub stop: StopRules,
 }
 
-/// How flux is estimated.
+/// How flux is to be estimated: what was asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Request {
+    /// For every sensor what a pilot finds best.
+    Auto,
+    /// [`Estimator::Forward`] for all sensors.
+    Forward,
+    /// [`Estimator::Backward`] for all sensors.
+    Backward,
+    /// [`Estimator::Gather`] for all sensors.
+    Gather,
+    /// [`Estimator::Mis`] for all sensors.
+    Mis,
+}
+
+impl Request {
+    /// All of them.
+    pub const ALL: [Self; 5] = [Self::Auto, Self::Forward, Self::Backward, Self::Gather, Self::Mis];
+
+    /// Its name in files and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Forward => Estimator::Forward.name(),
+            Self::Backward => Estimator::Backward.name(),
+            Self::Gather => Estimator::Gather.name(),
+            Self::Mis => Estimator::Mis.name(),
+        }
+    }
+
+    /// The one of a name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|request| request.name() == name)
+    }
+
+    /// Whether gather records may be made, so that a [`GatherPlan`] matters.
+    pub fn may_gather(self) -> bool {
+        match self {
+            Self::Auto | Self::Gather | Self::Mis => true,
+            Self::Forward | Self::Backward => false,
+        }
+    }
+}
+
+/// How the flux of a sensor was estimated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Estimator {
     /// Photon paths from the sources, counted in the sensors' cells.
     Forward,
+    /// Gather paths from the sensors' cells, followed until they meet emission.
+    Backward,
+    /// Gather paths of limited depth that end in records, where photons are gathered.
+    Gather,
+    /// All three, merged by multiple importance sampling.
+    Mis,
 }
 
 impl Estimator {
-    /// Its name in files and on the command line.
+    /// Its name in files and reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Forward => "forward",
+            Self::Backward => "backward",
+            Self::Gather => "gather",
+            Self::Mis => "mis",
         }
+    }
+}
+
+/// Wishes for the gather estimator; what is left out is chosen by a pilot.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct GatherPlan {
+    /// Depth at which gather paths end at the latest; the first surface has depth 0.
+    pub depth: Option<u32>,
+    /// Radius of the window of the first pass, mm.
+    pub radius: Option<f64>,
+    /// Half-angle of the window of the first pass, rad.
+    pub theta_max: Option<f64>,
+    /// Gather paths of a pass, over all sensors.
+    pub records: Option<u64>,
+    /// Photons of a pass.
+    pub photons: Option<u64>,
+    /// How the window shrinks.
+    pub schedule: Schedule,
+}
+
+/// How the window of the gather estimator shrinks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Schedule {
+    /// In stages of many passes with one window; the last stage gives the value.
+    #[default]
+    Stages,
+    /// From pass to pass; all passes give the value.
+    PerPass,
+}
+
+impl Schedule {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Stages, Self::PerPass];
+
+    /// Its name in files and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Stages => "stages",
+            Self::PerPass => "per-pass",
+        }
+    }
+
+    /// The one of a name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|schedule| schedule.name() == name)
     }
 }
 
@@ -79,4 +181,26 @@ pub struct Check {
     /// Where the expected value comes from.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub source: Option<String>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_those_of_the_files_and_lead_back() {
+        for request in Request::ALL {
+            assert_eq!(serde_json::to_value(request).unwrap(), request.name());
+            assert_eq!(Request::named(request.name()), Some(request));
+        }
+        for schedule in Schedule::ALL {
+            assert_eq!(serde_json::to_value(schedule).unwrap(), schedule.name());
+            assert_eq!(Schedule::named(schedule.name()), Some(schedule));
+        }
+        let all = [Estimator::Forward, Estimator::Backward, Estimator::Gather, Estimator::Mis];
+        for estimator in all {
+            assert_eq!(serde_json::to_value(estimator).unwrap(), estimator.name());
+        }
+        assert_eq!(Request::named("sideways"), None);
+    }
 }

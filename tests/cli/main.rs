@@ -16,25 +16,17 @@ use std::process::Output;
 use tempfile::TempDir;
 
 /// A short rod, so that little is traced, with a sensor of each kind that has pictures.
-const SCENE: &str = r#"
-lumiduct = 1
-title = "Short rod"
-[media.acrylic]
-index = 1.49
-[solids.rod.cylinder]
-radius_mm = 2
-length_mm = 10
-medium = "acrylic"
-[sources.led.disk]
-radius_mm = 0.5
-at = { face = "rod.entry", gap_mm = 0.1 }
-flux_lm = 10
+const SCENE: &str = concat!(
+    "lumiduct = 1\ntitle = \"Short rod\"\n",
+    include_str!("../rod.toml"),
+    r#"
 [sensors]
 exit = { plane = { cells = [4, 4] }, on = "rod.exit", counts = "leaving" }
 far = { goniometer = { c_step_deg = 90, gamma_step_deg = 10 }, at = { face = "rod.exit" } }
 [run]
 paths = 20_000
-"#;
+"#
+);
 
 /// A scene in a folder of its own, where the program runs.
 struct Place(TempDir);

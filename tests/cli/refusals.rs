@@ -6,7 +6,7 @@ use crate::*;
 fn bad_input_ends_with_2_and_writes_nothing() {
     let place = Place::with("[media.glass]\nindx = 1.5\n");
     let said = place.bad(2, "run rod.toml");
-    for words in ["rod.toml:20", "indx", "index"] {
+    for words in ["rod.toml:21", "indx", "index"] {
         assert!(said.contains(words), "no {words} in {said}");
     }
     place.bad(2, "check rod.toml");
@@ -35,6 +35,11 @@ fn a_bad_command_line_ends_with_2_and_writes_nothing() {
         "run rod.toml -o rod.toml",
         "run rod.toml --threads 0",
         "run rod.toml --estimator psychic",
+        "run rod.toml --records 0",
+        "run rod.toml --angle-deg 90",
+        "run rod.toml --radius-mm 0",
+        "run rod.toml --depth 1001",
+        "run rod.toml --schedule sometimes",
         "run rod.toml -D solids.rod.cylinder.length_mm",
         "run rod.toml -D solids.rod.cylinder.lenght_mm=3",
         "run rod.toml -D solids.rod.cylinder.length_mm=-3",
@@ -44,6 +49,7 @@ fn a_bad_command_line_ends_with_2_and_writes_nothing() {
     }
     assert_eq!(place.names(), ["rod.toml"]);
     let help = place.good("run --help");
+    assert!(help.contains("Gather:") && help.contains("--estimator <ESTIMATOR>"), "{help}");
     assert!(help.contains("--overwrite") && place.good("--help").contains("Exit codes"));
 }
 

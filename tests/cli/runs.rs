@@ -51,6 +51,10 @@ fn numbers_in_summary_and_balance_make_sense() {
     assert!((measure("exit.efficiency") - flux(&summary) / 10.0).abs() < 1e-12);
     assert!(measure("balance.residual").abs() < 1e-9 * 10.0 && measure("balance.leaked") == 0.0);
     assert_eq!(summary["measures"]["exit.flux"]["unit"], "lm");
+    let paths = &summary["paths_to_sensors"][0];
+    assert!(paths["depths"].is_null(), "the histogram is in exit.bounces.csv");
+    let shares = paths["classes"].as_array().unwrap().iter().map(|class| class["share"].as_f64());
+    assert!((shares.map(Option::unwrap).sum::<f64>() - 1.0).abs() < 1e-12);
 }
 
 #[test]
@@ -162,6 +166,30 @@ fn what_a_run_did_otherwise_than_asked_is_said() {
     assert!(said.contains("target exit.flux: wanted 1×10⁻⁴ %"), "{said}");
     let joined = place.run("check rod.toml -D sources.led.disk.at.gap_mm=0");
     assert!(errors(&joined).contains("optically"), "{}", errors(&joined));
+}
+
+#[test]
+fn wishes_for_gathering_are_told_and_make_another_report() {
+    let place = Place::new();
+    let wishes = "--depth 8 --angle-deg 0.15 --records 10k --photons 1M --schedule per-pass";
+    let output = place.run(&format!("run rod.toml -o a --radius-mm 3 --estimator gather {wishes}"));
+    assert_eq!(code(&output), 0);
+    assert!(errors(&output).contains("`--radius-mm`: 3 mm is larger"), "{}", errors(&output));
+    let told =
+        "depth 8, radius 3 mm, angle 0.15 deg, 10000 records, 1000000 photons, schedule per-pass";
+    assert_eq!(place.summary("a")["run"]["estimator"], "gather");
+    assert_eq!(place.summary("a")["run"]["gather"], told);
+    assert!(fs::read_to_string(place.path("a/report.md")).unwrap().contains(told));
+    let other =
+        place.bad(2, &format!("run rod.toml -o a --radius-mm 2 --estimator gather {wishes}"));
+    assert!(other.contains("other wishes"), "{other}");
+
+    let idle = place.run("run rod.toml -o b --estimator forward --depth 8 --records 10k");
+    let said = errors(&idle);
+    assert!(
+        said.contains("without effect with the estimator \"forward\": --depth, --records"),
+        "{said}"
+    );
 }
 
 #[test]

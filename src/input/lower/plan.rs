@@ -3,9 +3,9 @@
 use crate::input::keys::Key;
 use crate::input::problems::{Problems, name_hint};
 use crate::input::spec::SceneSpec;
-use crate::input::spec::run::{CheckSpec, EstimatorSpec};
+use crate::input::spec::run::{CheckSpec, EstimatorSpec, GatherSpec, ScheduleSpec};
 use crate::scene::Scene;
-use crate::scene::plan::{Check, Estimator, RunPlan, StopRules, Target};
+use crate::scene::plan::{Check, GatherPlan, Request, RunPlan, Schedule, StopRules, Target};
 use std::time::Duration;
 
 /// Paths of a run that names no stop rule.
@@ -20,8 +20,13 @@ pub(super) fn run(spec: &SceneSpec) -> RunPlan {
     let none = run.paths.is_none() && run.time_s.is_none() && target.is_none();
     RunPlan {
         estimator: match run.estimator {
-            EstimatorSpec::Forward => Estimator::Forward,
+            EstimatorSpec::Auto => Request::Auto,
+            EstimatorSpec::Forward => Request::Forward,
+            EstimatorSpec::Backward => Request::Backward,
+            EstimatorSpec::Gather => Request::Gather,
+            EstimatorSpec::Mis => Request::Mis,
         },
+        gather: gather(&run.gather),
         seed: run.seed,
         bounce_limit: run.bounce_limit,
         stop: StopRules {
@@ -29,6 +34,20 @@ pub(super) fn run(spec: &SceneSpec) -> RunPlan {
             // Validated as positive; a time beyond what a clock can hold is no limit.
             time: run.time_s.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok()),
             target,
+        },
+    }
+}
+
+fn gather(spec: &GatherSpec) -> GatherPlan {
+    GatherPlan {
+        depth: spec.depth,
+        radius: spec.radius_mm,
+        theta_max: spec.angle_deg.map(f64::to_radians),
+        records: spec.records,
+        photons: spec.photons,
+        schedule: match spec.schedule {
+            ScheduleSpec::Stages => Schedule::Stages,
+            ScheduleSpec::PerPass => Schedule::PerPass,
         },
     }
 }

@@ -19,9 +19,12 @@ pub struct RunSpec {
     /// Seed of the random numbers: the same seed gives the same results.
     #[serde(default = "seed")]
     pub seed: u64,
-    /// How light is followed.
+    /// How flux is estimated.
     #[serde(default)]
     pub estimator: EstimatorSpec,
+    /// Wishes for the estimator `gather`, and for `auto` and `mis` where they gather.
+    #[serde(default)]
+    pub gather: GatherSpec,
     /// Number of surfaces after which a path is given up; the flux that this cuts off is reported.
     #[serde(default = "bounce_limit")]
     #[schemars(range(min = 1, max = 10_000_000))]
@@ -36,6 +39,7 @@ impl Default for RunSpec {
             target: None,
             seed: seed(),
             estimator: EstimatorSpec::default(),
+            gather: GatherSpec::default(),
             bounce_limit: bounce_limit(),
         }
     }
@@ -51,13 +55,56 @@ pub struct TargetSpec {
     pub relative_error: f64,
 }
 
-/// How light is followed.
+/// How flux is estimated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum EstimatorSpec {
-    /// From the sources to the sensors.
+    /// For every sensor, what a short trial finds best; the report names the choice and its figures.
+    Auto,
+    /// Photon paths from the sources, counted by the sensors.
     #[default]
     Forward,
+    /// Gather paths from the sensors, followed until they meet a source.
+    Backward,
+    /// Gather paths from the sensors that end in records, and photon paths from the sources that are gathered there.
+    Gather,
+    /// All three together, weighted by multiple importance sampling: for scenes in which nothing scatters.
+    Mis,
+}
+
+/// Wishes for the estimator `gather`. What is left out is chosen by a short trial, and told in the report. The window
+/// of a record is a disk on the surface and a cone of directions; photons inside both are gathered.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+pub struct GatherSpec {
+    /// Depth at which gather paths end at the latest; the first surface they meet has depth 0.
+    #[schemars(range(max = 1000))]
+    pub depth: Option<u32>,
+    /// Radius of the window in the first pass.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub radius_mm: Option<f64>,
+    /// Half-angle of the window in the first pass.
+    #[schemars(extend("exclusiveMinimum" = 0.0, "exclusiveMaximum" = 90.0))]
+    pub angle_deg: Option<f64>,
+    /// Number of gather paths in a pass, over all sensors.
+    #[schemars(range(min = 1))]
+    pub records: Option<u64>,
+    /// Number of photon paths in a pass.
+    #[schemars(range(min = 1))]
+    pub photons: Option<u64>,
+    /// How the window shrinks.
+    #[serde(default)]
+    pub schedule: ScheduleSpec,
+}
+
+/// How the window shrinks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ScheduleSpec {
+    /// In stages of many passes with the same window; the value comes from the last stage alone.
+    #[default]
+    Stages,
+    /// A little from pass to pass; the value comes from all passes. For comparison: its error bar is less sure.
+    PerPass,
 }
 
 /// What is expected of one measure: a limit (`min`, `max`) or a value (`equals`).

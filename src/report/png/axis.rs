@@ -3,7 +3,7 @@
 //! Knows nothing of pixels but how much room a label takes.
 
 use crate::error::Result;
-use crate::report::number::{format_fixed, format_value, superscript};
+use crate::number::{format_fixed, format_value, superscript};
 use crate::report::png::text::TICK;
 
 /// Whether equal lengths are equal differences or equal ratios.

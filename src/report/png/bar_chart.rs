@@ -1,7 +1,7 @@
 //! Horizontal bars with their values, for the flux balance.
 
 use crate::error::Result;
-use crate::report::number::{format_percent, format_value, format_with_error};
+use crate::number::{format_percent, format_value, format_with_error};
 use crate::report::png::canvas::{Canvas, Ink};
 use crate::report::png::geometry::Rect;
 use crate::report::png::layout::{Header, MARGIN, write};

@@ -1,7 +1,7 @@
 //! Maps: a value per cell of a rectangle, in colours.
 
 use crate::error::Result;
-use crate::report::number::format_value;
+use crate::number::format_value;
 use crate::report::png::axis::{Axis, Scale};
 use crate::report::png::canvas::Canvas;
 use crate::report::png::colour_bar::{BAR_WIDTH, ColourBar, Colouring, TIP};

@@ -1,7 +1,7 @@
 //! What pictures have in common: heading, legend, frame with axes, and how large a plot of millimetres is drawn.
 
 use crate::error::Result;
-use crate::report::number::superscript;
+use crate::number::superscript;
 use crate::report::png::axis::{Axis, Ticks};
 use crate::report::png::canvas::{Canvas, Ink, Pen};
 use crate::report::png::geometry::{Point, Rect};

@@ -4,7 +4,7 @@
 //! physics (`font/`); no font of the system is ever looked for, so the same picture comes out everywhere.
 
 use crate::error::{Error, Result};
-use crate::report::number::shorten;
+use crate::number::shorten;
 use crate::report::png::palette::Rgb;
 use plotters::backend::BitMapBackend;
 use plotters::prelude::{DrawingBackend, RGBColor};

@@ -14,6 +14,8 @@ mod profile;
 mod round;
 mod smooth;
 #[cfg(test)]
+mod testing;
+#[cfg(test)]
 mod tests;
 mod volume;
 

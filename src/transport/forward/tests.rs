@@ -2,7 +2,7 @@
 
 use crate::math::{Aabb, Frame};
 use crate::optics::{Bsdf, Medium};
-use crate::scene::plan::{Estimator, RunPlan, StopRules};
+use crate::scene::plan::{GatherPlan, Request, RunPlan, StopRules};
 use crate::scene::shape::{Cylinder, Flat, Region, Shape};
 use crate::scene::{
     Builder, Counts, Emission, EmitSide, Emitter, FaceSpec, Grid, Owner, Piece, Place, Scene,
@@ -70,7 +70,8 @@ fn mirror_tube(reflectance: f64, length: f64) -> Scene {
 
 fn run(scene: &Scene, paths: u64) -> Readings {
     let plan = RunPlan {
-        estimator: Estimator::Forward,
+        estimator: Request::Forward,
+        gather: GatherPlan::default(),
         seed: 1,
         bounce_limit: 100_000,
         stop: StopRules { paths: Some(paths), ..StopRules::default() },

@@ -1,4 +1,4 @@
-//! How numbers are written for people: in pictures and in text reports, never in data files.
+//! How numbers are written for people: in pictures, in text reports and in verdicts, never in data files.
 //!
 //! Knows no units. Negative numbers have a true minus sign, powers of ten are written ×10ⁿ.
 
@@ -54,6 +54,15 @@ pub fn format_with_error(value: f64, std_error: f64) -> String {
             format_scaled(std_error, exponent, digits),
             superscript(exponent)
         )
+    }
+}
+
+/// A value that has no error bar, with nine digits at most: "0.75", "1200".
+pub fn format_exact(value: f64) -> String {
+    if value.is_finite() {
+        format_long(value, rounded_exponent(value, MOST_DIGITS))
+    } else {
+        not_finite(value).to_string()
     }
 }
 
@@ -142,7 +151,7 @@ fn round_error(std_error: f64) -> (f64, i32) {
     (if rounded.is_finite() { rounded } else { std_error }, place)
 }
 
-/// A value with more digits than its error bar could name.
+/// A value with as many digits as are ever written.
 fn format_long(value: f64, exponent: i32) -> String {
     if is_plain(exponent) {
         trimmed(format_fixed(value, MOST_DIGITS - 1 - exponent))
@@ -215,6 +224,21 @@ mod tests {
         ];
         for (value, std_error, text) in cases {
             assert_eq!(format_with_error(value, std_error), text);
+        }
+    }
+
+    #[test]
+    fn exact_values_have_nine_digits_at_most() {
+        let cases = [
+            (0.75, "0.75"),
+            (1200.0, "1200"),
+            (1.0 / 3.0, "0.333333333"),
+            (-2e6, "−2×10⁶"),
+            (0.0, "0"),
+            (f64::NAN, "n/a"),
+        ];
+        for (value, text) in cases {
+            assert_eq!(format_exact(value), text);
         }
     }
 

@@ -184,7 +184,7 @@ fn trace(case: &Case, seed: u64) -> Outcome {
     while !run.is_complete() {
         run.next_wave();
     }
-    outcome(&case.scene, &run.readings())
+    outcome(&case.scene, &run.findings().photons)
 }
 
 fn outcome(scene: &Scene, readings: &Readings) -> Outcome {

@@ -14,8 +14,8 @@ use crate::report::{
     self, CheckResult, Existing, Folder, Recipe, Report, RunFacts, SceneFacts, TargetFacts,
     Written, inventory, write_whole,
 };
-use crate::scene::plan::RunPlan;
-use crate::transport::{Interrupt, Readings, Run, tracks};
+use crate::scene::plan::{Request, RunPlan};
+use crate::transport::{Findings, Interrupt, Run, invisible, tracks};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -74,7 +74,7 @@ pub fn run_one(
     expect_sense(&job)?;
     let folder = Folder::open(&output_dir(scene, output), output.existing, recipe(&job).as_ref())?;
     let traced = trace(&job, interrupt, watch);
-    let report = compose(&job, &traced.readings, traced.stop);
+    let report = compose(&job, &traced.findings, traced.stop);
     let written = folder.write(&report::files(&report, &job.text)?)?;
     timing::write(&folder, &traced)?;
     Ok(Finished {
@@ -103,6 +103,7 @@ fn expect_sense(job: &Job) -> Result<()> {
             .error(&Key::of(&["sources"]), "nothing emits light: there is no source to trace")
             .hint("add a table such as [sources.led.disk]");
     }
+    expect_visible_sources(job, &mut problems);
     for (key, name) in target.chain(checks).filter(|(_, name)| !names.contains(name)) {
         let nearest = measure::nearest(name, names.iter().map(String::as_str));
         problems
@@ -110,6 +111,22 @@ fn expect_sense(job: &Job) -> Result<()> {
             .hint(format!("near names: {}", nearest.join(", ")));
     }
     problems.finish(&job.places).map(|_| ())
+}
+
+/// Refuses estimators that have to meet the sources where a source cannot be met.
+fn expect_visible_sources(job: &Job, problems: &mut Problems) {
+    let meets = match job.run.estimator {
+        Request::Auto | Request::Forward => false,
+        Request::Backward | Request::Gather | Request::Mis => true,
+    };
+    for source in job.scene.sources.iter().filter(|_| meets) {
+        let Some(why) = invisible(source, &job.scene) else { continue };
+        let (name, wanted) = (&source.name, job.run.estimator.name());
+        let message = format!("`{wanted}` paths cannot meet the source `{name}`: {why}");
+        problems
+            .error(&Key::of(&["run", "estimator"]), message)
+            .hint("use `forward` or `auto`, or give the source an area and a cone of directions");
+    }
 }
 
 /// A run that has written its report.
@@ -140,8 +157,8 @@ fn recipe(job: &Job) -> Option<Recipe> {
 }
 
 /// The report of what was counted.
-pub fn compose(job: &Job, readings: &Readings, stop: Stop) -> Report {
-    let measures = measure::measure(&job.scene, readings);
+pub fn compose(job: &Job, findings: &Findings, stop: Stop) -> Report {
+    let measures = measure::measure(&job.scene, findings);
     let checks = job
         .checks
         .iter()
@@ -176,7 +193,7 @@ pub fn compose(job: &Job, readings: &Readings, stop: Stop) -> Report {
             stopped: stop.reason().to_owned(),
             target,
             bounce_limit: job.run.bounce_limit,
-            leaks: report::leak_places(&readings.leaks, job.scene.origin),
+            leaks: report::leak_places(&findings.photons.leaks, job.scene.origin),
         },
         measures,
         checks,
@@ -188,7 +205,7 @@ pub fn compose(job: &Job, readings: &Readings, stop: Stop) -> Report {
 #[derive(Debug)]
 pub struct Traced {
     /// Everything that was counted.
-    pub readings: Readings,
+    pub findings: Findings,
     /// Why it ended.
     pub stop: Stop,
     /// How long it took.
@@ -216,8 +233,11 @@ pub fn trace(job: &Job, interrupt: &Interrupt, watch: &mut dyn FnMut(&Progress))
         if let Some(stop) = target.as_ref().and_then(|target| target_stop(target, run.paths())) {
             break stop;
         }
+        if run.may_end_stage() && target.as_ref().is_none_or(is_held_by_bias) {
+            run.next_stage();
+        }
     };
-    Traced { readings: run.readings(), stop, elapsed: start.elapsed() }
+    Traced { findings: run.findings(), stop, elapsed: start.elapsed() }
 }
 
 /// A run to a target gives up on one that its bias keeps from it once the noise is this share of what is wanted, 1.
@@ -236,6 +256,11 @@ fn target_stop(target: &TargetProgress, paths: u64) -> Option<Stop> {
         return Some(Stop::Bias);
     }
     (reached.value == 0.0 && paths >= DARK_PATHS).then_some(Stop::Dark)
+}
+
+/// Whether a smaller window brings the target nearer than more of the same work.
+fn is_held_by_bias(target: &TargetProgress) -> bool {
+    target.reached.bias.is_some_and(|bias| bias > target.reached.std_error)
 }
 
 /// What may end a run before its round is over.

@@ -16,6 +16,10 @@ pub enum Dimension {
     EmitPosition,
     /// In which direction it starts.
     EmitDirection,
+    /// Where on a sensor a gather path starts, and toward which point of its aim.
+    GatherPosition,
+    /// In which direction it starts.
+    GatherDirection,
     /// Which lobe of a finish is taken: reflected or transmitted, or a part of a mixture.
     Lobe,
     /// The direction within a lobe.

@@ -51,7 +51,7 @@ fn run(job: &Job) -> Measures {
     while !run.is_complete() {
         run.next_wave();
     }
-    measure::measure(&job.scene, &run.readings())
+    measure::measure(&job.scene, &run.findings())
 }
 
 /// Fluxes and lines of the balance are the same, whatever the size of the scene.
@@ -245,10 +245,10 @@ fn no_shipped_scene_leaks_in_a_hundred_million_segments_and_every_balance_closes
             SEGMENTS.div_ceil(shipped.len() as u64 - 1)
         };
         run.next_wave();
-        while run.readings().segments < enough {
+        while run.findings().photons.segments < enough {
             run.next_wave();
         }
-        let measures = measure::measure(&job.scene, &run.readings());
+        let measures = measure::measure(&job.scene, &run.findings());
         segments += measures.segments;
         let (balance, name) = (&measures.balance, path.display());
         assert_eq!(balance.leaked.value, 0.0, "{name} leaks {}", balance.leaked);

@@ -18,7 +18,7 @@ fn measures(text: &str) -> Measures {
     while !run.is_complete() {
         run.next_wave();
     }
-    measure::measure(&job.scene, &run.readings())
+    measure::measure(&job.scene, &run.findings())
 }
 
 fn value(measures: &Measures, name: &str) -> f64 {

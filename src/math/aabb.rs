@@ -37,6 +37,13 @@ impl Aabb {
         self.min.cmple(other.max).all() && other.min.cmple(self.max).all()
     }
 
+    /// Whether the box around a straight piece meets this box: most pieces do not, and are not asked further.
+    #[inline(always)]
+    pub fn is_near(&self, start: DVec3, end: DVec3) -> bool {
+        // Written so that an undefined end, of a ray along a plane of coordinates that meets nothing, is near.
+        !(start.max(end).cmplt(self.min).any() || start.min(end).cmpgt(self.max).any())
+    }
+
     /// Whether a point lies inside or on the box.
     pub fn contains(&self, p: DVec3) -> bool {
         self.min.cmple(p).all() && p.cmple(self.max).all()

@@ -34,6 +34,8 @@ pub struct IntensityTable {
     pub values: Array2<f64>,
     /// Standard errors, likewise.
     pub std_errors: Array2<f64>,
+    /// Indicators of bias, likewise; `None` of unbiased estimates.
+    pub biases: Option<Array2<f64>>,
     /// Edges of the rings, deg.
     pub gamma_deg: Vec<f64>,
     /// Edges of the sectors, deg.
@@ -169,6 +171,7 @@ pub(crate) fn table(
         unit: evidence.scene.unit.intensity().to_owned(),
         values: cells(|cell| cell.value),
         std_errors: cells(|cell| cell.std_error),
+        biases: None,
         gamma_deg: edges(180.0, rings),
         c_deg: edges(360.0, sectors),
         ring_gamma_deg: ring_gammas(rings).into_iter().map(f64::to_degrees).collect(),
@@ -265,10 +268,10 @@ mod tests {
     use crate::measure::measure;
     use crate::measure::samples::{goniometer, readings, scene};
     use crate::scene::{Scene, SensorKind};
-    use crate::transport::Readings;
+    use crate::transport::Findings;
 
     /// Readings without noise of an intensity I(C, γ) [cd], exact over each cell for intensities ∝ cos^m γ.
-    fn cosine_power(scene: &Scene, m: f64) -> Readings {
+    fn cosine_power(scene: &Scene, m: f64) -> Findings {
         let SensorKind::Goniometer(sphere) = &scene.sensors[0].kind else { panic!("no sphere") };
         let edge = |ring: usize| {
             let cos = (std::f64::consts::PI * ring as f64 / sphere.gamma_cells as f64).cos();

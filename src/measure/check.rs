@@ -80,6 +80,7 @@ fn doubt(measure: &Measure) -> Option<&'static str> {
         Status::Ok | Status::NoSignal => None,
         Status::TooFew => Some("too little was counted to rely on it"),
         Status::NoiseLimited => Some("it is mostly noise"),
+        Status::BiasNotResolved => Some("its bias is not resolved"),
     }
 }
 

@@ -18,13 +18,29 @@ pub(crate) const MIN_COUNTS: f64 = 10.0;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Evidence<'a> {
     pub(crate) scene: &'a Scene,
+    /// What speaks for a sensor's light.
     pub(crate) readings: &'a Readings,
+    /// What speaks for everything that only photons know.
+    photons: &'a Readings,
     pub(crate) layout: Layout,
+    estimator: Estimator,
 }
 
 impl<'a> Evidence<'a> {
-    pub(crate) fn new(scene: &'a Scene, readings: &'a Readings) -> Self {
-        Self { scene, readings, layout: Layout::new(scene) }
+    /// Photons speak for everything.
+    pub(crate) fn new(scene: &'a Scene, photons: &'a Readings) -> Self {
+        let (layout, estimator) = (Layout::new(scene), Estimator::Forward);
+        Self { scene, readings: photons, photons, layout, estimator }
+    }
+
+    /// Other readings speak for a sensor's light.
+    pub(crate) fn by(self, readings: &'a Readings, estimator: Estimator) -> Self {
+        Self { readings, estimator, ..self }
+    }
+
+    /// The evidence of photons alone.
+    pub(crate) fn of_photons(&self) -> Self {
+        Self { readings: self.photons, estimator: Estimator::Forward, ..*self }
     }
 
     /// Mean flux of one path, lm or W.
@@ -48,7 +64,7 @@ impl<'a> Evidence<'a> {
             unit: unit.to_owned(),
             batches: self.readings.batch_count(),
             paths: self.readings.paths(),
-            estimator: Estimator::Forward,
+            estimator: self.estimator,
             status,
         }
     }
@@ -80,6 +96,22 @@ impl<'a> Evidence<'a> {
         let (value, std_error) =
             self.readings.jackknife(|flux| sum(flux, parts) / sum(flux, whole));
         self.measure(value, std_error, "1", trust(value, std_error, lit))
+    }
+
+    /// Flux of a sensor over flux that only photons know.
+    pub(crate) fn ratio_to_photons(&self, parts: &[usize], whole: &[usize]) -> Measure {
+        if self.estimator == Estimator::Forward {
+            return self.ratio(parts, whole);
+        }
+        let whole = self.of_photons().sum(whole, 1.0, "1");
+        let part = self.sum(parts, 1.0, "1");
+        if whole.value == 0.0 {
+            return self.measure(0.0, f64::INFINITY, "1", Status::NoSignal);
+        }
+        // Counted by different paths, the two are independent.
+        let value = part.value / whole.value;
+        let std_error = part.std_error.hypot(value * whole.std_error) / whole.value;
+        self.measure(value, std_error, "1", part.status.worst(whole.status))
     }
 
     /// A line of the run's own books: what was counted is what happened, also where it is nothing.

@@ -50,13 +50,15 @@ fn entering(evidence: &Evidence<'_>, id: SensorId, out: &mut IndexMap<String, Me
         return;
     }
     let entering = [evidence.layout.entering(id)];
-    out.insert("entering_flux".into(), evidence.sum(&entering, 1.0, evidence.scene.unit.flux()));
-    let transmission = evidence.ratio(&flux_slots(evidence, id), &entering);
+    let photons = evidence.of_photons();
+    out.insert("entering_flux".into(), photons.sum(&entering, 1.0, evidence.scene.unit.flux()));
+    let transmission = evidence.ratio_to_photons(&flux_slots(evidence, id), &entering);
     out.insert("transmission".into(), transmission);
 }
 
-/// Flux that met the sensor but does not count.
+/// Flux that met the sensor but does not count: only photons know it.
 fn elsewhere(evidence: &Evidence<'_>, id: SensorId, out: &mut IndexMap<String, Measure>) {
+    let evidence = &evidence.of_photons();
     let sensor = &evidence.scene.sensors[id.index()];
     let unit = evidence.scene.unit.flux();
     if !sensor.aim.is_empty() {

@@ -28,6 +28,8 @@ pub struct SensorMap {
     pub values: Array2<f64>,
     /// Standard errors, likewise.
     pub std_errors: Array2<f64>,
+    /// Indicators of bias, likewise; `None` of unbiased estimates.
+    pub biases: Option<Array2<f64>>,
     /// Where the cells are.
     pub axes: Axes,
     /// Area of the sensor, mm².
@@ -95,6 +97,7 @@ fn map(
         unit: symbol.to_owned(),
         values: table(&|cell| seen.at(cell).value),
         std_errors: table(&|cell| seen.at(cell).std_error),
+        biases: None,
         axes: axes(&sensor.grid),
         area_mm2: seen.area,
         summary: summary(evidence, id, sensor, &seen),
@@ -200,11 +203,11 @@ mod tests {
     use crate::measure::samples::{add, disk, luminance, readings, rectangle, rings, scene};
     use crate::measure::{Measures, Status, measure};
     use crate::scene::{Scene, SensorId, SensorKind, SourceId};
-    use crate::transport::Readings;
+    use crate::transport::Findings;
     use glam::DVec2;
 
     /// Readings without noise of a field over the first sensor: illuminance at the middle of each cell, lm/mm².
-    fn exactly(scene: &Scene, field: impl Fn(DVec2) -> f64) -> Readings {
+    fn exactly(scene: &Scene, field: impl Fn(DVec2) -> f64) -> Findings {
         let SensorKind::Surface(sensor) = &scene.sensors[0].kind else { panic!("no surface") };
         // The sums over two equal batches are exact.
         readings(scene, 2, |_, layout, batch| {

@@ -13,6 +13,7 @@ mod check;
 mod evidence;
 mod extremes;
 mod flux;
+mod gathered;
 mod map;
 mod paths;
 mod points;
@@ -20,19 +21,21 @@ mod readout;
 mod record;
 #[cfg(test)]
 mod samples;
+mod sensor;
 mod uniformity;
 
 pub use angular::{IntensityTable, PlaneCurve};
 pub use balance::Balance;
 pub use check::{Outcome, Verdict, nearest, verdict};
+pub use gathered::Resolution;
 pub use map::{Axes, SensorMap};
 pub use paths::{Action, DepthBin, Extent, PathClass, PathStep, SensorPaths, strongest};
 pub use record::{Measure, Status};
 pub use uniformity::{Statistic, Uniformity, UniformitySummary};
 
 use crate::measure::evidence::Evidence;
-use crate::scene::{Scene, SensorId, SensorKind};
-use crate::transport::{Layout, Readings};
+use crate::scene::{Scene, SensorId};
+use crate::transport::{Findings, Layout, Readings};
 use crate::units::FluxUnit;
 use indexmap::IndexMap;
 use serde::Serialize;
@@ -63,27 +66,18 @@ pub struct Measures {
 }
 
 /// Measures everything. Linear in the number of cells.
-pub fn measure(scene: &Scene, readings: &Readings) -> Measures {
-    let evidence = Evidence::new(scene, readings);
+pub fn measure(scene: &Scene, findings: &Findings) -> Measures {
     let mut values = IndexMap::new();
     let (mut maps, mut intensities, mut sensor_paths) = (Vec::new(), Vec::new(), Vec::new());
     for (index, sensor) in scene.sensors.iter().enumerate() {
-        let id = SensorId::new(index);
-        add(&mut values, &sensor.name, flux::totals(&evidence, id));
-        match &sensor.kind {
-            SensorKind::Surface(surface) => {
-                let own = map::maps(&evidence, id, surface);
-                add(&mut values, &sensor.name, readout::measures(&evidence, id, surface, &own));
-                maps.extend(own);
-            }
-            SensorKind::Goniometer(goniometer) => {
-                add(&mut values, &sensor.name, angular::measures(&evidence, id, goniometer));
-                intensities.push(angular::table(&evidence, id, goniometer));
-            }
-        }
-        sensor_paths.push(paths::paths(scene, readings, id));
+        let found = sensor::measures(scene, findings, SensorId::new(index));
+        add(&mut values, &sensor.name, found.values);
+        maps.extend(found.maps);
+        intensities.extend(found.intensity);
+        sensor_paths.push(found.paths);
     }
-    let balance = balance::balance(&evidence);
+    let photons = &findings.photons;
+    let balance = balance::balance(&Evidence::new(scene, photons));
     values.extend(balance.measures());
     Measures {
         values,
@@ -93,36 +87,25 @@ pub fn measure(scene: &Scene, readings: &Readings) -> Measures {
         sensor_paths,
         unit: scene.unit,
         source_flux: scene.source_flux(),
-        batches: readings.batch_count(),
-        paths: readings.paths(),
-        segments: readings.segments,
+        batches: photons.batch_count(),
+        paths: photons.paths(),
+        segments: photons.segments,
     }
 }
 
-/// One measure by its dotted name, at no more cost than it needs: maps are not looked at for the flux of a sensor.
-pub fn value_of(scene: &Scene, readings: &Readings, name: &str) -> Option<Measure> {
-    let evidence = Evidence::new(scene, readings);
+/// One measure by its dotted name, at no more cost than it needs.
+pub fn value_of(scene: &Scene, findings: &Findings, name: &str) -> Option<Measure> {
     let (first, rest) = name.split_once('.')?;
     if let Some(index) = scene.sensors.iter().position(|sensor| sensor.name == first) {
-        let id = SensorId::new(index);
-        return flux::totals(&evidence, id).swap_remove(rest).or_else(|| {
-            let mut read = match &scene.sensors[index].kind {
-                SensorKind::Surface(surface) => {
-                    let maps = map::maps(&evidence, id, surface);
-                    readout::measures(&evidence, id, surface, &maps)
-                }
-                SensorKind::Goniometer(goniometer) => angular::measures(&evidence, id, goniometer),
-            };
-            read.swap_remove(rest)
-        });
+        return sensor::value_of(scene, findings, SensorId::new(index), rest);
     }
-    balance::balance(&evidence).measures().swap_remove(name)
+    balance::balance(&Evidence::new(scene, &findings.photons)).measures().swap_remove(name)
 }
 
 /// The dotted names of all measures of a scene.
 pub fn names(scene: &Scene) -> Vec<String> {
     let nothing = Readings::of_batch(scene, &Layout::new(scene), 0, 1, 0);
-    measure(scene, &nothing).values.into_keys().collect()
+    measure(scene, &Findings::forward(nothing)).values.into_keys().collect()
 }
 
 /// Total error of a measure over its value: what the target of a run is held against. Infinite where there is no
@@ -146,8 +129,8 @@ mod tests {
     use crate::scene::plan::{GatherPlan, Request, RunPlan, StopRules};
     use crate::scene::shape::{Flat, Region, Shape};
     use crate::scene::{
-        Builder, Emission, EmitSide, Emitter, FaceSpec, Owner, Piece, Sensor, Sides, Source,
-        SourceId, Start,
+        Builder, Emission, EmitSide, Emitter, FaceSpec, Owner, Piece, Sensor, SensorKind, Sides,
+        Source, SourceId, Start,
     };
     use crate::transport::Run;
     use glam::DVec3;
@@ -167,7 +150,7 @@ mod tests {
     }
 
     /// Uneven light everywhere, different in every batch.
-    fn some_light(scene: &Scene) -> Readings {
+    fn some_light(scene: &Scene) -> Findings {
         readings(scene, 128, |index, layout, batch| {
             for (place, sum) in batch.groups[0].sums.iter_mut().enumerate() {
                 *sum = 1e-3 * ((place % 7 + 1) as f64 + (index % 5) as f64);
@@ -321,7 +304,7 @@ mod tests {
             while !run.is_complete() {
                 run.next_wave();
             }
-            let measures = measure(&scene, &run.readings());
+            let measures = measure(&scene, &run.findings());
             for (name, expected) in [
                 ("exit.illuminance_avg", avg),
                 ("exit.efficiency", avg * 4e-6),

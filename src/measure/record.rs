@@ -39,16 +39,20 @@ pub enum Status {
     TooFew,
     /// An extreme of a map that is mostly noise: the correction for it exceeds a tenth of the value.
     NoiseLimited,
+    /// The bias of a gathered value does not go with the square of the window as it should, or noise hides it: the
+    /// value is that of the smallest window, and the bias told is no bound.
+    BiasNotResolved,
 }
 
 impl Status {
-    /// The worse of two: the earlier in the order no signal, too few, noise limited, good.
+    /// The worse of two: the earlier in the order no signal, too few, noise limited, bias not resolved, good.
     pub(crate) fn worst(self, other: Self) -> Self {
         let rank = |status| match status {
             Self::NoSignal => 0,
             Self::TooFew => 1,
             Self::NoiseLimited => 2,
-            Self::Ok => 3,
+            Self::BiasNotResolved => 3,
+            Self::Ok => 4,
         };
         if rank(self) <= rank(other) { self } else { other }
     }
@@ -66,7 +70,11 @@ impl Measure {
             Status::Ok if self.value != 0.0 && self.value.is_finite() => {
                 (self.total_error() / self.value).abs()
             }
-            Status::Ok | Status::NoSignal | Status::TooFew | Status::NoiseLimited => f64::INFINITY,
+            Status::Ok
+            | Status::NoSignal
+            | Status::TooFew
+            | Status::NoiseLimited
+            | Status::BiasNotResolved => f64::INFINITY,
         }
     }
 }

@@ -7,7 +7,7 @@ use crate::scene::{
     Builder, Counts, Emission, EmitSide, Emitter, FaceSpec, Goniometer, Grid, Owner, Piece, Place,
     Scene, Sensor, SensorKind, Sides, Source, Start, SurfaceSensor, Views,
 };
-use crate::transport::{Layout, Readings};
+use crate::transport::{Findings, Layout, Readings};
 use crate::units::FluxUnit;
 use glam::{DVec2, DVec3};
 
@@ -107,7 +107,7 @@ pub(crate) fn readings(
     scene: &Scene,
     batches: u64,
     mut fill: impl FnMut(u64, &Layout, &mut Readings),
-) -> Readings {
+) -> Findings {
     let layout = Layout::new(scene);
     let mut all: Option<Readings> = None;
     for index in 0..batches {
@@ -119,7 +119,7 @@ pub(crate) fn readings(
             Some(sum) => sum.merge(&batch),
         });
     }
-    all.expect("tests ask for at least one batch")
+    Findings::forward(all.expect("tests ask for at least one batch"))
 }
 
 /// Adds to a scalar of a batch.

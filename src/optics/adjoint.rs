@@ -86,7 +86,7 @@ fn by_two_finishes(
         Side::Reflected => (own, reflected),
         Side::Transmitted => (behind, transmitted),
     };
-    let out = toward(bsdf, side, incidence, sampler)?;
+    let out = scatter_toward(bsdf, side, incidence, sampler)?;
     Some(Scattered { factor: out.factor * ((reflected + transmitted) / chance), ..out })
 }
 
@@ -119,8 +119,9 @@ fn chances(bsdf: &Bsdf, incidence: &Incidence) -> Shares {
     }
 }
 
-/// The part of the adjoint that goes to one side: the factor holds the share of that side.
-fn toward(
+/// The part of the adjoint that goes to one side: as [`scatter_radiance`], but the factor holds the share of that side.
+/// `bsdf` acts on the light that comes from there: the finish met for reflection, the one behind for transmission.
+pub fn scatter_toward(
     bsdf: &Bsdf,
     side: Side,
     incidence: &Incidence,
@@ -150,7 +151,7 @@ fn toward(
             let (mean, factor) = scattered_from(lobe, incidence, sampler)?;
             smooth_toward(side, &mean).map(|out| diffused(out, factor))
         }
-        Bsdf::Mixture(parts) => toward(pick(parts, sampler), side, incidence, sampler),
+        Bsdf::Mixture(parts) => scatter_toward(pick(parts, sampler), side, incidence, sampler),
     }
 }
 

@@ -12,7 +12,7 @@ mod medium;
 mod shares;
 mod spread;
 
-pub use adjoint::{Faces, scatter_radiance};
+pub use adjoint::{Faces, scatter_radiance, scatter_toward};
 pub use bsdf::{Bsdf, Incidence, Lobe, Scattered, Side};
 pub use evaluate::evaluate;
 pub use gaussian::Gaussian;

@@ -36,7 +36,7 @@ impl TargetProgress {
     /// How well the target of a job is known; `None` without one.
     pub(super) fn of(job: &Job, run: &Run<'_>) -> Option<Self> {
         let target = job.run.stop.target.as_ref()?;
-        let reached = measure::value_of(&job.scene, &run.readings(), &target.measure)?;
+        let reached = measure::value_of(&job.scene, &run.findings(), &target.measure)?;
         Some(Self { measure: target.measure.clone(), reached, wanted: target.relative_error })
     }
 }

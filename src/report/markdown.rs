@@ -60,6 +60,7 @@ fn remark(status: Status) -> &'static str {
         Status::NoSignal => " (nothing counted)",
         Status::TooFew => " (too few counts for an error bar)",
         Status::NoiseLimited => " (limited by noise)",
+        Status::BiasNotResolved => " (bias not resolved)",
     }
 }
 

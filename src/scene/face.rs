@@ -1,6 +1,6 @@
 //! Faces: the named parts of solids and sheets, and the smooth pieces they are made of.
 
-use crate::math::Frame;
+use crate::math::{Aabb, Frame};
 use crate::scene::mesh::Mesh;
 use crate::scene::shape::{ChartRect, Shape};
 use crate::scene::sweep::WallChart;
@@ -63,6 +63,14 @@ pub struct MeshBody {
     pub planes: Vec<Option<Frame>>,
     /// Number of its first triangle among all surfaces.
     pub first: usize,
+}
+
+impl MeshBody {
+    /// Box around it, mm.
+    pub fn bounds(&self) -> Aabb {
+        let triangles = (0..self.mesh.triangle_count()).map(|triangle| self.mesh.bounds(triangle));
+        triangles.fold(Aabb::EMPTY, Aabb::union)
+    }
 }
 
 /// A smooth piece of a face.

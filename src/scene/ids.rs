@@ -40,3 +40,21 @@ ids! {
     /// Something a ray can hit: a patch, or a triangle of a mesh (numbered after the patches).
     PrimId,
 }
+
+/// A smooth surface: tangent-continuous pieces of a face, or of a mesh, share one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct SmoothId(u64);
+
+impl SmoothId {
+    /// The surface `smooth` of a face or a mesh.
+    #[inline]
+    pub const fn of(owner: u32, smooth: u32) -> Self {
+        Self((owner as u64) << 32 | smooth as u64)
+    }
+
+    /// A number of its own.
+    #[inline]
+    pub fn key(self) -> u64 {
+        self.0
+    }
+}

@@ -5,7 +5,7 @@
 //! undeclared one, a sheet before a solid, the higher priority before the lower.
 
 use crate::scene::shape::Toward;
-use crate::scene::{FinishId, Hits, Inside, MediumId, Owner, PrimHit, Scene};
+use crate::scene::{FaceId, FinishId, Hits, Inside, MediumId, Owner, PrimHit, Scene};
 
 /// What light sees where faces meet.
 #[derive(Debug, Clone, Copy)]
@@ -105,11 +105,21 @@ impl Scene {
         }
     }
 
+    /// The finish that the acting face declares for light arriving from behind the interface.
+    pub fn finish_behind(&self, interface: &Interface<'_>) -> Option<FinishId> {
+        self.finish_against(interface.acting.face, interface.acting.toward.opposite())
+    }
+
     /// The finish that a face declares for light arriving at it.
     #[inline]
     fn declared_finish(&self, hit: &PrimHit) -> Option<FinishId> {
-        let face = &self.faces[hit.face.index()];
-        match hit.toward {
+        self.finish_against(hit.face, hit.toward)
+    }
+
+    #[inline]
+    fn finish_against(&self, face: FaceId, toward: Toward) -> Option<FinishId> {
+        let face = &self.faces[face.index()];
+        match toward {
             // Light going toward the front meets the back.
             Toward::Front => face.back,
             Toward::Back => face.front,

@@ -7,6 +7,8 @@
 //! This layer knows neither paths nor photons, and no file format.
 
 mod accel;
+mod area;
+mod arrivals;
 mod build;
 mod convex;
 mod emission;
@@ -28,11 +30,13 @@ mod source;
 pub mod sweep;
 
 pub use accel::Accel;
+pub use area::{AreaPoint, FaceArea};
+pub use arrivals::{Arrival, Arrivals, Begins};
 pub use build::{Builder, FaceSpec, Piece};
 pub use emission::{Emission, EmitterKind};
 pub use face::{Extent, Face, MeshBody, Owner, Patch};
 pub use grid::Grid;
-pub use ids::{FaceId, FinishId, MediumId, PrimId, SensorId, SolidId, SourceId};
+pub use ids::{FaceId, FinishId, MediumId, PrimId, SensorId, SmoothId, SolidId, SourceId};
 pub use inside::Inside;
 pub use interface::{Interface, Visibility};
 pub use intersect::{Hits, Just, PrimHit};

@@ -4,7 +4,7 @@ use crate::math::Frame;
 use crate::scene::Ray;
 use crate::scene::mesh::Line;
 use crate::scene::shape::{ChartRect, Crossing, Region, Shape, Start};
-use crate::scene::{Extent, FaceId, MeshBody, Owner, Patch, PrimId, Scene};
+use crate::scene::{Extent, FaceId, MeshBody, Owner, Patch, PrimId, Scene, SmoothId};
 use glam::{DVec2, DVec3};
 
 /// A surface that a ray can hit.
@@ -92,6 +92,20 @@ impl Scene {
         match self.surface(prim) {
             Surface::Patch(patch) => patch.shape.normal(point),
             Surface::Triangle(body, triangle) => body.mesh.facet_normal(triangle),
+        }
+    }
+
+    /// The smooth surface that a piece belongs to.
+    #[inline]
+    pub fn smooth(&self, prim: PrimId) -> SmoothId {
+        match self.surface(prim) {
+            // Patches are numbered within their face.
+            Surface::Patch(patch) => SmoothId::of(patch.face.index() as u32, patch.smooth),
+            // Triangles are numbered within their mesh; meshes count from the other end.
+            Surface::Triangle(body, triangle) => {
+                let mesh = self.meshes.partition_point(|other| other.first < body.first);
+                SmoothId::of(u32::MAX - mesh as u32, body.mesh.smooth_id(triangle))
+            }
         }
     }
 

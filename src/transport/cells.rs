@@ -49,6 +49,25 @@ impl Cells {
         }
     }
 
+    /// What a batch of its own would have counted that is `a` times this one and `b` times another of the same size.
+    pub(crate) fn combined(&self, [a, b]: [f64; 2], other: &Self) -> Self {
+        let mut sum = self.clone();
+        match &mut sum {
+            Self::Sparse(_, sums) => sums.values_mut().for_each(|own| own[0] *= a),
+            Self::Dense(sums) => sums.iter_mut().for_each(|own| own[0] *= a),
+        }
+        match other {
+            Self::Sparse(_, sums) => {
+                sums.iter().for_each(|(&cell, other)| sum.add(cell as usize, b * other[0]));
+            }
+            Self::Dense(sums) => {
+                let lit = sums.iter().enumerate().filter(|(_, other)| other[0] != 0.0);
+                lit.for_each(|(cell, other)| sum.add(cell, b * other[0]));
+            }
+        }
+        sum
+    }
+
     /// Ends a batch: its sums become its squares.
     pub fn close_batch(&mut self) {
         let square = |sum: &mut [f64; 2]| sum[1] = sum[0] * sum[0];

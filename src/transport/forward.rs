@@ -9,10 +9,10 @@ use crate::optics::Side;
 use crate::rng::Sampler;
 use crate::scene::shape::Toward;
 use crate::scene::{Counts, FaceId, Owner, Scene, SensorId, SourceId};
-use crate::transport::readings::{SensorReading, Step, Trail};
+use crate::transport::readings::{Counted, SensorReading, Step, Trail, count_totals};
 use crate::transport::watch::Watch;
 use crate::transport::{
-    Departure, Event, Layout, Leak, Path, Readings, Segment, TAILS, Vertex, Visitor, walk,
+    Departure, Event, Layout, Leak, Path, Readings, Segment, Vertex, Visitor, walk,
 };
 use std::ops::ControlFlow;
 use surfaces::Light;
@@ -49,9 +49,14 @@ impl<'s> Forward<'s> {
 
     /// Traces one batch.
     pub(crate) fn batch(&self, batch: u64) -> Readings {
+        self.batch_watched(batch, &mut ())
+    }
+
+    /// Traces one batch while someone watches its photons.
+    pub(crate) fn batch_watched(&self, batch: u64, watcher: &mut impl PhotonWatcher) -> Readings {
         let batch_paths = self.shares.iter().sum();
         let readings = Readings::of_batch(self.scene, &self.layout, self.seed, batch_paths, batch);
-        let mut counter = Counter::new(self, readings);
+        let mut counter = Counter::new(self, readings, watcher);
         let mut index = batch * batch_paths;
         for (source, &paths) in self.shares.iter().enumerate() {
             let source = SourceId::new(source);
@@ -93,9 +98,22 @@ fn shares(scene: &Scene, batch_paths: u64) -> Vec<u64> {
     }
 }
 
+/// Someone who sees photons as they arrive at interfaces.
+pub(crate) trait PhotonWatcher {
+    /// Sees a photon before the interface acts; `flux` is its flux at throughput 1, lm or W.
+    fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>, flux: f64, source: SourceId);
+}
+
+/// Nobody.
+impl PhotonWatcher for () {
+    #[inline(always)]
+    fn arrive(&mut self, _: &Path, _: &Vertex<'_>, _: f64, _: SourceId) {}
+}
+
 /// Counts one batch.
-struct Counter<'r, 's> {
+struct Counter<'r, 's, W> {
     run: &'r Forward<'s>,
+    watcher: &'r mut W,
     readings: Readings,
     /// The scalars of the readings, until it is finished.
     sums: Vec<f64>,
@@ -117,10 +135,11 @@ enum TravelStart {
     Interface,
 }
 
-impl<'r, 's> Counter<'r, 's> {
-    fn new(run: &'r Forward<'s>, mut readings: Readings) -> Self {
+impl<'r, 's, W: PhotonWatcher> Counter<'r, 's, W> {
+    fn new(run: &'r Forward<'s>, mut readings: Readings, watcher: &'r mut W) -> Self {
         Self {
             run,
+            watcher,
             sums: std::mem::take(&mut readings.groups[0].sums),
             readings,
             flux: 0.0,
@@ -171,6 +190,7 @@ impl<'r, 's> Counter<'r, 's> {
 
     #[inline(always)]
     fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>) {
+        self.watcher.arrive(path, vertex, self.flux, self.source);
         let light = Light {
             counts: Counts::Incident,
             dir: vertex.dir,
@@ -227,16 +247,9 @@ impl<'r, 's> Counter<'r, 's> {
 
     #[inline]
     fn count_totals(&mut self, path: &Path, id: SensorId, throughput: f64) {
-        let layout = self.run.layout;
-        self.add(layout.sensor_flux(id, self.source), throughput);
-        self.add(layout.depth_weighted(id), throughput * f64::from(path.depth));
-        for (tail, &depth) in TAILS.iter().enumerate() {
-            if path.depth <= depth {
-                break;
-            }
-            self.add(layout.deeper(id, tail), throughput);
-        }
         let flux = self.flux * throughput;
+        let light = Counted { flux, depth: path.depth, source: self.source };
+        count_totals(&mut self.sums, &self.run.layout, id, &light);
         let reading = &mut self.readings.sensors[id.index()];
         reading.depths.add(SensorReading::depth_bin(path.depth), flux);
         if self.classed {
@@ -264,7 +277,7 @@ impl<'r, 's> Counter<'r, 's> {
     }
 }
 
-impl Visitor for Counter<'_, '_> {
+impl<W: PhotonWatcher> Visitor for Counter<'_, '_, W> {
     #[inline(always)]
     fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
         let layout = self.run.layout;

@@ -2,22 +2,40 @@
 //!
 //! This layer knows no file format and no report. What it produces is one serialisable value, [`Readings`].
 
+mod backward;
 mod cells;
+mod coverage;
+mod emitters;
+mod estimate;
+mod findings;
+mod follow;
 mod forward;
+mod gather;
 mod layout;
 mod path;
 mod readings;
+mod records;
 mod rounds;
+mod scatter;
+mod settings;
+mod stages;
+mod sums;
 mod tracks;
 mod walk;
 mod watch;
+mod window;
 
 pub use cells::Cells;
+pub use emitters::invisible;
+pub use findings::{Findings, Gathered};
 pub use layout::{Layout, TAILS};
 pub use path::{Path, WAVELENGTH};
 pub use readings::{
     ClassSum, DEPTH_BINS, GROUPS, Group, Leak, Readings, SensorReading, Step, Trail,
 };
 pub use rounds::{Interrupt, Run};
+pub use settings::GatherSettings;
+pub use stages::{Stage, Windows};
 pub use tracks::{Track, TrackEnd, tracks};
-pub use walk::{Departure, Event, ROULETTE_BELOW, Segment, Vertex, Visitor, walk};
+pub use walk::{Carries, Departure, Event, ROULETTE_BELOW, Segment, Vertex, Visitor, walk};
+pub use window::Window;

@@ -1,6 +1,6 @@
 //! The state of a path.
 
-use crate::scene::{Emitted, Inside, MediumId, On, Ray, Scene, SourceId};
+use crate::scene::{Arrival, Emitted, Inside, MediumId, On, Ray, Scene, SourceId};
 
 /// Wavelength of all light for now, nm: the peak of V(λ), CIE 018:2019.
 pub const WAVELENGTH: f64 = 555.0;
@@ -14,8 +14,8 @@ pub struct Path {
     pub throughput: f64,
     /// Wavelength, nm.
     pub wavelength: f64,
-    /// Where its light comes from.
-    pub source: SourceId,
+    /// Where its light comes from; unknown of a gather path.
+    pub source: Option<SourceId>,
     /// The solids it is in.
     pub inside: Inside,
     /// The medium it is in.
@@ -33,11 +33,31 @@ impl Path {
             ray: emitted.ray,
             throughput: 1.0,
             wavelength: WAVELENGTH,
-            source,
+            source: Some(source),
             medium: scene.medium_in(&emitted.inside),
             inside: emitted.inside,
             on: emitted.on.into(),
             depth: 0,
         }
+    }
+
+    /// A gather path at its sensor.
+    pub fn arriving(scene: &Scene, arrival: &Arrival) -> Self {
+        Self {
+            ray: arrival.ray,
+            throughput: 1.0,
+            wavelength: WAVELENGTH,
+            source: None,
+            medium: scene.medium_in(&arrival.inside),
+            inside: arrival.inside.clone(),
+            on: arrival.on.into(),
+            depth: 0,
+        }
+    }
+
+    /// n² of the medium it is in times |cos θ| dA dω: etendue, mm² sr.
+    pub fn etendue(&self, scene: &Scene, extent: f64) -> f64 {
+        let index = scene.media[self.medium.index()].index(self.wavelength);
+        index * index * extent
     }
 }

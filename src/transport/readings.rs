@@ -5,9 +5,9 @@
 //! Batches are folded in a fixed binary tree over their index: a range of batches gives the same bits wherever it was
 //! traced.
 
-use crate::scene::Scene;
+use crate::scene::{Scene, SensorId, SourceId};
 use crate::tally::Tally;
-use crate::transport::{Cells, Layout};
+use crate::transport::{Cells, Layout, TAILS};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
@@ -147,6 +147,22 @@ impl Readings {
         }
     }
 
+    /// The batch that would have counted `a` times this one and `b` times another of the same paths; not yet closed.
+    pub(crate) fn combined(&self, [a, b]: [f64; 2], other: &Self) -> Self {
+        let mut sum = self.clone();
+        for (own, other) in sum.groups.iter_mut().zip(&other.groups) {
+            own.sums
+                .iter_mut()
+                .zip(&other.sums)
+                .for_each(|(own, other)| *own = a * *own + b * other);
+        }
+        for (own, other) in sum.sensors.iter_mut().zip(&other.sensors) {
+            own.cells = own.cells.combined([a, b], &other.cells);
+            own.depths = own.depths.combined([a, b], &other.depths);
+        }
+        sum
+    }
+
     /// Adds the batches that follow directly.
     pub fn merge(mut self, later: &Self) -> Self {
         debug_assert_eq!(self.batches.end, later.batches.start, "batches are merged in order");
@@ -170,6 +186,22 @@ impl Readings {
         let room = LEAK_LIMIT.saturating_sub(self.leaks.len());
         self.leaks.extend(later.leaks.iter().take(room).cloned());
         self
+    }
+
+    /// Counts light that a gather path brought to some cells of a sensor, in a batch.
+    pub(crate) fn count(
+        &mut self,
+        layout: &Layout,
+        id: SensorId,
+        cells: &[usize],
+        light: &Counted,
+    ) {
+        let reading = &mut self.sensors[id.index()];
+        for &cell in cells {
+            reading.cells.add(cell, light.flux);
+        }
+        reading.depths.add(SensorReading::depth_bin(light.depth), light.flux);
+        count_totals(&mut self.groups[0].sums, layout, id, light);
     }
 
     /// A scalar as a mean over groups, with its standard error.
@@ -196,6 +228,28 @@ impl Readings {
         // The jackknife's variance is (g - 1)² that of the mean of the leave-one-out values.
         let groups = self.groups.len() as f64;
         (value, without.std_error() * (groups - 1.0))
+    }
+}
+
+/// Light that has come to a sensor.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Counted {
+    /// Its flux, lm or W.
+    pub(crate) flux: f64,
+    /// Interfaces met on its way.
+    pub(crate) depth: u32,
+    /// Where it comes from.
+    pub(crate) source: SourceId,
+}
+
+/// Adds light to the scalars of a sensor.
+#[inline(always)]
+pub(crate) fn count_totals(sums: &mut [f64], layout: &Layout, id: SensorId, light: &Counted) {
+    let &Counted { flux, depth, source } = light;
+    sums[layout.sensor_flux(id, source)] += flux;
+    sums[layout.depth_weighted(id)] += flux * f64::from(depth);
+    for (tail, _) in TAILS.iter().enumerate().take_while(|(_, tail)| depth > **tail) {
+        sums[layout.deeper(id, tail)] += flux;
     }
 }
 

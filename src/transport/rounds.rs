@@ -1,16 +1,21 @@
-//! Rounds of work: bounded waves of batches over all threads, folded in a fixed order.
+//! Rounds of work: bounded waves of batches over all threads, summed in a fixed order.
 //!
-//! A wave is one batch of each group: stop rules act after whole waves, so that asking for the number of paths that
-//! a run did repeats it. Waves are traced in pieces, between which a run can be interrupted. Batches are folded in a binary
-//! tree over their index, whatever thread traced them and in whatever pieces they came, so the result has the same
-//! bits for any number of threads. Only the partial sums of that tree are kept: memory does not grow with the number
-//! of paths.
+//! A batch holds photon paths and, where sensors are estimated backward or by gathering, gather paths. Stop rules act
+//! after whole waves, so that asking for the number of paths that a run did repeats it. Waves are traced in pieces,
+//! between which a run can be interrupted. A wave is one batch of each group, or, with gathering, some passes.
 
-use crate::scene::Scene;
-use crate::scene::plan::RunPlan;
+use crate::scene::plan::{Estimator, Request, RunPlan};
+use crate::scene::{Scene, SensorId};
 use crate::transport::Readings;
+use crate::transport::backward::Backward;
+use crate::transport::findings::{Findings, Gathered};
 use crate::transport::forward::Forward;
+use crate::transport::gather::Gather;
 use crate::transport::readings::GROUPS;
+use crate::transport::settings::{PhotonPilot, settle};
+use crate::transport::stages::{FIRST_PASSES, Stages};
+use crate::transport::sums::Sums;
+use crate::transport::window::NESTED;
 use rayon::prelude::*;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -41,16 +46,30 @@ impl Interrupt {
     }
 }
 
+/// Share of the work of a backward run that goes to photons, for the balance and what is beside the aim, 1.
+const PHOTON_SHARE: f64 = 0.1;
+
 /// A run in progress.
 #[derive(Debug)]
 pub struct Run<'s> {
+    estimators: Vec<Estimator>,
     forward: Forward<'s>,
-    /// Partial sums of the tree over whole waves.
-    done: Vec<Readings>,
-    /// Partial sums of the tree over the batches of the wave in progress.
-    wave: Vec<Readings>,
+    photons: Sums<Readings>,
+    backward: Option<(Backward<'s>, Sums<Readings>)>,
+    stages: Option<Stages<'s>>,
     waves: u64,
-    last_wave: Option<u64>,
+    /// Batches of a wave.
+    wave_batches: u64,
+    /// Paths of whole waves.
+    paths: u64,
+    paths_asked: Option<u64>,
+}
+
+/// What a batch has counted.
+struct Batch {
+    photons: Readings,
+    backward: Option<Readings>,
+    windows: Option<[Readings; NESTED]>,
 }
 
 impl<'s> Run<'s> {
@@ -59,37 +78,95 @@ impl<'s> Run<'s> {
         let forward = |limit, paths| Forward::new(scene, plan.seed, limit, paths);
         let pilot = forward(plan.bounce_limit.min(PILOT_BOUNCES), PILOT_PATHS).batch(0);
         let segments = pilot.segments.div_ceil(pilot.paths().max(1)).max(1);
+        let estimators = vec![requested(plan.estimator); scene.sensors.len()];
+        let of = |wanted: Estimator| -> Vec<SensorId> {
+            let all = estimators.iter().enumerate();
+            all.filter(|(_, own)| **own == wanted).map(|(index, _)| SensorId::new(index)).collect()
+        };
+        let gathered = of(Estimator::Gather);
+        let stages = (!gathered.is_empty()).then(|| {
+            let pilot = PhotonPilot { segments_per_path: segments as f64 };
+            let settings = settle(scene, &plan.gather, &gathered, plan.seed, pilot);
+            Stages::new(Gather::new(scene, &gathered, plan.seed, settings.depth), settings)
+        });
+        let followed = of(Estimator::Backward);
         // A path of each source at least.
         let sources = scene.sources.len().max(1) as u64;
-        let usual = (BATCH_SEGMENTS / segments).clamp(1, BATCH_PATHS).max(sources);
-        let waves = plan.stop.paths.map(|paths| paths.div_ceil(GROUPS * usual).max(1));
-        let batch_paths = match (plan.stop.paths, waves) {
-            (Some(paths), Some(waves)) => paths.div_ceil(GROUPS * waves).max(sources),
-            _ => usual,
+        let usual = (BATCH_SEGMENTS / segments).clamp(1, BATCH_PATHS);
+        let backward = (!followed.is_empty()).then(|| {
+            let paths = (usual / followed.len() as u64).max(1);
+            Backward::new(scene, &followed, plan.seed, plan.bounce_limit, paths)
+        });
+        let wave_batches = if stages.is_some() { FIRST_PASSES } else { GROUPS };
+        let photons = match (&stages, &backward) {
+            (Some(stages), _) => stages.settings.photons,
+            (None, Some(_)) => (PHOTON_SHARE * usual as f64).ceil() as u64,
+            (None, None) => {
+                let waves = plan.stop.paths.map(|paths| paths.div_ceil(GROUPS * usual).max(1));
+                plan.stop
+                    .paths
+                    .zip(waves)
+                    .map_or(usual, |(paths, waves)| paths.div_ceil(GROUPS * waves))
+            }
         };
         Self {
-            forward: forward(plan.bounce_limit, batch_paths),
-            done: Vec::new(),
-            wave: Vec::new(),
+            estimators,
+            forward: forward(plan.bounce_limit, photons.max(sources)),
+            photons: Sums::new(),
+            backward: backward.map(|backward| (backward, Sums::new())),
+            stages,
             waves: 0,
-            last_wave: waves,
+            wave_batches,
+            paths: 0,
+            paths_asked: plan.stop.paths,
         }
     }
 
     /// Traces the next piece of a wave: a few batches for each thread.
     pub fn next_piece(&mut self) {
-        let first = self.batches_of_wave();
-        let piece = PIECE_BATCHES * rayon::current_num_threads() as u64;
-        let end = (first + piece).min(GROUPS);
-        let before = self.waves * GROUPS;
-        let batches: Vec<Readings> = (before + first..before + end)
-            .into_par_iter()
-            .map(|batch| self.forward.batch(batch))
-            .collect();
-        batches.into_iter().for_each(|batch| fold(&mut self.wave, batch));
-        if end == GROUPS {
-            self.wave.drain(..).for_each(|wave| fold(&mut self.done, wave));
-            self.waves += 1;
+        let first = self.photons.batches_of_wave();
+        let per_thread = if self.stages.is_some() { 1 } else { PIECE_BATCHES };
+        let piece = per_thread * rayon::current_num_threads() as u64;
+        let end = (first + piece).min(self.wave_batches);
+        let before = self.waves * self.wave_batches;
+        let batches: Vec<Batch> =
+            (before + first..before + end).into_par_iter().map(|batch| self.batch(batch)).collect();
+        batches.into_iter().for_each(|batch| self.add(batch));
+        if end == self.wave_batches {
+            self.end_wave();
+        }
+    }
+
+    fn batch(&self, batch: u64) -> Batch {
+        let backward = self.backward.as_ref().map(|(backward, _)| backward.batch(batch));
+        match &self.stages {
+            None => Batch { photons: self.forward.batch(batch), backward, windows: None },
+            Some(stages) => {
+                let pass = stages.gather.pass(&self.forward, stages.pass(batch));
+                Batch { photons: pass.photons, backward, windows: Some(pass.windows) }
+            }
+        }
+    }
+
+    fn add(&mut self, batch: Batch) {
+        if let (Some(stages), Some(windows)) = (&mut self.stages, batch.windows) {
+            stages.push(windows);
+        }
+        if let (Some((_, sums)), Some(backward)) = (&mut self.backward, batch.backward) {
+            sums.push(backward);
+        }
+        self.photons.push(batch.photons);
+    }
+
+    fn end_wave(&mut self) {
+        self.paths += self.wave_batches * self.batch_paths();
+        self.waves += 1;
+        self.photons.end_wave();
+        if let Some((_, sums)) = &mut self.backward {
+            sums.end_wave();
+        }
+        if let Some(stages) = &mut self.stages {
+            stages.end_wave();
         }
     }
 
@@ -101,10 +178,24 @@ impl<'s> Run<'s> {
         }
     }
 
-    /// Waves after which the next test of the stop rules is due: rounds grow by a quarter.
+    /// Waves after which the next test of the stop rules is due: rounds grow by a quarter; with gathering they double
+    /// the passes of a stage, and end with it.
     pub fn round_end(&self) -> u64 {
-        let next = (self.waves + 1).max(self.waves * 5 / 4);
-        self.last_wave.map_or(next, |last| next.min(last))
+        let waves = self.waves;
+        match &self.stages {
+            None => {
+                let next = (waves + 1).max(waves * 5 / 4);
+                self.paths_asked.map_or(next, |paths| {
+                    next.min(paths.div_ceil(self.wave_batches * self.batch_paths()))
+                })
+            }
+            Some(stages) => {
+                let (passes, planned) = (stages.passes(), stages.planned_passes());
+                let doubled = (2 * passes).max(FIRST_PASSES);
+                let end = if passes < planned { doubled.min(planned) } else { doubled };
+                waves + (end - passes).div_ceil(FIRST_PASSES)
+            }
+        }
     }
 
     /// Whole waves traced so far.
@@ -114,51 +205,67 @@ impl<'s> Run<'s> {
 
     /// Whether no wave is in progress.
     pub fn is_between_waves(&self) -> bool {
-        self.wave.is_empty()
+        self.photons.batches_of_wave() == 0
     }
 
     /// Whether all paths that were asked for have been traced.
     pub fn is_complete(&self) -> bool {
-        self.last_wave.is_some_and(|last| self.waves >= last)
+        self.paths_asked.is_some_and(|asked| self.paths >= asked)
     }
 
     /// Paths traced so far, those of a wave in progress included.
     pub fn paths(&self) -> u64 {
-        (self.waves * GROUPS + self.batches_of_wave()) * self.batch_paths()
+        self.paths + self.photons.batches_of_wave() * self.batch_paths()
     }
 
     /// Paths asked for, rounded up to whole batches; `None` without such a rule.
     pub fn planned_paths(&self) -> Option<u64> {
-        self.last_wave.map(|last| last * GROUPS * self.batch_paths())
+        let wave = self.wave_batches * self.batch_paths();
+        let left = |asked: u64| asked.saturating_sub(self.paths).div_ceil(wave) * wave;
+        self.paths_asked.map(|asked| self.paths + left(asked))
     }
 
-    /// Everything counted in whole waves, so that all groups have equally many batches; in a first wave that was
-    /// stopped, in all of its batches so far. At least one piece has been traced.
-    pub fn readings(&self) -> Readings {
-        let partial = if self.done.is_empty() { &self.wave } else { &self.done };
-        let mut partial = partial.iter().rev();
-        let mut sum = partial.next().expect("a piece has been traced").clone();
-        // The right edge of the tree: smaller subtrees join the larger ones on their left.
-        for left in partial {
-            sum = left.clone().merge(&sum);
+    /// Whether the stage of the gather method in progress has the passes it was planned for.
+    pub fn may_end_stage(&self) -> bool {
+        self.stages.as_ref().is_some_and(|stages| stages.passes() >= stages.planned_passes())
+    }
+
+    /// Goes on to the next stage of the gather method: a smaller window.
+    pub fn next_stage(&mut self) {
+        if let Some(stages) = &mut self.stages {
+            stages.next_stage();
         }
-        sum
     }
 
-    fn batches_of_wave(&self) -> u64 {
-        self.wave.iter().map(Readings::batch_count).sum()
+    /// Everything counted in whole waves; in a first wave that was stopped, in all of its batches so far. At least one
+    /// piece has been traced.
+    pub fn findings(&self) -> Findings {
+        Findings {
+            photons: self.photons.total().expect("a piece has been traced"),
+            backward: self.backward.as_ref().and_then(|(_, sums)| sums.total()),
+            merged: None,
+            gathered: self
+                .stages
+                .as_ref()
+                .map(|stages| Gathered { settings: stages.settings, stages: stages.found() }),
+            estimators: self.estimators.clone(),
+        }
     }
 
     fn batch_paths(&self) -> u64 {
-        self.forward.shares.iter().sum()
+        let photons: u64 = self.forward.shares.iter().sum();
+        let backward = self.backward.as_ref().map_or(0, |(backward, _)| backward.batch_paths());
+        let gather = self.stages.as_ref().map_or(0, Stages::batch_paths);
+        photons + backward + gather
     }
 }
 
-/// Adds a node to the partial sums of a tree, each of which covers a power of two of batches, larger ones first;
-/// neighbours that cover equally many become one.
-fn fold(partial: &mut Vec<Readings>, mut node: Readings) {
-    while let Some(left) = partial.pop_if(|left| left.batch_count() == node.batch_count()) {
-        node = left.merge(&node);
+/// The estimator of all sensors that a request names.
+fn requested(request: Request) -> Estimator {
+    match request {
+        Request::Auto | Request::Forward => Estimator::Forward,
+        Request::Backward => Estimator::Backward,
+        Request::Gather => Estimator::Gather,
+        Request::Mis => Estimator::Mis,
     }
-    partial.push(node);
 }

@@ -2,11 +2,11 @@
 //!
 //! It does not know what is counted: the forward estimator counts photons, a gather path would look for its end.
 
-use crate::optics::{Bsdf, Incidence, Lobe, Scattered, Side};
+use crate::optics::{Lobe, Scattered, Side};
 use crate::rng::{Dimension, Sampler};
-use crate::scene::shape::Toward;
-use crate::scene::{Hits, Interface, MediumId, On, Ray, Scene, Surface, Visibility};
+use crate::scene::{Hits, Interface, MediumId, On, Ray, Scene, Visibility};
 use crate::transport::Path;
+use crate::transport::scatter::{scatter, scatter_radiance};
 use glam::DVec3;
 use std::ops::ControlFlow;
 
@@ -53,6 +53,8 @@ pub struct Departure {
     pub throughput: f64,
     /// Reflected or transmitted.
     pub side: Side,
+    /// Discrete or drawn.
+    pub lobe: Lobe,
 }
 
 /// What happens to a path, in this order: travel, arrive, depart, travel, ...
@@ -76,8 +78,20 @@ pub enum Event<'a> {
     Leaked(&'a Ray, f64),
 }
 
-/// Someone who watches a path; a closure is one.
+/// What a path carries from interface to interface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Carries {
+    /// Flux, with the light: photon paths.
+    Flux,
+    /// Basic radiance L/n², against the light: gather paths.
+    Radiance,
+}
+
+/// Someone who watches a path; a closure is one, of photon paths.
 pub trait Visitor {
+    /// What the paths carry that it watches.
+    const CARRIES: Carries = Carries::Flux;
+
     /// Sees what happens; a break ends the path. Inlined into the loop it saves a tenth of a mirror bounce.
     fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()>;
 }
@@ -91,12 +105,12 @@ impl<F: FnMut(&Path, Event<'_>) -> ControlFlow<()>> Visitor for F {
 
 /// Follows a path until it ends or the visitor breaks.
 #[inline]
-pub fn walk(
+pub fn walk<V: Visitor>(
     scene: &Scene,
     mut path: Path,
     bounce_limit: u32,
     sampler: &mut Sampler,
-    visitor: &mut impl Visitor,
+    visitor: &mut V,
 ) {
     // A copy of the path's that no visitor sees: it stays in registers from bounce to bounce.
     let mut ray = path.ray;
@@ -148,13 +162,13 @@ pub fn walk(
 
 /// Takes a path through the interface it has met: the ray on which it goes on.
 #[inline(always)]
-fn bounce(
+fn bounce<V: Visitor>(
     scene: &Scene,
     path: &mut Path,
     ray: &Ray,
     hits: &Hits,
     sampler: &mut Sampler,
-    visitor: &mut impl Visitor,
+    visitor: &mut V,
 ) -> ControlFlow<(), Ray> {
     let interface = scene.interface(hits, &path.inside, path.medium);
     let (point, dir) = (ray.at(hits.distance()), ray.dir());
@@ -164,7 +178,11 @@ fn bounce(
         Visibility::Invisible => straight_on(dir),
         Visibility::Visible => {
             path.depth += 1;
-            let Some(out) = scatter(scene, path, &interface, point, dir, sampler) else {
+            let out = match V::CARRIES {
+                Carries::Flux => scatter(scene, path, &interface, point, dir, sampler),
+                Carries::Radiance => scatter_radiance(scene, path, &vertex, sampler),
+            };
+            let Some(out) = out else {
                 visitor.see(path, Event::Absorbed(&vertex))?;
                 return ControlFlow::Break(());
             };
@@ -175,7 +193,8 @@ fn bounce(
     let next = Ray::new(point, out.dir);
     path.ray = next;
     path.throughput *= out.factor;
-    let departure = Departure { dir: next.dir(), throughput: path.throughput, side: out.side };
+    let Scattered { side, lobe, .. } = out;
+    let departure = Departure { dir: next.dir(), throughput: path.throughput, side, lobe };
     visitor.see(path, Event::Depart(&vertex, &departure))?;
     if out.side == Side::Transmitted {
         path.medium = interface.to;
@@ -186,50 +205,4 @@ fn bounce(
 
 fn straight_on(dir: DVec3) -> Scattered {
     Scattered { dir, factor: 1.0, side: Side::Transmitted, lobe: Lobe::Specular }
-}
-
-/// Asks the acting finish.
-#[inline(always)]
-fn scatter(
-    scene: &Scene,
-    path: &Path,
-    interface: &Interface<'_>,
-    point: DVec3,
-    dir: DVec3,
-    sampler: &mut Sampler,
-) -> Option<Scattered> {
-    let toward = interface.acting.toward;
-    let index = |medium: MediumId| scene.media[medium.index()].index(path.wavelength);
-    let (index_from, index_to) = (index(interface.from), index(interface.to));
-    let bsdf =
-        interface.finish.map_or(&Bsdf::Smooth, |finish| &scene.finishes[finish.index()].bsdf);
-    match scene.surface(interface.acting.prim) {
-        Surface::Patch(patch) => {
-            let normal = patch.shape.normal_against(toward, point);
-            bsdf.scatter(&Incidence { dir, normal, index_from, index_to }, sampler)
-        }
-        Surface::Triangle(body, triangle) => {
-            let facing = |outward: DVec3| match toward {
-                Toward::Front => -outward,
-                Toward::Back => outward,
-            };
-            let facet = facing(body.mesh.facet_normal(triangle));
-            let shading = facing(body.mesh.shading_normal(triangle, point));
-            // An interpolated normal may face away from grazing light; then the facet's own is taken.
-            let normal = if shading.dot(dir) < 0.0 { shading } else { facet };
-            let out = bsdf.scatter(&Incidence { dir, normal, index_from, index_to }, sampler)?;
-            Some(kept_on_its_side(out, facet))
-        }
-    }
-}
-
-/// With an interpolated normal light may leave into the facet that it should leave: it is mirrored once more about
-/// the facet.
-fn kept_on_its_side(out: Scattered, facet: DVec3) -> Scattered {
-    let along = out.dir.dot(facet);
-    let wrong = match out.side {
-        Side::Reflected => along < 0.0,
-        Side::Transmitted => along > 0.0,
-    };
-    if wrong { Scattered { dir: out.dir - 2.0 * along * facet, ..out } } else { out }
 }

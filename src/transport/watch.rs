@@ -60,10 +60,7 @@ impl OnPort<'_> {
     /// Whether a segment comes near the port; most do not, and are not asked further.
     #[inline(always)]
     pub(crate) fn may_be_crossed(&self, segment: &Segment<'_>) -> bool {
-        let (start, end) = (segment.ray.origin(), segment.ray.at(segment.length));
-        // Written so that an undefined end, of a ray along a plane of coordinates that meets nothing, is near.
-        !(start.max(end).cmplt(self.bounds.min).any()
-            || start.min(end).cmpgt(self.bounds.max).any())
+        self.bounds.is_near(segment.ray.origin(), segment.ray.at(segment.length))
     }
 }
 

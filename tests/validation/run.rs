@@ -5,7 +5,7 @@ use lumiduct::input::{self, Job, Settings};
 use lumiduct::measure::{self, Measure};
 use lumiduct::scene::plan::{Check, RunPlan, StopRules};
 use lumiduct::tally::sigmas;
-use lumiduct::transport::{Readings, Run};
+use lumiduct::transport::{Findings, Run};
 use std::path::{Path, PathBuf};
 
 /// Paths after which a run that has not reached its errors has failed.
@@ -63,13 +63,13 @@ pub(crate) fn run(case: &Case, variant: &Variant, seed: u64) -> Vec<Finding> {
         .enumerate()
         .map(|(place, value)| Wanted::new(&job, place, value, variant))
         .collect();
-    let (readings, reached) = trace(&job, &wanted);
-    let mut faults = books(&job, &readings);
+    let (findings, reached) = trace(&job, &wanted);
+    let mut faults = books(&job, &findings);
     if !reached {
         faults.push("the error of its class was not reached".to_owned());
     }
     let mut findings: Vec<Finding> =
-        wanted.iter().map(|wanted| judge(case, &job, &readings, wanted)).collect();
+        wanted.iter().map(|wanted| judge(case, &job, &findings, wanted)).collect();
     findings[0].faults.append(&mut faults);
     if let Some(first) = findings.iter_mut().find(|finding| finding.deviation.is_some()) {
         first.independent = true;
@@ -106,30 +106,30 @@ impl<'a> Wanted<'a> {
     }
 
     /// The standard error, over the one that must be reached.
-    fn error_left(&self, job: &Job, readings: &Readings) -> f64 {
-        let error = self.measure(job, readings).total_error();
+    fn error_left(&self, job: &Job, findings: &Findings) -> f64 {
+        let error = self.measure(job, findings).total_error();
         if error.is_finite() { error / self.std_error } else { f64::INFINITY }
     }
 
-    fn measure(&self, job: &Job, readings: &Readings) -> Measure {
+    fn measure(&self, job: &Job, findings: &Findings) -> Measure {
         let name = &self.check.measure;
-        measure::value_of(&job.scene, readings, name)
+        measure::value_of(&job.scene, findings, name)
             .unwrap_or_else(|| panic!("{}: no measure `{name}`", job.name))
     }
 }
 
 /// Traces whole rounds until all errors are reached, or too many paths are traced.
-fn trace(job: &Job, wanted: &[Wanted<'_>]) -> (Readings, bool) {
+fn trace(job: &Job, wanted: &[Wanted<'_>]) -> (Findings, bool) {
     // Which errors are reached is looked at here, not by a rule of the scene.
     let plan = RunPlan { stop: StopRules::default(), ..job.run.clone() };
     let mut run = Run::new(&job.scene, &plan);
     loop {
         run.next_wave();
-        let readings = run.readings();
-        let most = |most: f64, wanted: &Wanted<'_>| most.max(wanted.error_left(job, &readings));
+        let findings = run.findings();
+        let most = |most: f64, wanted: &Wanted<'_>| most.max(wanted.error_left(job, &findings));
         let left = wanted.iter().fold(0.0, most);
         if left <= 1.0 || run.paths() > MOST_PATHS {
-            return (readings, left <= 1.0);
+            return (findings, left <= 1.0);
         }
         // Errors fall as one over the square root of the paths: no look before half of what is missing is traced.
         let missing = run.waves() as f64 * (left * left - 1.0);
@@ -140,11 +140,11 @@ fn trace(job: &Job, wanted: &[Wanted<'_>]) -> (Readings, bool) {
 }
 
 /// Faults in the books of a run: light lost in the geometry, or a balance that does not close.
-fn books(job: &Job, readings: &Readings) -> Vec<String> {
-    let balance = measure::measure(&job.scene, readings).balance;
+fn books(job: &Job, findings: &Findings) -> Vec<String> {
+    let balance = measure::measure(&job.scene, findings).balance;
     let mut faults = Vec::new();
     if balance.leaked.value != 0.0 {
-        faults.push(format!("leaked {} at {:?}", balance.leaked, readings.leaks));
+        faults.push(format!("leaked {} at {:?}", balance.leaked, findings.photons.leaks));
     }
     if balance.residual.value.abs() > BALANCE * job.scene.source_flux() {
         faults.push(format!("the balance is open by {:e}", balance.residual.value));
@@ -152,9 +152,9 @@ fn books(job: &Job, readings: &Readings) -> Vec<String> {
     faults
 }
 
-fn judge(case: &Case, job: &Job, readings: &Readings, wanted: &Wanted<'_>) -> Finding {
+fn judge(case: &Case, job: &Job, findings: &Findings, wanted: &Wanted<'_>) -> Finding {
     let Wanted { value, check, name, uncertainty, .. } = wanted;
-    let ours = normalised(wanted.measure(job, readings), value.per);
+    let ours = normalised(wanted.measure(job, findings), value.per);
     let mut faults = Vec::new();
     let mut deviation = None;
     // Zero within so much is a limit for what is never negative.

@@ -5,7 +5,7 @@
 use crate::optics::Side;
 use crate::scene::shape::{Crossing, Start, Toward};
 use crate::scene::{Counts, Owner, PrimHit, SensorId, SurfaceSensor};
-use crate::transport::forward::{Counter, TravelStart};
+use crate::transport::forward::{Counter, PhotonWatcher, TravelStart};
 use crate::transport::watch::OnPort;
 use crate::transport::{Path, Segment, Vertex};
 use glam::{DVec2, DVec3};
@@ -29,7 +29,7 @@ struct Seen {
     dir: DVec3,
 }
 
-impl<'s> Counter<'_, 's> {
+impl<'s, W: PhotonWatcher> Counter<'_, 's, W> {
     /// Counts light that passes through ports and out of goniometers on its way.
     #[inline(never)]
     pub(super) fn travel_watched(&mut self, path: &Path, segment: &Segment<'_>) {

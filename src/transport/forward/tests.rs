@@ -80,7 +80,7 @@ fn run(scene: &Scene, paths: u64) -> Readings {
     while !run.is_complete() {
         run.next_wave();
     }
-    run.readings()
+    run.findings().photons
 }
 
 #[test]

@@ -1,0 +1,114 @@
+//! Values of the gather method: which stage gives them, and whether their bias is known.
+//!
+//! Within nested windows of size 1, 1/√2 and 1/2 the same photons give E1, E2 and E3. A bias that goes with the square
+//! of the window, as that of a smooth field does, has (E1 - E2)/(E2 - E3) = 2. Where that is found, within its error
+//! and out of the noise, 2 E2 - E1 is the value; otherwise E3 is, and its bias is not resolved. |E1 - E2| is the
+//! indicator of bias in both cases. All is decided once per sensor and stage, from its flux, never per cell.
+
+use crate::measure::evidence::Evidence;
+use crate::measure::flux::flux_slots;
+use crate::measure::{Measure, Status};
+use crate::scene::SensorId;
+use crate::scene::plan::Estimator;
+use crate::tally::Tally;
+use crate::transport::{Findings, Stage, Windows};
+use serde::Serialize;
+
+/// Standard errors that E2 - E3 has to exceed to count as more than noise.
+const OUT_OF_NOISE: f64 = 2.0;
+/// Standard errors within which (E1 - E2) - 2 (E2 - E3) has to be nothing.
+const WITHIN: f64 = 2.0;
+/// Deviation of the ratio from 2 that is let pass however well it is known, 1: higher orders of the window's size.
+const RATIO_TOLERANCE: f64 = 0.15;
+
+/// What is known about the bias of a sensor's values.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Resolution {
+    /// It goes with the square of the window: it has been extrapolated away, and the rest is smaller.
+    Resolved,
+    /// It does not, or noise hides it.
+    NotResolved,
+}
+
+/// A stage that speaks for a sensor.
+pub(crate) struct Judged<'a> {
+    photons: Evidence<'a>,
+    pub(crate) stage: &'a Stage,
+    pub(crate) resolution: Resolution,
+}
+
+/// The stage with the least total error of a sensor's flux.
+pub(crate) fn judged<'a>(
+    photons: Evidence<'a>,
+    findings: &'a Findings,
+    id: SensorId,
+) -> Option<Judged<'a>> {
+    let slots = flux_slots(&photons, id);
+    let stages = findings.gathered.as_ref()?.stages.iter();
+    let with_error = stages.map(|stage| {
+        let resolution = resolution(&stage.windows, &slots);
+        (total_error(&stage.windows, resolution, &slots), Judged { photons, stage, resolution })
+    });
+    with_error.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, judged)| judged)
+}
+
+impl<'a> Judged<'a> {
+    /// The evidence of the value, and that within the wide and the middle window.
+    pub(crate) fn evidences(&self) -> [Evidence<'a>; 3] {
+        let Windows { wide, middle, narrow, extrapolated } = &self.stage.windows;
+        let value = match self.resolution {
+            Resolution::Resolved => extrapolated,
+            Resolution::NotResolved => narrow,
+        };
+        [value, wide, middle].map(|readings| self.photons.by(readings, Estimator::Gather))
+    }
+
+    /// Tells the bias of a measure by what it is within the two wider windows.
+    pub(crate) fn tell_bias(&self, measure: &mut Measure, wide: &Measure, middle: &Measure) {
+        if measure.estimator != Estimator::Gather {
+            return;
+        }
+        let delta = (wide.value - middle.value).abs();
+        if delta.is_finite() {
+            measure.bias = Some(measure.bias.unwrap_or(0.0).hypot(delta));
+        }
+        if self.resolution == Resolution::NotResolved {
+            measure.status = measure.status.worst(Status::BiasNotResolved);
+        }
+    }
+}
+
+/// Whether the bias of the sum of some scalars is resolved.
+fn resolution(windows: &Windows, slots: &[usize]) -> Resolution {
+    let outer = difference(windows, slots, |[e1, e2, _]| e1 - e2).mean();
+    let inner = difference(windows, slots, |[_, e2, e3]| e2 - e3);
+    let curved = difference(windows, slots, |[e1, e2, e3]| e1 - 3.0 * e2 + 2.0 * e3);
+    let seen = inner.mean().abs() > OUT_OF_NOISE * inner.std_error();
+    let room = (WITHIN * curved.std_error()).max(RATIO_TOLERANCE * inner.mean().abs());
+    // Noise must not be all that lets the ratio pass: both differences have one sign.
+    let quadratic = curved.mean().abs() <= room && outer * inner.mean() > 0.0;
+    if seen && quadratic { Resolution::Resolved } else { Resolution::NotResolved }
+}
+
+/// Standard error and bias of the sum of some scalars together, relative to it.
+fn total_error(windows: &Windows, resolution: Resolution, slots: &[usize]) -> f64 {
+    let delta = difference(windows, slots, |[e1, e2, _]| e1 - e2).mean();
+    let value = match resolution {
+        Resolution::Resolved => difference(windows, slots, |[e1, e2, _]| 2.0 * e2 - e1),
+        Resolution::NotResolved => difference(windows, slots, |[_, _, e3]| e3),
+    };
+    let error = value.std_error().hypot(delta) / value.mean().abs();
+    if error.is_nan() { f64::INFINITY } else { error }
+}
+
+/// A function of the sum of some scalars within the three windows, pass by pass.
+fn difference(windows: &Windows, slots: &[usize], f: impl Fn([f64; 3]) -> f64) -> Tally {
+    let Windows { wide, middle, narrow, .. } = windows;
+    let groups = wide.groups.iter().zip(&middle.groups).zip(&narrow.groups);
+    Tally::of(groups.map(|((wide, middle), narrow)| {
+        f([wide, middle, narrow].map(|group| {
+            slots.iter().map(|&slot| group.sums[slot]).sum::<f64>() / group.batches as f64
+        }))
+    }))
+}

@@ -1,0 +1,124 @@
+//! All measures of one sensor, by whatever estimator found them.
+
+use crate::measure::evidence::Evidence;
+use crate::measure::gathered::{Judged, judged};
+use crate::measure::{
+    IntensityTable, Measure, SensorMap, SensorPaths, angular, flux, map, paths, readout,
+};
+use crate::scene::plan::Estimator;
+use crate::scene::{Scene, SensorId, SensorKind};
+use crate::transport::Findings;
+use indexmap::IndexMap;
+
+/// What is measured of a sensor.
+pub(crate) struct SensorMeasures {
+    /// By the last part of their dotted names.
+    pub(crate) values: IndexMap<String, Measure>,
+    /// One, or one for each view.
+    pub(crate) maps: Vec<SensorMap>,
+    /// Of a goniometer.
+    pub(crate) intensity: Option<IntensityTable>,
+    pub(crate) paths: SensorPaths,
+}
+
+/// Measures a sensor.
+pub(crate) fn measures(scene: &Scene, findings: &Findings, id: SensorId) -> SensorMeasures {
+    match evidence(scene, findings, id) {
+        Spoken::Plainly(evidence) => by_evidence(&evidence, id),
+        Spoken::InWindows(judged) => {
+            let [value, wide, middle] = judged.evidences().map(|one| by_evidence(&one, id));
+            let mut values = value.values;
+            for (name, measure) in &mut values {
+                judged.tell_bias(measure, &wide.values[name], &middle.values[name]);
+            }
+            let mut maps = value.maps;
+            for (map, (wide, middle)) in maps.iter_mut().zip(wide.maps.iter().zip(&middle.maps)) {
+                map.biases = Some((&wide.values - &middle.values).abs());
+            }
+            let mut intensity = value.intensity;
+            if let (Some(own), Some(wide), Some(middle)) =
+                (&mut intensity, wide.intensity, middle.intensity)
+            {
+                own.biases = Some((wide.values - middle.values).abs());
+            }
+            SensorMeasures { values, maps, intensity, paths: value.paths }
+        }
+    }
+}
+
+/// One measure of a sensor, at no more cost than it needs: maps are not looked at for its flux.
+pub(crate) fn value_of(
+    scene: &Scene,
+    findings: &Findings,
+    id: SensorId,
+    name: &str,
+) -> Option<Measure> {
+    match evidence(scene, findings, id) {
+        Spoken::Plainly(evidence) => one_value(&evidence, id, name),
+        Spoken::InWindows(judged) => {
+            let [value, wide, middle] = judged.evidences().map(|one| one_value(&one, id, name));
+            let mut value = value?;
+            judged.tell_bias(&mut value, &wide?, &middle?);
+            Some(value)
+        }
+    }
+}
+
+/// Which readings speak for a sensor.
+enum Spoken<'a> {
+    /// One set.
+    Plainly(Evidence<'a>),
+    /// Those of nested windows.
+    InWindows(Judged<'a>),
+}
+
+fn evidence<'a>(scene: &'a Scene, findings: &'a Findings, id: SensorId) -> Spoken<'a> {
+    let photons = Evidence::new(scene, &findings.photons);
+    let estimator = findings.estimator(id);
+    match estimator {
+        Estimator::Forward => Spoken::Plainly(photons),
+        Estimator::Backward => {
+            let own = findings.backward.as_ref().map(|own| photons.by(own, estimator));
+            Spoken::Plainly(own.unwrap_or(photons))
+        }
+        Estimator::Mis => {
+            let own = findings.merged.as_ref().map(|own| photons.by(own, estimator));
+            Spoken::Plainly(own.unwrap_or(photons))
+        }
+        Estimator::Gather => match judged(photons, findings, id) {
+            Some(judged) => Spoken::InWindows(judged),
+            None => Spoken::Plainly(photons),
+        },
+    }
+}
+
+fn by_evidence(evidence: &Evidence<'_>, id: SensorId) -> SensorMeasures {
+    let scene = evidence.scene;
+    let mut values = flux::totals(evidence, id);
+    let (mut maps, mut intensity) = (Vec::new(), None);
+    match &scene.sensors[id.index()].kind {
+        SensorKind::Surface(surface) => {
+            maps = map::maps(evidence, id, surface);
+            values.extend(readout::measures(evidence, id, surface, &maps));
+        }
+        SensorKind::Goniometer(goniometer) => {
+            values.extend(angular::measures(evidence, id, goniometer));
+            intensity = Some(angular::table(evidence, id, goniometer));
+        }
+    }
+    let paths = paths::paths(scene, evidence.readings, id);
+    SensorMeasures { values, maps, intensity, paths }
+}
+
+fn one_value(evidence: &Evidence<'_>, id: SensorId, name: &str) -> Option<Measure> {
+    flux::totals(evidence, id).swap_remove(name).or_else(|| {
+        let mut read = match &evidence.scene.sensors[id.index()].kind {
+            SensorKind::Surface(surface) => {
+                let maps = map::maps(evidence, id, surface);
+                readout::measures(evidence, id, surface, &maps)
+            }
+            SensorKind::Goniometer(goniometer) => angular::measures(evidence, id, goniometer),
+        };
+        read.swap_remove(name)
+    })
+}

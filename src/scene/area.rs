@@ -1,0 +1,143 @@
+//! Points drawn evenly over faces, and how densely that fills the directions toward them.
+//!
+//! It knows faces of all kinds: analytic pieces, open ports, and faces of meshes. It knows no sensor and no path.
+
+use crate::scene::shape::{Crossing, Start};
+use crate::scene::{Extent, FaceId, MeshBody, Patch, PrimId, Ray, Scene};
+use glam::{DVec2, DVec3};
+
+/// Some faces as one area.
+#[derive(Debug, Clone)]
+pub struct FaceArea<'s> {
+    scene: &'s Scene,
+    pieces: Vec<Piece<'s>>,
+    /// Area up to and including each piece, mm².
+    area_up_to: Vec<f64>,
+}
+
+/// A part of the area.
+#[derive(Debug, Clone, Copy)]
+enum Piece<'s> {
+    /// An analytic piece; a port's is no surface of the scene.
+    Patch(&'s Patch, Option<PrimId>),
+    /// A face of a mesh, by its number there.
+    Mesh(&'s MeshBody, usize),
+}
+
+/// A point of the area.
+#[derive(Debug, Clone, Copy)]
+pub struct AreaPoint {
+    /// Where, mm.
+    pub point: DVec3,
+    /// Unit normal of the front.
+    pub normal: DVec3,
+    /// Unrolled coordinates on the face, mm.
+    pub uv: DVec2,
+    /// The surface it lies on; `None` on a port.
+    pub prim: Option<PrimId>,
+}
+
+impl<'s> FaceArea<'s> {
+    /// The area of some faces of a scene.
+    pub fn new(scene: &'s Scene, faces: &[FaceId]) -> Self {
+        let pieces: Vec<Piece<'s>> =
+            faces.iter().flat_map(|&face| pieces_of(scene, face)).collect();
+        let mut area = 0.0;
+        let area_up_to = pieces
+            .iter()
+            .map(|piece| {
+                area += piece.area();
+                area
+            })
+            .collect();
+        Self { scene, pieces, area_up_to }
+    }
+
+    /// All of it, mm².
+    pub fn area(&self) -> f64 {
+        self.area_up_to.last().copied().unwrap_or(0.0)
+    }
+
+    /// A point, uniform over the area for uniform `u`; `None` where there is no area.
+    pub fn sample(&self, u: [f64; 2]) -> Option<AreaPoint> {
+        let area = Some(self.area()).filter(|area| *area > 0.0)?;
+        let wanted = (u[0] * area).min(area.next_down());
+        let index = self.area_up_to.partition_point(|up_to| *up_to <= wanted);
+        let before = if index == 0 { 0.0 } else { self.area_up_to[index - 1] };
+        // The rest of the first number is uniform again within the piece.
+        let rest = (wanted - before) / (self.area_up_to[index] - before);
+        self.pieces[index].sample(self.scene, [rest.clamp(0.0, 1.0), u[1]])
+    }
+
+    /// Density over solid angle, 1/sr, with which lines from the ray's origin to points drawn from the area take the
+    /// ray's direction: Σ t²/(A |cos|) over all places where the ray meets the area.
+    pub fn density_toward(&self, ray: &Ray) -> f64 {
+        let mut sum = 0.0;
+        for piece in &self.pieces {
+            piece.crossings(ray, |t, normal| {
+                if t > 0.0 {
+                    sum += t * t / ray.dir().dot(normal).abs();
+                }
+            });
+        }
+        sum / self.area()
+    }
+}
+
+fn pieces_of(scene: &Scene, face: FaceId) -> Vec<Piece<'_>> {
+    match &scene.faces[face.index()].extent {
+        Extent::Patches(range) => range
+            .clone()
+            .map(|index| Piece::Patch(&scene.patches[index], Some(PrimId::new(index))))
+            .collect(),
+        Extent::Ports(range) => {
+            scene.ports[range.clone()].iter().map(|patch| Piece::Patch(patch, None)).collect()
+        }
+        Extent::Mesh { mesh, face } => vec![Piece::Mesh(&scene.meshes[*mesh], *face)],
+    }
+}
+
+impl Piece<'_> {
+    fn area(&self) -> f64 {
+        match self {
+            Self::Patch(patch, _) => patch.shape.area(),
+            Self::Mesh(body, face) => body.mesh.face_area(*face),
+        }
+    }
+
+    fn sample(&self, scene: &Scene, u: [f64; 2]) -> Option<AreaPoint> {
+        match self {
+            Self::Patch(patch, prim) => {
+                let point = patch.shape.sample(u);
+                let (normal, uv) = (patch.shape.normal(point), patch.chart(point));
+                Some(AreaPoint { point, normal, uv, prim: *prim })
+            }
+            Self::Mesh(body, face) => {
+                let found = body.mesh.sample(*face, u)?;
+                let prim = PrimId::new(body.first + found.triangle);
+                let normal = body.mesh.facet_normal(found.triangle);
+                let uv = scene.chart(prim, found.point);
+                Some(AreaPoint { point: found.point, normal, uv, prim: Some(prim) })
+            }
+        }
+    }
+
+    /// Every place where the ray's line meets it: distance along the ray, mm, and unit normal.
+    fn crossings(&self, ray: &Ray, mut visit: impl FnMut(f64, DVec3)) {
+        match self {
+            Self::Patch(patch, _) => {
+                patch.shape.crossings(ray, Start::Elsewhere, |Crossing { t, .. }| {
+                    visit(t, patch.shape.normal(ray.at(t)));
+                });
+            }
+            Self::Mesh(body, face) => {
+                for &triangle in body.mesh.face_triangles(*face) {
+                    let triangle = triangle as usize;
+                    if let Some(Crossing { t, .. }) = body.mesh.crossing(triangle, ray) {
+                        visit(t, body.mesh.facet_normal(triangle));
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,305 @@
+//! Where light can come from when it arrives at a sensor: the starts of gather paths.
+//!
+//! A gather path goes against the light. It is drawn from the cells and directions of its sensor and knows the extent
+//! that it stands for, so that the mean of radiance times extent is the flux on the sensor. What the path meets
+//! is not known here.
+
+use crate::math::{Aabb, Frame, cone_direction, cosine_hemisphere, disk, uniform_sphere};
+use crate::rng::{Dimension, Sampler};
+use crate::scene::area::{AreaPoint, FaceArea};
+use crate::scene::intersect::Just;
+use crate::scene::shape::Toward;
+use crate::scene::{
+    Counts, Goniometer, Inside, Place, PrimId, Ray, Scene, SensorId, SensorKind, Sides,
+    SurfaceSensor, Views,
+};
+use glam::{DVec2, DVec3};
+use smallvec::{SmallVec, smallvec};
+use std::f64::consts::{PI, TAU};
+
+/// A path that has to meet the face it starts in front of starts this far off, relative to the size of the scene: far
+/// above rounding, far below anything that can be built.
+const STEP_BACK: f64 = 1e-9;
+
+/// The start of a gather path.
+#[derive(Debug, Clone)]
+pub struct Arrival {
+    /// From the sensor, against the light.
+    pub ray: Ray,
+    /// The solids it starts in.
+    pub inside: Inside,
+    /// The surface of the scene that it starts on.
+    pub on: Option<PrimId>,
+    /// Whether it starts in front of the sensor's own face and has to go through it first.
+    pub begins: Begins,
+    /// |cos θ| dA dω over the density of the draw, mm² sr: with radiance it makes flux, and times n² it is etendue.
+    pub extent: f64,
+    /// The values of the sensor that its light belongs to: cells, or cells of views.
+    pub cells: SmallVec<[usize; 1]>,
+}
+
+/// Where a gather path begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Begins {
+    /// On the sensor: light arrives there.
+    OnSensor,
+    /// Before the sensor's face: light leaves it after the face has acted.
+    BeforeFace,
+}
+
+/// Draws the starts of gather paths for one sensor.
+#[derive(Debug)]
+pub struct Arrivals<'s> {
+    scene: &'s Scene,
+    place: Origin<'s>,
+    /// The faces through which the sensor is lit, if it names any that matter.
+    aim: Option<FaceArea<'s>>,
+}
+
+/// What gather paths start from.
+#[derive(Debug)]
+enum Origin<'s> {
+    Surface(&'s SurfaceSensor, FaceArea<'s>),
+    /// A goniometric sphere, finite or in the far field.
+    Sphere(&'s Goniometer, Around),
+}
+
+/// A ball around everything that light can meet.
+#[derive(Debug, Clone, Copy)]
+struct Around {
+    center: DVec3,
+    radius: f64,
+}
+
+impl<'s> Arrivals<'s> {
+    /// Prepares the draws of a sensor.
+    pub fn new(scene: &'s Scene, sensor: SensorId) -> Self {
+        let sensor = &scene.sensors[sensor.index()];
+        let place = match &sensor.kind {
+            SensorKind::Surface(surface) => {
+                Origin::Surface(surface, FaceArea::new(scene, &surface.faces))
+            }
+            SensorKind::Goniometer(goniometer) => Origin::Sphere(goniometer, around(scene)),
+        };
+        let aimed = match &sensor.kind {
+            // Light that leaves a face comes from the face.
+            SensorKind::Surface(surface) => {
+                surface.place == Place::Port || surface.counts == Counts::Incident
+            }
+            SensorKind::Goniometer(_) => true,
+        };
+        let aim = (aimed && !sensor.aim.is_empty()).then(|| FaceArea::new(scene, &sensor.aim));
+        Self { scene, place, aim }
+    }
+
+    /// Draws a start; `None` where the draw fell beside the sensor or on a side that does not count: such a draw
+    /// stands for no light.
+    pub fn draw(&self, sampler: &mut Sampler) -> Option<Arrival> {
+        match &self.place {
+            Origin::Surface(sensor, area) => {
+                let start = area.sample(sampler.pair(Dimension::GatherPosition))?;
+                let cell = sensor.grid.cell(start.uv)?;
+                let toward = self.surface_direction(sensor, &start, sampler)?;
+                self.at_surface(sensor, &start, cell, toward, area.area())
+            }
+            Origin::Sphere(goniometer, around) => match goniometer.radius {
+                None => self.in_far_field(goniometer, *around, sampler),
+                Some(radius) => self.on_sphere(goniometer, radius, sampler),
+            },
+        }
+    }
+
+    /// A direction against the light for a point of a surface sensor, with |cos θ| over its density, sr, and the views
+    /// that take it in.
+    fn surface_direction(
+        &self,
+        sensor: &SurfaceSensor,
+        start: &AreaPoint,
+        sampler: &mut Sampler,
+    ) -> Option<Drawn> {
+        if let Some(views) = &sensor.views {
+            return view_direction(views, sensor.counts, start, sampler);
+        }
+        if let Some(aim) = &self.aim {
+            let target = aim.sample(sampler.pair(Dimension::GatherPosition))?;
+            return toward(aim, start, target.point);
+        }
+        let (front, sides) = match sensor.sides {
+            Sides::Front => (true, 1.0),
+            Sides::Back => (false, 1.0),
+            Sides::Both => (sampler.one(Dimension::GatherDirection) < 0.5, 2.0),
+        };
+        // Arriving light comes from the side that counts, leaving light goes there.
+        let outward = front == (sensor.counts == Counts::Incident);
+        let axis = if outward { start.normal } else { -start.normal };
+        let local = cosine_hemisphere(sampler.pair(Dimension::GatherDirection));
+        let dir = Frame::from_axis(DVec3::ZERO, axis).to_world(local);
+        Some(Drawn { dir, projected: sides * PI, views: SmallVec::new() })
+    }
+
+    fn at_surface(
+        &self,
+        sensor: &SurfaceSensor,
+        start: &AreaPoint,
+        cell: usize,
+        drawn: Drawn,
+        area: f64,
+    ) -> Option<Arrival> {
+        let Drawn { dir, projected, views } = drawn;
+        if !sensor.sides.include(sensor.counts, Toward::of(-dir, start.normal)) {
+            return None;
+        }
+        let begins = match (sensor.place, sensor.counts) {
+            (Place::Port, _) | (Place::Face, Counts::Incident) => Begins::OnSensor,
+            (Place::Face, Counts::Leaving) => Begins::BeforeFace,
+        };
+        let (ray, on) = match begins {
+            Begins::OnSensor => (Ray::new(start.point, dir), start.prim),
+            Begins::BeforeFace => {
+                let back = STEP_BACK * self.scene.bounds.diagonal();
+                (Ray::new(start.point - back * dir, dir), None)
+            }
+        };
+        let cells = match (&sensor.views, views.is_empty()) {
+            (None, _) => smallvec![cell],
+            (Some(_), true) => return None,
+            (Some(_), false) => {
+                views.into_iter().map(|view| view * sensor.grid.cells() + cell).collect()
+            }
+        };
+        Some(self.arrival(ray, on, begins, area * projected, cells))
+    }
+
+    /// A start outside of everything, in a direction of a far-field goniometer.
+    fn in_far_field(
+        &self,
+        goniometer: &Goniometer,
+        around: Around,
+        sampler: &mut Sampler,
+    ) -> Option<Arrival> {
+        let (cell, out) = direction(goniometer, sampler.pair(Dimension::GatherDirection));
+        let u = sampler.pair(Dimension::GatherPosition);
+        let (through, across) = match &self.aim {
+            Some(aim) => {
+                let target = aim.sample(u)?;
+                (target.point, aim.area() * out.dot(target.normal).abs())
+            }
+            None => {
+                let frame = Frame::from_axis(around.center, out);
+                let point = frame.point_to_world(around.radius * disk(u));
+                (point, PI * around.radius * around.radius)
+            }
+        };
+        // Beyond the ball, whichever point of it the ray goes through.
+        let ray = Ray::new(through + 2.0 * around.radius * out, -out);
+        let extent = across * 4.0 * PI;
+        Some(self.arrival(ray, None, Begins::OnSensor, extent, smallvec![cell]))
+    }
+
+    /// A start on a goniometric sphere of finite radius, inward.
+    fn on_sphere(
+        &self,
+        goniometer: &Goniometer,
+        radius: f64,
+        sampler: &mut Sampler,
+    ) -> Option<Arrival> {
+        let (cell, out) = direction(goniometer, sampler.pair(Dimension::GatherPosition));
+        let start = AreaPoint {
+            point: goniometer.frame.origin + radius * out,
+            normal: -out,
+            uv: DVec2::ZERO,
+            prim: None,
+        };
+        let Drawn { dir, projected, .. } = match &self.aim {
+            Some(aim) => {
+                let target = aim.sample(sampler.pair(Dimension::GatherPosition))?;
+                toward(aim, &start, target.point).filter(|drawn| drawn.dir.dot(out) < 0.0)?
+            }
+            None => {
+                let local = cosine_hemisphere(sampler.pair(Dimension::GatherDirection));
+                let dir = Frame::from_axis(DVec3::ZERO, -out).to_world(local);
+                Drawn { dir, projected: PI, views: SmallVec::new() }
+            }
+        };
+        let extent = 4.0 * PI * radius * radius * projected;
+        let ray = Ray::new(start.point, dir);
+        Some(self.arrival(ray, None, Begins::OnSensor, extent, smallvec![cell]))
+    }
+
+    /// A start with the solids around it.
+    fn arrival(
+        &self,
+        ray: Ray,
+        on: Option<PrimId>,
+        begins: Begins,
+        extent: f64,
+        cells: SmallVec<[usize; 1]>,
+    ) -> Arrival {
+        let inside = self.scene.inside_at(&ray, Just::Ahead);
+        Arrival { ray, inside, on, begins, extent, cells }
+    }
+}
+
+/// A direction drawn at a point of a sensor.
+struct Drawn {
+    dir: DVec3,
+    /// |cos θ| over the density of the direction, sr.
+    projected: f64,
+    views: SmallVec<[usize; 1]>,
+}
+
+/// The direction toward a point drawn from the aim: density `p(y) dist²/cos θ_y`, whichever
+/// point of the aim lies that way.
+fn toward(aim: &FaceArea<'_>, start: &AreaPoint, target: DVec3) -> Option<Drawn> {
+    let offset = target - start.point;
+    if offset == DVec3::ZERO {
+        return None;
+    }
+    let ray = Ray::new(start.point, offset);
+    let density = aim.density_toward(&ray);
+    let projected = ray.dir().dot(start.normal).abs() / density;
+    projected.is_finite().then(|| Drawn { dir: ray.dir(), projected, views: SmallVec::new() })
+}
+
+/// A direction in the acceptance cone of one of the views; cones that overlap share it.
+fn view_direction(
+    views: &Views,
+    counts: Counts,
+    start: &AreaPoint,
+    sampler: &mut Sampler,
+) -> Option<Drawn> {
+    let count = views.directions.len();
+    let view = match count {
+        1 => 0,
+        _ => ((sampler.one(Dimension::GatherDirection) * count as f64) as usize).min(count - 1),
+    };
+    let local = cone_direction(views.half_angle, sampler.pair(Dimension::GatherDirection));
+    let away = Frame::from_axis(DVec3::ZERO, views.directions[view]).to_world(local);
+    let mut accepting: SmallVec<[usize; 1]> = views.accepting(away).collect();
+    if accepting.is_empty() {
+        // Drawn on the very rim of the cone.
+        accepting.push(view);
+    }
+    let dir = match counts {
+        Counts::Incident => away,
+        Counts::Leaving => -away,
+    };
+    let solid_angle = 2.0 * TAU * (0.5 * views.half_angle).sin().powi(2);
+    let density = accepting.len() as f64 / (count as f64 * solid_angle);
+    Some(Drawn { dir, projected: dir.dot(start.normal).abs() / density, views: accepting })
+}
+
+/// A direction from the middle of a goniometer, uniform over the sphere, with its cell.
+fn direction(goniometer: &Goniometer, u: [f64; 2]) -> (usize, DVec3) {
+    let dir = uniform_sphere(u);
+    (goniometer.cell(dir), dir)
+}
+
+fn around(scene: &Scene) -> Around {
+    let solids = scene.patches.iter().map(|patch| patch.shape.bounds());
+    let meshes = scene.meshes.iter().map(|body| body.bounds());
+    let sources = scene.sources.iter().map(|source| source.emitter.bounds());
+    let bounds = solids.chain(meshes).chain(sources).fold(Aabb::EMPTY, Aabb::union);
+    // A little more, for rounding.
+    Around { center: bounds.center(), radius: 0.5 * bounds.diagonal() * (1.0 + 1e-9) }
+}

@@ -1,0 +1,88 @@
+//! How much of a window lies on its surface: windows at rims are clipped by the true area.
+//!
+//! A window is a disk in the tangent plane of its middle. What of it has the surface below or above it is found on a
+//! sunflower of points (Vogel, Math. Biosci. 44 (1979) 179), whose inner parts fill the nested windows evenly.
+
+use crate::math::circle;
+use crate::scene::shape::ChartRect;
+use crate::scene::{PrimId, Ray, Scene, Surface};
+use crate::transport::records::{Slot, Surfaces};
+use crate::transport::window::{NESTED, Window};
+use glam::{DVec2, DVec3};
+
+/// Points in the widest window. Half of them fill the next, a quarter the narrowest.
+const POINTS: usize = 96;
+/// Normals of one surface in one window agree at least so well, 1.
+pub(crate) const AGREEING: f64 = 0.9;
+/// Turns from point to point of a sunflower, 2 less the golden ratio.
+const GOLDEN_TURN: f64 = 0.381_966_011_250_105_1;
+
+/// The middle of a window.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Middle {
+    pub(crate) prim: PrimId,
+    pub(crate) surface: Slot,
+    pub(crate) point: DVec3,
+    /// Unit normal of the surface there, of either side.
+    pub(crate) normal: DVec3,
+}
+
+/// Shares, 1, of the three nested windows that lie on the surface. `turn`, in turns, rotates the points.
+pub(crate) fn coverage(
+    scene: &Scene,
+    surfaces: &Surfaces,
+    middle: &Middle,
+    window: Window,
+    turn: f64,
+) -> [f64; NESTED] {
+    if lies_within(scene, middle, window) {
+        return [1.0; NESTED];
+    }
+    let frame = crate::math::Frame::from_axis(middle.point, middle.normal);
+    let mut covered = [0usize; NESTED];
+    for place in 0..POINTS {
+        let radius = window.radius * ((place as f64 + 0.5) / POINTS as f64).sqrt();
+        let turns = (place as f64 * GOLDEN_TURN + turn).fract();
+        let offset = frame.to_world((radius * circle(turns)).extend(0.0));
+        if is_over_surface(scene, surfaces, middle, offset, window.radius) {
+            for (window, covered) in covered.iter_mut().enumerate() {
+                *covered += usize::from(place < POINTS >> window);
+            }
+        }
+    }
+    // The middle itself is on the surface, however thin the surface is there.
+    [0, 1, 2].map(|window| covered[window].max(1) as f64 / (POINTS >> window) as f64)
+}
+
+/// Whether a square around the window is wholly on an analytic piece that unrolls without stretching.
+fn lies_within(scene: &Scene, middle: &Middle, window: Window) -> bool {
+    /// Rounding of an area, relative.
+    const ROUNDING: f64 = 1e-9;
+    match scene.surface(middle.prim) {
+        Surface::Patch(patch) => {
+            let uv = patch.chart(middle.point);
+            let reach = DVec2::splat(window.radius);
+            let square = ChartRect { min: uv - reach, max: uv + reach };
+            (patch.area_in(square) / square.area() - 1.0).abs() < ROUNDING
+        }
+        Surface::Triangle(..) => false,
+    }
+}
+
+fn is_over_surface(
+    scene: &Scene,
+    surfaces: &Surfaces,
+    middle: &Middle,
+    offset: DVec3,
+    reach: f64,
+) -> bool {
+    let ray = Ray::new(middle.point + offset + reach * middle.normal, -middle.normal);
+    let mut found = false;
+    scene.all_crossings(&ray, |prim, crossing| {
+        found |= crossing.t > 0.0
+            && crossing.t < 2.0 * reach
+            && surfaces.of(prim) == middle.surface
+            && scene.normal(prim, ray.at(crossing.t)).dot(middle.normal).abs() > AGREEING;
+    });
+    found
+}

@@ -1,0 +1,239 @@
+//! What gather paths see of the sources: the basic radiance they emit against a ray.
+//!
+//! Points, lines and collimated beams have no radiance that a ray could meet; the sources say so, and an estimator that
+//! needs to meet them is refused.
+
+use crate::math::{Aabb, Frame};
+use crate::scene::shape::{Crossing, Shape, Start};
+use crate::scene::{
+    Emission, EmitSide, Emitter, EmitterKind, PrimId, Scene, SolidId, Source, SourceId,
+    Start as SourceStart,
+};
+use crate::transport::{Path, Segment};
+use glam::DVec3;
+
+/// Light of a source behind a face is met at the start of a segment, up to rounding of this size, relative to the scene.
+const AT_START: f64 = 1e-9;
+
+/// The sources of a scene as rays meet them.
+#[derive(Debug)]
+pub(crate) struct Emitters<'s> {
+    scene: &'s Scene,
+    seen: Vec<Seen<'s>>,
+}
+
+/// A source that rays can meet.
+#[derive(Debug)]
+struct Seen<'s> {
+    id: SourceId,
+    emission: &'s Emission,
+    body: Body<'s>,
+}
+
+#[derive(Debug)]
+enum Body<'s> {
+    Surface {
+        shapes: &'s [(Shape, f64)],
+        side: EmitSide,
+        frame: Option<&'s Frame>,
+        on: &'s [PrimId],
+        contact: Contact,
+        /// Around the shapes, with room for rounding, mm.
+        bounds: Aabb,
+        /// Flux per area, lm/mm².
+        exitance: f64,
+    },
+    Volume {
+        solid: SolidId,
+        /// Flux per volume, lm/mm³.
+        density: f64,
+    },
+}
+
+/// How a source lies on a face.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Contact {
+    /// On none.
+    Free,
+    /// It shines away from the face: a ray meets it before the face acts.
+    Before,
+    /// It shines into the face: a ray meets it after the face has acted.
+    Behind,
+}
+
+/// Where a segment starts, for what is met right there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum SegmentStart {
+    /// On a sensor: what is there counts.
+    Sensor,
+    /// At an interface: what is there was met by the segment before.
+    Interface,
+}
+
+/// Basic radiance that a path meets on its way.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Met {
+    pub(crate) source: SourceId,
+    /// Distance along the segment, mm.
+    pub(crate) t: f64,
+    /// Basic radiance at the start of the path, lm/(mm² sr): what the source emits times the throughput up to it.
+    pub(crate) radiance: f64,
+}
+
+/// Why rays cannot meet a source; `None` where they can.
+pub fn invisible(source: &Source, scene: &Scene) -> Option<&'static str> {
+    let any = DVec3::Z;
+    match &source.emitter {
+        Emitter::Point(_) => Some("it is a point"),
+        Emitter::Line { .. } => Some("it is a line"),
+        Emitter::Surface { .. } => source
+            .emission
+            .density(EmitterKind::Surface, any)
+            .is_none()
+            .then_some("it shines in one direction"),
+        Emitter::Volume { solid, .. } => {
+            if source.emission.density(EmitterKind::Volume, any).is_none() {
+                return Some("it shines in one direction");
+            }
+            scene.solids[solid.index()]
+                .volume
+                .is_none()
+                .then_some("the volume of its solid is not known")
+        }
+    }
+}
+
+impl<'s> Emitters<'s> {
+    /// The sources of a scene that rays can meet.
+    pub(crate) fn new(scene: &'s Scene) -> Self {
+        let visible = scene.sources.iter().enumerate();
+        let visible = visible.filter(|(_, source)| invisible(source, scene).is_none());
+        let seen = visible.filter_map(|(index, source)| {
+            Some(Seen {
+                id: SourceId::new(index),
+                emission: &source.emission,
+                body: body(scene, source)?,
+            })
+        });
+        Self { scene, seen: seen.collect() }
+    }
+
+    /// Everything that a path meets along a segment.
+    pub(crate) fn along(
+        &self,
+        path: &Path,
+        segment: &Segment<'_>,
+        start: SegmentStart,
+        mut visit: impl FnMut(Met),
+    ) {
+        for seen in &self.seen {
+            match &seen.body {
+                Body::Surface { bounds, .. } => {
+                    if bounds.is_near(segment.ray.origin(), segment.ray.at(segment.length)) {
+                        self.surface(seen, path, segment, start, &mut visit);
+                    }
+                }
+                Body::Volume { solid, density } => {
+                    if path.inside.contains(*solid) {
+                        let radiance = self.volume(seen, *density, path, segment);
+                        visit(Met { source: seen.id, t: segment.length, radiance });
+                    }
+                }
+            }
+        }
+    }
+
+    fn surface(
+        &self,
+        seen: &Seen<'_>,
+        path: &Path,
+        segment: &Segment<'_>,
+        start: SegmentStart,
+        visit: &mut impl FnMut(Met),
+    ) {
+        let Body::Surface { shapes, side, frame, on, contact, exitance, .. } = &seen.body else {
+            return;
+        };
+        let (scene, ray) = (self.scene, segment.ray);
+        let tolerance = scene.tolerance;
+        let medium = &scene.media[segment.medium.index()];
+        let index = medium.index(path.wavelength);
+        let (from, to) = match (contact, start) {
+            (Contact::Free, SegmentStart::Sensor) => (-tolerance, segment.length),
+            (Contact::Free, SegmentStart::Interface) => (tolerance, segment.length),
+            (Contact::Before, SegmentStart::Sensor) => (-tolerance, segment.length + tolerance),
+            (Contact::Before, SegmentStart::Interface) => (tolerance, segment.length + tolerance),
+            (Contact::Behind, _) => {
+                (-AT_START * scene.bounds.diagonal(), segment.length - tolerance)
+            }
+        };
+        for (place, (shape, _)) in shapes.iter().enumerate() {
+            let starts_there = on.get(place).is_some_and(|prim| path.on.contains(*prim));
+            let shape_start = if starts_there { Start::On } else { Start::Elsewhere };
+            shape.crossings(ray, shape_start, |Crossing { t, .. }| {
+                if t < from || t > to {
+                    return;
+                }
+                let normal = match side {
+                    EmitSide::Front => shape.normal(ray.at(t)),
+                    EmitSide::Back => -shape.normal(ray.at(t)),
+                };
+                let out = -ray.dir();
+                let cos = out.dot(normal);
+                if cos <= 0.0 {
+                    return;
+                }
+                let own = || Frame::from_axis(DVec3::ZERO, normal).to_local(out);
+                let local = frame.map_or_else(own, |frame| frame.to_local(out));
+                let density = seen.emission.density(EmitterKind::Surface, local).unwrap_or(0.0);
+                if density > 0.0 {
+                    let emitted = exitance * density / (cos * index * index);
+                    let arriving =
+                        segment.throughput * medium.transmittance(path.wavelength, t.max(0.0));
+                    visit(Met { source: seen.id, t, radiance: emitted * arriving });
+                }
+            });
+        }
+    }
+
+    /// Emission along a segment in a glowing solid: ∫ ε exp(-αs) ds, lm/(mm² sr), over n².
+    fn volume(&self, seen: &Seen<'_>, density: f64, path: &Path, segment: &Segment<'_>) -> f64 {
+        let medium = &self.scene.media[segment.medium.index()];
+        let index = medium.index(path.wavelength);
+        let absorption = medium.absorption(path.wavelength);
+        let length = if absorption == 0.0 {
+            segment.length
+        } else {
+            -(-absorption * segment.length).exp_m1() / absorption
+        };
+        let law = seen.emission.density(EmitterKind::Volume, -segment.ray.dir()).unwrap_or(0.0);
+        segment.throughput * density * law * length / (index * index)
+    }
+}
+
+fn body<'s>(scene: &'s Scene, source: &'s Source) -> Option<Body<'s>> {
+    match &source.emitter {
+        Emitter::Surface { shapes, side, frame } => Some(Body::Surface {
+            shapes,
+            side: *side,
+            frame: frame.as_ref(),
+            on: &source.on,
+            contact: contact(source),
+            bounds: source.emitter.bounds().grown(2.0 * AT_START * scene.bounds.diagonal()),
+            exitance: source.flux / source.emitter.area()?,
+        }),
+        Emitter::Volume { solid, .. } => Some(Body::Volume {
+            solid: *solid,
+            density: source.flux / scene.solids[solid.index()].volume?,
+        }),
+        Emitter::Point(_) | Emitter::Line { .. } => None,
+    }
+}
+
+fn contact(source: &Source) -> Contact {
+    match source.start {
+        SourceStart::Outside if source.on.is_empty() => Contact::Free,
+        SourceStart::Outside | SourceStart::Ahead => Contact::Before,
+        SourceStart::Behind => Contact::Behind,
+    }
+}

@@ -1,0 +1,111 @@
+//! What a photon is worth to a gather record: the position and the position-and-angle estimate.
+//!
+//! `L*(x,ω) = 1/n² Σ Φ_p K_r K_θ / |cos θ_p|` (docs/theory.md): `K_r` is 1/ΔA over the disk of the window in the tangent
+//! plane, clipped at rims, times the cosine between the normals at record and photon, so that it integrates to 1 over a
+//! curved surface, too. `K_θ` is 1/ΔΩ over the cone. Where the cone comes near the horizon of the photon's place,
+//! `K_θ / |cos θ_p|` becomes 1/∫ cos θ dω over the part of the cone above the horizon: it integrates to the same, and no
+//! photon at grazing incidence has to be left out or weighs without bound.
+
+use crate::math::projected_cap;
+use crate::optics::{Incidence, evaluate};
+use crate::scene::MediumId;
+use crate::transport::coverage::AGREEING;
+use crate::transport::records::{GatherRecord, Slot, Wanted};
+use crate::transport::window::{NESTED, Window};
+use glam::DVec3;
+
+/// Cosines that the directions of a cone must stay above for `1/|cos θ_p|` to be used, 1.
+const GRAZING: f64 = 0.03;
+
+/// A photon that meets a surface.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Arriving {
+    pub(crate) surface: Slot,
+    pub(crate) medium: MediumId,
+    pub(crate) point: DVec3,
+    /// How it arrives, about the normal of the surface itself on the side it comes from.
+    pub(crate) incidence: Incidence,
+}
+
+/// The nested windows of a pass.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Kernel {
+    radii_squared: [f64; NESTED],
+    chords_squared: [f64; NESTED],
+    theta_max: [f64; NESTED],
+    /// 1/ΔΩ, 1/sr.
+    per_solid_angle: [f64; NESTED],
+    /// Sine of the widest angle.
+    sin_widest: f64,
+}
+
+impl Kernel {
+    pub(crate) fn new(window: Window) -> Self {
+        let nested = window.nested();
+        Self {
+            radii_squared: nested.map(|window| window.radius.powi(2)),
+            chords_squared: nested.map(|window| window.chord().powi(2)),
+            theta_max: nested.map(|window| window.theta_max),
+            per_solid_angle: nested.map(|window| 1.0 / window.solid_angle()),
+            sin_widest: window.theta_max.sin(),
+        }
+    }
+
+    /// Flux that each unit of a photon's flux makes in the cells of a record, for each window; `None` if it belongs to
+    /// none of them.
+    #[inline]
+    pub(crate) fn flux(
+        &self,
+        record: &GatherRecord<'_>,
+        photon: &Arriving,
+    ) -> Option<[f64; NESTED]> {
+        let offset = photon.point - record.point;
+        let height = offset.dot(record.normal);
+        let across = offset.length_squared() - height * height;
+        let [widest, ..] = self.radii_squared;
+        let agreement = record.normal.dot(photon.incidence.normal);
+        if across > widest
+            || height * height > widest
+            || agreement < AGREEING
+            || record.surface != photon.surface
+            || record.medium != photon.medium
+        {
+            return None;
+        }
+        let within = |window: usize| across <= self.radii_squared[window];
+        match record.wanted {
+            Wanted::Along(wanted) => {
+                let apart = photon.incidence.dir.distance_squared(wanted);
+                let [widest, ..] = self.chords_squared;
+                if apart > widest {
+                    return None;
+                }
+                let cos_wanted = -wanted.dot(photon.incidence.normal);
+                Some(self.each(record, |window| {
+                    let inside = within(window) && apart <= self.chords_squared[window];
+                    let per_angle = || self.per_projected(window, cos_wanted, photon);
+                    if inside { agreement * per_angle() } else { 0.0 }
+                }))
+            }
+            Wanted::Scattered { bsdf, out } => {
+                let scattered = agreement * evaluate(bsdf, &photon.incidence, out);
+                Some(self.each(record, |window| if within(window) { scattered } else { 0.0 }))
+            }
+        }
+    }
+
+    #[inline]
+    fn each(&self, record: &GatherRecord<'_>, share: impl Fn(usize) -> f64) -> [f64; NESTED] {
+        [0, 1, 2].map(|window| record.values[window] * share(window))
+    }
+
+    /// `K_θ / |cos θ_p|`, 1/sr; `cos_wanted` is that of the cone's axis at the photon's place.
+    #[inline]
+    fn per_projected(&self, window: usize, cos_wanted: f64, photon: &Arriving) -> f64 {
+        if cos_wanted > self.sin_widest + GRAZING {
+            self.per_solid_angle[window] / photon.incidence.cos()
+        } else {
+            1.0 / projected_cap(cos_wanted, self.theta_max[window])
+        }
+    }
+}

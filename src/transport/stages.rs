@@ -1,0 +1,143 @@
+//! Stages of the gather method: passes within one window, then more passes within a smaller one.
+//!
+//! Within a stage radius and angle are fixed, so that its passes are independent samples of one quantity and their
+//! spread is an honest error bar. Between stages the window shrinks by √2, the number of gather paths doubles as far as
+//! memory allows and the number of passes grows by 4: bias and standard error both halve. A value comes from one stage
+//! alone. With the schedule `per-pass` there is one stage whose window shrinks from pass to pass.
+
+use crate::scene::plan::Schedule;
+use crate::transport::gather::{Gather, Pass};
+use crate::transport::settings::GatherSettings;
+use crate::transport::sums::Sums;
+use crate::transport::window::NESTED;
+use crate::transport::{Readings, Window};
+use serde::{Deserialize, Serialize};
+
+/// Passes of the first stage, and of a wave of passes.
+pub(crate) const FIRST_PASSES: u64 = 16;
+/// By how much the number of passes grows from stage to stage.
+const PASS_GROWTH: u64 = 4;
+/// Most gather paths of a pass: records take about 200 bytes each.
+const MOST_GATHER_PATHS: u64 = 1 << 20;
+
+/// Readings within each of the nested windows, of the same photons and records.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Windows {
+    /// Within the whole window, E1.
+    pub wide: Readings,
+    /// Within 1/√2 of radius and angle, E2.
+    pub middle: Readings,
+    /// Within half of them, E3.
+    pub narrow: Readings,
+    /// 2 E2 - E1: what is left if the bias goes with the square of the window.
+    pub extrapolated: Readings,
+}
+
+/// What a stage has found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Stage {
+    /// Which, from 0.
+    pub number: u32,
+    /// Its widest window; with the schedule `per-pass` that of the last pass.
+    pub window: Window,
+    /// Gather paths of a pass from each sensor.
+    pub gather_paths: u64,
+    /// What was counted.
+    pub windows: Windows,
+}
+
+/// The stages of a run in progress.
+#[derive(Debug)]
+pub(crate) struct Stages<'s> {
+    pub(crate) gather: Gather<'s>,
+    pub(crate) settings: GatherSettings,
+    number: u32,
+    /// The first batch of the stage in progress.
+    first_batch: u64,
+    sums: Sums<Windows>,
+    finished: Option<Stage>,
+}
+
+impl<'s> Stages<'s> {
+    pub(crate) fn new(gather: Gather<'s>, settings: GatherSettings) -> Self {
+        let sums = Sums::new();
+        Self { gather, settings, number: 0, first_batch: 0, sums, finished: None }
+    }
+
+    /// The pass of a batch, in the stage in progress.
+    pub(crate) fn pass(&self, batch: u64) -> Pass {
+        let window = match self.settings.schedule {
+            Schedule::Stages => self.settings.window.of_stage(self.number),
+            Schedule::PerPass => self.settings.window.of_pass(batch),
+        };
+        Pass { batch, window, gather_paths: self.gather_paths() }
+    }
+
+    /// Gather paths of a pass from each sensor.
+    pub(crate) fn gather_paths(&self) -> u64 {
+        let grown = self.settings.gather_paths.saturating_mul(1 << self.number.min(32));
+        grown.min(MOST_GATHER_PATHS.max(self.settings.gather_paths))
+    }
+
+    /// Gather paths of a pass from all sensors.
+    pub(crate) fn batch_paths(&self) -> u64 {
+        self.gather_paths() * self.gather.sensors()
+    }
+
+    /// Passes after which the stage in progress may end.
+    pub(crate) fn planned_passes(&self) -> u64 {
+        match self.settings.schedule {
+            Schedule::Stages => FIRST_PASSES * PASS_GROWTH.pow(self.number.min(16)),
+            Schedule::PerPass => u64::MAX,
+        }
+    }
+
+    /// Whole passes of the stage in progress.
+    pub(crate) fn passes(&self) -> u64 {
+        self.sums.batches_done()
+    }
+
+    /// Takes what a pass has counted.
+    pub(crate) fn push(&mut self, windows: [Readings; NESTED]) {
+        let [wide, middle, narrow] = windows;
+        let extrapolated = middle.combined([2.0, -1.0], &wide);
+        let close = |mut readings: Readings| {
+            readings.close_batch();
+            readings
+        };
+        self.sums.push(Windows {
+            wide: close(wide),
+            middle: close(middle),
+            narrow: close(narrow),
+            extrapolated: close(extrapolated),
+        });
+    }
+
+    pub(crate) fn end_wave(&mut self) {
+        self.sums.end_wave();
+    }
+
+    /// Goes on to the next stage; the value comes from the one that ends here until the next is as good.
+    pub(crate) fn next_stage(&mut self) {
+        self.finished = self.in_progress();
+        self.first_batch += self.passes();
+        self.number += 1;
+        self.sums = Sums::new();
+    }
+
+    /// The last finished stage and the one in progress, as far as it has whole waves of passes: at least one of them.
+    pub(crate) fn found(&self) -> Vec<Stage> {
+        let new = self.in_progress().filter(|_| self.finished.is_none() || self.passes() > 0);
+        self.finished.iter().cloned().chain(new).collect()
+    }
+
+    fn in_progress(&self) -> Option<Stage> {
+        let last = self.first_batch + self.passes().max(1) - 1;
+        Some(Stage {
+            number: self.number,
+            window: self.pass(last).window,
+            gather_paths: self.gather_paths(),
+            windows: self.sums.total()?,
+        })
+    }
+}

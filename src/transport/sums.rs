@@ -1,0 +1,96 @@
+//! Partial sums over batches in a fixed binary tree over their index.
+//!
+//! Whatever thread counted a batch and in whatever pieces they came, the sum has the same bits; and only as many
+//! partial sums are kept as the number of batches has binary digits.
+
+use crate::transport::Readings;
+use crate::transport::stages::Windows;
+
+/// What can be added to what follows directly.
+pub(crate) trait Merge: Clone {
+    /// Batches that it covers.
+    fn batch_count(&self) -> u64;
+    /// Adds the batches that follow directly.
+    fn merge(self, later: &Self) -> Self;
+}
+
+impl Merge for Readings {
+    fn batch_count(&self) -> u64 {
+        Self::batch_count(self)
+    }
+
+    fn merge(self, later: &Self) -> Self {
+        Self::merge(self, later)
+    }
+}
+
+impl Merge for Windows {
+    fn batch_count(&self) -> u64 {
+        self.narrow.batch_count()
+    }
+
+    fn merge(self, later: &Self) -> Self {
+        Self {
+            wide: self.wide.merge(&later.wide),
+            middle: self.middle.merge(&later.middle),
+            narrow: self.narrow.merge(&later.narrow),
+            extrapolated: self.extrapolated.merge(&later.extrapolated),
+        }
+    }
+}
+
+/// Partial sums: of whole waves, and of the batches of a wave in progress.
+#[derive(Debug, Clone)]
+pub(crate) struct Sums<T> {
+    done: Vec<T>,
+    wave: Vec<T>,
+}
+
+impl<T: Merge> Sums<T> {
+    /// Nothing yet.
+    pub(crate) fn new() -> Self {
+        Self { done: Vec::new(), wave: Vec::new() }
+    }
+
+    /// Adds a batch to the wave in progress.
+    pub(crate) fn push(&mut self, batch: T) {
+        fold(&mut self.wave, batch);
+    }
+
+    /// Ends a wave.
+    pub(crate) fn end_wave(&mut self) {
+        self.wave.drain(..).for_each(|wave| fold(&mut self.done, wave));
+    }
+
+    /// Batches of the wave in progress.
+    pub(crate) fn batches_of_wave(&self) -> u64 {
+        self.wave.iter().map(T::batch_count).sum()
+    }
+
+    /// Batches of whole waves.
+    pub(crate) fn batches_done(&self) -> u64 {
+        self.done.iter().map(T::batch_count).sum()
+    }
+
+    /// The sum over whole waves, so that all groups have equally many batches; in a first wave that was stopped, over
+    /// all of its batches so far. `None` before the first batch.
+    pub(crate) fn total(&self) -> Option<T> {
+        let partial = if self.done.is_empty() { &self.wave } else { &self.done };
+        let mut partial = partial.iter().rev();
+        let mut sum = partial.next()?.clone();
+        // The right edge of the tree: smaller subtrees join the larger ones on their left.
+        for left in partial {
+            sum = left.clone().merge(&sum);
+        }
+        Some(sum)
+    }
+}
+
+/// Adds a node to the partial sums of a tree, each of which covers a power of two of batches, larger ones first;
+/// neighbours that cover equally many become one.
+fn fold<T: Merge>(partial: &mut Vec<T>, mut node: T) {
+    while let Some(left) = partial.pop_if(|left| left.batch_count() == node.batch_count()) {
+        node = left.merge(&node);
+    }
+    partial.push(node);
+}

@@ -1,0 +1,81 @@
+//! Radius and angle within which photons count for a gather record, and how they shrink.
+
+use serde::{Deserialize, Serialize};
+use std::f64::consts::{FRAC_1_SQRT_2, PI};
+
+/// A disk of positions and a cone of directions.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Window {
+    /// Radius of the disk, mm.
+    pub radius: f64,
+    /// Half-angle of the cone, rad.
+    pub theta_max: f64,
+}
+
+/// Nested windows that are counted from the same photons.
+pub(crate) const NESTED: usize = 3;
+/// Their size relative to the widest: the bias of a smooth field goes with the square, 1 : 1/2 : 1/4.
+const SIZES: [f64; NESTED] = [1.0, FRAC_1_SQRT_2, 0.5];
+
+impl Window {
+    /// The window shrunk by a factor.
+    pub fn scaled(self, factor: f64) -> Self {
+        Self { radius: factor * self.radius, theta_max: factor * self.theta_max }
+    }
+
+    /// The three nested windows, the widest first.
+    pub fn nested(self) -> [Self; NESTED] {
+        SIZES.map(|size| self.scaled(size))
+    }
+
+    /// The window of a stage, from 0: radius and angle shrink by √2 from stage to stage (METHOD: the bias halves).
+    pub fn of_stage(self, stage: u32) -> Self {
+        self.scaled(FRAC_1_SQRT_2.powi(stage as i32))
+    }
+
+    /// The window of pass `pass`, from 0, when it shrinks from pass to pass: `r_i, θ_i ∝ i^-1/8`, the best of the
+    /// exponents below 1/4 for which four shrinking dimensions stay consistent.
+    pub fn of_pass(self, pass: u64) -> Self {
+        self.scaled(((pass + 1) as f64).powf(-0.125))
+    }
+
+    /// ΔA = π r², mm².
+    pub fn area(self) -> f64 {
+        PI * self.radius * self.radius
+    }
+
+    /// ΔΩ = 2π (1 - cos θ), sr, without cancellation.
+    pub fn solid_angle(self) -> f64 {
+        4.0 * PI * (0.5 * self.theta_max).sin().powi(2)
+    }
+
+    /// Distance between unit vectors at the rim of the cone, 1.
+    pub fn chord(self) -> f64 {
+        2.0 * (0.5 * self.theta_max).sin()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nested_windows_halve_area_and_solid_angle() {
+        let window = Window { radius: 1.0, theta_max: 1e-3 };
+        let [wide, middle, narrow] = window.nested();
+        assert!((wide.area() / middle.area() - 2.0).abs() < 1e-12);
+        assert!((middle.area() / narrow.area() - 2.0).abs() < 1e-12);
+        assert!((wide.solid_angle() / narrow.solid_angle() - 4.0).abs() < 1e-5);
+        assert!((wide.solid_angle() - PI * 1e-6).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_stage_halves_what_goes_with_the_square() {
+        let window = Window { radius: 0.8, theta_max: 0.01 };
+        let ratio = window.of_stage(3).area() / window.of_stage(2).area();
+        assert!((ratio - 0.5).abs() < 1e-12);
+        assert_eq!(window.of_stage(0), window);
+        assert_eq!(window.of_pass(0), window);
+        assert!((window.of_pass(255).radius / window.radius - 0.5).abs() < 1e-12);
+    }
+}

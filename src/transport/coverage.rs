@@ -14,6 +14,9 @@ use glam::{DVec2, DVec3};
 const POINTS: usize = 96;
 /// Normals of one surface in one window agree at least so well, 1.
 pub(crate) const AGREEING: f64 = 0.9;
+/// How far above or below its tangent plane the surface of a window may lie, in radii, 1: what normals that agree so
+/// well allow.
+pub(crate) const HEIGHT: f64 = 0.5;
 /// Turns from point to point of a sunflower, 2 less the golden ratio.
 const GOLDEN_TURN: f64 = 0.381_966_011_250_105_1;
 
@@ -76,6 +79,7 @@ fn is_over_surface(
     offset: DVec3,
     reach: f64,
 ) -> bool {
+    let reach = HEIGHT * reach;
     let ray = Ray::new(middle.point + offset + reach * middle.normal, -middle.normal);
     let mut found = false;
     scene.all_crossings(&ray, |prim, crossing| {

@@ -9,7 +9,7 @@
 use crate::math::projected_cap;
 use crate::optics::{Incidence, evaluate};
 use crate::scene::MediumId;
-use crate::transport::coverage::AGREEING;
+use crate::transport::coverage::{AGREEING, HEIGHT};
 use crate::transport::records::{GatherRecord, Slot, Wanted};
 use crate::transport::window::{NESTED, Window};
 use glam::DVec3;
@@ -65,7 +65,7 @@ impl Kernel {
         let [widest, ..] = self.radii_squared;
         let agreement = record.normal.dot(photon.incidence.normal);
         if across > widest
-            || height * height > widest
+            || height * height > HEIGHT * HEIGHT * widest
             || agreement < AGREEING
             || record.surface != photon.surface
             || record.medium != photon.medium

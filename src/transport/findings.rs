@@ -4,7 +4,7 @@
 
 use crate::scene::SensorId;
 use crate::scene::plan::Estimator;
-use crate::transport::{GatherSettings, Readings, Stage};
+use crate::transport::{Choice, GatherSettings, Readings, Stage};
 use serde::{Deserialize, Serialize};
 
 /// Everything a run has counted.
@@ -20,6 +20,8 @@ pub struct Findings {
     pub gathered: Option<Gathered>,
     /// How each sensor is estimated.
     pub estimators: Vec<Estimator>,
+    /// What a pilot found out about each sensor, if it was asked to choose.
+    pub choices: Vec<Choice>,
 }
 
 /// What the gather method has found.
@@ -35,7 +37,14 @@ impl Findings {
     /// The findings of photons alone.
     pub fn forward(photons: Readings) -> Self {
         let estimators = vec![Estimator::Forward; photons.sensors.len()];
-        Self { photons, backward: None, merged: None, gathered: None, estimators }
+        Self {
+            photons,
+            backward: None,
+            merged: None,
+            gathered: None,
+            estimators,
+            choices: Vec::new(),
+        }
     }
 
     /// How a sensor is estimated.

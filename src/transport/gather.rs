@@ -19,6 +19,7 @@ use crate::transport::readings::Counted;
 use crate::transport::records::{GatherRecord, Records, Surfaces, Wanted};
 use crate::transport::scatter::{Facing, facing};
 use crate::transport::window::{NESTED, Window};
+use crate::transport::work::RecordWork;
 use crate::transport::{Departure, Layout, Path, Readings, Vertex};
 use smallvec::SmallVec;
 use std::ops::ControlFlow;
@@ -55,6 +56,8 @@ pub(crate) struct PassReadings {
     pub(crate) photons: Readings,
     /// By the records, within each of the nested windows; not yet closed.
     pub(crate) windows: [Readings; NESTED],
+    /// What was done beside tracing.
+    pub(crate) work: RecordWork,
 }
 
 impl<'s> Gather<'s> {
@@ -85,11 +88,13 @@ impl<'s> Gather<'s> {
         let mut stream = Stream {
             gather: self,
             kernel: Kernel::new(pass.window),
+            work: RecordWork { records: waiting.records.all.len() as u64, ..RecordWork::default() },
             waiting: &waiting,
             windows: &mut windows,
         };
         let photons = forward.batch_watched(pass.batch, &mut stream);
-        PassReadings { photons, windows }
+        let work = stream.work;
+        PassReadings { photons, windows, work }
     }
 
     /// Traces the gather paths of a pass.
@@ -299,6 +304,7 @@ struct Stream<'p, 's> {
     kernel: Kernel,
     waiting: &'p Waiting<'s>,
     windows: &'p mut [Readings; NESTED],
+    work: RecordWork,
 }
 
 impl PhotonWatcher for Stream<'_, '_> {
@@ -335,9 +341,11 @@ impl Stream<'_, '_> {
                 index_to: index(interface.to),
             },
         };
-        let (kernel, windows) = (&self.kernel, &mut *self.windows);
+        let (kernel, windows, work) = (&self.kernel, &mut *self.windows, &mut self.work);
+        work.look_ups += 1;
         self.waiting.records.visit(surface, vertex.point, vertex.dir, |record| {
             let Some(shares) = kernel.flux(record, &photon) else { return };
+            work.pairs += 1;
             let Ended { sensor, cells, .. } = &self.waiting.paths[record.path as usize];
             let depth = path.depth + record.depth;
             for (readings, share) in windows.iter_mut().zip(shares) {

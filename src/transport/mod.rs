@@ -13,6 +13,7 @@ mod forward;
 mod gather;
 mod layout;
 mod path;
+mod pilot;
 mod readings;
 mod records;
 mod rounds;
@@ -24,12 +25,14 @@ mod tracks;
 mod walk;
 mod watch;
 mod window;
+mod work;
 
 pub use cells::Cells;
 pub use emitters::invisible;
 pub use findings::{Findings, Gathered};
 pub use layout::{Layout, TAILS};
 pub use path::{Path, WAVELENGTH};
+pub use pilot::{Choice, Trial};
 pub use readings::{
     ClassSum, DEPTH_BINS, GROUPS, Group, Leak, Readings, SensorReading, Step, Trail,
 };

@@ -6,16 +6,17 @@
 
 use crate::scene::plan::{Estimator, Request, RunPlan};
 use crate::scene::{Scene, SensorId};
-use crate::transport::Readings;
 use crate::transport::backward::Backward;
 use crate::transport::findings::{Findings, Gathered};
 use crate::transport::forward::Forward;
 use crate::transport::gather::Gather;
+use crate::transport::pilot::choose;
 use crate::transport::readings::GROUPS;
 use crate::transport::settings::{PhotonPilot, settle};
 use crate::transport::stages::{FIRST_PASSES, Stages};
 use crate::transport::sums::Sums;
 use crate::transport::window::NESTED;
+use crate::transport::{Choice, Readings};
 use rayon::prelude::*;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -53,6 +54,7 @@ const PHOTON_SHARE: f64 = 0.1;
 #[derive(Debug)]
 pub struct Run<'s> {
     estimators: Vec<Estimator>,
+    choices: Vec<Choice>,
     forward: Forward<'s>,
     photons: Sums<Readings>,
     backward: Option<(Backward<'s>, Sums<Readings>)>,
@@ -78,14 +80,14 @@ impl<'s> Run<'s> {
         let forward = |limit, paths| Forward::new(scene, plan.seed, limit, paths);
         let pilot = forward(plan.bounce_limit.min(PILOT_BOUNCES), PILOT_PATHS).batch(0);
         let segments = pilot.segments.div_ceil(pilot.paths().max(1)).max(1);
-        let estimators = vec![requested(plan.estimator); scene.sensors.len()];
+        let pilot = PhotonPilot { segments_per_path: segments as f64 };
+        let (estimators, choices) = estimators(scene, plan, pilot);
         let of = |wanted: Estimator| -> Vec<SensorId> {
             let all = estimators.iter().enumerate();
             all.filter(|(_, own)| **own == wanted).map(|(index, _)| SensorId::new(index)).collect()
         };
         let gathered = of(Estimator::Gather);
         let stages = (!gathered.is_empty()).then(|| {
-            let pilot = PhotonPilot { segments_per_path: segments as f64 };
             let settings = settle(scene, &plan.gather, &gathered, plan.seed, pilot);
             Stages::new(Gather::new(scene, &gathered, plan.seed, settings.depth), settings)
         });
@@ -100,7 +102,11 @@ impl<'s> Run<'s> {
         let wave_batches = if stages.is_some() { FIRST_PASSES } else { GROUPS };
         let photons = match (&stages, &backward) {
             (Some(stages), _) => stages.settings.photons,
-            (None, Some(_)) => (PHOTON_SHARE * usual as f64).ceil() as u64,
+            // Photons also count for the sensors that are estimated forward.
+            (None, Some(_)) if of(Estimator::Forward).is_empty() => {
+                (PHOTON_SHARE * usual as f64).ceil() as u64
+            }
+            (None, Some(_)) => usual,
             (None, None) => {
                 let waves = plan.stop.paths.map(|paths| paths.div_ceil(GROUPS * usual).max(1));
                 plan.stop
@@ -111,6 +117,7 @@ impl<'s> Run<'s> {
         };
         Self {
             estimators,
+            choices,
             forward: forward(plan.bounce_limit, photons.max(sources)),
             photons: Sums::new(),
             backward: backward.map(|backward| (backward, Sums::new())),
@@ -249,6 +256,7 @@ impl<'s> Run<'s> {
                 .as_ref()
                 .map(|stages| Gathered { settings: stages.settings, stages: stages.found() }),
             estimators: self.estimators.clone(),
+            choices: self.choices.clone(),
         }
     }
 
@@ -260,12 +268,17 @@ impl<'s> Run<'s> {
     }
 }
 
-/// The estimator of all sensors that a request names.
-fn requested(request: Request) -> Estimator {
-    match request {
-        Request::Auto | Request::Forward => Estimator::Forward,
-        Request::Backward => Estimator::Backward,
-        Request::Gather => Estimator::Gather,
-        Request::Mis => Estimator::Mis,
+/// The estimator of each sensor: the one that was asked for, never another, or what a pilot chooses.
+fn estimators(scene: &Scene, plan: &RunPlan, pilot: PhotonPilot) -> (Vec<Estimator>, Vec<Choice>) {
+    let all = |estimator| (vec![estimator; scene.sensors.len()], Vec::new());
+    match plan.estimator {
+        Request::Forward => all(Estimator::Forward),
+        Request::Backward => all(Estimator::Backward),
+        Request::Gather => all(Estimator::Gather),
+        Request::Mis => all(Estimator::Mis),
+        Request::Auto => {
+            let choices = choose(scene, plan, pilot);
+            (choices.iter().map(|choice| choice.chosen).collect(), choices)
+        }
     }
 }

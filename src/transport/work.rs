@@ -1,0 +1,53 @@
+//! Work, counted instead of timed: the same on every machine, so that choices made by it repeat.
+//!
+//! The constants are nanoseconds on one thread of the machine of benches/results/2026-11-21.md; only their ratios matter.
+
+use crate::transport::Readings;
+
+/// Per photon path, and per straight piece of one.
+const PHOTON_PATH: f64 = 170.0;
+const PHOTON_SEGMENT: f64 = 45.0;
+/// Per gather path, and per straight piece of one.
+const GATHER_PATH: f64 = 600.0;
+const GATHER_SEGMENT: f64 = 60.0;
+/// Per gather record, made and indexed; per photon that passes the filter; per photon that a record takes.
+const RECORD: f64 = 900.0;
+const LOOK_UP: f64 = 200.0;
+const PAIR: f64 = 80.0;
+
+/// What a pass did beside tracing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct RecordWork {
+    /// Records made.
+    pub(crate) records: u64,
+    /// Photons that may have met one.
+    pub(crate) look_ups: u64,
+    /// Photons taken, each by each record that took it.
+    pub(crate) pairs: u64,
+}
+
+/// Work of photon paths.
+pub(crate) fn of_photons(readings: &Readings) -> f64 {
+    PHOTON_PATH * readings.paths() as f64 + PHOTON_SEGMENT * readings.segments as f64
+}
+
+/// Work of a photon path with so many straight pieces.
+pub(crate) fn of_photon_path(segments: f64) -> f64 {
+    PHOTON_PATH + PHOTON_SEGMENT * segments
+}
+
+/// Work of a gather path with so many straight pieces.
+pub(crate) fn of_gather_path(segments: f64) -> f64 {
+    GATHER_PATH + GATHER_SEGMENT * segments
+}
+
+/// Work of gather paths.
+pub(crate) fn of_gather_paths(paths: u64, segments: u64) -> f64 {
+    GATHER_PATH * paths as f64 + GATHER_SEGMENT * segments as f64
+}
+
+/// Work of records.
+pub(crate) fn of_records(work: RecordWork) -> f64 {
+    let RecordWork { records, look_ups, pairs } = work;
+    RECORD * records as f64 + LOOK_UP * look_ups as f64 + PAIR * pairs as f64
+}

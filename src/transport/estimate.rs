@@ -1,6 +1,6 @@
 //! What a photon is worth to a gather record: the position and the position-and-angle estimate.
 //!
-//! `L*(x,ω) = 1/n² Σ Φ_p K_r K_θ / |cos θ_p|` (docs/theory.md): `K_r` is 1/ΔA over the disk of the window in the tangent
+//! `L*(x,ω) = 1/n² Σ Φ_p K_r K_θ / |cos θ_p|` (docs/method.md, eq. 15): `K_r` is 1/ΔA over the disk of the window in the tangent
 //! plane, clipped at rims, times the cosine between the normals at record and photon, so that it integrates to 1 over a
 //! curved surface, too. `K_θ` is 1/ΔΩ over the cone. Where the cone comes near the horizon of the photon's place,
 //! `K_θ / |cos θ_p|` becomes 1/∫ cos θ dω over the part of the cone above the horizon: it integrates to the same, and no

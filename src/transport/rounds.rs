@@ -210,6 +210,11 @@ impl<'s> Run<'s> {
         self.waves
     }
 
+    /// Photon paths of a batch, or of a pass.
+    pub fn photons_per_batch(&self) -> u64 {
+        self.forward.shares.iter().sum()
+    }
+
     /// Whether no wave is in progress.
     pub fn is_between_waves(&self) -> bool {
         self.photons.batches_of_wave() == 0
@@ -261,10 +266,9 @@ impl<'s> Run<'s> {
     }
 
     fn batch_paths(&self) -> u64 {
-        let photons: u64 = self.forward.shares.iter().sum();
         let backward = self.backward.as_ref().map_or(0, |(backward, _)| backward.batch_paths());
         let gather = self.stages.as_ref().map_or(0, Stages::batch_paths);
-        photons + backward + gather
+        self.photons_per_batch() + backward + gather
     }
 }
 

@@ -80,7 +80,10 @@ above = {{ plane = {{ rectangle = {{ width_mm = 6, height_mm = 6 }} }}, at = {{ 
 fn mirrors_and_metals() {
     all_agree("mirror tube", &tube("{ specular = { reflectance = 0.9 } }"));
     all_agree("metal tube", &tube("{ metal = { n = 0.79, k = 5.85 } }"));
-    all_agree("half mirror tube", &tube("{ specular = { reflectance = 0.6, transmittance = 0.3 } }"));
+    all_agree(
+        "half mirror tube",
+        &tube("{ specular = { reflectance = 0.6, transmittance = 0.3 } }"),
+    );
     all_agree("black tube", &tube("{ absorber = {} }"));
 }
 
@@ -89,7 +92,10 @@ fn walls_that_scatter() {
     all_agree("narrow scatter", &tube("{ gaussian = { sigma_deg = 1, reflectance = 0.9 } }"));
     all_agree("broad scatter", &tube("{ gaussian = { sigma_deg = 15, reflectance = 0.9 } }"));
     all_agree("white tube", &tube("{ lambertian = { reflectance = 0.8 } }"));
-    all_agree("white tube that lets light out", &tube("{ lambertian = { reflectance = 0.6, transmittance = 0.3 } }"));
+    all_agree(
+        "white tube that lets light out",
+        &tube("{ lambertian = { reflectance = 0.6, transmittance = 0.3 } }"),
+    );
 }
 
 #[test]
@@ -120,8 +126,14 @@ fn windows() {
         ("open window", "{ open = {} }"),
         ("half mirror", "{ specular = { reflectance = 0.4, transmittance = 0.5 } }"),
         ("diffuser", "{ lambertian = { reflectance = 0.3, transmittance = 0.6 } }"),
-        ("narrow scatter", "{ gaussian = { sigma_deg = 1, reflectance = 0.4, transmittance = 0.5 } }"),
-        ("broad scatter", "{ gaussian = { sigma_deg = 15, reflectance = 0.4, transmittance = 0.5 } }"),
+        (
+            "narrow scatter",
+            "{ gaussian = { sigma_deg = 1, reflectance = 0.4, transmittance = 0.5 } }",
+        ),
+        (
+            "broad scatter",
+            "{ gaussian = { sigma_deg = 15, reflectance = 0.4, transmittance = 0.5 } }",
+        ),
     ] {
         shallow_agree(what, &window(finish, finish));
     }
@@ -145,7 +157,11 @@ fn windows_with_two_sides() {
             "{ mixture = [{ weight = 1, finish = { open = {} } }, { weight = 1, finish = { lambertian = { reflectance = 0.3, transmittance = 0.6 } } }] }",
             "{ gaussian = { sigma_deg = 12, reflectance = 0.5, transmittance = 0.3 } }",
         ),
-        ("half mirror, black behind", "{ specular = { reflectance = 0.2, transmittance = 0.3 } }", "{ absorber = {} }"),
+        (
+            "half mirror, black behind",
+            "{ specular = { reflectance = 0.2, transmittance = 0.3 } }",
+            "{ absorber = {} }",
+        ),
     ] {
         shallow_agree(what, &window(front, back));
     }
@@ -165,12 +181,18 @@ fn faces_of_glass() {
 #[test]
 fn faces_of_glass_with_films() {
     for (what, finish) in [
-        ("glass with a diffusing film", "{ lambertian = { reflectance = 0.4, transmittance = 0.5 } }"),
+        (
+            "glass with a diffusing film",
+            "{ lambertian = { reflectance = 0.4, transmittance = 0.5 } }",
+        ),
         (
             "glass, rough in parts",
             "{ mixture = [{ weight = 2, finish = \"polished\" }, { weight = 1, finish = { gaussian = { sigma_deg = 12 } } }, { weight = 1, finish = { lambertian = { reflectance = 0.5, transmittance = 0.4 } } }] }",
         ),
-        ("glass, rough in narrow parts", "{ mixture = [{ weight = 2, finish = \"polished\" }, { weight = 1, finish = { gaussian = { sigma_deg = 2 } } }] }"),
+        (
+            "glass, rough in narrow parts",
+            "{ mixture = [{ weight = 2, finish = \"polished\" }, { weight = 1, finish = { gaussian = { sigma_deg = 2 } } }] }",
+        ),
     ] {
         all_agree(what, &block(finish));
     }

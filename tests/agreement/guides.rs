@@ -31,20 +31,46 @@ cell = {{ plane = {{ rectangle = {{ width_mm = 3, height_mm = 3 }} }}, at = {{ f
 
 #[test]
 fn rods() {
-    all_agree("rod", &guide("[solids.pipe.cylinder]\nradius_mm = 1.5\nlength_mm = 10\nmedium = \"acrylic\""));
-    all_agree("square rod", &guide("[solids.pipe.sweep]\nprofile = { rectangle = { width_mm = 3, height_mm = 2.5 } }\npath = [{ straight_mm = 10 }]\nmedium = \"acrylic\""));
-    all_agree("taper", &guide("[solids.pipe.cylinder]\nradius_mm = 1.5\nend_radius_mm = 2.2\nlength_mm = 10\nmedium = \"acrylic\""));
+    all_agree(
+        "rod",
+        &guide("[solids.pipe.cylinder]\nradius_mm = 1.5\nlength_mm = 10\nmedium = \"acrylic\""),
+    );
+    all_agree(
+        "square rod",
+        &guide(
+            "[solids.pipe.sweep]\nprofile = { rectangle = { width_mm = 3, height_mm = 2.5 } }\npath = [{ straight_mm = 10 }]\nmedium = \"acrylic\"",
+        ),
+    );
+    all_agree(
+        "taper",
+        &guide(
+            "[solids.pipe.cylinder]\nradius_mm = 1.5\nend_radius_mm = 2.2\nlength_mm = 10\nmedium = \"acrylic\"",
+        ),
+    );
 }
 
 #[test]
 fn bends() {
-    all_agree("bend", &guide("[solids.pipe.sweep]\nprofile = { circle = { radius_mm = 1.5 } }\npath = [{ straight_mm = 3 }, { bend_deg = 90, radius_mm = 6 }, { straight_mm = 3 }]\nmedium = \"acrylic\""));
-    all_agree("mitred corner", &guide("[solids.pipe.sweep]\nprofile = { rectangle = { width_mm = 3, height_mm = 3 } }\npath = [{ straight_mm = 3 }, { corner_deg = 60, mitred = true }, { straight_mm = 3 }]\nmedium = \"acrylic\""));
+    all_agree(
+        "bend",
+        &guide(
+            "[solids.pipe.sweep]\nprofile = { circle = { radius_mm = 1.5 } }\npath = [{ straight_mm = 3 }, { bend_deg = 90, radius_mm = 6 }, { straight_mm = 3 }]\nmedium = \"acrylic\"",
+        ),
+    );
+    all_agree(
+        "mitred corner",
+        &guide(
+            "[solids.pipe.sweep]\nprofile = { rectangle = { width_mm = 3, height_mm = 3 } }\npath = [{ straight_mm = 3 }, { corner_deg = 60, mitred = true }, { straight_mm = 3 }]\nmedium = \"acrylic\"",
+        ),
+    );
 }
 
 #[test]
 fn overlapping_solids() {
-    all_agree("dome on a rod", &guide(r#"
+    all_agree(
+        "dome on a rod",
+        &guide(
+            r#"
 [media.glue]
 index = 1.41
 [solids.pipe.cylinder]
@@ -61,11 +87,18 @@ radius_mm = 0.5
 medium = "air"
 priority = 2
 at = { position_mm = [0.4, 0, 4] }
-"#).replace("pipe.exit\", counts", "dome.surface\", counts").replace("aim = [\"pipe.exit\"]", "aim = [\"dome.surface\"]"));
+"#,
+        )
+        .replace("pipe.exit\", counts", "dome.surface\", counts")
+        .replace("aim = [\"pipe.exit\"]", "aim = [\"dome.surface\"]"),
+    );
 }
 
 #[test]
 fn meshes() {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/meshes/lightguide.glb");
-    all_agree("mesh", &guide(&format!("[solids.pipe.mesh]\nfile = '{file}'\nunit = \"m\"\nmedium = \"acrylic\"")));
+    all_agree(
+        "mesh",
+        &guide(&format!("[solids.pipe.mesh]\nfile = '{file}'\nunit = \"m\"\nmedium = \"acrylic\"")),
+    );
 }

@@ -4,7 +4,7 @@
 use crate::trial::{Comparison, Gathering, Way, findings, load, measures};
 use lumiduct::measure::{self, Measure};
 use lumiduct::transport::Findings;
-use std::f64::consts::FRAC_1_SQRT_2;
+use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 /// A guide and its lamp, in which nothing absorbs.
 const ROD: &str = r#"
@@ -49,7 +49,10 @@ fn shallow_and_deep_records_agree() {
         let [shallow, deep] = [&shallow, &deep].map(|found| found.values["exit.flux"].clone());
         let room = |measure: &Measure| measure.std_error + measure.bias.unwrap();
         let (apart, room) = ((shallow.value - deep.value).abs(), room(&shallow) + room(&deep));
-        println!("{what}: {shallow} at D = 2, {deep} at D = 8, {:.2} of their errors", apart / room);
+        println!(
+            "{what}: {shallow} at D = 2, {deep} at D = 8, {:.2} of their errors",
+            apart / room
+        );
         assert!(apart <= 2.0 * room, "{what}: {shallow} and {deep}");
     }
 }
@@ -82,12 +85,23 @@ fn wide(text: &str, gathering: Gathering, name: &str) -> Measure {
 }
 
 /// Holds E1 within three windows, each smaller by √2, against what it should be, and its bias against half of the last.
-fn follows(what: &str, text: &str, name: &str, window: Gathering, truth: f64, law: impl Fn(Gathering) -> f64) {
+fn follows(
+    what: &str,
+    text: &str,
+    name: &str,
+    window: Gathering,
+    truth: f64,
+    law: impl Fn(Gathering) -> f64,
+) {
     let mut comparison = Comparison::default();
     let mut biases = Vec::new();
     for step in 0..3 {
         let size = FRAC_1_SQRT_2.powi(step);
-        let window = Gathering { radius_mm: size * window.radius_mm, angle_deg: size * window.angle_deg, ..window };
+        let window = Gathering {
+            radius_mm: size * window.radius_mm,
+            angle_deg: size * window.angle_deg,
+            ..window
+        };
         let found = wide(text, window, name);
         let expected = law(window);
         comparison.add(&format!("{what}, window {step}"), &found, expected, 1e-6 * expected);
@@ -98,7 +112,8 @@ fn follows(what: &str, text: &str, name: &str, window: Gathering, truth: f64, la
         let [(wide, noise), (narrow, narrow_noise)] = [pair[0], pair[1]];
         let room = 4.0 * (0.5 * noise).hypot(narrow_noise) + 0.1 * narrow.abs();
         if (0.5 * wide - narrow).abs() > room || narrow.abs() < 4.0 * narrow_noise {
-            comparison.fail(format!("{what}: biases {wide:.3} and {narrow:.3} ± {narrow_noise:.3}"));
+            comparison
+                .fail(format!("{what}: biases {wide:.3} and {narrow:.3} ± {narrow_noise:.3}"));
         }
     }
     comparison.assert(what, 3);
@@ -130,15 +145,17 @@ eye = { luminance = { disk = { radius_mm = 0.01 }, cells = [1, 1], acceptance_ha
     // By area: s² is uniform within the window; the sensor sees less than 0.06 mm of the screen.
     let law = |window: Gathering| {
         let steps = 1000;
-        let place = |step: i32| (f64::from(step) + 0.5) / f64::from(steps) * window.radius_mm.powi(2);
+        let place =
+            |step: i32| (f64::from(step) + 0.5) / f64::from(steps) * window.radius_mm.powi(2);
         (0..steps).map(|step| luminance(place(step))).sum::<f64>() / f64::from(steps)
     };
-    let window = Gathering { depth: 0, radius_mm: 1.4, angle_deg: 5.0, records: 4, photons: 10_000 };
+    let window =
+        Gathering { depth: 0, radius_mm: 1.4, angle_deg: 5.0, records: 4, photons: 10_000 };
     follows("position", text, "eye.luminance_avg.0", window, luminance(0.0), law);
 }
 
-/// A wide lamp of intensity cos^p about its normal has the luminance cos^(p-1), whose mean over a cone about the
-/// normal is (1 - cos^p θ)/(p (1 - cos θ)).
+/// A wide lamp of intensity cos^p about its normal has the luminance L₀ cos^(p-1), and its exitance is 2π L₀/(p + 1).
+/// The mean over a cone about the normal is L₀ (1 - cos^p θ)/(p (1 - cos θ)).
 #[test]
 fn bias_of_the_angle_estimate_is_the_mean_over_its_cone() {
     let power = 80.0;
@@ -152,16 +169,18 @@ finish = "mirror"
 at = { axis = [1, 0, -1] }
 [sources.lamp.disk]
 radius_mm = 6
-luminance_cd_m2 = 1000
+flux_lm = 1
 emission = { cosine_power = 80 }
 at = { position_mm = [10, 0, 0], axis = [-1, 0, 0] }
 [sensors]
 eye = { luminance = { disk = { radius_mm = 1 }, cells = [1, 1], acceptance_half_angle_deg = 0.1, directions = [{ theta_deg = 0, phi_deg = 0 }] }, at = { position_mm = [0, 0, -5], axis = [0, 0, 1] } }
 "#;
+    let normal = 1e6 / (PI * 36.0) * (power + 1.0) / (2.0 * PI);
     let law = |window: Gathering| {
         let cos = window.angle_deg.to_radians().cos();
-        1000.0 * (1.0 - cos.powf(power)) / (power * (1.0 - cos))
+        normal * (1.0 - cos.powf(power)) / (power * (1.0 - cos))
     };
-    let window = Gathering { depth: 0, radius_mm: 0.5, angle_deg: 5.0, records: 100, photons: 10_000 };
-    follows("angle", text, "eye.luminance_avg.0", window, 1000.0, law);
+    let window =
+        Gathering { depth: 0, radius_mm: 1.5, angle_deg: 5.0, records: 100, photons: 100_000 };
+    follows("angle", text, "eye.luminance_avg.0", window, normal, law);
 }

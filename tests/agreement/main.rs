@@ -4,7 +4,10 @@
 //! Forward is the oracle: it shares neither adjoints nor windows with the others. Seeds are fixed.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
-#![allow(clippy::print_stdout, reason = "a line for each value, shown by --nocapture and on failure")]
+#![allow(
+    clippy::print_stdout,
+    reason = "a line for each value, shown by --nocapture and on failure"
+)]
 
 mod finishes;
 mod furnace;

@@ -55,19 +55,25 @@ fn estimators_that_cannot_meet_a_source_are_refused() {
     let scene = dir.path().join("scene.toml");
     for (source, why) in [
         ("point", "it is a point"),
-        ("line]\nlength_mm = 2\n[sources.other.disk]\nradius_mm = 1\nflux_lm = 1\n[media", "it is a line"),
+        (
+            "line]\nlength_mm = 2\n[sources.other.disk]\nradius_mm = 1\nflux_lm = 1\n[media",
+            "it is a line",
+        ),
         ("disk]\nradius_mm = 1\nemission = \"collimated\"\n[media", "it shines in one direction"),
     ] {
         let source = source.replacen("]\n", "]\nflux_lm = 1\n", 1);
-        let source = if source == "point" { "point]\nflux_lm = 1\n[media".to_owned() } else { source };
+        let source =
+            if source == "point" { "point]\nflux_lm = 1\n[media".to_owned() } else { source };
         let text = format!(
             "lumiduct = 1\ntitle = \"Refused\"\n[sources.lamp.{source}]\n[sensors]\ncell = {{ plane = {{ disk = {{ radius_mm = 1 }} }}, at = {{ position_mm = [0, 0, 5] }} }}\n"
         );
         std::fs::write(&scene, text).unwrap();
         for estimator in [Request::Backward, Request::Gather] {
             let settings = Settings { estimator: Some(estimator), ..Settings::default() };
-            let output = Output { dir: Some(dir.path().join("report")), existing: Existing::Replace };
-            let refused = pipeline::run_one(&scene, &settings, &output, &Interrupt::default(), &mut |_| {});
+            let output =
+                Output { dir: Some(dir.path().join("report")), existing: Existing::Replace };
+            let refused =
+                pipeline::run_one(&scene, &settings, &output, &Interrupt::default(), &mut |_| {});
             let message = refused.unwrap_err().to_string();
             let name = estimator.name();
             for word in [why, "lamp", name, "run.estimator"] {
@@ -79,7 +85,9 @@ fn estimators_that_cannot_meet_a_source_are_refused() {
 
 #[test]
 fn a_sensor_that_sees_nothing_reads_nothing() {
-    let text = format!("{ROD}dark = {{ plane = {{ disk = {{ radius_mm = 1 }} }}, at = {{ position_mm = [0, 0, 40] }} }}\n");
+    let text = format!(
+        "{ROD}dark = {{ plane = {{ disk = {{ radius_mm = 1 }} }}, at = {{ position_mm = [0, 0, 40] }} }}\n"
+    );
     for way in [Way::Backward, gather()] {
         let job = load(&text, way);
         let found = measure::measure(&job.scene, &findings(&job, way));

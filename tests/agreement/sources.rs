@@ -36,7 +36,9 @@ fn sources_on_faces() {
     );
     all_agree(
         "disk on a face with air",
-        &rod("[sources.lamp.disk]\nradius_mm = 2\nflux_lm = 10\ncontact = \"air\"\nat = { face = \"rod.entry\" }"),
+        &rod(
+            "[sources.lamp.disk]\nradius_mm = 2\nflux_lm = 10\ncontact = \"air\"\nat = { face = \"rod.entry\" }",
+        ),
     );
     all_agree(
         "a face that shines out",
@@ -48,7 +50,9 @@ fn sources_on_faces() {
     );
     all_agree(
         "a face that shines in with air",
-        &rod("[sources.lamp.face]\nof = \"rod.wall\"\nside = \"back\"\ncontact = \"air\"\nflux_lm = 10"),
+        &rod(
+            "[sources.lamp.face]\nof = \"rod.wall\"\nside = \"back\"\ncontact = \"air\"\nflux_lm = 10",
+        ),
     );
 }
 
@@ -57,15 +61,21 @@ fn sources_with_volume_and_shape() {
     all_agree("glowing solid", &rod("[sources.lamp.volume]\nof = \"rod\"\nflux_lm = 10"));
     all_agree(
         "sphere",
-        &rod("[sources.lamp.sphere]\nradius_mm = 1\nflux_lm = 10\nat = { position_mm = [0.5, 0, -1.5] }"),
+        &rod(
+            "[sources.lamp.sphere]\nradius_mm = 1\nflux_lm = 10\nat = { position_mm = [0.5, 0, -1.5] }",
+        ),
     );
     all_agree(
         "cylinder",
-        &rod("[sources.lamp.cylinder]\nradius_mm = 1\nlength_mm = 2\nflux_lm = 10\nat = { position_mm = [0.5, 0, -2.5] }"),
+        &rod(
+            "[sources.lamp.cylinder]\nradius_mm = 1\nlength_mm = 2\nflux_lm = 10\nat = { position_mm = [0.5, 0, -2.5] }",
+        ),
     );
     all_agree(
         "sphere in the rod",
-        &rod("[sources.lamp.sphere]\nradius_mm = 1\nflux_lm = 10\nat = { position_mm = [0.5, 0, 3] }"),
+        &rod(
+            "[sources.lamp.sphere]\nradius_mm = 1\nflux_lm = 10\nat = { position_mm = [0.5, 0, 3] }",
+        ),
     );
 }
 
@@ -73,15 +83,21 @@ fn sources_with_volume_and_shape() {
 fn sources_with_bodies() {
     all_agree(
         "absorbing sphere",
-        &rod("[sources.lamp.sphere]\nradius_mm = 1\nflux_lm = 10\nbody = \"absorbing\"\nat = { position_mm = [0.5, 0, -1.5] }"),
+        &rod(
+            "[sources.lamp.sphere]\nradius_mm = 1\nflux_lm = 10\nbody = \"absorbing\"\nat = { position_mm = [0.5, 0, -1.5] }",
+        ),
     );
     all_agree(
         "disk with a white body",
-        &rod("[sources.lamp.disk]\nradius_mm = 2\nflux_lm = 10\nbody = { lambertian = { reflectance = 0.7 } }\nat = { face = \"rod.entry\", gap_mm = 1 }"),
+        &rod(
+            "[sources.lamp.disk]\nradius_mm = 2\nflux_lm = 10\nbody = { lambertian = { reflectance = 0.7 } }\nat = { face = \"rod.entry\", gap_mm = 1 }",
+        ),
     );
     all_agree(
         "absorbing disk in optical contact",
-        &rod("[sources.lamp.disk]\nradius_mm = 2\nflux_lm = 10\nbody = \"absorbing\"\nat = { face = \"rod.entry\" }"),
+        &rod(
+            "[sources.lamp.disk]\nradius_mm = 2\nflux_lm = 10\nbody = \"absorbing\"\nat = { face = \"rod.entry\" }",
+        ),
     );
 }
 
@@ -89,18 +105,26 @@ fn sources_with_bodies() {
 fn emission_of_all_kinds() {
     all_agree(
         "tilted cone",
-        &rod("[sources.lamp.disk]\nradius_mm = 2\nflux_lm = 10\nemission = { cone_half_angle_deg = 25 }\ntilt_deg = 15\nat = { position_mm = [0, 0, -1] }"),
+        &rod(
+            "[sources.lamp.disk]\nradius_mm = 2\nflux_lm = 10\nemission = { cone_half_angle_deg = 25 }\ntilt_deg = 15\nat = { position_mm = [0, 0, -1] }",
+        ),
     );
     all_agree(
         "cosine power",
-        &rod("[sources.lamp.rectangle]\nwidth_mm = 3\nheight_mm = 2\nflux_lm = 10\nemission = { cosine_power = 6 }\nat = { position_mm = [0, 0, -1] }"),
+        &rod(
+            "[sources.lamp.rectangle]\nwidth_mm = 3\nheight_mm = 2\nflux_lm = 10\nemission = { cosine_power = 6 }\nat = { position_mm = [0, 0, -1] }",
+        ),
     );
     all_agree(
         "isotropic disk",
-        &rod("[sources.lamp.disk]\nradius_mm = 2\ninner_radius_mm = 1\nflux_lm = 10\nemission = \"isotropic\"\nat = { position_mm = [0, 0, -1] }"),
+        &rod(
+            "[sources.lamp.disk]\nradius_mm = 2\ninner_radius_mm = 1\nflux_lm = 10\nemission = \"isotropic\"\nat = { position_mm = [0, 0, -1] }",
+        ),
     );
     all_agree(
         "two lamps",
-        &rod("[sources.lamp.disk]\nradius_mm = 2\nflux_lm = 10\nat = { position_mm = [0, 0, -1] }\n[sources.side.rectangle]\nwidth_mm = 4\nheight_mm = 2\nflux_lm = 20\nat = { position_mm = [5, 0, 5], axis = [-1, 0, 0] }"),
+        &rod(
+            "[sources.lamp.disk]\nradius_mm = 2\nflux_lm = 10\nat = { position_mm = [0, 0, -1] }\n[sources.side.rectangle]\nwidth_mm = 4\nheight_mm = 2\nflux_lm = 20\nat = { position_mm = [5, 0, 5], axis = [-1, 0, 0] }",
+        ),
     );
 }

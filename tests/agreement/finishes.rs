@@ -1,0 +1,199 @@
+//! Every finish: adjoint factors, and no light counted twice or never.
+
+use crate::trial::{all_agree, shallow_agree};
+
+/// A tube of a finish, lit by a disk, seen at the exit and by a remote cell.
+fn tube(finish: &str) -> String {
+    format!(
+        r#"
+[finishes]
+tested = {finish}
+[sheets.tube.tube]
+profile = {{ circle = {{ radius_mm = 5 }} }}
+path = [{{ straight_mm = 15 }}]
+finish = "tested"
+[sources.lamp.disk]
+radius_mm = 4
+flux_lm = 10
+at = {{ position_mm = [0.5, 0, 0.1] }}
+[sensors]
+exit = {{ plane = {{ cells = [2, 2] }}, on = "tube.exit", counts = "incident" }}
+cell = {{ plane = {{ rectangle = {{ width_mm = 4, height_mm = 4 }} }}, at = {{ position_mm = [4, 1, 25], axis = [0, 0, -1] }}, aim = ["tube.exit"] }}
+"#
+    )
+}
+
+/// A window with a finish, tilted, between the lamp and a cell behind it; another cell sees what comes back.
+fn window(finish: &str, back: &str) -> String {
+    format!(
+        r#"
+[finishes]
+tested = {finish}
+behind = {back}
+mirror = {{ specular = {{ reflectance = 0.9 }} }}
+[sheets.window.disk]
+radius_mm = 6
+finish = "behind"
+back = "tested"
+at = {{ position_mm = [0, 0, 8], axis = [0.3, 0, 1] }}
+[sheets.plate.rectangle]
+width_mm = 14
+height_mm = 14
+finish = "mirror"
+at = {{ position_mm = [0, 0, 20], axis = [-0.1, 0, 1] }}
+[sources.lamp.disk]
+radius_mm = 3
+flux_lm = 10
+[sensors]
+beyond = {{ plane = {{ rectangle = {{ width_mm = 6, height_mm = 6 }}, cells = [2, 1] }}, at = {{ position_mm = [1, 0, 16], axis = [0, 0, -1] }}, side = "both" }}
+before = {{ plane = {{ rectangle = {{ width_mm = 6, height_mm = 6 }} }}, at = {{ position_mm = [-8, 0, 2], axis = [0.3, 0, 1] }}, aim = ["window.surface"] }}
+"#
+    )
+}
+
+/// A block of glass with a finish on all its faces, lit from below, seen inside and outside.
+fn block(finish: &str) -> String {
+    format!(
+        r#"
+[finishes]
+tested = {finish}
+[media.glass]
+index = 1.49
+absorption_per_mm = 0.01
+[solids.block.box]
+size_mm = [8, 8, 6]
+medium = "glass"
+faces = {{ entry = "tested", exit = "tested", wall = "tested" }}
+[sources.lamp.disk]
+radius_mm = 3
+flux_lm = 10
+at = {{ position_mm = [0, 0, -1] }}
+[sensors]
+out = {{ plane = {{ cells = [2, 1] }}, on = "block.exit", counts = "leaving" }}
+inside = {{ plane = {{ rectangle = {{ width_mm = 6, height_mm = 6 }} }}, at = {{ position_mm = [0, 0, 3], axis = [0, 0, -1] }} }}
+above = {{ plane = {{ rectangle = {{ width_mm = 6, height_mm = 6 }} }}, at = {{ position_mm = [2, 0, 12], axis = [0, 0, -1] }}, aim = ["block.exit"] }}
+"#
+    )
+}
+
+#[test]
+fn mirrors_and_metals() {
+    all_agree("mirror tube", &tube("{ specular = { reflectance = 0.9 } }"));
+    all_agree("metal tube", &tube("{ metal = { n = 0.79, k = 5.85 } }"));
+    all_agree(
+        "half mirror tube",
+        &tube("{ specular = { reflectance = 0.6, transmittance = 0.3 } }"),
+    );
+    all_agree("black tube", &tube("{ absorber = {} }"));
+}
+
+#[test]
+fn walls_that_scatter() {
+    all_agree("narrow scatter", &tube("{ gaussian = { sigma_deg = 1, reflectance = 0.9 } }"));
+    all_agree("broad scatter", &tube("{ gaussian = { sigma_deg = 15, reflectance = 0.9 } }"));
+    all_agree("white tube", &tube("{ lambertian = { reflectance = 0.8 } }"));
+    all_agree(
+        "white tube that lets light out",
+        &tube("{ lambertian = { reflectance = 0.6, transmittance = 0.3 } }"),
+    );
+}
+
+#[test]
+fn walls_of_mixtures() {
+    all_agree(
+        "mirror and white",
+        &tube(
+            "{ mixture = [{ weight = 2, finish = { specular = { reflectance = 0.95 } } }, { weight = 1, finish = { lambertian = { reflectance = 0.8 } } }] }",
+        ),
+    );
+    all_agree(
+        "mirror, narrow and broad scatter",
+        &tube(
+            "{ mixture = [{ weight = 2, finish = { specular = { reflectance = 0.95 } } }, { weight = 1, finish = { gaussian = { sigma_deg = 2, reflectance = 0.9 } } }, { weight = 1, finish = { gaussian = { sigma_deg = 20, reflectance = 0.9 } } }] }",
+        ),
+    );
+    all_agree(
+        "mirror and narrow scatter",
+        &tube(
+            "{ mixture = [{ weight = 2, finish = { specular = { reflectance = 0.95 } } }, { weight = 1, finish = { gaussian = { sigma_deg = 2, reflectance = 0.9 } } }] }",
+        ),
+    );
+}
+
+#[test]
+fn windows() {
+    for (what, finish) in [
+        ("open window", "{ open = {} }"),
+        ("half mirror", "{ specular = { reflectance = 0.4, transmittance = 0.5 } }"),
+        ("diffuser", "{ lambertian = { reflectance = 0.3, transmittance = 0.6 } }"),
+        (
+            "narrow scatter",
+            "{ gaussian = { sigma_deg = 1, reflectance = 0.4, transmittance = 0.5 } }",
+        ),
+        (
+            "broad scatter",
+            "{ gaussian = { sigma_deg = 15, reflectance = 0.4, transmittance = 0.5 } }",
+        ),
+    ] {
+        shallow_agree(what, &window(finish, finish));
+    }
+}
+
+#[test]
+fn windows_with_two_sides() {
+    for (what, front, back) in [
+        (
+            "half mirror before a diffuser",
+            "{ specular = { reflectance = 0.2, transmittance = 0.7 } }",
+            "{ lambertian = { reflectance = 0.5, transmittance = 0.4 } }",
+        ),
+        (
+            "diffuser before narrow scatter",
+            "{ lambertian = { reflectance = 0.3, transmittance = 0.5 } }",
+            "{ gaussian = { sigma_deg = 2, reflectance = 0.5, transmittance = 0.3 } }",
+        ),
+        (
+            "mixture before broad scatter",
+            "{ mixture = [{ weight = 1, finish = { open = {} } }, { weight = 1, finish = { lambertian = { reflectance = 0.3, transmittance = 0.6 } } }] }",
+            "{ gaussian = { sigma_deg = 12, reflectance = 0.5, transmittance = 0.3 } }",
+        ),
+        (
+            "half mirror, black behind",
+            "{ specular = { reflectance = 0.2, transmittance = 0.3 } }",
+            "{ absorber = {} }",
+        ),
+    ] {
+        shallow_agree(what, &window(front, back));
+    }
+}
+
+#[test]
+fn faces_of_glass() {
+    for (what, finish) in [
+        ("glass", "{ smooth = {} }"),
+        ("glass, 1 deg rough", "{ gaussian = { sigma_deg = 1 } }"),
+        ("glass, 15 deg rough", "{ gaussian = { sigma_deg = 15 } }"),
+    ] {
+        all_agree(what, &block(finish));
+    }
+}
+
+#[test]
+fn faces_of_glass_with_films() {
+    for (what, finish) in [
+        (
+            "glass with a diffusing film",
+            "{ lambertian = { reflectance = 0.4, transmittance = 0.5 } }",
+        ),
+        (
+            "glass, rough in parts",
+            "{ mixture = [{ weight = 2, finish = \"polished\" }, { weight = 1, finish = { gaussian = { sigma_deg = 12 } } }, { weight = 1, finish = { lambertian = { reflectance = 0.5, transmittance = 0.4 } } }] }",
+        ),
+        (
+            "glass, rough in narrow parts",
+            "{ mixture = [{ weight = 2, finish = \"polished\" }, { weight = 1, finish = { gaussian = { sigma_deg = 2 } } }] }",
+        ),
+    ] {
+        all_agree(what, &block(finish));
+    }
+}

@@ -1,0 +1,186 @@
+//! What is known about errors: bias that falls with the window as it should, depths that agree, light that is
+//! neither made nor lost.
+
+use crate::trial::{Comparison, Gathering, Way, findings, load, measures};
+use lumiduct::measure::{self, Measure};
+use lumiduct::transport::Findings;
+use std::f64::consts::{FRAC_1_SQRT_2, PI};
+
+/// A guide and its lamp, in which nothing absorbs.
+const ROD: &str = r#"
+[media.acrylic]
+index = 1.49
+[solids.guide.cylinder]
+radius_mm = 2
+length_mm = 12
+medium = "acrylic"
+[sources.led.disk]
+radius_mm = 1
+at = { face = "guide.entry", gap_mm = 0.1 }
+flux_lm = 10
+[sensors]
+exit = { plane = {}, on = "guide.exit", counts = "leaving", entering = "guide.entry" }
+all = { goniometer = { c_step_deg = 360, gamma_step_deg = 90 } }
+"#;
+
+const TUBE: &str = r#"
+[finishes.mirror]
+specular = { reflectance = 1 }
+[sheets.guide.tube]
+profile = { circle = { radius_mm = 3 } }
+path = [{ straight_mm = 20 }]
+finish = "mirror"
+[sources.led.disk]
+radius_mm = 2
+flux_lm = 10
+[sensors]
+exit = { plane = {}, on = "guide.exit", counts = "incident", side = "back" }
+all = { goniometer = { c_step_deg = 360, gamma_step_deg = 90 } }
+"#;
+
+fn gather(depth: u32) -> Way {
+    Way::Gather(Gathering { radius_mm: 0.4, angle_deg: 5.0, ..Gathering::to_depth(depth) })
+}
+
+#[test]
+fn shallow_and_deep_records_agree() {
+    for (what, text) in [("rod", ROD), ("mirror tube", TUBE)] {
+        let [shallow, deep] = [2, 8].map(|depth| measures(text, gather(depth)));
+        let [shallow, deep] = [&shallow, &deep].map(|found| found.values["exit.flux"].clone());
+        let room = |measure: &Measure| measure.std_error + measure.bias.unwrap();
+        let (apart, room) = ((shallow.value - deep.value).abs(), room(&shallow) + room(&deep));
+        println!(
+            "{what}: {shallow} at D = 2, {deep} at D = 8, {:.2} of their errors",
+            apart / room
+        );
+        assert!(apart <= 2.0 * room, "{what}: {shallow} and {deep}");
+    }
+}
+
+#[test]
+fn guides_without_loss_lose_and_make_no_light() {
+    let mut comparison = Comparison::default();
+    for (what, text) in [("rod", ROD), ("mirror tube", TUBE)] {
+        for way in [Way::Forward, Way::Backward, gather(0), gather(2), gather(8)] {
+            let found = measures(text, way);
+            let what = format!("{what}, {}", way.name());
+            comparison.add(&format!("{what}, all"), &found.values["all.flux"], 10.0, 1e-9);
+            let exit = &found.values["exit.efficiency"];
+            if exit.value > 1.0 + 4.0 * exit.total_error() {
+                comparison.fail(format!("{what}: {exit} of the light"));
+            }
+        }
+    }
+    comparison.assert("lossless", 10);
+}
+
+/// The wide window of a gather run alone: E1.
+fn wide(text: &str, gathering: Gathering, name: &str) -> Measure {
+    let way = Way::Gather(gathering);
+    let job = load(text, way);
+    let found = findings(&job, way);
+    let stages = found.gathered.unwrap().stages;
+    let wide = Findings::forward(stages.last().unwrap().windows.wide.clone());
+    measure::value_of(&job.scene, &wide, name).unwrap()
+}
+
+/// Holds E1 within three windows, each smaller by √2, against what it should be, and its bias against half of the last.
+fn follows(
+    what: &str,
+    text: &str,
+    name: &str,
+    window: Gathering,
+    truth: f64,
+    law: impl Fn(Gathering) -> f64,
+) {
+    let mut comparison = Comparison::default();
+    let mut biases = Vec::new();
+    for step in 0..3 {
+        let size = FRAC_1_SQRT_2.powi(step);
+        let window = Gathering {
+            radius_mm: size * window.radius_mm,
+            angle_deg: size * window.angle_deg,
+            ..window
+        };
+        let found = wide(text, window, name);
+        let expected = law(window);
+        comparison.add(&format!("{what}, window {step}"), &found, expected, 1e-6 * expected);
+        biases.push((found.value - truth, found.std_error));
+        println!("{what}, window {step}: bias {:+.2} %", 100.0 * (found.value / truth - 1.0));
+    }
+    for pair in biases.windows(2) {
+        let [(wide, noise), (narrow, narrow_noise)] = [pair[0], pair[1]];
+        let room = 4.0 * (0.5 * noise).hypot(narrow_noise) + 0.1 * narrow.abs();
+        if (0.5 * wide - narrow).abs() > room || narrow.abs() < 4.0 * narrow_noise {
+            comparison
+                .fail(format!("{what}: biases {wide:.3} and {narrow:.3} ± {narrow_noise:.3}"));
+        }
+    }
+    comparison.assert(what, 3);
+}
+
+/// Under a small Lambertian disk of radius a and exitance M at height h, at distance s from its axis, illuminance is
+/// M/2 (1 - (s² + h² - a²)/√((s² + h² + a²)² - 4 s² a²)) (Foote, Bull. Bureau of Standards 12 (1915) 583).
+#[test]
+fn bias_of_the_position_estimate_is_the_mean_over_its_window() {
+    let (lamp, height) = (2.0, 3.0);
+    let text = r#"
+[finishes.white]
+lambertian = { reflectance = 1 }
+[sheets.screen.disk]
+radius_mm = 20
+finish = "white"
+[sources.lamp.disk]
+radius_mm = 2
+luminance_cd_m2 = 1000
+at = { position_mm = [0, 0, 3], axis = [0, 0, -1] }
+[sensors]
+eye = { luminance = { disk = { radius_mm = 0.01 }, cells = [1, 1], acceptance_half_angle_deg = 0.5, directions = [{ theta_deg = 0, phi_deg = 0 }] }, at = { position_mm = [0, 0, 5], axis = [0, 0, -1] } }
+"#;
+    // L = ρ E/π, and M = π L of the lamp.
+    let luminance = |s2: f64| {
+        let sum: f64 = s2 + height * height + lamp * lamp;
+        500.0 * (1.0 - (sum - 2.0 * lamp * lamp) / (sum * sum - 4.0 * s2 * lamp * lamp).sqrt())
+    };
+    // By area: s² is uniform within the window; the sensor sees less than 0.06 mm of the screen.
+    let law = |window: Gathering| {
+        let steps = 1000;
+        let place =
+            |step: i32| (f64::from(step) + 0.5) / f64::from(steps) * window.radius_mm.powi(2);
+        (0..steps).map(|step| luminance(place(step))).sum::<f64>() / f64::from(steps)
+    };
+    let window =
+        Gathering { depth: 0, radius_mm: 1.4, angle_deg: 5.0, records: 4, photons: 10_000 };
+    follows("position", text, "eye.luminance_avg.0", window, luminance(0.0), law);
+}
+
+/// A wide lamp of intensity cos^p about its normal has the luminance L₀ cos^(p-1), and its exitance is 2π L₀/(p + 1).
+/// The mean over a cone about the normal is L₀ (1 - cos^p θ)/(p (1 - cos θ)).
+#[test]
+fn bias_of_the_angle_estimate_is_the_mean_over_its_cone() {
+    let power = 80.0;
+    let text = r#"
+[finishes.mirror]
+specular = { reflectance = 1 }
+[sheets.screen.rectangle]
+width_mm = 6
+height_mm = 6
+finish = "mirror"
+at = { axis = [1, 0, -1] }
+[sources.lamp.disk]
+radius_mm = 6
+flux_lm = 1
+emission = { cosine_power = 80 }
+at = { position_mm = [10, 0, 0], axis = [-1, 0, 0] }
+[sensors]
+eye = { luminance = { disk = { radius_mm = 1 }, cells = [1, 1], acceptance_half_angle_deg = 0.1, directions = [{ theta_deg = 0, phi_deg = 0 }] }, at = { position_mm = [0, 0, -5], axis = [0, 0, 1] } }
+"#;
+    let normal = 1e6 / (PI * 36.0) * (power + 1.0) / (2.0 * PI);
+    let law = |window: Gathering| {
+        let cos = window.angle_deg.to_radians().cos();
+        normal * (1.0 - cos.powf(power)) / (power * (1.0 - cos))
+    };
+    let window =
+        Gathering { depth: 0, radius_mm: 1.5, angle_deg: 5.0, records: 100, photons: 100_000 };
+    follows("angle", text, "eye.luminance_avg.0", window, normal, law);
+}

@@ -1,0 +1,20 @@
+//! Forward, backward and gathered values agree, in scenes that hold one thing each: every finish, source, sensor and
+//! kind of guide, rims and corners, known fields, and known biases.
+//!
+//! Forward is the oracle: it shares neither adjoints nor windows with the others. Seeds are fixed.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
+#![allow(
+    clippy::print_stdout,
+    reason = "a line for each value, shown by --nocapture and on failure"
+)]
+
+mod finishes;
+mod furnace;
+mod guides;
+mod laws;
+mod rims;
+mod sensors;
+mod settings;
+mod sources;
+mod trial;

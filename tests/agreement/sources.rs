@@ -1,0 +1,130 @@
+//! Every source that gather paths can meet: in free space, on a face, in a solid, and with a body of its own.
+
+use crate::trial::all_agree;
+
+/// A rod with a mirror around it, its lamp as given.
+fn rod(source: &str) -> String {
+    format!(
+        r#"
+[media.acrylic]
+index = 1.49
+absorption_per_mm = 0.005
+[solids.rod.cylinder]
+radius_mm = 3
+length_mm = 10
+medium = "acrylic"
+[finishes.mirror]
+specular = {{ reflectance = 0.9 }}
+[sheets.back.disk]
+radius_mm = 6
+finish = "mirror"
+at = {{ position_mm = [0, 0, -3] }}
+{source}
+[sensors]
+exit = {{ plane = {{ cells = [2, 1] }}, on = "rod.exit", counts = "leaving" }}
+entry = {{ plane = {{}}, on = "rod.entry", counts = "incident" }}
+cell = {{ plane = {{ rectangle = {{ width_mm = 4, height_mm = 4 }} }}, at = {{ position_mm = [3, 0, 16], axis = [0, 0, -1] }} }}
+"#
+    )
+}
+
+#[test]
+fn sources_on_faces() {
+    all_agree(
+        "disk in optical contact",
+        &rod("[sources.lamp.disk]\nradius_mm = 2\nflux_lm = 10\nat = { face = \"rod.entry\" }"),
+    );
+    all_agree(
+        "disk on a face with air",
+        &rod(
+            "[sources.lamp.disk]\nradius_mm = 2\nflux_lm = 10\ncontact = \"air\"\nat = { face = \"rod.entry\" }",
+        ),
+    );
+    all_agree(
+        "a face that shines out",
+        &rod("[sources.lamp.face]\nof = \"rod.exit\"\nflux_lm = 10"),
+    );
+    all_agree(
+        "a face that shines in, and out through itself",
+        &rod("[sources.lamp.face]\nof = \"rod.wall\"\nside = \"back\"\nflux_lm = 10"),
+    );
+    all_agree(
+        "a face that shines in with air",
+        &rod(
+            "[sources.lamp.face]\nof = \"rod.wall\"\nside = \"back\"\ncontact = \"air\"\nflux_lm = 10",
+        ),
+    );
+}
+
+#[test]
+fn sources_with_volume_and_shape() {
+    all_agree("glowing solid", &rod("[sources.lamp.volume]\nof = \"rod\"\nflux_lm = 10"));
+    all_agree(
+        "sphere",
+        &rod(
+            "[sources.lamp.sphere]\nradius_mm = 1\nflux_lm = 10\nat = { position_mm = [0.5, 0, -1.5] }",
+        ),
+    );
+    all_agree(
+        "cylinder",
+        &rod(
+            "[sources.lamp.cylinder]\nradius_mm = 1\nlength_mm = 2\nflux_lm = 10\nat = { position_mm = [0.5, 0, -2.5] }",
+        ),
+    );
+    all_agree(
+        "sphere in the rod",
+        &rod(
+            "[sources.lamp.sphere]\nradius_mm = 1\nflux_lm = 10\nat = { position_mm = [0.5, 0, 3] }",
+        ),
+    );
+}
+
+#[test]
+fn sources_with_bodies() {
+    all_agree(
+        "absorbing sphere",
+        &rod(
+            "[sources.lamp.sphere]\nradius_mm = 1\nflux_lm = 10\nbody = \"absorbing\"\nat = { position_mm = [0.5, 0, -1.5] }",
+        ),
+    );
+    all_agree(
+        "disk with a white body",
+        &rod(
+            "[sources.lamp.disk]\nradius_mm = 2\nflux_lm = 10\nbody = { lambertian = { reflectance = 0.7 } }\nat = { face = \"rod.entry\", gap_mm = 1 }",
+        ),
+    );
+    all_agree(
+        "absorbing disk in optical contact",
+        &rod(
+            "[sources.lamp.disk]\nradius_mm = 2\nflux_lm = 10\nbody = \"absorbing\"\nat = { face = \"rod.entry\" }",
+        ),
+    );
+}
+
+#[test]
+fn emission_of_all_kinds() {
+    all_agree(
+        "tilted cone",
+        &rod(
+            "[sources.lamp.disk]\nradius_mm = 2\nflux_lm = 10\nemission = { cone_half_angle_deg = 25 }\ntilt_deg = 15\nat = { position_mm = [0, 0, -1] }",
+        ),
+    );
+    all_agree(
+        "cosine power",
+        &rod(
+            "[sources.lamp.rectangle]\nwidth_mm = 3\nheight_mm = 2\nflux_lm = 10\nemission = { cosine_power = 6 }\nat = { position_mm = [0, 0, -1] }",
+        ),
+    );
+    all_agree(
+        "isotropic disk",
+        &rod(
+            "[sources.lamp.disk]\nradius_mm = 2\ninner_radius_mm = 1\nflux_lm = 10\nemission = \"isotropic\"\nat = { position_mm = [0, 0, -1] }",
+        ),
+    );
+    all_agree(
+        "two lamps",
+        &rod(
+            "[sources.lamp.disk]\nradius_mm = 2\nflux_lm = 10\nat = { position_mm = [0, 0, -1] }\n[sources.side.rectangle]\nwidth_mm = 4\nheight_mm = 2\nflux_lm = 20\nat = { position_mm = [5, 0, 5], axis = [-1, 0, 0] }",
+        ),
+    );
+}

@@ -1,0 +1,206 @@
+//! A scene from its text, run by each estimator, and what it measures held against something else.
+
+use lumiduct::input::{self, GatherSettings, Job, Settings};
+use lumiduct::measure::{self, Measure, Measures, Status};
+use lumiduct::scene::plan::Request;
+use lumiduct::transport::{Findings, Run};
+use std::fmt::Write;
+
+/// Deviation that passes, in total errors of both sides.
+pub(crate) const SIGMAS: f64 = 4.0;
+/// Photon paths of a forward run.
+const PHOTONS: u64 = 150_000;
+/// Waves of 16 passes of a gather run: 64 passes, so that errors are known to a tenth.
+const GATHER_WAVES: u64 = 4;
+/// Most that the bias of a gathered flux may be told to be, over the value: more would hide what is looked for.
+const MOST_BIAS: f64 = 0.15;
+const SEED: u64 = 3;
+
+/// A window and the work of a gather run.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Gathering {
+    pub(crate) depth: u32,
+    pub(crate) radius_mm: f64,
+    pub(crate) angle_deg: f64,
+    /// Gather paths of a pass.
+    pub(crate) records: u64,
+    /// Photons of a pass.
+    pub(crate) photons: u64,
+}
+
+impl Gathering {
+    /// A usual window for guides of some millimetres.
+    pub(crate) fn to_depth(depth: u32) -> Self {
+        match depth {
+            0 => Self { depth, radius_mm: 0.9, angle_deg: 7.0, records: 1500, photons: 3000 },
+            _ => Self { depth, radius_mm: 0.6, angle_deg: 5.0, records: 1500, photons: 2000 },
+        }
+    }
+}
+
+/// How a run is made.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Way {
+    Forward,
+    Backward,
+    Gather(Gathering),
+}
+
+impl Way {
+    fn settings(self) -> Settings {
+        let usual = Settings { seed: Some(SEED), ..Settings::default() };
+        match self {
+            Self::Forward => {
+                Settings { estimator: Some(Request::Forward), paths: Some(PHOTONS), ..usual }
+            }
+            Self::Backward => Settings { estimator: Some(Request::Backward), ..usual },
+            Self::Gather(gathering) => Settings {
+                estimator: Some(Request::Gather),
+                gather: GatherSettings {
+                    depth: Some(gathering.depth),
+                    radius_mm: Some(gathering.radius_mm),
+                    angle_deg: Some(gathering.angle_deg),
+                    records: Some(gathering.records),
+                    photons: Some(gathering.photons),
+                    schedule: None,
+                },
+                ..usual
+            },
+        }
+    }
+
+    fn waves(self) -> u64 {
+        match self {
+            Self::Forward | Self::Backward => 1,
+            Self::Gather(_) => GATHER_WAVES,
+        }
+    }
+
+    /// For lines of tests.
+    pub(crate) fn name(self) -> String {
+        match self {
+            Self::Forward => "forward".to_owned(),
+            Self::Backward => "backward".to_owned(),
+            Self::Gather(gathering) => format!("gather D={}", gathering.depth),
+        }
+    }
+}
+
+/// A scene from its text without the head.
+pub(crate) fn load(text: &str, way: Way) -> Job {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("scene.toml");
+    std::fs::write(&path, format!("lumiduct = 1\ntitle = \"Agreement\"\n{text}")).unwrap();
+    match input::load(&path, &way.settings()) {
+        Ok(job) => job,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// Everything that a run counts.
+pub(crate) fn findings(job: &Job, way: Way) -> Findings {
+    let mut run = Run::new(&job.scene, &job.run);
+    for _ in 0..way.waves() {
+        run.next_wave();
+    }
+    run.findings()
+}
+
+/// Everything that a run measures.
+pub(crate) fn measures(text: &str, way: Way) -> Measures {
+    let job = load(text, way);
+    let findings = findings(&job, way);
+    measure::measure(&job.scene, &findings)
+}
+
+/// Lines of a comparison, and those of them that fail.
+#[derive(Debug, Default)]
+pub(crate) struct Comparison {
+    text: String,
+    failed: Vec<String>,
+    compared: usize,
+    largest: f64,
+}
+
+impl Comparison {
+    /// Holds a value against another; the total error of neither may be needed to be infinite.
+    pub(crate) fn add(&mut self, what: &str, found: &Measure, expected: f64, error: f64) {
+        let z = (found.value - expected) / found.total_error().hypot(error);
+        let line = format!("{what}: {found}, expected {expected:.6} ± {error:.1e}, {z:+.2} sigmas");
+        self.compared += 1;
+        self.largest = self.largest.max(z.abs());
+        writeln!(self.text, "{line}").unwrap();
+        if z.is_nan() || z.abs() > SIGMAS {
+            self.failed.push(line);
+        }
+    }
+
+    /// Fails a comparison.
+    pub(crate) fn fail(&mut self, line: String) {
+        self.failed.push(line);
+    }
+
+    /// Everything agreed, and there were at least so many values.
+    pub(crate) fn assert(self, what: &str, least: usize) {
+        println!(
+            "{}{what}: {} values, largest {:.2} sigmas",
+            self.text, self.compared, self.largest
+        );
+        assert!(self.failed.is_empty(), "{what}:\n{}", self.failed.join("\n"));
+        assert!(self.compared >= least, "{what}: only {} values", self.compared);
+    }
+}
+
+/// Whether a measure is a sum or mean of light, which every estimator gives without a further bias.
+fn is_plain(name: &str) -> bool {
+    let Some((sensor, rest)) = name.split_once('.') else { return false };
+    let rest = rest.split('.').next().unwrap_or(rest);
+    sensor != "balance" && ["flux", "cell", "ring", "luminance_avg", "bounces_mean"].contains(&rest)
+}
+
+fn is_dark(measure: &Measure) -> bool {
+    measure.status == Status::NoSignal
+}
+
+/// Whether the reference has seen one number of bounces only and does not know what it has missed.
+fn is_certain(name: &str, reference: &Measure) -> bool {
+    name.ends_with(".bounces_mean") && reference.std_error < 1e-9
+}
+
+/// Holds the values of each way against those of the first.
+pub(crate) fn agree(what: &str, text: &str, ways: &[Way]) {
+    let mut comparison = Comparison::default();
+    let (first, others) = ways.split_first().unwrap();
+    let expected = measures(text, *first);
+    for &way in others {
+        let found = measures(text, way);
+        for (name, measure) in found.values.iter().filter(|(name, _)| is_plain(name)) {
+            let reference = &expected.values[name.as_str()];
+            if is_dark(measure) && is_dark(reference) || is_certain(name, reference) {
+                continue;
+            }
+            let what = format!("{what}, {}, {name}", way.name());
+            comparison.add(&what, measure, reference.value, reference.total_error());
+            let bias = measure.bias.unwrap_or(0.0);
+            if name.ends_with(".flux")
+                && bias > MOST_BIAS * reference.value
+                && bias > SIGMAS * measure.std_error
+            {
+                comparison.fail(format!("{what}: a bias of {bias:e} in {measure}"));
+            }
+        }
+    }
+    comparison.assert(what, others.len());
+}
+
+/// Forward, backward, and gathered at depths 0, 2 and 8.
+pub(crate) fn all_agree(what: &str, text: &str) {
+    let [shallow, middle, deep] = [0, 2, 8].map(|depth| Way::Gather(Gathering::to_depth(depth)));
+    agree(what, text, &[Way::Forward, Way::Backward, shallow, middle, deep]);
+}
+
+/// The same without the deepest, for scenes in which light meets few surfaces.
+pub(crate) fn shallow_agree(what: &str, text: &str) {
+    let [shallow, middle] = [0, 2].map(|depth| Way::Gather(Gathering::to_depth(depth)));
+    agree(what, text, &[Way::Forward, Way::Backward, shallow, middle]);
+}

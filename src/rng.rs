@@ -5,7 +5,11 @@
 //! answer the first of them without a change to the callers.
 //!
 //! Generator: xoshiro256++ (Blackman & Vigna, ACM Trans. Math. Softw. 47 (2021) 36), seeded by `SplitMix64`.
+//! Instead of fresh numbers a path can be given recorded ones ([`primary`]), so that it can be repeated and varied.
 
+pub mod primary;
+
+use crate::rng::primary::Primary;
 use rand_core::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -33,7 +37,14 @@ pub enum Dimension {
 /// A stream of numbers in [0, 1) that belongs to one path.
 #[derive(Debug, Clone)]
 pub struct Sampler {
-    generator: Xoshiro256PlusPlus,
+    numbers: Numbers,
+}
+
+/// Where the numbers of a path come from.
+#[derive(Debug, Clone)]
+enum Numbers {
+    Fresh(Xoshiro256PlusPlus),
+    Recorded(Box<Primary>),
 }
 
 impl Sampler {
@@ -48,14 +59,32 @@ impl Sampler {
             let state = key.wrapping_add(step.wrapping_mul(GOLDEN_GAMMA));
             word.copy_from_slice(&split_mix(state).to_le_bytes());
         }
-        Self { generator: Xoshiro256PlusPlus::from_seed(seed) }
+        Self { numbers: Numbers::Fresh(Xoshiro256PlusPlus::from_seed(seed)) }
+    }
+
+    /// The numbers of a Markov chain's proposal, in the order in which a path asks for them.
+    pub fn recorded(primary: Box<Primary>) -> Self {
+        Self { numbers: Numbers::Recorded(primary) }
+    }
+
+    /// The recorded numbers, back from a path; `None` if its numbers were fresh.
+    pub fn into_recorded(self) -> Option<Box<Primary>> {
+        match self.numbers {
+            Numbers::Fresh(_) => None,
+            Numbers::Recorded(primary) => Some(primary),
+        }
     }
 
     /// One number in [0, 1), 53 bits.
     #[inline]
     pub fn one(&mut self, _dimension: Dimension) -> f64 {
-        // 2^-53: the spacing of f64 just below 1.
-        (self.generator.next_u64() >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
+        match &mut self.numbers {
+            // 2^-53: the spacing of f64 just below 1.
+            Numbers::Fresh(generator) => {
+                (generator.next_u64() >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
+            }
+            Numbers::Recorded(primary) => primary.next(),
+        }
     }
 
     /// Two numbers in [0, 1).
@@ -98,7 +127,8 @@ mod tests {
         let mut reference = Xoshiro256PlusPlus::seed_from_u64(key);
         let mut sampler = Sampler::for_path(9, 1, 1234);
         for _ in 0..8 {
-            assert_eq!(sampler.generator.next_u64(), reference.next_u64());
+            let expected = (reference.next_u64() >> 11) as f64 / (1u64 << 53) as f64;
+            assert_eq!(sampler.one(Dimension::Lobe), expected);
         }
     }
 

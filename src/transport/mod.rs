@@ -3,6 +3,7 @@
 //! This layer knows no file format and no report. What it produces is one serialisable value, [`Readings`].
 
 mod backward;
+mod baselines;
 mod cells;
 mod coverage;
 mod emitters;
@@ -25,6 +26,7 @@ mod walk;
 mod watch;
 mod window;
 
+pub use baselines::{Baseline, BaselineRun};
 pub use cells::Cells;
 pub use emitters::invisible;
 pub use findings::{Findings, Gathered};

@@ -34,20 +34,15 @@ pub enum Dimension {
     Resampling,
 }
 
-/// A stream of numbers in [0, 1) that belongs to one path.
-#[derive(Debug, Clone)]
-pub struct Sampler {
-    numbers: Numbers,
+/// A stream of numbers in [0, 1) that belongs to one path: fresh ones, or recorded ones that live for `'p`.
+#[derive(Debug)]
+pub struct Sampler<'p> {
+    generator: Xoshiro256PlusPlus,
+    /// Takes the place of the generator. Borrowed, so that a sampler has nothing to drop: that costs every path.
+    recorded: Option<&'p mut Primary>,
 }
 
-/// Where the numbers of a path come from.
-#[derive(Debug, Clone)]
-enum Numbers {
-    Fresh(Xoshiro256PlusPlus),
-    Recorded(Box<Primary>),
-}
-
-impl Sampler {
+impl<'p> Sampler<'p> {
     /// The stream of path `index` of `stream` (a pass, or a purpose) under `seed`.
     #[inline]
     pub fn for_path(seed: u64, stream: u64, index: u64) -> Self {
@@ -59,32 +54,22 @@ impl Sampler {
             let state = key.wrapping_add(step.wrapping_mul(GOLDEN_GAMMA));
             word.copy_from_slice(&split_mix(state).to_le_bytes());
         }
-        Self { numbers: Numbers::Fresh(Xoshiro256PlusPlus::from_seed(seed)) }
+        Self { generator: Xoshiro256PlusPlus::from_seed(seed), recorded: None }
     }
 
     /// The numbers of a Markov chain's proposal, in the order in which a path asks for them.
-    pub fn recorded(primary: Box<Primary>) -> Self {
-        Self { numbers: Numbers::Recorded(primary) }
-    }
-
-    /// The recorded numbers, back from a path; `None` if its numbers were fresh.
-    pub fn into_recorded(self) -> Option<Box<Primary>> {
-        match self.numbers {
-            Numbers::Fresh(_) => None,
-            Numbers::Recorded(primary) => Some(primary),
-        }
+    pub fn recorded(primary: &'p mut Primary) -> Self {
+        Self { recorded: Some(primary), ..Self::for_path(0, 0, 0) }
     }
 
     /// One number in [0, 1), 53 bits.
     #[inline]
     pub fn one(&mut self, _dimension: Dimension) -> f64 {
-        match &mut self.numbers {
-            // 2^-53: the spacing of f64 just below 1.
-            Numbers::Fresh(generator) => {
-                (generator.next_u64() >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
-            }
-            Numbers::Recorded(primary) => primary.next(),
+        if let Some(primary) = &mut self.recorded {
+            return primary.next();
         }
+        // 2^-53: the spacing of f64 just below 1.
+        (self.generator.next_u64() >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
     }
 
     /// Two numbers in [0, 1).

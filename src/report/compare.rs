@@ -337,7 +337,7 @@ mod tests {
             "no part of the reproducible reports",
             "2.000 ± 0.010 lm, by hand",
             "| biased | 1 | 1.00e6 | 1.700 ± 0.010 |",
-            "| 15.00 % |",
+            "| 15.01 % |",
             "`biased` cut off 0.40 %",
         ] {
             assert!(page.contains(words), "no {words} in {page}");

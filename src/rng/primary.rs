@@ -20,9 +20,9 @@ pub enum Mutation {
 }
 
 /// The numbers of a chain's state, and of its proposal while a path asks for them.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct Primary {
-    own: Sampler,
+    own: Sampler<'static>,
     numbers: Vec<Number>,
     /// Steps since the start of the chain, that of the proposal included.
     step: u64,
@@ -45,7 +45,7 @@ struct Number {
 
 impl Primary {
     /// A chain that draws its own random numbers from `own`. Its first proposal has to be a large one.
-    pub fn new(own: Sampler) -> Self {
+    pub fn new(own: Sampler<'static>) -> Self {
         Self {
             own,
             numbers: Vec::new(),
@@ -88,6 +88,7 @@ impl Primary {
     }
 
     /// The next number of the proposal, in [0, 1).
+    #[cold]
     #[inline(never)]
     pub(crate) fn next(&mut self) -> f64 {
         let place = self.next;

@@ -141,7 +141,7 @@ fn ink(series: &Series, index: usize) -> SeriesInk {
     match series.look {
         Look::InTurn => series_ink(index),
         Look::Solid(number) => SeriesInk { colour: paired_colour(number), dash: &[] },
-        Look::Dashed(number) => SeriesInk { colour: paired_colour(number), dash: &[6.0, 4.0] },
+        Look::Dashed(number) => SeriesInk { colour: paired_colour(number), dash: &[6.0, 7.0] },
         Look::Bound => SeriesInk { colour: SOFT_INK, dash: &[2.0, 4.0] },
     }
 }
@@ -231,7 +231,8 @@ fn range(values: &[f64], scale: Scale, padding: Padding) -> Axis {
             let space = if high == 0.0 { 0.5 } else { 0.5 * high.abs() };
             Axis::new(low - space, high + space, scale)
         }
-        (Padding::None, Scale::Linear | Scale::Log) => Axis::new(low, high, scale),
+        (Padding::None, Scale::Linear) => Axis::new(low, high, scale),
+        (Padding::None, Scale::Log) => Axis::new(low / 1.05, high * 1.05, scale),
         (Padding::Around, Scale::Log) => {
             Axis::new(low.max(high / WIDEST_RATIO) / 1.5, high * 1.5, scale)
         }

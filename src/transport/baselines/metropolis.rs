@@ -39,7 +39,7 @@ impl<'s> Metropolis<'s> {
     pub(super) fn chain(&self, batch: u64) -> Readings {
         let mut readings = self.sensor.empty(self.paths, batch);
         let own = Sampler::for_path(self.sensor.seed, STREAM, batch);
-        let mut primary = Box::new(Primary::new(own));
+        let mut primary = Primary::new(own);
         let mut chain = Chain {
             metropolis: self,
             state: Seen::default(),
@@ -50,10 +50,10 @@ impl<'s> Metropolis<'s> {
         };
         let start = ((START * self.paths as f64) as u64).max(1);
         for _ in 0..start {
-            primary = chain.start(primary);
+            chain.start(&mut primary);
         }
         for _ in start..self.paths {
-            primary = chain.step(primary);
+            chain.step(&mut primary);
         }
         let b = chain.fresh_flux / chain.fresh_paths as f64;
         let scale = if chain.weight > 0.0 { b / chain.weight } else { 0.0 };
@@ -86,17 +86,17 @@ struct Chain<'a, 's> {
 
 impl Chain<'_, '_> {
     /// Chooses the first state among paths drawn afresh, in proportion to their flux.
-    fn start(&mut self, primary: Box<Primary>) -> Box<Primary> {
-        let (proposal, primary) = self.propose(primary, Mutation::Large);
+    fn start(&mut self, primary: &mut Primary) {
+        let proposal = self.propose(primary, Mutation::Large);
         let share = if proposal.flux > 0.0 { proposal.flux / self.fresh_flux } else { 0.0 };
-        self.go_on(primary, proposal, share)
+        self.go_on(primary, proposal, share);
     }
 
     /// A step of the chain.
-    fn step(&mut self, mut primary: Box<Primary>) -> Box<Primary> {
+    fn step(&mut self, primary: &mut Primary) {
         let large = primary.decide() < LARGE_STEPS;
         let mutation = if large { Mutation::Large } else { Mutation::Small };
-        let (proposal, primary) = self.propose(primary, mutation);
+        let proposal = self.propose(primary, mutation);
         // Where there is no light any other path is as good.
         let is_lit = self.state.flux > 0.0;
         let acceptance = if is_lit { (proposal.flux / self.state.flux).min(1.0) } else { 1.0 };
@@ -104,33 +104,26 @@ impl Chain<'_, '_> {
         let state = std::mem::take(&mut self.state);
         self.count(&state, 1.0 - acceptance);
         self.state = state;
-        self.go_on(primary, proposal, acceptance)
+        self.go_on(primary, proposal, acceptance);
     }
 
-    fn propose(&mut self, mut primary: Box<Primary>, mutation: Mutation) -> (Seen, Box<Primary>) {
+    fn propose(&mut self, primary: &mut Primary, mutation: Mutation) -> Seen {
         primary.propose(mutation);
-        let mut sampler = Sampler::recorded(primary);
-        let seen = self.metropolis.sensor.look(&mut sampler);
+        let seen = self.metropolis.sensor.look(&mut Sampler::recorded(primary));
         self.readings.segments += seen.segments;
         if mutation == Mutation::Large {
             self.fresh_flux += seen.flux;
             self.fresh_paths += 1;
         }
-        (seen, sampler.into_recorded().expect("the sampler was made of recorded numbers"))
+        seen
     }
 
-    fn go_on(
-        &mut self,
-        mut primary: Box<Primary>,
-        proposal: Seen,
-        acceptance: f64,
-    ) -> Box<Primary> {
+    fn go_on(&mut self, primary: &mut Primary, proposal: Seen, acceptance: f64) {
         if primary.decide() < acceptance {
             self.state = proposal;
         } else {
             primary.reject();
         }
-        primary
     }
 
     fn count(&mut self, seen: &Seen, weight: f64) {

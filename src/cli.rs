@@ -1,8 +1,10 @@
 //! The command line: arguments, progress, exit codes. The only file that prints.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "this is the program's face")]
 
+mod compare;
 mod values;
 
+use crate::cli::compare::CompareArgs;
 use crate::cli::values::{
     parse_angle, parse_count, parse_percent, parse_radius, parse_time, words,
 };
@@ -38,6 +40,8 @@ const INTERRUPTED: u8 = 130;
 enum Command {
     /// Trace a scene and write its report.
     Run(RunArgs),
+    /// Run several estimators and baselines on the same time and compare their errors with a truth.
+    Compare(CompareArgs),
     /// Validate a scene, print what is in it, and draw a cross-section with 50 traced paths.
     Check(CheckArgs),
     /// List scenes and sensor files in a folder.
@@ -148,6 +152,7 @@ pub fn main() -> ExitCode {
     };
     match cli.command {
         Command::Run(args) => run(&args),
+        Command::Compare(args) => compare::compare(&args),
         Command::Check(args) => check(&args),
         Command::List { folder } => finish(input::list(&folder)),
         Command::Schema => finish(Ok(format!("{:#}\n", input::schema::json_schema()))),
@@ -166,13 +171,30 @@ pub fn main() -> ExitCode {
     }
 }
 
-fn run(args: &RunArgs) -> ExitCode {
-    if let Some(threads) = args.threads
-        && let Err(reason) =
-            rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build_global()
-    {
-        return fail(&Error::Usage(format!("--threads {threads}: {reason}")));
+impl GatherArgs {
+    fn settings(&self) -> GatherSettings {
+        GatherSettings {
+            depth: self.depth,
+            radius_mm: self.radius_mm,
+            angle_deg: self.angle_deg,
+            records: self.records,
+            photons: self.photons,
+            schedule: self.schedule,
+        }
     }
+}
+
+/// Sets the number of threads, all cores if none is given.
+fn use_threads(threads: Option<u16>) -> Result<(), Error> {
+    let Some(threads) = threads else { return Ok(()) };
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(usize::from(threads))
+        .build_global()
+        .map_err(|reason| Error::Usage(format!("--threads {threads}: {reason}")))
+}
+
+/// A flag that Ctrl-C raises; the second time it ends the program.
+fn on_ctrl_c() -> Interrupt {
     let interrupt = Interrupt::default();
     let on_signal = interrupt.clone();
     // Without a handler Ctrl-C ends the program at once: worse, but no reason not to run.
@@ -182,17 +204,18 @@ fn run(args: &RunArgs) -> ExitCode {
         }
         on_signal.raise();
     });
+    interrupt
+}
+
+fn run(args: &RunArgs) -> ExitCode {
+    if let Err(error) = use_threads(args.threads) {
+        return fail(&error);
+    }
+    let interrupt = on_ctrl_c();
     let settings = Settings {
         overrides: args.define.clone(),
         estimator: args.estimator,
-        gather: GatherSettings {
-            depth: args.gather.depth,
-            radius_mm: args.gather.radius_mm,
-            angle_deg: args.gather.angle_deg,
-            records: args.gather.records,
-            photons: args.gather.photons,
-            schedule: args.gather.schedule,
-        },
+        gather: args.gather.settings(),
         target: args.target,
         paths: args.paths,
         time: args.time,

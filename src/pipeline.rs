@@ -1,8 +1,10 @@
 //! The flow, one call per step: a scene file becomes a report.
 
+mod compare;
 mod progress;
 mod timing;
 
+pub use compare::{CompareWishes, Compared, Method, TruthWish, compare};
 pub use progress::{Progress, TargetProgress};
 
 use crate::error::{Diagnostic, Result};

@@ -5,7 +5,11 @@
 //! answer the first of them without a change to the callers.
 //!
 //! Generator: xoshiro256++ (Blackman & Vigna, ACM Trans. Math. Softw. 47 (2021) 36), seeded by `SplitMix64`.
+//! Instead of fresh numbers a path can be given recorded ones ([`primary`]), so that it can be repeated and varied.
 
+pub mod primary;
+
+use crate::rng::primary::Primary;
 use rand_core::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -30,13 +34,15 @@ pub enum Dimension {
     Resampling,
 }
 
-/// A stream of numbers in [0, 1) that belongs to one path.
-#[derive(Debug, Clone)]
-pub struct Sampler {
+/// A stream of numbers in [0, 1) that belongs to one path: fresh ones, or recorded ones that live for `'p`.
+#[derive(Debug)]
+pub struct Sampler<'p> {
     generator: Xoshiro256PlusPlus,
+    /// Takes the place of the generator. Borrowed, so that a sampler has nothing to drop: that costs every path.
+    recorded: Option<&'p mut Primary>,
 }
 
-impl Sampler {
+impl<'p> Sampler<'p> {
     /// The stream of path `index` of `stream` (a pass, or a purpose) under `seed`.
     #[inline]
     pub fn for_path(seed: u64, stream: u64, index: u64) -> Self {
@@ -48,12 +54,20 @@ impl Sampler {
             let state = key.wrapping_add(step.wrapping_mul(GOLDEN_GAMMA));
             word.copy_from_slice(&split_mix(state).to_le_bytes());
         }
-        Self { generator: Xoshiro256PlusPlus::from_seed(seed) }
+        Self { generator: Xoshiro256PlusPlus::from_seed(seed), recorded: None }
+    }
+
+    /// The numbers of a Markov chain's proposal, in the order in which a path asks for them.
+    pub fn recorded(primary: &'p mut Primary) -> Self {
+        Self { recorded: Some(primary), ..Self::for_path(0, 0, 0) }
     }
 
     /// One number in [0, 1), 53 bits.
     #[inline]
     pub fn one(&mut self, _dimension: Dimension) -> f64 {
+        if let Some(primary) = &mut self.recorded {
+            return primary.next();
+        }
         // 2^-53: the spacing of f64 just below 1.
         (self.generator.next_u64() >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
     }
@@ -98,7 +112,8 @@ mod tests {
         let mut reference = Xoshiro256PlusPlus::seed_from_u64(key);
         let mut sampler = Sampler::for_path(9, 1, 1234);
         for _ in 0..8 {
-            assert_eq!(sampler.generator.next_u64(), reference.next_u64());
+            let expected = (reference.next_u64() >> 11) as f64 / (1u64 << 53) as f64;
+            assert_eq!(sampler.one(Dimension::Lobe), expected);
         }
     }
 

@@ -70,6 +70,12 @@ fn parse_between(text: &str, what: &str, below: f64, expected: &str) -> Result<f
     }
 }
 
+/// A finite number.
+pub(super) fn parse_number(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| format!("`{text}` is no number"))?;
+    if value.is_finite() { Ok(value) } else { Err(format!("`{text}` is not finite")) }
+}
+
 /// One of some words, and what it stands for.
 pub(super) fn words<T: Clone + Send + Sync + 'static, const N: usize>(
     names: [&'static str; N],

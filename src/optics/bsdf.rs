@@ -342,7 +342,7 @@ mod tests {
             [(mirror, incidence(20.0, 1.0, 1.0)), (Bsdf::Smooth, incidence(60.0, 1.49, 1.0))]
         {
             let mut used = Sampler::for_path(1, 0, 0);
-            let mut fresh = used.clone();
+            let mut fresh = Sampler::for_path(1, 0, 0);
             assert!(bsdf.scatter(&incidence, &mut used).is_some());
             assert_eq!(used.one(Dimension::Lobe), fresh.one(Dimension::Lobe));
         }

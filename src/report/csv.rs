@@ -95,7 +95,7 @@ fn intensity_table(intensity: &IntensityTable) -> Result<OutputFile> {
 }
 
 /// A table from a header and rows.
-fn table<const N: usize>(
+pub(crate) fn table<const N: usize>(
     name: String,
     header: &[&str],
     rows: impl Iterator<Item = [String; N]>,

@@ -5,7 +5,7 @@ use crate::measure::{Axes, Balance, IntensityTable, PlaneCurve, SensorMap, Senso
 use crate::number::{format_percent, format_value, format_with_error};
 use crate::report::csv::map_name;
 use crate::report::png::{
-    Bar, BarChart, ColourMap, CrossSection, Curve, ErrorForm, HeatMap, LinePlot, Outline,
+    Bar, BarChart, ColourMap, CrossSection, Curve, ErrorForm, HeatMap, LinePlot, Look, Outline,
     PolarPlot, Pole, RayEnd, RayPath, Scale, Series, SeriesForm, SeriesPoint, bar_chart,
     cross_section, heat_map, line_plot, polar_plot,
 };
@@ -88,6 +88,7 @@ fn map_picture(map: &SensorMap) -> Result<Vec<u8>> {
                         .collect(),
                     form: SeriesForm::Line,
                     errors: ErrorForm::Bars,
+                    look: Look::InTurn,
                 })
                 .collect(),
         }),
@@ -172,6 +173,7 @@ fn bounce_picture(paths: &SensorPaths, unit: &str) -> Result<Vec<u8>> {
             points,
             form: SeriesForm::Steps,
             errors: ErrorForm::Hidden,
+            look: Look::InTurn,
         }],
     })
 }

@@ -1,8 +1,9 @@
 //! What is handed to the user: one record, and pure functions that turn it into files.
 //!
 //! A report depends on the scene, the seed and the number of paths alone: no clock, no thread count and no machine is
-//! known here, but for `timing.csv`, which lies outside of the reproducible set.
+//! known here, but for `timing.csv` and the comparison of estimators, which lie outside of the reproducible set.
 
+mod compare;
 mod csv;
 mod figures;
 mod folder;
@@ -14,6 +15,9 @@ mod record;
 mod summary;
 mod terminal;
 
+pub use compare::{
+    Comparison, Contestant, Row, Sample, Truth, comparison_files, comparison_table, rows,
+};
 pub use figures::scene_picture;
 pub use folder::{Existing, Folder, Written, write_whole};
 pub use inventory::inventory;

@@ -17,15 +17,19 @@ pub(crate) trait Collector {
     fn meet(&mut self, path: &Path, met: Met);
 
     /// Sees a visible interface before it acts; a break ends the path there.
-    fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>) -> ControlFlow<()>;
+    fn arrive(&mut self, _path: &Path, _vertex: &Vertex<'_>) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
 
     /// Sees where a path goes on from an interface; a break ends the path there.
     fn depart(
         &mut self,
-        path: &Path,
-        vertex: &Vertex<'_>,
-        departure: &Departure,
-    ) -> ControlFlow<()>;
+        _path: &Path,
+        _vertex: &Vertex<'_>,
+        _departure: &Departure,
+    ) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
 }
 
 /// What the gather paths of a sensor have in common.
@@ -50,6 +54,19 @@ pub(crate) fn follow(
         Begins::OnSensor => Stage::First,
     };
     let before_aim = SmallVec::new();
+    let mut follower = Follower { gathering, collector, stage, before_aim, segments: 0 };
+    walk(gathering.scene, path, gathering.bounce_limit, sampler, &mut follower);
+    follower.segments
+}
+
+/// Follows one gather path on from an interface, with the aim behind it; gives back the number of straight pieces.
+pub(crate) fn follow_on(
+    gathering: Gathering<'_, '_>,
+    path: Path,
+    sampler: &mut Sampler,
+    collector: &mut impl Collector,
+) -> u64 {
+    let (stage, before_aim) = (Stage::Beyond, SmallVec::new());
     let mut follower = Follower { gathering, collector, stage, before_aim, segments: 0 };
     walk(gathering.scene, path, gathering.bounce_limit, sampler, &mut follower);
     follower.segments

@@ -3,6 +3,7 @@
 //! This layer knows no file format and no report. What it produces is one serialisable value, [`Readings`].
 
 mod backward;
+mod baselines;
 mod cells;
 mod coverage;
 mod emitters;
@@ -27,6 +28,7 @@ mod watch;
 mod window;
 mod work;
 
+pub use baselines::{Baseline, BaselineRun};
 pub use cells::Cells;
 pub use emitters::invisible;
 pub use findings::{Findings, Gathered};

@@ -5,7 +5,7 @@ use crate::report::png::axis::{Axis, Scale};
 use crate::report::png::canvas::{Canvas, Ink, Pen};
 use crate::report::png::geometry::{Point, Rect};
 use crate::report::png::layout::{Axes, Header, Legend, MARGIN, Sample, write};
-use crate::report::png::palette::{SeriesInk, series_ink};
+use crate::report::png::palette::{SOFT_INK, SeriesInk, paired_colour, series_ink};
 use crate::report::png::text::{Align, LABEL};
 
 /// Curves over an axis.
@@ -38,6 +38,21 @@ pub struct Series {
     pub form: SeriesForm,
     /// How the standard errors are shown.
     pub errors: ErrorForm,
+    /// How it is told apart from the others.
+    pub look: Look,
+}
+
+/// How a curve is told apart from the others.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Look {
+    /// By the colour and dashes of its place among all.
+    InTurn,
+    /// A solid line in the colour of a number.
+    Solid(usize),
+    /// A dashed line in the colour of a number.
+    Dashed(usize),
+    /// A thin dotted grey line: a bound, not a result.
+    Bound,
 }
 
 /// A point with a standard error, in the units of the axes.
@@ -89,7 +104,7 @@ pub fn line_plot(plot: &LinePlot) -> Result<Vec<u8>> {
         .series
         .iter()
         .enumerate()
-        .map(|(index, series)| (sample(series, series_ink(index)), series.name.as_str()))
+        .map(|(index, series)| (sample(series, ink(series, index)), series.name.as_str()))
         .collect();
     let legend = Legend::new(&entries, WIDTH - 2.0 * MARGIN)?;
 
@@ -108,10 +123,10 @@ pub fn line_plot(plot: &LinePlot) -> Result<Vec<u8>> {
     legend.draw(&mut canvas, MARGIN, MARGIN + header.height() - 8.0)?;
     frame.draw_grid(&mut canvas, area);
     for (index, series) in plot.series.iter().enumerate() {
-        draw_errors(&mut canvas, &frame, area, series, series_ink(index));
+        draw_errors(&mut canvas, &frame, area, series, ink(series, index));
     }
     for (index, series) in plot.series.iter().enumerate() {
-        draw_curve(&mut canvas, &frame, area, series, series_ink(index));
+        draw_curve(&mut canvas, &frame, area, series, ink(series, index));
     }
     canvas.clip_to_all();
     frame.draw(&mut canvas, area)?;
@@ -120,6 +135,15 @@ pub fn line_plot(plot: &LinePlot) -> Result<Vec<u8>> {
         write(&mut canvas, "No values.", middle, LABEL, Align::Centre)?;
     }
     canvas.into_png()
+}
+
+fn ink(series: &Series, index: usize) -> SeriesInk {
+    match series.look {
+        Look::InTurn => series_ink(index),
+        Look::Solid(number) => SeriesInk { colour: paired_colour(number), dash: &[] },
+        Look::Dashed(number) => SeriesInk { colour: paired_colour(number), dash: &[6.0, 7.0] },
+        Look::Bound => SeriesInk { colour: SOFT_INK, dash: &[2.0, 4.0] },
+    }
 }
 
 fn is_drawn(point: &SeriesPoint) -> bool {
@@ -207,7 +231,8 @@ fn range(values: &[f64], scale: Scale, padding: Padding) -> Axis {
             let space = if high == 0.0 { 0.5 } else { 0.5 * high.abs() };
             Axis::new(low - space, high + space, scale)
         }
-        (Padding::None, Scale::Linear | Scale::Log) => Axis::new(low, high, scale),
+        (Padding::None, Scale::Linear) => Axis::new(low, high, scale),
+        (Padding::None, Scale::Log) => Axis::new(low / 1.05, high * 1.05, scale),
         (Padding::Around, Scale::Log) => {
             Axis::new(low.max(high / WIDEST_RATIO) / 1.5, high * 1.5, scale)
         }
@@ -291,8 +316,26 @@ mod tests {
             y_label: "share of the flux".to_string(),
             x_scale: Scale::Linear,
             y_scale,
-            series: vec![Series { name: String::new(), points, form, errors: ErrorForm::Band }],
+            series: vec![Series {
+                name: String::new(),
+                points,
+                form,
+                errors: ErrorForm::Band,
+                look: Look::InTurn,
+            }],
         }
+    }
+
+    #[test]
+    fn curves_that_belong_together_have_one_colour() {
+        let mut plot = plot(Scale::Linear, SeriesForm::Line, &[[0.0, 1.0, 0.0], [1.0, 2.0, 0.0]]);
+        let mut lit = |look: Look| {
+            plot.series[0].look = look;
+            Decoded::new(&line_plot(&plot).unwrap()).places(paired_colour(3)).len()
+        };
+        let [whole, dashed, bound] = [Look::Solid(3), Look::Dashed(3), Look::Bound].map(&mut lit);
+        assert!(whole > 500 && dashed > whole / 3 && dashed < whole * 4 / 5, "{whole} {dashed}");
+        assert_eq!(bound, 0);
     }
 
     #[test]

@@ -20,7 +20,7 @@ pub use axis::Scale;
 pub use bar_chart::{Bar, BarChart, bar_chart};
 pub use cross_section::{CrossSection, Outline, RayEnd, RayPath, cross_section};
 pub use heat_map::{HeatMap, heat_map};
-pub use line_plot::{ErrorForm, LinePlot, Series, SeriesForm, SeriesPoint, line_plot};
+pub use line_plot::{ErrorForm, LinePlot, Look, Series, SeriesForm, SeriesPoint, line_plot};
 pub use palette::ColourMap;
 pub use polar_plot::{Curve, PolarPlot, Pole, polar_plot};
 
@@ -140,6 +140,7 @@ mod tests {
             points: vec![point(one, other), point(other, one), point(1.0, one)],
             form,
             errors,
+            look: Look::InTurn,
         };
         LinePlot {
             title: text("Sections"),

@@ -46,17 +46,27 @@ pub(crate) struct SeriesInk {
     pub(crate) dash: &'static [f64],
 }
 
+/// Colours of series.
+const COLOURS: [Rgb; 7] = [
+    [0, 114, 178],
+    [213, 94, 0],
+    [0, 158, 115],
+    [32, 36, 42],
+    [204, 121, 167],
+    [86, 180, 233],
+    [230, 159, 0],
+];
+
+/// The colour of pair number `index` of curves that belong together and differ in their dashes; they repeat after 8.
+pub(crate) fn paired_colour(index: usize) -> Rgb {
+    match index % (COLOURS.len() + 1) {
+        7 => [94, 60, 153],
+        index => COLOURS[index],
+    }
+}
+
 /// The colour and dashes of series number `index`; they repeat after 28.
 pub(crate) fn series_ink(index: usize) -> SeriesInk {
-    const COLOURS: [Rgb; 7] = [
-        [0, 114, 178],
-        [213, 94, 0],
-        [0, 158, 115],
-        [32, 36, 42],
-        [204, 121, 167],
-        [86, 180, 233],
-        [230, 159, 0],
-    ];
     const DASHES: [&[f64]; 4] = [&[], &[9.0, 5.0], &[2.0, 4.0], &[10.0, 4.0, 2.0, 4.0]];
     SeriesInk { colour: COLOURS[index % COLOURS.len()], dash: DASHES[index % DASHES.len()] }
 }

@@ -1,0 +1,258 @@
+//! The comparison of estimators: each in turn on the same time, several runs each, against a truth.
+//!
+//! A run of an estimator is looked at now and then; that costs it no time. How errors follow from what it had found is
+//! for the report to say.
+
+mod runner;
+mod truth;
+
+pub use truth::TruthWish;
+
+use crate::error::{Diagnostic, Error, Result};
+use crate::input::{self, Job, Settings};
+use crate::pipeline::{Output, VERSION, expect_sense, output_dir};
+use crate::report::{self, Comparison, Contestant, Folder};
+use crate::scene::SensorId;
+use crate::scene::plan::{Request, RunPlan, StopRules};
+use crate::transport::{Baseline, Interrupt, invisible};
+use runner::{Stint, trace};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+use truth::Known;
+
+/// What can be compared: the estimators of this program and baselines.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Method {
+    /// An estimator.
+    Run(Request),
+    /// A baseline.
+    Baseline(Baseline),
+}
+
+impl Method {
+    /// All of them.
+    pub const ALL: [Self; 8] = [
+        Self::Run(Request::Forward),
+        Self::Run(Request::Backward),
+        Self::Baseline(Baseline::Sppm),
+        Self::Baseline(Baseline::Whitted),
+        Self::Baseline(Baseline::Metropolis),
+        Self::Run(Request::Gather),
+        Self::Run(Request::Auto),
+        Self::Run(Request::Mis),
+    ];
+
+    /// Its name on the command line and in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Run(request) => request.name(),
+            Self::Baseline(baseline) => baseline.name(),
+        }
+    }
+
+    /// The one of a name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|method| method.name() == name)
+    }
+
+    /// Whether its gather paths have to meet the sources.
+    fn meets_sources(self) -> bool {
+        match self {
+            Self::Run(Request::Auto | Request::Forward) => false,
+            Self::Run(Request::Backward | Request::Gather | Request::Mis) => true,
+            Self::Baseline(Baseline::Sppm | Baseline::Whitted | Baseline::Metropolis) => true,
+        }
+    }
+
+    /// Whether it is there to be compared.
+    fn is_ready(self) -> bool {
+        match self {
+            Self::Run(Request::Auto | Request::Mis) => false,
+            Self::Run(Request::Forward | Request::Backward | Request::Gather)
+            | Self::Baseline(Baseline::Sppm | Baseline::Whitted | Baseline::Metropolis) => true,
+        }
+    }
+}
+
+/// What is to be compared, and for how long.
+#[derive(Debug, Clone)]
+pub struct CompareWishes {
+    /// Name of the sensor; the only one if none is given.
+    pub sensor: Option<String>,
+    /// The methods, in the order of the table.
+    pub methods: Vec<Method>,
+    /// Time for each method, all of its runs together.
+    pub time: Duration,
+    /// Independent runs of each method, 2 at least.
+    pub repetitions: u32,
+    /// What is held against them.
+    pub truth: TruthWish,
+}
+
+/// A comparison that has been written.
+#[derive(Debug)]
+pub struct Compared {
+    /// The table, for the terminal.
+    pub text: String,
+    /// Where the files lie.
+    pub dir: PathBuf,
+    /// Remarks on the scene file.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// Checkpoints of a run: the last is its end, and each is this much later than the one before.
+const CHECKPOINTS: i32 = 13;
+const CHECKPOINT_RATIO: f64 = std::f64::consts::SQRT_2;
+
+/// Compares methods on a sensor of a scene file and writes what came out.
+pub fn compare(
+    scene: &Path,
+    settings: &Settings,
+    wishes: &CompareWishes,
+    output: &Output,
+    interrupt: &Interrupt,
+    watch: &mut dyn FnMut(&str),
+) -> Result<Compared> {
+    // Wishes for gathering are of use; which estimator the file asks for is not.
+    let loading =
+        Settings { estimator: Some(Request::Auto), time: Some(wishes.time), ..settings.clone() };
+    let job = input::load(scene, &loading)?;
+    expect_sense(&job)?;
+    let bench = Bench { id: sensor(&job, wishes.sensor.as_deref())?, job: &job, interrupt };
+    expect_able(&job, &wishes.methods)?;
+    let known = truth::known(&bench, &wishes.truth)?;
+    let folder = Folder::open(&dir_of(scene, output), output.existing, None)?;
+    let truth = match known {
+        Known::Truth(truth) => truth,
+        Known::Takes(time) => truth::find(&bench, wishes, time, watch)?,
+    };
+    let run_time = wishes.time.div_f64(f64::from(wishes.repetitions));
+    let mut contestants = Vec::new();
+    for &method in &wishes.methods {
+        contestants.push(contestant(&bench, method, wishes.repetitions, run_time, watch)?);
+    }
+    let comparison = Comparison {
+        title: job.title.clone(),
+        scene: scene_words(&job),
+        program: format!(
+            "lumiduct {VERSION}, seed {}, {} threads",
+            job.run.seed,
+            rayon::current_num_threads()
+        ),
+        measure: bench.measure(),
+        unit: job.scene.unit.flux().to_owned(),
+        truth,
+        repetitions: wishes.repetitions,
+        run_time: run_time.as_secs_f64(),
+        contestants,
+    };
+    folder.write(&report::comparison_files(&comparison)?)?;
+    let text = format!(
+        "{}\n{}: {}\n",
+        report::comparison_table(&comparison),
+        comparison.measure,
+        folder.path().display()
+    );
+    Ok(Compared { text, dir: folder.path().to_path_buf(), warnings: job.warnings })
+}
+
+/// A scene and the sensor on which methods are compared.
+struct Bench<'j> {
+    job: &'j Job,
+    id: SensorId,
+    interrupt: &'j Interrupt,
+}
+
+impl Bench<'_> {
+    /// Dotted name of the measure that is compared.
+    fn measure(&self) -> String {
+        format!("{}.flux", self.job.scene.sensors[self.id.index()].name)
+    }
+
+    /// The plan of an independent run: as the job's, but for the seed, and without a stop rule.
+    fn plan(&self, estimator: Request, run: u64) -> RunPlan {
+        let seed = self.job.run.seed.wrapping_add(run);
+        RunPlan { estimator, seed, stop: StopRules::default(), ..self.job.run.clone() }
+    }
+}
+
+/// All runs of a method.
+fn contestant(
+    bench: &Bench<'_>,
+    method: Method,
+    repetitions: u32,
+    run_time: Duration,
+    watch: &mut dyn FnMut(&str),
+) -> Result<Contestant> {
+    let end = run_time.as_secs_f64();
+    let checkpoints: Vec<Duration> = (0..CHECKPOINTS)
+        .map(|place| Duration::from_secs_f64(end / CHECKPOINT_RATIO.powi(CHECKPOINTS - 1 - place)))
+        .collect();
+    let (mut runs, mut cut) = (Vec::new(), 0.0);
+    for run in 0..repetitions {
+        watch(&format!("{}: run {} of {repetitions}", method.name(), run + 1));
+        let stint = Stint { method, run: u64::from(run), checkpoints: &checkpoints };
+        let traced = trace(bench, &stint)?;
+        cut += traced.cut / f64::from(repetitions);
+        runs.push(traced.samples);
+    }
+    Ok(Contestant { name: method.name().to_owned(), runs, cut })
+}
+
+/// The sensor of a name, or the only one.
+fn sensor(job: &Job, name: Option<&str>) -> Result<SensorId> {
+    let names: Vec<&str> = job.scene.sensors.iter().map(|sensor| sensor.name.as_str()).collect();
+    let all = names.join(", ");
+    let place = match (name, names.len()) {
+        (_, 0) => return Err(Error::Usage("the scene has no sensor to compare on".into())),
+        (Some(name), _) => names.iter().position(|known| *known == name).ok_or_else(|| {
+            Error::Usage(format!("--sensor: there is no sensor `{name}`; there are: {all}"))
+        })?,
+        (None, 1) => 0,
+        (None, _) => {
+            let message = format!("the scene has several sensors; name one with --sensor: {all}");
+            return Err(Error::Usage(message));
+        }
+    };
+    Ok(SensorId::new(place))
+}
+
+/// Refuses methods that are not there, or cannot meet a source.
+fn expect_able(job: &Job, methods: &[Method]) -> Result<()> {
+    if let Some(method) = methods.iter().find(|method| !method.is_ready()) {
+        let message = format!("--estimators: `{}` cannot be compared yet", method.name());
+        return Err(Error::Usage(message));
+    }
+    let unseen = job.scene.sources.iter().find_map(|source| {
+        invisible(source, &job.scene).map(|why| format!("the source `{}`: {why}", source.name))
+    });
+    let blind: Vec<&str> = methods
+        .iter()
+        .filter(|method| method.meets_sources())
+        .map(|method| method.name())
+        .collect();
+    match unseen {
+        Some(unseen) if !blind.is_empty() => Err(Error::Usage(format!(
+            "--estimators: {} cannot meet {unseen}; leave them out, or give the source an area and a cone of directions",
+            blind.join(", ")
+        ))),
+        Some(_) | None => Ok(()),
+    }
+}
+
+/// `reports/NAME-compare` after the scene file, unless told otherwise.
+fn dir_of(scene: &Path, output: &Output) -> PathBuf {
+    match output.dir {
+        Some(_) => output_dir(scene, output),
+        None => {
+            let mut dir = output_dir(scene, output).into_os_string();
+            dir.push("-compare");
+            dir.into()
+        }
+    }
+}
+
+fn scene_words(job: &Job) -> String {
+    let set = job.overrides.iter().map(|one| format!(", `{one}`")).collect::<String>();
+    format!("`{}.toml` (hash {}{set})", job.name, job.hash)
+}

@@ -1,0 +1,161 @@
+//! One timed run of one method.
+
+use crate::error::{Error, Result};
+use crate::measure;
+use crate::pipeline::compare::{Bench, Method};
+use crate::report::Sample;
+use crate::scene::plan::Request;
+use crate::transport::{BaselineRun, Findings, Run};
+use std::time::{Duration, Instant};
+
+/// A run to be done.
+pub(super) struct Stint<'a> {
+    pub(super) method: Method,
+    /// Number of the run: its seed.
+    pub(super) run: u64,
+    /// When it is looked at; the last is its end.
+    pub(super) checkpoints: &'a [Duration],
+}
+
+/// A run that was done.
+pub(super) struct Traced {
+    /// What it had found at each checkpoint, as far as it had something to say.
+    pub(super) samples: Vec<Option<Sample>>,
+    /// What it had found at its end, with its own error.
+    pub(super) last: Option<Estimate>,
+    /// Throughput of gather paths that it cut off, 1.
+    pub(super) cut: f64,
+}
+
+/// A value with the error that a run states itself.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Estimate {
+    pub(super) value: f64,
+    pub(super) std_error: f64,
+}
+
+/// Traces one run until its last checkpoint. Preparing it is part of its time, looking at it is not.
+pub(super) fn trace(bench: &Bench<'_>, stint: &Stint<'_>) -> Result<Traced> {
+    let Stint { method, run, checkpoints } = *stint;
+    let start = Instant::now();
+    let mut runner = Runner::new(bench, method, run);
+    let mut spent = start.elapsed();
+    let mut samples: Vec<Option<Sample>> = vec![None; checkpoints.len()];
+    let mut last: Option<(Sample, Estimate)> = None;
+    loop {
+        if bench.interrupt.is_raised() {
+            return Err(Error::Usage("interrupted: nothing was written".into()));
+        }
+        let start = Instant::now();
+        runner.next_piece();
+        spent += start.elapsed();
+        let is_over = checkpoints.last().is_none_or(|end| spent >= *end);
+        let place = checkpoints.iter().rposition(|checkpoint| *checkpoint <= spent);
+        let is_due = is_over || place.is_some_and(|place| samples[place].is_none());
+        if runner.is_readable() && (is_due || runner.is_rarely_readable()) {
+            last = runner.look(bench, spent);
+            if let (Some(place), Some((sample, _))) = (place, &last) {
+                samples[place].get_or_insert(*sample);
+            }
+        }
+        if is_over {
+            break;
+        }
+    }
+    if let (Some(end), Some((sample, _))) = (samples.last_mut(), &last) {
+        *end = Some(*sample);
+    }
+    Ok(Traced { samples, last: last.map(|(_, estimate)| estimate), cut: runner.cut() })
+}
+
+/// A method at work.
+enum Runner<'s> {
+    Run {
+        run: Box<Run<'s>>,
+        /// Waves after which a stage may end.
+        round_end: u64,
+    },
+    Baseline(Box<BaselineRun<'s>>),
+}
+
+impl<'s> Runner<'s> {
+    fn new(bench: &Bench<'s>, method: Method, run: u64) -> Self {
+        match method {
+            Method::Run(request) => {
+                let run = Box::new(Run::new(&bench.job.scene, &bench.plan(request, run)));
+                Self::Run { round_end: run.round_end(), run }
+            }
+            Method::Baseline(baseline) => {
+                let plan = bench.plan(Request::Forward, run);
+                let run = BaselineRun::new(&bench.job.scene, bench.id, &plan, baseline);
+                Self::Baseline(Box::new(run))
+            }
+        }
+    }
+
+    fn next_piece(&mut self) {
+        match self {
+            Self::Run { run, round_end } => {
+                if run.is_between_waves() && run.waves() >= *round_end {
+                    if run.may_end_stage() {
+                        run.next_stage();
+                    }
+                    *round_end = run.round_end();
+                }
+                run.next_piece();
+            }
+            Self::Baseline(run) => run.next_piece(),
+        }
+    }
+
+    /// Whether what it tells holds everything it has done: later waves are told when they are whole.
+    fn is_readable(&self) -> bool {
+        match self {
+            Self::Run { run, .. } => run.waves() == 0 || run.is_between_waves(),
+            Self::Baseline(_) => true,
+        }
+    }
+
+    /// Whether it has to be looked at whenever it can be.
+    fn is_rarely_readable(&self) -> bool {
+        match self {
+            Self::Run { run, .. } => run.waves() > 0,
+            Self::Baseline(_) => false,
+        }
+    }
+
+    /// What it has found so far.
+    fn look(&self, bench: &Bench<'_>, spent: Duration) -> Option<(Sample, Estimate)> {
+        let (findings, segments) = match self {
+            Self::Run { run, .. } => {
+                let findings = run.findings();
+                let segments = segments(&findings);
+                (findings, segments)
+            }
+            Self::Baseline(run) => {
+                let readings = run.readings()?;
+                let segments = readings.segments;
+                (Findings::forward(readings), segments)
+            }
+        };
+        let measure = measure::value_of(&bench.job.scene, &findings, &bench.measure())?;
+        let (value, std_error) = (measure.value, measure.std_error);
+        let sample = Sample { seconds: spent.as_secs_f64(), segments, value };
+        Some((sample, Estimate { value, std_error }))
+    }
+
+    fn cut(&self) -> f64 {
+        match self {
+            Self::Run { .. } => 0.0,
+            Self::Baseline(run) => run.cut(),
+        }
+    }
+}
+
+/// Straight pieces of photon and gather paths; of gather records, those of the stages that are still told.
+fn segments(findings: &Findings) -> u64 {
+    let followed = findings.backward.as_ref().map_or(0, |readings| readings.segments);
+    let stages = findings.gathered.iter().flat_map(|gathered| &gathered.stages);
+    let gathered: u64 = stages.map(|stage| stage.windows.wide.segments).sum();
+    findings.photons.segments + followed + gathered
+}

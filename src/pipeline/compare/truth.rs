@@ -1,0 +1,138 @@
+//! What estimators are held against: a given value, one from a file, or a long run of an unbiased estimator.
+
+use crate::error::{Error, Result};
+use crate::pipeline::compare::runner::{Estimate, Stint, trace};
+use crate::pipeline::compare::{Bench, CompareWishes, Method};
+use crate::report::Truth;
+use crate::scene::plan::Request;
+use crate::transport::invisible;
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// Where the truth is to come from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum TruthWish {
+    /// It is known, in the unit of the measure.
+    Given {
+        /// The value.
+        value: f64,
+        /// Its standard error.
+        std_error: f64,
+    },
+    /// A `measures.csv` of a report, or a `truth.csv` of a comparison; lines with `#` are remarks.
+    File(PathBuf),
+    /// The better of forward and backward for this time.
+    Run(Duration),
+}
+
+/// Share of the time of a long run in which it is chosen, for each of two.
+const TRIAL: f64 = 0.05;
+
+/// What is known of the truth before any work.
+pub(super) enum Known {
+    Truth(Truth),
+    /// It takes a run of this time.
+    Takes(Duration),
+}
+
+/// What is known of the truth before any work.
+pub(super) fn known(bench: &Bench<'_>, wish: &TruthWish) -> Result<Known> {
+    match wish {
+        TruthWish::Given { value, std_error } => {
+            let origin = "as given on the command line".to_owned();
+            usable(bench, Truth { value: *value, std_error: *std_error, origin }).map(Known::Truth)
+        }
+        TruthWish::File(path) => usable(bench, read(path, &bench.measure())?).map(Known::Truth),
+        TruthWish::Run(time) => Ok(Known::Takes(*time)),
+    }
+}
+
+/// Finds the truth by a long run of the unbiased estimator whose error is the smaller after a short time.
+pub(super) fn find(
+    bench: &Bench<'_>,
+    wishes: &CompareWishes,
+    time: Duration,
+    watch: &mut dyn FnMut(&str),
+) -> Result<Truth> {
+    let scene = &bench.job.scene;
+    // Seeds beyond those of the runs that are compared.
+    let seed = u64::from(wishes.repetitions);
+    let is_visible = scene.sources.iter().all(|source| invisible(source, scene).is_none());
+    let candidates = [Request::Forward, Request::Backward];
+    let able = candidates.into_iter().filter(|request| is_visible || *request == Request::Forward);
+    let mut best: Option<(Request, f64)> = None;
+    for request in able {
+        watch(&format!("truth: trial of {}", request.name()));
+        let trial = run(bench, request, seed, time.mul_f64(TRIAL))?;
+        let error = trial.std_error / trial.value.abs();
+        if error.is_finite() && best.is_none_or(|(_, least)| error < least) {
+            best = Some((request, error));
+        }
+    }
+    let Some((request, _)) = best else {
+        return Err(Error::Usage(format!(
+            "no light was found on `{}` in {:.1} s: give the truth by --truth or --truth-file, or a longer --truth-time",
+            bench.measure(),
+            time.mul_f64(TRIAL).as_secs_f64()
+        )));
+    };
+    let (name, seconds) = (request.name(), time.as_secs_f64());
+    watch(&format!("truth: {name} for {seconds:.0} s"));
+    let Estimate { value, std_error } = run(bench, request, seed + 1, time)?;
+    let used = bench.plan(request, seed + 1).seed;
+    usable(
+        bench,
+        Truth {
+            value,
+            std_error,
+            origin: format!("by {name} for {seconds:.1} s with seed {used}"),
+        },
+    )
+}
+
+fn usable(bench: &Bench<'_>, truth: Truth) -> Result<Truth> {
+    let is_value = truth.value.is_finite() && truth.value != 0.0;
+    if is_value && truth.std_error.is_finite() && truth.std_error >= 0.0 {
+        return Ok(truth);
+    }
+    Err(Error::Usage(format!(
+        "the truth of `{}` is {} ± {}, {}: errors are told relative to a truth that is not 0 and has an error",
+        bench.measure(),
+        truth.value,
+        truth.std_error,
+        truth.origin
+    )))
+}
+
+/// The line of a measure in a table.
+fn read(path: &Path, measure: &str) -> Result<Truth> {
+    let file = File::open(path).map_err(|source| Error::io(path, source))?;
+    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).flexible(true).from_reader(file);
+    let unusable = |why: String| Error::Usage(format!("{}: {why}", path.display()));
+    let header = reader.headers().map_err(|reason| unusable(reason.to_string()))?.clone();
+    let column = |name: &str| {
+        let place = header.iter().position(|column| column == name);
+        place.ok_or_else(|| unusable(format!("there is no column `{name}`")))
+    };
+    let (name, value, std_error) = (column("measure")?, column("value")?, column("std_error")?);
+    for record in reader.records() {
+        let record = record.map_err(|reason| unusable(reason.to_string()))?;
+        if record.get(name) != Some(measure) {
+            continue;
+        }
+        let number = |place: usize| {
+            let text = record.get(place).unwrap_or_default();
+            text.parse().map_err(|_| unusable(format!("`{text}` is no number")))
+        };
+        let origin = format!("from `{}`", path.display());
+        return Ok(Truth { value: number(value)?, std_error: number(std_error)?, origin });
+    }
+    Err(unusable(format!("there is no measure `{measure}`")))
+}
+
+fn run(bench: &Bench<'_>, request: Request, run: u64, time: Duration) -> Result<Estimate> {
+    let stint = Stint { method: Method::Run(request), run, checkpoints: &[time] };
+    let nothing = Estimate { value: 0.0, std_error: f64::INFINITY };
+    Ok(trace(bench, &stint)?.last.unwrap_or(nothing))
+}

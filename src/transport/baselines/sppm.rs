@@ -1,0 +1,208 @@
+//! Stochastic progressive photon mapping without an estimate on specular surfaces.
+//!
+//! Hachisuka & Jensen, Stochastic Progressive Photon Mapping, ACM Transactions on Graphics 28 (2009) 141, with the
+//! radii of Knaus & Zwicker, Progressive Photon Mapping: A Probabilistic Approach, ACM Transactions on Graphics 30 (2011)
+//! 25: every pass is a photon map of its own, and the mean over passes is the value. Gather paths go on through specular
+//! surfaces and wait for photons where a surface scatters; on purely specular scenes they see only what they meet.
+
+use crate::optics::{Incidence, Lobe};
+use crate::rng::Sampler;
+use crate::scene::plan::RunPlan;
+use crate::scene::{SourceId, Visibility};
+use crate::transport::baselines::{BATCH_SEGMENTS, OneSensor};
+use crate::transport::emitters::Met;
+use crate::transport::estimate::{Arriving, Kernel};
+use crate::transport::follow::{Collector, follow};
+use crate::transport::forward::{Forward, PhotonWatcher};
+use crate::transport::readings::Counted;
+use crate::transport::records::{GatherRecord, Records, Surfaces, Wanted};
+use crate::transport::scatter::facing;
+use crate::transport::settings::{PhotonPilot, settle};
+use crate::transport::{Departure, Path, Readings, Vertex, Window};
+use smallvec::SmallVec;
+use std::ops::ControlFlow;
+
+/// Stream of random numbers of the gather paths.
+const PATH_STREAM: u64 = 9 << 32;
+/// α of the radii, 1: squares fall as i^(α-1); 2/3 is best for the mean square error (Knaus & Zwicker 2011).
+const ALPHA: f64 = 2.0 / 3.0;
+/// Gather paths end after so many interfaces.
+const DEEPEST: u32 = 1000;
+/// Work of a pass in batches of the other baselines: small passes shrink the radius sooner.
+const PASS_BATCHES: u64 = 4;
+/// Gather paths of a pass for each of its photon paths, 1.
+const GATHER_SHARE: f64 = 0.25;
+
+/// What all passes of a run have in common.
+#[derive(Debug)]
+pub(super) struct Sppm<'s> {
+    sensor: OneSensor<'s>,
+    surfaces: Surfaces,
+    forward: Forward<'s>,
+    /// Radius of the first pass, mm.
+    radius: f64,
+    /// Gather paths of a pass.
+    paths: u64,
+}
+
+impl<'s> Sppm<'s> {
+    pub(super) fn new(sensor: OneSensor<'s>, plan: &RunPlan) -> Self {
+        let (scene, seed) = (sensor.scene, plan.seed);
+        let pilot = Forward::new(scene, seed, plan.bounce_limit.min(10_000), 64).batch(0);
+        let segments = pilot.segments.div_ceil(pilot.paths().max(1)).max(1);
+        let photons = (PASS_BATCHES * BATCH_SEGMENTS / segments).max(256);
+        let pilot = PhotonPilot { segments_per_path: segments as f64 };
+        let settings = settle(scene, &plan.gather, &[sensor.id], seed, pilot);
+        Self {
+            surfaces: Surfaces::new(scene),
+            forward: Forward::new(scene, seed, plan.bounce_limit, photons),
+            radius: settings.window.radius,
+            paths: (GATHER_SHARE * photons as f64) as u64,
+            sensor,
+        }
+    }
+
+    /// Runs one pass: gather paths, then photons past their records.
+    pub(super) fn pass(&self, batch: u64) -> Readings {
+        let mut readings = self.sensor.empty(self.paths, batch);
+        // The angle plays no part: there are no records with a direction.
+        let window = Window { radius: radius_of_pass(self.radius, batch), theta_max: 0.1 };
+        let mut waiting = Waiting::default();
+        for index in batch * self.paths..(batch + 1) * self.paths {
+            self.gather(index, window, &mut waiting, &mut readings);
+        }
+        let Waiting { cells, records } = waiting;
+        let records = Records::new(records, window, &self.surfaces);
+        let kernel = Kernel::new(window);
+        let mut stream =
+            Stream { sppm: self, kernel, records: &records, cells, readings: &mut readings };
+        let photons = self.forward.batch_watched(batch, &mut stream);
+        readings.segments += photons.segments;
+        readings.close_batch();
+        readings
+    }
+
+    fn gather(
+        &self,
+        index: u64,
+        window: Window,
+        waiting: &mut Waiting<'s>,
+        readings: &mut Readings,
+    ) {
+        let sensor = &self.sensor;
+        let mut sampler = Sampler::for_path(sensor.seed, PATH_STREAM, index);
+        let Some(arrival) = sensor.arrivals.draw(&mut sampler) else { return };
+        waiting.cells.push(arrival.cells.clone());
+        let (etendue, cells) = (sensor.etendue(&arrival) / self.paths as f64, &arrival.cells);
+        let mut gatherer = Gatherer { sppm: self, window, etendue, cells, waiting, readings };
+        let gathering = sensor.gathering(sensor.bounce_limit.min(DEEPEST));
+        let segments = follow(gathering, &arrival, &mut sampler, &mut gatherer);
+        readings.segments += segments;
+    }
+}
+
+/// The radius of pass `pass`, from 0: `r²_{i+1} = r²_i (i + α)/(i + 1)` with i from 1 (Knaus & Zwicker 2011).
+fn radius_of_pass(first: f64, pass: u64) -> f64 {
+    let shrunk = |product: f64, i: u64| product * (i as f64 + ALPHA) / (i as f64 + 1.0);
+    first * (1..=pass).fold(1.0, shrunk).sqrt()
+}
+
+/// Gather paths of a pass that wait for photons: their cells, path by path, and their records.
+#[derive(Default)]
+struct Waiting<'s> {
+    cells: Vec<SmallVec<[usize; 1]>>,
+    records: Vec<GatherRecord<'s>>,
+}
+
+/// Collects the light and the records of one gather path.
+struct Gatherer<'a, 's> {
+    sppm: &'a Sppm<'s>,
+    window: Window,
+    /// Etendue of the path, its share of the pass, mm² sr.
+    etendue: f64,
+    cells: &'a [usize],
+    waiting: &'a mut Waiting<'s>,
+    readings: &'a mut Readings,
+}
+
+impl Collector for Gatherer<'_, '_> {
+    fn meet(&mut self, path: &Path, met: Met) {
+        let flux = met.radiance * self.etendue;
+        let light = Counted { flux, depth: path.depth, source: met.source };
+        self.sppm.sensor.count(self.readings, self.cells, &light);
+    }
+
+    fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>) -> ControlFlow<()> {
+        let Sppm { sensor, surfaces, .. } = self.sppm;
+        let facing = facing(sensor.scene, path, vertex);
+        let interface = vertex.interface;
+        let sides = [
+            (facing.faces.own, facing.facet, interface.from),
+            (facing.faces.behind, -facing.facet, interface.to),
+        ];
+        for (bsdf, normal, medium) in sides {
+            if bsdf.is_specular() {
+                continue;
+            }
+            // L* of the light that leaves, in the medium of the gather path: eq. (2) over its n².
+            let index = facing.incidence.index_from;
+            let value = self.etendue * vertex.throughput / (index * index);
+            // The whole disk counts also at rims: that bias goes with the radius.
+            let values = self.window.nested().map(|window| value / window.area());
+            self.waiting.records.push(GatherRecord {
+                point: vertex.point,
+                normal,
+                surface: surfaces.of(interface.acting.prim),
+                medium,
+                wanted: Wanted::Scattered { bsdf, out: -vertex.dir },
+                values,
+                path: self.waiting.cells.len() as u32 - 1,
+                depth: path.depth + 1,
+            });
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn depart(&mut self, _: &Path, _: &Vertex<'_>, departure: &Departure) -> ControlFlow<()> {
+        match departure.lobe {
+            // The photons at the record bring it.
+            Lobe::Diffuse => ControlFlow::Break(()),
+            Lobe::Specular => ControlFlow::Continue(()),
+        }
+    }
+}
+
+/// Photons that stream past the records.
+struct Stream<'p, 's> {
+    sppm: &'p Sppm<'s>,
+    kernel: Kernel,
+    records: &'p Records<'s>,
+    cells: Vec<SmallVec<[usize; 1]>>,
+    readings: &'p mut Readings,
+}
+
+impl PhotonWatcher for Stream<'_, '_> {
+    fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>, flux: f64, source: SourceId) {
+        let Sppm { sensor, surfaces, .. } = self.sppm;
+        let interface = vertex.interface;
+        let surface = surfaces.of(interface.acting.prim);
+        if interface.visibility == Visibility::Invisible
+            || !self.records.may_take(surface, vertex.point, vertex.dir)
+        {
+            return;
+        }
+        let facing = facing(sensor.scene, path, vertex);
+        let incidence = Incidence { normal: facing.facet, ..facing.incidence };
+        let (medium, point) = (interface.from, vertex.point);
+        let photon = Arriving { surface, medium, point, incidence };
+        let Self { kernel, cells, readings, .. } = self;
+        self.records.visit(surface, vertex.point, vertex.dir, |record| {
+            let shares = kernel.flux(record, &photon);
+            if let Some([share, ..]) = shares.filter(|[share, ..]| *share > 0.0) {
+                let (flux, depth) = (flux * vertex.throughput * share, path.depth + record.depth);
+                let light = Counted { flux, depth, source };
+                sensor.count(readings, &cells[record.path as usize], &light);
+            }
+        });
+    }
+}

@@ -1,0 +1,71 @@
+//! Comparing estimators.
+
+use crate::*;
+
+const ALL: &str = "forward,backward,sppm,whitted,metropolis,gather";
+
+#[test]
+fn a_comparison_writes_a_page_a_table_a_plot_and_its_truth() {
+    let place = Place::new();
+    let all = format!(
+        "compare rod.toml --sensor exit --estimators {ALL} --time 0.2s --runs 2 --truth-time 0.5s --seed 3 \
+         --photons 2k --records 1k -o out"
+    );
+    let said = place.good(&all);
+    for name in ALL.split(',').chain(["exit.flux"]) {
+        assert!(said.contains(name), "no {name} in {said}");
+    }
+    assert_eq!(
+        names(&place.path("out")),
+        ["compare.csv", "compare.md", "compare.png", "truth.csv"]
+    );
+    let page = fs::read_to_string(place.path("out/compare.md")).unwrap();
+    assert!(page.contains("no part of the reproducible reports"), "{page}");
+    assert!(page.contains("2 independent runs of 0.1 s"), "{page}");
+    let table = fs::read_to_string(place.path("out/compare.csv")).unwrap();
+    for name in ALL.split(',') {
+        assert!(table.lines().any(|line| line.starts_with(&format!("{name},"))), "{table}");
+    }
+
+    // What was found can be used again, and what is there is kept.
+    let again = "compare rod.toml --sensor exit --estimators forward --time 0.1s --runs 2 --truth-file out/truth.csv";
+    assert!(place.bad(2, &format!("{again} -o out")).contains("--overwrite"));
+    place.good(&format!("{again} -q"));
+    let page = fs::read_to_string(place.path("reports/rod-compare/compare.md")).unwrap();
+    assert!(page.contains("from `out/truth.csv`"), "{page}");
+}
+
+#[test]
+fn a_comparison_that_makes_no_sense_is_refused_and_nothing_is_written() {
+    let place =
+        Place::with("[sources.spot.point]\nflux_lm = 1\nat = { position_mm = [0, 0, -1] }\n");
+    fs::write(place.path("truth.csv"), "measure,value,std_error\nexit.flux,0,0\n").unwrap();
+    for (arguments, words) in [
+        ("", "--estimators"),
+        ("--estimators psychic", "metropolis"),
+        ("--estimators forward", "--sensor: exit, far"),
+        ("--estimators forward --sensor eye", "exit, far"),
+        ("--estimators auto --sensor exit", "`auto`"),
+        (
+            "--estimators forward,backward,sppm --sensor exit",
+            "backward, sppm cannot meet the source `spot`",
+        ),
+        ("--estimators forward --sensor exit --runs 1", "2..=1000"),
+        ("--estimators forward --sensor exit --time 0", "--time"),
+        ("--estimators forward --sensor exit --truth 0", "not 0"),
+        ("--estimators forward --sensor exit --truth nan", "finite"),
+        ("--estimators forward --sensor exit --truth 1 --truth-error -1", "-1"),
+        ("--estimators forward --sensor exit --truth-error 1", "--truth"),
+        ("--estimators forward --sensor exit --truth 1 --truth-time 1s", "--truth-time"),
+        ("--estimators forward --sensor exit --truth-file truth.csv", "not 0"),
+        ("--estimators forward --sensor far --truth-file truth.csv", "far.flux"),
+        ("--estimators forward --sensor far --truth-file rod.toml", "no column `measure`"),
+    ] {
+        let said = place.bad(2, &format!("compare rod.toml -o out {arguments}"));
+        assert!(said.contains(words), "{arguments}: no {words} in {said}");
+    }
+    let missing =
+        "compare rod.toml -o out --estimators forward --sensor exit --truth-file none.csv";
+    assert!(place.bad(3, missing).contains("none.csv"));
+    assert_eq!(place.names(), ["rod.toml", "truth.csv"]);
+}

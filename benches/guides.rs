@@ -8,7 +8,7 @@ use lumiduct::scene::mesh::Mesh;
 use lumiduct::scene::shape::{ChartRect, Cylinder, Flat, Region, Shape};
 use lumiduct::scene::{
     Builder, Counts, Emission, EmitSide, Emitter, FaceId, FaceSpec, Goniometer, Grid, Owner, Piece,
-    Place, Scene, Sensor, SensorKind, Sides, Solid, SolidId, Source, Start, SurfaceSensor,
+    Place, Scene, Seeing, Sensor, SensorKind, Sides, Solid, SolidId, Source, Start, SurfaceSensor,
 };
 use lumiduct::units::FluxUnit;
 use std::f64::consts::TAU;
@@ -259,7 +259,7 @@ fn add_exit_sensor(builder: &mut Builder, face: FaceId, place: Place, half: f64)
             sides,
             grid,
             areas,
-            views: None,
+            seeing: Seeing::All,
             frame: None,
         }),
         aim: Vec::new(),

@@ -352,13 +352,21 @@ impl Display {
     }
 
     fn show(&mut self, progress: &Progress) {
+        let gathering = Some(&progress.gathering).filter(|text| !text.is_empty());
+        let gathering = gathering.map(|text| format!("gathering: {text}"));
         match self {
             Self::Quiet => {}
             Self::Bar(bar) => {
+                if let Some(line) = gathering {
+                    bar.println(line);
+                }
                 bar.set_position((1000.0 * progress.fraction()) as u64);
                 bar.set_message(progress.sentence());
             }
             Self::Lines { next } => {
+                if let Some(line) = gathering {
+                    eprintln!("{line}");
+                }
                 if progress.elapsed >= *next {
                     eprintln!("{}", progress.sentence());
                     *next = progress.elapsed + Self::LINE_EVERY;

@@ -190,6 +190,7 @@ pub fn compose(job: &Job, findings: &Findings, stop: Stop) -> Report {
             seed: job.run.seed,
             estimator: job.run.estimator,
             gather: report::wishes(&job.run.gather),
+            gathering: gathering(findings),
             partial: stop == Stop::Interrupted,
             asked: report::asked(&job.run.stop),
             stopped: stop.reason().to_owned(),
@@ -201,6 +202,11 @@ pub fn compose(job: &Job, findings: &Findings, stop: Stop) -> Report {
         checks,
         warnings,
     }
+}
+
+/// How gathering was set, in words; empty where nothing was gathered.
+fn gathering(findings: &Findings) -> String {
+    findings.gathered.as_ref().map_or(String::new(), |own| report::settled(&own.settings))
 }
 
 /// What tracing gave.
@@ -218,14 +224,19 @@ pub struct Traced {
 pub fn trace(job: &Job, interrupt: &Interrupt, watch: &mut dyn FnMut(&Progress)) -> Traced {
     let start = Instant::now();
     let mut run = Run::new(&job.scene, &job.run);
-    let mut target = None;
+    let (mut target, mut gathering_told) = (None, false);
     let stop = loop {
         let round_end = run.round_end();
         let mut early = None;
         while run.waves() < round_end && early.is_none() {
             run.next_piece();
             early = early_stop(&job.run, &run, start.elapsed(), interrupt);
-            watch(&Progress::of(&job.run, &run, start.elapsed(), target.clone()));
+            let mut progress = Progress::of(&job.run, &run, start.elapsed(), target.clone());
+            if !gathering_told {
+                progress.gathering = gathering(&run.findings());
+                gathering_told = true;
+            }
+            watch(&progress);
         }
         if let Some(stop) = early {
             break stop;

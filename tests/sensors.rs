@@ -3,14 +3,22 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
 
 use lumiduct::input::{self, Settings};
-use lumiduct::measure::{self, Measures};
+use lumiduct::measure::{self, Axes, Measures};
+use lumiduct::scene::plan::Request;
 use lumiduct::transport::Run;
+use std::f64::consts::PI;
 
 fn measures(text: &str) -> Measures {
+    measures_by(Request::Forward, 20_000, text)
+}
+
+fn measures_by(estimator: Request, paths: u64, text: &str) -> Measures {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("scene.toml");
     std::fs::write(&path, format!("lumiduct = 1\ntitle = \"Sensors\"\n{text}")).unwrap();
-    let job = match input::load(&path, &Settings { paths: Some(20_000), ..Settings::default() }) {
+    let settings =
+        Settings { paths: Some(paths), estimator: Some(estimator), ..Settings::default() };
+    let job = match input::load(&path, &settings) {
         Ok(job) => job,
         Err(error) => panic!("{error}"),
     };
@@ -97,4 +105,69 @@ fn a_sphere_in_a_medium_that_absorbs_gets_what_comes_so_far() {
     );
     // Beer-Lambert over 100 mm at 0.01/mm.
     assert!((value(&found, "sphere.flux") - (-1.0f64).exp()).abs() < 1e-9);
+}
+
+/// A glowing wall of radius 100 mm: 1000 lm over π² r² make L = 10132.1 cd/m².
+const GLOWING_WALL: &str = r#"
+[sources.wall.disk]
+radius_mm = 100
+flux_lm = 1000
+emission = "lambertian"
+"#;
+const WALL_LUMINANCE: f64 = 1000.0 / (PI * PI * 0.01);
+
+#[test]
+fn an_image_of_a_glowing_wall_is_flat_and_has_its_luminance() {
+    let text = format!(
+        r#"{GLOWING_WALL}
+        [sensors.camera]
+        image = {{ disk = {{ radius_mm = 15 }}, pixels = [5, 4], pixel_deg = 10 }}
+        at = {{ position_mm = [0, 0, 50], axis = [0.2, 0, -1] }}"#
+    );
+    for (estimator, paths) in [(Request::Forward, 3_000_000), (Request::Backward, 100_000)] {
+        let found = measures_by(estimator, paths, &text);
+        let average = &found.values["camera.luminance_avg"];
+        assert!(average.std_error < 0.01 * WALL_LUMINANCE);
+        assert!((average.value - WALL_LUMINANCE).abs() < 4.0 * average.std_error, "{average}");
+        assert_eq!(average.unit, "cd/m²");
+        for column in 0..5 {
+            for row in 0..4 {
+                let pixel = &found.values[&format!("camera.cell.{column}.{row}")];
+                assert!(pixel.std_error < 0.06 * WALL_LUMINANCE, "{estimator:?}: {pixel}");
+                let off = (pixel.value - WALL_LUMINANCE).abs();
+                assert!(off < 4.0 * pixel.std_error, "{estimator:?} {column}.{row}: {pixel}");
+            }
+        }
+        assert!(found.values["camera.cv"].value < 0.03, "{}", found.values["camera.cv"]);
+        let Axes::Angular { u_deg, v_deg } = &found.maps[0].axes else { panic!("no image") };
+        assert_eq!((u_deg.len(), v_deg.len()), (6, 5));
+        // Two pixels of the tangent of 10 deg about the middle.
+        assert!((v_deg[3] - (2.0 * 5f64.to_radians().tan()).atan().to_degrees()).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn an_image_shows_the_rim_of_a_wall_where_the_eye_sees_it() {
+    // The wall ends at x = 100 mm. Looking along -z with +y up, +x is on the right.
+    let text = format!(
+        r#"{GLOWING_WALL}
+        [sensors.camera]
+        image = {{ disk = {{ radius_mm = 10 }}, pixels = [2, 1], pixel_deg = 20 }}
+        at = {{ position_mm = [100, 0, 150], axis = [0, 0, -1], x_axis = [-1, 0, 0] }}
+        aim = ["window.surface"]
+        [finishes.clear]
+        open = {{}}
+        [sheets.window.disk]
+        radius_mm = 150
+        finish = "clear"
+        at = {{ position_mm = [0, 0, 10] }}"#
+    );
+    for (estimator, paths) in [(Request::Forward, 2_000_000), (Request::Backward, 100_000)] {
+        let found = measures_by(estimator, paths, &text);
+        let (left, right) = (&found.values["camera.cell.0.0"], &found.values["camera.cell.1.0"]);
+        // The rim bends away from the line between the pixels, 3.6 of 53 mm at the edge of the field, and points of the
+        // aperture see it shifted by up to 10 mm.
+        assert!(left.value > 0.85 * WALL_LUMINANCE, "{estimator:?}: {left}");
+        assert!(right.value < 0.15 * WALL_LUMINANCE, "{estimator:?}: {right}");
+    }
 }

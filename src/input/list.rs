@@ -59,7 +59,8 @@ fn describe(path: &Path) -> Option<String> {
             table.get("title").and_then(toml::Value::as_str).unwrap_or("(no title)").to_owned(),
         );
     }
-    let kind =
-        ["plane", "goniometer", "luminance"].into_iter().find(|kind| table.contains_key(*kind))?;
+    let kind = ["plane", "goniometer", "luminance", "image"]
+        .into_iter()
+        .find(|kind| table.contains_key(*kind))?;
     Some(format!("sensor file: {kind}"))
 }

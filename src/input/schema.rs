@@ -285,6 +285,7 @@ mod tests {
             "x_axis",
             "priority",
             "cells",
+            "pixels",
             "rings",
             "sectors",
             "cosine_power",

@@ -1,13 +1,14 @@
-//! The cells of a surface sensor: flux, area, and the noise of both together.
+//! The cells of a surface sensor, or the pixels of its image: flux, area, and the noise of both together.
 //!
 //! A cell's error is that of the mean over batches; cells are taken as independent. Cells without area are not part
-//! of the sensor. Cells cut by its rim to less than half of the largest cell's area hold few counts: they belong to
+//! of the sensor. The area of a pixel is the aperture times its projected solid angle, in mm² sr. Cells cut by its rim to less than half of the largest cell's area hold few counts: they belong to
 //! maps and averages, but extremes are not taken of them.
 
 use crate::measure::evidence::Evidence;
 use crate::measure::extremes::Noisy;
-use crate::scene::{SensorId, SurfaceSensor};
+use crate::scene::{Seeing, SensorId, SurfaceSensor};
 use crate::units::MM2_PER_M2;
+use std::borrow::Cow;
 
 /// Cells with less than this share of the largest cell's area are not part of the sensor.
 const NO_AREA: f64 = 1e-9;
@@ -18,11 +19,11 @@ const ENOUGH_AREA: f64 = 0.5;
 pub(crate) struct SensorCells<'a> {
     /// Mean flux per cell with its standard error, lm or W.
     flux: Vec<(f64, f64)>,
-    /// Area per cell, mm².
-    pub(crate) areas: &'a [f64],
+    /// Area per cell, mm², or mm² sr.
+    pub(crate) areas: Cow<'a, [f64]>,
     largest: f64,
     pub(crate) area: f64,
-    /// From lm/mm² to the unit of the map.
+    /// From flux per area to the unit of the map.
     pub(crate) factor: f64,
     /// Flux of one count, lm or W.
     count: f64,
@@ -37,14 +38,24 @@ impl<'a> SensorCells<'a> {
         sensor: &'a SurfaceSensor,
         view: Option<usize>,
     ) -> Self {
-        let first = view.unwrap_or(0) * sensor.grid.cells();
-        let flux = evidence.cell_flux(id, first..first + sensor.grid.cells());
-        let projected = sensor.views.as_ref().zip(view).map(|(all, view)| all.projected[view]);
+        let areas = match &sensor.seeing {
+            Seeing::All | Seeing::Views(_) => Cow::Borrowed(&*sensor.areas),
+            Seeing::Pixels(pixels) => {
+                let area = sensor.area();
+                Cow::Owned(pixels.projected.iter().map(|projected| area * projected).collect())
+            }
+        };
+        let projected = match (&sensor.seeing, view) {
+            (Seeing::Views(views), Some(view)) => views.projected[view],
+            (Seeing::Views(_), None) | (Seeing::All | Seeing::Pixels(_), _) => 1.0,
+        };
+        let first = view.unwrap_or(0) * areas.len();
+        let flux = evidence.cell_flux(id, first..first + areas.len());
         Self {
-            areas: &sensor.areas,
-            largest: sensor.areas.iter().copied().fold(0.0, f64::max),
-            area: sensor.area(),
-            factor: MM2_PER_M2 / projected.unwrap_or(1.0),
+            largest: areas.iter().copied().fold(0.0, f64::max),
+            area: areas.iter().sum(),
+            areas,
+            factor: MM2_PER_M2 / projected,
             count: evidence.count_flux(&flux),
             all_light: view.is_none(),
             flux,

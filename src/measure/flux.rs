@@ -4,7 +4,7 @@
 
 use crate::measure::Measure;
 use crate::measure::evidence::Evidence;
-use crate::scene::{SensorId, SensorKind, Sides, SourceId};
+use crate::scene::{Seeing, SensorId, SensorKind, Sides, SourceId};
 use crate::transport::TAILS;
 use crate::units::MM2_PER_M2;
 use indexmap::IndexMap;
@@ -74,10 +74,10 @@ fn elsewhere(evidence: &Evidence<'_>, id: SensorId, out: &mut IndexMap<String, M
     }
 }
 
-/// Mean illuminance of a surface sensor; one with views sees only part of the light that arrives and has none.
+/// Mean illuminance of a surface sensor; one with views or pixels sees only part of the light that arrives and has none.
 fn density(evidence: &Evidence<'_>, id: SensorId, out: &mut IndexMap<String, Measure>) {
     match &evidence.scene.sensors[id.index()].kind {
-        SensorKind::Surface(surface) if surface.views.is_none() => {
+        SensorKind::Surface(surface) if matches!(surface.seeing, Seeing::All) => {
             let unit = evidence.scene.unit;
             let mean = evidence.sum(
                 &flux_slots(evidence, id),

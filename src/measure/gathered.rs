@@ -11,7 +11,7 @@ use crate::measure::{Measure, Status};
 use crate::scene::SensorId;
 use crate::scene::plan::Estimator;
 use crate::tally::Tally;
-use crate::transport::{Findings, Stage, Windows};
+use crate::transport::{Findings, Readings, Stage, Windows};
 use serde::Serialize;
 
 /// Standard errors that E2 - E3 has to exceed to count as more than noise.
@@ -29,6 +29,40 @@ pub enum Resolution {
     Resolved,
     /// It does not, or noise hides it.
     NotResolved,
+}
+
+/// How the values of a gathered sensor came about.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct GatheredFacts {
+    /// Name of the sensor.
+    pub sensor: String,
+    /// Vertex at which its gather paths ended at the latest; the first surface has depth 0.
+    pub depth: u32,
+    /// The stage that gave the values, from 0.
+    pub stage: u32,
+    /// Whether their bias is resolved.
+    pub resolution: Resolution,
+    /// The last finished stage and the one after it, as far as that has come.
+    pub stages: Vec<StageFacts>,
+}
+
+/// A stage, and the flux of a sensor within its nested windows.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StageFacts {
+    /// Which, from 0.
+    pub number: u32,
+    /// Radius of its widest window, mm.
+    pub radius_mm: f64,
+    /// Half-angle of its widest window, deg.
+    pub angle_deg: f64,
+    /// Passes.
+    pub passes: u64,
+    /// Gather paths of a pass from each sensor.
+    pub gather_paths: u64,
+    /// E1, E2 and E3: the flux within windows of size 1, 1/√2 and 1/2, lm or W.
+    pub flux: [f64; 3],
+    /// Their standard errors, likewise.
+    pub std_errors: [f64; 3],
 }
 
 /// A stage that speaks for a sensor.
@@ -64,6 +98,19 @@ impl<'a> Judged<'a> {
         [value, wide, middle].map(|readings| self.photons.by(readings, Estimator::Gather))
     }
 
+    /// How the values came about; `None` without anything gathered.
+    pub(crate) fn facts(&self, findings: &Findings, id: SensorId) -> Option<GatheredFacts> {
+        let gathered = findings.gathered.as_ref()?;
+        let slots = flux_slots(&self.photons, id);
+        Some(GatheredFacts {
+            sensor: self.photons.scene.sensors[id.index()].name.clone(),
+            depth: gathered.settings.depth,
+            stage: self.stage.number,
+            resolution: self.resolution,
+            stages: gathered.stages.iter().map(|stage| stage_facts(stage, &slots)).collect(),
+        })
+    }
+
     /// Tells the bias of a measure by what it is within the two wider windows.
     pub(crate) fn tell_bias(&self, measure: &mut Measure, wide: &Measure, middle: &Measure) {
         if measure.estimator != Estimator::Gather {
@@ -76,6 +123,23 @@ impl<'a> Judged<'a> {
         if self.resolution == Resolution::NotResolved {
             measure.status = measure.status.worst(Status::BiasNotResolved);
         }
+    }
+}
+
+fn stage_facts(stage: &Stage, slots: &[usize]) -> StageFacts {
+    let Windows { wide, middle, narrow, extrapolated: _ } = &stage.windows;
+    let flux = |readings: &Readings| {
+        readings.function(|flux| slots.iter().map(|&slot| flux(slot)).sum::<f64>())
+    };
+    let found = [wide, middle, narrow].map(flux);
+    StageFacts {
+        number: stage.number,
+        radius_mm: stage.window.radius,
+        angle_deg: stage.window.theta_max.to_degrees(),
+        passes: wide.batch_count(),
+        gather_paths: stage.gather_paths,
+        flux: found.each_ref().map(Tally::mean),
+        std_errors: found.each_ref().map(Tally::std_error),
     }
 }
 

@@ -1,4 +1,5 @@
-//! Maps of surface sensors: illuminance per cell, or luminance per cell and view, and how even they are.
+//! Maps of surface sensors: illuminance per cell, luminance per cell and view, or luminance per pixel of an image, and
+//! how even they are.
 
 use crate::measure::cells::SensorCells;
 use crate::measure::evidence::Evidence;
@@ -8,7 +9,8 @@ use crate::measure::points;
 use crate::measure::uniformity::{
     Field, Part, Uniformity, UniformitySummary, coefficient_of_variation, uniformity,
 };
-use crate::scene::{Grid, SensorId, SurfaceSensor};
+use crate::scene::{Grid, Seeing, SensorId, SurfaceSensor};
+use glam::DVec2;
 use ndarray::Array2;
 use serde::Serialize;
 use std::f64::consts::PI;
@@ -18,8 +20,10 @@ use std::f64::consts::PI;
 pub struct SensorMap {
     /// Name of the sensor.
     pub sensor: String,
-    /// Which view of a luminance sensor, from 0.
+    /// Which view of a luminance sensor, from 0; `None` of all light, and of an image.
     pub view: Option<usize>,
+    /// Where a view looks from: angle from the sensor's normal and azimuth from its local +x, deg.
+    pub seen_from_deg: Option<[f64; 2]>,
     /// What is mapped, such as `illuminance`.
     pub quantity: String,
     /// Its unit, such as `lx`.
@@ -38,7 +42,7 @@ pub struct SensorMap {
     pub summary: UniformitySummary,
 }
 
-/// Where the cells of a map are, on the unrolled face.
+/// Where the cells of a map are, on the unrolled face, or in the field of view of an image.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Axes {
@@ -49,6 +53,13 @@ pub enum Axes {
         /// Edges of the rows, mm.
         v_mm: Vec<f64>,
     },
+    /// Columns and rows of pixels that are equal in the tangents of their angles.
+    Angular {
+        /// Edges of the columns, deg to the right of the axis.
+        u_deg: Vec<f64>,
+        /// Edges of the rows, deg up from the axis.
+        v_deg: Vec<f64>,
+    },
     /// Rings and sectors.
     Polar {
         /// Edges of the rings, mm.
@@ -58,21 +69,53 @@ pub enum Axes {
     },
 }
 
+impl Axes {
+    /// Unit of the width and height of a cell.
+    pub fn unit(&self) -> &'static str {
+        match self {
+            Self::Cartesian { .. } | Self::Polar { .. } => "mm",
+            Self::Angular { .. } => "deg",
+        }
+    }
+}
+
+/// Angle from the normal and azimuth from the local +x of a view of a flat sensor, deg.
+fn seen_from(sensor: &SurfaceSensor, view: usize) -> Option<[f64; 2]> {
+    match &sensor.seeing {
+        Seeing::All | Seeing::Pixels(_) => None,
+        Seeing::Views(views) => sensor.frame.map(|frame| {
+            let local = frame.to_local(views.directions[view]);
+            let aside = local.truncate();
+            // Rounding gives the normal itself an azimuth.
+            let azimuth = if aside.length() < 1e-9 { 0.0 } else { aside.y.atan2(aside.x) };
+            [aside.length().atan2(local.z), azimuth].map(f64::to_degrees)
+        }),
+    }
+}
+
+/// The grid of a sensor's maps: of its cells, or of the pixels of its image.
+pub(crate) fn map_grid(sensor: &SurfaceSensor) -> &Grid {
+    match &sensor.seeing {
+        Seeing::All | Seeing::Views(_) => &sensor.grid,
+        Seeing::Pixels(pixels) => &pixels.grid,
+    }
+}
+
 /// The map of a surface sensor, or one for each view.
 pub(crate) fn maps(
     evidence: &Evidence<'_>,
     id: SensorId,
     sensor: &SurfaceSensor,
 ) -> Vec<SensorMap> {
-    match &sensor.views {
-        None => vec![map(evidence, id, sensor, None)],
-        Some(views) => {
+    match &sensor.seeing {
+        Seeing::All | Seeing::Pixels(_) => vec![map(evidence, id, sensor, None)],
+        Seeing::Views(views) => {
             (0..views.directions.len()).map(|view| map(evidence, id, sensor, Some(view))).collect()
         }
     }
 }
 
-/// The map of a view, or of all light.
+/// The map of a view, of an image, or of all light.
 fn map(
     evidence: &Evidence<'_>,
     id: SensorId,
@@ -80,12 +123,12 @@ fn map(
     view: Option<usize>,
 ) -> SensorMap {
     let unit = evidence.scene.unit;
-    let (quantity, symbol) = match view {
-        None => (unit.illuminance_name(), unit.illuminance()),
-        Some(_) => (unit.luminance_name(), unit.luminance()),
+    let (quantity, symbol) = match &sensor.seeing {
+        Seeing::All => (unit.illuminance_name(), unit.illuminance()),
+        Seeing::Views(_) | Seeing::Pixels(_) => (unit.luminance_name(), unit.luminance()),
     };
     let seen = SensorCells::of(evidence, id, sensor, view);
-    let (columns, rows) = sensor.grid.shape();
+    let (columns, rows) = map_grid(sensor).shape();
     let table = |f: &dyn Fn(usize) -> f64| {
         let at = |cell| if seen.is_on(cell) { f(cell) } else { f64::NAN };
         Array2::from_shape_fn((rows, columns), |(row, column)| at(row * columns + column))
@@ -93,13 +136,14 @@ fn map(
     SensorMap {
         sensor: evidence.scene.sensors[id.index()].name.clone(),
         view,
+        seen_from_deg: view.and_then(|view| seen_from(sensor, view)),
         quantity: quantity.to_owned(),
         unit: symbol.to_owned(),
         values: table(&|cell| seen.at(cell).value),
         std_errors: table(&|cell| seen.at(cell).std_error),
         biases: None,
-        axes: axes(&sensor.grid),
-        area_mm2: seen.area,
+        axes: axes(sensor),
+        area_mm2: sensor.area(),
         summary: summary(evidence, id, sensor, &seen),
     }
 }
@@ -131,13 +175,14 @@ fn summary(
             .all(|&cell| seen.is_full(cell))
             .then(|| at_points(&points, seen, &field))
     };
+    let grid = map_grid(sensor);
     UniformitySummary {
         cells: full.len(),
-        cell_size_mm: cell_size(&sensor.grid),
+        cell_size: cell_size(sensor),
         all: uniformity(&field),
         cv: coefficient_of_variation(parts, &field),
-        nine: on_points(points::nine(&sensor.grid)),
-        thirteen: on_points(points::thirteen(&sensor.grid)),
+        nine: on_points(points::nine(grid)),
+        thirteen: on_points(points::thirteen(grid)),
     }
 }
 
@@ -169,15 +214,22 @@ fn at_points(points: &[Vec<usize>], seen: &SensorCells<'_>, field: &Field<'_>) -
     uniformity(&Field { cells: &distinct, avg: [sum / n, variance.sqrt() / n], ..*field })
 }
 
-fn axes(grid: &Grid) -> Axes {
+fn axes(sensor: &SurfaceSensor) -> Axes {
     let edges = |from: f64, to: f64, bins: usize| -> Vec<f64> {
         (0..=bins).map(|i| from + (to - from) * i as f64 / bins as f64).collect()
     };
-    match grid {
-        Grid::Cartesian { rect, nu, nv } => Axes::Cartesian {
-            u_mm: edges(rect.min.x, rect.max.x, *nu),
-            v_mm: edges(rect.min.y, rect.max.y, *nv),
-        },
+    match map_grid(sensor) {
+        Grid::Cartesian { rect, nu, nv } => {
+            let u = edges(rect.min.x, rect.max.x, *nu);
+            let v = edges(rect.min.y, rect.max.y, *nv);
+            let angles = |tangents: Vec<f64>| -> Vec<f64> {
+                tangents.into_iter().map(|tangent| tangent.atan().to_degrees()).collect()
+            };
+            match &sensor.seeing {
+                Seeing::All | Seeing::Views(_) => Axes::Cartesian { u_mm: u, v_mm: v },
+                Seeing::Pixels(_) => Axes::Angular { u_deg: angles(u), v_deg: angles(v) },
+            }
+        }
         Grid::Polar { radius, rings, sectors } => Axes::Polar {
             radius_mm: edges(0.0, *radius, *rings),
             sector_deg: edges(0.0, 360.0, *sectors),
@@ -185,11 +237,17 @@ fn axes(grid: &Grid) -> Axes {
     }
 }
 
-fn cell_size(grid: &Grid) -> [f64; 2] {
-    match grid {
+/// Width and height of a cell, mm, or of a pixel in the middle of an image, deg.
+fn cell_size(sensor: &SurfaceSensor) -> [f64; 2] {
+    match map_grid(sensor) {
         Grid::Cartesian { rect, nu, nv } => {
-            let size = rect.max - rect.min;
-            [size.x / *nu as f64, size.y / *nv as f64]
+            let size = (rect.max - rect.min) / DVec2::new(*nu as f64, *nv as f64);
+            match &sensor.seeing {
+                Seeing::All | Seeing::Views(_) => size.to_array(),
+                Seeing::Pixels(_) => {
+                    size.to_array().map(|tangent| 2.0 * (0.5 * tangent).atan().to_degrees())
+                }
+            }
         }
         Grid::Polar { radius, rings, sectors } => {
             // The mean radius of all rings is half the outer one.
@@ -243,7 +301,7 @@ mod tests {
         assert_value(&measures, "exit.uniformity9_max_min", 1.0 / corner, 1e-12);
         let mean = (8.0 * corner + 4.0 * edge + 1.0) / 13.0;
         assert_value(&measures, "exit.uniformity13_min_avg", corner / mean, 1e-12);
-        assert_eq!(measures.maps[0].summary.cell_size_mm, [0.2, 0.2]);
+        assert_eq!(measures.maps[0].summary.cell_size, [0.2, 0.2]);
     }
 
     #[test]

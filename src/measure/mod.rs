@@ -27,13 +27,14 @@ mod uniformity;
 pub use angular::{IntensityTable, PlaneCurve};
 pub use balance::Balance;
 pub use check::{Outcome, Verdict, nearest, verdict};
-pub use gathered::Resolution;
+pub use gathered::{GatheredFacts, Resolution, StageFacts};
 pub use map::{Axes, SensorMap};
 pub use paths::{Action, DepthBin, Extent, PathClass, PathStep, SensorPaths, strongest};
 pub use record::{Measure, Status};
 pub use uniformity::{Statistic, Uniformity, UniformitySummary};
 
 use crate::measure::evidence::Evidence;
+use crate::scene::plan::Estimator;
 use crate::scene::{Scene, SensorId};
 use crate::transport::{Findings, Layout, Readings};
 use crate::units::FluxUnit;
@@ -51,6 +52,10 @@ pub struct Measures {
     pub maps: Vec<SensorMap>,
     /// Intensities of goniometers.
     pub intensities: Vec<IntensityTable>,
+    /// How each sensor was estimated, by its name.
+    pub estimators: IndexMap<String, Estimator>,
+    /// How the values of gathered sensors came about.
+    pub gathered: Vec<GatheredFacts>,
     /// How the light came to each sensor.
     pub sensor_paths: Vec<SensorPaths>,
     /// Whether fluxes are luminous or radiant.
@@ -69,12 +74,15 @@ pub struct Measures {
 pub fn measure(scene: &Scene, findings: &Findings) -> Measures {
     let mut values = IndexMap::new();
     let (mut maps, mut intensities, mut sensor_paths) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut estimators, mut gathered) = (IndexMap::new(), Vec::new());
     for (index, sensor) in scene.sensors.iter().enumerate() {
         let found = sensor::measures(scene, findings, SensorId::new(index));
         add(&mut values, &sensor.name, found.values);
         maps.extend(found.maps);
         intensities.extend(found.intensity);
         sensor_paths.push(found.paths);
+        estimators.insert(sensor.name.clone(), findings.estimator(SensorId::new(index)));
+        gathered.extend(found.gathered);
     }
     let photons = &findings.photons;
     let balance = balance::balance(&Evidence::new(scene, photons));
@@ -84,6 +92,8 @@ pub fn measure(scene: &Scene, findings: &Findings) -> Measures {
         balance,
         maps,
         intensities,
+        estimators,
+        gathered,
         sensor_paths,
         unit: scene.unit,
         source_flux: scene.source_flux(),
@@ -123,7 +133,7 @@ mod tests {
     use super::*;
     use crate::math::Frame;
     use crate::measure::samples::{
-        add, disk, goniometer, luminance, readings, rectangle, rings, scene,
+        add, disk, goniometer, image, luminance, readings, rectangle, rings, scene,
     };
     use crate::optics::Medium;
     use crate::scene::plan::{GatherPlan, Request, RunPlan, StopRules};
@@ -144,6 +154,7 @@ mod tests {
                 ("port", disk(1.0, 32)),
                 ("rings", rings(1.0, 5, 6)),
                 ("eye", luminance(1.0, 3, 3, &[0.1, 0.2])),
+                ("camera", image(4, 3)),
                 ("far", goniometer(8, 36)),
             ],
         )
@@ -186,6 +197,9 @@ mod tests {
             "eye.luminance_avg.1",
             "eye.cell.2.2.0",
             "eye.uniformity_min_avg.1",
+            "camera.luminance_avg",
+            "camera.uniformity9_min_avg",
+            "camera.cell.3.2",
             "far.beam_angle.c90",
             "far.zonal_flux.170-180",
             "far.ring.35",
@@ -200,6 +214,7 @@ mod tests {
         assert!(!lit.values.contains_key("port.uniformity13_min_avg"));
         assert!(!lit.values.contains_key("port.cell.16.16"));
         assert!(!lit.values.contains_key("eye.illuminance_avg"));
+        assert!(!lit.values.contains_key("camera.illuminance_avg"));
     }
 
     #[test]
@@ -220,7 +235,7 @@ mod tests {
         let json = serde_json::to_value(measure(&scene, &some_light(&scene))).unwrap();
         assert_eq!(json["values"]["exit.flux"]["unit"], "lm");
         assert_eq!(json["unit"], "lumen");
-        assert!(json["maps"].as_array().is_some_and(|maps| maps.len() == 5));
+        assert!(json["maps"].as_array().is_some_and(|maps| maps.len() == 6));
     }
 
     #[test]

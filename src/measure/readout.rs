@@ -3,10 +3,10 @@
 use crate::measure::cells::SensorCells;
 use crate::measure::evidence::{Evidence, counted};
 use crate::measure::extremes::Noisy;
-use crate::measure::map::SensorMap;
+use crate::measure::map::{SensorMap, map_grid};
 use crate::measure::uniformity::Statistic;
 use crate::measure::{Measure, Status, points};
-use crate::scene::{Grid, SensorId, SurfaceSensor};
+use crate::scene::{Grid, Seeing, SensorId, SurfaceSensor};
 use indexmap::IndexMap;
 
 /// Cells and rings have names of their own up to this number.
@@ -26,8 +26,8 @@ pub(crate) fn measures(
         let mut add = |name: &str, measure| {
             out.insert(format!("{name}{view}"), measure);
         };
-        summary_measures(evidence, map, &mut add);
-        let middle = points::center(&sensor.grid);
+        summary_measures(evidence, &sensor.seeing, map, &mut add);
+        let middle = points::center(map_grid(sensor));
         if middle.iter().any(|&cell| seen.is_on(cell)) {
             let center = cell_measure(evidence, map, seen.mean(middle));
             add(&format!("{}_center", map.quantity), center);
@@ -37,15 +37,24 @@ pub(crate) fn measures(
     out
 }
 
-fn summary_measures(evidence: &Evidence<'_>, map: &SensorMap, add: &mut impl FnMut(&str, Measure)) {
+fn summary_measures(
+    evidence: &Evidence<'_>,
+    seeing: &Seeing,
+    map: &SensorMap,
+    add: &mut impl FnMut(&str, Measure),
+) {
     let of = |statistic: &Statistic, unit: &str| Measure {
         bias: statistic.bias,
         ..evidence.measure(statistic.value, statistic.std_error, unit, statistic.status)
     };
     let summary = &map.summary;
     let quantity = &map.quantity;
-    if map.view.is_some() {
-        add(&format!("{quantity}_avg"), of(&summary.all.avg, &map.unit));
+    match seeing {
+        // Among the totals.
+        Seeing::All => {}
+        Seeing::Views(_) | Seeing::Pixels(_) => {
+            add(&format!("{quantity}_avg"), of(&summary.all.avg, &map.unit));
+        }
     }
     add(&format!("{quantity}_min"), of(&summary.all.min, &map.unit));
     add(&format!("{quantity}_max"), of(&summary.all.max, &map.unit));
@@ -67,14 +76,15 @@ fn cell_measures(
     seen: &SensorCells<'_>,
     add: &mut impl FnMut(&str, Measure),
 ) {
-    let (columns, rows) = sensor.grid.shape();
+    let grid = map_grid(sensor);
+    let (columns, rows) = grid.shape();
     if columns * rows <= NAMED_CELLS {
         for cell in (0..columns * rows).filter(|&cell| seen.is_on(cell)) {
             let measure = cell_measure(evidence, map, seen.at(cell));
             add(&format!("cell.{}.{}", cell % columns, cell / columns), measure);
         }
     }
-    match &sensor.grid {
+    match grid {
         Grid::Polar { rings, sectors, .. } if *rings <= NAMED_CELLS => {
             for ring in 0..*rings {
                 let mean = seen.mean(ring * sectors..(ring + 1) * sectors);

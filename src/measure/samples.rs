@@ -4,8 +4,8 @@ use crate::math::Frame;
 use crate::optics::{Bsdf, Medium};
 use crate::scene::shape::{ChartRect, Flat, Region, Shape};
 use crate::scene::{
-    Builder, Counts, Emission, EmitSide, Emitter, FaceSpec, Goniometer, Grid, Owner, Piece, Place,
-    Scene, Sensor, SensorKind, Sides, Source, Start, SurfaceSensor, Views,
+    Builder, Counts, Emission, EmitSide, Emitter, FaceSpec, Goniometer, Grid, Owner, Piece, Pixels,
+    Place, Scene, Seeing, Sensor, SensorKind, Sides, Source, Start, SurfaceSensor, Views,
 };
 use crate::transport::{Findings, Layout, Readings};
 use crate::units::FluxUnit;
@@ -73,11 +73,22 @@ pub(crate) fn rings(radius: f64, rings: usize, sectors: usize) -> SensorKind {
 pub(crate) fn luminance(size: f64, nu: usize, nv: usize, projected: &[f64]) -> SensorKind {
     match rectangle(size, nu, nv) {
         SensorKind::Surface(mut surface) => {
-            surface.views = Some(Views {
+            surface.seeing = Seeing::Views(Views {
                 directions: vec![DVec3::Z; projected.len()],
                 half_angle: 0.1,
                 projected: projected.to_vec(),
             });
+            SensorKind::Surface(surface)
+        }
+        SensorKind::Goniometer(_) => unreachable!("a rectangle is a surface"),
+    }
+}
+
+/// An image through a square aperture of 1 mm.
+pub(crate) fn image(columns: usize, rows: usize) -> SensorKind {
+    match rectangle(1.0, 1, 1) {
+        SensorKind::Surface(mut surface) => {
+            surface.seeing = Seeing::Pixels(Pixels::new(&Frame::WORLD, [columns, rows], 0.01));
             SensorKind::Surface(surface)
         }
         SensorKind::Goniometer(_) => unreachable!("a rectangle is a surface"),
@@ -97,7 +108,7 @@ fn surface(grid: Grid, areas: Vec<f64>) -> SurfaceSensor {
         sides: Sides::Front,
         grid,
         areas,
-        views: None,
+        seeing: Seeing::All,
         frame: None,
     }
 }

@@ -1,7 +1,7 @@
 //! All measures of one sensor, by whatever estimator found them.
 
 use crate::measure::evidence::Evidence;
-use crate::measure::gathered::{Judged, judged};
+use crate::measure::gathered::{GatheredFacts, Judged, judged};
 use crate::measure::{
     IntensityTable, Measure, SensorMap, SensorPaths, angular, flux, map, paths, readout,
 };
@@ -19,6 +19,8 @@ pub(crate) struct SensorMeasures {
     /// Of a goniometer.
     pub(crate) intensity: Option<IntensityTable>,
     pub(crate) paths: SensorPaths,
+    /// Of a gathered sensor.
+    pub(crate) gathered: Option<GatheredFacts>,
 }
 
 /// Measures a sensor.
@@ -41,7 +43,8 @@ pub(crate) fn measures(scene: &Scene, findings: &Findings, id: SensorId) -> Sens
             {
                 own.biases = Some((wide.values - middle.values).abs());
             }
-            SensorMeasures { values, maps, intensity, paths: value.paths }
+            let gathered = judged.facts(findings, id);
+            SensorMeasures { values, maps, intensity, paths: value.paths, gathered }
         }
     }
 }
@@ -107,7 +110,7 @@ fn by_evidence(evidence: &Evidence<'_>, id: SensorId) -> SensorMeasures {
         }
     }
     let paths = paths::paths(scene, evidence.readings, id);
-    SensorMeasures { values, maps, intensity, paths }
+    SensorMeasures { values, maps, intensity, paths, gathered: None }
 }
 
 fn one_value(evidence: &Evidence<'_>, id: SensorId, name: &str) -> Option<Measure> {

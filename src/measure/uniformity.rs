@@ -52,8 +52,9 @@ pub struct Uniformity {
 pub struct UniformitySummary {
     /// Cells that count for the extremes: those with at least half the area of the largest.
     pub cells: usize,
-    /// Size of a cell, mm: width and height; of rings, their width and the mean length of an arc.
-    pub cell_size_mm: [f64; 2],
+    /// Size of a cell in the unit of the map's axes: width and height; of rings, their width and the mean length of an
+    /// arc; of an image, that of a pixel in its middle.
+    pub cell_size: [f64; 2],
     /// Over all these cells; the average is over the whole sensor.
     pub all: Uniformity,
     /// Standard deviation over mean by area, over the whole sensor, 1.

@@ -17,6 +17,8 @@ pub struct Progress {
     pub elapsed: Duration,
     /// The time asked for, when that is a stop rule.
     pub time_limit: Option<Duration>,
+    /// How gathering was set, in words, once at the start; else empty.
+    pub gathering: String,
     /// The target: name, value, relative error reached and wanted; at the end of a round.
     pub target: Option<TargetProgress>,
 }
@@ -54,6 +56,7 @@ impl Progress {
             planned_paths: run.planned_paths(),
             elapsed,
             time_limit: plan.stop.time,
+            gathering: String::new(),
             target,
         }
     }

@@ -141,7 +141,7 @@ fn csv(comparison: &Comparison) -> Result<OutputFile> {
         ["estimator", "seconds", "segments", value, std_error, noise, bias, bias_error, total];
     let lines = comparison.contestants.iter().flat_map(|contestant| {
         rows(contestant, &comparison.truth).into_iter().map(|row| {
-            [
+            vec![
                 contestant.name.clone(),
                 format!("{:.4}", row.seconds),
                 format!("{:.0}", row.segments),
@@ -160,8 +160,8 @@ fn csv(comparison: &Comparison) -> Result<OutputFile> {
 fn truth_table(comparison: &Comparison) -> Result<OutputFile> {
     let Truth { value, std_error, .. } = &comparison.truth;
     let (measure, unit) = (comparison.measure.clone(), comparison.unit.clone());
-    let row = [measure, value.to_string(), std_error.to_string(), unit];
-    table("truth.csv".into(), &["measure", "value", "std_error", "unit"], [row].into_iter())
+    let row = vec![measure, value.to_string(), std_error.to_string(), unit];
+    table("truth.csv".into(), &["measure", "value", "std_error", "unit"], std::iter::once(row))
 }
 
 fn page(comparison: &Comparison) -> String {

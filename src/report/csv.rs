@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::measure::{Axes, IntensityTable, SensorMap};
+use crate::number::format_value;
 use crate::report::{OutputFile, Report};
 use csv::Writer;
 
@@ -16,10 +17,10 @@ pub(crate) fn files(report: &Report) -> Result<Vec<OutputFile>> {
         files.push(intensity_table(table)?);
     }
     for paths in &measures.sensor_paths {
-        let rows = paths.depths.iter().map(|bin| {
-            [bin.from as f64, bin.to as f64, bin.flux, bin.std_error]
-                .map(|number| number.to_string())
-        });
+        let rows = paths
+            .depths
+            .iter()
+            .map(|bin| numbers([bin.from as f64, bin.to as f64, bin.flux, bin.std_error]));
         let unit = measures.unit.flux();
         let header =
             ["bounces_from", "bounces_to", &format!("flux_{unit}"), &format!("std_error_{unit}")];
@@ -34,16 +35,22 @@ pub(crate) fn map_name(map: &SensorMap) -> String {
     format!("{}.{}{view}", map.sensor, map.quantity)
 }
 
+/// What a map shows, in words: its quantity, and where a view looks from.
+pub(crate) fn map_words(map: &SensorMap) -> String {
+    let from = map.seen_from_deg.map_or(String::new(), |angles| {
+        let [theta, phi] = angles.map(|angle| format_value((1e6 * angle).round() / 1e6));
+        format!(", {theta}° from the normal at azimuth {phi}°")
+    });
+    let view = map.view.map_or(String::new(), |view| format!(" of view {view}"));
+    format!("{}{view}{from}", map.quantity)
+}
+
 fn values(report: &Report) -> Result<OutputFile> {
     let rows = report.measures.values.iter().map(|(name, measure)| {
         let bias = measure.bias.map_or(String::new(), |bias| bias.to_string());
-        [
-            name.clone(),
-            measure.value.to_string(),
-            measure.std_error.to_string(),
-            bias,
-            measure.unit.clone(),
-        ]
+        let numbers = [measure.value, measure.std_error].map(|number| number.to_string());
+        let [value, std_error] = numbers;
+        vec![name.clone(), value, std_error, bias, measure.unit.clone()]
     });
     table("measures.csv".into(), &["measure", "value", "std_error", "bias", "unit"], rows)
 }
@@ -55,22 +62,26 @@ fn map_table(map: &SensorMap) -> Result<OutputFile> {
     let middle = |edges: &[f64], index: usize| 0.5 * (edges[index] + edges[index + 1]);
     let (header, rows, columns) = match &map.axes {
         Axes::Cartesian { u_mm, v_mm } => (["u_mm", "v_mm"], v_mm, u_mm),
+        Axes::Angular { u_deg, v_deg } => (["u_deg", "v_deg"], v_deg, u_deg),
         Axes::Polar { radius_mm, sector_deg } => {
             (["sector_deg", "radius_mm"], radius_mm, sector_deg)
         }
     };
-    let lines = map.values.indexed_iter().filter(|(_, value)| value.is_finite()).map(
-        |((row, column), value)| {
-            [middle(columns, column), middle(rows, row), *value, map.std_errors[[row, column]]]
-                .map(|number| number.to_string())
-        },
-    );
-    table(name, &[header[0], header[1], &value, &error], lines)
+    let mut header = vec![header[0].to_owned(), header[1].to_owned(), value, error];
+    header.extend(map.biases.is_some().then(|| bias_column(&map.unit)));
+    let lines =
+        map.values.indexed_iter().filter(|(_, value)| value.is_finite()).map(|(at, value)| {
+            let (row, column) = at;
+            let place = [middle(columns, column), middle(rows, row)];
+            let bias = map.biases.as_ref().map(|biases| biases[at]);
+            numbers(place.into_iter().chain([*value, map.std_errors[at]]).chain(bias))
+        });
+    table(name, &header, lines)
 }
 
 fn intensity_table(intensity: &IntensityTable) -> Result<OutputFile> {
     let unit = &intensity.unit;
-    let header = [
+    let mut header = vec![
         "c_from_deg".to_owned(),
         "c_to_deg".to_owned(),
         "gamma_from_deg".to_owned(),
@@ -78,27 +89,32 @@ fn intensity_table(intensity: &IntensityTable) -> Result<OutputFile> {
         format!("intensity_{unit}"),
         format!("std_error_{unit}"),
     ];
-    let header: Vec<&str> = header.iter().map(String::as_str).collect();
+    header.extend(intensity.biases.is_some().then(|| bias_column(unit)));
     let (c, gamma) = (&intensity.c_deg, &intensity.gamma_deg);
-    let rows = intensity.values.indexed_iter().map(|((ring, sector), value)| {
-        [
-            c[sector],
-            c[sector + 1],
-            gamma[ring],
-            gamma[ring + 1],
-            *value,
-            intensity.std_errors[[ring, sector]],
-        ]
-        .map(|number| number.to_string())
+    let rows = intensity.values.indexed_iter().map(|(at, value)| {
+        let (ring, sector) = at;
+        let place = [c[sector], c[sector + 1], gamma[ring], gamma[ring + 1]];
+        let bias = intensity.biases.as_ref().map(|biases| biases[at]);
+        numbers(place.into_iter().chain([*value, intensity.std_errors[at]]).chain(bias))
     });
     table(format!("{}.intensity.csv", intensity.sensor), &header, rows)
 }
 
+/// Header of a column that tells how far off values may be on top of their noise.
+fn bias_column(unit: &str) -> String {
+    format!("bias_{unit}")
+}
+
+/// Numbers as a row, with all their digits.
+fn numbers(row: impl IntoIterator<Item = f64>) -> Vec<String> {
+    row.into_iter().map(|number| number.to_string()).collect()
+}
+
 /// A table from a header and rows.
-pub(crate) fn table<const N: usize>(
+pub(crate) fn table(
     name: String,
-    header: &[&str],
-    rows: impl Iterator<Item = [String; N]>,
+    header: &[impl AsRef<[u8]>],
+    rows: impl Iterator<Item = Vec<String>>,
 ) -> Result<OutputFile> {
     let failed = |reason: String| Error::Output { what: name.clone(), reason };
     let mut writer = Writer::from_writer(Vec::new());

@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::measure::{Axes, Balance, IntensityTable, PlaneCurve, SensorMap, SensorPaths};
 use crate::number::{format_percent, format_value, format_with_error};
-use crate::report::csv::map_name;
+use crate::report::csv::{map_name, map_words};
 use crate::report::png::{
     Bar, BarChart, ColourMap, CrossSection, Curve, ErrorForm, HeatMap, LinePlot, Look, Outline,
     PolarPlot, Pole, RayEnd, RayPath, Scale, Series, SeriesForm, SeriesPoint, bar_chart,
@@ -38,32 +38,34 @@ pub(crate) fn files(report: &Report) -> Result<Vec<OutputFile>> {
     Ok(files)
 }
 
-/// Name for a title: the sensor, and the view of a luminance sensor.
-fn map_title(map: &SensorMap) -> String {
-    let view = map.view.map_or(String::new(), |view| format!(", view {view}"));
-    format!("{}: {}{view}", map.sensor, map.quantity)
-}
-
 fn map_picture(map: &SensorMap) -> Result<Vec<u8>> {
     let average = &map.summary.all.avg;
     let subtitle =
         format!("mean {} {}", format_with_error(average.value, average.std_error), map.unit);
+    let on_axes = |[x_label, y_label]: [&str; 2], [u, v]: [&[f64]; 2], axes| HeatMap {
+        title: format!("{}: {}", map.sensor, map_words(map)),
+        subtitle: subtitle.clone(),
+        x_label: x_label.into(),
+        y_label: y_label.into(),
+        x_range: ends(u),
+        y_range: ends(v),
+        axes,
+        values: map.values.clone(),
+        unit: map.unit.clone(),
+        scale: Scale::Linear,
+        colours: ColourMap::Sequential,
+        limits: None,
+    };
     match &map.axes {
-        Axes::Cartesian { u_mm, v_mm } => heat_map(&HeatMap {
-            title: map_title(map),
-            subtitle,
-            x_label: "u in mm".into(),
-            y_label: "v in mm".into(),
-            x_range: ends(u_mm),
-            y_range: ends(v_mm),
-            values: map.values.clone(),
-            unit: map.unit.clone(),
-            scale: Scale::Linear,
-            colours: ColourMap::Sequential,
-            limits: None,
-        }),
+        Axes::Cartesian { u_mm, v_mm } => {
+            heat_map(&on_axes(["u in mm", "v in mm"], [u_mm, v_mm], Scale::Linear))
+        }
+        Axes::Angular { u_deg, v_deg } => {
+            let labels = ["to the right in deg", "up in deg"];
+            heat_map(&on_axes(labels, [u_deg, v_deg], Scale::Tangent))
+        }
         Axes::Polar { radius_mm, sector_deg } => line_plot(&LinePlot {
-            title: map_title(map),
+            title: format!("{}: {}", map.sensor, map_words(map)),
             subtitle,
             x_label: "radius in mm".into(),
             y_label: format!("{} in {}", map.quantity, map.unit),

@@ -1,7 +1,7 @@
 //! What is in a scene: solids with volumes, faces with areas, sources with etendue, sensors with cells.
 
 use crate::number::format_value;
-use crate::scene::{Emission, FaceId, MediumId, Owner, Scene, SensorKind};
+use crate::scene::{Emission, FaceId, MediumId, Owner, Scene, Seeing, SensorKind};
 use std::f64::consts::PI;
 use std::fmt::Write;
 
@@ -36,7 +36,14 @@ pub fn inventory(scene: &Scene) -> String {
     sources(scene, &mut text);
     for sensor in &scene.sensors {
         let what = match &sensor.kind {
-            SensorKind::Surface(surface) => format!("{} mm²", format_value(surface.area())),
+            SensorKind::Surface(surface) => {
+                let kind = match &surface.seeing {
+                    Seeing::All => "",
+                    Seeing::Views(_) => "luminance over ",
+                    Seeing::Pixels(_) => "image through ",
+                };
+                format!("{kind}{} mm²", format_value(surface.area()))
+            }
             SensorKind::Goniometer(goniometer) => match goniometer.radius {
                 Some(radius) => format!("goniometer of radius {} mm", format_value(radius)),
                 None => "far-field goniometer".into(),

@@ -1,11 +1,11 @@
 //! `report.md`: the page for people.
 
 use crate::measure::{
-    Action, Extent, Measure, Outcome, PathClass, PathStep, SensorMap, SensorPaths, Statistic,
-    Status, strongest,
+    Action, Extent, GatheredFacts, Measure, Outcome, PathClass, PathStep, Resolution, SensorMap,
+    SensorPaths, StageFacts, Statistic, Status, strongest,
 };
 use crate::number::{format_percent, format_value, format_with_error};
-use crate::report::csv::map_name;
+use crate::report::csv::{map_name, map_words};
 use crate::report::{CheckResult, Report};
 use std::fmt::Write;
 
@@ -91,7 +91,8 @@ fn warnings(warnings: &[String]) -> String {
 
 /// The totals of every sensor in one table.
 fn overview(report: &Report) -> String {
-    let mut text = "## Sensors\n\n| sensor | flux | efficiency |\n|---|---|---|\n".to_owned();
+    let mut text =
+        "## Sensors\n\n| sensor | estimator | flux | efficiency |\n|---|---|---|---|\n".to_owned();
     for paths in &report.measures.sensor_paths {
         let cell = |name: &str| {
             report
@@ -100,7 +101,10 @@ fn overview(report: &Report) -> String {
                 .get(&format!("{}.{name}", paths.sensor))
                 .map_or("".into(), quantity)
         };
-        text += &format!("| {} | {} | {} |\n", paths.sensor, cell("flux"), cell("efficiency"));
+        let estimator =
+            report.measures.estimators.get(&paths.sensor).map_or("", |estimator| estimator.name());
+        let (flux, efficiency) = (cell("flux"), cell("efficiency"));
+        text += &format!("| {} | {estimator} | {flux} | {efficiency} |\n", paths.sensor);
     }
     text + "\n"
 }
@@ -109,7 +113,11 @@ fn sensor(report: &Report, paths: &SensorPaths, files: &[&str]) -> String {
     let name = &paths.sensor;
     let mut text = format!("## Sensor `{name}`\n\n");
     for map in report.measures.maps.iter().filter(|map| map.sensor == *name) {
-        text += &format!("![{}]({}.png)\n\n", map.quantity, map_name(map));
+        let words = map_words(map);
+        if map.view.is_some() {
+            text += &format!("### {words}\n\n");
+        }
+        text += &format!("![{words}]({}.png)\n\n", map_name(map));
         text += &uniformity(map);
     }
     let prefix = format!("{name}.");
@@ -131,14 +139,54 @@ fn sensor(report: &Report, paths: &SensorPaths, files: &[&str]) -> String {
             text += &format!("| {key} | {} |\n", quantity(measure));
         }
     }
-    text + "\n" + &classes(&paths.classes)
+    text += "\n";
+    for facts in report.measures.gathered.iter().filter(|facts| facts.sensor == *name) {
+        text += &gathered(facts, report.measures.unit.flux());
+    }
+    text + &classes(&paths.classes)
+}
+
+/// How gathered values came about.
+fn gathered(facts: &GatheredFacts, unit: &str) -> String {
+    let from = facts.stages.iter().find(|stage| stage.number == facts.stage);
+    let mut text = from.map_or(String::new(), |stage| {
+        format!(
+            "Gathered at depth {}: the values are those of stage {} with {} passes and windows up to {} mm and {} deg. ",
+            facts.depth,
+            stage.number,
+            stage.passes,
+            format_value(stage.radius_mm),
+            format_value(stage.angle_deg)
+        )
+    });
+    text += match facts.resolution {
+        Resolution::Resolved => {
+            "Bias resolved: it goes with the square of the window, and 2 E2 - E1 is the value.\n\n"
+        }
+        Resolution::NotResolved => {
+            "Bias not resolved: the value is E3, that of the smallest window, and |E1 - E2| is no bound.\n\n"
+        }
+    };
+    _ = writeln!(text, "| stage | passes | radius | angle | E1 in {unit} | E2 | E3 |");
+    text += "|---|---|---|---|---|---|---|\n";
+    for stage in &facts.stages {
+        let [e1, e2, e3] =
+            [0, 1, 2].map(|window| format_with_error(stage.flux[window], stage.std_errors[window]));
+        let (radius, angle) = (format_value(stage.radius_mm), format_value(stage.angle_deg));
+        let StageFacts { number, passes, .. } = stage;
+        _ = writeln!(
+            text,
+            "| {number} | {passes} | {radius} mm | {angle} deg | {e1} | {e2} | {e3} |"
+        );
+    }
+    text + "\n"
 }
 
 fn uniformity(map: &SensorMap) -> String {
     let summary = &map.summary;
-    let [width, height] = summary.cell_size_mm;
+    let ([width, height], unit) = (summary.cell_size, map.axes.unit());
     let mut text = format!(
-        "Uniformity over {} cells of {} mm x {} mm; extremes are corrected for noise, intervals hold 95 %.\n\n",
+        "Uniformity over {} cells of {} {unit} x {} {unit}; extremes are corrected for noise, intervals hold 95 %.\n\n",
         summary.cells,
         format_value(width),
         format_value(height)
@@ -232,6 +280,9 @@ fn run(report: &Report) -> String {
     ];
     if !run.gather.is_empty() {
         lines.push(format!("wishes for gathering: {}", run.gather));
+    }
+    if !run.gathering.is_empty() {
+        lines.push(format!("gathering: {}", run.gathering));
     }
     if let Some(target) = &run.target {
         lines.push(target.sentence());

@@ -24,7 +24,7 @@ pub use inventory::inventory;
 pub use recipe::Recipe;
 pub use record::{
     CheckResult, Outcome, Report, RunFacts, SceneFacts, TargetFacts, asked, leak_places,
-    remark_on_paths, remarks, wishes,
+    remark_on_paths, remarks, settled, wishes,
 };
 pub use terminal::terminal;
 

@@ -3,7 +3,7 @@
 use crate::measure::{self, Measures, Verdict};
 use crate::number::{format_exact, format_percent};
 use crate::scene::plan::{Check, GatherPlan, Request, Schedule, StopRules, Target};
-use crate::transport::{GROUPS, Leak};
+use crate::transport::{GROUPS, GatherSettings, Leak};
 use glam::DVec3;
 use serde::Serialize;
 
@@ -49,6 +49,9 @@ pub struct RunFacts {
     /// Wishes for the gather estimator, in words: see [`wishes`]. Empty without any.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub gather: String,
+    /// How gathering was set, in words: see [`settled`]. Empty where nothing was gathered.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub gathering: String,
     /// Whether the run ended by itself, or the user ended it.
     pub partial: bool,
     /// The stop rules, in words: see [`asked`].
@@ -154,6 +157,21 @@ pub fn wishes(gather: &GatherPlan) -> String {
         schedule,
     ];
     all.into_iter().flatten().collect::<Vec<_>>().join(", ")
+}
+
+/// Settings of the gather estimator in words, those that were asked for and those that were chosen.
+pub fn settled(settings: &GatherSettings) -> String {
+    let GatherSettings { depth, window, gather_paths, photons, schedule, inradius: _ } = settings;
+    let schedule = match schedule {
+        Schedule::Stages => "in stages",
+        Schedule::PerPass => "from pass to pass",
+    };
+    format!(
+        "depth {depth}, windows from {} mm and {} deg shrinking {schedule}, {photons} photons and {gather_paths} gather \
+         paths from each sensor in the first passes",
+        format_exact(window.radius),
+        format_exact(window.theta_max.to_degrees())
+    )
 }
 
 /// Places of leaks in the user's coordinates, mm.

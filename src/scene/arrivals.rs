@@ -10,7 +10,7 @@ use crate::scene::area::{AreaPoint, FaceArea};
 use crate::scene::intersect::Just;
 use crate::scene::shape::Toward;
 use crate::scene::{
-    Counts, Goniometer, Inside, Place, PrimId, Ray, Scene, SensorId, SensorKind, Sides,
+    Counts, Goniometer, Inside, Place, PrimId, Ray, Scene, Seeing, SensorId, SensorKind, Sides,
     SurfaceSensor, Views,
 };
 use glam::{DVec2, DVec3};
@@ -117,8 +117,14 @@ impl<'s> Arrivals<'s> {
         start: &AreaPoint,
         sampler: &mut Sampler,
     ) -> Option<Drawn> {
-        if let Some(views) = &sensor.views {
-            return view_direction(views, sensor.counts, start, sampler);
+        match &sensor.seeing {
+            Seeing::All => {}
+            Seeing::Views(views) => return view_direction(views, sensor.counts, start, sampler),
+            Seeing::Pixels(pixels) => {
+                let u = sampler.pair(Dimension::GatherDirection);
+                let (dir, pixel, projected) = pixels.draw(u)?;
+                return Some(Drawn { dir, projected, views: smallvec![pixel] });
+            }
         }
         if let Some(aim) = &self.aim {
             let target = aim.sample(sampler.pair(Dimension::GatherPosition))?;
@@ -160,10 +166,9 @@ impl<'s> Arrivals<'s> {
                 (Ray::new(start.point - back * dir, dir), None)
             }
         };
-        let cells = match (&sensor.views, views.is_empty()) {
-            (None, _) => smallvec![cell],
-            (Some(_), true) => return None,
-            (Some(_), false) => {
+        let cells = match &sensor.seeing {
+            Seeing::All => smallvec![cell],
+            Seeing::Views(_) | Seeing::Pixels(_) => {
                 views.into_iter().map(|view| view * sensor.grid.cells() + cell).collect()
             }
         };
@@ -245,6 +250,7 @@ struct Drawn {
     dir: DVec3,
     /// |cos θ| over the density of the direction, sr.
     projected: f64,
+    /// The views or the pixel that take it in.
     views: SmallVec<[usize; 1]>,
 }
 

@@ -1,4 +1,4 @@
-//! Cells of a sensor in the unrolled coordinates of its face.
+//! Cells of a sensor in the unrolled coordinates of its face, or pixels in the plane of an image.
 
 use crate::scene::shape::ChartRect;
 use glam::DVec2;

@@ -21,6 +21,7 @@ mod intersect;
 pub mod mesh;
 mod on;
 mod pieces;
+mod pixels;
 pub mod plan;
 mod ray;
 mod section;
@@ -42,9 +43,12 @@ pub use interface::{Interface, Visibility};
 pub use intersect::{Hits, Just, PrimHit};
 pub use on::On;
 pub(crate) use pieces::Surface;
+pub use pixels::Pixels;
 pub use ray::Ray;
 pub use section::Outline;
-pub use sensor::{Counts, Goniometer, Place, Sensor, SensorKind, Sides, SurfaceSensor, Views};
+pub use sensor::{
+    Counts, Goniometer, Place, Seeing, Sensor, SensorKind, Sides, SurfaceSensor, Views,
+};
 pub use source::{EmitSide, Emitted, Emitter, Source, Start};
 
 use convex::Convex;

@@ -2,7 +2,7 @@
 
 use crate::math::{Aabb, Frame};
 use crate::scene::shape::Toward;
-use crate::scene::{FaceId, Grid, Ray};
+use crate::scene::{FaceId, Grid, Pixels, Ray};
 use glam::DVec3;
 use std::f64::consts::TAU;
 
@@ -22,14 +22,14 @@ pub struct Sensor {
 /// What a sensor measures.
 #[derive(Debug, Clone)]
 pub enum SensorKind {
-    /// Flux on a surface, divided into cells; with views also into directions.
+    /// Flux on a surface, divided into cells, or into directions, or into both.
     Surface(SurfaceSensor),
     /// Flux on a goniometric sphere.
     Goniometer(Goniometer),
 }
 
 impl Sensor {
-    /// Number of values: cells, times views for a luminance sensor.
+    /// Number of values: cells, times views or pixels for a luminance sensor.
     pub fn cells(&self) -> usize {
         match &self.kind {
             SensorKind::Surface(surface) => surface.cells(),
@@ -53,8 +53,8 @@ pub struct SurfaceSensor {
     pub grid: Grid,
     /// Area of each cell, mm².
     pub areas: Vec<f64>,
-    /// Directions of a luminance sensor.
-    pub views: Option<Views>,
+    /// The directions that are told apart.
+    pub seeing: Seeing,
     /// For drawings and files: middle and axes of a flat sensor.
     pub frame: Option<Frame>,
 }
@@ -62,13 +62,29 @@ pub struct SurfaceSensor {
 impl SurfaceSensor {
     /// Number of values.
     pub fn cells(&self) -> usize {
-        self.grid.cells() * self.views.as_ref().map_or(1, |views| views.directions.len())
+        self.grid.cells()
+            * match &self.seeing {
+                Seeing::All => 1,
+                Seeing::Views(views) => views.directions.len(),
+                Seeing::Pixels(pixels) => pixels.count(),
+            }
     }
 
     /// Area of the sensor, mm².
     pub fn area(&self) -> f64 {
         self.areas.iter().sum()
     }
+}
+
+/// Which directions of light a surface sensor tells apart.
+#[derive(Debug, Clone)]
+pub enum Seeing {
+    /// None: all light counts alike, as illuminance.
+    All,
+    /// Some cones, in each of which all cells see: luminance by cell and view.
+    Views(Views),
+    /// The pixels of an image, which all of the one cell sees: luminance by direction.
+    Pixels(Pixels),
 }
 
 /// Where a surface sensor is.

@@ -4,7 +4,7 @@ use crate::input::check::Scene;
 use crate::input::keys::Key;
 use crate::input::problems::Problems;
 use crate::input::spec::sensor::{
-    GoniometerSpec, LuminanceSpec, PlaneSpec, SensorKind, SensorSpec,
+    GoniometerSpec, ImageSpec, LuminanceSpec, PlaneSpec, SensorKind, SensorSpec,
 };
 
 /// Most cells of a sensor.
@@ -24,7 +24,7 @@ pub(crate) fn check(scene: Scene<'_>, problems: &mut Problems) {
             }
             Some(SensorKind::Goniometer(goniometer)) => {
                 check_goniometer(&key.field("goniometer"), goniometer, problems);
-                check_plain(&key, sensor, problems);
+                check_free(&key, "a `goniometer`", sensor, problems);
             }
             Some(SensorKind::Luminance(luminance)) => {
                 let area = Area {
@@ -39,6 +39,10 @@ pub(crate) fn check(scene: Scene<'_>, problems: &mut Problems) {
                         "is for a `plane` only, found with `luminance`",
                     );
                 }
+            }
+            Some(SensorKind::Image(image)) => {
+                check_image(&key, image, sensor, problems);
+                check_free(&key, "an `image`", sensor, problems);
             }
             None => {}
         }
@@ -159,8 +163,8 @@ fn check_step(key: &Key, step: f64, full: f64, problems: &mut Problems) -> Optio
     None
 }
 
-/// A goniometer is a sphere: it has no face, no sides and no area.
-fn check_plain(key: &Key, sensor: &SensorSpec, problems: &mut Problems) {
+/// A goniometer is a sphere, and an image looks along its axis: they are on no face, choose no side, and stop no light.
+fn check_free(key: &Key, what: &str, sensor: &SensorSpec, problems: &mut Problems) {
     let given = [
         ("on", sensor.on.is_some()),
         ("side", sensor.side.is_some()),
@@ -168,9 +172,20 @@ fn check_plain(key: &Key, sensor: &SensorSpec, problems: &mut Problems) {
     ];
     for (name, _) in given.into_iter().filter(|(_, is_given)| *is_given) {
         problems
-            .error(&key.field(name), "does not go with a `goniometer`")
+            .error(&key.field(name), format!("does not go with {what}"))
             .hint(format!("remove `{name}`"));
     }
+}
+
+fn check_image(key: &Key, image: &ImageSpec, sensor: &SensorSpec, problems: &mut Problems) {
+    // What `on` takes the place of is told with `on`.
+    if sensor.on.is_none() {
+        let area = Area { rectangle: image.rectangle.is_some(), disk: image.disk.is_some() };
+        check_area(key, "image", area, sensor, problems);
+    }
+    let [columns, rows] = image.pixels;
+    let pixels = f64::from(columns) * f64::from(rows);
+    check_cells(&key.field("image").field("pixels"), pixels, problems);
 }
 
 fn check_luminance(key: &Key, luminance: &LuminanceSpec, problems: &mut Problems) {

@@ -5,15 +5,15 @@ use crate::input::lower::Context;
 use crate::input::lower::place::Facing;
 use crate::input::lower::surfaces::tilted;
 use crate::input::spec::sensor::{
-    CountsSpec, DirectionSpec, GoniometerSpec, LuminanceSpec, PlaneSpec, SensorKind as KindSpec,
-    SensorSide, SensorSpec,
+    CountsSpec, DirectionSpec, GoniometerSpec, ImageSpec, LuminanceSpec, PlaneSpec,
+    SensorKind as KindSpec, SensorSide, SensorSpec,
 };
 use crate::input::spec::sweep::{CircleSpec, RectangleSpec};
 use crate::math::Frame;
 use crate::scene::shape::{ChartRect, Flat, Region, Shape};
 use crate::scene::{
-    Counts, FaceId, FaceSpec, Goniometer, Grid, Owner, Piece, Place, Scene, Sensor, SensorKind,
-    Sides, SurfaceSensor, Views,
+    Counts, FaceId, FaceSpec, Goniometer, Grid, Owner, Piece, Pixels, Place, Scene, Seeing, Sensor,
+    SensorKind, Sides, SurfaceSensor, Views,
 };
 use std::f64::consts::PI;
 
@@ -42,6 +42,7 @@ impl Context<'_> {
             KindSpec::Luminance(luminance) => {
                 self.luminance(name, spec, luminance, key).map(SensorKind::Surface)
             }
+            KindSpec::Image(image) => self.image(name, spec, image, key).map(SensorKind::Surface),
             KindSpec::Goniometer(goniometer) => {
                 self.goniometer(spec, goniometer, key).map(SensorKind::Goniometer)
             }
@@ -82,7 +83,23 @@ impl Context<'_> {
                 .hint("choose an end face, or a plane of its own by `at`");
             return None;
         };
-        sensor.views = Some(views(luminance, &frame));
+        sensor.seeing = Seeing::Views(views(luminance, &frame));
+        Some(sensor)
+    }
+
+    fn image(
+        &mut self,
+        name: &str,
+        spec: &SensorSpec,
+        image: &ImageSpec,
+        key: &Key,
+    ) -> Option<SurfaceSensor> {
+        let whole = Division::Cells([1, 1]);
+        let mut sensor = self.surface(name, spec, image.rectangle, image.disk, whole, key)?;
+        // Validated: an image is on no face, its aperture is flat.
+        let frame = sensor.frame?;
+        let pixels = image.pixels.map(|count| count as usize);
+        sensor.seeing = Seeing::Pixels(Pixels::new(&frame, pixels, image.pixel_deg.to_radians()));
         Some(sensor)
     }
 
@@ -144,7 +161,7 @@ impl Context<'_> {
         };
         let areas =
             grid.cell_areas(|rect| faces.iter().map(|face| scene.face_area_in(*face, rect)).sum());
-        Some(SurfaceSensor { faces, place, counts, sides, grid, areas, views: None, frame })
+        Some(SurfaceSensor { faces, place, counts, sides, grid, areas, seeing: Seeing::All, frame })
     }
 
     fn on_faces(&mut self, on: &str, key: &Key) -> Option<(Vec<FaceId>, Place)> {

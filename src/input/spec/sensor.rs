@@ -6,12 +6,13 @@ use serde::{Deserialize, Serialize};
 use crate::input::spec::placement::PlacementSpec;
 use crate::input::spec::sweep::{CircleSpec, RectangleSpec};
 
-/// A sensor; exactly one of `plane`, `goniometer` and `luminance`.
+/// A sensor; exactly one of `plane`, `goniometer`, `luminance` and `image`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(extend("oneOf" = [
     { "required": ["plane"] },
     { "required": ["goniometer"] },
-    { "required": ["luminance"] }
+    { "required": ["luminance"] },
+    { "required": ["image"] }
 ]))]
 pub struct SensorSpec {
     /// A sensor file whose keys are taken over; keys given here win. Relative to the scene file.
@@ -22,6 +23,8 @@ pub struct SensorSpec {
     pub goniometer: Option<GoniometerSpec>,
     /// A map of luminance seen from one or more directions.
     pub luminance: Option<LuminanceSpec>,
+    /// An image in luminance, as an imaging luminance meter takes it.
+    pub image: Option<ImageSpec>,
     /// The face that is the sensor, as `NAME.FACE`. For `plane` and `luminance`; not together with `at`.
     pub on: Option<String>,
     /// Whether light is counted as it leaves the face or as it arrives at it. Needed with `on`.
@@ -49,6 +52,8 @@ pub enum SensorKind<'a> {
     Goniometer(&'a GoniometerSpec),
     /// Luminance over an area and directions.
     Luminance(&'a LuminanceSpec),
+    /// Luminance over the pixels of an image.
+    Image(&'a ImageSpec),
 }
 
 impl SensorKind<'_> {
@@ -58,6 +63,7 @@ impl SensorKind<'_> {
             Self::Plane(_) => "plane",
             Self::Goniometer(_) => "goniometer",
             Self::Luminance(_) => "luminance",
+            Self::Image(_) => "image",
         }
     }
 }
@@ -68,7 +74,8 @@ impl SensorSpec {
         let plane = self.plane.as_ref().map(SensorKind::Plane);
         let goniometer = self.goniometer.as_ref().map(SensorKind::Goniometer);
         let luminance = self.luminance.as_ref().map(SensorKind::Luminance);
-        plane.or(goniometer).or(luminance)
+        let image = self.image.as_ref().map(SensorKind::Image);
+        plane.or(goniometer).or(luminance).or(image)
     }
 }
 
@@ -123,6 +130,24 @@ pub struct LuminanceSpec {
     /// Half-angle of the cone about each direction over which luminance is averaged.
     #[schemars(extend("exclusiveMinimum" = 0.0), range(max = 90.0))]
     pub acceptance_half_angle_deg: f64,
+}
+
+/// An image in luminance: an aperture, a `rectangle` or a `disk`, that looks along the axis, and pixels that are
+/// directions. The image is that of a lens without distortion: its pixels are squares of equal size in a plane across
+/// the axis, so that straight lines are straight. It is as the eye sees it, with the local +y up; columns are counted
+/// from the left, rows from below. Choose an aperture that is small against what is to be resolved, as there is no focus.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ImageSpec {
+    /// A rectangular aperture about the position.
+    pub rectangle: Option<RectangleSpec>,
+    /// A round aperture about the position.
+    pub disk: Option<CircleSpec>,
+    /// Columns and rows.
+    #[schemars(inner(range(min = 1, max = 100_000_000)))]
+    pub pixels: [u32; 2],
+    /// Angle that a pixel in the middle of the image spans; those further out span less.
+    #[schemars(range(min = 0.001, max = 90.0))]
+    pub pixel_deg: f64,
 }
 
 /// A direction in the local frame of a sensor.

@@ -13,6 +13,8 @@ pub enum Scale {
     Linear,
     /// Equal ratios; values of zero and below lie beyond the lower end.
     Log,
+    /// Equal differences of the tangent of an angle in deg, within ±89: the plane of an image.
+    Tangent,
 }
 
 /// A range of values laid along a length.
@@ -69,6 +71,10 @@ impl Axis {
                 let low = if low < high * (1.0 - NARROWEST) { low } else { high * 0.1 };
                 Self { min: low, max: high, scale }
             }
+            Scale::Tangent => {
+                let (min, max) = widened(low.clamp(-89.0, 88.0), high.clamp(-88.0, 89.0));
+                Self { min, max, scale }
+            }
             Scale::Log | Scale::Linear => {
                 let (min, max) = widened(low, high);
                 Self { min, max, scale: Scale::Linear }
@@ -86,10 +92,23 @@ impl Axis {
         self.max
     }
 
+    /// The difference of its ends, as long as it is drawn.
+    pub(crate) fn extent(&self) -> f64 {
+        match self.scale {
+            Scale::Linear | Scale::Log => self.max - self.min,
+            Scale::Tangent => self.max.to_radians().tan() - self.min.to_radians().tan(),
+        }
+    }
+
     /// Where a value lies: 0 at the lower end, 1 at the upper; NaN stays NaN.
     pub(crate) fn fraction(&self, value: f64) -> f64 {
         let fraction = match self.scale {
             Scale::Linear => (value - self.min) / (self.max - self.min),
+            Scale::Tangent => {
+                let [tangent, min, max] =
+                    [value, self.min, self.max].map(|angle| angle.to_radians().tan());
+                (tangent - min) / (max - min)
+            }
             Scale::Log if value <= 0.0 => f64::NEG_INFINITY,
             Scale::Log => (value / self.min).ln() / (self.max / self.min).ln(),
         };
@@ -99,7 +118,7 @@ impl Axis {
     /// At most `most` labelled marks (at least two where that is possible) on round values.
     pub(crate) fn ticks(&self, most: usize) -> Ticks {
         match self.scale {
-            Scale::Linear => self.linear_ticks(most),
+            Scale::Linear | Scale::Tangent => self.linear_ticks(most),
             Scale::Log => self.log_ticks(most).unwrap_or_else(|| self.linear_ticks(most)),
         }
     }

@@ -127,7 +127,7 @@ fn limits(values: &[f64], scale: Scale, colours: ColourMap) -> [f64; 2] {
         return [0.0, 1.0];
     };
     match (colours, scale) {
-        (ColourMap::Diverging, Scale::Linear | Scale::Log) => {
+        (ColourMap::Diverging, Scale::Linear | Scale::Log | Scale::Tangent) => {
             let far = least.abs().max(greatest.abs());
             if far > 0.0 { [-far, far] } else { [-1.0, 1.0] }
         }
@@ -138,7 +138,7 @@ fn limits(values: &[f64], scale: Scale, colours: ColourMap) -> [f64; 2] {
             let low = if inverse.is_empty() { 0.0 } else { 1.0 / without_outliers(&inverse) };
             [low.max(high * 1e-6), high]
         }
-        (ColourMap::Sequential, Scale::Linear) => {
+        (ColourMap::Sequential, Scale::Linear | Scale::Tangent) => {
             let high = without_outliers(values);
             // Values that differ by less than a half are shown in full contrast.
             if least >= 0.0 && least <= 0.5 * high { [0.0, high] } else { [least, high] }

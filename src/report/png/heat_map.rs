@@ -28,6 +28,8 @@ pub struct HeatMap {
     pub x_range: [f64; 2],
     /// Outer edges of the first and the last row, in the unit of the label.
     pub y_range: [f64; 2],
+    /// How places become fractions of both axes.
+    pub axes: Scale,
     /// The values, `[[row, column]]`: row 0 is drawn at the bottom, column 0 at the left. What is not finite lies
     /// outside of the sensor and is drawn grey.
     pub values: Array2<f64>,
@@ -53,7 +55,7 @@ const BAR_GAP: f64 = 26.0;
 /// Zero is an end of a linear bar where the values come near it. At most one cell in a thousand that sticks out
 /// tenfold does not stretch the bar, which then has a tip. A logarithmic bar spans at most six decades.
 pub fn heat_map(map: &HeatMap) -> Result<Vec<u8>> {
-    let axes = [map.x_range, map.y_range].map(|[min, max]| Axis::new(min, max, Scale::Linear));
+    let axes = [map.x_range, map.y_range].map(|[min, max]| Axis::new(min, max, map.axes));
     let size = whole_cells(plot_size(axes, MOST, LONGEST), &map.values);
     let frame = Axes::new(axes, [&map.x_label, &map.y_label], [size.width, size.height])?;
     let values = finite(&map.values);
@@ -162,6 +164,7 @@ mod tests {
             y_label: "y in mm".to_string(),
             x_range: [0.0, 3.0],
             y_range: [0.0, 2.0],
+            axes: Scale::Linear,
             values,
             unit: "lx".to_string(),
             scale: Scale::Linear,

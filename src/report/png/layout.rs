@@ -342,7 +342,7 @@ pub(crate) const SQUEEZED_REMARK: &str = "The axes are not to the same scale.";
 
 /// The largest size within `most` pixels of a plot of these ranges, at true aspect unless that is beyond `longest`.
 pub(crate) fn plot_size([x, y]: [Axis; 2], most: [f64; 2], longest: f64) -> PlotSize {
-    let ratio = (x.max() - x.min()) / (y.max() - y.min());
+    let ratio = x.extent() / y.extent();
     let aspect =
         if (1.0 / longest..=longest).contains(&ratio) { Aspect::True } else { Aspect::Squeezed };
     let ratio = ratio.clamp(1.0 / longest, longest);

@@ -113,6 +113,7 @@ mod tests {
             y_label: text("y in mm"),
             x_range: [one, other],
             y_range: [0.0, one],
+            axes: Scale::Linear,
             values: Array2::from_shape_vec((1, 2), vec![one, other]).unwrap(),
             unit: text("lx"),
             scale,

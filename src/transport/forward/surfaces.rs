@@ -4,7 +4,7 @@
 
 use crate::optics::Side;
 use crate::scene::shape::{Crossing, Start, Toward};
-use crate::scene::{Counts, Owner, PrimHit, SensorId, SurfaceSensor};
+use crate::scene::{Counts, Owner, PrimHit, Seeing, SensorId, SurfaceSensor};
 use crate::transport::forward::{Counter, PhotonWatcher, TravelStart};
 use crate::transport::watch::OnPort;
 use crate::transport::{Path, Segment, Vertex};
@@ -172,7 +172,7 @@ impl<'s, W: PhotonWatcher> Counter<'_, 's, W> {
         }
     }
 
-    /// Counts light on a cell of a surface sensor, and in the views that take it in.
+    /// Counts light on a cell of a surface sensor, and in the views or the pixel that take it in.
     #[inline]
     fn count_on_surface(
         &mut self,
@@ -188,13 +188,19 @@ impl<'s, W: PhotonWatcher> Counter<'_, 's, W> {
             return;
         }
         let Some(cell) = sensor.grid.cell(uv) else { return };
-        let Some(views) = &sensor.views else {
-            self.count(path, id, cell, throughput);
-            return;
-        };
         // Away from the face: back along arriving light, along leaving light.
         let away = if seen.counts == Counts::Incident { -seen.dir } else { seen.dir };
         let cells = sensor.grid.cells();
+        let views = match &sensor.seeing {
+            Seeing::All => return self.count(path, id, cell, throughput),
+            Seeing::Views(views) => views,
+            Seeing::Pixels(pixels) => {
+                if let Some(pixel) = pixels.pixel(away) {
+                    self.count(path, id, pixel * cells + cell, throughput);
+                }
+                return;
+            }
+        };
         let mut first = true;
         for view in views.accepting(away) {
             if first {

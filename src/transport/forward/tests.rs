@@ -6,7 +6,7 @@ use crate::scene::plan::{GatherPlan, Request, RunPlan, StopRules};
 use crate::scene::shape::{Cylinder, Flat, Region, Shape};
 use crate::scene::{
     Builder, Counts, Emission, EmitSide, Emitter, FaceSpec, Grid, Owner, Piece, Place, Scene,
-    Sensor, SensorId, SensorKind, Sides, Source, SourceId, Start, SurfaceSensor,
+    Seeing, Sensor, SensorId, SensorKind, Sides, Source, SourceId, Start, SurfaceSensor,
 };
 use crate::tally::sigmas;
 use crate::transport::{Readings, Run};
@@ -57,7 +57,7 @@ fn mirror_tube(reflectance: f64, length: f64) -> Scene {
             sides: Sides::Back,
             grid,
             areas,
-            views: None,
+            seeing: Seeing::All,
             frame: None,
         }),
         aim: Vec::new(),

@@ -24,27 +24,3 @@ pub(crate) fn cpu_seconds<T>(work: impl FnOnce() -> T) -> (f64, T) {
     };
     (seconds, result)
 }
-
-/// Elapsed seconds of a piece of work, and its result.
-pub(crate) fn wall_seconds<T>(work: impl FnOnce() -> T) -> (f64, T) {
-    let start = Instant::now();
-    let result = black_box(work());
-    (start.elapsed().as_secs_f64(), result)
-}
-
-/// Median, smallest and largest of a series.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Spread {
-    pub(crate) median: f64,
-    pub(crate) min: f64,
-    pub(crate) max: f64,
-}
-
-impl Spread {
-    /// The spread of at least one value.
-    pub(crate) fn of(values: impl IntoIterator<Item = f64>) -> Self {
-        let mut values: Vec<f64> = values.into_iter().collect();
-        values.sort_by(f64::total_cmp);
-        Self { median: values[values.len() / 2], min: values[0], max: values[values.len() - 1] }
-    }
-}

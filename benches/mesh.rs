@@ -10,8 +10,9 @@
 mod clock;
 #[allow(dead_code, reason = "shared with the other bench")]
 mod guides;
+mod spread;
 
-use clock::{Spread, cpu_seconds};
+use clock::cpu_seconds;
 use guides::{B2, mesh_scene, rod_mesh};
 use lumiduct::math::Frame;
 use lumiduct::rng::Sampler;
@@ -25,6 +26,7 @@ use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2;
 use obvhs::fast_stack;
 use obvhs::ray::{Ray as Ray32, RayHit};
+use spread::Spread;
 use std::ops::ControlFlow;
 use std::time::Duration;
 

@@ -9,8 +9,9 @@
 mod clock;
 mod guides;
 mod plain;
+mod spread;
 
-use clock::{Spread, cpu_seconds, wall_seconds};
+use clock::cpu_seconds;
 use guides::{B1_P10, B1_P100, B2, B4, mesh_scene, rod_mesh, rod_scene, tube_scene};
 use lumiduct::math::Frame;
 use lumiduct::scene::mesh::Mesh;
@@ -20,6 +21,9 @@ use lumiduct::tally::Tally;
 use lumiduct::transport::{Layout, ROULETTE_BELOW, Readings, Run};
 use plain::{Counted, Work, trace_rod, trace_tube};
 use rayon::{ThreadPool, ThreadPoolBuilder};
+use spread::Spread;
+use std::hint::black_box;
+use std::time::Instant;
 
 /// Pairs of runs of each guide.
 const PAIRS: u64 = 7;
@@ -210,4 +214,11 @@ fn pool(threads: usize) -> ThreadPool {
 fn spread(values: impl IntoIterator<Item = f64>, digits: usize) -> String {
     let Spread { median, min, max } = Spread::of(values);
     format!("{median:.digits$} ({min:.digits$} to {max:.digits$})")
+}
+
+/// Elapsed seconds of a piece of work, and its result.
+fn wall_seconds<T>(work: impl FnOnce() -> T) -> (f64, T) {
+    let start = Instant::now();
+    let result = black_box(work());
+    (start.elapsed().as_secs_f64(), result)
 }

@@ -36,7 +36,7 @@ pub use uniformity::{Statistic, Uniformity, UniformitySummary};
 use crate::measure::evidence::Evidence;
 use crate::scene::plan::Estimator;
 use crate::scene::{Scene, SensorId};
-use crate::transport::{Findings, Layout, Readings};
+use crate::transport::{Choice, Findings, Layout, Readings};
 use crate::units::FluxUnit;
 use indexmap::IndexMap;
 use serde::Serialize;
@@ -54,6 +54,8 @@ pub struct Measures {
     pub intensities: Vec<IntensityTable>,
     /// How each sensor was estimated, by its name.
     pub estimators: IndexMap<String, Estimator>,
+    /// What a pilot found out about each sensor; empty unless it was asked to choose.
+    pub choices: IndexMap<String, Choice>,
     /// How the values of gathered sensors came about.
     pub gathered: Vec<GatheredFacts>,
     /// How the light came to each sensor.
@@ -84,6 +86,8 @@ pub fn measure(scene: &Scene, findings: &Findings) -> Measures {
         estimators.insert(sensor.name.clone(), findings.estimator(SensorId::new(index)));
         gathered.extend(found.gathered);
     }
+    let names = scene.sensors.iter().map(|sensor| sensor.name.clone());
+    let choices = names.zip(findings.choices.iter().cloned());
     let photons = &findings.photons;
     let balance = balance::balance(&Evidence::new(scene, photons));
     values.extend(balance.measures());
@@ -93,6 +97,7 @@ pub fn measure(scene: &Scene, findings: &Findings) -> Measures {
         maps,
         intensities,
         estimators,
+        choices: choices.collect(),
         gathered,
         sensor_paths,
         unit: scene.unit,

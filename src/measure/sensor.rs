@@ -84,10 +84,6 @@ fn evidence<'a>(scene: &'a Scene, findings: &'a Findings, id: SensorId) -> Spoke
             let own = findings.backward.as_ref().map(|own| photons.by(own, estimator));
             Spoken::Plainly(own.unwrap_or(photons))
         }
-        Estimator::Mis => {
-            let own = findings.merged.as_ref().map(|own| photons.by(own, estimator));
-            Spoken::Plainly(own.unwrap_or(photons))
-        }
         Estimator::Gather => match judged(photons, findings, id) {
             Some(judged) => Spoken::InWindows(judged),
             None => Spoken::Plainly(photons),

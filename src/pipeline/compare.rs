@@ -31,7 +31,7 @@ pub enum Method {
 
 impl Method {
     /// All of them.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 7] = [
         Self::Run(Request::Forward),
         Self::Run(Request::Backward),
         Self::Baseline(Baseline::Sppm),
@@ -39,7 +39,6 @@ impl Method {
         Self::Baseline(Baseline::Metropolis),
         Self::Run(Request::Gather),
         Self::Run(Request::Auto),
-        Self::Run(Request::Mis),
     ];
 
     /// Its name on the command line and in tables.
@@ -59,17 +58,8 @@ impl Method {
     fn meets_sources(self) -> bool {
         match self {
             Self::Run(Request::Auto | Request::Forward) => false,
-            Self::Run(Request::Backward | Request::Gather | Request::Mis) => true,
+            Self::Run(Request::Backward | Request::Gather) => true,
             Self::Baseline(Baseline::Sppm | Baseline::Whitted | Baseline::Metropolis) => true,
-        }
-    }
-
-    /// Whether it is there to be compared.
-    fn is_ready(self) -> bool {
-        match self {
-            Self::Run(Request::Auto | Request::Mis) => false,
-            Self::Run(Request::Forward | Request::Backward | Request::Gather)
-            | Self::Baseline(Baseline::Sppm | Baseline::Whitted | Baseline::Metropolis) => true,
         }
     }
 }
@@ -219,10 +209,6 @@ fn sensor(job: &Job, name: Option<&str>) -> Result<SensorId> {
 
 /// Refuses methods that are not there, or cannot meet a source.
 fn expect_able(job: &Job, methods: &[Method]) -> Result<()> {
-    if let Some(method) = methods.iter().find(|method| !method.is_ready()) {
-        let message = format!("--estimators: `{}` cannot be compared yet", method.name());
-        return Err(Error::Usage(message));
-    }
     let unseen = job.scene.sources.iter().find_map(|source| {
         invisible(source, &job.scene).map(|why| format!("the source `{}`: {why}", source.name))
     });

@@ -7,6 +7,8 @@ use crate::measure::{
 use crate::number::{format_percent, format_value, format_with_error};
 use crate::report::csv::{map_name, map_words};
 use crate::report::{CheckResult, Report};
+use crate::scene::plan::Estimator;
+use crate::transport::Trial;
 use std::fmt::Write;
 
 /// Path classes that are listed one by one for a sensor.
@@ -27,6 +29,7 @@ pub(crate) fn markdown(report: &Report, files: &[&str]) -> String {
     page += &checks(&report.checks);
     page += &warnings(&report.warnings);
     page += &overview(report);
+    page += &choices(report);
     for paths in &report.measures.sensor_paths {
         page += &sensor(report, paths, files);
     }
@@ -107,6 +110,36 @@ fn overview(report: &Report) -> String {
         text += &format!("| {} | {estimator} | {flux} | {efficiency} |\n", paths.sensor);
     }
     text + "\n"
+}
+
+/// What the pilot found out, and what it chose.
+fn choices(report: &Report) -> String {
+    let choices = &report.measures.choices;
+    if choices.is_empty() {
+        return String::new();
+    }
+    let mut text = "## Choice of estimators\n\nSeconds of one thread of the reference machine until 1 % of a sensor's \
+                    flux or map is reached, by a pilot, in counted work; for gathering also how far its windows are apart.\n\n\
+                    | sensor | chosen | forward | backward | gather |\n|---|---|--:|--:|--:|\n"
+        .to_owned();
+    for (sensor, choice) in choices {
+        _ = write!(text, "| {sensor} | {} |", choice.chosen.name());
+        for estimator in [Estimator::Forward, Estimator::Backward, Estimator::Gather] {
+            let trial = choice.tried.iter().find(|trial| trial.estimator == estimator);
+            _ = write!(text, " {} |", trial.map_or("not possible".into(), trial_words));
+        }
+        text += "\n";
+    }
+    text + "\n"
+}
+
+fn trial_words(trial: &Trial) -> String {
+    // 1 % squared.
+    let cost = trial.cost.map_or("found nothing".into(), |cost| format!("{:.3e} s", cost / 1e-4));
+    match trial.bias {
+        Some(bias) if trial.cost.is_some() => format!("{cost}, {:.1} %", 100.0 * bias),
+        Some(_) | None => cost,
+    }
 }
 
 fn sensor(report: &Report, paths: &SensorPaths, files: &[&str]) -> String {

@@ -18,6 +18,8 @@ struct Summary<'r> {
     batches: u64,
     segments: u64,
     estimators: &'r indexmap::IndexMap<String, crate::scene::plan::Estimator>,
+    #[serde(skip_serializing_if = "indexmap::IndexMap::is_empty")]
+    choices: &'r indexmap::IndexMap<String, crate::transport::Choice>,
     gathered: &'r [crate::measure::GatheredFacts],
     measures: &'r indexmap::IndexMap<String, crate::measure::Measure>,
     checks: &'r [crate::report::CheckResult],
@@ -39,6 +41,7 @@ pub(crate) fn json(report: &Report, files: &[&str]) -> Result<String> {
         batches: measures.batches,
         segments: measures.segments,
         estimators: &measures.estimators,
+        choices: &measures.choices,
         gathered: &measures.gathered,
         measures: &measures.values,
         checks: &report.checks,

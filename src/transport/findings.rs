@@ -14,8 +14,6 @@ pub struct Findings {
     pub photons: Readings,
     /// By gather paths that were followed to their sources: sensors estimated backward.
     pub backward: Option<Readings>,
-    /// By all three merged: sensors estimated so.
-    pub merged: Option<Readings>,
     /// By gather records.
     pub gathered: Option<Gathered>,
     /// How each sensor is estimated.
@@ -37,14 +35,7 @@ impl Findings {
     /// The findings of photons alone.
     pub fn forward(photons: Readings) -> Self {
         let estimators = vec![Estimator::Forward; photons.sensors.len()];
-        Self {
-            photons,
-            backward: None,
-            merged: None,
-            gathered: None,
-            estimators,
-            choices: Vec::new(),
-        }
+        Self { photons, backward: None, gathered: None, estimators, choices: Vec::new() }
     }
 
     /// How a sensor is estimated.

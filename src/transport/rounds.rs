@@ -255,7 +255,6 @@ impl<'s> Run<'s> {
         Findings {
             photons: self.photons.total().expect("a piece has been traced"),
             backward: self.backward.as_ref().and_then(|(_, sums)| sums.total()),
-            merged: None,
             gathered: self
                 .stages
                 .as_ref()
@@ -279,7 +278,6 @@ fn estimators(scene: &Scene, plan: &RunPlan, pilot: PhotonPilot) -> (Vec<Estimat
         Request::Forward => all(Estimator::Forward),
         Request::Backward => all(Estimator::Backward),
         Request::Gather => all(Estimator::Gather),
-        Request::Mis => all(Estimator::Mis),
         Request::Auto => {
             let choices = choose(scene, plan, pilot);
             (choices.iter().map(|choice| choice.chosen).collect(), choices)

@@ -22,7 +22,7 @@ pub struct RunSpec {
     /// How flux is estimated.
     #[serde(default)]
     pub estimator: EstimatorSpec,
-    /// Wishes for the estimator `gather`, and for `auto` and `mis` where they gather.
+    /// Wishes for the estimator `gather`, and for `auto` where it gathers.
     #[serde(default)]
     pub gather: GatherSpec,
     /// Number of surfaces after which a path is given up; the flux that this cuts off is reported.
@@ -68,8 +68,6 @@ pub enum EstimatorSpec {
     Backward,
     /// Gather paths from the sensors that end in records, and photon paths from the sources that are gathered there.
     Gather,
-    /// All three together, weighted by multiple importance sampling: for scenes in which nothing scatters.
-    Mis,
 }
 
 /// Wishes for the estimator `gather`. What is left out is chosen by a short trial, and told in the report. The window

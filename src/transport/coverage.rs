@@ -4,7 +4,7 @@
 //! sunflower of points (Vogel, Math. Biosci. 44 (1979) 179), whose inner parts fill the nested windows evenly.
 
 use crate::math::circle;
-use crate::scene::shape::ChartRect;
+use crate::scene::shape::{ChartRect, Crossing, Start};
 use crate::scene::{PrimId, Ray, Scene, Surface};
 use crate::transport::records::{Slot, Surfaces};
 use crate::transport::window::{NESTED, Window};
@@ -19,6 +19,9 @@ pub(crate) const AGREEING: f64 = 0.9;
 pub(crate) const HEIGHT: f64 = 0.5;
 /// Turns from point to point of a sunflower, 2 less the golden ratio.
 const GOLDEN_TURN: f64 = 0.381_966_011_250_105_1;
+
+/// A surface of so many pieces is asked piece by piece, one of more by way of the whole scene's boxes.
+const FEW_PIECES: usize = 4;
 
 /// The middle of a window.
 #[derive(Debug, Clone, Copy)]
@@ -81,12 +84,22 @@ fn is_over_surface(
 ) -> bool {
     let reach = HEIGHT * reach;
     let ray = Ray::new(middle.point + offset + reach * middle.normal, -middle.normal);
-    let mut found = false;
-    scene.all_crossings(&ray, |prim, crossing| {
-        found |= crossing.t > 0.0
+    let lies = |prim: PrimId, crossing: Crossing| {
+        crossing.t > 0.0
             && crossing.t < 2.0 * reach
-            && surfaces.of(prim) == middle.surface
-            && scene.normal(prim, ray.at(crossing.t)).dot(middle.normal).abs() > AGREEING;
-    });
+            && scene.normal(prim, ray.at(crossing.t)).dot(middle.normal).abs() > AGREEING
+    };
+    let mut found = false;
+    let pieces = surfaces.patches(middle.surface);
+    if (1..=FEW_PIECES).contains(&pieces.len()) {
+        for &prim in pieces {
+            let patch = &scene.patches[prim.index()];
+            patch.shape.crossings(&ray, Start::Elsewhere, |crossing| found |= lies(prim, crossing));
+        }
+    } else {
+        scene.all_crossings(&ray, |prim, crossing| {
+            found |= surfaces.of(prim) == middle.surface && lies(prim, crossing);
+        });
+    }
     found
 }

@@ -64,8 +64,10 @@ enum Contact {
 /// Where a segment starts, for what is met right there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum SegmentStart {
-    /// On a sensor: what is there counts.
+    /// On a free sensor: what is there counts.
     Sensor,
+    /// On a face that is the sensor: what shines away from it there does not arrive at it.
+    Face,
     /// At an interface: what is there was met by the segment before.
     Interface,
 }
@@ -160,9 +162,13 @@ impl<'s> Emitters<'s> {
         let index = medium.index(path.wavelength);
         let (from, to) = match (contact, start) {
             (Contact::Free, SegmentStart::Sensor) => (-tolerance, segment.length),
-            (Contact::Free, SegmentStart::Interface) => (tolerance, segment.length),
+            (Contact::Free, SegmentStart::Face | SegmentStart::Interface) => {
+                (tolerance, segment.length)
+            }
             (Contact::Before, SegmentStart::Sensor) => (-tolerance, segment.length + tolerance),
-            (Contact::Before, SegmentStart::Interface) => (tolerance, segment.length + tolerance),
+            (Contact::Before, SegmentStart::Face | SegmentStart::Interface) => {
+                (tolerance, segment.length + tolerance)
+            }
             (Contact::Behind, _) => {
                 (-AT_START * scene.bounds.diagonal(), segment.length - tolerance)
             }

@@ -109,7 +109,13 @@ impl<C: Collector> Follower<'_, '_, '_, C> {
                     self.stage = Stage::Beyond;
                 }
                 let from = opening.unwrap_or(segment.length) - scene.tolerance;
-                emitters.along(path, segment, SegmentStart::Sensor, |met| {
+                // Only a sensor on a face starts paths on a surface.
+                let start = if path.on.iter().next().is_none() {
+                    SegmentStart::Sensor
+                } else {
+                    SegmentStart::Face
+                };
+                emitters.along(path, segment, start, |met| {
                     if met.t < from {
                         return;
                     }

@@ -65,19 +65,31 @@ pub(crate) type Slot = u32;
 pub(crate) struct Surfaces {
     slots: Vec<Slot>,
     count: usize,
+    /// By surface: its analytic pieces; none of a mesh.
+    patches: Vec<Vec<PrimId>>,
 }
 
 impl Surfaces {
     pub(crate) fn new(scene: &Scene) -> Self {
         let triangles: usize = scene.meshes.iter().map(|body| body.mesh.triangle_count()).sum();
         let mut known: BTreeMap<SmoothId, Slot> = BTreeMap::new();
-        let slots = (0..scene.patches.len() + triangles)
+        let slots: Vec<Slot> = (0..scene.patches.len() + triangles)
             .map(|prim| {
                 let next = known.len() as Slot;
                 *known.entry(scene.smooth(PrimId::new(prim))).or_insert(next)
             })
             .collect();
-        Self { slots, count: known.len() }
+        let count = known.len();
+        let mut patches = vec![Vec::new(); count];
+        for (index, &slot) in slots.iter().take(scene.patches.len()).enumerate() {
+            patches[slot as usize].push(PrimId::new(index));
+        }
+        Self { slots, count, patches }
+    }
+
+    /// The analytic pieces of a surface; none of a mesh.
+    pub(crate) fn patches(&self, surface: Slot) -> &[PrimId] {
+        &self.patches[surface as usize]
     }
 
     /// The smooth surface of a piece.

@@ -184,3 +184,39 @@ eye = { luminance = { disk = { radius_mm = 1 }, cells = [1, 1], acceptance_half_
         Gathering { depth: 0, radius_mm: 1.5, angle_deg: 5.0, records: 100, photons: 100_000 };
     follows("angle", text, "eye.luminance_avg.0", window, normal, law);
 }
+
+/// Reference case ES-01: at the exit of a black tube of radius a and length 10 a, under a Lambertian disk that fills its
+/// entry, L is that of the disk within atan(1/10); a wider cone dilutes it by the ratio of solid angles. Light steeper
+/// than 8 deg cannot come there: the lamp leaves it out.
+#[test]
+fn a_cone_wider_than_the_light_dilutes_it_by_the_ratio_of_solid_angles() {
+    let text = r#"
+[sheets.tube.tube]
+profile = { circle = { radius_mm = 5 } }
+path = [{ straight_mm = 50 }]
+finish = "black"
+[sheets.window.disk]
+radius_mm = 5
+finish = "open"
+at = { position_mm = [0, 0, 50] }
+[sources.lamp.disk]
+radius_mm = 5
+luminance_cd_m2 = 1000
+emission = { cone_half_angle_deg = 8 }
+[sensors]
+eye = { luminance = { disk = { radius_mm = 0.2 }, cells = [1, 1], acceptance_half_angle_deg = 0.05, directions = [{ theta_deg = 0, phi_deg = 0 }] }, at = { position_mm = [0, 0, 51], axis = [0, 0, -1] } }
+"#;
+    let mut comparison = Comparison::default();
+    for (angle_deg, ratio) in
+        [(5.0, 1.0), (8.0, 0.509951176), (10.0, 0.3266672661), (20.0, 0.08229191609)]
+    {
+        let window =
+            Gathering { depth: 0, radius_mm: 0.4, angle_deg, records: 20, photons: 50_000 };
+        let found = wide(text, window, "eye.luminance_avg.0");
+        comparison.add(&format!("ES-01 at {angle_deg} deg"), &found, 1000.0 * ratio, 0.0);
+        if found.std_error > 0.015 * found.value {
+            comparison.fail(format!("{found} is too noisy to tell"));
+        }
+    }
+    comparison.assert("ES-01", 4);
+}

@@ -88,7 +88,8 @@ pub(crate) fn luminance(size: f64, nu: usize, nv: usize, projected: &[f64]) -> S
 pub(crate) fn image(columns: usize, rows: usize) -> SensorKind {
     match rectangle(1.0, 1, 1) {
         SensorKind::Surface(mut surface) => {
-            surface.seeing = Seeing::Pixels(Pixels::new(&Frame::WORLD, [columns, rows], 0.01));
+            surface.seeing =
+                Seeing::Pixels(Box::new(Pixels::new(&Frame::WORLD, [columns, rows], 0.01)));
             SensorKind::Surface(surface)
         }
         SensorKind::Goniometer(_) => unreachable!("a rectangle is a surface"),

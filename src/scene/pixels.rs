@@ -95,7 +95,7 @@ mod tests {
         let half = DVec2::new(24.0, 12.0) * 0.01f64.tan();
         let whole = projected_rectangle(ChartRect { min: -half, max: half });
         assert!((all(&fine) / whole - 1.0).abs() < 1e-12);
-        let wide = Pixels::new(&tilted(), [40, 40], 3.14);
+        let wide = Pixels::new(&tilted(), [40, 40], 0.9995 * PI);
         assert!((all(&wide) / PI - 1.0).abs() < 1e-4, "{}", all(&wide));
     }
 
@@ -113,13 +113,13 @@ mod tests {
     #[test]
     fn drawn_directions_lie_in_their_pixels_and_fill_them_as_their_weights_say() {
         let image = Pixels::new(&tilted(), [5, 4], 0.3);
-        let n = 400;
+        let n: u32 = 400;
         let mut sums = vec![0.0; image.count()];
         for i in 0..n * n {
-            let u = [(i % n) as f64 + 0.5, (i / n) as f64 + 0.5].map(|u| u / n as f64);
+            let u = [f64::from(i % n) + 0.5, f64::from(i / n) + 0.5].map(|u| u / f64::from(n));
             let (dir, pixel, weight) = image.draw(u).unwrap();
             assert_eq!(image.pixel(dir), Some(pixel));
-            sums[pixel] += weight / (n * n) as f64;
+            sums[pixel] += weight / f64::from(n * n);
         }
         for (sum, projected) in sums.iter().zip(&image.projected) {
             assert!((sum / projected - 1.0).abs() < 1e-4, "{sum}, not {projected}");

@@ -84,7 +84,7 @@ pub enum Seeing {
     /// Some cones, in each of which all cells see: luminance by cell and view.
     Views(Views),
     /// The pixels of an image, which all of the one cell sees: luminance by direction.
-    Pixels(Pixels),
+    Pixels(Box<Pixels>),
 }
 
 /// Where a surface sensor is.

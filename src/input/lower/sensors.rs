@@ -99,7 +99,8 @@ impl Context<'_> {
         // Validated: an image is on no face, its aperture is flat.
         let frame = sensor.frame?;
         let pixels = image.pixels.map(|count| count as usize);
-        sensor.seeing = Seeing::Pixels(Pixels::new(&frame, pixels, image.pixel_deg.to_radians()));
+        sensor.seeing =
+            Seeing::Pixels(Box::new(Pixels::new(&frame, pixels, image.pixel_deg.to_radians())));
         Some(sensor)
     }
 

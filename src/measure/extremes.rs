@@ -193,7 +193,7 @@ fn candidates(cells: &[Noisy], sign: f64) -> Vec<Candidate> {
 /// Standard normal numbers from a fixed stream (Box & Muller, Ann. Math. Stat. 29 (1958) 610).
 #[derive(Debug)]
 pub(crate) struct Normal {
-    sampler: Sampler<'static>,
+    sampler: Sampler,
     spare: Option<f64>,
 }
 

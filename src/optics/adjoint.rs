@@ -19,7 +19,7 @@ use crate::math::{Frame, cosine_hemisphere, unit};
 use crate::optics::bsdf::{choose_side, leaving_normal, pick, specular, straight};
 use crate::optics::shares::smooth_direction;
 use crate::optics::{Bsdf, Gaussian, Incidence, Lobe, Scattered, Shares, Side, shares};
-use crate::rng::{Dimension, Sampler};
+use crate::rng::{Dimension, Numbers, Sampler};
 use glam::DVec3;
 
 #[cfg(test)]
@@ -43,7 +43,7 @@ pub struct Faces<'a> {
 pub fn scatter_radiance(
     faces: Faces<'_>,
     incidence: &Incidence,
-    sampler: &mut Sampler,
+    sampler: &mut Sampler<impl Numbers>,
 ) -> Option<Scattered> {
     match (faces.own, faces.behind) {
         (Bsdf::Smooth, Bsdf::Smooth) => Bsdf::Smooth.scatter(incidence, sampler),
@@ -52,7 +52,11 @@ pub fn scatter_radiance(
     }
 }
 
-fn by_one_finish(bsdf: &Bsdf, incidence: &Incidence, sampler: &mut Sampler) -> Option<Scattered> {
+fn by_one_finish(
+    bsdf: &Bsdf,
+    incidence: &Incidence,
+    sampler: &mut Sampler<impl Numbers>,
+) -> Option<Scattered> {
     match bsdf {
         Bsdf::Smooth | Bsdf::Metal { .. } | Bsdf::Absorber => bsdf.scatter(incidence, sampler),
         Bsdf::Specular { .. } | Bsdf::Open | Bsdf::Lambertian { .. } => {
@@ -77,7 +81,7 @@ fn by_two_finishes(
     own: &Bsdf,
     behind: &Bsdf,
     incidence: &Incidence,
-    sampler: &mut Sampler,
+    sampler: &mut Sampler<impl Numbers>,
 ) -> Option<Scattered> {
     let reflected = chances(own, incidence).reflected;
     let transmitted = chances(behind, incidence).transmitted;
@@ -125,7 +129,7 @@ pub fn scatter_toward(
     bsdf: &Bsdf,
     side: Side,
     incidence: &Incidence,
-    sampler: &mut Sampler,
+    sampler: &mut Sampler<impl Numbers>,
 ) -> Option<Scattered> {
     match bsdf {
         Bsdf::Smooth => smooth_toward(side, incidence),
@@ -166,7 +170,7 @@ fn smooth_toward(side: Side, incidence: &Incidence) -> Option<Scattered> {
 fn scattered_from(
     lobe: &Gaussian,
     incidence: &Incidence,
-    sampler: &mut Sampler,
+    sampler: &mut Sampler<impl Numbers>,
 ) -> Option<(Incidence, f64)> {
     let cos = incidence.cos();
     if cos == 0.0 {

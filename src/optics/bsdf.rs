@@ -5,7 +5,7 @@
 
 use crate::math::{Frame, cosine_hemisphere, unit};
 use crate::optics::{Gaussian, fresnel};
-use crate::rng::{Dimension, Sampler};
+use crate::rng::{Dimension, Numbers, Sampler};
 use glam::DVec3;
 
 /// Light arriving at a face.
@@ -144,7 +144,11 @@ impl Bsdf {
 
     /// Sends a photon on, or absorbs it (`None`).
     #[inline(always)]
-    pub fn scatter(&self, incidence: &Incidence, sampler: &mut Sampler) -> Option<Scattered> {
+    pub fn scatter(
+        &self,
+        incidence: &Incidence,
+        sampler: &mut Sampler<impl Numbers>,
+    ) -> Option<Scattered> {
         match self {
             Self::Smooth => Some(smooth(incidence, sampler)),
             Self::Specular { reflectance, transmittance } => {
@@ -167,7 +171,11 @@ impl Bsdf {
 
     /// The same out of line, so that the loop around mirrors and smooth faces stays small.
     #[inline(never)]
-    fn scatter_rarely(&self, incidence: &Incidence, sampler: &mut Sampler) -> Option<Scattered> {
+    fn scatter_rarely(
+        &self,
+        incidence: &Incidence,
+        sampler: &mut Sampler<impl Numbers>,
+    ) -> Option<Scattered> {
         match self {
             Self::Smooth | Self::Specular { .. } => self.scatter(incidence, sampler),
             Self::Metal { n, k } => {
@@ -215,7 +223,7 @@ impl Bsdf {
 
 /// Fresnel and Snell at a smooth interface; one draw, none under total reflection or between equal indices.
 #[inline]
-fn smooth(incidence: &Incidence, sampler: &mut Sampler) -> Scattered {
+fn smooth(incidence: &Incidence, sampler: &mut Sampler<impl Numbers>) -> Scattered {
     let Incidence { dir, normal, index_from, index_to } = *incidence;
     if index_from == index_to {
         return specular(dir, 1.0, Side::Transmitted);
@@ -243,7 +251,7 @@ pub(crate) fn specular(dir: DVec3, factor: f64, side: Side) -> Scattered {
 pub(crate) fn choose_side(
     reflectance: f64,
     transmittance: f64,
-    sampler: &mut Sampler,
+    sampler: &mut Sampler<impl Numbers>,
 ) -> Option<Side> {
     if transmittance == 0.0 {
         return (reflectance > 0.0).then_some(Side::Reflected);
@@ -272,7 +280,7 @@ pub(crate) fn leaving_normal(incidence: &Incidence, side: Side) -> DVec3 {
 }
 
 /// One of the parts of a mixture, by its weight.
-pub(crate) fn pick<'a>(parts: &'a [(f64, Bsdf)], sampler: &mut Sampler) -> &'a Bsdf {
+pub(crate) fn pick<'a>(parts: &'a [(f64, Bsdf)], sampler: &mut Sampler<impl Numbers>) -> &'a Bsdf {
     let total: f64 = parts.iter().map(|(weight, _)| weight).sum();
     let mut left = sampler.one(Dimension::Lobe) * total;
     for (weight, part) in &parts[..parts.len() - 1] {
@@ -342,7 +350,7 @@ mod tests {
             [(mirror, incidence(20.0, 1.0, 1.0)), (Bsdf::Smooth, incidence(60.0, 1.49, 1.0))]
         {
             let mut used = Sampler::for_path(1, 0, 0);
-            let mut fresh = Sampler::for_path(1, 0, 0);
+            let mut fresh = used.clone();
             assert!(bsdf.scatter(&incidence, &mut used).is_some());
             assert_eq!(used.one(Dimension::Lobe), fresh.one(Dimension::Lobe));
         }

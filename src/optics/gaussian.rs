@@ -5,7 +5,7 @@
 //! o and m, so p(o|i) N(i) = p(i|o) N(o): the adjoint of a path needs only the two norms and cosines.
 
 use crate::math::Frame;
-use crate::rng::{Dimension, Sampler};
+use crate::rng::{Dimension, Numbers, Sampler};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -55,7 +55,7 @@ impl Gaussian {
     }
 
     /// A direction about `mean` on the side of `normal`, with the density of [`Gaussian::pdf`].
-    pub fn sample(&self, mean: DVec3, normal: DVec3, sampler: &mut Sampler) -> DVec3 {
+    pub fn sample(&self, mean: DVec3, normal: DVec3, sampler: &mut Sampler<impl Numbers>) -> DVec3 {
         let frame = Frame::from_axis(DVec3::ZERO, mean);
         loop {
             let [u, v] = sampler.pair(Dimension::Scatter);

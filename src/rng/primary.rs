@@ -4,7 +4,7 @@
 //! Algorithm, Computer Graphics Forum 21 (2002) 531. A number is varied when a path asks for it and not before, so that
 //! a path may ask for any number of them. What a path makes of the numbers is not known here.
 
-use crate::rng::{Dimension, Sampler};
+use crate::rng::{Dimension, Numbers, Sampler};
 
 /// Least and largest size of a small step, 1 (Kelemen et al. 2002).
 const LEAST_STEP: f64 = 1.0 / 1024.0;
@@ -20,9 +20,9 @@ pub enum Mutation {
 }
 
 /// The numbers of a chain's state, and of its proposal while a path asks for them.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Primary {
-    own: Sampler<'static>,
+    own: Sampler,
     numbers: Vec<Number>,
     /// Steps since the start of the chain, that of the proposal included.
     step: u64,
@@ -45,7 +45,7 @@ struct Number {
 
 impl Primary {
     /// A chain that draws its own random numbers from `own`. Its first proposal has to be a large one.
-    pub fn new(own: Sampler<'static>) -> Self {
+    pub fn new(own: Sampler) -> Self {
         Self {
             own,
             numbers: Vec::new(),
@@ -87,10 +87,19 @@ impl Primary {
         self.own.one(Dimension::Resampling)
     }
 
-    /// The next number of the proposal, in [0, 1).
-    #[cold]
-    #[inline(never)]
-    pub(crate) fn next(&mut self) -> f64 {
+    /// A step whose size has the density 1/size between its bounds, around the ends of [0, 1).
+    fn small_step(&mut self, value: f64) -> f64 {
+        let size = LARGEST_STEP * (LEAST_STEP / LARGEST_STEP).powf(self.decide());
+        let moved = if self.decide() < 0.5 { value + size } else { value - size };
+        let wrapped = moved - moved.floor();
+        // The floor of a tiny negative number leaves 1.
+        if wrapped < 1.0 { wrapped } else { 0.0 }
+    }
+}
+
+/// The numbers of the proposal, in the order in which a path asks for them.
+impl Numbers for &mut Primary {
+    fn next(&mut self) -> f64 {
         let place = self.next;
         self.next += 1;
         let number = match self.numbers.get(place) {
@@ -116,15 +125,6 @@ impl Primary {
         }
         varied.value
     }
-
-    /// A step whose size has the density 1/size between its bounds, around the ends of [0, 1).
-    fn small_step(&mut self, value: f64) -> f64 {
-        let size = LARGEST_STEP * (LEAST_STEP / LARGEST_STEP).powf(self.decide());
-        let moved = if self.decide() < 0.5 { value + size } else { value - size };
-        let wrapped = moved - moved.floor();
-        // The floor of a tiny negative number leaves 1.
-        if wrapped < 1.0 { wrapped } else { 0.0 }
-    }
 }
 
 #[cfg(test)]
@@ -135,7 +135,7 @@ mod tests {
         Primary::new(Sampler::for_path(3, 0, 0))
     }
 
-    fn ask(primary: &mut Primary, count: usize) -> Vec<f64> {
+    fn ask(mut primary: &mut Primary, count: usize) -> Vec<f64> {
         (0..count).map(|_| primary.next()).collect()
     }
 
@@ -184,7 +184,7 @@ mod tests {
         for step in 0..n {
             primary.propose(if step % 3 == 0 { Mutation::Large } else { Mutation::Small });
             // Only the large steps are independent of each other.
-            let value = primary.next();
+            let value = (&mut primary).next();
             if step % 3 == 2 {
                 bins[(value * 10.0) as usize] += 1;
             }

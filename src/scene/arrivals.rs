@@ -5,7 +5,7 @@
 //! is not known here.
 
 use crate::math::{Aabb, Frame, cone_direction, cosine_hemisphere, disk, uniform_sphere};
-use crate::rng::{Dimension, Sampler};
+use crate::rng::{Dimension, Numbers, Sampler};
 use crate::scene::area::{AreaPoint, FaceArea};
 use crate::scene::intersect::Just;
 use crate::scene::shape::Toward;
@@ -94,7 +94,7 @@ impl<'s> Arrivals<'s> {
 
     /// Draws a start; `None` where the draw fell beside the sensor or on a side that does not count: such a draw
     /// stands for no light.
-    pub fn draw(&self, sampler: &mut Sampler) -> Option<Arrival> {
+    pub fn draw(&self, sampler: &mut Sampler<impl Numbers>) -> Option<Arrival> {
         match &self.place {
             Origin::Surface(sensor, area) => {
                 let start = area.sample(sampler.pair(Dimension::GatherPosition))?;
@@ -115,7 +115,7 @@ impl<'s> Arrivals<'s> {
         &self,
         sensor: &SurfaceSensor,
         start: &AreaPoint,
-        sampler: &mut Sampler,
+        sampler: &mut Sampler<impl Numbers>,
     ) -> Option<Drawn> {
         match &sensor.seeing {
             Seeing::All => {}
@@ -180,7 +180,7 @@ impl<'s> Arrivals<'s> {
         &self,
         goniometer: &Goniometer,
         around: Around,
-        sampler: &mut Sampler,
+        sampler: &mut Sampler<impl Numbers>,
     ) -> Option<Arrival> {
         let (cell, out) = direction(goniometer, sampler.pair(Dimension::GatherDirection));
         let u = sampler.pair(Dimension::GatherPosition);
@@ -206,7 +206,7 @@ impl<'s> Arrivals<'s> {
         &self,
         goniometer: &Goniometer,
         radius: f64,
-        sampler: &mut Sampler,
+        sampler: &mut Sampler<impl Numbers>,
     ) -> Option<Arrival> {
         let (cell, out) = direction(goniometer, sampler.pair(Dimension::GatherPosition));
         let start = AreaPoint {
@@ -272,7 +272,7 @@ fn view_direction(
     views: &Views,
     counts: Counts,
     start: &AreaPoint,
-    sampler: &mut Sampler,
+    sampler: &mut Sampler<impl Numbers>,
 ) -> Option<Drawn> {
     let count = views.directions.len();
     let view = match count {

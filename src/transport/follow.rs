@@ -3,7 +3,7 @@
 //! The path starts as its sensor says, has to come through the sensor's aim, and meets emission on its way. Who collects
 //! the light decides at every visible interface whether it goes on.
 
-use crate::rng::Sampler;
+use crate::rng::{Numbers, Sampler};
 use crate::scene::shape::{Crossing, Start};
 use crate::scene::{Arrival, Begins, Owner, Scene, SensorId, Visibility};
 use crate::transport::emitters::{Emitters, Met, SegmentStart};
@@ -45,7 +45,7 @@ pub(crate) struct Gathering<'a, 's> {
 pub(crate) fn follow(
     gathering: Gathering<'_, '_>,
     arrival: &Arrival,
-    sampler: &mut Sampler,
+    sampler: &mut Sampler<impl Numbers>,
     collector: &mut impl Collector,
 ) -> u64 {
     let path = Path::arriving(gathering.scene, arrival);
@@ -63,7 +63,7 @@ pub(crate) fn follow(
 pub(crate) fn follow_on(
     gathering: Gathering<'_, '_>,
     path: Path,
-    sampler: &mut Sampler,
+    sampler: &mut Sampler<impl Numbers>,
     collector: &mut impl Collector,
 ) -> u64 {
     let (stage, before_aim) = (Stage::Beyond, SmallVec::new());

@@ -168,7 +168,7 @@ struct Collecting<'c, 's> {
     index: u64,
     cells: &'c SmallVec<[usize; 1]>,
     /// For what records draw; the path has a stream of its own.
-    sampler: Sampler<'static>,
+    sampler: Sampler,
     /// The interface that the path has just met.
     facing: Option<Facing<'s>>,
     found: &'c mut Found<'s>,

@@ -3,7 +3,7 @@
 //! It brings the finish, the normal and the indices together; the physics is in `optics`.
 
 use crate::optics::{Bsdf, Faces, Incidence, Scattered, Side, scatter_radiance as adjoint};
-use crate::rng::Sampler;
+use crate::rng::{Numbers, Sampler};
 use crate::scene::shape::Toward;
 use crate::scene::{FinishId, Interface, MediumId, Scene, Surface};
 use crate::transport::{Path, Vertex};
@@ -20,7 +20,7 @@ pub(super) fn scatter(
     interface: &Interface<'_>,
     point: DVec3,
     dir: DVec3,
-    sampler: &mut Sampler,
+    sampler: &mut Sampler<impl Numbers>,
 ) -> Option<Scattered> {
     let toward = interface.acting.toward;
     let index = |medium: MediumId| scene.media[medium.index()].index(path.wavelength);
@@ -101,7 +101,7 @@ pub(super) fn scatter_radiance(
     scene: &Scene,
     path: &Path,
     vertex: &Vertex<'_>,
-    sampler: &mut Sampler,
+    sampler: &mut Sampler<impl Numbers>,
 ) -> Option<Scattered> {
     let facing = facing(scene, path, vertex);
     let out = adjoint(facing.faces, &facing.incidence, sampler)?;

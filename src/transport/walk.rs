@@ -3,7 +3,7 @@
 //! It does not know what is counted: the forward estimator counts photons, a gather path would look for its end.
 
 use crate::optics::{Lobe, Scattered, Side};
-use crate::rng::{Dimension, Sampler};
+use crate::rng::{Dimension, Numbers, Sampler};
 use crate::scene::{Hits, Interface, MediumId, On, Ray, Scene, Visibility};
 use crate::transport::Path;
 use crate::transport::scatter::{scatter, scatter_radiance};
@@ -109,7 +109,7 @@ pub fn walk<V: Visitor>(
     scene: &Scene,
     mut path: Path,
     bounce_limit: u32,
-    sampler: &mut Sampler,
+    sampler: &mut Sampler<impl Numbers>,
     visitor: &mut V,
 ) {
     // A copy of the path's that no visitor sees: it stays in registers from bounce to bounce.
@@ -167,7 +167,7 @@ fn bounce<V: Visitor>(
     path: &mut Path,
     ray: &Ray,
     hits: &Hits,
-    sampler: &mut Sampler,
+    sampler: &mut Sampler<impl Numbers>,
     visitor: &mut V,
 ) -> ControlFlow<(), Ray> {
     let interface = scene.interface(hits, &path.inside, path.medium);

@@ -47,9 +47,9 @@ pub struct Series {
 pub enum Look {
     /// By the colour and dashes of its place among all.
     InTurn,
-    /// A solid line in the colour of a number.
+    /// Solid, in the colour of a number.
     Solid(usize),
-    /// A dashed line in the colour of a number.
+    /// Dashed, in the colour of a number.
     Dashed(usize),
     /// A thin dotted grey line: a bound, not a result.
     Bound,
@@ -131,8 +131,7 @@ pub fn line_plot(plot: &LinePlot) -> Result<Vec<u8>> {
     canvas.clip_to_all();
     frame.draw(&mut canvas, area)?;
     if !plot.series.iter().flat_map(|series| &series.points).any(is_drawn) {
-        let middle = area.middle();
-        write(&mut canvas, "No values.", middle, LABEL, Align::Centre)?;
+        write(&mut canvas, "No values.", area.middle(), LABEL, Align::Centre)?;
     }
     canvas.into_png()
 }

@@ -6,8 +6,8 @@
 //! by the probability that the chain goes on with them. Every batch is a chain of its own with a b of its own: the
 //! flux on the sensor is free of bias, its division among cells only as far as chains are long.
 
-use crate::rng::Sampler;
 use crate::rng::primary::{Mutation, Primary};
+use crate::rng::{Numbers, Sampler};
 use crate::transport::baselines::OneSensor;
 use crate::transport::emitters::Met;
 use crate::transport::follow::{Collector, follow};
@@ -109,7 +109,7 @@ impl Chain<'_, '_> {
 
     fn propose(&mut self, primary: &mut Primary, mutation: Mutation) -> Seen {
         primary.propose(mutation);
-        let seen = self.metropolis.sensor.look(&mut Sampler::recorded(primary));
+        let seen = self.metropolis.sensor.look(&mut Sampler::of(primary));
         self.readings.segments += seen.segments;
         if mutation == Mutation::Large {
             self.fresh_flux += seen.flux;
@@ -140,7 +140,7 @@ impl Chain<'_, '_> {
 
 impl OneSensor<'_> {
     /// The light of the gather path that these numbers make.
-    fn look(&self, sampler: &mut Sampler) -> Seen {
+    fn look(&self, sampler: &mut Sampler<impl Numbers>) -> Seen {
         let Some(arrival) = self.arrivals.draw(sampler) else { return Seen::default() };
         let mut looking = Looking { etendue: self.etendue(&arrival), seen: Seen::default() };
         let segments = follow(self.gathering(self.bounce_limit), &arrival, sampler, &mut looking);

@@ -1,9 +1,9 @@
 //! Stochastic progressive photon mapping without an estimate on specular surfaces.
 //!
-//! Hachisuka & Jensen, Stochastic Progressive Photon Mapping, ACM Transactions on Graphics 28 (2009) 141, with the
-//! radii of Knaus & Zwicker, Progressive Photon Mapping: A Probabilistic Approach, ACM Transactions on Graphics 30 (2011)
-//! 25: every pass is a photon map of its own, and the mean over passes is the value. Gather paths go on through specular
-//! surfaces and wait for photons where a surface scatters; on purely specular scenes they see only what they meet.
+//! Hachisuka & Jensen, Stochastic Progressive Photon Mapping, ACM Trans. Graph. 28 (2009) 141, with the radii of Knaus &
+//! Zwicker, Progressive Photon Mapping: A Probabilistic Approach, ACM Trans. Graph. 30 (2011) 25: every pass is a photon map
+//! of its own, and the mean over passes is the value. Gather paths go on through specular surfaces and wait for photons
+//! where a surface scatters; on purely specular scenes they see only what they meet.
 
 use crate::optics::{Incidence, Lobe};
 use crate::rng::Sampler;
@@ -30,8 +30,8 @@ const ALPHA: f64 = 2.0 / 3.0;
 const DEEPEST: u32 = 1000;
 /// Work of a pass in batches of the other baselines: small passes shrink the radius sooner.
 const PASS_BATCHES: u64 = 4;
-/// Gather paths of a pass for each of its photon paths, 1.
-const GATHER_SHARE: f64 = 0.25;
+/// Photon paths of a pass for each of its gather paths.
+const PHOTONS_PER_PATH: u64 = 4;
 
 /// What all passes of a run have in common.
 #[derive(Debug)]
@@ -52,12 +52,12 @@ impl<'s> Sppm<'s> {
         let segments = pilot.segments.div_ceil(pilot.paths().max(1)).max(1);
         let photons = (PASS_BATCHES * BATCH_SEGMENTS / segments).max(256);
         let pilot = PhotonPilot { segments_per_path: segments as f64 };
-        let settings = settle(scene, &plan.gather, &[sensor.id], seed, pilot);
+        let window = settle(scene, &plan.gather, &[sensor.id], seed, pilot).window;
         Self {
             surfaces: Surfaces::new(scene),
             forward: Forward::new(scene, seed, plan.bounce_limit, photons),
-            radius: settings.window.radius,
-            paths: (GATHER_SHARE * photons as f64) as u64,
+            radius: window.radius,
+            paths: photons / PHOTONS_PER_PATH,
             sensor,
         }
     }
@@ -127,8 +127,8 @@ struct Gatherer<'a, 's> {
 
 impl Collector for Gatherer<'_, '_> {
     fn meet(&mut self, path: &Path, met: Met) {
-        let flux = met.radiance * self.etendue;
-        let light = Counted { flux, depth: path.depth, source: met.source };
+        let (flux, depth) = (met.radiance * self.etendue, path.depth);
+        let light = Counted { flux, depth, source: met.source };
         self.sppm.sensor.count(self.readings, self.cells, &light);
     }
 
@@ -140,10 +140,7 @@ impl Collector for Gatherer<'_, '_> {
             (facing.faces.own, facing.facet, interface.from),
             (facing.faces.behind, -facing.facet, interface.to),
         ];
-        for (bsdf, normal, medium) in sides {
-            if bsdf.is_specular() {
-                continue;
-            }
+        for (bsdf, normal, medium) in sides.into_iter().filter(|side| !side.0.is_specular()) {
             // L* of the light that leaves, in the medium of the gather path: eq. (2) over its n².
             let index = facing.incidence.index_from;
             let value = self.etendue * vertex.throughput / (index * index);
@@ -193,16 +190,13 @@ impl PhotonWatcher for Stream<'_, '_> {
         }
         let facing = facing(sensor.scene, path, vertex);
         let incidence = Incidence { normal: facing.facet, ..facing.incidence };
-        let (medium, point) = (interface.from, vertex.point);
-        let photon = Arriving { surface, medium, point, incidence };
+        let photon = Arriving { surface, medium: interface.from, point: vertex.point, incidence };
         let Self { kernel, cells, readings, .. } = self;
         self.records.visit(surface, vertex.point, vertex.dir, |record| {
-            let shares = kernel.flux(record, &photon);
-            if let Some([share, ..]) = shares.filter(|[share, ..]| *share > 0.0) {
-                let (flux, depth) = (flux * vertex.throughput * share, path.depth + record.depth);
-                let light = Counted { flux, depth, source };
-                sensor.count(readings, &cells[record.path as usize], &light);
-            }
+            let Some([share, ..]) = kernel.flux(record, &photon) else { return };
+            let (flux, depth) = (flux * vertex.throughput * share, path.depth + record.depth);
+            let light = Counted { flux, depth, source };
+            sensor.count(readings, &cells[record.path as usize], &light);
         });
     }
 }

@@ -98,7 +98,7 @@ struct Splitter<'a, 's> {
     factor: f64,
     branches: Vec<Branch>,
     /// For what is drawn at interfaces.
-    sampler: Sampler<'static>,
+    sampler: Sampler,
     cut: f64,
     readings: &'a mut Readings,
 }

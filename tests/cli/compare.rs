@@ -45,7 +45,6 @@ fn a_comparison_that_makes_no_sense_is_refused_and_nothing_is_written() {
         ("--estimators psychic", "metropolis"),
         ("--estimators forward", "--sensor: exit, far"),
         ("--estimators forward --sensor eye", "exit, far"),
-        ("--estimators auto --sensor exit", "`auto`"),
         (
             "--estimators forward,backward,sppm --sensor exit",
             "backward, sppm cannot meet the source `spot`",

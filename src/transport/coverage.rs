@@ -103,3 +103,73 @@ fn is_over_surface(
     }
     found
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Frame;
+    use crate::optics::Medium;
+    use crate::scene::shape::{Flat, Region, Shape};
+    use crate::scene::{Builder, FaceSpec, Owner, Piece};
+    use crate::units::FluxUnit;
+
+    /// A square of 20 mm.
+    fn square() -> Scene {
+        let mut builder = Builder::new(DVec3::ZERO, Medium::new("air", 1.0, 0.0), FluxUnit::Lumen);
+        let region = Region::Rectangle { half_x: 10.0, half_y: 10.0 };
+        builder.add_face(FaceSpec {
+            name: "square.surface".into(),
+            owner: Owner::Sheet,
+            front: None,
+            back: None,
+            pieces: vec![Piece::whole(Shape::Flat(Flat::new(Frame::WORLD, region)))],
+        });
+        builder.build()
+    }
+
+    /// Mean shares over turns of a window at a distance inside the edges at +x and +y, mm.
+    fn mean_shares(inside: DVec2, radius: f64) -> [f64; NESTED] {
+        const TURNS: u32 = 200;
+        let (scene, prim) = (square(), PrimId::new(0));
+        let surfaces = Surfaces::new(&scene);
+        let point = (DVec2::splat(10.0) - inside).extend(0.0);
+        let middle = Middle { prim, surface: surfaces.of(prim), point, normal: DVec3::NEG_Z };
+        let window = Window { radius, theta_max: 0.1 };
+        let mut mean = [0.0; NESTED];
+        for turn in 0..TURNS {
+            let turn = f64::from(turn) / f64::from(TURNS);
+            let shares = coverage(&scene, &surfaces, &middle, window, turn);
+            for (mean, share) in mean.iter_mut().zip(shares) {
+                *mean += share / f64::from(TURNS);
+            }
+        }
+        mean
+    }
+
+    #[test]
+    fn a_window_over_a_straight_edge_is_clipped_by_the_segment_of_its_circle() {
+        // Reference case ES-02: 1 less the circular segment beyond the edge, at a distance of s radii.
+        let reference = [
+            (0.0, 0.5),
+            (0.25, 0.6574811788),
+            (0.5, 0.8044988905),
+            (0.75, 0.9278531936),
+            (1.0, 1.0),
+        ];
+        for (s, expected) in reference {
+            let [wide, ..] = mean_shares(DVec2::new(s, 10.0), 1.0);
+            assert!((wide - expected).abs() < 0.01, "{s}: {wide}, not {expected}");
+            // A window of double the radius holds it as the narrowest of three.
+            let [.., narrow] = mean_shares(DVec2::new(s, 10.0), 2.0);
+            assert!((narrow - expected).abs() < 0.02, "{s}: {narrow}, not {expected}");
+        }
+    }
+
+    #[test]
+    fn a_window_in_a_corner_keeps_a_quarter() {
+        let [wide, ..] = mean_shares(DVec2::splat(1e-9), 1.0);
+        assert!((wide - 0.25).abs() < 0.01, "{wide}");
+        let [wide, ..] = mean_shares(DVec2::splat(3.0), 1.0);
+        assert!((wide - 1.0).abs() < 1e-12, "{wide}");
+    }
+}

@@ -59,7 +59,7 @@ fn block(finish: &str) -> String {
 tested = {finish}
 [media.glass]
 index = 1.49
-absorption_per_mm = 0.01
+absorption_per_mm = 0.03
 [solids.block.box]
 size_mm = [8, 8, 6]
 medium = "glass"

@@ -2,12 +2,14 @@
 
 use crate::trial::shallow_agree as agree;
 
-/// A mirror tube with a tilted pane in it, a block of glass behind, and sensors.
+/// A mirror tube with a tilted pane in it, a block of glass behind, and sensors. The glass absorbs: light cannot come from
+/// where it would be totally reflected for ever, but a gather path that starts inside has to find that out.
 fn scene(sensors: &str) -> String {
     format!(
         r#"
 [media.glass]
 index = 1.5
+absorption_per_mm = 0.03
 [finishes]
 mirror = {{ specular = {{ reflectance = 0.9 }} }}
 white = {{ lambertian = {{ reflectance = 0.4, transmittance = 0.4 }} }}

@@ -5,7 +5,7 @@ use crate::trial::{Gathering, Way, agree};
 /// All ways; at depth 0 more work makes up for light that meets a window of the size of the exit only.
 fn all_agree(what: &str, text: &str) {
     let gather = [
-        Gathering { angle_deg: 9.0, records: 4000, photons: 6000, ..Gathering::to_depth(0) },
+        Gathering { angle_deg: 9.0, records: 3000, photons: 5000, ..Gathering::to_depth(0) },
         Gathering { angle_deg: 7.0, photons: 4000, ..Gathering::to_depth(2) },
         Gathering::to_depth(8),
     ];
@@ -19,7 +19,7 @@ fn rod(source: &str) -> String {
         r#"
 [media.acrylic]
 index = 1.49
-absorption_per_mm = 0.005
+absorption_per_mm = 0.02
 [solids.rod.cylinder]
 radius_mm = 3
 length_mm = 10

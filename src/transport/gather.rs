@@ -16,7 +16,7 @@ use crate::transport::estimate::{Arriving, Kernel};
 use crate::transport::follow::{Collector, Gathering, follow};
 use crate::transport::forward::{Forward, PhotonWatcher};
 use crate::transport::readings::Counted;
-use crate::transport::records::{GatherRecord, Records, Surfaces, Wanted};
+use crate::transport::records::{GatherRecord, Records, Slot, Surfaces, Wanted};
 use crate::transport::scatter::{Facing, facing};
 use crate::transport::window::{NESTED, Window};
 use crate::transport::work::RecordWork;
@@ -323,28 +323,14 @@ impl Stream<'_, '_> {
     #[inline(never)]
     fn look_up(&mut self, path: &Path, vertex: &Vertex<'_>, flux: f64, source: SourceId) {
         let Gather { scene, surfaces, layout, .. } = self.gather;
-        let interface = vertex.interface;
-        let surface = surfaces.of(interface.acting.prim);
-        let index = |medium: MediumId| scene.media[medium.index()].index(path.wavelength);
-        let outward = scene.normal(interface.acting.prim, vertex.point);
-        let photon = Arriving {
-            surface,
-            medium: interface.from,
-            point: vertex.point,
-            incidence: Incidence {
-                dir: vertex.dir,
-                normal: match interface.acting.toward {
-                    Toward::Front => -outward,
-                    Toward::Back => outward,
-                },
-                index_from: index(interface.from),
-                index_to: index(interface.to),
-            },
-        };
+        let surface = surfaces.of(vertex.interface.acting.prim);
+        // Most photons that pass the filter are near no record after all.
+        let mut known = None;
         let (kernel, windows, work) = (&self.kernel, &mut *self.windows, &mut self.work);
         work.look_ups += 1;
         self.waiting.records.visit(surface, vertex.point, vertex.dir, |record| {
-            let Some(shares) = kernel.flux(record, &photon) else { return };
+            let photon = known.get_or_insert_with(|| arriving(scene, surface, path, vertex));
+            let Some(shares) = kernel.flux(record, photon) else { return };
             work.pairs += 1;
             let Ended { sensor, cells, .. } = &self.waiting.paths[record.path as usize];
             let depth = path.depth + record.depth;
@@ -355,5 +341,26 @@ impl Stream<'_, '_> {
                 }
             }
         });
+    }
+}
+
+/// A photon as records take it.
+fn arriving(scene: &Scene, surface: Slot, path: &Path, vertex: &Vertex<'_>) -> Arriving {
+    let interface = vertex.interface;
+    let index = |medium: MediumId| scene.media[medium.index()].index(path.wavelength);
+    let outward = scene.normal(interface.acting.prim, vertex.point);
+    Arriving {
+        surface,
+        medium: interface.from,
+        point: vertex.point,
+        incidence: Incidence {
+            dir: vertex.dir,
+            normal: match interface.acting.toward {
+                Toward::Front => -outward,
+                Toward::Back => outward,
+            },
+            index_from: index(interface.from),
+            index_to: index(interface.to),
+        },
     }
 }

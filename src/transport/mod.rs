@@ -16,6 +16,7 @@ mod layout;
 mod path;
 mod pilot;
 mod readings;
+mod record_index;
 mod records;
 mod rounds;
 mod scatter;

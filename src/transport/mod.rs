@@ -35,7 +35,7 @@ pub use emitters::invisible;
 pub use findings::{Findings, Gathered};
 pub use layout::{Layout, TAILS};
 pub use path::{Path, WAVELENGTH};
-pub use pilot::{Choice, Trial};
+pub use pilot::{Choice, Objection, Trial};
 pub use readings::{
     ClassSum, DEPTH_BINS, GROUPS, Group, Leak, Readings, SensorReading, Step, Trail,
 };

@@ -135,8 +135,7 @@ fn choices(report: &Report) -> String {
 }
 
 fn trial_words(trial: &Trial) -> String {
-    // 1 % squared.
-    let cost = trial.cost.map_or("found nothing".into(), |cost| format!("{:.3e} s", cost / 1e-4));
+    let cost = trial.time(0.01).map_or("found nothing".into(), |time| format!("{time:.2e} s"));
     let objection = match trial.objection {
         Some(Objection::WindowsDiffer) => " (its windows differ)",
         Some(Objection::Contradicted) => " (contradicted)",

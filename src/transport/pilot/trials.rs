@@ -1,0 +1,187 @@
+//! Trials of the estimators on all sensors, each with the same effort. What follows from them is not known here.
+
+use crate::scene::plan::{Estimator, RunPlan};
+use crate::scene::{Scene, SensorId, SourceId};
+use crate::tally::Tally;
+use crate::transport::Layout;
+use crate::transport::backward::Backward;
+use crate::transport::forward::Forward;
+use crate::transport::gather::{Gather, Pass, PassReadings};
+use crate::transport::pilot::Trial;
+use crate::transport::readings::Readings;
+use crate::transport::settings::{PhotonPilot, settle};
+use crate::transport::stages::FIRST_PASSES;
+use crate::transport::work::{self, RecordWork};
+use rayon::prelude::*;
+
+/// Batches from which an estimator is judged.
+const BATCHES: u64 = 16;
+/// Passes from which gathering is judged: few, because the pairs that limit it grow with the square of a pass.
+const PASSES: u64 = 4;
+/// Least relative variance of a pass times its photons, or its gather paths: what pairs without limit would leave.
+const PER_PATH: f64 = 4.0;
+/// Random numbers of the pilot are those of another seed: what it chooses by is not counted again.
+const SEED: u64 = 0x7069_6c6f_7431;
+/// Straight pieces that gather paths are taken to have, for sizing.
+const GATHER_SEGMENTS: f64 = 20.0;
+
+/// What is tried, and how hard.
+#[derive(Debug)]
+pub(super) struct Trials<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) plan: &'a RunPlan,
+    pub(super) photons: PhotonPilot,
+    pub(super) sensors: &'a [SensorId],
+    /// Work for each estimator.
+    pub(super) effort: f64,
+}
+
+/// A trial, and the flux it found, batch by batch.
+#[derive(Debug)]
+pub(super) struct Tried {
+    pub(super) trial: Trial,
+    pub(super) flux: Tally,
+}
+
+/// A trial of gathering, and how far its nested windows are apart: E1 - E2, pass by pass.
+#[derive(Debug)]
+pub(super) struct Gathered {
+    pub(super) tried: Tried,
+    pub(super) apart: Tally,
+}
+
+impl Trials<'_> {
+    /// Photons counted by the sensors.
+    pub(super) fn forward(&self) -> Vec<Tried> {
+        let path = work::of_photon_path(self.photons.segments_per_path);
+        let forward = self.photons_of((self.effort / BATCHES as f64 / path) as u64);
+        let batches: Vec<Readings> =
+            (0..BATCHES).into_par_iter().map(|batch| forward.batch(batch)).collect();
+        let work = batches.iter().map(work::of_photons).sum();
+        self.judged(&batches, work, Estimator::Forward)
+    }
+
+    /// Gather paths that meet the sources.
+    pub(super) fn backward(&self) -> Vec<Tried> {
+        let (plan, sensors) = (self.plan, self.sensors.len() as f64);
+        let path = work::of_gather_path(GATHER_SEGMENTS);
+        let paths = (self.effort / BATCHES as f64 / sensors / path) as u64;
+        let seed = plan.seed ^ SEED;
+        let backward =
+            Backward::new(self.scene, self.sensors, seed, plan.bounce_limit, paths.max(1));
+        let batches: Vec<Readings> =
+            (0..BATCHES).into_par_iter().map(|batch| backward.batch(batch)).collect();
+        let segments = batches.iter().map(|batch| batch.segments).sum();
+        let work = work::of_gather_paths(BATCHES * backward.batch_paths(), segments);
+        // Each sensor alone would have had its share of the work.
+        self.judged(&batches, work / sensors, Estimator::Backward)
+    }
+
+    /// Passes that are smaller than those of a run by one factor in photons and gather paths, and what those of the run
+    /// would cost: pairs, and with them the work they make, grow with the square of that factor.
+    pub(super) fn gather(&self) -> Vec<Gathered> {
+        let Self { scene, plan, photons: pilot, sensors, effort } = *self;
+        let settings = settle(scene, &plan.gather, sensors, plan.seed, pilot);
+        let gather = Gather::new(scene, sensors, plan.seed ^ SEED, settings.depth);
+        let by_photons = settings.photons as f64 * work::of_photon_path(pilot.segments_per_path);
+        let all = (settings.gather_paths * gather.sensors()) as f64;
+        let by_records = all * work::of_recorded_path(f64::from(settings.depth) + 1.0);
+        let part = (effort / PASSES as f64 / (by_photons + by_records)).min(1.0);
+        let scaled = |count: u64| ((part * count as f64).ceil() as u64).max(1);
+        let forward = self.photons_of(scaled(settings.photons));
+        let (window, gather_paths) = (settings.window, scaled(settings.gather_paths));
+        let passes: Vec<PassReadings> = (0..PASSES)
+            .into_par_iter()
+            .map(|batch| gather.pass(&forward, Pass { batch, window, gather_paths }))
+            .collect();
+        let [values, apart] = [[-1.0, 2.0], [1.0, -1.0]].map(|factors| combined(&passes, factors));
+        let gathered = gather_paths * gather.sensors();
+        let work: f64 = passes.iter().map(|pass| work_of_whole(pass, gathered, part)).sum();
+        let seconds = 1e-9 * work / PASSES as f64;
+        let least = PER_PATH / settings.photons as f64 + PER_PATH / settings.gather_paths as f64;
+        let tried = self.judged(&values, 1e9 * seconds, Estimator::Gather);
+        let judged = tried.into_iter().zip(sensors).map(|(mut tried, &sensor)| {
+            let apart = flux(scene, &apart, sensor);
+            let trial = &mut tried.trial;
+            trial.bias = Some((apart.mean() / tried.flux.mean()).abs().min(f64::MAX));
+            trial.least = FIRST_PASSES as f64 * seconds;
+            // Of one pass, and one of the run's.
+            let of_pass = |cost: f64| (cost * PASSES as f64 * part * part).max(seconds * least);
+            trial.cost = trial.cost.map(of_pass);
+            Gathered { tried, apart }
+        });
+        judged.collect()
+    }
+
+    fn photons_of(&self, paths: u64) -> Forward<'_> {
+        let least = self.scene.sources.len().max(1) as u64;
+        let Self { scene, plan, .. } = self;
+        Forward::new(scene, plan.seed ^ SEED, plan.bounce_limit, paths.max(least))
+    }
+
+    /// How an estimator did on each sensor with so much work.
+    fn judged(&self, batches: &[Readings], work: f64, estimator: Estimator) -> Vec<Tried> {
+        let merged = batches.iter().skip(1).fold(batches[0].clone(), |sum, batch| sum.merge(batch));
+        let of_sensor = |&sensor: &SensorId| {
+            let variance = relative_variance(self.scene, batches, &merged, sensor);
+            let cost = variance.map(|variance| 1e-9 * work * variance);
+            let trial = Trial { estimator, cost, bias: None, least: 0.0, objection: None };
+            Tried { trial, flux: flux(self.scene, batches, sensor) }
+        };
+        self.sensors.iter().map(of_sensor).collect()
+    }
+}
+
+/// Sums of the two wider windows with factors, pass by pass.
+fn combined(passes: &[PassReadings], [wide, middle]: [f64; 2]) -> Vec<Readings> {
+    let of_pass = |pass: &PassReadings| {
+        let mut sum = pass.windows[0].combined([wide, middle], &pass.windows[1]);
+        sum.close_batch();
+        sum
+    };
+    passes.iter().map(of_pass).collect()
+}
+
+/// Work of a pass of the run, of which a pass of the pilot with so many gather paths was a part.
+fn work_of_whole(pass: &PassReadings, gather_paths: u64, part: f64) -> f64 {
+    let RecordWork { records, look_ups, pairs } = pass.work;
+    let grown = |count: u64, factor: f64| (count as f64 / factor) as u64;
+    let records = RecordWork {
+        records: grown(records, part),
+        look_ups: grown(look_ups, part * part).min(grown(pass.photons.segments, part)),
+        pairs: grown(pairs, part * part),
+    };
+    let gathering = work::of_gather_paths(gather_paths, pass.windows[0].segments);
+    (work::of_photons(&pass.photons) + gathering) / part + work::of_records(records)
+}
+
+/// Relative variance of the mean over all batches: of the flux, or over cells of Σ σ² / Σ mean². `None` in the dark.
+fn relative_variance(
+    scene: &Scene,
+    batches: &[Readings],
+    merged: &Readings,
+    sensor: SensorId,
+) -> Option<f64> {
+    let cells = &merged.sensors[sensor.index()].cells;
+    if cells.len() == 1 {
+        let flux = flux(scene, batches, sensor);
+        return (flux.mean() != 0.0).then(|| (flux.std_error() / flux.mean()).powi(2));
+    }
+    let (mut variance, mut square) = (0.0, 0.0);
+    for cell in 0..cells.len() {
+        let (mean, error) = cells.mean(cell, merged.batch_count());
+        variance += error * error;
+        // Noise adds its own square to that of the mean.
+        square += mean * mean - error * error;
+    }
+    (variance > 0.0).then(|| if square > 0.0 { variance / square } else { 1.0 })
+}
+
+/// The flux of a sensor, batch by batch.
+fn flux(scene: &Scene, batches: &[Readings], sensor: SensorId) -> Tally {
+    let layout = Layout::new(scene);
+    let sources = || (0..scene.sources.len()).map(SourceId::new);
+    Tally::of(batches.iter().map(|batch| {
+        sources().map(|source| batch.groups[0].sums[layout.sensor_flux(sensor, source)]).sum()
+    }))
+}

@@ -119,7 +119,7 @@ fn expect_sense(job: &Job) -> Result<()> {
 fn expect_visible_sources(job: &Job, problems: &mut Problems) {
     let meets = match job.run.estimator {
         Request::Auto | Request::Forward => false,
-        Request::Backward | Request::Gather => true,
+        Request::Backward | Request::Gather | Request::Mis => true,
     };
     for source in job.scene.sources.iter().filter(|_| meets) {
         let Some(why) = invisible(source, &job.scene) else { continue };

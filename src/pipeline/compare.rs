@@ -31,13 +31,14 @@ pub enum Method {
 
 impl Method {
     /// All of them.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Run(Request::Forward),
         Self::Run(Request::Backward),
         Self::Baseline(Baseline::Sppm),
         Self::Baseline(Baseline::Whitted),
         Self::Baseline(Baseline::Metropolis),
         Self::Run(Request::Gather),
+        Self::Run(Request::Mis),
         Self::Run(Request::Auto),
     ];
 
@@ -58,7 +59,7 @@ impl Method {
     fn meets_sources(self) -> bool {
         match self {
             Self::Run(Request::Auto | Request::Forward) => false,
-            Self::Run(Request::Backward | Request::Gather) => true,
+            Self::Run(Request::Backward | Request::Gather | Request::Mis) => true,
             Self::Baseline(Baseline::Sppm | Baseline::Whitted | Baseline::Metropolis) => true,
         }
     }

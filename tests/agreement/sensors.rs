@@ -4,7 +4,7 @@ use crate::trial::shallow_agree as agree;
 
 /// A mirror tube with a tilted pane in it, a block of glass behind, and sensors. The glass absorbs: light cannot come from
 /// where it would be totally reflected for ever, but a gather path that starts inside has to find that out.
-fn scene(sensors: &str) -> String {
+pub(crate) fn scene(sensors: &str) -> String {
     format!(
         r#"
 [media.glass]

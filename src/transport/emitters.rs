@@ -287,3 +287,63 @@ fn contact(source: &Source) -> Contact {
         SourceStart::Behind => Contact::Behind,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::Medium;
+    use crate::rng::Sampler;
+    use crate::scene::shape::{Cylinder, Flat, Region};
+    use crate::scene::{Builder, Ray};
+    use crate::units::FluxUnit;
+
+    #[test]
+    fn a_photon_and_the_gather_path_that_meets_its_start_tell_the_same_emission() {
+        let mut builder =
+            Builder::new(DVec3::ZERO, Medium::new("water", 1.3, 0.1), FluxUnit::Lumen);
+        let disk = |z: f64| {
+            let frame = Frame::WORLD.shifted(DVec3::new(0.0, 0.0, z));
+            Shape::Flat(Flat::new(frame, Region::Annulus { inner: 0.0, outer: 2.0 }))
+        };
+        let tilted = Frame::from_axis(DVec3::ZERO, DVec3::new(0.3, 0.0, 1.0).normalize());
+        let cone = Emission::Cone { half_angle: 0.2, axis: DVec3::Z };
+        let wall = Shape::Cylinder(Cylinder::new(Frame::WORLD, 1.0, 3.0));
+        for (shapes, frame, emission) in [
+            (vec![disk(5.0)], Some(tilted), cone),
+            (vec![disk(9.0), wall, disk(20.0)], None, Emission::CosinePower(3.0)),
+        ] {
+            builder.add_source(Source {
+                name: "lamp".into(),
+                flux: 7.0,
+                emitter: Emitter::surface(shapes, EmitSide::Front, frame),
+                emission,
+                start: SourceStart::Outside,
+                on: Vec::new(),
+            });
+        }
+        let scene = builder.build();
+        let emitters = Emitters::new(&scene);
+        for (source, index) in [0, 1].into_iter().flat_map(|one| (0..200).map(move |i| (one, i))) {
+            let id = SourceId::new(source);
+            let emitted = scene.sources[source].emit(&scene, &mut Sampler::for_path(3, 0, index));
+            let shape = emitted.shape;
+            let photon = Path::emitted(&scene, id, emitted);
+            let told = emitters.emitted(id, &photon, shape);
+            let back = Ray::new(photon.ray.at(1.0), -photon.ray.dir());
+            let gather = Path { ray: back, throughput: 0.5, ..photon.clone() };
+            let segment = Segment {
+                ray: &back,
+                length: 1.5,
+                medium: gather.medium,
+                throughput: 0.5,
+                arriving: 0.4,
+            };
+            let mut met = Vec::new();
+            emitters.along(&gather, &segment, SegmentStart::Interface, |one| met.push(one));
+            let own = met.iter().find(|met| met.source == id && (met.t - 1.0).abs() < 1e-9);
+            let own = own.expect("the ray leads back to the start");
+            assert!((own.emitted / told - 1.0).abs() < 1e-6, "{source}: {own:?}, {told}");
+            assert!((own.radiance / told / 0.5 - (-0.1f64).exp()).abs() < 1e-6, "{own:?}, {told}");
+        }
+    }
+}

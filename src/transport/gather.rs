@@ -8,17 +8,18 @@
 //! Merged with forward and backward, gather paths go on to the sources, and everything counts by its weight (`merge`).
 
 mod merged;
+mod stream;
 
-use crate::optics::{Bsdf, Incidence, Lobe, Side, Spread, scatter_toward, shares};
+use crate::optics::{Bsdf, Lobe, Side, Spread, scatter_toward, shares};
 use crate::rng::{Dimension, Sampler};
-use crate::scene::shape::Toward;
-use crate::scene::{Arrival, Arrivals, MediumId, Scene, SensorId, SourceId, Visibility};
+use crate::scene::{Arrival, Arrivals, Scene, SensorId};
 use crate::transport::coverage::{Middle, coverage};
 use crate::transport::emitters::{Emitters, Met};
-use crate::transport::estimate::{Arriving, Kernel};
+use crate::transport::estimate::Kernel;
 use crate::transport::follow::{Collector, Gathering, follow};
-use crate::transport::forward::{Forward, PhotonWatcher};
+use crate::transport::forward::Forward;
 use crate::transport::gather::merged::{MergedStream, Merging};
+use crate::transport::gather::stream::Stream;
 use crate::transport::merge::{self, Etendues, Passage};
 use crate::transport::readings::Counted;
 use crate::transport::records::{GatherRecord, Records, Surfaces, Wanted};
@@ -339,80 +340,6 @@ impl<'s> Collecting<'_, 's> {
             values,
             path: self.found.paths.len() as u32 - 1,
             depth: path.depth + 1,
-        });
-    }
-}
-
-/// Photons that stream past the records.
-struct Stream<'p, 's> {
-    gather: &'p Gather<'s>,
-    kernel: Kernel,
-    waiting: &'p Waiting<'s>,
-    windows: &'p mut [Readings; NESTED],
-    work: RecordWork,
-}
-
-impl PhotonWatcher for Stream<'_, '_> {
-    #[inline(always)]
-    fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>, flux: f64, source: SourceId) {
-        if self.may_take(vertex) {
-            self.look_up(path, vertex, flux * vertex.throughput, source, |_| [1.0; NESTED]);
-        }
-    }
-}
-
-impl Stream<'_, '_> {
-    /// Whether there may be records for a photon.
-    #[inline(always)]
-    fn may_take(&self, vertex: &Vertex<'_>) -> bool {
-        let surface = self.gather.surfaces.of(vertex.interface.acting.prim);
-        vertex.interface.visibility == Visibility::Visible
-            && self.waiting.records.may_take(surface, vertex.point, vertex.dir)
-    }
-
-    /// `weigh` tells how much counts within each window of what a gather path and the photon bring together, 1.
-    #[inline(never)]
-    fn look_up(
-        &mut self,
-        path: &Path,
-        vertex: &Vertex<'_>,
-        flux: f64,
-        source: SourceId,
-        weigh: impl Fn(&Ended) -> [f64; NESTED],
-    ) {
-        let Gather { scene, surfaces, layout, .. } = self.gather;
-        let interface = vertex.interface;
-        let surface = surfaces.of(interface.acting.prim);
-        let index = |medium: MediumId| scene.media[medium.index()].index(path.wavelength);
-        let outward = scene.normal(interface.acting.prim, vertex.point);
-        let photon = Arriving {
-            surface,
-            medium: interface.from,
-            point: vertex.point,
-            incidence: Incidence {
-                dir: vertex.dir,
-                normal: match interface.acting.toward {
-                    Toward::Front => -outward,
-                    Toward::Back => outward,
-                },
-                index_from: index(interface.from),
-                index_to: index(interface.to),
-            },
-        };
-        let (kernel, windows, work) = (&self.kernel, &mut *self.windows, &mut self.work);
-        work.look_ups += 1;
-        self.waiting.records.visit(surface, vertex.point, vertex.dir, |record| {
-            let Some(shares) = kernel.flux(record, &photon) else { return };
-            work.pairs += 1;
-            let ended = &self.waiting.paths[record.path as usize];
-            let (Ended { sensor, cells, .. }, weights) = (ended, weigh(ended));
-            let depth = path.depth + record.depth;
-            for ((readings, share), weight) in windows.iter_mut().zip(shares).zip(weights) {
-                if share > 0.0 {
-                    let light = Counted { flux: flux * share * weight, depth, source };
-                    readings.count(layout, *sensor, cells, &light);
-                }
-            }
         });
     }
 }

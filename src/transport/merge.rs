@@ -2,7 +2,7 @@
 //!
 //! All three can find the same path of discrete directions; the balance heuristic (Veach & Guibas, SIGGRAPH 1995)
 //! shares its light among them by the densities with which they do. Per etendue these are `c_F = N p_e`, `c_B = M p_g` and
-//! `c_M = N p_e M p_g G/q` (docs/method.md, eq. 18 to 20). Where the shares come from is not known here, nor who
+//! `c_M = N p_e M p_g G/q` (docs/method.md, eq. 16 to 18). Where the shares come from is not known here, nor who
 //! traces the paths.
 
 use crate::math::projected_cap;
@@ -11,7 +11,7 @@ use crate::scene::Scene;
 use crate::transport::scatter::Facing;
 use crate::transport::window::{NESTED, Window};
 use glam::DVec3;
-use std::collections::VecDeque;
+use std::collections::{BTreeSet, VecDeque};
 
 /// Merged paths have no roulette above this throughput, 1: it would change their densities.
 pub(crate) const ROULETTE_BELOW: f64 = 1e-4;
@@ -124,15 +124,27 @@ impl<'s> Recent<'s> {
     }
 }
 
-/// The first finish of a scene that scatters light off discrete directions, and a face that has it: there the three
-/// estimators find no path in common.
-pub fn unmergeable(scene: &Scene) -> Option<(&str, &str)> {
-    scene.faces.iter().find_map(|face| {
-        let finishes = [face.front, face.back].into_iter().flatten();
-        let mut finishes = finishes.map(|finish| &scene.finishes[finish.index()]);
-        let scatters = finishes.find(|finish| !finish.bsdf.is_specular())?;
-        Some((scatters.name.as_str(), face.name.as_str()))
-    })
+/// A finish that scatters light off discrete directions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Scatterer<'s> {
+    /// Its name, or a description of an inline one.
+    pub finish: &'s str,
+    /// Dotted name of the first face that has it.
+    pub face: &'s str,
+}
+
+/// The finishes of a scene that keep the three estimators from being merged: where light is scattered, a gather path
+/// and a photon that meet by their windows are not the same path as either of them.
+pub fn scatterers(scene: &Scene) -> Vec<Scatterer<'_>> {
+    let mut seen = BTreeSet::new();
+    let sides = scene.faces.iter().flat_map(|face| [face.front, face.back].map(|id| (face, id)));
+    sides
+        .filter_map(|(face, id)| {
+            let finish = &scene.finishes[id?.index()];
+            let is_new = !finish.bsdf.is_specular() && seen.insert(id);
+            is_new.then(|| Scatterer { finish: &finish.name, face: &face.name })
+        })
+        .collect()
 }
 
 #[cfg(test)]

@@ -34,7 +34,7 @@ pub use cells::Cells;
 pub use emitters::invisible;
 pub use findings::{Findings, Gathered};
 pub use layout::{Layout, TAILS};
-pub use merge::unmergeable;
+pub use merge::{Scatterer, scatterers};
 pub use path::{Path, WAVELENGTH};
 pub use pilot::{Choice, Trial};
 pub use readings::{

@@ -100,6 +100,27 @@ near = { goniometer = { c_step_deg = 180, gamma_step_deg = 30, radius_mm = 40 },
 }
 
 #[test]
+fn a_far_field_that_is_aimed_at_a_dome_sees_each_of_its_lines_once() {
+    agree(
+        "dome",
+        r#"
+[media.acrylic]
+index = 1.3
+absorption_per_mm = 0.03
+[solids.dome.sphere]
+radius_mm = 1.5
+medium = "acrylic"
+[sources.led.disk]
+radius_mm = 1
+flux_lm = 10
+at = { position_mm = [0, 0, -2.5] }
+[sensors]
+far = { goniometer = { c_step_deg = 180, gamma_step_deg = 30 }, aim = ["dome.surface"] }
+"#,
+    );
+}
+
+#[test]
 fn luminance_sensors() {
     agree(
         "luminance",

@@ -6,7 +6,8 @@
 use crate::scene::{Ray, SourceId, Visibility};
 use crate::transport::emitters::Met;
 use crate::transport::forward::{Detected, PhotonWatcher};
-use crate::transport::gather::{Pass, Stream};
+use crate::transport::gather::Pass;
+use crate::transport::gather::stream::Stream;
 use crate::transport::merge::{Etendues, NO_WINDOW, Passage, ROULETTE_BELOW, Recent};
 use crate::transport::readings::Counted;
 use crate::transport::scatter::facing;

@@ -7,6 +7,7 @@ use lumiduct::input::{self, Job, Settings};
 use lumiduct::measure::{self, Measures};
 use lumiduct::rng::Sampler;
 use lumiduct::scene::SourceId;
+use lumiduct::scene::plan::Request;
 use lumiduct::transport::{Event, Path as LightPath, Run, walk};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -39,7 +40,9 @@ impl Scenes {
 
 fn load(path: &Path, overrides: &[&str]) -> Job {
     let overrides = overrides.iter().map(|one| (*one).to_owned()).collect();
-    let settings = Settings { overrides, paths: Some(PATHS), ..Settings::default() };
+    // Photons see all of a scene.
+    let estimator = Some(Request::Forward);
+    let settings = Settings { overrides, paths: Some(PATHS), estimator, ..Settings::default() };
     match input::load(path, &settings) {
         Ok(job) => job,
         Err(error) => panic!("{}: {error}", path.display()),

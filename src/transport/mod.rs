@@ -17,6 +17,7 @@ mod merge;
 mod path;
 mod pilot;
 mod readings;
+mod record_index;
 mod records;
 mod rounds;
 mod scatter;

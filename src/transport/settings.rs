@@ -26,9 +26,10 @@ const THETA_DEG: [f64; 2] = [0.05, 3.0];
 const DEPTH: [f64; 2] = [1.0, 8.0];
 /// Straight pieces of photon paths in an automatic pass: seconds of work, so that the first stage ends soon.
 const PASS_SEGMENTS: f64 = 4e6;
-/// Straight pieces that a gather path and its records cost, as measured: they get a fifth of the work of a pass.
-const RECORD_SEGMENTS: f64 = 12.0;
-const RECORD_SHARE: f64 = 0.2;
+/// Straight pieces of photon paths that a gather path and its records cost, as measured, and what share of the work of
+/// the photons they get: limited by pairs, noise is least at equal shares; looking them up costs less with fewer.
+const RECORD_SEGMENTS: f64 = 50.0;
+const RECORD_SHARE: f64 = 0.4;
 
 /// How the gather method works in a run.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

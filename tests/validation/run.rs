@@ -3,6 +3,7 @@
 use crate::table::{Case, Class, Value, Variant};
 use lumiduct::input::{self, Job, Settings};
 use lumiduct::measure::{self, Measure};
+use lumiduct::scene::plan::Request;
 use lumiduct::scene::plan::{Check, RunPlan, StopRules};
 use lumiduct::tally::sigmas;
 use lumiduct::transport::{Findings, Run};
@@ -51,8 +52,13 @@ pub(crate) enum Expected {
 
 /// Runs a variant of a case.
 pub(crate) fn run(case: &Case, variant: &Variant, seed: u64) -> Vec<Finding> {
-    let settings =
-        Settings { overrides: case.overrides(variant), seed: Some(seed), ..Settings::default() };
+    let settings = Settings {
+        overrides: case.overrides(variant),
+        seed: Some(seed),
+        // What the others find is held against it in tests/agreement.
+        estimator: Some(Request::Forward),
+        ..Settings::default()
+    };
     let job = match input::load(&scene_file(&case.scene), &settings) {
         Ok(job) => job,
         Err(error) => panic!("{} {settings:?}: {error}", case.id),

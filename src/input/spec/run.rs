@@ -60,9 +60,9 @@ pub struct TargetSpec {
 #[serde(rename_all = "snake_case")]
 pub enum EstimatorSpec {
     /// For every sensor, what a short trial finds best; the report names the choice and its figures.
+    #[default]
     Auto,
     /// Photon paths from the sources, counted by the sensors.
-    #[default]
     Forward,
     /// Gather paths from the sensors, followed until they meet a source.
     Backward,

@@ -2,11 +2,12 @@
 
 use crate::optics::Incidence;
 use crate::scene::shape::Toward;
-use crate::scene::{MediumId, SourceId, Visibility};
+use crate::scene::{MediumId, Scene, SourceId, Visibility};
 use crate::transport::estimate::{Arriving, Kernel};
 use crate::transport::forward::PhotonWatcher;
 use crate::transport::gather::{Ended, Gather, Waiting};
 use crate::transport::readings::Counted;
+use crate::transport::records::Slot;
 use crate::transport::window::NESTED;
 use crate::transport::work::RecordWork;
 use crate::transport::{Path, Readings, Vertex};
@@ -49,28 +50,14 @@ impl Stream<'_, '_> {
         weigh: impl Fn(&Ended) -> [f64; NESTED],
     ) {
         let Gather { scene, surfaces, layout, .. } = self.gather;
-        let interface = vertex.interface;
-        let surface = surfaces.of(interface.acting.prim);
-        let index = |medium: MediumId| scene.media[medium.index()].index(path.wavelength);
-        let outward = scene.normal(interface.acting.prim, vertex.point);
-        let photon = Arriving {
-            surface,
-            medium: interface.from,
-            point: vertex.point,
-            incidence: Incidence {
-                dir: vertex.dir,
-                normal: match interface.acting.toward {
-                    Toward::Front => -outward,
-                    Toward::Back => outward,
-                },
-                index_from: index(interface.from),
-                index_to: index(interface.to),
-            },
-        };
+        let surface = surfaces.of(vertex.interface.acting.prim);
+        // Most photons that pass the filter are near no record after all.
+        let mut known = None;
         let (kernel, windows, work) = (&self.kernel, &mut *self.windows, &mut self.work);
         work.look_ups += 1;
         self.waiting.records.visit(surface, vertex.point, vertex.dir, |record| {
-            let Some(shares) = kernel.flux(record, &photon) else { return };
+            let photon = known.get_or_insert_with(|| arriving(scene, surface, path, vertex));
+            let Some(shares) = kernel.flux(record, photon) else { return };
             work.pairs += 1;
             let ended = &self.waiting.paths[record.path as usize];
             let (Ended { sensor, cells, .. }, weights) = (ended, weigh(ended));
@@ -82,5 +69,26 @@ impl Stream<'_, '_> {
                 }
             }
         });
+    }
+}
+
+/// A photon as records take it.
+fn arriving(scene: &Scene, surface: Slot, path: &Path, vertex: &Vertex<'_>) -> Arriving {
+    let interface = vertex.interface;
+    let index = |medium: MediumId| scene.media[medium.index()].index(path.wavelength);
+    let outward = scene.normal(interface.acting.prim, vertex.point);
+    Arriving {
+        surface,
+        medium: interface.from,
+        point: vertex.point,
+        incidence: Incidence {
+            dir: vertex.dir,
+            normal: match interface.acting.toward {
+                Toward::Front => -outward,
+                Toward::Back => outward,
+            },
+            index_from: index(interface.from),
+            index_to: index(interface.to),
+        },
     }
 }

@@ -8,7 +8,7 @@ use crate::number::{format_percent, format_value, format_with_error};
 use crate::report::csv::{map_name, map_words};
 use crate::report::{CheckResult, Report};
 use crate::scene::plan::Estimator;
-use crate::transport::Trial;
+use crate::transport::{Objection, Trial};
 use std::fmt::Write;
 
 /// Path classes that are listed one by one for a sensor.
@@ -119,7 +119,8 @@ fn choices(report: &Report) -> String {
         return String::new();
     }
     let mut text = "## Choice of estimators\n\nSeconds of one thread of the reference machine until 1 % of a sensor's \
-                    flux or map is reached, by a pilot, in counted work; for gathering also how far its windows are apart.\n\n\
+                    flux or map is reached, by a pilot, in counted work; for gathering also how far its windows are apart. \
+                    Gathering is not chosen where its windows differ beyond noise or an unbiased estimator contradicts it.\n\n\
                     | sensor | chosen | forward | backward | gather |\n|---|---|--:|--:|--:|\n"
         .to_owned();
     for (sensor, choice) in choices {
@@ -136,9 +137,16 @@ fn choices(report: &Report) -> String {
 fn trial_words(trial: &Trial) -> String {
     // 1 % squared.
     let cost = trial.cost.map_or("found nothing".into(), |cost| format!("{:.3e} s", cost / 1e-4));
+    let objection = match trial.objection {
+        Some(Objection::WindowsDiffer) => " (its windows differ)",
+        Some(Objection::Contradicted) => " (contradicted)",
+        None => "",
+    };
     match trial.bias {
-        Some(bias) if trial.cost.is_some() => format!("{cost}, {:.1} %", 100.0 * bias),
-        Some(_) | None => cost,
+        Some(bias) if trial.cost.is_some() => {
+            format!("{cost}, {:.1} %{objection}", 100.0 * bias)
+        }
+        Some(_) | None => cost + objection,
     }
 }
 

@@ -37,7 +37,7 @@ pub use findings::{Findings, Gathered};
 pub use layout::{Layout, TAILS};
 pub use merge::{Scatterer, scatterers};
 pub use path::{Path, WAVELENGTH};
-pub use pilot::{Choice, Trial};
+pub use pilot::{Choice, Objection, Trial};
 pub use readings::{
     ClassSum, DEPTH_BINS, GROUPS, Group, Leak, Readings, SensorReading, Step, Trail,
 };

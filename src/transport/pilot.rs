@@ -2,18 +2,20 @@
 //!
 //! The work until a target error is reached is t = work × relative variance / target². The pilot measures it for
 //! forward, backward and gather with a small part of the budget, in counted work, never in time; the least t is taken.
-//! Gathering is considered only where its nested windows agree within the target: where they do not, its bias would
-//! have to be shrunk away at a cost that a pilot cannot foresee.
+//! Gathering is left out where something speaks against it: nested windows that differ by more than the target and
+//! their noise, or a flux that the best of the unbiased two contradicts. Two windows alone are blind to a feature that
+//! is smaller than both.
 
-use crate::scene::plan::{Estimator, GatherPlan, RunPlan};
+use crate::scene::plan::{Estimator, RunPlan};
 use crate::scene::{Scene, SensorId};
 use crate::tally::Tally;
 use crate::transport::backward::Backward;
 use crate::transport::emitters::invisible;
 use crate::transport::forward::Forward;
-use crate::transport::gather::{Gather, Pass};
+use crate::transport::gather::{Gather, Pass, PassReadings};
 use crate::transport::readings::Readings;
 use crate::transport::settings::{PhotonPilot, settle};
+use crate::transport::work::RecordWork;
 use crate::transport::{Layout, work};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -24,8 +26,14 @@ const SHARE: f64 = 0.05;
 const TARGET_BUDGET: f64 = 6e10;
 /// Least and most work of a pilot.
 const BOUNDS: [f64; 2] = [1e8, 4e9];
-/// Batches, or passes, from which each estimator is judged.
+/// Batches from which an estimator is judged.
 const BATCHES: u64 = 16;
+/// Passes from which gathering is judged: few, because the pairs that limit it grow with the square of a pass.
+const PASSES: u64 = 4;
+/// Least relative variance of a pass times its photons, or its gather paths: what pairs without limit would leave.
+const PER_PATH: f64 = 4.0;
+/// Standard errors beyond which a difference counts.
+const SIGMAS: f64 = 3.0;
 /// Relative error that is aimed at where no target is set, 1.
 const USUAL_TARGET: f64 = 0.01;
 /// Random numbers of the pilot are those of another seed: what it chooses by is not counted again.
@@ -52,6 +60,32 @@ pub struct Trial {
     pub cost: Option<f64>,
     /// |E1 - E2| over the value, of a gathered one, 1.
     pub bias: Option<f64>,
+    /// What keeps it from being chosen, whatever it costs.
+    pub objection: Option<Objection>,
+}
+
+/// What speaks against gathering.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Objection {
+    /// Its nested windows differ by more than the target, beyond their noise.
+    WindowsDiffer,
+    /// Its flux is not that of an unbiased estimator.
+    Contradicted,
+}
+
+/// A trial, and the flux it found, batch by batch.
+#[derive(Debug)]
+struct Tried {
+    trial: Trial,
+    flux: Tally,
+}
+
+/// A trial of gathering, and how far its nested windows are apart: E1 - E2, pass by pass.
+#[derive(Debug)]
+struct Gathered {
+    tried: Tried,
+    apart: Tally,
 }
 
 /// Tries the estimators on all sensors and chooses.
@@ -72,19 +106,40 @@ pub(crate) fn choose(scene: &Scene, plan: &RunPlan, pilot: PhotonPilot) -> Vec<C
     sensors
         .iter()
         .map(|sensor| {
-            let of = |trials: &[Trial]| trials.get(sensor.index()).cloned();
-            let tried: Vec<Trial> =
-                [of(&forward), of(&backward), of(&gather)].into_iter().flatten().collect();
-            Choice { chosen: best(&tried, target), tried }
+            let unbiased = [&forward, &backward].map(|tried| tried.get(sensor.index()));
+            let gathered = gather.get(sensor.index()).map(|gathered| Trial {
+                objection: objection(gathered, unbiased, target),
+                ..gathered.tried.trial.clone()
+            });
+            let unbiased = unbiased.into_iter().flatten().map(|tried| tried.trial.clone());
+            let tried: Vec<Trial> = unbiased.chain(gathered).collect();
+            Choice { chosen: best(&tried), tried }
         })
         .collect()
 }
 
-/// The estimator of least cost among those whose bias is below the target; forward where none found anything.
-fn best(tried: &[Trial], target: f64) -> Estimator {
-    let fit = tried.iter().filter(|trial| trial.bias.is_none_or(|bias| bias <= target));
+/// The estimator of least cost to which nothing is objected; forward where none found anything.
+fn best(tried: &[Trial]) -> Estimator {
+    let fit = tried.iter().filter(|trial| trial.objection.is_none());
     let known = fit.filter_map(|trial| Some((trial.cost?, trial.estimator)));
     known.min_by(|(a, _), (b, _)| a.total_cmp(b)).map_or(Estimator::Forward, |(_, best)| best)
+}
+
+/// What speaks against a gathered flux, beside what the unbiased estimators found.
+fn objection(gathered: &Gathered, unbiased: [Option<&Tried>; 2], target: f64) -> Option<Objection> {
+    let (flux, apart) = (&gathered.tried.flux, &gathered.apart);
+    let allowed = target * flux.mean().abs();
+    if apart.mean().abs() > allowed + SIGMAS * apart.std_error() {
+        return Some(Objection::WindowsDiffer);
+    }
+    let other = unbiased
+        .into_iter()
+        .flatten()
+        .filter(|tried| tried.flux.mean() > 0.0)
+        .min_by(|a, b| a.flux.std_error().total_cmp(&b.flux.std_error()))?;
+    let error = flux.std_error().hypot(other.flux.std_error());
+    let off = (flux.mean() - other.flux.mean()).abs();
+    (off > allowed + SIGMAS * error).then_some(Objection::Contradicted)
 }
 
 /// Work that each estimator may use.
@@ -102,7 +157,7 @@ fn try_forward(
     pilot: PhotonPilot,
     effort: f64,
     sensors: &[SensorId],
-) -> Vec<Trial> {
+) -> Vec<Tried> {
     let paths = effort / BATCHES as f64 / work::of_photon_path(pilot.segments_per_path);
     let paths = (paths as u64).max(scene.sources.len() as u64).max(1);
     let forward = Forward::new(scene, plan.seed ^ SEED, plan.bounce_limit, paths);
@@ -112,7 +167,7 @@ fn try_forward(
     trials(scene, sensors, &batches, work, Estimator::Forward)
 }
 
-fn try_backward(scene: &Scene, plan: &RunPlan, effort: f64, sensors: &[SensorId]) -> Vec<Trial> {
+fn try_backward(scene: &Scene, plan: &RunPlan, effort: f64, sensors: &[SensorId]) -> Vec<Tried> {
     let all = (BATCHES * sensors.len() as u64) as f64;
     let paths = effort / all / work::of_gather_path(GATHER_SEGMENTS);
     let backward =
@@ -125,37 +180,29 @@ fn try_backward(scene: &Scene, plan: &RunPlan, effort: f64, sensors: &[SensorId]
     trials(scene, sensors, &batches, work / sensors.len() as f64, Estimator::Backward)
 }
 
+/// Tries passes that are smaller than those of a run by one factor in photons and gather paths, and tells what those of
+/// the run would cost: pairs, and with them the work they make, grow with the square of that factor.
 fn try_gather(
     scene: &Scene,
     plan: &RunPlan,
     pilot: PhotonPilot,
     effort: f64,
     sensors: &[SensorId],
-) -> Vec<Trial> {
-    let photons = 0.3 * effort / BATCHES as f64 / work::of_photon_path(pilot.segments_per_path);
-    let wishes = GatherPlan { photons: Some((photons as u64).max(1)), ..plan.gather };
-    let settings = settle(scene, &wishes, sensors, plan.seed ^ SEED, pilot);
-    let forward = Forward::new(scene, plan.seed ^ SEED, plan.bounce_limit, settings.photons.max(1));
+) -> Vec<Gathered> {
+    let settings = settle(scene, &plan.gather, sensors, plan.seed, pilot);
     let gather = Gather::new(scene, sensors, plan.seed ^ SEED, settings.depth);
-    let paths = 0.5 * effort
-        / (BATCHES * sensors.len() as u64) as f64
-        / work::of_gather_path(f64::from(settings.depth) + 1.0);
-    let passes: Vec<_> = (0..BATCHES)
+    let by_photons = settings.photons as f64 * work::of_photon_path(pilot.segments_per_path);
+    let all = (settings.gather_paths * gather.sensors()) as f64;
+    let by_records = all * work::of_recorded_path(f64::from(settings.depth) + 1.0);
+    let part = (effort / PASSES as f64 / (by_photons + by_records)).min(1.0);
+    let scaled = |count: u64| ((part * count as f64).ceil() as u64).max(1);
+    let photons = scaled(settings.photons).max(scene.sources.len() as u64);
+    let forward = Forward::new(scene, plan.seed ^ SEED, plan.bounce_limit, photons);
+    let (window, gather_paths) = (settings.window, scaled(settings.gather_paths));
+    let passes: Vec<PassReadings> = (0..PASSES)
         .into_par_iter()
-        .map(|batch| {
-            let gather_paths = (paths as u64).max(1);
-            gather.pass(&forward, Pass { batch, window: settings.window, gather_paths })
-        })
+        .map(|batch| gather.pass(&forward, Pass { batch, window, gather_paths }))
         .collect();
-    let work: f64 = passes
-        .iter()
-        .map(|pass| {
-            let gathering = pass.windows[0].segments;
-            work::of_photons(&pass.photons)
-                + work::of_gather_paths(gather.sensors() * (paths as u64).max(1), gathering)
-                + work::of_records(pass.work)
-        })
-        .sum();
     let closed = |[a, b]: [f64; 2], one: usize, other: usize| -> Vec<Readings> {
         let all = passes.iter().map(|pass| {
             let mut sum = pass.windows[one].combined([a, b], &pass.windows[other]);
@@ -164,14 +211,35 @@ fn try_gather(
         });
         all.collect()
     };
-    let values = closed([2.0, -1.0], 1, 0);
-    let biases = closed([1.0, -1.0], 0, 1);
-    let mut found = trials(scene, sensors, &values, work, Estimator::Gather);
-    for (trial, &sensor) in found.iter_mut().zip(sensors) {
-        let [value, bias] = [&values, &biases].map(|batches| flux(scene, batches, sensor));
-        trial.bias = Some((bias.mean().abs() / value.mean().abs()).min(f64::MAX));
-    }
-    found
+    let (values, apart) = (closed([2.0, -1.0], 1, 0), closed([1.0, -1.0], 0, 1));
+    let gathered = gather_paths * gather.sensors();
+    let work = passes.iter().map(|pass| work_of_whole(pass, gathered, part)).sum::<f64>();
+    let work = work / PASSES as f64;
+    let least = PER_PATH / settings.photons as f64 + PER_PATH / settings.gather_paths as f64;
+    let tried = trials(scene, sensors, &values, work, Estimator::Gather);
+    let judged = tried.into_iter().zip(sensors).map(|(mut tried, &sensor)| {
+        let apart = flux(scene, &apart, sensor);
+        let value = tried.flux.mean().abs();
+        tried.trial.bias = Some((apart.mean().abs() / value).min(f64::MAX));
+        // Of one pass, and one of the run's.
+        let of_pass = |cost: f64| (cost * PASSES as f64 * part * part).max(1e-9 * work * least);
+        tried.trial.cost = tried.trial.cost.map(of_pass);
+        Gathered { tried, apart }
+    });
+    judged.collect()
+}
+
+/// Work of a pass of the run, of which a pass of the pilot with so many gather paths was a part.
+fn work_of_whole(pass: &PassReadings, gather_paths: u64, part: f64) -> f64 {
+    let RecordWork { records, look_ups, pairs } = pass.work;
+    let grown = |count: u64, factor: f64| (count as f64 / factor) as u64;
+    let records = RecordWork {
+        records: grown(records, part),
+        look_ups: grown(look_ups, part * part).min(grown(pass.photons.segments, part)),
+        pairs: grown(pairs, part * part),
+    };
+    let gathering = work::of_gather_paths(gather_paths, pass.windows[0].segments);
+    (work::of_photons(&pass.photons) + gathering) / part + work::of_records(records)
 }
 
 /// How an estimator did on each sensor.
@@ -181,13 +249,15 @@ fn trials(
     batches: &[Readings],
     work: f64,
     estimator: Estimator,
-) -> Vec<Trial> {
+) -> Vec<Tried> {
     let merged = batches.iter().skip(1).fold(batches[0].clone(), |sum, batch| sum.merge(batch));
     sensors
         .iter()
         .map(|&sensor| {
             let variance = relative_variance(scene, batches, &merged, sensor);
-            Trial { estimator, cost: variance.map(|variance| 1e-9 * work * variance), bias: None }
+            let cost = variance.map(|variance| 1e-9 * work * variance);
+            let trial = Trial { estimator, cost, bias: None, objection: None };
+            Tried { trial, flux: flux(scene, batches, sensor) }
         })
         .collect()
 }
@@ -221,4 +291,55 @@ fn flux(scene: &Scene, batches: &[Readings], sensor: SensorId) -> Tally {
     Tally::of(batches.iter().map(|batch| {
         sources().map(|source| batch.groups[0].sums[layout.sensor_flux(sensor, source)]).sum()
     }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tried(estimator: Estimator, cost: Option<f64>, fluxes: [f64; 4]) -> Tried {
+        let trial = Trial { estimator, cost, bias: None, objection: None };
+        Tried { trial, flux: Tally::of(fluxes) }
+    }
+
+    fn gathered(fluxes: [f64; 4], apart: [f64; 4]) -> Gathered {
+        let tried = tried(Estimator::Gather, Some(1.0), fluxes);
+        Gathered { tried, apart: Tally::of(apart) }
+    }
+
+    #[test]
+    fn the_cheapest_estimator_without_an_objection_is_chosen() {
+        let of = |estimator, cost| tried(estimator, cost, [1.0; 4]).trial;
+        let mut trials = vec![
+            of(Estimator::Forward, Some(3.0)),
+            of(Estimator::Backward, None),
+            of(Estimator::Gather, Some(1.0)),
+        ];
+        assert_eq!(best(&trials), Estimator::Gather);
+        trials[2].objection = Some(Objection::WindowsDiffer);
+        assert_eq!(best(&trials), Estimator::Forward);
+        trials[0].cost = None;
+        assert_eq!(best(&trials), Estimator::Forward, "in the dark");
+    }
+
+    #[test]
+    fn windows_object_when_they_differ_beyond_target_and_noise() {
+        let target = 0.01;
+        let with = |apart| objection(&gathered([1.0; 4], apart), [None, None], target);
+        assert_eq!(with([0.2, 0.21, 0.2, 0.19]), Some(Objection::WindowsDiffer));
+        assert_eq!(with([0.009; 4]), None, "within the target");
+        assert_eq!(with([0.3, -0.2, 0.25, -0.15]), None, "noise");
+    }
+
+    #[test]
+    fn the_better_of_the_unbiased_estimators_contradicts_a_flux() {
+        let flux = gathered([0.50, 0.52, 0.49, 0.49], [0.0; 4]);
+        let noisy = tried(Estimator::Forward, Some(1.0), [0.0, 2.0, 0.0, 0.0]);
+        let sharp = tried(Estimator::Backward, Some(1.0), [1.0, 1.02, 0.99, 0.99]);
+        let dark = tried(Estimator::Backward, None, [0.0; 4]);
+        let with = |others| objection(&flux, others, 0.01);
+        assert_eq!(with([Some(&noisy), Some(&sharp)]), Some(Objection::Contradicted));
+        assert_eq!(with([Some(&noisy), Some(&dark)]), None, "what saw nothing says nothing");
+        assert_eq!(with([None, None]), None);
+    }
 }

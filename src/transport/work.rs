@@ -11,8 +11,8 @@ const PHOTON_SEGMENT: f64 = 45.0;
 const GATHER_PATH: f64 = 600.0;
 const GATHER_SEGMENT: f64 = 60.0;
 /// Per gather record, made and indexed; per photon that passes the filter; per photon that a record takes.
-const RECORD: f64 = 900.0;
-const LOOK_UP: f64 = 200.0;
+const RECORD: f64 = 1800.0;
+const LOOK_UP: f64 = 300.0;
 const PAIR: f64 = 80.0;
 
 /// What a pass did beside tracing.
@@ -39,6 +39,11 @@ pub(crate) fn of_photon_path(segments: f64) -> f64 {
 /// Work of a gather path with so many straight pieces.
 pub(crate) fn of_gather_path(segments: f64) -> f64 {
     GATHER_PATH + GATHER_SEGMENT * segments
+}
+
+/// Work of a gather path with so many straight pieces that ends in a record.
+pub(crate) fn of_recorded_path(segments: f64) -> f64 {
+    of_gather_path(segments) + RECORD
 }
 
 /// Work of gather paths.

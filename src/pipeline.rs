@@ -17,7 +17,7 @@ use crate::report::{
     Written, inventory, write_whole,
 };
 use crate::scene::plan::{Request, RunPlan};
-use crate::transport::{Findings, Interrupt, Run, invisible, tracks};
+use crate::transport::{Findings, Interrupt, Run, Scatterer, invisible, scatterers, tracks};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -106,6 +106,7 @@ fn expect_sense(job: &Job) -> Result<()> {
             .hint("add a table such as [sources.led.disk]");
     }
     expect_visible_sources(job, &mut problems);
+    expect_discrete_directions(job, &mut problems);
     for (key, name) in target.chain(checks).filter(|(_, name)| !names.contains(name)) {
         let nearest = measure::nearest(name, names.iter().map(String::as_str));
         problems
@@ -119,7 +120,7 @@ fn expect_sense(job: &Job) -> Result<()> {
 fn expect_visible_sources(job: &Job, problems: &mut Problems) {
     let meets = match job.run.estimator {
         Request::Auto | Request::Forward => false,
-        Request::Backward | Request::Gather => true,
+        Request::Backward | Request::Gather | Request::Mis => true,
     };
     for source in job.scene.sources.iter().filter(|_| meets) {
         let Some(why) = invisible(source, &job.scene) else { continue };
@@ -128,6 +129,22 @@ fn expect_visible_sources(job: &Job, problems: &mut Problems) {
         problems
             .error(&Key::of(&["run", "estimator"]), message)
             .hint("use `forward` or `auto`, or give the source an area and a cone of directions");
+    }
+}
+
+/// Refuses merging where a finish scatters.
+fn expect_discrete_directions(job: &Job, problems: &mut Problems) {
+    match job.run.estimator {
+        Request::Auto | Request::Forward | Request::Backward | Request::Gather => return,
+        Request::Mis => {}
+    }
+    for Scatterer { finish, face } in scatterers(&job.scene) {
+        let message = format!(
+            "`mis` merges paths of discrete directions only: the finish `{finish}` on `{face}` scatters light"
+        );
+        problems
+            .error(&Key::of(&["run", "estimator"]), message)
+            .hint("use `auto`, or one of `forward`, `backward` and `gather`");
     }
 }
 

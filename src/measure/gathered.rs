@@ -68,6 +68,7 @@ pub struct StageFacts {
 /// A stage that speaks for a sensor.
 pub(crate) struct Judged<'a> {
     photons: Evidence<'a>,
+    estimator: Estimator,
     pub(crate) stage: &'a Stage,
     pub(crate) resolution: Resolution,
 }
@@ -79,10 +80,12 @@ pub(crate) fn judged<'a>(
     id: SensorId,
 ) -> Option<Judged<'a>> {
     let slots = flux_slots(&photons, id);
+    let estimator = findings.estimator(id);
     let stages = findings.gathered.as_ref()?.stages.iter();
     let with_error = stages.map(|stage| {
         let resolution = resolution(&stage.windows, &slots);
-        (total_error(&stage.windows, resolution, &slots), Judged { photons, stage, resolution })
+        let judged = Judged { photons, estimator, stage, resolution };
+        (total_error(&stage.windows, resolution, &slots), judged)
     });
     with_error.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, judged)| judged)
 }
@@ -95,7 +98,7 @@ impl<'a> Judged<'a> {
             Resolution::Resolved => extrapolated,
             Resolution::NotResolved => narrow,
         };
-        [value, wide, middle].map(|readings| self.photons.by(readings, Estimator::Gather))
+        [value, wide, middle].map(|readings| self.photons.by(readings, self.estimator))
     }
 
     /// How the values came about; `None` without anything gathered.
@@ -113,7 +116,7 @@ impl<'a> Judged<'a> {
 
     /// Tells the bias of a measure by what it is within the two wider windows.
     pub(crate) fn tell_bias(&self, measure: &mut Measure, wide: &Measure, middle: &Measure) {
-        if measure.estimator != Estimator::Gather {
+        if measure.estimator != self.estimator {
             return;
         }
         let delta = (wide.value - middle.value).abs();

@@ -84,7 +84,7 @@ fn evidence<'a>(scene: &'a Scene, findings: &'a Findings, id: SensorId) -> Spoke
             let own = findings.backward.as_ref().map(|own| photons.by(own, estimator));
             Spoken::Plainly(own.unwrap_or(photons))
         }
-        Estimator::Gather => match judged(photons, findings, id) {
+        Estimator::Gather | Estimator::Mis => match judged(photons, findings, id) {
             Some(judged) => Spoken::InWindows(judged),
             None => Spoken::Plainly(photons),
         },

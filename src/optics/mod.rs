@@ -17,5 +17,5 @@ pub use bsdf::{Bsdf, Incidence, Lobe, Scattered, Side};
 pub use evaluate::evaluate;
 pub use gaussian::Gaussian;
 pub use medium::Medium;
-pub use shares::{Shares, shares};
+pub use shares::{Shares, chances, shares};
 pub use spread::Spread;

@@ -23,6 +23,27 @@ impl Shares {
     }
 }
 
+/// Probabilities with which [`Bsdf::scatter`] sends light that it does not absorb to the two sides, 1; both are 0 where
+/// it always absorbs. The parts of a mixture count by their weights.
+pub fn chances(bsdf: &Bsdf, incidence: &Incidence) -> Shares {
+    match bsdf {
+        Bsdf::Smooth
+        | Bsdf::GaussianDielectric { .. }
+        | Bsdf::Specular { .. }
+        | Bsdf::Lambertian { .. }
+        | Bsdf::GaussianSheet { .. }
+        | Bsdf::Metal { .. }
+        | Bsdf::Absorber
+        | Bsdf::Open => {
+            let Shares { reflected, transmitted } = shares(bsdf, incidence);
+            let sum = reflected + transmitted;
+            let least = if sum > 0.0 { 1.0 / sum } else { 0.0 };
+            Shares { reflected: least * reflected, transmitted: least * transmitted }
+        }
+        Bsdf::Mixture(parts) => mean(parts, |part| chances(part, incidence)),
+    }
+}
+
 /// The shares of a finish for light that arrives as `incidence` says.
 pub fn shares(bsdf: &Bsdf, incidence: &Incidence) -> Shares {
     match bsdf {
@@ -39,17 +60,20 @@ pub fn shares(bsdf: &Bsdf, incidence: &Incidence) -> Shares {
         },
         Bsdf::Absorber => Shares { reflected: 0.0, transmitted: 0.0 },
         Bsdf::Open => Shares { reflected: 0.0, transmitted: 1.0 },
-        Bsdf::Mixture(parts) => {
-            let mut mean = Shares { reflected: 0.0, transmitted: 0.0 };
-            let total: f64 = parts.iter().map(|(weight, _)| weight).sum();
-            for (weight, part) in parts {
-                let of_part = shares(part, incidence);
-                mean.reflected += weight / total * of_part.reflected;
-                mean.transmitted += weight / total * of_part.transmitted;
-            }
-            mean
-        }
+        Bsdf::Mixture(parts) => mean(parts, |part| shares(part, incidence)),
     }
+}
+
+/// The mean over the parts of a mixture.
+fn mean(parts: &[(f64, Bsdf)], of: impl Fn(&Bsdf) -> Shares) -> Shares {
+    let mut mean = Shares { reflected: 0.0, transmitted: 0.0 };
+    let total: f64 = parts.iter().map(|(weight, _)| weight).sum();
+    for (weight, part) in parts {
+        let of_part = of(part);
+        mean.reflected += weight / total * of_part.reflected;
+        mean.transmitted += weight / total * of_part.transmitted;
+    }
+    mean
 }
 
 /// Fresnel's shares; between equal indices all goes through, also along the face.
@@ -86,7 +110,7 @@ mod tests {
     use crate::tally::Tally;
 
     #[test]
-    fn photons_go_to_each_side_in_the_shares_that_are_told() {
+    fn photons_go_to_each_side_in_the_shares_and_with_the_chances_that_are_told() {
         let sheet = Bsdf::Specular { reflectance: 0.5, transmittance: 0.3 };
         let finishes = [
             Bsdf::Smooth,
@@ -105,17 +129,22 @@ mod tests {
                 let dir = DVec3::new(angle.sin(), 0.0, -angle.cos());
                 let incidence = Incidence { dir, normal: DVec3::Z, index_from, index_to };
                 for side in [Side::Reflected, Side::Transmitted] {
-                    let told = shares(bsdf, &incidence).of(side);
-                    let seen = Tally::of((0..10_000).map(|index| {
-                        let mut sampler = Sampler::for_path(5, 0, index);
-                        bsdf.scatter(&incidence, &mut sampler)
-                            .filter(|out| out.side == side)
-                            .map_or(0.0, |out| out.factor)
-                    }));
-                    // A constant share is met but for rounding.
-                    let met =
-                        (seen.mean() - told).abs() < 1e-9 || seen.sigmas_from(told).abs() < 4.0;
-                    assert!(met, "{bsdf:?} at {angle}, {side:?}: {seen:?}, told {told}");
+                    let sent = |worth: fn(f64) -> f64| {
+                        Tally::of((0..10_000).map(|index| {
+                            let mut sampler = Sampler::for_path(5, 0, index);
+                            bsdf.scatter(&incidence, &mut sampler)
+                                .filter(|out| out.side == side)
+                                .map_or(0.0, |out| worth(out.factor))
+                        }))
+                    };
+                    let flux = (sent(|factor| factor), shares(bsdf, &incidence).of(side));
+                    let number = (sent(|_| 1.0), chances(bsdf, &incidence).of(side));
+                    for (seen, told) in [flux, number] {
+                        // A constant share is met but for rounding.
+                        let met =
+                            (seen.mean() - told).abs() < 1e-9 || seen.sigmas_from(told).abs() < 4.0;
+                        assert!(met, "{bsdf:?} at {angle}, {side:?}: {seen:?}, told {told}");
+                    }
                 }
             }
         }

@@ -14,7 +14,7 @@ use crate::pipeline::{Output, VERSION, expect_sense, output_dir};
 use crate::report::{self, Comparison, Contestant, Folder};
 use crate::scene::SensorId;
 use crate::scene::plan::{Request, RunPlan, StopRules};
-use crate::transport::{Baseline, Interrupt, invisible};
+use crate::transport::{Baseline, Interrupt, Scatterer, invisible, scatterers};
 use runner::{Stint, trace};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -31,13 +31,14 @@ pub enum Method {
 
 impl Method {
     /// All of them.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Run(Request::Forward),
         Self::Run(Request::Backward),
         Self::Baseline(Baseline::Sppm),
         Self::Baseline(Baseline::Whitted),
         Self::Baseline(Baseline::Metropolis),
         Self::Run(Request::Gather),
+        Self::Run(Request::Mis),
         Self::Run(Request::Auto),
     ];
 
@@ -58,7 +59,7 @@ impl Method {
     fn meets_sources(self) -> bool {
         match self {
             Self::Run(Request::Auto | Request::Forward) => false,
-            Self::Run(Request::Backward | Request::Gather) => true,
+            Self::Run(Request::Backward | Request::Gather | Request::Mis) => true,
             Self::Baseline(Baseline::Sppm | Baseline::Whitted | Baseline::Metropolis) => true,
         }
     }
@@ -207,11 +208,17 @@ fn sensor(job: &Job, name: Option<&str>) -> Result<SensorId> {
     Ok(SensorId::new(place))
 }
 
-/// Refuses methods that are not there, or cannot meet a source.
+/// Refuses methods that cannot meet a source, or cannot be merged.
 fn expect_able(job: &Job, methods: &[Method]) -> Result<()> {
     let unseen = job.scene.sources.iter().find_map(|source| {
         invisible(source, &job.scene).map(|why| format!("the source `{}`: {why}", source.name))
     });
+    let merges = methods.contains(&Method::Run(Request::Mis));
+    if let Some(Scatterer { finish, face }) = scatterers(&job.scene).first().filter(|_| merges) {
+        return Err(Error::Usage(format!(
+            "--estimators: mis merges paths of discrete directions only: the finish `{finish}` on `{face}` scatters light; leave it out"
+        )));
+    }
     let blind: Vec<&str> = methods
         .iter()
         .filter(|method| method.meets_sources())

@@ -82,6 +82,20 @@ impl<'s> FaceArea<'s> {
         }
         sum / self.area()
     }
+
+    /// Density over area across the ray's line, 1/mm², with which lines of its direction through points drawn from the
+    /// area are it: Σ 1/(A |cos|) over all places where the ray meets the area.
+    pub fn density_across(&self, ray: &Ray) -> f64 {
+        let mut sum = 0.0;
+        for piece in &self.pieces {
+            piece.crossings(ray, |t, normal| {
+                if t > 0.0 {
+                    sum += 1.0 / ray.dir().dot(normal).abs();
+                }
+            });
+        }
+        sum / self.area()
+    }
 }
 
 fn pieces_of(scene: &Scene, face: FaceId) -> Vec<Piece<'_>> {

@@ -109,6 +109,50 @@ impl<'s> Arrivals<'s> {
         }
     }
 
+    /// What a draw of a start stands for, as [`Arrival::extent`] says, mm² sr: here for a start that need not have been
+    /// drawn. The ray leaves the sensor against light that the sensor counts; `normal` is that of a surface sensor.
+    pub fn extent(&self, ray: &Ray, normal: DVec3) -> f64 {
+        match &self.place {
+            Origin::Surface(sensor, area) => {
+                area.area() * self.surface_projected(sensor, ray, normal)
+            }
+            Origin::Sphere(goniometer, around) => match goniometer.radius {
+                None => {
+                    let beyond = ray.origin() - 4.0 * around.radius * ray.dir();
+                    self.across(&Ray::new(beyond, ray.dir()), *around) * 4.0 * PI
+                }
+                Some(radius) => {
+                    let out = (ray.origin() - goniometer.frame.origin) / radius;
+                    let aimed = self.aim.as_ref();
+                    let projected = aimed.map_or(PI, |aim| projected_toward(aim, ray, out));
+                    4.0 * PI * radius * radius * projected
+                }
+            },
+        }
+    }
+
+    /// |cos θ| over the density with which a direction is drawn at a point of a surface sensor, sr.
+    fn surface_projected(&self, sensor: &SurfaceSensor, ray: &Ray, normal: DVec3) -> f64 {
+        match (&sensor.seeing, &self.aim) {
+            (Seeing::Views(views), _) => {
+                let accepting = views.accepting(away(ray.dir(), sensor.counts)).count();
+                views_projected(views, accepting.max(1), ray.dir().dot(normal))
+            }
+            (Seeing::Pixels(pixels), _) => pixels.projected_toward(ray.dir()),
+            (Seeing::All, Some(aim)) => projected_toward(aim, ray, normal),
+            (Seeing::All, None) => match sensor.sides {
+                Sides::Front | Sides::Back => PI,
+                Sides::Both => 2.0 * PI,
+            },
+        }
+    }
+
+    /// Over the density across it with which a ray of a far field is drawn, mm².
+    fn across(&self, ray: &Ray, around: Around) -> f64 {
+        let aimed = self.aim.as_ref();
+        aimed.map_or(PI * around.radius * around.radius, |aim| 1.0 / aim.density_across(ray))
+    }
+
     /// A direction against the light for a point of a surface sensor, with |cos θ| over its density, sr, and the views
     /// that take it in.
     fn surface_direction(
@@ -130,17 +174,18 @@ impl<'s> Arrivals<'s> {
             let target = aim.sample(sampler.pair(Dimension::GatherPosition))?;
             return toward(aim, start, target.point);
         }
-        let (front, sides) = match sensor.sides {
-            Sides::Front => (true, 1.0),
-            Sides::Back => (false, 1.0),
-            Sides::Both => (sampler.one(Dimension::GatherDirection) < 0.5, 2.0),
+        let front = match sensor.sides {
+            Sides::Front => true,
+            Sides::Back => false,
+            Sides::Both => sampler.one(Dimension::GatherDirection) < 0.5,
         };
         // Arriving light comes from the side that counts, leaving light goes there.
         let outward = front == (sensor.counts == Counts::Incident);
         let axis = if outward { start.normal } else { -start.normal };
         let local = cosine_hemisphere(sampler.pair(Dimension::GatherDirection));
         let dir = Frame::from_axis(DVec3::ZERO, axis).to_world(local);
-        Some(Drawn { dir, projected: sides * PI, views: SmallVec::new() })
+        let projected = self.surface_projected(sensor, &Ray::new(start.point, dir), start.normal);
+        Some(Drawn { dir, projected, views: SmallVec::new() })
     }
 
     fn at_surface(
@@ -184,21 +229,19 @@ impl<'s> Arrivals<'s> {
     ) -> Option<Arrival> {
         let (cell, out) = direction(goniometer, sampler.pair(Dimension::GatherDirection));
         let u = sampler.pair(Dimension::GatherPosition);
-        let (through, across) = match &self.aim {
-            Some(aim) => {
-                let target = aim.sample(u)?;
-                (target.point, aim.area() * out.dot(target.normal).abs())
-            }
+        let through = match &self.aim {
+            Some(aim) => aim.sample(u)?.point,
             None => {
                 let frame = Frame::from_axis(around.center, out);
-                let point = frame.point_to_world(around.radius * disk(u));
-                (point, PI * around.radius * around.radius)
+                frame.point_to_world(around.radius * disk(u))
             }
         };
         // Beyond the ball, whichever point of it the ray goes through.
         let ray = Ray::new(through + 2.0 * around.radius * out, -out);
-        let extent = across * 4.0 * PI;
-        Some(self.arrival(ray, None, Begins::OnSensor, extent, smallvec![cell]))
+        let extent = self.across(&ray, around) * 4.0 * PI;
+        extent
+            .is_finite()
+            .then(|| self.arrival(ray, None, Begins::OnSensor, extent, smallvec![cell]))
     }
 
     /// A start on a goniometric sphere of finite radius, inward.
@@ -254,6 +297,11 @@ struct Drawn {
     views: SmallVec<[usize; 1]>,
 }
 
+/// |cos θ| over the density with which points drawn from the aim lie in the ray's direction, sr.
+fn projected_toward(aim: &FaceArea<'_>, ray: &Ray, normal: DVec3) -> f64 {
+    ray.dir().dot(normal).abs() / aim.density_toward(ray)
+}
+
 /// The direction toward a point drawn from the aim: density `p(y) dist²/cos θ_y`, whichever
 /// point of the aim lies that way.
 fn toward(aim: &FaceArea<'_>, start: &AreaPoint, target: DVec3) -> Option<Drawn> {
@@ -262,8 +310,7 @@ fn toward(aim: &FaceArea<'_>, start: &AreaPoint, target: DVec3) -> Option<Drawn>
         return None;
     }
     let ray = Ray::new(start.point, offset);
-    let density = aim.density_toward(&ray);
-    let projected = ray.dir().dot(start.normal).abs() / density;
+    let projected = projected_toward(aim, &ray, start.normal);
     projected.is_finite().then(|| Drawn { dir: ray.dir(), projected, views: SmallVec::new() })
 }
 
@@ -280,19 +327,30 @@ fn view_direction(
         _ => ((sampler.one(Dimension::GatherDirection) * count as f64) as usize).min(count - 1),
     };
     let local = cone_direction(views.half_angle, sampler.pair(Dimension::GatherDirection));
-    let away = Frame::from_axis(DVec3::ZERO, views.directions[view]).to_world(local);
-    let mut accepting: SmallVec<[usize; 1]> = views.accepting(away).collect();
+    let seen = Frame::from_axis(DVec3::ZERO, views.directions[view]).to_world(local);
+    let mut accepting: SmallVec<[usize; 1]> = views.accepting(seen).collect();
     if accepting.is_empty() {
         // Drawn on the very rim of the cone.
         accepting.push(view);
     }
-    let dir = match counts {
-        Counts::Incident => away,
-        Counts::Leaving => -away,
-    };
+    let dir = away(seen, counts);
+    let projected = views_projected(views, accepting.len(), dir.dot(start.normal));
+    Some(Drawn { dir, projected, views: accepting })
+}
+
+/// |cos θ| over the density of a direction that so many views accept, sr.
+fn views_projected(views: &Views, accepting: usize, cos: f64) -> f64 {
     let solid_angle = 2.0 * TAU * (0.5 * views.half_angle).sin().powi(2);
-    let density = accepting.len() as f64 / (count as f64 * solid_angle);
-    Some(Drawn { dir, projected: dir.dot(start.normal).abs() / density, views: accepting })
+    let density = accepting as f64 / (views.directions.len() as f64 * solid_angle);
+    cos.abs() / density
+}
+
+/// From a direction against the light to that away from the face in which a view looks, and back.
+fn away(dir: DVec3, counts: Counts) -> DVec3 {
+    match counts {
+        Counts::Incident => dir,
+        Counts::Leaving => -dir,
+    }
 }
 
 /// A direction from the middle of a goniometer, uniform over the sphere, with its cell.

@@ -62,6 +62,12 @@ impl Pixels {
         let cos4 = 1.0 / (1.0 + tangents.length_squared()).powi(2);
         Some((to.normalize(), pixel, size.element_product() * cos4))
     }
+
+    /// |cos θ| over the density with which [`Pixels::draw`] gives a direction of the image, sr.
+    pub fn projected_toward(&self, dir: DVec3) -> f64 {
+        let rect = self.grid.rect();
+        (rect.max - rect.min).element_product() * dir.dot(self.axis).powi(4)
+    }
 }
 
 /// Projected solid angle, in sr, of a rectangle in the plane at distance 1 that the axis meets at the origin: the double

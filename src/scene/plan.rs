@@ -30,11 +30,13 @@ pub enum Request {
     Backward,
     /// [`Estimator::Gather`] for all sensors.
     Gather,
+    /// [`Estimator::Mis`] for all sensors.
+    Mis,
 }
 
 impl Request {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Auto, Self::Forward, Self::Backward, Self::Gather];
+    pub const ALL: [Self; 5] = [Self::Auto, Self::Forward, Self::Backward, Self::Gather, Self::Mis];
 
     /// Its name in files and on the command line.
     pub fn name(self) -> &'static str {
@@ -43,6 +45,7 @@ impl Request {
             Self::Forward => Estimator::Forward.name(),
             Self::Backward => Estimator::Backward.name(),
             Self::Gather => Estimator::Gather.name(),
+            Self::Mis => Estimator::Mis.name(),
         }
     }
 
@@ -54,7 +57,7 @@ impl Request {
     /// Whether gather records may be made, so that a [`GatherPlan`] matters.
     pub fn may_gather(self) -> bool {
         match self {
-            Self::Auto | Self::Gather => true,
+            Self::Auto | Self::Gather | Self::Mis => true,
             Self::Forward | Self::Backward => false,
         }
     }
@@ -70,6 +73,8 @@ pub enum Estimator {
     Backward,
     /// Gather paths of limited depth that end in records, where photons are gathered.
     Gather,
+    /// All three merged by multiple importance sampling.
+    Mis,
 }
 
 impl Estimator {
@@ -79,6 +84,7 @@ impl Estimator {
             Self::Forward => "forward",
             Self::Backward => "backward",
             Self::Gather => "gather",
+            Self::Mis => "mis",
         }
     }
 }
@@ -191,8 +197,9 @@ mod tests {
             assert_eq!(serde_json::to_value(schedule).unwrap(), schedule.name());
             assert_eq!(Schedule::named(schedule.name()), Some(schedule));
         }
-        let all = [Estimator::Forward, Estimator::Backward, Estimator::Gather];
-        for estimator in all {
+        for estimator in
+            [Estimator::Forward, Estimator::Backward, Estimator::Gather, Estimator::Mis]
+        {
             assert_eq!(serde_json::to_value(estimator).unwrap(), estimator.name());
         }
         assert_eq!(Request::named("sideways"), None);

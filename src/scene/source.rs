@@ -84,6 +84,8 @@ pub struct Emitted {
     pub inside: Inside,
     /// The surface of the scene that it starts on.
     pub on: Option<PrimId>,
+    /// The shape of a surface source that it starts on, by its place; 0 of other sources.
+    pub shape: usize,
 }
 
 impl Emitter {
@@ -127,19 +129,19 @@ impl Emitter {
 impl Source {
     /// Starts a photon path.
     pub fn emit(&self, scene: &Scene, sampler: &mut Sampler) -> Emitted {
-        let (ray, on) = match &self.emitter {
+        let (ray, shape) = match &self.emitter {
             Emitter::Point(frame) => {
                 let dir = frame.to_world(self.emission.sample(EmitterKind::Point, sampler));
-                (Ray::new(frame.origin, dir), None)
+                (Ray::new(frame.origin, dir), 0)
             }
-            Emitter::Line { frame, length } => (self.emit_from_line(frame, *length, sampler), None),
+            Emitter::Line { frame, length } => (self.emit_from_line(frame, *length, sampler), 0),
             Emitter::Surface { shapes, side, frame } => {
                 let shape = choose_shape(shapes, sampler);
                 let ray = self.emit_from_surface(&shapes[shape].0, *side, frame.as_ref(), sampler);
-                (ray, self.on.get(shape).copied())
+                (ray, shape)
             }
             Emitter::Volume { solid, bounds } => {
-                (self.emit_from_volume(scene, *solid, bounds, sampler), None)
+                (self.emit_from_volume(scene, *solid, bounds, sampler), 0)
             }
         };
         let inside = match self.start {
@@ -147,7 +149,9 @@ impl Source {
             Start::Ahead => scene.inside_at(&ray, Just::Ahead),
             Start::Behind => scene.inside_at(&ray, Just::Behind),
         };
-        Emitted { ray, inside, on }
+        // Only surface sources lie on anything.
+        let on = self.on.get(shape).copied();
+        Emitted { ray, inside, on, shape }
     }
 
     fn emit_from_line(&self, frame: &Frame, length: f64, sampler: &mut Sampler) -> Ray {

@@ -34,20 +34,29 @@ struct Seen<'s> {
 enum Body<'s> {
     Surface {
         shapes: &'s [(Shape, f64)],
-        side: EmitSide,
-        frame: Option<&'s Frame>,
+        shining: Shining<'s>,
         on: &'s [PrimId],
         contact: Contact,
         /// Around the shapes, with room for rounding, mm.
         bounds: Aabb,
-        /// Flux per area, lm/mm².
-        exitance: f64,
     },
     Volume {
         solid: SolidId,
         /// Flux per volume, lm/mm³.
         density: f64,
+        /// Usual length of a path through it, mm: the side of a cube of its volume.
+        usual_length: f64,
     },
+}
+
+/// How the shapes of a source shine.
+#[derive(Debug, Clone, Copy)]
+struct Shining<'s> {
+    emission: &'s Emission,
+    side: EmitSide,
+    frame: Option<&'s Frame>,
+    /// Flux per area, lm/mm².
+    exitance: f64,
 }
 
 /// How a source lies on a face.
@@ -80,6 +89,8 @@ pub(crate) struct Met {
     pub(crate) t: f64,
     /// Basic radiance at the start of the path, lm/(mm² sr): what the source emits times the throughput up to it.
     pub(crate) radiance: f64,
+    /// Basic radiance where it is emitted, lm/(mm² sr); of a volume that of a path of usual length through it.
+    pub(crate) emitted: f64,
 }
 
 /// Why rays cannot meet a source; `None` where they can.
@@ -135,10 +146,11 @@ impl<'s> Emitters<'s> {
                         self.surface(seen, path, segment, start, &mut visit);
                     }
                 }
-                Body::Volume { solid, density } => {
+                Body::Volume { solid, density, .. } => {
                     if path.inside.contains(*solid) {
                         let radiance = self.volume(seen, *density, path, segment);
-                        visit(Met { source: seen.id, t: segment.length, radiance });
+                        let emitted = self.volume_radiance(seen, path, -path.ray.dir());
+                        visit(Met { source: seen.id, t: segment.length, radiance, emitted });
                     }
                 }
             }
@@ -153,9 +165,7 @@ impl<'s> Emitters<'s> {
         start: SegmentStart,
         visit: &mut impl FnMut(Met),
     ) {
-        let Body::Surface { shapes, side, frame, on, contact, exitance, .. } = &seen.body else {
-            return;
-        };
+        let Body::Surface { shapes, shining, on, contact, .. } = &seen.body else { return };
         let (scene, ray) = (self.scene, segment.ray);
         let tolerance = scene.tolerance;
         let medium = &scene.media[segment.medium.index()];
@@ -180,26 +190,35 @@ impl<'s> Emitters<'s> {
                 if t < from || t > to {
                     return;
                 }
-                let normal = match side {
-                    EmitSide::Front => shape.normal(ray.at(t)),
-                    EmitSide::Back => -shape.normal(ray.at(t)),
-                };
-                let out = -ray.dir();
-                let cos = out.dot(normal);
-                if cos <= 0.0 {
-                    return;
-                }
-                let own = || Frame::from_axis(DVec3::ZERO, normal).to_local(out);
-                let local = frame.map_or_else(own, |frame| frame.to_local(out));
-                let density = seen.emission.density(EmitterKind::Surface, local).unwrap_or(0.0);
-                if density > 0.0 {
-                    let emitted = exitance * density / (cos * index * index);
+                let emitted = shining.radiance(shape, ray.at(t), -ray.dir(), index);
+                if emitted > 0.0 {
                     let arriving =
                         segment.throughput * medium.transmittance(path.wavelength, t.max(0.0));
-                    visit(Met { source: seen.id, t, radiance: emitted * arriving });
+                    visit(Met { source: seen.id, t, radiance: emitted * arriving, emitted });
                 }
             });
         }
+    }
+
+    /// Basic radiance that a source emits along the start of a photon's path, from one of its shapes, lm/(mm² sr): the
+    /// same that a gather path meets there as [`Met::emitted`]. 0 of a source that rays cannot meet.
+    pub(crate) fn emitted(&self, source: SourceId, path: &Path, shape: usize) -> f64 {
+        let Some(seen) = self.seen.iter().find(|seen| seen.id == source) else { return 0.0 };
+        match &seen.body {
+            Body::Surface { shapes, shining, .. } => {
+                let index = self.scene.media[path.medium.index()].index(path.wavelength);
+                shining.radiance(&shapes[shape].0, path.ray.origin(), path.ray.dir(), index)
+            }
+            Body::Volume { .. } => self.volume_radiance(seen, path, path.ray.dir()),
+        }
+    }
+
+    /// Basic radiance of a path of usual length through a glowing solid, lm/(mm² sr); 0 of a surface.
+    fn volume_radiance(&self, seen: &Seen<'_>, path: &Path, out: DVec3) -> f64 {
+        let Body::Volume { density, usual_length, .. } = &seen.body else { return 0.0 };
+        let index = self.scene.media[path.medium.index()].index(path.wavelength);
+        let law = seen.emission.density(EmitterKind::Volume, out).unwrap_or(0.0);
+        density * law * usual_length / (index * index)
     }
 
     /// Emission along a segment in a glowing solid: ∫ ε exp(-αs) ds, lm/(mm² sr), over n².
@@ -217,21 +236,46 @@ impl<'s> Emitters<'s> {
     }
 }
 
+impl Shining<'_> {
+    /// Basic radiance from a place on a shape toward `out`, in a medium of an index, lm/(mm² sr).
+    fn radiance(&self, shape: &Shape, point: DVec3, out: DVec3, index: f64) -> f64 {
+        let normal = match self.side {
+            EmitSide::Front => shape.normal(point),
+            EmitSide::Back => -shape.normal(point),
+        };
+        let cos = out.dot(normal);
+        if cos <= 0.0 {
+            return 0.0;
+        }
+        let own = || Frame::from_axis(DVec3::ZERO, normal).to_local(out);
+        let local = self.frame.map_or_else(own, |frame| frame.to_local(out));
+        let density = self.emission.density(EmitterKind::Surface, local).unwrap_or(0.0);
+        self.exitance * density / (cos * index * index)
+    }
+}
+
 fn body<'s>(scene: &'s Scene, source: &'s Source) -> Option<Body<'s>> {
     match &source.emitter {
         Emitter::Surface { shapes, side, frame } => Some(Body::Surface {
             shapes,
-            side: *side,
-            frame: frame.as_ref(),
+            shining: Shining {
+                emission: &source.emission,
+                side: *side,
+                frame: frame.as_ref(),
+                exitance: source.flux / source.emitter.area()?,
+            },
             on: &source.on,
             contact: contact(source),
             bounds: source.emitter.bounds().grown(2.0 * AT_START * scene.bounds.diagonal()),
-            exitance: source.flux / source.emitter.area()?,
         }),
-        Emitter::Volume { solid, .. } => Some(Body::Volume {
-            solid: *solid,
-            density: source.flux / scene.solids[solid.index()].volume?,
-        }),
+        Emitter::Volume { solid, .. } => {
+            let volume = scene.solids[solid.index()].volume?;
+            Some(Body::Volume {
+                solid: *solid,
+                density: source.flux / volume,
+                usual_length: volume.cbrt(),
+            })
+        }
         Emitter::Point(_) | Emitter::Line { .. } => None,
     }
 }
@@ -241,5 +285,65 @@ fn contact(source: &Source) -> Contact {
         SourceStart::Outside if source.on.is_empty() => Contact::Free,
         SourceStart::Outside | SourceStart::Ahead => Contact::Before,
         SourceStart::Behind => Contact::Behind,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::Medium;
+    use crate::rng::Sampler;
+    use crate::scene::shape::{Cylinder, Flat, Region};
+    use crate::scene::{Builder, Ray};
+    use crate::units::FluxUnit;
+
+    #[test]
+    fn a_photon_and_the_gather_path_that_meets_its_start_tell_the_same_emission() {
+        let mut builder =
+            Builder::new(DVec3::ZERO, Medium::new("water", 1.3, 0.1), FluxUnit::Lumen);
+        let disk = |z: f64| {
+            let frame = Frame::WORLD.shifted(DVec3::new(0.0, 0.0, z));
+            Shape::Flat(Flat::new(frame, Region::Annulus { inner: 0.0, outer: 2.0 }))
+        };
+        let tilted = Frame::from_axis(DVec3::ZERO, DVec3::new(0.3, 0.0, 1.0).normalize());
+        let cone = Emission::Cone { half_angle: 0.2, axis: DVec3::Z };
+        let wall = Shape::Cylinder(Cylinder::new(Frame::WORLD, 1.0, 3.0));
+        for (shapes, frame, emission) in [
+            (vec![disk(5.0)], Some(tilted), cone),
+            (vec![disk(9.0), wall, disk(20.0)], None, Emission::CosinePower(3.0)),
+        ] {
+            builder.add_source(Source {
+                name: "lamp".into(),
+                flux: 7.0,
+                emitter: Emitter::surface(shapes, EmitSide::Front, frame),
+                emission,
+                start: SourceStart::Outside,
+                on: Vec::new(),
+            });
+        }
+        let scene = builder.build();
+        let emitters = Emitters::new(&scene);
+        for (source, index) in [0, 1].into_iter().flat_map(|one| (0..200).map(move |i| (one, i))) {
+            let id = SourceId::new(source);
+            let emitted = scene.sources[source].emit(&scene, &mut Sampler::for_path(3, 0, index));
+            let shape = emitted.shape;
+            let photon = Path::emitted(&scene, id, emitted);
+            let told = emitters.emitted(id, &photon, shape);
+            let back = Ray::new(photon.ray.at(1.0), -photon.ray.dir());
+            let gather = Path { ray: back, throughput: 0.5, ..photon.clone() };
+            let segment = Segment {
+                ray: &back,
+                length: 1.5,
+                medium: gather.medium,
+                throughput: 0.5,
+                arriving: 0.4,
+            };
+            let mut met = Vec::new();
+            emitters.along(&gather, &segment, SegmentStart::Interface, |one| met.push(one));
+            let own = met.iter().find(|met| met.source == id && (met.t - 1.0).abs() < 1e-9);
+            let own = own.expect("the ray leads back to the start");
+            assert!((own.emitted / told - 1.0).abs() < 1e-6, "{source}: {own:?}, {told}");
+            assert!((own.radiance / told / 0.5 - (-0.1f64).exp()).abs() < 1e-6, "{own:?}, {told}");
+        }
     }
 }

@@ -7,12 +7,19 @@ use crate::rng::{Numbers, Sampler};
 use crate::scene::shape::{Crossing, Start};
 use crate::scene::{Arrival, Begins, Owner, Scene, SensorId, Visibility};
 use crate::transport::emitters::{Emitters, Met, SegmentStart};
-use crate::transport::{Carries, Departure, Event, Path, Segment, Vertex, Visitor, walk};
+use crate::transport::{
+    Carries, Departure, Event, Path, ROULETTE_BELOW, Segment, Vertex, Visitor, walk,
+};
 use smallvec::SmallVec;
 use std::ops::ControlFlow;
 
 /// Who collects what gather paths bring.
 pub(crate) trait Collector {
+    /// Throughput below which roulette ends paths, 1.
+    fn roulette_below(&self) -> f64 {
+        ROULETTE_BELOW
+    }
+
     /// Takes the emission that a path has met.
     fn meet(&mut self, path: &Path, met: Met);
 
@@ -148,6 +155,11 @@ impl<C: Collector> Follower<'_, '_, '_, C> {
 
 impl<C: Collector> Visitor for Follower<'_, '_, '_, C> {
     const CARRIES: Carries = Carries::Radiance;
+
+    #[inline]
+    fn roulette_below(&self) -> f64 {
+        self.collector.roulette_below()
+    }
 
     #[inline]
     fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {

@@ -8,12 +8,13 @@ mod surfaces;
 use crate::optics::Side;
 use crate::rng::Sampler;
 use crate::scene::shape::Toward;
-use crate::scene::{Counts, FaceId, Owner, Scene, SensorId, SourceId};
+use crate::scene::{Counts, FaceId, MediumId, Owner, Scene, SensorId, SourceId};
 use crate::transport::readings::{Counted, SensorReading, Step, Trail, count_totals};
 use crate::transport::watch::Watch;
 use crate::transport::{
-    Departure, Event, Layout, Leak, Path, Readings, Segment, Vertex, Visitor, walk,
+    Departure, Event, Layout, Leak, Path, ROULETTE_BELOW, Readings, Segment, Vertex, Visitor, walk,
 };
+use glam::DVec3;
 use std::ops::ControlFlow;
 use surfaces::Light;
 
@@ -70,6 +71,12 @@ impl<'s> Forward<'s> {
         }
         counter.finish()
     }
+
+    /// Flux of one photon of each source, lm or W.
+    pub(crate) fn photon_fluxes(&self) -> Vec<f64> {
+        let sources = self.scene.sources.iter().zip(&self.shares);
+        sources.map(|(source, &paths)| source.flux / paths as f64).collect()
+    }
 }
 
 /// Paths per batch of each source: at least one each, by flux, what rounding leaves to those that miss most of a path.
@@ -100,8 +107,43 @@ fn shares(scene: &Scene, batch_paths: u64) -> Vec<u64> {
 
 /// Someone who sees photons as they arrive at interfaces.
 pub(crate) trait PhotonWatcher {
+    /// Throughput below which roulette ends photons, 1.
+    #[inline(always)]
+    fn roulette_below(&self) -> f64 {
+        ROULETTE_BELOW
+    }
+
+    /// Sees a photon start on one of the shapes of its source.
+    #[inline(always)]
+    fn start(&mut self, _path: &Path, _source: SourceId, _shape: usize) {}
+
     /// Sees a photon before the interface acts; `flux` is its flux at throughput 1, lm or W.
     fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>, flux: f64, source: SourceId);
+
+    /// Sees how a photon goes on.
+    #[inline(always)]
+    fn depart(&mut self, _path: &Path, _vertex: &Vertex<'_>, _departure: &Departure) {}
+
+    /// Sees a photon that a sensor counts, in these cells; there may be none.
+    #[inline(always)]
+    fn detect(&mut self, _path: &Path, _light: &Detected, _cells: impl Iterator<Item = usize>) {}
+}
+
+/// Light that has come to a sensor.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Detected {
+    pub(crate) sensor: SensorId,
+    /// Where on the sensor, mm; of a far field any place on its way.
+    pub(crate) point: DVec3,
+    /// Unit direction of travel.
+    pub(crate) dir: DVec3,
+    /// Unit normal of the sensor.
+    pub(crate) normal: DVec3,
+    /// The medium it is in.
+    pub(crate) medium: MediumId,
+    /// Its flux, lm or W.
+    pub(crate) flux: f64,
+    pub(crate) source: SourceId,
 }
 
 /// Nobody.
@@ -167,7 +209,9 @@ impl<'r, 's, W: PhotonWatcher> Counter<'r, 's, W> {
         self.trail.clear();
         self.last_left = None;
         self.add(self.run.layout.emitted(source), 1.0);
+        let shape = emitted.shape;
         let path = Path::emitted(scene, source, emitted);
+        self.watcher.start(&path, source, shape);
         walk(scene, path, self.run.bounce_limit, &mut sampler, self);
     }
 
@@ -196,12 +240,14 @@ impl<'r, 's, W: PhotonWatcher> Counter<'r, 's, W> {
             dir: vertex.dir,
             throughput: vertex.throughput,
             side: None,
+            medium: vertex.interface.from,
         };
         self.on_faces(path, vertex, light);
     }
 
     #[inline(always)]
     fn depart(&mut self, path: &Path, vertex: &Vertex<'_>, departure: &Departure) {
+        self.watcher.depart(path, vertex, departure);
         let face = vertex.interface.acting.face;
         let absorbed = vertex.throughput - departure.throughput;
         if absorbed > 0.0 {
@@ -212,6 +258,10 @@ impl<'r, 's, W: PhotonWatcher> Counter<'r, 's, W> {
             dir: departure.dir,
             throughput: departure.throughput,
             side: Some(departure.side),
+            medium: match departure.side {
+                Side::Reflected => vertex.interface.from,
+                Side::Transmitted => vertex.interface.to,
+            },
         };
         self.on_faces(path, vertex, light);
         let transmitted = departure.side == Side::Transmitted;
@@ -278,6 +328,11 @@ impl<'r, 's, W: PhotonWatcher> Counter<'r, 's, W> {
 }
 
 impl<W: PhotonWatcher> Visitor for Counter<'_, '_, W> {
+    #[inline(always)]
+    fn roulette_below(&self) -> f64 {
+        self.watcher.roulette_below()
+    }
+
     #[inline(always)]
     fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
         let layout = self.run.layout;

@@ -5,22 +5,28 @@
 //! broadly it leaves records for all photons: the position estimate. Emission that it meets on its way counts as it is;
 //! all other light, and what could be seen through vertex D, is brought by photons. So nothing counts twice.
 //! All sensors share one stream of photons, and no photon is kept: memory goes with the records.
+//! Merged with forward and backward, gather paths go on to the sources, and everything counts by its weight (`merge`).
 
-use crate::optics::{Bsdf, Incidence, Lobe, Side, Spread, scatter_toward, shares};
+mod merged;
+mod stream;
+
+use crate::optics::{Bsdf, Lobe, Side, Spread, scatter_toward, shares};
 use crate::rng::{Dimension, Sampler};
-use crate::scene::shape::Toward;
-use crate::scene::{Arrival, Arrivals, MediumId, Scene, SensorId, SourceId, Visibility};
+use crate::scene::{Arrival, Arrivals, Scene, SensorId};
 use crate::transport::coverage::{Middle, coverage};
 use crate::transport::emitters::{Emitters, Met};
-use crate::transport::estimate::{Arriving, Kernel};
+use crate::transport::estimate::Kernel;
 use crate::transport::follow::{Collector, Gathering, follow};
-use crate::transport::forward::{Forward, PhotonWatcher};
+use crate::transport::forward::Forward;
+use crate::transport::gather::merged::{MergedStream, Merging};
+use crate::transport::gather::stream::Stream;
+use crate::transport::merge::{self, Etendues, Passage};
 use crate::transport::readings::Counted;
-use crate::transport::records::{GatherRecord, Records, Slot, Surfaces, Wanted};
+use crate::transport::records::{GatherRecord, Records, Surfaces, Wanted};
 use crate::transport::scatter::{Facing, facing};
 use crate::transport::window::{NESTED, Window};
 use crate::transport::work::RecordWork;
-use crate::transport::{Departure, Layout, Path, Readings, Vertex};
+use crate::transport::{Departure, Layout, Path, ROULETTE_BELOW, Readings, Vertex};
 use smallvec::SmallVec;
 use std::ops::ControlFlow;
 
@@ -39,6 +45,8 @@ pub(crate) struct Gather<'s> {
     seed: u64,
     /// Vertex at which gather paths end, D.
     pub(crate) depth: u32,
+    /// Merged with forward and backward: gather paths go on from vertex D, to so many interfaces.
+    pub(crate) merging: Option<u32>,
 }
 
 /// One pass: which, within what window, and from how many gather paths of each sensor.
@@ -71,6 +79,7 @@ impl<'s> Gather<'s> {
             sensors: sensors.iter().map(|&id| (id, Arrivals::new(scene, id))).collect(),
             seed,
             depth,
+            merging: None,
         }
     }
 
@@ -84,7 +93,8 @@ impl<'s> Gather<'s> {
         let paths = pass.gather_paths;
         let empty = || Readings::of_batch(self.scene, &self.layout, self.seed, paths, pass.batch);
         let mut windows = [empty(), empty(), empty()];
-        let waiting = self.gather_paths(pass, &mut windows);
+        let photon_fluxes = forward.photon_fluxes();
+        let waiting = self.gather_paths(pass, &photon_fluxes, &mut windows);
         let mut stream = Stream {
             gather: self,
             kernel: Kernel::new(pass.window),
@@ -92,13 +102,24 @@ impl<'s> Gather<'s> {
             waiting: &waiting,
             windows: &mut windows,
         };
-        let photons = forward.batch_watched(pass.batch, &mut stream);
+        let photons = match self.merging {
+            None => forward.batch_watched(pass.batch, &mut stream),
+            Some(_) => {
+                let mut merged = MergedStream::new(&mut stream, pass, &photon_fluxes);
+                forward.batch_watched(pass.batch, &mut merged)
+            }
+        };
         let work = stream.work;
         PassReadings { photons, windows, work }
     }
 
     /// Traces the gather paths of a pass.
-    fn gather_paths(&self, pass: Pass, windows: &mut [Readings; NESTED]) -> Waiting<'s> {
+    fn gather_paths(
+        &self,
+        pass: Pass,
+        photon_fluxes: &[f64],
+        windows: &mut [Readings; NESTED],
+    ) -> Waiting<'s> {
         let mut found = Found::default();
         for (id, arrivals) in &self.sensors {
             for index in pass.batch * pass.gather_paths..(pass.batch + 1) * pass.gather_paths {
@@ -107,10 +128,12 @@ impl<'s> Gather<'s> {
                 let Some(arrival) = arrivals.draw(&mut sampler) else { continue };
                 let Arrival { extent, cells, .. } = &arrival;
                 let etendue = Path::arriving(self.scene, &arrival).etendue(self.scene, *extent);
+                let etendue = etendue / pass.gather_paths as f64;
                 let mut collecting = Collecting {
                     gather: self,
                     window: pass.window,
-                    etendue: etendue / pass.gather_paths as f64,
+                    etendue,
+                    merging: self.merging.map(|_| Merging::new(etendue, photon_fluxes)),
                     id: *id,
                     index,
                     cells,
@@ -123,7 +146,7 @@ impl<'s> Gather<'s> {
                     scene: self.scene,
                     emitters: &self.emitters,
                     sensor: *id,
-                    bounce_limit: u32::MAX,
+                    bounce_limit: self.merging.unwrap_or(u32::MAX),
                 };
                 let segments = follow(gathering, &arrival, &mut sampler, &mut collecting);
                 windows[0].segments += segments;
@@ -155,6 +178,8 @@ struct Ended {
     index: u64,
     sensor: SensorId,
     cells: SmallVec<[usize; 1]>,
+    /// Merged: what weighs its record, of which it then has one; the photon's part is still missing.
+    etendues: Option<Etendues>,
 }
 
 /// Collects the light and the records of one gather path.
@@ -163,6 +188,7 @@ struct Collecting<'c, 's> {
     window: Window,
     /// Etendue of this path, its share of the pass, mm² sr.
     etendue: f64,
+    merging: Option<Merging<'c>>,
     id: SensorId,
     /// The number of the path among those of its sensor.
     index: u64,
@@ -176,10 +202,15 @@ struct Collecting<'c, 's> {
 }
 
 impl Collector for Collecting<'_, '_> {
+    fn roulette_below(&self) -> f64 {
+        self.merging.as_ref().map_or(ROULETTE_BELOW, |_| merge::ROULETTE_BELOW)
+    }
+
     fn meet(&mut self, path: &Path, met: Met) {
-        let light =
-            Counted { flux: met.radiance * self.etendue, depth: path.depth, source: met.source };
-        for readings in self.windows.iter_mut() {
+        let flux = met.radiance * self.etendue;
+        let weights = self.merging.as_ref().map_or([1.0; NESTED], |merging| merging.weights(&met));
+        for (readings, weight) in self.windows.iter_mut().zip(weights) {
+            let light = Counted { flux: flux * weight, depth: path.depth, source: met.source };
             readings.count(&self.gather.layout, self.id, self.cells, &light);
         }
     }
@@ -191,21 +222,30 @@ impl Collector for Collecting<'_, '_> {
                 self.add_scattered(path, vertex, &facing, side);
             }
         }
-        if path.depth < self.gather.depth {
-            self.facing = Some(facing);
-            return ControlFlow::Continue(());
+        if path.depth == self.gather.depth {
+            for side in [Side::Reflected, Side::Transmitted] {
+                self.add_along(path, vertex, &facing, side);
+            }
+            if self.merging.is_none() {
+                return ControlFlow::Break(());
+            }
         }
-        for side in [Side::Reflected, Side::Transmitted] {
-            self.add_along(path, vertex, &facing, side);
-        }
-        ControlFlow::Break(())
+        self.facing = Some(facing);
+        ControlFlow::Continue(())
     }
 
-    fn depart(&mut self, _: &Path, _: &Vertex<'_>, departure: &Departure) -> ControlFlow<()> {
+    fn depart(&mut self, path: &Path, _: &Vertex<'_>, departure: &Departure) -> ControlFlow<()> {
+        // Nothing faces the path where it meets no visible interface.
+        let Some(facing) = self.facing.take() else { return ControlFlow::Continue(()) };
+        if let Some(merging) = &mut self.merging
+            && path.depth == self.gather.depth + 1
+        {
+            let passage = Passage::of_gather_path(&facing, departure.dir, departure.side);
+            merging.pass_vertex_d(passage.etendues(self.window));
+        }
         // What a broad lobe brings, the records at the vertex bring.
-        let broad = self.facing.as_ref().is_some_and(|facing| is_broad(facing, departure.side));
         match departure.lobe {
-            Lobe::Diffuse if broad => ControlFlow::Break(()),
+            Lobe::Diffuse if is_broad(&facing, departure.side) => ControlFlow::Break(()),
             Lobe::Diffuse | Lobe::Specular => ControlFlow::Continue(()),
         }
     }
@@ -256,7 +296,12 @@ impl<'s> Collecting<'_, 's> {
             Side::Transmitted => facing.incidence.index_to,
         };
         let value = self.etendue * vertex.throughput * out.factor / (index * index);
-        self.add(path, vertex, facing, side, value, Wanted::Along(-out.dir.normalize()));
+        let dir = out.dir.normalize();
+        self.add(path, vertex, facing, side, value, Wanted::Along(-dir));
+        if let (Some(merging), Some(ended)) = (&self.merging, self.found.paths.last_mut()) {
+            let passage = Passage::of_gather_path(facing, dir, side);
+            ended.etendues = Some(merging.waiting(passage.etendues(self.window)));
+        }
     }
 
     /// `value` is the etendue of the path times what its throughput makes of flux per area (and solid angle).
@@ -281,9 +326,10 @@ impl<'s> Collecting<'_, 's> {
         let covered = coverage(scene, surfaces, &middle, self.window, turn);
         let nested = self.window.nested();
         let values = [0, 1, 2].map(|window| value / (covered[window] * nested[window].area()));
-        if self.found.paths.last().is_none_or(|last| last.index != self.index) {
+        let of_this = |last: &Ended| (last.sensor, last.index) == (self.id, self.index);
+        if self.merging.is_some() || !self.found.paths.last().is_some_and(of_this) {
             let (sensor, cells) = (self.id, self.cells.clone());
-            self.found.paths.push(Ended { index: self.index, sensor, cells });
+            self.found.paths.push(Ended { index: self.index, sensor, cells, etendues: None });
         }
         self.found.records.push(GatherRecord {
             point: vertex.point,
@@ -295,72 +341,5 @@ impl<'s> Collecting<'_, 's> {
             path: self.found.paths.len() as u32 - 1,
             depth: path.depth + 1,
         });
-    }
-}
-
-/// Photons that stream past the records.
-struct Stream<'p, 's> {
-    gather: &'p Gather<'s>,
-    kernel: Kernel,
-    waiting: &'p Waiting<'s>,
-    windows: &'p mut [Readings; NESTED],
-    work: RecordWork,
-}
-
-impl PhotonWatcher for Stream<'_, '_> {
-    #[inline(always)]
-    fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>, flux: f64, source: SourceId) {
-        let surface = self.gather.surfaces.of(vertex.interface.acting.prim);
-        if vertex.interface.visibility == Visibility::Visible
-            && self.waiting.records.may_take(surface, vertex.point, vertex.dir)
-        {
-            self.look_up(path, vertex, flux * vertex.throughput, source);
-        }
-    }
-}
-
-impl Stream<'_, '_> {
-    #[inline(never)]
-    fn look_up(&mut self, path: &Path, vertex: &Vertex<'_>, flux: f64, source: SourceId) {
-        let Gather { scene, surfaces, layout, .. } = self.gather;
-        let surface = surfaces.of(vertex.interface.acting.prim);
-        // Most photons that pass the filter are near no record after all.
-        let mut known = None;
-        let (kernel, windows, work) = (&self.kernel, &mut *self.windows, &mut self.work);
-        work.look_ups += 1;
-        self.waiting.records.visit(surface, vertex.point, vertex.dir, |record| {
-            let photon = known.get_or_insert_with(|| arriving(scene, surface, path, vertex));
-            let Some(shares) = kernel.flux(record, photon) else { return };
-            work.pairs += 1;
-            let Ended { sensor, cells, .. } = &self.waiting.paths[record.path as usize];
-            let depth = path.depth + record.depth;
-            for (readings, share) in windows.iter_mut().zip(shares) {
-                if share > 0.0 {
-                    let light = Counted { flux: flux * share, depth, source };
-                    readings.count(layout, *sensor, cells, &light);
-                }
-            }
-        });
-    }
-}
-
-/// A photon as records take it.
-fn arriving(scene: &Scene, surface: Slot, path: &Path, vertex: &Vertex<'_>) -> Arriving {
-    let interface = vertex.interface;
-    let index = |medium: MediumId| scene.media[medium.index()].index(path.wavelength);
-    let outward = scene.normal(interface.acting.prim, vertex.point);
-    Arriving {
-        surface,
-        medium: interface.from,
-        point: vertex.point,
-        incidence: Incidence {
-            dir: vertex.dir,
-            normal: match interface.acting.toward {
-                Toward::Front => -outward,
-                Toward::Back => outward,
-            },
-            index_from: index(interface.from),
-            index_to: index(interface.to),
-        },
     }
 }

@@ -13,6 +13,7 @@ mod follow;
 mod forward;
 mod gather;
 mod layout;
+mod merge;
 mod path;
 mod pilot;
 mod readings;
@@ -34,6 +35,7 @@ pub use cells::Cells;
 pub use emitters::invisible;
 pub use findings::{Findings, Gathered};
 pub use layout::{Layout, TAILS};
+pub use merge::{Scatterer, scatterers};
 pub use path::{Path, WAVELENGTH};
 pub use pilot::{Choice, Objection, Trial};
 pub use readings::{

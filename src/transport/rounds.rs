@@ -86,10 +86,13 @@ impl<'s> Run<'s> {
             let all = estimators.iter().enumerate();
             all.filter(|(_, own)| **own == wanted).map(|(index, _)| SensorId::new(index)).collect()
         };
-        let gathered = of(Estimator::Gather);
+        let (alone, merged) = (of(Estimator::Gather), of(Estimator::Mis));
+        let gathered = if merged.is_empty() { &alone } else { &merged };
         let stages = (!gathered.is_empty()).then(|| {
-            let settings = settle(scene, &plan.gather, &gathered, plan.seed, pilot);
-            Stages::new(Gather::new(scene, &gathered, plan.seed, settings.depth), settings)
+            let settings = settle(scene, &plan.gather, gathered, plan.seed, pilot);
+            let mut gather = Gather::new(scene, gathered, plan.seed, settings.depth);
+            gather.merging = (!merged.is_empty()).then_some(plan.bounce_limit);
+            Stages::new(gather, settings)
         });
         let followed = of(Estimator::Backward);
         // A path of each source at least.
@@ -278,6 +281,7 @@ fn estimators(scene: &Scene, plan: &RunPlan, pilot: PhotonPilot) -> (Vec<Estimat
         Request::Forward => all(Estimator::Forward),
         Request::Backward => all(Estimator::Backward),
         Request::Gather => all(Estimator::Gather),
+        Request::Mis => all(Estimator::Mis),
         Request::Auto => {
             let choices = choose(scene, plan, pilot);
             (choices.iter().map(|choice| choice.chosen).collect(), choices)

@@ -92,6 +92,12 @@ pub trait Visitor {
     /// What the paths carry that it watches.
     const CARRIES: Carries = Carries::Flux;
 
+    /// Throughput below which roulette ends paths, 1.
+    #[inline(always)]
+    fn roulette_below(&self) -> f64 {
+        ROULETTE_BELOW
+    }
+
     /// Sees what happens; a break ends the path. Inlined into the loop it saves a tenth of a mirror bounce.
     fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()>;
 }
@@ -148,9 +154,10 @@ pub fn walk<V: Visitor>(
             _ = visitor.see(&path, Event::Cut(path.throughput));
             return;
         }
-        if path.throughput < ROULETTE_BELOW {
-            let survives = sampler.one(Dimension::Roulette) * ROULETTE_BELOW < path.throughput;
-            let after = if survives { ROULETTE_BELOW } else { 0.0 };
+        let below = visitor.roulette_below();
+        if path.throughput < below {
+            let survives = sampler.one(Dimension::Roulette) * below < path.throughput;
+            let after = if survives { below } else { 0.0 };
             if visitor.see(&path, Event::Roulette(path.throughput - after)).is_break() || !survives
             {
                 return;

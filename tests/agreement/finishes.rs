@@ -3,7 +3,7 @@
 use crate::trial::{all_agree, shallow_agree};
 
 /// A tube of a finish, lit by a disk, seen at the exit and by a remote cell.
-fn tube(finish: &str) -> String {
+pub(crate) fn tube(finish: &str) -> String {
     format!(
         r#"
 [finishes]
@@ -24,7 +24,7 @@ cell = {{ plane = {{ rectangle = {{ width_mm = 4, height_mm = 4 }} }}, at = {{ p
 }
 
 /// A window with a finish, tilted, between the lamp and a cell behind it; another cell sees what comes back.
-fn window(finish: &str, back: &str) -> String {
+pub(crate) fn window(finish: &str, back: &str) -> String {
     format!(
         r#"
 [finishes]

@@ -13,6 +13,7 @@ mod finishes;
 mod furnace;
 mod guides;
 mod laws;
+mod merge;
 mod rims;
 mod sensors;
 mod settings;

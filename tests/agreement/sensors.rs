@@ -4,7 +4,7 @@ use crate::trial::shallow_agree as agree;
 
 /// A mirror tube with a tilted pane in it, a block of glass behind, and sensors. The glass absorbs: light cannot come from
 /// where it would be totally reflected for ever, but a gather path that starts inside has to find that out.
-fn scene(sensors: &str) -> String {
+pub(crate) fn scene(sensors: &str) -> String {
     format!(
         r#"
 [media.glass]
@@ -96,6 +96,27 @@ far = { goniometer = { c_step_deg = 180, gamma_step_deg = 30 }, aim = ["tube.exi
 near = { goniometer = { c_step_deg = 180, gamma_step_deg = 30, radius_mm = 40 }, aim = ["block.exit"] }
 "#,
         ),
+    );
+}
+
+#[test]
+fn a_far_field_that_is_aimed_at_a_dome_sees_each_of_its_lines_once() {
+    agree(
+        "dome",
+        r#"
+[media.acrylic]
+index = 1.3
+absorption_per_mm = 0.03
+[solids.dome.sphere]
+radius_mm = 1.5
+medium = "acrylic"
+[sources.led.disk]
+radius_mm = 1
+flux_lm = 10
+at = { position_mm = [0, 0, -2.5] }
+[sensors]
+far = { goniometer = { c_step_deg = 180, gamma_step_deg = 30 }, aim = ["dome.surface"] }
+"#,
     );
 }
 

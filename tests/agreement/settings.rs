@@ -36,8 +36,10 @@ fn gather() -> Way {
 
 #[test]
 fn findings_have_the_same_bits_on_any_number_of_threads() {
-    for way in [Way::Backward, gather()] {
-        let job = load(ROD, way);
+    let merged = Way::Merged(Gathering { records: 300, photons: 500, ..Gathering::to_depth(2) });
+    let polished = ROD.replace("gaussian = { sigma_deg = 3,", "specular = {");
+    for (way, text) in [(Way::Backward, ROD), (gather(), ROD), (merged, &polished)] {
+        let job = load(text, way);
         let found = [1, 2, 3, 8].map(|threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| serde_json::to_string(&findings(&job, way)).unwrap())
@@ -68,7 +70,7 @@ fn estimators_that_cannot_meet_a_source_are_refused() {
             "lumiduct = 1\ntitle = \"Refused\"\n[sources.lamp.{source}]\n[sensors]\ncell = {{ plane = {{ disk = {{ radius_mm = 1 }} }}, at = {{ position_mm = [0, 0, 5] }} }}\n"
         );
         std::fs::write(&scene, text).unwrap();
-        for estimator in [Request::Backward, Request::Gather] {
+        for estimator in [Request::Backward, Request::Gather, Request::Mis] {
             let settings = Settings { estimator: Some(estimator), ..Settings::default() };
             let output =
                 Output { dir: Some(dir.path().join("report")), existing: Existing::Replace };
@@ -81,6 +83,21 @@ fn estimators_that_cannot_meet_a_source_are_refused() {
             }
         }
     }
+}
+
+#[test]
+fn merging_is_refused_where_a_finish_scatters() {
+    let dir = tempfile::tempdir().unwrap();
+    let scene = dir.path().join("scene.toml");
+    std::fs::write(&scene, format!("lumiduct = 1\ntitle = \"Refused\"\n{ROD}")).unwrap();
+    let settings = Settings { estimator: Some(Request::Mis), ..Settings::default() };
+    let output = Output { dir: Some(dir.path().join("report")), existing: Existing::Replace };
+    let refused = pipeline::run_one(&scene, &settings, &output, &Interrupt::default(), &mut |_| {});
+    let message = refused.unwrap_err().to_string();
+    for word in ["`mis`", "run.estimator", "`rough`", "`film.surface`", "scatters"] {
+        assert!(message.contains(word), "{word}: {message}");
+    }
+    assert!(!output.dir.unwrap().exists());
 }
 
 #[test]

@@ -14,7 +14,7 @@ fn all_agree(what: &str, text: &str) {
 }
 
 /// A rod with a mirror around it, its lamp as given.
-fn rod(source: &str) -> String {
+pub(crate) fn rod(source: &str) -> String {
     format!(
         r#"
 [media.acrylic]

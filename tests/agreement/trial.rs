@@ -36,6 +36,17 @@ impl Gathering {
             _ => Self { depth, radius_mm: 0.6, angle_deg: 5.0, records: 1500, photons: 2000 },
         }
     }
+
+    fn settings(self) -> GatherSettings {
+        GatherSettings {
+            depth: Some(self.depth),
+            radius_mm: Some(self.radius_mm),
+            angle_deg: Some(self.angle_deg),
+            records: Some(self.records),
+            photons: Some(self.photons),
+            schedule: None,
+        }
+    }
 }
 
 /// How a run is made.
@@ -44,6 +55,8 @@ pub(crate) enum Way {
     Forward,
     Backward,
     Gather(Gathering),
+    /// All three, merged.
+    Merged(Gathering),
 }
 
 impl Way {
@@ -54,25 +67,21 @@ impl Way {
                 Settings { estimator: Some(Request::Forward), paths: Some(PHOTONS), ..usual }
             }
             Self::Backward => Settings { estimator: Some(Request::Backward), ..usual },
-            Self::Gather(gathering) => Settings {
-                estimator: Some(Request::Gather),
-                gather: GatherSettings {
-                    depth: Some(gathering.depth),
-                    radius_mm: Some(gathering.radius_mm),
-                    angle_deg: Some(gathering.angle_deg),
-                    records: Some(gathering.records),
-                    photons: Some(gathering.photons),
-                    schedule: None,
-                },
-                ..usual
-            },
+            Self::Gather(gathering) => {
+                let gather = gathering.settings();
+                Settings { estimator: Some(Request::Gather), gather, ..usual }
+            }
+            Self::Merged(gathering) => {
+                let gather = gathering.settings();
+                Settings { estimator: Some(Request::Mis), gather, ..usual }
+            }
         }
     }
 
     fn waves(self) -> u64 {
         match self {
             Self::Forward | Self::Backward => 1,
-            Self::Gather(_) => GATHER_WAVES,
+            Self::Gather(_) | Self::Merged(_) => GATHER_WAVES,
         }
     }
 
@@ -82,6 +91,7 @@ impl Way {
             Self::Forward => "forward".to_owned(),
             Self::Backward => "backward".to_owned(),
             Self::Gather(gathering) => format!("gather D={}", gathering.depth),
+            Self::Merged(gathering) => format!("mis D={}", gathering.depth),
         }
     }
 }
@@ -111,7 +121,7 @@ fn findings_alone(job: &Job, way: Way) -> Findings {
     const PIECES: usize = 16;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     pool.install(|| match way {
-        Way::Forward | Way::Gather(_) => findings(job, way),
+        Way::Forward | Way::Gather(_) | Way::Merged(_) => findings(job, way),
         Way::Backward => {
             let mut run = Run::new(&job.scene, &job.run);
             (0..PIECES).for_each(|_| run.next_piece());

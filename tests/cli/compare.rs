@@ -2,7 +2,7 @@
 
 use crate::*;
 
-const ALL: &str = "forward,backward,sppm,whitted,metropolis,gather";
+const ALL: &str = "forward,backward,sppm,whitted,metropolis,gather,mis";
 
 #[test]
 fn a_comparison_writes_a_page_a_table_a_plot_and_its_truth() {
@@ -33,6 +33,17 @@ fn a_comparison_writes_a_page_a_table_a_plot_and_its_truth() {
     place.good(&format!("{again} -q"));
     let page = fs::read_to_string(place.path("reports/rod-compare/compare.md")).unwrap();
     assert!(page.contains("from `out/truth.csv`"), "{page}");
+}
+
+#[test]
+fn a_comparison_with_merging_is_refused_where_a_finish_scatters() {
+    let white = "[sheets.screen.disk]\nradius_mm = 3\nfinish = { lambertian = { reflectance = 0.5 } }\nat = { position_mm = [0, 0, 40] }\n";
+    let place = Place::with(white);
+    let said = place.bad(2, "compare rod.toml --estimators forward,mis --sensor exit --time 1s");
+    for words in ["mis", "screen.surface", "scatters"] {
+        assert!(said.contains(words), "no {words} in {said}");
+    }
+    assert_eq!(place.names(), ["rod.toml"]);
 }
 
 #[test]

@@ -169,6 +169,21 @@ fn what_a_run_did_otherwise_than_asked_is_said() {
 }
 
 #[test]
+fn merged_values_name_their_estimator_and_their_windows() {
+    let place = Place::new();
+    place.good(
+        "run rod.toml -o a -q --estimator mis --depth 2 --records 1k --photons 2k --paths 48k",
+    );
+    let summary = place.summary("a");
+    assert_eq!(summary["run"]["estimator"], "mis");
+    assert_eq!(summary["estimators"]["exit"], "mis");
+    assert_eq!(summary["measures"]["exit.flux"]["estimator"], "mis");
+    assert!(summary["measures"]["exit.flux"]["bias"].is_number(), "{summary}");
+    let page = fs::read_to_string(place.path("a/report.md")).unwrap();
+    assert!(page.contains("| exit | mis |") && page.contains("E1 in lm"), "{page}");
+}
+
+#[test]
 fn wishes_for_gathering_are_told_and_make_another_report() {
     let place = Place::new();
     let wishes = "--depth 8 --angle-deg 0.15 --records 10k --photons 1M --schedule per-pass";

@@ -24,6 +24,7 @@ pub(super) fn run(spec: &SceneSpec) -> RunPlan {
             EstimatorSpec::Forward => Request::Forward,
             EstimatorSpec::Backward => Request::Backward,
             EstimatorSpec::Gather => Request::Gather,
+            EstimatorSpec::Mis => Request::Mis,
         },
         gather: gather(&run.gather),
         seed: run.seed,

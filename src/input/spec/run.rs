@@ -22,7 +22,7 @@ pub struct RunSpec {
     /// How flux is estimated.
     #[serde(default)]
     pub estimator: EstimatorSpec,
-    /// Wishes for the estimator `gather`, and for `auto` where it gathers.
+    /// Wishes for the estimators `gather` and `mis`, and for `auto` where it gathers.
     #[serde(default)]
     pub gather: GatherSpec,
     /// Number of surfaces after which a path is given up; the flux that this cuts off is reported.
@@ -68,9 +68,12 @@ pub enum EstimatorSpec {
     Backward,
     /// Gather paths from the sensors that end in records, and photon paths from the sources that are gathered there.
     Gather,
+    /// Forward, backward and gather at once, weighed path by path (multiple importance sampling); for scenes whose
+    /// finishes do not scatter.
+    Mis,
 }
 
-/// Wishes for the estimator `gather`. What is left out is chosen by a short trial, and told in the report. The window
+/// Wishes for the estimators `gather` and `mis`. What is left out is chosen by a short trial, and told in the report. The window
 /// of a record is a disk on the surface and a cone of directions; photons inside both are gathered.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 pub struct GatherSpec {

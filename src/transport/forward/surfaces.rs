@@ -4,8 +4,8 @@
 
 use crate::optics::Side;
 use crate::scene::shape::{Crossing, Start, Toward};
-use crate::scene::{Counts, Owner, PrimHit, Seeing, SensorId, SurfaceSensor};
-use crate::transport::forward::{Counter, PhotonWatcher, TravelStart};
+use crate::scene::{Counts, MediumId, Owner, PrimHit, Seeing, SensorId, SurfaceSensor};
+use crate::transport::forward::{Counter, Detected, PhotonWatcher, TravelStart};
 use crate::transport::watch::OnPort;
 use crate::transport::{Path, Segment, Vertex};
 use glam::{DVec2, DVec3};
@@ -19,6 +19,8 @@ pub(super) struct Light {
     pub(super) throughput: f64,
     /// How it leaves; `None` of arriving light.
     pub(super) side: Option<Side>,
+    /// The medium it is in.
+    pub(super) medium: MediumId,
 }
 
 /// Light at a surface sensor.
@@ -27,6 +29,10 @@ struct Seen {
     toward: Toward,
     point: DVec3,
     dir: DVec3,
+    /// Of the surface.
+    normal: DVec3,
+    medium: MediumId,
+    throughput: f64,
 }
 
 impl<'s, W: PhotonWatcher> Counter<'_, 's, W> {
@@ -71,10 +77,13 @@ impl<'s, W: PhotonWatcher> Counter<'_, 's, W> {
                     toward,
                     point: segment.ray.at(t),
                     dir: segment.ray.dir(),
+                    normal: patch.shape.normal(segment.ray.at(t)),
+                    medium: segment.medium,
+                    throughput,
                 };
                 if self.through_aim(path, *id, t) {
                     let uv = patch.chart(seen.point);
-                    self.count_on_surface(path, *id, sensor, uv, &seen, throughput);
+                    self.count_on_surface(path, *id, sensor, uv, &seen);
                 } else if sensor.sides.include(seen.counts, toward) {
                     self.add(self.run.layout.outside_aim(*id), throughput);
                 }
@@ -98,6 +107,13 @@ impl<'s, W: PhotonWatcher> Counter<'_, 's, W> {
         throughput: f64,
     ) {
         if self.through_aim(path, id, t) {
+            let (ray, medium) = (&path.ray, path.medium);
+            let point = if t.is_finite() { ray.at(t) } else { ray.origin() };
+            let (flux, source) = (self.flux * throughput, self.source);
+            // How a sphere is met follows from the place.
+            let (dir, normal) = (ray.dir(), ray.dir());
+            let light = Detected { sensor: id, point, dir, normal, medium, flux, source };
+            self.watcher.detect(path, &light, std::iter::once(cell));
             self.count(path, id, cell, throughput);
         } else {
             self.add(self.run.layout.outside_aim(id), throughput);
@@ -145,7 +161,7 @@ impl<'s, W: PhotonWatcher> Counter<'_, 's, W> {
     }
 
     fn on_face(&mut self, path: &Path, point: DVec3, hit: &PrimHit, light: Light) {
-        let Light { counts, dir, throughput, side } = light;
+        let Light { counts, dir, throughput, side, medium } = light;
         let run = self.run;
         let face = hit.face.index();
         if side == Some(Side::Transmitted) && hit.toward == Toward::Back {
@@ -159,7 +175,7 @@ impl<'s, W: PhotonWatcher> Counter<'_, 's, W> {
             let normal = run.scene.normal(hit.prim, point);
             // Light is reflected to the side it came from: its direction tells the side it leaves to.
             let toward = if side.is_none() { hit.toward } else { Toward::of(dir, normal) };
-            let seen = Seen { counts, toward, point, dir };
+            let seen = Seen { counts, toward, point, dir, normal, medium, throughput };
             let distance = point.distance(path.ray.origin());
             if counts == Counts::Incident && !self.through_aim(path, id, distance) {
                 if sensor.sides.include(counts, toward) {
@@ -168,7 +184,7 @@ impl<'s, W: PhotonWatcher> Counter<'_, 's, W> {
                 continue;
             }
             let uv = run.scene.chart(hit.prim, point);
-            self.count_on_surface(path, id, sensor, uv, &seen, throughput);
+            self.count_on_surface(path, id, sensor, uv, &seen);
         }
     }
 
@@ -181,8 +197,8 @@ impl<'s, W: PhotonWatcher> Counter<'_, 's, W> {
         sensor: &SurfaceSensor,
         uv: DVec2,
         seen: &Seen,
-        throughput: f64,
     ) {
+        let &Seen { point, dir, normal, medium, throughput, .. } = seen;
         if !sensor.sides.include(seen.counts, seen.toward) {
             self.add(self.run.layout.other_side(id), throughput);
             return;
@@ -191,16 +207,25 @@ impl<'s, W: PhotonWatcher> Counter<'_, 's, W> {
         // Away from the face: back along arriving light, along leaving light.
         let away = if seen.counts == Counts::Incident { -seen.dir } else { seen.dir };
         let cells = sensor.grid.cells();
+        let (flux, source) = (self.flux * throughput, self.source);
+        let light = Detected { sensor: id, point, dir, normal, medium, flux, source };
         let views = match &sensor.seeing {
-            Seeing::All => return self.count(path, id, cell, throughput),
+            Seeing::All => {
+                self.watcher.detect(path, &light, std::iter::once(cell));
+                return self.count(path, id, cell, throughput);
+            }
             Seeing::Views(views) => views,
             Seeing::Pixels(pixels) => {
                 if let Some(pixel) = pixels.pixel(away) {
-                    self.count(path, id, pixel * cells + cell, throughput);
+                    let cell = pixel * cells + cell;
+                    self.watcher.detect(path, &light, std::iter::once(cell));
+                    self.count(path, id, cell, throughput);
                 }
                 return;
             }
         };
+        let lit = views.accepting(away).map(|view| view * cells + cell);
+        self.watcher.detect(path, &light, lit);
         let mut first = true;
         for view in views.accepting(away) {
             if first {

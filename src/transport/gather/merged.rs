@@ -1,0 +1,130 @@
+//! Gathering merged with forward and backward: what each of the three counts of a path, by the weights of `merge`.
+//!
+//! Photons that sensors count, gather paths that meet emission, and pairs of photons and records are of the same
+//! passes. All light of a sensor is in the readings of the windows; how paths are traced is not known here.
+
+use crate::scene::{Ray, SourceId, Visibility};
+use crate::transport::emitters::Met;
+use crate::transport::forward::{Detected, PhotonWatcher};
+use crate::transport::gather::Pass;
+use crate::transport::gather::stream::Stream;
+use crate::transport::merge::{Etendues, NO_WINDOW, Passage, ROULETTE_BELOW, Recent};
+use crate::transport::readings::Counted;
+use crate::transport::scatter::facing;
+use crate::transport::window::{NESTED, Window};
+use crate::transport::{Departure, Path, Vertex};
+use smallvec::SmallVec;
+
+/// What weighs the light of one gather path.
+#[derive(Debug)]
+pub(super) struct Merging<'a> {
+    /// Etendue of the path, mm² sr.
+    etendue: f64,
+    /// Flux of one photon of each source, lm or W.
+    photon_fluxes: &'a [f64],
+    /// G/q of vertex D once it lies behind the path, mm² sr.
+    window: [f64; NESTED],
+}
+
+impl<'a> Merging<'a> {
+    pub(super) fn new(etendue: f64, photon_fluxes: &'a [f64]) -> Self {
+        Self { etendue, photon_fluxes, window: NO_WINDOW }
+    }
+
+    /// Vertex D lies behind: G/q of the side that the path took there, mm² sr.
+    pub(super) fn pass_vertex_d(&mut self, window: [f64; NESTED]) {
+        self.window = window;
+    }
+
+    /// What weighs a record of vertex D with this G/q, as far as the gather path knows it.
+    pub(super) fn waiting(&self, window: [f64; NESTED]) -> Etendues {
+        Etendues { photon: f64::INFINITY, gather: self.etendue, window }
+    }
+
+    /// How much emission counts that the path has met, for each window, 1.
+    pub(super) fn weights(&self, met: &Met) -> [f64; NESTED] {
+        let photon = self.photon_fluxes[met.source.index()] / met.emitted;
+        Etendues { photon, gather: self.etendue, window: self.window }.backward()
+    }
+}
+
+/// Photons that stream past the records, and count in the cells of sensors, too.
+pub(super) struct MergedStream<'m, 'p, 's> {
+    stream: &'m mut Stream<'p, 's>,
+    window: Window,
+    /// Gather paths of each sensor in the pass.
+    gather_paths: f64,
+    photon_fluxes: &'m [f64],
+    /// Etendue that the photon being traced stands for, mm² sr.
+    photon: f64,
+    recent: Recent<'s>,
+}
+
+impl<'m, 'p, 's> MergedStream<'m, 'p, 's> {
+    pub(super) fn new(
+        stream: &'m mut Stream<'p, 's>,
+        pass: Pass,
+        photon_fluxes: &'m [f64],
+    ) -> Self {
+        Self {
+            recent: Recent::new(stream.gather.depth),
+            stream,
+            window: pass.window,
+            gather_paths: pass.gather_paths as f64,
+            photon_fluxes,
+            photon: f64::INFINITY,
+        }
+    }
+}
+
+impl PhotonWatcher for MergedStream<'_, '_, '_> {
+    fn roulette_below(&self) -> f64 {
+        ROULETTE_BELOW
+    }
+
+    fn start(&mut self, path: &Path, source: SourceId, shape: usize) {
+        let emitted = self.stream.gather.emitters.emitted(source, path, shape);
+        self.photon = self.photon_fluxes[source.index()] / emitted;
+        self.recent.clear();
+    }
+
+    fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>, flux: f64, source: SourceId) {
+        if self.stream.may_take(vertex) {
+            let photon = self.photon;
+            self.stream.look_up(path, vertex, flux * vertex.throughput, source, |ended| {
+                let of_gather_path = |own| Etendues { photon, ..own }.pair();
+                ended.etendues.map_or(NO_WINDOW, of_gather_path)
+            });
+        }
+    }
+
+    fn depart(&mut self, path: &Path, vertex: &Vertex<'_>, departure: &Departure) {
+        if vertex.interface.visibility == Visibility::Visible {
+            let facing = facing(self.stream.gather.scene, path, vertex);
+            self.recent.push(Passage::of_photon(&facing, departure.side));
+        }
+    }
+
+    fn detect(&mut self, path: &Path, light: &Detected, cells: impl Iterator<Item = usize>) {
+        let cells: SmallVec<[usize; 4]> = cells.collect();
+        let gather = self.stream.gather;
+        let known = gather.sensors.iter().find(|(id, _)| *id == light.sensor);
+        let (Some((id, arrivals)), false) = (known, cells.is_empty()) else { return };
+        let extent = arrivals.extent(&Ray::new(light.point, -light.dir), light.normal);
+        let index = gather.scene.media[light.medium.index()].index(path.wavelength);
+        let etendues = Etendues {
+            photon: self.photon,
+            gather: index * index * extent / self.gather_paths,
+            window: self.recent.etendues(self.window),
+        };
+        for (readings, weight) in self.stream.windows.iter_mut().zip(etendues.forward()) {
+            let (flux, source) = (light.flux * weight, light.source);
+            readings.count(
+                &gather.layout,
+                *id,
+                &cells,
+                &Counted { flux, depth: path.depth, source },
+            );
+        }
+    }
+}

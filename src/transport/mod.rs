@@ -4,6 +4,7 @@
 
 mod backward;
 mod baselines;
+mod blind;
 mod cells;
 mod coverage;
 mod emitters;
@@ -31,6 +32,7 @@ mod window;
 mod work;
 
 pub use baselines::{Baseline, BaselineRun};
+pub use blind::{BLIND_PATHS, blind_sensors};
 pub use cells::Cells;
 pub use emitters::invisible;
 pub use findings::{Findings, Gathered};

@@ -31,7 +31,7 @@ mod watch;
 mod window;
 mod work;
 
-pub use baselines::{Baseline, BaselineRun};
+pub use baselines::{Baseline, BaselineRun, sppm_area_ratio};
 pub use blind::{BLIND_PATHS, blind_sensors};
 pub use cells::Cells;
 pub use emitters::invisible;

@@ -17,7 +17,9 @@ use crate::report::{
     Written, inventory, write_whole,
 };
 use crate::scene::plan::{Request, RunPlan};
-use crate::transport::{Findings, Interrupt, Run, Scatterer, invisible, scatterers, tracks};
+use crate::transport::{
+    BLIND_PATHS, Findings, Interrupt, Run, Scatterer, blind_sensors, invisible, scatterers, tracks,
+};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -72,8 +74,8 @@ pub fn run_one(
     interrupt: &Interrupt,
     watch: &mut dyn FnMut(&Progress),
 ) -> Result<Finished> {
-    let job = input::load(scene, settings)?;
-    expect_sense(&job)?;
+    let mut job = input::load(scene, settings)?;
+    job.warnings.extend(expect_sense(&job)?);
     let folder = Folder::open(&output_dir(scene, output), output.existing, recipe(&job).as_ref())?;
     let traced = trace(&job, interrupt, watch);
     let report = compose(&job, &traced.findings, traced.stop);
@@ -88,8 +90,9 @@ pub fn run_one(
     })
 }
 
-/// Refuses a scene without light, and checks and targets that name no measure of it, before any work is done.
-fn expect_sense(job: &Job) -> Result<()> {
+/// Refuses a scene without light, and checks and targets that name no measure of it, before any work is done. Gives
+/// back remarks.
+fn expect_sense(job: &Job) -> Result<Vec<Diagnostic>> {
     let names = measure::names(&job.scene);
     let target = job
         .run
@@ -113,7 +116,26 @@ fn expect_sense(job: &Job) -> Result<()> {
             .error(&key, format!("there is no measure `{name}`"))
             .hint(format!("near names: {}", nearest.join(", ")));
     }
-    problems.finish(&job.places).map(|_| ())
+    expect_sight(job, &mut problems);
+    problems.finish(&job.places)
+}
+
+/// Remarks on sensors from which no gather path could bring light.
+fn expect_sight(job: &Job, problems: &mut Problems) {
+    match job.run.estimator {
+        Request::Auto | Request::Forward => return,
+        Request::Backward | Request::Gather | Request::Mis => {}
+    }
+    for sensor in blind_sensors(&job.scene, job.run.seed) {
+        let name = &job.scene.sensors[sensor.index()].name;
+        let message = format!(
+            "sees no port: 0 of {BLIND_PATHS} gather paths meet a surface or a source, so that `{}` finds nothing there",
+            job.run.estimator.name()
+        );
+        problems
+            .warning(&Key::of(&["sensors", name]), message)
+            .hint("turn its axis toward the port, or name the port in its `aim`");
+    }
 }
 
 /// Refuses estimators that have to meet the sources where a source cannot be met.
@@ -339,8 +361,8 @@ pub fn check(
     picture: Option<&Path>,
     existing: Existing,
 ) -> Result<Checked> {
-    let job = input::load(scene, settings)?;
-    expect_sense(&job)?;
+    let mut job = input::load(scene, settings)?;
+    job.warnings.extend(expect_sense(&job)?);
     let default = PathBuf::from(format!("{}.check.png", job.name));
     // The default name belongs to this program: it is drawn anew at every check.
     let (picture, existing) =

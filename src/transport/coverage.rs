@@ -158,7 +158,7 @@ mod tests {
         ];
         for (s, expected) in reference {
             let [wide, ..] = mean_shares(DVec2::new(s, 10.0), 1.0);
-            assert!((wide - expected).abs() < 0.01, "{s}: {wide}, not {expected}");
+            assert!((wide / expected - 1.0).abs() < 0.01, "{s}: {wide}, not {expected}");
             // A window of double the radius holds it as the narrowest of three.
             let [.., narrow] = mean_shares(DVec2::new(s, 10.0), 2.0);
             assert!((narrow - expected).abs() < 0.02, "{s}: {narrow}, not {expected}");

@@ -4,6 +4,7 @@
 
 mod backward;
 mod baselines;
+mod blind;
 mod cells;
 mod coverage;
 mod emitters;
@@ -30,7 +31,8 @@ mod watch;
 mod window;
 mod work;
 
-pub use baselines::{Baseline, BaselineRun};
+pub use baselines::{Baseline, BaselineRun, sppm_area_ratio};
+pub use blind::{BLIND_PATHS, blind_sensors};
 pub use cells::Cells;
 pub use emitters::invisible;
 pub use findings::{Findings, Gathered};

@@ -2,8 +2,8 @@
 //!
 //! Within a stage radius and angle are fixed, so that its passes are independent samples of one quantity and their
 //! spread is an honest error bar. Between stages the window shrinks by √2, the number of gather paths doubles as far as
-//! memory allows and the number of passes grows by 4: bias and standard error both halve. A value comes from one stage
-//! alone. With the schedule `per-pass` there is one stage whose window shrinks from pass to pass.
+//! memory allows and the number of passes grows by 8, for pairs get rare: bias and standard error both halve. A value
+//! comes from one stage alone. With the schedule `per-pass` there is one stage whose window shrinks from pass to pass.
 
 use crate::scene::plan::Schedule;
 use crate::transport::gather::{Gather, Pass};
@@ -15,8 +15,9 @@ use serde::{Deserialize, Serialize};
 
 /// Passes of the first stage, and of a wave of passes.
 pub(crate) const FIRST_PASSES: u64 = 16;
-/// By how much the number of passes grows from stage to stage.
-const PASS_GROWTH: u64 = 4;
+/// By how much passes times gather paths grow from stage to stage. Of the pairs of a pass a quarter is left, for the
+/// window shrinks in four dimensions, and half the standard error takes four times as many in all.
+const GROWTH: u64 = 16;
 /// Most gather paths of a pass: records take about 200 bytes each.
 const MOST_GATHER_PATHS: u64 = 1 << 20;
 
@@ -87,7 +88,11 @@ impl<'s> Stages<'s> {
     /// Passes after which the stage in progress may end.
     pub(crate) fn planned_passes(&self) -> u64 {
         match self.settings.schedule {
-            Schedule::Stages => FIRST_PASSES * PASS_GROWTH.pow(self.number.min(16)),
+            // The gather paths of a pass double while memory allows: 8 times the passes, later 16 times.
+            Schedule::Stages => {
+                let growth = self.gather_paths() / self.settings.gather_paths;
+                (FIRST_PASSES * GROWTH.pow(self.number.min(14))) / growth
+            }
             Schedule::PerPass => u64::MAX,
         }
     }

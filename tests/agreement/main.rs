@@ -9,6 +9,7 @@
     reason = "a line for each value, shown by --nocapture and on failure"
 )]
 
+mod consistency;
 mod finishes;
 mod furnace;
 mod guides;

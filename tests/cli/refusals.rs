@@ -35,10 +35,6 @@ fn a_bad_command_line_ends_with_2_and_writes_nothing() {
         "run rod.toml -o rod.toml",
         "run rod.toml --threads 0",
         "run rod.toml --estimator psychic",
-        "run rod.toml --records 0",
-        "run rod.toml --angle-deg 90",
-        "run rod.toml --radius-mm 0",
-        "run rod.toml --depth 1001",
         "run rod.toml --schedule sometimes",
         "run rod.toml -D solids.rod.cylinder.length_mm",
         "run rod.toml -D solids.rod.cylinder.lenght_mm=3",
@@ -51,6 +47,64 @@ fn a_bad_command_line_ends_with_2_and_writes_nothing() {
     let help = place.good("run --help");
     assert!(help.contains("Gather:") && help.contains("--estimator <ESTIMATOR>"), "{help}");
     assert!(help.contains("--overwrite") && place.good("--help").contains("Exit codes"));
+}
+
+#[test]
+fn bad_wishes_for_gathering_are_refused_with_the_figure_that_is_wrong() {
+    let place = Place::new();
+    for (flag, key, figure) in [
+        ("--depth", "depth", "1001"),
+        ("--depth", "depth", "-1"),
+        ("--radius-mm", "radius_mm", "0"),
+        ("--radius-mm", "radius_mm", "-0.5"),
+        ("--radius-mm", "radius_mm", "inf"),
+        ("--angle-deg", "angle_deg", "0"),
+        ("--angle-deg", "angle_deg", "90"),
+        ("--angle-deg", "angle_deg", "120"),
+        ("--records", "records", "0"),
+        ("--records", "records", "-5"),
+        ("--photons", "photons", "0"),
+        ("--photons", "photons", "-3"),
+    ] {
+        let said = place.bad(2, &format!("run rod.toml --estimator gather {flag}={figure}"));
+        assert!(said.contains(flag) && said.contains(figure), "{flag}: {said}");
+        let said =
+            place.bad(2, &format!("run rod.toml --estimator gather -D run.gather.{key}={figure}"));
+        assert!(said.contains(&format!("run.gather.{key}")), "{key}: {said}");
+        // What is not finite is named as such.
+        assert!(said.contains(figure) || said.contains("finite"), "{key}: {said}");
+    }
+    assert_eq!(place.names(), ["rod.toml"]);
+}
+
+#[test]
+fn a_sensor_that_sees_no_port_is_told_of() {
+    let look = |axis: &str| {
+        Place::with(&format!(
+            "[sensors.eye]\nat = {{ position_mm = [0, 0, 20], axis = [0, 0, {axis}] }}\n\
+             luminance = {{ disk = {{ radius_mm = 1 }}, cells = [1, 1], acceptance_half_angle_deg = 1, \
+             directions = [{{ theta_deg = 0, phi_deg = 0 }}] }}\n"
+        ))
+    };
+    let wishes = "--records 100 --photons 100 --paths 3k";
+    let (away, toward) = (look("1"), look("-1"));
+    for estimator in ["backward", "gather", "mis"] {
+        let run = format!("run rod.toml -o {estimator} --estimator {estimator} {wishes}");
+        let output = away.run(&run);
+        let said = errors(&output);
+        assert_eq!(code(&output), 0, "{said}");
+        assert!(
+            said.contains("rod.toml:20: warning: `sensors.eye`: sees no port: 0 of 1000"),
+            "{said}"
+        );
+        let page = fs::read_to_string(away.path(estimator).join("report.md")).unwrap();
+        assert!(page.contains("`sensors.eye` sees no port"), "{page}");
+        assert!(!errors(&toward.run(&run)).contains("sees no port"));
+    }
+    let forward = away.run("run rod.toml -o forward --estimator forward --paths 3k");
+    assert!(!errors(&forward).contains("sees no port"));
+    let checked = away.run("check rod.toml -D run.estimator=\"gather\"");
+    assert!(errors(&checked).contains("sees no port"), "{}", errors(&checked));
 }
 
 #[test]

@@ -4,7 +4,7 @@ use crate::run::scene_file;
 use glam::DVec3;
 use lumiduct::input::{self, Settings};
 use lumiduct::optics::fresnel::{Polarised, brewster_angle, conductor, critical_angle, dielectric};
-use lumiduct::transport::{Track, TrackEnd, tracks};
+use lumiduct::transport::{Track, TrackEnd, sppm_area_ratio, tracks};
 
 /// Largest relative deviation.
 pub(crate) const LIMIT: f64 = 1e-6;
@@ -42,6 +42,7 @@ pub(crate) fn computed() -> Vec<Computed> {
     all.extend(metal());
     all.extend(shift());
     all.push(way());
+    all.extend(schedule());
     all
 }
 
@@ -121,6 +122,25 @@ fn way() -> Computed {
     let exit = track.points.iter().position(|point| is_at_exit(*point)).expect("it was chosen");
     let way: f64 = track.points[..=exit].windows(2).map(|ends| ends[0].distance(ends[1])).sum();
     Computed { case: "SR-02", name: "path/L(40)".into(), expected: 1.108450528, ours: way / ROD_MM }
+}
+
+/// ES-03: the radii of progressive photon mapping, as the baseline has them.
+fn schedule() -> Vec<Computed> {
+    [
+        ("2/3", 2.0 / 3.0, [0.5085158403, 0.2383887855, 0.11076091]),
+        ("0.7", 0.7, [0.5458591632, 0.2761550889, 0.1385361635]),
+    ]
+    .into_iter()
+    .flat_map(|(name, alpha, expected)| {
+        // The reference counts passes from 1.
+        [10, 100, 1000].into_iter().zip(expected).map(move |(n, expected)| Computed {
+            case: "ES-03",
+            name: format!("r2(N={n},alpha={name})"),
+            expected,
+            ours: sppm_area_ratio(n - 1, alpha),
+        })
+    })
+    .collect()
 }
 
 /// The exit of the rod is across z; 1e-9 of its length for rounding.

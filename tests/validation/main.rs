@@ -11,7 +11,7 @@ mod page;
 mod run;
 mod table;
 
-use crate::page::Waiting;
+use crate::page::{Elsewhere, Waiting};
 use crate::run::Finding;
 use crate::table::Table;
 use std::collections::BTreeSet;
@@ -31,7 +31,7 @@ impl Family {
     }
 }
 
-static FAMILIES: [Family; 7] = [
+static FAMILIES: [Family; 8] = [
     Family::new("benchmarks", include_str!("benchmarks.toml")),
     Family::new("photometry", include_str!("photometry.toml")),
     Family::new("fresnel", include_str!("fresnel.toml")),
@@ -39,6 +39,7 @@ static FAMILIES: [Family; 7] = [
     Family::new("ducts", include_str!("ducts.toml")),
     Family::new("rods", include_str!("rods.toml")),
     Family::new("diffuse", include_str!("diffuse.toml")),
+    Family::new("windows", include_str!("windows.toml")),
 ];
 
 /// Seeds of a family start at its number times this.
@@ -126,6 +127,11 @@ fn diffuse() {
 }
 
 #[test]
+fn windows() {
+    check("windows");
+}
+
+#[test]
 fn functions_give_the_values_of_the_formulas() {
     for value in formulas::computed() {
         assert!(value.deviation().abs() <= formulas::LIMIT, "{value:?}");
@@ -161,10 +167,27 @@ fn no_value_of_the_reference_is_forgotten() {
         }
     }
     formulas::computed().iter().for_each(|value| add(value.case, &value.name));
+    for elsewhere in &waiting().elsewhere {
+        elsewhere.values.keys().for_each(|name| add(&elsewhere.case, name));
+    }
     for reason in waiting().all() {
         reason.values.iter().for_each(|name| add(&reason.case, name));
     }
     assert_eq!(names.len(), REFERENCE_VALUES);
+}
+
+#[test]
+fn tests_that_are_named_are_there_and_hold_the_values() {
+    for Elsewhere { file, test, values, .. } in waiting().elsewhere {
+        let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(&file));
+        let text = text.unwrap_or_else(|error| panic!("{file}: {error}"));
+        let (_, body) =
+            text.split_once(&format!("#[test]\n    fn {test}() {{")).expect("a test of that name");
+        let body = body.split("#[test]").next().expect("a first piece");
+        for (name, value) in values {
+            assert!(body.contains(&format!("{value:?}")), "{test}: no {value:?} for {name}");
+        }
+    }
 }
 
 #[test]

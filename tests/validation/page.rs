@@ -3,12 +3,15 @@
 use crate::formulas::Computed;
 use crate::run::{Expected, Finding};
 use serde::Deserialize;
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// What cannot be checked yet.
+/// What is not checked here, or not at all.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Waiting {
+    /// Values that other tests check.
+    pub(crate) elsewhere: Vec<Elsewhere>,
     /// Values that nothing in the program gives, nor should.
     pub(crate) formula: Vec<Reason>,
     /// Values that something still to be built would give.
@@ -16,10 +19,26 @@ pub(crate) struct Waiting {
 }
 
 impl Waiting {
-    /// All of them.
+    /// All that no test checks.
     pub(crate) fn all(&self) -> impl Iterator<Item = &Reason> {
         self.formula.iter().chain(&self.waiting)
     }
+}
+
+/// Values of a case that a test beside the code checks.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Elsewhere {
+    /// Name of the reference case.
+    pub(crate) case: String,
+    /// Names of the values, and what they are.
+    pub(crate) values: BTreeMap<String, f64>,
+    /// File of the test.
+    pub(crate) file: String,
+    /// Name of the test.
+    pub(crate) test: String,
+    /// What it does.
+    pub(crate) how: String,
 }
 
 /// Values of a case that are not checked, for one reason.
@@ -52,6 +71,7 @@ pub(crate) fn page(findings: &[&Finding], computed: &[Computed], waiting: &Waiti
     traced(&mut text, findings);
     coarse(&mut text, findings);
     formulas(&mut text, computed);
+    elsewhere(&mut text, &waiting.elsewhere);
     let formulas = "Formulas and contrasts";
     reasons(
         &mut text,
@@ -73,10 +93,11 @@ against its reference, and fails when this page is not what comes out: seeds are
 any number of threads. Citations stand beside the expected values in the scene files.
 
 A run goes on until the standard error of each of its values is small enough: 0.07 % for fluxes (class F, and M where the
-reference itself is a Monte Carlo value), 0.3 % for local illuminance and intensity (I), 0.03 % for invariances (X). The
-value must then lie within 4 standard errors or, if that is more, within 0.2 % (F), 1 % (I), 0.1 % (X); for M within
-3 errors of both sides together and 0.3 %; a limit may be exceeded by 4 standard errors at most. In every run no light
-may leak and the flux balance must close to 1e-9.
+reference itself is a Monte Carlo value), 0.3 % for what is local (I), 0.03 % for invariances (X). The value must then lie
+within 4 standard errors or, if that is more, within 0.2 % (F), 1 % (I), 0.1 % (X); for M within 3 errors of both sides
+together and 0.3 %; a limit may be exceeded by 4 standard errors at most. In every run no light may leak and the flux
+balance must close to 1e-9. Sensors count photons, except in the cases about windows (ES): there they gather, and the
+widest window is read, bias and all.
 ";
 
 fn summary(text: &mut String, findings: &[&Finding], computed: &[Computed], waiting: &Waiting) {
@@ -85,10 +106,11 @@ fn summary(text: &mut String, findings: &[&Finding], computed: &[Computed], wait
     let beyond_two = deviations.iter().filter(|z| z.abs() > 2.0).count();
     let count =
         |reasons: &[Reason]| reasons.iter().map(|reason| reason.values.len()).sum::<usize>();
+    let elsewhere: usize = waiting.elsewhere.iter().map(|one| one.values.len()).sum();
     let (formulas, waiting) = (count(&waiting.formula), count(&waiting.waiting));
     let line = format!(
-        "\n{} values were traced, {} are computed by a function, {formulas} are formulas or contrasts, {waiting} are not \
-         checked yet. Of {} independent runs with noise one deviation each was taken, in standard errors: their root \
+        "\n{} values were traced, {} are computed by a function, {elsewhere} are checked by a test beside the code, \
+         {formulas} are formulas or contrasts, {waiting} are not checked yet. Of {} independent runs with noise one deviation each was taken, in standard errors: their root \
          mean square is {:.2}, the largest is {largest:.1}, and {beyond_two} are beyond 2 (for a normal distribution \
          {:.0} are expected).\n",
         findings.len(),
@@ -141,6 +163,14 @@ fn formulas(text: &mut String, computed: &[Computed]) {
         let Computed { case, name, expected, ours } = value;
         let (expected, ours) = (short(*expected), short(*ours));
         line(text, &format!("{case} | {name} | {expected} | {ours} | {:.0e}", value.deviation()));
+    }
+}
+
+fn elsewhere(text: &mut String, elsewhere: &[Elsewhere]) {
+    text.push_str("\n## Checked by a test beside the code\n\n| case | values | test | how |\n|---|---|---|---|\n");
+    for Elsewhere { case, values, file, test, how } in elsewhere {
+        let values: Vec<&str> = values.keys().map(String::as_str).collect();
+        line(text, &format!("{case} | {} | `{test}` in `{file}` | {how}", values.join("; ")));
     }
 }
 

@@ -1,6 +1,6 @@
 //! One run of a scene, until every value is known as well as its class demands.
 
-use crate::table::{Case, Class, Value, Variant};
+use crate::table::{By, Case, Class, Value, Variant};
 use lumiduct::input::{self, Job, Settings};
 use lumiduct::measure::{self, Measure};
 use lumiduct::scene::plan::Request;
@@ -55,8 +55,11 @@ pub(crate) fn run(case: &Case, variant: &Variant, seed: u64) -> Vec<Finding> {
     let settings = Settings {
         overrides: case.overrides(variant),
         seed: Some(seed),
-        // What the others find is held against it in tests/agreement.
-        estimator: Some(Request::Forward),
+        // What the other estimators find is held against forward in tests/agreement.
+        estimator: Some(match case.by {
+            By::Photons => Request::Forward,
+            By::WideWindow => Request::Gather,
+        }),
         ..Settings::default()
     };
     let job = match input::load(&scene_file(&case.scene), &settings) {
@@ -67,7 +70,7 @@ pub(crate) fn run(case: &Case, variant: &Variant, seed: u64) -> Vec<Finding> {
         .values
         .iter()
         .enumerate()
-        .map(|(place, value)| Wanted::new(&job, place, value, variant))
+        .map(|(place, value)| Wanted::new(&job, place, value, variant, case.by))
         .collect();
     let (findings, reached) = trace(&job, &wanted);
     let mut faults = books(&job, &findings);
@@ -93,6 +96,7 @@ pub(crate) fn scene_file(name: &str) -> PathBuf {
 struct Wanted<'a> {
     value: &'a Value,
     check: &'a Check,
+    by: By,
     name: String,
     uncertainty: f64,
     /// Standard error that must be reached, in the unit of the measure.
@@ -100,7 +104,7 @@ struct Wanted<'a> {
 }
 
 impl<'a> Wanted<'a> {
-    fn new(job: &'a Job, place: usize, value: &'a Value, variant: &Variant) -> Self {
+    fn new(job: &'a Job, place: usize, value: &'a Value, variant: &Variant, by: By) -> Self {
         let name = value.name(variant);
         let check = &job.checks[value.check.unwrap_or(place)];
         assert!(check.source.is_some(), "{}: a check without a source", job.name);
@@ -108,7 +112,7 @@ impl<'a> Wanted<'a> {
         // Nothing of the source's light: held against all of it.
         let scale = if scale == 0.0 { 1.0 } else { scale };
         let std_error = value.reach.unwrap_or(value.class.std_error()) * scale;
-        Self { value, check, name, uncertainty: value.uncertainty(variant), std_error }
+        Self { value, check, by, name, uncertainty: value.uncertainty(variant), std_error }
     }
 
     /// The standard error, over the one that must be reached.
@@ -119,9 +123,22 @@ impl<'a> Wanted<'a> {
 
     fn measure(&self, job: &Job, findings: &Findings) -> Measure {
         let name = &self.check.measure;
-        measure::value_of(&job.scene, findings, name)
-            .unwrap_or_else(|| panic!("{}: no measure `{name}`", job.name))
+        let read = |findings: &Findings| measure::value_of(&job.scene, findings, name);
+        let found = match self.by {
+            By::Photons => read(findings),
+            // The photons are what was traced; there are few gather paths, and many photons for each.
+            By::WideWindow => read(&wide_window(findings))
+                .map(|wide| Measure { paths: findings.photons.paths(), ..wide }),
+        };
+        found.unwrap_or_else(|| panic!("{}: no measure `{name}`", job.name))
     }
+}
+
+/// What was gathered within the widest window, as readings like any other.
+fn wide_window(findings: &Findings) -> Findings {
+    let gathered = findings.gathered.as_ref().expect("the case asks for gathering");
+    let stage = gathered.stages.last().expect("a wave has been traced");
+    Findings::forward(stage.windows.wide.clone())
 }
 
 /// Traces whole rounds until all errors are reached, or too many paths are traced.

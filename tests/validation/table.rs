@@ -23,12 +23,26 @@ pub(crate) struct Case {
     pub(crate) scene: String,
     /// What is read off it, one for each check of the scene unless told otherwise.
     pub(crate) values: Vec<Value>,
+    /// What reads them.
+    #[serde(default)]
+    pub(crate) by: By,
     /// Keys of the scene that the variants set.
     #[serde(default)]
     pub(crate) keys: Vec<String>,
     /// Runs of the scene; without any, it is run once as it is.
     #[serde(default)]
     variants: Vec<Variant>,
+}
+
+/// What reads the values of a case.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum By {
+    /// Photons in the cells of the sensors.
+    #[default]
+    Photons,
+    /// Gather records in the widest window alone, without what is made of three: cases about windows.
+    WideWindow,
 }
 
 /// A reference value.

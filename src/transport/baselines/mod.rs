@@ -22,6 +22,8 @@ use rayon::prelude::*;
 use sppm::Sppm;
 use whitted::Whitted;
 
+pub use sppm::sppm_area_ratio;
+
 /// A method to compare with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Baseline {

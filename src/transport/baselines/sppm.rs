@@ -66,7 +66,8 @@ impl<'s> Sppm<'s> {
     pub(super) fn pass(&self, batch: u64) -> Readings {
         let mut readings = self.sensor.empty(self.paths, batch);
         // The angle plays no part: there are no records with a direction.
-        let window = Window { radius: radius_of_pass(self.radius, batch), theta_max: 0.1 };
+        let radius = self.radius * sppm_area_ratio(batch, ALPHA).sqrt();
+        let window = Window { radius, theta_max: 0.1 };
         let mut waiting = Waiting::default();
         for index in batch * self.paths..(batch + 1) * self.paths {
             self.gather(index, window, &mut waiting, &mut readings);
@@ -101,10 +102,10 @@ impl<'s> Sppm<'s> {
     }
 }
 
-/// The radius of pass `pass`, from 0: `r²_{i+1} = r²_i (i + α)/(i + 1)` with i from 1 (Knaus & Zwicker 2011).
-fn radius_of_pass(first: f64, pass: u64) -> f64 {
-    let shrunk = |product: f64, i: u64| product * (i as f64 + ALPHA) / (i as f64 + 1.0);
-    first * (1..=pass).fold(1.0, shrunk).sqrt()
+/// Area of the disk of pass `pass`, from 0, over that of the first, 1: `r²_{i+1} = r²_i (i + α)/(i + 1)` with i from 1
+/// (Knaus & Zwicker 2011), for an α between 0 and 1.
+pub fn sppm_area_ratio(pass: u64, alpha: f64) -> f64 {
+    (1..=pass).fold(1.0, |ratio, i| ratio * (i as f64 + alpha) / (i as f64 + 1.0))
 }
 
 /// Gather paths of a pass that wait for photons: their cells, path by path, and their records.

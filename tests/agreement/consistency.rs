@@ -1,0 +1,268 @@
+//! The gather method is consistent: against stored truths, bias and noise fall with the stages as predicted.
+//!
+//! Read is the widest window alone, E1: it has a bias to look at. What is predicted holds where light is smooth and pairs
+//! of photons and records limit the noise (docs/method.md).
+
+use crate::trial::{Gathering, Way, load};
+use lumiduct::input::Job;
+use lumiduct::measure::{self, Measure};
+use lumiduct::scene::plan::{RunPlan, Schedule};
+use lumiduct::tally::Tally;
+use lumiduct::transport::{Findings, Run};
+use rayon::prelude::*;
+
+/// Stages of a run.
+const STAGES: usize = 4;
+/// Independent runs.
+const RUNS: u64 = 12;
+const MEASURE: &str = "eye.luminance_avg.0";
+/// Photons of a pass.
+const PHOTONS: u64 = 100;
+/// Exceeded by chance once in 1,000 times, by a χ² of 3 degrees of freedom.
+const CHI_SQUARE_OF_3: f64 = 16.3;
+
+/// A scene, its window, and the truth about its eye.
+struct Subject {
+    text: &'static str,
+    window: Gathering,
+    /// Luminance, cd/m², and its standard error.
+    truth: [f64; 2],
+}
+
+/// A rod under a lamp whose luminance falls with the angle, seen along its axis; records are left at its exit.
+/// Truth: this text as scene.toml, `lumiduct run scene.toml --estimator backward --paths 40M --seed 7`.
+const ROD: Subject = Subject {
+    text: r#"
+[media.acrylic]
+index = 1.49
+[solids.rod.cylinder]
+radius_mm = 2
+length_mm = 30
+medium = "acrylic"
+[sources.lamp.disk]
+radius_mm = 2
+at = { face = "rod.entry", gap_mm = 0.01 }
+flux_lm = 1
+emission = { cosine_power = 80 }
+[sensors]
+eye = { luminance = { disk = { radius_mm = 1.2 }, cells = [1, 1], acceptance_half_angle_deg = 0.5, directions = [{ theta_deg = 0, phi_deg = 0 }] }, at = { position_mm = [0, 0, 30.1], axis = [0, 0, -1] } }
+"#,
+    window: Gathering { depth: 0, radius_mm: 0.7, angle_deg: 3.0, records: 10, photons: PHOTONS },
+    truth: [947_942.5, 44.0],
+};
+
+/// A brushed mirror that folds the light of such a lamp.
+/// Truth: this text as scene.toml, `lumiduct run scene.toml --estimator backward --paths 40M --seed 7`.
+const FOLD: Subject = Subject {
+    text: r#"
+[finishes.brushed]
+gaussian = { reflectance = 0.9, sigma_deg = 1.5 }
+[sheets.fold.rectangle]
+width_mm = 8
+height_mm = 8
+finish = "brushed"
+at = { axis = [1, 0, -1] }
+[sources.lamp.disk]
+radius_mm = 4.5
+flux_lm = 1
+emission = { cosine_power = 80 }
+at = { position_mm = [10, 0, 0], axis = [-1, 0, 0] }
+[sensors]
+eye = { luminance = { disk = { radius_mm = 1 }, cells = [1, 1], acceptance_half_angle_deg = 0.5, directions = [{ theta_deg = 0, phi_deg = 0 }] }, at = { position_mm = [0, 0, -5], axis = [0, 0, 1] } }
+"#,
+    window: Gathering { depth: 0, radius_mm: 1.5, angle_deg: 5.0, records: 10, photons: PHOTONS },
+    truth: [172_647.2, 1.7],
+};
+
+/// A run of a subject with a seed of its own.
+fn plan(job: &Job, seed: u64, schedule: Schedule) -> RunPlan {
+    let mut plan = RunPlan { seed, ..job.run.clone() };
+    plan.gather.schedule = schedule;
+    plan
+}
+
+/// E1 of the stage in progress.
+fn wide(job: &Job, run: &Run<'_>) -> Measure {
+    let stages = run.findings().gathered.unwrap().stages;
+    let wide = Findings::forward(stages.last().unwrap().windows.wide.clone());
+    measure::value_of(&job.scene, &wide, MEASURE).unwrap()
+}
+
+/// What the runs of a subject have found in a stage, as shares of the truth.
+#[derive(Debug, Default, Clone)]
+struct Found {
+    /// Values less the truth.
+    errors: Tally,
+    /// Squares of them.
+    squares: Tally,
+    /// Squares of the standard errors that the runs tell.
+    told: Tally,
+    /// Photon paths of one run.
+    cost: f64,
+}
+
+impl Found {
+    fn add(&mut self, measure: &Measure, truth: f64, cost: f64) {
+        let error = measure.value / truth - 1.0;
+        self.errors.add(error);
+        self.squares.add(error * error);
+        self.told.add((measure.std_error / truth).powi(2));
+        self.cost = cost;
+    }
+
+    /// Standard error of a run.
+    fn noise(&self) -> f64 {
+        self.told.mean().sqrt()
+    }
+
+    /// Bias, and its standard error, without that of the truth.
+    fn bias(&self) -> [f64; 2] {
+        [self.errors.mean(), (self.told.mean() / RUNS as f64).sqrt()]
+    }
+}
+
+/// All stages of all runs.
+fn stages(subject: &Subject) -> Vec<Found> {
+    let job = load(subject.text, Way::Gather(subject.window));
+    let one_run = |seed: u64| -> Vec<(Measure, f64)> {
+        let mut run = Run::new(&job.scene, &plan(&job, seed, Schedule::Stages));
+        let mut waves = 0;
+        (0..STAGES)
+            .map(|_| {
+                while !run.may_end_stage() {
+                    run.next_wave();
+                }
+                let found = (wide(&job, &run), (PHOTONS * 16 * (run.waves() - waves)) as f64);
+                waves = run.waves();
+                run.next_stage();
+                found
+            })
+            .collect()
+    };
+    let runs: Vec<_> = (1..=RUNS).into_par_iter().map(one_run).collect();
+    let mut found = vec![Found::default(); STAGES];
+    for run in &runs {
+        for (found, (measure, cost)) in found.iter_mut().zip(run) {
+            found.add(measure, subject.truth[0], *cost);
+        }
+    }
+    found
+}
+
+/// χ² of biases that are `first` times powers of `factor`, with the `first` that makes it least.
+fn misfit(biases: &[[f64; 2]], factor: f64) -> f64 {
+    let share = |stage: usize| factor.powi(stage as i32);
+    let weighted = |of: &dyn Fn(usize, f64) -> f64| -> f64 {
+        biases
+            .iter()
+            .enumerate()
+            .map(|(stage, [bias, error])| of(stage, *bias) / error.powi(2))
+            .sum()
+    };
+    let first =
+        weighted(&|stage, bias| bias * share(stage)) / weighted(&|stage, _| share(stage).powi(2));
+    weighted(&|stage, bias| (bias - first * share(stage)).powi(2))
+}
+
+/// Slope of the straight line through points.
+fn slope(points: &[[f64; 2]]) -> f64 {
+    let count = points.len() as f64;
+    let [x, y] = [0, 1].map(|axis| points.iter().map(|point| point[axis]).sum::<f64>() / count);
+    let along = |axis: usize, middle: f64| -> f64 {
+        points.iter().map(|point| (point[0] - x) * (point[axis] - middle)).sum()
+    };
+    along(1, y) / along(0, x)
+}
+
+/// Stages halve bias and standard error at 8 times the cost, so that the mean square error goes as cost^(-2/3).
+fn falls_as_predicted(what: &str, subject: &Subject) {
+    let found = stages(subject);
+    for (stage, found) in found.iter().enumerate() {
+        let ([bias, error], noise) = (found.bias(), found.noise());
+        let total = found.squares.mean().sqrt();
+        println!(
+            "{what}, stage {stage}: bias {bias:+.4} ± {error:.4}, noise {noise:.4}, total error {total:.4}"
+        );
+    }
+    let truth_error = subject.truth[1] / subject.truth[0];
+    let biases: Vec<[f64; 2]> = found.iter().map(|found| found.bias()).collect();
+    assert!(
+        truth_error < 0.2 * biases[STAGES - 1][1],
+        "{what}: the truth is not known well enough"
+    );
+
+    // What the runs tell of their noise is what they scatter by: χ² of 44 degrees of freedom, within four of its deviations.
+    let scatter: f64 = found
+        .iter()
+        .map(|found| found.errors.std_error().powi(2) / found.bias()[1].powi(2))
+        .sum::<f64>();
+    let (scatter, freedom) = (scatter * (RUNS - 1) as f64, (STAGES as u64 * (RUNS - 1)) as f64);
+    assert!(
+        (scatter - freedom).abs() < 4.0 * (2.0 * freedom).sqrt(),
+        "{what}: χ² {scatter} of {freedom}"
+    );
+
+    // Noise halves, a little less at first, where pairs are not rare enough to make all of it; with 4 times the passes
+    // it would fall by 1.4. It is known to 5 % in the first stage, of 15 degrees of freedom a run, and better later.
+    for pair in found.windows(2) {
+        let ratio = pair[0].noise() / pair[1].noise();
+        assert!((1.6..2.4).contains(&ratio), "{what}: noise falls by {ratio}");
+    }
+
+    // So does the bias.
+    let [halved, slower, constant] =
+        [0.5, 0.5_f64.sqrt(), 1.0].map(|factor| misfit(&biases, factor));
+    println!(
+        "{what}: χ² {halved:.1} if the bias halves, {slower:.1} if it falls by √2, {constant:.1} if it stays"
+    );
+    assert!(halved < CHI_SQUARE_OF_3, "{what}: the bias does not halve, χ² {halved}");
+    assert!(constant > CHI_SQUARE_OF_3, "{what}: the bias does not fall, or it is not seen");
+
+    // Four mean squares of 12 runs each are known to 40 % at worst, the slope to 0.09.
+    let points: Vec<[f64; 2]> =
+        found.iter().map(|found| [found.cost.ln(), found.squares.mean().ln()]).collect();
+    let slope = slope(&points);
+    println!("{what}: the mean square error goes as cost^{slope:.2}");
+    assert!((slope + 2.0 / 3.0).abs() < 0.25, "{what}: the mean square error goes as cost^{slope}");
+}
+
+#[test]
+fn a_rod_converges_with_the_stages_as_predicted() {
+    falls_as_predicted("rod", &ROD);
+}
+
+#[test]
+fn a_brushed_mirror_converges_with_the_stages_as_predicted() {
+    falls_as_predicted("brushed mirror", &FOLD);
+}
+
+/// Their mean square error should fall as the root of the number of passes, by 4 here; without a bias it would by 16.
+#[test]
+fn windows_that_shrink_from_pass_to_pass_converge_too() {
+    let job = load(FOLD.text, Way::Gather(FOLD.window));
+    let one_run = |seed: u64| -> [Measure; 2] {
+        let mut run = Run::new(&job.scene, &plan(&job, seed, Schedule::PerPass));
+        [4, 64].map(|waves| {
+            while run.waves() < waves {
+                run.next_wave();
+            }
+            wide(&job, &run)
+        })
+    };
+    let runs: Vec<_> = (1..=RUNS).into_par_iter().map(one_run).collect();
+    let [few, many] = [0, 1].map(|which| {
+        let mut found = Found::default();
+        runs.iter().for_each(|run| found.add(&run[which], FOLD.truth[0], 0.0));
+        found
+    });
+    for found in [&few, &many] {
+        println!(
+            "per pass: bias {:+.4} ± {:.4}, total error {:.4}",
+            found.bias()[0],
+            found.bias()[1],
+            found.squares.mean().sqrt()
+        );
+    }
+    let fall = few.squares.mean() / many.squares.mean();
+    assert!((2.0..16.0).contains(&fall), "the mean square error falls by {fall}");
+}

@@ -1,0 +1,81 @@
+//! Memory of the gather method goes with its records: neither passes nor photons are kept.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
+#![allow(clippy::print_stdout, reason = "figures, shown by --nocapture and on failure")]
+#![cfg(target_os = "linux")]
+
+use lumiduct::input::{self, GatherSettings, Settings};
+use lumiduct::scene::plan::{Request, Schedule};
+use lumiduct::transport::Run;
+
+/// A mirror tube and its exit, cell by cell.
+const TUBE: &str = r#"
+lumiduct = 1
+title = "Memory"
+[finishes.mirror]
+specular = { reflectance = 0.95 }
+[sheets.guide.tube]
+profile = { circle = { radius_mm = 3 } }
+path = [{ straight_mm = 20 }]
+finish = "mirror"
+[sources.led.disk]
+radius_mm = 2
+flux_lm = 10
+[sensors]
+exit = { plane = { cells = [16, 16] }, on = "guide.exit", counts = "incident", side = "back" }
+"#;
+
+/// Gather paths of a pass; each leaves a record of some 200 bytes.
+const RECORDS: u64 = 4000;
+/// Photons of a pass. Kept, those of 1,000 passes would take 100 MB at 50 bytes each, and records 800 MB.
+const PHOTONS: u64 = 2000;
+const WAVE: u64 = 16;
+/// What memory may change by, MB: the sums over passes, of which as many are held as their number has binary digits, each
+/// of 0.2 MB here, and what the allocator of each thread holds back.
+const LEEWAY_MB: f64 = 4.0;
+
+/// A line of the kernel's account of this process, MB.
+fn status_mb(name: &str) -> f64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap();
+    let line = status.lines().find(|line| line.starts_with(name)).unwrap();
+    line.split_whitespace().nth(1).unwrap().parse::<f64>().unwrap() / 1024.0
+}
+
+/// Memory after each of some numbers of passes: what is resident, and the most that was, MB.
+fn memory<const N: usize>(photons: u64, passes: [u64; N]) -> [[f64; 2]; N] {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("tube.toml");
+    std::fs::write(&path, TUBE).unwrap();
+    let gather = GatherSettings {
+        depth: Some(2),
+        radius_mm: Some(0.3),
+        angle_deg: Some(3.0),
+        records: Some(RECORDS),
+        photons: Some(photons),
+        schedule: Some(Schedule::PerPass),
+    };
+    let settings = Settings { estimator: Some(Request::Gather), gather, ..Settings::default() };
+    let job = input::load(&path, &settings).unwrap_or_else(|error| panic!("{error}"));
+    let mut run = Run::new(&job.scene, &job.run);
+    passes.map(|passes| {
+        while run.waves() * WAVE < passes {
+            run.next_wave();
+        }
+        assert!(run.paths() >= passes * (photons + RECORDS));
+        [status_mb("VmRSS:"), status_mb("VmHWM:")]
+    })
+}
+
+/// One test alone, for memory belongs to the whole process.
+#[test]
+fn memory_grows_neither_with_passes_nor_with_photons() {
+    let [[early, _], [late, most]] = memory(PHOTONS, [112, 1120]);
+    println!(
+        "resident after 112 passes {early:.1} MB, after 1120 {late:.1} MB, at most {most:.1} MB"
+    );
+    assert!(late - early < LEEWAY_MB, "1,008 passes took {:.1} MB", late - early);
+    // Most of it within a pass counts here, for what a pass keeps is given back at its end.
+    let [[_, with_many]] = memory(50 * PHOTONS, [32]);
+    println!("with 50 times the photons at most {with_many:.1} MB");
+    assert!(with_many - most < LEEWAY_MB, "photons took {:.1} MB", with_many - most);
+}

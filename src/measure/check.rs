@@ -77,7 +77,7 @@ fn judge(check: &Check, measure: &Measure) -> Verdict {
 /// Why a measure cannot be judged at all. Nothing counted can: its error is the flux of a path, or infinite.
 fn doubt(measure: &Measure) -> Option<&'static str> {
     match measure.status {
-        Status::Ok | Status::NoSignal => None,
+        Status::Ok | Status::BiasInNoise | Status::NoSignal => None,
         Status::TooFew => Some("too little was counted to rely on it"),
         Status::NoiseLimited => Some("it is mostly noise"),
         Status::BiasNotResolved => Some("its bias is not resolved"),

@@ -2,8 +2,8 @@
 //!
 //! Within nested windows of size 1, 1/√2 and 1/2 the same photons give E1, E2 and E3. A bias that goes with the square
 //! of the window, as that of a smooth field does, has (E1 - E2)/(E2 - E3) = 2. Where that is found, within its error
-//! and out of the noise, 2 E2 - E1 is the value; otherwise E3 is, and its bias is not resolved. |E1 - E2| is the
-//! indicator of bias in both cases. All is decided once per sensor and stage, from its flux, never per cell.
+//! and out of the noise, 2 E2 - E1 is the value; otherwise E3 is, and its bias is not resolved: hidden by the noise of E3,
+//! in which four times that of E1 is, or of another law. |E1 - E2| is the indicator of bias in all cases. All is decided once per sensor and stage, from its flux, never per cell.
 
 use crate::measure::evidence::Evidence;
 use crate::measure::flux::flux_slots;
@@ -27,7 +27,9 @@ const RATIO_TOLERANCE: f64 = 0.15;
 pub enum Resolution {
     /// It goes with the square of the window: it has been extrapolated away, and the rest is smaller.
     Resolved,
-    /// It does not, or noise hides it.
+    /// The windows agree within their noise, which is well above such a bias of the smallest.
+    InNoise,
+    /// They differ, and not as the square of the window.
     NotResolved,
 }
 
@@ -96,7 +98,7 @@ impl<'a> Judged<'a> {
         let Windows { wide, middle, narrow, extrapolated } = &self.stage.windows;
         let value = match self.resolution {
             Resolution::Resolved => extrapolated,
-            Resolution::NotResolved => narrow,
+            Resolution::InNoise | Resolution::NotResolved => narrow,
         };
         [value, wide, middle].map(|readings| self.photons.by(readings, self.estimator))
     }
@@ -123,9 +125,11 @@ impl<'a> Judged<'a> {
         if delta.is_finite() {
             measure.bias = Some(measure.bias.unwrap_or(0.0).hypot(delta));
         }
-        if self.resolution == Resolution::NotResolved {
-            measure.status = measure.status.worst(Status::BiasNotResolved);
-        }
+        measure.status = measure.status.worst(match self.resolution {
+            Resolution::Resolved => Status::Ok,
+            Resolution::InNoise => Status::BiasInNoise,
+            Resolution::NotResolved => Status::BiasNotResolved,
+        });
     }
 }
 
@@ -148,14 +152,20 @@ fn stage_facts(stage: &Stage, slots: &[usize]) -> StageFacts {
 
 /// Whether the bias of the sum of some scalars is resolved.
 fn resolution(windows: &Windows, slots: &[usize]) -> Resolution {
-    let outer = difference(windows, slots, |[e1, e2, _]| e1 - e2).mean();
+    let outer = difference(windows, slots, |[e1, e2, _]| e1 - e2);
     let inner = difference(windows, slots, |[_, e2, e3]| e2 - e3);
     let curved = difference(windows, slots, |[e1, e2, e3]| e1 - 3.0 * e2 + 2.0 * e3);
-    let seen = inner.mean().abs() > OUT_OF_NOISE * inner.std_error();
+    let is_seen = |tally: &Tally| tally.mean().abs() > OUT_OF_NOISE * tally.std_error();
     let room = (WITHIN * curved.std_error()).max(RATIO_TOLERANCE * inner.mean().abs());
     // Noise must not be all that lets the ratio pass: both differences have one sign.
-    let quadratic = curved.mean().abs() <= room && outer * inner.mean() > 0.0;
-    if seen && quadratic { Resolution::Resolved } else { Resolution::NotResolved }
+    let quadratic = curved.mean().abs() <= room && outer.mean() * inner.mean() > 0.0;
+    if is_seen(&inner) && quadratic {
+        Resolution::Resolved
+    } else if is_seen(&inner) || is_seen(&outer) {
+        Resolution::NotResolved
+    } else {
+        Resolution::InNoise
+    }
 }
 
 /// Standard error and bias of the sum of some scalars together, relative to it.
@@ -163,7 +173,9 @@ fn total_error(windows: &Windows, resolution: Resolution, slots: &[usize]) -> f6
     let delta = difference(windows, slots, |[e1, e2, _]| e1 - e2).mean();
     let value = match resolution {
         Resolution::Resolved => difference(windows, slots, |[e1, e2, _]| 2.0 * e2 - e1),
-        Resolution::NotResolved => difference(windows, slots, |[_, _, e3]| e3),
+        Resolution::InNoise | Resolution::NotResolved => {
+            difference(windows, slots, |[_, _, e3]| e3)
+        }
     };
     let error = value.std_error().hypot(delta) / value.mean().abs();
     if error.is_nan() { f64::INFINITY } else { error }

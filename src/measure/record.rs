@@ -39,20 +39,25 @@ pub enum Status {
     TooFew,
     /// An extreme of a map that is mostly noise: the correction for it exceeds a tenth of the value.
     NoiseLimited,
-    /// The bias of a gathered value does not go with the square of the window as it should, or noise hides it: the
-    /// value is that of the smallest window, and the bias told is no bound.
+    /// Nested windows of a gathered value agree within their noise: the value is that of the smallest, and a bias that
+    /// goes with the square of the window is below the error told.
+    BiasInNoise,
+    /// Nested windows of a gathered value differ, and not as the square of the window: the value is that of the
+    /// smallest, and the bias told is no bound.
     BiasNotResolved,
 }
 
 impl Status {
-    /// The worse of two: the earlier in the order no signal, too few, noise limited, bias not resolved, good.
+    /// The worse of two: the earlier in the order no signal, too few, noise limited, bias not resolved, bias
+    /// in the noise, good.
     pub(crate) fn worst(self, other: Self) -> Self {
         let rank = |status| match status {
             Self::NoSignal => 0,
             Self::TooFew => 1,
             Self::NoiseLimited => 2,
             Self::BiasNotResolved => 3,
-            Self::Ok => 4,
+            Self::BiasInNoise => 4,
+            Self::Ok => 5,
         };
         if rank(self) <= rank(other) { self } else { other }
     }
@@ -67,10 +72,11 @@ impl Measure {
     /// Total error over value, 1; infinite where there is no value or no error bar to rely on.
     pub fn relative_error(&self) -> f64 {
         match self.status {
-            Status::Ok if self.value != 0.0 && self.value.is_finite() => {
+            Status::Ok | Status::BiasInNoise if self.value != 0.0 && self.value.is_finite() => {
                 (self.total_error() / self.value).abs()
             }
             Status::Ok
+            | Status::BiasInNoise
             | Status::NoSignal
             | Status::TooFew
             | Status::NoiseLimited

@@ -63,6 +63,7 @@ fn remark(status: Status) -> &'static str {
         Status::NoSignal => " (nothing counted)",
         Status::TooFew => " (too few counts for an error bar)",
         Status::NoiseLimited => " (limited by noise)",
+        Status::BiasInNoise => " (bias not resolved from noise)",
         Status::BiasNotResolved => " (bias not resolved)",
     }
 }
@@ -203,8 +204,11 @@ fn gathered(facts: &GatheredFacts, unit: &str) -> String {
         Resolution::Resolved => {
             "Bias resolved: it goes with the square of the window, and 2 E2 - E1 is the value.\n\n"
         }
+        Resolution::InNoise => {
+            "Bias not resolved from noise: the windows agree within their errors. The value is E3, that of the smallest window.\n\n"
+        }
         Resolution::NotResolved => {
-            "Bias not resolved: the value is E3, that of the smallest window, and |E1 - E2| is no bound.\n\n"
+            "Bias not resolved: the windows differ, and not by the square of their size. The value is E3, that of the smallest window, and |E1 - E2| is no bound.\n\n"
         }
     };
     _ = writeln!(text, "| stage | passes | radius | angle | E1 in {unit} | E2 | E3 |");

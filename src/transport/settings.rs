@@ -3,7 +3,7 @@
 use crate::optics::Spread;
 use crate::rng::Sampler;
 use crate::scene::plan::{GatherPlan, Schedule};
-use crate::scene::{Arrivals, Emission, Emitter, FaceId, On, Ray, Scene, SensorId};
+use crate::scene::{Arrivals, Emission, FaceId, On, Ray, Scene, SensorId};
 use crate::transport::emitters::{Emitters, Met};
 use crate::transport::follow::{Collector, Gathering, follow};
 use crate::transport::scatter::facing;
@@ -20,6 +20,8 @@ const PILOT_PATHS: u64 = 64;
 const RADIUS_PER_INRADIUS: f64 = 0.2;
 /// And at most this share of the radius of the smallest source, 1.
 const RADIUS_PER_SOURCE: f64 = 0.5;
+/// A source of at least this share of the guide's inradius fills it, 1.
+const FILLS: f64 = 0.8;
 /// Bounds of the automatic angle, deg.
 const THETA_DEG: [f64; 2] = [0.05, 3.0];
 /// Bounds of the automatic depth.
@@ -67,7 +69,7 @@ pub(crate) fn settle(
         // K/3 of the K surfaces that a photon meets.
         ((pilot.segments_per_path - 1.0) / 3.0).clamp(DEPTH[0], DEPTH[1]) as u32
     });
-    let inradius = inradius(scene, sensors, seed, depth);
+    let Sounded { inradius, from_sources } = sound(scene, sensors, seed, depth);
     let source = scene.sources.iter().filter_map(|source| source.emitter.area());
     let source_radius = source.map(|area| (area / PI).sqrt()).fold(f64::INFINITY, f64::min);
     let radius = (RADIUS_PER_INRADIUS * inradius).min(RADIUS_PER_SOURCE * source_radius);
@@ -81,7 +83,7 @@ pub(crate) fn settle(
         depth,
         window: Window {
             radius: plan.radius.unwrap_or(radius),
-            theta_max: plan.theta_max.unwrap_or_else(|| angle(scene)),
+            theta_max: plan.theta_max.unwrap_or_else(|| angle(scene, inradius, &from_sources)),
         },
         gather_paths: gather_paths.max(1),
         photons,
@@ -91,15 +93,18 @@ pub(crate) fn settle(
 }
 
 /// Half of the angular half-width of the narrowest source, or twice the scatter of the walls if that is more, rad.
-fn angle(scene: &Scene) -> f64 {
-    let sources = scene.sources.iter().map(|source| match (source.emission, &source.emitter) {
-        (Emission::Cone { half_angle, .. }, _) => half_angle,
-        (Emission::Collimated { .. }, _) => 0.0,
-        (
-            Emission::Lambertian | Emission::CosinePower(_) | Emission::Isotropic,
-            Emitter::Point(_),
-        )
-        | (Emission::Lambertian | Emission::CosinePower(_) | Emission::Isotropic, _) => 0.5 * PI,
+///
+/// A source that fills the guide is as wide as its emission: the images of its rim in the walls join. A smaller one is
+/// seen from the records at the distance told, mm.
+fn angle(scene: &Scene, inradius: f64, from_sources: &[f64]) -> f64 {
+    let sources = scene.sources.iter().zip(from_sources).map(|(source, distance)| {
+        let radius = source.emitter.area().map_or(f64::INFINITY, |area| (area / PI).sqrt());
+        let seen = if radius < FILLS * inradius { radius / distance } else { 0.5 * PI };
+        match source.emission {
+            Emission::Cone { half_angle, .. } => half_angle.min(seen),
+            Emission::Collimated { .. } => 0.0,
+            Emission::Lambertian | Emission::CosinePower(_) | Emission::Isotropic => seen,
+        }
     });
     let narrowest = sources.fold(PI, f64::min);
     let scatter = scene.finishes.iter().map(|finish| match finish.bsdf.kind() {
@@ -111,11 +116,23 @@ fn angle(scene: &Scene) -> f64 {
     (0.5 * narrowest).max(2.0 * widest).clamp(least, most)
 }
 
-/// Median over the vertices of pilot paths of half the way across the guide there, or of the radius of a disk of the
-/// area of the face, whichever is less; mm.
-fn inradius(scene: &Scene, sensors: &[SensorId], seed: u64, depth: u32) -> f64 {
+/// What pilot paths have told about the guide, medians in mm.
+struct Sounded {
+    inradius: f64,
+    /// From where records will be to each source.
+    from_sources: Vec<f64>,
+}
+
+/// Sounds the vertices of pilot paths: half the way across the guide there, or the radius of a disk of the area of the
+/// face, whichever is less, and how far the sources are.
+fn sound(scene: &Scene, sensors: &[SensorId], seed: u64, depth: u32) -> Sounded {
     let emitters = Emitters::new(scene);
-    let mut sounding = Sounding { scene, depth, found: Vec::new() };
+    let mut sounding = Sounding {
+        scene,
+        depth,
+        across: Vec::new(),
+        distances: vec![Vec::new(); scene.sources.len()],
+    };
     for &sensor in sensors {
         let arrivals = Arrivals::new(scene, sensor);
         let gathering = Gathering { scene, emitters: &emitters, sensor, bounce_limit: u32::MAX };
@@ -126,17 +143,31 @@ fn inradius(scene: &Scene, sensors: &[SensorId], seed: u64, depth: u32) -> f64 {
             }
         }
     }
-    let mut found = sounding.found;
-    found.sort_by(f64::total_cmp);
     // Without any vertex there is nothing to gather from, and any window will do.
-    found.get(found.len() / 2).copied().unwrap_or(0.1 * scene.bounds.diagonal())
+    let size = scene.bounds.diagonal();
+    Sounded {
+        inradius: median(sounding.across).unwrap_or(0.1 * size),
+        from_sources: sounding
+            .distances
+            .into_iter()
+            .map(|of_one| median(of_one).unwrap_or(size))
+            .collect(),
+    }
 }
 
-/// Sounds how wide the guide is where gather paths meet it.
+fn median(mut found: Vec<f64>) -> Option<f64> {
+    found.sort_by(f64::total_cmp);
+    found.get(found.len() / 2).copied()
+}
+
+/// Sounds the guide where gather paths meet it.
 struct Sounding<'s> {
     scene: &'s Scene,
     depth: u32,
-    found: Vec<f64>,
+    /// Half the way across, mm.
+    across: Vec<f64>,
+    /// To each source, mm.
+    distances: Vec<Vec<f64>>,
 }
 
 impl Collector for Sounding<'_> {
@@ -148,7 +179,10 @@ impl Collector for Sounding<'_> {
         let far = self.scene.find_next(&across, &On::hits(vertex.hits), &path.inside);
         let half_way = far.map_or(f64::INFINITY, |hits| 0.5 * hits.distance());
         let face: FaceId = vertex.interface.acting.face;
-        self.found.push(half_way.min((self.scene.face_area(face) / PI).sqrt()));
+        self.across.push(half_way.min((self.scene.face_area(face) / PI).sqrt()));
+        for (source, distances) in self.scene.sources.iter().zip(&mut self.distances) {
+            distances.push(source.emitter.bounds().center().distance(vertex.point));
+        }
         if path.depth < self.depth { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     }
 

@@ -22,6 +22,8 @@ pub(crate) struct RecordWork {
     pub(crate) records: u64,
     /// Photons that may have met one.
     pub(crate) look_ups: u64,
+    /// Those of them that have met one.
+    pub(crate) near: u64,
     /// Photons taken, each by each record that took it.
     pub(crate) pairs: u64,
 }
@@ -53,6 +55,6 @@ pub(crate) fn of_gather_paths(paths: u64, segments: u64) -> f64 {
 
 /// Work of records.
 pub(crate) fn of_records(work: RecordWork) -> f64 {
-    let RecordWork { records, look_ups, pairs } = work;
+    let RecordWork { records, look_ups, near: _, pairs } = work;
     RECORD * records as f64 + LOOK_UP * look_ups as f64 + PAIR * pairs as f64
 }

@@ -190,7 +190,8 @@ fn is_dark(measure: &Measure) -> bool {
 /// missed, or a window has let in trapped light, of many bounces and hardly any flux, and says that its bias is not known.
 fn is_uncertain(name: &str, reference: &Measure, found: &Measure) -> bool {
     name.ends_with(".bounces_mean")
-        && (reference.std_error < 1e-9 || found.status == Status::BiasNotResolved)
+        && (reference.std_error < 1e-9
+            || matches!(found.status, Status::BiasInNoise | Status::BiasNotResolved))
 }
 
 /// Holds the values of each way against those of the first.

@@ -69,6 +69,7 @@ impl Stream<'_, '_> {
                 }
             }
         });
+        work.near += u64::from(known.is_some());
     }
 }
 

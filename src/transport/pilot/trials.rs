@@ -16,8 +16,11 @@ use rayon::prelude::*;
 
 /// Batches from which an estimator is judged.
 const BATCHES: u64 = 16;
-/// Passes from which gathering is judged: few, because the pairs that limit it grow with the square of a pass.
-const PASSES: u64 = 4;
+/// Passes from which gathering is judged: fewer would hold more pairs, and tell less of the variance.
+const PASSES: u64 = 8;
+/// Variance of 2 E2 - E1 over that of E1 where pairs limit both, 1: weights of 7 in a quarter of the window and of -1 in
+/// the rest. So few pairs as a pilot has tell the latter far better.
+const EXTRAPOLATED: f64 = 13.0;
 /// Least relative variance of a pass times its photons, or its gather paths: what pairs without limit would leave.
 const PER_PATH: f64 = 4.0;
 /// Random numbers of the pilot are those of another seed: what it chooses by is not counted again.
@@ -94,21 +97,25 @@ impl Trials<'_> {
             .into_par_iter()
             .map(|batch| gather.pass(&forward, Pass { batch, window, gather_paths }))
             .collect();
-        let [values, apart] = [[-1.0, 2.0], [1.0, -1.0]].map(|factors| combined(&passes, factors));
+        let [wide, values, apart] =
+            [[1.0, 0.0], [-1.0, 2.0], [1.0, -1.0]].map(|factors| combined(&passes, factors));
         let gathered = gather_paths * gather.sensors();
         let work: f64 = passes.iter().map(|pass| work_of_whole(pass, gathered, part)).sum();
         let seconds = 1e-9 * work / PASSES as f64;
         let least = PER_PATH / settings.photons as f64 + PER_PATH / settings.gather_paths as f64;
-        let tried = self.judged(&values, 1e9 * seconds, Estimator::Gather);
+        let tried = self.judged(&wide, 1e9 * seconds, Estimator::Gather);
         let judged = tried.into_iter().zip(sensors).map(|(mut tried, &sensor)| {
-            let apart = flux(scene, &apart, sensor);
+            let [wide, flux, apart] =
+                [&wide, &values, &apart].map(|sums| flux(scene, sums, sensor));
             let trial = &mut tried.trial;
-            trial.bias = Some((apart.mean() / tried.flux.mean()).abs().min(f64::MAX));
+            trial.bias = Some((apart.mean() / wide.mean()).abs().min(f64::MAX));
             trial.least = FIRST_PASSES as f64 * seconds;
             // Of one pass, and one of the run's.
-            let of_pass = |cost: f64| (cost * PASSES as f64 * part * part).max(seconds * least);
+            let of_pass = |cost: f64| {
+                (EXTRAPOLATED * cost * PASSES as f64 * part * part).max(seconds * least)
+            };
             trial.cost = trial.cost.map(of_pass);
-            Gathered { tried, apart }
+            Gathered { tried: Tried { flux, ..tried }, apart }
         });
         judged.collect()
     }
@@ -144,11 +151,14 @@ fn combined(passes: &[PassReadings], [wide, middle]: [f64; 2]) -> Vec<Readings> 
 
 /// Work of a pass of the run, of which a pass of the pilot with so many gather paths was a part.
 fn work_of_whole(pass: &PassReadings, gather_paths: u64, part: f64) -> f64 {
-    let RecordWork { records, look_ups, pairs } = pass.work;
+    let RecordWork { records, look_ups, near, pairs } = pass.work;
     let grown = |count: u64, factor: f64| (count as f64 / factor) as u64;
+    let near_of_whole = grown(near, part * part).min(grown(pass.photons.segments, part));
     let records = RecordWork {
         records: grown(records, part),
-        look_ups: grown(look_ups, part * part).min(grown(pass.photons.segments, part)),
+        // The filter is made for the records: its errors go with the photons alone.
+        look_ups: grown(look_ups - near, part) + near_of_whole,
+        near: near_of_whole,
         pairs: grown(pairs, part * part),
     };
     let gathering = work::of_gather_paths(gather_paths, pass.windows[0].segments);

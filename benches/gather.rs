@@ -1,120 +1,177 @@
-//! Gathering against backward tracing on the remote cells of docs/method.md: variance at equal CPU time, bias against
-//! committed truths, and what looking up records adds to a stream of photons.
+//! The method against forward and backward tracing on the scenes of docs/method.md: noise after the same CPU time, bias
+//! against committed truths, what the pilot of `auto` chooses, and what looking up records adds to a stream of photons.
 //!
-//! `cargo bench --bench gather`. One thread; both estimators run in turn on each scene, gathering with its automatic
-//! settings. The variances are those of the flux within the widest window of the first stage and of the value freed of
-//! the bias that goes with the window's square, from 64 passes; confidence intervals are those of the ratio of two variances of
-//! normal samples. The truths are long unbiased runs, made once: see `ROWS`.
+//! `cargo bench --bench gather`. One thread; the estimators run in turn on each scene, gathering with its automatic
+//! settings. The variances are those of the flux (of an image: Σσ²/Σmean² over its pixels) within the widest window of the
+//! first stage, and of the value freed of the bias that goes with the window's square, from 64 passes; confidence intervals are
+//! those of the ratio of two variances of normal samples. The truths are long unbiased runs, made once: see `ROWS`.
 #![allow(clippy::print_stdout, reason = "a bench prints its table")]
 
 mod clock;
 
 use clock::cpu_seconds;
 use lumiduct::input::{self, Job, Settings};
-use lumiduct::scene::plan::{GatherPlan, Request, RunPlan, StopRules};
+use lumiduct::scene::plan::{Estimator, GatherPlan, Request, RunPlan, StopRules, Target};
 use lumiduct::scene::{Scene, SensorId, SourceId};
 use lumiduct::tally::Tally;
 use lumiduct::transport::{Findings, GatherSettings, Layout, Readings, Run};
 use rayon::ThreadPoolBuilder;
 use std::path::Path;
 
-/// A scene, and the flux on its sensor by a long backward run, lm.
+/// A scene, and the flux on its sensor by long unbiased runs, lm.
 struct Row {
     scene: &'static str,
     truth: f64,
     std_error: f64,
 }
 
-/// `lumiduct run scenes/NAME.toml --estimator backward --paths 60M` with the seeds named, means weighted by variance.
-const ROWS: [Row; 4] = [
+/// Where nothing else is said: `lumiduct run scenes/NAME.toml --estimator backward --paths 60M` with the seeds named, means
+/// weighted by variance.
+const ROWS: [Row; 7] = [
     // Seeds 20261, 20262, 20263.
     Row { scene: "remote_cell_sun", truth: 0.10938, std_error: 0.00028 },
     // Seeds 20261, 20262.
     Row { scene: "remote_cell_long", truth: 0.035457, std_error: 0.000154 },
-    // Seed 20261, and 30M with seed 7.
-    Row { scene: "remote_cell_rod", truth: 0.1400, std_error: 0.0005 },
+    // Seeds 20261, 20262, 20263; 30M with seed 7; forward with 400M and seed 20270: 0.14099(59).
+    Row { scene: "remote_cell_rod", truth: 0.14007, std_error: 0.00028 },
     // `cargo bench --bench connected`, seed 20261.
     Row { scene: "remote_cell_scatter", truth: 0.011507, std_error: 0.000023 },
+    // 24M, seed 20281.
+    Row { scene: "remote_cell_led", truth: 0.0031524, std_error: 0.0000071 },
+    // --time 280s, seed 20291.
+    Row { scene: "remote_cell_bend", truth: 0.00596, std_error: 0.00017 },
+    // The image holds the whole exit: its flux is that of remote_cell_scatter.
+    Row { scene: "luminance_image_scatter", truth: 0.011507, std_error: 0.000023 },
 ];
-/// Passes of the gather method, and waves of backward paths.
+/// Passes of the gather method, and waves of photons or backward paths.
 const PASSES: u64 = 64;
 const WAVES: u64 = 8;
+/// Groups of batches in a wave, and passes in a wave of passes.
+const GROUPS: f64 = 128.0;
+const WAVE_PASSES: u64 = 16;
+/// Relative error that times are told for, 1.
+const ERROR: f64 = 0.01;
 
 fn main() {
     let pool = ThreadPoolBuilder::new().num_threads(1).build().expect("one thread can be had");
     println!(
-        "| scene | backward | gather E1 | value/truth | variance, backward/gather (95 %) | 2 E2 - E1 | value/truth | variance, backward/gather | look-up over photons |"
+        "| scene | forward | backward | E1 | value/truth | variance, backward/E1 (95 %) | 2 E2 - E1 | value/truth | variance, backward/(2 E2 - E1) | look-up over photons | s to 1 %: forward, backward, gather | auto | its time over the best |"
     );
-    println!("|---|--:|--:|--:|--:|--:|--:|--:|--:|");
+    println!("|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|---|--:|");
     for row in &ROWS {
         println!("{}", pool.install(|| compare(row)));
     }
 }
 
-/// Flux with its error, and the CPU seconds it took.
+/// What an estimator has found on the only sensor of a scene, and the CPU seconds it took.
 struct Found {
     flux: Tally,
+    /// Σ σ² over the cells, lm².
+    variance: f64,
+    /// Σ mean² over the cells, without what noise adds, lm².
+    square: f64,
     seconds: f64,
 }
 
 impl Found {
-    /// Relative variance times CPU seconds.
-    fn cost(&self) -> f64 {
-        (self.flux.std_error() / self.flux.mean()).powi(2) * self.seconds
+    fn new(scene: &Scene, readings: &Readings, seconds: f64) -> Self {
+        let slot = Layout::new(scene).sensor_flux(SensorId::new(0), SourceId::new(0));
+        let flux = readings.scalar(slot);
+        let cells = &readings.sensors[0].cells;
+        if cells.len() == 1 {
+            let (variance, square) = (flux.std_error().powi(2), flux.mean().powi(2));
+            return Self { flux, variance, square, seconds };
+        }
+        let [mut variance, mut square] = [0.0; 2];
+        for (mean, error) in (0..cells.len()).map(|cell| cells.mean(cell, readings.batch_count())) {
+            variance += error * error;
+            square += mean * mean - error * error;
+        }
+        Self { flux, variance, square, seconds }
     }
 
-    /// Relative noise after three seconds, in percent.
-    fn noise(&self) -> f64 {
-        100.0 * (self.cost() / 3.0).sqrt()
+    /// CPU seconds until noise is a share `ERROR` of what is to be measured, whose square is given.
+    fn time(&self, square: f64) -> f64 {
+        self.variance / square * self.seconds / (ERROR * ERROR)
+    }
+
+    /// Relative noise after three CPU seconds, in percent.
+    fn noise(&self, square: f64) -> String {
+        format!("{:.2} %", 100.0 * ERROR * (self.time(square) / 3.0).sqrt())
     }
 }
 
 fn compare(row: &Row) -> String {
     let path = format!("scenes/{}.toml", row.scene);
     let job = input::load(Path::new(&path), &Settings::default()).expect("the scenes are valid");
-    let (backward_seconds, findings) = traced(&job, &plan(&job, Request::Backward, None), WAVES);
-    let backward = findings.backward.expect("it was asked for");
-    let backward = Found { flux: flux(&job.scene, &backward), seconds: backward_seconds };
-    let gathering = plan(&job, Request::Gather, None);
-    let (seconds, findings) = traced(&job, &gathering, PASSES / 16);
+    let traced = |plan: &RunPlan, waves| traced(&job.scene, plan, waves);
+    let (seconds, findings) = traced(&plan(&job, Request::Forward), WAVES);
+    let forward = Found::new(&job.scene, &findings.photons, seconds);
+    let (seconds, findings) = traced(&plan(&job, Request::Backward), WAVES);
+    let backward = Found::new(&job.scene, &findings.backward.expect("it was asked for"), seconds);
+    let (seconds, findings) = traced(&plan(&job, Request::Gather), PASSES / WAVE_PASSES);
     let mut gathered = findings.gathered.expect("it was asked for");
     let windows = gathered.stages.remove(0).windows;
-    let of = |readings: &Readings| Found { flux: flux(&job.scene, readings), seconds };
     let look_up = (seconds - records_alone(&job, &gathered.settings)) / photons_alone(&job) - 1.0;
+    let [wide, value] = [&windows.wide, &windows.extrapolated]
+        .map(|readings| Found::new(&job.scene, readings, seconds));
+    let square = wide.square;
     let columns = |found: &Found| {
-        let ratio = backward.cost() / found.cost();
+        let ratio = backward.time(square) / found.time(square);
         // The logarithm of a variance from n samples has a standard deviation of √(2/(n - 1)).
-        let spread = (2.0 / (PASSES as f64 - 1.0) + 2.0 / (128.0 - 1.0)).sqrt();
+        let spread = (2.0 / (PASSES as f64 - 1.0) + 2.0 / (GROUPS - 1.0)).sqrt();
         let [low, high] = [-1.96, 1.96].map(|sigmas: f64| ratio * (sigmas * spread).exp());
-        let value = found.flux.mean() / row.truth;
-        let error =
-            value * (found.flux.std_error() / found.flux.mean()).hypot(row.std_error / row.truth);
-        format!(
-            "{:.2} % | {value:.4} ± {error:.4} | {ratio:.0} ({low:.0} to {high:.0})",
-            found.noise()
-        )
+        let (value, error) = over_truth(row, &found.flux);
+        let noise = found.noise(square);
+        format!("{noise} | {value:.4} ± {error:.4} | {ratio:.1} ({low:.1} to {high:.1})")
+    };
+    let times = [
+        forward.time(square),
+        backward.time(square),
+        // No value without a first wave of passes.
+        value.time(square).max(seconds * WAVE_PASSES as f64 / PASSES as f64),
+    ];
+    let [by_forward, by_backward, by_gather] = times.map(|time| format!("{time:.1}"));
+    let (value_off, value_error) = over_truth(row, &value.flux);
+    let is_true = (value_off - 1.0).abs() < ERROR + 3.0 * value_error;
+    let best = times[..if is_true { 3 } else { 2 }].iter().copied().fold(f64::INFINITY, f64::min);
+    let (pilot, chosen) = pilot(&job);
+    let chosen_time = match chosen {
+        Estimator::Forward => times[0],
+        Estimator::Backward => times[1],
+        Estimator::Gather | Estimator::Mis => times[2],
     };
     format!(
-        "| {} | {:.2} % | {} | {} | {look_up:.2} |",
+        "| {} | {} | {} | {} | {} | {look_up:.2} | {by_forward}, {by_backward}, {by_gather}{} | {} | {:.2} |",
         row.scene,
-        backward.noise(),
-        columns(&of(&windows.wide)),
-        columns(&of(&windows.extrapolated)),
+        forward.noise(square),
+        backward.noise(square),
+        columns(&wide),
+        columns(&value),
+        if is_true { "" } else { " (biased)" },
+        chosen.name(),
+        (pilot + chosen_time) / best,
     )
 }
 
+/// A flux over the truth, with the error of both.
+fn over_truth(row: &Row, flux: &Tally) -> (f64, f64) {
+    let ratio = flux.mean() / row.truth;
+    (ratio, ratio * (flux.std_error() / flux.mean()).hypot(row.std_error / row.truth))
+}
+
 /// Traces some waves of a scene; CPU seconds and what was found.
-fn traced(job: &Job, plan: &RunPlan, waves: u64) -> (f64, Findings) {
-    let mut run = Run::new(&job.scene, plan);
+fn traced(scene: &Scene, plan: &RunPlan, waves: u64) -> (f64, Findings) {
+    let mut run = Run::new(scene, plan);
     let (seconds, ()) = cpu_seconds(|| (0..waves).for_each(|_| run.next_wave()));
     (seconds, run.findings())
 }
 
 /// CPU seconds of the photons of all passes without any record.
 fn photons_alone(job: &Job) -> f64 {
-    let run = Run::new(&job.scene, &plan(job, Request::Gather, None));
-    let paths = PASSES * run.photons_per_batch();
-    let mut run = Run::new(&job.scene, &plan(job, Request::Forward, Some(paths)));
+    let run = Run::new(&job.scene, &plan(job, Request::Gather));
+    let stop = StopRules { paths: Some(PASSES * run.photons_per_batch()), ..StopRules::default() };
+    let mut run = Run::new(&job.scene, &RunPlan { stop, ..plan(job, Request::Forward) });
     let (seconds, ()) = cpu_seconds(|| {
         while !run.is_complete() {
             run.next_wave();
@@ -130,21 +187,27 @@ fn records_alone(job: &Job, settings: &GatherSettings) -> f64 {
         photons: Some(1),
         ..GatherPlan::default()
     };
-    traced(job, &RunPlan { gather, ..plan(job, Request::Gather, None) }, PASSES / 16).0
+    let plan = RunPlan { gather, ..plan(job, Request::Gather) };
+    traced(&job.scene, &plan, PASSES / WAVE_PASSES).0
 }
 
-/// What to run, with automatic settings of the gather method.
-fn plan(job: &Job, estimator: Request, paths: Option<u64>) -> RunPlan {
+/// CPU seconds of the pilot of a run to the error that times are told for, and what it chooses.
+fn pilot(job: &Job) -> (f64, Estimator) {
+    let measure = format!("{}.flux", job.scene.sensors[0].name);
+    let target = Some(Target { measure, relative_error: ERROR });
+    let stop = StopRules { target, ..StopRules::default() };
+    let plan = RunPlan { stop, ..plan(job, Request::Auto) };
+    let (seconds, mut run) = cpu_seconds(|| Run::new(&job.scene, &plan));
+    run.next_piece();
+    (seconds, run.findings().estimators[0])
+}
+
+/// What to run, with automatic settings of the gather method and no end.
+fn plan(job: &Job, estimator: Request) -> RunPlan {
     RunPlan {
         estimator,
         gather: GatherPlan::default(),
-        stop: StopRules { paths, ..StopRules::default() },
+        stop: StopRules::default(),
         ..job.run.clone()
     }
-}
-
-/// The flux of the only sensor, group by group.
-fn flux(scene: &Scene, readings: &Readings) -> Tally {
-    let slot = Layout::new(scene).sensor_flux(SensorId::new(0), SourceId::new(0));
-    readings.scalar(slot)
 }

@@ -10,7 +10,7 @@ use std::ops::Range;
 
 /// Fewer groups of batches than this with anything in them give no trustworthy error bar: the spread of ten samples
 /// is itself known to a quarter, 1/sqrt(2 · 9).
-const MIN_LIT_GROUPS: usize = 10;
+pub(crate) const MIN_LIT_GROUPS: usize = 10;
 /// Fewer counts than this give none either, 1. n counts of equal flux have a relative error of 1/sqrt(n).
 pub(crate) const MIN_COUNTS: f64 = 10.0;
 

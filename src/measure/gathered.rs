@@ -5,7 +5,7 @@
 //! and out of the noise, 2 E2 - E1 is the value; otherwise E3 is, and its bias is not resolved: hidden by the noise of E3,
 //! in which four times that of E1 is, or of another law. |E1 - E2| is the indicator of bias in all cases. All is decided once per sensor and stage, from its flux, never per cell.
 
-use crate::measure::evidence::Evidence;
+use crate::measure::evidence::{Evidence, MIN_LIT_GROUPS};
 use crate::measure::flux::flux_slots;
 use crate::measure::{Measure, Status};
 use crate::scene::SensorId;
@@ -44,6 +44,12 @@ pub struct GatheredFacts {
     pub stage: u32,
     /// Whether their bias is resolved.
     pub resolution: Resolution,
+    /// The flux that photons of the same run have brought to the sensor, with its standard error: without bias, mostly
+    /// with more noise; lm or W.
+    pub by_photons: [f64; 2],
+    /// Total errors of both by which the gathered flux is off that, 1; `None` where either has
+    /// found too little to tell.
+    pub off: Option<f64>,
     /// The last finished stage and the one after it, as far as that has come.
     pub stages: Vec<StageFacts>,
 }
@@ -107,11 +113,23 @@ impl<'a> Judged<'a> {
     pub(crate) fn facts(&self, findings: &Findings, id: SensorId) -> Option<GatheredFacts> {
         let gathered = findings.gathered.as_ref()?;
         let slots = flux_slots(&self.photons, id);
+        let sum = |flux: &dyn Fn(usize) -> f64| slots.iter().map(|&slot| flux(slot)).sum::<f64>();
+        let by_photons = self.photons.readings.function(sum);
+        let is_lit = |readings: &Readings| {
+            let groups = readings.groups.iter();
+            groups.filter(|group| sum(&|slot| group.sums[slot]) != 0.0).count() >= MIN_LIT_GROUPS
+        };
+        let own = total_error(&self.stage.windows, self.resolution, &slots);
+        let value = value(&self.stage.windows, self.resolution, &slots).mean();
+        let error = by_photons.std_error().hypot(own * value);
         Some(GatheredFacts {
             sensor: self.photons.scene.sensors[id.index()].name.clone(),
             depth: gathered.settings.depth,
             stage: self.stage.number,
             resolution: self.resolution,
+            by_photons: [by_photons.mean(), by_photons.std_error()],
+            off: (is_lit(self.photons.readings) && is_lit(&self.stage.windows.narrow))
+                .then(|| (value - by_photons.mean()) / error),
             stages: gathered.stages.iter().map(|stage| stage_facts(stage, &slots)).collect(),
         })
     }
@@ -171,14 +189,19 @@ fn resolution(windows: &Windows, slots: &[usize]) -> Resolution {
 /// Standard error and bias of the sum of some scalars together, relative to it.
 fn total_error(windows: &Windows, resolution: Resolution, slots: &[usize]) -> f64 {
     let delta = difference(windows, slots, |[e1, e2, _]| e1 - e2).mean();
-    let value = match resolution {
+    let value = value(windows, resolution, slots);
+    let error = value.std_error().hypot(delta) / value.mean().abs();
+    if error.is_nan() { f64::INFINITY } else { error }
+}
+
+/// The value of the sum of some scalars.
+fn value(windows: &Windows, resolution: Resolution, slots: &[usize]) -> Tally {
+    match resolution {
         Resolution::Resolved => difference(windows, slots, |[e1, e2, _]| 2.0 * e2 - e1),
         Resolution::InNoise | Resolution::NotResolved => {
             difference(windows, slots, |[_, _, e3]| e3)
         }
-    };
-    let error = value.std_error().hypot(delta) / value.mean().abs();
-    if error.is_nan() { f64::INFINITY } else { error }
+    }
 }
 
 /// A function of the sum of some scalars within the three windows, pass by pass.

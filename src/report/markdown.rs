@@ -211,6 +211,15 @@ fn gathered(facts: &GatheredFacts, unit: &str) -> String {
             "Bias not resolved: the windows differ, and not by the square of their size. The value is E3, that of the smallest window, and |E1 - E2| is no bound.\n\n"
         }
     };
+    if let Some(off) = facts.off {
+        let [flux, error] = facts.by_photons;
+        _ = writeln!(
+            text,
+            "Photons of this run that came to the sensor itself carried {} {unit}, which is {:.1} errors from the value.\n",
+            format_with_error(flux, error),
+            off.abs()
+        );
+    }
     _ = writeln!(text, "| stage | passes | radius | angle | E1 in {unit} | E2 | E3 |");
     text += "|---|---|---|---|---|---|---|\n";
     for stage in &facts.stages {

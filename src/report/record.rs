@@ -1,7 +1,7 @@
 //! The one record that all formats of a report are made from.
 
-use crate::measure::{self, Measures, Verdict};
-use crate::number::{format_exact, format_percent};
+use crate::measure::{self, GatheredFacts, Measures, Verdict};
+use crate::number::{format_exact, format_percent, format_with_error};
 use crate::scene::plan::{Check, GatherPlan, Request, Schedule, StopRules, Target};
 use crate::transport::{GROUPS, GatherSettings, Leak};
 use glam::DVec3;
@@ -181,6 +181,8 @@ pub fn leak_places(leaks: &[Leak], origin: DVec3) -> Vec<DVec3> {
 
 /// Share of the flux cut by the bounce limit that is worth a remark, 1.
 const CUT_SHARE: f64 = 1e-3;
+/// Errors between a gathered flux and that counted by photons that are worth a remark, 1.
+const CONTRADICTED: f64 = 4.0;
 
 /// Remarks that the results ask for.
 pub fn remarks(measures: &Measures) -> Vec<String> {
@@ -207,7 +209,22 @@ pub fn remarks(measures: &Measures) -> Vec<String> {
             ));
         }
     }
+    remarks.extend(measures.gathered.iter().filter_map(remark_on_gathering));
     remarks
+}
+
+/// A remark where the photons of a run do not agree with what was gathered from them.
+fn remark_on_gathering(facts: &GatheredFacts) -> Option<String> {
+    let off = facts.off.filter(|off| off.abs() > CONTRADICTED)?;
+    let [flux, error] = facts.by_photons;
+    Some(format!(
+        "the gathered flux of sensor `{}` is {:.1} errors {} what photons of the same run counted there ({}): a feature \
+         of the light is smaller than the windows; take a smaller radius_mm or angle_deg, or another estimator",
+        facts.sensor,
+        off.abs(),
+        if off > 0.0 { "above" } else { "below" },
+        format_with_error(flux, error)
+    ))
 }
 
 /// A remark where a run had to trace noticeably more paths than it was asked for.

@@ -3,7 +3,8 @@
 
 use crate::trial::{Comparison, Gathering, Way, findings, load, measures};
 use lumiduct::measure::{self, Measure};
-use lumiduct::transport::Findings;
+use lumiduct::scene::plan::{GatherPlan, RunPlan};
+use lumiduct::transport::{Findings, Run};
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 /// A guide and its lamp, in which nothing absorbs.
@@ -219,4 +220,62 @@ eye = { luminance = { disk = { radius_mm = 0.2 }, cells = [1, 1], acceptance_hal
         }
     }
     comparison.assert("ES-01", 4);
+}
+
+/// The lamp at the far end of a black tube is seen within 6 deg.
+#[test]
+fn photons_of_the_run_contradict_windows_that_are_wider_than_the_light() {
+    let text = r#"
+[sheets.tube.tube]
+profile = { circle = { radius_mm = 5 } }
+path = [{ straight_mm = 50 }]
+finish = "black"
+[sheets.window.disk]
+radius_mm = 5
+finish = "open"
+at = { position_mm = [0, 0, 50] }
+[sources.lamp.disk]
+radius_mm = 5
+luminance_cd_m2 = 1000
+emission = { cone_half_angle_deg = 8 }
+[sensors]
+eye = { luminance = { disk = { radius_mm = 0.5 }, cells = [1, 1], acceptance_half_angle_deg = 1.5, directions = [{ theta_deg = 0, phi_deg = 0 }] }, at = { position_mm = [0, 0, 51], axis = [0, 0, -1] } }
+"#;
+    let off = |angle_deg| {
+        let window =
+            Gathering { depth: 0, radius_mm: 0.4, angle_deg, records: 500, photons: 50_000 };
+        measures(text, Way::Gather(window)).gathered[0].off.unwrap()
+    };
+    let (narrow, wide) = (off(3.0), off(40.0));
+    assert!(narrow.abs() < 4.0 && wide < -4.0, "{narrow} and {wide} errors");
+}
+
+/// The automatic angle is half of the half-width of the light at the records: of its emission where a source fills the
+/// guide, of the source seen from there where it does not.
+#[test]
+fn automatic_windows_fit_the_light() {
+    let lamp = |radius_mm: f64, emission: &str| {
+        let text = format!(
+            "[finishes.mirror]\nspecular = {{ reflectance = 0.99 }}\n[sheets.tube.tube]\n\
+             profile = {{ circle = {{ radius_mm = 5 }} }}\npath = [{{ straight_mm = 200 }}]\nfinish = \"mirror\"\n\
+             [sources.lamp.disk]\nradius_mm = {radius_mm}\nflux_lm = 1\nemission = {emission}\n[sensors]\n\
+             spot = {{ plane = {{ disk = {{ radius_mm = 1 }} }}, \
+             at = {{ position_mm = [0, 0, 250], axis = [0, 0, -1] }}, aim = [\"tube.exit\"] }}\n"
+        );
+        let job = load(&text, Way::Gather(Gathering::to_depth(2)));
+        let plan = RunPlan { gather: GatherPlan::default(), ..job.run.clone() };
+        let mut run = Run::new(&job.scene, &plan);
+        run.next_piece();
+        run.findings().gathered.unwrap().settings.window
+    };
+    let sun = lamp(5.0, "{ cone_half_angle_deg = 0.5 }");
+    assert!((sun.theta_max.to_degrees() - 0.25).abs() < 1e-9, "{sun:?}");
+    assert!((sun.radius - 1.0).abs() < 1e-6, "0.2 of the inradius: {sun:?}");
+    let wide = lamp(5.0, "\"lambertian\"");
+    assert!((wide.theta_max.to_degrees() - 3.0).abs() < 1e-9, "at most: {wide:?}");
+    let led = lamp(0.5, "\"lambertian\"");
+    assert!((led.radius - 0.25).abs() < 1e-6, "half of the source's radius: {led:?}");
+    // Seen from 100 to 200 mm.
+    let seen = (2.0 * led.theta_max).tan();
+    assert!((0.5 / 200.0..0.5 / 100.0).contains(&seen), "{led:?}");
 }

@@ -31,7 +31,7 @@ const PASS_SEGMENTS: f64 = 4e6;
 /// Straight pieces of photon paths that a gather path and its records cost, as measured, and what share of the work of
 /// the photons they get: limited by pairs, noise is least at equal shares; looking them up costs less with fewer.
 const RECORD_SEGMENTS: f64 = 50.0;
-const RECORD_SHARE: f64 = 0.4;
+const RECORD_SHARE: f64 = 0.27;
 
 /// How the gather method works in a run.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -92,7 +92,8 @@ pub(crate) fn settle(
     }
 }
 
-/// Half of the angular half-width of the narrowest source, or twice the scatter of the walls if that is more, rad.
+/// Half of the angular half-width of the narrowest source, or the scatter of the walls if that is more, rad. (Twice the
+/// scatter made a bias of 1.7 % where this makes a quarter of it: docs/method.md.)
 ///
 /// A source that fills the guide is as wide as its emission: the images of its rim in the walls join. A smaller one is
 /// seen from the records at the distance told, mm.
@@ -113,7 +114,7 @@ fn angle(scene: &Scene, inradius: f64, from_sources: &[f64]) -> f64 {
     });
     let widest = scatter.fold(0.0, f64::max);
     let [least, most] = THETA_DEG.map(f64::to_radians);
-    (0.5 * narrowest).max(2.0 * widest).clamp(least, most)
+    (0.5 * narrowest).max(widest).clamp(least, most)
 }
 
 /// What pilot paths have told about the guide, medians in mm.

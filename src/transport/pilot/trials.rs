@@ -25,8 +25,8 @@ const EXTRAPOLATED: f64 = 13.0;
 const PER_PATH: f64 = 4.0;
 /// Random numbers of the pilot are those of another seed: what it chooses by is not counted again.
 const SEED: u64 = 0x7069_6c6f_7431;
-/// Straight pieces that gather paths are taken to have, for sizing.
-const GATHER_SEGMENTS: f64 = 20.0;
+/// Gather paths of each sensor that tell how long they are.
+const FIRST_PATHS: u64 = 64;
 
 /// What is tried, and how hard.
 #[derive(Debug)]
@@ -67,11 +67,14 @@ impl Trials<'_> {
     /// Gather paths that meet the sources.
     pub(super) fn backward(&self) -> Vec<Tried> {
         let (plan, sensors) = (self.plan, self.sensors.len() as f64);
-        let path = work::of_gather_path(GATHER_SEGMENTS);
-        let paths = (self.effort / BATCHES as f64 / sensors / path) as u64;
-        let seed = plan.seed ^ SEED;
-        let backward =
-            Backward::new(self.scene, self.sensors, seed, plan.bounce_limit, paths.max(1));
+        let with = |paths| {
+            let seed = plan.seed ^ SEED;
+            Backward::new(self.scene, self.sensors, seed, plan.bounce_limit, paths)
+        };
+        let first = with(FIRST_PATHS);
+        let path = work::of_gather_paths(first.batch_paths(), first.batch(BATCHES).segments)
+            / first.batch_paths() as f64;
+        let backward = with(((self.effort / BATCHES as f64 / sensors / path) as u64).max(1));
         let batches: Vec<Readings> =
             (0..BATCHES).into_par_iter().map(|batch| backward.batch(batch)).collect();
         let segments = batches.iter().map(|batch| batch.segments).sum();

@@ -214,3 +214,51 @@ fn difference(windows: &Windows, slots: &[usize], f: impl Fn([f64; 3]) -> f64) -
         }))
     }))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measure::samples::{add, readings, rectangle, scene};
+    use crate::scene::SourceId;
+    use crate::transport::Layout;
+
+    /// Passes of which each finds these fluxes within the three windows, times what the pass makes of each of them.
+    fn decided(means: [f64; 3], noise: impl Fn(u64) -> [f64; 3]) -> Resolution {
+        let scene = scene(&[("lamp", 10.0)], vec![("cell", rectangle(2.0, 1, 1))]);
+        let slot = Layout::new(&scene).sensor_flux(SensorId::new(0), SourceId::new(0));
+        let [wide, middle, narrow] = [0, 1, 2].map(|window: usize| {
+            let found = readings(&scene, 32, |pass, _, batch| {
+                add(batch, slot, means[window] + noise(pass)[window]);
+            });
+            found.photons
+        });
+        let extrapolated = middle.combined([2.0, -1.0], &wide);
+        resolution(&Windows { wide, middle, narrow, extrapolated }, &[slot])
+    }
+
+    /// Plus and minus the size, in turn.
+    fn wobble(pass: u64, size: f64) -> f64 {
+        if pass % 2 == 0 { size } else { -size }
+    }
+
+    #[test]
+    fn a_bias_by_the_square_of_the_window_is_resolved() {
+        let noise = |pass| [0.0, wobble(pass, 1e-3), wobble(pass / 2, 2e-3)];
+        assert_eq!(decided([0.6, 0.8, 0.9], noise), Resolution::Resolved);
+        assert_eq!(decided([1.4, 1.2, 1.1], noise), Resolution::Resolved);
+    }
+
+    #[test]
+    fn a_bias_of_another_law_is_not_resolved() {
+        let noise = |pass| [0.0, wobble(pass, 1e-3), wobble(pass / 2, 2e-3)];
+        assert_eq!(decided([0.6, 0.7, 0.9], noise), Resolution::NotResolved, "still rising");
+        assert_eq!(decided([0.6, 0.9, 0.8], noise), Resolution::NotResolved, "both ways");
+    }
+
+    #[test]
+    fn windows_that_differ_by_noise_alone_are_told_so() {
+        let noise = |pass| [0.0, wobble(pass, 1.0), wobble(pass / 2, 2.0)];
+        assert_eq!(decided([0.6, 0.8, 0.9], noise), Resolution::InNoise);
+        assert_eq!(decided([0.0; 3], |_| [0.0; 3]), Resolution::InNoise, "in the dark");
+    }
+}

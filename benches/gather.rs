@@ -28,12 +28,12 @@ struct Row {
 /// Where nothing else is said: `lumiduct run scenes/NAME.toml --estimator backward --paths 60M` with the seeds named, means
 /// weighted by variance.
 const ROWS: [Row; 7] = [
-    // Seeds 20261, 20262, and 16M with seed 7. 20263.
+    // Seeds 20261, 20262, 20263.
     Row { scene: "remote_cell_sun", truth: 0.10938, std_error: 0.00028 },
-    // Seeds 20261, 20262, and 16M with seed 7.
+    // Seeds 20261, 20262: 0.035457(154), 0.034725(172); 16M with seed 7: 0.03447(30).
     Row { scene: "remote_cell_long", truth: 0.035047, std_error: 0.000107 },
-    // Seeds 20261, 20262, and 16M with seed 7. 20263; 30M with seed 7; forward with 400M and seed 20270: 0.14099(59).
-    Row { scene: "remote_cell_rod", truth: 0.14007, std_error: 0.00028 },
+    // Seeds 20261, 20262, 20263; 30M with seed 7, 80M with seed 20264; forward with 400M and seed 20270.
+    Row { scene: "remote_cell_rod", truth: 0.14020, std_error: 0.00025 },
     // `cargo bench --bench connected`, seed 20261.
     Row { scene: "remote_cell_scatter", truth: 0.011507, std_error: 0.000023 },
     // 24M, seed 20281.

@@ -11,7 +11,7 @@ use crate::error::{Diagnostic, Result};
 use crate::input::keys::Key;
 use crate::input::problems::Problems;
 use crate::input::{self, Job, Settings};
-use crate::measure;
+use crate::measure::{self, Status};
 use crate::report::{
     self, CheckResult, Existing, Folder, Recipe, Report, RunFacts, SceneFacts, TargetFacts,
     Written, inventory, write_whole,
@@ -282,10 +282,16 @@ pub fn trace(job: &Job, interrupt: &Interrupt, watch: &mut dyn FnMut(&Progress))
         }
         target = TargetProgress::of(job, &run);
         watch(&Progress::of(&job.run, &run, start.elapsed(), target.clone()));
-        if let Some(stop) = target.as_ref().and_then(|target| target_stop(target, run.paths())) {
+        let stop = target.as_ref().and_then(|target| target_stop(target, run.paths()));
+        // Smaller windows take a bias away.
+        if let Some(stop) = stop.filter(|stop| *stop != Stop::Bias || !run.shrinks()) {
             break stop;
         }
-        if run.may_end_stage() && target.as_ref().is_none_or(is_held_by_bias) {
+        let is_held = || match &target {
+            Some(target) => is_held_by_bias(target),
+            None => measure::is_held_by_bias(&job.scene, &run.findings()),
+        };
+        if run.may_end_stage() && is_held() {
             run.next_stage();
         }
     };
@@ -312,7 +318,9 @@ fn target_stop(target: &TargetProgress, paths: u64) -> Option<Stop> {
 
 /// Whether a smaller window brings the target nearer than more of the same work.
 fn is_held_by_bias(target: &TargetProgress) -> bool {
-    target.reached.bias.is_some_and(|bias| bias > target.reached.std_error)
+    let reached = &target.reached;
+    reached.status == Status::BiasNotResolved
+        || reached.bias.is_some_and(|bias| bias > reached.std_error)
 }
 
 /// What may end a run before its round is over.

@@ -129,7 +129,12 @@ fn equality(check: &Check, measure: &Measure, expected: f64) -> (Outcome, String
     let z = if deviation == 0.0 { 0.0 } else { deviation / error };
     let text =
         format!("{expected} is expected, off by {deviation:.3e} ({z:.1} errors) of {allowed:.3e}");
-    if !deviation.is_finite() || !allowed.is_finite() {
+    if measure.status == Status::NoSignal
+        && expected != 0.0
+        && deviation.abs() > check.within.unwrap_or(0.0)
+    {
+        (Outcome::Undecided, format!("{expected} is expected, nothing was counted"))
+    } else if !deviation.is_finite() || !allowed.is_finite() {
         (Outcome::Undecided, format!("{expected} is expected, its error is not known"))
     } else if deviation.abs() <= allowed {
         (Outcome::Passed, text)

@@ -2,8 +2,8 @@
 //!
 //! Within nested windows of size 1, 1/√2 and 1/2 the same photons give E1, E2 and E3. A bias that goes with the square
 //! of the window, as that of a smooth field does, has (E1 - E2)/(E2 - E3) = 2. Where that is found, within its error
-//! and out of the noise, 2 E2 - E1 is the value; otherwise E3 is, and its bias is not resolved: hidden by the noise of E3,
-//! in which four times that of E1 is, or of another law. |E1 - E2| is the indicator of bias in all cases. All is decided once per sensor and stage, from its flux, never per cell.
+//! and out of the noise, 2 E2 - E1 is the value. Otherwise E3 is, and its bias is not resolved: either hidden by noise,
+//! which is four times larger in E3 than in E1, or of another law. |E1 - E2| is the indicator of bias in all cases. All is decided once per sensor and stage, from its flux, never per cell.
 
 use crate::measure::evidence::{Evidence, MIN_LIT_GROUPS};
 use crate::measure::flux::flux_slots;
@@ -96,6 +96,18 @@ pub(crate) fn judged<'a>(
         (total_error(&stage.windows, resolution, &slots), judged)
     });
     with_error.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, judged)| judged)
+}
+
+/// Whether the bias of a sensor's flux in the stage in progress is above its noise.
+pub(crate) fn is_held_by_bias(photons: Evidence<'_>, findings: &Findings, id: SensorId) -> bool {
+    let slots = flux_slots(&photons, id);
+    let stage = findings.gathered.as_ref().and_then(|gathered| gathered.stages.last());
+    stage.is_some_and(|stage| {
+        let resolution = resolution(&stage.windows, &slots);
+        let apart = difference(&stage.windows, &slots, |[e1, e2, _]| e1 - e2).mean().abs();
+        resolution == Resolution::NotResolved
+            || apart > value(&stage.windows, resolution, &slots).std_error()
+    })
 }
 
 impl<'a> Judged<'a> {
@@ -238,7 +250,7 @@ mod tests {
 
     /// Plus and minus the size, in turn.
     fn wobble(pass: u64, size: f64) -> f64 {
-        if pass % 2 == 0 { size } else { -size }
+        if pass.is_multiple_of(2) { size } else { -size }
     }
 
     #[test]

@@ -103,9 +103,18 @@ pub fn measure(scene: &Scene, findings: &Findings) -> Measures {
         unit: scene.unit,
         source_flux: scene.source_flux(),
         batches: photons.batch_count(),
-        paths: photons.paths(),
+        paths: findings.paths,
         segments: photons.segments,
     }
+}
+
+/// Whether a smaller window brings the flux of a gathered sensor nearer to the truth than more of the same work.
+pub fn is_held_by_bias(scene: &Scene, findings: &Findings) -> bool {
+    let sensors = (0..scene.sensors.len()).map(SensorId::new);
+    let evidence = Evidence::new(scene, &findings.photons);
+    sensors
+        .filter(|&id| matches!(findings.estimator(id), Estimator::Gather | Estimator::Mis))
+        .any(|id| gathered::is_held_by_bias(evidence, findings, id))
 }
 
 /// One measure by its dotted name, at no more cost than it needs.

@@ -109,7 +109,9 @@ pub fn compare(
         Settings { estimator: Some(Request::Auto), time: Some(wishes.time), ..settings.clone() };
     let job = input::load(scene, &loading)?;
     expect_sense(&job)?;
-    let bench = Bench { id: sensor(&job, wishes.sensor.as_deref())?, job: &job, interrupt };
+    let id = sensor(&job, wishes.sensor.as_deref())?;
+    let run_time = wishes.time.div_f64(f64::from(wishes.repetitions));
+    let bench = Bench { id, job: &job, interrupt, run_time };
     expect_able(&job, &wishes.methods)?;
     let known = truth::known(&bench, &wishes.truth)?;
     let folder = Folder::open(&dir_of(scene, output), output.existing, None)?;
@@ -117,10 +119,9 @@ pub fn compare(
         Known::Truth(truth) => truth,
         Known::Takes(time) => truth::find(&bench, wishes, time, watch)?,
     };
-    let run_time = wishes.time.div_f64(f64::from(wishes.repetitions));
     let mut contestants = Vec::new();
     for &method in &wishes.methods {
-        contestants.push(contestant(&bench, method, wishes.repetitions, run_time, watch)?);
+        contestants.push(contestant(&bench, method, wishes.repetitions, watch)?);
     }
     let comparison = Comparison {
         title: job.title.clone(),
@@ -152,6 +153,8 @@ struct Bench<'j> {
     job: &'j Job,
     id: SensorId,
     interrupt: &'j Interrupt,
+    /// Time of an independent run.
+    run_time: Duration,
 }
 
 impl Bench<'_> {
@@ -160,10 +163,11 @@ impl Bench<'_> {
         format!("{}.flux", self.job.scene.sensors[self.id.index()].name)
     }
 
-    /// The plan of an independent run: as the job's, but for the seed, and without a stop rule.
+    /// The plan of an independent run: as the job's, but for seed and time.
     fn plan(&self, estimator: Request, run: u64) -> RunPlan {
         let seed = self.job.run.seed.wrapping_add(run);
-        RunPlan { estimator, seed, stop: StopRules::default(), ..self.job.run.clone() }
+        let stop = StopRules { time: Some(self.run_time), ..StopRules::default() };
+        RunPlan { estimator, seed, stop, ..self.job.run.clone() }
     }
 }
 
@@ -172,10 +176,9 @@ fn contestant(
     bench: &Bench<'_>,
     method: Method,
     repetitions: u32,
-    run_time: Duration,
     watch: &mut dyn FnMut(&str),
 ) -> Result<Contestant> {
-    let end = run_time.as_secs_f64();
+    let end = bench.run_time.as_secs_f64();
     let checkpoints: Vec<Duration> = (0..CHECKPOINTS)
         .map(|place| Duration::from_secs_f64(end / CHECKPOINT_RATIO.powi(CHECKPOINTS - 1 - place)))
         .collect();

@@ -119,9 +119,10 @@ fn choices(report: &Report) -> String {
     if choices.is_empty() {
         return String::new();
     }
-    let mut text = "## Choice of estimators\n\nSeconds of one thread of the reference machine until 1 % of a sensor's \
-                    flux or map is reached, by a pilot, in counted work; for gathering also how far its windows are apart. \
-                    Gathering is not chosen where its windows differ beyond noise or an unbiased estimator contradicts it.\n\n\
+    let mut text = "## Choice of estimators\n\nA pilot has tried the estimators on each sensor. The table has the time that one \
+                    thread would need until the sensor's flux or map is known to 1 %, told from counted work \
+                    (docs/method.md). Gathering is not chosen where its windows differ by more than noise, or where an \
+                    unbiased estimator contradicts it.\n\n\
                     | sensor | chosen | forward | backward | gather |\n|---|---|--:|--:|--:|\n"
         .to_owned();
     for (sensor, choice) in choices {
@@ -136,18 +137,21 @@ fn choices(report: &Report) -> String {
 }
 
 fn trial_words(trial: &Trial) -> String {
-    let cost = trial.time(0.01).map_or("found nothing".into(), |time| format!("{time:.2e} s"));
-    let objection = match trial.objection {
-        Some(Objection::WindowsDiffer) => " (its windows differ)",
-        Some(Objection::Contradicted) => " (contradicted)",
-        None => "",
-    };
-    match trial.bias {
-        Some(bias) if trial.cost.is_some() => {
-            format!("{cost}, {:.1} %{objection}", 100.0 * bias)
+    let time = trial.time(0.01);
+    let time = time.map_or("found nothing".into(), |time| format!("{} s", seconds(time)));
+    match (trial.objection, trial.bias) {
+        (Some(Objection::WindowsDiffer), Some(bias)) => {
+            format!("{time} (its windows differ by {:.0} %)", 100.0 * bias)
         }
-        Some(_) | None => cost + objection,
+        (Some(Objection::WindowsDiffer), None) | (None, Some(_) | None) => time,
+        (Some(Objection::Contradicted), _) => time + " (contradicted)",
     }
+}
+
+/// Two digits, which is what a pilot knows.
+fn seconds(time: f64) -> String {
+    let digits = 10f64.powi(1 - time.log10().floor() as i32);
+    format_value((time * digits).round() / digits)
 }
 
 fn sensor(report: &Report, paths: &SensorPaths, files: &[&str]) -> String {

@@ -231,6 +231,7 @@ fn remark_on_gathering(facts: &GatheredFacts) -> Option<String> {
 pub fn remark_on_paths(asked: Option<u64>, traced: u64) -> Option<String> {
     let asked = asked.filter(|&asked| traced > asked + asked / 10)?;
     Some(format!(
-        "{traced} paths were traced where {asked} were asked for: each of the {GROUPS} batches has at least one per source"
+        "{traced} paths were traced where {asked} were asked for: a run ends with a whole wave, of {GROUPS} batches with at \
+         least one path of each source, or of passes with all of their photons and gather paths"
     ))
 }

@@ -1,9 +1,17 @@
 //! The few lines that a run prints when it is done.
 
-use crate::measure::Outcome;
+use crate::measure::{Measures, Outcome};
 use crate::report::markdown::quantity;
 use crate::report::{Report, Written};
+use crate::scene::plan::Estimator;
 use std::path::Path;
+
+/// The estimator that a pilot has taken, where it is not the plain one.
+fn choice(measures: &Measures, sensor: &str) -> String {
+    let chosen = measures.choices.get(sensor).map(|choice| choice.chosen);
+    let told = chosen.filter(|chosen| *chosen != Estimator::Forward);
+    told.map_or(String::new(), |chosen| format!(", by `{}` (chosen by a pilot)", chosen.name()))
+}
 
 /// Sensors, checks and where the report lies.
 pub fn terminal(report: &Report, dir: &Path, written: &Written) -> String {
@@ -15,10 +23,11 @@ pub fn terminal(report: &Report, dir: &Path, written: &Written) -> String {
             measures.values.get(&format!("{}.{name}", paths.sensor)).map_or("".into(), quantity)
         };
         text += &format!(
-            "  {}: flux {}, efficiency {}\n",
+            "  {}: flux {}, efficiency {}{}\n",
             paths.sensor,
             value("flux"),
-            value("efficiency")
+            value("efficiency"),
+            choice(measures, &paths.sensor)
         );
     }
     for result in &report.checks {

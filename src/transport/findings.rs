@@ -20,6 +20,8 @@ pub struct Findings {
     pub estimators: Vec<Estimator>,
     /// What a pilot found out about each sensor, if it was asked to choose.
     pub choices: Vec<Choice>,
+    /// Photon and gather paths behind it.
+    pub paths: u64,
 }
 
 /// What the gather method has found.
@@ -35,7 +37,8 @@ impl Findings {
     /// The findings of photons alone.
     pub fn forward(photons: Readings) -> Self {
         let estimators = vec![Estimator::Forward; photons.sensors.len()];
-        Self { photons, backward: None, gathered: None, estimators, choices: Vec::new() }
+        let paths = photons.paths();
+        Self { photons, backward: None, gathered: None, estimators, choices: Vec::new(), paths }
     }
 
     /// How a sensor is estimated.

@@ -12,6 +12,7 @@ mod trials;
 
 use crate::scene::plan::{Estimator, RunPlan};
 use crate::scene::{Scene, SensorId};
+use crate::tally::Tally;
 use crate::transport::emitters::invisible;
 use crate::transport::settings::PhotonPilot;
 use crate::transport::work;
@@ -26,6 +27,8 @@ const USUAL_BUDGET: f64 = 60.0;
 const BOUNDS: [f64; 2] = [0.1, 4.0];
 /// A second pilot is worth its while if it may take so many times as long as the first, 1.
 const WORTH_ANOTHER: f64 = 3.0;
+/// Relative error of a flux that may contradict another: ten counts have it, 1.
+const KNOWN: f64 = 0.32;
 /// Standard errors beyond which a difference counts.
 const SIGMAS: f64 = 3.0;
 /// Relative error that windows may differ by where no target is set, 1.
@@ -144,9 +147,15 @@ fn best(tried: &[Trial], error: Option<f64>) -> Estimator {
     known.min_by(|(a, _), (b, _)| a.total_cmp(b)).map_or(Estimator::Forward, |(_, best)| best)
 }
 
+/// Standard error over value; infinite or not a number in the dark.
+fn relative_error(flux: &Tally) -> f64 {
+    flux.std_error() / flux.mean()
+}
+
 /// What speaks against a gathered flux, beside what the unbiased estimators found.
 fn objection(gathered: &Gathered, unbiased: [Option<&Tried>; 2], target: f64) -> Option<Objection> {
     let (flux, apart) = (&gathered.tried.flux, &gathered.apart);
+    gathered.tried.trial.cost?;
     let allowed = target * flux.mean().abs();
     if apart.mean().abs() > allowed + SIGMAS * apart.std_error() {
         return Some(Objection::WindowsDiffer);
@@ -154,8 +163,8 @@ fn objection(gathered: &Gathered, unbiased: [Option<&Tried>; 2], target: f64) ->
     let other = unbiased
         .into_iter()
         .flatten()
-        .filter(|tried| tried.flux.mean() > 0.0)
-        .min_by(|a, b| a.flux.std_error().total_cmp(&b.flux.std_error()))?;
+        .filter(|tried| relative_error(&tried.flux) < KNOWN)
+        .min_by(|a, b| relative_error(&a.flux).total_cmp(&relative_error(&b.flux)))?;
     let error = flux.std_error().hypot(other.flux.std_error());
     let off = (flux.mean() - other.flux.mean()).abs();
     (off > allowed + SIGMAS * error).then_some(Objection::Contradicted)
@@ -164,7 +173,6 @@ fn objection(gathered: &Gathered, unbiased: [Option<&Tried>; 2], target: f64) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tally::Tally;
 
     fn trial(estimator: Estimator, cost: Option<f64>) -> Trial {
         Trial { estimator, cost, bias: None, least: 0.0, objection: None }
@@ -221,9 +229,11 @@ mod tests {
         let noisy = tried(Estimator::Forward, [0.0, 2.0, 0.0, 0.0]);
         let sharp = tried(Estimator::Backward, [1.0, 1.02, 0.99, 0.99]);
         let dark = tried(Estimator::Backward, [0.0; 4]);
+        let one_event = tried(Estimator::Forward, [0.004, 0.0, 0.0, 0.0]);
         let with = |others| objection(&flux, others, 0.01);
         assert_eq!(with([Some(&noisy), Some(&sharp)]), Some(Objection::Contradicted));
         assert_eq!(with([Some(&noisy), Some(&dark)]), None, "what saw nothing says nothing");
+        assert_eq!(with([Some(&one_event), None]), None, "one weak event says nothing");
         assert_eq!(with([None, None]), None);
     }
 }

@@ -4,7 +4,7 @@
 //! after whole waves, so that asking for the number of paths that a run did repeats it. Waves are traced in pieces,
 //! between which a run can be interrupted. A wave is one batch of each group, or, with gathering, some passes.
 
-use crate::scene::plan::{Estimator, Request, RunPlan};
+use crate::scene::plan::{Estimator, Request, RunPlan, Schedule};
 use crate::scene::{Scene, SensorId};
 use crate::transport::backward::Backward;
 use crate::transport::findings::{Findings, Gathered};
@@ -245,6 +245,11 @@ impl<'s> Run<'s> {
         self.stages.as_ref().is_some_and(|stages| stages.passes() >= stages.planned_passes())
     }
 
+    /// Whether there are stages, each with a smaller window.
+    pub fn shrinks(&self) -> bool {
+        self.stages.as_ref().is_some_and(|own| own.settings.schedule == Schedule::Stages)
+    }
+
     /// Goes on to the next stage of the gather method: a smaller window.
     pub fn next_stage(&mut self) {
         if let Some(stages) = &mut self.stages {
@@ -264,6 +269,7 @@ impl<'s> Run<'s> {
                 .map(|stages| Gathered { settings: stages.settings, stages: stages.found() }),
             estimators: self.estimators.clone(),
             choices: self.choices.clone(),
+            paths: if self.waves == 0 { self.paths() } else { self.paths },
         }
     }
 

@@ -3,7 +3,7 @@
 use crate::optics::Spread;
 use crate::rng::Sampler;
 use crate::scene::plan::{GatherPlan, Schedule};
-use crate::scene::{Arrivals, Emission, FaceId, On, Ray, Scene, SensorId};
+use crate::scene::{Arrivals, Emission, Emitter, FaceId, On, Ray, Scene, SensorId};
 use crate::transport::emitters::{Emitters, Met};
 use crate::transport::follow::{Collector, Gathering, follow};
 use crate::transport::scatter::facing;
@@ -70,8 +70,11 @@ pub(crate) fn settle(
         ((pilot.segments_per_path - 1.0) / 3.0).clamp(DEPTH[0], DEPTH[1]) as u32
     });
     let Sounded { inradius, from_sources } = sound(scene, sensors, seed, depth);
-    let source = scene.sources.iter().filter_map(|source| source.emitter.area());
-    let source_radius = source.map(|area| (area / PI).sqrt()).fold(f64::INFINITY, f64::min);
+    let source_radius = scene
+        .sources
+        .iter()
+        .map(|source| half_width(&source.emitter))
+        .fold(f64::INFINITY, f64::min);
     let radius = (RADIUS_PER_INRADIUS * inradius).min(RADIUS_PER_SOURCE * source_radius);
     let photons = plan
         .photons
@@ -99,7 +102,7 @@ pub(crate) fn settle(
 /// seen from the records at the distance told, mm.
 fn angle(scene: &Scene, inradius: f64, from_sources: &[f64]) -> f64 {
     let sources = scene.sources.iter().zip(from_sources).map(|(source, distance)| {
-        let radius = source.emitter.area().map_or(f64::INFINITY, |area| (area / PI).sqrt());
+        let radius = half_width(&source.emitter);
         let seen = if radius < FILLS * inradius { radius / distance } else { 0.5 * PI };
         match source.emission {
             Emission::Cone { half_angle, .. } => half_angle.min(seen),
@@ -115,6 +118,15 @@ fn angle(scene: &Scene, inradius: f64, from_sources: &[f64]) -> f64 {
     let widest = scatter.fold(0.0, f64::max);
     let [least, most] = THETA_DEG.map(f64::to_radians);
     (0.5 * narrowest).max(widest).clamp(least, most)
+}
+
+/// Half of the width of a source, mm: of the shorter side of a flat one, the radius of a round one.
+fn half_width(emitter: &Emitter) -> f64 {
+    let bounds = emitter.bounds();
+    let mut extents = (bounds.max - bounds.min).to_array();
+    extents.sort_by(f64::total_cmp);
+    let [_, middle, _] = extents;
+    0.5 * middle
 }
 
 /// What pilot paths have told about the guide, medians in mm.

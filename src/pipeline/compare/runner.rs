@@ -4,6 +4,7 @@ use crate::error::{Error, Result};
 use crate::measure;
 use crate::pipeline::compare::{Bench, Method};
 use crate::report::Sample;
+use crate::scene::Scene;
 use crate::scene::plan::Request;
 use crate::transport::{BaselineRun, Findings, Run};
 use std::time::{Duration, Instant};
@@ -47,7 +48,7 @@ pub(super) fn trace(bench: &Bench<'_>, stint: &Stint<'_>) -> Result<Traced> {
             return Err(Error::Usage("interrupted: nothing was written".into()));
         }
         let start = Instant::now();
-        runner.next_piece();
+        runner.next_piece(&bench.job.scene);
         spent += start.elapsed();
         let is_over = checkpoints.last().is_none_or(|end| spent >= *end);
         let place = checkpoints.iter().rposition(|checkpoint| *checkpoint <= spent);
@@ -93,11 +94,11 @@ impl<'s> Runner<'s> {
         }
     }
 
-    fn next_piece(&mut self) {
+    fn next_piece(&mut self, scene: &Scene) {
         match self {
             Self::Run { run, round_end } => {
                 if run.is_between_waves() && run.waves() >= *round_end {
-                    if run.may_end_stage() {
+                    if run.may_end_stage() && measure::is_held_by_bias(scene, &run.findings()) {
                         run.next_stage();
                     }
                     *round_end = run.round_end();

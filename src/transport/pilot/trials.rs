@@ -111,7 +111,7 @@ impl Trials<'_> {
             let [wide, flux, apart] =
                 [&wide, &values, &apart].map(|sums| flux(scene, sums, sensor));
             let trial = &mut tried.trial;
-            trial.bias = Some((apart.mean() / wide.mean()).abs().min(f64::MAX));
+            trial.bias = (wide.mean() != 0.0).then(|| (apart.mean() / wide.mean()).abs());
             trial.least = FIRST_PASSES as f64 * seconds;
             // Of one pass, and one of the run's.
             let of_pass = |cost: f64| {

@@ -37,8 +37,8 @@ pub fn chances(bsdf: &Bsdf, incidence: &Incidence) -> Shares {
         | Bsdf::Open => {
             let Shares { reflected, transmitted } = shares(bsdf, incidence);
             let sum = reflected + transmitted;
-            let least = if sum > 0.0 { 1.0 / sum } else { 0.0 };
-            Shares { reflected: least * reflected, transmitted: least * transmitted }
+            let over_sum = if sum > 0.0 { 1.0 / sum } else { 0.0 };
+            Shares { reflected: over_sum * reflected, transmitted: over_sum * transmitted }
         }
         Bsdf::Mixture(parts) => mean(parts, |part| chances(part, incidence)),
     }

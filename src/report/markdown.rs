@@ -239,8 +239,12 @@ fn gathered(facts: &GatheredFacts, unit: &str) -> String {
     text + "\n"
 }
 
+/// Empty for a single cell, which is even.
 fn uniformity(map: &SensorMap) -> String {
     let summary = &map.summary;
+    if summary.cells == 1 {
+        return String::new();
+    }
     let ([width, height], unit) = (summary.cell_size, map.axes.unit());
     let mut text = format!(
         "Uniformity over {} cells of {} {unit} x {} {unit}; extremes are corrected for noise, intervals hold 95 %.\n\n",

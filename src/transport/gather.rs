@@ -268,7 +268,7 @@ fn finish<'s>(facing: &Facing<'s>, side: Side) -> &'s Bsdf {
 }
 
 impl<'s> Collecting<'_, 's> {
-    /// A record for photons that a broad finish scatters into the gather path: eq. (2).
+    /// A record for photons that a broad finish scatters into the gather path: docs/method.md, eq. (22).
     fn add_scattered(&mut self, path: &Path, vertex: &Vertex<'_>, facing: &Facing<'s>, side: Side) {
         let bsdf = finish(facing, side);
         if bsdf.width().is_none() && shares(bsdf, &facing.incidence).of(side) == 0.0 {
@@ -280,7 +280,7 @@ impl<'s> Collecting<'_, 's> {
         self.add(path, vertex, facing, side, value, Wanted::Scattered { bsdf, out: -vertex.dir });
     }
 
-    /// A record for photons near the direction in which the gather path would go on: eq. (3).
+    /// A record for photons near the direction in which the gather path would go on: docs/method.md, eq. (15).
     fn add_along(&mut self, path: &Path, vertex: &Vertex<'_>, facing: &Facing<'s>, side: Side) {
         let bsdf = finish(facing, side);
         let Some(out) = scatter_toward(bsdf, side, &facing.incidence, &mut self.sampler) else {

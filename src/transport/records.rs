@@ -34,9 +34,9 @@ pub(crate) struct GatherRecord<'s> {
 /// Which photons a record takes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Wanted<'s> {
-    /// Those that travel along this direction, up to the angle of the window: eq. (3).
+    /// Those that travel along this direction, up to the angle of the window: docs/method.md, eq. (15).
     Along(DVec3),
-    /// All, weighted by the broad part of a finish toward a direction: eq. (2).
+    /// All, weighted by the broad part of a finish toward a direction: docs/method.md, eq. (22).
     Scattered {
         /// The finish that acts on them.
         bsdf: &'s Bsdf,

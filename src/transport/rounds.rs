@@ -30,6 +30,8 @@ const PILOT_PATHS: u64 = 64;
 const PILOT_BOUNCES: u32 = 10_000;
 /// Batches of a piece per thread: threads wait for the last batch of a piece.
 const PIECE_BATCHES: u64 = 4;
+/// Share of the work of a backward run that goes to photons, for the balance and what is beside the aim, 1.
+const PHOTON_SHARE: f64 = 0.1;
 
 /// A flag that asks a run to stop.
 #[derive(Debug, Clone, Default)]
@@ -46,9 +48,6 @@ impl Interrupt {
         self.0.load(Ordering::Relaxed)
     }
 }
-
-/// Share of the work of a backward run that goes to photons, for the balance and what is beside the aim, 1.
-const PHOTON_SHARE: f64 = 0.1;
 
 /// A run in progress.
 #[derive(Debug)]

@@ -28,7 +28,7 @@ impl Window {
         SIZES.map(|size| self.scaled(size))
     }
 
-    /// The window of a stage, from 0: radius and angle shrink by √2 from stage to stage (METHOD: the bias halves).
+    /// The window of a stage, from 0: radius and angle shrink by √2 from stage to stage (the bias halves).
     pub fn of_stage(self, stage: u32) -> Self {
         self.scaled(FRAC_1_SQRT_2.powi(stage as i32))
     }

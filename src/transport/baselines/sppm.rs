@@ -142,7 +142,7 @@ impl Collector for Gatherer<'_, '_> {
             (facing.faces.behind, -facing.facet, interface.to),
         ];
         for (bsdf, normal, medium) in sides.into_iter().filter(|side| !side.0.is_specular()) {
-            // L* of the light that leaves, in the medium of the gather path: eq. (2) over its n².
+            // L* of the light that leaves, in the medium of the gather path: docs/method.md, eq. (22), over its n².
             let index = facing.incidence.index_from;
             let value = self.etendue * vertex.throughput / (index * index);
             // The whole disk counts also at rims: that bias goes with the radius.

@@ -40,7 +40,8 @@ all = { goniometer = { c_step_deg = 360, gamma_step_deg = 90 } }
 "#;
 
 fn gather(depth: u32) -> Way {
-    Way::Gather(Gathering { radius_mm: 0.4, angle_deg: 5.0, ..Gathering::to_depth(depth) })
+    let (records, photons) = (3000, 6000);
+    Way::Gather(Gathering { radius_mm: 0.4, angle_deg: 5.0, records, photons, depth })
 }
 
 #[test]
@@ -55,6 +56,7 @@ fn shallow_and_deep_records_agree() {
             apart / room
         );
         assert!(apart <= 2.0 * room, "{what}: {shallow} and {deep}");
+        assert!(room < 0.05 * deep.value, "{what}: errors that let anything pass, {room}");
     }
 }
 

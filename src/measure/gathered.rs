@@ -3,7 +3,8 @@
 //! Within nested windows of size 1, 1/√2 and 1/2 the same photons give E1, E2 and E3. A bias that goes with the square
 //! of the window, as that of a smooth field does, has (E1 - E2)/(E2 - E3) = 2. Where that is found, within its error
 //! and out of the noise, 2 E2 - E1 is the value. Otherwise E3 is, and its bias is not resolved: either hidden by noise,
-//! which is four times larger in E3 than in E1, or of another law. |E1 - E2| is the indicator of bias in all cases. All is decided once per sensor and stage, from its flux, never per cell.
+//! which is four times larger in E3 than in E1, or of another law. |E1 - E2| is the indicator of bias in all cases. All
+//! is decided once per sensor and stage, from its flux, never per cell.
 
 use crate::measure::evidence::{Evidence, MIN_LIT_GROUPS};
 use crate::measure::flux::flux_slots;
@@ -11,7 +12,7 @@ use crate::measure::{Measure, Status};
 use crate::scene::SensorId;
 use crate::scene::plan::Estimator;
 use crate::tally::Tally;
-use crate::transport::{Findings, Readings, Stage, Windows};
+use crate::transport::{Findings, Group, Readings, Stage, Windows};
 use serde::Serialize;
 
 /// Standard errors that E2 - E3 has to exceed to count as more than noise.
@@ -47,8 +48,8 @@ pub struct GatheredFacts {
     /// The flux that photons of the same run have brought to the sensor, with its standard error: without bias, mostly
     /// with more noise; lm or W.
     pub by_photons: [f64; 2],
-    /// Total errors of both by which the gathered flux is off that, 1; `None` where either has
-    /// found too little to tell.
+    /// Total errors of both by which the gathered flux is off that, 1; `None` where either has found too little to
+    /// tell. A merged flux holds a part of the same photons, which makes this smaller.
     pub off: Option<f64>,
     /// The last finished stage and the one after it, as far as that has come.
     pub stages: Vec<StageFacts>,
@@ -106,33 +107,30 @@ pub(crate) fn is_held_by_bias(photons: Evidence<'_>, findings: &Findings, id: Se
         let resolution = resolution(&stage.windows, &slots);
         let apart = difference(&stage.windows, &slots, |[e1, e2, _]| e1 - e2).mean().abs();
         resolution == Resolution::NotResolved
-            || apart > value(&stage.windows, resolution, &slots).std_error()
+            || apart > flux(chosen(&stage.windows, resolution), &slots).std_error()
     })
 }
 
 impl<'a> Judged<'a> {
     /// The evidence of the value, and that within the wide and the middle window.
     pub(crate) fn evidences(&self) -> [Evidence<'a>; 3] {
-        let Windows { wide, middle, narrow, extrapolated } = &self.stage.windows;
-        let value = match self.resolution {
-            Resolution::Resolved => extrapolated,
-            Resolution::InNoise | Resolution::NotResolved => narrow,
-        };
-        [value, wide, middle].map(|readings| self.photons.by(readings, self.estimator))
+        let Windows { wide, middle, .. } = &self.stage.windows;
+        [chosen(&self.stage.windows, self.resolution), wide, middle]
+            .map(|readings| self.photons.by(readings, self.estimator))
     }
 
     /// How the values came about; `None` without anything gathered.
     pub(crate) fn facts(&self, findings: &Findings, id: SensorId) -> Option<GatheredFacts> {
         let gathered = findings.gathered.as_ref()?;
         let slots = flux_slots(&self.photons, id);
-        let sum = |flux: &dyn Fn(usize) -> f64| slots.iter().map(|&slot| flux(slot)).sum::<f64>();
-        let by_photons = self.photons.readings.function(sum);
+        let windows = &self.stage.windows;
+        let by_photons = flux(self.photons.readings, &slots);
         let is_lit = |readings: &Readings| {
-            let groups = readings.groups.iter();
-            groups.filter(|group| sum(&|slot| group.sums[slot]) != 0.0).count() >= MIN_LIT_GROUPS
+            let is_lit = |group: &&Group| slots.iter().any(|&slot| group.sums[slot] != 0.0);
+            readings.groups.iter().filter(is_lit).count() >= MIN_LIT_GROUPS
         };
-        let own = total_error(&self.stage.windows, self.resolution, &slots);
-        let value = value(&self.stage.windows, self.resolution, &slots).mean();
+        let own = total_error(windows, self.resolution, &slots);
+        let value = flux(chosen(windows, self.resolution), &slots).mean();
         let error = by_photons.std_error().hypot(own * value);
         Some(GatheredFacts {
             sensor: self.photons.scene.sensors[id.index()].name.clone(),
@@ -140,7 +138,7 @@ impl<'a> Judged<'a> {
             stage: self.stage.number,
             resolution: self.resolution,
             by_photons: [by_photons.mean(), by_photons.std_error()],
-            off: (is_lit(self.photons.readings) && is_lit(&self.stage.windows.narrow))
+            off: (is_lit(self.photons.readings) && is_lit(&windows.narrow))
                 .then(|| (value - by_photons.mean()) / error),
             stages: gathered.stages.iter().map(|stage| stage_facts(stage, &slots)).collect(),
         })
@@ -165,10 +163,7 @@ impl<'a> Judged<'a> {
 
 fn stage_facts(stage: &Stage, slots: &[usize]) -> StageFacts {
     let Windows { wide, middle, narrow, extrapolated: _ } = &stage.windows;
-    let flux = |readings: &Readings| {
-        readings.function(|flux| slots.iter().map(|&slot| flux(slot)).sum::<f64>())
-    };
-    let found = [wide, middle, narrow].map(flux);
+    let found = [wide, middle, narrow].map(|readings| flux(readings, slots));
     StageFacts {
         number: stage.number,
         radius_mm: stage.window.radius,
@@ -201,19 +196,22 @@ fn resolution(windows: &Windows, slots: &[usize]) -> Resolution {
 /// Standard error and bias of the sum of some scalars together, relative to it.
 fn total_error(windows: &Windows, resolution: Resolution, slots: &[usize]) -> f64 {
     let delta = difference(windows, slots, |[e1, e2, _]| e1 - e2).mean();
-    let value = value(windows, resolution, slots);
+    let value = flux(chosen(windows, resolution), slots);
     let error = value.std_error().hypot(delta) / value.mean().abs();
     if error.is_nan() { f64::INFINITY } else { error }
 }
 
-/// The value of the sum of some scalars.
-fn value(windows: &Windows, resolution: Resolution, slots: &[usize]) -> Tally {
+/// The readings that give the values.
+fn chosen(windows: &Windows, resolution: Resolution) -> &Readings {
     match resolution {
-        Resolution::Resolved => difference(windows, slots, |[e1, e2, _]| 2.0 * e2 - e1),
-        Resolution::InNoise | Resolution::NotResolved => {
-            difference(windows, slots, |[_, _, e3]| e3)
-        }
+        Resolution::Resolved => &windows.extrapolated,
+        Resolution::InNoise | Resolution::NotResolved => &windows.narrow,
     }
+}
+
+/// The sum of some scalars.
+fn flux(readings: &Readings, slots: &[usize]) -> Tally {
+    readings.function(|flux| slots.iter().map(|&slot| flux(slot)).sum())
 }
 
 /// A function of the sum of some scalars within the three windows, pass by pass.
@@ -234,7 +232,7 @@ mod tests {
     use crate::scene::SourceId;
     use crate::transport::Layout;
 
-    /// Passes of which each finds these fluxes within the three windows, times what the pass makes of each of them.
+    /// Passes of which each finds these fluxes within the three windows, and some noise.
     fn decided(means: [f64; 3], noise: impl Fn(u64) -> [f64; 3]) -> Resolution {
         let scene = scene(&[("lamp", 10.0)], vec![("cell", rectangle(2.0, 1, 1))]);
         let slot = Layout::new(&scene).sensor_flux(SensorId::new(0), SourceId::new(0));

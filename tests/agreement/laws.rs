@@ -39,6 +39,28 @@ exit = { plane = {}, on = "guide.exit", counts = "incident", side = "back" }
 all = { goniometer = { c_step_deg = 360, gamma_step_deg = 90 } }
 "#;
 
+/// A black tube of radius 5 mm and length 50 mm, a lamp at its one end and an open window at the other, and a sensor.
+fn under_a_tube(sensor: &str) -> String {
+    format!(
+        r#"
+[sheets.tube.tube]
+profile = {{ circle = {{ radius_mm = 5 }} }}
+path = [{{ straight_mm = 50 }}]
+finish = "black"
+[sheets.window.disk]
+radius_mm = 5
+finish = "open"
+at = {{ position_mm = [0, 0, 50] }}
+[sources.lamp.disk]
+radius_mm = 5
+luminance_cd_m2 = 1000
+emission = {{ cone_half_angle_deg = 8 }}
+[sensors]
+{sensor}
+"#
+    )
+}
+
 fn gather(depth: u32) -> Way {
     let (records, photons) = (3000, 6000);
     Way::Gather(Gathering { radius_mm: 0.4, angle_deg: 5.0, records, photons, depth })
@@ -193,22 +215,10 @@ eye = { luminance = { disk = { radius_mm = 1 }, cells = [1, 1], acceptance_half_
 /// than 8 deg cannot come there: the lamp leaves it out.
 #[test]
 fn a_cone_wider_than_the_light_dilutes_it_by_the_ratio_of_solid_angles() {
-    let text = r#"
-[sheets.tube.tube]
-profile = { circle = { radius_mm = 5 } }
-path = [{ straight_mm = 50 }]
-finish = "black"
-[sheets.window.disk]
-radius_mm = 5
-finish = "open"
-at = { position_mm = [0, 0, 50] }
-[sources.lamp.disk]
-radius_mm = 5
-luminance_cd_m2 = 1000
-emission = { cone_half_angle_deg = 8 }
-[sensors]
-eye = { luminance = { disk = { radius_mm = 0.2 }, cells = [1, 1], acceptance_half_angle_deg = 0.05, directions = [{ theta_deg = 0, phi_deg = 0 }] }, at = { position_mm = [0, 0, 51], axis = [0, 0, -1] } }
-"#;
+    let text = &under_a_tube(
+        r#"eye = { luminance = { disk = { radius_mm = 0.2 }, cells = [1, 1], acceptance_half_angle_deg = 0.05, directions = [{ theta_deg = 0, phi_deg = 0 }] }, at = { position_mm = [0, 0, 51], axis = [0, 0, -1] } }
+"#,
+    );
     let mut comparison = Comparison::default();
     for (angle_deg, ratio) in
         [(5.0, 1.0), (8.0, 0.509951176), (10.0, 0.3266672661), (20.0, 0.08229191609)]
@@ -227,22 +237,10 @@ eye = { luminance = { disk = { radius_mm = 0.2 }, cells = [1, 1], acceptance_hal
 /// The lamp at the far end of a black tube is seen within 6 deg.
 #[test]
 fn photons_of_the_run_contradict_windows_that_are_wider_than_the_light() {
-    let text = r#"
-[sheets.tube.tube]
-profile = { circle = { radius_mm = 5 } }
-path = [{ straight_mm = 50 }]
-finish = "black"
-[sheets.window.disk]
-radius_mm = 5
-finish = "open"
-at = { position_mm = [0, 0, 50] }
-[sources.lamp.disk]
-radius_mm = 5
-luminance_cd_m2 = 1000
-emission = { cone_half_angle_deg = 8 }
-[sensors]
-eye = { luminance = { disk = { radius_mm = 0.5 }, cells = [1, 1], acceptance_half_angle_deg = 1.5, directions = [{ theta_deg = 0, phi_deg = 0 }] }, at = { position_mm = [0, 0, 51], axis = [0, 0, -1] } }
-"#;
+    let text = &under_a_tube(
+        r#"eye = { luminance = { disk = { radius_mm = 0.5 }, cells = [1, 1], acceptance_half_angle_deg = 1.5, directions = [{ theta_deg = 0, phi_deg = 0 }] }, at = { position_mm = [0, 0, 51], axis = [0, 0, -1] } }
+"#,
+    );
     let off = |angle_deg| {
         let window =
             Gathering { depth: 0, radius_mm: 0.4, angle_deg, records: 500, photons: 50_000 };

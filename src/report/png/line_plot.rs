@@ -1,5 +1,7 @@
 //! Curves over an axis: sections of maps, radial profiles, histograms.
 
+mod range;
+
 use crate::error::Result;
 use crate::report::png::axis::{Axis, Scale};
 use crate::report::png::canvas::{Canvas, Ink, Pen};
@@ -7,6 +9,7 @@ use crate::report::png::geometry::{Point, Rect};
 use crate::report::png::layout::{Axes, Header, Legend, MARGIN, Sample, write};
 use crate::report::png::palette::{SOFT_INK, SeriesInk, paired_colour, series_ink};
 use crate::report::png::text::{Align, LABEL};
+use range::{Padding, range};
 
 /// Curves over an axis.
 #[derive(Debug, Clone)]
@@ -94,8 +97,6 @@ const OVERHANG: f64 = 4.0;
 const WIDTH: f64 = 900.0;
 /// Height of the frame, pixels.
 const HEIGHT: f64 = 400.0;
-/// A logarithmic axis made from data spans at most this ratio.
-const WIDEST_RATIO: f64 = 1e8;
 
 /// Draws curves over two axes, with a legend above the frame.
 pub fn line_plot(plot: &LinePlot) -> Result<Vec<u8>> {
@@ -208,42 +209,6 @@ fn data_axes(plot: &LinePlot) -> [Axis; 2] {
         }
     }
     [range(&xs, plot.x_scale, Padding::None), range(&ys, plot.y_scale, Padding::Around)]
-}
-
-/// Whether an axis reaches beyond its data.
-enum Padding {
-    None,
-    Around,
-}
-
-fn range(values: &[f64], scale: Scale, padding: Padding) -> Axis {
-    let usable = |value: &&f64| match scale {
-        Scale::Linear | Scale::Tangent => value.is_finite(),
-        Scale::Log => value.is_finite() && **value > 0.0,
-    };
-    let low = values.iter().filter(usable).copied().fold(f64::INFINITY, f64::min);
-    let high = values.iter().filter(usable).copied().fold(f64::NEG_INFINITY, f64::max);
-    let single = high - low <= 1e-9 * high.abs().max(low.abs());
-    match (padding, scale) {
-        (Padding::None, Scale::Linear | Scale::Log | Scale::Tangent) if single => {
-            // In the middle of the picture.
-            let space = if high == 0.0 { 0.5 } else { 0.5 * high.abs() };
-            Axis::new(low - space, high + space, scale)
-        }
-        (Padding::None, Scale::Linear | Scale::Tangent) => Axis::new(low, high, scale),
-        (Padding::None, Scale::Log) => Axis::new(low / 1.05, high * 1.05, scale),
-        (Padding::Around, Scale::Log) => {
-            Axis::new(low.max(high / WIDEST_RATIO) / 1.5, high * 1.5, scale)
-        }
-        (Padding::Around, Scale::Linear | Scale::Tangent) => {
-            // Zero belongs to the picture where the values come near it.
-            let low = if low > 0.0 && low <= 0.5 * high { 0.0 } else { low };
-            let high = if high < 0.0 && high >= 0.5 * low { 0.0 } else { high };
-            let space = 0.05 * (high - low);
-            let below = if low == 0.0 { low } else { low - space };
-            Axis::new(below, if high == 0.0 { high } else { high + space }, scale)
-        }
-    }
 }
 
 fn draw_errors(canvas: &mut Canvas, frame: &Axes, area: Rect, series: &Series, ink: SeriesInk) {

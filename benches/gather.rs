@@ -1,10 +1,11 @@
 //! The method against forward and backward tracing on the scenes of docs/method.md: noise after the same CPU time, bias
 //! against committed truths, what the pilot of `auto` chooses, and what looking up records adds to a stream of photons.
 //!
-//! `cargo bench --bench gather`. One thread; the estimators run in turn on each scene, gathering with its automatic
-//! settings. The variances are those of the flux (of an image: Σσ²/Σmean² over its pixels) within the widest window of the
-//! first stage, and of the value freed of the bias that goes with the window's square, from 64 passes; confidence intervals are
-//! those of the ratio of two variances of normal samples. The truths are long unbiased runs, made once: see `ROWS`.
+//! `cargo bench --bench gather`, with the names of scenes after `--` for those alone. One thread; the estimators run in turn
+//! on each scene, gathering with its automatic settings. The variances are those of the flux (of an image: Σσ²/Σmean² over its
+//! pixels) within the widest window of the first stage, and of the value freed of the bias that goes with the window's square,
+//! from four runs of 64 passes with seeds of their own; confidence intervals are those of the ratio of two variances of normal
+//! samples. The truths are long unbiased runs, made once: see `ROWS`.
 #![allow(clippy::print_stdout, reason = "a bench prints its table")]
 
 mod clock;
@@ -13,7 +14,6 @@ use clock::cpu_seconds;
 use lumiduct::input::{self, Job, Settings};
 use lumiduct::scene::plan::{Estimator, GatherPlan, Request, RunPlan, StopRules, Target};
 use lumiduct::scene::{Scene, SensorId, SourceId};
-use lumiduct::tally::Tally;
 use lumiduct::transport::{Findings, GatherSettings, Layout, Readings, Run};
 use rayon::ThreadPoolBuilder;
 use std::path::Path;
@@ -30,8 +30,8 @@ struct Row {
 const ROWS: [Row; 7] = [
     // Seeds 20261, 20262, 20263.
     Row { scene: "remote_cell_sun", truth: 0.10938, std_error: 0.00028 },
-    // Seeds 20261, 20262: 0.035457(154), 0.034725(172); 16M with seed 7: 0.03447(30).
-    Row { scene: "remote_cell_long", truth: 0.035047, std_error: 0.000107 },
+    // Seeds 20261, 20262: 0.035457(154), 0.034725(172); 16M with seed 7: 0.03447(30); 4M with seeds 101 to 124: 0.03510(13).
+    Row { scene: "remote_cell_long", truth: 0.035070, std_error: 0.000082 },
     // Seeds 20261, 20262, 20263; 30M with seed 7, 80M with seed 20264; forward with 400M and seed 20270.
     Row { scene: "remote_cell_rod", truth: 0.14020, std_error: 0.00025 },
     // `cargo bench --bench connected`, seed 20261.
@@ -43,7 +43,9 @@ const ROWS: [Row; 7] = [
     // The image holds the whole exit: its flux is that of remote_cell_scatter.
     Row { scene: "luminance_image_scatter", truth: 0.011507, std_error: 0.000023 },
 ];
-/// Passes of the gather method, and waves of photons or backward paths.
+/// Runs of each estimator, with seeds of their own.
+const RUNS: u64 = 4;
+/// Passes of the gather method in a run, and waves of photons or backward paths.
 const PASSES: u64 = 64;
 const WAVES: u64 = 8;
 /// Groups of batches in a wave, and passes in a wave of passes.
@@ -55,17 +57,22 @@ const ERROR: f64 = 0.01;
 fn main() {
     let pool = ThreadPoolBuilder::new().num_threads(1).build().expect("one thread can be had");
     println!(
-        "| scene | forward | backward | E1 | value/truth | variance, backward/E1 (95 %) | 2 E2 - E1 | value/truth | variance, backward/(2 E2 - E1) | look-up over photons | s to 1 %: forward, backward, gather | auto | its time over the best |"
+        "| scene | forward | backward | E1 | value/truth | variance, backward/E1 (95 %) | 2 E2 - E1 | value/truth | variance, backward/(2 E2 - E1) | look-up over photons | s to 1 %: forward, backward, mix, gather | auto | its time over the best |"
     );
     println!("|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|---|--:|");
-    for row in &ROWS {
+    let wanted: Vec<String> = std::env::args().skip(1).filter(|name| name != "--bench").collect();
+    for row in
+        ROWS.iter().filter(|row| wanted.is_empty() || wanted.iter().any(|name| name == row.scene))
+    {
         println!("{}", pool.install(|| compare(row)));
     }
 }
 
 /// What an estimator has found on the only sensor of a scene, and the CPU seconds it took.
 struct Found {
-    flux: Tally,
+    /// The flux and its standard error, lm.
+    flux: f64,
+    std_error: f64,
     /// Σ σ² over the cells, lm².
     variance: f64,
     /// Σ mean² over the cells, without what noise adds, lm².
@@ -74,20 +81,35 @@ struct Found {
 }
 
 impl Found {
+    /// In one run.
     fn new(scene: &Scene, readings: &Readings, seconds: f64) -> Self {
         let slot = Layout::new(scene).sensor_flux(SensorId::new(0), SourceId::new(0));
-        let flux = readings.scalar(slot);
+        let total = readings.scalar(slot);
+        let (flux, std_error) = (total.mean(), total.std_error());
         let cells = &readings.sensors[0].cells;
         if cells.len() == 1 {
-            let (variance, square) = (flux.std_error().powi(2), flux.mean().powi(2));
-            return Self { flux, variance, square, seconds };
+            let (variance, square) = (std_error.powi(2), flux.powi(2));
+            return Self { flux, std_error, variance, square, seconds };
         }
         let [mut variance, mut square] = [0.0; 2];
         for (mean, error) in (0..cells.len()).map(|cell| cells.mean(cell, readings.batch_count())) {
             variance += error * error;
             square += mean * mean - error * error;
         }
-        Self { flux, variance, square, seconds }
+        Self { flux, std_error, variance, square, seconds }
+    }
+
+    /// In all of some runs of the same length.
+    fn in_all(runs: &[Self]) -> Self {
+        let mean = |of: fn(&Self) -> f64| runs.iter().map(of).sum::<f64>() / runs.len() as f64;
+        let shared = 1.0 / runs.len() as f64;
+        Self {
+            flux: mean(|run| run.flux),
+            std_error: (shared * mean(|run| run.std_error.powi(2))).sqrt(),
+            variance: shared * mean(|run| run.variance),
+            square: mean(|run| run.square),
+            seconds: runs.iter().map(|run| run.seconds).sum(),
+        }
     }
 
     /// CPU seconds until noise is a share `ERROR` of what is to be measured, whose square is given.
@@ -104,45 +126,62 @@ impl Found {
 fn compare(row: &Row) -> String {
     let path = format!("scenes/{}.toml", row.scene);
     let job = input::load(Path::new(&path), &Settings::default()).expect("the scenes are valid");
-    let traced = |plan: &RunPlan, waves| traced(&job.scene, plan, waves);
-    let (seconds, findings) = traced(&plan(&job, Request::Forward), WAVES);
-    let forward = Found::new(&job.scene, &findings.photons, seconds);
-    let (seconds, findings) = traced(&plan(&job, Request::Backward), WAVES);
-    let backward = Found::new(&job.scene, &findings.backward.expect("it was asked for"), seconds);
-    let (seconds, findings) = traced(&plan(&job, Request::Gather), PASSES / WAVE_PASSES);
-    let mut gathered = findings.gathered.expect("it was asked for");
-    let windows = gathered.stages.remove(0).windows;
-    let look_up = (seconds - records_alone(&job, &gathered.settings)) / photons_alone(&job) - 1.0;
-    let [wide, value] = [&windows.wide, &windows.extrapolated]
-        .map(|readings| Found::new(&job.scene, readings, seconds));
+    let plain = |request| {
+        let runs: Vec<Found> = (0..RUNS)
+            .map(|run| {
+                let (seconds, findings) = traced(&job.scene, &plan(&job, request, run), WAVES);
+                let readings = findings.backward.unwrap_or(findings.photons);
+                Found::new(&job.scene, &readings, seconds)
+            })
+            .collect();
+        Found::in_all(&runs)
+    };
+    let [forward, backward, mix] = [Request::Forward, Request::Backward, Request::Mix].map(plain);
+    let (mut wide, mut value, mut look_up) = (Vec::new(), Vec::new(), 0.0);
+    for run in 0..RUNS {
+        let waves = PASSES / WAVE_PASSES;
+        let (seconds, findings) = traced(&job.scene, &plan(&job, Request::Gather, run), waves);
+        let mut gathered = findings.gathered.expect("it was asked for");
+        let windows = gathered.stages.remove(0).windows;
+        if run == 0 {
+            let streamed = seconds - records_alone(&job, &gathered.settings);
+            look_up = streamed / photons_alone(&job) - 1.0;
+        }
+        wide.push(Found::new(&job.scene, &windows.wide, seconds));
+        value.push(Found::new(&job.scene, &windows.extrapolated, seconds));
+    }
+    let [wide, value] = [wide, value].map(|runs| Found::in_all(&runs));
     let square = wide.square;
     let columns = |found: &Found| {
         let ratio = backward.time(square) / found.time(square);
         // The logarithm of a variance from n samples has a standard deviation of √(2/(n - 1)).
-        let spread = (2.0 / (PASSES as f64 - 1.0) + 2.0 / (GROUPS - 1.0)).sqrt();
+        let freedom = RUNS as f64 * (PASSES as f64 - 1.0);
+        let spread = (2.0 / freedom + 2.0 / (RUNS as f64 * (GROUPS - 1.0))).sqrt();
         let [low, high] = [-1.96, 1.96].map(|sigmas: f64| ratio * (sigmas * spread).exp());
-        let (value, error) = over_truth(row, &found.flux);
+        let (value, error) = over_truth(row, found);
         let noise = found.noise(square);
         format!("{noise} | {value:.4} ± {error:.4} | {ratio:.1} ({low:.1} to {high:.1})")
     };
     let times = [
         forward.time(square),
         backward.time(square),
+        mix.time(square),
         // No value without a first wave of passes.
-        value.time(square).max(seconds * WAVE_PASSES as f64 / PASSES as f64),
+        value.time(square).max(value.seconds * WAVE_PASSES as f64 / (RUNS * PASSES) as f64),
     ];
-    let [by_forward, by_backward, by_gather] = times.map(|time| format!("{time:.1}"));
-    let (value_off, value_error) = over_truth(row, &value.flux);
+    let [by_forward, by_backward, by_mix, by_gather] = times.map(|time| format!("{time:.1}"));
+    let (value_off, value_error) = over_truth(row, &value);
     let is_true = (value_off - 1.0).abs() < ERROR + 3.0 * value_error;
-    let best = times[..if is_true { 3 } else { 2 }].iter().copied().fold(f64::INFINITY, f64::min);
+    let best = times[..if is_true { 4 } else { 3 }].iter().copied().fold(f64::INFINITY, f64::min);
     let (pilot, chosen) = pilot(&job);
     let chosen_time = match chosen {
         Estimator::Forward => times[0],
         Estimator::Backward => times[1],
-        Estimator::Gather | Estimator::Mis => times[2],
+        Estimator::Mix => times[2],
+        Estimator::Gather | Estimator::Mis => times[3],
     };
     format!(
-        "| {} | {} | {} | {} | {} | {look_up:.2} | {by_forward}, {by_backward}, {by_gather}{} | {} | {:.2} |",
+        "| {} | {} | {} | {} | {} | {look_up:.2} | {by_forward}, {by_backward}, {by_mix}, {by_gather}{} | {} | {:.2} |",
         row.scene,
         forward.noise(square),
         backward.noise(square),
@@ -155,9 +194,9 @@ fn compare(row: &Row) -> String {
 }
 
 /// A flux over the truth, with the error of both.
-fn over_truth(row: &Row, flux: &Tally) -> (f64, f64) {
-    let ratio = flux.mean() / row.truth;
-    (ratio, ratio * (flux.std_error() / flux.mean()).hypot(row.std_error / row.truth))
+fn over_truth(row: &Row, found: &Found) -> (f64, f64) {
+    let ratio = found.flux / row.truth;
+    (ratio, ratio * (found.std_error / found.flux).hypot(row.std_error / row.truth))
 }
 
 /// Traces some waves of a scene; CPU seconds and what was found.
@@ -169,9 +208,9 @@ fn traced(scene: &Scene, plan: &RunPlan, waves: u64) -> (f64, Findings) {
 
 /// CPU seconds of the photons of all passes without any record.
 fn photons_alone(job: &Job) -> f64 {
-    let run = Run::new(&job.scene, &plan(job, Request::Gather));
+    let run = Run::new(&job.scene, &plan(job, Request::Gather, 0));
     let stop = StopRules { paths: Some(PASSES * run.photons_per_batch()), ..StopRules::default() };
-    let mut run = Run::new(&job.scene, &RunPlan { stop, ..plan(job, Request::Forward) });
+    let mut run = Run::new(&job.scene, &RunPlan { stop, ..plan(job, Request::Forward, 0) });
     let (seconds, ()) = cpu_seconds(|| {
         while !run.is_complete() {
             run.next_wave();
@@ -187,7 +226,7 @@ fn records_alone(job: &Job, settings: &GatherSettings) -> f64 {
         photons: Some(1),
         ..GatherPlan::default()
     };
-    let plan = RunPlan { gather, ..plan(job, Request::Gather) };
+    let plan = RunPlan { gather, ..plan(job, Request::Gather, 0) };
     traced(&job.scene, &plan, PASSES / WAVE_PASSES).0
 }
 
@@ -196,16 +235,17 @@ fn pilot(job: &Job) -> (f64, Estimator) {
     let measure = format!("{}.flux", job.scene.sensors[0].name);
     let target = Some(Target { measure, relative_error: ERROR });
     let stop = StopRules { target, ..StopRules::default() };
-    let plan = RunPlan { stop, ..plan(job, Request::Auto) };
+    let plan = RunPlan { stop, ..plan(job, Request::Auto, 0) };
     let (seconds, mut run) = cpu_seconds(|| Run::new(&job.scene, &plan));
     run.next_piece();
     (seconds, run.findings().estimators[0])
 }
 
-/// What to run, with automatic settings of the gather method and no end.
-fn plan(job: &Job, estimator: Request) -> RunPlan {
+/// What to run, with automatic settings of the gather method, a seed for each run, and no end.
+fn plan(job: &Job, estimator: Request, run: u64) -> RunPlan {
     RunPlan {
         estimator,
+        seed: job.run.seed + run,
         gather: GatherPlan::default(),
         stop: StopRules::default(),
         ..job.run.clone()

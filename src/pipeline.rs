@@ -124,7 +124,7 @@ fn expect_sense(job: &Job) -> Result<Vec<Diagnostic>> {
 fn expect_sight(job: &Job, problems: &mut Problems) {
     match job.run.estimator {
         Request::Auto | Request::Forward => return,
-        Request::Backward | Request::Gather | Request::Mis => {}
+        Request::Backward | Request::Mix | Request::Gather | Request::Mis => {}
     }
     for sensor in blind_sensors(&job.scene, job.run.seed) {
         let name = &job.scene.sensors[sensor.index()].name;
@@ -141,7 +141,7 @@ fn expect_sight(job: &Job, problems: &mut Problems) {
 /// Refuses estimators that have to meet the sources where a source cannot be met.
 fn expect_visible_sources(job: &Job, problems: &mut Problems) {
     let meets = match job.run.estimator {
-        Request::Auto | Request::Forward => false,
+        Request::Auto | Request::Forward | Request::Mix => false,
         Request::Backward | Request::Gather | Request::Mis => true,
     };
     for source in job.scene.sources.iter().filter(|_| meets) {
@@ -157,7 +157,9 @@ fn expect_visible_sources(job: &Job, problems: &mut Problems) {
 /// Refuses merging where a finish scatters.
 fn expect_discrete_directions(job: &Job, problems: &mut Problems) {
     match job.run.estimator {
-        Request::Auto | Request::Forward | Request::Backward | Request::Gather => return,
+        Request::Auto | Request::Forward | Request::Backward | Request::Mix | Request::Gather => {
+            return;
+        }
         Request::Mis => {}
     }
     for Scatterer { finish, face } in scatterers(&job.scene) {

@@ -80,7 +80,7 @@ fn evidence<'a>(scene: &'a Scene, findings: &'a Findings, id: SensorId) -> Spoke
     let estimator = findings.estimator(id);
     match estimator {
         Estimator::Forward => Spoken::Plainly(photons),
-        Estimator::Backward => {
+        Estimator::Backward | Estimator::Mix => {
             let own = findings.backward.as_ref().map(|own| photons.by(own, estimator));
             Spoken::Plainly(own.unwrap_or(photons))
         }

@@ -31,9 +31,10 @@ pub enum Method {
 
 impl Method {
     /// All of them.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Run(Request::Forward),
         Self::Run(Request::Backward),
+        Self::Run(Request::Mix),
         Self::Baseline(Baseline::Sppm),
         Self::Baseline(Baseline::Whitted),
         Self::Baseline(Baseline::Metropolis),
@@ -58,7 +59,7 @@ impl Method {
     /// Whether its gather paths have to meet the sources.
     fn meets_sources(self) -> bool {
         match self {
-            Self::Run(Request::Auto | Request::Forward) => false,
+            Self::Run(Request::Auto | Request::Forward | Request::Mix) => false,
             Self::Run(Request::Backward | Request::Gather | Request::Mis) => true,
             Self::Baseline(Baseline::Sppm | Baseline::Whitted | Baseline::Metropolis) => true,
         }

@@ -123,11 +123,13 @@ fn choices(report: &Report) -> String {
                     thread would need until the sensor's flux or map is known to 1 %, told from counted work \
                     (docs/method.md). Gathering is not chosen where its windows differ by more than noise, or where an \
                     unbiased estimator contradicts it.\n\n\
-                    | sensor | chosen | forward | backward | gather |\n|---|---|--:|--:|--:|\n"
+                    | sensor | chosen | forward | backward | mix | gather |\n|---|---|--:|--:|--:|--:|\n"
         .to_owned();
     for (sensor, choice) in choices {
         _ = write!(text, "| {sensor} | {} |", choice.chosen.name());
-        for estimator in [Estimator::Forward, Estimator::Backward, Estimator::Gather] {
+        for estimator in
+            [Estimator::Forward, Estimator::Backward, Estimator::Mix, Estimator::Gather]
+        {
             let trial = choice.tried.iter().find(|trial| trial.estimator == estimator);
             _ = write!(text, " {} |", trial.map_or("not possible".into(), trial_words));
         }

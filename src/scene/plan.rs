@@ -28,6 +28,8 @@ pub enum Request {
     Forward,
     /// [`Estimator::Backward`] for all sensors.
     Backward,
+    /// [`Estimator::Mix`] for all sensors.
+    Mix,
     /// [`Estimator::Gather`] for all sensors.
     Gather,
     /// [`Estimator::Mis`] for all sensors.
@@ -36,7 +38,8 @@ pub enum Request {
 
 impl Request {
     /// All of them.
-    pub const ALL: [Self; 5] = [Self::Auto, Self::Forward, Self::Backward, Self::Gather, Self::Mis];
+    pub const ALL: [Self; 6] =
+        [Self::Auto, Self::Forward, Self::Backward, Self::Mix, Self::Gather, Self::Mis];
 
     /// Its name in files and on the command line.
     pub fn name(self) -> &'static str {
@@ -44,6 +47,7 @@ impl Request {
             Self::Auto => "auto",
             Self::Forward => Estimator::Forward.name(),
             Self::Backward => Estimator::Backward.name(),
+            Self::Mix => Estimator::Mix.name(),
             Self::Gather => Estimator::Gather.name(),
             Self::Mis => Estimator::Mis.name(),
         }
@@ -58,7 +62,7 @@ impl Request {
     pub fn may_gather(self) -> bool {
         match self {
             Self::Auto | Self::Gather | Self::Mis => true,
-            Self::Forward | Self::Backward => false,
+            Self::Forward | Self::Backward | Self::Mix => false,
         }
     }
 }
@@ -71,9 +75,11 @@ pub enum Estimator {
     Forward,
     /// Gather paths from the sensors' cells, followed until they meet emission.
     Backward,
+    /// Both of these, weighed path by path by the balance heuristic.
+    Mix,
     /// Gather paths of limited depth that end in records, where photons are gathered.
     Gather,
-    /// All three merged by multiple importance sampling.
+    /// Forward, backward and gather merged by multiple importance sampling.
     Mis,
 }
 
@@ -83,6 +89,7 @@ impl Estimator {
         match self {
             Self::Forward => "forward",
             Self::Backward => "backward",
+            Self::Mix => "mix",
             Self::Gather => "gather",
             Self::Mis => "mis",
         }
@@ -197,9 +204,13 @@ mod tests {
             assert_eq!(serde_json::to_value(schedule).unwrap(), schedule.name());
             assert_eq!(Schedule::named(schedule.name()), Some(schedule));
         }
-        for estimator in
-            [Estimator::Forward, Estimator::Backward, Estimator::Gather, Estimator::Mis]
-        {
+        for estimator in [
+            Estimator::Forward,
+            Estimator::Backward,
+            Estimator::Mix,
+            Estimator::Gather,
+            Estimator::Mis,
+        ] {
             assert_eq!(serde_json::to_value(estimator).unwrap(), estimator.name());
         }
         assert_eq!(Request::named("sideways"), None);

@@ -146,7 +146,7 @@ pub struct Views {
 impl Views {
     /// The views that take in light along `away`, a unit vector away from the face.
     #[inline]
-    pub fn accepting(&self, away: DVec3) -> impl Iterator<Item = usize> + '_ {
+    pub fn accepting(&self, away: DVec3) -> impl Iterator<Item = usize> + Clone + '_ {
         // |a - b| = 2 sin(θ/2) keeps the digits of narrow cones.
         let reach = 2.0 * (0.5 * self.half_angle).sin();
         self.directions

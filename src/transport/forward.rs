@@ -4,17 +4,19 @@
 //! is counted independently, so that the balance can be checked, not enforced.
 
 mod surfaces;
+mod watcher;
+
+pub(crate) use watcher::{Detected, PhotonWatcher};
 
 use crate::optics::Side;
 use crate::rng::Sampler;
 use crate::scene::shape::Toward;
-use crate::scene::{Counts, FaceId, MediumId, Owner, Scene, SensorId, SourceId};
+use crate::scene::{Counts, FaceId, Owner, Scene, SensorId, SourceId};
 use crate::transport::readings::{Counted, SensorReading, Step, Trail, count_totals};
 use crate::transport::watch::Watch;
 use crate::transport::{
-    Departure, Event, Layout, Leak, Path, ROULETTE_BELOW, Readings, Segment, Vertex, Visitor, walk,
+    Departure, Event, Layout, Leak, Path, Readings, Segment, Vertex, Visitor, walk,
 };
-use glam::DVec3;
 use std::ops::ControlFlow;
 use surfaces::Light;
 
@@ -103,53 +105,6 @@ fn shares(scene: &Scene, batch_paths: u64) -> Vec<u64> {
             return shares;
         }
     }
-}
-
-/// Someone who sees photons as they arrive at interfaces.
-pub(crate) trait PhotonWatcher {
-    /// Throughput below which roulette ends photons, 1.
-    #[inline(always)]
-    fn roulette_below(&self) -> f64 {
-        ROULETTE_BELOW
-    }
-
-    /// Sees a photon start on one of the shapes of its source.
-    #[inline(always)]
-    fn start(&mut self, _path: &Path, _source: SourceId, _shape: usize) {}
-
-    /// Sees a photon before the interface acts; `flux` is its flux at throughput 1, lm or W.
-    fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>, flux: f64, source: SourceId);
-
-    /// Sees how a photon goes on.
-    #[inline(always)]
-    fn depart(&mut self, _path: &Path, _vertex: &Vertex<'_>, _departure: &Departure) {}
-
-    /// Sees a photon that a sensor counts, in these cells; there may be none.
-    #[inline(always)]
-    fn detect(&mut self, _path: &Path, _light: &Detected, _cells: impl Iterator<Item = usize>) {}
-}
-
-/// Light that has come to a sensor.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Detected {
-    pub(crate) sensor: SensorId,
-    /// Where on the sensor, mm; of a far field any place on its way.
-    pub(crate) point: DVec3,
-    /// Unit direction of travel.
-    pub(crate) dir: DVec3,
-    /// Unit normal of the sensor.
-    pub(crate) normal: DVec3,
-    /// The medium it is in.
-    pub(crate) medium: MediumId,
-    /// Its flux, lm or W.
-    pub(crate) flux: f64,
-    pub(crate) source: SourceId,
-}
-
-/// Nobody.
-impl PhotonWatcher for () {
-    #[inline(always)]
-    fn arrive(&mut self, _: &Path, _: &Vertex<'_>, _: f64, _: SourceId) {}
 }
 
 /// Counts one batch.

@@ -15,9 +15,8 @@ use crate::rng::{Dimension, Sampler};
 use crate::scene::{Arrival, Arrivals, Scene, SensorId};
 use crate::transport::coverage::{Middle, coverage};
 use crate::transport::emitters::{Emitters, Met};
-use crate::transport::estimate::Kernel;
 use crate::transport::follow::{Collector, Gathering, follow};
-use crate::transport::forward::Forward;
+use crate::transport::forward::{Forward, PhotonWatcher};
 use crate::transport::gather::merged::{MergedStream, Merging};
 use crate::transport::gather::stream::Stream;
 use crate::transport::merge::{self, Etendues, Passage};
@@ -88,28 +87,27 @@ impl<'s> Gather<'s> {
         self.sensors.len() as u64
     }
 
-    /// Runs one pass with the photons of a batch.
-    pub(crate) fn pass(&self, forward: &Forward<'_>, pass: Pass) -> PassReadings {
+    /// Runs one pass with the photons of a batch, which someone else may watch, too, unless all is merged.
+    pub(crate) fn pass(
+        &self,
+        forward: &Forward<'_>,
+        pass: Pass,
+        beside: &mut impl PhotonWatcher,
+    ) -> PassReadings {
         let paths = pass.gather_paths;
         let empty = || Readings::of_batch(self.scene, &self.layout, self.seed, paths, pass.batch);
         let mut windows = [empty(), empty(), empty()];
         let photon_fluxes = forward.photon_fluxes();
         let waiting = self.gather_paths(pass, &photon_fluxes, &mut windows);
-        let mut stream = Stream {
-            gather: self,
-            kernel: Kernel::new(pass.window),
-            work: RecordWork { records: waiting.records.all.len() as u64, ..RecordWork::default() },
-            waiting: &waiting,
-            windows: &mut windows,
-        };
+        let mut stream = Stream::new(self, pass, &waiting, &mut windows);
         let photons = match self.merging {
-            None => forward.batch_watched(pass.batch, &mut stream),
+            None => forward.batch_watched(pass.batch, &mut (&mut stream, beside)),
             Some(_) => {
                 let mut merged = MergedStream::new(&mut stream, pass, &photon_fluxes);
                 forward.batch_watched(pass.batch, &mut merged)
             }
         };
-        let work = stream.work;
+        let work = stream.finish();
         PassReadings { photons, windows, work }
     }
 

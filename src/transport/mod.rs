@@ -15,6 +15,7 @@ mod forward;
 mod gather;
 mod layout;
 mod merge;
+mod mix;
 mod path;
 mod pilot;
 mod readings;

@@ -1,17 +1,17 @@
 //! The choice between the estimators, by measurement: a pilot of each on every sensor.
 //!
 //! The work until a relative error is reached is t = work × relative variance / error², and that of the passes without
-//! which gathering tells nothing at least. The pilot measures it for forward, backward and gather with a small part of
+//! which gathering tells nothing at least. The pilot measures it for forward, backward, their mix and gather with a small part of
 //! the budget, in counted work, never in time; the least t is taken. A run to a target has the budget that a first,
 //! small pilot says the best needs.
 //! Gathering is left out where something speaks against it: nested windows that differ by more than the target and
-//! their noise, or a flux that the best of the unbiased two contradicts. Two windows alone are blind to a feature that
+//! their noise, or a flux that the best of the unbiased ones contradicts. Two windows alone are blind to a feature that
 //! is smaller than both.
 
 mod trials;
 
 use crate::scene::plan::{Estimator, RunPlan};
-use crate::scene::{Scene, SensorId};
+use crate::scene::{Scene, SensorId, Source};
 use crate::tally::Tally;
 use crate::transport::emitters::invisible;
 use crate::transport::settings::PhotonPilot;
@@ -21,6 +21,8 @@ use trials::{Gathered, Trials, Tried};
 
 /// Share of the budget of a run that the pilot may use, 1.
 const SHARE: f64 = 0.05;
+/// Estimators that are tried.
+const TRIALS: f64 = 4.0;
 /// Budget of a run that is given none: a minute of one thread, s.
 const USUAL_BUDGET: f64 = 60.0;
 /// Least and most that a pilot takes, s.
@@ -90,7 +92,7 @@ pub(crate) fn choose(scene: &Scene, plan: &RunPlan, photons: PhotonPilot) -> Vec
     let given = budget(plan, photons);
     let choices = |budget: f64| {
         let [least, most] = BOUNDS;
-        let effort = 1e9 * (SHARE * budget).clamp(least, most) / 3.0;
+        let effort = 1e9 * (SHARE * budget).clamp(least, most) / TRIALS;
         choices(&Trials { scene, plan, photons, sensors: &sensors, effort }, budget)
     };
     let Some(target) = &plan.stop.target else { return choices(given.unwrap_or(USUAL_BUDGET)) };
@@ -113,20 +115,23 @@ fn budget(plan: &RunPlan, photons: PhotonPilot) -> Option<f64> {
 fn choices(trials: &Trials<'_>, budget: f64) -> Vec<Choice> {
     let Trials { scene, plan, sensors, .. } = trials;
     let forward = trials.forward();
-    let can_meet = scene.sources.iter().all(|source| invisible(source, scene).is_none());
-    let (backward, gather) = if can_meet && !sensors.is_empty() {
-        (trials.backward(), trials.gather())
-    } else {
-        (Vec::new(), Vec::new())
+    let can_meet = |source: &Source| invisible(source, scene).is_none();
+    let (all, some) = (scene.sources.iter().all(can_meet), scene.sources.iter().any(can_meet));
+    let tried = |may_be: bool, of: &dyn Fn() -> Vec<Tried>| {
+        if may_be && !sensors.is_empty() { of() } else { Vec::new() }
     };
+    let backward = tried(all, &|| trials.backward());
+    let mix = tried(some, &|| trials.mix());
+    let gather = if all && !sensors.is_empty() { trials.gather() } else { Vec::new() };
     let target = plan.stop.target.as_ref().map(|target| target.relative_error);
     let of_sensor = |sensor: &SensorId| {
-        let unbiased = [&forward, &backward].map(|tried| tried.get(sensor.index()));
+        let unbiased = [&forward, &backward, &mix].map(|tried| tried.get(sensor.index()));
+        let unbiased: Vec<&Tried> = unbiased.into_iter().flatten().collect();
         let gathered = gather.get(sensor.index()).map(|gathered| Trial {
-            objection: objection(gathered, unbiased, target.unwrap_or(USUAL_TARGET)),
+            objection: objection(gathered, &unbiased, target.unwrap_or(USUAL_TARGET)),
             ..gathered.tried.trial.clone()
         });
-        let unbiased = unbiased.into_iter().flatten().map(|tried| tried.trial.clone());
+        let unbiased = unbiased.into_iter().map(|tried| tried.trial.clone());
         let tried: Vec<Trial> = unbiased.chain(gathered).collect();
         let chosen = best(&tried, target.or_else(|| least_error(&tried, budget)));
         Choice { chosen, tried }
@@ -153,7 +158,7 @@ fn relative_error(flux: &Tally) -> f64 {
 }
 
 /// What speaks against a gathered flux, beside what the unbiased estimators found.
-fn objection(gathered: &Gathered, unbiased: [Option<&Tried>; 2], target: f64) -> Option<Objection> {
+fn objection(gathered: &Gathered, unbiased: &[&Tried], target: f64) -> Option<Objection> {
     let (flux, apart) = (&gathered.tried.flux, &gathered.apart);
     gathered.tried.trial.cost?;
     let allowed = target * flux.mean().abs();
@@ -161,8 +166,7 @@ fn objection(gathered: &Gathered, unbiased: [Option<&Tried>; 2], target: f64) ->
         return Some(Objection::WindowsDiffer);
     }
     let other = unbiased
-        .into_iter()
-        .flatten()
+        .iter()
         .filter(|tried| relative_error(&tried.flux) < KNOWN)
         .min_by(|a, b| relative_error(&a.flux).total_cmp(&relative_error(&b.flux)))?;
     let error = flux.std_error().hypot(other.flux.std_error());
@@ -217,7 +221,7 @@ mod tests {
     #[test]
     fn windows_object_when_they_differ_beyond_target_and_noise() {
         let target = 0.01;
-        let with = |apart| objection(&gathered([1.0; 4], apart), [None, None], target);
+        let with = |apart| objection(&gathered([1.0; 4], apart), &[], target);
         assert_eq!(with([0.2, 0.21, 0.2, 0.19]), Some(Objection::WindowsDiffer));
         assert_eq!(with([0.009; 4]), None, "within the target");
         assert_eq!(with([0.3, -0.2, 0.25, -0.15]), None, "noise");
@@ -230,10 +234,10 @@ mod tests {
         let sharp = tried(Estimator::Backward, [1.0, 1.02, 0.99, 0.99]);
         let dark = tried(Estimator::Backward, [0.0; 4]);
         let one_event = tried(Estimator::Forward, [0.004, 0.0, 0.0, 0.0]);
-        let with = |others| objection(&flux, others, 0.01);
-        assert_eq!(with([Some(&noisy), Some(&sharp)]), Some(Objection::Contradicted));
-        assert_eq!(with([Some(&noisy), Some(&dark)]), None, "what saw nothing says nothing");
-        assert_eq!(with([Some(&one_event), None]), None, "one weak event says nothing");
-        assert_eq!(with([None, None]), None);
+        let with = |others: &[&Tried]| objection(&flux, others, 0.01);
+        assert_eq!(with(&[&noisy, &sharp]), Some(Objection::Contradicted));
+        assert_eq!(with(&[&noisy, &dark]), None, "what saw nothing says nothing");
+        assert_eq!(with(&[&one_event]), None, "one weak event says nothing");
+        assert_eq!(with(&[]), None);
     }
 }

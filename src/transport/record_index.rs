@@ -9,11 +9,14 @@ use crate::transport::records::Slot;
 use crate::transport::window::Window;
 use glam::{DVec3, Vec3};
 use smallvec::SmallVec;
+use std::ops::Range;
 
 /// Size of the cells of position in radii, and of direction in chords of the angle: a record stands in about eight
 /// cells. What a look-up costs is waiting for memory, so that smaller tables win over sharper ones: docs/method.md.
 const POSITION_CELL: f64 = 4.0;
 const DIRECTION_CELL: f64 = 2.5;
+/// Photons that are looked up together: enough to wait for memory together, few enough to stay near.
+pub(crate) const TOGETHER: usize = 64;
 /// Bits of the filter for each entry of an index.
 const FILTER_BITS: usize = 8;
 /// By how much single precision may err in the distance of two points, relative to their coordinates: a few units of
@@ -32,6 +35,17 @@ pub(crate) struct Indexed {
     /// Unit normal of the surface.
     pub(crate) normal: DVec3,
     /// Unit direction of the photons that it takes; the same of all records of an index that take any.
+    pub(crate) dir: DVec3,
+}
+
+/// By what a photon is looked up.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Key {
+    /// The smooth surface it is on.
+    pub(crate) surface: Slot,
+    /// Where, mm.
+    pub(crate) point: DVec3,
+    /// Unit direction of travel.
     pub(crate) dir: DVec3,
 }
 
@@ -102,24 +116,35 @@ impl Index {
         !self.entries.is_empty() && self.filter.may_hold(self.lattice.hash(surface, point, dir))
     }
 
-    /// Visits the records that a photon may belong to, each once.
-    #[inline]
-    pub(crate) fn visit(
-        &self,
-        surface: Slot,
-        point: DVec3,
-        dir: DVec3,
-        mut visit: impl FnMut(u32),
-    ) {
-        let hash = self.lattice.hash(surface, point, dir);
-        let place = (hash & self.mask) as usize;
-        let (tag, point, dir) = (tag(hash), point.as_vec3(), dir.as_vec3());
-        for entry in &self.entries[self.starts[place] as usize..self.starts[place + 1] as usize] {
-            if entry.tag == tag
-                && dir.distance_squared(Vec3::from_array(entry.dir)) <= self.dir_reach_squared
-                && point.distance_squared(Vec3::from_array(entry.point)) <= self.point_reach_squared
-            {
-                visit(entry.record);
+    /// Visits the records that each of some photons may belong to, each once, photon by photon.
+    ///
+    /// Every step is taken for all photons before the next: then many places of memory are waited for at once.
+    pub(crate) fn visit(&self, photons: &[Key], mut visit: impl FnMut(usize, u32)) {
+        if self.entries.is_empty() {
+            return;
+        }
+        let keyed = photons.iter().map(|key| {
+            let hash = self.lattice.hash(key.surface, key.point, key.dir);
+            let place = (hash & self.mask) as usize;
+            (tag(hash), self.starts[place] as usize..self.starts[place + 1] as usize)
+        });
+        let buckets: SmallVec<[(u32, Range<usize>); TOGETHER]> = keyed.collect();
+        let first = |(_, bucket): &(u32, Range<usize>)| {
+            self.entries[bucket.clone()].first().copied().unwrap_or_default()
+        };
+        let firsts: SmallVec<[Entry; TOGETHER]> = buckets.iter().map(first).collect();
+        for (index, ((tag, bucket), first)) in buckets.into_iter().zip(&firsts).enumerate() {
+            let Some((_, others)) = self.entries[bucket].split_first() else { continue };
+            let Key { point, dir, .. } = photons[index];
+            let (point, dir) = (point.as_vec3(), dir.as_vec3());
+            for entry in std::iter::once(first).chain(others) {
+                if entry.tag == tag
+                    && dir.distance_squared(Vec3::from_array(entry.dir)) <= self.dir_reach_squared
+                    && point.distance_squared(Vec3::from_array(entry.point))
+                        <= self.point_reach_squared
+                {
+                    visit(index, entry.record);
+                }
             }
         }
     }
@@ -323,7 +348,8 @@ mod tests {
             };
             let scanned: Vec<u32> = all.iter().filter(near).map(|record| record.record).collect();
             let mut found = Vec::new();
-            index.visit(0, photon.point, photon.dir, |record| found.push(record));
+            let Indexed { surface, point, dir, .. } = photon;
+            index.visit(&[Key { surface, point, dir }], |_, record| found.push(record));
             found.sort_unstable();
             assert!(found.windows(2).all(|two| two[0] != two[1]), "{found:?}");
             assert!(scanned.iter().all(|record| found.contains(record)), "{scanned:?}, {found:?}");

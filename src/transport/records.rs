@@ -5,9 +5,10 @@
 use crate::math::Aabb;
 use crate::optics::Bsdf;
 use crate::scene::{MediumId, PrimId, Scene, SmoothId};
-use crate::transport::record_index::{Index, Indexed};
+use crate::transport::record_index::{Index, Indexed, Key, TOGETHER};
 use crate::transport::window::{NESTED, Window};
 use glam::DVec3;
+use smallvec::SmallVec;
 use std::collections::BTreeMap;
 
 /// Where a gather path waits for photons.
@@ -152,18 +153,13 @@ impl<'s> Records<'s> {
                 || self.scattered.may_hold(surface, point, NO_DIRECTION))
     }
 
-    /// Visits the records that a photon may belong to, each once.
-    #[inline]
-    pub(crate) fn visit(
-        &self,
-        surface: Slot,
-        point: DVec3,
-        dir: DVec3,
-        mut visit: impl FnMut(&GatherRecord<'s>),
-    ) {
-        for (index, dir) in [(&self.along, dir), (&self.scattered, NO_DIRECTION)] {
-            index.visit(surface, point, dir, |id| visit(&self.all[id as usize]));
-        }
+    /// Visits the records that each of some photons may belong to, each once: photon by photon those that want a
+    /// direction, then photon by photon those that take all.
+    pub(crate) fn visit(&self, photons: &[Key], mut visit: impl FnMut(usize, &GatherRecord<'s>)) {
+        self.along.visit(photons, |photon, id| visit(photon, &self.all[id as usize]));
+        let keyed = photons.iter().map(|key| Key { dir: NO_DIRECTION, ..*key });
+        let keyed: SmallVec<[Key; TOGETHER]> = keyed.collect();
+        self.scattered.visit(&keyed, |photon, id| visit(photon, &self.all[id as usize]));
     }
 }
 

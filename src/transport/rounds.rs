@@ -8,15 +8,16 @@ use crate::scene::plan::{Estimator, Request, RunPlan, Schedule};
 use crate::scene::{Scene, SensorId};
 use crate::transport::backward::Backward;
 use crate::transport::findings::{Findings, Gathered};
-use crate::transport::forward::Forward;
+use crate::transport::forward::{Forward, PhotonWatcher};
 use crate::transport::gather::Gather;
+use crate::transport::mix::Mixing;
 use crate::transport::pilot::choose;
 use crate::transport::readings::GROUPS;
 use crate::transport::settings::{PhotonPilot, settle};
 use crate::transport::stages::{FIRST_PASSES, Stages};
 use crate::transport::sums::Sums;
 use crate::transport::window::NESTED;
-use crate::transport::{Choice, Readings};
+use crate::transport::{Choice, Readings, work};
 use rayon::prelude::*;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -30,7 +31,8 @@ const PILOT_PATHS: u64 = 64;
 const PILOT_BOUNCES: u32 = 10_000;
 /// Batches of a piece per thread: threads wait for the last batch of a piece.
 const PIECE_BATCHES: u64 = 4;
-/// Share of the work of a backward run that goes to photons, for the balance and what is beside the aim, 1.
+/// Share of the work that goes to photons where all sensors are estimated backward: for the balance and what is beside
+/// the aim, 1. Else photons and gather paths have half each.
 const PHOTON_SHARE: f64 = 0.1;
 
 /// A flag that asks a run to stop.
@@ -93,34 +95,38 @@ impl<'s> Run<'s> {
             gather.merging = (!merged.is_empty()).then_some(plan.bounce_limit);
             Stages::new(gather, settings)
         });
-        let followed = of(Estimator::Backward);
-        // A path of each source at least.
-        let sources = scene.sources.len().max(1) as u64;
+        let mixed = of(Estimator::Mix);
+        let followed = [of(Estimator::Backward), mixed.clone()].concat();
+        let has_followed = !followed.is_empty();
+        // Photons also count for the sensors that are estimated forward, or mixed.
+        let is_for_balance = of(Estimator::Forward).is_empty() && mixed.is_empty();
+        let share = match (&stages, has_followed) {
+            (_, false) => 1.0,
+            (None, true) if is_for_balance => PHOTON_SHARE,
+            (_, true) => 0.5,
+        };
         let usual = (BATCH_SEGMENTS / segments).clamp(1, BATCH_PATHS);
-        let backward = (!followed.is_empty()).then(|| {
-            let paths = (usual / followed.len() as u64).max(1);
-            Backward::new(scene, &followed, plan.seed, plan.bounce_limit, paths)
+        let photons = match (&stages, plan.stop.paths) {
+            (Some(stages), _) => stages.settings.photons,
+            (None, Some(paths)) if !has_followed => {
+                paths.div_ceil(GROUPS * paths.div_ceil(GROUPS * usual).max(1))
+            }
+            (None, _) => (share * usual as f64).ceil() as u64,
+        };
+        // A path of each source at least.
+        let photons = photons.max(scene.sources.len() as u64).max(1);
+        let backward = has_followed.then(|| {
+            let backward = Backward::new(scene, &followed, plan.seed, plan.bounce_limit);
+            let by_photons = photons as f64 * work::of_photon_path(pilot.segments_per_path);
+            let others = (1.0 - share) / share * by_photons;
+            let paths = others / backward.work_of_path() / followed.len() as f64;
+            backward.with_paths(paths as u64).mixed(&mixed)
         });
         let wave_batches = if stages.is_some() { FIRST_PASSES } else { GROUPS };
-        let photons = match (&stages, &backward) {
-            (Some(stages), _) => stages.settings.photons,
-            // Photons also count for the sensors that are estimated forward.
-            (None, Some(_)) if of(Estimator::Forward).is_empty() => {
-                (PHOTON_SHARE * usual as f64).ceil() as u64
-            }
-            (None, Some(_)) => usual,
-            (None, None) => {
-                let waves = plan.stop.paths.map(|paths| paths.div_ceil(GROUPS * usual).max(1));
-                plan.stop
-                    .paths
-                    .zip(waves)
-                    .map_or(usual, |(paths, waves)| paths.div_ceil(GROUPS * waves))
-            }
-        };
         Self {
             estimators,
             choices,
-            forward: forward(plan.bounce_limit, photons.max(sources)),
+            forward: forward(plan.bounce_limit, photons),
             photons: Sums::new(),
             backward: backward.map(|backward| (backward, Sums::new())),
             stages,
@@ -147,12 +153,32 @@ impl<'s> Run<'s> {
     }
 
     fn batch(&self, batch: u64) -> Batch {
-        let backward = self.backward.as_ref().map(|(backward, _)| backward.batch(batch));
+        let Some((backward, _)) = &self.backward else {
+            let (photons, windows) = self.photons(batch, &mut ());
+            return Batch { photons, backward: None, windows };
+        };
+        let photon_fluxes = self.forward.photon_fluxes();
+        let mut readings = backward.batch(batch, &photon_fluxes);
+        let (photons, windows) = if backward.mixed.is_empty() {
+            self.photons(batch, &mut ())
+        } else {
+            self.photons(batch, &mut Mixing::new(backward, &photon_fluxes, &mut readings))
+        };
+        readings.close_batch();
+        Batch { photons, backward: Some(readings), windows }
+    }
+
+    /// Traces the photons of a batch, which someone watches, and gathers them where that is asked for.
+    fn photons(
+        &self,
+        batch: u64,
+        watcher: &mut impl PhotonWatcher,
+    ) -> (Readings, Option<[Readings; NESTED]>) {
         match &self.stages {
-            None => Batch { photons: self.forward.batch(batch), backward, windows: None },
+            None => (self.forward.batch_watched(batch, watcher), None),
             Some(stages) => {
-                let pass = stages.gather.pass(&self.forward, stages.pass(batch));
-                Batch { photons: pass.photons, backward, windows: Some(pass.windows) }
+                let pass = stages.gather.pass(&self.forward, stages.pass(batch), watcher);
+                (pass.photons, Some(pass.windows))
             }
         }
     }
@@ -285,6 +311,7 @@ fn estimators(scene: &Scene, plan: &RunPlan, pilot: PhotonPilot) -> (Vec<Estimat
     match plan.estimator {
         Request::Forward => all(Estimator::Forward),
         Request::Backward => all(Estimator::Backward),
+        Request::Mix => all(Estimator::Mix),
         Request::Gather => all(Estimator::Gather),
         Request::Mis => all(Estimator::Mis),
         Request::Auto => {

@@ -12,7 +12,7 @@ const GATHER_PATH: f64 = 600.0;
 const GATHER_SEGMENT: f64 = 60.0;
 /// Per gather record, made and indexed; per photon that passes the filter; per photon that a record takes.
 const RECORD: f64 = 1800.0;
-const LOOK_UP: f64 = 300.0;
+const LOOK_UP: f64 = 200.0;
 const PAIR: f64 = 80.0;
 
 /// What a pass did beside tracing.

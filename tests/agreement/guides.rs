@@ -8,7 +8,7 @@ fn all_agree(what: &str, text: &str) {
         Way::Gather(Gathering { radius_mm: 0.4, angle_deg: 5.0, ..Gathering::to_depth(depth) })
     });
     let [shallow, middle, deep] = gather;
-    agree(what, text, &[Way::Forward, Way::Backward, shallow, middle, deep]);
+    agree(what, text, &[Way::Forward, Way::Backward, Way::Mixed, shallow, middle, deep]);
 }
 
 fn guide(solid: &str) -> String {

@@ -86,7 +86,7 @@ fn shallow_and_deep_records_agree() {
 fn guides_without_loss_lose_and_make_no_light() {
     let mut comparison = Comparison::default();
     for (what, text) in [("rod", ROD), ("mirror tube", TUBE)] {
-        for way in [Way::Forward, Way::Backward, gather(0), gather(2), gather(8)] {
+        for way in [Way::Forward, Way::Backward, Way::Mixed, gather(0), gather(2), gather(8)] {
             let found = measures(text, way);
             let what = format!("{what}, {}", way.name());
             comparison.add(&format!("{what}, all"), &found.values["all.flux"], 10.0, 1e-9);

@@ -15,6 +15,7 @@ mod furnace;
 mod guides;
 mod laws;
 mod merge;
+mod mix;
 mod rims;
 mod sensors;
 mod settings;

@@ -14,7 +14,7 @@ use lumiduct::transport::Layout;
 fn all_agree(what: &str, text: &str) {
     let [shallow, middle, deep] = [0, 2, 8]
         .map(|depth| Way::Merged(Gathering { radius_mm: 0.4, ..Gathering::to_depth(depth) }));
-    agree(what, text, &[Way::Forward, Way::Backward, shallow, middle, deep]);
+    agree(what, text, &[Way::Forward, Way::Backward, Way::Mixed, shallow, middle, deep]);
 }
 
 /// Forward, and merged at depths 0 and 2.
@@ -202,7 +202,9 @@ fn variances(text: &str, gathering: Gathering) -> [f64; 4] {
         let windows = found.gathered.as_ref().map(|own| &own.stages[0].windows.wide);
         let (readings, paths) = match way {
             Way::Forward => (&found.photons, PASSES * gathering.photons),
-            Way::Backward => (found.backward.as_ref().unwrap(), PASSES * gathering.records),
+            Way::Backward | Way::Mixed => {
+                (found.backward.as_ref().unwrap(), PASSES * gathering.records)
+            }
             Way::Gather(_) | Way::Merged(_) => (windows.unwrap(), PASSES * gathering.records),
         };
         let flux = readings.scalar(slot);

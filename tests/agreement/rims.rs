@@ -8,7 +8,7 @@ fn all_agree(what: &str, text: &str) {
         Way::Gather(Gathering { radius_mm: 1.0, angle_deg: 6.0, ..Gathering::to_depth(depth) })
     });
     let [shallow, deep] = gather;
-    agree(what, text, &[Way::Forward, Way::Backward, shallow, deep]);
+    agree(what, text, &[Way::Forward, Way::Backward, Way::Mixed, shallow, deep]);
 }
 
 #[test]

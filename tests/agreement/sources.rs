@@ -10,7 +10,7 @@ fn all_agree(what: &str, text: &str) {
         Gathering::to_depth(8),
     ];
     let [shallow, middle, deep] = gather.map(Way::Gather);
-    agree(what, text, &[Way::Forward, Way::Backward, shallow, middle, deep]);
+    agree(what, text, &[Way::Forward, Way::Backward, Way::Mixed, shallow, middle, deep]);
 }
 
 /// A rod with a mirror around it, its lamp as given.

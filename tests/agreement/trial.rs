@@ -54,6 +54,8 @@ impl Gathering {
 pub(crate) enum Way {
     Forward,
     Backward,
+    /// Both of these, mixed.
+    Mixed,
     Gather(Gathering),
     /// All three, merged.
     Merged(Gathering),
@@ -67,6 +69,10 @@ impl Way {
                 Settings { estimator: Some(Request::Forward), paths: Some(PHOTONS), ..usual }
             }
             Self::Backward => Settings { estimator: Some(Request::Backward), ..usual },
+            // Other photons than those it is held against.
+            Self::Mixed => {
+                Settings { estimator: Some(Request::Mix), seed: Some(SEED + 1), ..usual }
+            }
             Self::Gather(gathering) => {
                 let gather = gathering.settings();
                 Settings { estimator: Some(Request::Gather), gather, ..usual }
@@ -80,7 +86,7 @@ impl Way {
 
     fn waves(self) -> u64 {
         match self {
-            Self::Forward | Self::Backward => 1,
+            Self::Forward | Self::Backward | Self::Mixed => 1,
             Self::Gather(_) | Self::Merged(_) => GATHER_WAVES,
         }
     }
@@ -90,6 +96,7 @@ impl Way {
         match self {
             Self::Forward => "forward".to_owned(),
             Self::Backward => "backward".to_owned(),
+            Self::Mixed => "mix".to_owned(),
             Self::Gather(gathering) => format!("gather D={}", gathering.depth),
             Self::Merged(gathering) => format!("mis D={}", gathering.depth),
         }
@@ -116,13 +123,13 @@ pub(crate) fn findings(job: &Job, way: Way) -> Findings {
     run.findings()
 }
 
-/// The same on one thread, for tests run beside each other; backward gets half a wave, of 64 batches.
+/// The same on one thread, for tests run beside each other; backward and the mix get half a wave, of 64 batches.
 fn findings_alone(job: &Job, way: Way) -> Findings {
     const PIECES: usize = 16;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     pool.install(|| match way {
         Way::Forward | Way::Gather(_) | Way::Merged(_) => findings(job, way),
-        Way::Backward => {
+        Way::Backward | Way::Mixed => {
             let mut run = Run::new(&job.scene, &job.run);
             (0..PIECES).for_each(|_| run.next_piece());
             run.findings()
@@ -223,11 +230,11 @@ pub(crate) fn agree(what: &str, text: &str, ways: &[Way]) {
 /// Forward, backward, and gathered at depths 0, 2 and 8.
 pub(crate) fn all_agree(what: &str, text: &str) {
     let [shallow, middle, deep] = [0, 2, 8].map(|depth| Way::Gather(Gathering::to_depth(depth)));
-    agree(what, text, &[Way::Forward, Way::Backward, shallow, middle, deep]);
+    agree(what, text, &[Way::Forward, Way::Backward, Way::Mixed, shallow, middle, deep]);
 }
 
 /// The same without the deepest, for scenes in which light meets few surfaces.
 pub(crate) fn shallow_agree(what: &str, text: &str) {
     let [shallow, middle] = [0, 2].map(|depth| Way::Gather(Gathering::to_depth(depth)));
-    agree(what, text, &[Way::Forward, Way::Backward, shallow, middle]);
+    agree(what, text, &[Way::Forward, Way::Backward, Way::Mixed, shallow, middle]);
 }

@@ -23,6 +23,7 @@ pub(super) fn run(spec: &SceneSpec) -> RunPlan {
             EstimatorSpec::Auto => Request::Auto,
             EstimatorSpec::Forward => Request::Forward,
             EstimatorSpec::Backward => Request::Backward,
+            EstimatorSpec::Mix => Request::Mix,
             EstimatorSpec::Gather => Request::Gather,
             EstimatorSpec::Mis => Request::Mis,
         },

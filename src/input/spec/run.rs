@@ -11,7 +11,7 @@ pub struct RunSpec {
     #[schemars(range(min = 1))]
     pub paths: Option<u64>,
     /// Time. Another run of the same time differs; the report says how many paths it did, and `paths` with that number
-    /// repeats it.
+    /// repeats it where the estimator is named: what `auto` chooses may hang on how long a run is to be.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub time_s: Option<f64>,
     /// Uncertainty to reach.
@@ -66,6 +66,8 @@ pub enum EstimatorSpec {
     Forward,
     /// Gather paths from the sensors, followed until they meet a source.
     Backward,
+    /// Forward and backward at once, weighed path by path; sources that paths cannot meet are left to photons.
+    Mix,
     /// Gather paths from the sensors that end in records, and photon paths from the sources that are gathered there.
     Gather,
     /// Forward, backward and gather at once, weighed path by path (multiple importance sampling); for scenes whose

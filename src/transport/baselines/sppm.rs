@@ -15,6 +15,7 @@ use crate::transport::estimate::{Arriving, Kernel};
 use crate::transport::follow::{Collector, follow};
 use crate::transport::forward::{Forward, PhotonWatcher};
 use crate::transport::readings::Counted;
+use crate::transport::record_index::Key;
 use crate::transport::records::{GatherRecord, Records, Surfaces, Wanted};
 use crate::transport::scatter::facing;
 use crate::transport::settings::{PhotonPilot, settle};
@@ -193,7 +194,8 @@ impl PhotonWatcher for Stream<'_, '_> {
         let incidence = Incidence { normal: facing.facet, ..facing.incidence };
         let photon = Arriving { surface, medium: interface.from, point: vertex.point, incidence };
         let Self { kernel, cells, readings, .. } = self;
-        self.records.visit(surface, vertex.point, vertex.dir, |record| {
+        let key = Key { surface, point: vertex.point, dir: vertex.dir };
+        self.records.visit(&[key], |_, record| {
             let Some([share, ..]) = kernel.flux(record, &photon) else { return };
             let (flux, depth) = (flux * vertex.throughput * share, path.depth + record.depth);
             let light = Counted { flux, depth, source };

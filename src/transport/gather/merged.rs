@@ -3,11 +3,11 @@
 //! Photons that sensors count, gather paths that meet emission, and pairs of photons and records are of the same
 //! passes. All light of a sensor is in the readings of the windows; how paths are traced is not known here.
 
-use crate::scene::{Ray, SourceId, Visibility};
+use crate::scene::{SourceId, Visibility};
 use crate::transport::emitters::Met;
 use crate::transport::forward::{Detected, PhotonWatcher};
 use crate::transport::gather::Pass;
-use crate::transport::gather::stream::Stream;
+use crate::transport::gather::stream::{Starting, Stream};
 use crate::transport::merge::{Etendues, NO_WINDOW, Passage, ROULETTE_BELOW, Recent};
 use crate::transport::readings::Counted;
 use crate::transport::scatter::facing;
@@ -90,11 +90,7 @@ impl PhotonWatcher for MergedStream<'_, '_, '_> {
 
     fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>, flux: f64, source: SourceId) {
         if self.stream.may_take(vertex) {
-            let photon = self.photon;
-            self.stream.look_up(path, vertex, flux * vertex.throughput, source, |ended| {
-                let of_gather_path = |own| Etendues { photon, ..own }.pair();
-                ended.etendues.map_or(NO_WINDOW, of_gather_path)
-            });
+            self.stream.take(path, vertex, Starting { flux, source, etendue: self.photon });
         }
     }
 
@@ -105,16 +101,20 @@ impl PhotonWatcher for MergedStream<'_, '_, '_> {
         }
     }
 
-    fn detect(&mut self, path: &Path, light: &Detected, cells: impl Iterator<Item = usize>) {
+    fn detect(
+        &mut self,
+        path: &Path,
+        light: &Detected,
+        cells: impl Iterator<Item = usize> + Clone,
+    ) {
         let cells: SmallVec<[usize; 4]> = cells.collect();
         let gather = self.stream.gather;
         let known = gather.sensors.iter().find(|(id, _)| *id == light.sensor);
         let (Some((id, arrivals)), false) = (known, cells.is_empty()) else { return };
-        let extent = arrivals.extent(&Ray::new(light.point, -light.dir), light.normal);
-        let index = gather.scene.media[light.medium.index()].index(path.wavelength);
+        let gathered = light.etendue(gather.scene, arrivals, path.wavelength);
         let etendues = Etendues {
             photon: self.photon,
-            gather: index * index * extent / self.gather_paths,
+            gather: gathered / self.gather_paths,
             window: self.recent.etendues(self.window),
         };
         for (readings, weight) in self.stream.windows.iter_mut().zip(etendues.forward()) {

@@ -1,13 +1,16 @@
 //! Photons that stream past the records of a pass: each is counted by every record that takes it.
+//!
+//! Those that may belong to records wait until there are some, and are looked up together.
 
 use crate::optics::Incidence;
 use crate::scene::shape::Toward;
-use crate::scene::{MediumId, Scene, SourceId, Visibility};
+use crate::scene::{MediumId, PrimId, Scene, SourceId, Visibility};
 use crate::transport::estimate::{Arriving, Kernel};
 use crate::transport::forward::PhotonWatcher;
-use crate::transport::gather::{Ended, Gather, Waiting};
+use crate::transport::gather::{Ended, Gather, Pass, Waiting};
+use crate::transport::merge::Etendues;
 use crate::transport::readings::Counted;
-use crate::transport::records::Slot;
+use crate::transport::record_index::{Key, TOGETHER};
 use crate::transport::window::NESTED;
 use crate::transport::work::RecordWork;
 use crate::transport::{Path, Readings, Vertex};
@@ -15,22 +18,75 @@ use crate::transport::{Path, Readings, Vertex};
 /// Photons that stream past the records.
 pub(super) struct Stream<'p, 's> {
     pub(super) gather: &'p Gather<'s>,
-    pub(super) kernel: Kernel,
-    pub(super) waiting: &'p Waiting<'s>,
+    kernel: Kernel,
+    waiting: &'p Waiting<'s>,
     pub(super) windows: &'p mut [Readings; NESTED],
-    pub(super) work: RecordWork,
+    /// Photons to be looked up, and by what.
+    passing: Vec<Passing>,
+    keys: Vec<Key>,
+    work: RecordWork,
+}
+
+/// A photon that may belong to records.
+#[derive(Debug, Clone, Copy)]
+struct Passing {
+    prim: PrimId,
+    toward: Toward,
+    /// The media before and behind the interface.
+    media: [MediumId; 2],
+    /// nm.
+    wavelength: f64,
+    /// lm or W.
+    flux: f64,
+    depth: u32,
+    source: SourceId,
+    /// Merged: the etendue it stands for, mm² sr.
+    etendue: f64,
 }
 
 impl PhotonWatcher for Stream<'_, '_> {
     #[inline(always)]
     fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>, flux: f64, source: SourceId) {
         if self.may_take(vertex) {
-            self.look_up(path, vertex, flux * vertex.throughput, source, |_| [1.0; NESTED]);
+            self.take(path, vertex, Starting { flux, source, etendue: 0.0 });
         }
     }
 }
 
-impl Stream<'_, '_> {
+/// What a photon carries from its start.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Starting {
+    /// Flux at throughput 1, lm or W.
+    pub(super) flux: f64,
+    pub(super) source: SourceId,
+    /// Merged: the etendue it stands for, mm² sr.
+    pub(super) etendue: f64,
+}
+
+impl<'p, 's> Stream<'p, 's> {
+    pub(super) fn new(
+        gather: &'p Gather<'s>,
+        pass: Pass,
+        waiting: &'p Waiting<'s>,
+        windows: &'p mut [Readings; NESTED],
+    ) -> Self {
+        Self {
+            gather,
+            kernel: Kernel::new(pass.window),
+            work: RecordWork { records: waiting.records.all.len() as u64, ..RecordWork::default() },
+            waiting,
+            windows,
+            passing: Vec::with_capacity(TOGETHER),
+            keys: Vec::with_capacity(TOGETHER),
+        }
+    }
+
+    /// Looks up what is left; what was done.
+    pub(super) fn finish(mut self) -> RecordWork {
+        self.look_up();
+        self.work
+    }
+
     /// Whether there may be records for a photon.
     #[inline(always)]
     pub(super) fn may_take(&self, vertex: &Vertex<'_>) -> bool {
@@ -39,57 +95,84 @@ impl Stream<'_, '_> {
             && self.waiting.records.may_take(surface, vertex.point, vertex.dir)
     }
 
-    /// `weigh` tells how much counts within each window of what a gather path and the photon bring together, 1.
+    /// Takes a photon that is to be looked up.
     #[inline(never)]
-    pub(super) fn look_up(
-        &mut self,
-        path: &Path,
-        vertex: &Vertex<'_>,
-        flux: f64,
-        source: SourceId,
-        weigh: impl Fn(&Ended) -> [f64; NESTED],
-    ) {
-        let Gather { scene, surfaces, layout, .. } = self.gather;
-        let surface = surfaces.of(vertex.interface.acting.prim);
-        // Most photons that pass the filter are near no record after all.
-        let mut known = None;
+    pub(super) fn take(&mut self, path: &Path, vertex: &Vertex<'_>, starting: Starting) {
+        let interface = vertex.interface;
+        let prim = interface.acting.prim;
+        self.keys.push(Key {
+            surface: self.gather.surfaces.of(prim),
+            point: vertex.point,
+            dir: vertex.dir,
+        });
+        self.passing.push(Passing {
+            prim,
+            toward: interface.acting.toward,
+            media: [interface.from, interface.to],
+            wavelength: path.wavelength,
+            flux: starting.flux * vertex.throughput,
+            depth: path.depth,
+            source: starting.source,
+            etendue: starting.etendue,
+        });
+        if self.passing.len() == TOGETHER {
+            self.look_up();
+        }
+    }
+
+    fn look_up(&mut self) {
+        let Gather { scene, layout, .. } = self.gather;
         let (kernel, windows, work) = (&self.kernel, &mut *self.windows, &mut self.work);
-        work.look_ups += 1;
-        self.waiting.records.visit(surface, vertex.point, vertex.dir, |record| {
-            let photon = known.get_or_insert_with(|| arriving(scene, surface, path, vertex));
-            let Some(shares) = kernel.flux(record, photon) else { return };
+        let (passing, keys) = (&self.passing, &self.keys);
+        work.look_ups += passing.len() as u64;
+        // Most photons that pass the filter are near no record after all.
+        let mut known: Option<(usize, Arriving)> = None;
+        self.waiting.records.visit(keys, |index, record| {
+            let photon = &passing[index];
+            let met = match known {
+                Some((last, met)) if last == index => met,
+                Some(_) | None => {
+                    work.near += 1;
+                    arriving(scene, &keys[index], photon)
+                }
+            };
+            known = Some((index, met));
+            let Some(shares) = kernel.flux(record, &met) else { return };
             work.pairs += 1;
-            let ended = &self.waiting.paths[record.path as usize];
-            let (Ended { sensor, cells, .. }, weights) = (ended, weigh(ended));
-            let depth = path.depth + record.depth;
+            let Ended { sensor, cells, etendues, .. } = &self.waiting.paths[record.path as usize];
+            let weights = etendues
+                .map_or([1.0; NESTED], |own| Etendues { photon: photon.etendue, ..own }.pair());
+            let depth = photon.depth + record.depth;
             for ((readings, share), weight) in windows.iter_mut().zip(shares).zip(weights) {
                 if share > 0.0 {
-                    let light = Counted { flux: flux * share * weight, depth, source };
+                    let flux = photon.flux * share * weight;
+                    let light = Counted { flux, depth, source: photon.source };
                     readings.count(layout, *sensor, cells, &light);
                 }
             }
         });
-        work.near += u64::from(known.is_some());
+        self.passing.clear();
+        self.keys.clear();
     }
 }
 
 /// A photon as records take it.
-fn arriving(scene: &Scene, surface: Slot, path: &Path, vertex: &Vertex<'_>) -> Arriving {
-    let interface = vertex.interface;
-    let index = |medium: MediumId| scene.media[medium.index()].index(path.wavelength);
-    let outward = scene.normal(interface.acting.prim, vertex.point);
+fn arriving(scene: &Scene, key: &Key, photon: &Passing) -> Arriving {
+    let [from, to] = photon.media;
+    let index = |medium: MediumId| scene.media[medium.index()].index(photon.wavelength);
+    let outward = scene.normal(photon.prim, key.point);
     Arriving {
-        surface,
-        medium: interface.from,
-        point: vertex.point,
+        surface: key.surface,
+        medium: from,
+        point: key.point,
         incidence: Incidence {
-            dir: vertex.dir,
-            normal: match interface.acting.toward {
+            dir: key.dir,
+            normal: match photon.toward {
                 Toward::Front => -outward,
                 Toward::Back => outward,
             },
-            index_from: index(interface.from),
-            index_to: index(interface.to),
+            index_from: index(from),
+            index_to: index(to),
         },
     }
 }

@@ -7,6 +7,7 @@ use crate::transport::Layout;
 use crate::transport::backward::Backward;
 use crate::transport::forward::Forward;
 use crate::transport::gather::{Gather, Pass, PassReadings};
+use crate::transport::mix::Mixing;
 use crate::transport::pilot::Trial;
 use crate::transport::readings::Readings;
 use crate::transport::settings::{PhotonPilot, settle};
@@ -25,8 +26,6 @@ const EXTRAPOLATED: f64 = 13.0;
 const PER_PATH: f64 = 4.0;
 /// Random numbers of the pilot are those of another seed: what it chooses by is not counted again.
 const SEED: u64 = 0x7069_6c6f_7431;
-/// Gather paths of each sensor that tell how long they are.
-const FIRST_PATHS: u64 = 64;
 
 /// What is tried, and how hard.
 #[derive(Debug)]
@@ -56,8 +55,7 @@ pub(super) struct Gathered {
 impl Trials<'_> {
     /// Photons counted by the sensors.
     pub(super) fn forward(&self) -> Vec<Tried> {
-        let path = work::of_photon_path(self.photons.segments_per_path);
-        let forward = self.photons_of((self.effort / BATCHES as f64 / path) as u64);
+        let forward = self.photons_for(self.effort);
         let batches: Vec<Readings> =
             (0..BATCHES).into_par_iter().map(|batch| forward.batch(batch)).collect();
         let work = batches.iter().map(work::of_photons).sum();
@@ -66,21 +64,33 @@ impl Trials<'_> {
 
     /// Gather paths that meet the sources.
     pub(super) fn backward(&self) -> Vec<Tried> {
-        let (plan, sensors) = (self.plan, self.sensors.len() as f64);
-        let with = |paths| {
-            let seed = plan.seed ^ SEED;
-            Backward::new(self.scene, self.sensors, seed, plan.bounce_limit, paths)
+        let backward = self.gather_paths_for(self.effort);
+        let traced = |batch| {
+            let mut readings = backward.batch(batch, &[]);
+            readings.close_batch();
+            readings
         };
-        let first = with(FIRST_PATHS);
-        let path = work::of_gather_paths(first.batch_paths(), first.batch(BATCHES).segments)
-            / first.batch_paths() as f64;
-        let backward = with(((self.effort / BATCHES as f64 / sensors / path) as u64).max(1));
-        let batches: Vec<Readings> =
-            (0..BATCHES).into_par_iter().map(|batch| backward.batch(batch)).collect();
-        let segments = batches.iter().map(|batch| batch.segments).sum();
-        let work = work::of_gather_paths(BATCHES * backward.batch_paths(), segments);
-        // Each sensor alone would have had its share of the work.
-        self.judged(&batches, work / sensors, Estimator::Backward)
+        let batches: Vec<Readings> = (0..BATCHES).into_par_iter().map(traced).collect();
+        self.judged(&batches, self.work_of_one(&backward, &batches), Estimator::Backward)
+    }
+
+    /// Photons and gather paths with half of the work each.
+    pub(super) fn mix(&self) -> Vec<Tried> {
+        let half = 0.5 * self.effort;
+        let forward = self.photons_for(half);
+        let backward = self.gather_paths_for(half).mixed(self.sensors);
+        let photon_fluxes = forward.photon_fluxes();
+        let traced = |batch| {
+            let mut readings = backward.batch(batch, &photon_fluxes);
+            let mut mixing = Mixing::new(&backward, &photon_fluxes, &mut readings);
+            let photons = forward.batch_watched(batch, &mut mixing);
+            readings.close_batch();
+            (work::of_photons(&photons), readings)
+        };
+        let (by_photons, batches): (Vec<f64>, Vec<Readings>) =
+            (0..BATCHES).into_par_iter().map(traced).unzip();
+        let work = by_photons.iter().sum::<f64>() + self.work_of_one(&backward, &batches);
+        self.judged(&batches, work, Estimator::Mix)
     }
 
     /// Passes that are smaller than those of a run by one factor in photons and gather paths, and what those of the run
@@ -98,7 +108,7 @@ impl Trials<'_> {
         let (window, gather_paths) = (settings.window, scaled(settings.gather_paths));
         let passes: Vec<PassReadings> = (0..PASSES)
             .into_par_iter()
-            .map(|batch| gather.pass(&forward, Pass { batch, window, gather_paths }))
+            .map(|batch| gather.pass(&forward, Pass { batch, window, gather_paths }, &mut ()))
             .collect();
         let [wide, values, apart] =
             [[1.0, 0.0], [-1.0, 2.0], [1.0, -1.0]].map(|factors| combined(&passes, factors));
@@ -121,6 +131,27 @@ impl Trials<'_> {
             Gathered { tried: Tried { flux, ..tried }, apart }
         });
         judged.collect()
+    }
+
+    /// Batches of photons that take so much work in all.
+    fn photons_for(&self, effort: f64) -> Forward<'_> {
+        let path = work::of_photon_path(self.photons.segments_per_path);
+        self.photons_of((effort / BATCHES as f64 / path) as u64)
+    }
+
+    /// Batches of gather paths of all sensors that take so much work in all.
+    fn gather_paths_for(&self, effort: f64) -> Backward<'_> {
+        let Self { scene, plan, sensors, .. } = *self;
+        let backward = Backward::new(scene, sensors, plan.seed ^ SEED, plan.bounce_limit);
+        let paths = effort / BATCHES as f64 / sensors.len() as f64 / backward.work_of_path();
+        backward.with_paths(paths as u64)
+    }
+
+    /// Work of the gather paths of each sensor: alone it would have had its share.
+    fn work_of_one(&self, backward: &Backward<'_>, batches: &[Readings]) -> f64 {
+        let segments = batches.iter().map(|batch| batch.segments).sum();
+        let work = work::of_gather_paths(BATCHES * backward.batch_paths(), segments);
+        work / self.sensors.len() as f64
     }
 
     fn photons_of(&self, paths: u64) -> Forward<'_> {

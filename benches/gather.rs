@@ -57,7 +57,7 @@ const ERROR: f64 = 0.01;
 fn main() {
     let pool = ThreadPoolBuilder::new().num_threads(1).build().expect("one thread can be had");
     println!(
-        "| scene | forward | backward | E1 | value/truth | variance, backward/E1 (95 %) | 2 E2 - E1 | value/truth | variance, backward/(2 E2 - E1) | look-up over photons | s to 1 %: forward, backward, mix, gather | auto | its time over the best |"
+        "| scene | forward | backward | E1 | value/truth | variance, backward/E1 (95 %) | E0 | value/truth | variance, backward/E0 | look-up over photons | s to 1 %: forward, backward, mix, gather | auto | its time over the best |"
     );
     println!("|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|---|--:|");
     let wanted: Vec<String> = std::env::args().skip(1).filter(|name| name != "--bench").collect();

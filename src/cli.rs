@@ -6,7 +6,7 @@ mod values;
 
 use crate::cli::compare::CompareArgs;
 use crate::cli::values::{
-    parse_angle, parse_count, parse_percent, parse_radius, parse_time, words,
+    parse_angle, parse_count, parse_percent, parse_radius, parse_records, parse_time, words,
 };
 use crate::error::{Diagnostic, Error};
 use crate::input::diagnostic::{self, Colour};
@@ -115,7 +115,7 @@ struct GatherArgs {
     #[arg(long, value_parser = parse_angle, value_name = "DEG")]
     angle_deg: Option<f64>,
     /// Gather paths in a pass, such as 100k.
-    #[arg(long, value_parser = parse_count, value_name = "COUNT")]
+    #[arg(long, value_parser = parse_records, value_name = "COUNT")]
     records: Option<u64>,
     /// Photon paths in a pass, such as 5M.
     #[arg(long, value_parser = parse_count, value_name = "COUNT")]

@@ -171,3 +171,32 @@ fn an_image_shows_the_rim_of_a_wall_where_the_eye_sees_it() {
         assert!(right.value < 0.15 * WALL_LUMINANCE, "{estimator:?}: {right}");
     }
 }
+
+/// A mirror that every gather path of the cell meets, where the bounce limit of one interface cuts it.
+#[test]
+fn what_the_bounce_limit_cuts_of_gather_paths_is_told() {
+    let text = r#"
+        [finishes.mirror]
+        specular = { reflectance = 0.7 }
+        [sheets.mirror.disk]
+        radius_mm = 5
+        finish = "mirror"
+        [sources.lamp.disk]
+        radius_mm = 1
+        flux_lm = 2
+        at = { position_mm = [0, 8, 9], axis = [0, 0, -1] }
+        [sensors.cell]
+        plane = { rectangle = { width_mm = 1, height_mm = 1 } }
+        at = { position_mm = [0, 0, 10], axis = [0, 0, -1] }
+        aim = ["mirror.surface"]
+        [run]
+        bounce_limit = LIMIT"#;
+    for estimator in [Request::Backward, Request::Mix] {
+        let cut = measures_by(estimator, 20_000, &text.replace("LIMIT", "1"));
+        let lost = cut.sensor_paths[0].lost.unwrap();
+        assert!((lost.cut - 0.7).abs() < 1e-12 && lost.leaked == 0.0, "{lost:?}");
+        let whole = measures_by(estimator, 20_000, &text.replace("LIMIT", "2"));
+        assert!(whole.sensor_paths[0].lost.is_none(), "{:?}", whole.sensor_paths[0].lost);
+        assert!(value(&whole, "cell.flux") > 0.0);
+    }
+}

@@ -1,5 +1,6 @@
 //! Values of arguments, with their units.
 
+use crate::scene::plan::MOST_RECORDS;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::time::Duration;
 
@@ -17,7 +18,22 @@ pub(super) fn parse_count(text: &str) -> Result<u64, String> {
     if !(1.0..=9e15).contains(&count) {
         return Err(format!("`{text}` is out of range, expected 1 to 9e15"));
     }
+    // 1.0001k has 1000.1; products of decimal fractions are a little off.
+    if (count - count.round()).abs() > 1e-9 * count {
+        return Err(format!("`{text}` is no whole number"));
+    }
     Ok(count.round() as u64)
+}
+
+/// A count of gather paths that have to fit into memory.
+pub(super) fn parse_records(text: &str) -> Result<u64, String> {
+    let count = parse_count(text)?;
+    if count > MOST_RECORDS {
+        return Err(format!(
+            "`{text}` is out of range, expected up to {MOST_RECORDS}: each takes about 600 bytes in every thread"
+        ));
+    }
+    Ok(count)
 }
 
 /// A relative error with its percent sign: without one, 0.5 might be taken for a half of a percent or for a half.
@@ -96,6 +112,10 @@ mod tests {
         assert!(
             parse_count("0").is_err() && parse_count("nan").is_err() && parse_count("M").is_err()
         );
+        assert!(parse_count("2.5").is_err() && parse_count("1.0001k").is_err());
+        assert_eq!(parse_count("0.3k"), Ok(300));
+        assert_eq!(parse_records("4M"), Ok(4_000_000));
+        assert!(parse_records("5M").unwrap_err().contains("4194304"));
         assert_eq!(parse_percent("0.5%"), Ok(0.005));
         for wrong in ["100%", "-1%", "0.5", "%", "nan%"] {
             assert!(parse_percent(wrong).is_err(), "{wrong}");

@@ -83,7 +83,7 @@ pub(crate) fn check_use(
     };
     let (keys, flags) = (given(&keys), settings.flags());
     if !keys.is_empty() {
-        warn(&gather_key(), &keys, "they are for the estimators \"auto\" and \"gather\"");
+        warn(&gather_key(), &keys, "they are for the estimators \"auto\", \"gather\" and \"mis\"");
     }
     if let Some(first) = flags.first() {
         warn(&Key::of(&[first]), &flags, "add --estimator gather");

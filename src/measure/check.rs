@@ -127,8 +127,9 @@ fn equality(check: &Check, measure: &Measure, expected: f64) -> (Outcome, String
     let by_error = if sigmas > 0.0 { sigmas * error } else { 0.0 };
     let allowed = by_error.max(check.within.unwrap_or(0.0));
     let z = if deviation == 0.0 { 0.0 } else { deviation / error };
-    let text =
-        format!("{expected} is expected, off by {deviation:.3e} ({z:.1} errors) of {allowed:.3e}");
+    let text = format!(
+        "{expected} is expected, off by {deviation:.3e} ({z:.1} errors), {allowed:.3e} is allowed"
+    );
     if measure.status == Status::NoSignal
         && expected != 0.0
         && deviation.abs() > check.within.unwrap_or(0.0)

@@ -2,9 +2,9 @@
 //!
 //! Within nested windows of size 1, 1/√2 and 1/2 the same photons give E1, E2 and E3. A bias that goes with the square
 //! of the window, as that of a smooth field does, has (E1 - E2)/(E2 - E3) = 2. Where that is found, within its error
-//! and out of the noise, 2 E2 - E1 is the value. Otherwise E3 is, and its bias is not resolved: either hidden by noise,
-//! which is four times larger in E3 than in E1, or of another law. |E1 - E2| is the indicator of bias in all cases. All
-//! is decided once per sensor and stage, from its flux, never per cell.
+//! and out of the noise, E0 is the value, which is free of such a bias. It is, too, where all differences are noise, but
+//! then the bias is not resolved. Where they follow another law E3 is the value, and its bias is not resolved. |E1 - E2|
+//! is the indicator of bias in all cases. All is decided once per sensor and stage, from its flux, never per cell.
 
 use crate::measure::evidence::{Evidence, MIN_LIT_GROUPS};
 use crate::measure::flux::flux_slots;
@@ -28,7 +28,7 @@ const RATIO_TOLERANCE: f64 = 0.15;
 pub enum Resolution {
     /// It goes with the square of the window: it has been extrapolated away, and the rest is smaller.
     Resolved,
-    /// The windows agree within their noise, which is well above such a bias of the smallest.
+    /// The windows agree within their noise; a bias by the square of the window would have been extrapolated away.
     InNoise,
     /// They differ, and not as the square of the window.
     NotResolved,
@@ -68,10 +68,11 @@ pub struct StageFacts {
     pub passes: u64,
     /// Gather paths of a pass from each sensor.
     pub gather_paths: u64,
-    /// E1, E2 and E3: the flux within windows of size 1, 1/√2 and 1/2, lm or W.
-    pub flux: [f64; 3],
+    /// E1, E2 and E3, the flux within windows of size 1, 1/√2 and 1/2, and E0, free of a bias by the square of that; lm or
+    /// W.
+    pub flux: [f64; 4],
     /// Their standard errors, likewise.
-    pub std_errors: [f64; 3],
+    pub std_errors: [f64; 4],
 }
 
 /// A stage that speaks for a sensor.
@@ -162,8 +163,8 @@ impl<'a> Judged<'a> {
 }
 
 fn stage_facts(stage: &Stage, slots: &[usize]) -> StageFacts {
-    let Windows { wide, middle, narrow, extrapolated: _ } = &stage.windows;
-    let found = [wide, middle, narrow].map(|readings| flux(readings, slots));
+    let Windows { wide, middle, narrow, extrapolated } = &stage.windows;
+    let found = [wide, middle, narrow, extrapolated].map(|readings| flux(readings, slots));
     StageFacts {
         number: stage.number,
         radius_mm: stage.window.radius,
@@ -204,8 +205,8 @@ fn total_error(windows: &Windows, resolution: Resolution, slots: &[usize]) -> f6
 /// The readings that give the values.
 fn chosen(windows: &Windows, resolution: Resolution) -> &Readings {
     match resolution {
-        Resolution::Resolved => &windows.extrapolated,
-        Resolution::InNoise | Resolution::NotResolved => &windows.narrow,
+        Resolution::Resolved | Resolution::InNoise => &windows.extrapolated,
+        Resolution::NotResolved => &windows.narrow,
     }
 }
 

@@ -29,7 +29,7 @@ pub use balance::Balance;
 pub use check::{Outcome, Verdict, nearest, verdict};
 pub use gathered::{GatheredFacts, Resolution, StageFacts};
 pub use map::{Axes, SensorMap};
-pub use paths::{Action, DepthBin, Extent, PathClass, PathStep, SensorPaths, strongest};
+pub use paths::{Action, DepthBin, Extent, LostPaths, PathClass, PathStep, SensorPaths, strongest};
 pub use record::{Measure, Status};
 pub use uniformity::{Statistic, Uniformity, UniformitySummary};
 

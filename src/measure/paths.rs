@@ -1,7 +1,8 @@
 //! How the light came to a sensor: how many interfaces it met, and by which faces.
 
+use crate::measure::evidence::Evidence;
 use crate::scene::{Scene, SensorId};
-use crate::transport::{ClassSum, Readings, Trail};
+use crate::transport::{ClassSum, Loss, Trail};
 use serde::Serialize;
 
 /// Depths from here on share a bin with others: one bin for each doubling.
@@ -18,9 +19,22 @@ pub struct SensorPaths {
     /// (`SENSOR.bounces.csv`), and no part of the record for programs.
     #[serde(skip)]
     pub depths: Vec<DepthBin>,
-    /// The strongest path classes, in descending order, and all others as one: a sample of the paths, shares without
-    /// error bars.
+    /// The strongest path classes, in descending order, and all others as one: a sample of the photons that came to the
+    /// sensor, shares without error bars.
     pub classes: Vec<PathClass>,
+    /// What was lost of the gather paths from the sensor; `None` where nothing was.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lost: Option<LostPaths>,
+}
+
+/// Gather paths that ended before their end, as shares of the throughput of all at their start: nobody knows what they
+/// would have met.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct LostPaths {
+    /// Cut by the bounce limit, 1.
+    pub cut: f64,
+    /// Lost through holes in the geometry, 1.
+    pub leaked: f64,
 }
 
 /// Flux of the paths that met some number of interfaces.
@@ -81,7 +95,8 @@ pub enum Extent {
 }
 
 /// The paths of a sensor.
-pub(crate) fn paths(scene: &Scene, readings: &Readings, id: SensorId) -> SensorPaths {
+pub(crate) fn paths(evidence: &Evidence<'_>, id: SensorId) -> SensorPaths {
+    let (scene, readings) = (evidence.scene, evidence.readings);
     let reading = &readings.sensors[id.index()];
     let batches = readings.batch_count();
     let bin = |bin: usize| reading.depths.mean(bin, batches);
@@ -91,8 +106,9 @@ pub(crate) fn paths(scene: &Scene, readings: &Readings, id: SensorId) -> SensorP
         let (from, to) = depths_of_bin(index);
         DepthBin { from, to, flux, std_error }
     });
-    let total: f64 = reading.classes.values().map(|class| class.flux).sum();
-    let lit = reading.classes.iter().filter(|(_, sum)| sum.flux > 0.0);
+    let by_class = &evidence.of_photons().readings.sensors[id.index()].classes;
+    let total: f64 = by_class.values().map(|class| class.flux).sum();
+    let lit = by_class.iter().filter(|(_, sum)| sum.flux > 0.0);
     let mut classes: Vec<PathClass> =
         lit.map(|(trail, sum)| class(scene, trail, sum, total)).collect();
     // A stable sort: classes of equal share keep the order of their faces.
@@ -101,7 +117,14 @@ pub(crate) fn paths(scene: &Scene, readings: &Readings, id: SensorId) -> SensorP
         sensor: scene.sensors[id.index()].name.clone(),
         depths: depths.collect(),
         classes: strongest(&classes, CLASSES),
+        lost: lost(evidence, id),
     }
+}
+
+fn lost(evidence: &Evidence<'_>, id: SensorId) -> Option<LostPaths> {
+    let share = |loss| evidence.readings.scalar(evidence.layout.lost_paths(id, loss)).mean();
+    let lost = LostPaths { cut: share(Loss::Cut), leaked: share(Loss::Leaked) };
+    (lost.cut > 0.0 || lost.leaked > 0.0).then_some(lost)
 }
 
 /// The first `count` of sorted classes, and all others as one at the end.

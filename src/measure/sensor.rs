@@ -105,7 +105,7 @@ fn by_evidence(evidence: &Evidence<'_>, id: SensorId) -> SensorMeasures {
             intensity = Some(angular::table(evidence, id, goniometer));
         }
     }
-    let paths = paths::paths(scene, evidence.readings, id);
+    let paths = paths::paths(evidence, id);
     SensorMeasures { values, maps, intensity, paths, gathered: None }
 }
 

@@ -1,8 +1,8 @@
 //! `report.md`: the page for people.
 
 use crate::measure::{
-    Action, Extent, GatheredFacts, Measure, Outcome, PathClass, PathStep, Resolution, SensorMap,
-    SensorPaths, StageFacts, Statistic, Status, strongest,
+    Action, Extent, GatheredFacts, LostPaths, Measure, Outcome, PathClass, PathStep, Resolution,
+    SensorMap, SensorPaths, StageFacts, Statistic, Status, strongest,
 };
 use crate::number::{format_percent, format_value, format_with_error};
 use crate::report::csv::{map_name, map_words};
@@ -190,6 +190,14 @@ fn sensor(report: &Report, paths: &SensorPaths, files: &[&str]) -> String {
     for facts in report.measures.gathered.iter().filter(|facts| facts.sensor == *name) {
         text += &gathered(facts, report.measures.unit.flux());
     }
+    if let Some(LostPaths { cut, leaked }) = paths.lost {
+        _ = writeln!(
+            text,
+            "Of the throughput of gather paths from the sensor, {} was cut by the bounce limit and {} lost through holes in the geometry.\n",
+            format_percent(cut),
+            format_percent(leaked)
+        );
+    }
     text + &classes(&paths.classes)
 }
 
@@ -208,10 +216,10 @@ fn gathered(facts: &GatheredFacts, unit: &str) -> String {
     });
     text += match facts.resolution {
         Resolution::Resolved => {
-            "Bias resolved: it goes with the square of the window, and 2 E2 - E1 is the value.\n\n"
+            "Bias resolved: it goes with the square of the window, and E0, which is free of such a bias, is the value.\n\n"
         }
         Resolution::InNoise => {
-            "Bias not resolved from noise: the windows agree within their errors. The value is E3, that of the smallest window.\n\n"
+            "Bias not resolved from noise: the windows agree within their errors. The value is E0, free of a bias by the square of the window.\n\n"
         }
         Resolution::NotResolved => {
             "Bias not resolved: the windows differ, and not by the square of their size. The value is E3, that of the smallest window, and |E1 - E2| is no bound.\n\n"
@@ -226,16 +234,16 @@ fn gathered(facts: &GatheredFacts, unit: &str) -> String {
             off.abs()
         );
     }
-    _ = writeln!(text, "| stage | passes | radius | angle | E1 in {unit} | E2 | E3 |");
-    text += "|---|---|---|---|---|---|---|\n";
+    _ = writeln!(text, "| stage | passes | radius | angle | E1 in {unit} | E2 | E3 | E0 |");
+    text += "|---|---|---|---|---|---|---|---|\n";
     for stage in &facts.stages {
-        let [e1, e2, e3] =
-            [0, 1, 2].map(|window| format_with_error(stage.flux[window], stage.std_errors[window]));
+        let [e1, e2, e3, e0] = [0, 1, 2, 3]
+            .map(|window| format_with_error(stage.flux[window], stage.std_errors[window]));
         let (radius, angle) = (format_value(stage.radius_mm), format_value(stage.angle_deg));
         let StageFacts { number, passes, .. } = stage;
         _ = writeln!(
             text,
-            "| {number} | {passes} | {radius} mm | {angle} deg | {e1} | {e2} | {e3} |"
+            "| {number} | {passes} | {radius} mm | {angle} deg | {e1} | {e2} | {e3} | {e0} |"
         );
     }
     text + "\n"
@@ -285,8 +293,7 @@ fn classes(classes: &[PathClass]) -> String {
         return String::new();
     }
     let mut text =
-        "How the light came (R reflected, T transmitted, steps in a row taken once):\n\n"
-            .to_owned();
+        "How photons came (R reflected, T transmitted, steps in a row taken once):\n\n".to_owned();
     text += "| share | mean bounces | path |\n|---|---|---|\n";
     for class in &strongest(classes, CLASSES_SHOWN) {
         text += &format!(

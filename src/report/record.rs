@@ -1,6 +1,6 @@
 //! The one record that all formats of a report are made from.
 
-use crate::measure::{self, GatheredFacts, Measures, Verdict};
+use crate::measure::{self, GatheredFacts, LostPaths, Measures, Verdict};
 use crate::number::{format_exact, format_percent, format_with_error};
 use crate::scene::plan::{Check, GatherPlan, Request, Schedule, StopRules, Target};
 use crate::transport::{GROUPS, GatherSettings, Leak};
@@ -201,6 +201,7 @@ pub fn remarks(measures: &Measures) -> Vec<String> {
     }
     for paths in &measures.sensor_paths {
         let sensor = &paths.sensor;
+        remarks.extend(paths.lost.and_then(|lost| remark_on_lost_paths(sensor, lost)));
         let (flux, other) =
             (value(&format!("{sensor}.flux")), value(&format!("{sensor}.flux_other_side")));
         if flux == 0.0 && other > 0.0 {
@@ -211,6 +212,20 @@ pub fn remarks(measures: &Measures) -> Vec<String> {
     }
     remarks.extend(measures.gathered.iter().filter_map(remark_on_gathering));
     remarks
+}
+
+/// A remark where more than next to nothing of the gather paths of a sensor was lost.
+fn remark_on_lost_paths(sensor: &str, lost: LostPaths) -> Option<String> {
+    let LostPaths { cut, leaked } = lost;
+    (cut + leaked > CUT_SHARE).then(|| {
+        format!(
+            "{} of the throughput of gather paths from sensor `{sensor}` was cut by the bounce limit and {} lost through \
+             holes in the geometry, and with it whatever light they would have met; raise run.bounce_limit, or take \
+             `forward`",
+            format_percent(cut),
+            format_percent(leaked)
+        )
+    })
 }
 
 /// A remark where the photons of a run do not agree with what was gathered from them.

@@ -96,6 +96,9 @@ impl Estimator {
     }
 }
 
+/// Most gather paths of a pass that may be wished for: they have to fit into memory.
+pub const MOST_RECORDS: u64 = 1 << 22;
+
 /// Wishes for the gather estimator; what is left out is chosen by a pilot.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct GatherPlan {

@@ -10,7 +10,7 @@ use crate::transport::emitters::{Emitters, Met};
 use crate::transport::follow::{Collector, Gathering, follow};
 use crate::transport::merge::{Etendues, NO_WINDOW};
 use crate::transport::readings::Counted;
-use crate::transport::{Departure, Layout, Path, Readings, Vertex, work};
+use crate::transport::{Departure, Layout, Loss, Path, Readings, Vertex, work};
 use std::ops::ControlFlow;
 
 /// Stream of random numbers of the gather paths; each sensor has one of its own from here on.
@@ -143,6 +143,10 @@ impl Collector for Counter<'_> {
         let flux = weight * met.radiance * self.etendue;
         let counted = Counted { flux, depth: path.depth, source: met.source };
         self.readings.count(&self.layout, self.id, self.cells, &counted);
+    }
+
+    fn lose(&mut self, throughput: f64, loss: Loss) {
+        self.readings.count_lost(&self.layout, self.id, throughput, loss);
     }
 
     fn arrive(&mut self, _: &Path, _: &Vertex<'_>) -> ControlFlow<()> {

@@ -11,7 +11,7 @@ use crate::optics::{Incidence, evaluate};
 use crate::scene::MediumId;
 use crate::transport::coverage::{AGREEING, HEIGHT};
 use crate::transport::records::{GatherRecord, Slot, Wanted};
-use crate::transport::window::{NESTED, Window};
+use crate::transport::window::{ANGLE_OF, COUNTED, NESTED, RADIUS_OF, Window};
 use glam::DVec3;
 
 /// Cosines that the directions of a cone must stay above for `1/|cos θ_p|` to be used, 1.
@@ -58,7 +58,7 @@ impl Kernel {
         &self,
         record: &GatherRecord<'_>,
         photon: &Arriving,
-    ) -> Option<[f64; NESTED]> {
+    ) -> Option<[f64; COUNTED]> {
         let offset = photon.point - record.point;
         let height = offset.dot(record.normal);
         let across = offset.length_squared() - height * height;
@@ -72,7 +72,7 @@ impl Kernel {
         {
             return None;
         }
-        let within = |window: usize| across <= self.radii_squared[window];
+        let within = |window: usize| across <= self.radii_squared[RADIUS_OF[window]];
         match record.wanted {
             Wanted::Along(wanted) => {
                 let apart = photon.incidence.dir.distance_squared(wanted);
@@ -82,8 +82,9 @@ impl Kernel {
                 }
                 let cos_wanted = -wanted.dot(photon.incidence.normal);
                 Some(self.each(record, |window| {
-                    let inside = within(window) && apart <= self.chords_squared[window];
-                    let per_angle = || self.per_projected(window, cos_wanted, photon);
+                    let angle = ANGLE_OF[window];
+                    let inside = within(window) && apart <= self.chords_squared[angle];
+                    let per_angle = || self.per_projected(angle, cos_wanted, photon);
                     if inside { agreement * per_angle() } else { 0.0 }
                 }))
             }
@@ -95,17 +96,17 @@ impl Kernel {
     }
 
     #[inline]
-    fn each(&self, record: &GatherRecord<'_>, share: impl Fn(usize) -> f64) -> [f64; NESTED] {
-        [0, 1, 2].map(|window| record.values[window] * share(window))
+    fn each(&self, record: &GatherRecord<'_>, share: impl Fn(usize) -> f64) -> [f64; COUNTED] {
+        [0, 1, 2, 3, 4].map(|window| record.values[RADIUS_OF[window]] * share(window))
     }
 
-    /// `K_θ / |cos θ_p|`, 1/sr; `cos_wanted` is that of the cone's axis at the photon's place.
+    /// `K_θ / |cos θ_p|` for one of the nested angles, 1/sr; `cos_wanted` is that of the cone's axis at the photon's place.
     #[inline]
-    fn per_projected(&self, window: usize, cos_wanted: f64, photon: &Arriving) -> f64 {
+    fn per_projected(&self, angle: usize, cos_wanted: f64, photon: &Arriving) -> f64 {
         if cos_wanted > self.sin_widest + GRAZING {
-            self.per_solid_angle[window] / photon.incidence.cos()
+            self.per_solid_angle[angle] / photon.incidence.cos()
         } else {
-            1.0 / projected_cap(cos_wanted, self.theta_max[window])
+            1.0 / projected_cap(cos_wanted, self.theta_max[angle])
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::scene::shape::{Crossing, Start};
 use crate::scene::{Arrival, Begins, Owner, Scene, SensorId, Visibility};
 use crate::transport::emitters::{Emitters, Met, SegmentStart};
 use crate::transport::{
-    Carries, Departure, Event, Path, ROULETTE_BELOW, Segment, Vertex, Visitor, walk,
+    Carries, Departure, Event, Loss, Path, ROULETTE_BELOW, Segment, Vertex, Visitor, walk,
 };
 use smallvec::SmallVec;
 use std::ops::ControlFlow;
@@ -22,6 +22,9 @@ pub(crate) trait Collector {
 
     /// Takes the emission that a path has met.
     fn meet(&mut self, path: &Path, met: Met);
+
+    /// Learns that a path of this throughput was lost: nobody knows what it would have met.
+    fn lose(&mut self, _throughput: f64, _loss: Loss) {}
 
     /// Sees a visible interface before it acts; a break ends the path there.
     fn arrive(&mut self, _path: &Path, _vertex: &Vertex<'_>) -> ControlFlow<()> {
@@ -171,11 +174,17 @@ impl<C: Collector> Visitor for Follower<'_, '_, '_, C> {
             }
             Event::Arrive(vertex) => self.arrive(path, vertex),
             Event::Depart(vertex, departure) => self.collector.depart(path, vertex, departure),
-            Event::Absorbed(_)
-            | Event::Roulette(_)
-            | Event::Escaped(_)
-            | Event::Cut(_)
-            | Event::Leaked(..) => ControlFlow::Continue(()),
+            Event::Cut(throughput) => {
+                self.collector.lose(throughput, Loss::Cut);
+                ControlFlow::Continue(())
+            }
+            Event::Leaked(_, throughput) => {
+                self.collector.lose(throughput, Loss::Leaked);
+                ControlFlow::Continue(())
+            }
+            Event::Absorbed(_) | Event::Roulette(_) | Event::Escaped(_) => {
+                ControlFlow::Continue(())
+            }
         }
     }
 }

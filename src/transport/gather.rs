@@ -23,9 +23,9 @@ use crate::transport::merge::{self, Etendues, Passage};
 use crate::transport::readings::Counted;
 use crate::transport::records::{GatherRecord, Records, Surfaces, Wanted};
 use crate::transport::scatter::{Facing, facing};
-use crate::transport::window::{NESTED, Window};
+use crate::transport::window::{COUNTED, ESTIMATES, Window, estimates};
 use crate::transport::work::RecordWork;
-use crate::transport::{Departure, Layout, Path, ROULETTE_BELOW, Readings, Vertex};
+use crate::transport::{Departure, Layout, Loss, Path, ROULETTE_BELOW, Readings, Vertex};
 use smallvec::SmallVec;
 use std::ops::ControlFlow;
 
@@ -61,8 +61,8 @@ pub(crate) struct Pass {
 pub(crate) struct PassReadings {
     /// By the photons in the sensors' cells, and the balance.
     pub(crate) photons: Readings,
-    /// By the records, within each of the nested windows; not yet closed.
-    pub(crate) windows: [Readings; NESTED],
+    /// By the records: E1, E2, E3 and E0; not yet closed.
+    pub(crate) windows: [Readings; ESTIMATES],
     /// What was done beside tracing.
     pub(crate) work: RecordWork,
 }
@@ -96,7 +96,7 @@ impl<'s> Gather<'s> {
     ) -> PassReadings {
         let paths = pass.gather_paths;
         let empty = || Readings::of_batch(self.scene, &self.layout, self.seed, paths, pass.batch);
-        let mut windows = [empty(), empty(), empty()];
+        let mut windows = [empty(), empty(), empty(), empty()];
         let photon_fluxes = forward.photon_fluxes();
         let waiting = self.gather_paths(pass, &photon_fluxes, &mut windows);
         let mut stream = Stream::new(self, pass, &waiting, &mut windows);
@@ -116,7 +116,7 @@ impl<'s> Gather<'s> {
         &self,
         pass: Pass,
         photon_fluxes: &[f64],
-        windows: &mut [Readings; NESTED],
+        windows: &mut [Readings; ESTIMATES],
     ) -> Waiting<'s> {
         let mut found = Found::default();
         for (id, arrivals) in &self.sensors {
@@ -196,7 +196,7 @@ struct Collecting<'c, 's> {
     /// The interface that the path has just met.
     facing: Option<Facing<'s>>,
     found: &'c mut Found<'s>,
-    windows: &'c mut [Readings; NESTED],
+    windows: &'c mut [Readings; ESTIMATES],
 }
 
 impl Collector for Collecting<'_, '_> {
@@ -206,10 +206,16 @@ impl Collector for Collecting<'_, '_> {
 
     fn meet(&mut self, path: &Path, met: Met) {
         let flux = met.radiance * self.etendue;
-        let weights = self.merging.as_ref().map_or([1.0; NESTED], |merging| merging.weights(&met));
-        for (readings, weight) in self.windows.iter_mut().zip(weights) {
+        let weights = self.merging.as_ref().map_or([1.0; COUNTED], |merging| merging.weights(&met));
+        for (readings, weight) in self.windows.iter_mut().zip(estimates(weights)) {
             let light = Counted { flux: flux * weight, depth: path.depth, source: met.source };
             readings.count(&self.gather.layout, self.id, self.cells, &light);
+        }
+    }
+
+    fn lose(&mut self, throughput: f64, loss: Loss) {
+        for readings in &mut *self.windows {
+            readings.count_lost(&self.gather.layout, self.id, throughput, loss);
         }
     }
 

@@ -7,6 +7,15 @@ use crate::scene::{FaceId, MediumId, Scene, SensorId, SourceId};
 /// Depths for which the flux of deeper paths is kept, in interfaces met.
 pub const TAILS: [u32; 6] = [10, 50, 100, 200, 500, 1000];
 
+/// How a path is lost without an end of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Loss {
+    /// By the bounce limit.
+    Cut,
+    /// Through a hole in the geometry.
+    Leaked,
+}
+
 /// The place of every scalar.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Layout {
@@ -107,7 +116,16 @@ impl Layout {
         self.outside_aim(sensor) + 4 + tail
     }
 
+    /// Throughput of the gather paths of a sensor that were lost, per path: a share, not a flux.
+    pub fn lost_paths(&self, sensor: SensorId, loss: Loss) -> usize {
+        let first = self.deeper(sensor, TAILS.len());
+        match loss {
+            Loss::Cut => first,
+            Loss::Leaked => first + 1,
+        }
+    }
+
     fn sensor_base(&self, sensor: usize) -> usize {
-        self.leaked() + 1 + sensor * (self.sources + 4 + TAILS.len())
+        self.leaked() + 1 + sensor * (self.sources + 4 + TAILS.len() + 2)
     }
 }

@@ -9,7 +9,7 @@ use crate::math::projected_cap;
 use crate::optics::{Bsdf, Incidence, Side, chances};
 use crate::scene::Scene;
 use crate::transport::scatter::Facing;
-use crate::transport::window::{NESTED, Window};
+use crate::transport::window::{COUNTED, Window};
 use glam::DVec3;
 use std::collections::{BTreeSet, VecDeque};
 
@@ -18,7 +18,7 @@ pub(crate) const ROULETTE_BELOW: f64 = 1e-4;
 /// Least probability of a lobe, 1: rounding near total reflection must not divide by nothing. The same for all three.
 const LEAST_CHANCE: f64 = 1e-9;
 /// No window: the path has no vertex D.
-pub(crate) const NO_WINDOW: [f64; NESTED] = [0.0; NESTED];
+pub(crate) const NO_WINDOW: [f64; COUNTED] = [0.0; COUNTED];
 
 /// The etendues that weigh a path, mm² sr.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,22 +28,22 @@ pub(crate) struct Etendues {
     /// Which one gather path stands for where it ends, `1/(M p_g)`.
     pub(crate) gather: f64,
     /// Of each window at vertex D over the probability of the lobe there, G/q; 0 for paths without vertex D.
-    pub(crate) window: [f64; NESTED],
+    pub(crate) window: [f64; COUNTED],
 }
 
 impl Etendues {
     /// The share that a photon in the sensor's cell counts, for each window, 1: eq. (21).
-    pub(crate) fn forward(&self) -> [f64; NESTED] {
+    pub(crate) fn forward(&self) -> [f64; COUNTED] {
         self.window.map(|window| 1.0 / (1.0 + (self.photon + window) / self.gather))
     }
 
     /// The share that a gather path counts where it meets emission, for each window, 1: eq. (21).
-    pub(crate) fn backward(&self) -> [f64; NESTED] {
+    pub(crate) fn backward(&self) -> [f64; COUNTED] {
         self.window.map(|window| 1.0 / (1.0 + (self.gather + window) / self.photon))
     }
 
     /// The share that a photon and a record count together, for each window, 1: eq. (21).
-    pub(crate) fn pair(&self) -> [f64; NESTED] {
+    pub(crate) fn pair(&self) -> [f64; COUNTED] {
         self.window.map(|window| window / (self.photon + self.gather + window))
     }
 }
@@ -83,11 +83,11 @@ impl<'s> Passage<'s> {
 
     /// G/q, mm² sr: n² π r² ∫ cos θ dω over the cone about the light, above the horizon, over the probability that a
     /// path takes the side it takes. Windows are not clipped: eq. (20).
-    pub(crate) fn etendues(&self, window: Window) -> [f64; NESTED] {
+    pub(crate) fn etendues(&self, window: Window) -> [f64; COUNTED] {
         let Incidence { index_from, .. } = self.incidence;
         let chance = chances(self.bsdf, &self.incidence).of(self.side).max(LEAST_CHANCE);
         let (cos, basic) = (self.incidence.cos(), index_from * index_from / chance);
-        window.nested().map(|window| basic * window.area() * projected_cap(cos, window.theta_max))
+        window.counted().map(|window| basic * window.area() * projected_cap(cos, window.theta_max))
     }
 }
 
@@ -116,7 +116,7 @@ impl<'s> Recent<'s> {
     }
 
     /// G/q at vertex D, counted from where the photon is; nothing where it has not met so many faces.
-    pub(crate) fn etendues(&self, window: Window) -> [f64; NESTED] {
+    pub(crate) fn etendues(&self, window: Window) -> [f64; COUNTED] {
         match self.passages.front() {
             Some(passage) if self.passages.len() > self.depth => passage.etendues(window),
             Some(_) | None => NO_WINDOW,
@@ -154,7 +154,7 @@ mod tests {
     #[test]
     fn weights_are_the_balance_heuristic_and_add_up_to_one() {
         for (c_f, c_b) in [(1.0, 1.0), (3e6, 20.0), (1e-3, 4e9), (0.25, 1e-12)] {
-            for c_m in [[0.0; 3], [1.0, 0.25, 0.0625], [1e9, 1e3, 1e-9]] {
+            for c_m in [[0.0; COUNTED], [1.0, 0.25, 0.0625, 0.5, 0.5], [1e9, 1e3, 1e-9, 1.0, 1e2]] {
                 let [window, ..] = [c_m.map(|c_m| c_m / (c_f * c_b))];
                 let etendues = Etendues { photon: 1.0 / c_f, gather: 1.0 / c_b, window };
                 for (k, c_m) in c_m.into_iter().enumerate() {
@@ -174,9 +174,9 @@ mod tests {
     fn a_path_that_only_one_estimator_finds_is_all_its_own() {
         let never = f64::INFINITY;
         let seen = Etendues { photon: 2.0, gather: never, window: NO_WINDOW };
-        assert_eq!(seen.forward(), [1.0; 3]);
+        assert_eq!(seen.forward(), [1.0; COUNTED]);
         let met = Etendues { photon: never, gather: 3.0, window: NO_WINDOW };
-        assert_eq!((met.backward(), met.forward()), ([1.0; 3], [0.0; 3]));
+        assert_eq!((met.backward(), met.forward()), ([1.0; COUNTED], [0.0; COUNTED]));
     }
 
     /// A gather path in glass that meets air, refracted.

@@ -37,7 +37,7 @@ pub use blind::{BLIND_PATHS, blind_sensors};
 pub use cells::Cells;
 pub use emitters::invisible;
 pub use findings::{Findings, Gathered};
-pub use layout::{Layout, TAILS};
+pub use layout::{Layout, Loss, TAILS};
 pub use merge::{Scatterer, scatterers};
 pub use path::{Path, WAVELENGTH};
 pub use pilot::{Choice, Objection, Trial};

@@ -7,7 +7,7 @@
 
 use crate::scene::{Scene, SensorId, SourceId};
 use crate::tally::Tally;
-use crate::transport::{Cells, Layout, TAILS};
+use crate::transport::{Cells, Layout, Loss, TAILS};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
@@ -202,6 +202,17 @@ impl Readings {
         }
         reading.depths.add(SensorReading::depth_bin(light.depth), light.flux);
         count_totals(&mut self.groups[0].sums, layout, id, light);
+    }
+
+    /// Counts a gather path of this throughput that was lost.
+    pub(crate) fn count_lost(
+        &mut self,
+        layout: &Layout,
+        id: SensorId,
+        throughput: f64,
+        loss: Loss,
+    ) {
+        self.groups[0].sums[layout.lost_paths(id, loss)] += throughput / self.batch_paths as f64;
     }
 
     /// A scalar as a mean over groups, with its standard error.

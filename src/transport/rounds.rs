@@ -16,7 +16,7 @@ use crate::transport::readings::GROUPS;
 use crate::transport::settings::{PhotonPilot, settle};
 use crate::transport::stages::{FIRST_PASSES, Stages};
 use crate::transport::sums::Sums;
-use crate::transport::window::NESTED;
+use crate::transport::window::ESTIMATES;
 use crate::transport::{Choice, Readings, work};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -72,7 +72,7 @@ pub struct Run<'s> {
 struct Batch {
     photons: Readings,
     backward: Option<Readings>,
-    windows: Option<[Readings; NESTED]>,
+    windows: Option<[Readings; ESTIMATES]>,
 }
 
 impl<'s> Run<'s> {
@@ -173,7 +173,7 @@ impl<'s> Run<'s> {
         &self,
         batch: u64,
         watcher: &mut impl PhotonWatcher,
-    ) -> (Readings, Option<[Readings; NESTED]>) {
+    ) -> (Readings, Option<[Readings; ESTIMATES]>) {
         match &self.stages {
             None => (self.forward.batch_watched(batch, watcher), None),
             Some(stages) => {

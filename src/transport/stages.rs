@@ -9,7 +9,7 @@ use crate::scene::plan::Schedule;
 use crate::transport::gather::{Gather, Pass};
 use crate::transport::settings::GatherSettings;
 use crate::transport::sums::Sums;
-use crate::transport::window::NESTED;
+use crate::transport::window::ESTIMATES;
 use crate::transport::{Readings, Window};
 use serde::{Deserialize, Serialize};
 
@@ -18,7 +18,8 @@ pub(crate) const FIRST_PASSES: u64 = 16;
 /// By how much passes times gather paths grow from stage to stage. Of the pairs of a pass a quarter is left, for the
 /// window shrinks in four dimensions, and half the standard error takes four times as many in all.
 const GROWTH: u64 = 16;
-/// Most gather paths of a pass: records take about 200 bytes each.
+/// Most gather paths of a pass, from all sensors, that stages grow to: with its record and the entries of an index each
+/// takes about 600 bytes.
 const MOST_GATHER_PATHS: u64 = 1 << 20;
 
 /// Readings within each of the nested windows, of the same photons and records.
@@ -30,7 +31,7 @@ pub struct Windows {
     pub middle: Readings,
     /// Within half of them, E3.
     pub narrow: Readings,
-    /// 2 E2 - E1: what is left if the bias goes with the square of the window.
+    /// E0 = 2 E(r/√2, θ) + 2 E(r, θ/√2) - 3 E1: what is left if the bias goes with the squares of radius and angle.
     pub extrapolated: Readings,
 }
 
@@ -77,7 +78,8 @@ impl<'s> Stages<'s> {
     /// Gather paths of a pass from each sensor.
     pub(crate) fn gather_paths(&self) -> u64 {
         let grown = self.settings.gather_paths.saturating_mul(1 << self.number.min(32));
-        grown.min(MOST_GATHER_PATHS.max(self.settings.gather_paths))
+        let most = MOST_GATHER_PATHS / self.gather.sensors().max(1);
+        grown.min(most.max(self.settings.gather_paths))
     }
 
     /// Gather paths of a pass from all sensors.
@@ -103,19 +105,12 @@ impl<'s> Stages<'s> {
     }
 
     /// Takes what a pass has counted.
-    pub(crate) fn push(&mut self, windows: [Readings; NESTED]) {
-        let [wide, middle, narrow] = windows;
-        let extrapolated = middle.combined([2.0, -1.0], &wide);
-        let close = |mut readings: Readings| {
+    pub(crate) fn push(&mut self, windows: [Readings; ESTIMATES]) {
+        let [wide, middle, narrow, extrapolated] = windows.map(|mut readings| {
             readings.close_batch();
             readings
-        };
-        self.sums.push(Windows {
-            wide: close(wide),
-            middle: close(middle),
-            narrow: close(narrow),
-            extrapolated: close(extrapolated),
         });
+        self.sums.push(Windows { wide, middle, narrow, extrapolated });
     }
 
     pub(crate) fn end_wave(&mut self) {

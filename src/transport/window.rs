@@ -17,6 +17,22 @@ pub(crate) const NESTED: usize = 3;
 /// Their size relative to the widest: the bias of a smooth field goes with the square, 1 : 1/2 : 1/4.
 const SIZES: [f64; NESTED] = [1.0, FRAC_1_SQRT_2, 0.5];
 
+/// Windows in which pairs are counted: the nested ones, one that is smaller in position alone, one in angle alone.
+pub(crate) const COUNTED: usize = 5;
+/// Which of the nested sizes their radius and their angle have.
+pub(crate) const RADIUS_OF: [usize; COUNTED] = [0, 1, 2, 1, 0];
+pub(crate) const ANGLE_OF: [usize; COUNTED] = [0, 1, 2, 0, 1];
+/// Estimates that are made of them: E1, E2 and E3 within the nested windows, and E0.
+pub(crate) const ESTIMATES: usize = 4;
+
+/// The estimates from what each window counts. E0 = 2 E(r/√2, θ) + 2 E(r, θ/√2) - 3 E1 is free of a bias that goes with
+/// the squares of radius and angle: docs/method.md, eq. (23).
+#[inline]
+pub(crate) fn estimates(counted: [f64; COUNTED]) -> [f64; ESTIMATES] {
+    let [wide, middle, narrow, smaller, sharper] = counted;
+    [wide, middle, narrow, 2.0 * (smaller + sharper) - 3.0 * wide]
+}
+
 impl Window {
     /// The window shrunk by a factor.
     pub fn scaled(self, factor: f64) -> Self {
@@ -26,6 +42,16 @@ impl Window {
     /// The three nested windows, the widest first.
     pub fn nested(self) -> [Self; NESTED] {
         SIZES.map(|size| self.scaled(size))
+    }
+
+    /// The windows in which pairs are counted.
+    pub(crate) fn counted(self) -> [Self; COUNTED] {
+        let nested = self.nested();
+        let places = [0, 1, 2, 3, 4];
+        places.map(|place: usize| Self {
+            radius: nested[RADIUS_OF[place]].radius,
+            theta_max: nested[ANGLE_OF[place]].theta_max,
+        })
     }
 
     /// The window of a stage, from 0: radius and angle shrink by √2 from stage to stage (the bias halves).
@@ -67,6 +93,20 @@ mod tests {
         assert!((middle.area() / narrow.area() - 2.0).abs() < 1e-12);
         assert!((wide.solid_angle() / narrow.solid_angle() - 4.0).abs() < 1e-5);
         assert!((wide.solid_angle() - PI * 1e-6).abs() < 1e-12);
+    }
+
+    /// Each window is its share of the mean plus a bias by the squares of radius and angle.
+    #[test]
+    fn e0_is_free_of_a_bias_by_the_squares_of_radius_and_angle() {
+        let window = Window { radius: 1.0, theta_max: 0.1 };
+        for (by_radius, by_angle) in [(0.3, 0.0), (0.0, 20.0), (-0.2, 7.0)] {
+            let biased = window.counted().map(|window| {
+                5.0 + by_radius * window.radius.powi(2) + by_angle * window.theta_max.powi(2)
+            });
+            let [wide, middle, narrow, free] = estimates(biased);
+            assert!((free - 5.0).abs() < 1e-12, "{free}");
+            assert!(((wide - middle) / (middle - narrow) - 2.0).abs() < 1e-9);
+        }
     }
 
     #[test]

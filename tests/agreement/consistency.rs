@@ -6,9 +6,10 @@
 use crate::trial::{Gathering, Way, load};
 use lumiduct::input::Job;
 use lumiduct::measure::{self, Measure};
-use lumiduct::scene::plan::{RunPlan, Schedule};
+use lumiduct::pipeline::{self, Stop};
+use lumiduct::scene::plan::{RunPlan, Schedule, StopRules, Target};
 use lumiduct::tally::Tally;
-use lumiduct::transport::{Findings, Run};
+use lumiduct::transport::{Findings, Interrupt, Run};
 use rayon::prelude::*;
 
 /// Stages of a run.
@@ -234,6 +235,24 @@ fn a_rod_converges_with_the_stages_as_predicted() {
 #[test]
 fn a_brushed_mirror_converges_with_the_stages_as_predicted() {
     falls_as_predicted("brushed mirror", &FOLD);
+}
+
+/// At first the windows are a tenth apart: only smaller ones reach the target.
+#[test]
+fn a_run_to_a_target_goes_on_to_windows_small_enough_for_it() {
+    let window = Gathering { records: 500, photons: 1000, ..FOLD.window };
+    let mut job = load(FOLD.text, Way::Gather(window));
+    let target = Target { measure: MEASURE.to_owned(), relative_error: 0.03 };
+    job.run.stop = StopRules { target: Some(target), ..StopRules::default() };
+    let traced = pipeline::trace(&job, &Interrupt::default(), &mut |_| {});
+    let reached = measure::value_of(&job.scene, &traced.findings, MEASURE).unwrap();
+    let stages = traced.findings.gathered.unwrap().stages;
+    println!("{reached}, up to stage {}", stages.last().unwrap().number);
+    assert_eq!(traced.stop, Stop::Target);
+    assert!(stages.last().unwrap().number >= 1);
+    assert!(reached.relative_error() <= 0.03);
+    let off = (reached.value - FOLD.truth[0]).abs() / reached.total_error();
+    assert!(off < 4.0, "{reached} is {off} errors off");
 }
 
 /// Their mean square error should fall as the root of the number of passes, by 4 here; without a bias it would by 16.

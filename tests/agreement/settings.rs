@@ -38,7 +38,9 @@ fn gather() -> Way {
 fn findings_have_the_same_bits_on_any_number_of_threads() {
     let merged = Way::Merged(Gathering { records: 300, photons: 500, ..Gathering::to_depth(2) });
     let polished = ROD.replace("gaussian = { sigma_deg = 3,", "specular = {");
-    for (way, text) in [(Way::Backward, ROD), (gather(), ROD), (merged, &polished)] {
+    for (way, text) in
+        [(Way::Backward, ROD), (Way::Mixed, ROD), (gather(), ROD), (merged, &polished)]
+    {
         let job = load(text, way);
         let found = [1, 2, 3, 8].map(|threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -105,7 +107,7 @@ fn a_sensor_that_sees_nothing_reads_nothing() {
     let text = format!(
         "{ROD}dark = {{ plane = {{ disk = {{ radius_mm = 1 }} }}, at = {{ position_mm = [0, 0, 40] }} }}\n"
     );
-    for way in [Way::Backward, gather()] {
+    for way in [Way::Backward, Way::Mixed, gather()] {
         let job = load(&text, way);
         let found = measure::measure(&job.scene, &findings(&job, way));
         let dark = &found.values["dark.flux"];

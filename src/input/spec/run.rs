@@ -1,5 +1,6 @@
 //! How long to compute, and what is expected of the results.
 
+use crate::scene::plan::MOST_RECORDS;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -88,8 +89,8 @@ pub struct GatherSpec {
     /// Half-angle of the window in the first pass.
     #[schemars(extend("exclusiveMinimum" = 0.0, "exclusiveMaximum" = 90.0))]
     pub angle_deg: Option<f64>,
-    /// Number of gather paths in a pass, over all sensors.
-    #[schemars(range(min = 1))]
+    /// Number of gather paths in a pass, over all sensors. Each takes about 600 bytes in every thread.
+    #[schemars(range(min = 1, max = MOST_RECORDS))]
     pub records: Option<u64>,
     /// Number of photon paths in a pass.
     #[schemars(range(min = 1))]

@@ -57,12 +57,11 @@ const COLOURS: [Rgb; 7] = [
     [230, 159, 0],
 ];
 
-/// The colour of pair number `index` of curves that belong together and differ in their dashes; they repeat after 8.
+/// The colour of pair number `index` of curves that belong together and differ in their dashes; they repeat after 9.
 pub(crate) fn paired_colour(index: usize) -> Rgb {
-    match index % (COLOURS.len() + 1) {
-        7 => [94, 60, 153],
-        index => COLOURS[index],
-    }
+    const MORE: [Rgb; 2] = [[94, 60, 153], [140, 81, 10]];
+    let index = index % (COLOURS.len() + MORE.len());
+    COLOURS.get(index).copied().unwrap_or_else(|| MORE[index - COLOURS.len()])
 }
 
 /// The colour and dashes of series number `index`; they repeat after 28.

@@ -11,7 +11,7 @@ use crate::transport::gather::stream::{Starting, Stream};
 use crate::transport::merge::{Etendues, NO_WINDOW, Passage, ROULETTE_BELOW, Recent};
 use crate::transport::readings::Counted;
 use crate::transport::scatter::facing;
-use crate::transport::window::{NESTED, Window};
+use crate::transport::window::{COUNTED, Window, estimates};
 use crate::transport::{Departure, Path, Vertex};
 use smallvec::SmallVec;
 
@@ -23,7 +23,7 @@ pub(super) struct Merging<'a> {
     /// Flux of one photon of each source, lm or W.
     photon_fluxes: &'a [f64],
     /// G/q of vertex D once it lies behind the path, mm² sr.
-    window: [f64; NESTED],
+    window: [f64; COUNTED],
 }
 
 impl<'a> Merging<'a> {
@@ -32,17 +32,17 @@ impl<'a> Merging<'a> {
     }
 
     /// Vertex D lies behind: G/q of the side that the path took there, mm² sr.
-    pub(super) fn pass_vertex_d(&mut self, window: [f64; NESTED]) {
+    pub(super) fn pass_vertex_d(&mut self, window: [f64; COUNTED]) {
         self.window = window;
     }
 
     /// What weighs a record of vertex D with this G/q, as far as the gather path knows it.
-    pub(super) fn waiting(&self, window: [f64; NESTED]) -> Etendues {
+    pub(super) fn waiting(&self, window: [f64; COUNTED]) -> Etendues {
         Etendues { photon: f64::INFINITY, gather: self.etendue, window }
     }
 
     /// How much emission counts that the path has met, for each window, 1.
-    pub(super) fn weights(&self, met: &Met) -> [f64; NESTED] {
+    pub(super) fn weights(&self, met: &Met) -> [f64; COUNTED] {
         let photon = self.photon_fluxes[met.source.index()] / met.emitted;
         Etendues { photon, gather: self.etendue, window: self.window }.backward()
     }
@@ -117,7 +117,8 @@ impl PhotonWatcher for MergedStream<'_, '_, '_> {
             gather: gathered / self.gather_paths,
             window: self.recent.etendues(self.window),
         };
-        for (readings, weight) in self.stream.windows.iter_mut().zip(etendues.forward()) {
+        let weights = estimates(etendues.forward());
+        for (readings, weight) in self.stream.windows.iter_mut().zip(weights) {
             let (flux, source) = (light.flux * weight, light.source);
             readings.count(
                 &gather.layout,

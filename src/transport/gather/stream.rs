@@ -11,7 +11,7 @@ use crate::transport::gather::{Ended, Gather, Pass, Waiting};
 use crate::transport::merge::Etendues;
 use crate::transport::readings::Counted;
 use crate::transport::record_index::{Key, TOGETHER};
-use crate::transport::window::NESTED;
+use crate::transport::window::{COUNTED, ESTIMATES, estimates};
 use crate::transport::work::RecordWork;
 use crate::transport::{Path, Readings, Vertex};
 
@@ -20,7 +20,7 @@ pub(super) struct Stream<'p, 's> {
     pub(super) gather: &'p Gather<'s>,
     kernel: Kernel,
     waiting: &'p Waiting<'s>,
-    pub(super) windows: &'p mut [Readings; NESTED],
+    pub(super) windows: &'p mut [Readings; ESTIMATES],
     /// Photons to be looked up, and by what.
     passing: Vec<Passing>,
     keys: Vec<Key>,
@@ -68,7 +68,7 @@ impl<'p, 's> Stream<'p, 's> {
         gather: &'p Gather<'s>,
         pass: Pass,
         waiting: &'p Waiting<'s>,
-        windows: &'p mut [Readings; NESTED],
+        windows: &'p mut [Readings; ESTIMATES],
     ) -> Self {
         Self {
             gather,
@@ -141,12 +141,12 @@ impl<'p, 's> Stream<'p, 's> {
             work.pairs += 1;
             let Ended { sensor, cells, etendues, .. } = &self.waiting.paths[record.path as usize];
             let weights = etendues
-                .map_or([1.0; NESTED], |own| Etendues { photon: photon.etendue, ..own }.pair());
+                .map_or([1.0; COUNTED], |own| Etendues { photon: photon.etendue, ..own }.pair());
             let depth = photon.depth + record.depth;
-            for ((readings, share), weight) in windows.iter_mut().zip(shares).zip(weights) {
-                if share > 0.0 {
-                    let flux = photon.flux * share * weight;
-                    let light = Counted { flux, depth, source: photon.source };
+            let counted = [0, 1, 2, 3, 4].map(|window: usize| shares[window] * weights[window]);
+            for (readings, share) in windows.iter_mut().zip(estimates(counted)) {
+                if share != 0.0 {
+                    let light = Counted { flux: photon.flux * share, depth, source: photon.source };
                     readings.count(layout, *sensor, cells, &light);
                 }
             }

@@ -19,9 +19,9 @@ use rayon::prelude::*;
 const BATCHES: u64 = 16;
 /// Passes from which gathering is judged: fewer would hold more pairs, and tell less of the variance.
 const PASSES: u64 = 8;
-/// Variance of 2 E2 - E1 over that of E1 where pairs limit both, 1: weights of 7 in a quarter of the window and of -1 in
-/// the rest. So few pairs as a pilot has tell the latter far better.
-const EXTRAPOLATED: f64 = 13.0;
+/// Variance of E0 over that of E1 where pairs limit both, 1: weights of 5, 1, 1 and -3 in the quarters of the window. So
+/// few pairs as a pilot has tell the latter far better.
+const EXTRAPOLATED: f64 = 9.0;
 /// Least relative variance of a pass times its photons, or its gather paths: what pairs without limit would leave.
 const PER_PATH: f64 = 4.0;
 /// Random numbers of the pilot are those of another seed: what it chooses by is not counted again.
@@ -110,8 +110,8 @@ impl Trials<'_> {
             .into_par_iter()
             .map(|batch| gather.pass(&forward, Pass { batch, window, gather_paths }, &mut ()))
             .collect();
-        let [wide, values, apart] =
-            [[1.0, 0.0], [-1.0, 2.0], [1.0, -1.0]].map(|factors| combined(&passes, factors));
+        let [wide, values, apart] = [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [1.0, -1.0, 0.0]]
+            .map(|factors| combined(&passes, factors));
         let gathered = gather_paths * gather.sensors();
         let work: f64 = passes.iter().map(|pass| work_of_whole(pass, gathered, part)).sum();
         let seconds = 1e-9 * work / PASSES as f64;
@@ -173,10 +173,11 @@ impl Trials<'_> {
     }
 }
 
-/// Sums of the two wider windows with factors, pass by pass.
-fn combined(passes: &[PassReadings], [wide, middle]: [f64; 2]) -> Vec<Readings> {
+/// Sums of E1, E2 and E0 with factors, pass by pass.
+fn combined(passes: &[PassReadings], [e1, e2, e0]: [f64; 3]) -> Vec<Readings> {
     let of_pass = |pass: &PassReadings| {
-        let mut sum = pass.windows[0].combined([wide, middle], &pass.windows[1]);
+        let [wide, middle, _, extrapolated] = &pass.windows;
+        let mut sum = wide.combined([e1, e2], middle).combined([1.0, e0], extrapolated);
         sum.close_batch();
         sum
     };

@@ -126,31 +126,9 @@ impl Found {
 fn compare(row: &Row) -> String {
     let path = format!("scenes/{}.toml", row.scene);
     let job = input::load(Path::new(&path), &Settings::default()).expect("the scenes are valid");
-    let plain = |request| {
-        let runs: Vec<Found> = (0..RUNS)
-            .map(|run| {
-                let (seconds, findings) = traced(&job.scene, &plan(&job, request, run), WAVES);
-                let readings = findings.backward.unwrap_or(findings.photons);
-                Found::new(&job.scene, &readings, seconds)
-            })
-            .collect();
-        Found::in_all(&runs)
-    };
-    let [forward, backward, mix] = [Request::Forward, Request::Backward, Request::Mix].map(plain);
-    let (mut wide, mut value, mut look_up) = (Vec::new(), Vec::new(), 0.0);
-    for run in 0..RUNS {
-        let waves = PASSES / WAVE_PASSES;
-        let (seconds, findings) = traced(&job.scene, &plan(&job, Request::Gather, run), waves);
-        let mut gathered = findings.gathered.expect("it was asked for");
-        let windows = gathered.stages.remove(0).windows;
-        if run == 0 {
-            let streamed = seconds - records_alone(&job, &gathered.settings);
-            look_up = streamed / photons_alone(&job) - 1.0;
-        }
-        wide.push(Found::new(&job.scene, &windows.wide, seconds));
-        value.push(Found::new(&job.scene, &windows.extrapolated, seconds));
-    }
-    let [wide, value] = [wide, value].map(|runs| Found::in_all(&runs));
+    let [forward, backward, mix] =
+        [Request::Forward, Request::Backward, Request::Mix].map(|request| plain(&job, request));
+    let Gathering { wide, value, look_up } = gathered(&job);
     let square = wide.square;
     let columns = |found: &Found| {
         let ratio = backward.time(square) / found.time(square);
@@ -191,6 +169,43 @@ fn compare(row: &Row) -> String {
         chosen.name(),
         (pilot + chosen_time) / best,
     )
+}
+
+/// What an estimator without windows finds.
+fn plain(job: &Job, request: Request) -> Found {
+    let of_run = |run| {
+        let (seconds, findings) = traced(&job.scene, &plan(job, request, run), WAVES);
+        let readings = findings.backward.unwrap_or(findings.photons);
+        Found::new(&job.scene, &readings, seconds)
+    };
+    Found::in_all(&(0..RUNS).map(of_run).collect::<Vec<Found>>())
+}
+
+/// What gathering finds.
+struct Gathering {
+    /// Within the widest window of the first stage, E1.
+    wide: Found,
+    /// Freed of the bias that goes with the window's square, E0.
+    value: Found,
+    /// Time of look-ups over that of the photons alone, 1.
+    look_up: f64,
+}
+
+fn gathered(job: &Job) -> Gathering {
+    let (mut wide, mut value, mut look_up) = (Vec::new(), Vec::new(), 0.0);
+    for run in 0..RUNS {
+        let waves = PASSES / WAVE_PASSES;
+        let (seconds, findings) = traced(&job.scene, &plan(job, Request::Gather, run), waves);
+        let mut gathered = findings.gathered.expect("it was asked for");
+        let windows = gathered.stages.remove(0).windows;
+        if run == 0 {
+            let streamed = seconds - records_alone(job, &gathered.settings);
+            look_up = streamed / photons_alone(job) - 1.0;
+        }
+        wide.push(Found::new(&job.scene, &windows.wide, seconds));
+        value.push(Found::new(&job.scene, &windows.extrapolated, seconds));
+    }
+    Gathering { wide: Found::in_all(&wide), value: Found::in_all(&value), look_up }
 }
 
 /// A flux over the truth, with the error of both.

@@ -123,8 +123,9 @@ fn expect_sense(job: &Job) -> Result<Vec<Diagnostic>> {
 /// Remarks on sensors from which no gather path could bring light.
 fn expect_sight(job: &Job, problems: &mut Problems) {
     match job.run.estimator {
-        Request::Auto | Request::Forward => return,
-        Request::Backward | Request::Mix | Request::Gather | Request::Mis => {}
+        // Photons find what gather paths do not.
+        Request::Auto | Request::Forward | Request::Mix => return,
+        Request::Backward | Request::Gather | Request::Mis => {}
     }
     for sensor in blind_sensors(&job.scene, job.run.seed) {
         let name = &job.scene.sensors[sensor.index()].name;
@@ -148,9 +149,9 @@ fn expect_visible_sources(job: &Job, problems: &mut Problems) {
         let Some(why) = invisible(source, &job.scene) else { continue };
         let (name, wanted) = (&source.name, job.run.estimator.name());
         let message = format!("`{wanted}` paths cannot meet the source `{name}`: {why}");
-        problems
-            .error(&Key::of(&["run", "estimator"]), message)
-            .hint("use `forward` or `auto`, or give the source an area and a cone of directions");
+        problems.error(&Key::of(&["run", "estimator"]), message).hint(
+            "use `forward`, `mix` or `auto`, or give the source an area and a cone of directions",
+        );
     }
 }
 
@@ -168,7 +169,7 @@ fn expect_discrete_directions(job: &Job, problems: &mut Problems) {
         );
         problems
             .error(&Key::of(&["run", "estimator"]), message)
-            .hint("use `auto`, or one of `forward`, `backward` and `gather`");
+            .hint("use `auto`, or one of `forward`, `backward`, `mix` and `gather`");
     }
 }
 

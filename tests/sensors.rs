@@ -200,3 +200,31 @@ fn what_the_bounce_limit_cuts_of_gather_paths_is_told() {
         assert!(value(&whole, "cell.flux") > 0.0);
     }
 }
+
+/// Light that a photon brings over one interface, the sensor's own, is not beyond a limit of one.
+#[test]
+fn gather_paths_of_leaving_light_reach_as_far_as_photons() {
+    let text = r#"
+        [finishes.paper]
+        lambertian = { reflectance = 0.8 }
+        [sheets.screen.disk]
+        radius_mm = 5
+        finish = "paper"
+        [sources.lamp.disk]
+        radius_mm = 1
+        flux_lm = 2
+        at = { position_mm = [0, 0, 3], axis = [0, 0, -1] }
+        [sensors.screen]
+        on = "screen.surface"
+        counts = "leaving"
+        plane = {}
+        [run]
+        bounce_limit = 1"#;
+    let [forward, backward, mix] = [Request::Forward, Request::Backward, Request::Mix]
+        .map(|estimator| measures_by(estimator, 50_000, text).values["screen.flux"].clone());
+    assert!(forward.value > 1.0, "{forward}");
+    for other in [backward, mix] {
+        let error = other.std_error.hypot(forward.std_error);
+        assert!((other.value - forward.value).abs() < 4.0 * error, "{other}, not {forward}");
+    }
+}

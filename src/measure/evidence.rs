@@ -108,7 +108,8 @@ impl<'a> Evidence<'a> {
         if whole.value == 0.0 {
             return self.measure(0.0, f64::INFINITY, "1", Status::NoSignal);
         }
-        // Counted by different paths, the two are independent.
+        // Counted by different paths, the two are independent; where photons have a share in both, the error is a little
+        // too large.
         let value = part.value / whole.value;
         let std_error = part.std_error.hypot(value * whole.std_error) / whole.value;
         self.measure(value, std_error, "1", part.status.worst(whole.status))

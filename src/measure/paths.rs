@@ -27,8 +27,8 @@ pub struct SensorPaths {
     pub lost: Option<LostPaths>,
 }
 
-/// Gather paths that ended before their end, as shares of the throughput of all at their start: nobody knows what they
-/// would have met.
+/// Gather paths that ended before their end, by throughput, as shares of all that were drawn, those included that miss
+/// the sensor or its aim: nobody knows what they would have met.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct LostPaths {
     /// Cut by the bounce limit, 1.

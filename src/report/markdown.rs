@@ -122,7 +122,7 @@ fn choices(report: &Report) -> String {
     let mut text = "## Choice of estimators\n\nA pilot has tried the estimators on each sensor. The table has the time that one \
                     thread would need until the sensor's flux or map is known to 1 %, told from counted work \
                     (docs/method.md). Gathering is not chosen where its windows differ by more than noise, or where an \
-                    unbiased estimator contradicts it.\n\n\
+                    unbiased estimator contradicts it, and no estimator that found less light of a source than another, beyond their errors.\n\n\
                     | sensor | chosen | forward | backward | mix | gather |\n|---|---|--:|--:|--:|--:|\n"
         .to_owned();
     for (sensor, choice) in choices {

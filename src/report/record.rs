@@ -220,8 +220,8 @@ fn remark_on_lost_paths(sensor: &str, lost: LostPaths) -> Option<String> {
     (cut + leaked > CUT_SHARE).then(|| {
         format!(
             "{} of the throughput of gather paths from sensor `{sensor}` was cut by the bounce limit and {} lost through \
-             holes in the geometry, and with it whatever light they would have met; raise run.bounce_limit, or take \
-             `forward`",
+             holes in the geometry, and with it their share of the light they would have met; raise run.bounce_limit, or \
+             mend the geometry",
             format_percent(cut),
             format_percent(leaked)
         )

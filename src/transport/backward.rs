@@ -61,15 +61,15 @@ impl<'s> Backward<'s> {
         Self { paths: paths.max(1), ..self }
     }
 
+    /// The same, with forward having a share in some of the sensors.
+    pub(crate) fn mixed(self, sensors: &[SensorId]) -> Self {
+        Self { mixed: sensors.to_vec(), ..self }
+    }
+
     /// Work of a gather path, mean of a few that are not counted.
     pub(crate) fn work_of_path(&self) -> f64 {
         let segments = self.batch(PILOT_BATCH, &[]).segments;
         work::of_gather_paths(self.batch_paths(), segments) / self.batch_paths() as f64
-    }
-
-    /// The same, with forward having a share in some of the sensors.
-    pub(crate) fn mixed(self, sensors: &[SensorId]) -> Self {
-        Self { mixed: sensors.to_vec(), ..self }
     }
 
     /// Gather paths of all sensors in a batch.

@@ -12,7 +12,8 @@ use serde::{Deserialize, Serialize};
 pub struct Findings {
     /// By photons: the balance, and all sensors.
     pub photons: Readings,
-    /// By gather paths that were followed to their sources: sensors estimated backward, and mixed ones with the share of photons.
+    /// By gather paths that were followed to their sources: sensors estimated backward, and mixed ones with the share of
+    /// photons.
     pub backward: Option<Readings>,
     /// By gather records.
     pub gathered: Option<Gathered>,

@@ -59,13 +59,14 @@ pub(crate) fn follow(
     collector: &mut impl Collector,
 ) -> u64 {
     let path = Path::arriving(gathering.scene, arrival);
-    let stage = match arrival.begins {
-        Begins::BeforeFace => Stage::BeforeFace,
-        Begins::OnSensor => Stage::First,
+    let (stage, limit) = match arrival.begins {
+        // A photon is counted as it leaves the face, before it can be cut there.
+        Begins::BeforeFace => (Stage::BeforeFace, gathering.bounce_limit.saturating_add(1)),
+        Begins::OnSensor => (Stage::First, gathering.bounce_limit),
     };
     let before_aim = SmallVec::new();
     let mut follower = Follower { gathering, collector, stage, before_aim, segments: 0 };
-    walk(gathering.scene, path, gathering.bounce_limit, sampler, &mut follower);
+    walk(gathering.scene, path, limit, sampler, &mut follower);
     follower.segments
 }
 

@@ -116,7 +116,7 @@ impl Layout {
         self.outside_aim(sensor) + 4 + tail
     }
 
-    /// Throughput of the gather paths of a sensor that were lost, per path: a share, not a flux.
+    /// Throughput of the gather paths of a sensor that were lost, per path drawn: a share, not a flux.
     pub fn lost_paths(&self, sensor: SensorId, loss: Loss) -> usize {
         let first = self.deeper(sensor, TAILS.len());
         match loss {

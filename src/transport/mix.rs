@@ -52,8 +52,14 @@ impl PhotonWatcher for Mixing<'_, '_> {
         let known = sensors.iter().find(|(id, _)| *id == light.sensor && mixed.contains(id));
         let cells: SmallVec<[usize; 4]> = cells.collect();
         let (Some((id, arrivals)), false) = (known, cells.is_empty()) else { return };
-        let gather = light.etendue(scene, arrivals, path.wavelength) / *paths as f64;
-        let [weight, ..] = Etendues { photon: self.photon, gather, window: NO_WINDOW }.forward();
+        let weight = if self.photon > 0.0 {
+            let gather = light.etendue(scene, arrivals, path.wavelength) / *paths as f64;
+            let [weight, ..] =
+                Etendues { photon: self.photon, gather, window: NO_WINDOW }.forward();
+            weight
+        } else {
+            1.0
+        };
         let (flux, source) = (light.flux * weight, light.source);
         self.readings.count(layout, *id, &cells, &Counted { flux, depth: path.depth, source });
     }

@@ -1,12 +1,13 @@
 //! The choice between the estimators, by measurement: a pilot of each on every sensor.
 //!
 //! The work until a relative error is reached is t = work × relative variance / error², and that of the passes without
-//! which gathering tells nothing at least. The pilot measures it for forward, backward, their mix and gather with a small part of
-//! the budget, in counted work, never in time; the least t is taken. A run to a target has the budget that a first,
-//! small pilot says the best needs.
+//! which gathering tells nothing at least. The pilot measures it for forward, backward, their mix and gather with a small
+//! part of the budget, in counted work, never in time; the least t is taken. A run to a target has the budget that a
+//! first, small pilot says the best needs.
 //! Gathering is left out where something speaks against it: nested windows that differ by more than the target and
 //! their noise, or a flux that the best of the unbiased ones contradicts. Two windows alone are blind to a feature that
-//! is smaller than both.
+//! is smaller than both. An unbiased estimator is left out that found too little beside another: what it has missed so
+//! far is missing from its variance, too.
 
 mod trials;
 
@@ -82,7 +83,7 @@ impl Trial {
 pub enum Objection {
     /// Its nested windows differ by more than the target, beyond their noise.
     WindowsDiffer,
-    /// Its flux is not that of an unbiased estimator.
+    /// Its flux is not that of an unbiased estimator; of an unbiased one, it is less than that of another.
     Contradicted,
 }
 
@@ -131,7 +132,10 @@ fn choices(trials: &Trials<'_>, budget: f64) -> Vec<Choice> {
             objection: objection(gathered, &unbiased, target.unwrap_or(USUAL_TARGET)),
             ..gathered.tried.trial.clone()
         });
-        let unbiased = unbiased.into_iter().map(|tried| tried.trial.clone());
+        let unbiased = unbiased.iter().map(|tried| Trial {
+            objection: misses_light(tried, &unbiased).then_some(Objection::Contradicted),
+            ..tried.trial.clone()
+        });
         let tried: Vec<Trial> = unbiased.chain(gathered).collect();
         let chosen = best(&tried, target.or_else(|| least_error(&tried, budget)));
         Choice { chosen, tried }
@@ -155,6 +159,16 @@ fn best(tried: &[Trial], error: Option<f64>) -> Estimator {
 /// Standard error over value; infinite or not a number in the dark.
 fn relative_error(flux: &Tally) -> f64 {
     flux.std_error() / flux.mean()
+}
+
+/// Whether an unbiased estimator found less of the light of a source than another, beyond their errors.
+fn misses_light(tried: &Tried, others: &[&Tried]) -> bool {
+    others.iter().any(|other| {
+        tried.by_source.iter().zip(&other.by_source).any(|(own, other)| {
+            let error = own.std_error().hypot(other.std_error());
+            relative_error(other) < KNOWN && other.mean() - own.mean() > SIGMAS * error
+        })
+    })
 }
 
 /// What speaks against a gathered flux, beside what the unbiased estimators found.
@@ -183,7 +197,8 @@ mod tests {
     }
 
     fn tried(estimator: Estimator, fluxes: [f64; 4]) -> Tried {
-        Tried { trial: trial(estimator, Some(1.0)), flux: Tally::of(fluxes) }
+        let by_source = vec![Tally::of(fluxes)];
+        Tried { trial: trial(estimator, Some(1.0)), flux: Tally::of(fluxes), by_source }
     }
 
     fn gathered(fluxes: [f64; 4], apart: [f64; 4]) -> Gathered {
@@ -225,6 +240,16 @@ mod tests {
         assert_eq!(with([0.2, 0.21, 0.2, 0.19]), Some(Objection::WindowsDiffer));
         assert_eq!(with([0.009; 4]), None, "within the target");
         assert_eq!(with([0.3, -0.2, 0.25, -0.15]), None, "noise");
+    }
+
+    #[test]
+    fn an_estimator_that_has_missed_light_is_left_out() {
+        let sharp = tried(Estimator::Backward, [1.0, 1.001, 0.999, 1.0]);
+        let all = tried(Estimator::Forward, [1.8, 2.2, 2.1, 1.9]);
+        let noisy = tried(Estimator::Forward, [0.0, 6.0, 0.0, 2.0]);
+        assert!(misses_light(&sharp, &[&all, &sharp]));
+        assert!(!misses_light(&all, &[&all, &sharp]), "less is no reason to doubt more");
+        assert!(!misses_light(&sharp, &[&noisy, &sharp]), "noise");
     }
 
     #[test]

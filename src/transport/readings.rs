@@ -204,7 +204,7 @@ impl Readings {
         count_totals(&mut self.groups[0].sums, layout, id, light);
     }
 
-    /// Counts a gather path of this throughput that was lost.
+    /// Counts a gather path of this throughput that was lost, as a share of all that were drawn.
     pub(crate) fn count_lost(
         &mut self,
         layout: &Layout,

@@ -15,7 +15,8 @@ use std::ops::Range;
 /// cells. What a look-up costs is waiting for memory, so that smaller tables win over sharper ones: docs/method.md.
 const POSITION_CELL: f64 = 4.0;
 const DIRECTION_CELL: f64 = 2.5;
-/// Photons that are looked up together: enough to wait for memory together, few enough to stay near.
+/// Photons that are looked up together: enough to wait for memory together, few enough to stay near, and no more than a
+/// word has bits.
 pub(crate) const TOGETHER: usize = 64;
 /// Bits of the filter for each entry of an index.
 const FILTER_BITS: usize = 8;

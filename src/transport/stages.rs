@@ -22,7 +22,7 @@ const GROWTH: u64 = 16;
 /// takes about 600 bytes.
 const MOST_GATHER_PATHS: u64 = 1 << 20;
 
-/// Readings within each of the nested windows, of the same photons and records.
+/// Readings of the estimates that windows of several sizes make of the same photons and records.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Windows {
     /// Within the whole window, E1.

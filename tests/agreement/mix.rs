@@ -1,8 +1,9 @@
 //! Forward and backward mixed: right where only one of them finds light, and better than both where each finds some.
 
 use crate::trial::{Way, agree, findings, load};
+use lumiduct::scene::plan::{Estimator, Request, RunPlan, StopRules};
 use lumiduct::scene::{SensorId, SourceId};
-use lumiduct::transport::Layout;
+use lumiduct::transport::{Layout, Run};
 
 /// A mirror tube with sources, and a cell behind it.
 fn tube(sources: &str) -> String {
@@ -32,6 +33,18 @@ fn sources_that_paths_cannot_meet_are_left_to_photons() {
         let text = tube(&format!("{SKY}{source}"));
         agree("sky and what cannot be met", &text, &[Way::Forward, Way::Mixed]);
     }
+}
+
+#[test]
+fn auto_takes_the_mix_for_light_of_two_kinds() {
+    let job = load(&tube(&format!("{SKY}{SUN}")), Way::Forward);
+    // A pilot of less would not see the sun.
+    let stop = StopRules { paths: Some(20_000_000), ..StopRules::default() };
+    let plan = RunPlan { estimator: Request::Auto, stop, ..job.run.clone() };
+    let mut run = Run::new(&job.scene, &plan);
+    run.next_piece();
+    let found = run.findings();
+    assert_eq!(found.estimators, [Estimator::Mix], "{:?}", found.choices);
 }
 
 /// Relative variance of the flux times the straight pieces traced for it.

@@ -140,8 +140,9 @@ fn limits(values: &[f64], scale: Scale, colours: ColourMap) -> [f64; 2] {
         }
         (ColourMap::Sequential, Scale::Linear | Scale::Tangent) => {
             let high = without_outliers(values);
-            // Values that differ by less than a half are shown in full contrast.
-            if least >= 0.0 && least <= 0.5 * high { [0.0, high] } else { [least, high] }
+            // Values that differ by less than a half are shown in full contrast. A little less than nothing is noise, and
+            // looks like nothing.
+            if least.abs() <= 0.5 * high { [0.0, high] } else { [least, high] }
         }
     }
 }
@@ -176,6 +177,8 @@ mod tests {
         let sequential = |values: &[f64], scale| limits(values, scale, ColourMap::Sequential);
         assert_eq!(sequential(&[2.0, 3.0, 5.0], Scale::Linear), [0.0, 5.0]);
         assert_eq!(sequential(&[4.0, 5.0], Scale::Linear), [4.0, 5.0]);
+        assert_eq!(sequential(&[-1.0, 5.0], Scale::Linear), [0.0, 5.0]);
+        assert_eq!(sequential(&[-4.0, 5.0], Scale::Linear), [-4.0, 5.0]);
         assert_eq!(sequential(&[0.0, 0.5, 5.0], Scale::Log), [0.5, 5.0]);
         assert_eq!(sequential(&[0.0, 1e-3, 1.0, 1e4], Scale::Log), [1e-2, 1e4]);
         assert_eq!(limits(&[-2.0, 5.0], Scale::Linear, ColourMap::Diverging), [-5.0, 5.0]);

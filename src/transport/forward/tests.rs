@@ -9,7 +9,8 @@ use crate::scene::{
     Seeing, Sensor, SensorId, SensorKind, Sides, Source, SourceId, Start, SurfaceSensor,
 };
 use crate::tally::sigmas;
-use crate::transport::{Readings, Run};
+use crate::transport::forward::{Detected, Forward, PhotonWatcher};
+use crate::transport::{Departure, Path, Readings, Run, Vertex};
 use crate::units::FluxUnit;
 use glam::DVec3;
 
@@ -118,6 +119,43 @@ fn readings_have_the_same_bits_on_any_number_of_threads() {
     for threads in [2, 3, 8] {
         assert!(one == on(threads), "{threads} threads differ");
     }
+}
+
+/// Counts what it sees.
+#[derive(Debug, Default, PartialEq)]
+struct Onlooker {
+    started: usize,
+    arrived: usize,
+    departed: usize,
+    detected: usize,
+}
+
+impl PhotonWatcher for Onlooker {
+    fn start(&mut self, _: &Path, _: SourceId, _: usize) {
+        self.started += 1;
+    }
+
+    fn arrive(&mut self, _: &Path, _: &Vertex<'_>, _: f64, _: SourceId) {
+        self.arrived += 1;
+    }
+
+    fn depart(&mut self, _: &Path, _: &Vertex<'_>, _: &Departure) {
+        self.departed += 1;
+    }
+
+    fn detect(&mut self, _: &Path, _: &Detected, cells: impl Iterator<Item = usize> + Clone) {
+        self.detected += cells.count();
+    }
+}
+
+#[test]
+fn two_who_watch_the_same_photons_see_the_same() {
+    let scene = mirror_tube(0.95, 20.0);
+    let (mut first, mut second) = (Onlooker::default(), Onlooker::default());
+    Forward::new(&scene, 1, 1000, 500).batch_watched(0, &mut (&mut first, &mut second));
+    assert_eq!(first, second);
+    assert_eq!(first.started, 500);
+    assert!(first.detected > 100 && first.arrived > 500 && first.departed > 500, "{first:?}");
 }
 
 #[test]

@@ -125,18 +125,17 @@ impl<'p, 's> Stream<'p, 's> {
         let (kernel, windows, work) = (&self.kernel, &mut *self.windows, &mut self.work);
         let (passing, keys) = (&self.passing, &self.keys);
         work.look_ups += passing.len() as u64;
-        // Most photons that pass the filter are near no record after all.
+        // Most photons that pass the filter are near no record after all: one bit for each that is.
+        let mut near = 0u64;
         let mut known: Option<(usize, Arriving)> = None;
         self.waiting.records.visit(keys, |index, record| {
             let photon = &passing[index];
             let met = match known {
                 Some((last, met)) if last == index => met,
-                Some(_) | None => {
-                    work.near += 1;
-                    arriving(scene, &keys[index], photon)
-                }
+                Some(_) | None => arriving(scene, &keys[index], photon),
             };
             known = Some((index, met));
+            near |= 1 << index;
             let Some(shares) = kernel.flux(record, &met) else { return };
             work.pairs += 1;
             let Ended { sensor, cells, etendues, .. } = &self.waiting.paths[record.path as usize];
@@ -151,6 +150,7 @@ impl<'p, 's> Stream<'p, 's> {
                 }
             }
         });
+        work.near += u64::from(near.count_ones());
         self.passing.clear();
         self.keys.clear();
     }

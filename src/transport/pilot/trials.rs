@@ -38,11 +38,12 @@ pub(super) struct Trials<'a> {
     pub(super) effort: f64,
 }
 
-/// A trial, and the flux it found, batch by batch.
+/// A trial, and the flux it found, batch by batch: in all, and of each source.
 #[derive(Debug)]
 pub(super) struct Tried {
     pub(super) trial: Trial,
     pub(super) flux: Tally,
+    pub(super) by_source: Vec<Tally>,
 }
 
 /// A trial of gathering, and how far its nested windows are apart: E1 - E2, pass by pass.
@@ -167,7 +168,10 @@ impl Trials<'_> {
             let variance = relative_variance(self.scene, batches, &merged, sensor);
             let cost = variance.map(|variance| 1e-9 * work * variance);
             let trial = Trial { estimator, cost, bias: None, least: 0.0, objection: None };
-            Tried { trial, flux: flux(self.scene, batches, sensor) }
+            let by_source = sources(self.scene)
+                .map(|source| flux_of(self.scene, batches, sensor, std::iter::once(source)));
+            let by_source = by_source.collect();
+            Tried { trial, flux: flux(self.scene, batches, sensor), by_source }
         };
         self.sensors.iter().map(of_sensor).collect()
     }
@@ -224,9 +228,23 @@ fn relative_variance(
 
 /// The flux of a sensor, batch by batch.
 fn flux(scene: &Scene, batches: &[Readings], sensor: SensorId) -> Tally {
+    flux_of(scene, batches, sensor, sources(scene))
+}
+
+/// That of some sources.
+fn flux_of(
+    scene: &Scene,
+    batches: &[Readings],
+    sensor: SensorId,
+    sources: impl Iterator<Item = SourceId> + Clone,
+) -> Tally {
     let layout = Layout::new(scene);
-    let sources = || (0..scene.sources.len()).map(SourceId::new);
     Tally::of(batches.iter().map(|batch| {
-        sources().map(|source| batch.groups[0].sums[layout.sensor_flux(sensor, source)]).sum()
+        let sums = &batch.groups[0].sums;
+        sources.clone().map(|source| sums[layout.sensor_flux(sensor, source)]).sum()
     }))
+}
+
+fn sources(scene: &Scene) -> impl Iterator<Item = SourceId> + Clone + use<> {
+    (0..scene.sources.len()).map(SourceId::new)
 }

@@ -214,14 +214,14 @@ fn gather_paths_of_leaving_light_reach_as_far_as_photons() {
         radius_mm = 1
         flux_lm = 2
         at = { position_mm = [0, 0, 3], axis = [0, 0, -1] }
-        [sensors.screen]
+        [sensors.paper_seen]
         on = "screen.surface"
         counts = "leaving"
         plane = {}
         [run]
         bounce_limit = 1"#;
     let [forward, backward, mix] = [Request::Forward, Request::Backward, Request::Mix]
-        .map(|estimator| measures_by(estimator, 50_000, text).values["screen.flux"].clone());
+        .map(|estimator| measures_by(estimator, 50_000, text).values["paper_seen.flux"].clone());
     assert!(forward.value > 1.0, "{forward}");
     for other in [backward, mix] {
         let error = other.std_error.hypot(forward.std_error);

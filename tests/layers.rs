@@ -118,3 +118,24 @@ fn every_scene_has_a_report_and_a_check() {
         }
     }
 }
+
+#[test]
+fn every_example_that_a_scene_names_is_there() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut named = 0;
+    for entry in std::fs::read_dir(root.join("scenes")).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_none_or(|extension| extension != "toml") {
+            continue;
+        }
+        let text = std::fs::read_to_string(&path).unwrap();
+        for rest in text.split("--example ").skip(1) {
+            let name: String =
+                rest.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+            let example = root.join("examples").join(&name).with_extension("rs");
+            assert!(example.is_file(), "{}: no example `{name}`", path.display());
+            named += 1;
+        }
+    }
+    assert!(named > 0, "no scene names an example");
+}

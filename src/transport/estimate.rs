@@ -97,7 +97,7 @@ impl Kernel {
 
     #[inline]
     fn each(&self, record: &GatherRecord<'_>, share: impl Fn(usize) -> f64) -> [f64; COUNTED] {
-        [0, 1, 2, 3, 4].map(|window| record.values[RADIUS_OF[window]] * share(window))
+        std::array::from_fn(|window| record.values[RADIUS_OF[window]] * share(window))
     }
 
     /// `K_θ / |cos θ_p|` for one of the nested angles, 1/sr; `cos_wanted` is that of the cone's axis at the photon's place.

@@ -49,9 +49,9 @@ impl PhotonWatcher for Mixing<'_, '_> {
         cells: impl Iterator<Item = usize> + Clone,
     ) {
         let Backward { scene, layout, sensors, mixed, paths, .. } = self.backward;
-        let known = sensors.iter().find(|(id, _)| *id == light.sensor && mixed.contains(id));
+        let known = light.arrivals(sensors).filter(|_| mixed.contains(&light.sensor));
         let cells: SmallVec<[usize; 4]> = cells.collect();
-        let (Some((id, arrivals)), false) = (known, cells.is_empty()) else { return };
+        let (Some(arrivals), false) = (known, cells.is_empty()) else { return };
         let weight = if self.photon > 0.0 {
             let gather = light.etendue(scene, arrivals, path.wavelength) / *paths as f64;
             let [weight, ..] =
@@ -61,6 +61,7 @@ impl PhotonWatcher for Mixing<'_, '_> {
             1.0
         };
         let (flux, source) = (light.flux * weight, light.source);
-        self.readings.count(layout, *id, &cells, &Counted { flux, depth: path.depth, source });
+        let counted = Counted { flux, depth: path.depth, source };
+        self.readings.count(layout, light.sensor, &cells, &counted);
     }
 }

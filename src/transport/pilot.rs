@@ -115,15 +115,17 @@ fn budget(plan: &RunPlan, photons: PhotonPilot) -> Option<f64> {
 /// Tries all that may be tried on each sensor, for a run of so many seconds.
 fn choices(trials: &Trials<'_>, budget: f64) -> Vec<Choice> {
     let Trials { scene, plan, sensors, .. } = trials;
+    if sensors.is_empty() {
+        return Vec::new();
+    }
     let forward = trials.forward();
     let can_meet = |source: &Source| invisible(source, scene).is_none();
-    let (all, some) = (scene.sources.iter().all(can_meet), scene.sources.iter().any(can_meet));
-    let tried = |may_be: bool, of: &dyn Fn() -> Vec<Tried>| {
-        if may_be && !sensors.is_empty() { of() } else { Vec::new() }
+    let mix = if scene.sources.iter().any(can_meet) { trials.mix() } else { Vec::new() };
+    let (backward, gather) = if scene.sources.iter().all(can_meet) {
+        (trials.backward(), trials.gather())
+    } else {
+        (Vec::new(), Vec::new())
     };
-    let backward = tried(all, &|| trials.backward());
-    let mix = tried(some, &|| trials.mix());
-    let gather = if all && !sensors.is_empty() { trials.gather() } else { Vec::new() };
     let target = plan.stop.target.as_ref().map(|target| target.relative_error);
     let of_sensor = |sensor: &SensorId| {
         let unbiased = [&forward, &backward, &mix].map(|tried| tried.get(sensor.index()));

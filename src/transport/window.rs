@@ -47,8 +47,7 @@ impl Window {
     /// The windows in which pairs are counted.
     pub(crate) fn counted(self) -> [Self; COUNTED] {
         let nested = self.nested();
-        let places = [0, 1, 2, 3, 4];
-        places.map(|place: usize| Self {
+        std::array::from_fn(|place| Self {
             radius: nested[RADIUS_OF[place]].radius,
             theta_max: nested[ANGLE_OF[place]].theta_max,
         })

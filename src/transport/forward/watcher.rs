@@ -52,6 +52,14 @@ pub(crate) struct Detected {
 }
 
 impl Detected {
+    /// The gather paths of its sensor, if that is among some.
+    pub(crate) fn arrivals<'a, 's>(
+        &self,
+        sensors: &'a [(SensorId, Arrivals<'s>)],
+    ) -> Option<&'a Arrivals<'s>> {
+        sensors.iter().find(|(id, _)| *id == self.sensor).map(|(_, arrivals)| arrivals)
+    }
+
     /// Etendue that a gather path which comes back along the light would stand for, if the sensor had but one, mm² sr.
     pub(crate) fn etendue(&self, scene: &Scene, arrivals: &Arrivals<'_>, wavelength: f64) -> f64 {
         let index = scene.media[self.medium.index()].index(wavelength);

@@ -109,8 +109,8 @@ impl PhotonWatcher for MergedStream<'_, '_, '_> {
     ) {
         let cells: SmallVec<[usize; 4]> = cells.collect();
         let gather = self.stream.gather;
-        let known = gather.sensors.iter().find(|(id, _)| *id == light.sensor);
-        let (Some((id, arrivals)), false) = (known, cells.is_empty()) else { return };
+        let known = light.arrivals(&gather.sensors);
+        let (Some(arrivals), false) = (known, cells.is_empty()) else { return };
         let gathered = light.etendue(gather.scene, arrivals, path.wavelength);
         let etendues = Etendues {
             photon: self.photon,
@@ -120,12 +120,8 @@ impl PhotonWatcher for MergedStream<'_, '_, '_> {
         let weights = estimates(etendues.forward());
         for (readings, weight) in self.stream.windows.iter_mut().zip(weights) {
             let (flux, source) = (light.flux * weight, light.source);
-            readings.count(
-                &gather.layout,
-                *id,
-                &cells,
-                &Counted { flux, depth: path.depth, source },
-            );
+            let counted = Counted { flux, depth: path.depth, source };
+            readings.count(&gather.layout, light.sensor, &cells, &counted);
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The range of an axis: from the data to round ends. What is drawn along it is not known here.
+//! The range of an axis, from the data. What is drawn along it is not known here.
 
 use crate::report::png::axis::{Axis, Scale};
 

@@ -83,7 +83,8 @@ fn joined(
     if cos_wall <= 0.0 || cos_cell <= 0.0 {
         return 0.0;
     }
-    let incidence = Incidence { dir: vertex.dir, normal, index_from: 1.0, index_to: 1.0 };
+    let incidence =
+        Incidence { dir: vertex.dir, normal, index_from: 1.0, index_to: 1.0, grain: DVec3::ZERO };
     let value = evaluate(wall, &incidence, dir);
     if value == 0.0 {
         return 0.0;

@@ -2,9 +2,11 @@
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "this is the program's face")]
 
 mod compare;
+mod film;
 mod values;
 
 use crate::cli::compare::CompareArgs;
+use crate::cli::film::FilmArgs;
 use crate::cli::values::{
     parse_angle, parse_count, parse_percent, parse_radius, parse_records, parse_time, words,
 };
@@ -44,6 +46,8 @@ enum Command {
     Compare(CompareArgs),
     /// Validate a scene, print what is in it, and draw a cross-section with 50 traced paths.
     Check(CheckArgs),
+    /// Print reflectance and transmittance of the prism films of a scene against the angle.
+    Film(FilmArgs),
     /// List scenes and sensor files in a folder.
     List {
         /// The folder to look in.
@@ -154,6 +158,7 @@ pub fn main() -> ExitCode {
         Command::Run(args) => run(&args),
         Command::Compare(args) => compare::compare(&args),
         Command::Check(args) => check(&args),
+        Command::Film(args) => film::film(&args),
         Command::List { folder } => finish(input::list(&folder)),
         Command::Schema => finish(Ok(format!("{:#}\n", input::schema::json_schema()))),
         Command::Completions { shell } => {

@@ -101,6 +101,25 @@ pub(super) fn words<T: Clone + Send + Sync + 'static, const N: usize>(
         .try_map(move |name| named(&name).ok_or_else(|| format!("`{name}` is not known")))
 }
 
+/// A step of an angle, in degrees.
+pub(super) fn parse_step(text: &str) -> Result<f64, String> {
+    parse_within(text, [0.1, 45.0])
+}
+
+/// A refractive index.
+pub(super) fn parse_index(text: &str) -> Result<f64, String> {
+    parse_within(text, [1.0, 4.0])
+}
+
+fn parse_within(text: &str, [least, most]: [f64; 2]) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| format!("`{text}` is no number"))?;
+    if (least..=most).contains(&value) {
+        Ok(value)
+    } else {
+        Err(format!("`{text}` is out of range, expected {least} to {most}"))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

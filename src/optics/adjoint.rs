@@ -9,6 +9,8 @@
 //!   the gather path does, without a factor.
 //! * Light that passes without being bent, whatever the indices are, keeps cos θ dω and not n² cos θ dω; and a diffuser
 //!   mixes radiance, not basic radiance. Then `n_i²/n_o²` stays.
+//! * Prism films: every path through the film is smooth interfaces; it is the same both ways, and so is the place of the
+//!   period, which is drawn evenly.
 //! * Gaussian scatter: a photon meets a smooth face or a thin sheet first and the lobe afterwards, so the gather path
 //!   meets the lobe first. It draws the mean direction m of the photon from p(m|o), which costs
 //!   `p(o|m) cos θ_m / (p(m|o) cos θ_o)`, and goes on from m as from a face without scatter. So every photon direction
@@ -47,6 +49,8 @@ pub fn scatter_radiance(
 ) -> Option<Scattered> {
     match (faces.own, faces.behind) {
         (Bsdf::Smooth, Bsdf::Smooth) => Bsdf::Smooth.scatter(incidence, sampler),
+        // Behind a film is the same film.
+        (own @ Bsdf::PrismFilm { .. }, _) => own.scatter(incidence, sampler),
         (own, behind) if std::ptr::eq(own, behind) => by_one_finish(own, incidence, sampler),
         (own, behind) => by_two_finishes(own, behind, incidence, sampler),
     }
@@ -58,7 +62,9 @@ fn by_one_finish(
     sampler: &mut Sampler<impl Numbers>,
 ) -> Option<Scattered> {
     match bsdf {
-        Bsdf::Smooth | Bsdf::Metal { .. } | Bsdf::Absorber => bsdf.scatter(incidence, sampler),
+        Bsdf::Smooth | Bsdf::Metal { .. } | Bsdf::Absorber | Bsdf::PrismFilm { .. } => {
+            bsdf.scatter(incidence, sampler)
+        }
         Bsdf::Specular { .. } | Bsdf::Open | Bsdf::Lambertian { .. } => {
             bsdf.scatter(incidence, sampler).map(|out| unrefracted(out, incidence))
         }
@@ -102,6 +108,8 @@ fn chances(bsdf: &Bsdf, incidence: &Incidence) -> Shares {
             let reflected = shares(bsdf, incidence).reflected.clamp(0.1, 0.9);
             Shares { reflected, transmitted: 1.0 - reflected }
         }
+        // Whatever they are, no side is left out.
+        Bsdf::PrismFilm { .. } => Shares { reflected: 0.5, transmitted: 0.5 },
         Bsdf::Mixture(parts) => {
             let mut sum = Shares { reflected: 0.0, transmitted: 0.0 };
             for (weight, part) in parts {
@@ -154,6 +162,14 @@ pub fn scatter_toward(
         Bsdf::GaussianDielectric { lobe } => {
             let (mean, factor) = scattered_from(lobe, incidence, sampler)?;
             smooth_toward(side, &mean).map(|out| diffused(out, factor))
+        }
+        Bsdf::PrismFilm { film, face } => {
+            // The light meets the face on its own side, the gather path that on the side it comes from.
+            let met = match side {
+                Side::Reflected => *face,
+                Side::Transmitted => face.opposite(),
+            };
+            film.scatter(met, incidence, sampler).filter(|out| out.side == side)
         }
         Bsdf::Mixture(parts) => scatter_toward(pick(parts, sampler), side, incidence, sampler),
     }

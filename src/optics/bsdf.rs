@@ -4,7 +4,7 @@
 //! choose between the reflected and the refracted part. Everything that a finish does not send on is absorbed by it.
 
 use crate::math::{Frame, cosine_hemisphere, unit};
-use crate::optics::{Gaussian, fresnel};
+use crate::optics::{FilmFace, Gaussian, PrismFilm, fresnel};
 use crate::rng::{Dimension, Numbers, Sampler};
 use glam::DVec3;
 
@@ -19,6 +19,8 @@ pub struct Incidence {
     pub index_from: f64,
     /// Refractive index of the medium behind the face.
     pub index_to: f64,
+    /// Unit direction along the face by which a finish with a grain is laid; zero for finishes without.
+    pub grain: DVec3,
 }
 
 impl Incidence {
@@ -106,6 +108,13 @@ pub enum Bsdf {
         /// The lobe.
         lobe: Gaussian,
     },
+    /// A thin film with prisms on one face.
+    PrismFilm {
+        /// The film.
+        film: Box<PrismFilm>,
+        /// The face that is met.
+        face: FilmFace,
+    },
     /// Each photon meets one of several finishes, chosen by weight.
     Mixture(Vec<(f64, Bsdf)>),
 }
@@ -118,12 +127,18 @@ impl Bsdf {
             | Self::Specular { .. }
             | Self::Metal { .. }
             | Self::Absorber
-            | Self::Open => true,
+            | Self::Open
+            | Self::PrismFilm { .. } => true,
             Self::Lambertian { .. }
             | Self::GaussianSheet { .. }
             | Self::GaussianDielectric { .. } => false,
             Self::Mixture(parts) => parts.iter().all(|(_, part)| part.is_specular()),
         }
+    }
+
+    /// Whether light goes on in one discrete direction to each side, or not at all.
+    pub fn has_one_direction_a_side(&self) -> bool {
+        self.is_specular() && !self.has_grain()
     }
 
     /// Whether light can go through without being bent, as if both sides were of one index.
@@ -137,8 +152,50 @@ impl Bsdf {
             | Self::Metal { .. }
             | Self::Absorber
             | Self::Lambertian { .. }
-            | Self::GaussianDielectric { .. } => false,
+            | Self::GaussianDielectric { .. }
+            | Self::PrismFilm { .. } => false,
             Self::Mixture(parts) => parts.iter().any(|(_, part)| part.passes_straight()),
+        }
+    }
+
+    /// Whether it has a direction of its own on the face, so that [`Incidence::grain`] is needed.
+    #[inline]
+    pub fn has_grain(&self) -> bool {
+        match self {
+            Self::PrismFilm { .. } => true,
+            Self::Mixture(parts) => parts.iter().any(|(_, part)| part.has_grain()),
+            Self::Smooth
+            | Self::Specular { .. }
+            | Self::Metal { .. }
+            | Self::Absorber
+            | Self::Open
+            | Self::Lambertian { .. }
+            | Self::GaussianSheet { .. }
+            | Self::GaussianDielectric { .. } => false,
+        }
+    }
+
+    /// The same finish as light meets it that comes from the other side, where that is another one.
+    pub fn from_behind(&self) -> Option<Self> {
+        match self {
+            Self::PrismFilm { film, face } => {
+                Some(Self::PrismFilm { film: film.clone(), face: face.opposite() })
+            }
+            Self::Mixture(parts) if self.has_grain() => {
+                let turned = |part: &Self| part.from_behind().unwrap_or_else(|| part.clone());
+                Some(Self::Mixture(
+                    parts.iter().map(|(weight, part)| (*weight, turned(part))).collect(),
+                ))
+            }
+            Self::Smooth
+            | Self::Specular { .. }
+            | Self::Metal { .. }
+            | Self::Absorber
+            | Self::Open
+            | Self::Lambertian { .. }
+            | Self::GaussianSheet { .. }
+            | Self::GaussianDielectric { .. }
+            | Self::Mixture(_) => None,
         }
     }
 
@@ -161,6 +218,7 @@ impl Bsdf {
             | Self::Lambertian { .. }
             | Self::GaussianSheet { .. }
             | Self::GaussianDielectric { .. }
+            | Self::PrismFilm { .. }
             | Self::Mixture(_) => {
                 let out = self.scatter_rarely(incidence, sampler)?;
                 // Normalised here, not copied: so what mirrors send on need not go through memory either.
@@ -216,6 +274,7 @@ impl Bsdf {
                 let dir = lobe.sample(dir.normalize(), leaving_normal(incidence, side), sampler);
                 Some(Scattered { dir, factor: 1.0, side, lobe: Lobe::Diffuse })
             }
+            Self::PrismFilm { film, face } => film.scatter(*face, incidence, sampler),
             Self::Mixture(parts) => pick(parts, sampler).scatter(incidence, sampler),
         }
     }
@@ -224,7 +283,7 @@ impl Bsdf {
 /// Fresnel and Snell at a smooth interface; one draw, none under total reflection or between equal indices.
 #[inline]
 fn smooth(incidence: &Incidence, sampler: &mut Sampler<impl Numbers>) -> Scattered {
-    let Incidence { dir, normal, index_from, index_to } = *incidence;
+    let Incidence { dir, normal, index_from, index_to, .. } = *incidence;
     if index_from == index_to {
         return specular(dir, 1.0, Side::Transmitted);
     }
@@ -304,6 +363,7 @@ mod tests {
             normal: DVec3::Z,
             index_from,
             index_to,
+            grain: DVec3::ZERO,
         }
     }
 

@@ -17,9 +17,12 @@ pub fn evaluate(bsdf: &Bsdf, incidence: &Incidence, out: DVec3) -> f64 {
     let cos = out.dot(incidence.normal);
     let side = if cos > 0.0 { Side::Reflected } else { Side::Transmitted };
     match bsdf {
-        Bsdf::Smooth | Bsdf::Specular { .. } | Bsdf::Metal { .. } | Bsdf::Absorber | Bsdf::Open => {
-            0.0
-        }
+        Bsdf::Smooth
+        | Bsdf::Specular { .. }
+        | Bsdf::Metal { .. }
+        | Bsdf::Absorber
+        | Bsdf::Open
+        | Bsdf::PrismFilm { .. } => 0.0,
         Bsdf::Lambertian { .. } => shares(bsdf, incidence).of(side) / PI,
         Bsdf::GaussianSheet { lobe, .. } => {
             shares(bsdf, incidence).of(side)
@@ -93,7 +96,8 @@ mod tests {
                 [(0.9f64, 1.0, 1.49), (0.65, 1.49, 1.0), (1.0, 1.49, 1.0), (1.4, 1.0, 1.0)]
             {
                 let dir = DVec3::new(angle.sin(), 0.0, -angle.cos());
-                let incidence = Incidence { dir, normal: DVec3::Z, index_from, index_to };
+                let incidence =
+                    Incidence { dir, normal: DVec3::Z, index_from, index_to, grain: DVec3::ZERO };
                 for side in [Side::Reflected, Side::Transmitted] {
                     let what = format!("{bsdf:?} at {angle}, {side:?}");
                     let expected = moments(&bsdf, &incidence, side);
@@ -122,8 +126,13 @@ mod tests {
 
     #[test]
     fn discrete_directions_have_no_value() {
-        let incidence =
-            Incidence { dir: DVec3::NEG_Z, normal: DVec3::Z, index_from: 1.0, index_to: 1.49 };
+        let incidence = Incidence {
+            dir: DVec3::NEG_Z,
+            normal: DVec3::Z,
+            index_from: 1.0,
+            index_to: 1.49,
+            grain: DVec3::ZERO,
+        };
         for bsdf in [Bsdf::Smooth, Bsdf::Open, Bsdf::Metal { n: 0.8, k: 5.9 }] {
             assert_eq!(evaluate(&bsdf, &incidence, DVec3::Z), 0.0);
         }

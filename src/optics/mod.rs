@@ -6,6 +6,7 @@
 mod adjoint;
 mod bsdf;
 mod evaluate;
+pub mod film;
 pub mod fresnel;
 mod gaussian;
 mod medium;
@@ -15,6 +16,7 @@ mod spread;
 pub use adjoint::{Faces, scatter_radiance, scatter_toward};
 pub use bsdf::{Bsdf, Incidence, Lobe, Scattered, Side};
 pub use evaluate::evaluate;
+pub use film::{FilmFace, FilmMake, Grain, PrismFilm};
 pub use gaussian::Gaussian;
 pub use medium::Medium;
 pub use shares::{Shares, chances, shares};

@@ -34,7 +34,8 @@ pub fn chances(bsdf: &Bsdf, incidence: &Incidence) -> Shares {
         | Bsdf::GaussianSheet { .. }
         | Bsdf::Metal { .. }
         | Bsdf::Absorber
-        | Bsdf::Open => {
+        | Bsdf::Open
+        | Bsdf::PrismFilm { .. } => {
             let Shares { reflected, transmitted } = shares(bsdf, incidence);
             let sum = reflected + transmitted;
             let over_sum = if sum > 0.0 { 1.0 / sum } else { 0.0 };
@@ -43,6 +44,9 @@ pub fn chances(bsdf: &Bsdf, incidence: &Incidence) -> Shares {
         Bsdf::Mixture(parts) => mean(parts, |part| chances(part, incidence)),
     }
 }
+
+/// Places of a period at which the shares of a film are found; between two of them a tip may lie. 1.
+const PLACES_OF_A_FILM: u32 = 64;
 
 /// The shares of a finish for light that arrives as `incidence` says.
 pub fn shares(bsdf: &Bsdf, incidence: &Incidence) -> Shares {
@@ -58,6 +62,7 @@ pub fn shares(bsdf: &Bsdf, incidence: &Incidence) -> Shares {
                 .unpolarised(),
             transmitted: 0.0,
         },
+        Bsdf::PrismFilm { film, face } => film.shares(*face, incidence, PLACES_OF_A_FILM),
         Bsdf::Absorber => Shares { reflected: 0.0, transmitted: 0.0 },
         Bsdf::Open => Shares { reflected: 0.0, transmitted: 1.0 },
         Bsdf::Mixture(parts) => mean(parts, |part| shares(part, incidence)),
@@ -90,7 +95,7 @@ fn smooth(incidence: &Incidence) -> Shares {
 /// The discrete direction of a smooth interface, a unit vector but for rounding: mirrored, or refracted (`None` under
 /// total reflection).
 pub(crate) fn smooth_direction(incidence: &Incidence, side: Side) -> Option<DVec3> {
-    let Incidence { dir, normal, index_from, index_to } = *incidence;
+    let Incidence { dir, normal, index_from, index_to, .. } = *incidence;
     match side {
         Side::Reflected => Some(fresnel::mirrored(dir, normal)),
         Side::Transmitted if index_from == index_to => Some(dir),
@@ -127,7 +132,8 @@ mod tests {
                 [(0.9f64, 1.0, 1.49), (0.65, 1.49, 1.0), (1.0, 1.49, 1.0), (0.3, 1.2, 1.2)]
             {
                 let dir = DVec3::new(angle.sin(), 0.0, -angle.cos());
-                let incidence = Incidence { dir, normal: DVec3::Z, index_from, index_to };
+                let incidence =
+                    Incidence { dir, normal: DVec3::Z, index_from, index_to, grain: DVec3::ZERO };
                 for side in [Side::Reflected, Side::Transmitted] {
                     let sent = |worth: fn(f64) -> f64| {
                         Tally::of((0..10_000).map(|index| {

@@ -30,6 +30,7 @@ impl Bsdf {
             | Self::Metal { .. }
             | Self::Absorber
             | Self::Open
+            | Self::PrismFilm { .. }
             | Self::Lambertian { .. } => None,
             Self::Mixture(parts) => {
                 parts.iter().filter_map(|(_, part)| part.width()).reduce(f64::min)
@@ -53,7 +54,8 @@ impl Bsdf {
             | Self::Specular { .. }
             | Self::Metal { .. }
             | Self::Absorber
-            | Self::Open => Spread::Discrete,
+            | Self::Open
+            | Self::PrismFilm { .. } => Spread::Discrete,
             Self::Mixture(parts) => {
                 parts.iter().map(|(_, part)| part.kind()).fold(Spread::Discrete, Spread::broader)
             }

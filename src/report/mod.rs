@@ -6,6 +6,7 @@
 mod compare;
 mod csv;
 mod figures;
+mod film;
 mod folder;
 mod inventory;
 mod markdown;
@@ -19,6 +20,7 @@ pub use compare::{
     Comparison, Contestant, Row, Sample, Truth, comparison_files, comparison_table, rows,
 };
 pub use figures::scene_picture;
+pub use film::film_tables;
 pub use folder::{Existing, Folder, Written, write_whole};
 pub use inventory::inventory;
 pub use recipe::Recipe;

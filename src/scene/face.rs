@@ -95,6 +95,11 @@ impl Patch {
         self.chart.as_ref().map_or(uv, |chart| chart.of(uv))
     }
 
+    /// Unit tangent at a point along which v of the chart grows while u stays: along the guide.
+    pub fn along(&self, p: DVec3) -> DVec3 {
+        self.chart.as_ref().map_or_else(|| self.shape.along(p), |chart| chart.along(&self.shape, p))
+    }
+
     /// The rectangle that the chart covers, mm.
     pub fn chart_bounds(&self) -> ChartRect {
         self.chart

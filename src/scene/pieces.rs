@@ -182,6 +182,7 @@ impl Scene {
                 Region::Annulus { .. }
                 | Region::Rectangle { .. }
                 | Region::Polygon(_)
+                | Region::Holed(_)
                 | Region::Ellipse { .. }
                 | Region::Sector { .. } => None,
             },

@@ -75,6 +75,7 @@ impl<'s> Passage<'s> {
                     normal: -own.normal,
                     index_from: own.index_to,
                     index_to: own.index_from,
+                    grain: own.grain,
                 },
             ),
         };
@@ -134,14 +135,15 @@ pub struct Scatterer<'s> {
 }
 
 /// The finishes of a scene that keep the three estimators from being merged: where light is scattered, a gather path
-/// and a photon that meet by their windows are not the same path as either of them.
+/// and a photon that meet by their windows are not the same path as either of them; and where one side has several
+/// discrete directions, the chance of a side is not that of a path.
 pub fn scatterers(scene: &Scene) -> Vec<Scatterer<'_>> {
     let mut seen = BTreeSet::new();
     let sides = scene.faces.iter().flat_map(|face| [face.front, face.back].map(|id| (face, id)));
     sides
         .filter_map(|(face, id)| {
             let finish = &scene.finishes[id?.index()];
-            let is_new = !finish.bsdf.is_specular() && seen.insert(id);
+            let is_new = !finish.bsdf.has_one_direction_a_side() && seen.insert(id);
             is_new.then(|| Scatterer { finish: &finish.name, face: &face.name })
         })
         .collect()
@@ -183,7 +185,13 @@ mod tests {
     fn refracted() -> (Facing<'static>, DVec3) {
         let (sin, index) = (0.5f64, 1.5);
         let dir = DVec3::new(sin, 0.0, -(1.0 - sin * sin).sqrt());
-        let incidence = Incidence { dir, normal: DVec3::Z, index_from: index, index_to: 1.0 };
+        let incidence = Incidence {
+            dir,
+            normal: DVec3::Z,
+            index_from: index,
+            index_to: 1.0,
+            grain: DVec3::ZERO,
+        };
         let faces = crate::optics::Faces { own: &Bsdf::Smooth, behind: &Bsdf::Smooth };
         let out = DVec3::new(index * sin, 0.0, -(1.0 - (index * sin).powi(2)).sqrt());
         (Facing { faces, incidence, facet: DVec3::Z }, out)
@@ -194,11 +202,11 @@ mod tests {
         let window = Window { radius: 0.5, theta_max: 0.02 };
         let (facing, out) = refracted();
         for side in [Side::Reflected, Side::Transmitted] {
-            let Incidence { dir, normal, index_from, index_to } = facing.incidence;
+            let Incidence { dir, normal, index_from, index_to, grain } = facing.incidence;
             let (out, light) = match side {
                 Side::Reflected => {
                     let out = DVec3::new(dir.x, 0.0, -dir.z);
-                    (out, Incidence { dir: -out, normal, index_from, index_to })
+                    (out, Incidence { dir: -out, normal, index_from, index_to, grain })
                 }
                 Side::Transmitted => (
                     out,
@@ -207,6 +215,7 @@ mod tests {
                         normal: -normal,
                         index_from: index_to,
                         index_to: index_from,
+                        grain: DVec3::ZERO,
                     },
                 ),
             };
@@ -229,8 +238,13 @@ mod tests {
     fn vertex_d_is_counted_from_the_sensor() {
         let window = Window { radius: 0.5, theta_max: 0.02 };
         let at = |index_from: f64| {
-            let incidence =
-                Incidence { dir: DVec3::NEG_Z, normal: DVec3::Z, index_from, index_to: index_from };
+            let incidence = Incidence {
+                dir: DVec3::NEG_Z,
+                normal: DVec3::Z,
+                index_from,
+                index_to: index_from,
+                grain: DVec3::ZERO,
+            };
             Passage { bsdf: &Bsdf::Open, incidence, side: Side::Transmitted }
         };
         let mut recent = Recent::new(2);

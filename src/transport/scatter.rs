@@ -5,7 +5,7 @@
 use crate::optics::{Bsdf, Faces, Incidence, Scattered, Side, scatter_radiance as adjoint};
 use crate::rng::{Numbers, Sampler};
 use crate::scene::shape::Toward;
-use crate::scene::{FinishId, Interface, MediumId, Scene, Surface};
+use crate::scene::{FinishId, Interface, MediumId, Patch, Scene, Surface};
 use crate::transport::{Path, Vertex};
 use glam::DVec3;
 
@@ -29,7 +29,8 @@ pub(super) fn scatter(
     match scene.surface(interface.acting.prim) {
         Surface::Patch(patch) => {
             let normal = patch.shape.normal_against(toward, point);
-            bsdf.scatter(&Incidence { dir, normal, index_from, index_to }, sampler)
+            let grain = grain(bsdf, patch, point);
+            bsdf.scatter(&Incidence { dir, normal, index_from, index_to, grain }, sampler)
         }
         Surface::Triangle(body, triangle) => {
             let facing = |outward: DVec3| match toward {
@@ -40,10 +41,19 @@ pub(super) fn scatter(
             let shading = facing(body.mesh.shading_normal(triangle, point));
             // An interpolated normal may face away from grazing light; then the facet's own is taken.
             let normal = if shading.dot(dir) < 0.0 { shading } else { facet };
-            let out = bsdf.scatter(&Incidence { dir, normal, index_from, index_to }, sampler)?;
+            let out = bsdf.scatter(
+                &Incidence { dir, normal, index_from, index_to, grain: DVec3::ZERO },
+                sampler,
+            )?;
             Some(kept_on_its_side(out, facet))
         }
     }
+}
+
+/// The direction by which a finish is laid on a patch. Meshes have none; finishes with a grain are refused there.
+#[inline(always)]
+fn grain(bsdf: &Bsdf, patch: &Patch, point: DVec3) -> DVec3 {
+    if bsdf.has_grain() { patch.along(point) } else { DVec3::ZERO }
 }
 
 #[inline]
@@ -65,10 +75,14 @@ pub(crate) struct Facing<'s> {
 pub(crate) fn facing<'s>(scene: &'s Scene, path: &Path, vertex: &Vertex<'_>) -> Facing<'s> {
     let interface = vertex.interface;
     let toward = interface.acting.toward;
-    let (normal, facet) = match scene.surface(interface.acting.prim) {
+    let faces = Faces {
+        own: finish_of(scene, interface.finish),
+        behind: finish_of(scene, scene.finish_behind(interface)),
+    };
+    let (normal, facet, grain) = match scene.surface(interface.acting.prim) {
         Surface::Patch(patch) => {
             let normal = patch.shape.normal_against(toward, vertex.point);
-            (normal, normal)
+            (normal, normal, grain(faces.own, patch, vertex.point))
         }
         Surface::Triangle(body, triangle) => {
             let sign = match toward {
@@ -77,20 +91,19 @@ pub(crate) fn facing<'s>(scene: &'s Scene, path: &Path, vertex: &Vertex<'_>) -> 
             };
             let facet = sign * body.mesh.facet_normal(triangle);
             let shading = sign * body.mesh.shading_normal(triangle, vertex.point);
-            (if shading.dot(vertex.dir) < 0.0 { shading } else { facet }, facet)
+            let normal = if shading.dot(vertex.dir) < 0.0 { shading } else { facet };
+            (normal, facet, DVec3::ZERO)
         }
     };
     let index = |medium: MediumId| scene.media[medium.index()].index(path.wavelength);
     Facing {
-        faces: Faces {
-            own: finish_of(scene, interface.finish),
-            behind: finish_of(scene, scene.finish_behind(interface)),
-        },
+        faces,
         incidence: Incidence {
             dir: vertex.dir,
             normal,
             index_from: index(interface.from),
             index_to: index(interface.to),
+            grain,
         },
         facet,
     }

@@ -99,6 +99,24 @@ fn walls_that_scatter() {
 }
 
 #[test]
+fn prism_films() {
+    let film = "{ prism_film = { index = 1.5, pitch_mm = 0.2, base_mm = 0.05, absorption_per_mm = 0.1, rounded_share = 0.02 } }";
+    all_agree("duct of film", &tube(film));
+    all_agree(
+        "duct of film with prisms inside and around",
+        &tube(
+            "{ prism_film = { index = 1.6, pitch_mm = 0.2, base_mm = 0.05, prism_angle_deg = 70, prisms = \"before\", run = \"around\" } }",
+        ),
+    );
+    all_agree(
+        "film and mirror",
+        &tube(
+            "{ mixture = [{ weight = 2, finish = { prism_film = { index = 1.5, pitch_mm = 0.2, base_mm = 0.05 } } }, { weight = 1, finish = { specular = { reflectance = 0.95 } } }] }",
+        ),
+    );
+}
+
+#[test]
 fn walls_of_mixtures() {
     all_agree(
         "mirror and white",

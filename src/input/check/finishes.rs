@@ -56,6 +56,7 @@ fn check_one(key: &Key, finish: &FinishSpec, problems: &mut Problems) {
         | FinishSpec::Metal(_)
         | FinishSpec::Absorber(_)
         | FinishSpec::Open(_)
+        | FinishSpec::PrismFilm(_)
         | FinishSpec::Mixture(_) => {}
     }
 }

@@ -70,7 +70,9 @@ pub(crate) fn finish_refs(scene: Scene<'_>) -> Vec<(Key, &FinishRef)> {
             }
             SheetCommon::Duct(common) => {
                 add_ref(key.field("finish"), &common.finish, &mut found);
-                add_ref(key.field("outer"), &common.outer, &mut found);
+                if let Some(outer) = &common.outer {
+                    add_ref(key.field("outer"), outer, &mut found);
+                }
                 face_refs(&key, &common.faces, &mut found);
             }
         }
@@ -117,6 +119,7 @@ fn parts(finish: &FinishSpec) -> &[crate::input::spec::finish::MixturePartSpec] 
         | FinishSpec::Metal(_)
         | FinishSpec::Absorber(_)
         | FinishSpec::Open(_)
+        | FinishSpec::PrismFilm(_)
         | FinishSpec::Lambertian(_)
         | FinishSpec::Gaussian(_) => &[],
     }

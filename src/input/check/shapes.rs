@@ -20,6 +20,7 @@ pub(crate) fn check(scene: Scene<'_>, problems: &mut Problems) {
             SolidSpec::Sweep(_)
             | SolidSpec::Cylinder(_)
             | SolidSpec::Box(_)
+            | SolidSpec::Tube(_)
             | SolidSpec::Sphere(_)
             | SolidSpec::CompoundParabolic(_)
             | SolidSpec::Mesh(_) => {}

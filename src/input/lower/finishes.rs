@@ -1,8 +1,11 @@
 //! Finishes: names, references and tables in place.
 
+use crate::input::keys::Key;
 use crate::input::lower::Context;
-use crate::input::spec::finish::{FinishRef, FinishSpec, GaussianSpec};
-use crate::optics::{Bsdf, Gaussian};
+use crate::input::spec::finish::{
+    FinishRef, FinishSpec, GaussianSpec, GrainSpec, PrismFilmSpec, PrismSideSpec,
+};
+use crate::optics::{Bsdf, FilmFace, FilmMake, Gaussian, Grain, PrismFilm};
 use crate::scene::FinishId;
 
 impl Context<'_> {
@@ -32,6 +35,43 @@ impl Context<'_> {
         }
     }
 
+    /// The finish that light meets which comes from behind one: another one for films.
+    pub(super) fn behind(&mut self, finish: FinishId) -> FinishId {
+        if let Some(behind) = self.behind.get(&finish) {
+            return *behind;
+        }
+        let front = &self.builder.scene().finishes[finish.index()];
+        let behind = match front.bsdf.from_behind() {
+            None => finish,
+            Some(bsdf) => {
+                let name = format!("{}, from behind", front.name);
+                self.builder.add_finish(&name, bsdf)
+            }
+        };
+        self.behind.insert(finish, behind);
+        behind
+    }
+
+    /// The finish behind one where the file may say it; what lies behind a film is the film.
+    pub(super) fn declared_behind(
+        &mut self,
+        front: Option<FinishId>,
+        declared: Option<&FinishRef>,
+        key: &Key,
+    ) -> Option<FinishId> {
+        let film = front.map(|front| self.behind(front)).filter(|behind| Some(*behind) != front);
+        match declared {
+            Some(_) if film.is_some() => {
+                self.problems
+                    .error(key, "a prism film has no other finish behind it")
+                    .hint("leave this out: light from behind meets the same film");
+                None
+            }
+            Some(declared) => self.finish(declared),
+            None => film,
+        }
+    }
+
     fn bsdf(&self, spec: &FinishSpec, depth: usize) -> Bsdf {
         match spec {
             FinishSpec::Smooth(_) => Bsdf::Smooth,
@@ -45,6 +85,7 @@ impl Context<'_> {
                 Bsdf::Lambertian { reflectance: s.reflectance, transmittance: s.transmittance }
             }
             FinishSpec::Gaussian(spec) => gaussian(spec),
+            FinishSpec::PrismFilm(film) => prism_film(film),
             FinishSpec::Mixture(parts) => Bsdf::Mixture(
                 parts
                     .iter()
@@ -69,6 +110,26 @@ impl Context<'_> {
             FinishRef::Inline(_) | FinishRef::Name(_) => Bsdf::Absorber,
         }
     }
+}
+
+fn prism_film(spec: &PrismFilmSpec) -> Bsdf {
+    let make = FilmMake {
+        index: spec.index,
+        prism_angle: spec.prism_angle_deg.to_radians(),
+        pitch: spec.pitch_mm,
+        base: spec.base_mm,
+        absorption: spec.absorption_per_mm,
+        rounded: spec.rounded_share,
+        run: match spec.run {
+            GrainSpec::Along => Grain::Along,
+            GrainSpec::Around => Grain::Around,
+        },
+    };
+    let face = match spec.prisms {
+        PrismSideSpec::Behind => FilmFace::Flat,
+        PrismSideSpec::Before => FilmFace::Prisms,
+    };
+    Bsdf::PrismFilm { film: Box::new(PrismFilm::new(&make)), face }
 }
 
 fn gaussian(spec: &GaussianSpec) -> Bsdf {

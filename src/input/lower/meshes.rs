@@ -97,6 +97,14 @@ impl Context<'_> {
         let mut finishes: Vec<Option<FinishId>> = vec![None; known.len()];
         for (face, reference) in declared {
             let finish = self.finish(reference);
+            if finish.is_some_and(|finish| self.behind(finish) != finish) {
+                self.problems
+                    .error(
+                        &key.field("faces").field(face),
+                        "a prism film cannot be laid on a mesh: it has no direction along the guide",
+                    )
+                    .hint("use a sweep or a tube");
+            }
             match known.iter().position(|name| name == face) {
                 Some(index) => finishes[index] = finish,
                 None => {

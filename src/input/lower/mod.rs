@@ -13,6 +13,7 @@ mod sheets;
 mod solids;
 mod sources;
 mod surfaces;
+mod tubes;
 
 use crate::input::digest::Digest;
 use crate::input::keys::{Key, Places};
@@ -45,6 +46,8 @@ pub(crate) struct Context<'a> {
     meshes: Digest,
     media: IndexMap<String, MediumId>,
     finishes: IndexMap<String, FinishId>,
+    /// What light from behind meets, of finishes that were asked for it.
+    behind: IndexMap<FinishId, FinishId>,
     /// Faces by dotted name; a name such as `duct.wall` may stand for several.
     faces: IndexMap<String, Vec<FaceId>>,
 }
@@ -60,6 +63,7 @@ pub(crate) fn lower(spec: &SceneSpec, places: &Places, problems: &mut Problems) 
         meshes: Digest::default(),
         media: IndexMap::from([(crate::input::spec::AIR.to_owned(), MediumId::new(0))]),
         finishes: IndexMap::new(),
+        behind: IndexMap::new(),
         faces: IndexMap::new(),
     };
     context.lower_media();

@@ -8,6 +8,7 @@ use crate::input::spec::sheet::{DuctCommonSpec, SheetCommon, SheetCommonSpec, Sh
 use crate::math::Frame;
 use crate::scene::Owner;
 use crate::scene::shape::{Flat, ParabolicCylinder, Region, Shape, Sphere};
+use indexmap::IndexMap;
 
 impl Context<'_> {
     /// Builds a sheet or duct with its faces.
@@ -19,28 +20,34 @@ impl Context<'_> {
         let Some(frame) = self.place(common.at(), &key, Facing::Away) else { return };
         let Some(surfaces) = self.sheet_surfaces(sheet, frame, &key) else { return };
         match common {
-            SheetCommon::Sheet(common) => self.add_sheet(name, surfaces, common),
+            SheetCommon::Sheet(common) => self.add_sheet(name, surfaces, common, &key),
             SheetCommon::Duct(common) => self.add_duct(name, surfaces, common, &key),
         }
     }
 
-    fn add_sheet(&mut self, name: &str, surfaces: Surfaces, common: &SheetCommonSpec) {
+    fn add_sheet(&mut self, name: &str, surfaces: Surfaces, common: &SheetCommonSpec, key: &Key) {
         let front = self.finish(&common.finish);
-        let back = match &common.back {
-            Some(back) => self.finish(back),
-            None => front,
-        };
+        let back = self.declared_behind(front, common.back.as_ref(), &key.field("back")).or(front);
         self.add_faces(name, Owner::Sheet, surfaces.faces, |_, _| (front, back));
     }
 
     fn add_duct(&mut self, name: &str, surfaces: Surfaces, common: &DuctCommonSpec, key: &Key) {
         let inner = self.finish(&common.finish);
-        let outer = self.finish(&common.outer);
         let finishes =
             self.face_finishes(name, &surfaces.faces, &common.faces, &key.field("faces"));
+        let black = self.finishes.get("black").copied();
+        let mut outer = IndexMap::new();
+        for face in surfaces.faces.iter().filter(|face| face.part == BodyPart::Wall) {
+            let inside = finishes.get(&face.name).copied().or(inner);
+            let declared = common.outer.as_ref();
+            let outside = self.declared_behind(inside, declared, &key.field("outer")).or(black);
+            outer.insert(face.name.clone(), outside);
+        }
         self.add_faces(name, Owner::Sheet, surfaces.faces, |part, face| match part {
             // The front is outside.
-            BodyPart::Wall => (outer, finishes.get(face).copied().or(inner)),
+            BodyPart::Wall => {
+                (outer.get(face).copied().flatten(), finishes.get(face).copied().or(inner))
+            }
             BodyPart::End => (None, None),
         });
     }

@@ -39,9 +39,10 @@ impl Context<'_> {
         let id = self.add_solid(name, medium, common.priority, surfaces.volume);
         let finishes =
             self.face_finishes(name, &surfaces.faces, &common.faces, &key.field("faces"));
+        let outside: IndexMap<String, FinishId> =
+            finishes.iter().map(|(face, finish)| (face.clone(), self.behind(*finish))).collect();
         self.add_faces(name, Owner::Solid(id), surfaces.faces, |_, face| {
-            let finish = finishes.get(face).copied();
-            (finish, finish)
+            (outside.get(face).copied(), finishes.get(face).copied())
         });
     }
 
@@ -68,6 +69,7 @@ impl Context<'_> {
                 self.sweep_surfaces(&cylinder_sweep(&cylinder.shape), frame, key)
             }
             SolidSpec::Box(cuboid) => self.sweep_surfaces(&box_sweep(&cuboid.shape), frame, key),
+            SolidSpec::Tube(tube) => self.tube_surfaces(&tube.shape, frame, key),
             SolidSpec::Sphere(sphere) => {
                 let radius = sphere.shape.radius_mm;
                 let shape = Shape::Sphere(Sphere::zone(frame, radius, -radius, radius));

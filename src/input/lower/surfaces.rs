@@ -91,7 +91,7 @@ impl Context<'_> {
         Some(Surfaces { faces, volume: Some(swept.volume) })
     }
 
-    fn profile(&mut self, spec: &ProfileSpec, key: &Key) -> Option<Profile> {
+    pub(super) fn profile(&mut self, spec: &ProfileSpec, key: &Key) -> Option<Profile> {
         match profile_of(spec) {
             Ok(profile) => Some(profile),
             Err(error) => {

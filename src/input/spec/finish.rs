@@ -35,6 +35,9 @@ pub enum FinishSpec {
     /// transmittance given it is a rough interface between two media: the flux is split as at a smooth one, and
     /// scattered about the mirrored and the refracted direction.
     Gaussian(GaussianSpec),
+    /// A thin film, flat on one face, with prisms side by side on the other. It is the same film from both sides: what
+    /// light meets that comes from behind follows from it.
+    PrismFilm(PrismFilmSpec),
     /// Several finishes side by side on a scale too small to see.
     Mixture(#[schemars(length(min = 1))] Vec<MixturePartSpec>),
 }
@@ -93,6 +96,62 @@ pub struct GaussianSpec {
     pub transmittance: Option<f64>,
 }
 
+/// A prism film. Light goes through one period of it, from a random place, and leaves where it arrived.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct PrismFilmSpec {
+    /// Refractive index.
+    #[schemars(range(min = 1.0, max = 4.0))]
+    pub index: f64,
+    /// Distance from tip to tip.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub pitch_mm: f64,
+    /// Thickness between the flat face and the valleys.
+    #[schemars(range(min = 0.0))]
+    pub base_mm: f64,
+    /// Angle between the two facets of a prism at its tip.
+    #[serde(default = "right_angle")]
+    #[schemars(range(min = 10.0, max = 170.0))]
+    pub prism_angle_deg: f64,
+    /// Absorption coefficient (natural) of the film.
+    #[serde(default)]
+    #[schemars(range(min = 0.0))]
+    pub absorption_per_mm: f64,
+    /// Share of the facets that is rounded, half of it at the tips and half in the valleys; light that meets it there is
+    /// lost, and counted as absorbed.
+    #[serde(default)]
+    #[schemars(range(min = 0.0), extend("exclusiveMaximum" = 1.0))]
+    pub rounded_share: f64,
+    /// Where the prisms are, seen by light that meets this finish: `behind` the flat face or `before` it. From inside a
+    /// duct or a solid, `behind` is the outside.
+    #[serde(default)]
+    pub prisms: PrismSideSpec,
+    /// Which way the prisms run: `along` the guide or `around` it. On a flat sheet these are its local y and x.
+    #[serde(default)]
+    pub run: GrainSpec,
+}
+
+/// On which face of a film its prisms are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum PrismSideSpec {
+    /// Light meets the flat face first.
+    #[default]
+    Behind,
+    /// Light meets the prisms first.
+    Before,
+}
+
+/// Which way something runs on a face.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum GrainSpec {
+    /// Along the guide.
+    #[default]
+    Along,
+    /// Around it.
+    Around,
+}
+
 /// One part of a mixture.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MixturePartSpec {
@@ -112,4 +171,8 @@ pub enum FinishRef {
     Name(String),
     /// The finish itself.
     Inline(Box<FinishSpec>),
+}
+
+fn right_angle() -> f64 {
+    90.0
 }

@@ -100,7 +100,7 @@ pub struct Sheet<Shape> {
 pub struct SheetCommonSpec {
     /// Finish of the front, the side that the axis points away from.
     pub finish: FinishRef,
-    /// Finish of the back. Omitted: the same as the front.
+    /// Finish of the back. Omitted: the same as the front, and behind a prism film that film.
     pub back: Option<FinishRef>,
     /// Where the sheet stands.
     pub at: Option<PlacementSpec>,
@@ -123,9 +123,8 @@ pub struct Duct<Shape> {
 pub struct DuctCommonSpec {
     /// Finish of the inside.
     pub finish: FinishRef,
-    /// Finish of the outside.
-    #[serde(default = "black")]
-    pub outer: FinishRef,
+    /// Finish of the outside. Omitted: `black`, and behind a prism film that film.
+    pub outer: Option<FinishRef>,
     /// Finish of the inside by wall name, where it differs.
     #[serde(default)]
     pub faces: IndexMap<String, FinishRef>,
@@ -168,8 +167,4 @@ pub struct ParabolicCylinderSpec {
     /// Full length along the local y.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub length_mm: f64,
-}
-
-fn black() -> FinishRef {
-    FinishRef::Name("black".into())
 }

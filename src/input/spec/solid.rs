@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::input::spec::finish::FinishRef;
 use crate::input::spec::placement::PlacementSpec;
-use crate::input::spec::sweep::{CompoundParabolicSpec, ParaboloidSpec, SweepSpec};
+use crate::input::spec::sweep::{CompoundParabolicSpec, ParaboloidSpec, ProfileSpec, SweepSpec};
 
 /// A closed body filled with a medium. A table with exactly one of these keys.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -20,6 +20,9 @@ pub enum SolidSpec {
     Cylinder(Solid<CylinderSpec>),
     /// A box, from the position along the axis. Faces `entry`, `exit`, `wall`, and the four walls as for a rectangle.
     Box(Solid<BoxSpec>),
+    /// A straight tube with a wall of its own, from the position along the axis, which can carry prisms outside. Faces
+    /// `entry` and `exit` (the ends of the wall), `inner` and `outer`; `wall` is both.
+    Tube(Solid<TubeSolidSpec>),
     /// A sphere about the position. Face `surface`.
     Sphere(Solid<SphereSpec>),
     /// A lens with spherical or flat ends, the vertex of the entry at the position. Faces `entry`, `exit`, `wall`.
@@ -39,6 +42,7 @@ impl SolidSpec {
             Self::Sweep(_) => "sweep",
             Self::Cylinder(_) => "cylinder",
             Self::Box(_) => "box",
+            Self::Tube(_) => "tube",
             Self::Sphere(_) => "sphere",
             Self::Lens(_) => "lens",
             Self::CompoundParabolic(_) => "compound_parabolic",
@@ -53,6 +57,7 @@ impl SolidSpec {
             Self::Sweep(solid) => &solid.common,
             Self::Cylinder(solid) => &solid.common,
             Self::Box(solid) => &solid.common,
+            Self::Tube(solid) => &solid.common,
             Self::Sphere(solid) => &solid.common,
             Self::Lens(solid) => &solid.common,
             Self::CompoundParabolic(solid) => &solid.common,
@@ -87,6 +92,47 @@ pub struct SolidCommonSpec {
     pub faces: IndexMap<String, FinishRef>,
     /// Where the solid stands.
     pub at: Option<PlacementSpec>,
+}
+
+/// A straight tube with a wall; the bore is centred on the axis.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct TubeSolidSpec {
+    /// Cross-section of the bore.
+    pub inner: ProfileSpec,
+    /// The outside.
+    pub outer: TubeOuterSpec,
+    /// Length along the axis.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub length_mm: f64,
+}
+
+/// The outside of a tube. A table with exactly one of these keys.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum TubeOuterSpec {
+    /// As the bore, so much further out.
+    WallMm(#[schemars(extend("exclusiveMinimum" = 0.0))] f64),
+    /// Prisms along the tube, side by side all around.
+    Prisms(TubePrismsSpec),
+}
+
+/// Prisms along a tube; exactly one of `count` and `pitch_mm`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(extend("oneOf" = [{ "required": ["count"] }, { "required": ["pitch_mm"] }]))]
+pub struct TubePrismsSpec {
+    /// Thickness of the wall between the bore and the valleys.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub base_mm: f64,
+    /// Number of prisms around a round tube, or on each side of a tube with corners.
+    #[schemars(range(min = 1, max = 500))]
+    pub count: Option<u32>,
+    /// Distance from valley to valley, along the arc or the side; a whole number of prisms has to fit.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub pitch_mm: Option<f64>,
+    /// Angle between the two facets of a prism at its tip.
+    #[serde(default = "right_angle")]
+    #[schemars(range(min = 10.0, max = 170.0))]
+    pub prism_angle_deg: f64,
 }
 
 /// A cylinder or a frustum of a cone; the entry is centred at the position.
@@ -170,4 +216,8 @@ pub enum MeshNormals {
     File,
     /// Those of the flat facets.
     Facet,
+}
+
+fn right_angle() -> f64 {
+    90.0
 }

@@ -1,6 +1,6 @@
 use super::*;
 use crate::math::circle;
-use crate::optics::evaluate;
+use crate::optics::{FilmFace, FilmMake, Grain, PrismFilm, evaluate};
 use crate::tally::Tally;
 use std::f64::consts::TAU;
 
@@ -71,8 +71,13 @@ fn gathered(faces: Faces<'_>, [above, below]: [f64; 2], side: Side) -> Vec<Tally
     for index in 0..PATHS {
         let mut sampler = Sampler::for_path(41, 0, index);
         let out = cosine(&mut sampler);
-        let incidence =
-            Incidence { dir: -out, normal: DVec3::Z, index_from: above, index_to: below };
+        let incidence = Incidence {
+            dir: -out,
+            normal: DVec3::Z,
+            index_from: above,
+            index_to: below,
+            grain: DVec3::Y,
+        };
         let from = scatter_radiance(faces, &incidence, &mut sampler).filter(|s| s.side == side);
         for (tally, [g, h]) in tallies.iter_mut().zip(PAIRS) {
             let field = from.map_or(0.0, |from| from.factor * WINDOWS[h](from.dir));
@@ -92,7 +97,7 @@ fn shone(bsdf: &Bsdf, [above, below]: [f64; 2], side: Side) -> Vec<Tally> {
     for index in 0..PATHS {
         let mut sampler = Sampler::for_path(43, 0, index);
         let from = cosine(&mut sampler) * DVec3::new(1.0, 1.0, normal.z);
-        let incidence = Incidence { dir: -from, normal, index_from, index_to };
+        let incidence = Incidence { dir: -from, normal, index_from, index_to, grain: DVec3::Y };
         let out = bsdf.scatter(&incidence, &mut sampler).filter(|out| out.side == side);
         for (tally, [g, h]) in tallies.iter_mut().zip(PAIRS) {
             let leaving = out.map_or(0.0, |out| out.factor * WINDOWS[g](out.dir));
@@ -143,14 +148,41 @@ fn faces_of_two_finishes_reflect_by_one_and_transmit_by_the_other() {
 }
 
 #[test]
+fn films_are_the_same_film_from_both_sides() {
+    let make = FilmMake {
+        index: 1.59,
+        prism_angle: 1.4,
+        pitch: 0.3,
+        base: 0.05,
+        absorption: 0.4,
+        rounded: 0.03,
+        run: Grain::Around,
+    };
+    let film = Box::new(PrismFilm::new(&make));
+    for face in [FilmFace::Flat, FilmFace::Prisms] {
+        let own = Bsdf::PrismFilm { film: film.clone(), face };
+        let mixed = Bsdf::Mixture(vec![(2.0, own.clone()), (1.0, splitter())]);
+        for own in [own, mixed] {
+            let behind = own.from_behind().unwrap();
+            assert_adjoint(Faces { own: &own, behind: &behind });
+        }
+    }
+}
+
+#[test]
 fn from_each_direction_the_mean_factor_is_the_integral_of_the_distribution_function() {
     let rows = 600;
     for bsdf in [diffuse(), sheet(0.3), rough(0.2)] {
         for [above, below] in INDICES {
             for angle in [0.0f64, 0.7, 0.9, 1.3] {
                 let dir = DVec3::new(angle.sin(), 0.0, -angle.cos());
-                let incidence =
-                    Incidence { dir, normal: DVec3::Z, index_from: above, index_to: below };
+                let incidence = Incidence {
+                    dir,
+                    normal: DVec3::Z,
+                    index_from: above,
+                    index_to: below,
+                    grain: DVec3::Y,
+                };
                 for (side, index_from, index_to, z) in
                     [(Side::Reflected, above, below, 1.0), (Side::Transmitted, below, above, -1.0)]
                 {
@@ -160,8 +192,13 @@ fn from_each_direction_the_mean_factor_is_the_integral_of_the_distribution_funct
                         let cos = (f64::from(cell / rows) + 0.5) / f64::from(rows);
                         let around = circle((f64::from(cell % rows) + 0.5) / f64::from(rows));
                         let from = ((1.0 - cos * cos).sqrt() * around).extend(cos * z);
-                        let photon =
-                            Incidence { dir: -from, normal: DVec3::Z * z, index_from, index_to };
+                        let photon = Incidence {
+                            dir: -from,
+                            normal: DVec3::Z * z,
+                            index_from,
+                            index_to,
+                            grain: DVec3::Y,
+                        };
                         expected += evaluate(&bsdf, &photon, -dir) * cos * (0.5 + 0.5 * from.x);
                     }
                     expected *=
@@ -190,8 +227,13 @@ fn a_uniform_field_of_basic_radiance_is_seen_unchanged_through_a_smooth_face() {
     for [index_from, index_to] in INDICES {
         for index in 0..1000 {
             let mut sampler = Sampler::for_path(3, 0, index);
-            let incidence =
-                Incidence { dir: -cosine(&mut sampler), normal: DVec3::Z, index_from, index_to };
+            let incidence = Incidence {
+                dir: -cosine(&mut sampler),
+                normal: DVec3::Z,
+                index_from,
+                index_to,
+                grain: DVec3::Y,
+            };
             let faces = Faces { own: &Bsdf::Smooth, behind: &Bsdf::Smooth };
             assert_eq!(scatter_radiance(faces, &incidence, &mut sampler).unwrap().factor, 1.0);
         }
@@ -205,7 +247,8 @@ fn a_mirror_with_a_black_back_loses_no_path() {
     for index in 0..100 {
         let mut sampler = Sampler::for_path(3, 0, index);
         let dir = -cosine(&mut sampler);
-        let incidence = Incidence { dir, normal: DVec3::Z, index_from: 1.0, index_to: 1.0 };
+        let incidence =
+            Incidence { dir, normal: DVec3::Z, index_from: 1.0, index_to: 1.0, grain: DVec3::Y };
         let out = scatter_radiance(faces, &incidence, &mut sampler).unwrap();
         assert_eq!((out.factor, out.side, out.lobe), (0.95, Side::Reflected, Lobe::Specular));
     }
@@ -217,7 +260,8 @@ fn every_path_stays_finite_and_on_the_side_it_says() {
         for [index_from, index_to] in INDICES {
             for cos in [0.0, 1e-300, 1e-9, 1e-3, 0.5, 1.0f64] {
                 let dir = DVec3::new((1.0 - cos * cos).sqrt(), 0.0, -cos);
-                let incidence = Incidence { dir, normal: DVec3::Z, index_from, index_to };
+                let incidence =
+                    Incidence { dir, normal: DVec3::Z, index_from, index_to, grain: DVec3::Y };
                 for index in 0..200 {
                     let mut sampler = Sampler::for_path(9, 0, index);
                     let faces = Faces { own: bsdf, behind: bsdf };

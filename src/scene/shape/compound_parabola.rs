@@ -206,6 +206,11 @@ impl CompoundParabola {
         }
     }
 
+    /// Unit vector of the axis.
+    pub(super) fn axis(&self) -> DVec3 {
+        self.frame.z
+    }
+
     #[inline]
     pub(super) fn normal(&self, p: DVec3) -> DVec3 {
         let p = self.frame.point_to_local(p);

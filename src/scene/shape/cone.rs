@@ -110,6 +110,11 @@ impl Cone {
         DVec2::new(from.dot(self.frame.x), from.dot(self.frame.y))
     }
 
+    /// Unit vector of the axis.
+    pub(super) fn axis(&self) -> DVec3 {
+        self.frame.z
+    }
+
     #[inline]
     pub(super) fn normal(&self, p: DVec3) -> DVec3 {
         let from = p - self.frame.origin;

@@ -274,6 +274,20 @@ impl Shape {
         }
     }
 
+    /// Unit tangent at a point of the surface along which v of the chart grows while u stays.
+    pub fn along(&self, p: DVec3) -> DVec3 {
+        match self {
+            Self::Flat(shape) => shape.frame().y,
+            Self::ParabolicCylinder(shape) => shape.along(),
+            Self::Torus(shape) => shape.along(p),
+            Self::Cylinder(shape) => shape.axis(),
+            Self::Cone(shape) => up_the_meridian(shape.axis(), shape.normal(p)),
+            Self::Sphere(shape) => up_the_meridian(shape.axis(), shape.normal(p)),
+            Self::Paraboloid(shape) => up_the_meridian(shape.axis(), shape.normal(p)),
+            Self::CompoundParabola(shape) => up_the_meridian(shape.axis(), shape.normal(p)),
+        }
+    }
+
     /// Area, mm².
     pub fn area(&self) -> f64 {
         match self {
@@ -343,4 +357,11 @@ impl Shape {
             Self::CompoundParabola(shape) => shape.area_in(rect),
         }
     }
+}
+
+/// The unit tangent toward larger z of a surface of revolution; anything across the normal where it is along the axis.
+fn up_the_meridian(axis: DVec3, normal: DVec3) -> DVec3 {
+    (axis - axis.dot(normal) * normal)
+        .try_normalize()
+        .unwrap_or_else(|| normal.any_orthonormal_vector())
 }

@@ -82,6 +82,11 @@ impl ParabolicCylinder {
         }
     }
 
+    /// Unit vector along the trough.
+    pub(super) fn along(&self) -> DVec3 {
+        self.frame.y
+    }
+
     #[inline]
     pub(super) fn normal(&self, p: DVec3) -> DVec3 {
         let x = (p - self.frame.origin).dot(self.frame.x);

@@ -86,6 +86,11 @@ impl Paraboloid {
             && (self.radius_min == 0.0 || z >= self.height(self.radius_min))
     }
 
+    /// Unit vector of the axis.
+    pub(super) fn axis(&self) -> DVec3 {
+        self.frame.z
+    }
+
     #[inline]
     pub(super) fn normal(&self, p: DVec3) -> DVec3 {
         let p = self.frame.point_to_local(p);

@@ -75,6 +75,11 @@ impl Sphere {
             && (z <= self.z_max || self.z_max >= self.radius)
     }
 
+    /// Unit vector of the axis.
+    pub(super) fn axis(&self) -> DVec3 {
+        self.frame.z
+    }
+
     #[inline]
     pub(super) fn normal(&self, p: DVec3) -> DVec3 {
         front((p - self.frame.origin).normalize(), self.leaving)

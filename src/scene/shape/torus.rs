@@ -80,6 +80,11 @@ impl Torus {
         turn(self.arc.as_ref())
     }
 
+    /// Unit tangent along the arc.
+    pub(super) fn along(&self, p: DVec3) -> DVec3 {
+        self.frame.z.cross(p - self.frame.origin).normalize()
+    }
+
     #[inline]
     pub(super) fn normal(&self, p: DVec3) -> DVec3 {
         // The same operations as in the crossings: for a thin tube ρ - 1 has lost digits, but the same ones, so that a

@@ -1,7 +1,7 @@
 //! From the chart of one surface to the chart of the whole sweep: u around the profile, v along the path.
 
 use crate::scene::shape::{ChartRect, Shape};
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 /// How the chart of a part's shape is laid into the chart of its sweep.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -76,6 +76,29 @@ impl WallChart {
         }
     }
 
+    /// Unit tangent of `shape` at a point along which the sweep's v grows while u stays.
+    pub(crate) fn along(&self, shape: &Shape, p: DVec3) -> DVec3 {
+        match self {
+            Self::Along { .. } => shape.along(p),
+            Self::Across { .. } => shape.normal(p).cross(shape.along(p)),
+            Self::Trapezoid { trapezoid, .. } => {
+                let up = shape.along(p);
+                let lean = trapezoid.lean(shape.chart(p));
+                (up + lean * up.cross(shape.normal(p))).normalize()
+            }
+            // The chart of a sector is centred on the bend axis.
+            Self::Sector { sector, .. } => {
+                let (up, at) = (shape.along(p), shape.chart(p));
+                let outward = at.x * up.cross(shape.normal(p)) + at.y * up;
+                let sense = match sector.sense {
+                    Sense::Forward => 1.0,
+                    Sense::Backward => -1.0,
+                };
+                sense * shape.normal(p).cross(outward).normalize()
+            }
+        }
+    }
+
     /// The rectangle of the sweep's chart that `shape` covers, mm.
     pub(crate) fn bounds(&self, shape: &Shape) -> ChartRect {
         match self {
@@ -129,6 +152,13 @@ impl Trapezoid {
         let share = at.y / self.height;
         let (from, width) = self.side(share);
         DVec2::new((at.x - from) / width, share)
+    }
+
+    /// By how much x grows with y along a line of constant share of the width, 1.
+    fn lean(&self, at: DVec2) -> f64 {
+        let share = self.share_of(at).x;
+        let [from, to] = [0, 1].map(|end| self.top[end] - self.bottom[end]);
+        (from + share * (to - from)) / self.height
     }
 
     fn area_of(&self, share: ChartRect) -> f64 {

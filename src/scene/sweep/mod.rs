@@ -10,6 +10,7 @@ mod check;
 mod faceted;
 mod leg;
 mod path;
+mod prisms;
 mod profile;
 mod round;
 mod smooth;
@@ -20,6 +21,7 @@ mod tests;
 mod volume;
 
 pub use leg::{CornerKind, Leg, SweepError, SweepProblem};
+pub use prisms::{OutlineError, PrismNumber, Prisms};
 pub use profile::{Profile, ProfileError};
 
 use crate::math::Frame;
@@ -120,6 +122,37 @@ impl Part {
     fn mitre(shape: Shape, smooth: u32) -> Self {
         let chart = WallChart::Along { offset: DVec2::ZERO, scale: DVec2::ONE };
         Self { shape, wall: Wall::Mitre, smooth, chart }
+    }
+
+    /// The same wall seen from the other side: that of a bore, whose front is toward the path. `None` for walls of other
+    /// legs than straight ones.
+    pub fn turned(&self) -> Option<Self> {
+        let turned = |shape, scale: DVec2| match self.chart {
+            WallChart::Along { offset, scale: before } => {
+                let chart = WallChart::Along { offset, scale: scale * before };
+                Some(Self { shape, chart, ..self.clone() })
+            }
+            WallChart::Across { .. } | WallChart::Trapezoid { .. } | WallChart::Sector { .. } => {
+                None
+            }
+        };
+        match &self.shape {
+            Shape::Cylinder(wall) => turned(Shape::Cylinder(wall.clone().inward()), DVec2::ONE),
+            // Rectangles are the same seen from behind.
+            Shape::Flat(wall) if matches!(wall.region(), Region::Rectangle { .. }) => {
+                let frame = *wall.frame();
+                let behind = Frame { x: -frame.x, z: -frame.z, ..frame };
+                let flat = Flat::new(behind, wall.region().clone());
+                turned(Shape::Flat(flat), DVec2::new(-1.0, 1.0))
+            }
+            Shape::Flat(_)
+            | Shape::Cone(_)
+            | Shape::Torus(_)
+            | Shape::Sphere(_)
+            | Shape::Paraboloid(_)
+            | Shape::ParabolicCylinder(_)
+            | Shape::CompoundParabola(_) => None,
+        }
     }
 
     /// Unrolled coordinates of a point of the part in the chart of the whole sweep, mm: u around the profile, in

@@ -14,6 +14,7 @@ use crate::transport::record_index::{Key, TOGETHER};
 use crate::transport::window::{COUNTED, ESTIMATES, estimates};
 use crate::transport::work::RecordWork;
 use crate::transport::{Path, Readings, Vertex};
+use glam::DVec3;
 
 /// Photons that stream past the records.
 pub(super) struct Stream<'p, 's> {
@@ -142,7 +143,7 @@ impl<'p, 's> Stream<'p, 's> {
             let weights = etendues
                 .map_or([1.0; COUNTED], |own| Etendues { photon: photon.etendue, ..own }.pair());
             let depth = photon.depth + record.depth;
-            let counted = [0, 1, 2, 3, 4].map(|window: usize| shares[window] * weights[window]);
+            let counted = std::array::from_fn(|window| shares[window] * weights[window]);
             for (readings, share) in windows.iter_mut().zip(estimates(counted)) {
                 if share != 0.0 {
                     let light = Counted { flux: photon.flux * share, depth, source: photon.source };
@@ -173,6 +174,8 @@ fn arriving(scene: &Scene, key: &Key, photon: &Passing) -> Arriving {
             },
             index_from: index(from),
             index_to: index(to),
+            // Records ask finishes that scatter, which have none.
+            grain: DVec3::ZERO,
         },
     }
 }

@@ -44,9 +44,23 @@ pub enum Region {
     },
     /// A simple polygon, not necessarily around the origin.
     Polygon(Polygon),
+    /// A region with a hole in it.
+    Holed(Box<Holed>),
+}
+
+/// A region with a hole, which lies within its outline.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Holed {
+    outline: Region,
+    hole: Region,
 }
 
 impl Region {
+    /// What is left of a region outside of a hole that lies within it.
+    pub fn holed(outline: Self, hole: Self) -> Self {
+        Self::Holed(Box::new(Holed { outline, hole }))
+    }
+
     /// The annulus between two radii from +x counter-clockwise to `angle`, rad; all of it from a whole turn on.
     pub fn sector(inner: f64, outer: f64, angle: f64) -> Self {
         match Wedge::new(angle) {
@@ -68,7 +82,7 @@ impl Region {
                 r2 <= outer * outer && r2 >= inner * inner
             }
             Self::Rectangle { half_x, half_y } => p.x.abs() <= *half_x && p.y.abs() <= *half_y,
-            Self::Sector { .. } | Self::Ellipse { .. } | Self::Polygon(_) => {
+            Self::Sector { .. } | Self::Ellipse { .. } | Self::Polygon(_) | Self::Holed(_) => {
                 self.contains_out_of_line(p)
             }
         }
@@ -89,6 +103,7 @@ impl Region {
             }
             Self::Rectangle { half_x, half_y } => p.x.abs() <= *half_x && p.y.abs() <= *half_y,
             Self::Polygon(polygon) => polygon.contains(p),
+            Self::Holed(holed) => holed.outline.contains(p) && !holed.hole.contains(p),
         }
     }
 
@@ -100,6 +115,7 @@ impl Region {
                 DVec2::new(*half_x, *half_y)
             }
             Self::Polygon(polygon) => return polygon.bounds(),
+            Self::Holed(holed) => return holed.outline.bounds(),
         };
         ChartRect { min: -half, max: half }
     }
@@ -113,6 +129,7 @@ impl Region {
             Self::Polygon(polygon) => {
                 polygon.vertices().iter().map(|p| p.dot(e)).fold(f64::NEG_INFINITY, f64::max)
             }
+            Self::Holed(holed) => holed.outline.reach(e),
         }
     }
 
@@ -125,6 +142,7 @@ impl Region {
             Self::Ellipse { half_x, half_y } => PI * half_x * half_y,
             Self::Rectangle { half_x, half_y } => 4.0 * half_x * half_y,
             Self::Polygon(polygon) => polygon.area(),
+            Self::Holed(holed) => holed.outline.area() - holed.hole.area(),
         }
     }
 
@@ -144,6 +162,7 @@ impl Region {
                 DVec2::new((2.0 * u[0] - 1.0) * half_x, (2.0 * u[1] - 1.0) * half_y)
             }
             Self::Polygon(polygon) => polygon.sample(u),
+            Self::Holed(_) => self.sample_by_area(u),
         }
     }
 
@@ -166,8 +185,33 @@ impl Region {
             }
             Self::Rectangle { .. } => rect.area(),
             Self::Polygon(polygon) => polygon.area_in(rect),
+            Self::Holed(holed) => holed.outline.area_in(rect) - holed.hole.area_in(rect),
         }
     }
+
+    /// The point below which a share u of the area lies: to the left, and in a narrow strip beneath. Slow; for regions
+    /// that have no other way.
+    fn sample_by_area(&self, u: [f64; 2]) -> DVec2 {
+        let ChartRect { min, max } = self.bounds();
+        let left_of = |x: f64| self.area_in(ChartRect { min, max: DVec2::new(x, max.y) });
+        let x = halve(min.x, max.x, u[0] * self.area(), left_of);
+        let strip = STRIP * (max.x - min.x);
+        let (from, to) = (DVec2::new(x - strip, min.y), x + strip);
+        let below = |y: f64| self.area_in(ChartRect { min: from, max: DVec2::new(to, y) });
+        DVec2::new(x, halve(min.y, max.y, u[1] * below(max.y), below))
+    }
+}
+
+/// Half the width of a strip in which an area is taken for a length, as a share of the whole.
+const STRIP: f64 = 1e-6;
+
+/// Where a growing function reaches a value, to the last digits.
+fn halve(mut low: f64, mut high: f64, value: f64, of: impl Fn(f64) -> f64) -> f64 {
+    for _ in 0..f64::MANTISSA_DIGITS {
+        let middle = 0.5 * (low + high);
+        if of(middle) < value { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
 }
 
 fn sector_bounds(inner: f64, outer: f64, wedge: &Wedge) -> ChartRect {
@@ -205,6 +249,13 @@ mod tests {
             (Region::Ellipse { half_x: 2.4, half_y: 0.7 }, PI * 2.4 * 0.7),
             (Region::Rectangle { half_x: 1.0, half_y: 2.0 }, 8.0),
             (Region::polygon(notched.map(DVec2::from).to_vec()), 4.125),
+            (
+                Region::holed(
+                    Region::Rectangle { half_x: 2.0, half_y: 1.5 },
+                    Region::Annulus { inner: 0.0, outer: 1.1 },
+                ),
+                12.0 - PI * 1.21,
+            ),
         ];
         for angle in [0.4, 1.5, PI, 3.5, 5.0, TAU] {
             regions.push((Region::sector(0.8, 2.2, angle), 0.5 * angle * (2.2f64.powi(2) - 0.64)));

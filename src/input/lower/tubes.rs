@@ -1,0 +1,80 @@
+//! Straight tubes with a wall of their own.
+
+use crate::input::keys::Key;
+use crate::input::lower::Context;
+use crate::input::lower::surfaces::{BodyPart, NamedFace, Surfaces};
+use crate::input::spec::solid::{TubeOuterSpec, TubeSolidSpec};
+use crate::math::Frame;
+use crate::scene::Piece;
+use crate::scene::shape::{Flat, Region, Shape};
+use crate::scene::sweep::{
+    Leg, OutlineError, Part, PrismNumber, Prisms, Profile, Sweep, SweepError, sweep,
+};
+
+impl Context<'_> {
+    /// The faces of a tube: a bore, an outside, and two ends with a hole.
+    pub(super) fn tube_surfaces(
+        &mut self,
+        spec: &TubeSolidSpec,
+        frame: Frame,
+        key: &Key,
+    ) -> Option<Surfaces> {
+        let inner = self.profile(&spec.inner, &key.field("inner"))?;
+        let outer = match outline(&inner, &spec.outer) {
+            Ok(outer) => outer,
+            Err(error) => {
+                self.problems.error(&key.field("outer"), error.to_string());
+                return None;
+            }
+        };
+        let swept = |profile| straight(frame, profile, spec.length_mm);
+        match (swept(&inner), swept(&outer)) {
+            (Ok(inner), Ok(outer)) => tube(&inner, &outer),
+            (Err(error), _) | (_, Err(error)) => {
+                self.problems.error(key, error.to_string());
+                None
+            }
+        }
+    }
+}
+
+fn straight(frame: Frame, profile: &Profile, length: f64) -> Result<Sweep, SweepError> {
+    sweep(frame, profile, &[Leg::Straight { length, end_scale: 1.0 }])
+}
+
+fn outline(inner: &Profile, outer: &TubeOuterSpec) -> Result<Profile, OutlineError> {
+    match outer {
+        TubeOuterSpec::WallMm(wall) => inner.grown(*wall),
+        TubeOuterSpec::Prisms(prisms) => {
+            // Validated: one of the two is given.
+            let pitch = PrismNumber::Pitch(prisms.pitch_mm.unwrap_or_default());
+            let number = prisms.count.map_or(pitch, |count| PrismNumber::Count(count as usize));
+            let angle = prisms.prism_angle_deg.to_radians();
+            inner.grown(prisms.base_mm)?.with_prisms(&Prisms { number, angle })
+        }
+    }
+}
+
+/// `None` where a wall is none of a straight leg, which does not happen here.
+fn tube(inner: &Sweep, outer: &Sweep) -> Option<Surfaces> {
+    let bore: Option<Vec<Part>> = inner.parts.iter().map(Part::turned).collect();
+    let wall = |name: &str, parts: Vec<Part>| NamedFace {
+        name: name.to_owned(),
+        part: BodyPart::Wall,
+        pieces: parts
+            .into_iter()
+            .map(|part| Piece { shape: part.shape, smooth: part.smooth, chart: Some(part.chart) })
+            .collect(),
+    };
+    let mut faces = vec![wall("inner", bore?), wall("outer", outer.parts.clone())];
+    for (name, end) in [("entry", 0), ("exit", 1)] {
+        let (Shape::Flat(outline), Shape::Flat(hole)) =
+            (&outer.ports[end].shape, &inner.ports[end].shape)
+        else {
+            return None;
+        };
+        let region = Region::holed(outline.region().clone(), hole.region().clone());
+        faces.push(NamedFace::end(name, Shape::Flat(Flat::new(*outline.frame(), region))));
+    }
+    Some(Surfaces { faces, volume: Some(outer.volume - inner.volume) })
+}

@@ -1,0 +1,242 @@
+//! One period of a prism film in its cross-section, and what light does there from interface to interface.
+//!
+//! Lengths are in pitches. x runs across the prisms, y from the flat face into the film, w along the prisms: the flat face
+//! is y = 0, valleys are at x = 0 (and 1, 2, ...) and y = base, tips at x = ½ and y = top. The third component of a
+//! direction never changes its size, so that a step is plane geometry; Fresnel's equations are those of space. It knows
+//! neither finishes nor pitches in mm.
+
+use crate::optics::fresnel;
+use glam::{DVec2, DVec3};
+
+/// A prism film in its cross-section.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Cell {
+    /// Thickness between the flat face and the valleys, pitches.
+    pub(super) base: f64,
+    /// Height of the tips above the flat face, pitches.
+    pub(super) top: f64,
+    /// Outward unit normal of the facet from a valley up to the tip at larger x; that of the other one is mirrored.
+    pub(super) facet: DVec2,
+    /// Share of a facet, half of it at each end, that is rounded: light that meets it is lost. 1.
+    pub(super) rounded: f64,
+}
+
+/// Refractive indices: before the flat face, of the film, and between the prisms. 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Indices {
+    pub(super) flat: f64,
+    pub(super) film: f64,
+    pub(super) prisms: f64,
+}
+
+/// Where light is in the cell.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct State {
+    /// Pitches; x is counted within the period of the room.
+    at: DVec2,
+    /// Unit direction (x, y, w).
+    dir: DVec3,
+    pub(super) room: Room,
+    on: Option<Facet>,
+    /// Way in the film until here, pitches.
+    way: f64,
+}
+
+/// A part of the cell without inner faces.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Room {
+    /// A prism; x in 0..1 between its valleys. The base below is passed in one go.
+    Prism,
+    /// The groove between two prisms, below the tips; x in -½..½ about the valley.
+    Groove,
+}
+
+/// A facet of a prism, or a side of a groove, by the way it rises.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Facet {
+    /// Toward larger x.
+    Up,
+    /// Toward smaller x.
+    Down,
+}
+
+/// What happens next to light in the cell.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Step {
+    /// It met an interface: it goes on reflected with the share `reflectance`, and refracted with the rest. `refracted` is
+    /// `None` under total reflection.
+    Met { reflectance: f64, reflected: State, refracted: Option<After> },
+    /// It left past the tips.
+    Out(Exit),
+    /// It met a rounded edge.
+    Lost,
+}
+
+/// Where refracted light goes.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum After {
+    /// On in the cell.
+    Inside(State),
+    /// Out of the flat face.
+    Out(Exit),
+}
+
+/// Light that leaves the cell.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Exit {
+    /// Unit direction (x, y, w).
+    pub(super) dir: DVec3,
+    /// Way in the film, pitches.
+    pub(super) way: f64,
+}
+
+impl Cell {
+    /// Light that comes to the flat face at a place of the period: its reflectance, the direction of what is reflected,
+    /// and what is refracted.
+    #[inline(always)]
+    pub(super) fn enter_flat(&self, x: f64, dir: DVec3, indices: &Indices) -> (f64, DVec3, State) {
+        let normal = DVec3::NEG_Y;
+        let (reflectance, refracted) = split(dir, normal, indices.flat, indices.film);
+        // Into the denser film light is always refracted.
+        let state = self.rise(x, refracted.unwrap_or(dir), 0.0);
+        (reflectance, fresnel::mirrored(dir, normal), state)
+    }
+
+    /// Light that comes to the prisms at the level of the tips.
+    pub(super) fn enter_prisms(&self, x: f64, dir: DVec3) -> State {
+        let at = DVec2::new(x - 0.5, self.top);
+        State { at, dir, room: Room::Groove, on: None, way: 0.0 }
+    }
+
+    /// The next thing that happens.
+    // All of a step in one piece, so that states stay in registers.
+    #[inline(always)]
+    pub(super) fn step(&self, state: &State, indices: &Indices) -> Step {
+        let meets = |facet: Facet| self.distance(state, facet);
+        let (up, down) = (meets(Facet::Up), meets(Facet::Down));
+        let (facet, length) = if down < up { (Facet::Down, down) } else { (Facet::Up, up) };
+        let dir = state.dir;
+        match state.room {
+            Room::Prism => {
+                let to_base = (self.base - state.at.y) / dir.y;
+                if dir.y < 0.0 && to_base <= length {
+                    return self.meet_flat(state, indices);
+                }
+                let reached = State { way: state.way + length, ..*state };
+                self.meet(&reached, facet, length, [indices.film, indices.prisms])
+            }
+            Room::Groove => {
+                let to_tips = (self.top - state.at.y) / dir.y;
+                if dir.y > 0.0 && to_tips <= length {
+                    return Step::Out(Exit { dir, way: state.way });
+                }
+                self.meet(state, facet, length, [indices.prisms, indices.film])
+            }
+        }
+    }
+
+    /// Light that goes up from a place of the flat face, as it comes into a prism.
+    #[inline(always)]
+    fn rise(&self, x: f64, dir: DVec3, way: f64) -> State {
+        let length = self.base / dir.y;
+        let x = x + length * dir.x;
+        // Within the period; quicker than a remainder.
+        let at = DVec2::new(x - x.floor(), self.base);
+        State { at, dir, room: Room::Prism, on: None, way: way + length }
+    }
+
+    /// What the flat face does to light that comes down to it.
+    #[inline(always)]
+    fn meet_flat(&self, state: &State, indices: &Indices) -> Step {
+        let dir = state.dir;
+        let length = -state.at.y / dir.y;
+        let way = state.way + length;
+        let (reflectance, refracted) = split(dir, DVec3::Y, indices.film, indices.flat);
+        let reflected =
+            self.rise(state.at.x + length * dir.x, fresnel::mirrored(dir, DVec3::Y), way);
+        let refracted = refracted.map(|dir| After::Out(Exit { dir, way }));
+        Step::Met { reflectance, reflected, refracted }
+    }
+
+    /// Outward normal of a facet, out of the film.
+    #[inline(always)]
+    fn normal(&self, facet: Facet) -> DVec3 {
+        let DVec2 { x, y } = self.facet;
+        match facet {
+            Facet::Up => DVec3::new(x, y, 0.0),
+            Facet::Down => DVec3::new(-x, y, 0.0),
+        }
+    }
+
+    /// How far it is to a facet, pitches; infinite where light does not go toward it.
+    #[inline(always)]
+    fn distance(&self, state: &State, facet: Facet) -> f64 {
+        if state.on == Some(facet) {
+            return f64::INFINITY;
+        }
+        let normal = self.normal(facet).truncate();
+        // Of a prism, both facets end at its tip; of a groove, in its valley.
+        let (corner, sense) = match state.room {
+            Room::Prism => (DVec2::new(0.5, self.top), 1.0),
+            Room::Groove => (DVec2::new(0.0, self.base), -1.0),
+        };
+        let toward = sense * state.dir.truncate().dot(normal);
+        let gap = sense * (corner - state.at).dot(normal);
+        // Rounding may have put light that came along a facet a hair beyond it.
+        if toward > 0.0 { (gap / toward).max(0.0) } else { f64::INFINITY }
+    }
+
+    /// What a facet does to light.
+    #[inline(always)]
+    fn meet(
+        &self,
+        state: &State,
+        facet: Facet,
+        length: f64,
+        [index_from, index_to]: [f64; 2],
+    ) -> Step {
+        let at = state.at + length * state.dir.truncate();
+        let up = (at.y - self.base) / (self.top - self.base);
+        let edge = 0.5 * self.rounded;
+        let is_rounded = self.rounded > 0.0 && (up < edge || up > 1.0 - edge);
+        if is_rounded || !length.is_finite() {
+            return Step::Lost;
+        }
+        let normal = match state.room {
+            Room::Prism => -self.normal(facet),
+            Room::Groove => self.normal(facet),
+        };
+        let (reflectance, refracted) = split(state.dir, normal, index_from, index_to);
+        let here = State { at, on: Some(facet), ..*state };
+        let reflected = State { dir: fresnel::mirrored(state.dir, normal), ..here };
+        let refracted = refracted.map(|dir| {
+            // A facet that rises toward larger x is on the right of its groove and on the left of its prism.
+            let (room, x) = match (state.room, facet) {
+                (Room::Groove, Facet::Up) => (Room::Prism, at.x),
+                (Room::Groove, Facet::Down) => (Room::Prism, at.x + 1.0),
+                (Room::Prism, Facet::Up) => (Room::Groove, at.x),
+                (Room::Prism, Facet::Down) => (Room::Groove, at.x - 1.0),
+            };
+            After::Inside(State { at: DVec2::new(x, at.y), dir, room, ..here })
+        });
+        Step::Met { reflectance, reflected, refracted }
+    }
+}
+
+/// Reflectance for unpolarised light, and the refracted direction unless light is totally reflected. `normal` is on the
+/// side that light comes from.
+#[inline(always)]
+fn split(dir: DVec3, normal: DVec3, index_from: f64, index_to: f64) -> (f64, Option<DVec3>) {
+    if index_from == index_to {
+        return (0.0, Some(dir));
+    }
+    let cos_i = (-dir.dot(normal)).clamp(0.0, 1.0);
+    match fresnel::cos_transmitted(cos_i, index_from, index_to) {
+        None => (1.0, None),
+        Some(cos_t) => {
+            let reflectance = fresnel::dielectric_refracting(cos_i, cos_t, index_from, index_to);
+            let dir = fresnel::refracted(dir, normal, cos_i, cos_t, index_from / index_to);
+            (reflectance.unpolarised(), Some(dir))
+        }
+    }
+}

@@ -1,0 +1,278 @@
+//! Prism film: flat on one face, with prisms side by side on the other, thin against everything around it.
+//!
+//! Light that meets it is traced through one period from a place that is drawn evenly over it, and leaves where it arrived:
+//! a film of any size costs no memory. Along the prisms nothing changes but by refraction at faces that contain that
+//! direction, so light keeps its angle to them: a duct lined with film guides light that is near enough to its axis.
+//! For prisms of 90 degrees that is sin θ < tan(π/8) sqrt(n² - 1) at every azimuth (docs/theory.md, eq. 4a; Whitehead,
+//! Nodwell & Curzon, Applied Optics 21 (1982) 2755, describe the guide). Nothing of that is put in here: Snell, Fresnel
+//! for unpolarised light and total reflection at flat facets are. Shifts of a pitch or two along the film are left out.
+
+mod cell;
+mod survey;
+
+pub use survey::{acceptance_angle, along_prisms};
+
+use crate::optics::bsdf::specular;
+use crate::optics::{Incidence, Scattered, Shares, Side};
+use crate::rng::{Dimension, Numbers, Sampler};
+use cell::{After, Cell, Exit, Indices, Step};
+use glam::{DVec2, DVec3};
+
+/// Steps after which light is taken as absorbed: only light that rounding has caught between faces takes so many.
+const MOST_STEPS: usize = 100_000;
+/// Steps after which light that has not come back to the flat face, or only under total reflection, is taken as caught.
+const PASSAGE: usize = 1000;
+/// Share of the arriving flux below which a branch goes on by chance, and then with this share, 1.
+const LEAST_SHARE: f64 = 1e-4;
+
+/// A film with prisms, from its makers' point of view.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FilmMake {
+    /// Refractive index, 1.
+    pub index: f64,
+    /// Angle between the two facets at the tip of a prism, rad.
+    pub prism_angle: f64,
+    /// Distance from tip to tip, mm.
+    pub pitch: f64,
+    /// Thickness between the flat face and the valleys, mm.
+    pub base: f64,
+    /// Absorption coefficient (natural logarithm), 1/mm.
+    pub absorption: f64,
+    /// Share of the facets that is rounded, half of it at tips and half in valleys; light that meets it is lost. 1.
+    pub rounded: f64,
+    /// Which way the prisms run.
+    pub run: Grain,
+}
+
+/// Which way something runs on a face.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Grain {
+    /// With the grain of [`Incidence`].
+    Along,
+    /// Across it.
+    Around,
+}
+
+/// A face of a film.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FilmFace {
+    /// The flat one.
+    Flat,
+    /// The one with prisms.
+    Prisms,
+}
+
+impl FilmFace {
+    /// The other one.
+    pub fn opposite(self) -> Self {
+        match self {
+            Self::Flat => Self::Prisms,
+            Self::Prisms => Self::Flat,
+        }
+    }
+}
+
+/// A prism film, ready to be traced.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PrismFilm {
+    cell: Cell,
+    index: f64,
+    /// Absorption coefficient, 1/pitch.
+    absorption: f64,
+    run: Grain,
+}
+
+/// How light comes to a film, in the frame of its cell.
+struct Approach {
+    /// Across the prisms, from the flat face into the film, and along the prisms.
+    axes: [DVec3; 3],
+    dir: DVec3,
+    indices: Indices,
+}
+
+impl PrismFilm {
+    /// The film of a make.
+    pub fn new(make: &FilmMake) -> Self {
+        let (sin, cos) = (0.5 * make.prism_angle).sin_cos();
+        let base = make.base / make.pitch;
+        let cell = Cell {
+            base,
+            top: base + 0.5 * cos / sin,
+            facet: DVec2::new(-cos, sin),
+            rounded: make.rounded,
+        };
+        let absorption = make.absorption * make.pitch;
+        Self { cell, index: make.index, absorption, run: make.run }
+    }
+
+    /// Sends light on that meets one of the faces, or absorbs it (`None`). The directions are discrete, and which of
+    /// them is taken is random.
+    pub fn scatter(
+        &self,
+        face: FilmFace,
+        incidence: &Incidence,
+        sampler: &mut Sampler<impl Numbers>,
+    ) -> Option<Scattered> {
+        let approach = self.approach(face, incidence);
+        let x = sampler.one(Dimension::Scatter);
+        let mut state = match face {
+            FilmFace::Prisms => self.cell.enter_prisms(x, approach.dir),
+            FilmFace::Flat => {
+                let (reflectance, dir, state) =
+                    self.cell.enter_flat(x, approach.dir, &approach.indices);
+                if is_reflected(reflectance, sampler) {
+                    let back = Exit { dir, way: 0.0 };
+                    return Some(self.leave(&approach, face, FilmFace::Flat, &back));
+                }
+                state
+            }
+        };
+        for _ in 0..MOST_STEPS {
+            state = match self.cell.step(&state, &approach.indices) {
+                Step::Lost => return None,
+                Step::Out(exit) => {
+                    return Some(self.leave(&approach, face, FilmFace::Prisms, &exit));
+                }
+                Step::Met { reflectance, reflected, refracted } => match refracted {
+                    Some(after) if !is_reflected(reflectance, sampler) => match after {
+                        After::Inside(next) => next,
+                        After::Out(exit) => {
+                            return Some(self.leave(&approach, face, FilmFace::Flat, &exit));
+                        }
+                    },
+                    Some(_) | None => reflected,
+                },
+            };
+        }
+        None
+    }
+
+    /// Shares of light that meets one of the faces evenly: the mean over `places` places of the period, at each of
+    /// which light is split at every interface and weak branches go on by chance. Two places are apart enough for a tip or valley
+    /// to lie between them.
+    pub fn shares(&self, face: FilmFace, incidence: &Incidence, places: u32) -> Shares {
+        let approach = self.approach(face, incidence);
+        // Always the same numbers: a share is no random quantity.
+        let mut sampler = Sampler::for_path(0, 0, 0);
+        let mut sums = [0.0; 2];
+        for place in 0..places {
+            let x = middle(place, places);
+            self.split_from(face, x, &approach, &mut sampler, |through, exit, share| {
+                sums[usize::from(through != face)] += share * self.transmittance(exit.way);
+            });
+        }
+        let [reflected, transmitted] = sums.map(|sum| sum / f64::from(places));
+        Shares { reflected, transmitted }
+    }
+
+    /// Whether any light that enters the flat face evenly is not totally reflected before it is back there, as far as so
+    /// many places tell.
+    fn leaks(&self, incidence: &Incidence, places: u32) -> bool {
+        let Approach { dir, indices, .. } = self.approach(FilmFace::Flat, incidence);
+        (0..places).any(|place| {
+            let (_, _, mut state) = self.cell.enter_flat(middle(place, places), dir, &indices);
+            for _ in 0..PASSAGE {
+                state = match self.cell.step(&state, &indices) {
+                    Step::Met { reflected, refracted: None, .. } => reflected,
+                    Step::Met { refracted: Some(After::Out(_)), .. } => return false,
+                    Step::Met { .. } | Step::Lost | Step::Out(_) => return true,
+                };
+            }
+            // Light that rounding has caught has not leaked.
+            false
+        })
+    }
+
+    /// Follows the branches of light from one place: the face through which each leaves, how, and its share before
+    /// absorption.
+    fn split_from(
+        &self,
+        face: FilmFace,
+        x: f64,
+        approach: &Approach,
+        sampler: &mut Sampler,
+        mut leave: impl FnMut(FilmFace, &Exit, f64),
+    ) {
+        let mut waiting = Vec::new();
+        match face {
+            FilmFace::Prisms => waiting.push((self.cell.enter_prisms(x, approach.dir), 1.0)),
+            FilmFace::Flat => {
+                let (reflectance, dir, state) =
+                    self.cell.enter_flat(x, approach.dir, &approach.indices);
+                leave(FilmFace::Flat, &Exit { dir, way: 0.0 }, reflectance);
+                waiting.push((state, 1.0 - reflectance));
+            }
+        }
+        while let Some((state, share)) = waiting.pop() {
+            let goes_on =
+                share >= LEAST_SHARE || sampler.one(Dimension::Roulette) * LEAST_SHARE < share;
+            if !goes_on {
+                continue;
+            }
+            let share = share.max(LEAST_SHARE);
+            match self.cell.step(&state, &approach.indices) {
+                Step::Lost => {}
+                Step::Out(exit) => leave(FilmFace::Prisms, &exit, share),
+                Step::Met { reflectance, reflected, refracted } => {
+                    let refracted_share = (1.0 - reflectance) * share;
+                    match refracted {
+                        Some(After::Inside(next)) => waiting.push((next, refracted_share)),
+                        Some(After::Out(exit)) => leave(FilmFace::Flat, &exit, refracted_share),
+                        None => {}
+                    }
+                    waiting.push((reflected, reflectance * share));
+                }
+            }
+        }
+    }
+
+    /// Light that arrived at one face and leaves through another one or the same.
+    fn leave(
+        &self,
+        approach: &Approach,
+        arrived: FilmFace,
+        through: FilmFace,
+        exit: &Exit,
+    ) -> Scattered {
+        let [x, y, w] = approach.axes;
+        let dir = exit.dir.x * x + exit.dir.y * y + exit.dir.z * w;
+        let side = if through == arrived { Side::Reflected } else { Side::Transmitted };
+        specular(dir, self.transmittance(exit.way), side)
+    }
+
+    fn approach(&self, face: FilmFace, incidence: &Incidence) -> Approach {
+        let Incidence { dir, normal, index_from, index_to, grain } = *incidence;
+        let (into, flat, prisms) = match face {
+            FilmFace::Flat => (-normal, index_from, index_to),
+            FilmFace::Prisms => (normal, index_to, index_from),
+        };
+        let along = match self.run {
+            Grain::Along => grain,
+            Grain::Around => grain.cross(normal),
+        };
+        let axes = [along.cross(into), into, along];
+        Approach {
+            axes,
+            dir: DVec3::from_array(axes.map(|axis| dir.dot(axis))),
+            indices: Indices { flat, film: self.index, prisms },
+        }
+    }
+
+    /// Beer and Lambert, over a way in pitches.
+    fn transmittance(&self, length: f64) -> f64 {
+        if self.absorption == 0.0 { 1.0 } else { (-self.absorption * length).exp() }
+    }
+}
+
+/// The middle of a place of the period, pitches.
+fn middle(place: u32, places: u32) -> f64 {
+    (f64::from(place) + 0.5) / f64::from(places)
+}
+
+/// One draw; none where only one is possible.
+fn is_reflected(reflectance: f64, sampler: &mut Sampler<impl Numbers>) -> bool {
+    reflectance > 0.0 && sampler.one(Dimension::Lobe) < reflectance
+}
+
+#[cfg(test)]
+mod tests;

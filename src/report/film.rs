@@ -1,0 +1,81 @@
+//! What prism films do against the angle, as a table.
+
+use crate::optics::film::{acceptance_angle, along_prisms};
+use crate::optics::{Bsdf, FilmFace, Incidence, PrismFilm, Shares};
+use crate::scene::Finish;
+use std::f64::consts::FRAC_PI_2;
+use std::fmt::Write;
+
+/// Places of a period at which shares are found: to about a thousandth.
+const PLACES: u32 = 1000;
+
+/// A table of reflectance, transmittance and loss for each prism film among some finishes, lit from both sides, in steps
+/// of an angle in degrees from the normal, in the plane along the prisms and the plane across them; `None` without any
+/// film. `index` is that of the medium around them, 1.
+pub fn film_tables(finishes: &[Finish], index: f64, step_deg: f64) -> Option<String> {
+    let tables: Vec<String> = finishes
+        .iter()
+        .filter_map(|finish| {
+            let Bsdf::PrismFilm { film, face } = &finish.bsdf else { return None };
+            // What lies behind a film is the same film, and is in its table.
+            let is_told = *face == FilmFace::Prisms && is_behind(finish, finishes);
+            (!is_told).then(|| table(&finish.name, film, index, step_deg))
+        })
+        .collect();
+    (!tables.is_empty()).then(|| tables.join("\n"))
+}
+
+fn is_behind(finish: &Finish, finishes: &[Finish]) -> bool {
+    let front = finish.bsdf.from_behind();
+    finishes.iter().any(|other| Some(&other.bsdf) == front.as_ref())
+}
+
+fn table(name: &str, film: &PrismFilm, index: f64, step_deg: f64) -> String {
+    let guided = acceptance_angle(film, index).to_degrees();
+    let mut text = format!(
+        "Prism film `{name}`\n\nLight that meets the flat face at up to {guided:.3} degrees from the prisms is totally \
+         reflected, whatever its azimuth about them.\n\nShares in percent, angles from the normal of the film, for \
+         unpolarised light; R reflected, T transmitted, A absorbed or lost.\n\n"
+    );
+    for (face, lit) in
+        [(FilmFace::Flat, "Lit on the flat face"), (FilmFace::Prisms, "Lit on the prisms")]
+    {
+        // Writing to a string cannot fail.
+        _ = write!(
+            text,
+            "{lit}\n\n| angle, ° | R along the prisms | T | A | R across the prisms | T | A |\n|--:|--:|--:|--:|--:|--:|--:|\n"
+        );
+        let mut angle: f64 = 0.0;
+        while angle < 89.999 {
+            let planes = [Plane::Along, Plane::Across];
+            let shares = planes.map(|plane| {
+                film.shares(face, &in_plane(plane, angle.to_radians(), index), PLACES)
+            });
+            let cells = shares.map(cells).join(" | ");
+            _ = writeln!(text, "| {angle} | {cells} |");
+            angle += step_deg;
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// A plane through the normal of a film.
+#[derive(Debug, Clone, Copy)]
+enum Plane {
+    Along,
+    Across,
+}
+
+/// Light in a plane at an angle from the normal, rad.
+fn in_plane(plane: Plane, angle: f64, index: f64) -> Incidence {
+    match plane {
+        Plane::Along => along_prisms(FRAC_PI_2 - angle, 0.0, index),
+        Plane::Across => along_prisms(FRAC_PI_2, angle, index),
+    }
+}
+
+fn cells(Shares { reflected, transmitted }: Shares) -> String {
+    let lost = (1.0 - reflected - transmitted).max(0.0);
+    [reflected, transmitted, lost].map(|share| format!("{:.2}", 100.0 * share)).join(" | ")
+}

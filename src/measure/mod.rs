@@ -287,6 +287,7 @@ mod tests {
             emission: Emission::Lambertian,
             start: Start::Outside,
             on: Vec::new(),
+            elevation: None,
         });
         let SensorKind::Surface(mut sensor) = rectangle(2.0, cells, cells) else { unreachable!() };
         (sensor.faces, sensor.sides) = (vec![port], Sides::Back);

@@ -62,6 +62,9 @@ pub struct Measures {
     pub sensor_paths: Vec<SensorPaths>,
     /// Whether fluxes are luminous or radiant.
     pub unit: FluxUnit,
+    /// Elevation of each sun above the horizon, deg, by the name of its source.
+    #[serde(skip_serializing_if = "IndexMap::is_empty")]
+    pub sun_elevations_deg: IndexMap<String, f64>,
     /// Flux of all sources, lm or W.
     pub source_flux: f64,
     /// Batches traced.
@@ -88,6 +91,10 @@ pub fn measure(scene: &Scene, findings: &Findings) -> Measures {
     }
     let names = scene.sensors.iter().map(|sensor| sensor.name.clone());
     let choices = names.zip(findings.choices.iter().cloned());
+    let suns = scene
+        .sources
+        .iter()
+        .filter_map(|source| Some((source.name.clone(), source.elevation?.to_degrees())));
     let photons = &findings.photons;
     let balance = balance::balance(&Evidence::new(scene, photons));
     values.extend(balance.measures());
@@ -101,6 +108,7 @@ pub fn measure(scene: &Scene, findings: &Findings) -> Measures {
         gathered,
         sensor_paths,
         unit: scene.unit,
+        sun_elevations_deg: suns.collect(),
         source_flux: scene.source_flux(),
         batches: photons.batch_count(),
         paths: findings.paths,

@@ -115,8 +115,10 @@ fn illuminances_in_the_open_are_those_of_integrals() {
             let found = measures(&open(&sky), way);
             for (name, expected) in [("level", level), ("wall", wall)] {
                 let measure = &found.values[&format!("{name}.illuminance_avg")];
-                let off = (measure.value - 1000.0 * expected) / measure.std_error;
-                assert!(off.abs() < 4.0, "{model}, {}, {name}: {measure}", way.name());
+                let off = (measure.value - 1000.0 * expected).abs();
+                // Backward paths under an even sky all bring the same: nothing but rounding is left.
+                let allowed = 4.0 * measure.std_error + 1e-6 * measure.value;
+                assert!(off < allowed, "{model}, {}, {name}: {measure}", way.name());
             }
         }
     }

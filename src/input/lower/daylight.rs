@@ -7,7 +7,10 @@ use crate::input::spec::daylight::{SkyModelSpec, SkySpec, SunPlaceSpec, SunSpec,
 use crate::math::{Aabb, Frame};
 use crate::optics::SkyModel;
 use crate::optics::sun::{Date, Observation, read_time, sun_position};
-use crate::scene::{Emission, EmitSide, Emitter, EmitterKind, FaceId, Owner, Sky, Source, Start};
+use crate::scene::shape::Shape;
+use crate::scene::{
+    Emission, EmitSide, Emitter, EmitterKind, FaceId, MeshBody, Owner, Sky, Source, Start,
+};
 use crate::units::per_m2_to_per_mm2;
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -16,6 +19,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 const SOUTH_DEG: f64 = 180.0;
 /// By how much the sphere from which light starts is larger than what it has to hold, 1.
 const ROOM: f64 = 1.01;
+/// Areas of surfaces that differ by no more than this, relative, are the same.
+const SAME_AREA: f64 = 1e-9;
 /// Type number of the clear sky of low turbidity, CIE S 011/E:2003.
 const CLEAR: usize = 12;
 
@@ -28,6 +33,13 @@ struct Aim {
     /// That the luminance times the projected solid angle is taken by, mm².
     area: f64,
     start: Start,
+}
+
+/// Around a thing that light is aimed at.
+struct Ball {
+    center: DVec3,
+    /// mm
+    radius: f64,
 }
 
 /// A place of the sun above the horizon.
@@ -183,8 +195,8 @@ impl Context<'_> {
     /// Where light starts that is aimed at a flat face, a solid or a sheet.
     fn aim_of_daylight(&mut self, name: &str, key: &Key) -> Option<Aim> {
         let key = key.field("aim");
-        if let Some(bounds) = self.body_bounds(name) {
-            return Some(self.aim_at_body(bounds));
+        if let Some(ball) = self.ball_around(name) {
+            return Some(self.aim_at_body(ball));
         }
         if self.spec.solids.contains_key(name) || self.spec.sheets.contains_key(name) {
             // It could not be built, which has been told.
@@ -200,33 +212,41 @@ impl Context<'_> {
         self.aim_at_face(name, &faces, &key)
     }
 
-    /// Box around a solid or sheet, mm.
-    fn body_bounds(&self, name: &str) -> Option<Aabb> {
+    /// A ball around a solid or sheet.
+    fn ball_around(&self, name: &str) -> Option<Ball> {
         let scene = self.builder.scene();
-        if let Some(solid) = scene.solids.iter().find(|solid| solid.name == name) {
-            return Some(solid.bounds).filter(|bounds| !bounds.is_empty());
-        }
         let is_part =
             |face: &str| face.strip_prefix(name).is_some_and(|rest| rest.starts_with('.'));
         let faces = scene.faces.iter().enumerate().filter(|(_, face)| is_part(&face.name));
         let patches = faces.flat_map(|(index, _)| scene.face_patches(FaceId::new(index)));
-        let bounds = patches.fold(Aabb::EMPTY, |sum, patch| sum.union(patch.shape.bounds()));
-        Some(bounds).filter(|bounds| !bounds.is_empty())
+        let shapes: Vec<&Shape> = patches.map(|patch| &patch.shape).collect();
+        let bounds = shapes.iter().fold(Aabb::EMPTY, |sum, shape| sum.union(shape.bounds()));
+        let solid = scene.solids.iter().find(|solid| solid.name == name);
+        let bounds = solid.map_or(bounds, |solid| solid.bounds);
+        if bounds.is_empty() {
+            return None;
+        }
+        let (center, half) = (bounds.center(), 0.5 * (bounds.max - bounds.min));
+        // A whole sphere fills its box from side to side, and keeps away from its corners.
+        let sphere_area = 4.0 * PI * half.x * half.x;
+        let is_whole = |shape: &Shape| (shape.area() / sphere_area - 1.0).abs() < SAME_AREA;
+        let is_sphere = matches!(shapes.as_slice(), [shape @ Shape::Sphere(_)] if is_whole(shape));
+        Some(Ball { center, radius: if is_sphere { half.x } else { half.length() } })
     }
 
     /// Light starts outside of all solids and sheets: one that stands in its way shades.
-    fn aim_at_body(&self, bounds: Aabb) -> Aim {
-        let (center, reach) = (bounds.center(), 0.5 * bounds.diagonal());
+    fn aim_at_body(&self, ball: Ball) -> Aim {
+        let Ball { center, radius } = ball;
         let bodies = self.builder.scene();
         let patches = bodies.patches.iter().map(|patch| patch.shape.bounds());
-        let all = patches.chain(bodies.meshes.iter().map(|mesh| mesh.bounds()));
-        let all = all.fold(bounds, Aabb::union);
+        let all = patches.chain(bodies.meshes.iter().map(MeshBody::bounds));
+        let all = all.fold(Aabb::of([center]).grown(radius), Aabb::union);
         let farthest = (all.max - center).abs().max((all.min - center).abs()).length();
         Aim {
-            emitter: Emitter::far(center, reach, ROOM * farthest),
+            emitter: Emitter::far(center, radius, ROOM * farthest),
             kind: EmitterKind::Far,
             frame: Frame::WORLD,
-            area: PI * reach * reach,
+            area: PI * radius * radius,
             start: Start::Outside,
         }
     }

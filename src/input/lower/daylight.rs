@@ -70,16 +70,26 @@ impl Context<'_> {
         };
         for (index, &elevation) in elevations.iter().enumerate() {
             let own = format!("{name}_{}", elevation.to_string().replace('.', "_"));
-            let is_taken = self.spec.sources.contains_key(&own)
-                || self.builder.scene().sources.iter().any(|source| source.name == own);
-            if is_taken {
-                let message = format!("makes a second source `{own}`");
+            if self.is_taken(&own) {
+                let message = format!("makes a source `{own}`, and that name is taken");
                 let at = key.field("elevations_deg").index(index);
-                self.problems.error(&at, message).hint("give each elevation once");
+                self.problems
+                    .error(&at, message)
+                    .hint("give each elevation once, and no other thing this name");
             } else {
                 self.add_sun(&own, spec, Sun::new(elevation, azimuth), key);
             }
         }
+    }
+
+    /// Whether a thing of the file, or a source made so far, has a name.
+    fn is_taken(&self, name: &str) -> bool {
+        let spec = self.spec;
+        spec.sources.contains_key(name)
+            || spec.sensors.contains_key(name)
+            || spec.solids.contains_key(name)
+            || spec.sheets.contains_key(name)
+            || self.builder.scene().sources.iter().any(|source| source.name == name)
     }
 
     fn add_sun(&mut self, name: &str, spec: &SunSpec, sun: Sun, key: &Key) {

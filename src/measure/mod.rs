@@ -91,10 +91,11 @@ pub fn measure(scene: &Scene, findings: &Findings) -> Measures {
     }
     let names = scene.sensors.iter().map(|sensor| sensor.name.clone());
     let choices = names.zip(findings.choices.iter().cloned());
-    let suns = scene
-        .sources
-        .iter()
-        .filter_map(|source| Some((source.name.clone(), source.elevation?.to_degrees())));
+    let suns = scene.sources.iter().filter_map(|source| {
+        // As the file says it, without the rounding of radians.
+        let degrees = (1e9 * source.elevation?.to_degrees()).round() / 1e9;
+        Some((source.name.clone(), degrees))
+    });
     let photons = &findings.photons;
     let balance = balance::balance(&Evidence::new(scene, photons));
     values.extend(balance.measures());

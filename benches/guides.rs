@@ -217,6 +217,7 @@ fn add_source(builder: &mut Builder, center: DVec3, radius: f64) {
         emission: Emission::Lambertian,
         start: Start::Outside,
         on: Vec::new(),
+        elevation: None,
     });
 }
 

@@ -7,7 +7,7 @@ use serde_json::Value as Json;
 
 use crate::input::keys::{Key, Segment};
 use crate::input::problems::Problems;
-use crate::input::spec::{AIR, FORMAT_VERSION, SceneSpec};
+use crate::input::spec::{AIR, FORMAT_VERSION, NORTH, SceneSpec, UP};
 use crate::input::tree::{Node, Value};
 
 /// The spec that a tree says. A key with an error is left out, and with it an entry that is nothing without the key.
@@ -17,6 +17,8 @@ pub fn scene(root: &Node, problems: &mut Problems) -> SceneSpec {
         title: value(root, "title", problems).unwrap_or_default(),
         description: value(root, "description", problems),
         surroundings: value(root, "surroundings", problems).unwrap_or_else(|| AIR.into()),
+        up: value(root, "up", problems).unwrap_or(UP),
+        north: value(root, "north", problems).unwrap_or(NORTH),
         media: entries(root, "media", problems),
         finishes: entries(root, "finishes", problems),
         solids: entries(root, "solids", problems),

@@ -5,7 +5,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-use serde_json::Value as Json;
+use serde_json::{Map, Value as Json};
 
 use crate::input::schema::{self, RequiredSet};
 use crate::input::validate::wording;
@@ -82,16 +82,20 @@ impl Manual<'_> {
     fn choices(&mut self, definition: &Json, heading: &str) {
         let options = options(definition);
         let shared = shared_keys(self.schema, &options);
-        if let Some((names, table)) = &shared {
-            self.text += "Keys of every kind:\n\n";
+        if let Some(Shared { names, table, apart }) = &shared {
+            let apart = apart.iter().map(|kind| format!("`{kind}`")).collect::<Vec<_>>();
+            let but =
+                if apart.is_empty() { String::new() } else { format!(" but {}", apart.join(", ")) };
+            let _ = write!(self.text, "Keys of every kind{but}:\n\n");
             self.rows(table, |name| names.contains(&name));
             self.rule(table);
         }
-        let shared = shared.map(|(names, _)| names).unwrap_or_default();
         for option in options {
             match kind_of(option) {
                 Some((kind, value)) => {
-                    self.kind(kind, value, description(option), &shared, heading);
+                    let shared = shared.as_ref().filter(|shared| !shared.apart.contains(&kind));
+                    let names = shared.map_or(&[][..], |shared| &shared.names);
+                    self.kind(kind, value, description(option), names, heading);
                 }
                 None => self.option(option, schema::resolve(self.schema, option)),
             }
@@ -248,20 +252,34 @@ fn kind_of(option: &Json) -> Option<(&str, &Json)> {
     Some((kind, value))
 }
 
-/// Keys that all kinds have in the same way, and the table of one of them.
-fn shared_keys<'a>(root: &'a Json, options: &[&'a Json]) -> Option<(Vec<&'a str>, &'a Json)> {
+/// Keys that kinds have in the same way.
+struct Shared<'a> {
+    names: Vec<&'a str>,
+    /// The table of a kind that has them.
+    table: &'a Json,
+    /// Kinds that have none of them.
+    apart: Vec<&'a str>,
+}
+
+/// Keys that all kinds have in the same way, but for kinds that have nothing in common with the first.
+fn shared_keys<'a>(root: &'a Json, options: &[&'a Json]) -> Option<Shared<'a>> {
     let tables = options.iter().map(|option| {
-        let table = schema::resolve(root, kind_of(option)?.1);
-        Some((table["properties"].as_object()?, table))
+        let (kind, value) = kind_of(option)?;
+        let table = schema::resolve(root, value);
+        Some((kind, table["properties"].as_object()?, table))
     });
     let tables: Option<Vec<_>> = tables.collect();
     let tables = tables?;
-    let (first, table) = tables.first()?;
+    let (_, first, table) = *tables.first()?;
+    let is_apart =
+        |keys: &Map<String, Json>| !first.iter().any(|(name, value)| keys.get(name) == Some(value));
+    let (apart, alike): (Vec<_>, Vec<_>) = tables.iter().partition(|(_, keys, _)| is_apart(keys));
     let is_shared = |(name, value): &(&String, &Json)| {
-        tables.iter().all(|(keys, _)| keys.get(*name) == Some(*value))
+        alike.iter().all(|(_, keys, _)| keys.get(*name) == Some(*value))
     };
-    let shared: Vec<_> = first.iter().filter(is_shared).map(|(name, _)| name.as_str()).collect();
-    (tables.len() > 1 && !shared.is_empty()).then_some((shared, *table))
+    let names: Vec<_> = first.iter().filter(is_shared).map(|(name, _)| name.as_str()).collect();
+    let apart: Vec<_> = apart.iter().map(|(kind, ..)| *kind).collect();
+    (alike.len() > 1 && !names.is_empty()).then_some(Shared { names, table, apart })
 }
 
 fn description(schema: &Json) -> &str {

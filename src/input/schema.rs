@@ -223,12 +223,14 @@ pub fn unit(key: &str) -> Option<&'static str> {
 }
 
 /// Endings of keys and what they mean; the longer of two that fit comes first.
-const UNITS: [(&str, &str); 8] = [
+const UNITS: [(&str, &str); 10] = [
     ("_cd_m2", "cd/m²"),
     ("_per_mm", "1/mm"),
     ("_mm", "mm"),
     ("_deg", "degrees"),
     ("_lm", "lm"),
+    ("_lx", "lx"),
+    ("_h", "hours"),
     ("_w", "W"),
     ("_cd", "cd"),
     ("_s", "s"),
@@ -283,6 +285,9 @@ mod tests {
             "sides",
             "axis",
             "x_axis",
+            "up",
+            "north",
+            "cie_type",
             "priority",
             "cells",
             "pixels",

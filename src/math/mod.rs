@@ -12,7 +12,8 @@ pub use cap::{cap_solid_angle_above, projected_cap};
 pub use frame::Frame;
 pub use roots::{Roots, bracketed_root, convex_roots, cubic, quadratic, quartic};
 pub use sampling::{
-    circle, cone_direction, cosine_hemisphere, cosine_power_hemisphere, disk, uniform_sphere,
+    circle, cone_direction, cosine_hemisphere, cosine_power_hemisphere, disk, from_cosine,
+    uniform_sphere,
 };
 
 use glam::DVec3;

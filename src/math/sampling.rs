@@ -78,7 +78,8 @@ pub fn cone_direction(half_angle: f64, u: [f64; 2]) -> DVec3 {
     (sin * circle(u[1])).extend(1.0 - one_minus_cos)
 }
 
-fn from_cosine(cos: f64, u: f64) -> DVec3 {
+/// The direction at an angle of this cosine from +z, after `u` whole turns from +x.
+pub fn from_cosine(cos: f64, u: f64) -> DVec3 {
     let sin = (1.0 - cos * cos).max(0.0).sqrt();
     (sin * circle(u)).extend(cos)
 }

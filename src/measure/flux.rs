@@ -46,14 +46,24 @@ fn by_source(evidence: &Evidence<'_>, id: SensorId, out: &mut IndexMap<String, M
 
 /// Flux through the entry port, and the sensor's flux over it: the transmission.
 fn entering(evidence: &Evidence<'_>, id: SensorId, out: &mut IndexMap<String, Measure>) {
-    if evidence.scene.sensors[id.index()].entering.is_none() {
+    let scene = evidence.scene;
+    if scene.sensors[id.index()].entering.is_none() {
         return;
     }
-    let entering = [evidence.layout.entering(id)];
+    let sources = || (0..scene.sources.len()).map(SourceId::new);
+    let entering: Vec<usize> =
+        sources().map(|source| evidence.layout.entering(id, source)).collect();
+    let leaving = flux_slots(evidence, id);
     let photons = evidence.of_photons();
-    out.insert("entering_flux".into(), photons.sum(&entering, 1.0, evidence.scene.unit.flux()));
-    let transmission = evidence.ratio_to_photons(&flux_slots(evidence, id), &entering);
-    out.insert("transmission".into(), transmission);
+    out.insert("entering_flux".into(), photons.sum(&entering, 1.0, scene.unit.flux()));
+    out.insert("transmission".into(), evidence.ratio_to_photons(&leaving, &entering));
+    if scene.sources.len() > 1 {
+        for (place, source) in scene.sources.iter().enumerate() {
+            let [out_slot, in_slot] = [&leaving, &entering].map(|slots| &slots[place..=place]);
+            let own = evidence.ratio_to_photons(out_slot, in_slot);
+            out.insert(format!("transmission.from.{}", source.name), own);
+        }
+    }
 }
 
 /// Flux that met the sensor but does not count: only photons know it.
@@ -118,7 +128,8 @@ mod tests {
             let swing = if index % 2 == 0 { 0.9 } else { 1.1 };
             add(batch, layout.sensor_flux(exit(), SourceId::new(0)), 1.8 * swing);
             add(batch, layout.sensor_flux(exit(), SourceId::new(1)), 0.1 * swing);
-            add(batch, layout.entering(exit()), 2.0 * swing);
+            add(batch, layout.entering(exit(), SourceId::new(0)), 1.9 * swing);
+            add(batch, layout.entering(exit(), SourceId::new(1)), 0.1 * swing);
             add(batch, layout.depth_weighted(exit()), 1.9 * 12.0 * swing);
             add(batch, layout.deeper(exit(), 0), 1.9 * 0.25 * swing);
         });
@@ -137,6 +148,8 @@ mod tests {
             ("exit.efficiency.from.led", 0.6),
             ("exit.efficiency.from.lamp", 0.1),
             ("exit.entering_flux", 2.0),
+            ("exit.transmission.from.led", 1.8 / 1.9),
+            ("exit.transmission.from.lamp", 1.0),
             // 1.9 lm on 100 mm².
             ("exit.illuminance_avg", 19_000.0),
             ("exit.bounces_mean", 12.0),

@@ -62,6 +62,9 @@ pub struct Measures {
     pub sensor_paths: Vec<SensorPaths>,
     /// Whether fluxes are luminous or radiant.
     pub unit: FluxUnit,
+    /// Elevation of each sun above the horizon, deg, by the name of its source.
+    #[serde(skip_serializing_if = "IndexMap::is_empty")]
+    pub sun_elevations_deg: IndexMap<String, f64>,
     /// Flux of all sources, lm or W.
     pub source_flux: f64,
     /// Batches traced.
@@ -88,6 +91,11 @@ pub fn measure(scene: &Scene, findings: &Findings) -> Measures {
     }
     let names = scene.sensors.iter().map(|sensor| sensor.name.clone());
     let choices = names.zip(findings.choices.iter().cloned());
+    let suns = scene.sources.iter().filter_map(|source| {
+        // As the file says it, without the rounding of radians.
+        let degrees = (1e9 * source.elevation?.to_degrees()).round() / 1e9;
+        Some((source.name.clone(), degrees))
+    });
     let photons = &findings.photons;
     let balance = balance::balance(&Evidence::new(scene, photons));
     values.extend(balance.measures());
@@ -101,6 +109,7 @@ pub fn measure(scene: &Scene, findings: &Findings) -> Measures {
         gathered,
         sensor_paths,
         unit: scene.unit,
+        sun_elevations_deg: suns.collect(),
         source_flux: scene.source_flux(),
         batches: photons.batch_count(),
         paths: findings.paths,
@@ -287,6 +296,7 @@ mod tests {
             emission: Emission::Lambertian,
             start: Start::Outside,
             on: Vec::new(),
+            elevation: None,
         });
         let SensorKind::Surface(mut sensor) = rectangle(2.0, cells, cells) else { unreachable!() };
         (sensor.faces, sensor.sides) = (vec![port], Sides::Back);

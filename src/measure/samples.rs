@@ -32,6 +32,7 @@ pub(crate) fn scene(sources: &[(&str, f64)], sensors: Vec<(&str, SensorKind)>) -
             emission: Emission::Lambertian,
             start: Start::Outside,
             on: Vec::new(),
+            elevation: None,
         });
     }
     for (name, kind) in sensors {

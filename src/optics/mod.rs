@@ -11,7 +11,9 @@ pub mod fresnel;
 mod gaussian;
 mod medium;
 mod shares;
+mod sky;
 mod spread;
+pub mod sun;
 
 pub use adjoint::{Faces, scatter_radiance, scatter_toward};
 pub use bsdf::{Bsdf, Incidence, Lobe, Scattered, Side};
@@ -20,4 +22,5 @@ pub use film::{FilmFace, FilmMake, Grain, PrismFilm};
 pub use gaussian::Gaussian;
 pub use medium::Medium;
 pub use shares::{Shares, chances, shares};
+pub use sky::{CIE_TYPES, SkyBound, SkyModel};
 pub use spread::Spread;

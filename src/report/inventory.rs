@@ -62,7 +62,7 @@ fn sources(scene: &Scene, text: &mut String) {
         if let Some(area) = source.emitter.area() {
             _ = write!(text, ", area {} mm²", format_value(area));
             let projected = match source.emission {
-                Emission::Lambertian | Emission::Cone { .. } => {
+                Emission::Lambertian | Emission::Cone { .. } | Emission::Sky(_) => {
                     source.emission.projected_solid_angle()
                 }
                 // Light in every direction of the half space, however it is spread.

@@ -5,6 +5,7 @@ use crate::measure::{
     SensorMap, SensorPaths, StageFacts, Statistic, Status, strongest,
 };
 use crate::number::{format_percent, format_value, format_with_error};
+use crate::report::by_sun;
 use crate::report::csv::{map_name, map_words};
 use crate::report::{CheckResult, Report};
 use crate::scene::plan::Estimator;
@@ -176,6 +177,7 @@ fn sensor(report: &Report, paths: &SensorPaths, files: &[&str]) -> String {
             text += &format!("![{}]({file})\n\n", stem.replace('.', ": "));
         }
     }
+    text += &by_sun::section(report, name);
     text += "| measure | value |\n|---|---|\n";
     for (key, measure) in &report.measures.values {
         // Single cells and rings are in the tables of numbers.

@@ -3,6 +3,7 @@
 //! A report depends on the scene, the seed and the number of paths alone: no clock, no thread count and no machine is
 //! known here, but for `timing.csv` and the comparison of estimators, which lie outside of the reproducible set.
 
+mod by_sun;
 mod compare;
 mod csv;
 mod figures;
@@ -50,6 +51,7 @@ impl OutputFile {
 /// All files of a report, in the reproducible order: pictures and tables first, so that the page can name them.
 pub fn files(report: &Report, scene_text: &str) -> Result<Vec<OutputFile>> {
     let mut files = csv::files(report)?;
+    files.extend(by_sun::files(report)?);
     files.extend(figures::files(report)?);
     files.push(OutputFile::text(format!("{}.toml", report.scene.name), scene_text.to_owned()));
     let names: Vec<&str> = files.iter().map(|file| file.name.as_str()).collect();

@@ -5,6 +5,7 @@ use crate::math::{
     uniform_sphere,
 };
 use crate::rng::{Dimension, Sampler};
+use crate::scene::Sky;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
@@ -29,6 +30,8 @@ pub enum Emission {
     },
     /// The same intensity in every direction (of the half space in front of a surface).
     Isotropic,
+    /// The luminance of the sky; `dir` of the emitter's frame is where its light goes.
+    Sky(Sky),
 }
 
 /// What kind of thing emits: it decides the measure in which a law is uniform.
@@ -40,6 +43,8 @@ pub enum EmitterKind {
     Surface,
     /// A volume: laws are intensities.
     Volume,
+    /// The far distance: laws are radiances, and a disk across each direction takes the flux.
+    Far,
 }
 
 impl Emission {
@@ -47,14 +52,18 @@ impl Emission {
     pub fn sample(&self, kind: EmitterKind, sampler: &mut Sampler) -> DVec3 {
         let u = sampler.pair(Dimension::EmitDirection);
         match (self, kind) {
+            (Self::Sky(sky), _) => sky.sample(kind, sampler),
             (Self::Lambertian, _) => cosine_hemisphere(u),
             (Self::CosinePower(power), _) => cosine_power_hemisphere(*power, u),
             (Self::Collimated { axis }, _) => *axis,
-            (Self::Isotropic, EmitterKind::Point | EmitterKind::Volume) => uniform_sphere(u),
-            (Self::Isotropic, EmitterKind::Surface) => cosine_power_hemisphere(0.0, u),
-            (Self::Cone { half_angle, axis }, EmitterKind::Point | EmitterKind::Volume) => {
-                Frame::from_axis(DVec3::ZERO, *axis).to_world(cone_direction(*half_angle, u))
+            (Self::Isotropic, EmitterKind::Point | EmitterKind::Volume | EmitterKind::Far) => {
+                uniform_sphere(u)
             }
+            (Self::Isotropic, EmitterKind::Surface) => cosine_power_hemisphere(0.0, u),
+            (
+                Self::Cone { half_angle, axis },
+                EmitterKind::Point | EmitterKind::Volume | EmitterKind::Far,
+            ) => Frame::from_axis(DVec3::ZERO, *axis).to_world(cone_direction(*half_angle, u)),
             (Self::Cone { half_angle, axis }, EmitterKind::Surface) => {
                 projected_cone(*half_angle, *axis, u, sampler)
             }
@@ -66,14 +75,18 @@ impl Emission {
     pub fn density(&self, kind: EmitterKind, dir: DVec3) -> Option<f64> {
         let density = match (self, kind) {
             (Self::Collimated { .. }, _) => return None,
+            (Self::Sky(sky), _) => sky.density(kind, dir),
             (Self::Lambertian, _) => above(dir, dir.z / PI),
             (Self::CosinePower(power), _) => above(dir, (power + 1.0) * dir.z.powf(*power) / TAU),
-            (Self::Isotropic, EmitterKind::Point | EmitterKind::Volume) => 0.25 / PI,
+            (Self::Isotropic, EmitterKind::Point | EmitterKind::Volume | EmitterKind::Far) => {
+                0.25 / PI
+            }
             (Self::Isotropic, EmitterKind::Surface) => above(dir, 1.0 / TAU),
             (Self::Cone { half_angle, axis }, _) if !in_cone(*half_angle, *axis, dir) => 0.0,
-            (Self::Cone { half_angle, .. }, EmitterKind::Point | EmitterKind::Volume) => {
-                1.0 / (4.0 * PI * (0.5 * half_angle).sin().powi(2))
-            }
+            (
+                Self::Cone { half_angle, .. },
+                EmitterKind::Point | EmitterKind::Volume | EmitterKind::Far,
+            ) => 1.0 / (4.0 * PI * (0.5 * half_angle).sin().powi(2)),
             (Self::Cone { half_angle, axis }, EmitterKind::Surface) => {
                 above(dir, dir.z / projected_cap(axis.z, *half_angle))
             }
@@ -88,6 +101,7 @@ impl Emission {
             Self::Lambertian => Some(PI),
             // A cone of half-angle h that is wholly above the surface, its axis tilted: π sin²h cos(tilt).
             Self::Cone { half_angle, axis } => Some(PI * half_angle.sin().powi(2) * axis.z),
+            Self::Sky(sky) => Some(sky.projected_solid_angle(EmitterKind::Surface)),
             Self::CosinePower(_) | Self::Collimated { .. } | Self::Isotropic => None,
         }
     }
@@ -100,7 +114,7 @@ impl Emission {
             // 2π(1 - cos h) without cancellation.
             Self::Cone { half_angle, .. } => Some(4.0 * PI * (0.5 * half_angle).sin().powi(2)),
             Self::Isotropic => Some(4.0 * PI),
-            Self::Collimated { .. } => None,
+            Self::Collimated { .. } | Self::Sky(_) => None,
         }
     }
 }

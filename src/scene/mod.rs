@@ -27,6 +27,7 @@ mod ray;
 mod section;
 mod sensor;
 pub mod shape;
+mod sky;
 mod source;
 pub mod sweep;
 
@@ -49,6 +50,7 @@ pub use section::Outline;
 pub use sensor::{
     Counts, Goniometer, Place, Seeing, Sensor, SensorKind, Sides, SurfaceSensor, Views,
 };
+pub use sky::Sky;
 pub use source::{EmitSide, Emitted, Emitter, Source, Start};
 
 use convex::Convex;

@@ -4,7 +4,7 @@ use crate::math::{Aabb, Frame, disk};
 use crate::rng::{Dimension, Sampler};
 use crate::scene::emission::EmitterKind;
 use crate::scene::intersect::Just;
-use crate::scene::shape::Shape;
+use crate::scene::shape::{Shape, Sphere};
 use crate::scene::{Emission, Inside, PrimId, Ray, Scene, SolidId};
 use glam::DVec3;
 
@@ -23,6 +23,8 @@ pub struct Source {
     pub start: Start,
     /// For each of its shapes the surface of the scene that it is, if it is one: light does not meet it at its start.
     pub on: Vec<PrimId>,
+    /// Of a sun, its elevation above the horizon, rad.
+    pub elevation: Option<f64>,
 }
 
 /// What emits.
@@ -45,6 +47,17 @@ pub enum Emitter {
         side: EmitSide,
         /// For tilted cones and beams: the frame that a flat source's directions refer to.
         frame: Option<Frame>,
+    },
+    /// The far distance: a sphere around everything that shines inward, at a smaller one about the same middle.
+    Far {
+        /// The sphere where light starts, its front inside, with its area, mm².
+        shapes: [(Shape, f64); 1],
+        /// Middle of both.
+        center: DVec3,
+        /// Radius of the sphere where light starts, mm.
+        radius: f64,
+        /// Radius of the sphere that all light would pass through, mm.
+        reach: f64,
     },
     /// The inside of a solid.
     Volume {
@@ -102,10 +115,18 @@ impl Emitter {
         Self::Surface { shapes, side, frame }
     }
 
-    /// Emitting area, mm²; `None` for points, lines and volumes.
+    /// The far distance, shining at a sphere from another one of a larger `radius` about it; all in mm.
+    pub fn far(center: DVec3, reach: f64, radius: f64) -> Self {
+        let frame = Frame { origin: center, ..Frame::WORLD };
+        let shape = Shape::Sphere(Sphere::zone(frame, radius, -radius, radius).inward());
+        let area = shape.area();
+        Self::Far { shapes: [(shape, area)], center, radius, reach }
+    }
+
+    /// Emitting area, mm²; `None` for points, lines, volumes and the far distance.
     pub fn area(&self) -> Option<f64> {
         match self {
-            Self::Point(_) | Self::Line { .. } | Self::Volume { .. } => None,
+            Self::Point(_) | Self::Line { .. } | Self::Volume { .. } | Self::Far { .. } => None,
             Self::Surface { shapes, .. } => shapes.last().map(|(_, area)| *area),
         }
     }
@@ -122,6 +143,7 @@ impl Emitter {
                 shapes.iter().fold(Aabb::EMPTY, |bounds, (shape, _)| bounds.union(shape.bounds()))
             }
             Self::Volume { bounds, .. } => *bounds,
+            Self::Far { center, radius, .. } => Aabb::of([*center]).grown(*radius),
         }
     }
 }
@@ -139,6 +161,9 @@ impl Source {
                 let shape = choose_shape(shapes, sampler);
                 let ray = self.emit_from_surface(&shapes[shape].0, *side, frame.as_ref(), sampler);
                 (ray, shape)
+            }
+            Emitter::Far { center, radius, reach, .. } => {
+                (self.emit_from_afar(*center, *radius, *reach, sampler), 0)
             }
             Emitter::Volume { solid, bounds } => {
                 (self.emit_from_volume(scene, *solid, bounds, sampler), 0)
@@ -168,7 +193,8 @@ impl Source {
             Emission::CosinePower(_)
             | Emission::Cone { .. }
             | Emission::Collimated { .. }
-            | Emission::Isotropic => self.emission.sample(EmitterKind::Point, sampler),
+            | Emission::Isotropic
+            | Emission::Sky(_) => self.emission.sample(EmitterKind::Point, sampler),
         };
         Ray::new(frame.origin + along * frame.z, frame.to_world(local))
     }
@@ -190,6 +216,15 @@ impl Source {
             None => Frame::from_axis(DVec3::ZERO, normal),
         };
         Ray::new(point, frame.to_world(self.emission.sample(EmitterKind::Surface, sampler)))
+    }
+
+    /// A direction by the law alone, and a line evenly over the disk across it.
+    fn emit_from_afar(&self, center: DVec3, radius: f64, reach: f64, sampler: &mut Sampler) -> Ray {
+        let dir = self.emission.sample(EmitterKind::Far, sampler);
+        let across = reach * disk(sampler.pair(Dimension::EmitPosition));
+        let back = (radius * radius - across.length_squared()).sqrt();
+        let frame = Frame::from_axis(center, dir);
+        Ray::new(frame.point_to_world(across.with_z(-back)), dir)
     }
 
     fn emit_from_volume(

@@ -11,6 +11,7 @@ use crate::scene::{
 };
 use crate::transport::{Path, Segment};
 use glam::DVec3;
+use std::f64::consts::PI;
 
 /// Light of a source behind a face is met at the start of a segment, up to rounding of this size, relative to the scene.
 const AT_START: f64 = 1e-9;
@@ -53,10 +54,18 @@ enum Body<'s> {
 #[derive(Debug, Clone, Copy)]
 struct Shining<'s> {
     emission: &'s Emission,
-    side: EmitSide,
-    frame: Option<&'s Frame>,
-    /// Flux per area, lm/mm².
+    from: ShinesFrom<'s>,
+    /// Flux per area, lm/mm²; of the far distance per area across the light.
     exitance: f64,
+}
+
+/// Where a source shines from.
+#[derive(Debug, Clone, Copy)]
+enum ShinesFrom<'s> {
+    /// A surface, to one side, with directions in a frame of its own or about its normal.
+    Surface { side: EmitSide, frame: Option<&'s Frame> },
+    /// The far distance: along lines that pass this middle at no more than this distance, mm.
+    Far { center: DVec3, reach: f64 },
 }
 
 /// How a source lies on a face.
@@ -99,7 +108,7 @@ pub fn invisible(source: &Source, scene: &Scene) -> Option<&'static str> {
     match &source.emitter {
         Emitter::Point(_) => Some("it is a point"),
         Emitter::Line { .. } => Some("it is a line"),
-        Emitter::Surface { .. } => source
+        Emitter::Surface { .. } | Emitter::Far { .. } => source
             .emission
             .density(EmitterKind::Surface, any)
             .is_none()
@@ -239,18 +248,30 @@ impl<'s> Emitters<'s> {
 impl Shining<'_> {
     /// Basic radiance from a place on a shape toward `out`, in a medium of an index, lm/(mm² sr).
     fn radiance(&self, shape: &Shape, point: DVec3, out: DVec3, index: f64) -> f64 {
-        let normal = match self.side {
-            EmitSide::Front => shape.normal(point),
-            EmitSide::Back => -shape.normal(point),
+        let per_exitance = match self.from {
+            ShinesFrom::Surface { side, frame } => {
+                let normal = match side {
+                    EmitSide::Front => shape.normal(point),
+                    EmitSide::Back => -shape.normal(point),
+                };
+                let cos = out.dot(normal);
+                if cos <= 0.0 {
+                    return 0.0;
+                }
+                let own = || Frame::from_axis(DVec3::ZERO, normal).to_local(out);
+                let local = frame.map_or_else(own, |frame| frame.to_local(out));
+                self.emission.density(EmitterKind::Surface, local).unwrap_or(0.0) / cos
+            }
+            ShinesFrom::Far { center, reach } => {
+                let from = point - center;
+                let is_inward = out.dot(from) < 0.0;
+                if !is_inward || from.reject_from_normalized(out).length() > reach {
+                    return 0.0;
+                }
+                self.emission.density(EmitterKind::Far, out).unwrap_or(0.0)
+            }
         };
-        let cos = out.dot(normal);
-        if cos <= 0.0 {
-            return 0.0;
-        }
-        let own = || Frame::from_axis(DVec3::ZERO, normal).to_local(out);
-        let local = self.frame.map_or_else(own, |frame| frame.to_local(out));
-        let density = self.emission.density(EmitterKind::Surface, local).unwrap_or(0.0);
-        self.exitance * density / (cos * index * index)
+        self.exitance * per_exitance / (index * index)
     }
 }
 
@@ -260,9 +281,19 @@ fn body<'s>(scene: &'s Scene, source: &'s Source) -> Option<Body<'s>> {
             shapes,
             shining: Shining {
                 emission: &source.emission,
-                side: *side,
-                frame: frame.as_ref(),
+                from: ShinesFrom::Surface { side: *side, frame: frame.as_ref() },
                 exitance: source.flux / source.emitter.area()?,
+            },
+            on: &source.on,
+            contact: contact(source),
+            bounds: source.emitter.bounds().grown(2.0 * AT_START * scene.bounds.diagonal()),
+        }),
+        Emitter::Far { shapes, center, reach, .. } => Some(Body::Surface {
+            shapes,
+            shining: Shining {
+                emission: &source.emission,
+                from: ShinesFrom::Far { center: *center, reach: *reach },
+                exitance: source.flux / (PI * reach * reach),
             },
             on: &source.on,
             contact: contact(source),
@@ -319,6 +350,7 @@ mod tests {
                 emission,
                 start: SourceStart::Outside,
                 on: Vec::new(),
+                elevation: None,
             });
         }
         let scene = builder.build();

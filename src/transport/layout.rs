@@ -99,21 +99,16 @@ impl Layout {
         self.outside_aim(sensor) + 1
     }
 
-    /// Flux that entered by the sensor's entry port.
-    pub fn entering(&self, sensor: SensorId) -> usize {
-        self.outside_aim(sensor) + 2
-    }
-
     /// Flux on a sensor times the depth of its paths.
     #[inline]
     pub fn depth_weighted(&self, sensor: SensorId) -> usize {
-        self.outside_aim(sensor) + 3
+        self.outside_aim(sensor) + 2
     }
 
     /// Flux on a sensor by paths deeper than entry `tail` of [`TAILS`].
     #[inline]
     pub fn deeper(&self, sensor: SensorId, tail: usize) -> usize {
-        self.outside_aim(sensor) + 4 + tail
+        self.outside_aim(sensor) + 3 + tail
     }
 
     /// Throughput of the gather paths of a sensor that were lost, per path drawn: a share, not a flux.
@@ -125,7 +120,12 @@ impl Layout {
         }
     }
 
+    /// Flux that entered by the sensor's entry port, by source.
+    pub fn entering(&self, sensor: SensorId, source: SourceId) -> usize {
+        self.lost_paths(sensor, Loss::Leaked) + 1 + source.index()
+    }
+
     fn sensor_base(&self, sensor: usize) -> usize {
-        self.leaked() + 1 + sensor * (self.sources + 4 + TAILS.len() + 2)
+        self.leaked() + 1 + sensor * (2 * self.sources + 3 + TAILS.len() + 2)
     }
 }

@@ -107,7 +107,10 @@ fn angle(scene: &Scene, inradius: f64, from_sources: &[f64]) -> f64 {
         match source.emission {
             Emission::Cone { half_angle, .. } => half_angle.min(seen),
             Emission::Collimated { .. } => 0.0,
-            Emission::Lambertian | Emission::CosinePower(_) | Emission::Isotropic => seen,
+            Emission::Lambertian
+            | Emission::CosinePower(_)
+            | Emission::Isotropic
+            | Emission::Sky(_) => seen,
         }
     });
     let narrowest = sources.fold(PI, f64::min);

@@ -10,6 +10,7 @@
 )]
 
 mod consistency;
+mod daylight;
 mod finishes;
 mod furnace;
 mod guides;

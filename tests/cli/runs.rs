@@ -228,3 +228,43 @@ fn cube(size: f64) -> String {
     let faces = ["1 3 4 2", "5 6 8 7", "1 2 6 5", "3 7 8 4", "1 5 7 3", "2 4 8 6"];
     vertices + &faces.map(|face| format!("f {face}\n")).concat()
 }
+
+#[test]
+fn several_suns_make_a_table_and_a_plot_of_the_transmission_by_their_elevations() {
+    let place = Place::new();
+    let scene = r#"
+lumiduct = 1
+title = "Tube under sun and sky"
+[finishes.mirror]
+specular = { reflectance = 0.9 }
+[sheets.duct.tube]
+profile = { circle = { radius_mm = 5 } }
+path = [{ straight_mm = 20 }]
+finish = "mirror"
+at = { axis = [0, 0, -1] }
+[sources]
+sun.sun = { elevations_deg = [30, 67.5], illuminance_lx = 80_000, aim = "duct.entry" }
+sky.sky = { model = "uniform", horizontal_illuminance_lx = 10_000, aim = "duct.entry" }
+[sensors]
+exit = { plane = {}, on = "duct.exit", counts = "leaving", entering = "duct.entry" }
+[run]
+paths = 20_000
+"#;
+    fs::write(place.path("tube.toml"), scene).unwrap();
+    place.good("run tube.toml -q");
+    let report = place.path("reports/tube");
+    let table = fs::read_to_string(report.join("exit.transmission.csv")).unwrap();
+    let lines: Vec<Vec<&str>> = table.lines().map(|line| line.split(',').collect()).collect();
+    assert_eq!(lines[0], ["source", "elevation_deg", "transmission", "std_error"]);
+    // From the zenith down, then the skies.
+    let firsts: Vec<&[&str]> = lines[1..].iter().map(|line| &line[..2]).collect();
+    assert_eq!(firsts, [["sun_67_5", "67.5"], ["sun_30", "30"], ["sky", ""]]);
+    let transmission = |row: usize| lines[row][2].parse::<f64>().unwrap();
+    assert!(1.0 > transmission(1) && transmission(1) > transmission(2) && transmission(2) > 0.0);
+    let page = fs::read_to_string(report.join("report.md")).unwrap();
+    assert!(page.contains("| sun_67_5 | 67.50° | 0."), "{page}");
+    assert!(page.contains("(exit.transmission.png)"), "{page}");
+    // Without several suns there is nothing to tell.
+    place.good("run rod.toml -q");
+    assert!(!names(&place.path("reports/rod")).iter().any(|name| name.contains("transmission")));
+}

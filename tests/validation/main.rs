@@ -31,7 +31,7 @@ impl Family {
     }
 }
 
-static FAMILIES: [Family; 8] = [
+static FAMILIES: [Family; 9] = [
     Family::new("benchmarks", include_str!("benchmarks.toml")),
     Family::new("photometry", include_str!("photometry.toml")),
     Family::new("fresnel", include_str!("fresnel.toml")),
@@ -40,6 +40,7 @@ static FAMILIES: [Family; 8] = [
     Family::new("rods", include_str!("rods.toml")),
     Family::new("diffuse", include_str!("diffuse.toml")),
     Family::new("windows", include_str!("windows.toml")),
+    Family::new("daylight", include_str!("daylight.toml")),
 ];
 
 /// Seeds of a family start at its number times this.
@@ -132,6 +133,11 @@ fn windows() {
 }
 
 #[test]
+fn daylight() {
+    check("daylight");
+}
+
+#[test]
 fn functions_give_the_values_of_the_formulas() {
     for value in formulas::computed() {
         assert!(value.deviation().abs() <= formulas::LIMIT, "{value:?}");
@@ -146,7 +152,12 @@ fn deviations_look_like_a_standard_normal() {
     assert!((0.8..=1.3).contains(&rms), "rms {rms} of {} runs", deviations.len());
 }
 
-/// Number of values in the reference, those of the benchmark scenes (cases B1 to B4) apart.
+/// Benchmark scenes (B1 to B4) and daylight (DL): cases that are not of the reference.
+fn is_our_own(id: &str) -> bool {
+    id.starts_with("DL") || id.starts_with('B') && !id.starts_with("BD")
+}
+
+/// Number of values in the reference, our own cases apart.
 const REFERENCE_VALUES: usize = 444;
 
 #[test]
@@ -156,11 +167,7 @@ fn no_value_of_the_reference_is_forgotten() {
         assert!(names.insert(format!("{case} {name}")), "{case} {name} is listed twice");
     };
     for family in &FAMILIES {
-        for case in Table::parse(family.table)
-            .case
-            .iter()
-            .filter(|case| !case.id.starts_with('B') || case.id.starts_with("BD"))
-        {
+        for case in Table::parse(family.table).case.iter().filter(|case| !is_our_own(&case.id)) {
             for variant in case.variants() {
                 case.values.iter().for_each(|value| add(value.case(case), &value.name(variant)));
             }

@@ -6,6 +6,7 @@ use crate::input::keys::{Key, Places};
 use crate::input::problems::Problems;
 use crate::input::spec::SceneSpec;
 
+mod daylight;
 mod finishes;
 mod names;
 mod placements;
@@ -29,6 +30,7 @@ pub fn check_rules(spec: &SceneSpec, places: &Places, problems: &mut Problems) {
     placements::check(scene, problems);
     shapes::check(scene, problems);
     sources::check(scene, problems);
+    daylight::check(scene, problems);
     sensors::check(scene, problems);
     run::check(scene, problems);
 }

@@ -25,10 +25,9 @@ fn placements(scene: Scene<'_>) -> impl Iterator<Item = (Key, &PlacementSpec)> {
         .map(|(n, s)| (Key::of(&["solids", n, s.kind()]), s.common().at.as_ref()));
     let sheets =
         spec.sheets.iter().map(|(n, s)| (Key::of(&["sheets", n, s.kind()]), s.common().at()));
-    let sources = spec
-        .sources
-        .iter()
-        .map(|(n, s)| (Key::of(&["sources", n, s.kind()]), s.common().at.as_ref()));
+    let sources = spec.sources.iter().map(|(n, s)| {
+        (Key::of(&["sources", n, s.kind()]), s.common().and_then(|common| common.at.as_ref()))
+    });
     let sensors = spec.sensors.iter().map(|(n, s)| (Key::of(&["sensors", n]), s.at.as_ref()));
     let all = solids.chain(sheets).chain(sources).chain(sensors);
     all.filter_map(|(key, at)| Some((key.field("at"), at?)))

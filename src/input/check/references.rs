@@ -78,7 +78,8 @@ pub(crate) fn finish_refs(scene: Scene<'_>) -> Vec<(Key, &FinishRef)> {
         }
     }
     for (name, source) in &scene.spec.sources {
-        match &source.common().body {
+        let Some(common) = source.common() else { continue };
+        match &common.body {
             BodySpec::Finish(finish) => {
                 add_ref(Key::of(&["sources", name, source.kind(), "body"]), finish, &mut found);
             }

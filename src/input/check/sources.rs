@@ -8,9 +8,12 @@ use crate::input::spec::source::{BodySpec, EmissionSpec, SourceCommonSpec, Sourc
 pub(crate) fn check(scene: Scene<'_>, problems: &mut Problems) {
     for (name, source) in &scene.spec.sources {
         let key = Key::of(&["sources", name, source.kind()]);
-        check_amount(&key, source, problems);
-        check_direction(&key, source.common(), problems);
-        check_place(&key, source, problems);
+        if let (Some(common), Some(extent)) = (source.common(), extent(source)) {
+            let kind = Kind { common, extent, name: source.kind() };
+            check_amount(&key, &kind, problems);
+            check_direction(&key, common, problems);
+            check_place(&key, &kind, problems);
+        }
     }
     check_units(scene, problems);
 }
@@ -25,8 +28,16 @@ enum Extent {
     Volume,
 }
 
-fn extent(source: &SourceSpec) -> Extent {
-    match source {
+/// A source with keys of its own.
+struct Kind<'a> {
+    common: &'a SourceCommonSpec,
+    extent: Extent,
+    name: &'static str,
+}
+
+/// `None` of the sun and the sky, which emit from afar.
+fn extent(source: &SourceSpec) -> Option<Extent> {
+    let extent = match source {
         SourceSpec::Point(_) => Extent::Point,
         SourceSpec::Line(_) => Extent::Line,
         SourceSpec::Disk(_)
@@ -35,17 +46,19 @@ fn extent(source: &SourceSpec) -> Extent {
         | SourceSpec::Cylinder(_) => Extent::Area,
         SourceSpec::Face(_) => Extent::Face,
         SourceSpec::Volume(_) => Extent::Volume,
-    }
+        SourceSpec::Sun(_) | SourceSpec::Sky(_) => return None,
+    };
+    Some(extent)
 }
 
-fn check_amount(key: &Key, source: &SourceSpec, problems: &mut Problems) {
-    let (common, extent) = (source.common(), extent(source));
+fn check_amount(key: &Key, kind: &Kind<'_>, problems: &mut Problems) {
+    let Kind { common, extent, name } = *kind;
     if common.luminance_cd_m2.is_some() && extent != Extent::Area && extent != Extent::Face {
-        let message = format!("a {} has no area and so no luminance", source.kind());
+        let message = format!("a {name} has no area and so no luminance");
         problems.error(&key.field("luminance_cd_m2"), message).hint("give `flux_lm`");
     }
     if common.intensity_cd.is_some() && extent != Extent::Point {
-        let message = format!("is for a `point` only, found with `{}`", source.kind());
+        let message = format!("is for a `point` only, found with `{name}`");
         problems.error(&key.field("intensity_cd"), message).hint("give `flux_lm`");
     }
 }
@@ -62,16 +75,16 @@ fn check_direction(key: &Key, common: &SourceCommonSpec, problems: &mut Problems
     }
 }
 
-fn check_place(key: &Key, source: &SourceSpec, problems: &mut Problems) {
-    let (common, extent) = (source.common(), extent(source));
+fn check_place(key: &Key, kind: &Kind<'_>, problems: &mut Problems) {
+    let Kind { common, extent, name } = *kind;
     let is_in_place = extent == Extent::Face || extent == Extent::Volume;
     if is_in_place && common.at.is_some() {
         problems
-            .error(&key.field("at"), format!("a {} is where its solid is", source.kind()))
+            .error(&key.field("at"), format!("a {name} is where its solid is"))
             .hint("remove `at`");
     }
     if common.body != BodySpec::Transparent && extent != Extent::Area {
-        let message = format!("a {} has no body of its own that light could meet", source.kind());
+        let message = format!("a {name} has no body of its own that light could meet");
         problems.error(&key.field("body"), message).hint("remove `body`");
     }
     if extent == Extent::Volume
@@ -85,9 +98,10 @@ fn check_place(key: &Key, source: &SourceSpec, problems: &mut Problems) {
 /// Light in lm and light in W cannot be added without spectra.
 fn check_units(scene: Scene<'_>, problems: &mut Problems) {
     let sources = || scene.spec.sources.iter();
-    let luminous = sources().find(|(_, source)| source.common().flux_w.is_none());
+    let is_radiant = |source: &SourceSpec| source.common().is_some_and(|c| c.flux_w.is_some());
+    let luminous = sources().find(|(_, source)| !is_radiant(source));
     let Some((luminous, _)) = luminous else { return };
-    for (name, source) in sources().filter(|(_, source)| source.common().flux_w.is_some()) {
+    for (name, source) in sources().filter(|(_, source)| is_radiant(source)) {
         let key = Key::of(&["sources", name, source.kind(), "flux_w"]);
         let message =
             format!("a scene has sources in W or in lm, not both; `sources.{luminous}` is in lm");

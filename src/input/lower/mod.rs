@@ -4,6 +4,7 @@
 //! so that all problems of a scene are reported together; what could not be built is left out.
 
 mod consistency;
+mod daylight;
 mod finishes;
 mod meshes;
 mod place;
@@ -20,6 +21,7 @@ use crate::input::keys::{Key, Places};
 use crate::input::problems::{Problems, name_hint};
 use crate::input::spec::SceneSpec;
 use crate::input::spec::placement::PlacementSpec;
+use crate::input::spec::source::SourceSpec;
 use crate::optics::Medium;
 use crate::scene::plan::{Check, RunPlan};
 use crate::scene::{Builder, FaceId, FinishId, MediumId, Scene};
@@ -78,7 +80,7 @@ pub(crate) fn lower(spec: &SceneSpec, places: &Places, problems: &mut Problems) 
         return None;
     }
     let mut scene = context.builder.build();
-    sources::settle_starts(spec, &mut scene);
+    sources::settle_starts(&mut scene);
     sources::check_starts(spec, &scene, context.problems);
     consistency::check_overlaps(spec, &scene, context.problems);
     consistency::check_open_faces(spec, &scene, context.problems);
@@ -106,11 +108,8 @@ fn position(at: Option<&PlacementSpec>) -> Option<DVec3> {
 
 /// Lumens, unless a source is given in watts.
 fn flux_unit(spec: &SceneSpec) -> FluxUnit {
-    if spec.sources.values().any(|source| source.common().flux_w.is_some()) {
-        FluxUnit::Watt
-    } else {
-        FluxUnit::Lumen
-    }
+    let is_radiant = |source: &SourceSpec| source.common().is_some_and(|c| c.flux_w.is_some());
+    if spec.sources.values().any(is_radiant) { FluxUnit::Watt } else { FluxUnit::Lumen }
 }
 
 /// The key of a thing's table, such as `solids.pipe.sweep`.

@@ -25,13 +25,24 @@ impl Context<'_> {
         let spec = self.spec;
         for (name, source) in &spec.sources {
             let key = Key::of(&["sources", name, source.kind()]);
-            self.lower_source(name, source, &key);
+            match source {
+                SourceSpec::Sun(sun) => self.lower_sun(name, sun, &key),
+                SourceSpec::Sky(sky) => self.lower_sky(name, sky, &key),
+                SourceSpec::Point(_)
+                | SourceSpec::Disk(_)
+                | SourceSpec::Rectangle(_)
+                | SourceSpec::Sphere(_)
+                | SourceSpec::Line(_)
+                | SourceSpec::Cylinder(_)
+                | SourceSpec::Face(_)
+                | SourceSpec::Volume(_) => self.lower_source(name, source, &key),
+            }
         }
     }
 
     fn lower_source(&mut self, name: &str, source: &SourceSpec, key: &Key) {
-        let common = source.common();
-        let Some(emission) = self.emission(source, key) else { return };
+        let Some(common) = source.common() else { return };
+        let Some(emission) = self.emission(source, common, key) else { return };
         let Some(frame) = self.place(common.at.as_ref(), key, Facing::Toward) else { return };
         let Some((emitter, mut on)) = self.emitter(source, frame, key) else { return };
         let Some(flux) = self.flux(common, &emitter, emission, key) else { return };
@@ -54,6 +65,7 @@ impl Context<'_> {
             emission,
             start,
             on,
+            elevation: None,
         });
     }
 
@@ -76,8 +88,12 @@ impl Context<'_> {
             .any(|face| matches!(self.builder.scene().faces[face.index()].owner, Owner::Solid(_)))
     }
 
-    fn emission(&mut self, source: &SourceSpec, key: &Key) -> Option<Emission> {
-        let common = source.common();
+    fn emission(
+        &mut self,
+        source: &SourceSpec,
+        common: &SourceCommonSpec,
+        key: &Key,
+    ) -> Option<Emission> {
         let axis = tilted(common.tilt_deg, common.azimuth_deg);
         let default = if matches!(source, SourceSpec::Volume(_)) {
             EmissionSpec::Isotropic
@@ -152,6 +168,8 @@ impl Context<'_> {
                 self.face_emitter(&face.shape.of, face.shape.side, &key.field("of"))
             }
             SourceSpec::Volume(volume) => self.volume_emitter(&volume.shape.of, &key.field("of")),
+            // Lowered on their own.
+            SourceSpec::Sun(_) | SourceSpec::Sky(_) => None,
         }
     }
 
@@ -231,7 +249,10 @@ impl Context<'_> {
         let intensity = common.intensity_cd?;
         let per_intensity = match emitter {
             Emitter::Point(_) => law.flux_per_peak_intensity(),
-            Emitter::Line { .. } | Emitter::Surface { .. } | Emitter::Volume { .. } => None,
+            Emitter::Line { .. }
+            | Emitter::Surface { .. }
+            | Emitter::Volume { .. }
+            | Emitter::Far { .. } => None,
         };
         if per_intensity.is_none() {
             self.problems
@@ -272,7 +293,11 @@ fn emits_from_a_surface(source: &SourceSpec) -> bool {
         | SourceSpec::Sphere(_)
         | SourceSpec::Cylinder(_)
         | SourceSpec::Face(_) => true,
-        SourceSpec::Point(_) | SourceSpec::Line(_) | SourceSpec::Volume(_) => false,
+        SourceSpec::Point(_)
+        | SourceSpec::Line(_)
+        | SourceSpec::Volume(_)
+        | SourceSpec::Sun(_)
+        | SourceSpec::Sky(_) => false,
     }
 }
 
@@ -285,12 +310,11 @@ fn patch_range(extent: &Extent) -> std::ops::Range<usize> {
 }
 
 /// Sources that touch no solid start all their paths outside, without asking.
-pub(super) fn settle_starts(spec: &SceneSpec, scene: &mut Scene) {
+pub(super) fn settle_starts(scene: &mut Scene) {
     let boxes: Vec<_> =
         scene.solids.iter().map(|solid| solid.bounds.grown(scene.tolerance)).collect();
     for source in &mut scene.sources {
         let bounds = source.emitter.bounds();
-        debug_assert!(spec.sources.contains_key(&source.name), "sources come from the spec");
         if !boxes.iter().any(|solid| solid.overlaps(&bounds)) {
             source.start = Start::Outside;
         }

@@ -8,6 +8,7 @@ use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+pub mod daylight;
 pub mod finish;
 pub mod placement;
 pub mod run;
@@ -41,6 +42,12 @@ pub struct SceneSpec {
     /// Name of the medium outside every solid.
     #[serde(default = "air")]
     pub surroundings: String,
+    /// Direction to the zenith, for `sun` and `sky`; any length but zero.
+    #[serde(default = "plus_z")]
+    pub up: [f64; 3],
+    /// Direction to the north, or one above or below it.
+    #[serde(default = "plus_y")]
+    pub north: [f64; 3],
     /// Transparent media by name.
     #[serde(default)]
     pub media: IndexMap<String, MediumSpec>,
@@ -70,6 +77,12 @@ pub struct SceneSpec {
 /// The medium that is there when nothing is said.
 pub const AIR: &str = "air";
 
+/// Up when nothing is said.
+pub const UP: [f64; 3] = [0.0, 0.0, 1.0];
+
+/// North when nothing is said.
+pub const NORTH: [f64; 3] = [0.0, 1.0, 0.0];
+
 /// Media that need no definition.
 pub const PREDEFINED_MEDIA: [&str; 1] = [AIR];
 
@@ -78,4 +91,12 @@ pub const PREDEFINED_FINISHES: [&str; 3] = ["polished", "black", "open"];
 
 fn air() -> String {
     AIR.into()
+}
+
+fn plus_z() -> [f64; 3] {
+    UP
+}
+
+fn plus_y() -> [f64; 3] {
+    NORTH
 }

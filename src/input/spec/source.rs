@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::input::spec::daylight::{SkySpec, SunSpec};
 use crate::input::spec::finish::{EmptySpec, FinishRef};
 use crate::input::spec::placement::PlacementSpec;
 use crate::input::spec::solid::SphereSpec;
@@ -28,6 +29,10 @@ pub enum SourceSpec {
     Face(Emitter<FaceSourceSpec>),
     /// The inside of a solid, evenly filled.
     Volume(Emitter<VolumeSourceSpec>),
+    /// The sun.
+    Sun(SunSpec),
+    /// The sky.
+    Sky(SkySpec),
 }
 
 impl SourceSpec {
@@ -42,20 +47,23 @@ impl SourceSpec {
             Self::Cylinder(_) => "cylinder",
             Self::Face(_) => "face",
             Self::Volume(_) => "volume",
+            Self::Sun(_) => "sun",
+            Self::Sky(_) => "sky",
         }
     }
 
-    /// The keys that every kind has.
-    pub fn common(&self) -> &SourceCommonSpec {
+    /// The keys that all kinds but the sun and the sky have.
+    pub fn common(&self) -> Option<&SourceCommonSpec> {
         match self {
-            Self::Point(source) => &source.common,
-            Self::Disk(source) => &source.common,
-            Self::Rectangle(source) => &source.common,
-            Self::Sphere(source) => &source.common,
-            Self::Line(source) => &source.common,
-            Self::Cylinder(source) => &source.common,
-            Self::Face(source) => &source.common,
-            Self::Volume(source) => &source.common,
+            Self::Point(source) => Some(&source.common),
+            Self::Disk(source) => Some(&source.common),
+            Self::Rectangle(source) => Some(&source.common),
+            Self::Sphere(source) => Some(&source.common),
+            Self::Line(source) => Some(&source.common),
+            Self::Cylinder(source) => Some(&source.common),
+            Self::Face(source) => Some(&source.common),
+            Self::Volume(source) => Some(&source.common),
+            Self::Sun(_) | Self::Sky(_) => None,
         }
     }
 }

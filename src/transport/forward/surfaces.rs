@@ -55,7 +55,7 @@ impl<'s, W: PhotonWatcher> Counter<'_, 's, W> {
                     if toward == Toward::Back && self.within(segment, t) {
                         let throughput = self.arriving_at(path, segment, t);
                         for id in &run.watch.entries[face.index()] {
-                            self.add(run.layout.entering(*id), throughput);
+                            self.add(run.layout.entering(*id, self.source), throughput);
                         }
                     }
                 });
@@ -166,7 +166,7 @@ impl<'s, W: PhotonWatcher> Counter<'_, 's, W> {
         let face = hit.face.index();
         if side == Some(Side::Transmitted) && hit.toward == Toward::Back {
             for id in &run.watch.entries[face] {
-                self.add(run.layout.entering(*id), throughput);
+                self.add(run.layout.entering(*id, self.source), throughput);
             }
         }
         for &(id, sensor) in

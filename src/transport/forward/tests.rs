@@ -46,6 +46,7 @@ fn mirror_tube(reflectance: f64, length: f64) -> Scene {
         emission: Emission::Lambertian,
         start: Start::Outside,
         on: Vec::new(),
+        elevation: None,
     });
     let grid = Grid::Cartesian { rect: disk(0.0).chart_bounds(), nu: 32, nv: 32 };
     let areas = grid.cell_areas(|rect| builder.scene().face_area_in(port, rect));

@@ -37,11 +37,12 @@ fn reference(schema: &Json) -> String {
 }
 
 /// Tables at the top of a file, and their headings.
-const FAMILIES: [(&str, &str); 8] = [
+const FAMILIES: [(&str, &str); 9] = [
     ("Medium", "media.NAME"),
     ("Finish", "finishes.NAME"),
     ("Solid", "solids.NAME"),
     ("Sheet", "sheets.NAME"),
+    ("Pattern", "patterns.NAME"),
     ("Source", "sources.NAME"),
     ("Sensor", "sensors.NAME"),
     ("Run", "run"),

@@ -150,6 +150,8 @@ pub enum Choice<'a> {
     Word(&'a str, &'a Value),
     /// Any text.
     Text,
+    /// A number or an array, by its schema.
+    Plain(&'a Value),
     /// A table whose only key is this, with what the key takes.
     Kind(&'a str, &'a Value),
     /// A table with these properties, told from others by a key that it needs.
@@ -180,6 +182,10 @@ fn single_choice<'a>(option: &'a Value, resolved: &'a Value) -> Choice<'a> {
     }
     if resolved.get("type").and_then(Value::as_str) == Some("string") {
         return Choice::Text;
+    }
+    if matches!(resolved.get("type").and_then(Value::as_str), Some("number" | "integer" | "array"))
+    {
+        return Choice::Plain(resolved);
     }
     let properties = resolved.get("properties").and_then(Value::as_object);
     let only = properties.filter(|keys| keys.len() == 1).and_then(|keys| keys.iter().next());
@@ -288,6 +294,9 @@ mod tests {
             "up",
             "north",
             "cie_type",
+            "rounded_share",
+            "power",
+            "count",
             "priority",
             "cells",
             "pixels",

@@ -33,6 +33,19 @@ pub fn inventory(scene: &Scene) -> String {
         let finish = if face.owner == Owner::Port { String::new() } else { format!(", {finish}") };
         _ = writeln!(text, "{kind} {}: {area} mm²{finish}", face.name);
     }
+    for pattern in &scene.patterns {
+        let face = &scene.faces[pattern.face.index()];
+        let (count, area) = (pattern.field.count(), pattern.field.area());
+        let share = 100.0 * area / scene.face_area(pattern.face);
+        let finish = &scene.finishes[pattern.back.index()].name;
+        _ = writeln!(
+            text,
+            "pattern {} on {}: {count} elements, {} mm², {share:.3} % of the face, {finish}",
+            pattern.name,
+            face.name,
+            format_value(area)
+        );
+    }
     sources(scene, &mut text);
     for sensor in &scene.sensors {
         let what = match &sensor.kind {

@@ -4,6 +4,7 @@ use crate::math::Aabb;
 use crate::optics::{Bsdf, Medium};
 use crate::scene::convex::Convex;
 use crate::scene::mesh::Mesh;
+use crate::scene::pattern::Pattern;
 use crate::scene::shape::Shape;
 use crate::scene::sweep::WallChart;
 use crate::scene::{
@@ -64,6 +65,7 @@ impl Builder {
             finishes: Vec::new(),
             solids: Vec::new(),
             faces: Vec::new(),
+            patterns: Vec::new(),
             patches: Vec::new(),
             meshes: Vec::new(),
             ports: Vec::new(),
@@ -125,6 +127,7 @@ impl Builder {
             owner: spec.owner,
             front: spec.front,
             back: spec.back,
+            patterns: Vec::new(),
             extent,
         });
         face
@@ -152,6 +155,7 @@ impl Builder {
                 owner,
                 front: *finish,
                 back: *finish,
+                patterns: Vec::new(),
                 extent: Extent::Mesh { mesh: self.scene.meshes.len(), face: index },
             });
         }
@@ -168,6 +172,12 @@ impl Builder {
             solid.bounds = solid.bounds.union(bounds);
         }
         self.scene.bounds = self.scene.bounds.union(bounds);
+    }
+
+    /// Lays a pattern on the face that it names.
+    pub fn add_pattern(&mut self, pattern: Pattern) {
+        self.scene.faces[pattern.face.index()].patterns.push(self.scene.patterns.len());
+        self.scene.patterns.push(pattern);
     }
 
     /// Sets the medium outside every solid; it is the one given to [`Builder::new`] otherwise.

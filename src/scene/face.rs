@@ -2,7 +2,7 @@
 
 use crate::math::{Aabb, Frame};
 use crate::scene::mesh::Mesh;
-use crate::scene::shape::{ChartRect, Shape};
+use crate::scene::shape::{ChartRect, Shape, Toward};
 use crate::scene::sweep::WallChart;
 use crate::scene::{FaceId, FinishId, SolidId};
 use glam::{DVec2, DVec3};
@@ -30,8 +30,22 @@ pub struct Face {
     pub front: Option<FinishId>,
     /// Finish met from the back.
     pub back: Option<FinishId>,
+    /// Patterns on it, by their numbers.
+    pub patterns: Vec<usize>,
     /// Its pieces.
     pub extent: Extent,
+}
+
+impl Face {
+    /// The finish that it declares for light going toward one of its sides.
+    #[inline]
+    pub fn finish_against(&self, toward: Toward) -> Option<FinishId> {
+        match toward {
+            // Light going toward the front meets the back.
+            Toward::Front => self.back,
+            Toward::Back => self.front,
+        }
+    }
 }
 
 /// Where the pieces of a face are.

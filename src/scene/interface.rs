@@ -4,14 +4,23 @@
 //! after. A face inside a solid of higher priority does nothing; of several faces, a declared finish acts before an
 //! undeclared one, a sheet before a solid, the higher priority before the lower.
 
+use crate::scene::pattern::Part;
 use crate::scene::shape::Toward;
-use crate::scene::{FaceId, FinishId, Hits, Inside, MediumId, Owner, PrimHit, Scene};
+use crate::scene::{
+    FaceId, FinishId, Hits, Inside, MediumId, Owner, Patch, PrimHit, Scene, Surface,
+};
+use glam::{DVec2, DVec3};
+
+/// Step over which a direction is followed along a chart, as a share of the scene's size, 1.
+const SLOPE_STEP: f64 = 1e-7;
 
 /// What light sees where faces meet.
 #[derive(Debug, Clone, Copy)]
 pub struct Interface<'h> {
     /// The surface whose normal and finish act.
     pub acting: &'h PrimHit,
+    /// What acts there: the face, or a part of a pattern on it.
+    pub part: Part,
     /// Its declared finish on the side the light comes from; `None` is the smooth interface of the media.
     pub finish: Option<FinishId>,
     /// The medium the light comes from.
@@ -20,6 +29,15 @@ pub struct Interface<'h> {
     pub to: MediumId,
     /// Whether nothing happens to light here: equal media and no finish, or a face buried in another solid.
     pub visibility: Visibility,
+}
+
+/// Where and how a path arrives.
+#[derive(Debug, Clone, Copy)]
+pub struct Meeting {
+    /// Where, mm.
+    pub point: DVec3,
+    /// Unit direction of travel.
+    pub dir: DVec3,
 }
 
 /// Whether an interface does anything.
@@ -32,9 +50,15 @@ pub enum Visibility {
 }
 
 impl Scene {
-    /// The interface at a hit, for a path inside `inside` in medium `from`.
+    /// The interface at a hit, for a path inside `inside` in medium `from` that arrives as `meeting` says.
     #[inline(always)]
-    pub fn interface<'h>(&self, hits: &'h Hits, inside: &Inside, from: MediumId) -> Interface<'h> {
+    pub fn interface<'h>(
+        &self,
+        hits: &'h Hits,
+        meeting: &Meeting,
+        inside: &Inside,
+        from: MediumId,
+    ) -> Interface<'h> {
         // One face, and no solid around it but perhaps its own: the usual case needs no ranks.
         let hit = hits.nearest();
         let to = match (hit.owner, hits.others()) {
@@ -44,10 +68,10 @@ impl Scene {
                 Toward::Back => self.solids[solid.index()].medium,
             },
             (Owner::Solid(_) | Owner::Sheet | Owner::Port, _) => {
-                return self.interface_of_several(hits, inside, from);
+                return self.interface_of_several(hits, meeting, inside, from);
             }
         };
-        self.interface_of(hit, self.declared_finish(hit), from, to)
+        self.interface_of(hit, self.declared(hit, meeting), from, to)
     }
 
     /// The interface where several faces or solids meet.
@@ -55,24 +79,25 @@ impl Scene {
     fn interface_of_several<'h>(
         &self,
         hits: &'h Hits,
+        meeting: &Meeting,
         inside: &Inside,
         from: MediumId,
     ) -> Interface<'h> {
         let to = self.medium_beyond(hits, inside, from);
         let claim = |hit: &PrimHit| {
-            let finish = self.declared_finish(hit);
-            (self.rank(hit, hits, inside).map(|rank| (finish.is_some(), rank)), finish)
+            let declared = self.declared(hit, meeting);
+            (self.rank(hit, hits, inside).map(|rank| (declared.1.is_some(), rank)), declared)
         };
         let mut acting = hits.nearest();
-        let (mut best, mut finish) = claim(acting);
+        let (mut best, mut declared) = claim(acting);
         for hit in hits.others() {
             let other = claim(hit);
             if other.0 > best {
-                (best, finish) = other;
+                (best, declared) = other;
                 acting = hit;
             }
         }
-        let interface = self.interface_of(acting, finish, from, to);
+        let interface = self.interface_of(acting, declared, from, to);
         if best.is_none() {
             return Interface { visibility: Visibility::Invisible, ..interface };
         }
@@ -83,13 +108,13 @@ impl Scene {
     fn interface_of<'h>(
         &self,
         acting: &'h PrimHit,
-        finish: Option<FinishId>,
+        (part, finish): (Part, Option<FinishId>),
         from: MediumId,
         to: MediumId,
     ) -> Interface<'h> {
         let passes = finish.is_none() && (from == to || self.same_index(from, to));
         let visibility = if passes { Visibility::Invisible } else { Visibility::Visible };
-        Interface { acting, finish, from, to, visibility }
+        Interface { acting, part, finish, from, to, visibility }
     }
 
     /// The medium behind a hit: solids that the path was in are left, others are entered.
@@ -105,25 +130,60 @@ impl Scene {
         }
     }
 
-    /// The finish that the acting face declares for light arriving from behind the interface.
+    /// The finish that acts on light arriving from behind the interface.
     pub fn finish_behind(&self, interface: &Interface<'_>) -> Option<FinishId> {
-        self.finish_against(interface.acting.face, interface.acting.toward.opposite())
+        let Interface { acting, part, .. } = interface;
+        self.finish_of_part(acting.face, *part, acting.toward.opposite())
     }
 
-    /// The finish that a face declares for light arriving at it.
-    #[inline]
-    fn declared_finish(&self, hit: &PrimHit) -> Option<FinishId> {
-        self.finish_against(hit.face, hit.toward)
-    }
-
-    #[inline]
-    fn finish_against(&self, face: FaceId, toward: Toward) -> Option<FinishId> {
-        let face = &self.faces[face.index()];
-        match toward {
-            // Light going toward the front meets the back.
-            Toward::Front => face.back,
-            Toward::Back => face.front,
+    /// What acts at a face on light arriving at it, and its finish.
+    #[inline(always)]
+    fn declared(&self, hit: &PrimHit, meeting: &Meeting) -> (Part, Option<FinishId>) {
+        let face = &self.faces[hit.face.index()];
+        if face.patterns.is_empty() {
+            return (Part::Face, face.finish_against(hit.toward));
         }
+        let part = self.part_at(hit, meeting);
+        (part, self.finish_of_part(hit.face, part, hit.toward))
+    }
+
+    /// The finish of a part of a face, for light going toward one of its sides.
+    fn finish_of_part(&self, face: FaceId, part: Part, toward: Toward) -> Option<FinishId> {
+        match part {
+            Part::Face => self.faces[face.index()].finish_against(toward),
+            Part::Element(pattern) => Some(match toward {
+                Toward::Front => self.patterns[pattern].back,
+                Toward::Back => self.patterns[pattern].front,
+            }),
+            Part::Bore(pattern) => self.patterns[pattern].wall.map(|wall| wall.bore),
+        }
+    }
+
+    /// The part of a face with patterns that light meets.
+    #[inline(never)]
+    fn part_at(&self, hit: &PrimHit, meeting: &Meeting) -> Part {
+        // Patterns lie on patches alone.
+        let Surface::Patch(patch) = self.surface(hit.prim) else { return Part::Face };
+        let at = patch.chart(meeting.point);
+        let numbers = &self.faces[hit.face.index()].patterns;
+        let parts = numbers.iter().filter_map(|&number| {
+            let pattern = &self.patterns[number];
+            pattern.part(number, at, || self.slope(patch, pattern.field.period, meeting))
+        });
+        parts.into_iter().next().unwrap_or(Part::Face)
+    }
+
+    /// How far light goes along the chart of a patch for each mm that it goes through it, mm/mm.
+    fn slope(&self, patch: &Patch, period: Option<f64>, meeting: &Meeting) -> DVec2 {
+        let Meeting { point, dir } = *meeting;
+        let normal = patch.shape.normal(point);
+        let through = dir.dot(normal);
+        let step = SLOPE_STEP * self.bounds.diagonal();
+        let mut moved = patch.chart(point + step * (dir - through * normal)) - patch.chart(point);
+        if let Some(period) = period {
+            moved.x -= period * (moved.x / period).round();
+        }
+        moved / (step * through.abs())
     }
 
     /// How strongly a face claims to act; `None` when it is buried in a solid of higher priority.

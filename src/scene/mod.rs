@@ -20,6 +20,7 @@ mod interface;
 mod intersect;
 pub mod mesh;
 mod on;
+pub mod pattern;
 mod pieces;
 mod pixels;
 pub mod plan;
@@ -40,7 +41,7 @@ pub use face::{Extent, Face, MeshBody, Owner, Patch};
 pub use grid::Grid;
 pub use ids::{FaceId, FinishId, MediumId, PrimId, SensorId, SmoothId, SolidId, SourceId};
 pub use inside::Inside;
-pub use interface::{Interface, Visibility};
+pub use interface::{Interface, Meeting, Visibility};
 pub use intersect::{Hits, Just, PrimHit};
 pub use on::On;
 pub(crate) use pieces::Surface;
@@ -54,6 +55,7 @@ pub use sky::Sky;
 pub use source::{EmitSide, Emitted, Emitter, Source, Start};
 
 use convex::Convex;
+use pattern::Pattern;
 
 use crate::math::Aabb;
 use crate::optics::{Bsdf, Medium};
@@ -106,6 +108,8 @@ pub struct Scene {
     pub solids: Vec<Solid>,
     /// All faces: of solids, of sheets, and open ports.
     pub faces: Vec<Face>,
+    /// Holes, dots and patches on faces.
+    pub patterns: Vec<Pattern>,
     /// Analytic pieces of solids and sheets.
     pub patches: Vec<Patch>,
     /// Bodies of triangles; their triangles are numbered after the patches.

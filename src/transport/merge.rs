@@ -139,7 +139,14 @@ pub struct Scatterer<'s> {
 /// discrete directions, the chance of a side is not that of a path.
 pub fn scatterers(scene: &Scene) -> Vec<Scatterer<'_>> {
     let mut seen = BTreeSet::new();
-    let sides = scene.faces.iter().flat_map(|face| [face.front, face.back].map(|id| (face, id)));
+    let sides = scene.faces.iter().flat_map(|face| {
+        let patterns = face.patterns.iter().map(|&number| &scene.patterns[number]);
+        let elements = patterns.flat_map(|pattern| {
+            let bore = pattern.wall.map(|wall| wall.bore);
+            [Some(pattern.front), Some(pattern.back), bore]
+        });
+        [face.front, face.back].into_iter().chain(elements).map(move |id| (face, id))
+    });
     sides
         .filter_map(|(face, id)| {
             let finish = &scene.finishes[id?.index()];

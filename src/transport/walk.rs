@@ -4,7 +4,7 @@
 
 use crate::optics::{Lobe, Scattered, Side};
 use crate::rng::{Dimension, Numbers, Sampler};
-use crate::scene::{Hits, Interface, MediumId, On, Ray, Scene, Visibility};
+use crate::scene::{Hits, Interface, MediumId, Meeting, On, Ray, Scene, Visibility};
 use crate::transport::Path;
 use crate::transport::scatter::{scatter, scatter_radiance};
 use glam::DVec3;
@@ -177,8 +177,8 @@ fn bounce<V: Visitor>(
     sampler: &mut Sampler<impl Numbers>,
     visitor: &mut V,
 ) -> ControlFlow<(), Ray> {
-    let interface = scene.interface(hits, &path.inside, path.medium);
     let (point, dir) = (ray.at(hits.distance()), ray.dir());
+    let interface = scene.interface(hits, &Meeting { point, dir }, &path.inside, path.medium);
     let vertex = Vertex { point, dir, hits, interface: &interface, throughput: path.throughput };
     visitor.see(path, Event::Arrive(&vertex))?;
     let out = match interface.visibility {

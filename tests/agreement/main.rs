@@ -17,6 +17,7 @@ mod guides;
 mod laws;
 mod merge;
 mod mix;
+mod patterns;
 mod rims;
 mod sensors;
 mod settings;

@@ -56,6 +56,24 @@ fn common_point(scene: &Scene, first: SolidId, second: SolidId) -> Option<DVec3>
 /// Notes faces of solids that light passes unbent though the index changes there.
 pub(super) fn check_open_faces(spec: &SceneSpec, scene: &Scene, problems: &mut Problems) {
     let index = |medium: crate::scene::MediumId| scene.media[medium.index()].index(0.0);
+    for pattern in &scene.patterns {
+        let face = &scene.faces[pattern.face.index()];
+        let Owner::Solid(solid) = face.owner else { continue };
+        let solid = &scene.solids[solid.index()];
+        let steps = index(solid.medium) != index(scene.surroundings);
+        if steps && scene.finishes[pattern.back.index()].bsdf.passes_straight() {
+            let (inside, outside) = (index(solid.medium), index(scene.surroundings));
+            problems
+                .error(
+                    &Key::of(&["patterns", &pattern.name]).field("finish"),
+                    format!(
+                        "lets light pass straight on, but the index steps from {inside} to {outside} at `{}`",
+                        face.name
+                    ),
+                )
+                .hint("holes are for sheets; on a solid use dots that scatter, or leave the face polished");
+        }
+    }
     for face in &scene.faces {
         let (Owner::Solid(solid), Some(finish)) = (face.owner, face.front) else { continue };
         let solid = &scene.solids[solid.index()];

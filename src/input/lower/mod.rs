@@ -7,6 +7,7 @@ mod consistency;
 mod daylight;
 mod finishes;
 mod meshes;
+mod patterns;
 mod place;
 mod plan;
 mod sensors;
@@ -71,6 +72,7 @@ pub(crate) fn lower(spec: &SceneSpec, places: &Places, problems: &mut Problems) 
     context.lower_media();
     context.lower_finishes();
     context.lower_bodies();
+    context.lower_patterns();
     context.lower_sources();
     context.lower_sensors();
     let run = plan::run(spec);

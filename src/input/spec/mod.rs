@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 pub mod daylight;
 pub mod finish;
+pub mod pattern;
 pub mod placement;
 pub mod run;
 pub mod sensor;
@@ -19,6 +20,7 @@ pub mod source;
 pub mod sweep;
 
 use finish::{FinishSpec, MediumSpec};
+use pattern::PatternSpec;
 use run::{CheckSpec, RunSpec};
 use sensor::SensorSpec;
 use sheet::SheetSpec;
@@ -60,6 +62,9 @@ pub struct SceneSpec {
     /// Open surfaces by name: mirrors, baffles, hollow tubes and reflectors.
     #[serde(default)]
     pub sheets: IndexMap<String, SheetSpec>,
+    /// Holes, dots and patches on faces by name.
+    #[serde(default)]
+    pub patterns: IndexMap<String, PatternSpec>,
     /// Light sources by name.
     #[serde(default)]
     pub sources: IndexMap<String, SourceSpec>,

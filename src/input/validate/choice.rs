@@ -28,11 +28,18 @@ impl Walk<'_> {
                     self.wrong_type(node, schema, at);
                 }
             }
-            Value::Array(_)
-            | Value::Integer(_)
-            | Value::Float(_)
-            | Value::Boolean(_)
-            | Value::Datetime => {
+            Value::Array(_) | Value::Integer(_) | Value::Float(_) => {
+                let wants: &[&str] = match node.value {
+                    Value::Array(_) => &["array"],
+                    Value::Integer(_) => &["number", "integer"],
+                    _ => &["number"],
+                };
+                match choices.iter().find_map(|choice| plain(choice, wants)) {
+                    Some(schema) => self.value(node, schema, at),
+                    None => self.wrong_type(node, schema, at),
+                }
+            }
+            Value::Boolean(_) | Value::Datetime => {
                 self.wrong_type(node, schema, at);
             }
             Value::Unreadable => {}
@@ -192,20 +199,30 @@ fn find<'a>(kinds: &[(&str, &'a Json)], name: &str) -> Option<&'a Json> {
 fn kind<'a>(choice: &Choice<'a>) -> Option<(&'a str, &'a Json)> {
     match choice {
         Choice::Kind(kind, schema) => Some((*kind, *schema)),
-        Choice::Word(..) | Choice::Text | Choice::Form(_) => None,
+        Choice::Word(..) | Choice::Text | Choice::Plain(_) | Choice::Form(_) => None,
     }
 }
 
 fn word<'a>(choice: &Choice<'a>) -> Option<&'a str> {
     match choice {
         Choice::Word(word, _) => Some(*word),
-        Choice::Kind(..) | Choice::Text | Choice::Form(_) => None,
+        Choice::Kind(..) | Choice::Text | Choice::Plain(_) | Choice::Form(_) => None,
     }
 }
 
 fn form<'a>(choice: &Choice<'a>) -> Option<&'a Json> {
     match choice {
         Choice::Form(schema) => Some(*schema),
-        Choice::Word(..) | Choice::Text | Choice::Kind(..) => None,
+        Choice::Word(..) | Choice::Text | Choice::Plain(_) | Choice::Kind(..) => None,
+    }
+}
+
+/// The schema of a number or an array, if it is of one of some types.
+fn plain<'a>(choice: &Choice<'a>, types: &[&str]) -> Option<&'a Json> {
+    match choice {
+        Choice::Plain(schema) => {
+            schema["type"].as_str().is_some_and(|own| types.contains(&own)).then_some(*schema)
+        }
+        Choice::Word(..) | Choice::Text | Choice::Kind(..) | Choice::Form(_) => None,
     }
 }

@@ -10,7 +10,7 @@ use crate::input::tree::{Node, Value};
 pub(crate) fn expected(root: &Json, schema: &Json, unit: Option<&str>) -> String {
     let choices = schema::choices(root, schema);
     if !choices.is_empty() {
-        return one_of(&choices);
+        return one_of(root, &choices, unit);
     }
     let number = |noun: &str| {
         let unit = unit.map(|unit| format!(" in {unit}")).unwrap_or_default();
@@ -28,18 +28,19 @@ pub(crate) fn expected(root: &Json, schema: &Json, unit: Option<&str>) -> String
 }
 
 /// What may stand where there is a choice.
-fn one_of(choices: &[Choice<'_>]) -> String {
+fn one_of(root: &Json, choices: &[Choice<'_>], unit: Option<&str>) -> String {
     let mut parts = Vec::new();
     for choice in choices {
         match choice {
             Choice::Word(word, _) => parts.push(format!("\"{word}\"")),
             Choice::Text => parts.push("a name in quotes".into()),
+            Choice::Plain(schema) => parts.push(expected(root, schema, unit)),
             Choice::Kind(..) | Choice::Form(_) => {}
         }
     }
     let kinds = list(choices.iter().filter_map(|choice| match choice {
         Choice::Kind(kind, _) => Some(*kind),
-        Choice::Word(..) | Choice::Text | Choice::Form(_) => None,
+        Choice::Word(..) | Choice::Text | Choice::Plain(_) | Choice::Form(_) => None,
     }));
     if !kinds.is_empty() {
         parts.push(format!("a table with one of {kinds}"));

@@ -63,6 +63,11 @@ impl Cylinder {
         Self { leaving: Toward::Back, ..self }
     }
 
+    /// Whether it goes all around.
+    pub(crate) fn is_closed(&self) -> bool {
+        self.wedge().is_none()
+    }
+
     /// Whether it is the plain wall all around, its front outside.
     pub(crate) fn is_whole(&self) -> bool {
         self.leaving == Toward::Front && self.trims.is_none()

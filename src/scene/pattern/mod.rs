@@ -1,0 +1,239 @@
+//! Holes, dots and patches on a face, in its unrolled coordinates: u around or across, v along.
+//!
+//! A pattern is a rule, not a list: whether a place lies in an element is computed from its rows and columns, so that ten
+//! million elements cost no more than ten. It knows what lies where; finishes are named by id, and what they do is not known
+//! here.
+
+mod along;
+mod rows;
+
+pub use along::Along;
+pub use rows::{Graded, Rows};
+
+use crate::scene::shape::ChartRect;
+use crate::scene::{FaceId, FinishId};
+use glam::DVec2;
+
+/// Elements on a face that act in its place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pattern {
+    /// Name in the scene file.
+    pub name: String,
+    /// The face it lies on.
+    pub face: FaceId,
+    /// Where its elements are.
+    pub field: Field,
+    /// Finish of the elements met from the front.
+    pub front: FinishId,
+    /// Finish of the elements met from the back.
+    pub back: FinishId,
+    /// The wall that the elements are holes through, if it counts.
+    pub wall: Option<HoleWall>,
+}
+
+/// A wall of some thickness about holes. The face is the middle of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HoleWall {
+    /// Thickness, mm.
+    pub thickness: f64,
+    /// What light meets that enters a hole and does not get through.
+    pub bore: FinishId,
+}
+
+/// What acts at a place of a face.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// The face itself.
+    Face,
+    /// An element of a pattern, by the pattern's number.
+    Element(usize),
+    /// The side of a hole of a pattern.
+    Bore(usize),
+}
+
+/// Elements in rows and columns.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Field {
+    /// Where the rows are.
+    pub rows: Rows,
+    /// Where the elements of a row are.
+    pub columns: Columns,
+    /// What an element looks like.
+    pub outline: Outline,
+    /// Length once around a face that closes on itself, mm.
+    pub period: Option<f64>,
+}
+
+/// The places of the elements of a row across a face.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Columns {
+    /// Place of the first of the first row, mm.
+    pub first: f64,
+    /// Distance from one to the next, mm; anything where there is only one.
+    pub pitch: f64,
+    /// How many there are.
+    pub count: usize,
+    /// By how much every other row is shifted, mm.
+    pub shift: f64,
+}
+
+/// The outline of an element.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Outline {
+    /// A circle.
+    Circle {
+        /// Its diameter, mm, along the face.
+        diameter: Along,
+    },
+    /// A rectangle.
+    Rectangle {
+        /// Width across the face, mm.
+        width: f64,
+        /// Length along the face, mm.
+        length: f64,
+    },
+}
+
+impl Outline {
+    /// Width and length of the elements of a row, mm.
+    pub fn size(&self, place: f64) -> DVec2 {
+        match self {
+            Self::Circle { diameter } => DVec2::splat(diameter.at(place)),
+            Self::Rectangle { width, length } => DVec2::new(*width, *length),
+        }
+    }
+
+    /// Area of an element of a row, mm².
+    pub fn area(&self, place: f64) -> f64 {
+        let size = self.size(place);
+        match self {
+            Self::Circle { .. } => 0.25 * std::f64::consts::PI * size.x * size.x,
+            Self::Rectangle { .. } => size.x * size.y,
+        }
+    }
+
+    /// Whether an element of a row holds a point at `from` its centre, mm.
+    #[inline]
+    fn contains(&self, place: f64, from: DVec2) -> bool {
+        match self {
+            Self::Circle { diameter } => {
+                let radius = 0.5 * diameter.at(place);
+                from.length_squared() <= radius * radius
+            }
+            Self::Rectangle { width, length } => {
+                from.x.abs() <= 0.5 * width && from.y.abs() <= 0.5 * length
+            }
+        }
+    }
+
+    /// Whether two elements with their centres `apart` share more than an edge.
+    fn overlap(&self, places: [f64; 2], apart: DVec2) -> bool {
+        let [one, other] = places.map(|place| self.size(place));
+        let room = 0.5 * (one + other) * (1.0 - 1e-12);
+        match self {
+            Self::Circle { .. } => apart.length() < room.x,
+            Self::Rectangle { .. } => apart.x.abs() < room.x && apart.y.abs() < room.y,
+        }
+    }
+}
+
+impl Field {
+    /// Whether a place of the face, mm, lies in an element.
+    #[inline]
+    pub fn contains(&self, at: DVec2) -> bool {
+        self.rows.near(at.y).any(|row| {
+            let place = self.rows.place(row);
+            let from = DVec2::new(self.across(at.x, row), at.y - place);
+            self.outline.contains(place, from)
+        })
+    }
+
+    /// Distance across from the nearest element of a row, mm.
+    #[inline]
+    fn across(&self, u: f64, row: usize) -> f64 {
+        let Columns { first, pitch, count, shift } = self.columns;
+        let first = if row % 2 == 1 { first + shift } else { first };
+        let from = u - first;
+        let from = match self.period {
+            // Into one turn about the first element.
+            Some(period) => from - period * (from / period).round(),
+            None => from,
+        };
+        if count <= 1 {
+            return from;
+        }
+        let nearest = (from / pitch).round();
+        let nearest = match self.period {
+            Some(_) => nearest,
+            None => nearest.clamp(0.0, count as f64 - 1.0),
+        };
+        from - pitch * nearest
+    }
+
+    /// How many elements there are.
+    pub fn count(&self) -> u64 {
+        self.rows.count() as u64 * self.columns.count as u64
+    }
+
+    /// Area of all elements, mm².
+    pub fn area(&self) -> f64 {
+        let rows = (0..self.rows.count()).map(|row| self.outline.area(self.rows.place(row)));
+        rows.sum::<f64>() * self.columns.count as f64
+    }
+
+    /// The first row with an element that overlaps another one of its row or the next two.
+    pub fn first_overlap(&self) -> Option<usize> {
+        let Columns { pitch, count, shift, .. } = self.columns;
+        (0..self.rows.count()).find(|&row| {
+            let place = self.rows.place(row);
+            let beside = count > 1 && self.outline.overlap([place; 2], DVec2::new(pitch, 0.0));
+            beside
+                || [1, 2].into_iter().filter(|by| row + by < self.rows.count()).any(|by| {
+                    let next = self.rows.place(row + by);
+                    let across = if by == 1 { shift } else { 0.0 };
+                    self.outline.overlap([place, next], DVec2::new(across, next - place))
+                })
+        })
+    }
+
+    /// The first row with an element that reaches beyond a rectangle of the face, and by how much, mm.
+    pub fn first_outside(&self, rect: ChartRect) -> Option<(usize, f64)> {
+        let Columns { first, pitch, count, shift } = self.columns;
+        // Rounding of a field that fills its face.
+        let least = 1e-9 * (rect.max - rect.min).max_element();
+        (0..self.rows.count()).find_map(|row| {
+            let place = self.rows.place(row);
+            let half = 0.5 * self.outline.size(place);
+            let from = if row % 2 == 1 { first + shift } else { first };
+            let to = from + pitch * (count.max(1) - 1) as f64;
+            let along = (rect.min.y - (place - half.y)).max(place + half.y - rect.max.y);
+            let across = match self.period {
+                Some(_) => 0.0,
+                None => (rect.min.x - (from - half.x)).max(to + half.x - rect.max.x),
+            };
+            let beyond = along.max(across);
+            (beyond > least).then_some((row, beyond))
+        })
+    }
+}
+
+impl Pattern {
+    /// What acts at a place of the face on light that goes by `slope` across it for each mm through it, mm/mm; `None`
+    /// where the face itself does.
+    #[inline]
+    pub fn part(&self, number: usize, at: DVec2, slope: impl Fn() -> DVec2) -> Option<Part> {
+        let Some(wall) = &self.wall else {
+            return self.field.contains(at).then_some(Part::Element(number));
+        };
+        // The face is the middle of the wall: so a path is the same both ways.
+        let half = 0.5 * wall.thickness * slope();
+        match [at - half, at + half].map(|end| self.field.contains(end)) {
+            [true, true] => Some(Part::Element(number)),
+            [true, false] => Some(Part::Bore(number)),
+            [false, _] => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

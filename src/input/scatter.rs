@@ -28,14 +28,19 @@ pub(crate) fn haze(law: HazeLaw, sheet: &HazeSheetSpec) -> Bsdf {
         (reflectance, transmittance) => HazeBase::Sheet {
             reflectance: reflectance.unwrap_or(0.0),
             transmittance: transmittance.unwrap_or(0.0),
-            scatters: match sheet.scatters {
-                None | Some(HazeSidesSpec::Both) => HazeSides::Both,
-                Some(HazeSidesSpec::Reflected) => HazeSides::Reflected,
-                Some(HazeSidesSpec::Transmitted) => HazeSides::Transmitted,
-            },
+            scatters: sides(sheet),
         },
     };
     Bsdf::Haze(Box::new(Haze::new(law, base)))
+}
+
+/// The sides to which a sheet scatters.
+pub(crate) fn sides(sheet: &HazeSheetSpec) -> HazeSides {
+    match sheet.scatters {
+        None | Some(HazeSidesSpec::Both) => HazeSides::Both,
+        Some(HazeSidesSpec::Reflected) => HazeSides::Reflected,
+        Some(HazeSidesSpec::Transmitted) => HazeSides::Transmitted,
+    }
 }
 
 /// A table of as many values, 1, as angles, deg.

@@ -26,7 +26,7 @@ pub use bsdf::{Bsdf, Incidence, Lobe, Scattered, Side};
 pub use evaluate::evaluate;
 pub use film::{FilmFace, FilmMake, Grain, PrismFilm};
 pub use gaussian::Gaussian;
-pub use haze::{Haze, HazeBase, HazeLaw, HazeSides};
+pub use haze::{Haze, HazeBase, HazeLaw, HazeSides, integrated_scatter};
 pub use medium::Medium;
 pub use microfacet::{Facets, Microfacet};
 pub use shares::{Shares, chances, shares};

@@ -4,9 +4,10 @@ use crate::input::check::Scene;
 use crate::input::check::finishes::{Least, SUM_TOLERANCE, check_sum};
 use crate::input::keys::Key;
 use crate::input::problems::Problems;
+use crate::input::scatter;
 use crate::input::spec::finish::{HazeSheetSpec, TabulatedSpec};
 use crate::number::format_value;
-use crate::optics::{Haze, HazeBase, HazeLaw, HazeSides};
+use crate::optics::{HazeLaw, HazeSides, integrated_scatter};
 
 /// Haze as a file states it.
 pub(super) struct Law<'a> {
@@ -22,48 +23,50 @@ pub(super) fn check_haze(
     scene: Scene<'_>,
     problems: &mut Problems,
 ) {
-    let key = &haze.key;
-    let both_sides = HazeSides::Both;
-    let base = HazeBase::Sheet { reflectance: 1.0, transmittance: 0.0, scatters: both_sides };
-    let scattered = |index| Haze::new(haze.law, base).integrated_scatter(index);
-    let (Some(reflectance), Some(transmittance)) = (
-        sheet.reflectance.or(sheet.transmittance.map(|_| 0.0)),
-        sheet.transmittance.or(sheet.reflectance.map(|_| 0.0)),
-    ) else {
-        if sheet.scatters.is_some() {
-            problems.error(
-                &key.field("scatters"),
-                "an interface of two media scatters to both sides; expected a reflectance or a transmittance beside it",
-            );
-        }
-        // Into the densest medium that may be on either side.
-        let index = scene.spec.media.values().map(|medium| medium.index).fold(1.0, f64::max);
-        let all = 2.0 * scattered(index);
-        if all > 1.0 {
-            let told = format_value(all);
-            let message = format!(
-                "scatters {told} of the light at normal incidence to two sides of index {index}, expected at most 1"
-            );
-            problems.error(key, message).hint(&format!("lower `{}`", haze.strength));
-        }
+    if sheet.reflectance.is_none() && sheet.transmittance.is_none() {
+        check_interface(haze, sheet, scene, problems);
         return;
-    };
-    check_sum(key, reflectance, transmittance, Least::AboveZero, problems);
-    let all = scattered(1.0);
-    for (name, share) in [("reflectance", reflectance), ("transmittance", transmittance)] {
-        use crate::input::spec::finish::HazeSidesSpec::{Both, Reflected, Transmitted};
-        let is_scattered = match sheet.scatters {
-            None | Some(Both) => true,
-            Some(Reflected) => name == "reflectance",
-            Some(Transmitted) => name == "transmittance",
-        };
-        if is_scattered && share > 0.0 && all > share + SUM_TOLERANCE {
+    }
+    let reflectance = sheet.reflectance.unwrap_or(0.0);
+    let transmittance = sheet.transmittance.unwrap_or(0.0);
+    check_sum(&haze.key, reflectance, transmittance, Least::AboveZero, problems);
+    let sides = scatter::sides(sheet);
+    let all = integrated_scatter(haze.law, 1.0);
+    for (name, share, other) in [
+        ("reflectance", reflectance, HazeSides::Transmitted),
+        ("transmittance", transmittance, HazeSides::Reflected),
+    ] {
+        if sides != other && share > 0.0 && all > share + SUM_TOLERANCE {
             let told = format_value(all);
             let message = format!(
                 "total integrated scatter is {told} at normal incidence, expected at most the {name} of {share}"
             );
-            problems.error(key, message).hint(&format!("lower `{}`", haze.strength));
+            problems.error(&haze.key, message).hint(format!("lower `{}`", haze.strength));
         }
+    }
+}
+
+fn check_interface(
+    haze: &Law<'_>,
+    sheet: &HazeSheetSpec,
+    scene: Scene<'_>,
+    problems: &mut Problems,
+) {
+    if sheet.scatters.is_some() {
+        problems.error(
+            &haze.key.field("scatters"),
+            "an interface of two media scatters to both sides; expected a reflectance or a transmittance beside it",
+        );
+    }
+    // Into the densest medium that may be on either side.
+    let index = scene.spec.media.values().map(|medium| medium.index).fold(1.0, f64::max);
+    let all = 2.0 * integrated_scatter(haze.law, index);
+    if all > 1.0 {
+        let told = format_value(all);
+        let message = format!(
+            "scatters {told} of the light at normal incidence to two sides of index {index}, expected at most 1"
+        );
+        problems.error(&haze.key, message).hint(format!("lower `{}`", haze.strength));
     }
 }
 

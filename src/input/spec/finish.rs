@@ -36,9 +36,9 @@ pub enum FinishSpec {
     /// scattered about the mirrored and the refracted direction.
     Gaussian(GaussianSpec),
     /// A rough interface of two media, or a rough mirror, of many small facets (GGX). Light meets one facet; what others
-    /// would have caught is absorbed: 1 % at a roughness of 0.1, 15 % at 0.3, most of it at 1.
+    /// would have caught is absorbed: straight on 1 % at a roughness of 0.1, 12 % at 0.3, 31 % at 0.5, 69 % at 1.
     Ggx(GgxSpec),
-    /// Haze by the ABg model, `A/(B + d^g)` in 1/sr: d is the distance of two directions in direction cosines. With
+    /// Haze by the `ABg` model, `A/(B + d^g)` in 1/sr: d is the distance of two directions in direction cosines. With
     /// neither reflectance nor transmittance given it is a hazy interface between two media: light is scattered to both
     /// sides, d counts in index times direction cosine, and what is left is reflected and refracted as by a smooth one.
     Abg(AbgSpec),
@@ -123,7 +123,7 @@ pub struct GgxSpec {
     pub metal: Option<MetalSpec>,
 }
 
-/// Haze by the ABg model.
+/// Haze by the `ABg` model.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct AbgSpec {
     /// A, in 1/sr where g is 0.

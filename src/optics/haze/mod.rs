@@ -5,8 +5,8 @@
 //! chapter 4). What it scatters is taken from the light that goes on undisturbed. Where the horizon cuts the lobe, less is
 //! scattered. Knows no shape of the lobe but by its law.
 //!
-//! A sheet has f = S(|β_o - β_i|), with the sines β of angles. Between two media the distance is that of n β, which
-//! refraction keeps, and f = n_o² S(|n_o β_o - n_i β_i|) on both sides: then `f(i→o)/n_o²` and all that is left
+//! A sheet has `f = S(|β_o - β_i|)`, with the sines β of angles. Between two media the distance is that of `n β`, which
+//! refraction keeps, and `f = n_o² S(|n_o β_o - n_i β_i|)` on both sides: then `f(i→o)/n_o²` and all that is left
 //! undisturbed are the same both ways, and light that is totally reflected is scattered out of the guide, too.
 
 mod horizon;
@@ -68,8 +68,14 @@ struct Parts {
     undisturbed: Shares,
 }
 
+/// Total integrated scatter, 1: the share of light at normal incidence that is scattered to one side, into a medium
+/// of this index (1 for sheets). It is less at every other angle.
+pub fn integrated_scatter(law: HazeLaw, index: f64) -> f64 {
+    Profile::new(law).within(index)
+}
+
 impl Haze {
-    /// Haze of this law. A sheet takes what is scattered from its shares: [`Haze::integrated_scatter`] is to be less.
+    /// Haze of this law. A sheet takes what is scattered from its shares: [`integrated_scatter`] is to be less.
     pub fn new(law: HazeLaw, base: HazeBase) -> Self {
         let profile = Profile::new(law);
         let indices = match base {
@@ -77,12 +83,6 @@ impl Haze {
             HazeBase::Sheet { .. } => Indices::One,
         };
         Self { horizon: Horizon::new(&profile, indices), profile, base }
-    }
-
-    /// Total integrated scatter, 1: the share of light at normal incidence that is scattered to one side, into a medium
-    /// of this index (1 for sheets). It is less at every other angle.
-    pub fn integrated_scatter(&self, index: f64) -> f64 {
-        self.profile.within(index)
     }
 
     /// Whether it is a sheet, through which light goes straight on.

@@ -13,7 +13,7 @@ pub(super) const FARTHEST: f64 = 8.0;
 /// The law of the scatter, 1/sr, over the distance d of direction cosines; it nowhere grows with d.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum HazeLaw {
-    /// `A / (B + d^g)`: the ABg model of data sheets.
+    /// `A / (B + d^g)`: the `ABg` model of data sheets.
     Abg {
         /// A, 1/sr.
         a: f64,

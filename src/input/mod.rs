@@ -28,6 +28,7 @@ mod lower;
 pub mod manual;
 pub mod overrides;
 pub mod problems;
+mod scatter;
 pub mod schema;
 pub mod sources;
 pub mod spec;

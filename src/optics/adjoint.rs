@@ -9,6 +9,7 @@
 //!   the gather path does, without a factor.
 //! * Light that passes without being bent, whatever the indices are, keeps cos θ dω and not n² cos θ dω; and a diffuser
 //!   mixes radiance, not basic radiance. Then `n_i²/n_o²` stays.
+//! * Small facets, and haze between two media: `f/n_o²` is the same both ways, and that is all that is wanted.
 //! * Prism films: every path through the film is smooth interfaces; it is the same both ways, and so is the place of the
 //!   period, which is drawn evenly.
 //! * Gaussian scatter: a photon meets a smooth face or a thin sheet first and the lobe afterwards, so the gather path
@@ -20,7 +21,7 @@
 use crate::math::{Frame, cosine_hemisphere, unit};
 use crate::optics::bsdf::{choose_side, leaving_normal, pick, specular, straight};
 use crate::optics::shares::smooth_direction;
-use crate::optics::{Bsdf, Gaussian, Incidence, Lobe, Scattered, Shares, Side, shares};
+use crate::optics::{Bsdf, Gaussian, Haze, Incidence, Lobe, Scattered, Shares, Side, shares};
 use crate::rng::{Dimension, Numbers, Sampler};
 use glam::DVec3;
 
@@ -62,11 +63,17 @@ fn by_one_finish(
     sampler: &mut Sampler<impl Numbers>,
 ) -> Option<Scattered> {
     match bsdf {
-        Bsdf::Smooth | Bsdf::Metal { .. } | Bsdf::Absorber | Bsdf::PrismFilm { .. } => {
-            bsdf.scatter(incidence, sampler)
-        }
-        Bsdf::Specular { .. } | Bsdf::Open | Bsdf::Lambertian { .. } => {
+        Bsdf::Smooth
+        | Bsdf::Metal { .. }
+        | Bsdf::Absorber
+        | Bsdf::Coated { .. }
+        | Bsdf::Microfacet(_)
+        | Bsdf::PrismFilm { .. } => bsdf.scatter(incidence, sampler),
+        Bsdf::Specular { .. } | Bsdf::Tabulated { .. } | Bsdf::Open | Bsdf::Lambertian { .. } => {
             bsdf.scatter(incidence, sampler).map(|out| unrefracted(out, incidence))
+        }
+        Bsdf::Haze(haze) => {
+            bsdf.scatter(incidence, sampler).map(|out| through_haze(haze, out, incidence))
         }
         Bsdf::GaussianSheet { lobe, reflectance, transmittance } => {
             let (mean, factor) = scattered_from(lobe, incidence, sampler)?;
@@ -108,6 +115,10 @@ fn chances(bsdf: &Bsdf, incidence: &Incidence) -> Shares {
             let reflected = shares(bsdf, incidence).reflected.clamp(0.1, 0.9);
             Shares { reflected, transmitted: 1.0 - reflected }
         }
+        Bsdf::Microfacet(_) => {
+            let reflected = shares(&Bsdf::Smooth, incidence).reflected.clamp(0.1, 0.9);
+            Shares { reflected, transmitted: 1.0 - reflected }
+        }
         // Whatever they are, no side is left out.
         Bsdf::PrismFilm { .. } => Shares { reflected: 0.5, transmitted: 0.5 },
         Bsdf::Mixture(parts) => {
@@ -127,7 +138,10 @@ fn chances(bsdf: &Bsdf, incidence: &Incidence) -> Shares {
         | Bsdf::Open
         | Bsdf::Lambertian { .. }
         | Bsdf::GaussianSheet { .. }
-        | Bsdf::GaussianDielectric { .. } => shares(bsdf, incidence),
+        | Bsdf::GaussianDielectric { .. }
+        | Bsdf::Tabulated { .. }
+        | Bsdf::Coated { .. }
+        | Bsdf::Haze(_) => shares(bsdf, incidence),
     }
 }
 
@@ -140,8 +154,16 @@ pub fn scatter_toward(
     sampler: &mut Sampler<impl Numbers>,
 ) -> Option<Scattered> {
     match bsdf {
-        Bsdf::Smooth => smooth_toward(side, incidence),
-        Bsdf::Specular { .. } | Bsdf::Metal { .. } | Bsdf::Absorber | Bsdf::Open => {
+        Bsdf::Smooth | Bsdf::Coated { .. } => smooth_toward(bsdf, side, incidence),
+        Bsdf::Microfacet(rough) => rough.scatter_toward(side, incidence, sampler),
+        Bsdf::Haze(haze) => haze
+            .scatter_toward(side, incidence, sampler)
+            .map(|out| through_haze(haze, out, incidence)),
+        Bsdf::Specular { .. }
+        | Bsdf::Tabulated { .. }
+        | Bsdf::Metal { .. }
+        | Bsdf::Absorber
+        | Bsdf::Open => {
             let share = shares(bsdf, incidence).of(side);
             let out = specular(straight(incidence, side), share, side);
             (share > 0.0).then(|| unrefracted(out, incidence))
@@ -161,7 +183,7 @@ pub fn scatter_toward(
         }
         Bsdf::GaussianDielectric { lobe } => {
             let (mean, factor) = scattered_from(lobe, incidence, sampler)?;
-            smooth_toward(side, &mean).map(|out| diffused(out, factor))
+            smooth_toward(&Bsdf::Smooth, side, &mean).map(|out| diffused(out, factor))
         }
         Bsdf::PrismFilm { film, face } => {
             // The light meets the face on its own side, the gather path that on the side it comes from.
@@ -175,9 +197,10 @@ pub fn scatter_toward(
     }
 }
 
-fn smooth_toward(side: Side, incidence: &Incidence) -> Option<Scattered> {
+/// An interface that mirrors and refracts, whatever its shares are.
+fn smooth_toward(bsdf: &Bsdf, side: Side, incidence: &Incidence) -> Option<Scattered> {
     let dir = smooth_direction(incidence, side)?;
-    let share = shares(&Bsdf::Smooth, incidence).of(side);
+    let share = shares(bsdf, incidence).of(side);
     (share > 0.0).then(|| specular(dir, share, side))
 }
 
@@ -209,6 +232,11 @@ fn unrefracted(out: Scattered, incidence: &Incidence) -> Scattered {
             Scattered { factor: out.factor * ratio * ratio, ..out }
         }
     }
+}
+
+fn through_haze(haze: &Haze, out: Scattered, incidence: &Incidence) -> Scattered {
+    let out = Scattered { dir: unit(out.dir), ..out };
+    if haze.is_sheet() { unrefracted(out, incidence) } else { out }
 }
 
 fn diffused(out: Scattered, factor: f64) -> Scattered {

@@ -4,9 +4,13 @@
 //! choose between the reflected and the refracted part. Everything that a finish does not send on is absorbed by it.
 
 use crate::math::{Frame, cosine_hemisphere, unit};
-use crate::optics::{FilmFace, Gaussian, PrismFilm, fresnel};
+use crate::optics::shares::smooth_direction;
+use crate::optics::{AngleTable, FilmFace, Gaussian, Haze, Microfacet, PrismFilm, fresnel, shares};
 use crate::rng::{Dimension, Numbers, Sampler};
 use glam::DVec3;
+
+#[cfg(test)]
+mod tests;
 
 /// Light arriving at a face.
 #[derive(Debug, Clone, Copy)]
@@ -108,6 +112,23 @@ pub enum Bsdf {
         /// The lobe.
         lobe: Gaussian,
     },
+    /// A mirror or a window with shares by the angle of incidence; transmitted light goes straight on.
+    Tabulated {
+        /// Share that is mirrored.
+        reflectance: AngleTable,
+        /// Share that goes straight on.
+        transmittance: AngleTable,
+    },
+    /// A coated interface of two media: it reflects as the table says, by the angle in the medium of the lower index,
+    /// and refracts the rest; total reflection stays.
+    Coated {
+        /// Share that is mirrored.
+        reflectance: AngleTable,
+    },
+    /// A rough interface or mirror of small facets.
+    Microfacet(Microfacet),
+    /// Haze about discrete directions.
+    Haze(Box<Haze>),
     /// A thin film with prisms on one face.
     PrismFilm {
         /// The film.
@@ -128,8 +149,12 @@ impl Bsdf {
             | Self::Metal { .. }
             | Self::Absorber
             | Self::Open
+            | Self::Tabulated { .. }
+            | Self::Coated { .. }
             | Self::PrismFilm { .. } => true,
-            Self::Lambertian { .. }
+            Self::Microfacet(_)
+            | Self::Haze(_)
+            | Self::Lambertian { .. }
             | Self::GaussianSheet { .. }
             | Self::GaussianDielectric { .. } => false,
             Self::Mixture(parts) => parts.iter().all(|(_, part)| part.is_specular()),
@@ -148,9 +173,13 @@ impl Bsdf {
             Self::Specular { transmittance, .. } | Self::GaussianSheet { transmittance, .. } => {
                 *transmittance > 0.0
             }
+            Self::Tabulated { transmittance, .. } => transmittance.greatest() > 0.0,
+            Self::Haze(haze) => haze.passes_straight(),
             Self::Smooth
             | Self::Metal { .. }
             | Self::Absorber
+            | Self::Coated { .. }
+            | Self::Microfacet(_)
             | Self::Lambertian { .. }
             | Self::GaussianDielectric { .. }
             | Self::PrismFilm { .. } => false,
@@ -171,7 +200,11 @@ impl Bsdf {
             | Self::Open
             | Self::Lambertian { .. }
             | Self::GaussianSheet { .. }
-            | Self::GaussianDielectric { .. } => false,
+            | Self::GaussianDielectric { .. }
+            | Self::Tabulated { .. }
+            | Self::Coated { .. }
+            | Self::Microfacet(_)
+            | Self::Haze(_) => false,
         }
     }
 
@@ -195,6 +228,10 @@ impl Bsdf {
             | Self::Lambertian { .. }
             | Self::GaussianSheet { .. }
             | Self::GaussianDielectric { .. }
+            | Self::Tabulated { .. }
+            | Self::Coated { .. }
+            | Self::Microfacet(_)
+            | Self::Haze(_)
             | Self::Mixture(_) => None,
         }
     }
@@ -218,6 +255,10 @@ impl Bsdf {
             | Self::Lambertian { .. }
             | Self::GaussianSheet { .. }
             | Self::GaussianDielectric { .. }
+            | Self::Tabulated { .. }
+            | Self::Coated { .. }
+            | Self::Microfacet(_)
+            | Self::Haze(_)
             | Self::PrismFilm { .. }
             | Self::Mixture(_) => {
                 let out = self.scatter_rarely(incidence, sampler)?;
@@ -274,6 +315,19 @@ impl Bsdf {
                 let dir = lobe.sample(dir.normalize(), leaving_normal(incidence, side), sampler);
                 Some(Scattered { dir, factor: 1.0, side, lobe: Lobe::Diffuse })
             }
+            Self::Tabulated { .. } => {
+                let shares = shares(self, incidence);
+                let side = choose_side(shares.reflected, shares.transmitted, sampler)?;
+                let sum = shares.reflected + shares.transmitted;
+                Some(specular(straight(incidence, side), sum, side))
+            }
+            Self::Coated { .. } => {
+                let shares = shares(self, incidence);
+                let side = choose_side(shares.reflected, shares.transmitted, sampler)?;
+                Some(specular(smooth_direction(incidence, side)?, 1.0, side))
+            }
+            Self::Microfacet(rough) => rough.scatter(incidence, sampler),
+            Self::Haze(haze) => haze.scatter(incidence, sampler),
             Self::PrismFilm { film, face } => film.scatter(*face, incidence, sampler),
             Self::Mixture(parts) => pick(parts, sampler).scatter(incidence, sampler),
         }
@@ -349,92 +403,4 @@ pub(crate) fn pick<'a>(parts: &'a [(f64, Bsdf)], sampler: &mut Sampler<impl Numb
         }
     }
     &parts[parts.len() - 1].1
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::tally::Tally;
-
-    fn incidence(angle_deg: f64, index_from: f64, index_to: f64) -> Incidence {
-        let angle = angle_deg.to_radians();
-        Incidence {
-            dir: DVec3::new(angle.sin(), 0.0, -angle.cos()),
-            normal: DVec3::Z,
-            index_from,
-            index_to,
-            grain: DVec3::ZERO,
-        }
-    }
-
-    fn finishes() -> Vec<Bsdf> {
-        let lobe = Gaussian::new(0.2);
-        vec![
-            Bsdf::Smooth,
-            Bsdf::Specular { reflectance: 0.5, transmittance: 0.3 },
-            Bsdf::Metal { n: 0.8, k: 5.9 },
-            Bsdf::Absorber,
-            Bsdf::Open,
-            Bsdf::Lambertian { reflectance: 0.6, transmittance: 0.4 },
-            Bsdf::GaussianSheet { lobe: lobe.clone(), reflectance: 0.9, transmittance: 0.05 },
-            Bsdf::GaussianDielectric { lobe },
-            Bsdf::Mixture(vec![
-                (0.3, Bsdf::Absorber),
-                (0.7, Bsdf::Specular { reflectance: 1.0, transmittance: 0.0 }),
-            ]),
-        ]
-    }
-
-    #[test]
-    fn no_finish_creates_light_and_each_leaves_on_the_side_it_says() {
-        for bsdf in finishes() {
-            for angle in [0.0, 30.0, 60.0, 85.0, 89.99] {
-                let incidence = incidence(angle, 1.49, 1.0);
-                for index in 0..200 {
-                    let mut sampler = Sampler::for_path(1, 0, index);
-                    let Some(out) = bsdf.scatter(&incidence, &mut sampler) else { continue };
-                    assert!((0.0..=1.0).contains(&out.factor), "{bsdf:?}");
-                    match out.side {
-                        Side::Reflected => assert!(out.dir.z >= 0.0, "{bsdf:?} at {angle}"),
-                        Side::Transmitted => assert!(out.dir.z <= 0.0, "{bsdf:?} at {angle}"),
-                    }
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn mirrors_and_total_reflection_draw_no_numbers() {
-        let mirror = Bsdf::Specular { reflectance: 0.9, transmittance: 0.0 };
-        for (bsdf, incidence) in
-            [(mirror, incidence(20.0, 1.0, 1.0)), (Bsdf::Smooth, incidence(60.0, 1.49, 1.0))]
-        {
-            let mut used = Sampler::for_path(1, 0, 0);
-            let mut fresh = used.clone();
-            assert!(bsdf.scatter(&incidence, &mut used).is_some());
-            assert_eq!(used.one(Dimension::Lobe), fresh.one(Dimension::Lobe));
-        }
-    }
-
-    #[test]
-    fn shares_of_a_mixture_follow_the_weights() {
-        let bsdf = finishes().pop().unwrap();
-        let survived = Tally::of((0..20_000).map(|index| {
-            let mut sampler = Sampler::for_path(9, 0, index);
-            bsdf.scatter(&incidence(10.0, 1.0, 1.0), &mut sampler).map_or(0.0, |out| out.factor)
-        }));
-        assert!(survived.sigmas_from(0.7).abs() < 4.0, "{survived:?}");
-    }
-
-    #[test]
-    fn a_smooth_interface_reflects_the_share_that_fresnel_says() {
-        let incidence = incidence(40.0, 1.49, 1.0);
-        let expected = fresnel::dielectric(incidence.cos(), 1.49, 1.0).unpolarised();
-        let reflected = Tally::of((0..50_000).map(|index| {
-            let mut sampler = Sampler::for_path(2, 0, index);
-            let out = Bsdf::Smooth.scatter(&incidence, &mut sampler).unwrap();
-            if out.side == Side::Reflected { 1.0 } else { 0.0 }
-        }));
-        assert!(reflected.sigmas_from(expected).abs() < 4.0, "{reflected:?}, expected {expected}");
-    }
 }

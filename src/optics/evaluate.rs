@@ -22,7 +22,11 @@ pub fn evaluate(bsdf: &Bsdf, incidence: &Incidence, out: DVec3) -> f64 {
         | Bsdf::Metal { .. }
         | Bsdf::Absorber
         | Bsdf::Open
+        | Bsdf::Tabulated { .. }
+        | Bsdf::Coated { .. }
         | Bsdf::PrismFilm { .. } => 0.0,
+        Bsdf::Microfacet(rough) => rough.evaluate(incidence, out),
+        Bsdf::Haze(haze) => haze.evaluate(incidence, out, side),
         Bsdf::Lambertian { .. } => shares(bsdf, incidence).of(side) / PI,
         Bsdf::GaussianSheet { lobe, .. } => {
             shares(bsdf, incidence).of(side)

@@ -4,23 +4,31 @@
 //! needs no other interface.
 
 mod adjoint;
+mod angle_table;
 mod bsdf;
 mod evaluate;
 pub mod film;
 pub mod fresnel;
 mod gaussian;
+mod haze;
 mod medium;
+mod microfacet;
 mod shares;
 mod sky;
 mod spread;
 pub mod sun;
+#[cfg(test)]
+pub(crate) mod testing;
 
 pub use adjoint::{Faces, scatter_radiance, scatter_toward};
+pub use angle_table::AngleTable;
 pub use bsdf::{Bsdf, Incidence, Lobe, Scattered, Side};
 pub use evaluate::evaluate;
 pub use film::{FilmFace, FilmMake, Grain, PrismFilm};
 pub use gaussian::Gaussian;
+pub use haze::{Haze, HazeBase, HazeLaw, HazeSides, integrated_scatter};
 pub use medium::Medium;
+pub use microfacet::{Facets, Microfacet};
 pub use shares::{Shares, chances, shares};
 pub use sky::{CIE_TYPES, SkyBound, SkyModel};
 pub use spread::Spread;

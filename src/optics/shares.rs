@@ -1,6 +1,6 @@
 //! What share of arriving light a finish sends to each side, and about which direction.
 
-use crate::optics::{Bsdf, Incidence, Side, fresnel};
+use crate::optics::{AngleTable, Bsdf, Incidence, Side, fresnel};
 use glam::DVec3;
 
 /// Shares of the arriving flux that leave to the two sides; the rest is absorbed. 1.
@@ -35,12 +35,16 @@ pub fn chances(bsdf: &Bsdf, incidence: &Incidence) -> Shares {
         | Bsdf::Metal { .. }
         | Bsdf::Absorber
         | Bsdf::Open
+        | Bsdf::Tabulated { .. }
+        | Bsdf::Coated { .. }
+        | Bsdf::Haze(_)
         | Bsdf::PrismFilm { .. } => {
             let Shares { reflected, transmitted } = shares(bsdf, incidence);
             let sum = reflected + transmitted;
             let over_sum = if sum > 0.0 { 1.0 / sum } else { 0.0 };
             Shares { reflected: over_sum * reflected, transmitted: over_sum * transmitted }
         }
+        Bsdf::Microfacet(rough) => rough.sides(incidence).1,
         Bsdf::Mixture(parts) => mean(parts, |part| chances(part, incidence)),
     }
 }
@@ -63,6 +67,13 @@ pub fn shares(bsdf: &Bsdf, incidence: &Incidence) -> Shares {
             transmitted: 0.0,
         },
         Bsdf::PrismFilm { film, face } => film.shares(*face, incidence, PLACES_OF_A_FILM),
+        Bsdf::Tabulated { reflectance, transmittance } => Shares {
+            reflected: reflectance.at(incidence.cos()),
+            transmitted: transmittance.at(incidence.cos()),
+        },
+        Bsdf::Coated { reflectance } => coated(reflectance, incidence),
+        Bsdf::Microfacet(rough) => rough.sides(incidence).0,
+        Bsdf::Haze(haze) => haze.shares(incidence),
         Bsdf::Absorber => Shares { reflected: 0.0, transmitted: 0.0 },
         Bsdf::Open => Shares { reflected: 0.0, transmitted: 1.0 },
         Bsdf::Mixture(parts) => mean(parts, |part| shares(part, incidence)),
@@ -82,13 +93,25 @@ fn mean(parts: &[(f64, Bsdf)], of: impl Fn(&Bsdf) -> Shares) -> Shares {
 }
 
 /// Fresnel's shares; between equal indices all goes through, also along the face.
-fn smooth(incidence: &Incidence) -> Shares {
+pub(crate) fn smooth(incidence: &Incidence) -> Shares {
     let Incidence { index_from, index_to, .. } = *incidence;
     let reflected = if index_from == index_to {
         0.0
     } else {
         fresnel::dielectric(incidence.cos(), index_from, index_to).unpolarised()
     };
+    Shares { reflected, transmitted: 1.0 - reflected }
+}
+
+/// The table's shares at the angle in the medium of the lower index, so that they are the same from both sides.
+fn coated(table: &AngleTable, incidence: &Incidence) -> Shares {
+    let Incidence { index_from, index_to, .. } = *incidence;
+    let outside = if index_from > index_to {
+        fresnel::cos_transmitted(incidence.cos(), index_from, index_to)
+    } else {
+        Some(incidence.cos())
+    };
+    let reflected = outside.map_or(1.0, |cos| table.at(cos));
     Shares { reflected, transmitted: 1.0 - reflected }
 }
 
@@ -110,9 +133,29 @@ pub(crate) fn smooth_direction(incidence: &Incidence, side: Side) -> Option<DVec
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::optics::Gaussian;
+    use crate::optics::testing::incidence;
+    use crate::optics::{Facets, Gaussian, Haze, HazeBase, HazeLaw, Microfacet};
     use crate::rng::Sampler;
     use crate::tally::Tally;
+    use std::f64::consts::FRAC_PI_2;
+
+    #[test]
+    fn a_coating_reflects_the_same_from_both_sides_and_keeps_total_reflection() {
+        let coated = Bsdf::Coated {
+            reflectance: AngleTable::new(vec![[0.0, 0.005], [1.0, 0.06], [FRAC_PI_2, 1.0]]),
+        };
+        let shares_at = |angle, indices| shares(&coated, &incidence(angle, indices));
+        for angle in [0.0f64, 0.5, 1.0, 1.3] {
+            let inside = (angle.sin() / 1.52).asin();
+            let (there, back) = (shares_at(angle, [1.0, 1.52]), shares_at(inside, [1.52, 1.0]));
+            assert!(
+                (there.reflected - back.reflected).abs() < 1e-12,
+                "{angle}: {there:?}, {back:?}"
+            );
+        }
+        assert!((shares_at(0.5, [1.0, 1.52]).reflected - 0.0325).abs() < 1e-12);
+        assert_eq!(shares_at(0.8, [1.52, 1.0]), Shares { reflected: 1.0, transmitted: 0.0 });
+    }
 
     #[test]
     fn photons_go_to_each_side_in_the_shares_and_with_the_chances_that_are_told() {
@@ -125,6 +168,16 @@ mod tests {
             Bsdf::Open,
             Bsdf::Lambertian { reflectance: 0.2, transmittance: 0.4 },
             Bsdf::GaussianDielectric { lobe: Gaussian::new(0.2) },
+            Bsdf::Tabulated {
+                reflectance: AngleTable::new(vec![[0.0, 0.1], [1.0, 0.5], [FRAC_PI_2, 0.9]]),
+                transmittance: AngleTable::new(vec![[0.0, 0.8], [FRAC_PI_2, 0.1]]),
+            },
+            Bsdf::Coated { reflectance: AngleTable::new(vec![[0.0, 0.01], [FRAC_PI_2, 1.0]]) },
+            Bsdf::Microfacet(Microfacet::new(0.3, Facets::Interface)),
+            Bsdf::Haze(Box::new(Haze::new(
+                HazeLaw::Abg { a: 0.02, b: 0.01, g: 2.0 },
+                HazeBase::Interface,
+            ))),
             Bsdf::Mixture(vec![(1.0, sheet), (2.0, Bsdf::Smooth), (1.0, Bsdf::Absorber)]),
         ];
         for bsdf in &finishes {

@@ -18,8 +18,8 @@ pub enum Spread {
 }
 
 impl Bsdf {
-    /// Standard deviation of Gaussian scatter, rad; `None` without any. Of a mixture that of its narrowest Gaussian
-    /// part, since a window has to resolve it.
+    /// Standard deviation of scatter about discrete directions, rad; `None` without any. Of a mixture that of its narrowest
+    /// such part, since a window has to resolve it.
     pub fn width(&self) -> Option<f64> {
         match self {
             Self::GaussianSheet { lobe, .. } | Self::GaussianDielectric { lobe } => {
@@ -30,8 +30,12 @@ impl Bsdf {
             | Self::Metal { .. }
             | Self::Absorber
             | Self::Open
+            | Self::Tabulated { .. }
+            | Self::Coated { .. }
             | Self::PrismFilm { .. }
+            | Self::Haze(_)
             | Self::Lambertian { .. } => None,
+            Self::Microfacet(rough) => Some(rough.spread()),
             Self::Mixture(parts) => {
                 parts.iter().filter_map(|(_, part)| part.width()).reduce(f64::min)
             }
@@ -47,14 +51,20 @@ impl Bsdf {
             {
                 Spread::Narrow(lobe.sigma())
             }
+            Self::Microfacet(rough) if rough.spread() < NARROW => Spread::Narrow(rough.spread()),
+            // The tails of haze reach over the half space; what goes on undisturbed is told apart by its lobe.
             Self::GaussianSheet { .. }
             | Self::GaussianDielectric { .. }
+            | Self::Microfacet(_)
+            | Self::Haze(_)
             | Self::Lambertian { .. } => Spread::Broad,
             Self::Smooth
             | Self::Specular { .. }
             | Self::Metal { .. }
             | Self::Absorber
             | Self::Open
+            | Self::Tabulated { .. }
+            | Self::Coated { .. }
             | Self::PrismFilm { .. } => Spread::Discrete,
             Self::Mixture(parts) => {
                 parts.iter().map(|(_, part)| part.kind()).fold(Spread::Discrete, Spread::broader)

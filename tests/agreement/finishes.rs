@@ -215,3 +215,52 @@ fn faces_of_glass_with_films() {
         all_agree(what, &block(finish));
     }
 }
+
+/// A coating against reflection, as a table.
+const COATING: &str =
+    "{ coated = { angles_deg = [0, 40, 60, 80, 90], reflectance = [0.005, 0.01, 0.04, 0.3, 1] } }";
+
+#[test]
+fn shares_by_the_angle() {
+    all_agree(
+        "mirror tube by a table",
+        &tube("{ tabulated = { angles_deg = [0, 60, 90], reflectance = [0.85, 0.9, 1] } }"),
+    );
+    shallow_agree(
+        "window by a table",
+        &window(
+            "{ tabulated = { angles_deg = [0, 90], reflectance = [0.2, 0.9], transmittance = [0.7, 0] } }",
+            "{ tabulated = { angles_deg = [0, 90], reflectance = [0.1, 0.9], transmittance = [0.8, 0.1] } }",
+        ),
+    );
+    all_agree("coated glass", &block(COATING));
+}
+
+#[test]
+fn small_facets() {
+    all_agree("glass of fine facets", &block("{ ggx = { roughness = 0.02 } }"));
+    all_agree("glass of coarse facets", &block("{ ggx = { roughness = 0.3 } }"));
+    all_agree("rough mirror", &tube("{ ggx = { roughness = 0.2, reflectance = 0.9 } }"));
+    all_agree(
+        "rough metal",
+        &tube("{ ggx = { roughness = 0.03, metal = { n = 0.79, k = 5.85 } } }"),
+    );
+}
+
+#[test]
+fn haze() {
+    all_agree("hazy glass", &block("{ abg = { a = 0.01, b = 0.02, g = 2 } }"));
+    all_agree(
+        "hazy mirror",
+        &tube("{ harvey = { b0 = 1, l = 0.05, s = -1.5, reflectance = 0.9 } }"),
+    );
+    let window_finish = "{ abg = { a = 0.01, b = 0.02, g = 2, reflectance = 0.08, transmittance = 0.9, scatters = \"transmitted\" } }";
+    shallow_agree("hazy window", &window(window_finish, window_finish));
+    shallow_agree(
+        "hazy window, coated on one side",
+        &window(
+            "{ abg = { a = 0.01, b = 0.02, g = 2, reflectance = 0.4, transmittance = 0.5 } }",
+            "{ tabulated = { angles_deg = [0, 90], reflectance = [0.1, 0.9], transmittance = [0.8, 0.1] } }",
+        ),
+    );
+}

@@ -1,25 +1,27 @@
 //! Finishes give back no more light than they get.
 
+use crate::input::check::surfaces::{self, Law};
 use crate::input::check::{Scene, references};
 use crate::input::keys::Key;
 use crate::input::problems::Problems;
+use crate::input::scatter;
 use crate::input::spec::finish::{FinishRef, FinishSpec};
 
 /// Rounding that a sum of decimal fractions may have.
-const SUM_TOLERANCE: f64 = 1e-12;
+pub(super) const SUM_TOLERANCE: f64 = 1e-12;
 
 pub(crate) fn check(scene: Scene<'_>, problems: &mut Problems) {
     for (name, finish) in &scene.spec.finishes {
-        check_one(&Key::of(&["finishes", name]), finish, problems);
+        check_one(scene, &Key::of(&["finishes", name]), finish, problems);
     }
     for (key, finish) in references::finish_refs(scene) {
         if let FinishRef::Inline(finish) = finish {
-            check_one(&key, finish, problems);
+            check_one(scene, &key, finish, problems);
         }
     }
 }
 
-fn check_one(key: &Key, finish: &FinishSpec, problems: &mut Problems) {
+fn check_one(scene: Scene<'_>, key: &Key, finish: &FinishSpec, problems: &mut Problems) {
     match finish {
         FinishSpec::Specular(spec) => {
             check_sum(
@@ -52,6 +54,36 @@ fn check_one(key: &Key, finish: &FinishSpec, problems: &mut Problems) {
                 );
             }
         }
+        FinishSpec::Ggx(spec) => {
+            if spec.reflectance.is_some() && spec.metal.is_some() {
+                problems.error(
+                    &key.field("ggx").field("metal"),
+                    "facets are metal or have a reflectance, not both",
+                );
+            }
+        }
+        FinishSpec::Abg(spec) => {
+            let haze = Law { key: key.field("abg"), law: scatter::abg(spec), strength: "a" };
+            surfaces::check_haze(&haze, &spec.sheet, scene, problems);
+        }
+        FinishSpec::Harvey(spec) => {
+            let haze = Law { key: key.field("harvey"), law: scatter::harvey(spec), strength: "b0" };
+            surfaces::check_haze(&haze, &spec.sheet, scene, problems);
+        }
+        FinishSpec::Tabulated(spec) => {
+            surfaces::check_tabulated(&key.field("tabulated"), spec, problems);
+        }
+        FinishSpec::Coated(spec) => {
+            let key = key.field("coated");
+            surfaces::check_angles(&key, &spec.angles_deg, problems);
+            surfaces::check_values(
+                &key,
+                "reflectance",
+                &spec.angles_deg,
+                &spec.reflectance,
+                problems,
+            );
+        }
         FinishSpec::Smooth(_)
         | FinishSpec::Metal(_)
         | FinishSpec::Absorber(_)
@@ -63,12 +95,12 @@ fn check_one(key: &Key, finish: &FinishSpec, problems: &mut Problems) {
 
 /// The least that reflectance and transmittance may add up to.
 #[derive(Clone, Copy, PartialEq)]
-enum Least {
+pub(super) enum Least {
     Zero,
     AboveZero,
 }
 
-fn check_sum(
+pub(super) fn check_sum(
     key: &Key,
     reflectance: f64,
     transmittance: f64,

@@ -15,6 +15,7 @@ mod run;
 mod sensors;
 mod shapes;
 mod sources;
+mod surfaces;
 
 /// Notes names that are taken twice, and names of things that are not there.
 pub fn check_names(spec: &SceneSpec, places: &Places, problems: &mut Problems) {

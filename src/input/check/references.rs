@@ -128,6 +128,11 @@ fn parts(finish: &FinishSpec) -> &[crate::input::spec::finish::MixturePartSpec] 
         | FinishSpec::Absorber(_)
         | FinishSpec::Open(_)
         | FinishSpec::PrismFilm(_)
+        | FinishSpec::Ggx(_)
+        | FinishSpec::Abg(_)
+        | FinishSpec::Harvey(_)
+        | FinishSpec::Tabulated(_)
+        | FinishSpec::Coated(_)
         | FinishSpec::Lambertian(_)
         | FinishSpec::Gaussian(_) => &[],
     }

@@ -2,10 +2,11 @@
 
 use crate::input::keys::Key;
 use crate::input::lower::Context;
+use crate::input::scatter;
 use crate::input::spec::finish::{
     FinishRef, FinishSpec, GaussianSpec, GrainSpec, PrismFilmSpec, PrismSideSpec,
 };
-use crate::optics::{Bsdf, FilmFace, FilmMake, Gaussian, Grain, PrismFilm};
+use crate::optics::{AngleTable, Bsdf, FilmFace, FilmMake, Gaussian, Grain, PrismFilm};
 use crate::scene::FinishId;
 
 impl Context<'_> {
@@ -85,6 +86,19 @@ impl Context<'_> {
                 Bsdf::Lambertian { reflectance: s.reflectance, transmittance: s.transmittance }
             }
             FinishSpec::Gaussian(spec) => gaussian(spec),
+            FinishSpec::Ggx(spec) => scatter::ggx(spec),
+            FinishSpec::Abg(spec) => scatter::haze(scatter::abg(spec), &spec.sheet),
+            FinishSpec::Harvey(spec) => scatter::haze(scatter::harvey(spec), &spec.sheet),
+            FinishSpec::Tabulated(spec) => Bsdf::Tabulated {
+                reflectance: scatter::table(&spec.angles_deg, &spec.reflectance),
+                transmittance: spec.transmittance.as_ref().map_or_else(
+                    || AngleTable::constant(0.0),
+                    |values| scatter::table(&spec.angles_deg, values),
+                ),
+            },
+            FinishSpec::Coated(spec) => {
+                Bsdf::Coated { reflectance: scatter::table(&spec.angles_deg, &spec.reflectance) }
+            }
             FinishSpec::PrismFilm(film) => prism_film(film),
             FinishSpec::Mixture(parts) => Bsdf::Mixture(
                 parts

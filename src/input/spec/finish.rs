@@ -35,6 +35,20 @@ pub enum FinishSpec {
     /// transmittance given it is a rough interface between two media: the flux is split as at a smooth one, and
     /// scattered about the mirrored and the refracted direction.
     Gaussian(GaussianSpec),
+    /// A rough interface of two media, or a rough mirror, of many small facets (GGX). Light meets one facet; what others
+    /// would have caught is absorbed: straight on 1 % at a roughness of 0.1, 12 % at 0.3, 31 % at 0.5, 69 % at 1.
+    Ggx(GgxSpec),
+    /// Haze by the `ABg` model, `A/(B + d^g)` in 1/sr: d is the distance of two directions in direction cosines. With
+    /// neither reflectance nor transmittance given it is a hazy interface between two media: light is scattered to both
+    /// sides, d counts in index times direction cosine, and what is left is reflected and refracted as by a smooth one.
+    Abg(AbgSpec),
+    /// Haze by Harvey's law with a shoulder, `b0 (1 + (d/l)²)^(s/2)` in 1/sr; otherwise as `abg`.
+    Harvey(HarveySpec),
+    /// A mirror or window with shares by the angle of incidence, linear between the angles. The rest is absorbed.
+    Tabulated(TabulatedSpec),
+    /// A smooth interface with a coating, such as one against reflection: it reflects as a table says and refracts the
+    /// rest; total internal reflection stays.
+    Coated(CoatedSpec),
     /// A thin film, flat on one face, with prisms side by side on the other. It is the same film from both sides: what
     /// light meets that comes from behind follows from it.
     PrismFilm(PrismFilmSpec),
@@ -94,6 +108,104 @@ pub struct GaussianSpec {
     /// Share of the flux that is transmitted.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub transmittance: Option<f64>,
+}
+
+/// Small facets with the slopes of GGX.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct GgxSpec {
+    /// Roughness: about the slope of the facets.
+    #[schemars(range(min = 0.001, max = 1.0))]
+    pub roughness: f64,
+    /// Makes the facets mirrors of this reflectance.
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub reflectance: Option<f64>,
+    /// Makes the facets metal.
+    pub metal: Option<MetalSpec>,
+}
+
+/// Haze by the `ABg` model.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct AbgSpec {
+    /// A, in 1/sr where g is 0.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub a: f64,
+    /// B.
+    #[schemars(range(min = 1e-12))]
+    pub b: f64,
+    /// g.
+    #[schemars(range(min = 0.0, max = 10.0))]
+    pub g: f64,
+    /// What is hazy.
+    #[serde(flatten)]
+    pub sheet: HazeSheetSpec,
+}
+
+/// Haze by Harvey's law with a shoulder.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct HarveySpec {
+    /// Value along the undisturbed direction, in 1/sr.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub b0: f64,
+    /// Shoulder, in direction cosines.
+    #[schemars(range(min = 1e-6))]
+    pub l: f64,
+    /// Slope beyond the shoulder on doubly logarithmic paper; -1.5 is common.
+    #[schemars(range(min = -10.0, max = 0.0))]
+    pub s: f64,
+    /// What is hazy.
+    #[serde(flatten)]
+    pub sheet: HazeSheetSpec,
+}
+
+/// What is hazy.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct HazeSheetSpec {
+    /// Share of the flux that is reflected, scattered or not. Together with the transmittance above 0 and at most 1; not
+    /// less than is scattered.
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub reflectance: Option<f64>,
+    /// Share of the flux that is transmitted, scattered or not.
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub transmittance: Option<f64>,
+    /// To which sides a sheet scatters. Omitted: `both`.
+    pub scatters: Option<HazeSidesSpec>,
+}
+
+/// Sides to which light is scattered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum HazeSidesSpec {
+    /// About the mirrored and about the straight direction, each as the law says.
+    Both,
+    /// About the mirrored direction only.
+    Reflected,
+    /// About the straight direction only.
+    Transmitted,
+}
+
+/// Shares by the angle of incidence.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct TabulatedSpec {
+    /// Angles of incidence, from 0 to 90.
+    #[schemars(length(min = 2))]
+    pub angles_deg: Vec<f64>,
+    /// Share of the flux that is mirrored, for each angle.
+    #[schemars(length(min = 2), extend("items" = { "type": "number", "minimum": 0.0, "maximum": 1.0 }))]
+    pub reflectance: Vec<f64>,
+    /// Share of the flux that goes straight on, for each angle. Omitted: none.
+    #[schemars(length(min = 2), extend("items" = { "type": "number", "minimum": 0.0, "maximum": 1.0 }))]
+    pub transmittance: Option<Vec<f64>>,
+}
+
+/// A coating on an interface.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct CoatedSpec {
+    /// Angles in the medium of the lower index, from 0 to 90: so the coating is the same from both sides.
+    #[schemars(length(min = 2))]
+    pub angles_deg: Vec<f64>,
+    /// Share of the flux that is mirrored, for each angle.
+    #[schemars(length(min = 2), extend("items" = { "type": "number", "minimum": 0.0, "maximum": 1.0 }))]
+    pub reflectance: Vec<f64>,
 }
 
 /// A prism film. Light goes through one period of it, from a random place, and leaves where it arrived.

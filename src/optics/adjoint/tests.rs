@@ -1,8 +1,11 @@
 use super::*;
 use crate::math::circle;
-use crate::optics::{FilmFace, FilmMake, Grain, PrismFilm, evaluate};
+use crate::optics::{
+    AngleTable, Facets, FilmFace, FilmMake, Grain, HazeBase, HazeLaw, HazeSides, Microfacet,
+    PrismFilm, evaluate,
+};
 use crate::tally::Tally;
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 const INDICES: [[f64; 2]; 3] = [[1.0, 1.49], [1.49, 1.0], [1.3, 1.3]];
 
@@ -26,6 +29,32 @@ fn metal() -> Bsdf {
     Bsdf::Metal { n: 0.8, k: 5.9 }
 }
 
+fn tabulated() -> Bsdf {
+    let table = |from, to| AngleTable::new(vec![[0.0, from], [FRAC_PI_2, to]]);
+    Bsdf::Tabulated { reflectance: table(0.2, 0.6), transmittance: table(0.7, 0.1) }
+}
+
+fn coated() -> Bsdf {
+    Bsdf::Coated { reflectance: AngleTable::new(vec![[0.0, 0.01], [1.0, 0.1], [FRAC_PI_2, 1.0]]) }
+}
+
+fn facets(roughness: f64) -> Bsdf {
+    Bsdf::Microfacet(Microfacet::new(roughness, Facets::Interface))
+}
+
+fn rough_metal() -> Bsdf {
+    Bsdf::Microfacet(Microfacet::new(0.4, Facets::Metal { n: 0.8, k: 5.9 }))
+}
+
+fn haze(base: HazeBase) -> Bsdf {
+    Bsdf::Haze(Box::new(Haze::new(HazeLaw::Abg { a: 0.03, b: 0.02, g: 2.0 }, base)))
+}
+
+fn hazy_sheet() -> Bsdf {
+    let scatters = HazeSides::Transmitted;
+    haze(HazeBase::Sheet { reflectance: 0.2, transmittance: 0.7, scatters })
+}
+
 fn mixture() -> Bsdf {
     let smooth = Bsdf::Mixture(vec![(1.0, Bsdf::Smooth), (1.0, splitter())]);
     let parts = [smooth, rough(0.2), sheet(0.1), diffuse(), Bsdf::Absorber];
@@ -44,6 +73,13 @@ fn finishes() -> Vec<Bsdf> {
         sheet(0.4),
         rough(0.02),
         rough(0.3),
+        tabulated(),
+        coated(),
+        facets(0.05),
+        facets(0.5),
+        rough_metal(),
+        hazy_sheet(),
+        haze(HazeBase::Interface),
         mixture(),
     ]
 }
@@ -142,6 +178,10 @@ fn faces_of_two_finishes_reflect_by_one_and_transmit_by_the_other() {
         (metal(), Bsdf::Open),
         (rough(0.3), Bsdf::Smooth),
         (sheet(0.3), mixture()),
+        (facets(0.4), coated()),
+        (haze(HazeBase::Interface), facets(0.2)),
+        (tabulated(), hazy_sheet()),
+        (rough_metal(), haze(HazeBase::Interface)),
     ] {
         assert_adjoint(Faces { own: &own, behind: &behind });
     }
@@ -172,7 +212,7 @@ fn films_are_the_same_film_from_both_sides() {
 #[test]
 fn from_each_direction_the_mean_factor_is_the_integral_of_the_distribution_function() {
     let rows = 600;
-    for bsdf in [diffuse(), sheet(0.3), rough(0.2)] {
+    for bsdf in [diffuse(), sheet(0.3), rough(0.2), facets(0.7), haze(HazeBase::Interface)] {
         for [above, below] in INDICES {
             for angle in [0.0f64, 0.7, 0.9, 1.3] {
                 let dir = DVec3::new(angle.sin(), 0.0, -angle.cos());
@@ -207,7 +247,7 @@ fn from_each_direction_the_mean_factor_is_the_integral_of_the_distribution_funct
                         let mut sampler = Sampler::for_path(47, 0, index);
                         let faces = Faces { own: &bsdf, behind: &bsdf };
                         scatter_radiance(faces, &incidence, &mut sampler)
-                            .filter(|from| from.side == side)
+                            .filter(|from| from.side == side && from.lobe == Lobe::Diffuse)
                             .map_or(0.0, |from| from.factor * (0.5 + 0.5 * from.dir.x))
                     }));
                     let met =

@@ -1,0 +1,274 @@
+//! Haze: faint scatter with long tails about light that is otherwise mirrored, refracted or let through.
+//!
+//! The lobe depends only on the distance between the arriving and the leaving direction in the plane of direction
+//! cosines, as data sheets and the theory of smooth surfaces have it (Harvey & Shack; Stover, Optical Scattering, 3rd ed. 2012,
+//! chapter 4). What it scatters is taken from the light that goes on undisturbed. Where the horizon cuts the lobe, less is
+//! scattered. Knows no shape of the lobe but by its law.
+//!
+//! A sheet has `f = S(|β_o - β_i|)`, with the sines β of angles. Between two media the distance is that of `n β`, which
+//! refraction keeps, and `f = n_o² S(|n_o β_o - n_i β_i|)` on both sides: then `f(i→o)/n_o²` and all that is left
+//! undisturbed are the same both ways, and light that is totally reflected is scattered out of the guide, too.
+
+mod horizon;
+mod profile;
+
+pub use profile::HazeLaw;
+
+use crate::math::{Frame, circle};
+use crate::optics::bsdf::{leaving_normal, specular, straight};
+use crate::optics::haze::horizon::{Horizon, Indices};
+use crate::optics::haze::profile::Profile;
+use crate::optics::shares::{smooth, smooth_direction};
+use crate::optics::{Incidence, Lobe, Scattered, Shares, Side};
+use crate::rng::{Dimension, Numbers, Sampler};
+use glam::DVec3;
+
+#[cfg(test)]
+mod tests;
+
+/// A finish with haze.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Haze {
+    profile: Profile,
+    horizon: Horizon,
+    base: HazeBase,
+}
+
+/// What it is without haze.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum HazeBase {
+    /// The smooth interface of the two media.
+    Interface,
+    /// A sheet with shares that do not depend on the angle.
+    Sheet {
+        /// Share that is reflected, with what is scattered, 0..=1.
+        reflectance: f64,
+        /// Share that is transmitted, with what is scattered, 0..=1 with the reflectance.
+        transmittance: f64,
+        /// The sides to which light is scattered.
+        scatters: HazeSides,
+    },
+}
+
+/// To which sides a sheet scatters; never to one without a share.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum HazeSides {
+    /// About the mirrored and about the straight direction.
+    Both,
+    /// About the mirrored direction only.
+    Reflected,
+    /// About the straight direction only.
+    Transmitted,
+}
+
+/// Shares of the arriving light.
+struct Parts {
+    scattered: Shares,
+    /// Mirrored, refracted or let through.
+    undisturbed: Shares,
+}
+
+/// Total integrated scatter, 1: the share of light at normal incidence that is scattered to one side, into a medium
+/// of this index (1 for sheets). It is less at every other angle.
+pub fn integrated_scatter(law: HazeLaw, index: f64) -> f64 {
+    Profile::new(law).within(index)
+}
+
+impl Haze {
+    /// Haze of this law. A sheet takes what is scattered from its shares: [`integrated_scatter`] is to be less.
+    pub fn new(law: HazeLaw, base: HazeBase) -> Self {
+        let profile = Profile::new(law);
+        let indices = match base {
+            HazeBase::Interface => Indices::Any,
+            HazeBase::Sheet { .. } => Indices::One,
+        };
+        Self { horizon: Horizon::new(&profile, indices), profile, base }
+    }
+
+    /// Whether it is a sheet, through which light goes straight on.
+    pub(crate) fn is_sheet(&self) -> bool {
+        match self.base {
+            HazeBase::Interface => false,
+            HazeBase::Sheet { .. } => true,
+        }
+    }
+
+    /// Whether light can go through it unbent.
+    pub(crate) fn passes_straight(&self) -> bool {
+        match self.base {
+            HazeBase::Interface => false,
+            HazeBase::Sheet { transmittance, .. } => transmittance > 0.0,
+        }
+    }
+
+    /// Shares of light that leaves to the two sides, 1.
+    pub(crate) fn shares(&self, incidence: &Incidence) -> Shares {
+        let Parts { scattered, undisturbed } = self.parts(incidence);
+        Shares {
+            reflected: scattered.reflected + undisturbed.reflected,
+            transmitted: scattered.transmitted + undisturbed.transmitted,
+        }
+    }
+
+    /// Sends light on, or absorbs it.
+    pub(crate) fn scatter(
+        &self,
+        incidence: &Incidence,
+        sampler: &mut Sampler<impl Numbers>,
+    ) -> Option<Scattered> {
+        let Parts { scattered, undisturbed } = self.parts(incidence);
+        let (reflected, transmitted) = (Side::Reflected, Side::Transmitted);
+        let scattered = [reflected, transmitted].map(|side| (Lobe::Diffuse, side, scattered));
+        let undisturbed = [reflected, transmitted].map(|side| (Lobe::Specular, side, undisturbed));
+        self.one_of([scattered, undisturbed].as_flattened(), incidence, sampler)
+    }
+
+    /// The same to one side only; the factor holds the share of that side.
+    pub(crate) fn scatter_toward(
+        &self,
+        side: Side,
+        incidence: &Incidence,
+        sampler: &mut Sampler<impl Numbers>,
+    ) -> Option<Scattered> {
+        let Parts { scattered, undisturbed } = self.parts(incidence);
+        let lobes = [(Lobe::Diffuse, side, scattered), (Lobe::Specular, side, undisturbed)];
+        self.one_of(&lobes, incidence, sampler)
+    }
+
+    /// f(i→o), 1/sr, without the light that goes on undisturbed.
+    pub(crate) fn evaluate(&self, incidence: &Incidence, out: DVec3, side: Side) -> f64 {
+        let [index_from, index_out] = self.indices(incidence, side);
+        let along = index_out * out - index_from * incidence.dir;
+        let along = along - along.dot(incidence.normal) * incidence.normal;
+        if self.is_scattered(side) {
+            index_out * index_out * self.profile.law.at(along.length())
+        } else {
+            0.0
+        }
+    }
+
+    /// One of these lobes in proportion to its share; the factor is their sum.
+    fn one_of(
+        &self,
+        lobes: &[(Lobe, Side, Shares)],
+        incidence: &Incidence,
+        sampler: &mut Sampler<impl Numbers>,
+    ) -> Option<Scattered> {
+        let factor: f64 = lobes.iter().map(|(_, side, shares)| shares.of(*side)).sum();
+        let mut left = sampler.one(Dimension::Lobe) * factor;
+        let possible = lobes.iter().filter(|(_, side, shares)| shares.of(*side) > 0.0);
+        let mut chosen = None;
+        for (lobe, side, shares) in possible {
+            chosen = Some((*lobe, *side));
+            left -= shares.of(*side);
+            if left < 0.0 {
+                break;
+            }
+        }
+        let (lobe, side) = chosen?;
+        match lobe {
+            Lobe::Diffuse => {
+                let dir = self.drawn(incidence, side, sampler);
+                Some(Scattered { dir, factor, side, lobe })
+            }
+            Lobe::Specular => {
+                Some(specular(self.undisturbed_direction(incidence, side)?, factor, side))
+            }
+        }
+    }
+
+    fn undisturbed_direction(&self, incidence: &Incidence, side: Side) -> Option<DVec3> {
+        match self.base {
+            HazeBase::Interface => smooth_direction(incidence, side),
+            HazeBase::Sheet { .. } => Some(straight(incidence, side)),
+        }
+    }
+
+    fn parts(&self, incidence: &Incidence) -> Parts {
+        let scattered = Shares {
+            reflected: self.scattered(incidence, Side::Reflected),
+            transmitted: self.scattered(incidence, Side::Transmitted),
+        };
+        let undisturbed = match self.base {
+            HazeBase::Interface => {
+                let rest = 1.0 - scattered.reflected - scattered.transmitted;
+                let Shares { reflected, transmitted } = smooth(incidence);
+                Shares { reflected: rest * reflected, transmitted: rest * transmitted }
+            }
+            HazeBase::Sheet { reflectance, transmittance, .. } => Shares {
+                reflected: reflectance - scattered.reflected,
+                transmitted: transmittance - scattered.transmitted,
+            },
+        };
+        // Rounding, where all is scattered.
+        let undisturbed = Shares {
+            reflected: undisturbed.reflected.max(0.0),
+            transmitted: undisturbed.transmitted.max(0.0),
+        };
+        Parts { scattered, undisturbed }
+    }
+
+    fn scattered(&self, incidence: &Incidence, side: Side) -> f64 {
+        if !self.is_scattered(side) {
+            return 0.0;
+        }
+        let [index_from, index_out] = self.indices(incidence, side);
+        let sin = (1.0 - incidence.cos().powi(2)).max(0.0).sqrt();
+        self.profile.within(index_out) * self.horizon.share(index_from * sin, index_out)
+    }
+
+    fn is_scattered(&self, side: Side) -> bool {
+        match self.base {
+            HazeBase::Interface => true,
+            HazeBase::Sheet { reflectance, transmittance, scatters } => {
+                let share = Shares { reflected: reflectance, transmitted: transmittance }.of(side);
+                let is_meant = match scatters {
+                    HazeSides::Both => true,
+                    HazeSides::Reflected => side == Side::Reflected,
+                    HazeSides::Transmitted => side == Side::Transmitted,
+                };
+                is_meant && share > 0.0
+            }
+        }
+    }
+
+    /// By what direction cosines count: of the light that arrives, and of that which leaves to a side.
+    fn indices(&self, incidence: &Incidence, side: Side) -> [f64; 2] {
+        let Incidence { index_from, index_to, .. } = *incidence;
+        match (self.base, side) {
+            (HazeBase::Sheet { .. }, Side::Reflected | Side::Transmitted) => [1.0, 1.0],
+            (HazeBase::Interface, Side::Reflected) => [index_from, index_from],
+            (HazeBase::Interface, Side::Transmitted) => [index_from, index_to],
+        }
+    }
+
+    /// A direction by the lobe, above the horizon.
+    fn drawn(
+        &self,
+        incidence: &Incidence,
+        side: Side,
+        sampler: &mut Sampler<impl Numbers>,
+    ) -> DVec3 {
+        let [index_from, index_out] = self.indices(incidence, side);
+        let normal = incidence.normal;
+        let center = index_from * (incidence.dir - incidence.dir.dot(normal) * normal);
+        let away = center.length();
+        let toward_middle = if away > 0.0 { -center } else { normal };
+        let frame = Frame::from_axis_and_x(DVec3::ZERO, normal, toward_middle)
+            .unwrap_or_else(|| Frame::from_axis(DVec3::ZERO, normal));
+        let range = [(away - index_out).max(0.0), away + index_out];
+        // Turns about the direction to the middle of the disk in which there is some of it.
+        let widest =
+            if away > index_out { (index_out / away).asin() / std::f64::consts::TAU } else { 0.5 };
+        loop {
+            let distance = self.profile.sample(range, sampler);
+            let turns = widest * (2.0 * sampler.one(Dimension::Scatter) - 1.0);
+            let around = circle(turns.rem_euclid(1.0));
+            let place = (center + distance * frame.to_world(around.extend(0.0))) / index_out;
+            let above = 1.0 - place.length_squared();
+            if above > 0.0 {
+                return place + above.sqrt() * leaving_normal(incidence, side);
+            }
+        }
+    }
+}

@@ -161,11 +161,6 @@ impl Bsdf {
         }
     }
 
-    /// Whether light goes on in one discrete direction to each side, or not at all.
-    pub fn has_one_direction_a_side(&self) -> bool {
-        self.is_specular() && !self.has_grain()
-    }
-
     /// Whether light can go through without being bent, as if both sides were of one index.
     pub fn passes_straight(&self) -> bool {
         match self {
@@ -184,55 +179,6 @@ impl Bsdf {
             | Self::GaussianDielectric { .. }
             | Self::PrismFilm { .. } => false,
             Self::Mixture(parts) => parts.iter().any(|(_, part)| part.passes_straight()),
-        }
-    }
-
-    /// Whether it has a direction of its own on the face, so that [`Incidence::grain`] is needed.
-    #[inline]
-    pub fn has_grain(&self) -> bool {
-        match self {
-            Self::PrismFilm { .. } => true,
-            Self::Mixture(parts) => parts.iter().any(|(_, part)| part.has_grain()),
-            Self::Smooth
-            | Self::Specular { .. }
-            | Self::Metal { .. }
-            | Self::Absorber
-            | Self::Open
-            | Self::Lambertian { .. }
-            | Self::GaussianSheet { .. }
-            | Self::GaussianDielectric { .. }
-            | Self::Tabulated { .. }
-            | Self::Coated { .. }
-            | Self::Microfacet(_)
-            | Self::Haze(_) => false,
-        }
-    }
-
-    /// The same finish as light meets it that comes from the other side, where that is another one.
-    pub fn from_behind(&self) -> Option<Self> {
-        match self {
-            Self::PrismFilm { film, face } => {
-                Some(Self::PrismFilm { film: film.clone(), face: face.opposite() })
-            }
-            Self::Mixture(parts) if self.has_grain() => {
-                let turned = |part: &Self| part.from_behind().unwrap_or_else(|| part.clone());
-                Some(Self::Mixture(
-                    parts.iter().map(|(weight, part)| (*weight, turned(part))).collect(),
-                ))
-            }
-            Self::Smooth
-            | Self::Specular { .. }
-            | Self::Metal { .. }
-            | Self::Absorber
-            | Self::Open
-            | Self::Lambertian { .. }
-            | Self::GaussianSheet { .. }
-            | Self::GaussianDielectric { .. }
-            | Self::Tabulated { .. }
-            | Self::Coated { .. }
-            | Self::Microfacet(_)
-            | Self::Haze(_)
-            | Self::Mixture(_) => None,
         }
     }
 

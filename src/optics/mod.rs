@@ -10,6 +10,7 @@ mod evaluate;
 pub mod film;
 pub mod fresnel;
 mod gaussian;
+mod grain;
 mod haze;
 mod medium;
 mod microfacet;

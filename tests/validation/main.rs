@@ -152,9 +152,9 @@ fn deviations_look_like_a_standard_normal() {
     assert!((0.8..=1.3).contains(&rms), "rms {rms} of {} runs", deviations.len());
 }
 
-/// Benchmark scenes (B1 to B4) and daylight (DL): cases that are not of the reference.
+/// Benchmark scenes (B1 to B4), daylight (DL) and elements (EL: films as planes, holes as patterns): cases that are not of the reference.
 fn is_our_own(id: &str) -> bool {
-    id.starts_with("DL") || id.starts_with('B') && !id.starts_with("BD")
+    id.starts_with("DL") || id.starts_with("EL") || id.starts_with('B') && !id.starts_with("BD")
 }
 
 /// Number of values in the reference, our own cases apart.
@@ -188,8 +188,9 @@ fn tests_that_are_named_are_there_and_hold_the_values() {
     for Elsewhere { file, test, values, .. } in waiting().elsewhere {
         let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(&file));
         let text = text.unwrap_or_else(|error| panic!("{file}: {error}"));
-        let (_, body) =
-            text.split_once(&format!("#[test]\n    fn {test}() {{")).expect("a test of that name");
+        let (before, body) =
+            text.split_once(&format!("fn {test}() {{")).expect("a test of that name");
+        assert!(before.trim_end().ends_with("#[test]"), "{test} is no test");
         let body = body.split("#[test]").next().expect("a first piece");
         for (name, value) in values {
             assert!(body.contains(&format!("{value:?}")), "{test}: no {value:?} for {name}");

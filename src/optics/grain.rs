@@ -1,0 +1,59 @@
+//! Finishes that are laid on a face in a direction, and look different from behind.
+
+use crate::optics::Bsdf;
+
+impl Bsdf {
+    /// Whether light goes on in one discrete direction to each side, or not at all.
+    pub fn has_one_direction_a_side(&self) -> bool {
+        self.is_specular() && !self.has_grain()
+    }
+
+    /// Whether it has a direction of its own on the face, so that the grain of [`crate::optics::Incidence`] is needed.
+    #[inline]
+    pub fn has_grain(&self) -> bool {
+        match self {
+            Self::PrismFilm { .. } => true,
+            Self::Mixture(parts) => parts.iter().any(|(_, part)| part.has_grain()),
+            Self::Smooth
+            | Self::Specular { .. }
+            | Self::Metal { .. }
+            | Self::Absorber
+            | Self::Open
+            | Self::Lambertian { .. }
+            | Self::GaussianSheet { .. }
+            | Self::GaussianDielectric { .. }
+            | Self::Tabulated { .. }
+            | Self::Coated { .. }
+            | Self::Microfacet(_)
+            | Self::Haze(_) => false,
+        }
+    }
+
+    /// The same finish as light meets it that comes from the other side, where that is another one.
+    pub fn from_behind(&self) -> Option<Self> {
+        match self {
+            Self::PrismFilm { film, face } => {
+                Some(Self::PrismFilm { film: film.clone(), face: face.opposite() })
+            }
+            Self::Mixture(parts) if self.has_grain() => {
+                let turned = |part: &Self| part.from_behind().unwrap_or_else(|| part.clone());
+                Some(Self::Mixture(
+                    parts.iter().map(|(weight, part)| (*weight, turned(part))).collect(),
+                ))
+            }
+            Self::Smooth
+            | Self::Specular { .. }
+            | Self::Metal { .. }
+            | Self::Absorber
+            | Self::Open
+            | Self::Lambertian { .. }
+            | Self::GaussianSheet { .. }
+            | Self::GaussianDielectric { .. }
+            | Self::Tabulated { .. }
+            | Self::Coated { .. }
+            | Self::Microfacet(_)
+            | Self::Haze(_)
+            | Self::Mixture(_) => None,
+        }
+    }
+}

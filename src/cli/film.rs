@@ -34,6 +34,8 @@ pub(super) fn film(args: &FilmArgs) -> ExitCode {
     let tables = film_tables(&job.scene.finishes, args.index, args.step_deg);
     finish(tables.ok_or_else(|| {
         let scene = args.scene.display();
-        Error::Usage(format!("{scene} has no finish `prism_film`; docs/scene_format.md shows one"))
+        Error::Usage(format!(
+            "{scene} has no finish `prism_film` of its own; docs/scene_format.md shows one"
+        ))
     }))
 }

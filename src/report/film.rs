@@ -1,5 +1,6 @@
 //! What prism films do against the angle, as a table.
 
+use crate::number::format_value;
 use crate::optics::film::{acceptance_angle, along_prisms};
 use crate::optics::{Bsdf, FilmFace, Incidence, PrismFilm, Shares};
 use crate::scene::Finish;
@@ -15,16 +16,18 @@ const PLACES: u32 = 1000;
 pub fn film_tables(finishes: &[Finish], index: f64, step_deg: f64) -> Option<String> {
     let tables: Vec<String> = finishes
         .iter()
-        .filter_map(|finish| {
-            let Bsdf::PrismFilm { film, face } = &finish.bsdf else { return None };
+        .enumerate()
+        .filter_map(|(place, finish)| {
+            let Bsdf::PrismFilm { film, .. } = &finish.bsdf else { return None };
             // What lies behind a film is the same film, and is in its table.
-            let is_told = *face == FilmFace::Prisms && is_behind(finish, finishes);
-            (!is_told).then(|| table(&finish.name, film, index, step_deg))
+            (!is_behind(finish, &finishes[..place]))
+                .then(|| table(&finish.name, film, index, step_deg))
         })
         .collect();
     (!tables.is_empty()).then(|| tables.join("\n"))
 }
 
+/// Whether a finish is what lies behind one of those before it.
 fn is_behind(finish: &Finish, finishes: &[Finish]) -> bool {
     let front = finish.bsdf.from_behind();
     finishes.iter().any(|other| Some(&other.bsdf) == front.as_ref())
@@ -45,15 +48,15 @@ fn table(name: &str, film: &PrismFilm, index: f64, step_deg: f64) -> String {
             text,
             "{lit}\n\n| angle, ° | R along the prisms | T | A | R across the prisms | T | A |\n|--:|--:|--:|--:|--:|--:|--:|\n"
         );
-        let mut angle: f64 = 0.0;
-        while angle < 89.999 {
+        let steps = (89.999 / step_deg).floor() as u32;
+        for step in 0..=steps {
+            let angle = f64::from(step) * step_deg;
             let planes = [Plane::Along, Plane::Across];
             let shares = planes.map(|plane| {
                 film.shares(face, &in_plane(plane, angle.to_radians(), index), PLACES)
             });
             let cells = shares.map(cells).join(" | ");
-            _ = writeln!(text, "| {angle} | {cells} |");
-            angle += step_deg;
+            _ = writeln!(text, "| {} | {cells} |", format_value(angle));
         }
         text.push('\n');
     }

@@ -80,9 +80,6 @@ pub(crate) fn finish_refs(scene: Scene<'_>) -> Vec<(Key, &FinishRef)> {
     for (name, pattern) in &scene.spec.patterns {
         let key = Key::of(&["patterns", name]);
         add_ref(key.field("finish"), &pattern.finish, &mut found);
-        if let Some(bore) = &pattern.bore {
-            add_ref(key.field("bore"), bore, &mut found);
-        }
     }
     for (name, source) in &scene.spec.sources {
         let Some(common) = source.common() else { continue };

@@ -5,19 +5,20 @@ use crate::input::lower::Context;
 use crate::input::spec::pattern::{
     AlongSpec, ElementSpec, GridSpec, HexagonalSpec, LawSpec, LayoutSpec, PatternSpec, RowSpec,
 };
+use crate::input::spec::sheet::{SheetCommon, SheetSpec};
 use crate::math::circle;
 use crate::scene::pattern::{Along, Columns, Field, Graded, HoleWall, Outline, Pattern, Rows};
-use crate::scene::shape::{ChartRect, Shape};
+use crate::scene::shape::{ChartRect, Region, Shape};
 use crate::scene::sweep::WallChart;
 use crate::scene::{FaceId, Patch};
 use glam::DVec2;
-use std::f64::consts::TAU;
+use std::f64::consts::{SQRT_2, TAU};
 
 /// Pieces by which a power law is drawn.
 const PIECES: u32 = 256;
 /// Deviation from a whole number of columns around a tube that is taken as rounding, 1.
 const WHOLE: f64 = 1e-6;
-/// Elements of a row that are listed one by one, or drawn by a law.
+/// Rows that a pattern may have.
 const MOST_ROWS: f64 = 1e7;
 
 /// A face as a pattern sees it.
@@ -54,11 +55,14 @@ impl Context<'_> {
     fn pattern(&mut self, name: &str, spec: &PatternSpec, key: &Key) -> Option<Pattern> {
         let ground = self.ground(&spec.on, &key.field("on"))?;
         let finish = self.finish(&spec.finish)?;
-        let (front, back) = (self.behind(finish), finish);
-        let bore = match &spec.bore {
-            Some(bore) => self.finish(bore),
-            None => self.finishes.get("black").copied(),
+        // The finish that a plain sheet names is that of its front; of solids and ducts, that of the inside.
+        let owner = spec.on.split('.').next().unwrap_or_default();
+        let sheet = self.spec.sheets.get(owner).map(SheetSpec::common);
+        let (front, back) = match sheet {
+            Some(SheetCommon::Sheet(_)) => (finish, self.behind(finish)),
+            Some(SheetCommon::Duct(_)) | None => (self.behind(finish), finish),
         };
+        let bore = self.finishes.get("black").copied();
         let wall = spec.wall_mm.zip(bore).map(|(thickness, bore)| HoleWall { thickness, bore });
         let field = self.field(spec, &ground, key)?;
         if let Some(row) = field.first_overlap() {
@@ -107,7 +111,7 @@ impl Context<'_> {
                 .error(
                     key,
                     format!(
-                        "`{name}` is neither flat nor the wall of a straight round tube or rod"
+                        "`{name}` is neither a flat rectangle nor the wall of a straight round tube or rod"
                     ),
                 )
                 .hint("a pattern needs a face that unrolls without being stretched");
@@ -315,7 +319,8 @@ impl Context<'_> {
             } else {
                 (&other.field, &pattern.field)
             };
-            first_shared(few, many).map(|at| (other.name.clone(), at))
+            let shared = first_shared(few, many).or_else(|| first_shared(many, few));
+            shared.map(|at| (other.name.clone(), at))
         });
         let Some((other, at)) = met else { return true };
         self.problems
@@ -353,7 +358,15 @@ fn first_shared(few: &Field, many: &Field) -> Option<DVec2> {
         let from = if row % 2 == 1 { first + shift } else { first };
         let center = DVec2::new(from + column as f64 * pitch, place);
         let half = 0.5 * few.outline.size(place);
-        let rim = (0..RIM).map(|i| center + 0.999 * half * circle(f64::from(i) / f64::from(RIM)));
+        let reach = match &few.outline {
+            Outline::Circle { .. } => 1.0,
+            // To the corners.
+            Outline::Rectangle { .. } => SQRT_2,
+        };
+        let rim = (0..RIM).map(|i| {
+            let on_rim = reach * circle((f64::from(i) + 0.5) / f64::from(RIM));
+            center + 0.999 * half * on_rim.clamp(DVec2::NEG_ONE, DVec2::ONE)
+        });
         std::iter::once(center).chain(rim).find(|at| many.contains(*at))
     })
 }
@@ -367,7 +380,17 @@ fn is_unrolled_truly(patch: &Patch) -> bool {
             false
         }
     };
-    keeps_lengths && matches!(patch.shape, Shape::Flat(_) | Shape::Cylinder(_))
+    let is_whole = match &patch.shape {
+        Shape::Flat(flat) => matches!(flat.region(), Region::Rectangle { .. }),
+        Shape::Cylinder(_) => true,
+        Shape::Cone(_)
+        | Shape::Torus(_)
+        | Shape::Sphere(_)
+        | Shape::Paraboloid(_)
+        | Shape::ParabolicCylinder(_)
+        | Shape::CompoundParabola(_) => false,
+    };
+    keeps_lengths && is_whole
 }
 
 /// The rows and columns of elements with six neighbours.

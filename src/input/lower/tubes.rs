@@ -4,7 +4,7 @@ use crate::input::keys::Key;
 use crate::input::lower::Context;
 use crate::input::lower::surfaces::{BodyPart, NamedFace, Surfaces};
 use crate::input::spec::solid::{TubeOuterSpec, TubeSolidSpec};
-use crate::math::Frame;
+use crate::math::{Frame, planar};
 use crate::scene::Piece;
 use crate::scene::shape::{Flat, Region, Shape};
 use crate::scene::sweep::{
@@ -27,6 +27,15 @@ impl Context<'_> {
                 return None;
             }
         };
+        if let Some(beyond) = reach_into_bore(&inner, &outer) {
+            self.problems
+                .error(
+                    &key.field("outer"),
+                    format!("the facets of the prisms reach {beyond:.4} mm into the bore"),
+                )
+                .hint("make base_mm larger, prism_angle_deg smaller or the prisms more");
+            return None;
+        }
         let swept = |profile| straight(frame, profile, spec.length_mm);
         match (swept(&inner), swept(&outer)) {
             (Ok(inner), Ok(outer)) => tube(&inner, &outer),
@@ -40,6 +49,21 @@ impl Context<'_> {
 
 fn straight(frame: Frame, profile: &Profile, length: f64) -> Result<Sweep, SweepError> {
     sweep(frame, profile, &[Leg::Straight { length, end_scale: 1.0 }])
+}
+
+/// How far edges of the outside cut into a round bore, mm; on flat sides prisms stand on the wall.
+fn reach_into_bore(inner: &Profile, outer: &Profile) -> Option<f64> {
+    let (Profile::Circle { radius }, Profile::Polygon { points }) = (inner, outer) else {
+        return None;
+    };
+    let nearest = planar::edges(points)
+        .map(|(from, to)| {
+            let edge = to - from;
+            let share = (-from.dot(edge) / edge.length_squared()).clamp(0.0, 1.0);
+            (from + share * edge).length()
+        })
+        .fold(f64::INFINITY, f64::min);
+    (nearest <= *radius).then_some(radius - nearest)
 }
 
 fn outline(inner: &Profile, outer: &TubeOuterSpec) -> Result<Profile, OutlineError> {

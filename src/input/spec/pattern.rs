@@ -8,7 +8,7 @@ use crate::input::spec::finish::FinishRef;
 /// Holes, dots or patches on a face: elements with a finish of their own that act in its place.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PatternSpec {
-    /// The face, as `NAME.FACE`: flat, or the wall of a straight round tube or rod.
+    /// The face, as `NAME.FACE`: a flat rectangle, or the wall of a straight round tube or rod.
     pub on: String,
     /// Finish of the elements, on both sides: `open` makes holes.
     pub finish: FinishRef,
@@ -16,11 +16,10 @@ pub struct PatternSpec {
     pub element: ElementSpec,
     /// Where the elements are.
     pub layout: LayoutSpec,
-    /// Thickness of the wall that holes go through; the face is the middle of the wall. Omitted: no thickness.
+    /// Thickness of the wall that holes go through; the face is the middle of the wall, and the sides of holes absorb.
+    /// Omitted: no thickness.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub wall_mm: Option<f64>,
-    /// Finish of the sides of holes in a wall. Omitted: `black`.
-    pub bore: Option<FinishRef>,
 }
 
 /// An element. A table with exactly one of these keys.

@@ -97,7 +97,7 @@ impl Cell {
     pub(super) fn enter_flat(&self, x: f64, dir: DVec3, indices: &Indices) -> (f64, DVec3, State) {
         let normal = DVec3::NEG_Y;
         let (reflectance, refracted) = split(dir, normal, indices.flat, indices.film);
-        // Into the denser film light is always refracted.
+        // Under total reflection nothing is refracted, and the state has no share.
         let state = self.rise(x, refracted.unwrap_or(dir), 0.0);
         (reflectance, fresnel::mirrored(dir, normal), state)
     }

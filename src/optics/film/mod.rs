@@ -165,12 +165,21 @@ impl PrismFilm {
         Shares { reflected, transmitted }
     }
 
+    /// The same film without its rounded edges.
+    fn with_sharp_edges(&self) -> Self {
+        Self { cell: Cell { rounded: 0.0, ..self.cell }, ..*self }
+    }
+
     /// Whether any light that enters the flat face evenly is not totally reflected before it is back there, as far as so
     /// many places tell.
     fn leaks(&self, incidence: &Incidence, places: u32) -> bool {
         let Approach { dir, indices, .. } = self.approach(FilmFace::Flat, incidence);
         (0..places).any(|place| {
-            let (_, _, mut state) = self.cell.enter_flat(middle(place, places), dir, &indices);
+            let (reflectance, _, mut state) =
+                self.cell.enter_flat(middle(place, places), dir, &indices);
+            if reflectance >= 1.0 {
+                return false;
+            }
             for _ in 0..PASSAGE {
                 state = match self.cell.step(&state, &indices) {
                     Step::Met { reflected, refracted: None, .. } => reflected,
@@ -203,7 +212,8 @@ impl PrismFilm {
                 waiting.push((state, 1.0 - reflectance));
             }
         }
-        while let Some((state, share)) = waiting.pop() {
+        for _ in 0..MOST_STEPS {
+            let Some((state, share)) = waiting.pop() else { return };
             let goes_on =
                 share >= LEAST_SHARE || sampler.one(Dimension::Roulette) * LEAST_SHARE < share;
             if !goes_on {

@@ -14,8 +14,11 @@ const NARROWEST: f64 = 1e-6;
 const FINEST: f64 = 1e-12;
 
 /// The largest angle to the prisms, in rad, up to which light that meets the flat face comes back from every azimuth about
-/// them, none of it transmitted; 0 where none does. `index` is that of the medium on both sides. By trial, not by formula.
+/// them, none of it transmitted; 0 where none does. `index` is that of the medium on both sides. By trial, not by formula;
+/// rounded edges are left out. Light of one azimuth is taken to leak at all angles beyond the first.
 pub fn acceptance_angle(film: &PrismFilm, index: f64) -> f64 {
+    // Rounded edges lose light at every angle: the cone is that of the facets between them.
+    let film = &film.with_sharp_edges();
     let mut range = [-FRAC_PI_2, FRAC_PI_2];
     let mut angle = FRAC_PI_2;
     while range[1] - range[0] > NARROWEST {
@@ -28,7 +31,8 @@ pub fn acceptance_angle(film: &PrismFilm, index: f64) -> f64 {
                 (angle, worst) = (limit, azimuth);
             }
         }
-        range = [worst - 2.0 * step, worst + 2.0 * step];
+        range = [worst - 2.0 * step, worst + 2.0 * step]
+            .map(|azimuth| azimuth.clamp(-FRAC_PI_2, FRAC_PI_2));
     }
     angle
 }

@@ -36,7 +36,7 @@ pub struct Pattern {
 pub struct HoleWall {
     /// Thickness, mm.
     pub thickness: f64,
-    /// What light meets that enters a hole and does not get through.
+    /// The absorber that light meets on the side of a hole.
     pub bore: FinishId,
 }
 
@@ -139,40 +139,41 @@ impl Outline {
 
 impl Field {
     /// Whether a place of the face, mm, lies in an element.
-    #[inline]
     pub fn contains(&self, at: DVec2) -> bool {
-        self.rows.near(at.y).any(|row| {
+        self.element(at).is_some()
+    }
+
+    /// Row and column of the element in which a place of the face, mm, lies.
+    #[inline]
+    pub fn element(&self, at: DVec2) -> Option<(usize, usize)> {
+        self.rows.near(at.y).find_map(|row| {
             let place = self.rows.place(row);
-            let from = DVec2::new(self.across(at.x, row), at.y - place);
-            self.outline.contains(place, from)
+            let (column, across) = self.nearest(at.x, row);
+            let from = DVec2::new(across, at.y - place);
+            self.outline.contains(place, from).then_some((row, column))
         })
     }
 
-    /// Distance across from the nearest element of a row, mm.
+    /// The nearest element of a row and the distance across from it, mm.
     #[inline]
-    fn across(&self, u: f64, row: usize) -> f64 {
+    fn nearest(&self, u: f64, row: usize) -> (usize, f64) {
         let Columns { first, pitch, count, shift } = self.columns;
         let first = if row % 2 == 1 { first + shift } else { first };
-        let from = u - first;
-        let from = match self.period {
-            // Into one turn about the first element.
-            Some(period) => from - period * (from / period).round(),
-            None => from,
+        let half = 0.5 * pitch * (count.max(1) - 1) as f64;
+        let from_middle = u - first - half;
+        let from_middle = match self.period {
+            // Into one turn about the middle of the row.
+            Some(period) => from_middle - period * (from_middle / period).round(),
+            None => from_middle,
         };
-        if count <= 1 {
-            return from;
-        }
-        let nearest = (from / pitch).round();
-        let nearest = match self.period {
-            Some(_) => nearest,
-            None => nearest.clamp(0.0, count as f64 - 1.0),
-        };
-        from - pitch * nearest
+        let from_first = from_middle + half;
+        let column = (from_first / pitch).round().clamp(0.0, (count.max(1) - 1) as f64);
+        (column as usize, from_first - pitch * column)
     }
 
     /// How many elements there are.
     pub fn count(&self) -> u64 {
-        self.rows.count() as u64 * self.columns.count as u64
+        (self.rows.count() as u64).saturating_mul(self.columns.count as u64)
     }
 
     /// Area of all elements, mm².
@@ -225,13 +226,13 @@ impl Pattern {
         let Some(wall) = &self.wall else {
             return self.field.contains(at).then_some(Part::Element(number));
         };
-        // The face is the middle of the wall: so a path is the same both ways.
+        // The face is the middle of the wall, so that a path is the same both ways. It gets through where both of its ends
+        // are in one element, and with them the middle.
+        let middle = self.field.element(at)?;
         let half = 0.5 * wall.thickness * slope();
-        match [at - half, at + half].map(|end| self.field.contains(end)) {
-            [true, true] => Some(Part::Element(number)),
-            [true, false] => Some(Part::Bore(number)),
-            [false, _] => None,
-        }
+        let passes =
+            [at - half, at + half].iter().all(|end| self.field.element(*end) == Some(middle));
+        Some(if passes { Part::Element(number) } else { Part::Bore(number) })
     }
 }
 

@@ -56,6 +56,25 @@ fn points_in_elements_cover_the_area_of_all_elements() {
 }
 
 #[test]
+fn a_field_on_a_part_of_a_closed_face_stays_there() {
+    let partial = Field { period: Some(40.0), ..grid(3.0, None) };
+    let rect = ChartRect { min: DVec2::new(0.0, 0.0), max: DVec2::new(40.0, 50.0) };
+    let (found, area) = (covered(&partial, rect), partial.area());
+    assert!((found / area - 1.0).abs() < 0.02, "{found}, {area}");
+}
+
+#[test]
+fn light_does_not_go_from_one_hole_into_another_inside_the_wall() {
+    let mut pattern = hole(1.0);
+    pattern.field.columns = Columns { first: 0.0, pitch: 4.0, count: 3, shift: 0.0 };
+    let part = |u: f64, slope: f64| pattern.part(0, DVec2::new(u, 0.0), || DVec2::new(slope, 0.0));
+    // Half way between two holes both ends lie in holes.
+    assert_eq!(part(2.0, 4.0), None);
+    assert_eq!(part(0.0, 8.0), Some(Part::Bore(0)));
+    assert_eq!(part(4.0, 0.5), Some(Part::Element(0)));
+}
+
+#[test]
 fn a_field_around_a_closed_face_goes_on_over_its_seam() {
     let field = Field {
         columns: Columns { first: 0.0, ..grid(0.0, None).columns },
@@ -98,24 +117,13 @@ fn ten_million_elements_take_no_more_room_than_ten() {
 
 #[test]
 fn a_hole_through_a_wall_passes_what_does_not_meet_its_side() {
-    let pattern = Pattern {
-        name: "holes".into(),
-        face: FaceId::new(0),
-        field: Field {
-            rows: Rows::Listed(vec![0.0]),
-            columns: Columns { first: 0.0, pitch: 1.0, count: 1, shift: 0.0 },
-            outline: circles(2.0),
-            period: None,
-        },
-        front: FinishId::new(0),
-        back: FinishId::new(0),
-        wall: Some(HoleWall { thickness: 1.0, bore: FinishId::new(1) }),
-    };
+    let pattern = hole(1.0);
     let part = |u: f64, slope: f64| pattern.part(0, DVec2::new(u, 0.0), || DVec2::new(slope, 0.0));
     assert_eq!(part(0.0, 0.0), Some(Part::Element(0)));
     assert_eq!(part(0.8, 1.0), Some(Part::Bore(0)));
-    // Seen from the other side, the same path meets the front of the wall or the side of the hole.
-    assert_eq!(part(0.8, -1.0), None);
+    // The same path from the other side, and light that meets the face beside the hole.
+    assert_eq!(part(0.8, -1.0), Some(Part::Bore(0)));
+    assert_eq!((part(1.1, 1.0), part(1.1, -1.0)), (None, None));
     assert_eq!(part(0.2, 1.5), Some(Part::Element(0)));
     assert_eq!(part(0.2, -1.5), Some(Part::Element(0)));
     // The share that passes a bore at a slope: two circles shifted by it.
@@ -132,4 +140,21 @@ fn a_hole_through_a_wall_passes_what_does_not_meet_its_side() {
     let lens = 2.0 * half.acos() - slope * (1.0 - half * half).sqrt();
     let found = passed as f64 * 16.0 / f64::from(n * n);
     assert!((found - lens).abs() < 2e-3, "{found}, {lens}");
+}
+
+/// One hole of 2 mm through a wall.
+fn hole(thickness: f64) -> Pattern {
+    Pattern {
+        name: "holes".into(),
+        face: FaceId::new(0),
+        field: Field {
+            rows: Rows::Listed(vec![0.0]),
+            columns: Columns { first: 0.0, pitch: 1.0, count: 1, shift: 0.0 },
+            outline: circles(2.0),
+            period: None,
+        },
+        front: FinishId::new(0),
+        back: FinishId::new(0),
+        wall: Some(HoleWall { thickness, bore: FinishId::new(1) }),
+    }
 }

@@ -50,11 +50,16 @@ pub enum OutlineError {
         /// Their pitch, mm.
         better: f64,
     },
+    /// There are more prisms than a profile may have corners for.
+    #[error("{0:.0} prisms on a side or around are too many, expected at most 500 in all")]
+    TooMany(f64),
     /// There are too few prisms to go around.
     #[error("{0} prisms do not go around, expected at least 3")]
     TooFew(usize),
 }
 
+/// Prisms on an outline: each has two of the corners that a profile may have.
+const MOST_PRISMS: f64 = 500.0;
 /// Deviation from a whole number of prisms that is taken as rounding, 1.
 const WHOLE: f64 = 1e-6;
 
@@ -117,6 +122,9 @@ fn number(number: PrismNumber, length: f64) -> Result<usize, OutlineError> {
         PrismNumber::Pitch(pitch) => {
             let fit = length / pitch;
             let nearest = fit.round().max(1.0);
+            if nearest > MOST_PRISMS {
+                return Err(OutlineError::TooMany(nearest));
+            }
             if (fit - nearest).abs() > WHOLE * nearest {
                 let better = length / nearest;
                 return Err(OutlineError::Gap { pitch, fit, length, nearest, better });
@@ -169,6 +177,8 @@ mod tests {
         let gap = circle.with_prisms(&right_angled(PrismNumber::Pitch(1.3))).unwrap_err();
         assert!(gap.to_string().contains("48.3322 of them fit"), "{gap}");
         assert!(gap.to_string().contains("48 of 1.308997 mm"), "{gap}");
+        let many = circle.with_prisms(&right_angled(PrismNumber::Pitch(1e-9))).unwrap_err();
+        assert!(many.to_string().contains("too many"), "{many}");
         let few = circle.with_prisms(&right_angled(PrismNumber::Count(2))).unwrap_err();
         assert!(few.to_string().contains("at least 3"), "{few}");
         let ell = [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0)];

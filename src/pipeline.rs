@@ -18,7 +18,7 @@ use crate::report::{
 };
 use crate::scene::plan::{Request, RunPlan};
 use crate::transport::{
-    BLIND_PATHS, Findings, Interrupt, Run, Scatterer, blind_sensors, invisible, scatterers, tracks,
+    BLIND_PATHS, Findings, Interrupt, Run, blind_sensors, invisible, scatterers, tracks,
 };
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -163,10 +163,9 @@ fn expect_discrete_directions(job: &Job, problems: &mut Problems) {
         }
         Request::Mis => {}
     }
-    for Scatterer { finish, face } in scatterers(&job.scene) {
-        let message = format!(
-            "`mis` merges paths of discrete directions only: the finish `{finish}` on `{face}` scatters light"
-        );
+    for scatterer in scatterers(&job.scene) {
+        let message =
+            format!("`mis` merges paths of discrete directions only: {scatterer} scatters light");
         problems
             .error(&Key::of(&["run", "estimator"]), message)
             .hint("use `auto`, or one of `forward`, `backward`, `mix` and `gather`");

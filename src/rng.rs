@@ -23,9 +23,11 @@ pub enum Dimension {
     GatherPosition,
     /// In which direction it starts.
     GatherDirection,
+    /// How far light goes in a medium before it is scattered.
+    FreePath,
     /// Which lobe of a finish is taken: reflected or transmitted, or a part of a mixture.
     Lobe,
-    /// The direction within a lobe.
+    /// The direction within a lobe, or of a phase function.
     Scatter,
     /// Whether a path of small throughput survives.
     Roulette,

@@ -1,4 +1,6 @@
-//! Media: refractive index and absorption.
+//! Media: refractive index, absorption and scattering.
+
+use crate::optics::VolumeScattering;
 
 /// A homogeneous medium.
 #[derive(Debug, Clone, PartialEq)]
@@ -6,12 +8,18 @@ pub struct Medium {
     name: String,
     index: f64,
     absorption: f64,
+    scattering: Option<VolumeScattering>,
 }
 
 impl Medium {
     /// A medium of constant refractive index and absorption coefficient, in 1/mm, (natural logarithm).
     pub fn new(name: &str, index: f64, absorption_per_mm: f64) -> Self {
-        Self { name: name.to_owned(), index, absorption: absorption_per_mm }
+        Self { name: name.to_owned(), index, absorption: absorption_per_mm, scattering: None }
+    }
+
+    /// The same medium, turbid.
+    pub fn with_scattering(self, scattering: VolumeScattering) -> Self {
+        Self { scattering: Some(scattering), ..self }
     }
 
     /// Its name in the scene file.
@@ -29,6 +37,12 @@ impl Medium {
     #[inline]
     pub fn absorption(&self, _wavelength: f64) -> f64 {
         self.absorption
+    }
+
+    /// How it scatters; `None` of a clear medium.
+    #[inline]
+    pub fn scattering(&self) -> Option<&VolumeScattering> {
+        self.scattering.as_ref()
     }
 
     /// Share of the flux that survives `length` mm: Beer-Lambert, exp(-αl).

@@ -20,6 +20,7 @@ mod spread;
 pub mod sun;
 #[cfg(test)]
 pub(crate) mod testing;
+mod volume;
 
 pub use adjoint::{Faces, scatter_radiance, scatter_toward};
 pub use angle_table::AngleTable;
@@ -33,3 +34,4 @@ pub use microfacet::{Facets, Microfacet};
 pub use shares::{Shares, chances, shares};
 pub use sky::{CIE_TYPES, SkyBound, SkyModel};
 pub use spread::Spread;
+pub use volume::VolumeScattering;

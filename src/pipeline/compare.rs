@@ -14,7 +14,7 @@ use crate::pipeline::{Output, VERSION, expect_sense, output_dir};
 use crate::report::{self, Comparison, Contestant, Folder};
 use crate::scene::SensorId;
 use crate::scene::plan::{Request, RunPlan, StopRules};
-use crate::transport::{Baseline, Interrupt, Scatterer, invisible, scatterers};
+use crate::transport::{Baseline, Interrupt, invisible, scatterers, turbid_media};
 use runner::{Stint, trace};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -218,9 +218,15 @@ fn expect_able(job: &Job, methods: &[Method]) -> Result<()> {
         invisible(source, &job.scene).map(|why| format!("the source `{}`: {why}", source.name))
     });
     let merges = methods.contains(&Method::Run(Request::Mis));
-    if let Some(Scatterer { finish, face }) = scatterers(&job.scene).first().filter(|_| merges) {
+    if let Some(scatterer) = scatterers(&job.scene).first().filter(|_| merges) {
         return Err(Error::Usage(format!(
-            "--estimators: mis merges paths of discrete directions only: the finish `{finish}` on `{face}` scatters light; leave it out"
+            "--estimators: mis merges paths of discrete directions only: {scatterer} scatters light; leave it out"
+        )));
+    }
+    let maps_photons = methods.contains(&Method::Baseline(Baseline::Sppm));
+    if let Some(scatterer) = turbid_media(&job.scene).next().filter(|_| maps_photons) {
+        return Err(Error::Usage(format!(
+            "--estimators: sppm gathers on surfaces only: {scatterer} scatters light; leave it out"
         )));
     }
     let blind: Vec<&str> = methods

@@ -10,7 +10,12 @@ pub fn inventory(scene: &Scene) -> String {
     let mut text = String::new();
     for medium in &scene.media {
         let (index, absorption) = (medium.index(0.0), medium.absorption(0.0));
-        _ = writeln!(text, "medium {}: index {index}, absorption {absorption} /mm", medium.name());
+        _ = write!(text, "medium {}: index {index}, absorption {absorption} /mm", medium.name());
+        if let Some(scattering) = medium.scattering() {
+            let (coefficient, g) = (scattering.coefficient(), scattering.anisotropy());
+            _ = write!(text, ", scattering {coefficient} /mm, anisotropy {g}");
+        }
+        _ = writeln!(text);
     }
     for solid in &scene.solids {
         let medium = scene.media[solid.medium.index()].name();

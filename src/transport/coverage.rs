@@ -18,7 +18,7 @@ pub(crate) const AGREEING: f64 = 0.9;
 /// well allow.
 pub(crate) const HEIGHT: f64 = 0.5;
 /// Turns from point to point of a sunflower, 2 less the golden ratio.
-const GOLDEN_TURN: f64 = 0.381_966_011_250_105_1;
+pub(crate) const GOLDEN_TURN: f64 = 0.381_966_011_250_105_1;
 
 /// A surface of so many pieces is asked piece by piece, one of more by way of the whole scene's boxes.
 const FEW_PIECES: usize = 4;

@@ -1,10 +1,14 @@
-//! What a photon is worth to a gather record: the position and the position-and-angle estimate.
+//! What a photon is worth to a gather record: the position and the position-and-angle estimate, and that within media.
 //!
 //! `L*(x,ω) = 1/n² Σ Φ_p K_r K_θ / |cos θ_p|` (docs/method.md, eq. 15): `K_r` is 1/ΔA over the disk of the window in the tangent
 //! plane, clipped at rims, times the cosine between the normals at record and photon, so that it integrates to 1 over a
 //! curved surface, too. `K_θ` is 1/ΔΩ over the cone. Where the cone comes near the horizon of the photon's place,
 //! `K_θ / |cos θ_p|` becomes 1/∫ cos θ dω over the part of the cone above the horizon: it integrates to the same, and no
 //! photon at grazing incidence has to be left out or weighs without bound.
+//!
+//! Within a medium that scatters, `L*(x,ω) = 1/n² Σ Φ_p p(ω_p→ω) / (σ_s ΔV)` over the photons that are scattered in the ball of
+//! the window (eq. 24, after Jensen & Christensen, SIGGRAPH 1998, eq. 15): where gather paths are scattered themselves by
+//! the same chance, what they find there needs no other factor.
 
 use crate::math::projected_cap;
 use crate::optics::{Incidence, evaluate};
@@ -17,14 +21,33 @@ use glam::DVec3;
 /// Cosines that the directions of a cone must stay above for `1/|cos θ_p|` to be used, 1.
 const GRAZING: f64 = 0.03;
 
+/// A photon that may belong to records.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Arriving {
+    /// One that meets a surface.
+    AtSurface(Meeting),
+    /// One that is scattered within a medium.
+    Within(Colliding),
+}
+
 /// A photon that meets a surface.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Arriving {
+pub(crate) struct Meeting {
     pub(crate) surface: Slot,
     pub(crate) medium: MediumId,
     pub(crate) point: DVec3,
     /// How it arrives, about the normal of the surface itself on the side it comes from.
     pub(crate) incidence: Incidence,
+}
+
+/// A photon that is scattered within a medium.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Colliding {
+    /// The medium, by its place among surfaces and media.
+    pub(crate) medium: Slot,
+    pub(crate) point: DVec3,
+    /// Unit direction of travel before.
+    pub(crate) dir: DVec3,
 }
 
 /// The nested windows of a pass.
@@ -59,6 +82,14 @@ impl Kernel {
         record: &GatherRecord<'_>,
         photon: &Arriving,
     ) -> Option<[f64; COUNTED]> {
+        match photon {
+            Arriving::AtSurface(meeting) => self.at_surface(record, meeting),
+            Arriving::Within(colliding) => self.within(record, colliding),
+        }
+    }
+
+    #[inline]
+    fn at_surface(&self, record: &GatherRecord<'_>, photon: &Meeting) -> Option<[f64; COUNTED]> {
         let offset = photon.point - record.point;
         let height = offset.dot(record.normal);
         let across = offset.length_squared() - height * height;
@@ -92,7 +123,21 @@ impl Kernel {
                 let scattered = agreement * evaluate(bsdf, &photon.incidence, out);
                 Some(self.each(record, |window| if within(window) { scattered } else { 0.0 }))
             }
+            // It waits for none of those.
+            Wanted::Collided { .. } => None,
         }
+    }
+
+    fn within(&self, record: &GatherRecord<'_>, photon: &Colliding) -> Option<[f64; COUNTED]> {
+        let Wanted::Collided { scattering, out } = record.wanted else { return None };
+        let apart = photon.point.distance_squared(record.point);
+        let [widest, ..] = self.radii_squared;
+        if apart > widest || record.surface != photon.medium {
+            return None;
+        }
+        let turned = scattering.phase(photon.dir.dot(out));
+        let within = |window: usize| apart <= self.radii_squared[RADIUS_OF[window]];
+        Some(self.each(record, |window| if within(window) { turned } else { 0.0 }))
     }
 
     #[inline]
@@ -102,7 +147,7 @@ impl Kernel {
 
     /// `K_θ / |cos θ_p|` for one of the nested angles, 1/sr; `cos_wanted` is that of the cone's axis at the photon's place.
     #[inline]
-    fn per_projected(&self, angle: usize, cos_wanted: f64, photon: &Arriving) -> f64 {
+    fn per_projected(&self, angle: usize, cos_wanted: f64, photon: &Meeting) -> f64 {
         if cos_wanted > self.sin_widest + GRAZING {
             self.per_solid_angle[angle] / photon.incidence.cos()
         } else {

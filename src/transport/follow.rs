@@ -8,7 +8,8 @@ use crate::scene::shape::{Crossing, Start};
 use crate::scene::{Arrival, Begins, Owner, Scene, SensorId, Visibility};
 use crate::transport::emitters::{Emitters, Met, SegmentStart};
 use crate::transport::{
-    Carries, Departure, Event, Loss, Path, ROULETTE_BELOW, Segment, Vertex, Visitor, walk,
+    Carries, Collision, Departure, Event, Loss, Path, ROULETTE_BELOW, Segment, Vertex, Visitor,
+    walk,
 };
 use smallvec::SmallVec;
 use std::ops::ControlFlow;
@@ -28,6 +29,11 @@ pub(crate) trait Collector {
 
     /// Sees a visible interface before it acts; a break ends the path there.
     fn arrive(&mut self, _path: &Path, _vertex: &Vertex<'_>) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+
+    /// Sees where a path is going to be scattered within a medium; a break ends the path there.
+    fn collide(&mut self, _path: &Path, _collision: &Collision<'_>) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 
@@ -155,6 +161,14 @@ impl<C: Collector> Follower<'_, '_, '_, C> {
             Visibility::Invisible => ControlFlow::Continue(()),
         }
     }
+
+    fn collide(&mut self, path: &Path, collision: &Collision<'_>) -> ControlFlow<()> {
+        match self.stage {
+            // Light that is scattered in front of the aim does not come through it.
+            Stage::First => ControlFlow::Break(()),
+            Stage::BeforeFace | Stage::Beyond => self.collector.collide(path, collision),
+        }
+    }
 }
 
 impl<C: Collector> Visitor for Follower<'_, '_, '_, C> {
@@ -174,6 +188,7 @@ impl<C: Collector> Visitor for Follower<'_, '_, '_, C> {
                 ControlFlow::Continue(())
             }
             Event::Arrive(vertex) => self.arrive(path, vertex),
+            Event::Collide(collision) => self.collide(path, collision),
             Event::Depart(vertex, departure) => self.collector.depart(path, vertex, departure),
             Event::Cut(throughput) => {
                 self.collector.lose(throughput, Loss::Cut);

@@ -295,6 +295,9 @@ impl<W: PhotonWatcher> Visitor for Counter<'_, '_, W> {
             Event::Travel(segment) => self.travel(path, segment),
             Event::Arrive(vertex) => self.arrive(path, vertex),
             Event::Depart(vertex, departure) => self.depart(path, vertex, departure),
+            Event::Collide(collision) => {
+                self.watcher.collide(path, collision, self.flux, self.source);
+            }
             Event::Absorbed(vertex) => {
                 let face = vertex.interface.acting.face;
                 self.add(layout.absorbed_by_face(face), vertex.throughput);

@@ -2,7 +2,7 @@
 //!
 //! A gather path goes on through specular and narrow scatter up to vertex D, where it leaves records for photons that
 //! travel near the mirrored and the refracted direction: the position-and-angle estimate. On a surface that scatters
-//! broadly it leaves records for all photons: the position estimate. Emission that it meets on its way counts as it is;
+//! broadly, and where a medium scatters, it leaves records for all photons: the position estimate. Emission that it meets on its way counts as it is;
 //! all other light, and what could be seen through vertex D, is brought by photons. So nothing counts twice.
 //! All sensors share one stream of photons, and no photon is kept: memory goes with the records.
 //! Merged with forward and backward, gather paths go on to the sources, and everything counts by its weight (`merge`).
@@ -13,6 +13,7 @@ mod stream;
 use crate::optics::{Bsdf, Lobe, Side, Spread, scatter_toward, shares};
 use crate::rng::{Dimension, Sampler};
 use crate::scene::{Arrival, Arrivals, Scene, SensorId};
+use crate::transport::ball::clipped_volumes;
 use crate::transport::coverage::{Middle, coverage};
 use crate::transport::emitters::{Emitters, Met};
 use crate::transport::follow::{Collector, Gathering, follow};
@@ -25,7 +26,10 @@ use crate::transport::records::{GatherRecord, Records, Surfaces, Wanted};
 use crate::transport::scatter::{Facing, facing};
 use crate::transport::window::{COUNTED, ESTIMATES, Window, estimates};
 use crate::transport::work::RecordWork;
-use crate::transport::{Departure, Layout, Loss, Path, ROULETTE_BELOW, Readings, Vertex};
+use crate::transport::{
+    Collision, Departure, Layout, Loss, Path, ROULETTE_BELOW, Readings, Vertex,
+};
+use glam::DVec3;
 use smallvec::SmallVec;
 use std::ops::ControlFlow;
 
@@ -238,6 +242,12 @@ impl Collector for Collecting<'_, '_> {
         ControlFlow::Continue(())
     }
 
+    fn collide(&mut self, path: &Path, collision: &Collision<'_>) -> ControlFlow<()> {
+        self.add_collided(path, collision);
+        // All light that is scattered there, the record brings.
+        ControlFlow::Break(())
+    }
+
     fn depart(&mut self, path: &Path, _: &Vertex<'_>, departure: &Departure) -> ControlFlow<()> {
         // Nothing faces the path where it meets no visible interface.
         let Some(facing) = self.facing.take() else { return ControlFlow::Continue(()) };
@@ -308,6 +318,27 @@ impl<'s> Collecting<'_, 's> {
         }
     }
 
+    /// A record for photons that a medium scatters into the gather path: docs/method.md, eq. (24).
+    fn add_collided(&mut self, path: &Path, collision: &Collision<'_>) {
+        let Gather { scene, surfaces, .. } = self.gather;
+        let &Collision { point, dir, medium, scattering, throughput } = collision;
+        let index = scene.media[medium.index()].index(path.wavelength);
+        let value = self.etendue * throughput / (index * index * scattering.coefficient());
+        let turn = self.sampler.pair(Dimension::GatherPosition);
+        let volumes = clipped_volumes(scene, path, point, self.window, turn);
+        let path_place = self.place();
+        self.found.records.push(GatherRecord {
+            point,
+            normal: DVec3::ZERO,
+            surface: surfaces.of_medium(medium),
+            medium,
+            wanted: Wanted::Collided { scattering: *scattering, out: -dir },
+            values: volumes.map(|volume| value / volume),
+            path: path_place,
+            depth: path.depth + 1,
+        });
+    }
+
     /// `value` is the etendue of the path times what its throughput makes of flux per area (and solid angle).
     fn add(
         &mut self,
@@ -330,11 +361,7 @@ impl<'s> Collecting<'_, 's> {
         let covered = coverage(scene, surfaces, &middle, self.window, turn);
         let nested = self.window.nested();
         let values = [0, 1, 2].map(|window| value / (covered[window] * nested[window].area()));
-        let of_this = |last: &Ended| (last.sensor, last.index) == (self.id, self.index);
-        if self.merging.is_some() || !self.found.paths.last().is_some_and(of_this) {
-            let (sensor, cells) = (self.id, self.cells.clone());
-            self.found.paths.push(Ended { index: self.index, sensor, cells, etendues: None });
-        }
+        let path_place = self.place();
         self.found.records.push(GatherRecord {
             point: vertex.point,
             normal,
@@ -342,8 +369,18 @@ impl<'s> Collecting<'_, 's> {
             medium,
             wanted,
             values,
-            path: self.found.paths.len() as u32 - 1,
+            path: path_place,
             depth: path.depth + 1,
         });
+    }
+
+    /// The place of this path among those that have ended in records.
+    fn place(&mut self) -> u32 {
+        let of_this = |last: &Ended| (last.sensor, last.index) == (self.id, self.index);
+        if self.merging.is_some() || !self.found.paths.last().is_some_and(of_this) {
+            let (sensor, cells) = (self.id, self.cells.clone());
+            self.found.paths.push(Ended { index: self.index, sensor, cells, etendues: None });
+        }
+        self.found.paths.len() as u32 - 1
     }
 }

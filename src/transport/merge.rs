@@ -125,16 +125,36 @@ impl<'s> Recent<'s> {
     }
 }
 
-/// A finish that scatters light off discrete directions.
+/// What scatters light off discrete directions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Scatterer<'s> {
-    /// Its name, or a description of an inline one.
-    pub finish: &'s str,
-    /// Dotted name of the first face that has it.
-    pub face: &'s str,
+pub enum Scatterer<'s> {
+    /// A finish.
+    Finish {
+        /// Its name, or a description of an inline one.
+        finish: &'s str,
+        /// Dotted name of the first face that has it.
+        face: &'s str,
+    },
+    /// A medium, by its name.
+    Medium(&'s str),
 }
 
-/// The finishes of a scene that keep the three estimators from being merged: where light is scattered, a gather path
+impl std::fmt::Display for Scatterer<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Finish { finish, face } => write!(f, "the finish `{finish}` on `{face}`"),
+            Self::Medium(name) => write!(f, "the medium `{name}`"),
+        }
+    }
+}
+
+/// The media of a scene that scatter.
+pub fn turbid_media(scene: &Scene) -> impl Iterator<Item = Scatterer<'_>> {
+    let turbid = scene.media.iter().filter(|medium| medium.scattering().is_some());
+    turbid.map(|medium| Scatterer::Medium(medium.name()))
+}
+
+/// The finishes and media of a scene that keep the three estimators from being merged: where light is scattered, a gather path
 /// and a photon that meet by their windows are not the same path as either of them; and where one side has several
 /// discrete directions, the chance of a side is not that of a path.
 pub fn scatterers(scene: &Scene) -> Vec<Scatterer<'_>> {
@@ -151,8 +171,9 @@ pub fn scatterers(scene: &Scene) -> Vec<Scatterer<'_>> {
         .filter_map(|(face, id)| {
             let finish = &scene.finishes[id?.index()];
             let is_new = !finish.bsdf.has_one_direction_a_side() && seen.insert(id);
-            is_new.then(|| Scatterer { finish: &finish.name, face: &face.name })
+            is_new.then(|| Scatterer::Finish { finish: &finish.name, face: &face.name })
         })
+        .chain(turbid_media(scene))
         .collect()
 }
 

@@ -3,6 +3,7 @@
 //! This layer knows no file format and no report. What it produces is one serialisable value, [`Readings`].
 
 mod backward;
+mod ball;
 mod baselines;
 mod blind;
 mod cells;
@@ -38,7 +39,7 @@ pub use cells::Cells;
 pub use emitters::invisible;
 pub use findings::{Findings, Gathered};
 pub use layout::{Layout, Loss, TAILS};
-pub use merge::{Scatterer, scatterers};
+pub use merge::{Scatterer, scatterers, turbid_media};
 pub use path::{Path, WAVELENGTH};
 pub use pilot::{Choice, Objection, Trial};
 pub use readings::{
@@ -48,5 +49,7 @@ pub use rounds::{Interrupt, Run};
 pub use settings::GatherSettings;
 pub use stages::{Stage, Windows};
 pub use tracks::{Track, TrackEnd, tracks};
-pub use walk::{Carries, Departure, Event, ROULETTE_BELOW, Segment, Vertex, Visitor, walk};
+pub use walk::{
+    Carries, Collision, Departure, Event, ROULETTE_BELOW, Segment, Vertex, Visitor, walk,
+};
 pub use window::Window;

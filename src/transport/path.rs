@@ -22,7 +22,7 @@ pub struct Path {
     pub medium: MediumId,
     /// The surfaces it starts on.
     pub on: On,
-    /// Number of visible interfaces met so far.
+    /// Number of visible interfaces met, and of scatterings within media, so far.
     pub depth: u32,
 }
 

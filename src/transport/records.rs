@@ -3,7 +3,7 @@
 //! What a record is worth to a photon is not known here.
 
 use crate::math::Aabb;
-use crate::optics::Bsdf;
+use crate::optics::{Bsdf, VolumeScattering};
 use crate::scene::{MediumId, PrimId, Scene, SmoothId};
 use crate::transport::record_index::{Index, Indexed, Key, TOGETHER};
 use crate::transport::window::{NESTED, Window};
@@ -16,15 +16,16 @@ use std::collections::BTreeMap;
 pub(crate) struct GatherRecord<'s> {
     /// Where, mm.
     pub(crate) point: DVec3,
-    /// Unit normal of the surface on the side that photons come from.
+    /// Unit normal of the surface on the side that photons come from; zero within a medium.
     pub(crate) normal: DVec3,
-    /// Which smooth surface photons have to meet.
+    /// Which smooth surface photons have to meet, or in which medium they have to be scattered.
     pub(crate) surface: Slot,
     /// The medium they arrive in.
     pub(crate) medium: MediumId,
     /// Which photons it takes.
     pub(crate) wanted: Wanted<'s>,
-    /// Etendue times throughput over n² and the area of the window, clipped at rims: sr (times mm²/mm²), per window.
+    /// Etendue times throughput over n² and the area of the window, clipped at rims: sr (times mm²/mm²), per window; within
+    /// a medium over n², the scattering coefficient and the volume of the window, clipped at its bounds.
     pub(crate) values: [f64; NESTED],
     /// The gather path, by its place in the list of paths.
     pub(crate) path: u32,
@@ -44,16 +45,24 @@ pub(crate) enum Wanted<'s> {
         /// Unit direction in which the light has to leave.
         out: DVec3,
     },
+    /// All that are scattered within a medium, weighted by the phase function: docs/method.md, eq. (24).
+    Collided {
+        /// How the medium scatters.
+        scattering: VolumeScattering,
+        /// Unit direction in which the light has to travel on.
+        out: DVec3,
+    },
 }
 
-/// A smooth surface by its place in the list of all.
+/// A smooth surface by its place in the list of all, or a medium by its place behind them.
 pub(crate) type Slot = u32;
 
-/// The smooth surfaces of a scene, numbered.
+/// The smooth surfaces of a scene, numbered, and behind them the media.
 #[derive(Debug)]
 pub(crate) struct Surfaces {
     slots: Vec<Slot>,
     count: usize,
+    media: usize,
     /// By surface: its analytic pieces; none of a mesh.
     patches: Vec<Vec<PrimId>>,
 }
@@ -73,12 +82,17 @@ impl Surfaces {
         for (index, &slot) in slots.iter().take(scene.patches.len()).enumerate() {
             patches[slot as usize].push(PrimId::new(index));
         }
-        Self { slots, count, patches }
+        Self { slots, count, media: scene.media.len(), patches }
     }
 
     /// The analytic pieces of a surface; none of a mesh.
     pub(crate) fn patches(&self, surface: Slot) -> &[PrimId] {
         &self.patches[surface as usize]
+    }
+
+    /// The number of a medium, whose records take light that is scattered within it.
+    pub(crate) fn of_medium(&self, medium: MediumId) -> Slot {
+        (self.count + medium.index()) as Slot
     }
 
     /// The smooth surface of a piece.
@@ -110,13 +124,13 @@ impl<'s> Records<'s> {
     pub(crate) fn new(all: Vec<GatherRecord<'s>>, window: Window, surfaces: &Surfaces) -> Self {
         let nowhere = Reach { positions: Aabb::EMPTY, directions: Aabb::EMPTY };
         let everywhere = Aabb { min: DVec3::NEG_ONE, max: DVec3::ONE };
-        let mut reach = vec![nowhere; surfaces.count];
+        let mut reach = vec![nowhere; surfaces.count + surfaces.media];
         for record in &all {
             let own = &mut reach[record.surface as usize];
             own.positions = own.positions.union(Aabb::of([record.point]).grown(window.radius));
             let directions = match record.wanted {
                 Wanted::Along(dir) => Aabb::of([dir]).grown(window.chord()),
-                Wanted::Scattered { .. } => everywhere,
+                Wanted::Scattered { .. } | Wanted::Collided { .. } => everywhere,
             };
             own.directions = own.directions.union(directions);
         }
@@ -129,11 +143,13 @@ impl<'s> Records<'s> {
         };
         let along = all.iter().enumerate().filter_map(|(id, record)| match record.wanted {
             Wanted::Along(dir) => Some(indexed(id, record, dir)),
-            Wanted::Scattered { .. } => None,
+            Wanted::Scattered { .. } | Wanted::Collided { .. } => None,
         });
         let scattered = all.iter().enumerate().filter_map(|(id, record)| match record.wanted {
             Wanted::Along(_) => None,
-            Wanted::Scattered { .. } => Some(indexed(id, record, NO_DIRECTION)),
+            Wanted::Scattered { .. } | Wanted::Collided { .. } => {
+                Some(indexed(id, record, NO_DIRECTION))
+            }
         });
         Self {
             along: Index::new(along, window),

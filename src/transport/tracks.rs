@@ -52,6 +52,7 @@ fn track(scene: &Scene, source: SourceId, seed: u64, bounce_limit: u32, index: u
     walk(scene, path, limit, &mut sampler, &mut |path: &Path, event: Event<'_>| {
         match event {
             Event::Arrive(vertex) => track.points.push(vertex.point),
+            Event::Collide(collision) => track.points.push(collision.point),
             Event::Absorbed(_) => track.end = TrackEnd::Absorbed,
             Event::Escaped(_) => {
                 // A stub shows where it went.

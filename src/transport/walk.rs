@@ -1,8 +1,8 @@
-//! The one bounce loop. Visitors see what happens and decide nothing but when to end.
+//! The one bounce loop, at interfaces and within media. Visitors see what happens and decide nothing but when to end.
 //!
 //! It does not know what is counted: the forward estimator counts photons, a gather path would look for its end.
 
-use crate::optics::{Lobe, Scattered, Side};
+use crate::optics::{Lobe, Scattered, Side, VolumeScattering};
 use crate::rng::{Dimension, Numbers, Sampler};
 use crate::scene::{Hits, Interface, MediumId, Meeting, On, Ray, Scene, Visibility};
 use crate::transport::Path;
@@ -44,6 +44,21 @@ pub struct Vertex<'a> {
     pub throughput: f64,
 }
 
+/// A scattering of a path within a medium.
+#[derive(Debug)]
+pub struct Collision<'a> {
+    /// Where, mm.
+    pub point: DVec3,
+    /// Unit direction of travel before it.
+    pub dir: DVec3,
+    /// The medium.
+    pub medium: MediumId,
+    /// How it scatters.
+    pub scattering: &'a VolumeScattering,
+    /// Throughput, before and after.
+    pub throughput: f64,
+}
+
 /// How a path goes on from a vertex.
 #[derive(Debug)]
 pub struct Departure {
@@ -57,11 +72,13 @@ pub struct Departure {
     pub lobe: Lobe,
 }
 
-/// What happens to a path, in this order: travel, arrive, depart, travel, ...
+/// What happens to a path, in this order: travel, arrive, depart, travel, collide, travel, ...
 #[derive(Debug)]
 pub enum Event<'a> {
     /// It went straight through a medium.
     Travel(&'a Segment<'a>),
+    /// It is going to be scattered within a medium, which absorbs nothing by that.
+    Collide(&'a Collision<'a>),
     /// It met an interface; nothing has been decided.
     Arrive(&'a Vertex<'a>),
     /// The interface sent it on; what its throughput lost, the acting face absorbed.
@@ -122,8 +139,16 @@ pub fn walk<V: Visitor>(
     let mut ray = path.ray;
     loop {
         let hits = scene.find_next(&ray, &path.on, &path.inside);
-        let length = hits.as_ref().map_or(f64::INFINITY, Hits::distance);
         let medium = &scene.media[path.medium.index()];
+        let mut length = hits.as_ref().map_or(f64::INFINITY, Hits::distance);
+        let mut scattered = None;
+        // Clear media draw nothing; a path that meets no surface has left all bodies, or leaks.
+        if let (Some(scattering), Some(_)) = (medium.scattering(), &hits) {
+            let free = scattering.free_path(sampler.one(Dimension::FreePath));
+            if free < length {
+                (length, scattered) = (free, Some(scattering));
+            }
+        }
         let arriving = path.throughput * medium.transmittance(path.wavelength, length);
         let segment = Segment {
             ray: &path.ray,
@@ -146,7 +171,11 @@ pub fn walk<V: Visitor>(
             _ = visitor.see(&path, event);
             return;
         };
-        match bounce(scene, &mut path, &ray, hits, sampler, visitor) {
+        let next = match scattered {
+            None => bounce(scene, &mut path, &ray, hits, sampler, visitor),
+            Some(scattering) => collide(scattering, &mut path, ray.at(length), sampler, visitor),
+        };
+        match next {
             ControlFlow::Continue(next) => ray = next,
             ControlFlow::Break(()) => return,
         }
@@ -208,6 +237,25 @@ fn bounce<V: Visitor>(
         hits.cross(&mut path.inside);
     }
     ControlFlow::Continue(next)
+}
+
+/// Scatters a path within its medium: the ray on which it goes on.
+#[inline(never)]
+fn collide<V: Visitor>(
+    scattering: &VolumeScattering,
+    path: &mut Path,
+    point: DVec3,
+    sampler: &mut Sampler<impl Numbers>,
+    visitor: &mut V,
+) -> ControlFlow<(), Ray> {
+    let (dir, medium, throughput) = (path.ray.dir(), path.medium, path.throughput);
+    let collision = Collision { point, dir, medium, scattering, throughput };
+    visitor.see(path, Event::Collide(&collision))?;
+    path.depth += 1;
+    path.on = On::default();
+    // The phase function knows but the angle between two directions: radiance goes the same way as flux.
+    path.ray = Ray::new(point, scattering.scatter(dir, sampler.pair(Dimension::Scatter)));
+    ControlFlow::Continue(path.ray)
 }
 
 fn straight_on(dir: DVec3) -> Scattered {

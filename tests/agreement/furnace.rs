@@ -42,6 +42,17 @@ far = { goniometer = { c_step_deg = 360, gamma_step_deg = 180 } }
 
 #[test]
 fn luminance_in_a_furnace_is_that_of_its_walls() {
+    assert_even("furnace", FURNACE);
+}
+
+#[test]
+fn luminance_in_a_furnace_is_the_same_where_glass_scatters() {
+    let clear = "index = 1.49\n";
+    let turbid = "index = 1.49\nscattering = { per_mm = 0.8, anisotropy = 0.6 }\n";
+    assert_even("turbid furnace", &FURNACE.replace(clear, turbid));
+}
+
+fn assert_even(what: &str, furnace: &str) {
     let mm2 = 1e-6;
     let lit = PI * WALLS;
     let mut expected = vec![
@@ -61,17 +72,17 @@ fn luminance_in_a_furnace_is_that_of_its_walls() {
     };
     let mut comparison = Comparison::default();
     for way in [Way::Forward, Way::Backward, gather(0), gather(2), gather(8)] {
-        let found = measures(FURNACE, way);
+        let found = measures(furnace, way);
         for (name, expected) in &expected {
             // Hardly any photon comes to the narrow cones.
             if matches!(way, Way::Forward) && name.contains("luminance") {
                 continue;
             }
-            let what = format!("furnace, {}, {name}", way.name());
+            let what = format!("{what}, {}, {name}", way.name());
             comparison.add(&what, &found.values[name.as_str()], *expected, 1e-9 * expected);
         }
     }
-    comparison.assert("furnace", 50);
+    comparison.assert(what, 50);
 }
 
 /// A lamp wide enough to be all that can be seen along the axis through a plate.

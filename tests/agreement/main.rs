@@ -23,3 +23,4 @@ mod sensors;
 mod settings;
 mod sources;
 mod trial;
+mod volumes;

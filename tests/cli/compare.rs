@@ -47,6 +47,22 @@ fn a_comparison_with_merging_is_refused_where_a_finish_scatters() {
 }
 
 #[test]
+fn methods_that_know_no_scattering_media_are_refused_where_there_are_some() {
+    let place = Place::with("[media.acrylic.scattering]\nper_mm = 0.01\n");
+    for (arguments, method) in [
+        ("compare rod.toml --estimators forward,mis --sensor exit --time 1s", "mis"),
+        ("compare rod.toml --estimators forward,sppm --sensor exit --time 1s", "sppm"),
+        ("run rod.toml --estimator mis", "mis"),
+    ] {
+        let said = place.bad(2, arguments);
+        for words in [method, "the medium `acrylic` scatters"] {
+            assert!(said.contains(words), "no {words} in {said}");
+        }
+    }
+    assert_eq!(place.names(), ["rod.toml"]);
+}
+
+#[test]
 fn a_comparison_that_makes_no_sense_is_refused_and_nothing_is_written() {
     let place =
         Place::with("[sources.spot.point]\nflux_lm = 1\nat = { position_mm = [0, 0, -1] }\n");

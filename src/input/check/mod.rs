@@ -8,6 +8,7 @@ use crate::input::spec::SceneSpec;
 
 mod daylight;
 mod finishes;
+mod media;
 mod names;
 mod placements;
 mod references;
@@ -27,6 +28,7 @@ pub fn check_names(spec: &SceneSpec, places: &Places, problems: &mut Problems) {
 /// Notes every broken rule about the keys of one table.
 pub fn check_rules(spec: &SceneSpec, places: &Places, problems: &mut Problems) {
     let scene = Scene { spec, places };
+    media::check(scene, problems);
     finishes::check(scene, problems);
     placements::check(scene, problems);
     shapes::check(scene, problems);

@@ -21,9 +21,10 @@ use crate::input::digest::Digest;
 use crate::input::keys::{Key, Places};
 use crate::input::problems::{Problems, name_hint};
 use crate::input::spec::SceneSpec;
+use crate::input::spec::finish::ScatteringSpec;
 use crate::input::spec::placement::PlacementSpec;
 use crate::input::spec::source::SourceSpec;
-use crate::optics::Medium;
+use crate::optics::{Medium, VolumeScattering};
 use crate::scene::plan::{Check, RunPlan};
 use crate::scene::{Builder, FaceId, FinishId, MediumId, Scene};
 use crate::units::FluxUnit;
@@ -122,9 +123,14 @@ fn kind_key(family: &str, name: &str, kind: &str) -> Key {
 impl Context<'_> {
     fn lower_media(&mut self) {
         for (name, medium) in &self.spec.media {
-            let id =
-                self.builder.add_medium(Medium::new(name, medium.index, medium.absorption_per_mm));
-            self.media.insert(name.clone(), id);
+            let clear = Medium::new(name, medium.index, medium.absorption_per_mm);
+            let made = match medium.scattering {
+                Some(ScatteringSpec { per_mm, anisotropy }) => {
+                    clear.with_scattering(VolumeScattering::new(per_mm, anisotropy))
+                }
+                None => clear,
+            };
+            self.media.insert(name.clone(), self.builder.add_medium(made));
         }
         // Validated: the surroundings are a known medium.
         if let Some(&surroundings) = self.media.get(&self.spec.surroundings) {

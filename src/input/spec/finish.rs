@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A transparent medium. `air` is predefined with index 1 and no absorption.
+/// A medium that light goes through. `air` is predefined with index 1 and no absorption.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MediumSpec {
     /// Refractive index.
@@ -13,6 +13,21 @@ pub struct MediumSpec {
     #[serde(default)]
     #[schemars(range(min = 0.0))]
     pub absorption_per_mm: f64,
+    /// Particles that scatter light, evenly spread, as in diffuser rods; none in a clear medium.
+    pub scattering: Option<ScatteringSpec>,
+}
+
+/// Scattering within a medium.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ScatteringSpec {
+    /// Scattering coefficient: one over the mean length of path from one scattering to the next.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub per_mm: f64,
+    /// Mean cosine of the angle by which light is turned, by the law of Henyey and Greenstein: 0 to all sides alike, near 1
+    /// mostly forward, as by particles larger than a wavelength, below 0 mostly back.
+    #[serde(default)]
+    #[schemars(range(min = -0.999, max = 0.999))]
+    pub anisotropy: f64,
 }
 
 /// What a face does to light. A table with exactly one of these keys.

@@ -11,7 +11,7 @@ use crate::scene::plan::RunPlan;
 use crate::scene::{SourceId, Visibility};
 use crate::transport::baselines::{BATCH_SEGMENTS, OneSensor};
 use crate::transport::emitters::Met;
-use crate::transport::estimate::{Arriving, Kernel};
+use crate::transport::estimate::{Arriving, Kernel, Meeting};
 use crate::transport::follow::{Collector, follow};
 use crate::transport::forward::{Forward, PhotonWatcher};
 use crate::transport::readings::Counted;
@@ -192,7 +192,9 @@ impl PhotonWatcher for Stream<'_, '_> {
         }
         let facing = facing(sensor.scene, path, vertex);
         let incidence = Incidence { normal: facing.facet, ..facing.incidence };
-        let photon = Arriving { surface, medium: interface.from, point: vertex.point, incidence };
+        let medium = interface.from;
+        let photon = Meeting { surface, medium, point: vertex.point, incidence };
+        let photon = Arriving::AtSurface(photon);
         let Self { kernel, cells, readings, .. } = self;
         let key = Key { surface, point: vertex.point, dir: vertex.dir };
         self.records.visit(&[key], |_, record| {

@@ -1,7 +1,7 @@
 //! Those who watch photons while forward traces them. What they make of them is not known here.
 
 use crate::scene::{Arrivals, MediumId, Ray, Scene, SensorId, SourceId};
-use crate::transport::{Departure, Path, ROULETTE_BELOW, Vertex};
+use crate::transport::{Collision, Departure, Path, ROULETTE_BELOW, Vertex};
 use glam::DVec3;
 
 /// Someone who sees photons as they arrive at interfaces.
@@ -18,6 +18,11 @@ pub(crate) trait PhotonWatcher {
 
     /// Sees a photon before the interface acts; `flux` is its flux at throughput 1, lm or W.
     fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>, flux: f64, source: SourceId);
+
+    /// Sees a photon that is going to be scattered within a medium; `flux` as above.
+    #[inline(always)]
+    fn collide(&mut self, _path: &Path, _collision: &Collision<'_>, _flux: f64, _source: SourceId) {
+    }
 
     /// Sees how a photon goes on.
     #[inline(always)]
@@ -90,6 +95,12 @@ impl<A: PhotonWatcher, B: PhotonWatcher> PhotonWatcher for (&mut A, &mut B) {
     fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>, flux: f64, source: SourceId) {
         self.0.arrive(path, vertex, flux, source);
         self.1.arrive(path, vertex, flux, source);
+    }
+
+    #[inline(always)]
+    fn collide(&mut self, path: &Path, collision: &Collision<'_>, flux: f64, source: SourceId) {
+        self.0.collide(path, collision, flux, source);
+        self.1.collide(path, collision, flux, source);
     }
 
     #[inline(always)]

@@ -4,8 +4,8 @@
 
 use crate::optics::Incidence;
 use crate::scene::shape::Toward;
-use crate::scene::{MediumId, PrimId, Scene, SourceId, Visibility};
-use crate::transport::estimate::{Arriving, Kernel};
+use crate::scene::{MediumId, PrimHit, PrimId, Scene, SourceId, Visibility};
+use crate::transport::estimate::{Arriving, Colliding, Kernel, Meeting};
 use crate::transport::forward::PhotonWatcher;
 use crate::transport::gather::{Ended, Gather, Pass, Waiting};
 use crate::transport::merge::Etendues;
@@ -13,7 +13,7 @@ use crate::transport::readings::Counted;
 use crate::transport::record_index::{Key, TOGETHER};
 use crate::transport::window::{COUNTED, ESTIMATES, estimates};
 use crate::transport::work::RecordWork;
-use crate::transport::{Path, Readings, Vertex};
+use crate::transport::{Collision, Path, Readings, Vertex};
 use glam::DVec3;
 
 /// Photons that stream past the records.
@@ -31,12 +31,7 @@ pub(super) struct Stream<'p, 's> {
 /// A photon that may belong to records.
 #[derive(Debug, Clone, Copy)]
 struct Passing {
-    prim: PrimId,
-    toward: Toward,
-    /// The media before and behind the interface.
-    media: [MediumId; 2],
-    /// nm.
-    wavelength: f64,
+    at: At,
     /// lm or W.
     flux: f64,
     depth: u32,
@@ -45,11 +40,36 @@ struct Passing {
     etendue: f64,
 }
 
+/// Where a photon is.
+#[derive(Debug, Clone, Copy)]
+enum At {
+    /// At an interface.
+    Surface {
+        prim: PrimId,
+        toward: Toward,
+        /// The media before and behind it.
+        media: [MediumId; 2],
+        /// nm.
+        wavelength: f64,
+    },
+    /// Within a medium that is going to scatter it.
+    Medium,
+}
+
 impl PhotonWatcher for Stream<'_, '_> {
     #[inline(always)]
     fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>, flux: f64, source: SourceId) {
         if self.may_take(vertex) {
             self.take(path, vertex, Starting { flux, source, etendue: 0.0 });
+        }
+    }
+
+    fn collide(&mut self, path: &Path, collision: &Collision<'_>, flux: f64, source: SourceId) {
+        let &Collision { point, dir, medium, throughput, .. } = collision;
+        let surface = self.gather.surfaces.of_medium(medium);
+        if self.waiting.records.may_take(surface, point, dir) {
+            let now = Starting { flux: flux * throughput, source, etendue: 0.0 };
+            self.push(path, Key { surface, point, dir }, At::Medium, now);
         }
     }
 }
@@ -100,22 +120,18 @@ impl<'p, 's> Stream<'p, 's> {
     #[inline(never)]
     pub(super) fn take(&mut self, path: &Path, vertex: &Vertex<'_>, starting: Starting) {
         let interface = vertex.interface;
-        let prim = interface.acting.prim;
-        self.keys.push(Key {
-            surface: self.gather.surfaces.of(prim),
-            point: vertex.point,
-            dir: vertex.dir,
-        });
-        self.passing.push(Passing {
-            prim,
-            toward: interface.acting.toward,
-            media: [interface.from, interface.to],
-            wavelength: path.wavelength,
-            flux: starting.flux * vertex.throughput,
-            depth: path.depth,
-            source: starting.source,
-            etendue: starting.etendue,
-        });
+        let PrimHit { prim, toward, .. } = *interface.acting;
+        let (surface, media) = (self.gather.surfaces.of(prim), [interface.from, interface.to]);
+        let key = Key { surface, point: vertex.point, dir: vertex.dir };
+        let at = At::Surface { prim, toward, media, wavelength: path.wavelength };
+        self.push(path, key, at, Starting { flux: starting.flux * vertex.throughput, ..starting });
+    }
+
+    /// `starting` with the flux that the photon has now.
+    fn push(&mut self, path: &Path, key: Key, at: At, starting: Starting) {
+        self.keys.push(key);
+        let Starting { flux, source, etendue } = starting;
+        self.passing.push(Passing { at, flux, depth: path.depth, source, etendue });
         if self.passing.len() == TOGETHER {
             self.look_up();
         }
@@ -159,23 +175,24 @@ impl<'p, 's> Stream<'p, 's> {
 
 /// A photon as records take it.
 fn arriving(scene: &Scene, key: &Key, photon: &Passing) -> Arriving {
-    let [from, to] = photon.media;
-    let index = |medium: MediumId| scene.media[medium.index()].index(photon.wavelength);
-    let outward = scene.normal(photon.prim, key.point);
-    Arriving {
-        surface: key.surface,
-        medium: from,
-        point: key.point,
-        incidence: Incidence {
-            dir: key.dir,
-            normal: match photon.toward {
-                Toward::Front => -outward,
-                Toward::Back => outward,
-            },
-            index_from: index(from),
-            index_to: index(to),
-            // Records ask finishes that scatter, which have none.
-            grain: DVec3::ZERO,
-        },
+    let &Key { surface, point, dir } = key;
+    match photon.at {
+        At::Medium => Arriving::Within(Colliding { medium: surface, point, dir }),
+        At::Surface { prim, toward, media: [from, to], wavelength } => {
+            let index = |medium: MediumId| scene.media[medium.index()].index(wavelength);
+            let outward = scene.normal(prim, point);
+            let incidence = Incidence {
+                dir,
+                normal: match toward {
+                    Toward::Front => -outward,
+                    Toward::Back => outward,
+                },
+                index_from: index(from),
+                index_to: index(to),
+                // Records ask finishes that scatter, which have none.
+                grain: DVec3::ZERO,
+            };
+            Arriving::AtSurface(Meeting { surface, medium: from, point, incidence })
+        }
     }
 }

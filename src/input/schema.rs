@@ -296,6 +296,7 @@ mod tests {
             "cie_type",
             "rounded_share",
             "roughness",
+            "anisotropy",
             "a",
             "b",
             "g",

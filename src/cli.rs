@@ -1,24 +1,27 @@
-//! The command line: arguments, progress, exit codes. The only file that prints.
+//! The command line: arguments, progress, exit codes. It and its children are all that prints.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "this is the program's face")]
 
 mod compare;
+mod display;
 mod film;
+mod mesh;
 mod values;
 
 use crate::cli::compare::CompareArgs;
+use crate::cli::display::Display;
 use crate::cli::film::FilmArgs;
+use crate::cli::mesh::MeshArgs;
 use crate::cli::values::{
     parse_angle, parse_count, parse_percent, parse_radius, parse_records, parse_time, words,
 };
 use crate::error::{Diagnostic, Error};
 use crate::input::diagnostic::{self, Colour};
 use crate::input::{self, GatherSettings, Settings};
-use crate::pipeline::{self, Output, Progress, Stop};
+use crate::pipeline::{self, Output, Stop};
 use crate::report::{Existing, Outcome, Written};
 use crate::scene::plan::{Request, Schedule};
 use crate::transport::Interrupt;
 use clap::{Args, CommandFactory, Parser, Subcommand};
-use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -48,6 +51,8 @@ enum Command {
     Check(CheckArgs),
     /// Print reflectance and transmittance of the prism films of a scene against the angle.
     Film(FilmArgs),
+    /// Examine a mesh file: is it closed, the right way out, and fine enough? Exits with 1 if it cannot be a solid.
+    Mesh(MeshArgs),
     /// List scenes and sensor files in a folder.
     List {
         /// The folder to look in.
@@ -159,6 +164,7 @@ pub fn main() -> ExitCode {
         Command::Compare(args) => compare::compare(&args),
         Command::Check(args) => check(&args),
         Command::Film(args) => film::film(&args),
+        Command::Mesh(args) => mesh::mesh(&args),
         Command::List { folder } => finish(input::list(&folder)),
         Command::Schema => finish(Ok(format!("{:#}\n", input::schema::json_schema()))),
         Command::Completions { shell } => {
@@ -326,63 +332,6 @@ fn fail(error: &Error) -> ExitCode {
         Error::Io { .. } | Error::Output { .. } => {
             eprintln!("error: {error}");
             ExitCode::from(3)
-        }
-    }
-}
-
-/// Progress on stderr: a bar on a terminal, a line now and then elsewhere, nothing when quiet.
-enum Display {
-    Quiet,
-    Bar(ProgressBar),
-    Lines { next: Duration },
-}
-
-impl Display {
-    /// Seconds between two lines when stderr is no terminal.
-    const LINE_EVERY: Duration = Duration::from_secs(10);
-
-    fn new(quiet: bool) -> Self {
-        if quiet {
-            return Self::Quiet;
-        }
-        if !std::io::stderr().is_terminal() {
-            return Self::Lines { next: Self::LINE_EVERY };
-        }
-        let bar = ProgressBar::new(1000);
-        let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}");
-        Self::Bar(match style {
-            Ok(style) => bar.with_style(style),
-            Err(_) => bar,
-        })
-    }
-
-    fn show(&mut self, progress: &Progress) {
-        let gathering = Some(&progress.gathering).filter(|text| !text.is_empty());
-        let gathering = gathering.map(|text| format!("gathering: {text}"));
-        match self {
-            Self::Quiet => {}
-            Self::Bar(bar) => {
-                if let Some(line) = gathering {
-                    bar.println(line);
-                }
-                bar.set_position((1000.0 * progress.fraction()) as u64);
-                bar.set_message(progress.sentence());
-            }
-            Self::Lines { next } => {
-                if let Some(line) = gathering {
-                    eprintln!("{line}");
-                }
-                if progress.elapsed >= *next {
-                    eprintln!("{}", progress.sentence());
-                    *next = progress.elapsed + Self::LINE_EVERY;
-                }
-            }
-        }
-    }
-
-    fn close(&self) {
-        if let Self::Bar(bar) = self {
-            bar.finish_and_clear();
         }
     }
 }

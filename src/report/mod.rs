@@ -11,6 +11,7 @@ mod film;
 mod folder;
 mod inventory;
 mod markdown;
+mod mesh;
 pub mod png;
 mod recipe;
 mod record;
@@ -24,6 +25,7 @@ pub use figures::scene_picture;
 pub use film::film_tables;
 pub use folder::{Existing, Folder, Written, write_whole};
 pub use inventory::inventory;
+pub use mesh::mesh_report;
 pub use recipe::Recipe;
 pub use record::{
     CheckResult, Outcome, Report, RunFacts, SceneFacts, TargetFacts, asked, leak_places,

@@ -48,3 +48,24 @@ fn a_list_finds_scenes_and_sensor_files_and_no_reports() {
     assert!(place.good("list").contains("no valid TOML"), "a broken scene is not passed over");
     assert!(place.bad(2, "list nowhere").contains("nowhere"));
 }
+
+#[test]
+fn a_mesh_is_examined_and_one_that_is_no_solid_ends_with_1() {
+    let place = Place::new();
+    let block = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\n";
+    fs::write(place.path("whole.obj"), format!("{block}f 1 4 3\n")).unwrap();
+    fs::write(place.path("open.obj"), block).unwrap();
+    let said = place.good("mesh whole.obj --unit cm");
+    for words in ["a closed solid", "4 triangles", "166.7 mm³", "open edges", "all facets are flat"]
+    {
+        assert!(said.contains(words), "no {words} in {said}");
+    }
+    let output = place.run("mesh open.obj");
+    assert_eq!(code(&output), 1);
+    let said = String::from_utf8_lossy(&output.stdout);
+    for words in ["NOT a solid", "open edges                         3, the first at ["] {
+        assert!(said.contains(words), "no {words} in {said}");
+    }
+    assert!(place.bad(2, "mesh nowhere.obj").contains("nowhere.obj"));
+    assert!(place.bad(2, "mesh rod.toml").contains(".toml"));
+}

@@ -213,7 +213,7 @@ mod tests {
         assert_eq!(mesh.faces, ["wall", "entry", "exit"]);
         assert_eq!(mesh.triangles.len(), rod.triangles.len());
         let health = health(&mesh);
-        assert!(health.is_sound() && health.opposed_normals == 0, "{health:?}");
+        assert!(health.is_sound() && health.opposed_normals.count == 0, "{health:?}");
         let metres = read(&glb(&json, &blob), Path::new(""), LengthUnit::Metre).unwrap();
         assert!((metres.bounds().max.z - 40_000.0).abs() < 1e-9);
     }
@@ -252,7 +252,7 @@ mod tests {
         ]);
         let mesh = read_json(&json, &blob).unwrap();
         let health = health(&mesh);
-        assert!(health.is_sound() && health.opposed_normals == 0, "{health:?}");
+        assert!(health.is_sound() && health.opposed_normals.count == 0, "{health:?}");
         // z doubled and moved by 5, then x -> y -> z -> x, then x mirrored and y doubled.
         assert!((health.signed_volume_mm3 / upright.signed_volume_mm3 - 4.0).abs() < 1e-12);
         let bounds = mesh.bounds();

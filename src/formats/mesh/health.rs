@@ -11,19 +11,43 @@ const SHARP_DEG: f64 = 45.0;
 /// Corner normals nearer than this, rad, were one normal before they were rounded to 16 bits or more.
 pub(crate) const SAME_NORMAL: f64 = 1.0e-4;
 
+/// Thinner than this share of the size of its mesh, 1, a triangle is a sliver: positions in single precision, of 6e-8,
+/// leave the direction of its facet uncertain by hundredths.
+const SLIVER: f64 = 1.0e-5;
+
+/// Places of a mesh that have something wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Defects {
+    /// How many.
+    pub count: usize,
+    /// The first of them, mm, in the coordinates of the file.
+    pub first: Option<DVec3>,
+}
+
+impl Defects {
+    fn add(&mut self, place: impl Fn() -> DVec3) {
+        self.count += 1;
+        self.first.get_or_insert_with(place);
+    }
+}
+
 /// What there is to say about a mesh before light is traced through it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct MeshHealth {
     /// Edges with only one triangle: holes.
-    pub open_edges: usize,
+    pub open_edges: Defects,
     /// Edges with more than two triangles.
-    pub crowded_edges: usize,
+    pub crowded_edges: Defects,
     /// Edges whose two triangles walk them the same way: one of the two is the wrong way out.
-    pub inconsistent_edges: usize,
+    pub inconsistent_edges: Defects,
     /// Triangles without area; they do no harm.
-    pub degenerate_triangles: usize,
+    pub degenerate_triangles: Defects,
+    /// Triangles so thin that their facet has no certain direction.
+    pub slivers: Defects,
     /// Triangles with a corner normal that points into their back.
-    pub opposed_normals: usize,
+    pub opposed_normals: Defects,
+    /// How far facets lie from the surface that their corner normals describe, at most, mm; without normals `None`.
+    pub sagitta_mm: Option<f64>,
     /// Volume, mm³; negative when the mesh is inside out. Meaningless unless it is closed.
     pub signed_volume_mm3: f64,
     /// Area, mm².
@@ -37,9 +61,9 @@ pub struct MeshHealth {
 impl MeshHealth {
     /// Whether the mesh has an inside: no open, crowded or inconsistent edges, and a volume that is positive.
     pub fn is_sound(&self) -> bool {
-        self.open_edges == 0
-            && self.crowded_edges == 0
-            && self.inconsistent_edges == 0
+        self.open_edges.count == 0
+            && self.crowded_edges.count == 0
+            && self.inconsistent_edges.count == 0
             && self.signed_volume_mm3 > 0.0
     }
 }
@@ -71,47 +95,68 @@ impl Facets {
 pub fn health(mesh: &TriangleMesh) -> MeshHealth {
     let half_edges = half_edges(&mesh.triangles);
     let mut health = MeshHealth {
-        open_edges: 0,
-        crowded_edges: 0,
-        inconsistent_edges: 0,
-        degenerate_triangles: 0,
         opposed_normals: opposed_normals(mesh),
-        signed_volume_mm3: 0.0,
-        area_mm2: 0.0,
+        sagitta_mm: sagitta(mesh, &half_edges),
         shells: shells(mesh, &half_edges),
-        facets: None,
+        facets: facets(mesh, &half_edges),
+        ..MeshHealth::default()
     };
     for edge in half_edges.chunk_by(same_edge) {
+        let middle = || {
+            let ends = [edge[0].low, edge[0].high].map(|end| mesh.positions[end as usize]);
+            ends[0].midpoint(ends[1])
+        };
         match edge {
-            [_] => health.open_edges += 1,
+            [_] => health.open_edges.add(middle),
             [one, other] => {
                 if one.is_upward(&mesh.triangles) == other.is_upward(&mesh.triangles) {
-                    health.inconsistent_edges += 1;
+                    health.inconsistent_edges.add(middle);
                 }
             }
-            _ => health.crowded_edges += 1,
+            _ => health.crowded_edges.add(middle),
         }
     }
     // About a point of the mesh: far from the origin the tetrahedra would cancel.
     let center = mesh.bounds().center();
+    let thin = SLIVER * mesh.bounds().diagonal();
     for triangle in 0..mesh.triangles.len() {
-        let [a, b, c] = mesh.corners(triangle).map(|corner| corner - center);
+        let corners = mesh.corners(triangle);
+        let [a, b, c] = corners.map(|corner| corner - center);
         let double_area = area_vector([a, b, c]).length();
-        health.degenerate_triangles += usize::from(double_area == 0.0);
+        let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+        if double_area == 0.0 {
+            health.degenerate_triangles.add(|| corners[0]);
+        } else if double_area < thin * longest {
+            health.slivers.add(|| corners[0]);
+        }
         health.area_mm2 += 0.5 * double_area;
         health.signed_volume_mm3 += a.dot(b.cross(c)) / 6.0;
     }
-    health.facets = facets(mesh, &half_edges);
     health
 }
 
-fn opposed_normals(mesh: &TriangleMesh) -> usize {
-    let Some(normals) = &mesh.normals else { return 0 };
-    let opposed = |(triangle, normals): (usize, &[DVec3; 3])| {
-        let facet = area_vector(mesh.corners(triangle));
-        normals.iter().any(|normal| normal.dot(facet) < 0.0)
-    };
-    normals.iter().enumerate().filter(|entry| opposed(*entry)).count()
+fn opposed_normals(mesh: &TriangleMesh) -> Defects {
+    let mut opposed = Defects::default();
+    for (triangle, normals) in mesh.normals.iter().flatten().enumerate() {
+        let corners = mesh.corners(triangle);
+        let facet = area_vector(corners);
+        if normals.iter().any(|normal| normal.dot(facet) < 0.0) {
+            opposed.add(|| corners[0]);
+        }
+    }
+    opposed
+}
+
+/// Over the middle of an edge `e` a surface with the normals `a` and `b` at its ends rises by `e · (b - a)/8`: a parabola.
+fn sagitta(mesh: &TriangleMesh, half_edges: &[HalfEdge]) -> Option<f64> {
+    let normals = mesh.normals.as_ref()?;
+    let rises = half_edges.iter().map(|side| {
+        let [low, high] =
+            side.corners(&mesh.triangles).map(|corner| normals[side.triangle as usize][corner]);
+        let ends = [side.low, side.high].map(|end| mesh.positions[end as usize]);
+        ((ends[1] - ends[0]).dot(high - low) / 8.0).abs()
+    });
+    Some(rises.fold(0.0, f64::max))
 }
 
 fn shells(mesh: &TriangleMesh, half_edges: &[HalfEdge]) -> usize {
@@ -197,10 +242,13 @@ mod tests {
     fn a_missing_triangle_opens_three_edges_and_a_flipped_one_makes_three_inconsistent() {
         let mut mesh = block(DVec3::ONE);
         mesh.triangles[4].swap(0, 1);
-        assert_eq!(health(&mesh).inconsistent_edges, 3);
+        assert_eq!(health(&mesh).inconsistent_edges.count, 3);
         mesh.triangles.remove(4);
         let broken = health(&mesh);
-        assert_eq!((broken.open_edges, broken.inconsistent_edges), (3, 0));
+        assert_eq!((broken.open_edges.count, broken.inconsistent_edges.count), (3, 0));
+        // The middle of an edge of the unit block.
+        let first = broken.open_edges.first.unwrap();
+        assert!(first.abs().max_element() <= 1.0 && first.length() > 0.0, "{first}");
         assert!(!broken.is_sound());
     }
 
@@ -209,13 +257,20 @@ mod tests {
         let mut mesh = icosphere(2.0, 3, Normals::Smooth);
         let right = health(&mesh);
         assert!((right.signed_volume_mm3 / (PI * 32.0 / 3.0) - 1.0).abs() < 0.02);
-        assert_eq!((right.opposed_normals, right.facets), (0, None));
+        assert_eq!((right.opposed_normals.count, right.facets), (0, None));
+        // The middle of an edge lies farthest below the sphere.
+        let middles = half_edges(&mesh.triangles).into_iter().map(|edge| {
+            let [a, b] = [edge.low, edge.high].map(|end| mesh.positions[end as usize]);
+            2.0 - a.midpoint(b).length()
+        });
+        let deepest = middles.fold(0.0, f64::max);
+        assert!((right.sagitta_mm.unwrap() / deepest - 1.0).abs() < 0.01, "{right:?}, {deepest}");
         mesh.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
         mesh.normals.iter_mut().flatten().for_each(|normals| normals.swap(1, 2));
         let wrong = health(&mesh);
         assert_eq!(wrong.signed_volume_mm3, -right.signed_volume_mm3);
-        assert_eq!(wrong.opposed_normals, mesh.triangles.len());
-        assert_eq!(wrong.open_edges + wrong.inconsistent_edges, 0);
+        assert_eq!(wrong.opposed_normals.count, mesh.triangles.len());
+        assert_eq!(wrong.open_edges.count + wrong.inconsistent_edges.count, 0);
         assert!(!wrong.is_sound());
     }
 
@@ -231,8 +286,21 @@ mod tests {
                 builder.add(corners.map(|p| p + offset), None, "").unwrap();
             }
             let health = health(&builder.finish().unwrap());
-            assert_eq!((health.crowded_edges, health.shells), (crowded, shells));
+            assert_eq!((health.crowded_edges.count, health.shells), (crowded, shells));
         }
+    }
+
+    #[test]
+    fn a_triangle_without_breadth_is_a_sliver_and_a_long_one_is_none() {
+        let long = health(&rod(0.5, 100.0, 64, Normals::Smooth));
+        assert_eq!(long.slivers.count, 0);
+        let mut mesh = block(DVec3::ONE);
+        let between = mesh.positions[0].midpoint(mesh.positions[1]) + 1e-6 * DVec3::ONE;
+        mesh.positions.push(between);
+        mesh.triangles.push([0, 1, 8]);
+        let health = health(&mesh);
+        assert_eq!((health.slivers.count, health.degenerate_triangles.count), (1, 0));
+        assert_eq!(health.slivers.first, Some(mesh.positions[0]));
     }
 
     #[test]
@@ -240,7 +308,7 @@ mod tests {
         let mut mesh = block(DVec3::ONE);
         mesh.triangles.push([1, 1, 2]);
         let health = health(&mesh);
-        assert_eq!((health.degenerate_triangles, health.shells), (1, 1));
+        assert_eq!((health.degenerate_triangles.count, health.shells), (1, 1));
         assert!(health.is_sound());
     }
 

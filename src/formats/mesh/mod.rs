@@ -17,7 +17,7 @@ pub(crate) mod samples;
 pub mod topology;
 
 pub(crate) use health::normals_agree;
-pub use health::{Facets, MeshHealth, health};
+pub use health::{Defects, Facets, MeshHealth, health};
 
 use crate::math::Aabb;
 use glam::DVec3;
@@ -258,7 +258,7 @@ mod tests {
         assert_eq!(mesh.faces, ["entry", "wall", "exit"]);
         let health = health(&mesh);
         assert!(health.is_sound(), "{health:?}");
-        assert_eq!((health.shells, health.opposed_normals, &health.facets), (1, 0, &None));
+        assert_eq!((health.shells, health.opposed_normals.count, &health.facets), (1, 0, &None));
         // A bent rod is as big as a straight one (Pappus): π r² L, less what 96 facets cut off.
         let share = health.signed_volume_mm3 / (PI * 4.0 * 40.0);
         assert!((share - (TAU / 96.0).sin() / (TAU / 96.0)).abs() < 1e-4, "{share}");

@@ -93,7 +93,7 @@ pub(super) fn check_open_faces(spec: &SceneSpec, scene: &Scene, problems: &mut P
     }
 }
 
-fn solid_key(spec: &SceneSpec, solid: &Solid) -> Key {
+pub(super) fn solid_key(spec: &SceneSpec, solid: &Solid) -> Key {
     let kind = spec.solids.get(&solid.name).map_or("", |spec| spec.kind());
     kind_key("solids", &solid.name, kind)
 }

@@ -1,6 +1,6 @@
 //! Solids from mesh files: read, examined, placed.
 
-use crate::formats::mesh::{self, LengthUnit, MeshHealth, TriangleMesh};
+use crate::formats::mesh::{self, Defects, LengthUnit, MeshHealth, TriangleMesh};
 use crate::input::keys::Key;
 use crate::input::lower::Context;
 use crate::input::problems::name_hint;
@@ -48,12 +48,15 @@ impl Context<'_> {
             (health.crowded_edges, "edges with more than two triangles"),
             (health.inconsistent_edges, "edges whose two triangles face opposite sides"),
         ];
-        for (count, what) in defects.into_iter().filter(|(count, _)| *count > 0) {
-            self.problems.error(key, format!("`{name}` has {count} {what}")).hint(
-                "repair the mesh: a solid needs a closed surface that faces outward everywhere",
-            );
+        for (Defects { count, first }, what) in defects {
+            if let Some(at) = first {
+                let place = format!("the first at [{:.4}, {:.4}, {:.4}] mm", at.x, at.y, at.z);
+                self.problems.error(key, format!("`{name}` has {count} {what}, {place}")).hint(
+                    "repair the mesh: a solid needs a closed surface that faces outward everywhere",
+                );
+            }
         }
-        if health.open_edges == 0 && health.signed_volume_mm3 < 0.0 {
+        if health.open_edges.count == 0 && health.signed_volume_mm3 < 0.0 {
             self.problems
                 .error(
                     key,
@@ -64,9 +67,16 @@ impl Context<'_> {
                 )
                 .hint("flip the orientation of its triangles");
         }
-        if health.degenerate_triangles > 0 {
-            let count = health.degenerate_triangles;
-            self.problems.warning(key, format!("`{name}` has {count} triangles without area"));
+        let remarks = [
+            (health.degenerate_triangles, "triangles without area"),
+            (health.slivers, "slivers: triangles too thin for a certain direction"),
+            (health.opposed_normals, "triangles with normals that point to their back"),
+        ];
+        for (Defects { count, .. }, what) in remarks.iter().filter(|(defects, _)| defects.count > 0)
+        {
+            self.problems
+                .warning(key, format!("`{name}` has {count} {what}"))
+                .hint("`lumiduct mesh FILE` tells where");
         }
         if let Some(facets) = &health.facets {
             let drift = 100.0 * facets.skew_drift(f64::from(DRIFT_BOUNCES));

@@ -4,6 +4,7 @@
 //! so that all problems of a scene are reported together; what could not be built is left out.
 
 mod consistency;
+mod contacts;
 mod daylight;
 mod finishes;
 mod meshes;
@@ -87,6 +88,7 @@ pub(crate) fn lower(spec: &SceneSpec, places: &Places, problems: &mut Problems) 
     sources::check_starts(spec, &scene, context.problems);
     consistency::check_overlaps(spec, &scene, context.problems);
     consistency::check_open_faces(spec, &scene, context.problems);
+    contacts::check_contacts(spec, &scene, context.problems);
     plan::check_measures(spec, &scene, context.problems);
     context.problems.is_free_of_errors().then_some(Lowered { scene, run, checks, meshes })
 }

@@ -1,0 +1,93 @@
+//! The health of a mesh, as a page: what keeps it from being a solid, and what its facets will do to light.
+
+use crate::formats::mesh::{Defects, MeshHealth, TriangleMesh, area_vector};
+use crate::number::format_value;
+use std::fmt::Write;
+
+/// Bounces for which the drift of a faceted wall is told.
+const DRIFT_BOUNCES: [f64; 3] = [10.0, 100.0, 1000.0];
+
+/// What there is to say about a mesh, lengths in mm.
+pub fn mesh_report(name: &str, mesh: &TriangleMesh, health: &MeshHealth) -> String {
+    let (bounds, number) = (mesh.bounds(), |value: f64| format_value(value));
+    let size = bounds.max - bounds.min;
+    let verdict = if health.is_sound() { "a closed solid" } else { "NOT a solid" };
+    let mut text = format!(
+        "{name}: {verdict}, {} triangles, {} vertices, {} connected\n\nbox     [{}, {}, {}] to [{}, {}, {}] mm, {} x {} x {} mm\n",
+        mesh.triangles.len(),
+        mesh.positions.len(),
+        if health.shells == 1 {
+            "all".to_owned()
+        } else {
+            format!("{} parts, each", health.shells)
+        },
+        number(bounds.min.x),
+        number(bounds.min.y),
+        number(bounds.min.z),
+        number(bounds.max.x),
+        number(bounds.max.y),
+        number(bounds.max.z),
+        number(size.x),
+        number(size.y),
+        number(size.z),
+    );
+    let volume = number(health.signed_volume_mm3);
+    // Writing to a string cannot fail, here and below.
+    _ = writeln!(text, "area    {} mm²\nvolume  {volume} mm³", number(health.area_mm2));
+    if health.signed_volume_mm3 < 0.0 {
+        _ = writeln!(text, "        negative: inside out, flip the orientation of its triangles");
+    }
+    text.push_str("\nface                    triangles   area, mm²\n");
+    for (index, face) in mesh.faces.iter().enumerate() {
+        let own = (0..mesh.triangles.len()).filter(|&t| mesh.face_of[t] as usize == index);
+        let area: f64 = own.clone().map(|t| 0.5 * area_vector(mesh.corners(t)).length()).sum();
+        _ = writeln!(text, "{face:22} {:>10}   {}", own.count(), number(area));
+    }
+    text.push_str("\nmust be none\n");
+    defects(&mut text, "open edges", &health.open_edges);
+    defects(&mut text, "edges of more than two triangles", &health.crowded_edges);
+    defects(&mut text, "edges with one side flipped", &health.inconsistent_edges);
+    text.push_str("\nshould be none\n");
+    defects(&mut text, "normals that point to the back", &health.opposed_normals);
+    defects(&mut text, "triangles without area", &health.degenerate_triangles);
+    defects(&mut text, "slivers", &health.slivers);
+    text.push_str("\ncurved walls\n");
+    facets(&mut text, health);
+    text
+}
+
+fn defects(text: &mut String, what: &str, defects: &Defects) {
+    _ = write!(text, "  {what:34} {}", defects.count);
+    if let Some(at) = defects.first {
+        let [x, y, z] = at.to_array().map(format_value);
+        _ = write!(text, ", the first at [{x}, {y}, {z}] mm");
+    }
+    text.push('\n');
+}
+
+/// How coarsely curved walls are drawn, and what that does to light.
+fn facets(text: &mut String, health: &MeshHealth) {
+    match (&health.facets, health.sagitta_mm) {
+        (None, None) => text.push_str("  none: all facets are flat faces\n"),
+        (None, Some(sagitta)) => {
+            _ = writeln!(
+                text,
+                "  smoothed by normals; facets lie up to {} mm beside the surface that these describe",
+                format_value(sagitta)
+            );
+        }
+        (Some(facets), _) => {
+            _ = writeln!(
+                text,
+                "  {:.1} % of the area is in flat facets, {:.0} to a turn: light drifts as it is reflected",
+                100.0 * facets.area_share,
+                facets.per_turn()
+            );
+            for bounces in DRIFT_BOUNCES {
+                let drift = 100.0 * facets.skew_drift(bounces);
+                _ = writeln!(text, "  {bounces:>5} bounces: skewness drifts by about {drift:.2} %");
+            }
+            text.push_str("  export vertex normals, or use a sweep\n");
+        }
+    }
+}

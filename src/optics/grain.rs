@@ -31,29 +31,14 @@ impl Bsdf {
 
     /// The same finish as light meets it that comes from the other side, where that is another one.
     pub fn from_behind(&self) -> Option<Self> {
-        match self {
-            Self::PrismFilm { film, face } => {
-                Some(Self::PrismFilm { film: film.clone(), face: face.opposite() })
-            }
-            Self::Mixture(parts) if self.has_grain() => {
-                let turned = |part: &Self| part.from_behind().unwrap_or_else(|| part.clone());
-                Some(Self::Mixture(
-                    parts.iter().map(|(weight, part)| (*weight, turned(part))).collect(),
-                ))
-            }
-            Self::Smooth
-            | Self::Specular { .. }
-            | Self::Metal { .. }
-            | Self::Absorber
-            | Self::Open
-            | Self::Lambertian { .. }
-            | Self::GaussianSheet { .. }
-            | Self::GaussianDielectric { .. }
-            | Self::Tabulated { .. }
-            | Self::Coated { .. }
-            | Self::Microfacet(_)
-            | Self::Haze(_)
-            | Self::Mixture(_) => None,
+        if let Self::PrismFilm { film, face } = self {
+            return Some(Self::PrismFilm { film: film.clone(), face: face.opposite() });
         }
+        if let (Self::Mixture(parts), true) = (self, self.has_grain()) {
+            let turned = |part: &Self| part.from_behind().unwrap_or_else(|| part.clone());
+            let parts = parts.iter().map(|(weight, part)| (*weight, turned(part)));
+            return Some(Self::Mixture(parts.collect()));
+        }
+        None
     }
 }

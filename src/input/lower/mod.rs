@@ -15,6 +15,7 @@ mod sensors;
 mod sheets;
 mod solids;
 mod sources;
+mod starts;
 mod surfaces;
 mod tubes;
 
@@ -84,8 +85,8 @@ pub(crate) fn lower(spec: &SceneSpec, places: &Places, problems: &mut Problems) 
         return None;
     }
     let mut scene = context.builder.build();
-    sources::settle_starts(&mut scene);
-    sources::check_starts(spec, &scene, context.problems);
+    starts::settle_starts(&mut scene);
+    starts::check_starts(spec, &scene, context.problems);
     consistency::check_overlaps(spec, &scene, context.problems);
     consistency::check_open_faces(spec, &scene, context.problems);
     contacts::check_contacts(spec, &scene, context.problems);

@@ -4,19 +4,16 @@ use crate::input::keys::Key;
 use crate::input::lower::Context;
 use crate::input::lower::place::Facing;
 use crate::input::lower::surfaces::tilted;
-use crate::input::problems::{Problems, name_hint};
-use crate::input::spec::SceneSpec;
+use crate::input::problems::name_hint;
 use crate::input::spec::placement::PlacementSpec;
 use crate::input::spec::source::{
     BodySpec, ContactSpec, EmissionSpec, FaceSide, SourceCommonSpec, SourceSpec,
 };
 use crate::math::Frame;
-use crate::optics::Bsdf;
-use crate::rng::Sampler;
 use crate::scene::shape::{Cylinder, Flat, Region, Shape, Sphere};
 use crate::scene::{
-    Emission, EmitSide, Emitter, Extent, FaceSpec, FinishId, Owner, Piece, PrimId, Scene, SolidId,
-    Source, Start,
+    Emission, EmitSide, Emitter, Extent, FaceSpec, FinishId, Owner, Piece, PrimId, SolidId, Source,
+    Start,
 };
 use crate::units::per_m2_to_per_mm2;
 
@@ -286,7 +283,7 @@ impl Context<'_> {
 }
 
 /// Whether directions are counted from a surface's normal.
-fn emits_from_a_surface(source: &SourceSpec) -> bool {
+pub(super) fn emits_from_a_surface(source: &SourceSpec) -> bool {
     match source {
         SourceSpec::Disk(_)
         | SourceSpec::Rectangle(_)
@@ -307,57 +304,4 @@ fn patch_range(extent: &Extent) -> std::ops::Range<usize> {
         Extent::Patches(range) => range.clone(),
         Extent::Ports(_) | Extent::Mesh { .. } => 0..0,
     }
-}
-
-/// Sources that touch no solid start all their paths outside, without asking.
-pub(super) fn settle_starts(scene: &mut Scene) {
-    let boxes: Vec<_> =
-        scene.solids.iter().map(|solid| solid.bounds.grown(scene.tolerance)).collect();
-    for source in &mut scene.sources {
-        let bounds = source.emitter.bounds();
-        if !boxes.iter().any(|solid| solid.overlaps(&bounds)) {
-            source.start = Start::Outside;
-        }
-    }
-}
-
-/// Notes sources that start where their light cannot get out.
-pub(super) fn check_starts(spec: &SceneSpec, scene: &Scene, problems: &mut Problems) {
-    /// Starts that are looked at, per source.
-    const LOOKS: u64 = 64;
-    for source in &scene.sources {
-        let Some(kind) = spec.sources.get(&source.name).map(SourceSpec::kind) else { continue };
-        let key = Key::of(&["sources", &source.name, kind]);
-        if source.start == Start::Outside {
-            continue;
-        }
-        let starts: Vec<_> = (0..LOOKS)
-            .map(|look| source.emit(scene, &mut Sampler::for_path(0, u64::MAX, look)))
-            .collect();
-        let buried = |solid: SolidId| {
-            starts.iter().all(|start| start.inside.contains(solid)) && is_opaque(scene, solid)
-        };
-        if let Some(solid) = (0..scene.solids.len()).map(SolidId::new).find(|solid| buried(*solid))
-        {
-            let name = &scene.solids[solid.index()].name;
-            problems
-                .error(
-                    &key,
-                    format!("lies inside the opaque solid `{name}`: none of its light gets out"),
-                )
-                .hint("move the source, or give a face of the solid another finish");
-        }
-    }
-}
-
-/// Whether every face of a solid takes all light.
-fn is_opaque(scene: &Scene, solid: SolidId) -> bool {
-    let absorbs = |finish: Option<FinishId>| {
-        finish.is_some_and(|finish| scene.finishes[finish.index()].bsdf == Bsdf::Absorber)
-    };
-    scene
-        .faces
-        .iter()
-        .filter(|face| face.owner == Owner::Solid(solid))
-        .all(|face| absorbs(face.back))
 }

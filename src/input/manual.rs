@@ -67,7 +67,7 @@ impl Manual<'_> {
             (true, title) => ("##", format!("`{title}`")),
             (false, title) => ("###", title),
         };
-        let _ = write!(self.text, "{level} {title}\n\n{}\n\n", description(definition));
+        _ = write!(self.text, "{level} {title}\n\n{}\n\n", description(definition));
         if schema::choices(self.schema, definition).is_empty() {
             self.keys(definition, &[]);
         } else {
@@ -87,7 +87,7 @@ impl Manual<'_> {
             let apart = apart.iter().map(|kind| format!("`{kind}`")).collect::<Vec<_>>();
             let but =
                 if apart.is_empty() { String::new() } else { format!(" but {}", apart.join(", ")) };
-            let _ = write!(self.text, "Keys of every kind{but}:\n\n");
+            _ = write!(self.text, "Keys of every kind{but}:\n\n");
             self.rows(table, |name| names.contains(&name));
             self.rule(table);
         }
@@ -114,7 +114,7 @@ impl Manual<'_> {
             return;
         }
         self.end_list();
-        let _ = write!(self.text, "{heading}{kind}`\n\n{words}\n\n");
+        _ = write!(self.text, "{heading}{kind}`\n\n{words}\n\n");
         let mut own = table["properties"].as_object().into_iter().flat_map(|keys| keys.keys());
         match table["properties"].is_object() {
             true if own.all(|key| shared.contains(&key.as_str())) => {
@@ -140,7 +140,7 @@ impl Manual<'_> {
         } else if resolved["type"] == "string" {
             let _ = writeln!(self.text, "- text: {words}");
         } else if resolved["properties"].is_object() {
-            let _ = write!(self.text, "**{words}** {}\n\n", description(resolved));
+            _ = write!(self.text, "**{words}** {}\n\n", description(resolved));
             self.keys(resolved, &[]);
         } else {
             let link = self.link(option).unwrap_or_default();
@@ -193,7 +193,7 @@ impl Manual<'_> {
             Some(RequiredSet::AtLeastOne(keys)) => ("At least", keys),
             None => return,
         };
-        let _ = write!(
+        _ = write!(
             self.text,
             "{words} one of {} is required.\n\n",
             wording::list(keys.into_iter())

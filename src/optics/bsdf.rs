@@ -235,12 +235,7 @@ impl Bsdf {
                 let local = cosine_hemisphere(sampler.pair(Dimension::Scatter));
                 let dir =
                     Frame::from_axis(DVec3::ZERO, leaving_normal(incidence, side)).to_world(local);
-                Some(Scattered {
-                    dir,
-                    factor: reflectance + transmittance,
-                    side,
-                    lobe: Lobe::Diffuse,
-                })
+                Some(diffuse(dir, reflectance + transmittance, side))
             }
             Self::GaussianSheet { lobe, reflectance, transmittance } => {
                 let side = choose_side(*reflectance, *transmittance, sampler)?;
@@ -249,17 +244,12 @@ impl Bsdf {
                     leaving_normal(incidence, side),
                     sampler,
                 );
-                Some(Scattered {
-                    dir,
-                    factor: reflectance + transmittance,
-                    side,
-                    lobe: Lobe::Diffuse,
-                })
+                Some(diffuse(dir, reflectance + transmittance, side))
             }
             Self::GaussianDielectric { lobe } => {
                 let Scattered { dir, side, .. } = smooth(incidence, sampler);
                 let dir = lobe.sample(dir.normalize(), leaving_normal(incidence, side), sampler);
-                Some(Scattered { dir, factor: 1.0, side, lobe: Lobe::Diffuse })
+                Some(diffuse(dir, 1.0, side))
             }
             Self::Tabulated { .. } => {
                 let shares = shares(self, incidence);
@@ -303,6 +293,11 @@ fn smooth(incidence: &Incidence, sampler: &mut Sampler<impl Numbers>) -> Scatter
 #[inline]
 pub(crate) fn specular(dir: DVec3, factor: f64, side: Side) -> Scattered {
     Scattered { dir, factor, side, lobe: Lobe::Specular }
+}
+
+/// Light that goes on in a direction that was drawn.
+fn diffuse(dir: DVec3, factor: f64, side: Side) -> Scattered {
+    Scattered { dir, factor, side, lobe: Lobe::Diffuse }
 }
 
 /// Reflected or transmitted in proportion to the shares; no draw where only one is possible.

@@ -8,6 +8,31 @@ use std::fmt::Write;
 /// The list that `check` prints.
 pub fn inventory(scene: &Scene) -> String {
     let mut text = String::new();
+    bodies(scene, &mut text);
+    faces(scene, &mut text);
+    sources(scene, &mut text);
+    for sensor in &scene.sensors {
+        let what = match &sensor.kind {
+            SensorKind::Surface(surface) => {
+                let kind = match &surface.seeing {
+                    Seeing::All => "",
+                    Seeing::Views(_) => "luminance over ",
+                    Seeing::Pixels(_) => "image through ",
+                };
+                format!("{kind}{} mm²", format_value(surface.area()))
+            }
+            SensorKind::Goniometer(goniometer) => match goniometer.radius {
+                Some(radius) => format!("goniometer of radius {} mm", format_value(radius)),
+                None => "far-field goniometer".into(),
+            },
+        };
+        _ = writeln!(text, "sensor {}: {what}, {} cells", sensor.name, sensor.cells());
+    }
+    text
+}
+
+/// Media and the solids of them.
+fn bodies(scene: &Scene, text: &mut String) {
     for medium in &scene.media {
         let (index, absorption) = (medium.index(0.0), medium.absorption(0.0));
         _ = write!(text, "medium {}: index {index}, absorption {absorption} /mm", medium.name());
@@ -27,6 +52,10 @@ pub fn inventory(scene: &Scene) -> String {
             solid.name, solid.priority
         );
     }
+}
+
+/// Faces, and the patterns on them.
+fn faces(scene: &Scene, text: &mut String) {
     for (index, face) in scene.faces.iter().enumerate() {
         let area = format_value(scene.face_area(FaceId::new(index)));
         let kind = match face.owner {
@@ -51,25 +80,6 @@ pub fn inventory(scene: &Scene) -> String {
             format_value(area)
         );
     }
-    sources(scene, &mut text);
-    for sensor in &scene.sensors {
-        let what = match &sensor.kind {
-            SensorKind::Surface(surface) => {
-                let kind = match &surface.seeing {
-                    Seeing::All => "",
-                    Seeing::Views(_) => "luminance over ",
-                    Seeing::Pixels(_) => "image through ",
-                };
-                format!("{kind}{} mm²", format_value(surface.area()))
-            }
-            SensorKind::Goniometer(goniometer) => match goniometer.radius {
-                Some(radius) => format!("goniometer of radius {} mm", format_value(radius)),
-                None => "far-field goniometer".into(),
-            },
-        };
-        _ = writeln!(text, "sensor {}: {what}, {} cells", sensor.name, sensor.cells());
-    }
-    text
 }
 
 /// Sources with their flux and, where they have an area, the etendue G = n² A Ω (projected).

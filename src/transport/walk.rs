@@ -183,17 +183,27 @@ pub fn walk<V: Visitor>(
             _ = visitor.see(&path, Event::Cut(path.throughput));
             return;
         }
-        let below = visitor.roulette_below();
-        if path.throughput < below {
-            let survives = sampler.one(Dimension::Roulette) * below < path.throughput;
-            let after = if survives { below } else { 0.0 };
-            if visitor.see(&path, Event::Roulette(path.throughput - after)).is_break() || !survives
-            {
-                return;
-            }
-            path.throughput = after;
+        if path.throughput < visitor.roulette_below()
+            && roulette(&mut path, sampler, visitor).is_break()
+        {
+            return;
         }
     }
+}
+
+/// Ends a path of small throughput, or lets it go on with the threshold's.
+#[inline(always)]
+fn roulette<V: Visitor>(
+    path: &mut Path,
+    sampler: &mut Sampler<impl Numbers>,
+    visitor: &mut V,
+) -> ControlFlow<()> {
+    let below = visitor.roulette_below();
+    let survives = sampler.one(Dimension::Roulette) * below < path.throughput;
+    let after = if survives { below } else { 0.0 };
+    visitor.see(path, Event::Roulette(path.throughput - after))?;
+    path.throughput = after;
+    if survives { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
 }
 
 /// Takes a path through the interface it has met: the ray on which it goes on.

@@ -24,34 +24,18 @@ pub(crate) fn check(scene: Scene<'_>, problems: &mut Problems) {
 fn check_one(scene: Scene<'_>, key: &Key, finish: &FinishSpec, problems: &mut Problems) {
     match finish {
         FinishSpec::Specular(spec) => {
-            check_sum(
-                &key.field("specular"),
-                spec.reflectance,
-                spec.transmittance,
-                Least::Zero,
-                problems,
-            );
+            let shares = [spec.reflectance, spec.transmittance];
+            check_sum(&key.field("specular"), shares, Least::Zero, problems);
         }
         FinishSpec::Lambertian(spec) => {
-            check_sum(
-                &key.field("lambertian"),
-                spec.reflectance,
-                spec.transmittance,
-                Least::AboveZero,
-                problems,
-            );
+            let shares = [spec.reflectance, spec.transmittance];
+            check_sum(&key.field("lambertian"), shares, Least::AboveZero, problems);
         }
         FinishSpec::Gaussian(spec) => {
-            if spec.reflectance.is_some() || spec.transmittance.is_some() {
-                let (reflectance, transmittance) =
-                    (spec.reflectance.unwrap_or(0.0), spec.transmittance.unwrap_or(0.0));
-                check_sum(
-                    &key.field("gaussian"),
-                    reflectance,
-                    transmittance,
-                    Least::AboveZero,
-                    problems,
-                );
+            let shares = [spec.reflectance, spec.transmittance];
+            if shares.iter().any(Option::is_some) {
+                let shares = shares.map(|share| share.unwrap_or(0.0));
+                check_sum(&key.field("gaussian"), shares, Least::AboveZero, problems);
             }
         }
         FinishSpec::Ggx(spec) => {
@@ -102,8 +86,7 @@ pub(super) enum Least {
 
 pub(super) fn check_sum(
     key: &Key,
-    reflectance: f64,
-    transmittance: f64,
+    [reflectance, transmittance]: [f64; 2],
     least: Least,
     problems: &mut Problems,
 ) {

@@ -29,7 +29,7 @@ pub(super) fn check_haze(
     }
     let reflectance = sheet.reflectance.unwrap_or(0.0);
     let transmittance = sheet.transmittance.unwrap_or(0.0);
-    check_sum(&haze.key, reflectance, transmittance, Least::AboveZero, problems);
+    check_sum(&haze.key, [reflectance, transmittance], Least::AboveZero, problems);
     let sides = scatter::sides(sheet);
     let all = integrated_scatter(haze.law, 1.0);
     for (name, share, other) in [

@@ -110,7 +110,7 @@ impl Manual<'_> {
             let value = self.type_of(kind, value);
             let range = range_of(table);
             let range = if range.is_empty() { range } else { format!(", {range}") };
-            let _ = writeln!(self.text, "- `{kind}`: {value}{range}. {words}");
+            _ = writeln!(self.text, "- `{kind}`: {value}{range}. {words}");
             return;
         }
         self.end_list();
@@ -136,15 +136,15 @@ impl Manual<'_> {
     fn option(&mut self, option: &Json, resolved: &Json) {
         let words = description(option);
         if let Some(word) = resolved["const"].as_str() {
-            let _ = writeln!(self.text, "- `\"{word}\"`: {words}");
+            _ = writeln!(self.text, "- `\"{word}\"`: {words}");
         } else if resolved["type"] == "string" {
-            let _ = writeln!(self.text, "- text: {words}");
+            _ = writeln!(self.text, "- text: {words}");
         } else if resolved["properties"].is_object() {
             _ = write!(self.text, "**{words}** {}\n\n", description(resolved));
             self.keys(resolved, &[]);
         } else {
             let link = self.link(option).unwrap_or_default();
-            let _ = writeln!(self.text, "- {link}: {words}");
+            _ = writeln!(self.text, "- {link}: {words}");
         }
     }
 
@@ -178,7 +178,7 @@ impl Manual<'_> {
                 None => "".into(),
             };
             let range = range_of(schema);
-            let _ = writeln!(
+            _ = writeln!(
                 self.text,
                 "| `{name}` | {kind} | {default} | {range} | {} |",
                 description(schema)

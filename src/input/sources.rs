@@ -152,7 +152,7 @@ impl Sources {
         let mut sources = Self::default();
         for path in paths {
             // A file that has gone leaves a message without its line, which is still a message.
-            let _ = sources.add_file(path);
+            _ = sources.add_file(path);
         }
         sources
     }

@@ -9,7 +9,7 @@
 //! `f(i→o)/n_o²` is the same both ways, so that a gather path does what a photon does, without a factor.
 
 use crate::math::{Frame, disk};
-use crate::optics::bsdf::specular;
+use crate::optics::bsdf::{choose_side, specular};
 use crate::optics::{Incidence, Lobe, Scattered, Shares, Side, fresnel};
 use crate::rng::{Dimension, Numbers, Sampler};
 use glam::DVec3;
@@ -74,7 +74,7 @@ impl Microfacet {
         }
         let facet = self.draw(incidence, sampler);
         let Shares { reflected, transmitted } = self.of_facet(&facet, incidence);
-        let side = crate::optics::bsdf::choose_side(reflected, transmitted, sampler)?;
+        let side = choose_side(reflected, transmitted, sampler)?;
         self.sent(&facet, side, incidence, reflected + transmitted)
     }
 

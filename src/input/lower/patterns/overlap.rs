@@ -53,7 +53,7 @@ fn first_shared(few: &Field, many: &Field) -> Option<DVec2> {
         let reach = match &few.outline {
             Outline::Circle { .. } => 1.0,
             // To the corners.
-            Outline::Rectangle { .. } => SQRT_2,
+            Outline::Rectangle { .. } | Outline::Relief(_) => SQRT_2,
         };
         let rim = (0..RIM).map(|i| {
             let on_rim = reach * circle((f64::from(i) + 0.5) / f64::from(RIM));

@@ -46,6 +46,17 @@ pub fn inventory(scene: &Scene) -> String {
             format_value(area)
         );
     }
+    for relief in &scene.reliefs {
+        let wall = &scene.faces[relief.wall.index()].name;
+        _ = writeln!(
+            text,
+            "relief {} on {wall}: {} elements, up to {} mm, {} mm³",
+            relief.name,
+            relief.field.count(),
+            format_value(relief.height()),
+            format_value(relief.volume())
+        );
+    }
     sources(scene, &mut text);
     for sensor in &scene.sensors {
         let what = match &sensor.kind {

@@ -191,8 +191,9 @@ impl Patch {
         self.chart
             .as_ref()
             .map_or_else(|| self.shape.area_in(rect), |chart| chart.area_in(&self.shape, rect))
-            - self.trim.as_ref().map_or(0.0, |trim| {
-                trim.area_in(rect.intersection(&self.chart_bounds()))
-            })
+            - self
+                .trim
+                .as_ref()
+                .map_or(0.0, |trim| trim.area_in(rect.intersection(&self.chart_bounds())))
     }
 }

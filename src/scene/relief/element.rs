@@ -34,7 +34,7 @@ pub enum Way {
 
 impl Way {
     /// -1 into the solid, 1 out of it.
-    pub(super) fn sign(self) -> f64 {
+    pub fn sign(self) -> f64 {
         match self {
             Self::Into => -1.0,
             Self::OutOf => 1.0,
@@ -129,15 +129,18 @@ impl Element {
     /// How far the elements of a row reach from the wall, mm.
     pub fn height(&self, place: f64) -> f64 {
         match &self.form {
-            Form::Cap { height, .. } | Form::Wedge { height, .. } | Form::Pyramid { height, .. } => {
-                height.at(place)
-            }
+            Form::Cap { height, .. }
+            | Form::Wedge { height, .. }
+            | Form::Pyramid { height, .. } => height.at(place),
         }
     }
 
-    /// Whether it goes all around a round wall.
-    pub(super) fn is_ring(&self) -> bool {
-        matches!(self.form, Form::Wedge { span: Span::Ring, .. })
+    /// How far a wedge goes across; `None` for other elements.
+    pub fn span(&self) -> Option<Span> {
+        match &self.form {
+            Form::Wedge { span, .. } => Some(*span),
+            Form::Cap { .. } | Form::Pyramid { .. } => None,
+        }
     }
 
     /// The cap that the elements of a row are, if they are.
@@ -184,11 +187,9 @@ impl Element {
     }
 
     /// Where the edge or the top of an element of a row lies along the guide, from its middle, mm.
-    pub(super) fn edge(&self, place: f64) -> f64 {
+    pub fn edge(&self, place: f64) -> f64 {
         match &self.form {
-            Form::Wedge { height, slopes, .. } => {
-                0.5 * height.at(place) * (slopes[0] - slopes[1])
-            }
+            Form::Wedge { height, slopes, .. } => 0.5 * height.at(place) * (slopes[0] - slopes[1]),
             Form::Cap { .. } | Form::Pyramid { .. } => 0.0,
         }
     }

@@ -34,7 +34,7 @@ pub struct Site {
 
 impl Site {
     /// The point at a distance across, along and out of the wall, mm.
-    pub(super) fn at(&self, across: f64, along: f64, out: f64) -> DVec3 {
+    pub fn at(&self, across: f64, along: f64, out: f64) -> DVec3 {
         self.origin + across * self.across + along * self.along + out * self.out
     }
 
@@ -75,6 +75,11 @@ impl Ground {
             | Shape::ParabolicCylinder(_)
             | Shape::CompoundParabola(_) => None,
         }
+    }
+
+    /// Whether the wall is flat.
+    pub fn is_flat(&self) -> bool {
+        self.radius.is_none()
     }
 
     /// Unrolled coordinates (u, v) of a point, and its height over the wall, mm.

@@ -11,7 +11,7 @@ mod surfaces;
 mod tests;
 
 pub use element::{Cap, CapSize, Element, Form, Span, Way};
-pub use ground::Ground;
+pub use ground::{Ground, Site};
 
 use crate::math::planar::{clip, edges, signed_area};
 use crate::scene::pattern::{Field, Outline};
@@ -139,6 +139,18 @@ impl Relief {
         self.element.way.sign() * sum * self.field.columns.count as f64
     }
 
+    /// The smallest and the largest (u, v, height over the wall) of its elements, mm.
+    pub fn extent(&self) -> [DVec3; 2] {
+        let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        for (place, middle) in self.field.places() {
+            let half = 0.5 * self.element.size(place);
+            let top = self.element.way.sign() * self.element.height(place);
+            min = min.min((middle - half).extend(top.min(0.0)));
+            max = max.max((middle + half).extend(top.max(0.0)));
+        }
+        [min, max]
+    }
+
     /// The largest height of its elements, mm.
     pub fn height(&self) -> f64 {
         let rows = (0..self.field.rows.count()).map(|row| self.field.rows.place(row));
@@ -186,7 +198,7 @@ impl Relief {
             if place + half.y < rect.min.y || place - half.y > rect.max.y {
                 continue;
             }
-            if self.element.is_ring() {
+            if self.element.span() == Some(Span::Ring) {
                 let at = DVec2::new(0.5 * (rect.min.x + rect.max.x), place);
                 sum += self.element.area_in(place, at, rect);
                 continue;

@@ -176,9 +176,7 @@ fn rings(
     let wedge = Wedge { height, slopes: *slopes, span: Span::Ring };
     let (feet, edge) = wedge.feet_and_edge();
     let end = radius + way.sign() * height;
-    let axis = |along: f64, z: DVec3| {
-        Site::frame(site.at(0.0, along, -radius), z, site.out)
-    };
+    let axis = |along: f64, z: DVec3| Site::frame(site.at(0.0, along, -radius), z, site.out);
     [(feet[0], edge, [radius, end]), (edge, feet[1], [end, radius])]
         .into_iter()
         .map(|(from, to, [first, last])| {

@@ -292,8 +292,14 @@ impl Element {
     pub(super) fn area_in(&self, place: f64, at: DVec2, rect: ChartRect) -> f64 {
         let rect = ChartRect { min: rect.min - at, max: rect.max - at };
         let half = 0.5 * self.length(place);
-        if let (Form::Cap { .. }, None) = (&self.form, self.round) {
-            return disk_overlap(half, &rect.corners());
+        match (&self.form, self.round) {
+            (Form::Cap { .. }, None) => return disk_overlap(half, &rect.corners()),
+            (Form::Cap { .. } | Form::Wedge { span: Span::Through(_), .. }, Some(_)) => {}
+            // All others take a rectangle.
+            (Form::Wedge { .. } | Form::Pyramid { .. }, _) => {
+                let reach = DVec2::new(self.half_width(place, self.edge(place)), half);
+                return rect.intersection(&ChartRect { min: -reach, max: reach }).area();
+            }
         }
         self.integral(place, half, [rect.min.y, rect.max.y], |v| {
             let width = self.half_width(place, v);

@@ -67,12 +67,12 @@ fn volume(min: DVec3, max: DVec3, holds: &impl Fn(DVec3) -> bool) -> f64 {
     let size = max - min;
     let mut inside = 0u64;
     for i in 0..n * n * n {
-        let cell = DVec3::new((i % n) as f64, (i / n % n) as f64, (i / n / n) as f64);
+        let cell = DVec3::new(f64::from(i % n), f64::from(i / n % n), f64::from(i / n / n));
         // Shifted from layer to layer, so that no plane of the solid meets a whole layer of points.
         let shift = DVec3::new(0.618 * cell.y, 0.755 * cell.z, 0.570 * cell.x).map(f64::fract);
-        inside += u64::from(holds(min + (cell + shift) / n as f64 * size));
+        inside += u64::from(holds(min + (cell + shift) / f64::from(n) * size));
     }
-    size.element_product() * inside as f64 / (n * n * n) as f64
+    size.element_product() * inside as f64 / f64::from(n * n * n)
 }
 
 fn in_plate(p: DVec3) -> bool {

@@ -256,8 +256,7 @@ fn assert_tight(what: &str, job: &Job, segments: u64) {
 #[test]
 fn ten_thousand_dimples_leak_nothing() {
     let job = load(
-        &format!(
-            r#"
+        r#"
 [media.glass]
 index = 1.49
 [solids.plate.box]
@@ -265,17 +264,16 @@ size_mm = [50, 4, 50]
 medium = "glass"
 [reliefs.dimples]
 on = "plate.wall_minus_y"
-element = {{ dimple = {{ radius_mm = 0.25, depth_mm = {{ from_mm = 0.05, to_mm = 0.2 }} }} }}
-layout = {{ grid = {{ across_pitch_mm = 0.5, pitch_mm = 0.5 }} }}
+element = { dimple = { radius_mm = 0.25, depth_mm = { from_mm = 0.05, to_mm = 0.2 } } }
+layout = { grid = { across_pitch_mm = 0.5, pitch_mm = 0.5 } }
 [sources.lamp.rectangle]
 width_mm = 40
 height_mm = 3
 flux_lm = 1
-at = {{ face = "plate.entry", gap_mm = 0.1 }}
+at = { face = "plate.entry", gap_mm = 0.1 }
 [sensors]
-top = {{ plane = {{ cells = [4, 4] }}, on = "plate.wall_plus_y", counts = "leaving" }}
-"#
-        ),
+top = { plane = { cells = [4, 4] }, on = "plate.wall_plus_y", counts = "leaving" }
+"#,
         20_000,
     );
     assert_eq!(job.scene.reliefs[0].field.count(), 10_000);

@@ -4,6 +4,7 @@
 //! wall is not: that is asked of a rule ([`Field`]), however many elements there are. Their surfaces are patches of their own, which
 //! end at the wall by the same numbers. A relief knows geometry only; which finish it has is decided elsewhere.
 
+mod amounts;
 mod element;
 mod ground;
 mod surfaces;

@@ -59,7 +59,7 @@ fn spherical(element: &Element, cap: &Cap, site: &Site, lap: f64) -> Made {
         (Way::OutOf, None) => Sphere::zone(frame, radius, wall - lap, radius),
         (Way::OutOf, Some(round)) => {
             // The wall falls away from its tangent: where it meets the sphere furthest around it is lower by rim²/2c.
-            let lowest = wall - 0.5 * rim * rim / cap.from_axis(round, element.way);
+            let lowest = wall - 0.5 * rim * rim / cap.center_from_axis(round, element.way);
             Sphere::zone(frame, radius, lowest - lap, radius)
         }
     };

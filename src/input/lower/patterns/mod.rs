@@ -91,8 +91,7 @@ impl Context<'_> {
                 .error(
                     &key.field("layout"),
                     format!(
-                        "an element {place:.4} mm along `{}` reaches {beyond:.4} mm beyond it",
-                        on
+                        "an element {place:.4} mm along `{on}` reaches {beyond:.4} mm beyond it"
                     ),
                 )
                 .hint(format!("the face is {:.4} mm across and {:.4} mm along", size.x, size.y));

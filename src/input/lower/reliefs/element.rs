@@ -237,7 +237,7 @@ impl Context<'_> {
             return None;
         }
         let size = element.size(place);
-        if element.cap(place).is_some() && !(size.x < std::f64::consts::PI * radius) {
+        if element.cap(place).is_some() && size.x >= std::f64::consts::PI * radius {
             self.problems
                 .error(
                     key,

@@ -19,6 +19,7 @@ use crate::scene::pattern::{Field, Outline};
 use crate::scene::shape::ChartRect;
 use crate::scene::{FaceId, Piece};
 use glam::{DVec2, DVec3};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Elements with relief on one wall of a solid.
@@ -34,6 +35,8 @@ pub struct Relief {
     pub element: Element,
     /// The wall in space.
     pub ground: Ground,
+    /// How far its longest element reaches along the guide, mm.
+    reach: f64,
 }
 
 /// What limits a patch beside the edges of its shape: all of it has to be fulfilled.
@@ -113,7 +116,11 @@ impl Relief {
     /// A relief of `element`s in rows and columns on a wall whose chart closes after `period`, mm, if it does.
     pub fn new(name: String, wall: FaceId, element: Element, field: Field, ground: Ground) -> Self {
         let field = Field { outline: Outline::Relief(Box::new(element.clone())), ..field };
-        Self { name, wall, field, element, ground }
+        let rows = (0..field.rows.count()).map(|row| field.rows.place(row));
+        let longest = rows.map(|place| element.size(place).y).fold(0.0, f64::max);
+        // A little more, for rows that end at the edge of what is asked.
+        let reach = 0.5 * longest * (1.0 + 1e-9);
+        Self { name, wall, field, element, ground, reach }
     }
 
     /// The surfaces of all elements.
@@ -177,7 +184,11 @@ impl Relief {
         if signed_area(&cell) < 0.0 {
             cell.reverse();
         }
-        let rows = (0..self.field.rows.count()).map(|row| self.field.rows.place(row));
+        let [from, to] = [f64::min, f64::max].map(|pick| {
+            let all = cell.iter().map(|corner| corner.x);
+            all.reduce(pick).unwrap_or_default()
+        });
+        let rows = self.rows_in(from, to).map(|row| self.field.rows.place(row));
         rows.map(|place| {
             let section = self.element.section(place).map(|p| p + DVec2::new(place, 0.0));
             let part = edges(&cell).fold(section.to_vec(), |part, (from, to)| {
@@ -191,31 +202,46 @@ impl Relief {
 
     /// Area that the elements take of the part of the wall in `rect`, mm².
     fn area_in(&self, rect: ChartRect) -> f64 {
-        let mut sum = 0.0;
         let Field { rows, columns, period, .. } = &self.field;
-        for row in 0..rows.count() {
+        // Around a closed wall an element may lie on both sides of the seam.
+        let turns = period.map_or([0.0; 3], |period| [0.0, -period, period]);
+        let turns = &turns[..if period.is_some() { 3 } else { 1 }];
+        let mut sum = 0.0;
+        for row in self.rows_in(rect.min.y, rect.max.y) {
             let place = rows.place(row);
-            let half = 0.5 * self.element.size(place);
-            if place + half.y < rect.min.y || place - half.y > rect.max.y {
-                continue;
-            }
             if self.element.span() == Some(Span::Ring) {
                 let at = DVec2::new(0.5 * (rect.min.x + rect.max.x), place);
                 sum += self.element.area_in(place, at, rect);
                 continue;
             }
-            for column in 0..columns.count {
-                let u = columns.place(row, column);
-                // Around a closed wall an element may lie on both sides of the seam.
-                let turns: &[f64] = if period.is_some() { &[-1.0, 0.0, 1.0] } else { &[0.0] };
-                for turn in turns {
-                    let u = u + turn * period.unwrap_or(0.0);
-                    if u + half.x >= rect.min.x && u - half.x <= rect.max.x {
-                        sum += self.element.area_in(place, DVec2::new(u, place), rect);
-                    }
+            let half = 0.5 * self.element.size(place).x;
+            for turn in turns {
+                let first = columns.place(row, 0) + turn;
+                let from = ((rect.min.x - half - first) / columns.pitch).ceil().max(0.0) as usize;
+                let past = ((rect.max.x + half - first) / columns.pitch + 1.0).floor().max(0.0);
+                for column in from..(past as usize).min(columns.count) {
+                    let at = DVec2::new(columns.place(row, column) + turn, place);
+                    sum += self.element.area_in(place, at, rect);
                 }
             }
         }
         sum
+    }
+
+    /// The rows whose elements may reach into a part of the wall along the guide, mm.
+    fn rows_in(&self, from: f64, to: f64) -> Range<usize> {
+        let before = |limit: f64| {
+            let (mut low, mut high) = (0, self.field.rows.count());
+            while low < high {
+                let middle = low.midpoint(high);
+                if self.field.rows.place(middle) < limit {
+                    low = middle + 1;
+                } else {
+                    high = middle;
+                }
+            }
+            low
+        };
+        before(from - self.reach)..before(to + self.reach)
     }
 }

@@ -24,6 +24,7 @@ pub fn scene(root: &Node, problems: &mut Problems) -> SceneSpec {
         solids: entries(root, "solids", problems),
         sheets: entries(root, "sheets", problems),
         patterns: entries(root, "patterns", problems),
+        reliefs: entries(root, "reliefs", problems),
         sources: entries(root, "sources", problems),
         sensors: entries(root, "sensors", problems),
         run: value(root, "run", problems).unwrap_or_default(),

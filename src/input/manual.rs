@@ -37,12 +37,13 @@ fn reference(schema: &Json) -> String {
 }
 
 /// Tables at the top of a file, and their headings.
-const FAMILIES: [(&str, &str); 9] = [
+const FAMILIES: [(&str, &str); 10] = [
     ("Medium", "media.NAME"),
     ("Finish", "finishes.NAME"),
     ("Solid", "solids.NAME"),
     ("Sheet", "sheets.NAME"),
     ("Pattern", "patterns.NAME"),
+    ("Relief", "reliefs.NAME"),
     ("Source", "sources.NAME"),
     ("Sensor", "sensors.NAME"),
     ("Run", "run"),

@@ -80,6 +80,17 @@ fn faces(scene: &Scene, text: &mut String) {
             format_value(area)
         );
     }
+    for relief in &scene.reliefs {
+        let wall = &scene.faces[relief.wall.index()].name;
+        _ = writeln!(
+            text,
+            "relief {} on {wall}: {} elements, up to {} mm, {} mm³",
+            relief.name,
+            relief.field.count(),
+            format_value(relief.height()),
+            format_value(relief.volume())
+        );
+    }
 }
 
 /// Sources with their flux and, where they have an area, the etendue G = n² A Ω (projected).

@@ -53,12 +53,12 @@ impl<'s> FaceArea<'s> {
         Self { scene, pieces, area_up_to }
     }
 
-    /// All of it, mm².
+    /// All of it, mm², with the places that [`Self::sample`] finds taken by others.
     pub fn area(&self) -> f64 {
         self.area_up_to.last().copied().unwrap_or(0.0)
     }
 
-    /// A point, uniform over the area for uniform `u`; `None` where there is no area.
+    /// A point, uniform over the area for uniform `u`; `None` where there is no area, or a relief takes the place.
     pub fn sample(&self, u: [f64; 2]) -> Option<AreaPoint> {
         let area = Some(self.area()).filter(|area| *area > 0.0)?;
         let wanted = (u[0] * area).min(area.next_down());
@@ -122,7 +122,7 @@ impl Piece<'_> {
     fn sample(&self, scene: &Scene, u: [f64; 2]) -> Option<AreaPoint> {
         match self {
             Self::Patch(patch, prim) => {
-                let point = patch.shape.sample(u);
+                let point = patch.sample(u)?;
                 let (normal, uv) = (patch.shape.normal(point), patch.chart(point));
                 Some(AreaPoint { point, normal, uv, prim: *prim })
             }
@@ -140,7 +140,7 @@ impl Piece<'_> {
     fn crossings(&self, ray: &Ray, mut visit: impl FnMut(f64, DVec3)) {
         match self {
             Self::Patch(patch, _) => {
-                patch.shape.crossings(ray, Start::Elsewhere, |Crossing { t, .. }| {
+                patch.crossings(ray, Start::Elsewhere, |Crossing { t, .. }| {
                     visit(t, patch.shape.normal(ray.at(t)));
                 });
             }

@@ -5,6 +5,7 @@ use crate::optics::{Bsdf, Medium};
 use crate::scene::convex::Convex;
 use crate::scene::mesh::Mesh;
 use crate::scene::pattern::Pattern;
+use crate::scene::relief::{Cut, Ground, Relief, Trim};
 use crate::scene::shape::Shape;
 use crate::scene::sweep::WallChart;
 use crate::scene::{
@@ -13,6 +14,11 @@ use crate::scene::{
 };
 use crate::units::FluxUnit;
 use glam::DVec3;
+use std::sync::Arc;
+
+/// Surfaces of a relief overlap where they meet by this many ulp of the largest coordinate: rounding of a point on a ray and
+/// of the question on which side of an edge it is.
+const LAP_ULP: f64 = 8.0;
 
 /// Collects the parts of a scene. Coordinates are about `origin` of the user's.
 #[derive(Debug)]
@@ -44,12 +50,14 @@ pub struct Piece {
     pub smooth: u32,
     /// Leads from the shape's chart to that of the whole sweep; `None` where they are the same.
     pub chart: Option<WallChart>,
+    /// What limits it beside the edges of its shape.
+    pub trim: Option<Arc<Trim>>,
 }
 
 impl Piece {
     /// A piece that is a face of its own.
     pub fn whole(shape: Shape) -> Self {
-        Self { shape, smooth: 0, chart: None }
+        Self { shape, smooth: 0, chart: None, trim: None }
     }
 }
 
@@ -66,6 +74,7 @@ impl Builder {
             solids: Vec::new(),
             faces: Vec::new(),
             patterns: Vec::new(),
+            reliefs: Vec::new(),
             patches: Vec::new(),
             meshes: Vec::new(),
             ports: Vec::new(),
@@ -113,8 +122,8 @@ impl Builder {
         let mut bounds = Aabb::EMPTY;
         for piece in spec.pieces {
             bounds = bounds.union(piece.shape.bounds());
-            let Piece { shape, smooth, chart } = piece;
-            table.push(Patch { shape, face, owner: spec.owner, smooth, chart });
+            let Piece { shape, smooth, chart, trim } = piece;
+            table.push(Patch { shape, face, owner: spec.owner, smooth, chart, trim });
         }
         let range = first..table.len();
         let extent = match spec.owner {
@@ -178,6 +187,40 @@ impl Builder {
     pub fn add_pattern(&mut self, pattern: Pattern) {
         self.scene.faces[pattern.face.index()].patterns.push(self.scene.patterns.len());
         self.scene.patterns.push(pattern);
+    }
+
+    /// Makes a relief a part of the solid of its wall; `sides` are the patches that its grooves cut through at their ends, by
+    /// their numbers.
+    /// Its elements are a face of their own with the given finishes, front and back.
+    pub fn add_relief(
+        &mut self,
+        relief: Relief,
+        sides: &[(usize, Ground)],
+        [front, back]: [Option<FinishId>; 2],
+    ) -> FaceId {
+        let (wall, owner) = (relief.wall, self.scene.owner(relief.wall));
+        let size = self.scene.bounds.largest_coordinate();
+        let pieces = relief.pieces(LAP_ULP * f64::EPSILON * size);
+        let relief = Arc::new(relief);
+        if let Owner::Solid(solid) = owner {
+            let volume = &mut self.scene.solids[solid.index()].volume;
+            *volume = volume.map(|volume| volume + relief.volume());
+        }
+        let mut cut = |index: usize, cut: Cut| {
+            let trim = &mut self.scene.patches[index].trim;
+            let mut cuts = trim.take().map_or_else(Vec::new, |trim| trim.cuts.clone());
+            cuts.push(cut);
+            *trim = Some(Arc::new(Trim { cuts }));
+        };
+        if let Extent::Patches(range) = &self.scene.faces[wall.index()].extent {
+            range.clone().for_each(|index| cut(index, Cut::Wall(Arc::clone(&relief))));
+        }
+        for (index, ground) in sides {
+            cut(*index, Cut::Side { relief: Arc::clone(&relief), side: *ground });
+        }
+        let name = relief.name.clone();
+        self.scene.reliefs.push(relief);
+        self.add_face(FaceSpec { name, owner, front, back, pieces })
     }
 
     /// Sets the medium outside every solid; it is the one given to [`Builder::new`] otherwise.

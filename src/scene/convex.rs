@@ -67,6 +67,7 @@ impl Convex {
             let prim = PrimId::new(index);
             match &patch.shape {
                 _ if patch.owner != owner => {}
+                _ if patch.trim.is_some() => return None,
                 Shape::Flat(flat) => flats.push((prim, flat)),
                 Shape::Cylinder(cylinder) if round.is_none() && cylinder.is_whole() => {
                     round = Some((prim, cylinder.clone()));

@@ -2,11 +2,13 @@
 
 use crate::math::{Aabb, Frame};
 use crate::scene::mesh::Mesh;
-use crate::scene::shape::{ChartRect, Shape, Toward};
+use crate::scene::relief::Trim;
+use crate::scene::shape::{ChartRect, Crossing, Shape, Start, Toward, Wanted};
 use crate::scene::sweep::WallChart;
-use crate::scene::{FaceId, FinishId, SolidId};
+use crate::scene::{FaceId, FinishId, Ray, SolidId};
 use glam::{DVec2, DVec3};
 use std::ops::Range;
+use std::sync::Arc;
 
 /// What a face belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -87,6 +89,10 @@ impl MeshBody {
     }
 }
 
+/// Points by which the area of a surface is found that is cut off at a round wall.
+const AREA_POINTS: u32 = 400;
+const GOLDEN_RATIO: f64 = 1.618_033_988_749_895;
+
 /// A smooth piece of a face.
 #[derive(Debug, Clone)]
 pub struct Patch {
@@ -100,9 +106,68 @@ pub struct Patch {
     pub smooth: u32,
     /// Leads from the shape's chart to that of the whole sweep; `None` where they are the same.
     pub chart: Option<WallChart>,
+    /// What limits it beside the edges of its shape; mostly nothing.
+    pub trim: Option<Arc<Trim>>,
 }
 
 impl Patch {
+    /// Calls `visit` for every crossing of the ray's whole line with the patch, in any order.
+    #[inline]
+    pub fn crossings(&self, ray: &Ray, start: Start, mut visit: impl FnMut(Crossing)) {
+        self.shape.crossings(ray, start, |crossing| {
+            if self.keeps(ray, &crossing) {
+                visit(crossing);
+            }
+        });
+    }
+
+    /// The first crossing of the ray's line that is `wanted`.
+    #[inline(always)]
+    pub fn first_crossing(&self, ray: &Ray, start: Start, wanted: &Wanted) -> Option<Crossing> {
+        match &self.trim {
+            None => self.shape.first_crossing(ray, start, wanted),
+            Some(_) => self.first_kept(&ray.lent(), start, wanted),
+        }
+    }
+
+    #[inline(never)]
+    fn first_kept(&self, ray: &Ray, start: Start, wanted: &Wanted) -> Option<Crossing> {
+        let mut first: Option<Crossing> = None;
+        self.shape.crossings(ray, start, |crossing| {
+            let is_nearer = first.is_none_or(|first| crossing.t < first.t);
+            if is_nearer && wanted.includes(&crossing) && self.keeps(ray, &crossing) {
+                first = Some(crossing);
+            }
+        });
+        first
+    }
+
+    fn keeps(&self, ray: &Ray, crossing: &Crossing) -> bool {
+        self.trim.as_ref().is_none_or(|trim| trim.keeps(ray.at(crossing.t)))
+    }
+
+    /// A point, uniform over the area for uniform `u`; `None` where something else takes its place.
+    pub fn sample(&self, u: [f64; 2]) -> Option<DVec3> {
+        let point = self.shape.sample(u);
+        self.trim.as_ref().is_none_or(|trim| trim.keeps(point)).then_some(point)
+    }
+
+    /// Area, mm²; of a surface that is cut off at a round wall to about a percent.
+    pub fn area(&self) -> f64 {
+        let whole = self.shape.area();
+        let Some(trim) = &self.trim else { return whole };
+        if trim.is_of_element() {
+            // A lattice of the golden ratio.
+            let point = |i: u32| {
+                let u = (f64::from(i) + 0.5) / f64::from(AREA_POINTS);
+                self.sample([u, (f64::from(i) / GOLDEN_RATIO).fract()])
+            };
+            let kept = (0..AREA_POINTS).filter(|i| point(*i).is_some()).count();
+            return whole * kept as f64 / f64::from(AREA_POINTS);
+        }
+        whole - trim.area_in(self.chart_bounds())
+    }
+
     /// Unrolled coordinates on the face, mm.
     pub fn chart(&self, p: DVec3) -> DVec2 {
         let uv = self.shape.chart(p);
@@ -126,5 +191,9 @@ impl Patch {
         self.chart
             .as_ref()
             .map_or_else(|| self.shape.area_in(rect), |chart| chart.area_in(&self.shape, rect))
+            - self
+                .trim
+                .as_ref()
+                .map_or(0.0, |trim| trim.area_in(rect.intersection(&self.chart_bounds())))
     }
 }

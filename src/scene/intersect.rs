@@ -187,7 +187,7 @@ impl Scene {
             let patch = &self.patches[prim.index()];
             let limit = nearest.crossing.t + self.tolerance;
             let Some(wanted) = self.wanted(patch.owner, inside, limit) else { continue };
-            if let Some(crossing) = patch.shape.first_crossing(ray, start_on(prim, from), &wanted) {
+            if let Some(crossing) = patch.first_crossing(ray, start_on(prim, from), &wanted) {
                 nearest.consider(prim, crossing);
             }
         }
@@ -246,7 +246,7 @@ impl Scene {
         match self.surface(prim) {
             Surface::Patch(patch) => {
                 let wanted = self.wanted(patch.owner, inside, limit)?;
-                patch.shape.first_crossing(ray, start_on(prim, from), &wanted)
+                patch.first_crossing(ray, start_on(prim, from), &wanted)
             }
             Surface::Triangle(body, triangle) => {
                 // Most triangles are missed: what counts is asked of the others.

@@ -25,6 +25,7 @@ mod pieces;
 mod pixels;
 pub mod plan;
 mod ray;
+pub mod relief;
 mod section;
 mod sensor;
 pub mod shape;
@@ -56,11 +57,13 @@ pub use source::{EmitSide, Emitted, Emitter, Source, Start};
 
 use convex::Convex;
 use pattern::Pattern;
+use relief::Relief;
 
 use crate::math::Aabb;
 use crate::optics::{Bsdf, Medium};
 use crate::units::FluxUnit;
 use glam::DVec3;
+use std::sync::Arc;
 
 /// Relative to the size of the scene: faces closer than this are one face.
 pub const COINCIDENCE: f64 = 1e-12;
@@ -110,6 +113,8 @@ pub struct Scene {
     pub faces: Vec<Face>,
     /// Holes, dots and patches on faces.
     pub patterns: Vec<Pattern>,
+    /// Dimples, grooves and the like on walls of solids.
+    pub reliefs: Vec<Arc<Relief>>,
     /// Analytic pieces of solids and sheets.
     pub patches: Vec<Patch>,
     /// Bodies of triangles; their triangles are numbered after the patches.

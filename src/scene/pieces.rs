@@ -44,7 +44,7 @@ impl Surface<'_> {
         visit: impl FnMut(Crossing),
     ) {
         match self {
-            Self::Patch(patch) => patch.shape.crossings(ray, start, visit),
+            Self::Patch(patch) => patch.crossings(ray, start, visit),
             Self::Triangle(body, triangle) => {
                 body.crossing(triangle, line, start).into_iter().for_each(visit);
             }
@@ -137,7 +137,7 @@ impl Scene {
     pub fn face_area(&self, face: FaceId) -> f64 {
         match self.mesh_face(face) {
             Some((body, index)) => body.mesh.face_area(index),
-            None => self.face_patches(face).iter().map(|patch| patch.shape.area()).sum(),
+            None => self.face_patches(face).iter().map(Patch::area).sum(),
         }
     }
 

@@ -94,7 +94,7 @@ fn is_over_surface(
     if (1..=FEW_PIECES).contains(&pieces.len()) {
         for &prim in pieces {
             let patch = &scene.patches[prim.index()];
-            patch.shape.crossings(&ray, Start::Elsewhere, |crossing| found |= lies(prim, crossing));
+            patch.crossings(&ray, Start::Elsewhere, |crossing| found |= lies(prim, crossing));
         }
     } else {
         scene.all_crossings(&ray, |prim, crossing| {

@@ -215,7 +215,7 @@ fn aim_opening(scene: &Scene, sensor: SensorId, segment: &Segment<'_>) -> Option
     let mut opening: Option<f64> = None;
     for &face in aim.iter().filter(|face| scene.faces[face.index()].owner == Owner::Port) {
         for patch in scene.face_patches(face) {
-            patch.shape.crossings(segment.ray, Start::Elsewhere, |Crossing { t, .. }| {
+            patch.crossings(segment.ray, Start::Elsewhere, |Crossing { t, .. }| {
                 if t > 0.0 && t <= segment.length + scene.tolerance {
                     opening = Some(opening.map_or(t, |first| first.min(t)));
                 }

@@ -18,6 +18,7 @@ mod laws;
 mod merge;
 mod mix;
 mod patterns;
+mod reliefs;
 mod rims;
 mod sensors;
 mod settings;

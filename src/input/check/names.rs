@@ -11,7 +11,7 @@ const SHARED: [&str; 4] = ["solids", "sheets", "sources", "sensors"];
 const RESERVED: [&str; 1] = ["balance"];
 
 pub(crate) fn check(places: &Places, problems: &mut Problems) {
-    for family in ["media", "finishes", "patterns"].into_iter().chain(SHARED) {
+    for family in ["media", "finishes", "patterns", "reliefs"].into_iter().chain(SHARED) {
         for (name, entry) in named(places.root(), family) {
             check_letters(&Key::of(&[family, name]), name, entry, problems);
         }

@@ -81,6 +81,11 @@ pub(crate) fn finish_refs(scene: Scene<'_>) -> Vec<(Key, &FinishRef)> {
         let key = Key::of(&["patterns", name]);
         add_ref(key.field("finish"), &pattern.finish, &mut found);
     }
+    for (name, relief) in &scene.spec.reliefs {
+        if let Some(finish) = &relief.finish {
+            add_ref(Key::of(&["reliefs", name, "finish"]), finish, &mut found);
+        }
+    }
     for (name, source) in &scene.spec.sources {
         let Some(common) = source.common() else { continue };
         match &common.body {

@@ -80,9 +80,14 @@ pub(super) fn check_open_faces(spec: &SceneSpec, scene: &Scene, problems: &mut P
         let steps = index(solid.medium) != index(scene.surroundings);
         if steps && scene.finishes[finish.index()].bsdf.passes_straight() {
             let (inside, outside) = (index(solid.medium), index(scene.surroundings));
+            let is_relief = scene.reliefs.iter().any(|relief| relief.name == face.name);
+            let key = match face.name.split_once('.') {
+                Some((_, relief)) if is_relief => Key::of(&["reliefs", relief, "finish"]),
+                Some(_) | None => solid_key(spec, solid).field("faces"),
+            };
             problems
                 .error(
-                    &solid_key(spec, solid).field("faces"),
+                    &key,
                     format!(
                         "`{}` lets light pass straight on, but the index steps from {inside} to {outside} there",
                         face.name

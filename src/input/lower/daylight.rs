@@ -269,8 +269,13 @@ impl Context<'_> {
             [face] => (scene.face_plane(*face), scene.faces[face.index()].owner),
             [] | [_, _, ..] => (None, Owner::Sheet),
         };
-        let patches = faces.iter().flat_map(|face| scene.face_patches(*face));
-        let shapes: Vec<_> = patches.map(|patch| patch.shape.clone()).collect();
+        let patches = || faces.iter().flat_map(|face| scene.face_patches(*face));
+        if patches().any(|patch| patch.trim.is_some()) {
+            let message = format!("`{name}` has a relief, on which no light can start");
+            self.problems.error(key, message).hint(instead);
+            return None;
+        }
+        let shapes: Vec<_> = patches().map(|patch| patch.shape.clone()).collect();
         let (Some(plane), false) = (plane, shapes.is_empty()) else {
             let message = format!("`{name}` is not a single flat face");
             self.problems.error(key, message).hint(instead);

@@ -11,6 +11,7 @@ mod meshes;
 mod patterns;
 mod place;
 mod plan;
+mod reliefs;
 mod sensors;
 mod sheets;
 mod solids;
@@ -75,6 +76,7 @@ pub(crate) fn lower(spec: &SceneSpec, places: &Places, problems: &mut Problems) 
     context.lower_media();
     context.lower_finishes();
     context.lower_bodies();
+    context.lower_reliefs();
     context.lower_patterns();
     context.lower_sources();
     context.lower_sensors();

@@ -168,6 +168,13 @@ impl Context<'_> {
     fn on_faces(&mut self, on: &str, key: &Key) -> Option<(Vec<FaceId>, Place)> {
         let faces = self.faces_named(on, &key.field("on"))?;
         let scene = self.builder.scene();
+        if let Some(relief) = scene.reliefs.iter().find(|relief| relief.name == on) {
+            let wall = &scene.faces[relief.wall.index()].name;
+            self.problems
+                .error(&key.field("on"), format!("`{on}` is a relief, which does not unroll into a map"))
+                .hint(format!("put the sensor on `{wall}` or on a plane before it; the balance tells what goes through the relief"));
+            return None;
+        }
         let port = faces.iter().any(|face| scene.faces[face.index()].owner == Owner::Port);
         Some((faces, if port { Place::Port } else { Place::Face }))
     }

@@ -182,6 +182,13 @@ impl Context<'_> {
             FaceSide::Back => EmitSide::Back,
         };
         let scene = self.builder.scene();
+        let patches = || faces.iter().flat_map(|face| scene.face_patches(*face));
+        if patches().any(|patch| patch.trim.is_some()) {
+            self.problems
+                .error(key, format!("`{of}` has a relief; it cannot emit"))
+                .hint("let a plane close to it emit, or leave the relief out");
+            return None;
+        }
         let mut shapes = Vec::new();
         let mut on = Vec::new();
         for &face in &faces {

@@ -78,8 +78,12 @@ impl Context<'_> {
                 }
                 Wall::Mitre => "wall_mitre".to_owned(),
             };
-            let piece =
-                Piece { shape: part.shape.clone(), smooth: part.smooth, chart: Some(part.chart) };
+            let piece = Piece {
+                shape: part.shape.clone(),
+                smooth: part.smooth,
+                chart: Some(part.chart),
+                trim: None,
+            };
             match faces.iter_mut().find(|face| face.name == name) {
                 Some(face) => face.pieces.push(piece),
                 None => faces.push(NamedFace { name, part: BodyPart::Wall, pieces: vec![piece] }),

@@ -87,7 +87,12 @@ fn tube(inner: &Sweep, outer: &Sweep) -> Option<Surfaces> {
         part: BodyPart::Wall,
         pieces: parts
             .into_iter()
-            .map(|part| Piece { shape: part.shape, smooth: part.smooth, chart: Some(part.chart) })
+            .map(|part| Piece {
+                shape: part.shape,
+                smooth: part.smooth,
+                chart: Some(part.chart),
+                trim: None,
+            })
             .collect(),
     };
     let mut faces = vec![wall("inner", bore?), wall("outer", outer.parts.clone())];

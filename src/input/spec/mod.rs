@@ -12,6 +12,7 @@ pub mod daylight;
 pub mod finish;
 pub mod pattern;
 pub mod placement;
+pub mod relief;
 pub mod run;
 pub mod sensor;
 pub mod sheet;
@@ -21,6 +22,7 @@ pub mod sweep;
 
 use finish::{FinishSpec, MediumSpec};
 use pattern::PatternSpec;
+use relief::ReliefSpec;
 use run::{CheckSpec, RunSpec};
 use sensor::SensorSpec;
 use sheet::SheetSpec;
@@ -65,6 +67,9 @@ pub struct SceneSpec {
     /// Holes, dots and patches on faces by name.
     #[serde(default)]
     pub patterns: IndexMap<String, PatternSpec>,
+    /// Dimples, grooves and the like on walls of solids, by name.
+    #[serde(default)]
+    pub reliefs: IndexMap<String, ReliefSpec>,
     /// Light sources by name.
     #[serde(default)]
     pub sources: IndexMap<String, SourceSpec>,

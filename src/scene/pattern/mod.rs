@@ -10,6 +10,7 @@ mod rows;
 pub use along::Along;
 pub use rows::{Graded, Rows};
 
+use crate::scene::relief::Element;
 use crate::scene::shape::ChartRect;
 use crate::scene::{FaceId, FinishId};
 use glam::DVec2;
@@ -77,6 +78,14 @@ pub struct Columns {
     pub shift: f64,
 }
 
+impl Columns {
+    /// Where an element of a row lies across the face, mm.
+    pub fn place(&self, row: usize, column: usize) -> f64 {
+        let first = if row % 2 == 1 { self.first + self.shift } else { self.first };
+        first + column as f64 * self.pitch
+    }
+}
+
 /// The outline of an element.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outline {
@@ -92,6 +101,8 @@ pub enum Outline {
         /// Length along the face, mm.
         length: f64,
     },
+    /// What an element with relief takes of its wall.
+    Relief(Box<Element>),
 }
 
 impl Outline {
@@ -100,15 +111,16 @@ impl Outline {
         match self {
             Self::Circle { diameter } => DVec2::splat(diameter.at(place)),
             Self::Rectangle { width, length } => DVec2::new(*width, *length),
+            Self::Relief(element) => element.size(place),
         }
     }
 
     /// Area of an element of a row, mm².
     pub fn area(&self, place: f64) -> f64 {
-        let size = self.size(place);
         match self {
-            Self::Circle { .. } => 0.25 * std::f64::consts::PI * size.x * size.x,
-            Self::Rectangle { .. } => size.x * size.y,
+            Self::Circle { diameter } => 0.25 * std::f64::consts::PI * diameter.at(place).powi(2),
+            Self::Rectangle { width, length } => width * length,
+            Self::Relief(element) => element.area(place),
         }
     }
 
@@ -123,6 +135,7 @@ impl Outline {
             Self::Rectangle { width, length } => {
                 from.x.abs() <= 0.5 * width && from.y.abs() <= 0.5 * length
             }
+            Self::Relief(element) => element.contains(place, from),
         }
     }
 
@@ -133,6 +146,7 @@ impl Outline {
         match self {
             Self::Circle { .. } => apart.length() < room.x,
             Self::Rectangle { .. } => apart.x.abs() < room.x && apart.y.abs() < room.y,
+            Self::Relief(element) => element.overlap(places, apart),
         }
     }
 }
@@ -169,6 +183,16 @@ impl Field {
         let from_first = from_middle + half;
         let column = (from_first / pitch).round().clamp(0.0, (count.max(1) - 1) as f64);
         (column as usize, from_first - pitch * column)
+    }
+
+    /// Every element: the place of its row, mm, and where its middle is.
+    pub fn places(&self) -> impl Iterator<Item = (f64, DVec2)> + '_ {
+        let columns = self.columns;
+        (0..self.rows.count()).flat_map(move |row| {
+            let place = self.rows.place(row);
+            (0..columns.count)
+                .map(move |column| (place, DVec2::new(columns.place(row, column), place)))
+        })
     }
 
     /// How many elements there are.

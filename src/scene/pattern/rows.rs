@@ -113,7 +113,7 @@ impl Rows {
 
     /// The rows that may reach a place: those beside it and one more on either side.
     #[inline]
-    pub(super) fn near(&self, place: f64) -> std::ops::Range<usize> {
+    pub(in crate::scene) fn near(&self, place: f64) -> std::ops::Range<usize> {
         let middle = match self {
             Self::Listed(places) => places.partition_point(|row| *row < place) as f64 - 0.5,
             Self::Even { first, pitch, .. } => ((place - first) / pitch).round(),

@@ -51,7 +51,7 @@ impl<'s, W: PhotonWatcher> Counter<'_, 's, W> {
         }
         for (face, patches) in &run.watch.entry_ports {
             for patch in *patches {
-                patch.shape.crossings(segment.ray, Start::Elsewhere, |Crossing { t, toward }| {
+                patch.crossings(segment.ray, Start::Elsewhere, |Crossing { t, toward }| {
                     if toward == Toward::Back && self.within(segment, t) {
                         let throughput = self.arriving_at(path, segment, t);
                         for id in &run.watch.entries[face.index()] {
@@ -67,7 +67,7 @@ impl<'s, W: PhotonWatcher> Counter<'_, 's, W> {
     fn cross_port(&mut self, path: &Path, segment: &Segment<'_>, port: &OnPort<'s>) {
         let OnPort { id, sensor, patches, .. } = port;
         for patch in patches {
-            patch.shape.crossings(segment.ray, Start::Elsewhere, |Crossing { t, toward }| {
+            patch.crossings(segment.ray, Start::Elsewhere, |Crossing { t, toward }| {
                 if !self.within(segment, t) {
                     return;
                 }
@@ -143,7 +143,7 @@ impl<'s, W: PhotonWatcher> Counter<'_, 's, W> {
                 }
                 Owner::Port => scene.face_patches(face).iter().any(|patch| {
                     let mut crossed = false;
-                    patch.shape.crossings(&path.ray, Start::Elsewhere, |crossing| {
+                    patch.crossings(&path.ray, Start::Elsewhere, |crossing| {
                         crossed |= crossing.t >= -scene.tolerance && crossing.t < t;
                     });
                     crossed

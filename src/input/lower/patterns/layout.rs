@@ -18,7 +18,7 @@ const MOST_ROWS: f64 = 1e7;
 
 impl Context<'_> {
     /// The rows and columns of a layout on a face; none of them empty.
-    pub(super) fn rows_and_columns(
+    pub(in crate::input::lower) fn rows_and_columns(
         &mut self,
         spec: &LayoutSpec,
         ground: &Ground,
@@ -144,7 +144,12 @@ impl Context<'_> {
     }
 
     /// A length along the face, in its chart.
-    pub(super) fn along(&mut self, spec: &AlongSpec, ground: &Ground, key: &Key) -> Option<Along> {
+    pub(in crate::input::lower) fn along(
+        &mut self,
+        spec: &AlongSpec,
+        ground: &Ground,
+        key: &Key,
+    ) -> Option<Along> {
         let start = ground.rect.min.y;
         match spec {
             AlongSpec::Same(length) => Some(Along::constant(*length)),

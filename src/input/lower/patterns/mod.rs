@@ -19,20 +19,20 @@ const ROUNDING: f64 = 1e-6;
 
 /// A face as a pattern sees it.
 #[derive(Debug, Clone, Copy)]
-struct Ground {
-    face: FaceId,
-    rect: ChartRect,
+pub(super) struct Ground {
+    pub(super) face: FaceId,
+    pub(super) rect: ChartRect,
     /// Radius of a round face that closes on itself, mm.
-    radius: Option<f64>,
+    pub(super) radius: Option<f64>,
 }
 
 impl Ground {
-    fn size(&self) -> DVec2 {
+    pub(super) fn size(&self) -> DVec2 {
         self.rect.max - self.rect.min
     }
 
     /// Length once around, mm.
-    fn period(&self) -> Option<f64> {
+    pub(super) fn period(&self) -> Option<f64> {
         self.radius.map(|radius| TAU * radius)
     }
 }
@@ -61,12 +61,26 @@ impl Context<'_> {
         let bore = self.finishes.get("black").copied();
         let wall = spec.wall_mm.zip(bore).map(|(thickness, bore)| HoleWall { thickness, bore });
         let field = self.field(spec, &ground, key)?;
+        self.check_field(&field, &ground, &spec.on, key)?;
+        let pattern =
+            Pattern { name: name.to_owned(), face: ground.face, field, front, back, wall };
+        self.is_clear(pattern.face, &pattern.field, key).then_some(pattern)
+    }
+
+    /// Whether the elements of a field keep clear of each other and lie on their face.
+    pub(super) fn check_field(
+        &mut self,
+        field: &Field,
+        ground: &Ground,
+        on: &str,
+        key: &Key,
+    ) -> Option<()> {
         if let Some(row) = field.first_overlap() {
             let place = field.rows.place(row) - ground.rect.min.y;
             self.problems
                 .error(
                     &key.field("element"),
-                    format!("elements overlap {place:.4} mm along `{}`", spec.on),
+                    format!("elements overlap {place:.4} mm along `{on}`"),
                 )
                 .hint("make them smaller, or the pitch larger");
             return None;
@@ -77,20 +91,17 @@ impl Context<'_> {
                 .error(
                     &key.field("layout"),
                     format!(
-                        "an element {place:.4} mm along `{}` reaches {beyond:.4} mm beyond it",
-                        spec.on
+                        "an element {place:.4} mm along `{on}` reaches {beyond:.4} mm beyond it"
                     ),
                 )
                 .hint(format!("the face is {:.4} mm across and {:.4} mm along", size.x, size.y));
             return None;
         }
-        let pattern =
-            Pattern { name: name.to_owned(), face: ground.face, field, front, back, wall };
-        self.is_clear(&pattern, key).then_some(pattern)
+        Some(())
     }
 
     /// The face of a pattern: one whose chart is not stretched.
-    fn ground(&mut self, name: &str, key: &Key) -> Option<Ground> {
+    pub(super) fn ground(&mut self, name: &str, key: &Key) -> Option<Ground> {
         let faces = self.faces_named(name, key)?;
         let [face] = faces[..] else {
             self.problems

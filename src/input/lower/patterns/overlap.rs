@@ -3,30 +3,36 @@
 use crate::input::keys::Key;
 use crate::input::lower::Context;
 use crate::math::circle;
-use crate::scene::pattern::{Columns, Field, Outline, Pattern};
+use crate::scene::FaceId;
+use crate::scene::pattern::{Field, Outline};
 use glam::DVec2;
 use std::f64::consts::SQRT_2;
 
 impl Context<'_> {
-    /// Whether a pattern shares no place with those that lie on its face already.
-    pub(super) fn is_clear(&mut self, pattern: &Pattern, key: &Key) -> bool {
+    /// Whether a field shares no place with the patterns and reliefs that lie on its face already.
+    pub(in crate::input::lower) fn is_clear(
+        &mut self,
+        face: FaceId,
+        field: &Field,
+        key: &Key,
+    ) -> bool {
         let scene = self.builder.scene();
-        let others = scene.faces[pattern.face.index()].patterns.iter();
-        let met = others.map(|&other| &scene.patterns[other]).find_map(|other| {
-            let (few, many) = if pattern.field.count() <= other.field.count() {
-                (&pattern.field, &other.field)
-            } else {
-                (&other.field, &pattern.field)
-            };
+        let patterns = scene.patterns.iter().filter(|other| other.face == face);
+        let patterns = patterns.map(|other| ("pattern", &other.name, &other.field));
+        let reliefs = scene.reliefs.iter().filter(|other| other.wall == face);
+        let reliefs = reliefs.map(|other| ("relief", &other.name, &other.field));
+        let met = patterns.chain(reliefs).find_map(|(what, name, other)| {
+            let (few, many) =
+                if field.count() <= other.count() { (field, other) } else { (other, field) };
             let shared = first_shared(few, many).or_else(|| first_shared(many, few));
-            shared.map(|at| (other.name.clone(), at))
+            shared.map(|at| (what, name.clone(), at))
         });
-        let Some((other, at)) = met else { return true };
+        let Some((what, other, at)) = met else { return true };
         self.problems
             .error(
                 key,
                 format!(
-                    "overlaps the pattern `{other}` at ({:.4}, {:.4}) mm of the unrolled face",
+                    "overlaps the {what} `{other}` at ({:.4}, {:.4}) mm of the unrolled face",
                     at.x, at.y
                 ),
             )
@@ -42,18 +48,16 @@ const RIM: u32 = 12;
 
 /// A place that is in elements of both, if one is found: at the centres and rims of those of the first.
 fn first_shared(few: &Field, many: &Field) -> Option<DVec2> {
-    let Columns { first, pitch, count, shift } = few.columns;
-    let elements =
-        (0..few.rows.count()).flat_map(|row| (0..count).map(move |column| (row, column)));
-    elements.take(PROBED).find_map(|(row, column)| {
-        let place = few.rows.place(row);
-        let from = if row % 2 == 1 { first + shift } else { first };
-        let center = DVec2::new(from + column as f64 * pitch, place);
-        let half = 0.5 * few.outline.size(place);
+    few.places().take(PROBED).find_map(|(place, center)| {
+        let mut half = 0.5 * few.outline.size(place);
+        if half.x.is_infinite() {
+            // A ring is the same all around.
+            half.x = 0.0;
+        }
         let reach = match &few.outline {
             Outline::Circle { .. } => 1.0,
             // To the corners.
-            Outline::Rectangle { .. } => SQRT_2,
+            Outline::Rectangle { .. } | Outline::Relief(_) => SQRT_2,
         };
         let rim = (0..RIM).map(|i| {
             let on_rim = reach * circle((f64::from(i) + 0.5) / f64::from(RIM));

@@ -73,6 +73,11 @@ impl Cylinder {
         self.leaving == Toward::Front && self.trims.is_none()
     }
 
+    /// Radius, mm.
+    pub(crate) fn radius(&self) -> f64 {
+        self.radius
+    }
+
     /// The largest coordinate of its points along a unit vector, mm, as if it were the wall all around.
     pub(crate) fn reach(&self, along: DVec3) -> f64 {
         let lean = along.dot(self.frame.z);

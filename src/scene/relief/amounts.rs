@@ -1,0 +1,135 @@
+//! How much an element takes: area of the wall, volume of the solid.
+//!
+//! On flat walls in closed form. Where a ball or a saw cut meets a round wall there is none: there it is a sum over strips.
+
+use crate::math::planar::disk_overlap;
+use crate::scene::relief::element::{Cap, Element, Form, Span, Way};
+use crate::scene::shape::ChartRect;
+use glam::DVec2;
+use std::f64::consts::{PI, TAU};
+
+/// Steps by which areas and volumes on round walls are summed up.
+const STEPS: u32 = 128;
+
+impl Element {
+    /// Area that an element of a row takes of the wall, mm².
+    pub fn area(&self, place: f64) -> f64 {
+        match (&self.form, self.round) {
+            (Form::Cap { size, height }, None) => PI * Cap::new(size, height, place).rim.powi(2),
+            (Form::Wedge { span: Span::Through(width) | Span::Within(width), .. }, None) => {
+                width * self.length(place)
+            }
+            (Form::Wedge { span: Span::Ring, .. }, Some(wall)) => TAU * wall * self.length(place),
+            (Form::Pyramid { width, length, .. }, _) => width * length,
+            (Form::Cap { .. } | Form::Wedge { .. }, _) => {
+                let half = 0.5 * self.length(place);
+                self.integral(place, half, [-half, half], |v| 2.0 * self.half_width(place, v))
+            }
+        }
+    }
+
+    /// Area that an element with its middle at `at` takes of a part of the wall, mm².
+    pub(super) fn area_in(&self, place: f64, at: DVec2, rect: ChartRect) -> f64 {
+        let rect = ChartRect { min: rect.min - at, max: rect.max - at };
+        let half = 0.5 * self.length(place);
+        match (&self.form, self.round) {
+            (Form::Cap { .. }, None) => return disk_overlap(half, &rect.corners()),
+            (Form::Cap { .. } | Form::Wedge { span: Span::Through(_), .. }, Some(_)) => {}
+            // All others take a rectangle.
+            (Form::Wedge { .. } | Form::Pyramid { .. }, _) => {
+                let reach = DVec2::new(self.half_width(place, self.edge(place)), half);
+                return rect.intersection(&ChartRect { min: -reach, max: reach }).area();
+            }
+        }
+        self.integral(place, half, [rect.min.y, rect.max.y], |v| {
+            let width = self.half_width(place, v);
+            (width.min(rect.max.x) - (-width).max(rect.min.x)).max(0.0)
+        })
+    }
+
+    /// Volume that an element of a row takes from the solid or adds to it, mm³.
+    pub fn volume(&self, place: f64) -> f64 {
+        match (&self.form, self.round) {
+            // Archimedes' cap.
+            (Form::Cap { size, height }, None) => {
+                let Cap { radius, height, .. } = Cap::new(size, height, place);
+                PI * height * height * (radius - height / 3.0)
+            }
+            (Form::Cap { size, height }, Some(wall)) => {
+                let cap = Cap::new(size, height, place);
+                let c = cap.center_from_axis(wall, self.way);
+                self.integral(place, cap.rim, [-cap.rim, cap.rim], |v| {
+                    let disk = ((cap.radius - v) * (cap.radius + v)).max(0.0).sqrt();
+                    let shared = lens(disk, wall, c);
+                    match self.way {
+                        Way::Into => shared,
+                        Way::OutOf => PI * disk * disk - shared,
+                    }
+                })
+            }
+            (Form::Wedge { span: Span::Through(width) | Span::Within(width), .. }, None) => {
+                0.5 * width * self.height(place) * self.length(place)
+            }
+            // Pappus: the centre of the triangle lies a third of its height from the wall.
+            (Form::Wedge { span: Span::Ring, .. }, Some(wall)) => {
+                let (height, length) = (self.height(place), self.length(place));
+                PI * (wall + self.way.sign() * height / 3.0) * height * length
+            }
+            (Form::Wedge { .. }, _) => {
+                let wall = self.round.unwrap_or(f64::INFINITY);
+                let (height, length) = (self.height(place), self.length(place));
+                // Chords times what is left of the length at their depth.
+                let half = 0.5 * height;
+                self.integral(place, half, [-half, half], |from_middle| {
+                    let depth = 0.5 * height + from_middle;
+                    let chord = 2.0 * (depth * (2.0 * wall - depth)).max(0.0).sqrt();
+                    chord * length * (1.0 - depth / height)
+                })
+            }
+            (Form::Pyramid { width, length, .. }, _) => width * length * self.height(place) / 3.0,
+        }
+    }
+
+    /// The integral over a part of [-half, half] of what may fall to 0 at the ends like a root, and may break at the edge of
+    /// the element.
+    fn integral(&self, place: f64, half: f64, part: [f64; 2], of: impl Fn(f64) -> f64) -> f64 {
+        // v = half sin θ, by the middles of equal steps of θ on either side of the edge.
+        let angle = |v: f64| (v / half).clamp(-1.0, 1.0).asin();
+        let [from, to] = part.map(angle);
+        let edge = angle(self.edge(place)).clamp(from, to);
+        let piece = |from: f64, to: f64| {
+            let step = (to - from) / f64::from(STEPS);
+            let at = |i: u32| from + (f64::from(i) + 0.5) * step;
+            let sum: f64 = (0..STEPS).map(|i| of(half * at(i).sin()) * at(i).cos()).sum();
+            sum * step * half
+        };
+        piece(from, edge) + piece(edge, to)
+    }
+}
+
+/// Area that two disks with their middles a distance apart share, mm².
+fn lens(one: f64, other: f64, apart: f64) -> f64 {
+    if apart >= one + other {
+        return 0.0;
+    }
+    if apart <= (one - other).abs() {
+        return PI * one.min(other).powi(2);
+    }
+    // Distances of the common chord from the two middles.
+    let to_chord = 0.5 * (apart * apart + (one - other) * (one + other)) / apart;
+    // Of a turn of x to the chord's ends: r² (x - sin x)/2.
+    let segment = |radius: f64, distance: f64| {
+        let half = ((radius - distance) * (radius + distance)).max(0.0).sqrt();
+        0.5 * radius * radius * less_its_sine(2.0 * half.atan2(distance))
+    };
+    segment(one, to_chord) + segment(other, apart - to_chord)
+}
+
+/// x - sin x, with its digits where both are nearly the same.
+fn less_its_sine(x: f64) -> f64 {
+    if x > 0.3 {
+        return x - x.sin();
+    }
+    let x2 = x * x;
+    x * x2 / 6.0 * (1.0 - x2 / 20.0 * (1.0 - x2 / 42.0 * (1.0 - x2 / 72.0 * (1.0 - x2 / 110.0))))
+}

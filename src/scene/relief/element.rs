@@ -1,0 +1,268 @@
+//! One element of a relief: a part of a sphere, a wedge or a pyramid, sunk into a wall or raised from it.
+//!
+//! What it takes of the wall is told in unrolled coordinates about its middle: u across or around, v along. It knows
+//! neither where it lies nor what its surfaces look like in space.
+
+use crate::scene::pattern::Along;
+use glam::DVec2;
+
+/// An element with relief.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Element {
+    /// Its form.
+    pub form: Form,
+    /// Which way it goes from the wall.
+    pub way: Way,
+    /// Radius of the round wall that it lies on, mm; `None` for a flat one.
+    pub round: Option<f64>,
+}
+
+/// Which way an element goes from its wall.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Way {
+    /// Into the solid: what is in it is outside.
+    Into,
+    /// Out of the solid: what is in it is inside.
+    OutOf,
+}
+
+impl Way {
+    /// -1 into the solid, 1 out of it.
+    pub fn sign(self) -> f64 {
+        match self {
+            Self::Into => -1.0,
+            Self::OutOf => 1.0,
+        }
+    }
+}
+
+/// The form of an element. Heights are depths where it goes into the solid.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Form {
+    /// A part of a ball, at most half of it.
+    Cap {
+        /// How wide it is.
+        size: CapSize,
+        /// How far it reaches from the wall, mm.
+        height: Along,
+    },
+    /// Two flanks that meet in an edge across the guide.
+    Wedge {
+        /// How far it reaches from the wall, mm.
+        height: Along,
+        /// Cotangents of the angles between the wall and its flanks: the one toward the start of the guide first.
+        slopes: [f64; 2],
+        /// How far it goes across the guide.
+        span: Span,
+    },
+    /// Four sides that meet in a point.
+    Pyramid {
+        /// Width across the guide, mm.
+        width: f64,
+        /// Length along the guide, mm.
+        length: f64,
+        /// How far it reaches from the wall, mm.
+        height: Along,
+    },
+}
+
+/// How wide a cap is.
+#[derive(Debug, Clone, PartialEq)]
+pub enum CapSize {
+    /// Radius of its sphere, mm.
+    Sphere(Along),
+    /// Diameter of its opening in a flat wall, mm; along the guide in a round one.
+    Opening(Along),
+}
+
+/// How far a wedge goes across the guide.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Span {
+    /// From side to side of a face of this width, mm, or straight across a round wall.
+    Through(f64),
+    /// This far, mm, between ends of its own.
+    Within(f64),
+    /// All around a round wall.
+    Ring,
+}
+
+/// A cap of a certain size, mm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cap {
+    /// Radius of its sphere.
+    pub radius: f64,
+    /// How far it reaches from the wall.
+    pub height: f64,
+    /// Half of its opening along the guide.
+    pub rim: f64,
+}
+
+impl Cap {
+    pub(super) fn new(size: &CapSize, height: &Along, place: f64) -> Self {
+        let height = height.at(place);
+        match size {
+            CapSize::Sphere(radius) => {
+                let radius = radius.at(place);
+                let rim = (height * (2.0 * radius - height)).max(0.0).sqrt();
+                Self { radius, height, rim }
+            }
+            CapSize::Opening(diameter) => {
+                let rim = 0.5 * diameter.at(place);
+                Self { radius: 0.5 * (rim * rim + height * height) / height, height, rim }
+            }
+        }
+    }
+
+    /// Distance of the centre of the sphere from the axis of a round wall, mm.
+    pub(super) fn center_from_axis(&self, wall: f64, way: Way) -> f64 {
+        wall - way.sign() * (self.radius - self.height)
+    }
+}
+
+impl Element {
+    /// How far the elements of a row reach from the wall, mm.
+    pub fn height(&self, place: f64) -> f64 {
+        match &self.form {
+            Form::Cap { height, .. }
+            | Form::Wedge { height, .. }
+            | Form::Pyramid { height, .. } => height.at(place),
+        }
+    }
+
+    /// How far a wedge goes across; `None` for other elements.
+    pub fn span(&self) -> Option<Span> {
+        match &self.form {
+            Form::Wedge { span, .. } => Some(*span),
+            Form::Cap { .. } | Form::Pyramid { .. } => None,
+        }
+    }
+
+    /// The cap that the elements of a row are, if they are.
+    pub fn cap(&self, place: f64) -> Option<Cap> {
+        match &self.form {
+            Form::Cap { size, height } => Some(Cap::new(size, height, place)),
+            Form::Wedge { .. } | Form::Pyramid { .. } => None,
+        }
+    }
+
+    /// Width and length of the room that the elements of a row need on the wall, mm: what they take of it, and on a round wall
+    /// what they take below it.
+    pub fn size(&self, place: f64) -> DVec2 {
+        match &self.form {
+            Form::Cap { .. } => {
+                let widest = self.half_width(place, 0.0).max(self.half_width_inside(place));
+                DVec2::new(2.0 * widest, self.length(place))
+            }
+            Form::Wedge { .. } | Form::Pyramid { .. } => {
+                DVec2::new(2.0 * self.half_width(place, self.edge(place)), self.length(place))
+            }
+        }
+    }
+
+    /// Whether two elements with their middles `apart` have less room than they need.
+    pub fn overlap(&self, places: [f64; 2], apart: DVec2) -> bool {
+        let [one, other] = places.map(|place| self.size(place));
+        let room = 0.5 * (one + other) * (1.0 - 1e-12);
+        match &self.form {
+            Form::Cap { .. } => apart.length() < room.max_element(),
+            Form::Wedge { .. } | Form::Pyramid { .. } => {
+                apart.x.abs() < room.x && apart.y.abs() < room.y
+            }
+        }
+    }
+
+    /// Length along the guide of what an element of a row takes of the wall, mm.
+    pub(super) fn length(&self, place: f64) -> f64 {
+        match &self.form {
+            Form::Cap { size, height } => 2.0 * Cap::new(size, height, place).rim,
+            Form::Wedge { height, slopes, .. } => height.at(place) * (slopes[0] + slopes[1]),
+            Form::Pyramid { length, .. } => *length,
+        }
+    }
+
+    /// Where the edge or the top of an element of a row lies along the guide, from its middle, mm.
+    pub fn edge(&self, place: f64) -> f64 {
+        match &self.form {
+            Form::Wedge { height, slopes, .. } => 0.5 * height.at(place) * (slopes[0] - slopes[1]),
+            Form::Cap { .. } | Form::Pyramid { .. } => 0.0,
+        }
+    }
+
+    /// Half of the width that an element of a row takes of the wall, mm, at a distance along the guide from its middle;
+    /// below 0 where it takes nothing.
+    pub(super) fn half_width(&self, place: f64, v: f64) -> f64 {
+        if 2.0 * v.abs() > self.length(place) {
+            return -1.0;
+        }
+        match &self.form {
+            Form::Cap { size, height } => {
+                let cap = Cap::new(size, height, place);
+                let half = ((cap.rim - v) * (cap.rim + v)).max(0.0).sqrt();
+                match self.round {
+                    None => half,
+                    // Of the points at u the sphere holds those with v² + 4 R c sin²(u/2R) <= rim².
+                    Some(wall) => {
+                        let c = cap.center_from_axis(wall, self.way);
+                        2.0 * wall * (0.5 * half / (wall * c).sqrt()).min(1.0).asin()
+                    }
+                }
+            }
+            Form::Wedge { slopes, span, .. } => match (span, self.round) {
+                (Span::Ring, _) => f64::INFINITY,
+                (Span::Through(_), Some(wall)) => {
+                    let height = self.wedge_height(place, v, slopes);
+                    2.0 * wall * (0.5 * height / wall).clamp(0.0, 1.0).sqrt().asin()
+                }
+                // A little more, so that rounding leaves nothing of the wall at its sides.
+                (Span::Through(width), None) => 0.5 * width * (1.0 + 1e-9),
+                (Span::Within(width), _) => 0.5 * width,
+            },
+            Form::Pyramid { width, .. } => 0.5 * width,
+        }
+    }
+
+    /// How far a wedge reaches from the wall at a distance along the guide from its middle, mm.
+    fn wedge_height(&self, place: f64, v: f64, slopes: &[f64; 2]) -> f64 {
+        let from_edge = v - self.edge(place);
+        let slope = if from_edge < 0.0 { slopes[0] } else { slopes[1] };
+        let fallen = if from_edge == 0.0 { 0.0 } else { from_edge.abs() / slope };
+        self.height(place) - fallen
+    }
+
+    /// Half of the width that a cap sunk into a round wall needs below it, mm around the wall.
+    fn half_width_inside(&self, place: f64) -> f64 {
+        let (Some(wall), Some(cap), Way::Into) = (self.round, self.cap(place), self.way) else {
+            return 0.0;
+        };
+        let c = cap.center_from_axis(wall, self.way);
+        let tangent = (c - cap.radius) * (c + cap.radius);
+        if tangent < wall * wall { wall * (cap.radius / c).min(1.0).asin() } else { 0.0 }
+    }
+
+    /// Whether an element of a row takes a point of the wall at `from` its middle, mm.
+    #[inline]
+    pub fn contains(&self, place: f64, from: DVec2) -> bool {
+        from.x.abs() <= self.half_width(place, from.y)
+    }
+
+    /// Whether a wedge of a row goes through a point at a distance along the guide from its middle, at a depth below the
+    /// wall, mm: what it takes of the sides of the guide.
+    pub(super) fn cuts_side(&self, place: f64, along: f64, depth: f64) -> bool {
+        match &self.form {
+            Form::Wedge { height, slopes, .. } => {
+                let (left, from_edge) = (height.at(place) - depth, along - self.edge(place));
+                depth >= 0.0
+                    && left >= 0.0
+                    && from_edge >= -left * slopes[0]
+                    && from_edge <= left * slopes[1]
+            }
+            Form::Cap { .. } | Form::Pyramid { .. } => false,
+        }
+    }
+
+    /// The corners of a section of an element of a row along the guide, mm: along it from its middle, and out of the wall.
+    pub(super) fn section(&self, place: f64) -> [DVec2; 3] {
+        let (half, top) = (0.5 * self.length(place), self.way.sign() * self.height(place));
+        [DVec2::new(-half, 0.0), DVec2::new(self.edge(place), top), DVec2::new(half, 0.0)]
+    }
+}

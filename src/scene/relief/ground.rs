@@ -1,0 +1,117 @@
+//! The wall that a relief lies on, in space: from unrolled coordinates to points, and back.
+
+use crate::math::Frame;
+use crate::scene::Patch;
+use crate::scene::shape::Shape;
+use glam::{DVec2, DVec3};
+
+/// A flat wall, or a round one all around.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ground {
+    /// Of a flat wall the point (0, 0) of its chart; of a round one the point of its axis at v = 0. mm.
+    origin: DVec3,
+    /// Of a flat wall the direction of u; of a round one from the axis toward u = 0.
+    x: DVec3,
+    /// Of a flat wall along it; of a round one from the axis toward a quarter of a turn.
+    y: DVec3,
+    /// Of a flat wall out of the solid; of a round one along its axis.
+    z: DVec3,
+    radius: Option<f64>,
+}
+
+/// A place of a wall: a point and three directions across each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Site {
+    /// The point, mm.
+    pub origin: DVec3,
+    /// Across or around.
+    pub across: DVec3,
+    /// Along.
+    pub along: DVec3,
+    /// Out of the solid.
+    pub out: DVec3,
+}
+
+impl Site {
+    /// The point at a distance across, along and out of the wall, mm.
+    pub fn at(&self, across: f64, along: f64, out: f64) -> DVec3 {
+        self.origin + across * self.across + along * self.along + out * self.out
+    }
+
+    /// A frame at a point with its z out of the solid, or as given.
+    pub(super) fn frame(origin: DVec3, z: DVec3, y: DVec3) -> Frame {
+        Frame { origin, x: y.cross(z), y, z }
+    }
+}
+
+impl Ground {
+    /// The wall of a patch: a flat one, or a round one all around with its front outside.
+    pub fn of(patch: &Patch) -> Option<Self> {
+        match &patch.shape {
+            Shape::Flat(flat) => {
+                let Frame { origin, x, y, z } = *flat.frame();
+                let at = patch.chart(origin);
+                let [by_x, by_y] = [x, y].map(|step| patch.chart(origin + step) - at);
+                let (u, v) = (by_x.x * x + by_y.x * y, by_x.y * x + by_y.y * y);
+                let (u, v) = (u.try_normalize()?, v.try_normalize()?);
+                Some(Self { origin: origin - at.x * u - at.y * v, x: u, y: v, z, radius: None })
+            }
+            Shape::Cylinder(wall) if wall.is_whole() => {
+                let start = patch.shape.sample([0.25, 0.5]);
+                let (at, out) = (patch.chart(start), patch.shape.normal(start));
+                let (along, radius) = (patch.along(start), wall.radius());
+                // u grows counter-clockwise about the axis.
+                let (sin, cos) = (at.x / radius).sin_cos();
+                let around = along.cross(out);
+                let (x, y) = (cos * out - sin * around, sin * out + cos * around);
+                let origin = start - radius * out - at.y * along;
+                Some(Self { origin, x, y, z: along, radius: Some(radius) })
+            }
+            Shape::Cylinder(_)
+            | Shape::Cone(_)
+            | Shape::Torus(_)
+            | Shape::Sphere(_)
+            | Shape::Paraboloid(_)
+            | Shape::ParabolicCylinder(_)
+            | Shape::CompoundParabola(_) => None,
+        }
+    }
+
+    /// Whether the wall is flat.
+    pub fn is_flat(&self) -> bool {
+        self.radius.is_none()
+    }
+
+    /// Unrolled coordinates (u, v) of a point, and its height over the wall, mm.
+    #[inline]
+    pub fn unroll(&self, p: DVec3) -> DVec3 {
+        let from = p - self.origin;
+        let local = DVec3::new(from.dot(self.x), from.dot(self.y), from.dot(self.z));
+        match self.radius {
+            None => local,
+            Some(radius) => {
+                let around = local.y.atan2(local.x).rem_euclid(std::f64::consts::TAU);
+                DVec3::new(radius * around, local.z, local.truncate().length() - radius)
+            }
+        }
+    }
+
+    /// The place of the wall with unrolled coordinates (u, v), mm.
+    pub fn site(&self, at: DVec2) -> Site {
+        match self.radius {
+            None => Site {
+                origin: self.origin + at.x * self.x + at.y * self.y,
+                across: self.x,
+                along: self.y,
+                out: self.z,
+            },
+            Some(radius) => {
+                let (sin, cos) = (at.x / radius).sin_cos();
+                let out = cos * self.x + sin * self.y;
+                let across = cos * self.y - sin * self.x;
+                let origin = self.origin + radius * out + at.y * self.z;
+                Site { origin, across, along: self.z, out }
+            }
+        }
+    }
+}

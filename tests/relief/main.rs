@@ -1,0 +1,47 @@
+//! Reliefs on walls of solids: where they are, what light they turn, and that no light is lost between a wall and its elements.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
+#![allow(clippy::print_stdout, reason = "figures, shown by --nocapture and on failure")]
+
+mod geometry;
+mod light;
+
+use lumiduct::input::{self, Job, Settings};
+use lumiduct::scene::plan::Request;
+
+/// A scene from its text without the head, for so many photons.
+fn load(text: &str, paths: u64) -> Job {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("scene.toml");
+    std::fs::write(&path, format!("lumiduct = 1\ntitle = \"Relief\"\n{text}")).unwrap();
+    let estimator = Some(Request::Forward);
+    let settings = Settings { paths: Some(paths), estimator, ..Settings::default() };
+    match input::load(&path, &settings) {
+        Ok(job) => job,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// Any lamp and any sensor: a scene needs them.
+const LAMP: &str = r#"
+[sources.lamp.disk]
+radius_mm = 0.1
+flux_lm = 1
+at = { position_mm = [0, 0, -50] }
+[sensors]
+out = { plane = { rectangle = { width_mm = 1, height_mm = 1 } }, at = { position_mm = [0, 0, 150] } }
+"#;
+
+/// A plate of 12 x 4 x 30 mm from z = 0, and a rod of radius 3 mm, length 30 mm, away from the axes of the world.
+const BODIES: &str = r#"
+[media.glass]
+index = 1.5
+[solids.plate.box]
+size_mm = [12, 4, 30]
+medium = "glass"
+[solids.rod.cylinder]
+radius_mm = 3
+length_mm = 30
+medium = "glass"
+at = { position_mm = [40, 0, 0] }
+"#;

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes the rod with a bend of benchmark B3 as a STEP file: the example of docs/cad.md.
 
-    pip install cadquery-ocp-novtk
+    pip install cadquery-ocp-novtk==8.0.1.1.0
     python3 tools/bent_rod_step.py bent_rod.step
 
 Radius 1.5 mm; 10 mm straight along z, a quarter turn of radius 8 mm toward x, 10 mm straight.

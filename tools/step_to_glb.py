@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Turns the solids of a STEP file into meshes that Lumiduct reads: one GLB a solid, in metres as glTF wants it.
 
-    pip install cadquery-ocp-novtk numpy
-    python3 tools/step_to_glb.py guide.step -o meshes --chord 0.001 --angle 3
+    pip install cadquery-ocp-novtk==8.0.1.1.0 numpy
+    python3 tools/step_to_glb.py guide.step -o meshes --angle 6 --face entry=1
 
 Triangles share the nodes of the edges between faces, so that a closed solid becomes a closed mesh, and every corner has
 the normal of the exact surface there: docs/cad.md has what that is worth. Faces keep the names that the STEP file gives
@@ -37,7 +37,7 @@ METRE = 1e-3
 
 
 def solids(path):
-    """The solids of a STEP file with their names, and a function that names faces."""
+    """The reader of a STEP file, and the solids in it."""
     Interface_Static.SetCVal_s("xstep.cascade.unit", "MM")
     reader = STEPControl_Reader()
     if reader.ReadFile(str(path)) != IFSelect_RetDone:
@@ -138,11 +138,12 @@ def write_glb(path, parts):
     )
 
 
-def convert(reader, solid, target, chord, angle, names):
+def convert(reader, solid, target, chord, angle, names, first):
     # Relative deflection off, angle in radians, in one thread, so that the same file comes out every time.
     BRepMesh_IncrementalMesh(solid, chord, False, math.radians(angle), False)
     parts = {}
-    for number, face in enumerate(explore(solid, TopAbs_FACE, TopoDS.Face), 1):
+    number = first
+    for number, face in enumerate(explore(solid, TopAbs_FACE, TopoDS.Face), first):
         name = names.get(number) or step_name(reader, face) or f"face_{number}"
         points, normals, triangles = triangulated(face)
         properties = GProp_GProps()
@@ -167,15 +168,16 @@ def convert(reader, solid, target, chord, angle, names):
         )
     write_glb(target, joined)
     print(f"{target}: {sum(len(part[3]) for part in joined)} triangles, {target.stat().st_size} bytes")
+    return number + 1
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("file", type=Path, help="STEP file (AP203, AP214, AP242)")
     parser.add_argument("-o", "--output", type=Path, default=Path("."), help="folder for the meshes")
-    parser.add_argument("--chord", type=float, default=0.001, help="largest distance of a facet from its surface, mm")
-    parser.add_argument("--angle", type=float, default=3.0, help="largest turn from facet to facet, deg")
-    parser.add_argument("--face", action="append", default=[], metavar="NAME=N", help="names a face by its number")
+    parser.add_argument("--chord", type=float, default=1.0, help="largest distance of a facet from its surface, mm")
+    parser.add_argument("--angle", type=float, default=6.0, help="largest turn from facet to facet, deg")
+    parser.add_argument("--face", action="append", default=[], metavar="NAME=N", help="names a face by its number; with several solids they count on")
     arguments = parser.parse_args()
     names = {}
     for pair in arguments.face:
@@ -185,10 +187,14 @@ def main():
         names[int(number)] = name
     arguments.output.mkdir(parents=True, exist_ok=True)
     reader, found = solids(arguments.file)
+    next_face = 1
     for number, solid in enumerate(found, 1):
         suffix = "" if len(found) == 1 else f"_{number}"
         target = arguments.output / f"{arguments.file.stem}{suffix}.glb"
-        convert(reader, solid, target, arguments.chord, arguments.angle, names)
+        next_face = convert(reader, solid, target, arguments.chord, arguments.angle, names, next_face)
+    unknown = [f"{name}={number}" for number, name in names.items() if number >= next_face]
+    if unknown:
+        sys.exit(f"--face {', '.join(unknown)}: there are {next_face - 1} faces")
 
 
 if __name__ == "__main__":

@@ -231,7 +231,7 @@ pub fn unit(key: &str) -> Option<&'static str> {
 /// Endings of keys and what they mean; the longer of two that fit comes first.
 const UNITS: [(&str, &str); 10] = [
     ("_cd_m2", "cd/m²"),
-    ("_per_mm", "1/mm"),
+    ("per_mm", "1/mm"),
     ("_mm", "mm"),
     ("_deg", "degrees"),
     ("_lm", "lm"),

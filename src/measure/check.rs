@@ -81,6 +81,9 @@ fn doubt(measure: &Measure) -> Option<&'static str> {
         Status::TooFew => Some("too little was counted to rely on it"),
         Status::NoiseLimited => Some("it is mostly noise"),
         Status::BiasNotResolved => Some("its bias is not resolved"),
+        Status::Contradicted => {
+            Some("photons of the same run found more light there; use `forward` or `mix`")
+        }
     }
 }
 

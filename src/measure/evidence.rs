@@ -38,6 +38,11 @@ impl<'a> Evidence<'a> {
         Self { readings, estimator, ..self }
     }
 
+    /// What the readings were made by.
+    pub(crate) fn estimator(&self) -> Estimator {
+        self.estimator
+    }
+
     /// The evidence of photons alone.
     pub(crate) fn of_photons(&self) -> Self {
         Self { readings: self.photons, estimator: Estimator::Forward, ..*self }
@@ -139,7 +144,7 @@ impl<'a> Evidence<'a> {
         if total > 0.0 { variance / total } else { self.path_flux() }
     }
 
-    fn lit_groups(&self, slots: &[usize]) -> usize {
+    pub(crate) fn lit_groups(&self, slots: &[usize]) -> usize {
         let lit = |sums: &[f64]| slots.iter().any(|&slot| sums[slot] != 0.0);
         self.readings.groups.iter().filter(|group| lit(&group.sums)).count()
     }

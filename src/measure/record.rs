@@ -45,19 +45,23 @@ pub enum Status {
     /// Nested windows of a gathered value differ, and not as the square of the window: the value is that of the
     /// smallest, and the bias told is no bound.
     BiasNotResolved,
+    /// Photons of the same run brought the sensor more light of a source than its estimator found, by more than four
+    /// errors: its paths hardly ever meet that source.
+    Contradicted,
 }
 
 impl Status {
-    /// The worse of two: the earlier in the order no signal, too few, noise limited, bias not resolved, bias
-    /// in the noise, good.
+    /// The worse of two: the earlier in the order contradicted, no signal, too few, noise limited, bias not
+    /// resolved, bias in the noise, good.
     pub(crate) fn worst(self, other: Self) -> Self {
         let rank = |status| match status {
-            Self::NoSignal => 0,
-            Self::TooFew => 1,
-            Self::NoiseLimited => 2,
-            Self::BiasNotResolved => 3,
-            Self::BiasInNoise => 4,
-            Self::Ok => 5,
+            Self::Contradicted => 0,
+            Self::NoSignal => 1,
+            Self::TooFew => 2,
+            Self::NoiseLimited => 3,
+            Self::BiasNotResolved => 4,
+            Self::BiasInNoise => 5,
+            Self::Ok => 6,
         };
         if rank(self) <= rank(other) { self } else { other }
     }
@@ -80,7 +84,8 @@ impl Measure {
             | Status::NoSignal
             | Status::TooFew
             | Status::NoiseLimited
-            | Status::BiasNotResolved => f64::INFINITY,
+            | Status::BiasNotResolved
+            | Status::Contradicted => f64::INFINITY,
         }
     }
 }

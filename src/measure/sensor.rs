@@ -1,9 +1,9 @@
 //! All measures of one sensor, by whatever estimator found them.
 
-use crate::measure::evidence::Evidence;
+use crate::measure::evidence::{Evidence, MIN_LIT_GROUPS};
 use crate::measure::gathered::{GatheredFacts, Judged, judged};
 use crate::measure::{
-    IntensityTable, Measure, SensorMap, SensorPaths, angular, flux, map, paths, readout,
+    IntensityTable, Measure, SensorMap, SensorPaths, Status, angular, flux, map, paths, readout,
 };
 use crate::scene::plan::Estimator;
 use crate::scene::{Scene, SensorId, SensorKind};
@@ -26,7 +26,13 @@ pub(crate) struct SensorMeasures {
 /// Measures a sensor.
 pub(crate) fn measures(scene: &Scene, findings: &Findings, id: SensorId) -> SensorMeasures {
     match evidence(scene, findings, id) {
-        Spoken::Plainly(evidence) => by_evidence(&evidence, id),
+        Spoken::Plainly(evidence) => {
+            let mut found = by_evidence(&evidence, id);
+            if is_contradicted(&evidence, id) {
+                found.values.values_mut().for_each(distrust);
+            }
+            found
+        }
         Spoken::InWindows(judged) => {
             let [value, wide, middle] = judged.evidences().map(|one| by_evidence(&one, id));
             let mut values = value.values;
@@ -57,13 +63,44 @@ pub(crate) fn value_of(
     name: &str,
 ) -> Option<Measure> {
     match evidence(scene, findings, id) {
-        Spoken::Plainly(evidence) => one_value(&evidence, id, name),
+        Spoken::Plainly(evidence) => {
+            let mut value = one_value(&evidence, id, name)?;
+            if is_contradicted(&evidence, id) {
+                distrust(&mut value);
+            }
+            Some(value)
+        }
         Spoken::InWindows(judged) => {
             let [value, wide, middle] = judged.evidences().map(|one| one_value(&one, id, name));
             let mut value = value?;
             judged.tell_bias(&mut value, &wide?, &middle?);
             Some(value)
         }
+    }
+}
+
+/// Standard errors of both by which photons have to find more than gather paths to contradict them.
+const CONTRADICTED: f64 = 4.0;
+
+/// Whether photons have brought a sensor more light of a source than gather paths, which all but never meet it, have found.
+fn is_contradicted(evidence: &Evidence<'_>, id: SensorId) -> bool {
+    match evidence.estimator() {
+        Estimator::Backward => {}
+        // Photons are among what was counted, or its bias is told by other means.
+        Estimator::Forward | Estimator::Mix | Estimator::Gather | Estimator::Mis => return false,
+    }
+    flux::flux_slots(evidence, id).iter().any(|&slot| {
+        let photons = evidence.of_photons();
+        let [by_photons, own] = [&photons, evidence].map(|one| one.readings.scalar(slot));
+        let error = by_photons.std_error().hypot(own.std_error());
+        photons.lit_groups(&[slot]) >= MIN_LIT_GROUPS
+            && by_photons.mean() - own.mean() > CONTRADICTED * error
+    })
+}
+
+fn distrust(measure: &mut Measure) {
+    if measure.estimator == Estimator::Backward {
+        measure.status = measure.status.worst(Status::Contradicted);
     }
 }
 

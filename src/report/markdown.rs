@@ -66,6 +66,7 @@ fn remark(status: Status) -> &'static str {
         Status::NoiseLimited => " (limited by noise)",
         Status::BiasInNoise => " (bias not resolved from noise)",
         Status::BiasNotResolved => " (bias not resolved)",
+        Status::Contradicted => " (photons found more)",
     }
 }
 

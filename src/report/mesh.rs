@@ -7,6 +7,9 @@ use std::fmt::Write;
 /// Bounces for which the drift of a faceted wall is told.
 const DRIFT_BOUNCES: [f64; 3] = [10.0, 100.0, 1000.0];
 
+/// Beyond this drift, 1, nothing is left of the skewness that light had, and the law of the drift ends.
+const LOST: f64 = 0.3;
+
 /// What there is to say about a mesh, lengths in mm.
 pub fn mesh_report(name: &str, mesh: &TriangleMesh, health: &MeshHealth) -> String {
     let (bounds, number) = (mesh.bounds(), |value: f64| format_value(value));
@@ -84,8 +87,16 @@ fn facets(text: &mut String, health: &MeshHealth) {
                 facets.per_turn()
             );
             for bounces in DRIFT_BOUNCES {
-                let drift = 100.0 * facets.skew_drift(bounces);
-                _ = writeln!(text, "  {bounces:>5} bounces: skewness drifts by about {drift:.2} %");
+                let drift = facets.skew_drift(bounces);
+                _ = if drift < LOST {
+                    writeln!(
+                        text,
+                        "  {bounces:>5} bounces: skewness drifts by about {:.2} %",
+                        100.0 * drift
+                    )
+                } else {
+                    writeln!(text, "  {bounces:>5} bounces: skewness is lost")
+                };
             }
             text.push_str("  export vertex normals, or use a sweep\n");
         }

@@ -1,6 +1,6 @@
 //! The one record that all formats of a report are made from.
 
-use crate::measure::{self, GatheredFacts, LostPaths, Measures, Verdict};
+use crate::measure::{self, GatheredFacts, LostPaths, Measures, Status, Verdict};
 use crate::number::{format_exact, format_percent, format_with_error};
 use crate::scene::plan::{Check, GatherPlan, Request, Schedule, StopRules, Target};
 use crate::transport::{GROUPS, GatherSettings, Leak};
@@ -207,6 +207,20 @@ pub fn remarks(measures: &Measures) -> Vec<String> {
         if flux == 0.0 && other > 0.0 {
             remarks.push(format!(
                 "sensor `{sensor}` was lit on its other side only: turn its axis, or set `side`"
+            ));
+        }
+        let outside = value(&format!("{sensor}.flux_outside_aim"));
+        if outside > flux {
+            remarks.push(format!(
+                "sensor `{sensor}` counts the light of its aim alone, and more reaches it from elsewhere: see \
+                 {sensor}.flux_outside_aim; aim at all that lights it"
+            ));
+        }
+        let own = measures.values.get(&format!("{sensor}.flux"));
+        if own.is_some_and(|own| own.status == Status::Contradicted) {
+            remarks.push(format!(
+                "photons of the same run found more light on sensor `{sensor}` than its gather paths, which hardly ever \
+                 meet one of the sources: use `--estimator forward` or `mix`"
             ));
         }
     }

@@ -52,7 +52,7 @@ pub(crate) struct Colliding {
 
 /// The nested windows of a pass.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Kernel {
+pub(crate) struct NestedWindows {
     radii_squared: [f64; NESTED],
     chords_squared: [f64; NESTED],
     theta_max: [f64; NESTED],
@@ -62,7 +62,7 @@ pub(crate) struct Kernel {
     sin_widest: f64,
 }
 
-impl Kernel {
+impl NestedWindows {
     pub(crate) fn new(window: Window) -> Self {
         let nested = window.nested();
         Self {

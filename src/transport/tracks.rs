@@ -1,7 +1,8 @@
 //! A few paths to look at: where they went and how they ended.
 
+use crate::math::Aabb;
 use crate::rng::Sampler;
-use crate::scene::{Scene, SourceId};
+use crate::scene::{Ray, Scene, SourceId};
 use crate::transport::{Event, Path, walk};
 use glam::DVec3;
 use std::ops::ControlFlow;
@@ -55,8 +56,9 @@ fn track(scene: &Scene, source: SourceId, seed: u64, bounce_limit: u32, index: u
             Event::Collide(collision) => track.points.push(collision.point),
             Event::Absorbed(_) => track.end = TrackEnd::Absorbed,
             Event::Escaped(_) => {
-                // A stub shows where it went.
-                track.points.push(path.ray.at(0.1 * scene.bounds.diagonal()));
+                // Out of the scene, and a stub to show where it went.
+                let way = way_out(&scene.bounds, &path.ray) + 0.05 * scene.bounds.diagonal();
+                track.points.push(path.ray.at(way));
                 track.end = TrackEnd::Escaped;
             }
             Event::Leaked(..) => track.end = TrackEnd::Leaked,
@@ -65,4 +67,13 @@ fn track(scene: &Scene, source: SourceId, seed: u64, bounce_limit: u32, index: u
         ControlFlow::Continue(())
     });
     track
+}
+
+/// How far it is along a ray to where it leaves a box, mm; 0 from outside of it.
+fn way_out(bounds: &Aabb, ray: &Ray) -> f64 {
+    let (origin, dir) = (ray.origin(), ray.dir());
+    let ahead = DVec3::select(dir.cmpgt(DVec3::ZERO), bounds.max, bounds.min);
+    // Along a side of the box a ray never comes to the others: infinite, or no number where it runs in one.
+    let ways = ((ahead - origin) / dir).to_array();
+    ways.into_iter().filter(|way| way.is_finite()).fold(f64::INFINITY, f64::min).max(0.0)
 }

@@ -11,7 +11,7 @@ use glam::DVec3;
 use std::ops::ControlFlow;
 
 /// Below this throughput a path survives with probability throughput/threshold and then has the threshold's:
-/// the mean is kept, and mirrors above it cost no random number. 1. Chosen by measurement: ARCHITECTURE.md.
+/// the mean is kept, and mirrors above it cost no random number. 1. Chosen by measurement: docs/speed.md.
 pub const ROULETTE_BELOW: f64 = 0.1;
 
 /// A straight piece of a path, in one medium.
@@ -162,13 +162,7 @@ pub fn walk<V: Visitor>(
         }
         path.throughput = arriving;
         let Some(hits) = &hits else {
-            let event = if path.inside.is_empty() {
-                Event::Escaped(path.throughput)
-            } else {
-                Event::Leaked(&path.ray, path.throughput)
-            };
-            // The path ends here whatever the visitor says.
-            _ = visitor.see(&path, event);
+            leave(&path, visitor);
             return;
         };
         let next = match scattered {
@@ -189,6 +183,16 @@ pub fn walk<V: Visitor>(
             return;
         }
     }
+}
+
+/// Ends a path that meets nothing: it has left the scene, or a solid through a hole. The visitor cannot keep it.
+fn leave<V: Visitor>(path: &Path, visitor: &mut V) {
+    let event = if path.inside.is_empty() {
+        Event::Escaped(path.throughput)
+    } else {
+        Event::Leaked(&path.ray, path.throughput)
+    };
+    _ = visitor.see(path, event);
 }
 
 /// Ends a path of small throughput, or lets it go on with the threshold's.

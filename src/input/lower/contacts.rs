@@ -39,8 +39,10 @@ pub(super) fn check_contacts(spec: &SceneSpec, scene: &Scene, problems: &mut Pro
             }
         }
     }
-    for ([_, other], Gap { face, points, widest }) in gaps {
-        let (face, other) = (&scene.faces[face.index()].name, &scene.solids[other.index()]);
+    for ([one, other], Gap { face, points, widest }) in gaps {
+        let face = &scene.faces[face.index()];
+        let other = if face.owner == Owner::Solid(one) { other } else { one };
+        let (face, other) = (&face.name, &scene.solids[other.index()]);
         problems
             .warning(
                 &solid_key(spec, other),

@@ -10,6 +10,9 @@ use crate::optics::Bsdf;
 use crate::rng::Sampler;
 use crate::scene::{Emitted, FinishId, Owner, Scene, SolidId, Start};
 
+/// Starts that are looked at, per source: a part of a source that is missed is less than a hundredth of it.
+const LOOKS: u64 = 1024;
+
 /// Sources that touch no solid start all their paths outside, without asking.
 pub(super) fn settle_starts(scene: &mut Scene) {
     let boxes: Vec<_> =
@@ -24,8 +27,6 @@ pub(super) fn settle_starts(scene: &mut Scene) {
 
 /// Notes sources that start where their light cannot get out.
 pub(super) fn check_starts(spec: &SceneSpec, scene: &Scene, problems: &mut Problems) {
-    /// Starts that are looked at, per source.
-    const LOOKS: u64 = 64;
     for source in &scene.sources {
         let Some(kind) = spec.sources.get(&source.name).map(SourceSpec::kind) else { continue };
         let key = Key::of(&["sources", &source.name, kind]);

@@ -51,7 +51,8 @@ pub enum FinishSpec {
     /// scattered about the mirrored and the refracted direction.
     Gaussian(GaussianSpec),
     /// A rough interface of two media, or a rough mirror, of many small facets (GGX). Light meets one facet; what others
-    /// would have caught is absorbed: straight on 1 % at a roughness of 0.1, 12 % at 0.3, 31 % at 0.5, 69 % at 1.
+    /// would have caught is absorbed: of light straight onto a mirror 1 % at a roughness of 0.1, 12 % at 0.3, 31 % at 0.5,
+    /// 69 % at 1; onto acrylic 10 % at 0.3, 24 % at 0.5, 56 % at 1.
     Ggx(GgxSpec),
     /// Haze by the `ABg` model, `A/(B + d^g)` in 1/sr: d is the distance of two directions in direction cosines. With
     /// neither reflectance nor transmittance given it is a hazy interface between two media: light is scattered to both

@@ -78,7 +78,7 @@ pub struct RowSpec {
     pub pitch_mm: Option<AlongSpec>,
     /// Where the row begins and ends along the face, with `pitch_mm`. Omitted: the whole face.
     pub along_mm: Option<[f64; 2]>,
-    /// Place of the row across the face, from its middle line.
+    /// Place of the row across the face, from its middle line. Omitted: the middle; of a round face `around_deg` is 180 there.
     pub across_mm: Option<f64>,
     /// Place of the row around a round tube or rod, from the local +x toward +y.
     pub around_deg: Option<f64>,

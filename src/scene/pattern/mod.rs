@@ -5,6 +5,7 @@
 //! here.
 
 mod along;
+mod apart;
 mod rows;
 
 pub use along::Along;
@@ -233,6 +234,8 @@ impl Field {
             let to = from + pitch * (count.max(1) - 1) as f64;
             let along = (rect.min.y - (place - half.y)).max(place + half.y - rect.max.y);
             let across = match self.period {
+                // Rings go around and are not wider than that.
+                Some(period) if half.x.is_finite() => 2.0 * half.x - period,
                 Some(_) => 0.0,
                 None => (rect.min.x - (from - half.x)).max(to + half.x - rect.max.x),
             };

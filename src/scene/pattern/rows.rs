@@ -111,6 +111,23 @@ impl Rows {
         }
     }
 
+    /// The rows from one place along the face to another, mm.
+    pub(in crate::scene) fn between(&self, from: f64, to: f64) -> std::ops::Range<usize> {
+        let before = |limit: f64| {
+            let (mut low, mut high) = (0, self.count());
+            while low < high {
+                let middle = low.midpoint(high);
+                if self.place(middle) < limit {
+                    low = middle + 1;
+                } else {
+                    high = middle;
+                }
+            }
+            low
+        };
+        before(from)..before(to)
+    }
+
     /// The rows that may reach a place: those beside it and one more on either side.
     #[inline]
     pub(in crate::scene) fn near(&self, place: f64) -> std::ops::Range<usize> {

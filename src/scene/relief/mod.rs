@@ -113,7 +113,7 @@ impl Cut {
 }
 
 impl Relief {
-    /// A relief of `element`s in rows and columns on a wall whose chart closes after `period`, mm, if it does.
+    /// A relief of `element`s in the rows and columns of a field on a wall.
     pub fn new(name: String, wall: FaceId, element: Element, field: Field, ground: Ground) -> Self {
         let field = Field { outline: Outline::Relief(Box::new(element.clone())), ..field };
         let rows = (0..field.rows.count()).map(|row| field.rows.place(row));
@@ -230,18 +230,6 @@ impl Relief {
 
     /// The rows whose elements may reach into a part of the wall along the guide, mm.
     fn rows_in(&self, from: f64, to: f64) -> Range<usize> {
-        let before = |limit: f64| {
-            let (mut low, mut high) = (0, self.field.rows.count());
-            while low < high {
-                let middle = low.midpoint(high);
-                if self.field.rows.place(middle) < limit {
-                    low = middle + 1;
-                } else {
-                    high = middle;
-                }
-            }
-            low
-        };
-        before(from - self.reach)..before(to + self.reach)
+        self.field.rows.between(from - self.reach, to + self.reach)
     }
 }

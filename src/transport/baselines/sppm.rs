@@ -11,7 +11,7 @@ use crate::scene::plan::RunPlan;
 use crate::scene::{SourceId, Visibility};
 use crate::transport::baselines::{BATCH_SEGMENTS, OneSensor};
 use crate::transport::emitters::Met;
-use crate::transport::estimate::{Arriving, Kernel, Meeting};
+use crate::transport::estimate::{Arriving, Meeting, NestedWindows};
 use crate::transport::follow::{Collector, follow};
 use crate::transport::forward::{Forward, PhotonWatcher};
 use crate::transport::readings::Counted;
@@ -75,9 +75,9 @@ impl<'s> Sppm<'s> {
         }
         let Waiting { cells, records } = waiting;
         let records = Records::new(records, window, &self.surfaces);
-        let kernel = Kernel::new(window);
+        let nested = NestedWindows::new(window);
         let mut stream =
-            Stream { sppm: self, kernel, records: &records, cells, readings: &mut readings };
+            Stream { sppm: self, nested, records: &records, cells, readings: &mut readings };
         let photons = self.forward.batch_watched(batch, &mut stream);
         readings.segments += photons.segments;
         readings.close_batch();
@@ -174,7 +174,7 @@ impl Collector for Gatherer<'_, '_> {
 /// Photons that stream past the records.
 struct Stream<'p, 's> {
     sppm: &'p Sppm<'s>,
-    kernel: Kernel,
+    nested: NestedWindows,
     records: &'p Records<'s>,
     cells: Vec<SmallVec<[usize; 1]>>,
     readings: &'p mut Readings,
@@ -195,10 +195,10 @@ impl PhotonWatcher for Stream<'_, '_> {
         let medium = interface.from;
         let photon = Meeting { surface, medium, point: vertex.point, incidence };
         let photon = Arriving::AtSurface(photon);
-        let Self { kernel, cells, readings, .. } = self;
+        let Self { nested, cells, readings, .. } = self;
         let key = Key { surface, point: vertex.point, dir: vertex.dir };
         self.records.visit(&[key], |_, record| {
-            let Some([share, ..]) = kernel.flux(record, &photon) else { return };
+            let Some([share, ..]) = nested.flux(record, &photon) else { return };
             let (flux, depth) = (flux * vertex.throughput * share, path.depth + record.depth);
             let light = Counted { flux, depth, source };
             sensor.count(readings, &cells[record.path as usize], &light);

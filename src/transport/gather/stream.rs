@@ -5,7 +5,7 @@
 use crate::optics::Incidence;
 use crate::scene::shape::Toward;
 use crate::scene::{MediumId, PrimHit, PrimId, Scene, SourceId, Visibility};
-use crate::transport::estimate::{Arriving, Colliding, Kernel, Meeting};
+use crate::transport::estimate::{Arriving, Colliding, Meeting, NestedWindows};
 use crate::transport::forward::PhotonWatcher;
 use crate::transport::gather::{Ended, Gather, Pass, Waiting};
 use crate::transport::merge::Etendues;
@@ -19,7 +19,7 @@ use glam::DVec3;
 /// Photons that stream past the records.
 pub(super) struct Stream<'p, 's> {
     pub(super) gather: &'p Gather<'s>,
-    kernel: Kernel,
+    nested: NestedWindows,
     waiting: &'p Waiting<'s>,
     pub(super) windows: &'p mut [Readings; ESTIMATES],
     /// Photons to be looked up, and by what.
@@ -93,7 +93,7 @@ impl<'p, 's> Stream<'p, 's> {
     ) -> Self {
         Self {
             gather,
-            kernel: Kernel::new(pass.window),
+            nested: NestedWindows::new(pass.window),
             work: RecordWork { records: waiting.records.all.len() as u64, ..RecordWork::default() },
             waiting,
             windows,
@@ -139,7 +139,7 @@ impl<'p, 's> Stream<'p, 's> {
 
     fn look_up(&mut self) {
         let Gather { scene, layout, .. } = self.gather;
-        let (kernel, windows, work) = (&self.kernel, &mut *self.windows, &mut self.work);
+        let (nested, windows, work) = (&self.nested, &mut *self.windows, &mut self.work);
         let (passing, keys) = (&self.passing, &self.keys);
         work.look_ups += passing.len() as u64;
         // Most photons that pass the filter are near no record after all: one bit for each that is.
@@ -153,7 +153,7 @@ impl<'p, 's> Stream<'p, 's> {
             };
             known = Some((index, met));
             near |= 1 << index;
-            let Some(shares) = kernel.flux(record, &met) else { return };
+            let Some(shares) = nested.flux(record, &met) else { return };
             work.pairs += 1;
             let Ended { sensor, cells, etendues, .. } = &self.waiting.paths[record.path as usize];
             let weights = etendues

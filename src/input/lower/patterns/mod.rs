@@ -62,6 +62,17 @@ impl Context<'_> {
         let wall = spec.wall_mm.zip(bore).map(|(thickness, bore)| HoleWall { thickness, bore });
         let field = self.field(spec, &ground, key)?;
         self.check_field(&field, &ground, &spec.on, key)?;
+        if let (Some(wall), Some(radius)) = (wall, ground.radius)
+            && wall.thickness >= radius
+        {
+            self.problems
+                .error(
+                    &key.field("wall_mm"),
+                    format!("{} does not fit a tube of radius {radius}: the face is the middle of its wall", wall.thickness),
+                )
+                .hint("make the wall thinner than the radius, or the tube wider");
+            return None;
+        }
         let pattern =
             Pattern { name: name.to_owned(), face: ground.face, field, front, back, wall };
         self.is_clear(pattern.face, &pattern.field, key).then_some(pattern)
@@ -76,11 +87,15 @@ impl Context<'_> {
         key: &Key,
     ) -> Option<()> {
         if let Some(row) = field.first_overlap() {
+            let size = field.outline.size(field.rows.place(row));
             let place = field.rows.place(row) - ground.rect.min.y;
             self.problems
                 .error(
                     &key.field("element"),
-                    format!("elements overlap {place:.4} mm along `{on}`"),
+                    format!(
+                        "elements overlap, as at {place:.4} mm along `{on}`: there they are {:.4} mm across and {:.4} mm long",
+                        size.x, size.y
+                    ),
                 )
                 .hint("make them smaller, or the pitch larger");
             return None;

@@ -207,7 +207,7 @@ impl Context<'_> {
                             cap.radius
                         ),
                     )
-                    .hint(format!("keep the {depth} at or below the radius of the sphere"));
+                    .hint(format!("keep the {depth} at or below half the diameter, or below the radius of the sphere"));
                 return None;
             }
             if let Some(radius) = wall.unrolled.radius {

@@ -1,0 +1,150 @@
+//! Whether the elements of two fields on one face keep clear of each other: every pair that could meet is asked.
+
+use crate::scene::pattern::{Columns, Field, Outline};
+use glam::DVec2;
+
+/// Elements that touch may share this part of their sizes, 1: rounding.
+const TOUCHING: f64 = 1e-12;
+
+/// The room that an element takes of its face.
+#[derive(Debug, Clone, Copy)]
+enum Room {
+    /// A disk of some radius, mm.
+    Disk(f64),
+    /// A rectangle by half of its sides across and along, mm.
+    Rectangle(DVec2),
+}
+
+impl Room {
+    fn of(outline: &Outline, place: f64) -> Self {
+        let half = 0.5 * outline.size(place);
+        match outline {
+            Outline::Circle { .. } => Self::Disk(half.x),
+            Outline::Rectangle { .. } => Self::Rectangle(half),
+            // What a ball takes below a round wall is wider around than along: the disk about both.
+            Outline::Relief(element) if element.cap(place).is_some() => {
+                Self::Disk(half.max_element())
+            }
+            Outline::Relief(_) => Self::Rectangle(half),
+        }
+    }
+
+    /// Half of the sides of the rectangle around it, mm.
+    fn half(self) -> DVec2 {
+        match self {
+            Self::Disk(radius) => DVec2::splat(radius),
+            Self::Rectangle(half) => half,
+        }
+    }
+
+    /// Whether it shares more than an edge with another one whose middle is `apart` of its own.
+    fn meets(self, other: Self, apart: DVec2) -> bool {
+        let apart = apart.abs();
+        match (self, other) {
+            (Self::Disk(one), Self::Disk(two)) => apart.length() < (one + two) * (1.0 - TOUCHING),
+            (Self::Rectangle(one), Self::Rectangle(two)) => {
+                apart.cmplt((one + two) * (1.0 - TOUCHING)).all()
+            }
+            (Self::Disk(radius), Self::Rectangle(half))
+            | (Self::Rectangle(half), Self::Disk(radius)) => {
+                (apart - half).max(DVec2::ZERO).length() < radius * (1.0 - TOUCHING)
+            }
+        }
+    }
+}
+
+impl Field {
+    /// The middle, mm of the unrolled face, of the first element that meets one of another field on the same face.
+    pub fn first_met(&self, other: &Self) -> Option<DVec2> {
+        let rows = 0..other.rows.count();
+        let widest = rows.map(|row| Room::of(&other.outline, other.rows.place(row)).half());
+        let widest = widest.fold(DVec2::ZERO, DVec2::max);
+        let found = self.places().find(|(place, middle)| {
+            let own = Room::of(&self.outline, *place);
+            let reach = own.half() + widest;
+            other.near(*middle, reach).any(|(row, across)| {
+                let place = other.rows.place(row);
+                let apart = DVec2::new(across, place - middle.y);
+                own.meets(Room::of(&other.outline, place), apart)
+            })
+        });
+        found.map(|(_, middle)| middle)
+    }
+
+    /// The elements whose middles are nearer to a place than `reach` across and along: their rows, and how far across they
+    /// are, mm.
+    fn near(&self, at: DVec2, reach: DVec2) -> impl Iterator<Item = (usize, f64)> {
+        let rows = self.rows.between(at.y - reach.y, at.y + reach.y);
+        // Around a face that closes on itself an element is near by either way.
+        let turns = match self.period {
+            Some(period) => [0.0, period, -period],
+            None => [0.0, f64::NAN, f64::NAN],
+        };
+        rows.flat_map(move |row| turns.into_iter().map(move |turn| (row, turn))).flat_map(
+            move |(row, turn)| {
+                let Columns { pitch, count, .. } = self.columns;
+                let first = self.columns.place(row, 0) + turn - at.x;
+                let found = columns_between(-reach.x - first, reach.x - first, pitch, count);
+                found.map(move |column| (row, first + pitch * column as f64))
+            },
+        )
+    }
+}
+
+/// The columns, of so many from 0, at multiples of a pitch between two places; none for places that are no numbers.
+fn columns_between(from: f64, to: f64, pitch: f64, count: usize) -> std::ops::Range<usize> {
+    if from.is_nan() || to.is_nan() {
+        return 0..0;
+    }
+    let most = count as f64;
+    let first = (from / pitch).ceil().clamp(0.0, most);
+    let past = ((to / pitch).floor() + 1.0).clamp(first, most);
+    first as usize..past as usize
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::pattern::{Along, Rows};
+
+    fn field(outline: Outline, first: DVec2, pitch: f64) -> Field {
+        let rows = Rows::Even { first: first.y, pitch, count: 5 };
+        let columns = Columns { first: first.x, pitch, count: 4, shift: 0.0 };
+        Field { rows, columns, outline, period: None }
+    }
+
+    fn disks(diameter: f64) -> Outline {
+        Outline::Circle { diameter: Along::constant(diameter) }
+    }
+
+    #[test]
+    fn fields_meet_where_their_elements_share_more_than_an_edge() {
+        let own = field(disks(2.0), DVec2::ZERO, 10.0);
+        let bars = Outline::Rectangle { width: 1.0, length: 6.0 };
+        for (outline, from, meets) in [
+            (disks(1.0), DVec2::new(1.499, 0.0), true),
+            (disks(1.0), DVec2::new(1.5, 0.0), false),
+            (disks(1.0), DVec2::new(1.07, 1.07), false),
+            (disks(1.0), DVec2::new(1.05, 1.05), true),
+            (bars.clone(), DVec2::new(1.499, 2.9), true),
+            (bars.clone(), DVec2::new(1.5, 2.9), false),
+            // The corner of the bar and the rim of the disk.
+            (bars.clone(), DVec2::new(1.22, 3.69), true),
+            (bars, DVec2::new(1.22, 3.70), false),
+        ] {
+            let other = field(outline, from, 10.0);
+            assert_eq!(own.first_met(&other).is_some(), meets, "{other:?}");
+            assert_eq!(other.first_met(&own).is_some(), meets, "{other:?}");
+        }
+    }
+
+    #[test]
+    fn around_a_closed_face_elements_meet_over_the_seam() {
+        let at =
+            |u: f64| Field { period: Some(30.0), ..field(disks(2.0), DVec2::new(u, 0.0), 100.0) };
+        let one = |u: f64| Field { columns: Columns { count: 1, ..at(u).columns }, ..at(u) };
+        assert!(one(0.5).first_met(&one(29.0)).is_some());
+        assert!(one(29.0).first_met(&one(0.5)).is_some());
+        assert!(one(0.5).first_met(&one(28.0)).is_none());
+    }
+}

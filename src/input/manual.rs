@@ -141,10 +141,16 @@ impl Manual<'_> {
         } else if resolved["type"] == "string" {
             _ = writeln!(self.text, "- text: {words}");
         } else if resolved["properties"].is_object() {
+            self.end_list();
             _ = write!(self.text, "**{words}** {}\n\n", description(resolved));
             self.keys(resolved, &[]);
         } else {
-            let link = self.link(option).unwrap_or_default();
+            let plain = match resolved["type"].as_str() {
+                Some("number") => "number",
+                Some("array") => "list",
+                Some(_) | None => "",
+            };
+            let link = self.link(option).unwrap_or_else(|| plain.into());
             _ = writeln!(self.text, "- {link}: {words}");
         }
     }

@@ -93,7 +93,7 @@ What the reference has no cases for is held against published values and laws by
 | what | held against | test |
 |---|---|---|
 | media that scatter | a slab of van de Hulst (0.66096 up, 0.09739 back) and a half space of Giovanelli (0.2600), as in Wang, Jacques & Zheng (1995); mean path 4V/S (Blanco & Fournier 2003); moments of the phase function; luminance in a furnace; all estimators | `tests/agreement/volumes.rs`, `furnace.rs` |
-| reliefs | a flank under 45 deg turns light to 1e-12; volumes; flux on every face of a furnace; grooves against the same profile as a sweep; no leak in 10^8 segments | `tests/relief`, `tests/agreement/reliefs.rs` |
+| reliefs | a flank under 45 deg turns light to 1e-12; volumes; flux on every face of a furnace; grooves against the same profile as a sweep; no leak in a million segments | `tests/relief`, `tests/agreement/reliefs.rs` |
 | rough surfaces: ggx, abg, harvey | chi-square of samples against the distribution function, reciprocity, no light created, total integrated scatter in closed form; all estimators | `src/optics`, `tests/agreement/finishes.rs` |
 | daylight | horizontal illuminance of sun and skies, against integrals of the standard sky | `src/optics`, `tests/agreement/daylight.rs` |
 | meshes from CAD | the exact sweep of the same rod, by angle of the mesh | `docs/cad.md` |

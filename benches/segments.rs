@@ -182,6 +182,7 @@ fn trace(case: &Case, seed: u64) -> Outcome {
         gather: GatherPlan::default(),
         seed,
         bounce_limit: 100_000,
+        batch_paths: None,
         stop: StopRules { paths: Some(BATCHES * case.batch_paths), ..StopRules::default() },
     };
     let mut run = Run::new(&case.scene, &plan);

@@ -43,6 +43,7 @@ pub mod pipeline;
 pub mod report;
 pub mod rng;
 pub mod scene;
+pub mod study;
 pub mod tally;
 pub mod transport;
 pub mod units;

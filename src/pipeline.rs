@@ -1,25 +1,31 @@
 //! The flow, one call per step: a scene file becomes a report.
 
+mod check;
+mod checkpoint;
 mod compare;
+mod parts;
 mod progress;
+mod sense;
+mod snapshot;
 mod timing;
 
+pub use check::{Checked, check};
+pub use checkpoint::Start;
 pub use compare::{CompareWishes, Compared, Method, TruthWish, compare};
+pub use parts::{SliceWishes, SliceWritten, has_slice, merge_slices, run_slice};
 pub use progress::{Progress, TargetProgress};
 
 use crate::error::{Diagnostic, Result};
-use crate::input::keys::Key;
-use crate::input::problems::Problems;
 use crate::input::{self, Job, Settings};
 use crate::measure::{self, Status};
+use crate::pipeline::checkpoint::{Keeper, Stand};
+use crate::pipeline::sense::expect_sense;
 use crate::report::{
-    self, CheckResult, Existing, Folder, Recipe, Report, RunFacts, SceneFacts, TargetFacts,
-    Written, inventory, write_whole,
+    self, CheckResult, Existing, Folder, Recipe, Report, RunFacts, SceneFacts, TargetFacts, Written,
 };
-use crate::scene::plan::{Request, RunPlan};
-use crate::transport::{
-    BLIND_PATHS, Findings, Interrupt, Run, blind_sensors, invisible, scatterers, tracks,
-};
+use crate::scene::plan::RunPlan;
+use crate::transport::{Findings, Interrupt, Run};
+use std::convert::Infallible;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -33,6 +39,17 @@ pub struct Output {
     pub dir: Option<PathBuf>,
     /// What to do with a report that is there.
     pub existing: Existing,
+    /// How often a checkpoint is kept in the folder; `None` for never.
+    pub checkpoint_every: Option<Duration>,
+    /// Whether to go on from the checkpoint that is there.
+    pub start: Start,
+}
+
+impl Output {
+    /// A report in a folder, without checkpoints.
+    pub fn new(dir: Option<PathBuf>, existing: Existing) -> Self {
+        Self { dir, existing, checkpoint_every: None, start: Start::Anew }
+    }
 }
 
 /// Why a run ended.
@@ -74,13 +91,23 @@ pub fn run_one(
     interrupt: &Interrupt,
     watch: &mut dyn FnMut(&Progress),
 ) -> Result<Finished> {
-    let mut job = input::load(scene, settings)?;
-    job.warnings.extend(expect_sense(&job)?);
-    let folder = Folder::open(&output_dir(scene, output), output.existing, recipe(&job).as_ref())?;
-    let traced = trace(&job, interrupt, watch);
+    let job = prepare(scene, settings)?;
+    let dir = output_dir(scene, output);
+    let (mut keeper, stand) = Keeper::open(&dir, recipe(&job), output)?;
+    // What a run has left in its own folder when it was stopped may be replaced by its whole report.
+    let existing = if stand.is_some() { Existing::Replace } else { output.existing };
+    let folder = Folder::open(&dir, existing, repeatable(&job).as_ref())?;
+    let mut keep = |run: &Run<'_>, pause: Pause| match pause {
+        Pause::Between { round_end, elapsed } => keeper.keep_if_due(run, round_end, elapsed),
+        Pause::Last { round_end, elapsed } => keeper.keep_last(run, round_end, elapsed),
+    };
+    let traced = trace_kept(&job, stand, &mut keep, interrupt, watch)?;
     let report = compose(&job, &traced.findings, traced.stop);
     let written = folder.write(&report::files(&report, &job.text)?)?;
     timing::write(&folder, &traced)?;
+    if traced.stop != Stop::Interrupted {
+        keeper.remove()?;
+    }
     Ok(Finished {
         report,
         written,
@@ -90,86 +117,11 @@ pub fn run_one(
     })
 }
 
-/// Refuses a scene without light, and checks and targets that name no measure of it, before any work is done. Gives
-/// back remarks.
-fn expect_sense(job: &Job) -> Result<Vec<Diagnostic>> {
-    let names = measure::names(&job.scene);
-    let target = job
-        .run
-        .stop
-        .target
-        .iter()
-        .map(|target| (Key::of(&["run", "target", "measure"]), &target.measure));
-    let check = |index| Key::of(&["check"]).index(index).field("measure");
-    let checks = job.checks.iter().enumerate().map(|(index, one)| (check(index), &one.measure));
-    let mut problems = Problems::default();
-    if job.scene.sources.is_empty() {
-        problems
-            .error(&Key::of(&["sources"]), "nothing emits light: there is no source to trace")
-            .hint("add a table such as [sources.led.disk]");
-    }
-    expect_visible_sources(job, &mut problems);
-    expect_discrete_directions(job, &mut problems);
-    for (key, name) in target.chain(checks).filter(|(_, name)| !names.contains(name)) {
-        let nearest = measure::nearest(name, names.iter().map(String::as_str));
-        problems
-            .error(&key, format!("there is no measure `{name}`"))
-            .hint(format!("near names: {}", nearest.join(", ")));
-    }
-    expect_sight(job, &mut problems);
-    problems.finish(&job.places)
-}
-
-/// Remarks on sensors from which no gather path could bring light.
-fn expect_sight(job: &Job, problems: &mut Problems) {
-    match job.run.estimator {
-        // Photons find what gather paths do not.
-        Request::Auto | Request::Forward | Request::Mix => return,
-        Request::Backward | Request::Gather | Request::Mis => {}
-    }
-    for sensor in blind_sensors(&job.scene, job.run.seed) {
-        let name = &job.scene.sensors[sensor.index()].name;
-        let message = format!(
-            "sees no port: 0 of {BLIND_PATHS} gather paths meet a surface or a source, so that `{}` finds nothing there",
-            job.run.estimator.name()
-        );
-        problems
-            .warning(&Key::of(&["sensors", name]), message)
-            .hint("turn its axis toward the port, or name the port in its `aim`");
-    }
-}
-
-/// Refuses estimators that have to meet the sources where a source cannot be met.
-fn expect_visible_sources(job: &Job, problems: &mut Problems) {
-    let meets = match job.run.estimator {
-        Request::Auto | Request::Forward | Request::Mix => false,
-        Request::Backward | Request::Gather | Request::Mis => true,
-    };
-    for source in job.scene.sources.iter().filter(|_| meets) {
-        let Some(why) = invisible(source, &job.scene) else { continue };
-        let (name, wanted) = (&source.name, job.run.estimator.name());
-        let message = format!("`{wanted}` paths cannot meet the source `{name}`: {why}");
-        problems.error(&Key::of(&["run", "estimator"]), message).hint(
-            "use `forward`, `mix` or `auto`, or give the source an area and a cone of directions",
-        );
-    }
-}
-
-/// Refuses merging where a finish scatters.
-fn expect_discrete_directions(job: &Job, problems: &mut Problems) {
-    match job.run.estimator {
-        Request::Auto | Request::Forward | Request::Backward | Request::Mix | Request::Gather => {
-            return;
-        }
-        Request::Mis => {}
-    }
-    for scatterer in scatterers(&job.scene) {
-        let message =
-            format!("`mis` merges paths of discrete directions only: {scatterer} scatters light");
-        problems
-            .error(&Key::of(&["run", "estimator"]), message)
-            .hint("use `auto`, or one of `forward`, `backward`, `mix` and `gather`");
-    }
+/// Loads a scene that can be traced.
+pub fn prepare(scene: &Path, settings: &Settings) -> Result<Job> {
+    let mut job = input::load(scene, settings)?;
+    job.warnings.extend(expect_sense(&job)?);
+    Ok(job)
 }
 
 /// A run that has written its report.
@@ -187,16 +139,21 @@ pub struct Finished {
     pub warnings: Vec<Diagnostic>,
 }
 
-/// What decides the bytes of a job's report; nothing does when the clock stops the run.
-fn recipe(job: &Job) -> Option<Recipe> {
-    job.run.stop.time.is_none().then(|| Recipe {
+/// What identifies a run.
+fn recipe(job: &Job) -> Recipe {
+    Recipe {
         version: VERSION.to_owned(),
         scene_hash: job.hash.clone(),
         seed: job.run.seed,
         estimator: job.run.estimator.name().to_owned(),
         gather: report::wishes(&job.run.gather),
         asked: report::asked(&job.run.stop),
-    })
+    }
+}
+
+/// What decides the bytes of a job's report; nothing does when the clock stops the run.
+fn repeatable(job: &Job) -> Option<Recipe> {
+    job.run.stop.time.is_none().then(|| recipe(job))
 }
 
 /// The report of what was counted.
@@ -263,16 +220,42 @@ pub struct Traced {
 
 /// Traces rounds until a stop rule holds.
 pub fn trace(job: &Job, interrupt: &Interrupt, watch: &mut dyn FnMut(&Progress)) -> Traced {
+    let Ok(traced) = trace_kept(job, None, &mut |_, _| Ok::<(), Infallible>(()), interrupt, watch);
+    traced
+}
+
+/// A moment at which a run can be laid down.
+enum Pause {
+    /// It goes on.
+    Between { round_end: u64, elapsed: Duration },
+    /// The user has stopped it.
+    Last { round_end: u64, elapsed: Duration },
+}
+
+/// Traces rounds from where a run stands until a stop rule holds; `keep` may lay it down at every pause.
+fn trace_kept<E>(
+    job: &Job,
+    stand: Option<Stand>,
+    keep: &mut dyn FnMut(&Run<'_>, Pause) -> std::result::Result<(), E>,
+    interrupt: &Interrupt,
+    watch: &mut dyn FnMut(&Progress),
+) -> std::result::Result<Traced, E> {
     let start = Instant::now();
     let mut run = Run::new(&job.scene, &job.run);
+    let (mut round_end, mut before) = (run.round_end(), Duration::ZERO);
+    if let Some(stand) = stand {
+        (round_end, before) = (stand.round_end, stand.elapsed);
+        run.go_on_from(stand.state);
+    }
+    let elapsed = || before + start.elapsed();
     let (mut target, mut gathering_told) = (None, false);
     let stop = loop {
-        let round_end = run.round_end();
         let mut early = None;
         while run.waves() < round_end && early.is_none() {
             run.next_piece();
-            early = early_stop(&job.run, &run, start.elapsed(), interrupt);
-            let mut progress = Progress::of(&job.run, &run, start.elapsed(), target.clone());
+            keep(&run, Pause::Between { round_end, elapsed: elapsed() })?;
+            early = early_stop(&job.run, &run, elapsed(), interrupt);
+            let mut progress = Progress::of(&job.run, &run, elapsed(), target.clone());
             if !gathering_told {
                 progress.gathering = gathering(&run.findings());
                 gathering_told = true;
@@ -280,10 +263,13 @@ pub fn trace(job: &Job, interrupt: &Interrupt, watch: &mut dyn FnMut(&Progress))
             watch(&progress);
         }
         if let Some(stop) = early {
+            if stop == Stop::Interrupted {
+                keep(&run, Pause::Last { round_end, elapsed: elapsed() })?;
+            }
             break stop;
         }
         target = TargetProgress::of(job, &run);
-        watch(&Progress::of(&job.run, &run, start.elapsed(), target.clone()));
+        watch(&Progress::of(&job.run, &run, elapsed(), target.clone()));
         let stop = target.as_ref().and_then(|target| target_stop(target, run.paths()));
         // Smaller windows take a bias away.
         if let Some(stop) = stop.filter(|stop| *stop != Stop::Bias || !run.shrinks()) {
@@ -296,8 +282,9 @@ pub fn trace(job: &Job, interrupt: &Interrupt, watch: &mut dyn FnMut(&Progress))
         if run.may_end_stage() && is_held() {
             run.next_stage();
         }
+        round_end = run.round_end();
     };
-    Traced { findings: run.findings(), stop, elapsed: start.elapsed() }
+    Ok(Traced { findings: run.findings(), stop, elapsed: elapsed() })
 }
 
 /// A run to a target gives up on one that its bias keeps from it once the noise is this share of what is wanted, 1.
@@ -350,36 +337,4 @@ fn output_dir(scene: &Path, output: &Output) -> PathBuf {
         .dir
         .clone()
         .unwrap_or_else(|| Path::new("reports").join(scene.file_stem().unwrap_or_default()))
-}
-
-/// Paths that a check draws.
-const CHECK_PATHS: usize = 50;
-
-/// What a check found.
-#[derive(Debug)]
-pub struct Checked {
-    /// What is in the scene.
-    pub text: String,
-    /// Remarks on the scene file.
-    pub warnings: Vec<Diagnostic>,
-}
-
-/// Validates a scene, lists what is in it, and draws its cross-section with some traced paths.
-pub fn check(
-    scene: &Path,
-    settings: &Settings,
-    picture: Option<&Path>,
-    existing: Existing,
-) -> Result<Checked> {
-    let mut job = input::load(scene, settings)?;
-    job.warnings.extend(expect_sense(&job)?);
-    let default = PathBuf::from(format!("{}.check.png", job.name));
-    // The default name belongs to this program: it is drawn anew at every check.
-    let (picture, existing) =
-        picture.map_or((&*default, Existing::Replace), |path| (path, existing));
-    let tracks = tracks(&job.scene, job.run.seed, job.run.bounce_limit, CHECK_PATHS);
-    let bytes = report::scene_picture(&job.title, &job.scene, &tracks)?;
-    write_whole(picture, &bytes, existing)?;
-    let text = format!("{}\n{}picture: {}\n", job.title, inventory(&job.scene), picture.display());
-    Ok(Checked { text, warnings: job.warnings })
 }

@@ -31,6 +31,8 @@ pub enum Dimension {
     Scatter,
     /// Whether a path of small throughput survives.
     Roulette,
+    /// What a parameter of a study is set to.
+    Design,
     /// Noise that is added to a result to learn its error.
     Resampling,
 }

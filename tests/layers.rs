@@ -15,6 +15,7 @@ const LAYERS: &[&[&str]] = &[
     &["measure"],
     &["report"],
     &["pipeline"],
+    &["study"],
     &["cli"],
     &["main"],
 ];

@@ -1,7 +1,8 @@
 //! Arguments of `lumiduct compare`.
 
+use crate::cli::run::GatherArgs;
 use crate::cli::values::{parse_number, parse_time, words};
-use crate::cli::{GatherArgs, fail, finish, on_ctrl_c, use_threads, warn};
+use crate::cli::{fail, finish, on_ctrl_c, use_threads, warn};
 use crate::input::Settings;
 use crate::pipeline::{self, CompareWishes, Method, Output, TruthWish};
 use crate::report::Existing;
@@ -113,7 +114,7 @@ pub(super) fn compare(args: &CompareArgs) -> ExitCode {
         truth,
     };
     let existing = if args.overwrite { Existing::Replace } else { Existing::Keep };
-    let output = Output { dir: args.output.clone(), existing };
+    let output = Output::new(args.output.clone(), existing);
     let interrupt = on_ctrl_c();
     let mut tell = |line: &str| {
         if !args.quiet {

@@ -1,6 +1,7 @@
-//! How a run shows its progress.
+//! How runs and batches show their progress.
 
 use crate::pipeline::Progress;
+use crate::study::BatchProgress;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::time::Duration;
@@ -36,20 +37,34 @@ impl Display {
         let gathering = gathering.map(|text| format!("gathering: {text}"));
         match self {
             Self::Quiet => {}
+            Self::Bar(bar) => gathering.iter().for_each(|line| bar.println(line)),
+            Self::Lines { .. } => gathering.iter().for_each(|line| eprintln!("{line}")),
+        }
+        self.show_line(progress.fraction(), progress.elapsed, &progress.sentence());
+    }
+
+    /// Designs done, and the time left.
+    pub(super) fn show_batch(&mut self, progress: &BatchProgress) {
+        self.show_line(progress.fraction, progress.elapsed, &progress.sentence());
+    }
+
+    /// The share of a part that is done, 0..=1, and the time left.
+    pub(super) fn show_share(&mut self, share: f64, elapsed: Duration) {
+        let left = elapsed.as_secs_f64() * (1.0 - share) / share.max(1e-9);
+        self.show_line(share, elapsed, &format!("{:.0} % done, {left:.0} s left", 100.0 * share));
+    }
+
+    fn show_line(&mut self, share: f64, elapsed: Duration, line: &str) {
+        match self {
+            Self::Quiet => {}
             Self::Bar(bar) => {
-                if let Some(line) = gathering {
-                    bar.println(line);
-                }
-                bar.set_position((1000.0 * progress.fraction()) as u64);
-                bar.set_message(progress.sentence());
+                bar.set_position((1000.0 * share) as u64);
+                bar.set_message(line.to_owned());
             }
             Self::Lines { next } => {
-                if let Some(line) = gathering {
+                if elapsed >= *next {
                     eprintln!("{line}");
-                }
-                if progress.elapsed >= *next {
-                    eprintln!("{}", progress.sentence());
-                    *next = progress.elapsed + Self::LINE_EVERY;
+                    *next = elapsed + Self::LINE_EVERY;
                 }
             }
         }

@@ -1,6 +1,7 @@
 //! Values of arguments, with their units.
 
 use crate::scene::plan::MOST_RECORDS;
+use crate::transport::Shard;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::time::Duration;
 
@@ -101,6 +102,14 @@ pub(super) fn words<T: Clone + Send + Sync + 'static, const N: usize>(
         .try_map(move |name| named(&name).ok_or_else(|| format!("`{name}` is not known")))
 }
 
+/// A part of a piece of work: 3/16 is the third of sixteen.
+pub(super) fn parse_shard(text: &str) -> Result<Shard, String> {
+    let wrong = || format!("`{text}` is no part; try 1/4, 2/4, 3/4 and 4/4 for four of them");
+    let (number, count) = text.split_once('/').ok_or_else(wrong)?;
+    let parse = |digits: &str| digits.parse::<u64>().map_err(|_| wrong());
+    Shard::new(parse(number)?, parse(count)?).ok_or_else(wrong)
+}
+
 /// A step of an angle, in degrees.
 pub(super) fn parse_step(text: &str) -> Result<f64, String> {
     parse_within(text, [0.1, 45.0])
@@ -141,6 +150,14 @@ mod tests {
         }
         assert_eq!(parse_time("5min"), Ok(Duration::from_secs(300)));
         assert!(parse_time("0s").is_err() && parse_time("inf").is_err());
+    }
+
+    #[test]
+    fn parts_are_counted_from_one() {
+        assert_eq!(parse_shard("3/16"), Ok(Shard::new(3, 16).unwrap()));
+        for wrong in ["0/4", "5/4", "1/0", "1", "a/b", "-1/4", "1/4/4"] {
+            assert!(parse_shard(wrong).is_err(), "{wrong}");
+        }
     }
 
     #[test]

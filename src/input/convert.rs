@@ -7,6 +7,7 @@ use serde_json::Value as Json;
 
 use crate::input::keys::{Key, Segment};
 use crate::input::problems::Problems;
+use crate::input::spec::study::StudySpec;
 use crate::input::spec::{AIR, FORMAT_VERSION, NORTH, SceneSpec, UP};
 use crate::input::tree::{Node, Value};
 
@@ -31,6 +32,11 @@ pub fn scene(root: &Node, problems: &mut Problems) -> SceneSpec {
         // One bad check takes the others with it: their places in the list would no longer fit their keys.
         check: value(root, "check", problems).unwrap_or_default(),
     }
+}
+
+/// The study that a tree says; `None` where nothing could be made of it, which has been noted then.
+pub fn study(root: &Node, problems: &mut Problems) -> Option<StudySpec> {
+    one(root, &Key::root(), problems)
 }
 
 fn value<T: DeserializeOwned>(root: &Node, name: &str, problems: &mut Problems) -> Option<T> {

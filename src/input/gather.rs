@@ -9,13 +9,14 @@ use crate::math::Aabb;
 use crate::number::format_value;
 use crate::scene::plan::{GatherPlan, Request, Schedule};
 use crate::scene::{Owner, Scene};
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// First radius that is usual, as a share of half the width of a guide.
 const USUAL_RADIUS: f64 = 0.2;
 
 /// What the command line asks of the gather estimator; what is left out stays as the scene file has it.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct GatherSettings {
     /// Depth at which gather paths end at the latest.
     pub depth: Option<u32>,

@@ -9,11 +9,12 @@ use crate::input::problems::Problems;
 use crate::input::{Draft, draft};
 use crate::scene::Scene;
 use crate::scene::plan::{Check, Request, RunPlan, StopRules, Target};
+use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::time::Duration;
 
 /// What the command line asks for beside the scene file.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Settings {
     /// `key=value` for keys of the scene.
     pub overrides: Vec<String>,
@@ -23,12 +24,16 @@ pub struct Settings {
     pub gather: GatherSettings,
     /// Relative error of the target measure.
     pub target: Option<f64>,
+    /// The target measure; that of the file if it is left out.
+    pub target_measure: Option<String>,
     /// Number of paths.
     pub paths: Option<u64>,
     /// Time of the run.
     pub time: Option<Duration>,
     /// Seed of the random numbers.
     pub seed: Option<u64>,
+    /// Photon paths of a batch, so that batches of several scenes hold the same paths.
+    pub batch_paths: Option<u64>,
 }
 
 /// A scene to be run.
@@ -105,10 +110,12 @@ fn apply(settings: &Settings, scene: &Scene, run: &mut RunPlan) -> Result<()> {
     if let Some(seed) = settings.seed {
         run.seed = seed;
     }
+    run.batch_paths = settings.batch_paths;
     if settings.paths.is_none() && settings.time.is_none() && settings.target.is_none() {
         return Ok(());
     }
-    let measure = run.stop.target.as_ref().map(|target| target.measure.clone());
+    let of_file = run.stop.target.as_ref().map(|target| target.measure.clone());
+    let measure = settings.target_measure.clone().or(of_file);
     let measure =
         measure.or_else(|| scene.sensors.first().map(|sensor| format!("{}.flux", sensor.name)));
     let target = match (settings.target, measure) {

@@ -109,16 +109,27 @@ impl Places {
         &self.sources
     }
 
+    /// The whole text of the file that the tree is of.
+    pub fn root_text(&self) -> &str {
+        self.sources.get(self.root.origin.source).text()
+    }
+
     /// Whether the files say something at this key.
     pub fn has(&self, key: &Key) -> bool {
-        self.walk(key).1 == key.segments.len()
+        self.node(key).is_some()
+    }
+
+    /// What the files say at this key; `None` where they say nothing.
+    pub fn node(&self, key: &Key) -> Option<&Node> {
+        let (node, depth) = self.walk(key);
+        (depth == key.segments.len()).then_some(node)
     }
 
     /// Where the value of a key stands, or that of the innermost table around it that is there. `None` when nothing
     /// of it is.
     pub fn value(&self, key: &Key) -> Option<&Origin> {
-        let (origin, depth) = self.walk(key);
-        (depth > 0).then_some(origin)
+        let (node, depth) = self.walk(key);
+        (depth > 0).then_some(&node.origin)
     }
 
     /// Line of a key in its file, from 1; `None` when it is not in a file.
@@ -130,15 +141,14 @@ impl Places {
     /// The folder that a relative path at this key starts from: that of the file that names it; for the command line
     /// that of the scene.
     pub fn folder(&self, key: &Key) -> PathBuf {
-        let (origin, _) = self.walk(key);
-        let own = self.sources.folder(origin);
+        let own = self.sources.folder(&self.walk(key).0.origin);
         own.or_else(|| self.sources.folder(&self.root.origin))
             .map(PathBuf::from)
             .unwrap_or_default()
     }
 
     /// The innermost value on the way to a key, and how many steps lead to it.
-    fn walk(&self, key: &Key) -> (&Origin, usize) {
+    fn walk(&self, key: &Key) -> (&Node, usize) {
         let mut node = &self.root;
         for (depth, segment) in key.segments.iter().enumerate() {
             let next = match (segment, &node.value) {
@@ -150,10 +160,10 @@ impl Places {
             };
             match next {
                 Some(next) => node = next,
-                None => return (&node.origin, depth),
+                None => return (node, depth),
             }
         }
-        (&node.origin, key.segments.len())
+        (node, key.segments.len())
     }
 }
 

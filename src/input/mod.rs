@@ -14,11 +14,12 @@ use crate::input::sources::Sources;
 use crate::input::spec::{FORMAT_VERSION, SceneSpec};
 use crate::input::tree::{Node, SyntaxError, Value};
 use crate::input::validate::Completeness;
+use serde_json::Value as Json;
 
 pub mod check;
 pub mod convert;
 pub mod diagnostic;
-mod digest;
+pub(crate) mod digest;
 mod gather;
 pub mod include;
 mod job;
@@ -32,12 +33,17 @@ mod scatter;
 pub mod schema;
 pub mod sources;
 pub mod spec;
+mod study;
 pub mod tree;
 pub mod validate;
 
 pub use gather::GatherSettings;
 pub use job::{Job, Settings, load};
 pub use list::list;
+pub use study::{
+    Best, Domain, Keep, Parameter, Plan, Ranking, Samples, Setting, Study, StudySettings, Tie,
+    load_study,
+};
 
 /// A scene that was read without errors.
 #[derive(Debug, Clone, PartialEq)]
@@ -92,7 +98,7 @@ pub fn draft(path: &Path, overrides: &[String]) -> Result<Draft> {
     if has_other_version(&root, &mut problems) {
         return Err(Error::Input(problems.into_diagnostics(&Places::new(root, sources))));
     }
-    note_differences(&root, &sources, &breaks, &mut problems);
+    note_differences(&root, &schema::json_schema(), &sources, &breaks, &mut problems);
     note_breaks(&breaks, &mut problems);
     let spec = convert::scene(&root, &mut problems);
     let places = Places::new(root, sources);
@@ -153,13 +159,14 @@ fn note_broken_rules(spec: &SceneSpec, places: &Places, problems: &mut Problems)
 /// Holds the tree against the schema, and drops what stands in a line whose syntax is broken.
 fn note_differences(
     root: &Node,
+    schema: &Json,
     sources: &Sources,
     breaks: &[SyntaxError],
     problems: &mut Problems,
 ) {
     let completeness = if breaks.is_empty() { Completeness::Whole } else { Completeness::Broken };
     let mut found = Problems::default();
-    validate::validate(root, sources, completeness, &mut found);
+    validate::validate(root, schema, sources, completeness, &mut found);
     let line = |origin: &sources::Origin| {
         (origin.source, sources.get(origin.source).line(origin.span.start))
     };

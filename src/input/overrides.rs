@@ -75,6 +75,13 @@ fn read_one(
     })
 }
 
+/// A dotted key, as before the `=` of an argument; `None` if it is none.
+pub fn parse_key(text: &str) -> Option<Key> {
+    let (segments, equals) = read_key(&format!("{text}="))?;
+    (equals == text.len())
+        .then(|| segments.into_iter().fold(Key::root(), |key, segment| key.step(segment)))
+}
+
 /// The steps before the first `=` outside quotes, and where that is. A step of digits only is an index.
 fn read_key(text: &str) -> Option<(Vec<Segment>, usize)> {
     let mut segments = Vec::new();

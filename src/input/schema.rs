@@ -1,19 +1,28 @@
-//! The JSON Schema of scene files, made from the spec types.
+//! The JSON Schemas of scene files and study files, made from the spec types.
 //!
 //! The same schema validates files (`input::validate`) and makes the manual page (`input::manual`), so that the three
 //! cannot disagree.
 
+use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value, json};
 
 use crate::input::spec::SceneSpec;
+use crate::input::spec::study::StudySpec;
 
 /// The JSON Schema (draft 2020-12) of a scene file. Every table is closed: a key that is not listed is an error.
 pub fn json_schema() -> Value {
-    let mut schema = SchemaSettings::draft2020_12()
-        .into_generator()
-        .into_root_schema_for::<SceneSpec>()
-        .to_value();
+    schema_of::<SceneSpec>()
+}
+
+/// The JSON Schema (draft 2020-12) of a study file, closed likewise.
+pub fn study_schema() -> Value {
+    schema_of::<StudySpec>()
+}
+
+fn schema_of<T: JsonSchema>() -> Value {
+    let settings = SchemaSettings::draft2020_12();
+    let mut schema = settings.into_generator().into_root_schema_for::<T>().to_value();
     let names = short_names(&schema);
     if let Some(Value::Object(definitions)) = schema.get_mut("$defs") {
         *definitions = std::mem::take(definitions)
@@ -141,6 +150,15 @@ pub fn resolve<'a>(root: &'a Value, schema: &'a Value) -> &'a Value {
         }
     }
     schema
+}
+
+/// Whether a schema says nothing about its value.
+pub fn takes_anything(schema: &Value) -> bool {
+    match schema {
+        Value::Bool(takes) => *takes,
+        Value::Object(words) => words.keys().all(|word| word == "description"),
+        Value::Null | Value::Number(_) | Value::String(_) | Value::Array(_) => false,
+    }
 }
 
 /// One of the things that a value may be.

@@ -3,6 +3,7 @@
 mod aabb;
 mod cap;
 mod frame;
+mod least_squares;
 pub mod planar;
 mod roots;
 mod sampling;
@@ -10,6 +11,7 @@ mod sampling;
 pub use aabb::Aabb;
 pub use cap::{cap_solid_angle_above, projected_cap};
 pub use frame::Frame;
+pub use least_squares::{LeastSquares, least_squares};
 pub use roots::{Roots, bracketed_root, convex_roots, cubic, quadratic, quartic};
 pub use sampling::{
     circle, cone_direction, cosine_hemisphere, cosine_power_hemisphere, disk, from_cosine,

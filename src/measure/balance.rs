@@ -3,9 +3,10 @@
 //! Every line is counted on its own and none is made to fit, so that what is left over, the residual, tells whether
 //! any light was lost in the bookkeeping. Virtual sensors let light pass and have no line here.
 
-use crate::measure::Measure;
 use crate::measure::evidence::Evidence;
-use crate::scene::{FaceId, MediumId, Owner, SourceId};
+use crate::measure::{Measure, Replicates};
+use crate::scene::{FaceId, MediumId, Owner, Scene, SourceId};
+use crate::transport::Readings;
 use indexmap::IndexMap;
 use serde::Serialize;
 
@@ -97,6 +98,19 @@ impl Balance {
         add("residual".into(), &self.residual);
         out
     }
+}
+
+/// What single groups of batches say of a line, by its whole name.
+pub(crate) fn replicates(scene: &Scene, photons: &Readings, name: &str) -> Option<Replicates> {
+    let value = |photons: &Readings| {
+        let line = balance(&Evidence::new(scene, photons)).measures().swap_remove(name)?;
+        Some(line.value)
+    };
+    let without = photons
+        .groups
+        .iter()
+        .map(|group| Some((group.group, value(&photons.without_group(group.group))?)));
+    Some(Replicates::new(value(photons)?, &without.collect::<Option<Vec<_>>>()?))
 }
 
 /// The scalars of everything that can happen to emitted light.

@@ -4,7 +4,7 @@
 
 use crate::measure::{Measure, Measures, Status};
 use crate::scene::plan::Check;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A limit nearer to the value than this many total errors is undecided.
 const LIMIT_ERRORS: f64 = 3.0;
@@ -16,7 +16,7 @@ const DEFAULT_SIGMAS: f64 = 4.0;
 const SUGGESTIONS: usize = 3;
 
 /// The outcome of a check and why.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Verdict {
     /// The outcome.
     pub outcome: Outcome,
@@ -25,7 +25,7 @@ pub struct Verdict {
 }
 
 /// The outcome of a check.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
     /// The demand is met.

@@ -19,6 +19,7 @@ mod paths;
 mod points;
 mod readout;
 mod record;
+mod replicates;
 #[cfg(test)]
 mod samples;
 mod sensor;
@@ -31,6 +32,7 @@ pub use gathered::{GatheredFacts, Resolution, StageFacts};
 pub use map::{Axes, SensorMap};
 pub use paths::{Action, DepthBin, Extent, LostPaths, PathClass, PathStep, SensorPaths, strongest};
 pub use record::{Measure, Status};
+pub use replicates::{Replicates, replicates};
 pub use uniformity::{Statistic, Uniformity, UniformitySummary};
 
 use crate::measure::evidence::Evidence;
@@ -337,6 +339,7 @@ mod tests {
                 gather: GatherPlan::default(),
                 seed,
                 bounce_limit: 10,
+                batch_paths: None,
                 stop: StopRules { paths: Some(40_000), ..StopRules::default() },
             };
             let mut run = Run::new(&scene, &plan);

@@ -2,15 +2,17 @@
 
 use crate::number::{format_exact, format_with_error};
 use crate::scene::plan::Estimator;
-use serde::Serialize;
+use serde::{Deserialize, Deserializer, Serialize};
 use std::fmt;
 
 /// A measured quantity. Infinite values and errors are written as null.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Measure {
     /// The value, in `unit`.
+    #[serde(deserialize_with = "null_is_infinite")]
     pub value: f64,
     /// Standard error of the value, in `unit`; infinite where nothing is known about it.
+    #[serde(deserialize_with = "null_is_infinite")]
     pub std_error: f64,
     /// How far off the value may be on top of the noise, in `unit`; `None` for unbiased estimates.
     pub bias: Option<f64>,
@@ -26,8 +28,13 @@ pub struct Measure {
     pub status: Status,
 }
 
+/// JSON has no infinity: it is written as null.
+fn null_is_infinite<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(deserializer)?.unwrap_or(f64::INFINITY))
+}
+
 /// Whether a value and its error can be relied on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
     /// Both can.

@@ -3,7 +3,8 @@
 use crate::measure::evidence::{Evidence, MIN_LIT_GROUPS};
 use crate::measure::gathered::{GatheredFacts, Judged, judged};
 use crate::measure::{
-    IntensityTable, Measure, SensorMap, SensorPaths, Status, angular, flux, map, paths, readout,
+    IntensityTable, Measure, Replicates, SensorMap, SensorPaths, Status, angular, flux, map, paths,
+    readout,
 };
 use crate::scene::plan::Estimator;
 use crate::scene::{Scene, SensorId, SensorKind};
@@ -77,6 +78,27 @@ pub(crate) fn value_of(
             Some(value)
         }
     }
+}
+
+/// What single groups of batches say of a measure that follows from scalars alone.
+pub(crate) fn replicates(
+    scene: &Scene,
+    findings: &Findings,
+    id: SensorId,
+    name: &str,
+) -> Option<Replicates> {
+    let evidence = match evidence(scene, findings, id) {
+        Spoken::Plainly(evidence) => evidence,
+        Spoken::InWindows(judged) => judged.evidences()[0],
+    };
+    let value = flux::totals(&evidence, id).swap_remove(name)?.value;
+    let without = evidence.readings.groups.iter().map(|group| {
+        let [own, photons] = [evidence.readings, evidence.of_photons().readings]
+            .map(|readings| readings.without_group(group.group));
+        let evidence = Evidence::new(scene, &photons).by(&own, evidence.estimator());
+        Some((group.group, flux::totals(&evidence, id).swap_remove(name)?.value))
+    });
+    Some(Replicates::new(value, &without.collect::<Option<Vec<_>>>()?))
 }
 
 /// Standard errors of both by which photons have to find more than gather paths to contradict them.

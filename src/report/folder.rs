@@ -6,6 +6,9 @@ use std::fs;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
+/// How the names of files begin that are not complete yet.
+const STAGED: &str = ".lumiduct-";
+
 /// What to do with output that is there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Existing {
@@ -104,6 +107,29 @@ impl Folder {
     }
 }
 
+/// Takes away what a program that was killed has left half written in a folder. A folder that is not there holds nothing.
+pub fn sweep(folder: &Path) -> Result<()> {
+    let entries = match fs::read_dir(folder) {
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
+        other => other.map_err(|source| Error::io(folder, source))?,
+    };
+    for entry in entries {
+        let entry = entry.map_err(|source| Error::io(folder, source))?;
+        if entry.file_name().to_string_lossy().starts_with(STAGED) {
+            remove_if_there(&entry.path())?;
+        }
+    }
+    Ok(())
+}
+
+/// Takes a file away; one that is not there is no error.
+pub fn remove_if_there(path: &Path) -> Result<()> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() != ErrorKind::NotFound => Err(Error::io(path, error)),
+        Ok(()) | Err(_) => Ok(()),
+    }
+}
+
 /// Writes one file, whole or not at all. One that is there with the same bytes is left alone.
 pub fn write_whole(path: &Path, bytes: &[u8], existing: Existing) -> Result<()> {
     match (compare(path, bytes)?, existing) {
@@ -143,7 +169,7 @@ fn compare(path: &Path, bytes: &[u8]) -> Result<Comparison> {
 fn stage(folder: &Path, bytes: &[u8]) -> Result<tempfile::NamedTempFile> {
     let failed = |source| Error::io(folder, source);
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".lumiduct-");
+    builder.prefix(STAGED);
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;

@@ -15,6 +15,7 @@ mod mesh;
 pub mod png;
 mod recipe;
 mod record;
+pub mod study;
 mod summary;
 mod terminal;
 
@@ -23,7 +24,7 @@ pub use compare::{
 };
 pub use figures::scene_picture;
 pub use film::film_tables;
-pub use folder::{Existing, Folder, Written, write_whole};
+pub use folder::{Existing, Folder, Written, remove_if_there, sweep, write_whole};
 pub use inventory::inventory;
 pub use mesh::mesh_report;
 pub use recipe::Recipe;

@@ -1,11 +1,12 @@
 //! What decides the bytes of a report, so that a run over its own report is told from a run over another one.
 
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
 
 /// Two runs of one recipe write the same bytes, with the same binary on the same kind of machine.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Recipe {
     /// Version of the program.
     pub version: String,

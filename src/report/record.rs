@@ -5,7 +5,7 @@ use crate::number::{format_exact, format_percent, format_with_error};
 use crate::scene::plan::{Check, GatherPlan, Request, Schedule, StopRules, Target};
 use crate::transport::{GROUPS, GatherSettings, Leak};
 use glam::DVec3;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Everything a report says.
 #[derive(Debug, Clone, Serialize)]
@@ -67,7 +67,7 @@ pub struct RunFacts {
 }
 
 /// The target of a run.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TargetFacts {
     /// The measure.
     pub measure: String,
@@ -78,7 +78,7 @@ pub struct TargetFacts {
 }
 
 /// A check and its verdict.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CheckResult {
     /// What was expected.
     pub check: Check,

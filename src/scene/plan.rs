@@ -14,6 +14,9 @@ pub struct RunPlan {
     pub seed: u64,
     /// Paths are cut after this many interfaces; the flux they carry is a line of the balance.
     pub bounce_limit: u32,
+    /// Photon paths of a batch; `None` leaves it to how long paths are. Runs with the same number have the same paths in
+    /// the same batches.
+    pub batch_paths: Option<u64>,
     /// The first rule that is met ends the run.
     pub stop: StopRules,
 }
@@ -166,7 +169,7 @@ pub struct Target {
 }
 
 /// A demand on a measure.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Check {
     /// Dotted name of the measure.
     pub measure: String,

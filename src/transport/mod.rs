@@ -25,6 +25,7 @@ mod records;
 mod rounds;
 mod scatter;
 mod settings;
+mod shard;
 mod stages;
 mod sums;
 mod tracks;
@@ -45,8 +46,9 @@ pub use pilot::{Choice, Objection, Trial};
 pub use readings::{
     ClassSum, DEPTH_BINS, GROUPS, Group, Leak, Readings, SensorReading, Step, Trail,
 };
-pub use rounds::{Interrupt, Run};
+pub use rounds::{Interrupt, Run, Slice, State, Unsliceable, batch_paths};
 pub use settings::GatherSettings;
+pub use shard::Shard;
 pub use stages::{Stage, Windows};
 pub use tracks::{Track, TrackEnd, tracks};
 pub use walk::{

@@ -188,6 +188,18 @@ impl Readings {
         self
     }
 
+    /// The scalars of all groups but one; nothing of cells.
+    pub fn without_group(&self, left_out: u64) -> Self {
+        let kept = self.groups.iter().filter(|group| group.group != left_out);
+        Self {
+            groups: kept.cloned().collect(),
+            sensors: Vec::new(),
+            leaks: Vec::new(),
+            batches: self.batches.clone(),
+            ..*self
+        }
+    }
+
     /// Counts light that a gather path brought to some cells of a sensor, in a batch.
     pub(crate) fn count(
         &mut self,

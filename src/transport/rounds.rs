@@ -4,6 +4,12 @@
 //! after whole waves, so that asking for the number of paths that a run did repeats it. Waves are traced in pieces,
 //! between which a run can be interrupted. A wave is one batch of each group, or, with gathering, some passes.
 
+mod slices;
+mod state;
+
+pub use slices::{Slice, Unsliceable};
+pub use state::State;
+
 use crate::scene::plan::{Estimator, Request, RunPlan, Schedule};
 use crate::scene::{Scene, SensorId};
 use crate::transport::backward::Backward;
@@ -78,9 +84,7 @@ struct Batch {
 impl<'s> Run<'s> {
     /// Prepares a run; nothing is counted yet.
     pub fn new(scene: &'s Scene, plan: &RunPlan) -> Self {
-        let forward = |limit, paths| Forward::new(scene, plan.seed, limit, paths);
-        let pilot = forward(plan.bounce_limit.min(PILOT_BOUNCES), PILOT_PATHS).batch(0);
-        let segments = pilot.segments.div_ceil(pilot.paths().max(1)).max(1);
+        let segments = segments_per_path(scene, plan);
         let pilot = PhotonPilot { segments_per_path: segments as f64 };
         let (estimators, choices) = estimators(scene, plan, pilot);
         let of = |wanted: Estimator| -> Vec<SensorId> {
@@ -105,7 +109,7 @@ impl<'s> Run<'s> {
             (None, true) if is_for_balance => PHOTON_SHARE,
             (_, true) => 0.5,
         };
-        let usual = (BATCH_SEGMENTS / segments).clamp(1, BATCH_PATHS);
+        let usual = plan.batch_paths.unwrap_or(usual_batch(segments));
         let photons = match (&stages, plan.stop.paths) {
             (Some(stages), _) => stages.settings.photons,
             (None, Some(paths)) if !has_followed => {
@@ -126,7 +130,7 @@ impl<'s> Run<'s> {
         Self {
             estimators,
             choices,
-            forward: forward(plan.bounce_limit, photons),
+            forward: Forward::new(scene, plan.seed, plan.bounce_limit, photons),
             photons: Sums::new(),
             backward: backward.map(|backward| (backward, Sums::new())),
             stages,
@@ -303,6 +307,22 @@ impl<'s> Run<'s> {
         let gather = self.stages.as_ref().map_or(0, Stages::batch_paths);
         self.photons_per_batch() + backward + gather
     }
+}
+
+/// Photon paths of a batch that suit a scene: what [`RunPlan::batch_paths`] is when nothing is said.
+pub fn batch_paths(scene: &Scene, plan: &RunPlan) -> u64 {
+    usual_batch(segments_per_path(scene, plan))
+}
+
+fn usual_batch(segments_per_path: u64) -> u64 {
+    (BATCH_SEGMENTS / segments_per_path).clamp(1, BATCH_PATHS)
+}
+
+/// Straight pieces of a photon path on the average, from a few of them.
+fn segments_per_path(scene: &Scene, plan: &RunPlan) -> u64 {
+    let limit = plan.bounce_limit.min(PILOT_BOUNCES);
+    let pilot = Forward::new(scene, plan.seed, limit, PILOT_PATHS).batch(0);
+    pilot.segments.div_ceil(pilot.paths().max(1)).max(1)
 }
 
 /// The estimator of each sensor: the one that was asked for, never another, or what a pilot chooses.

@@ -35,6 +35,33 @@ pub struct Windows {
     pub extrapolated: Readings,
 }
 
+impl Windows {
+    /// The windows of a pass that has ended.
+    pub(crate) fn closed(windows: [Readings; ESTIMATES]) -> Self {
+        let [wide, middle, narrow, extrapolated] = windows.map(|mut readings| {
+            readings.close_batch();
+            readings
+        });
+        Self { wide, middle, narrow, extrapolated }
+    }
+}
+
+/// What of the stages changes in a run.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) struct StagesState {
+    number: u32,
+    first_batch: u64,
+    sums: Sums<Windows>,
+    finished: Option<Stage>,
+}
+
+impl StagesState {
+    /// The only stage of a schedule without stages, with all that was counted.
+    pub(crate) fn only(sums: Sums<Windows>) -> Self {
+        Self { number: 0, first_batch: 0, sums, finished: None }
+    }
+}
+
 /// What a stage has found.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Stage {
@@ -106,11 +133,24 @@ impl<'s> Stages<'s> {
 
     /// Takes what a pass has counted.
     pub(crate) fn push(&mut self, windows: [Readings; ESTIMATES]) {
-        let [wide, middle, narrow, extrapolated] = windows.map(|mut readings| {
-            readings.close_batch();
-            readings
-        });
-        self.sums.push(Windows { wide, middle, narrow, extrapolated });
+        self.sums.push(Windows::closed(windows));
+    }
+
+    /// What of it changes in a run.
+    pub(crate) fn state(&self) -> StagesState {
+        StagesState {
+            number: self.number,
+            first_batch: self.first_batch,
+            sums: self.sums.clone(),
+            finished: self.finished.clone(),
+        }
+    }
+
+    /// Goes on from a state of the same stages.
+    pub(crate) fn go_on_from(&mut self, state: StagesState) {
+        let StagesState { number, first_batch, sums, finished } = state;
+        (self.number, self.first_batch) = (number, first_batch);
+        (self.sums, self.finished) = (sums, finished);
     }
 
     pub(crate) fn end_wave(&mut self) {

@@ -5,11 +5,14 @@
 
 use crate::transport::Readings;
 use crate::transport::stages::Windows;
+use serde::{Deserialize, Serialize};
 
 /// What can be added to what follows directly.
 pub(crate) trait Merge: Clone {
     /// Batches that it covers.
     fn batch_count(&self) -> u64;
+    /// The first of them.
+    fn first_batch(&self) -> u64;
     /// Adds the batches that follow directly.
     fn merge(self, later: &Self) -> Self;
 }
@@ -17,6 +20,10 @@ pub(crate) trait Merge: Clone {
 impl Merge for Readings {
     fn batch_count(&self) -> u64 {
         Self::batch_count(self)
+    }
+
+    fn first_batch(&self) -> u64 {
+        self.batches.start
     }
 
     fn merge(self, later: &Self) -> Self {
@@ -27,6 +34,10 @@ impl Merge for Readings {
 impl Merge for Windows {
     fn batch_count(&self) -> u64 {
         self.narrow.batch_count()
+    }
+
+    fn first_batch(&self) -> u64 {
+        self.narrow.batches.start
     }
 
     fn merge(self, later: &Self) -> Self {
@@ -40,7 +51,7 @@ impl Merge for Windows {
 }
 
 /// Partial sums: of whole waves, and of the batches of a wave in progress.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct Sums<T> {
     done: Vec<T>,
     wave: Vec<T>,
@@ -50,6 +61,14 @@ impl<T: Merge> Sums<T> {
     /// Nothing yet.
     pub(crate) fn new() -> Self {
         Self { done: Vec::new(), wave: Vec::new() }
+    }
+
+    /// The sums of whole waves, from the nodes of the tree over all batches in their order, as [`fold_aligned`] makes
+    /// them.
+    pub(crate) fn of_nodes(nodes: impl IntoIterator<Item = T>) -> Self {
+        let mut done = Vec::new();
+        nodes.into_iter().for_each(|node| fold_aligned(&mut done, node));
+        Self { done, wave: Vec::new() }
     }
 
     /// Adds a batch to the wave in progress.
@@ -93,4 +112,68 @@ fn fold<T: Merge>(partial: &mut Vec<T>, mut node: T) {
         node = left.merge(&node);
     }
     partial.push(node);
+}
+
+/// Adds a node to partial sums that may begin anywhere: neighbours become one only where they are the two halves of a
+/// node of the tree over all batches. Any split of the batches into slices so comes to the same nodes.
+pub(crate) fn fold_aligned<T: Merge>(partial: &mut Vec<T>, mut node: T) {
+    while let Some(left) = partial.pop_if(|left| {
+        left.batch_count() == node.batch_count()
+            && left.first_batch().is_multiple_of(2 * left.batch_count())
+    }) {
+        node = left.merge(&node);
+    }
+    partial.push(node);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A sum whose bits tell in which order it was made.
+    #[derive(Debug, Clone, PartialEq)]
+    struct Trace {
+        first: u64,
+        count: u64,
+        text: String,
+    }
+
+    impl Merge for Trace {
+        fn batch_count(&self) -> u64 {
+            self.count
+        }
+
+        fn first_batch(&self) -> u64 {
+            self.first
+        }
+
+        fn merge(self, later: &Self) -> Self {
+            let text = format!("({}{})", self.text, later.text);
+            Self { first: self.first, count: self.count + later.count, text }
+        }
+    }
+
+    fn batch(first: u64) -> Trace {
+        Trace { first, count: 1, text: format!("{first},") }
+    }
+
+    #[test]
+    fn any_slices_of_the_batches_make_the_same_sum() {
+        for total in [1, 7, 8, 13, 32] {
+            let mut whole = Sums::new();
+            (0..total).for_each(|index| whole.push(batch(index)));
+            whole.end_wave();
+            for parts in [1, 2, 3, 5, 16] {
+                let edge = |part: u64| total * part / parts;
+                let nodes = (0..parts).flat_map(|part| {
+                    let mut nodes = Vec::new();
+                    (edge(part)..edge(part + 1))
+                        .for_each(|index| fold_aligned(&mut nodes, batch(index)));
+                    nodes
+                });
+                let merged = Sums::of_nodes(nodes);
+                assert_eq!(merged.total(), whole.total(), "{total} batches in {parts} slices");
+            }
+        }
+    }
 }

@@ -74,8 +74,7 @@ fn estimators_that_cannot_meet_a_source_are_refused() {
         std::fs::write(&scene, text).unwrap();
         for estimator in [Request::Backward, Request::Gather, Request::Mis] {
             let settings = Settings { estimator: Some(estimator), ..Settings::default() };
-            let output =
-                Output { dir: Some(dir.path().join("report")), existing: Existing::Replace };
+            let output = Output::new(Some(dir.path().join("report")), Existing::Replace);
             let refused =
                 pipeline::run_one(&scene, &settings, &output, &Interrupt::default(), &mut |_| {});
             let message = refused.unwrap_err().to_string();
@@ -93,7 +92,7 @@ fn merging_is_refused_where_a_finish_scatters() {
     let scene = dir.path().join("scene.toml");
     std::fs::write(&scene, format!("lumiduct = 1\ntitle = \"Refused\"\n{ROD}")).unwrap();
     let settings = Settings { estimator: Some(Request::Mis), ..Settings::default() };
-    let output = Output { dir: Some(dir.path().join("report")), existing: Existing::Replace };
+    let output = Output::new(Some(dir.path().join("report")), Existing::Replace);
     let refused = pipeline::run_one(&scene, &settings, &output, &Interrupt::default(), &mut |_| {});
     let message = refused.unwrap_err().to_string();
     for word in ["`mis`", "run.estimator", "`rough`", "`film.surface`", "scatters"] {

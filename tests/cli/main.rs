@@ -3,8 +3,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
 
+mod batches;
 mod commands;
 mod compare;
+mod parts;
 mod refusals;
 mod runs;
 
@@ -98,7 +100,8 @@ fn names(folder: &Path) -> Vec<String> {
 /// The reproducible files of a report.
 fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let names = names(folder).into_iter().filter(|name| name != "timing.csv");
-    names.map(|name| (name.clone(), fs::read(folder.join(name)).unwrap())).collect()
+    let files = names.filter(|name| folder.join(name).is_file());
+    files.map(|name| (name.clone(), fs::read(folder.join(name)).unwrap())).collect()
 }
 
 fn flux(summary: &Value) -> f64 {

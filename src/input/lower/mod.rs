@@ -10,7 +10,7 @@ mod finishes;
 mod meshes;
 mod patterns;
 mod place;
-mod plan;
+pub(crate) mod plan;
 mod reliefs;
 mod sensors;
 mod sheets;

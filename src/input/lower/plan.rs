@@ -19,23 +19,29 @@ pub(super) fn run(spec: &SceneSpec) -> RunPlan {
     });
     let none = run.paths.is_none() && run.time_s.is_none() && target.is_none();
     RunPlan {
-        estimator: match run.estimator {
-            EstimatorSpec::Auto => Request::Auto,
-            EstimatorSpec::Forward => Request::Forward,
-            EstimatorSpec::Backward => Request::Backward,
-            EstimatorSpec::Mix => Request::Mix,
-            EstimatorSpec::Gather => Request::Gather,
-            EstimatorSpec::Mis => Request::Mis,
-        },
+        estimator: request(run.estimator),
         gather: gather(&run.gather),
         seed: run.seed,
         bounce_limit: run.bounce_limit,
+        batch_paths: None,
         stop: StopRules {
             paths: if none { Some(DEFAULT_PATHS) } else { run.paths },
             // Validated as positive; a time beyond what a clock can hold is no limit.
             time: run.time_s.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok()),
             target,
         },
+    }
+}
+
+/// How flux is to be estimated.
+pub(crate) fn request(spec: EstimatorSpec) -> Request {
+    match spec {
+        EstimatorSpec::Auto => Request::Auto,
+        EstimatorSpec::Forward => Request::Forward,
+        EstimatorSpec::Backward => Request::Backward,
+        EstimatorSpec::Mix => Request::Mix,
+        EstimatorSpec::Gather => Request::Gather,
+        EstimatorSpec::Mis => Request::Mis,
     }
 }
 
@@ -53,7 +59,8 @@ fn gather(spec: &GatherSpec) -> GatherPlan {
     }
 }
 
-pub(super) fn check(spec: &CheckSpec) -> Check {
+/// A demand on a measure.
+pub(crate) fn check(spec: &CheckSpec) -> Check {
     Check {
         measure: spec.measure.clone(),
         min: spec.min,

@@ -18,6 +18,7 @@ pub mod sensor;
 pub mod sheet;
 pub mod solid;
 pub mod source;
+pub mod study;
 pub mod sweep;
 
 use finish::{FinishSpec, MediumSpec};

@@ -27,16 +27,16 @@ pub enum Completeness {
     Broken,
 }
 
-/// Notes everything in which a tree differs from the schema.
+/// Notes everything in which a tree differs from a schema.
 pub fn validate(
     root: &Node,
+    schema: &Json,
     sources: &Sources,
     completeness: Completeness,
     problems: &mut Problems,
 ) {
-    let schema = schema::json_schema();
-    let mut walk = Walk { schema: &schema, sources, completeness, problems };
-    walk.value(root, &schema, &At::ROOT);
+    let mut walk = Walk { schema, sources, completeness, problems };
+    walk.value(root, schema, &At::ROOT);
 }
 
 /// What the walk through a tree carries along.
@@ -107,6 +107,9 @@ impl Walk<'_> {
             return;
         }
         let schema = schema::resolve(self.schema, schema);
+        if schema::takes_anything(schema) {
+            return;
+        }
         let choices = schema::choices(self.schema, schema);
         if !choices.is_empty() {
             return self.choice(node, schema, &choices, at);

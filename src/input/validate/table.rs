@@ -10,7 +10,7 @@ impl Walk<'_> {
     pub(crate) fn table(&mut self, node: &Node, entries: &Entries, schema: &Json, at: &At<'_>) {
         let empty = Map::new();
         let properties = schema["properties"].as_object().unwrap_or(&empty);
-        let any = schema.get("additionalProperties").filter(|any| any.is_object());
+        let any = schema.get("additionalProperties").filter(|any| **any != false);
         for (name, entry) in entries {
             let inner = At { outer: Some(properties), ..at.field(name, Some(entry)) };
             match properties.get(name).or(any) {

@@ -14,6 +14,7 @@ mod layout;
 mod line_plot;
 mod palette;
 mod polar_plot;
+mod scatter_matrix;
 mod text;
 
 pub use axis::Scale;
@@ -23,6 +24,7 @@ pub use heat_map::{HeatMap, heat_map};
 pub use line_plot::{ErrorForm, LinePlot, Look, Series, SeriesForm, SeriesPoint, line_plot};
 pub use palette::ColourMap;
 pub use polar_plot::{Curve, PolarPlot, Pole, polar_plot};
+pub use scatter_matrix::{ScatterColumn, ScatterMatrix, scatter_matrix};
 
 #[cfg(test)]
 mod tests {

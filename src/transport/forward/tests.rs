@@ -76,6 +76,7 @@ fn run(scene: &Scene, paths: u64) -> Readings {
         gather: GatherPlan::default(),
         seed: 1,
         bounce_limit: 100_000,
+        batch_paths: None,
         stop: StopRules { paths: Some(paths), ..StopRules::default() },
     };
     let mut run = Run::new(scene, &plan);

@@ -1,0 +1,130 @@
+//! `lumiduct batch`: a study becomes a folder of results.
+
+use crate::cli::display::Display;
+use crate::cli::values::{parse_count, parse_percent, parse_shard};
+use crate::cli::{INTERRUPTED, fail, on_ctrl_c, print, use_threads, warn};
+use crate::input::StudySettings;
+use crate::report::Written;
+use crate::study::{BatchWishes, Finished, OnExisting, run_study};
+use crate::transport::Shard;
+use clap::Args;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::Mutex;
+
+/// Arguments of the command.
+#[derive(Debug, Args)]
+pub(super) struct BatchArgs {
+    /// The study file.
+    study: PathBuf,
+    /// Folder of the results [default: reports/studies/NAME below this folder].
+    #[arg(short = 'o', long = "output", value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Set a key of the scene for all designs.
+    #[arg(short = 'D', value_name = "KEY=VALUE")]
+    define: Vec<String>,
+    /// Stop each design at this relative standard error of its target measure, such as 0.5%.
+    #[arg(long, value_parser = parse_percent, value_name = "PERCENT")]
+    target: Option<f64>,
+    /// Stop each design after this many paths, such as 200k.
+    #[arg(long, value_parser = parse_count, value_name = "COUNT")]
+    paths: Option<u64>,
+    /// Seed of the random numbers of light, the same for all designs.
+    #[arg(long)]
+    seed: Option<u64>,
+    /// Number of threads [default: all cores].
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Designs in flight at once; they share the threads [default: as many as threads].
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: Option<u16>,
+    /// Go on with a batch that was stopped, or that is complete; designs that are done are not repeated.
+    #[arg(long, conflicts_with = "overwrite")]
+    resume: bool,
+    /// Begin anew over the results that are there.
+    #[arg(long)]
+    overwrite: bool,
+    /// Compute only this part of the designs, such as 3/16; `merge` puts the parts together.
+    #[arg(long, value_parser = parse_shard, value_name = "PART/OF")]
+    shard: Option<Shard>,
+    /// Print nothing but errors.
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// Runs the command.
+pub(super) fn batch(args: &BatchArgs) -> ExitCode {
+    if let Err(error) = use_threads(args.threads) {
+        return fail(&error);
+    }
+    let interrupt = on_ctrl_c();
+    let wishes = BatchWishes {
+        settings: StudySettings {
+            overrides: args.define.clone(),
+            target: args.target,
+            paths: args.paths,
+            seed: args.seed,
+        },
+        dir: args.output.clone(),
+        existing: match (args.resume, args.overwrite) {
+            (true, _) => OnExisting::Resume,
+            (false, true) => OnExisting::Replace,
+            (false, false) => OnExisting::Keep,
+        },
+        jobs: args.jobs.map_or_else(rayon::current_num_threads, usize::from),
+        shard: args.shard.unwrap_or(Shard::WHOLE),
+    };
+    let display = Mutex::new(Display::new(args.quiet));
+    let outcome = run_study(&args.study, &wishes, &interrupt, &|progress| {
+        if let Ok(mut display) = display.lock() {
+            display.show_batch(progress);
+        }
+    });
+    if let Ok(display) = display.lock() {
+        display.close();
+    }
+    match outcome {
+        Ok(finished) => tell(&finished, args.quiet),
+        Err(error) => fail(&error),
+    }
+}
+
+/// Prints what came of a batch; the exit code says whether every design is what was wanted.
+pub(super) fn tell(finished: &Finished, quiet: bool) -> ExitCode {
+    if !quiet {
+        warn(&finished.warnings);
+        if let Err(error) = print(&summary(finished)) {
+            return fail(&error);
+        }
+    }
+    let [done, wanted] = finished.done;
+    if done < wanted {
+        return ExitCode::from(INTERRUPTED);
+    }
+    match &finished.report {
+        Some(report) if !report.counts().is_clean() => ExitCode::from(1),
+        Some(_) | None => ExitCode::SUCCESS,
+    }
+}
+
+fn summary(finished: &Finished) -> String {
+    let [done, wanted] = finished.done;
+    let dir = finished.dir.display();
+    let Some(report) = &finished.report else {
+        let what = if done < wanted {
+            "the batch was stopped; go on with --resume"
+        } else {
+            "this part is complete; put all parts together with `lumiduct merge`"
+        };
+        return format!(
+            "{}\n{done} of {wanted} designs are done in {dir}: {what}\n",
+            finished.facts.title
+        );
+    };
+    let state = match &finished.written {
+        Written::New => String::new(),
+        Written::Same => " (was there already, the same to the byte)".into(),
+        Written::Nothing { differing } => format!(" (kept; {} would differ)", differing.join(", ")),
+    };
+    format!("{}report: {dir}/study.md{state}\n", crate::report::study::terminal(report))
+}

@@ -1,0 +1,57 @@
+//! `lumiduct merge`: parts become the whole.
+
+use crate::cli::{batch, fail, run};
+use crate::error::Error;
+use crate::pipeline::{Output, has_slice, merge_slices};
+use crate::report::Existing;
+use crate::study::{OnExisting, has_study, merge_study};
+use clap::Args;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Arguments of the command.
+#[derive(Debug, Args)]
+pub(super) struct MergeArgs {
+    /// Folders of all parts, of one run or of one study.
+    #[arg(required = true)]
+    parts: Vec<PathBuf>,
+    /// Folder of the whole [default: reports/NAME or reports/studies/NAME below this folder].
+    #[arg(short = 'o', long = "output", value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// The scene file of a run, if it is not where the parts found it.
+    #[arg(long, value_name = "FILE")]
+    scene: Option<PathBuf>,
+    /// Replace a report that is there.
+    #[arg(long)]
+    overwrite: bool,
+    /// Print nothing but errors.
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// Runs the command.
+pub(super) fn merge(args: &MergeArgs) -> ExitCode {
+    if args.parts.iter().all(|dir| has_slice(dir)) {
+        let existing = if args.overwrite { Existing::Replace } else { Existing::Keep };
+        let output = Output::new(args.output.clone(), existing);
+        return match merge_slices(&args.parts, args.scene.as_deref(), &output) {
+            Ok(finished) => run::tell(&finished, args.quiet),
+            Err(error) => fail(&error),
+        };
+    }
+    if args.parts.iter().all(|dir| has_study(dir)) {
+        let existing = if args.overwrite { OnExisting::Replace } else { OnExisting::Resume };
+        return match merge_study(&args.parts, args.output.as_deref(), existing) {
+            Ok(finished) => batch::tell(&finished, args.quiet),
+            Err(error) => fail(&error),
+        };
+    }
+    let strange = args.parts.iter().find(|dir| !has_slice(dir) && !has_study(dir));
+    fail(&Error::Usage(match strange {
+        Some(dir) => format!(
+            "{} holds no part of a run or of a study: neither slice.bin nor batch.json",
+            dir.display()
+        ),
+        None => "some of these folders hold parts of a run, others parts of a study".into(),
+    }))
+}

@@ -1,0 +1,206 @@
+//! `lumiduct run`: a scene becomes a report, or a part of one.
+
+use crate::cli::display::Display;
+use crate::cli::values::{
+    parse_angle, parse_count, parse_percent, parse_radius, parse_records, parse_shard, parse_time,
+    words,
+};
+use crate::cli::{INTERRUPTED, fail, finish, on_ctrl_c, print, use_threads, warn};
+use crate::input::{GatherSettings, Settings};
+use crate::pipeline::{self, Finished, Output, SliceWishes, SliceWritten, Start, Stop};
+use crate::report::{Existing, Outcome, Written};
+use crate::scene::plan::{Request, Schedule};
+use crate::transport::{Interrupt, Shard};
+use clap::Args;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+/// Arguments of the command.
+#[derive(Debug, Args)]
+pub(super) struct RunArgs {
+    /// The scene file.
+    scene: PathBuf,
+    /// Folder of the report [default: reports/NAME below this folder].
+    #[arg(short = 'o', long = "output", value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Set a key of the scene, such as `-D solids.pipe.sweep.path.0.straight_mm=20`.
+    #[arg(short = 'D', value_name = "KEY=VALUE")]
+    define: Vec<String>,
+    /// How flux is estimated; auto chooses for every sensor by a short trial.
+    #[arg(long, value_parser = words(Request::ALL.map(Request::name), Request::named))]
+    estimator: Option<Request>,
+    /// Stop at this relative standard error of the target measure, such as 0.5%; the first sensor's flux if the scene
+    /// names no measure.
+    #[arg(long, value_parser = parse_percent, value_name = "PERCENT")]
+    target: Option<f64>,
+    /// Stop after this many paths, such as 2M.
+    #[arg(long, value_parser = parse_count, value_name = "COUNT")]
+    paths: Option<u64>,
+    /// Stop after this time, such as 60s or 5min.
+    #[arg(long, value_parser = parse_time, value_name = "TIME")]
+    time: Option<Duration>,
+    /// Seed of the random numbers.
+    #[arg(long)]
+    seed: Option<u64>,
+    /// Number of threads [default: all cores].
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Replace a report that is there.
+    #[arg(long)]
+    overwrite: bool,
+    /// Keep a checkpoint in the folder of the report as often as this, such as 60s, so that --resume can go on.
+    #[arg(long, value_parser = parse_time, value_name = "TIME", conflicts_with = "shard")]
+    checkpoint: Option<Duration>,
+    /// Go on from the checkpoint in the folder of the report; without one, begin anew.
+    #[arg(long, conflicts_with = "shard")]
+    resume: bool,
+    /// Trace only this part of the paths, such as 3/16; `merge` puts the parts together.
+    #[arg(long, value_parser = parse_shard, value_name = "PART/OF")]
+    shard: Option<Shard>,
+    /// Print nothing but errors.
+    #[arg(short, long)]
+    quiet: bool,
+    // The last one: its heading holds for everything that follows.
+    #[command(flatten)]
+    gather: GatherArgs,
+}
+
+/// Wishes for the gather estimator.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Gather")]
+pub(super) struct GatherArgs {
+    /// Depth at which gather paths end at the latest, up to 1000; the first surface has depth 0 [default: chosen by a
+    /// short trial, as for the other numbers here].
+    #[arg(long, value_parser = clap::value_parser!(u32).range(..=1000))]
+    depth: Option<u32>,
+    /// Radius of the window in the first pass, in mm.
+    #[arg(long, value_parser = parse_radius, value_name = "MM")]
+    radius_mm: Option<f64>,
+    /// Half-angle of the window in the first pass, in degrees below 90.
+    #[arg(long, value_parser = parse_angle, value_name = "DEG")]
+    angle_deg: Option<f64>,
+    /// Gather paths in a pass, such as 100k.
+    #[arg(long, value_parser = parse_records, value_name = "COUNT")]
+    records: Option<u64>,
+    /// Photon paths in a pass, such as 5M.
+    #[arg(long, value_parser = parse_count, value_name = "COUNT")]
+    photons: Option<u64>,
+    /// How the window shrinks: in stages of many passes, or a little from pass to pass [default: stages].
+    #[arg(long, value_parser = words(Schedule::ALL.map(Schedule::name), Schedule::named))]
+    schedule: Option<Schedule>,
+}
+
+impl GatherArgs {
+    /// The wishes.
+    pub(super) fn settings(&self) -> GatherSettings {
+        GatherSettings {
+            depth: self.depth,
+            radius_mm: self.radius_mm,
+            angle_deg: self.angle_deg,
+            records: self.records,
+            photons: self.photons,
+            schedule: self.schedule,
+        }
+    }
+}
+
+/// Runs the command.
+pub(super) fn run(args: &RunArgs) -> ExitCode {
+    if let Err(error) = use_threads(args.threads) {
+        return fail(&error);
+    }
+    let interrupt = on_ctrl_c();
+    let settings = Settings {
+        overrides: args.define.clone(),
+        estimator: args.estimator,
+        gather: args.gather.settings(),
+        target: args.target,
+        paths: args.paths,
+        time: args.time,
+        seed: args.seed,
+        ..Settings::default()
+    };
+    let existing = if args.overwrite { Existing::Replace } else { Existing::Keep };
+    if let Some(shard) = args.shard {
+        let wishes = SliceWishes { shard, dir: args.output.clone(), existing };
+        return slice(args, &settings, &wishes, &interrupt);
+    }
+    let start = if args.resume { Start::Resume } else { Start::Anew };
+    let (dir, checkpoint_every) = (args.output.clone(), args.checkpoint);
+    let output = Output { dir, existing, checkpoint_every, start };
+    let mut display = Display::new(args.quiet);
+    let outcome = pipeline::run_one(&args.scene, &settings, &output, &interrupt, &mut |progress| {
+        display.show(progress);
+    });
+    display.close();
+    match outcome {
+        Ok(finished) => tell(&finished, args.quiet),
+        Err(error) if interrupt.is_raised() => {
+            fail(&error);
+            ExitCode::from(INTERRUPTED)
+        }
+        Err(error) => fail(&error),
+    }
+}
+
+/// Prints what a run has found; the exit code says whether it is what its scene asked for.
+pub(super) fn tell(finished: &Finished, quiet: bool) -> ExitCode {
+    let is_kept = matches!(finished.written, Written::Nothing { .. });
+    let text = crate::report::terminal(&finished.report, &finished.dir, &finished.written);
+    let printed = if quiet {
+        Ok(())
+    } else {
+        warn(&finished.warnings);
+        print(&text)
+    };
+    match printed {
+        Err(error) => fail(&error),
+        Ok(()) if is_kept => {
+            eprintln!("error: {}", text.lines().last().unwrap_or_default());
+            ExitCode::from(3)
+        }
+        Ok(()) => exit_code(finished.stop, finished.report.outcome()),
+    }
+}
+
+/// Traces a part of a run.
+fn slice(
+    args: &RunArgs,
+    settings: &Settings,
+    wishes: &SliceWishes,
+    interrupt: &Interrupt,
+) -> ExitCode {
+    let mut display = Display::new(args.quiet);
+    let begin = Instant::now();
+    let written = pipeline::run_slice(&args.scene, settings, wishes, interrupt, &mut |share| {
+        display.show_share(share, begin.elapsed());
+    });
+    display.close();
+    match written {
+        Ok(SliceWritten { title, batches: Some(batches), of, dir }) => {
+            let text = format!(
+                "{title}\npart {}: {} of {of} batches are in {}\n",
+                wishes.shard,
+                batches.end - batches.start,
+                dir.display()
+            );
+            finish(Ok(if args.quiet { String::new() } else { text }))
+        }
+        Ok(SliceWritten { batches: None, .. }) => {
+            eprintln!("error: the part was stopped, and nothing was written");
+            ExitCode::from(INTERRUPTED)
+        }
+        Err(error) => fail(&error),
+    }
+}
+
+fn exit_code(stop: Stop, outcome: Outcome) -> ExitCode {
+    if stop == Stop::Interrupted {
+        return ExitCode::from(INTERRUPTED);
+    }
+    match outcome {
+        Outcome::Missed => ExitCode::from(1),
+        Outcome::Good => ExitCode::SUCCESS,
+    }
+}

@@ -1,0 +1,304 @@
+//! The whole way from a study file to a study: what is varied in which scene, and what is asked of every design.
+//!
+//! Which designs follow from the plan is not known here, and nothing is computed.
+
+mod list;
+mod parameters;
+mod rules;
+
+pub use parameters::{Domain, Parameter, Setting, Tie};
+
+use crate::error::{Diagnostic, Error, Result};
+use crate::input::digest::Digest;
+use crate::input::keys::{Key, Places};
+use crate::input::lower::plan;
+use crate::input::problems::Problems;
+use crate::input::sources::{SourceId, Sources};
+use crate::input::spec::run::TargetSpec;
+use crate::input::spec::study::{
+    BestSpec, KeepSpec, PlanSpec, STUDY_FORMAT_VERSION, SamplesSpec, StudyRunSpec, StudySpec,
+};
+use crate::input::tree::{self, Node, Value};
+use crate::input::{
+    Draft, Job, Settings, convert, draft, load, note_breaks, note_differences, schema, unreadable,
+};
+use crate::scene::plan::Check;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+/// What the command line asks for beside the study file.
+#[derive(Debug, Clone, Default)]
+pub struct StudySettings {
+    /// `key=value` for keys of the scene, set for all designs after those of the study.
+    pub overrides: Vec<String>,
+    /// Relative error of the target measure of a design.
+    pub target: Option<f64>,
+    /// Number of paths of a design.
+    pub paths: Option<u64>,
+    /// Seed of the random numbers of light.
+    pub seed: Option<u64>,
+}
+
+/// Which designs are made of the parameters.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Plan {
+    /// Every combination of all levels.
+    Grid,
+    /// The scene as it is, then every level of every parameter with the others as in the scene.
+    OneAtATime,
+    /// These, a setting for each parameter.
+    List(Vec<Vec<Setting>>),
+    /// Samples that fill the range of each parameter evenly.
+    LatinHypercube(Samples),
+    /// Samples that fill all ranges together evenly.
+    Sobol(Samples),
+    /// Independent random samples.
+    Tolerance(Samples),
+}
+
+/// A number of samples.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Samples {
+    /// How many.
+    pub count: u32,
+    /// Seed of their random numbers.
+    pub seed: u64,
+}
+
+/// What the best design is.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Ranking {
+    /// Dotted name of the measure that decides.
+    pub measure: String,
+    /// Which end of it is the best.
+    pub best: Best,
+}
+
+/// Which end of a measure is the best.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Best {
+    /// The highest value.
+    Highest,
+    /// The lowest value.
+    Lowest,
+}
+
+/// What is kept of each design beside its row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Keep {
+    /// Its record.
+    Records,
+    /// Its record and a whole report.
+    Reports,
+}
+
+/// A study to be run.
+#[derive(Debug)]
+pub struct Study {
+    /// Name: that of the file without its ending.
+    pub name: String,
+    /// Title for reports.
+    pub title: String,
+    /// What the study is for.
+    pub description: Option<String>,
+    /// The scene that is varied, as it is without any parameter set.
+    pub base: Job,
+    /// Its file.
+    pub scene: PathBuf,
+    /// What all designs have in common; overrides of a design come after those here.
+    pub common: Settings,
+    /// What is varied.
+    pub parameters: Vec<Parameter>,
+    /// Which designs are made of it.
+    pub plan: Plan,
+    /// Dotted names of the measures that are recorded.
+    pub measures: Vec<String>,
+    /// What the best design is.
+    pub ranking: Option<Ranking>,
+    /// What every design has to meet.
+    pub checks: Vec<Check>,
+    /// What is kept of each design.
+    pub keep: Keep,
+    /// The study file, byte for byte.
+    pub text: String,
+    /// Identifies study, scene, files that they name, and overrides: 64-bit FNV-1a, in hexadecimal.
+    pub hash: String,
+    /// Remarks on study and scene.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// Loads a study file, its scene and everything that they name.
+pub fn load_study(path: &Path, settings: &StudySettings) -> Result<Study> {
+    let StudyDraft { spec, places, table, mut problems } = read(path)?;
+    let scene = path.parent().unwrap_or(Path::new("")).join(&spec.scene);
+    let common = common_settings(&spec, settings, &mut problems);
+    rules::check(&spec, &places, &mut problems);
+    if !problems.is_free_of_errors() {
+        return Err(Error::Input(problems.into_diagnostics(&places)));
+    }
+    let base = load(&scene, &common)?;
+    let parameters = parameters::lower(&spec, &base, &mut problems);
+    rules::check_keys(&parameters, &scene, &common, &mut problems);
+    rules::check_measures(&spec, &base, &mut problems);
+    let rows = table.map(|table| list::rows(&places, table, &parameters, &mut problems));
+    let plan = lower_plan(&spec.plan, rows.unwrap_or_default());
+    let warnings = problems.finish(&places)?;
+    let mut hash = Digest::default();
+    places.sources().iter().for_each(|source| hash.add(source.text().as_bytes()));
+    hash.add(base.hash.as_bytes());
+    hash.add(format!("{settings:?}").as_bytes());
+    let warnings = warnings.into_iter().chain(base.warnings.iter().cloned()).collect();
+    Ok(Study {
+        name: path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
+        title: spec.title,
+        description: spec.description,
+        base,
+        scene,
+        common,
+        parameters,
+        plan,
+        measures: spec.measures,
+        ranking: spec.ranking.map(|ranking| Ranking {
+            measure: ranking.measure,
+            best: match ranking.best {
+                BestSpec::Highest => Best::Highest,
+                BestSpec::Lowest => Best::Lowest,
+            },
+        }),
+        checks: spec.check.iter().map(plan::check).collect(),
+        keep: match spec.keep {
+            KeepSpec::Records => Keep::Records,
+            KeepSpec::Reports => Keep::Reports,
+        },
+        text: places.root_text().to_owned(),
+        hash: hash.to_string(),
+        warnings,
+    })
+}
+
+/// A study file that was read, with what is wrong with it so far.
+struct StudyDraft {
+    spec: StudySpec,
+    places: Places,
+    /// The table of designs.
+    table: Option<SourceId>,
+    problems: Problems,
+}
+
+fn read(path: &Path) -> Result<StudyDraft> {
+    let (mut sources, mut problems) = (Sources::default(), Problems::default());
+    let source = sources.add_file(path).map_err(|reason| unreadable(path, &reason.to_string()))?;
+    let (root, breaks) = tree::parse(&sources, source);
+    if let Some(message) = other_kind(&root) {
+        problems.error(&Key::root(), message);
+        return Err(Error::Input(problems.into_diagnostics(&Places::new(root, sources))));
+    }
+    note_differences(&root, &schema::study_schema(), &sources, &breaks, &mut problems);
+    note_breaks(&breaks, &mut problems);
+    let spec = convert::study(&root, &mut problems);
+    let table = spec.as_ref().and_then(|spec| table_file(spec, path));
+    let table = table.and_then(|file| match sources.add_file(&file) {
+        Ok(source) => Some(source),
+        Err(reason) => {
+            let message = format!("{}: {reason}", file.display());
+            problems.error(&Key::of(&["plan", "list", "file"]), message);
+            None
+        }
+    });
+    let places = Places::new(root, sources);
+    match spec {
+        Some(spec) => Ok(StudyDraft { spec, places, table, problems }),
+        None => Err(Error::Input(problems.into_diagnostics(&places))),
+    }
+}
+
+/// The file with the designs of a study.
+fn table_file(spec: &StudySpec, study: &Path) -> Option<PathBuf> {
+    match &spec.plan {
+        PlanSpec::List(own) => Some(study.parent().unwrap_or(Path::new("")).join(&own.file)),
+        PlanSpec::Grid
+        | PlanSpec::OneAtATime
+        | PlanSpec::LatinHypercube(_)
+        | PlanSpec::Sobol(_)
+        | PlanSpec::Tolerance(_) => None,
+    }
+}
+
+/// Why a file is no study of this version, if it is none.
+fn other_kind(root: &Node) -> Option<String> {
+    match (root.get("lumiduct_study"), root.get("lumiduct")) {
+        (Some(Node { value: Value::Integer(version), .. }), _)
+            if *version != i64::from(STUDY_FORMAT_VERSION) =>
+        {
+            Some(format!(
+                "`lumiduct_study`: format version {version} is not known, expected {STUDY_FORMAT_VERSION}"
+            ))
+        }
+        (None, Some(_)) => {
+            Some("this is a scene, not a study: trace it with `lumiduct run`".into())
+        }
+        (Some(_), _) | (None, None) => None,
+    }
+}
+
+/// What all designs have in common: the study's keys and stop rules, and those of the command line over them.
+fn common_settings(
+    spec: &StudySpec,
+    settings: &StudySettings,
+    problems: &mut Problems,
+) -> Settings {
+    let StudyRunSpec { paths, target, seed, estimator } = &spec.run;
+    let (from_command, from_study) = (
+        (settings.paths, settings.target),
+        (*paths, target.as_ref().map(|target| target.relative_error)),
+    );
+    let is_asked = settings.paths.is_some() || settings.target.is_some();
+    let (paths, error) = if is_asked { from_command } else { from_study };
+    let measure = target.as_ref().map(|TargetSpec { measure, .. }| measure.clone());
+    let mut overrides = Vec::new();
+    for (key, value) in &spec.set {
+        match parameters::toml_text(value) {
+            Some(text) => overrides.push(format!("{key}={text}")),
+            None => {
+                let message = "cannot be a value of a scene";
+                problems.error(&Key::of(&["set", key]), message);
+            }
+        }
+    }
+    overrides.extend(settings.overrides.iter().cloned());
+    Settings {
+        overrides,
+        estimator: estimator.map(plan::request),
+        target: error,
+        target_measure: measure,
+        paths,
+        seed: settings.seed.or(*seed),
+        ..Settings::default()
+    }
+}
+
+/// The plan; `rows` are those of its table, if it has one.
+fn lower_plan(spec: &PlanSpec, rows: Vec<Vec<Setting>>) -> Plan {
+    let samples = |own: &SamplesSpec| Samples { count: own.samples, seed: own.seed };
+    match spec {
+        PlanSpec::Grid => Plan::Grid,
+        PlanSpec::OneAtATime => Plan::OneAtATime,
+        PlanSpec::LatinHypercube(own) => Plan::LatinHypercube(samples(own)),
+        PlanSpec::Sobol(own) => Plan::Sobol(samples(own)),
+        PlanSpec::Tolerance(own) => Plan::Tolerance(samples(own)),
+        PlanSpec::List(_) => Plan::List(rows),
+    }
+}
+
+/// The problems of a scene with some overrides, without what is wrong with it alone.
+fn problems_of_scene(scene: &Path, settings: &Settings) -> Vec<Diagnostic> {
+    match draft(scene, &settings.overrides) {
+        Ok(Draft { problems, places, .. }) => problems.into_diagnostics(&places),
+        Err(Error::Input(diagnostics)) => diagnostics,
+        // Files that went away in between are told by the designs.
+        Err(Error::Usage(_) | Error::Io { .. } | Error::Output { .. }) => Vec::new(),
+    }
+}

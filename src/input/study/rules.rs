@@ -1,0 +1,211 @@
+//! Rules of a study that span several keys, or that need its scene.
+
+use crate::error::{Diagnostic, DiagnosticKind};
+use crate::input::keys::{Key, Places};
+use crate::input::overrides::parse_key;
+use crate::input::problems::{Problems, name_hint};
+use crate::input::spec::study::{
+    MOST_DESIGNS, NormalSpec, ParameterSpec, PlanSpec, SpreadSpec, StudySpec, UniformSpec,
+};
+use crate::input::study::{Parameter, Setting, problems_of_scene};
+use crate::input::{Job, Settings};
+use std::path::Path;
+
+/// Notes what cannot be meant, whatever the scene.
+pub(super) fn check(spec: &StudySpec, places: &Places, problems: &mut Problems) {
+    if spec.parameters.is_empty() && places.has(&Key::of(&["parameters"])) {
+        let message = "nothing is varied: there is no parameter";
+        problems.error(&Key::of(&["parameters"]), message);
+    }
+    for (name, parameter) in &spec.parameters {
+        let key = Key::of(&["parameters", name]);
+        check_source(parameter, &spec.plan, &key, problems);
+        check_spread(parameter, &key, problems);
+        for (index, tied) in parameter.keys.iter().enumerate() {
+            check_key(tied.key(), &key.field("keys").index(index), problems);
+        }
+    }
+    check_set(spec, problems);
+    check_count(spec, problems);
+    if let Some(ranking) = &spec.ranking
+        && !spec.measures.contains(&ranking.measure)
+    {
+        let hint = name_hint(&ranking.measure, spec.measures.iter().map(String::as_str));
+        let message = format!("`{}` is none of `measures`", ranking.measure);
+        problems.error(&Key::of(&["ranking", "measure"]), message).hint(hint);
+    }
+}
+
+/// Notes a parameter whose values are not given, or twice, or not as the plan needs them.
+fn check_source(spec: &ParameterSpec, plan: &PlanSpec, key: &Key, problems: &mut Problems) {
+    let given: Vec<&str> = [
+        ("values", spec.values.is_some()),
+        ("range", spec.range.is_some()),
+        ("choices", spec.choices.is_some()),
+        ("spread", spec.spread.is_some()),
+    ]
+    .into_iter()
+    .filter_map(|(name, is_given)| is_given.then_some(name))
+    .collect();
+    let (plan, taken): (&str, &[&str]) = match plan {
+        PlanSpec::Grid => ("grid", &["values", "range", "choices"]),
+        PlanSpec::OneAtATime => ("one_at_a_time", &["values", "range", "choices"]),
+        PlanSpec::LatinHypercube(_) => {
+            ("latin_hypercube", &["values", "range", "choices", "spread"])
+        }
+        PlanSpec::Sobol(_) => ("sobol", &["values", "range", "choices", "spread"]),
+        PlanSpec::Tolerance(_) => ("tolerance", &["choices", "spread"]),
+        PlanSpec::List(_) => ("list", &["choices"]),
+    };
+    let needs = format!("the plan `{plan}` takes one of `{}`", taken.join("`, `"));
+    match given.as_slice() {
+        [one] if taken.contains(one) => {}
+        [] if plan == "list" => {}
+        [] => _ = problems.error(key, "has no values").hint(needs),
+        [one] if plan == "list" => {
+            problems.error(&key.field(one), "the table of the plan gives the values");
+        }
+        [one] => {
+            problems.error(&key.field(one), format!("is not for the plan `{plan}`")).hint(needs);
+        }
+        [_, second, ..] => _ = problems.error(&key.field(second), "the values are given twice"),
+    }
+    if let Some(choices) = &spec.choices
+        && choices.is_empty()
+    {
+        problems.error(&key.field("choices"), "there is nothing to choose from");
+    }
+}
+
+/// Notes spreads without room.
+fn check_spread(spec: &ParameterSpec, key: &Key, problems: &mut Problems) {
+    let mut ordered = |from: f64, to: f64, key: &Key| {
+        if from >= to {
+            let message = format!("{from} is not below `to`, which is {to}");
+            problems.error(&key.field("from"), message);
+        }
+    };
+    let spread = key.field("spread");
+    match &spec.spread {
+        Some(SpreadSpec::Uniform(UniformSpec { from, to })) => {
+            ordered(*from, *to, &spread.field("uniform"));
+        }
+        Some(SpreadSpec::Normal(NormalSpec { from: Some(from), to: Some(to), .. })) => {
+            ordered(*from, *to, &spread.field("normal"));
+        }
+        Some(SpreadSpec::Normal(_)) | None => {}
+    }
+    if let Some(range) = &spec.range
+        && range.from == range.to
+    {
+        problems.error(&key.field("range"), "both ends are the same");
+    }
+}
+
+fn check_key(text: &str, key: &Key, problems: &mut Problems) {
+    if parse_key(text).is_none() {
+        problems
+            .error(key, format!("`{text}` is no dotted key"))
+            .hint("write it as after -D, such as solids.rod.cylinder.length_mm");
+    }
+}
+
+/// Notes keys under `set` that a study has other words for.
+fn check_set(spec: &StudySpec, problems: &mut Problems) {
+    for name in spec.set.keys() {
+        let key = Key::of(&["set", name]);
+        check_key(name, &key, problems);
+        let own = ["run.paths", "run.time_s", "run.target", "run.seed", "run.estimator"];
+        if own.iter().any(|own| name == own || name.starts_with(&format!("{own}."))) {
+            problems.error(&key, "is set for all designs under `run` of the study");
+        }
+    }
+}
+
+/// Notes grids that are too large.
+fn check_count(spec: &StudySpec, problems: &mut Problems) {
+    match &spec.plan {
+        PlanSpec::Grid => {}
+        PlanSpec::OneAtATime
+        | PlanSpec::List(_)
+        | PlanSpec::LatinHypercube(_)
+        | PlanSpec::Sobol(_)
+        | PlanSpec::Tolerance(_) => return,
+    }
+    let levels = |own: &ParameterSpec| {
+        let values = own.values.as_ref().map(Vec::len);
+        let choices = own.choices.as_ref().map(indexmap::IndexMap::len);
+        values.or(choices).or(own.range.as_ref().map(|range| range.count as usize)).unwrap_or(1)
+    };
+    let count =
+        spec.parameters.values().fold(1usize, |count, own| count.saturating_mul(levels(own)));
+    if count > MOST_DESIGNS {
+        let message = format!("a grid of {count} designs is too large, at most {MOST_DESIGNS}");
+        problems.error(&Key::of(&["plan"]), message).hint("use `sobol` or `latin_hypercube`");
+    }
+}
+
+/// Notes keys that the scene does not have, or that do not take the kind of value of their parameter.
+pub(super) fn check_keys(
+    parameters: &[Parameter],
+    scene: &Path,
+    common: &Settings,
+    problems: &mut Problems,
+) {
+    for parameter in parameters {
+        let key = Key::of(&["parameters", &parameter.name, "keys"]);
+        let setting = match parameter.sample() {
+            // What a table will say is not known yet: what the scene says will do.
+            Setting::AsInScene => parameter.nominal.clone(),
+            own @ (Setting::Number(_) | Setting::Choice(_)) => own,
+        };
+        for (index, line) in parameter.overrides(&setting).into_iter().enumerate() {
+            let label = format!("-D {}", line.escape_debug());
+            let overrides = common.overrides.iter().cloned().chain([line]).collect();
+            let settings = Settings { overrides, ..common.clone() };
+            for found in problems_of_scene(scene, &settings) {
+                if is_about(&found, &label) {
+                    let problem = problems.error(&key.index(index), found.message);
+                    if let Some(hint) = found.hint {
+                        problem.hint(hint);
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn is_about(found: &Diagnostic, label: &str) -> bool {
+    let is_error = match found.kind {
+        DiagnosticKind::Error => true,
+        DiagnosticKind::Warning => false,
+    };
+    is_error && found.file.as_deref() == Some(Path::new(label))
+}
+
+/// Notes measures whose first word is no sensor of the scene. Whole names are looked at once the scene is built.
+pub(super) fn check_measures(spec: &StudySpec, base: &Job, problems: &mut Problems) {
+    let sensors = base.scene.sensors.iter().map(|sensor| sensor.name.as_str());
+    let known: Vec<&str> = sensors.chain(["balance"]).collect();
+    let mut judge = |measure: &str, key: &Key| {
+        let first = measure.split('.').next().unwrap_or_default();
+        if !known.contains(&first) {
+            let hint = name_hint(first, known.iter().copied());
+            problems.error(key, format!("`{measure}` names no sensor")).hint(hint);
+        }
+    };
+    for (index, measure) in spec.measures.iter().enumerate() {
+        judge(measure, &Key::of(&["measures"]).index(index));
+    }
+    if let Some(target) = &spec.run.target {
+        judge(&target.measure, &Key::of(&["run", "target", "measure"]));
+    }
+    for (index, check) in spec.check.iter().enumerate() {
+        judge(&check.measure, &Key::of(&["check"]).index(index).field("measure"));
+    }
+    if base.run.stop.time.is_some() {
+        problems
+            .error(&Key::of(&["run"]), "the scene stops by the clock, which no design repeats")
+            .hint("give the study `paths` or `target` under [run]");
+    }
+}

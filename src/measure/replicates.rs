@@ -1,0 +1,41 @@
+//! What single groups of batches say of a measure, so that runs with the same random numbers can be compared.
+//!
+//! Two designs that are traced with the same random numbers err in the same direction. Group by group their measures
+//! go up and down together, and the difference is known better than either value. A group's part of a measure, which
+//! may be a ratio, is its jackknife pseudo-value g θ - (g - 1) θ₋ₖ (Tukey, Ann. Math. Stat. 29 (1958) 614), where θ₋ₖ
+//! is the measure without that group.
+
+use crate::measure::{balance, sensor};
+use crate::scene::{Scene, SensorId};
+use crate::transport::Findings;
+use serde::{Deserialize, Serialize};
+
+/// What each group of batches says of a measure, in the unit of the measure: pseudo-values, by group, ascending.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Replicates(pub Vec<(u64, f64)>);
+
+impl Replicates {
+    /// Pseudo-values from a value and what it is without each group.
+    pub(crate) fn new(value: f64, without: &[(u64, f64)]) -> Self {
+        let groups = without.len() as f64;
+        let pseudo = |&(group, rest): &(u64, f64)| (group, groups * value - (groups - 1.0) * rest);
+        Self(without.iter().map(pseudo).collect())
+    }
+
+    /// Whether others are of the same groups, so that they can be taken pair by pair.
+    pub fn is_paired_with(&self, other: &Self) -> bool {
+        self.0.len() > 1
+            && self.0.len() == other.0.len()
+            && self.0.iter().zip(&other.0).all(|(own, other)| own.0 == other.0)
+    }
+}
+
+/// What single groups of batches say of a measure; `None` for those that need a map, whose cells are not kept by group.
+pub fn replicates(scene: &Scene, findings: &Findings, name: &str) -> Option<Replicates> {
+    let (first, rest) = name.split_once('.')?;
+    let found = match scene.sensors.iter().position(|sensor| sensor.name == first) {
+        Some(index) => sensor::replicates(scene, findings, SensorId::new(index), rest)?,
+        None => balance::replicates(scene, &findings.photons, name)?,
+    };
+    found.0.iter().all(|(_, value)| value.is_finite()).then_some(found)
+}

@@ -1,0 +1,179 @@
+//! Parts of one run, traced on several machines and put together to the very report of the whole run.
+
+use crate::error::{Error, Result};
+use crate::input::{Job, Settings};
+use crate::pipeline::snapshot::{self, Kind};
+use crate::pipeline::{Finished, Output, Stop, compose, output_dir, prepare, recipe};
+use crate::report::{self, Existing, Folder, Recipe};
+use crate::transport::{Interrupt, Run, Shard, Slice, Unsliceable};
+use serde::{Deserialize, Serialize};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+/// Name of the file of a part in its folder.
+const NAME: &str = "slice.bin";
+
+/// A part of a run as it lies on disk: what it is a part of, and what was counted.
+#[derive(Serialize, Deserialize)]
+struct Part {
+    recipe: Recipe,
+    /// The scene file as the user named it.
+    scene: String,
+    settings: Settings,
+    slice: Slice,
+}
+
+/// Which part of a run is wanted, and where.
+#[derive(Debug, Clone)]
+pub struct SliceWishes {
+    /// The part.
+    pub shard: Shard,
+    /// Its folder; `reports/NAME.KofN` when none is given.
+    pub dir: Option<PathBuf>,
+    /// What to do with a part that is there.
+    pub existing: Existing,
+}
+
+/// A part of a run that was traced.
+#[derive(Debug)]
+pub struct SliceWritten {
+    /// Title of the scene.
+    pub title: String,
+    /// Its batches, of `of`; `None` where the user stopped it, and nothing was written.
+    pub batches: Option<Range<u64>>,
+    /// Batches of the whole run.
+    pub of: u64,
+    /// Where it lies.
+    pub dir: PathBuf,
+}
+
+/// Traces a part of the run of a scene; `watch` is told which share is done, 0..=1.
+pub fn run_slice(
+    scene: &Path,
+    settings: &Settings,
+    wishes: &SliceWishes,
+    interrupt: &Interrupt,
+    watch: &mut dyn FnMut(f64),
+) -> Result<SliceWritten> {
+    let job = prepare(scene, settings)?;
+    expect_fixed_end(&job)?;
+    let dir = wishes.dir.clone().unwrap_or_else(|| {
+        let part = wishes.shard.to_string().replace('/', "of");
+        Path::new("reports").join(format!("{}.{part}", job.name))
+    });
+    let path = dir.join(NAME);
+    if path.exists() && wishes.existing == Existing::Keep {
+        return Err(Error::Usage(format!(
+            "{} exists; use --overwrite to replace it, or -o for another folder",
+            path.display()
+        )));
+    }
+    let run = Run::new(&job.scene, &job.run);
+    let of = run.sliceable_batches().map_err(refusal)?;
+    let batches = wishes.shard.of(of);
+    let count = (batches.end - batches.start).max(1) as f64;
+    let slice = run.slice(batches.clone(), of, interrupt, &mut |done| watch(done as f64 / count));
+    let title = job.title.clone();
+    let Some(slice) = slice else { return Ok(SliceWritten { title, batches: None, of, dir }) };
+    let scene = scene.to_string_lossy().into_owned();
+    let part = Part { recipe: recipe(&job), scene, settings: settings.clone(), slice };
+    snapshot::write(&path, Kind::Slice, &part)?;
+    Ok(SliceWritten { title, batches: Some(batches), of, dir })
+}
+
+/// Whether a folder holds a part of a run.
+pub fn has_slice(dir: &Path) -> bool {
+    dir.join(NAME).is_file()
+}
+
+/// Puts the parts of a run together and writes the report of the whole. The scene is read again, from where the parts
+/// found it or from `scene`.
+pub fn merge_slices(dirs: &[PathBuf], scene: Option<&Path>, output: &Output) -> Result<Finished> {
+    let mut parts: Vec<(PathBuf, Part)> = Vec::new();
+    for dir in dirs {
+        let path = dir.join(NAME);
+        parts.push((path.clone(), snapshot::read(&path, Kind::Slice)?));
+    }
+    parts.sort_by_key(|(_, part)| (part.slice.batches.start, part.slice.batches.end));
+    let Some((first_path, first)) = parts.first() else {
+        return Err(Error::Usage("there are no parts to put together".into()));
+    };
+    let scene = scene.map_or_else(|| PathBuf::from(&first.scene), Path::to_path_buf);
+    let job = prepare(&scene, &first.settings)?;
+    expect_same(
+        &recipe(&job),
+        &first.recipe,
+        &format!("{} as it is now", scene.display()),
+        first_path,
+    )?;
+    for (path, part) in &parts {
+        expect_same(&first.recipe, &part.recipe, &first_path.display().to_string(), path)?;
+    }
+    expect_all(&parts)?;
+    let folder = Folder::open(&output_dir(&scene, output), output.existing, Some(&recipe(&job)))?;
+    let mut run = Run::new(&job.scene, &job.run);
+    let slices = parts.into_iter().map(|(_, part)| part.slice).collect();
+    run.go_on_from(run.state_of_slices(slices));
+    let report = compose(&job, &run.findings(), Stop::Paths);
+    let written = folder.write(&report::files(&report, &job.text)?)?;
+    let dir = folder.path().to_path_buf();
+    Ok(Finished { report, written, stop: Stop::Paths, dir, warnings: job.warnings })
+}
+
+fn expect_same(wanted: &Recipe, found: &Recipe, of: &str, path: &Path) -> Result<()> {
+    if found == wanted {
+        return Ok(());
+    }
+    let what = wanted.difference_of(found);
+    Err(Error::Usage(format!("{} does not go with {of}: it is of {what}", path.display())))
+}
+
+/// Makes sure that every batch is in exactly one part.
+fn expect_all(parts: &[(PathBuf, Part)]) -> Result<()> {
+    let mut next = 0;
+    for (path, part) in parts {
+        let Range { start, end } = part.slice.batches;
+        if start < next && end > start {
+            return Err(Error::Usage(format!(
+                "{} holds batches that another part has, too: {start} to {}",
+                path.display(),
+                next - 1
+            )));
+        }
+        if start > next {
+            return Err(Error::Usage(format!(
+                "a part is missing: no part holds batches {next} to {} of {}",
+                start - 1,
+                part.slice.of
+            )));
+        }
+        next = next.max(end);
+    }
+    match parts.last() {
+        Some((_, part)) if next < part.slice.of => Err(Error::Usage(format!(
+            "a part is missing: no part holds batches {next} to {} of {}",
+            part.slice.of - 1,
+            part.slice.of
+        ))),
+        Some(_) | None => Ok(()),
+    }
+}
+
+/// Refuses runs that end depending on what they find, or by the clock.
+fn expect_fixed_end(job: &Job) -> Result<()> {
+    let stop = &job.run.stop;
+    let is_fixed = stop.paths.is_some() && stop.target.is_none() && stop.time.is_none();
+    if is_fixed { Ok(()) } else { Err(refusal(Unsliceable::OpenEnd)) }
+}
+
+fn refusal(why: Unsliceable) -> Error {
+    Error::Usage(match why {
+        Unsliceable::OpenEnd => "a part of a run needs to know where the run ends, which a target or a time leaves open: \
+                                 give --paths"
+            .into(),
+        Unsliceable::Stages => "gathering in stages takes smaller windows when all that was found asks for them, which a \
+                                part of a run does not know: use --schedule per-pass, or --estimator forward, backward or \
+                                mix"
+            .into(),
+    })
+}

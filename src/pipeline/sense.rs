@@ -1,0 +1,92 @@
+//! What can be said of a job before it is traced: that there is light, that every name is known, that estimators can
+//! meet the sources.
+
+use crate::error::{Diagnostic, Result};
+use crate::input::Job;
+use crate::input::keys::Key;
+use crate::input::problems::Problems;
+use crate::measure;
+use crate::scene::plan::Request;
+use crate::transport::{BLIND_PATHS, blind_sensors, invisible, scatterers};
+
+/// Refuses a scene without light, and checks and targets that name no measure of it, before any work is done. Gives
+/// back remarks.
+pub(super) fn expect_sense(job: &Job) -> Result<Vec<Diagnostic>> {
+    let names = measure::names(&job.scene);
+    let target = job
+        .run
+        .stop
+        .target
+        .iter()
+        .map(|target| (Key::of(&["run", "target", "measure"]), &target.measure));
+    let check = |index| Key::of(&["check"]).index(index).field("measure");
+    let checks = job.checks.iter().enumerate().map(|(index, one)| (check(index), &one.measure));
+    let mut problems = Problems::default();
+    if job.scene.sources.is_empty() {
+        problems
+            .error(&Key::of(&["sources"]), "nothing emits light: there is no source to trace")
+            .hint("add a table such as [sources.led.disk]");
+    }
+    expect_visible_sources(job, &mut problems);
+    expect_discrete_directions(job, &mut problems);
+    for (key, name) in target.chain(checks).filter(|(_, name)| !names.contains(name)) {
+        let nearest = measure::nearest(name, names.iter().map(String::as_str));
+        problems
+            .error(&key, format!("there is no measure `{name}`"))
+            .hint(format!("near names: {}", nearest.join(", ")));
+    }
+    expect_sight(job, &mut problems);
+    problems.finish(&job.places)
+}
+
+/// Remarks on sensors from which no gather path could bring light.
+fn expect_sight(job: &Job, problems: &mut Problems) {
+    match job.run.estimator {
+        // Photons find what gather paths do not.
+        Request::Auto | Request::Forward | Request::Mix => return,
+        Request::Backward | Request::Gather | Request::Mis => {}
+    }
+    for sensor in blind_sensors(&job.scene, job.run.seed) {
+        let name = &job.scene.sensors[sensor.index()].name;
+        let message = format!(
+            "sees no port: 0 of {BLIND_PATHS} gather paths meet a surface or a source, so that `{}` finds nothing there",
+            job.run.estimator.name()
+        );
+        problems
+            .warning(&Key::of(&["sensors", name]), message)
+            .hint("turn its axis toward the port, or name the port in its `aim`");
+    }
+}
+
+/// Refuses estimators that have to meet the sources where a source cannot be met.
+fn expect_visible_sources(job: &Job, problems: &mut Problems) {
+    let meets = match job.run.estimator {
+        Request::Auto | Request::Forward | Request::Mix => false,
+        Request::Backward | Request::Gather | Request::Mis => true,
+    };
+    for source in job.scene.sources.iter().filter(|_| meets) {
+        let Some(why) = invisible(source, &job.scene) else { continue };
+        let (name, wanted) = (&source.name, job.run.estimator.name());
+        let message = format!("`{wanted}` paths cannot meet the source `{name}`: {why}");
+        problems.error(&Key::of(&["run", "estimator"]), message).hint(
+            "use `forward`, `mix` or `auto`, or give the source an area and a cone of directions",
+        );
+    }
+}
+
+/// Refuses merging where a finish scatters.
+fn expect_discrete_directions(job: &Job, problems: &mut Problems) {
+    match job.run.estimator {
+        Request::Auto | Request::Forward | Request::Backward | Request::Mix | Request::Gather => {
+            return;
+        }
+        Request::Mis => {}
+    }
+    for scatterer in scatterers(&job.scene) {
+        let message =
+            format!("`mis` merges paths of discrete directions only: {scatterer} scatters light");
+        problems
+            .error(&Key::of(&["run", "estimator"]), message)
+            .hint("use `auto`, or one of `forward`, `backward`, `mix` and `gather`");
+    }
+}

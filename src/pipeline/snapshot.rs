@@ -1,0 +1,119 @@
+//! Files that hold what was counted so far: checkpoints, and slices of a run.
+//!
+//! A file has a line that says what it is, the length of what follows, that itself (postcard), and a digest of it; so that
+//! one that was cut off, changed, or is of another kind is told from a good one before anything in it is believed.
+
+use crate::error::{Error, Result};
+use crate::input::digest::Digest;
+use crate::report::{Existing, write_whole};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use std::fs;
+use std::path::Path;
+
+/// What a file holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// How far a run has come.
+    Checkpoint,
+    /// What was counted in some of the batches of a run.
+    Slice,
+}
+
+impl Kind {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Checkpoint => "checkpoint",
+            Self::Slice => "slice",
+        }
+    }
+
+    /// The first line of a file. The number is that of its layout; the version of the program is part of the contents.
+    fn line(self) -> String {
+        format!("lumiduct {} 1\n", self.name())
+    }
+}
+
+/// Bytes of the length before the contents, and of the digest after them.
+const LENGTH_BYTES: usize = 8;
+const DIGEST_BYTES: usize = 16;
+
+/// Writes a file, whole or not at all.
+pub(super) fn write(path: &Path, kind: Kind, contents: &impl Serialize) -> Result<()> {
+    let contents = postcard::to_stdvec(contents)
+        .map_err(|reason| Error::Output { what: kind.name().into(), reason: reason.to_string() })?;
+    let mut bytes = kind.line().into_bytes();
+    bytes.extend((contents.len() as u64).to_le_bytes());
+    bytes.extend(&contents);
+    bytes.extend(digest(&contents).as_bytes());
+    write_whole(path, &bytes, Existing::Replace)
+}
+
+/// Reads a file, or says why it is not what it should be.
+pub(super) fn read<T: DeserializeOwned>(path: &Path, kind: Kind) -> Result<T> {
+    let bytes = fs::read(path).map_err(|source| Error::io(path, source))?;
+    let refuse = |why: &str| {
+        Error::Usage(format!("{} is no {} to go on with: {why}", path.display(), kind.name()))
+    };
+    let line = kind.line();
+    let rest = bytes
+        .strip_prefix(line.as_bytes())
+        .ok_or_else(|| refuse("it does not begin as one by this version of the program does"))?;
+    let (length, rest) =
+        rest.split_at_checked(LENGTH_BYTES).ok_or_else(|| refuse("it was cut off"))?;
+    let length = length.iter().rev().fold(0u64, |sum, byte| sum << 8 | u64::from(*byte));
+    if rest.len() as u64 != length.saturating_add(DIGEST_BYTES as u64) {
+        return Err(refuse(&format!(
+            "it was cut off, or something was added: {} bytes instead of {length}",
+            rest.len().saturating_sub(DIGEST_BYTES)
+        )));
+    }
+    let (contents, found) = rest.split_at(rest.len() - DIGEST_BYTES);
+    if digest(contents).as_bytes() != found {
+        return Err(refuse("it was changed: its digest is not that of its contents"));
+    }
+    postcard::from_bytes(contents).map_err(|_| refuse("it is by another version of the program"))
+}
+
+fn digest(contents: &[u8]) -> String {
+    let mut digest = Digest::default();
+    digest.add(contents);
+    digest.to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refused(path: &Path, bytes: &[u8]) -> String {
+        fs::write(path, bytes).unwrap();
+        read::<Vec<f64>>(path, Kind::Checkpoint).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn what_was_written_comes_back_to_the_bit_and_nothing_else_does() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("checkpoint.bin");
+        let numbers = vec![0.1, f64::MIN_POSITIVE, f64::INFINITY, -0.0];
+        write(&path, Kind::Checkpoint, &numbers).unwrap();
+        let bytes = fs::read(&path).unwrap();
+        let read: Vec<f64> = read(&path, Kind::Checkpoint).unwrap();
+        assert!(read.iter().zip(&numbers).all(|(a, b)| a.to_bits() == b.to_bits()));
+
+        for cut in 0..bytes.len() {
+            let text = refused(&path, &bytes[..cut]);
+            assert!(text.contains("cut off") || text.contains("does not begin"), "{cut}: {text}");
+        }
+        for place in 0..bytes.len() {
+            let mut changed = bytes.clone();
+            changed[place] ^= 1;
+            refused(&path, &changed);
+        }
+        write(&path, Kind::Slice, &numbers).unwrap();
+        let slice = fs::read(&path).unwrap();
+        assert!(refused(&path, &slice).contains("does not begin"));
+        write(&path, Kind::Checkpoint, &"other contents").unwrap();
+        let other = fs::read(&path).unwrap();
+        assert!(refused(&path, &other).contains("another version"));
+    }
+}

@@ -1,0 +1,287 @@
+//! Which pictures a study has, and what is on them.
+
+use crate::error::Result;
+use crate::input::Setting;
+use crate::measure::Outcome;
+use crate::number::format_value;
+use crate::report::OutputFile;
+use crate::report::png::{
+    Bar, BarChart, ErrorForm, LinePlot, Look, Scale, ScatterColumn, ScatterMatrix, Series,
+    SeriesForm, SeriesPoint, bar_chart, line_plot, scatter_matrix,
+};
+use crate::report::study::{DesignRecord, Effect, ParameterFacts, PlanFacts, StudyReport};
+
+/// Curves of a response plot; more cannot be told apart.
+const MOST_CURVES: usize = 12;
+/// Bins of a histogram over the square root of the number of designs, about.
+const BINS_PER_ROOT: f64 = 1.2;
+
+/// All pictures of a study.
+pub(super) fn files(report: &StudyReport) -> Result<Vec<OutputFile>> {
+    let mut files = Vec::new();
+    for measure in &report.facts.measures {
+        if let Some(plot) = response(report, measure) {
+            let name = format!("response.{measure}.png");
+            files.push(OutputFile { name, bytes: line_plot(&plot)? });
+        }
+        if let Some(plot) = distribution(report, measure) {
+            let name = format!("distribution.{measure}.png");
+            files.push(OutputFile { name, bytes: line_plot(&plot)? });
+        }
+    }
+    for effect in &report.analysis.effects {
+        let name = format!("effect.{}.{}.png", effect.measure, effect.parameter);
+        files.push(OutputFile { name, bytes: effect_picture(report, effect)? });
+    }
+    if report.designs.len() > 2 {
+        files.push(OutputFile { name: "scatter.png".into(), bytes: scatter(report)? });
+    }
+    Ok(files)
+}
+
+/// What a picture shows, by its file name.
+pub(super) fn picture_words(file: &str) -> String {
+    file.trim_end_matches(".png").replacen('.', ": ", 1)
+}
+
+/// The label of a measure with its unit.
+fn measure_label(report: &StudyReport, measure: &str) -> String {
+    match report.unit(measure) {
+        "1" => measure.to_owned(),
+        unit => format!("{measure} in {unit}"),
+    }
+}
+
+/// What a parameter is in a design, as a number; what the scene says counts where it is known.
+fn number_of(parameter: &ParameterFacts, design: &DesignRecord) -> Option<f64> {
+    match design.settings.get(&parameter.name)? {
+        Setting::Number(number) => Some(*number),
+        Setting::AsInScene => parameter.nominal.number(),
+        Setting::Choice(_) => None,
+    }
+}
+
+/// Distinct numbers of a parameter; none unless all designs have one.
+fn numbers_of(parameter: &ParameterFacts, designs: &[DesignRecord]) -> Vec<f64> {
+    let numbers: Option<Vec<f64>> =
+        designs.iter().map(|design| number_of(parameter, design)).collect();
+    let mut numbers = numbers.unwrap_or_default();
+    numbers.sort_by(f64::total_cmp);
+    numbers.dedup();
+    numbers
+}
+
+/// A measure over the parameter with the most levels, a curve for each setting of all others; of grids and tables.
+fn response(report: &StudyReport, measure: &str) -> Option<LinePlot> {
+    match report.facts.plan {
+        PlanFacts::Grid | PlanFacts::List => {}
+        PlanFacts::OneAtATime
+        | PlanFacts::LatinHypercube(_)
+        | PlanFacts::Sobol(_)
+        | PlanFacts::Tolerance(_) => return None,
+    }
+    let levels = |parameter: &&ParameterFacts| numbers_of(parameter, &report.designs).len();
+    let parameters = &report.facts.parameters;
+    // Of several with as many levels, the first.
+    let across = parameters.iter().rev().max_by_key(levels).filter(|own| levels(own) > 1)?;
+    let others: Vec<&ParameterFacts> =
+        parameters.iter().filter(|own| own.name != across.name).collect();
+    let mut curves: Vec<(String, Vec<SeriesPoint>)> = Vec::new();
+    for design in &report.designs {
+        let (Some(found), Some(x)) = (design.measure(measure), number_of(across, design)) else {
+            continue;
+        };
+        let name =
+            others.iter().map(|own| setting_words(own, design)).collect::<Vec<_>>().join(", ");
+        let point = SeriesPoint { x, y: found.value, std_error: found.total_error() };
+        match curves.iter_mut().find(|(own, _)| *own == name) {
+            Some((_, points)) => points.push(point),
+            None => curves.push((name, vec![point])),
+        }
+    }
+    let left_out = curves.len().saturating_sub(MOST_CURVES);
+    let more = if left_out > 0 {
+        format!("; {left_out} curves more are not drawn")
+    } else {
+        String::new()
+    };
+    let series = curves.into_iter().take(MOST_CURVES).map(|(name, mut points)| {
+        points.sort_by(|a, b| a.x.total_cmp(&b.x));
+        Series { name, points, form: SeriesForm::Line, errors: ErrorForm::Bars, look: Look::InTurn }
+    });
+    Some(LinePlot {
+        title: format!("{measure} over {}", across.name),
+        subtitle: format!("bars: one standard error, with bias where there is one{more}"),
+        x_label: across.label(),
+        y_label: measure_label(report, measure),
+        x_scale: Scale::Linear,
+        y_scale: Scale::Linear,
+        series: series.collect(),
+    })
+}
+
+fn setting_words(parameter: &ParameterFacts, design: &DesignRecord) -> String {
+    let unit = parameter.unit.as_ref().map_or(String::new(), |unit| format!(" {unit}"));
+    let value = match design.settings.get(&parameter.name) {
+        Some(Setting::Number(number)) => format!("{}{unit}", format_value(*number)),
+        Some(Setting::Choice(name)) => name.clone(),
+        Some(Setting::AsInScene) | None => "as in the scene".into(),
+    };
+    format!("{} {value}", parameter.name)
+}
+
+/// How often a measure has which value, with the limits of its checks; of samples.
+fn distribution(report: &StudyReport, measure: &str) -> Option<LinePlot> {
+    match report.facts.plan {
+        PlanFacts::LatinHypercube(_) | PlanFacts::Sobol(_) | PlanFacts::Tolerance(_) => {}
+        PlanFacts::Grid | PlanFacts::OneAtATime | PlanFacts::List => return None,
+    }
+    let values: Vec<f64> = report
+        .designs
+        .iter()
+        .filter_map(|design| Some(design.measure(measure)?.value))
+        .filter(|value| value.is_finite())
+        .collect();
+    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    // Too few or all alike have no distribution to draw.
+    if values.len() < 10 || low >= high {
+        return None;
+    }
+    let bins = (BINS_PER_ROOT * (values.len() as f64).sqrt()).ceil() as usize;
+    let width = (high - low) / bins as f64;
+    let mut counts = vec![0.0f64; bins];
+    for value in &values {
+        counts[(((value - low) / width) as usize).min(bins - 1)] += 1.0;
+    }
+    let most = counts.iter().copied().fold(0.0, f64::max);
+    let points = counts.iter().enumerate().map(|(bin, count)| SeriesPoint {
+        x: low + (bin as f64 + 0.5) * width,
+        y: *count,
+        std_error: count.sqrt(),
+    });
+    let mut series = vec![Series {
+        name: "designs".into(),
+        points: points.collect(),
+        form: SeriesForm::Steps,
+        errors: ErrorForm::Hidden,
+        look: Look::InTurn,
+    }];
+    let own = report.facts.checks.iter().filter(|check| check.measure == measure);
+    for limit in own.flat_map(|check| [check.min, check.max].into_iter().flatten()) {
+        let at = |y| SeriesPoint { x: limit, y, std_error: 0.0 };
+        series.push(Series {
+            name: format!("limit {}", format_value(limit)),
+            points: vec![at(0.0), at(most)],
+            form: SeriesForm::Line,
+            errors: ErrorForm::Hidden,
+            look: Look::Dashed(1),
+        });
+    }
+    Some(LinePlot {
+        title: format!("Distribution of {measure}"),
+        subtitle: format!("{} designs", values.len()),
+        x_label: measure_label(report, measure),
+        y_label: "designs".into(),
+        x_scale: Scale::Linear,
+        y_scale: Scale::Linear,
+        series,
+    })
+}
+
+fn effect_picture(report: &StudyReport, effect: &Effect) -> Result<Vec<u8>> {
+    let title = format!("{}: main effect of {}", effect.measure, effect.parameter);
+    let subtitle = match report.facts.plan {
+        PlanFacts::OneAtATime => "all other parameters as in the scene",
+        PlanFacts::Grid
+        | PlanFacts::List
+        | PlanFacts::LatinHypercube(_)
+        | PlanFacts::Sobol(_)
+        | PlanFacts::Tolerance(_) => "mean over all designs with the same setting",
+    };
+    let points: Option<Vec<SeriesPoint>> = effect
+        .points
+        .iter()
+        .map(|point| {
+            let (y, std_error) = (point.mean.value, point.mean.std_error);
+            Some(SeriesPoint { x: point.setting.number()?, y, std_error })
+        })
+        .collect();
+    let facts = report.facts.parameters.iter().find(|own| own.name == effect.parameter);
+    match points {
+        Some(points) => line_plot(&LinePlot {
+            title,
+            subtitle: subtitle.into(),
+            x_label: facts.map_or(effect.parameter.clone(), ParameterFacts::label),
+            y_label: measure_label(report, &effect.measure),
+            x_scale: Scale::Linear,
+            y_scale: Scale::Linear,
+            series: vec![Series {
+                name: String::new(),
+                points,
+                form: SeriesForm::Line,
+                errors: ErrorForm::Bars,
+                look: Look::InTurn,
+            }],
+        }),
+        // Choices have no place on an axis.
+        None => bar_chart(&BarChart {
+            title,
+            subtitle: subtitle.into(),
+            unit: match report.unit(&effect.measure) {
+                "1" => String::new(),
+                unit => unit.to_owned(),
+            },
+            whole: None,
+            bars: effect
+                .points
+                .iter()
+                .map(|point| Bar {
+                    name: point.setting.to_string(),
+                    value: point.mean.value,
+                    std_error: Some(point.mean.std_error),
+                    colour: 0,
+                })
+                .collect(),
+        }),
+    }
+}
+
+/// All parameters that are numbers and all measures, each against each.
+fn scatter(report: &StudyReport) -> Result<Vec<u8>> {
+    let designs = &report.designs;
+    let of_parameter = |own: &ParameterFacts| {
+        let values: Vec<f64> =
+            designs.iter().map(|design| number_of(own, design).unwrap_or(f64::NAN)).collect();
+        values
+            .iter()
+            .any(|value| value.is_finite())
+            .then(|| ScatterColumn { label: own.label(), values })
+    };
+    let of_measure = |name: &String| {
+        let value = |design: &DesignRecord| design.measure(name).map_or(f64::NAN, |own| own.value);
+        let values = designs.iter().map(value).collect();
+        ScatterColumn { label: measure_label(report, name), values }
+    };
+    let measures = report.facts.measures.iter().map(of_measure);
+    let columns: Vec<ScatterColumn> =
+        report.facts.parameters.iter().filter_map(of_parameter).chain(measures).collect();
+    let (kinds, kind_of) = if report.facts.checks.is_empty() {
+        (vec!["designs".to_owned()], vec![0; designs.len()])
+    } else {
+        let kind = |design: &DesignRecord| match design.verdict() {
+            Some(Outcome::Passed) => 0,
+            Some(Outcome::Failed | Outcome::Unknown) | None => 1,
+            Some(Outcome::Undecided) => 2,
+        };
+        let kinds = ["passes all checks", "fails", "undecided"].map(str::to_owned).to_vec();
+        (kinds, designs.iter().map(kind).collect())
+    };
+    scatter_matrix(&ScatterMatrix {
+        title: "Parameters and measures".into(),
+        subtitle: format!("{} designs", designs.len()),
+        columns,
+        kind_of,
+        kinds,
+    })
+}

@@ -1,0 +1,31 @@
+//! Which design is the best, and how sure that is.
+
+use crate::input::Best;
+use crate::report::study::{DesignRecord, Ranked, StudyFacts};
+use crate::study::analysis::combine::{Term, combine};
+
+/// All designs that were traced, the best first; equal ones in the order of their numbers.
+pub(super) fn ranked(facts: &StudyFacts, designs: &[DesignRecord]) -> Vec<Ranked> {
+    let Some(ranking) = &facts.ranking else { return Vec::new() };
+    let value = |design: &DesignRecord| {
+        let value = design.measure(&ranking.measure)?.value;
+        value.is_finite().then_some(value)
+    };
+    let mut order: Vec<(f64, &DesignRecord)> =
+        designs.iter().filter_map(|design| Some((value(design)?, design))).collect();
+    order.sort_by(|(a, _), (b, _)| match ranking.best {
+        Best::Highest => b.total_cmp(a),
+        Best::Lowest => a.total_cmp(b),
+    });
+    let Some(&(_, best)) = order.first() else { return Vec::new() };
+    let sign = match ranking.best {
+        Best::Highest => 1.0,
+        Best::Lowest => -1.0,
+    };
+    let place = |(_, design): &(f64, &DesignRecord)| {
+        let terms = [Term { weight: sign, design: best }, Term { weight: -sign, design }];
+        let behind = combine(&terms, &ranking.measure).filter(|_| design.design != best.design);
+        Ranked { design: design.design, behind }
+    };
+    order.iter().map(place).collect()
+}

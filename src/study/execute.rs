@@ -1,0 +1,239 @@
+//! Tracing the designs of a study.
+//!
+//! A few designs are in flight at once, each looked after by a thread of its own that feeds one common pool. So all
+//! threads are busy whether designs are many and small or few and large: while one design is read, judged or written,
+//! batches of another are traced.
+
+use crate::error::{Diagnostic, DiagnosticKind, Error, Result};
+use crate::input::{Job, Keep, Settings, Study};
+use crate::measure;
+use crate::pipeline::{self, Stop};
+use crate::report::study::{DESIGN_FORMAT, DesignOutcome, DesignRecord, DesignResult};
+use crate::report::{self, Existing, Folder};
+use crate::study::designs::Design;
+use crate::study::store::Store;
+use crate::transport::{Interrupt, batch_paths};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+/// How far a batch has come.
+#[derive(Debug, Clone, Copy)]
+pub struct BatchProgress {
+    /// Designs with a record, those of an earlier run included.
+    pub done: usize,
+    /// Designs that are to have one.
+    pub wanted: usize,
+    /// Designs that an earlier run has left.
+    pub found: usize,
+    /// Share of this run's work that is done, 0..=1: designs that have ended, and parts of those in flight.
+    pub fraction: f64,
+    /// Time since the start.
+    pub elapsed: Duration,
+}
+
+impl BatchProgress {
+    /// Designs done, and the time left.
+    pub fn sentence(&self) -> String {
+        let found = if self.found > 0 {
+            format!(" ({} of them before)", self.found)
+        } else {
+            String::new()
+        };
+        let mut text = format!("{} of {} designs{found}", self.done, self.wanted);
+        if self.fraction > 0.0 {
+            let left = self.elapsed.as_secs_f64() * (1.0 - self.fraction) / self.fraction;
+            text += &format!(", {left:.0} s left");
+        }
+        text
+    }
+}
+
+/// A batch in progress.
+pub(crate) struct Batch<'a> {
+    pub(crate) study: &'a Study,
+    pub(crate) designs: &'a [Design],
+    pub(crate) store: &'a Store,
+    /// Designs in flight at once.
+    pub(crate) jobs: usize,
+    pub(crate) interrupt: &'a Interrupt,
+    pub(crate) watch: &'a (dyn Fn(&BatchProgress) + Sync),
+}
+
+/// Traces those of the wanted designs (numbers from 1) that have no record yet. Ends at the first error of a file system,
+/// or when it is interrupted; designs that have ended by then have their records.
+pub(crate) fn execute(batch: &Batch<'_>, wanted: &[usize]) -> Result<()> {
+    let records = batch.store.records()?;
+    let pending: Vec<&Design> = wanted
+        .iter()
+        .filter(|number| !records.contains_key(number))
+        .filter_map(|number| batch.designs.get(number - 1))
+        .collect();
+    let study = batch.study;
+    let common = Settings {
+        batch_paths: Some(batch_paths(&study.base.scene, &study.base.run)),
+        ..study.common.clone()
+    };
+    let (next, trouble) = (AtomicUsize::new(0), Mutex::new(None));
+    let board = Board::new(wanted.len(), pending.len(), batch);
+    board.show();
+    std::thread::scope(|scope| {
+        for _ in 0..batch.jobs.min(pending.len()) {
+            scope.spawn(|| {
+                while let Some(design) = pending.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    if batch.interrupt.is_raised() {
+                        return;
+                    }
+                    match trace(batch, design, &common, &board) {
+                        Ok(()) => board.end(design.number),
+                        Err(error) => {
+                            // The others end, too, and what they have is lost: it can be computed again.
+                            batch.interrupt.raise();
+                            if let Ok(mut trouble) = trouble.lock() {
+                                trouble.get_or_insert(error);
+                            }
+                        }
+                    }
+                }
+            });
+        }
+    });
+    match trouble.into_inner() {
+        Ok(Some(error)) => Err(error),
+        Ok(None) | Err(_) => Ok(()),
+    }
+}
+
+/// Traces a design and writes its record, unless it is interrupted.
+fn trace(batch: &Batch<'_>, design: &Design, common: &Settings, board: &Board<'_>) -> Result<()> {
+    let study = batch.study;
+    let own = study.parameters.iter().zip(&design.settings);
+    let own = own.flat_map(|(parameter, setting)| parameter.overrides(setting));
+    let overrides = common.overrides.iter().cloned().chain(own).collect();
+    let settings = Settings { overrides, ..common.clone() };
+    let outcome = match pipeline::prepare(&study.scene, &settings) {
+        Ok(job) => match trace_job(batch, design, job, board)? {
+            Some(result) => DesignOutcome::Done(Box::new(result)),
+            None => return Ok(()),
+        },
+        Err(Error::Input(diagnostics)) => DesignOutcome::Failed(sentences(&diagnostics)),
+        Err(Error::Usage(message)) => DesignOutcome::Failed(message),
+        Err(error @ (Error::Io { .. } | Error::Output { .. })) => return Err(error),
+    };
+    let names = study.parameters.iter().map(|parameter| parameter.name.clone());
+    batch.store.write(&DesignRecord {
+        lumiduct_design: DESIGN_FORMAT,
+        study: study.hash.clone(),
+        design: design.number,
+        settings: names.zip(design.settings.iter().cloned()).collect(),
+        outcome,
+    })
+}
+
+/// What tracing gives; `None` when it was interrupted.
+fn trace_job(
+    batch: &Batch<'_>,
+    design: &Design,
+    mut job: Job,
+    board: &Board<'_>,
+) -> Result<Option<DesignResult>> {
+    let study = batch.study;
+    job.checks.clone_from(&study.checks);
+    let traced = pipeline::trace(&job, batch.interrupt, &mut |progress| {
+        board.go_on(design.number, progress.fraction());
+    });
+    if traced.stop == Stop::Interrupted {
+        return Ok(None);
+    }
+    let report = pipeline::compose(&job, &traced.findings, traced.stop);
+    match study.keep {
+        Keep::Records => {}
+        Keep::Reports => {
+            let path = batch.store.report_of(design.number);
+            let folder = Folder::open(&path, Existing::Replace, None)?;
+            folder.write(&report::files(&report, &job.text)?)?;
+        }
+    }
+    let names = study.measures.iter().chain(study.checks.iter().map(|check| &check.measure));
+    let measures = names
+        .filter_map(|name| Some((name.clone(), report.measures.values.get(name)?.clone())))
+        .collect();
+    let replicates = study.measures.iter().filter_map(|name| {
+        Some((name.clone(), measure::replicates(&job.scene, &traced.findings, name)?))
+    });
+    Ok(Some(DesignResult {
+        scene_hash: job.hash,
+        measures,
+        replicates: replicates.collect(),
+        checks: report.checks,
+        target: report.run.target,
+        stopped: report.run.stopped,
+        paths: report.measures.paths,
+        warnings: report.warnings,
+    }))
+}
+
+/// What is wrong with a scene, without the places of files, which differ from machine to machine.
+fn sentences(diagnostics: &[Diagnostic]) -> String {
+    let errors = diagnostics.iter().filter(|diagnostic| match diagnostic.kind {
+        DiagnosticKind::Error => true,
+        DiagnosticKind::Warning => false,
+    });
+    let sentence = |diagnostic: &Diagnostic| {
+        let key = if diagnostic.key.is_empty() {
+            String::new()
+        } else {
+            format!("`{}`: ", diagnostic.key)
+        };
+        format!("{key}{}", diagnostic.message)
+    };
+    errors.map(sentence).collect::<Vec<_>>().join("; ")
+}
+
+/// What all designs in flight have done so far.
+struct Board<'a> {
+    wanted: usize,
+    pending: usize,
+    start: Instant,
+    watch: &'a (dyn Fn(&BatchProgress) + Sync),
+    /// Designs that have ended, and the shares of those in flight.
+    state: Mutex<(usize, Vec<(usize, f64)>)>,
+}
+
+impl<'a> Board<'a> {
+    fn new(wanted: usize, pending: usize, batch: &Batch<'a>) -> Self {
+        let state = Mutex::new((0, Vec::new()));
+        Self { wanted, pending, start: Instant::now(), watch: batch.watch, state }
+    }
+
+    fn go_on(&self, design: usize, fraction: f64) {
+        if let Ok(mut state) = self.state.lock() {
+            match state.1.iter_mut().find(|(number, _)| *number == design) {
+                Some(own) => own.1 = fraction,
+                None => state.1.push((design, fraction)),
+            }
+        }
+        self.show();
+    }
+
+    fn end(&self, design: usize) {
+        if let Ok(mut state) = self.state.lock() {
+            state.0 += 1;
+            state.1.retain(|(number, _)| *number != design);
+        }
+        self.show();
+    }
+
+    fn show(&self) {
+        let Ok(state) = self.state.lock() else { return };
+        let (ended, in_flight) = (state.0, state.1.iter().map(|(_, share)| share).sum::<f64>());
+        let found = self.wanted - self.pending;
+        (self.watch)(&BatchProgress {
+            done: found + ended,
+            wanted: self.wanted,
+            found,
+            fraction: ((ended as f64 + in_flight) / self.pending.max(1) as f64).min(1.0),
+            elapsed: self.start.elapsed(),
+        });
+    }
+}

@@ -1,0 +1,238 @@
+//! Studies: many designs of one scene, traced with the same random numbers, and what follows from them together.
+//!
+//! ```text
+//! study file -> designs -> a record on disk for each, as soon as it ends -> analysis -> report
+//! ```
+//!
+//! Results are written from the records alone, so that a batch that was killed and resumed, or was computed in shards
+//! on several machines, ends with the same bytes.
+
+mod analysis;
+mod designs;
+mod execute;
+mod sampling;
+mod store;
+
+pub use execute::BatchProgress;
+
+use crate::error::{Diagnostic, Error, Result};
+use crate::input::{Parameter, Plan, Study, StudySettings, Tie, load_study};
+use crate::measure;
+use crate::report::study::{
+    DesignRecord, FACTS_FORMAT, ParameterFacts, PlanFacts, StudyFacts, StudyReport, study_files,
+};
+use crate::report::{self, Existing, Folder, Written};
+use crate::study::designs::designs;
+use crate::study::execute::{Batch, execute};
+use crate::study::store::Store;
+use crate::transport::{Interrupt, Shard};
+use std::path::{Path, PathBuf};
+
+/// Version of the program, for reports.
+const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// How a study is to be run.
+#[derive(Debug, Clone)]
+pub struct BatchWishes {
+    /// What the command line asks of all designs.
+    pub settings: StudySettings,
+    /// The folder of the results; `reports/studies/NAME` when none is given.
+    pub dir: Option<PathBuf>,
+    /// What to do with results that are there.
+    pub existing: OnExisting,
+    /// Designs in flight at once.
+    pub jobs: usize,
+    /// Which part of the designs is computed.
+    pub shard: Shard,
+}
+
+/// What to do with results that are there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum OnExisting {
+    /// Refuse to touch them.
+    Keep,
+    /// Go on where they end.
+    Resume,
+    /// Begin anew.
+    Replace,
+}
+
+/// A batch that has come to its end.
+#[derive(Debug)]
+pub struct Finished {
+    /// What the study is.
+    pub facts: StudyFacts,
+    /// The whole report; `None` of a shard, or of a batch that was interrupted.
+    pub report: Option<StudyReport>,
+    /// Whether the files were there before.
+    pub written: Written,
+    /// Designs with a record, and designs that were to have one.
+    pub done: [usize; 2],
+    /// Where the results lie.
+    pub dir: PathBuf,
+    /// Remarks on study and scene.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// Runs a study file and writes its results.
+pub fn run_study(
+    path: &Path,
+    wishes: &BatchWishes,
+    interrupt: &Interrupt,
+    watch: &(dyn Fn(&BatchProgress) + Sync),
+) -> Result<Finished> {
+    let study = load_study(path, &wishes.settings)?;
+    expect_measures(&study, path)?;
+    let all = designs(&study);
+    let facts = facts(&study, all.len());
+    let dir = wishes.dir.clone().unwrap_or_else(|| default_dir(&study.name));
+    let store = Store::open(&dir, &facts, &study.text, wishes.existing)?;
+    let wanted: Vec<usize> =
+        wishes.shard.of(all.len() as u64).map(|index| index as usize + 1).collect();
+    let jobs = wishes.jobs;
+    let batch = Batch { study: &study, designs: &all, store: &store, jobs, interrupt, watch };
+    execute(&batch, &wanted)?;
+    let records = store.records()?;
+    let done = [wanted.iter().filter(|design| records.contains_key(design)).count(), wanted.len()];
+    let warnings = study.warnings.clone();
+    if records.len() < all.len() {
+        return Ok(Finished { facts, report: None, written: Written::New, done, dir, warnings });
+    }
+    let (report, written) =
+        finish(&store, facts.clone(), records.into_values().collect(), &study.text)?;
+    Ok(Finished { facts, report: Some(report), written, done, dir, warnings })
+}
+
+/// Whether a folder holds results of a study.
+pub fn has_study(dir: &Path) -> bool {
+    matches!(Store::manifest(dir), Ok(Some(_)))
+}
+
+/// Puts the parts of a study together and writes the results of the whole.
+pub fn merge_study(
+    parts: &[PathBuf],
+    dir: Option<&Path>,
+    existing: OnExisting,
+) -> Result<Finished> {
+    let stores: Vec<Store> = parts.iter().map(|part| Store::read(part)).collect::<Result<_>>()?;
+    let Some(first) = stores.first() else {
+        return Err(Error::Usage("there are no parts to put together".into()));
+    };
+    let facts = first.facts().clone();
+    if let Some(other) = stores.iter().find(|other| *other.facts() != facts) {
+        return Err(Error::Usage(format!(
+            "{} and {} hold results of different studies",
+            first.path().display(),
+            other.path().display()
+        )));
+    }
+    let mut have: Vec<usize> = Vec::new();
+    for store in &stores {
+        have.extend(store.records()?.into_keys());
+    }
+    let missing: Vec<usize> = (1..=facts.designs).filter(|design| !have.contains(design)).collect();
+    if let Some(first) = missing.first() {
+        return Err(Error::Usage(format!(
+            "{} of {} designs are in no part, design {first} first: a part is missing or was stopped (batch --resume goes on \
+             with it)",
+            missing.len(),
+            facts.designs
+        )));
+    }
+    let text = first.text()?;
+    let dir = dir.map_or_else(|| default_dir(&facts.name), Path::to_path_buf);
+    let whole = Store::open(&dir, &facts, &text, existing)?;
+    for store in &stores {
+        whole.take(store)?;
+    }
+    let records: Vec<DesignRecord> = whole.records()?.into_values().collect();
+    let done = [records.len(), facts.designs];
+    let (report, written) = finish(&whole, facts.clone(), records, &text)?;
+    Ok(Finished { facts, report: Some(report), written, done, dir, warnings: Vec::new() })
+}
+
+/// Where results lie when nothing is said.
+fn default_dir(name: &str) -> PathBuf {
+    Path::new("reports/studies").join(name)
+}
+
+/// Writes the results of a study whose designs all have records.
+fn finish(
+    store: &Store,
+    facts: StudyFacts,
+    designs: Vec<DesignRecord>,
+    text: &str,
+) -> Result<(StudyReport, Written)> {
+    let analysis = analysis::analysis(&facts, &designs);
+    let report = StudyReport { facts, designs, analysis };
+    // Results follow from the records: older ones of the same study may be replaced.
+    let folder = Folder::open(store.path(), Existing::Replace, None)?;
+    let written = folder.write(&study_files(&report, text)?)?;
+    Ok((report, written))
+}
+
+/// Refuses measures that no design of the study can have, before any work is done.
+fn expect_measures(study: &Study, path: &Path) -> Result<()> {
+    let names = measure::names(&study.base.scene);
+    let wanted = study.measures.iter().chain(study.checks.iter().map(|check| &check.measure));
+    let unknown: Vec<String> = wanted
+        .filter(|name| !names.contains(name))
+        .map(|name| {
+            let near = measure::nearest(name, names.iter().map(String::as_str)).join(", ");
+            format!("{}: there is no measure `{name}`; near names: {near}", path.display())
+        })
+        .collect();
+    if unknown.is_empty() { Ok(()) } else { Err(Error::Usage(unknown.join("\n"))) }
+}
+
+/// What a study is, for its reports.
+fn facts(study: &Study, designs: usize) -> StudyFacts {
+    let run = &study.base.run;
+    StudyFacts {
+        lumiduct_batch: FACTS_FORMAT,
+        version: VERSION.to_owned(),
+        name: study.name.clone(),
+        title: study.title.clone(),
+        description: study.description.clone(),
+        hash: study.hash.clone(),
+        scene: study.base.name.clone(),
+        overrides: study.common.overrides.clone(),
+        plan: match &study.plan {
+            Plan::Grid => PlanFacts::Grid,
+            Plan::OneAtATime => PlanFacts::OneAtATime,
+            Plan::List(_) => PlanFacts::List,
+            Plan::LatinHypercube(samples) => PlanFacts::LatinHypercube(samples.seed),
+            Plan::Sobol(samples) => PlanFacts::Sobol(samples.seed),
+            Plan::Tolerance(samples) => PlanFacts::Tolerance(samples.seed),
+        },
+        designs,
+        seed: run.seed,
+        estimator: run.estimator.name().to_owned(),
+        asked: report::asked(&run.stop),
+        parameters: study.parameters.iter().map(parameter_facts).collect(),
+        measures: study.measures.clone(),
+        ranking: study.ranking.clone(),
+        checks: study.checks.clone(),
+        keep: study.keep,
+    }
+}
+
+fn parameter_facts(parameter: &Parameter) -> ParameterFacts {
+    let key = |tie: &Tie| {
+        let factor =
+            if tie.factor == 1.0 { String::new() } else { format!(" = {} times it", tie.factor) };
+        let offset = match tie.offset {
+            0.0 => String::new(),
+            offset if tie.factor == 1.0 => format!(" = it plus {offset}"),
+            offset => format!(" plus {offset}"),
+        };
+        format!("{}{factor}{offset}", tie.key)
+    };
+    ParameterFacts {
+        name: parameter.name.clone(),
+        unit: parameter.unit.clone(),
+        keys: parameter.ties.iter().map(key).collect(),
+        domain: parameter.domain.clone(),
+        nominal: parameter.nominal.clone(),
+    }
+}

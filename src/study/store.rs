@@ -1,0 +1,221 @@
+//! Results of a batch on disk: a manifest, and a record of every design as soon as it has one.
+//!
+//! A record appears whole or not at all, so that a batch that was killed at any moment can go on. Which designs are done
+//! is told from the records alone.
+
+use crate::error::{Error, Result};
+use crate::report::study::{DESIGN_FORMAT, DesignRecord, SUMMARY, StudyFacts};
+use crate::report::{Existing, remove_if_there, sweep, write_whole};
+use crate::study::OnExisting;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Names in the folder of a batch.
+const MANIFEST: &str = "batch.json";
+const DESIGNS: &str = "designs";
+
+/// The folder of a batch.
+#[derive(Debug)]
+pub(crate) struct Store {
+    dir: PathBuf,
+    facts: StudyFacts,
+}
+
+impl Store {
+    /// Makes sure, before any work is done, that results of a study can be written to a folder, and writes what the
+    /// study is.
+    pub(crate) fn open(
+        dir: &Path,
+        facts: &StudyFacts,
+        text: &str,
+        existing: OnExisting,
+    ) -> Result<Self> {
+        if dir.is_file() {
+            return Err(Error::Usage(format!("{} is a file, not a folder", dir.display())));
+        }
+        let store = Self { dir: dir.to_path_buf(), facts: facts.clone() };
+        let designs = store.dir.join(DESIGNS);
+        fs::create_dir_all(&designs).map_err(|source| Error::io(&designs, source))?;
+        match (Self::manifest(dir)?, existing) {
+            (_, OnExisting::Replace) => store.clear()?,
+            (None, OnExisting::Keep | OnExisting::Resume) => store.expect_empty()?,
+            (Some(found), OnExisting::Keep | OnExisting::Resume) if found != *facts => {
+                let what = if found.version == facts.version {
+                    "another study: the study, its scene or what the command line sets differs"
+                } else {
+                    "a study by another version of the program"
+                };
+                return Err(Error::Usage(format!(
+                    "{} holds results of {what}; use --overwrite to begin anew, or -o for another folder",
+                    dir.display()
+                )));
+            }
+            (Some(_), OnExisting::Keep) => {
+                return Err(Error::Usage(format!(
+                    "{} holds results of this study; use --resume to go on with them, or --overwrite to begin anew",
+                    dir.display()
+                )));
+            }
+            (Some(_), OnExisting::Resume) => store.sweep()?,
+        }
+        let manifest = serde_json::to_string_pretty(facts).map_err(|reason| Error::Output {
+            what: MANIFEST.into(),
+            reason: reason.to_string(),
+        })?;
+        write_whole(&dir.join(MANIFEST), (manifest + "\n").as_bytes(), Existing::Replace)?;
+        write_whole(&store.text_path(), text.as_bytes(), Existing::Replace)?;
+        Ok(store)
+    }
+
+    /// The results in a folder, as they are.
+    pub(crate) fn read(dir: &Path) -> Result<Self> {
+        let facts = Self::manifest(dir)?.ok_or_else(|| {
+            Error::Usage(format!("{} holds no results of a study", dir.display()))
+        })?;
+        Ok(Self { dir: dir.to_path_buf(), facts })
+    }
+
+    /// What the study is.
+    pub(crate) fn facts(&self) -> &StudyFacts {
+        &self.facts
+    }
+
+    /// The study file, byte for byte.
+    pub(crate) fn text(&self) -> Result<String> {
+        let path = self.text_path();
+        fs::read_to_string(&path).map_err(|source| Error::io(&path, source))
+    }
+
+    fn text_path(&self) -> PathBuf {
+        self.dir.join(format!("{}.toml", self.facts.name))
+    }
+
+    /// Takes over all records of another folder, and the reports of its designs.
+    pub(crate) fn take(&self, other: &Self) -> Result<()> {
+        for (design, record) in other.records()? {
+            self.write(&record)?;
+            let report = other.report_of(design);
+            if !report.is_dir() {
+                continue;
+            }
+            for path in entries(&report)? {
+                let bytes = fs::read(&path).map_err(|source| Error::io(&path, source))?;
+                let name = path.file_name().unwrap_or_default();
+                write_whole(&self.report_of(design).join(name), &bytes, Existing::Replace)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// What study a folder holds results of; `None` if it holds none.
+    pub(crate) fn manifest(dir: &Path) -> Result<Option<StudyFacts>> {
+        let path = dir.join(MANIFEST);
+        if path.exists() { read_json(&path).map(Some) } else { Ok(None) }
+    }
+
+    /// The folder.
+    pub(crate) fn path(&self) -> &Path {
+        &self.dir
+    }
+
+    /// Where a whole report of a design lies.
+    pub(crate) fn report_of(&self, design: usize) -> PathBuf {
+        self.dir.join(DESIGNS).join(format!("{design:04}"))
+    }
+
+    /// Writes the record of a design.
+    pub(crate) fn write(&self, record: &DesignRecord) -> Result<()> {
+        let text = serde_json::to_string(record).map_err(|reason| Error::Output {
+            what: format!("record of design {}", record.design),
+            reason: reason.to_string(),
+        })?;
+        write_whole(&self.record_path(record.design), (text + "\n").as_bytes(), Existing::Replace)
+    }
+
+    /// All records that are there, by the numbers of their designs.
+    pub(crate) fn records(&self) -> Result<BTreeMap<usize, DesignRecord>> {
+        let designs = self.dir.join(DESIGNS);
+        let mut records = BTreeMap::new();
+        for path in entries(&designs)? {
+            if path.extension().is_none_or(|extension| extension != "json") {
+                continue;
+            }
+            let record: DesignRecord = read_json(&path)?;
+            if record.lumiduct_design != DESIGN_FORMAT
+                || record.study != self.facts.hash
+                || path != self.record_path(record.design)
+            {
+                return Err(Error::Usage(format!(
+                    "{} is no record of this study; remove it, and the design is computed anew",
+                    path.display()
+                )));
+            }
+            records.insert(record.design, record);
+        }
+        Ok(records)
+    }
+
+    fn record_path(&self, design: usize) -> PathBuf {
+        self.dir.join(DESIGNS).join(format!("{design:04}.json"))
+    }
+
+    fn expect_empty(&self) -> Result<()> {
+        let is_ours = |path: &PathBuf| *path == self.dir.join(DESIGNS);
+        if entries(&self.dir)?.iter().all(is_ours) && entries(&self.dir.join(DESIGNS))?.is_empty() {
+            return Ok(());
+        }
+        Err(Error::Usage(format!(
+            "{} holds files that are no results of a batch; use --overwrite to replace those of the same name, or -o \
+             for another folder",
+            self.dir.display()
+        )))
+    }
+
+    /// Takes away what a killed batch left half written.
+    fn sweep(&self) -> Result<()> {
+        sweep(&self.dir)?;
+        sweep(&self.dir.join(DESIGNS))
+    }
+
+    /// Takes away the results of an older batch: its records, and the files that its summary names.
+    fn clear(&self) -> Result<()> {
+        self.sweep()?;
+        let summary: Option<Value> = fs::read(self.dir.join(SUMMARY))
+            .ok()
+            .and_then(|bytes| serde_json::from_slice(&bytes).ok());
+        let files = summary.as_ref().and_then(|summary| summary["files"].as_array());
+        for name in files.into_iter().flatten().filter_map(Value::as_str) {
+            // Only names of this folder: the file may have been changed by others.
+            if Path::new(name).components().count() == 1 && !name.starts_with('.') {
+                remove_if_there(&self.dir.join(name))?;
+            }
+        }
+        for path in entries(&self.dir.join(DESIGNS))? {
+            let is_record = path.extension().is_some_and(|extension| extension == "json");
+            if is_record && path.is_file() {
+                remove_if_there(&path)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn entries(folder: &Path) -> Result<Vec<PathBuf>> {
+    let failed = |source| Error::io(folder, source);
+    let entries = fs::read_dir(folder).map_err(failed)?;
+    let paths: std::io::Result<Vec<PathBuf>> =
+        entries.map(|entry| entry.map(|entry| entry.path())).collect();
+    let mut paths = paths.map_err(failed)?;
+    paths.sort();
+    Ok(paths)
+}
+
+fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T> {
+    let bytes = fs::read(path).map_err(|source| Error::io(path, source))?;
+    serde_json::from_slice(&bytes).map_err(|reason| {
+        Error::Usage(format!("{} cannot be read as results of a batch: {reason}", path.display()))
+    })
+}

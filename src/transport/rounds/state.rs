@@ -1,0 +1,59 @@
+//! What of a run changes while it goes on, so that it can be laid down and taken up again.
+
+use crate::transport::rounds::Run;
+use crate::transport::stages::{Stages, StagesState};
+use crate::transport::sums::Sums;
+use crate::transport::{Readings, Windows};
+use serde::{Deserialize, Serialize};
+
+/// How far a run has come: everything counted, a wave in progress included. All else follows from scene and plan.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct State {
+    waves: u64,
+    paths: u64,
+    photons: Sums<Readings>,
+    backward: Option<Sums<Readings>>,
+    stages: Option<StagesState>,
+}
+
+impl Run<'_> {
+    /// How far it has come.
+    pub fn state(&self) -> State {
+        State {
+            waves: self.waves,
+            paths: self.paths,
+            photons: self.photons.clone(),
+            backward: self.backward.as_ref().map(|(_, sums)| sums.clone()),
+            stages: self.stages.as_ref().map(Stages::state),
+        }
+    }
+
+    /// Goes on from the state of a run of the same scene and plan, to the same bits.
+    pub fn go_on_from(&mut self, state: State) {
+        let State { waves, paths, photons, backward, stages } = state;
+        (self.waves, self.paths, self.photons) = (waves, paths, photons);
+        if let (Some((_, own)), Some(sums)) = (&mut self.backward, backward) {
+            *own = sums;
+        }
+        if let (Some(own), Some(state)) = (&mut self.stages, stages) {
+            own.go_on_from(state);
+        }
+    }
+
+    /// The state after all waves, from what slices have counted.
+    pub(super) fn state_after(
+        &self,
+        waves: u64,
+        photons: Vec<Readings>,
+        backward: Vec<Readings>,
+        windows: Vec<Windows>,
+    ) -> State {
+        State {
+            waves,
+            paths: waves * self.wave_batches * self.batch_paths(),
+            photons: Sums::of_nodes(photons),
+            backward: self.backward.as_ref().map(|_| Sums::of_nodes(backward)),
+            stages: self.stages.as_ref().map(|_| StagesState::only(Sums::of_nodes(windows))),
+        }
+    }
+}

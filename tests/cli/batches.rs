@@ -1,0 +1,252 @@
+//! Studies as a user runs them.
+
+use crate::*;
+use std::process::{Command as Process, Stdio};
+use std::thread::sleep;
+use std::time::Duration;
+
+const STUDY: &str = r#"
+lumiduct_study = 1
+title = "How long a rod?"
+scene = "rod.toml"
+measures = ["exit.efficiency", "exit.uniformity_min_avg"]
+plan = "grid"
+[parameters.length]
+keys = ["solids.rod.cylinder.length_mm"]
+unit = "mm"
+values = [5, 10, 20]
+[parameters.index]
+keys = ["media.acrylic.index"]
+range = { from = 1.4, to = 1.6, count = 2 }
+[run]
+paths = 20_000
+estimator = "forward"
+[ranking]
+measure = "exit.efficiency"
+"#;
+
+/// A place with a study beside its scene.
+fn study(text: &str) -> Place {
+    let place = Place::new();
+    fs::write(place.path("study.toml"), text).unwrap();
+    place
+}
+
+/// All files of a batch, those of its designs included.
+fn results(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut all = contents(folder);
+    for (name, bytes) in contents(&folder.join("designs")) {
+        all.insert(format!("designs/{name}"), bytes);
+    }
+    all
+}
+
+fn rows(place: &Place, folder: &str) -> Vec<BTreeMap<String, String>> {
+    let mut reader = csv::Reader::from_path(place.path(folder).join("study.csv")).unwrap();
+    reader.deserialize().map(Result::unwrap).collect()
+}
+
+#[test]
+fn a_grid_becomes_a_row_for_each_design_and_they_are_what_runs_give() {
+    let place = study(STUDY);
+    let said = place.good("batch study.toml");
+    assert!(
+        said.contains("6 designs") && said.contains("reports/studies/study/study.md"),
+        "{said}"
+    );
+    let rows = rows(&place, "reports/studies/study");
+    assert_eq!(rows.len(), 6);
+    assert_eq!((rows[4]["length_mm"].as_str(), rows[4]["index"].as_str()), ("20", "1.4"));
+    // The batches of a study hold other paths than those of a run alone: the same light, other noise.
+    place
+        .good("run rod.toml -D solids.rod.cylinder.length_mm=20 -D media.acrylic.index=1.4 -o one");
+    let summary = place.summary("one");
+    let alone = &summary["measures"]["exit.efficiency"];
+    let number = |name: &str| rows[4][name].parse::<f64>().unwrap();
+    let apart = number("exit.efficiency") - alone["value"].as_f64().unwrap();
+    let error = number("exit.efficiency.std_error").hypot(alone["std_error"].as_f64().unwrap());
+    assert!(apart.abs() < 4.0 * error, "{apart} ± {error}");
+    let page = fs::read_to_string(place.path("reports/studies/study/study.md")).unwrap();
+    for words in
+        ["## Ranking", "## Sensitivity", "effect.exit.efficiency.length.png", "scatter.png"]
+    {
+        assert!(page.contains(words), "no {words}");
+    }
+}
+
+#[test]
+fn results_do_not_depend_on_threads_jobs_or_parts() {
+    let place = study(STUDY);
+    place.good("batch study.toml -o whole --threads 1 --jobs 1");
+    place.good("batch study.toml -o other --threads 3 --jobs 5");
+    assert_eq!(results(&place.path("whole")), results(&place.path("other")));
+    for part in ["1/4", "2/4", "3/4", "4/4"] {
+        let folder = part.replace('/', "of");
+        let said = place.good(&format!("batch study.toml --shard {part} -o {folder}"));
+        assert!(said.contains("lumiduct merge"), "{said}");
+    }
+    assert!(place.bad(2, "merge 1of4 2of4 4of4 -o merged").contains("a part is missing"));
+    place.good("merge 4of4 2of4 1of4 3of4 -o merged");
+    assert_eq!(results(&place.path("whole")), results(&place.path("merged")));
+}
+
+#[test]
+fn a_killed_batch_goes_on_without_repeating_designs_to_the_same_bytes() {
+    let text = STUDY.replace("paths = 20_000", "paths = 300_000");
+    let place = study(&text);
+    place.good("batch study.toml -o whole");
+    let designs = place.path("cut").join("designs");
+    let done = || {
+        fs::read_dir(&designs).map_or(0, |entries| {
+            let records = entries.flatten().map(|entry| entry.file_name().into_string().unwrap());
+            records.filter(|name| name.ends_with(".json") && !name.starts_with('.')).count()
+        })
+    };
+    let mut child = Process::new(env!("CARGO_BIN_EXE_lumiduct"))
+        .current_dir(place.0.path())
+        .args(["batch", "study.toml", "-o", "cut", "--jobs", "2"])
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    while done() < 2 && child.try_wait().unwrap().is_none() {
+        sleep(Duration::from_millis(2));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let kept = done();
+    assert!((2..6).contains(&kept), "{kept} designs were done when the batch was killed");
+    let stamp = |name: &str| fs::metadata(designs.join(name)).unwrap().modified().unwrap();
+    let first = names(&designs).into_iter().find(|name| name.ends_with(".json")).unwrap();
+    let before = stamp(&first);
+    // What a kill in the middle of a write leaves.
+    fs::write(designs.join(".lumiduct-half"), "{").unwrap();
+
+    assert!(place.bad(2, "batch study.toml -o cut").contains("--resume"));
+    assert!(place.bad(2, "batch study.toml -o cut --resume --seed 9").contains("another study"));
+    place.good("batch study.toml -o cut --resume");
+    assert_eq!(stamp(&first), before, "a design that was done was computed again");
+    assert_eq!(results(&place.path("whole")), results(&place.path("cut")));
+    assert!(place.good("batch study.toml -o cut --resume").contains("the same to the byte"));
+}
+
+#[test]
+fn a_record_that_is_no_record_is_named() {
+    let place = study(STUDY);
+    place.good("batch study.toml -o out");
+    let record = place.path("out").join("designs/0003.json");
+    fs::write(&record, "{").unwrap();
+    assert!(place.bad(2, "batch study.toml -o out --resume").contains("0003.json"));
+    fs::remove_file(&record).unwrap();
+    place.good("batch study.toml -o out --resume");
+    fs::write(place.path("out").join("mine.txt"), "mine").unwrap();
+    place.good("batch study.toml -o out --overwrite");
+    assert_eq!(fs::read_to_string(place.path("out").join("mine.txt")).unwrap(), "mine");
+    fs::create_dir(place.path("full")).unwrap();
+    fs::write(place.path("full").join("mine.txt"), "mine").unwrap();
+    assert!(place.bad(2, "batch study.toml -o full").contains("no results of a batch"));
+}
+
+#[test]
+fn a_design_that_makes_no_scene_is_a_row_with_its_error_and_the_rest_goes_on() {
+    // A rod of index 0.5 is out of range.
+    let place = study(&STUDY.replace("from = 1.4, to = 1.6", "from = 1.4, to = 0.5"));
+    let output = place.run("batch study.toml -o out");
+    assert_eq!(code(&output), 1, "{}", errors(&output));
+    let rows = rows(&place, "out");
+    assert!(rows[0]["error"].is_empty() && !rows[0]["exit.efficiency"].is_empty());
+    assert!(rows[1]["error"].contains("out of range") && rows[1]["exit.efficiency"].is_empty());
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(said.contains("makes no scene") && !said.contains(&*place.0.path().to_string_lossy()));
+}
+
+#[test]
+fn samples_tell_the_share_that_fails_and_what_it_hangs_on() {
+    let text = STUDY
+        .replace("plan = \"grid\"", "plan = { tolerance = { samples = 24, seed = 2 } }")
+        .replace("values = [5, 10, 20]", "spread = { uniform = { from = 5, to = 20 } }")
+        .replace(
+            "range = { from = 1.4, to = 1.6, count = 2 }",
+            "spread = { normal = { mean = 1.5, std_dev = 0.05, from = 1.4 } }",
+        )
+        + "[[check]]\nmeasure = \"exit.efficiency\"\nmin = 0.865\n";
+    let place = study(&text);
+    let output = place.run("batch study.toml -o out");
+    assert_eq!(code(&output), 1, "{}", errors(&output));
+    let summary: Value =
+        serde_json::from_slice(&fs::read(place.path("out/study.json")).unwrap()).unwrap();
+    let all = &summary["analysis"]["failures"][0];
+    let count = |name: &str| all[name].as_u64().unwrap();
+    assert_eq!(count("passed") + count("failed") + count("undecided"), 24);
+    let fails =
+        rows(&place, "out").iter().filter(|row| row["check exit.efficiency"] == "failed").count();
+    assert_eq!(fails as u64, count("failed"));
+    let indices = summary["analysis"]["sensitivities"][0]["indices"].as_array().unwrap().clone();
+    // Fresnel's losses grow with the index, and a clear rod does not mind its length.
+    let index = indices.iter().find(|own| own["parameter"] == "index").unwrap();
+    assert!(index["value"].as_f64().unwrap() < -0.8, "{index}");
+    assert!(place.path("out/distribution.exit.efficiency.png").exists());
+}
+
+#[test]
+fn tables_choices_and_whole_reports() {
+    let text = STUDY
+        .replace(
+            "plan = \"grid\"",
+            "plan = { list = { file = \"designs.csv\" } }\nkeep = \"reports\"",
+        )
+        .replace("values = [5, 10, 20]\n", "")
+        .replace(
+            "range = { from = 1.4, to = 1.6, count = 2 }",
+            "choices = { light = 1.4, dense = 1.6 }",
+        );
+    let place = study(&text);
+    fs::write(place.path("designs.csv"), "index, length\nlight, 5\n,7.5\ndense,\n").unwrap();
+    place.good("batch study.toml -o out");
+    let rows = rows(&place, "out");
+    let row = |place: usize| [rows[place]["length_mm"].as_str(), rows[place]["index"].as_str()];
+    // Empty cells are as in the scene.
+    assert_eq!([row(0), row(1), row(2)], [["5", "light"], ["7.5", "1.49"], ["10", "dense"]]);
+    assert!(place.path("out/designs/0003/report.md").exists());
+
+    fs::write(place.path("designs.csv"), "index,lenght\nheavy,5\n").unwrap();
+    let said = place.bad(2, "batch study.toml -o bad");
+    assert!(said.contains("designs.csv:1") && said.contains("lenght"), "{said}");
+    fs::write(place.path("designs.csv"), "index,length\nlight,5\nheavy,five\nlight\n").unwrap();
+    let said = place.bad(2, "batch study.toml -o bad");
+    assert!(said.contains("heavy") || said.contains("another number of cells"), "{said}");
+    assert!(!place.path("bad").exists());
+}
+
+#[test]
+fn bad_studies_are_refused_with_the_line_to_change_and_write_nothing() {
+    for (from, to, words) in [
+        ("plan = \"grid\"", "plan = \"gird\"", "grid"),
+        ("length_mm\"]", "lenght_mm\"]", "length_mm"),
+        ("media.acrylic.index\"]", "media.acrylic.\"]", "no dotted key"),
+        ("values = [5, 10, 20]", "", "has no values"),
+        ("values = [5, 10, 20]", "values = [5]\nchoices = { a = 1 }", "given twice"),
+        ("values = [5, 10, 20]", "spread = { uniform = { from = 2, to = 1 } }", "not below"),
+        ("scene = \"rod.toml\"", "scene = \"rood.toml\"", "rood.toml"),
+        ("\"exit.uniformity_min_avg\"", "\"exit.uniformity_minavg\"", "exit.uniformity_min_avg"),
+        ("\"exit.uniformity_min_avg\"", "\"exot.uniformity_min_avg\"", "names no sensor"),
+        (
+            "[ranking]\nmeasure = \"exit.efficiency\"",
+            "[ranking]\nmeasure = \"exit.flux\"",
+            "none of `measures`",
+        ),
+        ("paths = 20_000", "paths = 0", "at least 1"),
+        ("count = 2", "count = 1", "out of range"),
+        ("unit = \"mm\"", "units = \"mm\"", "unit"),
+        ("lumiduct_study = 1", "lumiduct_study = 2", "version 2"),
+        ("lumiduct_study = 1", "lumiduct = 1", "this is a scene"),
+        ("[run]", "[set]\n\"run.seed\" = 3\n[run]", "under `run` of the study"),
+    ] {
+        let text = STUDY.replace(from, to);
+        assert_ne!(text, STUDY, "{from}");
+        let place = study(&text);
+        let said = place.bad(2, "batch study.toml");
+        assert!(said.contains(words), "{to}: no {words} in {said}");
+        assert!(!place.path("reports").exists(), "{to}");
+    }
+}

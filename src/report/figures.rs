@@ -252,9 +252,9 @@ pub fn scene_picture(title: &str, scene: &Scene, tracks: &[Track]) -> Result<Vec
         .map(|track| RayPath {
             points: track.points.iter().map(|point| shown(to_plane(*point))).collect(),
             end: match track.end {
-                TrackEnd::Absorbed => RayEnd::Absorbed,
+                TrackEnd::Absorbed(_) => RayEnd::Absorbed,
                 TrackEnd::Escaped => RayEnd::Escaped,
-                TrackEnd::Cut | TrackEnd::Leaked => RayEnd::Lost,
+                TrackEnd::Faded | TrackEnd::Cut | TrackEnd::Leaked => RayEnd::Lost,
             },
         })
         .collect();

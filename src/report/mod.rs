@@ -17,6 +17,7 @@ mod recipe;
 mod record;
 mod summary;
 mod terminal;
+mod words;
 
 pub use compare::{
     Comparison, Contestant, Row, Sample, Truth, comparison_files, comparison_table, rows,

@@ -18,7 +18,7 @@ use crate::report::{
 };
 use crate::scene::plan::{Request, RunPlan};
 use crate::transport::{
-    BLIND_PATHS, Findings, Interrupt, Run, blind_sensors, invisible, scatterers, tracks,
+    BLIND_PATHS, Findings, Interrupt, Run, Track, blind_sensors, invisible, scatterers, tracks,
 };
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -242,7 +242,15 @@ pub fn compose(job: &Job, findings: &Findings, stop: Stop) -> Report {
         measures,
         checks,
         warnings,
+        drawing: report::drawing(&job.scene, &shown_tracks(job, REPORT_PATHS)),
     }
+}
+
+/// Paths that a report draws.
+const REPORT_PATHS: usize = 60;
+
+fn shown_tracks(job: &Job, count: usize) -> Vec<Track> {
+    tracks(&job.scene, job.run.seed, job.run.bounce_limit, count)
 }
 
 /// How gathering was set, in words; empty where nothing was gathered.
@@ -377,8 +385,7 @@ pub fn check(
     // The default name belongs to this program: it is drawn anew at every check.
     let (picture, existing) =
         picture.map_or((&*default, Existing::Replace), |path| (path, existing));
-    let tracks = tracks(&job.scene, job.run.seed, job.run.bounce_limit, CHECK_PATHS);
-    let bytes = report::scene_picture(&job.title, &job.scene, &tracks)?;
+    let bytes = report::scene_picture(&job.title, &job.scene, &shown_tracks(&job, CHECK_PATHS))?;
     write_whole(picture, &bytes, existing)?;
     let text = format!("{}\n{}picture: {}\n", job.title, inventory(&job.scene), picture.display());
     Ok(Checked { text, warnings: job.warnings })

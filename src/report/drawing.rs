@@ -4,7 +4,7 @@
 
 use crate::math::Aabb;
 use crate::scene::{
-    EmitSide, Emitter, FaceId, Facets, Fineness, Owner, Scene, SensorKind, SourceId, shape_facets,
+    Emitter, FaceId, Facets, Fineness, Owner, Scene, SensorKind, SourceId, shape_facets,
 };
 use crate::transport::{Track, TrackEnd};
 use glam::DVec3;
@@ -188,7 +188,7 @@ fn sources(scene: &Scene, deviation: f64) -> Vec<DrawnFace> {
     for source in &scene.sources {
         let mut facets = Facets::default();
         match &source.emitter {
-            Emitter::Surface { shapes, side: EmitSide::Front | EmitSide::Back, frame: _ } => {
+            Emitter::Surface { shapes, .. } => {
                 shapes.iter().for_each(|(shape, _)| facets.append(shape_facets(shape, deviation)));
             }
             Emitter::Line { frame, length } => {

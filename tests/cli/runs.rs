@@ -61,6 +61,28 @@ fn the_page_for_browsers_names_every_measure_and_is_one_small_file() {
 }
 
 #[test]
+fn the_page_for_browsers_draws_60_paths_by_where_they_end() {
+    let place = Place::new();
+    place.good("run rod.toml -o out -q");
+    let page = fs::read_to_string(place.path("out/report.html")).unwrap();
+    let data = page.split("id=\"data\">").nth(1).unwrap().split("</script>").next().unwrap();
+    let data: Value = serde_json::from_str(data).unwrap();
+    let plots = data["plots"].as_array().unwrap();
+    let scene = plots.iter().find(|plot| plot["plot"] == "scene").unwrap();
+    let groups = scene["groups"].as_array().unwrap();
+    let count = |name: &str| {
+        let group = groups.iter().find(|group| group["name"] == name);
+        group.map_or(0, |group| group["count"].as_u64().unwrap())
+    };
+    // Nothing absorbs: light leaves by the exit, or by another way past the sphere around everything.
+    assert_eq!(count("counted by exit") + count("counted by far"), 60, "{groups:?}");
+    assert!((40..60).contains(&count("counted by exit")), "some 85 % of the flux: {groups:?}");
+    let faces = scene["faces"].as_array().unwrap();
+    let names: Vec<&str> = faces.iter().map(|face| face["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["rod.wall", "rod.entry", "rod.exit", "led"]);
+}
+
+#[test]
 fn numbers_in_summary_and_balance_make_sense() {
     let place = Place::new();
     place.good("run rod.toml -o out -q");

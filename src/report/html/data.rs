@@ -5,8 +5,10 @@
 use crate::measure::{Axes, Balance, IntensityTable, Measure, SensorMap};
 use crate::report::csv::map_words;
 use crate::report::drawing::{Drawing, Fate};
+use crate::report::html::coarse::{coarse, joined};
 use crate::report::png::{ErrorForm, LinePlot, Look, PolarPlot, Scale, SeriesForm};
 use glam::DVec3;
+use ndarray::Array2;
 use serde_json::{Value, json};
 
 /// Significant digits of numbers.
@@ -36,7 +38,7 @@ fn numbers<'a>(values: impl IntoIterator<Item = &'a f64>, digits: i32) -> Value 
     values.into_iter().map(|value| number(*value, digits)).collect()
 }
 
-/// Values with a digit more than their errors leave, and their errors.
+/// Values, and their errors with fewer digits.
 fn with_errors<'a>(values: impl Iterator<Item = (&'a f64, &'a f64)>) -> [Value; 2] {
     let (mut shown, mut errors) = (Vec::new(), Vec::new());
     for (value, error) in values {
@@ -46,30 +48,96 @@ fn with_errors<'a>(values: impl Iterator<Item = (&'a f64, &'a f64)>) -> [Value; 
     [shown, errors].map(Value::from)
 }
 
+/// The cells of a map, rows by columns.
+#[derive(Debug, Clone)]
+pub(crate) struct Cells {
+    /// Edges of the columns.
+    pub(crate) x: Vec<f64>,
+    /// Edges of the rows.
+    pub(crate) y: Vec<f64>,
+    /// Values; NaN where there is none.
+    pub(crate) values: Array2<f64>,
+    /// Standard errors.
+    pub(crate) errors: Array2<f64>,
+    /// Indicators of bias, where there may be one.
+    pub(crate) biases: Option<Array2<f64>>,
+}
+
+impl Cells {
+    /// What scripts draw a map from, but for its words.
+    fn data(&self) -> Value {
+        let side = joined(&self.values);
+        if side > 1 {
+            let mut data = coarse(self, side).data();
+            let remark = format!("each cell shown is the mean of {side} by {side}");
+            data["remark"] = remark.into();
+            return data;
+        }
+        let [values, errors] = with_errors(self.values.iter().zip(&self.errors));
+        let biases = self.biases.as_ref().map(|biases| numbers(biases, ERROR_DIGITS));
+        json!({
+            "plot": "map", "x": numbers(&self.x, DIGITS), "y": numbers(&self.y, DIGITS),
+            "values": values, "errors": errors, "biases": biases,
+        })
+    }
+}
+
+/// What a map is about.
+struct MapWords<'a> {
+    geometry: &'a str,
+    title: String,
+    quantity: &'a str,
+    unit: &'a str,
+    labels: [&'a str; 2],
+    names: [&'a str; 2],
+    units: [&'a str; 2],
+}
+
+fn with_words(mut data: Value, words: &MapWords<'_>) -> Value {
+    let MapWords { geometry, title, quantity, unit, labels, names, units } = words;
+    let entries = [
+        ("geometry", *geometry),
+        ("title", title.as_str()),
+        ("quantity", *quantity),
+        ("unit", *unit),
+        ("x_label", labels[0]),
+        ("y_label", labels[1]),
+        ("x_name", names[0]),
+        ("y_name", names[1]),
+        ("x_unit", units[0]),
+        ("y_unit", units[1]),
+    ];
+    for (key, text) in entries {
+        data[key] = text.into();
+    }
+    data
+}
+
 /// The map of a sensor.
 pub(crate) fn map(map: &SensorMap) -> Value {
-    let (geometry, x, y, names, units) = match &map.axes {
-        Axes::Cartesian { u_mm, v_mm } => ("cartesian", u_mm, v_mm, ["u", "v"], ["mm", "mm"]),
+    let plane = ["u in mm", "v in mm"];
+    let (x, y, geometry, labels, names, units) = match &map.axes {
+        Axes::Cartesian { u_mm, v_mm } => {
+            (u_mm, v_mm, "cartesian", plane, ["u", "v"], ["mm", "mm"])
+        }
         Axes::Angular { u_deg, v_deg } => {
-            ("angular", u_deg, v_deg, ["to the right", "up"], ["deg", "deg"])
+            let labels = ["to the right in deg", "up in deg"];
+            (u_deg, v_deg, "angular", labels, ["to the right", "up"], ["deg", "deg"])
         }
         Axes::Polar { radius_mm, sector_deg } => {
-            ("polar", sector_deg, radius_mm, ["azimuth", "radius"], ["deg", "mm"])
+            (sector_deg, radius_mm, "polar", plane, ["azimuth", "radius"], ["deg", "mm"])
         }
     };
-    let labels = match &map.axes {
-        Axes::Cartesian { .. } | Axes::Polar { .. } => ["u in mm", "v in mm"],
-        Axes::Angular { .. } => ["to the right in deg", "up in deg"],
+    let cells = Cells {
+        x: x.clone(),
+        y: y.clone(),
+        values: map.values.clone(),
+        errors: map.std_errors.clone(),
+        biases: map.biases.clone(),
     };
-    let [values, errors] = with_errors(map.values.iter().zip(&map.std_errors));
-    let biases = map.biases.as_ref().map(|biases| numbers(biases, ERROR_DIGITS));
-    json!({
-        "plot": "map", "geometry": geometry, "title": format!("{}: {}", map.sensor, map_words(map)),
-        "quantity": map.quantity, "unit": map.unit,
-        "x": numbers(x, DIGITS), "y": numbers(y, DIGITS), "x_label": labels[0], "y_label": labels[1],
-        "x_name": names[0], "y_name": names[1], "x_unit": units[0], "y_unit": units[1],
-        "values": values, "errors": errors, "biases": biases,
-    })
+    let title = format!("{}: {}", map.sensor, map_words(map));
+    let (quantity, unit) = (map.quantity.as_str(), map.unit.as_str());
+    with_words(cells.data(), &MapWords { geometry, title, quantity, unit, labels, names, units })
 }
 
 /// The intensity of a goniometer by both of its angles; `None` where it tells no azimuths apart.
@@ -77,16 +145,23 @@ pub(crate) fn directions(table: &IntensityTable) -> Option<Value> {
     if table.values.ncols() < 2 {
         return None;
     }
-    let [values, errors] = with_errors(table.values.iter().zip(&table.std_errors));
-    let biases = table.biases.as_ref().map(|biases| numbers(biases, ERROR_DIGITS));
-    Some(json!({
-        "plot": "map", "geometry": "directions", "title": format!("{}: intensity", table.sensor),
-        "quantity": "intensity", "unit": table.unit,
-        "x": numbers(&table.c_deg, DIGITS), "y": numbers(&table.gamma_deg, DIGITS),
-        "x_label": "C in deg", "y_label": "γ in deg",
-        "x_name": "C", "y_name": "γ", "x_unit": "deg", "y_unit": "deg",
-        "values": values, "errors": errors, "biases": biases,
-    }))
+    let cells = Cells {
+        x: table.c_deg.clone(),
+        y: table.gamma_deg.clone(),
+        values: table.values.clone(),
+        errors: table.std_errors.clone(),
+        biases: table.biases.clone(),
+    };
+    let words = MapWords {
+        geometry: "directions",
+        title: format!("{}: intensity", table.sensor),
+        quantity: "intensity",
+        unit: &table.unit,
+        labels: ["C in deg", "γ in deg"],
+        names: ["C", "γ"],
+        units: ["deg", "deg"],
+    };
+    Some(with_words(cells.data(), &words))
 }
 
 /// Intensity by angle.

@@ -3,6 +3,7 @@
 //! The parts are made here, as tables and as plots in plain data; `frame` makes a page of them, and `assets` draws. What is
 //! said about numbers is that of `words`, which `report.md` says as well.
 
+mod coarse;
 mod data;
 mod frame;
 

@@ -50,3 +50,23 @@ fn cube(point: DVec3, cell: f64) -> [i64; 3] {
     let I64Vec3 { x, y, z } = (point / cell).floor().as_i64vec3();
     [x, y, z]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formats::mesh::samples::{Normals, icosphere};
+    use crate::math::Frame;
+
+    #[test]
+    fn coarse_meshes_stay_as_they_are_and_fine_ones_keep_their_size_with_fewer_triangles() {
+        let of = |level: u32| {
+            let mesh = Mesh::new(&icosphere(3.0, level, Normals::None), &Frame::WORLD);
+            facets(&mesh, 0, 1e-3)
+        };
+        let coarse = of(2);
+        assert_eq!((coarse.points.len(), coarse.triangles.len()), (162, 320));
+        let fine = of(5);
+        assert!((500..=MOST_TRIANGLES).contains(&fine.triangles.len()), "{}", fine.triangles.len());
+        assert!(fine.points.iter().all(|point| (point.length() - 3.0).abs() < 1e-12));
+    }
+}

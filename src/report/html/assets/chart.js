@@ -13,6 +13,8 @@ function chartOf(data, scale, readout, { width, height }) {
   const svg = drawing(width, height, data.title);
   const area = { left: 78, top: 12, width: width - 96, height: height - 64 };
   const xs = data.series.flatMap((one) => one.x);
+  // A line beside the sensor cuts nothing.
+  if (xs.length === 0) xs.push(0, 1);
   const last = scale === "linear" && data.linear_to ? data.linear_to : Math.max(...xs);
   const x = makeAxis(Math.min(...xs), last, data.x_scale, data.x_label);
   const tops = data.series.flatMap((one) => one.y.map((value, i) => value === null ? null : value + (scale === "log" ? 0 : one.error[i] ?? 0)));

@@ -17,6 +17,7 @@ function drawMap(figure, data) {
   row.append(body, section);
   section.hidden = true;
   figure.append(sectionReadout);
+  if (data.remark) controls.append(make("span", { class: "hint" }, data.remark));
   const geometry = geometryOf(data);
   const map = { data, geometry, line: firstLine(data, geometry), cell: -1 };
   scaleSwitch(controls, (scale) => {

@@ -24,7 +24,7 @@ use crate::report::{
     self, CheckResult, Existing, Folder, Recipe, Report, RunFacts, SceneFacts, TargetFacts, Written,
 };
 use crate::scene::plan::RunPlan;
-use crate::transport::{Findings, Interrupt, Run};
+use crate::transport::{Findings, Interrupt, Run, Track, tracks};
 use std::convert::Infallible;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -199,7 +199,15 @@ pub fn compose(job: &Job, findings: &Findings, stop: Stop) -> Report {
         measures,
         checks,
         warnings,
+        drawing: report::drawing(&job.scene, &shown_tracks(job, REPORT_PATHS)),
     }
+}
+
+/// Paths that a report draws.
+const REPORT_PATHS: usize = 60;
+
+fn shown_tracks(job: &Job, count: usize) -> Vec<Track> {
+    tracks(&job.scene, job.run.seed, job.run.bounce_limit, count)
 }
 
 /// How gathering was set, in words; empty where nothing was gathered.

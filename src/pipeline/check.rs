@@ -2,9 +2,8 @@
 
 use crate::error::{Diagnostic, Result};
 use crate::input::Settings;
-use crate::pipeline::prepare;
+use crate::pipeline::{prepare, shown_tracks};
 use crate::report::{self, Existing, inventory, write_whole};
-use crate::transport::tracks;
 use std::path::{Path, PathBuf};
 
 /// Paths that a check draws.
@@ -31,8 +30,7 @@ pub fn check(
     // The default name belongs to this program: it is drawn anew at every check.
     let (picture, existing) =
         picture.map_or((&*default, Existing::Replace), |path| (path, existing));
-    let tracks = tracks(&job.scene, job.run.seed, job.run.bounce_limit, CHECK_PATHS);
-    let bytes = report::scene_picture(&job.title, &job.scene, &tracks)?;
+    let bytes = report::scene_picture(&job.title, &job.scene, &shown_tracks(&job, CHECK_PATHS))?;
     write_whole(picture, &bytes, existing)?;
     let text = format!("{}\n{}picture: {}\n", job.title, inventory(&job.scene), picture.display());
     Ok(Checked { text, warnings: job.warnings })

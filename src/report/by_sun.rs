@@ -6,10 +6,10 @@
 use crate::error::Result;
 use crate::measure::Measure;
 use crate::report::csv::table;
-use crate::report::markdown::quantity;
 use crate::report::png::{
     ErrorForm, LinePlot, Look, Scale, Series, SeriesForm, SeriesPoint, line_plot,
 };
+use crate::report::words::quantity;
 use crate::report::{OutputFile, Report};
 
 /// Suns that make a table.
@@ -52,24 +52,41 @@ pub(crate) fn files(report: &Report) -> Result<Vec<OutputFile>> {
         if !lines.is_empty() {
             files.push(numbers(&paths.sensor, &lines)?);
             let name = format!("{}.transmission.png", paths.sensor);
-            files.push(OutputFile { name, bytes: plot(&paths.sensor, &lines)? });
+            files.push(OutputFile { name, bytes: line_plot(&plot(&paths.sensor, &lines))? });
         }
     }
     Ok(files)
 }
 
+/// What stands before the rows of [`BySun`].
+pub(crate) const HEAD: &str = "Transmission, flux that leaves over flux that enters: the tube transmission efficiency of CIE 173:2012.";
+
+/// The transmission of a sensor by the elevation of the sun.
+pub(crate) struct BySun {
+    /// Source, elevation and transmission.
+    pub(crate) rows: Vec<[String; 3]>,
+    /// The same as a plot.
+    pub(crate) plot: LinePlot,
+}
+
+/// The transmission of a sensor; `None` without several suns.
+pub(crate) fn by_sun(report: &Report, sensor: &str) -> Option<BySun> {
+    let lines = lines(report, sensor);
+    let row = |Line { source, elevation, transmission }: &Line<'_>| {
+        let elevation = elevation.map_or(String::new(), |degrees| format!("{degrees:.2}°"));
+        [(*source).to_owned(), elevation, quantity(transmission)]
+    };
+    (!lines.is_empty())
+        .then(|| BySun { rows: lines.iter().map(row).collect(), plot: plot(sensor, &lines) })
+}
+
 /// The part of a sensor's section about it; empty without several suns.
 pub(crate) fn section(report: &Report, sensor: &str) -> String {
-    let lines = lines(report, sensor);
-    if lines.is_empty() {
-        return String::new();
-    }
-    let mut text = "Transmission, flux that leaves over flux that enters: the tube transmission efficiency of CIE 173:2012.\n\n\
-                    | source | elevation of the sun | transmission |\n|---|--:|---|\n"
-        .to_owned();
-    for Line { source, elevation, transmission } in &lines {
-        let elevation = elevation.map_or(String::new(), |degrees| format!("{degrees:.2}°"));
-        text += &format!("| {source} | {elevation} | {} |\n", quantity(transmission));
+    let Some(found) = by_sun(report, sensor) else { return String::new() };
+    let mut text =
+        format!("{HEAD}\n\n| source | elevation of the sun | transmission |\n|---|--:|---|\n");
+    for row in &found.rows {
+        text += &format!("| {} |\n", row.join(" | "));
     }
     text + "\n"
 }
@@ -85,7 +102,7 @@ fn numbers(sensor: &str, lines: &[Line<'_>]) -> Result<OutputFile> {
 }
 
 /// Suns as dots with error bars on a line, everything else as a level dashed line.
-fn plot(sensor: &str, lines: &[Line<'_>]) -> Result<Vec<u8>> {
+fn plot(sensor: &str, lines: &[Line<'_>]) -> LinePlot {
     let point = |x: f64, line: &Line<'_>| SeriesPoint {
         x,
         y: line.transmission.value,
@@ -116,7 +133,7 @@ fn plot(sensor: &str, lines: &[Line<'_>]) -> Result<Vec<u8>> {
         look: Look::Solid(0),
     };
     let dots = Series { name: String::new(), form: SeriesForm::Dots, ..curve.clone() };
-    line_plot(&LinePlot {
+    LinePlot {
         title: format!("{sensor}: transmission by the elevation of the sun"),
         subtitle: "flux that leaves over flux that enters (CIE 173), with standard errors".into(),
         x_label: "elevation of the sun in deg".into(),
@@ -124,5 +141,5 @@ fn plot(sensor: &str, lines: &[Line<'_>]) -> Result<Vec<u8>> {
         x_scale: Scale::Linear,
         y_scale: Scale::Linear,
         series: [curve, dots].into_iter().chain(others).collect(),
-    })
+    }
 }

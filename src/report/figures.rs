@@ -26,11 +26,11 @@ pub(crate) fn files(report: &Report) -> Result<Vec<OutputFile>> {
     for table in &measures.intensities {
         files.push(OutputFile {
             name: format!("{}.intensity.png", table.sensor),
-            bytes: polar_picture(table)?,
+            bytes: polar_plot(&intensity_plot(table))?,
         });
     }
     for paths in measures.sensor_paths.iter().filter(|paths| !paths.depths.is_empty()) {
-        let bytes = bounce_picture(paths, measures.unit.flux())?;
+        let bytes = line_plot(&bounce_plot(paths, measures.unit.flux(), BOUNCES_SHOWN))?;
         files.push(OutputFile { name: format!("{}.bounces.png", paths.sensor), bytes });
     }
     let bytes = balance_picture(&measures.balance, measures.source_flux, measures.unit.flux())?;
@@ -102,7 +102,7 @@ fn ends(edges: &[f64]) -> [f64; 2] {
 }
 
 /// Curves through the planes C0-C180 and C90-C270, or the mean over C of a goniometer without sectors.
-fn polar_picture(table: &IntensityTable) -> Result<Vec<u8>> {
+pub(crate) fn intensity_plot(table: &IntensityTable) -> PolarPlot {
     let curves = if !table.planes.is_empty() {
         let curve = |plane: &PlaneCurve| Curve {
             name: format!("C{} to C{}", plane.c_deg, plane.c_deg + 180.0),
@@ -127,25 +127,26 @@ fn polar_picture(table: &IntensityTable) -> Result<Vec<u8>> {
     let distance = table
         .radius_mm
         .map_or("far field".to_owned(), |radius| format!("at {} mm", format_value(radius)));
-    polar_plot(&PolarPlot {
+    PolarPlot {
         title: format!("{}: intensity", table.sensor),
         subtitle: distance,
         unit: table.unit.clone(),
         pole: Pole::Up,
         curves,
-    })
+    }
 }
 
 /// Share of the flux that the histogram of bounces shows; a few paths go on for thousands.
-const BOUNCES_SHOWN: f64 = 0.995;
+pub(crate) const BOUNCES_SHOWN: f64 = 0.995;
 
-fn bounce_picture(paths: &SensorPaths, unit: &str) -> Result<Vec<u8>> {
+/// The histogram of bounces of a sensor, up to where it has brought the given share of its flux.
+pub(crate) fn bounce_plot(paths: &SensorPaths, unit: &str, share: f64) -> LinePlot {
     let total: f64 = paths.depths.iter().map(|bin| bin.flux).sum();
     let mut so_far = 0.0;
     let shown = paths.depths.iter().take_while(|bin| {
         let before = so_far;
         so_far += bin.flux;
-        before < BOUNCES_SHOWN * total
+        before < share * total
     });
     let points: Vec<SeriesPoint> = shown
         .map(|bin| {
@@ -160,11 +161,11 @@ fn bounce_picture(paths: &SensorPaths, unit: &str) -> Result<Vec<u8>> {
         .collect();
     let deepest = paths.depths.last().map_or(0, |bin| bin.to);
     let shown_to = points.len().checked_sub(1).map_or(0, |last| paths.depths[last].to);
-    line_plot(&LinePlot {
+    LinePlot {
         title: format!("{}: flux by number of bounces", paths.sensor),
         subtitle: format!(
             "{shown_to} bounces and less bring {}; the deepest path met {deepest} or fewer",
-            format_percent(BOUNCES_SHOWN)
+            format_percent(share)
         ),
         x_label: "interfaces met".into(),
         y_label: format!("flux in {unit}"),
@@ -177,7 +178,7 @@ fn bounce_picture(paths: &SensorPaths, unit: &str) -> Result<Vec<u8>> {
             errors: ErrorForm::Hidden,
             look: Look::InTurn,
         }],
-    })
+    }
 }
 
 /// Colours of the kinds of losses, as places in the palette.
@@ -252,9 +253,9 @@ pub fn scene_picture(title: &str, scene: &Scene, tracks: &[Track]) -> Result<Vec
         .map(|track| RayPath {
             points: track.points.iter().map(|point| shown(to_plane(*point))).collect(),
             end: match track.end {
-                TrackEnd::Absorbed => RayEnd::Absorbed,
+                TrackEnd::Absorbed(_) => RayEnd::Absorbed,
                 TrackEnd::Escaped => RayEnd::Escaped,
-                TrackEnd::Cut | TrackEnd::Leaked => RayEnd::Lost,
+                TrackEnd::Faded | TrackEnd::Cut | TrackEnd::Leaked => RayEnd::Lost,
             },
         })
         .collect();

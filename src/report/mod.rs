@@ -6,9 +6,11 @@
 mod by_sun;
 mod compare;
 mod csv;
+mod drawing;
 mod figures;
 mod film;
 mod folder;
+mod html;
 mod inventory;
 mod markdown;
 mod mesh;
@@ -18,10 +20,12 @@ mod record;
 pub mod study;
 mod summary;
 mod terminal;
+mod words;
 
 pub use compare::{
     Comparison, Contestant, Row, Sample, Truth, comparison_files, comparison_table, rows,
 };
+pub use drawing::{Drawing, drawing};
 pub use figures::scene_picture;
 pub use film::film_tables;
 pub use folder::{Existing, Folder, Written, remove_if_there, sweep, write_whole};
@@ -59,8 +63,10 @@ pub fn files(report: &Report, scene_text: &str) -> Result<Vec<OutputFile>> {
     files.push(OutputFile::text(format!("{}.toml", report.scene.name), scene_text.to_owned()));
     let names: Vec<&str> = files.iter().map(|file| file.name.as_str()).collect();
     let page = markdown::markdown(report, &names);
+    let html = html::html(report)?;
     let summary = summary::json(report, &names)?;
     files.push(OutputFile::text("report.md", page));
+    files.push(OutputFile::text("report.html", html));
     files.push(OutputFile::text("summary.json", summary));
     Ok(files)
 }

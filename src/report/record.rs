@@ -2,6 +2,7 @@
 
 use crate::measure::{self, GatheredFacts, LostPaths, Measures, Status, Verdict};
 use crate::number::{format_exact, format_percent, format_with_error};
+use crate::report::Drawing;
 use crate::scene::plan::{Check, GatherPlan, Request, Schedule, StopRules, Target};
 use crate::transport::{GROUPS, GatherSettings, Leak};
 use glam::DVec3;
@@ -20,6 +21,9 @@ pub struct Report {
     pub checks: Vec<CheckResult>,
     /// Remarks on the scene and on the results.
     pub warnings: Vec<String>,
+    /// The scene to look at: pictures alone, and no part of the record for programs.
+    #[serde(skip)]
+    pub drawing: Drawing,
 }
 
 /// The scene of a report.

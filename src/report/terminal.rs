@@ -1,7 +1,7 @@
 //! The few lines that a run prints when it is done.
 
 use crate::measure::{Measures, Outcome};
-use crate::report::markdown::quantity;
+use crate::report::words::quantity;
 use crate::report::{Report, Written};
 use crate::scene::plan::Estimator;
 use std::path::Path;

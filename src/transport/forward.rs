@@ -3,6 +3,7 @@
 //! Every photon carries flux; sensors add it up per cell. What surfaces and media take, what escapes and what is cut
 //! is counted independently, so that the balance can be checked, not enforced.
 
+mod shown;
 mod surfaces;
 mod watcher;
 

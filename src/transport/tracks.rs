@@ -2,10 +2,10 @@
 
 use crate::math::Aabb;
 use crate::rng::Sampler;
-use crate::scene::{Ray, Scene, SourceId};
-use crate::transport::{Event, Path, walk};
+use crate::scene::{FaceId, Ray, Scene, SensorId, SourceId};
+use crate::transport::forward::Forward;
+use crate::transport::{Event, Path};
 use glam::DVec3;
-use std::ops::ControlFlow;
 
 /// Stream of random numbers of the paths that are drawn.
 const STREAM: u64 = 2;
@@ -17,10 +17,12 @@ const BOUNCES_DRAWN: u32 = 500;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TrackEnd {
     /// A face took the rest of it.
-    Absorbed,
+    Absorbed(FaceId),
     /// It left the scene.
     Escaped,
-    /// It was cut by the bounce limit or by roulette, or goes on undrawn.
+    /// Faces and media had taken most of it, and roulette the rest.
+    Faded,
+    /// It was cut by the bounce limit, or goes on undrawn.
     Cut,
     /// It was lost through a hole in the geometry.
     Leaked,
@@ -29,10 +31,14 @@ pub enum TrackEnd {
 /// A path as a chain of points.
 #[derive(Debug, Clone)]
 pub struct Track {
+    /// Where it starts.
+    pub source: SourceId,
     /// Its start, its vertices, and a last point a little outside for one that escaped; mm.
     pub points: Vec<DVec3>,
     /// How it ended.
     pub end: TrackEnd,
+    /// The sensors that counted it, the latest last.
+    pub counted_by: Vec<SensorId>,
 }
 
 /// Traces `count` paths, the sources in turn.
@@ -40,33 +46,36 @@ pub fn tracks(scene: &Scene, seed: u64, bounce_limit: u32, count: usize) -> Vec<
     if scene.sources.is_empty() {
         return Vec::new();
     }
+    let forward = Forward::new(scene, seed, bounce_limit.min(BOUNCES_DRAWN), 1);
     let source = |index: usize| SourceId::new(index % scene.sources.len());
-    (0..count).map(|index| track(scene, source(index), seed, bounce_limit, index)).collect()
+    (0..count).map(|index| track(&forward, source(index), index)).collect()
 }
 
-fn track(scene: &Scene, source: SourceId, seed: u64, bounce_limit: u32, index: usize) -> Track {
-    let mut sampler = Sampler::for_path(seed, STREAM, index as u64);
+fn track(forward: &Forward<'_>, source: SourceId, index: usize) -> Track {
+    let scene = forward.scene;
+    let mut sampler = Sampler::for_path(forward.seed, STREAM, index as u64);
     let emitted = scene.sources[source.index()].emit(scene, &mut sampler);
-    let mut track = Track { points: vec![emitted.ray.origin()], end: TrackEnd::Cut };
+    let (mut points, mut end) = (vec![emitted.ray.origin()], TrackEnd::Cut);
     let path = Path::emitted(scene, source, emitted);
-    let limit = bounce_limit.min(BOUNCES_DRAWN);
-    walk(scene, path, limit, &mut sampler, &mut |path: &Path, event: Event<'_>| {
-        match event {
-            Event::Arrive(vertex) => track.points.push(vertex.point),
-            Event::Collide(collision) => track.points.push(collision.point),
-            Event::Absorbed(_) => track.end = TrackEnd::Absorbed,
-            Event::Escaped(_) => {
-                // Out of the scene, and a stub to show where it went.
-                let way = way_out(&scene.bounds, &path.ray) + 0.05 * scene.bounds.diagonal();
-                track.points.push(path.ray.at(way));
-                track.end = TrackEnd::Escaped;
-            }
-            Event::Leaked(..) => track.end = TrackEnd::Leaked,
-            Event::Travel(_) | Event::Depart(..) | Event::Roulette(_) | Event::Cut(_) => {}
+    let mut see = |path: &Path, event: &Event<'_>| match event {
+        Event::Arrive(vertex) => points.push(vertex.point),
+        Event::Collide(collision) => points.push(collision.point),
+        Event::Absorbed(vertex) => end = TrackEnd::Absorbed(vertex.interface.acting.face),
+        Event::Escaped(_) => {
+            // Out of the scene, and a stub to show where it went.
+            let way = way_out(&scene.bounds, &path.ray) + 0.05 * scene.bounds.diagonal();
+            points.push(path.ray.at(way));
+            end = TrackEnd::Escaped;
         }
-        ControlFlow::Continue(())
-    });
-    track
+        Event::Leaked(..) => end = TrackEnd::Leaked,
+        // A survivor gains, and goes on.
+        Event::Roulette(taken) => {
+            end = if *taken > 0.0 { TrackEnd::Faded } else { TrackEnd::Cut };
+        }
+        Event::Travel(_) | Event::Depart(..) | Event::Cut(_) => {}
+    };
+    let counted_by = forward.show(source, path, &mut sampler, &mut see);
+    Track { source, points, end, counted_by }
 }
 
 /// How far it is along a ray to where it leaves a box, mm; 0 from outside of it.

@@ -18,6 +18,7 @@ fn a_run_writes_every_file_of_its_report() {
         "far.intensity.csv",
         "far.intensity.png",
         "measures.csv",
+        "report.html",
         "report.md",
         "rod.toml",
         "summary.json",
@@ -38,6 +39,47 @@ fn a_run_writes_every_file_of_its_report() {
     for name in listed.as_array().unwrap() {
         assert!(expected.contains(&name.as_str().unwrap()), "{name} is named but not there");
     }
+}
+
+/// Bytes of a page with two sensors and their plots; most of it is the scene and the scripts.
+const PAGE_BYTES: usize = 300_000;
+
+#[test]
+fn the_page_for_browsers_names_every_measure_and_is_one_small_file() {
+    let place = Place::with("[[check]]\nmeasure = \"exit.efficiency\"\nmin = 0.99\n");
+    assert_eq!(code(&place.run("run rod.toml -o out -q")), 1);
+    let page = fs::read_to_string(place.path("out/report.html")).unwrap();
+    for name in place.summary("out")["measures"].as_object().unwrap().keys() {
+        assert!(page.contains(&format!("<td>{name}</td>")), "{name} is not on the page");
+    }
+    assert!(page.contains(r#"<p class="verdict bad">1 of 1 checks missed</p>"#));
+    assert!(page.len() < PAGE_BYTES, "{} bytes", page.len());
+    // Only pictures of the folder are named, and only for readers without scripts.
+    for (at, _) in page.match_indices("src=") {
+        assert!(page[..at].ends_with("<noscript><img "), "something is loaded");
+    }
+}
+
+#[test]
+fn the_page_for_browsers_draws_60_paths_by_where_they_end() {
+    let place = Place::new();
+    place.good("run rod.toml -o out -q");
+    let page = fs::read_to_string(place.path("out/report.html")).unwrap();
+    let data = page.split("id=\"data\">").nth(1).unwrap().split("</script>").next().unwrap();
+    let data: Value = serde_json::from_str(data).unwrap();
+    let plots = data["plots"].as_array().unwrap();
+    let scene = plots.iter().find(|plot| plot["plot"] == "scene").unwrap();
+    let groups = scene["groups"].as_array().unwrap();
+    let count = |name: &str| {
+        let group = groups.iter().find(|group| group["name"] == name);
+        group.map_or(0, |group| group["count"].as_u64().unwrap())
+    };
+    // Nothing absorbs: light leaves by the exit, or by another way past the sphere around everything.
+    assert_eq!(count("counted by exit") + count("counted by far"), 60, "{groups:?}");
+    assert!((40..60).contains(&count("counted by exit")), "some 85 % of the flux: {groups:?}");
+    let faces = scene["faces"].as_array().unwrap();
+    let names: Vec<&str> = faces.iter().map(|face| face["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["rod.wall", "rod.entry", "rod.exit", "led"]);
 }
 
 #[test]

@@ -23,6 +23,7 @@ pub use cross_section::{CrossSection, Outline, RayEnd, RayPath, cross_section};
 pub use heat_map::{HeatMap, heat_map};
 pub use line_plot::{ErrorForm, LinePlot, Look, Series, SeriesForm, SeriesPoint, line_plot};
 pub use palette::ColourMap;
+pub(crate) use palette::{Rgb, series_ink};
 pub use polar_plot::{Curve, PolarPlot, Pole, polar_plot};
 pub use scatter_matrix::{ScatterColumn, ScatterMatrix, scatter_matrix};
 

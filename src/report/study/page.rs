@@ -3,12 +3,12 @@
 use crate::input::{Best, Domain, Setting};
 use crate::measure::Outcome;
 use crate::number::{format_percent, format_value, format_with_error};
-use crate::report::markdown::quantity;
 use crate::report::study::figures::picture_words;
 use crate::report::study::{
     DesignOutcome, DesignRecord, Estimate, Pairing, ParameterFacts, PlanFacts, Sensitivity,
     SensitivityMethod, StudyReport,
 };
+use crate::report::words::quantity;
 use std::fmt::Write;
 
 /// Designs that are listed one by one; `study.csv` has all.

@@ -2,10 +2,10 @@
 
 use crate::error::Result;
 use crate::input::Setting;
-use crate::measure::Outcome;
 use crate::report::OutputFile;
 use crate::report::csv::table;
 use crate::report::study::{DesignOutcome, DesignRecord, StudyReport};
+use crate::report::words::outcome_word;
 
 /// All tables of a study.
 pub(super) fn files(report: &StudyReport) -> Result<Vec<OutputFile>> {
@@ -60,14 +60,4 @@ fn row(report: &StudyReport, design: &DesignRecord) -> Vec<String> {
         DesignOutcome::Failed(reason) => reason.clone(),
     });
     cells
-}
-
-/// The outcome of a check in a word.
-pub(crate) fn outcome_word(outcome: Outcome) -> &'static str {
-    match outcome {
-        Outcome::Passed => "passed",
-        Outcome::Undecided => "undecided",
-        Outcome::Failed => "failed",
-        Outcome::Unknown => "unknown measure",
-    }
 }

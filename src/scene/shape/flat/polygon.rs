@@ -71,6 +71,11 @@ impl Polygon {
         &self.vertices
     }
 
+    /// Triangles that fill the polygon.
+    pub fn triangles(&self) -> &[[DVec2; 3]] {
+        &self.triangles
+    }
+
     /// Whether the polygon holds a point.
     #[inline]
     pub fn contains(&self, p: DVec2) -> bool {

@@ -6,7 +6,7 @@ use crate::scene::shape::ChartRect;
 use crate::scene::shape::flat::polygon::Polygon;
 use crate::scene::shape::wedge::Wedge;
 use glam::DVec2;
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 /// A part of a plane, lengths in mm.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,7 +55,41 @@ pub struct Holed {
     hole: Region,
 }
 
+impl Holed {
+    /// The region without its hole.
+    pub fn outline(&self) -> &Region {
+        &self.outline
+    }
+
+    /// The hole.
+    pub fn hole(&self) -> &Region {
+        &self.hole
+    }
+}
+
 impl Region {
+    /// Corners of the outer outline, counter-clockwise; `round` of them for a whole turn.
+    pub fn rim(&self, round: usize) -> Vec<DVec2> {
+        let turn = |part: usize, angle: f64| circle(angle / TAU * part as f64 / round as f64);
+        match self {
+            Self::Annulus { outer, .. } => (0..round).map(|i| *outer * turn(i, TAU)).collect(),
+            Self::Sector { outer, inner, wedge } => {
+                let arc = |radius: f64| (0..=round).map(move |i| radius * turn(i, wedge.angle()));
+                arc(*outer).chain(arc(*inner).rev()).collect()
+            }
+            Self::Ellipse { half_x, half_y } => {
+                let half = DVec2::new(*half_x, *half_y);
+                (0..round).map(|i| half * turn(i, TAU)).collect()
+            }
+            Self::Rectangle { half_x, half_y } => {
+                let corners = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)];
+                corners.map(|(x, y)| DVec2::new(x * half_x, y * half_y)).to_vec()
+            }
+            Self::Polygon(polygon) => polygon.vertices().to_vec(),
+            Self::Holed(holed) => holed.outline.rim(round),
+        }
+    }
+
     /// What is left of a region outside of a hole that lies within it.
     pub fn holed(outline: Self, hole: Self) -> Self {
         Self::Holed(Box::new(Holed { outline, hole }))
@@ -240,7 +274,6 @@ fn sector_overlap(radius: f64, wedge: &Wedge, polygon: &[DVec2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::f64::consts::TAU;
 
     fn regions() -> Vec<(Region, f64)> {
         let notched = [(0.0, 0.0), (2.0, -1.0), (2.5, 2.0), (1.0, 0.5), (-1.0, 2.0)];

@@ -1,0 +1,104 @@
+// Curves with error bars or bands, steps and dots, over one axis; values under the pointer.
+
+const WIDE = { width: 760, height: 380 };
+const NARROW = { width: 500, height: 340 };
+
+function drawChart(figure, data) {
+  const { controls, body, readout } = layOut(figure, "chart", "point at the plot for values; arrow keys step");
+  scaleSwitch(controls, (scale) => body.replaceChildren(...chartOf(data, scale, readout, WIDE)));
+}
+
+// The drawing of a chart and its legend. `scale` is that of the vertical axis.
+function chartOf(data, scale, readout, { width, height }) {
+  const svg = drawing(width, height, data.title);
+  const area = { left: 78, top: 12, width: width - 96, height: height - 64 };
+  const xs = data.series.flatMap((one) => one.x);
+  // A line beside the sensor cuts nothing.
+  if (xs.length === 0) xs.push(0, 1);
+  const last = scale === "linear" && data.linear_to ? data.linear_to : Math.max(...xs);
+  const x = makeAxis(Math.min(...xs), last, data.x_scale, data.x_label);
+  const tops = data.series.flatMap((one) => one.y.map((value, i) => value === null ? null : value + (scale === "log" ? 0 : one.error[i] ?? 0)));
+  const [low, high] = rangeOf(tops, scale);
+  const y = makeAxis(low, scale === "log" ? high * 1.3 : high * 1.05, scale, data.y_label);
+  const place = drawAxes(svg, area, x, y, "grid");
+  const clamp = ([a, b]) => [around(a), around(Math.min(Math.max(b, area.top), area.top + area.height))];
+  const at = (a, b) => clamp(scale === "log" && !(b > 0) ? [place(a, high)[0], 1e9] : place(a, b));
+  data.series.forEach((one, index) => drawSeries(svg, one, one.look ?? index, x, at));
+  followChart(svg, data, { x, at, area }, readout);
+  return [svg, legendOf(data.series)];
+}
+
+function drawSeries(svg, one, look, x, at) {
+  const colour = seriesColour(look);
+  const known = one.x.map((_, i) => i).filter((i) => one.y[i] !== null && one.x[i] <= x.to);
+  const error = (i) => one.error[i] ?? 0;
+  if (one.errors === "band" && known.length > 1) {
+    const upper = known.map((i) => at(one.x[i], one.y[i] + error(i)).join(" "));
+    const lower = known.map((i) => at(one.x[i], one.y[i] - error(i)).join(" ")).reverse();
+    svg.append(make("path", { d: `M${[...upper, ...lower].join("L")}z`, style: `fill: ${colour}; fill-opacity: 0.22` }));
+  }
+  if (one.errors === "bars") {
+    const bars = known.map((i) => `M${at(one.x[i], one.y[i] - error(i)).join(" ")}L${at(one.x[i], one.y[i] + error(i)).join(" ")}`);
+    svg.append(make("path", { d: bars.join(""), style: `stroke: ${colour}; stroke-width: 1.2` }));
+  }
+  const points = known.map((i) => at(one.x[i], one.y[i]));
+  if (one.form === "dots" || points.length === 1) {
+    points.forEach(([cx, cy]) => svg.append(make("circle", { cx, cy, r: 3.2, style: `fill: ${colour}` })));
+    return;
+  }
+  const dash = one.dashed ? DASHES[1] : DASHES[Math.floor(look / 7) % DASHES.length];
+  const style = `fill: none; stroke: ${colour}; stroke-width: 1.8; stroke-dasharray: ${dash}`;
+  svg.append(make("path", { d: one.form === "steps" ? stepsThrough(points) : `M${points.map((p) => p.join(" ")).join("L")}`, style }));
+}
+
+function stepsThrough(points) {
+  return points
+    .map(([x, y], i) => {
+      const middle = i === 0 ? x : (points[i - 1][0] + x) / 2;
+      return i === 0 ? `M${x} ${y}` : `H${around(middle)}V${y}`;
+    })
+    .join("") + `H${points.at(-1)?.[0] ?? 0}`;
+}
+
+// A line through the nearest points of all series, and their values in words.
+function followChart(svg, data, { x, at, area }, readout) {
+  const places = [...new Set(data.series.flatMap((one) => one.x))].filter((one) => one <= x.to).sort((a, b) => a - b);
+  const cursor = make("path", { class: "cursor" });
+  svg.append(cursor);
+  let here = -1;
+  const show = (index) => {
+    if (places.length === 0) return;
+    here = Math.min(Math.max(index, 0), places.length - 1);
+    const lines = [];
+    let marks = `M${at(places[here], 1)[0]} ${area.top}v${area.height}`;
+    for (const one of data.series) {
+      if (one.form === "dots" && !one.name) continue;
+      const i = nearestIndex(one.x, places[here]);
+      if (i < 0 || one.y[i] === null) continue;
+      const [cx, cy] = at(one.x[i], one.y[i]);
+      marks += `M${cx - 4} ${cy}a4 4 0 1 0 8 0a4 4 0 1 0 -8 0`;
+      const name = one.name && data.series.length > 1 ? `${one.name}: ` : "";
+      lines.push(name + quantity(one.y[i], one.error[i], one.bias?.[i], data.unit));
+    }
+    cursor.setAttribute("d", marks);
+    readout.textContent = `${data.x_label}: ${formatValue(places[here])}   ${lines.join("   ")}`;
+  };
+  svg.addEventListener("pointermove", (event) => {
+    const share = (pointerAt(svg, event)[0] - area.left) / area.width;
+    show(nearestIndex(places, x.value(Math.min(Math.max(share, 0), 1))));
+  });
+  svg.addEventListener("keydown", (event) => {
+    const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+    if (!step) return;
+    event.preventDefault();
+    show(here + step);
+  });
+}
+
+function nearestIndex(values, wanted) {
+  let best = -1;
+  values.forEach((value, i) => {
+    if (best < 0 || Math.abs(value - wanted) < Math.abs(values[best] - wanted)) best = i;
+  });
+  return best;
+}

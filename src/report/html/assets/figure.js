@@ -1,0 +1,93 @@
+// What all plots are made of: elements, controls, and the frame with its axes.
+
+const SVG = "http://www.w3.org/2000/svg";
+const SVG_NAMES = new Set(["svg", "g", "path", "line", "rect", "circle", "text", "image", "polyline", "title", "tspan"]);
+
+function make(name, attributes = {}, ...children) {
+  const element = SVG_NAMES.has(name) ? document.createElementNS(SVG, name) : document.createElement(name);
+  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
+  element.append(...children);
+  return element;
+}
+
+// A row of controls, a place for the plot, and a line that tells values.
+function layOut(figure, kind, hint) {
+  const parts = {
+    controls: make("div", { class: "controls" }),
+    body: make("div", { class: `plot ${kind}` }),
+    readout: make("output", { class: "readout" }),
+  };
+  if (hint) parts.controls.append(make("span", { class: "hint" }, hint));
+  figure.append(parts.controls, parts.body, parts.readout);
+  return parts;
+}
+
+// A button that switches between a linear and a logarithmic scale.
+function scaleSwitch(controls, draw) {
+  const button = make("button", { type: "button", class: "scale", "aria-pressed": "false" }, "log scale");
+  button.addEventListener("click", () => {
+    const isLog = button.getAttribute("aria-pressed") !== "true";
+    button.setAttribute("aria-pressed", String(isLog));
+    draw(isLog ? "log" : "linear");
+  });
+  controls.prepend(button);
+  draw("linear");
+}
+
+// An empty drawing of `width` by `height` units.
+function drawing(width, height, label) {
+  const viewBox = `0 0 ${around(width)} ${around(height)}`;
+  return make("svg", { viewBox, role: "img", "aria-label": label, tabindex: "0", style: `max-width: ${around(width)}px` });
+}
+
+// Where the pointer is, in the units of a drawing.
+function pointerAt(svg, event) {
+  const box = svg.getBoundingClientRect();
+  const { width, height } = svg.viewBox.baseVal;
+  return [((event.clientX - box.left) / box.width) * width, ((event.clientY - box.top) / box.height) * height];
+}
+
+const around = (number) => Math.round(number * 100) / 100;
+
+// Axes about a rectangle: grid, ticks and names. Gives back where a pair of values lies.
+function drawAxes(svg, area, x, y, grid) {
+  const { left, top, width, height } = area;
+  const place = (a, b) => [left + x.share(a) * width, top + (1 - y.share(b)) * height];
+  const lines = { grid: "", axis: `M${left} ${top}h${width}v${height}h${-width}z` };
+  for (const tick of x.ticks) {
+    const at = around(left + x.share(tick) * width);
+    if (at < left - 0.5 || at > left + width + 0.5) continue;
+    lines.grid += `M${at} ${top}v${height}`;
+    lines.axis += `M${at} ${top + height}v4`;
+    svg.append(make("text", { x: at, y: top + height + 17, "text-anchor": "middle" }, formatValue(tick)));
+  }
+  for (const tick of y.ticks) {
+    const at = around(top + (1 - y.share(tick)) * height);
+    if (at < top - 0.5 || at > top + height + 0.5) continue;
+    lines.grid += `M${left} ${at}h${width}`;
+    lines.axis += `M${left} ${at}h-4`;
+    svg.append(make("text", { x: left - 7, y: at + 4, "text-anchor": "end" }, formatValue(tick)));
+  }
+  if (grid === "grid") svg.append(make("path", { d: lines.grid, class: "grid" }));
+  svg.append(make("path", { d: lines.axis, class: "axis" }));
+  svg.append(make("text", { x: left + width / 2, y: top + height + 36, "text-anchor": "middle" }, x.label));
+  const middle = top + height / 2;
+  const turned = { x: 14, y: middle, "text-anchor": "middle", transform: `rotate(-90 14 ${middle})` };
+  svg.append(make("text", turned, y.label));
+  return place;
+}
+
+const seriesColour = (index) => `var(--series-${index % 7})`;
+const DASHES = ["none", "9 5", "2 4", "10 4 2 4"];
+
+// Names of series with samples of their lines.
+function legendOf(series) {
+  const legend = make("div", { class: "legend" });
+  series.forEach((one, index) => {
+    if (!one.name) return;
+    const line = one.dashed ? "dashed" : "solid";
+    const swatch = make("span", { class: "swatch", style: `border-top: 3px ${line} ${seriesColour(one.look ?? index)}` });
+    legend.append(make("span", {}, swatch, one.name));
+  });
+  return legend;
+}

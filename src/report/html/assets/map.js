@@ -1,0 +1,255 @@
+// Maps: cells in colours, with a colour bar, values under the pointer, and sections along lines.
+
+const MAP = { left: 74, top: 12, most: [470, 400], bar: 74, below: 62 };
+// A map longer than this is squeezed.
+const LONGEST = 5;
+// Pixels along each side of the picture of a map of rings.
+const ROUND_PIXELS = 480;
+// Places along a section.
+const SECTION_STEPS = 600;
+
+function drawMap(figure, data) {
+  const { controls, body, readout } = layOut(figure, "map", "point for values, drag for a section; arrow keys move, Enter cuts along the row");
+  const section = make("div", { class: "plot section" });
+  const sectionReadout = make("output", { class: "readout" });
+  const row = make("div", { class: "plot-row" });
+  figure.insertBefore(row, readout);
+  row.append(body, section);
+  section.hidden = true;
+  figure.append(sectionReadout);
+  if (data.remark) controls.append(make("span", { class: "hint" }, data.remark));
+  const geometry = geometryOf(data);
+  const map = { data, geometry, line: firstLine(data, geometry), cell: -1 };
+  scaleSwitch(controls, (scale) => {
+    const svg = mapDrawing(map, scale);
+    body.replaceChildren(svg);
+    const cut = () => {
+      if (!map.line) return;
+      section.hidden = false;
+      section.replaceChildren(...chartOf(sectionOf(map), scale, sectionReadout, NARROW));
+    };
+    followMap(svg, map, readout, cut);
+    cut();
+  });
+}
+
+// Along the middle of the longer side; a map of all directions has no middle worth a cut.
+function firstLine(data, { x, y, ratio }) {
+  if (data.geometry === "directions" || data.values.length < 2) return null;
+  const middle = ([from, to]) => (from + to) / 2;
+  return ratio >= 1 ? [[x[0], middle(y)], [x[1], middle(y)]] : [[middle(x), y[0]], [middle(x), y[1]]];
+}
+
+// Where cells are: which cell a place of the plot belongs to, and the ranges of its axes.
+function geometryOf(data) {
+  const { x, y } = data;
+  const columns = x.length - 1;
+  if (data.geometry === "polar") {
+    const reach = y.at(-1);
+    const cell = (a, b) => {
+      const ring = binOf(y, Math.hypot(a, b));
+      const sector = binOf(x, ((Math.atan2(b, a) * 180) / Math.PI + 360) % 360);
+      return ring < 0 || sector < 0 ? -1 : ring * columns + sector;
+    };
+    return { x: [-reach, reach], y: [-reach, reach], scale: "linear", cell, ratio: 1, pixels: [ROUND_PIXELS, ROUND_PIXELS] };
+  }
+  const cell = (a, b) => {
+    const [column, row] = [binOf(x, a), binOf(y, b)];
+    return column < 0 || row < 0 ? -1 : row * columns + column;
+  };
+  const scale = data.geometry === "angular" ? "tangent" : "linear";
+  const size = (edges) => SCALES[scale].to(edges.at(-1)) - SCALES[scale].to(edges[0]);
+  const ratio = data.geometry === "directions" ? 1.6 : size(x) / size(y);
+  return { x: [x[0], x.at(-1)], y: [y[0], y.at(-1)], scale, cell, ratio, pixels: [columns, y.length - 1] };
+}
+
+// The bin of a value between edges; -1 outside.
+function binOf(edges, value) {
+  if (value < edges[0] || value > edges.at(-1)) return -1;
+  let [low, high] = [0, edges.length - 1];
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if (edges[middle] <= value) low = middle;
+    else high = middle;
+  }
+  return low;
+}
+
+function mapColour(share) {
+  const colours = pageData.map_colours;
+  const at = Math.min(Math.max(share, 0), 1) * (colours.length - 1);
+  const low = Math.min(Math.floor(at), colours.length - 2);
+  return colours[low].map((part, i) => Math.round(part + (at - low) * (colours[low + 1][i] - part)));
+}
+
+function mapDrawing(map, scale) {
+  const { data, geometry } = map;
+  const ratio = Math.min(Math.max(geometry.ratio, 1 / LONGEST), LONGEST);
+  const width = Math.min(MAP.most[0], MAP.most[1] * ratio);
+  const height = width / ratio;
+  const svg = drawing(MAP.left + width + MAP.bar + 56, MAP.top + height + MAP.below, data.title);
+  const x = makeAxis(...geometry.x, geometry.scale, data.x_label);
+  const y = makeAxis(...geometry.y, geometry.scale, data.y_label);
+  const [low, high] = rangeOf(data.values, scale);
+  const colours = makeAxis(low, high, scale, "");
+  const area = { left: MAP.left, top: MAP.top, width, height };
+  const picture = mapPicture(map, [x, y], colours);
+  svg.append(make("image", { x: area.left, y: area.top, width, height, preserveAspectRatio: "none", href: picture }));
+  Object.assign(map, { x, y, area, place: drawAxes(svg, area, x, y, "plain") });
+  drawColourBar(svg, area, colours, data.unit);
+  if (ratio !== geometry.ratio && data.geometry !== "directions") {
+    svg.append(make("text", { x: area.left, y: area.top + height + 56, class: "soft" }, "axes are not to the same scale"));
+  }
+  return svg;
+}
+
+function mapPicture({ data, geometry }, [x, y], colours) {
+  const [width, height] = geometry.pixels;
+  const canvas = make("canvas", { width, height });
+  const context = canvas.getContext("2d");
+  const image = context.createImageData(width, height);
+  for (let row = 0; row < height; row += 1) {
+    for (let column = 0; column < width; column += 1) {
+      const cell = geometry.cell(x.value((column + 0.5) / width), y.value(1 - (row + 0.5) / height));
+      const value = cell < 0 ? null : data.values[cell];
+      if (value === null || value === undefined) continue;
+      const share = colours.scale === "log" && !(value > 0) ? 0 : colours.share(value);
+      image.data.set([...mapColour(share), 255], 4 * (row * width + column));
+    }
+  }
+  context.putImageData(image, 0, 0);
+  return canvas.toDataURL();
+}
+
+function drawColourBar(svg, area, axis, unit) {
+  const left = area.left + area.width + 24;
+  const steps = 64;
+  for (let step = 0; step < steps; step += 1) {
+    const colour = mapColour((step + 0.5) / steps).join(" ");
+    const top = area.top + area.height * (1 - (step + 1) / steps);
+    svg.append(make("rect", { x: left, y: around(top), width: 16, height: around(area.height / steps + 0.6), style: `fill: rgb(${colour})` }));
+  }
+  for (const tick of axis.ticks) {
+    const at = around(area.top + (1 - axis.share(tick)) * area.height);
+    if (at < area.top - 0.5 || at > area.top + area.height + 0.5) continue;
+    svg.append(make("path", { d: `M${left + 16} ${at}h4`, class: "axis" }));
+    svg.append(make("text", { x: left + 24, y: at + 4 }, formatValue(tick)));
+  }
+  svg.append(make("text", { x: left, y: area.top + area.height + 17 }, unit));
+}
+
+// What a cell is called, and what is in it.
+function cellWords({ data }, cell) {
+  const columns = data.x.length - 1;
+  const [row, column] = [Math.floor(cell / columns), cell % columns];
+  const middle = (edges, i) => formatValue((edges[i] + edges[i + 1]) / 2);
+  const place = `${data.x_name} ${middle(data.x, column)} ${data.x_unit}, ${data.y_name} ${middle(data.y, row)} ${data.y_unit}`;
+  const value = data.values[cell];
+  if (value === null) return `${place}: outside the sensor`;
+  return `${place}: ${quantity(value, data.errors[cell], data.biases?.[cell], data.unit)}`;
+}
+
+function followMap(svg, map, readout, cut) {
+  const [back, cursor, line] = ["cursor-back", "cursor", "cursor"].map((name) => make("path", { class: name }));
+  const lineBack = make("path", { class: "cursor-back" });
+  svg.append(back, cursor, lineBack, line);
+  const valuesAt = ([px, py]) => {
+    const share = (at, from, size) => Math.min(Math.max((at - from) / size, 0), 1);
+    return [map.x.value(share(px, map.area.left, map.area.width)), map.y.value(1 - share(py, map.area.top, map.area.height))];
+  };
+  const showCell = (cell) => {
+    if (cell < 0) return;
+    map.cell = cell;
+    const outline = cellOutline(map, cell);
+    back.setAttribute("d", outline);
+    cursor.setAttribute("d", outline);
+    readout.textContent = cellWords(map, cell);
+  };
+  const showLine = () => {
+    if (!map.line) return;
+    const path = map.line.map(([a, b]) => map.place(a, b).map(around).join(" ")).join("L");
+    lineBack.setAttribute("d", `M${path}`);
+    line.setAttribute("d", `M${path}`);
+  };
+  showLine();
+  let start = null;
+  svg.addEventListener("pointerdown", (event) => {
+    start = valuesAt(pointerAt(svg, event));
+    svg.setPointerCapture(event.pointerId);
+  });
+  svg.addEventListener("pointermove", (event) => {
+    const here = valuesAt(pointerAt(svg, event));
+    showCell(map.geometry.cell(...here));
+    if (!start || (here[0] === start[0] && here[1] === start[1])) return;
+    map.line = [start, here];
+    showLine();
+    cut();
+  });
+  for (const end of ["pointerup", "pointercancel"]) svg.addEventListener(end, () => { start = null; });
+  svg.addEventListener("keydown", (event) => moveByKey(event, map, showCell, () => { showLine(); cut(); }));
+}
+
+function moveByKey(event, map, showCell, cutHere) {
+  const [columns, rows] = [map.data.x.length - 1, map.data.y.length - 1];
+  const cell = Math.max(map.cell, 0);
+  const [row, column] = [Math.floor(cell / columns), cell % columns];
+  const moves = { ArrowRight: [0, 1], ArrowLeft: [0, -1], ArrowUp: [1, 0], ArrowDown: [-1, 0] };
+  if (moves[event.key]) {
+    const [up, right] = moves[event.key];
+    showCell(Math.min(Math.max(row + up, 0), rows - 1) * columns + Math.min(Math.max(column + right, 0), columns - 1));
+  } else if (event.key === "Enter") {
+    const height = map.data.geometry === "polar" ? 0 : (map.data.y[row] + map.data.y[row + 1]) / 2;
+    map.line = [[map.geometry.x[0], height], [map.geometry.x[1], height]];
+    cutHere();
+  } else {
+    return;
+  }
+  event.preventDefault();
+}
+
+function cellOutline({ data, place }, cell) {
+  const columns = data.x.length - 1;
+  const [row, column] = [Math.floor(cell / columns), cell % columns];
+  const [a, b, c, d] = [data.x[column], data.x[column + 1], data.y[row], data.y[row + 1]];
+  const corners = [];
+  if (data.geometry === "polar") {
+    const steps = Math.max(2, Math.ceil((b - a) / 6));
+    const angles = Array.from({ length: steps + 1 }, (_, i) => ((a + ((b - a) * i) / steps) * Math.PI) / 180);
+    const arc = (radius, along) => along.map((angle) => place(radius * Math.cos(angle), radius * Math.sin(angle)));
+    corners.push(...arc(d, angles), ...arc(c, [...angles].reverse()));
+  } else {
+    corners.push(place(a, c), place(b, c), place(b, d), place(a, d));
+  }
+  return `M${corners.map((corner) => corner.map(around).join(" ")).join("L")}z`;
+}
+
+// The cells under a line as a chart: each at the middle of its part of the line.
+function sectionOf(map) {
+  const { data, geometry } = map;
+  const [[ax, ay], [bx, by]] = map.line;
+  const length = Math.hypot(bx - ax, by - ay);
+  const series = { name: "", form: "line", errors: "band", x: [], y: [], error: [], bias: [] };
+  let [last, since] = [-1, 0];
+  const close = (until) => {
+    if (last < 0 || data.values[last] === null) return;
+    series.x.push(((since + until) / 2) * length);
+    series.y.push(data.values[last]);
+    series.error.push(data.errors[last]);
+    series.bias.push(data.biases?.[last]);
+  };
+  for (let step = 0; step <= SECTION_STEPS; step += 1) {
+    const share = step / SECTION_STEPS;
+    const cell = geometry.cell(ax + share * (bx - ax), ay + share * (by - ay));
+    if (cell === last) continue;
+    close(share);
+    [last, since] = [cell, share];
+  }
+  close(1);
+  const unit = data.geometry === "polar" ? data.y_unit : data.x_unit;
+  const at = (a, b) => `(${formatValue(a)}, ${formatValue(b)})`;
+  return {
+    title: "section", unit: data.unit, x_scale: "linear", series: [series],
+    x_label: `along the line from ${at(ax, ay)} to ${at(bx, by)} in ${unit}`,
+    y_label: `${data.quantity} in ${data.unit}`,
+  };
+}

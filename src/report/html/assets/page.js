@@ -1,0 +1,40 @@
+// Starts everything: reads the data, draws the plots, minds light and dark and printing.
+
+const pageData = JSON.parse(document.getElementById("data").textContent);
+const PLOTS = { chart: drawChart, map: drawMap, polar: drawPolar, flow: drawFlow, scene: drawScene };
+
+for (const figure of document.querySelectorAll("figure[data-plot]")) {
+  const data = pageData.plots[Number(figure.dataset.plot)];
+  PLOTS[data.plot](figure, data);
+}
+
+// Colours have changed: what is painted, and not styled, has to be painted again.
+function repaint() {
+  document.dispatchEvent(new Event("repaint"));
+}
+
+function useTheme(theme) {
+  document.documentElement.dataset.theme = theme;
+  button.textContent = theme === "dark" ? "light" : "dark";
+  button.setAttribute("aria-label", `show the page ${button.textContent}`);
+  repaint();
+}
+
+const button = document.getElementById("theme");
+const systemDark = matchMedia("(prefers-color-scheme: dark)");
+button.hidden = false;
+button.addEventListener("click", () => useTheme(button.textContent));
+systemDark.addEventListener("change", () => useTheme(systemDark.matches ? "dark" : "light"));
+useTheme(systemDark.matches ? "dark" : "light");
+
+// Paper is light, and nothing on it can be unfolded.
+let before = { theme: "light", folded: [] };
+addEventListener("beforeprint", () => {
+  before = { theme: document.documentElement.dataset.theme, folded: [...document.querySelectorAll("details:not([open])")] };
+  for (const details of before.folded) details.open = true;
+  useTheme("light");
+});
+addEventListener("afterprint", () => {
+  for (const details of before.folded) details.open = false;
+  useTheme(before.theme);
+});

@@ -1,0 +1,88 @@
+// Intensity by angle in planes through the pole, which points up.
+
+const POLAR = { width: 620, radius: 232, top: 34 };
+
+function drawPolar(figure, data) {
+  const { controls, body, readout } = layOut(figure, "polar", "point at an angle for values; arrow keys step");
+  scaleSwitch(controls, (scale) => body.replaceChildren(polarDrawing(data, scale, readout), legendOf(data.curves)));
+}
+
+function polarDrawing(data, scale, readout) {
+  const { radius, top } = POLAR;
+  const all = data.curves.flatMap((curve) => curve.y);
+  const [low, high] = rangeOf(all, scale);
+  const axis = makeAxis(scale === "log" ? Math.max(low, high / 1e4) : 0, high * 1.04, scale, data.unit);
+  const isDown = data.curves.some((curve) => curve.gamma.some((gamma, i) => Math.abs(gamma) > 92 && curve.y[i] > 0.005 * high));
+  const center = [POLAR.width / 2, top + radius];
+  const svg = drawing(POLAR.width, top + radius * (isDown ? 2 : 1) + 40, data.title);
+  const at = (gamma, value) => {
+    const share = scale === "log" && !(value > axis.from) ? 0 : Math.max(axis.share(value), 0);
+    const angle = (gamma * Math.PI) / 180;
+    return [center[0] + share * radius * Math.sin(angle), center[1] - share * radius * Math.cos(angle)];
+  };
+  drawPolarGrid(svg, axis, center, isDown);
+  data.curves.forEach((curve, index) => {
+    const points = curve.gamma.map((gamma, i) => at(gamma, curve.y[i] ?? 0).map(around).join(" "));
+    const outer = curve.gamma.map((gamma, i) => at(gamma, (curve.y[i] ?? 0) + (curve.error[i] ?? 0)).map(around).join(" "));
+    const inner = curve.gamma.map((gamma, i) => at(gamma, Math.max((curve.y[i] ?? 0) - (curve.error[i] ?? 0), 0)).map(around).join(" "));
+    const colour = seriesColour(index);
+    svg.append(make("path", { d: `M${[...outer, ...inner.reverse()].join("L")}z`, style: `fill: ${colour}; fill-opacity: 0.22` }));
+    const style = `fill: none; stroke: ${colour}; stroke-width: 1.8; stroke-dasharray: ${index === 0 ? "none" : DASHES[1]}`;
+    svg.append(make("path", { d: `M${points.join("L")}`, style }));
+  });
+  followPolar(svg, data, center, at, readout);
+  return svg;
+}
+
+function drawPolarGrid(svg, axis, [cx, cy], isDown) {
+  const { radius } = POLAR;
+  const circle = (r) => (isDown ? `M${cx - r} ${cy}a${r} ${r} 0 1 1 ${2 * r} 0a${r} ${r} 0 1 1 ${-2 * r} 0` : `M${cx - r} ${cy}a${r} ${r} 0 1 1 ${2 * r} 0`);
+  let lines = circle(radius);
+  const last = isDown ? 180 : 90;
+  for (let angle = -last; angle <= last; angle += 30) {
+    const [sin, cos] = [Math.sin((angle * Math.PI) / 180), Math.cos((angle * Math.PI) / 180)];
+    lines += `M${cx} ${cy}L${around(cx + radius * sin)} ${around(cy - radius * cos)}`;
+    if (angle === -180) continue;
+    const anchor = Math.abs(sin) < 0.1 ? "middle" : sin > 0 ? "start" : "end";
+    const [x, y] = [cx + (radius + 8) * sin, cy - (radius + 8) * cos + (cos > 0.5 ? 0 : cos < -0.5 ? 10 : 4)];
+    svg.append(make("text", { x: around(x), y: around(y), "text-anchor": anchor, class: "soft" }, `${Math.abs(angle)}°`));
+  }
+  for (const tick of axis.ticks.filter((one) => axis.share(one) > 0.02)) lines += circle(around(axis.share(tick) * radius));
+  svg.append(make("path", { d: lines, class: "grid" }));
+  for (const tick of axis.ticks.filter((one) => axis.share(one) > 0.1)) {
+    svg.append(make("text", { x: cx + 4, y: around(cy - axis.share(tick) * radius - 3), class: "soft" }, formatValue(tick)));
+  }
+  svg.append(make("text", { x: cx + radius * 0.75, y: 16 }, `intensity in ${axis.label}`));
+}
+
+function followPolar(svg, data, [cx, cy], at, readout) {
+  const cursor = make("path", { class: "cursor" });
+  svg.append(cursor);
+  const gammas = data.curves[0]?.gamma ?? [];
+  let here = nearestIndex(gammas, 0);
+  const show = (index) => {
+    if (gammas.length === 0) return;
+    here = (index + gammas.length) % gammas.length;
+    const gamma = gammas[here];
+    const angle = (gamma * Math.PI) / 180;
+    let marks = `M${cx} ${cy}l${around(POLAR.radius * Math.sin(angle))} ${around(-POLAR.radius * Math.cos(angle))}`;
+    const words = data.curves.map((curve) => {
+      const i = nearestIndex(curve.gamma, gamma);
+      const [x, y] = at(curve.gamma[i], curve.y[i] ?? 0);
+      marks += `M${around(x - 4)} ${around(y)}a4 4 0 1 0 8 0a4 4 0 1 0 -8 0`;
+      return `${curve.name}: ${quantity(curve.y[i], curve.error[i], null, data.unit)}`;
+    });
+    cursor.setAttribute("d", marks);
+    readout.textContent = `γ ${formatValue(gamma)}°   ${words.join("   ")}`;
+  };
+  svg.addEventListener("pointermove", (event) => {
+    const [x, y] = pointerAt(svg, event);
+    show(nearestIndex(gammas, (Math.atan2(x - cx, cy - y) * 180) / Math.PI));
+  });
+  svg.addEventListener("keydown", (event) => {
+    const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+    if (!step) return;
+    event.preventDefault();
+    show(here + step);
+  });
+}

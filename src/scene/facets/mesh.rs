@@ -1,0 +1,72 @@
+//! Faces of meshes, with fine triangles joined.
+
+use crate::scene::facets::Facets;
+use crate::scene::mesh::Mesh;
+use glam::{DVec3, I64Vec3};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Most triangles of a face.
+const MOST_TRIANGLES: usize = 3000;
+/// Cubes grow by this factor until there are no more, 1.
+const GROWTH: f64 = 1.4;
+
+/// A face of a mesh with fine triangles joined: in cubes of `cell` mm, or in larger ones where there are very many.
+pub(super) fn facets(mesh: &Mesh, face: usize, cell: f64) -> Facets {
+    let mut cell = cell;
+    loop {
+        let facets = joined(mesh, face, cell);
+        if facets.triangles.len() <= MOST_TRIANGLES {
+            return facets;
+        }
+        cell *= GROWTH;
+    }
+}
+
+/// A face with all corners of a cube in one place, and without the triangles that vanish by it.
+fn joined(mesh: &Mesh, face: usize, cell: f64) -> Facets {
+    let mut facets = Facets::default();
+    let mut corner_of: BTreeMap<[i64; 3], usize> = BTreeMap::new();
+    let mut known: BTreeSet<[usize; 3]> = BTreeSet::new();
+    for triangle in mesh.face_triangles(face) {
+        let corners = mesh.corners(*triangle as usize).map(|point| {
+            let next = facets.points.len();
+            let corner = *corner_of.entry(cube(point, cell)).or_insert(next);
+            if corner == next {
+                facets.points.push(point);
+            }
+            corner
+        });
+        let [a, b, c] = corners;
+        let mut sorted = corners;
+        sorted.sort_unstable();
+        if a != b && b != c && c != a && known.insert(sorted) {
+            facets.triangles.push(corners);
+        }
+    }
+    facets
+}
+
+fn cube(point: DVec3, cell: f64) -> [i64; 3] {
+    let I64Vec3 { x, y, z } = (point / cell).floor().as_i64vec3();
+    [x, y, z]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formats::mesh::samples::{Normals, icosphere};
+    use crate::math::Frame;
+
+    #[test]
+    fn coarse_meshes_stay_as_they_are_and_fine_ones_keep_their_size_with_fewer_triangles() {
+        let of = |level: u32| {
+            let mesh = Mesh::new(&icosphere(3.0, level, Normals::None), &Frame::WORLD);
+            facets(&mesh, 0, 1e-3)
+        };
+        let coarse = of(2);
+        assert_eq!((coarse.points.len(), coarse.triangles.len()), (162, 320));
+        let fine = of(5);
+        assert!((500..=MOST_TRIANGLES).contains(&fine.triangles.len()), "{}", fine.triangles.len());
+        assert!(fine.points.iter().all(|point| (point.length() - 3.0).abs() < 1e-12));
+    }
+}

@@ -1,4 +1,4 @@
-//! What can be run: the scenes and sensor files below a folder.
+//! What can be run: the scenes, studies and sensor files below a folder.
 
 use crate::error::{Error, Result};
 use std::fs;
@@ -7,7 +7,7 @@ use std::path::Path;
 /// Folders below the start that are still looked into.
 const DEPTH: usize = 4;
 
-/// A line for each scene, with its title, and for each sensor file, in the order of their paths.
+/// A line for each scene and study, with its title, and for each sensor file, in the order of their paths.
 pub fn list(folder: &Path) -> Result<String> {
     if !folder.is_dir() {
         return Err(Error::Usage(format!("{} is no folder", folder.display())));
@@ -30,7 +30,8 @@ fn collect(folder: &Path, depth: usize, lines: &mut Vec<(String, String)>) -> Re
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         if path.is_dir() {
             // Reports hold copies of scenes, wherever they lie; build products and tests hold none to be run.
-            let is_report = path.join("summary.json").is_file();
+            let is_report =
+                ["summary.json", "batch.json"].iter().any(|name| path.join(name).is_file());
             let is_passed_by =
                 name.starts_with('.') || ["target", "tests"].contains(&name.as_str());
             if depth > 0 && !is_report && !is_passed_by {
@@ -45,7 +46,7 @@ fn collect(folder: &Path, depth: usize, lines: &mut Vec<(String, String)>) -> Re
     Ok(())
 }
 
-/// The title of a scene, or the kind of a sensor file, or that it cannot be read; `None` for anything else.
+/// The title of a scene or a study, or the kind of a sensor file, or that it cannot be read; `None` for anything else.
 fn describe(path: &Path) -> Option<String> {
     let table = match fs::read_to_string(path) {
         Ok(text) => text.parse::<toml::Table>(),
@@ -58,6 +59,10 @@ fn describe(path: &Path) -> Option<String> {
         return Some(
             table.get("title").and_then(toml::Value::as_str).unwrap_or("(no title)").to_owned(),
         );
+    }
+    if table.contains_key("lumiduct_study") {
+        let title = table.get("title").and_then(toml::Value::as_str).unwrap_or("(no title)");
+        return Some(format!("study: {title}"));
     }
     let kind = ["plane", "goniometer", "luminance", "image"]
         .into_iter()

@@ -1,6 +1,6 @@
-//! The manual page of the scene format, made from the schema.
+//! The manual pages of the formats of scenes and studies, made from their schemas.
 //!
-//! What a schema cannot say, conventions and an example, is in `docs/templates/scene_format.md`.
+//! What a schema cannot say, conventions and examples, is in `docs/templates`.
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -11,10 +11,16 @@ use crate::input::schema::{self, RequiredSet};
 use crate::input::validate::wording;
 
 const TEMPLATE: &str = include_str!("../../docs/templates/scene_format.md");
+const STUDY_TEMPLATE: &str = include_str!("../../docs/templates/study_format.md");
 
-/// The manual page as Markdown.
+/// The manual page of scenes as Markdown.
 pub fn markdown() -> String {
     TEMPLATE.replace("{{reference}}", reference(&schema::json_schema()).trim_end())
+}
+
+/// The manual page of studies as Markdown.
+pub fn study_markdown() -> String {
+    STUDY_TEMPLATE.replace("{{reference}}", reference(&schema::study_schema()).trim_end())
 }
 
 /// All tables with their keys: first those at the top of a file, then those that several of them share.
@@ -23,7 +29,8 @@ fn reference(schema: &Json) -> String {
         Manual { schema, text: String::new(), wanted: Vec::new(), written: BTreeSet::new() };
     manual.text += "## Top of the file\n\n";
     manual.keys(schema, &[]);
-    for name in FAMILIES.iter().map(|(name, _)| *name) {
+    let is_there = |name: &&str| schema["$defs"].get(*name).is_some();
+    for name in FAMILIES.iter().map(|(name, _)| *name).filter(is_there) {
         manual.section(name);
     }
     manual.text += "## Shared tables\n\n";
@@ -37,7 +44,11 @@ fn reference(schema: &Json) -> String {
 }
 
 /// Tables at the top of a file, and their headings.
-const FAMILIES: [(&str, &str); 10] = [
+const FAMILIES: [(&str, &str); 14] = [
+    ("Parameter", "parameters.NAME"),
+    ("Plan", "plan"),
+    ("StudyRun", "run of a study"),
+    ("Ranking", "ranking"),
     ("Medium", "media.NAME"),
     ("Finish", "finishes.NAME"),
     ("Solid", "solids.NAME"),
@@ -341,49 +352,61 @@ mod tests {
     use super::*;
     use crate::input;
 
-    /// The whole page, from the root of the package.
-    const PAGE: &str = "docs/scene_format.md";
+    /// Where a page lies, what is on it, and the schema that it is made from.
+    type Page = (&'static str, fn() -> String, fn() -> Json);
+
+    /// The whole pages, from the root of the package.
+    const PAGES: [Page; 2] = [
+        ("docs/scene_format.md", markdown, schema::json_schema),
+        ("docs/study_format.md", study_markdown, schema::study_schema),
+    ];
 
     #[test]
-    fn the_page_in_docs_is_current() {
-        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(PAGE);
-        if std::env::var_os("UPDATE_GOLDEN").is_some() {
-            std::fs::write(&path, markdown()).unwrap();
+    fn the_pages_in_docs_are_current() {
+        for (page, markdown, _) in PAGES {
+            let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(page);
+            if std::env::var_os("UPDATE_GOLDEN").is_some() {
+                std::fs::write(&path, markdown()).unwrap();
+            }
+            let found = std::fs::read_to_string(&path).unwrap();
+            assert!(
+                found == markdown(),
+                "{page} is not current: run the tests with UPDATE_GOLDEN=1"
+            );
         }
-        let page = std::fs::read_to_string(&path).unwrap();
-        assert!(page == markdown(), "{PAGE} is not current: run the tests with UPDATE_GOLDEN=1");
     }
 
     #[test]
     fn every_key_and_kind_of_the_schema_is_on_the_page() {
-        let page = markdown();
-        let schema = schema::json_schema();
-        for (name, definition) in schema["$defs"].as_object().unwrap() {
-            let tables = options(definition).into_iter().chain([definition]);
-            for key in tables
-                .filter_map(|table| table["properties"].as_object())
-                .flat_map(|keys| keys.keys())
-            {
-                let is_there =
-                    page.contains(&format!("`{key}`")) || page.contains(&format!(".{key}`"));
-                assert!(is_there, "{name}.{key}");
+        for (page, schema) in PAGES.map(|(_, markdown, schema)| (markdown(), schema())) {
+            for (name, definition) in schema["$defs"].as_object().unwrap() {
+                let tables = options(definition).into_iter().chain([definition]);
+                for key in tables
+                    .filter_map(|table| table["properties"].as_object())
+                    .flat_map(|keys| keys.keys())
+                {
+                    let is_there =
+                        page.contains(&format!("`{key}`")) || page.contains(&format!(".{key}`"));
+                    assert!(is_there, "{name}.{key}");
+                }
             }
         }
     }
 
     #[test]
     fn every_link_leads_to_one_heading() {
-        let page = markdown();
-        let headings: Vec<_> = page
-            .lines()
-            .filter(|line| line.starts_with('#'))
-            .map(|line| anchor(line.trim_start_matches(['#', ' '])))
-            .collect();
-        let links: Vec<_> =
-            page.split("](#").skip(1).filter_map(|rest| rest.split(')').next()).collect();
-        assert!(links.len() > 40);
-        for link in links {
-            assert_eq!(headings.iter().filter(|heading| *heading == link).count(), 1, "{link}");
+        for page in PAGES.map(|(_, markdown, _)| markdown()) {
+            let headings: Vec<_> = page
+                .lines()
+                .filter(|line| line.starts_with('#'))
+                .map(|line| anchor(line.trim_start_matches(['#', ' '])))
+                .collect();
+            let links: Vec<_> =
+                page.split("](#").skip(1).filter_map(|rest| rest.split(')').next()).collect();
+            assert!(links.len() > 10);
+            for link in links {
+                assert_eq!(headings.iter().filter(|heading| *heading == link).count(), 1, "{link}");
+            }
         }
     }
 
@@ -395,5 +418,23 @@ mod tests {
         std::fs::write(&path, example).unwrap();
         let loaded = input::read(&path, &[]).unwrap_or_else(|error| panic!("{error}"));
         assert!(loaded.warnings.is_empty());
+    }
+
+    #[test]
+    fn the_worked_example_of_a_study_is_a_good_study() {
+        let example =
+            STUDY_TEMPLATE.split("```toml\n").nth(1).unwrap().split("```").next().unwrap();
+        let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("example.toml");
+        let scenes = root.join("scenes").display().to_string();
+        std::fs::write(
+            &path,
+            example
+                .replace("\"../led_indicator.toml\"", &format!("\"{scenes}/led_indicator.toml\"")),
+        )
+        .unwrap();
+        let study = input::load_study(&path, &input::StudySettings::default());
+        assert!(study.unwrap_or_else(|error| panic!("{error}")).warnings.is_empty());
     }
 }

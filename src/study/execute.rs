@@ -17,6 +17,10 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
+/// The batches of a design hold the same paths in all designs, and this part of what the scene alone would take: designs
+/// are small, and end between waves of 128 batches.
+const BATCH_PARTS: u64 = 8;
+
 /// How far a batch has come.
 #[derive(Debug, Clone, Copy)]
 pub struct BatchProgress {
@@ -70,10 +74,9 @@ pub(crate) fn execute(batch: &Batch<'_>, wanted: &[usize]) -> Result<()> {
         .filter_map(|number| batch.designs.get(number - 1))
         .collect();
     let study = batch.study;
-    let common = Settings {
-        batch_paths: Some(batch_paths(&study.base.scene, &study.base.run)),
-        ..study.common.clone()
-    };
+    let usual = batch_paths(&study.base.scene, &study.base.run);
+    let common =
+        Settings { batch_paths: Some(usual.div_ceil(BATCH_PARTS)), ..study.common.clone() };
     let (next, trouble) = (AtomicUsize::new(0), Mutex::new(None));
     let board = Board::new(wanted.len(), pending.len(), batch);
     board.show();

@@ -1,10 +1,11 @@
-//! `report.html` in a browser, as a user sees it: values under the pointer, switches, sections, turning, printing.
+//! `report.html` and `study.html` in a browser, as a user sees it: values under the pointer, switches, sections, turning, printing.
 //!
 //! Needs Chromium. Without it the tests say so and pass; `LUMIDUCT_BROWSER=required` makes them fail.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
 
 mod driver;
+mod study;
 
 use assert_cmd::Command;
 use driver::Open;

@@ -125,3 +125,38 @@ fn a_checkpoint_that_was_cut_off_is_refused_with_the_reason() {
     place.good(&format!("{run} --overwrite"));
     assert!(!checkpoint.exists());
 }
+
+#[test]
+fn the_commands_for_gnu_parallel_in_the_docs_do_what_they_say() {
+    let found = Process::new("parallel").arg("--version").output();
+    if !found.is_ok_and(|output| output.status.success()) {
+        assert!(std::env::var_os("LUMIDUCT_PARALLEL").is_none(), "GNU parallel is not here");
+        #[allow(clippy::print_stderr, reason = "a test that skips says so")]
+        {
+            eprintln!("skipped: GNU parallel is not here");
+        }
+        return;
+    }
+    let docs = include_str!("../../docs/cluster.md");
+    let section = docs.split("## GNU parallel").nth(1).unwrap();
+    let commands = section.split("```sh\n").nth(1).unwrap().split("```").next().unwrap();
+    let commands = commands
+        .replace("scenes/led_indicator.toml", "rod.toml")
+        .replace("seq 1 16", "seq 1 4")
+        .replace("/16", "/4");
+    let place = Place::new();
+    let folder = Path::new(env!("CARGO_BIN_EXE_lumiduct")).parent().unwrap().to_path_buf();
+    let path = std::env::var_os("PATH").unwrap();
+    let path = std::env::join_paths(std::iter::once(folder).chain(std::env::split_paths(&path)));
+    let output = Process::new("bash")
+        .args(["-euc", &commands])
+        .current_dir(place.0.path())
+        .env("PATH", path.unwrap())
+        // It asks to be cited on a terminal, and waits for an answer where it finds none.
+        .env("PARALLEL", "--will-cite")
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", errors(&output));
+    place.good("run rod.toml -o whole");
+    assert_eq!(contents(&place.path("whole")), contents(&place.path("reports/whole")));
+}

@@ -4,8 +4,8 @@
 //! said about numbers is that of `words`, which `report.md` says as well.
 
 mod coarse;
-mod data;
-mod frame;
+pub(crate) mod data;
+pub(crate) mod frame;
 
 use crate::error::Result;
 use crate::measure::{Outcome, SensorPaths, Status};

@@ -16,32 +16,73 @@ const MOST_CURVES: usize = 12;
 /// Bins of a histogram over the square root of the number of designs, about.
 const BINS_PER_ROOT: f64 = 1.2;
 
+/// A picture of a study.
+pub(super) struct Figure {
+    /// Its file.
+    pub(super) file: String,
+    /// What it shows, in words.
+    pub(super) label: String,
+    /// What is on it.
+    pub(super) drawing: Drawing,
+}
+
+/// What is on a picture.
+pub(super) enum Drawing {
+    /// Curves; the unit is that of their values.
+    Curves(LinePlot, String),
+    /// Bars.
+    Bars(BarChart),
+    /// Everything against everything.
+    Scatter(ScatterMatrix),
+}
+
 /// All pictures of a study.
-pub(super) fn files(report: &StudyReport) -> Result<Vec<OutputFile>> {
-    let mut files = Vec::new();
+pub(super) fn figures(report: &StudyReport) -> Vec<Figure> {
+    let mut figures = Vec::new();
     for measure in &report.facts.measures {
+        let unit = report.unit(measure).to_owned();
         if let Some(plot) = response(report, measure) {
-            let name = format!("response.{measure}.png");
-            files.push(OutputFile { name, bytes: line_plot(&plot)? });
+            figures.push(Figure {
+                file: format!("response.{measure}.png"),
+                label: format!("response of {measure}"),
+                drawing: Drawing::Curves(plot, unit),
+            });
         }
         if let Some(plot) = distribution(report, measure) {
-            let name = format!("distribution.{measure}.png");
-            files.push(OutputFile { name, bytes: line_plot(&plot)? });
+            figures.push(Figure {
+                file: format!("distribution.{measure}.png"),
+                label: format!("distribution of {measure}"),
+                drawing: Drawing::Curves(plot, "1".into()),
+            });
         }
     }
     for effect in &report.analysis.effects {
-        let name = format!("effect.{}.{}.png", effect.measure, effect.parameter);
-        files.push(OutputFile { name, bytes: effect_picture(report, effect)? });
+        figures.push(Figure {
+            file: format!("effect.{}.{}.png", effect.measure, effect.parameter),
+            label: format!("main effect of {} on {}", effect.parameter, effect.measure),
+            drawing: effect_drawing(report, effect),
+        });
     }
     if report.designs.len() > 2 {
-        files.push(OutputFile { name: "scatter.png".into(), bytes: scatter(report)? });
+        figures.push(Figure {
+            file: "scatter.png".into(),
+            label: "all parameters and measures, each against each".into(),
+            drawing: Drawing::Scatter(scatter(report)),
+        });
     }
-    Ok(files)
+    figures
 }
 
-/// What a picture shows, by its file name.
-pub(super) fn picture_words(file: &str) -> String {
-    file.trim_end_matches(".png").replacen('.', ": ", 1)
+impl Figure {
+    /// The picture as a file.
+    pub(super) fn file(&self) -> Result<OutputFile> {
+        let bytes = match &self.drawing {
+            Drawing::Curves(plot, _) => line_plot(plot)?,
+            Drawing::Bars(chart) => bar_chart(chart)?,
+            Drawing::Scatter(matrix) => scatter_matrix(matrix)?,
+        };
+        Ok(OutputFile { name: self.file.clone(), bytes })
+    }
 }
 
 /// The label of a measure with its unit.
@@ -189,7 +230,7 @@ fn distribution(report: &StudyReport, measure: &str) -> Option<LinePlot> {
     })
 }
 
-fn effect_picture(report: &StudyReport, effect: &Effect) -> Result<Vec<u8>> {
+fn effect_drawing(report: &StudyReport, effect: &Effect) -> Drawing {
     let title = format!("{}: main effect of {}", effect.measure, effect.parameter);
     let subtitle = match report.facts.plan {
         PlanFacts::OneAtATime => "all other parameters as in the scene",
@@ -209,23 +250,26 @@ fn effect_picture(report: &StudyReport, effect: &Effect) -> Result<Vec<u8>> {
         .collect();
     let facts = report.facts.parameters.iter().find(|own| own.name == effect.parameter);
     match points {
-        Some(points) => line_plot(&LinePlot {
-            title,
-            subtitle: subtitle.into(),
-            x_label: facts.map_or(effect.parameter.clone(), ParameterFacts::label),
-            y_label: measure_label(report, &effect.measure),
-            x_scale: Scale::Linear,
-            y_scale: Scale::Linear,
-            series: vec![Series {
-                name: String::new(),
-                points,
-                form: SeriesForm::Line,
-                errors: ErrorForm::Bars,
-                look: Look::InTurn,
-            }],
-        }),
+        Some(points) => Drawing::Curves(
+            LinePlot {
+                title,
+                subtitle: subtitle.into(),
+                x_label: facts.map_or(effect.parameter.clone(), ParameterFacts::label),
+                y_label: measure_label(report, &effect.measure),
+                x_scale: Scale::Linear,
+                y_scale: Scale::Linear,
+                series: vec![Series {
+                    name: String::new(),
+                    points,
+                    form: SeriesForm::Line,
+                    errors: ErrorForm::Bars,
+                    look: Look::InTurn,
+                }],
+            },
+            report.unit(&effect.measure).to_owned(),
+        ),
         // Choices have no place on an axis.
-        None => bar_chart(&BarChart {
+        None => Drawing::Bars(BarChart {
             title,
             subtitle: subtitle.into(),
             unit: match report.unit(&effect.measure) {
@@ -248,7 +292,7 @@ fn effect_picture(report: &StudyReport, effect: &Effect) -> Result<Vec<u8>> {
 }
 
 /// All parameters that are numbers and all measures, each against each.
-fn scatter(report: &StudyReport) -> Result<Vec<u8>> {
+fn scatter(report: &StudyReport) -> ScatterMatrix {
     let designs = &report.designs;
     let of_parameter = |own: &ParameterFacts| {
         let values: Vec<f64> =
@@ -277,11 +321,11 @@ fn scatter(report: &StudyReport) -> Result<Vec<u8>> {
         let kinds = ["passes all checks", "fails", "undecided"].map(str::to_owned).to_vec();
         (kinds, designs.iter().map(kind).collect())
     };
-    scatter_matrix(&ScatterMatrix {
+    ScatterMatrix {
         title: "Parameters and measures".into(),
         subtitle: format!("{} designs", designs.len()),
         columns,
         kind_of,
         kinds,
-    })
+    }
 }

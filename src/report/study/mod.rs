@@ -1,6 +1,8 @@
 //! What is handed to the user of a study: one record, and pure functions that turn it into files.
 
+mod contents;
 mod figures;
+mod html;
 mod page;
 mod record;
 mod tables;
@@ -29,11 +31,13 @@ const SUMMARY_FORMAT: u32 = 1;
 /// All files of a study but its manifest and its records, in the reproducible order.
 pub fn study_files(report: &StudyReport, study_text: &str) -> Result<Vec<OutputFile>> {
     let mut files = tables::files(report)?;
-    files.extend(figures::files(report)?);
+    let figures = figures::figures(report);
+    for figure in &figures {
+        files.push(figure.file()?);
+    }
     files.push(OutputFile::text(format!("{}.toml", report.facts.name), study_text.to_owned()));
-    let names: Vec<String> = files.iter().map(|file| file.name.clone()).collect();
-    let page = page::page(report, &names);
-    files.push(OutputFile::text("study.md", page));
+    files.push(OutputFile::text("study.md", page::page(report, &figures)));
+    files.push(OutputFile::text("study.html", html::html(report, &figures)?));
     let summary = summary(report, &files)?;
     files.push(OutputFile::text(SUMMARY, summary));
     Ok(files)

@@ -37,3 +37,158 @@ fn sharpness(measure: &str, designs: &[DesignRecord]) -> Option<Sharpness> {
     let middle = *factors.get(factors.len() / 2)?;
     Some(Sharpness { measure: measure.to_owned(), factor: middle, pairs: factors.len() })
 }
+
+#[cfg(test)]
+mod testing {
+    use crate::input::{Best, Domain, Keep, Ranking, Setting};
+    use crate::measure::{Measure, Replicates, Status};
+    use crate::report::study::{
+        DESIGN_FORMAT, DesignOutcome, DesignRecord, DesignResult, FACTS_FORMAT, ParameterFacts,
+        PlanFacts, StudyFacts,
+    };
+    use crate::scene::plan::Estimator;
+    use indexmap::IndexMap;
+
+    /// A study of two parameters.
+    pub(super) fn facts(plan: PlanFacts) -> StudyFacts {
+        let parameter = |name: &str| ParameterFacts {
+            name: name.into(),
+            unit: None,
+            keys: Vec::new(),
+            domain: Domain::Listed,
+            nominal: Setting::AsInScene,
+        };
+        StudyFacts {
+            lumiduct_batch: FACTS_FORMAT,
+            version: String::new(),
+            name: "study".into(),
+            title: "Study".into(),
+            description: None,
+            hash: String::new(),
+            scene: "scene".into(),
+            overrides: Vec::new(),
+            plan,
+            designs: 0,
+            seed: 1,
+            estimator: "forward".into(),
+            asked: String::new(),
+            parameters: vec![parameter("a"), parameter("b")],
+            measures: vec!["exit.flux".into()],
+            ranking: Some(Ranking { measure: "exit.flux".into(), best: Best::Highest }),
+            checks: Vec::new(),
+            keep: Keep::Records,
+        }
+    }
+
+    /// A design with a value, and what four groups of batches say: the value and a noise of their own.
+    pub(super) fn design(
+        number: usize,
+        settings: [f64; 2],
+        value: f64,
+        noise: f64,
+    ) -> DesignRecord {
+        let groups = [-1.0, 1.0, -1.0, 1.0].map(|sign| value + noise * sign);
+        let measure = Measure {
+            value,
+            std_error: noise / 3f64.sqrt(),
+            bias: None,
+            unit: "lm".into(),
+            batches: 4,
+            paths: 4,
+            estimator: Estimator::Forward,
+            status: Status::Ok,
+        };
+        let replicates = Replicates((0..4).zip(groups).collect());
+        let of = |setting: f64| Setting::Number(setting);
+        DesignRecord {
+            lumiduct_design: DESIGN_FORMAT,
+            study: String::new(),
+            design: number,
+            settings: IndexMap::from([
+                ("a".to_owned(), of(settings[0])),
+                ("b".to_owned(), of(settings[1])),
+            ]),
+            outcome: DesignOutcome::Done(Box::new(DesignResult {
+                scene_hash: String::new(),
+                measures: IndexMap::from([("exit.flux".to_owned(), measure)]),
+                replicates: IndexMap::from([("exit.flux".to_owned(), replicates)]),
+                checks: Vec::new(),
+                target: None,
+                stopped: String::new(),
+                paths: 4,
+                warnings: Vec::new(),
+            })),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::testing::{design, facts};
+    use super::*;
+    use crate::report::study::{DesignOutcome, PlanFacts, SensitivityMethod};
+
+    /// 3 a + b on a grid of a and b in -1, 0, 1, with noise that all share.
+    fn grid() -> Vec<DesignRecord> {
+        let pairs = (0..9).map(|i| [f64::from(i / 3) - 1.0, f64::from(i % 3) - 1.0]);
+        let numbered = pairs.enumerate();
+        numbered.map(|(i, [a, b])| design(i + 1, [a, b], 10.0 + 3.0 * a + b, 0.5)).collect()
+    }
+
+    #[test]
+    fn what_designs_have_in_common_cancels_in_their_differences() {
+        let found = analysis(&facts(PlanFacts::Grid), &grid());
+        assert_eq!(found.ranked[0].design, 9);
+        let behind = found.ranked[1].behind.unwrap();
+        assert!((behind.value - 1.0).abs() < 1e-12 && behind.std_error < 1e-12, "{behind:?}");
+        assert_eq!(behind.evidence, Pairing::Paired);
+        // A design that has other groups is taken for an independent one.
+        let mut other = grid();
+        let DesignOutcome::Done(result) = &mut other[8].outcome else { panic!("no result") };
+        result.replicates["exit.flux"].0.pop();
+        let behind = analysis(&facts(PlanFacts::Grid), &other).ranked[1].behind.unwrap();
+        assert_eq!(behind.evidence, Pairing::Independent);
+        assert!((behind.std_error - (2.0f64 / 3.0).sqrt() * 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_indices_of_a_sum_are_the_shares_of_its_terms() {
+        let found = analysis(&facts(PlanFacts::Grid), &grid());
+        let [sensitivity] = &found.sensitivities[..] else { panic!("not one") };
+        assert_eq!(sensitivity.method, SensitivityMethod::FirstOrder);
+        // Variances 9 and 1 of ten.
+        assert!((sensitivity.indices[0].value - 0.9).abs() < 1e-12);
+        assert!((sensitivity.indices[1].value - 0.1).abs() < 1e-12);
+        assert!((sensitivity.explained - 1.0).abs() < 1e-12);
+        assert!(sensitivity.indices[0].std_error < 1e-12, "common noise moves no index");
+    }
+
+    #[test]
+    fn a_main_effect_is_the_mean_over_all_other_settings() {
+        let found = analysis(&facts(PlanFacts::Grid), &grid());
+        let effect = &found.effects[0];
+        let means: Vec<f64> = effect.points.iter().map(|point| point.mean.value).collect();
+        assert!(means.iter().zip([7.0, 10.0, 13.0]).all(|(a, b)| (a - b).abs() < 1e-12));
+        // Noise that all share does not average out.
+        assert!((effect.points[0].mean.std_error - 0.5 / 3f64.sqrt()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_regression_finds_the_slopes_of_samples() {
+        let found = analysis(&facts(PlanFacts::Sobol(1)), &grid());
+        let [sensitivity] = &found.sensitivities[..] else { panic!("not one") };
+        assert!((sensitivity.indices[0].value - 0.9f64.sqrt()).abs() < 1e-12);
+        assert!((sensitivity.indices[1].value - 0.1f64.sqrt()).abs() < 1e-12);
+        assert!((sensitivity.explained - 1.0).abs() < 1e-12);
+        assert!(found.effects.is_empty());
+    }
+
+    #[test]
+    fn a_design_without_a_result_is_in_no_ranking_and_stops_no_analysis() {
+        let mut designs = grid();
+        designs[8].outcome = DesignOutcome::Failed("no scene".into());
+        let found = analysis(&facts(PlanFacts::Grid), &designs);
+        assert_eq!((found.ranked.len(), found.ranked[0].design), (8, 8));
+        assert!(found.sensitivities.is_empty(), "a grid with a hole has no indices");
+    }
+}

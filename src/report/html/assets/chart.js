@@ -16,16 +16,26 @@ function chartOf(data, scale, readout, { width, height }) {
   // A line beside the sensor cuts nothing.
   if (xs.length === 0) xs.push(0, 1);
   const last = scale === "linear" && data.linear_to ? data.linear_to : Math.max(...xs);
-  const x = makeAxis(Math.min(...xs), last, data.x_scale, data.x_label);
+  const room = data.tight ? 0.03 * (last - Math.min(...xs)) : 0;
+  const x = makeAxis(Math.min(...xs) - room, last + room, data.x_scale, data.x_label);
   const tops = data.series.flatMap((one) => one.y.map((value, i) => value === null ? null : value + (scale === "log" ? 0 : one.error[i] ?? 0)));
-  const [low, high] = rangeOf(tops, scale);
-  const y = makeAxis(low, scale === "log" ? high * 1.3 : high * 1.05, scale, data.y_label);
+  const [low, high] = data.tight && scale === "linear" ? tightRangeOf(data.series) : rangeOf(tops, scale);
+  const y = makeAxis(low, scale === "log" ? high * 1.3 : data.tight ? high : high * 1.05, scale, data.y_label);
   const place = drawAxes(svg, area, x, y, "grid");
   const clamp = ([a, b]) => [around(a), around(Math.min(Math.max(b, area.top), area.top + area.height))];
   const at = (a, b) => clamp(scale === "log" && !(b > 0) ? [place(a, high)[0], 1e9] : place(a, b));
   data.series.forEach((one, index) => drawSeries(svg, one, one.look ?? index, x, at));
   followChart(svg, data, { x, at, area }, readout);
   return [svg, legendOf(data.series)];
+}
+
+// From the least to the greatest value with their errors, and a little room: small differences are what a study looks for.
+function tightRangeOf(series) {
+  const known = series.flatMap((one) => one.y.flatMap((value, i) => value === null ? [] : [value - (one.error[i] ?? 0), value + (one.error[i] ?? 0)]));
+  if (known.length === 0) return [0, 1];
+  const [low, high] = [Math.min(...known), Math.max(...known)];
+  const room = 0.05 * (high - low || Math.abs(high) || 1);
+  return [low - room, high + room];
 }
 
 function drawSeries(svg, one, look, x, at) {

@@ -3,6 +3,7 @@
 
 mod batch;
 mod compare;
+mod diff;
 mod display;
 mod film;
 mod merge;
@@ -12,6 +13,7 @@ mod values;
 
 use crate::cli::batch::BatchArgs;
 use crate::cli::compare::CompareArgs;
+use crate::cli::diff::DiffArgs;
 use crate::cli::film::FilmArgs;
 use crate::cli::merge::MergeArgs;
 use crate::cli::mesh::MeshArgs;
@@ -20,11 +22,11 @@ use crate::error::{Diagnostic, Error};
 use crate::input::diagnostic::{self, Colour};
 use crate::input::{self, Settings};
 use crate::pipeline;
-use crate::report::Existing;
+use crate::report::{self, Existing};
 use crate::transport::Interrupt;
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use std::io::{ErrorKind, IsTerminal, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Photometric sensor data for light tubes and light guides: flux, uniformity, maps and far fields with error bars.
@@ -35,7 +37,7 @@ struct Cli {
     command: Command,
 }
 
-const EXIT_CODES: &str = "Exit codes: 0 good; 1 a check was missed; 2 not run (usage or input); 3 internal or I/O \
+const EXIT_CODES: &str = "Exit codes: 0 good; 1 a check was missed, or reports differ; 2 not run (usage or input); 3 internal or I/O \
 error; 130 stopped by Ctrl-C.";
 
 /// What shells give for a program that was stopped by Ctrl-C: 128 and the number of the signal.
@@ -51,6 +53,8 @@ enum Command {
     Merge(MergeArgs),
     /// Run several estimators and baselines on the same time and compare their errors with a truth.
     Compare(CompareArgs),
+    /// Hold two reports, of runs or of studies, against each other. Exits with 1 if a measure differs beyond its error.
+    Diff(DiffArgs),
     /// Validate a scene, print what is in it, and draw a cross-section with 50 traced paths.
     Check(CheckArgs),
     /// Print reflectance and transmittance of the prism films of a scene against the angle.
@@ -115,6 +119,7 @@ pub fn main() -> ExitCode {
         Command::Merge(args) => merge::merge(&args),
         Command::Batch(args) => batch::batch(&args),
         Command::Compare(args) => compare::compare(&args),
+        Command::Diff(args) => diff::run(&args),
         Command::Check(args) => check(&args),
         Command::Film(args) => film::film(&args),
         Command::Mesh(args) => mesh::mesh(&args),
@@ -174,6 +179,15 @@ fn check(args: &CheckArgs) -> ExitCode {
         }
         Err(error) => fail(&error),
     }
+}
+
+/// Writes a JUnit XML file where one is wanted. One that is there with other contents stays, unless it may be replaced.
+fn write_junit(
+    file: Option<&Path>,
+    existing: Existing,
+    xml: impl FnOnce() -> crate::error::Result<String>,
+) -> crate::error::Result<()> {
+    file.map_or(Ok(()), |file| report::write_whole(file, xml()?.as_bytes(), existing))
 }
 
 /// Prints a text, or says why there is none.

@@ -2,9 +2,9 @@
 
 use crate::cli::display::Display;
 use crate::cli::values::{parse_count, parse_percent, parse_shard};
-use crate::cli::{INTERRUPTED, fail, on_ctrl_c, print, use_threads, warn};
+use crate::cli::{INTERRUPTED, fail, on_ctrl_c, print, use_threads, warn, write_junit};
 use crate::input::StudySettings;
-use crate::report::Written;
+use crate::report::{Existing, Written, study_junit};
 use crate::study::{BatchWishes, Finished, OnExisting, run_study};
 use crate::transport::Shard;
 use clap::Args;
@@ -47,6 +47,9 @@ pub(super) struct BatchArgs {
     /// Compute only this part of the designs, such as 3/16; `merge` puts the parts together.
     #[arg(long, value_parser = parse_shard, value_name = "PART/OF")]
     shard: Option<Shard>,
+    /// Write a JUnit XML file with a test case for each check of each design.
+    #[arg(long, value_name = "FILE", conflicts_with = "shard")]
+    junit: Option<PathBuf>,
     /// Print nothing but errors.
     #[arg(short, long)]
     quiet: bool,
@@ -84,7 +87,14 @@ pub(super) fn batch(args: &BatchArgs) -> ExitCode {
         display.close();
     }
     match outcome {
-        Ok(finished) => tell(&finished, args.quiet),
+        Ok(finished) => {
+            let code = tell(&finished, args.quiet);
+            // A batch that was stopped has judged no study yet.
+            let Some(report) = &finished.report else { return code };
+            let existing = if args.overwrite { Existing::Replace } else { Existing::Keep };
+            let written = write_junit(args.junit.as_deref(), existing, || study_junit(report));
+            written.map_or_else(|error| fail(&error), |()| code)
+        }
         Err(error) => fail(&error),
     }
 }

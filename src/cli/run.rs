@@ -5,10 +5,10 @@ use crate::cli::values::{
     parse_angle, parse_count, parse_percent, parse_radius, parse_records, parse_shard, parse_time,
     words,
 };
-use crate::cli::{INTERRUPTED, fail, finish, on_ctrl_c, print, use_threads, warn};
+use crate::cli::{INTERRUPTED, fail, finish, on_ctrl_c, print, use_threads, warn, write_junit};
 use crate::input::{GatherSettings, Settings};
 use crate::pipeline::{self, Finished, Output, SliceWishes, SliceWritten, Start, Stop};
-use crate::report::{Existing, Outcome, Written};
+use crate::report::{Existing, Outcome, Written, run_junit};
 use crate::scene::plan::{Request, Schedule};
 use crate::transport::{Interrupt, Shard};
 use clap::Args;
@@ -58,6 +58,9 @@ pub(super) struct RunArgs {
     /// Trace only this part of the paths, such as 3/16; `merge` puts the parts together.
     #[arg(long, value_parser = parse_shard, value_name = "PART/OF")]
     shard: Option<Shard>,
+    /// Write a JUnit XML file with a test case for each check.
+    #[arg(long, value_name = "FILE", conflicts_with = "shard")]
+    junit: Option<PathBuf>,
     /// Print nothing but errors.
     #[arg(short, long)]
     quiet: bool,
@@ -135,7 +138,12 @@ pub(super) fn run(args: &RunArgs) -> ExitCode {
     });
     display.close();
     match outcome {
-        Ok(finished) => tell(&finished, args.quiet),
+        Ok(finished) => {
+            let code = tell(&finished, args.quiet);
+            let xml = || run_junit(&finished.report);
+            let written = write_junit(args.junit.as_deref(), existing, xml);
+            written.map_or_else(|error| fail(&error), |()| code)
+        }
         Err(error) if interrupt.is_raised() => {
             fail(&error);
             ExitCode::from(INTERRUPTED)

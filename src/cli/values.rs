@@ -93,6 +93,11 @@ pub(super) fn parse_number(text: &str) -> Result<f64, String> {
     if value.is_finite() { Ok(value) } else { Err(format!("`{text}` is not finite")) }
 }
 
+/// A number of errors that is above 0.
+pub(super) fn parse_sigmas(text: &str) -> Result<f64, String> {
+    parse_between(text, "a number of errors", f64::INFINITY, "a finite number above 0")
+}
+
 /// One of some words, and what it stands for.
 pub(super) fn words<T: Clone + Send + Sync + 'static, const N: usize>(
     names: [&'static str; N],

@@ -6,12 +6,14 @@
 mod by_sun;
 mod compare;
 mod csv;
+pub mod diff;
 mod drawing;
 mod figures;
 mod film;
 mod folder;
 mod html;
 mod inventory;
+mod junit;
 mod markdown;
 mod mesh;
 pub mod png;
@@ -30,6 +32,7 @@ pub use figures::scene_picture;
 pub use film::film_tables;
 pub use folder::{Existing, Folder, Written, remove_if_there, sweep, write_whole};
 pub use inventory::inventory;
+pub use junit::{diff_junit, run_junit, study_junit};
 pub use mesh::mesh_report;
 pub use recipe::Recipe;
 pub use record::{

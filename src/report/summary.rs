@@ -5,7 +5,7 @@ use crate::report::Report;
 use serde::Serialize;
 
 /// Version of the layout of this file.
-const FORMAT: u32 = 1;
+pub(crate) const FORMAT: u32 = 1;
 
 #[derive(Serialize)]
 struct Summary<'r> {

@@ -6,6 +6,7 @@
 mod batches;
 mod commands;
 mod compare;
+mod diffs;
 mod parts;
 mod refusals;
 mod runs;

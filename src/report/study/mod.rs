@@ -25,8 +25,8 @@ use serde::Serialize;
 
 /// Name of the file with everything for programs.
 pub const SUMMARY: &str = "study.json";
-/// Format of that file.
-const SUMMARY_FORMAT: u32 = 1;
+/// Version of the layout of that file.
+pub(crate) const SUMMARY_FORMAT: u32 = 1;
 
 /// All files of a study but its manifest and its records, in the reproducible order.
 pub fn study_files(report: &StudyReport, study_text: &str) -> Result<Vec<OutputFile>> {

@@ -1,0 +1,72 @@
+//! `lumiduct diff`: two reports side by side.
+
+use crate::cli::values::{parse_percent, parse_sigmas};
+use crate::cli::{fail, print, write_junit};
+use crate::error::Result;
+use crate::report::diff::{Diff, DiffWishes, Limits, Rows, diff, diff_files, diff_table, read};
+use crate::report::{Existing, Folder, diff_junit};
+use clap::Args;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Arguments of the command.
+#[derive(Debug, Args)]
+pub(super) struct DiffArgs {
+    /// Folder of the first report: of a run, or of a study.
+    a: PathBuf,
+    /// Folder of the second report, of the same kind.
+    b: PathBuf,
+    /// A measure differs beyond this many errors of the difference.
+    #[arg(long, value_parser = parse_sigmas, value_name = "COUNT", default_value = "4")]
+    sigmas: f64,
+    /// It must differ by more than this share of its first value, too, such as 1%.
+    #[arg(long, value_parser = parse_percent, value_name = "PERCENT")]
+    relative: Option<f64>,
+    /// Compare only measures whose names begin so, such as `exit.`; may be given several times.
+    #[arg(long, value_name = "PATTERN")]
+    only: Vec<String>,
+    /// Show all measures, not only the worst.
+    #[arg(long)]
+    all: bool,
+    /// Write diff.md, diff.csv and pictures of the differences of maps into this folder.
+    #[arg(short = 'o', long = "output", value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Write a JUnit XML file with a test case for each measure.
+    #[arg(long, value_name = "FILE")]
+    junit: Option<PathBuf>,
+    /// Replace files that are there.
+    #[arg(long)]
+    overwrite: bool,
+    /// Print nothing but errors.
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// Runs the command; the exit code says whether the reports differ.
+pub(super) fn run(args: &DiffArgs) -> ExitCode {
+    match compare(args) {
+        Ok(diff) if diff.is_within() => ExitCode::SUCCESS,
+        Ok(_) => ExitCode::from(1),
+        Err(error) => fail(&error),
+    }
+}
+
+fn compare(args: &DiffArgs) -> Result<Diff> {
+    let sides = [read(&args.a)?, read(&args.b)?];
+    let limits = Limits { sigmas: args.sigmas, relative: args.relative };
+    let diff = diff(&sides, &DiffWishes { limits, only: args.only.clone() })?;
+    let existing = if args.overwrite { Existing::Replace } else { Existing::Keep };
+    if let Some(dir) = &args.output {
+        Folder::open(dir, existing, None)?.write(&diff_files(&diff)?)?;
+    }
+    write_junit(args.junit.as_deref(), existing, || diff_junit(&diff))?;
+    if !args.quiet {
+        let rows = if args.all { Rows::All } else { Rows::Worst };
+        let mut text = diff_table(&diff, rows);
+        if let Some(dir) = &args.output {
+            text += &format!("report: {}\n", dir.join("diff.md").display());
+        }
+        print(&text)?;
+    }
+    Ok(diff)
+}

@@ -1,0 +1,133 @@
+//! JUnit XML: checks and differences as test cases, for machines that run them.
+//!
+//! It holds neither times nor identifiers: the same results give the same bytes. Only this file names `quick_junit`.
+
+use crate::error::{Error, Result};
+use crate::measure::Outcome;
+use crate::report::diff::{Diff, DiffRow, Judgement, sentence};
+use crate::report::study::{DesignOutcome, StudyReport};
+use crate::report::{CheckResult, Report, TargetFacts};
+use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestSuite};
+
+/// The checks of a run. A run with checks that is partial or off its target is not what was asked for; both have a case.
+pub fn run_junit(report: &Report) -> Result<String> {
+    let name = &report.scene.name;
+    let mut suite = TestSuite::new(name.as_str());
+    for (index, result) in report.checks.iter().enumerate() {
+        suite.add_test_case(check_case(name, &report.checks, index, result));
+    }
+    if let Some(target) = report.run.target.as_ref().filter(|_| !report.checks.is_empty()) {
+        suite.add_test_case(target_case(name, target));
+    }
+    if report.run.partial {
+        let status = error("partial", &report.run.stopped);
+        suite.add_test_case(case(name, "whole run", status));
+    }
+    written(suite)
+}
+
+/// The checks of every design of a study. A design that makes no scene is an error.
+pub fn study_junit(report: &StudyReport) -> Result<String> {
+    let name = &report.facts.name;
+    let mut suite = TestSuite::new(name.as_str());
+    for design in &report.designs {
+        let class = format!("{name}.design {}", design.design);
+        match &design.outcome {
+            DesignOutcome::Failed(reason) => {
+                suite.add_test_case(case(&class, "scene", error("no scene", reason)));
+            }
+            DesignOutcome::Done(result) => {
+                for (index, own) in result.checks.iter().enumerate() {
+                    suite.add_test_case(check_case(&class, &result.checks, index, own));
+                }
+                if let Some(target) = &result.target {
+                    suite.add_test_case(target_case(&class, target));
+                }
+            }
+        }
+    }
+    written(suite)
+}
+
+/// The measures of a comparison. One that cannot be judged was skipped.
+pub fn diff_junit(diff: &Diff) -> Result<String> {
+    let [a, b] = &diff.names;
+    let name = if a == b { format!("diff {a}") } else { format!("diff {a} {b}") };
+    let mut suite = TestSuite::new(name.as_str());
+    for row in &diff.rows {
+        suite.add_test_case(case(&name, &row.name, diff_status(diff, row)));
+    }
+    written(suite)
+}
+
+fn diff_status(diff: &Diff, row: &DiffRow) -> TestCaseStatus {
+    match row.judgement {
+        Judgement::Within | Judgement::Tolerated => TestCaseStatus::success(),
+        Judgement::Beyond => {
+            failure("beyond", &format!("{}; the limit is {}", sentence(row), diff.limits.words()))
+        }
+        Judgement::Unknown => {
+            let mut status = TestCaseStatus::skipped();
+            let doubt = row.doubt.as_deref().unwrap_or_default();
+            status.set_message(format!("cannot be judged: {doubt}"));
+            status
+        }
+    }
+}
+
+/// A check is called by its measure; several of one measure are numbered.
+fn check_case(class: &str, all: &[CheckResult], index: usize, result: &CheckResult) -> TestCase {
+    let same = |other: &&CheckResult| other.check.measure == result.check.measure;
+    let name = match all.iter().filter(same).count() {
+        1 => result.check.measure.clone(),
+        _ => {
+            let number = all[..=index].iter().filter(same).count();
+            format!("{} ({number})", result.check.measure)
+        }
+    };
+    let reason = &result.verdict.reason;
+    let status = match result.verdict.outcome {
+        Outcome::Passed => TestCaseStatus::success(),
+        Outcome::Undecided => failure("undecided", reason),
+        Outcome::Failed => failure("failed", reason),
+        Outcome::Unknown => error("unknown measure", reason),
+    };
+    case(class, &name, status)
+}
+
+fn target_case(class: &str, target: &TargetFacts) -> TestCase {
+    let status = if target.is_reached() {
+        TestCaseStatus::success()
+    } else {
+        failure("off target", &target.sentence())
+    };
+    case(class, "target error", status)
+}
+
+fn case(class: &str, name: &str, status: TestCaseStatus) -> TestCase {
+    let mut case = TestCase::new(name, status);
+    case.set_classname(class);
+    case
+}
+
+fn failure(kind: &str, reason: &str) -> TestCaseStatus {
+    unsuccessful(NonSuccessKind::Failure, kind, reason)
+}
+
+fn error(kind: &str, reason: &str) -> TestCaseStatus {
+    unsuccessful(NonSuccessKind::Error, kind, reason)
+}
+
+fn unsuccessful(of: NonSuccessKind, kind: &str, reason: &str) -> TestCaseStatus {
+    let mut status = TestCaseStatus::non_success(of);
+    status.set_type(kind).set_message(reason);
+    status
+}
+
+fn written(suite: TestSuite) -> Result<String> {
+    let mut report = quick_junit::Report::new("lumiduct");
+    report.add_test_suite(suite);
+    report
+        .to_string()
+        .map_err(|reason| Error::Output { what: "JUnit XML".into(), reason: reason.to_string() })
+}

@@ -79,6 +79,7 @@ pub(crate) fn execute(batch: &Batch<'_>, wanted: &[usize]) -> Result<()> {
         Settings { batch_paths: Some(usual.div_ceil(BATCH_PARTS)), ..study.common.clone() };
     let (next, trouble) = (AtomicUsize::new(0), Mutex::new(None));
     let board = Board::new(wanted.len(), pending.len(), batch);
+    batch.store.begin_timing()?;
     board.show();
     std::thread::scope(|scope| {
         for _ in 0..batch.jobs.min(pending.len()) {
@@ -87,14 +88,11 @@ pub(crate) fn execute(batch: &Batch<'_>, wanted: &[usize]) -> Result<()> {
                     if batch.interrupt.is_raised() {
                         return;
                     }
-                    match trace(batch, design, &common, &board) {
-                        Ok(()) => board.end(design.number),
-                        Err(error) => {
-                            // The others end, too, and what they have is lost: it can be computed again.
-                            batch.interrupt.raise();
-                            if let Ok(mut trouble) = trouble.lock() {
-                                trouble.get_or_insert(error);
-                            }
+                    if let Err(error) = trace_timed(batch, design, &common, &board) {
+                        // The others end, too, and what they have is lost: it can be computed again.
+                        batch.interrupt.raise();
+                        if let Ok(mut trouble) = trouble.lock() {
+                            trouble.get_or_insert(error);
                         }
                     }
                 }
@@ -107,8 +105,38 @@ pub(crate) fn execute(batch: &Batch<'_>, wanted: &[usize]) -> Result<()> {
     }
 }
 
+/// How a design has ended.
+enum Ended {
+    /// It has its record.
+    Recorded,
+    /// The user stopped it, and nothing was written.
+    Stopped,
+}
+
+/// Traces a design, and notes how long it took.
+fn trace_timed(
+    batch: &Batch<'_>,
+    design: &Design,
+    common: &Settings,
+    board: &Board<'_>,
+) -> Result<()> {
+    let start = Instant::now();
+    match trace(batch, design, common, board)? {
+        Ended::Stopped => Ok(()),
+        Ended::Recorded => {
+            board.end(design.number);
+            batch.store.note_seconds(design.number, start.elapsed().as_secs_f64())
+        }
+    }
+}
+
 /// Traces a design and writes its record, unless it is interrupted.
-fn trace(batch: &Batch<'_>, design: &Design, common: &Settings, board: &Board<'_>) -> Result<()> {
+fn trace(
+    batch: &Batch<'_>,
+    design: &Design,
+    common: &Settings,
+    board: &Board<'_>,
+) -> Result<Ended> {
     let study = batch.study;
     let own = study.parameters.iter().zip(&design.settings);
     let own = own.flat_map(|(parameter, setting)| parameter.overrides(setting));
@@ -117,7 +145,7 @@ fn trace(batch: &Batch<'_>, design: &Design, common: &Settings, board: &Board<'_
     let outcome = match pipeline::prepare(&study.scene, &settings) {
         Ok(job) => match trace_job(batch, design, job, board)? {
             Some(result) => DesignOutcome::Done(Box::new(result)),
-            None => return Ok(()),
+            None => return Ok(Ended::Stopped),
         },
         Err(Error::Input(diagnostics)) => DesignOutcome::Failed(sentences(&diagnostics)),
         Err(Error::Usage(message)) => DesignOutcome::Failed(message),
@@ -130,7 +158,8 @@ fn trace(batch: &Batch<'_>, design: &Design, common: &Settings, board: &Board<'_
         design: design.number,
         settings: names.zip(design.settings.iter().cloned()).collect(),
         outcome,
-    })
+    })?;
+    Ok(Ended::Recorded)
 }
 
 /// What tracing gives; `None` when it was interrupted.

@@ -10,12 +10,14 @@ use crate::study::OnExisting;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::collections::BTreeMap;
-use std::fs;
+use std::fs::{self, OpenOptions};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Names in the folder of a batch.
 const MANIFEST: &str = "batch.json";
 const DESIGNS: &str = "designs";
+const TIMING: &str = "timing.csv";
 
 /// The folder of a batch.
 #[derive(Debug)]
@@ -135,6 +137,23 @@ impl Store {
         write_whole(&self.record_path(record.design), (text + "\n").as_bytes(), Existing::Replace)
     }
 
+    /// Begins the table of seconds, which lies outside of the reproducible files, if it is not there.
+    pub(crate) fn begin_timing(&self) -> Result<()> {
+        let path = self.dir.join(TIMING);
+        let header = b"design,seconds\n";
+        if path.exists() { Ok(()) } else { write_whole(&path, header, Existing::Replace) }
+    }
+
+    /// Notes how long a design took.
+    pub(crate) fn note_seconds(&self, design: usize, seconds: f64) -> Result<()> {
+        let path = self.dir.join(TIMING);
+        let line = format!("{design},{seconds:.3}\n");
+        let file = OpenOptions::new().append(true).open(&path);
+        // One write of a short line: those of several threads do not mix.
+        file.and_then(|mut file| file.write_all(line.as_bytes()))
+            .map_err(|source| Error::io(&path, source))
+    }
+
     /// All records that are there, by the numbers of their designs.
     pub(crate) fn records(&self) -> Result<BTreeMap<usize, DesignRecord>> {
         let designs = self.dir.join(DESIGNS);
@@ -193,6 +212,7 @@ impl Store {
                 remove_if_there(&self.dir.join(name))?;
             }
         }
+        remove_if_there(&self.dir.join(TIMING))?;
         for path in entries(&self.dir.join(DESIGNS))? {
             let is_record = path.extension().is_some_and(|extension| extension == "json");
             if is_record && path.is_file() {

@@ -1,6 +1,6 @@
 //! What two reports say of the same measures, and whether they differ by more than their errors.
 //!
-//! Reading is one function, [`read`]; all that follows is pure. Reports are known by their files alone: scenes are not
+//! Reading is one function, [`read()`]; all that follows is pure. Reports are known by their files alone: scenes are not
 //! loaded, and nothing is traced. The errors of both sides are taken as independent. Runs of the same seed are not quite:
 //! their noise has much in common, and the differences are then smaller than the errors that are told.
 

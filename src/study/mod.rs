@@ -26,6 +26,7 @@ use crate::study::designs::designs;
 use crate::study::execute::{Batch, execute};
 use crate::study::store::Store;
 use crate::transport::{Interrupt, Shard};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Version of the program, for reports.
@@ -126,7 +127,7 @@ pub fn merge_study(
             other.path().display()
         )));
     }
-    let mut have: Vec<usize> = Vec::new();
+    let mut have = BTreeSet::new();
     for store in &stores {
         have.extend(store.records()?.into_keys());
     }

@@ -9,8 +9,11 @@ use serde_json::Value;
 /// The version of the format of studies that this program reads.
 pub const STUDY_FORMAT_VERSION: u32 = 1;
 
-/// Most designs of a study.
-pub const MOST_DESIGNS: usize = 100_000;
+/// Most designs of a study: as many as the Sobol sequence has.
+pub const MOST_DESIGNS: usize = 1 << 16;
+
+/// Most parameters of a study: within the dimensions of the Sobol sequence.
+pub const MOST_PARAMETERS: usize = 200;
 
 /// A study: a scene, what is varied in it and how, what is recorded of every design, and what a good design is.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -5,7 +5,8 @@ use crate::input::keys::{Key, Places};
 use crate::input::overrides::parse_key;
 use crate::input::problems::{Problems, name_hint};
 use crate::input::spec::study::{
-    MOST_DESIGNS, NormalSpec, ParameterSpec, PlanSpec, SpreadSpec, StudySpec, UniformSpec,
+    MOST_DESIGNS, MOST_PARAMETERS, NormalSpec, ParameterSpec, PlanSpec, SpreadSpec, StudySpec,
+    UniformSpec,
 };
 use crate::input::study::{Parameter, Setting, problems_of_scene};
 use crate::input::{Job, Settings};
@@ -15,6 +16,10 @@ use std::path::Path;
 pub(super) fn check(spec: &StudySpec, places: &Places, problems: &mut Problems) {
     if spec.parameters.is_empty() && places.has(&Key::of(&["parameters"])) {
         let message = "nothing is varied: there is no parameter";
+        problems.error(&Key::of(&["parameters"]), message);
+    }
+    if spec.parameters.len() > MOST_PARAMETERS {
+        let message = format!("more than {MOST_PARAMETERS} parameters");
         problems.error(&Key::of(&["parameters"]), message);
     }
     for (name, parameter) in &spec.parameters {

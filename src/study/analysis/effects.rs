@@ -5,6 +5,7 @@ use crate::report::study::{
     DesignRecord, Effect, EffectPoint, ParameterFacts, PlanFacts, StudyFacts,
 };
 use crate::study::analysis::combine::{Term, combine};
+use std::cmp::Ordering;
 
 /// The effects of all parameters on all measures. Samples have as many settings as designs, and none.
 pub(super) fn effects(facts: &StudyFacts, designs: &[DesignRecord]) -> Vec<Effect> {
@@ -56,10 +57,12 @@ fn points(
             settings.push(setting.clone());
         }
     }
-    // Numbers in their order, choices as they came.
+    // Numbers in their order, then choices as they came.
     settings.sort_by(|a, b| match (a.number(), b.number()) {
         (Some(a), Some(b)) => a.total_cmp(&b),
-        (Some(_), None) | (None, Some(_) | None) => std::cmp::Ordering::Equal,
+        (Some(_), None) => Ordering::Less,
+        (None, Some(_)) => Ordering::Greater,
+        (None, None) => Ordering::Equal,
     });
     settings
         .into_iter()

@@ -53,7 +53,7 @@ pub(super) struct RunArgs {
     #[arg(long, value_parser = parse_time, value_name = "TIME", conflicts_with = "shard")]
     checkpoint: Option<Duration>,
     /// Go on from the checkpoint in the folder of the report; without one, begin anew.
-    #[arg(long, conflicts_with = "shard")]
+    #[arg(long, conflicts_with_all = ["shard", "overwrite"])]
     resume: bool,
     /// Trace only this part of the paths, such as 3/16; `merge` puts the parts together.
     #[arg(long, value_parser = parse_shard, value_name = "PART/OF")]

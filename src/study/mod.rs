@@ -142,6 +142,14 @@ pub fn merge_study(
     }
     let text = first.text()?;
     let dir = dir.map_or_else(|| default_dir(&facts.name), Path::to_path_buf);
+    // What is put into a part of itself would be cleared before it is read.
+    let place = |path: &Path| path.canonicalize().ok();
+    if place(&dir).is_some() && parts.iter().any(|part| place(part) == place(&dir)) {
+        return Err(Error::Usage(format!(
+            "{} is one of the parts; use -o for a folder of the whole",
+            dir.display()
+        )));
+    }
     let whole = Store::open(&dir, &facts, &text, existing)?;
     for store in &stores {
         whole.take(store)?;

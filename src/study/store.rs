@@ -11,13 +11,16 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs::{self, OpenOptions};
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 /// Names in the folder of a batch.
 const MANIFEST: &str = "batch.json";
 const DESIGNS: &str = "designs";
 const TIMING: &str = "timing.csv";
+
+/// What to do about a record that is none.
+const REMOVE: &str = "remove it, and the design is computed anew";
 
 /// The folder of a batch.
 #[derive(Debug)]
@@ -39,8 +42,6 @@ impl Store {
             return Err(Error::Usage(format!("{} is a file, not a folder", dir.display())));
         }
         let store = Self { dir: dir.to_path_buf(), facts: facts.clone() };
-        let designs = store.dir.join(DESIGNS);
-        fs::create_dir_all(&designs).map_err(|source| Error::io(&designs, source))?;
         match (Self::manifest(dir)?, existing) {
             (_, OnExisting::Replace) => store.clear()?,
             (None, OnExisting::Keep | OnExisting::Resume) => store.expect_empty()?,
@@ -63,6 +64,8 @@ impl Store {
             }
             (Some(_), OnExisting::Resume) => store.sweep()?,
         }
+        let designs = store.dir.join(DESIGNS);
+        fs::create_dir_all(&designs).map_err(|source| Error::io(&designs, source))?;
         let manifest = serde_json::to_string_pretty(facts).map_err(|reason| Error::Output {
             what: MANIFEST.into(),
             reason: reason.to_string(),
@@ -162,13 +165,16 @@ impl Store {
             if path.extension().is_none_or(|extension| extension != "json") {
                 continue;
             }
-            let record: DesignRecord = read_json(&path)?;
+            let record: DesignRecord = read_json(&path).map_err(|error| match error {
+                Error::Usage(message) => Error::Usage(format!("{message}; {REMOVE}")),
+                other @ (Error::Input(_) | Error::Io { .. } | Error::Output { .. }) => other,
+            })?;
             if record.lumiduct_design != DESIGN_FORMAT
                 || record.study != self.facts.hash
                 || path != self.record_path(record.design)
             {
                 return Err(Error::Usage(format!(
-                    "{} is no record of this study; remove it, and the design is computed anew",
+                    "{} is no record of this study; {REMOVE}",
                     path.display()
                 )));
             }
@@ -223,9 +229,13 @@ impl Store {
     }
 }
 
+/// Everything in a folder, by name; nothing of one that is not there.
 fn entries(folder: &Path) -> Result<Vec<PathBuf>> {
     let failed = |source| Error::io(folder, source);
-    let entries = fs::read_dir(folder).map_err(failed)?;
+    let entries = match fs::read_dir(folder) {
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
+        other => other.map_err(failed)?,
+    };
     let paths: std::io::Result<Vec<PathBuf>> =
         entries.map(|entry| entry.map(|entry| entry.path())).collect();
     let mut paths = paths.map_err(failed)?;

@@ -86,6 +86,8 @@ fn results_do_not_depend_on_threads_jobs_or_parts() {
         assert!(said.contains("lumiduct merge"), "{said}");
     }
     assert!(place.bad(2, "merge 1of4 2of4 4of4 -o merged").contains("a part is missing"));
+    let own = place.bad(2, "merge 4of4 2of4 1of4 3of4 -o 1of4 --overwrite");
+    assert!(own.contains("is one of the parts"), "{own}");
     place.good("merge 4of4 2of4 1of4 3of4 -o merged");
     assert_eq!(results(&place.path("whole")), results(&place.path("merged")));
 }
@@ -145,6 +147,7 @@ fn a_record_that_is_no_record_is_named() {
     fs::create_dir(place.path("full")).unwrap();
     fs::write(place.path("full").join("mine.txt"), "mine").unwrap();
     assert!(place.bad(2, "batch study.toml -o full").contains("no results of a batch"));
+    assert_eq!(names(&place.path("full")), ["mine.txt"]);
 }
 
 #[test]
@@ -240,6 +243,13 @@ fn bad_studies_are_refused_with_the_line_to_change_and_write_nothing() {
         ("unit = \"mm\"", "units = \"mm\"", "unit"),
         ("lumiduct_study = 1", "lumiduct_study = 2", "version 2"),
         ("lumiduct_study = 1", "lumiduct = 1", "this is a scene"),
+        ("media.acrylic.index\"]", "solids.rod.cylinder.length_mm\"]", "sets this key"),
+        ("media.acrylic.index\"]", "solids.rod.cylinder\"]", "or a part of it"),
+        (
+            "values = [5, 10, 20]",
+            "spread = { normal = { mean = 5, std_dev = 0.1, from = 6 } }",
+            "leave nothing of the curve",
+        ),
         ("[run]", "[set]\n\"run.seed\" = 3\n[run]", "under `run` of the study"),
     ] {
         let text = STUDY.replace(from, to);

@@ -121,7 +121,10 @@ impl Parameter {
         match &self.domain {
             Domain::Levels(levels) => levels.first().cloned().unwrap_or(Setting::AsInScene),
             Domain::Uniform { from, .. } => Setting::Number(*from),
-            Domain::Normal { mean, .. } => Setting::Number(*mean),
+            Domain::Normal { mean, from, to, .. } => {
+                let (from, to) = (from.unwrap_or(f64::NEG_INFINITY), to.unwrap_or(f64::INFINITY));
+                Setting::Number(mean.max(from).min(to))
+            }
             Domain::Listed => Setting::AsInScene,
         }
     }
@@ -200,10 +203,8 @@ fn domain(spec: &ParameterSpec, plan: &PlanSpec) -> Domain {
         if !is_stepped {
             return Domain::Uniform { from, to };
         }
-        let step = |index| {
-            let share = f64::from(index) / last;
-            Setting::Number(whole(from * (1.0 - share) + to * share))
-        };
+        let step =
+            |index| Setting::Number(whole(rounded(from + (to - from) * f64::from(index) / last)));
         return Domain::Levels((0..range.count).map(step).collect());
     }
     match &spec.spread {
@@ -215,6 +216,11 @@ fn domain(spec: &ParameterSpec, plan: &PlanSpec) -> Domain {
         }
         None => Domain::Listed,
     }
+}
+
+/// A number with twelve digits: sums of decimal fractions are a little off.
+fn rounded(number: f64) -> f64 {
+    format!("{number:.11e}").parse().unwrap_or(number)
 }
 
 fn choices(spec: &ParameterSpec, key: &Key, problems: &mut Problems) -> IndexMap<String, String> {

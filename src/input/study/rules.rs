@@ -30,6 +30,7 @@ pub(super) fn check(spec: &StudySpec, places: &Places, problems: &mut Problems) 
             check_key(tied.key(), &key.field("keys").index(index), problems);
         }
     }
+    check_shared_keys(spec, problems);
     check_set(spec, problems);
     check_count(spec, problems);
     if let Some(ranking) = &spec.ranking
@@ -84,6 +85,9 @@ fn check_source(spec: &ParameterSpec, plan: &PlanSpec, key: &Key, problems: &mut
 
 /// Notes spreads without room.
 fn check_spread(spec: &ParameterSpec, key: &Key, problems: &mut Problems) {
+    if let Some(SpreadSpec::Normal(own)) = &spec.spread {
+        check_limits(own, &key.field("spread").field("normal"), problems);
+    }
     let mut ordered = |from: f64, to: f64, key: &Key| {
         if from >= to {
             let message = format!("{from} is not below `to`, which is {to}");
@@ -112,6 +116,39 @@ fn check_key(text: &str, key: &Key, problems: &mut Problems) {
         problems
             .error(key, format!("`{text}` is no dotted key"))
             .hint("write it as after -D, such as solids.rod.cylinder.length_mm");
+    }
+}
+
+/// Notes a normal spread of which its limits leave next to nothing.
+fn check_limits(spec: &NormalSpec, key: &Key, problems: &mut Problems) {
+    let NormalSpec { mean, std_dev, from, to } = spec;
+    let far = FARTHEST_LIMIT * std_dev;
+    if from.is_some_and(|from| from > mean + far) || to.is_some_and(|to| to < mean - far) {
+        let message = format!(
+            "the limits leave nothing of the curve: they lie more than {FARTHEST_LIMIT} standard deviations beside its mean"
+        );
+        problems.error(key, message);
+    }
+}
+
+/// Standard deviations beside the mean beyond which less than a millionth of a normal curve lies, 1.
+const FARTHEST_LIMIT: f64 = 4.75;
+
+/// Notes keys that are set twice, or lie in one another: the later would win without a word.
+fn check_shared_keys(spec: &StudySpec, problems: &mut Problems) {
+    let mut known: Vec<(Key, String)> = Vec::new();
+    for (name, parameter) in &spec.parameters {
+        for (index, tied) in parameter.keys.iter().enumerate() {
+            let Some(own) = parse_key(tied.key()) else { continue };
+            let other = known.iter().find(|(key, _)| key.is_within(&own) || own.is_within(key));
+            if let Some((_, other)) = other {
+                let key = Key::of(&["parameters", name, "keys"]).index(index);
+                problems
+                    .error(&key, format!("the parameter `{other}` sets this key, or a part of it"))
+                    .hint("let each parameter have keys of its own");
+            }
+            known.push((own, name.clone()));
+        }
     }
 }
 

@@ -110,7 +110,7 @@ fn difference(behind: &Estimate) -> String {
         Pairing::Paired => "",
         Pairing::Independent => " (as if independent)",
     };
-    let is_close = behind.value.abs() < BEHIND_ERRORS * behind.std_error;
+    let is_close = behind.value.abs() <= BEHIND_ERRORS * behind.std_error;
     format!("{number}{told}{}", if is_close { ", not told apart" } else { "" })
 }
 

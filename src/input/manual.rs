@@ -2,11 +2,18 @@
 //!
 //! What a schema cannot say, conventions and examples, is in `docs/templates`.
 
+mod parts;
+#[cfg(test)]
+mod tests;
+
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-use serde_json::{Map, Value as Json};
+use serde_json::Value as Json;
 
+use crate::input::manual::parts::{
+    Shared, anchor, default_of, description, kind_of, options, range_of, shared_keys, title,
+};
 use crate::input::schema::{self, RequiredSet};
 use crate::input::validate::wording;
 
@@ -253,188 +260,4 @@ impl Manual<'_> {
 
 fn is_family(name: &str) -> bool {
     FAMILIES.iter().any(|(family, _)| *family == name)
-}
-
-/// Alternatives of a choice, as written.
-fn options(definition: &Json) -> Vec<&Json> {
-    ["oneOf", "anyOf"]
-        .iter()
-        .find_map(|word| definition[word].as_array())
-        .into_iter()
-        .flatten()
-        .collect()
-}
-
-/// The kind that an alternative is, and what it takes.
-fn kind_of(option: &Json) -> Option<(&str, &Json)> {
-    let (kind, value) = option["properties"].as_object()?.iter().next()?;
-    Some((kind, value))
-}
-
-/// Keys that kinds have in the same way.
-struct Shared<'a> {
-    names: Vec<&'a str>,
-    /// The table of a kind that has them.
-    table: &'a Json,
-    /// Kinds that have none of them.
-    apart: Vec<&'a str>,
-}
-
-/// Keys that all kinds have in the same way, but for kinds that have nothing in common with the first.
-fn shared_keys<'a>(root: &'a Json, options: &[&'a Json]) -> Option<Shared<'a>> {
-    let tables = options.iter().map(|option| {
-        let (kind, value) = kind_of(option)?;
-        let table = schema::resolve(root, value);
-        Some((kind, table["properties"].as_object()?, table))
-    });
-    let tables: Option<Vec<_>> = tables.collect();
-    let tables = tables?;
-    let (_, first, table) = *tables.first()?;
-    let is_apart =
-        |keys: &Map<String, Json>| !first.iter().any(|(name, value)| keys.get(name) == Some(value));
-    let (apart, alike): (Vec<_>, Vec<_>) = tables.iter().partition(|(_, keys, _)| is_apart(keys));
-    let is_shared = |(name, value): &(&String, &Json)| {
-        alike.iter().all(|(_, keys, _)| keys.get(*name) == Some(*value))
-    };
-    let names: Vec<_> = first.iter().filter(is_shared).map(|(name, _)| name.as_str()).collect();
-    let apart: Vec<_> = apart.iter().map(|(kind, ..)| *kind).collect();
-    (alike.len() > 1 && !names.is_empty()).then_some(Shared { names, table, apart })
-}
-
-fn description(schema: &Json) -> &str {
-    schema["description"].as_str().unwrap_or_default()
-}
-
-/// A default without needless ".0".
-fn default_of(default: &Json) -> String {
-    match default {
-        Json::Number(_) => wording::short(default),
-        Json::Array(items) => {
-            format!("[{}]", items.iter().map(default_of).collect::<Vec<_>>().join(", "))
-        }
-        Json::Null | Json::Bool(_) | Json::String(_) | Json::Object(_) => default.to_string(),
-    }
-}
-
-fn range_of(schema: &Json) -> String {
-    if schema["minimum"] == i32::MIN {
-        return String::new();
-    }
-    let words = wording::range(schema).or_else(|| wording::range(&schema["items"]));
-    words.unwrap_or_default()
-}
-
-/// The heading of a definition: `SpacePlacement` is "Space placement".
-fn title(name: &str) -> String {
-    if let Some((_, title)) = FAMILIES.iter().find(|(family, _)| *family == name) {
-        return (*title).to_owned();
-    }
-    let mut words = String::new();
-    for (i, c) in name.char_indices() {
-        if i > 0 && c.is_uppercase() {
-            words.push(' ');
-            words.extend(c.to_lowercase());
-        } else {
-            words.push(c);
-        }
-    }
-    words
-}
-
-/// The anchor that a heading gets.
-fn anchor(heading: &str) -> String {
-    let kept = heading.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
-    kept.collect::<String>().to_lowercase().replace(' ', "-")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::input;
-
-    /// Where a page lies, what is on it, and the schema that it is made from.
-    type Page = (&'static str, fn() -> String, fn() -> Json);
-
-    /// The whole pages, from the root of the package.
-    const PAGES: [Page; 2] = [
-        ("docs/scene_format.md", markdown, schema::json_schema),
-        ("docs/study_format.md", study_markdown, schema::study_schema),
-    ];
-
-    #[test]
-    fn the_pages_in_docs_are_current() {
-        for (page, markdown, _) in PAGES {
-            let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(page);
-            if std::env::var_os("UPDATE_GOLDEN").is_some() {
-                std::fs::write(&path, markdown()).unwrap();
-            }
-            let found = std::fs::read_to_string(&path).unwrap();
-            assert!(
-                found == markdown(),
-                "{page} is not current: run the tests with UPDATE_GOLDEN=1"
-            );
-        }
-    }
-
-    #[test]
-    fn every_key_and_kind_of_the_schema_is_on_the_page() {
-        for (page, schema) in PAGES.map(|(_, markdown, schema)| (markdown(), schema())) {
-            for (name, definition) in schema["$defs"].as_object().unwrap() {
-                let tables = options(definition).into_iter().chain([definition]);
-                for key in tables
-                    .filter_map(|table| table["properties"].as_object())
-                    .flat_map(|keys| keys.keys())
-                {
-                    let is_there =
-                        page.contains(&format!("`{key}`")) || page.contains(&format!(".{key}`"));
-                    assert!(is_there, "{name}.{key}");
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn every_link_leads_to_one_heading() {
-        for page in PAGES.map(|(_, markdown, _)| markdown()) {
-            let headings: Vec<_> = page
-                .lines()
-                .filter(|line| line.starts_with('#'))
-                .map(|line| anchor(line.trim_start_matches(['#', ' '])))
-                .collect();
-            let links: Vec<_> =
-                page.split("](#").skip(1).filter_map(|rest| rest.split(')').next()).collect();
-            assert!(links.len() > 10);
-            for link in links {
-                assert_eq!(headings.iter().filter(|heading| *heading == link).count(), 1, "{link}");
-            }
-        }
-    }
-
-    #[test]
-    fn the_worked_example_is_a_good_scene() {
-        let example = TEMPLATE.split("```toml\n").nth(1).unwrap().split("```").next().unwrap();
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("example.toml");
-        std::fs::write(&path, example).unwrap();
-        let loaded = input::read(&path, &[]).unwrap_or_else(|error| panic!("{error}"));
-        assert!(loaded.warnings.is_empty());
-    }
-
-    #[test]
-    fn the_worked_example_of_a_study_is_a_good_study() {
-        let example =
-            STUDY_TEMPLATE.split("```toml\n").nth(1).unwrap().split("```").next().unwrap();
-        let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("example.toml");
-        let scenes = root.join("scenes").display().to_string();
-        std::fs::write(
-            &path,
-            example
-                .replace("\"../led_indicator.toml\"", &format!("\"{scenes}/led_indicator.toml\"")),
-        )
-        .unwrap();
-        let study = input::load_study(&path, &input::StudySettings::default());
-        assert!(study.unwrap_or_else(|error| panic!("{error}")).warnings.is_empty());
-    }
 }

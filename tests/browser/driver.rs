@@ -1,36 +1,21 @@
-//! A browser without a window, and what a user does in it.
+//! What a user does in a browser.
 
-use headless_chrome::browser::tab::point::Point;
-use headless_chrome::protocol::cdp::types::Event;
-use headless_chrome::protocol::cdp::{Emulation, Input, Page};
-use headless_chrome::{Browser, LaunchOptions, Tab};
-use serde_json::Value;
-use std::ffi::OsStr;
+use crate::protocol::Browser;
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD;
+use serde_json::{Value, json};
+use std::cell::RefCell;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
-use tempfile::TempDir;
 
 /// Names of programs that will do.
 const NAMES: [&str; 3] = ["chromium", "chromium-browser", "google-chrome"];
-/// No graphics card, no network, no first steps.
-const ARGUMENTS: [&str; 5] = [
-    "--disable-gpu",
-    "--disable-quic",
-    "--disable-component-update",
-    "--hide-scrollbars",
-    "--mute-audio",
-];
+/// What a page tells when something is wrong with it.
+const COMPLAINTS: [&str; 3] =
+    ["Runtime.exceptionThrown", "Runtime.consoleAPICalled", "Log.entryAdded"];
 
 /// A page that is open.
-pub(crate) struct Open {
-    pub(crate) tab: Arc<Tab>,
-    /// What the page has complained about.
-    complaints: Arc<Mutex<Vec<String>>>,
-    // The browser ends with it, and then its folder.
-    _browser: Browser,
-    _profile: TempDir,
-}
+pub(crate) struct Open(RefCell<Browser>);
 
 /// A browser of this machine. Without one the test says so and is over, unless the environment demands it.
 pub(crate) fn find() -> Option<PathBuf> {
@@ -52,43 +37,27 @@ pub(crate) fn find() -> Option<PathBuf> {
 impl Open {
     /// Opens a file.
     pub(crate) fn new(program: &Path, file: &Path) -> Self {
-        let profile = tempfile::tempdir().unwrap();
-        let options = LaunchOptions::default_builder()
-            .path(Some(program.to_path_buf()))
-            .user_data_dir(Some(profile.path().to_path_buf()))
-            .sandbox(false)
-            .window_size(Some((1400, 1000)))
-            .args(ARGUMENTS.iter().map(OsStr::new).collect())
-            .build()
-            .unwrap();
-        let browser = Browser::new(options).unwrap();
-        let tab = browser.new_tab().unwrap();
-        let complaints = Arc::new(Mutex::new(Vec::new()));
-        let heard = Arc::clone(&complaints);
-        tab.add_event_listener(Arc::new(move |event: &Event| {
-            let complaint = match event {
-                Event::RuntimeExceptionThrown(thrown) => {
-                    format!("{:?}", thrown.params.exception_details)
-                }
-                Event::LogEntryAdded(entry) => entry.params.entry.text.clone(),
-                Event::RuntimeConsoleAPICalled(called) => format!("{:?}", called.params.args),
-                _ => return,
-            };
-            heard.lock().unwrap().push(complaint);
-        }))
-        .unwrap();
-        tab.enable_runtime().unwrap();
-        tab.enable_log().unwrap();
-        tab.navigate_to(&format!("file://{}", file.display())).unwrap();
-        tab.wait_until_navigated().unwrap();
-        Self { tab, complaints, _browser: browser, _profile: profile }
+        let mut browser = Browser::new(program);
+        for domain in ["Page", "Runtime", "Log"] {
+            browser.call(&format!("{domain}.enable"), json!({}));
+        }
+        browser.call("Page.navigate", json!({ "url": format!("file://{}", file.display()) }));
+        browser.expect("Page.loadEventFired");
+        Self(RefCell::new(browser))
+    }
+
+    /// Gives the browser a command.
+    pub(crate) fn call(&self, method: &str, parameters: Value) -> Value {
+        self.0.borrow_mut().call(method, parameters)
     }
 
     /// What an expression of the page comes to.
     pub(crate) fn ask(&self, expression: &str) -> Value {
         let wrapped = format!("JSON.stringify({expression}) ?? 'null'");
-        let answer = self.tab.evaluate(&wrapped, false).unwrap();
-        serde_json::from_str(answer.value.unwrap().as_str().unwrap()).unwrap()
+        let mut answer = self.call("Runtime.evaluate", json!({ "expression": wrapped }));
+        let thrown = answer["exceptionDetails"].take();
+        assert!(thrown.is_null(), "{expression}: {thrown}");
+        serde_json::from_str(answer["result"]["value"].as_str().unwrap()).unwrap()
     }
 
     /// The same as text.
@@ -106,73 +75,69 @@ impl Open {
     }
 
     /// A place at a share of the width and height of an element, brought into view.
-    pub(crate) fn place(&self, element: &str, share: [f64; 2]) -> Point {
+    pub(crate) fn place(&self, element: &str, share: [f64; 2]) -> [f64; 2] {
         let box_of = format!(
             "(() => {{ const e = {element}; e.scrollIntoView({{ block: 'center', behavior: 'instant' }}); \
              const b = e.getBoundingClientRect(); return [b.left, b.top, b.width, b.height]; }})()"
         );
         let found = self.ask(&box_of);
         let [left, top, width, height] = [0, 1, 2, 3].map(|i| found[i].as_f64().unwrap());
-        Point { x: left + share[0] * width, y: top + share[1] * height }
+        [left + share[0] * width, top + share[1] * height]
     }
 
     /// Moves the pointer over an element.
     pub(crate) fn point_at(&self, element: &str, share: [f64; 2]) {
-        self.tab.move_mouse_to_point(self.place(element, share)).unwrap();
+        self.mouse("mouseMoved", self.place(element, share), "none");
     }
 
     /// Clicks on an element.
     pub(crate) fn click(&self, element: &str) {
-        self.tab.click_point(self.place(element, [0.5, 0.5])).unwrap();
+        let at = self.place(element, [0.5, 0.5]);
+        self.mouse("mouseMoved", at, "none");
+        self.mouse("mousePressed", at, "left");
+        self.mouse("mouseReleased", at, "left");
     }
 
     /// Drags over an element from one place to another.
     pub(crate) fn drag(&self, element: &str, from: [f64; 2], to: [f64; 2]) {
         let start = self.place(element, from);
         let end = self.place(element, to);
-        let middle = Point { x: 0.5 * (start.x + end.x), y: 0.5 * (start.y + end.y) };
-        self.mouse(Input::DispatchMouseEventTypeOption::MousePressed, start);
-        self.mouse(Input::DispatchMouseEventTypeOption::MouseMoved, middle);
-        self.mouse(Input::DispatchMouseEventTypeOption::MouseMoved, end);
-        self.mouse(Input::DispatchMouseEventTypeOption::MouseReleased, end);
+        let middle = [0, 1].map(|axis| 0.5 * (start[axis] + end[axis]));
+        self.mouse("mousePressed", start, "left");
+        self.mouse("mouseMoved", middle, "left");
+        self.mouse("mouseMoved", end, "left");
+        self.mouse("mouseReleased", end, "left");
     }
 
-    fn mouse(&self, kind: Input::DispatchMouseEventTypeOption, at: Point) {
-        let event = Input::DispatchMouseEvent {
-            Type: kind,
-            x: at.x,
-            y: at.y,
-            button: Some(Input::MouseButton::Left),
-            buttons: Some(1),
-            click_count: Some(1),
-            modifiers: None,
-            timestamp: None,
-            delta_x: None,
-            delta_y: None,
-            pointer_Type: None,
-            force: None,
-            tangential_pressure: None,
-            tilt_x: None,
-            tilt_y: None,
-            twist: None,
-        };
-        self.tab.call_method(event).unwrap();
+    fn mouse(&self, kind: &str, [x, y]: [f64; 2], button: &str) {
+        let buttons = u8::from(button == "left");
+        let event = json!({
+            "type": kind, "x": x, "y": y, "button": button, "buttons": buttons, "clickCount": buttons,
+        });
+        self.call("Input.dispatchMouseEvent", event);
     }
 
     /// The page with a wish for light or dark.
     pub(crate) fn prefer(&self, scheme: &str) {
-        let feature = Emulation::MediaFeature {
-            name: "prefers-color-scheme".to_owned(),
-            value: scheme.to_owned(),
-        };
-        let wish = Emulation::SetEmulatedMedia { media: None, features: Some(vec![feature]) };
-        self.tab.call_method(wish).unwrap();
+        let feature = json!({ "name": "prefers-color-scheme", "value": scheme });
+        self.call("Emulation.setEmulatedMedia", json!({ "features": [feature] }));
+    }
+
+    /// The page in a window of another size, CSS pixels.
+    pub(crate) fn resize(&self, width: u32, height: u32) {
+        let size =
+            json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": false });
+        self.call("Emulation.setDeviceMetricsOverride", size);
+    }
+
+    /// The page as it is printed to PDF.
+    pub(crate) fn print(&self) -> Vec<u8> {
+        bytes(&self.call("Page.printToPDF", json!({})))
     }
 
     /// A picture of what is in view, decoded: width and RGB or RGBA bytes.
     pub(crate) fn picture(&self, keep: &Path) -> Vec<[u8; 3]> {
-        let format = Page::CaptureScreenshotFormatOption::Png;
-        let file = self.tab.capture_screenshot(format, None, None, true).unwrap();
+        let file = bytes(&self.call("Page.captureScreenshot", json!({ "format": "png" })));
         std::fs::write(keep, &file).unwrap();
         let mut reader = png::Decoder::new(std::io::Cursor::new(file)).read_info().unwrap();
         let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
@@ -183,7 +148,14 @@ impl Open {
 
     /// Fails where the page has complained.
     pub(crate) fn expect_no_complaints(&self) {
-        let complaints = self.complaints.lock().unwrap();
+        let browser = self.0.borrow();
+        let is_complaint = |event: &&Value| COMPLAINTS.iter().any(|name| event["method"] == *name);
+        let complaints: Vec<&Value> = browser.events().iter().filter(is_complaint).collect();
         assert!(complaints.is_empty(), "{complaints:#?}");
     }
+}
+
+/// The file in an answer.
+fn bytes(answer: &Value) -> Vec<u8> {
+    BASE64_STANDARD.decode(answer["data"].as_str().unwrap()).unwrap()
 }

@@ -5,6 +5,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
 
 mod driver;
+mod protocol;
 mod study;
 
 use assert_cmd::Command;
@@ -166,29 +167,12 @@ fn the_page_is_light_or_dark_fits_narrow_windows_and_prints_on_pages() {
     }
 
     page.prefer("dark");
-    let pdf = page.tab.print_to_pdf(None).unwrap();
+    let pdf = page.print();
     let pdf = String::from_utf8_lossy(&pdf);
     let pages = pdf.matches("/Type /Page\n").count() + pdf.matches("/Type /Page/").count();
     assert!(pdf.starts_with("%PDF") && pages > 1, "{pages} pages");
 
-    page.tab
-        .call_method(headless_chrome::protocol::cdp::Emulation::SetDeviceMetricsOverride {
-            width: 800,
-            height: 900,
-            device_scale_factor: 1.0,
-            mobile: false,
-            scale: None,
-            screen_width: None,
-            screen_height: None,
-            position_x: None,
-            position_y: None,
-            dont_set_visible_size: None,
-            screen_orientation: None,
-            viewport: None,
-            display_feature: None,
-            device_posture: None,
-        })
-        .unwrap();
+    page.resize(800, 900);
     page.expect("document.documentElement.scrollWidth <= 800");
     page.expect_no_complaints();
 }

@@ -7,6 +7,8 @@ mod parts;
 mod progress;
 mod sense;
 mod snapshot;
+#[cfg(test)]
+mod tests;
 mod timing;
 
 pub use check::{Checked, check};
@@ -258,7 +260,9 @@ fn trace_kept<E>(
     let elapsed = || before + start.elapsed();
     let (mut target, mut gathering_told) = (None, false);
     let stop = loop {
-        let mut early = None;
+        // A run that was laid down at its very end has no piece left after which to ask.
+        let mut early =
+            (run.paths() > 0).then(|| early_stop(&job.run, &run, elapsed(), interrupt)).flatten();
         while run.waves() < round_end && early.is_none() {
             run.next_piece();
             keep(&run, Pause::Between { round_end, elapsed: elapsed() })?;

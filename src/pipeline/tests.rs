@@ -1,0 +1,93 @@
+//! Runs that are laid down and taken up again.
+
+use super::*;
+use crate::input::GatherSettings;
+use crate::scene::plan::Request;
+
+/// A scene whose sensor can be estimated by photons and gathered.
+const SCENE: &str = r#"
+lumiduct = 1
+title = "rod"
+[media.acrylic]
+index = 1.49
+[solids.rod.cylinder]
+radius_mm = 2
+length_mm = 10
+medium = "acrylic"
+[sources.led.disk]
+radius_mm = 0.5
+at = { face = "rod.entry", gap_mm = 0.1 }
+flux_lm = 10
+[sensors.exit.plane.disk]
+radius_mm = 2
+[sensors.exit.at]
+face = "rod.exit"
+gap_mm = 0.1
+"#;
+
+fn job(folder: &Path, settings: &Settings) -> Job {
+    let scene = folder.join("rod.toml");
+    std::fs::write(&scene, SCENE).unwrap();
+    prepare(&scene, settings).unwrap()
+}
+
+/// Traces a job from where it stands, with where it stood at every pause.
+fn pauses(job: &Job, stand: Option<Stand>) -> (Traced, Vec<Stand>) {
+    let mut stands = Vec::new();
+    let mut keep = |run: &Run<'_>, pause: Pause| {
+        let (Pause::Between { round_end, elapsed } | Pause::Last { round_end, elapsed }) = pause;
+        stands.push(Stand { state: run.state(), round_end, elapsed });
+        Ok::<(), Infallible>(())
+    };
+    let Ok(traced) = trace_kept(job, stand, &mut keep, &Interrupt::default(), &mut |_| ());
+    (traced, stands)
+}
+
+fn goes_on_from_every_pause(settings: &Settings, expected: Stop) {
+    let folder = tempfile::tempdir().unwrap();
+    let job = job(folder.path(), settings);
+    let (whole, stands) = pauses(&job, None);
+    assert_eq!(whole.stop, expected);
+    assert!(stands.len() > 1);
+    for (index, stand) in stands.into_iter().enumerate() {
+        let (rest, _) = pauses(&job, Some(stand));
+        assert_eq!(rest.stop, whole.stop, "from pause {index}");
+        assert!(rest.findings == whole.findings, "from pause {index}");
+    }
+}
+
+#[test]
+fn a_run_goes_on_from_every_pause_to_the_same_end_the_last_pause_included() {
+    let forward = Settings {
+        estimator: Some(Request::Forward),
+        paths: Some(15_000),
+        batch_paths: Some(40),
+        ..Settings::default()
+    };
+    goes_on_from_every_pause(&forward, Stop::Paths);
+    let gather = Settings {
+        estimator: Some(Request::Gather),
+        gather: GatherSettings {
+            depth: Some(0),
+            radius_mm: Some(1.0),
+            angle_deg: Some(20.0),
+            records: Some(300),
+            photons: Some(500),
+            schedule: None,
+        },
+        ..forward
+    };
+    goes_on_from_every_pause(&gather, Stop::Paths);
+}
+
+#[test]
+fn a_run_to_a_target_goes_on_from_every_pause_to_the_same_end() {
+    let settings = Settings {
+        estimator: Some(Request::Forward),
+        target: Some(0.01),
+        target_measure: Some("exit.flux".into()),
+        batch_paths: Some(50),
+        ..Settings::default()
+    };
+    goes_on_from_every_pause(&settings, Stop::Target);
+}

@@ -22,7 +22,7 @@ use crate::error::{Diagnostic, Error};
 use crate::input::diagnostic::{self, Colour};
 use crate::input::{self, Settings};
 use crate::pipeline;
-use crate::report::{self, Existing};
+use crate::report::{Existing, JunitFile};
 use crate::transport::Interrupt;
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use std::io::{ErrorKind, IsTerminal, Write};
@@ -181,13 +181,21 @@ fn check(args: &CheckArgs) -> ExitCode {
     }
 }
 
-/// Writes a JUnit XML file where one is wanted. One that is there with other contents stays, unless it may be replaced.
+/// The JUnit XML file, where one is wanted.
+fn open_junit(file: Option<&Path>, existing: Existing) -> Result<Option<JunitFile>, Error> {
+    file.map(|file| JunitFile::open(file, existing)).transpose()
+}
+
+/// Writes a JUnit XML file where one is wanted, and gives back the exit code of the rest.
 fn write_junit(
-    file: Option<&Path>,
-    existing: Existing,
-    xml: impl FnOnce() -> crate::error::Result<String>,
-) -> crate::error::Result<()> {
-    file.map_or(Ok(()), |file| report::write_whole(file, xml()?.as_bytes(), existing))
+    file: Option<&JunitFile>,
+    xml: impl FnOnce() -> Result<String, Error>,
+    code: ExitCode,
+) -> ExitCode {
+    match file.map_or(Ok(()), |file| file.write(&xml()?)) {
+        Ok(()) => code,
+        Err(error) => fail(&error),
+    }
 }
 
 /// Prints a text, or says why there is none.

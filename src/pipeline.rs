@@ -27,6 +27,7 @@ use crate::report::{
 };
 use crate::scene::plan::RunPlan;
 use crate::transport::{Findings, Interrupt, Run, Track, tracks};
+pub(crate) use sense::expect_measures;
 use std::convert::Infallible;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};

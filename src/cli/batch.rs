@@ -2,7 +2,7 @@
 
 use crate::cli::display::Display;
 use crate::cli::values::{parse_count, parse_percent, parse_shard};
-use crate::cli::{INTERRUPTED, fail, on_ctrl_c, print, use_threads, warn, write_junit};
+use crate::cli::{INTERRUPTED, fail, on_ctrl_c, open_junit, print, use_threads, warn, write_junit};
 use crate::input::StudySettings;
 use crate::report::{Existing, Written, study_junit};
 use crate::study::{BatchWishes, Finished, OnExisting, run_study};
@@ -60,6 +60,11 @@ pub(super) fn batch(args: &BatchArgs) -> ExitCode {
     if let Err(error) = use_threads(args.threads) {
         return fail(&error);
     }
+    let existing = if args.overwrite { Existing::Replace } else { Existing::Keep };
+    let junit = match open_junit(args.junit.as_deref(), existing) {
+        Ok(junit) => junit,
+        Err(error) => return fail(&error),
+    };
     let interrupt = on_ctrl_c();
     let wishes = BatchWishes {
         settings: StudySettings {
@@ -91,9 +96,7 @@ pub(super) fn batch(args: &BatchArgs) -> ExitCode {
             let code = tell(&finished, args.quiet);
             // A batch that was stopped has judged no study yet.
             let Some(report) = &finished.report else { return code };
-            let existing = if args.overwrite { Existing::Replace } else { Existing::Keep };
-            let written = write_junit(args.junit.as_deref(), existing, || study_junit(report));
-            written.map_or_else(|error| fail(&error), |()| code)
+            write_junit(junit.as_ref(), || study_junit(report), code)
         }
         Err(error) => fail(&error),
     }

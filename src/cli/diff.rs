@@ -1,7 +1,7 @@
 //! `lumiduct diff`: two reports side by side.
 
 use crate::cli::values::{parse_percent, parse_sigmas};
-use crate::cli::{fail, print, write_junit};
+use crate::cli::{fail, open_junit, print, write_junit};
 use crate::error::Result;
 use crate::report::diff::{Diff, DiffWishes, Limits, Rows, diff, diff_files, diff_table, read};
 use crate::report::{Existing, Folder, diff_junit};
@@ -44,22 +44,25 @@ pub(super) struct DiffArgs {
 
 /// Runs the command; the exit code says whether the reports differ.
 pub(super) fn run(args: &DiffArgs) -> ExitCode {
-    match compare(args) {
-        Ok(diff) if diff.is_within() => ExitCode::SUCCESS,
-        Ok(_) => ExitCode::from(1),
+    let existing = if args.overwrite { Existing::Replace } else { Existing::Keep };
+    let outcome = open_junit(args.junit.as_deref(), existing)
+        .and_then(|junit| Ok((junit, compare(args, existing)?)));
+    match outcome {
+        Ok((junit, diff)) => {
+            let code = ExitCode::from(u8::from(!diff.is_within()));
+            write_junit(junit.as_ref(), || diff_junit(&diff), code)
+        }
         Err(error) => fail(&error),
     }
 }
 
-fn compare(args: &DiffArgs) -> Result<Diff> {
+fn compare(args: &DiffArgs, existing: Existing) -> Result<Diff> {
     let sides = [read(&args.a)?, read(&args.b)?];
     let limits = Limits { sigmas: args.sigmas, relative: args.relative };
     let diff = diff(&sides, &DiffWishes { limits, only: args.only.clone() })?;
-    let existing = if args.overwrite { Existing::Replace } else { Existing::Keep };
     if let Some(dir) = &args.output {
         Folder::open(dir, existing, None)?.write(&diff_files(&diff)?)?;
     }
-    write_junit(args.junit.as_deref(), existing, || diff_junit(&diff))?;
     if !args.quiet {
         let rows = if args.all { Rows::All } else { Rows::Worst };
         let mut text = diff_table(&diff, rows);

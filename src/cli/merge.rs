@@ -1,9 +1,9 @@
 //! `lumiduct merge`: parts become the whole.
 
-use crate::cli::{batch, fail, run};
+use crate::cli::{batch, fail, open_junit, run, write_junit};
 use crate::error::Error;
 use crate::pipeline::{Output, has_slice, merge_slices};
-use crate::report::Existing;
+use crate::report::{Existing, run_junit, study_junit};
 use crate::study::{OnExisting, has_study, merge_study};
 use clap::Args;
 use std::path::PathBuf;
@@ -24,6 +24,9 @@ pub(super) struct MergeArgs {
     /// Replace a report that is there.
     #[arg(long)]
     overwrite: bool,
+    /// Write a JUnit XML file with a test case for each check.
+    #[arg(long, value_name = "FILE")]
+    junit: Option<PathBuf>,
     /// Print nothing but errors.
     #[arg(short, long)]
     quiet: bool,
@@ -31,18 +34,29 @@ pub(super) struct MergeArgs {
 
 /// Runs the command.
 pub(super) fn merge(args: &MergeArgs) -> ExitCode {
+    let existing = if args.overwrite { Existing::Replace } else { Existing::Keep };
+    let junit = match open_junit(args.junit.as_deref(), existing) {
+        Ok(junit) => junit,
+        Err(error) => return fail(&error),
+    };
     if args.parts.iter().all(|dir| has_slice(dir)) {
-        let existing = if args.overwrite { Existing::Replace } else { Existing::Keep };
         let output = Output::new(args.output.clone(), existing);
         return match merge_slices(&args.parts, args.scene.as_deref(), &output) {
-            Ok(finished) => run::tell(&finished, args.quiet),
+            Ok(finished) => {
+                let code = run::tell(&finished, args.quiet);
+                write_junit(junit.as_ref(), || run_junit(&finished.report), code)
+            }
             Err(error) => fail(&error),
         };
     }
     if args.parts.iter().all(|dir| has_study(dir)) {
         let existing = if args.overwrite { OnExisting::Replace } else { OnExisting::Resume };
         return match merge_study(&args.parts, args.output.as_deref(), existing) {
-            Ok(finished) => batch::tell(&finished, args.quiet),
+            Ok(finished) => {
+                let code = batch::tell(&finished, args.quiet);
+                let Some(report) = &finished.report else { return code };
+                write_junit(junit.as_ref(), || study_junit(report), code)
+            }
             Err(error) => fail(&error),
         };
     }

@@ -5,7 +5,9 @@ use crate::cli::values::{
     parse_angle, parse_count, parse_percent, parse_radius, parse_records, parse_shard, parse_time,
     words,
 };
-use crate::cli::{INTERRUPTED, fail, finish, on_ctrl_c, print, use_threads, warn, write_junit};
+use crate::cli::{
+    INTERRUPTED, fail, finish, on_ctrl_c, open_junit, print, use_threads, warn, write_junit,
+};
 use crate::input::{GatherSettings, Settings};
 use crate::pipeline::{self, Finished, Output, SliceWishes, SliceWritten, Start, Stop};
 use crate::report::{Existing, Outcome, Written, run_junit};
@@ -125,6 +127,10 @@ pub(super) fn run(args: &RunArgs) -> ExitCode {
         ..Settings::default()
     };
     let existing = if args.overwrite { Existing::Replace } else { Existing::Keep };
+    let junit = match open_junit(args.junit.as_deref(), existing) {
+        Ok(junit) => junit,
+        Err(error) => return fail(&error),
+    };
     if let Some(shard) = args.shard {
         let wishes = SliceWishes { shard, dir: args.output.clone(), existing };
         return slice(args, &settings, &wishes, &interrupt);
@@ -140,9 +146,7 @@ pub(super) fn run(args: &RunArgs) -> ExitCode {
     match outcome {
         Ok(finished) => {
             let code = tell(&finished, args.quiet);
-            let xml = || run_junit(&finished.report);
-            let written = write_junit(args.junit.as_deref(), existing, xml);
-            written.map_or_else(|error| fail(&error), |()| code)
+            write_junit(junit.as_ref(), || run_junit(&finished.report), code)
         }
         Err(error) if interrupt.is_raised() => {
             fail(&error);

@@ -36,6 +36,14 @@ pub struct Settings {
     pub batch_paths: Option<u64>,
 }
 
+impl Settings {
+    /// The same with further overrides, which go over those here.
+    pub(crate) fn with(&self, further: impl IntoIterator<Item = String>) -> Self {
+        let overrides = self.overrides.iter().cloned().chain(further).collect();
+        Self { overrides, ..self.clone() }
+    }
+}
+
 /// A scene to be run.
 #[derive(Debug)]
 pub struct Job {

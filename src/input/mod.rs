@@ -95,7 +95,7 @@ pub fn draft(path: &Path, overrides: &[String]) -> Result<Draft> {
     breaks.extend(include::join_sensor_files(&mut root, &mut sources, &mut problems));
     late.into_iter().for_each(|one| overrides::apply(one, &mut root, &mut problems));
 
-    if has_other_version(&root, &mut problems) {
+    if is_other_kind(&root, &mut problems) {
         return Err(Error::Input(problems.into_diagnostics(&Places::new(root, sources))));
     }
     note_differences(&root, &schema::json_schema(), &sources, &breaks, &mut problems);
@@ -122,9 +122,15 @@ fn unreadable(path: &Path, reason: &str) -> Error {
     }])
 }
 
-/// Whether the file is of another version; then it is not to be measured by this schema.
-fn has_other_version(root: &Node, problems: &mut Problems) -> bool {
+/// Whether the file is a study or of another version; then it is not to be measured by this schema.
+fn is_other_kind(root: &Node, problems: &mut Problems) -> bool {
     match root.get("lumiduct") {
+        None if root.get("lumiduct_study").is_some() => {
+            problems
+                .error(&Key::of(&["lumiduct_study"]), "this is a study, not a scene")
+                .hint("run it with `lumiduct batch`");
+            true
+        }
         Some(Node { value: Value::Integer(version), origin })
             if *version != i64::from(FORMAT_VERSION) =>
         {

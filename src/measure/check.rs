@@ -3,6 +3,7 @@
 //! A demand whose answer the error bar leaves open is undecided, which counts as missed: more paths are needed.
 
 use crate::measure::{Measure, Measures, Status};
+use crate::number::format_value;
 use crate::scene::plan::Check;
 use serde::{Deserialize, Serialize};
 
@@ -117,7 +118,7 @@ fn limit(measure: &Measure, limit: f64, bound: Bound) -> (Outcome, String) {
     if room >= 0.0 {
         (Outcome::Passed, format!("{wanted} is wanted{apart}"))
     } else {
-        (Outcome::Failed, format!("{wanted} is wanted, missed by {:.3e}{apart}", -room))
+        (Outcome::Failed, format!("{wanted} is wanted, missed by {}{apart}", format_value(-room)))
     }
 }
 
@@ -131,7 +132,9 @@ fn equality(check: &Check, measure: &Measure, expected: f64) -> (Outcome, String
     let allowed = by_error.max(check.within.unwrap_or(0.0));
     let z = if deviation == 0.0 { 0.0 } else { deviation / error };
     let text = format!(
-        "{expected} is expected, off by {deviation:.3e} ({z:.1} errors), {allowed:.3e} is allowed"
+        "{expected} is expected, off by {} ({z:.1} errors), {} is allowed",
+        format_value(deviation),
+        format_value(allowed)
     );
     if measure.status == Status::NoSignal
         && expected != 0.0
@@ -255,7 +258,7 @@ mod tests {
         let verdict = judge(&least, &measure(0.5, 0.01, "lm"));
         assert_eq!(
             verdict.reason,
-            "exit.flux = 0.500 ± 0.010 lm: at least 0.6 lm is wanted, missed by 1.000e-1, 10.0 errors away"
+            "exit.flux = 0.500 ± 0.010 lm: at least 0.6 lm is wanted, missed by 0.1, 10.0 errors away"
         );
     }
 

@@ -6,13 +6,13 @@ use crate::input::Job;
 use crate::input::keys::Key;
 use crate::input::problems::Problems;
 use crate::measure;
+use crate::scene::Scene;
 use crate::scene::plan::Request;
 use crate::transport::{BLIND_PATHS, blind_sensors, invisible, scatterers};
 
 /// Refuses a scene without light, and checks and targets that name no measure of it, before any work is done. Gives
 /// back remarks.
 pub(super) fn expect_sense(job: &Job) -> Result<Vec<Diagnostic>> {
-    let names = measure::names(&job.scene);
     let target = job
         .run
         .stop
@@ -29,14 +29,24 @@ pub(super) fn expect_sense(job: &Job) -> Result<Vec<Diagnostic>> {
     }
     expect_visible_sources(job, &mut problems);
     expect_discrete_directions(job, &mut problems);
-    for (key, name) in target.chain(checks).filter(|(_, name)| !names.contains(name)) {
+    expect_measures(&job.scene, target.chain(checks), &mut problems);
+    expect_sight(job, &mut problems);
+    problems.finish(&job.places)
+}
+
+/// Notes names that no measure of a scene has.
+pub(crate) fn expect_measures<'a>(
+    scene: &Scene,
+    wanted: impl Iterator<Item = (Key, &'a String)>,
+    problems: &mut Problems,
+) {
+    let names = measure::names(scene);
+    for (key, name) in wanted.filter(|(_, name)| !names.contains(name)) {
         let nearest = measure::nearest(name, names.iter().map(String::as_str));
         problems
             .error(&key, format!("there is no measure `{name}`"))
             .hint(format!("near names: {}", nearest.join(", ")));
     }
-    expect_sight(job, &mut problems);
-    problems.finish(&job.places)
 }
 
 /// Remarks on sensors from which no gather path could bring light.

@@ -16,6 +16,8 @@ const DEVIATION: f64 = 2e-4;
 const MESH_CELL: f64 = 0.004;
 /// Most pieces of a face that are drawn.
 const PATCHES: usize = 500;
+/// Most elements of a pattern that are drawn.
+const ELEMENTS: usize = 600;
 /// Most points of a path that are drawn.
 const POINTS: usize = 100;
 /// Paths are drawn as far as this from the middle, in radii of the scene, 1.
@@ -38,10 +40,10 @@ pub struct Drawing {
     pub remarks: Vec<String>,
 }
 
-/// A face, or the surface of a source.
+/// A face, the elements of a pattern, or the surface of a source.
 #[derive(Debug, Clone)]
 pub struct DrawnFace {
-    /// Its dotted name.
+    /// Its name.
     pub name: String,
     /// What it is.
     pub role: Role,
@@ -59,6 +61,8 @@ pub enum Role {
     Sheet,
     /// An open port.
     Port,
+    /// Elements of a pattern.
+    Pattern,
     /// A face that a sensor lies on, or a sensor in free space.
     Sensor,
     /// A source.
@@ -108,6 +112,7 @@ pub fn drawing(scene: &Scene, tracks: &[Track]) -> Drawing {
         Fineness { deviation: DEVIATION * size, mesh_cell: MESH_CELL * size, patches: PATCHES };
     let mut remarks = Vec::new();
     let mut faces = faces(scene, &fineness, &mut remarks);
+    faces.extend(elements(scene, &mut remarks));
     faces.extend(sources(scene, fineness.deviation));
     let points = faces.iter().flat_map(|face| face.facets.points.iter().copied());
     let bounds = Aabb::of(points.chain(small_sources(scene)));
@@ -119,9 +124,6 @@ pub fn drawing(scene: &Scene, tracks: &[Track]) -> Drawing {
         .collect();
     if tracks.iter().any(|track| track.points.len() > POINTS) {
         remarks.push(format!("paths are drawn up to their first {POINTS} points"));
-    }
-    if scene.patterns.iter().any(|pattern| pattern.field.rows.count() > 0) {
-        remarks.push("elements of patterns are not drawn".into());
     }
     let marks = marks(scene, &faces, &paths);
     let mut drawing = Drawing {
@@ -172,6 +174,25 @@ fn faces(scene: &Scene, fineness: &Fineness, remarks: &mut Vec<String>) -> Vec<D
         faces.push(DrawnFace { name: face.name.clone(), role, facets: found.facets });
     }
     faces
+}
+
+/// The outlines of the elements of patterns.
+fn elements(scene: &Scene, remarks: &mut Vec<String>) -> Vec<DrawnFace> {
+    let mut drawn = Vec::new();
+    for pattern in &scene.patterns {
+        let found = scene.element_outlines(pattern, ELEMENTS);
+        if found.one_in > 1 {
+            remarks.push(format!(
+                "of the elements of `{}` one in {} is drawn",
+                pattern.name, found.one_in
+            ));
+        }
+        if !found.facets.points.is_empty() {
+            let (name, role) = (pattern.name.clone(), Role::Pattern);
+            drawn.push(DrawnFace { name, role, facets: found.facets });
+        }
+    }
+    drawn
 }
 
 fn sensed_faces(scene: &Scene) -> Vec<FaceId> {

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::report::{OutputFile, Recipe};
+use serde_json::Value;
 use std::fs;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -82,7 +83,7 @@ impl Folder {
                 (Comparison::Same, _) => {}
                 (Comparison::Different, Existing::Keep) => differing.push(file.name.clone()),
                 (Comparison::Different, Existing::Replace) | (Comparison::Missing, _) => {
-                    staged.push((stage(&self.path, &file.bytes)?, path));
+                    staged.push((stage(&path, &file.bytes)?, path));
                 }
             }
         }
@@ -102,7 +103,7 @@ impl Folder {
         if self.existing == Existing::Keep && path.exists() {
             return Ok(());
         }
-        stage(&self.path, bytes)?.persist(&path).map_err(|error| Error::io(&path, error.error))?;
+        stage(&path, bytes)?.persist(&path).map_err(|error| Error::io(&path, error.error))?;
         Ok(())
     }
 }
@@ -117,6 +118,20 @@ pub fn sweep(folder: &Path) -> Result<()> {
         let entry = entry.map_err(|source| Error::io(folder, source))?;
         if entry.file_name().to_string_lossy().starts_with(STAGED) {
             remove_if_there(&entry.path())?;
+        }
+    }
+    Ok(())
+}
+
+/// Takes away an older report: the files that its summary names, the summary among them. Others stay.
+pub(crate) fn remove_report(folder: &Path, summary: &str) -> Result<()> {
+    let found: Option<Value> =
+        fs::read(folder.join(summary)).ok().and_then(|bytes| serde_json::from_slice(&bytes).ok());
+    let files = found.as_ref().and_then(|summary| summary["files"].as_array());
+    for name in files.into_iter().flatten().filter_map(Value::as_str) {
+        // Only names of this folder: the file may have been changed by others.
+        if Path::new(name).components().count() == 1 && !name.starts_with('.') {
+            remove_if_there(&folder.join(name))?;
         }
     }
     Ok(())
@@ -142,10 +157,9 @@ pub fn write_whole(path: &Path, bytes: &[u8], existing: Existing) -> Result<()> 
         }
         (Comparison::Different, Existing::Replace) | (Comparison::Missing, _) => {}
     }
-    let folder =
-        path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder = folder_of(path);
     fs::create_dir_all(folder).map_err(|source| Error::io(folder, source))?;
-    stage(folder, bytes)?.persist(path).map_err(|error| Error::io(path, error.error))?;
+    stage(path, bytes)?.persist(path).map_err(|error| Error::io(path, error.error))?;
     Ok(())
 }
 
@@ -166,8 +180,8 @@ fn compare(path: &Path, bytes: &[u8]) -> Result<Comparison> {
 }
 
 /// A complete file under a temporary name, readable as any other file the user makes.
-fn stage(folder: &Path, bytes: &[u8]) -> Result<tempfile::NamedTempFile> {
-    let failed = |source| Error::io(folder, source);
+fn stage(path: &Path, bytes: &[u8]) -> Result<tempfile::NamedTempFile> {
+    let failed = |source| Error::io(path, source);
     let mut builder = tempfile::Builder::new();
     builder.prefix(STAGED);
     #[cfg(unix)]
@@ -176,10 +190,16 @@ fn stage(folder: &Path, bytes: &[u8]) -> Result<tempfile::NamedTempFile> {
         // The file mode creation mask takes away what the user does not want.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    let mut file = builder.tempfile_in(folder).map_err(failed)?;
-    file.write_all(bytes).map_err(failed)?;
+    let mut file = builder.tempfile_in(folder_of(path)).map_err(failed)?;
+    // The temporary name would tell nobody anything.
+    file.as_file_mut().write_all(bytes).map_err(failed)?;
     file.as_file().sync_all().map_err(failed)?;
     Ok(file)
+}
+
+/// The folder that a file lies in.
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 #[cfg(test)]

@@ -6,16 +6,49 @@ use crate::error::{Error, Result};
 use crate::measure::Outcome;
 use crate::report::diff::{Diff, DiffRow, Judgement, sentence};
 use crate::report::study::{DesignOutcome, StudyReport};
-use crate::report::{CheckResult, Report, TargetFacts};
+use crate::report::words::numbered;
+use crate::report::{CheckResult, Existing, Report, TargetFacts, write_whole};
 use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestSuite};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// How the files begin that this program writes.
+const HEAD: &str = r#"<testsuites name="lumiduct""#;
+
+/// Where JUnit XML goes.
+#[derive(Debug)]
+pub struct JunitFile(PathBuf);
+
+impl JunitFile {
+    /// Makes sure, before any work is done, that the file can be written. One that this program has written is replaced;
+    /// another one is, where it may be.
+    pub fn open(path: &Path, existing: Existing) -> Result<Self> {
+        if path.is_dir() {
+            return Err(Error::Usage(format!("{} is a folder, not a file", path.display())));
+        }
+        if path.exists() && existing == Existing::Keep {
+            let text = fs::read(path).map_err(|source| Error::io(path, source))?;
+            if !String::from_utf8_lossy(&text).contains(HEAD) {
+                return Err(Error::Usage(format!(
+                    "{} is no JUnit file of this program; use --overwrite to replace it, or name another",
+                    path.display()
+                )));
+            }
+        }
+        Ok(Self(path.to_path_buf()))
+    }
+
+    /// Writes it, whole or not at all.
+    pub fn write(&self, xml: &str) -> Result<()> {
+        write_whole(&self.0, xml.as_bytes(), Existing::Replace)
+    }
+}
 
 /// The checks of a run. A run with checks that is partial or off its target is not what was asked for; both have a case.
 pub fn run_junit(report: &Report) -> Result<String> {
     let name = &report.scene.name;
     let mut suite = TestSuite::new(name.as_str());
-    for (index, result) in report.checks.iter().enumerate() {
-        suite.add_test_case(check_case(name, &report.checks, index, result));
-    }
+    check_cases(name, &report.checks).for_each(|case| _ = suite.add_test_case(case));
     if let Some(target) = report.run.target.as_ref().filter(|_| !report.checks.is_empty()) {
         suite.add_test_case(target_case(name, target));
     }
@@ -37,9 +70,7 @@ pub fn study_junit(report: &StudyReport) -> Result<String> {
                 suite.add_test_case(case(&class, "scene", error("no scene", reason)));
             }
             DesignOutcome::Done(result) => {
-                for (index, own) in result.checks.iter().enumerate() {
-                    suite.add_test_case(check_case(&class, &result.checks, index, own));
-                }
+                check_cases(&class, &result.checks).for_each(|case| _ = suite.add_test_case(case));
                 if let Some(target) = &result.target {
                     suite.add_test_case(target_case(&class, target));
                 }
@@ -75,24 +106,21 @@ fn diff_status(diff: &Diff, row: &DiffRow) -> TestCaseStatus {
     }
 }
 
-/// A check is called by its measure; several of one measure are numbered.
-fn check_case(class: &str, all: &[CheckResult], index: usize, result: &CheckResult) -> TestCase {
-    let same = |other: &&CheckResult| other.check.measure == result.check.measure;
-    let name = match all.iter().filter(same).count() {
-        1 => result.check.measure.clone(),
-        _ => {
-            let number = all[..=index].iter().filter(same).count();
-            format!("{} ({number})", result.check.measure)
-        }
-    };
+/// The cases of checks; each is called by its measure.
+fn check_cases(class: &str, all: &[CheckResult]) -> impl Iterator<Item = TestCase> {
+    let measures: Vec<&str> = all.iter().map(|result| result.check.measure.as_str()).collect();
+    let named = numbered(&measures).into_iter().zip(all);
+    named.map(move |(name, result)| case(class, &name, check_status(result)))
+}
+
+fn check_status(result: &CheckResult) -> TestCaseStatus {
     let reason = &result.verdict.reason;
-    let status = match result.verdict.outcome {
+    match result.verdict.outcome {
         Outcome::Passed => TestCaseStatus::success(),
         Outcome::Undecided => failure("undecided", reason),
         Outcome::Failed => failure("failed", reason),
         Outcome::Unknown => error("unknown measure", reason),
-    };
-    case(class, &name, status)
+    }
 }
 
 fn target_case(class: &str, target: &TargetFacts) -> TestCase {

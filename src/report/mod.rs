@@ -30,9 +30,10 @@ pub use compare::{
 pub use drawing::{Drawing, drawing};
 pub use figures::scene_picture;
 pub use film::film_tables;
+pub(crate) use folder::remove_report;
 pub use folder::{Existing, Folder, Written, remove_if_there, sweep, write_whole};
 pub use inventory::inventory;
-pub use junit::{diff_junit, run_junit, study_junit};
+pub use junit::{JunitFile, diff_junit, run_junit, study_junit};
 pub use mesh::mesh_report;
 pub use recipe::Recipe;
 pub use record::{
@@ -58,6 +59,9 @@ impl OutputFile {
     }
 }
 
+/// Name of the file with everything for programs.
+pub(crate) const SUMMARY: &str = "summary.json";
+
 /// All files of a report, in the reproducible order: pictures and tables first, so that the page can name them.
 pub fn files(report: &Report, scene_text: &str) -> Result<Vec<OutputFile>> {
     let mut files = csv::files(report)?;
@@ -65,11 +69,9 @@ pub fn files(report: &Report, scene_text: &str) -> Result<Vec<OutputFile>> {
     files.extend(figures::files(report)?);
     files.push(OutputFile::text(format!("{}.toml", report.scene.name), scene_text.to_owned()));
     let names: Vec<&str> = files.iter().map(|file| file.name.as_str()).collect();
-    let page = markdown::markdown(report, &names);
-    let html = html::html(report)?;
-    let summary = summary::json(report, &names)?;
-    files.push(OutputFile::text("report.md", page));
-    files.push(OutputFile::text("report.html", html));
-    files.push(OutputFile::text("summary.json", summary));
+    files.push(OutputFile::text("report.md", markdown::markdown(report, &names)));
+    files.push(OutputFile::text("report.html", html::html(report)?));
+    let names: Vec<&str> = files.iter().map(|file| file.name.as_str()).chain([SUMMARY]).collect();
+    files.push(OutputFile::text(SUMMARY, summary::json(report, &names)?));
     Ok(files)
 }

@@ -1,5 +1,6 @@
 //! What decides the bytes of a report, so that a run over its own report is told from a run over another one.
 
+use crate::report::SUMMARY;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::fs;
@@ -40,8 +41,7 @@ impl Recipe {
 
     /// The recipe of the report in a folder; `None` if there is no report, or a partial one.
     pub(crate) fn read(folder: &Path) -> Option<Self> {
-        let summary: Value =
-            serde_json::from_slice(&fs::read(folder.join("summary.json")).ok()?).ok()?;
+        let summary: Value = serde_json::from_slice(&fs::read(folder.join(SUMMARY)).ok()?).ok()?;
         let text = |place| summary.pointer(place).and_then(Value::as_str).map(str::to_owned);
         if summary.pointer("/run/partial")?.as_bool()? {
             return None;

@@ -1,7 +1,7 @@
 //! `summary.json`: the record for programs. `measures` maps dotted names to numbers with their errors.
 
 use crate::error::{Error, Result};
-use crate::report::Report;
+use crate::report::{Report, SUMMARY};
 use serde::Serialize;
 
 /// Version of the layout of this file.
@@ -28,7 +28,7 @@ struct Summary<'r> {
     files: &'r [&'r str],
 }
 
-/// The record as JSON. `files` are the other files of the report.
+/// The record as JSON. `files` are all files of the report, itself included.
 pub(crate) fn json(report: &Report, files: &[&str]) -> Result<String> {
     let measures = &report.measures;
     let summary = Summary {
@@ -51,5 +51,5 @@ pub(crate) fn json(report: &Report, files: &[&str]) -> Result<String> {
     };
     serde_json::to_string_pretty(&summary)
         .map(|text| text + "\n")
-        .map_err(|reason| Error::Output { what: "summary.json".into(), reason: reason.to_string() })
+        .map_err(|reason| Error::Output { what: SUMMARY.into(), reason: reason.to_string() })
 }

@@ -27,6 +27,16 @@ pub(crate) const CHOICES_HEAD: &str = "A pilot has tried the estimators on each 
 pub(crate) const NO_LINES: &str =
     "Virtual sensors let light pass: they are no lines of the balance.";
 
+/// Names that are told apart: those that several share are numbered.
+pub(crate) fn numbered(names: &[&str]) -> Vec<String> {
+    let count = |own: &str, of: &[&str]| of.iter().filter(|other| **other == own).count();
+    let label = |(index, name): (usize, &&str)| match count(name, names) {
+        1 => (*name).to_owned(),
+        _ => format!("{name} ({})", count(name, &names[..=index])),
+    };
+    names.iter().enumerate().map(label).collect()
+}
+
 /// A value with its error and unit.
 pub(crate) fn quantity(measure: &Measure) -> String {
     let unit = if measure.unit == "1" { String::new() } else { format!(" {}", measure.unit) };

@@ -140,9 +140,7 @@ fn trace(
     let study = batch.study;
     let own = study.parameters.iter().zip(&design.settings);
     let own = own.flat_map(|(parameter, setting)| parameter.overrides(setting));
-    let overrides = common.overrides.iter().cloned().chain(own).collect();
-    let settings = Settings { overrides, ..common.clone() };
-    let outcome = match pipeline::prepare(&study.scene, &settings) {
+    let outcome = match pipeline::prepare(&study.scene, &common.with(own)) {
         Ok(job) => match trace_job(batch, design, job, board)? {
             Some(result) => DesignOutcome::Done(Box::new(result)),
             None => return Ok(Ended::Stopped),

@@ -16,8 +16,10 @@ mod store;
 pub use execute::BatchProgress;
 
 use crate::error::{Diagnostic, Error, Result};
+use crate::input::keys::Key;
+use crate::input::problems::{Problems, name_hint};
 use crate::input::{Parameter, Plan, Study, StudySettings, Tie, load_study};
-use crate::measure;
+use crate::pipeline;
 use crate::report::study::{
     DesignRecord, FACTS_FORMAT, ParameterFacts, PlanFacts, StudyFacts, StudyReport, study_files,
 };
@@ -83,7 +85,7 @@ pub fn run_study(
     watch: &(dyn Fn(&BatchProgress) + Sync),
 ) -> Result<Finished> {
     let study = load_study(path, &wishes.settings)?;
-    expect_measures(&study, path)?;
+    expect_measures(&study)?;
     let all = designs(&study);
     let facts = facts(&study, all.len());
     let dir = wishes.dir.clone().unwrap_or_else(|| default_dir(&study.name));
@@ -106,7 +108,7 @@ pub fn run_study(
 
 /// Whether a folder holds results of a study.
 pub fn has_study(dir: &Path) -> bool {
-    matches!(Store::manifest(dir), Ok(Some(_)))
+    Store::is_there(dir)
 }
 
 /// Puts the parts of a study together and writes the results of the whole.
@@ -180,18 +182,29 @@ fn finish(
     Ok((report, written))
 }
 
-/// Refuses measures that no design of the study can have, before any work is done.
-fn expect_measures(study: &Study, path: &Path) -> Result<()> {
-    let names = measure::names(&study.base.scene);
-    let wanted = study.measures.iter().chain(study.checks.iter().map(|check| &check.measure));
-    let unknown: Vec<String> = wanted
-        .filter(|name| !names.contains(name))
-        .map(|name| {
-            let near = measure::nearest(name, names.iter().map(String::as_str)).join(", ");
-            format!("{}: there is no measure `{name}`; near names: {near}", path.display())
-        })
-        .collect();
-    if unknown.is_empty() { Ok(()) } else { Err(Error::Usage(unknown.join("\n"))) }
+/// Refuses measures that the scene does not have, before any work is done.
+fn expect_measures(study: &Study) -> Result<()> {
+    let measures = study.measures.iter().enumerate();
+    let measures = measures.map(|(index, name)| (Key::of(&["measures"]).index(index), name));
+    let check = |index| Key::of(&["check"]).index(index).field("measure");
+    let checks = study.checks.iter().enumerate().map(|(index, own)| (check(index), &own.measure));
+    let target = study.base.run.stop.target.iter();
+    let target = target.map(|own| (Key::of(&["run", "target", "measure"]), &own.measure));
+    let mut problems = Problems::default();
+    pipeline::expect_measures(
+        &study.base.scene,
+        measures.chain(checks).chain(target),
+        &mut problems,
+    );
+    if let Some(ranking) = &study.ranking
+        && problems.is_free_of_errors()
+        && !study.measures.contains(&ranking.measure)
+    {
+        let hint = name_hint(&ranking.measure, study.measures.iter().map(String::as_str));
+        let message = format!("`{}` is none of `measures`", ranking.measure);
+        problems.error(&Key::of(&["ranking", "measure"]), message).hint(hint);
+    }
+    problems.finish(&study.places).map(|_| ())
 }
 
 /// What a study is, for its reports.

@@ -4,11 +4,10 @@
 //! is told from the records alone.
 
 use crate::error::{Error, Result};
-use crate::report::study::{DESIGN_FORMAT, DesignRecord, SUMMARY, StudyFacts};
-use crate::report::{Existing, remove_if_there, sweep, write_whole};
+use crate::report::study::{self, DESIGN_FORMAT, DesignRecord, StudyFacts};
+use crate::report::{self, Existing, remove_if_there, remove_report, sweep, write_whole};
 use crate::study::OnExisting;
 use serde::de::DeserializeOwned;
-use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs::{self, OpenOptions};
 use std::io::{ErrorKind, Write};
@@ -115,10 +114,14 @@ impl Store {
         Ok(())
     }
 
+    /// Whether a folder holds results of a study, readable or not.
+    pub(crate) fn is_there(dir: &Path) -> bool {
+        dir.join(MANIFEST).exists()
+    }
+
     /// What study a folder holds results of; `None` if it holds none.
-    pub(crate) fn manifest(dir: &Path) -> Result<Option<StudyFacts>> {
-        let path = dir.join(MANIFEST);
-        if path.exists() { read_json(&path).map(Some) } else { Ok(None) }
+    fn manifest(dir: &Path) -> Result<Option<StudyFacts>> {
+        Self::is_there(dir).then(|| read_json(&dir.join(MANIFEST))).transpose()
     }
 
     /// The folder.
@@ -205,23 +208,20 @@ impl Store {
         sweep(&self.dir.join(DESIGNS))
     }
 
-    /// Takes away the results of an older batch: its records, and the files that its summary names.
+    /// Takes away the results of an older batch: its records, and the files that its summary and those of its designs name.
     fn clear(&self) -> Result<()> {
         self.sweep()?;
-        let summary: Option<Value> = fs::read(self.dir.join(SUMMARY))
-            .ok()
-            .and_then(|bytes| serde_json::from_slice(&bytes).ok());
-        let files = summary.as_ref().and_then(|summary| summary["files"].as_array());
-        for name in files.into_iter().flatten().filter_map(Value::as_str) {
-            // Only names of this folder: the file may have been changed by others.
-            if Path::new(name).components().count() == 1 && !name.starts_with('.') {
-                remove_if_there(&self.dir.join(name))?;
-            }
-        }
+        remove_report(&self.dir, study::SUMMARY)?;
         remove_if_there(&self.dir.join(TIMING))?;
         for path in entries(&self.dir.join(DESIGNS))? {
-            let is_record = path.extension().is_some_and(|extension| extension == "json");
-            if is_record && path.is_file() {
+            if path.is_dir() {
+                sweep(&path)?;
+                remove_report(&path, report::SUMMARY)?;
+                // A folder with files of others stays.
+                if entries(&path)?.is_empty() {
+                    fs::remove_dir(&path).map_err(|source| Error::io(&path, source))?;
+                }
+            } else if path.extension().is_some_and(|extension| extension == "json") {
                 remove_if_there(&path)?;
             }
         }

@@ -135,6 +135,7 @@ fn a_killed_batch_goes_on_without_repeating_designs_to_the_same_bytes() {
 #[test]
 fn a_record_that_is_no_record_is_named() {
     let place = study(STUDY);
+    assert!(place.bad(2, "run study.toml").contains("run it with `lumiduct batch`"));
     place.good("batch study.toml -o out");
     let record = place.path("out").join("designs/0003.json");
     fs::write(&record, "{").unwrap();
@@ -152,13 +153,13 @@ fn a_record_that_is_no_record_is_named() {
 
 #[test]
 fn a_design_that_makes_no_scene_is_a_row_with_its_error_and_the_rest_goes_on() {
-    // A rod of index 0.5 is out of range.
-    let place = study(&STUDY.replace("from = 1.4, to = 1.6", "from = 1.4, to = 0.5"));
+    // A rod of index 0.5 is out of range, be it the first value or the last.
+    let place = study(&STUDY.replace("from = 1.4, to = 1.6", "from = 0.5, to = 1.4"));
     let output = place.run("batch study.toml -o out");
     assert_eq!(code(&output), 1, "{}", errors(&output));
     let rows = rows(&place, "out");
-    assert!(rows[0]["error"].is_empty() && !rows[0]["exit.efficiency"].is_empty());
-    assert!(rows[1]["error"].contains("out of range") && rows[1]["exit.efficiency"].is_empty());
+    assert!(rows[0]["error"].contains("out of range") && rows[0]["exit.efficiency"].is_empty());
+    assert!(rows[1]["error"].is_empty() && !rows[1]["exit.efficiency"].is_empty());
     let said = String::from_utf8(output.stdout).unwrap();
     assert!(said.contains("makes no scene") && !said.contains(&*place.0.path().to_string_lossy()));
 }
@@ -212,13 +213,68 @@ fn tables_choices_and_whole_reports() {
     assert_eq!([row(0), row(1), row(2)], [["5", "light"], ["7.5", "1.49"], ["10", "dense"]]);
     assert!(place.path("out/designs/0003/report.md").exists());
 
-    fs::write(place.path("designs.csv"), "index,lenght\nheavy,5\n").unwrap();
-    let said = place.bad(2, "batch study.toml -o bad");
-    assert!(said.contains("designs.csv:1") && said.contains("lenght"), "{said}");
-    fs::write(place.path("designs.csv"), "index,length\nlight,5\nheavy,five\nlight\n").unwrap();
-    let said = place.bad(2, "batch study.toml -o bad");
-    assert!(said.contains("heavy") || said.contains("another number of cells"), "{said}");
+    for (table, line, words) in [
+        ("index,lenght\nheavy,5\n", 1, "there is no parameter `lenght`"),
+        ("index,length\nlight,5\nheavy,5\n", 3, "`heavy` is none of its choices"),
+        ("index,length\nlight,five\n", 2, "`five` is no number"),
+        ("index,length\nlight\n", 2, "another number of cells"),
+        ("index,length,length\nlight,5,6\n", 1, "two columns `length`"),
+        ("index;length\nlight;5\n", 1, "by commas, not by semicolons"),
+        ("index,length\nlight,\"5\nlight,6\n", 2, "a quotation mark is not closed"),
+        ("index,length\n", 1, "no designs"),
+    ] {
+        fs::write(place.path("designs.csv"), table).unwrap();
+        let said = place.bad(2, "batch study.toml -o bad");
+        assert!(said.contains(&format!("designs.csv:{line}")), "{table}: {said}");
+        assert!(said.contains(words), "{table}: {said}");
+    }
     assert!(!place.path("bad").exists());
+
+    // Nothing of an older study lies beside the new results.
+    fs::write(place.path("study.toml"), text.replace("keep = \"reports\"", "")).unwrap();
+    fs::write(place.path("designs.csv"), "index,length\nlight,5\n").unwrap();
+    place.good("batch study.toml -o out --overwrite");
+    assert_eq!(names(&place.path("out/designs")), ["0001.json"]);
+}
+
+#[test]
+fn a_file_that_a_choice_names_is_part_of_the_study() {
+    let text = STUDY.replace("measures = [", "measures = [\"extra.flux\", ")
+        + "[parameters.cells]\nkeys = [\"sensors.extra.file\"]\n"
+        + "choices = { coarse = \"coarse.toml\", fine = \"fine.toml\" }\n";
+    let place = study(&text);
+    let scene = fs::read_to_string(place.path("rod.toml")).unwrap();
+    let scene = scene.replace(
+        "[sensors]\n",
+        "[sensors]\nextra = { file = \"coarse.toml\", on = \"rod.exit\", counts = \"leaving\" }\n",
+    );
+    fs::write(place.path("rod.toml"), scene).unwrap();
+    fs::write(place.path("coarse.toml"), "plane = { cells = [2, 2] }\n").unwrap();
+    assert_eq!(code(&place.run("batch study.toml -o out")), 1);
+    assert_eq!(rows(&place, "out").iter().filter(|row| !row["error"].is_empty()).count(), 6);
+    fs::write(place.path("fine.toml"), "plane = { cells = [8, 8] }\n").unwrap();
+    assert!(place.bad(2, "batch study.toml -o out --resume").contains("another study"));
+    place.good("batch study.toml -o out --overwrite");
+    fs::write(place.path("fine.toml"), "plane = { cells = [9, 9] }\n").unwrap();
+    assert!(place.bad(2, "batch study.toml -o out --resume").contains("another study"));
+}
+
+#[test]
+fn a_full_disk_ends_a_batch_with_the_file_it_met_and_resume_completes_it() {
+    let place = study(STUDY);
+    place.good("batch study.toml -o whole");
+    // No file may grow beyond 24 blocks of 512 bytes: writes fail as on a full disk, and records are smaller than pages.
+    let command = "trap '' XFSZ; ulimit -f 24; exec \"$0\" batch study.toml -o cut";
+    let output = Process::new("sh")
+        .current_dir(place.0.path())
+        .args(["-c", command, env!("CARGO_BIN_EXE_lumiduct")])
+        .output()
+        .unwrap();
+    assert_eq!(code(&output), 3, "{}", errors(&output));
+    assert!(errors(&output).contains(".png: File too large"), "{}", errors(&output));
+    assert!(!place.path("cut/study.json").exists());
+    place.good("batch study.toml -o cut --resume");
+    assert_eq!(results(&place.path("whole")), results(&place.path("cut")));
 }
 
 #[test]
@@ -229,10 +285,13 @@ fn bad_studies_are_refused_with_the_line_to_change_and_write_nothing() {
         ("media.acrylic.index\"]", "media.acrylic.\"]", "no dotted key"),
         ("values = [5, 10, 20]", "", "has no values"),
         ("values = [5, 10, 20]", "values = [5]\nchoices = { a = 1 }", "given twice"),
+        ("values = [5, 10, 20]", "choices = [5, 10, 20]", "study.toml:10"),
         ("values = [5, 10, 20]", "spread = { uniform = { from = 2, to = 1 } }", "not below"),
-        ("scene = \"rod.toml\"", "scene = \"rood.toml\"", "rood.toml"),
+        ("from = 1.4, to = 1.6", "from = 1.6, to = 1.4", "not below"),
+        ("scene = \"rod.toml\"", "scene = \"rood.toml\"", "study.toml:4"),
         ("\"exit.uniformity_min_avg\"", "\"exit.uniformity_minavg\"", "exit.uniformity_min_avg"),
-        ("\"exit.uniformity_min_avg\"", "\"exot.uniformity_min_avg\"", "names no sensor"),
+        ("\"exit.uniformity_min_avg\"", "\"exot.uniformity_min_avg\"", "study.toml:5"),
+        ("[\"exit.efficiency\"", "[\"exit.eficiency\"", "study.toml:5"),
         (
             "[ranking]\nmeasure = \"exit.efficiency\"",
             "[ranking]\nmeasure = \"exit.flux\"",

@@ -172,10 +172,14 @@ max_std_error = 1e-9
     assert_eq!((kind, ty), (NonSuccessKind::Failure, "failed"));
     assert!(message.contains("at least 0.99 is wanted"), "{message}");
     assert_eq!(trouble(undecided).1, "undecided");
-    // The same run writes the same bytes; others do not replace them unasked.
-    assert_eq!(code(&place.run("run rod.toml -o a --junit ci/run.xml")), 1);
-    let said = errors(&place.run("run rod.toml -q -o b --paths 40k --junit ci/run.xml"));
-    assert!(said.contains("--overwrite"), "{said}");
+    // A later run has the file for itself; one of others is told of before any work is done.
+    assert_eq!(code(&place.run("run rod.toml -q -o b --paths 40k --junit ci/run.xml")), 1);
+    assert!(matches!(trouble(&cases(&junit(&place, "ci/run.xml"))[1]), (_, "failed", _)));
+    fs::write(place.path("mine.xml"), "<mine/>").unwrap();
+    let said = place.bad(2, "run rod.toml -o c --junit mine.xml");
+    assert!(said.contains("no JUnit file of this program; use --overwrite"), "{said}");
+    assert!(place.bad(2, "run rod.toml -o c --junit ci").contains("is a folder"));
+    assert!(!place.path("c").exists());
 }
 
 #[test]

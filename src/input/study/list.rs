@@ -67,15 +67,23 @@ impl Table<'_> {
     /// The column of each parameter.
     fn columns(&mut self, headers: &StringRecord, parameters: &[Parameter]) -> Option<Vec<usize>> {
         let names = || parameters.iter().map(|parameter| parameter.name.as_str());
+        if let [single] = headers.iter().collect::<Vec<_>>()[..]
+            && single.contains(';')
+        {
+            self.refuse(0, "the cells of a table are told apart by commas, not by semicolons");
+            return None;
+        }
         for header in headers.iter().filter(|header| !names().any(|name| name == *header)) {
             let hint = name_hint(header, names());
             self.refuse(0, &format!("there is no parameter `{header}`; {hint}"));
         }
         let mut columns = Vec::new();
         for name in names() {
-            match headers.iter().position(|header| header == name) {
-                Some(column) => columns.push(column),
-                None => self.refuse(0, &format!("there is no column `{name}`")),
+            let mut own = (0..headers.len()).filter(|column| headers.get(*column) == Some(name));
+            match (own.next(), own.next()) {
+                (Some(column), None) => columns.push(column),
+                (Some(_), Some(_)) => self.refuse(0, &format!("there are two columns `{name}`")),
+                (None, _) => self.refuse(0, &format!("there is no column `{name}`")),
             }
         }
         (columns.len() == parameters.len()).then_some(columns)
@@ -104,6 +112,9 @@ impl Table<'_> {
 }
 
 fn setting(cell: &str, parameter: &Parameter) -> Result<Setting, String> {
+    if cell.contains('\n') {
+        return Err("a quotation mark is not closed".into());
+    }
     if cell.is_empty() {
         return Ok(Setting::AsInScene);
     }

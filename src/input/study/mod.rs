@@ -122,9 +122,11 @@ pub struct Study {
     pub checks: Vec<Check>,
     /// What is kept of each design.
     pub keep: Keep,
+    /// Where the study file says all this.
+    pub places: Places,
     /// The study file, byte for byte.
     pub text: String,
-    /// Identifies study, scene, files that they name, and overrides: 64-bit FNV-1a, in hexadecimal.
+    /// Identifies study, scene, files that they and all choices name, and overrides: 64-bit FNV-1a, in hexadecimal.
     pub hash: String,
     /// Remarks on study and scene.
     pub warnings: Vec<Diagnostic>,
@@ -136,19 +138,24 @@ pub fn load_study(path: &Path, settings: &StudySettings) -> Result<Study> {
     let scene = path.parent().unwrap_or(Path::new("")).join(&spec.scene);
     let common = common_settings(&spec, settings, &mut problems);
     rules::check(&spec, &places, &mut problems);
+    if !scene.is_file() {
+        let message = format!("there is no file {}", scene.display());
+        problems.error(&Key::of(&["scene"]), message);
+    }
     if !problems.is_free_of_errors() {
         return Err(Error::Input(problems.into_diagnostics(&places)));
     }
     let base = load(&scene, &common)?;
     let parameters = parameters::lower(&spec, &base, &mut problems);
     rules::check_keys(&parameters, &scene, &common, &mut problems);
-    rules::check_measures(&spec, &base, &mut problems);
+    rules::check_clock(&base, &mut problems);
     let rows = table.map(|table| list::rows(&places, table, &parameters, &mut problems));
     let plan = lower_plan(&spec.plan, rows.unwrap_or_default());
     let warnings = problems.finish(&places)?;
     let mut hash = Digest::default();
     places.sources().iter().for_each(|source| hash.add(source.text().as_bytes()));
     hash.add(base.hash.as_bytes());
+    add_choices(&parameters, &scene, &common, &mut hash);
     hash.add(format!("{settings:?}").as_bytes());
     let warnings = warnings.into_iter().chain(base.warnings.iter().cloned()).collect();
     Ok(Study {
@@ -174,9 +181,24 @@ pub fn load_study(path: &Path, settings: &StudySettings) -> Result<Study> {
             KeepSpec::Reports => Keep::Reports,
         },
         text: places.root_text().to_owned(),
+        places,
         hash: hash.to_string(),
         warnings,
     })
+}
+
+/// Adds the scene of every choice: one may name a file that the scene alone does not.
+fn add_choices(parameters: &[Parameter], scene: &Path, common: &Settings, hash: &mut Digest) {
+    for parameter in parameters {
+        for name in parameter.choices.keys() {
+            let own = parameter.overrides(&Setting::Choice(name.clone()));
+            match load(scene, &common.with(own)) {
+                Ok(job) => hash.add(job.hash.as_bytes()),
+                // With other parameters it may become a scene.
+                Err(_) => hash.add(b"no scene"),
+            }
+        }
+    }
 }
 
 /// A study file that was read, with what is wrong with it so far.

@@ -105,27 +105,30 @@ pub struct Parameter {
 impl Parameter {
     /// The overrides of the scene that a setting makes, each `key=value`.
     pub fn overrides(&self, setting: &Setting) -> Vec<String> {
-        let line = |tie: &Tie| {
-            let value = match setting {
-                Setting::Number(number) => (tie.factor * number + tie.offset).to_string(),
-                Setting::Choice(name) => self.choices.get(name)?.clone(),
-                Setting::AsInScene => return None,
-            };
-            Some(format!("{}={value}", tie.key))
-        };
-        self.ties.iter().filter_map(line).collect()
+        self.ties.iter().filter_map(|tie| self.line(tie, setting)).collect()
     }
 
-    /// A setting to try the keys with.
-    pub(super) fn sample(&self) -> Setting {
+    /// The override of one of its keys, `key=value`.
+    pub(super) fn line(&self, tie: &Tie, setting: &Setting) -> Option<String> {
+        let value = match setting {
+            Setting::Number(number) => (tie.factor * number + tie.offset).to_string(),
+            Setting::Choice(name) => self.choices.get(name)?.clone(),
+            Setting::AsInScene => return None,
+        };
+        Some(format!("{}={value}", tie.key))
+    }
+
+    /// Settings to try the keys with.
+    pub(super) fn samples(&self) -> Vec<Setting> {
         match &self.domain {
-            Domain::Levels(levels) => levels.first().cloned().unwrap_or(Setting::AsInScene),
-            Domain::Uniform { from, .. } => Setting::Number(*from),
+            Domain::Levels(levels) => levels.clone(),
+            Domain::Uniform { from, to } => [*from, *to].map(Setting::Number).to_vec(),
             Domain::Normal { mean, from, to, .. } => {
                 let (from, to) = (from.unwrap_or(f64::NEG_INFINITY), to.unwrap_or(f64::INFINITY));
-                Setting::Number(mean.max(from).min(to))
+                vec![Setting::Number(mean.max(from).min(to))]
             }
-            Domain::Listed => Setting::AsInScene,
+            // What a table will say is not known yet: what the scene says will do.
+            Domain::Listed => vec![self.nominal.clone()],
         }
     }
 }

@@ -3,12 +3,12 @@
 use crate::error::{Diagnostic, DiagnosticKind};
 use crate::input::keys::{Key, Places};
 use crate::input::overrides::parse_key;
-use crate::input::problems::{Problems, name_hint};
+use crate::input::problems::Problems;
 use crate::input::spec::study::{
     MOST_DESIGNS, MOST_PARAMETERS, NormalSpec, ParameterSpec, PlanSpec, SpreadSpec, StudySpec,
     UniformSpec,
 };
-use crate::input::study::{Parameter, Setting, problems_of_scene};
+use crate::input::study::{Parameter, problems_of_scene};
 use crate::input::{Job, Settings};
 use std::path::Path;
 
@@ -24,7 +24,7 @@ pub(super) fn check(spec: &StudySpec, places: &Places, problems: &mut Problems) 
     }
     for (name, parameter) in &spec.parameters {
         let key = Key::of(&["parameters", name]);
-        check_source(parameter, &spec.plan, &key, problems);
+        check_source(places, &spec.plan, &key, problems);
         check_spread(parameter, &key, problems);
         for (index, tied) in parameter.keys.iter().enumerate() {
             check_key(tied.key(), &key.field("keys").index(index), problems);
@@ -33,26 +33,15 @@ pub(super) fn check(spec: &StudySpec, places: &Places, problems: &mut Problems) 
     check_shared_keys(spec, problems);
     check_set(spec, problems);
     check_count(spec, problems);
-    if let Some(ranking) = &spec.ranking
-        && !spec.measures.contains(&ranking.measure)
-    {
-        let hint = name_hint(&ranking.measure, spec.measures.iter().map(String::as_str));
-        let message = format!("`{}` is none of `measures`", ranking.measure);
-        problems.error(&Key::of(&["ranking", "measure"]), message).hint(hint);
-    }
 }
 
 /// Notes a parameter whose values are not given, or twice, or not as the plan needs them.
-fn check_source(spec: &ParameterSpec, plan: &PlanSpec, key: &Key, problems: &mut Problems) {
-    let given: Vec<&str> = [
-        ("values", spec.values.is_some()),
-        ("range", spec.range.is_some()),
-        ("choices", spec.choices.is_some()),
-        ("spread", spec.spread.is_some()),
-    ]
-    .into_iter()
-    .filter_map(|(name, is_given)| is_given.then_some(name))
-    .collect();
+fn check_source(places: &Places, plan: &PlanSpec, key: &Key, problems: &mut Problems) {
+    // One that cannot be read is given, too.
+    let given: Vec<&str> = ["values", "range", "choices", "spread"]
+        .into_iter()
+        .filter(|name| places.has(&key.field(name)))
+        .collect();
     let (plan, taken): (&str, &[&str]) = match plan {
         PlanSpec::Grid => ("grid", &["values", "range", "choices"]),
         PlanSpec::OneAtATime => ("one_at_a_time", &["values", "range", "choices"]),
@@ -76,14 +65,9 @@ fn check_source(spec: &ParameterSpec, plan: &PlanSpec, key: &Key, problems: &mut
         }
         [_, second, ..] => _ = problems.error(&key.field(second), "the values are given twice"),
     }
-    if let Some(choices) = &spec.choices
-        && choices.is_empty()
-    {
-        problems.error(&key.field("choices"), "there is nothing to choose from");
-    }
 }
 
-/// Notes spreads without room.
+/// Notes ranges and spreads without room.
 fn check_spread(spec: &ParameterSpec, key: &Key, problems: &mut Problems) {
     if let Some(SpreadSpec::Normal(own)) = &spec.spread {
         check_limits(own, &key.field("spread").field("normal"), problems);
@@ -104,10 +88,13 @@ fn check_spread(spec: &ParameterSpec, key: &Key, problems: &mut Problems) {
         }
         Some(SpreadSpec::Normal(_)) | None => {}
     }
-    if let Some(range) = &spec.range
-        && range.from == range.to
+    if let Some(range) = &spec.range {
+        ordered(range.from, range.to, &key.field("range"));
+    }
+    if let Some(choices) = &spec.choices
+        && choices.is_empty()
     {
-        problems.error(&key.field("range"), "both ends are the same");
+        problems.error(&key.field("choices"), "there is nothing to choose from");
     }
 }
 
@@ -187,7 +174,8 @@ fn check_count(spec: &StudySpec, problems: &mut Problems) {
     }
 }
 
-/// Notes keys that the scene does not have, or that do not take the kind of value of their parameter.
+/// Notes keys that the scene does not have, or that take no value of their parameter. Where they take some, designs with
+/// the others say what is wrong with them.
 pub(super) fn check_keys(
     parameters: &[Parameter],
     scene: &Path,
@@ -195,26 +183,34 @@ pub(super) fn check_keys(
     problems: &mut Problems,
 ) {
     for parameter in parameters {
-        let key = Key::of(&["parameters", &parameter.name, "keys"]);
-        let setting = match parameter.sample() {
-            // What a table will say is not known yet: what the scene says will do.
-            Setting::AsInScene => parameter.nominal.clone(),
-            own @ (Setting::Number(_) | Setting::Choice(_)) => own,
-        };
-        for (index, line) in parameter.overrides(&setting).into_iter().enumerate() {
-            let label = format!("-D {}", line.escape_debug());
-            let overrides = common.overrides.iter().cloned().chain([line]).collect();
-            let settings = Settings { overrides, ..common.clone() };
-            for found in problems_of_scene(scene, &settings) {
-                if is_about(&found, &label) {
-                    let problem = problems.error(&key.index(index), found.message);
-                    if let Some(hint) = found.hint {
-                        problem.hint(hint);
-                    }
+        for (index, tie) in parameter.ties.iter().enumerate() {
+            let mut found = Vec::new();
+            for setting in parameter.samples() {
+                let Some(line) = parameter.line(tie, &setting) else { continue };
+                let own = problems_of_override(scene, common, line);
+                if own.is_empty() {
+                    found.clear();
+                    break;
+                }
+                found.push(own);
+            }
+            let key = Key::of(&["parameters", &parameter.name, "keys"]).index(index);
+            for Diagnostic { message, hint, .. } in found.into_iter().next().into_iter().flatten() {
+                let problem = problems.error(&key, message);
+                if let Some(hint) = hint {
+                    problem.hint(hint);
                 }
             }
         }
     }
+}
+
+/// What is wrong with an override of a scene.
+fn problems_of_override(scene: &Path, common: &Settings, line: String) -> Vec<Diagnostic> {
+    let label = format!("-D {}", line.escape_debug());
+    let mut found = problems_of_scene(scene, &common.with([line]));
+    found.retain(|own| is_about(own, &label));
+    found
 }
 
 fn is_about(found: &Diagnostic, label: &str) -> bool {
@@ -225,26 +221,8 @@ fn is_about(found: &Diagnostic, label: &str) -> bool {
     is_error && found.file.as_deref() == Some(Path::new(label))
 }
 
-/// Notes measures whose first word is no sensor of the scene. Whole names are looked at once the scene is built.
-pub(super) fn check_measures(spec: &StudySpec, base: &Job, problems: &mut Problems) {
-    let sensors = base.scene.sensors.iter().map(|sensor| sensor.name.as_str());
-    let known: Vec<&str> = sensors.chain(["balance"]).collect();
-    let mut judge = |measure: &str, key: &Key| {
-        let first = measure.split('.').next().unwrap_or_default();
-        if !known.contains(&first) {
-            let hint = name_hint(first, known.iter().copied());
-            problems.error(key, format!("`{measure}` names no sensor")).hint(hint);
-        }
-    };
-    for (index, measure) in spec.measures.iter().enumerate() {
-        judge(measure, &Key::of(&["measures"]).index(index));
-    }
-    if let Some(target) = &spec.run.target {
-        judge(&target.measure, &Key::of(&["run", "target", "measure"]));
-    }
-    for (index, check) in spec.check.iter().enumerate() {
-        judge(&check.measure, &Key::of(&["check"]).index(index).field("measure"));
-    }
+/// Notes a scene that stops by the clock.
+pub(super) fn check_clock(base: &Job, problems: &mut Problems) {
     if base.run.stop.time.is_some() {
         problems
             .error(&Key::of(&["run"]), "the scene stops by the clock, which no design repeats")

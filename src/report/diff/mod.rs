@@ -13,7 +13,7 @@ pub use maps::{MapDiff, MapOutcome, MapTable};
 pub use measures::{DiffRow, Judgement, Limits};
 pub(crate) use page::sentence;
 pub use page::{Rows, diff_table};
-pub use read::{Content, Design, RunFiles, Side, read};
+pub use read::{Content, DesignRow, RunFiles, Side, read};
 
 use crate::error::{Error, Result};
 use crate::measure::{Measure, nearest};
@@ -91,7 +91,7 @@ pub fn diff(sides: &[Side; 2], wishes: &DiffWishes) -> Result<Diff> {
     measures::sort(&mut rows);
     if !rows.iter().any(|row| row.judgement != Judgement::Unknown) {
         return Err(Error::Usage(match rows.first() {
-            None => format!("{} and {} have no measure in common", a.name, b.name),
+            None => nothing_in_common(a, b),
             Some(row) => format!(
                 "none of the {} measures can be judged: {}, for one, {}; trace more paths",
                 rows.len(),
@@ -108,6 +108,16 @@ pub fn diff(sides: &[Side; 2], wishes: &DiffWishes) -> Result<Diff> {
         only_in: pairs.only_in,
         maps,
     })
+}
+
+fn nothing_in_common(a: &Side, b: &Side) -> String {
+    let what = match a.content {
+        Content::Run(_) => "no measure in common",
+        Content::Study(_) => {
+            "no design in common, one with the same settings and a measure in both"
+        }
+    };
+    format!("{} and {} have {what}", a.name, b.name)
 }
 
 /// All files of a comparison: pictures of maps first, so that the page can name them.
@@ -157,8 +167,8 @@ impl Pairs {
     }
 
     /// Pairs designs by their settings, whatever their numbers.
-    fn add_designs(&mut self, a: &[Design], b: &[Design]) {
-        let mut left: Vec<&Design> = b.iter().collect();
+    fn add_designs(&mut self, a: &[DesignRow], b: &[DesignRow]) {
+        let mut left: Vec<&DesignRow> = b.iter().collect();
         let nothing = IndexMap::new();
         for own in a {
             // A list may name a design twice; each has a partner of its own.

@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::input::Setting;
 use crate::measure::Measure;
 use crate::report::diff::maps::MapTable;
-use crate::report::{study, summary};
+use crate::report::{SUMMARY, study, summary};
 use indexmap::IndexMap;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
@@ -29,7 +29,7 @@ pub enum Content {
     /// Those of a run.
     Run(RunFiles),
     /// Those of the designs of a study.
-    Study(Vec<Design>),
+    Study(Vec<DesignRow>),
 }
 
 /// The numbers of a run.
@@ -43,7 +43,7 @@ pub struct RunFiles {
 
 /// The numbers of a design.
 #[derive(Debug, Deserialize)]
-pub struct Design {
+pub struct DesignRow {
     /// Its number, from 1.
     pub design: usize,
     /// What its parameters are set to.
@@ -53,7 +53,7 @@ pub struct Design {
     pub measures: IndexMap<String, Measure>,
 }
 
-impl Design {
+impl DesignRow {
     /// What stands before the names of its measures: "design 3 (leg 5, radius 8): ".
     pub(crate) fn prefix(&self) -> String {
         let words = self.settings.iter().map(|(name, setting)| match setting {
@@ -98,7 +98,7 @@ struct StudySummary {
     name: String,
     hash: String,
     seed: u64,
-    rows: Vec<Design>,
+    rows: Vec<DesignRow>,
 }
 
 /// Reads the report of a run or the results of a study from their folder.
@@ -109,7 +109,7 @@ pub fn read(folder: &Path) -> Result<Side> {
             folder.display()
         )));
     }
-    if let Some(found) = summary_in(folder, "summary.json", summary::FORMAT)? {
+    if let Some(found) = summary_in(folder, SUMMARY, summary::FORMAT)? {
         return run_side(folder, found);
     }
     match summary_in(folder, study::SUMMARY, study::SUMMARY_FORMAT)? {

@@ -36,7 +36,7 @@ fn run(measures: &[(&str, Measure)], maps: Vec<MapTable>) -> Side {
 }
 
 fn study(designs: &[(usize, f64, f64)]) -> Side {
-    let design = |&(design, length, value): &(usize, f64, f64)| Design {
+    let design = |&(design, length, value): &(usize, f64, f64)| DesignRow {
         design,
         settings: [("length".to_owned(), Setting::Number(length))].into_iter().collect(),
         measures: [("exit.flux".to_owned(), measure(value, 0.1))].into_iter().collect(),

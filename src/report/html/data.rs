@@ -169,11 +169,14 @@ pub(crate) fn polar(plot: &PolarPlot) -> Value {
     let curves: Vec<Value> = plot
         .curves
         .iter()
-        .map(|curve| {
+        .enumerate()
+        .map(|(place, curve)| {
             let points = curve.points.iter().map(|(_, value)| value);
             let [y, error] = with_errors(points.zip(&curve.std_errors));
             let gamma = numbers(curve.points.iter().map(|(gamma, _)| gamma), DIGITS);
-            json!({ "name": curve.name, "gamma": gamma, "y": y, "error": error })
+            json!({
+                "name": curve.name, "colour": place, "dash": place, "gamma": gamma, "y": y, "error": error,
+            })
         })
         .collect();
     json!({ "plot": "polar", "title": plot.title, "unit": plot.unit, "curves": curves })
@@ -198,15 +201,15 @@ pub(crate) fn chart(plot: &LinePlot, unit: &str) -> Value {
                 ErrorForm::Band => "band",
                 ErrorForm::Hidden => "hidden",
             };
-            let (look, dashed) = match series.look {
-                Look::InTurn => (place, false),
-                Look::Solid(look) => (look, false),
-                Look::Dashed(look) => (look, true),
-                Look::Bound => (INK, true),
+            let (colour, dash) = match series.look {
+                Look::InTurn => (place, place),
+                Look::Solid(look) => (look, 0),
+                Look::Dashed(look) => (look, 1),
+                Look::Bound => (INK, 1),
             };
             let x = numbers(series.points.iter().map(|point| &point.x), DIGITS);
             json!({
-                "name": series.name, "form": form, "errors": errors, "look": look, "dashed": dashed,
+                "name": series.name, "form": form, "errors": errors, "colour": colour, "dash": dash,
                 "x": x, "y": y, "error": error,
             })
         })

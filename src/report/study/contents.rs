@@ -170,15 +170,19 @@ fn designs(report: &StudyReport) -> Part {
 
 /// The settings of a design as cells of a table.
 fn settings(report: &StudyReport, design: &DesignRecord) -> Vec<String> {
-    let cell = |parameter: &ParameterFacts| match design.settings.get(&parameter.name) {
+    report.facts.parameters.iter().map(|parameter| setting(parameter, design)).collect()
+}
+
+/// What a parameter is set to in a design, without its unit.
+pub(super) fn setting(parameter: &ParameterFacts, design: &DesignRecord) -> String {
+    match design.settings.get(&parameter.name) {
         Some(Setting::Number(number)) => format_value(*number),
         Some(Setting::Choice(name)) => name.clone(),
         Some(Setting::AsInScene) | None => match parameter.nominal {
             Setting::Number(number) => format!("{} (scene)", format_value(number)),
             Setting::Choice(_) | Setting::AsInScene => "as in the scene".into(),
         },
-    };
-    report.facts.parameters.iter().map(cell).collect()
+    }
 }
 
 fn parameters(report: &StudyReport) -> Part {

@@ -232,13 +232,11 @@ fn distribution(report: &StudyReport, measure: &str) -> Option<LinePlot> {
 
 fn effect_drawing(report: &StudyReport, effect: &Effect) -> Drawing {
     let title = format!("{}: main effect of {}", effect.measure, effect.parameter);
-    let subtitle = match report.facts.plan {
-        PlanFacts::OneAtATime => "all other parameters as in the scene",
-        PlanFacts::Grid
-        | PlanFacts::List
-        | PlanFacts::LatinHypercube(_)
-        | PlanFacts::Sobol(_)
-        | PlanFacts::Tolerance(_) => "mean over all designs with the same setting",
+    let used: usize = effect.points.iter().map(|point| point.designs).sum();
+    let subtitle = match (report.facts.plan, used == report.designs.len()) {
+        (PlanFacts::OneAtATime, _) => "all other parameters as in the scene",
+        (_, true) => "mean over all designs with the same setting",
+        (_, false) => "mean over the designs that differ in nothing else",
     };
     let points: Option<Vec<SeriesPoint>> = effect
         .points

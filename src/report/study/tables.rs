@@ -5,7 +5,7 @@ use crate::input::Setting;
 use crate::report::OutputFile;
 use crate::report::csv::table;
 use crate::report::study::{DesignOutcome, DesignRecord, StudyReport};
-use crate::report::words::outcome_word;
+use crate::report::words::{numbered, outcome_word};
 
 /// All tables of a study.
 pub(super) fn files(report: &StudyReport) -> Result<Vec<OutputFile>> {
@@ -23,7 +23,8 @@ fn designs(report: &StudyReport) -> Result<OutputFile> {
         };
         header.extend(["", ".std_error", ".bias"].map(|part| format!("{measure}{part}{unit}")));
     }
-    header.extend(facts.checks.iter().map(|check| format!("check {}", check.measure)));
+    let checked: Vec<&str> = facts.checks.iter().map(|check| check.measure.as_str()).collect();
+    header.extend(numbered(&checked).into_iter().map(|name| format!("check {name}")));
     header.extend(["rank", "paths", "ended", "error"].map(str::to_owned));
     let names: Vec<&str> = header.iter().map(String::as_str).collect();
     table("study.csv".into(), &names, report.designs.iter().map(|design| row(report, design)))

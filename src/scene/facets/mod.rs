@@ -5,6 +5,7 @@
 
 mod flat;
 mod mesh;
+mod outline;
 
 use crate::scene::relief::Trim;
 use crate::scene::shape::Shape;

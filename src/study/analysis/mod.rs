@@ -34,8 +34,10 @@ fn sharpness(measure: &str, designs: &[DesignRecord]) -> Option<Sharpness> {
         })
         .collect();
     factors.sort_by(f64::total_cmp);
-    let middle = *factors.get(factors.len() / 2)?;
-    Some(Sharpness { measure: measure.to_owned(), factor: middle, pairs: factors.len() })
+    let last = factors.len().checked_sub(1)?;
+    // An even number has two in the middle.
+    let factor = (factors[last / 2] + factors[last.div_ceil(2)]) / 2.0;
+    Some(Sharpness { measure: measure.to_owned(), factor, pairs: factors.len() })
 }
 
 #[cfg(test)]
@@ -126,7 +128,7 @@ mod testing {
 mod tests {
     use super::testing::{design, facts};
     use super::*;
-    use crate::report::study::{DesignOutcome, PlanFacts, SensitivityMethod};
+    use crate::report::study::{DesignOutcome, Effect, PlanFacts, SensitivityMethod};
 
     /// 3 a + b on a grid of a and b in -1, 0, 1, with noise that all share.
     fn grid() -> Vec<DesignRecord> {
@@ -171,6 +173,22 @@ mod tests {
         assert!(means.iter().zip([7.0, 10.0, 13.0]).all(|(a, b)| (a - b).abs() < 1e-12));
         // Noise that all share does not average out.
         assert!((effect.points[0].mean.std_error - 0.5 / 3f64.sqrt()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_main_effect_compares_designs_that_differ_in_nothing_else() {
+        // The design of the highest value is missing: its two neighbours with the same b leave the means, too.
+        let mut designs = grid();
+        designs[8].outcome = DesignOutcome::Failed("no scene".into());
+        let found = analysis(&facts(PlanFacts::Grid), &designs);
+        let a = &found.effects[0];
+        assert_eq!(a.points.iter().map(|point| point.designs).collect::<Vec<_>>(), [2, 2, 2]);
+        let whole = analysis(&facts(PlanFacts::Grid), &grid());
+        let step = |effect: &Effect| effect.points[1].mean.value - effect.points[0].mean.value;
+        assert!((step(a) - step(&whole.effects[0])).abs() < 1e-12);
+        // A list of designs without a pair that differs in one parameter alone has none.
+        let list: Vec<DesignRecord> = [0, 4, 8].map(|place| grid()[place].clone()).to_vec();
+        assert!(analysis(&facts(PlanFacts::List), &list).effects.is_empty());
     }
 
     #[test]

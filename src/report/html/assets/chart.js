@@ -24,7 +24,7 @@ function chartOf(data, scale, readout, { width, height }) {
   const place = drawAxes(svg, area, x, y, "grid");
   const clamp = ([a, b]) => [around(a), around(Math.min(Math.max(b, area.top), area.top + area.height))];
   const at = (a, b) => clamp(scale === "log" && !(b > 0) ? [place(a, high)[0], 1e9] : place(a, b));
-  data.series.forEach((one, index) => drawSeries(svg, one, one.look ?? index, x, at));
+  data.series.forEach((one) => drawSeries(svg, one, x, at));
   followChart(svg, data, { x, at, area }, readout);
   return [svg, legendOf(data.series)];
 }
@@ -38,8 +38,8 @@ function tightRangeOf(series) {
   return [low - room, high + room];
 }
 
-function drawSeries(svg, one, look, x, at) {
-  const colour = seriesColour(look);
+function drawSeries(svg, one, x, at) {
+  const colour = seriesColour(one.colour);
   const known = one.x.map((_, i) => i).filter((i) => one.y[i] !== null && one.x[i] <= x.to);
   const error = (i) => one.error[i] ?? 0;
   if (one.errors === "band" && known.length > 1) {
@@ -53,11 +53,10 @@ function drawSeries(svg, one, look, x, at) {
   }
   const points = known.map((i) => at(one.x[i], one.y[i]));
   if (one.form === "dots" || points.length === 1) {
-    points.forEach(([cx, cy]) => svg.append(make("circle", { cx, cy, r: 3.2, style: `fill: ${colour}` })));
+    svg.append(make("path", { d: points.map(([x, y]) => `M${x} ${y}${markOf(one.dash)}`).join(""), style: `fill: ${colour}` }));
     return;
   }
-  const dash = one.dashed ? DASHES[1] : DASHES[Math.floor(look / 7) % DASHES.length];
-  const style = `fill: none; stroke: ${colour}; stroke-width: 1.8; stroke-dasharray: ${dash}`;
+  const style = `fill: none; stroke: ${colour}; stroke-width: 1.8; stroke-dasharray: ${dashOf(one.dash)}`;
   svg.append(make("path", { d: one.form === "steps" ? stepsThrough(points) : `M${points.map((p) => p.join(" ")).join("L")}`, style }));
 }
 

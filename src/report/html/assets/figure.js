@@ -78,16 +78,20 @@ function drawAxes(svg, area, x, y, grid) {
 }
 
 const seriesColour = (index) => `var(--series-${index % 7})`;
-const DASHES = ["none", "9 5", "2 4", "10 4 2 4"];
+// Series differ in their dashes and dots, too: colours alone do not tell them apart for everyone.
+const dashOf = (index) => ["none", "9 5", "2 4", "10 4 2 4"][index % 4];
+const markOf = (index) => ["m-3 0a3 3 0 1 0 6 0a3 3 0 1 0 -6 0", "m-3 -3h6v6h-6z", "m0 -4l4 7h-8z", "m0 -4l4 4l-4 4l-4 -4z"][index % 4];
 
 // Names of series with samples of their lines.
 function legendOf(series) {
   const legend = make("div", { class: "legend" });
-  series.forEach((one, index) => {
-    if (!one.name) return;
-    const line = one.dashed ? "dashed" : "solid";
-    const swatch = make("span", { class: "swatch", style: `border-top: 3px ${line} ${seriesColour(one.look ?? index)}` });
-    legend.append(make("span", {}, swatch, one.name));
-  });
+  for (const one of series.filter(({ name }) => name)) {
+    const colour = seriesColour(one.colour);
+    const sample =
+      one.form === "dots"
+        ? make("path", { d: `M15 5${markOf(one.dash)}`, style: `fill: ${colour}` })
+        : make("path", { d: "M0 5h30", style: `stroke: ${colour}; stroke-width: 2.4; stroke-dasharray: ${dashOf(one.dash)}` });
+    legend.append(make("span", {}, make("svg", { class: "sample", width: 30, height: 10 }, sample), one.name));
+  }
   return legend;
 }

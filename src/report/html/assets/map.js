@@ -228,7 +228,7 @@ function sectionOf(map) {
   const { data, geometry } = map;
   const [[ax, ay], [bx, by]] = map.line;
   const length = Math.hypot(bx - ax, by - ay);
-  const series = { name: "", form: "line", errors: "band", x: [], y: [], error: [], bias: [] };
+  const series = { name: "", form: "line", errors: "band", colour: 0, dash: 0, x: [], y: [], error: [], bias: [] };
   let [last, since] = [-1, 0];
   const close = (until) => {
     if (last < 0 || data.values[last] === null) return;

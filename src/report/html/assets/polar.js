@@ -21,13 +21,13 @@ function polarDrawing(data, scale, readout) {
     return [center[0] + share * radius * Math.sin(angle), center[1] - share * radius * Math.cos(angle)];
   };
   drawPolarGrid(svg, axis, center, isDown);
-  data.curves.forEach((curve, index) => {
+  data.curves.forEach((curve) => {
     const points = curve.gamma.map((gamma, i) => at(gamma, curve.y[i] ?? 0).map(around).join(" "));
     const outer = curve.gamma.map((gamma, i) => at(gamma, (curve.y[i] ?? 0) + (curve.error[i] ?? 0)).map(around).join(" "));
     const inner = curve.gamma.map((gamma, i) => at(gamma, Math.max((curve.y[i] ?? 0) - (curve.error[i] ?? 0), 0)).map(around).join(" "));
-    const colour = seriesColour(index);
+    const colour = seriesColour(curve.colour);
     svg.append(make("path", { d: `M${[...outer, ...inner.reverse()].join("L")}z`, style: `fill: ${colour}; fill-opacity: 0.22` }));
-    const style = `fill: none; stroke: ${colour}; stroke-width: 1.8; stroke-dasharray: ${index === 0 ? "none" : DASHES[1]}`;
+    const style = `fill: none; stroke: ${colour}; stroke-width: 1.8; stroke-dasharray: ${dashOf(curve.dash)}`;
     svg.append(make("path", { d: `M${points.join("L")}`, style }));
   });
   followPolar(svg, data, center, at, readout);

@@ -6,6 +6,7 @@ const ROLES = {
   solid: { colour: "--series-5", fill: 0.1, rim: 0.55, name: "face of a solid" },
   sheet: { colour: "--series-3", fill: 0.1, rim: 0.55, name: "sheet" },
   port: { colour: "--soft", fill: 0.04, rim: 0.4, name: "open port" },
+  pattern: { colour: "--ink", fill: 0, rim: 0.85, name: "elements of a pattern" },
   sensor: { colour: "--series-4", fill: 0.3, rim: 0.95, name: "sensor" },
   source: { colour: "--series-6", fill: 0.6, rim: 1, name: "source" },
 };
@@ -77,8 +78,13 @@ function paint(state) {
   const sorted = state.triangles.filter((one) => !hiddenFaces.has(one.index)).map((one) => [nearness(one), one]);
   sorted.sort((a, b) => a[0] - b[0]);
   for (const [, { index, corners }] of sorted) paintTriangle(context, state, index, corners);
-  data.faces.forEach((face, index) => { if (!hiddenFaces.has(index)) paintRims(context, state, face, index); });
+  const paintRimsOf = (wanted) => data.faces.forEach((face, index) => {
+    if (!hiddenFaces.has(index) && wanted(face.role === "pattern")) paintRims(context, state, face, index);
+  });
+  paintRimsOf((isPattern) => !isPattern);
   paintPaths(context, state);
+  // Elements are small, and paths go through them: they would not be seen behind.
+  paintRimsOf((isPattern) => isPattern);
   const taken = [];
   for (const mark of data.marks) paintMark(context, state, mark, taken);
   context.globalAlpha = 1;

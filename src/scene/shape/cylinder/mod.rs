@@ -249,6 +249,12 @@ impl Cylinder {
         (last, strips.last().map_or([self.z_min; 2], |strip| strip.heights(last)))
     }
 
+    /// The point with these unrolled coordinates on the whole wall, mm: the way back from [`Self::chart`].
+    pub(in crate::scene) fn unrolled(&self, at: DVec2) -> DVec3 {
+        let across = DVec2::from_angle(at.x / self.radius) * self.radius;
+        self.frame.point_to_world(across.extend(at.y))
+    }
+
     pub(super) fn chart(&self, p: DVec3) -> DVec2 {
         let across = self.across(p);
         let azimuth = self.wedge().map_or_else(|| azimuth(across), |wedge| wedge.azimuth(across));

@@ -1,0 +1,179 @@
+//! Outlines of the elements of patterns, for pictures alone.
+
+use crate::math::Frame;
+use crate::scene::facets::{FaceFacets, Facets};
+use crate::scene::pattern::{Outline, Pattern};
+use crate::scene::shape::{Cylinder, Shape};
+use crate::scene::{FaceId, Scene};
+use glam::{DMat2, DVec2, DVec3};
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+/// Corners of a round outline.
+const ROUND: usize = 12;
+/// Sides of a rectangle have a corner after each such share of the face that they lie on, 1: it may be curved.
+const SIDE: f64 = 1.0 / 24.0;
+impl Scene {
+    /// The outlines of the elements of a pattern; of more than `most`, only those of every second, third and so on.
+    /// Elements with relief are pieces of their face, and have none here.
+    pub fn element_outlines(&self, pattern: &Pattern, most: usize) -> FaceFacets {
+        let mut facets = Facets::default();
+        if let Outline::Relief(_) = pattern.field.outline {
+            return FaceFacets { facets, one_in: 1 };
+        }
+        let one_in = (pattern.field.count().div_ceil(most as u64)).max(1) as usize;
+        let Some(unrolled) = Unrolled::of(self, pattern.face) else {
+            return FaceFacets { facets, one_in };
+        };
+        let size = self.face_rect(pattern.face).map_or(DVec2::INFINITY, |rect| rect.max - rect.min);
+        for (place, middle) in pattern.field.places().step_by(one_in) {
+            let corners = corners(&pattern.field.outline, place, size);
+            let from = facets.points.len();
+            facets.rims.push((from..from + corners.len()).chain([from]).collect());
+            facets.points.extend(corners.into_iter().map(|from| unrolled.point(middle + from)));
+        }
+        FaceFacets { facets, one_in }
+    }
+}
+
+/// Corners of the outline of an element in a row, mm from its middle. One that goes all around a face is as wide as that.
+fn corners(outline: &Outline, place: f64, size: DVec2) -> Vec<DVec2> {
+    let half = 0.5 * outline.size(place).min(size);
+    match outline {
+        Outline::Circle { .. } => (0..ROUND)
+            .map(|corner| half * DVec2::from_angle(corner as f64 / ROUND as f64 * TAU))
+            .collect(),
+        Outline::Rectangle { .. } | Outline::Relief(_) => {
+            let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+            let corners = corners.map(|corner| half * DVec2::from(corner));
+            let side = |index: usize| {
+                let (from, to) = (corners[index], corners[(index + 1) % 4]);
+                let steps = ((to - from) / (SIDE * size)).abs().max_element().ceil().max(1.0);
+                (0..steps as usize).map(move |step| from.lerp(to, step as f64 / steps))
+            };
+            (0..4).flat_map(side).collect()
+        }
+    }
+}
+
+/// A face with the way back from its unrolled coordinates, which are those of its shape but for place, scale and order.
+struct Unrolled<'a> {
+    surface: Surface<'a>,
+    /// A place of the shape, in its own coordinates, mm, with its unrolled coordinates.
+    from: [DVec2; 2],
+    /// Own coordinates for unrolled ones.
+    back: DMat2,
+}
+
+/// A surface that patterns may lie on.
+enum Surface<'a> {
+    Plane(Frame),
+    Wall(&'a Cylinder),
+}
+
+impl<'a> Unrolled<'a> {
+    fn of(scene: &'a Scene, face: FaceId) -> Option<Self> {
+        let patch = scene.face_patches(face).first();
+        let surface = match patch.map(|patch| &patch.shape) {
+            Some(Shape::Cylinder(wall)) => Surface::Wall(wall),
+            Some(_) | None => Surface::Plane(scene.face_plane(face)?),
+        };
+        // Far from the seam of a round wall.
+        let (start, step) = match &surface {
+            Surface::Plane(_) => (DVec2::ZERO, 1.0),
+            Surface::Wall(wall) => (DVec2::new(FRAC_PI_2 * wall.radius(), 0.0), wall.radius()),
+        };
+        let chart = |own: DVec2| match patch {
+            Some(patch) => patch.chart(surface.point(own)),
+            None => own,
+        };
+        let along = |axis: DVec2| (chart(start + step * axis) - chart(start)) / step;
+        let back = DMat2::from_cols(along(DVec2::X), along(DVec2::Y)).inverse();
+        let from = [start, chart(start)];
+        Some(Self { surface, from, back })
+    }
+
+    /// The point with these unrolled coordinates, mm.
+    fn point(&self, at: DVec2) -> DVec3 {
+        let [own, start] = self.from;
+        self.surface.point(own + self.back * (at - start))
+    }
+}
+
+impl Surface<'_> {
+    fn point(&self, own: DVec2) -> DVec3 {
+        match self {
+            Self::Plane(frame) => frame.point_to_world(own.extend(0.0)),
+            Self::Wall(wall) => wall.unrolled(own),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::input::{Settings, load};
+
+    /// A plate with dots, and a rod with a row of them along its round wall, over the seam of its coordinates.
+    const SCENE: &str = r#"
+lumiduct = 1
+title = "dots"
+[media.glass]
+index = 1.5
+[finishes.white.lambertian]
+reflectance = 0.9
+[solids.rod.cylinder]
+radius_mm = 5
+length_mm = 40
+medium = "glass"
+[solids.plate.box]
+size_mm = [8, 8, 2]
+medium = "glass"
+at = { position_mm = [20, 0, 3], axis = [1, 1, 0] }
+[patterns.end]
+on = "plate.exit"
+finish = "white"
+element = { circle = { diameter_mm = 1 } }
+layout = { grid = { pitch_mm = 2, across_pitch_mm = 2 } }
+[patterns.wall]
+on = "rod.wall"
+finish = "white"
+element = { circle = { diameter_mm = [[0, 1], [40, 2]] } }
+layout = { row = { pitch_mm = 4, along_mm = [5, 35] } }
+[patterns.stripes]
+on = "rod.wall"
+finish = "white"
+element = { rectangle = { width_mm = 20, length_mm = 0.5 } }
+layout = { row = { positions_mm = [38] } }
+"#;
+
+    #[test]
+    fn corners_of_elements_lie_on_their_face_as_far_from_the_middle_as_the_element_reaches() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("dots.toml");
+        std::fs::write(&path, SCENE).unwrap();
+        let scene = load(&path, &Settings::default()).unwrap().scene;
+        for pattern in &scene.patterns {
+            let FaceFacets { facets, one_in } = scene.element_outlines(pattern, 5);
+            let places: Vec<_> = pattern.field.places().step_by(one_in).collect();
+            assert_eq!(facets.rims.len(), places.len(), "{}", pattern.name);
+            assert!((2..=5).contains(&places.len()) || pattern.name == "stripes");
+            let [patch] = scene.face_patches(pattern.face) else { panic!("one patch") };
+            for (rim, (place, middle)) in facets.rims.iter().zip(places) {
+                let half = 0.5 * pattern.field.outline.size(place);
+                assert!(rim.len() > 4 && rim.first() == rim.last());
+                for p in rim.iter().map(|i| facets.points[*i]) {
+                    assert!(patch.shape.bounds().grown(1e-9).contains(p), "{}: {p}", pattern.name);
+                    let mut from = patch.chart(p) - middle;
+                    if let Some(period) = pattern.field.period {
+                        from.x -= period * (from.x / period).round();
+                    }
+                    let reach = match pattern.field.outline {
+                        Outline::Circle { .. } => from.length() / half.x,
+                        _ => (from / half).abs().max_element(),
+                    };
+                    assert!((reach - 1.0).abs() < 1e-9, "{}: {reach}", pattern.name);
+                }
+            }
+        }
+    }
+}

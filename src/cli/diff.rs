@@ -2,9 +2,9 @@
 
 use crate::cli::values::{parse_percent, parse_sigmas};
 use crate::cli::{fail, open_junit, print, write_junit};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::report::diff::{Diff, DiffWishes, Limits, Rows, diff, diff_files, diff_table, read};
-use crate::report::{Existing, Folder, diff_junit};
+use crate::report::{Existing, Folder, Written, diff_junit, is_among};
 use clap::Args;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -61,7 +61,20 @@ fn compare(args: &DiffArgs, existing: Existing) -> Result<Diff> {
     let limits = Limits { sigmas: args.sigmas, relative: args.relative };
     let diff = diff(&sides, &DiffWishes { limits, only: args.only.clone() })?;
     if let Some(dir) = &args.output {
-        Folder::open(dir, existing, None)?.write(&diff_files(&diff)?)?;
+        if is_among(dir, &[args.a.clone(), args.b.clone()]) {
+            let dir = dir.display();
+            return Err(Error::Usage(format!(
+                "{dir} is one of the reports; use -o for another folder"
+            )));
+        }
+        let written = Folder::of_derived(dir, existing)?.write(&diff_files(&diff)?)?;
+        if let Written::Nothing { differing } = written {
+            return Err(Error::Usage(format!(
+                "{} holds other files of the same names ({}); use --overwrite to replace them",
+                dir.display(),
+                differing.join(", ")
+            )));
+        }
     }
     if !args.quiet {
         let rows = if args.all { Rows::All } else { Rows::Worst };

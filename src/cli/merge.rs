@@ -50,6 +50,11 @@ pub(super) fn merge(args: &MergeArgs) -> ExitCode {
         };
     }
     if args.parts.iter().all(|dir| has_study(dir)) {
+        if args.scene.is_some() {
+            return fail(&Error::Usage(
+                "--scene is for the parts of a run, and these are of a study".into(),
+            ));
+        }
         let existing = if args.overwrite { OnExisting::Replace } else { OnExisting::Resume };
         return match merge_study(&args.parts, args.output.as_deref(), existing) {
             Ok(finished) => {

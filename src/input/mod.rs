@@ -41,8 +41,8 @@ pub use gather::GatherSettings;
 pub use job::{Job, Settings, load};
 pub use list::list;
 pub use study::{
-    Best, Domain, Keep, Parameter, Plan, Ranking, Samples, Setting, Study, StudySettings, Tie,
-    load_study,
+    Best, DESIGN_COLUMN, Domain, Keep, OTHER_COLUMNS, Parameter, Plan, Ranking, Samples, Setting,
+    Study, StudySettings, Tie, column, load_study,
 };
 
 /// A scene that was read without errors.

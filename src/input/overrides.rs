@@ -23,6 +23,7 @@ impl Override {
             [Segment::Field(family), _, Segment::Field(key)] => {
                 family == "sensors" && key == "file"
             }
+            [Segment::Field(family), _] => family == "sensors" && self.node.get("file").is_some(),
             _ => false,
         }
     }

@@ -49,12 +49,14 @@ impl Keeper {
     ) -> Result<(Self, Option<Stand>)> {
         let (path, every) = (dir.join(NAME), output.checkpoint_every);
         let keeper = Self { path, recipe, every, last: Duration::ZERO };
+        if output.start == Start::Resume {
+            sweep(dir)?;
+        }
         if !keeper.path.exists() {
             return Ok((keeper, None));
         }
         match (output.start, output.existing) {
             (Start::Resume, _) => {
-                sweep(dir)?;
                 let stand = keeper.read()?;
                 Ok((Self { last: stand.elapsed, ..keeper }, Some(stand)))
             }

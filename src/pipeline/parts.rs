@@ -99,6 +99,13 @@ pub fn merge_slices(dirs: &[PathBuf], scene: Option<&Path>, output: &Output) -> 
         return Err(Error::Usage("there are no parts to put together".into()));
     };
     let scene = scene.map_or_else(|| PathBuf::from(&first.scene), Path::to_path_buf);
+    if !scene.is_file() {
+        return Err(Error::Usage(format!(
+            "{} is a part of a run of {}, and there is no such file here; say where it is with --scene",
+            first_path.display(),
+            scene.display()
+        )));
+    }
     let job = prepare(&scene, &first.settings)?;
     expect_same(
         &recipe(&job),

@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::report::{OutputFile, Recipe};
 use serde_json::Value;
-use std::fs;
+use std::fs::{self, DirEntry};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
@@ -49,8 +49,7 @@ impl Folder {
             return Err(Error::Usage(format!("{} is a file, not a folder", path.display())));
         }
         fs::create_dir_all(path).map_err(|source| Error::io(path, source))?;
-        let mut entries = fs::read_dir(path).map_err(|source| Error::io(path, source))?;
-        let is_kept = existing == Existing::Keep && entries.next().is_some();
+        let is_kept = existing == Existing::Keep && holds_files(path)?;
         let found = if is_kept { Recipe::read(path) } else { None };
         if is_kept && (recipe.is_none() || found.as_ref() != recipe) {
             let what = match (found, recipe) {
@@ -63,8 +62,16 @@ impl Folder {
                 path.display()
             )));
         }
-        // A file that can be made tells more than permissions do.
-        tempfile::tempfile_in(path).map_err(|source| Error::io(path, source))?;
+        expect_room(path)?;
+        Ok(Self { path: path.to_path_buf(), existing })
+    }
+
+    /// The folder of files that follow from other reports alone: those that are there may be of the same.
+    pub fn of_derived(path: &Path, existing: Existing) -> Result<Self> {
+        if path.is_file() {
+            return Err(Error::Usage(format!("{} is a file, not a folder", path.display())));
+        }
+        expect_room(path)?;
         Ok(Self { path: path.to_path_buf(), existing })
     }
 
@@ -108,6 +115,37 @@ impl Folder {
     }
 }
 
+/// Makes a folder in which a file can be made, which tells more than permissions do.
+pub(crate) fn expect_room(folder: &Path) -> Result<()> {
+    fs::create_dir_all(folder).map_err(|source| Error::io(folder, source))?;
+    tempfile::tempfile_in(folder)
+        .map(|_| ())
+        .map_err(|source| Error::io(folder, source.kind().into()))
+}
+
+/// Whether a folder is one of these, by whatever path.
+pub(crate) fn is_among(folder: &Path, others: &[PathBuf]) -> bool {
+    let place = |path: &Path| path.canonicalize().ok();
+    let own = place(folder);
+    own.is_some() && others.iter().any(|other| place(other) == own)
+}
+
+/// Whether a folder holds anything but what a program that was killed has left half written.
+pub(crate) fn holds_files(folder: &Path) -> Result<bool> {
+    let entries = fs::read_dir(folder).map_err(|source| Error::io(folder, source))?;
+    for entry in entries {
+        let entry = entry.map_err(|source| Error::io(folder, source))?;
+        if !is_staged(&entry) {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
+fn is_staged(entry: &DirEntry) -> bool {
+    entry.file_name().to_string_lossy().starts_with(STAGED)
+}
+
 /// Takes away what a program that was killed has left half written in a folder. A folder that is not there holds nothing.
 pub fn sweep(folder: &Path) -> Result<()> {
     let entries = match fs::read_dir(folder) {
@@ -116,7 +154,7 @@ pub fn sweep(folder: &Path) -> Result<()> {
     };
     for entry in entries {
         let entry = entry.map_err(|source| Error::io(folder, source))?;
-        if entry.file_name().to_string_lossy().starts_with(STAGED) {
+        if is_staged(&entry) {
             remove_if_there(&entry.path())?;
         }
     }
@@ -190,15 +228,16 @@ fn stage(path: &Path, bytes: &[u8]) -> Result<tempfile::NamedTempFile> {
         // The file mode creation mask takes away what the user does not want.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    let mut file = builder.tempfile_in(folder_of(path)).map_err(failed)?;
     // The temporary name would tell nobody anything.
+    let mut file =
+        builder.tempfile_in(folder_of(path)).map_err(|error| failed(error.kind().into()))?;
     file.as_file_mut().write_all(bytes).map_err(failed)?;
     file.as_file().sync_all().map_err(failed)?;
     Ok(file)
 }
 
 /// The folder that a file lies in.
-fn folder_of(path: &Path) -> &Path {
+pub(crate) fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 

@@ -7,7 +7,9 @@ use crate::measure::Outcome;
 use crate::report::diff::{Diff, DiffRow, Judgement, sentence};
 use crate::report::study::{DesignOutcome, StudyReport};
 use crate::report::words::numbered;
-use crate::report::{CheckResult, Existing, Report, TargetFacts, write_whole};
+use crate::report::{
+    CheckResult, Existing, Report, TargetFacts, expect_room, folder_of, write_whole,
+};
 use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestSuite};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -35,6 +37,7 @@ impl JunitFile {
                 )));
             }
         }
+        expect_room(folder_of(path))?;
         Ok(Self(path.to_path_buf()))
     }
 

@@ -30,8 +30,8 @@ pub use compare::{
 pub use drawing::{Drawing, drawing};
 pub use figures::scene_picture;
 pub use film::film_tables;
-pub(crate) use folder::remove_report;
 pub use folder::{Existing, Folder, Written, remove_if_there, sweep, write_whole};
+pub(crate) use folder::{expect_room, folder_of, is_among, remove_report};
 pub use inventory::inventory;
 pub use junit::{JunitFile, diff_junit, run_junit, study_junit};
 pub use mesh::mesh_report;

@@ -19,20 +19,17 @@ use crate::error::{Diagnostic, Error, Result};
 use crate::input::keys::Key;
 use crate::input::problems::{Problems, name_hint};
 use crate::input::{Parameter, Plan, Study, StudySettings, Tie, load_study};
-use crate::pipeline;
+use crate::pipeline::{self, VERSION};
 use crate::report::study::{
     DesignRecord, FACTS_FORMAT, ParameterFacts, PlanFacts, StudyFacts, StudyReport, study_files,
 };
-use crate::report::{self, Existing, Folder, Written};
+use crate::report::{self, Existing, Folder, Written, is_among};
 use crate::study::designs::designs;
 use crate::study::execute::{Batch, execute};
 use crate::study::store::Store;
 use crate::transport::{Interrupt, Shard};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-
-/// Version of the program, for reports.
-const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// How a study is to be run.
 #[derive(Debug, Clone)]
@@ -145,8 +142,7 @@ pub fn merge_study(
     let text = first.text()?;
     let dir = dir.map_or_else(|| default_dir(&facts.name), Path::to_path_buf);
     // What is put into a part of itself would be cleared before it is read.
-    let place = |path: &Path| path.canonicalize().ok();
-    if place(&dir).is_some() && parts.iter().any(|part| place(part) == place(&dir)) {
+    if is_among(&dir, parts) {
         return Err(Error::Usage(format!(
             "{} is one of the parts; use -o for a folder of the whole",
             dir.display()

@@ -53,7 +53,6 @@ pub(crate) fn sobol(samples: &Samples, dimensions: usize) -> Vec<Vec<f64>> {
 
 /// What a parameter is set to at a share of its distribution, 0..1.
 pub(crate) fn quantile(parameter: &Parameter, share: f64) -> Setting {
-    let whole = |value: f64| Setting::Number(if parameter.whole { value.round() } else { value });
     match &parameter.domain {
         Domain::Levels(levels) => {
             let place = (share * levels.len() as f64) as usize;
@@ -62,9 +61,22 @@ pub(crate) fn quantile(parameter: &Parameter, share: f64) -> Setting {
                 .cloned()
                 .unwrap_or(Setting::AsInScene)
         }
-        Domain::Uniform { from, to } => whole(from + (to - from) * share),
+        Domain::Uniform { from, to } if parameter.whole => {
+            // Every whole number between the ends is as likely.
+            let (first, last) = (from.ceil(), to.floor());
+            Setting::Number((first + (share * (last - first + 1.0)).floor()).min(last))
+        }
+        Domain::Uniform { from, to } => Setting::Number(from + (to - from) * share),
+        Domain::Normal { mean, std_dev, from, to } if parameter.whole => {
+            // What rounds to a whole number within the limits.
+            let limits = [from.map(|from| from.ceil() - 0.5), to.map(|to| to.floor() + 0.5)];
+            let value = normal([*mean, *std_dev], limits, share).round();
+            // A half rounds away from zero, beyond a limit of the curve.
+            let (low, high) = (from.unwrap_or(f64::NEG_INFINITY), to.unwrap_or(f64::INFINITY));
+            Setting::Number(value.clamp(low.ceil(), high.floor()))
+        }
         Domain::Normal { mean, std_dev, from, to } => {
-            whole(normal([*mean, *std_dev], [*from, *to], share))
+            Setting::Number(normal([*mean, *std_dev], [*from, *to], share))
         }
         Domain::Listed => Setting::AsInScene,
     }

@@ -9,7 +9,7 @@ use crate::report::{self, Existing, remove_if_there, remove_report, sweep, write
 use crate::study::OnExisting;
 use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
-use std::fs::{self, OpenOptions};
+use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
@@ -26,6 +26,8 @@ const REMOVE: &str = "remove it, and the design is computed anew";
 pub(crate) struct Store {
     dir: PathBuf,
     facts: StudyFacts,
+    /// Keeps other programs from writing here as long as it is open; of one that is only read, there is none.
+    _lock: Option<File>,
 }
 
 impl Store {
@@ -40,7 +42,8 @@ impl Store {
         if dir.is_file() {
             return Err(Error::Usage(format!("{} is a file, not a folder", dir.display())));
         }
-        let store = Self { dir: dir.to_path_buf(), facts: facts.clone() };
+        let before = lock(dir)?;
+        let store = Self { dir: dir.to_path_buf(), facts: facts.clone(), _lock: None };
         match (Self::manifest(dir)?, existing) {
             (_, OnExisting::Replace) => store.clear()?,
             (None, OnExisting::Keep | OnExisting::Resume) => store.expect_empty()?,
@@ -71,7 +74,9 @@ impl Store {
         })?;
         write_whole(&dir.join(MANIFEST), (manifest + "\n").as_bytes(), Existing::Replace)?;
         write_whole(&store.text_path(), text.as_bytes(), Existing::Replace)?;
-        Ok(store)
+        // The manifest may be a new file.
+        drop(before);
+        Ok(Self { _lock: lock(dir)?, ..store })
     }
 
     /// The results in a folder, as they are.
@@ -79,7 +84,7 @@ impl Store {
         let facts = Self::manifest(dir)?.ok_or_else(|| {
             Error::Usage(format!("{} holds no results of a study", dir.display()))
         })?;
-        Ok(Self { dir: dir.to_path_buf(), facts })
+        Ok(Self { dir: dir.to_path_buf(), facts, _lock: None })
     }
 
     /// What the study is.
@@ -191,6 +196,7 @@ impl Store {
     }
 
     fn expect_empty(&self) -> Result<()> {
+        sweep(&self.dir)?;
         let is_ours = |path: &PathBuf| *path == self.dir.join(DESIGNS);
         if entries(&self.dir)?.iter().all(is_ours) && entries(&self.dir.join(DESIGNS))?.is_empty() {
             return Ok(());
@@ -226,6 +232,23 @@ impl Store {
             }
         }
         Ok(())
+    }
+}
+
+/// A lock on the results in a folder, if there are any; an error where another program holds it.
+fn lock(dir: &Path) -> Result<Option<File>> {
+    let path = dir.join(MANIFEST);
+    let file = match File::open(&path) {
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+        other => other.map_err(|source| Error::io(&path, source))?,
+    };
+    match file.try_lock() {
+        Err(TryLockError::WouldBlock) => Err(Error::Usage(format!(
+            "another batch is at work in {}; wait for its end, or use -o for another folder",
+            dir.display()
+        ))),
+        // Some file systems have no locks.
+        Ok(()) | Err(TryLockError::Error(_)) => Ok(Some(file)),
     }
 }
 

@@ -43,7 +43,7 @@ fn the_page_of_a_study_tells_values_under_the_pointer() {
     let page = Open::new(&program, &dir.path().join("out/study.html"));
     assert_eq!(page.text("document.querySelector('h1').textContent"), "Rods </script><b>");
     let verdict = page.text("document.querySelector('.verdict').textContent");
-    assert!(verdict.starts_with("6 designs of the scene rod: "), "{verdict}");
+    assert!(verdict.starts_with("6 designs of the scene “rod”: "), "{verdict}");
     let ranks = "[...document.querySelectorAll('table')][0].querySelectorAll('tbody tr').length";
     assert_eq!(page.ask(ranks), 6);
 

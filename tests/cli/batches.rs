@@ -133,9 +133,25 @@ fn a_killed_batch_goes_on_without_repeating_designs_to_the_same_bytes() {
 }
 
 #[test]
+fn two_batches_are_not_at_work_in_one_folder() {
+    let place = study(STUDY);
+    place.good("batch study.toml -o out");
+    let other = fs::File::open(place.path("out/batch.json")).unwrap();
+    other.lock().unwrap();
+    for more in ["--resume", "--overwrite"] {
+        let said = place.bad(2, &format!("batch study.toml -o out {more}"));
+        assert!(said.contains("another batch is at work"), "{said}");
+    }
+    drop(other);
+    place.good("batch study.toml -o out --resume");
+}
+
+#[test]
 fn a_record_that_is_no_record_is_named() {
     let place = study(STUDY);
     assert!(place.bad(2, "run study.toml").contains("run it with `lumiduct batch`"));
+    let said = place.bad(2, "batch study.toml -o out -D media.acrylic.index=1.3");
+    assert!(said.contains("over `-D media.acrylic.index=1.3`"), "{said}");
     place.good("batch study.toml -o out");
     let record = place.path("out").join("designs/0003.json");
     fs::write(&record, "{").unwrap();
@@ -220,6 +236,7 @@ fn tables_choices_and_whole_reports() {
         ("index,length\nlight\n", 2, "another number of cells"),
         ("index,length,length\nlight,5,6\n", 1, "two columns `length`"),
         ("index;length\nlight;5\n", 1, "by commas, not by semicolons"),
+        ("index\tlength\nlight\t5\n", 1, "by commas, not by tabs"),
         ("index,length\nlight,\"5\nlight,6\n", 2, "a quotation mark is not closed"),
         ("index,length\n", 1, "no designs"),
     ] {
@@ -257,6 +274,60 @@ fn a_file_that_a_choice_names_is_part_of_the_study() {
     place.good("batch study.toml -o out --overwrite");
     fs::write(place.path("fine.toml"), "plane = { cells = [9, 9] }\n").unwrap();
     assert!(place.bad(2, "batch study.toml -o out --resume").contains("another study"));
+    // One that makes no scene counts, too: with other parameters it might.
+    fs::write(place.path("fine.toml"), "plane = { cells = [9, 0] }\n").unwrap();
+    assert_eq!(code(&place.run("batch study.toml -o out --overwrite")), 1);
+    assert_eq!(code(&place.run("batch study.toml -o out --resume")), 1);
+    fs::write(place.path("fine.toml"), "plane = { cells = [8, 0] }\n").unwrap();
+    assert!(place.bad(2, "batch study.toml -o out --resume").contains("another study"));
+}
+
+#[test]
+fn what_a_kill_left_half_written_is_in_nobodys_way() {
+    let place = study(STUDY);
+    for command in
+        ["batch study.toml -o cut --resume", "run rod.toml -o run --resume", "run rod.toml -o run"]
+    {
+        let folder = place.path(command.split_whitespace().nth(3).unwrap());
+        _ = fs::remove_dir_all(&folder);
+        fs::create_dir(&folder).unwrap();
+        fs::write(folder.join(".lumiduct-half"), "{").unwrap();
+        place.good(command);
+    }
+    assert!(names(&place.path("cut")).iter().all(|name| !name.starts_with('.')));
+}
+
+#[test]
+fn whole_numbers_of_a_spread_are_as_likely_as_it_says_and_within_its_limits() {
+    let text = STUDY
+        .replace("plan = \"grid\"", "plan = { latin_hypercube = { samples = 30 } }")
+        .replace(
+            "values = [5, 10, 20]",
+            "spread = { uniform = { from = 4.2, to = 7.9 } }\nwhole = true",
+        )
+        .replace("paths = 20_000", "paths = 200");
+    let place = study(&text);
+    place.run("batch study.toml -o out");
+    let rows = rows(&place, "out");
+    for length in ["5", "6", "7"] {
+        assert_eq!(rows.iter().filter(|row| row["length_mm"] == length).count(), 10, "{length}");
+    }
+}
+
+#[test]
+fn a_table_may_say_what_the_scene_says() {
+    let text = STUDY
+        .replace("plan = \"grid\"", "plan = { list = { file = \"designs.csv\" } }")
+        .replace("values = [5, 10, 20]\n", "")
+        .replace("range = { from = 1.4, to = 1.6, count = 2 }\n", "");
+    let place = study(&text);
+    // The rod of the scene has a length of 10 mm: these differ in their index alone.
+    fs::write(place.path("designs.csv"), "length,index\n,1.4\n10,1.6\n").unwrap();
+    place.good("batch study.toml -o out");
+    let summary: Value =
+        serde_json::from_slice(&fs::read(place.path("out/study.json")).unwrap()).unwrap();
+    let effects = summary["analysis"]["effects"].as_array().unwrap();
+    assert!(effects.iter().any(|effect| effect["parameter"] == "index"), "{effects:?}");
 }
 
 #[test]
@@ -288,6 +359,25 @@ fn bad_studies_are_refused_with_the_line_to_change_and_write_nothing() {
         ("values = [5, 10, 20]", "choices = [5, 10, 20]", "study.toml:10"),
         ("values = [5, 10, 20]", "spread = { uniform = { from = 2, to = 1 } }", "not below"),
         ("from = 1.4, to = 1.6", "from = 1.6, to = 1.4", "not below"),
+        ("count = 2 }", "count = 2 }\nwhole = true", "no whole number from 1.4 to 1.6"),
+        ("to = 1.6, count = 2 }", "to = 2.4, count = 3 }\nwhole = true", "2 is there twice"),
+        ("values = [5, 10, 20]", "values = [5, 10, 5]", "5 is there twice"),
+        ("values = [5, 10, 20]", "values = [5, 5.2, 6]\nwhole = true", "5 is there twice"),
+        ("[parameters.length]", "[parameters.\"a/b\"]", "letters, digits"),
+        ("[parameters.index]", "[parameters.design]", "two columns `design`"),
+        ("[\"exit.efficiency\"", "[\"exit.efficiency\", \"exit.efficiency\"", "two columns"),
+        (
+            "keys = [\"media.acrylic.index\"]",
+            "keys = [{ key = \"media.acrylic.index\", factor = 0 }]",
+            "leaves nothing to vary",
+        ),
+        (
+            "[run]",
+            "[[check]]\nmeasure = \"exit.efficiency\"\nmin = 0.9\nmax = 0.8\n[run]",
+            "0.9 is above `max`",
+        ),
+        ("[run]", "[set]\n\"media.acrylic.index\" = 1.5\n[run]", "sets it in every design"),
+        ("[run]", "[set]\n\"media.acrylic.indx\" = 1.5\n[run]", "study.toml:15"),
         ("scene = \"rod.toml\"", "scene = \"rood.toml\"", "study.toml:4"),
         ("\"exit.uniformity_min_avg\"", "\"exit.uniformity_minavg\"", "exit.uniformity_min_avg"),
         ("\"exit.uniformity_min_avg\"", "\"exot.uniformity_min_avg\"", "study.toml:5"),
@@ -300,8 +390,13 @@ fn bad_studies_are_refused_with_the_line_to_change_and_write_nothing() {
         ("paths = 20_000", "paths = 0", "at least 1"),
         ("count = 2", "count = 1", "out of range"),
         ("unit = \"mm\"", "units = \"mm\"", "unit"),
-        ("lumiduct_study = 1", "lumiduct_study = 2", "version 2"),
-        ("lumiduct_study = 1", "lumiduct = 1", "this is a scene"),
+        (
+            "lumiduct_study = 1",
+            "lumiduct_study = 2",
+            "study.toml:2: `lumiduct_study`: format version 2",
+        ),
+        ("\"How long a rod?\"", "\"How long\\na rod?\"", "a title is one line"),
+        ("lumiduct_study = 1", "lumiduct = 1", "study.toml:2: `lumiduct`: this is a scene"),
         ("media.acrylic.index\"]", "solids.rod.cylinder.length_mm\"]", "sets this key"),
         ("media.acrylic.index\"]", "solids.rod.cylinder\"]", "or a part of it"),
         (

@@ -137,7 +137,7 @@ fn what_is_no_report_is_refused_with_a_hint() {
         ("diff a a --only exit.fluks", "exit.flux"),
         ("diff a a --relative 1", "percentage"),
         ("diff a a --sigmas 0", "above 0"),
-        ("diff a a -o a", "--overwrite"),
+        ("diff a a -o a", "is one of the reports"),
     ] {
         let said = place.bad(2, arguments);
         assert!(said.contains(words), "{arguments}: {said}");
@@ -179,6 +179,7 @@ max_std_error = 1e-9
     let said = place.bad(2, "run rod.toml -o c --junit mine.xml");
     assert!(said.contains("no JUnit file of this program; use --overwrite"), "{said}");
     assert!(place.bad(2, "run rod.toml -o c --junit ci").contains("is a folder"));
+    assert!(place.bad(3, "run rod.toml -o c --junit mine.xml/x.xml").contains("mine.xml"));
     assert!(!place.path("c").exists());
 }
 

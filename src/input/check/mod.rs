@@ -18,9 +18,13 @@ mod shapes;
 mod sources;
 mod surfaces;
 
+pub(crate) use names::check_title;
+pub(crate) use run::check_demands;
+
 /// Notes names that are taken twice, and names of things that are not there.
 pub fn check_names(spec: &SceneSpec, places: &Places, problems: &mut Problems) {
     let scene = Scene { spec, places };
+    check_title(&spec.title, problems);
     names::check(places, problems);
     references::check(scene, problems);
 }

@@ -40,6 +40,15 @@ pub(crate) fn check(places: &Places, problems: &mut Problems) {
     }
 }
 
+/// Notes a title that would break the head of a report.
+pub(crate) fn check_title(title: &str, problems: &mut Problems) {
+    if title.contains(char::is_control) {
+        problems
+            .error(&Key::of(&["title"]), "a title is one line")
+            .hint("what needs more is for `description`");
+    }
+}
+
 fn check_letters(key: &Key, name: &str, entry: &Entry, problems: &mut Problems) {
     if !is_bare(name) {
         let message = "a name is made of letters, digits, `_` and `-`";

@@ -3,9 +3,15 @@
 use crate::input::check::Scene;
 use crate::input::keys::Key;
 use crate::input::problems::Problems;
+use crate::input::spec::run::CheckSpec;
 
 pub(crate) fn check(scene: Scene<'_>, problems: &mut Problems) {
-    for (i, check) in scene.spec.check.iter().enumerate() {
+    check_demands(&scene.spec.check, problems);
+}
+
+/// Notes demands that nothing can meet.
+pub(crate) fn check_demands(checks: &[CheckSpec], problems: &mut Problems) {
+    for (i, check) in checks.iter().enumerate() {
         let key = Key::of(&["check"]).index(i);
         if let (Some(min), Some(max)) = (check.min, check.max)
             && min > max

@@ -45,7 +45,12 @@ pub(super) fn shared_keys<'a>(root: &'a Json, options: &[&'a Json]) -> Option<Sh
         |keys: &Map<String, Json>| !first.iter().any(|(name, value)| keys.get(name) == Some(value));
     let (apart, alike): (Vec<_>, Vec<_>) = tables.iter().partition(|(_, keys, _)| is_apart(keys));
     let is_shared = |(name, value): &(&String, &Json)| {
-        alike.iter().all(|(_, keys, _)| keys.get(*name) == Some(*value))
+        let is_needed = |table: &Json| {
+            table["required"].as_array().is_some_and(|all| all.iter().any(|own| own == *name))
+        };
+        alike.iter().all(|(_, keys, other)| {
+            keys.get(*name) == Some(*value) && is_needed(other) == is_needed(table)
+        })
     };
     let names: Vec<_> = first.iter().filter(is_shared).map(|(name, _)| name.as_str()).collect();
     let apart: Vec<_> = apart.iter().map(|(kind, ..)| *kind).collect();

@@ -68,9 +68,15 @@ impl Table<'_> {
     fn columns(&mut self, headers: &StringRecord, parameters: &[Parameter]) -> Option<Vec<usize>> {
         let names = || parameters.iter().map(|parameter| parameter.name.as_str());
         if let [single] = headers.iter().collect::<Vec<_>>()[..]
-            && single.contains(';')
+            && let Some(other) = single.chars().find(|c| [';', '\t'].contains(c))
         {
-            self.refuse(0, "the cells of a table are told apart by commas, not by semicolons");
+            let other = if other == ';' { "semicolons" } else { "tabs" };
+            let message = format!("the cells of a table are told apart by commas, not by {other}");
+            self.refuse(0, &message);
+            return None;
+        }
+        if headers.is_empty() {
+            self.refuse(0, "the table is empty: it needs a column for each parameter");
             return None;
         }
         for header in headers.iter().filter(|header| !names().any(|name| name == *header)) {

@@ -6,7 +6,7 @@ mod list;
 mod parameters;
 mod rules;
 
-pub use parameters::{Domain, Parameter, Setting, Tie};
+pub use parameters::{DESIGN_COLUMN, Domain, OTHER_COLUMNS, Parameter, Setting, Tie, column};
 
 use crate::error::{Diagnostic, Error, Result};
 use crate::input::digest::Digest;
@@ -15,6 +15,7 @@ use crate::input::lower::plan;
 use crate::input::problems::Problems;
 use crate::input::sources::{SourceId, Sources};
 use crate::input::spec::run::TargetSpec;
+use crate::input::spec::solid::{Solid, SolidSpec};
 use crate::input::spec::study::{
     BestSpec, KeepSpec, PlanSpec, STUDY_FORMAT_VERSION, SamplesSpec, StudyRunSpec, StudySpec,
 };
@@ -24,6 +25,7 @@ use crate::input::{
 };
 use crate::scene::plan::Check;
 use serde::{Deserialize, Serialize};
+use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What the command line asks for beside the study file.
@@ -137,7 +139,7 @@ pub fn load_study(path: &Path, settings: &StudySettings) -> Result<Study> {
     let StudyDraft { spec, places, table, mut problems } = read(path)?;
     let scene = path.parent().unwrap_or(Path::new("")).join(&spec.scene);
     let common = common_settings(&spec, settings, &mut problems);
-    rules::check(&spec, &places, &mut problems);
+    rules::check(&spec, &places, &settings.overrides, &mut problems);
     if !scene.is_file() {
         let message = format!("there is no file {}", scene.display());
         problems.error(&Key::of(&["scene"]), message);
@@ -145,8 +147,9 @@ pub fn load_study(path: &Path, settings: &StudySettings) -> Result<Study> {
     if !problems.is_free_of_errors() {
         return Err(Error::Input(problems.into_diagnostics(&places)));
     }
-    let base = load(&scene, &common)?;
+    let base = load(&scene, &common).map_err(|error| of_study(error, &spec, &places))?;
     let parameters = parameters::lower(&spec, &base, &mut problems);
+    rules::check_levels(&parameters, &places, &mut problems);
     rules::check_keys(&parameters, &scene, &common, &mut problems);
     rules::check_clock(&base, &mut problems);
     let rows = table.map(|table| list::rows(&places, table, &parameters, &mut problems));
@@ -192,11 +195,24 @@ fn add_choices(parameters: &[Parameter], scene: &Path, common: &Settings, hash: 
     for parameter in parameters {
         for name in parameter.choices.keys() {
             let own = parameter.overrides(&Setting::Choice(name.clone()));
-            match load(scene, &common.with(own)) {
+            let settings = common.with(own);
+            match load(scene, &settings) {
                 Ok(job) => hash.add(job.hash.as_bytes()),
-                // With other parameters it may become a scene.
-                Err(_) => hash.add(b"no scene"),
+                // With other parameters it may become a scene: its files count all the same.
+                Err(_) => add_files(scene, &settings, hash),
             }
+        }
+    }
+}
+
+/// Adds the files that a scene names, as far as it can be read.
+fn add_files(scene: &Path, settings: &Settings, hash: &mut Digest) {
+    let Ok(Draft { spec, places, .. }) = draft(scene, &settings.overrides) else { return };
+    places.sources().iter().for_each(|source| hash.add(source.text().as_bytes()));
+    let folder = scene.parent().unwrap_or(Path::new(""));
+    for solid in spec.solids.values() {
+        if let SolidSpec::Mesh(Solid { shape, .. }) = solid {
+            hash.add(&fs::read(folder.join(&shape.file)).unwrap_or_default());
         }
     }
 }
@@ -214,8 +230,7 @@ fn read(path: &Path) -> Result<StudyDraft> {
     let (mut sources, mut problems) = (Sources::default(), Problems::default());
     let source = sources.add_file(path).map_err(|reason| unreadable(path, &reason.to_string()))?;
     let (root, breaks) = tree::parse(&sources, source);
-    if let Some(message) = other_kind(&root) {
-        problems.error(&Key::root(), message);
+    if is_other_kind(&root, &mut problems) {
         return Err(Error::Input(problems.into_diagnostics(&Places::new(root, sources))));
     }
     note_differences(&root, &schema::study_schema(), &sources, &breaks, &mut problems);
@@ -249,21 +264,54 @@ fn table_file(spec: &StudySpec, study: &Path) -> Option<PathBuf> {
     }
 }
 
-/// Why a file is no study of this version, if it is none.
-fn other_kind(root: &Node) -> Option<String> {
+/// Whether a file is no study of this version; then it is not to be measured by this schema.
+fn is_other_kind(root: &Node, problems: &mut Problems) -> bool {
     match (root.get("lumiduct_study"), root.get("lumiduct")) {
-        (Some(Node { value: Value::Integer(version), .. }), _)
+        (Some(Node { value: Value::Integer(version), origin }), _)
             if *version != i64::from(STUDY_FORMAT_VERSION) =>
         {
-            Some(format!(
-                "`lumiduct_study`: format version {version} is not known, expected {STUDY_FORMAT_VERSION}"
-            ))
+            let message =
+                format!("format version {version} is not known, expected {STUDY_FORMAT_VERSION}");
+            problems.error(&Key::of(&["lumiduct_study"]), message).at(origin);
+            true
         }
-        (None, Some(_)) => {
-            Some("this is a scene, not a study: trace it with `lumiduct run`".into())
+        (None, Some(node)) => {
+            problems
+                .error(&Key::of(&["lumiduct"]), "this is a scene, not a study")
+                .hint("trace it with `lumiduct run`")
+                .at(&node.origin);
+            true
         }
-        (Some(_), _) | (None, None) => None,
+        (Some(_), _) | (None, None) => false,
     }
+}
+
+/// What is wrong with the scene of a study; what its `set` brought is told where it stands there.
+fn of_study(error: Error, spec: &StudySpec, places: &Places) -> Error {
+    let Error::Input(found) = error else { return error };
+    let (mut own, mut rest) = (Problems::default(), Vec::new());
+    for diagnostic in found {
+        let set = spec.set.iter().find(|(key, value)| {
+            let line = parameters::toml_text(value).map(|text| format!("{key}={text}"));
+            line.is_some_and(|line| diagnostic.file.as_deref() == Some(Path::new(&label(&line))))
+        });
+        match set {
+            Some((key, _)) => {
+                let problem = own.error(&Key::of(&["set", key]), diagnostic.message);
+                if let Some(hint) = diagnostic.hint {
+                    problem.hint(hint);
+                }
+            }
+            None => rest.push(diagnostic),
+        }
+    }
+    let own = own.into_diagnostics(places);
+    Error::Input(own.into_iter().chain(rest).collect())
+}
+
+/// What stands for a file where an override is wrong.
+fn label(line: &str) -> String {
+    format!("-D {}", line.escape_debug())
 }
 
 /// What all designs have in common: the study's keys and stop rules, and those of the command line over them.

@@ -133,6 +133,19 @@ impl Parameter {
     }
 }
 
+/// The column of the table of results before those of parameters and measures.
+pub const DESIGN_COLUMN: &str = "design";
+/// Those behind them.
+pub const OTHER_COLUMNS: [&str; 4] = ["rank", "paths", "ended", "error"];
+
+/// The column of a parameter in the table of results: "`length_mm`"; the name alone if it ends so.
+pub fn column(name: &str, unit: Option<&str>) -> String {
+    match unit {
+        Some(unit) if !name.ends_with(&format!("_{unit}")) => format!("{name}_{unit}"),
+        Some(_) | None => name.to_owned(),
+    }
+}
+
 /// The parameters of a study.
 pub(super) fn lower(spec: &StudySpec, base: &Job, problems: &mut Problems) -> Vec<Parameter> {
     let lowered = spec.parameters.iter().map(|(name, parameter)| {

@@ -1,19 +1,29 @@
 //! Rules of a study that span several keys, or that need its scene.
 
 use crate::error::{Diagnostic, DiagnosticKind};
-use crate::input::keys::{Key, Places};
+use crate::input::check::{check_demands, check_title};
+use crate::input::keys::{Key, Places, is_bare};
 use crate::input::overrides::parse_key;
 use crate::input::problems::Problems;
 use crate::input::spec::study::{
     MOST_DESIGNS, MOST_PARAMETERS, NormalSpec, ParameterSpec, PlanSpec, SpreadSpec, StudySpec,
-    UniformSpec,
+    TiedKeySpec,
 };
-use crate::input::study::{Parameter, problems_of_scene};
+use crate::input::study::parameters::{DESIGN_COLUMN, OTHER_COLUMNS, column};
+use crate::input::study::{Domain, Parameter, label, problems_of_scene};
 use crate::input::{Job, Settings};
+use indexmap::IndexMap;
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Notes what cannot be meant, whatever the scene.
-pub(super) fn check(spec: &StudySpec, places: &Places, problems: &mut Problems) {
+pub(super) fn check(
+    spec: &StudySpec,
+    places: &Places,
+    overrides: &[String],
+    problems: &mut Problems,
+) {
+    check_title(&spec.title, problems);
     if spec.parameters.is_empty() && places.has(&Key::of(&["parameters"])) {
         let message = "nothing is varied: there is no parameter";
         problems.error(&Key::of(&["parameters"]), message);
@@ -24,15 +34,58 @@ pub(super) fn check(spec: &StudySpec, places: &Places, problems: &mut Problems) 
     }
     for (name, parameter) in &spec.parameters {
         let key = Key::of(&["parameters", name]);
+        check_name(name, &key, problems);
         check_source(places, &spec.plan, &key, problems);
-        check_spread(parameter, &key, problems);
+        check_room(parameter, &key, problems);
         for (index, tied) in parameter.keys.iter().enumerate() {
-            check_key(tied.key(), &key.field("keys").index(index), problems);
+            let key = key.field("keys").index(index);
+            check_key(tied.key(), &key, problems);
+            check_factor(tied, &key, problems);
         }
     }
+    check_columns(spec, problems);
     check_shared_keys(spec, problems);
+    check_demands(&spec.check, problems);
     check_set(spec, problems);
+    check_overrides(spec, overrides, problems);
     check_count(spec, problems);
+}
+
+/// Notes a name that files and columns cannot have.
+fn check_name(name: &str, key: &Key, problems: &mut Problems) {
+    if !is_bare(name) {
+        problems.error(key, "a name is made of letters, digits, `_` and `-`");
+    }
+}
+
+/// Notes columns of the table of results that would have one name.
+fn check_columns(spec: &StudySpec, problems: &mut Problems) {
+    let mut known: Vec<String> = OTHER_COLUMNS.map(str::to_owned).to_vec();
+    known.push(DESIGN_COLUMN.to_owned());
+    let mut add = |column: String, key: &Key| {
+        if known.contains(&column) {
+            let message = format!("there would be two columns `{column}` in the table of results");
+            problems.error(key, message).hint("choose another name");
+        }
+        known.push(column);
+    };
+    for (name, parameter) in &spec.parameters {
+        let key = Key::of(&["parameters", name]);
+        add(column(name, parameter.unit.as_deref()), &key);
+    }
+    for (index, measure) in spec.measures.iter().enumerate() {
+        add(measure.clone(), &Key::of(&["measures"]).index(index));
+    }
+}
+
+/// Notes a factor by which a parameter does nothing.
+fn check_factor(tied: &TiedKeySpec, key: &Key, problems: &mut Problems) {
+    match tied {
+        TiedKeySpec::Scaled(own) if own.factor == 0.0 => {
+            problems.error(&key.field("factor"), "a factor of 0 leaves nothing to vary");
+        }
+        TiedKeySpec::Scaled(_) | TiedKeySpec::Same(_) => {}
+    }
 }
 
 /// Notes a parameter whose values are not given, or twice, or not as the plan needs them.
@@ -68,33 +121,47 @@ fn check_source(places: &Places, plan: &PlanSpec, key: &Key, problems: &mut Prob
 }
 
 /// Notes ranges and spreads without room.
-fn check_spread(spec: &ParameterSpec, key: &Key, problems: &mut Problems) {
+fn check_room(spec: &ParameterSpec, key: &Key, problems: &mut Problems) {
     if let Some(SpreadSpec::Normal(own)) = &spec.spread {
         check_limits(own, &key.field("spread").field("normal"), problems);
     }
-    let mut ordered = |from: f64, to: f64, key: &Key| {
+    if let Some((from, to, key)) = ends(spec, key) {
         if from >= to {
             let message = format!("{from} is not below `to`, which is {to}");
             problems.error(&key.field("from"), message);
+        } else if spec.whole && from.ceil() > to.floor() {
+            problems.error(&key, format!("there is no whole number from {from} to {to}"));
         }
-    };
-    let spread = key.field("spread");
-    match &spec.spread {
-        Some(SpreadSpec::Uniform(UniformSpec { from, to })) => {
-            ordered(*from, *to, &spread.field("uniform"));
-        }
-        Some(SpreadSpec::Normal(NormalSpec { from: Some(from), to: Some(to), .. })) => {
-            ordered(*from, *to, &spread.field("normal"));
-        }
-        Some(SpreadSpec::Normal(_)) | None => {}
     }
-    if let Some(range) = &spec.range {
-        ordered(range.from, range.to, &key.field("range"));
-    }
-    if let Some(choices) = &spec.choices
-        && choices.is_empty()
-    {
+    if spec.choices.as_ref().is_some_and(IndexMap::is_empty) {
         problems.error(&key.field("choices"), "there is nothing to choose from");
+    }
+}
+
+/// The least and the greatest value of a parameter that has them, and the table that says so.
+fn ends(spec: &ParameterSpec, key: &Key) -> Option<(f64, f64, Key)> {
+    if let Some(own) = &spec.range {
+        return Some((own.from, own.to, key.field("range")));
+    }
+    let spread = key.field("spread");
+    match spec.spread.as_ref()? {
+        SpreadSpec::Uniform(own) => Some((own.from, own.to, spread.field("uniform"))),
+        SpreadSpec::Normal(own) => Some((own.from?, own.to?, spread.field("normal"))),
+    }
+}
+
+/// Notes values that are there twice, also by rounding: their designs would be the same.
+pub(super) fn check_levels(parameters: &[Parameter], places: &Places, problems: &mut Problems) {
+    for parameter in parameters {
+        let Domain::Levels(levels) = &parameter.domain else { continue };
+        let mut known = BTreeSet::new();
+        let twice = levels.iter().find(|level| !known.insert(level.to_string()));
+        if let Some(level) = twice {
+            let table = Key::of(&["parameters", &parameter.name]);
+            let given = ["values", "range"].map(|name| table.field(name));
+            let key = given.into_iter().find(|key| places.has(key)).unwrap_or(table);
+            problems.error(&key, format!("{level} is there twice"));
+        }
     }
 }
 
@@ -139,7 +206,7 @@ fn check_shared_keys(spec: &StudySpec, problems: &mut Problems) {
     }
 }
 
-/// Notes keys under `set` that a study has other words for.
+/// Notes keys under `set` that a study has other words for, or that a parameter takes away.
 fn check_set(spec: &StudySpec, problems: &mut Problems) {
     for name in spec.set.keys() {
         let key = Key::of(&["set", name]);
@@ -148,7 +215,30 @@ fn check_set(spec: &StudySpec, problems: &mut Problems) {
         if own.iter().any(|own| name == own || name.starts_with(&format!("{own}."))) {
             problems.error(&key, "is set for all designs under `run` of the study");
         }
+        if let Some(parameter) = parse_key(name).and_then(|set| varied_by(spec, &set)) {
+            problems.error(&key, format!("the parameter `{parameter}` sets it in every design"));
+        }
     }
+}
+
+/// Notes overrides of the command line that a parameter takes away.
+fn check_overrides(spec: &StudySpec, overrides: &[String], problems: &mut Problems) {
+    for line in overrides {
+        let key = line.split_once('=').and_then(|(key, _)| parse_key(key.trim()));
+        if let Some(parameter) = key.and_then(|key| varied_by(spec, &key)) {
+            let message = format!("sets this in every design, over `-D {line}`");
+            problems.error(&Key::of(&["parameters", parameter]), message);
+        }
+    }
+}
+
+/// The parameter that sets a key, or something that it is a part of.
+fn varied_by<'a>(spec: &'a StudySpec, wanted: &Key) -> Option<&'a str> {
+    let sets = |parameter: &ParameterSpec| {
+        let mut keys = parameter.keys.iter().filter_map(|tied| parse_key(tied.key()));
+        keys.any(|own| wanted.is_within(&own))
+    };
+    spec.parameters.iter().find(|(_, own)| sets(own)).map(|(name, _)| name.as_str())
 }
 
 /// Notes grids that are too large.
@@ -207,7 +297,7 @@ pub(super) fn check_keys(
 
 /// What is wrong with an override of a scene.
 fn problems_of_override(scene: &Path, common: &Settings, line: String) -> Vec<Diagnostic> {
-    let label = format!("-D {}", line.escape_debug());
+    let label = label(&line);
     let mut found = problems_of_scene(scene, &common.with([line]));
     found.retain(|own| is_about(own, &label));
     found

@@ -31,7 +31,7 @@ pub(super) enum Item {
 
 /// All parts but the pictures, in their order: those that come before them, and those after.
 pub(super) fn parts(report: &StudyReport) -> [Vec<Part>; 2] {
-    let before = [failures(report), ranking(report), sensitivities(report)];
+    let before = [failures(report), ranking(report), sensitivities(report), effects(report)];
     let after =
         [Some(designs(report)), Some(parameters(report)), remarks(report), Some(run(report))];
     [before.into_iter().flatten().collect(), after.into_iter().flatten().collect()]
@@ -40,14 +40,15 @@ pub(super) fn parts(report: &StudyReport) -> [Vec<Part>; 2] {
 /// What came of it, in a sentence.
 pub(super) fn verdict(report: &StudyReport) -> String {
     let (count, bad) = (report.designs.len(), report.counts());
-    let mut text = format!("{count} designs of the scene {}", report.facts.scene);
+    let designs = if count == 1 { "design" } else { "designs" };
+    let mut text = format!("{count} {designs} of the scene “{}”", report.facts.scene);
     if report.facts.checks.is_empty() {
         text += ", without checks";
     } else {
         let passed = |own: &&DesignRecord| own.verdict() == Some(Outcome::Passed);
         let passed = report.designs.iter().filter(passed).count();
         let (failed, undecided) = (bad.failed, bad.undecided);
-        _ = write!(text, ": {passed} pass all checks, {failed} fail, {undecided} are undecided");
+        _ = write!(text, ": {passed} pass all checks, {failed} fail, {undecided} undecided");
     }
     if bad.broken > 0 {
         _ = write!(text, "; {} make no scene that can be traced", bad.broken);
@@ -133,7 +134,10 @@ fn sensitivities(report: &StudyReport) -> Option<Part> {
     let names = first.indices.iter().map(|index| index.parameter.clone());
     let head = ["measure".to_owned()].into_iter().chain(names).chain([sum.to_owned()]).collect();
     let row = |Sensitivity { measure, indices, explained, .. }: &Sensitivity| {
-        let indices = indices.iter().map(|index| format_with_error(index.value, index.std_error));
+        let indices = indices.iter().map(|index| match index.std_error.is_finite() {
+            true => format_with_error(index.value, index.std_error),
+            false => format!("{} (error not known)", format_value(index.value)),
+        });
         [measure.clone()].into_iter().chain(indices).chain([format_value(*explained)]).collect()
     };
     let rows = all.iter().map(row).collect();
@@ -141,6 +145,37 @@ fn sensitivities(report: &StudyReport) -> Option<Part> {
         title: "Sensitivity",
         items: vec![Item::Words(words.into()), Item::Table { head, rows }],
     })
+}
+
+fn effects(report: &StudyReport) -> Option<Part> {
+    let words = "The mean of a measure over designs with the same setting of a parameter. How much it differs from that of the \
+                 first setting is known better than the means, for all designs are traced with the same random numbers.";
+    let head = ["measure", "parameter", "setting", "designs", "mean", "against the first"];
+    let mut rows = Vec::new();
+    for effect in &report.analysis.effects {
+        let label = report.facts.parameters.iter().find(|own| own.name == effect.parameter);
+        for point in &effect.points {
+            rows.push(vec![
+                effect.measure.clone(),
+                label.map_or(effect.parameter.clone(), ParameterFacts::label),
+                setting_word(&point.setting),
+                point.designs.to_string(),
+                format_with_error(point.mean.value, point.mean.std_error),
+                point.from_first.map_or(String::new(), |step| difference(&step)),
+            ]);
+        }
+    }
+    let table = Item::Table { head: head.map(str::to_owned).to_vec(), rows };
+    let items = vec![Item::Words(words.into()), table];
+    (!report.analysis.effects.is_empty()).then_some(Part { title: "Main effects", items })
+}
+
+fn setting_word(setting: &Setting) -> String {
+    match setting {
+        Setting::Number(number) => format_value(*number),
+        Setting::Choice(name) => name.clone(),
+        Setting::AsInScene => "as in the scene".into(),
+    }
 }
 
 fn designs(report: &StudyReport) -> Part {
@@ -175,13 +210,12 @@ fn settings(report: &StudyReport, design: &DesignRecord) -> Vec<String> {
 
 /// What a parameter is set to in a design, without its unit.
 pub(super) fn setting(parameter: &ParameterFacts, design: &DesignRecord) -> String {
-    match design.settings.get(&parameter.name) {
-        Some(Setting::Number(number)) => format_value(*number),
-        Some(Setting::Choice(name)) => name.clone(),
-        Some(Setting::AsInScene) | None => match parameter.nominal {
-            Setting::Number(number) => format!("{} (scene)", format_value(number)),
-            Setting::Choice(_) | Setting::AsInScene => "as in the scene".into(),
-        },
+    let found = parameter.setting_in(design);
+    let of_scene =
+        if design.settings.get(&parameter.name) == Some(found) { "" } else { " (scene)" };
+    match found {
+        Setting::Number(_) => setting_word(found) + of_scene,
+        Setting::Choice(_) | Setting::AsInScene => setting_word(found),
     }
 }
 
@@ -196,14 +230,7 @@ fn parameters(report: &StudyReport) -> Part {
 /// What a parameter may be set to, in words.
 fn domain_words(domain: &Domain) -> String {
     match domain {
-        Domain::Levels(levels) => {
-            let word = |level: &Setting| match level {
-                Setting::Number(number) => format_value(*number),
-                Setting::Choice(name) => name.clone(),
-                Setting::AsInScene => "as in the scene".into(),
-            };
-            levels.iter().map(word).collect::<Vec<_>>().join(", ")
-        }
+        Domain::Levels(levels) => levels.iter().map(setting_word).collect::<Vec<_>>().join(", "),
         Domain::Uniform { from, to } => {
             format!("uniform from {} to {}", format_value(*from), format_value(*to))
         }

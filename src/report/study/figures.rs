@@ -93,19 +93,10 @@ fn measure_label(report: &StudyReport, measure: &str) -> String {
     }
 }
 
-/// What a parameter is in a design, as a number; what the scene says counts where it is known.
-fn number_of(parameter: &ParameterFacts, design: &DesignRecord) -> Option<f64> {
-    match design.settings.get(&parameter.name)? {
-        Setting::Number(number) => Some(*number),
-        Setting::AsInScene => parameter.nominal.number(),
-        Setting::Choice(_) => None,
-    }
-}
-
 /// Distinct numbers of a parameter; none unless all designs have one.
 fn numbers_of(parameter: &ParameterFacts, designs: &[DesignRecord]) -> Vec<f64> {
     let numbers: Option<Vec<f64>> =
-        designs.iter().map(|design| number_of(parameter, design)).collect();
+        designs.iter().map(|design| parameter.setting_in(design).number()).collect();
     let mut numbers = numbers.unwrap_or_default();
     numbers.sort_by(f64::total_cmp);
     numbers.dedup();
@@ -129,7 +120,8 @@ fn response(report: &StudyReport, measure: &str) -> Option<LinePlot> {
         parameters.iter().filter(|own| own.name != across.name).collect();
     let mut curves: Vec<(String, Vec<SeriesPoint>)> = Vec::new();
     for design in &report.designs {
-        let (Some(found), Some(x)) = (design.measure(measure), number_of(across, design)) else {
+        let (Some(found), Some(x)) = (design.measure(measure), across.setting_in(design).number())
+        else {
             continue;
         };
         let name =
@@ -163,10 +155,10 @@ fn response(report: &StudyReport, measure: &str) -> Option<LinePlot> {
 
 fn setting_words(parameter: &ParameterFacts, design: &DesignRecord) -> String {
     let unit = parameter.unit.as_ref().map_or(String::new(), |unit| format!(" {unit}"));
-    let value = match design.settings.get(&parameter.name) {
-        Some(Setting::Number(number)) => format!("{}{unit}", format_value(*number)),
-        Some(Setting::Choice(name)) => name.clone(),
-        Some(Setting::AsInScene) | None => "as in the scene".into(),
+    let value = match parameter.setting_in(design) {
+        Setting::Number(number) => format!("{}{unit}", format_value(*number)),
+        Setting::Choice(name) => name.clone(),
+        Setting::AsInScene => "as in the scene".into(),
     };
     format!("{} {value}", parameter.name)
 }
@@ -293,8 +285,10 @@ fn effect_drawing(report: &StudyReport, effect: &Effect) -> Drawing {
 fn scatter(report: &StudyReport) -> ScatterMatrix {
     let designs = &report.designs;
     let of_parameter = |own: &ParameterFacts| {
-        let values: Vec<f64> =
-            designs.iter().map(|design| number_of(own, design).unwrap_or(f64::NAN)).collect();
+        let values: Vec<f64> = designs
+            .iter()
+            .map(|design| own.setting_in(design).number().unwrap_or(f64::NAN))
+            .collect();
         values
             .iter()
             .any(|value| value.is_finite())

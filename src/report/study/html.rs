@@ -1,11 +1,10 @@
 //! `study.html`: what came of a study, for people with a browser, in one file without anything to load.
 
 use crate::error::Result;
-use crate::number::format_with_error;
 use crate::report::html::data::chart;
 use crate::report::html::frame::{self, Block, Page, Plots, Standing, render};
 use crate::report::png::{
-    BarChart, ErrorForm, LinePlot, Look, Scale, ScatterMatrix, Series, SeriesForm, SeriesPoint,
+    ErrorForm, LinePlot, Look, Scale, ScatterMatrix, Series, SeriesForm, SeriesPoint,
 };
 use crate::report::study::StudyReport;
 use crate::report::study::contents::{Item, Part, parts, verdict};
@@ -55,35 +54,25 @@ fn blocks(report: &StudyReport, figure: &Figure, plots: &mut Plots) -> Vec<Block
         Drawing::Curves(plot, unit) => {
             vec![plots.add(figure.label.clone(), close_up(plot, unit), picture)]
         }
-        Drawing::Bars(bars) => {
-            vec![Block::Heading { text: figure.label.clone() }, bar_table(bars)]
-        }
+        // Choices have no place on an axis: the table of main effects says as much.
+        Drawing::Bars(_) => Vec::new(),
         Drawing::Scatter(matrix) => {
             let pairs = scatter_plots(report, matrix).into_iter();
             pairs
-                .map(|(plot, unit)| plots.add(plot.title.clone(), chart(&plot, &unit), None))
+                .map(|(plot, unit)| plots.add(plot.title.clone(), close_up(&plot, &unit), None))
                 .collect()
         }
     }
 }
 
-/// A chart whose axes go no further than its values; a histogram begins at nothing.
+/// A chart whose axes go no further than its values; a histogram begins at nothing, and shows its first and last step
+/// whole.
 fn close_up(plot: &LinePlot, unit: &str) -> serde_json::Value {
     let mut data = chart(plot, unit);
     let is_histogram = plot.series.iter().any(|series| series.form == SeriesForm::Steps);
     data["tight"] = (!is_histogram).into();
+    data["whole_steps"] = is_histogram.into();
     data
-}
-
-/// Bars are choices, which have no place on an axis: a table says as much.
-fn bar_table(bars: &BarChart) -> Block {
-    let unit = if bars.unit.is_empty() { String::new() } else { format!(" {}", bars.unit) };
-    let rows = bars.bars.iter().map(|bar| {
-        let value = format_with_error(bar.value, bar.std_error.unwrap_or(f64::INFINITY));
-        vec![bar.name.clone(), format!("{value}{unit}")]
-    });
-    let head = ["setting", "mean"].map(str::to_owned).to_vec();
-    Block::Table { head, rows: rows.collect(), folded: None }
 }
 
 /// Every measure against every parameter that is a number, a dot for each design, and the unit of the measure.

@@ -1,6 +1,6 @@
 //! What is known of a study: its facts, a record of every design, and what follows from all of them together.
 
-use crate::input::{Best, Domain, Keep, Ranking, Setting};
+use crate::input::{Best, Domain, Keep, Ranking, Setting, column};
 use crate::measure::{Measure, Outcome, Replicates};
 use crate::report::{CheckResult, TargetFacts};
 use crate::scene::plan::Check;
@@ -87,6 +87,14 @@ pub struct ParameterFacts {
 }
 
 impl ParameterFacts {
+    /// What it is set to in a design; what the scene says, where that is known.
+    pub fn setting_in<'a>(&'a self, design: &'a DesignRecord) -> &'a Setting {
+        match design.settings.get(&self.name) {
+            Some(own @ (Setting::Number(_) | Setting::Choice(_))) => own,
+            Some(Setting::AsInScene) | None => &self.nominal,
+        }
+    }
+
     /// Name and unit, as for an axis: "length in mm".
     pub fn label(&self) -> String {
         match &self.unit {
@@ -97,12 +105,7 @@ impl ParameterFacts {
 
     /// Name and unit, as for a column: "`length_mm`"; the name alone if it ends so.
     pub fn column(&self) -> String {
-        match &self.unit {
-            Some(unit) if !self.name.ends_with(&format!("_{unit}")) => {
-                format!("{}_{unit}", self.name)
-            }
-            Some(_) | None => self.name.clone(),
-        }
+        column(&self.name, self.unit.as_deref())
     }
 }
 
@@ -237,6 +240,8 @@ pub struct EffectPoint {
     pub designs: usize,
     /// The mean, in the unit of the measure.
     pub mean: Estimate,
+    /// How much it is above that of the first setting; nothing for the first itself.
+    pub from_first: Option<Estimate>,
 }
 
 /// How much of the variance of a measure comes from each parameter.

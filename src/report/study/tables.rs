@@ -1,7 +1,7 @@
 //! `study.csv`: a row for each design, units in the header.
 
 use crate::error::Result;
-use crate::input::Setting;
+use crate::input::{DESIGN_COLUMN, OTHER_COLUMNS};
 use crate::report::OutputFile;
 use crate::report::csv::table;
 use crate::report::study::{DesignOutcome, DesignRecord, StudyReport};
@@ -14,7 +14,7 @@ pub(super) fn files(report: &StudyReport) -> Result<Vec<OutputFile>> {
 
 fn designs(report: &StudyReport) -> Result<OutputFile> {
     let facts = &report.facts;
-    let mut header = vec!["design".to_owned()];
+    let mut header = vec![DESIGN_COLUMN.to_owned()];
     header.extend(facts.parameters.iter().map(|parameter| parameter.column()));
     for measure in &facts.measures {
         let unit = match report.unit(measure) {
@@ -25,7 +25,7 @@ fn designs(report: &StudyReport) -> Result<OutputFile> {
     }
     let checked: Vec<&str> = facts.checks.iter().map(|check| check.measure.as_str()).collect();
     header.extend(numbered(&checked).into_iter().map(|name| format!("check {name}")));
-    header.extend(["rank", "paths", "ended", "error"].map(str::to_owned));
+    header.extend(OTHER_COLUMNS.map(str::to_owned));
     let names: Vec<&str> = header.iter().map(String::as_str).collect();
     table("study.csv".into(), &names, report.designs.iter().map(|design| row(report, design)))
 }
@@ -34,10 +34,7 @@ fn row(report: &StudyReport, design: &DesignRecord) -> Vec<String> {
     let facts = &report.facts;
     let mut cells = vec![design.design.to_string()];
     for parameter in &facts.parameters {
-        let own = design.settings.get(&parameter.name).unwrap_or(&Setting::AsInScene);
-        // What the scene says is told where it is known.
-        let shown = if *own == Setting::AsInScene { &parameter.nominal } else { own };
-        cells.push(shown.to_string());
+        cells.push(parameter.setting_in(design).to_string());
     }
     for measure in &facts.measures {
         let found = design.measure(measure);

@@ -1,9 +1,8 @@
 //! What a batch prints when it has ended.
 
 use crate::input::Setting;
-use crate::measure::Outcome;
 use crate::number::format_percent;
-use crate::report::study::contents::setting;
+use crate::report::study::contents::{setting, verdict};
 use crate::report::study::{DesignOutcome, DesignRecord, StudyReport};
 
 /// Designs that are named one by one.
@@ -12,21 +11,7 @@ const DESIGNS_SHOWN: usize = 5;
 /// A few lines: how many designs pass, which are the best, what failed.
 pub fn terminal(report: &StudyReport) -> String {
     let counts = report.counts();
-    let count = report.designs.len();
-    let designs = if count == 1 { "design" } else { "designs" };
-    let mut text = format!("{}\n{count} {designs}", report.facts.title);
-    if !report.facts.checks.is_empty() {
-        let passed =
-            report.designs.iter().filter(|own| own.verdict() == Some(Outcome::Passed)).count();
-        text += &format!(
-            ": {passed} pass all checks, {} fail, {} are undecided",
-            counts.failed, counts.undecided
-        );
-    }
-    if counts.off_target > 0 {
-        text += &format!("; {} have not reached their target error", counts.off_target);
-    }
-    text += "\n";
+    let mut text = format!("{}\n{}\n", report.facts.title, verdict(report));
     let ranked = &report.analysis.ranked;
     let shown: Vec<usize> = match ranked.is_empty() {
         true => report.designs.iter().map(|design| design.design).collect(),
@@ -46,11 +31,15 @@ pub fn terminal(report: &StudyReport) -> String {
     }
     for own in &report.analysis.failures {
         let [low, high] = own.interval.map(format_percent);
+        let open = match own.undecided {
+            0 => String::new(),
+            count => format!(", {count} undecided"),
+        };
         text += &format!(
-            "  fails {}: {} of {}, {low} to {high} with 95 %\n",
+            "  {}: {} of {} designs fail{open}; of all that are ever made {low} to {high} (95 %)\n",
             own.demand,
             own.failed,
-            report.designs.len()
+            own.passed + own.failed + own.undecided
         );
     }
     let broken = report.designs.iter().filter_map(|design| match &design.outcome {
@@ -68,9 +57,9 @@ pub fn terminal(report: &StudyReport) -> String {
 
 fn settings(report: &StudyReport, design: &DesignRecord) -> String {
     let words = report.facts.parameters.iter().map(|parameter| {
-        let unit = match (design.settings.get(&parameter.name), &parameter.unit) {
-            (Some(Setting::Number(_)), Some(unit)) => format!(" {unit}"),
-            (Some(_) | None, _) => String::new(),
+        let unit = match (parameter.setting_in(design), &parameter.unit) {
+            (Setting::Number(_), Some(unit)) => format!(" {unit}"),
+            (_, _) => String::new(),
         };
         format!("{} {}{unit}", parameter.name, setting(parameter, design))
     });

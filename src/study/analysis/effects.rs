@@ -24,7 +24,7 @@ pub(super) fn effects(facts: &StudyFacts, designs: &[DesignRecord]) -> Vec<Effec
         .map(|(measure, parameter)| Effect {
             parameter: parameter.name.clone(),
             measure: measure.clone(),
-            points: points(designs, parameter, measure),
+            points: points(facts, designs, parameter, measure),
         })
         .filter(|effect| effect.points.len() > 1)
         .collect()
@@ -35,37 +35,45 @@ type Own<'a> = (Setting, &'a DesignRecord);
 
 /// The mean at every setting, over the same blocks for all settings: so that nothing but the parameter differs between
 /// them, where a design of a grid has failed and in a list, too. None where no block has every setting.
-fn points(designs: &[DesignRecord], parameter: &ParameterFacts, measure: &str) -> Vec<EffectPoint> {
-    let own: Vec<Own<'_>> =
-        designs.iter().filter_map(|design| Some((setting(design, parameter)?, design))).collect();
+fn points(
+    facts: &StudyFacts,
+    designs: &[DesignRecord],
+    parameter: &ParameterFacts,
+    measure: &str,
+) -> Vec<EffectPoint> {
+    let own: Vec<Own<'_>> = designs
+        .iter()
+        .map(|design| (parameter.setting_in(design).clone(), design))
+        .filter(|(setting, _)| *setting != Setting::AsInScene)
+        .collect();
     let settings = in_order(&own);
-    let blocks: Vec<Vec<Own<'_>>> = blocks(&own, parameter)
+    let blocks: Vec<Vec<Own<'_>>> = blocks(facts, &own, parameter)
         .into_iter()
         .map(|block| block.into_iter().filter(|(_, own)| own.measure(measure).is_some()).collect())
         .filter(|block: &Vec<Own<'_>>| {
             settings.iter().all(|setting| block.iter().any(|(own, _)| own == setting))
         })
         .collect();
-    let point = |setting: Setting| {
-        let mut terms = Vec::new();
-        for block in &blocks {
-            let same = block.iter().filter(|(own, _)| *own == setting);
-            let weight = 1.0 / (blocks.len() * same.clone().count()) as f64;
-            terms.extend(same.map(|(_, design)| Term { weight, design }));
-        }
+    let Some(first) = settings.first() else { return Vec::new() };
+    let point = |setting: &Setting| {
+        let terms = mean_of(&blocks, setting, 1.0);
         let mean = combine(&terms, measure).filter(|_| !terms.is_empty())?;
-        Some(EffectPoint { setting, designs: terms.len(), mean })
+        let step: Vec<Term<'_>> = [terms.clone(), mean_of(&blocks, first, -1.0)].concat();
+        let from_first = combine(&step, measure).filter(|_| setting != first);
+        Some(EffectPoint { setting: setting.clone(), designs: terms.len(), mean, from_first })
     };
-    settings.into_iter().filter_map(point).collect()
+    settings.iter().filter_map(point).collect()
 }
 
-/// What a parameter is set to in a design, where that is known: what the scene says has its place among the others.
-fn setting(design: &DesignRecord, parameter: &ParameterFacts) -> Option<Setting> {
-    match design.settings.get(&parameter.name)? {
-        Setting::AsInScene => Some(parameter.nominal.clone()),
-        own @ (Setting::Number(_) | Setting::Choice(_)) => Some(own.clone()),
+/// The terms of `sign` times the mean at a setting, to which every block contributes alike.
+fn mean_of<'a>(blocks: &[Vec<Own<'a>>], setting: &Setting, sign: f64) -> Vec<Term<'a>> {
+    let mut terms = Vec::new();
+    for block in blocks {
+        let same = block.iter().filter(|(own, _)| own == setting);
+        let weight = sign / (blocks.len() * same.clone().count()) as f64;
+        terms.extend(same.map(|(_, design)| Term { weight, design }));
     }
-    .filter(|setting| *setting != Setting::AsInScene)
+    terms
 }
 
 /// All settings, each once: numbers in their order, then choices as they came.
@@ -86,11 +94,17 @@ fn in_order(own: &[Own<'_>]) -> Vec<Setting> {
 }
 
 /// Groups of designs that are the same but for a parameter.
-fn blocks<'a>(own: &[Own<'a>], parameter: &ParameterFacts) -> Vec<Vec<Own<'a>>> {
+fn blocks<'a>(
+    facts: &StudyFacts,
+    own: &[Own<'a>],
+    parameter: &ParameterFacts,
+) -> Vec<Vec<Own<'a>>> {
+    let others: Vec<&ParameterFacts> =
+        facts.parameters.iter().filter(|other| other.name != parameter.name).collect();
     let mut blocks: IndexMap<String, Vec<Own<'a>>> = IndexMap::new();
     for (setting, design) in own {
-        let others = design.settings.iter().filter(|(name, _)| **name != parameter.name);
-        let key: String = others.map(|(name, other)| format!("{name}={other:?};")).collect();
+        let key: String =
+            others.iter().map(|other| format!("{:?};", other.setting_in(design))).collect();
         blocks.entry(key).or_default().push((setting.clone(), design));
     }
     blocks.into_values().collect()

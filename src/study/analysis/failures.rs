@@ -23,7 +23,7 @@ pub(super) fn failures(facts: &StudyFacts, designs: &[DesignRecord]) -> Vec<Fail
     }
     // What makes no scene cannot be made, and fails.
     let all = designs.iter().map(|design| design.verdict().unwrap_or(Outcome::Failed));
-    let mut shares = vec![share("all checks".into(), all)];
+    let mut shares = vec![share("all checks together".into(), all)];
     for (place, check) in facts.checks.iter().enumerate() {
         let outcomes = designs.iter().map(|design| {
             let own = design.result().and_then(|result| result.checks.get(place));

@@ -186,6 +186,10 @@ mod tests {
         let whole = analysis(&facts(PlanFacts::Grid), &grid());
         let step = |effect: &Effect| effect.points[1].mean.value - effect.points[0].mean.value;
         assert!((step(a) - step(&whole.effects[0])).abs() < 1e-12);
+        // What the designs have in common cancels in the step, though not in the means.
+        let told = a.points[2].from_first.unwrap();
+        assert!((told.value - 6.0).abs() < 1e-12 && told.std_error < 1e-12, "{told:?}");
+        assert!(a.points[0].from_first.is_none() && a.points[2].mean.std_error > 0.1);
         // A list of designs without a pair that differs in one parameter alone has none.
         let list: Vec<DesignRecord> = [0, 4, 8].map(|place| grid()[place].clone()).to_vec();
         assert!(analysis(&facts(PlanFacts::List), &list).effects.is_empty());

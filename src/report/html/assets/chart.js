@@ -12,7 +12,7 @@ function drawChart(figure, data) {
 function chartOf(data, scale, readout, { width, height }) {
   const svg = drawing(width, height, data.title);
   const area = { left: 78, top: 12, width: width - 96, height: height - 64 };
-  const xs = data.series.flatMap((one) => one.x);
+  const xs = data.series.flatMap((one) => [...one.x, ...(data.whole_steps ? endsOf(one) : [])]);
   // A line beside the sensor cuts nothing.
   if (xs.length === 0) xs.push(0, 1);
   const last = scale === "linear" && data.linear_to ? data.linear_to : Math.max(...xs);
@@ -24,7 +24,7 @@ function chartOf(data, scale, readout, { width, height }) {
   const place = drawAxes(svg, area, x, y, "grid");
   const clamp = ([a, b]) => [around(a), around(Math.min(Math.max(b, area.top), area.top + area.height))];
   const at = (a, b) => clamp(scale === "log" && !(b > 0) ? [place(a, high)[0], 1e9] : place(a, b));
-  data.series.forEach((one) => drawSeries(svg, one, x, at));
+  data.series.forEach((one) => drawSeries(svg, one, x, at, data.whole_steps ? endsOf(one).map((end) => at(end, 1)[0]) : []));
   followChart(svg, data, { x, at, area }, readout);
   return [svg, legendOf(data.series)];
 }
@@ -38,7 +38,7 @@ function tightRangeOf(series) {
   return [low - room, high + room];
 }
 
-function drawSeries(svg, one, x, at) {
+function drawSeries(svg, one, x, at, ends) {
   const colour = seriesColour(one.colour);
   const known = one.x.map((_, i) => i).filter((i) => one.y[i] !== null && one.x[i] <= x.to);
   const error = (i) => one.error[i] ?? 0;
@@ -57,16 +57,23 @@ function drawSeries(svg, one, x, at) {
     return;
   }
   const style = `fill: none; stroke: ${colour}; stroke-width: 1.8; stroke-dasharray: ${dashOf(one.dash)}`;
-  svg.append(make("path", { d: one.form === "steps" ? stepsThrough(points) : `M${points.map((p) => p.join(" ")).join("L")}`, style }));
+  svg.append(make("path", { d: one.form === "steps" ? stepsThrough(points, ends) : `M${points.map((p) => p.join(" ")).join("L")}`, style }));
 }
 
-function stepsThrough(points) {
+// Where the first and the last of evenly spaced steps end.
+function endsOf({ form, x }) {
+  if (form !== "steps" || x.length < 2) return [];
+  return [x[0] - (x[1] - x[0]) / 2, x.at(-1) + (x.at(-1) - x.at(-2)) / 2];
+}
+
+// Steps that change half-way between points; those at the ends go on to `ends`, if there are any.
+function stepsThrough(points, ends) {
   return points
     .map(([x, y], i) => {
       const middle = i === 0 ? x : (points[i - 1][0] + x) / 2;
-      return i === 0 ? `M${x} ${y}` : `H${around(middle)}V${y}`;
+      return i === 0 ? `M${ends[0] ?? x} ${y}` : `H${around(middle)}V${y}`;
     })
-    .join("") + `H${points.at(-1)?.[0] ?? 0}`;
+    .join("") + `H${ends[1] ?? points.at(-1)?.[0] ?? 0}`;
 }
 
 // A line through the nearest points of all series, and their values in words.

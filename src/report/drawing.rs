@@ -299,7 +299,8 @@ fn within(from: DVec3, to: DVec3, middle: DVec3, radius: f64) -> Option<[DVec3; 
     })
 }
 
-fn fate(scene: &Scene, track: &Track) -> (Fate, String) {
+/// What became of a path, and the same in words.
+pub(crate) fn fate(scene: &Scene, track: &Track) -> (Fate, String) {
     let counted = |id: crate::scene::SensorId| {
         (Fate::Counted, format!("counted by {}", scene.sensors[id.index()].name))
     };

@@ -5,15 +5,10 @@ use crate::measure::{Axes, Balance, IntensityTable, PlaneCurve, SensorMap, Senso
 use crate::number::{format_percent, format_value, format_with_error};
 use crate::report::csv::{map_name, map_words};
 use crate::report::png::{
-    Bar, BarChart, ColourMap, CrossSection, Curve, ErrorForm, HeatMap, LinePlot, Look, Outline,
-    PolarPlot, Pole, RayEnd, RayPath, Scale, Series, SeriesForm, SeriesPoint, bar_chart,
-    cross_section, heat_map, line_plot, polar_plot,
+    Bar, BarChart, ColourMap, Curve, ErrorForm, HeatMap, LinePlot, Look, PolarPlot, Pole, Scale,
+    Series, SeriesForm, SeriesPoint, bar_chart, heat_map, line_plot, polar_plot,
 };
 use crate::report::{OutputFile, Report};
-use crate::scene::Scene;
-use crate::scene::shape::ChartRect;
-use crate::transport::{Track, TrackEnd};
-use glam::{DVec2, DVec3};
 use ndarray::Axis;
 
 /// All pictures of a report.
@@ -219,60 +214,5 @@ fn balance_picture(balance: &Balance, source_flux: f64, unit: &str) -> Result<Ve
         unit: unit.to_owned(),
         whole: Some(source_flux),
         bars,
-    })
-}
-
-/// The cross-section of a scene with some traced paths.
-pub fn scene_picture(title: &str, scene: &Scene, tracks: &[Track]) -> Result<Vec<u8>> {
-    let plane = scene.section_plane();
-    let to_plane = |point: DVec3| plane.point_to_local(point).truncate();
-    let corners = [scene.bounds.min, scene.bounds.max].map(to_plane);
-    let margin = DVec2::splat(0.06 * scene.bounds.diagonal());
-    let window = ChartRect {
-        min: corners[0].min(corners[1]) - margin,
-        max: corners[0].max(corners[1]) + margin,
-    };
-    // Axes show the user's coordinates.
-    let origin = DVec2::new(
-        (plane.origin + scene.origin).dot(plane.x),
-        (plane.origin + scene.origin).dot(plane.y),
-    );
-    let shown = |point: DVec2| (point + origin).to_array();
-    let outlines = scene
-        .section(&plane, window)
-        .into_iter()
-        .enumerate()
-        .map(|(colour, outline)| Outline {
-            name: scene.faces[outline.face.index()].name.clone(),
-            colour,
-            points: outline.points.into_iter().map(shown).collect(),
-        })
-        .collect();
-    let rays = tracks
-        .iter()
-        .map(|track| RayPath {
-            points: track.points.iter().map(|point| shown(to_plane(*point))).collect(),
-            end: match track.end {
-                TrackEnd::Absorbed(_) => RayEnd::Absorbed,
-                TrackEnd::Escaped => RayEnd::Escaped,
-                TrackEnd::Faded | TrackEnd::Cut | TrackEnd::Leaked => RayEnd::Lost,
-            },
-        })
-        .collect();
-    let label = |axis: DVec3| {
-        let name =
-            ["x", "y", "z"][axis.abs().to_array().iter().position(|part| *part > 0.5).unwrap_or(0)];
-        format!("{name} in mm")
-    };
-    let [low, high] = [window.min, window.max].map(shown);
-    cross_section(&CrossSection {
-        title: title.to_owned(),
-        subtitle: format!("{} paths, projected onto the section", tracks.len()),
-        x_label: label(plane.x),
-        y_label: label(plane.y),
-        x_range: [low[0], high[0]],
-        y_range: [low[1], high[1]],
-        outlines,
-        rays,
     })
 }

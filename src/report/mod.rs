@@ -19,6 +19,7 @@ mod mesh;
 pub mod png;
 mod recipe;
 mod record;
+mod section;
 pub mod study;
 mod summary;
 mod terminal;
@@ -28,7 +29,6 @@ pub use compare::{
     Comparison, Contestant, Row, Sample, Truth, comparison_files, comparison_table, rows,
 };
 pub use drawing::{Drawing, drawing};
-pub use figures::scene_picture;
 pub use film::film_tables;
 pub use folder::{Existing, Folder, Written, remove_if_there, sweep, write_whole};
 pub(crate) use folder::{expect_room, folder_of, is_among, remove_report};
@@ -40,6 +40,7 @@ pub use record::{
     CheckResult, Outcome, Report, RunFacts, SceneFacts, TargetFacts, asked, leak_places,
     remark_on_paths, remarks, settled, wishes,
 };
+pub use section::scene_picture;
 pub use terminal::terminal;
 
 use crate::error::Result;

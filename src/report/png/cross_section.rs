@@ -6,10 +6,10 @@ use crate::report::png::canvas::{Canvas, Ink, Pen};
 use crate::report::png::geometry::{Point, Rect};
 use crate::report::png::layout::{
     Aspect, Axes, Header, Legend, MARGIN, Mark, SQUEEZED_REMARK, Sample, draw_mark, plot_size,
-    remark,
+    remark, write,
 };
-use crate::report::png::palette::{Rgb, outline_colour};
-use crate::report::png::text::TICK;
+use crate::report::png::palette::{PAPER, Rgb, outline_colour};
+use crate::report::png::text::{Align, LABEL, TICK};
 
 /// A cut through the geometry, seen along its normal.
 #[derive(Debug, Clone)]
@@ -30,6 +30,37 @@ pub struct CrossSection {
     pub outlines: Vec<Outline>,
     /// Paths of light, seen along the normal of the plane.
     pub rays: Vec<RayPath>,
+    /// Sources and sensors, seen likewise.
+    pub places: Vec<NamedPlace>,
+}
+
+/// A name at a place.
+#[derive(Debug, Clone)]
+pub struct NamedPlace {
+    /// The name.
+    pub name: String,
+    /// Where, mm.
+    pub at: [f64; 2],
+    /// Of what.
+    pub of: PlaceOf,
+}
+
+/// What a place is of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PlaceOf {
+    /// A source.
+    Source,
+    /// A sensor.
+    Sensor,
+}
+
+impl PlaceOf {
+    fn colour(self) -> Rgb {
+        match self {
+            Self::Source => [230, 159, 0],
+            Self::Sensor => [204, 121, 167],
+        }
+    }
 }
 
 /// A surface in the plane, as dots.
@@ -103,7 +134,12 @@ const LONGEST: f64 = 10.0;
 /// Radius of the dots of an outline, pixels.
 const DOT: f64 = 1.1;
 
-/// Draws outlines as dots and paths of light as thin lines, each path with a mark at its end.
+/// Distance of a name from its place, pixels.
+const NAME_GAP: f64 = 7.0;
+/// Steps down in search of room for a name.
+const NAME_STEPS: usize = 8;
+
+/// Draws outlines as dots and paths of light as thin lines, each path with a mark at its end; then names.
 pub fn cross_section(section: &CrossSection) -> Result<Vec<u8>> {
     let axes = [section.x_range, section.y_range].map(|[a, b]| Axis::new(a, b, Scale::Linear));
     let size = plot_size(axes, MOST, LONGEST);
@@ -130,6 +166,7 @@ pub fn cross_section(section: &CrossSection) -> Result<Vec<u8>> {
     canvas.clip_to(area);
     draw_outlines(&mut canvas, &frame, area, &section.outlines);
     draw_rays(&mut canvas, &frame, area, &section.rays);
+    draw_names(&mut canvas, &frame, area, &section.places)?;
     canvas.clip_to_all();
     frame.draw(&mut canvas, area)?;
     if size.aspect == Aspect::Squeezed {
@@ -184,6 +221,31 @@ fn draw_rays(canvas: &mut Canvas, frame: &Axes, area: Rect, rays: &[RayPath]) {
     }
 }
 
+/// Names beside their places, on paper, each below those that are there before.
+fn draw_names(canvas: &mut Canvas, frame: &Axes, area: Rect, places: &[NamedPlace]) -> Result<()> {
+    let mut taken: Vec<Rect> = Vec::new();
+    for place in places {
+        let at = frame.place(area, place.at);
+        draw_mark(canvas, Mark::Square, at, place.of.colour());
+        let (width, height) = (LABEL.width(&place.name)?, LABEL.line_step());
+        // To the left where there is no room on the right.
+        let is_left = at[0] + NAME_GAP + width > area.right;
+        let left = if is_left { at[0] - NAME_GAP - width } else { at[0] + NAME_GAP };
+        let room = |step: usize| {
+            Rect::new(left, at[1] - 0.5 * height + step as f64 * height, width, height)
+        };
+        let own = (0..NAME_STEPS)
+            .map(room)
+            .find(|own| !taken.iter().any(|other| own.meets(*other)))
+            .unwrap_or_else(|| room(0));
+        canvas.rect(own.grown(1.0), Ink { colour: PAPER, opacity: 0.8 });
+        let base = own.top + 0.5 * (height + LABEL.cap_height());
+        write(canvas, &place.name, [left, base], LABEL, Align::Left)?;
+        taken.push(own);
+    }
+    Ok(())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -199,6 +261,7 @@ mod tests {
             y_range: [-10.0, 10.0],
             outlines: vec![Outline { name: String::new(), colour: 2, points }],
             rays,
+            places: vec![NamedPlace { name: "led".into(), at: [0.0, 9.0], of: PlaceOf::Source }],
         };
         Decoded::new(&cross_section(&section).unwrap())
     }
@@ -224,6 +287,15 @@ mod tests {
         let [left, top, right, bottom] =
             section([-9.0, 991.0], circle(), Vec::new()).bounds(outline_colour(2));
         assert!(bottom - top > 50 && right - left < 20);
+    }
+
+    #[test]
+    fn places_are_marked_and_names_do_not_cover_each_other() {
+        let picture = section([-10.0, 10.0], Vec::new(), Vec::new());
+        assert!(picture.places(PlaceOf::Source.colour()).len() > 20);
+        assert!(picture.places(PlaceOf::Sensor.colour()).is_empty());
+        let at = |left: f64| Rect::new(left, 0.0, 10.0, 10.0);
+        assert!(at(0.0).meets(at(9.0)) && !at(0.0).meets(at(11.0)));
     }
 
     #[test]

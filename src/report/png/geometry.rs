@@ -37,6 +37,13 @@ impl Rect {
         self.left <= p[0] && p[0] < self.right && self.top <= p[1] && p[1] < self.bottom
     }
 
+    /// Whether two rectangles share more than an edge.
+    pub(crate) fn meets(self, other: Self) -> bool {
+        let is_beside = other.right <= self.left || self.right <= other.left;
+        let is_above = other.bottom <= self.top || self.bottom <= other.top;
+        !is_beside && !is_above
+    }
+
     /// The middle.
     pub(crate) fn middle(self) -> Point {
         [0.5 * (self.left + self.right), 0.5 * (self.top + self.bottom)]

@@ -19,7 +19,9 @@ mod text;
 
 pub use axis::Scale;
 pub use bar_chart::{Bar, BarChart, bar_chart};
-pub use cross_section::{CrossSection, Outline, RayEnd, RayPath, cross_section};
+pub use cross_section::{
+    CrossSection, NamedPlace, Outline, PlaceOf, RayEnd, RayPath, cross_section,
+};
 pub use heat_map::{HeatMap, heat_map};
 pub use line_plot::{ErrorForm, LinePlot, Look, Series, SeriesForm, SeriesPoint, line_plot};
 pub use palette::ColourMap;
@@ -188,6 +190,7 @@ mod tests {
             y_range: [-1.0, one],
             outlines: vec![Outline { name: text("pipe"), colour: 0, points: points.clone() }],
             rays: vec![RayPath { points, end: RayEnd::Escaped }],
+            places: vec![NamedPlace { name: text("led"), at: [one, other], of: PlaceOf::Source }],
         }
     }
 

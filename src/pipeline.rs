@@ -261,9 +261,12 @@ fn trace_kept<E>(
     let elapsed = || before + start.elapsed();
     let (mut target, mut gathering_told) = (None, false);
     let stop = loop {
-        // A run that was laid down at its very end has no piece left after which to ask.
-        let mut early =
-            (run.paths() > 0).then(|| early_stop(&job.run, &run, elapsed(), interrupt)).flatten();
+        let mut early = None;
+        // A run that was laid down at its very end has no piece left after which to ask; one that has only begun traces one in
+        // any case, so that there is something to report.
+        if run.paths() > 0 {
+            early = early_stop(&job.run, &run, elapsed(), interrupt);
+        }
         while run.waves() < round_end && early.is_none() {
             run.next_piece();
             keep(&run, Pause::Between { round_end, elapsed: elapsed() })?;

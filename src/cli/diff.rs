@@ -3,7 +3,9 @@
 use crate::cli::values::{parse_percent, parse_sigmas};
 use crate::cli::{fail, open_junit, print, write_junit};
 use crate::error::{Error, Result};
-use crate::report::diff::{Diff, DiffWishes, Limits, Rows, diff, diff_files, diff_table, read};
+use crate::report::diff::{
+    Diff, DiffWishes, Limits, MapLimit, Rows, diff, diff_files, diff_table, read,
+};
 use crate::report::{Existing, Folder, Written, diff_junit, is_among};
 use clap::Args;
 use std::path::PathBuf;
@@ -22,6 +24,9 @@ pub(super) struct DiffArgs {
     /// It must differ by more than this share of its first value, too, such as 1%.
     #[arg(long, value_parser = parse_percent, value_name = "PERCENT")]
     relative: Option<f64>,
+    /// Maps count, too: one of other cells, or with a cell beyond what noise does once in a thousand maps, differs.
+    #[arg(long)]
+    maps: bool,
     /// Compare only measures whose names begin so, such as `exit.`; may be given several times.
     #[arg(long, value_name = "PATTERN")]
     only: Vec<String>,
@@ -58,7 +63,8 @@ pub(super) fn run(args: &DiffArgs) -> ExitCode {
 
 fn compare(args: &DiffArgs, existing: Existing) -> Result<Diff> {
     let sides = [read(&args.a)?, read(&args.b)?];
-    let limits = Limits { sigmas: args.sigmas, relative: args.relative };
+    let maps = if args.maps { MapLimit::Noise } else { MapLimit::Told };
+    let limits = Limits { sigmas: args.sigmas, relative: args.relative, maps };
     let diff = diff(&sides, &DiffWishes { limits, only: args.only.clone() })?;
     if let Some(dir) = &args.output {
         if is_among(dir, &[args.a.clone(), args.b.clone()]) {
@@ -67,7 +73,8 @@ fn compare(args: &DiffArgs, existing: Existing) -> Result<Diff> {
                 "{dir} is one of the reports; use -o for another folder"
             )));
         }
-        let written = Folder::of_derived(dir, existing)?.write(&diff_files(&diff)?)?;
+        let files = diff_files(&diff)?;
+        let written = Folder::of_derived(dir, existing, &files)?.write(&files)?;
         if let Written::Nothing { differing } = written {
             return Err(Error::Usage(format!(
                 "{} holds other files of the same names ({}); use --overwrite to replace them",

@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::report::{OutputFile, Recipe};
 use serde_json::Value;
-use std::fs::{self, DirEntry};
+use std::fs;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
@@ -66,12 +66,24 @@ impl Folder {
         Ok(Self { path: path.to_path_buf(), existing })
     }
 
-    /// The folder of files that follow from other reports alone: those that are there may be of the same.
-    pub fn of_derived(path: &Path, existing: Existing) -> Result<Self> {
+    /// The folder of files that follow from other reports alone, and so may be there already; others may not, unless they
+    /// may be replaced.
+    pub fn of_derived(path: &Path, existing: Existing, files: &[OutputFile]) -> Result<Self> {
         if path.is_file() {
             return Err(Error::Usage(format!("{} is a file, not a folder", path.display())));
         }
         expect_room(path)?;
+        let entries = fs::read_dir(path).map_err(|source| Error::io(path, source))?;
+        for entry in entries {
+            let entry = entry.map_err(|source| Error::io(path, source))?;
+            let is_own = files.iter().any(|file| entry.file_name() == *file.name);
+            if existing == Existing::Keep && !is_own && !is_staged(&entry.path()) {
+                return Err(Error::Usage(format!(
+                    "{} is none of these files; use --overwrite to write beside it, or -o for another folder",
+                    entry.path().display()
+                )));
+            }
+        }
         Ok(Self { path: path.to_path_buf(), existing })
     }
 
@@ -135,15 +147,16 @@ pub(crate) fn holds_files(folder: &Path) -> Result<bool> {
     let entries = fs::read_dir(folder).map_err(|source| Error::io(folder, source))?;
     for entry in entries {
         let entry = entry.map_err(|source| Error::io(folder, source))?;
-        if !is_staged(&entry) {
+        if !is_staged(&entry.path()) {
             return Ok(true);
         }
     }
     Ok(false)
 }
 
-fn is_staged(entry: &DirEntry) -> bool {
-    entry.file_name().to_string_lossy().starts_with(STAGED)
+/// Whether a file is one that is not complete yet, or was left so.
+pub(crate) fn is_staged(path: &Path) -> bool {
+    path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(STAGED))
 }
 
 /// Takes away what a program that was killed has left half written in a folder. A folder that is not there holds nothing.
@@ -154,7 +167,7 @@ pub fn sweep(folder: &Path) -> Result<()> {
     };
     for entry in entries {
         let entry = entry.map_err(|source| Error::io(folder, source))?;
-        if is_staged(&entry) {
+        if is_staged(&entry.path()) {
             remove_if_there(&entry.path())?;
         }
     }

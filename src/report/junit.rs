@@ -11,33 +11,35 @@ use crate::report::{
     CheckResult, Existing, Report, TargetFacts, expect_room, folder_of, write_whole,
 };
 use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestSuite};
-use std::fs;
+use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// How the files begin that this program writes.
 const HEAD: &str = r#"<testsuites name="lumiduct""#;
+/// Bytes within which that stands.
+const HEAD_BYTES: u64 = 200;
 
 /// Where JUnit XML goes.
 #[derive(Debug)]
 pub struct JunitFile(PathBuf);
 
 impl JunitFile {
-    /// Makes sure, before any work is done, that the file can be written. One that this program has written is replaced;
-    /// another one is, where it may be.
+    /// Makes sure, before any work is done, that the file can be written. One that this program has written is replaced, and
+    /// so is an empty one; another one is, where it may be.
     pub fn open(path: &Path, existing: Existing) -> Result<Self> {
-        if path.is_dir() {
-            return Err(Error::Usage(format!("{} is a folder, not a file", path.display())));
+        let refuse = |why: &str| Err(Error::Usage(format!("--junit {}: {why}", path.display())));
+        if path.exists() && !path.is_file() {
+            return refuse("is no file that could be replaced");
         }
-        if path.exists() && existing == Existing::Keep {
-            let text = fs::read(path).map_err(|source| Error::io(path, source))?;
-            if !String::from_utf8_lossy(&text).contains(HEAD) {
-                return Err(Error::Usage(format!(
-                    "{} is no JUnit file of this program; use --overwrite to replace it, or name another",
-                    path.display()
-                )));
-            }
+        if path.exists() && existing == Existing::Keep && !is_ours(path)? {
+            return refuse("holds something else; use --overwrite to replace it, or name another");
         }
-        expect_room(folder_of(path))?;
+        // Folders are made once there is something to put into them.
+        let there = folder_of(path).ancestors().find(|folder| folder.exists());
+        if let Err(error) = expect_room(there.unwrap_or(Path::new("."))) {
+            return refuse(&error.to_string());
+        }
         Ok(Self(path.to_path_buf()))
     }
 
@@ -45,6 +47,15 @@ impl JunitFile {
     pub fn write(&self, xml: &str) -> Result<()> {
         write_whole(&self.0, xml.as_bytes(), Existing::Replace)
     }
+}
+
+/// Whether a file is empty, or by this program.
+fn is_ours(path: &Path) -> Result<bool> {
+    let failed = |source| Error::io(path, source);
+    let mut head = Vec::new();
+    let file = File::open(path).map_err(failed)?;
+    file.take(HEAD_BYTES).read_to_end(&mut head).map_err(failed)?;
+    Ok(head.is_empty() || String::from_utf8_lossy(&head).contains(HEAD))
 }
 
 /// The checks of a run. A run with checks that is partial or off its target is not what was asked for; both have a case.
@@ -90,6 +101,13 @@ pub fn diff_junit(diff: &Diff) -> Result<String> {
     let mut suite = TestSuite::new(name.as_str());
     for row in &diff.rows {
         suite.add_test_case(case(&name, &row.name, diff_status(diff, row)));
+    }
+    for map in diff.maps_that_count() {
+        let status = match map.is_noise() {
+            true => TestCaseStatus::success(),
+            false => failure("beyond noise", &map.sentence()),
+        };
+        suite.add_test_case(case(&name, &format!("map {}", map.name), status));
     }
     written(suite)
 }

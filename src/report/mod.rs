@@ -31,7 +31,7 @@ pub use compare::{
 pub use drawing::{Drawing, drawing};
 pub use film::film_tables;
 pub use folder::{Existing, Folder, Written, remove_if_there, sweep, write_whole};
-pub(crate) use folder::{expect_room, folder_of, is_among, remove_report};
+pub(crate) use folder::{expect_room, folder_of, is_among, is_staged, remove_report};
 pub use inventory::inventory;
 pub use junit::{JunitFile, diff_junit, run_junit, study_junit};
 pub use mesh::mesh_report;

@@ -3,7 +3,7 @@
 //! The plane is scanned by two families of parallel rays; where one family runs along a surface the other crosses it.
 //! That serves every kind of surface alike, without a formula for each.
 
-use crate::math::Frame;
+use crate::math::{Aabb, Frame};
 use crate::scene::shape::{ChartRect, Start};
 use crate::scene::{FaceId, PrimId, Ray, Scene};
 use glam::{DVec2, DVec3};
@@ -21,11 +21,15 @@ pub struct Outline {
 }
 
 impl Scene {
-    /// The plane through the middle of the scene that shows most of it: across the shortest side of its box.
-    /// x and y of the frame are the axes of the picture, in the order of the coordinates.
+    /// The plane through the middle of all solids and sheets that shows most of them: across the shortest side of their
+    /// box. x and y of the frame are the axes of the picture, in the order of the coordinates.
     pub fn section_plane(&self) -> Frame {
-        let size = self.bounds.max - self.bounds.min;
-        let origin = self.bounds.center();
+        let patches = self.patches.iter().map(|patch| patch.shape.bounds());
+        let bodies = patches.chain(self.meshes.iter().map(|body| body.bounds()));
+        let found = bodies.fold(Aabb::EMPTY, Aabb::union);
+        // A scene may have nothing but sources and sensors.
+        let bounds = if found.is_empty() { self.bounds } else { found };
+        let (size, origin) = (bounds.max - bounds.min, bounds.center());
         let (x, y) = if size.y <= size.x.min(size.z) {
             (DVec3::Z, DVec3::X)
         } else if size.x <= size.z {

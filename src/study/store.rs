@@ -5,7 +5,9 @@
 
 use crate::error::{Error, Result};
 use crate::report::study::{self, DESIGN_FORMAT, DesignRecord, StudyFacts};
-use crate::report::{self, Existing, remove_if_there, remove_report, sweep, write_whole};
+use crate::report::{
+    self, Existing, is_staged, remove_if_there, remove_report, sweep, write_whole,
+};
 use crate::study::OnExisting;
 use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
@@ -42,11 +44,14 @@ impl Store {
         if dir.is_file() {
             return Err(Error::Usage(format!("{} is a file, not a folder", dir.display())));
         }
-        let before = lock(dir)?;
-        let store = Self { dir: dir.to_path_buf(), facts: facts.clone(), _lock: None };
+        fs::create_dir_all(dir).map_err(|source| Error::io(dir, source))?;
+        let store = Self { dir: dir.to_path_buf(), facts: facts.clone(), _lock: lock(dir)? };
         match (Self::manifest(dir)?, existing) {
             (_, OnExisting::Replace) => store.clear()?,
-            (None, OnExisting::Keep | OnExisting::Resume) => store.expect_empty()?,
+            (None, OnExisting::Keep | OnExisting::Resume) => {
+                store.expect_empty()?;
+                store.sweep()?;
+            }
             (Some(found), OnExisting::Keep | OnExisting::Resume) if found != *facts => {
                 let what = if found.version == facts.version {
                     "another study: the study, its scene or what the command line sets differs"
@@ -74,9 +79,7 @@ impl Store {
         })?;
         write_whole(&dir.join(MANIFEST), (manifest + "\n").as_bytes(), Existing::Replace)?;
         write_whole(&store.text_path(), text.as_bytes(), Existing::Replace)?;
-        // The manifest may be a new file.
-        drop(before);
-        Ok(Self { _lock: lock(dir)?, ..store })
+        Ok(store)
     }
 
     /// The results in a folder, as they are.
@@ -196,9 +199,10 @@ impl Store {
     }
 
     fn expect_empty(&self) -> Result<()> {
-        sweep(&self.dir)?;
-        let is_ours = |path: &PathBuf| *path == self.dir.join(DESIGNS);
-        if entries(&self.dir)?.iter().all(is_ours) && entries(&self.dir.join(DESIGNS))?.is_empty() {
+        let is_ours = |path: &PathBuf| *path == self.dir.join(DESIGNS) || is_staged(path);
+        if entries(&self.dir)?.iter().all(is_ours)
+            && entries(&self.dir.join(DESIGNS))?.iter().all(|path| is_staged(path))
+        {
             return Ok(());
         }
         Err(Error::Usage(format!(
@@ -235,13 +239,10 @@ impl Store {
     }
 }
 
-/// A lock on the results in a folder, if there are any; an error where another program holds it.
+/// A lock on a folder itself, which nothing replaces; an error where another program holds it.
 fn lock(dir: &Path) -> Result<Option<File>> {
-    let path = dir.join(MANIFEST);
-    let file = match File::open(&path) {
-        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
-        other => other.map_err(|source| Error::io(&path, source))?,
-    };
+    // Some systems open no folders as files.
+    let Ok(file) = File::open(dir) else { return Ok(None) };
     match file.try_lock() {
         Err(TryLockError::WouldBlock) => Err(Error::Usage(format!(
             "another batch is at work in {}; wait for its end, or use -o for another folder",

@@ -134,24 +134,62 @@ fn a_killed_batch_goes_on_without_repeating_designs_to_the_same_bytes() {
 
 #[test]
 fn two_batches_are_not_at_work_in_one_folder() {
-    let place = study(STUDY);
-    place.good("batch study.toml -o out");
-    let other = fs::File::open(place.path("out/batch.json")).unwrap();
-    other.lock().unwrap();
-    for more in ["--resume", "--overwrite"] {
-        let said = place.bad(2, &format!("batch study.toml -o out {more}"));
-        assert!(said.contains("another batch is at work"), "{said}");
+    let place = study(&STUDY.replace("paths = 20_000", "paths = 2_000_000"));
+    let start = |more: &str| {
+        Process::new(env!("CARGO_BIN_EXE_lumiduct"))
+            .current_dir(place.0.path())
+            .args(["batch", "study.toml", "-o", "out"])
+            .args(more.split_whitespace())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap()
+    };
+    let mut first = start("");
+    while !place.path("out/batch.json").exists() && first.try_wait().unwrap().is_none() {
+        sleep(Duration::from_millis(2));
     }
-    drop(other);
-    place.good("batch study.toml -o out --resume");
+    for more in ["", "--resume", "--overwrite"] {
+        let said = place.bad(2, &format!("batch study.toml -o out {more}"));
+        assert!(said.contains("another batch is at work"), "{more}: {said}");
+    }
+    first.kill().unwrap();
+    first.wait().unwrap();
+    // Whichever of two comes first to a new folder, the other is refused.
+    for _ in 0..5 {
+        _ = fs::remove_dir_all(place.path("out"));
+        let mut pair = [start(""), start("")];
+        let refused = loop {
+            let codes = pair.each_mut().map(|child| child.try_wait().unwrap());
+            if let Some(code) = codes.into_iter().flatten().next() {
+                break code;
+            }
+            sleep(Duration::from_millis(2));
+        };
+        assert_eq!(refused.code(), Some(2));
+        for child in &mut pair {
+            _ = child.kill();
+            child.wait().unwrap();
+        }
+    }
+}
+
+#[test]
+fn a_scene_is_no_study_and_a_study_no_scene() {
+    let place = study(STUDY);
+    assert!(place.bad(2, "run study.toml").contains("run it with `lumiduct batch`"));
+    assert!(place.bad(2, "batch rod.toml").contains("trace it with `lumiduct run`"));
+}
+
+#[test]
+fn the_command_line_does_not_set_what_a_parameter_sets() {
+    let said = study(STUDY).bad(2, "batch study.toml -o out -D media.acrylic.index=1.3");
+    assert!(said.contains("what `-D media.acrylic.index=1.3` sets"), "{said}");
 }
 
 #[test]
 fn a_record_that_is_no_record_is_named() {
     let place = study(STUDY);
-    assert!(place.bad(2, "run study.toml").contains("run it with `lumiduct batch`"));
-    let said = place.bad(2, "batch study.toml -o out -D media.acrylic.index=1.3");
-    assert!(said.contains("over `-D media.acrylic.index=1.3`"), "{said}");
     place.good("batch study.toml -o out");
     let record = place.path("out").join("designs/0003.json");
     fs::write(&record, "{").unwrap();
@@ -365,7 +403,11 @@ fn bad_studies_are_refused_with_the_line_to_change_and_write_nothing() {
         ("values = [5, 10, 20]", "values = [5, 5.2, 6]\nwhole = true", "5 is there twice"),
         ("[parameters.length]", "[parameters.\"a/b\"]", "letters, digits"),
         ("[parameters.index]", "[parameters.design]", "two columns `design`"),
-        ("[\"exit.efficiency\"", "[\"exit.efficiency\", \"exit.efficiency\"", "two columns"),
+        (
+            "[\"exit.efficiency\"",
+            "[\"exit.efficiency\", \"exit.efficiency\"",
+            "`exit.efficiency` is there twice",
+        ),
         (
             "keys = [\"media.acrylic.index\"]",
             "keys = [{ key = \"media.acrylic.index\", factor = 0 }]",

@@ -60,6 +60,11 @@ fn another_seed_is_within_the_limits_and_maps_differ_by_noise_alone() {
         names(&place.path("difference")),
         ["diff.csv", "diff.md", "exit.illuminance.difference.png", "far.intensity.difference.png"]
     );
+    let measures = cases(&junit(&place, "d.xml")).len();
+    place.good("diff a b --maps --junit m.xml");
+    let report = junit(&place, "m.xml");
+    let maps = cases(&report).iter().filter(|case| case.name.as_str().starts_with("map ")).count();
+    assert_eq!((cases(&report).len() - measures, maps), (2, 2));
     let mut table = csv::Reader::from_path(place.path("difference/diff.csv")).unwrap();
     let rows: Vec<BTreeMap<String, String>> = table.deserialize().map(Result::unwrap).collect();
     let flux = rows.iter().find(|row| row["measure"] == "exit.flux").unwrap();
@@ -177,9 +182,11 @@ max_std_error = 1e-9
     assert!(matches!(trouble(&cases(&junit(&place, "ci/run.xml"))[1]), (_, "failed", _)));
     fs::write(place.path("mine.xml"), "<mine/>").unwrap();
     let said = place.bad(2, "run rod.toml -o c --junit mine.xml");
-    assert!(said.contains("no JUnit file of this program; use --overwrite"), "{said}");
-    assert!(place.bad(2, "run rod.toml -o c --junit ci").contains("is a folder"));
-    assert!(place.bad(3, "run rod.toml -o c --junit mine.xml/x.xml").contains("mine.xml"));
+    assert!(said.contains("holds something else; use --overwrite"), "{said}");
+    assert!(place.bad(2, "run rod.toml -o c --junit ci").contains("is no file"));
+    assert!(place.bad(2, "run rod.toml -o c --junit mine.xml/x.xml").contains("mine.xml"));
+    assert!(place.bad(2, "run rood.toml -o c --junit new/x.xml").contains("rood.toml"));
+    assert!(!place.path("new").exists());
     assert!(!place.path("c").exists());
 }
 

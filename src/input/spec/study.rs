@@ -69,7 +69,8 @@ pub struct ParameterSpec {
     pub choices: Option<IndexMap<String, Value>>,
     /// How the values scatter.
     pub spread: Option<SpreadSpec>,
-    /// Whether values are rounded to whole numbers.
+    /// Whether values are whole numbers, before factors and offsets: `values` and `range` are rounded, a uniform spread takes every
+    /// whole number within its ends as likely, and a normal one is rounded within its limits.
     #[serde(default)]
     pub whole: bool,
 }

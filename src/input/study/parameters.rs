@@ -207,7 +207,8 @@ fn domain(spec: &ParameterSpec, plan: &PlanSpec) -> Domain {
         PlanSpec::LatinHypercube(_) | PlanSpec::Sobol(_) | PlanSpec::Tolerance(_) => false,
         PlanSpec::List(_) => return Domain::Listed,
     };
-    let whole = |value: f64| if spec.whole { value.round() } else { value };
+    // Zero has no sign.
+    let whole = |value: f64| if spec.whole { value.round() + 0.0 } else { value + 0.0 };
     if let Some(values) = &spec.values {
         return Domain::Levels(values.iter().map(|value| Setting::Number(whole(*value))).collect());
     }

@@ -74,7 +74,10 @@ fn check_columns(spec: &StudySpec, problems: &mut Problems) {
         add(column(name, parameter.unit.as_deref()), &key);
     }
     for (index, measure) in spec.measures.iter().enumerate() {
-        add(measure.clone(), &Key::of(&["measures"]).index(index));
+        if spec.measures[..index].contains(measure) {
+            let key = Key::of(&["measures"]).index(index);
+            problems.error(&key, format!("`{measure}` is there twice")).hint("leave one out");
+        }
     }
 }
 
@@ -160,7 +163,8 @@ pub(super) fn check_levels(parameters: &[Parameter], places: &Places, problems: 
             let table = Key::of(&["parameters", &parameter.name]);
             let given = ["values", "range"].map(|name| table.field(name));
             let key = given.into_iter().find(|key| places.has(key)).unwrap_or(table);
-            problems.error(&key, format!("{level} is there twice"));
+            let how = if parameter.whole { ", rounded to whole numbers" } else { "" };
+            problems.error(&key, format!("{level} is there twice{how}")).hint("leave one out");
         }
     }
 }
@@ -226,8 +230,10 @@ fn check_overrides(spec: &StudySpec, overrides: &[String], problems: &mut Proble
     for line in overrides {
         let key = line.split_once('=').and_then(|(key, _)| parse_key(key.trim()));
         if let Some(parameter) = key.and_then(|key| varied_by(spec, &key)) {
-            let message = format!("sets this in every design, over `-D {line}`");
-            problems.error(&Key::of(&["parameters", parameter]), message);
+            let message = format!("this parameter sets what `-D {line}` sets, in every design");
+            problems
+                .error(&Key::of(&["parameters", parameter]), message)
+                .hint("leave out the -D, or take the key out of the parameter");
         }
     }
 }

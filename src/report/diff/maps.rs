@@ -155,6 +155,14 @@ pub enum MapOutcome {
 }
 
 impl MapDiff {
+    /// Whether noise alone may have made the difference; not of maps with other cells.
+    pub fn is_noise(&self) -> bool {
+        match &self.outcome {
+            MapOutcome::OtherCells => false,
+            MapOutcome::Compared { judged, largest, bound, .. } => *judged == 0 || largest <= bound,
+        }
+    }
+
     /// The line that is told of a map.
     pub(crate) fn sentence(&self) -> String {
         let MapOutcome::Compared { difference, judged, rms, largest, bound } = &self.outcome else {

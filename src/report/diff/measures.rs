@@ -18,6 +18,17 @@ pub struct Limits {
     pub sigmas: f64,
     /// It must exceed this share of the first value, too, to count.
     pub relative: Option<f64>,
+    /// Whether maps count.
+    pub maps: MapLimit,
+}
+
+/// What a difference of two maps means.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MapLimit {
+    /// It is told, and no more.
+    Told,
+    /// One beyond what noise alone does once in a thousand maps counts, and so do other cells.
+    Noise,
 }
 
 impl Limits {

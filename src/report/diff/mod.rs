@@ -10,7 +10,7 @@ mod page;
 mod read;
 
 pub use maps::{MapDiff, MapOutcome, MapTable};
-pub use measures::{DiffRow, Judgement, Limits};
+pub use measures::{DiffRow, Judgement, Limits, MapLimit};
 pub(crate) use page::sentence;
 pub use page::{Rows, diff_table};
 pub use read::{Content, DesignRow, RunFiles, Side, read};
@@ -52,9 +52,18 @@ impl Diff {
         self.rows.iter().filter(|row| row.judgement == wanted).count()
     }
 
-    /// Whether no measure differs by more than the limits allow.
+    /// Whether no measure, and no map that counts, differs by more than the limits allow.
     pub fn is_within(&self) -> bool {
-        self.count(Judgement::Beyond) == 0
+        self.count(Judgement::Beyond) == 0 && self.maps_that_count().all(MapDiff::is_noise)
+    }
+
+    /// The maps that count.
+    pub fn maps_that_count(&self) -> impl Iterator<Item = &MapDiff> {
+        let maps = match self.limits.maps {
+            MapLimit::Told => &[][..],
+            MapLimit::Noise => &self.maps,
+        };
+        maps.iter()
     }
 }
 

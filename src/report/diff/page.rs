@@ -181,7 +181,10 @@ fn findings(diff: &Diff) -> Vec<String> {
             lines.push(format!("only {side} has {count}: {names}"));
         }
     }
-    lines.extend(diff.maps.iter().map(|map| format!("map {}: {}", map.name, map.sentence())));
+    lines.extend(diff.maps.iter().map(|map| {
+        let beyond = if map.is_noise() { "" } else { "; beyond noise" };
+        format!("map {}: {}{beyond}", map.name, map.sentence())
+    }));
     let limit = diff.limits.words();
     let tolerated = diff.count(Judgement::Tolerated);
     if tolerated > 0 {

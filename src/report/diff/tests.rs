@@ -4,7 +4,7 @@ use crate::measure::Status;
 use crate::report::diff::maps::MapTable;
 use crate::scene::plan::Estimator;
 
-const LIMITS: Limits = Limits { sigmas: 4.0, relative: None };
+const LIMITS: Limits = Limits { sigmas: 4.0, relative: None, maps: MapLimit::Told };
 
 fn measure(value: f64, std_error: f64) -> Measure {
     Measure {
@@ -213,6 +213,9 @@ fn maps_are_compared_cell_by_cell() {
     assert_eq!(*judged, 3);
     assert!((rms - (17.0f64 / 3.0).sqrt()).abs() < 1e-9 && (largest - 4.0).abs() < 1e-9);
     assert!((bound - (2.0 * 3000.0f64.ln()).sqrt()).abs() < 1e-12);
+    // Noise exceeds 4.0 (of 3 cells) more often than once in a thousand maps.
+    assert!(maps[0].is_noise());
+    assert!(!maps::compare(&[map([10.0; 4], 0.3)], &[map([12.5; 4], 0.4)])[0].is_noise());
     let files = maps::pictures(&maps).unwrap();
     assert_eq!(files[0].name, "exit.illuminance.difference.png");
     assert!(files[0].bytes.starts_with(b"\x89PNG"));
@@ -223,7 +226,7 @@ fn maps_of_other_cells_are_told_and_other_tables_are_no_maps() {
     let text = "u_mm,v_mm,illuminance_lx,std_error_lx\n-1,-1,1,0.1\n";
     let other = MapTable::parse("exit.illuminance", text).unwrap().unwrap();
     let maps = maps::compare(&[map([1.0; 4], 0.1)], &[other]);
-    assert!(matches!(maps[0].outcome, MapOutcome::OtherCells));
+    assert!(matches!(maps[0].outcome, MapOutcome::OtherCells) && !maps[0].is_noise());
     assert!(maps::pictures(&maps).unwrap().is_empty());
     let bounces = "bounces_from,bounces_to,flux_lm,std_error_lm\n0,0,1,2\n";
     assert!(MapTable::parse("exit.bounces", bounces).unwrap().is_none());

@@ -136,8 +136,8 @@ const DOT: f64 = 1.1;
 
 /// Distance of a name from its place, pixels.
 const NAME_GAP: f64 = 7.0;
-/// Steps down in search of room for a name.
-const NAME_STEPS: usize = 8;
+/// Steps up and down in search of room for a name.
+const NAME_STEPS: u32 = 12;
 
 /// Draws outlines as dots and paths of light as thin lines, each path with a mark at its end; then names.
 pub fn cross_section(section: &CrossSection) -> Result<Vec<u8>> {
@@ -221,23 +221,27 @@ fn draw_rays(canvas: &mut Canvas, frame: &Axes, area: Rect, rays: &[RayPath]) {
     }
 }
 
-/// Names beside their places, on paper, each below those that are there before.
+/// Names beside their places, on paper, where there is room.
 fn draw_names(canvas: &mut Canvas, frame: &Axes, area: Rect, places: &[NamedPlace]) -> Result<()> {
     let mut taken: Vec<Rect> = Vec::new();
     for place in places {
         let at = frame.place(area, place.at);
+        if !area.contains(at) {
+            continue;
+        }
         draw_mark(canvas, Mark::Square, at, place.of.colour());
         let (width, height) = (LABEL.width(&place.name)?, LABEL.line_step());
         // To the left where there is no room on the right.
         let is_left = at[0] + NAME_GAP + width > area.right;
         let left = if is_left { at[0] - NAME_GAP - width } else { at[0] + NAME_GAP };
-        let room = |step: usize| {
-            Rect::new(left, at[1] - 0.5 * height + step as f64 * height, width, height)
+        let room = |step: f64| Rect::new(left, at[1] + (step - 0.5) * height, width, height);
+        let is_free = |own: &Rect| {
+            let is_inside = area.top <= own.top && own.bottom <= area.bottom;
+            is_inside && !taken.iter().any(|other| own.meets(*other))
         };
-        let own = (0..NAME_STEPS)
-            .map(room)
-            .find(|own| !taken.iter().any(|other| own.meets(*other)))
-            .unwrap_or_else(|| room(0));
+        let steps = (0..NAME_STEPS).flat_map(|step| [f64::from(step), -f64::from(step)]);
+        // A name without room is in the text of the check.
+        let Some(own) = steps.map(room).find(is_free) else { continue };
         canvas.rect(own.grown(1.0), Ink { colour: PAPER, opacity: 0.8 });
         let base = own.top + 0.5 * (height + LABEL.cap_height());
         write(canvas, &place.name, [left, base], LABEL, Align::Left)?;
@@ -249,21 +253,35 @@ fn draw_names(canvas: &mut Canvas, frame: &Axes, area: Rect, places: &[NamedPlac
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::png::palette::INK;
     use crate::report::png::tests::Decoded;
 
+    fn section_with(rays: Vec<RayPath>, places: Vec<NamedPlace>) -> Decoded {
+        let outline = Outline { name: String::new(), colour: 2, points: Vec::new() };
+        decoded(CrossSection { rays, places, ..empty([-10.0, 10.0], outline) })
+    }
+
     fn section(x_range: [f64; 2], points: Vec<[f64; 2]>, rays: Vec<RayPath>) -> Decoded {
-        let section = CrossSection {
+        let outline = Outline { name: String::new(), colour: 2, points };
+        decoded(CrossSection { rays, ..empty(x_range, outline) })
+    }
+
+    fn decoded(section: CrossSection) -> Decoded {
+        Decoded::new(&cross_section(&section).unwrap())
+    }
+
+    fn empty(x_range: [f64; 2], outline: Outline) -> CrossSection {
+        CrossSection {
             title: "Pipe".to_string(),
             subtitle: "plane y = 0".to_string(),
             x_label: "x in mm".to_string(),
             y_label: "z in mm".to_string(),
             x_range,
             y_range: [-10.0, 10.0],
-            outlines: vec![Outline { name: String::new(), colour: 2, points }],
-            rays,
-            places: vec![NamedPlace { name: "led".into(), at: [0.0, 9.0], of: PlaceOf::Source }],
-        };
-        Decoded::new(&cross_section(&section).unwrap())
+            outlines: vec![outline],
+            rays: Vec::new(),
+            places: Vec::new(),
+        }
     }
 
     fn circle() -> Vec<[f64; 2]> {
@@ -290,12 +308,22 @@ mod tests {
     }
 
     #[test]
-    fn places_are_marked_and_names_do_not_cover_each_other() {
-        let picture = section([-10.0, 10.0], Vec::new(), Vec::new());
-        assert!(picture.places(PlaceOf::Source.colour()).len() > 20);
-        assert!(picture.places(PlaceOf::Sensor.colour()).is_empty());
-        let at = |left: f64| Rect::new(left, 0.0, 10.0, 10.0);
-        assert!(at(0.0).meets(at(9.0)) && !at(0.0).meets(at(11.0)));
+    fn places_are_marked_and_names_stay_in_the_plot() {
+        let named = |y: f64, count: usize| {
+            let one = NamedPlace { name: "led".into(), at: [0.0, y], of: PlaceOf::Source };
+            section_with(Vec::new(), vec![one; count])
+        };
+        let one = named(0.0, 1);
+        assert!(one.places(PlaceOf::Source.colour()).len() > 10);
+        assert!(one.places(PlaceOf::Sensor.colour()).is_empty());
+        // Names at one place stand above each other: more ink than one has, and none of it below the plot.
+        let ink = |picture: &Decoded| picture.places(INK);
+        let bare = ink(&named(0.0, 0));
+        let own = ink(&one).len() - bare.len();
+        let three = ink(&named(0.0, 3)).len() - bare.len();
+        assert!(own > 5 && three > 2 * own, "{own} {three}");
+        let lowest = |places: &[(usize, usize)]| places.iter().map(|place| place.1).max();
+        assert_eq!(lowest(&ink(&named(-9.9, 6))), lowest(&bare));
     }
 
     #[test]

@@ -149,7 +149,8 @@ fn sensitivities(report: &StudyReport) -> Option<Part> {
 
 fn effects(report: &StudyReport) -> Option<Part> {
     let words = "The mean of a measure over designs with the same setting of a parameter. How much it differs from that of the \
-                 first setting is known better than the means, for all designs are traced with the same random numbers.";
+                 first setting is known better than the means, for all designs are traced with the same random numbers. Settings \
+                 without designs that differ from the others in nothing else are left out.";
     let head = ["measure", "parameter", "setting", "designs", "mean", "against the first"];
     let mut rows = Vec::new();
     for effect in &report.analysis.effects {
@@ -209,7 +210,7 @@ fn settings(report: &StudyReport, design: &DesignRecord) -> Vec<String> {
 }
 
 /// What a parameter is set to in a design, without its unit.
-pub(super) fn setting(parameter: &ParameterFacts, design: &DesignRecord) -> String {
+fn setting(parameter: &ParameterFacts, design: &DesignRecord) -> String {
     let found = parameter.setting_in(design);
     let of_scene =
         if design.settings.get(&parameter.name) == Some(found) { "" } else { " (scene)" };

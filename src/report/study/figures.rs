@@ -153,7 +153,8 @@ fn response(report: &StudyReport, measure: &str) -> Option<LinePlot> {
     })
 }
 
-fn setting_words(parameter: &ParameterFacts, design: &DesignRecord) -> String {
+/// A parameter with what it is set to in a design: "leg 5 mm".
+pub(super) fn setting_words(parameter: &ParameterFacts, design: &DesignRecord) -> String {
     let unit = parameter.unit.as_ref().map_or(String::new(), |unit| format!(" {unit}"));
     let value = match parameter.setting_in(design) {
         Setting::Number(number) => format!("{}{unit}", format_value(*number)),
@@ -225,10 +226,12 @@ fn distribution(report: &StudyReport, measure: &str) -> Option<LinePlot> {
 fn effect_drawing(report: &StudyReport, effect: &Effect) -> Drawing {
     let title = format!("{}: main effect of {}", effect.measure, effect.parameter);
     let used: usize = effect.points.iter().map(|point| point.designs).sum();
-    let subtitle = match (report.facts.plan, used == report.designs.len()) {
-        (PlanFacts::OneAtATime, _) => "all other parameters as in the scene",
-        (_, true) => "mean over all designs with the same setting",
-        (_, false) => "mean over the designs that differ in nothing else",
+    let subtitle = if report.facts.plan == PlanFacts::OneAtATime {
+        "all other parameters as in the scene"
+    } else if used == report.designs.len() {
+        "mean over all designs with the same setting"
+    } else {
+        "mean over the designs that differ in nothing else"
     };
     let points: Option<Vec<SeriesPoint>> = effect
         .points

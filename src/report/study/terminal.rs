@@ -1,8 +1,8 @@
 //! What a batch prints when it has ended.
 
-use crate::input::Setting;
 use crate::number::format_percent;
-use crate::report::study::contents::{setting, verdict};
+use crate::report::study::contents::verdict;
+use crate::report::study::figures::setting_words;
 use crate::report::study::{DesignOutcome, DesignRecord, StudyReport};
 
 /// Designs that are named one by one.
@@ -56,12 +56,6 @@ pub fn terminal(report: &StudyReport) -> String {
 }
 
 fn settings(report: &StudyReport, design: &DesignRecord) -> String {
-    let words = report.facts.parameters.iter().map(|parameter| {
-        let unit = match (parameter.setting_in(design), &parameter.unit) {
-            (Setting::Number(_), Some(unit)) => format!(" {unit}"),
-            (_, _) => String::new(),
-        };
-        format!("{} {}{unit}", parameter.name, setting(parameter, design))
-    });
+    let words = report.facts.parameters.iter().map(|parameter| setting_words(parameter, design));
     words.collect::<Vec<_>>().join(", ")
 }

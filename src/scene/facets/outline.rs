@@ -12,6 +12,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 const ROUND: usize = 12;
 /// Sides of a rectangle have a corner after each such share of the face that they lie on, 1: it may be curved.
 const SIDE: f64 = 1.0 / 24.0;
+
 impl Scene {
     /// The outlines of the elements of a pattern; of more than `most`, only those of every second, third and so on.
     /// Elements with relief are pieces of their face, and have none here.

@@ -34,7 +34,8 @@ pub(super) fn effects(facts: &StudyFacts, designs: &[DesignRecord]) -> Vec<Effec
 type Own<'a> = (Setting, &'a DesignRecord);
 
 /// The mean at every setting, over the same blocks for all settings: so that nothing but the parameter differs between
-/// them, where a design of a grid has failed and in a list, too. None where no block has every setting.
+/// them, where a design of a grid has failed and in a list, too. Settings that have no partners, such as one that makes no
+/// scene, are left out.
 fn points(
     facts: &StudyFacts,
     designs: &[DesignRecord],
@@ -44,16 +45,19 @@ fn points(
     let own: Vec<Own<'_>> = designs
         .iter()
         .map(|design| (parameter.setting_in(design).clone(), design))
-        .filter(|(setting, _)| *setting != Setting::AsInScene)
+        .filter(|(setting, own)| *setting != Setting::AsInScene && own.measure(measure).is_some())
         .collect();
-    let settings = in_order(&own);
-    let blocks: Vec<Vec<Own<'_>>> = blocks(facts, &own, parameter)
-        .into_iter()
-        .map(|block| block.into_iter().filter(|(_, own)| own.measure(measure).is_some()).collect())
-        .filter(|block: &Vec<Own<'_>>| {
-            settings.iter().all(|setting| block.iter().any(|(own, _)| own == setting))
-        })
-        .collect();
+    let all = blocks(facts, &own, parameter);
+    // The settings of the block that has most; of several, the first.
+    let settings = all
+        .iter()
+        .map(|block| in_order(block))
+        .reduce(|most, own| if own.len() > most.len() { own } else { most })
+        .unwrap_or_default();
+    let has_all = |block: &Vec<Own<'_>>| {
+        settings.iter().all(|setting| block.iter().any(|(own, _)| own == setting))
+    };
+    let blocks: Vec<Vec<Own<'_>>> = all.into_iter().filter(has_all).collect();
     let Some(first) = settings.first() else { return Vec::new() };
     let point = |setting: &Setting| {
         let terms = mean_of(&blocks, setting, 1.0);

@@ -41,7 +41,7 @@ fn sharpness(measure: &str, designs: &[DesignRecord]) -> Option<Sharpness> {
 }
 
 #[cfg(test)]
-mod testing {
+pub(super) mod testing {
     use crate::input::{Best, Domain, Keep, Ranking, Setting};
     use crate::measure::{Measure, Replicates, Status};
     use crate::report::study::{
@@ -190,6 +190,12 @@ mod tests {
         let told = a.points[2].from_first.unwrap();
         assert!((told.value - 6.0).abs() < 1e-12 && told.std_error < 1e-12, "{told:?}");
         assert!(a.points[0].from_first.is_none() && a.points[2].mean.std_error > 0.1);
+        // A level that makes no scene leaves the others as they are.
+        let mut designs = grid();
+        (6..9).for_each(|place| designs[place].outcome = DesignOutcome::Failed("no".into()));
+        let found = analysis(&facts(PlanFacts::Grid), &designs);
+        assert_eq!(found.effects[0].points.len(), 2);
+        assert_eq!(found.effects[1].points.iter().map(|own| own.designs).sum::<usize>(), 6);
         // A list of designs without a pair that differs in one parameter alone has none.
         let list: Vec<DesignRecord> = [0, 4, 8].map(|place| grid()[place].clone()).to_vec();
         assert!(analysis(&facts(PlanFacts::List), &list).effects.is_empty());

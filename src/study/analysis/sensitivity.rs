@@ -28,19 +28,19 @@ pub(super) fn sensitivities(facts: &StudyFacts, designs: &[DesignRecord]) -> Vec
 fn first_order(facts: &StudyFacts, designs: &[DesignRecord], measure: &str) -> Option<Sensitivity> {
     let values: Option<Vec<f64>> =
         designs.iter().map(|design| Some(design.measure(measure)?.value)).collect();
-    let indices = indices(facts, designs, &values?)?;
-    let errors = jackknife_errors(facts, designs, measure);
-    let explained = indices.iter().sum();
-    let named = facts.parameters.iter().zip(indices).enumerate();
+    let raw = indices(facts, designs, &values?)?;
+    let known = jackknife(facts, designs, measure, &raw)
+        .unwrap_or_else(|| raw.iter().map(|value| [*value, f64::INFINITY]).collect());
+    let named = facts.parameters.iter().zip(&known);
     Some(Sensitivity {
         measure: measure.to_owned(),
         method: SensitivityMethod::FirstOrder,
-        explained,
+        explained: known.iter().map(|[value, _]| value).sum(),
         indices: named
-            .map(|(place, (parameter, value))| SensitivityIndex {
+            .map(|(parameter, [value, std_error])| SensitivityIndex {
                 parameter: parameter.name.clone(),
-                value,
-                std_error: errors.as_ref().map_or(f64::INFINITY, |errors| errors[place]),
+                value: *value,
+                std_error: *std_error,
             })
             .collect(),
     })
@@ -65,13 +65,15 @@ fn indices(facts: &StudyFacts, designs: &[DesignRecord], values: &[f64]) -> Opti
     all.filter(|_| whole > 0.0 && whole.is_finite())
 }
 
-/// Errors of the indices from leaving out each group of batches of all designs in turn; `None` where the designs do not
-/// have the same groups.
-fn jackknife_errors(
+/// Indices with their errors from leaving out each group of batches of all designs in turn; `None` where the designs do not
+/// have the same groups. What noise adds to the variances, as the square of the error of a value, is taken away by it
+/// (Quenouille, Biometrika 43 (1956) 353).
+fn jackknife(
     facts: &StudyFacts,
     designs: &[DesignRecord],
     measure: &str,
-) -> Option<Vec<f64>> {
+    raw: &[f64],
+) -> Option<Vec<[f64; 2]>> {
     let all: Option<Vec<(f64, &Replicates)>> = designs
         .iter()
         .map(|design| {
@@ -95,7 +97,11 @@ fn jackknife_errors(
         }
     }
     // As in `Readings::jackknife`.
-    Some(tallies.iter().map(|tally| tally.std_error() * (groups - 1.0)).collect())
+    let known = raw.iter().zip(&tallies).map(|(raw, tally)| {
+        let unbiased = groups * raw - (groups - 1.0) * tally.mean();
+        [unbiased, tally.std_error() * (groups - 1.0)]
+    });
+    Some(known.collect())
 }
 
 /// Standardised coefficients of a linear regression on all parameters that are numbers.
@@ -144,4 +150,44 @@ fn standardised(values: &[f64]) -> Option<Vec<f64>> {
 fn variance(values: &[f64]) -> f64 {
     let mean = Tally::of(values.iter().copied()).mean();
     values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / values.len() as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::study::DesignOutcome;
+    use crate::rng::{Dimension, Sampler};
+    use crate::study::analysis::testing::{design, facts};
+
+    /// A grid of a and b in 0, 1, 2 of which only a does anything, with noise of its own in every group of every design.
+    fn noisy_grid(study: u64) -> Vec<DesignRecord> {
+        const GROUPS: usize = 16;
+        let mut designs = Vec::new();
+        for number in 0..9u32 {
+            let (a, b) = (f64::from(number / 3), f64::from(number % 3));
+            let mut sampler = Sampler::for_path(study, 0, u64::from(number));
+            let values = [(); GROUPS].map(|()| a + 3.0 * (sampler.one(Dimension::Design) - 0.5));
+            let mean = Tally::of(values).mean();
+            let mut own = design(number as usize + 1, [a, b], mean, 1.0);
+            let DesignOutcome::Done(result) = &mut own.outcome else { panic!("no result") };
+            result.replicates["exit.flux"] = Replicates((0..).zip(values).collect());
+            designs.push(own);
+        }
+        designs
+    }
+
+    #[test]
+    fn noise_is_no_effect_of_a_parameter() {
+        let facts = facts(PlanFacts::Grid);
+        let (mut raw, mut told) = (Tally::default(), Tally::default());
+        for study in 0..1000 {
+            let designs = noisy_grid(study);
+            let values: Vec<f64> =
+                designs.iter().map(|own| own.measure("exit.flux").unwrap().value).collect();
+            raw.add(indices(&facts, &designs, &values).unwrap()[1]);
+            told.add(sensitivities(&facts, &designs)[0].indices[1].value);
+        }
+        assert!(raw.mean() > 10.0 * raw.std_error(), "{raw:?}");
+        assert!(told.sigmas_from(0.0).abs() < 4.0, "{told:?}");
+    }
 }

@@ -181,9 +181,18 @@ fn check(args: &CheckArgs) -> ExitCode {
     }
 }
 
-/// The JUnit XML file, where one is wanted.
-fn open_junit(file: Option<&Path>, existing: Existing) -> Result<Option<JunitFile>, Error> {
-    file.map(|file| JunitFile::open(file, existing)).transpose()
+/// The JUnit XML file, where one is wanted. `output` is the folder of the report.
+fn open_junit(
+    file: Option<&Path>,
+    output: Option<&Path>,
+    existing: Existing,
+) -> Result<Option<JunitFile>, Error> {
+    let Some(file) = file else { return Ok(None) };
+    if output == Some(file) {
+        let file = file.display();
+        return Err(Error::Usage(format!("--junit {file}: is the folder after -o; name a file")));
+    }
+    JunitFile::open(file, existing).map(Some)
 }
 
 /// Writes a JUnit XML file where one is wanted, and gives back the exit code of the rest.

@@ -61,7 +61,7 @@ pub(super) fn batch(args: &BatchArgs) -> ExitCode {
         return fail(&error);
     }
     let existing = if args.overwrite { Existing::Replace } else { Existing::Keep };
-    let junit = match open_junit(args.junit.as_deref(), existing) {
+    let junit = match open_junit(args.junit.as_deref(), args.output.as_deref(), existing) {
         Ok(junit) => junit,
         Err(error) => return fail(&error),
     };

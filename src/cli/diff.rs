@@ -50,7 +50,7 @@ pub(super) struct DiffArgs {
 /// Runs the command; the exit code says whether the reports differ.
 pub(super) fn run(args: &DiffArgs) -> ExitCode {
     let existing = if args.overwrite { Existing::Replace } else { Existing::Keep };
-    let outcome = open_junit(args.junit.as_deref(), existing)
+    let outcome = open_junit(args.junit.as_deref(), args.output.as_deref(), existing)
         .and_then(|junit| Ok((junit, compare(args, existing)?)));
     match outcome {
         Ok((junit, diff)) => {

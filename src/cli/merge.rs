@@ -35,7 +35,7 @@ pub(super) struct MergeArgs {
 /// Runs the command.
 pub(super) fn merge(args: &MergeArgs) -> ExitCode {
     let existing = if args.overwrite { Existing::Replace } else { Existing::Keep };
-    let junit = match open_junit(args.junit.as_deref(), existing) {
+    let junit = match open_junit(args.junit.as_deref(), args.output.as_deref(), existing) {
         Ok(junit) => junit,
         Err(error) => return fail(&error),
     };

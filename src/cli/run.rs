@@ -127,7 +127,7 @@ pub(super) fn run(args: &RunArgs) -> ExitCode {
         ..Settings::default()
     };
     let existing = if args.overwrite { Existing::Replace } else { Existing::Keep };
-    let junit = match open_junit(args.junit.as_deref(), existing) {
+    let junit = match open_junit(args.junit.as_deref(), args.output.as_deref(), existing) {
         Ok(junit) => junit,
         Err(error) => return fail(&error),
     };

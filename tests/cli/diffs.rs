@@ -187,6 +187,7 @@ max_std_error = 1e-9
     assert!(place.bad(2, "run rod.toml -o c --junit mine.xml/x.xml").contains("mine.xml"));
     assert!(place.bad(2, "run rood.toml -o c --junit new/x.xml").contains("rood.toml"));
     assert!(!place.path("new").exists());
+    assert!(place.bad(2, "run rod.toml -o c --junit c").contains("is the folder after -o"));
     assert!(!place.path("c").exists());
 }
 

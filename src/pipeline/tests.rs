@@ -4,26 +4,16 @@ use super::*;
 use crate::input::GatherSettings;
 use crate::scene::plan::Request;
 
-/// A scene whose sensor can be estimated by photons and gathered.
-const SCENE: &str = r#"
-lumiduct = 1
-title = "rod"
-[media.acrylic]
-index = 1.49
-[solids.rod.cylinder]
-radius_mm = 2
-length_mm = 10
-medium = "acrylic"
-[sources.led.disk]
-radius_mm = 0.5
-at = { face = "rod.entry", gap_mm = 0.1 }
-flux_lm = 10
-[sensors.exit.plane.disk]
-radius_mm = 2
-[sensors.exit.at]
-face = "rod.exit"
-gap_mm = 0.1
-"#;
+/// The short rod of the tests, with a sensor that can be estimated by photons and gathered.
+const SCENE: &str = concat!(
+    "lumiduct = 1\ntitle = \"rod\"\n",
+    include_str!("../../tests/rod.toml"),
+    r#"
+[sensors.exit]
+plane = { disk = { radius_mm = 2 } }
+at = { face = "rod.exit", gap_mm = 0.1 }
+"#
+);
 
 fn job(folder: &Path, settings: &Settings) -> Job {
     let scene = folder.join("rod.toml");

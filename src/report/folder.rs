@@ -45,10 +45,7 @@ impl Folder {
     /// empty, or its files may be replaced, or it holds the report of this very `recipe`, which is going to be the
     /// same. A run that the clock stops has no recipe.
     pub fn open(path: &Path, existing: Existing, recipe: Option<&Recipe>) -> Result<Self> {
-        if path.is_file() {
-            return Err(Error::Usage(format!("{} is a file, not a folder", path.display())));
-        }
-        fs::create_dir_all(path).map_err(|source| Error::io(path, source))?;
+        expect_room(path)?;
         let is_kept = existing == Existing::Keep && holds_files(path)?;
         let found = if is_kept { Recipe::read(path) } else { None };
         if is_kept && (recipe.is_none() || found.as_ref() != recipe) {
@@ -62,16 +59,12 @@ impl Folder {
                 path.display()
             )));
         }
-        expect_room(path)?;
         Ok(Self { path: path.to_path_buf(), existing })
     }
 
     /// The folder of files that follow from other reports alone, and so may be there already; others may not, unless they
     /// may be replaced.
     pub fn of_derived(path: &Path, existing: Existing, files: &[OutputFile]) -> Result<Self> {
-        if path.is_file() {
-            return Err(Error::Usage(format!("{} is a file, not a folder", path.display())));
-        }
         expect_room(path)?;
         let entries = fs::read_dir(path).map_err(|source| Error::io(path, source))?;
         for entry in entries {
@@ -129,6 +122,9 @@ impl Folder {
 
 /// Makes a folder in which a file can be made, which tells more than permissions do.
 pub(crate) fn expect_room(folder: &Path) -> Result<()> {
+    if folder.is_file() {
+        return Err(Error::Usage(format!("{} is a file, not a folder", folder.display())));
+    }
     fs::create_dir_all(folder).map_err(|source| Error::io(folder, source))?;
     tempfile::tempfile_in(folder)
         .map(|_| ())
@@ -143,7 +139,7 @@ pub(crate) fn is_among(folder: &Path, others: &[PathBuf]) -> bool {
 }
 
 /// Whether a folder holds anything but what a program that was killed has left half written.
-pub(crate) fn holds_files(folder: &Path) -> Result<bool> {
+fn holds_files(folder: &Path) -> Result<bool> {
     let entries = fs::read_dir(folder).map_err(|source| Error::io(folder, source))?;
     for entry in entries {
         let entry = entry.map_err(|source| Error::io(folder, source))?;

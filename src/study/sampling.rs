@@ -64,9 +64,7 @@ pub(crate) fn quantile(parameter: &Parameter, share: f64) -> Setting {
         Domain::Uniform { from, to } if parameter.whole => {
             // Every whole number between the ends is as likely.
             let (first, last) = (from.ceil(), to.floor());
-            Setting::Number(unsigned_zero(
-                (first + (share * (last - first + 1.0)).floor()).min(last),
-            ))
+            Setting::whole((first + (share * (last - first + 1.0)).floor()).min(last))
         }
         Domain::Uniform { from, to } => Setting::Number(from + (to - from) * share),
         Domain::Normal { mean, std_dev, from, to } if parameter.whole => {
@@ -75,18 +73,13 @@ pub(crate) fn quantile(parameter: &Parameter, share: f64) -> Setting {
             let value = normal([*mean, *std_dev], limits, share).round();
             // A half rounds away from zero, beyond a limit of the curve.
             let (low, high) = (from.unwrap_or(f64::NEG_INFINITY), to.unwrap_or(f64::INFINITY));
-            Setting::Number(unsigned_zero(value.clamp(low.ceil(), high.floor())))
+            Setting::whole(value.clamp(low.ceil(), high.floor()))
         }
         Domain::Normal { mean, std_dev, from, to } => {
             Setting::Number(normal([*mean, *std_dev], [*from, *to], share))
         }
         Domain::Listed => Setting::AsInScene,
     }
-}
-
-/// A number whose zero has no sign.
-fn unsigned_zero(value: f64) -> f64 {
-    value + 0.0
 }
 
 /// Quantile of a normal distribution that is cut off at limits.

@@ -6,7 +6,7 @@
 use crate::error::{Error, Result};
 use crate::report::study::{self, DESIGN_FORMAT, DesignRecord, StudyFacts};
 use crate::report::{
-    self, Existing, is_staged, remove_if_there, remove_report, sweep, write_whole,
+    self, Existing, expect_room, is_staged, remove_if_there, remove_report, sweep, write_whole,
 };
 use crate::study::OnExisting;
 use serde::de::DeserializeOwned;
@@ -41,10 +41,7 @@ impl Store {
         text: &str,
         existing: OnExisting,
     ) -> Result<Self> {
-        if dir.is_file() {
-            return Err(Error::Usage(format!("{} is a file, not a folder", dir.display())));
-        }
-        fs::create_dir_all(dir).map_err(|source| Error::io(dir, source))?;
+        expect_room(dir)?;
         let store = Self { dir: dir.to_path_buf(), facts: facts.clone(), _lock: lock(dir)? };
         match (Self::manifest(dir)?, existing) {
             (_, OnExisting::Replace) => store.clear()?,

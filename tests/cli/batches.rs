@@ -267,6 +267,16 @@ fn tables_choices_and_whole_reports() {
     assert_eq!([row(0), row(1), row(2)], [["5", "light"], ["7.5", "1.49"], ["10", "dense"]]);
     assert!(place.path("out/designs/0003/report.md").exists());
 
+    fs::write(
+        place.path("study.toml"),
+        text.replace("[parameters.index]", "whole = true\n[parameters.index]"),
+    )
+    .unwrap();
+    fs::write(place.path("designs.csv"), "index,length\nlight,7.4\nlight,-0.4\n").unwrap();
+    assert_eq!(code(&place.run("batch study.toml -o round")), 1);
+    let rounded = self::rows(&place, "round");
+    assert_eq!([&rounded[0]["length_mm"], &rounded[1]["length_mm"]], ["7", "0"]);
+    fs::write(place.path("study.toml"), &text).unwrap();
     for (table, line, words) in [
         ("index,lenght\nheavy,5\n", 1, "there is no parameter `lenght`"),
         ("index,length\nlight,5\nheavy,5\n", 3, "`heavy` is none of its choices"),

@@ -133,7 +133,7 @@ fn setting(cell: &str, parameter: &Parameter) -> Result<Setting, String> {
     }
     match cell.parse::<f64>() {
         Ok(number) if number.is_finite() => {
-            Ok(Setting::Number(if parameter.whole { number.round() } else { number }))
+            Ok(if parameter.whole { Setting::whole(number) } else { Setting::Number(number) })
         }
         Ok(_) | Err(_) => Err(format!("`{cell}` is no number")),
     }

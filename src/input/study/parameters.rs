@@ -25,6 +25,11 @@ pub enum Setting {
 }
 
 impl Setting {
+    /// The nearest whole number. Its zero has no sign: there is one setting 0.
+    pub fn whole(number: f64) -> Self {
+        Self::Number(number.round() + 0.0)
+    }
+
     /// The number, if it is one.
     pub fn number(&self) -> Option<f64> {
         match self {
@@ -207,10 +212,10 @@ fn domain(spec: &ParameterSpec, plan: &PlanSpec) -> Domain {
         PlanSpec::LatinHypercube(_) | PlanSpec::Sobol(_) | PlanSpec::Tolerance(_) => false,
         PlanSpec::List(_) => return Domain::Listed,
     };
-    // Zero has no sign.
-    let whole = |value: f64| if spec.whole { value.round() + 0.0 } else { value + 0.0 };
+    let level =
+        |value: f64| if spec.whole { Setting::whole(value) } else { Setting::Number(value) };
     if let Some(values) = &spec.values {
-        return Domain::Levels(values.iter().map(|value| Setting::Number(whole(*value))).collect());
+        return Domain::Levels(values.iter().map(|value| level(*value)).collect());
     }
     if let Some(choices) = &spec.choices {
         return Domain::Levels(choices.keys().cloned().map(Setting::Choice).collect());
@@ -220,8 +225,7 @@ fn domain(spec: &ParameterSpec, plan: &PlanSpec) -> Domain {
         if !is_stepped {
             return Domain::Uniform { from, to };
         }
-        let step =
-            |index| Setting::Number(whole(rounded(from + (to - from) * f64::from(index) / last)));
+        let step = |index| level(rounded(from + (to - from) * f64::from(index) / last));
         return Domain::Levels((0..range.count).map(step).collect());
     }
     match &spec.spread {

@@ -171,7 +171,8 @@ fn effects(report: &StudyReport) -> Option<Part> {
     (!report.analysis.effects.is_empty()).then_some(Part { title: "Main effects", items })
 }
 
-fn setting_word(setting: &Setting) -> String {
+/// A setting, without its unit.
+pub(super) fn setting_word(setting: &Setting) -> String {
     match setting {
         Setting::Number(number) => format_value(*number),
         Setting::Choice(name) => name.clone(),

@@ -1,7 +1,6 @@
 //! Which pictures a study has, and what is on them.
 
 use crate::error::Result;
-use crate::input::Setting;
 use crate::measure::Outcome;
 use crate::number::format_value;
 use crate::report::OutputFile;
@@ -9,6 +8,7 @@ use crate::report::png::{
     Bar, BarChart, ErrorForm, LinePlot, Look, Scale, ScatterColumn, ScatterMatrix, Series,
     SeriesForm, SeriesPoint, bar_chart, line_plot, scatter_matrix,
 };
+use crate::report::study::contents::setting_word;
 use crate::report::study::{DesignRecord, Effect, ParameterFacts, PlanFacts, StudyReport};
 
 /// Curves of a response plot; more cannot be told apart.
@@ -156,12 +156,9 @@ fn response(report: &StudyReport, measure: &str) -> Option<LinePlot> {
 /// A parameter with what it is set to in a design: "leg 5 mm".
 pub(super) fn setting_words(parameter: &ParameterFacts, design: &DesignRecord) -> String {
     let unit = parameter.unit.as_ref().map_or(String::new(), |unit| format!(" {unit}"));
-    let value = match parameter.setting_in(design) {
-        Setting::Number(number) => format!("{}{unit}", format_value(*number)),
-        Setting::Choice(name) => name.clone(),
-        Setting::AsInScene => "as in the scene".into(),
-    };
-    format!("{} {value}", parameter.name)
+    let found = parameter.setting_in(design);
+    let unit = if found.number().is_some() { unit } else { String::new() };
+    format!("{} {}{unit}", parameter.name, setting_word(found))
 }
 
 /// How often a measure has which value, with the limits of its checks; of samples.

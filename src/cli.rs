@@ -1,8 +1,8 @@
-//! The command line: arguments, progress, exit codes. It and its children are all that prints.
-#![allow(clippy::print_stdout, clippy::print_stderr, reason = "this is the program's face")]
+//! The command line: arguments, progress, exit codes. Its child `console` is all that prints.
 
 mod batch;
 mod compare;
+mod console;
 mod diff;
 mod display;
 mod film;
@@ -13,6 +13,7 @@ mod values;
 
 use crate::cli::batch::BatchArgs;
 use crate::cli::compare::CompareArgs;
+use crate::cli::console::{print, print_error};
 use crate::cli::diff::DiffArgs;
 use crate::cli::film::FilmArgs;
 use crate::cli::merge::MergeArgs;
@@ -25,7 +26,7 @@ use crate::pipeline;
 use crate::report::{Existing, JunitFile};
 use crate::transport::Interrupt;
 use clap::{Args, CommandFactory, Parser, Subcommand};
-use std::io::{ErrorKind, IsTerminal, Write};
+use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -215,20 +216,9 @@ fn finish(text: crate::error::Result<String>) -> ExitCode {
     }
 }
 
-/// Prints to stdout; a reader that closed the pipe has seen enough.
-fn print(text: &str) -> Result<(), Error> {
-    let mut stdout = std::io::stdout();
-    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
-        Err(reason) if reason.kind() != ErrorKind::BrokenPipe => {
-            Err(Error::Output { what: "standard output".into(), reason: reason.to_string() })
-        }
-        Ok(()) | Err(_) => Ok(()),
-    }
-}
-
 fn warn(warnings: &[Diagnostic]) {
     if !warnings.is_empty() {
-        eprint!("{}", rendered(warnings));
+        print_error(&rendered(warnings));
     }
 }
 
@@ -241,15 +231,15 @@ fn rendered(diagnostics: &[Diagnostic]) -> String {
 fn fail(error: &Error) -> ExitCode {
     match error {
         Error::Input(diagnostics) => {
-            eprint!("{}", rendered(diagnostics));
+            print_error(&rendered(diagnostics));
             ExitCode::from(2)
         }
         Error::Usage(message) => {
-            eprintln!("error: {message}");
+            print_error(&format!("error: {message}\n"));
             ExitCode::from(2)
         }
         Error::Io { .. } | Error::Output { .. } => {
-            eprintln!("error: {error}");
+            print_error(&format!("error: {error}\n"));
             ExitCode::from(3)
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::cli::run::GatherArgs;
 use crate::cli::values::{parse_number, parse_time, words};
-use crate::cli::{fail, finish, on_ctrl_c, use_threads, warn};
+use crate::cli::{fail, finish, on_ctrl_c, print_error, use_threads, warn};
 use crate::input::Settings;
 use crate::pipeline::{self, CompareWishes, Method, Output, TruthWish};
 use crate::report::Existing;
@@ -118,7 +118,7 @@ pub(super) fn compare(args: &CompareArgs) -> ExitCode {
     let interrupt = on_ctrl_c();
     let mut tell = |line: &str| {
         if !args.quiet {
-            eprintln!("{line}");
+            print_error(&format!("{line}\n"));
         }
     };
     match pipeline::compare(&args.scene, &settings, &wishes, &output, &interrupt, &mut tell) {

@@ -1,5 +1,6 @@
 //! How runs and batches show their progress.
 
+use crate::cli::print_error;
 use crate::pipeline::Progress;
 use crate::study::BatchProgress;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -38,7 +39,9 @@ impl Display {
         match self {
             Self::Quiet => {}
             Self::Bar(bar) => gathering.iter().for_each(|line| bar.println(line)),
-            Self::Lines { .. } => gathering.iter().for_each(|line| eprintln!("{line}")),
+            Self::Lines { .. } => {
+                gathering.iter().for_each(|line| print_error(&format!("{line}\n")));
+            }
         }
         self.show_line(progress.fraction(), progress.elapsed, &progress.sentence());
     }
@@ -63,7 +66,7 @@ impl Display {
             }
             Self::Lines { next } => {
                 if elapsed >= *next {
-                    eprintln!("{line}");
+                    print_error(&format!("{line}\n"));
                     *next = elapsed + Self::LINE_EVERY;
                 }
             }

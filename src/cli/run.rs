@@ -6,7 +6,8 @@ use crate::cli::values::{
     words,
 };
 use crate::cli::{
-    INTERRUPTED, fail, finish, on_ctrl_c, open_junit, print, use_threads, warn, write_junit,
+    INTERRUPTED, fail, finish, on_ctrl_c, open_junit, print, print_error, use_threads, warn,
+    write_junit,
 };
 use crate::input::{GatherSettings, Settings};
 use crate::pipeline::{self, Finished, Output, SliceWishes, SliceWritten, Start, Stop};
@@ -169,7 +170,7 @@ pub(super) fn tell(finished: &Finished, quiet: bool) -> ExitCode {
     match printed {
         Err(error) => fail(&error),
         Ok(()) if is_kept => {
-            eprintln!("error: {}", text.lines().last().unwrap_or_default());
+            print_error(&format!("error: {}\n", text.lines().last().unwrap_or_default()));
             ExitCode::from(3)
         }
         Ok(()) => exit_code(finished.stop, finished.report.outcome()),
@@ -200,7 +201,7 @@ fn slice(
             finish(Ok(if args.quiet { String::new() } else { text }))
         }
         Ok(SliceWritten { batches: None, .. }) => {
-            eprintln!("error: the part was stopped, and nothing was written");
+            print_error("error: the part was stopped, and nothing was written\n");
             ExitCode::from(INTERRUPTED)
         }
         Err(error) => fail(&error),

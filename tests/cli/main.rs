@@ -10,6 +10,7 @@ mod diffs;
 mod parts;
 mod refusals;
 mod runs;
+mod streams;
 
 use assert_cmd::Command;
 use serde_json::Value;

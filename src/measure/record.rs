@@ -58,6 +58,19 @@ pub enum Status {
 }
 
 impl Status {
+    /// Its name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ok => "ok",
+            Self::NoSignal => "no_signal",
+            Self::TooFew => "too_few",
+            Self::NoiseLimited => "noise_limited",
+            Self::BiasInNoise => "bias_in_noise",
+            Self::BiasNotResolved => "bias_not_resolved",
+            Self::Contradicted => "contradicted",
+        }
+    }
+
     /// The worse of two: the earlier in the order contradicted, no signal, too few, noise limited, bias not
     /// resolved, bias in the noise, good.
     pub(crate) fn worst(self, other: Self) -> Self {

@@ -1,4 +1,4 @@
-//! Tables: one file for each map and intensity distribution, units in the header.
+//! Tables: one file for each map, intensity distribution and histogram, a row for each cell, units in the header.
 
 use crate::error::{Error, Result};
 use crate::measure::{Axes, IntensityTable, SensorMap};
@@ -6,10 +6,10 @@ use crate::number::format_value;
 use crate::report::{OutputFile, Report};
 use csv::Writer;
 
-/// All tables of a report.
+/// All tables of a report but those for spreadsheets.
 pub(crate) fn files(report: &Report) -> Result<Vec<OutputFile>> {
     let measures = &report.measures;
-    let mut files = vec![values(report)?];
+    let mut files = Vec::new();
     for map in &measures.maps {
         files.push(map_table(map)?);
     }
@@ -43,16 +43,6 @@ pub(crate) fn map_words(map: &SensorMap) -> String {
     });
     let view = map.view.map_or(String::new(), |view| format!(" of view {view}"));
     format!("{}{view}{from}", map.quantity)
-}
-
-fn values(report: &Report) -> Result<OutputFile> {
-    let rows = report.measures.values.iter().map(|(name, measure)| {
-        let bias = measure.bias.map_or(String::new(), |bias| bias.to_string());
-        let numbers = [measure.value, measure.std_error].map(|number| number.to_string());
-        let [value, std_error] = numbers;
-        vec![name.clone(), value, std_error, bias, measure.unit.clone()]
-    });
-    table("measures.csv".into(), &["measure", "value", "std_error", "bias", "unit"], rows)
 }
 
 fn map_table(map: &SensorMap) -> Result<OutputFile> {

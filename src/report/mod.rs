@@ -20,6 +20,7 @@ pub mod png;
 mod recipe;
 mod record;
 mod section;
+mod spreadsheet;
 pub mod study;
 mod summary;
 mod terminal;
@@ -65,7 +66,8 @@ pub(crate) const SUMMARY: &str = "summary.json";
 
 /// All files of a report, in the reproducible order: pictures and tables first, so that the page can name them.
 pub fn files(report: &Report, scene_text: &str) -> Result<Vec<OutputFile>> {
-    let mut files = csv::files(report)?;
+    let mut files = spreadsheet::files(report)?;
+    files.extend(csv::files(report)?);
     files.extend(by_sun::files(report)?);
     files.extend(figures::files(report)?);
     files.push(OutputFile::text(format!("{}.toml", report.scene.name), scene_text.to_owned()));

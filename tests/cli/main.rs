@@ -10,6 +10,7 @@ mod diffs;
 mod parts;
 mod refusals;
 mod runs;
+mod spreadsheets;
 mod streams;
 
 use assert_cmd::Command;

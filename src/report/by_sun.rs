@@ -80,17 +80,6 @@ pub(crate) fn by_sun(report: &Report, sensor: &str) -> Option<BySun> {
         .then(|| BySun { rows: lines.iter().map(row).collect(), plot: plot(sensor, &lines) })
 }
 
-/// The part of a sensor's section about it; empty without several suns.
-pub(crate) fn section(report: &Report, sensor: &str) -> String {
-    let Some(found) = by_sun(report, sensor) else { return String::new() };
-    let mut text =
-        format!("{HEAD}\n\n| source | elevation of the sun | transmission |\n|---|--:|---|\n");
-    for row in &found.rows {
-        text += &format!("| {} |\n", row.join(" | "));
-    }
-    text + "\n"
-}
-
 fn numbers(sensor: &str, lines: &[Line<'_>]) -> Result<OutputFile> {
     let rows = lines.iter().map(|Line { source, elevation, transmission }| {
         let elevation = elevation.map_or(String::new(), |degrees| degrees.to_string());

@@ -4,6 +4,7 @@ use crate::error::Result;
 use crate::measure::{Axes, Balance, IntensityTable, PlaneCurve, SensorMap, SensorPaths};
 use crate::number::{format_percent, format_value, format_with_error};
 use crate::report::csv::{map_name, map_words};
+use crate::report::key_figures::is_one_cell;
 use crate::report::png::{
     Bar, BarChart, ColourMap, Curve, ErrorForm, HeatMap, LinePlot, Look, PolarPlot, Pole, Scale,
     Series, SeriesForm, SeriesPoint, bar_chart, heat_map, line_plot, polar_plot,
@@ -15,7 +16,7 @@ use ndarray::Axis;
 pub(crate) fn files(report: &Report) -> Result<Vec<OutputFile>> {
     let measures = &report.measures;
     let mut files = Vec::new();
-    for map in &measures.maps {
+    for map in measures.maps.iter().filter(|map| !is_one_cell(map)) {
         files.push(OutputFile { name: format!("{}.png", map_name(map)), bytes: map_picture(map)? });
     }
     for table in &measures.intensities {

@@ -5,6 +5,7 @@
 
 mod by_sun;
 mod compare;
+mod contents;
 mod csv;
 pub mod diff;
 mod drawing;
@@ -14,6 +15,7 @@ mod folder;
 mod html;
 mod inventory;
 mod junit;
+mod key_figures;
 mod markdown;
 mod mesh;
 pub mod png;
@@ -71,8 +73,7 @@ pub fn files(report: &Report, scene_text: &str) -> Result<Vec<OutputFile>> {
     files.extend(by_sun::files(report)?);
     files.extend(figures::files(report)?);
     files.push(OutputFile::text(format!("{}.toml", report.scene.name), scene_text.to_owned()));
-    let names: Vec<&str> = files.iter().map(|file| file.name.as_str()).collect();
-    files.push(OutputFile::text("report.md", markdown::markdown(report, &names)));
+    files.push(OutputFile::text("report.md", markdown::markdown(report)));
     files.push(OutputFile::text("report.html", html::html(report)?));
     let names: Vec<&str> = files.iter().map(|file| file.name.as_str()).chain([SUMMARY]).collect();
     files.push(OutputFile::text(SUMMARY, summary::json(report, &names)?));

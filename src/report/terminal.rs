@@ -1,16 +1,30 @@
 //! The few lines that a run prints when it is done.
 
 use crate::measure::{Measures, Outcome};
+use crate::report::key_figures::key_figures;
 use crate::report::words::quantity;
 use crate::report::{Report, Written};
 use crate::scene::plan::Estimator;
 use std::path::Path;
 
-/// The estimator that a pilot has taken, where it is not the plain one.
-fn choice(measures: &Measures, sensor: &str) -> String {
-    let chosen = measures.choices.get(sensor).map(|choice| choice.chosen);
-    let told = chosen.filter(|chosen| *chosen != Estimator::Forward);
-    told.map_or(String::new(), |chosen| format!(", by `{}` (chosen by a pilot)", chosen.name()))
+/// The sensors for which a pilot has taken another estimator than the plain one.
+fn choices(measures: &Measures) -> Option<String> {
+    let chosen = measures.choices.iter().map(|(sensor, choice)| (sensor, choice.chosen));
+    let told: Vec<String> = chosen
+        .filter(|(_, chosen)| *chosen != Estimator::Forward)
+        .map(|(sensor, chosen)| format!("{sensor} by `{}`", chosen.name()))
+        .collect();
+    (!told.is_empty()).then(|| format!("  computed {} (chosen by a pilot)\n", told.join(", ")))
+}
+
+/// What a sensor has read, in a line.
+fn reading(measures: &Measures, sensor: &str) -> String {
+    let figures: Vec<String> = key_figures(measures, sensor)
+        .iter()
+        .filter(|figure| figure.is_brief)
+        .map(|figure| format!("{} {}", figure.label, quantity(figure.measure)))
+        .collect();
+    format!("  {sensor}: {}\n", figures.join(", "))
 }
 
 /// Sensors, checks and where the report lies.
@@ -19,16 +33,7 @@ pub fn terminal(report: &Report, dir: &Path, written: &Written) -> String {
     let mut text =
         format!("{}\n{} paths, {}\n", report.scene.title, measures.paths, report.run.stopped);
     for paths in &measures.sensor_paths {
-        let value = |name: &str| {
-            measures.values.get(&format!("{}.{name}", paths.sensor)).map_or("".into(), quantity)
-        };
-        text += &format!(
-            "  {}: flux {}, efficiency {}{}\n",
-            paths.sensor,
-            value("flux"),
-            value("efficiency"),
-            choice(measures, &paths.sensor)
-        );
+        text += &reading(measures, &paths.sensor);
     }
     for result in &report.checks {
         let word = match result.verdict.outcome {
@@ -45,7 +50,8 @@ pub fn terminal(report: &Report, dir: &Path, written: &Written) -> String {
     for warning in &report.warnings {
         text += &format!("  note: {warning}\n");
     }
-    let page = dir.join("report.md");
+    text.extend(choices(measures));
+    let page = dir.join("report.html");
     let page = page.display();
     text + &match written {
         Written::New => format!("report: {page}\n"),

@@ -23,6 +23,9 @@ pub(crate) const CHOICES_HEAD: &str = "A pilot has tried the estimators on each 
     thread would need until the sensor's flux or map is known to 1 %, told from counted work \
     (docs/method.md). Gathering is not chosen where its windows differ by more than noise, or where an \
     unbiased estimator contradicts it, and no estimator that found less light of a source than another, beyond their errors.";
+/// What stands after the results.
+pub(crate) const ERRORS: &str = "± is the standard error of the simulation: the value of endlessly many paths lies within \
+    one of them in 68 of 100 cases, and within two in 95. Tolerances of parts and materials are not in it.";
 /// What stands after the lines of the balance.
 pub(crate) const NO_LINES: &str =
     "Virtual sensors let light pass: they are no lines of the balance.";
@@ -46,7 +49,10 @@ pub(crate) fn quantity(measure: &Measure) -> String {
         return format!("0{unit} (nothing counted; one path is {}{unit})", format_value(error));
     }
     if measure.status == Status::NoSignal && error.is_infinite() {
-        return "unknown (nothing counted)".into();
+        return NOTHING_COUNTED.into();
+    }
+    if is_boundless(measure) {
+        return BOUNDLESS.into();
     }
     // A bias well below the noise is no news.
     let bias = measure
@@ -54,6 +60,38 @@ pub(crate) fn quantity(measure: &Measure) -> String {
         .filter(|bias| *bias > BIAS_TOLD * error)
         .map_or(String::new(), |bias| format!(", bias up to {}{unit}", format_value(bias)));
     format!("{}{unit}{bias}{}", format_with_error(value, error), remark(measure.status))
+}
+
+/// A beam or field without an edge.
+const BOUNDLESS: &str = "none (the intensity falls below the level nowhere)";
+
+/// Whether a measure is the angle of a beam that has no edge in any direction.
+fn is_boundless(measure: &Measure) -> bool {
+    measure.unit == "deg" && measure.value >= 360.0
+}
+
+/// Value with standard error, bias, and what there is to be said of them, each empty where there is nothing.
+pub(crate) fn measure_cells(measure: &Measure) -> [String; 3] {
+    let unit = if measure.unit == "1" { String::new() } else { format!(" {}", measure.unit) };
+    // What the error of nothing is takes words.
+    if measure.status == Status::NoSignal || is_boundless(measure) {
+        return [quantity(measure), String::new(), String::new()];
+    }
+    [
+        format!("{}{unit}", format_with_error(measure.value, measure.std_error)),
+        measure.bias.map_or(String::new(), |bias| format!("{}{unit}", format_value(bias))),
+        remark(measure.status).trim_matches([' ', '(', ')']).to_owned(),
+    ]
+}
+
+/// What cells of tables say where there is nothing to be said.
+const NOTHING_COUNTED: &str = "unknown (nothing counted)";
+const FOUND_NOTHING: &str = "found nothing";
+const NOT_POSSIBLE: &str = "not possible";
+
+/// Whether a cell of a table says nothing.
+pub(crate) fn is_silent(cell: &str) -> bool {
+    ["", FOUND_NOTHING, NOT_POSSIBLE, NOTHING_COUNTED].contains(&cell)
 }
 
 /// What there is to be said of a number that cannot be relied on.
@@ -84,14 +122,14 @@ pub(crate) fn choice_row(choice: &Choice) -> Vec<String> {
     let tried = [Estimator::Forward, Estimator::Backward, Estimator::Mix, Estimator::Gather];
     let words = tried.map(|estimator| {
         let trial = choice.tried.iter().find(|trial| trial.estimator == estimator);
-        trial.map_or("not possible".into(), trial_words)
+        trial.map_or(NOT_POSSIBLE.into(), trial_words)
     });
     std::iter::once(choice.chosen.name().to_owned()).chain(words).collect()
 }
 
 fn trial_words(trial: &Trial) -> String {
     let time = trial.time(0.01);
-    let time = time.map_or("found nothing".into(), |time| format!("{} s", seconds(time)));
+    let time = time.map_or(FOUND_NOTHING.into(), waiting);
     match (trial.objection, trial.bias) {
         (Some(Objection::WindowsDiffer), Some(bias)) => {
             format!("{time} (its windows differ by {:.0} %)", 100.0 * bias)
@@ -101,10 +139,21 @@ fn trial_words(trial: &Trial) -> String {
     }
 }
 
-/// Two digits, which is what a pilot knows.
-fn seconds(time: f64) -> String {
-    let digits = 10f64.powi(1 - time.log10().floor() as i32);
-    format_value((time * digits).round() / digits)
+/// A time in two digits, which is what a pilot knows; beyond an hour only its order matters.
+fn waiting(seconds: f64) -> String {
+    const MINUTE: f64 = 60.0;
+    const HOUR: f64 = 3600.0;
+    const DAY: f64 = 86_400.0;
+    let two_digits = |time: f64| {
+        let digits = 10f64.powi(1 - time.log10().floor() as i32);
+        format_value((time * digits).round() / digits)
+    };
+    match seconds {
+        time if time < MINUTE => format!("{} s", two_digits(time)),
+        time if time < HOUR => format!("{} min", two_digits(time / MINUTE)),
+        time if time < DAY => "hours".to_owned(),
+        _ => "not in a day".to_owned(),
+    }
 }
 
 /// How gathered values came about, in paragraphs.
@@ -205,6 +254,9 @@ pub(crate) fn variation(map: &SensorMap) -> String {
 }
 
 fn statistic(value: &Statistic) -> String {
+    if value.status == Status::NoSignal {
+        return NOTHING_COUNTED.to_owned();
+    }
     let [low, high] = value.interval;
     let number = format_with_error(value.value, value.std_error);
     format!("{number} [{}, {}]{}", format_value(low), format_value(high), remark(value.status))
@@ -277,4 +329,19 @@ pub(crate) fn run_lines(report: &Report) -> Vec<String> {
         lines.push(format!("leak at [{}, {}, {}] mm", leak.x, leak.y, leak.z));
     }
     lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_beyond_an_hour_are_words() {
+        assert_eq!(waiting(0.0312), "0.031 s");
+        assert_eq!(waiting(59.0), "59 s");
+        assert_eq!(waiting(754.0), "13 min");
+        assert_eq!(waiting(7200.0), "hours");
+        assert_eq!(waiting(3.2e18), "not in a day");
+        assert_eq!(waiting(f64::INFINITY), "not in a day");
+    }
 }

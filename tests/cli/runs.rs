@@ -6,7 +6,7 @@ use crate::*;
 fn a_run_writes_every_file_of_its_report() {
     let place = Place::new();
     let said = place.good("run rod.toml");
-    assert!(said.contains("efficiency") && said.contains("reports/rod/report.md"), "{said}");
+    assert!(said.contains("efficiency") && said.ends_with("reports/rod/report.html\n"), "{said}");
     let expected = [
         "balance.png",
         "exit.bounces.csv",

@@ -1,0 +1,83 @@
+//! What the pages of a run show, and in which order.
+
+use crate::*;
+
+/// A lamp in the open: one cell above it, and spheres about it whose intensity is the same everywhere.
+const LAMP: &str = r#"
+lumiduct = 1
+title = "Lamp"
+[sources.lamp.point]
+flux_lm = 10
+emission = "isotropic"
+[sensors]
+cell = { plane = { rectangle = { width_mm = 4, height_mm = 4 } }, at = { position_mm = [0, 0, 5], axis = [0, 0, -1] } }
+all = { goniometer = { c_step_deg = 90, gamma_step_deg = 30 } }
+[run]
+paths = 100_000
+estimator = "forward"
+"#;
+
+fn lamp() -> Place {
+    let place = Place::new();
+    fs::write(place.path("lamp.toml"), LAMP).unwrap();
+    place
+}
+
+/// Where `words` begin on a page, which has to have them.
+fn at(page: &str, words: &str) -> usize {
+    page.find(words).unwrap_or_else(|| panic!("no {words} in {page}"))
+}
+
+#[test]
+fn a_single_cell_has_no_map_and_no_uniformity() {
+    let place = lamp();
+    place.good("run lamp.toml -o out -q");
+    assert!(!names(&place.path("out")).iter().any(|name| name == "cell.illuminance.png"));
+    for name in ["report.md", "report.html"] {
+        let page = fs::read_to_string(place.path("out").join(name)).unwrap();
+        assert!(page.contains("cell.illuminance_avg"), "{page}");
+        for absent in ["cell.uniformity_min_avg", "cell.cv", "cell.illuminance_max"] {
+            assert!(!page.contains(absent), "{absent} in {name}");
+        }
+    }
+    // Programs and checks still find them.
+    assert!(place.summary("out")["measures"]["cell.uniformity_min_avg"].is_object());
+}
+
+#[test]
+fn a_beam_without_an_edge_has_no_angle() {
+    let place = lamp();
+    let said = place.good("run lamp.toml -o out");
+    assert!(said.contains("beam angle none"), "{said}");
+    let page = fs::read_to_string(place.path("out/report.md")).unwrap();
+    assert!(page.contains("| all.beam_angle | none ("), "{page}");
+    assert_eq!(place.summary("out")["measures"]["all.beam_angle"]["value"], 360.0);
+}
+
+#[test]
+fn a_page_goes_from_the_verdict_to_how_it_was_computed() {
+    let place = Place::with("[[check]]\nmeasure = \"exit.efficiency\"\nmin = 0.5\n");
+    place.good("run rod.toml -o out -q");
+    let markdown = fs::read_to_string(place.path("out/report.md")).unwrap();
+    let html = fs::read_to_string(place.path("out/report.html")).unwrap();
+    let order = [
+        "The check passed",
+        "Checks",
+        "Results",
+        "Sensor exit",
+        "Sensor far",
+        "Scene",
+        "Flux balance",
+        "Computation",
+        "Estimators",
+        "Run",
+    ];
+    for (page, start, end) in [(&markdown, "# ", "\n"), (&html, ">", "<")] {
+        let places: Vec<usize> =
+            order[1..].iter().map(|title| at(page, &format!("{start}{title}{end}"))).collect();
+        assert!(at(page, order[0]) < places[0] && places.is_sorted(), "{places:?}");
+    }
+    let words = ["forward", "pilot", "segments"];
+    let first = words.map(|word| at(&markdown, word)).into_iter().min().unwrap();
+    assert!(first > at(&markdown, "## Computation"), "jargon before its place: {markdown}");
+}

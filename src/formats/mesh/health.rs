@@ -8,6 +8,12 @@ use glam::DVec3;
 const FLAT_DEG: f64 = 0.1;
 /// Above this turn, degrees, an edge is meant to be one.
 const SHARP_DEG: f64 = 45.0;
+/// Angles of a facet with its neighbours that make one curved wall are alike within this factor, 1.
+const ALIKE: f64 = 2.0;
+/// A curved wall without normals has at least so many facets in a row or a field: fewer are flat faces that meet at angles.
+const LEAST_FACETS: usize = 6;
+/// Corner normals nearer to that of their facet than this, rad, are its own: nothing is smoothed.
+const OWN_NORMAL: f64 = 1.0e-3;
 /// Corner normals nearer than this, rad, were one normal before they were rounded to 16 bits or more.
 pub(crate) const SAME_NORMAL: f64 = 1.0e-4;
 
@@ -175,21 +181,21 @@ fn shells(mesh: &TriangleMesh, half_edges: &[HalfEdge]) -> usize {
     present.len()
 }
 
+/// An edge between two flat pieces of a mesh, none of them smoothed by normals.
+struct Turn {
+    triangles: [u32; 2],
+    pieces: [u32; 2],
+    /// Angle by which the surface turns, degrees; positive where it is convex.
+    angle_deg: f64,
+}
+
+/// Flat pieces in a row or a field, each with two neighbours or more to which it turns the same way by angles that are
+/// alike: what a curved wall becomes without normals. A piece whose normals are those of a curved surface bends light as
+/// that surface does, and flat faces that meet at an angle are none of it.
 fn facets(mesh: &TriangleMesh, half_edges: &[HalfEdge]) -> Option<Facets> {
-    let mut turn = vec![0.0f64; mesh.triangles.len()];
-    for edge in half_edges.chunk_by(same_edge) {
-        let [one, other] = edge else { continue };
-        if normals_agree(mesh, one, other) {
-            continue;
-        }
-        let angle = dihedral_deg(mesh, one, other);
-        if (FLAT_DEG..SHARP_DEG).contains(&angle) {
-            for side in [one, other] {
-                let turn = &mut turn[side.triangle as usize];
-                *turn = turn.max(angle);
-            }
-        }
-    }
+    let piece_of = flat_pieces(mesh, half_edges);
+    let turns = turns(mesh, half_edges, &piece_of);
+    let turn = turns_of_walls(mesh.triangles.len(), &turns, &piece_of);
     let area = |triangle: usize| 0.5 * area_vector(mesh.corners(triangle)).length();
     let total: f64 = (0..turn.len()).map(area).sum();
     let mut turned: Vec<(f64, f64)> = turn
@@ -206,6 +212,89 @@ fn facets(mesh: &TriangleMesh, half_edges: &[HalfEdge]) -> Option<Facets> {
         below >= 0.5 * curved
     })?;
     Some(Facets { turn_deg: *turn_deg, area_share: curved / total })
+}
+
+/// The flat piece of each triangle.
+fn flat_pieces(mesh: &TriangleMesh, half_edges: &[HalfEdge]) -> Vec<u32> {
+    let mut pieces = Groups::new(mesh.triangles.len());
+    for edge in half_edges.chunk_by(same_edge) {
+        if let [one, other] = edge
+            && dihedral_deg(mesh, one, other) < FLAT_DEG
+        {
+            pieces.join(one.triangle, other.triangle);
+        }
+    }
+    pieces.numbered()
+}
+
+/// The edges at which the surface turns a little and no normals smooth it.
+fn turns(mesh: &TriangleMesh, half_edges: &[HalfEdge], piece_of: &[u32]) -> Vec<Turn> {
+    let mut turns = Vec::new();
+    for edge in half_edges.chunk_by(same_edge) {
+        let [one, other] = edge else { continue };
+        let angle = dihedral_deg(mesh, one, other);
+        let is_turn = (FLAT_DEG..SHARP_DEG).contains(&angle)
+            && !normals_agree(mesh, one, other)
+            && [one, other].iter().all(|side| has_own_normals(mesh, side.triangle as usize));
+        if !is_turn {
+            continue;
+        }
+        let far = mesh.corners(other.triangle as usize)[other.opposite_corner()];
+        let near = mesh.corners(one.triangle as usize);
+        let is_convex = (far - near[0]).dot(area_vector(near)) < 0.0;
+        turns.push(Turn {
+            triangles: [one.triangle, other.triangle],
+            pieces: [one, other].map(|side| piece_of[side.triangle as usize]),
+            angle_deg: if is_convex { angle } else { -angle },
+        });
+    }
+    turns
+}
+
+/// Whether the corners of a triangle have no other normals than its facet.
+fn has_own_normals(mesh: &TriangleMesh, triangle: usize) -> bool {
+    let Some(normals) = &mesh.normals else { return true };
+    let facet = area_vector(mesh.corners(triangle)).normalize_or_zero();
+    normals[triangle].iter().all(|normal| normal.distance(facet) < OWN_NORMAL)
+}
+
+/// The largest turn at each of `count` triangles that belongs to a curved wall, degrees; 0 at all others.
+fn turns_of_walls(count: usize, turns: &[Turn], piece_of: &[u32]) -> Vec<f64> {
+    let pieces = piece_of.iter().max().map_or(0, |last| *last as usize + 1);
+    // By piece: its neighbours and the angles to them.
+    let mut neighbours: Vec<Vec<(u32, f64)>> = vec![Vec::new(); pieces];
+    for Turn { pieces: [a, b], angle_deg, .. } in turns {
+        neighbours[*a as usize].push((*b, *angle_deg));
+        neighbours[*b as usize].push((*a, *angle_deg));
+    }
+    let goes_on = |piece: u32, from: u32, angle: f64| {
+        neighbours[piece as usize].iter().any(|(other, next)| {
+            *other != from && (next / angle) < ALIKE && (angle / next) < ALIKE && next * angle > 0.0
+        })
+    };
+    // A turn is one of a wall when the wall goes on beyond one of its two pieces, likewise.
+    let is_of_wall: Vec<bool> = turns
+        .iter()
+        .map(|Turn { pieces: [a, b], angle_deg, .. }| {
+            goes_on(*a, *b, *angle_deg) || goes_on(*b, *a, *angle_deg)
+        })
+        .collect();
+    let mut walls = Groups::new(pieces);
+    let of_walls = || turns.iter().zip(&is_of_wall).filter(|(_, is_of_wall)| **is_of_wall);
+    of_walls().for_each(|(turn, _)| walls.join(turn.pieces[0], turn.pieces[1]));
+    let wall_of = walls.numbered();
+    let mut sizes = vec![0usize; pieces];
+    wall_of.iter().for_each(|wall| sizes[*wall as usize] += 1);
+    let mut largest = vec![0.0f64; count];
+    for (turn, _) in of_walls() {
+        if sizes[wall_of[turn.pieces[0] as usize] as usize] >= LEAST_FACETS {
+            for triangle in turn.triangles {
+                let largest = &mut largest[triangle as usize];
+                *largest = largest.max(turn.angle_deg.abs());
+            }
+        }
+    }
+    largest
 }
 
 /// Angle between the normals of two facets, degrees; 0 for one without area.
@@ -226,7 +315,7 @@ pub(crate) fn normals_agree(mesh: &TriangleMesh, one: &HalfEdge, other: &HalfEdg
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::mesh::samples::{Normals, block, icosphere, rod};
+    use crate::formats::mesh::samples::{Normals, block, icosphere, mirror_pipe, prism, rod};
     use std::f64::consts::PI;
 
     #[test]
@@ -321,5 +410,44 @@ mod tests {
         assert!((faceted.area_share - 40.0 / 42.0).abs() < 1e-4);
         assert!((faceted.skew_drift(100.0) - 32.0 / 96.0).abs() < 1e-9);
         assert_eq!(health(&rod(2.0, 40.0, 96, Normals::Smooth)).facets, None);
+    }
+
+    #[test]
+    fn normals_of_the_file_leave_no_facets_of_a_pipe_with_a_mirror_across_its_end() {
+        // However coarse the wall is, and however near to 45 degrees it meets the mirror.
+        for sides in [12, 24, 96] {
+            let smooth = health(&mirror_pipe(sides, Normals::Smooth));
+            assert!(smooth.is_sound());
+            assert_eq!(smooth.facets, None, "{sides}");
+            let faceted = health(&mirror_pipe(sides, Normals::None)).facets.unwrap();
+            let ratio = faceted.per_turn() / f64::from(sides);
+            assert!((ratio - 1.0).abs() < 1e-3, "{sides}: {faceted:?}");
+        }
+    }
+
+    #[test]
+    fn flat_faces_that_meet_at_an_angle_are_no_curved_wall() {
+        // A wedge of 20 degrees, one with a bevel of 30 degrees, and a zigzag of 10 degrees.
+        let tilted = |degrees: f64| f64::to_radians(degrees).tan();
+        let wedge = vec![[0.0, 0.0], [10.0, 0.0], [10.0, 5.0], [0.0, 5.0 + 10.0 * tilted(20.0)]];
+        let bevel = vec![
+            [0.0, 0.0],
+            [10.0, 0.0],
+            [10.0, 4.0],
+            [8.0, 4.0 + 2.0 * tilted(30.0)],
+            [0.0, 4.0 + 2.0 * tilted(30.0)],
+        ];
+        let mut zigzag = vec![[0.0, 0.0], [20.0, 0.0]];
+        zigzag
+            .extend((0..=20).rev().map(|i| [f64::from(i), 4.0 + f64::from(i % 2) * tilted(10.0)]));
+        for outline in [wedge, bevel, zigzag] {
+            let found = health(&prism(&outline));
+            assert!(found.is_sound(), "{outline:?}");
+            assert_eq!(found.facets, None, "{outline:?}");
+        }
+        let arc = (0..=18).map(|i| (f64::from(i) * 10.0).to_radians().sin_cos());
+        let half_round: Vec<[f64; 2]> = arc.map(|(sin, cos)| [5.0 * cos, 5.0 * sin]).collect();
+        let facets = health(&prism(&half_round)).facets.unwrap();
+        assert!((facets.per_turn() - 36.0).abs() < 1e-6, "{facets:?}");
     }
 }

@@ -7,6 +7,7 @@ use lumiduct::measure::{self, Axes, Measures};
 use lumiduct::scene::plan::Request;
 use lumiduct::transport::Run;
 use std::f64::consts::PI;
+use std::path::Path;
 
 fn measures(text: &str) -> Measures {
     measures_by(Request::Forward, 20_000, text)
@@ -227,4 +228,59 @@ fn gather_paths_of_leaving_light_reach_as_far_as_photons() {
         let error = other.std_error.hypot(forward.std_error);
         assert!((other.value - forward.value).abs() < 4.0 * error, "{other}, not {forward}");
     }
+}
+
+/// A block of glass whose sides are one face of its mesh.
+const BLOCK: &str = "\
+v 0 0 0\nv 4 0 0\nv 0 3 0\nv 4 3 0\nv 0 0 5\nv 4 0 5\nv 0 3 5\nv 4 3 5
+f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+
+#[test]
+fn a_sensor_of_one_cell_stands_on_any_face_of_a_mesh() {
+    let folder = tempfile::tempdir().unwrap();
+    let block = folder.path().join("block.obj");
+    std::fs::write(&block, BLOCK).unwrap();
+    let rod = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/meshes/bent_rod.glb");
+    let scene = format!(
+        r#"
+[media.glass]
+index = 1.49
+absorption_per_mm = 0.02
+[solids.rod.mesh]
+file = {rod:?}
+unit = "m"
+medium = "glass"
+[solids.block.mesh]
+file = {block:?}
+unit = "mm"
+medium = "glass"
+at = {{ position_mm = [-2, -1.5, -9] }}
+[sources.led.disk]
+radius_mm = 1
+at = {{ position_mm = [0, 0, -1] }}
+flux_lm = 10
+[sources.lamp.disk]
+radius_mm = 1
+at = {{ position_mm = [0, 0, -3.9], axis = [0, 0, -1] }}
+flux_lm = 5
+[sensors]
+wall = {{ plane = {{}}, on = "rod.wall", counts = "leaving" }}
+all = {{ plane = {{ cells = [1, 1] }}, on = "block.surface", counts = "leaving" }}
+far = {{ goniometer = {{ c_step_deg = 360, gamma_step_deg = 180 }}, aim = ["rod.wall"] }}
+"#
+    );
+    let by = |estimator| measures_by(estimator, 60_000, &scene);
+    let (forward, backward) = (by(Request::Forward), by(Request::Backward));
+    for name in ["wall.flux", "all.flux"] {
+        let [one, other] = [&forward, &backward].map(|found| &found.values[name]);
+        let error = one.std_error.hypot(other.std_error);
+        assert!(one.value > 0.3 && error < 0.05 * one.value, "{name}: {one} and {other}");
+        assert!((one.value - other.value).abs() < 4.0 * error, "{name}: {one} and {other}");
+    }
+    // Light that reaches the distance through the wall, and hits nothing on its way: no more than leaves it.
+    let [far, wall] = ["far.flux", "wall.flux"].map(|name| &backward.values[name]);
+    assert!(far.value > 0.2 * wall.value, "{far} of {wall}");
+    // The mean over a curved face is over its area.
+    let mean = value(&forward, "wall.avg") / value(&forward, "wall.flux");
+    assert!((mean * 306.8e-6 - 1.0).abs() < 1e-3, "{mean}");
 }

@@ -15,6 +15,7 @@ use crate::scene::{
     Counts, FaceId, FaceSpec, Goniometer, Grid, Owner, Piece, Pixels, Place, Scene, Seeing, Sensor,
     SensorKind, Sides, SurfaceSensor, Views,
 };
+use glam::DVec2;
 use std::f64::consts::PI;
 
 /// How a sensor is divided.
@@ -151,17 +152,26 @@ impl Context<'_> {
             _ => None,
         };
         let Some(grid) = grid(scene, &faces, &division) else {
-            let wanted = match division {
-                Division::Rings(..) => "rings and sectors need a round, flat sensor",
-                Division::Cells(_) => "a curved face of a mesh cannot be unrolled into cells",
+            let (wanted, hint) = match division {
+                Division::Rings(..) => (
+                    "rings and sectors need a round, flat sensor",
+                    "use `cells = [nx, ny]` on a face that is flat or swept",
+                ),
+                Division::Cells(_) => (
+                    "a curved face of a mesh cannot be unrolled into cells",
+                    "use `plane = {}`, one cell over the whole face, or put a `plane` with cells of its own before it by `at`",
+                ),
             };
-            self.problems
-                .error(key, wanted)
-                .hint("use `cells = [nx, ny]` on a face that is flat or swept");
+            self.problems.error(key, wanted).hint(hint);
             return None;
         };
-        let areas =
-            grid.cell_areas(|rect| faces.iter().map(|face| scene.face_area_in(*face, rect)).sum());
+        let whole: Vec<Option<f64>> = faces.iter().map(|face| curved_area(scene, *face)).collect();
+        let areas = grid.cell_areas(|rect| {
+            let area = |(face, whole): (&FaceId, &Option<f64>)| {
+                whole.unwrap_or_else(|| scene.face_area_in(*face, rect))
+            };
+            faces.iter().zip(&whole).map(area).sum()
+        });
         Some(SurfaceSensor { faces, place, counts, sides, grid, areas, seeing: Seeing::All, frame })
     }
 
@@ -220,10 +230,17 @@ fn division(plane: &PlaneSpec) -> Division {
     }
 }
 
-/// The grid over some faces; `None` when rings are asked of a face that is not round and flat, or cells of one
+/// The grid over some faces; `None` when rings are asked of a face that is not round and flat, or several cells of one
 /// that cannot be unrolled.
 fn grid(scene: &Scene, faces: &[FaceId], division: &Division) -> Option<Grid> {
-    let rects: Option<Vec<ChartRect>> = faces.iter().map(|face| scene.face_rect(*face)).collect();
+    let rects: Option<Vec<ChartRect>> = match division {
+        Division::Cells([1, 1]) => {
+            Some(faces.iter().map(|face| whole_rect(scene, *face)).collect())
+        }
+        Division::Cells(_) | Division::Rings(..) => {
+            faces.iter().map(|face| scene.face_rect(*face)).collect()
+        }
+    };
     let rect = rects?.into_iter().reduce(ChartRect::union)?;
     match division {
         Division::Cells([nu, nv]) => {
@@ -235,6 +252,20 @@ fn grid(scene: &Scene, faces: &[FaceId], division: &Division) -> Option<Grid> {
             Some(Grid::Polar { radius, rings: *rings as usize, sectors: *sectors as usize })
         }
     }
+}
+
+/// The rectangle of a face that is one cell. All points of a curved face of a mesh have the coordinates (0, 0), so that a
+/// square of the same area about them holds all of it.
+fn whole_rect(scene: &Scene, face: FaceId) -> ChartRect {
+    scene.face_rect(face).unwrap_or_else(|| {
+        let max = DVec2::splat(0.5 * scene.face_area(face).sqrt());
+        ChartRect { min: -max, max }
+    })
+}
+
+/// The area of a curved face of a mesh, mm², which is in one cell; `None` for all other faces.
+fn curved_area(scene: &Scene, face: FaceId) -> Option<f64> {
+    scene.face_rect(face).is_none().then(|| scene.face_area(face))
 }
 
 /// The directions of a luminance sensor with the projected solid angle of each cone.

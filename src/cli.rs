@@ -1,6 +1,7 @@
 //! The command line: arguments, progress, exit codes. Its child `console` is all that prints.
 
 mod batch;
+mod check;
 mod compare;
 mod console;
 mod diff;
@@ -12,6 +13,7 @@ mod run;
 mod values;
 
 use crate::cli::batch::BatchArgs;
+use crate::cli::check::CheckArgs;
 use crate::cli::compare::CompareArgs;
 use crate::cli::console::{print, print_error};
 use crate::cli::diff::DiffArgs;
@@ -20,12 +22,11 @@ use crate::cli::merge::MergeArgs;
 use crate::cli::mesh::MeshArgs;
 use crate::cli::run::RunArgs;
 use crate::error::{Diagnostic, Error};
+use crate::input;
 use crate::input::diagnostic::{self, Colour};
-use crate::input::{self, Settings};
-use crate::pipeline;
 use crate::report::{Existing, JunitFile};
 use crate::transport::Interrupt;
-use clap::{Args, CommandFactory, Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -90,21 +91,6 @@ enum SchemaOf {
     Study,
 }
 
-#[derive(Debug, Args)]
-struct CheckArgs {
-    /// The scene file.
-    scene: PathBuf,
-    /// Set a key of the scene.
-    #[arg(short = 'D', value_name = "KEY=VALUE")]
-    define: Vec<String>,
-    /// The cross-section's PNG [default: NAME.check.png in this folder].
-    #[arg(short = 'o', long = "output", value_name = "FILE")]
-    output: Option<PathBuf>,
-    /// Replace a FILE that is there; NAME.check.png is replaced in any case.
-    #[arg(long)]
-    overwrite: bool,
-}
-
 /// Runs the program on the arguments of the process.
 pub fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
@@ -121,7 +107,7 @@ pub fn main() -> ExitCode {
         Command::Batch(args) => batch::batch(&args),
         Command::Compare(args) => compare::compare(&args),
         Command::Diff(args) => diff::run(&args),
-        Command::Check(args) => check(&args),
+        Command::Check(args) => check::check(&args),
         Command::Film(args) => film::film(&args),
         Command::Mesh(args) => mesh::mesh(&args),
         Command::List { folder } => finish(input::list(&folder)),
@@ -168,18 +154,6 @@ fn on_ctrl_c() -> Interrupt {
         on_signal.raise();
     });
     interrupt
-}
-
-fn check(args: &CheckArgs) -> ExitCode {
-    let existing = if args.overwrite { Existing::Replace } else { Existing::Keep };
-    let settings = Settings { overrides: args.define.clone(), ..Settings::default() };
-    match pipeline::check(&args.scene, &settings, args.output.as_deref(), existing) {
-        Ok(checked) => {
-            warn(&checked.warnings);
-            finish(Ok(checked.text))
-        }
-        Err(error) => fail(&error),
-    }
 }
 
 /// The JUnit XML file, where one is wanted. `output` is the folder of the report.

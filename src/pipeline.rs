@@ -11,7 +11,7 @@ mod snapshot;
 mod tests;
 mod timing;
 
-pub use check::{Checked, check};
+pub use check::{CheckPage, CheckPictures, Checked, check};
 pub use checkpoint::Start;
 pub use compare::{CompareWishes, Compared, Method, TruthWish, compare};
 pub use parts::{SliceWishes, SliceWritten, has_slice, merge_slices, run_slice};

@@ -1,13 +1,35 @@
 //! A look at a scene without measures: what is in it, and a picture with some paths.
 
-use crate::error::{Diagnostic, Result};
+use crate::error::{Diagnostic, Error, Result};
 use crate::input::Settings;
 use crate::pipeline::{prepare, shown_tracks};
-use crate::report::{self, Existing, inventory, write_whole};
+use crate::report::{self, Existing, SectionView, inventory, write_whole};
 use std::path::{Path, PathBuf};
 
 /// Paths that a check draws.
 const CHECK_PATHS: usize = 50;
+
+/// What a check draws, and where.
+#[derive(Debug)]
+pub struct CheckPictures {
+    /// The file of the cross-section; `None` is NAME.check.png in this folder.
+    pub picture: Option<PathBuf>,
+    /// What becomes of a `picture` that is there.
+    pub existing: Existing,
+    /// How the cross-section is drawn.
+    pub section: SectionView,
+    /// Whether the scene in three dimensions is written beside the picture.
+    pub page: CheckPage,
+}
+
+/// Whether a page is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CheckPage {
+    /// It is.
+    Wanted,
+    /// It is not.
+    Unwanted,
+}
 
 /// What a check found.
 #[derive(Debug)]
@@ -19,19 +41,34 @@ pub struct Checked {
 }
 
 /// Validates a scene, lists what is in it, and draws its cross-section with some traced paths.
-pub fn check(
-    scene: &Path,
-    settings: &Settings,
-    picture: Option<&Path>,
-    existing: Existing,
-) -> Result<Checked> {
+pub fn check(scene: &Path, settings: &Settings, wished: &CheckPictures) -> Result<Checked> {
     let job = prepare(scene, settings)?;
     let default = PathBuf::from(format!("{}.check.png", job.name));
     // The default name belongs to this program: it is drawn anew at every check.
-    let (picture, existing) =
-        picture.map_or((&*default, Existing::Replace), |path| (path, existing));
-    let bytes = report::scene_picture(&job.title, &job.scene, &shown_tracks(&job, CHECK_PATHS))?;
+    let (picture, existing) = wished
+        .picture
+        .as_deref()
+        .map_or((&*default, Existing::Replace), |path| (path, wished.existing));
+    let tracks = shown_tracks(&job, CHECK_PATHS);
+    let bytes = report::scene_picture(&job.title, &job.scene, &tracks, &wished.section)?;
     write_whole(picture, &bytes, existing)?;
-    let text = format!("{}\n{}picture: {}\n", job.title, inventory(&job.scene), picture.display());
+    let listed = inventory(&job.scene);
+    let mut text = format!("{}\n{listed}picture: {}\n", job.title, picture.display());
+    if wished.page == CheckPage::Wanted {
+        let path = picture.with_extension("html");
+        if path == picture {
+            let name = picture.display();
+            return Err(Error::Usage(format!(
+                "-o {name}: is the name of the page; name the picture, such as {}",
+                picture.with_extension("png").display()
+            )));
+        }
+        write_whole(
+            &path,
+            report::check_page(&job.title, &job.scene, &tracks, &listed)?.as_bytes(),
+            existing,
+        )?;
+        text += &format!("page: {}\n", path.display());
+    }
     Ok(Checked { text, warnings: job.warnings })
 }

@@ -16,6 +16,7 @@ mod html;
 mod inventory;
 mod junit;
 mod key_figures;
+mod local_axes;
 mod markdown;
 mod mesh;
 pub mod png;
@@ -35,6 +36,7 @@ pub use drawing::{Drawing, drawing};
 pub use film::film_tables;
 pub use folder::{Existing, Folder, Written, remove_if_there, sweep, write_whole};
 pub(crate) use folder::{expect_room, folder_of, is_among, is_staged, remove_report};
+pub(crate) use html::check::check_page;
 pub use inventory::inventory;
 pub use junit::{JunitFile, diff_junit, run_junit, study_junit};
 pub use mesh::mesh_report;
@@ -43,7 +45,7 @@ pub use record::{
     CheckResult, Outcome, Report, RunFacts, SceneFacts, TargetFacts, asked, leak_places,
     remark_on_paths, remarks, settled, wishes,
 };
-pub use section::scene_picture;
+pub use section::{CutPlane, SectionView, scene_picture};
 pub use terminal::terminal;
 
 use crate::error::Result;

@@ -3,9 +3,11 @@
 //! The plane is scanned by two families of parallel rays; where one family runs along a surface the other crosses it.
 //! That serves every kind of surface alike, without a formula for each.
 
-use crate::math::{Aabb, Frame};
-use crate::scene::shape::{ChartRect, Start};
-use crate::scene::{FaceId, PrimId, Ray, Scene};
+use crate::math::Frame;
+use crate::optics::Bsdf;
+use crate::scene::pattern::Part;
+use crate::scene::shape::{ChartRect, Crossing, Start};
+use crate::scene::{FaceId, PrimId, Ray, Scene, Surface};
 use glam::{DVec2, DVec3};
 
 /// Rays of each family across the picture.
@@ -21,25 +23,6 @@ pub struct Outline {
 }
 
 impl Scene {
-    /// The plane through the middle of all solids and sheets that shows most of them: across the shortest side of their
-    /// box. x and y of the frame are the axes of the picture, in the order of the coordinates.
-    pub fn section_plane(&self) -> Frame {
-        let patches = self.patches.iter().map(|patch| patch.shape.bounds());
-        let bodies = patches.chain(self.meshes.iter().map(|body| body.bounds()));
-        let found = bodies.fold(Aabb::EMPTY, Aabb::union);
-        // A scene may have nothing but sources and sensors.
-        let bounds = if found.is_empty() { self.bounds } else { found };
-        let (size, origin) = (bounds.max - bounds.min, bounds.center());
-        let (x, y) = if size.y <= size.x.min(size.z) {
-            (DVec3::Z, DVec3::X)
-        } else if size.x <= size.z {
-            (DVec3::Z, DVec3::Y)
-        } else {
-            (DVec3::X, DVec3::Y)
-        };
-        Frame { origin, x, y, z: x.cross(y) }
-    }
-
     /// Where every face meets the plane z = 0 of `plane`, within `window` of its axes, mm.
     pub fn section(&self, plane: &Frame, window: ChartRect) -> Vec<Outline> {
         let mut outlines: Vec<Outline> = (0..self.faces.len())
@@ -54,9 +37,10 @@ impl Scene {
             ];
             for (start, dir) in starts {
                 let ray = Ray::new(plane.point_to_world(start.extend(0.0)), dir);
-                self.every_crossing(&ray, |face, t| {
+                self.every_crossing(&ray, |prim, face, t| {
                     let point = plane.point_to_local(ray.at(t)).truncate();
-                    if point.cmpge(window.min).all() && point.cmple(window.max).all() {
+                    let is_shown = point.cmpge(window.min).all() && point.cmple(window.max).all();
+                    if is_shown && !self.is_open(prim, ray.at(t)) {
                         outlines[face.index()].points.push(point);
                     }
                 });
@@ -67,10 +51,25 @@ impl Scene {
     }
 
     /// Calls `visit` for every crossing of a ray's line with every face, ports included.
-    fn every_crossing(&self, ray: &Ray, mut visit: impl FnMut(FaceId, f64)) {
-        self.all_crossings(ray, |prim: PrimId, crossing| visit(self.face_of(prim), crossing.t));
+    fn every_crossing(&self, ray: &Ray, mut visit: impl FnMut(Option<PrimId>, FaceId, f64)) {
+        self.all_crossings(ray, |prim, crossing| {
+            visit(Some(prim), self.face_of(prim), crossing.t);
+        });
         for port in &self.ports {
-            port.shape.crossings(ray, Start::Elsewhere, |crossing| visit(port.face, crossing.t));
+            let visit = |crossing: Crossing| visit(None, port.face, crossing.t);
+            port.shape.crossings(ray, Start::Elsewhere, visit);
         }
+    }
+
+    /// Whether there is a hole of a pattern at a point of a surface.
+    fn is_open(&self, prim: Option<PrimId>, point: DVec3) -> bool {
+        let Some(Surface::Patch(patch)) = prim.map(|prim| self.surface(prim)) else { return false };
+        let numbers = &self.faces[patch.face.index()].patterns;
+        let mut parts = numbers.iter().filter_map(|&number| {
+            let pattern = &self.patterns[number];
+            let part = pattern.part(number, patch.chart(point), || DVec2::ZERO)?;
+            Some((part, &self.finishes[pattern.front.index()].bsdf))
+        });
+        matches!(parts.next(), Some((Part::Element(_), Bsdf::Open)))
     }
 }

@@ -148,6 +148,27 @@ fn scales_switch_lines_cut_and_the_scene_turns() {
 }
 
 #[test]
+fn the_page_of_a_check_shows_the_axes_that_are_chosen() {
+    let Some(program) = driver::find() else { return };
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("rod.toml"), SCENE).unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lumiduct"));
+    let output = command.current_dir(dir.path()).args(["check", "rod.toml", "--html"]).output();
+    assert!(output.unwrap().status.success());
+    let page = Open::new(&program, &dir.path().join("rod.check.html"));
+    let painted = "document.querySelector('.scene canvas').toDataURL()";
+    // The wall has no sensor, so that its axes are drawn on demand alone.
+    let wall =
+        "[...document.querySelectorAll('.axes button')].find((b) => b.textContent === 'rod.wall')";
+    assert_eq!(page.text(&format!("{wall}.ariaPressed")), "false");
+    let before = page.text(painted);
+    page.click(wall);
+    page.expect(&format!("{painted} !== {}", serde_json::to_string(&before).unwrap()));
+    assert_eq!(page.text(&format!("{wall}.ariaPressed")), "true");
+    page.expect_no_complaints();
+}
+
+#[test]
 fn the_page_is_light_or_dark_fits_narrow_windows_and_prints_on_pages() {
     let Some(program) = driver::find() else { return };
     let report = Report::new();

@@ -69,3 +69,42 @@ fn a_mesh_is_examined_and_one_that_is_no_solid_ends_with_1() {
     assert!(place.bad(2, "mesh nowhere.obj").contains("nowhere.obj"));
     assert!(place.bad(2, "mesh rod.toml").contains(".toml"));
 }
+
+#[test]
+fn a_check_is_cut_as_it_is_asked_and_writes_a_page() {
+    let place = Place::new();
+    let cut = |options: &str| {
+        place.good(&format!("check rod.toml {options}"));
+        fs::read(place.path("rod.check.png")).unwrap()
+    };
+    let usual = cut("");
+    let mut seen = vec![usual.clone()];
+    for options in ["--plane xy@z=5", "--plane yz", "--zoom rod.exit", "--zoom rod --up -x"] {
+        let picture = cut(options);
+        assert!(!seen.contains(&picture), "{options}: as before");
+        seen.push(picture);
+    }
+    assert_eq!(cut(""), usual);
+    let said = place.good("check rod.toml --html");
+    assert!(said.contains("page: rod.check.html"), "{said}");
+    let page = fs::read_to_string(place.path("rod.check.html")).unwrap();
+    for words in ["Short rod", "Local axes", "rod.wall", "\"axes\":[{", "nothing was measured"] {
+        assert!(page.contains(words), "{words}");
+    }
+    assert!(page.matches("\"group\":").count() >= 40, "paths");
+    // A page at a place that was named is not replaced unasked.
+    place.good("check rod.toml --html -o shown.png");
+    let longer = "check rod.toml --html -o shown.png -D solids.rod.cylinder.length_mm=20";
+    assert!(place.bad(2, longer).contains("--overwrite"));
+}
+
+#[test]
+fn a_cut_that_cannot_be_drawn_says_why() {
+    let place = Place::new();
+    let said = place.bad(2, "check rod.toml --zoom rod.exti");
+    assert!(said.contains("rod.exti") && said.contains("rod.exit"), "{said}");
+    assert!(place.bad(2, "check rod.toml --plane xz@x=5").contains("xz@y=5"));
+    assert!(place.bad(2, "check rod.toml --up sideways").contains("try x"));
+    let along = place.bad(2, "check rod.toml --plane xz --up y");
+    assert!(along.contains("--up y") && along.contains("in the plane"), "{along}");
+}

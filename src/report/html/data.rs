@@ -6,6 +6,7 @@ use crate::measure::{Axes, Balance, IntensityTable, Measure, SensorMap};
 use crate::report::csv::map_words;
 use crate::report::drawing::{Drawing, Fate};
 use crate::report::html::coarse::{coarse, joined};
+use crate::report::local_axes::LocalAxes;
 use crate::report::png::{ErrorForm, LinePlot, Look, PolarPlot, Scale, SeriesForm};
 use glam::DVec3;
 use ndarray::Array2;
@@ -298,6 +299,20 @@ pub(crate) fn scene(drawing: &Drawing) -> Value {
         "plot": "scene", "middle": places.flat(&[drawing.middle]), "faces": faces, "marks": marks,
         "groups": groups, "paths": paths,
     })
+}
+
+/// Local axes in the scene: places as in the drawing, and three unit vectors each.
+pub(crate) fn axes(drawing: &Drawing, axes: &[LocalAxes]) -> Value {
+    let places = Places::of(drawing);
+    axes.iter()
+        .map(|one| {
+            let vectors = [one.u, one.v, one.normal].map(|unit| unit.to_array()).concat();
+            json!({
+                "name": one.name, "role": one.role, "at": places.flat(&[one.origin]),
+                "axes": numbers(&vectors, ERROR_DIGITS), "round": one.rect.is_none(),
+            })
+        })
+        .collect()
 }
 
 /// Coordinates with as many decimals as a picture can show.

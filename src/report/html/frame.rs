@@ -15,7 +15,7 @@ const STYLE: &str = include_str!("assets/page.css");
 /// The frame, a template.
 const TEMPLATE: &str = include_str!("assets/page.html");
 /// The scripts in their order; together they are one module.
-const SCRIPTS: [&str; 11] = [
+const SCRIPTS: [&str; 12] = [
     include_str!("assets/format.js"),
     include_str!("assets/axis.js"),
     include_str!("assets/figure.js"),
@@ -25,6 +25,7 @@ const SCRIPTS: [&str; 11] = [
     include_str!("assets/flow.js"),
     include_str!("assets/view.js"),
     include_str!("assets/scene.js"),
+    include_str!("assets/local_axes.js"),
     include_str!("assets/turn.js"),
     include_str!("assets/page.js"),
 ];

@@ -224,12 +224,15 @@ fn draw_rays(canvas: &mut Canvas, frame: &Axes, area: Rect, rays: &[RayPath]) {
 /// Names beside their places, on paper, where there is room.
 fn draw_names(canvas: &mut Canvas, frame: &Axes, area: Rect, places: &[NamedPlace]) -> Result<()> {
     let mut taken: Vec<Rect> = Vec::new();
-    for place in places {
-        let at = frame.place(area, place.at);
-        if !area.contains(at) {
-            continue;
-        }
+    let inside = || {
+        let seen = places.iter().map(|place| (place, frame.place(area, place.at)));
+        seen.filter(|(_, at)| area.contains(*at))
+    };
+    // No mark lies on a name.
+    for (place, at) in inside() {
         draw_mark(canvas, Mark::Square, at, place.of.colour());
+    }
+    for (place, at) in inside() {
         let (width, height) = (LABEL.width(&place.name)?, LABEL.line_step());
         // To the left where there is no room on the right.
         let is_left = at[0] + NAME_GAP + width > area.right;

@@ -36,6 +36,7 @@ function drawScene(figure, data) {
   start.addEventListener("click", () => { state.reset(); state.draw(); });
   controls.prepend(start);
   body.append(groupSwitches(state), faceSwitches(state));
+  if (data.axes) body.append(axesSwitches(state));
   turnScene(state);
   pointAtScene(state, readout);
   document.addEventListener("repaint", () => { readColours(state); paint(state); });
@@ -85,6 +86,7 @@ function paint(state) {
   paintPaths(context, state);
   // Elements are small, and paths go through them: they would not be seen behind.
   paintRimsOf((isPattern) => isPattern);
+  paintAxes(context, state);
   const taken = [];
   for (const mark of data.marks) paintMark(context, state, mark, taken);
   context.globalAlpha = 1;

@@ -2,9 +2,9 @@
 //!
 //! These come from the scalars alone and cost next to nothing, whatever the size of the map.
 
-use crate::measure::Measure;
 use crate::measure::evidence::Evidence;
-use crate::scene::{Seeing, SensorId, SensorKind, Sides, SourceId};
+use crate::measure::{Measure, Status};
+use crate::scene::{Scene, Seeing, SensorId, SensorKind, Sides, SourceId};
 use crate::transport::TAILS;
 use crate::units::MM2_PER_M2;
 use indexmap::IndexMap;
@@ -27,6 +27,65 @@ pub(crate) fn flux_slots(evidence: &Evidence<'_>, id: SensorId) -> Vec<usize> {
         .collect()
 }
 
+/// Light that is measured apart: of a source, or of a light group.
+struct Part<'a> {
+    name: &'a str,
+    sources: Vec<SourceId>,
+    /// Emitted, lm or W.
+    emitted: f64,
+}
+
+/// All sources, then all light groups.
+fn parts(scene: &Scene) -> Vec<Part<'_>> {
+    let sources = scene.sources.iter().enumerate().map(|(index, source)| Part {
+        name: &source.name,
+        sources: vec![SourceId::new(index)],
+        emitted: source.flux,
+    });
+    let groups = scene.light.groups.iter().map(|group| Part {
+        name: &group.name,
+        sources: group.sources.clone(),
+        emitted: scene.flux_of(&group.sources),
+    });
+    sources.chain(groups).collect()
+}
+
+/// The same, but for the only source of a scene, which is all light.
+fn parts_beside_all(scene: &Scene) -> Vec<Part<'_>> {
+    let is_all = |part: &Part<'_>| scene.sources.len() == 1 && part.name == scene.sources[0].name;
+    parts(scene).into_iter().filter(|part| !is_all(part)).collect()
+}
+
+impl Part<'_> {
+    /// Its share of the flux on a sensor, times a factor that leads to `unit`.
+    fn sum(&self, evidence: &Evidence<'_>, id: SensorId, factor: f64, unit: &str) -> Measure {
+        if self.emitted == 0.0 {
+            // Nothing comes of nothing, and no path is needed to know it.
+            return evidence.measure(0.0, 0.0, unit, Status::Ok);
+        }
+        evidence.sum(&self.slots(evidence, id), factor, unit)
+    }
+
+    fn slots(&self, evidence: &Evidence<'_>, id: SensorId) -> Vec<usize> {
+        self.sources.iter().map(|&source| evidence.layout.sensor_flux(id, source)).collect()
+    }
+
+    fn efficiency(&self, evidence: &Evidence<'_>, id: SensorId) -> Measure {
+        if self.emitted == 0.0 {
+            return evidence.measure(0.0, f64::INFINITY, "1", Status::NoSignal);
+        }
+        self.sum(evidence, id, 1.0 / self.emitted, "1")
+    }
+
+    /// Of all light on a sensor.
+    fn share(&self, evidence: &Evidence<'_>, id: SensorId, all: &[usize]) -> Measure {
+        if self.emitted == 0.0 {
+            return evidence.measure(0.0, 0.0, "1", Status::Ok);
+        }
+        evidence.ratio(&self.slots(evidence, id), all)
+    }
+}
+
 /// Flux, and over what the sources emit: the efficiency.
 fn by_source(evidence: &Evidence<'_>, id: SensorId, out: &mut IndexMap<String, Measure>) {
     let scene = evidence.scene;
@@ -34,12 +93,14 @@ fn by_source(evidence: &Evidence<'_>, id: SensorId, out: &mut IndexMap<String, M
     let all = flux_slots(evidence, id);
     out.insert("flux".into(), evidence.sum(&all, 1.0, unit));
     out.insert("efficiency".into(), evidence.sum(&all, 1.0 / scene.source_flux(), "1"));
-    for (source, &slot) in scene.sources.iter().zip(&all) {
-        let name = &source.name;
-        out.insert(format!("flux.from.{name}"), evidence.sum(&[slot], 1.0, unit));
-        if scene.sources.len() > 1 {
-            let own = evidence.sum(&[slot], 1.0 / source.flux, "1");
-            out.insert(format!("efficiency.from.{name}"), own);
+    for part in parts(scene) {
+        out.insert(format!("flux.from.{}", part.name), part.sum(evidence, id, 1.0, unit));
+    }
+    for part in parts_beside_all(scene) {
+        out.insert(format!("efficiency.from.{}", part.name), part.efficiency(evidence, id));
+        // Of light that never shines together no part is a share.
+        if scene.light.weathers.len() < 2 {
+            out.insert(format!("share.from.{}", part.name), part.share(evidence, id, &all));
         }
     }
 }
@@ -50,19 +111,18 @@ fn entering(evidence: &Evidence<'_>, id: SensorId, out: &mut IndexMap<String, Me
     if scene.sensors[id.index()].entering.is_none() {
         return;
     }
-    let sources = || (0..scene.sources.len()).map(SourceId::new);
-    let entering: Vec<usize> =
-        sources().map(|source| evidence.layout.entering(id, source)).collect();
-    let leaving = flux_slots(evidence, id);
+    let entering = |sources: &mut dyn Iterator<Item = SourceId>| -> Vec<usize> {
+        sources.map(|source| evidence.layout.entering(id, source)).collect()
+    };
+    let all = entering(&mut (0..scene.sources.len()).map(SourceId::new));
     let photons = evidence.of_photons();
-    out.insert("entering_flux".into(), photons.sum(&entering, 1.0, scene.unit.flux()));
-    out.insert("transmission".into(), evidence.ratio_to_photons(&leaving, &entering));
-    if scene.sources.len() > 1 {
-        for (place, source) in scene.sources.iter().enumerate() {
-            let [out_slot, in_slot] = [&leaving, &entering].map(|slots| &slots[place..=place]);
-            let own = evidence.ratio_to_photons(out_slot, in_slot);
-            out.insert(format!("transmission.from.{}", source.name), own);
-        }
+    out.insert("entering_flux".into(), photons.sum(&all, 1.0, scene.unit.flux()));
+    let transmission = evidence.ratio_to_photons(&flux_slots(evidence, id), &all);
+    out.insert("transmission".into(), transmission);
+    for part in parts_beside_all(scene) {
+        let own = entering(&mut part.sources.iter().copied());
+        let own = evidence.ratio_to_photons(&part.slots(evidence, id), &own);
+        out.insert(format!("transmission.from.{}", part.name), own);
     }
 }
 
@@ -84,19 +144,28 @@ fn elsewhere(evidence: &Evidence<'_>, id: SensorId, out: &mut IndexMap<String, M
     }
 }
 
-/// Mean illuminance of a surface sensor; one with views or pixels sees only part of the light that arrives and has none.
+/// Mean illuminance of a surface sensor, or mean luminance of an image, where all light that is counted makes one mean: a
+/// sensor with views has one for each view.
 fn density(evidence: &Evidence<'_>, id: SensorId, out: &mut IndexMap<String, Measure>) {
-    match &evidence.scene.sensors[id.index()].kind {
-        SensorKind::Surface(surface) if matches!(surface.seeing, Seeing::All) => {
-            let unit = evidence.scene.unit;
-            let mean = evidence.sum(
-                &flux_slots(evidence, id),
-                MM2_PER_M2 / surface.area(),
-                unit.illuminance(),
-            );
-            out.insert(format!("{}_avg", unit.illuminance_name()), mean);
+    let SensorKind::Surface(surface) = &evidence.scene.sensors[id.index()].kind else { return };
+    let unit = evidence.scene.unit;
+    let (name, symbol, etendue) = match &surface.seeing {
+        Seeing::All => (unit.illuminance_name(), unit.illuminance(), surface.area()),
+        Seeing::Pixels(pixels) => {
+            let projected: f64 = pixels.projected.iter().sum();
+            (unit.luminance_name(), unit.luminance(), surface.area() * projected)
         }
-        SensorKind::Surface(_) | SensorKind::Goniometer(_) => {}
+        Seeing::Views(_) => return,
+    };
+    let factor = MM2_PER_M2 / etendue;
+    if matches!(surface.seeing, Seeing::All) {
+        // That of an image is read off its map.
+        let mean = evidence.sum(&flux_slots(evidence, id), factor, symbol);
+        out.insert(format!("{name}_avg"), mean);
+    }
+    for part in parts_beside_all(evidence.scene) {
+        let mean = part.sum(evidence, id, factor, symbol);
+        out.insert(format!("{name}_avg.from.{}", part.name), mean);
     }
 }
 
@@ -115,7 +184,7 @@ fn depths(evidence: &Evidence<'_>, id: SensorId, out: &mut IndexMap<String, Meas
 mod tests {
     use crate::measure::samples::{add, readings, rectangle, scene};
     use crate::measure::{Measures, Status, measure};
-    use crate::scene::{SensorId, SourceId};
+    use crate::scene::{LightGroup, SensorId, SourceId};
 
     fn exit() -> SensorId {
         SensorId::new(0)
@@ -160,6 +229,49 @@ mod tests {
         let relative = measures.values["exit.flux"].relative_error();
         assert!((relative - 0.1 / 127f64.sqrt()).abs() < 1e-12);
         assert_eq!(measures.values["exit.flux_other_side"].status, Status::NoSignal);
+    }
+
+    #[test]
+    fn light_groups_add_up_their_sources_and_dark_sources_are_exactly_nothing() {
+        let sources = [("red", 3.0), ("blue", 1.0), ("off", 0.0)];
+        let mut scene = scene(&sources, vec![("exit", rectangle(10.0, 1, 1))]);
+        let group = |name: &str, sources: &[usize]| LightGroup {
+            name: name.into(),
+            sources: sources.iter().map(|&source| SourceId::new(source)).collect(),
+        };
+        scene.light.groups = vec![group("colours", &[0, 1]), group("spare", &[2])];
+        let readings = readings(&scene, 128, |index, layout, batch| {
+            let swing = if index % 2 == 0 { 0.9 } else { 1.1 };
+            for (source, flux) in [(0, 1.5), (1, 0.5)] {
+                add(batch, layout.sensor_flux(exit(), SourceId::new(source)), flux * swing);
+                add(batch, layout.entering(exit(), SourceId::new(source)), 2.0 * flux * swing);
+            }
+        });
+        let measures = measure(&scene, &readings);
+        for (name, value, relative) in [
+            ("flux.from.colours", 2.0, 0.1 / 127f64.sqrt()),
+            ("efficiency.from.colours", 0.5, 0.1 / 127f64.sqrt()),
+            ("share.from.blue", 0.25, 0.0),
+            ("share.from.colours", 1.0, 0.0),
+            ("transmission.from.colours", 0.5, 0.0),
+            ("illuminance_avg.from.colours", 20_000.0, 0.1 / 127f64.sqrt()),
+        ] {
+            let found = &measures.values[&format!("exit.{name}")];
+            assert!((found.value / value - 1.0).abs() < 1e-12, "{name}: {found}");
+            assert!((found.std_error / value - relative).abs() < 1e-12, "{name}: {found}");
+        }
+        for name in ["off", "spare"] {
+            for what in ["flux", "share", "illuminance_avg"] {
+                let found = &measures.values[&format!("exit.{what}.from.{name}")];
+                assert_eq!((found.value, found.std_error), (0.0, 0.0), "{what}.from.{name}");
+                assert_eq!(found.status, Status::Ok, "{what}.from.{name}");
+            }
+            let efficiency = &measures.values[&format!("exit.efficiency.from.{name}")];
+            assert_eq!((efficiency.value, efficiency.status), (0.0, Status::NoSignal));
+        }
+        assert_eq!(measures.light_groups["colours"], ["red", "blue"]);
+        let numbers = || measures.values.values().flat_map(|m| [m.value, m.std_error]);
+        assert!(numbers().all(|number| !number.is_nan()));
     }
 
     #[test]

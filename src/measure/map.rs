@@ -26,6 +26,8 @@ pub struct SensorMap {
     pub seen_from_deg: Option<[f64; 2]>,
     /// What is mapped, such as `illuminance`.
     pub quantity: String,
+    /// Weathers whose light it adds up: more than one never shine together.
+    pub weathers: usize,
     /// Its unit, such as `lx`.
     pub unit: String,
     /// Rows (v, or rings) by columns (u, or sectors), in `unit`; NaN outside the sensor.
@@ -138,6 +140,7 @@ fn map(
         view,
         seen_from_deg: view.and_then(|view| seen_from(sensor, view)),
         quantity: quantity.to_owned(),
+        weathers: evidence.scene.light.weathers.len(),
         unit: symbol.to_owned(),
         values: table(&|cell| seen.at(cell).value),
         std_errors: table(&|cell| seen.at(cell).std_error),

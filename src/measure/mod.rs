@@ -37,7 +37,7 @@ pub use uniformity::{Statistic, Uniformity, UniformitySummary};
 
 use crate::measure::evidence::Evidence;
 use crate::scene::plan::Estimator;
-use crate::scene::{Scene, SensorId};
+use crate::scene::{Scene, SensorId, SourceId};
 use crate::transport::{Choice, Findings, Layout, Readings};
 use crate::units::FluxUnit;
 use indexmap::IndexMap;
@@ -67,6 +67,12 @@ pub struct Measures {
     /// Elevation of each sun above the horizon, deg, by the name of its source.
     #[serde(skip_serializing_if = "IndexMap::is_empty")]
     pub sun_elevations_deg: IndexMap<String, f64>,
+    /// Sources of each light group, by its name.
+    #[serde(skip_serializing_if = "IndexMap::is_empty")]
+    pub light_groups: IndexMap<String, Vec<String>>,
+    /// Weathers whose light the totals of all sources add up, though no two of them shine at the same time.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub weathers: Vec<String>,
     /// Flux of all sources, lm or W.
     pub source_flux: f64,
     /// Batches traced.
@@ -112,11 +118,19 @@ pub fn measure(scene: &Scene, findings: &Findings) -> Measures {
         sensor_paths,
         unit: scene.unit,
         sun_elevations_deg: suns.collect(),
+        light_groups: light_groups(scene),
+        weathers: scene.light.weathers.clone(),
         source_flux: scene.source_flux(),
         batches: photons.batch_count(),
         paths: findings.paths,
         segments: photons.segments,
     }
+}
+
+fn light_groups(scene: &Scene) -> IndexMap<String, Vec<String>> {
+    let name = |source: &SourceId| scene.sources[source.index()].name.clone();
+    let groups = scene.light.groups.iter();
+    groups.map(|group| (group.name.clone(), group.sources.iter().map(name).collect())).collect()
 }
 
 /// Whether a smaller window brings the flux of a gathered sensor nearer to the truth than more of the same work.
@@ -165,7 +179,7 @@ mod tests {
     use crate::scene::shape::{Flat, Region, Shape};
     use crate::scene::{
         Builder, Emission, EmitSide, Emitter, FaceSpec, Owner, Piece, Sensor, SensorKind, Sides,
-        Source, SourceId, Start,
+        Source, Start,
     };
     use crate::transport::Run;
     use glam::DVec3;

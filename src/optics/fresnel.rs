@@ -93,6 +93,24 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    /// Transmittance of a clear plate of index 1.49 at an angle of incidence, with all orders: (1 - R)/(1 + R), the mean of both
+    /// polarisations, and that of light which is unpolarised at each of the two faces.
+    fn plate(cos_i: f64) -> [f64; 2] {
+        let through = |r: f64| (1.0 - r) / (1.0 + r);
+        let face = dielectric(cos_i, 1.0, 1.49);
+        [0.5 * (through(face.s) + through(face.p)), through(face.unpolarised())]
+    }
+
+    #[test]
+    fn what_the_unpolarised_mean_costs_is_what_the_docs_say() {
+        let [kept, mean] = plate(75f64.to_radians().cos());
+        assert!((kept / mean - 1.036).abs() < 5e-4, "{kept}, {mean}");
+        // Under Lambertian light, as a rod with two polished ends: the mean over sin²θ.
+        let cos = |i: u32| (1.0 - (f64::from(i) + 0.5) / 1e4).sqrt();
+        let [kept, mean] = [0, 1].map(|way| (0..10_000).map(|i| plate(cos(i))[way]).sum::<f64>());
+        assert!((kept / mean - 1.007).abs() < 5e-4, "{kept}, {mean}");
+    }
+
     proptest! {
         #![proptest_config(ProptestConfig { rng_seed: proptest::test_runner::RngSeed::Fixed(5), ..ProptestConfig::default() })]
 

@@ -6,8 +6,8 @@ use crate::input::Job;
 use crate::input::keys::Key;
 use crate::input::problems::Problems;
 use crate::measure;
-use crate::scene::Scene;
 use crate::scene::plan::Request;
+use crate::scene::{Scene, Source};
 use crate::transport::{BLIND_PATHS, blind_sensors, invisible, scatterers};
 
 /// Refuses a scene without light, and checks and targets that name no measure of it, before any work is done. Gives
@@ -22,16 +22,37 @@ pub(super) fn expect_sense(job: &Job) -> Result<Vec<Diagnostic>> {
     let check = |index| Key::of(&["check"]).index(index).field("measure");
     let checks = job.checks.iter().enumerate().map(|(index, one)| (check(index), &one.measure));
     let mut problems = Problems::default();
-    if job.scene.sources.is_empty() {
-        problems
-            .error(&Key::of(&["sources"]), "nothing emits light: there is no source to trace")
-            .hint("add a table such as [sources.led.disk]");
-    }
+    expect_light(job, &mut problems);
     expect_visible_sources(job, &mut problems);
     expect_discrete_directions(job, &mut problems);
     expect_measures(&job.scene, target.chain(checks), &mut problems);
     expect_sight(job, &mut problems);
     problems.finish(&job.places)
+}
+
+/// Refuses a scene in which nothing emits.
+fn expect_light(job: &Job, problems: &mut Problems) {
+    if job.scene.sources.iter().any(Source::is_lit) {
+        return;
+    }
+    let key = Key::of(&["sources"]);
+    let is_empty = job.scene.sources.is_empty();
+    let (message, hint) = if is_empty {
+        (
+            "nothing emits light: there is no source to trace",
+            "add a table such as [sources.led.disk]",
+        )
+    } else {
+        (
+            "nothing emits light: every source is switched off or has a flux of 0",
+            "give one of them a flux, or write enabled = true",
+        )
+    };
+    let problem = problems.error(&key, message);
+    problem.hint(hint);
+    if !job.places.has(&key) {
+        problem.at(&job.places.root().origin);
+    }
 }
 
 /// Notes names that no measure of a scene has.

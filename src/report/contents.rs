@@ -5,6 +5,7 @@
 
 use crate::measure::{Measure, Outcome, SensorMap, SensorPaths, Status};
 use crate::number::format_value;
+use crate::report::by_light::{self, Matrix, matrix, remark_on_totals, sum_over_weathers};
 use crate::report::csv::{map_name, map_words};
 use crate::report::figures::{BOUNCES_SHOWN, bounce_plot, intensity_plot};
 use crate::report::html::data;
@@ -92,8 +93,15 @@ fn results(report: &Report) -> Part {
             figures.zip(names).map(|(own, name)| vec![name, own.label, quantity(own.measure)]),
         );
     }
-    blocks.push(table(["sensor", "", "value ± standard error"], rows));
+    let sum = sum_over_weathers(measures.weathers.len());
+    let sum = sum.map_or(String::new(), |words| format!(", {words}"));
+    blocks.push(table(["sensor", "", &format!("value ± standard error{sum}")], rows));
     blocks.push(Block::Words { text: ERRORS.into() });
+    if let Some(Matrix { head, rows }) = matrix(measures) {
+        blocks.push(Block::Heading { text: "By source".into() });
+        blocks.push(Block::Words { text: by_light::HEAD.into() });
+        blocks.push(Block::Table { head, rows, folded: None });
+    }
     Part { title: "Results".into(), blocks }
 }
 
@@ -124,6 +132,7 @@ fn sensor(report: &Report, name: &str, plots: &mut Plots) -> Part {
         blocks.push(table(["source", "elevation of the sun", "transmission"], rows));
     }
     blocks.push(Block::Heading { text: "Measures".into() });
+    blocks.extend(remark_on_totals(measures).map(|text| Block::Words { text }));
     blocks.extend(measures_of(report, name, Listed::Reading));
     let cells = measures_rows(report, name, Listed::Cell);
     if !cells.is_empty() {

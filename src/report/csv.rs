@@ -3,6 +3,7 @@
 use crate::error::{Error, Result};
 use crate::measure::{Axes, IntensityTable, SensorMap};
 use crate::number::format_value;
+use crate::report::by_light::sum_over_weathers;
 use crate::report::{OutputFile, Report};
 use csv::Writer;
 
@@ -42,7 +43,9 @@ pub(crate) fn map_words(map: &SensorMap) -> String {
         format!(", {theta}° from the normal at azimuth {phi}°")
     });
     let view = map.view.map_or(String::new(), |view| format!(" of view {view}"));
-    format!("{}{view}{from}", map.quantity)
+    let weathers =
+        sum_over_weathers(map.weathers).map_or(String::new(), |words| format!(", {words}"));
+    format!("{}{view}{from}{weathers}", map.quantity)
 }
 
 fn map_table(map: &SensorMap) -> Result<OutputFile> {

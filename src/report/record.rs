@@ -3,6 +3,7 @@
 use crate::measure::{self, GatheredFacts, LostPaths, Measures, Status, Verdict};
 use crate::number::{format_exact, format_percent, format_with_error};
 use crate::report::Drawing;
+use crate::report::by_light::remark_on_weathers;
 use crate::scene::plan::{Check, GatherPlan, Request, Schedule, StopRules, Target};
 use crate::transport::{GROUPS, GatherSettings, Leak};
 use glam::DVec3;
@@ -228,6 +229,7 @@ pub fn remarks(measures: &Measures) -> Vec<String> {
             ));
         }
     }
+    remarks.extend(remark_on_weathers(measures));
     remarks.extend(measures.gathered.iter().filter_map(remark_on_gathering));
     remarks
 }

@@ -14,6 +14,10 @@ struct Summary<'r> {
     run: &'r crate::report::RunFacts,
     unit: crate::units::FluxUnit,
     source_flux: f64,
+    #[serde(skip_serializing_if = "indexmap::IndexMap::is_empty")]
+    light_groups: &'r indexmap::IndexMap<String, Vec<String>>,
+    #[serde(skip_serializing_if = "<[String]>::is_empty")]
+    sum_over_weathers: &'r [String],
     paths: u64,
     batches: u64,
     segments: u64,
@@ -37,6 +41,9 @@ pub(crate) fn json(report: &Report, files: &[&str]) -> Result<String> {
         run: &report.run,
         unit: measures.unit,
         source_flux: measures.source_flux,
+        light_groups: &measures.light_groups,
+        // One weather is no sum.
+        sum_over_weathers: if measures.weathers.len() > 1 { &measures.weathers } else { &[] },
         paths: measures.paths,
         batches: measures.batches,
         segments: measures.segments,

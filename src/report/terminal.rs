@@ -1,6 +1,7 @@
 //! The few lines that a run prints when it is done.
 
 use crate::measure::{Measures, Outcome};
+use crate::report::by_light::{Share, shares, sum_over_weathers};
 use crate::report::key_figures::key_figures;
 use crate::report::words::quantity;
 use crate::report::{Report, Written};
@@ -24,7 +25,28 @@ fn reading(measures: &Measures, sensor: &str) -> String {
         .filter(|figure| figure.is_brief)
         .map(|figure| format!("{} {}", figure.label, quantity(figure.measure)))
         .collect();
-    format!("  {sensor}: {}\n", figures.join(", "))
+    let words = sum_over_weathers(measures.weathers.len());
+    let sum = words.map_or(String::new(), |words| format!(" ({words})"));
+    format!("  {sensor}: {}{sum}\n", figures.join(", "))
+}
+
+/// Sources and light groups that are printed for a sensor.
+const SHOWN: usize = 8;
+
+/// What each source or light group brings to a sensor.
+fn by_source(measures: &Measures, sensor: &str) -> String {
+    let shares = shares(measures, sensor);
+    let line = |part: &Share<'_>| {
+        let of_all = part.share.map_or(String::new(), |share| {
+            format!(", {} of the light on {sensor}", quantity(share))
+        });
+        format!("    from {}: efficiency {}{of_all}\n", part.name, quantity(part.efficiency))
+    };
+    let mut text: String = shares.iter().take(SHOWN).map(line).collect();
+    if shares.len() > SHOWN {
+        text += &format!("    and {} more sources: see the report\n", shares.len() - SHOWN);
+    }
+    text
 }
 
 /// Sensors, checks and where the report lies.
@@ -34,6 +56,7 @@ pub fn terminal(report: &Report, dir: &Path, written: &Written) -> String {
         format!("{}\n{} paths, {}\n", report.scene.title, measures.paths, report.run.stopped);
     for paths in &measures.sensor_paths {
         text += &reading(measures, &paths.sensor);
+        text += &by_source(measures, &paths.sensor);
     }
     for result in &report.checks {
         let word = match result.verdict.outcome {

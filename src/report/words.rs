@@ -311,7 +311,9 @@ pub(crate) fn run_lines(report: &Report) -> Vec<String> {
         ),
         format!("asked for {}; ended because {}", run.asked, run.stopped),
         format!("bounce limit {}", run.bounce_limit),
-        "unpolarised light: the mean of both polarisations at every interface".to_owned(),
+        "light is taken as unpolarised at every interface: what passes two polished ends of a rod is 0.7 % too little, and \
+         what passes a plate of index 1.49 at 75° 3.6 % (docs/theory.md, eq. 2)"
+            .to_owned(),
     ];
     if !run.gather.is_empty() {
         lines.push(format!("wishes for gathering: {}", run.gather));

@@ -9,8 +9,8 @@ use crate::scene::relief::{Cut, Ground, Relief, Trim};
 use crate::scene::shape::Shape;
 use crate::scene::sweep::WallChart;
 use crate::scene::{
-    Accel, COINCIDENCE, Extent, Face, FaceId, Finish, FinishId, MediumId, MeshBody, Owner, Patch,
-    PrimId, Scene, Sensor, SensorId, SensorKind, Solid, SolidId, Source, SourceId,
+    Accel, COINCIDENCE, Extent, Face, FaceId, Finish, FinishId, LightGroups, MediumId, MeshBody,
+    Owner, Patch, PrimId, Scene, Sensor, SensorId, SensorKind, Solid, SolidId, Source, SourceId,
 };
 use crate::units::FluxUnit;
 use glam::DVec3;
@@ -79,6 +79,7 @@ impl Builder {
             meshes: Vec::new(),
             ports: Vec::new(),
             sources: Vec::new(),
+            light: LightGroups::default(),
             sensors: Vec::new(),
             tolerance: 0.0,
             accel: Accel::new(&[], 0, 0.0),
@@ -233,6 +234,11 @@ impl Builder {
         self.scene.bounds = self.scene.bounds.union(source.emitter.bounds());
         self.scene.sources.push(source);
         SourceId::new(self.scene.sources.len() - 1)
+    }
+
+    /// Sets which sources are measured together.
+    pub fn set_light(&mut self, light: LightGroups) {
+        self.scene.light = light;
     }
 
     /// Adds a sensor whose faces have been added.

@@ -21,6 +21,7 @@ mod ids;
 mod inside;
 mod interface;
 mod intersect;
+mod light_group;
 pub mod mesh;
 mod on;
 pub mod pattern;
@@ -50,6 +51,7 @@ pub use ids::{FaceId, FinishId, MediumId, PrimId, SensorId, SmoothId, SolidId, S
 pub use inside::Inside;
 pub use interface::{Interface, Meeting, Visibility};
 pub use intersect::{Hits, Just, PrimHit};
+pub use light_group::{LightGroup, LightGroups};
 pub use on::On;
 pub(crate) use pieces::Surface;
 pub use pixels::Pixels;
@@ -129,6 +131,8 @@ pub struct Scene {
     pub ports: Vec<Patch>,
     /// All sources.
     pub sources: Vec<Source>,
+    /// Sources that are measured together.
+    pub light: LightGroups,
     /// All sensors.
     pub sensors: Vec<Sensor>,
     /// Faces closer than this are one, mm.

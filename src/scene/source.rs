@@ -101,6 +101,14 @@ pub struct Emitted {
     pub shape: usize,
 }
 
+impl Source {
+    /// Whether it emits at all: one that is switched off, or of zero flux, is there and dark.
+    #[inline]
+    pub fn is_lit(&self) -> bool {
+        self.flux > 0.0
+    }
+}
+
 impl Emitter {
     /// The emitter made of some surfaces.
     pub fn surface(shapes: Vec<Shape>, side: EmitSide, frame: Option<Frame>) -> Self {

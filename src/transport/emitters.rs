@@ -102,8 +102,11 @@ pub(crate) struct Met {
     pub(crate) emitted: f64,
 }
 
-/// Why rays cannot meet a source; `None` where they can.
+/// Why rays cannot meet a source; `None` where they can, or need not, as it is dark.
 pub fn invisible(source: &Source, scene: &Scene) -> Option<&'static str> {
+    if !source.is_lit() {
+        return None;
+    }
     let any = DVec3::Z;
     match &source.emitter {
         Emitter::Point(_) => Some("it is a point"),
@@ -126,10 +129,11 @@ pub fn invisible(source: &Source, scene: &Scene) -> Option<&'static str> {
 }
 
 impl<'s> Emitters<'s> {
-    /// The sources of a scene that rays can meet.
+    /// The sources of a scene that shine and that rays can meet.
     pub(crate) fn new(scene: &'s Scene) -> Self {
         let visible = scene.sources.iter().enumerate();
-        let visible = visible.filter(|(_, source)| invisible(source, scene).is_none());
+        let visible =
+            visible.filter(|(_, source)| source.is_lit() && invisible(source, scene).is_none());
         let seen = visible.filter_map(|(index, source)| {
             Some(Seen {
                 id: SourceId::new(index),

@@ -62,9 +62,8 @@ impl<'s> Forward<'s> {
         let readings = Readings::of_batch(self.scene, &self.layout, self.seed, batch_paths, batch);
         let mut counter = Counter::new(self, readings, watcher);
         let mut index = batch * batch_paths;
-        for (source, &paths) in self.shares.iter().enumerate() {
+        for ((source, &paths), flux) in self.shares.iter().enumerate().zip(self.photon_fluxes()) {
             let source = SourceId::new(source);
-            let flux = self.scene.sources[source.index()].flux / paths as f64;
             for place in 0..paths {
                 // Shifted by the batch, so that a source of few paths has its share of classes, too.
                 counter.classed = (place + batch).is_multiple_of(CLASS_EVERY);
@@ -75,22 +74,23 @@ impl<'s> Forward<'s> {
         counter.finish()
     }
 
-    /// Flux of one photon of each source, lm or W.
+    /// Flux of one photon of each source, lm or W; 0 of dark ones, which have none.
     pub(crate) fn photon_fluxes(&self) -> Vec<f64> {
         let sources = self.scene.sources.iter().zip(&self.shares);
-        sources.map(|(source, &paths)| source.flux / paths as f64).collect()
+        sources.map(|(source, &paths)| source.flux / paths.max(1) as f64).collect()
     }
 }
 
-/// Paths per batch of each source: at least one each, by flux, what rounding leaves to those that miss most of a path.
-/// Their sum is `batch_paths` where there are no more sources than that.
+/// Paths per batch of each source: none of a dark one, at least one of each other, by flux, what rounding leaves to those
+/// that miss most of a path. Their sum is `batch_paths` where there are no more sources than that.
 fn shares(scene: &Scene, batch_paths: u64) -> Vec<u64> {
     let total = scene.source_flux();
     let wanted: Vec<f64> =
         scene.sources.iter().map(|source| batch_paths as f64 * source.flux / total).collect();
-    let mut shares: Vec<u64> = wanted.iter().map(|wanted| (wanted.floor() as u64).max(1)).collect();
+    let places = (0..wanted.len()).filter(|&place| scene.sources[place].is_lit());
+    let mut shares = vec![0; wanted.len()];
+    places.clone().for_each(|place| shares[place] = (wanted[place].floor() as u64).max(1));
     let missing = |shares: &[u64], place: usize| wanted[place] - shares[place] as f64;
-    let places = 0..shares.len();
     loop {
         let sum: u64 = shares.iter().sum();
         let by_missing =

@@ -73,6 +73,7 @@ pub(crate) fn settle(
     let source_radius = scene
         .sources
         .iter()
+        .filter(|source| source.is_lit())
         .map(|source| half_width(&source.emitter))
         .fold(f64::INFINITY, f64::min);
     let radius = (RADIUS_PER_INRADIUS * inradius).min(RADIUS_PER_SOURCE * source_radius);
@@ -101,7 +102,8 @@ pub(crate) fn settle(
 /// A source that fills the guide is as wide as its emission: the images of its rim in the walls join. A smaller one is
 /// seen from the records at the distance told, mm.
 fn angle(scene: &Scene, inradius: f64, from_sources: &[f64]) -> f64 {
-    let sources = scene.sources.iter().zip(from_sources).map(|(source, distance)| {
+    let lit = scene.sources.iter().zip(from_sources).filter(|(source, _)| source.is_lit());
+    let sources = lit.map(|(source, distance)| {
         let radius = half_width(&source.emitter);
         let seen = if radius < FILLS * inradius { radius / distance } else { 0.5 * PI };
         match source.emission {

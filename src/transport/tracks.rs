@@ -43,12 +43,13 @@ pub struct Track {
 
 /// Traces `count` paths, the sources in turn.
 pub fn tracks(scene: &Scene, seed: u64, bounce_limit: u32, count: usize) -> Vec<Track> {
-    if scene.sources.is_empty() {
+    let lit = (0..scene.sources.len()).filter(|&source| scene.sources[source].is_lit());
+    let lit: Vec<SourceId> = lit.map(SourceId::new).collect();
+    if lit.is_empty() {
         return Vec::new();
     }
     let forward = Forward::new(scene, seed, bounce_limit.min(BOUNCES_DRAWN), 1);
-    let source = |index: usize| SourceId::new(index % scene.sources.len());
-    (0..count).map(|index| track(&forward, source(index), index)).collect()
+    (0..count).map(|index| track(&forward, lit[index % lit.len()], index)).collect()
 }
 
 fn track(forward: &Forward<'_>, source: SourceId, index: usize) -> Track {

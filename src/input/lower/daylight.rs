@@ -2,6 +2,7 @@
 
 use crate::input::keys::Key;
 use crate::input::lower::Context;
+use crate::input::lower::light_groups::{Daylight, Member};
 use crate::input::problems::name_hint;
 use crate::input::spec::daylight::{SkyModelSpec, SkySpec, SunPlaceSpec, SunSpec, WhenSpec};
 use crate::math::{Aabb, Frame};
@@ -9,7 +10,7 @@ use crate::optics::SkyModel;
 use crate::optics::sun::{Date, Observation, read_time, sun_position};
 use crate::scene::shape::Shape;
 use crate::scene::{
-    Emission, EmitSide, Emitter, EmitterKind, FaceId, MeshBody, Owner, Sky, Source, Start,
+    Emission, EmitSide, Emitter, EmitterKind, FaceId, MeshBody, Owner, Sky, Source, SourceId, Start,
 };
 use crate::units::per_m2_to_per_mm2;
 use glam::DVec3;
@@ -83,7 +84,7 @@ impl Context<'_> {
     }
 
     /// Whether a thing of the file, or a source made so far, has a name.
-    fn is_taken(&self, name: &str) -> bool {
+    pub(super) fn is_taken(&self, name: &str) -> bool {
         let spec = self.spec;
         spec.sources.contains_key(name)
             || spec.sensors.contains_key(name)
@@ -113,7 +114,15 @@ impl Context<'_> {
             }
         };
         let emission = Emission::Cone { half_angle, axis };
-        self.add_daylight(name, aim, emission, luminance * projected, Some(sun.elevation));
+        let per_area = luminance * projected;
+        let amount = key.field("illuminance_lx");
+        let flux = self.carried([spec.illuminance_lx, per_area * aim.area], &amount);
+        let Some(flux) = flux else { return };
+        let flux = if spec.enabled { flux } else { 0.0 };
+        let elevation = Some(sun.elevation);
+        let source = self.add_daylight(name, aim, emission, flux, elevation);
+        let group = spec.group.clone().map(|group| (group, key.field("group")));
+        self.members.push(Member { source, group, daylight: Some(Daylight::Sun(sun.toward)) });
     }
 
     pub(super) fn lower_sky(&mut self, name: &str, spec: &SkySpec, key: &Key) {
@@ -123,6 +132,7 @@ impl Context<'_> {
             (Some(_), _) | (_, Some(_)) => self.sun(&spec.place, key),
         };
         let Some(sun) = sun else { return };
+        let toward_sun = sun.toward;
         let model = match spec.model {
             SkyModelSpec::Uniform => Some(SkyModel::uniform()),
             SkyModelSpec::Overcast => Some(SkyModel::overcast()),
@@ -146,7 +156,18 @@ impl Context<'_> {
         let level = spec.horizontal_illuminance_lx.map(|lx| lx / sky.level_illuminance());
         let Some(zenith) = spec.zenith_luminance_cd_m2.or(level) else { return };
         let per_area = per_m2_to_per_mm2(zenith) * sky.projected_solid_angle(aim.kind);
-        self.add_daylight(name, aim, Emission::Sky(sky), per_area, None);
+        let (amount, stated) = match (spec.zenith_luminance_cd_m2, spec.horizontal_illuminance_lx) {
+            (Some(stated), _) => ("zenith_luminance_cd_m2", stated),
+            (None, stated) => ("horizontal_illuminance_lx", stated.unwrap_or(0.0)),
+        };
+        let flux = self.carried([stated, per_area * aim.area], &key.field(amount));
+        let Some(flux) = flux else { return };
+        let flux = if spec.enabled { flux } else { 0.0 };
+        let source = self.add_daylight(name, aim, Emission::Sky(sky), flux, None);
+        let group = spec.group.clone().map(|group| (group, key.field("group")));
+        let has_sun = spec.place.elevation_deg.is_some() || spec.place.when.is_some();
+        let daylight = Some(Daylight::of_sky(spec, has_sun.then_some(toward_sun)));
+        self.members.push(Member { source, group, daylight });
     }
 
     fn add_daylight(
@@ -154,18 +175,18 @@ impl Context<'_> {
         name: &str,
         aim: Aim,
         emission: Emission,
-        flux_per_area: f64,
+        flux: f64,
         elevation: Option<f64>,
-    ) {
+    ) -> SourceId {
         self.builder.add_source(Source {
             name: name.to_owned(),
-            flux: flux_per_area * aim.area,
+            flux,
             emitter: aim.emitter,
             emission,
             start: aim.start,
             on: Vec::new(),
             elevation,
-        });
+        })
     }
 
     /// East, north and up as x, y and z.

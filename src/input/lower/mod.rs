@@ -7,6 +7,7 @@ mod consistency;
 mod contacts;
 mod daylight;
 mod finishes;
+mod light_groups;
 mod meshes;
 mod patterns;
 mod place;
@@ -57,6 +58,8 @@ pub(crate) struct Context<'a> {
     behind: IndexMap<FinishId, FinishId>,
     /// Faces by dotted name; a name such as `duct.wall` may stand for several.
     faces: IndexMap<String, Vec<FaceId>>,
+    /// All sources, by what decides their light group.
+    members: Vec<light_groups::Member>,
 }
 
 /// Lowers a validated spec. `None` when a problem left nothing to trace.
@@ -72,6 +75,7 @@ pub(crate) fn lower(spec: &SceneSpec, places: &Places, problems: &mut Problems) 
         finishes: IndexMap::new(),
         behind: IndexMap::new(),
         faces: IndexMap::new(),
+        members: Vec::new(),
     };
     context.lower_media();
     context.lower_finishes();
@@ -79,6 +83,7 @@ pub(crate) fn lower(spec: &SceneSpec, places: &Places, problems: &mut Problems) 
     context.lower_reliefs();
     context.lower_patterns();
     context.lower_sources();
+    context.lower_light_groups();
     context.lower_sensors();
     let run = plan::run(spec);
     let checks = spec.check.iter().map(plan::check).collect();
@@ -88,6 +93,7 @@ pub(crate) fn lower(spec: &SceneSpec, places: &Places, problems: &mut Problems) 
     }
     let mut scene = context.builder.build();
     starts::settle_starts(&mut scene);
+    starts::note_joints(spec, &scene, &context.faces, context.problems);
     starts::check_starts(spec, &scene, context.problems);
     consistency::check_overlaps(spec, &scene, context.problems);
     consistency::check_open_faces(spec, &scene, context.problems);

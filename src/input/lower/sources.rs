@@ -2,20 +2,26 @@
 
 use crate::input::keys::Key;
 use crate::input::lower::Context;
+use crate::input::lower::light_groups::Member;
 use crate::input::lower::place::Facing;
 use crate::input::lower::surfaces::tilted;
 use crate::input::problems::name_hint;
-use crate::input::spec::placement::PlacementSpec;
 use crate::input::spec::source::{
     BodySpec, ContactSpec, EmissionSpec, FaceSide, SourceCommonSpec, SourceSpec,
 };
 use crate::math::Frame;
+use crate::number::format_value;
 use crate::scene::shape::{Cylinder, Flat, Region, Shape, Sphere};
 use crate::scene::{
     Emission, EmitSide, Emitter, Extent, FaceSpec, FinishId, Owner, Piece, PrimId, SolidId, Source,
     Start,
 };
 use crate::units::per_m2_to_per_mm2;
+
+/// Least flux of a source that is not dark, lm or W: shares of it in 1e9 cells have squares that are no subnormal numbers.
+const LEAST_FLUX: f64 = 1e-30;
+/// Largest flux of a source, lm or W: far from where sums of squares overflow.
+const LARGEST_FLUX: f64 = 1e30;
 
 impl Context<'_> {
     pub(super) fn lower_sources(&mut self) {
@@ -46,7 +52,6 @@ impl Context<'_> {
         if let Some(finish) = self.body_finish(&common.body) {
             on = self.add_body(name, &emitter, finish);
         }
-        self.note_joint(common, key);
         // Whether paths have to be asked for their solids is settled when all is built.
         let start = match common.contact {
             Some(ContactSpec::Air) => Start::Behind,
@@ -55,34 +60,17 @@ impl Context<'_> {
         if start == Start::Behind {
             on.clear();
         }
-        self.builder.add_source(Source {
+        let source = self.builder.add_source(Source {
             name: name.to_owned(),
-            flux,
+            flux: if common.enabled { flux } else { 0.0 },
             emitter,
             emission,
             start,
             on,
             elevation: None,
         });
-    }
-
-    /// Without a gap there may be glue or a hair of air, which is not the same light: told unless it is said.
-    fn note_joint(&mut self, common: &SourceCommonSpec, key: &Key) {
-        if let (Some(PlacementSpec::AtFace(at)), None) = (&common.at, common.contact)
-            && at.gap_mm == 0.0
-            && self.is_face_of_a_solid(&at.face)
-        {
-            self.problems
-                .warning(key, format!("touches `{}` and is joined to it optically, as by glue", at.face))
-                .hint("write contact = \"optical\" if so, contact = \"air\" for a hair of air, or a gap_mm");
-        }
-    }
-
-    fn is_face_of_a_solid(&self, name: &str) -> bool {
-        let faces = self.faces.get(name).into_iter().flatten();
-        faces
-            .into_iter()
-            .any(|face| matches!(self.builder.scene().faces[face.index()].owner, Owner::Solid(_)))
+        let group = common.group.clone().map(|group| (group, key.field("group")));
+        self.members.push(Member { source, group, daylight: None });
     }
 
     fn emission(
@@ -234,8 +222,10 @@ impl Context<'_> {
         law: Emission,
         key: &Key,
     ) -> Option<f64> {
-        if let Some(flux) = common.flux_lm.or(common.flux_w) {
-            return Some(flux);
+        for (name, flux) in [("flux_lm", common.flux_lm), ("flux_w", common.flux_w)] {
+            if let Some(flux) = flux {
+                return self.carried([flux, flux], &key.field(name));
+            }
         }
         if let Some(luminance) = common.luminance_cd_m2 {
             let per_luminance = emitter.area().zip(law.projected_solid_angle());
@@ -248,7 +238,8 @@ impl Context<'_> {
                     .hint("give flux_lm instead");
                 return None;
             };
-            return Some(per_m2_to_per_mm2(luminance) * area * projected);
+            let flux = per_m2_to_per_mm2(luminance) * area * projected;
+            return self.carried([luminance, flux], &key.field("luminance_cd_m2"));
         }
         let intensity = common.intensity_cd?;
         let per_intensity = match emitter {
@@ -263,7 +254,22 @@ impl Context<'_> {
                 .error(&key.field("intensity_cd"), "needs a `point` source that is not collimated")
                 .hint("give flux_lm instead");
         }
-        per_intensity.map(|solid_angle| intensity * solid_angle)
+        self.carried([intensity, intensity * per_intensity?], &key.field("intensity_cd"))
+    }
+
+    /// The flux, lm or W, that a stated amount makes, where its squares and their sums are numbers: an error elsewhere.
+    pub(super) fn carried(&mut self, [stated, flux]: [f64; 2], amount: &Key) -> Option<f64> {
+        if stated == 0.0 || (LEAST_FLUX..=LARGEST_FLUX).contains(&flux) {
+            return Some(flux);
+        }
+        let unit = self.builder.scene().unit.flux();
+        let found = format_value(flux);
+        self.problems
+            .error(amount, format!("makes a source of {found} {unit}, which cannot be counted"))
+            .hint(format!(
+                "expected 0, or an amount that makes {LEAST_FLUX:e} to {LARGEST_FLUX:e} {unit}"
+            ));
+        None
     }
 
     fn body_finish(&mut self, body: &BodySpec) -> Option<FinishId> {

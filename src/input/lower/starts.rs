@@ -6,9 +6,11 @@ use crate::input::problems::Problems;
 use crate::input::spec::SceneSpec;
 use crate::input::spec::placement::PlacementSpec;
 use crate::input::spec::source::{SourceCommonSpec, SourceSpec};
+use crate::number::format_value;
 use crate::optics::Bsdf;
 use crate::rng::Sampler;
-use crate::scene::{Emitted, FinishId, Owner, Scene, SolidId, Start};
+use crate::scene::{Emitted, FaceId, FinishId, Owner, Scene, SolidId, Start};
+use indexmap::IndexMap;
 
 /// Starts that are looked at, per source: a part of a source that is missed is less than a hundredth of it.
 const LOOKS: u64 = 1024;
@@ -21,6 +23,38 @@ pub(super) fn settle_starts(scene: &mut Scene) {
         let bounds = source.emitter.bounds();
         if !boxes.iter().any(|solid| solid.overlaps(&bounds)) {
             source.start = Start::Outside;
+        }
+    }
+}
+
+/// Remarks on sources without a gap: there may be glue or a hair of air between, which is not the same light. A gap below
+/// the tolerance of coincident faces is none.
+pub(super) fn note_joints(
+    spec: &SceneSpec,
+    scene: &Scene,
+    faces: &IndexMap<String, Vec<FaceId>>,
+    problems: &mut Problems,
+) {
+    let is_of_a_solid = |face: &str| {
+        let faces = faces.get(face).into_iter().flatten();
+        faces.into_iter().any(|face| matches!(scene.faces[face.index()].owner, Owner::Solid(_)))
+    };
+    for (name, source) in &spec.sources {
+        let Some(common) = source.common() else { continue };
+        if let (Some(PlacementSpec::AtFace(at)), None) = (&common.at, common.contact)
+            && at.gap_mm <= scene.tolerance
+            && is_of_a_solid(&at.face)
+        {
+            let no_gap = if at.gap_mm > 0.0 {
+                format!(": a gap of {} mm is none", format_value(at.gap_mm))
+            } else {
+                String::new()
+            };
+            let message =
+                format!("touches `{}` and is joined to it optically, as by glue{no_gap}", at.face);
+            problems.warning(&Key::of(&["sources", name, source.kind()]), message).hint(
+                "write contact = \"optical\" if so, contact = \"air\" for a hair of air, or a gap_mm",
+            );
         }
     }
 }

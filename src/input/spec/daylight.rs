@@ -3,6 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::input::spec::source::enabled;
+
 /// The sun's disk. Exactly one of `elevation_deg`, `elevations_deg` and `when`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(extend("oneOf" = [
@@ -12,7 +14,7 @@ use serde::{Deserialize, Serialize};
 ]))]
 pub struct SunSpec {
     /// Illuminance by the sun of a plane across its light.
-    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    #[schemars(range(min = 0.0))]
     pub illuminance_lx: f64,
     /// Where the sun stands.
     #[serde(flatten)]
@@ -26,6 +28,11 @@ pub struct SunSpec {
     #[serde(default = "mean_half_angle")]
     #[schemars(extend("exclusiveMinimum" = 0.0), range(max = 5.0))]
     pub half_angle_deg: f64,
+    /// The light group. Omitted: a sun and the skies about it are one where there is other daylight, or another source.
+    pub group: Option<String>,
+    /// Whether it shines. One that does not is dark, as with an amount of 0.
+    #[serde(default = "enabled")]
+    pub enabled: bool,
     /// What it shines on: a flat face or port such as `duct.entry`, on which its light starts, or a solid or sheet such
     /// as a collector dome, at which light comes from outside the scene.
     pub aim: String,
@@ -41,14 +48,19 @@ pub struct SkySpec {
     /// How bright the sky is in which direction.
     pub model: SkyModelSpec,
     /// Luminance of the zenith.
-    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    #[schemars(range(min = 0.0))]
     pub zenith_luminance_cd_m2: Option<f64>,
     /// Illuminance of a level plane in the open, by the sky alone.
-    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    #[schemars(range(min = 0.0))]
     pub horizontal_illuminance_lx: Option<f64>,
     /// Where the sun stands, for a sky that is brighter about it.
     #[serde(flatten)]
     pub place: SunPlaceSpec,
+    /// The light group. Omitted: a sun and the skies about it are one where there is other daylight, or another source.
+    pub group: Option<String>,
+    /// Whether it shines. One that does not is dark, as with an amount of 0.
+    #[serde(default = "enabled")]
+    pub enabled: bool,
     /// What it shines on: a flat face or port such as `duct.entry`, on which its light starts, or a solid or sheet such
     /// as a collector dome, at which light comes from outside the scene.
     pub aim: String,

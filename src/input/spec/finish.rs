@@ -3,7 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A medium that light goes through. `air` is predefined with index 1 and no absorption.
+/// A medium that light goes through. `air` is predefined with index 1 and no absorption. What an interface of two media
+/// transmits follows from their indices, for unpolarised light: see the finish `smooth`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MediumSpec {
     /// Refractive index.
@@ -34,7 +35,9 @@ pub struct ScatteringSpec {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FinishSpec {
-    /// A smooth interface between two media: Fresnel reflection and refraction, total internal reflection.
+    /// A smooth interface between two media: Fresnel reflection and refraction, total internal reflection. Light is taken as
+    /// unpolarised at every interface: with its polarisation kept, 0.7 % more would pass the two polished ends of a rod, and
+    /// 3.6 % more a plate of index 1.49 at 75 deg.
     Smooth(EmptySpec),
     /// A mirror with a constant reflectance, or a window with a constant transmittance. The rest is absorbed.
     Specular(SpecularSpec),

@@ -90,16 +90,16 @@ pub struct Emitter<Shape> {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SourceCommonSpec {
     /// Total luminous flux.
-    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    #[schemars(range(min = 0.0))]
     pub flux_lm: Option<f64>,
     /// Total radiant flux. A scene has sources in lm or in W, not both.
-    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    #[schemars(range(min = 0.0))]
     pub flux_w: Option<f64>,
     /// Luminance along the axis or normal, for sources with an area.
-    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    #[schemars(range(min = 0.0))]
     pub luminance_cd_m2: Option<f64>,
     /// Peak intensity, for `point` only.
-    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    #[schemars(range(min = 0.0))]
     pub intensity_cd: Option<f64>,
     /// How the light is spread over directions. Omitted: `isotropic` for a `volume`, `lambertian` for all others.
     pub emission: Option<EmissionSpec>,
@@ -116,8 +116,18 @@ pub struct SourceCommonSpec {
     /// What happens to light that meets the emitter.
     #[serde(default)]
     pub body: BodySpec,
+    /// The light group: flux, efficiency, transmission and means are also measured for all sources of a group together.
+    pub group: Option<String>,
+    /// Whether the source emits. One that does not is dark, as with a flux of 0; its body stays in the way of light.
+    #[serde(default = "enabled")]
+    pub enabled: bool,
     /// Where the source stands. A `face` or `volume` is where its solid is.
     pub at: Option<PlacementSpec>,
+}
+
+/// Sources emit unless they are switched off.
+pub(crate) fn enabled() -> bool {
+    true
 }
 
 /// A flat disk, or a ring if it has an inner radius.

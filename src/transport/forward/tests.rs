@@ -173,4 +173,8 @@ fn sources_share_a_batch_by_flux_and_none_goes_without() {
         assert!(shares[0].abs_diff(shares[1]) <= 1, "{shares:?}");
     }
     assert_eq!(crate::transport::forward::shares(&scene, 1), [1; 4]);
+    scene.sources[1].flux = 0.0;
+    let forward = Forward::new(&scene, 1, 10, 100);
+    assert_eq!((forward.shares[1], forward.shares.iter().sum::<u64>()), (0, 100));
+    assert_eq!(forward.photon_fluxes()[1], 0.0);
 }

@@ -1,0 +1,28 @@
+//! Light groups: sources whose light is also measured together.
+
+use crate::scene::{Scene, SourceId};
+
+/// Sources that are measured together, beside each for itself.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LightGroup {
+    /// Name, which no source has.
+    pub name: String,
+    /// Its sources, ascending.
+    pub sources: Vec<SourceId>,
+}
+
+/// The light groups of a scene, and the weathers that its daylight belongs to.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct LightGroups {
+    /// Those of the scene file, then those that different weathers make.
+    pub groups: Vec<LightGroup>,
+    /// Names of the weathers that shine; no two of them shine at the same time.
+    pub weathers: Vec<String>,
+}
+
+impl Scene {
+    /// Flux of some sources, lm or W.
+    pub fn flux_of(&self, sources: &[SourceId]) -> f64 {
+        sources.iter().map(|source| self.sources[source.index()].flux).sum()
+    }
+}

@@ -256,8 +256,8 @@ unit = "mm"
 medium = "glass"
 at = {{ position_mm = [-2, -1.5, -9] }}
 [sources.led.disk]
-radius_mm = 1
-at = {{ position_mm = [0, 0, -1] }}
+radius_mm = 3
+at = {{ position_mm = [0, 5, 5], axis = [0, -1, 0] }}
 flux_lm = 10
 [sources.lamp.disk]
 radius_mm = 1
@@ -266,21 +266,18 @@ flux_lm = 5
 [sensors]
 wall = {{ plane = {{}}, on = "rod.wall", counts = "leaving" }}
 all = {{ plane = {{ cells = [1, 1] }}, on = "block.surface", counts = "leaving" }}
-far = {{ goniometer = {{ c_step_deg = 360, gamma_step_deg = 180 }}, aim = ["rod.wall"] }}
+far = {{ goniometer = {{ c_step_deg = 360, gamma_step_deg = 180 }}, aim = ["block.surface"] }}
 "#
     );
-    let by = |estimator| measures_by(estimator, 60_000, &scene);
+    let by = |estimator| measures_by(estimator, 20_000, &scene);
     let (forward, backward) = (by(Request::Forward), by(Request::Backward));
-    for name in ["wall.flux", "all.flux"] {
+    for name in ["wall.flux", "all.flux", "far.flux"] {
         let [one, other] = [&forward, &backward].map(|found| &found.values[name]);
         let error = one.std_error.hypot(other.std_error);
-        assert!(one.value > 0.3 && error < 0.05 * one.value, "{name}: {one} and {other}");
+        assert!(one.value > 0.3 && error < 0.1 * one.value, "{name}: {one} and {other}");
         assert!((one.value - other.value).abs() < 4.0 * error, "{name}: {one} and {other}");
     }
-    // Light that reaches the distance through the wall, and hits nothing on its way: no more than leaves it.
-    let [far, wall] = ["far.flux", "wall.flux"].map(|name| &backward.values[name]);
-    assert!(far.value > 0.2 * wall.value, "{far} of {wall}");
     // The mean over a curved face is over its area.
-    let mean = value(&forward, "wall.avg") / value(&forward, "wall.flux");
+    let mean = value(&forward, "wall.illuminance_avg") / value(&forward, "wall.flux");
     assert!((mean * 306.8e-6 - 1.0).abs() < 1e-3, "{mean}");
 }

@@ -56,9 +56,11 @@ pub(crate) fn check_page(
 
 /// The names of solids and sheets, each at the middle of its box.
 fn names(scene: &Scene) -> Vec<Mark> {
-    let bodies = scene.bodies();
+    // The body of a source has the name of the source, which is there already.
+    let is_source = |name: &str| scene.sources.iter().any(|source| source.name == name);
+    let bodies = scene.bodies().into_iter().filter(|body| !is_source(&body.name));
     let mut marks = Vec::new();
-    for body in bodies.into_iter().take(MOST_NAMES) {
+    for body in bodies.take(MOST_NAMES) {
         let role = match scene.owner(body.faces[0]) {
             Owner::Solid(_) => Role::Solid,
             Owner::Sheet | Owner::Port => Role::Sheet,

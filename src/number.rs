@@ -30,10 +30,13 @@ pub fn format_value(value: f64) -> String {
 /// "(1.234 ± 0.020)×10⁻⁷".
 ///
 /// The error has two digits up to 0.354 of its power of ten and one digit beyond (Particle Data Group, Review of
-/// Particle Physics, introduction, section 5.3).
+/// Particle Physics, introduction, section 5.3). An infinite value stands alone.
 pub fn format_with_error(value: f64, std_error: f64) -> String {
-    if !value.is_finite() || !std_error.is_finite() {
-        return format!("{} ± {}", format_value(value), format_value(std_error));
+    if !value.is_finite() {
+        return not_finite(value).to_string();
+    }
+    if !std_error.is_finite() {
+        return format!("{} with unknown error", format_value(value));
     }
     let std_error = std_error.abs();
     if std_error == 0.0 {
@@ -218,7 +221,10 @@ mod tests {
             (6.5e6, 4e4, "(6.50 ± 0.04)×10⁶"),
             (0.0, 0.004, "0.000 ± 0.004"),
             (0.5, 0.0, "0.5 ± 0"),
-            (0.5, f64::NAN, "0.5 ± n/a"),
+            (0.5, f64::NAN, "0.5 with unknown error"),
+            (0.5, f64::INFINITY, "0.5 with unknown error"),
+            (f64::INFINITY, f64::INFINITY, "∞"),
+            (f64::NAN, 1.0, "n/a"),
             (1.0, f64::MAX, "(0.0 ± 1.8)×10³⁰⁸"),
             (0.841_905_381_23, 1e-13, "0.841905381 ± 1×10⁻¹³"),
         ];

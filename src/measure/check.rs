@@ -5,12 +5,15 @@
 use crate::measure::{Measure, Measures, Status};
 use crate::number::format_value;
 use crate::scene::plan::Check;
+use crate::tally::sigmas;
 use serde::{Deserialize, Serialize};
 
 /// A limit nearer to the value than this many total errors is undecided.
 const LIMIT_ERRORS: f64 = 3.0;
 /// From this many errors on it does not matter how many they are.
 const FAR_ERRORS: f64 = 100.0;
+/// What rounding may do to a value without noise, relative to it: sums over many paths keep 12 digits or more.
+const ROUNDING: f64 = 1e-9;
 /// Deviation from `equals` that passes, in total errors, where the check names neither `sigmas` nor `within`.
 const DEFAULT_SIGMAS: f64 = 4.0;
 /// Number of known names that are suggested for an unknown one.
@@ -42,6 +45,7 @@ pub enum Outcome {
 /// Judges a check. All of its demands must be met; the worst of them decides.
 ///
 /// * `min` and `max`: undecided within 3 total errors (noise and bias) of the limit.
+/// * A value without noise meets a limit or an expected value from which it is off by rounding, a relative 1e-9.
 /// * `equals`: passes within `within`, or within `sigmas` total errors; either suffices. Without both, 4 total errors.
 /// * `max_std_error`: a larger standard error leaves a check undecided that would pass.
 /// * A value that cannot be relied on is undecided, but for one thing: nothing counted is at most three paths' flux.
@@ -106,12 +110,16 @@ fn limit(measure: &Measure, limit: f64, bound: Bound) -> (Outcome, String) {
     if !room.is_finite() || !error.is_finite() {
         return (Outcome::Undecided, format!("{wanted} is wanted, which is not known"));
     }
+    if room.abs() <= rounding(measure, limit) {
+        return (Outcome::Passed, format!("{wanted} is wanted, met to rounding"));
+    }
     if room.abs() < LIMIT_ERRORS * error {
         return (
             Outcome::Undecided,
             format!("{wanted} is wanted, which is within {LIMIT_ERRORS} errors"),
         );
     }
+    // Infinite for a value without noise.
     let errors = room.abs() / error;
     let apart =
         if errors < FAR_ERRORS { format!(", {errors:.1} errors away") } else { String::new() };
@@ -122,17 +130,26 @@ fn limit(measure: &Measure, limit: f64, bound: Bound) -> (Outcome, String) {
     }
 }
 
+/// Deviation from an expected number that is rounding: of values without noise alone.
+fn rounding(measure: &Measure, expected: f64) -> f64 {
+    let room = ROUNDING * measure.value.abs().max(expected.abs());
+    if measure.total_error() <= room { room } else { 0.0 }
+}
+
 fn equality(check: &Check, measure: &Measure, expected: f64) -> (Outcome, String) {
     let deviation = measure.value - expected;
     let error = measure.total_error();
     let default = if check.within.is_some() { 0.0 } else { DEFAULT_SIGMAS };
-    let sigmas = check.sigmas.unwrap_or(default);
+    let wanted = check.sigmas.unwrap_or(default);
     // Zero errors allow nothing, also where the error is not known.
-    let by_error = if sigmas > 0.0 { sigmas * error } else { 0.0 };
-    let allowed = by_error.max(check.within.unwrap_or(0.0));
-    let z = if deviation == 0.0 { 0.0 } else { deviation / error };
+    let by_error = if wanted > 0.0 { wanted * error } else { 0.0 };
+    let rounding = rounding(measure, expected);
+    let allowed = by_error.max(check.within.unwrap_or(0.0)).max(rounding);
+    let z = sigmas(measure.value, error, expected);
+    let errors =
+        if rounding == 0.0 && z.is_finite() { format!(" ({z:.1} errors)") } else { String::new() };
     let text = format!(
-        "{expected} is expected, off by {} ({z:.1} errors), {} is allowed",
+        "{expected} is expected, off by {}{errors}, {} is allowed",
         format_value(deviation),
         format_value(allowed)
     );
@@ -212,6 +229,28 @@ mod tests {
         let none = Check { max: Some(0.0), ..check() };
         assert_eq!(outcome(&none, &measure(0.0, 0.0, "lm")), Outcome::Passed);
         assert_eq!(outcome(&none, &measure(1e-12, 0.0, "lm")), Outcome::Failed);
+    }
+
+    #[test]
+    fn a_value_without_noise_is_judged_up_to_rounding() {
+        let lossless = measure(1.0 + 4.5e-16, 0.0, "1");
+        let most = Check { max: Some(1.0), ..check() };
+        assert_eq!(outcome(&most, &lossless), Outcome::Passed);
+        assert_eq!(outcome(&most, &measure(1.0 + 1e-8, 0.0, "1")), Outcome::Failed);
+        let rounded = measure(1.0 + 4.5e-16, 1e-17, "1");
+        assert_eq!(outcome(&most, &rounded), Outcome::Passed);
+        let exact = Check { equals: Some(1.0), sigmas: Some(4.0), ..check() };
+        assert_eq!(outcome(&exact, &lossless), Outcome::Passed);
+        assert_eq!(outcome(&exact, &rounded), Outcome::Passed);
+        assert_eq!(outcome(&exact, &measure(1.0 + 1e-8, 0.0, "1")), Outcome::Failed);
+        for value in [1.0 + 4.5e-16, 1.0 + 1e-8, 0.0, 2.0] {
+            for check in [&most, &exact] {
+                let reason = judge(check, &measure(value, 0.0, "1")).reason;
+                assert!(!reason.contains("inf"), "{reason}");
+            }
+        }
+        // Noise is not rounding.
+        assert_eq!(outcome(&most, &measure(1.0 + 1e-10, 1e-6, "1")), Outcome::Undecided);
     }
 
     #[test]

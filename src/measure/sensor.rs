@@ -104,6 +104,9 @@ pub(crate) fn replicates(
 /// Standard errors of both by which photons have to find more than gather paths to contradict them.
 const CONTRADICTED: f64 = 4.0;
 
+/// What rounding may do to a flux, relative to it.
+const ROUNDING: f64 = 1e-9;
+
 /// Whether photons have brought a sensor more light of a source than gather paths, which all but never meet it, have found.
 fn is_contradicted(evidence: &Evidence<'_>, id: SensorId) -> bool {
     match evidence.estimator() {
@@ -116,7 +119,7 @@ fn is_contradicted(evidence: &Evidence<'_>, id: SensorId) -> bool {
         let [by_photons, own] = [&photons, evidence].map(|one| one.readings.scalar(slot));
         let error = by_photons.std_error().hypot(own.std_error());
         photons.lit_groups(&[slot]) >= MIN_LIT_GROUPS
-            && by_photons.mean() - own.mean() > CONTRADICTED * error
+            && by_photons.mean() - own.mean() > CONTRADICTED * error + ROUNDING * own.mean().abs()
     })
 }
 

@@ -34,6 +34,8 @@ const WORTH_ANOTHER: f64 = 3.0;
 const KNOWN: f64 = 0.32;
 /// Standard errors beyond which a difference counts.
 const SIGMAS: f64 = 3.0;
+/// What rounding may do to a flux, relative to it, 1.
+const ROUNDING: f64 = 1e-9;
 /// Relative error that windows may differ by where no target is set, 1.
 const USUAL_TARGET: f64 = 0.01;
 
@@ -168,7 +170,8 @@ fn misses_light(tried: &Tried, others: &[&Tried]) -> bool {
     others.iter().any(|other| {
         tried.by_source.iter().zip(&other.by_source).any(|(own, other)| {
             let error = own.std_error().hypot(other.std_error());
-            relative_error(other) < KNOWN && other.mean() - own.mean() > SIGMAS * error
+            let room = SIGMAS * error + ROUNDING * own.mean().abs();
+            relative_error(other) < KNOWN && other.mean() - own.mean() > room
         })
     })
 }

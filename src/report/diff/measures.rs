@@ -97,7 +97,8 @@ pub(crate) fn scale(name: &str, sides: [&IndexMap<String, Measure>; 2]) -> f64 {
 pub(crate) fn judge(pair: Pair, limits: Limits) -> DiffRow {
     let Pair { name, values, scale, .. } = pair;
     let [a, b] = &values;
-    let difference = b.value - a.value;
+    // Two infinite values are equal.
+    let difference = if a.value == b.value { 0.0 } else { b.value - a.value };
     let noise = error(a).hypot(error(b));
     let rounding = ROUNDING * scale;
     let error = noise.hypot(rounding);

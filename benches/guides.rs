@@ -245,7 +245,9 @@ fn add_exit_sensor(builder: &mut Builder, face: FaceId, place: Place, half: f64)
     let square = Region::Rectangle { half_x: half, half_y: half };
     let rect: ChartRect = Shape::Flat(Flat::new(Frame::WORLD, square)).chart_bounds();
     let grid = Grid::Cartesian { rect, nu: MAP_CELLS, nv: MAP_CELLS };
-    let areas = grid.cell_areas(|rect| builder.scene().face_area_in(face, rect));
+    let area_in = |rect| builder.scene().face_area_in(face, rect);
+    let areas = grid.cell_areas(area_in);
+    let covered = grid.cell_cover(&areas, area_in);
     // Light passes through an open exit and arrives from behind; out of a solid it leaves to the front.
     let (counts, sides) = match place {
         Place::Port => (Counts::Incident, Sides::Back),
@@ -260,6 +262,7 @@ fn add_exit_sensor(builder: &mut Builder, face: FaceId, place: Place, half: f64)
             sides,
             grid,
             areas,
+            covered,
             seeing: Seeing::All,
             frame: None,
         }),

@@ -281,3 +281,82 @@ far = {{ goniometer = {{ c_step_deg = 360, gamma_step_deg = 180 }}, aim = ["bloc
     let mean = value(&forward, "wall.illuminance_avg") / value(&forward, "wall.flux");
     assert!((mean * 306.8e-6 - 1.0).abs() < 1e-3, "{mean}");
 }
+
+#[test]
+fn rings_see_a_hot_spot_as_bright_as_squares_do() {
+    // 1 lm on 3.14 mm² in the middle, and 10 lm on all of the disk.
+    let found = measures_by(
+        Request::Forward,
+        300_000,
+        r#"
+        [sources.spot.disk]
+        radius_mm = 1
+        emission = "collimated"
+        flux_lm = 1
+        [sources.back.disk]
+        radius_mm = 10
+        emission = "collimated"
+        flux_lm = 10
+        [sensors.polar]
+        plane = { disk = { radius_mm = 10 }, rings = 20 }
+        at = { position_mm = [0, 0, 5], axis = [0, 0, -1] }
+        [sensors.grid]
+        plane = { disk = { radius_mm = 10 }, cells = [40, 40] }
+        at = { position_mm = [0, 0, 6], axis = [0, 0, -1] }
+        "#,
+    );
+    let spot = 1e6 / PI + 1e7 / (PI * 100.0);
+    for sensor in ["polar", "grid"] {
+        let found = &found.values[&format!("{sensor}.illuminance_max")];
+        assert!((found.value / spot - 1.0).abs() < 0.15, "{sensor}: {found}, not {spot}");
+    }
+}
+
+#[test]
+fn a_lamp_at_40_degrees_is_the_brightest_in_an_image() {
+    let found = measures_by(
+        Request::Backward,
+        40_000,
+        r#"
+        [sources.bright.disk]
+        radius_mm = 20
+        luminance_cd_m2 = 100000
+        at = { position_mm = [83.9, 0, 100], axis = [-0.643, 0, -0.766] }
+        [sources.dim.disk]
+        radius_mm = 20
+        luminance_cd_m2 = 1000
+        at = { position_mm = [0, 0, 100], axis = [0, 0, -1] }
+        [sensors.cam]
+        image = { disk = { radius_mm = 1 }, pixels = [40, 40], pixel_deg = 3 }
+        "#,
+    );
+    let found = &found.values["cam.luminance_max"];
+    assert!((found.value / 1e5 - 1.0).abs() < 0.1, "{found}");
+}
+
+#[test]
+fn rounding_contradicts_no_estimator() {
+    // All light of a lossless duct arrives, to the last bits of a sum over photons and of one over gather paths.
+    let found = measures_by(
+        Request::Backward,
+        20_000,
+        r#"
+        [finishes.mirror]
+        specular = { reflectance = 1 }
+        [sheets.duct.tube]
+        profile = { rectangle = { width_mm = 10, height_mm = 10 } }
+        path = [{ bend_deg = 90, radius_mm = 10 }]
+        finish = "mirror"
+        [sources.led.face]
+        of = "duct.entry"
+        side = "back"
+        flux_lm = 1
+        [sensors.exit]
+        plane = {}
+        on = "duct.exit"
+        counts = "leaving"
+        "#,
+    );
+    let flux = &found.values["exit.flux"];
+    assert_eq!(flux.status, lumiduct::measure::Status::Ok, "{flux}");
+}

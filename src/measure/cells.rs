@@ -1,19 +1,28 @@
 //! The cells of a surface sensor, or the pixels of its image: flux, area, and the noise of both together.
 //!
 //! A cell's error is that of the mean over batches; cells are taken as independent. Cells without area are not part
-//! of the sensor. The area of a pixel is the aperture times its projected solid angle, in mm² sr. Cells cut by its rim to less than half of the largest cell's area hold few counts: they belong to
-//! maps and averages, but extremes are not taken of them.
+//! of the sensor. The area of a pixel is the aperture times its projected solid angle, in mm² sr. Cells that the rim or
+//! a hole cuts to less than half of their own area hold few counts. For the extremes they are taken together with
+//! their neighbours along the rim until half a cell is full, so that all light of the sensor counts and the average
+//! lies between the extremes.
 
 use crate::measure::evidence::Evidence;
 use crate::measure::extremes::Noisy;
-use crate::scene::{Seeing, SensorId, SurfaceSensor};
+use crate::scene::{Grid, Seeing, SensorId, SurfaceSensor};
 use crate::units::MM2_PER_M2;
+use glam::DVec2;
 use std::borrow::Cow;
 
-/// Cells with less than this share of the largest cell's area are not part of the sensor.
+/// Cells with less than this share of their own area on the sensor are not part of it.
 const NO_AREA: f64 = 1e-9;
-/// Cells with at least this share count for the extremes.
+/// Cells with at least this share of their own area count for the extremes on their own.
 const ENOUGH_AREA: f64 = 0.5;
+
+/// A value for a picture: what extrapolation has made negative is shown as zero.
+pub fn not_below_zero(value: f64) -> f64 {
+    // NaN, off the sensor, stays.
+    if value < 0.0 { 0.0 } else { value }
+}
 
 /// The cells of one view.
 pub(crate) struct SensorCells<'a> {
@@ -21,7 +30,9 @@ pub(crate) struct SensorCells<'a> {
     flux: Vec<(f64, f64)>,
     /// Area per cell, mm², or mm² sr.
     pub(crate) areas: Cow<'a, [f64]>,
-    largest: f64,
+    /// The part of each cell that lies on the sensor, 1; `None` of pixels, which are all whole.
+    covered: Option<&'a [f64]>,
+    grid: &'a Grid,
     pub(crate) area: f64,
     /// From flux per area to the unit of the map.
     pub(crate) factor: f64,
@@ -38,11 +49,14 @@ impl<'a> SensorCells<'a> {
         sensor: &'a SurfaceSensor,
         view: Option<usize>,
     ) -> Self {
-        let areas = match &sensor.seeing {
-            Seeing::All | Seeing::Views(_) => Cow::Borrowed(&*sensor.areas),
+        let (areas, covered, grid) = match &sensor.seeing {
+            Seeing::All | Seeing::Views(_) => {
+                (Cow::Borrowed(&*sensor.areas), Some(&*sensor.covered), &sensor.grid)
+            }
             Seeing::Pixels(pixels) => {
                 let area = sensor.area();
-                Cow::Owned(pixels.projected.iter().map(|projected| area * projected).collect())
+                let areas = pixels.projected.iter().map(|projected| area * projected).collect();
+                (Cow::Owned(areas), None, &pixels.grid)
             }
         };
         let projected = match (&sensor.seeing, view) {
@@ -52,7 +66,8 @@ impl<'a> SensorCells<'a> {
         let first = view.unwrap_or(0) * areas.len();
         let flux = evidence.cell_flux(id, first..first + areas.len());
         Self {
-            largest: areas.iter().copied().fold(0.0, f64::max),
+            covered,
+            grid,
             area: areas.iter().sum(),
             areas,
             factor: MM2_PER_M2 / projected,
@@ -63,11 +78,55 @@ impl<'a> SensorCells<'a> {
     }
 
     pub(crate) fn is_on(&self, cell: usize) -> bool {
-        self.areas[cell] > NO_AREA * self.largest
+        self.cover(cell) > NO_AREA
     }
 
     pub(crate) fn is_full(&self, cell: usize) -> bool {
-        self.areas[cell] >= ENOUGH_AREA * self.largest
+        self.cover(cell) >= ENOUGH_AREA
+    }
+
+    fn cover(&self, cell: usize) -> f64 {
+        self.covered.map_or(1.0, |covered| covered[cell])
+    }
+
+    /// What the extremes are taken of, in the unit of the map: the full cells, and those cut by the rim, some together.
+    /// The average is their mean by area.
+    pub(crate) fn for_extremes(&self) -> Vec<Noisy> {
+        let full = (0..self.areas.len()).filter(|&cell| self.is_full(cell));
+        let rim = self.rim();
+        full.map(|cell| self.at(cell))
+            .chain(rim.iter().map(|cells| self.mean(cells.iter().copied())))
+            .collect()
+    }
+
+    /// The cells cut to less than half, in the order of their direction from the middle of the grid, together as far as
+    /// they make half a cell.
+    fn rim(&self) -> Vec<Vec<usize>> {
+        let rect = self.grid.rect();
+        let middle = 0.5 * (rect.min + rect.max);
+        let direction = |cell: usize| {
+            let DVec2 { x, y } = self.grid.center(cell) - middle;
+            y.atan2(x)
+        };
+        let mut cut: Vec<usize> =
+            (0..self.areas.len()).filter(|&cell| self.is_on(cell) && !self.is_full(cell)).collect();
+        // A stable sort: cells in one direction keep their order.
+        cut.sort_by(|&a, &b| direction(a).total_cmp(&direction(b)));
+        let (mut groups, mut cover) = (Vec::<Vec<usize>>::new(), ENOUGH_AREA);
+        for cell in cut {
+            if cover >= ENOUGH_AREA {
+                groups.push(Vec::new());
+                cover = 0.0;
+            }
+            cover += self.cover(cell);
+            groups.last_mut().expect("a group was pushed for the first cell").push(cell);
+        }
+        // What is left over at the end goes to the group before.
+        if cover < ENOUGH_AREA && groups.len() > 1 {
+            let rest = groups.pop().expect("there are two");
+            groups.last_mut().expect("there are two").extend(rest);
+        }
+        groups
     }
 
     /// A cell in the unit of the map.
@@ -91,10 +150,9 @@ impl<'a> SensorCells<'a> {
         self.over((flux, variance.sqrt()), area)
     }
 
-    /// Counts in an average cell that counts for the extremes, 1.
-    pub(crate) fn counts_per_cell(&self, full: usize) -> f64 {
-        let flux: f64 =
-            (0..self.areas.len()).filter(|&c| self.is_full(c)).map(|c| self.flux[c].0).sum();
-        flux / full as f64 / self.count
+    /// Counts in an average of `cells` parts of the sensor, 1.
+    pub(crate) fn counts_per_cell(&self, cells: usize) -> f64 {
+        let flux: f64 = self.flux.iter().map(|(flux, _)| flux).sum();
+        flux / cells as f64 / self.count
     }
 }

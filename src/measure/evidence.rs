@@ -14,6 +14,9 @@ pub(crate) const MIN_LIT_GROUPS: usize = 10;
 /// Fewer counts than this give none either, 1. n counts of equal flux have a relative error of 1/sqrt(n).
 pub(crate) const MIN_COUNTS: f64 = 10.0;
 
+/// Variance from batch to batch, relative to the square of the mean, that rounding in a sum of squares may make.
+const SQUARES_ROUNDING: f64 = 64.0 * f64::EPSILON;
+
 /// A scene and what was counted in it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Evidence<'a> {
@@ -128,13 +131,21 @@ impl<'a> Evidence<'a> {
     }
 
     /// Mean flux over batches with its standard error for some values of a sensor, lm or W. A single batch leaves the
-    /// errors infinite.
+    /// errors infinite. No flux is below zero: where extrapolation makes one negative, it is off by as much at least.
     pub(crate) fn cell_flux(&self, id: SensorId, values: Range<usize>) -> Vec<(f64, f64)> {
         let cells = &self.readings.sensors[id.index()].cells;
         let batches = self.readings.batch_count();
-        let known = |error: f64| if error.is_nan() { f64::INFINITY } else { error };
+        let known = |mean: f64, error: f64| {
+            if error.is_nan() {
+                f64::INFINITY
+            } else if error * error * batches as f64 <= SQUARES_ROUNDING * mean * mean {
+                0.0
+            } else {
+                error
+            }
+        };
         let mean = |cell| cells.mean(cell, batches);
-        values.map(mean).map(|(mean, error)| (mean, known(error))).collect()
+        values.map(mean).map(|(mean, error)| (mean, known(mean, error).max(-mean))).collect()
     }
 
     /// Flux that one count adds to a cell, lm or W. Counting n of them gives a mean of n and a variance of n squares.

@@ -14,6 +14,8 @@ mod evidence;
 mod extremes;
 mod flux;
 mod gathered;
+#[cfg(test)]
+mod laws;
 mod map;
 mod paths;
 mod points;
@@ -27,6 +29,7 @@ mod uniformity;
 
 pub use angular::{IntensityTable, PlaneCurve};
 pub use balance::Balance;
+pub use cells::not_below_zero;
 pub use check::{Outcome, Verdict, nearest, verdict};
 pub use gathered::{GatheredFacts, Resolution, StageFacts};
 pub use map::{Axes, SensorMap};

@@ -50,8 +50,7 @@ pub(crate) fn scene(sources: &[(&str, f64)], sensors: Vec<(&str, SensorKind)>) -
 pub(crate) fn rectangle(size: f64, nu: usize, nv: usize) -> SensorKind {
     let half = DVec2::splat(0.5 * size);
     let grid = Grid::Cartesian { rect: ChartRect { min: -half, max: half }, nu, nv };
-    let areas = grid.cell_areas(|rect| (rect.max - rect.min).element_product());
-    SensorKind::Surface(surface(grid, areas))
+    SensorKind::Surface(surface(grid, |rect| rect.area()))
 }
 
 /// A disk of `radius` mm under square cells.
@@ -59,15 +58,13 @@ pub(crate) fn disk(radius: f64, cells: usize) -> SensorKind {
     let half = DVec2::splat(radius);
     let grid = Grid::Cartesian { rect: ChartRect { min: -half, max: half }, nu: cells, nv: cells };
     let shape = Flat::new(Frame::WORLD, Region::Annulus { inner: 0.0, outer: radius });
-    let areas = grid.cell_areas(|rect| Shape::Flat(shape.clone()).area_in(rect));
-    SensorKind::Surface(surface(grid, areas))
+    SensorKind::Surface(surface(grid, |rect| Shape::Flat(shape.clone()).area_in(rect)))
 }
 
 /// A disk of `radius` mm in rings and sectors.
 pub(crate) fn rings(radius: f64, rings: usize, sectors: usize) -> SensorKind {
     let grid = Grid::Polar { radius, rings, sectors };
-    let areas = grid.cell_areas(|_| 0.0);
-    SensorKind::Surface(surface(grid, areas))
+    SensorKind::Surface(surface(grid, |_| 0.0))
 }
 
 /// A luminance sensor: a rectangle with views of these projected solid angles, in sr.
@@ -102,8 +99,10 @@ pub(crate) fn goniometer(c_cells: usize, gamma_cells: usize) -> SensorKind {
     SensorKind::Goniometer(Goniometer { frame: Frame::WORLD, c_cells, gamma_cells, radius: None })
 }
 
-fn surface(grid: Grid, areas: Vec<f64>) -> SurfaceSensor {
+fn surface(grid: Grid, area_in: impl Fn(ChartRect) -> f64) -> SurfaceSensor {
+    let areas = grid.cell_areas(&area_in);
     SurfaceSensor {
+        covered: grid.cell_cover(&areas, area_in),
         faces: Vec::new(),
         place: Place::Port,
         counts: Counts::Incident,

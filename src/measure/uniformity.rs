@@ -50,7 +50,8 @@ pub struct Uniformity {
 /// How even a map is.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct UniformitySummary {
-    /// Cells that count for the extremes: those with at least half the area of the largest.
+    /// Parts of the sensor that the extremes are taken of: cells with at least half of their own area on it, and cells
+    /// that the rim cuts to less, as many together as make half a cell.
     pub cells: usize,
     /// Size of a cell in the unit of the map's axes: width and height; of rings, their width and the mean length of an
     /// arc; of an image, that of a pixel in its middle.

@@ -1,7 +1,9 @@
 //! Which pictures a report has, and what is on them.
 
 use crate::error::Result;
-use crate::measure::{Axes, Balance, IntensityTable, PlaneCurve, SensorMap, SensorPaths};
+use crate::measure::{
+    Axes, Balance, IntensityTable, PlaneCurve, SensorMap, SensorPaths, not_below_zero,
+};
 use crate::number::{format_percent, format_value, format_with_error};
 use crate::report::csv::{map_name, map_words};
 use crate::report::key_figures::is_one_cell;
@@ -46,7 +48,7 @@ fn map_picture(map: &SensorMap) -> Result<Vec<u8>> {
         x_range: ends(u),
         y_range: ends(v),
         axes,
-        values: map.values.clone(),
+        values: map.values.mapv(not_below_zero),
         unit: map.unit.clone(),
         scale: Scale::Linear,
         colours: ColourMap::Sequential,
@@ -80,7 +82,7 @@ fn map_picture(map: &SensorMap) -> Result<Vec<u8>> {
                         .enumerate()
                         .map(|(ring, (&y, &std_error))| SeriesPoint {
                             x: 0.5 * (radius_mm[ring] + radius_mm[ring + 1]),
-                            y,
+                            y: not_below_zero(y),
                             std_error,
                         })
                         .collect(),
@@ -102,7 +104,10 @@ pub(crate) fn intensity_plot(table: &IntensityTable) -> PolarPlot {
     let curves = if !table.planes.is_empty() {
         let curve = |plane: &PlaneCurve| Curve {
             name: format!("C{} to C{}", plane.c_deg, plane.c_deg + 180.0),
-            points: plane.gamma_deg.iter().copied().zip(plane.values.iter().copied()).collect(),
+            points: {
+                let values = plane.values.iter().copied().map(not_below_zero);
+                plane.gamma_deg.iter().copied().zip(values).collect()
+            },
             std_errors: plane.std_errors.clone(),
         };
         table.planes.iter().map(curve).collect()
@@ -112,7 +117,7 @@ pub(crate) fn intensity_plot(table: &IntensityTable) -> PolarPlot {
                 .ring_gamma_deg
                 .iter()
                 .zip(&table.ring_values)
-                .map(move |(gamma, value)| (sign * gamma, *value))
+                .map(move |(gamma, value)| (sign * gamma, not_below_zero(*value)))
         };
         let (left, right): (Vec<_>, Vec<_>) = (both(-1.0).collect(), both(1.0).collect());
         let points = left.into_iter().rev().chain(right).collect();

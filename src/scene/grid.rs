@@ -85,19 +85,39 @@ impl Grid {
         }
     }
 
+    /// The part of every cell that lies on the sensor, by area, 1. A cell that spans a hole or the rim is held against
+    /// the area it would have without, never against other cells: rings are wider outside, and charts of bends and
+    /// cones stretch. `areas` and `area_in` are those of [`Grid::cell_areas`].
+    pub fn cell_cover(&self, areas: &[f64], area_in: impl Fn(ChartRect) -> f64) -> Vec<f64> {
+        match self {
+            // The only cell is the whole sensor.
+            Self::Cartesian { nu: 1, nv: 1, .. } => vec![1.0],
+            Self::Cartesian { .. } => (0..self.cells())
+                .map(|cell| cover(areas[cell], self.cell_rect(cell), &area_in))
+                .collect(),
+            // Rings end at the rim.
+            Self::Polar { .. } => vec![1.0; self.cells()],
+        }
+    }
+
+    /// The rectangle of a cell in the chart; of a polar cell, that of the whole grid.
+    fn cell_rect(&self, cell: usize) -> ChartRect {
+        match self {
+            Self::Cartesian { rect, nu, nv } => {
+                let step = (rect.max - rect.min) / DVec2::new(*nu as f64, *nv as f64);
+                let min = rect.min + step * DVec2::new((cell % nu) as f64, (cell / nu) as f64);
+                ChartRect { min, max: min + step }
+            }
+            Self::Polar { .. } => self.rect(),
+        }
+    }
+
     /// Area of the sensor in every cell, mm²: cells cut by its rim count what is left of them.
     /// `area_in` tells the area within a rectangle of the chart.
     pub fn cell_areas(&self, area_in: impl Fn(ChartRect) -> f64) -> Vec<f64> {
         match self {
-            Self::Cartesian { rect, nu, nv } => {
-                let step = (rect.max - rect.min) / DVec2::new(*nu as f64, *nv as f64);
-                (0..self.cells())
-                    .map(|cell| {
-                        let min =
-                            rect.min + step * DVec2::new((cell % nu) as f64, (cell / nu) as f64);
-                        area_in(ChartRect { min, max: min + step })
-                    })
-                    .collect()
+            Self::Cartesian { .. } => {
+                (0..self.cells()).map(|cell| area_in(self.cell_rect(cell))).collect()
             }
             Self::Polar { radius, rings, sectors } => {
                 let width = radius / *rings as f64;
@@ -111,6 +131,29 @@ impl Grid {
             }
         }
     }
+}
+
+/// The part of a cell of the chart that lies on the sensor, by area, 1: of the cell's ninths, that with the most area is
+/// taken for whole.
+fn cover(area: f64, rect: ChartRect, area_in: impl Fn(ChartRect) -> f64) -> f64 {
+    const SIDE: u32 = 3;
+    /// Areas are known to this share of that of the rectangle, 1.
+    const ROUNDING: f64 = 1e-9;
+    // Most cells of flat sensors are done here.
+    if (area - rect.area()).abs() <= ROUNDING * rect.area() {
+        return 1.0;
+    }
+    if area <= ROUNDING * rect.area() {
+        return 0.0;
+    }
+    let step = (rect.max - rect.min) / f64::from(SIDE);
+    let part = |index: u32| {
+        let place = DVec2::new(f64::from(index % SIDE), f64::from(index / SIDE));
+        let min = rect.min + step * place;
+        area_in(ChartRect { min, max: min + step })
+    };
+    let most = (0..SIDE * SIDE).map(part).fold(0.0, f64::max);
+    if most > 0.0 { area / (f64::from(SIDE * SIDE) * most) } else { 0.0 }
 }
 
 /// The bin of a place in 0..=1; the far end belongs to the last bin, up to rounding of points on the rim.

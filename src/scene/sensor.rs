@@ -53,6 +53,8 @@ pub struct SurfaceSensor {
     pub grid: Grid,
     /// Area of each cell, mm².
     pub areas: Vec<f64>,
+    /// The part of each cell that lies on the sensor, by area, 1: less than 1 where the rim or a hole cuts it.
+    pub covered: Vec<f64>,
     /// The directions that are told apart.
     pub seeing: Seeing,
     /// For drawings and files: middle and axes of a flat sensor.

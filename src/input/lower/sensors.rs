@@ -166,13 +166,16 @@ impl Context<'_> {
             return None;
         };
         let whole: Vec<Option<f64>> = faces.iter().map(|face| curved_area(scene, *face)).collect();
-        let areas = grid.cell_areas(|rect| {
+        let area_in = |rect| {
             let area = |(face, whole): (&FaceId, &Option<f64>)| {
                 whole.unwrap_or_else(|| scene.face_area_in(*face, rect))
             };
-            faces.iter().zip(&whole).map(area).sum()
-        });
-        Some(SurfaceSensor { faces, place, counts, sides, grid, areas, seeing: Seeing::All, frame })
+            faces.iter().zip(&whole).map(area).sum::<f64>()
+        };
+        let areas = grid.cell_areas(area_in);
+        let covered = grid.cell_cover(&areas, area_in);
+        let seeing = Seeing::All;
+        Some(SurfaceSensor { faces, place, counts, sides, grid, areas, covered, seeing, frame })
     }
 
     fn on_faces(&mut self, on: &str, key: &Key) -> Option<(Vec<FaceId>, Place)> {

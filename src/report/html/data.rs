@@ -2,7 +2,7 @@
 //!
 //! Numbers have six significant digits, which is more than a plot shows.
 
-use crate::measure::{Axes, Balance, IntensityTable, Measure, SensorMap};
+use crate::measure::{Axes, Balance, IntensityTable, Measure, SensorMap, not_below_zero};
 use crate::report::csv::map_words;
 use crate::report::drawing::{Drawing, Fate};
 use crate::report::html::coarse::{coarse, joined};
@@ -132,7 +132,7 @@ pub(crate) fn map(map: &SensorMap) -> Value {
     let cells = Cells {
         x: x.clone(),
         y: y.clone(),
-        values: map.values.clone(),
+        values: map.values.mapv(not_below_zero),
         errors: map.std_errors.clone(),
         biases: map.biases.clone(),
     };
@@ -149,7 +149,7 @@ pub(crate) fn directions(table: &IntensityTable) -> Option<Value> {
     let cells = Cells {
         x: table.c_deg.clone(),
         y: table.gamma_deg.clone(),
-        values: table.values.clone(),
+        values: table.values.mapv(not_below_zero),
         errors: table.std_errors.clone(),
         biases: table.biases.clone(),
     };

@@ -49,7 +49,9 @@ fn mirror_tube(reflectance: f64, length: f64) -> Scene {
         elevation: None,
     });
     let grid = Grid::Cartesian { rect: disk(0.0).chart_bounds(), nu: 32, nv: 32 };
-    let areas = grid.cell_areas(|rect| builder.scene().face_area_in(port, rect));
+    let area_in = |rect| builder.scene().face_area_in(port, rect);
+    let areas = grid.cell_areas(area_in);
+    let covered = grid.cell_cover(&areas, area_in);
     builder.add_sensor(Sensor {
         name: "exit".into(),
         kind: SensorKind::Surface(SurfaceSensor {
@@ -59,6 +61,7 @@ fn mirror_tube(reflectance: f64, length: f64) -> Scene {
             sides: Sides::Back,
             grid,
             areas,
+            covered,
             seeing: Seeing::All,
             frame: None,
         }),

@@ -179,6 +179,7 @@ impl Series {
 fn trace(case: &Case, seed: u64) -> Outcome {
     let plan = RunPlan {
         estimator: Request::Forward,
+        sensor_estimators: Vec::new(),
         gather: GatherPlan::default(),
         seed,
         bounce_limit: 100_000,

@@ -20,7 +20,7 @@
 //!
 //! let settings = Settings { paths: Some(20_000), ..Settings::default() };
 //! let job = input::load(Path::new("scenes/led_indicator.toml"), &settings)?;
-//! let traced = pipeline::trace(&job, &Interrupt::default(), &mut |_| {});
+//! let traced = pipeline::trace(&job, &Interrupt::default(), &mut |_| {})?;
 //! let measures = measure::measure(&job.scene, &traced.findings);
 //! let efficiency = &measures.values["exit.efficiency"];
 //! assert!(0.0 < efficiency.value && efficiency.value < 1.0 && efficiency.std_error < 0.01);

@@ -5,8 +5,11 @@ mod checkpoint;
 mod compare;
 mod parts;
 mod progress;
+mod repeat;
 mod sense;
 mod snapshot;
+#[cfg(test)]
+mod stop_tests;
 #[cfg(test)]
 mod tests;
 mod timing;
@@ -17,7 +20,7 @@ pub use compare::{CompareWishes, Compared, Method, TruthWish, compare};
 pub use parts::{SliceWishes, SliceWritten, has_slice, merge_slices, run_slice};
 pub use progress::{Progress, TargetProgress};
 
-use crate::error::{Diagnostic, Result};
+use crate::error::{Diagnostic, Error, Result};
 use crate::input::{self, Job, Settings};
 use crate::measure::{self, Status};
 use crate::pipeline::checkpoint::{Keeper, Stand};
@@ -25,10 +28,11 @@ use crate::pipeline::sense::expect_sense;
 use crate::report::{
     self, CheckResult, Existing, Folder, Recipe, Report, RunFacts, SceneFacts, TargetFacts, Written,
 };
-use crate::scene::plan::RunPlan;
-use crate::transport::{Findings, Interrupt, Run, Track, tracks};
+use crate::scene::plan::{Request, RunPlan};
+use crate::transport::{
+    FIRST_BATCH_GRACE, Findings, Interrupt, Phase, Run, StopSignal, Track, tracks,
+};
 pub(crate) use sense::expect_measures;
-use std::convert::Infallible;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -177,6 +181,15 @@ pub fn compose(job: &Job, findings: &Findings, stop: Stop) -> Report {
         .collect();
     warnings.extend(report::remarks(&measures));
     warnings.extend(report::remark_on_paths(job.run.stop.paths, measures.paths));
+    let is_chosen =
+        (0..job.scene.sensors.len()).any(|sensor| job.run.request(sensor) == Request::Auto);
+    if is_chosen && findings.choices.is_empty() {
+        warnings.push(
+            "half of the time was up before the pilot had tried all estimators: sensors without an estimator of their own \
+             are estimated forward"
+                .to_owned(),
+        );
+    }
     let target = job.run.stop.target.as_ref().map(|target| TargetFacts::new(target, &measures));
     Report {
         scene: SceneFacts {
@@ -195,6 +208,7 @@ pub fn compose(job: &Job, findings: &Findings, stop: Stop) -> Report {
             partial: stop == Stop::Interrupted,
             asked: report::asked(&job.run.stop),
             stopped: stop.reason().to_owned(),
+            repeat: repeat::command(job, findings, stop),
             target,
             bounce_limit: job.run.bounce_limit,
             leaks: report::leak_places(&findings.photons.leaks, job.scene.origin),
@@ -229,48 +243,75 @@ pub struct Traced {
     pub elapsed: Duration,
 }
 
-/// Traces rounds until a stop rule holds.
-pub fn trace(job: &Job, interrupt: &Interrupt, watch: &mut dyn FnMut(&Progress)) -> Traced {
-    let Ok(traced) = trace_kept(job, None, &mut |_, _| Ok::<(), Infallible>(()), interrupt, watch);
-    traced
+/// Traces rounds until a stop rule holds; an error where it was stopped before there was anything to report.
+pub fn trace(job: &Job, interrupt: &Interrupt, watch: &mut dyn FnMut(&Progress)) -> Result<Traced> {
+    trace_kept(job, None, &mut |_, _| Ok(()), interrupt, watch)
 }
 
-/// A moment at which a run can be laid down.
+/// A moment at which a checkpoint may be kept.
 enum Pause {
-    /// It goes on.
+    /// The run goes on.
     Between { round_end: u64, elapsed: Duration },
     /// The user has stopped it.
     Last { round_end: u64, elapsed: Duration },
 }
 
-/// Traces rounds from where a run stands until a stop rule holds; `keep` may lay it down at every pause.
-fn trace_kept<E>(
+/// The time of a run.
+struct Clock<'a> {
+    plan: &'a RunPlan,
+    start: Instant,
+    /// What it had taken before it was resumed.
+    before: Duration,
+    interrupt: &'a Interrupt,
+}
+
+impl Clock<'_> {
+    fn elapsed(&self) -> Duration {
+        self.before + self.start.elapsed()
+    }
+
+    fn signal(&self) -> StopSignal {
+        let left = self.plan.stop.time.map(|limit| limit.saturating_sub(self.before));
+        StopSignal::new(self.interrupt, left.and_then(|left| self.start.checked_add(left)))
+    }
+
+    /// Whether a run that has traced something has to end.
+    fn is_up(&self, run: &Run<'_>) -> bool {
+        let grace = if run.paths() == 0 { FIRST_BATCH_GRACE } else { Duration::ZERO };
+        self.plan.stop.time.is_some_and(|limit| self.elapsed() >= limit.saturating_add(grace))
+    }
+}
+
+/// Traces rounds from where a run stands until a stop rule holds; `keep` may keep a checkpoint at every pause.
+fn trace_kept(
     job: &Job,
     stand: Option<Stand>,
-    keep: &mut dyn FnMut(&Run<'_>, Pause) -> std::result::Result<(), E>,
+    keep: &mut dyn FnMut(&Run<'_>, Pause) -> Result<()>,
     interrupt: &Interrupt,
     watch: &mut dyn FnMut(&Progress),
-) -> std::result::Result<Traced, E> {
-    let start = Instant::now();
-    let mut run = Run::new(&job.scene, &job.run);
-    let (mut round_end, mut before) = (run.round_end(), Duration::ZERO);
+) -> Result<Traced> {
+    let before = stand.as_ref().map_or(Duration::ZERO, |stand| stand.elapsed);
+    let clock = Clock { plan: &job.run, start: Instant::now(), before, interrupt };
+    let started = Run::start(&job.scene, &job.run, &clock.signal(), &mut |phase| {
+        watch(&Progress::before(&job.run, phase, clock.elapsed()));
+    });
+    let mut run = started.ok_or_else(|| nothing_to_report("the pilot", interrupt))?;
+    let mut round_end = run.round_end();
     if let Some(stand) = stand {
-        (round_end, before) = (stand.round_end, stand.elapsed);
+        round_end = stand.round_end;
         run.go_on_from(stand.state);
     }
-    let elapsed = || before + start.elapsed();
+    let elapsed = || clock.elapsed();
     let (mut target, mut gathering_told) = (None, false);
     let stop = loop {
-        let mut early = None;
-        // A run that was laid down at its very end has no piece left after which to ask; one that has only begun traces one in
-        // any case, so that there is something to report.
-        if run.paths() > 0 {
-            early = early_stop(&job.run, &run, elapsed(), interrupt);
-        }
+        let mut early = early_stop(&run, &clock);
         while run.waves() < round_end && early.is_none() {
             run.next_piece();
+            early = early_stop(&run, &clock);
+            if run.paths() == 0 {
+                continue;
+            }
             keep(&run, Pause::Between { round_end, elapsed: elapsed() })?;
-            early = early_stop(&job.run, &run, elapsed(), interrupt);
             let mut progress = Progress::of(&job.run, &run, elapsed(), target.clone());
             if !gathering_told {
                 progress.gathering = gathering(&run.findings());
@@ -279,6 +320,9 @@ fn trace_kept<E>(
             watch(&progress);
         }
         if let Some(stop) = early {
+            if run.paths() == 0 {
+                return Err(nothing_to_report(first_work(run.phase()), interrupt));
+            }
             if stop == Stop::Interrupted {
                 keep(&run, Pause::Last { round_end, elapsed: elapsed() })?;
             }
@@ -301,6 +345,29 @@ fn trace_kept<E>(
         round_end = run.round_end();
     };
     Ok(Traced { findings: run.findings(), stop, elapsed: elapsed() })
+}
+
+/// What a run does first.
+fn first_work(phase: Phase) -> &'static str {
+    match phase {
+        Phase::Pilot(_) => "the pilot",
+        Phase::Batches(_) => "the first batch",
+        Phase::Pass { .. } => "the first pass of gathering",
+    }
+}
+
+/// A run was stopped before its first batch was done.
+fn nothing_to_report(during: &str, interrupt: &Interrupt) -> Error {
+    Error::Usage(if interrupt.is_raised() {
+        format!(
+            "interrupted during {during}: nothing is counted yet, and there is nothing to report"
+        )
+    } else {
+        format!(
+            "the time was up during {during}: nothing is counted yet, and there is nothing to report; give more time, or \
+             --estimator forward, whose batches are short"
+        )
+    })
 }
 
 /// A run to a target gives up on one that its bias keeps from it once the noise is this share of what is wanted, 1.
@@ -329,22 +396,14 @@ fn is_held_by_bias(target: &TargetProgress) -> bool {
 }
 
 /// What may end a run before its round is over.
-fn early_stop(
-    plan: &RunPlan,
-    run: &Run<'_>,
-    elapsed: Duration,
-    interrupt: &Interrupt,
-) -> Option<Stop> {
-    if interrupt.is_raised() {
-        return Some(Stop::Interrupted);
-    }
-    if !run.is_between_waves() {
-        return None;
-    }
+fn early_stop(run: &Run<'_>, clock: &Clock<'_>) -> Option<Stop> {
     if run.is_complete() {
-        return Some(Stop::Paths);
+        Some(Stop::Paths)
+    } else if clock.interrupt.is_raised() {
+        Some(Stop::Interrupted)
+    } else {
+        clock.is_up(run).then_some(Stop::Time)
     }
-    plan.stop.time.is_some_and(|limit| elapsed >= limit).then_some(Stop::Time)
 }
 
 /// `reports/NAME` after the scene file, unless told otherwise.

@@ -21,6 +21,25 @@ impl Tally {
         tally
     }
 
+    /// The tally of means of several samples each, with their numbers: the weights of the means.
+    ///
+    /// The variance of a mean goes as one over its weight w, so that Σ w (x - mean)² / ((n - 1) Σ w) is that of the
+    /// weighted mean (Bevington & Robinson, Data Reduction and Error Analysis, 3rd ed., eq. 4.22).
+    pub fn weighted(means: impl Iterator<Item = (f64, u64)> + Clone) -> Self {
+        let (mut sum, mut weights, mut count) = (0.0, 0.0, 0);
+        for (mean, weight) in means.clone() {
+            sum += mean * weight as f64;
+            weights += weight as f64;
+            count += 1;
+        }
+        if weights == 0.0 {
+            return Self::default();
+        }
+        let mean = sum / weights;
+        let squares: f64 = means.map(|(x, weight)| weight as f64 * (x - mean).powi(2)).sum();
+        Self { count, mean, m2: squares * count as f64 / weights }
+    }
+
     /// Adds one sample (Welford, Technometrics 4 (1962) 419).
     pub fn add(&mut self, x: f64) {
         self.count += 1;
@@ -90,6 +109,19 @@ mod tests {
         assert_eq!(all.count(), halves.count());
         assert!((all.mean() - halves.mean()).abs() < 1e-13);
         assert!((all.std_error() - halves.std_error()).abs() < 1e-13);
+    }
+
+    #[test]
+    fn weighted_means_are_those_of_all_samples_and_equal_weights_change_nothing() {
+        let equal = Tally::weighted([1.0, 2.0, 3.0, 4.0].map(|mean| (mean, 3)).into_iter());
+        let plain = Tally::of([1.0, 2.0, 3.0, 4.0]);
+        assert!((equal.mean() - plain.mean()).abs() < 1e-15);
+        assert!((equal.std_error() - plain.std_error()).abs() < 1e-15);
+        // Means of two samples and of one, 7 and 1: 15/3, and (2·4 + 16) / (1 · 3).
+        let two = Tally::weighted([(7.0, 2), (1.0, 1)].into_iter());
+        assert!((two.mean() - 5.0).abs() < 1e-15);
+        assert!((two.std_error() - 8f64.sqrt()).abs() < 1e-15);
+        assert_eq!(Tally::weighted([(7.0, 2)].into_iter()).std_error(), f64::INFINITY);
     }
 
     #[test]

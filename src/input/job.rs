@@ -3,7 +3,7 @@
 use crate::error::{Diagnostic, Error, Result};
 use crate::input::digest::Digest;
 use crate::input::gather::{GatherSettings, check_radius, check_use};
-use crate::input::keys::Places;
+use crate::input::keys::{Key, Places};
 use crate::input::lower::{Lowered, lower};
 use crate::input::problems::Problems;
 use crate::input::{Draft, draft};
@@ -65,6 +65,8 @@ pub struct Job {
     pub places: Places,
     /// Overrides of the command line, as given.
     pub overrides: Vec<String>,
+    /// All that the command line asks for.
+    pub settings: Settings,
     /// Identifies scene file, included files, meshes and overrides: 64-bit FNV-1a, in hexadecimal.
     pub hash: String,
     /// Remarks on the scene.
@@ -98,6 +100,7 @@ pub fn load(path: &Path, settings: &Settings) -> Result<Job> {
         text,
         places,
         overrides: settings.overrides.clone(),
+        settings: settings.clone(),
         hash: hash.to_string(),
         warnings,
     })
@@ -106,10 +109,34 @@ pub fn load(path: &Path, settings: &Settings) -> Result<Job> {
 /// The command line's estimator and wishes for it go over those of the file.
 fn apply_method(settings: &Settings, scene: &Scene, run: &mut RunPlan, problems: &mut Problems) {
     run.estimator = settings.estimator.unwrap_or(run.estimator);
-    check_use(run.estimator, &run.gather, &settings.gather, problems);
+    check_estimators(run, scene, problems);
+    let mut requests = (0..scene.sensors.len()).map(|sensor| run.request(sensor));
+    let may_gather = run.estimator.may_gather() || requests.any(Request::may_gather);
+    if !may_gather {
+        check_use(run.estimator, &run.gather, &settings.gather, problems);
+    }
     run.gather = settings.gather.over(&run.gather);
-    if run.estimator.may_gather() {
+    if may_gather {
         check_radius(&run.gather, &settings.gather, scene, problems);
+    }
+}
+
+/// Refuses sensors that are merged beside others that may be gathered alone: photons pass one set of records.
+fn check_estimators(run: &RunPlan, scene: &Scene, problems: &mut Problems) {
+    let request = |sensor: usize| run.request(sensor);
+    let is_alone =
+        |sensor: &usize| request(*sensor).may_gather() && request(*sensor) != Request::Mis;
+    let Some(alone) = (0..scene.sensors.len()).find(is_alone) else { return };
+    for (index, sensor) in scene.sensors.iter().enumerate() {
+        if request(index) != Request::Mis {
+            continue;
+        }
+        let (other, wish) = (&scene.sensors[alone].name, request(alone).name());
+        let message =
+            format!("`mis` here and `{wish}` for the sensor `{other}` do not go together");
+        problems
+            .error(&Key::of(&["sensors", &sensor.name, "estimator"]), message)
+            .hint("give every sensor `mis`, or the others one of `forward`, `backward` and `mix`");
     }
 }
 
@@ -120,7 +147,14 @@ fn apply(settings: &Settings, scene: &Scene, run: &mut RunPlan) -> Result<()> {
     }
     run.batch_paths = settings.batch_paths;
     if settings.paths.is_none() && settings.time.is_none() && settings.target.is_none() {
-        return Ok(());
+        let is_without_paths = run.stop.batches.is_some() && run.stop.paths.is_none();
+        return if is_without_paths {
+            let message =
+                "`run.batches` divides paths, and this run has no number of them: give --paths";
+            Err(Error::Usage(message.into()))
+        } else {
+            Ok(())
+        };
     }
     let of_file = run.stop.target.as_ref().map(|target| target.measure.clone());
     let measure = settings.target_measure.clone().or(of_file);
@@ -133,6 +167,8 @@ fn apply(settings: &Settings, scene: &Scene, run: &mut RunPlan) -> Result<()> {
         }
         (None, _) => None,
     };
-    run.stop = StopRules { paths: settings.paths, time: settings.time, target };
+    // The batches of the file divide the paths of the command line as those of the file.
+    let batches = settings.paths.and(run.stop.batches);
+    run.stop = StopRules { paths: settings.paths, batches, time: settings.time, target };
     Ok(())
 }

@@ -330,6 +330,7 @@ mod tests {
             "sectors",
             "cosine_power",
             "paths",
+            "batches",
             "seed",
             "bounce_limit",
             "depth",

@@ -353,6 +353,7 @@ mod tests {
         for seed in 1..=seeds {
             let plan = RunPlan {
                 estimator: Request::Forward,
+                sensor_estimators: Vec::new(),
                 gather: GatherPlan::default(),
                 seed,
                 bounce_limit: 10,

@@ -168,7 +168,9 @@ impl Bench<'_> {
     fn plan(&self, estimator: Request, run: u64) -> RunPlan {
         let seed = self.job.run.seed.wrapping_add(run);
         let stop = StopRules { time: Some(self.run_time), ..StopRules::default() };
-        RunPlan { estimator, seed, stop, ..self.job.run.clone() }
+        // What a sensor asks for itself is no part of a comparison.
+        let sensor_estimators = Vec::new();
+        RunPlan { estimator, sensor_estimators, seed, stop, ..self.job.run.clone() }
     }
 }
 

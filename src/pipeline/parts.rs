@@ -5,7 +5,7 @@ use crate::input::{Job, Settings};
 use crate::pipeline::snapshot::{self, Kind};
 use crate::pipeline::{Finished, Output, Stop, compose, output_dir, prepare, recipe};
 use crate::report::{self, Existing, Folder, Recipe};
-use crate::transport::{Interrupt, Run, Shard, Slice, Unsliceable};
+use crate::transport::{Interrupt, Run, Shard, Slice, StopSignal, Unsliceable};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -68,13 +68,18 @@ pub fn run_slice(
             path.display()
         )));
     }
-    let run = Run::new(&job.scene, &job.run);
+    let signal = StopSignal::new(interrupt, None);
+    let nothing =
+        |of| SliceWritten { title: job.title.clone(), batches: None, of, dir: dir.clone() };
+    let Some(run) = Run::start(&job.scene, &job.run, &signal, &mut |_| ()) else {
+        return Ok(nothing(0));
+    };
     let of = run.sliceable_batches().map_err(refusal)?;
     let batches = wishes.shard.of(of);
     let count = (batches.end - batches.start).max(1) as f64;
-    let slice = run.slice(batches.clone(), of, interrupt, &mut |done| watch(done as f64 / count));
+    let slice = run.slice(batches.clone(), of, &mut |done| watch(done as f64 / count));
+    let Some(slice) = slice else { return Ok(nothing(of)) };
     let title = job.title.clone();
-    let Some(slice) = slice else { return Ok(SliceWritten { title, batches: None, of, dir }) };
     let scene = scene.to_string_lossy().into_owned();
     let part = Part { recipe: recipe(&job), scene, settings: settings.clone(), slice };
     snapshot::write(&path, Kind::Slice, &part)?;

@@ -3,12 +3,14 @@
 use crate::input::Job;
 use crate::measure::{self, Measure};
 use crate::scene::plan::RunPlan;
-use crate::transport::Run;
+use crate::transport::{Phase, Run};
 use std::time::Duration;
 
 /// How far a run has come: for progress displays.
 #[derive(Debug, Clone)]
 pub struct Progress {
+    /// What the run is doing.
+    pub phase: Phase,
     /// Paths traced.
     pub paths: u64,
     /// Paths asked for, when that is a stop rule.
@@ -52,12 +54,26 @@ impl Progress {
         target: Option<TargetProgress>,
     ) -> Self {
         Self {
+            phase: run.phase(),
             paths: run.paths(),
             planned_paths: run.planned_paths(),
             elapsed,
             time_limit: plan.stop.time,
             gathering: String::new(),
             target,
+        }
+    }
+
+    /// A run that has yet to begin, after `elapsed`.
+    pub(super) fn before(plan: &RunPlan, phase: Phase, elapsed: Duration) -> Self {
+        Self {
+            phase,
+            paths: 0,
+            planned_paths: None,
+            elapsed,
+            time_limit: plan.stop.time,
+            gathering: String::new(),
+            target: None,
         }
     }
 
@@ -74,11 +90,20 @@ impl Progress {
         paths.max(time).max(target).min(1.0)
     }
 
-    /// Paths per second, the target's value and error, and the time left.
+    /// The phase, paths per second, the target's value and error, and the time left.
     pub fn sentence(&self) -> String {
         let seconds = self.elapsed.as_secs_f64();
-        let mut text =
-            format!("{:.3e} paths, {:.2e} paths/s", self.paths as f64, self.paths as f64 / seconds);
+        let mut text = format!("{}: ", self.phase);
+        match self.phase {
+            Phase::Pilot(_) => {
+                text += &format!("{seconds:.1} s");
+                return text;
+            }
+            Phase::Batches(_) | Phase::Pass { .. } => {
+                let paths = self.paths as f64;
+                text += &format!("{paths:.3e} paths, {:.2e} paths/s", paths / seconds);
+            }
+        }
         if let Some(target) = &self.target {
             let (reached, error) = (&target.reached, 100.0 * target.reached.relative_error());
             let wanted = 100.0 * target.wanted;

@@ -7,7 +7,7 @@ use crate::input::keys::Key;
 use crate::input::problems::Problems;
 use crate::measure;
 use crate::scene::plan::Request;
-use crate::scene::{Scene, Source};
+use crate::scene::{Scene, SensorId, Source};
 use crate::transport::{BLIND_PATHS, blind_sensors, invisible, scatterers};
 
 /// Refuses a scene without light, and checks and targets that name no measure of it, before any work is done. Gives
@@ -72,16 +72,16 @@ pub(crate) fn expect_measures<'a>(
 
 /// Remarks on sensors from which no gather path could bring light.
 fn expect_sight(job: &Job, problems: &mut Problems) {
-    match job.run.estimator {
-        // Photons find what gather paths do not.
-        Request::Auto | Request::Forward | Request::Mix => return,
-        Request::Backward | Request::Gather | Request::Mis => {}
-    }
-    for sensor in blind_sensors(&job.scene, job.run.seed) {
+    let request = |sensor: SensorId| job.run.request(sensor.index());
+    let sensors: Vec<SensorId> = (0..job.scene.sensors.len())
+        .map(SensorId::new)
+        .filter(|&sensor| is_by_gather_paths(request(sensor)))
+        .collect();
+    for sensor in blind_sensors(&job.scene, &sensors, job.run.seed) {
         let name = &job.scene.sensors[sensor.index()].name;
         let message = format!(
             "sees no port: 0 of {BLIND_PATHS} gather paths meet a surface or a source, so that `{}` finds nothing there",
-            job.run.estimator.name()
+            request(sensor).name()
         );
         problems
             .warning(&Key::of(&["sensors", name]), message)
@@ -89,35 +89,51 @@ fn expect_sight(job: &Job, problems: &mut Problems) {
     }
 }
 
-/// Refuses estimators that have to meet the sources where a source cannot be met.
-fn expect_visible_sources(job: &Job, problems: &mut Problems) {
-    let meets = match job.run.estimator {
+/// Whether all light has to come by gather paths; else photons find what these do not.
+fn is_by_gather_paths(request: Request) -> bool {
+    match request {
         Request::Auto | Request::Forward | Request::Mix => false,
         Request::Backward | Request::Gather | Request::Mis => true,
-    };
-    for source in job.scene.sources.iter().filter(|_| meets) {
-        let Some(why) = invisible(source, &job.scene) else { continue };
-        let (name, wanted) = (&source.name, job.run.estimator.name());
-        let message = format!("`{wanted}` paths cannot meet the source `{name}`: {why}");
-        problems.error(&Key::of(&["run", "estimator"]), message).hint(
-            "use `forward`, `mix` or `auto`, or give the source an area and a cone of directions",
-        );
+    }
+}
+
+/// What is asked for all sensors, as far as there are any without an estimator of their own, and what single ones ask for.
+fn requests(job: &Job) -> Vec<(Key, Request)> {
+    let sensors = &job.scene.sensors;
+    let own = |sensor: usize| job.run.own_estimator(sensor);
+    let is_for_all = sensors.is_empty() || (0..sensors.len()).any(|sensor| own(sensor).is_none());
+    let for_all = is_for_all.then(|| (Key::of(&["run", "estimator"]), job.run.estimator));
+    let single = sensors.iter().enumerate().filter_map(|(sensor, one)| {
+        Some((Key::of(&["sensors", &one.name, "estimator"]), own(sensor)?.request()))
+    });
+    for_all.into_iter().chain(single).collect()
+}
+
+/// Refuses estimators that have to meet the sources where a source cannot be met.
+fn expect_visible_sources(job: &Job, problems: &mut Problems) {
+    for (key, request) in requests(job) {
+        for source in job.scene.sources.iter().filter(|_| is_by_gather_paths(request)) {
+            let Some(why) = invisible(source, &job.scene) else { continue };
+            let (name, wanted) = (&source.name, request.name());
+            let message = format!("`{wanted}` paths cannot meet the source `{name}`: {why}");
+            problems.error(&key, message).hint(
+                "use `forward`, `mix` or `auto`, or give the source an area and a cone of directions",
+            );
+        }
     }
 }
 
 /// Refuses merging where a finish scatters.
 fn expect_discrete_directions(job: &Job, problems: &mut Problems) {
-    match job.run.estimator {
-        Request::Auto | Request::Forward | Request::Backward | Request::Mix | Request::Gather => {
-            return;
-        }
-        Request::Mis => {}
-    }
+    let requests = requests(job);
+    let Some((key, _)) = requests.iter().find(|(_, request)| *request == Request::Mis) else {
+        return;
+    };
     for scatterer in scatterers(&job.scene) {
         let message =
             format!("`mis` merges paths of discrete directions only: {scatterer} scatters light");
         problems
-            .error(&Key::of(&["run", "estimator"]), message)
+            .error(key, message)
             .hint("use `auto`, or one of `forward`, `backward`, `mix` and `gather`");
     }
 }

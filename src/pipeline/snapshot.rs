@@ -30,7 +30,7 @@ impl Kind {
 
     /// The first line of a file. The number is that of its layout; the version of the program is part of the contents.
     fn line(self) -> String {
-        format!("lumiduct {} 1\n", self.name())
+        format!("lumiduct {} 2\n", self.name())
     }
 }
 

@@ -5,7 +5,7 @@ use crate::input::GatherSettings;
 use crate::scene::plan::Request;
 
 /// The short rod of the tests, with a sensor that can be estimated by photons and gathered.
-const SCENE: &str = concat!(
+pub(super) const SCENE: &str = concat!(
     "lumiduct = 1\ntitle = \"rod\"\n",
     include_str!("../../tests/rod.toml"),
     r#"
@@ -15,7 +15,7 @@ at = { face = "rod.exit", gap_mm = 0.1 }
 "#
 );
 
-fn job(folder: &Path, settings: &Settings) -> Job {
+pub(super) fn job(folder: &Path, settings: &Settings) -> Job {
     let scene = folder.join("rod.toml");
     std::fs::write(&scene, SCENE).unwrap();
     prepare(&scene, settings).unwrap()
@@ -27,9 +27,9 @@ fn pauses(job: &Job, stand: Option<Stand>) -> (Traced, Vec<Stand>) {
     let mut keep = |run: &Run<'_>, pause: Pause| {
         let (Pause::Between { round_end, elapsed } | Pause::Last { round_end, elapsed }) = pause;
         stands.push(Stand { state: run.state(), round_end, elapsed });
-        Ok::<(), Infallible>(())
+        Ok(())
     };
-    let Ok(traced) = trace_kept(job, stand, &mut keep, &Interrupt::default(), &mut |_| ());
+    let traced = trace_kept(job, stand, &mut keep, &Interrupt::default(), &mut |_| ()).unwrap();
     (traced, stands)
 }
 

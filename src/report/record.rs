@@ -63,6 +63,9 @@ pub struct RunFacts {
     pub asked: String,
     /// Why it ended.
     pub stopped: String,
+    /// The command that repeats a run which the clock or the user has ended.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub repeat: Option<String>,
     /// The target, and whether it was reached.
     pub target: Option<TargetFacts>,
     /// Bounce limit.

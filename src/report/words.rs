@@ -327,6 +327,9 @@ pub(crate) fn run_lines(report: &Report) -> Vec<String> {
     if !report.scene.overrides.is_empty() {
         lines.push(format!("overrides: {}", report.scene.overrides.join(", ")));
     }
+    if let Some(command) = &run.repeat {
+        lines.push(format!("to repeat these numbers, in the folder of the scene: {command}"));
+    }
     for leak in &run.leaks {
         lines.push(format!("leak at [{}, {}, {}] mm", leak.x, leak.y, leak.z));
     }

@@ -8,6 +8,8 @@ use std::time::Duration;
 pub struct RunPlan {
     /// How flux is to be estimated.
     pub estimator: Request,
+    /// Estimators of single sensors, in their order; the others follow `estimator`.
+    pub sensor_estimators: Vec<Option<Estimator>>,
     /// Wishes for the gather estimator.
     pub gather: GatherPlan,
     /// Seed of all random streams.
@@ -37,6 +39,18 @@ pub enum Request {
     Gather,
     /// [`Estimator::Mis`] for all sensors.
     Mis,
+}
+
+impl RunPlan {
+    /// How the flux of a sensor is to be estimated.
+    pub fn request(&self, sensor: usize) -> Request {
+        self.own_estimator(sensor).map_or(self.estimator, Estimator::request)
+    }
+
+    /// The estimator that is asked for a sensor alone.
+    pub fn own_estimator(&self, sensor: usize) -> Option<Estimator> {
+        self.sensor_estimators.get(sensor).copied().flatten()
+    }
 }
 
 impl Request {
@@ -87,6 +101,17 @@ pub enum Estimator {
 }
 
 impl Estimator {
+    /// The request for it.
+    pub fn request(self) -> Request {
+        match self {
+            Self::Forward => Request::Forward,
+            Self::Backward => Request::Backward,
+            Self::Mix => Request::Mix,
+            Self::Gather => Request::Gather,
+            Self::Mis => Request::Mis,
+        }
+    }
+
     /// Its name in files and reports.
     pub fn name(self) -> &'static str {
         match self {
@@ -151,8 +176,11 @@ impl Schedule {
 /// When a run ends. At least one rule is set.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct StopRules {
-    /// After this many paths (rounded up to whole batches, 128 at least).
+    /// After this many paths, rounded up to whole waves (of 128 batches, or 16 passes of gathering).
     pub paths: Option<u64>,
+    /// Batches, or passes, into which the paths are divided: a run of them ends after exactly so many. `None` for whole
+    /// waves.
+    pub batches: Option<u64>,
     /// After this time.
     pub time: Option<Duration>,
     /// When a measure is known well enough.

@@ -141,9 +141,12 @@ fn trace(
     let own = study.parameters.iter().zip(&design.settings);
     let own = own.flat_map(|(parameter, setting)| parameter.overrides(setting));
     let outcome = match pipeline::prepare(&study.scene, &common.with(own)) {
-        Ok(job) => match trace_job(batch, design, job, board)? {
-            Some(result) => DesignOutcome::Done(Box::new(result)),
-            None => return Ok(Ended::Stopped),
+        Ok(job) => match trace_job(batch, design, job, board) {
+            Ok(Some(result)) => DesignOutcome::Done(Box::new(result)),
+            Ok(None) => return Ok(Ended::Stopped),
+            // Its time was up before anything was counted.
+            Err(Error::Usage(message)) => DesignOutcome::Failed(message),
+            Err(error) => return Err(error),
         },
         Err(Error::Input(diagnostics)) => DesignOutcome::Failed(sentences(&diagnostics)),
         Err(Error::Usage(message)) => DesignOutcome::Failed(message),
@@ -172,6 +175,10 @@ fn trace_job(
     let traced = pipeline::trace(&job, batch.interrupt, &mut |progress| {
         board.go_on(design.number, progress.fraction());
     });
+    let traced = match traced {
+        Err(_) if batch.interrupt.is_raised() => return Ok(None),
+        traced => traced?,
+    };
     if traced.stop == Stop::Interrupted {
         return Ok(None);
     }

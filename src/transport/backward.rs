@@ -10,6 +10,7 @@ use crate::transport::emitters::{Emitters, Met};
 use crate::transport::follow::{Collector, Gathering, follow};
 use crate::transport::merge::{Etendues, NO_WINDOW};
 use crate::transport::readings::Counted;
+use crate::transport::stop::{Pace, StopSignal};
 use crate::transport::{Departure, Layout, Loss, Path, Readings, Vertex, work};
 use std::ops::ControlFlow;
 
@@ -66,10 +67,10 @@ impl<'s> Backward<'s> {
         Self { mixed: sensors.to_vec(), ..self }
     }
 
-    /// Work of a gather path, mean of a few that are not counted.
-    pub(crate) fn work_of_path(&self) -> f64 {
-        let segments = self.batch(PILOT_BATCH, &[]).segments;
-        work::of_gather_paths(self.batch_paths(), segments) / self.batch_paths() as f64
+    /// Work of a gather path, mean of a few that are not counted; `None` if they were stopped.
+    pub(crate) fn work_of_path(&self, signal: &StopSignal) -> Option<f64> {
+        let segments = self.batch(PILOT_BATCH, &[], signal)?.segments;
+        Some(work::of_gather_paths(self.batch_paths(), segments) / self.batch_paths() as f64)
     }
 
     /// Gather paths of all sensors in a batch.
@@ -78,24 +79,34 @@ impl<'s> Backward<'s> {
     }
 
     /// Traces one batch beside one of photons with these fluxes, lm or W, by source. It is not closed: photons may have
-    /// a share in it.
-    pub(crate) fn batch(&self, batch: u64, photon_fluxes: &[f64]) -> Readings {
+    /// a share in it. `None` if it was stopped.
+    pub(crate) fn batch(
+        &self,
+        batch: u64,
+        photon_fluxes: &[f64],
+        signal: &StopSignal,
+    ) -> Option<Readings> {
+        let pace = Pace::new(signal);
         let mut readings =
             Readings::of_batch(self.scene, &self.layout, self.seed, self.paths, batch);
         for (id, arrivals) in &self.sensors {
             let mixed_with = self.mixed.contains(id).then_some(photon_fluxes);
             for index in batch * self.paths..(batch + 1) * self.paths {
-                self.trace((*id, arrivals), index, mixed_with, &mut readings);
+                if pace.spend(1).is_break() {
+                    return None;
+                }
+                let beside = Beside { mixed_with, pace: &pace };
+                self.trace((*id, arrivals), index, beside, &mut readings);
             }
         }
-        readings
+        (!pace.is_stopped()).then_some(readings)
     }
 
     fn trace(
         &self,
         (id, arrivals): (SensorId, &Arrivals<'s>),
         index: u64,
-        mixed_with: Option<&[f64]>,
+        Beside { mixed_with, pace }: Beside<'_>,
         readings: &mut Readings,
     ) {
         let mut sampler = Sampler::for_path(self.seed, STREAM + id.index() as u64, index);
@@ -105,6 +116,7 @@ impl<'s> Backward<'s> {
             emitters: &self.emitters,
             sensor: id,
             bounce_limit: self.bounce_limit,
+            pace: Some(pace),
         };
         let path = Path::arriving(self.scene, &arrival);
         let mut counter = Counter {
@@ -118,6 +130,15 @@ impl<'s> Backward<'s> {
         let segments = follow(gathering, &arrival, &mut sampler, &mut counter);
         readings.segments += segments;
     }
+}
+
+/// What is beside the gather paths of a batch.
+#[derive(Clone, Copy)]
+struct Beside<'a> {
+    /// Mixed: flux of one photon of each source, lm or W.
+    mixed_with: Option<&'a [f64]>,
+    /// What may stop them.
+    pace: &'a Pace<'a>,
 }
 
 /// Counts the light of one gather path.

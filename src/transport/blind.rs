@@ -14,16 +14,16 @@ pub const BLIND_PATHS: u64 = 1000;
 /// Stream of random numbers of these.
 const STREAM: u64 = 10 << 32;
 
-/// The sensors of which none of [`BLIND_PATHS`] gather paths meets a surface or a source (beyond its aim, if it has one).
-pub fn blind_sensors(scene: &Scene, seed: u64) -> Vec<SensorId> {
+/// Those of some sensors of which none of [`BLIND_PATHS`] gather paths meets a surface or a source (beyond its aim, if it has one).
+pub fn blind_sensors(scene: &Scene, sensors: &[SensorId], seed: u64) -> Vec<SensorId> {
     let emitters = Emitters::new(scene);
-    let sensors = (0..scene.sensors.len()).map(SensorId::new);
+    let sensors = sensors.iter().copied();
     sensors.filter(|&sensor| !sees(scene, &emitters, sensor, seed)).collect()
 }
 
 fn sees<'s>(scene: &'s Scene, emitters: &Emitters<'s>, sensor: SensorId, seed: u64) -> bool {
     let arrivals = Arrivals::new(scene, sensor);
-    let gathering = Gathering { scene, emitters, sensor, bounce_limit: u32::MAX };
+    let gathering = Gathering { scene, emitters, sensor, bounce_limit: u32::MAX, pace: None };
     let mut look = Look { sees: false };
     for index in 0..BLIND_PATHS {
         let mut sampler = Sampler::for_path(seed, STREAM + sensor.index() as u64, index);

@@ -7,6 +7,7 @@ use crate::rng::{Numbers, Sampler};
 use crate::scene::shape::{Crossing, Start};
 use crate::scene::{Arrival, Begins, Owner, Scene, SensorId, Visibility};
 use crate::transport::emitters::{Emitters, Met, SegmentStart};
+use crate::transport::stop::Pace;
 use crate::transport::{
     Carries, Collision, Departure, Event, Loss, Path, ROULETTE_BELOW, Segment, Vertex, Visitor,
     walk,
@@ -55,6 +56,8 @@ pub(crate) struct Gathering<'a, 's> {
     pub(crate) emitters: &'a Emitters<'s>,
     pub(crate) sensor: SensorId,
     pub(crate) bounce_limit: u32,
+    /// What may stop the paths; `None` where nothing does.
+    pub(crate) pace: Option<&'a Pace<'a>>,
 }
 
 /// Follows one gather path; gives back the number of straight pieces it had.
@@ -185,7 +188,7 @@ impl<C: Collector> Visitor for Follower<'_, '_, '_, C> {
             Event::Travel(segment) => {
                 self.segments += 1;
                 self.travel(path, segment);
-                ControlFlow::Continue(())
+                self.gathering.pace.map_or(ControlFlow::Continue(()), |pace| pace.spend(1))
             }
             Event::Arrive(vertex) => self.arrive(path, vertex),
             Event::Collide(collision) => self.collide(path, collision),

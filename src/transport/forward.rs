@@ -14,6 +14,7 @@ use crate::rng::Sampler;
 use crate::scene::shape::Toward;
 use crate::scene::{Counts, FaceId, Owner, Scene, SensorId, SourceId};
 use crate::transport::readings::{Counted, SensorReading, Step, Trail, count_totals};
+use crate::transport::stop::{Pace, StopSignal};
 use crate::transport::watch::Watch;
 use crate::transport::{
     Departure, Event, Layout, Leak, Path, Readings, Segment, Vertex, Visitor, walk,
@@ -51,16 +52,21 @@ impl<'s> Forward<'s> {
         }
     }
 
-    /// Traces one batch.
-    pub(crate) fn batch(&self, batch: u64) -> Readings {
-        self.batch_watched(batch, &mut ())
+    /// Traces one batch; `None` if it was stopped.
+    pub(crate) fn batch(&self, batch: u64, signal: &StopSignal) -> Option<Readings> {
+        self.batch_watched(batch, &mut (), &Pace::new(signal))
     }
 
-    /// Traces one batch while someone watches its photons.
-    pub(crate) fn batch_watched(&self, batch: u64, watcher: &mut impl PhotonWatcher) -> Readings {
+    /// Traces one batch while someone watches its photons; `None` if it was stopped.
+    pub(crate) fn batch_watched(
+        &self,
+        batch: u64,
+        watcher: &mut impl PhotonWatcher,
+        pace: &Pace<'_>,
+    ) -> Option<Readings> {
         let batch_paths = self.shares.iter().sum();
         let readings = Readings::of_batch(self.scene, &self.layout, self.seed, batch_paths, batch);
-        let mut counter = Counter::new(self, readings, watcher);
+        let mut counter = Counter::new(self, readings, watcher, pace);
         let mut index = batch * batch_paths;
         for ((source, &paths), flux) in self.shares.iter().enumerate().zip(self.photon_fluxes()) {
             let source = SourceId::new(source);
@@ -69,9 +75,12 @@ impl<'s> Forward<'s> {
                 counter.classed = (place + batch).is_multiple_of(CLASS_EVERY);
                 counter.trace(source, flux, index);
                 index += 1;
+                if pace.is_stopped() {
+                    return None;
+                }
             }
         }
-        counter.finish()
+        Some(counter.finish())
     }
 
     /// Flux of one photon of each source, lm or W; 0 of dark ones, which have none.
@@ -112,6 +121,7 @@ fn shares(scene: &Scene, batch_paths: u64) -> Vec<u64> {
 struct Counter<'r, 's, W> {
     run: &'r Forward<'s>,
     watcher: &'r mut W,
+    pace: &'r Pace<'r>,
     readings: Readings,
     /// The scalars of the readings, until it is finished.
     sums: Vec<f64>,
@@ -134,10 +144,16 @@ enum TravelStart {
 }
 
 impl<'r, 's, W: PhotonWatcher> Counter<'r, 's, W> {
-    fn new(run: &'r Forward<'s>, mut readings: Readings, watcher: &'r mut W) -> Self {
+    fn new(
+        run: &'r Forward<'s>,
+        mut readings: Readings,
+        watcher: &'r mut W,
+        pace: &'r Pace<'r>,
+    ) -> Self {
         Self {
             run,
             watcher,
+            pace,
             sums: std::mem::take(&mut readings.groups[0].sums),
             readings,
             flux: 0.0,
@@ -293,7 +309,10 @@ impl<W: PhotonWatcher> Visitor for Counter<'_, '_, W> {
     fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
         let layout = self.run.layout;
         match event {
-            Event::Travel(segment) => self.travel(path, segment),
+            Event::Travel(segment) => {
+                self.travel(path, segment);
+                return self.pace.spend(1);
+            }
             Event::Arrive(vertex) => self.arrive(path, vertex),
             Event::Depart(vertex, departure) => self.depart(path, vertex, departure),
             Event::Collide(collision) => {

@@ -24,6 +24,7 @@ use crate::transport::merge::{self, Etendues, Passage};
 use crate::transport::readings::Counted;
 use crate::transport::records::{GatherRecord, Records, Surfaces, Wanted};
 use crate::transport::scatter::{Facing, facing};
+use crate::transport::stop::{Pace, RECORD_WORK, StopSignal};
 use crate::transport::window::{COUNTED, ESTIMATES, Window, estimates};
 use crate::transport::work::RecordWork;
 use crate::transport::{
@@ -91,40 +92,47 @@ impl<'s> Gather<'s> {
         self.sensors.len() as u64
     }
 
-    /// Runs one pass with the photons of a batch, which someone else may watch, too, unless all is merged.
+    /// Runs one pass with the photons of a batch, which someone else may watch, too, unless all is merged. `None` if it was
+    /// stopped.
     pub(crate) fn pass(
         &self,
         forward: &Forward<'_>,
         pass: Pass,
         beside: &mut impl PhotonWatcher,
-    ) -> PassReadings {
+        signal: &StopSignal,
+    ) -> Option<PassReadings> {
+        let pace = Pace::new(signal);
         let paths = pass.gather_paths;
         let empty = || Readings::of_batch(self.scene, &self.layout, self.seed, paths, pass.batch);
         let mut windows = [empty(), empty(), empty(), empty()];
         let photon_fluxes = forward.photon_fluxes();
-        let waiting = self.gather_paths(pass, &photon_fluxes, &mut windows);
-        let mut stream = Stream::new(self, pass, &waiting, &mut windows);
+        let beside_paths = Beside { photon_fluxes: &photon_fluxes, pace: &pace };
+        let waiting = self.gather_paths(pass, beside_paths, &mut windows)?;
+        let mut stream = Stream::new(self, pass, (&waiting, &pace), &mut windows);
         let photons = match self.merging {
-            None => forward.batch_watched(pass.batch, &mut (&mut stream, beside)),
+            None => forward.batch_watched(pass.batch, &mut (&mut stream, beside), &pace)?,
             Some(_) => {
                 let mut merged = MergedStream::new(&mut stream, pass, &photon_fluxes);
-                forward.batch_watched(pass.batch, &mut merged)
+                forward.batch_watched(pass.batch, &mut merged, &pace)?
             }
         };
         let work = stream.finish();
-        PassReadings { photons, windows, work }
+        (!pace.is_stopped()).then_some(PassReadings { photons, windows, work })
     }
 
-    /// Traces the gather paths of a pass.
+    /// Traces the gather paths of a pass; `None` if they were stopped.
     fn gather_paths(
         &self,
         pass: Pass,
-        photon_fluxes: &[f64],
+        Beside { photon_fluxes, pace }: Beside<'_>,
         windows: &mut [Readings; ESTIMATES],
-    ) -> Waiting<'s> {
+    ) -> Option<Waiting<'s>> {
         let mut found = Found::default();
         for (id, arrivals) in &self.sensors {
             for index in pass.batch * pass.gather_paths..(pass.batch + 1) * pass.gather_paths {
+                if pace.spend(RECORD_WORK).is_break() {
+                    return None;
+                }
                 let stream = id.index() as u64;
                 let mut sampler = Sampler::for_path(self.seed, PATH_STREAM + stream, index);
                 let Some(arrival) = arrivals.draw(&mut sampler) else { continue };
@@ -149,14 +157,24 @@ impl<'s> Gather<'s> {
                     emitters: &self.emitters,
                     sensor: *id,
                     bounce_limit: self.merging.unwrap_or(u32::MAX),
+                    pace: Some(pace),
                 };
                 let segments = follow(gathering, &arrival, &mut sampler, &mut collecting);
                 windows[0].segments += segments;
             }
         }
-        let records = Records::new(found.records, pass.window, &self.surfaces);
-        Waiting { paths: found.paths, records }
+        let records = Records::new(found.records, pass.window, &self.surfaces, pace)?;
+        Some(Waiting { paths: found.paths, records })
     }
+}
+
+/// What is beside the gather paths of a pass.
+#[derive(Clone, Copy)]
+struct Beside<'a> {
+    /// Flux of one photon of each source, lm or W.
+    photon_fluxes: &'a [f64],
+    /// What may stop them.
+    pace: &'a Pace<'a>,
 }
 
 /// Gather paths that have ended, and their records.

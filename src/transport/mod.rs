@@ -27,6 +27,7 @@ mod scatter;
 mod settings;
 mod shard;
 mod stages;
+mod stop;
 mod sums;
 mod tracks;
 mod walk;
@@ -46,10 +47,11 @@ pub use pilot::{Choice, Objection, Trial};
 pub use readings::{
     ClassSum, DEPTH_BINS, GROUPS, Group, Leak, Readings, SensorReading, Step, Trail,
 };
-pub use rounds::{Interrupt, Run, Slice, State, Unsliceable, batch_paths};
+pub use rounds::{Phase, Run, Slice, State, Unsliceable, batch_paths};
 pub use settings::GatherSettings;
 pub use shard::Shard;
 pub use stages::{Stage, Windows};
+pub use stop::{FIRST_BATCH_GRACE, Interrupt, StopSignal};
 pub use tracks::{Track, TrackEnd, tracks};
 pub use walk::{
     Carries, Collision, Departure, Event, ROULETTE_BELOW, Segment, Vertex, Visitor, walk,

@@ -16,6 +16,7 @@ use crate::scene::{Scene, SensorId, Source};
 use crate::tally::Tally;
 use crate::transport::emitters::invisible;
 use crate::transport::settings::PhotonPilot;
+use crate::transport::stop::StopSignal;
 use crate::transport::work;
 use serde::{Deserialize, Serialize};
 use trials::{Gathered, Trials, Tried};
@@ -89,21 +90,28 @@ pub enum Objection {
     Contradicted,
 }
 
-/// Tries the estimators on all sensors and chooses.
-pub(crate) fn choose(scene: &Scene, plan: &RunPlan, photons: PhotonPilot) -> Vec<Choice> {
+/// Tries the estimators on all sensors and chooses; `None` if that was stopped before anything was known. `watch` learns what is tried.
+pub(crate) fn choose(
+    scene: &Scene,
+    plan: &RunPlan,
+    photons: PhotonPilot,
+    signal: &StopSignal,
+    watch: &mut dyn FnMut(Estimator),
+) -> Option<Vec<Choice>> {
     let sensors: Vec<SensorId> = (0..scene.sensors.len()).map(SensorId::new).collect();
     let given = budget(plan, photons);
-    let choices = |budget: f64| {
+    let mut choices = |budget: f64| {
         let [least, most] = BOUNDS;
         let effort = 1e9 * (SHARE * budget).clamp(least, most) / TRIALS;
-        choices(&Trials { scene, plan, photons, sensors: &sensors, effort }, budget)
+        choices(&Trials { scene, plan, photons, sensors: &sensors, effort, signal }, budget, watch)
     };
     let Some(target) = &plan.stop.target else { return choices(given.unwrap_or(USUAL_BUDGET)) };
     let [least, _] = BOUNDS;
-    let first = choices(least / SHARE);
+    let first = choices(least / SHARE)?;
     let time = |choice: &Choice| choice.time(target.relative_error).unwrap_or(USUAL_BUDGET);
     let needed = first.iter().map(time).fold(0.0, f64::max).min(given.unwrap_or(f64::INFINITY));
-    if SHARE * needed > WORTH_ANOTHER * least { choices(needed) } else { first }
+    let second = if SHARE * needed > WORTH_ANOTHER * least { choices(needed) } else { None };
+    Some(second.unwrap_or(first))
 }
 
 /// What a run is given, in seconds of one thread of the reference machine; `None` where it has but a target.
@@ -114,17 +122,30 @@ fn budget(plan: &RunPlan, photons: PhotonPilot) -> Option<f64> {
     by_paths.into_iter().chain(by_time).reduce(f64::min)
 }
 
-/// Tries all that may be tried on each sensor, for a run of so many seconds.
-fn choices(trials: &Trials<'_>, budget: f64) -> Vec<Choice> {
+/// Tries all that may be tried on each sensor, for a run of so many seconds; `None` if that was stopped.
+fn choices(
+    trials: &Trials<'_>,
+    budget: f64,
+    watch: &mut dyn FnMut(Estimator),
+) -> Option<Vec<Choice>> {
     let Trials { scene, plan, sensors, .. } = trials;
     if sensors.is_empty() {
-        return Vec::new();
+        return Some(Vec::new());
     }
-    let forward = trials.forward();
+    watch(Estimator::Forward);
+    let forward = trials.forward()?;
     let can_meet = |source: &Source| invisible(source, scene).is_none();
-    let mix = if scene.sources.iter().any(can_meet) { trials.mix() } else { Vec::new() };
+    let mix = if scene.sources.iter().any(can_meet) {
+        watch(Estimator::Mix);
+        trials.mix()?
+    } else {
+        Vec::new()
+    };
     let (backward, gather) = if scene.sources.iter().all(can_meet) {
-        (trials.backward(), trials.gather())
+        watch(Estimator::Backward);
+        let backward = trials.backward()?;
+        watch(Estimator::Gather);
+        (backward, trials.gather()?)
     } else {
         (Vec::new(), Vec::new())
     };
@@ -144,7 +165,7 @@ fn choices(trials: &Trials<'_>, budget: f64) -> Vec<Choice> {
         let chosen = best(&tried, target.or_else(|| least_error(&tried, budget)));
         Choice { chosen, tried }
     };
-    sensors.iter().map(of_sensor).collect()
+    Some(sensors.iter().map(of_sensor).collect())
 }
 
 /// The relative error that the best reaches within a budget, s; `None` where none found anything.

@@ -234,9 +234,13 @@ impl Readings {
 
     /// A function of scalars for each group, as a tally: right for sums and differences.
     pub fn function(&self, f: impl Fn(&dyn Fn(usize) -> f64) -> f64) -> Tally {
-        Tally::of(
-            self.groups.iter().map(|group| f(&|slot| group.sums[slot] / group.batches as f64)),
-        )
+        let of_group = |group: &Group| f(&|slot| group.sums[slot] / group.batches as f64);
+        let first = self.groups.first().map(|group| group.batches);
+        if self.groups.iter().all(|group| Some(group.batches) == first) {
+            return Tally::of(self.groups.iter().map(of_group));
+        }
+        // A run that was stopped in a wave has more batches in some groups than in others.
+        Tally::weighted(self.groups.iter().map(|group| (of_group(group), group.batches)))
     }
 
     /// Any smooth function of mean scalars, with its standard error by the delete-one-group jackknife

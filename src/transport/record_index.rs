@@ -6,6 +6,7 @@
 
 use crate::transport::coverage::HEIGHT;
 use crate::transport::records::Slot;
+use crate::transport::stop::Pace;
 use crate::transport::window::Window;
 use glam::{DVec3, Vec3};
 use smallvec::SmallVec;
@@ -77,8 +78,12 @@ struct Entry {
 }
 
 impl Index {
-    /// Indexes records with a common widest window.
-    pub(crate) fn new(records: impl Iterator<Item = Indexed>, window: Window) -> Self {
+    /// Indexes records with a common widest window; `None` if that was stopped.
+    pub(crate) fn new(
+        records: impl Iterator<Item = Indexed>,
+        window: Window,
+        pace: &Pace<'_>,
+    ) -> Option<Self> {
         let lattice = Lattice::new(window);
         let mut placed: Vec<(u64, Entry)> = Vec::new();
         let mut farthest: f64 = 0.0;
@@ -90,17 +95,21 @@ impl Index {
                 point: record.point.as_vec3().to_array(),
                 dir: record.dir.as_vec3().to_array(),
             };
+            let before = placed.len();
             lattice.each_cell(&record, window, |hash| {
                 placed.push((hash, Entry { tag: tag(hash), ..own }));
             });
+            if pace.spend(1 + (placed.len() - before) as u32).is_break() {
+                return None;
+            }
         }
         let mask = placed.len().next_power_of_two() as u64 - 1;
-        let filter = Filter::new(&placed);
-        let (starts, entries) = sorted(placed, mask);
+        let filter = Filter::new(&placed, pace)?;
+        let (starts, entries) = sorted(placed, mask, pace)?;
         let reach = ball(window);
         let point_reach = reach + SINGLE_ROUNDING * (farthest + reach);
         let dir_reach = window.chord() + SINGLE_ROUNDING;
-        Self {
+        Some(Self {
             filter,
             lattice,
             mask,
@@ -108,7 +117,7 @@ impl Index {
             entries,
             point_reach_squared: point_reach.powi(2) as f32,
             dir_reach_squared: dir_reach.powi(2) as f32,
-        }
+        })
     }
 
     /// Whether there may be records near a photon.
@@ -151,11 +160,14 @@ impl Index {
     }
 }
 
-/// Entries in the order of their buckets, and where each bucket starts.
-fn sorted(placed: Vec<(u64, Entry)>, mask: u64) -> (Vec<u32>, Vec<Entry>) {
+/// Entries in the order of their buckets, and where each bucket starts; `None` if that was stopped.
+fn sorted(placed: Vec<(u64, Entry)>, mask: u64, pace: &Pace<'_>) -> Option<(Vec<u32>, Vec<Entry>)> {
     let mut starts = vec![0u32; mask as usize + 2];
     for (hash, _) in &placed {
         starts[(hash & mask) as usize + 1] += 1;
+        if pace.spend(1).is_break() {
+            return None;
+        }
     }
     let mut sum = 0;
     starts.iter_mut().for_each(|start| {
@@ -168,8 +180,11 @@ fn sorted(placed: Vec<(u64, Entry)>, mask: u64) -> (Vec<u32>, Vec<Entry>) {
         let place = &mut next[(hash & mask) as usize];
         entries[*place as usize] = entry;
         *place += 1;
+        if pace.spend(1).is_break() {
+            return None;
+        }
     }
-    (starts, entries)
+    Some((starts, entries))
 }
 
 /// A Bloom filter (Bloom, Commun. ACM 13 (1970) 422) of cells. The bits of a cell share a word, so that asking costs one
@@ -181,14 +196,18 @@ struct Filter {
 }
 
 impl Filter {
-    fn new(cells: &[(u64, Entry)]) -> Self {
+    /// `None` if it was stopped.
+    fn new(cells: &[(u64, Entry)], pace: &Pace<'_>) -> Option<Self> {
         let bits = (FILTER_BITS * cells.len()).next_power_of_two();
         let mut words = vec![0; bits.div_ceil(64)];
         for &(hash, _) in cells {
             let (word, bits) = Self::place(hash, words.len());
             words[word] |= bits;
+            if pace.spend(1).is_break() {
+                return None;
+            }
         }
-        Self { words }
+        Some(Self { words })
     }
 
     /// The word of a cell, of so many, and its bits.
@@ -320,6 +339,7 @@ mod tests {
     use super::*;
     use crate::math::uniform_sphere;
     use crate::rng::{Dimension, Sampler};
+    use crate::transport::StopSignal;
 
     /// Records on the cylinder of radius 5 mm about z, all on one surface.
     fn records(count: u32) -> Vec<Indexed> {
@@ -336,11 +356,15 @@ mod tests {
             .collect()
     }
 
+    fn indexed(records: impl Iterator<Item = Indexed>, window: Window) -> Index {
+        Index::new(records, window, &Pace::new(&StopSignal::default())).unwrap()
+    }
+
     #[test]
     fn a_look_up_finds_each_record_that_a_scan_finds_once() {
         let window = Window { radius: 1.2, theta_max: 0.4 };
         let all = records(3000);
-        let index = Index::new(all.iter().copied(), window);
+        let index = indexed(all.iter().copied(), window);
         let mut pairs = 0;
         for photon in records(6000).split_off(3000) {
             let near = |record: &&Indexed| {
@@ -363,7 +387,7 @@ mod tests {
     #[test]
     fn a_filter_lets_few_photons_through_that_meet_nothing() {
         let window = Window { radius: 0.3, theta_max: 0.05 };
-        let index = Index::new(records(500).into_iter(), window);
+        let index = indexed(records(500).into_iter(), window);
         let strangers = records(20_500).split_off(500);
         let through =
             strangers.iter().filter(|photon| index.may_hold(0, photon.point, photon.dir)).count();

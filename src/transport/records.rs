@@ -6,6 +6,7 @@ use crate::math::Aabb;
 use crate::optics::{Bsdf, VolumeScattering};
 use crate::scene::{MediumId, PrimId, Scene, SmoothId};
 use crate::transport::record_index::{Index, Indexed, Key, TOGETHER};
+use crate::transport::stop::Pace;
 use crate::transport::window::{NESTED, Window};
 use glam::DVec3;
 use smallvec::SmallVec;
@@ -120,8 +121,13 @@ struct Reach {
 }
 
 impl<'s> Records<'s> {
-    /// Indexes records with a common widest window.
-    pub(crate) fn new(all: Vec<GatherRecord<'s>>, window: Window, surfaces: &Surfaces) -> Self {
+    /// Indexes records with a common widest window; `None` if that was stopped.
+    pub(crate) fn new(
+        all: Vec<GatherRecord<'s>>,
+        window: Window,
+        surfaces: &Surfaces,
+        pace: &Pace<'_>,
+    ) -> Option<Self> {
         let nowhere = Reach { positions: Aabb::EMPTY, directions: Aabb::EMPTY };
         let everywhere = Aabb { min: DVec3::NEG_ONE, max: DVec3::ONE };
         let mut reach = vec![nowhere; surfaces.count + surfaces.media];
@@ -151,12 +157,12 @@ impl<'s> Records<'s> {
                 Some(indexed(id, record, NO_DIRECTION))
             }
         });
-        Self {
-            along: Index::new(along, window),
-            scattered: Index::new(scattered, window),
+        Some(Self {
+            along: Index::new(along, window, pace)?,
+            scattered: Index::new(scattered, window, pace)?,
             reach,
             all,
-        }
+        })
     }
 
     /// Whether a photon on a surface may belong to any record.

@@ -2,11 +2,12 @@
 
 use crate::optics::Spread;
 use crate::rng::Sampler;
-use crate::scene::plan::{GatherPlan, Schedule};
+use crate::scene::plan::{RunPlan, Schedule};
 use crate::scene::{Arrivals, Emission, Emitter, FaceId, On, Ray, Scene, SensorId};
 use crate::transport::emitters::{Emitters, Met};
 use crate::transport::follow::{Collector, Gathering, follow};
 use crate::transport::scatter::facing;
+use crate::transport::stop::{Pace, StopSignal};
 use crate::transport::{Departure, Path, Vertex, Window};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -57,19 +58,21 @@ pub(crate) struct PhotonPilot {
     pub(crate) segments_per_path: f64,
 }
 
-/// Settles how some sensors are gathered.
+/// Settles how some sensors are gathered; `None` if that was stopped.
 pub(crate) fn settle(
     scene: &Scene,
-    plan: &GatherPlan,
+    plan: &RunPlan,
     sensors: &[SensorId],
-    seed: u64,
     pilot: PhotonPilot,
-) -> GatherSettings {
+    signal: &StopSignal,
+) -> Option<GatherSettings> {
+    let (seed, plan) = (plan.seed, &plan.gather);
     let depth = plan.depth.unwrap_or_else(|| {
         // K/3 of the K surfaces that a photon meets.
         ((pilot.segments_per_path - 1.0) / 3.0).clamp(DEPTH[0], DEPTH[1]) as u32
     });
-    let Sounded { inradius, from_sources } = sound(scene, sensors, seed, depth);
+    let pace = Pace::new(signal);
+    let Sounded { inradius, from_sources } = sound(scene, sensors, (seed, depth), &pace)?;
     let source_radius = scene
         .sources
         .iter()
@@ -83,7 +86,7 @@ pub(crate) fn settle(
     let share = photons as f64 * pilot.segments_per_path * RECORD_SHARE / RECORD_SEGMENTS;
     let sensors = sensors.len().max(1) as u64;
     let gather_paths = plan.records.map_or(share as u64, |records| records) / sensors;
-    GatherSettings {
+    Some(GatherSettings {
         depth,
         window: Window {
             radius: plan.radius.unwrap_or(radius),
@@ -93,7 +96,7 @@ pub(crate) fn settle(
         photons,
         schedule: plan.schedule,
         inradius,
-    }
+    })
 }
 
 /// Half of the angular half-width of the narrowest source, or the scatter of the walls if that is more, rad. (Twice the
@@ -142,8 +145,13 @@ struct Sounded {
 }
 
 /// Sounds the vertices of pilot paths: half the way across the guide there, or the radius of a disk of the area of the
-/// face, whichever is less, and how far the sources are.
-fn sound(scene: &Scene, sensors: &[SensorId], seed: u64, depth: u32) -> Sounded {
+/// face, whichever is less, and how far the sources are. `None` if that was stopped.
+fn sound(
+    scene: &Scene,
+    sensors: &[SensorId],
+    (seed, depth): (u64, u32),
+    pace: &Pace<'_>,
+) -> Option<Sounded> {
     let emitters = Emitters::new(scene);
     let mut sounding = Sounding {
         scene,
@@ -153,8 +161,12 @@ fn sound(scene: &Scene, sensors: &[SensorId], seed: u64, depth: u32) -> Sounded 
     };
     for &sensor in sensors {
         let arrivals = Arrivals::new(scene, sensor);
-        let gathering = Gathering { scene, emitters: &emitters, sensor, bounce_limit: u32::MAX };
+        let (emitters, bounce_limit) = (&emitters, u32::MAX);
+        let gathering = Gathering { scene, emitters, sensor, bounce_limit, pace: Some(pace) };
         for index in 0..PILOT_PATHS {
+            if pace.spend(1).is_break() {
+                return None;
+            }
             let mut sampler = Sampler::for_path(seed, STREAM + sensor.index() as u64, index);
             if let Some(arrival) = arrivals.draw(&mut sampler) {
                 follow(gathering, &arrival, &mut sampler, &mut sounding);
@@ -163,14 +175,15 @@ fn sound(scene: &Scene, sensors: &[SensorId], seed: u64, depth: u32) -> Sounded 
     }
     // Without any vertex there is nothing to gather from, and any window will do.
     let size = scene.bounds.diagonal();
-    Sounded {
+    let sounded = Sounded {
         inradius: median(sounding.across).unwrap_or(0.1 * size),
         from_sources: sounding
             .distances
             .into_iter()
             .map(|of_one| median(of_one).unwrap_or(size))
             .collect(),
-    }
+    };
+    (!pace.is_stopped()).then_some(sounded)
 }
 
 fn median(mut found: Vec<f64>) -> Option<f64> {

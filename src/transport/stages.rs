@@ -52,13 +52,13 @@ pub(crate) struct StagesState {
     number: u32,
     first_batch: u64,
     sums: Sums<Windows>,
-    finished: Option<Stage>,
+    finished: Vec<Stage>,
 }
 
 impl StagesState {
     /// The only stage of a schedule without stages, with all that was counted.
     pub(crate) fn only(sums: Sums<Windows>) -> Self {
-        Self { number: 0, first_batch: 0, sums, finished: None }
+        Self { number: 0, first_batch: 0, sums, finished: Vec::new() }
     }
 }
 
@@ -84,13 +84,14 @@ pub(crate) struct Stages<'s> {
     /// The first batch of the stage in progress.
     first_batch: u64,
     sums: Sums<Windows>,
-    finished: Option<Stage>,
+    /// The last two finished stages.
+    finished: Vec<Stage>,
 }
 
 impl<'s> Stages<'s> {
     pub(crate) fn new(gather: Gather<'s>, settings: GatherSettings) -> Self {
         let sums = Sums::new();
-        Self { gather, settings, number: 0, first_batch: 0, sums, finished: None }
+        Self { gather, settings, number: 0, first_batch: 0, sums, finished: Vec::new() }
     }
 
     /// The pass of a batch, in the stage in progress.
@@ -126,9 +127,9 @@ impl<'s> Stages<'s> {
         }
     }
 
-    /// Whole passes of the stage in progress.
+    /// Passes of the stage in progress.
     pub(crate) fn passes(&self) -> u64 {
-        self.sums.batches_done()
+        self.sums.batches()
     }
 
     /// Takes what a pass has counted.
@@ -153,22 +154,22 @@ impl<'s> Stages<'s> {
         (self.sums, self.finished) = (sums, finished);
     }
 
-    pub(crate) fn end_wave(&mut self) {
-        self.sums.end_wave();
-    }
-
     /// Goes on to the next stage; the value comes from the one that ends here until the next is as good.
     pub(crate) fn next_stage(&mut self) {
-        self.finished = self.in_progress();
+        let ends = self.in_progress();
+        self.finished.drain(..self.finished.len().saturating_sub(1));
+        self.finished.extend(ends);
         self.first_batch += self.passes();
         self.number += 1;
         self.sums = Sums::new();
     }
 
-    /// The last finished stage and the one in progress, as far as it has whole waves of passes: at least one of them.
+    /// The stage in progress and the one before it. A stage without a pass does not count: a run that is stopped as it
+    /// begins reports what one reports that ends there.
     pub(crate) fn found(&self) -> Vec<Stage> {
-        let new = self.in_progress().filter(|_| self.finished.is_none() || self.passes() > 0);
-        self.finished.iter().cloned().chain(new).collect()
+        let new = self.in_progress();
+        let skipped = if new.is_some() { self.finished.len().saturating_sub(1) } else { 0 };
+        self.finished.iter().skip(skipped).cloned().chain(new).collect()
     }
 
     fn in_progress(&self) -> Option<Stage> {

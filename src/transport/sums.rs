@@ -50,52 +50,38 @@ impl Merge for Windows {
     }
 }
 
-/// Partial sums: of whole waves, and of the batches of a wave in progress.
+/// Partial sums of batches, larger ones first.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct Sums<T> {
-    done: Vec<T>,
-    wave: Vec<T>,
+    nodes: Vec<T>,
 }
 
 impl<T: Merge> Sums<T> {
     /// Nothing yet.
     pub(crate) fn new() -> Self {
-        Self { done: Vec::new(), wave: Vec::new() }
+        Self { nodes: Vec::new() }
     }
 
-    /// The sums of whole waves, from the nodes of the tree over all batches in their order, as [`fold_aligned`] makes
-    /// them.
+    /// The sums from the nodes of the tree over all batches in their order, as [`fold_aligned`] makes them.
     pub(crate) fn of_nodes(nodes: impl IntoIterator<Item = T>) -> Self {
-        let mut done = Vec::new();
-        nodes.into_iter().for_each(|node| fold_aligned(&mut done, node));
-        Self { done, wave: Vec::new() }
+        let mut aligned = Vec::new();
+        nodes.into_iter().for_each(|node| fold_aligned(&mut aligned, node));
+        Self { nodes: aligned }
     }
 
-    /// Adds a batch to the wave in progress.
+    /// Adds the next batch.
     pub(crate) fn push(&mut self, batch: T) {
-        fold(&mut self.wave, batch);
+        fold(&mut self.nodes, batch);
     }
 
-    /// Ends a wave.
-    pub(crate) fn end_wave(&mut self) {
-        self.wave.drain(..).for_each(|wave| fold(&mut self.done, wave));
+    /// Batches so far.
+    pub(crate) fn batches(&self) -> u64 {
+        self.nodes.iter().map(T::batch_count).sum()
     }
 
-    /// Batches of the wave in progress.
-    pub(crate) fn batches_of_wave(&self) -> u64 {
-        self.wave.iter().map(T::batch_count).sum()
-    }
-
-    /// Batches of whole waves.
-    pub(crate) fn batches_done(&self) -> u64 {
-        self.done.iter().map(T::batch_count).sum()
-    }
-
-    /// The sum over whole waves, so that all groups have equally many batches; in a first wave that was stopped, over
-    /// all of its batches so far. `None` before the first batch.
+    /// The sum over all batches; `None` before the first.
     pub(crate) fn total(&self) -> Option<T> {
-        let partial = if self.done.is_empty() { &self.wave } else { &self.done };
-        let mut partial = partial.iter().rev();
+        let mut partial = self.nodes.iter().rev();
         let mut sum = partial.next()?.clone();
         // The right edge of the tree: smaller subtrees join the larger ones on their left.
         for left in partial {
@@ -162,7 +148,6 @@ mod tests {
         for total in [1, 7, 8, 13, 32] {
             let mut whole = Sums::new();
             (0..total).for_each(|index| whole.push(batch(index)));
-            whole.end_wave();
             for parts in [1, 2, 3, 5, 16] {
                 let edge = |part: u64| total * part / parts;
                 let nodes = (0..parts).flat_map(|part| {

@@ -244,7 +244,7 @@ fn a_run_to_a_target_goes_on_to_windows_small_enough_for_it() {
     let mut job = load(FOLD.text, Way::Gather(window));
     let target = Target { measure: MEASURE.to_owned(), relative_error: 0.03 };
     job.run.stop = StopRules { target: Some(target), ..StopRules::default() };
-    let traced = pipeline::trace(&job, &Interrupt::default(), &mut |_| {});
+    let traced = pipeline::trace(&job, &Interrupt::default(), &mut |_| {}).unwrap();
     let reached = measure::value_of(&job.scene, &traced.findings, MEASURE).unwrap();
     let stages = traced.findings.gathered.unwrap().stages;
     println!("{reached}, up to stage {}", stages.last().unwrap().number);

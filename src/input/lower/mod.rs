@@ -85,13 +85,14 @@ pub(crate) fn lower(spec: &SceneSpec, places: &Places, problems: &mut Problems) 
     context.lower_sources();
     context.lower_light_groups();
     context.lower_sensors();
-    let run = plan::run(spec);
+    let mut run = plan::run(spec);
     let checks = spec.check.iter().map(plan::check).collect();
     let meshes = context.meshes;
     if !context.problems.is_free_of_errors() {
         return None;
     }
     let mut scene = context.builder.build();
+    run.sensor_estimators = plan::sensor_estimators(spec, &scene);
     starts::settle_starts(&mut scene);
     starts::note_joints(spec, &scene, &context.faces, context.problems);
     starts::check_starts(spec, &scene, context.problems);

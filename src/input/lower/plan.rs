@@ -3,9 +3,13 @@
 use crate::input::keys::Key;
 use crate::input::problems::{Problems, name_hint};
 use crate::input::spec::SceneSpec;
-use crate::input::spec::run::{CheckSpec, EstimatorSpec, GatherSpec, ScheduleSpec};
-use crate::scene::Scene;
-use crate::scene::plan::{Check, GatherPlan, Request, RunPlan, Schedule, StopRules, Target};
+use crate::input::spec::run::{
+    CheckSpec, EstimatorSpec, GatherSpec, ScheduleSpec, SensorEstimatorSpec,
+};
+use crate::scene::plan::{
+    Check, Estimator, GatherPlan, Request, RunPlan, Schedule, StopRules, Target,
+};
+use crate::scene::{Scene, Sensor};
 use std::time::Duration;
 
 /// Paths of a run that names no stop rule.
@@ -20,17 +24,33 @@ pub(super) fn run(spec: &SceneSpec) -> RunPlan {
     let none = run.paths.is_none() && run.time_s.is_none() && target.is_none();
     RunPlan {
         estimator: request(run.estimator),
+        sensor_estimators: Vec::new(),
         gather: gather(&run.gather),
         seed: run.seed,
         bounce_limit: run.bounce_limit,
         batch_paths: None,
         stop: StopRules {
             paths: if none { Some(DEFAULT_PATHS) } else { run.paths },
+            batches: run.batches,
             // Validated as positive; a time beyond what a clock can hold is no limit.
             time: run.time_s.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok()),
             target,
         },
     }
+}
+
+/// The estimators that sensors ask for themselves, in the order of the scene.
+pub(super) fn sensor_estimators(spec: &SceneSpec, scene: &Scene) -> Vec<Option<Estimator>> {
+    let of_sensor = |sensor: &Sensor| {
+        spec.sensors.get(&sensor.name)?.estimator.map(|estimator| match estimator {
+            SensorEstimatorSpec::Forward => Estimator::Forward,
+            SensorEstimatorSpec::Backward => Estimator::Backward,
+            SensorEstimatorSpec::Mix => Estimator::Mix,
+            SensorEstimatorSpec::Gather => Estimator::Gather,
+            SensorEstimatorSpec::Mis => Estimator::Mis,
+        })
+    };
+    scene.sensors.iter().map(of_sensor).collect()
 }
 
 /// How flux is to be estimated.

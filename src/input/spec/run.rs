@@ -8,11 +8,15 @@ use serde::{Deserialize, Serialize};
 /// 2 000 000 paths.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RunSpec {
-    /// Number of paths.
+    /// Number of paths: photon paths from the sources, and gather paths from the sensors where the estimator has them.
+    /// Rounded up to whole waves, of 128 batches or of 16 passes of gathering (some million paths each wave).
     #[schemars(range(min = 1))]
     pub paths: Option<u64>,
-    /// Time. Another run of the same time differs; the report says how many paths it did, and `paths` with that number
-    /// repeats it where the estimator is named: what `auto` chooses may hang on how long a run is to be.
+    /// Number of batches, or passes of gathering, into which `paths` are divided: the run ends after exactly so many. For
+    /// repeating a run that was stopped; its report says which number. Omitted: whole waves of 128 batches or 16 passes.
+    #[schemars(range(min = 1))]
+    pub batches: Option<u64>,
+    /// Time, with the pilot of `auto`. Another run of the same time differs; the report gives the command that repeats it.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub time_s: Option<f64>,
     /// Uncertainty to reach.
@@ -36,6 +40,7 @@ impl Default for RunSpec {
     fn default() -> Self {
         Self {
             paths: None,
+            batches: None,
             time_s: None,
             target: None,
             seed: seed(),
@@ -73,6 +78,22 @@ pub enum EstimatorSpec {
     Gather,
     /// Forward, backward and gather at once, weighed path by path (multiple importance sampling); for scenes whose
     /// finishes do not scatter.
+    Mis,
+}
+
+/// How flux is estimated on one sensor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SensorEstimatorSpec {
+    /// Photon paths from the sources, counted by the sensor.
+    Forward,
+    /// Gather paths from the sensor, followed until they meet a source.
+    Backward,
+    /// Forward and backward at once, weighed path by path.
+    Mix,
+    /// Gather paths from the sensor that end in records, and photon paths that are gathered there.
+    Gather,
+    /// Forward, backward and gather at once; only where no other sensor may be gathered without it.
     Mis,
 }
 

@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::input::spec::placement::PlacementSpec;
+use crate::input::spec::run::SensorEstimatorSpec;
 use crate::input::spec::sweep::{CircleSpec, RectangleSpec};
 
 /// A sensor; exactly one of `plane`, `goniometer`, `luminance` and `image`.
@@ -39,6 +40,8 @@ pub struct SensorSpec {
     /// Whether the sensor absorbs what it counts. Only for a `plane` that is not `on` a face.
     #[serde(default)]
     pub absorbing: bool,
+    /// How its flux is estimated. Omitted: as `run.estimator` or `--estimator` says for all sensors; this key goes over both.
+    pub estimator: Option<SensorEstimatorSpec>,
     /// The port, as `NAME.FACE`, against whose entering flux `transmission` is counted.
     pub entering: Option<String>,
 }

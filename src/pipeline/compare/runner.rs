@@ -6,7 +6,7 @@ use crate::pipeline::compare::{Bench, Method};
 use crate::report::Sample;
 use crate::scene::Scene;
 use crate::scene::plan::Request;
-use crate::transport::{BaselineRun, Findings, Run};
+use crate::transport::{BaselineRun, Findings, Run, StopSignal};
 use std::time::{Duration, Instant};
 
 /// A run to be done.
@@ -39,17 +39,18 @@ pub(super) struct Estimate {
 pub(super) fn trace(bench: &Bench<'_>, stint: &Stint<'_>) -> Result<Traced> {
     let Stint { method, run, checkpoints } = *stint;
     let start = Instant::now();
-    let mut runner = Runner::new(bench, method, run);
+    let interrupted = || Error::Usage("interrupted: nothing was written".into());
+    let mut runner = Runner::new(bench, method, run).ok_or_else(interrupted)?;
     let mut spent = start.elapsed();
     let mut samples: Vec<Option<Sample>> = vec![None; checkpoints.len()];
     let mut last: Option<(Sample, Estimate)> = None;
     loop {
-        if bench.interrupt.is_raised() {
-            return Err(Error::Usage("interrupted: nothing was written".into()));
-        }
         let start = Instant::now();
         runner.next_piece(&bench.job.scene);
         spent += start.elapsed();
+        if bench.interrupt.is_raised() {
+            return Err(interrupted());
+        }
         let is_over = checkpoints.last().is_none_or(|end| spent >= *end);
         let place = checkpoints.iter().rposition(|checkpoint| *checkpoint <= spent);
         let is_due = is_over || place.is_some_and(|place| samples[place].is_none());
@@ -80,18 +81,21 @@ enum Runner<'s> {
 }
 
 impl<'s> Runner<'s> {
-    fn new(bench: &Bench<'s>, method: Method, run: u64) -> Self {
-        match method {
+    /// `None` if it was interrupted.
+    fn new(bench: &Bench<'s>, method: Method, run: u64) -> Option<Self> {
+        Some(match method {
             Method::Run(request) => {
-                let run = Box::new(Run::new(&bench.job.scene, &bench.plan(request, run)));
-                Self::Run { round_end: run.round_end(), run }
+                let signal = StopSignal::new(bench.interrupt, None);
+                let plan = bench.plan(request, run);
+                let run = Run::start(&bench.job.scene, &plan, &signal, &mut |_| ())?;
+                Self::Run { round_end: run.round_end(), run: Box::new(run) }
             }
             Method::Baseline(baseline) => {
                 let plan = bench.plan(Request::Forward, run);
                 let run = BaselineRun::new(&bench.job.scene, bench.id, &plan, baseline);
                 Self::Baseline(Box::new(run))
             }
-        }
+        })
     }
 
     fn next_piece(&mut self, scene: &Scene) {

@@ -96,7 +96,6 @@ impl<'s> BaselineRun<'s> {
             (self.batches..batches).into_par_iter().map(|batch| self.work.batch(batch)).collect();
         for batch in traced {
             self.sums.push(batch.readings);
-            self.sums.end_wave();
             self.cut.add(batch.cut);
         }
         self.batches = self.batches.max(batches);
@@ -158,7 +157,7 @@ impl<'s> OneSensor<'s> {
     /// What its gather paths have in common, up to a depth.
     fn gathering(&self, bounce_limit: u32) -> Gathering<'_, 's> {
         let Self { scene, emitters, id: sensor, .. } = self;
-        Gathering { scene, emitters, sensor: *sensor, bounce_limit }
+        Gathering { scene, emitters, sensor: *sensor, bounce_limit, pace: None }
     }
 
     /// The etendue that a gather path stands for, mm² sr.

@@ -19,6 +19,7 @@ use crate::transport::record_index::Key;
 use crate::transport::records::{GatherRecord, Records, Surfaces, Wanted};
 use crate::transport::scatter::facing;
 use crate::transport::settings::{PhotonPilot, settle};
+use crate::transport::stop::{Pace, StopSignal};
 use crate::transport::{Departure, Path, Readings, Vertex, Window};
 use smallvec::SmallVec;
 use std::ops::ControlFlow;
@@ -49,11 +50,13 @@ pub(super) struct Sppm<'s> {
 impl<'s> Sppm<'s> {
     pub(super) fn new(sensor: OneSensor<'s>, plan: &RunPlan) -> Self {
         let (scene, seed) = (sensor.scene, plan.seed);
-        let pilot = Forward::new(scene, seed, plan.bounce_limit.min(10_000), 64).batch(0);
+        let pilot = Forward::new(scene, seed, plan.bounce_limit.min(10_000), 64);
+        let pilot = pilot.batch(0, &StopSignal::default()).expect("nothing stops it");
         let segments = pilot.segments.div_ceil(pilot.paths().max(1)).max(1);
         let photons = (PASS_BATCHES * BATCH_SEGMENTS / segments).max(256);
         let pilot = PhotonPilot { segments_per_path: segments as f64 };
-        let window = settle(scene, &plan.gather, &[sensor.id], seed, pilot).window;
+        let settings = settle(scene, plan, &[sensor.id], pilot, &StopSignal::default());
+        let window = settings.expect("nothing stops it").window;
         Self {
             surfaces: Surfaces::new(scene),
             forward: Forward::new(scene, seed, plan.bounce_limit, photons),
@@ -74,11 +77,15 @@ impl<'s> Sppm<'s> {
             self.gather(index, window, &mut waiting, &mut readings);
         }
         let Waiting { cells, records } = waiting;
-        let records = Records::new(records, window, &self.surfaces);
+        let signal = StopSignal::default();
+        let pace = Pace::new(&signal);
+        let records =
+            Records::new(records, window, &self.surfaces, &pace).expect("nothing stops it");
         let nested = NestedWindows::new(window);
         let mut stream =
             Stream { sppm: self, nested, records: &records, cells, readings: &mut readings };
-        let photons = self.forward.batch_watched(batch, &mut stream);
+        let photons =
+            self.forward.batch_watched(batch, &mut stream, &pace).expect("nothing stops it");
         readings.segments += photons.segments;
         readings.close_batch();
         readings

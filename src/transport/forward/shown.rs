@@ -3,6 +3,7 @@
 use crate::rng::Sampler;
 use crate::scene::{SensorId, SourceId};
 use crate::transport::forward::{Counter, Detected, Forward, PhotonWatcher};
+use crate::transport::stop::{Pace, StopSignal};
 use crate::transport::{Event, Path, Readings, Vertex, Visitor, walk};
 use std::ops::ControlFlow;
 
@@ -45,7 +46,9 @@ impl Forward<'_> {
     ) -> Vec<SensorId> {
         let mut met = Met::default();
         let readings = Readings::of_batch(self.scene, &self.layout, self.seed, 1, 0);
-        let mut counter = Counter::new(self, readings, &mut met);
+        let signal = StopSignal::default();
+        let pace = Pace::new(&signal);
+        let mut counter = Counter::new(self, readings, &mut met, &pace);
         counter.source = source;
         walk(self.scene, path, self.bounce_limit, sampler, &mut Shown { counter, see });
         met.0

@@ -10,6 +10,7 @@ use crate::scene::{
 };
 use crate::tally::sigmas;
 use crate::transport::forward::{Detected, Forward, PhotonWatcher};
+use crate::transport::stop::{Pace, StopSignal};
 use crate::transport::{Departure, Path, Readings, Run, Vertex};
 use crate::units::FluxUnit;
 use glam::DVec3;
@@ -76,6 +77,7 @@ fn mirror_tube(reflectance: f64, length: f64) -> Scene {
 fn run(scene: &Scene, paths: u64) -> Readings {
     let plan = RunPlan {
         estimator: Request::Forward,
+        sensor_estimators: Vec::new(),
         gather: GatherPlan::default(),
         seed: 1,
         bounce_limit: 100_000,
@@ -157,7 +159,10 @@ impl PhotonWatcher for Onlooker {
 fn two_who_watch_the_same_photons_see_the_same() {
     let scene = mirror_tube(0.95, 20.0);
     let (mut first, mut second) = (Onlooker::default(), Onlooker::default());
-    Forward::new(&scene, 1, 1000, 500).batch_watched(0, &mut (&mut first, &mut second));
+    let signal = StopSignal::default();
+    let pace = Pace::new(&signal);
+    let forward = Forward::new(&scene, 1, 1000, 500);
+    forward.batch_watched(0, &mut (&mut first, &mut second), &pace).unwrap();
     assert_eq!(first, second);
     assert_eq!(first.started, 500);
     assert!(first.detected > 100 && first.arrived > 500 && first.departed > 500, "{first:?}");

@@ -11,6 +11,7 @@ use crate::transport::gather::{Ended, Gather, Pass, Waiting};
 use crate::transport::merge::Etendues;
 use crate::transport::readings::Counted;
 use crate::transport::record_index::{Key, TOGETHER};
+use crate::transport::stop::Pace;
 use crate::transport::window::{COUNTED, ESTIMATES, estimates};
 use crate::transport::work::RecordWork;
 use crate::transport::{Collision, Path, Readings, Vertex};
@@ -21,6 +22,7 @@ pub(super) struct Stream<'p, 's> {
     pub(super) gather: &'p Gather<'s>,
     nested: NestedWindows,
     waiting: &'p Waiting<'s>,
+    pace: &'p Pace<'p>,
     pub(super) windows: &'p mut [Readings; ESTIMATES],
     /// Photons to be looked up, and by what.
     passing: Vec<Passing>,
@@ -88,7 +90,7 @@ impl<'p, 's> Stream<'p, 's> {
     pub(super) fn new(
         gather: &'p Gather<'s>,
         pass: Pass,
-        waiting: &'p Waiting<'s>,
+        (waiting, pace): (&'p Waiting<'s>, &'p Pace<'p>),
         windows: &'p mut [Readings; ESTIMATES],
     ) -> Self {
         Self {
@@ -96,6 +98,7 @@ impl<'p, 's> Stream<'p, 's> {
             nested: NestedWindows::new(pass.window),
             work: RecordWork { records: waiting.records.all.len() as u64, ..RecordWork::default() },
             waiting,
+            pace,
             windows,
             passing: Vec::with_capacity(TOGETHER),
             keys: Vec::with_capacity(TOGETHER),
@@ -140,12 +143,15 @@ impl<'p, 's> Stream<'p, 's> {
     fn look_up(&mut self) {
         let Gather { scene, layout, .. } = self.gather;
         let (nested, windows, work) = (&self.nested, &mut *self.windows, &mut self.work);
-        let (passing, keys) = (&self.passing, &self.keys);
+        let (passing, keys, pace) = (&self.passing, &self.keys, self.pace);
         work.look_ups += passing.len() as u64;
         // Most photons that pass the filter are near no record after all: one bit for each that is.
         let mut near = 0u64;
         let mut known: Option<(usize, Arriving)> = None;
         self.waiting.records.visit(keys, |index, record| {
+            if pace.spend(1).is_break() {
+                return;
+            }
             let photon = &passing[index];
             let met = match known {
                 Some((last, met)) if last == index => met,

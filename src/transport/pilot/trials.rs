@@ -12,6 +12,7 @@ use crate::transport::pilot::Trial;
 use crate::transport::readings::Readings;
 use crate::transport::settings::{PhotonPilot, settle};
 use crate::transport::stages::FIRST_PASSES;
+use crate::transport::stop::{Pace, StopSignal};
 use crate::transport::work::{self, RecordWork};
 use rayon::prelude::*;
 
@@ -36,6 +37,8 @@ pub(super) struct Trials<'a> {
     pub(super) sensors: &'a [SensorId],
     /// Work for each estimator.
     pub(super) effort: f64,
+    /// What may stop it.
+    pub(super) signal: &'a StopSignal,
 }
 
 /// A trial, and the flux it found, batch by batch: in all, and of each source.
@@ -53,52 +56,56 @@ pub(super) struct Gathered {
     pub(super) apart: Tally,
 }
 
+/// Trials that were stopped give `None`.
 impl Trials<'_> {
     /// Photons counted by the sensors.
-    pub(super) fn forward(&self) -> Vec<Tried> {
+    pub(super) fn forward(&self) -> Option<Vec<Tried>> {
         let forward = self.photons_for(self.effort);
-        let batches: Vec<Readings> =
-            (0..BATCHES).into_par_iter().map(|batch| forward.batch(batch)).collect();
+        let traced = |batch| forward.batch(batch, self.signal);
+        let batches: Option<Vec<Readings>> = (0..BATCHES).into_par_iter().map(traced).collect();
+        let batches = batches?;
         let work = batches.iter().map(work::of_photons).sum();
-        self.judged(&batches, work, Estimator::Forward)
+        Some(self.judged(&batches, work, Estimator::Forward))
     }
 
     /// Gather paths that meet the sources.
-    pub(super) fn backward(&self) -> Vec<Tried> {
-        let backward = self.gather_paths_for(self.effort);
+    pub(super) fn backward(&self) -> Option<Vec<Tried>> {
+        let backward = self.gather_paths_for(self.effort)?;
         let traced = |batch| {
-            let mut readings = backward.batch(batch, &[]);
+            let mut readings = backward.batch(batch, &[], self.signal)?;
             readings.close_batch();
-            readings
+            Some(readings)
         };
-        let batches: Vec<Readings> = (0..BATCHES).into_par_iter().map(traced).collect();
-        self.judged(&batches, self.work_of_one(&backward, &batches), Estimator::Backward)
+        let batches: Option<Vec<Readings>> = (0..BATCHES).into_par_iter().map(traced).collect();
+        let batches = batches?;
+        Some(self.judged(&batches, self.work_of_one(&backward, &batches), Estimator::Backward))
     }
 
     /// Photons and gather paths with half of the work each.
-    pub(super) fn mix(&self) -> Vec<Tried> {
+    pub(super) fn mix(&self) -> Option<Vec<Tried>> {
         let half = 0.5 * self.effort;
         let forward = self.photons_for(half);
-        let backward = self.gather_paths_for(half).mixed(self.sensors);
+        let backward = self.gather_paths_for(half)?.mixed(self.sensors);
         let photon_fluxes = forward.photon_fluxes();
         let traced = |batch| {
-            let mut readings = backward.batch(batch, &photon_fluxes);
+            let mut readings = backward.batch(batch, &photon_fluxes, self.signal)?;
             let mut mixing = Mixing::new(&backward, &photon_fluxes, &mut readings);
-            let photons = forward.batch_watched(batch, &mut mixing);
+            let pace = Pace::new(self.signal);
+            let photons = forward.batch_watched(batch, &mut mixing, &pace)?;
             readings.close_batch();
-            (work::of_photons(&photons), readings)
+            Some((work::of_photons(&photons), readings))
         };
-        let (by_photons, batches): (Vec<f64>, Vec<Readings>) =
-            (0..BATCHES).into_par_iter().map(traced).unzip();
+        let both: Option<Vec<(f64, Readings)>> = (0..BATCHES).into_par_iter().map(traced).collect();
+        let (by_photons, batches): (Vec<f64>, Vec<Readings>) = both?.into_iter().unzip();
         let work = by_photons.iter().sum::<f64>() + self.work_of_one(&backward, &batches);
-        self.judged(&batches, work, Estimator::Mix)
+        Some(self.judged(&batches, work, Estimator::Mix))
     }
 
     /// Passes that are smaller than those of a run by one factor in photons and gather paths, and what those of the run
     /// would cost: pairs, and with them the work they make, grow with the square of that factor.
-    pub(super) fn gather(&self) -> Vec<Gathered> {
-        let Self { scene, plan, photons: pilot, sensors, effort } = *self;
-        let settings = settle(scene, &plan.gather, sensors, plan.seed, pilot);
+    pub(super) fn gather(&self) -> Option<Vec<Gathered>> {
+        let Self { scene, plan, photons: pilot, sensors, effort, signal } = *self;
+        let settings = settle(scene, plan, sensors, pilot, signal)?;
         let gather = Gather::new(scene, sensors, plan.seed ^ SEED, settings.depth);
         let by_photons = settings.photons as f64 * work::of_photon_path(pilot.segments_per_path);
         let all = (settings.gather_paths * gather.sensors()) as f64;
@@ -107,10 +114,12 @@ impl Trials<'_> {
         let scaled = |count: u64| ((part * count as f64).ceil() as u64).max(1);
         let forward = self.photons_of(scaled(settings.photons));
         let (window, gather_paths) = (settings.window, scaled(settings.gather_paths));
-        let passes: Vec<PassReadings> = (0..PASSES)
+        let pass = |batch| Pass { batch, window, gather_paths };
+        let passes: Option<Vec<PassReadings>> = (0..PASSES)
             .into_par_iter()
-            .map(|batch| gather.pass(&forward, Pass { batch, window, gather_paths }, &mut ()))
+            .map(|batch| gather.pass(&forward, pass(batch), &mut (), signal))
             .collect();
+        let passes = passes?;
         let [wide, values, apart] = [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [1.0, -1.0, 0.0]]
             .map(|factors| combined(&passes, factors));
         let gathered = gather_paths * gather.sensors();
@@ -131,7 +140,7 @@ impl Trials<'_> {
             trial.cost = trial.cost.map(of_pass);
             Gathered { tried: Tried { flux, ..tried }, apart }
         });
-        judged.collect()
+        Some(judged.collect())
     }
 
     /// Batches of photons that take so much work in all.
@@ -141,11 +150,12 @@ impl Trials<'_> {
     }
 
     /// Batches of gather paths of all sensors that take so much work in all.
-    fn gather_paths_for(&self, effort: f64) -> Backward<'_> {
-        let Self { scene, plan, sensors, .. } = *self;
+    fn gather_paths_for(&self, effort: f64) -> Option<Backward<'_>> {
+        let Self { scene, plan, sensors, signal, .. } = *self;
         let backward = Backward::new(scene, sensors, plan.seed ^ SEED, plan.bounce_limit);
-        let paths = effort / BATCHES as f64 / sensors.len() as f64 / backward.work_of_path();
-        backward.with_paths(paths as u64)
+        let work = backward.work_of_path(signal)?;
+        let paths = effort / BATCHES as f64 / sensors.len() as f64 / work;
+        Some(backward.with_paths(paths as u64))
     }
 
     /// Work of the gather paths of each sensor: alone it would have had its share.

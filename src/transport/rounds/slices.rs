@@ -4,7 +4,7 @@
 //! of this tree that lie in it; all slices together have what the run itself would have folded.
 
 use crate::scene::plan::Schedule;
-use crate::transport::rounds::{Batch, Interrupt, PIECE_BATCHES, Run, State};
+use crate::transport::rounds::{Batch, PIECE_BATCHES, Run, State};
 use crate::transport::sums::fold_aligned;
 use crate::transport::{Readings, Windows};
 use rayon::prelude::*;
@@ -42,18 +42,15 @@ impl Run<'_> {
             return Err(Unsliceable::Stages);
         }
         let asked = self.paths_asked.ok_or(Unsliceable::OpenEnd)?;
+        if let Some(batches) = self.batches_asked {
+            return Ok(batches);
+        }
         Ok(asked.div_ceil(self.wave_batches * self.batch_paths()) * self.wave_batches)
     }
 
-    /// Traces some batches of a run that has `of` in all. `watch` is told how many are done, and `None` comes back when
-    /// the run was interrupted.
-    pub fn slice(
-        &self,
-        batches: Range<u64>,
-        of: u64,
-        interrupt: &Interrupt,
-        watch: &mut dyn FnMut(u64),
-    ) -> Option<Slice> {
+    /// Traces some batches of a run that has `of` in all. `watch` learns how many are done. `None` if the signal stopped
+    /// it.
+    pub fn slice(&self, batches: Range<u64>, of: u64, watch: &mut dyn FnMut(u64)) -> Option<Slice> {
         let mut slice = Slice {
             batches: batches.clone(),
             of,
@@ -65,13 +62,10 @@ impl Run<'_> {
         let piece = per_thread * rayon::current_num_threads() as u64;
         let mut first = batches.start;
         while first < batches.end {
-            if interrupt.is_raised() {
-                return None;
-            }
             let end = (first + piece).min(batches.end);
-            let traced: Vec<Batch> =
-                (first..end).into_par_iter().map(|batch| self.batch(batch)).collect();
-            traced.into_iter().for_each(|batch| slice.add(batch));
+            let traced: Option<Vec<Batch>> =
+                (first..end).into_par_iter().map(|batch| self.batch(batch, &self.signal)).collect();
+            traced?.into_iter().for_each(|batch| slice.add(batch));
             first = end;
             watch(first - batches.start);
         }
@@ -87,7 +81,7 @@ impl Run<'_> {
             backward.extend(slice.backward);
             windows.extend(slice.windows);
         }
-        self.state_after(batches / self.wave_batches, photons, backward, windows)
+        self.state_after(batches, photons, backward, windows)
     }
 
     /// Paths of so many batches.

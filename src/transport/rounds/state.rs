@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// How far a run has come: everything counted, a wave in progress included. All else follows from scene and plan.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct State {
-    waves: u64,
+    batches: u64,
     paths: u64,
     photons: Sums<Readings>,
     backward: Option<Sums<Readings>>,
@@ -20,7 +20,7 @@ impl Run<'_> {
     /// How far it has come.
     pub fn state(&self) -> State {
         State {
-            waves: self.waves,
+            batches: self.batches,
             paths: self.paths,
             photons: self.photons.clone(),
             backward: self.backward.as_ref().map(|(_, sums)| sums.clone()),
@@ -30,8 +30,8 @@ impl Run<'_> {
 
     /// Goes on from the state of a run of the same scene and plan, to the same bits.
     pub fn go_on_from(&mut self, state: State) {
-        let State { waves, paths, photons, backward, stages } = state;
-        (self.waves, self.paths, self.photons) = (waves, paths, photons);
+        let State { batches, paths, photons, backward, stages } = state;
+        (self.batches, self.paths, self.photons) = (batches, paths, photons);
         if let (Some((_, own)), Some(sums)) = (&mut self.backward, backward) {
             *own = sums;
         }
@@ -40,17 +40,17 @@ impl Run<'_> {
         }
     }
 
-    /// The state after all waves, from what slices have counted.
+    /// The state after all batches, from what slices have counted.
     pub(super) fn state_after(
         &self,
-        waves: u64,
+        batches: u64,
         photons: Vec<Readings>,
         backward: Vec<Readings>,
         windows: Vec<Windows>,
     ) -> State {
         State {
-            waves,
-            paths: waves * self.wave_batches * self.batch_paths(),
+            batches,
+            paths: batches * self.batch_paths(),
             photons: Sums::of_nodes(photons),
             backward: self.backward.as_ref().map(|_| Sums::of_nodes(backward)),
             stages: self.stages.as_ref().map(|_| StagesState::only(Sums::of_nodes(windows))),

@@ -1,0 +1,72 @@
+//! The command that repeats a run which the clock or the user has ended.
+
+use crate::input::Job;
+use crate::input::keys::Key;
+use crate::pipeline::Stop;
+use crate::transport::Findings;
+
+/// The command that comes to the same numbers without a pilot and without a clock; `None` for a run that its own scene
+/// repeats.
+pub(super) fn command(job: &Job, findings: &Findings, stop: Stop) -> Option<String> {
+    match stop {
+        Stop::Time | Stop::Interrupted => {}
+        Stop::Paths | Stop::Target | Stop::Bias | Stop::Dark => return None,
+    }
+    let mut words = vec!["lumiduct".into(), "run".into(), format!("{}.toml", job.name)];
+    let mut define = |setting: String| words.extend(["-D".to_owned(), setting]);
+    job.settings.overrides.iter().cloned().for_each(&mut define);
+    for (sensor, estimator) in job.scene.sensors.iter().zip(&findings.estimators) {
+        let key = Key::of(&["sensors", &sensor.name, "estimator"]);
+        define(format!("{key}={}", estimator.name()));
+    }
+    define(format!("run.batches={}", findings.photons.batch_count()));
+    let gather = &job.settings.gather;
+    let flags = [
+        ("--depth", gather.depth.map(|depth| depth.to_string())),
+        ("--radius-mm", gather.radius_mm.map(|radius| radius.to_string())),
+        ("--angle-deg", gather.angle_deg.map(|angle| angle.to_string())),
+        ("--records", gather.records.map(|records| records.to_string())),
+        ("--photons", gather.photons.map(|photons| photons.to_string())),
+        ("--schedule", gather.schedule.map(|schedule| schedule.name().to_owned())),
+        ("--seed", job.settings.seed.map(|seed| seed.to_string())),
+        // Where windows shrink depends on the target.
+        (
+            "--target",
+            job.run
+                .stop
+                .target
+                .as_ref()
+                .map(|target| format!("{}%", 100.0 * target.relative_error)),
+        ),
+        ("--paths", Some(findings.paths.to_string())),
+    ];
+    for (flag, value) in flags {
+        words.extend(value.into_iter().flat_map(|value| [flag.to_owned(), value]));
+    }
+    Some(words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" "))
+}
+
+/// A word as a POSIX shell takes it.
+fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "._-=/%+,:".contains(c);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', "'\\''"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_come_through_a_shell() {
+        assert_eq!(
+            quoted("solids.rod.cylinder.length_mm=1.5"),
+            "solids.rod.cylinder.length_mm=1.5"
+        );
+        assert_eq!(quoted("title=it's [1, 2]"), "'title=it'\\''s [1, 2]'");
+        assert_eq!(quoted(""), "''");
+    }
+}

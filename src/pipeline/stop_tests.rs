@@ -1,0 +1,140 @@
+//! Runs that are stopped at a given look at the signal, wherever that is: in the pilot, in a batch, in a path.
+
+use super::tests::job;
+use super::*;
+use crate::input::GatherSettings;
+
+/// The short rod by one estimator, in small batches or passes, with a plan for more than is traced.
+fn settings(estimator: Request) -> Settings {
+    Settings {
+        estimator: Some(estimator),
+        gather: GatherSettings {
+            depth: Some(0),
+            radius_mm: Some(1.0),
+            angle_deg: Some(20.0),
+            records: Some(300),
+            photons: Some(500),
+            schedule: None,
+        },
+        paths: Some(60_000),
+        batch_paths: Some(40),
+        ..Settings::default()
+    }
+}
+
+fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(work)
+}
+
+/// Traces a job that is interrupted at a look.
+fn stopped_at(look: u64, job: &Job) -> (Result<Traced>, u64) {
+    let interrupt = Interrupt::at_look(look);
+    let traced = trace(job, &interrupt, &mut |_| ());
+    (traced, interrupt.looks() - look.min(interrupt.looks()))
+}
+
+/// The numbers of a run; how estimators were chosen is not one of them.
+fn numbers(findings: &Findings) -> Findings {
+    Findings { choices: Vec::new(), ..findings.clone() }
+}
+
+#[test]
+fn a_stopped_run_ends_at_its_next_looks_and_its_command_repeats_it_on_any_threads() {
+    let folder = tempfile::tempdir().unwrap();
+    for estimator in [Request::Forward, Request::Backward, Request::Mix, Request::Gather] {
+        let job = job(folder.path(), &settings(estimator));
+        let (mut stopped, mut empty) = (0, 0);
+        for look in [1, 3, 20, 150, 201, 333] {
+            let (traced, late) = on_threads(2, || stopped_at(look, &job));
+            // Batches in progress look once more, and so does each that had yet to begin in its piece.
+            assert!(late <= 32, "{late} looks after look {look} of {}", estimator.name());
+            let Ok(traced) = traced else {
+                empty += 1;
+                continue;
+            };
+            assert_eq!(traced.stop, Stop::Interrupted, "{}", estimator.name());
+            stopped += 1;
+            let batches = traced.findings.photons.batch_count();
+            let mut own = vec![format!("run.batches={batches}")];
+            own.push(format!("sensors.exit.estimator={}", estimator.name()));
+            let repeated = Settings {
+                overrides: own,
+                estimator: None,
+                paths: Some(traced.findings.paths),
+                ..settings(estimator)
+            };
+            let again = super::tests::job(folder.path(), &repeated);
+            for threads in [1, 3] {
+                let same =
+                    on_threads(threads, || trace(&again, &Interrupt::default(), &mut |_| ()));
+                let same = same.unwrap();
+                assert_eq!(same.stop, Stop::Paths);
+                assert!(same.findings == traced.findings, "{} batches, {threads} threads", batches);
+            }
+        }
+        assert!(stopped >= 3 && empty >= 1, "{stopped} stopped, {empty} empty");
+    }
+}
+
+#[test]
+fn a_run_stopped_in_the_pilot_says_so_and_one_after_it_repeats_without_a_pilot() {
+    let folder = tempfile::tempdir().unwrap();
+    let auto = Settings { gather: GatherSettings::default(), ..settings(Request::Auto) };
+    let job = job(folder.path(), &auto);
+    let error = stopped_at(8, &job).0.unwrap_err().to_string();
+    assert!(error.contains("interrupted during the pilot"), "{error}");
+
+    let whole = trace(&job, &Interrupt::default(), &mut |_| ()).unwrap();
+    let [chosen] = whole.findings.estimators[..] else { panic!("one sensor") };
+    let own = vec![format!("sensors.exit.estimator={}", chosen.name())];
+    let again = super::tests::job(folder.path(), &Settings { overrides: own, ..auto });
+    let mut phases = Vec::new();
+    let repeated = trace(&again, &Interrupt::default(), &mut |now| phases.push(now.phase)).unwrap();
+    assert!(phases.iter().all(|phase| !matches!(phase, Phase::Pilot(_))), "{phases:?}");
+    assert!(repeated.findings == numbers(&whole.findings));
+}
+
+#[test]
+fn a_look_comes_within_a_path_that_never_ends() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("box.toml");
+    std::fs::write(&scene, MIRROR_BOX).unwrap();
+    for estimator in [Request::Forward, Request::Gather, Request::Auto] {
+        let wishes =
+            Settings { estimator: Some(estimator), paths: Some(1000), ..Settings::default() };
+        let job = prepare(&scene, &wishes).unwrap();
+        for look in [10, 400] {
+            let (traced, late) = on_threads(1, || stopped_at(look, &job));
+            assert!(late <= 4, "{late} looks after look {look} of {}", estimator.name());
+            assert!(traced.is_err() || look > 10, "a path has more looks than that");
+        }
+    }
+}
+
+/// A closed box of perfect mirrors: every path has as many bounces as it may, and a hundred looks.
+const MIRROR_BOX: &str = r#"
+lumiduct = 1
+title = "mirror box"
+[finishes.silver.specular]
+reflectance = 1
+[sheets.box.tube]
+profile = { rectangle = { width_mm = 40, height_mm = 40 } }
+path = [{ straight_mm = 40 }]
+finish = "silver"
+[sheets.bottom.rectangle]
+width_mm = 40
+height_mm = 40
+finish = "silver"
+[sheets.top.rectangle]
+width_mm = 40
+height_mm = 40
+finish = "silver"
+at = { position_mm = [0, 0, 40] }
+[sources.led.disk]
+radius_mm = 2
+at = { position_mm = [5, 3, 10] }
+flux_lm = 100
+[sensors.cell]
+plane = { rectangle = { width_mm = 20, height_mm = 20 } }
+at = { position_mm = [0, 0, 30], axis = [0, 0, -1] }
+"#;

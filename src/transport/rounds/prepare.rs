@@ -1,0 +1,162 @@
+//! What is decided before a run: the estimator of each sensor, and how large its batches are.
+
+use crate::scene::plan::{Estimator, Request, RunPlan};
+use crate::scene::{Scene, SensorId};
+use crate::transport::backward::Backward;
+use crate::transport::forward::Forward;
+use crate::transport::gather::Gather;
+use crate::transport::pilot::choose;
+use crate::transport::readings::GROUPS;
+use crate::transport::rounds::{Phase, Run};
+use crate::transport::settings::{PhotonPilot, settle};
+use crate::transport::stages::{FIRST_PASSES, Stages};
+use crate::transport::stop::StopSignal;
+use crate::transport::sums::Sums;
+use crate::transport::{Choice, work};
+
+/// Straight pieces that a batch should hold: long enough that summing up costs little, short enough that little is lost
+/// when a run is stopped.
+const BATCH_SEGMENTS: u64 = 1 << 15;
+/// Most paths in a batch.
+const BATCH_PATHS: u64 = 4096;
+/// Paths from which the length of paths is learnt before a run, and bounces of them that are looked at.
+const PILOT_PATHS: u64 = 64;
+const PILOT_BOUNCES: u32 = 10_000;
+/// Share of the work that goes to photons where all sensors are estimated backward: for the balance and what is beside
+/// the aim, 1. Else photons and gather paths have half each.
+const PHOTON_SHARE: f64 = 0.1;
+
+impl<'s> Run<'s> {
+    /// Prepares a run that nothing stops from outside; nothing is counted yet.
+    pub fn new(scene: &'s Scene, plan: &RunPlan) -> Self {
+        Self::start(scene, plan, &StopSignal::default(), &mut |_| ()).expect("nothing stops it")
+    }
+
+    /// Prepares a run that a signal may stop; `None` if it did so before anything could be counted. `watch` learns what is
+    /// tried in a pilot. A pilot may take half of the time that is left; one that takes longer is given up, and sensors
+    /// without an estimator of their own are estimated forward.
+    pub fn start(
+        scene: &'s Scene,
+        plan: &RunPlan,
+        signal: &StopSignal,
+        watch: &mut dyn FnMut(Phase),
+    ) -> Option<Self> {
+        let early = signal.with_grace();
+        let segments = segments_per_path(scene, plan, &early)?;
+        let pilot = PhotonPilot { segments_per_path: segments as f64 };
+        let (estimators, choices) = estimators(scene, plan, pilot, signal, watch)?;
+        let of = |wanted: Estimator| -> Vec<SensorId> {
+            let all = estimators.iter().enumerate();
+            all.filter(|(_, own)| **own == wanted).map(|(index, _)| SensorId::new(index)).collect()
+        };
+        let (alone, merged) = (of(Estimator::Gather), of(Estimator::Mis));
+        let gathered = if merged.is_empty() { &alone } else { &merged };
+        let stages = if gathered.is_empty() {
+            None
+        } else {
+            let settings = settle(scene, plan, gathered, pilot, &early)?;
+            let mut gather = Gather::new(scene, gathered, plan.seed, settings.depth);
+            gather.merging = (!merged.is_empty()).then_some(plan.bounce_limit);
+            Some(Stages::new(gather, settings))
+        };
+        let mixed = of(Estimator::Mix);
+        let followed = [of(Estimator::Backward), mixed.clone()].concat();
+        let has_followed = !followed.is_empty();
+        // Photons also count for the sensors that are estimated forward, or mixed.
+        let is_for_balance = of(Estimator::Forward).is_empty() && mixed.is_empty();
+        let share = match (&stages, has_followed) {
+            (_, false) => 1.0,
+            (None, true) if is_for_balance => PHOTON_SHARE,
+            (_, true) => 0.5,
+        };
+        let usual = plan.batch_paths.unwrap_or(usual_batch(segments));
+        let photons = match (&stages, plan.stop.paths) {
+            (Some(stages), _) => stages.settings.photons,
+            (None, Some(paths)) if !has_followed => paths.div_ceil(
+                plan.stop.batches.unwrap_or(GROUPS * paths.div_ceil(GROUPS * usual).max(1)),
+            ),
+            (None, _) => (share * usual as f64).ceil() as u64,
+        };
+        // A path of each source at least.
+        let photons = photons.max(scene.sources.len() as u64).max(1);
+        let backward = if has_followed {
+            let backward = Backward::new(scene, &followed, plan.seed, plan.bounce_limit);
+            let by_photons = photons as f64 * work::of_photon_path(pilot.segments_per_path);
+            let others = (1.0 - share) / share * by_photons;
+            let paths = others / backward.work_of_path(&early)? / followed.len() as f64;
+            Some((backward.with_paths(paths as u64).mixed(&mixed), Sums::new()))
+        } else {
+            None
+        };
+        let wave_batches = if stages.is_some() { FIRST_PASSES } else { GROUPS };
+        Some(Self {
+            estimators,
+            choices,
+            forward: Forward::new(scene, plan.seed, plan.bounce_limit, photons),
+            photons: Sums::new(),
+            backward,
+            stages,
+            signal: signal.clone(),
+            batches: 0,
+            wave_batches,
+            paths: 0,
+            paths_asked: plan.stop.paths,
+            batches_asked: plan.stop.batches,
+        })
+    }
+}
+
+/// Photon paths of a batch that suit a scene: what [`RunPlan::batch_paths`] is when nothing is said.
+pub fn batch_paths(scene: &Scene, plan: &RunPlan) -> u64 {
+    let segments = segments_per_path(scene, plan, &StopSignal::default());
+    usual_batch(segments.expect("nothing stops it"))
+}
+
+fn usual_batch(segments_per_path: u64) -> u64 {
+    (BATCH_SEGMENTS / segments_per_path).clamp(1, BATCH_PATHS)
+}
+
+/// Straight pieces of a photon path on the average, from a few of them; `None` if they were stopped.
+fn segments_per_path(scene: &Scene, plan: &RunPlan, signal: &StopSignal) -> Option<u64> {
+    let limit = plan.bounce_limit.min(PILOT_BOUNCES);
+    let pilot = Forward::new(scene, plan.seed, limit, PILOT_PATHS).batch(0, signal)?;
+    Some(pilot.segments.div_ceil(pilot.paths().max(1)).max(1))
+}
+
+/// The estimator of each sensor: its own, the one that was asked for, or what a pilot chooses.
+fn estimators(
+    scene: &Scene,
+    plan: &RunPlan,
+    pilot: PhotonPilot,
+    signal: &StopSignal,
+    watch: &mut dyn FnMut(Phase),
+) -> Option<(Vec<Estimator>, Vec<Choice>)> {
+    let own = |sensor: usize| plan.own_estimator(sensor);
+    let sensors = 0..scene.sensors.len();
+    let all = |estimator: Estimator| {
+        let estimators = sensors.clone().map(|sensor| own(sensor).unwrap_or(estimator));
+        Some((estimators.collect(), Vec::new()))
+    };
+    match plan.estimator {
+        Request::Forward => all(Estimator::Forward),
+        Request::Backward => all(Estimator::Backward),
+        Request::Mix => all(Estimator::Mix),
+        Request::Gather => all(Estimator::Gather),
+        Request::Mis => all(Estimator::Mis),
+        Request::Auto if sensors.clone().all(|sensor| own(sensor).is_some()) => {
+            all(Estimator::Forward)
+        }
+        Request::Auto => {
+            let mut tried = |estimator| watch(Phase::Pilot(estimator));
+            let choices = choose(scene, plan, pilot, &signal.with_half(), &mut tried);
+            let Some(mut choices) = choices else {
+                // Nobody knows what is best; photons find something everywhere.
+                return if signal.is_due() { None } else { all(Estimator::Forward) };
+            };
+            for (sensor, choice) in choices.iter_mut().enumerate() {
+                choice.chosen = own(sensor).unwrap_or(choice.chosen);
+            }
+            Some((choices.iter().map(|choice| choice.chosen).collect(), choices))
+        }
+    }
+}

@@ -30,17 +30,19 @@ pub(super) struct RunArgs {
     /// Set a key of the scene, such as `-D solids.pipe.sweep.path.0.straight_mm=20`.
     #[arg(short = 'D', value_name = "KEY=VALUE")]
     define: Vec<String>,
-    /// How flux is estimated; auto chooses for every sensor by a short trial.
+    /// How flux is estimated; auto chooses for every sensor by a short trial. A sensor with a key `estimator` keeps its own.
     #[arg(long, value_parser = words(Request::ALL.map(Request::name), Request::named))]
     estimator: Option<Request>,
     /// Stop at this relative standard error of the target measure, such as 0.5%; the first sensor's flux if the scene
     /// names no measure.
     #[arg(long, value_parser = parse_percent, value_name = "PERCENT")]
     target: Option<f64>,
-    /// Stop after this many paths, such as 2M.
+    /// Stop after this many paths, such as 2M: photon paths from the sources, and gather paths from the sensors where the
+    /// estimator has them. Rounded up to whole waves: 128 batches, or 16 passes of gathering with some million paths.
     #[arg(long, value_parser = parse_count, value_name = "COUNT")]
     paths: Option<u64>,
-    /// Stop after this time, such as 60s or 5min.
+    /// Stop after this time, such as 60s or 5min, the pilot of auto included. What is unfinished then is dropped; the
+    /// report gives the command that repeats the run.
     #[arg(long, value_parser = parse_time, value_name = "TIME")]
     time: Option<Duration>,
     /// Seed of the random numbers.

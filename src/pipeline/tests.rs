@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::input::GatherSettings;
-use crate::scene::plan::Request;
+use crate::pipeline::checkpoint::Stand;
 
 /// The short rod of the tests, with a sensor that can be estimated by photons and gathered.
 pub(super) const SCENE: &str = concat!(

@@ -29,6 +29,8 @@ const THETA_DEG: [f64; 2] = [0.05, 3.0];
 const DEPTH: [f64; 2] = [1.0, 8.0];
 /// Straight pieces of photon paths in an automatic pass: seconds of work, so that the first stage ends soon.
 const PASS_SEGMENTS: f64 = 4e6;
+/// Least photons of an automatic pass: in closed mirrors each of them has 100,000 straight pieces.
+const LEAST_PHOTONS: f64 = 32.0;
 /// Straight pieces of photon paths that a gather path and its records cost, as measured, and what share of the work of
 /// the photons they get: limited by pairs, noise is least at equal shares; looking them up costs less with fewer.
 const RECORD_SEGMENTS: f64 = 50.0;
@@ -82,7 +84,7 @@ pub(crate) fn settle(
     let radius = (RADIUS_PER_INRADIUS * inradius).min(RADIUS_PER_SOURCE * source_radius);
     let photons = plan
         .photons
-        .unwrap_or_else(|| (PASS_SEGMENTS / pilot.segments_per_path).max(1000.0) as u64);
+        .unwrap_or_else(|| (PASS_SEGMENTS / pilot.segments_per_path).max(LEAST_PHOTONS) as u64);
     let share = photons as f64 * pilot.segments_per_path * RECORD_SHARE / RECORD_SEGMENTS;
     let sensors = sensors.len().max(1) as u64;
     let gather_paths = plan.records.map_or(share as u64, |records| records) / sensors;

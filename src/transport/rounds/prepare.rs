@@ -21,7 +21,7 @@ const BATCH_SEGMENTS: u64 = 1 << 15;
 const BATCH_PATHS: u64 = 4096;
 /// Paths from which the length of paths is learnt before a run, and bounces of them that are looked at.
 const PILOT_PATHS: u64 = 64;
-const PILOT_BOUNCES: u32 = 10_000;
+const PILOT_BOUNCES: u32 = 100_000;
 /// Share of the work that goes to photons where all sensors are estimated backward: for the balance and what is beside
 /// the aim, 1. Else photons and gather paths have half each.
 const PHOTON_SHARE: f64 = 0.1;

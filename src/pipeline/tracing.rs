@@ -1,0 +1,184 @@
+//! Tracing until a stop rule holds, the clock runs out, or the user stops it.
+
+use crate::error::{Error, Result};
+use crate::input::Job;
+use crate::measure::{self, Status};
+use crate::pipeline::checkpoint::Stand;
+use crate::pipeline::{Progress, Stop, TargetProgress, gathering};
+use crate::scene::plan::RunPlan;
+use crate::transport::{FIRST_BATCH_GRACE, Findings, Interrupt, Phase, Run, StopSignal};
+use std::time::{Duration, Instant};
+
+/// What tracing gave.
+#[derive(Debug)]
+pub struct Traced {
+    /// Everything that was counted.
+    pub findings: Findings,
+    /// Why it ended.
+    pub stop: Stop,
+    /// How long it took.
+    pub elapsed: Duration,
+}
+
+/// Traces rounds until a stop rule holds; an error where it was stopped before there was anything to report.
+pub fn trace(job: &Job, interrupt: &Interrupt, watch: &mut dyn FnMut(&Progress)) -> Result<Traced> {
+    trace_kept(job, None, &mut |_, _| Ok(()), interrupt, watch)
+}
+
+/// A moment at which a checkpoint may be kept.
+pub(super) enum Pause {
+    /// The run goes on.
+    Between { round_end: u64, elapsed: Duration },
+    /// The user has stopped it.
+    Last { round_end: u64, elapsed: Duration },
+}
+
+/// The time of a run.
+struct Clock<'a> {
+    plan: &'a RunPlan,
+    start: Instant,
+    /// What it had taken before it was resumed.
+    before: Duration,
+    interrupt: &'a Interrupt,
+}
+
+impl Clock<'_> {
+    fn elapsed(&self) -> Duration {
+        self.before + self.start.elapsed()
+    }
+
+    fn signal(&self) -> StopSignal {
+        let left = self.plan.stop.time.map(|limit| limit.saturating_sub(self.before));
+        StopSignal::new(self.interrupt, left.and_then(|left| self.start.checked_add(left)))
+    }
+
+    /// Whether a run that has traced something has to end.
+    fn is_up(&self, run: &Run<'_>) -> bool {
+        let grace = if run.paths() == 0 { FIRST_BATCH_GRACE } else { Duration::ZERO };
+        self.plan.stop.time.is_some_and(|limit| self.elapsed() >= limit.saturating_add(grace))
+    }
+}
+
+/// Traces rounds from where a run stands until a stop rule holds; `keep` may keep a checkpoint at every pause.
+pub(super) fn trace_kept(
+    job: &Job,
+    stand: Option<Stand>,
+    keep: &mut dyn FnMut(&Run<'_>, Pause) -> Result<()>,
+    interrupt: &Interrupt,
+    watch: &mut dyn FnMut(&Progress),
+) -> Result<Traced> {
+    let before = stand.as_ref().map_or(Duration::ZERO, |stand| stand.elapsed);
+    let clock = Clock { plan: &job.run, start: Instant::now(), before, interrupt };
+    let started = Run::start(&job.scene, &job.run, &clock.signal(), &mut |phase| {
+        watch(&Progress::before(&job.run, phase, clock.elapsed()));
+    });
+    let mut run = started.ok_or_else(|| nothing_to_report("the pilot", interrupt))?;
+    let mut round_end = run.round_end();
+    if let Some(stand) = stand {
+        round_end = stand.round_end;
+        run.go_on_from(stand.state);
+    }
+    let elapsed = || clock.elapsed();
+    let (mut target, mut gathering_told) = (None, false);
+    let stop = loop {
+        let mut early = early_stop(&run, &clock);
+        while run.waves() < round_end && early.is_none() {
+            run.next_piece();
+            early = early_stop(&run, &clock);
+            if run.paths() == 0 {
+                continue;
+            }
+            keep(&run, Pause::Between { round_end, elapsed: elapsed() })?;
+            let mut progress = Progress::of(&job.run, &run, elapsed(), target.clone());
+            if !gathering_told {
+                progress.gathering = gathering(&run.findings());
+                gathering_told = true;
+            }
+            watch(&progress);
+        }
+        if let Some(stop) = early {
+            if run.paths() == 0 {
+                return Err(nothing_to_report(first_work(run.phase()), interrupt));
+            }
+            if stop == Stop::Interrupted {
+                keep(&run, Pause::Last { round_end, elapsed: elapsed() })?;
+            }
+            break stop;
+        }
+        target = TargetProgress::of(job, &run);
+        watch(&Progress::of(&job.run, &run, elapsed(), target.clone()));
+        let stop = target.as_ref().and_then(|target| target_stop(target, run.paths()));
+        // Smaller windows take a bias away.
+        if let Some(stop) = stop.filter(|stop| *stop != Stop::Bias || !run.shrinks()) {
+            break stop;
+        }
+        let is_held = || match &target {
+            Some(target) => is_held_by_bias(target),
+            None => measure::is_held_by_bias(&job.scene, &run.findings()),
+        };
+        if run.may_end_stage() && is_held() {
+            run.next_stage();
+        }
+        round_end = run.round_end();
+    };
+    Ok(Traced { findings: run.findings(), stop, elapsed: elapsed() })
+}
+
+/// What a run does first.
+fn first_work(phase: Phase) -> &'static str {
+    match phase {
+        Phase::Pilot(_) => "the pilot",
+        Phase::Batches(_) => "the first batch",
+        Phase::Pass { .. } => "the first pass of gathering",
+    }
+}
+
+/// A run was stopped before its first batch was done.
+fn nothing_to_report(during: &str, interrupt: &Interrupt) -> Error {
+    Error::Usage(if interrupt.is_raised() {
+        format!(
+            "interrupted during {during}: nothing is counted yet, and there is nothing to report"
+        )
+    } else {
+        format!(
+            "the time was up during {during}: nothing is counted yet, and there is nothing to report; give more time, or \
+             --estimator forward, whose batches are short"
+        )
+    })
+}
+
+/// A run to a target gives up on one that its bias keeps from it once the noise is this share of what is wanted, 1.
+const NOISE_DONE: f64 = 0.3;
+/// Paths after which a run to a target gives up on a measure that is nothing.
+const DARK_PATHS: u64 = 200_000_000;
+
+/// What the target of a run says about its end.
+fn target_stop(target: &TargetProgress, paths: u64) -> Option<Stop> {
+    let (reached, wanted) = (&target.reached, target.wanted);
+    if reached.relative_error() <= wanted {
+        return Some(Stop::Target);
+    }
+    let noise_done = NOISE_DONE * wanted * reached.value.abs();
+    if reached.value != 0.0 && reached.std_error <= noise_done {
+        return Some(Stop::Bias);
+    }
+    (reached.value == 0.0 && paths >= DARK_PATHS).then_some(Stop::Dark)
+}
+
+/// Whether a smaller window brings the target nearer than more of the same work.
+fn is_held_by_bias(target: &TargetProgress) -> bool {
+    let reached = &target.reached;
+    reached.status == Status::BiasNotResolved
+        || reached.bias.is_some_and(|bias| bias > reached.std_error)
+}
+
+/// What may end a run before its round is over.
+fn early_stop(run: &Run<'_>, clock: &Clock<'_>) -> Option<Stop> {
+    if run.is_complete() {
+        Some(Stop::Paths)
+    } else if clock.interrupt.is_raised() {
+        Some(Stop::Interrupted)
+    } else {
+        clock.is_up(run).then_some(Stop::Time)
+    }
+}

@@ -21,7 +21,7 @@ const BATCH_SEGMENTS: u64 = 1 << 15;
 const BATCH_PATHS: u64 = 4096;
 /// Paths from which the length of paths is learnt before a run, and bounces of them that are looked at.
 const PILOT_PATHS: u64 = 64;
-const PILOT_BOUNCES: u32 = 100_000;
+const PILOT_BOUNCES: u32 = 10_000;
 /// Share of the work that goes to photons where all sensors are estimated backward: for the balance and what is beside
 /// the aim, 1. Else photons and gather paths have half each.
 const PHOTON_SHARE: f64 = 0.1;
@@ -119,8 +119,13 @@ fn usual_batch(segments_per_path: u64) -> u64 {
 /// Straight pieces of a photon path on the average, from a few of them; `None` if they were stopped.
 fn segments_per_path(scene: &Scene, plan: &RunPlan, signal: &StopSignal) -> Option<u64> {
     let limit = plan.bounce_limit.min(PILOT_BOUNCES);
-    let pilot = Forward::new(scene, plan.seed, limit, PILOT_PATHS).batch(0, signal)?;
-    Some(pilot.segments.div_ceil(pilot.paths().max(1)).max(1))
+    let forward = Forward::new(scene, plan.seed, limit, PILOT_PATHS);
+    let pilot = forward.batch(0, signal)?;
+    // Light that the pilot cuts off goes on, at the longest to the bounce limit of the run.
+    let flux = scene.source_flux();
+    let cut = pilot.groups[0].sums[forward.layout.cut()];
+    let rest = if flux > 0.0 { cut / flux * f64::from(plan.bounce_limit - limit) } else { 0.0 };
+    Some(pilot.segments.div_ceil(pilot.paths().max(1)).max(1) + rest as u64)
 }
 
 /// The estimator of each sensor: its own, the one that was asked for, or what a pilot chooses.

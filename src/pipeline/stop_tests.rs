@@ -70,7 +70,7 @@ fn a_stopped_run_ends_at_its_next_looks_and_its_command_repeats_it_on_any_thread
                     on_threads(threads, || trace(&again, &Interrupt::default(), &mut |_| ()));
                 let same = same.unwrap();
                 assert_eq!(same.stop, Stop::Paths);
-                assert!(same.findings == traced.findings, "{} batches, {threads} threads", batches);
+                assert!(same.findings == traced.findings, "{batches} batches, {threads} threads");
             }
         }
         assert!(stopped >= 3 && empty >= 1, "{stopped} stopped, {empty} empty");

@@ -23,13 +23,14 @@ pub use progress::{Progress, TargetProgress};
 pub use tracing::{Traced, trace};
 
 use crate::error::{Diagnostic, Result};
-use crate::input::{self, Job, Settings};
+use crate::input::{self, Job, Outline, Settings};
 use crate::measure;
 use crate::pipeline::checkpoint::Keeper;
 use crate::pipeline::sense::expect_sense;
 use crate::pipeline::tracing::{Pause, trace_kept};
 use crate::report::{
-    self, CheckResult, Existing, Folder, Recipe, Report, RunFacts, SceneFacts, TargetFacts, Written,
+    self, CheckResult, Existing, Folder, Inventory, Recipe, Report, RunFacts, SceneFacts,
+    TargetFacts, Written,
 };
 use crate::scene::plan::Request;
 use crate::transport::{Findings, Interrupt, Run, Track, tracks};
@@ -197,6 +198,7 @@ pub fn compose(job: &Job, findings: &Findings, stop: Stop) -> Report {
             name: job.name.clone(),
             title: job.title.clone(),
             description: job.description.clone(),
+            project: job.project.clone(),
             hash: job.hash.clone(),
             overrides: job.overrides.clone(),
         },
@@ -218,7 +220,13 @@ pub fn compose(job: &Job, findings: &Findings, stop: Stop) -> Report {
         checks,
         warnings,
         drawing: report::drawing(&job.scene, &shown_tracks(job, REPORT_PATHS)),
+        inventory: inventory_of(job),
     }
+}
+
+/// What is in the scene of a job.
+fn inventory_of(job: &Job) -> Inventory {
+    Inventory::of(&job.scene, &Outline::of(job.places.root()))
 }
 
 /// Paths that a report draws.

@@ -17,6 +17,7 @@ pub fn scene(root: &Node, problems: &mut Problems) -> SceneSpec {
         lumiduct: FORMAT_VERSION,
         title: value(root, "title", problems).unwrap_or_default(),
         description: value(root, "description", problems),
+        project: value(root, "project", problems),
         surroundings: value(root, "surroundings", problems).unwrap_or_else(|| AIR.into()),
         up: value(root, "up", problems).unwrap_or(UP),
         north: value(root, "north", problems).unwrap_or(NORTH),

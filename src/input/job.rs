@@ -6,6 +6,7 @@ use crate::input::gather::{GatherSettings, check_radius, check_use};
 use crate::input::keys::{Key, Places};
 use crate::input::lower::{Lowered, lower};
 use crate::input::problems::Problems;
+use crate::input::project::{Project, project};
 use crate::input::{Draft, draft};
 use crate::scene::Scene;
 use crate::scene::plan::{Check, Request, RunPlan, StopRules, Target};
@@ -53,6 +54,8 @@ pub struct Job {
     pub title: String,
     /// What the scene is for.
     pub description: Option<String>,
+    /// Whom and what the report is for.
+    pub project: Option<Project>,
     /// What is traced.
     pub scene: Scene,
     /// How, and when to stop.
@@ -81,6 +84,7 @@ pub fn load(path: &Path, settings: &Settings) -> Result<Job> {
     if let Some(Lowered { scene, run, .. }) = &mut lowered {
         apply_method(settings, scene, run, &mut problems);
     }
+    let project = project(&spec, &places, &mut problems);
     let warnings = problems.finish(&places)?;
     // Without an error there is a scene.
     let Some(Lowered { scene, mut run, checks, meshes }) = lowered else {
@@ -89,11 +93,14 @@ pub fn load(path: &Path, settings: &Settings) -> Result<Job> {
     let mut hash = Digest::default();
     places.sources().iter().for_each(|source| hash.add(source.text().as_bytes()));
     hash.add(meshes.to_string().as_bytes());
+    let logo = project.as_ref().and_then(|project| project.logo.as_ref());
+    logo.into_iter().for_each(|png| hash.add(png));
     apply(settings, &scene, &mut run)?;
     Ok(Job {
         name: path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
         title: spec.title,
         description: spec.description,
+        project,
         scene,
         run,
         checks,

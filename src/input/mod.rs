@@ -27,8 +27,10 @@ pub mod keys;
 mod list;
 mod lower;
 pub mod manual;
+mod outline;
 pub mod overrides;
 pub mod problems;
+mod project;
 mod scatter;
 pub mod schema;
 pub mod sources;
@@ -40,6 +42,8 @@ pub mod validate;
 pub use gather::GatherSettings;
 pub use job::{Job, Settings, load};
 pub use list::list;
+pub use outline::Outline;
+pub use project::Project;
 pub use study::{
     Best, DESIGN_COLUMN, Domain, Keep, OTHER_COLUMNS, Parameter, Plan, Ranking, Samples, Setting,
     Study, StudySettings, Tie, column, load_study,

@@ -2,8 +2,8 @@
 
 use crate::error::{Diagnostic, Error, Result};
 use crate::input::Settings;
-use crate::pipeline::{prepare, shown_tracks};
-use crate::report::{self, Existing, SectionView, inventory, write_whole};
+use crate::pipeline::{inventory_of, prepare, shown_tracks};
+use crate::report::{self, Existing, SectionView, write_whole};
 use std::path::{Path, PathBuf};
 
 /// Paths that a check draws.
@@ -52,7 +52,7 @@ pub fn check(scene: &Path, settings: &Settings, wished: &CheckPictures) -> Resul
     let tracks = shown_tracks(&job, CHECK_PATHS);
     let bytes = report::scene_picture(&job.title, &job.scene, &tracks, &wished.section)?;
     write_whole(picture, &bytes, existing)?;
-    let listed = inventory(&job.scene);
+    let listed = inventory_of(&job).text();
     let mut text = format!("{}\n{listed}picture: {}\n", job.title, picture.display());
     if wished.page == CheckPage::Wanted {
         let path = picture.with_extension("html");

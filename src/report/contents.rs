@@ -221,6 +221,21 @@ fn scene(report: &Report, plots: &mut Plots) -> Part {
         let text = format!("Left out of the picture: {}.", drawing.remarks.join("; "));
         blocks.push(Block::Words { text });
     }
+    let measures = &report.measures;
+    let text = format!(
+        "Lengths are in mm, angles in deg, flux in {}; coordinates are those of the scene file. {} paths of light were traced \
+         from the sources, which emit {} {} together.",
+        measures.unit.flux(),
+        measures.paths,
+        format_value(measures.source_flux),
+        measures.unit.flux(),
+    );
+    blocks.push(Block::Words { text });
+    for list in &report.inventory.lists {
+        let head = list.head.iter().map(|head| (*head).to_owned()).collect();
+        blocks.push(Block::Table { head, rows: list.rows.clone(), folded: None });
+        blocks.extend(list.left_out().map(|text| Block::Words { text }));
+    }
     Part { title: "Scene".into(), blocks }
 }
 

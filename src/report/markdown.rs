@@ -1,13 +1,20 @@
 //! `report.md`: the page for people, wherever Markdown is rendered.
 
-use crate::report::Report;
 use crate::report::contents::{parts, verdict};
 use crate::report::html::frame::{Block, Part, Plots};
+use crate::report::{LOGO, Report};
 use std::fmt::Write;
 
 /// The whole page.
 pub(crate) fn markdown(report: &Report) -> String {
     let mut page = format!("# {}\n\n", report.scene.title);
+    if let Some(project) = &report.scene.project {
+        if project.logo.is_some() {
+            page += &format!("![logo]({LOGO})\n\n");
+        }
+        let lines = project.entries().into_iter().map(|(name, text)| format!("{name}: {text}"));
+        page += &format!("{}\n\n", lines.collect::<Vec<_>>().join(" · "));
+    }
     if let Some(description) = &report.scene.description {
         page += &format!("{}\n\n", description.trim());
     }

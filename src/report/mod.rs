@@ -38,7 +38,7 @@ pub use film::film_tables;
 pub use folder::{Existing, Folder, Written, remove_if_there, sweep, write_whole};
 pub(crate) use folder::{expect_room, folder_of, is_among, is_staged, remove_report};
 pub(crate) use html::check::check_page;
-pub use inventory::inventory;
+pub use inventory::{Inventory, Listing};
 pub use junit::{JunitFile, diff_junit, run_junit, study_junit};
 pub use mesh::mesh_report;
 pub use recipe::Recipe;
@@ -66,6 +66,9 @@ impl OutputFile {
     }
 }
 
+/// Name of the file with the logo of a project.
+pub(crate) const LOGO: &str = "project_logo.png";
+
 /// Name of the file with everything for programs.
 pub(crate) const SUMMARY: &str = "summary.json";
 
@@ -76,6 +79,8 @@ pub fn files(report: &Report, scene_text: &str) -> Result<Vec<OutputFile>> {
     files.extend(by_sun::files(report)?);
     files.extend(figures::files(report)?);
     files.push(OutputFile::text(format!("{}.toml", report.scene.name), scene_text.to_owned()));
+    let logo = report.scene.project.as_ref().and_then(|project| project.logo.clone());
+    files.extend(logo.map(|bytes| OutputFile { name: LOGO.to_owned(), bytes }));
     files.push(OutputFile::text("report.md", markdown::markdown(report)));
     files.push(OutputFile::text("report.html", html::html(report)?));
     let names: Vec<&str> = files.iter().map(|file| file.name.as_str()).chain([SUMMARY]).collect();

@@ -1,9 +1,10 @@
 //! The one record that all formats of a report are made from.
 
+use crate::input::Project;
 use crate::measure::{self, GatheredFacts, LostPaths, Measures, Status, Verdict};
 use crate::number::{format_exact, format_percent, format_with_error};
-use crate::report::Drawing;
 use crate::report::by_light::remark_on_weathers;
+use crate::report::{Drawing, Inventory};
 use crate::scene::plan::{Check, GatherPlan, Request, Schedule, StopRules, Target};
 use crate::transport::{GROUPS, GatherSettings, Leak};
 use glam::DVec3;
@@ -25,6 +26,9 @@ pub struct Report {
     /// The scene to look at: pictures alone, and no part of the record for programs.
     #[serde(skip)]
     pub drawing: Drawing,
+    /// What is in the scene: for pages alone, likewise.
+    #[serde(skip)]
+    pub inventory: Inventory,
 }
 
 /// The scene of a report.
@@ -36,6 +40,9 @@ pub struct SceneFacts {
     pub title: String,
     /// What it is for.
     pub description: Option<String>,
+    /// Whom the report is for, and by whom.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub project: Option<Project>,
     /// Identifies scene file, included files, meshes and overrides.
     pub hash: String,
     /// Overrides of the command line.

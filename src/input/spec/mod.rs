@@ -44,6 +44,8 @@ pub struct SceneSpec {
     pub title: String,
     /// What the scene is for, in as many lines as it takes.
     pub description: Option<String>,
+    /// Whom and what the report is for.
+    pub project: Option<ProjectSpec>,
     /// Name of the medium outside every solid.
     #[serde(default = "air")]
     pub surroundings: String,
@@ -83,6 +85,21 @@ pub struct SceneSpec {
     /// What is expected of the results, in any number of `[[check]]` tables.
     #[serde(default)]
     pub check: Vec<CheckSpec>,
+}
+
+/// What stands at the head of the report.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+pub struct ProjectSpec {
+    /// Whom the report is for.
+    pub client: Option<String>,
+    /// Who made it.
+    pub author: Option<String>,
+    /// A date, shown as it is written here: reports know no clock.
+    pub date: Option<String>,
+    /// Number of the drawing that the scene was made after.
+    pub drawing: Option<String>,
+    /// A PNG file of at most 1 MB that is shown at the head of the page; relative to this file.
+    pub logo: Option<String>,
 }
 
 /// The medium that is there when nothing is said.

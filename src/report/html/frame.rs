@@ -40,6 +40,8 @@ const SERIES: usize = 7;
 pub(crate) struct Page {
     /// Its title.
     pub(crate) title: String,
+    /// Whom it is for, and by whom.
+    pub(crate) masthead: Option<Masthead>,
     /// What it is about, if anything is to be said.
     pub(crate) description: Option<String>,
     /// The verdict, in words.
@@ -50,6 +52,15 @@ pub(crate) struct Page {
     pub(crate) parts: Vec<Part>,
     /// Where it comes from, in small letters at its end.
     pub(crate) footer: String,
+}
+
+/// Whom a page is for, and by whom.
+#[derive(Debug, Serialize)]
+pub(crate) struct Masthead {
+    /// Lines with their names: `Client`, `Date`.
+    pub(crate) lines: Vec<[String; 2]>,
+    /// Address of a picture that is within the page.
+    pub(crate) logo: Option<String>,
 }
 
 /// What a verdict comes to.
@@ -180,6 +191,7 @@ mod tests {
         let part = Part { title: text.to_owned(), blocks: vec![list, cells, plot] };
         let page = Page {
             title: text.to_owned(),
+            masthead: Some(Masthead { lines: vec![[text, text].map(str::to_owned)], logo: None }),
             description: Some(text.to_owned()),
             verdict: text.to_owned(),
             standing: Standing::Open,

@@ -5,12 +5,15 @@
 pub(crate) mod check;
 mod coarse;
 pub(crate) mod data;
+mod data_uri;
 pub(crate) mod frame;
 
 use crate::error::Result;
+use crate::input::Project;
 use crate::report::Report;
 use crate::report::contents::{parts, verdict};
-use crate::report::html::frame::{Page, Plots, render};
+use crate::report::html::data_uri::png_uri;
+use crate::report::html::frame::{Masthead, Page, Plots, render};
 
 /// The whole page.
 pub(crate) fn html(report: &Report) -> Result<String> {
@@ -19,6 +22,7 @@ pub(crate) fn html(report: &Report) -> Result<String> {
     let (standing, verdict) = verdict(report);
     let page = Page {
         title: report.scene.title.clone(),
+        masthead: report.scene.project.as_ref().map(masthead),
         description: report.scene.description.as_ref().map(|text| text.trim().to_owned()),
         verdict,
         standing,
@@ -26,4 +30,9 @@ pub(crate) fn html(report: &Report) -> Result<String> {
         footer: format!("lumiduct {}, scene {}", report.run.version, report.scene.name),
     };
     render(&page, &plots)
+}
+
+fn masthead(project: &Project) -> Masthead {
+    let lines = project.entries().into_iter().map(|(name, text)| [name, text].map(str::to_owned));
+    Masthead { lines: lines.collect(), logo: project.logo.as_deref().map(png_uri) }
 }

@@ -22,6 +22,7 @@ pub(super) fn html(report: &StudyReport, figures: &[Figure]) -> Result<String> {
     let pictures = frame::Part { title: "Plots".into(), blocks: drawn };
     let page = Page {
         title: facts.title.clone(),
+        masthead: None,
         description: facts.description.as_ref().map(|text| text.trim().to_owned()),
         verdict: verdict(report),
         standing: match (facts.checks.is_empty(), report.counts().is_clean()) {

@@ -88,6 +88,9 @@ fn words(key: &str, value: Option<&Value>) -> String {
         Value::Object(fields) if fields.len() > 1 => {
             format!("{label} ({})", value_words(key, value))
         }
+        Value::Array(items) if items.iter().any(Value::is_object) => {
+            format!("{label} ({})", value_words(key, value))
+        }
         Value::Null | Value::Number(_) | Value::String(_) | Value::Array(_) | Value::Object(_) => {
             format!("{label} {}", value_words(key, value))
         }
@@ -156,8 +159,7 @@ mod tests {
                 "sensors": {"exit": {"plane": {"cells": [24, 24]}, "on": "pipe.exit"}},
             }),
         };
-        let pipe =
-            "sweep, profile circle radius 1.5 mm, path straight 10 mm; bend 90 deg, radius 8.25 mm";
+        let pipe = "sweep, profile circle radius 1.5 mm, path (straight 10 mm; bend 90 deg, radius 8.25 mm)";
         assert_eq!(outline.entry("solids", "pipe", &["medium"]), pipe);
         assert_eq!(outline.field("solids", "pipe", "medium"), "pmma");
         assert_eq!(outline.field("sources", "led", "at"), "face pipe.entry, gap 0.2 mm");

@@ -9,11 +9,16 @@ use crate::scene::{
     Emission, Emitter, Face, FaceId, MediumId, Owner, Scene, Seeing, Sensor, SensorKind, Source,
 };
 use glam::DVec3;
+use std::collections::BTreeSet;
 use std::f64::consts::PI;
 use std::fmt::Write;
 
 /// Entries of a list that are shown.
 const SHOWN: usize = 40;
+
+/// Heads of columns that need no head in a line of text.
+const WHAT: &str = "what";
+const WHAT_IT_DOES: &str = "what it does";
 
 /// Everything that is in a scene, list by list.
 #[derive(Debug, Clone, Default)]
@@ -110,24 +115,32 @@ fn media(scene: &Scene) -> Listing {
     Listing::new("medium", head, scene.media.len(), rows)
 }
 
+/// The finishes of faces and patterns; those without a name are told where they are.
 fn finishes(scene: &Scene, outline: &Outline) -> Listing {
-    let rows = scene.finishes.iter().map(|finish| {
-        let words = match outline.entry("finishes", &finish.name, &[]) {
-            told if !told.is_empty() => told,
-            _ => predefined(&finish.name).to_owned(),
-        };
-        [finish.name.clone(), words]
-    });
-    Listing::new("finish", ["finish", "what it does"], scene.finishes.len(), rows)
+    let of_faces = scene.faces.iter().flat_map(|face| [face.front, face.back]).flatten();
+    let of_patterns = scene.patterns.iter().flat_map(|pattern| [pattern.front, pattern.back]);
+    let used: BTreeSet<usize> = of_faces.chain(of_patterns).map(|id| id.index()).collect();
+    let rows: Vec<[String; 2]> = used
+        .into_iter()
+        .filter_map(|index| {
+            let name = &scene.finishes[index].name;
+            let words = match outline.entry("finishes", name, &[]) {
+                told if !told.is_empty() => told,
+                _ => predefined(name)?.to_owned(),
+            };
+            Some([name.clone(), words])
+        })
+        .collect();
+    Listing::new("finish", ["finish", WHAT_IT_DOES], rows.len(), rows.into_iter())
 }
 
-/// What finishes do that need no definition. The words of one that is defined at its face are its name.
-fn predefined(name: &str) -> &'static str {
+/// What finishes do that need no definition.
+fn predefined(name: &str) -> Option<&'static str> {
     match name {
-        "polished" => "smooth: reflects and refracts after Fresnel",
-        "black" => "absorbs all light",
-        "open" => "lets all light pass",
-        _ => "",
+        "polished" => Some("smooth: reflects and refracts after Fresnel"),
+        "black" => Some("absorbs all light"),
+        "open" => Some("lets all light pass"),
+        _ => None,
     }
 }
 
@@ -137,7 +150,7 @@ fn solids(scene: &Scene, outline: &Outline) -> Listing {
         let priority = if solid.priority == 0 { String::new() } else { solid.priority.to_string() };
         [
             solid.name.clone(),
-            outline.entry("solids", &solid.name, &["medium", "at", "faces", "priority"]),
+            outline.entry("solids", &solid.name, &["medium", "at", "priority"]),
             place(outline, "solids", &solid.name),
             scene.media[solid.medium.index()].name().to_owned(),
             priority,
@@ -213,7 +226,7 @@ fn faces(scene: &Scene) -> Listing {
         rows.push((row, face.owner));
     }
     let count = if rows.len() > SHOWN { scene.faces.len() } else { rows.len() };
-    let head = ["face", "what", "area", "finish"];
+    let head = ["face", WHAT, "area", "finish"];
     Listing::new("face", head, count, rows.into_iter().map(|(row, _)| row))
 }
 
@@ -316,7 +329,7 @@ fn sensors(scene: &Scene, outline: &Outline) -> Listing {
         };
         [sensor.name.clone(), kind(sensor), told, place, sensor.cells().to_string()]
     });
-    let head = ["sensor", "what", "settings", "place", "cells"];
+    let head = ["sensor", WHAT, "settings", "place", "cells"];
     Listing::new("sensor", head, scene.sensors.len(), rows)
 }
 
@@ -325,7 +338,7 @@ fn kind(sensor: &Sensor) -> String {
     match &sensor.kind {
         SensorKind::Surface(surface) => {
             let kind = match &surface.seeing {
-                Seeing::All => "",
+                Seeing::All => "plane of ",
                 Seeing::Views(_) => "luminance over ",
                 Seeing::Pixels(_) => "image through ",
             };

@@ -25,7 +25,8 @@ pub(crate) const CHOICES_HEAD: &str = "A pilot has tried the estimators on each 
     unbiased estimator contradicts it, and no estimator that found less light of a source than another, beyond their errors.";
 /// What stands after the results.
 pub(crate) const ERRORS: &str = "± is the standard error of the simulation: the value of endlessly many paths lies within \
-    one of them in 68 of 100 cases, and within two in 95. Tolerances of parts and materials are not in it.";
+    one of them in 68 of 100 cases, and within two in 95. A bias is an error beside it, of which only a bound is known. \
+    What is limited by noise, or has too few counts, asks for more paths. Tolerances of parts and materials are not in these errors.";
 /// What stands after the lines of the balance.
 pub(crate) const NO_LINES: &str =
     "Virtual sensors let light pass: they are no lines of the balance.";

@@ -81,3 +81,75 @@ fn a_page_goes_from_the_verdict_to_how_it_was_computed() {
     let first = words.map(|word| at(&markdown, word)).into_iter().min().unwrap();
     assert!(first > at(&markdown, "## Computation"), "jargon before its place: {markdown}");
 }
+
+/// The smallest PNG file: one pixel.
+const PIXEL: &str = "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg==";
+
+#[test]
+fn a_project_heads_its_report_with_logo_and_date_as_typed() {
+    use base64::Engine;
+    let place = Place::with(
+        "[project]\nclient = \"Lamps & Sons\"\ndate = \"22 Nov\"\ndrawing = \"D-17\"\nlogo = \"art/logo.png\"\n",
+    );
+    fs::create_dir(place.path("art")).unwrap();
+    let pixel = base64::engine::general_purpose::STANDARD.decode(PIXEL).unwrap();
+    fs::write(place.path("art/logo.png"), &pixel).unwrap();
+    place.good("run rod.toml -o out -q");
+    let markdown = fs::read_to_string(place.path("out/report.md")).unwrap();
+    assert!(at(&markdown, "Drawing: D-17") < at(&markdown, "## Results"), "{markdown}");
+    assert!(markdown.contains("(project_logo.png)"), "{markdown}");
+    assert_eq!(fs::read(place.path("out/project_logo.png")).unwrap(), pixel);
+    let html = fs::read_to_string(place.path("out/report.html")).unwrap();
+    assert!(
+        html.contains(&format!("data:image/png;base64,{PIXEL}")),
+        "the logo is not on the page"
+    );
+    assert!(html.contains("Client: Lamps &amp; Sons") && html.contains("Date: 22 Nov"));
+    let summary = place.summary("out");
+    assert_eq!(summary["scene"]["project"]["client"], "Lamps & Sons");
+    // Another logo makes other pages.
+    fs::write(place.path("art/logo.png"), [pixel, vec![0]].concat()).unwrap();
+    place.good("run rod.toml -o other -q");
+    assert_ne!(place.summary("other")["scene"]["hash"], summary["scene"]["hash"]);
+}
+
+#[test]
+fn a_report_and_a_check_say_alike_what_was_simulated() {
+    let place = Place::new();
+    place.good("run rod.toml -o out -q");
+    let markdown = fs::read_to_string(place.path("out/report.md")).unwrap();
+    let html = fs::read_to_string(place.path("out/report.html")).unwrap();
+    let check = place.good("check rod.toml");
+    let told = [
+        "cylinder, radius 2 mm, length 10 mm",
+        "face rod.entry, gap 0.1 mm",
+        "middle at [0, 0, −0.1] mm",
+        "12.57 mm²",
+        "1.49",
+        "gamma step 10 deg",
+        "etendue",
+    ];
+    for words in told {
+        for (name, page) in [("report.md", &markdown), ("report.html", &html), ("check", &check)] {
+            assert!(page.contains(words), "no {words} in {name}: {page}");
+        }
+    }
+}
+
+#[test]
+fn a_scene_of_thousands_of_solids_is_summarised() {
+    let place = Place::new();
+    let box_at = |i: usize| {
+        format!(
+            "[solids.b{i}.box]\nsize_mm = [1, 1, 1]\nmedium = \"acrylic\"\nat = {{ position_mm = [{}, 30, 0] }}\n",
+            2 * i
+        )
+    };
+    let rod = fs::read_to_string(place.path("rod.toml")).unwrap();
+    let many: String = (0..200).map(box_at).collect();
+    fs::write(place.path("many.toml"), format!("{rod}{many}")).unwrap();
+    let said = place.good("check many.toml");
+    assert!(said.contains("solids: The first 40 of 201."), "{said}");
+    assert!(said.contains("solid b38:") && !said.contains("solid b39:"), "{said}");
+    assert!(said.lines().count() < 120, "{} lines", said.lines().count());
+}

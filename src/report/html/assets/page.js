@@ -27,14 +27,10 @@ button.addEventListener("click", () => useTheme(button.textContent));
 systemDark.addEventListener("change", () => useTheme(systemDark.matches ? "dark" : "light"));
 useTheme(systemDark.matches ? "dark" : "light");
 
-// Paper is light, and nothing on it can be unfolded.
-let before = { theme: "light", folded: [] };
+// Paper is light; what is folded away stays so.
+let themeBefore = "light";
 addEventListener("beforeprint", () => {
-  before = { theme: document.documentElement.dataset.theme, folded: [...document.querySelectorAll("details:not([open])")] };
-  for (const details of before.folded) details.open = true;
+  themeBefore = document.documentElement.dataset.theme;
   useTheme("light");
 });
-addEventListener("afterprint", () => {
-  for (const details of before.folded) details.open = false;
-  useTheme(before.theme);
-});
+addEventListener("afterprint", () => useTheme(themeBefore));

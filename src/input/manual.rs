@@ -51,11 +51,12 @@ fn reference(schema: &Json) -> String {
 }
 
 /// Tables at the top of a file, and their headings.
-const FAMILIES: [(&str, &str); 14] = [
+const FAMILIES: [(&str, &str); 15] = [
     ("Parameter", "parameters.NAME"),
     ("Plan", "plan"),
     ("StudyRun", "run of a study"),
     ("Ranking", "ranking"),
+    ("Project", "project"),
     ("Medium", "media.NAME"),
     ("Finish", "finishes.NAME"),
     ("Solid", "solids.NAME"),

@@ -41,6 +41,7 @@ pub(crate) fn check_page(
     let items = listed.lines().map(str::to_owned).collect();
     let page = Page {
         title: title.to_owned(),
+        masthead: None,
         description: None,
         verdict: "A check of the scene: nothing was measured".into(),
         standing: Standing::Open,

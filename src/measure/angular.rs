@@ -4,8 +4,9 @@
 //! about it). A cell stands for the γ that halves its solid angle, cos γ = (cos γ₁ + cos γ₂)/2. Cells are taken as
 //! independent, which makes the errors of large shares of the flux too large rather than too small.
 
+use crate::measure::counted::{Noisy, Part};
 use crate::measure::evidence::{Evidence, counted};
-use crate::measure::extremes::{Extreme, Noisy, maximum};
+use crate::measure::extremes::{Extreme, maximum};
 use crate::measure::{Measure, Status, beam};
 use crate::scene::{Goniometer, SensorId};
 use indexmap::IndexMap;
@@ -215,8 +216,13 @@ pub(crate) fn measures(
 /// The largest intensity of any cell, corrected for noise.
 fn largest(evidence: &Evidence<'_>, sphere: &Sphere<'_>) -> Measure {
     let sectors = sphere.goniometer.c_cells;
-    let cells: Vec<Noisy> = (0..sphere.flux.len())
-        .map(|cell| sphere.intensity(cell / sectors, &[cell % sectors]))
+    // Ring by ring within a sector: neighbours in the list are neighbours on the sphere.
+    let rings = sphere.goniometer.gamma_cells;
+    let cells: Vec<Part> = (0..sphere.flux.len())
+        .map(|place| Part {
+            read: sphere.intensity(place % rings, &[place / rings]),
+            weight: sphere.goniometer.solid_angle(place % rings * sectors),
+        })
         .collect();
     let Extreme { value, std_error, bias, .. } = maximum(&cells);
     let found = Noisy { value, std_error, count: 0.0 };

@@ -4,63 +4,108 @@
 //! linearly between rings, first falls below the level on the way outward from that half-plane's own maximum: a
 //! maximum off the axis, or a dip on it, is inside the beam, and weak lobes further out are not. Where one half-plane
 //! never reaches the level, the beam lies wholly in the other, and the inner edge there bounds it. The level is a
-//! share of the largest intensity in the plane, corrected for noise. A curve that never falls below the level gives
+//! share of the largest intensity in the plane, its noise taken out. A curve that never falls below the level gives
 //! 360 deg.
 
 use crate::measure::Status;
+use crate::measure::counted::{Noisy, Part, Sample};
 use crate::measure::evidence::counted;
-use crate::measure::extremes::{Noisy, Normal, maximum};
+use crate::measure::noise::Noise;
 use crate::tally::Tally;
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 /// Times the curve is drawn anew with its noise to learn the error of the angle: good to 1/sqrt(2 · 100) = 7 %.
 const REPLICAS: usize = 100;
+/// The part of the bias that was taken off that may still be there, 1.
+const BIAS_LEFT: f64 = 0.7;
 
 /// A full angle, rad.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct FullAngle {
     pub(crate) value: f64,
     pub(crate) std_error: f64,
-    /// What the bias of the largest intensity makes of it, that of noise and that of rings of finite width, rad.
+    /// How far off it may be by noise and by rings of finite width, rad.
     pub(crate) bias: f64,
     pub(crate) status: Status,
 }
 
 /// Full angle at `share` of the maximum; `gammas` are the angles of the rings from the pole, rad. `None` in the dark.
+///
+/// The angle is read off the curve as it is. What noise does to such a reading is learnt from curves drawn anew about
+/// the curve without noise: their scatter is the error, their mean deviation the bias, which is taken off.
 pub(crate) fn full_angle(gammas: &[f64], halves: [&[Noisy]; 2], share: f64) -> Option<FullAngle> {
-    let plane: Vec<Noisy> = halves.concat();
-    let most = maximum(&plane);
-    if most.raw == 0.0 {
+    let plane = Plane::of(gammas, halves);
+    let read: Vec<f64> = plane.sample.values.clone();
+    let peak = plane.parts[highest(&read)].read;
+    if peak.value <= 0.0 {
         return None;
     }
-    let values = |half: &[Noisy]| half.iter().map(|ring| ring.value).collect::<Vec<_>>();
-    let read = [values(halves[0]), values(halves[1])];
-    let at = |level: f64| width(gammas, [&read[0], &read[1]], share * level);
-    let value = at(most.value);
-    let mut normal = Normal::new();
-    let mut draw = |value: f64, std_error: f64| value + std_error * normal.draw();
-    let drawn = Tally::of((0..REPLICAS).map(|_| {
-        let mut again = |half: &[Noisy]| -> Vec<f64> {
-            half.iter().map(|ring| draw(ring.value, ring.std_error)).collect()
-        };
-        let ahead = again(halves[0]);
-        // A curve that is the same on both sides is noisy in the same way, too.
-        let behind = if halves[0] == halves[1] { ahead.clone() } else { again(halves[1]) };
-        width(gammas, [&ahead, &behind], share * draw(most.value, most.std_error))
-    }));
-    let peak = plane[highest(&values(&plane))];
-    let shift = |more: f64| at(most.value + more) - value;
-    let highest_of = |halves: [&[f64]; 2]| {
-        halves.map(|half| half[highest(half)]).into_iter().fold(0.0, f64::max)
-    };
-    let rings = ring_bias(gammas, [&read[0], &read[1]], |halves| share * highest_of(halves));
+    let value = plane.angle(gammas, &read, share);
+    let status = counted(peak.value, peak.std_error);
+    let rings =
+        plane.split(&read, |halves| ring_bias(gammas, halves, |halves| share * highest_of(halves)));
+    if plane.parts.iter().any(|part| !part.read.std_error.is_finite()) {
+        return Some(FullAngle { value, std_error: f64::INFINITY, bias: rings.abs(), status });
+    }
+    let means = plane.sample.without_noise(&read);
+    let mut noise = Noise::new();
+    let drawn = Tally::of(
+        (0..REPLICAS).map(|_| plane.angle(gammas, &plane.sample.drawn(&means, &mut noise), share)),
+    );
+    let deviation = drawn.mean() - plane.angle(gammas, &means, share);
+    // What bias is left is a part of what was taken off.
+    let left = BIAS_LEFT * deviation;
     Some(FullAngle {
-        value,
+        value: (value - deviation).clamp(0.0, TAU),
         // The spread of the replicas is the error, not that of their mean.
         std_error: drawn.std_error() * (REPLICAS as f64).sqrt(),
-        bias: shift(most.bias).hypot(rings),
-        status: counted(peak.value, peak.std_error),
+        bias: left.hypot(rings),
+        status,
     })
+}
+
+/// The curve in a plane through the pole, as one line over it.
+struct Plane {
+    parts: Vec<Part>,
+    sample: Sample,
+    rings: usize,
+}
+
+impl Plane {
+    /// A curve that is the same on both sides has the same noise on both, and is one half alone.
+    fn of(gammas: &[f64], [ahead, behind]: [&[Noisy]; 2]) -> Self {
+        let part = |(read, gamma): (&Noisy, &f64)| Part { read: *read, weight: gamma.sin() };
+        let half = |half: &[Noisy]| half.iter().zip(gammas).map(part).collect::<Vec<_>>();
+        let mut parts = half(ahead);
+        if ahead != behind {
+            // From the far end of one half over the pole to that of the other.
+            let mut line = half(behind);
+            line.reverse();
+            line.append(&mut parts);
+            parts = line;
+        }
+        Self { sample: Sample::of(&parts), parts, rings: ahead.len() }
+    }
+
+    /// Something of both halves of a line.
+    fn split<T>(&self, line: &[f64], of: impl Fn([&[f64]; 2]) -> T) -> T {
+        if line.len() == self.rings {
+            return of([line, line]);
+        }
+        let (behind, ahead) = line.split_at(self.rings);
+        let behind: Vec<f64> = behind.iter().rev().copied().collect();
+        of([ahead, &behind])
+    }
+
+    /// The full angle of a line at a share of its largest value without noise.
+    fn angle(&self, gammas: &[f64], line: &[f64], share: f64) -> f64 {
+        let most = self.sample.without_noise(line).into_iter().fold(0.0, f64::max);
+        self.split(line, |halves| width(gammas, halves, share * most))
+    }
+}
+
+fn highest_of(halves: [&[f64]; 2]) -> f64 {
+    halves.map(|half| half[highest(half)]).into_iter().fold(0.0, f64::max)
 }
 
 /// How far the angle moves by the width of the rings: half of its change when rings are taken in pairs. Of an error that

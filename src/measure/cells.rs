@@ -6,8 +6,8 @@
 //! their neighbours along the rim until half a cell is full, so that all light of the sensor counts and the average
 //! lies between the extremes.
 
+use crate::measure::counted::{Noisy, Part};
 use crate::measure::evidence::Evidence;
-use crate::measure::extremes::Noisy;
 use crate::scene::{Grid, Seeing, SensorId, SurfaceSensor};
 use crate::units::MM2_PER_M2;
 use glam::DVec2;
@@ -22,6 +22,12 @@ const ENOUGH_AREA: f64 = 0.5;
 pub fn not_below_zero(value: f64) -> f64 {
     // NaN, off the sensor, stays.
     if value < 0.0 { 0.0 } else { value }
+}
+
+/// The bits of a column and a row in turn.
+fn interleaved(column: usize, row: usize) -> u64 {
+    let bit = |of: usize, place: u32| (of as u64 >> place) & 1;
+    (0..u32::BITS).map(|place| (bit(column, place) | bit(row, place) << 1) << (2 * place)).sum()
 }
 
 /// The cells of one view.
@@ -90,13 +96,18 @@ impl<'a> SensorCells<'a> {
     }
 
     /// What the extremes are taken of, in the unit of the map: the full cells, and those cut by the rim, some together.
-    /// The average is their mean by area.
-    pub(crate) fn for_extremes(&self) -> Vec<Noisy> {
-        let full = (0..self.areas.len()).filter(|&cell| self.is_full(cell));
-        let rim = self.rim();
-        full.map(|cell| self.at(cell))
-            .chain(rim.iter().map(|cells| self.mean(cells.iter().copied())))
-            .collect()
+    /// The average is their mean by area. They come along a curve that fills the grid (Morton 1966), so that
+    /// neighbours in the list are neighbours on the sensor.
+    pub(crate) fn for_extremes(&self) -> Vec<Part> {
+        let full = (0..self.areas.len()).filter(|&cell| self.is_full(cell)).map(|cell| vec![cell]);
+        let mut groups: Vec<Vec<usize>> = full.chain(self.rim()).collect();
+        let (columns, _) = self.grid.shape();
+        groups.sort_by_cached_key(|cells| interleaved(cells[0] % columns, cells[0] / columns));
+        let part = |cells: Vec<usize>| Part {
+            weight: cells.iter().map(|&cell| self.areas[cell]).sum(),
+            read: self.mean(cells),
+        };
+        groups.into_iter().map(part).collect()
     }
 
     /// The cells cut to less than half, in the order of their direction from the middle of the grid, together as far as

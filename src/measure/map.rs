@@ -2,13 +2,11 @@
 //! how even they are.
 
 use crate::measure::cells::SensorCells;
+use crate::measure::counted::{Noisy, Part};
 use crate::measure::evidence::Evidence;
-use crate::measure::extremes::Noisy;
 use crate::measure::flux::flux_slots;
 use crate::measure::points;
-use crate::measure::uniformity::{
-    Field, Part, Uniformity, UniformitySummary, coefficient_of_variation, uniformity,
-};
+use crate::measure::uniformity::{Field, Uniformity, UniformitySummary, uniformity};
 use crate::scene::{Grid, Seeing, SensorId, SurfaceSensor};
 use glam::DVec2;
 use ndarray::Array2;
@@ -157,7 +155,6 @@ fn summary(
     sensor: &SurfaceSensor,
     seen: &SensorCells<'_>,
 ) -> UniformitySummary {
-    let cells = || 0..seen.areas.len();
     let parts_of_it = seen.for_extremes();
     let field = Field {
         cells: &parts_of_it,
@@ -165,10 +162,6 @@ fn summary(
         counts: seen.counts_per_cell(parts_of_it.len()),
         batches: evidence.readings.batch_count(),
     };
-    let parts = cells().filter(|&cell| seen.is_on(cell)).map(|cell| {
-        let Noisy { value, std_error, .. } = seen.at(cell);
-        Part { value, std_error, share: seen.areas[cell] / seen.area }
-    });
     let on_points = |points: Option<Vec<Vec<usize>>>| {
         let points = points?;
         points
@@ -178,11 +171,12 @@ fn summary(
             .then(|| at_points(&points, seen, &field))
     };
     let grid = map_grid(sensor);
+    let (all, cv) = uniformity(&field);
     UniformitySummary {
         cells: parts_of_it.len(),
         cell_size: cell_size(sensor),
-        all: uniformity(&field),
-        cv: coefficient_of_variation(parts, &field),
+        all,
+        cv,
         nine: on_points(points::nine(grid)),
         thirteen: on_points(points::thirteen(grid)),
     }
@@ -204,16 +198,16 @@ fn at_points(points: &[Vec<usize>], seen: &SensorCells<'_>, field: &Field<'_>) -
     let n = read.len() as f64;
     let sum: f64 = read.iter().map(|point| point.value).sum();
     // Points that read the same cells are one for the extremes, and their noise is the same noise.
-    let mut distinct: Vec<Noisy> = Vec::new();
+    let mut distinct: Vec<Part> = Vec::new();
     let mut variance = 0.0;
     for (index, point) in read.iter().enumerate() {
         if !points[..index].contains(&points[index]) {
             let times = points.iter().filter(|cells| **cells == points[index]).count() as f64;
             variance += (times * point.std_error).powi(2);
-            distinct.push(*point);
+            distinct.push(Part { read: *point, weight: times });
         }
     }
-    uniformity(&Field { cells: &distinct, avg: [sum / n, variance.sqrt() / n], ..*field })
+    uniformity(&Field { cells: &distinct, avg: [sum / n, variance.sqrt() / n], ..*field }).0
 }
 
 fn axes(sensor: &SurfaceSensor) -> Axes {

@@ -10,6 +10,7 @@ mod balance;
 mod beam;
 mod cells;
 mod check;
+mod counted;
 mod evidence;
 mod extremes;
 mod flux;
@@ -17,6 +18,8 @@ mod gathered;
 #[cfg(test)]
 mod laws;
 mod map;
+mod multiscale;
+mod noise;
 mod paths;
 mod points;
 mod readout;

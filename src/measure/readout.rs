@@ -1,8 +1,8 @@
 //! What is read off the maps of a sensor: extremes, uniformity, the middle, and single cells and rings by name.
 
 use crate::measure::cells::SensorCells;
+use crate::measure::counted::Noisy;
 use crate::measure::evidence::{Evidence, counted};
-use crate::measure::extremes::Noisy;
 use crate::measure::map::{SensorMap, map_grid};
 use crate::measure::uniformity::Statistic;
 use crate::measure::{Measure, Status, points};

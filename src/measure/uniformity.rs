@@ -1,28 +1,34 @@
 //! How even a field is: extremes over average, extremes over each other, and the coefficient of variation.
 //!
 //! All of these are biased by noise and corrected for it ([`crate::measure::extremes`] tells how), all depend on the
-//! size of the cells, and all are given with an interval that holds the truth in at least 95 of 100 cases. This
-//! module knows values and areas, no sensors.
+//! size of the cells, and all are given with an interval for 95 of 100 cases. This module knows values and areas, no
+//! sensors.
 
 use crate::measure::Status;
-use crate::measure::evidence::{MIN_COUNTS, enough_batches};
-use crate::measure::extremes::{Extreme, Noisy, TWO_SIDED_95, maximum, minimum};
+use crate::measure::counted::Part;
+use crate::measure::evidence::{MIN_COUNTS, counted, enough_batches};
+use crate::measure::extremes::{Extreme, TWO_SIDED_95, evenness};
 use serde::Serialize;
 
 /// An extreme that was corrected by more than this share (of the average for the smallest, of itself for the
 /// largest) is mostly noise.
 const NOISE_LIMIT: f64 = 0.1;
 
+/// Ends of an interval.
+const LOW: usize = 0;
+const HIGH: usize = 1;
+
 /// A statistic of a map, corrected for noise.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Statistic {
-    /// Corrected value, in the unit of the map or 1.
+    /// Corrected value, in the unit of the map or 1. Where the status is `noise_limited`, the bound that the true value
+    /// keeps: smallest values and their ratios are at least so large, largest values at most.
     pub value: f64,
     /// Standard error of the value.
     pub std_error: f64,
     /// How far off the corrected value may be on top of the noise; `None` where it is unbiased.
     pub bias: Option<f64>,
-    /// Holds the true value in at least 95 of 100 cases.
+    /// Holds the true value in 95 of 100 cases.
     pub interval: [f64; 2],
     /// The correction that is part of the value: the value as read is `value - correction`.
     pub correction: f64,
@@ -69,8 +75,8 @@ pub struct UniformitySummary {
 /// Values over a surface with what is known of their noise.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Field<'a> {
-    /// The values that count for the extremes.
-    pub(crate) cells: &'a [Noisy],
+    /// The values that count for the extremes, with their areas; neighbours in the list are neighbours on the surface.
+    pub(crate) cells: &'a [Part],
     /// Their average and its standard error.
     pub(crate) avg: [f64; 2],
     /// Counts in an average cell, 1.
@@ -81,7 +87,7 @@ pub(crate) struct Field<'a> {
 
 impl Field<'_> {
     fn status(&self) -> Status {
-        if self.avg[0] == 0.0 || self.cells.is_empty() {
+        if self.avg[0] <= 0.0 || self.cells.is_empty() {
             Status::NoSignal
         } else if self.counts < MIN_COUNTS {
             Status::TooFew
@@ -89,33 +95,46 @@ impl Field<'_> {
             enough_batches(self.batches)
         }
     }
+
+    /// Of the largest value alone: it may be well known where most of a field is dark.
+    fn status_of_largest(&self, status: Status) -> Status {
+        let reads = self.cells.iter().map(|part| part.read);
+        match reads.max_by(|a, b| a.value.total_cmp(&b.value)) {
+            Some(largest) if status == Status::TooFew => {
+                counted(largest.value, largest.std_error).worst(enough_batches(self.batches))
+            }
+            Some(_) | None => status,
+        }
+    }
 }
 
-/// Extremes and their ratios.
-pub(crate) fn uniformity(field: &Field<'_>) -> Uniformity {
+/// Extremes, their ratios, and the coefficient of variation.
+pub(crate) fn uniformity(field: &Field<'_>) -> (Uniformity, Statistic) {
     let status = field.status();
     let avg = average(field, status);
     if status == Status::NoSignal {
         let (level, ratio) = (Statistic::unknown(f64::INFINITY), Statistic::unknown(1.0));
         let max_min = Statistic { value: f64::INFINITY, ..level };
-        return Uniformity { min: level, max: level, avg, min_avg: ratio, min_max: ratio, max_min };
+        let dark =
+            Uniformity { min: level, max: level, avg, min_avg: ratio, min_max: ratio, max_min };
+        return (dark, level);
     }
     if let [_] = field.cells {
         // One cell is all three, however noisy it is.
         let (value, std_error, interval) = (1.0, 0.0, [1.0, 1.0]);
         let even = Statistic { value, std_error, interval, ..avg };
-        return Uniformity { min: avg, max: avg, avg, min_avg: even, min_max: even, max_min: even };
+        let one =
+            Uniformity { min: avg, max: avg, avg, min_avg: even, min_max: even, max_min: even };
+        return (one, Statistic { value: 0.0, interval: [0.0; 2], ..even });
     }
-    let (mut least, mut most) = (minimum(field.cells), maximum(field.cells));
-    // No correction takes an extreme beyond the mean of these cells.
-    let mean = field.cells.iter().map(|cell| cell.value).sum::<f64>() / field.cells.len() as f64;
-    least.value = least.value.min(mean);
-    most.value = most.value.max(mean);
-    let min = extreme(&least, avg.value, status);
-    let max = extreme(&most, most.raw, status);
-    let min_avg = over(&min, &avg).at_most_one();
-    let min_max = over(&min, &max).at_most_one();
-    Uniformity { min, max, avg, min_avg, min_max, max_min: min_max.inverse() }
+    let found = evenness(field.cells);
+    let min = extreme(&found.min, LOW, avg.value, status);
+    let max = extreme(&found.max, HIGH, found.max.raw, field.status_of_largest(status));
+    let min_avg = extreme(&found.min_avg, LOW, 1.0, status).worst(min.status);
+    let both = min.status.worst(max.status);
+    let min_max = extreme(&found.min_max, LOW, 1.0, status).worst(both);
+    let cv = Statistic { bias: None, ..extreme(&found.cv, HIGH, f64::INFINITY, status) };
+    (Uniformity { min, max, avg, min_avg, min_max, max_min: min_max.inverse() }, cv)
 }
 
 fn average(field: &Field<'_>, status: Status) -> Statistic {
@@ -131,31 +150,18 @@ fn average(field: &Field<'_>, status: Status) -> Statistic {
     }
 }
 
-fn extreme(found: &Extreme, scale: f64, status: Status) -> Statistic {
-    let correction = found.value - found.raw;
-    let noisy = correction.abs() > NOISE_LIMIT * scale;
-    Statistic {
-        value: found.value,
-        std_error: found.std_error,
-        bias: Some(found.bias),
-        interval: found.interval,
-        correction,
-        status: status.worst(if noisy { Status::NoiseLimited } else { Status::Ok }),
-    }
-}
-
-/// A ratio of two statistics, their errors taken as independent. The denominator is at least an average, not zero.
-fn over(part: &Statistic, whole: &Statistic) -> Statistic {
-    let value = part.value / whole.value;
-    let with = |a: f64, b: f64| (a / whole.value).hypot(value * b / whole.value);
-    let raw = (part.value - part.correction) / (whole.value - whole.correction);
+/// A corrected statistic; where the correction is large against `scale`, noise hides the value, and a bound of the
+/// interval stands in its place.
+fn extreme(found: &Extreme, end: usize, scale: f64, status: Status) -> Statistic {
+    let is_hidden = (found.value - found.raw).abs() > NOISE_LIMIT * scale;
+    let value = if is_hidden { found.interval[end] } else { found.value };
     Statistic {
         value,
-        std_error: with(part.std_error, whole.std_error),
-        bias: Some(with(part.bias.unwrap_or(0.0), whole.bias.unwrap_or(0.0))),
-        interval: [part.interval[0] / whole.interval[1], part.interval[1] / whole.interval[0]],
-        correction: value - raw,
-        status: part.status.worst(whole.status),
+        std_error: found.std_error,
+        bias: Some(found.bias.hypot(value - found.value)),
+        interval: found.interval,
+        correction: value - found.raw,
+        status: status.worst(if is_hidden { Status::NoiseLimited } else { Status::Ok }),
     }
 }
 
@@ -172,15 +178,9 @@ impl Statistic {
         }
     }
 
-    /// A ratio that cannot exceed 1.
-    fn at_most_one(self) -> Self {
-        let value = self.value.min(1.0);
-        Self {
-            value,
-            correction: self.correction + (value - self.value),
-            interval: self.interval.map(|end| end.min(1.0)),
-            ..self
-        }
+    /// With a status at least as bad.
+    fn worst(self, status: Status) -> Self {
+        Self { status: self.status.worst(status), ..self }
     }
 
     /// One over it.
@@ -201,89 +201,39 @@ impl Statistic {
     }
 }
 
-/// A cell of the whole sensor: value, its standard error, and its share of the area.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Part {
-    pub(crate) value: f64,
-    pub(crate) std_error: f64,
-    pub(crate) share: f64,
-}
-
-/// Coefficient of variation over the area: the variance that the noise alone would make, Σ w (1 - w) σ², is taken
-/// out, w being shares of the area. The variance of what is left is Σ (4 w² σ² δ² - 2 w² σ⁴) for cells that deviate
-/// by δ from the mean, of which σ² is noise.
-pub(crate) fn coefficient_of_variation(
-    parts: impl Iterator<Item = Part> + Clone,
-    field: &Field<'_>,
-) -> Statistic {
-    let status = field.status();
-    let mean: f64 = parts.clone().map(|part| part.share * part.value).sum();
-    if status == Status::NoSignal || mean == 0.0 {
-        return Statistic::unknown(f64::INFINITY);
-    }
-    let (mut read, mut noise, mut spread) = (0.0, 0.0, 0.0);
-    for Part { value, std_error, share } in parts {
-        let (deviation, variance) = ((value - mean).powi(2), std_error * std_error);
-        read += share * deviation;
-        noise += share * (1.0 - share) * variance;
-        spread += share * share * variance * (4.0 * deviation - 2.0 * variance);
-    }
-    if !noise.is_finite() {
-        return Statistic { status, ..Statistic::unknown(f64::INFINITY) };
-    }
-    let (variance, error) = ((read - noise).max(0.0), spread.max(0.0).sqrt());
-    let cv = |variance: f64| variance.max(0.0).sqrt() / mean;
-    let reach = TWO_SIDED_95 * error;
-    let interval = [cv(variance - reach), cv(variance + reach)];
-    Statistic {
-        value: cv(variance),
-        // The same as error / (2 √variance) / mean where the variance stands out, and finite where it does not.
-        std_error: (interval[1] - interval[0]) / (2.0 * TWO_SIDED_95),
-        bias: None,
-        interval,
-        correction: cv(variance) - cv(read),
-        status,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measure::extremes::Normal;
+    use crate::measure::counted::Noisy;
+    use crate::measure::noise::Noise;
 
-    fn cell(value: f64, std_error: f64) -> Noisy {
-        Noisy { value, std_error, count: 0.0 }
+    fn cell(value: f64, std_error: f64) -> Part {
+        Part { read: Noisy { value, std_error, count: 0.0 }, weight: 1.0 }
     }
 
-    fn field(cells: &[Noisy]) -> Field<'_> {
+    fn field(cells: &[Part]) -> Field<'_> {
         let n = cells.len() as f64;
-        let avg = cells.iter().map(|cell| cell.value).sum::<f64>() / n;
-        let error = cells.iter().map(|cell| cell.std_error.powi(2)).sum::<f64>().sqrt() / n;
+        let avg = cells.iter().map(|cell| cell.read.value).sum::<f64>() / n;
+        let error = cells.iter().map(|cell| cell.read.std_error.powi(2)).sum::<f64>().sqrt() / n;
         Field { cells, avg: [avg, error], counts: 1e4, batches: 128 }
-    }
-
-    fn parts(cells: &[Noisy]) -> impl Iterator<Item = Part> + Clone {
-        let share = 1.0 / cells.len() as f64;
-        cells.iter().map(move |cell| Part { value: cell.value, std_error: cell.std_error, share })
     }
 
     #[test]
     fn statistics_without_noise_are_the_plain_ones() {
         let cells = [1.0, 2.0, 4.0, 1.0].map(|value| cell(value, 0.0));
-        let found = uniformity(&field(&cells));
+        let (found, cv) = uniformity(&field(&cells));
         assert_eq!(
             [found.min_avg.value, found.min_max.value, found.max_min.value],
             [0.5, 0.25, 4.0]
         );
         assert_eq!(found.min_avg.interval, [0.5; 2]);
         assert_eq!((found.min.status, found.min.correction), (Status::Ok, 0.0));
-        let cv = coefficient_of_variation(parts(&cells), &field(&cells));
         assert!((cv.value - (1.5f64).sqrt() / 2.0).abs() < 1e-15);
     }
 
     #[test]
     fn a_single_cell_is_even_and_its_extremes_are_its_value() {
-        let found = uniformity(&field(&[cell(0.3, 0.1)]));
+        let (found, _) = uniformity(&field(&[cell(0.3, 0.1)]));
         assert_eq!([found.min.value, found.max.value], [0.3; 2]);
         assert_eq!([found.min.std_error, found.max.std_error], [0.1; 2]);
         let ratios = [found.min_avg, found.min_max, found.max_min];
@@ -292,30 +242,33 @@ mod tests {
 
     #[test]
     fn a_flat_field_under_noise_is_flat_again_and_much_noise_is_said() {
-        let mut normal = Normal::new();
+        let mut noise_of_cells = Noise::new();
         for (noise, expected) in [(0.01, Status::Ok), (0.1, Status::NoiseLimited)] {
             let cells: Vec<_> =
-                (0..1024).map(|_| cell(1.0 + noise * normal.draw(), noise)).collect();
-            let found = uniformity(&field(&cells));
+                (0..1024).map(|_| cell(1.0 + noise * noise_of_cells.normal(), noise)).collect();
+            let (found, _) = uniformity(&field(&cells));
             let total = found.min_avg.std_error.hypot(found.min_avg.bias.unwrap());
             assert!((found.min_avg.value - 1.0).abs() < 3.0 * total, "{:?}", found.min_avg);
             assert!(found.min_avg.value - found.min_avg.correction < 1.0 - 2.5 * noise);
             assert_eq!([found.min_avg.status, found.min_max.status], [expected; 2]);
+            let [low, high] = found.min_avg.interval;
+            assert!(low > 1.0 - 2.5 * noise && high == 1.0, "{:?}", found.min_avg);
         }
     }
 
     #[test]
     fn the_coefficient_of_variation_loses_the_noise_and_its_interval_holds() {
-        let mut normal = Normal::new();
+        let mut noise_of_cells = Noise::new();
         // Half the cells at 1 - d, half at 1 + d: a true CV of d.
         for (d, noise) in [(0.1, 0.03), (0.03, 0.03), (0.01, 0.1), (0.0, 0.03)] {
             let trials = 200;
             let (mut held, mut sum) = (0, 0.0);
             for _ in 0..trials {
                 let level = |i: u32| if i.is_multiple_of(2) { 1.0 - d } else { 1.0 + d };
-                let cells: Vec<_> =
-                    (0..1024).map(|i| cell(level(i) + noise * normal.draw(), noise)).collect();
-                let found = coefficient_of_variation(parts(&cells), &field(&cells));
+                let cells: Vec<_> = (0..1024)
+                    .map(|i| cell(level(i) + noise * noise_of_cells.normal(), noise))
+                    .collect();
+                let (_, found) = uniformity(&field(&cells));
                 held += i32::from(found.interval[0] <= d && d <= found.interval[1]);
                 sum += (found.value.powi(2) - d * d) / f64::from(trials);
             }
@@ -328,33 +281,37 @@ mod tests {
 
     #[test]
     fn the_largest_of_single_counts_is_not_corrected_to_nothing() {
-        let cells: Vec<_> =
+        let mut cells: Vec<_> =
             (0..1000).map(|i| if i % 10 == 0 { cell(1.0, 1.0) } else { cell(0.0, 0.0) }).collect();
-        let found = uniformity(&field(&cells));
+        for cell in &mut cells {
+            cell.read.count = 1.0;
+        }
+        let (found, _) = uniformity(&field(&cells));
         assert!(found.max.value >= 0.1 - 1e-12, "{:?}", found.max);
-        assert!(found.min_max.std_error > 1.0 && found.min_max.status == Status::NoiseLimited);
+        assert_eq!(found.min_max.status, Status::NoiseLimited);
+        assert_eq!(found.min_max.interval[1], 1.0);
     }
 
     #[test]
     fn darkness_and_few_counts_are_said() {
         let dark = [cell(0.0, 0.0); 4];
-        let found = uniformity(&field(&dark));
+        let (found, _) = uniformity(&field(&dark));
         assert_eq!(
             [found.min.status, found.min_avg.status, found.max_min.status],
             [Status::NoSignal; 3]
         );
         assert_eq!(found.min_avg.std_error, f64::INFINITY);
         let cells = [cell(1.0, 0.5); 9];
-        let few = uniformity(&Field { counts: 4.0, ..field(&cells) });
+        let (few, _) = uniformity(&Field { counts: 4.0, ..field(&cells) });
         assert_eq!(few.min_avg.status, Status::TooFew);
-        let few = uniformity(&Field { batches: 3, ..field(&cells) });
+        let (few, _) = uniformity(&Field { batches: 3, ..field(&cells) });
         assert_eq!(few.min_avg.status, Status::TooFew);
     }
 
     #[test]
     fn a_dark_spot_makes_the_largest_over_the_smallest_infinite() {
         let cells = [cell(0.0, 0.0), cell(1.0, 0.001), cell(1.0, 0.001)];
-        let found = uniformity(&field(&cells));
+        let (found, _) = uniformity(&field(&cells));
         assert_eq!(found.min_max.value, 0.0);
         assert_eq!(found.max_min.value, f64::INFINITY);
         assert_eq!(found.max_min.status, Status::NoSignal);

@@ -130,6 +130,37 @@ impl Open {
         self.call("Emulation.setDeviceMetricsOverride", size);
     }
 
+    /// The page on a phone: so many CSS pixels wide, and under a finger.
+    pub(crate) fn on_phone(&self, width: u32, height: u32) {
+        let size =
+            json!({ "width": width, "height": height, "deviceScaleFactor": 2, "mobile": true });
+        self.call("Emulation.setDeviceMetricsOverride", size);
+        self.call("Emulation.setTouchEmulationEnabled", json!({ "enabled": true }));
+    }
+
+    /// Scrolls with a finger that starts on the middle of an element, CSS pixels.
+    pub(crate) fn scroll_by_finger(&self, element: &str, distance: f64) {
+        let [x, y] = self.place(element, [0.5, 0.5]);
+        let gesture = json!({ "x": x, "y": y, "yDistance": distance, "gestureSourceType": "touch" });
+        self.call("Input.synthesizeScrollGesture", gesture);
+    }
+
+    /// Moves a finger over an element from one place to another.
+    pub(crate) fn stroke(&self, element: &str, from: [f64; 2], to: [f64; 2]) {
+        const STEPS: u32 = 8;
+        let start = self.place(element, from);
+        let end = self.place(element, to);
+        let touch = |kind: &str, points: Value| {
+            self.call("Input.dispatchTouchEvent", json!({ "type": kind, "touchPoints": points }));
+        };
+        for step in 0..=STEPS {
+            let share = f64::from(step) / f64::from(STEPS);
+            let [x, y] = [0, 1].map(|axis| start[axis] + share * (end[axis] - start[axis]));
+            touch(if step == 0 { "touchStart" } else { "touchMove" }, json!([{ "x": x, "y": y }]));
+        }
+        touch("touchEnd", json!([]));
+    }
+
     /// The page as it is printed to PDF.
     pub(crate) fn print(&self) -> Vec<u8> {
         bytes(&self.call("Page.printToPDF", json!({})))

@@ -5,6 +5,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
 
 mod driver;
+mod phone;
 mod protocol;
 mod study;
 
@@ -65,7 +66,8 @@ fn figure(label: &str, nth: usize) -> String {
 
 /// The value and the error at the start of what a readout says after a colon.
 fn told(readout: &str) -> [f64; 2] {
-    let numbers = readout.rsplit(": ").next().unwrap();
+    // Large numbers have narrow spaces between groups of three digits.
+    let numbers = readout.rsplit(": ").next().unwrap().replace('\u{202f}', "");
     let power = numbers.split("×10").nth(1).map_or(0, |rest| {
         let digits = "⁰¹²³⁴⁵⁶⁷⁸⁹";
         let place = |c: char| digits.chars().position(|digit| digit == c);
@@ -91,6 +93,7 @@ fn values_under_the_pointer_are_those_of_the_tables() {
     page.point_at(&format!("{map}.querySelector('image')"), [0.5625, 0.4375]);
     let readout = format!("{map}.querySelector('.readout').textContent");
     page.expect(&format!("{readout}.includes('±')"));
+    assert!(page.text(&readout).contains('\u{202f}'), "{}", page.text(&readout));
     let [value, error] = told(&page.text(&readout));
     // Column 4 and row 4 from below, each of eight. Rounding leaves up to a seventh of the error.
     let table = fs::read_to_string(report.path("exit.illuminance.csv")).unwrap();

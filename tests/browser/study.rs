@@ -47,6 +47,12 @@ fn the_page_of_a_study_tells_values_under_the_pointer() {
     let ranks = "[...document.querySelectorAll('table')][0].querySelectorAll('tbody tr').length";
     assert_eq!(page.ask(ranks), 6);
 
+    // Pictures come after the first table, and before all others.
+    let order = "[...document.querySelectorAll('table, figure')].map((e) => e.localName).join(' ')";
+    let order = page.text(order);
+    assert!(order.starts_with("table figure"), "{order}");
+    assert_eq!(order.matches("table figure").count(), 1, "{order}");
+
     let plot = figure("response of exit.efficiency", 0);
     page.point_at(&format!("{plot}.querySelector('svg')"), [0.5, 0.4]);
     let readout = format!("{plot}.querySelector('.readout').textContent");

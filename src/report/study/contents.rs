@@ -3,6 +3,7 @@
 use crate::input::{Best, Domain, Setting};
 use crate::measure::Outcome;
 use crate::number::{format_percent, format_value, format_with_error};
+use crate::report::study::edge::edge_remark;
 use crate::report::study::{
     DesignOutcome, DesignRecord, Estimate, Pairing, ParameterFacts, PlanFacts, Sensitivity,
     SensitivityMethod, StudyReport,
@@ -29,12 +30,25 @@ pub(super) enum Item {
     Table { head: Vec<String>, rows: Vec<Vec<String>> },
 }
 
-/// All parts but the pictures, in their order: those that come before them, and those after.
+/// All parts but the pictures, in their order: those that come before them, up to the first table, and those after.
 pub(super) fn parts(report: &StudyReport) -> [Vec<Part>; 2] {
-    let before = [failures(report), ranking(report), sensitivities(report), effects(report)];
-    let after =
-        [Some(designs(report)), Some(parameters(report)), remarks(report), Some(run(report))];
-    [before.into_iter().flatten().collect(), after.into_iter().flatten().collect()]
+    let mut before: Vec<Part> = [
+        failures(report),
+        ranking(report),
+        sensitivities(report),
+        effects(report),
+        Some(designs(report)),
+        Some(parameters(report)),
+        remarks(report),
+        Some(run(report)),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    let has_table = |part: &Part| part.items.iter().any(|item| matches!(item, Item::Table { .. }));
+    let first = before.iter().position(has_table).map_or(0, |place| place + 1);
+    let after = before.split_off(first);
+    [before, after]
 }
 
 /// What came of it, in a sentence.
@@ -101,7 +115,8 @@ fn ranking(report: &StudyReport) -> Option<Part> {
         let row = [(place + 1).to_string(), own.design.to_string()].into_iter();
         Some(row.chain(settings(report, design)).chain([value, behind]).collect())
     });
-    let items = vec![Item::Words(words), Item::Table { head, rows: rows.collect() }];
+    let mut items = vec![Item::Words(words), Item::Table { head, rows: rows.collect() }];
+    items.extend(edge_remark(report).map(Item::Words));
     Some(Part { title: "Ranking", items })
 }
 

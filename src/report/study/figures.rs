@@ -94,7 +94,7 @@ fn measure_label(report: &StudyReport, measure: &str) -> String {
 }
 
 /// Distinct numbers of a parameter; none unless all designs have one.
-fn numbers_of(parameter: &ParameterFacts, designs: &[DesignRecord]) -> Vec<f64> {
+pub(super) fn numbers_of(parameter: &ParameterFacts, designs: &[DesignRecord]) -> Vec<f64> {
     let numbers: Option<Vec<f64>> =
         designs.iter().map(|design| parameter.setting_in(design).number()).collect();
     let mut numbers = numbers.unwrap_or_default();

@@ -1,6 +1,7 @@
 //! What is handed to the user of a study: one record, and pure functions that turn it into files.
 
 mod contents;
+mod edge;
 mod figures;
 mod html;
 mod page;

@@ -1,17 +1,24 @@
 // Curves with error bars or bands, steps and dots, over one axis; values under the pointer.
 
+// Largest sizes of a chart, and of a section beside its map.
 const WIDE = { width: 760, height: 380 };
 const NARROW = { width: 500, height: 340 };
 
 function drawChart(figure, data) {
   const { controls, body, readout } = layOut(figure, "chart", "point at the plot for values; arrow keys step");
-  scaleSwitch(controls, (scale) => body.replaceChildren(...chartOf(data, scale, readout, WIDE)));
+  let scale = "linear";
+  const again = drawToFit(body, (width) => body.replaceChildren(...chartOf(data, scale, readout, fitted(WIDE, width))));
+  scaleSwitch(controls, (wanted) => { scale = wanted; again(); });
 }
+
+// A size within a width, and not much flatter than it was.
+const fitted = (size, width) => ({ width: Math.min(size.width, width), height: Math.min(size.height, Math.max(0.8 * width, 240)) });
 
 // The drawing of a chart and its legend. `scale` is that of the vertical axis.
 function chartOf(data, scale, readout, { width, height }) {
   const svg = drawing(width, height, data.title);
-  const area = { left: 78, top: 12, width: width - 96, height: height - 64 };
+  const below = 49 + 15 * wrapped(data.x_label, width - 8).length;
+  const area = { left: 78, top: 12, width: width - 96, height: height - below };
   const xs = data.series.flatMap((one) => [...one.x, ...(data.whole_steps ? endsOf(one) : [])]);
   // A line beside the sensor cuts nothing.
   if (xs.length === 0) xs.push(0, 1);

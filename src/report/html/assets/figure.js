@@ -34,6 +34,35 @@ function scaleSwitch(controls, draw) {
   draw("linear");
 }
 
+// Draws at the width that there is, and again when it changes, so that letters keep their size on a narrow screen.
+// `draw` gets the width in pixels. On paper a drawing is scaled as a whole.
+function drawToFit(body, draw) {
+  let drawn = 0;
+  const drawAgain = () => {
+    const width = Math.floor(body.clientWidth);
+    if (width === 0 || width === drawn || matchMedia("print").matches) return;
+    drawn = width;
+    draw(width);
+  };
+  const again = () => { drawn = 0; drawAgain(); };
+  new ResizeObserver(() => requestAnimationFrame(drawAgain)).observe(body);
+  return again;
+}
+
+// A button that makes a finger draw or turn, where it scrolls the page otherwise. A mouse needs none.
+function touchSwitch(controls, target, words) {
+  const button = make("button", { type: "button", class: "touch", "aria-pressed": "false" }, words);
+  button.addEventListener("click", () => {
+    const isOn = button.getAttribute("aria-pressed") !== "true";
+    button.setAttribute("aria-pressed", String(isOn));
+    target.classList.toggle("grabbed", isOn);
+  });
+  controls.prepend(button);
+}
+
+// Whether a press of the pointer may draw or turn: that of a mouse always, that of a finger where it was asked to.
+const mayDrag = (target, event) => event.pointerType !== "touch" || target.classList.contains("grabbed");
+
 // An empty drawing of `width` by `height` units.
 function drawing(width, height, label) {
   const viewBox = `0 0 ${around(width)} ${around(height)}`;
@@ -59,7 +88,9 @@ function drawAxes(svg, area, x, y, grid) {
     if (at < left - 0.5 || at > left + width + 0.5) continue;
     lines.grid += `M${at} ${top}v${height}`;
     lines.axis += `M${at} ${top + height}v4`;
-    svg.append(make("text", { x: at, y: top + height + 17, "text-anchor": "middle" }, formatValue(tick)));
+  }
+  for (const [at, words] of withRoom(x.ticks.map((tick) => [around(left + x.share(tick) * width), formatValue(tick)]), left, left + width)) {
+    svg.append(make("text", { x: at, y: top + height + 17, "text-anchor": "middle" }, words));
   }
   for (const tick of y.ticks) {
     const at = around(top + (1 - y.share(tick)) * height);
@@ -70,7 +101,12 @@ function drawAxes(svg, area, x, y, grid) {
   }
   if (grid === "grid") svg.append(make("path", { d: lines.grid, class: "grid" }));
   svg.append(make("path", { d: lines.axis, class: "axis" }));
-  svg.append(make("text", { x: left + width / 2, y: top + height + 36, "text-anchor": "middle" }, x.label));
+  lines.label = wrapped(x.label, left + width + 10);
+  const half = Math.max(...lines.label.map(widthOf)) / 2;
+  lines.label.forEach((words, line) => {
+    const at = Math.max(left + width / 2, half);
+    svg.append(make("text", { x: around(at), y: top + height + 36 + 15 * line, "text-anchor": "middle" }, words));
+  });
   const middle = top + height / 2;
   const turned = { x: 14, y: middle, "text-anchor": "middle", transform: `rotate(-90 14 ${middle})` };
   svg.append(make("text", turned, y.label));
@@ -94,4 +130,29 @@ function legendOf(series) {
     legend.append(make("span", {}, make("svg", { class: "sample", width: 30, height: 10 }, sample), one.name));
   }
   return legend;
+}
+
+// About how wide words are in the letters of a drawing: 12 pixels high.
+const widthOf = (words) => 6.8 * words.length;
+
+// Labels at places along a line, without those that would touch the one before.
+function withRoom(labels, from, to) {
+  const inside = labels.filter(([at]) => at >= from - 0.5 && at <= to + 0.5);
+  for (let every = 1; every < inside.length; every += 1) {
+    const kept = inside.filter((_, i) => i % every === 0);
+    const touches = ([at, words], i) => i > 0 && at - kept[i - 1][0] < (widthOf(words) + widthOf(kept[i - 1][1])) / 2 + 8;
+    if (!kept.some(touches)) return kept;
+  }
+  return inside.slice(0, 1);
+}
+
+// Words in lines of at most this many pixels.
+function wrapped(words, width) {
+  const lines = [""];
+  for (const word of words.split(" ")) {
+    const longer = lines.at(-1) ? `${lines.at(-1)} ${word}` : word;
+    if (lines.at(-1) && widthOf(longer) > width) lines.push(word);
+    else lines[lines.length - 1] = longer;
+  }
+  return lines;
 }

@@ -1,36 +1,54 @@
 // The flux balance: a band from the sources that parts to where the light went.
 
 const FLOW = { width: 900, band: 300, left: 180, right: 420, gap: 24, top: 30 };
+// Where there is less room than this, pixels, the words take two lines.
+const FLOW_SLIM = { below: 620, band: 240, left: 34, right: 110, gap: 40, top: 44 };
 // Lines that are drawn one by one.
 const FLOW_LINES = 14;
 
 function drawFlow(figure, data) {
   const { body, readout } = layOut(figure, "flow", "");
+  drawToFit(body, (width) => {
+    const size = width < FLOW_SLIM.below ? { ...FLOW_SLIM, width, isSlim: true } : { ...FLOW, isSlim: false };
+    body.replaceChildren(flowDrawing(data, size, readout));
+  });
+}
+
+function flowDrawing(data, size, readout) {
   const sinks = fewSinks(data);
   const rows = Math.max(sinks.length, data.sources.length);
-  const height = Math.max(FLOW.band + (sinks.length - 1) * 8, rows * FLOW.gap) + FLOW.top + 20;
-  const svg = drawing(FLOW.width, height, "flux balance");
-  const middle = FLOW.top + (height - FLOW.top - 20) / 2;
-  const sources = stack(data.sources, data.whole, middle, 26);
-  const ends = stack(sinks, data.whole, middle, FLOW.gap);
-  const words = (one) => `${one.name} ${one.error === undefined ? formatValue(one.value) + " " + data.unit : quantity(one.value, one.error, null, data.unit)}`;
+  const height = Math.max(size.band + (sinks.length - 1) * 8, rows * size.gap) + size.top + 28;
+  const svg = drawing(size.width, height, "flux balance");
+  const middle = size.top + (height - size.top - 28) / 2;
+  const perUnit = size.band / data.whole;
+  const sources = stack(data.sources, perUnit, middle, size.isSlim ? 34 : 26);
+  const ends = stack(sinks, perUnit, middle, size.gap);
+  const amount = (one) => (one.error === undefined ? `${formatValue(one.value)} ${data.unit}` : quantity(one.value, one.error, null, data.unit));
   const share = (one) => `${fixed((100 * one.value) / data.whole, 2)} %`;
-  let [start] = [middle - FLOW.band / 2];
-  svg.append(make("rect", { x: FLOW.left - 12, y: start, width: 12, height: FLOW.band, style: "fill: var(--soft)" }));
-  sources.forEach((one, index) => {
-    band(svg, { from: [60, one.at], to: [FLOW.left - 12, start], size: one.size, colour: "var(--series-6)", words: words(one) }, readout);
-    svg.append(make("text", { x: 0, y: one.at - 6 }, data.sources.length > 1 || index > 0 ? words(one) : `emitted: ${words(one)}`));
+  const words = (one) => `${one.name} ${amount(one)}`;
+  // Name and amount one after the other, or one above the other.
+  const write = (x, y, [name, rest]) => {
+    if (!size.isSlim) return svg.append(make("text", { x, y }, `${name} ${rest}`));
+    const room = Math.floor((size.width - x) / widthOf("n"));
+    const short = name.length > room ? `${name.slice(0, room - 1)}…` : name;
+    svg.append(make("text", { x, y: y - 8 }, short), make("text", { x, y: y + 8, class: "soft" }, rest));
+  };
+  let start = middle - size.band / 2;
+  svg.append(make("rect", { x: size.left - 12, y: start, width: 12, height: size.band, style: "fill: var(--soft)" }));
+  sources.forEach((one) => {
+    band(svg, { from: [size.isSlim ? 0 : 60, one.at], to: [size.left - 12, start], size: one.size, colour: "var(--series-6)", words: words(one) }, readout);
+    write(0, one.at - (size.isSlim ? 14 : 6), [data.sources.length > 1 ? one.name : `emitted: ${one.name}`, amount(one)]);
     start += one.size;
   });
-  start = middle - FLOW.band / 2;
+  start = middle - size.band / 2;
   for (const one of ends) {
     const colour = seriesColour({ escaped: 0, absorbed: 1, medium: 2, lost: 4 }[one.kind]);
-    band(svg, { from: [FLOW.left, start], to: [FLOW.right, one.at], size: one.size, colour, words: `${words(one)}, ${share(one)}` }, readout);
-    svg.append(make("rect", { x: FLOW.right, y: one.at, width: 8, height: Math.max(one.size, 1), style: `fill: ${colour}` }));
-    svg.append(make("text", { x: FLOW.right + 16, y: one.at + one.size / 2 + 4 }, `${words(one)}   ${share(one)}`));
+    band(svg, { from: [size.left, start], to: [size.right, one.at], size: one.size, colour, words: `${words(one)}, ${share(one)}` }, readout);
+    svg.append(make("rect", { x: size.right, y: one.at, width: 8, height: Math.max(one.size, 1), style: `fill: ${colour}` }));
+    write(size.right + 16, one.at + one.size / 2 + 4, [one.name, `${amount(one)}   ${share(one)}`]);
     start += one.size;
   }
-  body.append(svg);
+  return svg;
 }
 
 // The largest, and all others as one.
@@ -45,8 +63,8 @@ function fewSinks(data) {
 }
 
 // Places of bands on top of each other, with room for a line of text each.
-function stack(lines, whole, middle, room) {
-  const sized = lines.map((one) => ({ ...one, size: (FLOW.band * one.value) / whole }));
+function stack(lines, perUnit, middle, room) {
+  const sized = lines.map((one) => ({ ...one, size: perUnit * one.value }));
   const total = sized.reduce((sum, one) => sum + Math.max(one.size + 6, room), 0);
   let top = middle - total / 2;
   return sized.map((one) => {

@@ -1,5 +1,5 @@
 "use strict";
-// Numbers as people read them, by the rules of the reports' text.
+// Numbers as people read them, by the rules of the reports' text, but for large ones: there is room for all their digits.
 
 const SUPERSCRIPTS = "⁰¹²³⁴⁵⁶⁷⁸⁹";
 
@@ -17,14 +17,21 @@ function exponentOf(value, digits) {
   return value === 0 ? 0 : Number(value.toExponential(digits - 1).split("e")[1]);
 }
 
-const isPlain = (exponent) => exponent > -4 && exponent < 5;
+const isPlain = (exponent) => exponent > -4 && exponent < 7;
+
+// Whole digits in groups of three with narrow spaces that do not break (ISO 80000-1, 7.3.1), from five digits on.
+function grouped(text) {
+  const [whole, decimals] = text.split(".");
+  const groups = /\d{5}/.test(whole) ? whole.replace(/\B(?=(\d{3})+$)/g, "\u202f") : whole;
+  return decimals === undefined ? groups : `${groups}.${decimals}`;
+}
 
 // Four significant digits.
 function formatValue(value) {
   if (value === null || !Number.isFinite(value)) return "n/a";
   const exponent = exponentOf(value, 4);
   const trimmed = (text) => (text.includes(".") ? text.replace(/\.?0+$/, "") : text);
-  if (isPlain(exponent)) return trimmed(fixed(value, Math.max(3 - exponent, 0)));
+  if (isPlain(exponent)) return grouped(trimmed(fixed(value, 3 - exponent)));
   return `${trimmed(fixed(value / 10 ** exponent, 3))}×10${superscript(exponent)}`;
 }
 
@@ -36,7 +43,7 @@ function formatWithError(value, error) {
   const place = error / 10 ** first < 3.55 ? first - 1 : first;
   const rounded = Math.round(error / 10 ** place) * 10 ** place;
   const exponent = exponentOf(Math.max(Math.abs(value), rounded), 9);
-  if (isPlain(exponent)) return `${fixed(value, -place)} ± ${fixed(rounded, -place)}`;
+  if (isPlain(exponent)) return `${grouped(fixed(value, -place))} ± ${grouped(fixed(rounded, -place))}`;
   const scaled = (number) => fixed(number / 10 ** exponent, exponent - place);
   return `(${scaled(value)} ± ${scaled(rounded)})×10${superscript(exponent)}`;
 }

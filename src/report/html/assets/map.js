@@ -1,6 +1,9 @@
 // Maps: cells in colours, with a colour bar, values under the pointer, and sections along lines.
 
-const MAP = { left: 74, top: 12, most: [470, 400], bar: 74, below: 62 };
+const MAP = { left: 74, top: 12, most: [470, 400], bar: 130, below: 62 };
+// Where there is less room than this, pixels, the colour bar lies below the map.
+const SLIM = 480;
+const SLIM_MAP = { left: 62, top: 12, right: 24, below: 110 };
 // A map longer than this is squeezed.
 const LONGEST = 5;
 // Pixels along each side of the picture of a map of rings.
@@ -20,17 +23,22 @@ function drawMap(figure, data) {
   if (data.remark) controls.append(make("span", { class: "hint" }, data.remark));
   const geometry = geometryOf(data);
   const map = { data, geometry, line: firstLine(data, geometry), cell: -1 };
-  scaleSwitch(controls, (scale) => {
-    const svg = mapDrawing(map, scale);
+  let scale = "linear";
+  const cut = () => {
+    if (!map.line) return;
+    const size = fitted(NARROW, section.clientWidth || NARROW.width);
+    section.replaceChildren(...chartOf(sectionOf(map), scale, sectionReadout, size));
+  };
+  const again = drawToFit(row, (width) => {
+    // What stands beside the map takes its room before the map is measured.
+    section.hidden = !map.line;
+    const svg = mapDrawing(map, scale, Math.min(width, body.clientWidth));
     body.replaceChildren(svg);
-    const cut = () => {
-      if (!map.line) return;
-      section.hidden = false;
-      section.replaceChildren(...chartOf(sectionOf(map), scale, sectionReadout, NARROW));
-    };
     followMap(svg, map, readout, cut);
     cut();
   });
+  scaleSwitch(controls, (wanted) => { scale = wanted; again(); });
+  if (data.values.length > 1) touchSwitch(controls, body, "draw a section");
 }
 
 // Along the middle of the longer side; a map of all directions has no middle worth a cut.
@@ -82,23 +90,28 @@ function mapColour(share) {
   return colours[low].map((part, i) => Math.round(part + (at - low) * (colours[low + 1][i] - part)));
 }
 
-function mapDrawing(map, scale) {
+function mapDrawing(map, scale, room) {
   const { data, geometry } = map;
   const ratio = Math.min(Math.max(geometry.ratio, 1 / LONGEST), LONGEST);
-  const width = Math.min(MAP.most[0], MAP.most[1] * ratio);
+  const isSlim = room < SLIM;
+  const beside = isSlim ? SLIM_MAP.left + SLIM_MAP.right : MAP.left + MAP.bar;
+  const width = Math.min(MAP.most[0], MAP.most[1] * ratio, room - beside);
   const height = width / ratio;
-  const svg = drawing(MAP.left + width + MAP.bar + 56, MAP.top + height + MAP.below, data.title);
+  const { left, top, below } = isSlim ? SLIM_MAP : MAP;
+  const svg = drawing(isSlim ? room : beside + width, top + height + below, data.title);
   const x = makeAxis(...geometry.x, geometry.scale, data.x_label);
   const y = makeAxis(...geometry.y, geometry.scale, data.y_label);
   const [low, high] = rangeOf(data.values, scale);
   const colours = makeAxis(low, high, scale, "");
-  const area = { left: MAP.left, top: MAP.top, width, height };
+  const area = { left, top, width, height };
   const picture = mapPicture(map, [x, y], colours);
   svg.append(make("image", { x: area.left, y: area.top, width, height, preserveAspectRatio: "none", href: picture }));
   Object.assign(map, { x, y, area, place: drawAxes(svg, area, x, y, "plain") });
-  drawColourBar(svg, area, colours, data.unit);
+  if (isSlim) drawColourBarBelow(svg, { left, top: top + height + 52, width: room - left - SLIM_MAP.right }, colours, data.unit);
+  else drawColourBar(svg, area, colours, data.unit);
   if (ratio !== geometry.ratio && data.geometry !== "directions") {
-    svg.append(make("text", { x: area.left, y: area.top + height + 56, class: "soft" }, "axes are not to the same scale"));
+    const y = area.top + height + (isSlim ? below - 4 : 56);
+    svg.append(make("text", { x: area.left, y, class: "soft" }, "axes are not to the same scale"));
   }
   return svg;
 }
@@ -138,6 +151,22 @@ function drawColourBar(svg, area, axis, unit) {
   svg.append(make("text", { x: left, y: area.top + area.height + 17 }, unit));
 }
 
+// The bar on its side, where there is no room beside the map.
+function drawColourBarBelow(svg, { left, top, width }, axis, unit) {
+  const steps = 64;
+  for (let step = 0; step < steps; step += 1) {
+    const colour = mapColour((step + 0.5) / steps).join(" ");
+    const at = around(left + (width * step) / steps);
+    svg.append(make("rect", { x: at, y: top, width: around(width / steps + 0.6), height: 14, style: `fill: rgb(${colour})` }));
+  }
+  const labels = axis.ticks.map((tick) => [around(left + axis.share(tick) * width), formatValue(tick)]);
+  for (const [at, words] of withRoom(labels, left, left + width)) {
+    svg.append(make("path", { d: `M${at} ${top + 14}v4`, class: "axis" }));
+    svg.append(make("text", { x: at, y: top + 31, "text-anchor": "middle" }, words));
+  }
+  svg.append(make("text", { x: left - 8, y: top + 12, "text-anchor": "end" }, unit));
+}
+
 // What a cell is called, and what is in it.
 function cellWords({ data }, cell) {
   const columns = data.x.length - 1;
@@ -174,7 +203,10 @@ function followMap(svg, map, readout, cut) {
   showLine();
   let start = null;
   svg.addEventListener("pointerdown", (event) => {
-    start = valuesAt(pointerAt(svg, event));
+    const here = valuesAt(pointerAt(svg, event));
+    showCell(map.geometry.cell(...here));
+    if (!mayDrag(svg.parentElement, event)) return;
+    start = here;
     svg.setPointerCapture(event.pointerId);
   });
   svg.addEventListener("pointermove", (event) => {

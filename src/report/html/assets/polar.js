@@ -1,26 +1,31 @@
 // Intensity by angle in planes through the pole, which points up.
 
-const POLAR = { width: 620, radius: 232, top: 34 };
+// Largest size; beside the outermost circle there is room for the degrees.
+const POLAR = { width: 620, radius: 232, top: 34, beside: 40 };
 
 function drawPolar(figure, data) {
   const { controls, body, readout } = layOut(figure, "polar", "point at an angle for values; arrow keys step");
-  scaleSwitch(controls, (scale) => body.replaceChildren(polarDrawing(data, scale, readout), legendOf(data.curves)));
+  let scale = "linear";
+  const again = drawToFit(body, (width) => body.replaceChildren(polarDrawing(data, scale, readout, width), legendOf(data.curves)));
+  scaleSwitch(controls, (wanted) => { scale = wanted; again(); });
 }
 
-function polarDrawing(data, scale, readout) {
-  const { radius, top } = POLAR;
+function polarDrawing(data, scale, readout, room) {
+  const { top } = POLAR;
+  const width = Math.min(POLAR.width, room);
+  const radius = Math.min(POLAR.radius, width / 2 - POLAR.beside);
   const all = data.curves.flatMap((curve) => curve.y);
   const [low, high] = rangeOf(all, scale);
   const axis = makeAxis(scale === "log" ? Math.max(low, high / 1e4) : 0, high * 1.04, scale, data.unit);
   const isDown = data.curves.some((curve) => curve.gamma.some((gamma, i) => Math.abs(gamma) > 92 && curve.y[i] > 0.005 * high));
-  const center = [POLAR.width / 2, top + radius];
-  const svg = drawing(POLAR.width, top + radius * (isDown ? 2 : 1) + 40, data.title);
+  const center = [width / 2, top + radius];
+  const svg = drawing(width, top + radius * (isDown ? 2 : 1) + 40, data.title);
   const at = (gamma, value) => {
     const share = scale === "log" && !(value > axis.from) ? 0 : Math.max(axis.share(value), 0);
     const angle = (gamma * Math.PI) / 180;
     return [center[0] + share * radius * Math.sin(angle), center[1] - share * radius * Math.cos(angle)];
   };
-  drawPolarGrid(svg, axis, center, isDown);
+  drawPolarGrid(svg, axis, [...center, radius], isDown);
   data.curves.forEach((curve) => {
     const points = curve.gamma.map((gamma, i) => at(gamma, curve.y[i] ?? 0).map(around).join(" "));
     const outer = curve.gamma.map((gamma, i) => at(gamma, (curve.y[i] ?? 0) + (curve.error[i] ?? 0)).map(around).join(" "));
@@ -30,12 +35,11 @@ function polarDrawing(data, scale, readout) {
     const style = `fill: none; stroke: ${colour}; stroke-width: 1.8; stroke-dasharray: ${dashOf(curve.dash)}`;
     svg.append(make("path", { d: `M${points.join("L")}`, style }));
   });
-  followPolar(svg, data, center, at, readout);
+  followPolar(svg, data, [...center, radius], at, readout);
   return svg;
 }
 
-function drawPolarGrid(svg, axis, [cx, cy], isDown) {
-  const { radius } = POLAR;
+function drawPolarGrid(svg, axis, [cx, cy, radius], isDown) {
   const circle = (r) => (isDown ? `M${cx - r} ${cy}a${r} ${r} 0 1 1 ${2 * r} 0a${r} ${r} 0 1 1 ${-2 * r} 0` : `M${cx - r} ${cy}a${r} ${r} 0 1 1 ${2 * r} 0`);
   let lines = circle(radius);
   const last = isDown ? 180 : 90;
@@ -52,10 +56,10 @@ function drawPolarGrid(svg, axis, [cx, cy], isDown) {
   for (const tick of axis.ticks.filter((one) => axis.share(one) > 0.1)) {
     svg.append(make("text", { x: cx + 4, y: around(cy - axis.share(tick) * radius - 3), class: "soft" }, formatValue(tick)));
   }
-  svg.append(make("text", { x: cx + radius * 0.75, y: 16 }, `intensity in ${axis.label}`));
+  svg.append(make("text", { x: 2 * cx, y: 16, "text-anchor": "end" }, `intensity in ${axis.label}`));
 }
 
-function followPolar(svg, data, [cx, cy], at, readout) {
+function followPolar(svg, data, [cx, cy, radius], at, readout) {
   const cursor = make("path", { class: "cursor" });
   svg.append(cursor);
   const gammas = data.curves[0]?.gamma ?? [];
@@ -65,7 +69,7 @@ function followPolar(svg, data, [cx, cy], at, readout) {
     here = (index + gammas.length) % gammas.length;
     const gamma = gammas[here];
     const angle = (gamma * Math.PI) / 180;
-    let marks = `M${cx} ${cy}l${around(POLAR.radius * Math.sin(angle))} ${around(-POLAR.radius * Math.cos(angle))}`;
+    let marks = `M${cx} ${cy}l${around(radius * Math.sin(angle))} ${around(-radius * Math.cos(angle))}`;
     const words = data.curves.map((curve) => {
       const i = nearestIndex(curve.gamma, gamma);
       const [x, y] = at(curve.gamma[i], curve.y[i] ?? 0);

@@ -18,7 +18,7 @@ function drawScene(figure, data) {
   const { controls, body, readout } = layOut(figure, "scene", hint);
   const canvas = make("canvas", { width: 2 * SCENE.width, height: 2 * SCENE.height, tabindex: "0", role: "img", "aria-label": "the scene" });
   body.append(canvas);
-  const state = { data, canvas, hidden: new Set(), hiddenFaces: new Set(), lit: null, colours: {}, sharp: 2 };
+  const state = { data, canvas, letters: 1, hidden: new Set(), hiddenFaces: new Set(), lit: null, colours: {}, sharp: 2 };
   state.triangles = data.faces.flatMap((face, index) =>
     Array.from({ length: face.triangles.length / 3 }, (_, t) => ({ index, corners: face.triangles.slice(3 * t, 3 * t + 3) })));
   state.reset = () => {
@@ -35,13 +35,15 @@ function drawScene(figure, data) {
   const start = make("button", { type: "button" }, "first view");
   start.addEventListener("click", () => { state.reset(); state.draw(); });
   controls.prepend(start);
+  touchSwitch(controls, body, "turn");
   body.append(groupSwitches(state), faceSwitches(state));
   if (data.axes) body.append(axesSwitches(state));
   turnScene(state);
   pointAtScene(state, readout);
   document.addEventListener("repaint", () => { readColours(state); paint(state); });
   readColours(state);
-  paint(state);
+  // Letters keep their size on a narrow screen, where the picture is small.
+  drawToFit(body, (width) => { state.letters = Math.max(1, (0.85 * SCENE.width) / width); paint(state); });
 }
 
 // A scale at which all faces are in the picture.
@@ -90,7 +92,7 @@ function paint(state) {
   const taken = [];
   for (const mark of data.marks) paintMark(context, state, mark, taken);
   context.globalAlpha = 1;
-  paintScale(context, view, colours);
+  paintScale(context, view, state);
 }
 
 function paintTriangle(context, state, index, corners) {
@@ -145,21 +147,21 @@ function paintEnd(context, fate, x, y) {
 }
 
 // A name beside its place, where no other name is yet.
-function paintMark(context, { view, colours }, { name, role, at }, taken) {
+function paintMark(context, { view, colours, letters }, { name, role, at }, taken) {
   const [x, y] = project(at, view);
   context.globalAlpha = 1;
   context.fillStyle = colours[ROLES[role].colour];
   context.beginPath();
   context.arc(x, y, 4, 0, 7);
   context.fill();
-  context.font = "600 14px system-ui, sans-serif";
-  context.lineWidth = 4;
+  context.font = `600 ${14 * letters}px system-ui, sans-serif`;
+  context.lineWidth = 4 * letters;
   context.strokeStyle = colours["--paper"];
   const width = context.measureText(name).width;
   const left = x + 8 + width > SCENE.width ? x - 8 - width : x + 8;
-  let base = role === "source" ? y + 16 : y - 8;
-  const isTaken = (one) => Math.abs(one.base - base) < 15 && one.left < left + width && left < one.left + one.width;
-  while (taken.some(isTaken)) base -= 15;
+  let base = role === "source" ? y + 16 * letters : y - 8;
+  const isTaken = (one) => Math.abs(one.base - base) < 15 * letters && one.left < left + width && left < one.left + one.width;
+  while (taken.some(isTaken)) base -= 15 * letters;
   taken.push({ left, base, width });
   context.strokeText(name, left, base);
   context.fillStyle = colours["--ink"];
@@ -167,21 +169,22 @@ function paintMark(context, { view, colours }, { name, role, at }, taken) {
 }
 
 // A length of about a tenth of the picture, and which way the axes go.
-function paintScale(context, { rows, scale }, colours) {
+function paintScale(context, { rows, scale }, { colours, letters }) {
   const length = 10 ** Math.floor(Math.log10(160 / scale));
   const shown = length * [5, 2, 1].find((factor) => factor * length * scale <= 160);
   context.strokeStyle = colours["--ink"];
   context.fillStyle = colours["--ink"];
   context.lineWidth = 2;
-  context.font = "13px system-ui, sans-serif";
+  context.font = `${13 * letters}px system-ui, sans-serif`;
   context.beginPath();
   context.moveTo(20, SCENE.height - 16);
   context.lineTo(20 + shown * scale, SCENE.height - 16);
   context.stroke();
   context.fillText(`${formatValue(shown)} mm`, 20, SCENE.height - 24);
-  const [cx, cy] = [SCENE.width - 60, SCENE.height - 50];
+  const arm = 30 * letters;
+  const [cx, cy] = [SCENE.width - 2 * arm, SCENE.height - 1.6 * arm];
   ["x", "y", "z"].forEach((axis, k) => {
-    const [dx, dy] = [30 * rows[0][k], -30 * rows[1][k]];
+    const [dx, dy] = [arm * rows[0][k], -arm * rows[1][k]];
     context.lineWidth = 1.5;
     context.beginPath();
     context.moveTo(cx, cy);

@@ -14,6 +14,7 @@ function turnScene(state) {
     state.draw();
   };
   canvas.addEventListener("pointerdown", (event) => {
+    if (!mayDrag(canvas.parentElement, event)) return;
     last = [event.clientX, event.clientY];
     canvas.setPointerCapture(event.pointerId);
   });

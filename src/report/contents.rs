@@ -289,8 +289,7 @@ fn journey(report: &Report, paths: &SensorPaths, plots: &mut Plots) -> Vec<Block
         let unit = report.measures.unit.flux();
         let [shown, all] =
             [BOUNCES_SHOWN, BOUNCES_BY_DECADES].map(|share| bounce_plot(paths, unit, share));
-        let mut chart = data::chart(&all, unit);
-        chart["linear_to"] = data::last_place(&shown);
+        let chart = data::chart_with_tail(&shown, &all, unit);
         let picture = Some(format!("{}.bounces.png", paths.sensor));
         blocks.push(plots.add("flux by number of bounces", chart, picture));
     }

@@ -36,35 +36,64 @@ pub(crate) fn files(report: &Report) -> Result<Vec<OutputFile>> {
     Ok(files)
 }
 
-fn map_picture(map: &SensorMap) -> Result<Vec<u8>> {
-    let average = &map.summary.all.avg;
-    let subtitle =
-        format!("mean {} {}", format_with_error(average.value, average.std_error), map.unit);
-    let on_axes = |[x_label, y_label]: [&str; 2], [u, v]: [&[f64]; 2], axes| HeatMap {
+/// The map of a sensor in the plane of its face, or of its image.
+pub(crate) fn sensor_map(map: &SensorMap) -> HeatMap {
+    let plane = ["u in mm", "v in mm"];
+    let ([x_label, y_label], x_range, y_range, axes) = match &map.axes {
+        Axes::Cartesian { u_mm, v_mm } => (plane, ends(u_mm), ends(v_mm), Scale::Linear),
+        Axes::Angular { u_deg, v_deg } => {
+            (["to the right in deg", "up in deg"], ends(u_deg), ends(v_deg), Scale::Tangent)
+        }
+        Axes::Polar { radius_mm, .. } => {
+            let [_, reach] = ends(radius_mm);
+            (plane, [-reach, reach], [-reach, reach], Scale::Linear)
+        }
+    };
+    HeatMap {
         title: format!("{}: {}", map.sensor, map_words(map)),
-        subtitle: subtitle.clone(),
+        subtitle: mean_words(map),
         x_label: x_label.into(),
         y_label: y_label.into(),
-        x_range: ends(u),
-        y_range: ends(v),
+        x_range,
+        y_range,
         axes,
         values: map.values.mapv(not_below_zero),
         unit: map.unit.clone(),
         scale: Scale::Linear,
         colours: ColourMap::Sequential,
         limits: None,
-    };
+    }
+}
+
+/// The intensity of a goniometer by both of its angles.
+pub(crate) fn directions_map(table: &IntensityTable) -> HeatMap {
+    HeatMap {
+        title: format!("{}: intensity", table.sensor),
+        subtitle: String::new(),
+        x_label: "C in deg".into(),
+        y_label: "γ in deg".into(),
+        x_range: ends(&table.c_deg),
+        y_range: ends(&table.gamma_deg),
+        axes: Scale::Linear,
+        values: table.values.clone(),
+        unit: table.unit.clone(),
+        scale: Scale::Linear,
+        colours: ColourMap::Sequential,
+        limits: None,
+    }
+}
+
+fn mean_words(map: &SensorMap) -> String {
+    let average = &map.summary.all.avg;
+    format!("mean {} {}", format_with_error(average.value, average.std_error), map.unit)
+}
+
+fn map_picture(map: &SensorMap) -> Result<Vec<u8>> {
     match &map.axes {
-        Axes::Cartesian { u_mm, v_mm } => {
-            heat_map(&on_axes(["u in mm", "v in mm"], [u_mm, v_mm], Scale::Linear))
-        }
-        Axes::Angular { u_deg, v_deg } => {
-            let labels = ["to the right in deg", "up in deg"];
-            heat_map(&on_axes(labels, [u_deg, v_deg], Scale::Tangent))
-        }
+        Axes::Cartesian { .. } | Axes::Angular { .. } => heat_map(&sensor_map(map)),
         Axes::Polar { radius_mm, sector_deg } => line_plot(&LinePlot {
             title: format!("{}: {}", map.sensor, map_words(map)),
-            subtitle,
+            subtitle: mean_words(map),
             x_label: "radius in mm".into(),
             y_label: format!("{} in {}", map.quantity, map.unit),
             x_scale: Scale::Linear,

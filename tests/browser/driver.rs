@@ -141,7 +141,8 @@ impl Open {
     /// Scrolls with a finger that starts on the middle of an element, CSS pixels.
     pub(crate) fn scroll_by_finger(&self, element: &str, distance: f64) {
         let [x, y] = self.place(element, [0.5, 0.5]);
-        let gesture = json!({ "x": x, "y": y, "yDistance": distance, "gestureSourceType": "touch" });
+        let gesture =
+            json!({ "x": x, "y": y, "yDistance": distance, "gestureSourceType": "touch" });
         self.call("Input.synthesizeScrollGesture", gesture);
     }
 

@@ -3,11 +3,14 @@
 //! Numbers have six significant digits, which is more than a plot shows.
 
 use crate::measure::{Axes, Balance, IntensityTable, Measure, SensorMap, not_below_zero};
-use crate::report::csv::map_words;
 use crate::report::drawing::{Drawing, Fate};
+use crate::report::figures::{directions_map, sensor_map};
+use crate::report::html::axes::{chart_axes, dial_axes, ink, map_axes};
 use crate::report::html::coarse::{coarse, joined};
 use crate::report::local_axes::LocalAxes;
-use crate::report::png::{ErrorForm, LinePlot, Look, PolarPlot, Scale, SeriesForm};
+use crate::report::png::{
+    self, ErrorForm, HeatMap, LinePlot, MapFrame, PolarPlot, Scale, SeriesForm, series_ink,
+};
 use glam::DVec3;
 use ndarray::Array2;
 use serde_json::{Value, json};
@@ -16,8 +19,6 @@ use serde_json::{Value, json};
 const DIGITS: i32 = 6;
 /// Significant digits of standard errors and biases.
 const ERROR_DIGITS: i32 = 3;
-/// The series that has the colour of text, for what is no result.
-const INK: usize = 3;
 /// Digits of coordinates below the size of a scene.
 const PLACE_DIGITS: i32 = 4;
 
@@ -84,25 +85,27 @@ impl Cells {
 }
 
 /// What a map is about.
-struct MapWords<'a> {
-    geometry: &'a str,
-    title: String,
-    quantity: &'a str,
-    unit: &'a str,
-    labels: [&'a str; 2],
-    names: [&'a str; 2],
-    units: [&'a str; 2],
+pub(crate) struct MapWords<'a> {
+    /// How places are drawn: `cartesian`, `angular`, `polar` or `directions`.
+    pub(crate) geometry: &'a str,
+    /// What is mapped, such as `illuminance`.
+    pub(crate) quantity: &'a str,
+    /// Names of both coordinates of a cell.
+    pub(crate) names: [&'a str; 2],
+    /// Their units.
+    pub(crate) units: [&'a str; 2],
 }
 
-fn with_words(mut data: Value, words: &MapWords<'_>) -> Value {
-    let MapWords { geometry, title, quantity, unit, labels, names, units } = words;
+/// A map as it is on its picture, with its cells and what they are called.
+pub(crate) fn drawn_map(cells: &Cells, map: &HeatMap, words: &MapWords<'_>) -> Value {
+    let MapWords { geometry, quantity, names, units } = words;
+    let mut data = cells.data();
+    data["axes"] = map_axes(&MapFrame::new(map));
     let entries = [
         ("geometry", *geometry),
-        ("title", title.as_str()),
+        ("title", map.title.as_str()),
         ("quantity", *quantity),
-        ("unit", *unit),
-        ("x_label", labels[0]),
-        ("y_label", labels[1]),
+        ("unit", map.unit.as_str()),
         ("x_name", names[0]),
         ("y_name", names[1]),
         ("x_unit", units[0]),
@@ -116,17 +119,13 @@ fn with_words(mut data: Value, words: &MapWords<'_>) -> Value {
 
 /// The map of a sensor.
 pub(crate) fn map(map: &SensorMap) -> Value {
-    let plane = ["u in mm", "v in mm"];
-    let (x, y, geometry, labels, names, units) = match &map.axes {
-        Axes::Cartesian { u_mm, v_mm } => {
-            (u_mm, v_mm, "cartesian", plane, ["u", "v"], ["mm", "mm"])
-        }
+    let (x, y, geometry, names, units) = match &map.axes {
+        Axes::Cartesian { u_mm, v_mm } => (u_mm, v_mm, "cartesian", ["u", "v"], ["mm", "mm"]),
         Axes::Angular { u_deg, v_deg } => {
-            let labels = ["to the right in deg", "up in deg"];
-            (u_deg, v_deg, "angular", labels, ["to the right", "up"], ["deg", "deg"])
+            (u_deg, v_deg, "angular", ["to the right", "up"], ["deg", "deg"])
         }
         Axes::Polar { radius_mm, sector_deg } => {
-            (sector_deg, radius_mm, "polar", plane, ["azimuth", "radius"], ["deg", "mm"])
+            (sector_deg, radius_mm, "polar", ["azimuth", "radius"], ["deg", "mm"])
         }
     };
     let cells = Cells {
@@ -136,9 +135,8 @@ pub(crate) fn map(map: &SensorMap) -> Value {
         errors: map.std_errors.clone(),
         biases: map.biases.clone(),
     };
-    let title = format!("{}: {}", map.sensor, map_words(map));
-    let (quantity, unit) = (map.quantity.as_str(), map.unit.as_str());
-    with_words(cells.data(), &MapWords { geometry, title, quantity, unit, labels, names, units })
+    let words = MapWords { geometry, quantity: &map.quantity, names, units };
+    drawn_map(&cells, &sensor_map(map), &words)
 }
 
 /// The intensity of a goniometer by both of its angles; `None` where it tells no azimuths apart.
@@ -155,14 +153,11 @@ pub(crate) fn directions(table: &IntensityTable) -> Option<Value> {
     };
     let words = MapWords {
         geometry: "directions",
-        title: format!("{}: intensity", table.sensor),
         quantity: "intensity",
-        unit: &table.unit,
-        labels: ["C in deg", "γ in deg"],
         names: ["C", "γ"],
         units: ["deg", "deg"],
     };
-    Some(with_words(cells.data(), &words))
+    Some(drawn_map(&cells, &directions_map(table), &words))
 }
 
 /// Intensity by angle.
@@ -175,12 +170,15 @@ pub(crate) fn polar(plot: &PolarPlot) -> Value {
             let points = curve.points.iter().map(|(_, value)| value);
             let [y, error] = with_errors(points.zip(&curve.std_errors));
             let gamma = numbers(curve.points.iter().map(|(gamma, _)| gamma), DIGITS);
+            let [colour, dash] = ink(series_ink(place));
             json!({
-                "name": curve.name, "colour": place, "dash": place, "gamma": gamma, "y": y, "error": error,
+                "name": curve.name, "colour": colour, "dash": dash, "gamma": gamma, "y": y, "error": error,
             })
         })
         .collect();
-    json!({ "plot": "polar", "title": plot.title, "unit": plot.unit, "curves": curves })
+    json!({
+        "plot": "polar", "title": plot.title, "unit": plot.unit, "axes": dial_axes(plot), "curves": curves,
+    })
 }
 
 /// Curves over an axis; `unit` is that of their values.
@@ -202,12 +200,7 @@ pub(crate) fn chart(plot: &LinePlot, unit: &str) -> Value {
                 ErrorForm::Band => "band",
                 ErrorForm::Hidden => "hidden",
             };
-            let (colour, dash) = match series.look {
-                Look::InTurn => (place, place),
-                Look::Solid(look) => (look, 0),
-                Look::Dashed(look) => (look, 1),
-                Look::Bound => (INK, 1),
-            };
+            let [colour, dash] = ink(png::ink(series, place));
             let x = numbers(series.points.iter().map(|point| &point.x), DIGITS);
             json!({
                 "name": series.name, "form": form, "errors": errors, "colour": colour, "dash": dash,
@@ -215,21 +208,18 @@ pub(crate) fn chart(plot: &LinePlot, unit: &str) -> Value {
             })
         })
         .collect();
-    let x_scale = match plot.x_scale {
-        Scale::Linear => "linear",
-        Scale::Log => "log",
-        Scale::Tangent => "tangent",
-    };
+    let [linear, log] = [Scale::Linear, Scale::Log].map(|scale| chart_axes(plot, scale));
     json!({
-        "plot": "chart", "title": plot.title, "unit": unit, "series": series,
-        "x_label": plot.x_label, "y_label": plot.y_label, "x_scale": x_scale,
+        "plot": "chart", "title": plot.title, "unit": unit, "series": series, "x_name": plot.x_label,
+        "axes": { "linear": linear, "log": log },
     })
 }
 
-/// Where the first curve of a plot ends.
-pub(crate) fn last_place(plot: &LinePlot) -> Value {
-    let points = plot.series.first().map_or(&[][..], |series| &series.points);
-    points.last().map_or(Value::Null, |point| number(point.x, DIGITS))
+/// Curves over an axis that goes further where the scale is logarithmic: there more is to be seen of a tail.
+pub(crate) fn chart_with_tail(plot: &LinePlot, with_tail: &LinePlot, unit: &str) -> Value {
+    let mut data = chart(with_tail, unit);
+    data["axes"]["linear"] = chart_axes(plot, Scale::Linear);
+    data
 }
 
 /// The balance, from the sources to where the light went.

@@ -4,7 +4,7 @@
 //! loaded from anywhere; only without scripts does it show the pictures that lie beside it.
 
 use crate::error::{Error, Result};
-use crate::report::png::{ColourMap, Rgb, series_ink};
+use crate::report::png::{ColourMap, curve_colours};
 use minijinja::syntax::SyntaxConfig;
 use minijinja::value::Serde;
 use minijinja::{AutoEscape, Environment, Value, context};
@@ -29,11 +29,6 @@ const SCRIPTS: [&str; 12] = [
     include_str!("assets/turn.js"),
     include_str!("assets/page.js"),
 ];
-
-/// Steps of the colour map that a page interpolates.
-const MAP_STEPS: u8 = 32;
-/// Colours of series.
-const SERIES: usize = 7;
 
 /// A page.
 #[derive(Debug, Serialize)]
@@ -148,7 +143,10 @@ pub(crate) fn table<const N: usize>(head: [&str; N], rows: Vec<Vec<String>>) -> 
 /// The page as one file.
 pub(crate) fn render(page: &Page, plots: &Plots) -> Result<String> {
     let failed = |reason: String| Error::Output { what: "report.html".into(), reason };
-    let data = serde_json::json!({ "map_colours": map_colours(), "plots": plots.0 });
+    let [sequential, diverging] =
+        [ColourMap::Sequential, ColourMap::Diverging].map(ColourMap::stops);
+    let palettes = serde_json::json!({ "sequential": sequential, "diverging": diverging });
+    let data = serde_json::json!({ "palettes": palettes, "plots": plots.0 });
     let data = serde_json::to_string(&data).map_err(|reason| failed(reason.to_string()))?;
     let mut environment = Environment::new();
     environment.set_auto_escape_callback(|_| AutoEscape::Html);
@@ -164,19 +162,10 @@ pub(crate) fn render(page: &Page, plots: &Plots) -> Result<String> {
                 scripts => Value::from_safe_string(SCRIPTS.concat()),
                 // No text within the data can end the element that holds them.
                 data => Value::from_safe_string(data.replace('<', "\\u003c")),
-                series => Serde(series_colours()),
+                series => Serde(curve_colours()),
             },
         )
         .map_err(|reason| failed(reason.to_string()))
-}
-
-fn series_colours() -> Vec<Rgb> {
-    (0..SERIES).map(|index| series_ink(index).colour).collect()
-}
-
-fn map_colours() -> Vec<Rgb> {
-    let step = |step: u8| ColourMap::Sequential.colour(f64::from(step) / f64::from(MAP_STEPS));
-    (0..=MAP_STEPS).map(step).collect()
 }
 
 #[cfg(test)]

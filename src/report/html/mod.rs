@@ -2,6 +2,7 @@
 //!
 //! What is on it is that of `contents`, which `report.md` shows as well; `frame` makes a page of it, and `assets` draws.
 
+mod axes;
 pub(crate) mod check;
 mod coarse;
 pub(crate) mod data;

@@ -1,10 +1,8 @@
 //! Axes: from values to fractions of a length, and the round numbers that stand beside it.
 //!
-//! Knows nothing of pixels but how much room a label takes.
+//! Knows nothing of pixels.
 
-use crate::error::Result;
 use crate::number::{format_fixed, format_value, superscript};
-use crate::report::png::text::TICK;
 
 /// Whether equal lengths are equal differences or equal ratios.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -82,6 +80,11 @@ impl Axis {
         }
     }
 
+    /// How values become fractions.
+    pub(crate) fn scale(&self) -> Scale {
+        self.scale
+    }
+
     /// Lower end.
     pub(crate) fn min(&self) -> f64 {
         self.min
@@ -120,27 +123,6 @@ impl Axis {
         match self.scale {
             Scale::Linear | Scale::Tangent => self.linear_ticks(most),
             Scale::Log => self.log_ticks(most).unwrap_or_else(|| self.linear_ticks(most)),
-        }
-    }
-
-    /// As many marks as fit side by side along `length` pixels.
-    pub(crate) fn ticks_along(&self, length: f64) -> Result<Ticks> {
-        const GAP: f64 = 18.0;
-        let mut most = (length / 50.0).clamp(3.0, 12.0) as usize;
-        loop {
-            let ticks = self.ticks(most);
-            let places: Vec<f64> =
-                ticks.major.iter().map(|tick| self.fraction(tick.value) * length).collect();
-            let step =
-                places.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
-            let mut widest = 0.0f64;
-            for tick in &ticks.major {
-                widest = widest.max(TICK.width(&tick.label)?);
-            }
-            if widest + GAP <= step || most <= 1 {
-                return Ok(ticks);
-            }
-            most -= 1;
         }
     }
 

@@ -6,7 +6,8 @@ use crate::error::Result;
 use crate::report::png::axis::{Axis, Scale, Ticks};
 use crate::report::png::canvas::{Canvas, Ink, Pen};
 use crate::report::png::geometry::Rect;
-use crate::report::png::layout::{with_factor, write};
+use crate::report::png::layout::write;
+use crate::report::png::marked_axis::MarkedAxis;
 use crate::report::png::palette::{ColourMap, INK, NEUTRAL, Rgb};
 use crate::report::png::text::{Align, LABEL, TICK};
 
@@ -32,6 +33,33 @@ pub(crate) struct Colouring<'a> {
     pub(crate) limits: Option<[f64; 2]>,
 }
 
+/// Which colour is which value: the description that pictures and pages draw alike.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct BarScale {
+    /// From values to fractions of the bar; its label is the unit.
+    pub(crate) axis: MarkedAxis,
+    /// From fractions to colours.
+    pub(crate) colours: ColourMap,
+    /// Whether there are values below and above the bar.
+    pub(crate) beyond: [bool; 2],
+}
+
+impl BarScale {
+    /// The scale of a bar of a height in pixels.
+    pub(crate) fn new(colouring: &Colouring<'_>, height: f64) -> Self {
+        let Colouring { values, scale, colours, .. } = *colouring;
+        let [low, high] = colouring.limits.unwrap_or_else(|| limits(values, scale, colours));
+        let axis = Axis::new(low, high, scale);
+        let slack = 1e-9 * (axis.max() - axis.min());
+        let beyond = [
+            values.first().is_some_and(|&least| least < axis.min() - slack),
+            values.last().is_some_and(|&greatest| greatest > axis.max() + slack),
+        ];
+        let ticks = bar_ticks(&axis, values, height);
+        Self { axis: MarkedAxis::new(axis, ticks, colouring.unit), colours, beyond }
+    }
+}
+
 /// The bar that says which colour is which value.
 pub(crate) struct ColourBar {
     axis: Axis,
@@ -46,21 +74,13 @@ pub(crate) struct ColourBar {
 impl ColourBar {
     /// A bar of a height in pixels.
     pub(crate) fn new(colouring: &Colouring<'_>, height: f64) -> Result<Self> {
-        let Colouring { values, scale, colours, .. } = *colouring;
-        let [low, high] = colouring.limits.unwrap_or_else(|| limits(values, scale, colours));
-        let axis = Axis::new(low, high, scale);
-        let ticks = bar_ticks(&axis, values, height);
+        let BarScale { axis, colours, beyond } = BarScale::new(colouring, height);
+        let MarkedAxis { axis, ticks, label: unit } = axis;
         let mut numbers = 0.0f64;
         for tick in &ticks.major {
             numbers = numbers.max(TICK.width(&tick.label)?);
         }
-        let unit = with_factor(colouring.unit, ticks.exponent);
         let width = (BAR_WIDTH + 10.0 + numbers).max(LABEL.width(&unit)?).ceil();
-        let slack = 1e-9 * (axis.max() - axis.min());
-        let beyond = [
-            values.first().is_some_and(|&least| least < axis.min() - slack),
-            values.last().is_some_and(|&greatest| greatest > axis.max() + slack),
-        ];
         Ok(Self { axis, ticks, colours, width, unit, beyond })
     }
 

@@ -8,6 +8,7 @@ use crate::report::png::layout::{
     Aspect, Axes, Header, Legend, MARGIN, Mark, SQUEEZED_REMARK, Sample, draw_mark, plot_size,
     remark, write,
 };
+use crate::report::png::marked_axis::MarkedAxis;
 use crate::report::png::palette::{PAPER, Rgb, outline_colour};
 use crate::report::png::text::{Align, LABEL, TICK};
 
@@ -143,7 +144,10 @@ const NAME_STEPS: u32 = 12;
 pub fn cross_section(section: &CrossSection) -> Result<Vec<u8>> {
     let axes = [section.x_range, section.y_range].map(|[a, b]| Axis::new(a, b, Scale::Linear));
     let size = plot_size(axes, MOST, LONGEST);
-    let frame = Axes::new(axes, [&section.x_label, &section.y_label], [size.width, size.height])?;
+    let [x, y] = axes;
+    let x = MarkedAxis::level(x, &section.x_label, size.width);
+    let y = MarkedAxis::upright(y, &section.y_label, size.height);
+    let frame = Axes::new([x, y], [size.width, size.height])?;
     let content = MARGIN + frame.left_margin() + size.width + MARGIN + 6.0;
     let width = content.max(620.0).ceil();
     let left = (MARGIN + frame.left_margin() + 0.5 * (width - content)).round();

@@ -4,11 +4,12 @@ use crate::error::Result;
 use crate::number::format_value;
 use crate::report::png::axis::{Axis, Scale};
 use crate::report::png::canvas::Canvas;
-use crate::report::png::colour_bar::{BAR_WIDTH, ColourBar, Colouring, TIP};
+use crate::report::png::colour_bar::{BAR_WIDTH, BarScale, ColourBar, Colouring, TIP};
 use crate::report::png::geometry::Rect;
 use crate::report::png::layout::{
     Aspect, Axes, Header, MARGIN, PlotSize, SQUEEZED_REMARK, plot_size, remark,
 };
+use crate::report::png::marked_axis::MarkedAxis;
 use crate::report::png::palette::{ColourMap, NEUTRAL};
 use crate::report::png::text::TICK;
 use ndarray::Array2;
@@ -55,9 +56,9 @@ const BAR_GAP: f64 = 26.0;
 /// Zero is an end of a linear bar where the values come near it. At most one cell in a thousand that sticks out
 /// tenfold does not stretch the bar, which then has a tip. A logarithmic bar spans at most six decades.
 pub fn heat_map(map: &HeatMap) -> Result<Vec<u8>> {
-    let axes = [map.x_range, map.y_range].map(|[min, max]| Axis::new(min, max, map.axes));
-    let size = whole_cells(plot_size(axes, MOST, LONGEST), &map.values);
-    let frame = Axes::new(axes, [&map.x_label, &map.y_label], [size.width, size.height])?;
+    let (axes, size) = map_axes(map);
+    let size = whole_cells(size, &map.values);
+    let frame = Axes::new(axes, [size.width, size.height])?;
     let values = finite(&map.values);
     let colouring = Colouring {
         values: &values,
@@ -91,6 +92,43 @@ pub fn heat_map(map: &HeatMap) -> Result<Vec<u8>> {
         remark(&mut canvas, &text, [MARGIN, y - 5.0])?;
     }
     canvas.into_png()
+}
+
+/// The axes of a map, and the size at which it is drawn, pixels.
+fn map_axes(map: &HeatMap) -> ([MarkedAxis; 2], PlotSize) {
+    let axes = [map.x_range, map.y_range].map(|[min, max]| Axis::new(min, max, map.axes));
+    let size = plot_size(axes, MOST, LONGEST);
+    let [x, y] = axes;
+    let x = MarkedAxis::level(x, &map.x_label, size.width);
+    ([x, MarkedAxis::upright(y, &map.y_label, size.height)], size)
+}
+
+/// A map but for its cells: the description that pictures and pages draw alike.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct MapFrame {
+    /// Its axes.
+    pub(crate) axes: [MarkedAxis; 2],
+    /// Its bar on the map's own scale.
+    pub(crate) bar: BarScale,
+    /// Its bar on a logarithmic scale; `None` of a map with colours for both sides of zero.
+    pub(crate) log_bar: Option<BarScale>,
+}
+
+impl MapFrame {
+    /// The frame of a map.
+    pub(crate) fn new(map: &HeatMap) -> Self {
+        let (axes, size) = map_axes(map);
+        let values = finite(&map.values);
+        let bar = |scale: Scale| {
+            let (unit, colours, limits) = (map.unit.as_str(), map.colours, map.limits);
+            BarScale::new(&Colouring { values: &values, unit, scale, colours, limits }, size.height)
+        };
+        let log_bar = match map.colours {
+            ColourMap::Sequential => Some(bar(Scale::Log)),
+            ColourMap::Diverging => None,
+        };
+        Self { axes, bar: bar(map.scale), log_bar }
+    }
 }
 
 /// A size at which every cell has the same number of pixels, if one is near.

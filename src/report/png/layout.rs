@@ -1,10 +1,10 @@
 //! What pictures have in common: heading, legend, frame with axes, and how large a plot of millimetres is drawn.
 
 use crate::error::Result;
-use crate::number::superscript;
 use crate::report::png::axis::{Axis, Ticks};
 use crate::report::png::canvas::{Canvas, Ink, Pen};
 use crate::report::png::geometry::{Point, Rect};
+use crate::report::png::marked_axis::MarkedAxis;
 use crate::report::png::palette::{GRID, INK, Rgb, SOFT_INK};
 use crate::report::png::text::{Align, Direction, Font, LABEL, Label, TICK, TITLE};
 
@@ -197,20 +197,15 @@ pub(crate) struct Axes {
 
 impl Axes {
     /// Axes for a plot of a width and height in pixels.
-    pub(crate) fn new(
-        [x, y]: [Axis; 2],
-        [x_label, y_label]: [&str; 2],
-        [width, height]: [f64; 2],
-    ) -> Result<Self> {
-        let x_ticks = x.ticks_along(width)?;
-        let y_ticks = y.ticks((height / 38.0).clamp(3.0, 12.0) as usize);
+    pub(crate) fn new([x, y]: [MarkedAxis; 2], [width, height]: [f64; 2]) -> Result<Self> {
         let mut tick_width = 0.0f64;
-        for tick in &y_ticks.major {
+        for tick in &y.ticks.major {
             tick_width = tick_width.max(TICK.width(&tick.label)?);
         }
-        let x_label = LABEL.fit(&with_factor(x_label, x_ticks.exponent), width.max(260.0))?;
-        let y_label = LABEL.fit(&with_factor(y_label, y_ticks.exponent), height.max(160.0))?;
-        Ok(Self { x, y, x_ticks, y_ticks, x_label, y_label, tick_width })
+        let x_label = LABEL.fit(&x.label, width.max(260.0))?;
+        let y_label = LABEL.fit(&y.label, height.max(160.0))?;
+        let (x_ticks, y_ticks) = (x.ticks, y.ticks);
+        Ok(Self { x: x.axis, y: y.axis, x_ticks, y_ticks, x_label, y_label, tick_width })
     }
 
     /// Room that is needed left of the plot, pixels.
@@ -306,15 +301,6 @@ impl Axes {
 fn marks(ticks: &Ticks) -> impl Iterator<Item = (f64, f64)> {
     let major = ticks.major.iter().map(|tick| (tick.value, TICK_LENGTH));
     major.chain(ticks.minor.iter().map(|&value| (value, MINOR_LENGTH)))
-}
-
-/// A label that says what the numbers are to be multiplied with.
-pub(crate) fn with_factor(label: &str, exponent: i32) -> String {
-    match (exponent, label.is_empty()) {
-        (0, _) => label.to_string(),
-        (_, true) => format!("×10{}", superscript(exponent)),
-        (_, false) => format!("{label}, ×10{}", superscript(exponent)),
-    }
 }
 
 /// The size in pixels at which a plot is drawn.

@@ -7,6 +7,7 @@ use crate::report::png::axis::{Axis, Scale};
 use crate::report::png::canvas::{Canvas, Ink, Pen};
 use crate::report::png::geometry::{Point, Rect};
 use crate::report::png::layout::{Axes, Header, Legend, MARGIN, Sample, write};
+use crate::report::png::marked_axis::MarkedAxis;
 use crate::report::png::palette::{SOFT_INK, SeriesInk, paired_colour, series_ink};
 use crate::report::png::text::{Align, LABEL};
 use range::{Padding, range};
@@ -109,14 +110,10 @@ pub fn line_plot(plot: &LinePlot) -> Result<Vec<u8>> {
         .collect();
     let legend = Legend::new(&entries, WIDTH - 2.0 * MARGIN)?;
 
-    let axes = data_axes(plot);
     let top = MARGIN + header.height() + legend.height();
-    let labels = [plot.x_label.as_str(), plot.y_label.as_str()];
-    // The room of the frame depends a little on its numbers, and these on the room.
-    let rough = Axes::new(axes, labels, [WIDTH - 4.0 * MARGIN, HEIGHT])?;
-    let left = MARGIN + rough.left_margin();
+    let frame = Axes::new(line_axes(plot, plot.y_scale), [WIDTH - 4.0 * MARGIN, HEIGHT])?;
+    let left = MARGIN + frame.left_margin();
     let area = Rect::new(left, top.round(), WIDTH - MARGIN - 6.0 - left, HEIGHT);
-    let frame = Axes::new(axes, labels, [area.width(), HEIGHT])?;
     let height = area.bottom + frame.bottom_margin() + MARGIN - 6.0;
 
     let mut canvas = Canvas::new(WIDTH as usize, height as usize);
@@ -137,7 +134,15 @@ pub fn line_plot(plot: &LinePlot) -> Result<Vec<u8>> {
     canvas.into_png()
 }
 
-fn ink(series: &Series, index: usize) -> SeriesInk {
+/// The axes of curves, the upright one with this scale: the description that pictures and pages draw alike.
+pub(crate) fn line_axes(plot: &LinePlot, y_scale: Scale) -> [MarkedAxis; 2] {
+    let [x, y] = data_axes(plot, y_scale);
+    let x = MarkedAxis::level(x, &plot.x_label, WIDTH - 4.0 * MARGIN);
+    [x, MarkedAxis::upright(y, &plot.y_label, HEIGHT)]
+}
+
+/// How a curve is drawn, by its place among all.
+pub(crate) fn ink(series: &Series, index: usize) -> SeriesInk {
     match series.look {
         Look::InTurn => series_ink(index),
         Look::Solid(number) => SeriesInk { colour: paired_colour(number), dash: &[] },
@@ -193,7 +198,7 @@ fn step_edges(x: f64, before: Option<f64>, after: Option<f64>) -> [f64; 2] {
 }
 
 /// Axes around all curves and their error bars.
-fn data_axes(plot: &LinePlot) -> [Axis; 2] {
+fn data_axes(plot: &LinePlot, y_scale: Scale) -> [Axis; 2] {
     let mut xs = Vec::new();
     let mut ys = Vec::new();
     for series in &plot.series {
@@ -208,7 +213,7 @@ fn data_axes(plot: &LinePlot) -> [Axis; 2] {
             }
         }
     }
-    [range(&xs, plot.x_scale, Padding::None), range(&ys, plot.y_scale, Padding::Around)]
+    [range(&xs, plot.x_scale, Padding::None), range(&ys, y_scale, Padding::Around)]
 }
 
 fn draw_errors(canvas: &mut Canvas, frame: &Axes, area: Rect, series: &Series, ink: SeriesInk) {

@@ -12,6 +12,7 @@ mod geometry;
 mod heat_map;
 mod layout;
 mod line_plot;
+mod marked_axis;
 mod palette;
 mod polar_plot;
 mod scatter_matrix;
@@ -19,13 +20,18 @@ mod text;
 
 pub use axis::Scale;
 pub use bar_chart::{Bar, BarChart, bar_chart};
+pub(crate) use colour_bar::BarScale;
 pub use cross_section::{
     CrossSection, NamedPlace, Outline, PlaceOf, RayEnd, RayPath, cross_section,
 };
+pub(crate) use heat_map::MapFrame;
 pub use heat_map::{HeatMap, heat_map};
 pub use line_plot::{ErrorForm, LinePlot, Look, Series, SeriesForm, SeriesPoint, line_plot};
+pub(crate) use line_plot::{ink, line_axes};
+pub(crate) use marked_axis::MarkedAxis;
 pub use palette::ColourMap;
-pub(crate) use palette::{Rgb, series_ink};
+pub(crate) use palette::{SeriesInk, curve_colours, series_ink};
+pub(crate) use polar_plot::dial_axis;
 pub use polar_plot::{Curve, PolarPlot, Pole, polar_plot};
 pub use scatter_matrix::{ScatterColumn, ScatterMatrix, scatter_matrix};
 

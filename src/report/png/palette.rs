@@ -26,9 +26,25 @@ pub enum ColourMap {
 }
 
 impl ColourMap {
+    /// The colours between which pictures and pages interpolate, evenly from one end of the range to the other.
+    pub(crate) fn stops(self) -> Vec<Rgb> {
+        (0..=STOPS).map(|index| self.stop(index)).collect()
+    }
+
     /// The colour at a fraction of the range; beyond its ends, the colour of the end.
     pub(crate) fn colour(self, fraction: f64) -> Rgb {
-        let fraction = fraction.clamp(0.0, 1.0);
+        let place = fraction.clamp(0.0, 1.0) * f64::from(STOPS);
+        let low = (place as u8).min(STOPS - 1);
+        let (one, other, share) = (self.stop(low), self.stop(low + 1), place - f64::from(low));
+        let mixed = |part: usize| {
+            let [from, to] = [one[part], other[part]].map(f64::from);
+            (from + share * (to - from)).round() as u8
+        };
+        [mixed(0), mixed(1), mixed(2)]
+    }
+
+    fn stop(self, index: u8) -> Rgb {
+        let fraction = f64::from(index) / f64::from(STOPS);
         let colour = match self {
             Self::Sequential => colorous::INFERNO.eval_continuous(fraction),
             Self::Diverging => colorous::RED_BLUE.eval_continuous(1.0 - fraction),
@@ -36,6 +52,9 @@ impl ColourMap {
         [colour.r, colour.g, colour.b]
     }
 }
+
+/// Steps between the stops of a colour map; interpolation between them is off by less than an eye sees.
+const STOPS: u8 = 32;
 
 /// How a series is told apart from the others.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,9 +76,16 @@ const COLOURS: [Rgb; 7] = [
     [230, 159, 0],
 ];
 
+/// Further colours of pairs.
+const MORE: [Rgb; 2] = [[94, 60, 153], [140, 81, 10]];
+
+/// All colours of curves, those of series first.
+pub(crate) fn curve_colours() -> Vec<Rgb> {
+    COLOURS.into_iter().chain(MORE).collect()
+}
+
 /// The colour of pair number `index` of curves that belong together and differ in their dashes; they repeat after 9.
 pub(crate) fn paired_colour(index: usize) -> Rgb {
-    const MORE: [Rgb; 2] = [[94, 60, 153], [140, 81, 10]];
     let index = index % (COLOURS.len() + MORE.len());
     COLOURS.get(index).copied().unwrap_or_else(|| MORE[index - COLOURS.len()])
 }

@@ -4,7 +4,8 @@ use crate::error::Result;
 use crate::report::png::axis::{Axis, Scale, Ticks};
 use crate::report::png::canvas::{Canvas, Ink, Pen};
 use crate::report::png::geometry::{Point, Rect};
-use crate::report::png::layout::{Header, Legend, MARGIN, Sample, remark, with_factor, write};
+use crate::report::png::layout::{Header, Legend, MARGIN, Sample, remark, write};
+use crate::report::png::marked_axis::{MarkedAxis, with_factor};
 use crate::report::png::palette::{GRID, INK, PAPER, SOFT_INK, SeriesInk, series_ink};
 use crate::report::png::text::{Align, LABEL, TICK};
 
@@ -136,6 +137,24 @@ fn rings(curves: &[Curve]) -> (f64, Ticks) {
     // The curve may reach a little beyond a circle, but not beyond the last one.
     let outer = (axis.max() / step - 1e-6).ceil().max(1.0) * step;
     (outer, Axis::new(0.0, outer, Scale::Linear).ticks(7))
+}
+
+/// Decades of a logarithmic dial: below them is the middle.
+const DECADES: f64 = 1e4;
+
+/// The axis from the middle to the outermost circle: the description that pictures and pages draw alike.
+pub(crate) fn dial_axis(plot: &PolarPlot, scale: Scale) -> MarkedAxis {
+    let (outer, ticks) = rings(&plot.curves);
+    let label = format!("intensity in {}", plot.unit);
+    match scale {
+        Scale::Linear | Scale::Tangent => {
+            MarkedAxis::new(Axis::new(0.0, outer, Scale::Linear), ticks, &label)
+        }
+        Scale::Log => {
+            let axis = Axis::new(outer / DECADES, outer, Scale::Log);
+            MarkedAxis::new(axis, axis.ticks(7), &label)
+        }
+    }
 }
 
 fn part(curves: &[Curve]) -> Part {

@@ -53,27 +53,17 @@ fn blocks(report: &StudyReport, figure: &Figure, plots: &mut Plots) -> Vec<Block
     let picture = Some(figure.file.clone());
     match &figure.drawing {
         Drawing::Curves(plot, unit) => {
-            vec![plots.add(figure.label.clone(), close_up(plot, unit), picture)]
+            vec![plots.add(figure.label.clone(), chart(plot, unit), picture)]
         }
         // Choices have no place on an axis: the table of main effects says as much.
         Drawing::Bars(_) => Vec::new(),
         Drawing::Scatter(matrix) => {
             let pairs = scatter_plots(report, matrix).into_iter();
             pairs
-                .map(|(plot, unit)| plots.add(plot.title.clone(), close_up(&plot, &unit), None))
+                .map(|(plot, unit)| plots.add(plot.title.clone(), chart(&plot, &unit), None))
                 .collect()
         }
     }
-}
-
-/// A chart whose axes go no further than its values; a histogram begins at nothing, and shows its first and last step
-/// whole.
-fn close_up(plot: &LinePlot, unit: &str) -> serde_json::Value {
-    let mut data = chart(plot, unit);
-    let is_histogram = plot.series.iter().any(|series| series.form == SeriesForm::Steps);
-    data["tight"] = (!is_histogram).into();
-    data["whole_steps"] = is_histogram.into();
-    data
 }
 
 /// Every measure against every parameter that is a number, a dot for each design, and the unit of the measure.

@@ -8,44 +8,29 @@ function drawChart(figure, data) {
   const { controls, body, readout } = layOut(figure, "chart", "point at the plot for values; arrow keys step");
   let scale = "linear";
   const again = drawToFit(body, (width) => body.replaceChildren(...chartOf(data, scale, readout, fitted(WIDE, width))));
-  scaleSwitch(controls, (wanted) => { scale = wanted; again(); });
+  scaleSwitch(controls, data.axes, (wanted) => { scale = wanted; again(); });
 }
 
 // A size within a width, and not much flatter than it was.
 const fitted = (size, width) => ({ width: Math.min(size.width, width), height: Math.min(size.height, Math.max(0.8 * width, 240)) });
 
-// The drawing of a chart and its legend. `scale` is that of the vertical axis.
+// The drawing of a chart and its legend, on axes of one of its scales.
 function chartOf(data, scale, readout, { width, height }) {
   const svg = drawing(width, height, data.title);
-  const below = 49 + 15 * wrapped(data.x_label, width - 8).length;
-  const area = { left: 78, top: 12, width: width - 96, height: height - below };
-  const xs = data.series.flatMap((one) => [...one.x, ...(data.whole_steps ? endsOf(one) : [])]);
-  // A line beside the sensor cuts nothing.
-  if (xs.length === 0) xs.push(0, 1);
-  const last = scale === "linear" && data.linear_to ? data.linear_to : Math.max(...xs);
-  const room = data.tight ? 0.03 * (last - Math.min(...xs)) : 0;
-  const x = makeAxis(Math.min(...xs) - room, last + room, data.x_scale, data.x_label);
-  const tops = data.series.flatMap((one) => one.y.map((value, i) => value === null ? null : value + (scale === "log" ? 0 : one.error[i] ?? 0)));
-  const [low, high] = data.tight && scale === "linear" ? tightRangeOf(data.series) : rangeOf(tops, scale);
-  const y = makeAxis(low, scale === "log" ? high * 1.3 : data.tight ? high : high * 1.05, scale, data.y_label);
+  const [x, y] = [axisOf(data.axes[scale].x), axisOf(data.axes[scale].y)];
+  const left = 34 + Math.max(34, ...y.ticks.map(([, words]) => widthOf(words)));
+  const below = 50 + 15 * wrapped(x.label, width - 8).length;
+  const area = { left, top: 12, width: width - left - 18, height: height - below };
   const place = drawAxes(svg, area, x, y, "grid");
-  const clamp = ([a, b]) => [around(a), around(Math.min(Math.max(b, area.top), area.top + area.height))];
-  const at = (a, b) => clamp(scale === "log" && !(b > 0) ? [place(a, high)[0], 1e9] : place(a, b));
-  data.series.forEach((one) => drawSeries(svg, one, x, at, data.whole_steps ? endsOf(one).map((end) => at(end, 1)[0]) : []));
+  // Curves stay inside the frame; the values under the pointer tell what lies beyond it.
+  const bottom = area.top + area.height;
+  const at = (a, b) => { const [px, py] = place(a, b); return [around(px), around(Math.min(Math.max(py, area.top), bottom))]; };
+  data.series.forEach((one) => drawSeries(svg, one, x, at));
   followChart(svg, data, { x, at, area }, readout);
   return [svg, legendOf(data.series)];
 }
 
-// From the least to the greatest value with their errors, and a little room: small differences are what a study looks for.
-function tightRangeOf(series) {
-  const known = series.flatMap((one) => one.y.flatMap((value, i) => value === null ? [] : [value - (one.error[i] ?? 0), value + (one.error[i] ?? 0)]));
-  if (known.length === 0) return [0, 1];
-  const [low, high] = [Math.min(...known), Math.max(...known)];
-  const room = 0.05 * (high - low || Math.abs(high) || 1);
-  return [low - room, high + room];
-}
-
-function drawSeries(svg, one, x, at, ends) {
+function drawSeries(svg, one, x, at) {
   const colour = seriesColour(one.colour);
   const known = one.x.map((_, i) => i).filter((i) => one.y[i] !== null && one.x[i] <= x.to);
   const error = (i) => one.error[i] ?? 0;
@@ -60,27 +45,19 @@ function drawSeries(svg, one, x, at, ends) {
   }
   const points = known.map((i) => at(one.x[i], one.y[i]));
   if (one.form === "dots" || points.length === 1) {
-    svg.append(make("path", { d: points.map(([x, y]) => `M${x} ${y}${markOf(one.dash)}`).join(""), style: `fill: ${colour}` }));
+    svg.append(make("path", { d: points.map(([x, y]) => `M${x} ${y}${markOf(one.colour)}`).join(""), style: `fill: ${colour}` }));
     return;
   }
-  const style = `fill: none; stroke: ${colour}; stroke-width: 1.8; stroke-dasharray: ${dashOf(one.dash)}`;
-  svg.append(make("path", { d: one.form === "steps" ? stepsThrough(points, ends) : `M${points.map((p) => p.join(" ")).join("L")}`, style }));
+  const style = `fill: none; stroke: ${colour}; stroke-width: 1.8; stroke-dasharray: ${one.dash}`;
+  svg.append(make("path", { d: one.form === "steps" ? stepsThrough(points) : `M${points.map((p) => p.join(" ")).join("L")}`, style }));
 }
 
-// Where the first and the last of evenly spaced steps end.
-function endsOf({ form, x }) {
-  if (form !== "steps" || x.length < 2) return [];
-  return [x[0] - (x[1] - x[0]) / 2, x.at(-1) + (x.at(-1) - x.at(-2)) / 2];
-}
-
-// Steps that change half-way between points; those at the ends go on to `ends`, if there are any.
-function stepsThrough(points, ends) {
-  return points
-    .map(([x, y], i) => {
-      const middle = i === 0 ? x : (points[i - 1][0] + x) / 2;
-      return i === 0 ? `M${ends[0] ?? x} ${y}` : `H${around(middle)}V${y}`;
-    })
-    .join("") + `H${ends[1] ?? points.at(-1)?.[0] ?? 0}`;
+// Steps that change half-way between points; those at the ends reach as far out as in.
+function stepsThrough(points) {
+  const middle = (i) => (points[i - 1][0] + points[i][0]) / 2;
+  const last = points.length - 1;
+  const [from, to] = [2 * points[0][0] - middle(1), 2 * points[last][0] - middle(last)];
+  return `M${around(from)} ` + points.map(([, y], i) => (i === 0 ? y : `H${around(middle(i))}V${y}`)).join("") + `H${around(to)}`;
 }
 
 // A line through the nearest points of all series, and their values in words.
@@ -104,7 +81,7 @@ function followChart(svg, data, { x, at, area }, readout) {
       lines.push(name + quantity(one.y[i], one.error[i], one.bias?.[i], data.unit));
     }
     cursor.setAttribute("d", marks);
-    readout.textContent = `${data.x_label}: ${formatValue(places[here])}   ${lines.join("   ")}`;
+    readout.textContent = `${data.x_name}: ${formatValue(places[here])}   ${lines.join("   ")}`;
   };
   svg.addEventListener("pointermove", (event) => {
     const share = (pointerAt(svg, event)[0] - area.left) / area.width;

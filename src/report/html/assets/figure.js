@@ -22,8 +22,9 @@ function layOut(figure, kind, hint) {
   return parts;
 }
 
-// A button that switches between a linear and a logarithmic scale.
-function scaleSwitch(controls, draw) {
+// A button that switches between a linear and a logarithmic scale, where there are both.
+function scaleSwitch(controls, scales, draw) {
+  if (!scales.log) return draw("linear");
   const button = make("button", { type: "button", class: "scale", "aria-pressed": "false" }, "log scale");
   button.addEventListener("click", () => {
     const isLog = button.getAttribute("aria-pressed") !== "true";
@@ -83,22 +84,22 @@ function drawAxes(svg, area, x, y, grid) {
   const { left, top, width, height } = area;
   const place = (a, b) => [left + x.share(a) * width, top + (1 - y.share(b)) * height];
   const lines = { grid: "", axis: `M${left} ${top}h${width}v${height}h${-width}z` };
-  for (const tick of x.ticks) {
-    const at = around(left + x.share(tick) * width);
-    if (at < left - 0.5 || at > left + width + 0.5) continue;
-    lines.grid += `M${at} ${top}v${height}`;
-    lines.axis += `M${at} ${top + height}v4`;
+  const column = (value) => around(left + x.share(value) * width);
+  const row = (value) => around(top + (1 - y.share(value)) * height);
+  for (const [value] of x.ticks) {
+    lines.grid += `M${column(value)} ${top}v${height}`;
+    lines.axis += `M${column(value)} ${top + height}v5`;
   }
-  for (const [at, words] of withRoom(x.ticks.map((tick) => [around(left + x.share(tick) * width), formatValue(tick)]), left, left + width)) {
-    svg.append(make("text", { x: at, y: top + height + 17, "text-anchor": "middle" }, words));
+  for (const value of x.minor) lines.axis += `M${column(value)} ${top + height}v3`;
+  for (const [at, words] of withRoom(x.ticks.map(([value, words]) => [column(value), words]))) {
+    svg.append(make("text", { x: at, y: top + height + 18, "text-anchor": "middle" }, words));
   }
-  for (const tick of y.ticks) {
-    const at = around(top + (1 - y.share(tick)) * height);
-    if (at < top - 0.5 || at > top + height + 0.5) continue;
-    lines.grid += `M${left} ${at}h${width}`;
-    lines.axis += `M${left} ${at}h-4`;
-    svg.append(make("text", { x: left - 7, y: at + 4, "text-anchor": "end" }, formatValue(tick)));
+  for (const [value, words] of y.ticks) {
+    lines.grid += `M${left} ${row(value)}h${width}`;
+    lines.axis += `M${left} ${row(value)}h-5`;
+    svg.append(make("text", { x: left - 8, y: row(value) + 4, "text-anchor": "end" }, words));
   }
+  for (const value of y.minor) lines.axis += `M${left} ${row(value)}h-3`;
   if (grid === "grid") svg.append(make("path", { d: lines.grid, class: "grid" }));
   svg.append(make("path", { d: lines.axis, class: "axis" }));
   lines.label = wrapped(x.label, left + width + 10);
@@ -113,10 +114,9 @@ function drawAxes(svg, area, x, y, grid) {
   return place;
 }
 
-const seriesColour = (index) => `var(--series-${index % 7})`;
-// Series differ in their dashes and dots, too: colours alone do not tell them apart for everyone.
-const dashOf = (index) => ["none", "9 5", "2 4", "10 4 2 4"][index % 4];
-const markOf = (index) => ["m-3 0a3 3 0 1 0 6 0a3 3 0 1 0 -6 0", "m-3 -3h6v6h-6z", "m0 -4l4 7h-8z", "m0 -4l4 4l-4 4l-4 -4z"][index % 4];
+const seriesColour = (colour) => (colour === "soft" ? "var(--soft)" : `var(--series-${colour})`);
+// Dots differ in their form, too: colours alone do not tell them apart for everyone.
+const markOf = (colour) => ["m-3 0a3 3 0 1 0 6 0a3 3 0 1 0 -6 0", "m-3 -3h6v6h-6z", "m0 -4l4 7h-8z", "m0 -4l4 4l-4 4l-4 -4z"][colour % 4];
 
 // Names of series with samples of their lines.
 function legendOf(series) {
@@ -125,8 +125,8 @@ function legendOf(series) {
     const colour = seriesColour(one.colour);
     const sample =
       one.form === "dots"
-        ? make("path", { d: `M15 5${markOf(one.dash)}`, style: `fill: ${colour}` })
-        : make("path", { d: "M0 5h30", style: `stroke: ${colour}; stroke-width: 2.4; stroke-dasharray: ${dashOf(one.dash)}` });
+        ? make("path", { d: `M15 5${markOf(one.colour)}`, style: `fill: ${colour}` })
+        : make("path", { d: "M0 5h30", style: `stroke: ${colour}; stroke-width: 2.4; stroke-dasharray: ${one.dash}` });
     legend.append(make("span", {}, make("svg", { class: "sample", width: 30, height: 10 }, sample), one.name));
   }
   return legend;
@@ -136,14 +136,13 @@ function legendOf(series) {
 const widthOf = (words) => 6.8 * words.length;
 
 // Labels at places along a line, without those that would touch the one before.
-function withRoom(labels, from, to) {
-  const inside = labels.filter(([at]) => at >= from - 0.5 && at <= to + 0.5);
-  for (let every = 1; every < inside.length; every += 1) {
-    const kept = inside.filter((_, i) => i % every === 0);
+function withRoom(labels) {
+  for (let every = 1; every < labels.length; every += 1) {
+    const kept = labels.filter((_, i) => i % every === 0);
     const touches = ([at, words], i) => i > 0 && at - kept[i - 1][0] < (widthOf(words) + widthOf(kept[i - 1][1])) / 2 + 8;
     if (!kept.some(touches)) return kept;
   }
-  return inside.slice(0, 1);
+  return labels.slice(0, 1);
 }
 
 // Words in lines of at most this many pixels.

@@ -3,7 +3,7 @@
 const MAP = { left: 74, top: 12, most: [470, 400], bar: 130, below: 62 };
 // Where there is less room than this, pixels, the colour bar lies below the map.
 const SLIM = 480;
-const SLIM_MAP = { left: 62, top: 12, right: 24, below: 110 };
+const SLIM_MAP = { left: 62, top: 12, right: 24, below: 126 };
 // A map longer than this is squeezed.
 const LONGEST = 5;
 // Pixels along each side of the picture of a map of rings.
@@ -37,7 +37,7 @@ function drawMap(figure, data) {
     followMap(svg, map, readout, cut);
     cut();
   });
-  scaleSwitch(controls, (wanted) => { scale = wanted; again(); });
+  scaleSwitch(controls, data.axes.bars, (wanted) => { scale = wanted; again(); });
   if (data.values.length > 1) touchSwitch(controls, body, "draw a section");
 }
 
@@ -50,25 +50,24 @@ function firstLine(data, { x, y, ratio }) {
 
 // Where cells are: which cell a place of the plot belongs to, and the ranges of its axes.
 function geometryOf(data) {
-  const { x, y } = data;
+  const { x, y, axes } = data;
   const columns = x.length - 1;
+  const ranges = { x: [axes.x.from, axes.x.to], y: [axes.y.from, axes.y.to] };
   if (data.geometry === "polar") {
-    const reach = y.at(-1);
     const cell = (a, b) => {
       const ring = binOf(y, Math.hypot(a, b));
       const sector = binOf(x, ((Math.atan2(b, a) * 180) / Math.PI + 360) % 360);
       return ring < 0 || sector < 0 ? -1 : ring * columns + sector;
     };
-    return { x: [-reach, reach], y: [-reach, reach], scale: "linear", cell, ratio: 1, pixels: [ROUND_PIXELS, ROUND_PIXELS] };
+    return { ...ranges, cell, ratio: 1, pixels: [ROUND_PIXELS, ROUND_PIXELS] };
   }
   const cell = (a, b) => {
     const [column, row] = [binOf(x, a), binOf(y, b)];
     return column < 0 || row < 0 ? -1 : row * columns + column;
   };
-  const scale = data.geometry === "angular" ? "tangent" : "linear";
-  const size = (edges) => SCALES[scale].to(edges.at(-1)) - SCALES[scale].to(edges[0]);
-  const ratio = data.geometry === "directions" ? 1.6 : size(x) / size(y);
-  return { x: [x[0], x.at(-1)], y: [y[0], y.at(-1)], scale, cell, ratio, pixels: [columns, y.length - 1] };
+  const size = ({ from, to, scale }) => SCALES[scale].to(to) - SCALES[scale].to(from);
+  const ratio = data.geometry === "directions" ? 1.6 : size(axes.x) / size(axes.y);
+  return { ...ranges, cell, ratio, pixels: [columns, y.length - 1] };
 }
 
 // The bin of a value between edges; -1 outside.
@@ -83,8 +82,8 @@ function binOf(edges, value) {
   return low;
 }
 
-function mapColour(share) {
-  const colours = pageData.map_colours;
+function mapColour(share, palette) {
+  const colours = pageData.palettes[palette];
   const at = Math.min(Math.max(share, 0), 1) * (colours.length - 1);
   const low = Math.min(Math.floor(at), colours.length - 2);
   return colours[low].map((part, i) => Math.round(part + (at - low) * (colours[low + 1][i] - part)));
@@ -99,16 +98,13 @@ function mapDrawing(map, scale, room) {
   const height = width / ratio;
   const { left, top, below } = isSlim ? SLIM_MAP : MAP;
   const svg = drawing(isSlim ? room : beside + width, top + height + below, data.title);
-  const x = makeAxis(...geometry.x, geometry.scale, data.x_label);
-  const y = makeAxis(...geometry.y, geometry.scale, data.y_label);
-  const [low, high] = rangeOf(data.values, scale);
-  const colours = makeAxis(low, high, scale, "");
+  const [x, y, colours] = [data.axes.x, data.axes.y, data.axes.bars[scale]].map(axisOf);
   const area = { left, top, width, height };
   const picture = mapPicture(map, [x, y], colours);
   svg.append(make("image", { x: area.left, y: area.top, width, height, preserveAspectRatio: "none", href: picture }));
   Object.assign(map, { x, y, area, place: drawAxes(svg, area, x, y, "plain") });
-  if (isSlim) drawColourBarBelow(svg, { left, top: top + height + 52, width: room - left - SLIM_MAP.right }, colours, data.unit);
-  else drawColourBar(svg, area, colours, data.unit);
+  if (isSlim) drawColourBarBelow(svg, { left, top: top + height + 68, width: room - left - SLIM_MAP.right }, colours);
+  else drawColourBar(svg, area, colours);
   if (ratio !== geometry.ratio && data.geometry !== "directions") {
     const y = area.top + height + (isSlim ? below - 4 : 56);
     svg.append(make("text", { x: area.left, y, class: "soft" }, "axes are not to the same scale"));
@@ -126,45 +122,57 @@ function mapPicture({ data, geometry }, [x, y], colours) {
       const cell = geometry.cell(x.value((column + 0.5) / width), y.value(1 - (row + 0.5) / height));
       const value = cell < 0 ? null : data.values[cell];
       if (value === null || value === undefined) continue;
-      const share = colours.scale === "log" && !(value > 0) ? 0 : colours.share(value);
-      image.data.set([...mapColour(share), 255], 4 * (row * width + column));
+      image.data.set([...mapColour(colours.share(value), colours.palette), 255], 4 * (row * width + column));
     }
   }
   context.putImageData(image, 0, 0);
   return canvas.toDataURL();
 }
 
-function drawColourBar(svg, area, axis, unit) {
+// Steps of colour of a bar.
+const BAR_STEPS = 64;
+
+function drawColourBar(svg, area, axis) {
   const left = area.left + area.width + 24;
-  const steps = 64;
-  for (let step = 0; step < steps; step += 1) {
-    const colour = mapColour((step + 0.5) / steps).join(" ");
-    const top = area.top + area.height * (1 - (step + 1) / steps);
-    svg.append(make("rect", { x: left, y: around(top), width: 16, height: around(area.height / steps + 0.6), style: `fill: rgb(${colour})` }));
+  const bottom = area.top + area.height;
+  for (let step = 0; step < BAR_STEPS; step += 1) {
+    const colour = mapColour((step + 0.5) / BAR_STEPS, axis.palette).join(" ");
+    const top = bottom - (area.height * (step + 1)) / BAR_STEPS;
+    svg.append(make("rect", { x: left, y: around(top), width: 16, height: around(area.height / BAR_STEPS + 0.6), style: `fill: rgb(${colour})` }));
   }
-  for (const tick of axis.ticks) {
-    const at = around(area.top + (1 - axis.share(tick)) * area.height);
-    if (at < area.top - 0.5 || at > area.top + area.height + 0.5) continue;
-    svg.append(make("path", { d: `M${left + 16} ${at}h4`, class: "axis" }));
-    svg.append(make("text", { x: left + 24, y: at + 4 }, formatValue(tick)));
+  drawTips(svg, axis, (end) => (end === 1 ? `M${left} ${area.top}h16l-8 -10z` : `M${left} ${bottom}h16l-8 10z`));
+  const row = (value) => around(bottom - axis.share(value) * area.height);
+  for (const value of axis.minor) svg.append(make("path", { d: `M${left + 16} ${row(value)}h2`, class: "axis" }));
+  for (const [value, words] of axis.ticks) {
+    svg.append(make("path", { d: `M${left + 16} ${row(value)}h4`, class: "axis" }));
+    svg.append(make("text", { x: left + 24, y: row(value) + 4 }, words));
   }
-  svg.append(make("text", { x: left, y: area.top + area.height + 17 }, unit));
+  svg.append(make("text", { x: left, y: bottom + 24 }, axis.label));
 }
 
-// The bar on its side, where there is no room beside the map.
-function drawColourBarBelow(svg, { left, top, width }, axis, unit) {
-  const steps = 64;
-  for (let step = 0; step < steps; step += 1) {
-    const colour = mapColour((step + 0.5) / steps).join(" ");
-    const at = around(left + (width * step) / steps);
-    svg.append(make("rect", { x: at, y: top, width: around(width / steps + 0.6), height: 14, style: `fill: rgb(${colour})` }));
+// Tips of a bar at the ends beyond which there are values.
+function drawTips(svg, axis, tip) {
+  axis.beyond.forEach((isBeyond, end) => {
+    if (!isBeyond) return;
+    svg.append(make("path", { d: tip(end), class: "axis", style: `fill: rgb(${mapColour(end, axis.palette).join(" ")})` }));
+  });
+}
+
+// The bar on its side, where there is no room beside the map; its label above it.
+function drawColourBarBelow(svg, { left, top, width }, axis) {
+  for (let step = 0; step < BAR_STEPS; step += 1) {
+    const colour = mapColour((step + 0.5) / BAR_STEPS, axis.palette).join(" ");
+    const at = around(left + (width * step) / BAR_STEPS);
+    svg.append(make("rect", { x: at, y: top, width: around(width / BAR_STEPS + 0.6), height: 14, style: `fill: rgb(${colour})` }));
   }
-  const labels = axis.ticks.map((tick) => [around(left + axis.share(tick) * width), formatValue(tick)]);
-  for (const [at, words] of withRoom(labels, left, left + width)) {
+  drawTips(svg, axis, (end) => (end === 1 ? `M${left + width} ${top}v14l10 -7z` : `M${left} ${top}v14l-10 -7z`));
+  const column = (value) => around(left + axis.share(value) * width);
+  for (const value of axis.minor) svg.append(make("path", { d: `M${column(value)} ${top + 14}v2`, class: "axis" }));
+  for (const [at, words] of withRoom(axis.ticks.map(([value, words]) => [column(value), words]))) {
     svg.append(make("path", { d: `M${at} ${top + 14}v4`, class: "axis" }));
     svg.append(make("text", { x: at, y: top + 31, "text-anchor": "middle" }, words));
   }
-  svg.append(make("text", { x: left - 8, y: top + 12, "text-anchor": "end" }, unit));
+  svg.append(make("text", { x: left, y: top - 6 }, axis.label));
 }
 
 // What a cell is called, and what is in it.
@@ -260,7 +268,7 @@ function sectionOf(map) {
   const { data, geometry } = map;
   const [[ax, ay], [bx, by]] = map.line;
   const length = Math.hypot(bx - ax, by - ay);
-  const series = { name: "", form: "line", errors: "band", colour: 0, dash: 0, x: [], y: [], error: [], bias: [] };
+  const series = { name: "", form: "line", errors: "band", colour: 0, dash: "none", x: [], y: [], error: [], bias: [] };
   let [last, since] = [-1, 0];
   const close = (until) => {
     if (last < 0 || data.values[last] === null) return;
@@ -279,9 +287,9 @@ function sectionOf(map) {
   close(1);
   const unit = data.geometry === "polar" ? data.y_unit : data.x_unit;
   const at = (a, b) => `(${formatValue(a)}, ${formatValue(b)})`;
-  return {
-    title: "section", unit: data.unit, x_scale: "linear", series: [series],
-    x_label: `along the line from ${at(ax, ay)} to ${at(bx, by)} in ${unit}`,
-    y_label: `${data.quantity} in ${data.unit}`,
-  };
+  const x = axisAlong(data.axes.along, length, `along the line from ${at(ax, ay)} to ${at(bx, by)} in ${unit}`);
+  // Colours and heights say the same.
+  const y = (bar) => ({ ...bar, label: `${data.quantity} in ${bar.label}` });
+  const axes = Object.fromEntries(Object.entries(data.axes.bars).map(([scale, bar]) => [scale, { x, y: y(bar) }]));
+  return { title: "section", unit: data.unit, x_name: x.label, series: [series], axes };
 }

@@ -7,21 +7,20 @@ function drawPolar(figure, data) {
   const { controls, body, readout } = layOut(figure, "polar", "point at an angle for values; arrow keys step");
   let scale = "linear";
   const again = drawToFit(body, (width) => body.replaceChildren(polarDrawing(data, scale, readout, width), legendOf(data.curves)));
-  scaleSwitch(controls, (wanted) => { scale = wanted; again(); });
+  scaleSwitch(controls, data.axes, (wanted) => { scale = wanted; again(); });
 }
 
 function polarDrawing(data, scale, readout, room) {
   const { top } = POLAR;
   const width = Math.min(POLAR.width, room);
   const radius = Math.min(POLAR.radius, width / 2 - POLAR.beside);
-  const all = data.curves.flatMap((curve) => curve.y);
-  const [low, high] = rangeOf(all, scale);
-  const axis = makeAxis(scale === "log" ? Math.max(low, high / 1e4) : 0, high * 1.04, scale, data.unit);
-  const isDown = data.curves.some((curve) => curve.gamma.some((gamma, i) => Math.abs(gamma) > 92 && curve.y[i] > 0.005 * high));
+  const axis = axisOf(data.axes[scale]);
+  const isDown = data.curves.some((curve) => curve.gamma.some((gamma, i) => Math.abs(gamma) > 90.000001 && curve.y[i] > 0));
   const center = [width / 2, top + radius];
   const svg = drawing(width, top + radius * (isDown ? 2 : 1) + 40, data.title);
   const at = (gamma, value) => {
-    const share = scale === "log" && !(value > axis.from) ? 0 : Math.max(axis.share(value), 0);
+    // Bands may reach a little beyond the outermost circle.
+    const share = Math.min(Math.max(axis.share(value), 0), 1.05);
     const angle = (gamma * Math.PI) / 180;
     return [center[0] + share * radius * Math.sin(angle), center[1] - share * radius * Math.cos(angle)];
   };
@@ -32,7 +31,7 @@ function polarDrawing(data, scale, readout, room) {
     const inner = curve.gamma.map((gamma, i) => at(gamma, Math.max((curve.y[i] ?? 0) - (curve.error[i] ?? 0), 0)).map(around).join(" "));
     const colour = seriesColour(curve.colour);
     svg.append(make("path", { d: `M${[...outer, ...inner.reverse()].join("L")}z`, style: `fill: ${colour}; fill-opacity: 0.22` }));
-    const style = `fill: none; stroke: ${colour}; stroke-width: 1.8; stroke-dasharray: ${dashOf(curve.dash)}`;
+    const style = `fill: none; stroke: ${colour}; stroke-width: 1.8; stroke-dasharray: ${curve.dash}`;
     svg.append(make("path", { d: `M${points.join("L")}`, style }));
   });
   followPolar(svg, data, [...center, radius], at, readout);
@@ -51,12 +50,12 @@ function drawPolarGrid(svg, axis, [cx, cy, radius], isDown) {
     const [x, y] = [cx + (radius + 8) * sin, cy - (radius + 8) * cos + (cos > 0.5 ? 0 : cos < -0.5 ? 10 : 4)];
     svg.append(make("text", { x: around(x), y: around(y), "text-anchor": anchor, class: "soft" }, `${Math.abs(angle)}°`));
   }
-  for (const tick of axis.ticks.filter((one) => axis.share(one) > 0.02)) lines += circle(around(axis.share(tick) * radius));
+  for (const [value] of axis.ticks.filter(([one]) => axis.share(one) > 0.02)) lines += circle(around(axis.share(value) * radius));
   svg.append(make("path", { d: lines, class: "grid" }));
-  for (const tick of axis.ticks.filter((one) => axis.share(one) > 0.1)) {
-    svg.append(make("text", { x: cx + 4, y: around(cy - axis.share(tick) * radius - 3), class: "soft" }, formatValue(tick)));
+  for (const [value, words] of axis.ticks.filter(([one]) => axis.share(one) > 0.1)) {
+    svg.append(make("text", { x: cx + 4, y: around(cy - axis.share(value) * radius - 3), class: "soft" }, words));
   }
-  svg.append(make("text", { x: 2 * cx, y: 16, "text-anchor": "end" }, `intensity in ${axis.label}`));
+  svg.append(make("text", { x: 2 * cx, y: 16, "text-anchor": "end" }, axis.label));
 }
 
 function followPolar(svg, data, [cx, cy, radius], at, readout) {

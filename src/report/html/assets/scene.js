@@ -197,7 +197,7 @@ function paintScale(context, { rows, scale }, { colours, letters }) {
 function groupSwitches(state) {
   const legend = make("div", { class: "legend", role: "group", "aria-label": "paths by where they end" });
   state.data.groups.forEach(({ name, count }, group) => {
-    const swatch = make("span", { class: "swatch", style: `border-color: ${seriesColour(group)}` });
+    const swatch = make("span", { class: "swatch", style: `border-color: ${seriesColour(group % 7)}` });
     legend.append(toggle([swatch, `${name} (${count})`], state.hidden, group, state.draw));
   });
   return legend;

@@ -33,7 +33,7 @@ pub(super) struct DiffArgs {
     /// Show all measures, not only the worst.
     #[arg(long)]
     all: bool,
-    /// Write diff.md, diff.csv and pictures of the differences of maps into this folder.
+    /// Write diff.html, diff.md, diff.csv and pictures of the differences of maps into this folder.
     #[arg(short = 'o', long = "output", value_name = "DIR")]
     output: Option<PathBuf>,
     /// Write a JUnit XML file with a test case for each measure.
@@ -87,7 +87,7 @@ fn compare(args: &DiffArgs, existing: Existing) -> Result<Diff> {
         let rows = if args.all { Rows::All } else { Rows::Worst };
         let mut text = diff_table(&diff, rows);
         if let Some(dir) = &args.output {
-            text += &format!("report: {}\n", dir.join("diff.md").display());
+            text += &format!("report: {}\n", dir.join("diff.html").display());
         }
         print(&text)?;
     }

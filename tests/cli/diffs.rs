@@ -58,8 +58,15 @@ fn another_seed_is_within_the_limits_and_maps_differ_by_noise_alone() {
     }
     assert_eq!(
         names(&place.path("difference")),
-        ["diff.csv", "diff.md", "exit.illuminance.difference.png", "far.intensity.difference.png"]
+        [
+            "diff.csv",
+            "diff.html",
+            "diff.md",
+            "exit.illuminance.difference.png",
+            "far.intensity.difference.png"
+        ]
     );
+    assert!(said.contains("report: difference/diff.html"), "{said}");
     let measures = cases(&junit(&place, "d.xml")).len();
     place.good("diff a b --maps --junit m.xml");
     let report = junit(&place, "m.xml");
@@ -203,4 +210,27 @@ fn designs_become_test_cases_and_those_without_a_scene_are_errors() {
     let [done, broken] = cases(&report) else { panic!("two designs") };
     assert_eq!(done.classname.as_ref().unwrap().as_str(), "study.design 1");
     assert_eq!(trouble(broken).1, "no scene");
+}
+
+#[test]
+fn the_page_of_a_comparison_has_the_measures_of_checks_first() {
+    let check = "[[check]]\nmeasure = \"far.flux\"\nmin = 1\n[[check]]\nmeasure = \"exit.share_deeper_than_10\"\nmax = 1\n";
+    let place = with_report(check);
+    place.good("run rod.toml -q --seed 2 -o b");
+    place.good("diff a b -q -o difference");
+    let page = fs::read_to_string(place.path("difference/diff.html")).unwrap();
+    let at = |text: &str| page.find(text).unwrap_or_else(|| panic!("no {text} in {page}"));
+    let order = [
+        "<h2>Measures of the checks</h2>",
+        "<td>far.flux</td>",
+        "<td>exit.share_deeper_than_10</td>",
+        "<h2>Flux and efficiency</h2>",
+        "<td>exit.flux</td>",
+        "<h2>All other measures, the worst first</h2>",
+        "<td>balance.emitted</td>",
+        "<h2>Maps</h2>",
+        "<h2>What was found</h2>",
+    ];
+    assert!(order.map(at).is_sorted(), "{:?}", order.map(at));
+    assert_eq!(page.matches("<td>far.flux</td>").count(), 1);
 }

@@ -3,6 +3,7 @@
 use crate::error::Result;
 use crate::number::format_fixed;
 use crate::report::OutputFile;
+use crate::report::html::data::{Cells, MapWords};
 use crate::report::png::{ColourMap, HeatMap, Scale, heat_map};
 use csv::ReaderBuilder;
 use ndarray::Array2;
@@ -55,6 +56,17 @@ impl Kind {
             Self::Rings => ["sector in deg", "radius in mm"],
             Self::Intensity => ["C in deg", "γ in deg"],
         }
+    }
+
+    /// What a page calls places and values.
+    fn words(self) -> MapWords<'static> {
+        let (geometry, names, units) = match self {
+            Self::Surface => ("cartesian", ["u", "v"], ["mm", "mm"]),
+            Self::Angles => ("angular", ["to the right", "up"], ["deg", "deg"]),
+            Self::Rings => ("directions", ["azimuth", "radius"], ["deg", "mm"]),
+            Self::Intensity => ("directions", ["C", "γ"], ["deg", "deg"]),
+        };
+        MapWords { geometry, quantity: "difference B − A", names, units }
     }
 
     fn scale(self) -> Scale {
@@ -112,6 +124,11 @@ impl MapTable {
             map.errors.push(rest[1].hypot(rest.get(2).copied().unwrap_or(0.0)));
         }
         Ok(Some(map))
+    }
+
+    /// What a page calls its places and values.
+    pub(crate) fn words(&self) -> MapWords<'static> {
+        self.kind.words()
     }
 
     /// Whether cells, quantity and unit are those of another map.
@@ -224,33 +241,50 @@ pub(crate) fn pictures(maps: &[MapDiff]) -> Result<Vec<OutputFile>> {
     let mut files = Vec::new();
     for map in maps {
         if let MapOutcome::Compared { difference, .. } = &map.outcome {
-            let bytes = heat_map(&picture(map, difference))?;
+            let (_, picture) = drawn(map, difference);
+            let bytes = heat_map(&picture)?;
             files.push(OutputFile { name: map.picture_name(), bytes });
         }
     }
     Ok(files)
 }
 
-fn picture(map: &MapDiff, difference: &MapTable) -> HeatMap {
+/// The difference of a map as cells with their errors, and as a picture.
+pub(crate) fn drawn(map: &MapDiff, difference: &MapTable) -> (Cells, HeatMap) {
     let columns = lines(&difference.places, 0);
     let rows = lines(&difference.places, 1);
     let mut values = Array2::from_elem((rows.len(), columns.len()), f64::NAN);
+    let mut errors = values.clone();
     let index = |lines: &[f64], at: f64| lines.partition_point(|line| *line < at);
-    for (place, value) in difference.places.iter().zip(&difference.values) {
-        values[[index(&rows, place[1]), index(&columns, place[0])]] = *value;
+    let numbers = difference.values.iter().zip(&difference.errors);
+    for (place, (value, error)) in difference.places.iter().zip(numbers) {
+        let at = [index(&rows, place[1]), index(&columns, place[0])];
+        (values[at], errors[at]) = (*value, *error);
     }
+    let scale = difference.kind.scale();
+    let [x, y] = [columns, rows].map(|middles| edges(&middles, scale));
+    let picture = picture(map, difference, [&x, &y], &values);
+    (Cells { x, y, values, errors, biases: None }, picture)
+}
+
+fn picture(
+    map: &MapDiff,
+    difference: &MapTable,
+    edges: [&[f64]; 2],
+    values: &Array2<f64>,
+) -> HeatMap {
     let [x_label, y_label] = difference.kind.labels().map(str::to_owned);
     let limit = limit(&difference.values);
-    let scale = difference.kind.scale();
+    let [x_range, y_range] = edges.map(|edges| [edges[0], edges[edges.len() - 1]]);
     HeatMap {
         title: format!("{}: difference B − A", map.name),
         subtitle: map.sentence(),
         x_label,
         y_label,
-        x_range: ends(&columns, scale),
-        y_range: ends(&rows, scale),
-        axes: scale,
-        values,
+        x_range,
+        y_range,
+        axes: difference.kind.scale(),
+        values: values.clone(),
         unit: difference.unit.clone(),
         scale: Scale::Linear,
         colours: ColourMap::Diverging,
@@ -281,19 +315,23 @@ fn lines(places: &[[f64; 2]], axis: usize) -> Vec<f64> {
     lines
 }
 
-/// Outer edges of cells from their middles: the first and the last cell are as wide as their neighbours.
-fn ends(middles: &[f64], scale: Scale) -> [f64; 2] {
+/// Edges of cells from their middles: half way between them, and the first and the last cell as wide as their
+/// neighbours. There are two at least.
+fn edges(middles: &[f64], scale: Scale) -> Vec<f64> {
     let [to, from]: [fn(f64) -> f64; 2] = match scale {
         Scale::Linear | Scale::Log => [|place| place, |place| place],
         Scale::Tangent => [|deg| deg.to_radians().tan(), |tan| tan.atan().to_degrees()],
     };
     match middles {
-        [] => [0.0, 1.0],
-        [only] => [only - 0.5, only + 0.5],
-        [first, second, ..] => {
-            let [last, before] = [middles[middles.len() - 1], middles[middles.len() - 2]].map(to);
-            let [first, second] = [first, second].map(|place| to(*place));
-            [from(first - 0.5 * (second - first)), from(last + 0.5 * (last - before))]
+        [] => vec![0.0, 1.0],
+        [only] => vec![only - 0.5, only + 0.5],
+        [_, _, ..] => {
+            let places: Vec<f64> = middles.iter().map(|place| to(*place)).collect();
+            let last = places.len() - 1;
+            let between = places.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
+            let first = places[0] - 0.5 * (places[1] - places[0]);
+            let end = places[last] + 0.5 * (places[last] - places[last - 1]);
+            [first].into_iter().chain(between).chain([end]).map(from).collect()
         }
     }
 }

@@ -78,6 +78,11 @@ pub struct DiffRow {
 }
 
 impl DiffRow {
+    /// Dotted name of the measure, without the design it is of.
+    pub fn measure(&self) -> &str {
+        self.name.rsplit(": ").next().unwrap_or(&self.name)
+    }
+
     /// The difference as a share of the first value, 1; `None` where that is nothing.
     pub fn relative(&self) -> Option<f64> {
         let [a, _] = &self.values;

@@ -4,6 +4,7 @@
 //! loaded, and nothing is traced. The errors of both sides are taken as independent. Runs of the same seed are not quite:
 //! their noise has much in common, and the differences are then smaller than the errors that are told.
 
+mod html;
 mod maps;
 mod measures;
 mod page;
@@ -44,6 +45,8 @@ pub struct Diff {
     pub only_in: [Vec<String>; 2],
     /// The maps that both have.
     pub maps: Vec<MapDiff>,
+    /// Names of measures that checks of either judge, in their order.
+    pub checks: Vec<String>,
 }
 
 impl Diff {
@@ -116,6 +119,7 @@ pub fn diff(sides: &[Side; 2], wishes: &DiffWishes) -> Result<Diff> {
         rows,
         only_in: pairs.only_in,
         maps,
+        checks: a.checks.iter().chain(&b.checks).cloned().collect(),
     })
 }
 
@@ -135,6 +139,7 @@ pub fn diff_files(diff: &Diff) -> Result<Vec<OutputFile>> {
     let page = page::markdown(diff);
     files.push(page::table_file(diff)?);
     files.push(OutputFile::text("diff.md", page));
+    files.push(OutputFile::text("diff.html", html::html(diff)?));
     Ok(files)
 }
 

@@ -24,7 +24,8 @@ pub enum Rows {
     All,
 }
 
-const HEADER: [&str; 6] = ["measure", "A", "B", "B − A", "sigmas", "relative"];
+/// The heads of the columns.
+pub(crate) const HEADER: [&str; 6] = ["measure", "A", "B", "B − A", "sigmas", "relative"];
 
 /// What is printed: both reports, the worst measures or all, and what follows.
 pub fn diff_table(diff: &Diff, rows: Rows) -> String {
@@ -48,9 +49,8 @@ pub fn diff_table(diff: &Diff, rows: Rows) -> String {
 
 /// `diff.md`.
 pub(crate) fn markdown(diff: &Diff) -> String {
-    let [a, b] = &diff.names;
-    let title = if a == b { format!("Two reports of {a}") } else { format!("{a} and {b}") };
-    let mut page = format!("# {title}\n\n* A: {}\n* B: {}\n\n", diff.facts[0], diff.facts[1]);
+    let mut page =
+        format!("# {}\n\n* A: {}\n* B: {}\n\n", title(diff), diff.facts[0], diff.facts[1]);
     for line in findings(diff) {
         _ = writeln!(page, "* {}", escaped(&line));
     }
@@ -69,6 +69,12 @@ pub(crate) fn markdown(diff: &Diff) -> String {
         _ = write!(page, "\n## {name}\n\n![Difference of {name}]({picture})\n");
     }
     page
+}
+
+/// What was compared.
+pub(crate) fn title(diff: &Diff) -> String {
+    let [a, b] = &diff.names;
+    if a == b { format!("Two reports of {a}") } else { format!("{a} and {b}") }
 }
 
 /// `diff.csv`.
@@ -132,7 +138,8 @@ pub(crate) fn sentence(row: &DiffRow) -> String {
     format!("{} is {a} in A and {b} in B: {difference}, {sigmas} sigmas, {relative}", row.name)
 }
 
-fn cells(row: &DiffRow) -> [String; 6] {
+/// A row of the table: measure, both values, difference, sigmas and share.
+pub(crate) fn cells(row: &DiffRow) -> [String; 6] {
     let [a, b] = &row.values;
     let is_known = row.judgement != Judgement::Unknown;
     let unknown = || "?".to_owned();
@@ -164,7 +171,7 @@ fn sigmas(sigmas: f64) -> String {
 }
 
 /// Everything but the table, a line each; the last one says whether the reports differ.
-fn findings(diff: &Diff) -> Vec<String> {
+pub(crate) fn findings(diff: &Diff) -> Vec<String> {
     let mut lines = vec![chance(diff)];
     let unknown: Vec<&DiffRow> =
         diff.rows.iter().filter(|row| row.judgement == Judgement::Unknown).collect();

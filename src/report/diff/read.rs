@@ -19,6 +19,8 @@ pub struct Side {
     pub name: String,
     /// What it is, in a line: name, hash, seed and paths.
     pub facts: String,
+    /// Names of the measures that its checks judge.
+    pub checks: Vec<String>,
     /// Its numbers.
     pub content: Content,
 }
@@ -77,7 +79,18 @@ struct RunSummary {
     run: RunWords,
     paths: u64,
     measures: IndexMap<String, Measure>,
+    checks: Vec<CheckWords>,
     files: Vec<String>,
+}
+
+#[derive(Deserialize)]
+struct CheckWords {
+    check: CheckedMeasure,
+}
+
+#[derive(Deserialize)]
+struct CheckedMeasure {
+    measure: String,
 }
 
 #[derive(Deserialize)]
@@ -98,6 +111,7 @@ struct StudySummary {
     name: String,
     hash: String,
     seed: u64,
+    checks: Vec<CheckedMeasure>,
     rows: Vec<DesignRow>,
 }
 
@@ -142,7 +156,7 @@ fn summary_in<T: DeserializeOwned>(folder: &Path, name: &str, known: u32) -> Res
 }
 
 fn run_side(folder: &Path, found: RunSummary) -> Result<Side> {
-    let RunSummary { scene, run, paths, measures, files } = found;
+    let RunSummary { scene, run, paths, measures, checks, files } = found;
     let SceneWords { name, hash, overrides } = scene;
     let seed = run.seed;
     let mut facts = format!("{name}, scene {hash}, seed {seed}, {paths} paths");
@@ -165,11 +179,13 @@ fn run_side(folder: &Path, found: RunSummary) -> Result<Side> {
         let table = MapTable::parse(file.trim_end_matches(".csv"), &text);
         maps.extend(table.map_err(|reason| Error::Usage(format!("{}: {reason}", path.display())))?);
     }
-    Ok(Side { name, facts, content: Content::Run(RunFiles { measures, maps }) })
+    let checks = checks.into_iter().map(|own| own.check.measure).collect();
+    Ok(Side { name, facts, checks, content: Content::Run(RunFiles { measures, maps }) })
 }
 
 fn study_side(found: StudySummary) -> Side {
-    let StudySummary { name, hash, seed, rows } = found;
+    let StudySummary { name, hash, seed, checks, rows } = found;
     let facts = format!("{name}, study {hash}, seed {seed}, {} designs", rows.len());
-    Side { name, facts, content: Content::Study(rows) }
+    let checks = checks.into_iter().map(|own| own.measure).collect();
+    Side { name, facts, checks, content: Content::Study(rows) }
 }

@@ -32,7 +32,7 @@ fn judged(a: Measure, b: Measure, limits: Limits) -> DiffRow {
 fn run(measures: &[(&str, Measure)], maps: Vec<MapTable>) -> Side {
     let measures = measures.iter().map(|(name, own)| ((*name).to_owned(), own.clone())).collect();
     let content = Content::Run(RunFiles { measures, maps });
-    Side { name: "rod".to_owned(), facts: "rod, seed 1".to_owned(), content }
+    Side { name: "rod".to_owned(), facts: "rod, seed 1".to_owned(), checks: Vec::new(), content }
 }
 
 fn study(designs: &[(usize, f64, f64)]) -> Side {
@@ -42,7 +42,7 @@ fn study(designs: &[(usize, f64, f64)]) -> Side {
         measures: [("exit.flux".to_owned(), measure(value, 0.1))].into_iter().collect(),
     };
     let content = Content::Study(designs.iter().map(design).collect());
-    Side { name: "lengths".to_owned(), facts: "lengths, seed 1".to_owned(), content }
+    Side { name: "lengths".to_owned(), facts: "lengths, seed 1".to_owned(), checks: Vec::new(), content }
 }
 
 fn wishes(only: &[&str]) -> DiffWishes {

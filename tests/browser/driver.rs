@@ -138,14 +138,6 @@ impl Open {
         self.call("Emulation.setTouchEmulationEnabled", json!({ "enabled": true }));
     }
 
-    /// Scrolls with a finger that starts on the middle of an element, CSS pixels.
-    pub(crate) fn scroll_by_finger(&self, element: &str, distance: f64) {
-        let [x, y] = self.place(element, [0.5, 0.5]);
-        let gesture =
-            json!({ "x": x, "y": y, "yDistance": distance, "gestureSourceType": "touch" });
-        self.call("Input.synthesizeScrollGesture", gesture);
-    }
-
     /// Moves a finger over an element from one place to another.
     pub(crate) fn stroke(&self, element: &str, from: [f64; 2], to: [f64; 2]) {
         const STEPS: u32 = 8;

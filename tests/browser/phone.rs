@@ -57,8 +57,8 @@ fn a_finger_scrolls_over_maps_and_draws_sections_when_asked_to() {
 
     page.place(&image, [0.5, 0.5]);
     let from = page.ask("scrollY").as_f64().unwrap();
-    page.scroll_by_finger(&image, -200.0);
-    page.expect(&format!("scrollY > {from} + 100"));
+    page.stroke(&image, [0.5, 0.9], [0.5, 0.1]);
+    page.expect(&format!("scrollY > {from} + 50"));
     assert_eq!(page.text(&section), before, "scrolling has drawn a section");
 
     let button = format!("{map}.querySelector('button.touch')");

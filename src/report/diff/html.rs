@@ -66,6 +66,9 @@ fn measures(rows: &[&DiffRow]) -> Vec<Block> {
         let remark = remark(row).trim_matches('*').to_owned();
         cells(row).into_iter().chain([remark]).collect()
     };
+    let is_single =
+        |row: &&DiffRow| [".cell.", ".ring."].iter().any(|part| row.measure().contains(part));
+    let (single, rows): (Vec<&DiffRow>, Vec<&DiffRow>) = rows.iter().copied().partition(is_single);
     let (shown, rest) = rows.split_at(rows.len().min(ROWS_SHOWN));
     let table = |rows: &[&DiffRow], folded: Option<String>| Block::Table {
         head: head.clone(),
@@ -73,8 +76,9 @@ fn measures(rows: &[&DiffRow]) -> Vec<Block> {
         folded,
     };
     let mut blocks = vec![table(shown, None)];
-    if !rest.is_empty() {
-        blocks.push(table(rest, Some(format!("{} more", rest.len()))));
+    let folded = [(rest, "more"), (&single[..], "single cells and rings")];
+    for (rows, what) in folded.into_iter().filter(|(rows, _)| !rows.is_empty()) {
+        blocks.push(table(rows, Some(format!("{} {what}", rows.len()))));
     }
     blocks
 }

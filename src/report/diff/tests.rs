@@ -42,7 +42,12 @@ fn study(designs: &[(usize, f64, f64)]) -> Side {
         measures: [("exit.flux".to_owned(), measure(value, 0.1))].into_iter().collect(),
     };
     let content = Content::Study(designs.iter().map(design).collect());
-    Side { name: "lengths".to_owned(), facts: "lengths, seed 1".to_owned(), checks: Vec::new(), content }
+    Side {
+        name: "lengths".to_owned(),
+        facts: "lengths, seed 1".to_owned(),
+        checks: Vec::new(),
+        content,
+    }
 }
 
 fn wishes(only: &[&str]) -> DiffWishes {

@@ -21,16 +21,16 @@ function axesSwitches(state) {
   return make("details", { open: "", class: "axes" }, make("summary", {}, `local axes of ${axes.length} faces and sensors`), legend);
 }
 
-function paintAxes(context, { data, view, colours, shownAxes }) {
+function paintAxes(context, { data, view, colours, shownAxes, letters }) {
   (data.axes ?? []).forEach((one, index) => {
     if (!shownAxes.has(index)) return;
     const [x, y] = project(one.at, view);
     const names = one.round ? ["C0", "C90", "pole"] : ["u", "v", "n"];
     context.globalAlpha = 1;
-    context.font = "600 12px system-ui, sans-serif";
+    context.font = `600 ${12 * letters}px system-ui, sans-serif`;
     names.forEach((name, k) => {
       const along = one.axes.slice(3 * k, 3 * k + 3);
-      const [dx, dy] = [0, 1].map((row) => AXIS_LENGTH * along.reduce((sum, part, i) => sum + part * view.rows[row][i], 0));
+      const [dx, dy] = [0, 1].map((row) => letters * AXIS_LENGTH * along.reduce((sum, part, i) => sum + part * view.rows[row][i], 0));
       context.lineWidth = 2;
       context.strokeStyle = colours[`--series-${[0, 1, 2][k]}`];
       context.fillStyle = context.strokeStyle;

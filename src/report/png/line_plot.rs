@@ -275,6 +275,10 @@ mod tests {
     use super::*;
     use crate::report::png::tests::Decoded;
 
+    fn axes_of(plot: &LinePlot) -> [Axis; 2] {
+        data_axes(plot, plot.y_scale)
+    }
+
     fn plot(y_scale: Scale, form: SeriesForm, points: &[[f64; 3]]) -> LinePlot {
         let points =
             points.iter().map(|&[x, y, std_error]| SeriesPoint { x, y, std_error }).collect();
@@ -317,28 +321,25 @@ mod tests {
             outline(&plot.series[0]),
             [[-0.5, 1.0], [0.5, 1.0], [0.5, 2.0], [2.0, 2.0], [2.0, 4.0], [4.0, 4.0]]
         );
-        let [x, _] = data_axes(&plot);
+        let [x, _] = axes_of(&plot);
         assert_eq!((x.min(), x.max()), (-0.5, 4.0));
     }
 
     #[test]
     fn the_frame_holds_the_error_bars_and_begins_at_zero_where_values_come_near_it() {
         let axes =
-            data_axes(&plot(Scale::Linear, SeriesForm::Line, &[[0.0, 2.0, 0.5], [1.0, 8.0, 2.0]]));
+            axes_of(&plot(Scale::Linear, SeriesForm::Line, &[[0.0, 2.0, 0.5], [1.0, 8.0, 2.0]]));
         assert_eq!(axes[1].min(), 0.0);
         assert!(axes[1].max() > 10.0 && axes[1].max() < 11.0);
-        let axes = data_axes(&plot(
-            Scale::Linear,
-            SeriesForm::Line,
-            &[[0.0, 98.0, 0.5], [1.0, 99.0, 0.5]],
-        ));
+        let axes =
+            axes_of(&plot(Scale::Linear, SeriesForm::Line, &[[0.0, 98.0, 0.5], [1.0, 99.0, 0.5]]));
         assert!(axes[1].min() > 97.0 && axes[1].min() < 97.5);
     }
 
     #[test]
     fn zeros_lie_below_a_logarithmic_frame() {
         let points = [[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.01, 0.0]];
-        let axes = data_axes(&plot(Scale::Log, SeriesForm::Steps, &points));
+        let axes = axes_of(&plot(Scale::Log, SeriesForm::Steps, &points));
         assert!(axes[1].min() > 0.005 && axes[1].min() < 0.01);
         assert!(axes[1].fraction(0.0) < -1.0);
     }

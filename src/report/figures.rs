@@ -75,7 +75,7 @@ pub(crate) fn directions_map(table: &IntensityTable) -> HeatMap {
         x_range: ends(&table.c_deg),
         y_range: ends(&table.gamma_deg),
         axes: Scale::Linear,
-        values: table.values.clone(),
+        values: table.values.mapv(not_below_zero),
         unit: table.unit.clone(),
         scale: Scale::Linear,
         colours: ColourMap::Sequential,

@@ -26,6 +26,7 @@ pub(crate) fn html(diff: &Diff) -> Result<String> {
     parts.push(Part { title: "What was found".into(), blocks: vec![Block::List { items }] });
     let page = Page {
         title: title(diff),
+        masthead: None,
         description: Some(format!("A: {}\nB: {}", diff.facts[0], diff.facts[1])),
         verdict: verdict(diff),
         standing: if diff.is_within() { Standing::Good } else { Standing::Bad },

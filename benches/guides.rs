@@ -7,8 +7,9 @@ use lumiduct::optics::{Bsdf, Medium};
 use lumiduct::scene::mesh::Mesh;
 use lumiduct::scene::shape::{ChartRect, Cylinder, Flat, Region, Shape};
 use lumiduct::scene::{
-    Builder, Counts, Emission, EmitSide, Emitter, FaceId, FaceSpec, Goniometer, Grid, Owner, Piece,
-    Place, Scene, Seeing, Sensor, SensorKind, Sides, Solid, SolidId, Source, Start, SurfaceSensor,
+    Builder, Counts, Emission, EmitSide, Emitter, FaceId, FaceSpec, Goniometer, Grid, Owner,
+    Passage, Piece, Place, Scene, Seeing, Sensor, SensorKind, Sides, Solid, SolidId, Source, Start,
+    SurfaceSensor,
 };
 use lumiduct::units::FluxUnit;
 use std::f64::consts::TAU;
@@ -260,6 +261,7 @@ fn add_exit_sensor(builder: &mut Builder, face: FaceId, place: Place, half: f64)
             place,
             counts,
             sides,
+            passage: Passage::Every,
             grid,
             areas,
             covered,

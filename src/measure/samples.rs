@@ -4,8 +4,9 @@ use crate::math::Frame;
 use crate::optics::{Bsdf, Medium};
 use crate::scene::shape::{ChartRect, Flat, Region, Shape};
 use crate::scene::{
-    Builder, Counts, Emission, EmitSide, Emitter, FaceSpec, Goniometer, Grid, Owner, Piece, Pixels,
-    Place, Scene, Seeing, Sensor, SensorKind, Sides, Source, Start, SurfaceSensor, Views,
+    Builder, Counts, Emission, EmitSide, Emitter, FaceSpec, Goniometer, Grid, Owner, Passage,
+    Piece, Pixels, Place, Scene, Seeing, Sensor, SensorKind, Sides, Source, Start, SurfaceSensor,
+    Views,
 };
 use crate::transport::{Findings, Layout, Readings};
 use crate::units::FluxUnit;
@@ -107,6 +108,7 @@ fn surface(grid: Grid, area_in: impl Fn(ChartRect) -> f64) -> SurfaceSensor {
         place: Place::Port,
         counts: Counts::Incident,
         sides: Sides::Front,
+        passage: Passage::Every,
         grid,
         areas,
         seeing: Seeing::All,

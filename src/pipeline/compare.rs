@@ -56,6 +56,16 @@ impl Method {
         Self::ALL.into_iter().find(|method| method.name() == name)
     }
 
+    /// Whether it can tell the first passage of a path through a sensor from later ones.
+    fn knows_first_passages(self) -> bool {
+        match self {
+            Self::Run(Request::Auto | Request::Forward | Request::Backward | Request::Mix)
+            | Self::Baseline(Baseline::Metropolis) => true,
+            Self::Run(Request::Gather | Request::Mis)
+            | Self::Baseline(Baseline::Sppm | Baseline::Whitted) => false,
+        }
+    }
+
     /// Whether its gather paths have to meet the sources.
     fn meets_sources(self) -> bool {
         match self {
@@ -64,6 +74,24 @@ impl Method {
             Self::Baseline(Baseline::Sppm | Baseline::Whitted | Baseline::Metropolis) => true,
         }
     }
+}
+
+/// Refuses methods that know no first passages where the sensor counts nothing else.
+fn expect_passages(job: &Job, sensor: SensorId, methods: &[Method]) -> Result<()> {
+    let sensor = &job.scene.sensors[sensor.index()];
+    let unable: Vec<&str> = methods
+        .iter()
+        .filter(|method| !method.knows_first_passages())
+        .map(|method| method.name())
+        .collect();
+    if unable.is_empty() || !sensor.counts_first_passage() {
+        return Ok(());
+    }
+    Err(Error::Usage(format!(
+        "--estimators: {} cannot count first passages, as sensor `{}` does: leave them out, or set passage = \"every\"",
+        unable.join(", "),
+        sensor.name
+    )))
 }
 
 /// What is to be compared, and for how long.
@@ -114,6 +142,7 @@ pub fn compare(
     let run_time = wishes.time.div_f64(f64::from(wishes.repetitions));
     let bench = Bench { id, job: &job, interrupt, run_time };
     expect_able(&job, &wishes.methods)?;
+    expect_passages(&job, id, &wishes.methods)?;
     let known = truth::known(&bench, &wishes.truth)?;
     let folder = Folder::open(&dir_of(scene, output), output.existing, None)?;
     let truth = match known {

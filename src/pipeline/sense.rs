@@ -25,6 +25,7 @@ pub(super) fn expect_sense(job: &Job) -> Result<Vec<Diagnostic>> {
     expect_light(job, &mut problems);
     expect_visible_sources(job, &mut problems);
     expect_discrete_directions(job, &mut problems);
+    expect_passages(job, &mut problems);
     expect_measures(&job.scene, target.chain(checks), &mut problems);
     expect_sight(job, &mut problems);
     problems.finish(&job.places)
@@ -120,6 +121,29 @@ fn expect_visible_sources(job: &Job, problems: &mut Problems) {
                 "use `forward`, `mix` or `auto`, or give the source an area and a cone of directions",
             );
         }
+    }
+}
+
+/// Refuses estimators that gather photons for a sensor which counts the first passage of each alone.
+fn expect_passages(job: &Job, problems: &mut Problems) {
+    for (index, sensor) in job.scene.sensors.iter().enumerate() {
+        let request = job.run.request(index);
+        match request {
+            Request::Gather | Request::Mis if sensor.counts_first_passage() => {}
+            Request::Auto
+            | Request::Forward
+            | Request::Backward
+            | Request::Mix
+            | Request::Gather
+            | Request::Mis => continue,
+        }
+        let (name, wanted) = (&sensor.name, request.name());
+        let message = format!(
+            "`{wanted}` cannot count first passages: the photons it gathers may have passed `{name}` before"
+        );
+        problems
+            .error(&Key::of(&["sensors", name, "passage"]), message)
+            .hint("use `auto`, `forward`, `backward` or `mix`, or passage = \"every\"");
     }
 }
 

@@ -44,7 +44,7 @@ pub use mesh::mesh_report;
 pub use recipe::Recipe;
 pub use record::{
     CheckResult, Outcome, Report, RunFacts, SceneFacts, TargetFacts, asked, leak_places,
-    remark_on_paths, remarks, settled, wishes,
+    remark_on_paths, remarks, remarks_on_passages, settled, wishes,
 };
 pub use section::{CutPlane, SectionView, scene_picture};
 pub use terminal::terminal;

@@ -6,6 +6,7 @@ use crate::number::{format_exact, format_percent, format_with_error};
 use crate::report::by_light::remark_on_weathers;
 use crate::report::{Drawing, Inventory};
 use crate::scene::plan::{Check, GatherPlan, Request, Schedule, StopRules, Target};
+use crate::scene::{Scene, Seeing, Sensor, SensorKind};
 use crate::transport::{GROUPS, GatherSettings, Leak};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -242,6 +243,38 @@ pub fn remarks(measures: &Measures) -> Vec<String> {
     remarks.extend(remark_on_weathers(measures));
     remarks.extend(measures.gathered.iter().filter_map(remark_on_gathering));
     remarks
+}
+
+/// Errors by which more light than was emitted, or than entered, has to be counted for a remark, 1.
+const CLEARLY: f64 = 4.0;
+/// By how much it has to be more in any case, 1: rounding of sums.
+const ROUNDING: f64 = 1e-9;
+
+/// Remarks on sensors that count more light than there is, as it passes them more than once.
+pub fn remarks_on_passages(scene: &Scene, measures: &Measures) -> Vec<String> {
+    let remark = |sensor: &Sensor| {
+        let name = &sensor.name;
+        let is_above = |what: &&str| {
+            measures.values.get(&format!("{name}.{what}")).is_some_and(|share| {
+                share.value > 1.0 + ROUNDING && share.value - 1.0 > CLEARLY * share.total_error()
+            })
+        };
+        let what = ["efficiency", "transmission"].into_iter().find(is_above)?;
+        let way_out = match &sensor.kind {
+            SensorKind::Surface(surface)
+                if matches!(surface.seeing, Seeing::All) && sensor.aim.is_empty() =>
+            {
+                format!("; to count each path once, write passage = \"first\" in sensors.{name}")
+            }
+            SensorKind::Surface(_) | SensorKind::Goniometer(_) => String::new(),
+        };
+        let value = &measures.values[&format!("{name}.{what}")];
+        Some(format!(
+            "the {what} of sensor `{name}` is {}, above 1: light passes it more than once and counts each time{way_out}",
+            format_with_error(value.value, value.std_error)
+        ))
+    };
+    scene.sensors.iter().filter_map(remark).collect()
 }
 
 /// A remark where more than next to nothing of the gather paths of a sensor was lost.

@@ -150,6 +150,8 @@ fn waiting(seconds: f64) -> String {
         format_value((time * digits).round() / digits)
     };
     match seconds {
+        // What has no noise is known at once.
+        0.0 => "0 s".to_owned(),
         time if time < MINUTE => format!("{} s", two_digits(time)),
         time if time < HOUR => format!("{} min", two_digits(time / MINUTE)),
         time if time < DAY => "hours".to_owned(),
@@ -343,6 +345,7 @@ mod tests {
 
     #[test]
     fn times_beyond_an_hour_are_words() {
+        assert_eq!(waiting(0.0), "0 s");
         assert_eq!(waiting(0.0312), "0.031 s");
         assert_eq!(waiting(59.0), "59 s");
         assert_eq!(waiting(754.0), "13 min");

@@ -58,7 +58,7 @@ pub use pixels::Pixels;
 pub use ray::Ray;
 pub use section::Outline;
 pub use sensor::{
-    Counts, Goniometer, Place, Seeing, Sensor, SensorKind, Sides, SurfaceSensor, Views,
+    Counts, Goniometer, Passage, Place, Seeing, Sensor, SensorKind, Sides, SurfaceSensor, Views,
 };
 pub use sky::Sky;
 pub use source::{EmitSide, Emitted, Emitter, Source, Start};

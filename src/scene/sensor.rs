@@ -29,6 +29,15 @@ pub enum SensorKind {
 }
 
 impl Sensor {
+    /// Whether a path counts on its first passage alone.
+    #[inline]
+    pub fn counts_first_passage(&self) -> bool {
+        match &self.kind {
+            SensorKind::Surface(surface) => surface.passage == Passage::First,
+            SensorKind::Goniometer(_) => false,
+        }
+    }
+
     /// Number of values: cells, times views or pixels for a luminance sensor.
     pub fn cells(&self) -> usize {
         match &self.kind {
@@ -49,6 +58,8 @@ pub struct SurfaceSensor {
     pub counts: Counts,
     /// On which sides.
     pub sides: Sides,
+    /// Which of the passages of a path count.
+    pub passage: Passage,
     /// The cells, in the chart of the faces.
     pub grid: Grid,
     /// Area of each cell, mm².
@@ -59,6 +70,15 @@ pub struct SurfaceSensor {
     pub seeing: Seeing,
     /// For drawings and files: middle and axes of a flat sensor.
     pub frame: Option<Frame>,
+}
+
+/// Which passages of a path through a sensor count.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Passage {
+    /// All of them.
+    Every,
+    /// The first one: flux is that of light which has passed at all.
+    First,
 }
 
 impl SurfaceSensor {

@@ -4,8 +4,11 @@
 //! the light decides at every visible interface whether it goes on.
 
 use crate::rng::{Numbers, Sampler};
-use crate::scene::shape::{Crossing, Start};
-use crate::scene::{Arrival, Begins, Owner, Scene, SensorId, Visibility};
+use crate::scene::shape::{Crossing, Start, Toward};
+use crate::scene::{
+    Arrival, Begins, Counts, Owner, Passage, Place, Scene, SensorId, SensorKind, SurfaceSensor,
+    Visibility,
+};
 use crate::transport::emitters::{Emitters, Met, SegmentStart};
 use crate::transport::stop::Pace;
 use crate::transport::{
@@ -73,8 +76,7 @@ pub(crate) fn follow(
         Begins::BeforeFace => (Stage::BeforeFace, gathering.bounce_limit.saturating_add(1)),
         Begins::OnSensor => (Stage::First, gathering.bounce_limit),
     };
-    let before_aim = SmallVec::new();
-    let mut follower = Follower { gathering, collector, stage, before_aim, segments: 0 };
+    let mut follower = Follower::new(gathering, collector, stage);
     walk(gathering.scene, path, limit, sampler, &mut follower);
     follower.segments
 }
@@ -86,8 +88,7 @@ pub(crate) fn follow_on(
     sampler: &mut Sampler<impl Numbers>,
     collector: &mut impl Collector,
 ) -> u64 {
-    let (stage, before_aim) = (Stage::Beyond, SmallVec::new());
-    let mut follower = Follower { gathering, collector, stage, before_aim, segments: 0 };
+    let mut follower = Follower::new(gathering, collector, Stage::Beyond);
     walk(gathering.scene, path, gathering.bounce_limit, sampler, &mut follower);
     follower.segments
 }
@@ -110,9 +111,75 @@ struct Follower<'a, 's, 'c, C> {
     /// Emission met at the end of the first segment: it counts if the segment ends at the aim.
     before_aim: SmallVec<[Met; 2]>,
     segments: u64,
+    /// The sensor, if light counts on its first passage alone.
+    first_passage: Option<&'s SurfaceSensor>,
+    /// Whether the last interface was the sensor's own face, from which the path begins.
+    at_own_face: bool,
 }
 
-impl<C: Collector> Follower<'_, '_, '_, C> {
+impl<'a, 's, 'c, C: Collector> Follower<'a, 's, 'c, C> {
+    fn new(gathering: Gathering<'a, 's>, collector: &'c mut C, stage: Stage) -> Self {
+        let first_passage = match &gathering.scene.sensors[gathering.sensor.index()].kind {
+            SensorKind::Surface(surface) if surface.passage == Passage::First => Some(surface),
+            SensorKind::Surface(_) | SensorKind::Goniometer(_) => None,
+        };
+        Self {
+            gathering,
+            collector,
+            stage,
+            before_aim: SmallVec::new(),
+            segments: 0,
+            first_passage,
+            at_own_face: false,
+        }
+    }
+
+    /// Travels along a segment as far as the light of it counts; a break ends the path where the light has passed the
+    /// sensor before.
+    fn travel_counted(&mut self, path: &Path, segment: &Segment<'_>) -> ControlFlow<()> {
+        let Some(length) = self.passed_at(segment) else {
+            self.travel(path, segment);
+            return ControlFlow::Continue(());
+        };
+        self.travel(path, &Segment { length, ..*segment });
+        ControlFlow::Break(())
+    }
+
+    /// How far along a segment, mm, its light has passed the sensor before, as photons would have been counted: at the end of
+    /// a segment of theirs, not at its start.
+    fn passed_at(&self, segment: &Segment<'_>) -> Option<f64> {
+        let sensor = self.first_passage.filter(|sensor| sensor.place == Place::Port)?;
+        let Gathering { scene, .. } = self.gathering;
+        let tolerance = scene.tolerance;
+        // The first segment starts on the sensor.
+        let least = if self.segments == 1 { tolerance } else { -tolerance };
+        let mut nearest: Option<f64> = None;
+        for patch in sensor.faces.iter().flat_map(|&face| scene.face_patches(face)) {
+            patch.crossings(segment.ray, Start::Elsewhere, |Crossing { t, toward }| {
+                let is_within = t > least && t < segment.length - tolerance;
+                if is_within && sensor.sides.include(sensor.counts, toward.opposite()) {
+                    nearest = Some(nearest.map_or(t, |other| other.min(t)));
+                }
+            });
+        }
+        // What shines from the place of the sensor has passed it.
+        nearest.map(|t| (t - 2.0 * tolerance).max(0.0))
+    }
+
+    /// Whether the light that a path brings from an interface has passed the sensor there before.
+    fn has_passed(&self, vertex: &Vertex<'_>, departure: &Departure) -> bool {
+        let Some(sensor) = self.first_passage.filter(|_| !self.at_own_face) else { return false };
+        let light = match sensor.counts {
+            Counts::Incident => -departure.dir,
+            Counts::Leaving => -vertex.dir,
+        };
+        sensor.place == Place::Face
+            && vertex.hits.all().filter(|hit| sensor.faces.contains(&hit.face)).any(|hit| {
+                let normal = self.gathering.scene.normal(hit.prim, vertex.point);
+                sensor.sides.include(sensor.counts, Toward::of(light, normal))
+            })
+    }
+
     fn travel(&mut self, path: &Path, segment: &Segment<'_>) {
         let Gathering { scene, emitters, sensor, .. } = self.gathering;
         match self.stage {
@@ -158,6 +225,7 @@ impl<C: Collector> Follower<'_, '_, '_, C> {
                 self.collector.meet(path, met);
             }
         }
+        self.at_own_face = self.stage == Stage::BeforeFace;
         self.stage = Stage::Beyond;
         match vertex.interface.visibility {
             Visibility::Visible => self.collector.arrive(path, vertex),
@@ -187,11 +255,14 @@ impl<C: Collector> Visitor for Follower<'_, '_, '_, C> {
         match event {
             Event::Travel(segment) => {
                 self.segments += 1;
-                self.travel(path, segment);
+                self.travel_counted(path, segment)?;
                 self.gathering.pace.map_or(ControlFlow::Continue(()), |pace| pace.spend(1))
             }
             Event::Arrive(vertex) => self.arrive(path, vertex),
             Event::Collide(collision) => self.collide(path, collision),
+            Event::Depart(vertex, departure) if self.has_passed(vertex, departure) => {
+                ControlFlow::Break(())
+            }
             Event::Depart(vertex, departure) => self.collector.depart(path, vertex, departure),
             Event::Cut(throughput) => {
                 self.collector.lose(throughput, Loss::Cut);

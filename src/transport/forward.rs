@@ -19,6 +19,7 @@ use crate::transport::watch::Watch;
 use crate::transport::{
     Departure, Event, Layout, Leak, Path, Readings, Segment, Vertex, Visitor, walk,
 };
+use smallvec::SmallVec;
 use std::ops::ControlFlow;
 use surfaces::Light;
 
@@ -132,6 +133,10 @@ struct Counter<'r, 's, W> {
     travel_start: TravelStart,
     trail: Trail,
     last_left: Option<FaceId>,
+    /// Sensors of first passages that the photon has passed.
+    passed: SmallVec<[SensorId; 2]>,
+    /// Those by whose entry port it has entered.
+    entered: SmallVec<[SensorId; 2]>,
 }
 
 /// Where a straight piece starts.
@@ -162,6 +167,8 @@ impl<'r, 's, W: PhotonWatcher> Counter<'r, 's, W> {
             travel_start: TravelStart::Source,
             trail: Trail::new(),
             last_left: None,
+            passed: SmallVec::new(),
+            entered: SmallVec::new(),
         }
     }
 
@@ -180,6 +187,8 @@ impl<'r, 's, W: PhotonWatcher> Counter<'r, 's, W> {
         self.travel_start = TravelStart::Source;
         self.trail.clear();
         self.last_left = None;
+        self.passed.clear();
+        self.entered.clear();
         self.add(self.run.layout.emitted(source), 1.0);
         let shape = emitted.shape;
         let path = Path::emitted(scene, source, emitted);

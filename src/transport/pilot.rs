@@ -153,7 +153,10 @@ fn choices(
     let of_sensor = |sensor: &SensorId| {
         let unbiased = [&forward, &backward, &mix].map(|tried| tried.get(sensor.index()));
         let unbiased: Vec<&Tried> = unbiased.into_iter().flatten().collect();
-        let gathered = gather.get(sensor.index()).map(|gathered| Trial {
+        // Photons do not know at a record which sensors they have passed.
+        let counts_first = scene.sensors[sensor.index()].counts_first_passage();
+        let gathered = gather.get(sensor.index()).filter(|_| !counts_first);
+        let gathered = gathered.map(|gathered| Trial {
             objection: objection(gathered, &unbiased, target.unwrap_or(USUAL_TARGET)),
             ..gathered.tried.trial.clone()
         });

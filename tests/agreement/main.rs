@@ -17,6 +17,7 @@ mod guides;
 mod laws;
 mod merge;
 mod mix;
+mod passages;
 mod patterns;
 mod reliefs;
 mod rims;

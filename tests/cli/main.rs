@@ -7,6 +7,7 @@ mod batches;
 mod commands;
 mod compare;
 mod diffs;
+mod light;
 mod pages;
 mod parts;
 mod refusals;

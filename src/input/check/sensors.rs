@@ -4,7 +4,7 @@ use crate::input::check::Scene;
 use crate::input::keys::Key;
 use crate::input::problems::Problems;
 use crate::input::spec::sensor::{
-    GoniometerSpec, ImageSpec, LuminanceSpec, PlaneSpec, SensorKind, SensorSpec,
+    GoniometerSpec, ImageSpec, LuminanceSpec, PassageSpec, PlaneSpec, SensorKind, SensorSpec,
 };
 
 /// Most cells of a sensor.
@@ -14,6 +14,7 @@ pub(crate) fn check(scene: Scene<'_>, problems: &mut Problems) {
     for (name, sensor) in &scene.spec.sensors {
         let key = Key::of(&["sensors", name]);
         check_place(&key, sensor, problems);
+        check_passage(&key, sensor, problems);
         match sensor.kind() {
             Some(SensorKind::Plane(plane)) => {
                 let area =
@@ -68,6 +69,27 @@ fn check_place(key: &Key, sensor: &SensorSpec, problems: &mut Problems) {
         problems
             .error(&key.field("counts"), "is only for a sensor `on` a face")
             .hint("add `on` or remove `counts`");
+    }
+}
+
+/// First passages are known of a surface that light meets from anywhere.
+fn check_passage(key: &Key, sensor: &SensorSpec, problems: &mut Problems) {
+    if sensor.passage == PassageSpec::Every {
+        return;
+    }
+    let key = key.field("passage");
+    match sensor.kind() {
+        Some(SensorKind::Plane(_)) if sensor.aim.is_some() => {
+            let message = "a sensor with an `aim` counts every passage";
+            problems.error(&key, message).hint("remove `passage` or `aim`");
+        }
+        Some(SensorKind::Plane(_)) | None => {}
+        Some(
+            kind @ (SensorKind::Goniometer(_) | SensorKind::Luminance(_) | SensorKind::Image(_)),
+        ) => {
+            let message = format!("\"first\" is for a `plane` only, found with `{}`", kind.name());
+            problems.error(&key, message).hint("remove `passage`");
+        }
     }
 }
 

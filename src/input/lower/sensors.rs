@@ -5,15 +5,15 @@ use crate::input::lower::Context;
 use crate::input::lower::place::Facing;
 use crate::input::lower::surfaces::tilted;
 use crate::input::spec::sensor::{
-    CountsSpec, DirectionSpec, GoniometerSpec, ImageSpec, LuminanceSpec, PlaneSpec,
+    CountsSpec, DirectionSpec, GoniometerSpec, ImageSpec, LuminanceSpec, PassageSpec, PlaneSpec,
     SensorKind as KindSpec, SensorSide, SensorSpec,
 };
 use crate::input::spec::sweep::{CircleSpec, RectangleSpec};
 use crate::math::Frame;
 use crate::scene::shape::{ChartRect, Flat, Region, Shape};
 use crate::scene::{
-    Counts, FaceId, FaceSpec, Goniometer, Grid, Owner, Piece, Pixels, Place, Scene, Seeing, Sensor,
-    SensorKind, Sides, SurfaceSensor, Views,
+    Counts, FaceId, FaceSpec, Goniometer, Grid, Owner, Passage, Piece, Pixels, Place, Scene,
+    Seeing, Sensor, SensorKind, Sides, SurfaceSensor, Views,
 };
 use glam::DVec2;
 use std::f64::consts::PI;
@@ -175,7 +175,22 @@ impl Context<'_> {
         let areas = grid.cell_areas(area_in);
         let covered = grid.cell_cover(&areas, area_in);
         let seeing = Seeing::All;
-        Some(SurfaceSensor { faces, place, counts, sides, grid, areas, covered, seeing, frame })
+        let passage = match spec.passage {
+            PassageSpec::Every => Passage::Every,
+            PassageSpec::First => Passage::First,
+        };
+        Some(SurfaceSensor {
+            faces,
+            place,
+            counts,
+            sides,
+            passage,
+            grid,
+            areas,
+            covered,
+            seeing,
+            frame,
+        })
     }
 
     fn on_faces(&mut self, on: &str, key: &Key) -> Option<(Vec<FaceId>, Place)> {

@@ -42,6 +42,10 @@ pub struct SensorSpec {
     pub absorbing: bool,
     /// How its flux is estimated. Omitted: as `run.estimator` or `--estimator` says for all sensors; this key goes over both.
     pub estimator: Option<SensorEstimatorSpec>,
+    /// Which passages count of light that passes the sensor more than once: `every`, or the `first`, also through the port
+    /// `entering`. Only for a `plane` without `aim`; photons and paths of `backward` and `mix` know it.
+    #[serde(default)]
+    pub passage: PassageSpec,
     /// The port, as `NAME.FACE`, against whose entering flux `transmission` is counted.
     pub entering: Option<String>,
 }
@@ -171,6 +175,17 @@ pub enum CountsSpec {
     Leaving,
     /// Light that arrives at the face, whatever becomes of it.
     Incident,
+}
+
+/// Which passages of light through a sensor count.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum PassageSpec {
+    /// Each one: the sensor reads the illuminance that is there.
+    #[default]
+    Every,
+    /// The first of each path: light that comes back does not count again.
+    First,
 }
 
 /// Which side of a sensor counts.

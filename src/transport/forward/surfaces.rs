@@ -4,7 +4,7 @@
 
 use crate::optics::Side;
 use crate::scene::shape::{Crossing, Start, Toward};
-use crate::scene::{Counts, MediumId, Owner, PrimHit, Seeing, SensorId, SurfaceSensor};
+use crate::scene::{Counts, MediumId, Owner, Passage, PrimHit, Seeing, SensorId, SurfaceSensor};
 use crate::transport::forward::{Counter, Detected, PhotonWatcher, TravelStart};
 use crate::transport::watch::OnPort;
 use crate::transport::{Path, Segment, Vertex};
@@ -54,9 +54,7 @@ impl<'s, W: PhotonWatcher> Counter<'_, 's, W> {
                 patch.crossings(segment.ray, Start::Elsewhere, |Crossing { t, toward }| {
                     if toward == Toward::Back && self.within(segment, t) {
                         let throughput = self.arriving_at(path, segment, t);
-                        for id in &run.watch.entries[face.index()] {
-                            self.add(run.layout.entering(*id, self.source), throughput);
-                        }
+                        self.enter(face.index(), throughput);
                     }
                 });
             }
@@ -165,9 +163,7 @@ impl<'s, W: PhotonWatcher> Counter<'_, 's, W> {
         let run = self.run;
         let face = hit.face.index();
         if side == Some(Side::Transmitted) && hit.toward == Toward::Back {
-            for id in &run.watch.entries[face] {
-                self.add(run.layout.entering(*id, self.source), throughput);
-            }
+            self.enter(face, throughput);
         }
         for &(id, sensor) in
             run.watch.faces[face].iter().filter(|(_, sensor)| sensor.counts == counts)
@@ -188,6 +184,33 @@ impl<'s, W: PhotonWatcher> Counter<'_, 's, W> {
         }
     }
 
+    /// Counts light that enters through a face, for the sensors whose entry that is.
+    fn enter(&mut self, face: usize, throughput: f64) {
+        let run = self.run;
+        for &id in &run.watch.entries[face] {
+            if run.scene.sensors[id.index()].counts_first_passage() {
+                if self.entered.contains(&id) {
+                    continue;
+                }
+                self.entered.push(id);
+            }
+            self.add(run.layout.entering(id, self.source), throughput);
+        }
+    }
+
+    /// Whether a passage through a sensor counts: where only first ones do, it is remembered.
+    #[inline]
+    fn passes(&mut self, id: SensorId, passage: Passage) -> bool {
+        match passage {
+            Passage::Every => true,
+            Passage::First if self.passed.contains(&id) => false,
+            Passage::First => {
+                self.passed.push(id);
+                true
+            }
+        }
+    }
+
     /// Counts light on a cell of a surface sensor, and in the views or the pixel that take it in.
     #[inline]
     fn count_on_surface(
@@ -204,6 +227,9 @@ impl<'s, W: PhotonWatcher> Counter<'_, 's, W> {
             return;
         }
         let Some(cell) = sensor.grid.cell(uv) else { return };
+        if !self.passes(id, sensor.passage) {
+            return;
+        }
         // Away from the face: back along arriving light, along leaving light.
         let away = if seen.counts == Counts::Incident { -seen.dir } else { seen.dir };
         let cells = sensor.grid.cells();

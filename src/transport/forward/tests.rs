@@ -5,8 +5,8 @@ use crate::optics::{Bsdf, Medium};
 use crate::scene::plan::{GatherPlan, Request, RunPlan, StopRules};
 use crate::scene::shape::{Cylinder, Flat, Region, Shape};
 use crate::scene::{
-    Builder, Counts, Emission, EmitSide, Emitter, FaceSpec, Grid, Owner, Piece, Place, Scene,
-    Seeing, Sensor, SensorId, SensorKind, Sides, Source, SourceId, Start, SurfaceSensor,
+    Builder, Counts, Emission, EmitSide, Emitter, FaceSpec, Grid, Owner, Passage, Piece, Place,
+    Scene, Seeing, Sensor, SensorId, SensorKind, Sides, Source, SourceId, Start, SurfaceSensor,
 };
 use crate::tally::sigmas;
 use crate::transport::forward::{Detected, Forward, PhotonWatcher};
@@ -60,6 +60,7 @@ fn mirror_tube(reflectance: f64, length: f64) -> Scene {
             place: Place::Port,
             counts: Counts::Incident,
             sides: Sides::Back,
+            passage: Passage::Every,
             grid,
             areas,
             covered,

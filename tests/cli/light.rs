@@ -1,0 +1,168 @@
+//! Light groups, dark sources, weathers, and light that comes back: what is said of them.
+
+use crate::Place;
+use std::fs;
+
+/// Two lamps over two ports, each with a wall of its own.
+const LAMPS: &str = r#"
+lumiduct = 1
+title = "Two lamps"
+[sources]
+left.disk = { radius_mm = 1, flux_lm = 2 }
+right.disk = { radius_mm = 1, flux_lm = 1, at = { position_mm = [10, 0, 0] } }
+[sensors]
+below_left = { plane = { disk = { radius_mm = 2 } }, at = { position_mm = [0, 0, 3] }, side = "back" }
+below_right = { plane = { disk = { radius_mm = 2 } }, at = { position_mm = [10, 0, 3] }, side = "back" }
+[run]
+paths = 20_000
+"#;
+
+/// A tube under an overcast sky, a clear one and its sun.
+const WEATHERS: &str = r#"
+lumiduct = 1
+title = "Three lights, two weathers"
+[finishes.mirror]
+specular = { reflectance = 0.9 }
+[sheets.duct.tube]
+profile = { circle = { radius_mm = 5 } }
+path = [{ straight_mm = 20 }]
+finish = "mirror"
+at = { axis = [0, 0, -1] }
+[sources]
+overcast.sky = { model = "overcast", horizontal_illuminance_lx = 10_000, aim = "duct.entry" }
+clear.sky = { model = "clear", horizontal_illuminance_lx = 12_000, aim = "duct.entry", elevation_deg = 60 }
+sun.sun = { illuminance_lx = 85_000, aim = "duct.entry", elevation_deg = 60 }
+[sensors]
+exit = { plane = { cells = [2, 2] }, on = "duct.exit", counts = "leaving", entering = "duct.entry" }
+[run]
+paths = 20_000
+estimator = "forward"
+"#;
+
+fn page(place: &Place, name: &str) -> String {
+    fs::read_to_string(place.path(&format!("reports/{name}/report.md"))).unwrap()
+}
+
+#[test]
+fn each_lamp_has_its_efficiency_and_its_crosstalk() {
+    let place = Place::new();
+    fs::write(place.path("lamps.toml"), LAMPS).unwrap();
+    let said = place.good("run lamps.toml");
+    assert!(said.contains("    from left: efficiency 0."), "{said}");
+    assert!(said.contains(" of the light on below_right\n"), "{said}");
+    let page = page(&place, "lamps");
+    assert!(page.contains("| sensor |  | left | right |"), "{page}");
+    assert!(page.contains("| below_left | efficiency | 0."), "{page}");
+    assert!(page.contains("| below_right | share | 0."), "{page}");
+    let measures = &place.summary("reports/lamps")["measures"];
+    let value = |name: &str| measures[name]["value"].as_f64().unwrap();
+    let shares = value("below_left.share.from.left") + value("below_left.share.from.right");
+    assert!((shares - 1.0).abs() < 1e-9, "{shares}");
+    assert!(value("below_left.share.from.right") < 0.1);
+}
+
+#[test]
+fn a_lamp_that_is_off_is_dark_and_a_scene_without_light_is_refused() {
+    let place = Place::new();
+    fs::write(place.path("lamps.toml"), LAMPS).unwrap();
+    for dark in ["sources.right.disk.enabled=false", "sources.right.disk.flux_lm=0"] {
+        for estimator in ["forward", "backward", "mix", "gather", "mis", "auto"] {
+            let out = format!("{estimator}{}", dark.len());
+            place.good(&format!(
+                "run lamps.toml -D {dark} --estimator {estimator} -o reports/{out} -q"
+            ));
+            let summary = place.summary(&format!("reports/{out}"));
+            let measures = &summary["measures"];
+            assert_eq!(measures["below_left.flux.from.right"]["value"], 0.0, "{out}");
+            assert_eq!(measures["below_left.flux.from.right"]["std_error"], 0.0, "{out}");
+            let flux = measures["below_left.flux.from.left"]["value"].as_f64().unwrap();
+            assert!(flux > 0.1 && flux < 2.0, "{out}: {flux}");
+            let efficiency = measures["below_left.efficiency"]["value"].as_f64().unwrap();
+            assert!((efficiency - 0.5 * flux).abs() < 1e-12, "{out}: {efficiency}");
+            let pages = ["report.md", "report.html"];
+            for page in pages.map(|name| place.path(&format!("reports/{out}/{name}"))) {
+                assert!(!fs::read_to_string(page).unwrap().contains("NaN"), "{out}");
+            }
+        }
+    }
+    let both = "run lamps.toml -D sources.left.disk.flux_lm=0 -D sources.right.disk.enabled=false";
+    let said = place.bad(2, both);
+    assert!(said.contains("lamps.toml:4: `sources`: nothing emits light: every source"), "{said}");
+    fs::write(place.path("none.toml"), "lumiduct = 1\ntitle = \"Dark\"\n[sensors]\n").unwrap();
+    let said = place.bad(2, "run none.toml");
+    assert!(said.contains("none.toml:1: `sources`: nothing emits light"), "{said}");
+}
+
+#[test]
+fn no_page_adds_weathers_up_without_saying_so() {
+    let place = Place::new();
+    fs::write(place.path("tube.toml"), WEATHERS).unwrap();
+    let said = place.good("run tube.toml");
+    assert!(said.contains("(sum over 2 weathers)"), "{said}");
+    assert!(said.contains("never shine together (overcast, clear_and_sun)"), "{said}");
+    assert!(said.contains("from clear_and_sun: efficiency 0."), "{said}");
+    let page = page(&place, "tube");
+    assert!(page.contains("| value ± standard error, sum over 2 weathers |"), "{page}");
+    assert!(page.contains("![illuminance, sum over 2 weathers]"), "{page}");
+    assert!(page.contains("`from` in its name is a sum over 2 weathers"), "{page}");
+    let html = fs::read_to_string(place.path("reports/tube/report.html")).unwrap();
+    assert!(html.contains("value ± standard error, sum over 2 weathers"));
+    let summary = place.summary("reports/tube");
+    assert_eq!(summary["sum_over_weathers"], serde_json::json!(["overcast", "clear_and_sun"]));
+    let value = |name: &str| summary["measures"][name]["value"].as_f64().unwrap();
+    let sum = value("exit.flux.from.clear") + value("exit.flux.from.sun");
+    assert!((value("exit.flux.from.clear_and_sun") / sum - 1.0).abs() < 1e-12);
+    assert!(summary["measures"].get("exit.share.from.sun").is_none());
+    // One weather, by the scene file or as the others are off, is no sum.
+    for one in [
+        "overcast.sky.enabled=false",
+        "overcast.sky.group=\"day\" -D sources.clear.sky.group=\"day\"",
+    ] {
+        let said = place.good(&format!("run tube.toml --overwrite -D sources.{one}"));
+        assert!(!said.contains("sum over"), "{said}");
+    }
+}
+
+#[test]
+fn light_that_passes_twice_is_remarked_and_counts_once_if_asked() {
+    let place = Place::new();
+    let scene = r#"
+lumiduct = 1
+title = "Open bend"
+[finishes.mirror]
+specular = { reflectance = 1 }
+[sheets.duct.tube]
+profile = { rectangle = { width_mm = 10, height_mm = 10 } }
+path = [{ bend_deg = 270, radius_mm = 10 }]
+finish = "mirror"
+[sources.led.face]
+of = "duct.entry"
+side = "back"
+flux_lm = 1
+[sensors]
+exit = { plane = {}, on = "duct.exit", counts = "leaving", entering = "duct.entry" }
+[run]
+paths = 20_000
+"#;
+    fs::write(place.path("bend.toml"), scene).unwrap();
+    let said = place.good("run bend.toml");
+    assert!(said.contains("the efficiency of sensor `exit` is 1.1"), "{said}");
+    assert!(said.contains("write passage = \"first\" in sensors.exit"), "{said}");
+    let said = place.good("run bend.toml --overwrite -D sensors.exit.passage=\"first\"");
+    assert!(!said.contains("more than once"), "{said}");
+    assert!(said.contains("efficiency 1 ± 0") || said.contains("efficiency 1.0"), "{said}");
+    for estimator in ["gather", "mis"] {
+        let said = place.bad(
+            2,
+            &format!(
+                "run bend.toml --estimator {estimator} -D sensors.exit.passage=\"first\" -o out"
+            ),
+        );
+        assert!(said.contains(&format!("`{estimator}` cannot count first passages")), "{said}");
+    }
+    let said = place.bad(
+        2,
+        "compare bend.toml --estimators forward,sppm --time 1s -D sensors.exit.passage=\"first\"",
+    );
+    assert!(said.contains("sppm cannot count first passages"), "{said}");
+}

@@ -29,8 +29,8 @@ use crate::pipeline::checkpoint::Keeper;
 use crate::pipeline::sense::expect_sense;
 use crate::pipeline::tracing::{Pause, trace_kept};
 use crate::report::{
-    self, CheckResult, Existing, Folder, Inventory, Recipe, Report, RunFacts, SceneFacts,
-    TargetFacts, Written,
+    self, CheckResult, Existing, Folder, FolderLock, Inventory, Recipe, Report, RunFacts,
+    SceneFacts, TargetFacts, Written,
 };
 use crate::scene::plan::Request;
 use crate::transport::{Findings, Interrupt, Run, Track, tracks};
@@ -40,6 +40,9 @@ use std::time::Duration;
 
 /// Version of the program, for reports.
 pub(crate) const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// The exact build of the program: its version and a digest of its sources. For files that are no part of a report.
+pub(crate) const BUILD: &str = env!("LUMIDUCT_BUILD");
 
 /// Where the report goes, and whether one that is there may be replaced.
 #[derive(Debug, Clone)]
@@ -102,10 +105,11 @@ pub fn run_one(
 ) -> Result<Finished> {
     let job = prepare(scene, settings)?;
     let dir = output_dir(scene, output);
+    let lock = FolderLock::take(&dir)?;
     let (mut keeper, stand) = Keeper::open(&dir, recipe(&job), output)?;
     // What a run has left in its own folder when it was stopped may be replaced by its whole report.
     let existing = if stand.is_some() { Existing::Replace } else { output.existing };
-    let folder = Folder::open(&dir, existing, repeatable(&job).as_ref())?;
+    let folder = Folder::open(lock, existing, repeatable(&job).as_ref())?;
     let mut keep = |run: &Run<'_>, pause: Pause| match pause {
         Pause::Between { round_end, elapsed } => keeper.keep_if_due(run, round_end, elapsed),
         Pause::Last { round_end, elapsed } => keeper.keep_last(run, round_end, elapsed),
@@ -150,14 +154,7 @@ pub struct Finished {
 
 /// What identifies a run.
 fn recipe(job: &Job) -> Recipe {
-    Recipe {
-        version: VERSION.to_owned(),
-        scene_hash: job.hash.clone(),
-        seed: job.run.seed,
-        estimator: job.run.estimator.name().to_owned(),
-        gather: report::wishes(&job.run.gather),
-        asked: report::asked(&job.run.stop),
-    }
+    Recipe::new(&job.hash, &job.run)
 }
 
 /// What decides the bytes of a job's report; nothing does when the clock stops the run.
@@ -205,6 +202,7 @@ pub fn compose(job: &Job, findings: &Findings, stop: Stop) -> Report {
         },
         run: RunFacts {
             version: VERSION.to_owned(),
+            identity: recipe(job),
             seed: job.run.seed,
             estimator: job.run.estimator,
             gather: report::wishes(&job.run.gather),

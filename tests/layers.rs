@@ -140,3 +140,33 @@ fn every_example_that_a_scene_names_is_there() {
     }
     assert!(named > 0, "no scene names an example");
 }
+
+/// Pictures of the page of the project lie in the package, and are those of the committed reports.
+#[test]
+fn pictures_of_the_readme_are_those_of_the_reports() {
+    const PICTURES: [&str; 3] = [
+        "led_indicator/exit.illuminance.png",
+        "luminance_image_scatter/camera.luminance.png",
+        "studies/led_pipe_length/response.exit.efficiency.png",
+    ];
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let readme = std::fs::read_to_string(root.join("README.md")).unwrap();
+    assert!(!readme.contains("](reports/"), "reports are no part of the package");
+    for picture in PICTURES {
+        let name = picture.rsplit('/').next().unwrap();
+        assert!(readme.contains(&format!("](docs/pictures/{name})")), "{name} is not shown");
+        let own = root.join("docs/pictures").join(name);
+        let committed = std::fs::read(root.join("reports").join(picture)).unwrap();
+        if std::env::var_os("UPDATE_GOLDEN").is_some() {
+            std::fs::write(&own, &committed).unwrap();
+        }
+        let same = std::fs::read(&own).unwrap() == committed;
+        assert!(
+            same,
+            "{name} is not that of reports/{picture}: run this test with UPDATE_GOLDEN=1"
+        );
+    }
+    let files = std::fs::read_dir(root.join("docs/pictures")).unwrap();
+    let sizes = files.map(|file| file.unwrap().metadata().unwrap().len());
+    assert!(sizes.sum::<u64>() < 1_000_000, "pictures of the package are larger than 1 MB");
+}

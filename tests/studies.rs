@@ -67,7 +67,9 @@ fn a_design_of_every_study_comes_out_as_it_is_in_the_repository() {
         run_study(&path, &wishes, &Interrupt::default(), &|_| {}).unwrap();
         let record = |folder: &Path| -> DesignRecord {
             let path = folder.join(format!("designs/{AGAIN:04}.json"));
-            serde_json::from_slice(&fs::read(path).unwrap()).unwrap()
+            let record: DesignRecord = serde_json::from_slice(&fs::read(path).unwrap()).unwrap();
+            // Another build may have traced what is in the repository; its numbers are the same.
+            DesignRecord { build: String::new(), ..record }
         };
         assert_eq!(record(folder.path()), record(&results(&path)), "{}", path.display());
     }

@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::report::diff::{
     Diff, DiffWishes, Limits, MapLimit, Rows, diff, diff_files, diff_table, read,
 };
-use crate::report::{Existing, Folder, Written, diff_junit, is_among};
+use crate::report::{Existing, Folder, FolderLock, Written, diff_junit, is_among};
 use clap::Args;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -74,7 +74,8 @@ fn compare(args: &DiffArgs, existing: Existing) -> Result<Diff> {
             )));
         }
         let files = diff_files(&diff)?;
-        let written = Folder::of_derived(dir, existing, &files)?.write(&files)?;
+        let written =
+            Folder::of_derived(FolderLock::take(dir)?, existing, &files)?.write(&files)?;
         if let Written::Nothing { differing } = written {
             return Err(Error::Usage(format!(
                 "{} holds other files of the same names ({}); use --overwrite to replace them",

@@ -11,7 +11,7 @@ pub use truth::TruthWish;
 use crate::error::{Diagnostic, Error, Result};
 use crate::input::{self, Job, Settings};
 use crate::pipeline::{Output, VERSION, expect_sense, output_dir};
-use crate::report::{self, Comparison, Contestant, Folder};
+use crate::report::{self, Comparison, Contestant, Folder, FolderLock};
 use crate::scene::SensorId;
 use crate::scene::plan::{Request, RunPlan, StopRules};
 use crate::transport::{Baseline, Interrupt, invisible, scatterers, turbid_media};
@@ -144,7 +144,8 @@ pub fn compare(
     expect_able(&job, &wishes.methods)?;
     expect_passages(&job, id, &wishes.methods)?;
     let known = truth::known(&bench, &wishes.truth)?;
-    let folder = Folder::open(&dir_of(scene, output), output.existing, None)?;
+    let lock = FolderLock::take(&dir_of(scene, output))?;
+    let folder = Folder::open(lock, output.existing, None)?;
     let truth = match known {
         Known::Truth(truth) => truth,
         Known::Takes(time) => truth::find(&bench, wishes, time, watch)?,

@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::input::{Job, Settings};
 use crate::pipeline::snapshot::{self, Kind};
 use crate::pipeline::{Finished, Output, Stop, compose, output_dir, prepare, recipe};
-use crate::report::{self, Existing, Folder, Recipe};
+use crate::report::{self, Existing, Folder, FolderLock, Recipe};
 use crate::transport::{Interrupt, Run, Shard, Slice, StopSignal, Unsliceable};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -122,7 +122,8 @@ pub fn merge_slices(dirs: &[PathBuf], scene: Option<&Path>, output: &Output) -> 
         expect_same(&first.recipe, &part.recipe, &first_path.display().to_string(), path)?;
     }
     expect_all(&parts)?;
-    let folder = Folder::open(&output_dir(&scene, output), output.existing, Some(&recipe(&job)))?;
+    let lock = FolderLock::take(&output_dir(&scene, output))?;
+    let folder = Folder::open(lock, output.existing, Some(&recipe(&job)))?;
     let mut run = Run::new(&job.scene, &job.run);
     let slices = parts.into_iter().map(|(_, part)| part.slice).collect();
     run.go_on_from(run.state_of_slices(slices));

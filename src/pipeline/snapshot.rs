@@ -5,6 +5,7 @@
 
 use crate::error::{Error, Result};
 use crate::input::digest::Digest;
+use crate::pipeline::BUILD;
 use crate::report::{Existing, write_whole};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -28,7 +29,7 @@ impl Kind {
         }
     }
 
-    /// The first line of a file. The number is that of its layout; the version of the program is part of the contents.
+    /// The first line of a file. The number is that of its layout; the build of the program is part of the contents.
     fn line(self) -> String {
         format!("lumiduct {} 2\n", self.name())
     }
@@ -40,13 +41,18 @@ const DIGEST_BYTES: usize = 16;
 
 /// Writes a file, whole or not at all.
 pub(super) fn write(path: &Path, kind: Kind, contents: &impl Serialize) -> Result<()> {
-    let contents = postcard::to_stdvec(contents)
+    let contents = postcard::to_stdvec(&(BUILD, contents))
         .map_err(|reason| Error::Output { what: kind.name().into(), reason: reason.to_string() })?;
+    write_whole(path, &framed(kind, &contents), Existing::Replace)
+}
+
+/// Contents between their line and length and their digest.
+fn framed(kind: Kind, contents: &[u8]) -> Vec<u8> {
     let mut bytes = kind.line().into_bytes();
     bytes.extend((contents.len() as u64).to_le_bytes());
-    bytes.extend(&contents);
-    bytes.extend(digest(&contents).as_bytes());
-    write_whole(path, &bytes, Existing::Replace)
+    bytes.extend(contents);
+    bytes.extend(digest(contents).as_bytes());
+    bytes
 }
 
 /// Reads a file, or says why it is not what it should be.
@@ -72,7 +78,14 @@ pub(super) fn read<T: DeserializeOwned>(path: &Path, kind: Kind) -> Result<T> {
     if digest(contents).as_bytes() != found {
         return Err(refuse("it was changed: its digest is not that of its contents"));
     }
-    postcard::from_bytes(contents).map_err(|_| refuse("it is by another version of the program"))
+    let (build, contents): (String, _) = postcard::take_from_bytes(contents)
+        .map_err(|_| refuse("it is by another version of the program"))?;
+    if build != BUILD {
+        return Err(refuse(&format!(
+            "it is by another build of the program, {build}, and this is {BUILD}; begin anew, or use that build"
+        )));
+    }
+    postcard::from_bytes(contents).map_err(|_| refuse("it holds something else"))
 }
 
 fn digest(contents: &[u8]) -> String {
@@ -114,6 +127,10 @@ mod tests {
         assert!(refused(&path, &slice).contains("does not begin"));
         write(&path, Kind::Checkpoint, &"other contents").unwrap();
         let other = fs::read(&path).unwrap();
-        assert!(refused(&path, &other).contains("another version"));
+        assert!(refused(&path, &other).contains("something else"));
+        let foreign = postcard::to_stdvec(&("0.0.9+1", &numbers)).unwrap();
+        fs::write(&path, framed(Kind::Checkpoint, &foreign)).unwrap();
+        let said = super::read::<Vec<f64>>(&path, Kind::Checkpoint).unwrap_err().to_string();
+        assert!(said.contains("another build of the program, 0.0.9+1"), "{said}");
     }
 }

@@ -1,14 +1,13 @@
 //! Writing files whole or not at all.
 
 use crate::error::{Error, Result};
-use crate::report::{OutputFile, Recipe};
-use serde_json::Value;
+use crate::report::leftovers::{REPLACING, STAGED, is_staged, remove_if_there, sweep};
+use crate::report::manifest::{MANIFEST, Manifest};
+use crate::report::recipe::Found;
+use crate::report::{FolderLock, OutputFile, Recipe};
 use std::fs;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
-
-/// How the names of files begin that are not complete yet.
-const STAGED: &str = ".lumiduct-";
 
 /// What to do with output that is there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,85 +32,127 @@ pub enum Written {
     },
 }
 
-/// The folder of a report.
+/// The folder of a report, which no other program writes into.
 #[derive(Debug)]
 pub struct Folder {
-    path: PathBuf,
+    lock: FolderLock,
     existing: Existing,
 }
 
 impl Folder {
-    /// Makes sure, before any work is done, that a report can be written to `path`: the folder is made, and it is
-    /// empty, or its files may be replaced, or it holds the report of this very `recipe`, which is going to be the
-    /// same. A run that the clock stops has no recipe.
-    pub fn open(path: &Path, existing: Existing, recipe: Option<&Recipe>) -> Result<Self> {
-        expect_room(path)?;
-        let is_kept = existing == Existing::Keep && holds_files(path)?;
-        let found = if is_kept { Recipe::read(path) } else { None };
-        if is_kept && (recipe.is_none() || found.as_ref() != recipe) {
-            let what = match (found, recipe) {
-                (Some(found), Some(recipe)) => recipe.difference_of(&found),
-                (Some(_), None) => "a report, and a run that the clock stops never repeats one",
-                (None, _) => "files that are no complete report",
+    /// Makes sure, before any work is done, that a report can be written to a folder: it is empty, or its files may be
+    /// replaced, or it holds the report of this very `recipe`, which is going to be the same. A run that the clock stops
+    /// has no recipe. What a run that was killed has left there goes away.
+    pub fn open(lock: FolderLock, existing: Existing, recipe: Option<&Recipe>) -> Result<Self> {
+        let path = lock.path();
+        sweep(path)?;
+        if existing == Existing::Keep && holds_files(path)? {
+            let what = match (Found::read(path), recipe) {
+                (Found::Report(found), Some(recipe)) if *found == *recipe => {
+                    return Ok(Self { lock, existing });
+                }
+                (Found::Report(found), Some(recipe)) => recipe.difference_of(&found),
+                (Found::Report(_), None) => {
+                    "a report, and a run that the clock stops never repeats one"
+                }
+                (Found::Partial, _) => "a report of a run that was stopped",
+                (Found::Older, _) => "a report by an older version of the program",
+                (Found::Other, _) => "files that are no complete report",
             };
             return Err(Error::Usage(format!(
                 "{} holds {what}; use --overwrite to replace the files in it, or -o for another folder",
                 path.display()
             )));
         }
-        Ok(Self { path: path.to_path_buf(), existing })
+        Ok(Self { lock, existing })
     }
 
     /// The folder of files that follow from other reports alone, and so may be there already; others may not, unless they
     /// may be replaced.
-    pub fn of_derived(path: &Path, existing: Existing, files: &[OutputFile]) -> Result<Self> {
-        expect_room(path)?;
+    pub fn of_derived(lock: FolderLock, existing: Existing, files: &[OutputFile]) -> Result<Self> {
+        let path = lock.path();
+        sweep(path)?;
         let entries = fs::read_dir(path).map_err(|source| Error::io(path, source))?;
         for entry in entries {
             let entry = entry.map_err(|source| Error::io(path, source))?;
-            let is_own = files.iter().any(|file| entry.file_name() == *file.name);
-            if existing == Existing::Keep && !is_own && !is_staged(&entry.path()) {
+            let name = entry.file_name();
+            let is_own = name == MANIFEST || files.iter().any(|file| name == *file.name);
+            if existing == Existing::Keep && !is_own {
                 return Err(Error::Usage(format!(
                     "{} is none of these files; use --overwrite to write beside it, or -o for another folder",
                     entry.path().display()
                 )));
             }
         }
-        Ok(Self { path: path.to_path_buf(), existing })
+        Ok(Self { lock, existing })
     }
 
     /// Where it is.
     pub fn path(&self) -> &Path {
-        &self.path
+        self.lock.path()
     }
 
-    /// Writes all files, each under a temporary name first; none takes its place before all are complete. A file that
-    /// is there with the same bytes is left alone. Where one differs that may not be replaced, none is written.
+    /// Writes all files and their manifest, each under a temporary name first; none takes its place before all are complete,
+    /// and the manifest does so last. A file that is there with the same bytes is left alone. Where one differs that may
+    /// not be replaced, none is written. Files of an older report that are none of these go away where they may.
     pub fn write(&self, files: &[OutputFile]) -> Result<Written> {
+        let manifest = Manifest::of(files).file(MANIFEST)?;
         let (mut staged, mut differing) = (Vec::new(), Vec::new());
-        for file in files {
-            let path = self.path.join(&file.name);
+        for file in files.iter().chain([&manifest]) {
+            let path = self.path().join(&file.name);
             match (compare(&path, &file.bytes)?, self.existing) {
                 (Comparison::Same, _) => {}
                 (Comparison::Different, Existing::Keep) => differing.push(file.name.clone()),
                 (Comparison::Different, Existing::Replace) | (Comparison::Missing, _) => {
-                    staged.push((stage(&path, &file.bytes)?, path));
+                    staged.push((stage(&path, &file.bytes)?, file.name.clone()));
                 }
             }
         }
         if !differing.is_empty() {
+            // With others the manifest differs because of them.
+            if differing.len() > 1 {
+                differing.retain(|name| name != MANIFEST);
+            }
             return Ok(Written::Nothing { differing });
         }
-        let written = if staged.is_empty() { Written::Same } else { Written::New };
-        for (temporary, path) in staged {
+        if staged.is_empty() {
+            return Ok(Written::Same);
+        }
+        let outdated = self.outdated(files)?;
+        let names = staged.iter().map(|(_, name)| name).chain(&outdated);
+        let replacing: Vec<OutputFile> =
+            names.map(|name| OutputFile::text(name.as_str(), String::new())).collect();
+        let list = Manifest::of(&replacing).file(REPLACING)?.bytes;
+        let list_path = self.path().join(REPLACING);
+        write_whole(&list_path, &list, Existing::Replace)?;
+        for name in [MANIFEST].into_iter().chain(outdated.iter().map(String::as_str)) {
+            remove_if_there(&self.path().join(name))?;
+        }
+        for (temporary, name) in staged {
+            let path = self.path().join(name);
             temporary.persist(&path).map_err(|error| Error::io(&path, error.error))?;
         }
-        Ok(written)
+        remove_if_there(&list_path)?;
+        Ok(Written::New)
+    }
+
+    /// Files of an older whole report that are none of the new one, where they may be replaced.
+    fn outdated(&self, files: &[OutputFile]) -> Result<Vec<String>> {
+        let is_new = |name: &str| files.iter().any(|file| file.name == name);
+        Ok(match (self.existing, Manifest::read(self.path(), MANIFEST)) {
+            (Existing::Replace, Ok(Some(old))) => {
+                old.names().filter(|name| !is_new(name)).map(str::to_owned).collect()
+            }
+            (Existing::Replace, Ok(None) | Err(Error::Usage(_))) | (Existing::Keep, _) => {
+                Vec::new()
+            }
+            (Existing::Replace, Err(error)) => return Err(error),
+        })
     }
 
     /// Writes a file that lies outside of the reproducible set. One that is there stays, unless it may be replaced.
     pub fn write_beside(&self, name: &str, bytes: &[u8]) -> Result<()> {
-        let path = self.path.join(name);
+        let path = self.path().join(name);
         if self.existing == Existing::Keep && path.exists() {
             return Ok(());
         }
@@ -125,7 +166,13 @@ pub(crate) fn expect_room(folder: &Path) -> Result<()> {
     if folder.is_file() {
         return Err(Error::Usage(format!("{} is a file, not a folder", folder.display())));
     }
-    fs::create_dir_all(folder).map_err(|source| Error::io(folder, source))?;
+    fs::create_dir_all(folder).map_err(|source| match source.kind() {
+        // A link that leads nowhere, a file where a folder should be, a name that is too long.
+        ErrorKind::AlreadyExists | ErrorKind::NotADirectory | ErrorKind::InvalidFilename => {
+            Error::Usage(format!("{} cannot be made a folder: {source}", folder.display()))
+        }
+        _ => Error::io(folder, source),
+    })?;
     tempfile::tempfile_in(folder)
         .map(|_| ())
         .map_err(|source| Error::io(folder, source.kind().into()))
@@ -148,48 +195,6 @@ fn holds_files(folder: &Path) -> Result<bool> {
         }
     }
     Ok(false)
-}
-
-/// Whether a file is one that is not complete yet, or was left so.
-pub(crate) fn is_staged(path: &Path) -> bool {
-    path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(STAGED))
-}
-
-/// Takes away what a program that was killed has left half written in a folder. A folder that is not there holds nothing.
-pub fn sweep(folder: &Path) -> Result<()> {
-    let entries = match fs::read_dir(folder) {
-        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
-        other => other.map_err(|source| Error::io(folder, source))?,
-    };
-    for entry in entries {
-        let entry = entry.map_err(|source| Error::io(folder, source))?;
-        if is_staged(&entry.path()) {
-            remove_if_there(&entry.path())?;
-        }
-    }
-    Ok(())
-}
-
-/// Takes away an older report: the files that its summary names, the summary among them. Others stay.
-pub(crate) fn remove_report(folder: &Path, summary: &str) -> Result<()> {
-    let found: Option<Value> =
-        fs::read(folder.join(summary)).ok().and_then(|bytes| serde_json::from_slice(&bytes).ok());
-    let files = found.as_ref().and_then(|summary| summary["files"].as_array());
-    for name in files.into_iter().flatten().filter_map(Value::as_str) {
-        // Only names of this folder: the file may have been changed by others.
-        if Path::new(name).components().count() == 1 && !name.starts_with('.') {
-            remove_if_there(&folder.join(name))?;
-        }
-    }
-    Ok(())
-}
-
-/// Takes a file away; one that is not there is no error.
-pub fn remove_if_there(path: &Path) -> Result<()> {
-    match fs::remove_file(path) {
-        Err(error) if error.kind() != ErrorKind::NotFound => Err(Error::io(path, error)),
-        Ok(()) | Err(_) => Ok(()),
-    }
 }
 
 /// Writes one file, whole or not at all. One that is there with the same bytes is left alone.
@@ -253,45 +258,66 @@ pub(crate) fn folder_of(path: &Path) -> &Path {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::plan::{GatherPlan, Request, RunPlan, StopRules};
 
     fn file(name: &str, text: &str) -> OutputFile {
         OutputFile { name: name.into(), bytes: text.into() }
     }
 
     fn recipe(seed: u64) -> Recipe {
-        let (version, scene_hash) = ("0.1.0".to_owned(), "e9a5".to_owned());
-        let (estimator, gather) = ("gather".to_owned(), "depth 8".to_owned());
-        Recipe { version, scene_hash, seed, estimator, gather, asked: "20 paths".to_owned() }
+        let stop = StopRules { paths: Some(20), ..StopRules::default() };
+        let (estimator, gather) = (Request::Forward, GatherPlan::default());
+        let sensor_estimators = Vec::new();
+        let plan = RunPlan {
+            estimator,
+            sensor_estimators,
+            gather,
+            seed,
+            bounce_limit: 9,
+            batch_paths: None,
+            stop,
+        };
+        Recipe::new("e9a5", &plan)
     }
 
-    fn summary(seed: u64, partial: &str) -> String {
-        format!(
-            r#"{{"scene": {{"hash": "e9a5"}},
-                "run": {{"version": "0.1.0", "seed": {seed}, "estimator": "gather", "gather": "depth 8",
-                         "partial": {partial}, "asked": "20 paths"}}}}"#
-        )
+    fn summary(seed: u64, partial: bool) -> String {
+        let identity = recipe(seed);
+        serde_json::json!({ "run": { "partial": partial, "identity": identity } }).to_string()
+    }
+
+    fn open(path: &Path, existing: Existing, recipe: Option<&Recipe>) -> Result<Folder> {
+        Folder::open(FolderLock::take(path)?, existing, recipe)
+    }
+
+    fn names(path: &Path) -> Vec<String> {
+        let entries = fs::read_dir(path).unwrap();
+        let mut names: Vec<String> =
+            entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
     }
 
     #[test]
     fn a_report_is_not_replaced_unless_asked_and_other_files_stay() {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("report");
-        let open = |existing| Folder::open(&path, existing, Some(&recipe(1)));
-        open(Existing::Keep).unwrap().write(&[file("a.csv", "1")]).unwrap();
+        let open = |existing| open(&path, existing, Some(&recipe(1)));
+        open(Existing::Keep).unwrap().write(&[file("a.csv", "1"), file("old.csv", "1")]).unwrap();
         assert!(matches!(open(Existing::Keep), Err(Error::Usage(_))));
         fs::write(path.join("notes.txt"), "mine").unwrap();
         let written = open(Existing::Replace).unwrap().write(&[file("a.csv", "2")]).unwrap();
         assert_eq!(written, Written::New);
         assert_eq!(fs::read_to_string(path.join("a.csv")).unwrap(), "2");
         assert_eq!(fs::read_to_string(path.join("notes.txt")).unwrap(), "mine");
-        assert_eq!(fs::read_dir(&path).unwrap().count(), 2, "a temporary file was left");
+        // Of two runs there is one report, and no temporary file.
+        assert_eq!(names(&path), ["a.csv", "manifest.json", "notes.txt"]);
     }
 
     #[test]
     fn a_report_of_the_same_recipe_may_be_run_again_and_must_come_out_the_same() {
         let dir = tempfile::tempdir().unwrap();
-        let open = |recipe: Option<&Recipe>| Folder::open(dir.path(), Existing::Keep, recipe);
-        let files = [file("summary.json", &summary(1, "false")), file("a.csv", "1")];
+        let open = |recipe: Option<&Recipe>| open(dir.path(), Existing::Keep, recipe);
+        let files = [file("summary.json", &summary(1, false)), file("a.csv", "1")];
         open(None).unwrap().write(&files).unwrap();
         assert_eq!(open(Some(&recipe(1))).unwrap().write(&files).unwrap(), Written::Same);
         assert!(open(Some(&recipe(2))).is_err() && open(None).is_err());
@@ -300,27 +326,54 @@ mod tests {
         let written = open(Some(&recipe(1))).unwrap().write(&other).unwrap();
         assert_eq!(written, Written::Nothing { differing: vec!["a.csv".into()] });
         assert_eq!(fs::read_to_string(dir.path().join("a.csv")).unwrap(), "1");
-        assert_eq!(
-            fs::read_dir(dir.path()).unwrap().count(),
-            2,
-            "a file was written in spite of it"
-        );
+        let own = ["a.csv", "manifest.json", "summary.json"];
+        assert_eq!(names(dir.path()), own, "a file was written in spite of it");
+        // Without its manifest it is no report.
+        fs::remove_file(dir.path().join("manifest.json")).unwrap();
+        assert!(open(Some(&recipe(1))).unwrap_err().to_string().contains("no complete report"));
     }
 
     #[test]
-    fn a_partial_report_is_not_run_over() {
+    fn a_partial_report_and_an_older_one_are_not_run_over() {
         let dir = tempfile::tempdir().unwrap();
-        fs::write(dir.path().join("summary.json"), summary(1, "true")).unwrap();
-        assert!(Folder::open(dir.path(), Existing::Keep, Some(&recipe(1))).is_err());
+        let path = dir.path().join("partial");
+        let files = [file("summary.json", &summary(1, true))];
+        open(&path, Existing::Keep, None).unwrap().write(&files).unwrap();
+        let said = open(&path, Existing::Keep, Some(&recipe(1))).unwrap_err().to_string();
+        assert!(said.contains("run that was stopped"), "{said}");
+        fs::write(path.join("summary.json"), r#"{"run": {"version": "0.1.0"}}"#).unwrap();
+        let said = open(&path, Existing::Keep, Some(&recipe(1))).unwrap_err().to_string();
+        assert!(said.contains("by an older version"), "{said}");
+    }
+
+    #[test]
+    fn files_of_a_run_that_was_killed_while_they_took_their_places_go_away() {
+        let dir = tempfile::tempdir().unwrap();
+        fs::write(dir.path().join("notes.txt"), "mine").unwrap();
+        let files = [file("a.csv", "1"), file("summary.json", &summary(1, false))];
+        open(dir.path(), Existing::Replace, None).unwrap().write(&files).unwrap();
+        // A second run was killed after its first file: its list and a staged file are left, and no manifest.
+        let list = Manifest::of(&files).file(REPLACING).unwrap();
+        fs::write(dir.path().join(REPLACING), &list.bytes).unwrap();
+        fs::write(dir.path().join(".lumiduct-x1y2"), "half").unwrap();
+        fs::write(dir.path().join("a.csv"), "2").unwrap();
+        fs::remove_file(dir.path().join(MANIFEST)).unwrap();
+        fs::remove_file(dir.path().join("notes.txt")).unwrap();
+        let folder = open(dir.path(), Existing::Keep, Some(&recipe(1))).unwrap();
+        assert!(names(dir.path()).is_empty(), "{:?}", names(dir.path()));
+        assert_eq!(folder.write(&files).unwrap(), Written::New);
+        assert_eq!(names(dir.path()), ["a.csv", "manifest.json", "summary.json"]);
     }
 
     #[test]
     fn a_file_beside_the_report_stays_unless_it_may_be_replaced() {
         let dir = tempfile::tempdir().unwrap();
         let read = || fs::read_to_string(dir.path().join("timing.csv")).unwrap();
-        let folder = |existing| Folder { path: dir.path().to_path_buf(), existing };
+        let folder = |existing| open(dir.path(), existing, None).unwrap();
         folder(Existing::Keep).write_beside("timing.csv", b"1").unwrap();
-        folder(Existing::Keep).write_beside("timing.csv", b"2").unwrap();
+        Folder { existing: Existing::Keep, ..folder(Existing::Replace) }
+            .write_beside("timing.csv", b"2")
+            .unwrap();
         assert_eq!(read(), "1");
         folder(Existing::Replace).write_beside("timing.csv", b"2").unwrap();
         assert_eq!(read(), "2");
@@ -342,8 +395,16 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("report");
         fs::write(&path, "a file").unwrap();
-        assert!(matches!(Folder::open(&path, Existing::Keep, None), Err(Error::Usage(_))));
-        let below = path.join("below");
-        assert!(matches!(Folder::open(&below, Existing::Keep, None), Err(Error::Io { .. })));
+        let long = dir.path().join("x".repeat(300));
+        for path in [&path, &path.join("below"), &long] {
+            let refused = open(path, Existing::Keep, None);
+            assert!(matches!(refused, Err(Error::Usage(_))), "{}", path.display());
+        }
+        #[cfg(unix)]
+        {
+            let link = dir.path().join("link");
+            std::os::unix::fs::symlink(dir.path().join("nowhere"), &link).unwrap();
+            assert!(matches!(open(&link, Existing::Keep, None), Err(Error::Usage(_))));
+        }
     }
 }

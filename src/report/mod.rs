@@ -17,12 +17,16 @@ mod html;
 mod inventory;
 mod junit;
 mod key_figures;
+mod leftovers;
 mod local_axes;
+mod lock;
+mod manifest;
 mod markdown;
 mod mesh;
 pub mod png;
 mod recipe;
 mod record;
+mod seal;
 mod section;
 mod spreadsheet;
 pub mod study;
@@ -35,17 +39,22 @@ pub use compare::{
 };
 pub use drawing::{Drawing, drawing};
 pub use film::film_tables;
-pub use folder::{Existing, Folder, Written, remove_if_there, sweep, write_whole};
-pub(crate) use folder::{expect_room, folder_of, is_among, is_staged, remove_report};
+pub use folder::{Existing, Folder, Written, write_whole};
+pub(crate) use folder::{expect_room, folder_of, is_among};
 pub(crate) use html::check::check_page;
 pub use inventory::{Inventory, Listing};
 pub use junit::{JunitFile, diff_junit, run_junit, study_junit};
+pub(crate) use leftovers::{is_staged, remove_report};
+pub use leftovers::{remove_if_there, sweep};
+pub use lock::FolderLock;
+pub(crate) use manifest::Manifest;
 pub use mesh::mesh_report;
 pub use recipe::Recipe;
 pub use record::{
     CheckResult, Outcome, Report, RunFacts, SceneFacts, TargetFacts, asked, leak_places,
     remark_on_paths, remarks, remarks_on_passages, settled, wishes,
 };
+pub(crate) use seal::{seal, unseal};
 pub use section::{CutPlane, SectionView, scene_picture};
 pub use terminal::terminal;
 

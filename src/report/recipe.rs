@@ -1,58 +1,81 @@
 //! What decides the bytes of a report, so that a run over its own report is told from a run over another one.
 
-use crate::report::SUMMARY;
+use crate::report::{Manifest, SUMMARY};
+use crate::scene::plan::{NUMERICS, RunPlan};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
 
-/// Two runs of one recipe write the same bytes, with the same binary on the same kind of machine.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+/// The identity of a run: two runs of one recipe write the same bytes, with the same binary on the same kind of machine.
+/// Its names in files are fixed, whatever the code says.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Recipe {
-    /// Version of the program.
-    pub version: String,
+    /// Number of the numerics.
+    #[serde(rename = "numerics")]
+    pub numerics: u32,
     /// Identifies scene file, included files, meshes and overrides.
+    #[serde(rename = "scene")]
     pub scene_hash: String,
-    /// Seed of the random numbers.
-    pub seed: u64,
-    /// Name of the estimator that was asked for.
-    pub estimator: String,
-    /// Wishes for the gather estimator, in words.
-    pub gather: String,
-    /// The stop rules, in words.
-    pub asked: String,
+    /// How it is traced, and when that ends.
+    #[serde(rename = "plan")]
+    pub plan: RunPlan,
+}
+
+/// What lies in the folder of a report.
+#[derive(Debug, PartialEq)]
+pub(crate) enum Found {
+    /// The whole report of a run.
+    Report(Box<Recipe>),
+    /// The report of a run that was stopped.
+    Partial,
+    /// A report that does not say what identifies its run, as those of older versions of the program.
+    Older,
+    /// Anything else.
+    Other,
 }
 
 impl Recipe {
+    /// That of a scene and a plan, by the present numerics.
+    pub fn new(scene_hash: &str, plan: &RunPlan) -> Self {
+        Self { numerics: NUMERICS, scene_hash: scene_hash.to_owned(), plan: plan.clone() }
+    }
+
     /// How another recipe, which is not the same, differs from this one.
     pub(crate) fn difference_of(&self, other: &Self) -> &'static str {
-        if other.version != self.version {
-            "a report by another version of the program"
+        let (plan, own) = (&other.plan, &self.plan);
+        if other.numerics != self.numerics {
+            "a report by other numerics, those of another version of the program"
         } else if other.scene_hash != self.scene_hash {
             "a report of another scene: the file, a file that it names, or -D differs"
-        } else if (&other.estimator, &other.gather) != (&self.estimator, &self.gather) {
+        } else if (&plan.estimator, &plan.gather) != (&own.estimator, &own.gather) {
             "a report with another estimator or other wishes for it"
-        } else if other.seed != self.seed {
+        } else if plan.seed != own.seed {
             "a report with another seed"
         } else {
             "a report with other stop rules"
         }
     }
+}
 
-    /// The recipe of the report in a folder; `None` if there is no report, or a partial one.
-    pub(crate) fn read(folder: &Path) -> Option<Self> {
-        let summary: Value = serde_json::from_slice(&fs::read(folder.join(SUMMARY)).ok()?).ok()?;
-        let text = |place| summary.pointer(place).and_then(Value::as_str).map(str::to_owned);
-        if summary.pointer("/run/partial")?.as_bool()? {
-            return None;
+impl Found {
+    /// What lies in a folder that holds files.
+    pub(crate) fn read(folder: &Path) -> Self {
+        let bytes = fs::read(folder.join(SUMMARY)).ok();
+        let summary: Option<Value> = bytes.and_then(|bytes| serde_json::from_slice(&bytes).ok());
+        let Some(run) = summary.as_ref().and_then(|summary| summary.get("run")) else {
+            return Self::Other;
+        };
+        let Some(identity) = run.get("identity") else { return Self::Older };
+        if Manifest::expect(folder).is_err() {
+            return Self::Other;
         }
-        Some(Self {
-            version: text("/run/version")?,
-            scene_hash: text("/scene/hash")?,
-            seed: summary.pointer("/run/seed")?.as_u64()?,
-            estimator: text("/run/estimator")?,
-            gather: text("/run/gather").unwrap_or_default(),
-            asked: text("/run/asked")?,
-        })
+        if run.get("partial").and_then(Value::as_bool) != Some(false) {
+            return Self::Partial;
+        }
+        match Recipe::deserialize(identity) {
+            Ok(recipe) => Self::Report(Box::new(recipe)),
+            Err(_) => Self::Older,
+        }
     }
 }

@@ -4,7 +4,7 @@ use crate::input::Project;
 use crate::measure::{self, GatheredFacts, LostPaths, Measures, Status, Verdict};
 use crate::number::{format_exact, format_percent, format_with_error};
 use crate::report::by_light::remark_on_weathers;
-use crate::report::{Drawing, Inventory};
+use crate::report::{Drawing, Inventory, Recipe};
 use crate::scene::plan::{Check, GatherPlan, Request, Schedule, StopRules, Target};
 use crate::scene::{Scene, Seeing, Sensor, SensorKind};
 use crate::transport::{GROUPS, GatherSettings, Leak};
@@ -55,6 +55,8 @@ pub struct SceneFacts {
 pub struct RunFacts {
     /// Version of the program.
     pub version: String,
+    /// What identifies the run.
+    pub identity: Recipe,
     /// Seed of the random numbers.
     pub seed: u64,
     /// How flux was to be estimated.

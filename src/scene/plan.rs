@@ -3,41 +3,57 @@
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
-/// How to trace and when to stop.
-#[derive(Debug, Clone, PartialEq)]
+/// Number of the numerics: raised with every change that alters a committed report, so that a report, a checkpoint or a
+/// record by older numerics is never taken for one by the present ones.
+pub const NUMERICS: u32 = 1;
+
+/// How to trace and when to stop. Its names in files are part of the identity of a run, and fixed whatever the code says.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunPlan {
     /// How flux is to be estimated.
+    #[serde(rename = "estimator")]
     pub estimator: Request,
     /// Estimators of single sensors, in their order; the others follow `estimator`.
+    #[serde(rename = "sensor_estimators")]
     pub sensor_estimators: Vec<Option<Estimator>>,
     /// Wishes for the gather estimator.
+    #[serde(rename = "gather")]
     pub gather: GatherPlan,
     /// Seed of all random streams.
+    #[serde(rename = "seed")]
     pub seed: u64,
     /// Paths are cut after this many interfaces; the flux they carry is a line of the balance.
+    #[serde(rename = "bounce_limit")]
     pub bounce_limit: u32,
     /// Photon paths of a batch; `None` leaves it to how long paths are. Runs with the same number have the same paths in
     /// the same batches.
+    #[serde(rename = "batch_paths")]
     pub batch_paths: Option<u64>,
     /// The first rule that is met ends the run.
+    #[serde(rename = "stop")]
     pub stop: StopRules,
 }
 
 /// How flux is to be estimated: what was asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
 pub enum Request {
     /// For every sensor what a pilot finds best.
+    #[serde(rename = "auto")]
     Auto,
     /// [`Estimator::Forward`] for all sensors.
+    #[serde(rename = "forward")]
     Forward,
     /// [`Estimator::Backward`] for all sensors.
+    #[serde(rename = "backward")]
     Backward,
     /// [`Estimator::Mix`] for all sensors.
+    #[serde(rename = "mix")]
     Mix,
     /// [`Estimator::Gather`] for all sensors.
+    #[serde(rename = "gather")]
     Gather,
     /// [`Estimator::Mis`] for all sensors.
+    #[serde(rename = "mis")]
     Mis,
 }
 
@@ -86,17 +102,21 @@ impl Request {
 
 /// How the flux of a sensor was estimated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
 pub enum Estimator {
     /// Photon paths from the sources, counted in the sensors' cells.
+    #[serde(rename = "forward")]
     Forward,
     /// Gather paths from the sensors' cells, followed until they meet emission.
+    #[serde(rename = "backward")]
     Backward,
     /// Both of these, weighed path by path by the balance heuristic.
+    #[serde(rename = "mix")]
     Mix,
     /// Gather paths of limited depth that end in records, where photons are gathered.
+    #[serde(rename = "gather")]
     Gather,
     /// Forward, backward and gather merged by multiple importance sampling.
+    #[serde(rename = "mis")]
     Mis,
 }
 
@@ -128,30 +148,37 @@ impl Estimator {
 pub const MOST_RECORDS: u64 = 1 << 22;
 
 /// Wishes for the gather estimator; what is left out is chosen by a pilot.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct GatherPlan {
     /// Depth at which gather paths end at the latest; the first surface has depth 0.
+    #[serde(rename = "depth")]
     pub depth: Option<u32>,
     /// Radius of the window of the first pass, mm.
+    #[serde(rename = "radius_mm")]
     pub radius: Option<f64>,
     /// Half-angle of the window of the first pass, rad.
+    #[serde(rename = "angle_rad")]
     pub theta_max: Option<f64>,
     /// Gather paths of a pass, over all sensors.
+    #[serde(rename = "records")]
     pub records: Option<u64>,
     /// Photons of a pass.
+    #[serde(rename = "photons")]
     pub photons: Option<u64>,
     /// How the window shrinks.
+    #[serde(rename = "schedule")]
     pub schedule: Schedule,
 }
 
 /// How the window of the gather estimator shrinks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
 pub enum Schedule {
     /// In stages of many passes with one window; the last stage gives the value.
     #[default]
+    #[serde(rename = "stages")]
     Stages,
     /// From pass to pass; all passes give the value.
+    #[serde(rename = "per-pass")]
     PerPass,
 }
 
@@ -174,25 +201,31 @@ impl Schedule {
 }
 
 /// When a run ends. At least one rule is set.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct StopRules {
     /// After this many paths, rounded up to whole waves (of 128 batches, or 16 passes of gathering).
+    #[serde(rename = "paths")]
     pub paths: Option<u64>,
     /// Batches, or passes, into which the paths are divided: a run of them ends after exactly so many. `None` for whole
     /// waves.
+    #[serde(rename = "batches")]
     pub batches: Option<u64>,
     /// After this time.
+    #[serde(rename = "time")]
     pub time: Option<Duration>,
     /// When a measure is known well enough.
+    #[serde(rename = "target")]
     pub target: Option<Target>,
 }
 
 /// A measure and how well it is wanted.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Target {
     /// Dotted name, such as `exit.flux`.
+    #[serde(rename = "measure")]
     pub measure: String,
     /// Standard error over value.
+    #[serde(rename = "relative_error")]
     pub relative_error: f64,
 }
 
@@ -248,5 +281,38 @@ mod tests {
             assert_eq!(serde_json::to_value(estimator).unwrap(), estimator.name());
         }
         assert_eq!(Request::named("sideways"), None);
+    }
+
+    /// Reports, checkpoints and records of older runs hold this text: a name that changes makes strangers of them.
+    #[test]
+    fn a_plan_has_fixed_names_in_files_and_comes_back_from_them() {
+        let gather = GatherPlan {
+            depth: Some(8),
+            radius: Some(0.5),
+            theta_max: Some(0.1),
+            records: Some(1000),
+            photons: Some(5000),
+            schedule: Schedule::PerPass,
+        };
+        let target = Target { measure: "exit.flux".into(), relative_error: 0.005 };
+        let (paths, time) = (Some(20), Some(Duration::from_millis(1500)));
+        let plan = RunPlan {
+            estimator: Request::Gather,
+            sensor_estimators: vec![None, Some(Estimator::Mis)],
+            gather,
+            seed: 7,
+            bounce_limit: 100,
+            batch_paths: None,
+            stop: StopRules { paths, batches: Some(3), time, target: Some(target) },
+        };
+        let text = serde_json::to_string(&plan).unwrap();
+        let expected = concat!(
+            r#"{"estimator":"gather","sensor_estimators":[null,"mis"],"gather":{"depth":8,"radius_mm":0.5,"angle_rad":0.1,"records":1000,"#,
+            r#""photons":5000,"schedule":"per-pass"},"seed":7,"bounce_limit":100,"batch_paths":null,"#,
+            r#""stop":{"paths":20,"batches":3,"time":{"secs":1,"nanos":500000000},"#,
+            r#""target":{"measure":"exit.flux","relative_error":0.005}}}"#
+        );
+        assert_eq!(text, expected);
+        assert_eq!(serde_json::from_str::<RunPlan>(&text).unwrap(), plan);
     }
 }

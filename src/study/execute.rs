@@ -5,14 +5,16 @@
 //! batches of another are traced.
 
 use crate::error::{Diagnostic, DiagnosticKind, Error, Result};
-use crate::input::{Job, Keep, Settings, Study};
+use crate::input::{Job, Keep, Setting, Settings, Study};
 use crate::measure;
-use crate::pipeline::{self, Stop};
+use crate::pipeline::{self, BUILD, Stop};
 use crate::report::study::{DESIGN_FORMAT, DesignOutcome, DesignRecord, DesignResult};
-use crate::report::{self, Existing, Folder};
+use crate::report::{self, Existing, Folder, FolderLock};
 use crate::study::designs::Design;
 use crate::study::store::Store;
 use crate::transport::{Interrupt, batch_paths};
+use indexmap::IndexMap;
+use std::collections::BTreeMap;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
@@ -68,6 +70,7 @@ pub(crate) struct Batch<'a> {
 /// or when it is interrupted; designs that have ended by then have their records.
 pub(crate) fn execute(batch: &Batch<'_>, wanted: &[usize]) -> Result<()> {
     let records = batch.store.records()?;
+    expect_designs(batch, &records)?;
     let pending: Vec<&Design> = wanted
         .iter()
         .filter(|number| !records.contains_key(number))
@@ -103,6 +106,24 @@ pub(crate) fn execute(batch: &Batch<'_>, wanted: &[usize]) -> Result<()> {
         Ok(Some(error)) => Err(error),
         Ok(None) | Err(_) => Ok(()),
     }
+}
+
+/// Makes sure that every record is that of the design of its number.
+fn expect_designs(batch: &Batch<'_>, records: &BTreeMap<usize, DesignRecord>) -> Result<()> {
+    for (number, record) in records {
+        let design = number.checked_sub(1).and_then(|index| batch.designs.get(index));
+        let own = design.map(|design| settings(batch.study, design));
+        if own.as_ref() != Some(&record.settings) {
+            return Err(batch.store.no_record(*number, "its design has other settings"));
+        }
+    }
+    Ok(())
+}
+
+/// What the parameters are set to in a design, by their names.
+fn settings(study: &Study, design: &Design) -> IndexMap<String, Setting> {
+    let names = study.parameters.iter().map(|parameter| parameter.name.clone());
+    names.zip(design.settings.iter().cloned()).collect()
 }
 
 /// How a design has ended.
@@ -152,12 +173,12 @@ fn trace(
         Err(Error::Usage(message)) => DesignOutcome::Failed(message),
         Err(error @ (Error::Io { .. } | Error::Output { .. })) => return Err(error),
     };
-    let names = study.parameters.iter().map(|parameter| parameter.name.clone());
     batch.store.write(&DesignRecord {
         lumiduct_design: DESIGN_FORMAT,
+        build: BUILD.to_owned(),
         study: study.hash.clone(),
         design: design.number,
-        settings: names.zip(design.settings.iter().cloned()).collect(),
+        settings: settings(study, design),
         outcome,
     })?;
     Ok(Ended::Recorded)
@@ -187,7 +208,7 @@ fn trace_job(
         Keep::Records => {}
         Keep::Reports => {
             let path = batch.store.report_of(design.number);
-            let folder = Folder::open(&path, Existing::Replace, None)?;
+            let folder = Folder::open(FolderLock::take(&path)?, Existing::Replace, None)?;
             folder.write(&report::files(&report, &job.text)?)?;
         }
     }

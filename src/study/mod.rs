@@ -119,7 +119,7 @@ pub fn merge_study(
         return Err(Error::Usage("there are no parts to put together".into()));
     };
     let facts = first.facts().clone();
-    if let Some(other) = stores.iter().find(|other| *other.facts() != facts) {
+    if let Some(other) = stores.iter().find(|other| !other.facts().is_same_study(&facts)) {
         return Err(Error::Usage(format!(
             "{} and {} hold results of different studies",
             first.path().display(),
@@ -173,7 +173,7 @@ fn finish(
     let analysis = analysis::analysis(&facts, &designs);
     let report = StudyReport { facts, designs, analysis };
     // Results follow from the records: older ones of the same study may be replaced.
-    let folder = Folder::open(store.path(), Existing::Replace, None)?;
+    let folder = Folder::open(store.lock()?, Existing::Replace, None)?;
     let written = folder.write(&study_files(&report, text)?)?;
     Ok((report, written))
 }

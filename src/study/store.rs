@@ -1,35 +1,37 @@
-//! Results of a batch on disk: a manifest, and a record of every design as soon as it has one.
+//! Results of a batch on disk: the facts of the study, and a record of every design as soon as it has one.
 //!
 //! A record appears whole or not at all, so that a batch that was killed at any moment can go on. Which designs are done
-//! is told from the records alone.
+//! is told from the records alone. Facts and records are sealed: one that was changed is refused by its name.
 
 use crate::error::{Error, Result};
-use crate::report::study::{self, DESIGN_FORMAT, DesignRecord, StudyFacts};
+use crate::report::study::{DESIGN_FORMAT, DesignRecord, FACTS_FORMAT, StudyFacts};
 use crate::report::{
-    self, Existing, expect_room, is_staged, remove_if_there, remove_report, sweep, write_whole,
+    Existing, FolderLock, is_staged, remove_if_there, remove_report, seal, sweep, unseal,
+    write_whole,
 };
 use crate::study::OnExisting;
-use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
-use std::fs::{self, File, OpenOptions, TryLockError};
+use std::fs::{self, OpenOptions};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 /// Names in the folder of a batch.
-const MANIFEST: &str = "batch.json";
+const FACTS: &str = "batch.json";
 const DESIGNS: &str = "designs";
 const TIMING: &str = "timing.csv";
 
 /// What to do about a record that is none.
-const REMOVE: &str = "remove it, and the design is computed anew";
+const REMOVE: &str = "remove it, and `batch --resume` computes the design anew";
+/// What to do about facts that are none.
+const BEGIN_ANEW: &str = "use --overwrite to begin anew, or -o for another folder";
 
 /// The folder of a batch.
 #[derive(Debug)]
 pub(crate) struct Store {
     dir: PathBuf,
     facts: StudyFacts,
-    /// Keeps other programs from writing here as long as it is open; of one that is only read, there is none.
-    _lock: Option<File>,
+    /// Keeps other programs from writing here; of one that is only read, there is none.
+    lock: Option<FolderLock>,
 }
 
 impl Store {
@@ -41,50 +43,53 @@ impl Store {
         text: &str,
         existing: OnExisting,
     ) -> Result<Self> {
-        expect_room(dir)?;
-        let store = Self { dir: dir.to_path_buf(), facts: facts.clone(), _lock: lock(dir)? };
-        match (Self::manifest(dir)?, existing) {
-            (_, OnExisting::Replace) => store.clear()?,
-            (None, OnExisting::Keep | OnExisting::Resume) => {
-                store.expect_empty()?;
-                store.sweep()?;
+        let lock = Some(FolderLock::take(dir)?);
+        let store = Self { dir: dir.to_path_buf(), facts: facts.clone(), lock };
+        if existing == OnExisting::Replace {
+            store.clear()?;
+        } else {
+            match Self::facts_in(dir)? {
+                None => store.expect_empty()?,
+                Some(found) => store.expect_same(&found, existing)?,
             }
-            (Some(found), OnExisting::Keep | OnExisting::Resume) if found != *facts => {
-                let what = if found.version == facts.version {
-                    "another study: the study, its scene or what the command line sets differs"
-                } else {
-                    "a study by another version of the program"
-                };
-                return Err(Error::Usage(format!(
-                    "{} holds results of {what}; use --overwrite to begin anew, or -o for another folder",
-                    dir.display()
-                )));
-            }
-            (Some(_), OnExisting::Keep) => {
-                return Err(Error::Usage(format!(
-                    "{} holds results of this study; use --resume to go on with them, or --overwrite to begin anew",
-                    dir.display()
-                )));
-            }
-            (Some(_), OnExisting::Resume) => store.sweep()?,
+            store.sweep()?;
         }
         let designs = store.dir.join(DESIGNS);
         fs::create_dir_all(&designs).map_err(|source| Error::io(&designs, source))?;
-        let manifest = serde_json::to_string_pretty(facts).map_err(|reason| Error::Output {
-            what: MANIFEST.into(),
-            reason: reason.to_string(),
-        })?;
-        write_whole(&dir.join(MANIFEST), (manifest + "\n").as_bytes(), Existing::Replace)?;
+        let text_of_facts = serde_json::to_string_pretty(facts);
+        write_sealed(&dir.join(FACTS), text_of_facts)?;
         write_whole(&store.text_path(), text.as_bytes(), Existing::Replace)?;
         Ok(store)
     }
 
     /// The results in a folder, as they are.
     pub(crate) fn read(dir: &Path) -> Result<Self> {
-        let facts = Self::manifest(dir)?.ok_or_else(|| {
+        let facts = Self::facts_in(dir)?.ok_or_else(|| {
             Error::Usage(format!("{} holds no results of a study", dir.display()))
         })?;
-        Ok(Self { dir: dir.to_path_buf(), facts, _lock: None })
+        Ok(Self { dir: dir.to_path_buf(), facts, lock: None })
+    }
+
+    /// Makes sure that results that are there are of this study, and that they may be gone on with.
+    fn expect_same(&self, found: &StudyFacts, existing: OnExisting) -> Result<()> {
+        let dir = self.dir.display();
+        if !found.is_same_study(&self.facts) {
+            return Err(Error::Usage(format!(
+                "{dir} holds results of another study: the study, its scene, what the command line sets or the numerics \
+                 of the program differ; {BEGIN_ANEW}"
+            )));
+        }
+        match existing {
+            OnExisting::Resume | OnExisting::Replace => Ok(()),
+            OnExisting::Keep => Err(Error::Usage(format!(
+                "{dir} holds results of this study; use --resume to go on with them, or --overwrite to begin anew"
+            ))),
+        }
+    }
+
+    /// The lock on the folder.
+    pub(crate) fn lock(&self) -> Result<FolderLock> {
+        self.lock.clone().map_or_else(|| FolderLock::take(&self.dir), Ok)
     }
 
     /// What the study is.
@@ -121,12 +126,24 @@ impl Store {
 
     /// Whether a folder holds results of a study, readable or not.
     pub(crate) fn is_there(dir: &Path) -> bool {
-        dir.join(MANIFEST).exists()
+        dir.join(FACTS).exists()
     }
 
     /// What study a folder holds results of; `None` if it holds none.
-    fn manifest(dir: &Path) -> Result<Option<StudyFacts>> {
-        Self::is_there(dir).then(|| read_json(&dir.join(MANIFEST))).transpose()
+    fn facts_in(dir: &Path) -> Result<Option<StudyFacts>> {
+        if !Self::is_there(dir) {
+            return Ok(None);
+        }
+        let path = dir.join(FACTS);
+        let bytes = fs::read(&path).map_err(|source| Error::io(&path, source))?;
+        let refuse = |why: &str| {
+            Error::Usage(format!("{} cannot be gone on with: {why}; {BEGIN_ANEW}", path.display()))
+        };
+        let facts: StudyFacts = unseal(&bytes).map_err(|damage| refuse(&damage.to_string()))?;
+        if facts.lumiduct_batch != FACTS_FORMAT {
+            return Err(refuse("it has the layout of another version of the program"));
+        }
+        Ok(Some(facts))
     }
 
     /// The folder.
@@ -141,11 +158,7 @@ impl Store {
 
     /// Writes the record of a design.
     pub(crate) fn write(&self, record: &DesignRecord) -> Result<()> {
-        let text = serde_json::to_string(record).map_err(|reason| Error::Output {
-            what: format!("record of design {}", record.design),
-            reason: reason.to_string(),
-        })?;
-        write_whole(&self.record_path(record.design), (text + "\n").as_bytes(), Existing::Replace)
+        write_sealed(&self.record_path(record.design), serde_json::to_string(record))
     }
 
     /// Begins the table of seconds, which lies outside of the reproducible files, if it is not there.
@@ -170,25 +183,29 @@ impl Store {
         let designs = self.dir.join(DESIGNS);
         let mut records = BTreeMap::new();
         for path in entries(&designs)? {
-            if path.extension().is_none_or(|extension| extension != "json") {
+            let is_numbered = path.file_stem().is_some_and(|stem| {
+                stem.to_string_lossy().bytes().all(|letter| letter.is_ascii_digit())
+            });
+            if !is_numbered || path.extension().is_none_or(|extension| extension != "json") {
                 continue;
             }
-            let record: DesignRecord = read_json(&path).map_err(|error| match error {
-                Error::Usage(message) => Error::Usage(format!("{message}; {REMOVE}")),
-                other @ (Error::Input(_) | Error::Io { .. } | Error::Output { .. }) => other,
-            })?;
-            if record.lumiduct_design != DESIGN_FORMAT
-                || record.study != self.facts.hash
-                || path != self.record_path(record.design)
-            {
-                return Err(Error::Usage(format!(
-                    "{} is no record of this study; {REMOVE}",
-                    path.display()
-                )));
+            let bytes = fs::read(&path).map_err(|source| Error::io(&path, source))?;
+            let record: DesignRecord =
+                unseal(&bytes).map_err(|damage| refusal(&path, &damage.to_string()))?;
+            if record.lumiduct_design != DESIGN_FORMAT {
+                return Err(refusal(&path, "it has the layout of another version of the program"));
+            }
+            if record.study != self.facts.hash || path != self.record_path(record.design) {
+                return Err(refusal(&path, "it is of another study or another design"));
             }
             records.insert(record.design, record);
         }
         Ok(records)
+    }
+
+    /// Why the record of a design is none.
+    pub(crate) fn no_record(&self, design: usize, why: &str) -> Error {
+        refusal(&self.record_path(design), why)
     }
 
     fn record_path(&self, design: usize) -> PathBuf {
@@ -215,39 +232,51 @@ impl Store {
         sweep(&self.dir.join(DESIGNS))
     }
 
-    /// Takes away the results of an older batch: its records, and the files that its summary and those of its designs name.
+    /// Takes away the results of an older batch: files that whole manifests list, and the records of its designs. Where the
+    /// facts of that batch are not whole, only records go that this one is going to write. Files of others stay.
     fn clear(&self) -> Result<()> {
         self.sweep()?;
-        remove_report(&self.dir, study::SUMMARY)?;
+        let older = Self::facts_in(&self.dir).ok().flatten();
+        let designs = older.map_or(0, |facts| facts.designs).max(self.facts.designs);
+        remove_report(&self.dir)?;
+        remove_if_there(&self.dir.join(FACTS))?;
         remove_if_there(&self.dir.join(TIMING))?;
         for path in entries(&self.dir.join(DESIGNS))? {
-            if path.is_dir() {
+            let is_own = |design: &usize| {
+                path == self.record_path(*design) || path == self.report_of(*design)
+            };
+            let number = path.file_stem().and_then(|stem| stem.to_str()?.parse().ok());
+            if number.filter(|design| (1..=designs).contains(design)).filter(is_own).is_none() {
+                continue;
+            }
+            // A link to a folder leads elsewhere.
+            if path.is_symlink() || path.is_file() {
+                remove_if_there(&path)?;
+            } else {
                 sweep(&path)?;
-                remove_report(&path, report::SUMMARY)?;
+                remove_report(&path)?;
                 // A folder with files of others stays.
                 if entries(&path)?.is_empty() {
                     fs::remove_dir(&path).map_err(|source| Error::io(&path, source))?;
                 }
-            } else if path.extension().is_some_and(|extension| extension == "json") {
-                remove_if_there(&path)?;
             }
         }
         Ok(())
     }
 }
 
-/// A lock on a folder itself, which nothing replaces; an error where another program holds it.
-fn lock(dir: &Path) -> Result<Option<File>> {
-    // Some systems open no folders as files.
-    let Ok(file) = File::open(dir) else { return Ok(None) };
-    match file.try_lock() {
-        Err(TryLockError::WouldBlock) => Err(Error::Usage(format!(
-            "another batch is at work in {}; wait for its end, or use -o for another folder",
-            dir.display()
-        ))),
-        // Some file systems have no locks.
-        Ok(()) | Err(TryLockError::Error(_)) => Ok(Some(file)),
-    }
+/// Why a file is no record of a design.
+fn refusal(path: &Path, why: &str) -> Error {
+    Error::Usage(format!("{} is no record of this study: {why}; {REMOVE}", path.display()))
+}
+
+/// Writes an object in JSON with its seal, whole or not at all.
+fn write_sealed(path: &Path, json: serde_json::Result<String>) -> Result<()> {
+    let json = json.map_err(|reason| Error::Output {
+        what: path.display().to_string(),
+        reason: reason.to_string(),
+    })?;
+    write_whole(path, seal(&json).as_bytes(), Existing::Replace)
 }
 
 /// Everything in a folder, by name; nothing of one that is not there.
@@ -262,11 +291,4 @@ fn entries(folder: &Path) -> Result<Vec<PathBuf>> {
     let mut paths = paths.map_err(failed)?;
     paths.sort();
     Ok(paths)
-}
-
-fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T> {
-    let bytes = fs::read(path).map_err(|source| Error::io(path, source))?;
-    serde_json::from_slice(&bytes).map_err(|reason| {
-        Error::Usage(format!("{} cannot be read as results of a batch: {reason}", path.display()))
-    })
 }

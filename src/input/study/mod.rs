@@ -21,21 +21,25 @@ use crate::input::spec::study::{
 };
 use crate::input::study::file::{StudyDraft, read};
 use crate::input::{Draft, Job, Settings, draft, load};
-use crate::scene::plan::Check;
+use crate::scene::plan::{Check, NUMERICS};
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What the command line asks for beside the study file.
-#[derive(Debug, Clone, Default)]
+/// What the command line asks for beside the study file. Its names are part of the identity of a study.
+#[derive(Debug, Clone, Default, Serialize)]
 pub struct StudySettings {
     /// `key=value` for keys of the scene, set for all designs after those of the study.
+    #[serde(rename = "overrides")]
     pub overrides: Vec<String>,
     /// Relative error of the target measure of a design.
+    #[serde(rename = "target")]
     pub target: Option<f64>,
     /// Number of paths of a design.
+    #[serde(rename = "paths")]
     pub paths: Option<u64>,
     /// Seed of the random numbers of light.
+    #[serde(rename = "seed")]
     pub seed: Option<u64>,
 }
 
@@ -157,7 +161,8 @@ pub fn load_study(path: &Path, settings: &StudySettings) -> Result<Study> {
     places.sources().iter().for_each(|source| hash.add(source.text().as_bytes()));
     hash.add(base.hash.as_bytes());
     add_choices(&parameters, &scene, &common, &mut hash);
-    hash.add(format!("{settings:?}").as_bytes());
+    let identity = serde_json::to_string(&(NUMERICS, &base.run, settings));
+    hash.add(identity.expect("numbers and texts always have a form in JSON").as_bytes());
     let warnings = warnings.into_iter().chain(base.warnings.iter().cloned()).collect();
     Ok(Study {
         name: path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),

@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::input::Setting;
 use crate::measure::Measure;
 use crate::report::diff::maps::MapTable;
-use crate::report::{SUMMARY, study, summary};
+use crate::report::{Manifest, SUMMARY, study, summary};
 use indexmap::IndexMap;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
@@ -123,11 +123,11 @@ pub fn read(folder: &Path) -> Result<Side> {
             folder.display()
         )));
     }
-    if let Some(found) = summary_in(folder, SUMMARY, summary::FORMAT)? {
-        return run_side(folder, found);
+    if let Some((found, manifest)) = summary_in(folder, SUMMARY, summary::FORMAT)? {
+        return run_side(folder, found, &manifest);
     }
     match summary_in(folder, study::SUMMARY, study::SUMMARY_FORMAT)? {
-        Some(found) => Ok(study_side(found)),
+        Some((found, _)) => Ok(study_side(found)),
         None => Err(Error::Usage(format!(
             "{} holds no report: neither summary.json of a run nor study.json of a whole study",
             folder.display()
@@ -135,8 +135,12 @@ pub fn read(folder: &Path) -> Result<Side> {
     }
 }
 
-/// The summary in a folder, if there is one.
-fn summary_in<T: DeserializeOwned>(folder: &Path, name: &str, known: u32) -> Result<Option<T>> {
+/// The summary in a folder, if there is one, and the manifest of its report, which must be whole.
+fn summary_in<T: DeserializeOwned>(
+    folder: &Path,
+    name: &str,
+    known: u32,
+) -> Result<Option<(T, Manifest)>> {
     let path = folder.join(name);
     let bytes = match fs::read(&path) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
@@ -152,10 +156,13 @@ fn summary_in<T: DeserializeOwned>(folder: &Path, name: &str, known: u32) -> Res
             path.display()
         )));
     }
-    serde_json::from_slice(&bytes).map(Some).map_err(wrong)
+    let found = serde_json::from_slice(&bytes).map_err(wrong)?;
+    let manifest = Manifest::expect(folder)?;
+    manifest.expect_file(&path, &bytes)?;
+    Ok(Some((found, manifest)))
 }
 
-fn run_side(folder: &Path, found: RunSummary) -> Result<Side> {
+fn run_side(folder: &Path, found: RunSummary, manifest: &Manifest) -> Result<Side> {
     let RunSummary { scene, run, paths, measures, checks, files } = found;
     let SceneWords { name, hash, overrides } = scene;
     let seed = run.seed;
@@ -176,6 +183,7 @@ fn run_side(folder: &Path, found: RunSummary) -> Result<Side> {
             Err(error) if error.kind() == ErrorKind::NotFound => continue,
             other => other.map_err(|source| Error::io(&path, source))?,
         };
+        manifest.expect_file(&path, text.as_bytes())?;
         let table = MapTable::parse(file.trim_end_matches(".csv"), &text);
         maps.extend(table.map_err(|reason| Error::Usage(format!("{}: {reason}", path.display())))?);
     }

@@ -8,9 +8,9 @@ use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
 /// Format of the manifest of a study.
-pub const FACTS_FORMAT: u32 = 1;
+pub const FACTS_FORMAT: u32 = 2;
 /// Format of the record of a design.
-pub const DESIGN_FORMAT: u32 = 1;
+pub const DESIGN_FORMAT: u32 = 2;
 
 /// What a study is, without its results.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -25,7 +25,7 @@ pub struct StudyFacts {
     pub title: String,
     /// What it is for.
     pub description: Option<String>,
-    /// Identifies study, scene, files that they name, and overrides.
+    /// Identifies study, scene, files that they name, overrides and numerics.
     pub hash: String,
     /// Name of the scene that is varied.
     pub scene: String,
@@ -51,6 +51,13 @@ pub struct StudyFacts {
     pub checks: Vec<Check>,
     /// What is kept of each design.
     pub keep: Keep,
+}
+
+impl StudyFacts {
+    /// Whether these are of the same study, so that their designs go together.
+    pub fn is_same_study(&self, other: &Self) -> bool {
+        (&self.name, &self.hash, self.designs) == (&other.name, &other.hash, other.designs)
+    }
 }
 
 /// Which designs are made of the parameters.
@@ -114,6 +121,8 @@ impl ParameterFacts {
 pub struct DesignRecord {
     /// Format of the record, [`DESIGN_FORMAT`].
     pub lumiduct_design: u32,
+    /// The exact build of the program that traced it.
+    pub build: String,
     /// Hash of the study that it is a design of.
     pub study: String,
     /// Its number, from 1.

@@ -104,6 +104,7 @@ pub(super) mod testing {
         let of = |setting: f64| Setting::Number(setting);
         DesignRecord {
             lumiduct_design: DESIGN_FORMAT,
+            build: String::new(),
             study: String::new(),
             design: number,
             settings: IndexMap::from([

@@ -15,7 +15,7 @@ mod values;
 use crate::cli::batch::BatchArgs;
 use crate::cli::check::CheckArgs;
 use crate::cli::compare::CompareArgs;
-use crate::cli::console::{print, print_error};
+use crate::cli::console::{print, print_coloured, print_error};
 use crate::cli::diff::DiffArgs;
 use crate::cli::film::FilmArgs;
 use crate::cli::merge::MergeArgs;
@@ -192,7 +192,7 @@ fn finish(text: crate::error::Result<String>) -> ExitCode {
 
 fn warn(warnings: &[Diagnostic]) {
     if !warnings.is_empty() {
-        print_error(&rendered(warnings));
+        print_coloured(&rendered(warnings));
     }
 }
 
@@ -205,7 +205,7 @@ fn rendered(diagnostics: &[Diagnostic]) -> String {
 fn fail(error: &Error) -> ExitCode {
     match error {
         Error::Input(diagnostics) => {
-            print_error(&rendered(diagnostics));
+            print_coloured(&rendered(diagnostics));
             ExitCode::from(2)
         }
         Error::Usage(message) => {

@@ -45,5 +45,6 @@ pub mod rng;
 pub mod scene;
 pub mod study;
 pub mod tally;
+pub mod text;
 pub mod transport;
 pub mod units;

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 /// Layers from the bottom up; modules of one layer do not see each other.
 const LAYERS: &[&[&str]] = &[
     &["error"],
-    &["units", "number", "math", "rng", "tally"],
+    &["units", "number", "text", "math", "rng", "tally"],
     &["formats"],
     &["optics"],
     &["scene"],

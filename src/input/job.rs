@@ -10,6 +10,7 @@ use crate::input::project::{Project, project};
 use crate::input::{Draft, draft};
 use crate::scene::Scene;
 use crate::scene::plan::{Check, Request, RunPlan, StopRules, Target};
+use crate::text::visible;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::time::Duration;
@@ -97,7 +98,7 @@ pub fn load(path: &Path, settings: &Settings) -> Result<Job> {
     logo.into_iter().for_each(|png| hash.add(png));
     apply(settings, &scene, &mut run)?;
     Ok(Job {
-        name: path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
+        name: visible(&path.file_stem().unwrap_or_default().to_string_lossy()),
         title: spec.title,
         description: spec.description,
         project,

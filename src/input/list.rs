@@ -1,6 +1,8 @@
 //! What can be run: the scenes, studies and sensor files below a folder.
 
 use crate::error::{Error, Result};
+use crate::input::sources::{Sources, Unreadable};
+use crate::text::visible;
 use std::fs;
 use std::path::Path;
 
@@ -40,17 +42,25 @@ fn collect(folder: &Path, depth: usize, lines: &mut Vec<(String, String)>) -> Re
         } else if path.extension().is_some_and(|extension| extension == "toml")
             && let Some(what) = describe(&path)
         {
-            lines.push((path.display().to_string(), what));
+            lines.push((one_line(&path.display().to_string()), one_line(&what)));
         }
     }
     Ok(())
 }
 
+/// A text as a line of a list.
+fn one_line(text: &str) -> String {
+    visible(text).replace(['\n', '\t'], " ")
+}
+
 /// The title of a scene or a study, or the kind of a sensor file, or that it cannot be read; `None` for anything else.
 fn describe(path: &Path) -> Option<String> {
-    let table = match fs::read_to_string(path) {
-        Ok(text) => text.parse::<toml::Table>(),
-        Err(reason) => return Some(format!("(cannot be read: {reason})")),
+    let mut sources = Sources::default();
+    let table = match sources.add_file(path) {
+        Ok(source) => sources.get(source).text().parse::<toml::Table>(),
+        // A pipe or a device may never end.
+        Err(Unreadable::NotAFile) => return None,
+        Err(reason) => return Some(format!("({reason})")),
     };
     let Ok(table) = table else {
         return Some("(no valid TOML: `lumiduct check` tells where)".to_owned());

@@ -7,6 +7,7 @@ use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
 use crate::input::sources::{Origin, SourceId, Sources};
+use crate::text::is_control;
 
 /// Deepest nesting of tables and arrays.
 pub const MAX_DEPTH: usize = 64;
@@ -168,6 +169,9 @@ impl Reader {
         let mut entries = IndexMap::new();
         for (key, value) in table {
             let origin = self.origin(key.span());
+            if let Some(letter) = key.get_ref().chars().find(|letter| is_control(*letter)) {
+                self.error(key.span(), &control_message("name", letter));
+            }
             let node = self.node(value, depth + 1);
             entries.insert(DeString::into_owned(key.into_inner()), Entry { key: origin, node });
         }
@@ -188,7 +192,13 @@ impl Reader {
             DeValue::Array(items) => {
                 Value::Array(items.into_iter().map(|item| self.node(item, depth + 1)).collect())
             }
-            DeValue::String(text) => Value::String(text.into_owned()),
+            DeValue::String(text) => {
+                let is_wrong = |letter: &char| is_control(*letter) && !"\n\r\t".contains(*letter);
+                match text.chars().find(is_wrong) {
+                    Some(letter) => self.error(span.clone(), &control_message("text", letter)),
+                    None => Value::String(text.into_owned()),
+                }
+            }
             DeValue::Integer(number) => {
                 match i64::from_str_radix(number.as_str(), number.radix()) {
                     Ok(number) => Value::Integer(number),
@@ -204,6 +214,13 @@ impl Reader {
         };
         Node { origin: self.origin(span), value }
     }
+}
+
+fn control_message(what: &str, letter: char) -> String {
+    let code = u32::from(letter);
+    format!(
+        "this {what} holds the control character U+{code:04X}, which terminals and pages act upon; leave it out"
+    )
 }
 
 /// The first error of each line: the rest are mostly its echoes.
@@ -247,6 +264,20 @@ mod tests {
         assert_eq!(errors.len(), 3, "{errors:?}");
         assert_eq!(errors[1].key, "b");
         assert_eq!(root.get("d").unwrap().value, Value::Integer(4));
+    }
+
+    #[test]
+    fn control_characters_of_names_and_texts_are_errors() {
+        for text in [
+            "a = \"x\\u001b[31m\"",
+            "a = \"x\u{202e}y\"",
+            "\"a\\u0007\" = 1",
+            "[\"b\\u009b\"]\nc = 1",
+        ] {
+            let errors = parsed(text).1;
+            assert!(errors.len() == 1 && errors[0].message.contains("U+"), "{text:?}: {errors:?}");
+        }
+        assert!(parsed("a = \"two\\nlines\\tand a tab\"").1.is_empty());
     }
 
     #[test]

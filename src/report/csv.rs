@@ -5,6 +5,7 @@ use crate::measure::{Axes, IntensityTable, SensorMap};
 use crate::number::format_value;
 use crate::report::by_light::sum_over_weathers;
 use crate::report::{OutputFile, Report};
+use crate::text::spreadsheet_cell;
 use csv::Writer;
 
 /// All tables of a report but those for spreadsheets.
@@ -106,14 +107,16 @@ fn numbers(row: impl IntoIterator<Item = f64>) -> Vec<String> {
 /// A table from a header and rows.
 pub(crate) fn table(
     name: String,
-    header: &[impl AsRef<[u8]>],
+    header: &[impl AsRef<str>],
     rows: impl Iterator<Item = Vec<String>>,
 ) -> Result<OutputFile> {
     let failed = |reason: String| Error::Output { what: name.clone(), reason };
     let mut writer = Writer::from_writer(Vec::new());
+    let header = header.iter().map(|cell| spreadsheet_cell(cell.as_ref()));
     writer.write_record(header).map_err(|reason| failed(reason.to_string()))?;
     for row in rows {
-        writer.write_record(&row).map_err(|reason| failed(reason.to_string()))?;
+        let row = row.iter().map(|cell| spreadsheet_cell(cell));
+        writer.write_record(row).map_err(|reason| failed(reason.to_string()))?;
     }
     let bytes = writer.into_inner().map_err(|reason| failed(reason.to_string()))?;
     Ok(OutputFile { name, bytes })

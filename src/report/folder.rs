@@ -101,9 +101,11 @@ impl Folder {
         for file in files.iter().chain([&manifest]) {
             let path = self.path().join(&file.name);
             match (compare(&path, &file.bytes)?, self.existing) {
-                (Comparison::Same, _) => {}
+                // As files take their places, the manifest goes: it takes its own in any case.
+                (Comparison::Same, _) if staged.is_empty() || file.name != MANIFEST => {}
                 (Comparison::Different, Existing::Keep) => differing.push(file.name.clone()),
-                (Comparison::Different, Existing::Replace) | (Comparison::Missing, _) => {
+                (Comparison::Different, Existing::Replace)
+                | (Comparison::Missing | Comparison::Same, _) => {
                     staged.push((stage(&path, &file.bytes)?, file.name.clone()));
                 }
             }
@@ -307,6 +309,10 @@ mod tests {
         fs::write(path.join("notes.txt"), "mine").unwrap();
         let written = open(Existing::Replace).unwrap().write(&[file("a.csv", "2")]).unwrap();
         assert_eq!(written, Written::New);
+        assert_eq!(fs::read_to_string(path.join("a.csv")).unwrap(), "2");
+        // A file that others have changed comes back, and the manifest stays.
+        fs::write(path.join("a.csv"), "3").unwrap();
+        open(Existing::Replace).unwrap().write(&[file("a.csv", "2")]).unwrap();
         assert_eq!(fs::read_to_string(path.join("a.csv")).unwrap(), "2");
         assert_eq!(fs::read_to_string(path.join("notes.txt")).unwrap(), "mine");
         // Of two runs there is one report, and no temporary file.

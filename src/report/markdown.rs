@@ -3,6 +3,7 @@
 use crate::report::contents::{parts, verdict};
 use crate::report::html::frame::{Block, Part, Plots};
 use crate::report::{LOGO, Report};
+use crate::text::without_html;
 use std::fmt::Write;
 
 /// The whole page.
@@ -25,7 +26,7 @@ pub(crate) fn markdown(report: &Report) -> String {
     }
     // Plots are for scripts; here their pictures are shown.
     parts(report, &mut Plots::default()).iter().for_each(|part| add(&mut page, part));
-    page.trim_end().to_owned() + "\n"
+    without_html(page.trim_end()) + "\n"
 }
 
 fn add(page: &mut String, part: &Part) {

@@ -1,7 +1,7 @@
 //! What decides the bytes of a report, so that a run over its own report is told from a run over another one.
 
 use crate::report::{Manifest, SUMMARY};
-use crate::scene::plan::{NUMERICS, RunPlan};
+use crate::scene::plan::{Estimator, GatherPlan, NUMERICS, Request, RunPlan};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::fs;
@@ -48,7 +48,7 @@ impl Recipe {
             "a report by other numerics, those of another version of the program"
         } else if other.scene_hash != self.scene_hash {
             "a report of another scene: the file, a file that it names, or -D differs"
-        } else if (&plan.estimator, &plan.gather) != (&own.estimator, &own.gather) {
+        } else if method(plan) != method(own) {
             "a report with another estimator or other wishes for it"
         } else if plan.seed != own.seed {
             "a report with another seed"
@@ -56,6 +56,11 @@ impl Recipe {
             "a report with other stop rules"
         }
     }
+}
+
+/// How light is estimated.
+fn method(plan: &RunPlan) -> (Request, &[Option<Estimator>], GatherPlan) {
+    (plan.estimator, &plan.sensor_estimators, plan.gather)
 }
 
 impl Found {

@@ -151,7 +151,7 @@ fn two_batches_are_not_at_work_in_one_folder() {
     }
     for more in ["", "--resume", "--overwrite"] {
         let said = place.bad(2, &format!("batch study.toml -o out {more}"));
-        assert!(said.contains("another batch is at work"), "{more}: {said}");
+        assert!(said.contains("another run or batch is at work"), "{more}: {said}");
     }
     first.kill().unwrap();
     first.wait().unwrap();

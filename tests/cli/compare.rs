@@ -17,7 +17,7 @@ fn a_comparison_writes_a_page_a_table_a_plot_and_its_truth() {
     }
     assert_eq!(
         names(&place.path("out")),
-        ["compare.csv", "compare.md", "compare.png", "truth.csv"]
+        ["compare.csv", "compare.md", "compare.png", "manifest.json", "truth.csv"]
     );
     let page = fs::read_to_string(place.path("out/compare.md")).unwrap();
     assert!(page.contains("no part of the reproducible reports"), "{page}");

@@ -63,7 +63,8 @@ fn another_seed_is_within_the_limits_and_maps_differ_by_noise_alone() {
             "diff.html",
             "diff.md",
             "exit.illuminance.difference.png",
-            "far.intensity.difference.png"
+            "far.intensity.difference.png",
+            "manifest.json"
         ]
     );
     assert!(said.contains("report: difference/diff.html"), "{said}");

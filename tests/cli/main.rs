@@ -15,6 +15,7 @@ mod runs;
 mod seals;
 mod spreadsheets;
 mod streams;
+mod texts;
 
 use assert_cmd::Command;
 use serde_json::Value;

@@ -19,6 +19,7 @@ fn a_run_writes_every_file_of_its_report() {
         "far.intensity.csv",
         "far.intensity.matrix.csv",
         "far.intensity.png",
+        "manifest.json",
         "measures.csv",
         "report.html",
         "report.md",

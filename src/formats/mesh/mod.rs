@@ -20,6 +20,7 @@ pub(crate) use health::normals_agree;
 pub use health::{Defects, Facets, MeshHealth, health};
 
 use crate::math::Aabb;
+use crate::text::visible;
 use glam::DVec3;
 use std::fmt;
 use std::fs;
@@ -199,13 +200,15 @@ pub enum MeshError {
 pub fn read(path: &Path, unit: LengthUnit) -> Result<TriangleMesh, MeshError> {
     let format = MeshFormat::of(path)?;
     let bytes = read_file(path, MAX_FILE_BYTES)?;
-    match format {
+    let mut mesh = match format {
         MeshFormat::Gltf => {
             from_gltf::read(&bytes, path.parent().unwrap_or_else(|| Path::new("")), unit)
         }
         MeshFormat::Stl => from_stl::read(&bytes, unit),
         MeshFormat::Obj => from_obj::read(&bytes, unit),
-    }
+    }?;
+    mesh.faces.iter_mut().for_each(|name| *name = visible(name));
+    Ok(mesh)
 }
 
 /// All bytes of a regular file that has at most `limit` of them.

@@ -22,6 +22,7 @@ use crate::input::spec::study::{
 use crate::input::study::file::{StudyDraft, read};
 use crate::input::{Draft, Job, Settings, draft, load};
 use crate::scene::plan::{Check, NUMERICS};
+use crate::text::visible;
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -165,7 +166,7 @@ pub fn load_study(path: &Path, settings: &StudySettings) -> Result<Study> {
     hash.add(identity.expect("numbers and texts always have a form in JSON").as_bytes());
     let warnings = warnings.into_iter().chain(base.warnings.iter().cloned()).collect();
     Ok(Study {
-        name: path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
+        name: visible(&path.file_stem().unwrap_or_default().to_string_lossy()),
         title: spec.title,
         description: spec.description,
         base,

@@ -181,6 +181,12 @@ fn run_side(folder: &Path, found: RunSummary, manifest: &Manifest) -> Result<Sid
         let text = match fs::read_to_string(&path) {
             // Numbers may be kept without their tables.
             Err(error) if error.kind() == ErrorKind::NotFound => continue,
+            Err(error) if error.kind() == ErrorKind::InvalidData => {
+                let path = path.display();
+                return Err(Error::Usage(format!(
+                    "{path}: not UTF-8 text, so no table of a report"
+                )));
+            }
             other => other.map_err(|source| Error::io(&path, source))?,
         };
         manifest.expect_file(&path, text.as_bytes())?;

@@ -61,6 +61,7 @@ mod tests {
     fn designs(lengths: &[f64]) -> Vec<DesignRecord> {
         let design = |(place, length): (usize, &f64)| DesignRecord {
             lumiduct_design: DESIGN_FORMAT,
+            build: String::new(),
             study: String::new(),
             design: place + 1,
             settings: [("length".to_owned(), Setting::Number(*length))].into_iter().collect(),

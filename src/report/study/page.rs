@@ -3,6 +3,7 @@
 use crate::report::study::StudyReport;
 use crate::report::study::contents::{Item, Part, parts, verdict};
 use crate::report::study::figures::Figure;
+use crate::text::without_html;
 use std::fmt::Write;
 
 /// Rows of a table that are shown; `study.csv` has all.
@@ -24,7 +25,7 @@ pub(super) fn page(report: &StudyReport, figures: &[Figure]) -> String {
         _ = write!(page, "![{}]({})\n\n", figure.label, figure.file);
     }
     after.iter().for_each(|part| add(&mut page, part));
-    page.trim_end().to_owned() + "\n"
+    without_html(page.trim_end()) + "\n"
 }
 
 fn add(page: &mut String, part: &Part) {

@@ -1,0 +1,72 @@
+//! Texts of users, made harmless where they are shown: on terminals, in spreadsheets and on pages.
+
+/// Whether a character is shown by nothing of its own and changes how others are shown: control characters of ASCII and
+/// ISO 6429, and those that turn the direction of writing (Unicode 16, chapter 23.2; "Trojan Source", Boucher & Anderson 2023).
+pub fn is_control(letter: char) -> bool {
+    letter.is_control()
+        || matches!(letter, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
+/// The same text with its control characters written out, as `\u{1b}`; line breaks and tabs stay.
+pub fn visible(text: &str) -> String {
+    let mut shown = String::with_capacity(text.len());
+    for letter in text.chars() {
+        if is_control(letter) && !matches!(letter, '\n' | '\t') {
+            shown.extend(letter.escape_unicode());
+        } else {
+            shown.push(letter);
+        }
+    }
+    shown
+}
+
+/// A cell of a table in which no spreadsheet sees a formula: a text that begins as one gets an apostrophe (OWASP, CSV
+/// Injection). Numbers stay as they are.
+pub fn spreadsheet_cell(text: &str) -> String {
+    let is_formula = text.starts_with(['=', '+', '-', '@', '\t', '\r']);
+    if is_formula && text.parse::<f64>().is_err() { format!("'{text}") } else { text.to_owned() }
+}
+
+/// A page of Markdown in which no text is taken for HTML (`CommonMark` 0.31, section 6.6: what a tag begins with).
+pub fn without_html(page: &str) -> String {
+    let mut safe = String::with_capacity(page.len());
+    let mut letters = page.chars().peekable();
+    while let Some(letter) = letters.next() {
+        let next = letters.peek();
+        let is_tag = next.is_some_and(|next| next.is_ascii_alphabetic() || "/!?".contains(*next));
+        if letter == '<' && is_tag { safe.push_str("&lt;") } else { safe.push(letter) }
+    }
+    safe
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn control_characters_are_written_out() {
+        assert_eq!(
+            visible("a\u{1b}[31m\n\tb\u{202e}c\u{7f}"),
+            "a\\u{1b}[31m\n\tb\\u{202e}c\\u{7f}"
+        );
+        assert_eq!(visible("Ø 5 mm, 45° – grün"), "Ø 5 mm, 45° – grün");
+    }
+
+    #[test]
+    fn formulas_become_texts_and_numbers_stay() {
+        for text in ["=1+1", "+cmd", "-x", "@a", "\tb", "\rc", "-1 mm"] {
+            assert_eq!(spreadsheet_cell(text), format!("'{text}"));
+        }
+        for text in ["-1.5", "+2", "-inf", "-1e-7", "exit.flux", "", "a=b"] {
+            assert_eq!(spreadsheet_cell(text), text);
+        }
+    }
+
+    #[test]
+    fn tags_become_text_and_comparisons_stay() {
+        assert_eq!(
+            without_html("<script>a</script> <!-- x --> 1 < 2 <= 3"),
+            "&lt;script>a&lt;/script> &lt;!-- x --> 1 < 2 <= 3"
+        );
+    }
+}

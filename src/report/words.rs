@@ -150,8 +150,8 @@ fn waiting(seconds: f64) -> String {
         format_value((time * digits).round() / digits)
     };
     match seconds {
-        // What has no noise is known at once.
-        0.0 => "0 s".to_owned(),
+        // A flux that is known without noise costs nothing, and zero has no digits.
+        time if time <= 0.0 => "0 s".to_owned(),
         time if time < MINUTE => format!("{} s", two_digits(time)),
         time if time < HOUR => format!("{} min", two_digits(time / MINUTE)),
         time if time < DAY => "hours".to_owned(),

@@ -101,7 +101,7 @@ pub(crate) fn remark(status: Status) -> &'static str {
         Status::Ok => "",
         Status::NoSignal => " (nothing counted)",
         Status::TooFew => " (too few counts for an error bar)",
-        Status::NoiseLimited => " (limited by noise)",
+        Status::NoiseLimited => " (a bound: noise hides the value)",
         Status::BiasInNoise => " (bias not resolved from noise)",
         Status::BiasNotResolved => " (bias not resolved)",
         Status::Contradicted => " (photons found more)",

@@ -331,7 +331,9 @@ fn a_lamp_at_40_degrees_is_the_brightest_in_an_image() {
         "#,
     );
     let found = &found.values["cam.luminance_max"];
-    assert!((found.value / 1e5 - 1.0).abs() < 0.1, "{found}");
+    // 25 paths a pixel: the error of the largest of some 28 bright pixels is below a fifth.
+    assert!(found.total_error() < 2e4, "{found}");
+    assert!((found.value - 1e5).abs() < 3.0 * found.total_error(), "{found}");
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! Runs that are stopped at a given look at the signal, wherever that is: in the pilot, in a batch, in a path.
 
-use super::tests::job;
-use super::*;
 use crate::input::GatherSettings;
+use crate::pipeline::tests::job;
+use crate::pipeline::*;
 use crate::transport::Phase;
 
 /// The short rod by one estimator, in small batches or passes, with a plan for more than is traced.
@@ -64,7 +64,7 @@ fn a_stopped_run_ends_at_its_next_looks_and_its_command_repeats_it_on_any_thread
                 paths: Some(traced.findings.paths),
                 ..settings(estimator)
             };
-            let again = super::tests::job(folder.path(), &repeated);
+            let again = job(folder.path(), &repeated);
             for threads in [1, 3] {
                 let same =
                     on_threads(threads, || trace(&again, &Interrupt::default(), &mut |_| ()));
@@ -88,7 +88,7 @@ fn a_run_stopped_in_the_pilot_says_so_and_one_after_it_repeats_without_a_pilot()
     let whole = trace(&job, &Interrupt::default(), &mut |_| ()).unwrap();
     let [chosen] = whole.findings.estimators[..] else { panic!("one sensor") };
     let own = vec![format!("sensors.exit.estimator={}", chosen.name())];
-    let again = super::tests::job(folder.path(), &Settings { overrides: own, ..auto });
+    let again = job(folder.path(), &Settings { overrides: own, ..auto });
     let mut phases = Vec::new();
     let repeated = trace(&again, &Interrupt::default(), &mut |now| phases.push(now.phase)).unwrap();
     assert!(phases.iter().all(|phase| !matches!(phase, Phase::Pilot(_))), "{phases:?}");

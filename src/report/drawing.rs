@@ -4,11 +4,12 @@
 
 use crate::math::Aabb;
 use crate::scene::{
-    Emitter, FaceId, Facets, Fineness, Owner, Scene, SensorKind, SourceId, shape_facets,
+    Emitter, FaceFacets, FaceId, Facets, Fineness, Owner, Scene, SensorKind, SourceId, shape_facets,
 };
 use crate::transport::{Track, TrackEnd};
 use glam::DVec3;
 use serde::Serialize;
+use std::collections::BTreeSet;
 
 /// Deviation of chords that nobody sees, as a share of the size of the scene, 1.
 const DEVIATION: f64 = 2e-4;
@@ -16,6 +17,8 @@ const DEVIATION: f64 = 2e-4;
 const MESH_CELL: f64 = 0.004;
 /// Most pieces of a face that are drawn.
 const PATCHES: usize = 500;
+/// Most faces that are drawn: more make a page of many megabytes, in which nobody finds anything.
+const FACES: usize = 1500;
 /// Most elements of a pattern that are drawn.
 const ELEMENTS: usize = 600;
 /// Most points of a path that are drawn.
@@ -126,6 +129,7 @@ pub fn drawing(scene: &Scene, tracks: &[Track]) -> Drawing {
         remarks.push(format!("paths are drawn up to their first {POINTS} points"));
     }
     let marks = marks(scene, &faces, &paths);
+    faces.retain(|face| !face.facets.points.is_empty());
     let mut drawing = Drawing {
         middle,
         radius,
@@ -157,11 +161,24 @@ fn solid_bounds(scene: &Scene) -> Aabb {
 }
 
 fn faces(scene: &Scene, fineness: &Fineness, remarks: &mut Vec<String>) -> Vec<DrawnFace> {
-    let sensed = sensed_faces(scene);
+    let sensed: BTreeSet<FaceId> = sensed_faces(scene).into_iter().collect();
     let mut faces = Vec::new();
+    let one_in = scene.faces.len().div_ceil(FACES).max(1);
+    if one_in > 1 {
+        remarks.push(format!("of {} faces one in {one_in} is drawn", scene.faces.len()));
+    }
     for (index, face) in scene.faces.iter().enumerate() {
         let id = FaceId::new(index);
-        let found = scene.face_facets(id, fineness);
+        // Solids are drawn whole or not at all.
+        let place = match face.owner {
+            Owner::Solid(solid) => solid.index(),
+            Owner::Sheet | Owner::Port => index,
+        };
+        let found = if place % one_in == 0 {
+            scene.face_facets(id, fineness)
+        } else {
+            FaceFacets { facets: Facets::default(), one_in: 1 }
+        };
         if found.one_in > 1 {
             remarks.push(format!("of `{}` one piece in {} is drawn", face.name, found.one_in));
         }
@@ -206,7 +223,8 @@ fn sensed_faces(scene: &Scene) -> Vec<FaceId> {
 /// The surfaces of sources that have some.
 fn sources(scene: &Scene, deviation: f64) -> Vec<DrawnFace> {
     let mut faces = Vec::new();
-    for source in &scene.sources {
+    let one_in = scene.sources.len().div_ceil(FACES).max(1);
+    for source in scene.sources.iter().step_by(one_in) {
         let mut facets = Facets::default();
         match &source.emitter {
             Emitter::Surface { shapes, .. } => {

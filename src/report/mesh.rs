@@ -41,10 +41,15 @@ pub fn mesh_report(name: &str, mesh: &TriangleMesh, health: &MeshHealth) -> Stri
         _ = writeln!(text, "        negative: inside out, flip the orientation of its triangles");
     }
     text.push_str("\nface                    triangles   area, mm²\n");
-    for (index, face) in mesh.faces.iter().enumerate() {
-        let own = (0..mesh.triangles.len()).filter(|&t| mesh.face_of[t] as usize == index);
-        let area: f64 = own.clone().map(|t| 0.5 * area_vector(mesh.corners(t)).length()).sum();
-        _ = writeln!(text, "{face:22} {:>10}   {}", own.count(), number(area));
+    // In one pass: an OBJ file may have as many groups as triangles.
+    let mut shares = vec![(0_usize, 0.0); mesh.faces.len()];
+    for (triangle, face) in mesh.face_of.iter().enumerate() {
+        let (count, area) = &mut shares[*face as usize];
+        *count += 1;
+        *area += 0.5 * area_vector(mesh.corners(triangle)).length();
+    }
+    for (face, (count, area)) in mesh.faces.iter().zip(shares) {
+        _ = writeln!(text, "{face:22} {count:>10}   {}", number(area));
     }
     text.push_str("\nmust be none\n");
     defects(&mut text, "open edges", &health.open_edges);

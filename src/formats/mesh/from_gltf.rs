@@ -6,6 +6,7 @@
 
 use crate::formats::mesh::builder::Builder;
 use crate::formats::mesh::gltf_buffers::{Buffers, Elements, broken};
+use crate::formats::mesh::gltf_copies::refuse_too_many_copies;
 use crate::formats::mesh::gltf_nodes::{cofactors, placed_nodes};
 use crate::formats::mesh::{LengthUnit, MeshError, TriangleMesh, UNNAMED_FACE};
 use glam::{DAffine3, DMat3, DVec3};
@@ -31,7 +32,9 @@ pub(crate) fn read(
     let blob = glb.as_ref().and_then(|glb| glb.bin.as_deref());
     let buffers = Buffers::load(&root, blob, folder)?;
     let mut builder = Builder::default();
-    for (node, to_scene) in placed_nodes(&root)? {
+    let placed = placed_nodes(&root)?;
+    refuse_too_many_copies(&root, &buffers, placed.iter().filter_map(|(node, _)| node.mesh))?;
+    for (node, to_scene) in placed {
         let to_scene = DAffine3::from_scale(DVec3::splat(unit.millimetres())) * to_scene;
         let Some(mesh) = node.mesh else { continue };
         if node.skin.is_some() {
@@ -191,8 +194,8 @@ fn unsigned(bytes: &[u8], component: ComponentType) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::mesh::health;
     use crate::formats::mesh::samples::{Normals, glb, glb_of, gltf_parts, mutants, rod};
+    use crate::formats::mesh::{MAX_COPIES_BYTES, TRIANGLE_BYTES, health};
     use serde_json::{Value, json};
 
     fn read_json(json: &Value, blob: &[u8]) -> Result<TriangleMesh, MeshError> {
@@ -297,6 +300,23 @@ mod tests {
             change(&mut json);
             let error = read_json(&json, &blob).unwrap_err().to_string();
             assert!(error.contains(expected), "{expected}: {error}");
+        }
+    }
+
+    #[test]
+    fn many_copies_of_a_mesh_are_counted_before_they_are_made() {
+        let (rod, mut json, blob) = rod_parts();
+        let most = MAX_COPIES_BYTES / (TRIANGLE_BYTES * rod.triangles.len() as u64);
+        let mut with_copies = |count: u64| {
+            json["nodes"] = (0..count).map(|_| json!({ "mesh": 0 })).collect();
+            json["scenes"][0]["nodes"] = (0..count).collect();
+            read_json(&json, &blob)
+        };
+        assert_eq!(with_copies(3).unwrap().triangles.len(), 3 * rod.triangles.len());
+        let error = with_copies(most + 2).unwrap_err();
+        assert!(matches!(error, MeshError::TooManyCopies { .. }), "{error}");
+        for words in ["export fewer copies", "about 1024 MiB", "copies may take 1024 MiB"] {
+            assert!(error.to_string().contains(words), "{error}");
         }
     }
 

@@ -69,9 +69,9 @@ enum Command {
         #[arg(default_value = ".")]
         folder: PathBuf,
     },
-    /// Print the JSON Schema of scene files, or of study files.
+    /// Print the JSON Schema of scene, study or sensor files, for editors.
     Schema {
-        /// Which.
+        /// The kind of file.
         #[arg(value_enum, default_value = "scene")]
         of: SchemaOf,
     },
@@ -89,6 +89,7 @@ enum Command {
 enum SchemaOf {
     Scene,
     Study,
+    Sensor,
 }
 
 /// Runs the program on the arguments of the process.
@@ -113,8 +114,9 @@ pub fn main() -> ExitCode {
         Command::List { folder } => finish(input::list(&folder)),
         Command::Schema { of } => {
             let schema = match of {
-                SchemaOf::Scene => input::schema::json_schema(),
+                SchemaOf::Scene => input::editor_schema::scene_file_schema(),
                 SchemaOf::Study => input::schema::study_schema(),
+                SchemaOf::Sensor => input::editor_schema::sensor_file_schema(),
             };
             finish(Ok(format!("{schema:#}\n")))
         }

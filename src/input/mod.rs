@@ -8,6 +8,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use crate::error::{Diagnostic, DiagnosticKind, Error, Result};
+use crate::formats::mesh::no_scene;
 use crate::input::keys::{Key, Places};
 use crate::input::problems::Problems;
 use crate::input::sources::Sources;
@@ -20,6 +21,7 @@ pub mod check;
 pub mod convert;
 pub mod diagnostic;
 pub(crate) mod digest;
+pub mod editor_schema;
 mod gather;
 pub mod include;
 mod job;
@@ -88,6 +90,9 @@ pub fn read(path: &Path, overrides: &[String]) -> Result<Loaded> {
 pub fn draft(path: &Path, overrides: &[String]) -> Result<Draft> {
     let mut sources = Sources::default();
     let mut problems = Problems::default();
+    if let Some(why) = no_scene(path).filter(|_| path.is_file()) {
+        return Err(unreadable(path, &why));
+    }
     let scene = sources.add_file(path).map_err(|reason| unreadable(path, &reason.to_string()))?;
     let (mut root, mut breaks) = tree::parse(&sources, scene);
     let text = sources.get(scene).text().to_owned();

@@ -189,6 +189,15 @@ pub fn name_hint<'a>(name: &str, known: impl IntoIterator<Item = &'a str> + Clon
     }
 }
 
+/// What to say when a face is not known: the nearest name, and all that there are.
+pub fn face_hint<'a>(name: &str, known: impl IntoIterator<Item = &'a str> + Clone) -> String {
+    let list = name_hint("", known.clone()).replacen("known names", "faces", 1);
+    match nearest(name, known) {
+        Some(near) => format!("did you mean `{near}`? {list}"),
+        None => list,
+    }
+}
+
 /// Most names that a hint lists.
 const MAX_NAMES: usize = 12;
 

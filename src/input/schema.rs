@@ -10,7 +10,8 @@ use serde_json::{Map, Value, json};
 use crate::input::spec::SceneSpec;
 use crate::input::spec::study::StudySpec;
 
-/// The JSON Schema (draft 2020-12) of a scene file. Every table is closed: a key that is not listed is an error.
+/// The JSON Schema (draft 2020-12) of a scene whose sensor files are joined with it. Every table is closed: a key that is not
+/// listed is an error.
 pub fn json_schema() -> Value {
     schema_of::<SceneSpec>()
 }
@@ -237,7 +238,8 @@ pub fn required_set(schema: &Value) -> Option<RequiredSet<'_>> {
         .or_else(|| keys("anyOf").map(RequiredSet::AtLeastOne))
 }
 
-fn is_required_only(option: &Value) -> bool {
+/// Whether a schema says nothing but which keys must be there.
+pub(crate) fn is_required_only(option: &Value) -> bool {
     option.as_object().is_some_and(|option| option.len() == 1 && option.contains_key("required"))
 }
 

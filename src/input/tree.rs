@@ -160,7 +160,8 @@ impl Reader {
             let key =
                 if failure.message() == "duplicate key" { text.get(span.clone()) } else { None };
             let origin = self.origin(span);
-            let message = failure.message().to_owned();
+            let message = decimal_comma(text, origin.span.start - self.offset)
+                .unwrap_or_else(|| failure.message().to_owned());
             self.errors.push(SyntaxError { origin, key: key.unwrap_or_default().into(), message });
         }
     }
@@ -223,6 +224,29 @@ fn control_message(what: &str, letter: char) -> String {
     )
 }
 
+/// The message for a number with a decimal comma, such as `1,49`, if there is one in the line of a byte.
+fn decimal_comma(text: &str, at: usize) -> Option<String> {
+    let start = text.get(..at)?.rfind('\n').map_or(0, |end| end + 1);
+    let line = text[start..].lines().next()?;
+    let value_starts = line.match_indices('=').map(|(equals, _)| line[equals + 1..].trim_start());
+    value_starts.filter_map(with_decimal_comma).next()
+}
+
+/// The message for a text that begins with a number with a decimal comma, and with no further key behind it.
+fn with_decimal_comma(text: &str) -> Option<String> {
+    let (whole, rest) = text.split_once(',')?;
+    let decimals = &rest[..rest.find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.len())];
+    let digits = whole.strip_prefix(['+', '-']).unwrap_or(whole);
+    let is_number = !digits.is_empty()
+        && digits.bytes().all(|byte| byte.is_ascii_digit())
+        && !decimals.is_empty();
+    let ends = rest[decimals.len()..].trim_start();
+    let is_whole = ends.is_empty() || ends.starts_with(['#', '}', ']', ',']);
+    (is_number && is_whole).then(|| {
+        format!("`{whole},{decimals}` has a decimal comma, expected a point: {whole}.{decimals}")
+    })
+}
+
 /// The first error of each line: the rest are mostly its echoes.
 fn one_per_line(sources: &Sources, mut errors: Vec<SyntaxError>) -> Vec<SyntaxError> {
     let line = |error: &SyntaxError| sources.get(error.origin.source).line(error.origin.span.start);
@@ -278,6 +302,23 @@ mod tests {
             assert!(errors.len() == 1 && errors[0].message.contains("U+"), "{text:?}: {errors:?}");
         }
         assert!(parsed("a = \"two\\nlines\\tand a tab\"").1.is_empty());
+    }
+
+    #[test]
+    fn a_decimal_comma_is_named_and_a_list_is_not_taken_for_one() {
+        for (text, number) in [
+            ("index = 1,49\n", "1.49"),
+            ("a = { index = -1,5 }\n", "-1.5"),
+            ("a = { index = 1,5, b = 2 } # x\n", "1.5"),
+        ] {
+            let errors = parsed(text).1;
+            let [error] = errors.as_slice() else { panic!("{text}: {errors:?}") };
+            assert!(error.message.contains("decimal comma"), "{text}: {error:?}");
+            assert!(error.message.ends_with(number), "{text}: {error:?}");
+        }
+        assert!(parsed("a = [1,49]\n").1.is_empty());
+        assert!(parsed("a = { b = 1,c = 2 }\n").1.is_empty());
+        assert!(!parsed("a = [1,49\n").1[0].message.contains("comma, expected a point"));
     }
 
     #[test]

@@ -12,6 +12,7 @@ mod pages;
 mod parts;
 mod refusals;
 mod runs;
+mod schemas;
 mod seals;
 mod spreadsheets;
 mod streams;

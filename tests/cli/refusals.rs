@@ -20,6 +20,19 @@ fn bad_input_ends_with_2_and_writes_nothing() {
 }
 
 #[test]
+fn a_cad_file_or_a_mesh_in_place_of_a_scene_leads_to_the_page_about_cad() {
+    let place = Place::new();
+    for (name, word) in [("guide.step", "a CAD file"), ("guide.stl", "a mesh (STL)")] {
+        fs::write(place.path(name), "ISO-10303-21;\nHEADER;\n").unwrap();
+        for command in ["run", "check"] {
+            let said = place.bad(2, &format!("{command} {name}"));
+            assert!(said.contains(word) && said.contains("docs/cad.md"), "{said}");
+            assert_eq!(said.lines().count(), 1, "{said}");
+        }
+    }
+}
+
+#[test]
 fn a_bad_command_line_ends_with_2_and_writes_nothing() {
     let place = Place::new();
     for arguments in [

@@ -3,6 +3,49 @@
 use crate::*;
 
 #[test]
+fn only_a_sensor_that_was_lit_from_behind_is_told_to_turn() {
+    // All light that meets the side of this prism from inside is reflected; the plane looks away from the rod.
+    let scene = r#"lumiduct = 1
+title = "Total reflection"
+[media.glass]
+index = 1.6
+[solids.rod.box]
+size_mm = [4, 4, 20]
+medium = "glass"
+[sources.beam.face]
+of = "rod.entry"
+side = "back"
+emission = "collimated"
+flux_lm = 1
+[sheets.mirror.rectangle]
+width_mm = 4
+height_mm = 4
+finish = { specular = { reflectance = 1 } }
+at = { position_mm = [0, 0, 20] }
+[sensors]
+covered = { plane = {}, on = "rod.exit", counts = "leaving" }
+[run]
+paths = 2000
+bounce_limit = 20
+"#;
+    let place = Place::new();
+    fs::write(place.path("prism.toml"), scene).unwrap();
+    place.good("run prism.toml -q -o covered");
+    let warnings = place.summary("covered")["warnings"].to_string();
+    assert!(warnings.contains("no light left the side of sensor `covered`"), "{warnings}");
+    assert!(!warnings.contains("lit on its other side"), "{warnings}");
+    let away = "away = { plane = { disk = { radius_mm = 9 } }, at = { position_mm = [0, 0, 25] } }";
+    fs::write(
+        place.path("away.toml"),
+        SCENE.replace("[sensors]\n", &format!("[sensors]\n{away}\n")),
+    )
+    .unwrap();
+    place.good("run away.toml -q -o away");
+    let warnings = place.summary("away")["warnings"].to_string();
+    assert!(warnings.contains("sensor `away` was lit on its other side only"), "{warnings}");
+}
+
+#[test]
 fn a_run_writes_every_file_of_its_report() {
     let place = Place::new();
     let said = place.good("run rod.toml");

@@ -59,7 +59,11 @@ fn check_amount(key: &Key, kind: &Kind<'_>, problems: &mut Problems) {
     }
     if common.intensity_cd.is_some() && extent != Extent::Point {
         let message = format!("is for a `point` only, found with `{name}`");
-        problems.error(&key.field("intensity_cd"), message).hint("give `flux_lm`");
+        let hint = match extent {
+            Extent::Area | Extent::Face => "give `flux_lm` or `luminance_cd_m2`",
+            Extent::Point | Extent::Line | Extent::Volume => "give `flux_lm`",
+        };
+        problems.error(&key.field("intensity_cd"), message).hint(hint);
     }
 }
 

@@ -154,6 +154,14 @@ impl Walk<'_> {
             {
                 Some("write it without quotes".into())
             }
+            (Some("number"), Value::String(text))
+                if text.trim().replacen(',', ".", 1).parse::<f64>().is_ok() =>
+            {
+                Some(format!(
+                    "write the decimals behind a point: {}",
+                    text.trim().replacen(',', ".", 1)
+                ))
+            }
             _ => None,
         }
     }

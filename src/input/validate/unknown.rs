@@ -1,5 +1,6 @@
 //! Keys that the schema does not know, and what was probably meant.
 
+use crate::input::keys::Segment;
 use crate::input::problems::{name_hint, nearest};
 use crate::input::schema;
 use crate::input::validate::{At, Entries, Walk, choice, wording};
@@ -10,6 +11,10 @@ const FOREIGN_UNITS: [&str; 36] = [
     "degrees", "rad", "radians", "mrad", "lm", "lumen", "w", "mw", "watt", "cd", "mcd", "nits",
     "nit", "cd_m2", "per_mm", "per_cm", "per_m", "s", "sec", "ms", "min", "h",
 ];
+
+/// The amount of light that only one kind of source takes, and that kind.
+const CANDELA: &str = "intensity_cd";
+const POINT: &str = "point";
 
 impl Walk<'_> {
     /// Notes a key that is not among the known ones of the table at `table`.
@@ -29,6 +34,15 @@ impl Walk<'_> {
 
     fn key_hint(&self, known: &[&str], table: &At<'_>, name: &str) -> String {
         if let Some(right) = other_unit(name, known.iter().copied()) {
+            let key = table.to_key();
+            if right == CANDELA
+                && let Some(Segment::Field(kind)) = key.segments().last()
+                && kind != POINT
+            {
+                return format!(
+                    "candela are for a `{POINT}`: a `{kind}` takes `flux_lm`, or `luminance_cd_m2` if it has an area"
+                );
+            }
             let unit = schema::unit(right).map(|unit| format!(", in {unit}")).unwrap_or_default();
             return format!("the key is `{right}`{unit}");
         }

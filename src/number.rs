@@ -15,14 +15,34 @@ const MOST_DIGITS: i32 = 9;
 
 /// A value with four significant digits, without trailing zeros: "0.8419", "12.5", "12346", "1.235×10⁻⁷".
 pub fn format_value(value: f64) -> String {
+    format_significant(value, 4)
+}
+
+/// A length in a message, with three significant digits, without trailing zeros: "2.41", "12.5", "1235".
+pub fn format_length(value: f64) -> String {
+    format_significant(value, 3)
+}
+
+/// The least length that would do: three significant digits, rounded up, so that the number as written is enough.
+pub fn format_least_length(value: f64) -> String {
+    if !(value.is_finite() && value > 0.0) {
+        return format_length(value);
+    }
+    let scale = 10_f64.powi(2 - value.log10().floor() as i32);
+    // Rounding in the last bits is no reason for another unit of the third digit.
+    format_length((value * scale * (1.0 - 1e-12)).ceil() / scale)
+}
+
+fn format_significant(value: f64, digits: i32) -> String {
     if !value.is_finite() {
         return not_finite(value).to_string();
     }
-    let exponent = rounded_exponent(value, 4);
+    let exponent = rounded_exponent(value, digits);
     if is_plain(exponent) {
-        trimmed(format_fixed(value, (3 - exponent).max(0)))
+        trimmed(format_fixed(value, (digits - 1 - exponent).max(0)))
     } else {
-        format!("{}×10{}", trimmed(format_scaled(value, exponent, 3)), superscript(exponent))
+        let mantissa = trimmed(format_scaled(value, exponent, digits - 1));
+        format!("{mantissa}×10{}", superscript(exponent))
     }
 }
 

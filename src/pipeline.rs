@@ -178,7 +178,7 @@ pub fn compose(job: &Job, findings: &Findings, stop: Stop) -> Report {
         .iter()
         .map(|warning| format!("`{}` {}", warning.key, warning.message))
         .collect();
-    warnings.extend(report::remarks(&measures));
+    warnings.extend(report::remarks(&measures, &job.scene));
     warnings.extend(report::remarks_on_passages(&job.scene, &measures));
     warnings.extend(report::remark_on_paths(job.run.stop.paths, measures.paths));
     let is_chosen =

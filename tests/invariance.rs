@@ -86,7 +86,7 @@ pmma = {{ index = 1.49, absorption_per_mm = {absorption} }}
 [solids.lens.lens]
 diameter_mm = {diameter}
 thickness_mm = {thickness}
-entry_radius_mm = {curvature}
+entry = {{ convex_radius_mm = {curvature} }}
 medium = "pmma"
 at = {{ position_mm = {lens} }}
 

@@ -6,7 +6,7 @@ use crate::number::{format_exact, format_percent, format_with_error};
 use crate::report::by_light::remark_on_weathers;
 use crate::report::{Drawing, Inventory, Recipe};
 use crate::scene::plan::{Check, GatherPlan, Request, Schedule, StopRules, Target};
-use crate::scene::{Scene, Seeing, Sensor, SensorKind};
+use crate::scene::{Counts, Place, Scene, Seeing, Sensor, SensorKind};
 use crate::transport::{GROUPS, GatherSettings, Leak};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -203,7 +203,7 @@ const CUT_SHARE: f64 = 1e-3;
 const CONTRADICTED: f64 = 4.0;
 
 /// Remarks that the results ask for.
-pub fn remarks(measures: &Measures) -> Vec<String> {
+pub fn remarks(measures: &Measures, scene: &Scene) -> Vec<String> {
     let mut remarks = Vec::new();
     let value = |name: &str| measures.values.get(name).map_or(0.0, |measure| measure.value);
     if value("balance.leaked") > 0.0 {
@@ -222,12 +222,10 @@ pub fn remarks(measures: &Measures) -> Vec<String> {
         remarks.extend(paths.lost.and_then(|lost| remark_on_lost_paths(sensor, lost)));
         let (flux, other) =
             (value(&format!("{sensor}.flux")), value(&format!("{sensor}.flux_other_side")));
-        if flux == 0.0 && other > 0.0 {
-            remarks.push(format!(
-                "sensor `{sensor}` was lit on its other side only: turn its axis, or set `side`"
-            ));
-        }
         let outside = value(&format!("{sensor}.flux_outside_aim"));
+        if flux == 0.0 && outside == 0.0 && other > 0.0 {
+            remarks.push(remark_on_other_side(sensor, scene));
+        }
         if outside > flux {
             remarks.push(format!(
                 "sensor `{sensor}` counts the light of its aim alone, and more reaches it from elsewhere: see \
@@ -277,6 +275,25 @@ pub fn remarks_on_passages(scene: &Scene, measures: &Measures) -> Vec<String> {
         ))
     };
     scene.sensors.iter().filter_map(remark).collect()
+}
+
+/// A remark on a sensor that counted nothing while light met its other side. Light that leaves a solid inward was reflected or let
+/// in there: that is no light from the other side.
+fn remark_on_other_side(name: &str, scene: &Scene) -> String {
+    let kind = scene.sensors.iter().find(|sensor| sensor.name == name).map(|sensor| &sensor.kind);
+    match kind {
+        Some(SensorKind::Surface(surface))
+            if surface.counts == Counts::Leaving && surface.place == Place::Face =>
+        {
+            format!(
+                "no light left the side of sensor `{name}` that counts: all that met its face was reflected or let in there; \
+                 see {name}.flux_other_side"
+            )
+        }
+        Some(SensorKind::Surface(_) | SensorKind::Goniometer(_)) | None => {
+            format!("sensor `{name}` was lit on its other side only: turn its axis, or set `side`")
+        }
+    }
 }
 
 /// A remark where more than next to nothing of the gather paths of a sensor was lost.

@@ -60,7 +60,7 @@ fn bends() {
     all_agree(
         "mitred corner",
         &guide(
-            "[solids.pipe.sweep]\nprofile = { rectangle = { width_mm = 3, height_mm = 3 } }\npath = [{ straight_mm = 3 }, { corner_deg = 60, mitred = true }, { straight_mm = 3 }]\nmedium = \"acrylic\"",
+            "[solids.pipe.sweep]\nprofile = { rectangle = { width_mm = 3, height_mm = 3 } }\npath = [{ straight_mm = 3 }, { corner_deg = 60, fold_mirror = true }, { straight_mm = 3 }]\nmedium = \"acrylic\"",
         ),
     );
 }

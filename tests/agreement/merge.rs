@@ -64,7 +64,7 @@ fn bends() {
 
 #[test]
 fn right_angles() {
-    let corner = "[solids.pipe.sweep]\nprofile = { rectangle = { width_mm = 3, height_mm = 3 } }\npath = [{ straight_mm = 3 }, { corner_deg = 90, mitred = true }, { straight_mm = 3 }]\nmedium = \"acrylic\"";
+    let corner = "[solids.pipe.sweep]\nprofile = { rectangle = { width_mm = 3, height_mm = 3 } }\npath = [{ straight_mm = 3 }, { corner_deg = 90, fold_mirror = true }, { straight_mm = 3 }]\nmedium = \"acrylic\"";
     all_agree("right angle", &guide(corner, "leaving"));
 }
 

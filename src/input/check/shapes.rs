@@ -4,9 +4,9 @@ use crate::input::check::{Scene, require_order};
 use crate::input::keys::Key;
 use crate::input::problems::Problems;
 use crate::input::spec::sheet::SheetSpec;
-use crate::input::spec::solid::SolidSpec;
+use crate::input::spec::solid::{LensSpec, SolidSpec};
 use crate::input::spec::source::SourceSpec;
-use crate::input::spec::sweep::ParaboloidSpec;
+use crate::input::spec::sweep::{LegSpec, ParaboloidSpec, SweepSpec};
 
 pub(crate) fn check(scene: Scene<'_>, problems: &mut Problems) {
     for (name, solid) in &scene.spec.solids {
@@ -14,11 +14,10 @@ pub(crate) fn check(scene: Scene<'_>, problems: &mut Problems) {
         match solid {
             SolidSpec::Paraboloid(solid) => check_paraboloid(&key, &solid.shape, problems),
             SolidSpec::Lens(solid) => {
-                check_radius(&key, "entry_radius_mm", solid.shape.entry_radius_mm, problems);
-                check_radius(&key, "exit_radius_mm", solid.shape.exit_radius_mm, problems);
+                check_lens(&key, &solid.shape, problems);
             }
-            SolidSpec::Sweep(_)
-            | SolidSpec::Cylinder(_)
+            SolidSpec::Sweep(solid) => check_corners(&key, &solid.shape, problems),
+            SolidSpec::Cylinder(_)
             | SolidSpec::Box(_)
             | SolidSpec::Tube(_)
             | SolidSpec::Sphere(_)
@@ -52,8 +51,8 @@ fn check_sheet(key: &Key, sheet: &SheetSpec, problems: &mut Problems) {
         SheetSpec::Disk(_)
         | SheetSpec::Rectangle(_)
         | SheetSpec::SphericalCap(_)
-        | SheetSpec::Tube(_)
         | SheetSpec::CompoundParabolic(_) => {}
+        SheetSpec::Tube(sheet) => check_corners(key, &sheet.shape, problems),
     }
 }
 
@@ -66,10 +65,43 @@ fn check_paraboloid(key: &Key, shape: &ParaboloidSpec, problems: &mut Problems) 
     );
 }
 
-fn check_radius(key: &Key, name: &str, radius: Option<f64>, problems: &mut Problems) {
-    if radius == Some(0.0) {
-        problems
-            .error(&key.field(name), "is 0, expected a positive or negative radius")
-            .hint("omit it for a flat end");
+/// The old keys of a lens, of which there may be none beside the new ones.
+fn check_lens(key: &Key, lens: &LensSpec, problems: &mut Problems) {
+    let ends = [
+        ("entry", lens.entry.is_some(), "entry_radius_mm", lens.entry_radius_mm, 1.0),
+        ("exit", lens.exit.is_some(), "exit_radius_mm", lens.exit_radius_mm, -1.0),
+    ];
+    for (name, is_given, old_name, old, convex_sign) in ends {
+        let Some(radius) = old else { continue };
+        let old_key = key.field(old_name);
+        if radius == 0.0 {
+            problems
+                .error(&old_key, "is 0, expected a positive or negative radius")
+                .hint("omit it for a flat end");
+        } else if is_given {
+            problems.error(&old_key, format!("says again what `{name}` says")).hint("remove it");
+        } else {
+            let word = if radius * convex_sign > 0.0 { "convex" } else { "concave" };
+            let size = radius.abs();
+            problems
+                .warning(&old_key, "is an old key, whose sign says which way the face bulges")
+                .hint(format!("write {name} = {{ {word}_radius_mm = {size} }}, which is the same"));
+        }
+    }
+}
+
+/// The old name of a fold mirror.
+fn check_corners(key: &Key, sweep: &SweepSpec, problems: &mut Problems) {
+    for (index, leg) in sweep.path.iter().enumerate() {
+        let LegSpec::Corner(corner) = leg else { continue };
+        let Some(mitred) = corner.mitred else { continue };
+        let old_key = key.field("path").index(index).field("mitred");
+        if corner.fold_mirror.is_some() {
+            problems.error(&old_key, "says again what `fold_mirror` says").hint("remove it");
+        } else {
+            problems
+                .warning(&old_key, "is the old name of `fold_mirror`")
+                .hint(format!("write fold_mirror = {mitred}, which is the same"));
+        }
     }
 }

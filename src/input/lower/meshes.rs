@@ -3,7 +3,7 @@
 use crate::formats::mesh::{self, Defects, LengthUnit, MeshHealth, TriangleMesh};
 use crate::input::keys::Key;
 use crate::input::lower::Context;
-use crate::input::problems::name_hint;
+use crate::input::problems::face_hint;
 use crate::input::spec::finish::FinishRef;
 use crate::input::spec::solid::{MeshNormals, MeshSpec, MeshUnit};
 use crate::math::Frame;
@@ -118,7 +118,7 @@ impl Context<'_> {
             match known.iter().position(|name| name == face) {
                 Some(index) => finishes[index] = finish,
                 None => {
-                    let hint = name_hint(face, known.iter().copied());
+                    let hint = face_hint(face, known.iter().copied());
                     self.problems
                         .error(
                             &key.field("faces").field(face),

@@ -7,6 +7,7 @@ mod consistency;
 mod contacts;
 mod daylight;
 mod finishes;
+mod lenses;
 mod light_groups;
 mod meshes;
 mod patterns;
@@ -15,6 +16,7 @@ pub(crate) mod plan;
 mod reliefs;
 mod sensors;
 mod sheets;
+mod slips;
 mod solids;
 mod sources;
 mod starts;
@@ -23,7 +25,7 @@ mod tubes;
 
 use crate::input::digest::Digest;
 use crate::input::keys::{Key, Places};
-use crate::input::problems::{Problems, name_hint};
+use crate::input::problems::{Problems, face_hint};
 use crate::input::spec::SceneSpec;
 use crate::input::spec::finish::ScatteringSpec;
 use crate::input::spec::placement::PlacementSpec;
@@ -99,6 +101,7 @@ pub(crate) fn lower(spec: &SceneSpec, places: &Places, problems: &mut Problems) 
     consistency::check_overlaps(spec, &scene, context.problems);
     consistency::check_open_faces(spec, &scene, context.problems);
     contacts::check_contacts(spec, &scene, context.problems);
+    slips::check_slips(spec, &scene, context.problems);
     plan::check_measures(spec, &scene, context.problems);
     context.problems.is_free_of_errors().then_some(Lowered { scene, run, checks, meshes })
 }
@@ -206,8 +209,11 @@ impl Context<'_> {
         if is_due && !has_faces && !self.problems.is_free_of_errors() {
             return None;
         }
-        let known: Vec<&str> = self.faces.keys().map(String::as_str).collect();
-        let hint = name_hint(name, known.iter().copied());
+        let all = self.faces.keys().map(String::as_str);
+        // Of a known body its own faces, of an unknown one all that there are.
+        let known: Vec<&str> =
+            all.filter(|face| !has_faces || face.split('.').next() == Some(owner)).collect();
+        let hint = face_hint(name, known.iter().copied());
         self.problems.error(key, format!("unknown face `{name}`")).hint(hint);
         None
     }

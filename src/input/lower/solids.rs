@@ -3,15 +3,15 @@
 use crate::input::keys::Key;
 use crate::input::lower::Context;
 use crate::input::lower::place::Facing;
-use crate::input::lower::surfaces::{BodyPart, Ends, NamedFace, Surfaces, disk_facing};
-use crate::input::problems::name_hint;
+use crate::input::lower::surfaces::{BodyPart, NamedFace, Surfaces};
+use crate::input::problems::face_hint;
 use crate::input::spec::finish::FinishRef;
-use crate::input::spec::solid::{BoxSpec, CylinderSpec, LensSpec, SolidSpec};
+use crate::input::spec::solid::{BoxSpec, CylinderSpec, SolidSpec};
 use crate::input::spec::sweep::{
     CircleSpec, LegSpec, ProfileSpec, RectangleSpec, StraightSpec, SweepSpec,
 };
 use crate::math::{Aabb, Frame};
-use crate::scene::shape::{Cylinder, Shape, Sphere};
+use crate::scene::shape::{Shape, Sphere};
 use crate::scene::{FaceId, FaceSpec, FinishId, Owner, Solid, SolidId};
 use indexmap::IndexMap;
 use std::f64::consts::PI;
@@ -84,48 +84,6 @@ impl Context<'_> {
         }
     }
 
-    /// A lens: two caps or disks and the edge between them.
-    fn lens_surfaces(&mut self, lens: &LensSpec, frame: Frame, key: &Key) -> Option<Surfaces> {
-        let rim = 0.5 * lens.diameter_mm;
-        for (field, radius) in
-            [("entry_radius_mm", lens.entry_radius_mm), ("exit_radius_mm", lens.exit_radius_mm)]
-        {
-            if let Some(radius) = radius
-                && radius.abs() < rim
-            {
-                self.problems.error(
-                    &key.field(field),
-                    format!(
-                        "a sphere of radius {} mm does not reach the rim at {rim} mm",
-                        radius.abs()
-                    ),
-                );
-                return None;
-            }
-        }
-        let thickness = lens.thickness_mm;
-        let (entry, entry_edge) = lens_end(frame, 0.0, lens.entry_radius_mm, rim, Ends::Entry);
-        let (exit, exit_edge) = lens_end(frame, thickness, lens.exit_radius_mm, rim, Ends::Exit);
-        let edge = exit_edge - entry_edge;
-        // A hemisphere's rim meets its flat side: no edge is left but rounding.
-        let no_edge = 1e-12 * lens.diameter_mm;
-        if edge < -no_edge {
-            self.problems
-                .error(
-                    &key.field("thickness_mm"),
-                    format!("the two ends cross before the rim, by {:.6} mm", -edge),
-                )
-                .hint("make the lens thicker, its diameter smaller or its ends flatter");
-            return None;
-        }
-        let mut faces = vec![NamedFace::end("entry", entry), NamedFace::end("exit", exit)];
-        if edge > no_edge {
-            let wall = Cylinder::new(frame.shifted(entry_edge * frame.z), rim, edge);
-            faces.push(NamedFace::wall("wall", Shape::Cylinder(wall)));
-        }
-        Some(Surfaces { faces, volume: None })
-    }
-
     /// Finishes by face name: `wall` stands for all walls, a side's own name wins over it.
     pub(super) fn face_finishes(
         &mut self,
@@ -145,7 +103,7 @@ impl Context<'_> {
                 .collect();
             if named.is_empty() {
                 let known: Vec<&str> = faces.iter().map(|face| face.name.as_str()).collect();
-                let hint = name_hint(name, known.iter().copied());
+                let hint = face_hint(name, known.iter().copied());
                 self.problems
                     .error(&key.field(name), format!("`{body}` has no face `{name}`"))
                     .hint(hint);
@@ -191,23 +149,6 @@ impl Context<'_> {
             self.faces.insert(format!("{body}.wall"), walls);
         }
     }
-}
-
-/// One end of a lens with its vertex at `vertex` on the axis, and where it meets the rim.
-fn lens_end(frame: Frame, vertex: f64, radius: Option<f64>, rim: f64, end: Ends) -> (Shape, f64) {
-    let Some(radius) = radius else { return (disk_facing(frame, vertex, rim, end), vertex) };
-    let size = radius.abs();
-    let sag = rim * rim / (size + (size * size - rim * rim).sqrt());
-    let center = frame.shifted((vertex + radius) * frame.z);
-    // Seen from the centre the vertex lies against the axis for a positive radius.
-    let (shape, edge) = if radius > 0.0 {
-        (Sphere::zone(center, size, -size, sag - size), vertex + sag)
-    } else {
-        (Sphere::zone(center, size, size - sag, size), vertex - sag)
-    };
-    // Convex ends face away from their centre, as a sphere does.
-    let convex = (end == Ends::Entry) == (radius > 0.0);
-    (Shape::Sphere(if convex { shape } else { shape.inward() }), edge)
 }
 
 fn cylinder_sweep(spec: &CylinderSpec) -> SweepSpec {

@@ -1,6 +1,7 @@
 //! Where sources start their light: outside of all solids, in one, or, which is refused, partly here and partly there.
 
 use crate::input::keys::Key;
+use crate::input::lower::slips::check_embedded;
 use crate::input::lower::sources::emits_from_a_surface;
 use crate::input::problems::Problems;
 use crate::input::spec::SceneSpec;
@@ -82,6 +83,8 @@ pub(super) fn check_starts(spec: &SceneSpec, scene: &Scene, problems: &mut Probl
                     format!("lies inside the opaque solid `{name}`: none of its light gets out"),
                 )
                 .hint("move the source, or give a face of the solid another finish");
+        } else if let Some(of) = spec.sources.get(&source.name) {
+            check_embedded(scene, of, &starts, &key, problems);
         }
         if is_in_space(spec, &source.name) {
             check_covered(scene, &starts, &key, problems);

@@ -6,9 +6,12 @@ use crate::input::spec::sweep::{
     CompoundParabolicSpec, LegSpec, ParaboloidSpec, ProfileSpec, SweepSpec,
 };
 use crate::math::{Frame, planar};
+use crate::number::format_least_length;
 use crate::scene::Piece;
 use crate::scene::shape::{CompoundParabola, Flat, Paraboloid, Region, Shape};
-use crate::scene::sweep::{CornerKind, Leg, Profile, ProfileError, Wall, sweep};
+use crate::scene::sweep::{
+    CornerKind, Leg, Profile, ProfileError, SweepError, SweepProblem, Wall, sweep,
+};
 use glam::{DVec2, DVec3};
 
 /// A named face of a body that is being built.
@@ -64,7 +67,11 @@ impl Context<'_> {
             Err(error) => {
                 let place = key.field("path");
                 let place = error.leg.map_or(place.clone(), |leg| place.index(leg));
-                self.problems.error(&place, error.to_string());
+                let hint = remedy(&error, &spec.path);
+                let problem = self.problems.error(&place, error.to_string());
+                if let Some(hint) = hint {
+                    problem.hint(hint);
+                }
                 return None;
             }
         };
@@ -202,8 +209,37 @@ fn leg(spec: &LegSpec) -> Leg {
         LegSpec::Corner(corner) => Leg::Corner {
             angle: corner.corner_deg.to_radians(),
             toward: corner.toward_deg.to_radians(),
-            kind: if corner.mitred { CornerKind::Mitred } else { CornerKind::Plain },
+            kind: if corner.has_fold_mirror() { CornerKind::Mitred } else { CornerKind::Plain },
         },
+    }
+}
+
+/// What to write instead, with the least length that would do where a length is at fault.
+fn remedy(error: &SweepError, path: &[LegSpec]) -> Option<String> {
+    let leg = path.get(error.leg?)?;
+    match &error.problem {
+        SweepProblem::TightBend { reach, .. } => {
+            Some(format!("make radius_mm more than {}", format_least_length(*reach)))
+        }
+        SweepProblem::TooShort { missing } => Some(match leg {
+            LegSpec::Straight(straight) => {
+                let least = format_least_length(straight.straight_mm + missing);
+                format!("make straight_mm at least {least}")
+            }
+            LegSpec::Bend(_) | LegSpec::Corner(_) => {
+                let least = format_least_length(*missing);
+                format!("put a straight leg of at least {least} mm between the corners")
+            }
+        }),
+        SweepProblem::Overlap { .. } => Some(
+            "make the legs between them longer, or turn to another side with toward_deg".into(),
+        ),
+        SweepProblem::Profile(_)
+        | SweepProblem::NoLegs
+        | SweepProblem::OutOfRange { .. }
+        | SweepProblem::Angle { .. }
+        | SweepProblem::Scaled { .. }
+        | SweepProblem::ClosedRing => None,
     }
 }
 

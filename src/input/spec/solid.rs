@@ -139,13 +139,13 @@ pub struct TubePrismsSpec {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CylinderSpec {
     /// Radius, for a frustum that of the entry.
-    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    #[schemars(extend("exclusiveMinimum" = 0.0), range(max = 1e9))]
     pub radius_mm: f64,
     /// Length along the axis.
-    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    #[schemars(extend("exclusiveMinimum" = 0.0), range(max = 1e9))]
     pub length_mm: f64,
     /// Radius of the exit of a frustum. Omitted: the same as that of the entry.
-    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    #[schemars(extend("exclusiveMinimum" = 0.0), range(max = 1e9))]
     pub end_radius_mm: Option<f64>,
 }
 
@@ -153,7 +153,7 @@ pub struct CylinderSpec {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct BoxSpec {
     /// Full size along the local x, y and z (the axis).
-    #[schemars(extend("items" = { "type": "number", "exclusiveMinimum": 0.0 }))]
+    #[schemars(extend("items" = { "type": "number", "exclusiveMinimum": 0.0, "maximum": 1e9 }))]
     pub size_mm: [f64; 3],
 }
 
@@ -165,20 +165,49 @@ pub struct SphereSpec {
     pub radius_mm: f64,
 }
 
-/// A lens about the axis. A radius of curvature is positive where its centre lies further along the axis: a biconvex
-/// lens has a positive entry radius and a negative exit radius.
+/// A lens about the axis, its entry at the position. Each face is flat, convex or concave, as seen from outside.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LensSpec {
     /// Diameter of the rim.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub diameter_mm: f64,
-    /// Thickness on the axis.
+    /// Thickness on the axis, domes included.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub thickness_mm: f64,
-    /// Signed radius of curvature of the entry. Omitted: flat.
+    /// Shape of the entry. Omitted: flat.
+    pub entry: Option<LensFaceSpec>,
+    /// Shape of the exit. Omitted: flat.
+    pub exit: Option<LensFaceSpec>,
+    /// Old form of `entry`: its radius of curvature, positive where it is convex.
     pub entry_radius_mm: Option<f64>,
-    /// Signed radius of curvature of the exit. Omitted: flat.
+    /// Old form of `exit`: its radius of curvature, negative where it is convex.
     pub exit_radius_mm: Option<f64>,
+}
+
+/// A spherical face of a lens. A table with exactly one of these keys.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum LensFaceSpec {
+    /// Bulges outward, with this radius of curvature.
+    ConvexRadiusMm(#[schemars(extend("exclusiveMinimum" = 0.0))] f64),
+    /// Is hollow, with this radius of curvature.
+    ConcaveRadiusMm(#[schemars(extend("exclusiveMinimum" = 0.0))] f64),
+    /// Bulges outward, by this height on the axis above the rim.
+    DomeHeightMm(#[schemars(extend("exclusiveMinimum" = 0.0))] f64),
+    /// Is hollow, by this depth on the axis below the rim.
+    DishDepthMm(#[schemars(extend("exclusiveMinimum" = 0.0))] f64),
+}
+
+impl LensFaceSpec {
+    /// The key, as in the file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::ConvexRadiusMm(_) => "convex_radius_mm",
+            Self::ConcaveRadiusMm(_) => "concave_radius_mm",
+            Self::DomeHeightMm(_) => "dome_height_mm",
+            Self::DishDepthMm(_) => "dish_depth_mm",
+        }
+    }
 }
 
 /// A closed triangle mesh from a glTF, GLB, STL or OBJ file.

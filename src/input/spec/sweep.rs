@@ -120,9 +120,18 @@ pub struct CornerSpec {
     /// Azimuth in the section that the path turns toward: 0 is the local +x, 90 the local +y.
     #[serde(default)]
     pub toward_deg: f64,
-    /// Whether the outer edge is cut off by a mirror at half the angle.
-    #[serde(default)]
-    pub mitred: bool,
+    /// Whether the outer edge is cut off by a flat facet at half the angle, through the crossing of the centre lines: a fold
+    /// mirror, by its finish in a duct and by total reflection in a solid.
+    pub fold_mirror: Option<bool>,
+    /// Old name of `fold_mirror`.
+    pub mitred: Option<bool>,
+}
+
+impl CornerSpec {
+    /// Whether the corner has a fold mirror.
+    pub fn has_fold_mirror(&self) -> bool {
+        self.fold_mirror.or(self.mitred).unwrap_or(false)
+    }
 }
 
 /// A compound parabolic concentrator of revolution about the axis; the small end lies at the position.

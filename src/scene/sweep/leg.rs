@@ -1,5 +1,6 @@
 //! What a path is made of, as its user says it, and what can be wrong with it.
 
+use crate::number::format_length;
 use crate::scene::sweep::ProfileError;
 
 /// A leg of a path. Lengths in mm, angles in rad. `toward` is the azimuth in the section as it arrives, 0 = the local
@@ -90,7 +91,9 @@ pub enum SweepProblem {
     },
     /// The bend axis goes through the profile.
     #[error(
-        "the bend has a radius of {radius} mm but the profile reaches {reach} mm toward its axis"
+        "the bend has a radius of {} mm but the profile reaches {} mm toward its axis",
+        format_length(*.radius),
+        format_length(*.reach)
     )]
     TightBend {
         /// Radius of the centre line, mm.
@@ -99,7 +102,10 @@ pub enum SweepProblem {
         reach: f64,
     },
     /// A mitre plate, or the walls between two corners, need more length.
-    #[error("the straight part here is {missing} mm too short for the corners at its ends")]
+    #[error(
+        "the straight part here is {} mm too short for the corners at its ends",
+        format_length(*.missing)
+    )]
     TooShort {
         /// The length to be added, mm.
         missing: f64,
@@ -108,7 +114,12 @@ pub enum SweepProblem {
     #[error("the path closes on itself: its exit lies on its entry")]
     ClosedRing,
     /// Two legs take the same room.
-    #[error("this leg runs through leg {other} (counted from 1) near ({x}, {y}, {z}) mm")]
+    #[error(
+        "this leg runs through leg {other} (counted from 1) near ({}, {}, {}) mm",
+        format_length(*.x),
+        format_length(*.y),
+        format_length(*.z)
+    )]
     Overlap {
         /// The other leg, from 1.
         other: usize,

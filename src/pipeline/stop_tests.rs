@@ -1,7 +1,7 @@
 //! Runs that are stopped at a given look at the signal, wherever that is: in the pilot, in a batch, in a path.
 
 use crate::input::GatherSettings;
-use crate::pipeline::tests::job;
+use crate::pipeline::tests::job as short_rod;
 use crate::pipeline::*;
 use crate::transport::Phase;
 
@@ -43,7 +43,7 @@ fn numbers(findings: &Findings) -> Findings {
 fn a_stopped_run_ends_at_its_next_looks_and_its_command_repeats_it_on_any_threads() {
     let folder = tempfile::tempdir().unwrap();
     for estimator in [Request::Forward, Request::Backward, Request::Mix, Request::Gather] {
-        let job = job(folder.path(), &settings(estimator));
+        let job = short_rod(folder.path(), &settings(estimator));
         let (mut stopped, mut empty) = (0, 0);
         for look in [1, 3, 20, 150, 201, 333] {
             let (traced, late) = on_threads(2, || stopped_at(look, &job));
@@ -64,7 +64,7 @@ fn a_stopped_run_ends_at_its_next_looks_and_its_command_repeats_it_on_any_thread
                 paths: Some(traced.findings.paths),
                 ..settings(estimator)
             };
-            let again = job(folder.path(), &repeated);
+            let again = short_rod(folder.path(), &repeated);
             for threads in [1, 3] {
                 let same =
                     on_threads(threads, || trace(&again, &Interrupt::default(), &mut |_| ()));
@@ -81,14 +81,14 @@ fn a_stopped_run_ends_at_its_next_looks_and_its_command_repeats_it_on_any_thread
 fn a_run_stopped_in_the_pilot_says_so_and_one_after_it_repeats_without_a_pilot() {
     let folder = tempfile::tempdir().unwrap();
     let auto = Settings { gather: GatherSettings::default(), ..settings(Request::Auto) };
-    let job = job(folder.path(), &auto);
+    let job = short_rod(folder.path(), &auto);
     let error = stopped_at(8, &job).0.unwrap_err().to_string();
     assert!(error.contains("interrupted during the pilot"), "{error}");
 
     let whole = trace(&job, &Interrupt::default(), &mut |_| ()).unwrap();
     let [chosen] = whole.findings.estimators[..] else { panic!("one sensor") };
     let own = vec![format!("sensors.exit.estimator={}", chosen.name())];
-    let again = job(folder.path(), &Settings { overrides: own, ..auto });
+    let again = short_rod(folder.path(), &Settings { overrides: own, ..auto });
     let mut phases = Vec::new();
     let repeated = trace(&again, &Interrupt::default(), &mut |now| phases.push(now.phase)).unwrap();
     assert!(phases.iter().all(|phase| !matches!(phase, Phase::Pilot(_))), "{phases:?}");

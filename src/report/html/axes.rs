@@ -95,7 +95,7 @@ mod tests {
         let plot = plot(&[(0.0, 1e-11), (10.0, 2e5)]);
         let linear = chart_axes(&plot, Scale::Linear);
         assert_eq!(linear["y"]["label"], "flux in lm, ×10⁵");
-        assert_eq!(linear["y"]["ticks"][1], json!([20_000.0, "0.2"]));
+        assert_eq!(linear["y"]["ticks"][1], json!([50_000.0, "0.5"]));
         let log = chart_axes(&plot, Scale::Log);
         assert_eq!((&log["y"]["scale"], &log["y"]["label"]), (&json!("log"), &json!("flux in lm")));
         // Eight decades below the greatest value, as in pictures.

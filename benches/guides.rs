@@ -219,6 +219,7 @@ fn add_source(builder: &mut Builder, center: DVec3, radius: f64) {
         start: Start::Outside,
         on: Vec::new(),
         elevation: None,
+        sun: None,
     });
 }
 

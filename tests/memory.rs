@@ -63,9 +63,47 @@ fn memory<const N: usize>(photons: u64, passes: [u64; N]) -> [[f64; 2]; N] {
     })
 }
 
+/// A scene of plain cylinders side by side, each a solid of its own.
+fn cylinders(count: usize) -> String {
+    let mut text = String::from(
+        "lumiduct = 1\ntitle = \"Many\"\n[media.acrylic]\nindex = 1.49\n[sources.led.point]\nat = { position_mm = [0, 0, -1] }\n\
+         flux_lm = 1\n[sensors]\nexit = { plane = {}, on = \"rod_0.exit\", counts = \"leaving\" }\n",
+    );
+    for rod in 0..count {
+        let (x, y) = (5 * (rod % 40), 5 * (rod / 40));
+        text += &format!(
+            "[solids.rod_{rod}.cylinder]\nradius_mm = 2\nlength_mm = 50\nmedium = \"acrylic\"\nat = {{ position_mm = [{x}, {y}, 0] }}\n"
+        );
+    }
+    text
+}
+
+/// The most memory that is needed beyond what was held before: to read a scene, to trace a wave, and to draw it for its page, MB.
+fn most_for_cylinders(count: usize) -> f64 {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("many.toml");
+    std::fs::write(&path, cylinders(count)).unwrap();
+    let before = ALLOCATED.current_usage_as_mb();
+    ALLOCATED.reset_peak_usage();
+    let settings = Settings { batch_paths: Some(1), ..Settings::default() };
+    let job = input::load(&path, &settings).unwrap_or_else(|error| panic!("{error}"));
+    let mut run = Run::new(&job.scene, &job.run);
+    run.next_wave();
+    let drawing = lumiduct::report::drawing(&job.scene, &[]);
+    assert!(drawing.faces.len() <= 1501, "{} faces are drawn", drawing.faces.len());
+    f64::from(ALLOCATED.peak_usage_as_mb() - before)
+}
+
+/// Most memory of a plain solid, MB: its three faces have six sums in each of 128 groups, twice.
+const SOLID_MB: f64 = 0.020;
+
 /// One test alone, for memory belongs to the whole process.
 #[test]
-fn memory_grows_neither_with_passes_nor_with_photons() {
+fn memory_grows_neither_with_passes_nor_with_photons_and_little_with_solids() {
+    let [few, many] = [600, 1600].map(most_for_cylinders);
+    let each = (many - few) / 1000.0;
+    println!("600 cylinders take {few:.1} MB, 1600 take {many:.1} MB: {:.1} kB each", 1e3 * each);
+    assert!(each < SOLID_MB, "{:.1} kB for a cylinder", 1e3 * each);
     let [[early, _], [late, most]] = memory(PHOTONS, [112, 1120]);
     println!("held after 112 passes {early:.1} MB, after 1120 {late:.1} MB, at most {most:.1} MB");
     assert!(late - early < LEEWAY_MB, "1,008 passes took {:.1} MB", late - early);

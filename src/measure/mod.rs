@@ -319,6 +319,7 @@ mod tests {
             start: Start::Outside,
             on: Vec::new(),
             elevation: None,
+            sun: None,
         });
         let SensorKind::Surface(mut sensor) = rectangle(2.0, cells, cells) else { unreachable!() };
         (sensor.faces, sensor.sides) = (vec![port], Sides::Back);

@@ -34,6 +34,7 @@ pub(crate) fn scene(sources: &[(&str, f64)], sensors: Vec<(&str, SensorKind)>) -
             start: Start::Outside,
             on: Vec::new(),
             elevation: None,
+            sun: None,
         });
     }
     for (name, kind) in sensors {

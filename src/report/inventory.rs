@@ -7,6 +7,7 @@ use crate::input::Outline;
 use crate::number::format_value;
 use crate::scene::{
     Emission, Emitter, Face, FaceId, MediumId, Owner, Scene, Seeing, Sensor, SensorKind, Source,
+    SunAngles,
 };
 use glam::DVec3;
 use std::collections::BTreeSet;
@@ -281,12 +282,10 @@ fn sources(scene: &Scene, outline: &Outline) -> Listing {
     Listing::new("source", head, scene.sources.len(), rows)
 }
 
-/// Where the file puts a source, and its middle or the elevation of its sun.
+/// Where the file puts a source, its middle, and where the sun stands.
 fn source_place(scene: &Scene, source: &Source, outline: &Outline) -> String {
     let middle = match &source.emitter {
-        Emitter::Far { .. } => {
-            source.elevation.map(|angle| format!("{:.2} deg above the horizon", angle.to_degrees()))
-        }
+        Emitter::Far { .. } => None,
         Emitter::Point(_)
         | Emitter::Line { .. }
         | Emitter::Surface { .. }
@@ -296,7 +295,11 @@ fn source_place(scene: &Scene, source: &Source, outline: &Outline) -> String {
         }
     };
     let told = outline.field("sources", &source.name, "at");
-    [Some(told).filter(|told| !told.is_empty()), middle]
+    let sun = source.sun.map(|SunAngles { elevation, azimuth }| {
+        let [elevation, azimuth] = [elevation, azimuth].map(f64::to_degrees);
+        format!("sun {elevation:.2} deg above the horizon, azimuth {azimuth:.2} deg")
+    });
+    [Some(told).filter(|told| !told.is_empty()), middle, sun]
         .into_iter()
         .flatten()
         .collect::<Vec<_>>()

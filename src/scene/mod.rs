@@ -61,7 +61,7 @@ pub use sensor::{
     Counts, Goniometer, Passage, Place, Seeing, Sensor, SensorKind, Sides, SurfaceSensor, Views,
 };
 pub use sky::Sky;
-pub use source::{EmitSide, Emitted, Emitter, Source, Start};
+pub use source::{EmitSide, Emitted, Emitter, Source, Start, SunAngles};
 
 use convex::Convex;
 use pattern::Pattern;

@@ -25,6 +25,17 @@ pub struct Source {
     pub on: Vec<PrimId>,
     /// Of a sun, its elevation above the horizon, rad.
     pub elevation: Option<f64>,
+    /// Of daylight that depends on the sun, where that stands.
+    pub sun: Option<SunAngles>,
+}
+
+/// Where the sun stands in the sky.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SunAngles {
+    /// Elevation above the horizon, rad.
+    pub elevation: f64,
+    /// Azimuth from north, clockwise seen from above, rad.
+    pub azimuth: f64,
 }
 
 /// What emits.

@@ -355,6 +355,7 @@ mod tests {
                 start: SourceStart::Outside,
                 on: Vec::new(),
                 elevation: None,
+                sun: None,
             });
         }
         let scene = builder.build();

@@ -20,6 +20,19 @@ fn a_check_lists_the_scene_and_draws_it() {
 }
 
 #[test]
+fn a_check_tells_where_the_sun_stands() {
+    // Reda & Andreas, Solar Position Algorithm (NREL/TP-560-34302, 2008), table A5.1: zenith 50.11162 deg, azimuth 194.34024 deg.
+    let when = "when = { date = \"2003-10-17\", time = \"12:30:30\", utc_offset_h = -7, latitude_deg = 39.742476, \
+                longitude_deg = -105.1786 }\naim = \"rod\"\n";
+    let place = Place::with(&format!(
+        "[sources.sun.sun]\nilluminance_lx = 1000\n{when}[sources.sky.sky]\nmodel = \"clear\"\nzenith_luminance_cd_m2 = 1\n{when}"
+    ));
+    let said = place.good("check rod.toml");
+    let angles = "sun 39.89 deg above the horizon, azimuth 194.34 deg";
+    assert_eq!(said.matches(angles).count(), 2, "{said}");
+}
+
+#[test]
 fn the_schema_is_json_with_a_title() {
     let schema: Value = serde_json::from_str(&Place::new().good("schema")).unwrap();
     assert!(!schema["title"].as_str().unwrap().is_empty());

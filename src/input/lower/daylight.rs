@@ -10,7 +10,8 @@ use crate::optics::SkyModel;
 use crate::optics::sun::{Date, Observation, read_time, sun_position};
 use crate::scene::shape::Shape;
 use crate::scene::{
-    Emission, EmitSide, Emitter, EmitterKind, FaceId, MeshBody, Owner, Sky, Source, SourceId, Start,
+    Emission, EmitSide, Emitter, EmitterKind, FaceId, MeshBody, Owner, Sky, Source, SourceId,
+    Start, SunAngles,
 };
 use crate::units::per_m2_to_per_mm2;
 use glam::DVec3;
@@ -48,15 +49,32 @@ struct Ball {
 struct Sun {
     /// rad
     elevation: f64,
+    /// From north, clockwise, rad.
+    azimuth: f64,
     /// Toward it, unit vector of the frame with x east, y north, z up.
     toward: DVec3,
 }
 
+/// What a source of daylight emits.
+#[derive(Debug)]
+struct FarLight {
+    emission: Emission,
+    /// lm
+    flux: f64,
+    /// Of a sun, rad.
+    elevation: Option<f64>,
+    sun: Option<SunAngles>,
+}
+
 impl Sun {
+    fn angles(&self) -> SunAngles {
+        SunAngles { elevation: self.elevation, azimuth: self.azimuth }
+    }
+
     fn new(elevation_deg: f64, azimuth_deg: f64) -> Self {
         let (elevation, azimuth) = (elevation_deg.to_radians(), azimuth_deg.to_radians());
         let level = elevation.cos() * DVec3::new(azimuth.sin(), azimuth.cos(), 0.0);
-        Self { elevation, toward: level.with_z(elevation.sin()) }
+        Self { elevation, azimuth, toward: level.with_z(elevation.sin()) }
     }
 }
 
@@ -119,8 +137,9 @@ impl Context<'_> {
         let flux = self.carried([spec.illuminance_lx, per_area * aim.area], &amount);
         let Some(flux) = flux else { return };
         let flux = if spec.enabled { flux } else { 0.0 };
-        let elevation = Some(sun.elevation);
-        let source = self.add_daylight(name, aim, emission, flux, elevation);
+        let angles = Some(sun.angles());
+        let light = FarLight { emission, flux, elevation: Some(sun.elevation), sun: angles };
+        let source = self.add_daylight(name, aim, light);
         let group = spec.group.clone().map(|group| (group, key.field("group")));
         self.members.push(Member { source, group, daylight: Some(Daylight::Sun(sun.toward)) });
     }
@@ -163,21 +182,17 @@ impl Context<'_> {
         let flux = self.carried([stated, per_area * aim.area], &key.field(amount));
         let Some(flux) = flux else { return };
         let flux = if spec.enabled { flux } else { 0.0 };
-        let source = self.add_daylight(name, aim, Emission::Sky(sky), flux, None);
-        let group = spec.group.clone().map(|group| (group, key.field("group")));
         let has_sun = spec.place.elevation_deg.is_some() || spec.place.when.is_some();
+        let angles = has_sun.then(|| sun.angles());
+        let light = FarLight { emission: Emission::Sky(sky), flux, elevation: None, sun: angles };
+        let source = self.add_daylight(name, aim, light);
+        let group = spec.group.clone().map(|group| (group, key.field("group")));
         let daylight = Some(Daylight::of_sky(spec, has_sun.then_some(toward_sun)));
         self.members.push(Member { source, group, daylight });
     }
 
-    fn add_daylight(
-        &mut self,
-        name: &str,
-        aim: Aim,
-        emission: Emission,
-        flux: f64,
-        elevation: Option<f64>,
-    ) -> SourceId {
+    fn add_daylight(&mut self, name: &str, aim: Aim, light: FarLight) -> SourceId {
+        let FarLight { emission, flux, elevation, sun } = light;
         self.builder.add_source(Source {
             name: name.to_owned(),
             flux,
@@ -186,6 +201,7 @@ impl Context<'_> {
             start: aim.start,
             on: Vec::new(),
             elevation,
+            sun,
         })
     }
 

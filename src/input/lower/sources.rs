@@ -68,6 +68,7 @@ impl Context<'_> {
             start,
             on,
             elevation: None,
+            sun: None,
         });
         let group = common.group.clone().map(|group| (group, key.field("group")));
         self.members.push(Member { source, group, daylight: None });

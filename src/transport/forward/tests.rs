@@ -48,6 +48,7 @@ fn mirror_tube(reflectance: f64, length: f64) -> Scene {
         start: Start::Outside,
         on: Vec::new(),
         elevation: None,
+        sun: None,
     });
     let grid = Grid::Cartesian { rect: disk(0.0).chart_bounds(), nu: 32, nv: 32 };
     let area_in = |rect| builder.scene().face_area_in(port, rect);

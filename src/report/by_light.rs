@@ -6,7 +6,7 @@ use crate::report::words::quantity;
 /// Least number of sources and groups that are held against each other.
 const SEVERAL: usize = 2;
 
-/// What stands before the rows of [`table`].
+/// What stands before the rows of the table by source.
 pub(crate) const HEAD: &str = "Efficiency is the part of a source's own light that comes to the sensor. Share is the part \
     of the sensor's light that comes from the source; that of a source meant for another sensor is the crosstalk.";
 

@@ -1,5 +1,5 @@
-//! Names the exact build: the version and a digest of all sources, known to `src/pipeline.rs`. It stands in files that only
-//! the very same build may read, and never in a report.
+//! Computes the identifier of the exact build, the version with a digest of all sources, for `src/pipeline.rs`. Only files that
+//! no other build may read contain it; a report never does.
 
 use std::env;
 use std::fs;

@@ -2,10 +2,10 @@
 //!
 //! The smallest of noisy values is too small: of 1024 cells of equal illuminance known to 1 %, the darkest reads 3.2 %
 //! below. So the extremes are those of the values without noise ([`crate::measure::multiscale`]). What that does to a
-//! statistic is learnt by a parametric bootstrap about these values (Efron & Tibshirani, An Introduction to the Bootstrap (1993), chapters 6
+//! statistic is estimated by a parametric bootstrap about these values (Efron & Tibshirani, An Introduction to the Bootstrap (1993), chapters 6
 //! and 10): counts are drawn anew, and the statistic is taken of each drawing in the same way. The scatter of drawings is
-//! the standard error; half of their mean deviation is taken off as bias, the rest is told as bias. docs/measures.md
-//! has the figures that this was chosen by.
+//! the standard error; half of their mean deviation is subtracted, the other half is reported as bias. docs/measures.md
+//! has the figures behind this choice.
 //!
 //! This module knows nothing of sensors. Units are those of its input.
 
@@ -29,7 +29,7 @@ pub(crate) const TWO_SIDED_95: f64 = 1.959_964;
 /// extreme is rather found too far out than too far in.
 const OUTWARD: f64 = 1.3;
 const INWARD: f64 = 1.7;
-/// The same for the ratio of two extremes, both of which are found too far out.
+/// The same for the ratio of two extremes, since both estimates lie too far out.
 const INWARD_OF_BOTH: f64 = 1.9;
 /// Counts expected that are next to nothing, 1.
 const NEXT_TO_NOTHING: f64 = 0.1;

@@ -16,7 +16,7 @@ pub(crate) fn refuse_too_many_copies(
     let mut triangles_of: Vec<Option<u64>> = vec![None; root.meshes.len()];
     let (mut nodes, mut all, mut own) = (0, 0_u64, 0_u64);
     for index in placed {
-        // A mesh that does not exist is told where it is read.
+        // The reader of nodes reports a mesh that does not exist.
         let (Some(mesh), Some(known)) = (root.get(index), triangles_of.get_mut(index.value()))
         else {
             continue;

@@ -129,7 +129,7 @@ fn is_cad_ending(ending: &str) -> bool {
         .contains(&ending)
 }
 
-/// What to say of a file that is given in place of a scene, if its ending tells that it is none.
+/// The message for a mesh or CAD file given in place of a scene; `None` for any other ending.
 pub fn no_scene(path: &Path) -> Option<String> {
     let ending = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
     match MeshFormat::of(path) {
@@ -137,7 +137,7 @@ pub fn no_scene(path: &Path) -> Option<String> {
             "this is a mesh ({format}), not a scene: name it in a scene as solids.NAME.mesh.file; docs/cad.md has an example"
         )),
         Err(_) if is_cad_ending(&ending) => Some(
-            "this is a CAD file, not a scene: docs/cad.md tells how to make a mesh of it and name that in a scene".into(),
+            "this is a CAD file, not a scene: docs/cad.md explains how to make a mesh of it and name that in a scene".into(),
         ),
         Err(_) => None,
     }

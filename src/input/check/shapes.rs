@@ -65,7 +65,7 @@ fn check_paraboloid(key: &Key, shape: &ParaboloidSpec, problems: &mut Problems) 
     );
 }
 
-/// The old keys of a lens, of which there may be none beside the new ones.
+/// Checks the old keys of a lens, which exclude the new ones.
 fn check_lens(key: &Key, lens: &LensSpec, problems: &mut Problems) {
     let ends = [
         ("entry", lens.entry.is_some(), "entry_radius_mm", lens.entry_radius_mm, 1.0),

@@ -22,7 +22,7 @@ pub(super) enum Daylight {
         /// Toward the sun, of a sky that is brighter about it.
         sun: Option<DVec3>,
         model: SkyModelSpec,
-        /// Zenith luminance and horizontal illuminance, of which one is given.
+        /// Zenith luminance and horizontal illuminance; exactly one is given.
         amount: [Option<f64>; 2],
     },
 }

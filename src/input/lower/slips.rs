@@ -23,8 +23,8 @@ pub(super) fn check_slips(spec: &SceneSpec, scene: &Scene, problems: &mut Proble
     check_sides(spec, problems);
 }
 
-/// Notes a source that stands in space and starts all of its light in a guide, with no word that it is meant to. A source with
-/// a body is a part that is cast in, and one of these who say their `contact` has been thought about.
+/// Notes a free source whose light all starts inside a guide. A source with a `body` is a component cast into the guide, and
+/// an explicit `contact` states the intent; neither is noted.
 pub(super) fn check_embedded(
     scene: &Scene,
     source: &SourceSpec,

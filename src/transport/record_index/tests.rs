@@ -1,0 +1,63 @@
+use super::*;
+use crate::math::uniform_sphere;
+use crate::rng::{Dimension, Sampler};
+use crate::transport::StopSignal;
+
+/// Records on the cylinder of radius 5 mm about z, all on one surface.
+fn records(count: u32) -> Vec<Indexed> {
+    (0..count)
+        .map(|record| {
+            let mut sampler = Sampler::for_path(11, 1, u64::from(record));
+            let [turn, along] = sampler.pair(Dimension::GatherPosition);
+            let (sin, cos) = (std::f64::consts::TAU * turn).sin_cos();
+            let normal = DVec3::new(cos, sin, 0.0);
+            let point = 5.0 * normal + 20.0 * along * DVec3::Z;
+            let dir = uniform_sphere(sampler.pair(Dimension::GatherDirection));
+            Indexed { record, surface: 0, point, normal, dir }
+        })
+        .collect()
+}
+
+fn indexed(records: impl Iterator<Item = Indexed>, window: Window) -> Index {
+    Index::new(records, window, &Pace::new(&StopSignal::default())).unwrap()
+}
+
+#[test]
+fn a_look_up_finds_each_record_that_a_scan_finds_once() {
+    let window = Window { radius: 1.2, theta_max: 0.4 };
+    let all = records(3000);
+    let index = indexed(all.iter().copied(), window);
+    let mut pairs = 0;
+    for photon in records(6000).split_off(3000) {
+        let near = |record: &&Indexed| {
+            record.point.distance(photon.point) <= window.radius
+                && record.dir.distance(photon.dir) <= window.chord()
+        };
+        let scanned: Vec<u32> = all.iter().filter(near).map(|record| record.record).collect();
+        let mut found = Vec::new();
+        let Indexed { surface, point, dir, .. } = photon;
+        index.visit(&[Key { surface, point, dir }], |_, record| found.push(record));
+        found.sort_unstable();
+        assert!(found.windows(2).all(|two| two[0] != two[1]), "{found:?}");
+        assert!(scanned.iter().all(|record| found.contains(record)), "{scanned:?}, {found:?}");
+        assert!(scanned.is_empty() || index.may_hold(0, photon.point, photon.dir));
+        pairs += scanned.len();
+    }
+    assert!(pairs > 1000, "{pairs}");
+}
+
+#[test]
+fn a_filter_lets_few_photons_through_that_meet_nothing() {
+    let window = Window { radius: 0.3, theta_max: 0.05 };
+    let index = indexed(records(500).into_iter(), window);
+    let strangers = records(20_500).split_off(500);
+    let through =
+        strangers.iter().filter(|photon| index.may_hold(0, photon.point, photon.dir)).count();
+    assert!(through < strangers.len() / 20, "{through}");
+}
+
+#[test]
+fn cells_are_centred_on_whole_multiples() {
+    assert_eq!(cell_of(DVec3::new(-0.6, 0.4, 2.6), 1.0), [-1, 0, 3]);
+    assert_eq!(cell_of(DVec3::new(-1e6, 1e6, -0.4), 2.0), [-2_000_000, 2_000_000, -1]);
+}

@@ -138,7 +138,8 @@ impl Open {
         self.call("Emulation.setTouchEmulationEnabled", json!({ "enabled": true }));
     }
 
-    /// Moves a finger over an element from one place to another.
+    /// Moves a finger over an element from one place to another, and waits until a page that it has set in motion
+    /// comes to rest.
     pub(crate) fn stroke(&self, element: &str, from: [f64; 2], to: [f64; 2]) {
         const STEPS: u32 = 8;
         let start = self.place(element, from);
@@ -152,6 +153,25 @@ impl Open {
             touch(if step == 0 { "touchStart" } else { "touchMove" }, json!([{ "x": x, "y": y }]));
         }
         touch("touchEnd", json!([]));
+        self.rest();
+    }
+
+    /// Waits until the page scrolls no more: it moves on for a while after a finger has left it, and that motion adds
+    /// to whatever scrolls the page next.
+    fn rest(&self) {
+        /// So many looks in a row see the page at the same place.
+        const LOOKS: usize = 15;
+        let start = Instant::now();
+        let mut seen = vec![self.ask("scrollY")];
+        while seen.len() < LOOKS {
+            assert!(start.elapsed() < Duration::from_secs(20), "the page scrolls without end");
+            std::thread::sleep(Duration::from_millis(20));
+            let now = self.ask("scrollY");
+            if now != seen[0] {
+                seen.clear();
+            }
+            seen.push(now);
+        }
     }
 
     /// The page as it is printed to PDF.

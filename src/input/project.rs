@@ -3,7 +3,7 @@
 use crate::input::keys::{Key, Places};
 use crate::input::problems::Problems;
 use crate::input::spec::SceneSpec;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::path::Path;
 
 /// First bytes of every PNG file (PNG specification, third edition, section 5.2).
@@ -12,7 +12,7 @@ const PNG_SIGNATURE: [u8; 8] = [0x89, b'P', b'N', b'G', b'\r', b'\n', 0x1a, b'\n
 const LARGEST_LOGO: usize = 1_000_000;
 
 /// What stands at the head of a report.
-#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Project {
     /// Whom the report is for.
     #[serde(skip_serializing_if = "Option::is_none")]

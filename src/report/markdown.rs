@@ -1,5 +1,6 @@
 //! `report.md`: the page for people, wherever Markdown is rendered.
 
+use crate::input::Project;
 use crate::report::contents::{parts, verdict};
 use crate::report::html::frame::{Block, Part, Plots};
 use crate::report::{LOGO, Report};
@@ -9,13 +10,7 @@ use std::fmt::Write;
 /// The whole page.
 pub(crate) fn markdown(report: &Report) -> String {
     let mut page = format!("# {}\n\n", report.scene.title);
-    if let Some(project) = &report.scene.project {
-        if project.logo.is_some() {
-            page += &format!("![logo]({LOGO})\n\n");
-        }
-        let lines = project.entries().into_iter().map(|(name, text)| format!("{name}: {text}"));
-        page += &format!("{}\n\n", lines.collect::<Vec<_>>().join(" · "));
-    }
+    page += &masthead(report.scene.project.as_ref());
     if let Some(description) = &report.scene.description {
         page += &format!("{}\n\n", description.trim());
     }
@@ -27,6 +22,14 @@ pub(crate) fn markdown(report: &Report) -> String {
     // Plots are for scripts; here their pictures are shown.
     parts(report, &mut Plots::default()).iter().for_each(|part| add(&mut page, part));
     without_html(page.trim_end()) + "\n"
+}
+
+/// The head of the pages of a project.
+pub(crate) fn masthead(project: Option<&Project>) -> String {
+    let Some(project) = project else { return String::new() };
+    let logo = if project.logo.is_some() { format!("![logo]({LOGO})\n\n") } else { String::new() };
+    let lines = project.entries().into_iter().map(|(name, text)| format!("{name}: {text}"));
+    format!("{logo}{}\n\n", lines.collect::<Vec<_>>().join(" · "))
 }
 
 fn add(page: &mut String, part: &Part) {

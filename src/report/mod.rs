@@ -3,6 +3,7 @@
 //! A report depends on the scene, the seed and the number of paths alone: no clock, no thread count and no machine is
 //! known here, but for `timing.csv` and the comparison of estimators, which lie outside of the reproducible set.
 
+mod base64;
 mod by_light;
 mod by_sun;
 mod compare;

@@ -18,7 +18,7 @@ pub use execute::BatchProgress;
 use crate::error::{Diagnostic, Error, Result};
 use crate::input::keys::Key;
 use crate::input::problems::{Problems, name_hint};
-use crate::input::{Parameter, Plan, Study, StudySettings, Tie, load_study};
+use crate::input::{Parameter, Plan, Project, Study, StudySettings, Tie, load_study};
 use crate::pipeline::{self, VERSION};
 use crate::report::study::{
     DesignRecord, FACTS_FORMAT, ParameterFacts, PlanFacts, StudyFacts, StudyReport, study_files,
@@ -206,12 +206,15 @@ fn expect_measures(study: &Study) -> Result<()> {
 /// What a study is, for its reports.
 fn facts(study: &Study, designs: usize) -> StudyFacts {
     let run = &study.base.run;
+    let project = study.base.project.clone();
     StudyFacts {
         lumiduct_batch: FACTS_FORMAT,
         version: VERSION.to_owned(),
         name: study.name.clone(),
         title: study.title.clone(),
         description: study.description.clone(),
+        logo: project.as_ref().and_then(|project| project.logo.clone()),
+        project: project.map(|project| Project { logo: None, ..project }),
         hash: study.hash.clone(),
         scene: study.base.name.clone(),
         overrides: study.common.overrides.clone(),

@@ -17,6 +17,13 @@ const COMPLAINTS: [&str; 3] =
 /// A page that is open.
 pub(crate) struct Open(RefCell<Browser>);
 
+/// A key that is held down.
+#[derive(Clone, Copy)]
+pub(crate) enum Modifier {
+    Nothing,
+    Ctrl,
+}
+
 /// A browser of this machine. Without one the test says so and is over, unless the environment demands it.
 pub(crate) fn find() -> Option<PathBuf> {
     let path = std::env::var_os("PATH").unwrap_or_default();
@@ -107,6 +114,20 @@ impl Open {
         self.mouse("mouseMoved", middle, "left");
         self.mouse("mouseMoved", end, "left");
         self.mouse("mouseReleased", end, "left");
+    }
+
+    /// Turns the wheel over an element, down by 100 pixels, and waits until the page comes to rest.
+    pub(crate) fn wheel(&self, element: &str, with: Modifier) {
+        let [x, y] = self.place(element, [0.5, 0.5]);
+        let modifiers = match with {
+            Modifier::Nothing => 0,
+            Modifier::Ctrl => 2,
+        };
+        let event = json!({
+            "type": "mouseWheel", "x": x, "y": y, "deltaX": 0, "deltaY": 100, "modifiers": modifiers,
+        });
+        self.call("Input.dispatchMouseEvent", event);
+        self.rest();
     }
 
     fn mouse(&self, kind: &str, [x, y]: [f64; 2], button: &str) {

@@ -10,7 +10,7 @@ mod protocol;
 mod study;
 
 use assert_cmd::Command;
-use driver::Open;
+use driver::{Modifier, Open};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -147,6 +147,24 @@ fn scales_switch_lines_cut_and_the_scene_turns() {
     assert_eq!(page.text("document.querySelector('.scene .legend button').ariaPressed"), "false");
     page.point_at(canvas, [0.5, 0.5]);
     page.expect("document.querySelector('.scene').parentElement.querySelector('.readout').textContent !== ''");
+    page.expect_no_complaints();
+}
+
+#[test]
+fn the_wheel_scrolls_the_page_and_zooms_the_scene_with_ctrl() {
+    let Some(program) = driver::find() else { return };
+    let report = Report::new();
+    let page = report.open(&program);
+    let canvas = "document.querySelector('.scene canvas')";
+    let painted = format!("{canvas}.toDataURL()");
+    page.place(canvas, [0.5, 0.5]);
+    let [picture, from] = [page.text(&painted), page.ask("scrollY").to_string()];
+    page.wheel(canvas, Modifier::Nothing);
+    page.expect(&format!("scrollY > {from}"));
+    assert_eq!(page.text(&painted), picture, "the wheel alone has zoomed the scene");
+    page.wheel(canvas, Modifier::Ctrl);
+    page.expect(&format!("{painted} !== {}", serde_json::to_string(&picture).unwrap()));
+    assert_eq!(page.ask("scrollY").to_string(), from, "zooming has scrolled the page");
     page.expect_no_complaints();
 }
 

@@ -108,6 +108,22 @@ fn a_project_heads_its_report_with_logo_and_date_as_typed() {
     assert!(html.contains("Client: Lamps &amp; Sons") && html.contains("Date: 22 Nov"));
     let summary = place.summary("out");
     assert_eq!(summary["scene"]["project"]["client"], "Lamps & Sons");
+    // A study of the scene has the same head, also where its parts are put together.
+    let study = "lumiduct_study = 1\ntitle = \"How long?\"\nscene = \"rod.toml\"\nmeasures = [\"exit.efficiency\"]\nplan = \"grid\"\n\
+                 [parameters.length]\nkeys = [\"solids.rod.cylinder.length_mm\"]\nvalues = [5, 10]\n[run]\npaths = 20_000\n";
+    fs::write(place.path("study.toml"), study).unwrap();
+    for part in ["1/2", "2/2"] {
+        place.good(&format!("batch study.toml -q --shard {part} -o {}", part.replace('/', "of")));
+    }
+    place.good("merge 1of2 2of2 -o study");
+    let page = |name: &str| fs::read_to_string(place.path("study").join(name)).unwrap();
+    let html = page("study.html").replace("&#x2f;", "/");
+    assert!(html.contains(&format!("data:image/png;base64,{PIXEL}")), "the study has no logo");
+    assert!(html.contains("Client: Lamps &amp; Sons"), "{html}");
+    let markdown = page("study.md");
+    assert!(at(&markdown, "Client: Lamps & Sons · Date: 22 Nov") < at(&markdown, "## "));
+    assert_eq!(fs::read(place.path("study/project_logo.png")).unwrap(), pixel);
+    assert!(!page("study.json").contains(PIXEL) && page("study.json").contains("D-17"));
     // Another logo makes other pages.
     fs::write(place.path("art/logo.png"), [pixel, vec![0]].concat()).unwrap();
     place.good("run rod.toml -o other -q");

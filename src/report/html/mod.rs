@@ -6,14 +6,13 @@ mod axes;
 pub(crate) mod check;
 mod coarse;
 pub(crate) mod data;
-mod data_uri;
 pub(crate) mod frame;
 
 use crate::error::Result;
 use crate::input::Project;
 use crate::report::Report;
+use crate::report::base64::png_uri;
 use crate::report::contents::{parts, verdict};
-use crate::report::html::data_uri::png_uri;
 use crate::report::html::frame::{Masthead, Page, Plots, render};
 
 /// The whole page.
@@ -23,7 +22,7 @@ pub(crate) fn html(report: &Report) -> Result<String> {
     let (standing, verdict) = verdict(report);
     let page = Page {
         title: report.scene.title.clone(),
-        masthead: report.scene.project.as_ref().map(masthead),
+        masthead: masthead(report.scene.project.as_ref()),
         description: report.scene.description.as_ref().map(|text| text.trim().to_owned()),
         verdict,
         standing,
@@ -33,7 +32,9 @@ pub(crate) fn html(report: &Report) -> Result<String> {
     render(&page, &plots)
 }
 
-fn masthead(project: &Project) -> Masthead {
+/// The head of the pages of a project.
+pub(crate) fn masthead(project: Option<&Project>) -> Option<Masthead> {
+    let project = project?;
     let lines = project.entries().into_iter().map(|(name, text)| [name, text].map(str::to_owned));
-    Masthead { lines: lines.collect(), logo: project.logo.as_deref().map(png_uri) }
+    Some(Masthead { lines: lines.collect(), logo: project.logo.as_deref().map(png_uri) })
 }

@@ -3,6 +3,7 @@
 use crate::error::Result;
 use crate::report::html::data::chart;
 use crate::report::html::frame::{self, Block, Page, Plots, Standing, render};
+use crate::report::html::masthead;
 use crate::report::png::{
     ErrorForm, LinePlot, Look, Scale, ScatterMatrix, Series, SeriesForm, SeriesPoint,
 };
@@ -22,7 +23,7 @@ pub(super) fn html(report: &StudyReport, figures: &[Figure]) -> Result<String> {
     let pictures = frame::Part { title: "Plots".into(), blocks: drawn };
     let page = Page {
         title: facts.title.clone(),
-        masthead: None,
+        masthead: masthead(facts.whole_project().as_ref()),
         description: facts.description.as_ref().map(|text| text.trim().to_owned()),
         verdict: verdict(report),
         standing: match (facts.checks.is_empty(), report.counts().is_clean()) {

@@ -20,7 +20,7 @@ pub use terminal::terminal;
 use crate::error::{Error, Result};
 use crate::input::Setting;
 use crate::measure::{Measure, Outcome};
-use crate::report::OutputFile;
+use crate::report::{LOGO, OutputFile};
 use indexmap::IndexMap;
 use serde::Serialize;
 
@@ -37,6 +37,8 @@ pub fn study_files(report: &StudyReport, study_text: &str) -> Result<Vec<OutputF
         files.push(figure.file()?);
     }
     files.push(OutputFile::text(format!("{}.toml", report.facts.name), study_text.to_owned()));
+    let logo = report.facts.logo.clone();
+    files.extend(logo.map(|bytes| OutputFile { name: LOGO.to_owned(), bytes }));
     files.push(OutputFile::text("study.md", page::page(report, &figures)));
     files.push(OutputFile::text("study.html", html::html(report, &figures)?));
     let summary = summary(report, &files)?;
@@ -48,7 +50,7 @@ pub fn study_files(report: &StudyReport, study_text: &str) -> Result<Vec<OutputF
 struct Summary<'a> {
     lumiduct_study_summary: u32,
     #[serde(flatten)]
-    facts: &'a StudyFacts,
+    facts: StudyFacts,
     rows: Vec<Row<'a>>,
     analysis: &'a Analysis,
     files: Vec<&'a str>,
@@ -85,7 +87,8 @@ impl<'a> Row<'a> {
 fn summary(report: &StudyReport, files: &[OutputFile]) -> Result<String> {
     let summary = Summary {
         lumiduct_study_summary: SUMMARY_FORMAT,
-        facts: &report.facts,
+        // The logo has a file of its own.
+        facts: StudyFacts { logo: None, ..report.facts.clone() },
         rows: report.designs.iter().map(Row::of).collect(),
         analysis: &report.analysis,
         files: files.iter().map(|file| file.name.as_str()).chain([SUMMARY]).collect(),

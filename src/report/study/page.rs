@@ -1,5 +1,6 @@
 //! `study.md`: what came of a study, for people.
 
+use crate::report::markdown::masthead;
 use crate::report::study::StudyReport;
 use crate::report::study::contents::{Item, Part, parts, verdict};
 use crate::report::study::figures::Figure;
@@ -12,6 +13,7 @@ const ROWS_SHOWN: usize = 60;
 /// The whole page.
 pub(super) fn page(report: &StudyReport, figures: &[Figure]) -> String {
     let mut page = format!("# {}\n\n", report.facts.title);
+    page += &masthead(report.facts.whole_project().as_ref());
     if let Some(description) = &report.facts.description {
         page += &format!("{}\n\n", description.trim());
     }

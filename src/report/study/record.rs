@@ -1,7 +1,8 @@
 //! What is known of a study: its facts, a record of every design, and what follows from all of them together.
 
-use crate::input::{Best, Domain, Keep, Ranking, Setting, column};
+use crate::input::{Best, Domain, Keep, Project, Ranking, Setting, column};
 use crate::measure::{Measure, Outcome, Replicates};
+use crate::report::base64;
 use crate::report::{CheckResult, TargetFacts};
 use crate::scene::plan::Check;
 use indexmap::IndexMap;
@@ -25,6 +26,12 @@ pub struct StudyFacts {
     pub title: String,
     /// What it is for.
     pub description: Option<String>,
+    /// Whom the study is for, and by whom: the project of its scene, without the logo.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub project: Option<Project>,
+    /// The logo of the project, a PNG file, byte for byte.
+    #[serde(default, skip_serializing_if = "Option::is_none", with = "base64")]
+    pub logo: Option<Vec<u8>>,
     /// Identifies study, scene, files that they name, overrides and numerics.
     pub hash: String,
     /// Name of the scene that is varied.
@@ -54,6 +61,12 @@ pub struct StudyFacts {
 }
 
 impl StudyFacts {
+    /// The project with its logo.
+    pub(crate) fn whole_project(&self) -> Option<Project> {
+        let project = self.project.clone()?;
+        Some(Project { logo: self.logo.clone(), ..project })
+    }
+
     /// Whether these are of the same study, so that their designs go together.
     pub fn is_same_study(&self, other: &Self) -> bool {
         (&self.name, &self.hash, self.designs) == (&other.name, &other.hash, other.designs)

@@ -66,6 +66,8 @@ pub(super) mod testing {
             name: "study".into(),
             title: "Study".into(),
             description: None,
+            project: None,
+            logo: None,
             hash: String::new(),
             scene: "scene".into(),
             overrides: Vec::new(),

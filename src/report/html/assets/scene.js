@@ -14,7 +14,7 @@ const ROLES = {
 const NEAR = 5;
 
 function drawScene(figure, data) {
-  const hint = "drag or arrow keys turn, wheel or + and - zoom, shift and drag moves, 0 starts anew";
+  const hint = "drag or arrow keys turn, ctrl (or cmd) and the wheel, a pinch, or + and - zoom, shift and drag moves, 0 starts anew";
   const { controls, body, readout } = layOut(figure, "scene", hint);
   const canvas = make("canvas", { width: 2 * SCENE.width, height: 2 * SCENE.height, tabindex: "0", role: "img", "aria-label": "the scene" });
   body.append(canvas);

@@ -2,7 +2,7 @@
 
 function turnScene(state) {
   const { canvas } = state;
-  let last = null;
+  const middle = [SCENE.width / 2, SCENE.height / 2];
   const turn = (right, down) => {
     state.view.rows = turned(turned(state.view.rows, 1, right), 0, down);
     state.draw();
@@ -13,15 +13,22 @@ function turnScene(state) {
     view.scale *= factor;
     state.draw();
   };
+  // Places of the fingers, or of the mouse, that are down on the scene.
+  const down = new Map();
+  const apart = () => { const [a, b] = [...down.values()]; return Math.max(Math.hypot(a[0] - b[0], a[1] - b[1]), 1); };
+  const place = (event) => [event.clientX, event.clientY];
   canvas.addEventListener("pointerdown", (event) => {
     if (!mayDrag(canvas.parentElement, event)) return;
-    last = [event.clientX, event.clientY];
+    down.set(event.pointerId, place(event));
     canvas.setPointerCapture(event.pointerId);
   });
   canvas.addEventListener("pointermove", (event) => {
+    const last = down.get(event.pointerId);
     if (!last) return;
+    const before = down.size > 1 ? apart() : 0;
+    down.set(event.pointerId, place(event));
+    if (down.size > 1) return zoom(apart() / before, middle);
     const [dx, dy] = [event.clientX - last[0], event.clientY - last[1]];
-    last = [event.clientX, event.clientY];
     const perUnit = SCENE.width / canvas.getBoundingClientRect().width;
     if (event.shiftKey || event.buttons === 2) {
       state.view.center = [state.view.center[0] + dx * perUnit, state.view.center[1] + dy * perUnit];
@@ -30,12 +37,13 @@ function turnScene(state) {
       turn(0.008 * dx, 0.008 * dy);
     }
   });
-  for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, () => { last = null; });
+  for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, (event) => down.delete(event.pointerId));
+  // The wheel alone scrolls the page. Browsers report a pinch on a touch pad as the wheel with Ctrl.
   canvas.addEventListener("wheel", (event) => {
+    if (!event.ctrlKey && !event.metaKey) return;
     event.preventDefault();
     zoom(Math.exp(-0.0015 * event.deltaY), sceneAt(canvas, event));
   }, { passive: false });
-  const middle = [SCENE.width / 2, SCENE.height / 2];
   const keys = {
     ArrowLeft: () => turn(-0.12, 0), ArrowRight: () => turn(0.12, 0), ArrowUp: () => turn(0, -0.12), ArrowDown: () => turn(0, 0.12),
     "+": () => zoom(1.25, middle), "-": () => zoom(0.8, middle), 0: () => { state.reset(); state.draw(); },

@@ -412,6 +412,8 @@ fn bad_studies_are_refused_with_the_line_to_change_and_write_nothing() {
         ("values = [5, 10, 20]", "values = [5, 10, 5]", "5 is there twice"),
         ("values = [5, 10, 20]", "values = [5, 5.2, 6]\nwhole = true", "5 is there twice"),
         ("[parameters.length]", "[parameters.\"a/b\"]", "letters, digits"),
+        ("[parameters.length]", LONG_PARAMETER, "a name of 67 letters is too long, at most 64"),
+        ("unit = \"mm\"", "unit = \"m\\nm\"", "a unit is a few letters"),
         ("[parameters.index]", "[parameters.design]", "two columns `design`"),
         (
             "[\"exit.efficiency\"",
@@ -466,3 +468,7 @@ fn bad_studies_are_refused_with_the_line_to_change_and_write_nothing() {
         assert!(!place.path("reports").exists(), "{to}");
     }
 }
+
+/// A parameter whose name no file could have beside those of its measures.
+const LONG_PARAMETER: &str =
+    "[parameters.length_6789_123456789_123456789_123456789_123456789_123456789_12345]";

@@ -18,7 +18,7 @@ mod shapes;
 mod sources;
 mod surfaces;
 
-pub(crate) use names::check_title;
+pub(crate) use names::{check_length, check_name, check_title};
 pub(crate) use run::check_demands;
 
 /// Notes names that are taken twice, and names of things that are not there.

@@ -1,7 +1,7 @@
 //! Names: their letters, and that none is used twice.
 
 use crate::input::keys::{Key, Places, is_bare};
-use crate::input::problems::Problems;
+use crate::input::problems::{Problem, Problems};
 use crate::input::tree::{Entry, Node};
 
 /// Tables whose names share the names of faces and measures.
@@ -10,10 +10,15 @@ const SHARED: [&str; 4] = ["solids", "sheets", "sources", "sensors"];
 /// Names that measures of the whole scene have.
 const RESERVED: [&str; 1] = ["balance"];
 
+/// Most letters of a name: names of files hold up to three of them, and file systems take 255 bytes (POSIX `NAME_MAX`).
+const MOST_LETTERS: usize = 64;
+
 pub(crate) fn check(places: &Places, problems: &mut Problems) {
     for family in ["media", "finishes", "patterns", "reliefs"].into_iter().chain(SHARED) {
         for (name, entry) in named(places.root(), family) {
-            check_letters(&Key::of(&[family, name]), name, entry, problems);
+            if let Some(problem) = check_name(name, &Key::of(&[family, name]), problems) {
+                problem.at(&entry.key);
+            }
         }
     }
     let all: Vec<_> = SHARED
@@ -49,11 +54,30 @@ pub(crate) fn check_title(title: &str, problems: &mut Problems) {
     }
 }
 
-fn check_letters(key: &Key, name: &str, entry: &Entry, problems: &mut Problems) {
+/// Notes a name that files and columns cannot have.
+pub(crate) fn check_name<'p>(
+    name: &str,
+    key: &Key,
+    problems: &'p mut Problems,
+) -> Option<&'p mut Problem> {
     if !is_bare(name) {
-        let message = "a name is made of letters, digits, `_` and `-`";
-        problems.error(key, message).at(&entry.key);
+        return Some(problems.error(key, "a name is made of letters, digits, `_` and `-`"));
     }
+    check_length("name", name, key, problems)
+}
+
+/// Notes a text that is too long for the name of a file or a column. `what` says what it is.
+pub(crate) fn check_length<'p>(
+    what: &str,
+    text: &str,
+    key: &Key,
+    problems: &'p mut Problems,
+) -> Option<&'p mut Problem> {
+    let letters = text.chars().count();
+    (letters > MOST_LETTERS).then(|| {
+        let message = format!("a {what} of {letters} letters is too long, at most {MOST_LETTERS}");
+        problems.error(key, message).hint("files and columns of reports are named after it")
+    })
 }
 
 fn named<'a>(

@@ -2,7 +2,8 @@
 //!
 //! A sun and the skies about it are one weather; another place of the sun is another weather, and so is an overcast sky.
 
-use crate::input::keys::{Key, is_bare};
+use crate::input::check::check_name;
+use crate::input::keys::Key;
 use crate::input::lower::Context;
 use crate::input::spec::daylight::{SkyModelSpec, SkySpec};
 use crate::scene::{LightGroup, LightGroups, SourceId};
@@ -11,6 +12,9 @@ use indexmap::IndexMap;
 
 /// Suns nearer than this are one sun, by the distance of their unit vectors: below a second of arc.
 const SAME_SUN: f64 = 1e-6;
+
+/// Most letters of a name that is made of the names of several sources.
+const MOST_JOINED: usize = 64;
 
 /// A daylight source by what it shines with.
 #[derive(Debug, Clone, PartialEq)]
@@ -110,10 +114,8 @@ impl Context<'_> {
     fn check_group_names(&mut self, members: &[Member]) {
         for member in members {
             let Some((name, key)) = &member.group else { continue };
-            if !is_bare(name) {
-                let message = "a name is made of letters, digits, `_` and `-`";
-                self.problems.error(key, message);
-            } else if self.builder.scene().sources.iter().any(|source| source.name == *name) {
+            let is_wrong = check_name(name, key, self.problems).is_some();
+            if !is_wrong && self.builder.scene().sources.iter().any(|source| source.name == *name) {
                 self.problems
                     .error(key, format!("`{name}` is the name of a source already"))
                     .hint("sources and light groups share their names: give the group another one");
@@ -131,7 +133,14 @@ impl Context<'_> {
                 names.push(name);
             }
         }
-        names.join("_and_")
+        let joined = names.join("_and_");
+        // A list of many sources is no name for a column.
+        match names.as_slice() {
+            [first, others @ ..] if joined.len() > MOST_JOINED => {
+                format!("{first}_and_{}_more", others.len())
+            }
+            _ => joined,
+        }
     }
 
     fn note_taken(&mut self, name: &str, source: SourceId) {

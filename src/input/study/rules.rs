@@ -1,8 +1,8 @@
 //! Rules of a study that span several keys, or that need its scene.
 
 use crate::error::{Diagnostic, DiagnosticKind};
-use crate::input::check::{check_demands, check_title};
-use crate::input::keys::{Key, Places, is_bare};
+use crate::input::check::{check_demands, check_length, check_name, check_title};
+use crate::input::keys::{Key, Places};
 use crate::input::overrides::parse_key;
 use crate::input::problems::Problems;
 use crate::input::spec::study::{
@@ -12,6 +12,7 @@ use crate::input::spec::study::{
 use crate::input::study::parameters::{DESIGN_COLUMN, OTHER_COLUMNS, column};
 use crate::input::study::{Domain, Parameter, label, problems_of_scene};
 use crate::input::{Job, Settings};
+use crate::text::is_control;
 use indexmap::IndexMap;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -35,6 +36,7 @@ pub(super) fn check(
     for (name, parameter) in &spec.parameters {
         let key = Key::of(&["parameters", name]);
         check_name(name, &key, problems);
+        check_unit(parameter, &key, problems);
         check_source(places, &spec.plan, &key, problems);
         check_room(parameter, &key, problems);
         for (index, tied) in parameter.keys.iter().enumerate() {
@@ -51,10 +53,13 @@ pub(super) fn check(
     check_count(spec, problems);
 }
 
-/// Notes a name that files and columns cannot have.
-fn check_name(name: &str, key: &Key, problems: &mut Problems) {
-    if !is_bare(name) {
-        problems.error(key, "a name is made of letters, digits, `_` and `-`");
+/// Notes a unit that no column can have.
+fn check_unit(parameter: &ParameterSpec, key: &Key, problems: &mut Problems) {
+    let (Some(unit), key) = (&parameter.unit, key.field("unit")) else { return };
+    if unit.contains(is_control) {
+        problems.error(&key, "a unit is a few letters of one line");
+    } else {
+        check_length("unit", unit, &key, problems);
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::error::{Diagnostic, Error, Result};
 use crate::input::Settings;
 use crate::pipeline::{inventory_of, prepare, shown_tracks};
-use crate::report::{self, Existing, SectionView, write_whole};
+use crate::report::{self, Existing, SectionView, expect_file, write_whole};
 use std::path::{Path, PathBuf};
 
 /// Paths that a check draws.
@@ -49,26 +49,34 @@ pub fn check(scene: &Path, settings: &Settings, wished: &CheckPictures) -> Resul
         .picture
         .as_deref()
         .map_or((&*default, Existing::Replace), |path| (path, wished.existing));
+    let page = match wished.page {
+        CheckPage::Wanted => Some(page_beside(picture)?),
+        CheckPage::Unwanted => None,
+    };
+    expect_file(picture)?;
+    page.iter().try_for_each(|page| expect_file(page))?;
     let tracks = shown_tracks(&job, CHECK_PATHS);
     let bytes = report::scene_picture(&job.title, &job.scene, &tracks, &wished.section)?;
     write_whole(picture, &bytes, existing)?;
     let listed = inventory_of(&job).text();
     let mut text = format!("{}\n{listed}picture: {}\n", job.title, picture.display());
-    if wished.page == CheckPage::Wanted {
-        let path = picture.with_extension("html");
-        if path == picture {
-            let name = picture.display();
-            return Err(Error::Usage(format!(
-                "-o {name}: is the name of the page; name the picture, such as {}",
-                picture.with_extension("png").display()
-            )));
-        }
-        write_whole(
-            &path,
-            report::check_page(&job.title, &job.scene, &tracks, &listed)?.as_bytes(),
-            existing,
-        )?;
+    if let Some(path) = page {
+        let page = report::check_page(&job.title, &job.scene, &tracks, &listed)?;
+        write_whole(&path, page.as_bytes(), existing)?;
         text += &format!("page: {}\n", path.display());
     }
     Ok(Checked { text, warnings: job.warnings })
+}
+
+/// The file of the page beside a picture.
+fn page_beside(picture: &Path) -> Result<PathBuf> {
+    let path = picture.with_extension("html");
+    if path != picture {
+        return Ok(path);
+    }
+    Err(Error::Usage(format!(
+        "-o {}: is the name of the page; name the picture, such as {}",
+        picture.display(),
+        picture.with_extension("png").display()
+    )))
 }

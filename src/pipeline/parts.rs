@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::input::{Job, Settings};
 use crate::pipeline::snapshot::{self, Kind};
 use crate::pipeline::{Finished, Output, Stop, compose, output_dir, prepare, recipe};
-use crate::report::{self, Existing, Folder, FolderLock, Recipe};
+use crate::report::{self, Existing, Folder, FolderLock, Recipe, expect_file};
 use crate::transport::{Interrupt, Run, Shard, Slice, StopSignal, Unsliceable};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -68,6 +68,7 @@ pub fn run_slice(
             path.display()
         )));
     }
+    expect_file(&path)?;
     let signal = StopSignal::new(interrupt, None);
     let nothing =
         |of| SliceWritten { title: job.title.clone(), batches: None, of, dir: dir.clone() };

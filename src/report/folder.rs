@@ -183,6 +183,29 @@ pub(crate) fn expect_room(folder: &Path) -> Result<()> {
         .map_err(|source| Error::io(folder, source.kind().into()))
 }
 
+/// Makes sure, before any work is done, that a file can be written. Folders are made once there is something to put into
+/// them.
+pub(crate) fn expect_file(path: &Path) -> Result<()> {
+    let refuse = |why: &str| Err(Error::Usage(format!("{}: {why}", path.display())));
+    if path.exists() && !path.is_file() {
+        return refuse("is no file that could be replaced");
+    }
+    let folders = folder_of(path).ancestors().filter(|folder| !folder.as_os_str().is_empty());
+    let there = folders.into_iter().find(|folder| folder.exists()).unwrap_or(Path::new("."));
+    expect_room(there)?;
+    let missing = path.strip_prefix(there).unwrap_or(path);
+    for name in missing {
+        match fs::symlink_metadata(there.join(name)) {
+            Err(error) if error.kind() == ErrorKind::InvalidFilename => {
+                return refuse("a name is too long for this file system");
+            }
+            // Other faults show when it is written.
+            Ok(_) | Err(_) => {}
+        }
+    }
+    Ok(())
+}
+
 /// Whether a folder is one of these, by whatever path.
 pub(crate) fn is_among(folder: &Path, others: &[PathBuf]) -> bool {
     let place = |path: &Path| path.canonicalize().ok();

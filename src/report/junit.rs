@@ -7,9 +7,7 @@ use crate::measure::Outcome;
 use crate::report::diff::{Diff, DiffRow, Judgement, sentence};
 use crate::report::study::{DesignOutcome, StudyReport};
 use crate::report::words::numbered;
-use crate::report::{
-    CheckResult, Existing, Report, TargetFacts, expect_room, folder_of, write_whole,
-};
+use crate::report::{CheckResult, Existing, Report, TargetFacts, expect_file, write_whole};
 use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestSuite};
 use std::fs::File;
 use std::io::Read;
@@ -28,17 +26,16 @@ impl JunitFile {
     /// Makes sure, before any work is done, that the file can be written. One that this program has written is replaced, and
     /// so is an empty one; another one is, where it may be.
     pub fn open(path: &Path, existing: Existing) -> Result<Self> {
-        let refuse = |why: &str| Err(Error::Usage(format!("--junit {}: {why}", path.display())));
-        if path.exists() && !path.is_file() {
-            return refuse("is no file that could be replaced");
+        let failed = |why: &str| Error::Usage(format!("--junit {why}"));
+        match expect_file(path) {
+            Err(Error::Usage(why)) => return Err(failed(&why)),
+            other => other?,
         }
         if path.exists() && existing == Existing::Keep && !is_ours(path)? {
-            return refuse("holds something else; use --overwrite to replace it, or name another");
-        }
-        // Folders are made once there is something to put into them.
-        let there = folder_of(path).ancestors().find(|folder| folder.exists());
-        if let Err(error) = expect_room(there.unwrap_or(Path::new("."))) {
-            return refuse(&error.to_string());
+            let file = path.display();
+            return Err(failed(&format!(
+                "{file}: holds something else; use --overwrite to replace it, or name another"
+            )));
         }
         Ok(Self(path.to_path_buf()))
     }

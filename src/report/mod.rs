@@ -41,14 +41,15 @@ pub use compare::{
 pub use drawing::{Drawing, drawing};
 pub use film::film_tables;
 pub use folder::{Existing, Folder, Written, write_whole};
-pub(crate) use folder::{expect_room, folder_of, is_among};
+pub(crate) use folder::{expect_file, expect_room, is_among};
 pub(crate) use html::check::check_page;
 pub use inventory::{Inventory, Listing};
 pub use junit::{JunitFile, diff_junit, run_junit, study_junit};
 pub(crate) use leftovers::{is_staged, remove_report};
 pub use leftovers::{remove_if_there, sweep};
 pub use lock::FolderLock;
-pub(crate) use manifest::Manifest;
+pub(crate) use manifest::{Manifest, report_files};
+
 pub use mesh::mesh_report;
 pub use recipe::Recipe;
 pub use record::{

@@ -107,9 +107,11 @@ fn usable(bench: &Bench<'_>, truth: Truth) -> Result<Truth> {
 
 /// The line of a measure in a table.
 fn read(path: &Path, measure: &str) -> Result<Truth> {
-    let file = File::open(path).map_err(|source| Error::io(path, source))?;
+    let file = File::open(path).map_err(|reason| {
+        Error::Usage(format!("--truth-file {}: cannot be read: {reason}", path.display()))
+    })?;
     let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).flexible(true).from_reader(file);
-    let unusable = |why: String| Error::Usage(format!("{}: {why}", path.display()));
+    let unusable = |why: String| Error::Usage(format!("--truth-file {}: {why}", path.display()));
     let header = reader.headers().map_err(|reason| unusable(reason.to_string()))?.clone();
     let column = |name: &str| {
         let place = header.iter().position(|column| column == name);

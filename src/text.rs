@@ -27,8 +27,10 @@ pub fn spreadsheet_cell(text: &str) -> String {
     if is_formula && text.parse::<f64>().is_err() { format!("'{text}") } else { text.to_owned() }
 }
 
-/// A page of Markdown in which no text is taken for HTML (`CommonMark` 0.31, section 6.6: what a tag begins with).
-pub fn without_html(page: &str) -> String {
+/// A page of Markdown in which no text is taken for HTML (`CommonMark` 0.31, section 6.6: what a tag begins with), with its
+/// control characters written out.
+pub fn markdown_page(page: &str) -> String {
+    let page = visible(page);
     let mut safe = String::with_capacity(page.len());
     let mut letters = page.chars().peekable();
     while let Some(letter) = letters.next() {
@@ -37,6 +39,11 @@ pub fn without_html(page: &str) -> String {
         if letter == '<' && is_tag { safe.push_str("&lt;") } else { safe.push(letter) }
     }
     safe
+}
+
+/// A cell of a table in Markdown: bars and line breaks do not end it.
+pub fn markdown_cell(text: &str) -> String {
+    text.replace('|', "\\|").replace('\n', " ")
 }
 
 #[cfg(test)]
@@ -65,8 +72,9 @@ mod tests {
     #[test]
     fn tags_become_text_and_comparisons_stay() {
         assert_eq!(
-            without_html("<script>a</script> <!-- x --> 1 < 2 <= 3"),
-            "&lt;script>a&lt;/script> &lt;!-- x --> 1 < 2 <= 3"
+            markdown_page("<script>a</script> <!-- x --> 1 < 2 <= 3 \u{1b}[31m"),
+            "&lt;script>a&lt;/script> &lt;!-- x --> 1 < 2 <= 3 \\u{1b}[31m"
         );
+        assert_eq!(markdown_cell("a|b\nc"), "a\\|b c");
     }
 }

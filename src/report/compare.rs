@@ -11,6 +11,7 @@ use crate::report::png::{
     ErrorForm, LinePlot, Look, Scale, Series, SeriesForm, SeriesPoint, line_plot,
 };
 use crate::tally::Tally;
+use crate::text::markdown_page;
 use std::fmt::Write;
 
 /// A comparison of estimators on one sensor.
@@ -190,7 +191,8 @@ is total error² × time over the least of all.\n";
             format_percent(contestant.cut)
         );
     }
-    page + "\n![Total error against time](compare.png)\n"
+    page += "\n![Total error against time](compare.png)\n";
+    markdown_page(&page)
 }
 
 /// The errors of all estimators at the end of their runs, as a table in Markdown.
@@ -301,7 +303,7 @@ mod tests {
             cut: 0.004,
         };
         Comparison {
-            title: "Tube".into(),
+            title: "Tube <b>".into(),
             scene: "tube.toml (e9a5)".into(),
             program: "seed 1".into(),
             measure: "cell.flux".into(),
@@ -334,6 +336,7 @@ mod tests {
         let text = |place: usize| String::from_utf8(files[place].bytes.clone()).unwrap();
         let page = text(3);
         for words in [
+            "# Comparison of estimators: Tube &lt;b>",
             "no part of the reproducible reports",
             "2.000 ± 0.010 lm, by hand",
             "| biased | 1 | 1.00e6 | 1.700 ± 0.010 |",

@@ -4,7 +4,7 @@ use crate::input::Project;
 use crate::report::contents::{parts, verdict};
 use crate::report::html::frame::{Block, Part, Plots};
 use crate::report::{LOGO, Report};
-use crate::text::without_html;
+use crate::text::{markdown_cell, markdown_page};
 use std::fmt::Write;
 
 /// The whole page.
@@ -21,7 +21,7 @@ pub(crate) fn markdown(report: &Report) -> String {
     }
     // Plots are for scripts; here their pictures are shown.
     parts(report, &mut Plots::default()).iter().for_each(|part| add(&mut page, part));
-    without_html(page.trim_end()) + "\n"
+    markdown_page(page.trim_end()) + "\n"
 }
 
 /// The head of the pages of a project.
@@ -59,7 +59,7 @@ fn table(page: &mut String, head: &[String], rows: &[Vec<String>]) {
         return;
     }
     let mut line = |cells: &[String]| {
-        let cells: Vec<String> = cells.iter().map(|cell| cell.replace('|', "\\|")).collect();
+        let cells: Vec<String> = cells.iter().map(|cell| markdown_cell(cell)).collect();
         _ = writeln!(page, "| {} |", cells.join(" | "));
     };
     line(head);

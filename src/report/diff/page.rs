@@ -5,6 +5,7 @@ use crate::number::{format_fixed, format_percent, format_value, format_with_erro
 use crate::report::OutputFile;
 use crate::report::csv::table;
 use crate::report::diff::{Diff, DiffRow, Judgement, MapOutcome};
+use crate::text::{markdown_cell, markdown_page};
 use statrs::distribution::{ContinuousCDF, Normal};
 use std::fmt::Write;
 
@@ -52,13 +53,13 @@ pub(crate) fn markdown(diff: &Diff) -> String {
     let mut page =
         format!("# {}\n\n* A: {}\n* B: {}\n\n", title(diff), diff.facts[0], diff.facts[1]);
     for line in findings(diff) {
-        _ = writeln!(page, "* {}", escaped(&line));
+        _ = writeln!(page, "* {}", markdown_cell(&line));
     }
     page += "\n## Measures, the worst first\n\n";
     _ = writeln!(page, "| {} | |\n|---|--:|--:|--:|--:|--:|---|", HEADER.join(" | "));
     for row in &diff.rows {
-        let cells = cells(row).map(|cell| escaped(&cell));
-        _ = writeln!(page, "| {} | {} |", cells.join(" | "), escaped(&remark(row)));
+        let cells = cells(row).map(|cell| markdown_cell(&cell));
+        _ = writeln!(page, "| {} | {} |", cells.join(" | "), markdown_cell(&remark(row)));
     }
     let compared = |map: &&crate::report::diff::MapDiff| match map.outcome {
         MapOutcome::Compared { .. } => true,
@@ -68,7 +69,7 @@ pub(crate) fn markdown(diff: &Diff) -> String {
         let (name, picture) = (&map.name, map.picture_name());
         _ = write!(page, "\n## {name}\n\n![Difference of {name}]({picture})\n");
     }
-    page
+    markdown_page(&page)
 }
 
 /// What was compared.
@@ -241,10 +242,6 @@ fn list(names: impl ExactSizeIterator<Item = String>) -> String {
     let shown: Vec<String> = names.take(NAMES_SHOWN).collect();
     let rest = if more > 0 { format!(" and {more} more") } else { String::new() };
     shown.join(", ") + &rest
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('|', "\\|")
 }
 
 /// Columns beside one another: the first to the left, the others to the right.

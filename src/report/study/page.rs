@@ -4,7 +4,7 @@ use crate::report::markdown::masthead;
 use crate::report::study::StudyReport;
 use crate::report::study::contents::{Item, Part, parts, verdict};
 use crate::report::study::figures::Figure;
-use crate::text::without_html;
+use crate::text::{markdown_cell, markdown_page};
 use std::fmt::Write;
 
 /// Rows of a table that are shown; `study.csv` has all.
@@ -27,7 +27,7 @@ pub(super) fn page(report: &StudyReport, figures: &[Figure]) -> String {
         _ = write!(page, "![{}]({})\n\n", figure.label, figure.file);
     }
     after.iter().for_each(|part| add(&mut page, part));
-    without_html(page.trim_end()) + "\n"
+    markdown_page(page.trim_end()) + "\n"
 }
 
 fn add(page: &mut String, part: &Part) {
@@ -46,7 +46,7 @@ fn add(page: &mut String, part: &Part) {
 
 fn table(page: &mut String, head: &[String], rows: &[Vec<String>]) {
     let mut line = |cells: &[String]| {
-        let cells: Vec<String> = cells.iter().map(|cell| cell.replace('|', "\\|")).collect();
+        let cells: Vec<String> = cells.iter().map(|cell| markdown_cell(cell)).collect();
         _ = writeln!(page, "| {} |", cells.join(" | "));
     };
     line(head);

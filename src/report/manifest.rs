@@ -84,6 +84,22 @@ impl Manifest {
     }
 }
 
+/// The files of the whole report in a folder, the manifest last; an error where one is not what it was written as.
+pub(crate) fn report_files(folder: &Path) -> Result<Vec<OutputFile>> {
+    let manifest = Manifest::expect(folder)?;
+    let mut files = Vec::new();
+    for name in manifest.names() {
+        let path = folder.join(name);
+        let bytes = fs::read(&path).map_err(|reason| {
+            Error::Usage(format!("{} is missing from a report: {reason}", path.display()))
+        })?;
+        manifest.expect_file(&path, &bytes)?;
+        files.push(OutputFile { name: name.to_owned(), bytes });
+    }
+    files.push(manifest.file(MANIFEST)?);
+    Ok(files)
+}
+
 /// Whether a name is that of a file in the folder itself, and not hidden.
 fn is_plain(name: &str) -> bool {
     let mut components = Path::new(name).components();

@@ -128,7 +128,9 @@ pub fn merge_study(
     }
     let mut have = BTreeSet::new();
     for store in &stores {
-        have.extend(store.records()?.into_keys());
+        let records = store.records()?;
+        store.expect_whole_reports(records.keys())?;
+        have.extend(records.into_keys());
     }
     let missing: Vec<usize> = (1..=facts.designs).filter(|design| !have.contains(design)).collect();
     if let Some(first) = missing.first() {

@@ -6,8 +6,8 @@
 use crate::error::{Error, Result};
 use crate::report::study::{DESIGN_FORMAT, DesignRecord, FACTS_FORMAT, StudyFacts};
 use crate::report::{
-    Existing, FolderLock, is_staged, remove_if_there, remove_report, seal, sweep, unseal,
-    write_whole,
+    Existing, FolderLock, OutputFile, is_staged, remove_if_there, remove_report, report_files,
+    seal, sweep, unseal, write_whole,
 };
 use crate::study::OnExisting;
 use std::collections::BTreeMap;
@@ -111,17 +111,25 @@ impl Store {
     pub(crate) fn take(&self, other: &Self) -> Result<()> {
         for (design, record) in other.records()? {
             self.write(&record)?;
-            let report = other.report_of(design);
-            if !report.is_dir() {
-                continue;
-            }
-            for path in entries(&report)? {
-                let bytes = fs::read(&path).map_err(|source| Error::io(&path, source))?;
-                let name = path.file_name().unwrap_or_default();
+            for OutputFile { name, bytes } in other.report_files_of(design)? {
                 write_whole(&self.report_of(design).join(name), &bytes, Existing::Replace)?;
             }
         }
         Ok(())
+    }
+
+    /// Makes sure that the reports of these designs, where there are any, are as they were written.
+    pub(crate) fn expect_whole_reports<'a>(
+        &self,
+        designs: impl IntoIterator<Item = &'a usize>,
+    ) -> Result<()> {
+        designs.into_iter().try_for_each(|design| self.report_files_of(*design).map(|_| ()))
+    }
+
+    /// The files of the report of a design; none where it has no report.
+    fn report_files_of(&self, design: usize) -> Result<Vec<OutputFile>> {
+        let folder = self.report_of(design);
+        if folder.is_dir() { report_files(&folder) } else { Ok(Vec::new()) }
     }
 
     /// Whether a folder holds results of a study, readable or not.

@@ -45,6 +45,36 @@ fn a_design_record_with_a_changed_digit_is_refused_by_its_name() {
 }
 
 #[test]
+fn merge_refuses_a_kept_report_that_is_not_as_it_was_written() {
+    let place = Place::new();
+    fs::write(
+        place.path("study.toml"),
+        STUDY.replace("plan = \"grid\"", "plan = \"grid\"\nkeep = \"reports\""),
+    )
+    .unwrap();
+    for part in ["1/2", "2/2"] {
+        place.good(&format!("batch study.toml --shard {part} -o {} -q", part.replace('/', "of")));
+    }
+    let kept = place.path("2of2/designs/0002");
+    let (measures, manifest) = (kept.join("measures.csv"), kept.join("manifest.json"));
+    let whole = fs::read(&measures).unwrap();
+    fs::write(&measures, "measure,value\n").unwrap();
+    let said = place.bad(2, "merge 1of2 2of2 -o merged");
+    assert!(said.contains("measures.csv is not the file"), "{said}");
+    fs::remove_file(&measures).unwrap();
+    let said = place.bad(2, "merge 1of2 2of2 -o merged");
+    assert!(said.contains("measures.csv is missing"), "{said}");
+    fs::write(&measures, whole).unwrap();
+    let list = fs::read(&manifest).unwrap();
+    fs::remove_file(&manifest).unwrap();
+    assert!(place.bad(2, "merge 1of2 2of2 -o merged").contains("holds no whole report"));
+    assert!(!place.path("merged").exists());
+    fs::write(&manifest, list).unwrap();
+    place.good("merge 1of2 2of2 -o merged -q");
+    assert_eq!(contents(&kept), contents(&place.path("merged/designs/0002")));
+}
+
+#[test]
 fn a_report_with_a_file_of_another_run_is_no_report() {
     let place = Place::new();
     place.good("run rod.toml -o a -q");

@@ -25,6 +25,7 @@ use crate::error::{Diagnostic, Error};
 use crate::input;
 use crate::input::diagnostic::{self, Colour};
 use crate::report::{Existing, JunitFile};
+use crate::text::visible;
 use crate::transport::Interrupt;
 use clap::{CommandFactory, Parser, Subcommand};
 use std::io::IsTerminal;
@@ -97,8 +98,7 @@ pub fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => {
-            // Help and version are no errors; a closed pipe is nobody's.
-            _ = error.print();
+            print_usage(&error);
             return ExitCode::from(if error.use_stderr() { 2 } else { 0 });
         }
     };
@@ -132,6 +132,16 @@ pub fn main() -> ExitCode {
                 |reason| Error::Output { what: "manual page".into(), reason: reason.to_string() },
             ))
         }
+    }
+}
+
+/// Prints what is wrong with the arguments, or the help that was asked for. It names arguments with their control
+/// characters written out; a closed pipe is nobody's error.
+fn print_usage(error: &clap::Error) {
+    let arguments = std::env::args_os().map(|argument| visible(&argument.to_string_lossy()));
+    match Cli::try_parse_from(arguments) {
+        Err(error) => _ = error.print(),
+        Ok(_) => print_error(&error.render().to_string()),
     }
 }
 

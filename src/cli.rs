@@ -26,7 +26,7 @@ use crate::input;
 use crate::input::diagnostic::{self, Colour};
 use crate::report::{Existing, JunitFile};
 use crate::text::visible;
-use crate::transport::Interrupt;
+use crate::transport::{Interrupt, StopAnswer};
 use clap::{CommandFactory, Parser, Subcommand};
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
@@ -154,16 +154,17 @@ fn use_threads(threads: Option<u16>) -> Result<(), Error> {
         .map_err(|reason| Error::Usage(format!("--threads {threads}: {reason}")))
 }
 
-/// A flag that Ctrl-C raises; the second time it ends the program.
+/// A flag that Ctrl-C raises. It ends tracing; the second time, and while nothing is traced, it ends the program.
 fn on_ctrl_c() -> Interrupt {
     let interrupt = Interrupt::default();
     let on_signal = interrupt.clone();
     // Without a handler Ctrl-C ends the program at once: worse, but no reason not to run.
-    _ = ctrlc::set_handler(move || {
-        if on_signal.is_raised() {
+    _ = ctrlc::set_handler(move || match on_signal.request() {
+        StopAnswer::EndRun => {}
+        StopAnswer::EndProgram => {
+            print_error("interrupted: the program ends here, and writes nothing more\n");
             std::process::exit(INTERRUPTED.into());
         }
-        on_signal.raise();
     });
     interrupt
 }

@@ -33,7 +33,7 @@ use crate::report::{
     SceneFacts, TargetFacts, Written,
 };
 use crate::scene::plan::Request;
-use crate::transport::{Findings, Interrupt, Run, Track, tracks};
+use crate::transport::{Activity, Findings, Interrupt, Run, Track, tracks};
 pub(crate) use sense::expect_measures;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -115,8 +115,11 @@ pub fn run_one(
         Pause::Last { round_end, elapsed } => keeper.keep_last(run, round_end, elapsed),
     };
     let traced = trace_kept(&job, stand, &mut keep, interrupt, watch)?;
+    interrupt.begin(Activity::Computing);
     let report = compose(&job, &traced.findings, traced.stop);
-    let written = folder.write(&report::files(&report, &job.text)?)?;
+    let files = report::files(&report, &job.text)?;
+    interrupt.begin(Activity::Writing);
+    let written = folder.write(&files)?;
     timing::write(&folder, &traced)?;
     if traced.stop != Stop::Interrupted {
         keeper.remove()?;

@@ -14,7 +14,7 @@ use crate::pipeline::{Output, VERSION, expect_sense, output_dir};
 use crate::report::{self, Comparison, Contestant, Folder, FolderLock};
 use crate::scene::SensorId;
 use crate::scene::plan::{Request, RunPlan, StopRules};
-use crate::transport::{Baseline, Interrupt, invisible, scatterers, turbid_media};
+use crate::transport::{Activity, Baseline, Interrupt, invisible, scatterers, turbid_media};
 use runner::{Stint, trace};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -169,7 +169,9 @@ pub fn compare(
         run_time: run_time.as_secs_f64(),
         contestants,
     };
-    folder.write(&report::comparison_files(&comparison)?)?;
+    let files = report::comparison_files(&comparison)?;
+    interrupt.begin(Activity::Writing);
+    folder.write(&files)?;
     let text = format!(
         "{}\n{}: {}\n",
         report::comparison_table(&comparison),

@@ -3,7 +3,8 @@
 use crate::input::GatherSettings;
 use crate::pipeline::tests::job as short_rod;
 use crate::pipeline::*;
-use crate::transport::Phase;
+use crate::scene::plan::Estimator;
+use crate::transport::{Phase, StopAnswer, StopSignal};
 
 /// The short rod by one estimator, in small batches or passes, with a plan for more than is traced.
 fn settings(estimator: Request) -> Settings {
@@ -93,6 +94,54 @@ fn a_run_stopped_in_the_pilot_says_so_and_one_after_it_repeats_without_a_pilot()
     let repeated = trace(&again, &Interrupt::default(), &mut |now| phases.push(now.phase)).unwrap();
     assert!(phases.iter().all(|phase| !matches!(phase, Phase::Pilot(_))), "{phases:?}");
     assert!(repeated.findings == numbers(&whole.findings));
+}
+
+#[test]
+fn a_pilot_that_takes_half_of_the_time_is_given_up_and_photons_go_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let auto = Settings { gather: GatherSettings::default(), ..settings(Request::Auto) };
+    let job = short_rod(folder.path(), &auto);
+    let start = |signal: &StopSignal| {
+        on_threads(1, || Run::start(&job.scene, &job.run, signal, &mut |_| ()))
+    };
+    let free = Interrupt::default();
+    start(&StopSignal::new(&free, None)).unwrap();
+    let whole = free.looks();
+    assert!(whole > 400, "a pilot of {whole} looks");
+    for (looks, is_given_up) in [(whole / 2, true), (whole, true), (3 * whole, false)] {
+        let clock = Interrupt::default();
+        let mut run = start(&StopSignal::ending_at_look(&clock, looks, 10)).unwrap();
+        if is_given_up {
+            // Each batch that was yet to begin looks once.
+            assert!(clock.looks() <= looks / 2 + 40, "{} of {looks} looks", clock.looks());
+        }
+        on_threads(1, || run.next_piece());
+        let findings = run.findings();
+        assert_eq!(findings.choices.is_empty(), is_given_up, "{looks} looks of {whole}");
+        assert!(!is_given_up || findings.estimators == [Estimator::Forward]);
+    }
+}
+
+#[test]
+fn a_request_ends_tracing_and_lets_files_take_their_places() {
+    let folder = tempfile::tempdir().unwrap();
+    let wishes = settings(Request::Forward);
+    short_rod(folder.path(), &wishes);
+    let scene = folder.path().join("rod.toml");
+    let output = Output::new(Some(folder.path().join("out")), Existing::Keep);
+    let interrupt = Interrupt::default();
+    let mut answers = Vec::new();
+    let finished = run_one(&scene, &wishes, &output, &interrupt, &mut |progress| {
+        if matches!(progress.phase, Phase::Batches(_)) && answers.is_empty() {
+            answers.push(interrupt.request());
+        }
+    });
+    assert_eq!(answers, [StopAnswer::EndRun]);
+    assert_eq!(finished.unwrap().stop, Stop::Interrupted);
+    let whole = Interrupt::default();
+    let output = Output::new(Some(folder.path().join("whole")), Existing::Keep);
+    run_one(&scene, &wishes, &output, &whole, &mut |_| ()).unwrap();
+    assert_eq!(whole.request(), StopAnswer::EndRun, "the last activity was to write");
 }
 
 #[test]

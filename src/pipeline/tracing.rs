@@ -6,7 +6,7 @@ use crate::measure::{self, Status};
 use crate::pipeline::checkpoint::Stand;
 use crate::pipeline::{Progress, Stop, TargetProgress, gathering};
 use crate::scene::plan::RunPlan;
-use crate::transport::{FIRST_BATCH_GRACE, Findings, Interrupt, Phase, Run, StopSignal};
+use crate::transport::{Activity, FIRST_BATCH_GRACE, Findings, Interrupt, Phase, Run, StopSignal};
 use std::time::{Duration, Instant};
 
 /// What tracing gave.
@@ -67,6 +67,7 @@ pub(super) fn trace_kept(
     interrupt: &Interrupt,
     watch: &mut dyn FnMut(&Progress),
 ) -> Result<Traced> {
+    interrupt.begin(Activity::Tracing);
     let before = stand.as_ref().map_or(Duration::ZERO, |stand| stand.elapsed);
     let clock = Clock { plan: &job.run, start: Instant::now(), before, interrupt };
     let started = Run::start(&job.scene, &job.run, &clock.signal(), &mut |phase| {

@@ -27,7 +27,7 @@ use crate::report::{self, Existing, Folder, Written, is_among};
 use crate::study::designs::designs;
 use crate::study::execute::{Batch, execute};
 use crate::study::store::Store;
-use crate::transport::{Interrupt, Shard};
+use crate::transport::{Activity, Interrupt, Shard};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -98,8 +98,9 @@ pub fn run_study(
     if records.len() < all.len() {
         return Ok(Finished { facts, report: None, written: Written::New, done, dir, warnings });
     }
-    let (report, written) =
-        finish(&store, facts.clone(), records.into_values().collect(), &study.text)?;
+    interrupt.begin(Activity::Computing);
+    let records = records.into_values().collect();
+    let (report, written) = finish(&store, facts.clone(), records, &study.text, interrupt)?;
     Ok(Finished { facts, report: Some(report), written, done, dir, warnings })
 }
 
@@ -156,7 +157,7 @@ pub fn merge_study(
     }
     let records: Vec<DesignRecord> = whole.records()?.into_values().collect();
     let done = [records.len(), facts.designs];
-    let (report, written) = finish(&whole, facts.clone(), records, &text)?;
+    let (report, written) = finish(&whole, facts.clone(), records, &text, &Interrupt::default())?;
     Ok(Finished { facts, report: Some(report), written, done, dir, warnings: Vec::new() })
 }
 
@@ -171,12 +172,15 @@ fn finish(
     facts: StudyFacts,
     designs: Vec<DesignRecord>,
     text: &str,
+    interrupt: &Interrupt,
 ) -> Result<(StudyReport, Written)> {
     let analysis = analysis::analysis(&facts, &designs);
     let report = StudyReport { facts, designs, analysis };
     // Results follow from the records: older ones of the same study may be replaced.
     let folder = Folder::open(store.lock()?, Existing::Replace, None)?;
-    let written = folder.write(&study_files(&report, text)?)?;
+    let files = study_files(&report, text)?;
+    interrupt.begin(Activity::Writing);
+    let written = folder.write(&files)?;
     Ok((report, written))
 }
 

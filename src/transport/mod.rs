@@ -51,7 +51,7 @@ pub use rounds::{Phase, Run, Slice, State, Unsliceable, batch_paths};
 pub use settings::GatherSettings;
 pub use shard::Shard;
 pub use stages::{Stage, Windows};
-pub use stop::{FIRST_BATCH_GRACE, Interrupt, StopSignal};
+pub use stop::{Activity, FIRST_BATCH_GRACE, Interrupt, StopAnswer, StopSignal};
 pub use tracks::{Track, TrackEnd, tracks};
 pub use walk::{
     Carries, Collision, Departure, Event, ROULETTE_BELOW, Segment, Vertex, Visitor, walk,

@@ -6,7 +6,7 @@
 use std::cell::Cell;
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 /// Work between two looks, in straight pieces of paths: a tenth of a millisecond in simple scenes, some milliseconds where
@@ -17,6 +17,27 @@ pub(crate) const RECORD_WORK: u32 = 32;
 /// By how much a run may exceed its time if it has no finished batch, so that short runs have something to report.
 pub const FIRST_BATCH_GRACE: Duration = Duration::from_millis(400);
 
+/// What a program is doing when the user asks it to stop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Activity {
+    /// It reads, computes, compares or draws what counts as a whole only: nothing is lost or half written if it ends at once.
+    Computing,
+    /// It traces: paths end at their next look, and what was traced is reported.
+    Tracing,
+    /// Files take their places, which ends soon.
+    Writing,
+}
+
+/// What a request to stop leads to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StopAnswer {
+    /// The run ends by itself.
+    EndRun,
+    /// The program has to end now.
+    EndProgram,
+}
+
 /// A flag that asks a run to stop.
 #[derive(Debug, Clone, Default)]
 pub struct Interrupt(Arc<Flag>);
@@ -24,6 +45,8 @@ pub struct Interrupt(Arc<Flag>);
 #[derive(Debug)]
 struct Flag {
     raised: AtomicBool,
+    /// An [`Activity`].
+    activity: AtomicU8,
     /// Looks of runs in progress.
     looks: AtomicU64,
     /// The look at which the flag is raised.
@@ -32,7 +55,12 @@ struct Flag {
 
 impl Default for Flag {
     fn default() -> Self {
-        Self { raised: AtomicBool::new(false), looks: AtomicU64::new(0), raised_at: u64::MAX }
+        Self {
+            raised: AtomicBool::new(false),
+            activity: AtomicU8::new(Activity::Computing as u8),
+            looks: AtomicU64::new(0),
+            raised_at: u64::MAX,
+        }
     }
 }
 
@@ -40,6 +68,19 @@ impl Interrupt {
     /// A flag that is raised at the given look of a run, counted from 1: for tests that do not depend on time.
     pub fn at_look(look: u64) -> Self {
         Self(Arc::new(Flag { raised_at: look, ..Flag::default() }))
+    }
+
+    /// Notes what the program does from now on.
+    pub fn begin(&self, activity: Activity) {
+        self.0.activity.store(activity as u8, Ordering::SeqCst);
+    }
+
+    /// Asks the program to stop, as the user does; what that leads to depends on what it is doing. The second request ends
+    /// it in any case.
+    pub fn request(&self) -> StopAnswer {
+        let is_second = self.0.raised.swap(true, Ordering::SeqCst);
+        let is_computing = self.0.activity.load(Ordering::SeqCst) == Activity::Computing as u8;
+        if is_second || is_computing { StopAnswer::EndProgram } else { StopAnswer::EndRun }
     }
 
     /// Asks the run to stop.
@@ -70,31 +111,68 @@ impl Interrupt {
 #[derive(Debug, Clone, Default)]
 pub struct StopSignal {
     interrupt: Interrupt,
-    end: Option<Instant>,
+    end: Option<End>,
+}
+
+/// When the time of a run is over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum End {
+    /// At a time.
+    At(Instant),
+    /// After so many looks, and some more as grace: a clock for tests, which counts work.
+    #[cfg(test)]
+    AtLook { look: u64, grace: u64 },
 }
 
 impl StopSignal {
     /// An interrupt, and an end if the time is limited.
     pub fn new(interrupt: &Interrupt, end: Option<Instant>) -> Self {
-        Self { interrupt: interrupt.clone(), end }
+        Self { interrupt: interrupt.clone(), end: end.map(End::At) }
+    }
+
+    /// A time that is over at a look of the interrupt, with so many looks of grace.
+    #[cfg(test)]
+    pub(crate) fn ending_at_look(interrupt: &Interrupt, look: u64, grace: u64) -> Self {
+        Self { interrupt: interrupt.clone(), end: Some(End::AtLook { look, grace }) }
     }
 
     /// Whether work has to stop.
     pub(crate) fn is_due(&self) -> bool {
-        self.interrupt.look() || self.end.is_some_and(|end| Instant::now() >= end)
+        self.interrupt.look() || self.end.is_some_and(|end| self.is_over(end))
+    }
+
+    fn is_over(&self, end: End) -> bool {
+        match end {
+            End::At(end) => Instant::now() >= end,
+            #[cfg(test)]
+            End::AtLook { look, .. } => self.interrupt.looks() >= look,
+        }
     }
 
     /// The same with [`FIRST_BATCH_GRACE`] more time.
     pub(crate) fn with_grace(&self) -> Self {
-        let end = self.end.map(|end| end + FIRST_BATCH_GRACE);
-        Self { interrupt: self.interrupt.clone(), end }
+        self.with_end(|end| match end {
+            End::At(end) => End::At(end + FIRST_BATCH_GRACE),
+            #[cfg(test)]
+            End::AtLook { look, grace } => End::AtLook { look: look + grace, grace },
+        })
     }
 
     /// The same with half of the time that is left.
     pub(crate) fn with_half(&self) -> Self {
         let now = Instant::now();
-        let end = self.end.map(|end| now + end.saturating_duration_since(now) / 2);
-        Self { interrupt: self.interrupt.clone(), end }
+        self.with_end(|end| match end {
+            End::At(end) => End::At(now + end.saturating_duration_since(now) / 2),
+            #[cfg(test)]
+            End::AtLook { look, grace } => {
+                let left = look.saturating_sub(self.interrupt.looks());
+                End::AtLook { look: look - left / 2, grace }
+            }
+        })
+    }
+
+    fn with_end(&self, other: impl FnOnce(End) -> End) -> Self {
+        Self { interrupt: self.interrupt.clone(), end: self.end.map(other) }
     }
 }
 
@@ -170,7 +248,26 @@ mod tests {
         let signal = StopSignal::new(&Interrupt::default(), Some(now));
         assert!(Pace::new(&signal).is_stopped());
         assert!(signal.with_half().is_due());
-        assert_eq!(signal.with_grace().end, Some(now + FIRST_BATCH_GRACE));
+        assert_eq!(signal.with_grace().end, Some(End::At(now + FIRST_BATCH_GRACE)));
         assert!(!Pace::new(&StopSignal::default()).is_stopped());
+    }
+
+    #[test]
+    fn the_first_request_ends_what_is_traced_and_the_second_the_program() {
+        let interrupt = Interrupt::default();
+        interrupt.begin(Activity::Tracing);
+        assert_eq!(interrupt.request(), StopAnswer::EndRun);
+        assert!(interrupt.is_raised());
+        assert_eq!(interrupt.request(), StopAnswer::EndProgram);
+        for (activity, answer) in [
+            (Activity::Computing, StopAnswer::EndProgram),
+            (Activity::Tracing, StopAnswer::EndRun),
+            (Activity::Writing, StopAnswer::EndRun),
+        ] {
+            let interrupt = Interrupt::default();
+            interrupt.begin(activity);
+            assert_eq!(interrupt.request(), answer, "{activity:?}");
+        }
+        assert_eq!(Interrupt::default().request(), StopAnswer::EndProgram, "before tracing");
     }
 }

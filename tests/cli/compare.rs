@@ -92,6 +92,30 @@ fn a_comparison_that_makes_no_sense_is_refused_and_nothing_is_written() {
     }
     let missing =
         "compare rod.toml -o out --estimators forward --sensor exit --truth-file none.csv";
-    assert!(place.bad(3, missing).contains("none.csv"));
+    assert!(place.bad(2, missing).contains("none.csv"));
     assert_eq!(place.names(), ["rod.toml", "truth.csv"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_ends_a_baseline_at_once_and_writes_nothing() {
+    use std::io::{BufRead, BufReader};
+    use std::process::{Command, Stdio};
+
+    let place = Place::new();
+    let arguments =
+        "compare rod.toml --sensor exit --estimators sppm --truth 8 --time 60min -o out";
+    let mut child = Command::new(env!("CARGO_BIN_EXE_lumiduct"))
+        .current_dir(place.0.path())
+        .args(arguments.split_whitespace())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut said = BufReader::new(child.stderr.take().unwrap()).lines().map(Result::unwrap);
+    let begun = said.find(|line| line.starts_with("sppm: run 1 of"));
+    assert!(begun.is_some(), "the baseline has not begun");
+    send_ctrl_c(&child);
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert!(said.any(|line| line.contains("interrupted")));
+    assert!(names(&place.path("out")).is_empty());
 }

@@ -115,3 +115,10 @@ fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
 fn flux(summary: &Value) -> f64 {
     summary["measures"]["exit.flux"]["value"].as_f64().unwrap()
 }
+
+/// Sends the signal of Ctrl-C by the system's own tool: the code of this package is free of `unsafe`.
+#[cfg(unix)]
+fn send_ctrl_c(child: &std::process::Child) {
+    let mut kill = std::process::Command::new("kill");
+    assert!(kill.args(["-INT", &child.id().to_string()]).status().unwrap().success());
+}

@@ -45,65 +45,77 @@ impl<'s> Run<'s> {
         let segments = segments_per_path(scene, plan, &early)?;
         let pilot = PhotonPilot { segments_per_path: segments as f64 };
         let (estimators, choices) = estimators(scene, plan, pilot, signal, watch)?;
-        let of = |wanted: Estimator| -> Vec<SensorId> {
-            let all = estimators.iter().enumerate();
-            all.filter(|(_, own)| **own == wanted).map(|(index, _)| SensorId::new(index)).collect()
-        };
-        let (alone, merged) = (of(Estimator::Gather), of(Estimator::Mis));
-        let gathered = if merged.is_empty() { &alone } else { &merged };
-        let stages = if gathered.is_empty() {
-            None
-        } else {
-            let settings = settle(scene, plan, gathered, pilot, &early)?;
-            let mut gather = Gather::new(scene, gathered, plan.seed, settings.depth);
-            gather.merging = (!merged.is_empty()).then_some(plan.bounce_limit);
-            Some(Stages::new(gather, settings))
-        };
+        let of = |wanted| sensors_of(&estimators, wanted);
+        let stages =
+            stages(scene, plan, (&of(Estimator::Gather), &of(Estimator::Mis)), pilot, &early);
+        let stages = stages?;
         let mixed = of(Estimator::Mix);
         let followed = [of(Estimator::Backward), mixed.clone()].concat();
-        let has_followed = !followed.is_empty();
-        // Photons also count for the sensors that are estimated forward, or mixed.
-        let is_for_balance = of(Estimator::Forward).is_empty() && mixed.is_empty();
-        let share = match (&stages, has_followed) {
-            (_, false) => 1.0,
-            (None, true) if is_for_balance => PHOTON_SHARE,
-            (_, true) => 0.5,
+        let share = match (&stages, followed.is_empty()) {
+            (_, true) => 1.0,
+            // Photons also count for the sensors that are estimated forward, or mixed.
+            (None, false) if of(Estimator::Forward).is_empty() && mixed.is_empty() => PHOTON_SHARE,
+            (_, false) => 0.5,
         };
         let usual = plan.batch_paths.unwrap_or(usual_batch(segments));
         let photons = match (&stages, plan.stop.paths) {
             (Some(stages), _) => stages.settings.photons,
-            (None, Some(paths)) if !has_followed => paths.div_ceil(
+            (None, Some(paths)) if followed.is_empty() => paths.div_ceil(
                 plan.stop.batches.unwrap_or(GROUPS * paths.div_ceil(GROUPS * usual).max(1)),
             ),
             (None, _) => (share * usual as f64).ceil() as u64,
         };
         // A path of each source at least.
         let photons = photons.max(scene.sources.len() as u64).max(1);
-        let backward = if has_followed {
+        let backward = if followed.is_empty() {
+            None
+        } else {
             let backward = Backward::new(scene, &followed, plan.seed, plan.bounce_limit);
             let by_photons = photons as f64 * work::of_photon_path(pilot.segments_per_path);
             let others = (1.0 - share) / share * by_photons;
             let paths = others / backward.work_of_path(&early)? / followed.len() as f64;
             Some((backward.with_paths(paths as u64).mixed(&mixed), Sums::new()))
-        } else {
-            None
         };
-        let wave_batches = if stages.is_some() { FIRST_PASSES } else { GROUPS };
         Some(Self {
             estimators,
             choices,
             forward: Forward::new(scene, plan.seed, plan.bounce_limit, photons),
             photons: Sums::new(),
             backward,
+            wave_batches: if stages.is_some() { FIRST_PASSES } else { GROUPS },
             stages,
             signal: signal.clone(),
             batches: 0,
-            wave_batches,
             paths: 0,
             paths_asked: plan.stop.paths,
             batches_asked: plan.stop.batches,
         })
     }
+}
+
+/// The sensors of an estimator.
+fn sensors_of(estimators: &[Estimator], wanted: Estimator) -> Vec<SensorId> {
+    let all = estimators.iter().enumerate();
+    all.filter(|(_, own)| **own == wanted).map(|(index, _)| SensorId::new(index)).collect()
+}
+
+/// The stages of sensors that are gathered alone, or merged; no stages where there are none, and `None` if the signal
+/// stopped it.
+fn stages<'s>(
+    scene: &'s Scene,
+    plan: &RunPlan,
+    (alone, merged): (&[SensorId], &[SensorId]),
+    pilot: PhotonPilot,
+    signal: &StopSignal,
+) -> Option<Option<Stages<'s>>> {
+    let gathered = if merged.is_empty() { alone } else { merged };
+    if gathered.is_empty() {
+        return Some(None);
+    }
+    let settings = settle(scene, plan, gathered, pilot, signal)?;
+    let mut gather = Gather::new(scene, gathered, plan.seed, settings.depth);
+    gather.merging = (!merged.is_empty()).then_some(plan.bounce_limit);
+    Some(Some(Stages::new(gather, settings)))
 }
 
 /// Photon paths of a batch that suit a scene: what [`RunPlan::batch_paths`] is when nothing is said.

@@ -3,7 +3,8 @@
 use crate::input::Job;
 use crate::input::keys::Key;
 use crate::pipeline::Stop;
-use crate::transport::Findings;
+use crate::scene::plan::Estimator;
+use crate::transport::{Findings, Gathered};
 
 /// The command that comes to the same numbers without a pilot and without a clock; `None` for a run that its own scene
 /// repeats.
@@ -21,12 +22,13 @@ pub(super) fn command(job: &Job, findings: &Findings, stop: Stop) -> Option<Stri
     }
     define(format!("run.batches={}", findings.photons.batch_count()));
     let gather = &job.settings.gather;
+    let [photons, records] = pass_size(job, findings);
     let flags = [
         ("--depth", gather.depth.map(|depth| depth.to_string())),
         ("--radius-mm", gather.radius_mm.map(|radius| radius.to_string())),
         ("--angle-deg", gather.angle_deg.map(|angle| angle.to_string())),
-        ("--records", gather.records.map(|records| records.to_string())),
-        ("--photons", gather.photons.map(|photons| photons.to_string())),
+        ("--records", records.map(|records| records.to_string())),
+        ("--photons", photons.map(|photons| photons.to_string())),
         ("--schedule", gather.schedule.map(|schedule| schedule.name().to_owned())),
         ("--seed", job.settings.seed.map(|seed| seed.to_string())),
         // Where windows shrink depends on the target.
@@ -44,6 +46,20 @@ pub(super) fn command(job: &Job, findings: &Findings, stop: Stop) -> Option<Stri
         words.extend(value.into_iter().flat_map(|value| [flag.to_owned(), value]));
     }
     Some(words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" "))
+}
+
+/// Photons and gather paths of a pass: as the command line has them, or, where the clock ends the run, as they were
+/// chosen by the time.
+fn pass_size(job: &Job, findings: &Findings) -> [Option<u64>; 2] {
+    let asked = &job.settings.gather;
+    match (&findings.gathered, job.run.stop.time) {
+        (Some(Gathered { settings, .. }), Some(_)) => {
+            let is_gathered = |own: &&Estimator| matches!(own, Estimator::Gather | Estimator::Mis);
+            let sensors = findings.estimators.iter().filter(is_gathered).count() as u64;
+            [Some(settings.photons), Some(settings.gather_paths * sensors)]
+        }
+        (_, None) | (None, Some(_)) => [asked.photons, asked.records],
+    }
 }
 
 /// A word as a POSIX shell takes it.

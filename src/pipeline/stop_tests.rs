@@ -123,6 +123,37 @@ fn a_pilot_that_takes_half_of_the_time_is_given_up_and_photons_go_on() {
 }
 
 #[test]
+fn passes_of_gathering_fit_into_a_short_time_and_their_command_repeats_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let time = Some(std::time::Duration::from_secs(3600));
+    let wishes = Settings { estimator: Some(Request::Gather), time, ..Settings::default() };
+    let job = short_rod(folder.path(), &wishes);
+    // An automatic pass without a clock has four million straight pieces, which are 3900 looks.
+    let (looks, grace) = (600, 40);
+    let clock = Interrupt::default();
+    let signal = StopSignal::ending_at_look(&clock, looks, grace);
+    let mut run = on_threads(1, || Run::start(&job.scene, &job.run, &signal, &mut |_| ())).unwrap();
+    while clock.looks() < looks {
+        on_threads(1, || run.next_piece());
+    }
+    assert!(clock.looks() <= looks + 20, "{} looks", clock.looks());
+    assert!(run.batches() >= 4, "{} passes", run.batches());
+    let findings = run.findings();
+
+    let command = compose(&job, &findings, Stop::Time).run.repeat.unwrap();
+    let settings = findings.gathered.as_ref().unwrap().settings;
+    let [photons, records] = [settings.photons, settings.gather_paths];
+    assert!(command.contains(&format!("--records {records} --photons {photons}")), "{command}");
+    let plan = run.state().plan(&job.run);
+    assert_eq!((plan.gather.photons, plan.gather.records), (Some(photons), Some(records)));
+    let mut again = Run::new(&job.scene, &plan);
+    while again.batches() < run.batches() {
+        on_threads(1, || again.next_piece());
+    }
+    assert!(again.findings() == findings);
+}
+
+#[test]
 fn a_request_ends_tracing_and_lets_files_take_their_places() {
     let folder = tempfile::tempdir().unwrap();
     let wishes = settings(Request::Forward);

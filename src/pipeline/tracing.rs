@@ -70,7 +70,9 @@ pub(super) fn trace_kept(
     interrupt.begin(Activity::Tracing);
     let before = stand.as_ref().map_or(Duration::ZERO, |stand| stand.elapsed);
     let clock = Clock { plan: &job.run, start: Instant::now(), before, interrupt };
-    let started = Run::start(&job.scene, &job.run, &clock.signal(), &mut |phase| {
+    let resumed = stand.as_ref().map(|stand| stand.state.plan(&job.run));
+    let plan = resumed.as_ref().unwrap_or(&job.run);
+    let started = Run::start(&job.scene, plan, &clock.signal(), &mut |phase| {
         watch(&Progress::before(&job.run, phase, clock.elapsed()));
     });
     let mut run = started.ok_or_else(|| nothing_to_report("the pilot", interrupt))?;
@@ -142,8 +144,8 @@ fn nothing_to_report(during: &str, interrupt: &Interrupt) -> Error {
         )
     } else {
         format!(
-            "the time was up during {during}: nothing is counted yet, and there is nothing to report; give more time, or \
-             --estimator forward, whose batches are short"
+            "the time was up during {during}: nothing is counted yet, and there is nothing to report; give more time, passes of \
+             fewer --photons and --records, or --estimator forward, whose batches are short"
         )
     })
 }

@@ -58,6 +58,26 @@ pub struct GatherSettings {
 pub(crate) struct PhotonPilot {
     /// Straight pieces of a photon path, mean.
     pub(crate) segments_per_path: f64,
+    /// Straight pieces of photon paths in an automatic pass.
+    pub(crate) pass_segments: f64,
+}
+
+impl PhotonPilot {
+    /// Photons with so many straight pieces per path, in passes of the usual size.
+    pub(crate) fn new(segments_per_path: f64) -> Self {
+        Self { segments_per_path, pass_segments: PASS_SEGMENTS }
+    }
+
+    /// The same with passes of so many straight pieces at most.
+    pub(crate) fn with_passes_up_to(self, segments: f64) -> Self {
+        Self { pass_segments: self.pass_segments.min(segments), ..self }
+    }
+
+    /// Photons of an automatic pass.
+    fn photons(self) -> u64 {
+        let least = LEAST_PHOTONS * self.pass_segments / PASS_SEGMENTS;
+        (self.pass_segments / self.segments_per_path).max(least).max(1.0) as u64
+    }
 }
 
 /// Settles how some sensors are gathered; `None` if that was stopped.
@@ -82,9 +102,7 @@ pub(crate) fn settle(
         .map(|source| half_width(&source.emitter))
         .fold(f64::INFINITY, f64::min);
     let radius = (RADIUS_PER_INRADIUS * inradius).min(RADIUS_PER_SOURCE * source_radius);
-    let photons = plan
-        .photons
-        .unwrap_or_else(|| (PASS_SEGMENTS / pilot.segments_per_path).max(LEAST_PHOTONS) as u64);
+    let photons = plan.photons.unwrap_or_else(|| pilot.photons());
     let share = photons as f64 * pilot.segments_per_path * RECORD_SHARE / RECORD_SEGMENTS;
     let sensors = sensors.len().max(1) as u64;
     let gather_paths = plan.records.map_or(share as u64, |records| records) / sensors;

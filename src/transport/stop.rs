@@ -171,6 +171,22 @@ impl StopSignal {
         })
     }
 
+    /// Straight pieces of paths that the time which is left is good for; `None` where it is not limited. `time` measures how
+    /// long a piece takes, s.
+    pub(crate) fn work_left(&self, time: impl FnOnce() -> Option<f64>) -> Option<f64> {
+        match self.end? {
+            End::At(end) => {
+                let time = time()?;
+                Some(end.saturating_duration_since(Instant::now()).as_secs_f64() / time)
+            }
+            #[cfg(test)]
+            End::AtLook { look, .. } => {
+                let left = look.saturating_sub(self.interrupt.looks());
+                Some(left as f64 * f64::from(LOOK_EVERY))
+            }
+        }
+    }
+
     fn with_end(&self, other: impl FnOnce(End) -> End) -> Self {
         Self { interrupt: self.interrupt.clone(), end: self.end.map(other) }
     }

@@ -54,7 +54,7 @@ impl<'s> Sppm<'s> {
         let pilot = pilot.batch(0, &StopSignal::default()).expect("nothing stops it");
         let segments = pilot.segments.div_ceil(pilot.paths().max(1)).max(1);
         let photons = (PASS_BATCHES * BATCH_SEGMENTS / segments).max(256);
-        let pilot = PhotonPilot { segments_per_path: segments as f64 };
+        let pilot = PhotonPilot::new(segments as f64);
         let settings = settle(scene, plan, &[sensor.id], pilot, &StopSignal::default());
         let window = settings.expect("nothing stops it").window;
         Self {

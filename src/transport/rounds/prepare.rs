@@ -13,6 +13,7 @@ use crate::transport::stages::{FIRST_PASSES, Stages};
 use crate::transport::stop::StopSignal;
 use crate::transport::sums::Sums;
 use crate::transport::{Choice, work};
+use std::time::{Duration, Instant};
 
 /// Straight pieces that a batch should hold: long enough that summing up costs little, short enough that little is lost
 /// when a run is stopped.
@@ -22,6 +23,11 @@ const BATCH_PATHS: u64 = 4096;
 /// Paths from which the length of paths is learnt before a run, and bounces of them that are looked at.
 const PILOT_PATHS: u64 = 64;
 const PILOT_BOUNCES: u32 = 10_000;
+/// Where the time is limited: passes of gathering for which it should be good, by the time that photon paths alone take,
+/// which records and other programs multiply; and the paths by which that time is measured.
+const PASSES_IN_TIME: f64 = 16.0;
+const TIMED: Duration = Duration::from_millis(10);
+const TIMED_BATCHES: u64 = 64;
 /// Share of the work that goes to photons where all sensors are estimated backward: for the balance and what is beside
 /// the aim, 1. Else photons and gather paths have half each.
 const PHOTON_SHARE: f64 = 0.1;
@@ -43,11 +49,11 @@ impl<'s> Run<'s> {
     ) -> Option<Self> {
         let early = signal.with_grace();
         let segments = segments_per_path(scene, plan, &early)?;
-        let pilot = PhotonPilot { segments_per_path: segments as f64 };
+        let pilot = PhotonPilot::new(segments as f64);
         let (estimators, choices) = estimators(scene, plan, pilot, signal, watch)?;
         let of = |wanted| sensors_of(&estimators, wanted);
         let stages =
-            stages(scene, plan, (&of(Estimator::Gather), &of(Estimator::Mis)), pilot, &early);
+            stages(scene, plan, (&of(Estimator::Gather), &of(Estimator::Mis)), pilot, signal);
         let stages = stages?;
         let mixed = of(Estimator::Mix);
         let followed = [of(Estimator::Backward), mixed.clone()].concat();
@@ -112,7 +118,10 @@ fn stages<'s>(
     if gathered.is_empty() {
         return Some(None);
     }
-    let settings = settle(scene, plan, gathered, pilot, signal)?;
+    let early = signal.with_grace();
+    let work = signal.work_left(|| time_of_piece(scene, plan, &early));
+    let pilot = work.map_or(pilot, |work| pilot.with_passes_up_to(work / PASSES_IN_TIME));
+    let settings = settle(scene, plan, gathered, pilot, &early)?;
     let mut gather = Gather::new(scene, gathered, plan.seed, settings.depth);
     gather.merging = (!merged.is_empty()).then_some(plan.bounce_limit);
     Some(Some(Stages::new(gather, settings)))
@@ -138,6 +147,20 @@ fn segments_per_path(scene: &Scene, plan: &RunPlan, signal: &StopSignal) -> Opti
     let cut = pilot.groups[0].sums[forward.layout.cut()];
     let rest = if flux > 0.0 { cut / flux * f64::from(plan.bounce_limit - limit) } else { 0.0 };
     Some(pilot.segments.div_ceil(pilot.paths().max(1)).max(1) + rest as u64)
+}
+
+/// How long a straight piece of a photon path takes, s, by the clock; `None` if that was stopped.
+fn time_of_piece(scene: &Scene, plan: &RunPlan, signal: &StopSignal) -> Option<f64> {
+    let limit = plan.bounce_limit.min(PILOT_BOUNCES);
+    let forward = Forward::new(scene, plan.seed, limit, PILOT_PATHS);
+    let (start, mut segments) = (Instant::now(), 0);
+    for batch in 0..TIMED_BATCHES {
+        segments += forward.batch(batch, signal)?.segments;
+        if start.elapsed() >= TIMED {
+            break;
+        }
+    }
+    Some(start.elapsed().as_secs_f64() / segments.max(1) as f64)
 }
 
 /// The estimator of each sensor: its own, the one that was asked for, or what a pilot chooses.

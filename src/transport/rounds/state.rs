@@ -1,9 +1,10 @@
 //! What of a run changes while it goes on, so that it can be laid down and taken up again.
 
+use crate::scene::plan::{Estimator, RunPlan};
 use crate::transport::rounds::Run;
 use crate::transport::stages::{Stages, StagesState};
 use crate::transport::sums::Sums;
-use crate::transport::{Readings, Windows};
+use crate::transport::{Choice, Readings, Windows};
 use serde::{Deserialize, Serialize};
 
 /// How far a run has come: everything counted, a wave in progress included. All else follows from scene and plan.
@@ -14,6 +15,31 @@ pub struct State {
     photons: Sums<Readings>,
     backward: Option<Sums<Readings>>,
     stages: Option<StagesState>,
+    /// How it was prepared, which depends on the clock where the time of the run is limited.
+    estimators: Vec<Estimator>,
+    choices: Vec<Choice>,
+    pass: Option<PassSize>,
+}
+
+/// Paths of a pass of gathering.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+struct PassSize {
+    photons: u64,
+    /// Gather paths from all sensors in a pass of the first stage.
+    records: u64,
+}
+
+impl State {
+    /// The plan by which a run of this state is prepared again. Without a clock the same plan comes to the same.
+    pub fn plan(&self, plan: &RunPlan) -> RunPlan {
+        let mut own = plan.clone();
+        if own.stop.time.is_some() {
+            own.sensor_estimators = self.estimators.iter().copied().map(Some).collect();
+            own.gather.photons = self.pass.map(|pass| pass.photons).or(own.gather.photons);
+            own.gather.records = self.pass.map(|pass| pass.records).or(own.gather.records);
+        }
+        own
+    }
 }
 
 impl Run<'_> {
@@ -25,13 +51,17 @@ impl Run<'_> {
             photons: self.photons.clone(),
             backward: self.backward.as_ref().map(|(_, sums)| sums.clone()),
             stages: self.stages.as_ref().map(Stages::state),
+            estimators: self.estimators.clone(),
+            choices: self.choices.clone(),
+            pass: self.pass_size(),
         }
     }
 
     /// Goes on from the state of a run of the same scene and plan, to the same bits.
     pub fn go_on_from(&mut self, state: State) {
-        let State { batches, paths, photons, backward, stages } = state;
+        let State { batches, paths, photons, backward, stages, choices, .. } = state;
         (self.batches, self.paths, self.photons) = (batches, paths, photons);
+        self.choices = choices;
         if let (Some((_, own)), Some(sums)) = (&mut self.backward, backward) {
             *own = sums;
         }
@@ -54,6 +84,15 @@ impl Run<'_> {
             photons: Sums::of_nodes(photons),
             backward: self.backward.as_ref().map(|_| Sums::of_nodes(backward)),
             stages: self.stages.as_ref().map(|_| StagesState::only(Sums::of_nodes(windows))),
+            estimators: self.estimators.clone(),
+            choices: self.choices.clone(),
+            pass: self.pass_size(),
         }
+    }
+
+    fn pass_size(&self) -> Option<PassSize> {
+        let stages = self.stages.as_ref()?;
+        let records = stages.settings.gather_paths * stages.gather.sensors();
+        Some(PassSize { photons: stages.settings.photons, records })
     }
 }

@@ -10,6 +10,8 @@ const FIRST_LARGE_EXPONENT: i32 = 5;
 const LEAST_PERCENT: f64 = 0.01;
 /// Percentages below this are rounding.
 const FAINT_PERCENT: f64 = 1e-9;
+/// Errors below this share of their value are rounding.
+const FAINT_ERROR: f64 = 1e-9;
 /// More digits than these are not written beside an error bar.
 const MOST_DIGITS: i32 = 9;
 
@@ -47,7 +49,7 @@ fn format_significant(value: f64, digits: i32) -> String {
 }
 
 /// A value and its standard error, both with the digits that the error leaves: "0.8419 ± 0.0006",
-/// "(1.234 ± 0.020)×10⁻⁷".
+/// "(1.234 ± 0.020)×10⁻⁷". An error that is rounding is none: "100 ± 0".
 ///
 /// The error has two digits up to 0.354 of its power of ten and one digit beyond (Particle Data Group, Review of
 /// Particle Physics, introduction, section 5.3). An infinite value stands alone.
@@ -61,6 +63,9 @@ pub fn format_with_error(value: f64, std_error: f64) -> String {
     let std_error = std_error.abs();
     if std_error == 0.0 {
         return format!("{} ± 0", format_value(value));
+    }
+    if std_error < FAINT_ERROR * value.abs() {
+        return format!("{} ± 0", format_exact(value));
     }
     let (std_error, place) = round_error(std_error);
     let exponent = rounded_exponent(value.abs().max(std_error), MOST_DIGITS);
@@ -246,7 +251,7 @@ mod tests {
             (f64::INFINITY, f64::INFINITY, "∞"),
             (f64::NAN, 1.0, "n/a"),
             (1.0, f64::MAX, "(0.0 ± 1.8)×10³⁰⁸"),
-            (0.841_905_381_23, 1e-13, "0.841905381 ± 1×10⁻¹³"),
+            (0.841_905_381_23, 1e-13, "0.841905381 ± 0"),
         ];
         for (value, std_error, text) in cases {
             assert_eq!(format_with_error(value, std_error), text);

@@ -69,10 +69,13 @@ fn checks(report: &Report) -> Option<Part> {
         blocks.push(table(["check", "result", "why"], report.checks.iter().map(row).collect()));
     }
     if !report.warnings.is_empty() {
-        blocks.push(Block::Heading { text: "Remarks".into() });
+        if !blocks.is_empty() {
+            blocks.push(Block::Heading { text: "Remarks".into() });
+        }
         blocks.push(Block::List { items: report.warnings.clone() });
     }
-    (!blocks.is_empty()).then(|| Part { title: "Checks".into(), blocks })
+    let title = if report.checks.is_empty() { "Remarks" } else { "Checks" };
+    (!blocks.is_empty()).then(|| Part { title: title.into(), blocks })
 }
 
 /// The numbers that were asked for: the measure of the target, and the key figures of every sensor.

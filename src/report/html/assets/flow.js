@@ -16,12 +16,12 @@ function drawFlow(figure, data) {
 
 function flowDrawing(data, size, readout) {
   const sinks = fewSinks(data);
-  const rows = Math.max(sinks.length, data.sources.length);
-  const height = Math.max(size.band + (sinks.length - 1) * 8, rows * size.gap) + size.top + 28;
-  const svg = drawing(size.width, height, "flux balance");
-  const middle = size.top + (height - size.top - 28) / 2;
   const perUnit = size.band / data.whole;
-  const sources = stack(data.sources, perUnit, middle, size.isSlim ? 34 : 26);
+  const room = size.isSlim ? 34 : 26;
+  const tallest = Math.max(heightOf(data.sources, perUnit, room), heightOf(sinks, perUnit, size.gap));
+  const svg = drawing(size.width, size.top + tallest + 28, "flux balance");
+  const middle = size.top + tallest / 2;
+  const sources = stack(data.sources, perUnit, middle, room);
   const ends = stack(sinks, perUnit, middle, size.gap);
   const amount = (one) => (one.error === undefined ? `${formatValue(one.value)} ${data.unit}` : quantity(one.value, one.error, null, data.unit));
   const share = (one) => `${fixed((100 * one.value) / data.whole, 2)} %`;
@@ -62,16 +62,18 @@ function fewSinks(data) {
   return kept;
 }
 
-// Places of bands on top of each other, with room for a line of text each.
+// Room that a band takes: its own, and no less than a line of text.
+const roomOf = (one, perUnit, room) => Math.max(perUnit * one.value + 6, room);
+const heightOf = (lines, perUnit, room) => lines.reduce((sum, one) => sum + roomOf(one, perUnit, room), 0);
+
+// Places of bands on top of each other.
 function stack(lines, perUnit, middle, room) {
-  const sized = lines.map((one) => ({ ...one, size: perUnit * one.value }));
-  const total = sized.reduce((sum, one) => sum + Math.max(one.size + 6, room), 0);
-  let top = middle - total / 2;
-  return sized.map((one) => {
-    const height = Math.max(one.size + 6, room);
-    const at = top + (height - one.size) / 2;
+  let top = middle - heightOf(lines, perUnit, room) / 2;
+  return lines.map((one) => {
+    const [size, height] = [perUnit * one.value, roomOf(one, perUnit, room)];
+    const at = top + (height - size) / 2;
     top += height;
-    return { ...one, at };
+    return { ...one, size, at };
   });
 }
 

@@ -26,19 +26,21 @@ function grouped(text) {
   return decimals === undefined ? groups : `${groups}.${decimals}`;
 }
 
-// Four significant digits.
-function formatValue(value) {
+// Four significant digits, or another number of them.
+function formatValue(value, digits = 4) {
   if (value === null || !Number.isFinite(value)) return "n/a";
-  const exponent = exponentOf(value, 4);
+  const exponent = exponentOf(value, digits);
   const trimmed = (text) => (text.includes(".") ? text.replace(/\.?0+$/, "") : text);
-  if (isPlain(exponent)) return grouped(trimmed(fixed(value, 3 - exponent)));
-  return `${trimmed(fixed(value / 10 ** exponent, 3))}×10${superscript(exponent)}`;
+  if (isPlain(exponent)) return grouped(trimmed(fixed(value, digits - 1 - exponent)));
+  return `${trimmed(fixed(value / 10 ** exponent, digits - 1))}×10${superscript(exponent)}`;
 }
 
 // A value and its standard error with the digits that the error leaves.
 function formatWithError(value, error) {
   if (value === null || error === null) return `${formatValue(value)} ± ${formatValue(error)}`;
   if (error === 0) return `${formatValue(value)} ± 0`;
+  // Such an error is rounding.
+  if (error < 1e-9 * Math.abs(value)) return `${formatValue(value, 9)} ± 0`;
   const first = exponentOf(error, 3);
   const place = error / 10 ** first < 3.55 ? first - 1 : first;
   const rounded = Math.round(error / 10 ** place) * 10 ** place;

@@ -3,6 +3,7 @@
 //! Plain data in the user's coordinates. How it is looked at is not known here.
 
 use crate::math::Aabb;
+use crate::report::upright::is_lit_from_above;
 use crate::scene::{
     Emitter, FaceFacets, FaceId, Facets, Fineness, Owner, Scene, SensorKind, SourceId, shape_facets,
 };
@@ -39,6 +40,8 @@ pub struct Drawing {
     pub marks: Vec<Mark>,
     /// Paths of light.
     pub paths: Vec<DrawnPath>,
+    /// Whether +z is up, as light comes from above.
+    pub is_upright: bool,
     /// What was left out.
     pub remarks: Vec<String>,
 }
@@ -136,6 +139,7 @@ pub fn drawing(scene: &Scene, tracks: &[Track]) -> Drawing {
         faces,
         marks,
         paths: paths.into_iter().map(|(_, path)| path).collect(),
+        is_upright: is_lit_from_above(scene),
         remarks,
     };
     drawing.shift(scene.origin);

@@ -33,6 +33,7 @@ mod spreadsheet;
 pub mod study;
 mod summary;
 mod terminal;
+mod upright;
 mod words;
 
 pub use compare::{

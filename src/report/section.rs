@@ -7,8 +7,9 @@ use crate::report::drawing::{Fate, Role, drawing, fate};
 use crate::report::png::{
     CrossSection, NamedPlace, Outline, PlaceOf, RayEnd, RayPath, cross_section,
 };
+use crate::report::upright::is_lit_from_above;
 use crate::scene::shape::ChartRect;
-use crate::scene::{Emission, Emitter, Scene, SensorKind};
+use crate::scene::{Emitter, Scene, SensorKind};
 use crate::transport::Track;
 use glam::{DVec2, DVec3};
 use std::collections::BTreeSet;
@@ -232,12 +233,8 @@ fn meets_surface(scene: &Scene, track: &Track) -> bool {
 /// The axes of a picture: to the right and up. Numbers grow to the right.
 fn axes(scene: &Scene, normal: DVec3, up: Option<DVec3>) -> Result<[DVec3; 2]> {
     let across = normal.abs().max_position();
-    let has_sky = scene.sources.iter().any(|source| {
-        matches!(source.emitter, Emitter::Far { .. }) || matches!(source.emission, Emission::Sky(_))
-    });
     let usual = match across {
-        // Daylight comes from above.
-        0 | 1 if has_sky => DVec3::Z,
+        0 | 1 if is_lit_from_above(scene) => DVec3::Z,
         1 => DVec3::X,
         0 | 2.. => DVec3::Y,
     };
@@ -326,3 +323,6 @@ fn unknown(scene: &Scene, name: &str) -> Error {
     let all: Vec<&str> = all.into_iter().collect();
     Error::Usage(format!("--zoom {name}: the scene has {}", all.join(", ")))
 }
+
+#[cfg(test)]
+pub(super) mod tests;

@@ -287,7 +287,7 @@ pub(crate) fn scene(drawing: &Drawing) -> Value {
         .collect();
     json!({
         "plot": "scene", "middle": places.flat(&[drawing.middle]), "faces": faces, "marks": marks,
-        "groups": groups, "paths": paths,
+        "groups": groups, "paths": paths, "upright": drawing.is_upright,
     })
 }
 

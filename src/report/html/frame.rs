@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::report::png::{ColourMap, curve_colours};
 use minijinja::syntax::SyntaxConfig;
 use minijinja::value::Serde;
-use minijinja::{AutoEscape, Environment, HtmlEscape, Value, context};
+use minijinja::{AutoEscape, Environment, Value, context};
 use serde::Serialize;
 
 /// The style of every page.
@@ -150,7 +150,6 @@ pub(crate) fn render(page: &Page, plots: &Plots) -> Result<String> {
     let data = serde_json::to_string(&data).map_err(|reason| failed(reason.to_string()))?;
     let mut environment = Environment::new();
     environment.set_auto_escape_callback(|_| AutoEscape::Html);
-    environment.add_filter("breakable", breakable);
     // Tags leave no lines of their own.
     let syntax = SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).build();
     environment.set_syntax(syntax.map_err(|reason| failed(reason.to_string()))?);
@@ -167,21 +166,6 @@ pub(crate) fn render(page: &Page, plots: &Plots) -> Result<String> {
             },
         )
         .map_err(|reason| failed(reason.to_string()))
-}
-
-/// A name as HTML that may go on in the next line after a dot or an underline: names of measures are long, and a phone is
-/// narrow.
-fn breakable(name: &str) -> Value {
-    let safe = HtmlEscape(name).to_string();
-    let mut html = String::with_capacity(safe.len());
-    let mut letters = safe.chars().peekable();
-    while let Some(letter) = letters.next() {
-        html.push(letter);
-        if "._".contains(letter) && letters.peek().is_some_and(char::is_ascii_alphabetic) {
-            html.push_str("<wbr>");
-        }
-    }
-    Value::from_safe_string(html)
 }
 
 #[cfg(test)]
@@ -229,14 +213,6 @@ mod tests {
                 .collect();
             assert!(found.is_empty(), "{address}: {found:?}");
         }
-    }
-
-    #[test]
-    fn long_names_may_break_where_their_parts_do() {
-        assert_eq!(
-            breakable("a.flux_other.1 & <0.5").to_string(),
-            "a.<wbr>flux_<wbr>other.1 &amp; &lt;0.5"
-        );
     }
 
     #[test]

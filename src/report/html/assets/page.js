@@ -8,6 +8,12 @@ for (const figure of document.querySelectorAll("figure[data-plot]")) {
   PLOTS[data.plot](figure, data);
 }
 
+// Names of measures are long, and a phone is narrow: they may go on in the next line after a dot or an underline.
+for (const cell of document.querySelectorAll("td:first-child")) {
+  const parts = cell.textContent.split(/(?<=[._])(?=[A-Za-z])/);
+  cell.replaceChildren(...parts.flatMap((part, i) => (i === 0 ? [part] : [make("wbr"), part])));
+}
+
 // Colours have changed: what is painted, and not styled, has to be painted again.
 function repaint() {
   document.dispatchEvent(new Event("repaint"));

@@ -22,7 +22,7 @@ function drawScene(figure, data) {
   state.triangles = data.faces.flatMap((face, index) =>
     Array.from({ length: face.triangles.length / 3 }, (_, t) => ({ index, corners: face.triangles.slice(3 * t, 3 * t + 3) })));
   state.reset = () => {
-    state.view = { rows: firstTurn(extent(data.faces)), middle: data.middle, scale: 1, center: [SCENE.width / 2, SCENE.height / 2] };
+    state.view = { rows: firstTurn(extent(data.faces), data.upright), middle: data.middle, scale: 1, center: [SCENE.width / 2, SCENE.height / 2] };
     fit(state);
   };
   state.reset();

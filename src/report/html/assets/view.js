@@ -1,14 +1,14 @@
 // Looking at points in space: a turn, a scale and a shift, without perspective.
 
 // Rows of the first turn: along the screen, up the screen, toward the eye.
-function firstTurn(size) {
+function firstTurn(size, isUpright) {
   const longest = size.indexOf(Math.max(...size));
   const others = size.filter((_, axis) => axis !== longest);
   const isLong = size[longest] > 2 * Math.max(...others);
-  // Upright scenes stand, unless they are much taller than wide: then they lie down.
+  // Scenes stand on their xy plane. Those that are much taller than wide lie down, unless their light comes from above.
   let rows = [[1, 0, 0], [0, 0, 1], [0, -1, 0]];
   if (longest === 1) rows = [[0, 1, 0], [0, 0, 1], [1, 0, 0]];
-  if (longest === 2 && isLong) rows = [[0, 0, 1], [1, 0, 0], [0, 1, 0]];
+  if (longest === 2 && isLong && !isUpright) rows = [[0, 0, 1], [1, 0, 0], [0, 1, 0]];
   return turned(turned(rows, 1, -0.5), 0, 0.4);
 }
 

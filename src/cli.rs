@@ -28,7 +28,7 @@ use crate::report::{Existing, JunitFile};
 use crate::text::visible;
 use crate::transport::{Interrupt, StopAnswer};
 use clap::{CommandFactory, Parser, Subcommand};
-use std::io::IsTerminal;
+use std::io::{ErrorKind, IsTerminal};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -227,8 +227,20 @@ fn fail(error: &Error) -> ExitCode {
         }
         Error::Io { .. } | Error::Output { .. } => {
             print_error(&format!("error: {error}\n"));
-            ExitCode::from(3)
+            ExitCode::from(if is_of_a_name(error) { 2 } else { 3 })
         }
+    }
+}
+
+/// Whether a file fails because of its name: a folder where a file should be, a file where a folder should be, or a name
+/// that no file can have.
+fn is_of_a_name(error: &Error) -> bool {
+    match error {
+        Error::Io { source, .. } => matches!(
+            source.kind(),
+            ErrorKind::IsADirectory | ErrorKind::NotADirectory | ErrorKind::InvalidFilename
+        ),
+        Error::Input(_) | Error::Usage(_) | Error::Output { .. } => false,
     }
 }
 

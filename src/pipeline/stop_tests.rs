@@ -145,6 +145,7 @@ fn passes_of_gathering_fit_into_a_short_time_and_their_command_repeats_them() {
     let [photons, records] = [settings.photons, settings.gather_paths];
     assert!(command.contains(&format!("--records {records} --photons {photons}")), "{command}");
     let plan = run.state().plan(&job.run);
+    assert_eq!(plan.sensor_estimators, [Some(Estimator::Gather)]);
     assert_eq!((plan.gather.photons, plan.gather.records), (Some(photons), Some(records)));
     let mut again = Run::new(&job.scene, &plan);
     while again.batches() < run.batches() {

@@ -70,17 +70,7 @@ pub(super) fn trace_kept(
     interrupt.begin(Activity::Tracing);
     let before = stand.as_ref().map_or(Duration::ZERO, |stand| stand.elapsed);
     let clock = Clock { plan: &job.run, start: Instant::now(), before, interrupt };
-    let resumed = stand.as_ref().map(|stand| stand.state.plan(&job.run));
-    let plan = resumed.as_ref().unwrap_or(&job.run);
-    let started = Run::start(&job.scene, plan, &clock.signal(), &mut |phase| {
-        watch(&Progress::before(&job.run, phase, clock.elapsed()));
-    });
-    let mut run = started.ok_or_else(|| nothing_to_report("the pilot", interrupt))?;
-    let mut round_end = run.round_end();
-    if let Some(stand) = stand {
-        round_end = stand.round_end;
-        run.go_on_from(stand.state);
-    }
+    let (mut run, mut round_end) = started(job, stand, &clock, watch)?;
     let elapsed = || clock.elapsed();
     let (mut target, mut gathering_told) = (None, false);
     let stop = loop {
@@ -125,6 +115,27 @@ pub(super) fn trace_kept(
         round_end = run.round_end();
     };
     Ok(Traced { findings: run.findings(), stop, elapsed: elapsed() })
+}
+
+/// A run that is prepared, from where it stands, and the waves after which its stop rules are looked at next.
+fn started<'j>(
+    job: &'j Job,
+    stand: Option<Stand>,
+    clock: &Clock<'_>,
+    watch: &mut dyn FnMut(&Progress),
+) -> Result<(Run<'j>, u64)> {
+    let resumed = stand.as_ref().map(|stand| stand.state.plan(&job.run));
+    let plan = resumed.as_ref().unwrap_or(&job.run);
+    let run = Run::start(&job.scene, plan, &clock.signal(), &mut |phase| {
+        watch(&Progress::before(&job.run, phase, clock.elapsed()));
+    });
+    let mut run = run.ok_or_else(|| nothing_to_report("the pilot", clock.interrupt))?;
+    let Some(stand) = stand else {
+        let round_end = run.round_end();
+        return Ok((run, round_end));
+    };
+    run.go_on_from(stand.state);
+    Ok((run, stand.round_end))
 }
 
 /// What a run does first.

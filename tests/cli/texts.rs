@@ -90,4 +90,8 @@ fn files_that_cannot_be_made_are_mistakes_of_the_command_line() {
         assert!(said.contains(words), "{arguments}: {said}");
     }
     assert_eq!(place.names(), ["rod.toml"], "nothing is traced or made first");
+    fs::create_dir_all(place.path("out/summary.json")).unwrap();
+    for arguments in ["diff out out", "run rod.toml -o out --overwrite"] {
+        assert!(place.bad(2, arguments).contains("summary.json: Is a directory"), "{arguments}");
+    }
 }

@@ -11,13 +11,23 @@ use crate::measure::Status;
 use crate::measure::counted::{Noisy, Part, Sample};
 use crate::measure::evidence::counted;
 use crate::measure::noise::Noise;
+use crate::measure::smoothing::Smoothing;
 use crate::tally::Tally;
 use std::f64::consts::{PI, TAU};
 
 /// Times the curve is drawn anew with its noise to learn the error of the angle: good to 1/sqrt(2 · 100) = 7 %.
 const REPLICAS: usize = 100;
-/// The part of the bias that was taken off that may still be there, 1.
-const BIAS_LEFT: f64 = 0.7;
+/// The part of the mean deviation of replicas that is taken off as bias, 1. This and the next four were chosen with the
+/// trials of docs/trials.md.
+const BIAS_TAKEN: f64 = 0.8;
+/// Counts that the curve is averaged over to find its edges, and its top, which moves both.
+const COUNTS_AT_EDGE: f64 = 100.0;
+const COUNTS_AT_TOP: f64 = 20.0;
+/// Rings that this takes at most to each side, as part of those that hold the middle half of the light.
+const REACH_AT_EDGE: f64 = 0.25;
+const REACH_AT_TOP: f64 = 0.5;
+/// A bias that goes with the square of the window: how much more of it there is with twice the window.
+const FOURFOLD: f64 = 3.0;
 
 /// A full angle, rad.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,37 +41,51 @@ pub(crate) struct FullAngle {
 
 /// Full angle at `share` of the maximum; `gammas` are the angles of the rings from the pole, rad. `None` in the dark.
 ///
-/// The angle is read off the curve as it is. What noise does to such a reading is learnt from curves drawn anew about
-/// the curve without noise: their scatter is the error, their mean deviation the bias, which is taken off.
+/// The angle is read off the curve averaged over neighbouring rings. What noise does to such a reading is found from
+/// curves drawn anew about this one (a parametric bootstrap, as in [`crate::measure::extremes`]): their scatter is the
+/// error, and most of their mean deviation is taken off.
 pub(crate) fn full_angle(gammas: &[f64], halves: [&[Noisy]; 2], share: f64) -> Option<FullAngle> {
     let plane = Plane::of(gammas, halves);
-    let read: Vec<f64> = plane.sample.values.clone();
-    let peak = plane.parts[highest(&read)].read;
+    let read = &plane.sample.values;
+    let peak = plane.parts[highest(read)].read;
     if peak.value <= 0.0 {
         return None;
     }
-    let value = plane.angle(gammas, &read, share);
+    let averaging = plane.averaging(read);
+    let angle = |line: &[f64], averaging: &Averaging| plane.angle(gammas, line, share, averaging);
+    let value = angle(read, &averaging);
     let status = counted(peak.value, peak.std_error);
     let rings =
-        plane.split(&read, |halves| ring_bias(gammas, halves, |halves| share * highest_of(halves)));
+        plane.split(read, |halves| ring_bias(gammas, halves, |halves| share * highest_of(halves)));
     if plane.parts.iter().any(|part| !part.read.std_error.is_finite()) {
         return Some(FullAngle { value, std_error: f64::INFINITY, bias: rings.abs(), status });
     }
-    let means = plane.sample.without_noise(&read);
+    let averaged = (angle(read, &averaging.wider()) - value) / FOURFOLD;
+    let means = averaging.edge.smooth(&plane.sample, read);
     let mut noise = Noise::new();
     let drawn = Tally::of(
-        (0..REPLICAS).map(|_| plane.angle(gammas, &plane.sample.drawn(&means, &mut noise), share)),
+        (0..REPLICAS).map(|_| angle(&plane.sample.drawn(&means, &mut noise), &averaging)),
     );
-    let deviation = drawn.mean() - plane.angle(gammas, &means, share);
-    // What bias is left is a part of what was taken off.
-    let left = BIAS_LEFT * deviation;
+    let deviation = drawn.mean() - angle(&means, &averaging);
     Some(FullAngle {
-        value: (value - deviation).clamp(0.0, TAU),
+        value: (value - BIAS_TAKEN * deviation).clamp(0.0, TAU),
         // The spread of the replicas is the error, not that of their mean.
         std_error: drawn.std_error() * (REPLICAS as f64).sqrt(),
-        bias: left.hypot(rings),
+        bias: rings.hypot(averaged),
         status,
     })
+}
+
+/// What a curve is averaged over.
+struct Averaging {
+    top: Smoothing,
+    edge: Smoothing,
+}
+
+impl Averaging {
+    fn wider(&self) -> Self {
+        Self { top: self.top.wider(), edge: self.edge.wider() }
+    }
 }
 
 /// The curve in a plane through the pole, as one line over it.
@@ -97,10 +121,39 @@ impl Plane {
         of([ahead, &behind])
     }
 
-    /// The full angle of a line at a share of its largest value without noise.
-    fn angle(&self, gammas: &[f64], line: &[f64], share: f64) -> f64 {
-        let most = self.sample.without_noise(line).into_iter().fold(0.0, f64::max);
-        self.split(line, |halves| width(gammas, halves, share * most))
+    /// The full angle of a line at a share of its largest value, both of the line averaged.
+    fn angle(&self, gammas: &[f64], line: &[f64], share: f64, averaging: &Averaging) -> f64 {
+        let top = averaging.top.smooth(&self.sample, line);
+        let level = share * top[highest(&top)];
+        let line = averaging.edge.smooth(&self.sample, line);
+        self.split(&line, |halves| width(gammas, halves, level))
+    }
+
+    /// What the noise of a line asks for.
+    fn averaging(&self, line: &[f64]) -> Averaging {
+        let half = self.half_of_light(line);
+        let over = |counts: f64, reach: f64| {
+            Smoothing::of(&self.sample, line, counts, (reach * half) as usize)
+        };
+        Averaging {
+            top: over(COUNTS_AT_TOP, REACH_AT_TOP),
+            edge: over(COUNTS_AT_EDGE, REACH_AT_EDGE),
+        }
+    }
+
+    /// Rings to each side of the middle that hold half of the light of a line.
+    fn half_of_light(&self, line: &[f64]) -> f64 {
+        let light = || line.iter().zip(&self.sample.weights).map(|(value, weight)| value * weight);
+        let total: f64 = light().sum();
+        let up_to = |share: f64| {
+            let mut rest = share * total;
+            let is_beyond = |light: f64| {
+                rest -= light;
+                rest <= 0.0
+            };
+            light().position(is_beyond).unwrap_or(0) as f64
+        };
+        if line.len() == self.rings { up_to(0.5) } else { 0.5 * (up_to(0.75) - up_to(0.25)) }
     }
 }
 

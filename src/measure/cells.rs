@@ -91,7 +91,8 @@ impl<'a> SensorCells<'a> {
         self.cover(cell) >= ENOUGH_AREA
     }
 
-    fn cover(&self, cell: usize) -> f64 {
+    /// The share of a cell's own area that lies on the sensor, 1.
+    pub(crate) fn cover(&self, cell: usize) -> f64 {
         self.covered.map_or(1.0, |covered| covered[cell])
     }
 

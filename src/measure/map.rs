@@ -34,6 +34,9 @@ pub struct SensorMap {
     pub std_errors: Array2<f64>,
     /// Indicators of bias, likewise; `None` of unbiased estimates.
     pub biases: Option<Array2<f64>>,
+    /// The share of each cell's own area that lies on the sensor, 1. Cells with at least half count for the extremes on
+    /// their own, others together with their neighbours along the rim.
+    pub on_sensor: Array2<f64>,
     /// Where the cells are.
     pub axes: Axes,
     /// Area of the sensor, mm².
@@ -143,6 +146,7 @@ fn map(
         values: table(&|cell| seen.at(cell).value),
         std_errors: table(&|cell| seen.at(cell).std_error),
         biases: None,
+        on_sensor: table(&|cell| seen.cover(cell)),
         axes: axes(sensor),
         area_mm2: sensor.area(),
         summary: summary(evidence, id, sensor, &seen),

@@ -28,6 +28,9 @@ mod replicates;
 #[cfg(test)]
 mod samples;
 mod sensor;
+mod smoothing;
+#[cfg(test)]
+mod trials;
 mod uniformity;
 
 pub use angular::{IntensityTable, PlaneCurve};

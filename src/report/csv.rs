@@ -63,12 +63,14 @@ fn map_table(map: &SensorMap) -> Result<OutputFile> {
     };
     let mut header = vec![header[0].to_owned(), header[1].to_owned(), value, error];
     header.extend(map.biases.is_some().then(|| bias_column(&map.unit)));
+    header.push("on_sensor".to_owned());
     let lines =
         map.values.indexed_iter().filter(|(_, value)| value.is_finite()).map(|(at, value)| {
             let (row, column) = at;
             let place = [middle(columns, column), middle(rows, row)];
             let bias = map.biases.as_ref().map(|biases| biases[at]);
-            numbers(place.into_iter().chain([*value, map.std_errors[at]]).chain(bias))
+            let read = [*value, map.std_errors[at]].into_iter().chain(bias);
+            numbers(place.into_iter().chain(read).chain([map.on_sensor[at]]))
         });
     table(name, &header, lines)
 }

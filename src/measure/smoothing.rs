@@ -1,0 +1,95 @@
+//! A curve over rings about the pole, averaged over as many rings as its noise asks for.
+
+use crate::measure::counted::Sample;
+
+/// How many rings to each side every ring of a curve is averaged over.
+#[derive(Debug, Clone)]
+pub(crate) struct Smoothing(Vec<usize>);
+
+impl Smoothing {
+    /// As few rings as hold so many counts of a line, but at most so many to each side.
+    pub(crate) fn of(sample: &Sample, line: &[f64], counts: f64, most: usize) -> Self {
+        let counts_of = |ring: usize| match (sample.counts[ring], line[ring]) {
+            (count, value) if count > 0.0 => value / count,
+            (_, value) => {
+                if value > 0.0 {
+                    f64::INFINITY
+                } else {
+                    0.0
+                }
+            }
+        };
+        let held = |ring, window| around(line.len(), ring, window).map(counts_of).sum::<f64>();
+        let window = |ring| (0..most).find(|&window| held(ring, window) >= counts).unwrap_or(most);
+        Self((0..line.len()).map(window).collect())
+    }
+
+    /// Over twice as many rings.
+    pub(crate) fn wider(&self) -> Self {
+        Self(self.0.iter().map(|window| 2 * window).collect())
+    }
+
+    /// A line averaged by solid angle, the weights of `sample`.
+    pub(crate) fn smooth(&self, sample: &Sample, line: &[f64]) -> Vec<f64> {
+        let mean = |(ring, window): (usize, &usize)| {
+            let rings = around(line.len(), ring, *window);
+            let (sum, weight) = rings.fold((0.0, 0.0), |(sum, weight), at| {
+                (sum + sample.weights[at] * line[at], weight + sample.weights[at])
+            });
+            sum / weight
+        };
+        self.0.iter().enumerate().map(mean).collect()
+    }
+}
+
+/// Rings at most `window` away. Beyond its ends, the poles, a line goes on as it came.
+fn around(rings: usize, ring: usize, window: usize) -> impl Iterator<Item = usize> {
+    let turned = move |at: usize| {
+        // Counted from `rings` before the first.
+        let at = at % (2 * rings);
+        if at < rings { rings - 1 - at } else { at - rings }
+    };
+    let window = window.min(rings);
+    (rings + ring - window..=rings + ring + window).map(turned)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measure::counted::{Noisy, Part};
+
+    fn sample(counts: &[f64]) -> Sample {
+        let read = |&value: &f64| Noisy { value, std_error: value.sqrt(), count: 1.0 };
+        let parts = counts.iter().map(|value| Part { read: read(value), weight: 1.0 });
+        Sample::of(&parts.collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn a_line_goes_on_beyond_the_poles_as_it_came() {
+        assert_eq!(around(4, 0, 2).collect::<Vec<_>>(), [1, 0, 0, 1, 2]);
+        assert_eq!(around(4, 3, 2).collect::<Vec<_>>(), [1, 2, 3, 3, 2]);
+        assert_eq!(around(2, 0, 9).count(), 5);
+    }
+
+    #[test]
+    fn windows_hold_the_counts_asked_for_and_are_no_wider_than_allowed() {
+        let line = [1000.0, 4.0, 4.0, 4.0, 0.0, 0.0];
+        let sample = sample(&line);
+        assert_eq!(Smoothing::of(&sample, &line, 10.0, 2).0, [0, 1, 1, 2, 2, 2]);
+        assert_eq!(Smoothing::of(&sample, &line, 0.0, 2).0, [0; 6]);
+    }
+
+    #[test]
+    fn a_straight_line_stays_straight_and_a_constant_one_constant() {
+        let line: Vec<f64> = (0..9).map(|ring| 100.0 - 10.0 * f64::from(ring)).collect();
+        let sample = sample(&line);
+        let smooth = Smoothing(vec![2; 9]).smooth(&sample, &line);
+        assert!((2..7).all(|ring| (smooth[ring] - line[ring]).abs() < 1e-12), "{smooth:?}");
+        assert!(
+            Smoothing(vec![3; 9])
+                .smooth(&sample, &[2.0; 9])
+                .iter()
+                .all(|at| (at - 2.0).abs() < 1e-15)
+        );
+    }
+}

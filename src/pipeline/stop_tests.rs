@@ -155,6 +155,25 @@ fn passes_of_gathering_fit_into_a_short_time_and_their_command_repeats_them() {
 }
 
 #[test]
+fn merged_passes_fit_into_a_short_time_where_paths_never_end() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("box.toml");
+    std::fs::write(&scene, MIRROR_BOX).unwrap();
+    let time = Some(std::time::Duration::from_secs(3600));
+    let wishes = Settings { estimator: Some(Request::Mis), time, ..Settings::default() };
+    let job = prepare(&scene, &wishes).unwrap();
+    // A path has 20 looks, and 640 of them go into learning that.
+    let (looks, clock) = (3000, Interrupt::default());
+    let signal = StopSignal::ending_at_look(&clock, looks, 100);
+    let mut run = on_threads(1, || Run::start(&job.scene, &job.run, &signal, &mut |_| ())).unwrap();
+    while clock.looks() < looks {
+        on_threads(1, || run.next_piece());
+    }
+    assert!(clock.looks() <= looks + 20, "{} looks", clock.looks());
+    assert!(run.batches() >= 4, "{} passes", run.batches());
+}
+
+#[test]
 fn a_request_ends_tracing_and_lets_files_take_their_places() {
     let folder = tempfile::tempdir().unwrap();
     let wishes = settings(Request::Forward);

@@ -74,7 +74,7 @@ impl PhotonPilot {
     }
 
     /// Photons of an automatic pass.
-    fn photons(self) -> u64 {
+    pub(crate) fn photons(self) -> u64 {
         let least = LEAST_PHOTONS * self.pass_segments / PASS_SEGMENTS;
         (self.pass_segments / self.segments_per_path).max(least).max(1.0) as u64
     }

@@ -121,7 +121,12 @@ fn stages<'s>(
     let early = signal.with_grace();
     let work = signal.work_left(|| time_of_piece(scene, plan, &early));
     let pilot = work.map_or(pilot, |work| pilot.with_passes_up_to(work / PASSES_IN_TIME));
-    let settings = settle(scene, plan, gathered, pilot, &early)?;
+    let mut settings = settle(scene, plan, gathered, pilot, &early)?;
+    if work.is_some() && plan.gather.records.is_none() && !merged.is_empty() {
+        // Merged gather paths go on as far as photons do.
+        let most = pilot.photons() / gathered.len() as u64;
+        settings.gather_paths = settings.gather_paths.min(most).max(1);
+    }
     let mut gather = Gather::new(scene, gathered, plan.seed, settings.depth);
     gather.merging = (!merged.is_empty()).then_some(plan.bounce_limit);
     Some(Some(Stages::new(gather, settings)))

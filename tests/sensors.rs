@@ -335,30 +335,3 @@ fn a_lamp_at_40_degrees_is_the_brightest_in_an_image() {
     assert!(found.total_error() < 2e4, "{found}");
     assert!((found.value - 1e5).abs() < 3.0 * found.total_error(), "{found}");
 }
-
-#[test]
-fn rounding_contradicts_no_estimator() {
-    // All light of a lossless duct arrives, to the last bits of a sum over photons and of one over gather paths.
-    let found = measures_by(
-        Request::Backward,
-        20_000,
-        r#"
-        [finishes.mirror]
-        specular = { reflectance = 1 }
-        [sheets.duct.tube]
-        profile = { rectangle = { width_mm = 10, height_mm = 10 } }
-        path = [{ bend_deg = 90, radius_mm = 10 }]
-        finish = "mirror"
-        [sources.led.face]
-        of = "duct.entry"
-        side = "back"
-        flux_lm = 1
-        [sensors.exit]
-        plane = {}
-        on = "duct.exit"
-        counts = "leaving"
-        "#,
-    );
-    let flux = &found.values["exit.flux"];
-    assert_eq!(flux.status, lumiduct::measure::Status::Ok, "{flux}");
-}

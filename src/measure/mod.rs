@@ -399,4 +399,23 @@ mod tests {
     fn nine_of(cells: &[f64]) -> impl Iterator<Item = f64> {
         [0, 2, 4, 10, 12, 14, 20, 22, 24].into_iter().map(|cell| cells[cell])
     }
+
+    #[test]
+    fn photons_contradict_gather_paths_beyond_noise_and_rounding() {
+        let scene = scene(&[("led", 1.0)], vec![("exit", rectangle(1.0, 1, 1))]);
+        let every_batch = |flux: f64| {
+            readings(&scene, 128, |_, layout, batch| {
+                add(batch, layout.sensor_flux(SensorId::new(0), SourceId::new(0)), flux);
+            })
+        };
+        let status = |photons: f64, gather_paths: f64| {
+            let backward = Some(every_batch(gather_paths).photons);
+            let estimators = vec![Estimator::Backward];
+            let findings = Findings { backward, estimators, ..every_batch(photons) };
+            measure(&scene, &findings).values["exit.flux"].status
+        };
+        // Seen in a lossless duct, whose sums over both kinds of paths have no noise.
+        assert_eq!(status(1.000_000_000_000_000_7, 0.999_999_999_999_971_8), Status::Ok);
+        assert_eq!(status(1.001, 1.0), Status::Contradicted);
+    }
 }

@@ -29,6 +29,8 @@ const FIELD: f64 = 0.1;
 pub struct IntensityTable {
     /// Name of the sensor.
     pub sensor: String,
+    /// Weathers whose light it adds up: more than one never shine together.
+    pub weathers: usize,
     /// Unit of intensity, such as `cd`.
     pub unit: String,
     /// Rings (γ, from the pole) by sectors (C), in `unit`.
@@ -169,6 +171,7 @@ pub(crate) fn table(
     let curve = sphere.curve();
     IntensityTable {
         sensor: evidence.scene.sensors[id.index()].name.clone(),
+        weathers: evidence.scene.light.weathers.len(),
         unit: evidence.scene.unit.intensity().to_owned(),
         values: cells(|cell| cell.value),
         std_errors: cells(|cell| cell.std_error),

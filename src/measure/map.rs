@@ -327,6 +327,34 @@ mod tests {
     }
 
     #[test]
+    fn what_extrapolation_makes_negative_has_an_error_that_reaches_zero_and_is_no_extreme() {
+        let dim = |p: DVec2| if p.x < -0.3 && p.y < -0.3 { -2e-6 } else { 3e-6 };
+        let planes = [rectangle(1.0, 5, 5), luminance(1.0, 5, 5, &[1.0])];
+        for (kind, quantity) in planes.into_iter().zip(["illuminance", "luminance"]) {
+            let scene = scene(&[("led", 1.0)], vec![("exit", kind)]);
+            let measures = measure(&scene, &exactly(&scene, dim));
+            let map = &measures.maps[0];
+            assert_eq!(map.quantity, quantity);
+            assert!(
+                (map.values[[0, 0]] + 2.0).abs() < 1e-9 && map.std_errors[[0, 0]] >= 2.0 - 1e-9
+            );
+            assert!((map.values[[2, 2]] - 3.0).abs() < 1e-9 && map.std_errors[[2, 2]] == 0.0);
+            let view = if quantity == "luminance" { ".0" } else { "" };
+            let least = &measures.values[&format!("exit.{quantity}_min{view}")];
+            assert!((0.0..=3.0).contains(&least.value), "{quantity}: {least}");
+            assert!(least.std_error >= 0.0 && least.value - least.std_error < 1e-9, "{least}");
+            for name in ["uniformity_min_avg", "uniformity_min_max"] {
+                let own = &measures.values[&format!("exit.{name}{view}")];
+                assert!((0.0..=1.0).contains(&own.value), "{quantity} {name}: {own}");
+            }
+            if quantity == "illuminance" {
+                let cell = &measures.values["exit.cell.0.0"];
+                assert!((cell.value + 2.0).abs() < 1e-9 && cell.std_error >= 2.0 - 1e-9, "{cell}");
+            }
+        }
+    }
+
+    #[test]
     fn rings_have_their_mean_illuminance() {
         let scene = scene(&[("led", 1.0)], vec![("exit", rings(1.0, 4, 6))]);
         // The middle of a polar cell is given as radius and angle.

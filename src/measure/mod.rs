@@ -26,7 +26,7 @@ mod readout;
 mod record;
 mod replicates;
 #[cfg(test)]
-mod samples;
+pub(crate) mod samples;
 mod sensor;
 mod smoothing;
 #[cfg(test)]

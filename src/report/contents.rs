@@ -7,7 +7,7 @@ use crate::measure::{Measure, Outcome, SensorMap, SensorPaths, Status};
 use crate::number::format_value;
 use crate::report::by_light::{self, Matrix, matrix, remark_on_totals, sum_over_weathers};
 use crate::report::csv::{map_name, map_words};
-use crate::report::figures::{BOUNCES_SHOWN, bounce_plot, intensity_plot};
+use crate::report::figures::{BOUNCES_SHOWN, bounce_plot, intensity_plot, where_and_when};
 use crate::report::html::data;
 use crate::report::html::frame::{Block, Part, Plots, Standing, table};
 use crate::report::key_figures::{Listed, is_one_cell, is_shown, key_figures, listed};
@@ -120,11 +120,13 @@ fn sensor(report: &Report, name: &str, plots: &mut Plots) -> Part {
     }
     for intensity in measures.intensities.iter().filter(|table| table.sensor == name) {
         let polar = data::polar(&intensity_plot(intensity));
-        let radius = intensity.radius_mm.map(|radius| format!(" at {} mm", format_value(radius)));
-        let label = format!("intensity{}", radius.unwrap_or(", far field".into()));
+        let label = format!("intensity, {}", where_and_when(intensity));
         blocks.push(plots.add(label, polar, Some(format!("{name}.intensity.png"))));
         let all = data::directions(intensity);
-        blocks.extend(all.map(|all| plots.add("intensity by direction", all, None)));
+        let sum = sum_over_weathers(intensity.weathers);
+        let label = sum.map_or(String::new(), |words| format!(", {words}"));
+        let label = format!("intensity by direction{label}");
+        blocks.extend(all.map(|all| plots.add(label, all, None)));
     }
     if let Some(found) = by_sun::by_sun(report, name) {
         let picture = Some(format!("{name}.transmission.png"));

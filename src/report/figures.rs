@@ -5,6 +5,7 @@ use crate::measure::{
     Axes, Balance, IntensityTable, PlaneCurve, SensorMap, SensorPaths, not_below_zero,
 };
 use crate::number::{format_percent, format_value, format_with_error};
+use crate::report::by_light::sum_over_weathers;
 use crate::report::csv::{map_name, map_words};
 use crate::report::key_figures::is_one_cell;
 use crate::report::png::{
@@ -69,7 +70,7 @@ pub(crate) fn sensor_map(map: &SensorMap) -> HeatMap {
 pub(crate) fn directions_map(table: &IntensityTable) -> HeatMap {
     HeatMap {
         title: format!("{}: intensity", table.sensor),
-        subtitle: String::new(),
+        subtitle: sum_over_weathers(table.weathers).unwrap_or_default(),
         x_label: "C in deg".into(),
         y_label: "γ in deg".into(),
         x_range: ends(&table.c_deg),
@@ -154,16 +155,22 @@ pub(crate) fn intensity_plot(table: &IntensityTable) -> PolarPlot {
             table.ring_std_errors.iter().rev().chain(&table.ring_std_errors).copied().collect();
         vec![Curve { name: "mean over C".into(), points, std_errors: errors }]
     };
-    let distance = table
-        .radius_mm
-        .map_or("far field".to_owned(), |radius| format!("at {} mm", format_value(radius)));
     PolarPlot {
         title: format!("{}: intensity", table.sensor),
-        subtitle: distance,
+        subtitle: where_and_when(table),
         unit: table.unit.clone(),
         pole: Pole::Up,
         curves,
     }
+}
+
+/// At which distance an intensity is, and of how many weathers: `far field`, `at 50 mm, sum over 2 weathers`.
+pub(crate) fn where_and_when(table: &IntensityTable) -> String {
+    let distance = table
+        .radius_mm
+        .map_or("far field".to_owned(), |radius| format!("at {} mm", format_value(radius)));
+    let weathers = sum_over_weathers(table.weathers);
+    weathers.map_or(distance.clone(), |words| format!("{distance}, {words}"))
 }
 
 /// Share of the flux that the histogram of bounces shows; a few paths go on for thousands.
@@ -250,4 +257,59 @@ fn balance_picture(balance: &Balance, source_flux: f64, unit: &str) -> Result<Ve
         whole: Some(source_flux),
         bars,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measure::{Measures, measure, samples};
+    use crate::report::html::data;
+    use crate::scene::{LightGroups, SensorKind};
+
+    /// What a plane and a goniometer have seen that extrapolation has made negative in the first cell and the first ring.
+    fn dim(weathers: &[&str]) -> Measures {
+        let kinds: [(&str, SensorKind); 2] =
+            [("exit", samples::rectangle(1.0, 2, 2)), ("far", samples::goniometer(4, 6))];
+        let mut scene = samples::scene(&[("led", 1.0)], kinds.to_vec());
+        let weathers = weathers.iter().map(|name| (*name).to_owned()).collect();
+        scene.light = LightGroups { groups: Vec::new(), weathers };
+        let findings = samples::readings(&scene, 2, |_, _, batch| {
+            for (sensor, (cells, dim)) in [(4, 1), (24, 4)].into_iter().enumerate() {
+                for cell in 0..cells {
+                    let flux = if cell < dim { -2e-6 } else { 3e-6 };
+                    batch.sensors[sensor].cells.add(cell, flux);
+                }
+            }
+        });
+        measure(&scene, &findings)
+    }
+
+    #[test]
+    fn pictures_show_no_light_below_zero() {
+        let measures = dim(&[]);
+        let (map, intensity) = (&measures.maps[0], &measures.intensities[0]);
+        assert!(map.values[[0, 0]] < -1.0 && map.std_errors[[0, 0]] >= -map.values[[0, 0]]);
+        assert!(intensity.values[[0, 0]] < 0.0);
+        assert_eq!(
+            (sensor_map(map).values[[0, 0]], directions_map(intensity).values[[0, 0]]),
+            (0.0, 0.0)
+        );
+        assert_eq!(sensor_map(map).values[[1, 1]], map.values[[1, 1]]);
+        let lowest = |plot: PolarPlot| {
+            let points = plot.curves.into_iter().flat_map(|curve| curve.points);
+            points.map(|(_, value)| value).fold(f64::INFINITY, f64::min)
+        };
+        assert_eq!(lowest(intensity_plot(intensity)), 0.0);
+        assert_eq!(data::map(map)["values"][0], 0.0);
+    }
+
+    #[test]
+    fn an_intensity_of_several_weathers_says_that_it_adds_them_up() {
+        let [one, two] = [&["clear"][..], &["clear", "overcast"]].map(dim);
+        assert_eq!(where_and_when(&one.intensities[0]), "far field");
+        let words = "far field, sum over 2 weathers";
+        assert_eq!(intensity_plot(&two.intensities[0]).subtitle, words);
+        assert_eq!(directions_map(&two.intensities[0]).subtitle, "sum over 2 weathers");
+        assert_eq!(directions_map(&one.intensities[0]).subtitle, "");
+    }
 }

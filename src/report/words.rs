@@ -20,13 +20,15 @@ pub(crate) const CLASSES_HEAD: &str =
     "How photons came (R reflected, T transmitted, steps in a row taken once):";
 /// What stands before the rows of [`choice_row`].
 pub(crate) const CHOICES_HEAD: &str = "A pilot has tried the estimators on each sensor. The table has the time that one \
-    thread would need until the sensor's flux or map is known to 1 %, told from counted work \
+    thread would need until the sensor's flux or map is known to 1 %, estimated from counted work \
     (docs/method.md). Gathering is not chosen where its windows differ by more than noise, or where an \
-    unbiased estimator contradicts it, and no estimator that found less light of a source than another, beyond their errors.";
+    unbiased estimator contradicts it. No estimator is chosen that found significantly less light of a source than another did.";
 /// What stands after the results.
-pub(crate) const ERRORS: &str = "± is the standard error of the simulation: the value of endlessly many paths lies within \
-    one of them in 68 of 100 cases, and within two in 95. A bias is an error beside it, of which only a bound is known. \
-    What is limited by noise, or has too few counts, asks for more paths. Tolerances of parts and materials are not in these errors.";
+pub(crate) const ERRORS: &str = "± is one standard error of the simulation. For fluxes, means and their ratios, the value \
+    that infinitely many paths would give lies within one standard error in 68 of 100 runs and within two in 95. Extremes, \
+    uniformities and angles are not normally distributed and keep a small bias: a bias is an error beside the standard error, \
+    of which only a bound is known, and uniformities have a 95 % interval in brackets. Values that are limited by noise or \
+    have too few counts need more paths. Tolerances of parts and materials are not in these errors.";
 /// What stands after the lines of the balance.
 pub(crate) const NO_LINES: &str =
     "Virtual sensors let light pass: they are no lines of the balance.";
@@ -314,12 +316,13 @@ pub(crate) fn run_lines(report: &Report) -> Vec<String> {
         ),
         format!("asked for {}; ended because {}", run.asked, run.stopped),
         format!("bounce limit {}", run.bounce_limit),
-        "light is taken as unpolarised at every interface: what passes two polished ends of a rod is 0.7 % too little, and \
-         what passes a plate of index 1.49 at 75° 3.6 % (docs/theory.md, eq. 2)"
+        "light is taken as unpolarised at every interface, which makes transmission slightly too low: by 0.7 % for a straight \
+         rod with two polished ends under a Lambertian source, by 3.6 % for a plate of index 1.49 at 75° (examples, not \
+         this scene; docs/theory.md, eq. 2)"
             .to_owned(),
     ];
     if !run.gather.is_empty() {
-        lines.push(format!("wishes for gathering: {}", run.gather));
+        lines.push(format!("settings of gathering: {}", run.gather));
     }
     if !run.gathering.is_empty() {
         lines.push(format!("gathering: {}", run.gathering));

@@ -78,6 +78,11 @@ impl Tally {
         (self.m2 / (self.count - 1) as f64 / self.count as f64).sqrt()
     }
 
+    /// Standard deviation of the samples; infinite with fewer than two.
+    pub fn std_deviation(&self) -> f64 {
+        self.std_error() * (self.count as f64).sqrt()
+    }
+
     /// How many standard errors the mean lies from `expected`; 0 when they are equal.
     pub fn sigmas_from(&self, expected: f64) -> f64 {
         sigmas(self.mean, self.std_error(), expected)

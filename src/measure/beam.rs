@@ -26,15 +26,17 @@ const COUNTS_AT_TOP: f64 = 20.0;
 /// Rings that this takes at most to each side, as part of those that hold the middle half of the light.
 const REACH_AT_EDGE: f64 = 0.25;
 const REACH_AT_TOP: f64 = 0.5;
-/// A bias that goes with the square of the window: how much more of it there is with twice the window.
-const FOURFOLD: f64 = 3.0;
+/// Richardson's 2² - 1: twice the window adds three times a bias that goes with its square.
+const RICHARDSON: f64 = 3.0;
+/// Part of the top that averaging for the edges has to keep, 1; else edges are read off the curve averaged for the top.
+const TOP_KEPT: f64 = 0.6;
 
 /// A full angle, rad.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct FullAngle {
     pub(crate) value: f64,
     pub(crate) std_error: f64,
-    /// How far off it may be by noise and by rings of finite width, rad.
+    /// How far off it may be by rings and averages of finite width, rad.
     pub(crate) bias: f64,
     pub(crate) status: Status,
 }
@@ -60,7 +62,7 @@ pub(crate) fn full_angle(gammas: &[f64], halves: [&[Noisy]; 2], share: f64) -> O
     if plane.parts.iter().any(|part| !part.read.std_error.is_finite()) {
         return Some(FullAngle { value, std_error: f64::INFINITY, bias: rings.abs(), status });
     }
-    let averaged = (angle(read, &averaging.wider()) - value) / FOURFOLD;
+    let averaged = (angle(read, &averaging.wider()) - value) / RICHARDSON;
     let means = averaging.edge.smooth(&plane.sample, read);
     let mut noise = Noise::new();
     let drawn = Tally::of(
@@ -69,8 +71,7 @@ pub(crate) fn full_angle(gammas: &[f64], halves: [&[Noisy]; 2], share: f64) -> O
     let deviation = drawn.mean() - angle(&means, &averaging);
     Some(FullAngle {
         value: (value - BIAS_TAKEN * deviation).clamp(0.0, TAU),
-        // The spread of the replicas is the error, not that of their mean.
-        std_error: drawn.std_error() * (REPLICAS as f64).sqrt(),
+        std_error: drawn.std_deviation(),
         bias: rings.hypot(averaged),
         status,
     })
@@ -135,10 +136,14 @@ impl Plane {
         let over = |counts: f64, reach: f64| {
             Smoothing::of(&self.sample, line, counts, (reach * half) as usize)
         };
-        Averaging {
-            top: over(COUNTS_AT_TOP, REACH_AT_TOP),
-            edge: over(COUNTS_AT_EDGE, REACH_AT_EDGE),
-        }
+        let top = over(COUNTS_AT_TOP, REACH_AT_TOP);
+        let edge = over(COUNTS_AT_EDGE, REACH_AT_EDGE);
+        let largest = |by: &Smoothing| {
+            let line = by.smooth(&self.sample, line);
+            line[highest(&line)]
+        };
+        let is_flattened = largest(&edge) < TOP_KEPT * largest(&top);
+        Averaging { edge: if is_flattened { top.clone() } else { edge }, top }
     }
 
     /// Rings to each side of the middle that hold half of the light of a line.
@@ -287,6 +292,27 @@ mod tests {
         assert_eq!(degrees(&gammas, &even, &even, 0.5), 360.0);
         let dark = curve(&gammas, 0.0, |_| 0.0);
         assert_eq!(full_angle(&gammas, [&dark, &dark], 0.5), None);
+    }
+
+    #[test]
+    fn a_narrow_peak_of_few_counts_has_its_own_width() {
+        // 60 counts in the first ring on 10,000 of a Lambertian source: half of the peak is within the second ring.
+        let gammas = gammas(180);
+        for stream in 0..5 {
+            let mut noise = Noise::of_stream(stream);
+            let edge = |ring: usize| (PI * ring as f64 / 180.0).cos();
+            let curve: Vec<Noisy> = (0..180)
+                .map(|ring| {
+                    let [inner, outer] = [edge(ring), edge(ring + 1)];
+                    let lambertian = 1e4 * (inner.max(0.0).powi(2) - outer.max(0.0).powi(2));
+                    let count = 1.0 / (inner - outer);
+                    let found = noise.poisson(lambertian + if ring == 0 { 60.0 } else { 0.0 });
+                    Noisy { value: found * count, std_error: found.sqrt() * count, count }
+                })
+                .collect();
+            let found = degrees(&gammas, &curve, &curve, 0.5);
+            assert!((1.0..4.0).contains(&found), "stream {stream}: {found}");
+        }
     }
 
     #[test]

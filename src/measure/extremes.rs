@@ -2,8 +2,8 @@
 //!
 //! The smallest of noisy values is too small: of 1024 cells of equal illuminance known to 1 %, the darkest reads 3.2 %
 //! below. So the extremes are those of the values without noise ([`crate::measure::multiscale`]). What that does to a
-//! statistic is estimated by a parametric bootstrap about these values (Efron & Tibshirani, An Introduction to the Bootstrap (1993), chapters 6
-//! and 10): counts are drawn anew, and the statistic is taken of each drawing in the same way. The scatter of drawings is
+//! statistic is estimated by a parametric bootstrap about these values (Efron & Tibshirani, An Introduction
+//! to the Bootstrap (1993), chapters 6 and 10): counts are drawn anew, and the statistic is taken of each drawing in the same way. The scatter of drawings is
 //! the standard error; half of their mean deviation is subtracted, the other half is reported as bias. docs/trials.md
 //! has the figures behind this choice.
 //!
@@ -176,20 +176,15 @@ fn unknown(raw: f64) -> Extreme {
     Extreme { raw, value: raw, std_error: f64::INFINITY, bias: 0.0, interval }
 }
 
-/// The scatter of drawings, not of their mean.
-fn deviation_of(drawn: &Tally) -> f64 {
-    drawn.std_error() * (drawn.count() as f64).sqrt()
-}
-
 /// The coefficient of variation: the variance of the noise is taken out of it already. Its interval is that of the
 /// variance, which has no bound at zero.
 fn variation([raw, found]: [&Evenness<f64>; 2], drawn: &Evenness<Tally>) -> Extreme {
-    let reach = TWO_SIDED_95 * SCATTER_OF_CV * deviation_of(&drawn.variance);
+    let reach = TWO_SIDED_95 * SCATTER_OF_CV * drawn.variance.std_deviation();
     let root = |variance: f64| variance.max(0.0).sqrt();
     Extreme {
         raw: raw.cv,
         value: found.cv,
-        std_error: SCATTER_OF_CV * deviation_of(&drawn.cv),
+        std_error: SCATTER_OF_CV * drawn.cv.std_deviation(),
         bias: 0.0,
         interval: [root(found.variance - reach), root(found.variance + reach).max(found.cv)],
     }
@@ -207,7 +202,7 @@ enum Side {
 /// drawings give.
 fn corrected(side: Side, cells: usize, [raw, found, centre]: [f64; 3], drawn: &Tally) -> Extreme {
     let deviation = drawn.mean() - centre;
-    let std_error = (1.0 + SCATTER * (cells as f64).ln()) * deviation_of(drawn);
+    let std_error = (1.0 + SCATTER * (cells as f64).ln()) * drawn.std_deviation();
     let [below, above] = match side {
         Side::Smallest => [OUTWARD, INWARD],
         Side::Largest => [INWARD, OUTWARD],

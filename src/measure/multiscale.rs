@@ -3,8 +3,8 @@
 //! Neighbours in the list are neighbours on the sensor. The list is halved again and again, and each half differs from
 //! the other by a contrast whose noise is known. Of N contrasts d of one scale with variances s², the excess of
 //! mean d²/s² over 1 tells how much of them is signal, q. All are shrunk by (q/(1+q))^0.4, so that what is left has
-//! a little more than the spread of the signal, which the power ½ would leave (constrained empirical Bayes: Louis, J. Am. Stat. Assoc. 79 (1984) 393; by scales as in
-//! Abramovich, Sapatinas & Silverman, J. R. Stat. Soc. B 60 (1998) 725). A contrast far out of the noise of its scale
+//! a little more than the spread of the signal, which the power ½ would leave (constrained empirical Bayes: Louis,
+//! J. Am. Stat. Assoc. 79 (1984) 393; by scales as in Abramovich, Sapatinas & Silverman, J. R. Stat. Soc. B 60 (1998) 725). A contrast far out of the noise of its scale
 //! stays (threshold s (2 ln N)^½ and a bit: Donoho & Johnstone, Biometrika 81 (1994) 425). Means over halves are kept,
 //! and so is the mean of all. The cost is linear in the length of the list.
 
@@ -12,11 +12,11 @@
 const EXCESS: f64 = 1.2;
 /// Power of the share of signal that contrasts are shrunk by, 1; chosen with the trials of docs/trials.md, as all numbers here.
 const SHRINKAGE: f64 = 0.4;
-/// Largest d²/s² that tells of a scale as a whole: single contrasts beyond it speak for themselves.
+/// Cap on d²/s² in the mean of a scale: larger contrasts are judged one by one.
 const LARGEST: f64 = 8.0;
 /// Values below this part of the mean are rounding, 1.
 const ROUNDING: f64 = 1e-12;
-/// Square of the standard errors by which a contrast has to pass (2 ln N)^½ standard errors to be kept.
+/// What the square of a contrast has to exceed beyond 2 ln N, in squares of its standard error, to be kept.
 const MARGIN: f64 = 2.75;
 /// Squares of contrasts so many times the threshold are kept whole; between, a part of them
 /// (firm shrinkage: Gao & Bruce, Stat. Sinica 7 (1997) 855).

@@ -19,8 +19,14 @@ impl Smoothing {
                 }
             }
         };
-        let held = |ring, window| around(line.len(), ring, window).map(counts_of).sum::<f64>();
-        let window = |ring| (0..most).find(|&window| held(ring, window) >= counts).unwrap_or(most);
+        let window = |ring| {
+            let mut held = 0.0;
+            let is_enough = |&window: &usize| {
+                held += outermost(line.len(), ring, window).map(counts_of).sum::<f64>();
+                held >= counts
+            };
+            (0..most).find(is_enough).unwrap_or(most)
+        };
         Self((0..line.len()).map(window).collect())
     }
 
@@ -42,15 +48,24 @@ impl Smoothing {
     }
 }
 
-/// Rings at most `window` away. Beyond its ends, the poles, a line goes on as it came.
+/// Rings at most `window` away. Beyond its ends a line is mirrored: exact for a curve that is the same all round, and an
+/// approximation about γ = 180° for a line of two different halves, which would join there.
 fn around(rings: usize, ring: usize, window: usize) -> impl Iterator<Item = usize> {
-    let turned = move |at: usize| {
-        // Counted from `rings` before the first.
-        let at = at % (2 * rings);
-        if at < rings { rings - 1 - at } else { at - rings }
-    };
     let window = window.min(rings);
-    (rings + ring - window..=rings + ring + window).map(turned)
+    (rings + ring - window..=rings + ring + window).map(move |at| mirrored(rings, at))
+}
+
+/// The two rings `window` away; the ring itself for 0.
+fn outermost(rings: usize, ring: usize, window: usize) -> impl Iterator<Item = usize> {
+    let at = rings + ring;
+    let both = [at - window.min(rings), at + window];
+    both.into_iter().take(if window == 0 { 1 } else { 2 }).map(move |at| mirrored(rings, at))
+}
+
+/// The ring at a place of a line mirrored at its ends, counted from `rings` before the first.
+fn mirrored(rings: usize, at: usize) -> usize {
+    let at = at % (2 * rings);
+    if at < rings { rings - 1 - at } else { at - rings }
 }
 
 #[cfg(test)]
@@ -65,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_goes_on_beyond_the_poles_as_it_came() {
+    fn a_line_is_mirrored_at_its_ends() {
         assert_eq!(around(4, 0, 2).collect::<Vec<_>>(), [1, 0, 0, 1, 2]);
         assert_eq!(around(4, 3, 2).collect::<Vec<_>>(), [1, 2, 3, 3, 2]);
         assert_eq!(around(2, 0, 9).count(), 5);

@@ -43,7 +43,7 @@ impl Trials {
     fn summary(&self) -> Summary {
         let mean = |of: &dyn Fn(&Trial) -> f64| Tally::of(self.found.iter().map(of));
         let values = mean(&|one| one.value);
-        let scatter = values.std_error() * (self.found.len() as f64).sqrt();
+        let scatter = values.std_deviation();
         let rounding = 1e-9 * self.truth;
         let holds = |&Trial { interval: [low, high], .. }: &Trial| {
             f64::from(u8::from(low - rounding <= self.truth && self.truth <= high + rounding))
@@ -175,18 +175,24 @@ fn field_trials(name: &str, field: &[Cell], counts: f64, trials: usize) -> [Tria
     })
 }
 
-/// A cosine to a power, `rings` from pole to pole, all round or in a plane of 2 of 24 sectors.
-fn angle_trials(
-    power: f64,
-    rings: usize,
-    is_plane: bool,
-    counts: f64,
-    trials: usize,
-) -> [Trials; 2] {
+/// Which curve of a goniometer is read.
+#[derive(Clone, Copy, PartialEq)]
+enum Curve {
+    /// The mean over C.
+    Mean,
+    /// That in a plane, of two of 24 sectors.
+    Plane,
+}
+
+/// A cosine to a power, `rings` from pole to pole
+fn angle_trials(power: f64, rings: usize, curve: Curve, counts: f64, trials: usize) -> [Trials; 2] {
     let edge = |ring: usize| (PI * ring as f64 / rings as f64).cos();
     let gammas: Vec<f64> =
         (0..rings).map(|ring| (0.5 * (edge(ring) + edge(ring + 1))).acos()).collect();
-    let part = if is_plane { 2.0 / 24.0 } else { 1.0 };
+    let part = match curve {
+        Curve::Mean => 1.0,
+        Curve::Plane => 2.0 / 24.0,
+    };
     // Shares of the flux: the integral of cos^p sin over the ring.
     let shares: Vec<f64> = (0..rings)
         .map(|ring| {
@@ -206,7 +212,10 @@ fn angle_trials(
                 .collect()
         };
         let ahead = half();
-        let behind = if is_plane { half() } else { ahead.clone() };
+        let behind = match curve {
+            Curve::Mean => ahead.clone(),
+            Curve::Plane => half(),
+        };
         for (all, share) in found.iter_mut().zip([0.5, 0.1]) {
             let angle = full_angle(&gammas, [&ahead, &behind], share).expect("lit");
             let [value, error, bias] =
@@ -219,16 +228,21 @@ fn angle_trials(
     [(0.5f64, "beam"), (0.1, "field")].map(|(share, what)| Trials {
         name: format!(
             "cos^{power}{}, {rings} rings {counts} {what}",
-            if is_plane { " plane" } else { "" }
+            if curve == Curve::Plane { " plane" } else { "" }
         ),
         truth: 2.0 * share.powf(1.0 / power).acos().to_degrees(),
         found: found.next().expect("two angles"),
     })
 }
 
-/// Beams by their power and rings, and whether in a plane.
-const BEAMS: [(f64, usize, bool); 5] =
-    [(1.0, 90, false), (5.0, 90, false), (20.0, 180, false), (60.0, 180, false), (5.0, 90, true)];
+/// Beams by their power and rings.
+const BEAMS: [(f64, usize, Curve); 5] = [
+    (1.0, 90, Curve::Mean),
+    (5.0, 90, Curve::Mean),
+    (20.0, 180, Curve::Mean),
+    (60.0, 180, Curve::Mean),
+    (5.0, 90, Curve::Plane),
+];
 
 fn all_trials(trials: usize) -> Vec<Trials> {
     let mut all = Vec::new();
@@ -237,9 +251,9 @@ fn all_trials(trials: usize) -> Vec<Trials> {
             all.extend(field_trials(name, &field, counts, trials));
         }
     }
-    for (power, rings, is_plane) in BEAMS {
+    for (power, rings, curve) in BEAMS {
         for counts in [3000.0, 30_000.0] {
-            all.extend(angle_trials(power, rings, is_plane, counts, trials));
+            all.extend(angle_trials(power, rings, curve, counts, trials));
         }
     }
     all

@@ -21,9 +21,9 @@ pub enum Start {
     Resume,
 }
 
-/// Where a run stands.
+/// A run as it was saved.
 #[derive(Serialize, Deserialize)]
-pub(super) struct Stand {
+pub(super) struct Checkpoint {
     pub(super) state: State,
     /// Waves after which the stop rules are looked at next.
     pub(super) round_end: u64,
@@ -40,13 +40,13 @@ pub(super) struct Keeper {
 }
 
 impl Keeper {
-    /// Looks for a checkpoint in a folder, from which a run of this recipe is to go on. One that is not to be gone on
-    /// from is in the way, unless it may be replaced.
+    /// Looks for a checkpoint of this recipe to resume. One that is not to be resumed is in the way, unless it may be
+    /// replaced.
     pub(super) fn open(
         dir: &Path,
         recipe: Recipe,
         output: &Output,
-    ) -> Result<(Self, Option<Stand>)> {
+    ) -> Result<(Self, Option<Checkpoint>)> {
         let (path, every) = (dir.join(NAME), output.checkpoint_every);
         let keeper = Self { path, recipe, every, last: Duration::ZERO };
         if output.start == Start::Resume {
@@ -57,8 +57,8 @@ impl Keeper {
         }
         match (output.start, output.existing) {
             (Start::Resume, _) => {
-                let stand = keeper.read()?;
-                Ok((Self { last: stand.elapsed, ..keeper }, Some(stand)))
+                let checkpoint = keeper.read()?;
+                Ok((Self { last: checkpoint.elapsed, ..keeper }, Some(checkpoint)))
             }
             (Start::Anew, Existing::Replace) => Ok((keeper, None)),
             (Start::Anew, Existing::Keep) => Err(Error::Usage(format!(
@@ -68,8 +68,9 @@ impl Keeper {
         }
     }
 
-    fn read(&self) -> Result<Stand> {
-        let (recipe, stand): (Recipe, Stand) = snapshot::read(&self.path, Kind::Checkpoint)?;
+    fn read(&self) -> Result<Checkpoint> {
+        let (recipe, checkpoint): (Recipe, Checkpoint) =
+            snapshot::read(&self.path, Kind::Checkpoint)?;
         if recipe != self.recipe {
             return Err(Error::Usage(format!(
                 "{} is no checkpoint of this run but of {}; use --overwrite to begin anew, or -o for another folder",
@@ -77,7 +78,7 @@ impl Keeper {
                 self.recipe.difference_of(&recipe)
             )));
         }
-        Ok(stand)
+        Ok(checkpoint)
     }
 
     /// Keeps a checkpoint if one is due.
@@ -88,15 +89,17 @@ impl Keeper {
         elapsed: Duration,
     ) -> Result<()> {
         match self.every {
-            Some(every) if elapsed >= self.last + every => self.keep(run, round_end, elapsed),
+            Some(every) if elapsed.saturating_sub(self.last) >= every => {
+                self.keep(run, round_end, elapsed)
+            }
             Some(_) | None => Ok(()),
         }
     }
 
     fn keep(&mut self, run: &Run<'_>, round_end: u64, elapsed: Duration) -> Result<()> {
         self.last = elapsed;
-        let stand = Stand { state: run.state(), round_end, elapsed };
-        snapshot::write(&self.path, Kind::Checkpoint, &(&self.recipe, &stand))
+        let checkpoint = Checkpoint { state: run.state(), round_end, elapsed };
+        snapshot::write(&self.path, Kind::Checkpoint, &(&self.recipe, &checkpoint))
     }
 
     /// Keeps a checkpoint of a run that the user has stopped, if any were wanted.

@@ -5,7 +5,7 @@ use crate::input::{Job, Settings};
 use crate::pipeline::snapshot::{self, Kind};
 use crate::pipeline::{Finished, Output, Stop, compose, output_dir, prepare, recipe};
 use crate::report::{self, Existing, Folder, FolderLock, Recipe, expect_file};
-use crate::transport::{Interrupt, Run, Shard, Slice, StopSignal, Unsliceable};
+use crate::transport::{Activity, Interrupt, Run, Shard, Slice, StopSignal, Unsliceable};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -69,6 +69,7 @@ pub fn run_slice(
         )));
     }
     expect_file(&path)?;
+    interrupt.begin(Activity::Tracing);
     let signal = StopSignal::new(interrupt, None);
     let nothing =
         |of| SliceWritten { title: job.title.clone(), batches: None, of, dir: dir.clone() };
@@ -83,6 +84,7 @@ pub fn run_slice(
     let title = job.title.clone();
     let scene = scene.to_string_lossy().into_owned();
     let part = Part { recipe: recipe(&job), scene, settings: settings.clone(), slice };
+    interrupt.begin(Activity::Writing);
     snapshot::write(&path, Kind::Slice, &part)?;
     Ok(SliceWritten { title, batches: Some(batches), of, dir })
 }
@@ -127,7 +129,7 @@ pub fn merge_slices(dirs: &[PathBuf], scene: Option<&Path>, output: &Output) -> 
     let folder = Folder::open(lock, output.existing, Some(&recipe(&job)))?;
     let mut run = Run::new(&job.scene, &job.run);
     let slices = parts.into_iter().map(|(_, part)| part.slice).collect();
-    run.go_on_from(run.state_of_slices(slices));
+    run.restore(run.state_of_slices(slices));
     let report = compose(&job, &run.findings(), Stop::Paths);
     let written = folder.write(&report::files(&report, &job.text)?)?;
     let dir = folder.path().to_path_buf();

@@ -1,8 +1,8 @@
-//! Runs that are laid down and taken up again.
+//! Runs that are saved and resumed.
 
 use super::*;
 use crate::input::GatherSettings;
-use crate::pipeline::checkpoint::Stand;
+use crate::pipeline::checkpoint::Checkpoint;
 
 /// The short rod of the tests, with a sensor that can be estimated by photons and gathered.
 pub(super) const SCENE: &str = concat!(
@@ -21,40 +21,41 @@ pub(super) fn job(folder: &Path, settings: &Settings) -> Job {
     prepare(&scene, settings).unwrap()
 }
 
-/// Traces a job from where it stands, with where it stood at every pause.
-fn pauses(job: &Job, stand: Option<Stand>) -> (Traced, Vec<Stand>) {
-    let mut stands = Vec::new();
+/// Traces a job from where it saved, with where it stood at every pause.
+fn pauses(job: &Job, checkpoint: Option<Checkpoint>) -> (Traced, Vec<Checkpoint>) {
+    let mut saved = Vec::new();
     let mut keep = |run: &Run<'_>, pause: Pause| {
         let (Pause::Between { round_end, elapsed } | Pause::Last { round_end, elapsed }) = pause;
-        stands.push(Stand { state: run.state(), round_end, elapsed });
+        saved.push(Checkpoint { state: run.state(), round_end, elapsed });
         Ok(())
     };
-    let traced = trace_kept(job, stand, &mut keep, &Interrupt::default(), &mut |_| ()).unwrap();
-    (traced, stands)
+    let traced =
+        trace_kept(job, checkpoint, &mut keep, &Interrupt::default(), &mut |_| ()).unwrap();
+    (traced, saved)
 }
 
-fn goes_on_from_every_pause(settings: &Settings, expected: Stop) {
+fn resumes_at_every_pause(settings: &Settings, expected: Stop) {
     let folder = tempfile::tempdir().unwrap();
     let job = job(folder.path(), settings);
-    let (whole, stands) = pauses(&job, None);
+    let (whole, saved) = pauses(&job, None);
     assert_eq!(whole.stop, expected);
-    assert!(stands.len() > 1);
-    for (index, stand) in stands.into_iter().enumerate() {
-        let (rest, _) = pauses(&job, Some(stand));
+    assert!(saved.len() > 1);
+    for (index, checkpoint) in saved.into_iter().enumerate() {
+        let (rest, _) = pauses(&job, Some(checkpoint));
         assert_eq!(rest.stop, whole.stop, "from pause {index}");
         assert!(rest.findings == whole.findings, "from pause {index}");
     }
 }
 
 #[test]
-fn a_run_goes_on_from_every_pause_to_the_same_end_the_last_pause_included() {
+fn a_run_resumes_at_every_pause_to_the_same_end_the_last_pause_included() {
     let forward = Settings {
         estimator: Some(Request::Forward),
         paths: Some(15_000),
         batch_paths: Some(40),
         ..Settings::default()
     };
-    goes_on_from_every_pause(&forward, Stop::Paths);
+    resumes_at_every_pause(&forward, Stop::Paths);
     let gather = Settings {
         estimator: Some(Request::Gather),
         gather: GatherSettings {
@@ -67,11 +68,11 @@ fn a_run_goes_on_from_every_pause_to_the_same_end_the_last_pause_included() {
         },
         ..forward
     };
-    goes_on_from_every_pause(&gather, Stop::Paths);
+    resumes_at_every_pause(&gather, Stop::Paths);
 }
 
 #[test]
-fn a_run_to_a_target_goes_on_from_every_pause_to_the_same_end() {
+fn a_run_to_a_target_resumes_at_every_pause_to_the_same_end() {
     let settings = Settings {
         estimator: Some(Request::Forward),
         target: Some(0.01),
@@ -79,5 +80,5 @@ fn a_run_to_a_target_goes_on_from_every_pause_to_the_same_end() {
         batch_paths: Some(50),
         ..Settings::default()
     };
-    goes_on_from_every_pause(&settings, Stop::Target);
+    resumes_at_every_pause(&settings, Stop::Target);
 }

@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::input::Job;
 use crate::measure::{self, Status};
-use crate::pipeline::checkpoint::Stand;
+use crate::pipeline::checkpoint::Checkpoint;
 use crate::pipeline::{Progress, Stop, TargetProgress, gathering};
 use crate::scene::plan::RunPlan;
 use crate::transport::{Activity, FIRST_BATCH_GRACE, Findings, Interrupt, Phase, Run, StopSignal};
@@ -62,17 +62,17 @@ impl Clock<'_> {
 /// Traces rounds from where a run stands until a stop rule holds; `keep` may keep a checkpoint at every pause.
 pub(super) fn trace_kept(
     job: &Job,
-    stand: Option<Stand>,
+    checkpoint: Option<Checkpoint>,
     keep: &mut dyn FnMut(&Run<'_>, Pause) -> Result<()>,
     interrupt: &Interrupt,
     watch: &mut dyn FnMut(&Progress),
 ) -> Result<Traced> {
     interrupt.begin(Activity::Tracing);
-    let before = stand.as_ref().map_or(Duration::ZERO, |stand| stand.elapsed);
+    let before = checkpoint.as_ref().map_or(Duration::ZERO, |checkpoint| checkpoint.elapsed);
     let clock = Clock { plan: &job.run, start: Instant::now(), before, interrupt };
-    let (mut run, mut round_end) = started(job, stand, &clock, watch)?;
+    let (mut run, mut round_end) = started(job, checkpoint, &clock, watch)?;
     let elapsed = || clock.elapsed();
-    let (mut target, mut gathering_told) = (None, false);
+    let (mut target, mut is_gathering_reported) = (None, false);
     let stop = loop {
         let mut early = early_stop(&run, &clock);
         while run.waves() < round_end && early.is_none() {
@@ -83,9 +83,9 @@ pub(super) fn trace_kept(
             }
             keep(&run, Pause::Between { round_end, elapsed: elapsed() })?;
             let mut progress = Progress::of(&job.run, &run, elapsed(), target.clone());
-            if !gathering_told {
+            if !is_gathering_reported {
                 progress.gathering = gathering(&run.findings());
-                gathering_told = true;
+                is_gathering_reported = true;
             }
             watch(&progress);
         }
@@ -120,22 +120,22 @@ pub(super) fn trace_kept(
 /// A run that is prepared, from where it stands, and the waves after which its stop rules are looked at next.
 fn started<'j>(
     job: &'j Job,
-    stand: Option<Stand>,
+    checkpoint: Option<Checkpoint>,
     clock: &Clock<'_>,
     watch: &mut dyn FnMut(&Progress),
 ) -> Result<(Run<'j>, u64)> {
-    let resumed = stand.as_ref().map(|stand| stand.state.plan(&job.run));
+    let resumed = checkpoint.as_ref().map(|checkpoint| checkpoint.state.plan(&job.run));
     let plan = resumed.as_ref().unwrap_or(&job.run);
     let run = Run::start(&job.scene, plan, &clock.signal(), &mut |phase| {
         watch(&Progress::before(&job.run, phase, clock.elapsed()));
     });
     let mut run = run.ok_or_else(|| nothing_to_report("the pilot", clock.interrupt))?;
-    let Some(stand) = stand else {
+    let Some(checkpoint) = checkpoint else {
         let round_end = run.round_end();
         return Ok((run, round_end));
     };
-    run.go_on_from(stand.state);
-    Ok((run, stand.round_end))
+    run.restore(checkpoint.state);
+    Ok((run, checkpoint.round_end))
 }
 
 /// What a run does first.

@@ -226,13 +226,16 @@ impl<'s> Run<'s> {
     pub fn planned_paths(&self) -> Option<u64> {
         let batch = self.batch_paths();
         if let Some(batches) = self.batches_asked {
-            return Some(self.paths + batches.saturating_sub(self.batches) * batch);
+            return Some(
+                self.paths
+                    .saturating_add(batches.saturating_sub(self.batches).saturating_mul(batch)),
+            );
         }
         let in_wave = self.batches % self.wave_batches;
         let before = self.paths - in_wave * batch;
         let wave = self.wave_batches * batch;
-        let left = |asked: u64| asked.saturating_sub(before).div_ceil(wave) * wave;
-        self.paths_asked.map(|asked| before + left(asked))
+        let left = |asked: u64| asked.saturating_sub(before).div_ceil(wave).saturating_mul(wave);
+        self.paths_asked.map(|asked| before.saturating_add(left(asked)))
     }
 
     /// Whether the stage of the gather method in progress has the passes it was planned for.

@@ -147,8 +147,8 @@ impl<'s> Stages<'s> {
         }
     }
 
-    /// Goes on from a state of the same stages.
-    pub(crate) fn go_on_from(&mut self, state: StagesState) {
+    /// Restores a state of the same stages.
+    pub(crate) fn restore(&mut self, state: StagesState) {
         let StagesState { number, first_batch, sums, finished } = state;
         (self.number, self.first_batch) = (number, first_batch);
         (self.sums, self.finished) = (sums, finished);

@@ -152,7 +152,7 @@ impl StopSignal {
     /// The same with [`FIRST_BATCH_GRACE`] more time.
     pub(crate) fn with_grace(&self) -> Self {
         self.with_end(|end| match end {
-            End::At(end) => End::At(end + FIRST_BATCH_GRACE),
+            End::At(end) => End::At(end.checked_add(FIRST_BATCH_GRACE).unwrap_or(end)),
             #[cfg(test)]
             End::AtLook { look, grace } => End::AtLook { look: look + grace, grace },
         })

@@ -13,7 +13,7 @@ use indexmap::IndexMap;
 /// Suns nearer than this are one sun, by the distance of their unit vectors: below a second of arc.
 const SAME_SUN: f64 = 1e-6;
 
-/// Most letters of a name that is made of the names of several sources.
+/// Most letters of the names of several sources joined; beyond, a name is that of the first and how many more there are.
 const MOST_JOINED: usize = 64;
 
 /// A daylight source by what it shines with.

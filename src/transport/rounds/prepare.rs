@@ -124,7 +124,7 @@ fn stages<'s>(
     let mut settings = settle(scene, plan, gathered, pilot, &early)?;
     if work.is_some() && plan.gather.records.is_none() && !merged.is_empty() {
         // Merged gather paths go on as far as photons do.
-        let most = pilot.photons() / gathered.len() as u64;
+        let most = settings.photons / gathered.len() as u64;
         settings.gather_paths = settings.gather_paths.min(most).max(1);
     }
     let mut gather = Gather::new(scene, gathered, plan.seed, settings.depth);

@@ -1,4 +1,4 @@
-//! What of a run changes while it goes on, so that it can be laid down and taken up again.
+//! What of a run changes as it traces, so that it can be saved and restored.
 
 use crate::scene::plan::{Estimator, RunPlan};
 use crate::transport::rounds::Run;
@@ -57,8 +57,8 @@ impl Run<'_> {
         }
     }
 
-    /// Goes on from the state of a run of the same scene and plan, to the same bits.
-    pub fn go_on_from(&mut self, state: State) {
+    /// Restores the state of a run of the same scene and plan; it continues to the same bits.
+    pub fn restore(&mut self, state: State) {
         let State { batches, paths, photons, backward, stages, choices, .. } = state;
         (self.batches, self.paths, self.photons) = (batches, paths, photons);
         self.choices = choices;
@@ -66,7 +66,7 @@ impl Run<'_> {
             *own = sums;
         }
         if let (Some(own), Some(state)) = (&mut self.stages, stages) {
-            own.go_on_from(state);
+            own.restore(state);
         }
     }
 

@@ -35,10 +35,10 @@ const INWARD: f64 = 1.7;
 const INWARD_OF_BOTH: f64 = 1.8;
 /// Counts expected that are next to nothing, 1.
 const NEXT_TO_NOTHING: f64 = 0.1;
-/// Standard deviation of the mean of counts of which none came, with Jeffreys' prior, ½^½ (Jeffreys, Theory of Probability
-/// (1961), section 3.1).
+/// Posterior standard deviation of the mean of a Poisson count that came out as 0, with Jeffreys' prior: ½^½ (Jeffreys, Theory
+/// of Probability (1961), section 3.1).
 const DEVIATION_OF_NONE: f64 = std::f64::consts::FRAC_1_SQRT_2;
-/// Upper 97.5 % limit of the mean of counts of which none came, -ln 0.025.
+/// Upper 97.5 % limit of the mean of a Poisson count that came out as 0, -ln 0.025.
 const NONE_COUNTED: f64 = 3.69;
 
 /// A statistic of some values.
@@ -251,17 +251,7 @@ impl Extreme {
 mod tests {
     use super::*;
     use crate::measure::counted::Noisy;
-
-    /// Values as if counted, so many counts in an average cell of weight 1.
-    fn counted(field: &[(f64, f64)], counts: f64, noise: &mut Noise) -> Vec<Part> {
-        let part = |&(mean, weight): &(f64, f64)| {
-            let count = 1.0 / (counts * weight);
-            let found = noise.poisson(mean / count);
-            let read = Noisy { value: found * count, std_error: found.sqrt() * count, count };
-            Part { read, weight }
-        };
-        field.iter().map(part).collect()
-    }
+    use crate::measure::trials::counted;
 
     #[test]
     fn the_smallest_is_not_the_unluckiest_and_a_dark_cell_that_stands_out_stays() {

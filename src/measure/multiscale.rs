@@ -2,11 +2,12 @@
 //!
 //! Neighbours in the list are neighbours on the sensor. The list is halved again and again, and each half differs from
 //! the other by a contrast whose noise is known. Of N contrasts d of one scale with variances s², the excess of
-//! mean d²/s² over 1 tells how much of them is signal, q. All are shrunk by (q/(1+q))^0.4, so that what is left has
+//! mean d²/s² over 1 estimates their ratio of signal to noise, q. All are shrunk by (q/(1+q))^0.4, so that what is left has
 //! a little more than the spread of the signal, which the power ½ would leave (constrained empirical Bayes: Louis,
-//! J. Am. Stat. Assoc. 79 (1984) 393; by scales as in Abramovich, Sapatinas & Silverman, J. R. Stat. Soc. B 60 (1998) 725). A contrast far out of the noise of its scale
-//! stays (threshold s (2 ln N)^½ and a bit: Donoho & Johnstone, Biometrika 81 (1994) 425). Means over halves are kept,
-//! and so is the mean of all. The cost is linear in the length of the list.
+//! J. Am. Stat. Assoc. 79 (1984) 393; by scales as in Abramovich, Sapatinas & Silverman, J. R. Stat. Soc. B 60 (1998)
+//! 725). A contrast far out of the noise of its scale is kept (threshold a little above s (2 ln N)^½: Donoho &
+//! Johnstone, Biometrika 81 (1994) 425). Means over halves are kept, and so is the mean of all. The cost is linear in
+//! the length of the list.
 
 /// Excess of mean d²/s² that counts as noise, in its standard errors (2/N)^½.
 const EXCESS: f64 = 1.2;

@@ -141,7 +141,7 @@ fn truth(field: &[Cell]) -> [f64; 3] {
 }
 
 /// Cells as if counted, so many counts in an average cell.
-fn counted(field: &[Cell], counts: f64, noise: &mut Noise) -> Vec<Part> {
+pub(crate) fn counted(field: &[Cell], counts: f64, noise: &mut Noise) -> Vec<Part> {
     let whole: f64 = field.iter().map(|(mean, weight)| mean * weight).sum();
     let one = whole / (counts * field.len() as f64);
     let part = |&(mean, weight): &Cell| {

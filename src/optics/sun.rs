@@ -1,4 +1,4 @@
-//! Where the sun stands, by date, time and place.
+//! The position of the sun, by date, time and place.
 //!
 //! Low-accuracy formulas of Meeus, Astronomical Algorithms, 2nd ed. (1998): chapter 25 for the sun (0.01 deg), 12 for
 //! sidereal time, 13 for the horizon, 16 for refraction at 1010 hPa and 10 °C. Universal Time stands for both UT1 and

@@ -29,7 +29,7 @@ pub struct Source {
     pub sun: Option<SunAngles>,
 }
 
-/// Where the sun stands in the sky.
+/// The position of the sun in the sky.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SunAngles {
     /// Elevation above the horizon, rad.

@@ -16,7 +16,7 @@ pub struct SunSpec {
     /// Illuminance by the sun of a plane across its light.
     #[schemars(range(min = 0.0))]
     pub illuminance_lx: f64,
-    /// Where the sun stands.
+    /// The position of the sun.
     #[serde(flatten)]
     pub place: SunPlaceSpec,
     /// Several elevations, each a source of its own: of `sun` and 7.5 deg that is `sun_7_5`.
@@ -53,7 +53,7 @@ pub struct SkySpec {
     /// Illuminance of a level plane in the open, by the sky alone.
     #[schemars(range(min = 0.0))]
     pub horizontal_illuminance_lx: Option<f64>,
-    /// Where the sun stands, for a sky that is brighter about it.
+    /// The position of the sun, for a sky that is brighter about it.
     #[serde(flatten)]
     pub place: SunPlaceSpec,
     /// The light group. Omitted: a sun and the skies about it are one where there is other daylight, or another source.
@@ -66,7 +66,7 @@ pub struct SkySpec {
     pub aim: String,
 }
 
-/// Where the sun stands.
+/// The position of the sun.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SunPlaceSpec {
     /// Elevation above the horizon.

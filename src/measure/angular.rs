@@ -6,8 +6,7 @@
 
 use crate::measure::counted::{Noisy, Part};
 use crate::measure::evidence::{Evidence, counted};
-use crate::measure::extremes::{Extreme, maximum};
-use crate::measure::{Measure, Status, beam};
+use crate::measure::{Measure, Status, beam, uniformity};
 use crate::scene::{Goniometer, SensorId};
 use indexmap::IndexMap;
 use ndarray::Array2;
@@ -216,20 +215,23 @@ pub(crate) fn measures(
     out
 }
 
+/// Rings and sectors in an order in which neighbours in the list are neighbours on the sphere: around the pole first, where
+/// cells are small and the light of most beams is.
+pub(crate) fn sphere_cells(rings: usize, sectors: usize) -> impl Iterator<Item = (usize, usize)> {
+    (0..rings * sectors).map(move |place| (place / sectors, place % sectors))
+}
+
 /// The largest intensity of any cell, corrected for noise.
 fn largest(evidence: &Evidence<'_>, sphere: &Sphere<'_>) -> Measure {
-    let sectors = sphere.goniometer.c_cells;
-    // Ring by ring within a sector: neighbours in the list are neighbours on the sphere.
-    let rings = sphere.goniometer.gamma_cells;
-    let cells: Vec<Part> = (0..sphere.flux.len())
-        .map(|place| Part {
-            read: sphere.intensity(place % rings, &[place / rings]),
-            weight: sphere.goniometer.solid_angle(place % rings * sectors),
+    let Goniometer { c_cells, gamma_cells, .. } = *sphere.goniometer;
+    let cells: Vec<Part> = sphere_cells(gamma_cells, c_cells)
+        .map(|(ring, sector)| Part {
+            read: sphere.intensity(ring, &[sector]),
+            weight: sphere.goniometer.solid_angle(ring * c_cells),
         })
         .collect();
-    let Extreme { value, std_error, bias, .. } = maximum(&cells);
-    let found = Noisy { value, std_error, count: 0.0 };
-    Measure { bias: Some(bias), ..single(evidence, found, evidence.scene.unit.intensity()) }
+    let found = uniformity::largest(&cells, evidence.readings.batch_count());
+    evidence.statistic(&found, evidence.scene.unit.intensity())
 }
 
 /// Beam and field angle on the mean curve over C, and in the planes C0-C180 and C90-C270.
@@ -274,10 +276,12 @@ fn single(evidence: &Evidence<'_>, found: Noisy, unit: &str) -> Measure {
 
 #[cfg(test)]
 mod tests {
-    use crate::measure::measure;
+    use crate::measure::noise::Noise;
     use crate::measure::samples::{goniometer, readings, scene};
+    use crate::measure::{Status, measure};
     use crate::scene::{Scene, SensorKind};
     use crate::transport::Findings;
+    use std::f64::consts::PI;
 
     /// Readings without noise of an intensity I(C, γ) [cd], exact over each cell for intensities ∝ cos^m γ.
     fn cosine_power(scene: &Scene, m: f64) -> Findings {
@@ -310,6 +314,30 @@ mod tests {
         }
         let tenth = 2.0 * 0.1f64.powf(0.2).acos().to_degrees();
         assert!((value("far.field_angle") - tenth).abs() < 3e-3);
+    }
+
+    #[test]
+    fn a_peak_of_few_counts_is_right_within_its_error_or_a_bound() {
+        let scene = scene(&[("led", 1.0)], vec![("far", goniometer(24, 90))]);
+        let exactly = cosine_power(&scene, 20.0);
+        let peak = measure(&scene, &exactly).values["far.intensity_max"].value;
+        let SensorKind::Goniometer(sphere) = &scene.sensors[0].kind else { panic!("no sphere") };
+        let edge = |ring: usize| (PI * ring as f64 / 90.0).cos().max(0.0).powi(21) / 24.0;
+        let share = |cell: usize| edge(cell / 24) - edge(cell / 24 + 1);
+        for (stream, counts, most) in [(1, 1e4, 1.6), (5, 1e4, 1.6), (3, 1e5, 1.4), (4, 1e6, 1.1)] {
+            let mut noise = Noise::of_stream(stream);
+            let counted = readings(&scene, 128, |_, _, batch| {
+                for cell in 0..sphere.cells() {
+                    let found = noise.poisson(share(cell) * counts / 128.0);
+                    batch.sensors[0].cells.add(cell, found * 128.0 / counts);
+                }
+            });
+            let found = &measure(&scene, &counted).values["far.intensity_max"];
+            assert!(found.value < most * peak, "{counts} counts: {found}, {peak} expected");
+            let is_off = (found.value - peak).abs() > 3.0 * found.total_error();
+            assert!(!is_off, "{counts} counts: {found}, {peak} expected");
+            assert_eq!(found.status == Status::Ok, counts > 1e4, "{counts} counts: {found}");
+        }
     }
 
     #[test]

@@ -43,10 +43,7 @@ fn summary_measures(
     map: &SensorMap,
     add: &mut impl FnMut(&str, Measure),
 ) {
-    let of = |statistic: &Statistic, unit: &str| Measure {
-        bias: statistic.bias,
-        ..evidence.measure(statistic.value, statistic.std_error, unit, statistic.status)
-    };
+    let of = |statistic: &Statistic, unit: &str| evidence.statistic(statistic, unit);
     let summary = &map.summary;
     let quantity = &map.quantity;
     match seeing {

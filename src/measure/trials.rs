@@ -2,9 +2,10 @@
 //! against their real scatter. The command `LUMIDUCT_TRIALS=1000 cargo test --lib trials -- --nocapture` prints the table
 //! of docs/trials.md.
 
+use crate::measure::angular::sphere_cells;
 use crate::measure::beam::full_angle;
 use crate::measure::counted::{Noisy, Part};
-use crate::measure::extremes::{Evenness, Extreme, TWO_SIDED_95, evenness};
+use crate::measure::extremes::{Evenness, Extreme, TWO_SIDED_95, evenness, maximum};
 use crate::measure::noise::Noise;
 use crate::tally::Tally;
 use std::f64::consts::PI;
@@ -235,6 +236,33 @@ fn angle_trials(power: f64, rings: usize, curve: Curve, counts: f64, trials: usi
     })
 }
 
+/// The largest intensity of a cosine to a power on a sphere of 90 rings and 24 sectors, over that on the axis.
+fn peak_trials(power: f64, counts: f64, trials: usize) -> Trials {
+    let (rings, sectors) = (90, 24);
+    let edge = |ring: usize| (PI * ring as f64 / rings as f64).cos();
+    let share = |ring: usize| {
+        edge(ring).max(0.0).powf(power + 1.0) - edge(ring + 1).max(0.0).powf(power + 1.0)
+    };
+    let size = |ring: usize| (edge(ring) - edge(ring + 1)) / sectors as f64;
+    let on_axis = counts * share(0) / sectors as f64 / size(0);
+    let mut noise = Noise::of_stream(9);
+    let mut found = Vec::new();
+    for _ in 0..trials {
+        let parts: Vec<Part> = sphere_cells(rings, sectors)
+            .map(|(ring, _)| {
+                let n = noise.poisson(counts * share(ring) / sectors as f64);
+                let count = 1.0 / (size(ring) * on_axis);
+                let read = Noisy { value: n * count, std_error: n.sqrt() * count, count };
+                Part { read, weight: size(ring) }
+            })
+            .collect();
+        let Extreme { value, std_error, interval, .. } = maximum(&parts);
+        found.push(Trial { value, std_error, interval });
+    }
+    let name = format!("cos^{power}, 90 rings of 24 {counts} peak");
+    Trials { name, truth: 1.0, found }
+}
+
 /// Beams by their power and rings.
 const BEAMS: [(f64, usize, Curve); 5] = [
     (1.0, 90, Curve::Mean),
@@ -249,6 +277,11 @@ fn all_trials(trials: usize) -> Vec<Trials> {
     for (name, field) in fields() {
         for counts in [10.0, 100.0] {
             all.extend(field_trials(name, &field, counts, trials));
+        }
+    }
+    for power in [1.0, 5.0, 20.0, 60.0] {
+        for counts in [3000.0, 30_000.0, 300_000.0] {
+            all.push(peak_trials(power, counts, trials));
         }
     }
     for (power, rings, curve) in BEAMS {

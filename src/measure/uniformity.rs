@@ -7,7 +7,7 @@
 use crate::measure::Status;
 use crate::measure::counted::Part;
 use crate::measure::evidence::{MIN_COUNTS, counted, enough_batches};
-use crate::measure::extremes::{Extreme, TWO_SIDED_95, evenness};
+use crate::measure::extremes::{Extreme, TWO_SIDED_95, evenness, maximum};
 use serde::Serialize;
 
 /// An extreme that was corrected by more than this share (of the average for the smallest, of itself for the
@@ -135,6 +135,19 @@ pub(crate) fn uniformity(field: &Field<'_>) -> (Uniformity, Statistic) {
     let min_max = extreme(&found.min_max, LOW, 1.0, status).worst(both);
     let cv = Statistic { bias: None, ..extreme(&found.cv, HIGH, f64::INFINITY, status) };
     (Uniformity { min, max, avg, min_avg, min_max, max_min: min_max.inverse() }, cv)
+}
+
+/// The largest of some values alone. It may be well known where most of them are dark.
+pub(crate) fn largest(cells: &[Part], batches: u64) -> Statistic {
+    let reads = cells.iter().map(|part| part.read);
+    match reads.max_by(|a, b| a.value.total_cmp(&b.value)) {
+        Some(largest) if largest.value > 0.0 => {
+            let status = counted(largest.value, largest.std_error).worst(enough_batches(batches));
+            let found = maximum(cells);
+            extreme(&found, HIGH, found.raw, status)
+        }
+        Some(_) | None => Statistic::unknown(f64::INFINITY),
+    }
 }
 
 fn average(field: &Field<'_>, status: Status) -> Statistic {

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 /// Number of the numerics: raised with every change that alters a committed report, so that a report, a checkpoint or a
 /// record by older numerics is never taken for one by the present ones.
-pub const NUMERICS: u32 = 2;
+pub const NUMERICS: u32 = 3;
 
 /// How to trace and when to stop. Its names in files are part of the identity of a run, and fixed whatever the code says.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

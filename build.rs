@@ -10,10 +10,14 @@ use std::path::{Path, PathBuf};
 fn main() -> io::Result<()> {
     let mut files = vec![PathBuf::from("Cargo.lock")];
     collect(Path::new("src"), &mut files)?;
+    // A package in somebody's registry has the other crates as dependencies of exactly its own version.
+    if Path::new("crates").is_dir() {
+        collect(Path::new("crates"), &mut files)?;
+    }
     files.sort();
     let mut hasher = DefaultHasher::new();
     for file in files {
-        // A library in somebody's registry has no lock file.
+        // A package in somebody's registry has no lock file.
         let bytes = fs::read(&file).unwrap_or_default();
         hasher.write(file.to_string_lossy().replace('\\', "/").as_bytes());
         hasher.write_u64(bytes.len() as u64);
@@ -21,6 +25,7 @@ fn main() -> io::Result<()> {
     }
     let version = env::var("CARGO_PKG_VERSION").unwrap_or_default();
     println!("cargo::rerun-if-changed=src");
+    println!("cargo::rerun-if-changed=crates");
     println!("cargo::rerun-if-changed=Cargo.lock");
     println!("cargo::rustc-env=LUMIDUCT_BUILD={version}+{:016x}", hasher.finish());
     Ok(())

@@ -1,8 +1,6 @@
 //! The guides of the benchmark scenes (DESIGN section 6), put together without a scene file.
 
 use glam::DVec3;
-use lumiduct::formats::mesh::TriangleMesh;
-use lumiduct::math::{Aabb, Frame};
 use lumiduct::optics::{Bsdf, Medium};
 use lumiduct::scene::mesh::Mesh;
 use lumiduct::scene::shape::{ChartRect, Cylinder, Flat, Region, Shape};
@@ -11,7 +9,9 @@ use lumiduct::scene::{
     Passage, Piece, Place, Scene, Seeing, Sensor, SensorKind, Sides, Solid, SolidId, Source, Start,
     SurfaceSensor,
 };
-use lumiduct::units::FluxUnit;
+use lumiduct_base::math::{Aabb, Frame};
+use lumiduct_base::mesh::TriangleMesh;
+use lumiduct_base::units::FluxUnit;
 use std::f64::consts::TAU;
 
 /// Cells of every map, in each direction.

@@ -14,12 +14,12 @@ mod spread;
 
 use clock::cpu_seconds;
 use guides::{B2, mesh_scene, rod_mesh};
-use lumiduct::math::Frame;
 use lumiduct::rng::Sampler;
 use lumiduct::scene::mesh::{Line, Mesh};
 use lumiduct::scene::shape::Toward;
 use lumiduct::scene::{Ray, Scene, SourceId};
 use lumiduct::transport::{Event, Path, walk};
+use lumiduct_base::math::Frame;
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;

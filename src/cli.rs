@@ -21,13 +21,13 @@ use crate::cli::film::FilmArgs;
 use crate::cli::merge::MergeArgs;
 use crate::cli::mesh::MeshArgs;
 use crate::cli::run::RunArgs;
-use crate::error::{Diagnostic, Error};
 use crate::input;
 use crate::input::diagnostic::{self, Colour};
 use crate::report::{Existing, JunitFile};
-use crate::text::visible;
 use crate::transport::{Interrupt, StopAnswer};
 use clap::{CommandFactory, Parser, Subcommand};
+use lumiduct_base::error::{Diagnostic, Error};
+use lumiduct_base::text::visible;
 use std::io::{ErrorKind, IsTerminal};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -196,7 +196,7 @@ fn write_junit(
 }
 
 /// Prints a text, or says why there is none.
-fn finish(text: crate::error::Result<String>) -> ExitCode {
+fn finish(text: lumiduct_base::error::Result<String>) -> ExitCode {
     match text.and_then(|text| print(&text)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => fail(&error),

@@ -32,12 +32,8 @@
 //! are part of the names there.
 
 pub mod cli;
-pub mod error;
-pub mod formats;
 pub mod input;
-pub mod math;
 pub mod measure;
-pub mod number;
 pub mod optics;
 pub mod pipeline;
 pub mod report;
@@ -45,6 +41,4 @@ pub mod rng;
 pub mod scene;
 pub mod study;
 pub mod tally;
-pub mod text;
 pub mod transport;
-pub mod units;

@@ -22,7 +22,6 @@ pub use parts::{SliceWishes, SliceWritten, has_slice, merge_slices, run_slice};
 pub use progress::{Progress, TargetProgress};
 pub use tracing::{Traced, trace};
 
-use crate::error::{Diagnostic, Result};
 use crate::input::{self, Job, Outline, Settings};
 use crate::measure;
 use crate::pipeline::checkpoint::Keeper;
@@ -34,6 +33,7 @@ use crate::report::{
 };
 use crate::scene::plan::Request;
 use crate::transport::{Activity, Findings, Interrupt, Run, Track, tracks};
+use lumiduct_base::error::{Diagnostic, Result};
 pub(crate) use sense::expect_measures;
 use std::path::{Path, PathBuf};
 use std::time::Duration;

@@ -9,8 +9,8 @@
 
 use std::path::{Path, PathBuf};
 
-use lumiduct::error::{Diagnostic, Error};
 use lumiduct::input;
+use lumiduct_base::error::{Diagnostic, Error};
 
 struct Expected {
     file: PathBuf,

@@ -8,9 +8,7 @@ use std::path::{Path, PathBuf};
 
 /// Layers from the bottom up; modules of one layer do not see each other.
 const LAYERS: &[&[&str]] = &[
-    &["error"],
-    &["units", "number", "text", "math", "rng", "tally"],
-    &["formats"],
+    &["rng", "tally"],
     &["optics"],
     &["scene"],
     &["input", "transport"],

@@ -3,8 +3,8 @@
 //! Streams may be closed or full. That never ends the program with a panic: exit codes say what the work deserves.
 //! Control characters of names and titles never reach a terminal.
 
-use crate::error::Error;
-use crate::text::visible;
+use lumiduct_base::error::Error;
+use lumiduct_base::text::visible;
 use std::io::{ErrorKind, Write};
 
 /// Prints to stdout; a reader that closed the pipe has seen enough.

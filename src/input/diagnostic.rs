@@ -5,8 +5,8 @@ use std::path::Path;
 use annotate_snippets::renderer::DecorStyle;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 
-use crate::error::{Diagnostic, DiagnosticKind};
 use crate::input::sources::Sources;
+use lumiduct_base::error::{Diagnostic, DiagnosticKind};
 
 /// Whether text carries the colour codes of a terminal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,7 +1,5 @@
 //! The whole way from a scene file to a job: read, lowered, with the wishes of the command line.
 
-use crate::error::{Diagnostic, Error, Result};
-use crate::input::digest::Digest;
 use crate::input::gather::{GatherSettings, check_radius, check_use};
 use crate::input::keys::{Key, Places};
 use crate::input::lower::{Lowered, lower};
@@ -10,7 +8,9 @@ use crate::input::project::{Project, project};
 use crate::input::{Draft, draft};
 use crate::scene::Scene;
 use crate::scene::plan::{Check, Request, RunPlan, StopRules, Target};
-use crate::text::visible;
+use lumiduct_base::digest::Digest;
+use lumiduct_base::error::{Diagnostic, Error, Result};
+use lumiduct_base::text::visible;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::time::Duration;

@@ -1,8 +1,8 @@
 //! What can be run: the scenes, studies and sensor files below a folder.
 
-use crate::error::{Error, Result};
 use crate::input::sources::{Sources, Unreadable};
-use crate::text::visible;
+use lumiduct_base::error::{Error, Result};
+use lumiduct_base::text::visible;
 use std::fs;
 use std::path::Path;
 

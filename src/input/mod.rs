@@ -7,20 +7,19 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use crate::error::{Diagnostic, DiagnosticKind, Error, Result};
-use crate::formats::mesh::no_scene;
 use crate::input::keys::{Key, Places};
 use crate::input::problems::Problems;
 use crate::input::sources::Sources;
 use crate::input::spec::{FORMAT_VERSION, SceneSpec};
 use crate::input::tree::{Node, SyntaxError, Value};
 use crate::input::validate::Completeness;
+use lumiduct_base::error::{Diagnostic, DiagnosticKind, Error, Result};
+use lumiduct_files::mesh::no_scene;
 use serde_json::Value as Json;
 
 pub mod check;
 pub mod convert;
 pub mod diagnostic;
-pub(crate) mod digest;
 pub mod editor_schema;
 mod gather;
 pub mod include;

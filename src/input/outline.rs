@@ -4,7 +4,7 @@
 //! files are in the tree already.
 
 use crate::input::tree::Node;
-use crate::number::format_exact;
+use lumiduct_base::number::format_exact;
 use serde_json::Value;
 
 /// Endings of keys and the units that they name, the longer ones first.

@@ -1,8 +1,8 @@
 //! The problems of a scene, gathered so that all are reported in one go.
 
-use crate::error::{Diagnostic, DiagnosticKind, Error, Result};
 use crate::input::keys::{Key, Places};
 use crate::input::sources::{Origin, Sources};
+use lumiduct_base::error::{Diagnostic, DiagnosticKind, Error, Result};
 
 /// Most problems that are reported; a file with more is wrong as a whole.
 pub const MAX_PROBLEMS: usize = 1000;

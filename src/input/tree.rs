@@ -7,7 +7,7 @@ use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
 use crate::input::sources::{Origin, SourceId, Sources};
-use crate::text::is_control;
+use lumiduct_base::text::is_control;
 
 /// Deepest nesting of tables and arrays.
 pub const MAX_DEPTH: usize = 64;

@@ -9,8 +9,8 @@
 use crate::measure::counted::{Noisy, Part};
 use crate::measure::evidence::Evidence;
 use crate::scene::{Grid, Seeing, SensorId, SurfaceSensor};
-use crate::units::MM2_PER_M2;
 use glam::DVec2;
+use lumiduct_base::units::MM2_PER_M2;
 use std::borrow::Cow;
 
 /// Cells with less than this share of their own area on the sensor are not part of it.

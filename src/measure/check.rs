@@ -3,9 +3,9 @@
 //! A demand whose answer the error bar leaves open is undecided, which counts as missed: more paths are needed.
 
 use crate::measure::{Measure, Measures, Status};
-use crate::number::format_value;
 use crate::scene::plan::Check;
 use crate::tally::sigmas;
+use lumiduct_base::number::format_value;
 use serde::{Deserialize, Serialize};
 
 /// A limit nearer to the value than this many total errors is undecided.

@@ -6,8 +6,8 @@ use crate::measure::evidence::Evidence;
 use crate::measure::{Measure, Status};
 use crate::scene::{Scene, Seeing, SensorId, SensorKind, Sides, SourceId};
 use crate::transport::TAILS;
-use crate::units::MM2_PER_M2;
 use indexmap::IndexMap;
+use lumiduct_base::units::MM2_PER_M2;
 
 /// The totals of a sensor, by the last part of their dotted names.
 pub(crate) fn totals(evidence: &Evidence<'_>, id: SensorId) -> IndexMap<String, Measure> {

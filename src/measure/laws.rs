@@ -1,13 +1,13 @@
 //! Laws that hold for every map, whatever its cells: extremes enclose the average, the middle, the points and every
 //! cell that counts.
 
-use crate::math::Frame;
 use crate::measure::samples::{add, disk, image, readings, rectangle, rings, scene};
 use crate::measure::{Measures, SensorMap, Status, measure};
 use crate::rng::{Dimension, Sampler};
 use crate::scene::{Grid, Pixels, Scene, Seeing, SensorId, SensorKind, SourceId, SurfaceSensor};
 use crate::transport::Findings;
 use glam::DVec2;
+use lumiduct_base::math::Frame;
 
 /// Place of a cell from the middle of its map, in half-widths.
 fn place(grid: &Grid, cell: usize) -> DVec2 {

@@ -50,8 +50,8 @@ use crate::measure::evidence::Evidence;
 use crate::scene::plan::Estimator;
 use crate::scene::{Scene, SensorId, SourceId};
 use crate::transport::{Choice, Findings, Layout, Readings};
-use crate::units::FluxUnit;
 use indexmap::IndexMap;
+use lumiduct_base::units::FluxUnit;
 use serde::Serialize;
 
 /// Everything measured in a run.

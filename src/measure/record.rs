@@ -1,7 +1,7 @@
 //! One number with its error bar, and how far that error bar can be trusted.
 
-use crate::number::{format_exact, format_with_error};
 use crate::scene::plan::Estimator;
+use lumiduct_base::number::{format_exact, format_with_error};
 use serde::{Deserialize, Deserializer, Serialize};
 use std::fmt;
 

@@ -1,6 +1,5 @@
 //! Scenes and readings made by hand, for the tests of this layer.
 
-use crate::math::Frame;
 use crate::optics::{Bsdf, Medium};
 use crate::scene::shape::{ChartRect, Flat, Region, Shape};
 use crate::scene::{
@@ -9,8 +8,9 @@ use crate::scene::{
     Views,
 };
 use crate::transport::{Findings, Layout, Readings};
-use crate::units::FluxUnit;
 use glam::{DVec2, DVec3};
+use lumiduct_base::math::Frame;
+use lumiduct_base::units::FluxUnit;
 
 /// A scene with a black sheet `wall.surface` and the named sources and sensors; surface sensors are ports of their own.
 pub(crate) fn scene(sources: &[(&str, f64)], sensors: Vec<(&str, SensorKind)>) -> Scene {

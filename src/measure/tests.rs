@@ -1,5 +1,4 @@
 use super::*;
-use crate::math::Frame;
 use crate::measure::samples::{
     add, disk, goniometer, image, luminance, readings, rectangle, rings, scene,
 };
@@ -12,6 +11,7 @@ use crate::scene::{
 };
 use crate::transport::Run;
 use glam::DVec3;
+use lumiduct_base::math::Frame;
 use std::f64::consts::TAU;
 
 fn many_sensors() -> Scene {

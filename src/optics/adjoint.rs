@@ -18,12 +18,12 @@
 //!   that scatters into o is drawn, also through a face that totally reflects the gather path's own direction, and
 //!   nothing is drawn that does not.
 
-use crate::math::{Frame, cosine_hemisphere, unit};
 use crate::optics::bsdf::{choose_side, leaving_normal, pick, specular, straight};
 use crate::optics::shares::smooth_direction;
 use crate::optics::{Bsdf, Gaussian, Haze, Incidence, Lobe, Scattered, Shares, Side, shares};
 use crate::rng::{Dimension, Numbers, Sampler};
 use glam::DVec3;
+use lumiduct_base::math::{Frame, cosine_hemisphere, unit};
 
 #[cfg(test)]
 mod tests;

@@ -3,11 +3,11 @@
 //! A closed set of finishes. Mirrors and total internal reflection draw no random numbers; a dielectric draws one to
 //! choose between the reflected and the refracted part. Everything that a finish does not send on is absorbed by it.
 
-use crate::math::{Frame, cosine_hemisphere, unit};
 use crate::optics::shares::smooth_direction;
 use crate::optics::{AngleTable, FilmFace, Gaussian, Haze, Microfacet, PrismFilm, fresnel, shares};
 use crate::rng::{Dimension, Numbers, Sampler};
 use glam::DVec3;
+use lumiduct_base::math::{Frame, cosine_hemisphere, unit};
 
 #[cfg(test)]
 mod tests;

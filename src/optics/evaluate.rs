@@ -55,10 +55,10 @@ fn about(lobe: &Gaussian, mean: DVec3, normal: DVec3, out: DVec3) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::circle;
     use crate::optics::Bsdf;
     use crate::rng::Sampler;
     use crate::tally::Tally;
+    use lumiduct_base::math::circle;
 
     fn finishes() -> Vec<Bsdf> {
         let diffuse = Bsdf::Lambertian { reflectance: 0.5, transmittance: 0.3 };

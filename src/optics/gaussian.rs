@@ -4,9 +4,9 @@
 //! space of m; N keeps the integral at 1 also where the horizon cuts the lobe. The shape exp(-θ²/2σ²) is symmetric in
 //! o and m, so p(o|i) N(i) = p(i|o) N(o): the adjoint of a path needs only the two norms and cosines.
 
-use crate::math::Frame;
 use crate::rng::{Dimension, Numbers, Sampler};
 use glam::DVec3;
+use lumiduct_base::math::Frame;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Nodes of the table of norms over the elevation of the mean direction.

@@ -8,11 +8,11 @@
 //!
 //! `f(i→o)/n_o²` is the same both ways, so that a gather path does what a photon does, without a factor.
 
-use crate::math::{Frame, disk};
 use crate::optics::bsdf::{choose_side, specular};
 use crate::optics::{Incidence, Lobe, Scattered, Shares, Side, fresnel};
 use crate::rng::{Dimension, Numbers, Sampler};
 use glam::DVec3;
+use lumiduct_base::math::{Frame, disk};
 use std::f64::consts::PI;
 
 #[cfg(test)]

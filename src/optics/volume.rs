@@ -2,8 +2,8 @@
 //!
 //! It knows one place in a medium, not the body the medium fills; what a medium absorbs is the medium's own affair.
 
-use crate::math::{Frame, from_cosine};
 use glam::DVec3;
+use lumiduct_base::math::{Frame, from_cosine};
 use std::f64::consts::PI;
 
 /// Anisotropies nearer to 0 than this, 1, are drawn as isotropic: the inversion divides by them.

@@ -1,9 +1,9 @@
 //! A look at a scene without measures: what is in it, and a picture with some paths.
 
-use crate::error::{Diagnostic, Error, Result};
 use crate::input::Settings;
 use crate::pipeline::{inventory_of, prepare, shown_tracks};
 use crate::report::{self, Existing, SectionView, expect_file, write_whole};
+use lumiduct_base::error::{Diagnostic, Error, Result};
 use std::path::{Path, PathBuf};
 
 /// Paths that a check draws.

@@ -1,10 +1,10 @@
 //! Checkpoints of a long run: how far it has come, on disk every now and then.
 
-use crate::error::{Error, Result};
 use crate::pipeline::Output;
 use crate::pipeline::snapshot::{self, Kind};
 use crate::report::{Existing, Recipe, remove_if_there, sweep};
 use crate::transport::{Run, State};
+use lumiduct_base::error::{Error, Result};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::time::Duration;

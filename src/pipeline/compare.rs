@@ -8,13 +8,13 @@ mod truth;
 
 pub use truth::TruthWish;
 
-use crate::error::{Diagnostic, Error, Result};
 use crate::input::{self, Job, Settings};
 use crate::pipeline::{Output, VERSION, expect_sense, output_dir};
 use crate::report::{self, Comparison, Contestant, Folder, FolderLock};
 use crate::scene::SensorId;
 use crate::scene::plan::{Request, RunPlan, StopRules};
 use crate::transport::{Activity, Baseline, Interrupt, invisible, scatterers, turbid_media};
+use lumiduct_base::error::{Diagnostic, Error, Result};
 use runner::{Stint, trace};
 use std::path::{Path, PathBuf};
 use std::time::Duration;

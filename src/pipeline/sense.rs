@@ -1,7 +1,6 @@
 //! What can be said of a job before it is traced: that there is light, that every name is known, that estimators can
 //! meet the sources.
 
-use crate::error::{Diagnostic, Result};
 use crate::input::Job;
 use crate::input::keys::Key;
 use crate::input::problems::Problems;
@@ -9,6 +8,7 @@ use crate::measure;
 use crate::scene::plan::Request;
 use crate::scene::{Scene, SensorId, Source};
 use crate::transport::{BLIND_PATHS, blind_sensors, invisible, scatterers};
+use lumiduct_base::error::{Diagnostic, Result};
 
 /// Refuses a scene without light, and checks and targets that name no measure of it, before any work is done. Gives
 /// back remarks.

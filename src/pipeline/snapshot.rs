@@ -3,10 +3,10 @@
 //! A file has a line that says what it is, the length of what follows, that itself (postcard), and a digest of it; so that
 //! one that was cut off, changed, or is of another kind is told from a good one before anything in it is believed.
 
-use crate::error::{Error, Result};
-use crate::input::digest::Digest;
 use crate::pipeline::BUILD;
 use crate::report::{Existing, write_whole};
+use lumiduct_base::digest::Digest;
+use lumiduct_base::error::{Error, Result};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::fs;

@@ -1,8 +1,8 @@
 //! Seconds, outside of the reproducible set of files.
 
-use crate::error::Result;
 use crate::pipeline::Traced;
 use crate::report::Folder;
+use lumiduct_base::error::Result;
 
 /// Writes `timing.csv` beside a report.
 pub(super) fn write(folder: &Folder, traced: &Traced) -> Result<()> {

@@ -1,12 +1,12 @@
 //! Tracing until a stop rule holds, the clock runs out, or the user stops it.
 
-use crate::error::{Error, Result};
 use crate::input::Job;
 use crate::measure::{self, Status};
 use crate::pipeline::checkpoint::Checkpoint;
 use crate::pipeline::{Progress, Stop, TargetProgress, gathering};
 use crate::scene::plan::RunPlan;
 use crate::transport::{Activity, FIRST_BATCH_GRACE, Findings, Interrupt, Phase, Run, StopSignal};
+use lumiduct_base::error::{Error, Result};
 use std::time::{Duration, Instant};
 
 /// What tracing gave.

@@ -3,15 +3,15 @@
 //! Errors here are real ones: how far runs of one length lie from a truth found otherwise. What a run says about its
 //! own error plays no part. Times depend on the machine, so these files lie outside of the reproducible set.
 
-use crate::error::Result;
-use crate::number::{format_percent, format_value, format_with_error};
 use crate::report::OutputFile;
 use crate::report::csv::table;
 use crate::report::png::{
     ErrorForm, LinePlot, Look, Scale, Series, SeriesForm, SeriesPoint, line_plot,
 };
 use crate::tally::Tally;
-use crate::text::markdown_page;
+use lumiduct_base::error::Result;
+use lumiduct_base::number::{format_percent, format_value, format_with_error};
+use lumiduct_base::text::markdown_page;
 use std::fmt::Write;
 
 /// A comparison of estimators on one sensor.

@@ -4,7 +4,6 @@
 //! was simulated, where the light went, and how it was computed.
 
 use crate::measure::{Measure, Outcome, SensorMap, SensorPaths, Status};
-use crate::number::format_value;
 use crate::report::by_light::{self, Matrix, matrix, remark_on_totals, sum_over_weathers};
 use crate::report::csv::{map_name, map_words};
 use crate::report::figures::{BOUNCES_SHOWN, bounce_plot, intensity_plot, where_and_when};
@@ -17,6 +16,7 @@ use crate::report::words::{
     quantity, run_lines, stage_row, variation,
 };
 use crate::report::{Report, by_sun, record};
+use lumiduct_base::number::format_value;
 
 /// Share of the flux that the histogram of bounces shows by decades, where more is to be seen of a tail.
 const BOUNCES_BY_DECADES: f64 = 0.9999;

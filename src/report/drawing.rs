@@ -2,13 +2,13 @@
 //!
 //! Plain data in the user's coordinates. How it is looked at is not known here.
 
-use crate::math::Aabb;
 use crate::report::upright::is_lit_from_above;
 use crate::scene::{
     Emitter, FaceFacets, FaceId, Facets, Fineness, Owner, Scene, SensorKind, SourceId, shape_facets,
 };
 use crate::transport::{Track, TrackEnd};
 use glam::DVec3;
+use lumiduct_base::math::Aabb;
 use serde::Serialize;
 use std::collections::BTreeSet;
 

@@ -1,10 +1,8 @@
 //! Which pictures a report has, and what is on them.
 
-use crate::error::Result;
 use crate::measure::{
     Axes, Balance, IntensityTable, PlaneCurve, SensorMap, SensorPaths, not_below_zero,
 };
-use crate::number::{format_percent, format_value, format_with_error};
 use crate::report::by_light::sum_over_weathers;
 use crate::report::csv::{map_name, map_words};
 use crate::report::key_figures::is_one_cell;
@@ -13,6 +11,8 @@ use crate::report::png::{
     Series, SeriesForm, SeriesPoint, bar_chart, heat_map, line_plot, polar_plot,
 };
 use crate::report::{OutputFile, Report};
+use lumiduct_base::error::Result;
+use lumiduct_base::number::{format_percent, format_value, format_with_error};
 use ndarray::Axis;
 
 /// All pictures of a report.

@@ -1,9 +1,9 @@
 //! What prism films do against the angle, as a table.
 
-use crate::number::format_value;
 use crate::optics::film::{acceptance_angle, along_prisms};
 use crate::optics::{Bsdf, FilmFace, Incidence, PrismFilm, Shares};
 use crate::scene::Finish;
+use lumiduct_base::number::format_value;
 use std::f64::consts::FRAC_PI_2;
 use std::fmt::Write;
 

@@ -3,11 +3,11 @@
 #[cfg(test)]
 mod tests;
 
-use crate::error::{Error, Result};
 use crate::report::leftovers::{REPLACING, STAGED, is_staged, remove_if_there, sweep};
 use crate::report::manifest::{MANIFEST, Manifest};
 use crate::report::recipe::Found;
 use crate::report::{FolderLock, OutputFile, Recipe};
+use lumiduct_base::error::{Error, Result};
 use std::fs;
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};

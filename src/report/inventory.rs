@@ -4,12 +4,12 @@
 //! volumes and etendues come from the scene itself.
 
 use crate::input::Outline;
-use crate::number::format_value;
 use crate::scene::{
     Emission, Emitter, Face, FaceId, MediumId, Owner, Scene, Seeing, Sensor, SensorKind, Source,
     SunAngles,
 };
 use glam::DVec3;
+use lumiduct_base::number::format_value;
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
 use std::fmt::Write;

@@ -3,8 +3,8 @@
 //! Files appear under temporary names. While those of a report take their places, a list of their names lies beside them, so
 //! that a part of them is never mistaken for files of anybody's own.
 
-use crate::error::{Error, Result};
 use crate::report::manifest::Manifest;
+use lumiduct_base::error::{Error, Result};
 use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;

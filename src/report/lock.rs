@@ -1,7 +1,7 @@
 //! One program at a time writes into a folder.
 
-use crate::error::{Error, Result};
 use crate::report::expect_room;
+use lumiduct_base::error::{Error, Result};
 use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -1,10 +1,10 @@
 //! `manifest.json`: the files of a report, with a digest of each. It is the last file to take its place, so that files of
 //! two runs, or of a run that was killed, are never taken for a report.
 
-use crate::error::{Error, Result};
 use crate::report::OutputFile;
 use crate::report::seal::{digest, seal, unseal};
 use indexmap::IndexMap;
+use lumiduct_base::error::{Error, Result};
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::io::ErrorKind;

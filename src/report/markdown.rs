@@ -4,7 +4,7 @@ use crate::input::Project;
 use crate::report::contents::{parts, verdict};
 use crate::report::html::frame::{Block, Part, Plots};
 use crate::report::{LOGO, Report};
-use crate::text::{markdown_cell, markdown_page};
+use lumiduct_base::text::{markdown_cell, markdown_page};
 use std::fmt::Write;
 
 /// The whole page.

@@ -1,7 +1,7 @@
 //! The health of a mesh, as a page: what keeps it from being a solid, and what its facets will do to light.
 
-use crate::formats::mesh::{Defects, MeshHealth, TriangleMesh, area_vector};
-use crate::number::format_value;
+use lumiduct_base::mesh::{Defects, MeshHealth, TriangleMesh, area_vector};
+use lumiduct_base::number::format_value;
 use std::fmt::Write;
 
 /// Bounces for which the drift of a faceted wall is told.

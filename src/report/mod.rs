@@ -61,7 +61,7 @@ pub(crate) use seal::{seal, unseal};
 pub use section::{CutPlane, SectionView, scene_picture};
 pub use terminal::terminal;
 
-use crate::error::Result;
+use lumiduct_base::error::Result;
 
 /// A file of a report: its name and its bytes.
 #[derive(Debug)]

@@ -2,13 +2,13 @@
 
 use crate::input::Project;
 use crate::measure::{self, GatheredFacts, LostPaths, Measures, Status, Verdict};
-use crate::number::{format_exact, format_percent, format_with_error};
 use crate::report::by_light::remark_on_weathers;
 use crate::report::{Drawing, Inventory, Recipe};
 use crate::scene::plan::{Check, GatherPlan, Request, Schedule, StopRules, Target};
 use crate::scene::{Counts, Place, Scene, Seeing, Sensor, SensorKind};
 use crate::transport::{GROUPS, GatherSettings, Leak};
 use glam::DVec3;
+use lumiduct_base::number::{format_exact, format_percent, format_with_error};
 use serde::{Deserialize, Serialize};
 
 /// Everything a report says.

@@ -1,7 +1,7 @@
 //! Seals of JSON files: a digest of all that stands before it, as the last key. A file that was cut off or changed is
 //! never believed.
 
-use crate::input::digest::Digest;
+use lumiduct_base::digest::Digest;
 use serde::de::DeserializeOwned;
 use std::fmt;
 

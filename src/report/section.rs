@@ -1,8 +1,5 @@
 //! The picture of a check: a cut through the scene, with paths of light, sources and sensors.
 
-use crate::error::{Error, Result};
-use crate::math::{Aabb, Frame};
-use crate::number::format_value;
 use crate::report::drawing::{Fate, Role, drawing, fate};
 use crate::report::png::{
     CrossSection, NamedPlace, Outline, PlaceOf, RayEnd, RayPath, cross_section,
@@ -12,6 +9,9 @@ use crate::scene::shape::ChartRect;
 use crate::scene::{Emitter, Scene, SensorKind};
 use crate::transport::Track;
 use glam::{DVec2, DVec3};
+use lumiduct_base::error::{Error, Result};
+use lumiduct_base::math::{Aabb, Frame};
+use lumiduct_base::number::format_value;
 use std::collections::BTreeSet;
 
 /// Margin around what is shown, in diagonals of its box, 1.

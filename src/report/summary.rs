@@ -1,7 +1,7 @@
 //! `summary.json`: the record for programs. `measures` maps dotted names to numbers with their errors.
 
-use crate::error::{Error, Result};
 use crate::report::{Report, SUMMARY};
+use lumiduct_base::error::{Error, Result};
 use serde::Serialize;
 
 /// Version of the layout of this file.
@@ -12,7 +12,7 @@ struct Summary<'r> {
     lumiduct_summary: u32,
     scene: &'r crate::report::SceneFacts,
     run: &'r crate::report::RunFacts,
-    unit: crate::units::FluxUnit,
+    unit: lumiduct_base::units::FluxUnit,
     source_flux: f64,
     #[serde(skip_serializing_if = "indexmap::IndexMap::is_empty")]
     light_groups: &'r indexmap::IndexMap<String, Vec<String>>,

@@ -4,10 +4,10 @@ use crate::measure::{
     Action, Extent, GatheredFacts, LostPaths, Measure, Outcome, PathClass, PathStep, Resolution,
     SensorMap, StageFacts, Statistic, Status, strongest,
 };
-use crate::number::{format_percent, format_value, format_with_error};
 use crate::report::Report;
 use crate::scene::plan::Estimator;
 use crate::transport::{Choice, Objection, Trial};
+use lumiduct_base::number::{format_percent, format_value, format_with_error};
 
 /// A bias is told from this share of the standard error on, 1.
 const BIAS_TOLD: f64 = 0.3;

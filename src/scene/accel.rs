@@ -4,8 +4,8 @@
 //! a linear scan is faster. (obvhs's own triangle test and its 8-wide traversal are not used: the first rejects
 //! u = -0.0, the second has a fixed epsilon that loses paths in other units.)
 
-use crate::math::Aabb;
 use crate::scene::Ray;
+use lumiduct_base::math::Aabb;
 use obvhs::aabb::Aabb as Box32;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2;
@@ -102,13 +102,13 @@ fn to_f32(bounds: Aabb) -> Box32 {
 
 #[cfg(test)]
 mod tests {
-    use crate::formats::mesh::TriangleMesh;
-    use crate::math::{Aabb, Frame};
     use crate::optics::Medium;
     use crate::scene::mesh::Mesh;
     use crate::scene::{Builder, Inside, On, Ray, Solid};
-    use crate::units::FluxUnit;
     use glam::DVec3;
+    use lumiduct_base::math::{Aabb, Frame};
+    use lumiduct_base::mesh::TriangleMesh;
+    use lumiduct_base::units::FluxUnit;
 
     #[test]
     fn a_body_of_as_few_triangles_as_possible_is_met() {

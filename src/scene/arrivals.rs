@@ -4,7 +4,6 @@
 //! that it stands for, so that the mean of radiance times extent is the flux on the sensor. What the path meets
 //! is not known here.
 
-use crate::math::{Aabb, Frame, cone_direction, cosine_hemisphere, disk, uniform_sphere};
 use crate::rng::{Dimension, Numbers, Sampler};
 use crate::scene::area::{AreaPoint, FaceArea};
 use crate::scene::intersect::Just;
@@ -14,6 +13,7 @@ use crate::scene::{
     SurfaceSensor, Views,
 };
 use glam::{DVec2, DVec3};
+use lumiduct_base::math::{Aabb, Frame, cone_direction, cosine_hemisphere, disk, uniform_sphere};
 use smallvec::{SmallVec, smallvec};
 use std::f64::consts::{PI, TAU};
 

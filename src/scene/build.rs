@@ -1,6 +1,5 @@
 //! Putting a scene together: tables first, then the whole.
 
-use crate::math::Aabb;
 use crate::optics::{Bsdf, Medium};
 use crate::scene::convex::Convex;
 use crate::scene::mesh::Mesh;
@@ -12,8 +11,9 @@ use crate::scene::{
     Accel, COINCIDENCE, Extent, Face, FaceId, Finish, FinishId, LightGroups, MediumId, MeshBody,
     Owner, Patch, PrimId, Scene, Sensor, SensorId, SensorKind, Solid, SolidId, Source, SourceId,
 };
-use crate::units::FluxUnit;
 use glam::DVec3;
+use lumiduct_base::math::Aabb;
+use lumiduct_base::units::FluxUnit;
 use std::sync::Arc;
 
 /// Surfaces of a relief overlap where they meet by this many ulp of the largest coordinate: rounding of a point on a ray and

@@ -189,12 +189,12 @@ impl Convex {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{Aabb, Frame, circle, uniform_sphere};
     use crate::optics::Medium;
     use crate::rng::{Dimension, Sampler};
     use crate::scene::shape::Region;
     use crate::scene::{Builder, FaceSpec, Inside, Piece, Solid};
-    use crate::units::FluxUnit;
+    use lumiduct_base::math::{Aabb, Frame, circle, uniform_sphere};
+    use lumiduct_base::units::FluxUnit;
 
     const LENGTH: f64 = 3.0;
     const RADIUS: f64 = 1.0;
@@ -271,7 +271,8 @@ mod tests {
             for index in 0..4000 {
                 let mut sampler = Sampler::for_path(5, 0, index);
                 let mut pair = || sampler.pair(Dimension::EmitPosition);
-                let (across, along) = (0.99 * crate::math::disk(pair()), pair()[0] * LENGTH);
+                let (across, along) =
+                    (0.99 * lumiduct_base::math::disk(pair()), pair()[0] * LENGTH);
                 let start = frame().point_to_world(across + along * DVec3::Z);
                 let mut ray = Ray::new(start, uniform_sphere(pair()));
                 let mut on = On::default();
@@ -304,7 +305,7 @@ mod tests {
                 let mut sampler = Sampler::for_path(6, 0, index);
                 let mut pair = || sampler.pair(Dimension::EmitPosition);
                 let start = frame().point_to_world(4.0 * LENGTH * uniform_sphere(pair()));
-                let across = frame().to_world(1.5 * RADIUS * crate::math::disk(pair()));
+                let across = frame().to_world(1.5 * RADIUS * lumiduct_base::math::disk(pair()));
                 let target = frame().origin + across + pair()[0] * LENGTH * axis;
                 // Also rays along the axis, that no wall is met by.
                 let ray = if index % 4 == 0 {

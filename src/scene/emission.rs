@@ -1,12 +1,12 @@
 //! How a source spreads its flux over directions.
 
-use crate::math::{
-    Frame, cone_direction, cosine_hemisphere, cosine_power_hemisphere, projected_cap,
-    uniform_sphere,
-};
 use crate::rng::{Dimension, Sampler};
 use crate::scene::Sky;
 use glam::DVec3;
+use lumiduct_base::math::{
+    Frame, cone_direction, cosine_hemisphere, cosine_power_hemisphere, projected_cap,
+    uniform_sphere,
+};
 use std::f64::consts::{PI, TAU};
 
 /// A law of emission about an axis (the normal of a surface).
@@ -172,7 +172,7 @@ mod tests {
     /// Direction at angles to `axis`: 1 - cos θ, so that equal steps are equal solid angles, and the azimuth in turns.
     fn direction(axis: DVec3, one_minus_cos: f64, turns: f64) -> DVec3 {
         let sin = (one_minus_cos * (2.0 - one_minus_cos)).sqrt();
-        let local = (sin * crate::math::circle(turns)).extend(1.0 - one_minus_cos);
+        let local = (sin * lumiduct_base::math::circle(turns)).extend(1.0 - one_minus_cos);
         Frame::from_axis(DVec3::ZERO, axis).to_world(local)
     }
 

@@ -1,12 +1,12 @@
 //! Faces: the named parts of solids and sheets, and the smooth pieces they are made of.
 
-use crate::math::{Aabb, Frame};
 use crate::scene::mesh::Mesh;
 use crate::scene::relief::Trim;
 use crate::scene::shape::{ChartRect, Crossing, Shape, Start, Toward, Wanted};
 use crate::scene::sweep::WallChart;
 use crate::scene::{FaceId, FinishId, Ray, SolidId};
 use glam::{DVec2, DVec3};
+use lumiduct_base::math::{Aabb, Frame};
 use std::ops::Range;
 use std::sync::Arc;
 

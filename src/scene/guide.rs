@@ -2,9 +2,9 @@
 //!
 //! A guide is a body with an entry, an exit and walls that are large beside both. Rooms, panels and boards are not.
 
-use crate::math::{Aabb, Frame};
 use crate::scene::{Emitter, Extent, FaceId, Scene, SensorKind};
 use glam::DVec3;
+use lumiduct_base::math::{Aabb, Frame};
 
 /// Area of the walls of a guide over that of its ends, at least, 1: a cube has 2.
 const LEAST_WALLS: f64 = 2.5;

@@ -67,10 +67,10 @@ use convex::Convex;
 use pattern::Pattern;
 use relief::Relief;
 
-use crate::math::Aabb;
 use crate::optics::{Bsdf, Medium};
-use crate::units::FluxUnit;
 use glam::DVec3;
+use lumiduct_base::math::Aabb;
+use lumiduct_base::units::FluxUnit;
 use std::sync::Arc;
 
 /// Relative to the size of the scene: faces closer than this are one face.

@@ -1,11 +1,11 @@
 //! Questions about surfaces, whether they are analytic patches or triangles of a mesh.
 
-use crate::math::Frame;
 use crate::scene::Ray;
 use crate::scene::mesh::Line;
 use crate::scene::shape::{ChartRect, Crossing, Region, Shape, Start};
 use crate::scene::{Extent, FaceId, MeshBody, Owner, Patch, PrimId, Scene, SmoothId};
 use glam::{DVec2, DVec3};
+use lumiduct_base::math::Frame;
 
 /// A surface that a ray can hit.
 #[derive(Debug, Clone, Copy)]

@@ -4,10 +4,10 @@
 //! straight lines of the scene are straight in the image. A place in that plane is a pair of tangents. Nothing is
 //! known here of the aperture.
 
-use crate::math::Frame;
 use crate::scene::Grid;
 use crate::scene::shape::ChartRect;
 use glam::{DVec2, DVec3};
+use lumiduct_base::math::Frame;
 
 /// The pixels of an imaging luminance meter.
 #[derive(Debug, Clone)]

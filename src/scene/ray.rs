@@ -1,7 +1,7 @@
 //! Rays with unit directions.
 
-use crate::math::unit;
 use glam::DVec3;
+use lumiduct_base::math::unit;
 
 /// A half line; its direction is a unit vector by construction, so that parameters along it are millimetres.
 ///

@@ -3,12 +3,12 @@
 //! The plane is scanned by two families of parallel rays; where one family runs along a surface the other crosses it.
 //! That serves every kind of surface alike, without a formula for each.
 
-use crate::math::Frame;
 use crate::optics::Bsdf;
 use crate::scene::pattern::Part;
 use crate::scene::shape::{ChartRect, Crossing, Start};
 use crate::scene::{FaceId, PrimId, Ray, Scene, Surface};
 use glam::{DVec2, DVec3};
+use lumiduct_base::math::Frame;
 
 /// Rays of each family across the picture.
 const RAYS: usize = 1200;

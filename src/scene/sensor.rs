@@ -1,9 +1,9 @@
 //! Virtual sensors: where and how flux is counted. They never bend or stop light, unless their face absorbs.
 
-use crate::math::{Aabb, Frame};
 use crate::scene::shape::Toward;
 use crate::scene::{FaceId, Grid, Pixels, Ray};
 use glam::DVec3;
+use lumiduct_base::math::{Aabb, Frame};
 use std::f64::consts::TAU;
 
 /// A sensor with its name and its aim.

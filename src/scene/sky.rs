@@ -3,11 +3,11 @@
 //! It knows how bright the sky is relative to the zenith, and how to draw from that; neither where light starts nor
 //! how much there is.
 
-use crate::math::{Frame, cosine_hemisphere, from_cosine, uniform_sphere};
 use crate::optics::{SkyBound, SkyModel};
 use crate::rng::{Dimension, Numbers, Sampler};
 use crate::scene::EmitterKind;
 use glam::DVec3;
+use lumiduct_base::math::{Frame, cosine_hemisphere, from_cosine, uniform_sphere};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Steps of the quadrature from zenith to horizon, with two points of Gauss each, and around. The edges of what a tilted

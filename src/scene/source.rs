@@ -1,12 +1,12 @@
 //! Sources: where light starts.
 
-use crate::math::{Aabb, Frame, disk};
 use crate::rng::{Dimension, Sampler};
 use crate::scene::emission::EmitterKind;
 use crate::scene::intersect::Just;
 use crate::scene::shape::{Shape, Sphere};
 use crate::scene::{Emission, Inside, PrimId, Ray, Scene, SolidId};
 use glam::DVec3;
+use lumiduct_base::math::{Aabb, Frame, disk};
 
 /// A source of light.
 #[derive(Debug, Clone)]

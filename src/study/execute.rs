@@ -4,7 +4,6 @@
 //! threads are busy whether designs are many and small or few and large: while one design is read, judged or written,
 //! batches of another are traced.
 
-use crate::error::{Diagnostic, DiagnosticKind, Error, Result};
 use crate::input::{Job, Keep, Setting, Settings, Study};
 use crate::measure;
 use crate::pipeline::{self, BUILD, Stop};
@@ -14,6 +13,7 @@ use crate::study::designs::Design;
 use crate::study::store::Store;
 use crate::transport::{Interrupt, batch_paths};
 use indexmap::IndexMap;
+use lumiduct_base::error::{Diagnostic, DiagnosticKind, Error, Result};
 use std::collections::BTreeMap;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -15,7 +15,6 @@ mod store;
 
 pub use execute::BatchProgress;
 
-use crate::error::{Diagnostic, Error, Result};
 use crate::input::keys::Key;
 use crate::input::problems::{Problems, name_hint};
 use crate::input::{Parameter, Plan, Project, Study, StudySettings, Tie, load_study};
@@ -28,6 +27,7 @@ use crate::study::designs::designs;
 use crate::study::execute::{Batch, execute};
 use crate::study::store::Store;
 use crate::transport::{Activity, Interrupt, Shard};
+use lumiduct_base::error::{Diagnostic, Error, Result};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 

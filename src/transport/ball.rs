@@ -4,12 +4,12 @@
 //! does, `ΔV = ∫ min(r, d(ω))³/3 dω`. Of a medium that bends back into the ball the nearer part counts; what lies beyond
 //! is an error that shrinks with the window.
 
-use crate::math::{Frame, from_cosine};
 use crate::scene::{Inside, MediumId, Meeting, On, Ray, Scene, Visibility};
 use crate::transport::Path;
 use crate::transport::coverage::GOLDEN_TURN;
 use crate::transport::window::{NESTED, Window};
 use glam::DVec3;
+use lumiduct_base::math::{Frame, from_cosine};
 use std::f64::consts::PI;
 
 /// Directions in which the medium is sounded, on a spiral over the sphere.
@@ -65,12 +65,12 @@ fn clear_way(scene: &Scene, path: &Path, ray: &Ray, most: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::Aabb;
     use crate::optics::Medium;
     use crate::scene::shape::{Shape, Sphere};
     use crate::scene::{Builder, FaceSpec, Owner, Piece, Solid};
     use crate::transport::WAVELENGTH;
-    use crate::units::FluxUnit;
+    use lumiduct_base::math::Aabb;
+    use lumiduct_base::units::FluxUnit;
 
     const RADIUS: f64 = 5.0;
 

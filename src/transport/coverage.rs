@@ -3,12 +3,12 @@
 //! A window is a disk in the tangent plane of its middle. What of it has the surface below or above it is found on a
 //! sunflower of points (Vogel, Math. Biosci. 44 (1979) 179), whose inner parts fill the nested windows evenly.
 
-use crate::math::circle;
 use crate::scene::shape::{ChartRect, Crossing, Start};
 use crate::scene::{PrimId, Ray, Scene, Surface};
 use crate::transport::records::{Slot, Surfaces};
 use crate::transport::window::{NESTED, Window};
 use glam::{DVec2, DVec3};
+use lumiduct_base::math::circle;
 
 /// Points in the widest window. Half of them fill the next, a quarter the narrowest.
 const POINTS: usize = 96;
@@ -44,7 +44,7 @@ pub(crate) fn coverage(
     if lies_within(scene, middle, window) {
         return [1.0; NESTED];
     }
-    let frame = crate::math::Frame::from_axis(middle.point, middle.normal);
+    let frame = lumiduct_base::math::Frame::from_axis(middle.point, middle.normal);
     let mut covered = [0usize; NESTED];
     for place in 0..POINTS {
         let radius = window.radius * ((place as f64 + 0.5) / POINTS as f64).sqrt();
@@ -107,11 +107,11 @@ fn is_over_surface(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::Frame;
     use crate::optics::Medium;
     use crate::scene::shape::{Flat, Region, Shape};
     use crate::scene::{Builder, FaceSpec, Owner, Piece};
-    use crate::units::FluxUnit;
+    use lumiduct_base::math::Frame;
+    use lumiduct_base::units::FluxUnit;
 
     /// A square of 20 mm.
     fn square() -> Scene {

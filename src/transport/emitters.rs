@@ -3,7 +3,6 @@
 //! Points, lines and collimated beams have no radiance that a ray could meet; the sources say so, and an estimator that
 //! needs to meet them is refused.
 
-use crate::math::{Aabb, Frame};
 use crate::scene::shape::{Crossing, Shape, Start};
 use crate::scene::{
     Emission, EmitSide, Emitter, EmitterKind, PrimId, Scene, SolidId, Source, SourceId,
@@ -11,6 +10,7 @@ use crate::scene::{
 };
 use crate::transport::{Path, Segment};
 use glam::DVec3;
+use lumiduct_base::math::{Aabb, Frame};
 use std::f64::consts::PI;
 
 /// Light of a source behind a face is met at the start of a segment, up to rounding of this size, relative to the scene.
@@ -330,7 +330,7 @@ mod tests {
     use crate::rng::Sampler;
     use crate::scene::shape::{Cylinder, Flat, Region};
     use crate::scene::{Builder, Ray};
-    use crate::units::FluxUnit;
+    use lumiduct_base::units::FluxUnit;
 
     #[test]
     fn a_photon_and_the_gather_path_that_meets_its_start_tell_the_same_emission() {

@@ -10,13 +10,13 @@
 //! the window (eq. 24, after Jensen & Christensen, SIGGRAPH 1998, eq. 15): where gather paths are scattered themselves by
 //! the same chance, what they find there needs no other factor.
 
-use crate::math::projected_cap;
 use crate::optics::{Incidence, evaluate};
 use crate::scene::MediumId;
 use crate::transport::coverage::{AGREEING, HEIGHT};
 use crate::transport::records::{GatherRecord, Slot, Wanted};
 use crate::transport::window::{ANGLE_OF, COUNTED, NESTED, RADIUS_OF, Window};
 use glam::DVec3;
+use lumiduct_base::math::projected_cap;
 
 /// Cosines that the directions of a cone must stay above for `1/|cos θ_p|` to be used, 1.
 const GRAZING: f64 = 0.03;

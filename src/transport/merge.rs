@@ -5,12 +5,12 @@
 //! `c_M = N p_e M p_g G/q` (docs/method.md, eq. 16 to 18). Where the shares come from is not known here, nor who
 //! traces the paths.
 
-use crate::math::projected_cap;
 use crate::optics::{Bsdf, Incidence, Side, chances};
 use crate::scene::Scene;
 use crate::transport::scatter::Facing;
 use crate::transport::window::{COUNTED, Window};
 use glam::DVec3;
+use lumiduct_base::math::projected_cap;
 use std::collections::{BTreeSet, VecDeque};
 
 /// Merged paths have no roulette above this throughput, 1: it would change their densities.

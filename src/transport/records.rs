@@ -2,13 +2,13 @@
 //!
 //! What a record is worth to a photon is not known here.
 
-use crate::math::Aabb;
 use crate::optics::{Bsdf, VolumeScattering};
 use crate::scene::{MediumId, PrimId, Scene, SmoothId};
 use crate::transport::record_index::{Index, Indexed, Key, TOGETHER};
 use crate::transport::stop::Pace;
 use crate::transport::window::{NESTED, Window};
 use glam::DVec3;
+use lumiduct_base::math::Aabb;
 use smallvec::SmallVec;
 use std::collections::BTreeMap;
 

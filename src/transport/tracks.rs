@@ -1,11 +1,11 @@
 //! A few paths to look at: where they went and how they ended.
 
-use crate::math::Aabb;
 use crate::rng::Sampler;
 use crate::scene::{FaceId, Ray, Scene, SensorId, SourceId};
 use crate::transport::forward::Forward;
 use crate::transport::{Event, Path};
 use glam::DVec3;
+use lumiduct_base::math::Aabb;
 
 /// Stream of random numbers of the paths that are drawn.
 const STREAM: u64 = 2;

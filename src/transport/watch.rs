@@ -1,10 +1,10 @@
 //! Which sensors watch what: looked up once per run, asked at every event.
 
-use crate::math::Aabb;
 use crate::scene::{
     Counts, FaceId, Goniometer, Owner, Patch, Place, Scene, SensorId, SensorKind, SurfaceSensor,
 };
 use crate::transport::Segment;
+use lumiduct_base::math::Aabb;
 
 /// The sensors of a scene, by where light can meet them.
 #[derive(Debug)]

@@ -7,7 +7,7 @@ use lumiduct::scene::{Inside, Just, On, Ray, Scene, SolidId};
 
 /// A direction along no axis of anything.
 fn direction(sampler: &mut Sampler) -> DVec3 {
-    lumiduct::math::uniform_sphere(sampler.pair(Dimension::EmitDirection))
+    lumiduct_base::math::uniform_sphere(sampler.pair(Dimension::EmitDirection))
 }
 
 /// A point of a box, mm.

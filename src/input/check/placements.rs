@@ -6,7 +6,7 @@ use crate::input::check::Scene;
 use crate::input::keys::Key;
 use crate::input::problems::Problems;
 use crate::input::spec::placement::{PlacementSpec, SpacePlacementSpec};
-use crate::math::Frame;
+use lumiduct_base::math::Frame;
 
 pub(crate) fn check(scene: Scene<'_>, problems: &mut Problems) {
     for (key, at) in placements(scene) {

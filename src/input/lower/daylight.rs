@@ -5,7 +5,6 @@ use crate::input::lower::Context;
 use crate::input::lower::light_groups::{Daylight, Member};
 use crate::input::problems::name_hint;
 use crate::input::spec::daylight::{SkyModelSpec, SkySpec, SunPlaceSpec, SunSpec, WhenSpec};
-use crate::math::{Aabb, Frame};
 use crate::optics::SkyModel;
 use crate::optics::sun::{Date, Observation, read_time, sun_position};
 use crate::scene::shape::Shape;
@@ -13,8 +12,9 @@ use crate::scene::{
     Emission, EmitSide, Emitter, EmitterKind, FaceId, MeshBody, Owner, Sky, Source, SourceId,
     Start, SunAngles,
 };
-use crate::units::per_m2_to_per_mm2;
 use glam::DVec3;
+use lumiduct_base::math::{Aabb, Frame};
+use lumiduct_base::units::per_m2_to_per_mm2;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Azimuth of a sun of which none is told, deg: south.

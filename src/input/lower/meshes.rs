@@ -1,15 +1,16 @@
 //! Solids from mesh files: read, examined, placed.
 
-use crate::formats::mesh::{self, Defects, LengthUnit, MeshHealth, TriangleMesh};
 use crate::input::keys::Key;
 use crate::input::lower::Context;
 use crate::input::problems::face_hint;
 use crate::input::spec::finish::FinishRef;
 use crate::input::spec::solid::{MeshNormals, MeshSpec, MeshUnit};
-use crate::math::Frame;
 use crate::scene::mesh::Mesh;
 use crate::scene::{FinishId, SolidId};
 use indexmap::IndexMap;
+use lumiduct_base::math::Frame;
+use lumiduct_base::mesh::{Defects, MeshHealth, TriangleMesh, health};
+use lumiduct_files::mesh::{self, LengthUnit};
 
 /// Bounces for which the drift of a faceted wall is told.
 const DRIFT_BOUNCES: u32 = 100;
@@ -36,7 +37,7 @@ impl Context<'_> {
         if spec.normals == MeshNormals::Facet {
             mesh.normals = None;
         }
-        self.examine(spec, &mesh::health(&mesh), &file);
+        self.examine(spec, &health(&mesh), &file);
         Some(mesh)
     }
 

@@ -23,7 +23,6 @@ mod starts;
 mod surfaces;
 mod tubes;
 
-use crate::input::digest::Digest;
 use crate::input::keys::{Key, Places};
 use crate::input::problems::{Problems, face_hint};
 use crate::input::spec::SceneSpec;
@@ -33,9 +32,10 @@ use crate::input::spec::source::SourceSpec;
 use crate::optics::{Medium, VolumeScattering};
 use crate::scene::plan::{Check, RunPlan};
 use crate::scene::{Builder, FaceId, FinishId, MediumId, Scene};
-use crate::units::FluxUnit;
 use glam::DVec3;
 use indexmap::IndexMap;
+use lumiduct_base::digest::Digest;
+use lumiduct_base::units::FluxUnit;
 
 /// What lowering makes of a scene file.
 #[derive(Debug)]

@@ -3,8 +3,8 @@
 use crate::input::keys::Key;
 use crate::input::lower::Context;
 use crate::input::spec::placement::{FacePlacementSpec, PlacementSpec, SpacePlacementSpec};
-use crate::math::Frame;
 use glam::DVec3;
+use lumiduct_base::math::Frame;
 
 /// Which way a thing at a face points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

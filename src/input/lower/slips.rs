@@ -7,11 +7,11 @@ use crate::input::spec::SceneSpec;
 use crate::input::spec::placement::PlacementSpec;
 use crate::input::spec::sensor::{CountsSpec, SensorSide, SensorSpec};
 use crate::input::spec::source::{BodySpec, SourceCommonSpec, SourceSpec};
-use crate::number::format_value;
 use crate::optics::Bsdf;
 use crate::rng::{Dimension, Sampler};
 use crate::scene::{Emitted, FaceArea, FaceId, FinishId, Just, Owner, Ray, Scene, Solid, SolidId};
 use glam::DVec3;
+use lumiduct_base::number::format_value;
 
 /// Points that are tried on a face of a sheet: a cut of a hundredth of it is missed once in ten sheets.
 const PROBES: u64 = 256;

@@ -10,10 +10,10 @@ use crate::input::spec::solid::{BoxSpec, CylinderSpec, SolidSpec};
 use crate::input::spec::sweep::{
     CircleSpec, LegSpec, ProfileSpec, RectangleSpec, StraightSpec, SweepSpec,
 };
-use crate::math::{Aabb, Frame};
 use crate::scene::shape::{Shape, Sphere};
 use crate::scene::{FaceId, FaceSpec, FinishId, Owner, Solid, SolidId};
 use indexmap::IndexMap;
+use lumiduct_base::math::{Aabb, Frame};
 use std::f64::consts::PI;
 
 impl Context<'_> {
@@ -30,7 +30,7 @@ impl Context<'_> {
         };
         if let SolidSpec::Mesh(spec) = solid {
             let Some(mesh) = self.read_mesh(&spec.shape, &key) else { return };
-            let volume = Some(crate::formats::mesh::health(&mesh).signed_volume_mm3);
+            let volume = Some(lumiduct_base::mesh::health(&mesh).signed_volume_mm3);
             let id = self.add_solid(name, medium, common.priority, volume);
             self.add_mesh(name, id, &mesh, &common.faces, &frame, &key);
             return;

@@ -1,12 +1,12 @@
 //! A study file as it is read, before its scene is known.
 
-use crate::error::{Error, Result};
 use crate::input::keys::{Key, Places};
 use crate::input::problems::Problems;
 use crate::input::sources::{SourceId, Sources};
 use crate::input::spec::study::{PlanSpec, STUDY_FORMAT_VERSION, StudySpec};
 use crate::input::tree::{self, Node, Value};
 use crate::input::{convert, note_breaks, note_differences, schema, unreadable};
+use lumiduct_base::error::{Error, Result};
 use std::path::{Path, PathBuf};
 
 /// A study file that was read, with what is wrong with it so far.

@@ -9,8 +9,6 @@ mod rules;
 
 pub use parameters::{DESIGN_COLUMN, Domain, OTHER_COLUMNS, Parameter, Setting, Tie, column};
 
-use crate::error::{Diagnostic, Error, Result};
-use crate::input::digest::Digest;
 use crate::input::keys::{Key, Places};
 use crate::input::lower::plan;
 use crate::input::problems::Problems;
@@ -22,7 +20,9 @@ use crate::input::spec::study::{
 use crate::input::study::file::{StudyDraft, read};
 use crate::input::{Draft, Job, Settings, draft, load};
 use crate::scene::plan::{Check, NUMERICS};
-use crate::text::visible;
+use lumiduct_base::digest::Digest;
+use lumiduct_base::error::{Diagnostic, Error, Result};
+use lumiduct_base::text::visible;
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,6 +1,5 @@
 //! Rules of a study that span several keys, or that need its scene.
 
-use crate::error::{Diagnostic, DiagnosticKind};
 use crate::input::check::{check_demands, check_length, check_name, check_title};
 use crate::input::keys::{Key, Places};
 use crate::input::overrides::parse_key;
@@ -12,8 +11,9 @@ use crate::input::spec::study::{
 use crate::input::study::parameters::{DESIGN_COLUMN, OTHER_COLUMNS, column};
 use crate::input::study::{Domain, Parameter, label, problems_of_scene};
 use crate::input::{Job, Settings};
-use crate::text::is_control;
 use indexmap::IndexMap;
+use lumiduct_base::error::{Diagnostic, DiagnosticKind};
+use lumiduct_base::text::is_control;
 use std::collections::BTreeSet;
 use std::path::Path;
 

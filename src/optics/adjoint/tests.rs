@@ -1,10 +1,10 @@
 use super::*;
-use crate::math::circle;
 use crate::optics::{
     AngleTable, Facets, FilmFace, FilmMake, Grain, HazeBase, HazeLaw, HazeSides, Microfacet,
     PrismFilm, evaluate,
 };
 use crate::tally::Tally;
+use lumiduct_base::math::circle;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 const INDICES: [[f64; 2]; 3] = [[1.0, 1.49], [1.49, 1.0], [1.3, 1.3]];

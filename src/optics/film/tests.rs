@@ -69,7 +69,7 @@ fn a_lambertian_field_is_reflected_as_far_as_was_traced_elsewhere() {
     let film = film(1.5);
     let reflected = Tally::of((0..200_000).map(|index| {
         let mut sampler = Sampler::for_path(21, 0, index);
-        let dir = -crate::math::cosine_hemisphere(sampler.pair(Dimension::EmitDirection));
+        let dir = -lumiduct_base::math::cosine_hemisphere(sampler.pair(Dimension::EmitDirection));
         let incidence = Incidence { dir, ..along_prisms(0.3, 0.0, 1.0) };
         let out = film.scatter(FilmFace::Flat, &incidence, &mut sampler);
         out.filter(|out| out.side == Side::Reflected).map_or(0.0, |out| out.factor)

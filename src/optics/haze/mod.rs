@@ -14,7 +14,6 @@ mod profile;
 
 pub use profile::HazeLaw;
 
-use crate::math::{Frame, circle};
 use crate::optics::bsdf::{leaving_normal, specular, straight};
 use crate::optics::haze::horizon::{Horizon, Indices};
 use crate::optics::haze::profile::Profile;
@@ -22,6 +21,7 @@ use crate::optics::shares::{smooth, smooth_direction};
 use crate::optics::{Incidence, Lobe, Scattered, Shares, Side};
 use crate::rng::{Dimension, Numbers, Sampler};
 use glam::DVec3;
+use lumiduct_base::math::{Frame, circle};
 
 #[cfg(test)]
 mod tests;

@@ -1,12 +1,12 @@
 //! One timed run of one method.
 
-use crate::error::{Error, Result};
 use crate::measure;
 use crate::pipeline::compare::{Bench, Method};
 use crate::report::Sample;
 use crate::scene::Scene;
 use crate::scene::plan::Request;
 use crate::transport::{BaselineRun, Findings, Run, StopSignal};
+use lumiduct_base::error::{Error, Result};
 use std::time::{Duration, Instant};
 
 /// A run to be done.

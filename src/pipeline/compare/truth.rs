@@ -1,11 +1,11 @@
 //! What estimators are held against: a given value, one from a file, or a long run of an unbiased estimator.
 
-use crate::error::{Error, Result};
 use crate::pipeline::compare::runner::{Estimate, Stint, trace};
 use crate::pipeline::compare::{Bench, CompareWishes, Method};
 use crate::report::Truth;
 use crate::scene::plan::Request;
 use crate::transport::invisible;
+use lumiduct_base::error::{Error, Result};
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::time::Duration;

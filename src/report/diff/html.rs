@@ -1,10 +1,10 @@
 //! `diff.html`: a comparison for people with a browser, with what the customer asks for first.
 
-use crate::error::Result;
 use crate::report::diff::page::{HEADER, cells, findings, remark, title};
 use crate::report::diff::{Diff, DiffRow, MapDiff, MapOutcome, maps};
 use crate::report::html::data::drawn_map;
 use crate::report::html::frame::{Block, Page, Part, Plots, Standing, render};
+use lumiduct_base::error::Result;
 
 /// Rows of a table that are shown; those beyond are folded away.
 const ROWS_SHOWN: usize = 60;

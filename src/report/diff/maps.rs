@@ -1,11 +1,11 @@
 //! Differences of maps, cell by cell. Maps are known by their tables: places, values and errors.
 
-use crate::error::Result;
-use crate::number::format_fixed;
 use crate::report::OutputFile;
 use crate::report::html::data::{Cells, MapWords};
 use crate::report::png::{ColourMap, HeatMap, Scale, heat_map};
 use csv::ReaderBuilder;
+use lumiduct_base::error::Result;
+use lumiduct_base::number::format_fixed;
 use ndarray::Array2;
 
 /// Chance that noise alone exceeds the bound of a map.

@@ -1,11 +1,11 @@
 //! A comparison in words: the table on the terminal, the page and the table as files.
 
-use crate::error::Result;
-use crate::number::{format_fixed, format_percent, format_value, format_with_error};
 use crate::report::OutputFile;
 use crate::report::csv::table;
 use crate::report::diff::{Diff, DiffRow, Judgement, MapOutcome};
-use crate::text::{markdown_cell, markdown_page};
+use lumiduct_base::error::Result;
+use lumiduct_base::number::{format_fixed, format_percent, format_value, format_with_error};
+use lumiduct_base::text::{markdown_cell, markdown_page};
 use statrs::distribution::{ContinuousCDF, Normal};
 use std::fmt::Write;
 

@@ -1,7 +1,5 @@
 //! The page of a check: the scene in three dimensions before anything is traced, and the axes of its faces.
 
-use crate::error::Result;
-use crate::number::format_value;
 use crate::report::drawing::{Mark, Role, drawing};
 use crate::report::html::data;
 use crate::report::html::frame::{Block, Page, Part, Plots, Standing, render, table};
@@ -9,6 +7,8 @@ use crate::report::local_axes::{LocalAxes, local_axes};
 use crate::scene::{Owner, Scene};
 use crate::transport::Track;
 use glam::DVec3;
+use lumiduct_base::error::Result;
+use lumiduct_base::number::format_value;
 
 /// Most solids and sheets with a name in the picture.
 const MOST_NAMES: usize = 40;

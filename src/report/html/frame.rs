@@ -3,8 +3,8 @@
 //! It knows no report: whoever has titles, tables and plots as plain data gets one self-contained file. Nothing on it is
 //! loaded from anywhere; only without scripts does it show the pictures that lie beside it.
 
-use crate::error::{Error, Result};
 use crate::report::png::{ColourMap, curve_colours};
+use lumiduct_base::error::{Error, Result};
 use minijinja::syntax::SyntaxConfig;
 use minijinja::value::Serde;
 use minijinja::{AutoEscape, Environment, Value, context};

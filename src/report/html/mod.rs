@@ -8,12 +8,12 @@ mod coarse;
 pub(crate) mod data;
 pub(crate) mod frame;
 
-use crate::error::Result;
 use crate::input::Project;
 use crate::report::Report;
 use crate::report::base64::png_uri;
 use crate::report::contents::{parts, verdict};
 use crate::report::html::frame::{Masthead, Page, Plots, render};
+use lumiduct_base::error::Result;
 
 /// The whole page.
 pub(crate) fn html(report: &Report) -> Result<String> {

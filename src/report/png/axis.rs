@@ -2,7 +2,7 @@
 //!
 //! Knows nothing of pixels.
 
-use crate::number::{format_fixed, format_value, superscript};
+use lumiduct_base::number::{format_fixed, format_value, superscript};
 
 /// Whether equal lengths are equal differences or equal ratios.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

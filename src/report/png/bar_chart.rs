@@ -1,12 +1,12 @@
 //! Horizontal bars with their values, for the flux balance.
 
-use crate::error::Result;
-use crate::number::{format_percent, format_value, format_with_error};
 use crate::report::png::canvas::{Canvas, Ink};
 use crate::report::png::geometry::Rect;
 use crate::report::png::layout::{Header, MARGIN, write};
 use crate::report::png::palette::{INK, series_ink};
 use crate::report::png::text::{Align, LABEL};
+use lumiduct_base::error::Result;
+use lumiduct_base::number::{format_percent, format_value, format_with_error};
 
 /// Horizontal bars.
 #[derive(Debug, Clone)]

@@ -4,10 +4,10 @@
 //! numbers are edges of pixels. Everything is drawn [`FINER`] times finer and averaged at the end, so that slanted
 //! edges are smooth while edges on whole pixels stay sharp.
 
-use crate::error::{Error, Result};
 use crate::report::png::geometry::{Point, Rect, clip, distance};
 use crate::report::png::palette::{PAPER, Rgb};
 use crate::report::png::text::{self, Label};
+use lumiduct_base::error::{Error, Result};
 
 /// Fine pixels per pixel, in each direction.
 const FINER: usize = 3;

@@ -2,7 +2,6 @@
 //!
 //! Decides which values the ends of the bar are; knows nothing of cells and places.
 
-use crate::error::Result;
 use crate::report::png::axis::{Axis, Scale, Ticks};
 use crate::report::png::canvas::{Canvas, Ink, Pen};
 use crate::report::png::geometry::Rect;
@@ -10,6 +9,7 @@ use crate::report::png::layout::write;
 use crate::report::png::marked_axis::MarkedAxis;
 use crate::report::png::palette::{ColourMap, INK, NEUTRAL, Rgb};
 use crate::report::png::text::{Align, LABEL, TICK};
+use lumiduct_base::error::Result;
 
 /// Width of the bar without its numbers, pixels.
 pub(crate) const BAR_WIDTH: f64 = 20.0;

@@ -1,6 +1,5 @@
 //! A cut through the geometry with paths of light in it.
 
-use crate::error::Result;
 use crate::report::png::axis::{Axis, Scale};
 use crate::report::png::canvas::{Canvas, Ink, Pen};
 use crate::report::png::geometry::{Point, Rect};
@@ -11,6 +10,7 @@ use crate::report::png::layout::{
 use crate::report::png::marked_axis::MarkedAxis;
 use crate::report::png::palette::{PAPER, Rgb, outline_colour};
 use crate::report::png::text::{Align, LABEL, TICK};
+use lumiduct_base::error::Result;
 
 /// A cut through the geometry, seen along its normal.
 #[derive(Debug, Clone)]

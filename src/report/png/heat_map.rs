@@ -1,7 +1,5 @@
 //! Maps: a value per cell of a rectangle, in colours.
 
-use crate::error::Result;
-use crate::number::format_value;
 use crate::report::png::axis::{Axis, Scale};
 use crate::report::png::canvas::Canvas;
 use crate::report::png::colour_bar::{BAR_WIDTH, BarScale, ColourBar, Colouring, TIP};
@@ -12,6 +10,8 @@ use crate::report::png::layout::{
 use crate::report::png::marked_axis::MarkedAxis;
 use crate::report::png::palette::{ColourMap, NEUTRAL};
 use crate::report::png::text::TICK;
+use lumiduct_base::error::Result;
+use lumiduct_base::number::format_value;
 use ndarray::Array2;
 
 /// A value per cell of a rectangle.

@@ -1,12 +1,12 @@
 //! What pictures have in common: heading, legend, frame with axes, and how large a plot of millimetres is drawn.
 
-use crate::error::Result;
 use crate::report::png::axis::{Axis, Ticks};
 use crate::report::png::canvas::{Canvas, Ink, Pen};
 use crate::report::png::geometry::{Point, Rect};
 use crate::report::png::marked_axis::MarkedAxis;
 use crate::report::png::palette::{GRID, INK, Rgb, SOFT_INK};
 use crate::report::png::text::{Align, Direction, Font, LABEL, Label, TICK, TITLE};
+use lumiduct_base::error::Result;
 
 /// White space around everything, pixels.
 pub(crate) const MARGIN: f64 = 24.0;

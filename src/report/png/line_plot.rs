@@ -2,7 +2,6 @@
 
 mod range;
 
-use crate::error::Result;
 use crate::report::png::axis::{Axis, Scale};
 use crate::report::png::canvas::{Canvas, Ink, Pen};
 use crate::report::png::geometry::{Point, Rect};
@@ -10,6 +9,7 @@ use crate::report::png::layout::{Axes, Header, Legend, MARGIN, Sample, write};
 use crate::report::png::marked_axis::MarkedAxis;
 use crate::report::png::palette::{SOFT_INK, SeriesInk, paired_colour, series_ink};
 use crate::report::png::text::{Align, LABEL};
+use lumiduct_base::error::Result;
 use range::{Padding, range};
 
 /// Curves over an axis.

@@ -3,9 +3,9 @@
 //! How many marks an axis has follows from its length on a picture. A page leaves out labels that have no room; it makes
 //! none of its own.
 
-use crate::number::superscript;
 use crate::report::png::axis::{Axis, Scale, Ticks};
 use crate::report::png::text::TICK;
+use lumiduct_base::number::superscript;
 
 /// An axis with its marks and its label.
 #[derive(Debug, Clone, PartialEq)]

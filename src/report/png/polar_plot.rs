@@ -1,6 +1,5 @@
 //! Luminous intensity distribution curves, as in the data sheets of luminaires.
 
-use crate::error::Result;
 use crate::report::png::axis::{Axis, Scale, Ticks};
 use crate::report::png::canvas::{Canvas, Ink, Pen};
 use crate::report::png::geometry::{Point, Rect};
@@ -8,6 +7,7 @@ use crate::report::png::layout::{Header, Legend, MARGIN, Sample, remark, write};
 use crate::report::png::marked_axis::{MarkedAxis, with_factor};
 use crate::report::png::palette::{GRID, INK, PAPER, SOFT_INK, SeriesInk, series_ink};
 use crate::report::png::text::{Align, LABEL, TICK};
+use lumiduct_base::error::Result;
 
 /// Curves of a value over an angle from the axis.
 #[derive(Debug, Clone)]

@@ -1,13 +1,13 @@
 //! Scatter matrices: several quantities of the same things, each against each.
 
-use crate::error::Result;
-use crate::number::format_value;
 use crate::report::png::axis::{Axis, Scale};
 use crate::report::png::canvas::{Canvas, Ink, Pen};
 use crate::report::png::geometry::{Point, Rect};
 use crate::report::png::layout::{Header, Legend, MARGIN, Mark, Sample, draw_mark, write};
 use crate::report::png::palette::{GRID, INK, Rgb, series_ink};
 use crate::report::png::text::{Align, LABEL, TICK};
+use lumiduct_base::error::Result;
+use lumiduct_base::number::format_value;
 
 /// Several quantities of the same things.
 #[derive(Debug, Clone)]

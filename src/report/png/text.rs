@@ -3,9 +3,9 @@
 //! The only place that names plotters. The font is `DejaVu` Sans cut down to Latin, Greek, Cyrillic and the signs of
 //! physics (`font/`); no font of the system is ever looked for, so the same picture comes out everywhere.
 
-use crate::error::{Error, Result};
-use crate::number::shorten;
 use crate::report::png::palette::Rgb;
+use lumiduct_base::error::{Error, Result};
+use lumiduct_base::number::shorten;
 use plotters::backend::BitMapBackend;
 use plotters::prelude::{DrawingBackend, RGBColor};
 use plotters::style::{FontDesc, FontFamily, FontStyle, FontTransform, TextStyle, register_font};

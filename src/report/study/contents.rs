@@ -2,13 +2,13 @@
 
 use crate::input::{Best, Domain, Setting};
 use crate::measure::Outcome;
-use crate::number::{format_percent, format_value, format_with_error};
 use crate::report::study::edge::edge_remark;
 use crate::report::study::{
     DesignOutcome, DesignRecord, Estimate, Pairing, ParameterFacts, PlanFacts, Sensitivity,
     SensitivityMethod, StudyReport,
 };
 use crate::report::words::{outcome_word, quantity};
+use lumiduct_base::number::{format_percent, format_value, format_with_error};
 use std::fmt::Write;
 
 /// Errors of a difference from which on a design is told to be behind the best, 1.

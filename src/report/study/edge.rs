@@ -1,9 +1,9 @@
 //! Whether the best design lies at the edge of what was tried.
 
 use crate::input::Domain;
-use crate::number::format_value;
 use crate::report::study::figures::numbers_of;
 use crate::report::study::{DesignRecord, ParameterFacts, StudyReport};
+use lumiduct_base::number::format_value;
 
 /// Of fewer settings than this every one is at an edge.
 const FEWEST: usize = 3;

@@ -1,8 +1,6 @@
 //! Which pictures a study has, and what is on them.
 
-use crate::error::Result;
 use crate::measure::Outcome;
-use crate::number::format_value;
 use crate::report::OutputFile;
 use crate::report::png::{
     Bar, BarChart, ErrorForm, LinePlot, Look, Scale, ScatterColumn, ScatterMatrix, Series,
@@ -10,6 +8,8 @@ use crate::report::png::{
 };
 use crate::report::study::contents::setting_word;
 use crate::report::study::{DesignRecord, Effect, ParameterFacts, PlanFacts, StudyReport};
+use lumiduct_base::error::Result;
+use lumiduct_base::number::format_value;
 
 /// Curves of a response plot; more cannot be told apart.
 const MOST_CURVES: usize = 12;

@@ -1,6 +1,5 @@
 //! `study.html`: what came of a study, for people with a browser, in one file without anything to load.
 
-use crate::error::Result;
 use crate::report::html::data::chart;
 use crate::report::html::frame::{self, Block, Page, Plots, Standing, render};
 use crate::report::html::masthead;
@@ -10,6 +9,7 @@ use crate::report::png::{
 use crate::report::study::StudyReport;
 use crate::report::study::contents::{Item, Part, parts, verdict};
 use crate::report::study::figures::{Drawing, Figure};
+use lumiduct_base::error::Result;
 
 /// Tables of more rows than this are folded away.
 const ROWS_SHOWN: usize = 60;

@@ -17,11 +17,11 @@ pub use record::{
 
 pub use terminal::terminal;
 
-use crate::error::{Error, Result};
 use crate::input::Setting;
 use crate::measure::{Measure, Outcome};
 use crate::report::{LOGO, OutputFile};
 use indexmap::IndexMap;
+use lumiduct_base::error::{Error, Result};
 use serde::Serialize;
 
 /// Name of the file with everything for programs.

@@ -4,7 +4,7 @@ use crate::report::markdown::masthead;
 use crate::report::study::StudyReport;
 use crate::report::study::contents::{Item, Part, parts, verdict};
 use crate::report::study::figures::Figure;
-use crate::text::{markdown_cell, markdown_page};
+use lumiduct_base::text::{markdown_cell, markdown_page};
 use std::fmt::Write;
 
 /// Rows of a table that are shown; `study.csv` has all.

@@ -1,11 +1,11 @@
 //! `study.csv`: a row for each design, units in the header.
 
-use crate::error::Result;
 use crate::input::{DESIGN_COLUMN, OTHER_COLUMNS};
 use crate::report::OutputFile;
 use crate::report::csv::table;
 use crate::report::study::{DesignOutcome, DesignRecord, StudyReport};
 use crate::report::words::{numbered, outcome_word};
+use lumiduct_base::error::Result;
 
 /// All tables of a study.
 pub(super) fn files(report: &StudyReport) -> Result<Vec<OutputFile>> {

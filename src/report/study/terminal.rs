@@ -1,9 +1,9 @@
 //! What a batch prints when it has ended.
 
-use crate::number::format_percent;
 use crate::report::study::contents::verdict;
 use crate::report::study::figures::setting_words;
 use crate::report::study::{DesignOutcome, DesignRecord, StudyReport};
+use lumiduct_base::number::format_percent;
 
 /// Designs that are named one by one.
 const DESIGNS_SHOWN: usize = 5;

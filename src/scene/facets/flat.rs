@@ -1,9 +1,9 @@
 //! Flat outlines with corners, and with holes: no grid fits them.
 
-use crate::math::planar::triangulate;
 use crate::scene::facets::Facets;
 use crate::scene::shape::{Flat, Region};
 use glam::{DVec2, DVec3};
+use lumiduct_base::math::planar::triangulate;
 
 /// Corners of a round outline.
 const ROUND: usize = 32;

@@ -54,8 +54,8 @@ fn cube(point: DVec3, cell: f64) -> [i64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::mesh::samples::{Normals, icosphere};
-    use crate::math::Frame;
+    use lumiduct_base::math::Frame;
+    use lumiduct_base::mesh::bodies::{Normals, icosphere};
 
     #[test]
     fn coarse_meshes_stay_as_they_are_and_fine_ones_keep_their_size_with_fewer_triangles() {

@@ -194,9 +194,9 @@ fn grid(shape: &Shape, [columns, rows]: [usize; 2]) -> Facets {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::Frame;
     use crate::scene::shape::{Cylinder, Flat, Region, Sphere, Torus};
     use glam::DVec2;
+    use lumiduct_base::math::Frame;
 
     fn area(facets: &Facets) -> f64 {
         let area = |corners: &[usize; 3]| {

@@ -1,11 +1,11 @@
 //! Outlines of the elements of patterns, for pictures alone.
 
-use crate::math::Frame;
 use crate::scene::facets::{FaceFacets, Facets};
 use crate::scene::pattern::{Outline, Pattern};
 use crate::scene::shape::{Cylinder, Shape};
 use crate::scene::{FaceId, Scene};
 use glam::{DMat2, DVec2, DVec3};
+use lumiduct_base::math::Frame;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Corners of a round outline.

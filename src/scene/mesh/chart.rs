@@ -1,10 +1,10 @@
 //! Flat faces of a mesh unroll into their plane.
 
-use crate::formats::mesh::area_vector;
-use crate::math::Frame;
 use crate::scene::mesh::Mesh;
 use crate::scene::shape::ChartRect;
 use glam::{DVec2, DVec3};
+use lumiduct_base::math::Frame;
+use lumiduct_base::mesh::area_vector;
 use smallvec::SmallVec;
 
 /// A triangle cut by the four sides of a rectangle has at most seven corners.
@@ -82,7 +82,7 @@ fn area(outline: &[DVec2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::mesh::samples::{Normals, rod};
+    use lumiduct_base::mesh::bodies::{Normals, rod};
     use std::f64::consts::TAU;
 
     fn placed_rod() -> Mesh {

@@ -70,12 +70,12 @@ fn side(p: DVec2, q: DVec2) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::mesh::samples::{Normals, block, icosphere, rod};
-    use crate::formats::mesh::{TriangleMesh, area_vector};
-    use crate::math::{Frame, uniform_sphere};
     use crate::rng::{Dimension, Sampler};
     use crate::scene::mesh::Mesh;
     use crate::scene::shape::Crossing;
+    use lumiduct_base::math::{Frame, uniform_sphere};
+    use lumiduct_base::mesh::bodies::{Normals, block, icosphere, rod};
+    use lumiduct_base::mesh::{TriangleMesh, area_vector};
 
     /// Crossings of a ray's line with all triangles.
     fn all_crossings(mesh: &Mesh, ray: &Ray) -> Vec<Crossing> {

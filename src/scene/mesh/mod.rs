@@ -11,11 +11,11 @@ mod patch;
 
 pub use line::Line;
 
-use crate::formats::mesh::{TriangleMesh, area_vector};
-use crate::math::{Aabb, Frame};
 use crate::scene::Ray;
 use crate::scene::shape::Crossing;
 use glam::DVec3;
+use lumiduct_base::math::{Aabb, Frame};
+use lumiduct_base::mesh::{TriangleMesh, area_vector};
 
 /// Rounding of coordinates in single precision, relative to the largest of them: two bits more than the 2^-24 of
 /// one f32, for a vertex and a plane through three of them. Real facets of curved surfaces turn far more.
@@ -220,11 +220,11 @@ fn faces(mesh: &TriangleMesh, corners: &[[DVec3; 3]]) -> Vec<Face> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::mesh::samples::{Normals, block, icosphere, rod};
-    use crate::formats::mesh::{LengthUnit, read};
-    use crate::math::cone_direction;
     use crate::rng::{Dimension, Sampler};
     use crate::scene::shape::Toward;
+    use lumiduct_base::math::cone_direction;
+    use lumiduct_base::mesh::bodies::{Normals, block, icosphere, rod};
+    use lumiduct_files::mesh::{LengthUnit, read};
     use std::path::Path;
 
     /// Largest error of the shading normal, rad, over a point of each triangle of an ellipsoid with half axes 6, 3, 3.

@@ -1,7 +1,7 @@
 //! Which triangles are one smooth surface.
 
-use crate::formats::mesh::topology::{Groups, HalfEdge, half_edges, same_edge};
-use crate::formats::mesh::{TriangleMesh, area_vector, normals_agree};
+use lumiduct_base::mesh::topology::{Groups, HalfEdge, half_edges, same_edge};
+use lumiduct_base::mesh::{TriangleMesh, area_vector, normals_agree};
 
 /// The smooth patch of each triangle, numbered from 0 in order of appearance; `flatness` is how far, mm, a vertex of a
 /// plane may lie off it.

@@ -2,10 +2,10 @@
 //!
 //! On flat walls in closed form. Where a ball or a saw cut meets a round wall there is none: there it is a sum over strips.
 
-use crate::math::planar::disk_overlap;
 use crate::scene::relief::element::{Cap, Element, Form, Span, Way};
 use crate::scene::shape::ChartRect;
 use glam::DVec2;
+use lumiduct_base::math::planar::disk_overlap;
 use std::f64::consts::{PI, TAU};
 
 /// Steps by which areas and volumes on round walls are summed up.

@@ -1,9 +1,9 @@
 //! The wall that a relief lies on, in space: from unrolled coordinates to points, and back.
 
-use crate::math::Frame;
 use crate::scene::Patch;
 use crate::scene::shape::Shape;
 use glam::{DVec2, DVec3};
+use lumiduct_base::math::Frame;
 
 /// A flat wall, or a round one all around.
 #[derive(Debug, Clone, Copy, PartialEq)]

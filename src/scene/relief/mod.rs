@@ -14,11 +14,11 @@ mod tests;
 pub use element::{Cap, CapSize, Element, Form, Span, Way};
 pub use ground::{Ground, Site};
 
-use crate::math::planar::{clip, edges, signed_area};
 use crate::scene::pattern::{Field, Outline};
 use crate::scene::shape::ChartRect;
 use crate::scene::{FaceId, Piece};
 use glam::{DVec2, DVec3};
+use lumiduct_base::math::planar::{clip, edges, signed_area};
 use std::ops::Range;
 use std::sync::Arc;
 

@@ -2,11 +2,11 @@
 //!
 //! Surfaces that meet in an edge overlap there by a few units in the last place, so that rounding leaves no gap.
 
-use crate::math::planar::signed_area;
 use crate::scene::relief::element::{Cap, Element, Form, Span, Way};
 use crate::scene::relief::ground::{Ground, Site};
 use crate::scene::shape::{Cone, Flat, Region, Shape, Sphere};
 use glam::{DVec2, DVec3};
+use lumiduct_base::math::planar::signed_area;
 
 /// A surface of an element.
 #[derive(Debug)]

@@ -1,5 +1,4 @@
 use super::*;
-use crate::math::{Aabb, Frame, uniform_sphere};
 use crate::optics::Medium;
 use crate::rng::{Dimension, Sampler};
 use crate::scene::pattern::{Along, Columns, Rows};
@@ -7,7 +6,8 @@ use crate::scene::shape::{Flat, Region, Shape, Start};
 use crate::scene::{
     Accel, Builder, FaceSpec, Inside, On, Owner, PrimId, Ray, Scene, Solid, SolidId,
 };
-use crate::units::FluxUnit;
+use lumiduct_base::math::{Aabb, Frame, uniform_sphere};
+use lumiduct_base::units::FluxUnit;
 use std::f64::consts::PI;
 
 /// Half of the size of a slab, mm.

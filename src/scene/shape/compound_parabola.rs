@@ -1,10 +1,10 @@
 //! The wall of a compound parabolic concentrator of revolution.
 
-use crate::math::{Aabb, Frame, bracketed_root, convex_roots};
 use crate::scene::Ray;
 use crate::scene::shape::support::{across, box_by_reach};
 use crate::scene::shape::{ChartRect, Crossing, Start, Toward};
 use glam::{DVec2, DVec3};
+use lumiduct_base::math::{Aabb, Frame, bracketed_root, convex_roots};
 use std::f64::consts::{PI, TAU};
 
 /// A compound parabolic concentrator (Welford & Winston, High Collection Nonimaging Optics, 1989, ch. 4) or a

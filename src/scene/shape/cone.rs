@@ -1,10 +1,10 @@
 //! The wall of a cone frustum, or of a sector of one.
 
-use crate::math::{Aabb, Frame, quadratic};
 use crate::scene::Ray;
 use crate::scene::shape::wedge::{Wedge, arc_bounds, azimuth, point_on_circle, turn};
 use crate::scene::shape::{ChartRect, Crossing, Start, Toward};
 use glam::{DVec2, DVec3};
+use lumiduct_base::math::{Aabb, Frame, quadratic};
 
 /// A piece of a cone's wall between two cross-sections; the front is outside unless it has been turned
 /// [`Self::inward`].

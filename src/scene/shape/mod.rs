@@ -29,9 +29,9 @@ pub use sphere::Sphere;
 pub use torus::Torus;
 pub use wedge::Wedge;
 
-use crate::math::Aabb;
 use crate::scene::Ray;
 use glam::{DVec2, DVec3};
+use lumiduct_base::math::Aabb;
 
 /// Whether a ray starts on the very surface that is asked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

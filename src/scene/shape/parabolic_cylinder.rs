@@ -1,10 +1,10 @@
 //! A parabolic trough: half a two-dimensional concentrator, or a line reflector.
 
-use crate::math::{Aabb, Frame, bracketed_root, quadratic};
 use crate::scene::Ray;
 use crate::scene::shape::support::box_by_reach;
 use crate::scene::shape::{ChartRect, Crossing, Start, Toward};
 use glam::{DVec2, DVec3};
+use lumiduct_base::math::{Aabb, Frame, bracketed_root, quadratic};
 
 /// A piece of the parabolic cylinder z = x² / 4f, straight along y; the front is the concave side, that of the focal
 /// line.

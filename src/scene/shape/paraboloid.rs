@@ -1,10 +1,10 @@
 //! A zone of a paraboloid of revolution: the reflector that makes a beam of a point.
 
-use crate::math::{Aabb, Frame, quadratic};
 use crate::scene::Ray;
 use crate::scene::shape::support::{across, box_by_reach, front};
 use crate::scene::shape::{ChartRect, Crossing, Start, Toward};
 use glam::{DVec2, DVec3};
+use lumiduct_base::math::{Aabb, Frame, quadratic};
 use std::f64::consts::{PI, TAU};
 
 /// The part of the paraboloid z = r² / 4f between two radii; the front is outside, away from axis and focus, or

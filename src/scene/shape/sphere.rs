@@ -1,10 +1,10 @@
 //! A zone of a sphere: ball, cap, lens face.
 
-use crate::math::{Aabb, Frame};
 use crate::scene::Ray;
 use crate::scene::shape::support::{across, box_by_reach, front};
 use crate::scene::shape::{ChartRect, Crossing, Start, Toward};
 use glam::{DVec2, DVec3};
+use lumiduct_base::math::{Aabb, Frame};
 use std::f64::consts::TAU;
 
 /// The part of a sphere between two planes; the front is outside, or the centre's side if turned [`Sphere::inward`].

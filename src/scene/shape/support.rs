@@ -1,8 +1,8 @@
 //! What convex surfaces share: the box from how far they reach in a direction, and the side that is the front.
 
-use crate::math::{Aabb, Frame};
 use crate::scene::shape::Toward;
 use glam::DVec3;
+use lumiduct_base::math::{Aabb, Frame};
 
 /// The box around a shape given in `frame`; `reach(e)` is the largest `p · e` over its points, in the frame, mm.
 pub(super) fn box_by_reach(frame: &Frame, reach: impl Fn(DVec3) -> f64) -> Aabb {

@@ -1,10 +1,10 @@
 //! What every shape has to fulfil, for the tests of the shapes.
 
-use crate::math::{Aabb, Frame, uniform_sphere};
 use crate::rng::{Dimension, Sampler};
 use crate::scene::Ray;
 use crate::scene::shape::{ChartRect, Crossing, HalfSpace, Shape, Start, Toward};
 use glam::{DVec2, DVec3};
+use lumiduct_base::math::{Aabb, Frame, uniform_sphere};
 
 /// Seed of all tests of shapes.
 const SEED: u64 = 20_260;

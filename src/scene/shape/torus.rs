@@ -1,11 +1,11 @@
 //! The wall of a bent round tube: an arc of a torus.
 
-use crate::math::{Aabb, Frame, Roots, bracketed_root, cubic, quartic};
 use crate::scene::Ray;
 use crate::scene::shape::support::{across, box_by_reach};
 use crate::scene::shape::wedge::{Wedge, turn};
 use crate::scene::shape::{ChartRect, Crossing, Start, Toward};
 use glam::{DVec2, DVec3};
+use lumiduct_base::math::{Aabb, Frame, Roots, bracketed_root, cubic, quartic};
 use std::f64::consts::TAU;
 
 /// An arc of a torus about the z axis of its frame; the front is outside of the tube.

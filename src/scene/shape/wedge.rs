@@ -1,7 +1,7 @@
 //! A range of azimuths, to trim surfaces of revolution.
 
-use crate::math::{Aabb, Frame};
 use glam::{DVec2, DVec3};
+use lumiduct_base::math::{Aabb, Frame};
 use std::f64::consts::{PI, TAU};
 
 /// The azimuths from +x counter-clockwise to an angle below a whole turn.

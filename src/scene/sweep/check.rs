@@ -1,10 +1,10 @@
 //! Whether the pieces of a path fit: enough room between corners, no ring, no leg through another one.
 
-use crate::math::{Aabb, planar};
 use crate::scene::shape::Polygon;
 use crate::scene::sweep::path::{End, Form, Path, Piece, bend_frame, direction, unit};
 use crate::scene::sweep::{Profile, SweepError, SweepProblem};
 use glam::{DVec2, DVec3};
+use lumiduct_base::math::{Aabb, planar};
 use std::f64::consts::TAU;
 
 /// Touching is no overlap: points count as inside from this share of the profile's size on.
@@ -212,8 +212,8 @@ fn holds(outline: &Outline, piece: &Piece, p: DVec3) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::Frame;
     use crate::scene::sweep::{CornerKind, Leg, sweep};
+    use lumiduct_base::math::Frame;
     use std::f64::consts::{FRAC_PI_2, PI};
 
     fn straight(length: f64) -> Leg {

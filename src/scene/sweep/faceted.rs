@@ -1,7 +1,6 @@
 //! The walls that a polygon sweeps, edge by edge: planes along straight legs; about a bend axis, which lies in the plane
 //! of the polygon, cylinders, cones and plane sectors.
 
-use crate::math::{Frame, planar};
 use crate::scene::shape::{ChartRect, Cone, Cylinder, Flat, Region, Shape};
 use crate::scene::sweep::chart::{Sector, Sense, Trapezoid, WallChart};
 use crate::scene::sweep::path::{
@@ -10,6 +9,7 @@ use crate::scene::sweep::path::{
 use crate::scene::sweep::smooth::Smooth;
 use crate::scene::sweep::{CornerKind, Part, Wall};
 use glam::DVec2;
+use lumiduct_base::math::{Frame, planar};
 
 /// Below this share of the size, a difference is rounding: an edge is parallel, a wall has no height.
 const ROUNDING: f64 = 1e-12;

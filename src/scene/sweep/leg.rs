@@ -1,7 +1,7 @@
 //! What a path is made of, as its user says it, and what can be wrong with it.
 
-use crate::number::format_length;
 use crate::scene::sweep::ProfileError;
+use lumiduct_base::number::format_length;
 
 /// A leg of a path. Lengths in mm, angles in rad. `toward` is the azimuth in the section as it arrives, 0 = the local
 /// +x, to which the path turns.

@@ -24,10 +24,10 @@ pub use leg::{CornerKind, Leg, SweepError, SweepProblem};
 pub use prisms::{OutlineError, PrismNumber, Prisms};
 pub use profile::{Profile, ProfileError};
 
-use crate::math::Frame;
 use crate::scene::shape::{ChartRect, Flat, Region, Shape};
 pub use chart::{Sector, Sense, Trapezoid, WallChart};
 use glam::{DVec2, DVec3};
+use lumiduct_base::math::Frame;
 
 /// The surfaces of a swept profile.
 #[derive(Debug, Clone)]

@@ -1,10 +1,10 @@
 //! From legs to pieces: where every straight, taper, bend and corner lies, with the walls at a corner drawn out to the
 //! planes that end them.
 
-use crate::math::Frame;
 use crate::scene::sweep::profile::MAX_LENGTH;
 use crate::scene::sweep::{CornerKind, Leg, Profile, SweepError, SweepProblem};
 use glam::{DVec2, DVec3};
+use lumiduct_base::math::Frame;
 use std::f64::consts::{PI, TAU};
 
 /// The pieces of a path in order, and the section behind the last one.

@@ -1,8 +1,8 @@
 //! Outlines around a profile: grown by a wall, and set with prisms.
 
-use crate::math::planar;
 use crate::scene::sweep::{Profile, ProfileError};
 use glam::DVec2;
+use lumiduct_base::math::planar;
 use std::f64::consts::PI;
 
 /// Prisms that stand side by side on an outline.

@@ -1,8 +1,8 @@
 //! The cross-section that is swept, and what makes a usable one.
 
-use crate::math::planar;
 use crate::scene::shape::Region;
 use glam::DVec2;
+use lumiduct_base::math::planar;
 use std::f64::consts::{PI, TAU};
 
 /// A cross-section in the (x, y) plane of the path's frame, mm. The path is the origin.

@@ -1,11 +1,11 @@
 //! Profiles and paths to try sweeps on, and what rays meet there, for the tests of sweeps.
 
-use crate::math::{Aabb, Frame, uniform_sphere};
 use crate::rng::{Dimension, Sampler};
 use crate::scene::Ray;
 use crate::scene::shape::{Crossing, Shape, Start};
 use crate::scene::sweep::{CornerKind, Leg, Profile, Sweep, sweep};
 use glam::{DVec2, DVec3};
+use lumiduct_base::math::{Aabb, Frame, uniform_sphere};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 pub(super) const SEED: u64 = 4711;

@@ -5,12 +5,12 @@
 //! (Saltelli et al., Global Sensitivity Analysis, 2008, section 1.2.5).
 
 use crate::input::Setting;
-use crate::math::least_squares;
 use crate::measure::Replicates;
 use crate::report::study::{
     DesignRecord, PlanFacts, Sensitivity, SensitivityIndex, SensitivityMethod, StudyFacts,
 };
 use crate::tally::Tally;
+use lumiduct_base::math::least_squares;
 
 /// The sensitivities of all measures, where the plan allows them.
 pub(super) fn sensitivities(facts: &StudyFacts, designs: &[DesignRecord]) -> Vec<Sensitivity> {

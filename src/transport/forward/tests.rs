@@ -1,6 +1,5 @@
 //! The forward estimator on a tube whose transmission is known.
 
-use crate::math::{Aabb, Frame};
 use crate::optics::{Bsdf, Medium};
 use crate::scene::plan::{GatherPlan, Request, RunPlan, StopRules};
 use crate::scene::shape::{Cylinder, Flat, Region, Shape};
@@ -12,8 +11,9 @@ use crate::tally::sigmas;
 use crate::transport::forward::{Detected, Forward, PhotonWatcher};
 use crate::transport::stop::{Pace, StopSignal};
 use crate::transport::{Departure, Path, Readings, Run, Vertex};
-use crate::units::FluxUnit;
 use glam::DVec3;
+use lumiduct_base::math::{Aabb, Frame};
+use lumiduct_base::units::FluxUnit;
 
 /// A mirror tube of radius 5 with a Lambertian disk in its entry and a sensor in its exit.
 fn mirror_tube(reflectance: f64, length: f64) -> Scene {

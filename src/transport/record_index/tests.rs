@@ -1,7 +1,7 @@
 use super::*;
-use crate::math::uniform_sphere;
 use crate::rng::{Dimension, Sampler};
 use crate::transport::StopSignal;
+use lumiduct_base::math::uniform_sphere;
 
 /// Records on the cylinder of radius 5 mm about z, all on one surface.
 fn records(count: u32) -> Vec<Indexed> {

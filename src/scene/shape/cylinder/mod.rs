@@ -3,11 +3,11 @@
 
 mod unrolled;
 
-use crate::math::{Aabb, Frame, quadratic, unit};
 use crate::scene::Ray;
 use crate::scene::shape::wedge::{Wedge, arc_bounds, azimuth, point_on_circle, turn};
 use crate::scene::shape::{ChartRect, Crossing, Flat, HalfSpace, Region, Start, Toward, Wanted};
 use glam::{DVec2, DVec3};
+use lumiduct_base::math::{Aabb, Frame, quadratic, unit};
 use unrolled::{Strip, Unrolled};
 
 /// A piece of a cylinder's wall; the front is outside unless it has been turned [`Self::inward`].

@@ -1,7 +1,7 @@
 //! The unrolled wall of a cylinder that planes have cut: an area between sinusoids of the azimuth, in closed form.
 
-use crate::math::Frame;
 use crate::scene::shape::HalfSpace;
+use lumiduct_base::math::Frame;
 use std::f64::consts::TAU;
 
 /// The part of a cylinder's wall below all ceilings and above all floors.

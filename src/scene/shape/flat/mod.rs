@@ -6,10 +6,10 @@ mod region;
 pub use polygon::Polygon;
 pub use region::Region;
 
-use crate::math::{Aabb, Frame};
 use crate::scene::Ray;
 use crate::scene::shape::{ChartRect, Crossing, Start, Toward, Wanted};
 use glam::{DVec2, DVec3};
+use lumiduct_base::math::{Aabb, Frame};
 
 /// A piece of the plane z = 0 of a frame; the front is +z.
 ///

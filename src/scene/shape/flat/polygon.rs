@@ -1,8 +1,8 @@
 //! A simple polygon, made ready for many point tests.
 
-use crate::math::planar::{clip_to_rectangle, edges, is_convex, signed_area, triangulate};
 use crate::scene::shape::ChartRect;
 use glam::DVec2;
+use lumiduct_base::math::planar::{clip_to_rectangle, edges, is_convex, signed_area, triangulate};
 
 /// A simple polygon with counter-clockwise vertices, convex or not.
 ///

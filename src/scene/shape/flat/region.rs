@@ -1,11 +1,11 @@
 //! Which part of a plane a flat surface covers.
 
-use crate::math::planar::disk_overlap;
-use crate::math::{circle, disk, planar};
 use crate::scene::shape::ChartRect;
 use crate::scene::shape::flat::polygon::Polygon;
 use crate::scene::shape::wedge::Wedge;
 use glam::DVec2;
+use lumiduct_base::math::planar::disk_overlap;
+use lumiduct_base::math::{circle, disk, planar};
 use std::f64::consts::{PI, TAU};
 
 /// A part of a plane, lengths in mm.

@@ -1,15 +1,44 @@
 //! Collects triangles of any format, welds equal positions and refuses numbers that are none.
 
-use crate::formats::mesh::{
-    MAX_COORDINATE_MM, MAX_TRIANGLES, MeshError, TriangleMesh, UNNAMED_FACE, area_vector,
-};
+use crate::mesh::{MAX_COORDINATE_MM, MAX_TRIANGLES, TriangleMesh, UNNAMED_FACE, area_vector};
 use glam::DVec3;
 use indexmap::IndexSet;
 use std::collections::HashMap;
 
+/// Why triangles make no mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum UnusableMesh {
+    /// There are more triangles than [`MAX_TRIANGLES`].
+    #[error(
+        "the mesh has more than {} million triangles; export a coarser mesh with smooth normals",
+        MAX_TRIANGLES / 1_000_000
+    )]
+    TooManyTriangles,
+    /// There is nothing to trace.
+    #[error("the file holds no triangles; export the solid as a triangle mesh")]
+    NoTriangles,
+    /// A coordinate or a component of a normal is infinite or not a number.
+    #[error(
+        "triangle {triangle} has a {what} that is not a finite number; repair the mesh and export it again"
+    )]
+    NotFinite {
+        /// The triangle, counted from 1.
+        triangle: usize,
+        /// `vertex` or `normal`.
+        what: &'static str,
+    },
+    /// A vertex lies beyond [`MAX_COORDINATE_MM`].
+    #[error("triangle {triangle} has a vertex beyond 1000 km; check the unit of the mesh")]
+    TooFar {
+        /// The triangle, counted from 1.
+        triangle: usize,
+    },
+}
+
 /// A mesh in the making.
 #[derive(Debug, Default)]
-pub(crate) struct Builder {
+pub struct MeshBuilder {
     positions: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
     /// Empty until the first triangle with normals; zero where the file has none.
@@ -20,14 +49,14 @@ pub(crate) struct Builder {
     index_of: HashMap<[u64; 3], u32>,
 }
 
-impl Builder {
+impl MeshBuilder {
     /// Adds a triangle: corners in mm, normals of any length.
-    pub(crate) fn add(
+    pub fn add(
         &mut self,
         corners: [DVec3; 3],
         normals: Option<[DVec3; 3]>,
         face: &str,
-    ) -> Result<(), MeshError> {
+    ) -> Result<(), UnusableMesh> {
         self.check(&corners, normals.as_ref())?;
         if let Some(normals) = normals {
             self.normals.resize(self.triangles.len(), [DVec3::ZERO; 3]);
@@ -43,9 +72,9 @@ impl Builder {
     }
 
     /// The mesh; corners without a normal get that of their facet if others have one.
-    pub(crate) fn finish(self) -> Result<TriangleMesh, MeshError> {
+    pub fn finish(self) -> Result<TriangleMesh, UnusableMesh> {
         if self.triangles.is_empty() {
-            return Err(MeshError::NoTriangles);
+            return Err(UnusableMesh::NoTriangles);
         }
         let mut mesh = TriangleMesh {
             positions: self.positions,
@@ -68,19 +97,23 @@ impl Builder {
         Ok(mesh)
     }
 
-    fn check(&self, corners: &[DVec3; 3], normals: Option<&[DVec3; 3]>) -> Result<(), MeshError> {
+    fn check(
+        &self,
+        corners: &[DVec3; 3],
+        normals: Option<&[DVec3; 3]>,
+    ) -> Result<(), UnusableMesh> {
         if self.triangles.len() >= MAX_TRIANGLES {
-            return Err(MeshError::TooManyTriangles);
+            return Err(UnusableMesh::TooManyTriangles);
         }
         let triangle = self.triangles.len() + 1;
         if corners.iter().any(|corner| !corner.is_finite()) {
-            return Err(MeshError::NotFinite { triangle, what: "vertex" });
+            return Err(UnusableMesh::NotFinite { triangle, what: "vertex" });
         }
         if corners.iter().any(|corner| corner.abs().max_element() > MAX_COORDINATE_MM) {
-            return Err(MeshError::TooFar { triangle });
+            return Err(UnusableMesh::TooFar { triangle });
         }
         if normals.is_some_and(|normals| normals.iter().any(|normal| !normal.is_finite())) {
-            return Err(MeshError::NotFinite { triangle, what: "normal" });
+            return Err(UnusableMesh::NotFinite { triangle, what: "normal" });
         }
         Ok(())
     }
@@ -113,7 +146,7 @@ mod tests {
 
     #[test]
     fn equal_positions_are_one_vertex_and_minus_zero_is_zero() {
-        let mut builder = Builder::default();
+        let mut builder = MeshBuilder::default();
         builder.add([DVec3::ZERO, DVec3::X, DVec3::Y], None, "").unwrap();
         builder.add([-DVec3::ZERO, DVec3::Y, DVec3::Z], None, "wall").unwrap();
         let mesh = builder.finish().unwrap();
@@ -124,7 +157,7 @@ mod tests {
 
     #[test]
     fn corners_without_a_normal_get_the_facets() {
-        let mut builder = Builder::default();
+        let mut builder = MeshBuilder::default();
         let triangle = [DVec3::ZERO, DVec3::X, DVec3::Y];
         builder.add(triangle, None, "").unwrap();
         builder.add(triangle, Some([3.0 * DVec3::X, DVec3::ZERO, DVec3::Y]), "").unwrap();
@@ -134,15 +167,15 @@ mod tests {
 
     #[test]
     fn numbers_that_are_none_are_named_with_their_triangle() {
-        let mut builder = Builder::default();
+        let mut builder = MeshBuilder::default();
         let good = [DVec3::ZERO, DVec3::X, DVec3::Y];
         builder.add(good, None, "").unwrap();
         let bad = [DVec3::ZERO, DVec3::NAN, DVec3::Y];
         let error = builder.add(bad, None, "").unwrap_err();
-        assert!(matches!(error, MeshError::NotFinite { triangle: 2, what: "vertex" }));
+        assert!(matches!(error, UnusableMesh::NotFinite { triangle: 2, what: "vertex" }));
         let error = builder.add(good, Some([DVec3::INFINITY; 3]), "").unwrap_err();
-        assert!(matches!(error, MeshError::NotFinite { triangle: 2, what: "normal" }));
+        assert!(matches!(error, UnusableMesh::NotFinite { triangle: 2, what: "normal" }));
         let error = builder.add([1e10 * DVec3::X; 3], None, "").unwrap_err();
-        assert!(matches!(error, MeshError::TooFar { triangle: 2 }));
+        assert!(matches!(error, UnusableMesh::TooFar { triangle: 2 }));
     }
 }

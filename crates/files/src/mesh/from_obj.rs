@@ -4,11 +4,9 @@
 //! Curves, lines, points and texture coordinates are passed over. Source: Wavefront, Advanced Visualizer manual,
 //! appendix B1 (version 3.0).
 
-use crate::formats::mesh::builder::Builder;
-use crate::formats::mesh::{
-    LengthUnit, MeshError, MeshFormat, TriangleMesh, UNNAMED_FACE, area_vector,
-};
+use crate::mesh::{LengthUnit, MeshError, MeshFormat};
 use glam::DVec3;
+use lumiduct_base::mesh::{MeshBuilder, TriangleMesh, UNNAMED_FACE, area_vector};
 
 /// Polygons with more corners are only tried from their first one: trying all takes the square of the corners.
 const MAX_FANS: usize = 64;
@@ -34,7 +32,7 @@ pub(crate) fn read(bytes: &[u8], unit: LengthUnit) -> Result<TriangleMesh, MeshE
     } else {
         NamedBy::Group
     };
-    let mut builder = Builder::default();
+    let mut builder = MeshBuilder::default();
     let (mut positions, mut normals) = (Vec::new(), Vec::new());
     let mut face = UNNAMED_FACE;
     for (line, content) in text.lines().enumerate() {
@@ -74,7 +72,7 @@ pub(crate) fn read(bytes: &[u8], unit: LengthUnit) -> Result<TriangleMesh, MeshE
             _ => {}
         }
     }
-    builder.finish()
+    Ok(builder.finish()?)
 }
 
 fn vector(text: &str) -> Option<DVec3> {
@@ -102,7 +100,7 @@ fn entry<'a>(list: &'a [DVec3], index: &str) -> Option<&'a DVec3> {
 }
 
 /// Cuts a polygon into a fan of triangles from a corner that sees all the others.
-fn add_polygon(builder: &mut Builder, polygon: &[Corner], face: &str) -> Result<(), MeshError> {
+fn add_polygon(builder: &mut MeshBuilder, polygon: &[Corner], face: &str) -> Result<(), MeshError> {
     let start = fan_start(polygon).ok_or_else(|| MeshError::Unsupported {
         what: format!("a face with {} corners is not convex", polygon.len()),
         remedy: "triangulate the mesh on export",
@@ -143,8 +141,9 @@ fn fan_start(polygon: &[Corner]) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::mesh::samples::{Normals, icosphere, mutants};
-    use crate::formats::mesh::{health, samples::rod};
+    use crate::mesh::samples::mutants;
+    use lumiduct_base::mesh::bodies::{Normals, icosphere, rod};
+    use lumiduct_base::mesh::health;
     use std::fmt::Write;
 
     fn read_text(text: &str) -> Result<TriangleMesh, MeshError> {

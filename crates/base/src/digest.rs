@@ -1,12 +1,12 @@
 //! A number that tells inputs apart: 64-bit FNV-1a (Fowler, Noll & Vo; draft-eastlake-fnv).
 
-use crate::formats::mesh::TriangleMesh;
+use crate::mesh::TriangleMesh;
 use glam::DVec3;
 use std::fmt;
 
 /// A digest of everything that was added so far, in that order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Digest(u64);
+pub struct Digest(u64);
 
 impl Default for Digest {
     fn default() -> Self {
@@ -16,13 +16,13 @@ impl Default for Digest {
 
 impl Digest {
     /// Adds a piece with its length, so that it matters where one piece ends.
-    pub(crate) fn add(&mut self, piece: &[u8]) {
+    pub fn add(&mut self, piece: &[u8]) {
         self.add_bytes(&piece.len().to_le_bytes());
         self.add_bytes(piece);
     }
 
     /// Adds what was read of a mesh.
-    pub(crate) fn add_mesh(&mut self, mesh: &TriangleMesh) {
+    pub fn add_mesh(&mut self, mesh: &TriangleMesh) {
         self.add_bytes(&mesh.positions.len().to_le_bytes());
         mesh.positions.iter().for_each(|position| self.add_vector(*position));
         self.add_bytes(&mesh.triangles.len().to_le_bytes());

@@ -12,7 +12,6 @@ pub type Result<T> = std::result::Result<T, Error>;
 
 /// Why a run did not happen or could not be finished.
 #[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
 pub enum Error {
     /// The scene, or something that it names, is not usable. Holds at least one diagnostic of kind `Error`.
     #[error("{}", join(.0))]

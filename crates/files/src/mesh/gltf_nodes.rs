@@ -1,7 +1,7 @@
 //! Where the nodes of a glTF document stand in its scene. Broken trees are refused: a node has one parent at most.
 
-use crate::formats::mesh::MeshError;
-use crate::formats::mesh::gltf_buffers::broken;
+use crate::mesh::MeshError;
+use crate::mesh::gltf_buffers::broken;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use gltf::json::scene::Node;
 use gltf::json::{Index, Root};

@@ -3,8 +3,8 @@
 #[cfg(test)]
 mod tests;
 
-use crate::formats::mesh::topology::{Groups, HalfEdge, half_edges, same_edge};
-use crate::formats::mesh::{TriangleMesh, area_vector};
+use crate::mesh::topology::{Groups, HalfEdge, half_edges, same_edge};
+use crate::mesh::{TriangleMesh, area_vector};
 use glam::DVec3;
 
 /// Below this turn, degrees, two facets belong to a flat face of rounded coordinates.
@@ -18,7 +18,7 @@ const LEAST_FACETS: usize = 6;
 /// Corner normals nearer to that of their facet than this, rad, are its own: nothing is smoothed.
 const OWN_NORMAL: f64 = 1.0e-3;
 /// Corner normals nearer than this, rad, were one normal before they were rounded to 16 bits or more.
-pub(crate) const SAME_NORMAL: f64 = 1.0e-4;
+const SAME_NORMAL: f64 = 1.0e-4;
 
 /// Thinner than this share of the size of its mesh, 1, a triangle is a sliver: positions in single precision, of 6e-8,
 /// leave the direction of its facet uncertain by hundredths.
@@ -307,7 +307,7 @@ fn dihedral_deg(mesh: &TriangleMesh, one: &HalfEdge, other: &HalfEdge) -> f64 {
 }
 
 /// Whether the corner normals of two triangles are the same at both ends of their common edge.
-pub(crate) fn normals_agree(mesh: &TriangleMesh, one: &HalfEdge, other: &HalfEdge) -> bool {
+pub fn normals_agree(mesh: &TriangleMesh, one: &HalfEdge, other: &HalfEdge) -> bool {
     let Some(normals) = &mesh.normals else { return false };
     let [one, other] = [one, other].map(|side| {
         side.corners(&mesh.triangles).map(|corner| normals[side.triangle as usize][corner])

@@ -4,16 +4,16 @@
 //! out of bounds on bad files and refuses harmless ones. Skins, morph targets and animations are not followed.
 //! Source: Khronos, glTF 2.0 Specification (2021), sections 3.5-3.7 and 4.
 
-use crate::formats::mesh::builder::Builder;
-use crate::formats::mesh::gltf_buffers::{Buffers, Elements, broken};
-use crate::formats::mesh::gltf_copies::refuse_too_many_copies;
-use crate::formats::mesh::gltf_nodes::{cofactors, placed_nodes};
-use crate::formats::mesh::{LengthUnit, MeshError, TriangleMesh, UNNAMED_FACE};
+use crate::mesh::gltf_buffers::{Buffers, Elements, broken};
+use crate::mesh::gltf_copies::refuse_too_many_copies;
+use crate::mesh::gltf_nodes::{cofactors, placed_nodes};
+use crate::mesh::{LengthUnit, MeshError};
 use glam::{DAffine3, DMat3, DVec3};
 use gltf::json::Root;
 use gltf::json::accessor::{ComponentType, Type};
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
+use lumiduct_base::mesh::{MeshBuilder, TriangleMesh, UNNAMED_FACE};
 use std::path::Path;
 
 /// Length of a GLB's header, bytes.
@@ -31,7 +31,7 @@ pub(crate) fn read(
     refuse_unknown_extensions(&root)?;
     let blob = glb.as_ref().and_then(|glb| glb.bin.as_deref());
     let buffers = Buffers::load(&root, blob, folder)?;
-    let mut builder = Builder::default();
+    let mut builder = MeshBuilder::default();
     let placed = placed_nodes(&root)?;
     refuse_too_many_copies(&root, &buffers, placed.iter().filter_map(|(node, _)| node.mesh))?;
     for (node, to_scene) in placed {
@@ -49,7 +49,7 @@ pub(crate) fn read(
             add_primitive(&mut builder, &root, &buffers, primitive, &to_scene)?;
         }
     }
-    builder.finish()
+    Ok(builder.finish()?)
 }
 
 fn open_glb(bytes: &[u8]) -> Result<gltf::Glb<'_>, MeshError> {
@@ -94,7 +94,7 @@ impl Vertices<'_> {
 }
 
 fn add_primitive(
-    builder: &mut Builder,
+    builder: &mut MeshBuilder,
     root: &Root,
     buffers: &Buffers<'_>,
     primitive: &Primitive,
@@ -194,8 +194,10 @@ fn unsigned(bytes: &[u8], component: ComponentType) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::mesh::samples::{Normals, glb, glb_of, gltf_parts, mutants, rod};
-    use crate::formats::mesh::{MAX_COPIES_BYTES, TRIANGLE_BYTES, health};
+    use crate::mesh::samples::{glb, glb_of, gltf_parts, mutants};
+    use crate::mesh::{MAX_COPIES_BYTES, TRIANGLE_BYTES};
+    use lumiduct_base::mesh::bodies::{Normals, rod};
+    use lumiduct_base::mesh::health;
     use serde_json::{Value, json};
 
     fn read_json(json: &Value, blob: &[u8]) -> Result<TriangleMesh, MeshError> {

@@ -1,5 +1,5 @@
 use super::*;
-use crate::formats::mesh::samples::{Normals, block, icosphere, mirror_pipe, prism, rod};
+use crate::mesh::bodies::{Normals, block, icosphere, mirror_pipe, prism, rod};
 use std::f64::consts::PI;
 
 #[test]
@@ -50,7 +50,7 @@ fn an_inside_out_sphere_has_a_negative_volume_and_opposed_normals() {
 #[test]
 fn two_blocks_that_share_an_edge_crowd_it_and_apart_they_are_two_shells() {
     for (shift, crowded, shells) in [(1.0, 1, 1), (3.0, 0, 2)] {
-        let mut builder = crate::formats::mesh::builder::Builder::default();
+        let mut builder = crate::mesh::MeshBuilder::default();
         let mesh = block(DVec3::ONE);
         for triangle in 0..12 {
             let corners = mesh.corners(triangle);

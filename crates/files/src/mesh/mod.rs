@@ -3,75 +3,30 @@
 //! All readers give the same [`TriangleMesh`]: millimetres in f64, positions welded where they coincide exactly,
 //! normals per corner, and a face name for every triangle. A reader never trusts a count or an index of the file:
 //! broken or hostile data is a [`MeshError`], never a panic. Whether the mesh is closed and the right way out is
-//! asked afterwards ([`health()`]). What a face does to light is not known here.
+//! asked afterwards ([`lumiduct_base::mesh::health()`]). What a face does to light is not known here.
 
-mod builder;
 mod from_gltf;
 mod from_obj;
 mod from_stl;
 mod gltf_buffers;
 mod gltf_copies;
 mod gltf_nodes;
-mod health;
 #[cfg(test)]
-pub(crate) mod samples;
-pub mod topology;
+mod samples;
 
-pub(crate) use health::normals_agree;
-pub use health::{Defects, Facets, MeshHealth, health};
-
-use crate::math::Aabb;
-use crate::text::visible;
-use glam::DVec3;
+use lumiduct_base::mesh::{TriangleMesh, UnusableMesh};
+use lumiduct_base::text::visible;
 use std::fmt;
 use std::fs;
 use std::io::Read;
 use std::path::Path;
 
-/// Most triangles that a mesh may have: 5 GB as a [`TriangleMesh`] with normals.
-pub const MAX_TRIANGLES: usize = 50_000_000;
 /// Longest file that is read, bytes: 50 million triangles of binary STL fit in.
 pub const MAX_FILE_BYTES: u64 = 4 << 30;
 /// Most memory that copies of the meshes of a file may take, bytes.
 pub const MAX_COPIES_BYTES: u64 = 1 << 30;
 /// Memory of a triangle while a scene is made of it, bytes: measured, 345 with normals (200 copies of 1,024 triangles against 50).
 pub(crate) const TRIANGLE_BYTES: u64 = 350;
-/// Largest coordinate, mm: a thousand kilometres. Squares and cubes of it are far from overflow.
-pub const MAX_COORDINATE_MM: f64 = 1.0e9;
-/// Name of the face of triangles that have neither material nor group.
-pub const UNNAMED_FACE: &str = "surface";
-
-/// Triangles as a file gives them.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TriangleMesh {
-    /// Vertices, mm; no two are equal.
-    pub positions: Vec<DVec3>,
-    /// Three indices into `positions` each; counter-clockwise seen from outside, if the file is right.
-    pub triangles: Vec<[u32; 3]>,
-    /// Unit normals of the three corners of each triangle, if the file has normals.
-    pub normals: Option<Vec<[DVec3; 3]>>,
-    /// Index into `faces` of each triangle.
-    pub face_of: Vec<u32>,
-    /// Names of materials or groups, in order of appearance; every one has triangles.
-    pub faces: Vec<String>,
-}
-
-impl TriangleMesh {
-    /// The three vertices of a triangle, mm.
-    pub fn corners(&self, triangle: usize) -> [DVec3; 3] {
-        self.triangles[triangle].map(|index| self.positions[index as usize])
-    }
-
-    /// The smallest box around all vertices, mm.
-    pub fn bounds(&self) -> Aabb {
-        Aabb::of(self.positions.iter().copied())
-    }
-}
-
-/// Twice the area of a triangle times its unit normal, mm².
-pub fn area_vector([a, b, c]: [DVec3; 3]) -> DVec3 {
-    (b - a).cross(c - a)
-}
 
 /// The length that 1 in the file stands for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -203,12 +158,6 @@ pub enum MeshError {
     /// The file, or the files together, are longer than [`MAX_FILE_BYTES`].
     #[error("the file has more than {} GiB; export a coarser mesh with smooth normals", MAX_FILE_BYTES >> 30)]
     FileTooLong,
-    /// There are more triangles than [`MAX_TRIANGLES`].
-    #[error(
-        "the mesh has more than {} million triangles; export a coarser mesh with smooth normals",
-        MAX_TRIANGLES / 1_000_000
-    )]
-    TooManyTriangles,
     /// Nodes of a glTF file repeat its meshes so often that the copies take more than [`MAX_COPIES_BYTES`].
     #[error(
         "its {nodes} nodes repeat meshes to {triangles} triangles, about {} MiB in memory, and copies may take {} MiB; \
@@ -222,25 +171,9 @@ pub enum MeshError {
         /// Memory that they would take, bytes.
         bytes: u64,
     },
-    /// There is nothing to trace.
-    #[error("the file holds no triangles; export the solid as a triangle mesh")]
-    NoTriangles,
-    /// A coordinate or a component of a normal is infinite or not a number.
-    #[error(
-        "triangle {triangle} has a {what} that is not a finite number; repair the mesh and export it again"
-    )]
-    NotFinite {
-        /// The triangle, counted from 1.
-        triangle: usize,
-        /// `vertex` or `normal`.
-        what: &'static str,
-    },
-    /// A vertex lies beyond [`MAX_COORDINATE_MM`].
-    #[error("triangle {triangle} has a vertex beyond 1000 km; check the unit of the mesh")]
-    TooFar {
-        /// The triangle, counted from 1.
-        triangle: usize,
-    },
+    /// The triangles make no mesh that can be traced.
+    #[error(transparent)]
+    Unusable(#[from] UnusableMesh),
 }
 
 /// Reads a mesh whose lengths are in `unit`; the ending of the name tells the format.
@@ -276,7 +209,6 @@ fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, MeshError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::f64::consts::{PI, TAU};
 
     #[test]
     fn the_ending_tells_the_format_and_others_are_named() {
@@ -308,18 +240,5 @@ mod tests {
         fs::write(&path, [0; 100]).unwrap();
         assert!(matches!(read_file(&path, 99), Err(MeshError::FileTooLong)));
         assert_eq!(read_file(&path, 100).unwrap().len(), 100);
-    }
-
-    #[test]
-    fn the_light_guide_of_the_scenes_is_sound() {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/meshes/lightguide.glb");
-        let mesh = read(&path, LengthUnit::Metre).unwrap();
-        assert_eq!(mesh.faces, ["entry", "wall", "exit"]);
-        let health = health(&mesh);
-        assert!(health.is_sound(), "{health:?}");
-        assert_eq!((health.shells, health.opposed_normals.count, &health.facets), (1, 0, &None));
-        // A bent rod is as big as a straight one (Pappus): π r² L, less what 96 facets cut off.
-        let share = health.signed_volume_mm3 / (PI * 4.0 * 40.0);
-        assert!((share - (TAU / 96.0).sin() / (TAU / 96.0)).abs() < 1e-4, "{share}");
     }
 }

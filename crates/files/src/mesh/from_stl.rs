@@ -4,11 +4,9 @@
 //! Layout: 3D Systems, Stereolithography Interface Specification (1988). Many binary files start with "solid" as
 //! ASCII ones do, so the length decides: 84 bytes and 50 for every triangle.
 
-use crate::formats::mesh::builder::Builder;
-use crate::formats::mesh::{
-    LengthUnit, MAX_TRIANGLES, MeshError, MeshFormat, TriangleMesh, UNNAMED_FACE,
-};
+use crate::mesh::{LengthUnit, MeshError, MeshFormat};
 use glam::DVec3;
+use lumiduct_base::mesh::{MAX_TRIANGLES, MeshBuilder, TriangleMesh, UNNAMED_FACE, UnusableMesh};
 
 /// Bytes before the first triangle of a binary file: a comment of 80 and the count.
 const HEADER: usize = 84;
@@ -45,13 +43,13 @@ fn binary_length(count: usize) -> usize {
 fn read_binary(bytes: &[u8], unit: LengthUnit) -> Result<TriangleMesh, MeshError> {
     let count = binary_count(bytes).ok_or_else(|| broken("it ends within its header".into()))?;
     if count > MAX_TRIANGLES && bytes.len() >= binary_length(count) {
-        return Err(MeshError::TooManyTriangles);
+        return Err(UnusableMesh::TooManyTriangles.into());
     }
     if bytes.len() < binary_length(count) {
         let held = bytes.len().saturating_sub(HEADER) / RECORD;
         return Err(broken(format!("it announces {count} triangles and holds {held}")));
     }
-    let mut builder = Builder::default();
+    let mut builder = MeshBuilder::default();
     for record in bytes[HEADER..binary_length(count)].chunks_exact(RECORD) {
         let (numbers, _attribute) = record[NORMAL..].as_chunks::<4>();
         let coordinate = |index: usize| f64::from(f32::from_le_bytes(numbers[index]));
@@ -61,11 +59,11 @@ fn read_binary(bytes: &[u8], unit: LengthUnit) -> Result<TriangleMesh, MeshError
         };
         builder.add([corner(0), corner(3), corner(6)], None, UNNAMED_FACE)?;
     }
-    builder.finish()
+    Ok(builder.finish()?)
 }
 
 fn read_ascii(text: &str, unit: LengthUnit) -> Result<TriangleMesh, MeshError> {
-    let mut builder = Builder::default();
+    let mut builder = MeshBuilder::default();
     let mut face = String::new();
     let mut corners = Vec::new();
     let mut ended = false;
@@ -97,7 +95,7 @@ fn read_ascii(text: &str, unit: LengthUnit) -> Result<TriangleMesh, MeshError> {
     if !ended || !corners.is_empty() {
         return Err(broken("it ends before `endsolid`".into()));
     }
-    builder.finish()
+    Ok(builder.finish()?)
 }
 
 fn vertex<'a>(mut words: impl Iterator<Item = &'a str>) -> Option<DVec3> {
@@ -112,7 +110,8 @@ fn broken(problem: String) -> MeshError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::mesh::samples::{block, mutants};
+    use crate::mesh::samples::mutants;
+    use lumiduct_base::mesh::bodies::block;
     use std::fmt::Write;
 
     fn binary(mesh: &TriangleMesh, header: &[u8]) -> Vec<u8> {
@@ -187,7 +186,7 @@ mod tests {
         assert!(error.contains("it ends before `endsolid`"), "{error}");
         assert!(matches!(
             read(b"solid nothing\nendsolid", LengthUnit::Metre),
-            Err(MeshError::NoTriangles)
+            Err(MeshError::Unusable(UnusableMesh::NoTriangles))
         ));
     }
 

@@ -1,0 +1,163 @@
+//! Meshes of simple bodies whose volumes and areas are known, for tests and benches.
+//!
+//! Sizes are mm. All functions panic on sizes that are not finite or beyond
+//! [`MAX_COORDINATE_MM`](crate::mesh::MAX_COORDINATE_MM).
+
+use crate::mesh::{MeshBuilder, TriangleMesh};
+use glam::{DVec2, DVec3};
+use std::f64::consts::TAU;
+
+/// Whether a sample carries the normals of the surface it stands for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Normals {
+    /// Normals of the surface.
+    Smooth,
+    /// No normals.
+    None,
+}
+
+/// A mesh in the making whose sizes are known to be sound.
+#[derive(Default)]
+struct Body(MeshBuilder);
+
+impl Body {
+    fn add(&mut self, corners: [DVec3; 3], normals: Option<[DVec3; 3]>, face: &str) {
+        self.0.add(corners, normals, face).expect("sizes are finite and moderate");
+    }
+
+    fn finish(self) -> TriangleMesh {
+        self.0.finish().expect("every body has triangles")
+    }
+}
+
+/// A closed box from the origin to `size`, one face per side, no normals.
+pub fn block(size: DVec3) -> TriangleMesh {
+    let mut builder = Body::default();
+    let corner = |bits: usize| {
+        DVec3::new((bits & 1) as f64, (bits >> 1 & 1) as f64, (bits >> 2 & 1) as f64) * size
+    };
+    let sides = [
+        ("minus_z", [0, 2, 3, 1]),
+        ("plus_z", [4, 5, 7, 6]),
+        ("minus_y", [0, 1, 5, 4]),
+        ("plus_y", [2, 6, 7, 3]),
+        ("minus_x", [0, 4, 6, 2]),
+        ("plus_x", [1, 3, 7, 5]),
+    ];
+    for (name, quad) in sides {
+        let [a, b, c, d] = quad.map(corner);
+        builder.add([a, b, c], None, name);
+        builder.add([a, c, d], None, name);
+    }
+    builder.finish()
+}
+
+/// A sphere about the origin: an icosahedron whose triangles were split in four `level` times.
+pub fn icosphere(radius: f64, level: u32, normals: Normals) -> TriangleMesh {
+    let golden = 0.5 * (1.0 + 5.0f64.sqrt());
+    let mut corners = Vec::new();
+    for axis in 0..3 {
+        for (a, b) in [(-1.0, -golden), (-1.0, golden), (1.0, -golden), (1.0, golden)] {
+            let v = [0.0, a, b];
+            corners.push(DVec3::new(v[(3 - axis) % 3], v[(4 - axis) % 3], v[(5 - axis) % 3]));
+        }
+    }
+    let mut triangles = Vec::new();
+    for i in 0..12 {
+        for j in i + 1..12 {
+            for k in j + 1..12 {
+                let (a, b, c) = (corners[i], corners[j], corners[k]);
+                // Edges have length 2, all other distances are longer.
+                if [(a, b), (b, c), (c, a)].iter().all(|(p, q)| p.distance(*q) < 2.1) {
+                    let outward = (b - a).cross(c - a).dot(a) > 0.0;
+                    triangles.push(if outward { [a, b, c] } else { [a, c, b] });
+                }
+            }
+        }
+    }
+    for _ in 0..level {
+        triangles = triangles.into_iter().flat_map(split).collect();
+    }
+    let mut builder = Body::default();
+    for triangle in triangles {
+        let unit = triangle.map(DVec3::normalize);
+        let normals = (normals == Normals::Smooth).then_some(unit);
+        builder.add(unit.map(|p| radius * p), normals, "");
+    }
+    builder.finish()
+}
+
+fn split([a, b, c]: [DVec3; 3]) -> [[DVec3; 3]; 4] {
+    // Sums commute exactly, so that neighbours get the same middle.
+    let middle = |p: DVec3, q: DVec3| (p.normalize() + q.normalize()).normalize();
+    let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
+    [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+}
+
+/// A closed round rod of `sides` facets along +z, faces entry, exit and wall; caps have flat normals if any.
+pub fn rod(radius: f64, length: f64, sides: u32, normals: Normals) -> TriangleMesh {
+    let mut builder = Body::default();
+    let rim = |side: u32, z: f64| {
+        let (sin, cos) = (TAU * f64::from(side % sides) / f64::from(sides)).sin_cos();
+        DVec3::new(radius * cos, radius * sin, z)
+    };
+    let wall = |corners: [DVec3; 3]| {
+        (normals == Normals::Smooth).then_some(corners.map(|p| DVec3::new(p.x, p.y, 0.0)))
+    };
+    let cap = |normal: DVec3| (normals == Normals::Smooth).then_some([normal; 3]);
+    for side in 0..sides {
+        let [a, b, c, d] =
+            [(0, 0.0), (1, 0.0), (1, length), (0, length)].map(|(step, z)| rim(side + step, z));
+        for corners in [[a, b, c], [a, c, d]] {
+            builder.add(corners, wall(corners), "wall");
+        }
+        builder.add([DVec3::ZERO, b, a], cap(-DVec3::Z), "entry");
+        builder.add([length * DVec3::Z, d, c], cap(DVec3::Z), "exit");
+    }
+    builder.finish()
+}
+
+/// A closed pipe of radius 1.5 along +z whose far end is cut by a plane at 45 degrees, faces entry, wall and mirror.
+pub fn mirror_pipe(sides: u32, normals: Normals) -> TriangleMesh {
+    let mut builder = Body::default();
+    // The middle of a facet, not an edge, lies where the wall meets the plane at 45 degrees.
+    let point = |side: u32, far: bool| {
+        let (sin, cos) = (TAU * (f64::from(side % sides) + 0.5) / f64::from(sides)).sin_cos();
+        let (x, y) = (1.5 * cos, 1.5 * sin);
+        let point = DVec3::new(x, y, if far { 20.0 + x } else { 0.0 });
+        // As a GLB has it: single precision, in metres.
+        1000.0 * (1e-3 * point).as_vec3().as_dvec3()
+    };
+    let given = |corners: [DVec3; 3]| (normals == Normals::Smooth).then_some(corners);
+    for side in 0..sides {
+        let [a, b] = [side, side + 1].map(|side| point(side, false));
+        let [d, c] = [side, side + 1].map(|side| point(side, true));
+        for corners in [[a, b, c], [a, c, d]] {
+            let across = corners.map(|p| DVec3::new(p.x, p.y, 0.0).normalize());
+            builder.add(corners, given(across), "wall");
+        }
+        builder.add([DVec3::ZERO, b, a], given([-DVec3::Z; 3]), "entry");
+        let mirror = DVec3::new(-1.0, 0.0, 1.0).normalize();
+        builder.add([20.0 * DVec3::Z, d, c], given([mirror; 3]), "mirror");
+    }
+    builder.finish()
+}
+
+/// A closed prism of length 7 along +z over a counter-clockwise outline, one face, no normals.
+pub fn prism(outline: &[[f64; 2]]) -> TriangleMesh {
+    let mut builder = Body::default();
+    let points: Vec<DVec2> = outline.iter().map(|p| DVec2::from(*p)).collect();
+    for triangle in crate::math::planar::triangulate(&points) {
+        let [a, b, c] = triangle.map(|p| p.extend(0.0));
+        builder.add([a, c, b], None, "");
+        builder.add([a, b, c].map(|p| p + 7.0 * DVec3::Z), None, "");
+    }
+    for (index, from) in points.iter().enumerate() {
+        let to = points[(index + 1) % points.len()];
+        let [a, b] = [*from, to].map(|p| p.extend(0.0));
+        let [d, c] = [a, b].map(|p| p + 7.0 * DVec3::Z);
+        builder.add([a, b, c], None, "");
+        builder.add([a, c, d], None, "");
+    }
+    builder.finish()
+}

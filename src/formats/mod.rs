@@ -1,3 +1,0 @@
-//! Foreign files, read and written; this layer knows no scene.
-
-pub mod mesh;

@@ -1,0 +1,21 @@
+//! Meshes of the scenes.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use lumiduct_base::mesh::health;
+use lumiduct_files::mesh::{LengthUnit, read};
+use std::f64::consts::{PI, TAU};
+use std::path::Path;
+
+#[test]
+fn the_light_guide_of_the_scenes_is_sound() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/meshes/lightguide.glb");
+    let mesh = read(&path, LengthUnit::Metre).unwrap();
+    assert_eq!(mesh.faces, ["entry", "wall", "exit"]);
+    let health = health(&mesh);
+    assert!(health.is_sound(), "{health:?}");
+    assert_eq!((health.shells, health.opposed_normals.count, &health.facets), (1, 0, &None));
+    // A bent rod is as big as a straight one (Pappus): π r² L, less what 96 facets cut off.
+    let share = health.signed_volume_mm3 / (PI * 4.0 * 40.0);
+    assert!((share - (TAU / 96.0).sin() / (TAU / 96.0)).abs() < 1e-4, "{share}");
+}

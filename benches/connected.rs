@@ -8,12 +8,12 @@
 
 use glam::DVec3;
 use lumiduct::input::{self, Settings};
-use lumiduct::optics::{Bsdf, Incidence, Spread, evaluate};
-use lumiduct::rng::{Dimension, Sampler};
-use lumiduct::scene::shape::Toward;
-use lumiduct::scene::{FaceArea, On, Ray, Scene, SensorKind, SourceId};
-use lumiduct::tally::Tally;
-use lumiduct::transport::{Event, Path, Vertex, walk};
+use lumiduct_core::optics::{Bsdf, Incidence, Spread, evaluate};
+use lumiduct_core::rng::{Dimension, Sampler};
+use lumiduct_core::scene::shape::Toward;
+use lumiduct_core::scene::{FaceArea, On, Ray, Scene, SensorKind, SourceId};
+use lumiduct_core::tally::Tally;
+use lumiduct_core::transport::{Event, Path, Vertex, walk};
 use rayon::prelude::*;
 use std::ops::ControlFlow;
 

@@ -8,7 +8,7 @@ mod spread;
 
 use clock::cpu_seconds;
 use lumiduct::input::{self, Job, Settings};
-use lumiduct::transport::Run;
+use lumiduct_core::transport::Run;
 use spread::Spread;
 
 /// Pairs of runs.

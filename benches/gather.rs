@@ -12,9 +12,9 @@ mod clock;
 
 use clock::cpu_seconds;
 use lumiduct::input::{self, Job, Settings};
-use lumiduct::scene::plan::{Estimator, GatherPlan, Request, RunPlan, StopRules, Target};
-use lumiduct::scene::{Scene, SensorId, SourceId};
-use lumiduct::transport::{Findings, GatherSettings, Layout, Readings, Run};
+use lumiduct_core::plan::{Estimator, GatherPlan, Request, RunPlan, StopRules, Target};
+use lumiduct_core::scene::{Scene, SensorId, SourceId};
+use lumiduct_core::transport::{Findings, GatherSettings, Layout, Readings, Run};
 use rayon::ThreadPoolBuilder;
 use std::path::Path;
 

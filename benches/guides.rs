@@ -1,17 +1,17 @@
 //! The guides of the benchmark scenes (DESIGN section 6), put together without a scene file.
 
 use glam::DVec3;
-use lumiduct::optics::{Bsdf, Medium};
-use lumiduct::scene::mesh::Mesh;
-use lumiduct::scene::shape::{ChartRect, Cylinder, Flat, Region, Shape};
-use lumiduct::scene::{
+use lumiduct_base::math::{Aabb, Frame};
+use lumiduct_base::mesh::TriangleMesh;
+use lumiduct_base::units::FluxUnit;
+use lumiduct_core::optics::{Bsdf, Medium};
+use lumiduct_core::scene::mesh::Mesh;
+use lumiduct_core::scene::shape::{ChartRect, Cylinder, Flat, Region, Shape};
+use lumiduct_core::scene::{
     Builder, Counts, Emission, EmitSide, Emitter, FaceId, FaceSpec, Goniometer, Grid, Owner,
     Passage, Piece, Place, Scene, Seeing, Sensor, SensorKind, Sides, Solid, SolidId, Source, Start,
     SurfaceSensor,
 };
-use lumiduct_base::math::{Aabb, Frame};
-use lumiduct_base::mesh::TriangleMesh;
-use lumiduct_base::units::FluxUnit;
 use std::f64::consts::TAU;
 
 /// Cells of every map, in each direction.

@@ -14,12 +14,12 @@ mod spread;
 
 use clock::cpu_seconds;
 use guides::{B2, mesh_scene, rod_mesh};
-use lumiduct::rng::Sampler;
-use lumiduct::scene::mesh::{Line, Mesh};
-use lumiduct::scene::shape::Toward;
-use lumiduct::scene::{Ray, Scene, SourceId};
-use lumiduct::transport::{Event, Path, walk};
 use lumiduct_base::math::Frame;
+use lumiduct_core::rng::Sampler;
+use lumiduct_core::scene::mesh::{Line, Mesh};
+use lumiduct_core::scene::shape::Toward;
+use lumiduct_core::scene::{Ray, Scene, SourceId};
+use lumiduct_core::transport::{Event, Path, walk};
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;

@@ -13,12 +13,12 @@ mod spread;
 
 use clock::cpu_seconds;
 use guides::{B1_P10, B1_P100, B2, B4, mesh_scene, rod_mesh, rod_scene, tube_scene};
-use lumiduct::scene::mesh::Mesh;
-use lumiduct::scene::plan::{GatherPlan, Request, RunPlan, StopRules};
-use lumiduct::scene::{Scene, SensorId, SourceId};
-use lumiduct::tally::Tally;
-use lumiduct::transport::{Layout, ROULETTE_BELOW, Readings, Run};
 use lumiduct_base::math::Frame;
+use lumiduct_core::plan::{GatherPlan, Request, RunPlan, StopRules};
+use lumiduct_core::scene::mesh::Mesh;
+use lumiduct_core::scene::{Scene, SensorId, SourceId};
+use lumiduct_core::tally::Tally;
+use lumiduct_core::transport::{Layout, ROULETTE_BELOW, Readings, Run};
 use plain::{Counted, Work, trace_rod, trace_tube};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use spread::Spread;

@@ -33,12 +33,6 @@
 
 pub mod cli;
 pub mod input;
-pub mod measure;
-pub mod optics;
 pub mod pipeline;
 pub mod report;
-pub mod rng;
-pub mod scene;
 pub mod study;
-pub mod tally;
-pub mod transport;

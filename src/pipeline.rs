@@ -23,7 +23,6 @@ pub use progress::{Progress, TargetProgress};
 pub use tracing::{Traced, trace};
 
 use crate::input::{self, Job, Outline, Settings};
-use crate::measure;
 use crate::pipeline::checkpoint::Keeper;
 use crate::pipeline::sense::expect_sense;
 use crate::pipeline::tracing::{Pause, trace_kept};
@@ -31,9 +30,10 @@ use crate::report::{
     self, CheckResult, Existing, Folder, FolderLock, Inventory, Recipe, Report, RunFacts,
     SceneFacts, TargetFacts, Written,
 };
-use crate::scene::plan::Request;
-use crate::transport::{Activity, Findings, Interrupt, Run, Track, tracks};
 use lumiduct_base::error::{Diagnostic, Result};
+use lumiduct_core::measure;
+use lumiduct_core::plan::Request;
+use lumiduct_core::transport::{Activity, Findings, Interrupt, Run, Track, tracks};
 pub(crate) use sense::expect_measures;
 use std::path::{Path, PathBuf};
 use std::time::Duration;

@@ -4,9 +4,10 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
 
 use lumiduct::input::{self, Job, Settings};
-use lumiduct::measure::{self, Measure};
-use lumiduct::scene::SensorId;
-use lumiduct::transport::{Baseline, BaselineRun, Findings, Readings};
+use lumiduct_baselines::{Baseline, BaselineRun};
+use lumiduct_core::measure::{self, Measure};
+use lumiduct_core::scene::SensorId;
+use lumiduct_core::transport::{Findings, Readings};
 use std::f64::consts::PI;
 use std::path::Path;
 
@@ -165,7 +166,7 @@ estimator = "backward"
 paths = 1_000_000
 "#
     ));
-    let mut run = lumiduct::transport::Run::new(&job.scene, &job.run);
+    let mut run = lumiduct_core::transport::Run::new(&job.scene, &job.run);
     while !run.is_complete() {
         run.next_wave();
     }

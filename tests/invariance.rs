@@ -4,11 +4,11 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
 
 use lumiduct::input::{self, Job, Settings};
-use lumiduct::measure::{self, Measures};
-use lumiduct::rng::Sampler;
-use lumiduct::scene::SourceId;
-use lumiduct::scene::plan::Request;
-use lumiduct::transport::{Event, Path as LightPath, Run, walk};
+use lumiduct_core::measure::{self, Measures};
+use lumiduct_core::plan::Request;
+use lumiduct_core::rng::Sampler;
+use lumiduct_core::scene::SourceId;
+use lumiduct_core::transport::{Event, Path as LightPath, Run, walk};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 

@@ -6,22 +6,20 @@ mod package;
 
 use std::path::{Path, PathBuf};
 
-/// Layers from the bottom up; modules of one layer do not see each other.
-const LAYERS: &[&[&str]] = &[
-    &["rng", "tally"],
-    &["optics"],
-    &["scene"],
-    &["input", "transport"],
-    &["measure"],
-    &["report"],
-    &["pipeline"],
-    &["study"],
-    &["cli"],
-    &["main"],
+/// Folders of sources with their layers from the bottom up; modules of one layer do not see each other. Crates see each
+/// other as their manifests say.
+const CRATES: &[(&str, &[&[&str]])] = &[
+    ("crates/base/src", &[&["error", "units", "number", "text", "math"], &["mesh"], &["digest"]]),
+    (
+        "crates/core/src",
+        &[&["rng", "tally", "plan"], &["optics"], &["scene"], &["transport"], &["measure"]],
+    ),
+    ("crates/files/src", &[&["mesh"]]),
+    ("src", &[&["input"], &["report"], &["pipeline"], &["study"], &["cli"], &["main"]]),
 ];
 
-fn layer(module: &str) -> Option<usize> {
-    LAYERS.iter().position(|layer| layer.contains(&module))
+fn layer(layers: &[&[&str]], module: &str) -> Option<usize> {
+    layers.iter().position(|layer| layer.contains(&module))
 }
 
 fn sources(folder: &Path) -> Vec<PathBuf> {
@@ -59,26 +57,28 @@ fn module_of(path: &Path, root: &Path) -> String {
 
 #[test]
 fn modules_use_only_lower_layers() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let mut wrong = Vec::new();
-    for path in sources(&root) {
-        let module = module_of(&path, &root);
-        if module == "lib" {
-            continue;
-        }
-        let Some(own) = layer(&module) else {
-            wrong.push(format!("{}: module `{module}` has no layer", path.display()));
-            continue;
-        };
-        for (line, text) in code(&path) {
-            for used in text.split("crate::").skip(1) {
-                let name: String =
-                    used.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
-                if let Some(other) = layer(&name)
-                    && name != module
-                    && other >= own
-                {
-                    wrong.push(format!("{}:{line}: `{module}` uses `{name}`", path.display()));
+    for (folder, layers) in CRATES {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
+        for path in sources(&root) {
+            let module = module_of(&path, &root);
+            if module == "lib" {
+                continue;
+            }
+            let Some(own) = layer(layers, &module) else {
+                wrong.push(format!("{}: module `{module}` has no layer", path.display()));
+                continue;
+            };
+            for (line, text) in code(&path) {
+                for used in text.split("crate::").skip(1) {
+                    let name: String =
+                        used.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+                    if let Some(other) = layer(layers, &name)
+                        && name != module
+                        && other >= own
+                    {
+                        wrong.push(format!("{}:{line}: `{module}` uses `{name}`", path.display()));
+                    }
                 }
             }
         }
@@ -88,13 +88,14 @@ fn modules_use_only_lower_layers() {
 
 #[test]
 fn children_do_not_reach_up() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let mut wrong = Vec::new();
-    for path in sources(&root) {
-        for (line, text) in code(&path) {
-            // `pub(super)` names a visibility, not a path.
-            if text.contains("super::") {
-                wrong.push(format!("{}:{line}", path.display()));
+    for folder in ["src", "crates"] {
+        for path in sources(&Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)) {
+            for (line, text) in code(&path) {
+                // `pub(super)` names a visibility, not a path.
+                if text.contains("super::") {
+                    wrong.push(format!("{}:{line}", path.display()));
+                }
             }
         }
     }

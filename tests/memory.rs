@@ -4,8 +4,8 @@
 #![allow(clippy::print_stdout, reason = "figures, shown by --nocapture and on failure")]
 
 use lumiduct::input::{self, GatherSettings, Settings};
-use lumiduct::scene::plan::{Request, Schedule};
-use lumiduct::transport::Run;
+use lumiduct_core::plan::{Request, Schedule};
+use lumiduct_core::transport::Run;
 use peak_alloc::PeakAlloc;
 
 /// Counts what is allocated: what the system lends a process besides depends on its threads and its load.

@@ -3,9 +3,9 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
 
 use lumiduct::input::{self, Settings};
-use lumiduct::measure::{self, Axes, Measures};
-use lumiduct::scene::plan::Request;
-use lumiduct::transport::Run;
+use lumiduct_core::measure::{self, Axes, Measures};
+use lumiduct_core::plan::Request;
+use lumiduct_core::transport::Run;
 use std::f64::consts::PI;
 use std::path::Path;
 

@@ -7,7 +7,7 @@ mod package;
 use lumiduct::input::{StudySettings, load_study};
 use lumiduct::report::study::{DesignRecord, Pairing};
 use lumiduct::study::{BatchWishes, OnExisting, run_study};
-use lumiduct::transport::{Interrupt, Shard};
+use lumiduct_core::transport::{Interrupt, Shard};
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -131,7 +131,7 @@ fn the_error_of_a_difference_is_what_it_says_and_smaller_than_that_of_independen
         alone.push(first.std_error.hypot(second.std_error));
     }
     // The spread over seeds is the truth; of 48 it is itself known to 1/sqrt(2 * 47) = 10 %.
-    let spread = lumiduct::tally::Tally::of(differences.iter().copied());
+    let spread = lumiduct_core::tally::Tally::of(differences.iter().copied());
     let spread = spread.std_error() * (differences.len() as f64).sqrt();
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
     let ratio = mean(&errors) / spread;

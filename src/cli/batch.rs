@@ -6,8 +6,8 @@ use crate::cli::{INTERRUPTED, fail, on_ctrl_c, open_junit, print, use_threads, w
 use crate::input::StudySettings;
 use crate::report::{Existing, Written, study_junit};
 use crate::study::{BatchWishes, Finished, OnExisting, run_study};
-use crate::transport::Shard;
 use clap::Args;
+use lumiduct_core::transport::Shard;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Mutex;

@@ -12,9 +12,9 @@ use crate::cli::{
 use crate::input::{GatherSettings, Settings};
 use crate::pipeline::{self, Finished, Output, SliceWishes, SliceWritten, Start, Stop};
 use crate::report::{Existing, Outcome, Written, run_junit};
-use crate::scene::plan::{Request, Schedule};
-use crate::transport::{Interrupt, Shard};
 use clap::Args;
+use lumiduct_core::plan::{Request, Schedule};
+use lumiduct_core::transport::{Interrupt, Shard};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};

@@ -1,8 +1,8 @@
 //! Values of arguments, with their units.
 
-use crate::scene::plan::MOST_RECORDS;
-use crate::transport::Shard;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use lumiduct_core::plan::MOST_RECORDS;
+use lumiduct_core::transport::Shard;
 use std::time::Duration;
 
 /// A count with an optional k, M or G.

@@ -5,10 +5,10 @@
 
 use crate::input::keys::Key;
 use crate::input::problems::Problems;
-use crate::scene::plan::{GatherPlan, Request, Schedule};
-use crate::scene::{Owner, Scene};
 use lumiduct_base::math::Aabb;
 use lumiduct_base::number::format_value;
+use lumiduct_core::plan::{GatherPlan, Request, Schedule};
+use lumiduct_core::scene::{Owner, Scene};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

@@ -3,7 +3,9 @@
 //! Knows no keys and no problems. The checks ask it for what a haze scatters.
 
 use crate::input::spec::finish::{AbgSpec, GgxSpec, HarveySpec, HazeSheetSpec, HazeSidesSpec};
-use crate::optics::{AngleTable, Bsdf, Facets, Haze, HazeBase, HazeLaw, HazeSides, Microfacet};
+use lumiduct_core::optics::{
+    AngleTable, Bsdf, Facets, Haze, HazeBase, HazeLaw, HazeSides, Microfacet,
+};
 
 pub(crate) fn ggx(spec: &GgxSpec) -> Bsdf {
     let facets = match (spec.reflectance, spec.metal) {

@@ -3,8 +3,8 @@
 use crate::pipeline::Output;
 use crate::pipeline::snapshot::{self, Kind};
 use crate::report::{Existing, Recipe, remove_if_there, sweep};
-use crate::transport::{Run, State};
 use lumiduct_base::error::{Error, Result};
+use lumiduct_core::transport::{Run, State};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::time::Duration;

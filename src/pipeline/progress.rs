@@ -1,9 +1,9 @@
 //! How far a run has come.
 
 use crate::input::Job;
-use crate::measure::{self, Measure};
-use crate::scene::plan::RunPlan;
-use crate::transport::{Phase, Run};
+use lumiduct_core::measure::{self, Measure};
+use lumiduct_core::plan::RunPlan;
+use lumiduct_core::transport::{Phase, Run};
 use std::time::Duration;
 
 /// How far a run has come: for progress displays.

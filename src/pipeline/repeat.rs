@@ -3,8 +3,8 @@
 use crate::input::Job;
 use crate::input::keys::Key;
 use crate::pipeline::Stop;
-use crate::scene::plan::Estimator;
-use crate::transport::{Findings, Gathered};
+use lumiduct_core::plan::Estimator;
+use lumiduct_core::transport::{Findings, Gathered};
 
 /// The command that comes to the same numbers without a pilot and without a clock; `None` for a run that its own scene
 /// repeats.

@@ -4,11 +4,11 @@
 use crate::input::Job;
 use crate::input::keys::Key;
 use crate::input::problems::Problems;
-use crate::measure;
-use crate::scene::plan::Request;
-use crate::scene::{Scene, SensorId, Source};
-use crate::transport::{BLIND_PATHS, blind_sensors, invisible, scatterers};
 use lumiduct_base::error::{Diagnostic, Result};
+use lumiduct_core::measure;
+use lumiduct_core::plan::Request;
+use lumiduct_core::scene::{Scene, SensorId, Source};
+use lumiduct_core::transport::{BLIND_PATHS, blind_sensors, invisible, scatterers};
 
 /// Refuses a scene without light, and checks and targets that name no measure of it, before any work is done. Gives
 /// back remarks.

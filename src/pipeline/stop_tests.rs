@@ -3,8 +3,8 @@
 use crate::input::GatherSettings;
 use crate::pipeline::tests::job as short_rod;
 use crate::pipeline::*;
-use crate::scene::plan::Estimator;
-use crate::transport::{Phase, StopAnswer, StopSignal};
+use lumiduct_core::plan::Estimator;
+use lumiduct_core::transport::{Phase, StopAnswer, StopSignal};
 
 /// The short rod by one estimator, in small batches or passes, with a plan for more than is traced.
 fn settings(estimator: Request) -> Settings {

@@ -1,12 +1,14 @@
 //! Tracing until a stop rule holds, the clock runs out, or the user stops it.
 
 use crate::input::Job;
-use crate::measure::{self, Status};
 use crate::pipeline::checkpoint::Checkpoint;
 use crate::pipeline::{Progress, Stop, TargetProgress, gathering};
-use crate::scene::plan::RunPlan;
-use crate::transport::{Activity, FIRST_BATCH_GRACE, Findings, Interrupt, Phase, Run, StopSignal};
 use lumiduct_base::error::{Error, Result};
+use lumiduct_core::measure::{self, Status};
+use lumiduct_core::plan::RunPlan;
+use lumiduct_core::transport::{
+    Activity, FIRST_BATCH_GRACE, Findings, Interrupt, Phase, Run, StopSignal,
+};
 use std::time::{Duration, Instant};
 
 /// What tracing gave.

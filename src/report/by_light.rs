@@ -1,7 +1,7 @@
 //! What each source or light group brings to each sensor, and the words where totals add weathers up.
 
-use crate::measure::{Measure, Measures};
 use crate::report::words::quantity;
+use lumiduct_core::measure::{Measure, Measures};
 
 /// Least number of sources and groups that are held against each other.
 const SEVERAL: usize = 2;

@@ -3,7 +3,6 @@
 //! It is the tube transmission efficiency of CIE 173:2012: flux that leaves a tube over flux that enters it. Skies of
 //! the scene stand beside the suns.
 
-use crate::measure::Measure;
 use crate::report::csv::table;
 use crate::report::png::{
     ErrorForm, LinePlot, Look, Scale, Series, SeriesForm, SeriesPoint, line_plot,
@@ -11,6 +10,7 @@ use crate::report::png::{
 use crate::report::words::quantity;
 use crate::report::{OutputFile, Report};
 use lumiduct_base::error::Result;
+use lumiduct_core::measure::Measure;
 
 /// Suns that make a table.
 const SEVERAL: usize = 2;

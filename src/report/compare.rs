@@ -8,10 +8,10 @@ use crate::report::csv::table;
 use crate::report::png::{
     ErrorForm, LinePlot, Look, Scale, Series, SeriesForm, SeriesPoint, line_plot,
 };
-use crate::tally::Tally;
 use lumiduct_base::error::Result;
 use lumiduct_base::number::{format_percent, format_value, format_with_error};
 use lumiduct_base::text::markdown_page;
+use lumiduct_core::tally::Tally;
 use std::fmt::Write;
 
 /// A comparison of estimators on one sensor.

@@ -3,7 +3,6 @@
 //! The order is that of a reader: the verdict, the numbers that were asked for, pictures and readings of each sensor, what
 //! was simulated, where the light went, and how it was computed.
 
-use crate::measure::{Measure, Outcome, SensorMap, SensorPaths, Status};
 use crate::report::by_light::{self, Matrix, matrix, remark_on_totals, sum_over_weathers};
 use crate::report::csv::{map_name, map_words};
 use crate::report::figures::{BOUNCES_SHOWN, bounce_plot, intensity_plot, where_and_when};
@@ -17,6 +16,7 @@ use crate::report::words::{
 };
 use crate::report::{Report, by_sun, record};
 use lumiduct_base::number::format_value;
+use lumiduct_core::measure::{Measure, Outcome, SensorMap, SensorPaths, Status};
 
 /// Share of the flux that the histogram of bounces shows by decades, where more is to be seen of a tail.
 const BOUNCES_BY_DECADES: f64 = 0.9999;
@@ -312,7 +312,7 @@ fn estimators(report: &Report) -> Vec<Block> {
     let measures = &report.measures;
     let mut blocks = Vec::new();
     if measures.choices.is_empty() {
-        let row = |(sensor, estimator): (&String, &crate::scene::plan::Estimator)| {
+        let row = |(sensor, estimator): (&String, &lumiduct_core::plan::Estimator)| {
             vec![sensor.clone(), estimator.name().to_owned()]
         };
         blocks.push(table(["sensor", "estimator"], measures.estimators.iter().map(row).collect()));

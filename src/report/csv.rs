@@ -1,12 +1,12 @@
 //! Tables: one file for each map, intensity distribution and histogram, a row for each cell, units in the header.
 
-use crate::measure::{Axes, IntensityTable, SensorMap};
 use crate::report::by_light::sum_over_weathers;
 use crate::report::{OutputFile, Report};
 use csv::Writer;
 use lumiduct_base::error::{Error, Result};
 use lumiduct_base::number::format_value;
 use lumiduct_base::text::spreadsheet_cell;
+use lumiduct_core::measure::{Axes, IntensityTable, SensorMap};
 
 /// All tables of a report but those for spreadsheets.
 pub(crate) fn files(report: &Report) -> Result<Vec<OutputFile>> {

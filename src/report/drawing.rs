@@ -3,12 +3,12 @@
 //! Plain data in the user's coordinates. How it is looked at is not known here.
 
 use crate::report::upright::is_lit_from_above;
-use crate::scene::{
-    Emitter, FaceFacets, FaceId, Facets, Fineness, Owner, Scene, SensorKind, SourceId, shape_facets,
-};
-use crate::transport::{Track, TrackEnd};
 use glam::DVec3;
 use lumiduct_base::math::Aabb;
+use lumiduct_core::scene::{
+    Emitter, FaceFacets, FaceId, Facets, Fineness, Owner, Scene, SensorKind, SourceId, shape_facets,
+};
+use lumiduct_core::transport::{Track, TrackEnd};
 use serde::Serialize;
 use std::collections::BTreeSet;
 
@@ -323,7 +323,7 @@ fn within(from: DVec3, to: DVec3, middle: DVec3, radius: f64) -> Option<[DVec3; 
 
 /// What became of a path, and the same in words.
 pub(crate) fn fate(scene: &Scene, track: &Track) -> (Fate, String) {
-    let counted = |id: crate::scene::SensorId| {
+    let counted = |id: lumiduct_core::scene::SensorId| {
         (Fate::Counted, format!("counted by {}", scene.sensors[id.index()].name))
     };
     match track.end {

@@ -1,8 +1,5 @@
 //! Which pictures a report has, and what is on them.
 
-use crate::measure::{
-    Axes, Balance, IntensityTable, PlaneCurve, SensorMap, SensorPaths, not_below_zero,
-};
 use crate::report::by_light::sum_over_weathers;
 use crate::report::csv::{map_name, map_words};
 use crate::report::key_figures::is_one_cell;
@@ -13,6 +10,9 @@ use crate::report::png::{
 use crate::report::{OutputFile, Report};
 use lumiduct_base::error::Result;
 use lumiduct_base::number::{format_percent, format_value, format_with_error};
+use lumiduct_core::measure::{
+    Axes, Balance, IntensityTable, PlaneCurve, SensorMap, SensorPaths, not_below_zero,
+};
 use ndarray::Axis;
 
 /// All pictures of a report.
@@ -228,7 +228,7 @@ mod kind {
 
 fn balance_picture(balance: &Balance, source_flux: f64, unit: &str) -> Result<Vec<u8>> {
     let mut bars = Vec::new();
-    let mut bar = |name: String, measure: &crate::measure::Measure, colour: usize| {
+    let mut bar = |name: String, measure: &lumiduct_core::measure::Measure, colour: usize| {
         if measure.value != 0.0 {
             bars.push(Bar {
                 name,
@@ -262,26 +262,47 @@ fn balance_picture(balance: &Balance, source_flux: f64, unit: &str) -> Result<Ve
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measure::{Measures, measure, samples};
+    use crate::input::{Settings, load};
     use crate::report::html::data;
-    use crate::scene::{LightGroups, SensorKind};
+    use lumiduct_core::measure::{Measures, measure};
+    use lumiduct_core::scene::LightGroups;
+    use lumiduct_core::transport::{Findings, Layout, Readings};
+
+    const SCENE: &str = r#"
+lumiduct = 1
+title = "dim"
+[sheets.screen.disk]
+radius_mm = 50
+finish = "black"
+[sources.led.point]
+at = { position_mm = [0, 0, 9] }
+flux_lm = 1
+[sensors]
+exit = { plane = { rectangle = { width_mm = 1, height_mm = 1 }, cells = [2, 2] }, at = { position_mm = [0, 0, 5] } }
+far = { goniometer = { c_step_deg = 90, gamma_step_deg = 30 } }
+"#;
 
     /// What a plane and a goniometer have seen that extrapolation has made negative in the first cell and the first ring.
     fn dim(weathers: &[&str]) -> Measures {
-        let kinds: [(&str, SensorKind); 2] =
-            [("exit", samples::rectangle(1.0, 2, 2)), ("far", samples::goniometer(4, 6))];
-        let mut scene = samples::scene(&[("led", 1.0)], kinds.to_vec());
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("dim.toml");
+        std::fs::write(&path, SCENE).unwrap();
+        let mut scene = load(&path, &Settings::default()).unwrap().scene;
         let weathers = weathers.iter().map(|name| (*name).to_owned()).collect();
         scene.light = LightGroups { groups: Vec::new(), weathers };
-        let findings = samples::readings(&scene, 2, |_, _, batch| {
+        let layout = Layout::new(&scene);
+        let [one, other] = [0, 1].map(|index| {
+            let mut batch = Readings::of_batch(&scene, &layout, 1, 1000, index);
             for (sensor, (cells, dim)) in [(4, 1), (24, 4)].into_iter().enumerate() {
                 for cell in 0..cells {
                     let flux = if cell < dim { -2e-6 } else { 3e-6 };
                     batch.sensors[sensor].cells.add(cell, flux);
                 }
             }
+            batch.close_batch();
+            batch
         });
-        measure(&scene, &findings)
+        measure(&scene, &Findings::forward(one.merge(&other)))
     }
 
     #[test]

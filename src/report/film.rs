@@ -1,9 +1,9 @@
 //! What prism films do against the angle, as a table.
 
-use crate::optics::film::{acceptance_angle, along_prisms};
-use crate::optics::{Bsdf, FilmFace, Incidence, PrismFilm, Shares};
-use crate::scene::Finish;
 use lumiduct_base::number::format_value;
+use lumiduct_core::optics::film::{acceptance_angle, along_prisms};
+use lumiduct_core::optics::{Bsdf, FilmFace, Incidence, PrismFilm, Shares};
+use lumiduct_core::scene::Finish;
 use std::f64::consts::FRAC_PI_2;
 use std::fmt::Write;
 

@@ -4,12 +4,12 @@
 //! volumes and etendues come from the scene itself.
 
 use crate::input::Outline;
-use crate::scene::{
+use glam::DVec3;
+use lumiduct_base::number::format_value;
+use lumiduct_core::scene::{
     Emission, Emitter, Face, FaceId, MediumId, Owner, Scene, Seeing, Sensor, SensorKind, Source,
     SunAngles,
 };
-use glam::DVec3;
-use lumiduct_base::number::format_value;
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
 use std::fmt::Write;
@@ -194,7 +194,7 @@ fn place(outline: &Outline, section: &str, name: &str) -> String {
 /// Faces by name; neighbours of one owner, finish and area share a row.
 fn faces(scene: &Scene) -> Listing {
     let finish = |face: &Face| {
-        let name = |id: Option<crate::scene::FinishId>| {
+        let name = |id: Option<lumiduct_core::scene::FinishId>| {
             id.map_or("polished", |id| scene.finishes[id.index()].name.as_str())
         };
         match face.owner {

@@ -2,12 +2,12 @@
 //!
 //! It holds neither times nor identifiers: the same results give the same bytes. Only this file names `quick_junit`.
 
-use crate::measure::Outcome;
 use crate::report::diff::{Diff, DiffRow, Judgement, sentence};
 use crate::report::study::{DesignOutcome, StudyReport};
 use crate::report::words::numbered;
 use crate::report::{CheckResult, Existing, Report, TargetFacts, expect_file, write_whole};
 use lumiduct_base::error::{Error, Result};
+use lumiduct_core::measure::Outcome;
 use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestSuite};
 use std::fs::File;
 use std::io::Read;

@@ -1,7 +1,7 @@
 //! The figures of a sensor that a reader looks for first, whatever the format of the report.
 
-use crate::measure::{Measure, Measures, SensorMap};
 use lumiduct_base::number::format_value;
+use lumiduct_core::measure::{Measure, Measures, SensorMap};
 
 /// A figure: what it is, in words, and its value.
 pub(crate) struct KeyFigure<'r> {

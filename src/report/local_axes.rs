@@ -1,9 +1,9 @@
 //! The local axes of every face and sensor of a scene, for drawings and tables.
 
 use crate::report::drawing::Role;
-use crate::scene::shape::ChartRect;
-use crate::scene::{FaceId, Owner, Scene, SensorKind};
 use glam::DVec3;
+use lumiduct_core::scene::shape::ChartRect;
+use lumiduct_core::scene::{FaceId, Owner, Scene, SensorKind};
 
 /// The axes of a face or of a sensor.
 #[derive(Debug, Clone)]

@@ -1,7 +1,7 @@
 //! What decides the bytes of a report, so that a run over its own report is told from a run over another one.
 
 use crate::report::{Manifest, SUMMARY};
-use crate::scene::plan::{Estimator, GatherPlan, NUMERICS, Request, RunPlan};
+use lumiduct_core::plan::{Estimator, GatherPlan, NUMERICS, Request, RunPlan};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::fs;

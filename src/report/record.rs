@@ -1,14 +1,14 @@
 //! The one record that all formats of a report are made from.
 
 use crate::input::Project;
-use crate::measure::{self, GatheredFacts, LostPaths, Measures, Status, Verdict};
 use crate::report::by_light::remark_on_weathers;
 use crate::report::{Drawing, Inventory, Recipe};
-use crate::scene::plan::{Check, GatherPlan, Request, Schedule, StopRules, Target};
-use crate::scene::{Counts, Place, Scene, Seeing, Sensor, SensorKind};
-use crate::transport::{GROUPS, GatherSettings, Leak};
 use glam::DVec3;
 use lumiduct_base::number::{format_exact, format_percent, format_with_error};
+use lumiduct_core::measure::{self, GatheredFacts, LostPaths, Measures, Status, Verdict};
+use lumiduct_core::plan::{Check, GatherPlan, Request, Schedule, StopRules, Target};
+use lumiduct_core::scene::{Counts, Place, Scene, Seeing, Sensor, SensorKind};
+use lumiduct_core::transport::{GROUPS, GatherSettings, Leak};
 use serde::{Deserialize, Serialize};
 
 /// Everything a report says.

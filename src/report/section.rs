@@ -5,13 +5,13 @@ use crate::report::png::{
     CrossSection, NamedPlace, Outline, PlaceOf, RayEnd, RayPath, cross_section,
 };
 use crate::report::upright::is_lit_from_above;
-use crate::scene::shape::ChartRect;
-use crate::scene::{Emitter, Scene, SensorKind};
-use crate::transport::Track;
 use glam::{DVec2, DVec3};
 use lumiduct_base::error::{Error, Result};
 use lumiduct_base::math::{Aabb, Frame};
 use lumiduct_base::number::format_value;
+use lumiduct_core::scene::shape::ChartRect;
+use lumiduct_core::scene::{Emitter, Scene, SensorKind};
+use lumiduct_core::transport::Track;
 use std::collections::BTreeSet;
 
 /// Margin around what is shown, in diagonals of its box, 1.

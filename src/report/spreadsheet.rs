@@ -3,10 +3,10 @@
 //! They begin with a UTF-8 byte-order mark, without which Excel takes the letters of units such as `mm²` for others. All
 //! other tables go without one; every reader of this program accepts both.
 
-use crate::measure::{Axes, IntensityTable, SensorMap};
 use crate::report::csv::{map_name, table};
 use crate::report::{OutputFile, Report};
 use lumiduct_base::error::Result;
+use lumiduct_core::measure::{Axes, IntensityTable, SensorMap};
 use ndarray::Array2;
 
 /// What a UTF-8 file for a spreadsheet begins with.

@@ -21,13 +21,13 @@ struct Summary<'r> {
     paths: u64,
     batches: u64,
     segments: u64,
-    estimators: &'r indexmap::IndexMap<String, crate::scene::plan::Estimator>,
+    estimators: &'r indexmap::IndexMap<String, lumiduct_core::plan::Estimator>,
     #[serde(skip_serializing_if = "indexmap::IndexMap::is_empty")]
-    choices: &'r indexmap::IndexMap<String, crate::transport::Choice>,
-    gathered: &'r [crate::measure::GatheredFacts],
-    measures: &'r indexmap::IndexMap<String, crate::measure::Measure>,
+    choices: &'r indexmap::IndexMap<String, lumiduct_core::transport::Choice>,
+    gathered: &'r [lumiduct_core::measure::GatheredFacts],
+    measures: &'r indexmap::IndexMap<String, lumiduct_core::measure::Measure>,
     checks: &'r [crate::report::CheckResult],
-    paths_to_sensors: &'r [crate::measure::SensorPaths],
+    paths_to_sensors: &'r [lumiduct_core::measure::SensorPaths],
     warnings: &'r [String],
     files: &'r [&'r str],
 }

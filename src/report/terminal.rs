@@ -1,11 +1,11 @@
 //! The few lines that a run prints when it is done.
 
-use crate::measure::{Measures, Outcome};
 use crate::report::by_light::{Share, shares, sum_over_weathers};
 use crate::report::key_figures::key_figures;
 use crate::report::words::quantity;
 use crate::report::{Report, Written};
-use crate::scene::plan::Estimator;
+use lumiduct_core::measure::{Measures, Outcome};
+use lumiduct_core::plan::Estimator;
 use std::path::Path;
 
 /// The sensors for which a pilot has taken another estimator than the plain one.

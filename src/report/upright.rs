@@ -1,7 +1,7 @@
 //! Which way is up in a picture, when nobody says so.
 
-use crate::scene::{Emission, EmitSide, Emitter, Scene, Source};
 use glam::DVec3;
+use lumiduct_core::scene::{Emission, EmitSide, Emitter, Scene, Source};
 
 /// Cosine of the angle to −z within which a source shines down: 60 degrees.
 const DOWN: f64 = 0.5;

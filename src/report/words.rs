@@ -1,13 +1,13 @@
 //! What formats of a report say alike: numbers with their errors, verdicts, and rows of tables.
 
-use crate::measure::{
+use crate::report::Report;
+use lumiduct_base::number::{format_percent, format_value, format_with_error};
+use lumiduct_core::measure::{
     Action, Extent, GatheredFacts, LostPaths, Measure, Outcome, PathClass, PathStep, Resolution,
     SensorMap, StageFacts, Statistic, Status, strongest,
 };
-use crate::report::Report;
-use crate::scene::plan::Estimator;
-use crate::transport::{Choice, Objection, Trial};
-use lumiduct_base::number::{format_percent, format_value, format_with_error};
+use lumiduct_core::plan::Estimator;
+use lumiduct_core::transport::{Choice, Objection, Trial};
 
 /// A bias is told from this share of the standard error on, 1.
 const BIAS_TOLD: f64 = 0.3;
@@ -246,7 +246,7 @@ pub(crate) fn evenness_rows(map: &SensorMap) -> Vec<(&'static str, [String; 3])>
         ("9 points", summary.nine.as_ref()),
         ("13 points", summary.thirteen.as_ref()),
     ];
-    let row = |set: &crate::measure::Uniformity| {
+    let row = |set: &lumiduct_core::measure::Uniformity| {
         [&set.min_avg, &set.min_max, &set.max_min].map(statistic)
     };
     sets.into_iter().filter_map(|(name, set)| Some((name, row(set?)))).collect()

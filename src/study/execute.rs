@@ -5,15 +5,15 @@
 //! batches of another are traced.
 
 use crate::input::{Job, Keep, Setting, Settings, Study};
-use crate::measure;
 use crate::pipeline::{self, BUILD, Stop};
 use crate::report::study::{DESIGN_FORMAT, DesignOutcome, DesignRecord, DesignResult};
 use crate::report::{self, Existing, Folder, FolderLock};
 use crate::study::designs::Design;
 use crate::study::store::Store;
-use crate::transport::{Interrupt, batch_paths};
 use indexmap::IndexMap;
 use lumiduct_base::error::{Diagnostic, DiagnosticKind, Error, Result};
+use lumiduct_core::measure;
+use lumiduct_core::transport::{Interrupt, batch_paths};
 use std::collections::BTreeMap;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -26,8 +26,8 @@ use crate::report::{self, Existing, Folder, Written, is_among};
 use crate::study::designs::designs;
 use crate::study::execute::{Batch, execute};
 use crate::study::store::Store;
-use crate::transport::{Activity, Interrupt, Shard};
 use lumiduct_base::error::{Diagnostic, Error, Result};
+use lumiduct_core::transport::{Activity, Interrupt, Shard};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 

@@ -1,7 +1,7 @@
 //! Samples of the unit cube, one dimension for each parameter, and what they mean for a parameter.
 
 use crate::input::{Domain, Parameter, Samples, Setting};
-use crate::rng::{Dimension, Sampler};
+use lumiduct_core::rng::{Dimension, Sampler};
 use statrs::distribution::{ContinuousCDF, Normal};
 
 /// Streams of random numbers of the samples; light has streams of its own.
@@ -98,7 +98,7 @@ fn normal([mean, std_dev]: [f64; 2], [from, to]: [Option<f64>; 2], share: f64) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tally::Tally;
+    use lumiduct_core::tally::Tally;
 
     const SAMPLES: Samples = Samples { count: 512, seed: 3 };
 

@@ -5,11 +5,11 @@
 
 use crate::trial::{Gathering, Way, load};
 use lumiduct::input::Job;
-use lumiduct::measure::{self, Measure};
 use lumiduct::pipeline::{self, Stop};
-use lumiduct::scene::plan::{RunPlan, Schedule, StopRules, Target};
-use lumiduct::tally::Tally;
-use lumiduct::transport::{Findings, Interrupt, Run};
+use lumiduct_core::measure::{self, Measure};
+use lumiduct_core::plan::{RunPlan, Schedule, StopRules, Target};
+use lumiduct_core::tally::Tally;
+use lumiduct_core::transport::{Findings, Interrupt, Run};
 use rayon::prelude::*;
 
 /// Stages of a run.

@@ -2,9 +2,9 @@
 //! neither made nor lost.
 
 use crate::trial::{Comparison, Gathering, Way, findings, load, measures};
-use lumiduct::measure::{self, Measure};
-use lumiduct::scene::plan::{GatherPlan, RunPlan};
-use lumiduct::transport::{Findings, Run};
+use lumiduct_core::measure::{self, Measure};
+use lumiduct_core::plan::{GatherPlan, RunPlan};
+use lumiduct_core::transport::{Findings, Run};
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 /// A guide and its lamp, in which nothing absorbs.

@@ -6,9 +6,9 @@ use crate::sensors::scene;
 use crate::sources::rod;
 use crate::trial::{Gathering, Way, agree, findings, load};
 use glam::DVec3;
-use lumiduct::rng::Sampler;
-use lumiduct::scene::{Arrival, Arrivals, SensorId, SensorKind, SourceId};
-use lumiduct::transport::Layout;
+use lumiduct_core::rng::Sampler;
+use lumiduct_core::scene::{Arrival, Arrivals, SensorId, SensorKind, SourceId};
+use lumiduct_core::transport::Layout;
 
 /// Forward, backward, and merged at depths 0, 2 and 8.
 fn all_agree(what: &str, text: &str) {

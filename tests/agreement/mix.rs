@@ -1,9 +1,9 @@
 //! Forward and backward mixed: right where only one of them finds light, and better than both where each finds some.
 
 use crate::trial::{Way, agree, findings, load};
-use lumiduct::scene::plan::{Estimator, Request, RunPlan, StopRules};
-use lumiduct::scene::{SensorId, SourceId};
-use lumiduct::transport::{Layout, Run};
+use lumiduct_core::plan::{Estimator, Request, RunPlan, StopRules};
+use lumiduct_core::scene::{SensorId, SourceId};
+use lumiduct_core::transport::{Layout, Run};
 
 /// A mirror tube with sources, and a cell behind it.
 fn tube(sources: &str) -> String {

@@ -2,11 +2,11 @@
 
 use crate::trial::{Gathering, Way, findings, load};
 use lumiduct::input::Settings;
-use lumiduct::measure::{self, Status};
 use lumiduct::pipeline::{self, Output};
 use lumiduct::report::Existing;
-use lumiduct::scene::plan::Request;
-use lumiduct::transport::Interrupt;
+use lumiduct_core::measure::{self, Status};
+use lumiduct_core::plan::Request;
+use lumiduct_core::transport::Interrupt;
 
 const ROD: &str = r#"
 [media.acrylic]

@@ -4,8 +4,8 @@ use crate::*;
 use lumiduct::input::Settings;
 use lumiduct::pipeline::{self, Output};
 use lumiduct::report::Existing;
-use lumiduct::scene::plan::Request;
-use lumiduct::transport::Interrupt;
+use lumiduct_core::plan::Request;
+use lumiduct_core::transport::Interrupt;
 
 #[test]
 fn only_a_sensor_that_was_lit_from_behind_is_told_to_turn() {

@@ -2,8 +2,8 @@
 
 use crate::{BODIES, LAMP, load};
 use glam::DVec3;
-use lumiduct::rng::{Dimension, Sampler};
-use lumiduct::scene::{Inside, Just, On, Ray, Scene, SolidId};
+use lumiduct_core::rng::{Dimension, Sampler};
+use lumiduct_core::scene::{Inside, Just, On, Ray, Scene, SolidId};
 
 /// A direction along no axis of anything.
 fn direction(sampler: &mut Sampler) -> DVec3 {

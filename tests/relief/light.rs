@@ -3,11 +3,11 @@
 use crate::{BODIES, LAMP, load};
 use glam::DVec3;
 use lumiduct::input::Job;
-use lumiduct::measure::{self, Measures};
-use lumiduct::rng::Sampler;
-use lumiduct::scene::shape::Toward;
-use lumiduct::scene::{FaceId, Owner, SourceId};
-use lumiduct::transport::{Event, Path, Run, walk};
+use lumiduct_core::measure::{self, Measures};
+use lumiduct_core::rng::Sampler;
+use lumiduct_core::scene::shape::Toward;
+use lumiduct_core::scene::{FaceId, Owner, SourceId};
+use lumiduct_core::transport::{Event, Path, Run, walk};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
@@ -325,7 +325,7 @@ fn the_map_of_a_wall_knows_what_elements_take_of_it() {
             .sensors
             .iter()
             .find_map(|sensor| match &sensor.kind {
-                lumiduct::scene::SensorKind::Surface(surface) if sensor.name == "wall" => {
+                lumiduct_core::scene::SensorKind::Surface(surface) if sensor.name == "wall" => {
                     Some(surface.areas.iter().sum::<f64>())
                 }
                 _ => None,

@@ -7,7 +7,7 @@ mod geometry;
 mod light;
 
 use lumiduct::input::{self, Job, Settings};
-use lumiduct::scene::plan::Request;
+use lumiduct_core::plan::Request;
 
 /// A scene from its text without the head, for so many photons.
 fn load(text: &str, paths: u64) -> Job {

@@ -3,8 +3,11 @@
 use crate::run::scene_file;
 use glam::DVec3;
 use lumiduct::input::{self, Settings};
-use lumiduct::optics::fresnel::{Polarised, brewster_angle, conductor, critical_angle, dielectric};
-use lumiduct::transport::{Track, TrackEnd, sppm_area_ratio, tracks};
+use lumiduct_baselines::sppm_area_ratio;
+use lumiduct_core::optics::fresnel::{
+    Polarised, brewster_angle, conductor, critical_angle, dielectric,
+};
+use lumiduct_core::transport::{Track, TrackEnd, tracks};
 
 /// Largest relative deviation.
 pub(crate) const LIMIT: f64 = 1e-6;

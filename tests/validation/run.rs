@@ -2,11 +2,11 @@
 
 use crate::table::{By, Case, Class, Value, Variant};
 use lumiduct::input::{self, Job, Settings};
-use lumiduct::measure::{self, Measure};
-use lumiduct::scene::plan::Request;
-use lumiduct::scene::plan::{Check, RunPlan, StopRules};
-use lumiduct::tally::sigmas;
-use lumiduct::transport::{Findings, Run};
+use lumiduct_core::measure::{self, Measure};
+use lumiduct_core::plan::Request;
+use lumiduct_core::plan::{Check, RunPlan, StopRules};
+use lumiduct_core::tally::sigmas;
+use lumiduct_core::transport::{Findings, Run};
 use std::path::{Path, PathBuf};
 
 /// Paths after which a run that has not reached its errors has failed.

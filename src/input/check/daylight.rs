@@ -5,9 +5,9 @@ use crate::input::keys::Key;
 use crate::input::problems::Problems;
 use crate::input::spec::daylight::{SkyModelSpec, SunPlaceSpec, WhenSpec};
 use crate::input::spec::source::SourceSpec;
-use crate::optics::sun::{Date, Misread, read_time};
 use glam::DVec3;
 use lumiduct_base::math::Frame;
+use lumiduct_core::optics::sun::{Date, Misread, read_time};
 
 pub(crate) fn check(scene: Scene<'_>, problems: &mut Problems) {
     check_world(scene, problems);

@@ -6,8 +6,8 @@ use crate::input::keys::Key;
 use crate::input::problems::Problems;
 use crate::input::scatter;
 use crate::input::spec::finish::{HazeSheetSpec, TabulatedSpec};
-use crate::optics::{HazeLaw, HazeSides, integrated_scatter};
 use lumiduct_base::number::format_value;
+use lumiduct_core::optics::{HazeLaw, HazeSides, integrated_scatter};
 
 /// Haze as a file states it.
 pub(super) struct Law<'a> {

@@ -4,9 +4,9 @@ use crate::input::keys::Key;
 use crate::input::lower::kind_key;
 use crate::input::problems::Problems;
 use crate::input::spec::SceneSpec;
-use crate::rng::{Dimension, Sampler};
-use crate::scene::{Just, Owner, Ray, Scene, Solid, SolidId};
 use glam::DVec3;
+use lumiduct_core::rng::{Dimension, Sampler};
+use lumiduct_core::scene::{Just, Owner, Ray, Scene, Solid, SolidId};
 
 /// Points that are tried in the space that the boxes of two solids share.
 const PROBES: u64 = 512;
@@ -55,7 +55,7 @@ fn common_point(scene: &Scene, first: SolidId, second: SolidId) -> Option<DVec3>
 
 /// Notes faces of solids that light passes unbent though the index changes there.
 pub(super) fn check_open_faces(spec: &SceneSpec, scene: &Scene, problems: &mut Problems) {
-    let index = |medium: crate::scene::MediumId| scene.media[medium.index()].index(0.0);
+    let index = |medium: lumiduct_core::scene::MediumId| scene.media[medium.index()].index(0.0);
     for pattern in &scene.patterns {
         let face = &scene.faces[pattern.face.index()];
         let Owner::Solid(solid) = face.owner else { continue };

@@ -6,10 +6,10 @@
 use crate::input::lower::consistency::solid_key;
 use crate::input::problems::Problems;
 use crate::input::spec::SceneSpec;
-use crate::rng::{Dimension, Sampler};
-use crate::scene::shape::Toward;
-use crate::scene::{AreaPoint, FaceArea, FaceId, Owner, Ray, Scene, SolidId};
 use lumiduct_base::number::format_value;
+use lumiduct_core::rng::{Dimension, Sampler};
+use lumiduct_core::scene::shape::Toward;
+use lumiduct_core::scene::{AreaPoint, FaceArea, FaceId, Owner, Ray, Scene, SolidId};
 use std::collections::BTreeMap;
 
 /// Solids nearer than this, mm, were meant to touch: two wavelengths of light, below which rays do not hold.

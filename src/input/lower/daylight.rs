@@ -5,16 +5,16 @@ use crate::input::lower::Context;
 use crate::input::lower::light_groups::{Daylight, Member};
 use crate::input::problems::name_hint;
 use crate::input::spec::daylight::{SkyModelSpec, SkySpec, SunPlaceSpec, SunSpec, WhenSpec};
-use crate::optics::SkyModel;
-use crate::optics::sun::{Date, Observation, read_time, sun_position};
-use crate::scene::shape::Shape;
-use crate::scene::{
-    Emission, EmitSide, Emitter, EmitterKind, FaceId, MeshBody, Owner, Sky, Source, SourceId,
-    Start, SunAngles,
-};
 use glam::DVec3;
 use lumiduct_base::math::{Aabb, Frame};
 use lumiduct_base::units::per_m2_to_per_mm2;
+use lumiduct_core::optics::SkyModel;
+use lumiduct_core::optics::sun::{Date, Observation, read_time, sun_position};
+use lumiduct_core::scene::shape::Shape;
+use lumiduct_core::scene::{
+    Emission, EmitSide, Emitter, EmitterKind, FaceId, MeshBody, Owner, Sky, Source, SourceId,
+    Start, SunAngles,
+};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Azimuth of a sun of which none is told, deg: south.

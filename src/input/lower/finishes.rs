@@ -6,8 +6,8 @@ use crate::input::scatter;
 use crate::input::spec::finish::{
     FinishRef, FinishSpec, GaussianSpec, GrainSpec, PrismFilmSpec, PrismSideSpec,
 };
-use crate::optics::{AngleTable, Bsdf, FilmFace, FilmMake, Gaussian, Grain, PrismFilm};
-use crate::scene::FinishId;
+use lumiduct_core::optics::{AngleTable, Bsdf, FilmFace, FilmMake, Gaussian, Grain, PrismFilm};
+use lumiduct_core::scene::FinishId;
 
 impl Context<'_> {
     /// Adds the named finishes, the predefined ones first; a definition of the same name wins.

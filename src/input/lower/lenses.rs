@@ -4,9 +4,9 @@ use crate::input::keys::Key;
 use crate::input::lower::Context;
 use crate::input::lower::surfaces::{Ends, NamedFace, Surfaces, disk_facing};
 use crate::input::spec::solid::{LensFaceSpec, LensSpec};
-use crate::scene::shape::{Cylinder, Shape, Sphere};
 use lumiduct_base::math::Frame;
 use lumiduct_base::number::{format_least_length, format_length};
+use lumiduct_core::scene::shape::{Cylinder, Shape, Sphere};
 
 /// A spherical face as the file says it.
 struct Curved {

@@ -6,9 +6,9 @@ use crate::input::check::check_name;
 use crate::input::keys::Key;
 use crate::input::lower::Context;
 use crate::input::spec::daylight::{SkyModelSpec, SkySpec};
-use crate::scene::{LightGroup, LightGroups, SourceId};
 use glam::DVec3;
 use indexmap::IndexMap;
+use lumiduct_core::scene::{LightGroup, LightGroups, SourceId};
 
 /// Suns nearer than this are one sun, by the distance of their unit vectors: below a second of arc.
 const SAME_SUN: f64 = 1e-6;

@@ -5,11 +5,11 @@ use crate::input::lower::Context;
 use crate::input::problems::face_hint;
 use crate::input::spec::finish::FinishRef;
 use crate::input::spec::solid::{MeshNormals, MeshSpec, MeshUnit};
-use crate::scene::mesh::Mesh;
-use crate::scene::{FinishId, SolidId};
 use indexmap::IndexMap;
 use lumiduct_base::math::Frame;
 use lumiduct_base::mesh::{Defects, MeshHealth, TriangleMesh, health};
+use lumiduct_core::scene::mesh::Mesh;
+use lumiduct_core::scene::{FinishId, SolidId};
 use lumiduct_files::mesh::{self, LengthUnit};
 
 /// Bounces for which the drift of a faceted wall is told.

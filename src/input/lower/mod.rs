@@ -29,13 +29,13 @@ use crate::input::spec::SceneSpec;
 use crate::input::spec::finish::ScatteringSpec;
 use crate::input::spec::placement::PlacementSpec;
 use crate::input::spec::source::SourceSpec;
-use crate::optics::{Medium, VolumeScattering};
-use crate::scene::plan::{Check, RunPlan};
-use crate::scene::{Builder, FaceId, FinishId, MediumId, Scene};
 use glam::DVec3;
 use indexmap::IndexMap;
 use lumiduct_base::digest::Digest;
 use lumiduct_base::units::FluxUnit;
+use lumiduct_core::optics::{Medium, VolumeScattering};
+use lumiduct_core::plan::{Check, RunPlan};
+use lumiduct_core::scene::{Builder, FaceId, FinishId, MediumId, Scene};
 
 /// What lowering makes of a scene file.
 #[derive(Debug)]

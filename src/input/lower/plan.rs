@@ -6,10 +6,10 @@ use crate::input::spec::SceneSpec;
 use crate::input::spec::run::{
     CheckSpec, EstimatorSpec, GatherSpec, ScheduleSpec, SensorEstimatorSpec,
 };
-use crate::scene::plan::{
+use lumiduct_core::plan::{
     Check, Estimator, GatherPlan, Request, RunPlan, Schedule, StopRules, Target,
 };
-use crate::scene::{Scene, Sensor};
+use lumiduct_core::scene::{Scene, Sensor};
 use std::time::Duration;
 
 /// Paths of a run that names no stop rule.

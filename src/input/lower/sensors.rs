@@ -9,13 +9,13 @@ use crate::input::spec::sensor::{
     SensorKind as KindSpec, SensorSide, SensorSpec,
 };
 use crate::input::spec::sweep::{CircleSpec, RectangleSpec};
-use crate::scene::shape::{ChartRect, Flat, Region, Shape};
-use crate::scene::{
+use glam::DVec2;
+use lumiduct_base::math::Frame;
+use lumiduct_core::scene::shape::{ChartRect, Flat, Region, Shape};
+use lumiduct_core::scene::{
     Counts, FaceId, FaceSpec, Goniometer, Grid, Owner, Passage, Piece, Pixels, Place, Scene,
     Seeing, Sensor, SensorKind, Sides, SurfaceSensor, Views,
 };
-use glam::DVec2;
-use lumiduct_base::math::Frame;
 use std::f64::consts::PI;
 
 /// How a sensor is divided.

@@ -5,10 +5,10 @@ use crate::input::lower::Context;
 use crate::input::lower::place::Facing;
 use crate::input::lower::surfaces::{BodyPart, NamedFace, Surfaces};
 use crate::input::spec::sheet::{DuctCommonSpec, SheetCommon, SheetCommonSpec, SheetSpec};
-use crate::scene::Owner;
-use crate::scene::shape::{Flat, ParabolicCylinder, Region, Shape, Sphere};
 use indexmap::IndexMap;
 use lumiduct_base::math::Frame;
+use lumiduct_core::scene::Owner;
+use lumiduct_core::scene::shape::{Flat, ParabolicCylinder, Region, Shape, Sphere};
 
 impl Context<'_> {
     /// Builds a sheet or duct with its faces.

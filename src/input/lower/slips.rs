@@ -7,11 +7,13 @@ use crate::input::spec::SceneSpec;
 use crate::input::spec::placement::PlacementSpec;
 use crate::input::spec::sensor::{CountsSpec, SensorSide, SensorSpec};
 use crate::input::spec::source::{BodySpec, SourceCommonSpec, SourceSpec};
-use crate::optics::Bsdf;
-use crate::rng::{Dimension, Sampler};
-use crate::scene::{Emitted, FaceArea, FaceId, FinishId, Just, Owner, Ray, Scene, Solid, SolidId};
 use glam::DVec3;
 use lumiduct_base::number::format_value;
+use lumiduct_core::optics::Bsdf;
+use lumiduct_core::rng::{Dimension, Sampler};
+use lumiduct_core::scene::{
+    Emitted, FaceArea, FaceId, FinishId, Just, Owner, Ray, Scene, Solid, SolidId,
+};
 
 /// Points that are tried on a face of a sheet: a cut of a hundredth of it is missed once in ten sheets.
 const PROBES: u64 = 256;
@@ -72,7 +74,7 @@ fn is_a_guide(scene: &Scene, solid: &Solid) -> bool {
 
 /// Whether the medium of a solid differs from the surroundings: if not, its faces are no obstacle.
 fn has_an_index_step(scene: &Scene, solid: &Solid) -> bool {
-    let index = |medium: crate::scene::MediumId| scene.media[medium.index()].index(0.0);
+    let index = |medium: lumiduct_core::scene::MediumId| scene.media[medium.index()].index(0.0);
     index(solid.medium) != index(scene.surroundings)
 }
 

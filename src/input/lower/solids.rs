@@ -10,10 +10,10 @@ use crate::input::spec::solid::{BoxSpec, CylinderSpec, SolidSpec};
 use crate::input::spec::sweep::{
     CircleSpec, LegSpec, ProfileSpec, RectangleSpec, StraightSpec, SweepSpec,
 };
-use crate::scene::shape::{Shape, Sphere};
-use crate::scene::{FaceId, FaceSpec, FinishId, Owner, Solid, SolidId};
 use indexmap::IndexMap;
 use lumiduct_base::math::{Aabb, Frame};
+use lumiduct_core::scene::shape::{Shape, Sphere};
+use lumiduct_core::scene::{FaceId, FaceSpec, FinishId, Owner, Solid, SolidId};
 use std::f64::consts::PI;
 
 impl Context<'_> {
@@ -49,7 +49,7 @@ impl Context<'_> {
     fn add_solid(
         &mut self,
         name: &str,
-        medium: crate::scene::MediumId,
+        medium: lumiduct_core::scene::MediumId,
         priority: i32,
         volume: Option<f64>,
     ) -> SolidId {

@@ -9,14 +9,14 @@ use crate::input::problems::name_hint;
 use crate::input::spec::source::{
     BodySpec, ContactSpec, EmissionSpec, FaceSide, SourceCommonSpec, SourceSpec,
 };
-use crate::scene::shape::{Cylinder, Flat, Region, Shape, Sphere};
-use crate::scene::{
-    Emission, EmitSide, Emitter, Extent, FaceSpec, FinishId, Owner, Piece, PrimId, SolidId, Source,
-    Start,
-};
 use lumiduct_base::math::Frame;
 use lumiduct_base::number::format_value;
 use lumiduct_base::units::per_m2_to_per_mm2;
+use lumiduct_core::scene::shape::{Cylinder, Flat, Region, Shape, Sphere};
+use lumiduct_core::scene::{
+    Emission, EmitSide, Emitter, Extent, FaceSpec, FinishId, Owner, Piece, PrimId, SolidId, Source,
+    Start,
+};
 
 /// Least flux of a source that is not dark, lm or W: shares of it in 1e9 cells have squares that are no subnormal numbers.
 const LEAST_FLUX: f64 = 1e-30;

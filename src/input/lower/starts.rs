@@ -7,11 +7,11 @@ use crate::input::problems::Problems;
 use crate::input::spec::SceneSpec;
 use crate::input::spec::placement::PlacementSpec;
 use crate::input::spec::source::{SourceCommonSpec, SourceSpec};
-use crate::optics::Bsdf;
-use crate::rng::Sampler;
-use crate::scene::{Emitted, FaceId, FinishId, Owner, Scene, SolidId, Start};
 use indexmap::IndexMap;
 use lumiduct_base::number::format_value;
+use lumiduct_core::optics::Bsdf;
+use lumiduct_core::rng::Sampler;
+use lumiduct_core::scene::{Emitted, FaceId, FinishId, Owner, Scene, SolidId, Start};
 
 /// Starts that are looked at, per source: a part of a source that is missed is less than a hundredth of it.
 const LOOKS: u64 = 1024;

@@ -5,14 +5,14 @@ use crate::input::lower::Context;
 use crate::input::spec::sweep::{
     CompoundParabolicSpec, LegSpec, ParaboloidSpec, ProfileSpec, SweepSpec,
 };
-use crate::scene::Piece;
-use crate::scene::shape::{CompoundParabola, Flat, Paraboloid, Region, Shape};
-use crate::scene::sweep::{
-    CornerKind, Leg, Profile, ProfileError, SweepError, SweepProblem, Wall, sweep,
-};
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::{Frame, planar};
 use lumiduct_base::number::format_least_length;
+use lumiduct_core::scene::Piece;
+use lumiduct_core::scene::shape::{CompoundParabola, Flat, Paraboloid, Region, Shape};
+use lumiduct_core::scene::sweep::{
+    CornerKind, Leg, Profile, ProfileError, SweepError, SweepProblem, Wall, sweep,
+};
 
 /// A named face of a body that is being built.
 #[derive(Debug)]

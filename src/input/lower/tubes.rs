@@ -4,12 +4,12 @@ use crate::input::keys::Key;
 use crate::input::lower::Context;
 use crate::input::lower::surfaces::{BodyPart, NamedFace, Surfaces};
 use crate::input::spec::solid::{TubeOuterSpec, TubeSolidSpec};
-use crate::scene::Piece;
-use crate::scene::shape::{Flat, Region, Shape};
-use crate::scene::sweep::{
+use lumiduct_base::math::{Frame, planar};
+use lumiduct_core::scene::Piece;
+use lumiduct_core::scene::shape::{Flat, Region, Shape};
+use lumiduct_core::scene::sweep::{
     Leg, OutlineError, Part, PrismNumber, Prisms, Profile, Sweep, SweepError, sweep,
 };
-use lumiduct_base::math::{Frame, planar};
 
 impl Context<'_> {
     /// The faces of a tube: a bore, an outside, and two ends with a hole.

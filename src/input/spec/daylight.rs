@@ -112,5 +112,5 @@ pub enum SkyModelSpec {
 }
 
 fn mean_half_angle() -> f64 {
-    crate::optics::sun::HALF_ANGLE_DEG
+    lumiduct_core::optics::sun::HALF_ANGLE_DEG
 }

@@ -1,6 +1,6 @@
 //! How long to compute, and what is expected of the results.
 
-use crate::scene::plan::MOST_RECORDS;
+use lumiduct_core::plan::MOST_RECORDS;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -19,10 +19,10 @@ use crate::input::spec::study::{
 };
 use crate::input::study::file::{StudyDraft, read};
 use crate::input::{Draft, Job, Settings, draft, load};
-use crate::scene::plan::{Check, NUMERICS};
 use lumiduct_base::digest::Digest;
 use lumiduct_base::error::{Diagnostic, Error, Result};
 use lumiduct_base::text::visible;
+use lumiduct_core::plan::{Check, NUMERICS};
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -3,9 +3,9 @@
 use crate::pipeline::compare::runner::{Estimate, Stint, trace};
 use crate::pipeline::compare::{Bench, CompareWishes, Method};
 use crate::report::Truth;
-use crate::scene::plan::Request;
-use crate::transport::invisible;
 use lumiduct_base::error::{Error, Result};
+use lumiduct_core::plan::Request;
+use lumiduct_core::transport::invisible;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::time::Duration;

@@ -1,8 +1,8 @@
 //! Whether two values of a measure differ.
 
-use crate::measure::{Measure, Status};
 use crate::report::diff::Pair;
 use indexmap::IndexMap;
+use lumiduct_core::measure::{Measure, Status};
 
 /// Differences below this share of a value are rounding: sums over millions of paths in other orders, or on other
 /// machines. The flux balance closes as well.

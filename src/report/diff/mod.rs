@@ -16,10 +16,10 @@ pub(crate) use page::sentence;
 pub use page::{Rows, diff_table};
 pub use read::{Content, DesignRow, RunFiles, Side, read};
 
-use crate::measure::{Measure, nearest};
 use crate::report::OutputFile;
 use indexmap::IndexMap;
 use lumiduct_base::error::{Error, Result};
+use lumiduct_core::measure::{Measure, nearest};
 
 /// What is compared, and how.
 #[derive(Debug, Clone)]

@@ -1,11 +1,11 @@
 //! Reports read back from their folders.
 
 use crate::input::Setting;
-use crate::measure::Measure;
 use crate::report::diff::maps::MapTable;
 use crate::report::{Manifest, SUMMARY, study, summary};
 use indexmap::IndexMap;
 use lumiduct_base::error::{Error, Result};
+use lumiduct_core::measure::Measure;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use std::fs;

@@ -1,8 +1,8 @@
 use super::*;
 use crate::input::Setting;
-use crate::measure::Status;
 use crate::report::diff::maps::MapTable;
-use crate::scene::plan::Estimator;
+use lumiduct_core::measure::Status;
+use lumiduct_core::plan::Estimator;
 
 const LIMITS: Limits = Limits { sigmas: 4.0, relative: None, maps: MapLimit::Told };
 

@@ -1,5 +1,5 @@
 use super::*;
-use crate::scene::plan::{GatherPlan, Request, RunPlan, StopRules};
+use lumiduct_core::plan::{GatherPlan, Request, RunPlan, StopRules};
 
 fn file(name: &str, text: &str) -> OutputFile {
     OutputFile { name: name.into(), bytes: text.into() }

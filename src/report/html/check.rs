@@ -4,11 +4,11 @@ use crate::report::drawing::{Mark, Role, drawing};
 use crate::report::html::data;
 use crate::report::html::frame::{Block, Page, Part, Plots, Standing, render, table};
 use crate::report::local_axes::{LocalAxes, local_axes};
-use crate::scene::{Owner, Scene};
-use crate::transport::Track;
 use glam::DVec3;
 use lumiduct_base::error::Result;
 use lumiduct_base::number::format_value;
+use lumiduct_core::scene::{Owner, Scene};
+use lumiduct_core::transport::Track;
 
 /// Most solids and sheets with a name in the picture.
 const MOST_NAMES: usize = 40;

@@ -2,7 +2,6 @@
 //!
 //! Numbers have six significant digits, which is more than a plot shows.
 
-use crate::measure::{Axes, Balance, IntensityTable, Measure, SensorMap, not_below_zero};
 use crate::report::drawing::{Drawing, Fate};
 use crate::report::figures::{directions_map, sensor_map};
 use crate::report::html::axes::{chart_axes, dial_axes, ink, map_axes};
@@ -12,6 +11,7 @@ use crate::report::png::{
     self, ErrorForm, HeatMap, LinePlot, MapFrame, PolarPlot, Scale, SeriesForm, series_ink,
 };
 use glam::DVec3;
+use lumiduct_core::measure::{Axes, Balance, IntensityTable, Measure, SensorMap, not_below_zero};
 use ndarray::Array2;
 use serde_json::{Value, json};
 

@@ -1,7 +1,6 @@
 //! What is said of a study, part by part, whatever the format of the page.
 
 use crate::input::{Best, Domain, Setting};
-use crate::measure::Outcome;
 use crate::report::study::edge::edge_remark;
 use crate::report::study::{
     DesignOutcome, DesignRecord, Estimate, Pairing, ParameterFacts, PlanFacts, Sensitivity,
@@ -9,6 +8,7 @@ use crate::report::study::{
 };
 use crate::report::words::{outcome_word, quantity};
 use lumiduct_base::number::{format_percent, format_value, format_with_error};
+use lumiduct_core::measure::Outcome;
 use std::fmt::Write;
 
 /// Errors of a difference from which on a design is told to be behind the best, 1.

@@ -1,6 +1,5 @@
 //! Which pictures a study has, and what is on them.
 
-use crate::measure::Outcome;
 use crate::report::OutputFile;
 use crate::report::png::{
     Bar, BarChart, ErrorForm, LinePlot, Look, Scale, ScatterColumn, ScatterMatrix, Series,
@@ -10,6 +9,7 @@ use crate::report::study::contents::setting_word;
 use crate::report::study::{DesignRecord, Effect, ParameterFacts, PlanFacts, StudyReport};
 use lumiduct_base::error::Result;
 use lumiduct_base::number::format_value;
+use lumiduct_core::measure::Outcome;
 
 /// Curves of a response plot; more cannot be told apart.
 const MOST_CURVES: usize = 12;

@@ -18,10 +18,10 @@ pub use record::{
 pub use terminal::terminal;
 
 use crate::input::Setting;
-use crate::measure::{Measure, Outcome};
 use crate::report::{LOGO, OutputFile};
 use indexmap::IndexMap;
 use lumiduct_base::error::{Error, Result};
+use lumiduct_core::measure::{Measure, Outcome};
 use serde::Serialize;
 
 /// Name of the file with everything for programs.

@@ -1,11 +1,11 @@
 //! What is known of a study: its facts, a record of every design, and what follows from all of them together.
 
 use crate::input::{Best, Domain, Keep, Project, Ranking, Setting, column};
-use crate::measure::{Measure, Outcome, Replicates};
 use crate::report::base64;
 use crate::report::{CheckResult, TargetFacts};
-use crate::scene::plan::Check;
 use indexmap::IndexMap;
+use lumiduct_core::measure::{Measure, Outcome, Replicates};
+use lumiduct_core::plan::Check;
 use serde::{Deserialize, Serialize};
 
 /// Format of the manifest of a study.

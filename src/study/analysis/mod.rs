@@ -43,13 +43,13 @@ fn sharpness(measure: &str, designs: &[DesignRecord]) -> Option<Sharpness> {
 #[cfg(test)]
 pub(super) mod testing {
     use crate::input::{Best, Domain, Keep, Ranking, Setting};
-    use crate::measure::{Measure, Replicates, Status};
     use crate::report::study::{
         DESIGN_FORMAT, DesignOutcome, DesignRecord, DesignResult, FACTS_FORMAT, ParameterFacts,
         PlanFacts, StudyFacts,
     };
-    use crate::scene::plan::Estimator;
     use indexmap::IndexMap;
+    use lumiduct_core::measure::{Measure, Replicates, Status};
+    use lumiduct_core::plan::Estimator;
 
     /// A study of two parameters.
     pub(super) fn facts(plan: PlanFacts) -> StudyFacts {

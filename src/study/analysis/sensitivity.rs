@@ -5,12 +5,12 @@
 //! (Saltelli et al., Global Sensitivity Analysis, 2008, section 1.2.5).
 
 use crate::input::Setting;
-use crate::measure::Replicates;
 use crate::report::study::{
     DesignRecord, PlanFacts, Sensitivity, SensitivityIndex, SensitivityMethod, StudyFacts,
 };
-use crate::tally::Tally;
 use lumiduct_base::math::least_squares;
+use lumiduct_core::measure::Replicates;
+use lumiduct_core::tally::Tally;
 
 /// The sensitivities of all measures, where the plan allows them.
 pub(super) fn sensitivities(facts: &StudyFacts, designs: &[DesignRecord]) -> Vec<Sensitivity> {
@@ -156,8 +156,8 @@ fn variance(values: &[f64]) -> f64 {
 mod tests {
     use super::*;
     use crate::report::study::DesignOutcome;
-    use crate::rng::{Dimension, Sampler};
     use crate::study::analysis::testing::{design, facts};
+    use lumiduct_core::rng::{Dimension, Sampler};
 
     /// A grid of a and b in 0, 1, 2 of which only a does anything, with noise of its own in every group of every design.
     fn noisy_grid(study: u64) -> Vec<DesignRecord> {

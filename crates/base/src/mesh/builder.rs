@@ -7,7 +7,6 @@ use std::collections::HashMap;
 
 /// Why triangles make no mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
 pub enum UnusableMesh {
     /// There are more triangles than [`MAX_TRIANGLES`].
     #[error(

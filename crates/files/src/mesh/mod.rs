@@ -110,7 +110,6 @@ impl fmt::Display for MeshFormat {
 
 /// Why a mesh could not be read.
 #[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
 pub enum MeshError {
     /// The operating system refuses the file.
     #[error("the file cannot be read: {0}; check the name and the permissions")]

@@ -6,8 +6,8 @@ use crate::input::lower::patterns::Ground;
 use crate::input::spec::pattern::{
     AlongSpec, GridSpec, HexagonalSpec, LawSpec, LayoutSpec, RowSpec,
 };
-use crate::scene::pattern::{Along, Columns, Graded, Rows};
-use crate::scene::shape::ChartRect;
+use lumiduct_core::scene::pattern::{Along, Columns, Graded, Rows};
+use lumiduct_core::scene::shape::ChartRect;
 
 /// Pieces by which a power law is drawn.
 const PIECES: u32 = 256;

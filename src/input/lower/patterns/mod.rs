@@ -7,11 +7,11 @@ use crate::input::keys::Key;
 use crate::input::lower::Context;
 use crate::input::spec::pattern::{ElementSpec, PatternSpec};
 use crate::input::spec::sheet::{SheetCommon, SheetSpec};
-use crate::scene::pattern::{Field, HoleWall, Outline, Pattern};
-use crate::scene::shape::{ChartRect, Region, Shape};
-use crate::scene::sweep::WallChart;
-use crate::scene::{FaceId, Patch};
 use glam::DVec2;
+use lumiduct_core::scene::pattern::{Field, HoleWall, Outline, Pattern};
+use lumiduct_core::scene::shape::{ChartRect, Region, Shape};
+use lumiduct_core::scene::sweep::WallChart;
+use lumiduct_core::scene::{FaceId, Patch};
 use std::f64::consts::TAU;
 
 /// Deviation from a stretch of 1 that is taken as rounding, 1.

@@ -2,8 +2,8 @@
 
 use crate::input::keys::Key;
 use crate::input::lower::Context;
-use crate::scene::FaceId;
-use crate::scene::pattern::Field;
+use lumiduct_core::scene::FaceId;
+use lumiduct_core::scene::pattern::Field;
 
 impl Context<'_> {
     /// Whether a field shares no place with the patterns and reliefs that lie on its face already.

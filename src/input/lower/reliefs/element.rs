@@ -5,8 +5,8 @@ use crate::input::lower::Context;
 use crate::input::lower::reliefs::Wall;
 use crate::input::spec::pattern::AlongSpec;
 use crate::input::spec::relief::{CourseSpec, ReliefElementSpec};
-use crate::scene::pattern::{Along, Field};
-use crate::scene::relief::{CapSize, Element, Form, Span, Way};
+use lumiduct_core::scene::pattern::{Along, Field};
+use lumiduct_core::scene::relief::{CapSize, Element, Form, Span, Way};
 
 /// What a groove and a ridge have in common.
 struct WedgeKeys<'s> {

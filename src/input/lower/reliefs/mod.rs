@@ -8,9 +8,9 @@ use crate::input::lower::Context;
 use crate::input::lower::patterns::Ground;
 use crate::input::spec::pattern::LayoutSpec;
 use crate::input::spec::relief::ReliefSpec;
-use crate::scene::pattern::{Field, Outline};
-use crate::scene::relief::{self, Relief, Span};
-use crate::scene::{Owner, Patch};
+use lumiduct_core::scene::pattern::{Field, Outline};
+use lumiduct_core::scene::relief::{self, Relief, Span};
+use lumiduct_core::scene::{Owner, Patch};
 
 /// Elements that a relief may have: each is made of surfaces of its own.
 const MOST_ELEMENTS: u64 = 1_000_000;
@@ -127,7 +127,7 @@ impl Context<'_> {
 }
 
 /// Whether a patch belongs to a face that a relief has made.
-fn is_of_relief(scene: &crate::scene::Scene, patch: &Patch) -> bool {
+fn is_of_relief(scene: &lumiduct_core::scene::Scene, patch: &Patch) -> bool {
     let name = &scene.faces[patch.face.index()].name;
     scene.reliefs.iter().any(|relief| relief.name == *name)
 }

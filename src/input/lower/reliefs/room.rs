@@ -3,10 +3,10 @@
 use crate::input::keys::Key;
 use crate::input::lower::Context;
 use crate::input::lower::reliefs::is_of_relief;
-use crate::scene::relief::{Ground, Relief, Site, Span, Way};
-use crate::scene::shape::{Shape, Start};
-use crate::scene::{Owner, Patch, Ray, Scene};
 use glam::{DVec2, DVec3};
+use lumiduct_core::scene::relief::{Ground, Relief, Site, Span, Way};
+use lumiduct_core::scene::shape::{Shape, Start};
+use lumiduct_core::scene::{Owner, Patch, Ray, Scene};
 
 /// Normals that differ by less are the same but for rounding; 1. Lengths likewise, as a share of the width of the wall.
 const ROUNDING: f64 = 1e-9;

@@ -1,0 +1,214 @@
+//! Stochastic progressive photon mapping without an estimate on specular surfaces.
+//!
+//! Hachisuka & Jensen, Stochastic Progressive Photon Mapping, ACM Trans. Graph. 28 (2009) 141, with the radii of Knaus &
+//! Zwicker, Progressive Photon Mapping: A Probabilistic Approach, ACM Trans. Graph. 30 (2011) 25: every pass is a photon map
+//! of its own, and the mean over passes is the value. Gather paths go on through specular surfaces and wait for photons
+//! where a surface scatters; on purely specular scenes they see only what they meet.
+
+use crate::{BATCH_SEGMENTS, OneSensor};
+use lumiduct_core::optics::{Incidence, Lobe};
+use lumiduct_core::plan::RunPlan;
+use lumiduct_core::rng::Sampler;
+use lumiduct_core::scene::{SourceId, Visibility};
+use lumiduct_core::transport::emitters::Met;
+use lumiduct_core::transport::estimate::{Arriving, Meeting, NestedWindows};
+use lumiduct_core::transport::follow::{Collector, follow};
+use lumiduct_core::transport::forward::{Forward, PhotonWatcher};
+use lumiduct_core::transport::readings::Counted;
+use lumiduct_core::transport::record_index::Key;
+use lumiduct_core::transport::records::{GatherRecord, Records, Surfaces, Wanted};
+use lumiduct_core::transport::scatter::facing;
+use lumiduct_core::transport::settings::{PhotonPilot, settle};
+use lumiduct_core::transport::stop::{Pace, StopSignal};
+use lumiduct_core::transport::{Departure, Path, Readings, Vertex, Window};
+use smallvec::SmallVec;
+use std::ops::ControlFlow;
+
+/// Stream of random numbers of the gather paths.
+const PATH_STREAM: u64 = 9 << 32;
+/// α of the radii, 1: squares fall as i^(α-1); 2/3 is best for the mean square error (Knaus & Zwicker 2011).
+const ALPHA: f64 = 2.0 / 3.0;
+/// Gather paths end after so many interfaces.
+const DEEPEST: u32 = 1000;
+/// Work of a pass in batches of the other baselines: small passes shrink the radius sooner.
+const PASS_BATCHES: u64 = 4;
+/// Photon paths of a pass for each of its gather paths.
+const PHOTONS_PER_PATH: u64 = 4;
+
+/// What all passes of a run have in common.
+#[derive(Debug)]
+pub(super) struct Sppm<'s> {
+    sensor: OneSensor<'s>,
+    surfaces: Surfaces,
+    forward: Forward<'s>,
+    /// Radius of the first pass, mm.
+    radius: f64,
+    /// Gather paths of a pass.
+    paths: u64,
+}
+
+impl<'s> Sppm<'s> {
+    pub(super) fn new(sensor: OneSensor<'s>, plan: &RunPlan) -> Self {
+        let (scene, seed) = (sensor.scene, plan.seed);
+        let pilot = Forward::new(scene, seed, plan.bounce_limit.min(10_000), 64);
+        let pilot = pilot.batch(0, &StopSignal::default()).expect("nothing stops it");
+        let segments = pilot.segments.div_ceil(pilot.paths().max(1)).max(1);
+        let photons = (PASS_BATCHES * BATCH_SEGMENTS / segments).max(256);
+        let pilot = PhotonPilot::new(segments as f64);
+        let settings = settle(scene, plan, &[sensor.id], pilot, &StopSignal::default());
+        let window = settings.expect("nothing stops it").window;
+        Self {
+            surfaces: Surfaces::new(scene),
+            forward: Forward::new(scene, seed, plan.bounce_limit, photons),
+            radius: window.radius,
+            paths: photons / PHOTONS_PER_PATH,
+            sensor,
+        }
+    }
+
+    /// Runs one pass: gather paths, then photons past their records.
+    pub(super) fn pass(&self, batch: u64) -> Readings {
+        let mut readings = self.sensor.empty(self.paths, batch);
+        // The angle plays no part: there are no records with a direction.
+        let radius = self.radius * sppm_area_ratio(batch, ALPHA).sqrt();
+        let window = Window { radius, theta_max: 0.1 };
+        let mut waiting = Waiting::default();
+        for index in batch * self.paths..(batch + 1) * self.paths {
+            self.gather(index, window, &mut waiting, &mut readings);
+        }
+        let Waiting { cells, records } = waiting;
+        let signal = StopSignal::default();
+        let pace = Pace::new(&signal);
+        let records =
+            Records::new(records, window, &self.surfaces, &pace).expect("nothing stops it");
+        let nested = NestedWindows::new(window);
+        let mut stream =
+            Stream { sppm: self, nested, records: &records, cells, readings: &mut readings };
+        let photons =
+            self.forward.batch_watched(batch, &mut stream, &pace).expect("nothing stops it");
+        readings.segments += photons.segments;
+        readings.close_batch();
+        readings
+    }
+
+    fn gather(
+        &self,
+        index: u64,
+        window: Window,
+        waiting: &mut Waiting<'s>,
+        readings: &mut Readings,
+    ) {
+        let sensor = &self.sensor;
+        let mut sampler = Sampler::for_path(sensor.seed, PATH_STREAM, index);
+        let Some(arrival) = sensor.arrivals.draw(&mut sampler) else { return };
+        waiting.cells.push(arrival.cells.clone());
+        let (etendue, cells) = (sensor.etendue(&arrival) / self.paths as f64, &arrival.cells);
+        let mut gatherer = Gatherer { sppm: self, window, etendue, cells, waiting, readings };
+        let gathering = sensor.gathering(sensor.bounce_limit.min(DEEPEST));
+        let segments = follow(gathering, &arrival, &mut sampler, &mut gatherer);
+        readings.segments += segments;
+    }
+}
+
+/// Area of the disk of pass `pass`, from 0, over that of the first, 1: `r²_{i+1} = r²_i (i + α)/(i + 1)` with i from 1
+/// (Knaus & Zwicker 2011), for an α between 0 and 1.
+pub fn sppm_area_ratio(pass: u64, alpha: f64) -> f64 {
+    (1..=pass).fold(1.0, |ratio, i| ratio * (i as f64 + alpha) / (i as f64 + 1.0))
+}
+
+/// Gather paths of a pass that wait for photons: their cells, path by path, and their records.
+#[derive(Default)]
+struct Waiting<'s> {
+    cells: Vec<SmallVec<[usize; 1]>>,
+    records: Vec<GatherRecord<'s>>,
+}
+
+/// Collects the light and the records of one gather path.
+struct Gatherer<'a, 's> {
+    sppm: &'a Sppm<'s>,
+    window: Window,
+    /// Etendue of the path, its share of the pass, mm² sr.
+    etendue: f64,
+    cells: &'a [usize],
+    waiting: &'a mut Waiting<'s>,
+    readings: &'a mut Readings,
+}
+
+impl Collector for Gatherer<'_, '_> {
+    fn meet(&mut self, path: &Path, met: Met) {
+        let (flux, depth) = (met.radiance * self.etendue, path.depth);
+        let light = Counted { flux, depth, source: met.source };
+        self.sppm.sensor.count(self.readings, self.cells, &light);
+    }
+
+    fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>) -> ControlFlow<()> {
+        let Sppm { sensor, surfaces, .. } = self.sppm;
+        let facing = facing(sensor.scene, path, vertex);
+        let interface = vertex.interface;
+        let sides = [
+            (facing.faces.own, facing.facet, interface.from),
+            (facing.faces.behind, -facing.facet, interface.to),
+        ];
+        for (bsdf, normal, medium) in sides.into_iter().filter(|side| !side.0.is_specular()) {
+            // L* of the light that leaves, in the medium of the gather path: docs/method.md, eq. (22), over its n².
+            let index = facing.incidence.index_from;
+            let value = self.etendue * vertex.throughput / (index * index);
+            // The whole disk counts also at rims: that bias goes with the radius.
+            let values = self.window.nested().map(|window| value / window.area());
+            self.waiting.records.push(GatherRecord {
+                point: vertex.point,
+                normal,
+                surface: surfaces.of(interface.acting.prim),
+                medium,
+                wanted: Wanted::Scattered { bsdf, out: -vertex.dir },
+                values,
+                path: self.waiting.cells.len() as u32 - 1,
+                depth: path.depth + 1,
+            });
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn depart(&mut self, _: &Path, _: &Vertex<'_>, departure: &Departure) -> ControlFlow<()> {
+        match departure.lobe {
+            // The photons at the record bring it.
+            Lobe::Diffuse => ControlFlow::Break(()),
+            Lobe::Specular => ControlFlow::Continue(()),
+        }
+    }
+}
+
+/// Photons that stream past the records.
+struct Stream<'p, 's> {
+    sppm: &'p Sppm<'s>,
+    nested: NestedWindows,
+    records: &'p Records<'s>,
+    cells: Vec<SmallVec<[usize; 1]>>,
+    readings: &'p mut Readings,
+}
+
+impl PhotonWatcher for Stream<'_, '_> {
+    fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>, flux: f64, source: SourceId) {
+        let Sppm { sensor, surfaces, .. } = self.sppm;
+        let interface = vertex.interface;
+        let surface = surfaces.of(interface.acting.prim);
+        if interface.visibility == Visibility::Invisible
+            || !self.records.may_take(surface, vertex.point, vertex.dir)
+        {
+            return;
+        }
+        let facing = facing(sensor.scene, path, vertex);
+        let incidence = Incidence { normal: facing.facet, ..facing.incidence };
+        let medium = interface.from;
+        let photon = Meeting { surface, medium, point: vertex.point, incidence };
+        let photon = Arriving::AtSurface(photon);
+        let Self { nested, cells, readings, .. } = self;
+        let key = Key { surface, point: vertex.point, dir: vertex.dir };
+        self.records.visit(&[key], |_, record| {
+            let Some([share, ..]) = nested.flux(record, &photon) else { return };
+            let (flux, depth) = (flux * vertex.throughput * share, path.depth + record.depth);
+            let light = Counted { flux, depth, source };
+            sensor.count(readings, &cells[record.path as usize], &light);
+        });
+    }
+}

@@ -1,0 +1,17 @@
+//! Light in, numbers with errors out: what Lumiduct computes, without any file.
+//!
+//! ```text
+//! Scene -> paths (photons from sources, gather paths from sensors) -> readings -> measures with uncertainty
+//! ```
+//!
+//! Lengths are millimetres, angles radians, solid angles steradians, flux lumens (watts in radiometric runs), wavelengths
+//! nanometres. +z of a local frame is the normal; directions are unit vectors. Layers from the bottom up: [`rng`],
+//! [`tally`] and [`plan`]; [`optics`]; [`scene`]; [`transport`]; [`measure`].
+
+pub mod measure;
+pub mod optics;
+pub mod plan;
+pub mod rng;
+pub mod scene;
+pub mod tally;
+pub mod transport;

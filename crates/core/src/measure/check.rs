@@ -1,0 +1,311 @@
+//! Whether measures are what the scene demands.
+//!
+//! A demand whose answer the error bar leaves open is undecided, which counts as missed: more paths are needed.
+
+use crate::measure::{Measure, Measures, Status};
+use crate::plan::Check;
+use crate::tally::sigmas;
+use lumiduct_base::number::format_value;
+use serde::{Deserialize, Serialize};
+
+/// A limit nearer to the value than this many total errors is undecided.
+const LIMIT_ERRORS: f64 = 3.0;
+/// From this many errors on it does not matter how many they are.
+const FAR_ERRORS: f64 = 100.0;
+/// What rounding may do to a value without noise, relative to it: sums over many paths keep 12 digits or more.
+const ROUNDING: f64 = 1e-9;
+/// Deviation from `equals` that passes, in total errors, where the check names neither `sigmas` nor `within`.
+const DEFAULT_SIGMAS: f64 = 4.0;
+/// Number of known names that are suggested for an unknown one.
+const SUGGESTIONS: usize = 3;
+
+/// The outcome of a check and why.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Verdict {
+    /// The outcome.
+    pub outcome: Outcome,
+    /// A sentence: value, demand, and by how much.
+    pub reason: String,
+}
+
+/// The outcome of a check.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Outcome {
+    /// The demand is met.
+    Passed,
+    /// The error bar leaves it open.
+    Undecided,
+    /// It is not met.
+    Failed,
+    /// There is no such measure.
+    Unknown,
+}
+
+/// Judges a check. All of its demands must be met; the worst of them decides.
+///
+/// * `min` and `max`: undecided within 3 total errors (noise and bias) of the limit.
+/// * A value without noise meets a limit or an expected value from which it is off by rounding, a relative 1e-9.
+/// * `equals`: passes within `within`, or within `sigmas` total errors; either suffices. Without both, 4 total errors.
+/// * `max_std_error`: a larger standard error leaves a check undecided that would pass.
+/// * A value that cannot be relied on is undecided, but for one thing: nothing counted is at most three paths' flux.
+pub fn verdict(check: &Check, measures: &Measures) -> Verdict {
+    match measures.values.get(&check.measure) {
+        Some(measure) => judge(check, measure),
+        None => unknown(check, measures.values.keys().map(String::as_str)),
+    }
+}
+
+fn judge(check: &Check, measure: &Measure) -> Verdict {
+    let mut findings: Vec<(Outcome, String)> = Vec::new();
+    findings.extend(check.min.map(|min| limit(measure, min, Bound::Least)));
+    findings.extend(check.max.map(|max| limit(measure, max, Bound::Greatest)));
+    findings.extend(check.equals.map(|expected| equality(check, measure, expected)));
+    if let Some(wanted) = check.max_std_error
+        && (measure.std_error > wanted || measure.std_error.is_nan())
+    {
+        let text = format!("its standard error is not below {wanted}");
+        findings.push((Outcome::Undecided, text));
+    }
+    if let Some(doubt) = doubt(measure) {
+        // A failure by the figures is not to be relied on either.
+        findings.retain(|(outcome, _)| *outcome == Outcome::Undecided);
+        findings.push((Outcome::Undecided, doubt.to_owned()));
+    }
+    let outcome = findings.iter().map(|(outcome, _)| *outcome).max().unwrap_or(Outcome::Passed);
+    // Of several demands, those that decide are told.
+    let told: Vec<&str> =
+        findings.iter().filter(|(own, _)| *own == outcome).map(|(_, text)| text.as_str()).collect();
+    Verdict { outcome, reason: format!("{} = {measure}: {}", check.measure, told.join("; ")) }
+}
+
+/// Why a measure cannot be judged at all. Nothing counted can: its error is the flux of a path, or infinite.
+fn doubt(measure: &Measure) -> Option<&'static str> {
+    match measure.status {
+        Status::Ok | Status::BiasInNoise | Status::NoSignal => None,
+        Status::TooFew => Some("too little was counted to rely on it"),
+        Status::NoiseLimited => Some("it is mostly noise"),
+        Status::BiasNotResolved => Some("its bias is not resolved"),
+        Status::Contradicted => {
+            Some("photons of the same run found more light there; use `forward` or `mix`")
+        }
+    }
+}
+
+#[derive(Clone, Copy)]
+enum Bound {
+    Least,
+    Greatest,
+}
+
+fn limit(measure: &Measure, limit: f64, bound: Bound) -> (Outcome, String) {
+    let (room, word) = match bound {
+        Bound::Least => (measure.value - limit, "least"),
+        Bound::Greatest => (limit - measure.value, "most"),
+    };
+    let unit = if measure.unit == "1" { "" } else { &measure.unit };
+    let wanted = format!("at {word} {limit} {unit}");
+    let wanted = wanted.trim_end();
+    let error = measure.total_error();
+    if !room.is_finite() || !error.is_finite() {
+        return (Outcome::Undecided, format!("{wanted} is wanted, which is not known"));
+    }
+    if room.abs() <= rounding(measure, limit) {
+        return (Outcome::Passed, format!("{wanted} is wanted, met to rounding"));
+    }
+    if room.abs() < LIMIT_ERRORS * error {
+        return (
+            Outcome::Undecided,
+            format!("{wanted} is wanted, which is within {LIMIT_ERRORS} errors"),
+        );
+    }
+    // Infinite for a value without noise.
+    let errors = room.abs() / error;
+    let apart =
+        if errors < FAR_ERRORS { format!(", {errors:.1} errors away") } else { String::new() };
+    if room >= 0.0 {
+        (Outcome::Passed, format!("{wanted} is wanted{apart}"))
+    } else {
+        (Outcome::Failed, format!("{wanted} is wanted, missed by {}{apart}", format_value(-room)))
+    }
+}
+
+/// Deviation from an expected number that is rounding: of values without noise alone.
+fn rounding(measure: &Measure, expected: f64) -> f64 {
+    let room = ROUNDING * measure.value.abs().max(expected.abs());
+    if measure.total_error() <= room { room } else { 0.0 }
+}
+
+fn equality(check: &Check, measure: &Measure, expected: f64) -> (Outcome, String) {
+    let deviation = measure.value - expected;
+    let error = measure.total_error();
+    let default = if check.within.is_some() { 0.0 } else { DEFAULT_SIGMAS };
+    let wanted = check.sigmas.unwrap_or(default);
+    // Zero errors allow nothing, also where the error is not known.
+    let by_error = if wanted > 0.0 { wanted * error } else { 0.0 };
+    let rounding = rounding(measure, expected);
+    let allowed = by_error.max(check.within.unwrap_or(0.0)).max(rounding);
+    let z = sigmas(measure.value, error, expected);
+    let errors =
+        if rounding == 0.0 && z.is_finite() { format!(" ({z:.1} errors)") } else { String::new() };
+    let text = format!(
+        "{expected} is expected, off by {}{errors}, {} is allowed",
+        format_value(deviation),
+        format_value(allowed)
+    );
+    if measure.status == Status::NoSignal
+        && expected != 0.0
+        && deviation.abs() > check.within.unwrap_or(0.0)
+    {
+        (Outcome::Undecided, format!("{expected} is expected, nothing was counted"))
+    } else if !deviation.is_finite() || !allowed.is_finite() {
+        (Outcome::Undecided, format!("{expected} is expected, its error is not known"))
+    } else if deviation.abs() <= allowed {
+        (Outcome::Passed, text)
+    } else {
+        (Outcome::Failed, text)
+    }
+}
+
+fn unknown<'a>(check: &Check, names: impl Iterator<Item = &'a str>) -> Verdict {
+    let nearest = nearest(&check.measure, names);
+    let hint = if nearest.is_empty() {
+        String::new()
+    } else {
+        format!("; nearest names: {}", nearest.join(", "))
+    };
+    let reason = format!("there is no measure `{}`{hint}", check.measure);
+    Verdict { outcome: Outcome::Unknown, reason }
+}
+
+/// The known names nearest to a word, the nearest first.
+pub fn nearest<'a>(word: &str, names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+    let mut scored: Vec<(f64, &str)> =
+        names.map(|name| (strsim::jaro_winkler(word, name), name)).collect();
+    // A stable sort: equally near names keep the order of the measures.
+    scored.sort_by(|a, b| b.0.total_cmp(&a.0));
+    scored.into_iter().take(SUGGESTIONS).map(|(_, name)| name).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measure::record::tests::measure;
+
+    fn check() -> Check {
+        Check {
+            measure: "exit.flux".into(),
+            min: None,
+            max: None,
+            equals: None,
+            within: None,
+            sigmas: None,
+            max_std_error: None,
+            source: None,
+        }
+    }
+
+    fn outcome(check: &Check, measure: &Measure) -> Outcome {
+        judge(check, measure).outcome
+    }
+
+    #[test]
+    fn limits_within_three_errors_are_undecided() {
+        let least = Check { min: Some(0.60), ..check() };
+        assert_eq!(outcome(&least, &measure(0.635, 0.01, "lm")), Outcome::Passed);
+        assert_eq!(outcome(&least, &measure(0.625, 0.01, "lm")), Outcome::Undecided);
+        assert_eq!(outcome(&least, &measure(0.575, 0.01, "lm")), Outcome::Undecided);
+        assert_eq!(outcome(&least, &measure(0.565, 0.01, "lm")), Outcome::Failed);
+        let most = Check { max: Some(0.60), ..check() };
+        assert_eq!(outcome(&most, &measure(0.635, 0.01, "lm")), Outcome::Failed);
+        assert_eq!(outcome(&most, &measure(0.565, 0.01, "lm")), Outcome::Passed);
+        let mut biased = measure(0.565, 0.01, "lm");
+        biased.bias = Some(0.01);
+        assert_eq!(outcome(&most, &biased), Outcome::Undecided);
+    }
+
+    #[test]
+    fn a_value_without_error_may_touch_its_limit() {
+        let none = Check { max: Some(0.0), ..check() };
+        assert_eq!(outcome(&none, &measure(0.0, 0.0, "lm")), Outcome::Passed);
+        assert_eq!(outcome(&none, &measure(1e-12, 0.0, "lm")), Outcome::Failed);
+    }
+
+    #[test]
+    fn a_value_without_noise_is_judged_up_to_rounding() {
+        let lossless = measure(1.0 + 4.5e-16, 0.0, "1");
+        let most = Check { max: Some(1.0), ..check() };
+        assert_eq!(outcome(&most, &lossless), Outcome::Passed);
+        assert_eq!(outcome(&most, &measure(1.0 + 1e-8, 0.0, "1")), Outcome::Failed);
+        let rounded = measure(1.0 + 4.5e-16, 1e-17, "1");
+        assert_eq!(outcome(&most, &rounded), Outcome::Passed);
+        let exact = Check { equals: Some(1.0), sigmas: Some(4.0), ..check() };
+        assert_eq!(outcome(&exact, &lossless), Outcome::Passed);
+        assert_eq!(outcome(&exact, &rounded), Outcome::Passed);
+        assert_eq!(outcome(&exact, &measure(1.0 + 1e-8, 0.0, "1")), Outcome::Failed);
+        for value in [1.0 + 4.5e-16, 1.0 + 1e-8, 0.0, 2.0] {
+            for check in [&most, &exact] {
+                let reason = judge(check, &measure(value, 0.0, "1")).reason;
+                assert!(!reason.contains("inf"), "{reason}");
+            }
+        }
+        // Noise is not rounding.
+        assert_eq!(outcome(&most, &measure(1.0 + 1e-10, 1e-6, "1")), Outcome::Undecided);
+    }
+
+    #[test]
+    fn equality_passes_by_errors_or_by_an_absolute_deviation() {
+        let value = measure(0.530, 0.01, "lm");
+        let equals = |within, sigmas| Check { equals: Some(0.5), within, sigmas, ..check() };
+        assert_eq!(outcome(&equals(None, None), &value), Outcome::Passed);
+        assert_eq!(outcome(&equals(None, Some(2.0)), &value), Outcome::Failed);
+        assert_eq!(outcome(&equals(Some(0.02), None), &value), Outcome::Failed);
+        assert_eq!(outcome(&equals(Some(0.031), None), &value), Outcome::Passed);
+        assert_eq!(outcome(&equals(Some(0.02), Some(4.0)), &value), Outcome::Passed);
+        let exact = Check { equals: Some(0.0), ..check() };
+        assert_eq!(outcome(&exact, &measure(0.0, 0.0, "lm")), Outcome::Passed);
+        assert_eq!(outcome(&exact, &measure(0.0, f64::INFINITY, "lm")), Outcome::Undecided);
+    }
+
+    #[test]
+    fn an_error_above_its_limit_leaves_the_check_undecided() {
+        let strict = Check { equals: Some(0.5), max_std_error: Some(0.001), ..check() };
+        assert_eq!(outcome(&strict, &measure(0.5, 0.01, "lm")), Outcome::Undecided);
+        assert_eq!(outcome(&strict, &measure(0.5, 0.001, "lm")), Outcome::Passed);
+        assert_eq!(outcome(&strict, &measure(0.6, 0.001, "lm")), Outcome::Failed);
+    }
+
+    #[test]
+    fn what_cannot_be_relied_on_is_undecided_and_darkness_is_a_small_flux() {
+        let least = Check { min: Some(0.1), ..check() };
+        let mut few = measure(0.9, 0.01, "lm");
+        few.status = Status::TooFew;
+        assert_eq!(outcome(&least, &few), Outcome::Undecided);
+        let mut dark = measure(0.0, 1e-6, "lm");
+        dark.status = Status::NoSignal;
+        assert_eq!(outcome(&least, &dark), Outcome::Failed);
+        let stray = |max| Check { max: Some(max), ..check() };
+        assert_eq!(outcome(&stray(1e-3), &dark), Outcome::Passed);
+        assert_eq!(outcome(&stray(2e-6), &dark), Outcome::Undecided);
+        dark.std_error = f64::INFINITY;
+        assert_eq!(outcome(&stray(1e-3), &dark), Outcome::Undecided);
+    }
+
+    #[test]
+    fn the_reason_tells_value_demand_and_distance() {
+        let least = Check { min: Some(0.6), max: Some(0.9), ..check() };
+        let verdict = judge(&least, &measure(0.5, 0.01, "lm"));
+        assert_eq!(
+            verdict.reason,
+            "exit.flux = 0.500 ± 0.010 lm: at least 0.6 lm is wanted, missed by 0.1, 10.0 errors away"
+        );
+    }
+
+    #[test]
+    fn an_unknown_measure_is_answered_with_the_nearest_names() {
+        let verdict =
+            unknown(&check(), ["far.flux", "exit.flux.from.led", "balance.cut"].into_iter());
+        assert_eq!(verdict.outcome, Outcome::Unknown);
+        assert!(verdict.reason.contains("nearest names: exit.flux.from.led"), "{}", verdict.reason);
+    }
+}

@@ -1,0 +1,191 @@
+//! From the scalars of the readings to measures: sums, shares, and when they can be trusted.
+//!
+//! Errors come from groups of batches. This module does not know what the scalars mean.
+
+use crate::measure::{Measure, Statistic, Status};
+use crate::plan::Estimator;
+use crate::scene::{Scene, SensorId};
+use crate::transport::{Layout, Readings};
+use std::ops::Range;
+
+/// Fewer groups of batches than this with anything in them give no trustworthy error bar: the spread of ten samples
+/// is itself known to a quarter, 1/sqrt(2 · 9).
+pub(crate) const MIN_LIT_GROUPS: usize = 10;
+/// Fewer counts than this give none either, 1. n counts of equal flux have a relative error of 1/sqrt(n).
+pub(crate) const MIN_COUNTS: f64 = 10.0;
+
+/// Variance from batch to batch, relative to the square of the mean, that rounding in a sum of squares may make.
+const SQUARES_ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// A scene and what was counted in it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Evidence<'a> {
+    pub(crate) scene: &'a Scene,
+    /// What speaks for a sensor's light.
+    pub(crate) readings: &'a Readings,
+    /// What speaks for everything that only photons know.
+    photons: &'a Readings,
+    pub(crate) layout: Layout,
+    estimator: Estimator,
+}
+
+impl<'a> Evidence<'a> {
+    /// Photons speak for everything.
+    pub(crate) fn new(scene: &'a Scene, photons: &'a Readings) -> Self {
+        let (layout, estimator) = (Layout::new(scene), Estimator::Forward);
+        Self { scene, readings: photons, photons, layout, estimator }
+    }
+
+    /// Other readings speak for a sensor's light.
+    pub(crate) fn by(self, readings: &'a Readings, estimator: Estimator) -> Self {
+        Self { readings, estimator, ..self }
+    }
+
+    /// What the readings were made by.
+    pub(crate) fn estimator(&self) -> Estimator {
+        self.estimator
+    }
+
+    /// The evidence of photons alone.
+    pub(crate) fn of_photons(&self) -> Self {
+        Self { readings: self.photons, estimator: Estimator::Forward, ..*self }
+    }
+
+    /// Mean flux of one path, lm or W.
+    pub(crate) fn path_flux(&self) -> f64 {
+        self.scene.source_flux() / self.readings.paths() as f64
+    }
+
+    /// A measure by these readings.
+    pub(crate) fn measure(
+        &self,
+        value: f64,
+        std_error: f64,
+        unit: &str,
+        status: Status,
+    ) -> Measure {
+        Measure {
+            value,
+            // A single group of batches leaves the error undefined.
+            std_error: if std_error.is_nan() { f64::INFINITY } else { std_error },
+            bias: None,
+            unit: unit.to_owned(),
+            batches: self.readings.batch_count(),
+            paths: self.readings.paths(),
+            estimator: self.estimator,
+            status,
+        }
+    }
+
+    /// A statistic of a map or of a sphere as a measure.
+    pub(crate) fn statistic(&self, found: &Statistic, unit: &str) -> Measure {
+        Measure {
+            bias: found.bias,
+            ..self.measure(found.value, found.std_error, unit, found.status)
+        }
+    }
+
+    /// Sum of fluxes, times a factor that leads to `unit`.
+    pub(crate) fn sum(&self, slots: &[usize], factor: f64, unit: &str) -> Measure {
+        let total = self.readings.function(|flux| slots.iter().map(|&slot| flux(slot)).sum());
+        let lit = self.lit_groups(slots);
+        if lit == 0 {
+            return self.measure(0.0, self.path_flux() * factor, unit, Status::NoSignal);
+        }
+        let (value, std_error) = (total.mean() * factor, total.std_error() * factor);
+        self.measure(value, std_error, unit, trust(value, std_error, lit))
+    }
+
+    /// Parts over a whole, with the error of the ratio.
+    pub(crate) fn ratio(&self, parts: &[usize], whole: &[usize]) -> Measure {
+        let sum = |flux: &dyn Fn(usize) -> f64, slots: &[usize]| {
+            slots.iter().map(|&slot| flux(slot)).sum::<f64>()
+        };
+        if self.lit_groups(whole) == 0 {
+            return self.measure(0.0, f64::INFINITY, "1", Status::NoSignal);
+        }
+        let lit = self.lit_groups(parts);
+        if lit == 0 {
+            let whole = self.readings.function(|flux| sum(flux, whole)).mean();
+            return self.measure(0.0, self.path_flux() / whole, "1", Status::NoSignal);
+        }
+        let (value, std_error) =
+            self.readings.jackknife(|flux| sum(flux, parts) / sum(flux, whole));
+        self.measure(value, std_error, "1", trust(value, std_error, lit))
+    }
+
+    /// Flux of a sensor over flux that only photons know.
+    pub(crate) fn ratio_to_photons(&self, parts: &[usize], whole: &[usize]) -> Measure {
+        if self.estimator == Estimator::Forward {
+            return self.ratio(parts, whole);
+        }
+        let whole = self.of_photons().sum(whole, 1.0, "1");
+        let part = self.sum(parts, 1.0, "1");
+        if whole.value == 0.0 {
+            return self.measure(0.0, f64::INFINITY, "1", Status::NoSignal);
+        }
+        // Counted by different paths, the two are independent; where photons have a share in both, the error is a little
+        // too large.
+        let value = part.value / whole.value;
+        let std_error = part.std_error.hypot(value * whole.std_error) / whole.value;
+        self.measure(value, std_error, "1", part.status.worst(whole.status))
+    }
+
+    /// A line of the run's own books: what was counted is what happened, also where it is nothing.
+    pub(crate) fn entry(&self, value: impl Fn(&dyn Fn(usize) -> f64) -> f64) -> Measure {
+        let tally = self.readings.function(value);
+        let unit = self.scene.unit.flux();
+        self.measure(tally.mean(), tally.std_error(), unit, Status::Ok)
+    }
+
+    /// Mean flux over batches with its standard error for some values of a sensor, lm or W. A single batch leaves the
+    /// errors infinite. No flux is below zero: where extrapolation makes one negative, it is off by as much at least.
+    pub(crate) fn cell_flux(&self, id: SensorId, values: Range<usize>) -> Vec<(f64, f64)> {
+        let cells = &self.readings.sensors[id.index()].cells;
+        let batches = self.readings.batch_count();
+        let known = |mean: f64, error: f64| {
+            if error.is_nan() {
+                f64::INFINITY
+            } else if error * error * batches as f64 <= SQUARES_ROUNDING * mean * mean {
+                0.0
+            } else {
+                error
+            }
+        };
+        let mean = |cell| cells.mean(cell, batches);
+        values.map(mean).map(|(mean, error)| (mean, known(mean, error).max(-mean))).collect()
+    }
+
+    /// Flux that one count adds to a cell, lm or W. Counting n of them gives a mean of n and a variance of n squares.
+    pub(crate) fn count_flux(&self, cells: &[(f64, f64)]) -> f64 {
+        let total: f64 = cells.iter().map(|(mean, _)| mean).sum();
+        let variance: f64 = cells.iter().map(|(_, error)| error * error).sum();
+        if total > 0.0 { variance / total } else { self.path_flux() }
+    }
+
+    pub(crate) fn lit_groups(&self, slots: &[usize]) -> usize {
+        let lit = |sums: &[f64]| slots.iter().any(|&slot| sums[slot] != 0.0);
+        self.readings.groups.iter().filter(|group| lit(&group.sums)).count()
+    }
+}
+
+/// Whether a positive value with this error can be relied on.
+fn trust(value: f64, std_error: f64, lit_groups: usize) -> Status {
+    if lit_groups < MIN_LIT_GROUPS { Status::TooFew } else { counted(value, std_error) }
+}
+
+/// Whether enough was counted for a positive value: by its relative error.
+pub(crate) fn counted(value: f64, std_error: f64) -> Status {
+    if value == 0.0 {
+        Status::NoSignal
+    } else if std_error * std_error * MIN_COUNTS <= value * value {
+        Status::Ok
+    } else {
+        Status::TooFew
+    }
+}
+
+/// Whether there are enough batches for any error bar.
+pub(crate) fn enough_batches(batches: u64) -> Status {
+    if batches < MIN_LIT_GROUPS as u64 { Status::TooFew } else { Status::Ok }
+}

@@ -1,0 +1,179 @@
+//! From readings to photometric measures with uncertainty.
+//!
+//! Pure functions of a scene and its readings: the same readings give the same bits. Each quantity has a dotted name,
+//! such as `exit.flux` or `balance.leaked`, and the set of names depends on the scene alone, not on what was counted.
+//! Units are made here on the way out: lx, cd, cd/m², deg (W/m², W/sr, W/(m² sr) in radiometric runs). This layer
+//! does not know how light was traced, and draws and writes nothing.
+
+mod angular;
+mod balance;
+mod beam;
+mod cells;
+mod check;
+mod counted;
+mod evidence;
+mod extremes;
+mod flux;
+mod gathered;
+#[cfg(test)]
+mod laws;
+mod map;
+mod multiscale;
+mod noise;
+mod paths;
+mod points;
+mod readout;
+mod record;
+mod replicates;
+#[cfg(test)]
+pub(crate) mod samples;
+mod sensor;
+mod smoothing;
+#[cfg(test)]
+mod tests;
+#[cfg(test)]
+mod trials;
+mod uniformity;
+
+pub use angular::{IntensityTable, PlaneCurve};
+pub use balance::Balance;
+pub use cells::not_below_zero;
+pub use check::{Outcome, Verdict, nearest, verdict};
+pub use gathered::{GatheredFacts, Resolution, StageFacts};
+pub use map::{Axes, SensorMap};
+pub use paths::{Action, DepthBin, Extent, LostPaths, PathClass, PathStep, SensorPaths, strongest};
+pub use record::{Measure, Status};
+pub use replicates::{Replicates, replicates};
+pub use uniformity::{Statistic, Uniformity, UniformitySummary};
+
+use crate::measure::evidence::Evidence;
+use crate::plan::Estimator;
+use crate::scene::{Scene, SensorId, SourceId};
+use crate::transport::{Choice, Findings, Layout, Readings};
+use indexmap::IndexMap;
+use lumiduct_base::units::FluxUnit;
+use serde::Serialize;
+
+/// Everything measured in a run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Measures {
+    /// All measures by their dotted names, sensor by sensor, then the balance.
+    pub values: IndexMap<String, Measure>,
+    /// Where the light went.
+    pub balance: Balance,
+    /// Maps of surface sensors, one for each view of a luminance sensor.
+    pub maps: Vec<SensorMap>,
+    /// Intensities of goniometers.
+    pub intensities: Vec<IntensityTable>,
+    /// How each sensor was estimated, by its name.
+    pub estimators: IndexMap<String, Estimator>,
+    /// What a pilot found out about each sensor; empty unless it was asked to choose.
+    pub choices: IndexMap<String, Choice>,
+    /// How the values of gathered sensors came about.
+    pub gathered: Vec<GatheredFacts>,
+    /// How the light came to each sensor.
+    pub sensor_paths: Vec<SensorPaths>,
+    /// Whether fluxes are luminous or radiant.
+    pub unit: FluxUnit,
+    /// Elevation of each sun above the horizon, deg, by the name of its source.
+    #[serde(skip_serializing_if = "IndexMap::is_empty")]
+    pub sun_elevations_deg: IndexMap<String, f64>,
+    /// Sources of each light group, by its name.
+    #[serde(skip_serializing_if = "IndexMap::is_empty")]
+    pub light_groups: IndexMap<String, Vec<String>>,
+    /// Weathers whose light the totals of all sources add up, though no two of them shine at the same time.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub weathers: Vec<String>,
+    /// Flux of all sources, lm or W.
+    pub source_flux: f64,
+    /// Batches traced.
+    pub batches: u64,
+    /// Paths traced.
+    pub paths: u64,
+    /// Straight pieces traced.
+    pub segments: u64,
+}
+
+/// Measures everything. Linear in the number of cells.
+pub fn measure(scene: &Scene, findings: &Findings) -> Measures {
+    let mut values = IndexMap::new();
+    let (mut maps, mut intensities, mut sensor_paths) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut estimators, mut gathered) = (IndexMap::new(), Vec::new());
+    for (index, sensor) in scene.sensors.iter().enumerate() {
+        let found = sensor::measures(scene, findings, SensorId::new(index));
+        add(&mut values, &sensor.name, found.values);
+        maps.extend(found.maps);
+        intensities.extend(found.intensity);
+        sensor_paths.push(found.paths);
+        estimators.insert(sensor.name.clone(), findings.estimator(SensorId::new(index)));
+        gathered.extend(found.gathered);
+    }
+    let names = scene.sensors.iter().map(|sensor| sensor.name.clone());
+    let choices = names.zip(findings.choices.iter().cloned());
+    let suns = scene.sources.iter().filter_map(|source| {
+        // As the file says it, without the rounding of radians.
+        let degrees = (1e9 * source.elevation?.to_degrees()).round() / 1e9;
+        Some((source.name.clone(), degrees))
+    });
+    let photons = &findings.photons;
+    let balance = balance::balance(&Evidence::new(scene, photons));
+    values.extend(balance.measures());
+    Measures {
+        values,
+        balance,
+        maps,
+        intensities,
+        estimators,
+        choices: choices.collect(),
+        gathered,
+        sensor_paths,
+        unit: scene.unit,
+        sun_elevations_deg: suns.collect(),
+        light_groups: light_groups(scene),
+        weathers: scene.light.weathers.clone(),
+        source_flux: scene.source_flux(),
+        batches: photons.batch_count(),
+        paths: findings.paths,
+        segments: photons.segments,
+    }
+}
+
+fn light_groups(scene: &Scene) -> IndexMap<String, Vec<String>> {
+    let name = |source: &SourceId| scene.sources[source.index()].name.clone();
+    let groups = scene.light.groups.iter();
+    groups.map(|group| (group.name.clone(), group.sources.iter().map(name).collect())).collect()
+}
+
+/// Whether a smaller window brings the flux of a gathered sensor nearer to the truth than more of the same work.
+pub fn is_held_by_bias(scene: &Scene, findings: &Findings) -> bool {
+    let sensors = (0..scene.sensors.len()).map(SensorId::new);
+    let evidence = Evidence::new(scene, &findings.photons);
+    sensors
+        .filter(|&id| matches!(findings.estimator(id), Estimator::Gather | Estimator::Mis))
+        .any(|id| gathered::is_held_by_bias(evidence, findings, id))
+}
+
+/// One measure by its dotted name, at no more cost than it needs.
+pub fn value_of(scene: &Scene, findings: &Findings, name: &str) -> Option<Measure> {
+    let (first, rest) = name.split_once('.')?;
+    if let Some(index) = scene.sensors.iter().position(|sensor| sensor.name == first) {
+        return sensor::value_of(scene, findings, SensorId::new(index), rest);
+    }
+    balance::balance(&Evidence::new(scene, &findings.photons)).measures().swap_remove(name)
+}
+
+/// The dotted names of all measures of a scene.
+pub fn names(scene: &Scene) -> Vec<String> {
+    let nothing = Readings::of_batch(scene, &Layout::new(scene), 0, 1, 0);
+    measure(scene, &Findings::forward(nothing)).values.into_keys().collect()
+}
+
+/// Total error of a measure over its value: what the target of a run is held against. Infinite where there is no
+/// error bar to rely on, `None` for an unknown name.
+pub fn relative_error(measures: &Measures, name: &str) -> Option<f64> {
+    measures.values.get(name).map(Measure::relative_error)
+}
+
+fn add(values: &mut IndexMap<String, Measure>, sensor: &str, measures: IndexMap<String, Measure>) {
+    values.extend(measures.into_iter().map(|(name, m)| (format!("{sensor}.{name}"), m)));
+}

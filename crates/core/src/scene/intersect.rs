@@ -1,0 +1,339 @@
+//! What a ray meets next.
+//!
+//! There are no epsilons against hitting the same surface twice. Of a solid, only crossings whose orientation fits
+//! count: a path inside can only leave, a path outside can only enter; with that, a start point that rounding has put
+//! a hair beyond an edge is still caught. Of the surface the ray starts on, the root at the start is no root.
+//! Surfaces within [`Scene::tolerance`] of the nearest hit are one event.
+
+use crate::scene::accel::{Accel, Tree};
+use crate::scene::mesh::Line;
+use crate::scene::shape::{Crossing, Start, Toward, Wanted};
+use crate::scene::{FaceId, Inside, On, Owner, PrimId, Ray, Scene, SolidId, Surface};
+use smallvec::SmallVec;
+use std::hint::select_unpredictable;
+use std::iter;
+
+/// One of the surfaces met at a hit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PrimHit {
+    /// Which surface.
+    pub prim: PrimId,
+    /// Its face.
+    pub face: FaceId,
+    /// What its face belongs to.
+    pub owner: Owner,
+    /// Which way the ray goes through it.
+    pub toward: Toward,
+}
+
+/// The nearest hit: all surfaces at one place.
+#[derive(Debug, Clone)]
+pub struct Hits {
+    distance: f64,
+    nearest: PrimHit,
+    /// Mostly none: on the heap, so that the usual hit stays in registers.
+    others: Box<[PrimHit]>,
+}
+
+impl Hits {
+    /// Distance to the place, mm, never negative.
+    #[inline]
+    pub fn distance(&self) -> f64 {
+        self.distance
+    }
+
+    /// The surface met first.
+    #[inline]
+    pub fn nearest(&self) -> &PrimHit {
+        &self.nearest
+    }
+
+    /// Other surfaces at the same place.
+    #[inline]
+    pub fn others(&self) -> &[PrimHit] {
+        &self.others
+    }
+
+    /// All surfaces that meet there.
+    #[inline]
+    pub fn all(&self) -> impl Iterator<Item = &PrimHit> {
+        iter::once(&self.nearest).chain(&self.others)
+    }
+
+    /// Whether a face of `solid` is among them.
+    #[inline]
+    pub fn meet(&self, solid: SolidId) -> bool {
+        self.all().any(|hit| hit.owner == Owner::Solid(solid))
+    }
+
+    /// Takes a path through all of them.
+    #[inline]
+    pub fn cross(&self, inside: &mut Inside) {
+        for hit in self.all() {
+            if let Owner::Solid(solid) = hit.owner {
+                match hit.toward {
+                    Toward::Front => inside.leave(solid),
+                    Toward::Back => inside.enter(solid),
+                }
+            }
+        }
+    }
+}
+
+/// The search for the nearest hit.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Nearest {
+    pub(crate) prim: PrimId,
+    pub(crate) crossing: Crossing,
+    /// Distance of the next one, as far as it was seen, mm.
+    runner_up: f64,
+}
+
+impl Nearest {
+    pub(crate) const NONE: Self = Self {
+        prim: PrimId::new(0),
+        crossing: Crossing { t: f64::INFINITY, toward: Toward::Front },
+        runner_up: f64::INFINITY,
+    };
+
+    #[inline(always)]
+    pub(crate) fn consider(&mut self, prim: PrimId, crossing: Crossing) {
+        if crossing.t < self.crossing.t {
+            *self = Self { prim, crossing, runner_up: self.crossing.t };
+        } else {
+            self.consider_runner_up(crossing.t);
+        }
+    }
+
+    /// The same by choices instead of jumps, where it cannot be foreseen which is nearer.
+    #[inline(always)]
+    pub(crate) fn choose(&mut self, prim: PrimId, crossing: Crossing) {
+        let nearer = crossing.t < self.crossing.t;
+        let further = if nearer { self.crossing.t } else { crossing.t };
+        self.consider_runner_up(further);
+        self.prim = select_unpredictable(nearer, prim, self.prim);
+        self.crossing = Crossing {
+            t: select_unpredictable(nearer, crossing.t, self.crossing.t),
+            toward: select_unpredictable(nearer, crossing.toward, self.crossing.toward),
+        };
+    }
+
+    #[inline(always)]
+    fn consider_runner_up(&mut self, t: f64) {
+        // Not `min`, which would ask both for numbers that are none.
+        self.runner_up = if t < self.runner_up { t } else { self.runner_up };
+    }
+}
+
+impl Scene {
+    /// What a ray meets next that starts on the surfaces `from`, inside the solids `inside`.
+    #[inline(always)]
+    pub fn find_next(&self, ray: &Ray, from: &On, inside: &Inside) -> Option<Hits> {
+        let nearest = match &self.accel {
+            Accel::Scan(_) => self.nearest_by_scan(ray, from, inside),
+            Accel::Tree(tree) => self.nearest_in_tree(tree, &ray.lent(), from, inside),
+        };
+        let Nearest { prim, crossing, runner_up } = nearest;
+        if crossing.t == f64::INFINITY {
+            return None;
+        }
+        let others = if runner_up <= crossing.t + self.tolerance {
+            self.find_others(&ray.lent(), from, inside, &nearest)
+        } else {
+            Box::default()
+        };
+        let nearest = self.hit(prim, crossing.toward);
+        Some(Hits { distance: crossing.t.max(0.0), nearest, others })
+    }
+
+    #[inline(always)]
+    fn nearest_by_scan(&self, ray: &Ray, from: &On, inside: &Inside) -> Nearest {
+        let mut nearest = Nearest::NONE;
+        for convex in &self.convex {
+            if !inside.contains(convex.solid()) {
+                if let Some((prim, crossing)) = convex.entry(ray, from, self.tolerance) {
+                    nearest.consider(prim, crossing);
+                }
+            } else if let Some(exit) = convex.exit(ray, from, self.tolerance) {
+                nearest.consider(exit.prim, exit.crossing);
+                nearest.consider_runner_up(exit.runner_up);
+            } else {
+                return self.nearest_by_edges(&ray.lent(), from, inside);
+            }
+        }
+        self.scan(self.loose.iter().copied(), ray, from, inside, &mut nearest);
+        nearest
+    }
+
+    /// The same with all edges asked, for a path of which rounding has it that it is not quite where it should be.
+    #[inline(never)]
+    fn nearest_by_edges(&self, ray: &Ray, from: &On, inside: &Inside) -> Nearest {
+        let mut nearest = Nearest::NONE;
+        self.scan((0..self.patches.len()).map(PrimId::new), ray, from, inside, &mut nearest);
+        nearest
+    }
+
+    /// Asks patches one after the other.
+    #[inline(always)]
+    fn scan(
+        &self,
+        prims: impl Iterator<Item = PrimId>,
+        ray: &Ray,
+        from: &On,
+        inside: &Inside,
+        nearest: &mut Nearest,
+    ) {
+        for prim in prims {
+            let patch = &self.patches[prim.index()];
+            let limit = nearest.crossing.t + self.tolerance;
+            let Some(wanted) = self.wanted(patch.owner, inside, limit) else { continue };
+            if let Some(crossing) = patch.first_crossing(ray, start_on(prim, from), &wanted) {
+                nearest.consider(prim, crossing);
+            }
+        }
+    }
+
+    #[inline(never)]
+    fn nearest_in_tree(&self, tree: &Tree, ray: &Ray, from: &On, inside: &Inside) -> Nearest {
+        let line = self.line(ray);
+        let mut nearest = Nearest::NONE;
+        tree.visit(ray, |index| {
+            let prim = PrimId::new(index);
+            let limit = nearest.crossing.t + self.tolerance;
+            if let Some(crossing) = self.crossing(prim, ray, line.as_ref(), from, inside, limit) {
+                nearest.consider(prim, crossing);
+            }
+            nearest.crossing.t + self.tolerance
+        });
+        nearest
+    }
+
+    /// The other surfaces at the place of the nearest hit.
+    #[inline(never)]
+    fn find_others(
+        &self,
+        ray: &Ray,
+        from: &On,
+        inside: &Inside,
+        nearest: &Nearest,
+    ) -> Box<[PrimHit]> {
+        let limit = nearest.crossing.t + self.tolerance;
+        let line = self.line(ray);
+        let mut others = Vec::new();
+        self.accel.visit(ray, |index| {
+            let prim = PrimId::new(index);
+            if prim != nearest.prim {
+                let crossing = self.crossing(prim, ray, line.as_ref(), from, inside, limit);
+                others.extend(crossing.map(|crossing| self.hit(prim, crossing.toward)));
+            }
+            limit
+        });
+        others.sort_unstable_by_key(|hit: &PrimHit| hit.prim);
+        others.into()
+    }
+
+    /// The first crossing of a ray with a surface that counts, up to a distance.
+    #[inline(always)]
+    fn crossing(
+        &self,
+        prim: PrimId,
+        ray: &Ray,
+        line: Option<&Line>,
+        from: &On,
+        inside: &Inside,
+        limit: f64,
+    ) -> Option<Crossing> {
+        match self.surface(prim) {
+            Surface::Patch(patch) => {
+                let wanted = self.wanted(patch.owner, inside, limit)?;
+                patch.first_crossing(ray, start_on(prim, from), &wanted)
+            }
+            Surface::Triangle(body, triangle) => {
+                // Most triangles are missed: what counts is asked of the others.
+                let crossing = body.mesh.crossing_of(triangle, line?)?;
+                let wanted = self.wanted(body.owner, inside, limit)?;
+                (wanted.includes(&crossing) && !from.contains(prim)).then_some(crossing)
+            }
+        }
+    }
+
+    /// Which crossings count: of a solid, those whose orientation fits.
+    #[inline(always)]
+    fn wanted(&self, owner: Owner, inside: &Inside, max: f64) -> Option<Wanted> {
+        let (toward, min) = match owner {
+            Owner::Solid(solid) if inside.contains(solid) => (Some(Toward::Front), -self.tolerance),
+            Owner::Solid(_) => (Some(Toward::Back), -self.tolerance),
+            Owner::Sheet => (None, 0.0f64.next_up()),
+            Owner::Port => return None,
+        };
+        Some(Wanted { toward, min, max })
+    }
+
+    #[inline]
+    fn hit(&self, prim: PrimId, toward: Toward) -> PrimHit {
+        let surface = self.surface(prim);
+        PrimHit { prim, face: surface.face(), owner: surface.owner(), toward }
+    }
+
+    /// The solids in which a path finds itself just ahead of its start or just behind.
+    pub fn inside_at(&self, ray: &Ray, when: Just) -> Inside {
+        // The nearest crossing of each solid beyond the start tells: leaving it means having been in it.
+        let mut nearest: SmallVec<[(f64, Toward); 8]> =
+            SmallVec::from_elem((f64::INFINITY, Toward::Back), self.solids.len());
+        let beyond = match when {
+            Just::Ahead => self.tolerance,
+            Just::Behind => -self.tolerance,
+        };
+        let line = self.line(ray);
+        self.accel.visit(ray, |index| {
+            let surface = self.surface(PrimId::new(index));
+            surface.crossings(ray, line.as_ref(), Start::Elsewhere, |crossing| {
+                if let Owner::Solid(solid) = surface.owner() {
+                    let slot = &mut nearest[solid.index()];
+                    if crossing.t > beyond && crossing.t < slot.0 {
+                        *slot = (crossing.t, crossing.toward);
+                    }
+                }
+            });
+            f64::INFINITY
+        });
+        nearest
+            .iter()
+            .enumerate()
+            .filter(|(_, (_, toward))| *toward == Toward::Front)
+            .map(|(index, _)| crate::scene::SolidId::new(index))
+            .collect()
+    }
+
+    /// Every crossing ahead of a ray with the surfaces of solids and sheets, in any order.
+    pub fn all_crossings(&self, ray: &Ray, mut visit: impl FnMut(PrimId, Crossing)) {
+        let line = self.line(ray);
+        self.accel.visit(ray, |index| {
+            let prim = PrimId::new(index);
+            let visit = |crossing| visit(prim, crossing);
+            self.surface(prim).crossings(ray, line.as_ref(), Start::Elsewhere, visit);
+            f64::INFINITY
+        });
+    }
+
+    /// The form of a ray that triangles are asked with, made once; none without meshes.
+    #[inline]
+    fn line(&self, ray: &Ray) -> Option<Line> {
+        (!self.meshes.is_empty()).then(|| Line::of(ray))
+    }
+}
+
+/// Whether a ray that starts on the surfaces `from` starts on this one.
+#[inline(always)]
+fn start_on(prim: PrimId, from: &On) -> Start {
+    if from.contains(prim) { Start::On } else { Start::Elsewhere }
+}
+
+/// On which side of its start point a path is asked about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Just {
+    /// Just ahead along its direction: a source on a face is already beyond it.
+    Ahead,
+    /// Just behind: light of a source on a face still has to cross it.
+    Behind,
+}

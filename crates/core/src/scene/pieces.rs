@@ -1,0 +1,205 @@
+//! Questions about surfaces, whether they are analytic patches or triangles of a mesh.
+
+use crate::scene::Ray;
+use crate::scene::mesh::Line;
+use crate::scene::shape::{ChartRect, Crossing, Region, Shape, Start};
+use crate::scene::{Extent, FaceId, MeshBody, Owner, Patch, PrimId, Scene, SmoothId};
+use glam::{DVec2, DVec3};
+use lumiduct_base::math::Frame;
+
+/// A surface that a ray can hit.
+#[derive(Debug, Clone, Copy)]
+pub enum Surface<'s> {
+    /// An analytic piece.
+    Patch(&'s Patch),
+    /// A triangle of a mesh, by its number there.
+    Triangle(&'s MeshBody, usize),
+}
+
+impl Surface<'_> {
+    /// The face that it belongs to.
+    #[inline]
+    pub(crate) fn face(self) -> FaceId {
+        match self {
+            Self::Patch(patch) => patch.face,
+            Self::Triangle(body, triangle) => body.faces[body.mesh.face_of(triangle)],
+        }
+    }
+
+    /// What its face belongs to.
+    #[inline]
+    pub fn owner(self) -> Owner {
+        match self {
+            Self::Patch(patch) => patch.owner,
+            Self::Triangle(body, _) => body.owner,
+        }
+    }
+
+    /// Every crossing of a ray's line; `line` is that of the ray where there are triangles.
+    pub(crate) fn crossings(
+        self,
+        ray: &Ray,
+        line: Option<&Line>,
+        start: Start,
+        visit: impl FnMut(Crossing),
+    ) {
+        match self {
+            Self::Patch(patch) => patch.crossings(ray, start, visit),
+            Self::Triangle(body, triangle) => {
+                body.crossing(triangle, line, start).into_iter().for_each(visit);
+            }
+        }
+    }
+}
+
+impl MeshBody {
+    /// Where a line crosses a triangle; never the one that it starts from.
+    #[inline]
+    fn crossing(&self, triangle: usize, line: Option<&Line>, start: Start) -> Option<Crossing> {
+        match start {
+            Start::On => None,
+            Start::Elsewhere => self.mesh.crossing_of(triangle, line?),
+        }
+    }
+}
+
+impl Scene {
+    /// The surface of a number.
+    #[inline]
+    pub fn surface(&self, prim: PrimId) -> Surface<'_> {
+        let index = prim.index();
+        match self.patches.get(index) {
+            Some(patch) => Surface::Patch(patch),
+            None => {
+                let body = match self.meshes.as_slice() {
+                    [body] => body,
+                    bodies => &bodies[bodies.partition_point(|body| body.first <= index) - 1],
+                };
+                Surface::Triangle(body, index - body.first)
+            }
+        }
+    }
+
+    /// The face that a surface belongs to.
+    #[inline]
+    pub fn face_of(&self, prim: PrimId) -> FaceId {
+        self.surface(prim).face()
+    }
+
+    /// Unit normal of the front at a point of a surface: of the triangle itself, for a mesh.
+    #[inline]
+    pub fn normal(&self, prim: PrimId, point: DVec3) -> DVec3 {
+        match self.surface(prim) {
+            Surface::Patch(patch) => patch.shape.normal(point),
+            Surface::Triangle(body, triangle) => body.mesh.facet_normal(triangle),
+        }
+    }
+
+    /// The smooth surface that a piece belongs to.
+    #[inline]
+    pub fn smooth(&self, prim: PrimId) -> SmoothId {
+        match self.surface(prim) {
+            // Patches are numbered within their face.
+            Surface::Patch(patch) => SmoothId::of(patch.face.index() as u32, patch.smooth),
+            // Triangles are numbered within their mesh; meshes count from the other end.
+            Surface::Triangle(body, triangle) => {
+                let mesh = self.meshes.partition_point(|other| other.first < body.first);
+                SmoothId::of(u32::MAX - mesh as u32, body.mesh.smooth_id(triangle))
+            }
+        }
+    }
+
+    /// Unrolled coordinates of a point on its face, mm.
+    #[inline]
+    pub fn chart(&self, prim: PrimId, point: DVec3) -> DVec2 {
+        match self.surface(prim) {
+            Surface::Patch(patch) => patch.chart(point),
+            Surface::Triangle(body, triangle) => body.planes[body.mesh.face_of(triangle)]
+                .map_or(DVec2::ZERO, |plane| plane.point_to_local(point).truncate()),
+        }
+    }
+
+    /// The face of a name such as `pipe.exit`.
+    pub fn face_named(&self, name: &str) -> Option<FaceId> {
+        self.faces.iter().position(|face| face.name == name).map(FaceId::new)
+    }
+
+    /// The analytic pieces of a face; none for a face of a mesh.
+    pub fn face_patches(&self, face: FaceId) -> &[Patch] {
+        match &self.faces[face.index()].extent {
+            Extent::Patches(range) => &self.patches[range.clone()],
+            Extent::Ports(range) => &self.ports[range.clone()],
+            Extent::Mesh { .. } => &[],
+        }
+    }
+
+    /// Area of a face, mm².
+    pub fn face_area(&self, face: FaceId) -> f64 {
+        match self.mesh_face(face) {
+            Some((body, index)) => body.mesh.face_area(index),
+            None => self.face_patches(face).iter().map(Patch::area).sum(),
+        }
+    }
+
+    /// Area of the part of a face whose chart lies in `rect`, mm².
+    pub fn face_area_in(&self, face: FaceId, rect: ChartRect) -> f64 {
+        match self.mesh_face(face) {
+            Some((body, index)) => {
+                body.planes[index].map_or(0.0, |plane| body.mesh.chart_area_in(index, &plane, rect))
+            }
+            None => self.face_patches(face).iter().map(|patch| patch.area_in(rect)).sum(),
+        }
+    }
+
+    /// The rectangle that a face's chart covers, mm; `None` for a curved face of a mesh.
+    pub fn face_rect(&self, face: FaceId) -> Option<ChartRect> {
+        match self.mesh_face(face) {
+            Some((body, index)) => {
+                body.planes[index].map(|plane| body.mesh.chart_bounds(index, &plane))
+            }
+            None => {
+                self.face_patches(face).iter().map(Patch::chart_bounds).reduce(ChartRect::union)
+            }
+        }
+    }
+
+    /// The frame of a flat face: its middle, z along the outward normal, and the axes of its chart.
+    pub fn face_plane(&self, face: FaceId) -> Option<Frame> {
+        if let Some((body, index)) = self.mesh_face(face) {
+            return body.planes[index];
+        }
+        match self.face_patches(face) {
+            [Patch { shape: Shape::Flat(flat), .. }] => Some(*flat.frame()),
+            _ => None,
+        }
+    }
+
+    /// Radius of a face that is one flat disk, mm.
+    pub fn face_disk_radius(&self, face: FaceId) -> Option<f64> {
+        match self.face_patches(face) {
+            [Patch { shape: Shape::Flat(flat), .. }] => match flat.region() {
+                Region::Annulus { inner, outer } if *inner == 0.0 => Some(*outer),
+                Region::Annulus { .. }
+                | Region::Rectangle { .. }
+                | Region::Polygon(_)
+                | Region::Holed(_)
+                | Region::Ellipse { .. }
+                | Region::Sector { .. } => None,
+            },
+            _ => None,
+        }
+    }
+
+    /// What a face belongs to.
+    #[inline]
+    pub fn owner(&self, face: FaceId) -> Owner {
+        self.faces[face.index()].owner
+    }
+
+    fn mesh_face(&self, face: FaceId) -> Option<(&MeshBody, usize)> {
+        match self.faces[face.index()].extent {
+            Extent::Mesh { mesh, face } => Some((&self.meshes[mesh], face)),
+            Extent::Patches(_) | Extent::Ports(_) => None,
+        }
+    }
+}

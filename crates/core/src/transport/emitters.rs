@@ -1,0 +1,387 @@
+//! What gather paths see of the sources: the basic radiance they emit against a ray.
+//!
+//! Points, lines and collimated beams have no radiance that a ray could meet; the sources say so, and an estimator that
+//! needs to meet them is refused.
+
+use crate::scene::shape::{Crossing, Shape, Start};
+use crate::scene::{
+    Emission, EmitSide, Emitter, EmitterKind, PrimId, Scene, SolidId, Source, SourceId,
+    Start as SourceStart,
+};
+use crate::transport::{Path, Segment};
+use glam::DVec3;
+use lumiduct_base::math::{Aabb, Frame};
+use std::f64::consts::PI;
+
+/// Light of a source behind a face is met at the start of a segment, up to rounding of this size, relative to the scene.
+const AT_START: f64 = 1e-9;
+
+/// The sources of a scene as rays meet them.
+#[derive(Debug)]
+pub struct Emitters<'s> {
+    scene: &'s Scene,
+    seen: Vec<Seen<'s>>,
+}
+
+/// A source that rays can meet.
+#[derive(Debug)]
+struct Seen<'s> {
+    id: SourceId,
+    emission: &'s Emission,
+    body: Body<'s>,
+}
+
+#[derive(Debug)]
+enum Body<'s> {
+    Surface {
+        shapes: &'s [(Shape, f64)],
+        shining: Shining<'s>,
+        on: &'s [PrimId],
+        contact: Contact,
+        /// Around the shapes, with room for rounding, mm.
+        bounds: Aabb,
+    },
+    Volume {
+        solid: SolidId,
+        /// Flux per volume, lm/mm³.
+        density: f64,
+        /// Usual length of a path through it, mm: the side of a cube of its volume.
+        usual_length: f64,
+    },
+}
+
+/// How the shapes of a source shine.
+#[derive(Debug, Clone, Copy)]
+struct Shining<'s> {
+    emission: &'s Emission,
+    from: ShinesFrom<'s>,
+    /// Flux per area, lm/mm²; of the far distance per area across the light.
+    exitance: f64,
+}
+
+/// Where a source shines from.
+#[derive(Debug, Clone, Copy)]
+enum ShinesFrom<'s> {
+    /// A surface, to one side, with directions in a frame of its own or about its normal.
+    Surface { side: EmitSide, frame: Option<&'s Frame> },
+    /// The far distance: along lines that pass this middle at no more than this distance, mm.
+    Far { center: DVec3, reach: f64 },
+}
+
+/// How a source lies on a face.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Contact {
+    /// On none.
+    Free,
+    /// It shines away from the face: a ray meets it before the face acts.
+    Before,
+    /// It shines into the face: a ray meets it after the face has acted.
+    Behind,
+}
+
+/// Where a segment starts, for what is met right there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum SegmentStart {
+    /// On a free sensor: what is there counts.
+    Sensor,
+    /// On a face that is the sensor: what shines away from it there does not arrive at it.
+    Face,
+    /// At an interface: what is there was met by the segment before.
+    Interface,
+}
+
+/// Basic radiance that a path meets on its way.
+#[derive(Debug, Clone, Copy)]
+pub struct Met {
+    /// The source that is met.
+    pub source: SourceId,
+    /// Distance along the segment, mm.
+    pub(crate) t: f64,
+    /// Basic radiance at the start of the path, lm/(mm² sr): what the source emits times the throughput up to it.
+    pub radiance: f64,
+    /// Basic radiance where it is emitted, lm/(mm² sr); of a volume that of a path of usual length through it.
+    pub(crate) emitted: f64,
+}
+
+/// Why rays cannot meet a source; `None` where they can, or need not, as it is dark.
+pub fn invisible(source: &Source, scene: &Scene) -> Option<&'static str> {
+    if !source.is_lit() {
+        return None;
+    }
+    let any = DVec3::Z;
+    match &source.emitter {
+        Emitter::Point(_) => Some("it is a point"),
+        Emitter::Line { .. } => Some("it is a line"),
+        Emitter::Surface { .. } | Emitter::Far { .. } => source
+            .emission
+            .density(EmitterKind::Surface, any)
+            .is_none()
+            .then_some("it shines in one direction"),
+        Emitter::Volume { solid, .. } => {
+            if source.emission.density(EmitterKind::Volume, any).is_none() {
+                return Some("it shines in one direction");
+            }
+            scene.solids[solid.index()]
+                .volume
+                .is_none()
+                .then_some("the volume of its solid is not known")
+        }
+    }
+}
+
+impl<'s> Emitters<'s> {
+    /// The sources of a scene that shine and that rays can meet.
+    pub fn new(scene: &'s Scene) -> Self {
+        let visible = scene.sources.iter().enumerate();
+        let visible =
+            visible.filter(|(_, source)| source.is_lit() && invisible(source, scene).is_none());
+        let seen = visible.filter_map(|(index, source)| {
+            Some(Seen {
+                id: SourceId::new(index),
+                emission: &source.emission,
+                body: body(scene, source)?,
+            })
+        });
+        Self { scene, seen: seen.collect() }
+    }
+
+    /// Everything that a path meets along a segment.
+    pub(crate) fn along(
+        &self,
+        path: &Path,
+        segment: &Segment<'_>,
+        start: SegmentStart,
+        mut visit: impl FnMut(Met),
+    ) {
+        for seen in &self.seen {
+            match &seen.body {
+                Body::Surface { bounds, .. } => {
+                    if bounds.is_near(segment.ray.origin(), segment.ray.at(segment.length)) {
+                        self.surface(seen, path, segment, start, &mut visit);
+                    }
+                }
+                Body::Volume { solid, density, .. } => {
+                    if path.inside.contains(*solid) {
+                        let radiance = self.volume(seen, *density, path, segment);
+                        let emitted = self.volume_radiance(seen, path, -path.ray.dir());
+                        visit(Met { source: seen.id, t: segment.length, radiance, emitted });
+                    }
+                }
+            }
+        }
+    }
+
+    fn surface(
+        &self,
+        seen: &Seen<'_>,
+        path: &Path,
+        segment: &Segment<'_>,
+        start: SegmentStart,
+        visit: &mut impl FnMut(Met),
+    ) {
+        let Body::Surface { shapes, shining, on, contact, .. } = &seen.body else { return };
+        let (scene, ray) = (self.scene, segment.ray);
+        let tolerance = scene.tolerance;
+        let medium = &scene.media[segment.medium.index()];
+        let index = medium.index(path.wavelength);
+        let (from, to) = match (contact, start) {
+            (Contact::Free, SegmentStart::Sensor) => (-tolerance, segment.length),
+            (Contact::Free, SegmentStart::Face | SegmentStart::Interface) => {
+                (tolerance, segment.length)
+            }
+            (Contact::Before, SegmentStart::Sensor) => (-tolerance, segment.length + tolerance),
+            (Contact::Before, SegmentStart::Face | SegmentStart::Interface) => {
+                (tolerance, segment.length + tolerance)
+            }
+            (Contact::Behind, _) => {
+                (-AT_START * scene.bounds.diagonal(), segment.length - tolerance)
+            }
+        };
+        for (place, (shape, _)) in shapes.iter().enumerate() {
+            let starts_there = on.get(place).is_some_and(|prim| path.on.contains(*prim));
+            let shape_start = if starts_there { Start::On } else { Start::Elsewhere };
+            shape.crossings(ray, shape_start, |Crossing { t, .. }| {
+                if t < from || t > to {
+                    return;
+                }
+                let emitted = shining.radiance(shape, ray.at(t), -ray.dir(), index);
+                if emitted > 0.0 {
+                    let arriving =
+                        segment.throughput * medium.transmittance(path.wavelength, t.max(0.0));
+                    visit(Met { source: seen.id, t, radiance: emitted * arriving, emitted });
+                }
+            });
+        }
+    }
+
+    /// Basic radiance that a source emits along the start of a photon's path, from one of its shapes, lm/(mm² sr): the
+    /// same that a gather path meets there as [`Met::emitted`]. 0 of a source that rays cannot meet.
+    pub(crate) fn emitted(&self, source: SourceId, path: &Path, shape: usize) -> f64 {
+        let Some(seen) = self.seen.iter().find(|seen| seen.id == source) else { return 0.0 };
+        match &seen.body {
+            Body::Surface { shapes, shining, .. } => {
+                let index = self.scene.media[path.medium.index()].index(path.wavelength);
+                shining.radiance(&shapes[shape].0, path.ray.origin(), path.ray.dir(), index)
+            }
+            Body::Volume { .. } => self.volume_radiance(seen, path, path.ray.dir()),
+        }
+    }
+
+    /// Basic radiance of a path of usual length through a glowing solid, lm/(mm² sr); 0 of a surface.
+    fn volume_radiance(&self, seen: &Seen<'_>, path: &Path, out: DVec3) -> f64 {
+        let Body::Volume { density, usual_length, .. } = &seen.body else { return 0.0 };
+        let index = self.scene.media[path.medium.index()].index(path.wavelength);
+        let law = seen.emission.density(EmitterKind::Volume, out).unwrap_or(0.0);
+        density * law * usual_length / (index * index)
+    }
+
+    /// Emission along a segment in a glowing solid: ∫ ε exp(-αs) ds, lm/(mm² sr), over n².
+    fn volume(&self, seen: &Seen<'_>, density: f64, path: &Path, segment: &Segment<'_>) -> f64 {
+        let medium = &self.scene.media[segment.medium.index()];
+        let index = medium.index(path.wavelength);
+        let absorption = medium.absorption(path.wavelength);
+        let length = if absorption == 0.0 {
+            segment.length
+        } else {
+            -(-absorption * segment.length).exp_m1() / absorption
+        };
+        let law = seen.emission.density(EmitterKind::Volume, -segment.ray.dir()).unwrap_or(0.0);
+        segment.throughput * density * law * length / (index * index)
+    }
+}
+
+impl Shining<'_> {
+    /// Basic radiance from a place on a shape toward `out`, in a medium of an index, lm/(mm² sr).
+    fn radiance(&self, shape: &Shape, point: DVec3, out: DVec3, index: f64) -> f64 {
+        let per_exitance = match self.from {
+            ShinesFrom::Surface { side, frame } => {
+                let normal = match side {
+                    EmitSide::Front => shape.normal(point),
+                    EmitSide::Back => -shape.normal(point),
+                };
+                let cos = out.dot(normal);
+                if cos <= 0.0 {
+                    return 0.0;
+                }
+                let own = || Frame::from_axis(DVec3::ZERO, normal).to_local(out);
+                let local = frame.map_or_else(own, |frame| frame.to_local(out));
+                self.emission.density(EmitterKind::Surface, local).unwrap_or(0.0) / cos
+            }
+            ShinesFrom::Far { center, reach } => {
+                let from = point - center;
+                let is_inward = out.dot(from) < 0.0;
+                if !is_inward || from.reject_from_normalized(out).length() > reach {
+                    return 0.0;
+                }
+                self.emission.density(EmitterKind::Far, out).unwrap_or(0.0)
+            }
+        };
+        self.exitance * per_exitance / (index * index)
+    }
+}
+
+fn body<'s>(scene: &'s Scene, source: &'s Source) -> Option<Body<'s>> {
+    match &source.emitter {
+        Emitter::Surface { shapes, side, frame } => Some(Body::Surface {
+            shapes,
+            shining: Shining {
+                emission: &source.emission,
+                from: ShinesFrom::Surface { side: *side, frame: frame.as_ref() },
+                exitance: source.flux / source.emitter.area()?,
+            },
+            on: &source.on,
+            contact: contact(source),
+            bounds: source.emitter.bounds().grown(2.0 * AT_START * scene.bounds.diagonal()),
+        }),
+        Emitter::Far { shapes, center, reach, .. } => Some(Body::Surface {
+            shapes,
+            shining: Shining {
+                emission: &source.emission,
+                from: ShinesFrom::Far { center: *center, reach: *reach },
+                exitance: source.flux / (PI * reach * reach),
+            },
+            on: &source.on,
+            contact: contact(source),
+            bounds: source.emitter.bounds().grown(2.0 * AT_START * scene.bounds.diagonal()),
+        }),
+        Emitter::Volume { solid, .. } => {
+            let volume = scene.solids[solid.index()].volume?;
+            Some(Body::Volume {
+                solid: *solid,
+                density: source.flux / volume,
+                usual_length: volume.cbrt(),
+            })
+        }
+        Emitter::Point(_) | Emitter::Line { .. } => None,
+    }
+}
+
+fn contact(source: &Source) -> Contact {
+    match source.start {
+        SourceStart::Outside if source.on.is_empty() => Contact::Free,
+        SourceStart::Outside | SourceStart::Ahead => Contact::Before,
+        SourceStart::Behind => Contact::Behind,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::Medium;
+    use crate::rng::Sampler;
+    use crate::scene::shape::{Cylinder, Flat, Region};
+    use crate::scene::{Builder, Ray};
+    use lumiduct_base::units::FluxUnit;
+
+    #[test]
+    fn a_photon_and_the_gather_path_that_meets_its_start_tell_the_same_emission() {
+        let mut builder =
+            Builder::new(DVec3::ZERO, Medium::new("water", 1.3, 0.1), FluxUnit::Lumen);
+        let disk = |z: f64| {
+            let frame = Frame::WORLD.shifted(DVec3::new(0.0, 0.0, z));
+            Shape::Flat(Flat::new(frame, Region::Annulus { inner: 0.0, outer: 2.0 }))
+        };
+        let tilted = Frame::from_axis(DVec3::ZERO, DVec3::new(0.3, 0.0, 1.0).normalize());
+        let cone = Emission::Cone { half_angle: 0.2, axis: DVec3::Z };
+        let wall = Shape::Cylinder(Cylinder::new(Frame::WORLD, 1.0, 3.0));
+        for (shapes, frame, emission) in [
+            (vec![disk(5.0)], Some(tilted), cone),
+            (vec![disk(9.0), wall, disk(20.0)], None, Emission::CosinePower(3.0)),
+        ] {
+            builder.add_source(Source {
+                name: "lamp".into(),
+                flux: 7.0,
+                emitter: Emitter::surface(shapes, EmitSide::Front, frame),
+                emission,
+                start: SourceStart::Outside,
+                on: Vec::new(),
+                elevation: None,
+                sun: None,
+            });
+        }
+        let scene = builder.build();
+        let emitters = Emitters::new(&scene);
+        for (source, index) in [0, 1].into_iter().flat_map(|one| (0..200).map(move |i| (one, i))) {
+            let id = SourceId::new(source);
+            let emitted = scene.sources[source].emit(&scene, &mut Sampler::for_path(3, 0, index));
+            let shape = emitted.shape;
+            let photon = Path::emitted(&scene, id, emitted);
+            let told = emitters.emitted(id, &photon, shape);
+            let back = Ray::new(photon.ray.at(1.0), -photon.ray.dir());
+            let gather = Path { ray: back, throughput: 0.5, ..photon.clone() };
+            let segment = Segment {
+                ray: &back,
+                length: 1.5,
+                medium: gather.medium,
+                throughput: 0.5,
+                arriving: 0.4,
+            };
+            let mut met = Vec::new();
+            emitters.along(&gather, &segment, SegmentStart::Interface, |one| met.push(one));
+            let own = met.iter().find(|met| met.source == id && (met.t - 1.0).abs() < 1e-9);
+            let own = own.expect("the ray leads back to the start");
+            assert!((own.emitted / told - 1.0).abs() < 1e-6, "{source}: {own:?}, {told}");
+            assert!((own.radiance / told / 0.5 - (-0.1f64).exp()).abs() < 1e-6, "{own:?}, {told}");
+        }
+    }
+}

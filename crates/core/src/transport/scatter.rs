@@ -1,0 +1,153 @@
+//! What the acting finish makes of a path at an interface, for photons and for gather paths.
+//!
+//! It brings the finish, the normal and the indices together; the physics is in `optics`.
+
+use crate::optics::{Bsdf, Faces, Incidence, Scattered, Side, scatter_radiance as adjoint};
+use crate::rng::{Numbers, Sampler};
+use crate::scene::shape::Toward;
+use crate::scene::{FinishId, Interface, MediumId, Patch, Scene, Surface};
+use crate::transport::{Path, Vertex};
+use glam::DVec3;
+
+/// The smooth interface of two media, where no finish is declared.
+static SMOOTH: Bsdf = Bsdf::Smooth;
+
+/// Asks the acting finish.
+#[inline(always)]
+pub(super) fn scatter(
+    scene: &Scene,
+    path: &Path,
+    interface: &Interface<'_>,
+    point: DVec3,
+    dir: DVec3,
+    sampler: &mut Sampler<impl Numbers>,
+) -> Option<Scattered> {
+    let toward = interface.acting.toward;
+    let index = |medium: MediumId| scene.media[medium.index()].index(path.wavelength);
+    let (index_from, index_to) = (index(interface.from), index(interface.to));
+    let bsdf = finish_of(scene, interface.finish);
+    match scene.surface(interface.acting.prim) {
+        Surface::Patch(patch) => {
+            let normal = patch.shape.normal_against(toward, point);
+            let grain = grain(bsdf, patch, point);
+            bsdf.scatter(&Incidence { dir, normal, index_from, index_to, grain }, sampler)
+        }
+        Surface::Triangle(body, triangle) => {
+            let facing = |outward: DVec3| match toward {
+                Toward::Front => -outward,
+                Toward::Back => outward,
+            };
+            let facet = facing(body.mesh.facet_normal(triangle));
+            let shading = facing(body.mesh.shading_normal(triangle, point));
+            // An interpolated normal may face away from grazing light; then the facet's own is taken.
+            let normal = if shading.dot(dir) < 0.0 { shading } else { facet };
+            let out = bsdf.scatter(
+                &Incidence { dir, normal, index_from, index_to, grain: DVec3::ZERO },
+                sampler,
+            )?;
+            Some(kept_on_its_side(out, facet))
+        }
+    }
+}
+
+/// The direction by which a finish is laid on a patch. Meshes have none; finishes with a grain are refused there.
+#[inline(always)]
+fn grain(bsdf: &Bsdf, patch: &Patch, point: DVec3) -> DVec3 {
+    if bsdf.has_grain() { patch.along(point) } else { DVec3::ZERO }
+}
+
+#[inline]
+fn finish_of(scene: &Scene, finish: Option<FinishId>) -> &Bsdf {
+    finish.map_or(&SMOOTH, |finish| &scene.finishes[finish.index()].bsdf)
+}
+
+/// An interface as a gather path meets it.
+pub struct Facing<'s> {
+    /// What acts on light from either side.
+    pub faces: Faces<'s>,
+    /// How the path arrives, about the normal that acts.
+    pub incidence: Incidence,
+    /// The normal of the surface itself, on the side the path comes from: a facet's, for a mesh.
+    pub facet: DVec3,
+}
+
+/// An interface as a gather path meets it at a vertex.
+pub fn facing<'s>(scene: &'s Scene, path: &Path, vertex: &Vertex<'_>) -> Facing<'s> {
+    let interface = vertex.interface;
+    let toward = interface.acting.toward;
+    let faces = Faces {
+        own: finish_of(scene, interface.finish),
+        behind: finish_of(scene, scene.finish_behind(interface)),
+    };
+    let (normal, facet, grain) = match scene.surface(interface.acting.prim) {
+        Surface::Patch(patch) => {
+            let normal = patch.shape.normal_against(toward, vertex.point);
+            (normal, normal, grain(faces.own, patch, vertex.point))
+        }
+        Surface::Triangle(body, triangle) => {
+            let sign = match toward {
+                Toward::Front => -1.0,
+                Toward::Back => 1.0,
+            };
+            let facet = sign * body.mesh.facet_normal(triangle);
+            let shading = sign * body.mesh.shading_normal(triangle, vertex.point);
+            let normal = if shading.dot(vertex.dir) < 0.0 { shading } else { facet };
+            (normal, facet, DVec3::ZERO)
+        }
+    };
+    let index = |medium: MediumId| scene.media[medium.index()].index(path.wavelength);
+    Facing {
+        faces,
+        incidence: Incidence {
+            dir: vertex.dir,
+            normal,
+            index_from: index(interface.from),
+            index_to: index(interface.to),
+            grain,
+        },
+        facet,
+    }
+}
+
+/// Sends a gather path on, or absorbs it.
+pub fn scatter_radiance(
+    scene: &Scene,
+    path: &Path,
+    vertex: &Vertex<'_>,
+    sampler: &mut Sampler<impl Numbers>,
+) -> Option<Scattered> {
+    let facing = facing(scene, path, vertex);
+    let out = adjoint(facing.faces, &facing.incidence, sampler)?;
+    Some(facing.corrected(out))
+}
+
+impl Facing<'_> {
+    /// What an interpolated normal makes of basic radiance. Flux through the facet is conserved and solid angles turn
+    /// about the normal n that acts, so that `L* |cos_f| dω n²` is, with `cos_f` to the facet: the factor is
+    /// `|cos_f(i)/cos_n(i)| |cos_n(o)/cos_f(o)|`, i where the path goes on, o where it came from (Veach, thesis 1997, 5.3).
+    pub fn corrected(&self, out: Scattered) -> Scattered {
+        let Incidence { dir, normal, .. } = self.incidence;
+        if normal == self.facet {
+            return out;
+        }
+        let before = out.dir.normalize();
+        let kept = kept_on_its_side(Scattered { dir: before, ..out }, self.facet);
+        let cos = |dir: DVec3, normal: DVec3| dir.dot(normal).abs();
+        let factor = cos(kept.dir, self.facet) / cos(before, normal) * cos(dir, normal)
+            / cos(dir, self.facet);
+        // Light along the facet itself carries none.
+        let factor = if factor.is_finite() { factor } else { 0.0 };
+        Scattered { factor: out.factor * factor, ..kept }
+    }
+}
+
+/// With an interpolated normal light may leave into the facet that it should leave: it is mirrored once more about
+/// the facet.
+fn kept_on_its_side(out: Scattered, facet: DVec3) -> Scattered {
+    let along = out.dir.dot(facet);
+    let wrong = match out.side {
+        Side::Reflected => along < 0.0,
+        Side::Transmitted => along > 0.0,
+    };
+    if wrong { Scattered { dir: out.dir - 2.0 * along * facet, ..out } } else { out }
+}

@@ -1,0 +1,284 @@
+//! What ends a run from outside, the user or the clock, and how often tracing looks at it.
+//!
+//! Between two looks lies a fixed amount of counted work, not of time. Work that was stopped is dropped as a whole:
+//! results depend on the number of finished batches alone.
+
+use std::cell::Cell;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+/// Work between two looks, in straight pieces of paths: a tenth of a millisecond in simple scenes, some milliseconds where
+/// a ray is expensive.
+pub(crate) const LOOK_EVERY: u32 = 1024;
+/// Work of a gather path with its records, in straight pieces: `transport::work` has the times that this follows from.
+pub(crate) const RECORD_WORK: u32 = 32;
+/// By how much a run may exceed its time if it has no finished batch, so that short runs have something to report.
+pub const FIRST_BATCH_GRACE: Duration = Duration::from_millis(400);
+
+/// What a program is doing when the user asks it to stop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Activity {
+    /// It reads, computes, compares or draws what counts as a whole only: nothing is lost or half written if it ends at once.
+    Computing,
+    /// It traces: paths end at their next look, and what was traced is reported.
+    Tracing,
+    /// Files take their places, which ends soon.
+    Writing,
+}
+
+/// What a request to stop leads to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StopAnswer {
+    /// The run ends by itself.
+    EndRun,
+    /// The program has to end now.
+    EndProgram,
+}
+
+/// A flag that asks a run to stop.
+#[derive(Debug, Clone, Default)]
+pub struct Interrupt(Arc<Flag>);
+
+#[derive(Debug)]
+struct Flag {
+    raised: AtomicBool,
+    /// An [`Activity`].
+    activity: AtomicU8,
+    /// Looks of runs in progress.
+    looks: AtomicU64,
+    /// The look at which the flag is raised.
+    raised_at: u64,
+}
+
+impl Default for Flag {
+    fn default() -> Self {
+        Self {
+            raised: AtomicBool::new(false),
+            activity: AtomicU8::new(Activity::Computing as u8),
+            looks: AtomicU64::new(0),
+            raised_at: u64::MAX,
+        }
+    }
+}
+
+impl Interrupt {
+    /// A flag that is raised at the given look of a run, counted from 1: for tests that do not depend on time.
+    pub fn at_look(look: u64) -> Self {
+        Self(Arc::new(Flag { raised_at: look, ..Flag::default() }))
+    }
+
+    /// Notes what the program does from now on.
+    pub fn begin(&self, activity: Activity) {
+        self.0.activity.store(activity as u8, Ordering::SeqCst);
+    }
+
+    /// Asks the program to stop, as the user does; what that leads to depends on what it is doing. The second request ends
+    /// it in any case.
+    pub fn request(&self) -> StopAnswer {
+        let is_second = self.0.raised.swap(true, Ordering::SeqCst);
+        let is_computing = self.0.activity.load(Ordering::SeqCst) == Activity::Computing as u8;
+        if is_second || is_computing { StopAnswer::EndProgram } else { StopAnswer::EndRun }
+    }
+
+    /// Asks the run to stop.
+    pub fn raise(&self) {
+        self.0.raised.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether the run was asked to stop.
+    pub fn is_raised(&self) -> bool {
+        self.0.raised.load(Ordering::Relaxed)
+    }
+
+    /// How often runs have looked at it.
+    pub fn looks(&self) -> u64 {
+        self.0.looks.load(Ordering::Relaxed)
+    }
+
+    fn look(&self) -> bool {
+        let look = self.0.looks.fetch_add(1, Ordering::Relaxed) + 1;
+        if look >= self.0.raised_at {
+            self.raise();
+        }
+        self.is_raised()
+    }
+}
+
+/// What ends a run from outside: an interrupt, and the end of its time.
+#[derive(Debug, Clone, Default)]
+pub struct StopSignal {
+    interrupt: Interrupt,
+    end: Option<End>,
+}
+
+/// When the time of a run is over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum End {
+    /// At a time.
+    At(Instant),
+    /// After so many looks, and some more as grace: a clock that counts work.
+    AtLook { look: u64, grace: u64 },
+}
+
+impl StopSignal {
+    /// An interrupt, and an end if the time is limited.
+    pub fn new(interrupt: &Interrupt, end: Option<Instant>) -> Self {
+        Self { interrupt: interrupt.clone(), end: end.map(End::At) }
+    }
+
+    /// A time that is over at a look of the interrupt, with so many looks of grace: a clock that counts work and not
+    /// time, for tests.
+    pub fn ending_at_look(interrupt: &Interrupt, look: u64, grace: u64) -> Self {
+        Self { interrupt: interrupt.clone(), end: Some(End::AtLook { look, grace }) }
+    }
+
+    /// Whether work has to stop.
+    pub(crate) fn is_due(&self) -> bool {
+        self.interrupt.look() || self.end.is_some_and(|end| self.is_over(end))
+    }
+
+    fn is_over(&self, end: End) -> bool {
+        match end {
+            End::At(end) => Instant::now() >= end,
+            End::AtLook { look, .. } => self.interrupt.looks() >= look,
+        }
+    }
+
+    /// The same with [`FIRST_BATCH_GRACE`] more time.
+    pub(crate) fn with_grace(&self) -> Self {
+        self.with_end(|end| match end {
+            End::At(end) => End::At(end.checked_add(FIRST_BATCH_GRACE).unwrap_or(end)),
+            End::AtLook { look, grace } => End::AtLook { look: look + grace, grace },
+        })
+    }
+
+    /// The same with half of the time that is left.
+    pub(crate) fn with_half(&self) -> Self {
+        let now = Instant::now();
+        self.with_end(|end| match end {
+            End::At(end) => End::At(now + end.saturating_duration_since(now) / 2),
+            End::AtLook { look, grace } => {
+                let left = look.saturating_sub(self.interrupt.looks());
+                End::AtLook { look: look - left / 2, grace }
+            }
+        })
+    }
+
+    /// Straight pieces of paths that the time which is left is good for; `None` where it is not limited. `time` measures how
+    /// long a piece takes, s.
+    pub(crate) fn work_left(&self, time: impl FnOnce() -> Option<f64>) -> Option<f64> {
+        match self.end? {
+            End::At(end) => {
+                let time = time()?;
+                Some(end.saturating_duration_since(Instant::now()).as_secs_f64() / time)
+            }
+            End::AtLook { look, .. } => {
+                let left = look.saturating_sub(self.interrupt.looks());
+                Some(left as f64 * f64::from(LOOK_EVERY))
+            }
+        }
+    }
+
+    fn with_end(&self, other: impl FnOnce(End) -> End) -> Self {
+        Self { interrupt: self.interrupt.clone(), end: self.end.map(other) }
+    }
+}
+
+/// The work of one batch or pass, which ends it when a signal says so.
+#[derive(Debug)]
+pub struct Pace<'a> {
+    signal: &'a StopSignal,
+    /// Work until the next look.
+    left: Cell<u32>,
+    is_stopped: Cell<bool>,
+}
+
+impl<'a> Pace<'a> {
+    /// Looks at the signal for the first time.
+    pub fn new(signal: &'a StopSignal) -> Self {
+        let pace = Self { signal, left: Cell::new(0), is_stopped: Cell::new(false) };
+        _ = pace.look();
+        pace
+    }
+
+    /// Counts work, in straight pieces of paths; a break ends the batch.
+    #[inline(always)]
+    pub(crate) fn spend(&self, work: u32) -> ControlFlow<()> {
+        let left = self.left.get();
+        if left > work {
+            self.left.set(left - work);
+            return ControlFlow::Continue(());
+        }
+        self.look()
+    }
+
+    /// Whether the batch has to be dropped.
+    pub(crate) fn is_stopped(&self) -> bool {
+        self.is_stopped.get()
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn look(&self) -> ControlFlow<()> {
+        // Of a batch that is stopped, nothing is left: every further piece of work comes here and ends.
+        if !self.is_stopped() && !self.signal.is_due() {
+            self.left.set(LOOK_EVERY);
+            return ControlFlow::Continue(());
+        }
+        self.left.set(0);
+        self.is_stopped.set(true);
+        ControlFlow::Break(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pace_looks_after_a_fixed_amount_of_work_and_stays_stopped() {
+        let interrupt = Interrupt::at_look(4);
+        let signal = StopSignal::new(&interrupt, None);
+        let pace = Pace::new(&signal);
+        let mut work = 0;
+        while pace.spend(1).is_continue() {
+            work += 1;
+        }
+        assert_eq!(interrupt.looks(), 4);
+        assert_eq!(work, 3 * LOOK_EVERY - 1, "two looks went by, the third ended it");
+        assert!(pace.is_stopped() && pace.spend(1).is_break());
+        assert_eq!(interrupt.looks(), 4, "a stopped batch does not look again");
+    }
+
+    #[test]
+    fn an_end_in_the_past_stops_at_the_first_look_unless_there_is_grace() {
+        let now = Instant::now();
+        let signal = StopSignal::new(&Interrupt::default(), Some(now));
+        assert!(Pace::new(&signal).is_stopped());
+        assert!(signal.with_half().is_due());
+        assert_eq!(signal.with_grace().end, Some(End::At(now + FIRST_BATCH_GRACE)));
+        assert!(!Pace::new(&StopSignal::default()).is_stopped());
+    }
+
+    #[test]
+    fn the_first_request_ends_what_is_traced_and_the_second_the_program() {
+        let interrupt = Interrupt::default();
+        interrupt.begin(Activity::Tracing);
+        assert_eq!(interrupt.request(), StopAnswer::EndRun);
+        assert!(interrupt.is_raised());
+        assert_eq!(interrupt.request(), StopAnswer::EndProgram);
+        for (activity, answer) in [
+            (Activity::Computing, StopAnswer::EndProgram),
+            (Activity::Tracing, StopAnswer::EndRun),
+            (Activity::Writing, StopAnswer::EndRun),
+        ] {
+            let interrupt = Interrupt::default();
+            interrupt.begin(activity);
+            assert_eq!(interrupt.request(), answer, "{activity:?}");
+        }
+        assert_eq!(Interrupt::default().request(), StopAnswer::EndProgram, "before tracing");
+    }
+}

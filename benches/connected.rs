@@ -7,13 +7,13 @@
 #![allow(clippy::print_stdout, reason = "a bench prints its result")]
 
 use glam::DVec3;
-use lumiduct::input::{self, Settings};
 use lumiduct_core::optics::{Bsdf, Incidence, Spread, evaluate};
 use lumiduct_core::rng::{Dimension, Sampler};
 use lumiduct_core::scene::shape::Toward;
 use lumiduct_core::scene::{FaceArea, On, Ray, Scene, SensorKind, SourceId};
 use lumiduct_core::tally::Tally;
 use lumiduct_core::transport::{Event, Path, Vertex, walk};
+use lumiduct_input::{self as input, Settings};
 use rayon::prelude::*;
 use std::ops::ControlFlow;
 

@@ -7,8 +7,8 @@ mod clock;
 mod spread;
 
 use clock::cpu_seconds;
-use lumiduct::input::{self, Job, Settings};
 use lumiduct_core::transport::Run;
+use lumiduct_input::{self as input, Job, Settings};
 use spread::Spread;
 
 /// Pairs of runs.

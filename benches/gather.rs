@@ -11,10 +11,10 @@
 mod clock;
 
 use clock::cpu_seconds;
-use lumiduct::input::{self, Job, Settings};
 use lumiduct_core::plan::{Estimator, GatherPlan, Request, RunPlan, StopRules, Target};
 use lumiduct_core::scene::{Scene, SensorId, SourceId};
 use lumiduct_core::transport::{Findings, GatherSettings, Layout, Readings, Run};
+use lumiduct_input::{self as input, Job, Settings};
 use rayon::ThreadPoolBuilder;
 use std::path::Path;
 

@@ -13,26 +13,32 @@
 //! A scene in a file, and one of its measures:
 //!
 //! ```
-//! use lumiduct::input::{self, Settings};
-//! use lumiduct::transport::Interrupt;
-//! use lumiduct::{measure, pipeline};
+//! use lumiduct::{Interrupt, Settings, load, measure, trace};
 //! use std::path::Path;
 //!
 //! let settings = Settings { paths: Some(20_000), ..Settings::default() };
-//! let job = input::load(Path::new("scenes/led_indicator.toml"), &settings)?;
-//! let traced = pipeline::trace(&job, &Interrupt::default(), &mut |_| {})?;
-//! let measures = measure::measure(&job.scene, &traced.findings);
+//! let job = load(Path::new("scenes/led_indicator.toml"), &settings)?;
+//! let traced = trace(&job, &Interrupt::default(), &mut |_| {})?;
+//! let measures = measure(&job.scene, &traced.findings);
 //! let efficiency = &measures.values["exit.efficiency"];
 //! assert!(0.0 < efficiency.value && efficiency.value < 1.0 && efficiency.std_error < 0.01);
-//! # Ok::<(), lumiduct::error::Error>(())
+//! # Ok::<(), lumiduct::Error>(())
 //! ```
+//!
+//! The same as a report in a folder is [`run_one`]. This crate is the program and a small facade; the parts are
+//! `lumiduct-base`, `lumiduct-core`, `lumiduct-files`, `lumiduct-input` and `lumiduct-report`.
 //!
 //! Inside, lengths are millimetres, angles radians, solid angles steradians, flux lumens (watts in radiometric runs),
 //! wavelengths nanometres. +z of a local frame is the normal; directions are unit vectors. Units of files and reports
 //! are part of the names there.
 
 pub mod cli;
-pub mod input;
 pub mod pipeline;
-pub mod report;
 pub mod study;
+
+pub use lumiduct_base::error::{Diagnostic, Error, Result};
+pub use lumiduct_core::measure::{Measure, Measures, Status, measure};
+pub use lumiduct_core::transport::Interrupt;
+pub use lumiduct_input::{Job, Settings, load};
+pub use lumiduct_report::diff::read as read_report;
+pub use pipeline::{check, run_one, trace};

@@ -22,18 +22,18 @@ pub use parts::{SliceWishes, SliceWritten, has_slice, merge_slices, run_slice};
 pub use progress::{Progress, TargetProgress};
 pub use tracing::{Traced, trace};
 
-use crate::input::{self, Job, Outline, Settings};
 use crate::pipeline::checkpoint::Keeper;
 use crate::pipeline::sense::expect_sense;
 use crate::pipeline::tracing::{Pause, trace_kept};
-use crate::report::{
-    self, CheckResult, Existing, Folder, FolderLock, Inventory, Recipe, Report, RunFacts,
-    SceneFacts, TargetFacts, Written,
-};
 use lumiduct_base::error::{Diagnostic, Result};
 use lumiduct_core::measure;
 use lumiduct_core::plan::Request;
 use lumiduct_core::transport::{Activity, Findings, Interrupt, Run, Track, tracks};
+use lumiduct_input::{self as input, Job, Outline, Settings};
+use lumiduct_report::{
+    self as report, CheckResult, Existing, Folder, FolderLock, Inventory, Recipe, Report, RunFacts,
+    SceneFacts, TargetFacts, Written,
+};
 pub(crate) use sense::expect_measures;
 use std::path::{Path, PathBuf};
 use std::time::Duration;

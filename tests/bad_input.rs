@@ -9,8 +9,8 @@
 
 use std::path::{Path, PathBuf};
 
-use lumiduct::input;
 use lumiduct_base::error::{Diagnostic, Error};
+use lumiduct_input as input;
 
 struct Expected {
     file: PathBuf,

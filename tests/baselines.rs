@@ -3,11 +3,11 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
 
-use lumiduct::input::{self, Job, Settings};
 use lumiduct_baselines::{Baseline, BaselineRun};
 use lumiduct_core::measure::{self, Measure};
 use lumiduct_core::scene::SensorId;
 use lumiduct_core::transport::{Findings, Readings};
+use lumiduct_input::{self as input, Job, Settings};
 use std::f64::consts::PI;
 use std::path::Path;
 

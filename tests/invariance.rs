@@ -3,12 +3,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
 
-use lumiduct::input::{self, Job, Settings};
 use lumiduct_core::measure::{self, Measures};
 use lumiduct_core::plan::Request;
 use lumiduct_core::rng::Sampler;
 use lumiduct_core::scene::SourceId;
 use lumiduct_core::transport::{Event, Path as LightPath, Run, walk};
+use lumiduct_input::{self as input, Job, Settings};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 

@@ -15,7 +15,7 @@ const CRATES: &[(&str, &[&[&str]])] = &[
         &[&["rng", "tally", "plan"], &["optics"], &["scene"], &["transport"], &["measure"]],
     ),
     ("crates/files/src", &[&["mesh"]]),
-    ("src", &[&["input"], &["report"], &["pipeline"], &["study"], &["cli"], &["main"]]),
+    ("src", &[&["pipeline"], &["study"], &["cli"], &["main"]]),
 ];
 
 fn layer(layers: &[&[&str]], module: &str) -> Option<usize> {
@@ -100,6 +100,36 @@ fn children_do_not_reach_up() {
         }
     }
     assert!(wrong.is_empty(), "`super::` outside tests:\n{}", wrong.join("\n"));
+}
+
+/// Entries of a list in the manifest of the workspace.
+fn manifest_list(name: &str) -> Vec<String> {
+    let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml");
+    let manifest: toml::Table = std::fs::read_to_string(manifest).unwrap().parse().unwrap();
+    let list = manifest["workspace"][name].as_array().unwrap();
+    list.iter().map(|entry| entry.as_str().unwrap().to_owned()).collect()
+}
+
+#[test]
+fn a_bare_command_does_all_crates() {
+    if package::is_without_reports() {
+        return;
+    }
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut members = vec![".".to_owned()];
+    for member in manifest_list("members") {
+        match member.strip_suffix("/*") {
+            None => members.push(member),
+            Some(folder) => {
+                for entry in std::fs::read_dir(root.join(folder)).unwrap() {
+                    let name = entry.unwrap().file_name().into_string().unwrap();
+                    members.push(format!("{folder}/{name}"));
+                }
+            }
+        }
+    }
+    members.sort();
+    assert_eq!(members, manifest_list("default-members"));
 }
 
 #[test]

@@ -3,9 +3,9 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
 #![allow(clippy::print_stdout, reason = "figures, shown by --nocapture and on failure")]
 
-use lumiduct::input::{self, GatherSettings, Settings};
 use lumiduct_core::plan::{Request, Schedule};
 use lumiduct_core::transport::Run;
+use lumiduct_input::{self as input, GatherSettings, Settings};
 use peak_alloc::PeakAlloc;
 
 /// Counts what is allocated: what the system lends a process besides depends on its threads and its load.
@@ -89,7 +89,7 @@ fn most_for_cylinders(count: usize) -> f64 {
     let job = input::load(&path, &settings).unwrap_or_else(|error| panic!("{error}"));
     let mut run = Run::new(&job.scene, &job.run);
     run.next_wave();
-    let drawing = lumiduct::report::drawing(&job.scene, &[]);
+    let drawing = lumiduct_report::drawing(&job.scene, &[]);
     assert!(drawing.faces.len() <= 1501, "{} faces are drawn", drawing.faces.len());
     f64::from(ALLOCATED.peak_usage_as_mb() - before)
 }

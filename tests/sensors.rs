@@ -2,10 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
 
-use lumiduct::input::{self, Settings};
 use lumiduct_core::measure::{self, Axes, Measures};
 use lumiduct_core::plan::Request;
 use lumiduct_core::transport::Run;
+use lumiduct_input::{self as input, Settings};
 use std::f64::consts::PI;
 use std::path::Path;
 

@@ -4,10 +4,10 @@
 
 mod package;
 
-use lumiduct::input::{StudySettings, load_study};
-use lumiduct::report::study::{DesignRecord, Pairing};
 use lumiduct::study::{BatchWishes, OnExisting, run_study};
 use lumiduct_core::transport::{Interrupt, Shard};
+use lumiduct_input::{StudySettings, load_study};
+use lumiduct_report::study::{DesignRecord, Pairing};
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};

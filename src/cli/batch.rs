@@ -3,11 +3,11 @@
 use crate::cli::display::Display;
 use crate::cli::values::{parse_count, parse_percent, parse_shard};
 use crate::cli::{INTERRUPTED, fail, on_ctrl_c, open_junit, print, use_threads, warn, write_junit};
-use crate::input::StudySettings;
-use crate::report::{Existing, Written, study_junit};
 use crate::study::{BatchWishes, Finished, OnExisting, run_study};
 use clap::Args;
 use lumiduct_core::transport::Shard;
+use lumiduct_input::StudySettings;
+use lumiduct_report::{Existing, Written, study_junit};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Mutex;
@@ -139,5 +139,5 @@ fn summary(finished: &Finished) -> String {
         Written::Same => " (was there already, the same to the byte)".into(),
         Written::Nothing { differing } => format!(" (kept; {} would differ)", differing.join(", ")),
     };
-    format!("{}report: {dir}/study.md{state}\n", crate::report::study::terminal(report))
+    format!("{}report: {dir}/study.md{state}\n", lumiduct_report::study::terminal(report))
 }

@@ -1,11 +1,11 @@
 //! Arguments of `lumiduct check`.
 
 use crate::cli::{fail, finish, warn};
-use crate::input::Settings;
 use crate::pipeline::{self, CheckPage, CheckPictures};
-use crate::report::{CutPlane, Existing, SectionView};
 use clap::Args;
 use glam::DVec3;
+use lumiduct_input::Settings;
+use lumiduct_report::{CutPlane, Existing, SectionView};
 use std::path::PathBuf;
 use std::process::ExitCode;
 

@@ -3,10 +3,10 @@
 use crate::cli::run::GatherArgs;
 use crate::cli::values::{parse_number, parse_time, words};
 use crate::cli::{fail, finish, on_ctrl_c, print_error, use_threads, warn};
-use crate::input::Settings;
 use crate::pipeline::{self, CompareWishes, Method, Output, TruthWish};
-use crate::report::Existing;
 use clap::Args;
+use lumiduct_input::Settings;
+use lumiduct_report::Existing;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;

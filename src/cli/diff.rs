@@ -2,12 +2,12 @@
 
 use crate::cli::values::{parse_percent, parse_sigmas};
 use crate::cli::{fail, open_junit, print, write_junit};
-use crate::report::diff::{
-    Diff, DiffWishes, Limits, MapLimit, Rows, diff, diff_files, diff_table, read,
-};
-use crate::report::{Existing, Folder, FolderLock, Written, diff_junit, is_among};
 use clap::Args;
 use lumiduct_base::error::{Error, Result};
+use lumiduct_report::diff::{
+    Diff, DiffWishes, Limits, MapLimit, Rows, diff, diff_files, diff_table, read,
+};
+use lumiduct_report::{Existing, Folder, FolderLock, Written, diff_junit, is_among};
 use std::path::PathBuf;
 use std::process::ExitCode;
 

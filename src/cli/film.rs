@@ -2,10 +2,10 @@
 
 use crate::cli::values::{parse_index, parse_step};
 use crate::cli::{fail, finish, warn};
-use crate::input::{self, Settings};
-use crate::report::film_tables;
 use clap::Args;
 use lumiduct_base::error::Error;
+use lumiduct_input::{self as input, Settings};
+use lumiduct_report::film_tables;
 use std::path::PathBuf;
 use std::process::ExitCode;
 

@@ -2,10 +2,10 @@
 
 use crate::cli::{batch, fail, open_junit, run, write_junit};
 use crate::pipeline::{Output, has_slice, merge_slices};
-use crate::report::{Existing, run_junit, study_junit};
 use crate::study::{OnExisting, has_study, merge_study};
 use clap::Args;
 use lumiduct_base::error::Error;
+use lumiduct_report::{Existing, run_junit, study_junit};
 use std::path::PathBuf;
 use std::process::ExitCode;
 

@@ -1,11 +1,11 @@
 //! Arguments of `lumiduct mesh`.
 
 use crate::cli::{fail, print};
-use crate::report::mesh_report;
 use clap::{Args, ValueEnum};
 use lumiduct_base::error::Error;
 use lumiduct_base::mesh::health;
 use lumiduct_files::mesh::{LengthUnit, MeshFormat, read};
+use lumiduct_report::mesh_report;
 use std::path::PathBuf;
 use std::process::ExitCode;
 

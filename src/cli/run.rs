@@ -9,12 +9,12 @@ use crate::cli::{
     INTERRUPTED, fail, finish, on_ctrl_c, open_junit, print, print_error, use_threads, warn,
     write_junit,
 };
-use crate::input::{GatherSettings, Settings};
 use crate::pipeline::{self, Finished, Output, SliceWishes, SliceWritten, Start, Stop};
-use crate::report::{Existing, Outcome, Written, run_junit};
 use clap::Args;
 use lumiduct_core::plan::{Request, Schedule};
 use lumiduct_core::transport::{Interrupt, Shard};
+use lumiduct_input::{GatherSettings, Settings};
+use lumiduct_report::{Existing, Outcome, Written, run_junit};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
@@ -162,7 +162,7 @@ pub(super) fn run(args: &RunArgs) -> ExitCode {
 /// Prints what a run has found; the exit code says whether it is what its scene asked for.
 pub(super) fn tell(finished: &Finished, quiet: bool) -> ExitCode {
     let is_kept = matches!(finished.written, Written::Nothing { .. });
-    let text = crate::report::terminal(&finished.report, &finished.dir, &finished.written);
+    let text = lumiduct_report::terminal(&finished.report, &finished.dir, &finished.written);
     let printed = if quiet {
         Ok(())
     } else {

@@ -1,9 +1,9 @@
 //! A look at a scene without measures: what is in it, and a picture with some paths.
 
-use crate::input::Settings;
 use crate::pipeline::{inventory_of, prepare, shown_tracks};
-use crate::report::{self, Existing, SectionView, expect_file, write_whole};
 use lumiduct_base::error::{Diagnostic, Error, Result};
+use lumiduct_input::Settings;
+use lumiduct_report::{self as report, Existing, SectionView, expect_file, write_whole};
 use std::path::{Path, PathBuf};
 
 /// Paths that a check draws.

@@ -2,9 +2,9 @@
 
 use crate::pipeline::Output;
 use crate::pipeline::snapshot::{self, Kind};
-use crate::report::{Existing, Recipe, remove_if_there, sweep};
 use lumiduct_base::error::{Error, Result};
 use lumiduct_core::transport::{Run, State};
+use lumiduct_report::{Existing, Recipe, remove_if_there, sweep};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::time::Duration;

@@ -8,14 +8,14 @@ mod truth;
 
 pub use truth::TruthWish;
 
-use crate::input::{self, Job, Settings};
 use crate::pipeline::{Output, VERSION, expect_sense, output_dir};
-use crate::report::{self, Comparison, Contestant, Folder, FolderLock};
 use lumiduct_base::error::{Diagnostic, Error, Result};
 use lumiduct_baselines::Baseline;
 use lumiduct_core::plan::{Request, RunPlan, StopRules};
 use lumiduct_core::scene::SensorId;
 use lumiduct_core::transport::{Activity, Interrupt, invisible, scatterers, turbid_media};
+use lumiduct_input::{self as input, Job, Settings};
+use lumiduct_report::{self as report, Comparison, Contestant, Folder, FolderLock};
 use runner::{Stint, trace};
 use std::path::{Path, PathBuf};
 use std::time::Duration;

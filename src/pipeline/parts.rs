@@ -1,11 +1,11 @@
 //! Parts of one run, traced on several machines and put together to the very report of the whole run.
 
-use crate::input::{Job, Settings};
 use crate::pipeline::snapshot::{self, Kind};
 use crate::pipeline::{Finished, Output, Stop, compose, output_dir, prepare, recipe};
-use crate::report::{self, Existing, Folder, FolderLock, Recipe, expect_file};
 use lumiduct_base::error::{Error, Result};
 use lumiduct_core::transport::{Activity, Interrupt, Run, Shard, Slice, StopSignal, Unsliceable};
+use lumiduct_input::{Job, Settings};
+use lumiduct_report::{self as report, Existing, Folder, FolderLock, Recipe, expect_file};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use std::path::{Path, PathBuf};

@@ -1,9 +1,9 @@
 //! How far a run has come.
 
-use crate::input::Job;
 use lumiduct_core::measure::{self, Measure};
 use lumiduct_core::plan::RunPlan;
 use lumiduct_core::transport::{Phase, Run};
+use lumiduct_input::Job;
 use std::time::Duration;
 
 /// How far a run has come: for progress displays.

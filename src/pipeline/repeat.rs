@@ -1,10 +1,10 @@
 //! The command that repeats a run which the clock or the user has ended.
 
-use crate::input::Job;
-use crate::input::keys::Key;
 use crate::pipeline::Stop;
 use lumiduct_core::plan::Estimator;
 use lumiduct_core::transport::{Findings, Gathered};
+use lumiduct_input::Job;
+use lumiduct_input::keys::Key;
 
 /// The command that comes to the same numbers without a pilot and without a clock; `None` for a run that its own scene
 /// repeats.

@@ -1,14 +1,14 @@
 //! What can be said of a job before it is traced: that there is light, that every name is known, that estimators can
 //! meet the sources.
 
-use crate::input::Job;
-use crate::input::keys::Key;
-use crate::input::problems::Problems;
 use lumiduct_base::error::{Diagnostic, Result};
 use lumiduct_core::measure;
 use lumiduct_core::plan::Request;
 use lumiduct_core::scene::{Scene, SensorId, Source};
 use lumiduct_core::transport::{BLIND_PATHS, blind_sensors, invisible, scatterers};
+use lumiduct_input::Job;
+use lumiduct_input::keys::Key;
+use lumiduct_input::problems::Problems;
 
 /// Refuses a scene without light, and checks and targets that name no measure of it, before any work is done. Gives
 /// back remarks.

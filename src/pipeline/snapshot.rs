@@ -4,9 +4,9 @@
 //! one that was cut off, changed, or is of another kind is told from a good one before anything in it is believed.
 
 use crate::pipeline::BUILD;
-use crate::report::{Existing, write_whole};
 use lumiduct_base::digest::Digest;
 use lumiduct_base::error::{Error, Result};
+use lumiduct_report::{Existing, write_whole};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::fs;

@@ -1,10 +1,10 @@
 //! Runs that are stopped at a given look at the signal, wherever that is: in the pilot, in a batch, in a path.
 
-use crate::input::GatherSettings;
 use crate::pipeline::tests::job as short_rod;
 use crate::pipeline::*;
 use lumiduct_core::plan::Estimator;
 use lumiduct_core::transport::{Phase, StopAnswer, StopSignal};
+use lumiduct_input::GatherSettings;
 
 /// The short rod by one estimator, in small batches or passes, with a plan for more than is traced.
 fn settings(estimator: Request) -> Settings {

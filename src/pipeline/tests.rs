@@ -1,8 +1,8 @@
 //! Runs that are saved and resumed.
 
 use super::*;
-use crate::input::GatherSettings;
 use crate::pipeline::checkpoint::Checkpoint;
+use lumiduct_input::GatherSettings;
 
 /// The short rod of the tests, with a sensor that can be estimated by photons and gathered.
 pub(super) const SCENE: &str = concat!(

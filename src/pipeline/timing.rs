@@ -1,8 +1,8 @@
 //! Seconds, outside of the reproducible set of files.
 
 use crate::pipeline::Traced;
-use crate::report::Folder;
 use lumiduct_base::error::Result;
+use lumiduct_report::Folder;
 
 /// Writes `timing.csv` beside a report.
 pub(super) fn write(folder: &Folder, traced: &Traced) -> Result<()> {

@@ -1,6 +1,5 @@
 //! Tracing until a stop rule holds, the clock runs out, or the user stops it.
 
-use crate::input::Job;
 use crate::pipeline::checkpoint::Checkpoint;
 use crate::pipeline::{Progress, Stop, TargetProgress, gathering};
 use lumiduct_base::error::{Error, Result};
@@ -9,6 +8,7 @@ use lumiduct_core::plan::RunPlan;
 use lumiduct_core::transport::{
     Activity, FIRST_BATCH_GRACE, Findings, Interrupt, Phase, Run, StopSignal,
 };
+use lumiduct_input::Job;
 use std::time::{Duration, Instant};
 
 /// What tracing gave.

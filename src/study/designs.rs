@@ -1,7 +1,7 @@
 //! From a plan to designs: what every parameter is set to in each.
 
-use crate::input::{Domain, Parameter, Plan, Setting, Study};
 use crate::study::sampling::{latin_hypercube, quantile, random, sobol};
+use lumiduct_input::{Domain, Parameter, Plan, Setting, Study};
 
 /// One design: a setting for each parameter, in the order of the study.
 #[derive(Debug, Clone, PartialEq)]

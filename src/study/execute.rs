@@ -4,16 +4,16 @@
 //! threads are busy whether designs are many and small or few and large: while one design is read, judged or written,
 //! batches of another are traced.
 
-use crate::input::{Job, Keep, Setting, Settings, Study};
 use crate::pipeline::{self, BUILD, Stop};
-use crate::report::study::{DESIGN_FORMAT, DesignOutcome, DesignRecord, DesignResult};
-use crate::report::{self, Existing, Folder, FolderLock};
 use crate::study::designs::Design;
 use crate::study::store::Store;
 use indexmap::IndexMap;
 use lumiduct_base::error::{Diagnostic, DiagnosticKind, Error, Result};
 use lumiduct_core::measure;
 use lumiduct_core::transport::{Interrupt, batch_paths};
+use lumiduct_input::{Job, Keep, Setting, Settings, Study};
+use lumiduct_report::study::{DESIGN_FORMAT, DesignOutcome, DesignRecord, DesignResult};
+use lumiduct_report::{self as report, Existing, Folder, FolderLock};
 use std::collections::BTreeMap;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};

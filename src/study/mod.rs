@@ -15,19 +15,19 @@ mod store;
 
 pub use execute::BatchProgress;
 
-use crate::input::keys::Key;
-use crate::input::problems::{Problems, name_hint};
-use crate::input::{Parameter, Plan, Project, Study, StudySettings, Tie, load_study};
 use crate::pipeline::{self, VERSION};
-use crate::report::study::{
-    DesignRecord, FACTS_FORMAT, ParameterFacts, PlanFacts, StudyFacts, StudyReport, study_files,
-};
-use crate::report::{self, Existing, Folder, Written, is_among};
 use crate::study::designs::designs;
 use crate::study::execute::{Batch, execute};
 use crate::study::store::Store;
 use lumiduct_base::error::{Diagnostic, Error, Result};
 use lumiduct_core::transport::{Activity, Interrupt, Shard};
+use lumiduct_input::keys::Key;
+use lumiduct_input::problems::{Problems, name_hint};
+use lumiduct_input::{Parameter, Plan, Project, Study, StudySettings, Tie, load_study};
+use lumiduct_report::study::{
+    DesignRecord, FACTS_FORMAT, ParameterFacts, PlanFacts, StudyFacts, StudyReport, study_files,
+};
+use lumiduct_report::{self as report, Existing, Folder, Written, is_among};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 

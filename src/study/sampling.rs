@@ -1,7 +1,7 @@
 //! Samples of the unit cube, one dimension for each parameter, and what they mean for a parameter.
 
-use crate::input::{Domain, Parameter, Samples, Setting};
 use lumiduct_core::rng::{Dimension, Sampler};
+use lumiduct_input::{Domain, Parameter, Samples, Setting};
 use statrs::distribution::{ContinuousCDF, Normal};
 
 /// Streams of random numbers of the samples; light has streams of its own.

@@ -3,13 +3,13 @@
 //! A record appears whole or not at all, so that a batch that was killed at any moment can go on. Which designs are done
 //! is told from the records alone. Facts and records are sealed: one that was changed is refused by its name.
 
-use crate::report::study::{DESIGN_FORMAT, DesignRecord, FACTS_FORMAT, StudyFacts};
-use crate::report::{
+use crate::study::OnExisting;
+use lumiduct_base::error::{Error, Result};
+use lumiduct_report::study::{DESIGN_FORMAT, DesignRecord, FACTS_FORMAT, StudyFacts};
+use lumiduct_report::{
     Existing, FolderLock, OutputFile, is_staged, remove_if_there, remove_report, report_files,
     seal, sweep, unseal, write_whole,
 };
-use crate::study::OnExisting;
-use lumiduct_base::error::{Error, Result};
 use std::collections::BTreeMap;
 use std::fs::{self, OpenOptions};
 use std::io::{ErrorKind, Write};

@@ -4,12 +4,12 @@
 //! of photons and records limit the noise (docs/method.md).
 
 use crate::trial::{Gathering, Way, load};
-use lumiduct::input::Job;
 use lumiduct::pipeline::{self, Stop};
 use lumiduct_core::measure::{self, Measure};
 use lumiduct_core::plan::{RunPlan, Schedule, StopRules, Target};
 use lumiduct_core::tally::Tally;
 use lumiduct_core::transport::{Findings, Interrupt, Run};
+use lumiduct_input::Job;
 use rayon::prelude::*;
 
 /// Stages of a run.

@@ -1,12 +1,12 @@
 //! Requests that cannot be met are refused, sensors in the dark read nothing, and threads change no bit.
 
 use crate::trial::{Gathering, Way, findings, load};
-use lumiduct::input::Settings;
 use lumiduct::pipeline::{self, Output};
-use lumiduct::report::Existing;
 use lumiduct_core::measure::{self, Status};
 use lumiduct_core::plan::Request;
 use lumiduct_core::transport::Interrupt;
+use lumiduct_input::Settings;
+use lumiduct_report::Existing;
 
 const ROD: &str = r#"
 [media.acrylic]

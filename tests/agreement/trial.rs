@@ -1,9 +1,9 @@
 //! A scene from its text, run by each estimator, and what it measures held against something else.
 
-use lumiduct::input::{self, GatherSettings, Job, Settings};
 use lumiduct_core::measure::{self, Measure, Measures, Status};
 use lumiduct_core::plan::Request;
 use lumiduct_core::transport::{Findings, Run};
+use lumiduct_input::{self as input, GatherSettings, Job, Settings};
 use std::fmt::Write;
 
 /// Deviation that passes, in total errors of both sides.

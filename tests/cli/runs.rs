@@ -1,11 +1,11 @@
 //! Runs that do what they are asked to.
 
 use crate::*;
-use lumiduct::input::Settings;
 use lumiduct::pipeline::{self, Output};
-use lumiduct::report::Existing;
 use lumiduct_core::plan::Request;
 use lumiduct_core::transport::Interrupt;
+use lumiduct_input::Settings;
+use lumiduct_report::Existing;
 
 #[test]
 fn only_a_sensor_that_was_lit_from_behind_is_told_to_turn() {

@@ -1,7 +1,7 @@
 //! Reports and records that were changed, mixed or left half done are refused by their names.
 
 use crate::*;
-use lumiduct::report::FolderLock;
+use lumiduct_report::FolderLock;
 
 const STUDY: &str = "lumiduct_study = 1\ntitle = \"Lengths\"\nscene = \"rod.toml\"\nmeasures = [\"exit.flux\"]\n\
      plan = \"grid\"\n[parameters.length]\nkeys = [\"solids.rod.cylinder.length_mm\"]\nvalues = [10, 11]\n\

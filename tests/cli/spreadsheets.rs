@@ -1,7 +1,7 @@
 //! Tables that spreadsheets open, and tables that spreadsheets have saved.
 
 use crate::*;
-use lumiduct::report::{Existing, Folder, FolderLock, OutputFile};
+use lumiduct_report::{Existing, Folder, FolderLock, OutputFile};
 
 /// UTF-8 byte-order mark.
 const MARK: &str = "\u{feff}";

@@ -2,12 +2,12 @@
 
 use crate::{BODIES, LAMP, load};
 use glam::DVec3;
-use lumiduct::input::Job;
 use lumiduct_core::measure::{self, Measures};
 use lumiduct_core::rng::Sampler;
 use lumiduct_core::scene::shape::Toward;
 use lumiduct_core::scene::{FaceId, Owner, SourceId};
 use lumiduct_core::transport::{Event, Path, Run, walk};
+use lumiduct_input::Job;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::ops::ControlFlow;

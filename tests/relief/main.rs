@@ -6,8 +6,8 @@
 mod geometry;
 mod light;
 
-use lumiduct::input::{self, Job, Settings};
 use lumiduct_core::plan::Request;
+use lumiduct_input::{self as input, Job, Settings};
 
 /// A scene from its text without the head, for so many photons.
 fn load(text: &str, paths: u64) -> Job {

@@ -1,8 +1,8 @@
 //! Axes of faces are those of their maps.
 
 use glam::DVec2;
-use lumiduct::input::{Settings, load};
 use lumiduct_core::scene::{FaceId, Scene};
+use lumiduct_input::{Settings, load};
 
 /// Every kind of shape and of chart, all of them somewhere off the axes of the scene.
 const FACES: &str = r#"

@@ -1,8 +1,8 @@
 //! How a scene is cut for its pictures.
 
 use glam::DVec3;
-use lumiduct::input::{Settings, load};
 use lumiduct_core::scene::{Guides, Scene};
+use lumiduct_input::{Settings, load};
 
 fn guides_of(text: &str) -> (Scene, Guides) {
     let folder = tempfile::tempdir().unwrap();

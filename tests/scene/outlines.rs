@@ -1,8 +1,8 @@
 //! Outlines of the elements of patterns.
 
-use lumiduct::input::{Settings, load};
 use lumiduct_core::scene::FaceFacets;
 use lumiduct_core::scene::pattern::Outline;
+use lumiduct_input::{Settings, load};
 
 /// A plate with dots, and a rod with a row of them along its round wall, over the seam of its coordinates.
 const SCENE: &str = r#"

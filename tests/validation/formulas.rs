@@ -2,12 +2,12 @@
 
 use crate::run::scene_file;
 use glam::DVec3;
-use lumiduct::input::{self, Settings};
 use lumiduct_baselines::sppm_area_ratio;
 use lumiduct_core::optics::fresnel::{
     Polarised, brewster_angle, conductor, critical_angle, dielectric,
 };
 use lumiduct_core::transport::{Track, TrackEnd, tracks};
+use lumiduct_input::{self as input, Settings};
 
 /// Largest relative deviation.
 pub(crate) const LIMIT: f64 = 1e-6;

@@ -1,12 +1,12 @@
 //! One run of a scene, until every value is known as well as its class demands.
 
 use crate::table::{By, Case, Class, Value, Variant};
-use lumiduct::input::{self, Job, Settings};
 use lumiduct_core::measure::{self, Measure};
 use lumiduct_core::plan::Request;
 use lumiduct_core::plan::{Check, RunPlan, StopRules};
 use lumiduct_core::tally::sigmas;
 use lumiduct_core::transport::{Findings, Run};
+use lumiduct_input::{self as input, Job, Settings};
 use std::path::{Path, PathBuf};
 
 /// Paths after which a run that has not reached its errors has failed.

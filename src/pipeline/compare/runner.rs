@@ -1,13 +1,13 @@
 //! One timed run of one method.
 
 use crate::pipeline::compare::{Bench, Method};
-use crate::report::Sample;
 use lumiduct_base::error::{Error, Result};
 use lumiduct_baselines::BaselineRun;
 use lumiduct_core::measure;
 use lumiduct_core::plan::Request;
 use lumiduct_core::scene::Scene;
 use lumiduct_core::transport::{Findings, Run, StopSignal};
+use lumiduct_report::Sample;
 use std::time::{Duration, Instant};
 
 /// A run to be done.

@@ -2,10 +2,10 @@
 
 use crate::pipeline::compare::runner::{Estimate, Stint, trace};
 use crate::pipeline::compare::{Bench, CompareWishes, Method};
-use crate::report::Truth;
 use lumiduct_base::error::{Error, Result};
 use lumiduct_core::plan::Request;
 use lumiduct_core::transport::invisible;
+use lumiduct_report::Truth;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::time::Duration;

@@ -1,8 +1,8 @@
 //! Sums and differences of a measure over several designs, with their errors.
 
-use crate::report::study::{DesignRecord, Estimate, Pairing};
 use lumiduct_core::measure::Replicates;
 use lumiduct_core::tally::Tally;
+use lumiduct_report::study::{DesignRecord, Estimate, Pairing};
 
 /// A design with the weight that it has in a sum.
 #[derive(Debug, Clone, Copy)]

@@ -1,11 +1,11 @@
 //! Main effects: what a parameter does to a measure on the average over all others.
 
-use crate::input::Setting;
-use crate::report::study::{
-    DesignRecord, Effect, EffectPoint, ParameterFacts, PlanFacts, StudyFacts,
-};
 use crate::study::analysis::combine::{Term, combine};
 use indexmap::IndexMap;
+use lumiduct_input::Setting;
+use lumiduct_report::study::{
+    DesignRecord, Effect, EffectPoint, ParameterFacts, PlanFacts, StudyFacts,
+};
 use std::cmp::Ordering;
 
 /// The effects of all parameters on all measures. Samples have as many settings as designs, and none.

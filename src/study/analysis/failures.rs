@@ -1,8 +1,8 @@
 //! How many designs of a tolerance run fail, and what that tells of all that are ever made.
 
-use crate::report::study::{DesignRecord, FailureShare, PlanFacts, StudyFacts};
 use lumiduct_core::measure::Outcome;
 use lumiduct_core::plan::Check;
+use lumiduct_report::study::{DesignRecord, FailureShare, PlanFacts, StudyFacts};
 use statrs::distribution::{Beta, ContinuousCDF};
 
 /// Share of cases in which an interval misses the truth, 1.

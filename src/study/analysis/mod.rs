@@ -6,8 +6,8 @@ mod failures;
 mod ranking;
 mod sensitivity;
 
-use crate::report::study::{Analysis, DesignRecord, Pairing, Sharpness, StudyFacts};
 use combine::{Term, combine};
+use lumiduct_report::study::{Analysis, DesignRecord, Pairing, Sharpness, StudyFacts};
 
 /// Everything that follows.
 pub(crate) fn analysis(facts: &StudyFacts, designs: &[DesignRecord]) -> Analysis {
@@ -42,14 +42,14 @@ fn sharpness(measure: &str, designs: &[DesignRecord]) -> Option<Sharpness> {
 
 #[cfg(test)]
 pub(super) mod testing {
-    use crate::input::{Best, Domain, Keep, Ranking, Setting};
-    use crate::report::study::{
-        DESIGN_FORMAT, DesignOutcome, DesignRecord, DesignResult, FACTS_FORMAT, ParameterFacts,
-        PlanFacts, StudyFacts,
-    };
     use indexmap::IndexMap;
     use lumiduct_core::measure::{Measure, Replicates, Status};
     use lumiduct_core::plan::Estimator;
+    use lumiduct_input::{Best, Domain, Keep, Ranking, Setting};
+    use lumiduct_report::study::{
+        DESIGN_FORMAT, DesignOutcome, DesignRecord, DesignResult, FACTS_FORMAT, ParameterFacts,
+        PlanFacts, StudyFacts,
+    };
 
     /// A study of two parameters.
     pub(super) fn facts(plan: PlanFacts) -> StudyFacts {
@@ -131,7 +131,7 @@ pub(super) mod testing {
 mod tests {
     use super::testing::{design, facts};
     use super::*;
-    use crate::report::study::{DesignOutcome, Effect, PlanFacts, SensitivityMethod};
+    use lumiduct_report::study::{DesignOutcome, Effect, PlanFacts, SensitivityMethod};
 
     /// 3 a + b on a grid of a and b in -1, 0, 1, with noise that all share.
     fn grid() -> Vec<DesignRecord> {

@@ -1,8 +1,8 @@
 //! Which design is the best, and how sure that is.
 
-use crate::input::Best;
-use crate::report::study::{DesignRecord, Ranked, StudyFacts};
 use crate::study::analysis::combine::{Term, combine};
+use lumiduct_input::Best;
+use lumiduct_report::study::{DesignRecord, Ranked, StudyFacts};
 
 /// All designs that were traced, the best first; equal ones in the order of their numbers.
 pub(super) fn ranked(facts: &StudyFacts, designs: &[DesignRecord]) -> Vec<Ranked> {

@@ -4,13 +4,13 @@
 //! (Sobol, Math. Comput. Simul. 55 (2001) 271, eq. 8); of samples a linear regression gives standardised coefficients
 //! (Saltelli et al., Global Sensitivity Analysis, 2008, section 1.2.5).
 
-use crate::input::Setting;
-use crate::report::study::{
-    DesignRecord, PlanFacts, Sensitivity, SensitivityIndex, SensitivityMethod, StudyFacts,
-};
 use lumiduct_base::math::least_squares;
 use lumiduct_core::measure::Replicates;
 use lumiduct_core::tally::Tally;
+use lumiduct_input::Setting;
+use lumiduct_report::study::{
+    DesignRecord, PlanFacts, Sensitivity, SensitivityIndex, SensitivityMethod, StudyFacts,
+};
 
 /// The sensitivities of all measures, where the plan allows them.
 pub(super) fn sensitivities(facts: &StudyFacts, designs: &[DesignRecord]) -> Vec<Sensitivity> {
@@ -155,9 +155,9 @@ fn variance(values: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::study::DesignOutcome;
     use crate::study::analysis::testing::{design, facts};
     use lumiduct_core::rng::{Dimension, Sampler};
+    use lumiduct_report::study::DesignOutcome;
 
     /// A grid of a and b in 0, 1, 2 of which only a does anything, with noise of its own in every group of every design.
     fn noisy_grid(study: u64) -> Vec<DesignRecord> {

@@ -1,5 +1,5 @@
 //! How statistics of maps and curves scatter when the same field is counted again and again: their errors and intervals
-//! against their real scatter. The command `LUMIDUCT_TRIALS=1000 cargo test --lib trials -- --nocapture` prints the table
+//! against their real scatter. The command `LUMIDUCT_TRIALS=1000 cargo test -p lumiduct-core trials -- --nocapture` prints the table
 //! of docs/trials.md.
 
 use crate::measure::angular::sphere_cells;

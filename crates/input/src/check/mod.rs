@@ -1,0 +1,61 @@
+//! Rules of a scene that span several keys and need nothing but the file.
+//!
+//! Geometry, and whether a named face exists, is decided when the scene is built.
+
+use crate::keys::{Key, Places};
+use crate::problems::Problems;
+use crate::spec::SceneSpec;
+
+mod daylight;
+mod finishes;
+mod media;
+mod names;
+mod placements;
+mod references;
+mod run;
+mod sensors;
+mod shapes;
+mod sources;
+mod surfaces;
+
+pub(crate) use names::{check_length, check_name, check_title};
+pub(crate) use run::check_demands;
+
+/// Notes names that are taken twice, and names of things that are not there.
+pub fn check_names(spec: &SceneSpec, places: &Places, problems: &mut Problems) {
+    let scene = Scene { spec, places };
+    check_title(&spec.title, problems);
+    names::check(places, problems);
+    references::check(scene, problems);
+}
+
+/// Notes every broken rule about the keys of one table.
+pub fn check_rules(spec: &SceneSpec, places: &Places, problems: &mut Problems) {
+    let scene = Scene { spec, places };
+    media::check(scene, problems);
+    finishes::check(scene, problems);
+    placements::check(scene, problems);
+    shapes::check(scene, problems);
+    sources::check(scene, problems);
+    daylight::check(scene, problems);
+    sensors::check(scene, problems);
+    run::check(scene, problems);
+}
+
+/// A scene as a file says it, and where.
+#[derive(Clone, Copy)]
+struct Scene<'a> {
+    spec: &'a SceneSpec,
+    places: &'a Places,
+}
+
+/// Notes an error unless `small < large`; both are keys of the table at `table`.
+fn require_order(table: &Key, small: (&str, f64), large: (&str, f64), problems: &mut Problems) {
+    let ((small_key, small), (large_key, large)) = (small, large);
+    if small >= large {
+        problems.error(
+            &table.field(small_key),
+            format!("{small} is not below `{large_key}`, which is {large}"),
+        );
+    }
+}

@@ -1,0 +1,67 @@
+//! The JSON Schemas that editors check files against while they are written.
+//!
+//! A scene is validated after its sensor files have been joined with it. An editor sees one file at a time: a sensor that names a
+//! `file` has some of its keys there, so that none can be missing here, and the same holds for a sensor file.
+
+use serde_json::{Map, Value, json};
+
+use crate::schema::{is_required_only, json_schema, resolve};
+
+/// The name of the definition of a sensor in [`json_schema`], and of one whose keys are in part elsewhere.
+const SENSOR: &str = "Sensor";
+const PARTIAL_SENSOR: &str = "PartialSensor";
+
+/// The JSON Schema (draft 2020-12) of a scene file as it stands on disk.
+pub fn scene_file_schema() -> Value {
+    let mut schema = json_schema();
+    let partial = without_required_keys(&schema, &schema["$defs"][SENSOR]);
+    schema["properties"]["sensors"]["additionalProperties"] = json!({
+        "if": { "required": ["file"] },
+        "then": { "$ref": format!("#/$defs/{PARTIAL_SENSOR}") },
+        "else": { "$ref": format!("#/$defs/{SENSOR}") },
+    });
+    schema["$defs"][PARTIAL_SENSOR] = partial;
+    schema
+}
+
+/// The JSON Schema (draft 2020-12) of a sensor file: the keys of a sensor but for `file`, none of them required.
+pub fn sensor_file_schema() -> Value {
+    let schema = json_schema();
+    let mut sensor = without_required_keys(&schema, &schema["$defs"][SENSOR]);
+    if let Some(Value::Object(keys)) = sensor.get_mut("properties") {
+        keys.shift_remove("file");
+    }
+    let mut file = Map::new();
+    file.insert("$schema".into(), schema["$schema"].clone());
+    file.insert("title".into(), "Lumiduct sensor".into());
+    if let Value::Object(words) = sensor {
+        file.extend(words);
+    }
+    let description =
+        "The keys of a sensor that scenes take over with `file`; keys of the scene win.";
+    file.insert("description".into(), description.into());
+    Value::Object(file)
+}
+
+/// A schema with its definitions written out in place and without its rules about keys that must be there. The types of sensors
+/// do not contain themselves.
+fn without_required_keys(root: &Value, schema: &Value) -> Value {
+    let is_rule = |word: &str, rule: &Value| {
+        word == "required"
+            || matches!(word, "oneOf" | "anyOf")
+                && rule.as_array().is_some_and(|options| options.iter().all(is_required_only))
+    };
+    match resolve(root, schema) {
+        Value::Object(words) => {
+            // A reference may stand beside a description of its own.
+            let own = schema.as_object().into_iter().flatten().filter(|(word, _)| *word != "$ref");
+            let all = words.iter().chain(own).filter(|(word, rule)| !is_rule(word, rule));
+            Value::Object(
+                all.map(|(word, inner)| (word.clone(), without_required_keys(root, inner)))
+                    .collect(),
+            )
+        }
+        Value::Array(items) => items.iter().map(|item| without_required_keys(root, item)).collect(),
+        plain => plain.clone(),
+    }
+}

@@ -1,0 +1,182 @@
+//! The whole way from a scene file to a job: read, lowered, with the wishes of the command line.
+
+use crate::gather::{GatherSettings, check_radius, check_use};
+use crate::keys::{Key, Places};
+use crate::lower::{Lowered, lower};
+use crate::problems::Problems;
+use crate::project::{Project, project};
+use crate::{Draft, draft};
+use lumiduct_base::digest::Digest;
+use lumiduct_base::error::{Diagnostic, Error, Result};
+use lumiduct_base::text::visible;
+use lumiduct_core::plan::{Check, Request, RunPlan, StopRules, Target};
+use lumiduct_core::scene::Scene;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+use std::time::Duration;
+
+/// What the command line asks for beside the scene file.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub struct Settings {
+    /// `key=value` for keys of the scene.
+    pub overrides: Vec<String>,
+    /// How flux is to be estimated.
+    pub estimator: Option<Request>,
+    /// Wishes for the gather estimator.
+    pub gather: GatherSettings,
+    /// Relative error of the target measure.
+    pub target: Option<f64>,
+    /// The target measure; that of the file if it is left out.
+    pub target_measure: Option<String>,
+    /// Number of paths.
+    pub paths: Option<u64>,
+    /// Time of the run.
+    pub time: Option<Duration>,
+    /// Seed of the random numbers.
+    pub seed: Option<u64>,
+    /// Photon paths of a batch, so that batches of several scenes hold the same paths.
+    pub batch_paths: Option<u64>,
+}
+
+impl Settings {
+    /// The same with further overrides, which go over those here.
+    pub fn with(&self, further: impl IntoIterator<Item = String>) -> Self {
+        let overrides = self.overrides.iter().cloned().chain(further).collect();
+        Self { overrides, ..self.clone() }
+    }
+}
+
+/// A scene to be run.
+#[derive(Debug)]
+pub struct Job {
+    /// Name: that of the file without its ending.
+    pub name: String,
+    /// Title for reports.
+    pub title: String,
+    /// What the scene is for.
+    pub description: Option<String>,
+    /// Whom and what the report is for.
+    pub project: Option<Project>,
+    /// What is traced.
+    pub scene: Scene,
+    /// How, and when to stop.
+    pub run: RunPlan,
+    /// What is expected.
+    pub checks: Vec<Check>,
+    /// The scene file, byte for byte.
+    pub text: String,
+    /// Where the files say it.
+    pub places: Places,
+    /// Overrides of the command line, as given.
+    pub overrides: Vec<String>,
+    /// All that the command line asks for.
+    pub settings: Settings,
+    /// Identifies scene file, included files, meshes and overrides: 64-bit FNV-1a, in hexadecimal.
+    pub hash: String,
+    /// Remarks on the scene.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// Loads a scene file and everything it names.
+pub fn load(path: &Path, settings: &Settings) -> Result<Job> {
+    let Draft { spec, places, text, mut problems } = draft(path, &settings.overrides)?;
+    let whole = problems.is_free_of_errors();
+    let mut lowered = if whole { lower(&spec, &places, &mut problems) } else { None };
+    if let Some(Lowered { scene, run, .. }) = &mut lowered {
+        apply_method(settings, scene, run, &mut problems);
+    }
+    let project = project(&spec, &places, &mut problems);
+    let warnings = problems.finish(&places)?;
+    // Without an error there is a scene.
+    let Some(Lowered { scene, mut run, checks, meshes }) = lowered else {
+        return Err(Error::Input(warnings));
+    };
+    let mut hash = Digest::default();
+    places.sources().iter().for_each(|source| hash.add(source.text().as_bytes()));
+    hash.add(meshes.to_string().as_bytes());
+    let logo = project.as_ref().and_then(|project| project.logo.as_ref());
+    logo.into_iter().for_each(|png| hash.add(png));
+    apply(settings, &scene, &mut run)?;
+    Ok(Job {
+        name: visible(&path.file_stem().unwrap_or_default().to_string_lossy()),
+        title: spec.title,
+        description: spec.description,
+        project,
+        scene,
+        run,
+        checks,
+        text,
+        places,
+        overrides: settings.overrides.clone(),
+        settings: settings.clone(),
+        hash: hash.to_string(),
+        warnings,
+    })
+}
+
+/// The command line's estimator and wishes for it go over those of the file.
+fn apply_method(settings: &Settings, scene: &Scene, run: &mut RunPlan, problems: &mut Problems) {
+    run.estimator = settings.estimator.unwrap_or(run.estimator);
+    check_estimators(run, scene, problems);
+    let mut requests = (0..scene.sensors.len()).map(|sensor| run.request(sensor));
+    let may_gather = run.estimator.may_gather() || requests.any(Request::may_gather);
+    if !may_gather {
+        check_use(run.estimator, &run.gather, &settings.gather, problems);
+    }
+    run.gather = settings.gather.over(&run.gather);
+    if may_gather {
+        check_radius(&run.gather, &settings.gather, scene, problems);
+    }
+}
+
+/// Refuses sensors that are merged beside others that may be gathered alone: photons pass one set of records.
+fn check_estimators(run: &RunPlan, scene: &Scene, problems: &mut Problems) {
+    let request = |sensor: usize| run.request(sensor);
+    let is_alone =
+        |sensor: &usize| request(*sensor).may_gather() && request(*sensor) != Request::Mis;
+    let Some(alone) = (0..scene.sensors.len()).find(is_alone) else { return };
+    for (index, sensor) in scene.sensors.iter().enumerate() {
+        if request(index) != Request::Mis {
+            continue;
+        }
+        let (other, wish) = (&scene.sensors[alone].name, request(alone).name());
+        let message =
+            format!("`mis` here and `{wish}` for the sensor `{other}` do not go together");
+        problems
+            .error(&Key::of(&["sensors", &sensor.name, "estimator"]), message)
+            .hint("give every sensor `mis`, or the others one of `forward`, `backward` and `mix`");
+    }
+}
+
+/// The stop rules of the command line replace those of the file, all together.
+fn apply(settings: &Settings, scene: &Scene, run: &mut RunPlan) -> Result<()> {
+    if let Some(seed) = settings.seed {
+        run.seed = seed;
+    }
+    run.batch_paths = settings.batch_paths;
+    if settings.paths.is_none() && settings.time.is_none() && settings.target.is_none() {
+        let is_without_paths = run.stop.batches.is_some() && run.stop.paths.is_none();
+        return if is_without_paths {
+            let message =
+                "`run.batches` divides paths, and this run has no number of them: give --paths";
+            Err(Error::Usage(message.into()))
+        } else {
+            Ok(())
+        };
+    }
+    let of_file = run.stop.target.as_ref().map(|target| target.measure.clone());
+    let measure = settings.target_measure.clone().or(of_file);
+    let measure =
+        measure.or_else(|| scene.sensors.first().map(|sensor| format!("{}.flux", sensor.name)));
+    let target = match (settings.target, measure) {
+        (Some(relative_error), Some(measure)) => Some(Target { measure, relative_error }),
+        (Some(_), None) => {
+            return Err(Error::Usage("--target needs a sensor, and the scene has none".into()));
+        }
+        (None, _) => None,
+    };
+    // The batches of the file divide the paths of the command line as those of the file.
+    let batches = settings.paths.and(run.stop.batches);
+    run.stop = StopRules { paths: settings.paths, batches, time: settings.time, target };
+    Ok(())
+}

@@ -1,0 +1,181 @@
+//! Dotted keys, and where in the files they stand.
+
+use std::fmt;
+use std::path::PathBuf;
+
+use crate::sources::{Origin, Sources};
+use crate::tree::{Node, Value};
+
+/// A path through tables and arrays, such as `solids.pipe.sweep.path.0.straight_mm`.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Key {
+    segments: Vec<Segment>,
+}
+
+/// One step of a key.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Segment {
+    /// Into a table.
+    Field(String),
+    /// Into an array, from 0.
+    Index(usize),
+}
+
+impl Key {
+    /// The whole file.
+    pub fn root() -> Self {
+        Self::default()
+    }
+
+    /// A path through tables only.
+    pub fn of(fields: &[&str]) -> Self {
+        Self { segments: fields.iter().map(|field| Segment::Field((*field).into())).collect() }
+    }
+
+    /// The key of a field of the table at this key.
+    pub fn field(&self, name: &str) -> Self {
+        self.step(Segment::Field(name.into()))
+    }
+
+    /// The key of an entry of the array at this key, from 0.
+    pub fn index(&self, index: usize) -> Self {
+        self.step(Segment::Index(index))
+    }
+
+    /// The key one step further.
+    pub fn step(&self, segment: Segment) -> Self {
+        let mut segments = self.segments.clone();
+        segments.push(segment);
+        Self { segments }
+    }
+
+    /// The steps.
+    pub fn segments(&self) -> &[Segment] {
+        &self.segments
+    }
+
+    /// The table or array around it; of the whole file, itself.
+    pub fn parent(&self) -> Self {
+        Self { segments: self.segments[..self.segments.len().saturating_sub(1)].to_vec() }
+    }
+
+    /// Whether this is `other` or lies inside it.
+    pub fn is_within(&self, other: &Self) -> bool {
+        self.segments.starts_with(&other.segments)
+    }
+}
+
+impl fmt::Display for Key {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, segment) in self.segments.iter().enumerate() {
+            if i > 0 {
+                write!(out, ".")?;
+            }
+            match segment {
+                Segment::Field(name) if is_bare(name) => write!(out, "{name}")?,
+                Segment::Field(name) => write!(out, "\"{}\"", name.escape_debug())?,
+                Segment::Index(index) => write!(out, "{index}")?,
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Whether a key needs no quotes: letters, digits, `_` and `-`.
+pub fn is_bare(name: &str) -> bool {
+    !name.is_empty() && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_' || b == b'-')
+}
+
+/// Where the keys of a scene stand in its files.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Places {
+    root: Node,
+    sources: Sources,
+}
+
+impl Places {
+    /// The places of a tree whose texts are `sources`.
+    pub fn new(root: Node, sources: Sources) -> Self {
+        Self { root, sources }
+    }
+
+    /// The tree.
+    pub fn root(&self) -> &Node {
+        &self.root
+    }
+
+    /// The texts.
+    pub fn sources(&self) -> &Sources {
+        &self.sources
+    }
+
+    /// The whole text of the file that the tree is of.
+    pub fn root_text(&self) -> &str {
+        self.sources.get(self.root.origin.source).text()
+    }
+
+    /// Whether the files say something at this key.
+    pub fn has(&self, key: &Key) -> bool {
+        self.node(key).is_some()
+    }
+
+    /// What the files say at this key; `None` where they say nothing.
+    pub fn node(&self, key: &Key) -> Option<&Node> {
+        let (node, depth) = self.walk(key);
+        (depth == key.segments.len()).then_some(node)
+    }
+
+    /// Where the value of a key stands, or that of the innermost table around it that is there. `None` when nothing
+    /// of it is.
+    pub fn value(&self, key: &Key) -> Option<&Origin> {
+        let (node, depth) = self.walk(key);
+        (depth > 0).then_some(&node.origin)
+    }
+
+    /// Line of a key in its file, from 1; `None` when it is not in a file.
+    pub fn line(&self, key: &Key) -> Option<usize> {
+        let origin = self.value(key)?;
+        self.sources.get(origin.source).line(origin.span.start)
+    }
+
+    /// The folder that a relative path at this key starts from: that of the file that names it; for the command line
+    /// that of the scene.
+    pub fn folder(&self, key: &Key) -> PathBuf {
+        let own = self.sources.folder(&self.walk(key).0.origin);
+        own.or_else(|| self.sources.folder(&self.root.origin))
+            .map(PathBuf::from)
+            .unwrap_or_default()
+    }
+
+    /// The innermost value on the way to a key, and how many steps lead to it.
+    fn walk(&self, key: &Key) -> (&Node, usize) {
+        let mut node = &self.root;
+        for (depth, segment) in key.segments.iter().enumerate() {
+            let next = match (segment, &node.value) {
+                (Segment::Field(name), Value::Table(entries)) => {
+                    entries.get(name).map(|entry| &entry.node)
+                }
+                (Segment::Index(index), Value::Array(items)) => items.get(*index),
+                (Segment::Field(_) | Segment::Index(_), _) => None,
+            };
+            match next {
+                Some(next) => node = next,
+                None => return (node, depth),
+            }
+        }
+        (node, key.segments.len())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_print_as_they_are_written_in_a_file() {
+        let key = Key::of(&["solids", "my rod"]).field("path").index(2).field("bend_deg");
+        assert_eq!(key.to_string(), "solids.\"my rod\".path.2.bend_deg");
+        assert!(key.is_within(&Key::of(&["solids"])));
+        assert!(!Key::of(&["solids"]).is_within(&key));
+    }
+}

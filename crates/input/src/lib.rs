@@ -1,0 +1,190 @@
+//! From a scene file to validated, typed specs.
+//!
+//! The file becomes a tree that knows its places, the tree is held against the schema, becomes a [`SceneSpec`], and
+//! the spec is held against the rules that span several keys. Every problem is noted on the way and all are given back
+//! together. Geometry and optics are not known here, but for what the lowering of a spec needs.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use crate::keys::{Key, Places};
+use crate::problems::Problems;
+use crate::sources::Sources;
+use crate::spec::{FORMAT_VERSION, SceneSpec};
+use crate::tree::{Node, SyntaxError, Value};
+use crate::validate::Completeness;
+use lumiduct_base::error::{Diagnostic, DiagnosticKind, Error, Result};
+use lumiduct_files::mesh::no_scene;
+use serde_json::Value as Json;
+
+pub mod check;
+pub mod convert;
+pub mod diagnostic;
+pub mod editor_schema;
+mod gather;
+pub mod include;
+mod job;
+pub mod keys;
+mod list;
+mod lower;
+mod outline;
+pub mod overrides;
+pub mod problems;
+mod project;
+mod scatter;
+pub mod schema;
+pub mod sources;
+pub mod spec;
+mod study;
+pub mod tree;
+pub mod validate;
+
+pub use gather::GatherSettings;
+pub use job::{Job, Settings, load};
+pub use list::list;
+pub use outline::Outline;
+pub use project::Project;
+pub use study::{
+    Best, DESIGN_COLUMN, Domain, Keep, OTHER_COLUMNS, Parameter, Plan, Ranking, Samples, Setting,
+    Study, StudySettings, Tie, column, load_study,
+};
+
+/// A scene that was read without errors.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Loaded {
+    /// What the files say.
+    pub spec: SceneSpec,
+    /// Where they say it; holds the texts of all files, too.
+    pub places: Places,
+    /// The scene file, byte for byte.
+    pub text: String,
+    /// Remarks that do not stop a run.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// A scene with what is wrong with it so far.
+#[derive(Debug)]
+pub struct Draft {
+    /// What the files say. A key with an error is left out, and an entry that is nothing without it.
+    pub spec: SceneSpec,
+    /// Where they say it; holds the texts of all files, too.
+    pub places: Places,
+    /// The scene file, byte for byte.
+    pub text: String,
+    /// What is wrong.
+    pub problems: Problems,
+}
+
+/// Reads a scene file. Each override is `key=value`, as after `-D` on the command line. All problems come as one
+/// [`Error::Input`].
+pub fn read(path: &Path, overrides: &[String]) -> Result<Loaded> {
+    let Draft { spec, places, text, problems } = draft(path, overrides)?;
+    let warnings = problems.finish(&places)?;
+    Ok(Loaded { spec, places, text, warnings })
+}
+
+/// Reads a scene file as far as it goes, so that further problems can be found in what is good. Fails only if there
+/// is nothing to go on with: the file cannot be read or is of another format.
+pub fn draft(path: &Path, overrides: &[String]) -> Result<Draft> {
+    let mut sources = Sources::default();
+    let mut problems = Problems::default();
+    if let Some(why) = no_scene(path).filter(|_| path.is_file()) {
+        return Err(unreadable(path, &why));
+    }
+    let scene = sources.add_file(path).map_err(|reason| unreadable(path, &reason.to_string()))?;
+    let (mut root, mut breaks) = tree::parse(&sources, scene);
+    let text = sources.get(scene).text().to_owned();
+
+    let overrides = overrides::read(overrides, &mut sources, &mut problems);
+    let (early, late): (Vec<_>, Vec<_>) =
+        overrides.iter().partition(|one| one.names_a_sensor_file());
+    early.into_iter().for_each(|one| overrides::apply(one, &mut root, &mut problems));
+    breaks.extend(include::join_sensor_files(&mut root, &mut sources, &mut problems));
+    late.into_iter().for_each(|one| overrides::apply(one, &mut root, &mut problems));
+
+    if is_other_kind(&root, &mut problems) {
+        return Err(Error::Input(problems.into_diagnostics(&Places::new(root, sources))));
+    }
+    note_differences(&root, &schema::json_schema(), &sources, &breaks, &mut problems);
+    note_breaks(&breaks, &mut problems);
+    let spec = convert::scene(&root, &mut problems);
+    let places = Places::new(root, sources);
+    // With a break of the syntax, names may be missing that are only out of sight.
+    if breaks.is_empty() {
+        note_broken_rules(&spec, &places, &mut problems);
+        check::check_names(&spec, &places, &mut problems);
+    }
+    Ok(Draft { spec, places, text, problems })
+}
+
+fn unreadable(path: &Path, reason: &str) -> Error {
+    Error::Input(vec![Diagnostic {
+        kind: DiagnosticKind::Error,
+        file: Some(path.to_path_buf()),
+        line: None,
+        span: None,
+        key: String::new(),
+        message: reason.into(),
+        hint: None,
+    }])
+}
+
+/// Whether the file is a study or of another version; then it is not to be measured by this schema.
+fn is_other_kind(root: &Node, problems: &mut Problems) -> bool {
+    match root.get("lumiduct") {
+        None if root.get("lumiduct_study").is_some() => {
+            problems
+                .error(&Key::of(&["lumiduct_study"]), "this is a study, not a scene")
+                .hint("run it with `lumiduct batch`");
+            true
+        }
+        Some(Node { value: Value::Integer(version), origin })
+            if *version != i64::from(FORMAT_VERSION) =>
+        {
+            let message =
+                format!("format version {version} is not known, expected {FORMAT_VERSION}");
+            problems.error(&Key::of(&["lumiduct"]), message).at(origin);
+            true
+        }
+        Some(_) | None => false,
+    }
+}
+
+fn note_breaks(breaks: &[SyntaxError], problems: &mut Problems) {
+    for error in breaks {
+        let key = if error.key.is_empty() { Key::root() } else { Key::of(&[&error.key]) };
+        problems.error(&key, error.message.clone()).at(&error.origin);
+    }
+}
+
+/// Holds the spec against the rules. One about a table that has a wrong key may hold once the key is right.
+fn note_broken_rules(spec: &SceneSpec, places: &Places, problems: &mut Problems) {
+    let mut found = Problems::default();
+    check::check_rules(spec, places, &mut found);
+    // The tables of entries and those inside them: one entry says nothing about its neighbours.
+    let wrong = problems.error_keys().map(Key::parent);
+    let tables: Vec<Key> = wrong.filter(|table| table.segments().len() > 1).collect();
+    problems.append(found, |problem| {
+        tables.iter().any(|table| *table == *problem.key() || *table == problem.key().parent())
+    });
+}
+
+/// Holds the tree against the schema, and drops what stands in a line whose syntax is broken.
+fn note_differences(
+    root: &Node,
+    schema: &Json,
+    sources: &Sources,
+    breaks: &[SyntaxError],
+    problems: &mut Problems,
+) {
+    let completeness = if breaks.is_empty() { Completeness::Whole } else { Completeness::Broken };
+    let mut found = Problems::default();
+    validate::validate(root, schema, sources, completeness, &mut found);
+    let line = |origin: &sources::Origin| {
+        (origin.source, sources.get(origin.source).line(origin.span.start))
+    };
+    let broken: BTreeSet<_> = breaks.iter().map(|error| line(&error.origin)).collect();
+    problems.append(found, |problem| {
+        problem.origin().is_some_and(|origin| broken.contains(&line(origin)))
+    });
+}

@@ -1,0 +1,104 @@
+//! What can only be judged when the scene stands: solids that fill the same space, and faces that cannot be open.
+
+use crate::keys::Key;
+use crate::lower::kind_key;
+use crate::problems::Problems;
+use crate::spec::SceneSpec;
+use glam::DVec3;
+use lumiduct_core::rng::{Dimension, Sampler};
+use lumiduct_core::scene::{Just, Owner, Ray, Scene, Solid, SolidId};
+
+/// Points that are tried in the space that the boxes of two solids share.
+const PROBES: u64 = 512;
+
+/// Notes pairs of solids of equal priority that overlap: nothing says which medium counts.
+pub(super) fn check_overlaps(spec: &SceneSpec, scene: &Scene, problems: &mut Problems) {
+    for (first, one) in scene.solids.iter().enumerate() {
+        for (second, other) in scene.solids.iter().enumerate().skip(first + 1) {
+            if one.priority != other.priority {
+                continue;
+            }
+            if let Some(place) = common_point(scene, SolidId::new(first), SolidId::new(second)) {
+                let place = place + scene.origin;
+                problems
+                    .error(
+                        &solid_key(spec, other).field("priority"),
+                        format!(
+                            "overlaps `{}` at [{:.4}, {:.4}, {:.4}] mm with the same priority, {}",
+                            one.name, place.x, place.y, place.z, one.priority
+                        ),
+                    )
+                    .hint("give the one whose medium counts a higher `priority`");
+            }
+        }
+    }
+}
+
+/// A point inside both solids, if one is found.
+fn common_point(scene: &Scene, first: SolidId, second: SolidId) -> Option<DVec3> {
+    let [one, other] = [first, second].map(|solid| scene.solids[solid.index()].bounds);
+    let (min, max) = (one.min.max(other.min), one.max.min(other.max));
+    // Solids that only touch share no box.
+    if !(max - min).cmpgt(DVec3::splat(scene.tolerance)).all() {
+        return None;
+    }
+    (0..PROBES).find_map(|probe| {
+        let mut sampler = Sampler::for_path(0, u64::MAX, probe);
+        let [u, v] = sampler.pair(Dimension::EmitPosition);
+        let w = sampler.one(Dimension::EmitPosition);
+        let point = min + DVec3::new(u, v, w) * (max - min);
+        // A direction along no axis of anything.
+        let inside = scene.inside_at(&Ray::new(point, DVec3::new(0.41, 0.57, 0.71)), Just::Ahead);
+        (inside.contains(first) && inside.contains(second)).then_some(point)
+    })
+}
+
+/// Notes faces of solids that light passes unbent though the index changes there.
+pub(super) fn check_open_faces(spec: &SceneSpec, scene: &Scene, problems: &mut Problems) {
+    let index = |medium: lumiduct_core::scene::MediumId| scene.media[medium.index()].index(0.0);
+    for pattern in &scene.patterns {
+        let face = &scene.faces[pattern.face.index()];
+        let Owner::Solid(solid) = face.owner else { continue };
+        let solid = &scene.solids[solid.index()];
+        let steps = index(solid.medium) != index(scene.surroundings);
+        if steps && scene.finishes[pattern.back.index()].bsdf.passes_straight() {
+            let (inside, outside) = (index(solid.medium), index(scene.surroundings));
+            problems
+                .error(
+                    &Key::of(&["patterns", &pattern.name]).field("finish"),
+                    format!(
+                        "lets light pass straight on, but the index steps from {inside} to {outside} at `{}`",
+                        face.name
+                    ),
+                )
+                .hint("holes are for sheets; on a solid use dots that scatter, or leave the face polished");
+        }
+    }
+    for face in &scene.faces {
+        let (Owner::Solid(solid), Some(finish)) = (face.owner, face.front) else { continue };
+        let solid = &scene.solids[solid.index()];
+        let steps = index(solid.medium) != index(scene.surroundings);
+        if steps && scene.finishes[finish.index()].bsdf.passes_straight() {
+            let (inside, outside) = (index(solid.medium), index(scene.surroundings));
+            let is_relief = scene.reliefs.iter().any(|relief| relief.name == face.name);
+            let key = match face.name.split_once('.') {
+                Some((_, relief)) if is_relief => Key::of(&["reliefs", relief, "finish"]),
+                Some(_) | None => solid_key(spec, solid).field("faces"),
+            };
+            problems
+                .error(
+                    &key,
+                    format!(
+                        "`{}` lets light pass straight on, but the index steps from {inside} to {outside} there",
+                        face.name
+                    ),
+                )
+                .hint("such a finish is for sheets and for solids of the surrounding medium; leave the face polished");
+        }
+    }
+}
+
+pub(super) fn solid_key(spec: &SceneSpec, solid: &Solid) -> Key {
+    let kind = spec.solids.get(&solid.name).map_or("", |spec| spec.kind());
+    kind_key("solids", &solid.name, kind)
+}

@@ -1,0 +1,334 @@
+//! The sun and the sky: where their light starts, from where it comes, and how much it is.
+
+use crate::keys::Key;
+use crate::lower::Context;
+use crate::lower::light_groups::{Daylight, Member};
+use crate::problems::name_hint;
+use crate::spec::daylight::{SkyModelSpec, SkySpec, SunPlaceSpec, SunSpec, WhenSpec};
+use glam::DVec3;
+use lumiduct_base::math::{Aabb, Frame};
+use lumiduct_base::units::per_m2_to_per_mm2;
+use lumiduct_core::optics::SkyModel;
+use lumiduct_core::optics::sun::{Date, Observation, read_time, sun_position};
+use lumiduct_core::scene::shape::Shape;
+use lumiduct_core::scene::{
+    Emission, EmitSide, Emitter, EmitterKind, FaceId, MeshBody, Owner, Sky, Source, SourceId,
+    Start, SunAngles,
+};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// Azimuth of a sun of which none is told, deg: south.
+const SOUTH_DEG: f64 = 180.0;
+/// By how much the sphere from which light starts is larger than what it has to hold, 1.
+const ROOM: f64 = 1.01;
+/// Areas of surfaces that differ by no more than this, relative, are the same.
+const SAME_AREA: f64 = 1e-9;
+/// Type number of the clear sky of low turbidity, CIE S 011/E:2003.
+const CLEAR: usize = 12;
+
+/// Where light from the distance starts.
+struct Aim {
+    emitter: Emitter,
+    kind: EmitterKind,
+    /// The frame that laws of emission refer to.
+    frame: Frame,
+    /// That the luminance times the projected solid angle is taken by, mm².
+    area: f64,
+    start: Start,
+}
+
+/// Around a thing that light is aimed at.
+struct Ball {
+    center: DVec3,
+    /// mm
+    radius: f64,
+}
+
+/// A place of the sun above the horizon.
+#[derive(Debug, Clone, Copy)]
+struct Sun {
+    /// rad
+    elevation: f64,
+    /// From north, clockwise, rad.
+    azimuth: f64,
+    /// Toward it, unit vector of the frame with x east, y north, z up.
+    toward: DVec3,
+}
+
+/// What a source of daylight emits.
+#[derive(Debug)]
+struct FarLight {
+    emission: Emission,
+    /// lm
+    flux: f64,
+    /// Of a sun, rad.
+    elevation: Option<f64>,
+    sun: Option<SunAngles>,
+}
+
+impl Sun {
+    fn angles(&self) -> SunAngles {
+        SunAngles { elevation: self.elevation, azimuth: self.azimuth }
+    }
+
+    fn new(elevation_deg: f64, azimuth_deg: f64) -> Self {
+        let (elevation, azimuth) = (elevation_deg.to_radians(), azimuth_deg.to_radians());
+        let level = elevation.cos() * DVec3::new(azimuth.sin(), azimuth.cos(), 0.0);
+        Self { elevation, azimuth, toward: level.with_z(elevation.sin()) }
+    }
+}
+
+impl Context<'_> {
+    pub(super) fn lower_sun(&mut self, name: &str, spec: &SunSpec, key: &Key) {
+        let azimuth = spec.place.azimuth_deg.unwrap_or(SOUTH_DEG);
+        let Some(elevations) = &spec.elevations_deg else {
+            if let Some(sun) = self.sun(&spec.place, key) {
+                self.add_sun(name, spec, sun, key);
+            }
+            return;
+        };
+        for (index, &elevation) in elevations.iter().enumerate() {
+            let own = format!("{name}_{}", elevation.to_string().replace('.', "_"));
+            if self.is_taken(&own) {
+                let message = format!("makes a source `{own}`, and that name is taken");
+                let at = key.field("elevations_deg").index(index);
+                self.problems
+                    .error(&at, message)
+                    .hint("give each elevation once, and no other thing this name");
+            } else {
+                self.add_sun(&own, spec, Sun::new(elevation, azimuth), key);
+            }
+        }
+    }
+
+    /// Whether a thing of the file, or a source made so far, has a name.
+    pub(super) fn is_taken(&self, name: &str) -> bool {
+        let spec = self.spec;
+        spec.sources.contains_key(name)
+            || spec.sensors.contains_key(name)
+            || spec.solids.contains_key(name)
+            || spec.sheets.contains_key(name)
+            || self.builder.scene().sources.iter().any(|source| source.name == name)
+    }
+
+    fn add_sun(&mut self, name: &str, spec: &SunSpec, sun: Sun, key: &Key) {
+        let Some(aim) = self.aim_of_daylight(&spec.aim, key) else { return };
+        let Some(world) = self.sky_frame() else { return };
+        let half_angle = spec.half_angle_deg.to_radians();
+        let axis = aim.frame.to_local(-world.to_world(sun.toward));
+        if aim.kind == EmitterKind::Surface && axis.z <= half_angle.sin() {
+            let message = format!("the sun does not stand before the plane of `{}`", spec.aim);
+            self.problems
+                .error(&key.field("aim"), message)
+                .hint("turn the face to the sun, or aim at a solid or sheet by its name");
+            return;
+        }
+        // E = π L sin²h on a plane across the axis.
+        let luminance = per_m2_to_per_mm2(spec.illuminance_lx) / (PI * half_angle.sin().powi(2));
+        let projected = match aim.kind {
+            EmitterKind::Surface => PI * half_angle.sin().powi(2) * axis.z,
+            EmitterKind::Far | EmitterKind::Point | EmitterKind::Volume => {
+                4.0 * PI * (0.5 * half_angle).sin().powi(2)
+            }
+        };
+        let emission = Emission::Cone { half_angle, axis };
+        let per_area = luminance * projected;
+        let amount = key.field("illuminance_lx");
+        let flux = self.carried([spec.illuminance_lx, per_area * aim.area], &amount);
+        let Some(flux) = flux else { return };
+        let flux = if spec.enabled { flux } else { 0.0 };
+        let angles = Some(sun.angles());
+        let light = FarLight { emission, flux, elevation: Some(sun.elevation), sun: angles };
+        let source = self.add_daylight(name, aim, light);
+        let group = spec.group.clone().map(|group| (group, key.field("group")));
+        self.members.push(Member { source, group, daylight: Some(Daylight::Sun(sun.toward)) });
+    }
+
+    pub(super) fn lower_sky(&mut self, name: &str, spec: &SkySpec, key: &Key) {
+        let sun = match (spec.place.elevation_deg, &spec.place.when) {
+            // Only skies that are the same on all sides have none.
+            (None, None) => Some(Sun::new(FRAC_PI_2.to_degrees(), SOUTH_DEG)),
+            (Some(_), _) | (_, Some(_)) => self.sun(&spec.place, key),
+        };
+        let Some(sun) = sun else { return };
+        let toward_sun = sun.toward;
+        let model = match spec.model {
+            SkyModelSpec::Uniform => Some(SkyModel::uniform()),
+            SkyModelSpec::Overcast => Some(SkyModel::overcast()),
+            SkyModelSpec::Clear => SkyModel::of_type(CLEAR, sun.toward),
+            SkyModelSpec::CieType(number) => SkyModel::of_type(number as usize, sun.toward),
+        };
+        let Some(model) = model else { return };
+        let Some(aim) = self.aim_of_daylight(&spec.aim, key) else { return };
+        let Some(world) = self.sky_frame() else { return };
+        let local = |axis: DVec3| aim.frame.to_local(axis);
+        let axes =
+            Frame { origin: DVec3::ZERO, x: local(world.x), y: local(world.y), z: local(world.z) };
+        let sky = Sky::new(model, axes);
+        if aim.kind == EmitterKind::Surface && !sky.is_seen_by_surface() {
+            let message = format!("`{}` faces the ground and sees no sky", spec.aim);
+            self.problems
+                .error(&key.field("aim"), message)
+                .hint("turn the face up, or say with `up` which way that is");
+            return;
+        }
+        let level = spec.horizontal_illuminance_lx.map(|lx| lx / sky.level_illuminance());
+        let Some(zenith) = spec.zenith_luminance_cd_m2.or(level) else { return };
+        let per_area = per_m2_to_per_mm2(zenith) * sky.projected_solid_angle(aim.kind);
+        let (amount, stated) = match (spec.zenith_luminance_cd_m2, spec.horizontal_illuminance_lx) {
+            (Some(stated), _) => ("zenith_luminance_cd_m2", stated),
+            (None, stated) => ("horizontal_illuminance_lx", stated.unwrap_or(0.0)),
+        };
+        let flux = self.carried([stated, per_area * aim.area], &key.field(amount));
+        let Some(flux) = flux else { return };
+        let flux = if spec.enabled { flux } else { 0.0 };
+        let has_sun = spec.place.elevation_deg.is_some() || spec.place.when.is_some();
+        let angles = has_sun.then(|| sun.angles());
+        let light = FarLight { emission: Emission::Sky(sky), flux, elevation: None, sun: angles };
+        let source = self.add_daylight(name, aim, light);
+        let group = spec.group.clone().map(|group| (group, key.field("group")));
+        let daylight = Some(Daylight::of_sky(spec, has_sun.then_some(toward_sun)));
+        self.members.push(Member { source, group, daylight });
+    }
+
+    fn add_daylight(&mut self, name: &str, aim: Aim, light: FarLight) -> SourceId {
+        let FarLight { emission, flux, elevation, sun } = light;
+        self.builder.add_source(Source {
+            name: name.to_owned(),
+            flux,
+            emitter: aim.emitter,
+            emission,
+            start: aim.start,
+            on: Vec::new(),
+            elevation,
+            sun,
+        })
+    }
+
+    /// East, north and up as x, y and z.
+    fn sky_frame(&self) -> Option<Frame> {
+        let [up, north] = [self.spec.up, self.spec.north].map(DVec3::from);
+        // The second axis of this frame is to the left of north.
+        let Frame { x: north, y: west, z: up, .. } =
+            Frame::from_axis_and_x(DVec3::ZERO, up, north)?;
+        Some(Frame { origin: DVec3::ZERO, x: -west, y: north, z: up })
+    }
+
+    /// Where the sun is; an error where that is below the horizon.
+    fn sun(&mut self, place: &SunPlaceSpec, key: &Key) -> Option<Sun> {
+        if let Some(elevation) = place.elevation_deg {
+            return Some(Sun::new(elevation, place.azimuth_deg.unwrap_or(SOUTH_DEG)));
+        }
+        let WhenSpec { date, time, utc_offset_h, latitude_deg, longitude_deg } =
+            place.when.as_ref()?;
+        // What cannot be read has been told.
+        let hours = read_time(time).ok()? - utc_offset_h;
+        let days = Date::read(date).ok()?.days() + hours / 24.0;
+        let (latitude_deg, longitude_deg) = (*latitude_deg, *longitude_deg);
+        let position = sun_position(Observation { days, latitude_deg, longitude_deg });
+        if position.elevation_deg <= 0.0 {
+            let message = format!(
+                "the sun is below the horizon there and then, at {:.1} deg",
+                position.elevation_deg
+            );
+            self.problems.error(&key.field("when"), message).hint(
+                "check `utc_offset_h`, and the signs of latitude (north +) and longitude (east +)",
+            );
+            return None;
+        }
+        Some(Sun::new(position.elevation_deg, position.azimuth_deg))
+    }
+
+    /// Where light starts that is aimed at a flat face, a solid or a sheet.
+    fn aim_of_daylight(&mut self, name: &str, key: &Key) -> Option<Aim> {
+        let key = key.field("aim");
+        if let Some(ball) = self.ball_around(name) {
+            return Some(self.aim_at_body(ball));
+        }
+        if self.spec.solids.contains_key(name) || self.spec.sheets.contains_key(name) {
+            // It could not be built, which has been told.
+            return None;
+        }
+        if !name.contains('.') {
+            let bodies = self.spec.solids.keys().chain(self.spec.sheets.keys());
+            let hint = name_hint(name, bodies.map(String::as_str));
+            self.problems.error(&key, format!("unknown solid or sheet `{name}`")).hint(hint);
+            return None;
+        }
+        let faces = self.faces_named(name, &key)?;
+        self.aim_at_face(name, &faces, &key)
+    }
+
+    /// A ball around a solid or sheet.
+    fn ball_around(&self, name: &str) -> Option<Ball> {
+        let scene = self.builder.scene();
+        let is_part =
+            |face: &str| face.strip_prefix(name).is_some_and(|rest| rest.starts_with('.'));
+        let faces = scene.faces.iter().enumerate().filter(|(_, face)| is_part(&face.name));
+        let patches = faces.flat_map(|(index, _)| scene.face_patches(FaceId::new(index)));
+        let shapes: Vec<&Shape> = patches.map(|patch| &patch.shape).collect();
+        let bounds = shapes.iter().fold(Aabb::EMPTY, |sum, shape| sum.union(shape.bounds()));
+        let solid = scene.solids.iter().find(|solid| solid.name == name);
+        let bounds = solid.map_or(bounds, |solid| solid.bounds);
+        if bounds.is_empty() {
+            return None;
+        }
+        let (center, half) = (bounds.center(), 0.5 * (bounds.max - bounds.min));
+        // A whole sphere fills its box from side to side, and keeps away from its corners.
+        let sphere_area = 4.0 * PI * half.x * half.x;
+        let is_whole = |shape: &Shape| (shape.area() / sphere_area - 1.0).abs() < SAME_AREA;
+        let is_sphere = matches!(shapes.as_slice(), [shape @ Shape::Sphere(_)] if is_whole(shape));
+        Some(Ball { center, radius: if is_sphere { half.x } else { half.length() } })
+    }
+
+    /// Light starts outside of all solids and sheets: one that stands in its way shades.
+    fn aim_at_body(&self, ball: Ball) -> Aim {
+        let Ball { center, radius } = ball;
+        let bodies = self.builder.scene();
+        let patches = bodies.patches.iter().map(|patch| patch.shape.bounds());
+        let all = patches.chain(bodies.meshes.iter().map(MeshBody::bounds));
+        let all = all.fold(Aabb::of([center]).grown(radius), Aabb::union);
+        let farthest = (all.max - center).abs().max((all.min - center).abs()).length();
+        Aim {
+            emitter: Emitter::far(center, radius, ROOM * farthest),
+            kind: EmitterKind::Far,
+            frame: Frame::WORLD,
+            area: PI * radius * radius,
+            start: Start::Outside,
+        }
+    }
+
+    fn aim_at_face(&mut self, name: &str, faces: &[FaceId], key: &Key) -> Option<Aim> {
+        let body = name.split('.').next().unwrap_or_default().to_owned();
+        let instead = format!("aim at all of it: \"{body}\"");
+        let scene = self.builder.scene();
+        let (plane, owner) = match faces {
+            [face] => (scene.face_plane(*face), scene.faces[face.index()].owner),
+            [] | [_, _, ..] => (None, Owner::Sheet),
+        };
+        let patches = || faces.iter().flat_map(|face| scene.face_patches(*face));
+        if patches().any(|patch| patch.trim.is_some()) {
+            let message = format!("`{name}` has a relief, on which no light can start");
+            self.problems.error(key, message).hint(instead);
+            return None;
+        }
+        let shapes: Vec<_> = patches().map(|patch| patch.shape.clone()).collect();
+        let (Some(plane), false) = (plane, shapes.is_empty()) else {
+            let message = format!("`{name}` is not a single flat face");
+            self.problems.error(key, message).hint(instead);
+            return None;
+        };
+        if owner == Owner::Sheet {
+            let message =
+                format!("`{name}` is a sheet with two sides, on which no light can start");
+            self.problems.error(key, message).hint(instead);
+            return None;
+        }
+        // Half a turn about x: light goes in.
+        let frame = Frame { y: -plane.y, z: -plane.z, ..plane };
+        let emitter = Emitter::surface(shapes, EmitSide::Back, Some(frame));
+        let area = emitter.area()?;
+        // It has to cross the face, as light from afar does.
+        Some(Aim { emitter, kind: EmitterKind::Surface, frame, area, start: Start::Behind })
+    }
+}

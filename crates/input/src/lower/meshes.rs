@@ -1,0 +1,137 @@
+//! Solids from mesh files: read, examined, placed.
+
+use crate::keys::Key;
+use crate::lower::Context;
+use crate::problems::face_hint;
+use crate::spec::finish::FinishRef;
+use crate::spec::solid::{MeshNormals, MeshSpec, MeshUnit};
+use indexmap::IndexMap;
+use lumiduct_base::math::Frame;
+use lumiduct_base::mesh::{Defects, MeshHealth, TriangleMesh, health};
+use lumiduct_core::scene::mesh::Mesh;
+use lumiduct_core::scene::{FinishId, SolidId};
+use lumiduct_files::mesh::{self, LengthUnit};
+
+/// Bounces for which the drift of a faceted wall is told.
+const DRIFT_BOUNCES: u32 = 100;
+
+impl Context<'_> {
+    /// Reads a mesh; problems with it are noted at its key.
+    pub(super) fn read_mesh(&mut self, spec: &MeshSpec, key: &Key) -> Option<TriangleMesh> {
+        let file = key.field("file");
+        let path = self.places.folder(&file).join(&spec.file);
+        let unit = match spec.unit {
+            MeshUnit::Mm => LengthUnit::Millimetre,
+            MeshUnit::Cm => LengthUnit::Centimetre,
+            MeshUnit::M => LengthUnit::Metre,
+            MeshUnit::Inch => LengthUnit::Inch,
+        };
+        let mut mesh = match mesh::read(&path, unit) {
+            Ok(mesh) => mesh,
+            Err(error) => {
+                self.problems.error(&file, format!("`{}`: {error}", spec.file));
+                return None;
+            }
+        };
+        self.meshes.add_mesh(&mesh);
+        if spec.normals == MeshNormals::Facet {
+            mesh.normals = None;
+        }
+        self.examine(spec, &health(&mesh), &file);
+        Some(mesh)
+    }
+
+    /// Notes what is wrong or coarse about a mesh.
+    fn examine(&mut self, spec: &MeshSpec, health: &MeshHealth, key: &Key) {
+        let name = &spec.file;
+        let defects = [
+            (health.open_edges, "open edges: it is not closed"),
+            (health.crowded_edges, "edges with more than two triangles"),
+            (health.inconsistent_edges, "edges whose two triangles face opposite sides"),
+        ];
+        for (Defects { count, first }, what) in defects {
+            if let Some(at) = first {
+                let place = format!("the first at [{:.4}, {:.4}, {:.4}] mm", at.x, at.y, at.z);
+                self.problems.error(key, format!("`{name}` has {count} {what}, {place}")).hint(
+                    "repair the mesh: a solid needs a closed surface that faces outward everywhere",
+                );
+            }
+        }
+        if health.open_edges.count == 0 && health.signed_volume_mm3 < 0.0 {
+            self.problems
+                .error(
+                    key,
+                    format!(
+                        "`{name}` is inside out: its volume is {:.4} mm³",
+                        health.signed_volume_mm3
+                    ),
+                )
+                .hint("flip the orientation of its triangles");
+        }
+        let remarks = [
+            (health.degenerate_triangles, "triangles without area"),
+            (health.slivers, "slivers: triangles too thin for a certain direction"),
+            (health.opposed_normals, "triangles with normals that point to their back"),
+        ];
+        for (Defects { count, .. }, what) in remarks.iter().filter(|(defects, _)| defects.count > 0)
+        {
+            self.problems
+                .warning(key, format!("`{name}` has {count} {what}"))
+                .hint("`lumiduct mesh FILE` tells where");
+        }
+        if let Some(facets) = &health.facets {
+            let drift = 100.0 * facets.skew_drift(f64::from(DRIFT_BOUNCES));
+            self.problems
+                .warning(
+                    key,
+                    format!(
+                        "`{name}` looks curved but its facets are flat: {:.0} to a turn, so skew rays drift by about \
+                         {drift:.1} % in {DRIFT_BOUNCES} bounces",
+                        facets.per_turn()
+                    ),
+                )
+                .hint("export vertex normals, or use a sweep");
+        }
+    }
+
+    /// Adds a mesh as the boundary of a solid.
+    pub(super) fn add_mesh(
+        &mut self,
+        name: &str,
+        solid: SolidId,
+        mesh: &TriangleMesh,
+        declared: &IndexMap<String, FinishRef>,
+        frame: &Frame,
+        key: &Key,
+    ) {
+        let known: Vec<&str> = mesh.faces.iter().map(String::as_str).collect();
+        let mut finishes: Vec<Option<FinishId>> = vec![None; known.len()];
+        for (face, reference) in declared {
+            let finish = self.finish(reference);
+            if finish.is_some_and(|finish| self.behind(finish) != finish) {
+                self.problems
+                    .error(
+                        &key.field("faces").field(face),
+                        "a prism film cannot be laid on a mesh: it has no direction along the guide",
+                    )
+                    .hint("use a sweep or a tube");
+            }
+            match known.iter().position(|name| name == face) {
+                Some(index) => finishes[index] = finish,
+                None => {
+                    let hint = face_hint(face, known.iter().copied());
+                    self.problems
+                        .error(
+                            &key.field("faces").field(face),
+                            format!("`{name}` has no face `{face}`"),
+                        )
+                        .hint(hint);
+                }
+            }
+        }
+        let faces = self.builder.add_mesh(name, solid, Mesh::new(mesh, frame), &finishes);
+        for (face, id) in mesh.faces.iter().zip(faces) {
+            self.faces.insert(format!("{name}.{face}"), vec![id]);
+        }
+    }
+}

@@ -1,0 +1,242 @@
+//! From what the file says to what the program traces.
+//!
+//! Things that stand at faces of other things are placed after them. Every function notes what is wrong and goes on,
+//! so that all problems of a scene are reported together; what could not be built is left out.
+
+mod consistency;
+mod contacts;
+mod daylight;
+mod finishes;
+mod lenses;
+mod light_groups;
+mod meshes;
+mod patterns;
+mod place;
+pub(crate) mod plan;
+mod reliefs;
+mod sensors;
+mod sheets;
+mod slips;
+mod solids;
+mod sources;
+mod starts;
+mod surfaces;
+mod tubes;
+
+use crate::keys::{Key, Places};
+use crate::problems::{Problems, face_hint};
+use crate::spec::SceneSpec;
+use crate::spec::finish::ScatteringSpec;
+use crate::spec::placement::PlacementSpec;
+use crate::spec::source::SourceSpec;
+use glam::DVec3;
+use indexmap::IndexMap;
+use lumiduct_base::digest::Digest;
+use lumiduct_base::units::FluxUnit;
+use lumiduct_core::optics::{Medium, VolumeScattering};
+use lumiduct_core::plan::{Check, RunPlan};
+use lumiduct_core::scene::{Builder, FaceId, FinishId, MediumId, Scene};
+
+/// What lowering makes of a scene file.
+#[derive(Debug)]
+pub(crate) struct Lowered {
+    pub(crate) scene: Scene,
+    pub(crate) run: RunPlan,
+    pub(crate) checks: Vec<Check>,
+    /// Tells apart what the mesh files said.
+    pub(crate) meshes: Digest,
+}
+
+/// Everything that the parts of the lowering share.
+pub(crate) struct Context<'a> {
+    pub(crate) spec: &'a SceneSpec,
+    pub(crate) places: &'a Places,
+    pub(crate) problems: &'a mut Problems,
+    pub(crate) builder: Builder,
+    meshes: Digest,
+    media: IndexMap<String, MediumId>,
+    finishes: IndexMap<String, FinishId>,
+    /// What light from behind meets, of finishes that were asked for it.
+    behind: IndexMap<FinishId, FinishId>,
+    /// Faces by dotted name; a name such as `duct.wall` may stand for several.
+    faces: IndexMap<String, Vec<FaceId>>,
+    /// All sources, by what decides their light group.
+    members: Vec<light_groups::Member>,
+}
+
+/// Lowers a validated spec. `None` when a problem left nothing to trace.
+pub(crate) fn lower(spec: &SceneSpec, places: &Places, problems: &mut Problems) -> Option<Lowered> {
+    let air = Medium::new(crate::spec::AIR, 1.0, 0.0);
+    let mut context = Context {
+        spec,
+        places,
+        problems,
+        builder: Builder::new(origin(spec), air, flux_unit(spec)),
+        meshes: Digest::default(),
+        media: IndexMap::from([(crate::spec::AIR.to_owned(), MediumId::new(0))]),
+        finishes: IndexMap::new(),
+        behind: IndexMap::new(),
+        faces: IndexMap::new(),
+        members: Vec::new(),
+    };
+    context.lower_media();
+    context.lower_finishes();
+    context.lower_bodies();
+    context.lower_reliefs();
+    context.lower_patterns();
+    context.lower_sources();
+    context.lower_light_groups();
+    context.lower_sensors();
+    let mut run = plan::run(spec);
+    let checks = spec.check.iter().map(plan::check).collect();
+    let meshes = context.meshes;
+    if !context.problems.is_free_of_errors() {
+        return None;
+    }
+    let mut scene = context.builder.build();
+    run.sensor_estimators = plan::sensor_estimators(spec, &scene);
+    starts::settle_starts(&mut scene);
+    starts::note_joints(spec, &scene, &context.faces, context.problems);
+    starts::check_starts(spec, &scene, context.problems);
+    consistency::check_overlaps(spec, &scene, context.problems);
+    consistency::check_open_faces(spec, &scene, context.problems);
+    contacts::check_contacts(spec, &scene, context.problems);
+    slips::check_slips(spec, &scene, context.problems);
+    plan::check_measures(spec, &scene, context.problems);
+    context.problems.is_free_of_errors().then_some(Lowered { scene, run, checks, meshes })
+}
+
+/// The middle of the positions that the file names: internal coordinates are about it, so that a scene far from the
+/// user's origin keeps its digits.
+fn origin(spec: &SceneSpec) -> DVec3 {
+    let solids = spec.solids.values().map(|solid| solid.common().at.as_ref());
+    let sheets = spec.sheets.values().map(|sheet| sheet.common().at());
+    let free: Vec<DVec3> = solids.chain(sheets).filter_map(position).collect();
+    if free.is_empty() { DVec3::ZERO } else { free.iter().sum::<DVec3>() / free.len() as f64 }
+}
+
+/// The position of a thing that stands in space.
+fn position(at: Option<&PlacementSpec>) -> Option<DVec3> {
+    match at {
+        None => Some(DVec3::ZERO),
+        Some(PlacementSpec::InSpace(space)) => Some(DVec3::from(space.position_mm)),
+        Some(PlacementSpec::AtFace(_)) => None,
+    }
+}
+
+/// Lumens, unless a source is given in watts.
+fn flux_unit(spec: &SceneSpec) -> FluxUnit {
+    let is_radiant = |source: &SourceSpec| source.common().is_some_and(|c| c.flux_w.is_some());
+    if spec.sources.values().any(is_radiant) { FluxUnit::Watt } else { FluxUnit::Lumen }
+}
+
+/// The key of a thing's table, such as `solids.pipe.sweep`.
+fn kind_key(family: &str, name: &str, kind: &str) -> Key {
+    Key::of(&[family, name, kind])
+}
+
+impl Context<'_> {
+    fn lower_media(&mut self) {
+        for (name, medium) in &self.spec.media {
+            let clear = Medium::new(name, medium.index, medium.absorption_per_mm);
+            let made = match medium.scattering {
+                Some(ScatteringSpec { per_mm, anisotropy }) => {
+                    clear.with_scattering(VolumeScattering::new(per_mm, anisotropy))
+                }
+                None => clear,
+            };
+            self.media.insert(name.clone(), self.builder.add_medium(made));
+        }
+        // Validated: the surroundings are a known medium.
+        if let Some(&surroundings) = self.media.get(&self.spec.surroundings) {
+            self.builder.set_surroundings(surroundings);
+        }
+    }
+
+    /// Builds solids and sheets, each after what it stands at.
+    fn lower_bodies(&mut self) {
+        let mut waiting: Vec<Body> =
+            self.spec.solids.keys().map(|name| Body::Solid(name.clone())).collect();
+        waiting.extend(self.spec.sheets.keys().map(|name| Body::Sheet(name.clone())));
+        while !waiting.is_empty() {
+            let (ready, blocked): (Vec<Body>, Vec<Body>) =
+                waiting.iter().cloned().partition(|body| {
+                    let support = self.support(body);
+                    !waiting.iter().any(|other| Some(other.name()) == support.as_deref())
+                });
+            if ready.is_empty() {
+                for body in &blocked {
+                    self.problems
+                        .error(
+                            &body.key(self.spec).field("at"),
+                            "stands at a face of a thing that stands at its own",
+                        )
+                        .hint("give one of them a position_mm");
+                }
+                return;
+            }
+            for body in &ready {
+                match body {
+                    Body::Solid(name) => self.lower_solid(name),
+                    Body::Sheet(name) => self.lower_sheet(name),
+                }
+            }
+            waiting = blocked;
+        }
+    }
+
+    /// The name of the thing at whose face a body stands.
+    fn support(&self, body: &Body) -> Option<String> {
+        let at = match body {
+            Body::Solid(name) => self.spec.solids[name.as_str()].common().at.as_ref(),
+            Body::Sheet(name) => self.spec.sheets[name.as_str()].common().at(),
+        };
+        match at {
+            Some(PlacementSpec::AtFace(at)) => at.face.split('.').next().map(str::to_owned),
+            Some(PlacementSpec::InSpace(_)) | None => None,
+        }
+    }
+
+    /// The faces of a dotted name, or an error with the nearest known names.
+    fn faces_named(&mut self, name: &str, key: &Key) -> Option<Vec<FaceId>> {
+        if let Some(faces) = self.faces.get(name) {
+            return Some(faces.clone());
+        }
+        // What could not be built has been told, and has no faces.
+        let owner = name.split('.').next().unwrap_or_default();
+        let is_due = self.spec.solids.contains_key(owner) || self.spec.sheets.contains_key(owner);
+        let has_faces = self.faces.keys().any(|face| face.split('.').next() == Some(owner));
+        if is_due && !has_faces && !self.problems.is_free_of_errors() {
+            return None;
+        }
+        let all = self.faces.keys().map(String::as_str);
+        // Of a known body its own faces, of an unknown one all that there are.
+        let known: Vec<&str> =
+            all.filter(|face| !has_faces || face.split('.').next() == Some(owner)).collect();
+        let hint = face_hint(name, known.iter().copied());
+        self.problems.error(key, format!("unknown face `{name}`")).hint(hint);
+        None
+    }
+}
+
+/// A solid or sheet by name.
+#[derive(Debug, Clone, PartialEq)]
+enum Body {
+    Solid(String),
+    Sheet(String),
+}
+
+impl Body {
+    fn name(&self) -> &str {
+        match self {
+            Self::Solid(name) | Self::Sheet(name) => name,
+        }
+    }
+
+    fn key(&self, spec: &SceneSpec) -> Key {
+        match self {
+            Self::Solid(name) => kind_key("solids", name, spec.solids[name.as_str()].kind()),
+            Self::Sheet(name) => kind_key("sheets", name, spec.sheets[name.as_str()].kind()),
+        }
+    }
+}

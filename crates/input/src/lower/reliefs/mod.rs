@@ -1,0 +1,133 @@
+//! Reliefs on walls of solids: dimples, bumps, grooves, ridges, pyramids.
+
+mod element;
+mod room;
+
+use crate::keys::Key;
+use crate::lower::Context;
+use crate::lower::patterns::Ground;
+use crate::spec::pattern::LayoutSpec;
+use crate::spec::relief::ReliefSpec;
+use lumiduct_core::scene::pattern::{Field, Outline};
+use lumiduct_core::scene::relief::{self, Relief, Span};
+use lumiduct_core::scene::{Owner, Patch};
+
+/// Elements that a relief may have: each is made of surfaces of its own.
+const MOST_ELEMENTS: u64 = 1_000_000;
+
+/// The wall of a relief, unrolled and in space.
+#[derive(Debug, Clone, Copy)]
+struct Wall {
+    unrolled: Ground,
+    ground: relief::Ground,
+}
+
+impl Context<'_> {
+    /// Makes the reliefs parts of their solids.
+    pub(super) fn lower_reliefs(&mut self) {
+        for (name, spec) in &self.spec.reliefs {
+            let key = Key::of(&["reliefs", name]);
+            _ = self.lower_relief(name, spec, &key);
+        }
+    }
+
+    fn lower_relief(&mut self, name: &str, spec: &ReliefSpec, key: &Key) -> Option<()> {
+        let wall = self.wall(&spec.on, &key.field("on"))?;
+        let body = spec.on.split('.').next().unwrap_or_default();
+        let name = format!("{body}.{name}");
+        if self.faces.contains_key(&name) {
+            self.problems
+                .error(key, format!("`{name}` is a face of the solid already"))
+                .hint("give the relief another name");
+            return None;
+        }
+        let finishes = match &spec.finish {
+            None => [None; 2],
+            Some(finish) => {
+                let inside = self.finish(finish)?;
+                [Some(self.behind(inside)), Some(inside)]
+            }
+        };
+        let relief = self.relief(name.clone(), spec, &wall, key)?;
+        let sides = self.sides(&relief, &key.field("element"))?;
+        self.has_room(&relief, &spec.on, key)?;
+        let id = self.builder.add_relief(relief, &sides, finishes);
+        self.faces.insert(name, vec![id]);
+        Some(())
+    }
+
+    /// The wall of a solid that a relief can lie on.
+    fn wall(&mut self, on: &str, key: &Key) -> Option<Wall> {
+        let unrolled = self.ground(on, key)?;
+        let scene = self.builder.scene();
+        let is_solid = matches!(scene.owner(unrolled.face), Owner::Solid(_));
+        let ground = match scene.face_patches(unrolled.face) {
+            [patch] => relief::Ground::of(patch),
+            [] | [_, _, ..] => None,
+        };
+        let (true, Some(ground)) = (is_solid, ground) else {
+            self.problems
+                .error(
+                    key,
+                    format!("`{on}` is neither one flat wall nor the outer wall of a straight round rod, of a solid"),
+                )
+                .hint("a relief is a part of the boundary of a solid; sheets have patterns");
+            return None;
+        };
+        Some(Wall { unrolled, ground })
+    }
+
+    fn relief(
+        &mut self,
+        name: String,
+        spec: &ReliefSpec,
+        wall: &Wall,
+        key: &Key,
+    ) -> Option<Relief> {
+        let element = self.relief_element(&spec.element, wall, &key.field("element"))?;
+        let layout = key.field("layout");
+        if element.span() == Some(Span::Ring) {
+            self.require_plain_row(&spec.layout, &layout)?;
+        }
+        let (rows, columns) = self.rows_and_columns(&spec.layout, &wall.unrolled, &layout)?;
+        let field = Field {
+            rows,
+            columns,
+            outline: Outline::Relief(Box::new(element.clone())),
+            period: wall.unrolled.period(),
+        };
+        if field.count() > MOST_ELEMENTS {
+            self.problems
+                .error(
+                    &layout,
+                    format!("makes {} elements, expected at most {MOST_ELEMENTS}", field.count()),
+                )
+                .hint("each has surfaces of its own; dots of a pattern cost nothing");
+            return None;
+        }
+        self.check_heights(&element, &field, wall, &spec.on, &key.field("element"))?;
+        self.check_field(&field, &wall.unrolled, &spec.on, key)?;
+        self.is_clear(wall.unrolled.face, &field, key)
+            .then(|| Relief::new(name, wall.unrolled.face, element, field, wall.ground))
+    }
+
+    /// Rings go around: a row of them lies nowhere across.
+    fn require_plain_row(&mut self, layout: &LayoutSpec, key: &Key) -> Option<()> {
+        let is_plain = match layout {
+            LayoutSpec::Row(row) => row.around_deg.is_none() && row.across_mm.is_none(),
+            LayoutSpec::Grid(_) | LayoutSpec::Staggered(_) | LayoutSpec::Hexagonal(_) => false,
+        };
+        if !is_plain {
+            self.problems
+                .error(key, "rings go all around, expected a `row` without a place around")
+                .hint("row = { pitch_mm = ... } or row = { positions_mm = [...] }");
+        }
+        is_plain.then_some(())
+    }
+}
+
+/// Whether a patch belongs to a face that a relief has made.
+fn is_of_relief(scene: &lumiduct_core::scene::Scene, patch: &Patch) -> bool {
+    let name = &scene.faces[patch.face.index()].name;
+    scene.reliefs.iter().any(|relief| relief.name == *name)
+}

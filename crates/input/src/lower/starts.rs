@@ -1,0 +1,136 @@
+//! Where sources start their light: outside of all solids, in one, or, which is refused, partly here and partly there.
+
+use crate::keys::Key;
+use crate::lower::slips::check_embedded;
+use crate::lower::sources::emits_from_a_surface;
+use crate::problems::Problems;
+use crate::spec::SceneSpec;
+use crate::spec::placement::PlacementSpec;
+use crate::spec::source::{SourceCommonSpec, SourceSpec};
+use indexmap::IndexMap;
+use lumiduct_base::number::format_value;
+use lumiduct_core::optics::Bsdf;
+use lumiduct_core::rng::Sampler;
+use lumiduct_core::scene::{Emitted, FaceId, FinishId, Owner, Scene, SolidId, Start};
+
+/// Starts that are looked at, per source: a part of a source that is missed is less than a hundredth of it.
+const LOOKS: u64 = 1024;
+
+/// Sources that touch no solid start all their paths outside, without asking.
+pub(super) fn settle_starts(scene: &mut Scene) {
+    let boxes: Vec<_> =
+        scene.solids.iter().map(|solid| solid.bounds.grown(scene.tolerance)).collect();
+    for source in &mut scene.sources {
+        let bounds = source.emitter.bounds();
+        if !boxes.iter().any(|solid| solid.overlaps(&bounds)) {
+            source.start = Start::Outside;
+        }
+    }
+}
+
+/// Remarks on sources without a gap: there may be glue or a hair of air between, which is not the same light. A gap below
+/// the tolerance of coincident faces is none.
+pub(super) fn note_joints(
+    spec: &SceneSpec,
+    scene: &Scene,
+    faces: &IndexMap<String, Vec<FaceId>>,
+    problems: &mut Problems,
+) {
+    let is_of_a_solid = |face: &str| {
+        let faces = faces.get(face).into_iter().flatten();
+        faces.into_iter().any(|face| matches!(scene.faces[face.index()].owner, Owner::Solid(_)))
+    };
+    for (name, source) in &spec.sources {
+        let Some(common) = source.common() else { continue };
+        if let (Some(PlacementSpec::AtFace(at)), None) = (&common.at, common.contact)
+            && at.gap_mm <= scene.tolerance
+            && is_of_a_solid(&at.face)
+        {
+            let no_gap = if at.gap_mm > 0.0 {
+                format!(": a gap of {} mm is none", format_value(at.gap_mm))
+            } else {
+                String::new()
+            };
+            let message =
+                format!("touches `{}` and is joined to it optically, as by glue{no_gap}", at.face);
+            problems.warning(&Key::of(&["sources", name, source.kind()]), message).hint(
+                "write contact = \"optical\" if so, contact = \"air\" for a hair of air, or a gap_mm",
+            );
+        }
+    }
+}
+
+/// Notes sources that start where their light cannot get out.
+pub(super) fn check_starts(spec: &SceneSpec, scene: &Scene, problems: &mut Problems) {
+    for source in &scene.sources {
+        let Some(kind) = spec.sources.get(&source.name).map(SourceSpec::kind) else { continue };
+        let key = Key::of(&["sources", &source.name, kind]);
+        if source.start == Start::Outside {
+            continue;
+        }
+        let starts: Vec<_> = (0..LOOKS)
+            .map(|look| source.emit(scene, &mut Sampler::for_path(0, u64::MAX, look)))
+            .collect();
+        let buried = |solid: SolidId| {
+            starts.iter().all(|start| start.inside.contains(solid)) && is_opaque(scene, solid)
+        };
+        if let Some(solid) = (0..scene.solids.len()).map(SolidId::new).find(|solid| buried(*solid))
+        {
+            let name = &scene.solids[solid.index()].name;
+            problems
+                .error(
+                    &key,
+                    format!("lies inside the opaque solid `{name}`: none of its light gets out"),
+                )
+                .hint("move the source, or give a face of the solid another finish");
+        } else if let Some(of) = spec.sources.get(&source.name) {
+            check_embedded(scene, of, &starts, &key, problems);
+        }
+        if is_in_space(spec, &source.name) {
+            check_covered(scene, &starts, &key, problems);
+        }
+    }
+}
+
+/// Whether a source is a surface that stands by itself: one at a face may be wider than it.
+fn is_in_space(spec: &SceneSpec, name: &str) -> bool {
+    spec.sources.get(name).is_some_and(|source| {
+        let at_face =
+            |common: &SourceCommonSpec| matches!(common.at, Some(PlacementSpec::AtFace(_)));
+        emits_from_a_surface(source)
+            && !matches!(source, SourceSpec::Face(_))
+            && !source.common().is_some_and(at_face)
+    })
+}
+
+/// Notes a source that starts some of its light in a solid, such as a dome, and some outside of it.
+fn check_covered(scene: &Scene, starts: &[Emitted], key: &Key, problems: &mut Problems) {
+    for (index, solid) in scene.solids.iter().enumerate() {
+        let is_in = |start: &&Emitted| start.inside.contains(SolidId::new(index));
+        let missed = starts.iter().find(|start| !is_in(start));
+        if let (Some(missed), Some(_)) = (missed, starts.iter().find(is_in)) {
+            let [x, y, z] = (missed.ray.origin() + scene.origin).to_array();
+            problems
+                .error(
+                    key,
+                    format!(
+                        "shines in `{}` from one part and outside of it from another, as at [{x:.4}, {y:.4}, {z:.4}] mm",
+                        solid.name
+                    ),
+                )
+                .hint("move or enlarge the solid, or make two sources of it");
+        }
+    }
+}
+
+/// Whether every face of a solid takes all light.
+fn is_opaque(scene: &Scene, solid: SolidId) -> bool {
+    let absorbs = |finish: Option<FinishId>| {
+        finish.is_some_and(|finish| scene.finishes[finish.index()].bsdf == Bsdf::Absorber)
+    };
+    scene
+        .faces
+        .iter()
+        .filter(|face| face.owner == Owner::Solid(solid))
+        .all(|face| absorbs(face.back))
+}

@@ -1,0 +1,142 @@
+//! Reliefs on walls of solids, as a scene file states them.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::spec::finish::FinishRef;
+use crate::spec::pattern::{AlongSpec, LayoutSpec};
+
+/// Dimples, bumps, grooves, ridges or pyramids on a wall of a solid, as parts of its own boundary with exact surfaces. They are a
+/// face of their own, named for the solid and the relief, such as `plate.grooves`: the flux balance has a line for it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ReliefSpec {
+    /// The wall, as `NAME.FACE`: a flat rectangle, or the wall of a straight round rod.
+    pub on: String,
+    /// Finish of the elements. Omitted: the smooth interface of the media.
+    pub finish: Option<FinishRef>,
+    /// What an element is.
+    pub element: ReliefElementSpec,
+    /// Where the elements are: a place is that of the middle of what an element takes of the wall.
+    pub layout: LayoutSpec,
+}
+
+/// An element with relief. A table with exactly one of these keys.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(rename = "ReliefElement")]
+#[serde(rename_all = "snake_case")]
+pub enum ReliefElementSpec {
+    /// A part of a ball, at most half of it, sunk into the wall.
+    Dimple(DimpleSpec),
+    /// A part of a ball, at most half of it, raised from the wall.
+    Bump(BumpSpec),
+    /// A V-groove across the guide.
+    Groove(GrooveSpec),
+    /// A ridge with two flanks across the guide, a prism.
+    Ridge(RidgeSpec),
+    /// A pyramid raised from a flat wall.
+    Pyramid(PyramidSpec),
+    /// A pyramid sunk into a flat wall.
+    Pit(PitSpec),
+}
+
+/// A dimple; exactly one of `radius_mm` and `diameter_mm`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(rename = "Dimple", extend("oneOf" = [{ "required": ["radius_mm"] }, { "required": ["diameter_mm"] }]))]
+pub struct DimpleSpec {
+    /// Radius of the sphere: a number, or one that changes along the guide.
+    pub radius_mm: Option<AlongSpec>,
+    /// Diameter of the opening; on a round wall the opening along the guide.
+    pub diameter_mm: Option<AlongSpec>,
+    /// Depth below the wall: a number, or one that changes along the guide.
+    pub depth_mm: AlongSpec,
+}
+
+/// A bump; exactly one of `radius_mm` and `diameter_mm`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(rename = "Bump", extend("oneOf" = [{ "required": ["radius_mm"] }, { "required": ["diameter_mm"] }]))]
+pub struct BumpSpec {
+    /// Radius of the sphere: a number, or one that changes along the guide.
+    pub radius_mm: Option<AlongSpec>,
+    /// Diameter of its foot; on a round wall the diameter along the guide.
+    pub diameter_mm: Option<AlongSpec>,
+    /// Height over the wall: a number, or one that changes along the guide.
+    pub height_mm: AlongSpec,
+}
+
+/// A groove; exactly one of `angle_deg` and `flank_angles_deg`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(rename = "Groove", extend("oneOf" = [{ "required": ["angle_deg"] }, { "required": ["flank_angles_deg"] }]))]
+pub struct GrooveSpec {
+    /// Depth below the wall: a number, or one that changes along the guide.
+    pub depth_mm: AlongSpec,
+    /// Angle between its flanks, which are alike.
+    #[schemars(extend("exclusiveMinimum" = 0.0, "exclusiveMaximum" = 180.0))]
+    pub angle_deg: Option<f64>,
+    /// Angles between the wall and the two flanks, that toward the start of the guide first; 90 is upright.
+    pub flank_angles_deg: Option<[f64; 2]>,
+    /// Length across the guide, on a flat wall. Omitted: the whole width.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub length_mm: Option<f64>,
+    /// Its course on a round wall.
+    #[serde(default)]
+    pub course: CourseSpec,
+}
+
+/// A ridge; exactly one of `angle_deg` and `flank_angles_deg`. On a round wall only as a `ring`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(rename = "Ridge", extend("oneOf" = [{ "required": ["angle_deg"] }, { "required": ["flank_angles_deg"] }]))]
+pub struct RidgeSpec {
+    /// Height over the wall: a number, or one that changes along the guide.
+    pub height_mm: AlongSpec,
+    /// Angle between its flanks, which are alike.
+    #[schemars(extend("exclusiveMinimum" = 0.0, "exclusiveMaximum" = 180.0))]
+    pub angle_deg: Option<f64>,
+    /// Angles between the wall and the two flanks, that toward the start of the guide first; 90 is upright.
+    pub flank_angles_deg: Option<[f64; 2]>,
+    /// Length across the guide, on a flat wall. Omitted: the whole width.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub length_mm: Option<f64>,
+    /// Its course on a round wall.
+    #[serde(default)]
+    pub course: CourseSpec,
+}
+
+/// A raised pyramid.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(rename = "Pyramid")]
+pub struct PyramidSpec {
+    /// Width across the guide.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub width_mm: f64,
+    /// Length along the guide.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub length_mm: f64,
+    /// Height over the wall: a number, or one that changes along the guide.
+    pub height_mm: AlongSpec,
+}
+
+/// A sunk pyramid.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(rename = "Pit")]
+pub struct PitSpec {
+    /// Width across the guide.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub width_mm: f64,
+    /// Length along the guide.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub length_mm: f64,
+    /// Depth below the wall: a number, or one that changes along the guide.
+    pub depth_mm: AlongSpec,
+}
+
+/// How a groove or a ridge goes over a wall.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(rename = "Course")]
+pub enum CourseSpec {
+    /// Straight across the guide; on a round wall as a saw would cut it.
+    #[default]
+    Straight,
+    /// All around a round wall.
+    Ring,
+}

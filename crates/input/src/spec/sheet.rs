@@ -1,0 +1,170 @@
+//! Sheets as a scene file states them: open, two-sided surfaces and hollow ducts.
+
+use indexmap::IndexMap;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::spec::finish::FinishRef;
+use crate::spec::placement::PlacementSpec;
+use crate::spec::solid::SphereSpec;
+use crate::spec::sweep::{
+    CircleSpec, CompoundParabolicSpec, ParaboloidSpec, RectangleSpec, SweepSpec,
+};
+
+/// An open surface without thickness. A table with exactly one of these keys.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SheetSpec {
+    /// A disk about the position, facing along the axis. Face `surface`.
+    Disk(Sheet<CircleSpec>),
+    /// A disk with a round hole, facing along the axis. Face `surface`.
+    Annulus(Sheet<AnnulusSpec>),
+    /// A rectangle about the position, facing along the axis. Face `surface`.
+    Rectangle(Sheet<RectangleSpec>),
+    /// The part of a sphere about the axis; the centre of the sphere lies at the position. Face `surface`.
+    SphericalCap(Sheet<SphericalCapSpec>),
+    /// A trough with z = x²/(4 f); its front is the concave side. Face `surface`.
+    ParabolicCylinder(Sheet<ParabolicCylinderSpec>),
+    /// A hollow tube or duct: a profile carried along a path. Faces and wall names as for a `sweep`; `entry` and
+    /// `exit` are open ports.
+    Tube(Duct<SweepSpec>),
+    /// A hollow compound parabolic reflector. Ports `entry` (the small end) and `exit`, face `wall`.
+    CompoundParabolic(Duct<CompoundParabolicSpec>),
+    /// A paraboloid reflector. Port `exit`, and `entry` if there is a hole; face `wall`.
+    Paraboloid(Duct<ParaboloidSpec>),
+}
+
+impl SheetSpec {
+    /// The key of the kind, such as `disk`.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Disk(_) => "disk",
+            Self::Annulus(_) => "annulus",
+            Self::Rectangle(_) => "rectangle",
+            Self::SphericalCap(_) => "spherical_cap",
+            Self::ParabolicCylinder(_) => "parabolic_cylinder",
+            Self::Tube(_) => "tube",
+            Self::CompoundParabolic(_) => "compound_parabolic",
+            Self::Paraboloid(_) => "paraboloid",
+        }
+    }
+
+    /// The keys that every kind of the sheet's family has.
+    pub fn common(&self) -> SheetCommon<'_> {
+        match self {
+            Self::Disk(sheet) => SheetCommon::Sheet(&sheet.common),
+            Self::Annulus(sheet) => SheetCommon::Sheet(&sheet.common),
+            Self::Rectangle(sheet) => SheetCommon::Sheet(&sheet.common),
+            Self::SphericalCap(sheet) => SheetCommon::Sheet(&sheet.common),
+            Self::ParabolicCylinder(sheet) => SheetCommon::Sheet(&sheet.common),
+            Self::Tube(duct) => SheetCommon::Duct(&duct.common),
+            Self::CompoundParabolic(duct) => SheetCommon::Duct(&duct.common),
+            Self::Paraboloid(duct) => SheetCommon::Duct(&duct.common),
+        }
+    }
+}
+
+/// The common keys of a sheet, by family.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SheetCommon<'a> {
+    /// A plain surface with a front and a back.
+    Sheet(&'a SheetCommonSpec),
+    /// A hollow duct with an inside and an outside.
+    Duct(&'a DuctCommonSpec),
+}
+
+impl<'a> SheetCommon<'a> {
+    /// Where the sheet stands.
+    pub fn at(self) -> Option<&'a PlacementSpec> {
+        match self {
+            Self::Sheet(common) => common.at.as_ref(),
+            Self::Duct(common) => common.at.as_ref(),
+        }
+    }
+}
+
+/// A plain surface with a front and a back.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(rename = "{Shape}Sheet")]
+pub struct Sheet<Shape> {
+    /// Keys of the shape.
+    #[serde(flatten)]
+    pub shape: Shape,
+    /// Keys of every plain surface.
+    #[serde(flatten)]
+    pub common: SheetCommonSpec,
+}
+
+/// What every plain surface has.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SheetCommonSpec {
+    /// Finish of the front, the side that the axis points away from.
+    pub finish: FinishRef,
+    /// Finish of the back. Omitted: the same as the front, and behind a prism film that film.
+    pub back: Option<FinishRef>,
+    /// Where the sheet stands.
+    pub at: Option<PlacementSpec>,
+}
+
+/// A hollow duct with an inside and an outside.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(rename = "{Shape}Duct")]
+pub struct Duct<Shape> {
+    /// Keys of the shape.
+    #[serde(flatten)]
+    pub shape: Shape,
+    /// Keys of every duct.
+    #[serde(flatten)]
+    pub common: DuctCommonSpec,
+}
+
+/// What every duct has.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct DuctCommonSpec {
+    /// Finish of the inside.
+    pub finish: FinishRef,
+    /// Finish of the outside. Omitted: `black`, and behind a prism film that film.
+    pub outer: Option<FinishRef>,
+    /// Finish of the inside by wall name, where it differs.
+    #[serde(default)]
+    pub faces: IndexMap<String, FinishRef>,
+    /// Where the duct stands.
+    pub at: Option<PlacementSpec>,
+}
+
+/// A disk with a round hole.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct AnnulusSpec {
+    /// Radius of the hole; smaller than the outer radius.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub inner_radius_mm: f64,
+    /// Radius of the rim.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub outer_radius_mm: f64,
+}
+
+/// The part of a sphere within an angle of the axis.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SphericalCapSpec {
+    /// The sphere.
+    #[serde(flatten)]
+    pub sphere: SphereSpec,
+    /// Angle between the axis and the rim, seen from the centre; 180 is the whole sphere.
+    #[schemars(extend("exclusiveMinimum" = 0.0), range(max = 180.0))]
+    pub half_angle_deg: f64,
+}
+
+/// A parabolic trough along the local y.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ParabolicCylinderSpec {
+    /// Focal length f.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub focal_length_mm: f64,
+    /// Where the trough begins, along the local x.
+    pub x_min_mm: f64,
+    /// Where the trough ends, along the local x; above `x_min_mm`.
+    pub x_max_mm: f64,
+    /// Full length along the local y.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub length_mm: f64,
+}

@@ -1,0 +1,230 @@
+//! Light sources as a scene file states them.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::spec::daylight::{SkySpec, SunSpec};
+use crate::spec::finish::{EmptySpec, FinishRef};
+use crate::spec::placement::PlacementSpec;
+use crate::spec::solid::SphereSpec;
+use crate::spec::sweep::RectangleSpec;
+
+/// A light source. A table with exactly one of these keys.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SourceSpec {
+    /// A point at the position.
+    Point(Emitter<EmptySpec>),
+    /// A flat disk or ring about the position, shining along the axis.
+    Disk(Emitter<DiskSourceSpec>),
+    /// A flat rectangle about the position, shining along the axis.
+    Rectangle(Emitter<RectangleSpec>),
+    /// The outside of a sphere about the position.
+    Sphere(Emitter<SphereSpec>),
+    /// A line along the axis, centred at the position.
+    Line(Emitter<LineSourceSpec>),
+    /// The outside of the wall of a cylinder, from the position along the axis.
+    Cylinder(Emitter<CylinderSourceSpec>),
+    /// A face of a solid or sheet.
+    Face(Emitter<FaceSourceSpec>),
+    /// The inside of a solid, evenly filled.
+    Volume(Emitter<VolumeSourceSpec>),
+    /// The sun.
+    Sun(SunSpec),
+    /// The sky.
+    Sky(SkySpec),
+}
+
+impl SourceSpec {
+    /// The key of the kind, such as `disk`.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Point(_) => "point",
+            Self::Disk(_) => "disk",
+            Self::Rectangle(_) => "rectangle",
+            Self::Sphere(_) => "sphere",
+            Self::Line(_) => "line",
+            Self::Cylinder(_) => "cylinder",
+            Self::Face(_) => "face",
+            Self::Volume(_) => "volume",
+            Self::Sun(_) => "sun",
+            Self::Sky(_) => "sky",
+        }
+    }
+
+    /// The keys that all kinds but the sun and the sky have.
+    pub fn common(&self) -> Option<&SourceCommonSpec> {
+        match self {
+            Self::Point(source) => Some(&source.common),
+            Self::Disk(source) => Some(&source.common),
+            Self::Rectangle(source) => Some(&source.common),
+            Self::Sphere(source) => Some(&source.common),
+            Self::Line(source) => Some(&source.common),
+            Self::Cylinder(source) => Some(&source.common),
+            Self::Face(source) => Some(&source.common),
+            Self::Volume(source) => Some(&source.common),
+            Self::Sun(_) | Self::Sky(_) => None,
+        }
+    }
+}
+
+/// A shape that emits light.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(extend("oneOf" = [
+    { "required": ["flux_lm"] },
+    { "required": ["flux_w"] },
+    { "required": ["luminance_cd_m2"] },
+    { "required": ["intensity_cd"] }
+]))]
+#[schemars(rename = "{Shape}Emitter")]
+pub struct Emitter<Shape> {
+    /// Keys of the shape.
+    #[serde(flatten)]
+    pub shape: Shape,
+    /// Keys of every source.
+    #[serde(flatten)]
+    pub common: SourceCommonSpec,
+}
+
+/// What every source has; exactly one of `flux_lm`, `flux_w`, `luminance_cd_m2` and `intensity_cd`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SourceCommonSpec {
+    /// Total luminous flux.
+    #[schemars(range(min = 0.0))]
+    pub flux_lm: Option<f64>,
+    /// Total radiant flux. A scene has sources in lm or in W, not both.
+    #[schemars(range(min = 0.0))]
+    pub flux_w: Option<f64>,
+    /// Luminance along the axis or normal, for sources with an area.
+    #[schemars(range(min = 0.0))]
+    pub luminance_cd_m2: Option<f64>,
+    /// Peak intensity, for `point` only.
+    #[schemars(range(min = 0.0))]
+    pub intensity_cd: Option<f64>,
+    /// How the light is spread over directions. Omitted: `isotropic` for a `volume`, `lambertian` for all others.
+    pub emission: Option<EmissionSpec>,
+    /// Angle between the axis and the direction of a cone or a collimated beam.
+    #[serde(default)]
+    #[schemars(range(min = 0.0), extend("exclusiveMaximum" = 90.0))]
+    pub tilt_deg: f64,
+    /// Azimuth of a tilted direction about the axis: 0 is toward the local +x.
+    #[serde(default)]
+    pub azimuth_deg: f64,
+    /// How light starts where the source touches a face: `optical` starts it beyond the face, as through glue; `air`
+    /// lets it cross the face first. Omitted: `optical`.
+    pub contact: Option<ContactSpec>,
+    /// What happens to light that meets the emitter.
+    #[serde(default)]
+    pub body: BodySpec,
+    /// The light group: flux, efficiency, transmission and means are also measured for all sources of a group together.
+    pub group: Option<String>,
+    /// Whether the source emits. One that does not is dark, as with a flux of 0; its body stays in the way of light.
+    #[serde(default = "enabled")]
+    pub enabled: bool,
+    /// Where the source stands. A `face` or `volume` is where its solid is.
+    pub at: Option<PlacementSpec>,
+}
+
+/// Sources emit unless they are switched off.
+pub(crate) fn enabled() -> bool {
+    true
+}
+
+/// A flat disk, or a ring if it has an inner radius.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct DiskSourceSpec {
+    /// Radius of the rim.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub radius_mm: f64,
+    /// Radius of the dark middle; smaller than that of the rim.
+    #[serde(default)]
+    #[schemars(range(min = 0.0))]
+    pub inner_radius_mm: f64,
+}
+
+/// A line.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct LineSourceSpec {
+    /// Length along the axis.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub length_mm: f64,
+}
+
+/// The wall of a cylinder.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct CylinderSourceSpec {
+    /// Radius.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub radius_mm: f64,
+    /// Length along the axis.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub length_mm: f64,
+}
+
+/// A face that emits.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct FaceSourceSpec {
+    /// The face, as `NAME.FACE`.
+    pub of: String,
+    /// Side to which it shines: `front` is out of the solid, `back` into it.
+    #[serde(default)]
+    pub side: FaceSide,
+}
+
+/// A solid that emits from within.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct VolumeSourceSpec {
+    /// Name of the solid.
+    pub of: String,
+}
+
+/// One side of a face.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum FaceSide {
+    /// The outside of a solid, the side of the normal of a sheet.
+    #[default]
+    Front,
+    /// The other side.
+    Back,
+}
+
+/// How light starts where a source touches a face.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ContactSpec {
+    /// Beyond the face, in the medium ahead: a source in optical contact.
+    Optical,
+    /// On the near side: light crosses the face, with its reflection and refraction.
+    Air,
+}
+
+/// How light is spread over directions.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum EmissionSpec {
+    /// The same luminance in every direction.
+    Lambertian,
+    /// The same intensity in every direction.
+    Isotropic,
+    /// A parallel beam.
+    Collimated,
+    /// Intensity proportional to this power of the cosine of the angle from the axis or normal; 1 is Lambertian.
+    CosinePower(#[schemars(range(min = 0.0))] f64),
+    /// The same luminance within a cone of this half-angle, none outside.
+    ConeHalfAngleDeg(#[schemars(extend("exclusiveMinimum" = 0.0), range(max = 90.0))] f64),
+}
+
+/// What happens to light that meets an emitter: `transparent` lets it pass, `absorbing` takes it, or a finish.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum BodySpec {
+    /// Light passes as if the emitter were not there.
+    #[default]
+    Transparent,
+    /// Light is absorbed, and counted as such.
+    Absorbing,
+    /// Light meets a finish.
+    #[serde(untagged)]
+    Finish(FinishRef),
+}

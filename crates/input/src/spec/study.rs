@@ -1,0 +1,250 @@
+//! Studies as a study file states them: one scene, many designs of it.
+
+use crate::spec::run::{CheckSpec, EstimatorSpec, TargetSpec};
+use indexmap::IndexMap;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+/// The version of the format of studies that this program reads.
+pub const STUDY_FORMAT_VERSION: u32 = 1;
+
+/// Most designs of a study: as many as the Sobol sequence has.
+pub const MOST_DESIGNS: usize = 1 << 16;
+
+/// Most parameters of a study: within the dimensions of the Sobol sequence.
+pub const MOST_PARAMETERS: usize = 200;
+
+/// A study: a scene, what is varied in it and how, what is recorded of every design, and what a good design is.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(title = "Lumiduct study")]
+pub struct StudySpec {
+    /// Version of the study format.
+    #[schemars(extend("const" = 1))]
+    pub lumiduct_study: u32,
+    /// One line that names the study in reports.
+    pub title: String,
+    /// What the study is for, in as many lines as it takes.
+    pub description: Option<String>,
+    /// The scene file, relative to this file.
+    pub scene: String,
+    /// Keys of the scene that are set for all designs, each as dotted key in quotes and value, as after `-D`.
+    #[serde(default)]
+    pub set: IndexMap<String, Value>,
+    /// What is varied, by name.
+    pub parameters: IndexMap<String, ParameterSpec>,
+    /// Which designs are made of the parameters.
+    pub plan: PlanSpec,
+    /// Names of the measures that are recorded of every design, such as `exit.efficiency`.
+    #[schemars(length(min = 1))]
+    pub measures: Vec<String>,
+    /// When a design is computed well enough, and with which random numbers.
+    #[serde(default)]
+    pub run: StudyRunSpec,
+    /// What the best design is.
+    pub ranking: Option<RankingSpec>,
+    /// What every design has to meet, in any number of `[[check]]` tables. Those of the scene are not looked at.
+    #[serde(default)]
+    pub check: Vec<CheckSpec>,
+    /// What is kept of each design beside its row.
+    #[serde(default)]
+    pub keep: KeepSpec,
+}
+
+/// A quantity that is varied. `grid` and `one_at_a_time` need `values`, `range` or `choices`; `latin_hypercube` and `sobol`
+/// take any of the four; `tolerance` needs `spread` or `choices`; `list` takes values from its file, and here only `choices`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ParameterSpec {
+    /// Keys of the scene that the parameter sets, all at once, such as `solids.pipe.sweep.path.0.straight_mm`.
+    #[schemars(length(min = 1))]
+    pub keys: Vec<TiedKeySpec>,
+    /// Unit for tables and plots, such as `mm`; the keys have theirs in any case.
+    pub unit: Option<String>,
+    /// Values, each its own level.
+    #[schemars(length(min = 1))]
+    pub values: Option<Vec<f64>>,
+    /// Values at even steps.
+    pub range: Option<RangeSpec>,
+    /// Values with names: numbers, text, lists or tables, whatever the keys take.
+    pub choices: Option<IndexMap<String, Value>>,
+    /// How the values scatter.
+    pub spread: Option<SpreadSpec>,
+    /// Whether values are whole numbers, before factors and offsets: `values` and `range` are rounded, a uniform spread takes every
+    /// whole number within its ends as likely, and a normal one is rounded within its limits.
+    #[serde(default)]
+    pub whole: bool,
+}
+
+/// A key of the scene that a parameter sets.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum TiedKeySpec {
+    /// The key takes the value itself.
+    Same(String),
+    /// The key takes factor times value plus offset.
+    Scaled(ScaledKeySpec),
+}
+
+impl TiedKeySpec {
+    /// The dotted key.
+    pub fn key(&self) -> &str {
+        match self {
+            Self::Same(key) => key,
+            Self::Scaled(own) => &own.key,
+        }
+    }
+}
+
+/// A key of the scene that follows a parameter.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ScaledKeySpec {
+    /// The dotted key.
+    pub key: String,
+    /// What the value is multiplied by.
+    #[serde(default = "one")]
+    pub factor: f64,
+    /// What is added to the product, in the unit of the key.
+    #[serde(default)]
+    pub offset: f64,
+}
+
+/// Values at even steps from one end to the other, both included.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RangeSpec {
+    /// The first value.
+    pub from: f64,
+    /// The last value.
+    pub to: f64,
+    /// Number of values in a grid; samples take any value between the ends.
+    #[serde(default = "two")]
+    #[schemars(range(min = 2, max = 1000))]
+    pub count: u32,
+}
+
+/// How values scatter.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SpreadSpec {
+    /// Every value between two ends is as likely.
+    Uniform(UniformSpec),
+    /// A bell curve, cut off where `from` or `to` say so.
+    Normal(NormalSpec),
+}
+
+/// Values between two ends.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct UniformSpec {
+    /// Least value.
+    pub from: f64,
+    /// Greatest value.
+    pub to: f64,
+}
+
+/// Values about a mean.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct NormalSpec {
+    /// Mean, of the curve before it is cut off.
+    pub mean: f64,
+    /// Standard deviation, of the curve before it is cut off.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub std_dev: f64,
+    /// Least value.
+    pub from: Option<f64>,
+    /// Greatest value.
+    pub to: Option<f64>,
+}
+
+/// Which designs are made of the parameters.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum PlanSpec {
+    /// Every combination of all values.
+    Grid,
+    /// The scene as it is, then every value of every parameter with the others as in the scene.
+    OneAtATime,
+    /// The designs of a table.
+    List(ListPlanSpec),
+    /// Samples that fill the range of each parameter evenly (Latin hypercube).
+    LatinHypercube(SamplesSpec),
+    /// Samples that fill all ranges together evenly: a scrambled Sobol sequence. Best with a power of two of them.
+    Sobol(SamplesSpec),
+    /// Independent random samples, as production scatters them; they give the share of designs that pass.
+    Tolerance(SamplesSpec),
+}
+
+/// The designs of a table.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ListPlanSpec {
+    /// A CSV file, relative to this file: a column for each parameter, a row for each design.
+    pub file: String,
+}
+
+/// A number of samples.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SamplesSpec {
+    /// Number of designs.
+    #[schemars(range(min = 2, max = MOST_DESIGNS))]
+    pub samples: u32,
+    /// Seed of the samples. Light has a seed of its own, in `run`.
+    #[serde(default = "seed")]
+    pub seed: u64,
+}
+
+/// When a design is computed well enough. What is left out is as in the scene; stop rules are taken from one of the two
+/// files alone. All designs use the same random numbers, so that their differences are known better than their values.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+pub struct StudyRunSpec {
+    /// Number of paths of a design.
+    #[schemars(range(min = 1))]
+    pub paths: Option<u64>,
+    /// Uncertainty to reach.
+    pub target: Option<TargetSpec>,
+    /// Seed of the random numbers of light.
+    pub seed: Option<u64>,
+    /// How flux is estimated.
+    pub estimator: Option<EstimatorSpec>,
+}
+
+/// What the best design is.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RankingSpec {
+    /// Name of the measure that decides, one of `measures`.
+    pub measure: String,
+    /// Whether the highest or the lowest value is the best.
+    #[serde(default)]
+    pub best: BestSpec,
+}
+
+/// Which end of a measure is the best.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum BestSpec {
+    /// The highest.
+    #[default]
+    Highest,
+    /// The lowest.
+    Lowest,
+}
+
+/// What is kept of each design beside its row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum KeepSpec {
+    /// Its record: settings, measures with errors, checks.
+    #[default]
+    Records,
+    /// The record, and a whole report with maps and pictures, as `run` writes it.
+    Reports,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+fn two() -> u32 {
+    2
+}
+
+fn seed() -> u64 {
+    1
+}

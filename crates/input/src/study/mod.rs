@@ -1,0 +1,307 @@
+//! The whole way from a study file to a study: what is varied in which scene, and what is asked of every design.
+//!
+//! Which designs follow from the plan is not known here, and nothing is computed.
+
+mod file;
+mod list;
+mod parameters;
+mod rules;
+
+pub use parameters::{DESIGN_COLUMN, Domain, OTHER_COLUMNS, Parameter, Setting, Tie, column};
+
+use crate::keys::{Key, Places};
+use crate::lower::plan;
+use crate::problems::Problems;
+use crate::spec::run::TargetSpec;
+use crate::spec::solid::{Solid, SolidSpec};
+use crate::spec::study::{BestSpec, KeepSpec, PlanSpec, SamplesSpec, StudyRunSpec, StudySpec};
+use crate::study::file::{StudyDraft, read};
+use crate::{Draft, Job, Settings, draft, load};
+use lumiduct_base::digest::Digest;
+use lumiduct_base::error::{Diagnostic, Error, Result};
+use lumiduct_base::text::visible;
+use lumiduct_core::plan::{Check, NUMERICS};
+use serde::{Deserialize, Serialize};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// What the command line asks for beside the study file. Its names are part of the identity of a study.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct StudySettings {
+    /// `key=value` for keys of the scene, set for all designs after those of the study.
+    #[serde(rename = "overrides")]
+    pub overrides: Vec<String>,
+    /// Relative error of the target measure of a design.
+    #[serde(rename = "target")]
+    pub target: Option<f64>,
+    /// Number of paths of a design.
+    #[serde(rename = "paths")]
+    pub paths: Option<u64>,
+    /// Seed of the random numbers of light.
+    #[serde(rename = "seed")]
+    pub seed: Option<u64>,
+}
+
+/// Which designs are made of the parameters.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Plan {
+    /// Every combination of all levels.
+    Grid,
+    /// The scene as it is, then every level of every parameter with the others as in the scene.
+    OneAtATime,
+    /// These, a setting for each parameter.
+    List(Vec<Vec<Setting>>),
+    /// Samples that fill the range of each parameter evenly.
+    LatinHypercube(Samples),
+    /// Samples that fill all ranges together evenly.
+    Sobol(Samples),
+    /// Independent random samples.
+    Tolerance(Samples),
+}
+
+/// A number of samples.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Samples {
+    /// How many.
+    pub count: u32,
+    /// Seed of their random numbers.
+    pub seed: u64,
+}
+
+/// What the best design is.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Ranking {
+    /// Dotted name of the measure that decides.
+    pub measure: String,
+    /// Which end of it is the best.
+    pub best: Best,
+}
+
+/// Which end of a measure is the best.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Best {
+    /// The highest value.
+    Highest,
+    /// The lowest value.
+    Lowest,
+}
+
+/// What is kept of each design beside its row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Keep {
+    /// Its record.
+    Records,
+    /// Its record and a whole report.
+    Reports,
+}
+
+/// A study to be run.
+#[derive(Debug)]
+pub struct Study {
+    /// Name: that of the file without its ending.
+    pub name: String,
+    /// Title for reports.
+    pub title: String,
+    /// What the study is for.
+    pub description: Option<String>,
+    /// The scene that is varied, as it is without any parameter set.
+    pub base: Job,
+    /// Its file.
+    pub scene: PathBuf,
+    /// What all designs have in common; overrides of a design come after those here.
+    pub common: Settings,
+    /// What is varied.
+    pub parameters: Vec<Parameter>,
+    /// Which designs are made of it.
+    pub plan: Plan,
+    /// Dotted names of the measures that are recorded.
+    pub measures: Vec<String>,
+    /// What the best design is.
+    pub ranking: Option<Ranking>,
+    /// What every design has to meet.
+    pub checks: Vec<Check>,
+    /// What is kept of each design.
+    pub keep: Keep,
+    /// Where the study file says all this.
+    pub places: Places,
+    /// The study file, byte for byte.
+    pub text: String,
+    /// Identifies study, scene, files that they and all choices name, and overrides: 64-bit FNV-1a, in hexadecimal.
+    pub hash: String,
+    /// Remarks on study and scene.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// Loads a study file, its scene and everything that they name.
+pub fn load_study(path: &Path, settings: &StudySettings) -> Result<Study> {
+    let StudyDraft { spec, places, table, mut problems } = read(path)?;
+    let scene = path.parent().unwrap_or(Path::new("")).join(&spec.scene);
+    let common = common_settings(&spec, settings, &mut problems);
+    rules::check(&spec, &places, &settings.overrides, &mut problems);
+    if !scene.is_file() {
+        let message = format!("there is no file {}", scene.display());
+        problems.error(&Key::of(&["scene"]), message);
+    }
+    if !problems.is_free_of_errors() {
+        return Err(Error::Input(problems.into_diagnostics(&places)));
+    }
+    let base = load(&scene, &common).map_err(|error| of_study(error, &spec, &places))?;
+    let parameters = parameters::lower(&spec, &base, &mut problems);
+    rules::check_levels(&parameters, &places, &mut problems);
+    rules::check_keys(&parameters, &scene, &common, &mut problems);
+    rules::check_clock(&base, &mut problems);
+    let rows = table.map(|table| list::rows(&places, table, &parameters, &mut problems));
+    let plan = lower_plan(&spec.plan, rows.unwrap_or_default());
+    let warnings = problems.finish(&places)?;
+    let mut hash = Digest::default();
+    places.sources().iter().for_each(|source| hash.add(source.text().as_bytes()));
+    hash.add(base.hash.as_bytes());
+    add_choices(&parameters, &scene, &common, &mut hash);
+    let identity = serde_json::to_string(&(NUMERICS, &base.run, settings));
+    hash.add(identity.expect("numbers and texts always have a form in JSON").as_bytes());
+    let warnings = warnings.into_iter().chain(base.warnings.iter().cloned()).collect();
+    Ok(Study {
+        name: visible(&path.file_stem().unwrap_or_default().to_string_lossy()),
+        title: spec.title,
+        description: spec.description,
+        base,
+        scene,
+        common,
+        parameters,
+        plan,
+        measures: spec.measures,
+        ranking: spec.ranking.map(|ranking| Ranking {
+            measure: ranking.measure,
+            best: match ranking.best {
+                BestSpec::Highest => Best::Highest,
+                BestSpec::Lowest => Best::Lowest,
+            },
+        }),
+        checks: spec.check.iter().map(plan::check).collect(),
+        keep: match spec.keep {
+            KeepSpec::Records => Keep::Records,
+            KeepSpec::Reports => Keep::Reports,
+        },
+        text: places.root_text().to_owned(),
+        places,
+        hash: hash.to_string(),
+        warnings,
+    })
+}
+
+/// Adds the scene of every choice: one may name a file that the scene alone does not.
+fn add_choices(parameters: &[Parameter], scene: &Path, common: &Settings, hash: &mut Digest) {
+    for parameter in parameters {
+        for name in parameter.choices.keys() {
+            let own = parameter.overrides(&Setting::Choice(name.clone()));
+            let settings = common.with(own);
+            match load(scene, &settings) {
+                Ok(job) => hash.add(job.hash.as_bytes()),
+                // With other parameters it may become a scene: its files count all the same.
+                Err(_) => add_files(scene, &settings, hash),
+            }
+        }
+    }
+}
+
+/// Adds the files that a scene names, as far as it can be read.
+fn add_files(scene: &Path, settings: &Settings, hash: &mut Digest) {
+    let Ok(Draft { spec, places, .. }) = draft(scene, &settings.overrides) else { return };
+    places.sources().iter().for_each(|source| hash.add(source.text().as_bytes()));
+    let folder = scene.parent().unwrap_or(Path::new(""));
+    for solid in spec.solids.values() {
+        if let SolidSpec::Mesh(Solid { shape, .. }) = solid {
+            hash.add(&fs::read(folder.join(&shape.file)).unwrap_or_default());
+        }
+    }
+}
+
+/// What is wrong with the scene of a study; what its `set` brought is told where it stands there.
+fn of_study(error: Error, spec: &StudySpec, places: &Places) -> Error {
+    let Error::Input(found) = error else { return error };
+    let (mut own, mut rest) = (Problems::default(), Vec::new());
+    for diagnostic in found {
+        let set = spec.set.iter().find(|(key, value)| {
+            let line = parameters::toml_text(value).map(|text| format!("{key}={text}"));
+            line.is_some_and(|line| diagnostic.file.as_deref() == Some(Path::new(&label(&line))))
+        });
+        match set {
+            Some((key, _)) => {
+                let problem = own.error(&Key::of(&["set", key]), diagnostic.message);
+                if let Some(hint) = diagnostic.hint {
+                    problem.hint(hint);
+                }
+            }
+            None => rest.push(diagnostic),
+        }
+    }
+    let own = own.into_diagnostics(places);
+    Error::Input(own.into_iter().chain(rest).collect())
+}
+
+/// What stands for a file where an override is wrong.
+fn label(line: &str) -> String {
+    format!("-D {}", line.escape_debug())
+}
+
+/// What all designs have in common: the study's keys and stop rules, and those of the command line over them.
+fn common_settings(
+    spec: &StudySpec,
+    settings: &StudySettings,
+    problems: &mut Problems,
+) -> Settings {
+    let StudyRunSpec { paths, target, seed, estimator } = &spec.run;
+    let (from_command, from_study) = (
+        (settings.paths, settings.target),
+        (*paths, target.as_ref().map(|target| target.relative_error)),
+    );
+    let is_asked = settings.paths.is_some() || settings.target.is_some();
+    let (paths, error) = if is_asked { from_command } else { from_study };
+    let measure = target.as_ref().map(|TargetSpec { measure, .. }| measure.clone());
+    let mut overrides = Vec::new();
+    for (key, value) in &spec.set {
+        match parameters::toml_text(value) {
+            Some(text) => overrides.push(format!("{key}={text}")),
+            None => {
+                let message = "cannot be a value of a scene";
+                problems.error(&Key::of(&["set", key]), message);
+            }
+        }
+    }
+    overrides.extend(settings.overrides.iter().cloned());
+    Settings {
+        overrides,
+        estimator: estimator.map(plan::request),
+        target: error,
+        target_measure: measure,
+        paths,
+        seed: settings.seed.or(*seed),
+        ..Settings::default()
+    }
+}
+
+/// The plan; `rows` are those of its table, if it has one.
+fn lower_plan(spec: &PlanSpec, rows: Vec<Vec<Setting>>) -> Plan {
+    let samples = |own: &SamplesSpec| Samples { count: own.samples, seed: own.seed };
+    match spec {
+        PlanSpec::Grid => Plan::Grid,
+        PlanSpec::OneAtATime => Plan::OneAtATime,
+        PlanSpec::LatinHypercube(own) => Plan::LatinHypercube(samples(own)),
+        PlanSpec::Sobol(own) => Plan::Sobol(samples(own)),
+        PlanSpec::Tolerance(own) => Plan::Tolerance(samples(own)),
+        PlanSpec::List(_) => Plan::List(rows),
+    }
+}
+
+/// The problems of a scene with some overrides, without what is wrong with it alone.
+fn problems_of_scene(scene: &Path, settings: &Settings) -> Vec<Diagnostic> {
+    match draft(scene, &settings.overrides) {
+        Ok(Draft { problems, places, .. }) => problems.into_diagnostics(&places),
+        Err(Error::Input(diagnostics)) => diagnostics,
+        // Files that went away in between are told by the designs.
+        Err(Error::Usage(_) | Error::Io { .. } | Error::Output { .. }) => Vec::new(),
+    }
+}

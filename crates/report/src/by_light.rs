@@ -1,0 +1,108 @@
+//! What each source or light group brings to each sensor, and the words where totals add weathers up.
+
+use crate::words::quantity;
+use lumiduct_core::measure::{Measure, Measures};
+
+/// Least number of sources and groups that are held against each other.
+const SEVERAL: usize = 2;
+
+/// What stands before the rows of the table by source.
+pub(crate) const HEAD: &str = "Efficiency is the part of a source's own light that comes to the sensor. Share is the part \
+    of the sensor's light that comes from the source; that of a source meant for another sensor is the crosstalk.";
+
+/// A source or light group at a sensor.
+pub(crate) struct Share<'a> {
+    /// Of the source or group.
+    pub(crate) name: &'a str,
+    /// Over what the source or group emits.
+    pub(crate) efficiency: &'a Measure,
+    /// Over all light of the sensor; `None` where that adds weathers up.
+    pub(crate) share: Option<&'a Measure>,
+}
+
+/// Light groups and the sources of none, in the order of the sources; dark ones are left out.
+fn names(measures: &Measures) -> Vec<&str> {
+    let mut names: Vec<&str> = Vec::new();
+    let lit = measures.balance.emitted_by_source.iter().filter(|(_, flux)| flux.value > 0.0);
+    for (source, _) in lit {
+        let group = measures.light_groups.iter().find(|(_, sources)| sources.contains(source));
+        let name = group.map_or(source, |(group, _)| group).as_str();
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    names
+}
+
+/// What sources and groups bring to a sensor; empty where there are not several.
+pub(crate) fn shares<'a>(measures: &'a Measures, sensor: &str) -> Vec<Share<'a>> {
+    let names = names(measures);
+    if names.len() < SEVERAL {
+        return Vec::new();
+    }
+    let of = |name: &str, what: &str| measures.values.get(&format!("{sensor}.{what}.from.{name}"));
+    let share = |name: &'a str| {
+        let efficiency = of(name, "efficiency")?;
+        Some(Share { name, efficiency, share: of(name, "share") })
+    };
+    names.into_iter().filter_map(share).collect()
+}
+
+/// A matrix with its head: sensors in rows, sources and light groups in columns.
+pub(crate) struct Matrix {
+    pub(crate) head: Vec<String>,
+    pub(crate) rows: Vec<Vec<String>>,
+}
+
+/// Efficiencies of all sources and groups on all sensors, with the shares where they have a sense; `None` where there are
+/// not several sources.
+pub(crate) fn matrix(measures: &Measures) -> Option<Matrix> {
+    let sensors = || measures.sensor_paths.iter().map(|paths| paths.sensor.as_str());
+    let all: Vec<(&str, Vec<Share<'_>>)> =
+        sensors().map(|sensor| (sensor, shares(measures, sensor))).collect();
+    let (_, first) = all.iter().find(|(_, shares)| !shares.is_empty())?;
+    let head = ["sensor", ""].into_iter().chain(first.iter().map(|share| share.name));
+    let head = head.map(str::to_owned).collect();
+    let mut rows = Vec::new();
+    for (sensor, shares) in &all {
+        let row = |what: &str, cells: Vec<String>| {
+            [sensor.to_string(), what.to_owned()].into_iter().chain(cells).collect()
+        };
+        let efficiencies = shares.iter().map(|share| quantity(share.efficiency)).collect();
+        rows.push(row("efficiency", efficiencies));
+        let own: Option<Vec<String>> =
+            shares.iter().map(|share| share.share.map(quantity)).collect();
+        rows.extend(own.map(|cells| row("share", cells)));
+    }
+    Some(Matrix { head, rows })
+}
+
+/// "sum over 2 weathers", where all sources together are never seen.
+pub(crate) fn sum_over_weathers(count: usize) -> Option<String> {
+    (count > 1).then(|| format!("sum over {count} weathers"))
+}
+
+/// The sentence about totals that add weathers up.
+pub(crate) fn remark_on_weathers(measures: &Measures) -> Option<String> {
+    let words = sum_over_weathers(measures.weathers.len())?;
+    let is_measured = |name: &&String| {
+        measures.light_groups.contains_key(*name)
+            || measures.balance.emitted_by_source.contains_key(*name)
+    };
+    let example = measures.weathers.iter().find(is_measured);
+    let example = example.map_or(String::new(), |name| format!(", such as flux.from.{name}"));
+    Some(format!(
+        "the totals of all sources are each a {words} that never shine together ({}): flux, illuminance, maps and all \
+         that follows from them; read the measures of one{example}, or give the scene one weather",
+        measures.weathers.join(", ")
+    ))
+}
+
+/// The sentence before the measures of a sensor.
+pub(crate) fn remark_on_totals(measures: &Measures) -> Option<String> {
+    let words = sum_over_weathers(measures.weathers.len())?;
+    Some(format!(
+        "Every value without `from` in its name is a {words}: {}.",
+        measures.weathers.join(", ")
+    ))
+}

@@ -1,0 +1,337 @@
+//! Differences of maps, cell by cell. Maps are known by their tables: places, values and errors.
+
+use crate::OutputFile;
+use crate::html::data::{Cells, MapWords};
+use crate::png::{ColourMap, HeatMap, Scale, heat_map};
+use csv::ReaderBuilder;
+use lumiduct_base::error::Result;
+use lumiduct_base::number::format_fixed;
+use ndarray::Array2;
+
+/// Chance that noise alone exceeds the bound of a map.
+const FALSE_ALARM: f64 = 1e-3;
+/// A cell is judged whose value and error are those of so many counts at least: with fewer the error itself is too
+/// uncertain for z-scores (with 32 batches a cell, 27 maps of 300 were beyond the bound by noise alone; with 128, none).
+const COUNTS: f64 = 128.0;
+/// Share of the cells that may lie beyond the colours of a picture, so that a few noisy ones do not drown the others.
+const BEYOND_COLOURS: f64 = 0.01;
+/// Places nearer than this share of the extent of a map are the same: other machines round otherwise.
+const SAME_PLACE: f64 = 1e-9;
+
+/// The axes of a table.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Surface,
+    Angles,
+    Rings,
+    Intensity,
+}
+
+impl Kind {
+    /// The kind of a table by the names of its first columns; `None` where it is no map.
+    fn of(header: &[&str]) -> Option<Self> {
+        match header {
+            ["u_mm", "v_mm", ..] => Some(Self::Surface),
+            ["u_deg", "v_deg", ..] => Some(Self::Angles),
+            ["sector_deg", "radius_mm", ..] => Some(Self::Rings),
+            ["c_from_deg", "c_to_deg", "gamma_from_deg", "gamma_to_deg", ..] => {
+                Some(Self::Intensity)
+            }
+            _ => None,
+        }
+    }
+
+    /// Number of columns that say where a cell is.
+    fn places(self) -> usize {
+        match self {
+            Self::Surface | Self::Angles | Self::Rings => 2,
+            Self::Intensity => 4,
+        }
+    }
+
+    fn labels(self) -> [&'static str; 2] {
+        match self {
+            Self::Surface => ["u in mm", "v in mm"],
+            Self::Angles => ["to the right in deg", "up in deg"],
+            Self::Rings => ["sector in deg", "radius in mm"],
+            Self::Intensity => ["C in deg", "γ in deg"],
+        }
+    }
+
+    /// What a page calls places and values.
+    fn words(self) -> MapWords<'static> {
+        let (geometry, names, units) = match self {
+            Self::Surface => ("cartesian", ["u", "v"], ["mm", "mm"]),
+            Self::Angles => ("angular", ["to the right", "up"], ["deg", "deg"]),
+            Self::Rings => ("directions", ["azimuth", "radius"], ["deg", "mm"]),
+            Self::Intensity => ("directions", ["C", "γ"], ["deg", "deg"]),
+        };
+        MapWords { geometry, quantity: "difference B − A", names, units }
+    }
+
+    fn scale(self) -> Scale {
+        match self {
+            Self::Angles => Scale::Tangent,
+            Self::Surface | Self::Rings | Self::Intensity => Scale::Linear,
+        }
+    }
+}
+
+/// A map as its table has it.
+#[derive(Debug, Clone)]
+pub struct MapTable {
+    name: String,
+    kind: Kind,
+    unit: String,
+    /// Middles of the cells, mm or deg.
+    places: Vec<[f64; 2]>,
+    /// In `unit`.
+    values: Vec<f64>,
+    /// Standard error and bias together, in `unit`.
+    errors: Vec<f64>,
+}
+
+impl MapTable {
+    /// Reads a table; `None` where it is none of a map.
+    pub(crate) fn parse(name: &str, text: &str) -> std::result::Result<Option<Self>, String> {
+        let mut reader = ReaderBuilder::new().from_reader(text.as_bytes());
+        let header = reader.headers().map_err(|reason| reason.to_string())?.clone();
+        let header: Vec<&str> = header.iter().collect();
+        let Some(kind) = Kind::of(&header) else { return Ok(None) };
+        let first = kind.places();
+        let unit = header.get(first + 1).and_then(|name| name.strip_prefix("std_error_"));
+        let unit = unit.ok_or("there is no column of standard errors")?.to_owned();
+        let mut map = Self {
+            name: name.to_owned(),
+            kind,
+            unit,
+            places: Vec::new(),
+            values: Vec::new(),
+            errors: Vec::new(),
+        };
+        for row in reader.records() {
+            let row = row.map_err(|reason| reason.to_string())?;
+            let numbers: Vec<f64> =
+                row.iter().map(str::parse).collect::<std::result::Result<_, _>>().map_err(
+                    |_| format!("`{}` are not numbers", row.iter().collect::<Vec<_>>().join(",")),
+                )?;
+            let (place, rest) = numbers.split_at(first);
+            map.places.push(match kind {
+                Kind::Surface | Kind::Angles | Kind::Rings => [place[0], place[1]],
+                Kind::Intensity => [0.5 * (place[0] + place[1]), 0.5 * (place[2] + place[3])],
+            });
+            map.values.push(rest[0]);
+            map.errors.push(rest[1].hypot(rest.get(2).copied().unwrap_or(0.0)));
+        }
+        Ok(Some(map))
+    }
+
+    /// What a page calls its places and values.
+    pub(crate) fn words(&self) -> MapWords<'static> {
+        self.kind.words()
+    }
+
+    /// Whether cells, quantity and unit are those of another map.
+    fn is_like(&self, other: &Self) -> bool {
+        let largest = self.places.iter().flatten().fold(0.0f64, |most, at| most.max(at.abs()));
+        let near = |a: f64, b: f64| (a - b).abs() <= SAME_PLACE * largest;
+        let mut pairs = self.places.iter().zip(&other.places);
+        (self.kind, &self.unit) == (other.kind, &other.unit)
+            && self.places.len() == other.places.len()
+            && pairs.all(|(a, b)| near(a[0], b[0]) && near(a[1], b[1]))
+    }
+}
+
+/// What came of two maps of a name.
+#[derive(Debug)]
+pub struct MapDiff {
+    /// Sensor and quantity: `exit.illuminance`.
+    pub name: String,
+    /// What came of it.
+    pub outcome: MapOutcome,
+}
+
+/// What came of comparing two maps.
+#[derive(Debug)]
+pub enum MapOutcome {
+    /// Their cells are not the same.
+    OtherCells,
+    /// Every cell was compared.
+    Compared {
+        /// Second map less the first, in its unit, at the places of the first.
+        difference: MapTable,
+        /// Cells that can be judged: enough was counted there on both sides.
+        judged: usize,
+        /// Root of the mean square of all z-scores, differences over their errors, 1; 1 by noise alone.
+        rms: f64,
+        /// Largest |z|, 1.
+        largest: f64,
+        /// What noise alone exceeds once in a thousand maps, 1: √(2 ln(n/0.001)) of n cells.
+        bound: f64,
+    },
+}
+
+impl MapDiff {
+    /// Whether noise alone may have made the difference; not of maps with other cells.
+    pub fn is_noise(&self) -> bool {
+        match &self.outcome {
+            MapOutcome::OtherCells => false,
+            MapOutcome::Compared { judged, largest, bound, .. } => *judged == 0 || largest <= bound,
+        }
+    }
+
+    /// The line that is told of a map.
+    pub(crate) fn sentence(&self) -> String {
+        let MapOutcome::Compared { difference, judged, rms, largest, bound } = &self.outcome else {
+            return "its cells are not the same, so it is not compared".to_owned();
+        };
+        let all = difference.values.len();
+        if *judged == 0 {
+            return format!("none of {all} cells has counted enough to be judged");
+        }
+        let [rms, z, bound] = [(rms, 2), (largest, 1), (bound, 1)]
+            .map(|(number, decimals)| format_fixed(*number, decimals));
+        format!(
+            "rms z {rms}, largest |z| {z}, by noise below {bound}; {judged} of {all} cells counted enough"
+        )
+    }
+
+    /// Name of the picture.
+    pub(crate) fn picture_name(&self) -> String {
+        format!("{}.difference.png", self.name)
+    }
+}
+
+/// Compares maps of the same name.
+pub(crate) fn compare(a: &[MapTable], b: &[MapTable]) -> Vec<MapDiff> {
+    let partner = |own: &MapTable| b.iter().find(|other| other.name == own.name);
+    let pairs = a.iter().filter_map(|own| Some((own, partner(own)?)));
+    pairs
+        .map(|(a, b)| MapDiff {
+            name: a.name.clone(),
+            outcome: if a.is_like(b) { difference(a, b) } else { MapOutcome::OtherCells },
+        })
+        .collect()
+}
+
+fn difference(a: &MapTable, b: &MapTable) -> MapOutcome {
+    let pair = |own: &[f64], other: &[f64], f: fn(f64, f64) -> f64| -> Vec<f64> {
+        own.iter().zip(other).map(|(own, other)| f(*own, *other)).collect()
+    };
+    let values = pair(&a.values, &b.values, |a, b| b - a);
+    let errors = pair(&a.errors, &b.errors, f64::hypot);
+    let has_counted = |map: &MapTable, cell: usize| {
+        let counts = (map.values[cell] / map.errors[cell]).powi(2);
+        counts.is_finite() && counts >= COUNTS
+    };
+    let scores: Vec<f64> = (0..values.len())
+        .filter(|&cell| has_counted(a, cell) && has_counted(b, cell))
+        .map(|cell| values[cell] / errors[cell])
+        .collect();
+    let count = scores.len() as f64;
+    let rms = (scores.iter().map(|z| z * z).sum::<f64>() / count.max(1.0)).sqrt();
+    let largest = scores.iter().fold(0.0f64, |most, z| most.max(z.abs()));
+    let bound = (2.0 * (count.max(1.0) / FALSE_ALARM).ln()).sqrt();
+    let difference = MapTable { values, errors, ..a.clone() };
+    MapOutcome::Compared { difference, judged: scores.len(), rms, largest, bound }
+}
+
+/// Pictures of all maps that were compared.
+pub(crate) fn pictures(maps: &[MapDiff]) -> Result<Vec<OutputFile>> {
+    let mut files = Vec::new();
+    for map in maps {
+        if let MapOutcome::Compared { difference, .. } = &map.outcome {
+            let (_, picture) = drawn(map, difference);
+            let bytes = heat_map(&picture)?;
+            files.push(OutputFile { name: map.picture_name(), bytes });
+        }
+    }
+    Ok(files)
+}
+
+/// The difference of a map as cells with their errors, and as a picture.
+pub(crate) fn drawn(map: &MapDiff, difference: &MapTable) -> (Cells, HeatMap) {
+    let columns = lines(&difference.places, 0);
+    let rows = lines(&difference.places, 1);
+    let mut values = Array2::from_elem((rows.len(), columns.len()), f64::NAN);
+    let mut errors = values.clone();
+    let index = |lines: &[f64], at: f64| lines.partition_point(|line| *line < at);
+    let numbers = difference.values.iter().zip(&difference.errors);
+    for (place, (value, error)) in difference.places.iter().zip(numbers) {
+        let at = [index(&rows, place[1]), index(&columns, place[0])];
+        (values[at], errors[at]) = (*value, *error);
+    }
+    let scale = difference.kind.scale();
+    let [x, y] = [columns, rows].map(|middles| edges(&middles, scale));
+    let picture = picture(map, difference, [&x, &y], &values);
+    (Cells { x, y, values, errors, biases: None }, picture)
+}
+
+fn picture(
+    map: &MapDiff,
+    difference: &MapTable,
+    edges: [&[f64]; 2],
+    values: &Array2<f64>,
+) -> HeatMap {
+    let [x_label, y_label] = difference.kind.labels().map(str::to_owned);
+    let limit = limit(&difference.values);
+    let [x_range, y_range] = edges.map(|edges| [edges[0], edges[edges.len() - 1]]);
+    HeatMap {
+        title: format!("{}: difference B − A", map.name),
+        subtitle: map.sentence(),
+        x_label,
+        y_label,
+        x_range,
+        y_range,
+        axes: difference.kind.scale(),
+        values: values.clone(),
+        unit: difference.unit.clone(),
+        scale: Scale::Linear,
+        colours: ColourMap::Diverging,
+        limits: Some([-limit, limit]),
+    }
+}
+
+/// The value at the upper end of the colours; its opposite is at the lower end.
+fn limit(values: &[f64]) -> f64 {
+    let mut sizes: Vec<f64> =
+        values.iter().filter(|value| value.is_finite()).map(|value| value.abs()).collect();
+    sizes.sort_by(f64::total_cmp);
+    let beyond = (BEYOND_COLOURS * sizes.len() as f64) as usize;
+    let limit = sizes.len().checked_sub(beyond + 1).map_or(0.0, |place| sizes[place]);
+    // Where hardly a cell differs, those that do are all that there is to be seen.
+    [Some(limit), sizes.last().copied()]
+        .into_iter()
+        .flatten()
+        .find(|size| *size > 0.0)
+        .unwrap_or(1.0)
+}
+
+/// The middles of all columns or rows, in ascending order.
+fn lines(places: &[[f64; 2]], axis: usize) -> Vec<f64> {
+    let mut lines: Vec<f64> = places.iter().map(|place| place[axis]).collect();
+    lines.sort_by(f64::total_cmp);
+    lines.dedup();
+    lines
+}
+
+/// Edges of cells from their middles: half way between them, and the first and the last cell as wide as their
+/// neighbours. There are two at least.
+fn edges(middles: &[f64], scale: Scale) -> Vec<f64> {
+    let [to, from]: [fn(f64) -> f64; 2] = match scale {
+        Scale::Linear | Scale::Log => [|place| place, |place| place],
+        Scale::Tangent => [|deg| deg.to_radians().tan(), |tan| tan.atan().to_degrees()],
+    };
+    match middles {
+        [] => vec![0.0, 1.0],
+        [only] => vec![only - 0.5, only + 0.5],
+        [_, _, ..] => {
+            let places: Vec<f64> = middles.iter().map(|place| to(*place)).collect();
+            let last = places.len() - 1;
+            let between = places.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
+            let first = places[0] - 0.5 * (places[1] - places[0]);
+            let end = places[last] + 0.5 * (places[last] - places[last - 1]);
+            [first].into_iter().chain(between).chain([end]).map(from).collect()
+        }
+    }
+}

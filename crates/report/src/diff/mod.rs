@@ -1,0 +1,228 @@
+//! What two reports say of the same measures, and whether they differ by more than their errors.
+//!
+//! Reading is one function, [`read()`]; all that follows is pure. Reports are known by their files alone: scenes are not
+//! loaded, and nothing is traced. The errors of both sides are taken as independent. Runs of the same seed are not quite:
+//! their noise has much in common, and the differences are then smaller than the errors that are told.
+
+mod html;
+mod maps;
+mod measures;
+mod page;
+mod read;
+
+pub use maps::{MapDiff, MapOutcome, MapTable};
+pub use measures::{DiffRow, Judgement, Limits, MapLimit};
+pub(crate) use page::sentence;
+pub use page::{Rows, diff_table};
+pub use read::{Content, DesignRow, RunFiles, Side, read};
+
+use crate::OutputFile;
+use indexmap::IndexMap;
+use lumiduct_base::error::{Error, Result};
+use lumiduct_core::measure::{Measure, nearest};
+
+/// What is compared, and how.
+#[derive(Debug, Clone)]
+pub struct DiffWishes {
+    /// From where on two values differ.
+    pub limits: Limits,
+    /// Beginnings of the names of the measures that are compared; all of them if there are none.
+    pub only: Vec<String>,
+}
+
+/// Two reports side by side.
+#[derive(Debug)]
+pub struct Diff {
+    /// What both are: their names.
+    pub names: [String; 2],
+    /// What both are, in a line each.
+    pub facts: [String; 2],
+    /// From where on two values differ.
+    pub limits: Limits,
+    /// The measures that both have, the worst first.
+    pub rows: Vec<DiffRow>,
+    /// Names of measures that only one of them has.
+    pub only_in: [Vec<String>; 2],
+    /// The maps that both have.
+    pub maps: Vec<MapDiff>,
+    /// Names of measures that checks of either judge, in their order.
+    pub checks: Vec<String>,
+}
+
+impl Diff {
+    /// How many measures were judged so.
+    pub fn count(&self, wanted: Judgement) -> usize {
+        self.rows.iter().filter(|row| row.judgement == wanted).count()
+    }
+
+    /// Whether no measure, and no map that counts, differs by more than the limits allow.
+    pub fn is_within(&self) -> bool {
+        self.count(Judgement::Beyond) == 0 && self.maps_that_count().all(MapDiff::is_noise)
+    }
+
+    /// The maps that count.
+    pub fn maps_that_count(&self) -> impl Iterator<Item = &MapDiff> {
+        let maps = match self.limits.maps {
+            MapLimit::Told => &[][..],
+            MapLimit::Noise => &self.maps,
+        };
+        maps.iter()
+    }
+}
+
+/// Compares two reports of the same kind.
+pub fn diff(sides: &[Side; 2], wishes: &DiffWishes) -> Result<Diff> {
+    let [a, b] = sides;
+    let mut pairs = Pairs::default();
+    let mut maps = Vec::new();
+    match (&a.content, &b.content) {
+        (Content::Run(a), Content::Run(b)) => {
+            pairs.add("", [&a.measures, &b.measures]);
+            maps = maps::compare(&a.maps, &b.maps);
+        }
+        (Content::Study(a), Content::Study(b)) => pairs.add_designs(a, b),
+        (Content::Run(_), Content::Study(_)) | (Content::Study(_), Content::Run(_)) => {
+            let kind = |side: &Side| match side.content {
+                Content::Run(_) => "the report of a run",
+                Content::Study(_) => "the results of a study",
+            };
+            return Err(Error::Usage(format!(
+                "{} is {}, {} {}; name two reports of runs, or two folders of studies",
+                a.name,
+                kind(a),
+                b.name,
+                kind(b)
+            )));
+        }
+    }
+    pairs.keep_only(&wishes.only)?;
+    let is_wanted = |name: &str| is_named(&wishes.only, name);
+    maps.retain(|map| is_wanted(&map.name));
+    let mut rows: Vec<DiffRow> =
+        pairs.both.into_iter().map(|pair| measures::judge(pair, wishes.limits)).collect();
+    measures::sort(&mut rows);
+    if !rows.iter().any(|row| row.judgement != Judgement::Unknown) {
+        return Err(Error::Usage(match rows.first() {
+            None => nothing_in_common(a, b),
+            Some(row) => format!(
+                "none of the {} measures can be judged: {}, for one, {}; trace more paths",
+                rows.len(),
+                row.name,
+                row.doubt.as_deref().unwrap_or_default()
+            ),
+        }));
+    }
+    Ok(Diff {
+        names: [a.name.clone(), b.name.clone()],
+        facts: [a.facts.clone(), b.facts.clone()],
+        limits: wishes.limits,
+        rows,
+        only_in: pairs.only_in,
+        maps,
+        checks: a.checks.iter().chain(&b.checks).cloned().collect(),
+    })
+}
+
+fn nothing_in_common(a: &Side, b: &Side) -> String {
+    let what = match a.content {
+        Content::Run(_) => "no measure in common",
+        Content::Study(_) => {
+            "no design in common, one with the same settings and a measure in both"
+        }
+    };
+    format!("{} and {} have {what}", a.name, b.name)
+}
+
+/// All files of a comparison: pictures of maps first, so that the page can name them.
+pub fn diff_files(diff: &Diff) -> Result<Vec<OutputFile>> {
+    let mut files = maps::pictures(&diff.maps)?;
+    let page = page::markdown(diff);
+    files.push(page::table_file(diff)?);
+    files.push(OutputFile::text("diff.md", page));
+    files.push(OutputFile::text("diff.html", html::html(diff)?));
+    Ok(files)
+}
+
+/// A measure that both sides have.
+#[derive(Debug)]
+pub(crate) struct Pair {
+    /// Its name, with the design it is of.
+    pub(crate) name: String,
+    /// Its dotted name.
+    pub(crate) measure: String,
+    /// What both say of it.
+    pub(crate) values: [Measure; 2],
+    /// The value whose rounding it shares, in its unit: its own greater one, but for a sum that should be nothing.
+    pub(crate) scale: f64,
+}
+
+/// What both sides have, and what only one of them has.
+#[derive(Debug, Default)]
+struct Pairs {
+    both: Vec<Pair>,
+    only_in: [Vec<String>; 2],
+}
+
+impl Pairs {
+    fn add(&mut self, prefix: &str, [a, b]: [&IndexMap<String, Measure>; 2]) {
+        for (name, own) in a {
+            match b.get(name) {
+                Some(other) => self.both.push(Pair {
+                    name: format!("{prefix}{name}"),
+                    measure: name.clone(),
+                    values: [own.clone(), other.clone()],
+                    scale: measures::scale(name, [a, b]),
+                }),
+                None => self.only_in[0].push(format!("{prefix}{name}")),
+            }
+        }
+        let strange = b.keys().filter(|name| !a.contains_key(*name));
+        self.only_in[1].extend(strange.map(|name| format!("{prefix}{name}")));
+    }
+
+    /// Pairs designs by their settings, whatever their numbers.
+    fn add_designs(&mut self, a: &[DesignRow], b: &[DesignRow]) {
+        let mut left: Vec<&DesignRow> = b.iter().collect();
+        let nothing = IndexMap::new();
+        for own in a {
+            // A list may name a design twice; each has a partner of its own.
+            match left.iter().position(|other| other.settings == own.settings) {
+                Some(place) => {
+                    let other = left.remove(place);
+                    self.add(&own.prefix(), [&own.measures, &other.measures]);
+                }
+                None => self.add(&own.prefix(), [&own.measures, &nothing]),
+            }
+        }
+        for other in left {
+            self.add(&other.prefix(), [&nothing, &other.measures]);
+        }
+    }
+
+    /// Keeps measures whose name begins with one of these; each has to be the beginning of one at least.
+    fn keep_only(&mut self, only: &[String]) -> Result<()> {
+        for pattern in only {
+            if !self.both.iter().any(|pair| pair.measure.starts_with(pattern)) {
+                let known =
+                    nearest(pattern, self.both.iter().map(|pair| pair.measure.as_str())).join(", ");
+                let known = if known.is_empty() { "none".to_owned() } else { known };
+                return Err(Error::Usage(format!(
+                    "--only {pattern}: no measure of both reports begins so; near it: {known}"
+                )));
+            }
+        }
+        self.both.retain(|pair| is_named(only, &pair.measure));
+        for names in &mut self.only_in {
+            names.retain(|name| is_named(only, name.rsplit(": ").next().unwrap_or(name)));
+        }
+        Ok(())
+    }
+}
+
+/// Whether a name begins with one of these, or there are none.
+fn is_named(only: &[String], name: &str) -> bool {
+    only.is_empty() || only.iter().any(|pattern| name.starts_with(pattern))
+}
+
+#[cfg(test)]
+mod tests;

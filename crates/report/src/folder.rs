@@ -1,0 +1,284 @@
+//! Writing files whole or not at all.
+
+#[cfg(test)]
+mod tests;
+
+use crate::leftovers::{REPLACING, STAGED, is_staged, remove_if_there, sweep};
+use crate::manifest::{MANIFEST, Manifest};
+use crate::recipe::Found;
+use crate::{FolderLock, OutputFile, Recipe};
+use lumiduct_base::error::{Error, Result};
+use std::fs;
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+/// What to do with output that is there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Existing {
+    /// Refuse to change it.
+    Keep,
+    /// Replace the files of the same name when the new ones are complete.
+    Replace,
+}
+
+/// What writing changed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Written {
+    /// At least one file is new or replaced.
+    New,
+    /// Everything was there before, the same to the byte.
+    Same,
+    /// Nothing: these files are there with other contents and may not be replaced.
+    Nothing {
+        /// Their names.
+        differing: Vec<String>,
+    },
+}
+
+/// The folder of a report, which no other program writes into.
+#[derive(Debug)]
+pub struct Folder {
+    lock: FolderLock,
+    existing: Existing,
+}
+
+impl Folder {
+    /// Makes sure, before any work is done, that a report can be written to a folder: it is empty, or its files may be
+    /// replaced, or it holds the report of this very `recipe`, which is going to be the same. A run that the clock stops
+    /// has no recipe. What a run that was killed has left there goes away.
+    pub fn open(lock: FolderLock, existing: Existing, recipe: Option<&Recipe>) -> Result<Self> {
+        let path = lock.path();
+        sweep(path)?;
+        if existing == Existing::Keep && holds_files(path)? {
+            let what = match (Found::read(path), recipe) {
+                (Found::Report(found), Some(recipe)) if *found == *recipe => {
+                    return Ok(Self { lock, existing });
+                }
+                (Found::Report(found), Some(recipe)) => recipe.difference_of(&found),
+                (Found::Report(_), None) => {
+                    "a report, and a run that the clock stops never repeats one"
+                }
+                (Found::Partial, _) => "a report of a run that was stopped",
+                (Found::Older, _) => "a report by an older version of the program",
+                (Found::Other, _) => "files that are no complete report",
+            };
+            return Err(Error::Usage(format!(
+                "{} holds {what}; use --overwrite to replace the files in it, or -o for another folder",
+                path.display()
+            )));
+        }
+        Ok(Self { lock, existing })
+    }
+
+    /// The folder of files that follow from other reports alone, and so may be there already; others may not, unless they
+    /// may be replaced.
+    pub fn of_derived(lock: FolderLock, existing: Existing, files: &[OutputFile]) -> Result<Self> {
+        let path = lock.path();
+        sweep(path)?;
+        let entries = fs::read_dir(path).map_err(|source| Error::io(path, source))?;
+        for entry in entries {
+            let entry = entry.map_err(|source| Error::io(path, source))?;
+            let name = entry.file_name();
+            let is_own = name == MANIFEST || files.iter().any(|file| name == *file.name);
+            if existing == Existing::Keep && !is_own {
+                return Err(Error::Usage(format!(
+                    "{} is none of these files; use --overwrite to write beside it, or -o for another folder",
+                    entry.path().display()
+                )));
+            }
+        }
+        Ok(Self { lock, existing })
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        self.lock.path()
+    }
+
+    /// Writes all files and their manifest, each under a temporary name first; none takes its place before all are complete,
+    /// and the manifest does so last. A file that is there with the same bytes is left alone. Where one differs that may
+    /// not be replaced, none is written. Files of an older report that are none of these go away where they may.
+    pub fn write(&self, files: &[OutputFile]) -> Result<Written> {
+        let manifest = Manifest::of(files).file(MANIFEST)?;
+        let (mut staged, mut differing) = (Vec::new(), Vec::new());
+        for file in files.iter().chain([&manifest]) {
+            let path = self.path().join(&file.name);
+            match (compare(&path, &file.bytes)?, self.existing) {
+                // As files take their places, the manifest goes: it takes its own in any case.
+                (Comparison::Same, _) if staged.is_empty() || file.name != MANIFEST => {}
+                (Comparison::Different, Existing::Keep) => differing.push(file.name.clone()),
+                (Comparison::Different, Existing::Replace)
+                | (Comparison::Missing | Comparison::Same, _) => {
+                    staged.push((stage(&path, &file.bytes)?, file.name.clone()));
+                }
+            }
+        }
+        if !differing.is_empty() {
+            // With others the manifest differs because of them.
+            if differing.len() > 1 {
+                differing.retain(|name| name != MANIFEST);
+            }
+            return Ok(Written::Nothing { differing });
+        }
+        if staged.is_empty() {
+            return Ok(Written::Same);
+        }
+        let outdated = self.outdated(files)?;
+        let names = staged.iter().map(|(_, name)| name).chain(&outdated);
+        let replacing: Vec<OutputFile> =
+            names.map(|name| OutputFile::text(name.as_str(), String::new())).collect();
+        let list = Manifest::of(&replacing).file(REPLACING)?.bytes;
+        let list_path = self.path().join(REPLACING);
+        write_whole(&list_path, &list, Existing::Replace)?;
+        for name in [MANIFEST].into_iter().chain(outdated.iter().map(String::as_str)) {
+            remove_if_there(&self.path().join(name))?;
+        }
+        for (temporary, name) in staged {
+            let path = self.path().join(name);
+            temporary.persist(&path).map_err(|error| Error::io(&path, error.error))?;
+        }
+        remove_if_there(&list_path)?;
+        Ok(Written::New)
+    }
+
+    /// Files of an older whole report that are none of the new one, where they may be replaced.
+    fn outdated(&self, files: &[OutputFile]) -> Result<Vec<String>> {
+        let is_new = |name: &str| files.iter().any(|file| file.name == name);
+        Ok(match (self.existing, Manifest::read(self.path(), MANIFEST)) {
+            (Existing::Replace, Ok(Some(old))) => {
+                old.names().filter(|name| !is_new(name)).map(str::to_owned).collect()
+            }
+            (Existing::Replace, Ok(None) | Err(Error::Usage(_))) | (Existing::Keep, _) => {
+                Vec::new()
+            }
+            (Existing::Replace, Err(error)) => return Err(error),
+        })
+    }
+
+    /// Writes a file that lies outside of the reproducible set. One that is there stays, unless it may be replaced.
+    pub fn write_beside(&self, name: &str, bytes: &[u8]) -> Result<()> {
+        let path = self.path().join(name);
+        if self.existing == Existing::Keep && path.exists() {
+            return Ok(());
+        }
+        stage(&path, bytes)?.persist(&path).map_err(|error| Error::io(&path, error.error))?;
+        Ok(())
+    }
+}
+
+/// Makes a folder in which a file can be made, which tells more than permissions do.
+pub fn expect_room(folder: &Path) -> Result<()> {
+    if folder.is_file() {
+        return Err(Error::Usage(format!("{} is a file, not a folder", folder.display())));
+    }
+    fs::create_dir_all(folder).map_err(|source| match source.kind() {
+        // A link that leads nowhere, a file where a folder should be, a name that is too long.
+        ErrorKind::AlreadyExists | ErrorKind::NotADirectory | ErrorKind::InvalidFilename => {
+            Error::Usage(format!("{} cannot be made a folder: {source}", folder.display()))
+        }
+        _ => Error::io(folder, source),
+    })?;
+    tempfile::tempfile_in(folder)
+        .map(|_| ())
+        .map_err(|source| Error::io(folder, source.kind().into()))
+}
+
+/// Makes sure, before any work is done, that a file can be written. Folders are made once there is something to put into
+/// them.
+pub fn expect_file(path: &Path) -> Result<()> {
+    let refuse = |why: &str| Err(Error::Usage(format!("{}: {why}", path.display())));
+    if path.exists() && !path.is_file() {
+        return refuse("is no file that could be replaced");
+    }
+    let folders = folder_of(path).ancestors().filter(|folder| !folder.as_os_str().is_empty());
+    let there = folders.into_iter().find(|folder| folder.exists()).unwrap_or(Path::new("."));
+    expect_room(there)?;
+    let missing = path.strip_prefix(there).unwrap_or(path);
+    for name in missing {
+        match fs::symlink_metadata(there.join(name)) {
+            Err(error) if error.kind() == ErrorKind::InvalidFilename => {
+                return refuse("a name is too long for this file system");
+            }
+            // Other faults show when it is written.
+            Ok(_) | Err(_) => {}
+        }
+    }
+    Ok(())
+}
+
+/// Whether a folder is one of these, by whatever path.
+pub fn is_among(folder: &Path, others: &[PathBuf]) -> bool {
+    let place = |path: &Path| path.canonicalize().ok();
+    let own = place(folder);
+    own.is_some() && others.iter().any(|other| place(other) == own)
+}
+
+/// Whether a folder holds anything but what a program that was killed has left half written.
+fn holds_files(folder: &Path) -> Result<bool> {
+    let entries = fs::read_dir(folder).map_err(|source| Error::io(folder, source))?;
+    for entry in entries {
+        let entry = entry.map_err(|source| Error::io(folder, source))?;
+        if !is_staged(&entry.path()) {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
+/// Writes one file, whole or not at all. One that is there with the same bytes is left alone.
+pub fn write_whole(path: &Path, bytes: &[u8], existing: Existing) -> Result<()> {
+    match (compare(path, bytes)?, existing) {
+        (Comparison::Same, _) => return Ok(()),
+        (Comparison::Different, Existing::Keep) => {
+            return Err(Error::Usage(format!(
+                "{} exists with other contents; use --overwrite to replace it",
+                path.display()
+            )));
+        }
+        (Comparison::Different, Existing::Replace) | (Comparison::Missing, _) => {}
+    }
+    let folder = folder_of(path);
+    fs::create_dir_all(folder).map_err(|source| Error::io(folder, source))?;
+    stage(path, bytes)?.persist(path).map_err(|error| Error::io(path, error.error))?;
+    Ok(())
+}
+
+/// How a file on the disk compares with what is to be written.
+enum Comparison {
+    Missing,
+    Same,
+    Different,
+}
+
+fn compare(path: &Path, bytes: &[u8]) -> Result<Comparison> {
+    match fs::read(path) {
+        Ok(old) if old == bytes => Ok(Comparison::Same),
+        Ok(_) => Ok(Comparison::Different),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(Comparison::Missing),
+        Err(source) => Err(Error::io(path, source)),
+    }
+}
+
+/// A complete file under a temporary name, readable as any other file the user makes.
+fn stage(path: &Path, bytes: &[u8]) -> Result<tempfile::NamedTempFile> {
+    let failed = |source| Error::io(path, source);
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(STAGED);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // The file mode creation mask takes away what the user does not want.
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    // The temporary name would tell nobody anything.
+    let mut file =
+        builder.tempfile_in(folder_of(path)).map_err(|error| failed(error.kind().into()))?;
+    file.as_file_mut().write_all(bytes).map_err(failed)?;
+    file.as_file().sync_all().map_err(failed)?;
+    Ok(file)
+}
+
+/// The folder that a file lies in.
+pub(crate) fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}

@@ -1,0 +1,90 @@
+//! The page of a check: the scene in three dimensions before anything is traced, and the axes of its faces.
+
+use crate::drawing::{Mark, Role, drawing};
+use crate::html::data;
+use crate::html::frame::{Block, Page, Part, Plots, Standing, render, table};
+use crate::local_axes::{LocalAxes, local_axes};
+use glam::DVec3;
+use lumiduct_base::error::Result;
+use lumiduct_base::number::format_value;
+use lumiduct_core::scene::{Owner, Scene};
+use lumiduct_core::transport::Track;
+
+/// Most solids and sheets with a name in the picture.
+const MOST_NAMES: usize = 40;
+/// What the tables of axes mean.
+const AXES_WORDS: &str = "u and v are the coordinates of maps, patterns and cells on a face, in mm; n is the normal of its front. \
+The origin is the point with u = v = 0 or, on a face that does not reach so far, the point of the face next to it.";
+
+/// The page of a check. `listed` is what there is in the scene, line by line.
+pub fn check_page(title: &str, scene: &Scene, tracks: &[Track], listed: &str) -> Result<String> {
+    let mut plots = Plots::default();
+    let mut drawing = drawing(scene, tracks);
+    drawing.marks.splice(0..0, names(scene));
+    let axes = local_axes(scene);
+    let mut plot = data::scene(&drawing);
+    plot["axes"] = data::axes(&drawing, &axes);
+    let label = format!("the scene with {} paths by where they end", drawing.paths.len());
+    let mut blocks = vec![plots.add(label, plot, None)];
+    if !drawing.remarks.is_empty() {
+        let text = format!("Left out of the picture: {}.", drawing.remarks.join("; "));
+        blocks.push(Block::Words { text });
+    }
+    let rows = axes.iter().map(row).collect();
+    let head = ["face or sensor", "origin, mm", "u", "v", "n", "u from, to", "v from, to"];
+    let axes = vec![Block::Words { text: AXES_WORDS.into() }, table(head, rows)];
+    let items = listed.lines().map(str::to_owned).collect();
+    let page = Page {
+        title: title.to_owned(),
+        masthead: None,
+        description: None,
+        verdict: "A check of the scene: nothing was measured".into(),
+        standing: Standing::Open,
+        parts: vec![
+            Part { title: "Scene".into(), blocks },
+            Part { title: "Contents".into(), blocks: vec![Block::List { items }] },
+            Part { title: "Local axes".into(), blocks: axes },
+        ],
+        footer: format!("lumiduct {}", env!("CARGO_PKG_VERSION")),
+    };
+    render(&page, &plots)
+}
+
+/// The names of solids and sheets, each at the middle of its box.
+fn names(scene: &Scene) -> Vec<Mark> {
+    // The body of a source has the name of the source, which is there already.
+    let is_source = |name: &str| scene.sources.iter().any(|source| source.name == name);
+    let bodies = scene.bodies().into_iter().filter(|body| !is_source(&body.name));
+    let mut marks = Vec::new();
+    for body in bodies.take(MOST_NAMES) {
+        let role = match scene.owner(body.faces[0]) {
+            Owner::Solid(_) => Role::Solid,
+            Owner::Sheet | Owner::Port => Role::Sheet,
+        };
+        marks.push(Mark { name: body.name, role, at: body.bounds.center() + scene.origin });
+    }
+    marks
+}
+
+fn row(axes: &LocalAxes) -> Vec<String> {
+    let origin = axes.origin.to_array().map(format_value).join(", ");
+    let range = |axis: usize| {
+        axes.rect.map_or(String::new(), |rect| {
+            [rect.min[axis], rect.max[axis]].map(format_value).join(" to ")
+        })
+    };
+    let [u, v, normal] = [axes.u, axes.v, axes.normal].map(direction);
+    vec![axes.name.clone(), origin, u, v, normal, range(0), range(1)]
+}
+
+/// A direction: `+x`, or its components.
+fn direction(direction: DVec3) -> String {
+    let parts = direction.to_array();
+    match parts.iter().position(|part| part.abs() > 1.0 - 1e-9) {
+        Some(axis) => {
+            let sign = if parts[axis] > 0.0 { '+' } else { '-' };
+            format!("{sign}{}", ["x", "y", "z"][axis])
+        }
+        None => parts.map(|part| format!("{part:.3}")).join(", "),
+    }
+}

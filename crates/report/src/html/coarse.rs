@@ -1,0 +1,80 @@
+//! Maps of very many cells, made coarser for a page: the tables of numbers have them all.
+
+use crate::html::data::Cells;
+use ndarray::Array2;
+
+/// Cells of a map that a page holds; more would make it slow to open.
+const MOST_CELLS: usize = 40_000;
+
+/// How many cells along each side are shown as one: 1 where there are few.
+pub(crate) fn joined(cells: &Array2<f64>) -> usize {
+    ((cells.len() as f64 / MOST_CELLS as f64).sqrt().ceil() as usize).max(1)
+}
+
+/// Cells with `side` by `side` of them as their mean. Cells without a value are left out; those of an image and of a
+/// goniometer count alike, which is close enough for a picture.
+pub(crate) fn coarse(cells: &Cells, side: usize) -> Cells {
+    let (rows, columns) = cells.values.dim();
+    let shape = (rows.div_ceil(side), columns.div_ceil(side));
+    let of = |row: usize, column: usize| {
+        let rows = side * row..rows.min(side * (row + 1));
+        let columns = side * column..columns.min(side * (column + 1));
+        let all = rows.flat_map(move |row| columns.clone().map(move |column| (row, column)));
+        all.filter(|at| cells.values[*at].is_finite())
+    };
+    let mean = |table: &Array2<f64>| {
+        Array2::from_shape_fn(shape, |(row, column)| {
+            of(row, column).map(|at| table[at]).sum::<f64>() / of(row, column).count() as f64
+        })
+    };
+    let errors = Array2::from_shape_fn(shape, |(row, column)| {
+        let variance: f64 = of(row, column).map(|at| cells.errors[at].powi(2)).sum();
+        variance.sqrt() / of(row, column).count() as f64
+    });
+    Cells {
+        x: coarse_edges(&cells.x, side),
+        y: coarse_edges(&cells.y, side),
+        values: mean(&cells.values),
+        errors,
+        // A bias does not average out.
+        biases: cells.biases.as_ref().map(mean),
+    }
+}
+
+fn coarse_edges(edges: &[f64], side: usize) -> Vec<f64> {
+    let mut kept: Vec<f64> = edges.iter().copied().step_by(side).collect();
+    if !(edges.len() - 1).is_multiple_of(side) {
+        kept.extend(edges.last());
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn joined_cells_keep_the_mean_and_cells_without_a_value_do_not_count() {
+        let cells = Cells {
+            x: vec![0.0, 1.0, 2.0, 3.0],
+            y: vec![0.0, 1.0, 2.0],
+            values: Array2::from_shape_vec((2, 3), vec![1.0, 2.0, 7.0, f64::NAN, 6.0, 9.0])
+                .unwrap(),
+            errors: Array2::from_elem((2, 3), 3.0),
+            biases: None,
+        };
+        let coarse = coarse(&cells, 2);
+        assert_eq!((coarse.x, coarse.y), (vec![0.0, 2.0, 3.0], vec![0.0, 2.0]));
+        assert_eq!(coarse.values.into_raw_vec_and_offset().0, [3.0, 8.0]);
+        let [three, two] = [3.0 / 3f64.sqrt(), 3.0 / 2f64.sqrt()];
+        let errors = coarse.errors.into_raw_vec_and_offset().0;
+        assert!((errors[0] - three).abs() < 1e-15 && (errors[1] - two).abs() < 1e-15);
+    }
+
+    #[test]
+    fn only_very_many_cells_are_joined() {
+        let sides =
+            [(200, 200), (201, 200), (1000, 1000)].map(|shape| joined(&Array2::zeros(shape)));
+        assert_eq!(sides, [1, 2, 5]);
+    }
+}

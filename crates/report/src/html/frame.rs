@@ -1,0 +1,223 @@
+//! The frame of a page: title, parts, tables, places for plots, and everything that draws them in the same file.
+//!
+//! It knows no report: whoever has titles, tables and plots as plain data gets one self-contained file. Nothing on it is
+//! loaded from anywhere; only without scripts does it show the pictures that lie beside it.
+
+use crate::png::{ColourMap, curve_colours};
+use lumiduct_base::error::{Error, Result};
+use minijinja::syntax::SyntaxConfig;
+use minijinja::value::Serde;
+use minijinja::{AutoEscape, Environment, Value, context};
+use serde::Serialize;
+
+/// The style of every page.
+const STYLE: &str = include_str!("assets/page.css");
+/// The frame, a template.
+const TEMPLATE: &str = include_str!("assets/page.html");
+/// The scripts in their order; together they are one module.
+const SCRIPTS: [&str; 12] = [
+    include_str!("assets/format.js"),
+    include_str!("assets/axis.js"),
+    include_str!("assets/figure.js"),
+    include_str!("assets/chart.js"),
+    include_str!("assets/map.js"),
+    include_str!("assets/polar.js"),
+    include_str!("assets/flow.js"),
+    include_str!("assets/view.js"),
+    include_str!("assets/scene.js"),
+    include_str!("assets/local_axes.js"),
+    include_str!("assets/turn.js"),
+    include_str!("assets/page.js"),
+];
+
+/// A page.
+#[derive(Debug, Serialize)]
+pub(crate) struct Page {
+    /// Its title.
+    pub(crate) title: String,
+    /// Whom it is for, and by whom.
+    pub(crate) masthead: Option<Masthead>,
+    /// What it is about, if anything is to be said.
+    pub(crate) description: Option<String>,
+    /// The verdict, in words.
+    pub(crate) verdict: String,
+    /// What the verdict comes to.
+    pub(crate) standing: Standing,
+    /// What is on it, in order.
+    pub(crate) parts: Vec<Part>,
+    /// Where it comes from, in small letters at its end.
+    pub(crate) footer: String,
+}
+
+/// Whom a page is for, and by whom.
+#[derive(Debug, Serialize)]
+pub(crate) struct Masthead {
+    /// Lines with their names: `Client`, `Date`.
+    pub(crate) lines: Vec<[String; 2]>,
+    /// Address of a picture that is within the page.
+    pub(crate) logo: Option<String>,
+}
+
+/// What a verdict comes to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Standing {
+    /// All is as it was wanted.
+    Good,
+    /// Something is not.
+    Bad,
+    /// Nothing was wanted.
+    Open,
+}
+
+/// A part of a page, with a heading that the page's list of contents leads to.
+#[derive(Debug, Serialize)]
+pub(crate) struct Part {
+    /// Its heading.
+    pub(crate) title: String,
+    /// What is in it.
+    pub(crate) blocks: Vec<Block>,
+}
+
+/// Something in a part.
+#[derive(Debug, Serialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub(crate) enum Block {
+    /// A heading.
+    Heading {
+        /// The words.
+        text: String,
+    },
+    /// A paragraph.
+    Words {
+        /// The words.
+        text: String,
+    },
+    /// A list.
+    List {
+        /// Its lines.
+        items: Vec<String>,
+    },
+    /// A table.
+    Table {
+        /// The heads of its columns.
+        head: Vec<String>,
+        /// Its rows.
+        rows: Vec<Vec<String>>,
+        /// Words to click on, for a table that is folded away.
+        folded: Option<String>,
+    },
+    /// A plot.
+    Plot {
+        /// What is plotted.
+        label: String,
+        /// Its number among the plots of the page.
+        index: usize,
+        /// Name of a file beside the page that shows the same without scripts.
+        picture: Option<String>,
+    },
+}
+
+/// The plots of a page: what the scripts draw.
+#[derive(Debug, Default)]
+pub(crate) struct Plots(Vec<serde_json::Value>);
+
+impl Plots {
+    /// Adds a plot and gives back its place. `data` has the `plot` that names the script which draws it.
+    pub(crate) fn add(
+        &mut self,
+        label: impl Into<String>,
+        data: serde_json::Value,
+        picture: Option<String>,
+    ) -> Block {
+        self.0.push(data);
+        Block::Plot { label: label.into(), index: self.0.len() - 1, picture }
+    }
+}
+
+/// A table that is not folded away.
+pub(crate) fn table<const N: usize>(head: [&str; N], rows: Vec<Vec<String>>) -> Block {
+    Block::Table { head: head.map(str::to_owned).to_vec(), rows, folded: None }
+}
+
+/// The page as one file.
+pub(crate) fn render(page: &Page, plots: &Plots) -> Result<String> {
+    let failed = |reason: String| Error::Output { what: "report.html".into(), reason };
+    let [sequential, diverging] =
+        [ColourMap::Sequential, ColourMap::Diverging].map(ColourMap::stops);
+    let palettes = serde_json::json!({ "sequential": sequential, "diverging": diverging });
+    let data = serde_json::json!({ "palettes": palettes, "plots": plots.0 });
+    let data = serde_json::to_string(&data).map_err(|reason| failed(reason.to_string()))?;
+    let mut environment = Environment::new();
+    environment.set_auto_escape_callback(|_| AutoEscape::Html);
+    // Tags leave no lines of their own.
+    let syntax = SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).build();
+    environment.set_syntax(syntax.map_err(|reason| failed(reason.to_string()))?);
+    environment
+        .render_str(
+            TEMPLATE,
+            context! {
+                page => Serde(page),
+                style => Value::from_safe_string(STYLE.to_owned()),
+                scripts => Value::from_safe_string(SCRIPTS.concat()),
+                // No text within the data can end the element that holds them.
+                data => Value::from_safe_string(data.replace('<', "\\u003c")),
+                series => Serde(curve_colours()),
+            },
+        )
+        .map_err(|reason| failed(reason.to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn page(text: &str) -> String {
+        let mut plots = Plots::default();
+        let plot = plots.add(text, serde_json::json!({"plot": "chart", "title": text}), None);
+        let list = Block::List { items: vec![text.to_owned()] };
+        let cells = table(["head"], vec![vec![text.to_owned()]]);
+        let part = Part { title: text.to_owned(), blocks: vec![list, cells, plot] };
+        let page = Page {
+            title: text.to_owned(),
+            masthead: Some(Masthead { lines: vec![[text, text].map(str::to_owned)], logo: None }),
+            description: Some(text.to_owned()),
+            verdict: text.to_owned(),
+            standing: Standing::Open,
+            parts: vec![part],
+            footer: text.to_owned(),
+        };
+        render(&page, &plots).unwrap()
+    }
+
+    #[test]
+    fn no_text_becomes_a_part_of_the_page() {
+        let html = page("</script><b>\"&'{{ 1 }}");
+        assert!(!html.contains("<b>"));
+        assert!(html.contains("&lt;b&gt;&quot;&amp;&#x27;{{ 1 }}"));
+        // The scripts and the data end once each.
+        assert_eq!(html.matches("</script").count(), 2);
+        assert!(html.contains("\\u003c/script>"));
+    }
+
+    #[test]
+    fn nothing_is_loaded_from_anywhere() {
+        let html = page("words");
+        // The one name space that is no address.
+        let html = html.replace("http://www.w3.org/2000/svg", "");
+        for address in ["http:", "https:", "//", "src=", "href=\"", "@import", "url("] {
+            let found: Vec<&str> = html
+                .match_indices(address)
+                .map(|(at, _)| &html[at..html.floor_char_boundary(at + 60)])
+                .filter(|text| !text.starts_with("href=\"#") && !text.starts_with("// "))
+                .collect();
+            assert!(found.is_empty(), "{address}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn no_script_ends_its_element() {
+        assert!(SCRIPTS.iter().all(|script| !script.contains("</")));
+        assert!(!STYLE.contains("</"));
+    }
+}

@@ -1,0 +1,69 @@
+//! `report.md`: the page for people, wherever Markdown is rendered.
+
+use crate::contents::{parts, verdict};
+use crate::html::frame::{Block, Part, Plots};
+use crate::{LOGO, Report};
+use lumiduct_base::text::{markdown_cell, markdown_page};
+use lumiduct_input::Project;
+use std::fmt::Write;
+
+/// The whole page.
+pub(crate) fn markdown(report: &Report) -> String {
+    let mut page = format!("# {}\n\n", report.scene.title);
+    page += &masthead(report.scene.project.as_ref());
+    if let Some(description) = &report.scene.description {
+        page += &format!("{}\n\n", description.trim());
+    }
+    let (_, verdict) = verdict(report);
+    page += &format!("**{verdict}**\n\n");
+    if report.run.partial {
+        page += "**This report is partial: the run was interrupted.**\n\n";
+    }
+    // Plots are for scripts; here their pictures are shown.
+    parts(report, &mut Plots::default()).iter().for_each(|part| add(&mut page, part));
+    markdown_page(page.trim_end()) + "\n"
+}
+
+/// The head of the pages of a project.
+pub(crate) fn masthead(project: Option<&Project>) -> String {
+    let Some(project) = project else { return String::new() };
+    let logo = if project.logo.is_some() { format!("![logo]({LOGO})\n\n") } else { String::new() };
+    let lines = project.entries().into_iter().map(|(name, text)| format!("{name}: {text}"));
+    format!("{logo}{}\n\n", lines.collect::<Vec<_>>().join(" · "))
+}
+
+fn add(page: &mut String, part: &Part) {
+    _ = write!(page, "## {}\n\n", part.title);
+    for block in &part.blocks {
+        match block {
+            Block::Heading { text } => _ = write!(page, "### {text}\n\n"),
+            Block::Words { text } => _ = write!(page, "{text}\n\n"),
+            Block::List { items } => {
+                items.iter().for_each(|item| page.push_str(&format!("- {item}\n")));
+                page.push('\n');
+            }
+            Block::Table { folded: Some(what), .. } => {
+                _ = write!(page, "{what} are in `measures.csv`.\n\n");
+            }
+            Block::Table { head, rows, folded: None } => table(page, head, rows),
+            Block::Plot { label, picture: Some(picture), .. } => {
+                _ = write!(page, "![{label}]({picture})\n\n");
+            }
+            Block::Plot { picture: None, .. } => {}
+        }
+    }
+}
+
+fn table(page: &mut String, head: &[String], rows: &[Vec<String>]) {
+    if rows.is_empty() {
+        return;
+    }
+    let mut line = |cells: &[String]| {
+        let cells: Vec<String> = cells.iter().map(|cell| markdown_cell(cell)).collect();
+        _ = writeln!(page, "| {} |", cells.join(" | "));
+    };
+    line(head);
+    line(&vec!["---".to_owned(); head.len()]);
+    rows.iter().for_each(|row| line(row));
+    page.push('\n');
+}

@@ -1,0 +1,266 @@
+//! Maps: a value per cell of a rectangle, in colours.
+
+use crate::png::axis::{Axis, Scale};
+use crate::png::canvas::Canvas;
+use crate::png::colour_bar::{BAR_WIDTH, BarScale, ColourBar, Colouring, TIP};
+use crate::png::geometry::Rect;
+use crate::png::layout::{
+    Aspect, Axes, Header, MARGIN, PlotSize, SQUEEZED_REMARK, plot_size, remark,
+};
+use crate::png::marked_axis::MarkedAxis;
+use crate::png::palette::{ColourMap, NEUTRAL};
+use crate::png::text::TICK;
+use lumiduct_base::error::Result;
+use lumiduct_base::number::format_value;
+use ndarray::Array2;
+
+/// A value per cell of a rectangle.
+#[derive(Debug, Clone)]
+pub struct HeatMap {
+    /// What is shown.
+    pub title: String,
+    /// How it was found; may be empty.
+    pub subtitle: String,
+    /// Name and unit of the horizontal axis: "x in mm".
+    pub x_label: String,
+    /// Name and unit of the vertical axis.
+    pub y_label: String,
+    /// Outer edges of the first and the last column, in the unit of the label.
+    pub x_range: [f64; 2],
+    /// Outer edges of the first and the last row, in the unit of the label.
+    pub y_range: [f64; 2],
+    /// How places become fractions of both axes.
+    pub axes: Scale,
+    /// The values, `[[row, column]]`: row 0 is drawn at the bottom, column 0 at the left. What is not finite lies
+    /// outside of the sensor and is drawn grey.
+    pub values: Array2<f64>,
+    /// Unit of the values; may be empty.
+    pub unit: String,
+    /// How values become fractions of the colour bar.
+    pub scale: Scale,
+    /// How fractions become colours.
+    pub colours: ColourMap,
+    /// Values at the ends of the colour bar; `None` takes them from the data.
+    pub limits: Option<[f64; 2]>,
+}
+
+/// Largest size of the map itself, pixels.
+const MOST: [f64; 2] = [640.0, 600.0];
+/// A map longer than this is squeezed.
+const LONGEST: f64 = 4.0;
+/// Space between the map and the colour bar, pixels.
+const BAR_GAP: f64 = 26.0;
+
+/// Draws a map with axes, colour bar and a line with the least and greatest of its cells.
+///
+/// Zero is an end of a linear bar where the values come near it. At most one cell in a thousand that sticks out
+/// tenfold does not stretch the bar, which then has a tip. A logarithmic bar spans at most six decades.
+pub fn heat_map(map: &HeatMap) -> Result<Vec<u8>> {
+    let (axes, size) = map_axes(map);
+    let size = whole_cells(size, &map.values);
+    let frame = Axes::new(axes, [size.width, size.height])?;
+    let values = finite(&map.values);
+    let colouring = Colouring {
+        values: &values,
+        unit: &map.unit,
+        scale: map.scale,
+        colours: map.colours,
+        limits: map.limits,
+    };
+    let bar = ColourBar::new(&colouring, size.height)?;
+
+    let left = MARGIN + frame.left_margin();
+    let content = left + size.width + BAR_GAP + bar.width() + MARGIN;
+    let width = content.max(620.0).ceil();
+    let left = (left + 0.5 * (width - content)).round();
+    let header = Header::new(&map.title, &map.subtitle, width - 2.0 * MARGIN)?;
+    let above = TICK.line_step() + TIP + 2.0;
+    let top = (MARGIN + header.height() + above).round();
+    let remarks = remarks(&values, &map.unit, size.aspect);
+    let below = frame.bottom_margin() + 14.0 + remarks.len() as f64 * TICK.line_step();
+    let height = top + size.height + below + MARGIN - 6.0;
+
+    let mut canvas = Canvas::new(width as usize, height.ceil() as usize);
+    let area = Rect::new(left, top, size.width, size.height);
+    header.draw(&mut canvas, MARGIN, MARGIN - 4.0)?;
+    draw_cells(&mut canvas, area, &map.values, &bar);
+    frame.draw(&mut canvas, area)?;
+    bar.draw(&mut canvas, Rect::new(area.right + BAR_GAP, top, BAR_WIDTH, size.height))?;
+    for (index, text) in remarks.iter().enumerate() {
+        let y = area.bottom + frame.bottom_margin() + 14.0 + (index + 1) as f64 * TICK.line_step();
+        let text = TICK.fit(text, width - 2.0 * MARGIN)?;
+        remark(&mut canvas, &text, [MARGIN, y - 5.0])?;
+    }
+    canvas.into_png()
+}
+
+/// The axes of a map, and the size at which it is drawn, pixels.
+fn map_axes(map: &HeatMap) -> ([MarkedAxis; 2], PlotSize) {
+    let axes = [map.x_range, map.y_range].map(|[min, max]| Axis::new(min, max, map.axes));
+    let size = plot_size(axes, MOST, LONGEST);
+    let [x, y] = axes;
+    let x = MarkedAxis::level(x, &map.x_label, size.width);
+    ([x, MarkedAxis::upright(y, &map.y_label, size.height)], size)
+}
+
+/// A map but for its cells: the description that pictures and pages draw alike.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct MapFrame {
+    /// Its axes.
+    pub(crate) axes: [MarkedAxis; 2],
+    /// Its bar on the map's own scale.
+    pub(crate) bar: BarScale,
+    /// Its bar on a logarithmic scale; `None` of a map with colours for both sides of zero.
+    pub(crate) log_bar: Option<BarScale>,
+}
+
+impl MapFrame {
+    /// The frame of a map.
+    pub(crate) fn new(map: &HeatMap) -> Self {
+        let (axes, size) = map_axes(map);
+        let values = finite(&map.values);
+        let bar = |scale: Scale| {
+            let (unit, colours, limits) = (map.unit.as_str(), map.colours, map.limits);
+            BarScale::new(&Colouring { values: &values, unit, scale, colours, limits }, size.height)
+        };
+        let log_bar = match map.colours {
+            ColourMap::Sequential => Some(bar(Scale::Log)),
+            ColourMap::Diverging => None,
+        };
+        Self { axes, bar: bar(map.scale), log_bar }
+    }
+}
+
+/// A size at which every cell has the same number of pixels, if one is near.
+fn whole_cells(size: PlotSize, values: &Array2<f64>) -> PlotSize {
+    let (rows, columns) = values.dim();
+    if rows == 0 || columns == 0 {
+        return size;
+    }
+    let cell = [size.width / columns as f64, size.height / rows as f64];
+    // Rounded down, so that the map never grows beyond its room.
+    let whole = cell.map(f64::floor);
+    let near = cell.iter().zip(whole).all(|(cell, whole)| whole >= 0.8 * cell);
+    // Cells that are square stay square; others may change their aspect by less than a hundredth.
+    let same = whole[0] * cell[1] / (whole[1] * cell[0]);
+    if near && (same - 1.0).abs() < 0.01 {
+        PlotSize { width: whole[0] * columns as f64, height: whole[1] * rows as f64, ..size }
+    } else {
+        size
+    }
+}
+
+fn draw_cells(canvas: &mut Canvas, area: Rect, values: &Array2<f64>, bar: &ColourBar) {
+    let (rows, columns) = values.dim();
+    if rows == 0 || columns == 0 {
+        return canvas.bitmap(area, |_, _| NEUTRAL);
+    }
+    let (width, height) = (area.width() as usize, area.height() as usize);
+    canvas.bitmap(area, |x, y| {
+        let row = rows - 1 - (2 * y + 1) * rows / (2 * height);
+        let column = (2 * x + 1) * columns / (2 * width);
+        bar.colour_of(values[[row, column]])
+    });
+}
+
+/// Lines below the map, from values in ascending order.
+fn remarks(values: &[f64], unit: &str, aspect: Aspect) -> Vec<String> {
+    let with_unit = |value: f64| format!("{} {unit}", format_value(value)).trim().to_string();
+    let mut lines = vec![match (values.first(), values.last()) {
+        (Some(&least), Some(&greatest)) => {
+            let cells =
+                if values.len() == 1 { "1 cell" } else { &format!("{} cells", values.len()) };
+            let [least, greatest] = [least, greatest].map(with_unit);
+            format!("min {least}   ·   max {greatest}   ·   {cells}")
+        }
+        (None, _) | (_, None) => "No cell has a value.".to_string(),
+    }];
+    if aspect == Aspect::Squeezed {
+        lines.push(SQUEEZED_REMARK.to_string());
+    }
+    lines
+}
+
+/// The finite values, in ascending order.
+fn finite(values: &Array2<f64>) -> Vec<f64> {
+    let mut values: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
+    values.sort_by(f64::total_cmp);
+    values
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::png::tests::Decoded;
+    use ndarray::array;
+
+    fn map(values: Array2<f64>) -> HeatMap {
+        HeatMap {
+            title: "Illuminance".to_string(),
+            subtitle: String::new(),
+            x_label: "x in mm".to_string(),
+            y_label: "y in mm".to_string(),
+            x_range: [0.0, 3.0],
+            y_range: [0.0, 2.0],
+            axes: Scale::Linear,
+            values,
+            unit: "lx".to_string(),
+            scale: Scale::Linear,
+            colours: ColourMap::Sequential,
+            limits: None,
+        }
+    }
+
+    /// Left, top, right and bottom of the cell of a colour, which fills it: places of the colour bar do not count.
+    fn cell(picture: &Decoded, colour: [u8; 3]) -> [usize; 4] {
+        let same = |x: usize, y: usize| picture.at(x, y) == colour;
+        let mut places = picture.places(colour);
+        places.retain(|&(x, y)| same(x, y + 8) || same(x, y - 8));
+        places.retain(|&(x, y)| same(x + 30, y) || same(x - 30, y));
+        let (left, right) = (places.iter().map(|p| p.0).min(), places.iter().map(|p| p.0).max());
+        let (top, bottom) = (places.iter().map(|p| p.1).min(), places.iter().map(|p| p.1).max());
+        let bounds = [left.unwrap(), top.unwrap(), right.unwrap() + 1, bottom.unwrap() + 1];
+        assert_eq!(places.len(), (bounds[2] - bounds[0]) * (bounds[3] - bounds[1]), "{colour:?}");
+        bounds
+    }
+
+    #[test]
+    fn cells_have_their_colour_and_meet_without_seams() {
+        let values = [0.0, 2.0, 4.0, 6.0, f64::NAN, 10.0];
+        let file = heat_map(&map(array![[0.0, 2.0, 4.0], [6.0, f64::NAN, 10.0]])).unwrap();
+        let picture = Decoded::new(&file);
+        let scale = |value: f64| ColourMap::Sequential.colour(value / 10.0);
+        let colour = |value: f64| if value.is_nan() { NEUTRAL } else { scale(value) };
+        let cells = values.map(|value| cell(&picture, colour(value)));
+        let [width, height] = [cells[0][2] - cells[0][0], cells[0][3] - cells[0][1]];
+        assert_eq!(width, height, "1 mm is as long in both directions");
+        for row in 0..2 {
+            for column in 0..3 {
+                let cell = cells[3 * row + column];
+                assert_eq!([cell[2] - cell[0], cell[3] - cell[1]], [width, height]);
+                assert_eq!(cell[0], cells[0][0] + column * width);
+                // Row 0 is the lowest.
+                assert_eq!(cell[3], cells[0][3] - row * height);
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_not_finite_is_neutral() {
+        let file = heat_map(&map(array![[f64::NAN, f64::INFINITY]])).unwrap();
+        let [left, top, right, bottom] = Decoded::new(&file).bounds(NEUTRAL);
+        assert_eq!(Decoded::new(&file).places(NEUTRAL).len(), (right - left) * (bottom - top));
+        assert!(right - left > 500 && bottom - top > 300);
+    }
+
+    #[test]
+    fn cells_stay_whole_and_square_where_there_is_room() {
+        let size = PlotSize { width: 640.0, height: 600.0, aspect: Aspect::True };
+        let whole = whole_cells(size, &Array2::zeros((60, 64)));
+        assert_eq!((whole.width, whole.height), (640.0, 600.0));
+        let whole = whole_cells(size, &Array2::zeros((90, 96)));
+        assert_eq!((whole.width, whole.height), (576.0, 540.0));
+        assert_eq!(whole_cells(size, &Array2::zeros((2000, 2000))), size);
+        assert_eq!(whole_cells(size, &Array2::zeros((0, 0))), size);
+    }
+}

@@ -1,0 +1,374 @@
+//! Curves over an axis: sections of maps, radial profiles, histograms.
+
+mod range;
+
+use crate::png::axis::{Axis, Scale};
+use crate::png::canvas::{Canvas, Ink, Pen};
+use crate::png::geometry::{Point, Rect};
+use crate::png::layout::{Axes, Header, Legend, MARGIN, Sample, write};
+use crate::png::marked_axis::MarkedAxis;
+use crate::png::palette::{SOFT_INK, SeriesInk, paired_colour, series_ink};
+use crate::png::text::{Align, LABEL};
+use lumiduct_base::error::Result;
+use range::{Padding, range};
+
+/// Curves over an axis.
+#[derive(Debug, Clone)]
+pub struct LinePlot {
+    /// What is shown.
+    pub title: String,
+    /// How it was found; may be empty.
+    pub subtitle: String,
+    /// Name and unit of the horizontal axis: "r in mm".
+    pub x_label: String,
+    /// Name and unit of the vertical axis.
+    pub y_label: String,
+    /// Horizontal scale; points at zero and below have no place on a logarithmic one.
+    pub x_scale: Scale,
+    /// Vertical scale; zero lies below the frame of a logarithmic one.
+    pub y_scale: Scale,
+    /// The curves; those without a name are not in the legend.
+    pub series: Vec<Series>,
+}
+
+/// One curve.
+#[derive(Debug, Clone)]
+pub struct Series {
+    /// Its name in the legend; may be empty.
+    pub name: String,
+    /// Its points, in the order in which they are joined; values that are not finite interrupt it.
+    pub points: Vec<SeriesPoint>,
+    /// How the points are joined.
+    pub form: SeriesForm,
+    /// How the standard errors are shown.
+    pub errors: ErrorForm,
+    /// How it is told apart from the others.
+    pub look: Look,
+}
+
+/// How a curve is told apart from the others.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Look {
+    /// By the colour and dashes of its place among all.
+    InTurn,
+    /// Solid, in the colour of a number.
+    Solid(usize),
+    /// Dashed, in the colour of a number.
+    Dashed(usize),
+    /// A thin dotted grey line: a bound, not a result.
+    Bound,
+}
+
+/// A point with a standard error, in the units of the axes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SeriesPoint {
+    /// Where.
+    pub x: f64,
+    /// How much.
+    pub y: f64,
+    /// Standard error of y; zero or not finite where there is none.
+    pub std_error: f64,
+}
+
+/// How points are joined.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SeriesForm {
+    /// By straight lines.
+    Line,
+    /// Each is a level step that reaches half way to its neighbours, as in a histogram.
+    Steps,
+    /// Not at all: each is a dot.
+    Dots,
+}
+
+/// How standard errors are shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ErrorForm {
+    /// Not at all.
+    Hidden,
+    /// A bar at each point, one standard error to either side.
+    Bars,
+    /// A band along the curve, one standard error to either side.
+    Band,
+}
+
+/// How far dots and error bars reach beyond the frame, pixels.
+const OVERHANG: f64 = 4.0;
+/// Width of the picture, pixels.
+const WIDTH: f64 = 900.0;
+/// Height of the frame, pixels.
+const HEIGHT: f64 = 400.0;
+
+/// Draws curves over two axes, with a legend above the frame.
+pub fn line_plot(plot: &LinePlot) -> Result<Vec<u8>> {
+    let header = Header::new(&plot.title, &plot.subtitle, WIDTH - 2.0 * MARGIN)?;
+    let entries: Vec<(Sample, &str)> = plot
+        .series
+        .iter()
+        .enumerate()
+        .map(|(index, series)| (sample(series, ink(series, index)), series.name.as_str()))
+        .collect();
+    let legend = Legend::new(&entries, WIDTH - 2.0 * MARGIN)?;
+
+    let top = MARGIN + header.height() + legend.height();
+    let frame = Axes::new(line_axes(plot, plot.y_scale), [WIDTH - 4.0 * MARGIN, HEIGHT])?;
+    let left = MARGIN + frame.left_margin();
+    let area = Rect::new(left, top.round(), WIDTH - MARGIN - 6.0 - left, HEIGHT);
+    let height = area.bottom + frame.bottom_margin() + MARGIN - 6.0;
+
+    let mut canvas = Canvas::new(WIDTH as usize, height as usize);
+    header.draw(&mut canvas, MARGIN, MARGIN - 4.0)?;
+    legend.draw(&mut canvas, MARGIN, MARGIN + header.height() - 8.0)?;
+    frame.draw_grid(&mut canvas, area);
+    for (index, series) in plot.series.iter().enumerate() {
+        draw_errors(&mut canvas, &frame, area, series, ink(series, index));
+    }
+    for (index, series) in plot.series.iter().enumerate() {
+        draw_curve(&mut canvas, &frame, area, series, ink(series, index));
+    }
+    canvas.clip_to_all();
+    frame.draw(&mut canvas, area)?;
+    if !plot.series.iter().flat_map(|series| &series.points).any(is_drawn) {
+        write(&mut canvas, "No values.", area.middle(), LABEL, Align::Centre)?;
+    }
+    canvas.into_png()
+}
+
+/// The axes of curves, the upright one with this scale: the description that pictures and pages draw alike.
+pub(crate) fn line_axes(plot: &LinePlot, y_scale: Scale) -> [MarkedAxis; 2] {
+    let [x, y] = data_axes(plot, y_scale);
+    let x = MarkedAxis::level(x, &plot.x_label, WIDTH - 4.0 * MARGIN);
+    [x, MarkedAxis::upright(y, &plot.y_label, HEIGHT)]
+}
+
+/// How a curve is drawn, by its place among all.
+pub(crate) fn ink(series: &Series, index: usize) -> SeriesInk {
+    match series.look {
+        Look::InTurn => series_ink(index),
+        Look::Solid(number) => SeriesInk { colour: paired_colour(number), dash: &[] },
+        Look::Dashed(number) => SeriesInk { colour: paired_colour(number), dash: &[6.0, 5.0] },
+        Look::Bound => SeriesInk { colour: SOFT_INK, dash: &[2.0, 4.0] },
+    }
+}
+
+fn is_drawn(point: &SeriesPoint) -> bool {
+    point.x.is_finite() && point.y.is_finite()
+}
+
+fn error_of(point: &SeriesPoint) -> f64 {
+    if point.std_error.is_finite() { point.std_error.abs() } else { 0.0 }
+}
+
+fn sample(series: &Series, ink: SeriesInk) -> Sample {
+    match series.form {
+        SeriesForm::Line | SeriesForm::Steps => Sample::Line(pen(ink)),
+        SeriesForm::Dots => Sample::Dot(ink.colour, 3.0),
+    }
+}
+
+fn pen(ink: SeriesInk) -> Pen {
+    Pen { ink: Ink::opaque(ink.colour), width: 2.0, dash: ink.dash }
+}
+
+/// The points of a curve as they are joined, in units of the axes.
+fn outline(series: &Series) -> Vec<Point> {
+    let points = &series.points;
+    match series.form {
+        SeriesForm::Line | SeriesForm::Dots => points.iter().map(|p| [p.x, p.y]).collect(),
+        SeriesForm::Steps => points
+            .iter()
+            .enumerate()
+            .flat_map(|(index, point)| {
+                let before = index.checked_sub(1).map(|before| points[before].x);
+                let after = points.get(index + 1).map(|after| after.x);
+                let [left, right] = step_edges(point.x, before, after);
+                [[left, point.y], [right, point.y]]
+            })
+            .collect(),
+    }
+}
+
+/// The edges of a step: half way to its neighbours, as far out as in where there is only one, half a unit where
+/// there is none.
+fn step_edges(x: f64, before: Option<f64>, after: Option<f64>) -> [f64; 2] {
+    let halves = [before.map(|before| 0.5 * (x - before)), after.map(|after| 0.5 * (after - x))];
+    let left = halves[0].or(halves[1]).unwrap_or(0.5);
+    let right = halves[1].or(halves[0]).unwrap_or(0.5);
+    [x - left, x + right]
+}
+
+/// Axes around all curves and their error bars.
+fn data_axes(plot: &LinePlot, y_scale: Scale) -> [Axis; 2] {
+    let mut xs = Vec::new();
+    let mut ys = Vec::new();
+    for series in &plot.series {
+        xs.extend(outline(series).into_iter().filter(|p| p[1].is_finite()).map(|p| p[0]));
+        for point in series.points.iter().filter(|point| is_drawn(point)) {
+            ys.push(point.y);
+            match series.errors {
+                ErrorForm::Hidden => {}
+                ErrorForm::Bars | ErrorForm::Band => {
+                    ys.extend([point.y - error_of(point), point.y + error_of(point)]);
+                }
+            }
+        }
+    }
+    [range(&xs, plot.x_scale, Padding::None), range(&ys, y_scale, Padding::Around)]
+}
+
+fn draw_errors(canvas: &mut Canvas, frame: &Axes, area: Rect, series: &Series, ink: SeriesInk) {
+    match series.errors {
+        ErrorForm::Hidden => {}
+        ErrorForm::Bars => {
+            canvas.clip_to(area.grown(OVERHANG));
+            for point in series.points.iter().filter(|p| is_drawn(p) && error_of(p) > 0.0) {
+                let low = frame.place(area, [point.x, point.y - error_of(point)]);
+                let high = frame.place(area, [point.x, point.y + error_of(point)]);
+                let pen = Pen { ink: Ink::opaque(ink.colour), width: 1.2, dash: &[] };
+                canvas.line(&[low, high], &pen);
+                for end in [low, high] {
+                    canvas.line(&[[end[0] - 3.5, end[1]], [end[0] + 3.5, end[1]]], &pen);
+                }
+            }
+        }
+        ErrorForm::Band => {
+            canvas.clip_to(area);
+            let shifted = |sign: f64| {
+                let points = series.points.iter().map(move |point| SeriesPoint {
+                    y: point.y + sign * error_of(point),
+                    ..*point
+                });
+                outline(&Series { points: points.collect(), ..series.clone() })
+            };
+            let (lower, upper) = (shifted(-1.0), shifted(1.0));
+            let band = Ink { colour: ink.colour, opacity: 0.22 };
+            // Piece by piece, so that gaps of the curve stay gaps.
+            for (low, high) in lower.windows(2).zip(upper.windows(2)) {
+                let corners = [low[0], low[1], high[1], high[0]].map(|p| frame.place(area, p));
+                if corners.iter().flatten().all(|coordinate| coordinate.is_finite()) {
+                    canvas.area(&corners, band);
+                }
+            }
+        }
+    }
+}
+
+fn draw_curve(canvas: &mut Canvas, frame: &Axes, area: Rect, series: &Series, ink: SeriesInk) {
+    let places: Vec<Point> =
+        outline(series).into_iter().map(|point| frame.place(area, point)).collect();
+    match series.form {
+        SeriesForm::Line | SeriesForm::Steps => {
+            canvas.clip_to(area);
+            canvas.line(&places, &pen(ink));
+        }
+        SeriesForm::Dots => {
+            canvas.clip_to(area.grown(OVERHANG));
+            for place in places {
+                canvas.dot(place, 3.0, Ink::opaque(ink.colour));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::png::tests::Decoded;
+
+    fn axes_of(plot: &LinePlot) -> [Axis; 2] {
+        data_axes(plot, plot.y_scale)
+    }
+
+    fn plot(y_scale: Scale, form: SeriesForm, points: &[[f64; 3]]) -> LinePlot {
+        let points =
+            points.iter().map(|&[x, y, std_error]| SeriesPoint { x, y, std_error }).collect();
+        LinePlot {
+            title: "Bounces".to_string(),
+            subtitle: String::new(),
+            x_label: "bounces".to_string(),
+            y_label: "share of the flux".to_string(),
+            x_scale: Scale::Linear,
+            y_scale,
+            series: vec![Series {
+                name: String::new(),
+                points,
+                form,
+                errors: ErrorForm::Band,
+                look: Look::InTurn,
+            }],
+        }
+    }
+
+    #[test]
+    fn curves_that_belong_together_have_one_colour() {
+        let mut plot = plot(Scale::Linear, SeriesForm::Line, &[[0.0, 1.0, 0.0], [1.0, 2.0, 0.0]]);
+        let mut lit = |look: Look| {
+            plot.series[0].look = look;
+            Decoded::new(&line_plot(&plot).unwrap()).places(paired_colour(1)).len()
+        };
+        let [whole, dashed, bound] = [Look::Solid(1), Look::Dashed(1), Look::Bound].map(&mut lit);
+        assert!(dashed > whole / 3 && dashed < whole * 4 / 5 && bound == 0, "{whole} {dashed}");
+    }
+
+    #[test]
+    fn steps_reach_half_way_to_their_neighbours() {
+        let plot = plot(
+            Scale::Linear,
+            SeriesForm::Steps,
+            &[[0.0, 1.0, 0.0], [1.0, 2.0, 0.0], [3.0, 4.0, 0.0]],
+        );
+        assert_eq!(
+            outline(&plot.series[0]),
+            [[-0.5, 1.0], [0.5, 1.0], [0.5, 2.0], [2.0, 2.0], [2.0, 4.0], [4.0, 4.0]]
+        );
+        let [x, _] = axes_of(&plot);
+        assert_eq!((x.min(), x.max()), (-0.5, 4.0));
+    }
+
+    #[test]
+    fn the_frame_holds_the_error_bars_and_begins_at_zero_where_values_come_near_it() {
+        let axes =
+            axes_of(&plot(Scale::Linear, SeriesForm::Line, &[[0.0, 2.0, 0.5], [1.0, 8.0, 2.0]]));
+        assert_eq!(axes[1].min(), 0.0);
+        assert!(axes[1].max() > 10.0 && axes[1].max() < 11.0);
+        let axes =
+            axes_of(&plot(Scale::Linear, SeriesForm::Line, &[[0.0, 98.0, 0.5], [1.0, 99.0, 0.5]]));
+        assert!(axes[1].min() > 97.0 && axes[1].min() < 97.5);
+    }
+
+    #[test]
+    fn zeros_lie_below_a_logarithmic_frame() {
+        let points = [[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.01, 0.0]];
+        let axes = axes_of(&plot(Scale::Log, SeriesForm::Steps, &points));
+        assert!(axes[1].min() > 0.005 && axes[1].min() < 0.01);
+        assert!(axes[1].fraction(0.0) < -1.0);
+    }
+
+    #[test]
+    fn a_rising_line_is_drawn_from_the_lower_left_to_the_upper_right() {
+        let points: Vec<[f64; 3]> = (0..=10).map(|i| [f64::from(i), f64::from(i), 0.0]).collect();
+        let picture =
+            Decoded::new(&line_plot(&plot(Scale::Linear, SeriesForm::Line, &points)).unwrap());
+        let mut places = picture.places(series_ink(0).colour);
+        places.sort_unstable();
+        let (first, last) = (places[0], places[places.len() - 1]);
+        assert!(last.0 - first.0 > 700 && first.1 - last.1 > 340, "{first:?} {last:?}");
+    }
+
+    #[test]
+    fn a_gap_in_the_values_is_a_gap_in_the_curve() {
+        let points = [
+            [0.0, 1.0, 0.0],
+            [1.0, 1.0, 0.0],
+            [2.0, f64::NAN, 0.0],
+            [3.0, 1.0, 0.0],
+            [4.0, 1.0, 0.0],
+        ];
+        let picture =
+            Decoded::new(&line_plot(&plot(Scale::Linear, SeriesForm::Line, &points)).unwrap());
+        let [left, _, right, _] = picture.bounds(series_ink(0).colour);
+        let places = picture.places(series_ink(0).colour);
+        let middle = left + (right - left) / 2;
+        assert!(places.iter().all(|place| place.0.abs_diff(middle) > (right - left) / 5));
+    }
+}

@@ -1,0 +1,338 @@
+//! Luminous intensity distribution curves, as in the data sheets of luminaires.
+
+use crate::png::axis::{Axis, Scale, Ticks};
+use crate::png::canvas::{Canvas, Ink, Pen};
+use crate::png::geometry::{Point, Rect};
+use crate::png::layout::{Header, Legend, MARGIN, Sample, remark, write};
+use crate::png::marked_axis::{MarkedAxis, with_factor};
+use crate::png::palette::{GRID, INK, PAPER, SOFT_INK, SeriesInk, series_ink};
+use crate::png::text::{Align, LABEL, TICK};
+use lumiduct_base::error::Result;
+
+/// Curves of a value over an angle from the axis.
+#[derive(Debug, Clone)]
+pub struct PolarPlot {
+    /// What is shown.
+    pub title: String,
+    /// How it was found; may be empty.
+    pub subtitle: String,
+    /// Unit of the values: "cd".
+    pub unit: String,
+    /// Where gamma = 0 is drawn.
+    pub pole: Pole,
+    /// The curves, usually one per pair of C half-planes.
+    pub curves: Vec<Curve>,
+}
+
+/// Where gamma = 0 is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Pole {
+    /// At the bottom, as for luminaires that shine down.
+    Down,
+    /// At the top.
+    Up,
+}
+
+/// One curve.
+#[derive(Debug, Clone)]
+pub struct Curve {
+    /// Its name in the legend: "C0 / C180".
+    pub name: String,
+    /// Gamma in degrees and the value there, in the order in which they are joined. Positive gamma is drawn on the
+    /// right (C0), negative gamma on the left (C180).
+    pub points: Vec<(f64, f64)>,
+    /// Standard error of each value, drawn as a band; empty for none.
+    pub std_errors: Vec<f64>,
+}
+
+const WIDTH: f64 = 760.0;
+/// Radius of the outermost circle, pixels.
+const RADIUS: f64 = 270.0;
+/// Room for the angles around it, pixels.
+const ANGLE_ROOM: f64 = 30.0;
+/// Degrees between spokes.
+const SPOKES: usize = 30;
+
+/// Which part of the circle is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Part {
+    /// Gamma from −90° to 90°: there is nothing beyond.
+    Half,
+    Whole,
+}
+
+/// The place of a polar plot on the paper.
+struct Dial {
+    centre: Point,
+    pole: Pole,
+    part: Part,
+    /// Value at the outermost circle.
+    outer: f64,
+    ticks: Ticks,
+}
+
+/// Draws curves over the angle in concentric circles, only the half circle where nothing lies beyond 90°.
+pub fn polar_plot(plot: &PolarPlot) -> Result<Vec<u8>> {
+    let header = Header::new(&plot.title, &plot.subtitle, WIDTH - 2.0 * MARGIN)?;
+    let entries: Vec<(Sample, &str)> = plot
+        .curves
+        .iter()
+        .enumerate()
+        .map(|(index, curve)| (Sample::Line(pen(series_ink(index))), curve.name.as_str()))
+        .collect();
+    let legend = Legend::new(&entries, WIDTH - 2.0 * MARGIN)?;
+    let (outer, ticks) = rings(&plot.curves);
+    let part = part(&plot.curves);
+    let top = MARGIN + header.height() + legend.height();
+    let (above, below) = match (part, plot.pole) {
+        (Part::Whole, Pole::Down | Pole::Up) => (RADIUS + ANGLE_ROOM, RADIUS + ANGLE_ROOM),
+        (Part::Half, Pole::Down) => (2.0 * TICK.line_step(), RADIUS + ANGLE_ROOM),
+        (Part::Half, Pole::Up) => (RADIUS + ANGLE_ROOM, 2.0 * TICK.line_step()),
+    };
+    let centre = [0.5 * WIDTH + 0.5, (top + above).round() + 0.5];
+    let dial = Dial { centre, pole: plot.pole, part, outer, ticks };
+
+    let bottom = (centre[1] + below + MARGIN - 8.0).floor();
+
+    let mut canvas = Canvas::new(WIDTH as usize, bottom as usize);
+    header.draw(&mut canvas, MARGIN, MARGIN - 4.0)?;
+    legend.draw(&mut canvas, MARGIN, MARGIN + header.height() - 8.0)?;
+    dial.draw_grid(&mut canvas)?;
+    for (index, curve) in plot.curves.iter().enumerate() {
+        dial.draw_band(&mut canvas, curve, series_ink(index));
+    }
+    for (index, curve) in plot.curves.iter().enumerate() {
+        let points: Vec<Point> =
+            curve.points.iter().map(|&(gamma, value)| dial.place(gamma, value)).collect();
+        canvas.line(&points, &pen(series_ink(index)));
+    }
+    dial.draw_values(&mut canvas)?;
+    let circles = with_factor(&format!("circles in {}", plot.unit), dial.ticks.exponent);
+    let at = [MARGIN, bottom - MARGIN + 4.0];
+    remark(&mut canvas, &circles, at)?;
+    if !plot.curves.iter().flat_map(|curve| &curve.points).any(|point| point.1 > 0.0) {
+        let y = match plot.pole {
+            Pole::Down => centre[1] + 0.5 * RADIUS,
+            Pole::Up => centre[1] - 0.5 * RADIUS,
+        };
+        write(&mut canvas, "No values above zero.", [centre[0], y], LABEL, Align::Centre)?;
+    }
+    canvas.into_png()
+}
+
+fn pen(ink: SeriesInk) -> Pen {
+    Pen { ink: Ink::opaque(ink.colour), width: 2.2, dash: ink.dash }
+}
+
+/// The value at the outermost circle and the marks up to it.
+fn rings(curves: &[Curve]) -> (f64, Ticks) {
+    let values = curves.iter().flat_map(|curve| &curve.points).map(|point| point.1);
+    let greatest = values.filter(|value| value.is_finite()).fold(0.0, f64::max);
+    let axis = Axis::new(0.0, greatest, Scale::Linear);
+    let ticks = axis.ticks(6);
+    let step = match ticks.major.as_slice() {
+        [first, second, ..] => second.value - first.value,
+        [_] | [] => axis.max(),
+    };
+    // The curve may reach a little beyond a circle, but not beyond the last one.
+    let outer = (axis.max() / step - 1e-6).ceil().max(1.0) * step;
+    (outer, Axis::new(0.0, outer, Scale::Linear).ticks(7))
+}
+
+/// Decades of a logarithmic dial: below them is the middle.
+const DECADES: f64 = 1e4;
+
+/// The axis from the middle to the outermost circle: the description that pictures and pages draw alike.
+pub(crate) fn dial_axis(plot: &PolarPlot, scale: Scale) -> MarkedAxis {
+    let (outer, ticks) = rings(&plot.curves);
+    let label = format!("intensity in {}", plot.unit);
+    match scale {
+        Scale::Linear | Scale::Tangent => {
+            MarkedAxis::new(Axis::new(0.0, outer, Scale::Linear), ticks, &label)
+        }
+        Scale::Log => {
+            let axis = Axis::new(outer / DECADES, outer, Scale::Log);
+            MarkedAxis::new(axis, axis.ticks(7), &label)
+        }
+    }
+}
+
+fn part(curves: &[Curve]) -> Part {
+    let mut points = curves.iter().flat_map(|curve| &curve.points);
+    let beyond = points.any(|&(gamma, value)| gamma.abs() > 90.0 + 1e-6 && value > 0.0);
+    if beyond { Part::Whole } else { Part::Half }
+}
+
+impl Dial {
+    /// Where a value lies on the paper; NaN where it has no place.
+    fn place(&self, gamma_deg: f64, value: f64) -> Point {
+        let value = if value.is_finite() { value } else { f64::NAN };
+        // Bands may reach a little beyond the outermost circle.
+        self.at(gamma_deg, RADIUS * (value / self.outer).clamp(0.0, 1.05))
+    }
+
+    fn at(&self, gamma_deg: f64, radius: f64) -> Point {
+        let (sin, cos) = gamma_deg.to_radians().sin_cos();
+        let down = match self.pole {
+            Pole::Down => cos,
+            Pole::Up => -cos,
+        };
+        [self.centre[0] + radius * sin, self.centre[1] + radius * down]
+    }
+
+    /// Largest |gamma| that is drawn, degrees.
+    fn widest(&self) -> usize {
+        match self.part {
+            Part::Half => 90,
+            Part::Whole => 180,
+        }
+    }
+
+    fn draw_grid(&self, canvas: &mut Canvas) -> Result<()> {
+        let widest = self.widest();
+        let circle = |radius: f64| -> Vec<Point> {
+            let steps = (0..=2 * widest).map(|step| step as f64 - widest as f64);
+            steps.map(|gamma| self.at(gamma, radius)).collect()
+        };
+        let thin = Pen { ink: Ink::opaque(GRID), width: 1.0, dash: &[] };
+        let edge = Pen { ink: Ink::opaque(SOFT_INK), width: 1.0, dash: &[] };
+        for tick in self.ticks.major.iter().filter(|tick| tick.value > 0.0) {
+            canvas.line(&circle(RADIUS * tick.value / self.outer), &thin);
+        }
+        for gamma in (0..=widest).step_by(SPOKES) {
+            for side in [-1.0, 1.0] {
+                let gamma = side * gamma as f64;
+                canvas.line(&[self.centre, self.at(gamma, RADIUS)], &thin);
+            }
+        }
+        canvas.line(&circle(RADIUS), &edge);
+        if self.part == Part::Half {
+            canvas.line(&[self.at(-90.0, RADIUS), self.at(90.0, RADIUS)], &edge);
+        }
+        self.draw_angles(canvas)
+    }
+
+    fn draw_angles(&self, canvas: &mut Canvas) -> Result<()> {
+        for gamma in (0..=self.widest()).step_by(SPOKES) {
+            let sides: &[f64] = if gamma % 180 == 0 { &[1.0] } else { &[-1.0, 1.0] };
+            for side in sides {
+                let text = format!("{gamma}°");
+                let [x, y] = self.at(side * gamma as f64, RADIUS + 8.0);
+                let (sin, cos) = (side * gamma as f64).to_radians().sin_cos();
+                let down = match self.pole {
+                    Pole::Down => cos,
+                    Pole::Up => -cos,
+                };
+                // The letters are pushed outward by as much as they reach inward.
+                let half_width = 0.5 * TICK.width(&text)?;
+                let at = [x + half_width * sin, y + 0.5 * TICK.cap_height() * (1.0 + down)];
+                write(canvas, &text, at, TICK, Align::Centre)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn draw_band(&self, canvas: &mut Canvas, curve: &Curve, ink: SeriesInk) {
+        let band = Ink { colour: ink.colour, opacity: 0.22 };
+        let places: Vec<[Point; 2]> = curve
+            .points
+            .iter()
+            .zip(&curve.std_errors)
+            .map(|(&(gamma, value), error)| {
+                [self.place(gamma, value - error), self.place(gamma, value + error)]
+            })
+            .collect();
+        for pair in places.windows(2) {
+            let corners = [pair[0][0], pair[0][1], pair[1][1], pair[1][0]];
+            if corners.iter().flatten().all(|coordinate| coordinate.is_finite()) {
+                canvas.area(&corners, band);
+            }
+        }
+    }
+
+    /// The values of the circles: beside the straight edge of a half circle, on the right spoke of a whole one.
+    fn draw_values(&self, canvas: &mut Canvas) -> Result<()> {
+        let y = match (self.part, self.pole) {
+            (Part::Half, Pole::Up) => self.centre[1] + 10.0 + TICK.cap_height(),
+            (Part::Half, Pole::Down) | (Part::Whole, Pole::Down | Pole::Up) => self.centre[1] - 9.0,
+        };
+        for tick in self.ticks.major.iter().filter(|tick| tick.value > 0.0) {
+            let width = TICK.width(&tick.label)?;
+            let middle = RADIUS * tick.value / self.outer;
+            // The last one of a whole circle stays inside.
+            let middle = match self.part {
+                Part::Half => middle,
+                Part::Whole => middle.min(RADIUS - 0.5 * width - 5.0),
+            };
+            let left = (self.centre[0] + middle - 0.5 * width).round();
+            if self.part == Part::Whole {
+                let height = TICK.cap_height() + 4.0;
+                let back = Rect::new(left - 2.0, y - TICK.cap_height() - 2.0, width + 4.0, height);
+                canvas.rect(back, Ink { colour: PAPER, opacity: 0.8 });
+            }
+            write(canvas, &tick.label, [left, y], TICK, Align::Left)?;
+        }
+        canvas.dot(self.centre, 2.0, Ink::opaque(INK));
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::png::tests::Decoded;
+
+    fn plot(pole: Pole, points: &[(f64, f64)]) -> Decoded {
+        let curve = Curve { name: String::new(), points: points.to_vec(), std_errors: Vec::new() };
+        let plot = PolarPlot {
+            title: "Luminous intensity".to_string(),
+            subtitle: String::new(),
+            unit: "cd".to_string(),
+            pole,
+            curves: vec![curve],
+        };
+        Decoded::new(&polar_plot(&plot).unwrap())
+    }
+
+    /// A lobe around gamma = 45 deg whose greatest value lies on the outermost circle.
+    fn lobe(side: f64, shift: f64) -> Vec<(f64, f64)> {
+        (0..=90)
+            .map(f64::from)
+            .map(|gamma| (side * (gamma + shift), 10.0 * (2.0 * gamma).to_radians().sin()))
+            .collect()
+    }
+
+    #[test]
+    fn positive_gamma_is_right_and_the_pole_is_where_it_was_asked_for() {
+        let colour = series_ink(0).colour;
+        let right = plot(Pole::Down, &lobe(1.0, 0.0));
+        let [left_edge, top, right_edge, bottom] = right.bounds(colour);
+        let centre = right.width / 2;
+        assert!(left_edge + 3 > centre && right_edge > centre + 190, "{left_edge} {right_edge}");
+        let left = plot(Pole::Down, &lobe(-1.0, 0.0));
+        assert!(left.bounds(colour)[2] < centre + 5 && left.bounds(colour)[0] + 190 < centre);
+        let up = plot(Pole::Up, &lobe(1.0, 0.0)).bounds(colour);
+        assert_eq!(up[3] - up[1], bottom - top, "upside down, but otherwise the same");
+    }
+
+    #[test]
+    fn the_upper_half_is_drawn_only_where_there_is_something() {
+        let half = plot(Pole::Down, &lobe(1.0, 0.0));
+        let whole = plot(Pole::Down, &lobe(1.0, 60.0));
+        assert!(whole.height > half.height + 200);
+    }
+
+    #[test]
+    fn no_value_lies_beyond_the_outermost_circle() {
+        let value = |top: f64| Curve {
+            name: String::new(),
+            points: vec![(0.0, top)],
+            std_errors: Vec::new(),
+        };
+        for top in [1e-9, 0.31, 1.0, 7.2, 99.0, 1e9] {
+            let (outer, ticks) = rings(&[value(top)]);
+            assert!(top <= outer * (1.0 + 1e-9) && outer <= 2.0 * top, "{top} {outer}");
+            assert!((3..=8).contains(&ticks.major.len()), "{ticks:?}");
+        }
+    }
+}

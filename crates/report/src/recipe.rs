@@ -1,0 +1,86 @@
+//! What decides the bytes of a report, so that a run over its own report is told from a run over another one.
+
+use crate::{Manifest, SUMMARY};
+use lumiduct_core::plan::{Estimator, GatherPlan, NUMERICS, Request, RunPlan};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+
+/// The identity of a run: two runs of one recipe write the same bytes, with the same binary on the same kind of machine.
+/// Its names in files are fixed, whatever the code says.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Recipe {
+    /// Number of the numerics.
+    #[serde(rename = "numerics")]
+    pub numerics: u32,
+    /// Identifies scene file, included files, meshes and overrides.
+    #[serde(rename = "scene")]
+    pub scene_hash: String,
+    /// How it is traced, and when that ends.
+    #[serde(rename = "plan")]
+    pub plan: RunPlan,
+}
+
+/// What lies in the folder of a report.
+#[derive(Debug, PartialEq)]
+pub(crate) enum Found {
+    /// The whole report of a run.
+    Report(Box<Recipe>),
+    /// The report of a run that was stopped.
+    Partial,
+    /// A report that does not say what identifies its run, as those of older versions of the program.
+    Older,
+    /// Anything else.
+    Other,
+}
+
+impl Recipe {
+    /// That of a scene and a plan, by the present numerics.
+    pub fn new(scene_hash: &str, plan: &RunPlan) -> Self {
+        Self { numerics: NUMERICS, scene_hash: scene_hash.to_owned(), plan: plan.clone() }
+    }
+
+    /// How another recipe, which is not the same, differs from this one.
+    pub fn difference_of(&self, other: &Self) -> &'static str {
+        let (plan, own) = (&other.plan, &self.plan);
+        if other.numerics != self.numerics {
+            "a report by other numerics, those of another version of the program"
+        } else if other.scene_hash != self.scene_hash {
+            "a report of another scene: the file, a file that it names, or -D differs"
+        } else if method(plan) != method(own) {
+            "a report with another estimator or other wishes for it"
+        } else if plan.seed != own.seed {
+            "a report with another seed"
+        } else {
+            "a report with other stop rules"
+        }
+    }
+}
+
+/// How light is estimated.
+fn method(plan: &RunPlan) -> (Request, &[Option<Estimator>], GatherPlan) {
+    (plan.estimator, &plan.sensor_estimators, plan.gather)
+}
+
+impl Found {
+    /// What lies in a folder that holds files.
+    pub(crate) fn read(folder: &Path) -> Self {
+        let bytes = fs::read(folder.join(SUMMARY)).ok();
+        let summary: Option<Value> = bytes.and_then(|bytes| serde_json::from_slice(&bytes).ok());
+        let Some(run) = summary.as_ref().and_then(|summary| summary.get("run")) else {
+            return Self::Other;
+        };
+        let Some(identity) = run.get("identity") else { return Self::Older };
+        if Manifest::expect(folder).is_err() {
+            return Self::Other;
+        }
+        if run.get("partial").and_then(Value::as_bool) != Some(false) {
+            return Self::Partial;
+        }
+        match Recipe::deserialize(identity) {
+            Ok(recipe) => Self::Report(Box::new(recipe)),
+            Err(_) => Self::Older,
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! Tables for spreadsheets: the measures, and each map and intensity distribution as a matrix.
+//!
+//! They begin with a UTF-8 byte-order mark, without which Excel takes the letters of units such as `mm²` for others. All
+//! other tables go without one; every reader of this program accepts both.
+
+use crate::csv::{map_name, table};
+use crate::{OutputFile, Report};
+use lumiduct_base::error::Result;
+use lumiduct_core::measure::{Axes, IntensityTable, SensorMap};
+use ndarray::Array2;
+
+/// What a UTF-8 file for a spreadsheet begins with.
+const BYTE_ORDER_MARK: &str = "\u{feff}";
+
+/// All tables for spreadsheets of a report. A map of a single cell has no matrix.
+pub(crate) fn files(report: &Report) -> Result<Vec<OutputFile>> {
+    let measures = &report.measures;
+    let mut files = vec![values(report)?];
+    let matrices = measures.maps.iter().map(map_matrix);
+    for matrix in matrices.chain(measures.intensities.iter().map(intensity_matrix)) {
+        if matrix.values.len() > 1 {
+            files.push(matrix.file()?);
+        }
+    }
+    Ok(files)
+}
+
+/// Every measure with what may be made of it.
+fn values(report: &Report) -> Result<OutputFile> {
+    let rows = report.measures.values.iter().map(|(name, measure)| {
+        let bias = measure.bias.map_or(String::new(), |bias| bias.to_string());
+        let [value, std_error] =
+            [measure.value, measure.std_error].map(|number| number.to_string());
+        let (status, estimator) = (measure.status.name(), measure.estimator.name());
+        let words = [measure.unit.as_str(), status, estimator].map(str::to_owned);
+        [name.clone(), value, std_error, bias].into_iter().chain(words).collect()
+    });
+    let header = ["measure", "value", "std_error", "bias", "unit", "status", "estimator"];
+    Ok(marked(table("measures.csv".into(), &header, rows)?))
+}
+
+fn marked(mut file: OutputFile) -> OutputFile {
+    file.bytes.splice(..0, BYTE_ORDER_MARK.bytes());
+    file
+}
+
+/// Values in rows and columns, between edges that stand in two columns on the left and two rows at the top.
+struct Matrix<'a> {
+    /// File name without its ending.
+    name: String,
+    /// What is shown, with its unit: `illuminance in lx`.
+    quantity: String,
+    /// What the edges of the rows are, with the unit: `v`, `mm`.
+    rows: [&'static str; 2],
+    row_edges: &'a [f64],
+    /// The same of the columns.
+    columns: [&'static str; 2],
+    column_edges: &'a [f64],
+    /// Rows by columns; NaN where there is none.
+    values: &'a Array2<f64>,
+    /// Which row stands on top.
+    top: Top,
+}
+
+/// Which row of a matrix stands on top.
+#[derive(Clone, Copy)]
+enum Top {
+    /// That of the greatest values, as in a picture.
+    Last,
+    /// That of the least values.
+    First,
+}
+
+fn map_matrix(map: &SensorMap) -> Matrix<'_> {
+    let (rows, row_edges, columns, column_edges, top) = match &map.axes {
+        Axes::Cartesian { u_mm, v_mm } => (["v", "mm"], v_mm, ["u", "mm"], u_mm, Top::Last),
+        Axes::Angular { u_deg, v_deg } => {
+            (["up", "deg"], v_deg, ["right", "deg"], u_deg, Top::Last)
+        }
+        Axes::Polar { radius_mm, sector_deg } => {
+            (["radius", "mm"], radius_mm, ["sector", "deg"], sector_deg, Top::First)
+        }
+    };
+    let name = map_name(map);
+    let quantity = format!("{} in {}", map.quantity, map.unit);
+    Matrix { name, quantity, rows, row_edges, columns, column_edges, values: &map.values, top }
+}
+
+fn intensity_matrix(intensity: &IntensityTable) -> Matrix<'_> {
+    Matrix {
+        name: format!("{}.intensity", intensity.sensor),
+        quantity: format!("intensity in {}", intensity.unit),
+        rows: ["gamma", "deg"],
+        row_edges: &intensity.gamma_deg,
+        columns: ["c", "deg"],
+        column_edges: &intensity.c_deg,
+        values: &intensity.values,
+        top: Top::First,
+    }
+}
+
+impl Matrix<'_> {
+    fn file(&self) -> Result<OutputFile> {
+        let cells = |label: [String; 2], edges: &[f64]| -> Vec<String> {
+            label.into_iter().chain(edges.iter().map(f64::to_string)).collect()
+        };
+        let [from, to] = ["from", "to"]
+            .map(|end| [self.rows, self.columns].map(|[of, unit]| format!("{of} {end} in {unit}")));
+        let columns = self.values.ncols();
+        let header = cells([self.quantity.clone(), from[1].clone()], &self.column_edges[..columns]);
+        let lower = cells([String::new(), to[1].clone()], &self.column_edges[1..]);
+        let mut labels = vec![from[0].clone(), to[0].clone()];
+        labels.resize(columns + 2, String::new());
+        let row = |row: usize| -> Vec<String> {
+            let values = self.values.row(row).into_iter().copied();
+            let cell =
+                |value: f64| if value.is_finite() { value.to_string() } else { String::new() };
+            let edges = self.row_edges[row..row + 2].iter().map(f64::to_string);
+            edges.chain(values.map(cell)).collect()
+        };
+        let count = self.values.nrows();
+        let order = (0..count).map(|place| match self.top {
+            Top::Last => count - 1 - place,
+            Top::First => place,
+        });
+        let rows = [lower, labels].into_iter().chain(order.map(row));
+        Ok(marked(table(format!("{}.matrix.csv", self.name), &header, rows)?))
+    }
+}

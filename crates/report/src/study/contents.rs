@@ -1,0 +1,325 @@
+//! What is said of a study, part by part, whatever the format of the page.
+
+use crate::study::edge::edge_remark;
+use crate::study::{
+    DesignOutcome, DesignRecord, Estimate, Pairing, ParameterFacts, PlanFacts, Sensitivity,
+    SensitivityMethod, StudyReport,
+};
+use crate::words::{outcome_word, quantity};
+use lumiduct_base::number::{format_percent, format_value, format_with_error};
+use lumiduct_core::measure::Outcome;
+use lumiduct_input::{Best, Domain, Setting};
+use std::fmt::Write;
+
+/// Errors of a difference from which on a design is told to be behind the best, 1.
+const BEHIND_ERRORS: f64 = 3.0;
+
+/// A part of a page.
+pub(super) struct Part {
+    pub(super) title: &'static str,
+    pub(super) items: Vec<Item>,
+}
+
+/// Something in a part.
+pub(super) enum Item {
+    /// A paragraph.
+    Words(String),
+    /// A list.
+    List(Vec<String>),
+    /// A table; long ones may be cut.
+    Table { head: Vec<String>, rows: Vec<Vec<String>> },
+}
+
+/// All parts but the pictures, in their order: those that come before them, up to the first table, and those after.
+pub(super) fn parts(report: &StudyReport) -> [Vec<Part>; 2] {
+    let mut before: Vec<Part> = [
+        failures(report),
+        ranking(report),
+        sensitivities(report),
+        effects(report),
+        Some(designs(report)),
+        Some(parameters(report)),
+        remarks(report),
+        Some(run(report)),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    let has_table = |part: &Part| part.items.iter().any(|item| matches!(item, Item::Table { .. }));
+    let first = before.iter().position(has_table).map_or(0, |place| place + 1);
+    let after = before.split_off(first);
+    [before, after]
+}
+
+/// What came of it, in a sentence.
+pub(super) fn verdict(report: &StudyReport) -> String {
+    let (count, bad) = (report.designs.len(), report.counts());
+    let designs = if count == 1 { "design" } else { "designs" };
+    let mut text = format!("{count} {designs} of the scene “{}”", report.facts.scene);
+    if report.facts.checks.is_empty() {
+        text += ", without checks";
+    } else {
+        let passed = |own: &&DesignRecord| own.verdict() == Some(Outcome::Passed);
+        let passed = report.designs.iter().filter(passed).count();
+        let (failed, undecided) = (bad.failed, bad.undecided);
+        _ = write!(text, ": {passed} pass all checks, {failed} fail, {undecided} undecided");
+    }
+    if bad.broken > 0 {
+        _ = write!(text, "; {} make no scene that can be traced", bad.broken);
+    }
+    if bad.off_target > 0 {
+        _ = write!(text, "; {} have not reached their target error", bad.off_target);
+    }
+    text
+}
+
+fn failures(report: &StudyReport) -> Option<Part> {
+    let shares = &report.analysis.failures;
+    let words = "The interval holds the share of all that are ever made so with 95 % (Clopper and Pearson); where the error \
+                 bar of a design leaves a check open, it counts as passed for the low end and as failed for the high end.";
+    let head = ["demand", "passed", "failed", "undecided", "fails", "interval"].map(str::to_owned);
+    let rows = shares.iter().map(|own| {
+        let [low, high] = own.interval.map(format_percent);
+        let share = if own.undecided == 0 {
+            format_percent(own.least)
+        } else {
+            format!("{} to {}", format_percent(own.least), format_percent(own.most))
+        };
+        let counts = [own.passed, own.failed, own.undecided].map(|count| count.to_string());
+        let row = [own.demand.clone()].into_iter().chain(counts);
+        row.chain([share, format!("{low} to {high}")]).collect()
+    });
+    let items =
+        vec![Item::Words(words.into()), Item::Table { head: head.to_vec(), rows: rows.collect() }];
+    (!shares.is_empty()).then_some(Part { title: "Share of designs that fail", items })
+}
+
+fn ranking(report: &StudyReport) -> Option<Part> {
+    let ranking = report.facts.ranking.as_ref()?;
+    let word = match ranking.best {
+        Best::Highest => "highest",
+        Best::Lowest => "lowest",
+    };
+    let words = format!(
+        "The {word} {} is the best. How much a design is behind is known better than the values, for all designs are traced \
+         with the same random numbers.",
+        ranking.measure
+    );
+    let labels = report.facts.parameters.iter().map(ParameterFacts::label);
+    let head = ["place".to_owned(), "design".to_owned()].into_iter().chain(labels);
+    let head = head.chain([ranking.measure.clone(), "behind the best".to_owned()]).collect();
+    let rows = report.analysis.ranked.iter().enumerate().filter_map(|(place, own)| {
+        let design = report.designs.iter().find(|design| design.design == own.design)?;
+        let value = design.measure(&ranking.measure).map_or(String::new(), quantity);
+        let behind = own.behind.map_or("the best".into(), |behind| difference(&behind));
+        let row = [(place + 1).to_string(), own.design.to_string()].into_iter();
+        Some(row.chain(settings(report, design)).chain([value, behind]).collect())
+    });
+    let mut items = vec![Item::Words(words), Item::Table { head, rows: rows.collect() }];
+    items.extend(edge_remark(report).map(Item::Words));
+    Some(Part { title: "Ranking", items })
+}
+
+fn difference(behind: &Estimate) -> String {
+    let number = format_with_error(behind.value, behind.std_error);
+    let told = match behind.evidence {
+        Pairing::Paired => "",
+        Pairing::Independent => " (as if independent)",
+    };
+    let is_close = behind.value.abs() <= BEHIND_ERRORS * behind.std_error;
+    format!("{number}{told}{}", if is_close { ", not told apart" } else { "" })
+}
+
+fn sensitivities(report: &StudyReport) -> Option<Part> {
+    let all = &report.analysis.sensitivities;
+    let first = all.first()?;
+    let (words, sum) = match first.method {
+        SensitivityMethod::FirstOrder => (
+            "First-order Sobol indices: the share of the variance over the grid that a parameter makes on its own. What is \
+             missing to 1 is made by parameters together.",
+            "sum",
+        ),
+        SensitivityMethod::Regression => (
+            "Standardised regression coefficients: by how many standard deviations the measure moves when the parameter \
+             moves by one of its own. R² is the share of the variance that the regression tells; where it is small, a \
+             coefficient says little.",
+            "R²",
+        ),
+    };
+    let names = first.indices.iter().map(|index| index.parameter.clone());
+    let head = ["measure".to_owned()].into_iter().chain(names).chain([sum.to_owned()]).collect();
+    let row = |Sensitivity { measure, indices, explained, .. }: &Sensitivity| {
+        let indices = indices.iter().map(|index| match index.std_error.is_finite() {
+            true => format_with_error(index.value, index.std_error),
+            false => format!("{} (error not known)", format_value(index.value)),
+        });
+        [measure.clone()].into_iter().chain(indices).chain([format_value(*explained)]).collect()
+    };
+    let rows = all.iter().map(row).collect();
+    Some(Part {
+        title: "Sensitivity",
+        items: vec![Item::Words(words.into()), Item::Table { head, rows }],
+    })
+}
+
+fn effects(report: &StudyReport) -> Option<Part> {
+    let words = "The mean of a measure over designs with the same setting of a parameter. How much it differs from that of the \
+                 first setting is known better than the means, for all designs are traced with the same random numbers. Settings \
+                 without designs that differ from the others in nothing else are left out.";
+    let head = ["measure", "parameter", "setting", "designs", "mean", "against the first"];
+    let mut rows = Vec::new();
+    for effect in &report.analysis.effects {
+        let label = report.facts.parameters.iter().find(|own| own.name == effect.parameter);
+        for point in &effect.points {
+            rows.push(vec![
+                effect.measure.clone(),
+                label.map_or(effect.parameter.clone(), ParameterFacts::label),
+                setting_word(&point.setting),
+                point.designs.to_string(),
+                format_with_error(point.mean.value, point.mean.std_error),
+                point.from_first.map_or(String::new(), |step| difference(&step)),
+            ]);
+        }
+    }
+    let table = Item::Table { head: head.map(str::to_owned).to_vec(), rows };
+    let items = vec![Item::Words(words.into()), table];
+    (!report.analysis.effects.is_empty()).then_some(Part { title: "Main effects", items })
+}
+
+/// A setting, without its unit.
+pub(super) fn setting_word(setting: &Setting) -> String {
+    match setting {
+        Setting::Number(number) => format_value(*number),
+        Setting::Choice(name) => name.clone(),
+        Setting::AsInScene => "as in the scene".into(),
+    }
+}
+
+fn designs(report: &StudyReport) -> Part {
+    let facts = &report.facts;
+    let labels = facts.parameters.iter().map(ParameterFacts::label);
+    let head = ["design".to_owned()].into_iter().chain(labels);
+    let head = head.chain(facts.measures.iter().cloned()).chain(["checks".to_owned()]).collect();
+    let row = |design: &DesignRecord| {
+        let values: Vec<String> = match &design.outcome {
+            DesignOutcome::Done(result) => {
+                let value =
+                    |name: &String| result.measures.get(name).map_or(String::new(), quantity);
+                facts.measures.iter().map(value).collect()
+            }
+            DesignOutcome::Failed(reason) => {
+                let rest = vec![String::new(); facts.measures.len().saturating_sub(1)];
+                [format!("no scene: {reason}")].into_iter().chain(rest).collect()
+            }
+        };
+        let verdict = design.verdict().map_or("", outcome_word).to_owned();
+        let row = [design.design.to_string()].into_iter().chain(settings(report, design));
+        row.chain(values).chain([verdict]).collect()
+    };
+    let rows = report.designs.iter().map(row).collect();
+    Part { title: "Designs", items: vec![Item::Table { head, rows }] }
+}
+
+/// The settings of a design as cells of a table.
+fn settings(report: &StudyReport, design: &DesignRecord) -> Vec<String> {
+    report.facts.parameters.iter().map(|parameter| setting(parameter, design)).collect()
+}
+
+/// What a parameter is set to in a design, without its unit.
+fn setting(parameter: &ParameterFacts, design: &DesignRecord) -> String {
+    let found = parameter.setting_in(design);
+    let of_scene =
+        if design.settings.get(&parameter.name) == Some(found) { "" } else { " (scene)" };
+    match found {
+        Setting::Number(_) => setting_word(found) + of_scene,
+        Setting::Choice(_) | Setting::AsInScene => setting_word(found),
+    }
+}
+
+fn parameters(report: &StudyReport) -> Part {
+    let head = ["parameter", "values", "keys of the scene"].map(str::to_owned).to_vec();
+    let row =
+        |own: &ParameterFacts| vec![own.label(), domain_words(&own.domain), own.keys.join(", ")];
+    let rows = report.facts.parameters.iter().map(row).collect();
+    Part { title: "Parameters", items: vec![Item::Table { head, rows }] }
+}
+
+/// What a parameter may be set to, in words.
+fn domain_words(domain: &Domain) -> String {
+    match domain {
+        Domain::Levels(levels) => levels.iter().map(setting_word).collect::<Vec<_>>().join(", "),
+        Domain::Uniform { from, to } => {
+            format!("uniform from {} to {}", format_value(*from), format_value(*to))
+        }
+        Domain::Normal { mean, std_dev, from, to } => {
+            let (mean, std_dev) = (format_value(*mean), format_value(*std_dev));
+            let mut text = format!("normal, mean {mean}, standard deviation {std_dev}");
+            if let Some(from) = from {
+                _ = write!(text, ", not below {}", format_value(*from));
+            }
+            if let Some(to) = to {
+                _ = write!(text, ", not above {}", format_value(*to));
+            }
+            text
+        }
+        Domain::Listed => "by the table".into(),
+    }
+}
+
+/// Remarks of the designs, each told once.
+fn remarks(report: &StudyReport) -> Option<Part> {
+    let mut told: Vec<(&str, Vec<usize>)> = Vec::new();
+    for design in &report.designs {
+        for warning in design.result().into_iter().flat_map(|result| &result.warnings) {
+            match told.iter_mut().find(|(text, _)| text == warning) {
+                Some((_, designs)) => designs.push(design.design),
+                None => told.push((warning, vec![design.design])),
+            }
+        }
+    }
+    let line = |(warning, designs): &(&str, Vec<usize>)| {
+        let which = match designs.as_slice() {
+            all if all.len() == report.designs.len() => "all designs".to_owned(),
+            [first, .., last] => format!("{} designs from {first} to {last}", designs.len()),
+            [.., one] => format!("design {one}"),
+            [] => String::new(),
+        };
+        format!("{which}: {warning}")
+    };
+    let items = vec![Item::List(told.iter().map(line).collect())];
+    (!told.is_empty()).then_some(Part { title: "Remarks", items })
+}
+
+fn run(report: &StudyReport) -> Part {
+    let facts = &report.facts;
+    let plan = match facts.plan {
+        PlanFacts::Grid => "grid of all combinations".to_owned(),
+        PlanFacts::OneAtATime => "one parameter at a time".into(),
+        PlanFacts::List => "designs of a table".into(),
+        PlanFacts::LatinHypercube(seed) => format!("Latin hypercube, seed {seed}"),
+        PlanFacts::Sobol(seed) => format!("scrambled Sobol sequence, seed {seed}"),
+        PlanFacts::Tolerance(seed) => format!("independent random samples, seed {seed}"),
+    };
+    let mut lines = vec![
+        format!("study {}, hash {}", facts.name, facts.hash),
+        format!("plan: {plan}, {} designs", facts.designs),
+        format!(
+            "lumiduct {}, estimator {}, seed {} for all designs",
+            facts.version, facts.estimator, facts.seed
+        ),
+        format!("each design was asked for {}", facts.asked),
+    ];
+    for own in &report.analysis.sharpness {
+        lines.push(format!(
+            "differences of {} between neighbouring designs have errors {} times smaller than with random numbers of \
+             their own (median of {} pairs)",
+            own.measure,
+            format_value(own.factor),
+            own.pairs
+        ));
+    }
+    if !facts.overrides.is_empty() {
+        lines.push(format!("set for all designs: {}", facts.overrides.join(", ")));
+    }
+    Part { title: "Run", items: vec![Item::List(lines)] }
+}

@@ -1,0 +1,323 @@
+//! Which pictures a study has, and what is on them.
+
+use crate::OutputFile;
+use crate::png::{
+    Bar, BarChart, ErrorForm, LinePlot, Look, Scale, ScatterColumn, ScatterMatrix, Series,
+    SeriesForm, SeriesPoint, bar_chart, line_plot, scatter_matrix,
+};
+use crate::study::contents::setting_word;
+use crate::study::{DesignRecord, Effect, ParameterFacts, PlanFacts, StudyReport};
+use lumiduct_base::error::Result;
+use lumiduct_base::number::format_value;
+use lumiduct_core::measure::Outcome;
+
+/// Curves of a response plot; more cannot be told apart.
+const MOST_CURVES: usize = 12;
+/// Bins of a histogram over the square root of the number of designs, about.
+const BINS_PER_ROOT: f64 = 1.2;
+
+/// A picture of a study.
+pub(super) struct Figure {
+    /// Its file.
+    pub(super) file: String,
+    /// What it shows, in words.
+    pub(super) label: String,
+    /// What is on it.
+    pub(super) drawing: Drawing,
+}
+
+/// What is on a picture.
+pub(super) enum Drawing {
+    /// Curves; the unit is that of their values.
+    Curves(LinePlot, String),
+    /// Bars.
+    Bars(BarChart),
+    /// Everything against everything.
+    Scatter(ScatterMatrix),
+}
+
+/// All pictures of a study.
+pub(super) fn figures(report: &StudyReport) -> Vec<Figure> {
+    let mut figures = Vec::new();
+    for measure in &report.facts.measures {
+        let unit = report.unit(measure).to_owned();
+        if let Some(plot) = response(report, measure) {
+            figures.push(Figure {
+                file: format!("response.{measure}.png"),
+                label: format!("response of {measure}"),
+                drawing: Drawing::Curves(plot, unit),
+            });
+        }
+        if let Some(plot) = distribution(report, measure) {
+            figures.push(Figure {
+                file: format!("distribution.{measure}.png"),
+                label: format!("distribution of {measure}"),
+                drawing: Drawing::Curves(plot, "1".into()),
+            });
+        }
+    }
+    for effect in &report.analysis.effects {
+        figures.push(Figure {
+            file: format!("effect.{}.{}.png", effect.measure, effect.parameter),
+            label: format!("main effect of {} on {}", effect.parameter, effect.measure),
+            drawing: effect_drawing(report, effect),
+        });
+    }
+    if report.designs.len() > 2 {
+        figures.push(Figure {
+            file: "scatter.png".into(),
+            label: "all parameters and measures, each against each".into(),
+            drawing: Drawing::Scatter(scatter(report)),
+        });
+    }
+    figures
+}
+
+impl Figure {
+    /// The picture as a file.
+    pub(super) fn file(&self) -> Result<OutputFile> {
+        let bytes = match &self.drawing {
+            Drawing::Curves(plot, _) => line_plot(plot)?,
+            Drawing::Bars(chart) => bar_chart(chart)?,
+            Drawing::Scatter(matrix) => scatter_matrix(matrix)?,
+        };
+        Ok(OutputFile { name: self.file.clone(), bytes })
+    }
+}
+
+/// The label of a measure with its unit.
+fn measure_label(report: &StudyReport, measure: &str) -> String {
+    match report.unit(measure) {
+        "1" => measure.to_owned(),
+        unit => format!("{measure} in {unit}"),
+    }
+}
+
+/// Distinct numbers of a parameter; none unless all designs have one.
+pub(super) fn numbers_of(parameter: &ParameterFacts, designs: &[DesignRecord]) -> Vec<f64> {
+    let numbers: Option<Vec<f64>> =
+        designs.iter().map(|design| parameter.setting_in(design).number()).collect();
+    let mut numbers = numbers.unwrap_or_default();
+    numbers.sort_by(f64::total_cmp);
+    numbers.dedup();
+    numbers
+}
+
+/// A measure over the parameter with the most levels, a curve for each setting of all others; of grids and tables.
+fn response(report: &StudyReport, measure: &str) -> Option<LinePlot> {
+    match report.facts.plan {
+        PlanFacts::Grid | PlanFacts::List => {}
+        PlanFacts::OneAtATime
+        | PlanFacts::LatinHypercube(_)
+        | PlanFacts::Sobol(_)
+        | PlanFacts::Tolerance(_) => return None,
+    }
+    let levels = |parameter: &&ParameterFacts| numbers_of(parameter, &report.designs).len();
+    let parameters = &report.facts.parameters;
+    // Of several with as many levels, the first.
+    let across = parameters.iter().rev().max_by_key(levels).filter(|own| levels(own) > 1)?;
+    let others: Vec<&ParameterFacts> =
+        parameters.iter().filter(|own| own.name != across.name).collect();
+    let mut curves: Vec<(String, Vec<SeriesPoint>)> = Vec::new();
+    for design in &report.designs {
+        let (Some(found), Some(x)) = (design.measure(measure), across.setting_in(design).number())
+        else {
+            continue;
+        };
+        let name =
+            others.iter().map(|own| setting_words(own, design)).collect::<Vec<_>>().join(", ");
+        let point = SeriesPoint { x, y: found.value, std_error: found.total_error() };
+        match curves.iter_mut().find(|(own, _)| *own == name) {
+            Some((_, points)) => points.push(point),
+            None => curves.push((name, vec![point])),
+        }
+    }
+    let left_out = curves.len().saturating_sub(MOST_CURVES);
+    let more = if left_out > 0 {
+        format!("; {left_out} curves more are not drawn")
+    } else {
+        String::new()
+    };
+    let series = curves.into_iter().take(MOST_CURVES).map(|(name, mut points)| {
+        points.sort_by(|a, b| a.x.total_cmp(&b.x));
+        Series { name, points, form: SeriesForm::Line, errors: ErrorForm::Bars, look: Look::InTurn }
+    });
+    Some(LinePlot {
+        title: format!("{measure} over {}", across.name),
+        subtitle: format!("bars: one standard error, with bias where there is one{more}"),
+        x_label: across.label(),
+        y_label: measure_label(report, measure),
+        x_scale: Scale::Linear,
+        y_scale: Scale::Linear,
+        series: series.collect(),
+    })
+}
+
+/// A parameter with what it is set to in a design: "leg 5 mm".
+pub(super) fn setting_words(parameter: &ParameterFacts, design: &DesignRecord) -> String {
+    let unit = parameter.unit.as_ref().map_or(String::new(), |unit| format!(" {unit}"));
+    let found = parameter.setting_in(design);
+    let unit = if found.number().is_some() { unit } else { String::new() };
+    format!("{} {}{unit}", parameter.name, setting_word(found))
+}
+
+/// How often a measure has which value, with the limits of its checks; of samples.
+fn distribution(report: &StudyReport, measure: &str) -> Option<LinePlot> {
+    match report.facts.plan {
+        PlanFacts::LatinHypercube(_) | PlanFacts::Sobol(_) | PlanFacts::Tolerance(_) => {}
+        PlanFacts::Grid | PlanFacts::OneAtATime | PlanFacts::List => return None,
+    }
+    let values: Vec<f64> = report
+        .designs
+        .iter()
+        .filter_map(|design| Some(design.measure(measure)?.value))
+        .filter(|value| value.is_finite())
+        .collect();
+    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    // Too few or all alike have no distribution to draw.
+    if values.len() < 10 || low >= high {
+        return None;
+    }
+    let bins = (BINS_PER_ROOT * (values.len() as f64).sqrt()).ceil() as usize;
+    let width = (high - low) / bins as f64;
+    let mut counts = vec![0.0f64; bins];
+    for value in &values {
+        counts[(((value - low) / width) as usize).min(bins - 1)] += 1.0;
+    }
+    let most = counts.iter().copied().fold(0.0, f64::max);
+    let points = counts.iter().enumerate().map(|(bin, count)| SeriesPoint {
+        x: low + (bin as f64 + 0.5) * width,
+        y: *count,
+        std_error: count.sqrt(),
+    });
+    let mut series = vec![Series {
+        name: "designs".into(),
+        points: points.collect(),
+        form: SeriesForm::Steps,
+        errors: ErrorForm::Hidden,
+        look: Look::InTurn,
+    }];
+    let own = report.facts.checks.iter().filter(|check| check.measure == measure);
+    for limit in own.flat_map(|check| [check.min, check.max].into_iter().flatten()) {
+        let at = |y| SeriesPoint { x: limit, y, std_error: 0.0 };
+        series.push(Series {
+            name: format!("limit {}", format_value(limit)),
+            points: vec![at(0.0), at(most)],
+            form: SeriesForm::Line,
+            errors: ErrorForm::Hidden,
+            look: Look::Dashed(1),
+        });
+    }
+    Some(LinePlot {
+        title: format!("Distribution of {measure}"),
+        subtitle: format!("{} designs", values.len()),
+        x_label: measure_label(report, measure),
+        y_label: "designs".into(),
+        x_scale: Scale::Linear,
+        y_scale: Scale::Linear,
+        series,
+    })
+}
+
+fn effect_drawing(report: &StudyReport, effect: &Effect) -> Drawing {
+    let title = format!("{}: main effect of {}", effect.measure, effect.parameter);
+    let used: usize = effect.points.iter().map(|point| point.designs).sum();
+    let subtitle = if report.facts.plan == PlanFacts::OneAtATime {
+        "all other parameters as in the scene"
+    } else if used == report.designs.len() {
+        "mean over all designs with the same setting"
+    } else {
+        "mean over the designs that differ in nothing else"
+    };
+    let points: Option<Vec<SeriesPoint>> = effect
+        .points
+        .iter()
+        .map(|point| {
+            let (y, std_error) = (point.mean.value, point.mean.std_error);
+            Some(SeriesPoint { x: point.setting.number()?, y, std_error })
+        })
+        .collect();
+    let facts = report.facts.parameters.iter().find(|own| own.name == effect.parameter);
+    match points {
+        Some(points) => Drawing::Curves(
+            LinePlot {
+                title,
+                subtitle: subtitle.into(),
+                x_label: facts.map_or(effect.parameter.clone(), ParameterFacts::label),
+                y_label: measure_label(report, &effect.measure),
+                x_scale: Scale::Linear,
+                y_scale: Scale::Linear,
+                series: vec![Series {
+                    name: String::new(),
+                    points,
+                    form: SeriesForm::Line,
+                    errors: ErrorForm::Bars,
+                    look: Look::InTurn,
+                }],
+            },
+            report.unit(&effect.measure).to_owned(),
+        ),
+        // Choices have no place on an axis.
+        None => Drawing::Bars(BarChart {
+            title,
+            subtitle: subtitle.into(),
+            unit: match report.unit(&effect.measure) {
+                "1" => String::new(),
+                unit => unit.to_owned(),
+            },
+            whole: None,
+            bars: effect
+                .points
+                .iter()
+                .map(|point| Bar {
+                    name: point.setting.to_string(),
+                    value: point.mean.value,
+                    std_error: Some(point.mean.std_error),
+                    colour: 0,
+                })
+                .collect(),
+        }),
+    }
+}
+
+/// All parameters that are numbers and all measures, each against each.
+fn scatter(report: &StudyReport) -> ScatterMatrix {
+    let designs = &report.designs;
+    let of_parameter = |own: &ParameterFacts| {
+        let values: Vec<f64> = designs
+            .iter()
+            .map(|design| own.setting_in(design).number().unwrap_or(f64::NAN))
+            .collect();
+        values
+            .iter()
+            .any(|value| value.is_finite())
+            .then(|| ScatterColumn { label: own.label(), values })
+    };
+    let of_measure = |name: &String| {
+        let value = |design: &DesignRecord| design.measure(name).map_or(f64::NAN, |own| own.value);
+        let values = designs.iter().map(value).collect();
+        ScatterColumn { label: measure_label(report, name), values }
+    };
+    let measures = report.facts.measures.iter().map(of_measure);
+    let columns: Vec<ScatterColumn> =
+        report.facts.parameters.iter().filter_map(of_parameter).chain(measures).collect();
+    let (kinds, kind_of) = if report.facts.checks.is_empty() {
+        (vec!["designs".to_owned()], vec![0; designs.len()])
+    } else {
+        let kind = |design: &DesignRecord| match design.verdict() {
+            Some(Outcome::Passed) => 0,
+            Some(Outcome::Failed | Outcome::Unknown) | None => 1,
+            Some(Outcome::Undecided) => 2,
+        };
+        let kinds = ["passes all checks", "fails", "undecided"].map(str::to_owned).to_vec();
+        (kinds, designs.iter().map(kind).collect())
+    };
+    ScatterMatrix {
+        title: "Parameters and measures".into(),
+        subtitle: format!("{} designs", designs.len()),
+        columns,
+        kind_of,
+        kinds,
+    }
+}

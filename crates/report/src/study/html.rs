@@ -1,0 +1,109 @@
+//! `study.html`: what came of a study, for people with a browser, in one file without anything to load.
+
+use crate::html::data::chart;
+use crate::html::frame::{self, Block, Page, Plots, Standing, render};
+use crate::html::masthead;
+use crate::png::{
+    ErrorForm, LinePlot, Look, Scale, ScatterMatrix, Series, SeriesForm, SeriesPoint,
+};
+use crate::study::StudyReport;
+use crate::study::contents::{Item, Part, parts, verdict};
+use crate::study::figures::{Drawing, Figure};
+use lumiduct_base::error::Result;
+
+/// Tables of more rows than this are folded away.
+const ROWS_SHOWN: usize = 60;
+
+/// The whole page.
+pub(super) fn html(report: &StudyReport, figures: &[Figure]) -> Result<String> {
+    let mut plots = Plots::default();
+    let facts = &report.facts;
+    let [before, after] = parts(report).map(|parts| parts.iter().map(part).collect::<Vec<_>>());
+    let drawn = figures.iter().flat_map(|figure| blocks(report, figure, &mut plots)).collect();
+    let pictures = frame::Part { title: "Plots".into(), blocks: drawn };
+    let page = Page {
+        title: facts.title.clone(),
+        masthead: masthead(facts.whole_project().as_ref()),
+        description: facts.description.as_ref().map(|text| text.trim().to_owned()),
+        verdict: verdict(report),
+        standing: match (facts.checks.is_empty(), report.counts().is_clean()) {
+            (_, false) => Standing::Bad,
+            (true, true) => Standing::Open,
+            (false, true) => Standing::Good,
+        },
+        parts: before.into_iter().chain([pictures]).chain(after).collect(),
+        footer: format!("lumiduct {}, study {}", facts.version, facts.name),
+    };
+    render(&page, &plots)
+}
+
+fn part(part: &Part) -> frame::Part {
+    let block = |item: &Item| match item {
+        Item::Words(text) => Block::Words { text: text.clone() },
+        Item::List(items) => Block::List { items: items.clone() },
+        Item::Table { head, rows } => Block::Table {
+            head: head.clone(),
+            rows: rows.clone(),
+            folded: (rows.len() > ROWS_SHOWN).then(|| format!("{} rows", rows.len())),
+        },
+    };
+    frame::Part { title: part.title.to_owned(), blocks: part.items.iter().map(block).collect() }
+}
+
+fn blocks(report: &StudyReport, figure: &Figure, plots: &mut Plots) -> Vec<Block> {
+    let picture = Some(figure.file.clone());
+    match &figure.drawing {
+        Drawing::Curves(plot, unit) => {
+            vec![plots.add(figure.label.clone(), chart(plot, unit), picture)]
+        }
+        // Choices have no place on an axis: the table of main effects says as much.
+        Drawing::Bars(_) => Vec::new(),
+        Drawing::Scatter(matrix) => {
+            let pairs = scatter_plots(report, matrix).into_iter();
+            pairs
+                .map(|(plot, unit)| plots.add(plot.title.clone(), chart(&plot, &unit), None))
+                .collect()
+        }
+    }
+}
+
+/// Every measure against every parameter that is a number, a dot for each design, and the unit of the measure.
+fn scatter_plots(report: &StudyReport, matrix: &ScatterMatrix) -> Vec<(LinePlot, String)> {
+    let measures = &report.facts.measures;
+    let (parameters, found) = matrix.columns.split_at(matrix.columns.len() - measures.len());
+    let mut plots = Vec::new();
+    for (measure, values) in measures.iter().zip(found) {
+        for parameter in parameters {
+            let series = |kind: usize| Series {
+                name: matrix.kinds[kind].clone(),
+                points: report
+                    .designs
+                    .iter()
+                    .enumerate()
+                    .filter(|(place, _)| matrix.kind_of[*place] == kind)
+                    .map(|(place, design)| SeriesPoint {
+                        x: parameter.values[place],
+                        y: values.values[place],
+                        std_error: design.measure(measure).map_or(0.0, |own| own.total_error()),
+                    })
+                    .filter(|point| point.x.is_finite() && point.y.is_finite())
+                    .collect(),
+                form: SeriesForm::Dots,
+                errors: ErrorForm::Bars,
+                look: Look::InTurn,
+            };
+            let kinds = (0..matrix.kinds.len()).map(series);
+            let plot = LinePlot {
+                title: format!("{measure} against {}", parameter.label),
+                subtitle: String::new(),
+                x_label: parameter.label.clone(),
+                y_label: values.label.clone(),
+                x_scale: Scale::Linear,
+                y_scale: Scale::Linear,
+                series: kinds.filter(|series| !series.points.is_empty()).collect(),
+            };
+            plots.push((plot, report.unit(measure).to_owned()));
+        }
+    }
+    plots
+}

@@ -1,0 +1,99 @@
+//! What is handed to the user of a study: one record, and pure functions that turn it into files.
+
+mod contents;
+mod edge;
+mod figures;
+mod html;
+mod page;
+mod record;
+mod tables;
+mod terminal;
+
+pub use record::{
+    Analysis, DESIGN_FORMAT, DesignOutcome, DesignRecord, DesignResult, Effect, EffectPoint,
+    Estimate, FACTS_FORMAT, FailureShare, Pairing, ParameterFacts, PlanFacts, Ranked, Sensitivity,
+    SensitivityIndex, SensitivityMethod, Sharpness, StudyCounts, StudyFacts, StudyReport,
+};
+
+pub use terminal::terminal;
+
+use crate::{LOGO, OutputFile};
+use indexmap::IndexMap;
+use lumiduct_base::error::{Error, Result};
+use lumiduct_core::measure::{Measure, Outcome};
+use lumiduct_input::Setting;
+use serde::Serialize;
+
+/// Name of the file with everything for programs.
+pub const SUMMARY: &str = "study.json";
+/// Version of the layout of that file.
+pub(crate) const SUMMARY_FORMAT: u32 = 1;
+
+/// All files of a study but its manifest and its records, in the reproducible order.
+pub fn study_files(report: &StudyReport, study_text: &str) -> Result<Vec<OutputFile>> {
+    let mut files = tables::files(report)?;
+    let figures = figures::figures(report);
+    for figure in &figures {
+        files.push(figure.file()?);
+    }
+    files.push(OutputFile::text(format!("{}.toml", report.facts.name), study_text.to_owned()));
+    let logo = report.facts.logo.clone();
+    files.extend(logo.map(|bytes| OutputFile { name: LOGO.to_owned(), bytes }));
+    files.push(OutputFile::text("study.md", page::page(report, &figures)));
+    files.push(OutputFile::text("study.html", html::html(report, &figures)?));
+    let summary = summary(report, &files)?;
+    files.push(OutputFile::text(SUMMARY, summary));
+    Ok(files)
+}
+
+#[derive(Serialize)]
+struct Summary<'a> {
+    lumiduct_study_summary: u32,
+    #[serde(flatten)]
+    facts: StudyFacts,
+    rows: Vec<Row<'a>>,
+    analysis: &'a Analysis,
+    files: Vec<&'a str>,
+}
+
+/// A design without what single groups of batches say.
+#[derive(Serialize)]
+struct Row<'a> {
+    design: usize,
+    settings: &'a IndexMap<String, Setting>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    failed: Option<&'a str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    measures: Option<&'a IndexMap<String, Measure>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    verdict: Option<Outcome>,
+}
+
+impl<'a> Row<'a> {
+    fn of(design: &'a DesignRecord) -> Self {
+        Self {
+            design: design.design,
+            settings: &design.settings,
+            failed: match &design.outcome {
+                DesignOutcome::Failed(reason) => Some(reason),
+                DesignOutcome::Done(_) => None,
+            },
+            measures: design.result().map(|result| &result.measures),
+            verdict: design.verdict(),
+        }
+    }
+}
+
+fn summary(report: &StudyReport, files: &[OutputFile]) -> Result<String> {
+    let summary = Summary {
+        lumiduct_study_summary: SUMMARY_FORMAT,
+        // The logo has a file of its own.
+        facts: StudyFacts { logo: None, ..report.facts.clone() },
+        rows: report.designs.iter().map(Row::of).collect(),
+        analysis: &report.analysis,
+        files: files.iter().map(|file| file.name.as_str()).chain([SUMMARY]).collect(),
+    };
+    serde_json::to_string_pretty(&summary)
+        .map(|text| text + "\n")
+        .map_err(|reason| Error::Output { what: SUMMARY.into(), reason: reason.to_string() })
+}

@@ -1,0 +1,359 @@
+//! What formats of a report say alike: numbers with their errors, verdicts, and rows of tables.
+
+use crate::Report;
+use lumiduct_base::number::{format_percent, format_value, format_with_error};
+use lumiduct_core::measure::{
+    Action, Extent, GatheredFacts, LostPaths, Measure, Outcome, PathClass, PathStep, Resolution,
+    SensorMap, StageFacts, Statistic, Status, strongest,
+};
+use lumiduct_core::plan::Estimator;
+use lumiduct_core::transport::{Choice, Objection, Trial};
+
+/// A bias is told from this share of the standard error on, 1.
+const BIAS_TOLD: f64 = 0.3;
+
+/// Path classes that are listed one by one for a sensor.
+const CLASSES_SHOWN: usize = 8;
+
+/// What stands before the rows of [`class_rows`].
+pub(crate) const CLASSES_HEAD: &str =
+    "How photons came (R reflected, T transmitted, steps in a row taken once):";
+/// What stands before the rows of [`choice_row`].
+pub(crate) const CHOICES_HEAD: &str = "A pilot has tried the estimators on each sensor. The table has the time that one \
+    thread would need until the sensor's flux or map is known to 1 %, estimated from counted work \
+    (docs/method.md). Gathering is not chosen where its windows differ by more than noise, or where an \
+    unbiased estimator contradicts it. No estimator is chosen that found significantly less light of a source than another did.";
+/// What stands after the results.
+pub(crate) const ERRORS: &str = "± is one standard error of the simulation. For fluxes, means and their ratios, the value \
+    that infinitely many paths would give lies within one standard error in 68 of 100 runs and within two in 95. Extremes, \
+    uniformities and angles are not normally distributed and keep a small bias: a bias is an error beside the standard error, \
+    of which only a bound is known, and uniformities have a 95 % interval in brackets. Values that are limited by noise or \
+    have too few counts need more paths. Tolerances of parts and materials are not in these errors.";
+/// What stands after the lines of the balance.
+pub(crate) const NO_LINES: &str =
+    "Virtual sensors let light pass: they are no lines of the balance.";
+
+/// Names that are told apart: those that several share are numbered.
+pub(crate) fn numbered(names: &[&str]) -> Vec<String> {
+    let count = |own: &str, of: &[&str]| of.iter().filter(|other| **other == own).count();
+    let label = |(index, name): (usize, &&str)| match count(name, names) {
+        1 => (*name).to_owned(),
+        _ => format!("{name} ({})", count(name, &names[..=index])),
+    };
+    names.iter().enumerate().map(label).collect()
+}
+
+/// A value with its error and unit.
+pub(crate) fn quantity(measure: &Measure) -> String {
+    let unit = if measure.unit == "1" { String::new() } else { format!(" {}", measure.unit) };
+    let (value, error) = (measure.value, measure.std_error);
+    if measure.status == Status::NoSignal && value == 0.0 && error.is_finite() {
+        // The error of nothing is what a single path or count would have brought.
+        return format!("0{unit} (nothing counted; one path is {}{unit})", format_value(error));
+    }
+    if measure.status == Status::NoSignal && error.is_infinite() {
+        return NOTHING_COUNTED.into();
+    }
+    if is_boundless(measure) {
+        return BOUNDLESS.into();
+    }
+    // A bias well below the noise is no news.
+    let bias = measure
+        .bias
+        .filter(|bias| *bias > BIAS_TOLD * error)
+        .map_or(String::new(), |bias| format!(", bias up to {}{unit}", format_value(bias)));
+    format!("{}{unit}{bias}{}", format_with_error(value, error), remark(measure.status))
+}
+
+/// A beam or field without an edge.
+const BOUNDLESS: &str = "none (the intensity falls below the level nowhere)";
+
+/// Whether a measure is the angle of a beam that has no edge in any direction.
+fn is_boundless(measure: &Measure) -> bool {
+    measure.unit == "deg" && measure.value >= 360.0
+}
+
+/// Value with standard error, bias, and what there is to be said of them, each empty where there is nothing.
+pub(crate) fn measure_cells(measure: &Measure) -> [String; 3] {
+    let unit = if measure.unit == "1" { String::new() } else { format!(" {}", measure.unit) };
+    // What the error of nothing is takes words.
+    if measure.status == Status::NoSignal || is_boundless(measure) {
+        return [quantity(measure), String::new(), String::new()];
+    }
+    [
+        format!("{}{unit}", format_with_error(measure.value, measure.std_error)),
+        measure.bias.map_or(String::new(), |bias| format!("{}{unit}", format_value(bias))),
+        remark(measure.status).trim_matches([' ', '(', ')']).to_owned(),
+    ]
+}
+
+/// What cells of tables say where there is nothing to be said.
+const NOTHING_COUNTED: &str = "unknown (nothing counted)";
+const FOUND_NOTHING: &str = "found nothing";
+const NOT_POSSIBLE: &str = "not possible";
+
+/// Whether a cell of a table says nothing.
+pub(crate) fn is_silent(cell: &str) -> bool {
+    ["", FOUND_NOTHING, NOT_POSSIBLE, NOTHING_COUNTED].contains(&cell)
+}
+
+/// What there is to be said of a number that cannot be relied on.
+pub(crate) fn remark(status: Status) -> &'static str {
+    match status {
+        Status::Ok => "",
+        Status::NoSignal => " (nothing counted)",
+        Status::TooFew => " (too few counts for an error bar)",
+        Status::NoiseLimited => " (a bound: noise hides the value)",
+        Status::BiasInNoise => " (bias not resolved from noise)",
+        Status::BiasNotResolved => " (bias not resolved)",
+        Status::Contradicted => " (photons found more)",
+    }
+}
+
+/// A verdict in words.
+pub(crate) fn outcome_word(outcome: Outcome) -> &'static str {
+    match outcome {
+        Outcome::Passed => "passed",
+        Outcome::Undecided => "undecided",
+        Outcome::Failed => "failed",
+        Outcome::Unknown => "unknown measure",
+    }
+}
+
+/// The estimator that was chosen, and what a pilot found out about each.
+pub(crate) fn choice_row(choice: &Choice) -> Vec<String> {
+    let tried = [Estimator::Forward, Estimator::Backward, Estimator::Mix, Estimator::Gather];
+    let words = tried.map(|estimator| {
+        let trial = choice.tried.iter().find(|trial| trial.estimator == estimator);
+        trial.map_or(NOT_POSSIBLE.into(), trial_words)
+    });
+    std::iter::once(choice.chosen.name().to_owned()).chain(words).collect()
+}
+
+fn trial_words(trial: &Trial) -> String {
+    let time = trial.time(0.01);
+    let time = time.map_or(FOUND_NOTHING.into(), waiting);
+    match (trial.objection, trial.bias) {
+        (Some(Objection::WindowsDiffer), Some(bias)) => {
+            format!("{time} (its windows differ by {:.0} %)", 100.0 * bias)
+        }
+        (Some(Objection::WindowsDiffer), None) | (None, Some(_) | None) => time,
+        (Some(Objection::Contradicted), _) => time + " (contradicted)",
+    }
+}
+
+/// A time in two digits, which is what a pilot knows; beyond an hour only its order matters.
+fn waiting(seconds: f64) -> String {
+    const MINUTE: f64 = 60.0;
+    const HOUR: f64 = 3600.0;
+    const DAY: f64 = 86_400.0;
+    let two_digits = |time: f64| {
+        let digits = 10f64.powi(1 - time.log10().floor() as i32);
+        format_value((time * digits).round() / digits)
+    };
+    match seconds {
+        // A flux that is known without noise costs nothing, and zero has no digits.
+        time if time <= 0.0 => "0 s".to_owned(),
+        time if time < MINUTE => format!("{} s", two_digits(time)),
+        time if time < HOUR => format!("{} min", two_digits(time / MINUTE)),
+        time if time < DAY => "hours".to_owned(),
+        _ => "not in a day".to_owned(),
+    }
+}
+
+/// How gathered values came about, in paragraphs.
+pub(crate) fn gathering(facts: &GatheredFacts, unit: &str) -> Vec<String> {
+    let from = facts.stages.iter().find(|stage| stage.number == facts.stage);
+    let mut text = from.map_or(String::new(), |stage| {
+        format!(
+            "Gathered at depth {}: the values are those of stage {} with {} passes and windows up to {} mm and {} deg. ",
+            facts.depth,
+            stage.number,
+            stage.passes,
+            format_value(stage.radius_mm),
+            format_value(stage.angle_deg)
+        )
+    });
+    text += match facts.resolution {
+        Resolution::Resolved => {
+            "Bias resolved: it goes with the square of the window, and E0, which is free of such a bias, is the value."
+        }
+        Resolution::InNoise => {
+            "Bias not resolved from noise: the windows agree within their errors. The value is E0, free of a bias by the square of the window."
+        }
+        Resolution::NotResolved => {
+            "Bias not resolved: the windows differ, and not by the square of their size. The value is E3, that of the smallest window, and |E1 - E2| is no bound."
+        }
+    };
+    let by_photons = facts.off.map(|off| {
+        let [flux, error] = facts.by_photons;
+        format!(
+            "Photons of this run that came to the sensor itself carried {} {unit}, which is {:.1} errors from the value.",
+            format_with_error(flux, error),
+            off.abs()
+        )
+    });
+    std::iter::once(text).chain(by_photons).collect()
+}
+
+/// Stage, passes, radius, angle, and the four estimates of a gathered flux.
+pub(crate) fn stage_row(stage: &StageFacts) -> Vec<String> {
+    let [e1, e2, e3, e0] =
+        [0, 1, 2, 3].map(|window| format_with_error(stage.flux[window], stage.std_errors[window]));
+    let (radius, angle) = (format_value(stage.radius_mm), format_value(stage.angle_deg));
+    let StageFacts { number, passes, .. } = stage;
+    vec![
+        number.to_string(),
+        passes.to_string(),
+        format!("{radius} mm"),
+        format!("{angle} deg"),
+        e1,
+        e2,
+        e3,
+        e0,
+    ]
+}
+
+/// What became of gather paths that ended before their end.
+pub(crate) fn lost_paths(lost: LostPaths) -> String {
+    format!(
+        "Of the throughput of gather paths from the sensor, {} was cut by the bounce limit and {} lost through holes in the geometry.",
+        format_percent(lost.cut),
+        format_percent(lost.leaked)
+    )
+}
+
+/// What the uniformity of a map was taken over; `None` for a single cell, which is even.
+pub(crate) fn evenness_head(map: &SensorMap) -> Option<String> {
+    let summary = &map.summary;
+    if summary.cells == 1 {
+        return None;
+    }
+    let ([width, height], unit) = (summary.cell_size, map.axes.unit());
+    Some(format!(
+        "Uniformity over {} cells of {} {unit} x {} {unit}; extremes are corrected for noise, intervals hold 95 %.",
+        summary.cells,
+        format_value(width),
+        format_value(height)
+    ))
+}
+
+/// Over what, and min/avg, min/max, max/min.
+pub(crate) fn evenness_rows(map: &SensorMap) -> Vec<(&'static str, [String; 3])> {
+    let summary = &map.summary;
+    let sets = [
+        ("all cells", Some(&summary.all)),
+        ("9 points", summary.nine.as_ref()),
+        ("13 points", summary.thirteen.as_ref()),
+    ];
+    let row = |set: &lumiduct_core::measure::Uniformity| {
+        [&set.min_avg, &set.min_max, &set.max_min].map(statistic)
+    };
+    sets.into_iter().filter_map(|(name, set)| Some((name, row(set?)))).collect()
+}
+
+/// The coefficient of variation of a map, in a sentence.
+pub(crate) fn variation(map: &SensorMap) -> String {
+    let cv = statistic(&map.summary.cv);
+    format!("CV (standard deviation over mean, noise taken out): {cv}")
+}
+
+fn statistic(value: &Statistic) -> String {
+    if value.status == Status::NoSignal {
+        return NOTHING_COUNTED.to_owned();
+    }
+    let [low, high] = value.interval;
+    let number = format_with_error(value.value, value.std_error);
+    format!("{number} [{}, {}]{}", format_value(low), format_value(high), remark(value.status))
+}
+
+/// Share, mean number of bounces and steps of the strongest path classes.
+pub(crate) fn class_rows(classes: &[PathClass]) -> Vec<[String; 3]> {
+    strongest(classes, CLASSES_SHOWN)
+        .iter()
+        .map(|class| [format_percent(class.share), format_value(class.bounces_mean), steps(class)])
+        .collect()
+}
+
+/// The steps of a class: `pipe.entry T, pipe.wall R`.
+fn steps(class: &PathClass) -> String {
+    let step = |step: &PathStep| match step.action {
+        Action::Reflected => format!("{} R", step.face),
+        Action::Transmitted => format!("{} T", step.face),
+    };
+    let text = class.steps.iter().map(step).collect::<Vec<_>>().join(", ");
+    match class.extent {
+        Extent::Whole if text.is_empty() => "direct".into(),
+        Extent::Whole => text,
+        Extent::CutOff => text + ", ...",
+        Extent::Others => "all weaker classes".into(),
+    }
+}
+
+/// Name, flux and share of the lines of the balance that are worth telling.
+pub(crate) fn balance_lines(report: &Report) -> Vec<(&str, String, String)> {
+    let whole = report.measures.source_flux;
+    let lines = report.measures.values.iter().filter(|(name, measure)| {
+        let always = name.ends_with(".leaked") || name.ends_with(".residual");
+        name.starts_with("balance.") && (measure.value != 0.0 || always)
+    });
+    lines
+        .map(|(name, measure)| {
+            (name.as_str(), quantity(measure), format_percent(measure.value / whole))
+        })
+        .collect()
+}
+
+/// The record of a run, a line each.
+pub(crate) fn run_lines(report: &Report) -> Vec<String> {
+    let (run, measures) = (&report.run, &report.measures);
+    let mut lines = vec![
+        format!("scene `{}`, hash {}", report.scene.name, report.scene.hash),
+        format!("lumiduct {}, estimator {}, seed {}", run.version, run.estimator.name(), run.seed),
+        format!(
+            "{} paths in {} batches, {} segments",
+            measures.paths, measures.batches, measures.segments
+        ),
+        format!("asked for {}; ended because {}", run.asked, run.stopped),
+        format!("bounce limit {}", run.bounce_limit),
+        "light is taken as unpolarised at every interface, which makes transmission slightly too low: by 0.7 % for a straight \
+         rod with two polished ends under a Lambertian source, by 3.6 % for a plate of index 1.49 at 75° (examples, not \
+         this scene; docs/theory.md, eq. 2)"
+            .to_owned(),
+    ];
+    if !run.gather.is_empty() {
+        lines.push(format!("settings of gathering: {}", run.gather));
+    }
+    if !run.gathering.is_empty() {
+        lines.push(format!("gathering: {}", run.gathering));
+    }
+    if let Some(target) = &run.target {
+        lines.push(target.sentence());
+    }
+    if !report.scene.overrides.is_empty() {
+        lines.push(format!("overrides: {}", report.scene.overrides.join(", ")));
+    }
+    if let Some(command) = &run.repeat {
+        lines.push(format!("to repeat these numbers, in the folder of the scene: {command}"));
+    }
+    for leak in &run.leaks {
+        lines.push(format!("leak at [{}, {}, {}] mm", leak.x, leak.y, leak.z));
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_beyond_an_hour_are_words() {
+        assert_eq!(waiting(0.0), "0 s");
+        assert_eq!(waiting(0.0312), "0.031 s");
+        assert_eq!(waiting(59.0), "59 s");
+        assert_eq!(waiting(754.0), "13 min");
+        assert_eq!(waiting(7200.0), "hours");
+        assert_eq!(waiting(3.2e18), "not in a day");
+        assert_eq!(waiting(f64::INFINITY), "not in a day");
+    }
+}

@@ -9,9 +9,9 @@
 use crate::OneSensor;
 use crate::primary::{Mutation, Primary};
 use lumiduct_core::rng::{Numbers, Sampler};
-use lumiduct_core::transport::emitters::Met;
-use lumiduct_core::transport::follow::{Collector, follow};
-use lumiduct_core::transport::readings::Counted;
+use lumiduct_core::transport::tally::readings::Counted;
+use lumiduct_core::transport::walk::emitters::Met;
+use lumiduct_core::transport::walk::follow::{Collector, follow};
 use lumiduct_core::transport::{Path, Readings};
 use smallvec::SmallVec;
 

@@ -8,10 +8,10 @@ use crate::{Batch, OneSensor};
 use lumiduct_core::optics::{Scattered, Side, scatter_toward};
 use lumiduct_core::rng::Sampler;
 use lumiduct_core::scene::{On, Ray};
-use lumiduct_core::transport::emitters::Met;
-use lumiduct_core::transport::follow::{Collector, follow, follow_on};
-use lumiduct_core::transport::readings::Counted;
-use lumiduct_core::transport::scatter::{facing, scatter_radiance};
+use lumiduct_core::transport::tally::readings::Counted;
+use lumiduct_core::transport::walk::emitters::Met;
+use lumiduct_core::transport::walk::follow::{Collector, follow, follow_on};
+use lumiduct_core::transport::walk::scatter::{facing, scatter_radiance};
 use lumiduct_core::transport::{Path, Readings, Vertex};
 use std::ops::ControlFlow;
 

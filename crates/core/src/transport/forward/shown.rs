@@ -2,7 +2,8 @@
 
 use crate::rng::Sampler;
 use crate::scene::{SensorId, SourceId};
-use crate::transport::forward::{Counter, Detected, Forward, PhotonWatcher};
+use crate::transport::forward::counter::Counter;
+use crate::transport::forward::{Detected, Forward, PhotonWatcher};
 use crate::transport::stop::{Pace, StopSignal};
 use crate::transport::{Event, Path, Readings, Vertex, Visitor, walk};
 use std::ops::ControlFlow;

@@ -177,12 +177,12 @@ fn sources_share_a_batch_by_flux_and_none_goes_without() {
     let source = scene.sources[0].clone();
     scene.sources = fluxes.map(|flux| crate::scene::Source { flux, ..source.clone() }).to_vec();
     for batch_paths in [4, 5, 37, 100, 4096] {
-        let shares = crate::transport::forward::shares(&scene, batch_paths);
+        let shares = crate::transport::forward::estimator::shares(&scene, batch_paths);
         assert_eq!(shares.iter().sum::<u64>(), batch_paths);
         assert!(shares.iter().all(|share| *share > 0), "{shares:?}");
         assert!(shares[0].abs_diff(shares[1]) <= 1, "{shares:?}");
     }
-    assert_eq!(crate::transport::forward::shares(&scene, 1), [1; 4]);
+    assert_eq!(crate::transport::forward::estimator::shares(&scene, 1), [1; 4]);
     scene.sources[1].flux = 0.0;
     let forward = Forward::new(&scene, 1, 10, 100);
     assert_eq!((forward.shares[1], forward.shares.iter().sum::<u64>()), (0, 100));

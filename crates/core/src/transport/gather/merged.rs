@@ -4,14 +4,14 @@
 //! passes. All light of a sensor is in the readings of the windows; how paths are traced is not known here.
 
 use crate::scene::{SourceId, Visibility};
-use crate::transport::emitters::Met;
 use crate::transport::forward::{Detected, PhotonWatcher};
-use crate::transport::gather::Pass;
+use crate::transport::gather::estimator::Pass;
+use crate::transport::gather::merge::{Etendues, NO_WINDOW, Passage, ROULETTE_BELOW, Recent};
 use crate::transport::gather::stream::{Starting, Stream};
-use crate::transport::merge::{Etendues, NO_WINDOW, Passage, ROULETTE_BELOW, Recent};
-use crate::transport::readings::Counted;
-use crate::transport::scatter::facing;
-use crate::transport::window::{COUNTED, Window, estimates};
+use crate::transport::gather::window::{COUNTED, Window, estimates};
+use crate::transport::tally::readings::Counted;
+use crate::transport::walk::emitters::Met;
+use crate::transport::walk::scatter::facing;
 use crate::transport::{Departure, Path, Vertex};
 use smallvec::SmallVec;
 

@@ -5,15 +5,15 @@
 use crate::optics::Incidence;
 use crate::scene::shape::Toward;
 use crate::scene::{MediumId, PrimHit, PrimId, Scene, SourceId, Visibility};
-use crate::transport::estimate::{Arriving, Colliding, Meeting, NestedWindows};
 use crate::transport::forward::PhotonWatcher;
-use crate::transport::gather::{Ended, Gather, Pass, Waiting};
-use crate::transport::merge::Etendues;
-use crate::transport::readings::Counted;
-use crate::transport::record_index::{Key, TOGETHER};
+use crate::transport::gather::estimate::{Arriving, Colliding, Meeting, NestedWindows};
+use crate::transport::gather::estimator::{Ended, Gather, Pass, Waiting};
+use crate::transport::gather::index::{Key, TOGETHER};
+use crate::transport::gather::merge::Etendues;
+use crate::transport::gather::window::{COUNTED, ESTIMATES, estimates};
 use crate::transport::stop::Pace;
-use crate::transport::window::{COUNTED, ESTIMATES, estimates};
-use crate::transport::work::RecordWork;
+use crate::transport::tally::readings::Counted;
+use crate::transport::tally::work::RecordWork;
 use crate::transport::{Collision, Path, Readings, Vertex};
 use glam::DVec3;
 

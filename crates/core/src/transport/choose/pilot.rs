@@ -1,0 +1,245 @@
+//! The choice between the estimators, by measurement: a pilot of each on every sensor.
+//!
+//! The work until a relative error is reached is t = work × relative variance / error², and that of the passes without
+//! which gathering tells nothing at least. The pilot measures it for forward, backward, their mix and gather with a small
+//! part of the budget, in counted work, never in time; the least t is taken. A run to a target has the budget that a
+//! first, small pilot says the best needs.
+//! Gathering is left out where something speaks against it: nested windows that differ by more than the target and
+//! their noise, or a flux that the best of the unbiased ones contradicts. Two windows alone are blind to a feature that
+//! is smaller than both. An unbiased estimator is left out that found too little beside another: what it has missed so
+//! far is missing from its variance, too.
+
+use crate::plan::{Estimator, RunPlan};
+use crate::scene::{Scene, SensorId, Source};
+use crate::tally::Tally;
+use crate::transport::choose::choice::{Choice, Objection, Trial};
+use crate::transport::choose::trials::{Gathered, Trials, Tried};
+use crate::transport::gather::settings::PhotonPilot;
+use crate::transport::stop::StopSignal;
+use crate::transport::tally::work;
+use crate::transport::walk::emitters::invisible;
+
+/// Share of the budget of a run that the pilot may use, 1.
+const SHARE: f64 = 0.05;
+/// Estimators that are tried.
+const TRIALS: f64 = 4.0;
+/// Budget of a run that is given none: a minute of one thread, s.
+const USUAL_BUDGET: f64 = 60.0;
+/// Least and most that a pilot takes, s.
+const BOUNDS: [f64; 2] = [0.1, 4.0];
+/// A second pilot is worth its while if it may take so many times as long as the first, 1.
+const WORTH_ANOTHER: f64 = 3.0;
+/// Relative error of a flux that may contradict another: ten counts have it, 1.
+const KNOWN: f64 = 0.32;
+/// Standard errors beyond which a difference counts.
+const SIGMAS: f64 = 3.0;
+/// What rounding may do to a flux, relative to it, 1.
+const ROUNDING: f64 = 1e-9;
+/// Relative error that windows may differ by where no target is set, 1.
+const USUAL_TARGET: f64 = 0.01;
+
+/// Tries the estimators on all sensors and chooses; `None` if that was stopped before anything was known. `watch` learns what is tried.
+pub(crate) fn choose(
+    scene: &Scene,
+    plan: &RunPlan,
+    photons: PhotonPilot,
+    signal: &StopSignal,
+    watch: &mut dyn FnMut(Estimator),
+) -> Option<Vec<Choice>> {
+    let sensors: Vec<SensorId> = (0..scene.sensors.len()).map(SensorId::new).collect();
+    let given = budget(plan, photons);
+    let mut choices = |budget: f64| {
+        let [least, most] = BOUNDS;
+        let effort = 1e9 * (SHARE * budget).clamp(least, most) / TRIALS;
+        choices(&Trials { scene, plan, photons, sensors: &sensors, effort, signal }, budget, watch)
+    };
+    let Some(target) = &plan.stop.target else { return choices(given.unwrap_or(USUAL_BUDGET)) };
+    let [least, _] = BOUNDS;
+    let first = choices(least / SHARE)?;
+    let time = |choice: &Choice| choice.time(target.relative_error).unwrap_or(USUAL_BUDGET);
+    let needed = first.iter().map(time).fold(0.0, f64::max).min(given.unwrap_or(f64::INFINITY));
+    let second = if SHARE * needed > WORTH_ANOTHER * least { choices(needed) } else { None };
+    Some(second.unwrap_or(first))
+}
+
+/// What a run is given, in seconds of one thread of the reference machine; `None` where it has but a target.
+fn budget(plan: &RunPlan, photons: PhotonPilot) -> Option<f64> {
+    let path = 1e-9 * work::of_photon_path(photons.segments_per_path);
+    let by_paths = plan.stop.paths.map(|paths| paths as f64 * path);
+    let by_time = plan.stop.time.map(|time| time.as_secs_f64());
+    by_paths.into_iter().chain(by_time).reduce(f64::min)
+}
+
+/// Tries all that may be tried on each sensor, for a run of so many seconds; `None` if that was stopped.
+fn choices(
+    trials: &Trials<'_>,
+    budget: f64,
+    watch: &mut dyn FnMut(Estimator),
+) -> Option<Vec<Choice>> {
+    let Trials { scene, plan, sensors, .. } = trials;
+    if sensors.is_empty() {
+        return Some(Vec::new());
+    }
+    watch(Estimator::Forward);
+    let forward = trials.forward()?;
+    let can_meet = |source: &Source| invisible(source, scene).is_none();
+    let mix = if scene.sources.iter().any(can_meet) {
+        watch(Estimator::Mix);
+        trials.mix()?
+    } else {
+        Vec::new()
+    };
+    let (backward, gather) = if scene.sources.iter().all(can_meet) {
+        watch(Estimator::Backward);
+        let backward = trials.backward()?;
+        watch(Estimator::Gather);
+        (backward, trials.gather()?)
+    } else {
+        (Vec::new(), Vec::new())
+    };
+    let target = plan.stop.target.as_ref().map(|target| target.relative_error);
+    let of_sensor = |sensor: &SensorId| {
+        let unbiased = [&forward, &backward, &mix].map(|tried| tried.get(sensor.index()));
+        let unbiased: Vec<&Tried> = unbiased.into_iter().flatten().collect();
+        // Photons do not know at a record which sensors they have passed.
+        let counts_first = scene.sensors[sensor.index()].counts_first_passage();
+        let gathered = gather.get(sensor.index()).filter(|_| !counts_first);
+        let gathered = gathered.map(|gathered| Trial {
+            objection: objection(gathered, &unbiased, target.unwrap_or(USUAL_TARGET)),
+            ..gathered.tried.trial.clone()
+        });
+        let unbiased = unbiased.iter().map(|tried| Trial {
+            objection: misses_light(tried, &unbiased).then_some(Objection::Contradicted),
+            ..tried.trial.clone()
+        });
+        let tried: Vec<Trial> = unbiased.chain(gathered).collect();
+        let chosen = best(&tried, target.or_else(|| least_error(&tried, budget)));
+        Choice { chosen, tried }
+    };
+    Some(sensors.iter().map(of_sensor).collect())
+}
+
+/// The relative error that the best reaches within a budget, s; `None` where none found anything.
+fn least_error(tried: &[Trial], budget: f64) -> Option<f64> {
+    let costs = tried.iter().filter_map(|trial| trial.cost);
+    costs.min_by(f64::total_cmp).map(|cost| (cost / budget).sqrt())
+}
+
+/// The quickest estimator to which nothing is objected; forward where none found anything.
+fn best(tried: &[Trial], error: Option<f64>) -> Estimator {
+    let fit = tried.iter().filter(|trial| trial.objection.is_none());
+    let known = fit.filter_map(|trial| Some((trial.time(error?)?, trial.estimator)));
+    known.min_by(|(a, _), (b, _)| a.total_cmp(b)).map_or(Estimator::Forward, |(_, best)| best)
+}
+
+/// Standard error over value; infinite or not a number in the dark.
+fn relative_error(flux: &Tally) -> f64 {
+    flux.std_error() / flux.mean()
+}
+
+/// Whether an unbiased estimator found less of the light of a source than another, beyond their errors.
+fn misses_light(tried: &Tried, others: &[&Tried]) -> bool {
+    others.iter().any(|other| {
+        tried.by_source.iter().zip(&other.by_source).any(|(own, other)| {
+            let error = own.std_error().hypot(other.std_error());
+            let room = SIGMAS * error + ROUNDING * own.mean().abs();
+            relative_error(other) < KNOWN && other.mean() - own.mean() > room
+        })
+    })
+}
+
+/// What speaks against a gathered flux, beside what the unbiased estimators found.
+fn objection(gathered: &Gathered, unbiased: &[&Tried], target: f64) -> Option<Objection> {
+    let (flux, apart) = (&gathered.tried.flux, &gathered.apart);
+    gathered.tried.trial.cost?;
+    let allowed = target * flux.mean().abs();
+    if apart.mean().abs() > allowed + SIGMAS * apart.std_error() {
+        return Some(Objection::WindowsDiffer);
+    }
+    let other = unbiased
+        .iter()
+        .filter(|tried| relative_error(&tried.flux) < KNOWN)
+        .min_by(|a, b| relative_error(&a.flux).total_cmp(&relative_error(&b.flux)))?;
+    let error = flux.std_error().hypot(other.flux.std_error());
+    let off = (flux.mean() - other.flux.mean()).abs();
+    (off > allowed + SIGMAS * error).then_some(Objection::Contradicted)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn trial(estimator: Estimator, cost: Option<f64>) -> Trial {
+        Trial { estimator, cost, bias: None, least: 0.0, objection: None }
+    }
+
+    fn tried(estimator: Estimator, fluxes: [f64; 4]) -> Tried {
+        let by_source = vec![Tally::of(fluxes)];
+        Tried { trial: trial(estimator, Some(1.0)), flux: Tally::of(fluxes), by_source }
+    }
+
+    fn gathered(fluxes: [f64; 4], apart: [f64; 4]) -> Gathered {
+        Gathered { tried: tried(Estimator::Gather, fluxes), apart: Tally::of(apart) }
+    }
+
+    #[test]
+    fn the_quickest_estimator_without_an_objection_is_chosen() {
+        let mut trials = vec![
+            trial(Estimator::Forward, Some(3e-4)),
+            trial(Estimator::Backward, None),
+            trial(Estimator::Gather, Some(1e-4)),
+        ];
+        assert_eq!(best(&trials, Some(0.01)), Estimator::Gather);
+        trials[2].least = 2.0;
+        assert_eq!(best(&trials, Some(0.01)), Estimator::Gather, "2 s instead of 3 s");
+        assert_eq!(best(&trials, Some(0.02)), Estimator::Forward, "2 s instead of 0.75 s");
+        trials[2].objection = Some(Objection::WindowsDiffer);
+        assert_eq!(best(&trials, Some(0.01)), Estimator::Forward);
+        trials[0].cost = None;
+        assert_eq!(best(&trials, Some(0.01)), Estimator::Forward, "in the dark");
+        assert_eq!(best(&trials, None), Estimator::Forward, "in the dark");
+    }
+
+    #[test]
+    fn a_choice_tells_the_time_of_what_was_chosen() {
+        let forward = trial(Estimator::Forward, Some(3e-4));
+        let gather = Trial { least: 1.5, ..trial(Estimator::Gather, Some(1e-4)) };
+        let choice = Choice { chosen: Estimator::Gather, tried: vec![forward, gather] };
+        assert_eq!(choice.time(0.005), Some(4.0));
+        assert_eq!(choice.time(0.02), Some(1.5));
+        assert!((least_error(&choice.tried, 4.0).unwrap() - 0.005).abs() < 1e-12);
+    }
+
+    #[test]
+    fn windows_object_when_they_differ_beyond_target_and_noise() {
+        let target = 0.01;
+        let with = |apart| objection(&gathered([1.0; 4], apart), &[], target);
+        assert_eq!(with([0.2, 0.21, 0.2, 0.19]), Some(Objection::WindowsDiffer));
+        assert_eq!(with([0.009; 4]), None, "within the target");
+        assert_eq!(with([0.3, -0.2, 0.25, -0.15]), None, "noise");
+    }
+
+    #[test]
+    fn an_estimator_that_has_missed_light_is_left_out() {
+        let sharp = tried(Estimator::Backward, [1.0, 1.001, 0.999, 1.0]);
+        let all = tried(Estimator::Forward, [1.8, 2.2, 2.1, 1.9]);
+        let noisy = tried(Estimator::Forward, [0.0, 6.0, 0.0, 2.0]);
+        assert!(misses_light(&sharp, &[&all, &sharp]));
+        assert!(!misses_light(&all, &[&all, &sharp]), "less is no reason to doubt more");
+        assert!(!misses_light(&sharp, &[&noisy, &sharp]), "noise");
+    }
+
+    #[test]
+    fn the_better_of_the_unbiased_estimators_contradicts_a_flux() {
+        let flux = gathered([0.50, 0.52, 0.49, 0.49], [0.0; 4]);
+        let noisy = tried(Estimator::Forward, [0.0, 2.0, 0.0, 0.0]);
+        let sharp = tried(Estimator::Backward, [1.0, 1.02, 0.99, 0.99]);
+        let dark = tried(Estimator::Backward, [0.0; 4]);
+        let one_event = tried(Estimator::Forward, [0.004, 0.0, 0.0, 0.0]);
+        let with = |others: &[&Tried]| objection(&flux, others, 0.01);
+        assert_eq!(with(&[&noisy, &sharp]), Some(Objection::Contradicted));
+        assert_eq!(with(&[&noisy, &dark]), None, "what saw nothing says nothing");
+        assert_eq!(with(&[&one_event]), None, "one weak event says nothing");
+        assert_eq!(with(&[]), None);
+    }
+}

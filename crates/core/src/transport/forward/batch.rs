@@ -1,0 +1,50 @@
+//! One batch of photons, which others may watch.
+
+use crate::scene::SourceId;
+use crate::transport::Readings;
+use crate::transport::forward::Forward;
+use crate::transport::forward::counter::Counter;
+use crate::transport::forward::watcher::PhotonWatcher;
+use crate::transport::stop::{Pace, StopSignal};
+
+/// Path classes are taken from every so many paths: they are shares for the reader, not measures.
+const CLASS_EVERY: u64 = 8;
+
+impl Forward<'_> {
+    /// Traces one batch; `None` if it was stopped.
+    pub fn batch(&self, batch: u64, signal: &StopSignal) -> Option<Readings> {
+        self.batch_watched(batch, &mut (), &Pace::new(signal))
+    }
+
+    /// Traces one batch while someone watches its photons; `None` if it was stopped.
+    pub fn batch_watched(
+        &self,
+        batch: u64,
+        watcher: &mut impl PhotonWatcher,
+        pace: &Pace<'_>,
+    ) -> Option<Readings> {
+        let batch_paths = self.shares.iter().sum();
+        let readings = Readings::of_batch(self.scene, &self.layout, self.seed, batch_paths, batch);
+        let mut counter = Counter::new(self, readings, watcher, pace);
+        let mut index = batch * batch_paths;
+        for ((source, &paths), flux) in self.shares.iter().enumerate().zip(self.photon_fluxes()) {
+            let source = SourceId::new(source);
+            for place in 0..paths {
+                // Shifted by the batch, so that a source of few paths has its share of classes, too.
+                counter.classed = (place + batch).is_multiple_of(CLASS_EVERY);
+                counter.trace(source, flux, index);
+                index += 1;
+                if pace.is_stopped() {
+                    return None;
+                }
+            }
+        }
+        Some(counter.finish())
+    }
+
+    /// Flux of one photon of each source, lm or W; 0 of dark ones, which have none.
+    pub(crate) fn photon_fluxes(&self) -> Vec<f64> {
+        let sources = self.scene.sources.iter().zip(&self.shares);
+        sources.map(|(source, &paths)| source.flux / paths.max(1) as f64).collect()
+    }
+}

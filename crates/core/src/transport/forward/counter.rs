@@ -1,0 +1,268 @@
+//! Photons of one batch, counted where they meet a sensor, and every loss of theirs.
+
+mod surfaces;
+
+use crate::optics::Side;
+use crate::rng::Sampler;
+use crate::scene::shape::Toward;
+use crate::scene::{Counts, FaceId, MediumId, Owner, SensorId, SourceId};
+use crate::transport::forward::Forward;
+use crate::transport::forward::watcher::PhotonWatcher;
+use crate::transport::stop::Pace;
+use crate::transport::tally::readings::{Counted, SensorReading, Step, Trail, count_totals};
+use crate::transport::{Departure, Event, Leak, Path, Readings, Segment, Vertex, Visitor, walk};
+use glam::DVec3;
+use smallvec::SmallVec;
+use std::ops::ControlFlow;
+
+/// Stream of random numbers of the forward photons.
+const STREAM: u64 = 1;
+
+/// Counts one batch.
+pub(super) struct Counter<'r, 's, W> {
+    run: &'r Forward<'s>,
+    watcher: &'r mut W,
+    pace: &'r Pace<'r>,
+    readings: Readings,
+    /// The scalars of the readings, until it is finished.
+    sums: Vec<f64>,
+    /// Flux of the photon being traced at throughput 1, lm or W.
+    flux: f64,
+    pub(super) source: SourceId,
+    pub(super) classed: bool,
+    travel_start: TravelStart,
+    trail: Trail,
+    last_left: Option<FaceId>,
+    /// Sensors of first passages that the photon has passed.
+    passed: SmallVec<[SensorId; 2]>,
+    /// Those by whose entry port it has entered.
+    entered: SmallVec<[SensorId; 2]>,
+}
+
+/// Where a straight piece starts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum TravelStart {
+    /// At the source: what it crosses at its start has not been counted.
+    Source,
+    /// At an interface, at the end of a piece that has counted what is there.
+    Interface,
+}
+
+impl<'r, 's, W: PhotonWatcher> Counter<'r, 's, W> {
+    pub(super) fn new(
+        run: &'r Forward<'s>,
+        mut readings: Readings,
+        watcher: &'r mut W,
+        pace: &'r Pace<'r>,
+    ) -> Self {
+        Self {
+            run,
+            watcher,
+            pace,
+            sums: std::mem::take(&mut readings.groups[0].sums),
+            readings,
+            flux: 0.0,
+            source: SourceId::new(0),
+            classed: false,
+            travel_start: TravelStart::Source,
+            trail: Trail::new(),
+            last_left: None,
+            passed: SmallVec::new(),
+            entered: SmallVec::new(),
+        }
+    }
+
+    pub(super) fn finish(mut self) -> Readings {
+        self.readings.groups[0].sums = self.sums;
+        self.readings.close_batch();
+        self.readings
+    }
+
+    pub(super) fn trace(&mut self, source: SourceId, flux: f64, index: u64) {
+        let scene = self.run.scene;
+        let mut sampler = Sampler::for_path(self.run.seed, STREAM, index);
+        let emitted = scene.sources[source.index()].emit(scene, &mut sampler);
+        self.flux = flux;
+        self.source = source;
+        self.travel_start = TravelStart::Source;
+        self.trail.clear();
+        self.last_left = None;
+        self.passed.clear();
+        self.entered.clear();
+        self.add(self.run.layout.emitted(source), 1.0);
+        let shape = emitted.shape;
+        let path = Path::emitted(scene, source, emitted);
+        self.watcher.start(&path, source, shape);
+        walk(scene, path, self.run.bounce_limit, &mut sampler, self);
+    }
+
+    #[inline(always)]
+    fn travel(&mut self, path: &Path, segment: &Segment<'_>) {
+        self.readings.segments += 1;
+        if segment.arriving < segment.throughput {
+            let slot = self.run.layout.absorbed_in_medium(segment.medium);
+            self.add(slot, segment.throughput - segment.arriving);
+        }
+        let watch = &self.run.watch;
+        if watch.ports.iter().any(|port| port.may_be_crossed(segment))
+            || !watch.near.is_empty()
+            || !watch.entry_ports.is_empty()
+        {
+            self.travel_watched(path, segment);
+        }
+        self.travel_start = TravelStart::Interface;
+    }
+
+    #[inline(always)]
+    fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>) {
+        self.watcher.arrive(path, vertex, self.flux, self.source);
+        let light = Light {
+            counts: Counts::Incident,
+            dir: vertex.dir,
+            throughput: vertex.throughput,
+            side: None,
+            medium: vertex.interface.from,
+        };
+        self.on_faces(path, vertex, light);
+    }
+
+    #[inline(always)]
+    fn depart(&mut self, path: &Path, vertex: &Vertex<'_>, departure: &Departure) {
+        self.watcher.depart(path, vertex, departure);
+        let face = vertex.interface.acting.face;
+        let absorbed = vertex.throughput - departure.throughput;
+        if absorbed > 0.0 {
+            self.add(self.run.layout.absorbed_by_face(face), absorbed);
+        }
+        let light = Light {
+            counts: Counts::Leaving,
+            dir: departure.dir,
+            throughput: departure.throughput,
+            side: Some(departure.side),
+            medium: match departure.side {
+                Side::Reflected => vertex.interface.from,
+                Side::Transmitted => vertex.interface.to,
+            },
+        };
+        self.on_faces(path, vertex, light);
+        let transmitted = departure.side == Side::Transmitted;
+        if transmitted {
+            for hit in vertex.hits.all() {
+                if let (Owner::Solid(_), Toward::Front) = (hit.owner, hit.toward) {
+                    self.last_left = Some(hit.face);
+                }
+            }
+        }
+        if self.classed {
+            self.step(Step { face: face.index() as u32, transmitted });
+        }
+    }
+
+    /// Counts light on the sensors of all faces that meet at a vertex; most have none.
+    #[inline(always)]
+    fn on_faces(&mut self, path: &Path, vertex: &Vertex<'_>, light: Light) {
+        let hits = vertex.hits;
+        if self.run.watch.watched[hits.nearest().face.index()].includes(light.counts)
+            || !hits.others().is_empty()
+        {
+            self.on_watched_faces(path, vertex, light);
+        }
+    }
+
+    /// Counts flux in a cell and in the sensor's totals.
+    #[inline]
+    fn count(&mut self, path: &Path, id: SensorId, cell: usize, throughput: f64) {
+        self.count_totals(path, id, throughput);
+        self.readings.sensors[id.index()].cells.add(cell, self.flux * throughput);
+    }
+
+    #[inline]
+    fn count_totals(&mut self, path: &Path, id: SensorId, throughput: f64) {
+        let flux = self.flux * throughput;
+        let light = Counted { flux, depth: path.depth, source: self.source };
+        count_totals(&mut self.sums, &self.run.layout, id, &light);
+        let reading = &mut self.readings.sensors[id.index()];
+        reading.depths.add(SensorReading::depth_bin(path.depth), flux);
+        if self.classed {
+            let class = reading.classes.entry(self.trail.clone()).or_default();
+            class.flux += flux;
+            class.depth_weighted += flux * f64::from(path.depth);
+        }
+    }
+
+    /// Adds a step to the trail of a path; the same step in a row counts once, a full trail is marked as cut off.
+    fn step(&mut self, step: Step) {
+        if self.trail.last() == Some(&Some(step)) || self.trail.last() == Some(&None) {
+            return;
+        }
+        let full = self.trail.len() == self.trail.inline_size();
+        if full {
+            self.trail.pop();
+        }
+        self.trail.push((!full).then_some(step));
+    }
+
+    #[inline(always)]
+    fn add(&mut self, slot: usize, throughput: f64) {
+        self.sums[slot] += self.flux * throughput;
+    }
+}
+
+impl<W: PhotonWatcher> Visitor for Counter<'_, '_, W> {
+    #[inline(always)]
+    fn roulette_below(&self) -> f64 {
+        self.watcher.roulette_below()
+    }
+
+    #[inline(always)]
+    fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
+        let layout = self.run.layout;
+        match event {
+            Event::Travel(segment) => {
+                self.travel(path, segment);
+                return self.pace.spend(1);
+            }
+            Event::Arrive(vertex) => self.arrive(path, vertex),
+            Event::Depart(vertex, departure) => self.depart(path, vertex, departure),
+            Event::Collide(collision) => {
+                self.watcher.collide(path, collision, self.flux, self.source);
+            }
+            Event::Absorbed(vertex) => {
+                let face = vertex.interface.acting.face;
+                self.add(layout.absorbed_by_face(face), vertex.throughput);
+            }
+            Event::Roulette(lost) => self.add(layout.roulette(), lost),
+            Event::Escaped(throughput) => {
+                self.add(layout.escaped(self.last_left), throughput);
+                for &(id, goniometer) in &self.run.watch.far {
+                    self.count_on_sphere(
+                        path,
+                        id,
+                        goniometer.cell(path.ray.dir()),
+                        f64::INFINITY,
+                        throughput,
+                    );
+                }
+            }
+            Event::Cut(throughput) => self.add(layout.cut(), throughput),
+            Event::Leaked(ray, throughput) => {
+                self.add(layout.leaked(), throughput);
+                self.readings.leaks.push(Leak { point: ray.origin(), dir: ray.dir() });
+            }
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+/// Light arriving at, or leaving, the faces of a vertex.
+#[derive(Clone, Copy)]
+pub(super) struct Light {
+    pub(super) counts: Counts,
+    /// Unit direction of travel.
+    pub(super) dir: DVec3,
+    pub(super) throughput: f64,
+    /// How it leaves; `None` of arriving light.
+    pub(super) side: Option<Side>,
+    /// The medium it is in.
+    pub(super) medium: MediumId,
+}

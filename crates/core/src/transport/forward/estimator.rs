@@ -1,0 +1,61 @@
+//! The forward estimator: photon paths from the sources, counted where they meet a sensor.
+//!
+//! Every photon carries flux; sensors add it up per cell. What surfaces and media take, what escapes and what is cut
+//! is counted independently, so that the balance can be checked, not enforced.
+
+use crate::scene::Scene;
+use crate::transport::Layout;
+use crate::transport::forward::watch::Watch;
+
+/// What all batches of a run have in common.
+#[derive(Debug)]
+pub struct Forward<'s> {
+    pub(crate) scene: &'s Scene,
+    pub(crate) layout: Layout,
+    pub(crate) watch: Watch<'s>,
+    pub(crate) seed: u64,
+    pub(crate) bounce_limit: u32,
+    /// Paths per batch of each source.
+    pub(crate) shares: Vec<u64>,
+}
+
+impl<'s> Forward<'s> {
+    /// Prepares a run with `batch_paths` paths a batch, divided among the sources by flux.
+    pub fn new(scene: &'s Scene, seed: u64, bounce_limit: u32, batch_paths: u64) -> Self {
+        Self {
+            scene,
+            layout: Layout::new(scene),
+            watch: Watch::new(scene),
+            seed,
+            bounce_limit,
+            shares: shares(scene, batch_paths),
+        }
+    }
+}
+
+/// Paths per batch of each source: none of a dark one, at least one of each other, by flux, what rounding leaves to those
+/// that miss most of a path. Their sum is `batch_paths` where there are no more sources than that.
+pub(super) fn shares(scene: &Scene, batch_paths: u64) -> Vec<u64> {
+    let total = scene.source_flux();
+    let wanted: Vec<f64> =
+        scene.sources.iter().map(|source| batch_paths as f64 * source.flux / total).collect();
+    let places = (0..wanted.len()).filter(|&place| scene.sources[place].is_lit());
+    let mut shares = vec![0; wanted.len()];
+    places.clone().for_each(|place| shares[place] = (wanted[place].floor() as u64).max(1));
+    let missing = |shares: &[u64], place: usize| wanted[place] - shares[place] as f64;
+    loop {
+        let sum: u64 = shares.iter().sum();
+        let by_missing =
+            |a: &usize, b: &usize| missing(&shares, *a).total_cmp(&missing(&shares, *b));
+        if sum < batch_paths {
+            let Some(most) = places.clone().max_by(by_missing) else { return shares };
+            shares[most] += 1;
+        } else if sum > batch_paths {
+            let shared = places.clone().filter(|place| shares[*place] > 1);
+            let Some(least) = shared.min_by(by_missing) else { return shares };
+            shares[least] -= 1;
+        } else {
+            return shares;
+        }
+    }
+}

@@ -1,0 +1,15 @@
+//! The forward estimator: photon paths from the sources, counted where they meet a sensor.
+
+mod batch;
+mod counter;
+mod estimator;
+mod shown;
+#[cfg(test)]
+mod tests;
+mod tracks;
+mod watch;
+mod watcher;
+
+pub use estimator::Forward;
+pub use tracks::{Track, TrackEnd, tracks};
+pub use watcher::{Detected, PhotonWatcher};

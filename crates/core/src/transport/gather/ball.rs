@@ -1,0 +1,152 @@
+//! How much of a ball lies in its medium: windows of records within media are clipped by the true volume.
+//!
+//! From the middle the medium is sounded in some directions: a part in solid angle of the ball reaches as far as the medium
+//! does, `ΔV = ∫ min(r, d(ω))³/3 dω`. Of a medium that bends back into the ball the nearer part counts; what lies beyond
+//! is an error that shrinks with the window.
+
+use crate::scene::{Inside, MediumId, Meeting, On, Ray, Scene, Visibility};
+use crate::transport::Path;
+use crate::transport::gather::coverage::GOLDEN_TURN;
+use crate::transport::gather::window::{NESTED, Window};
+use glam::DVec3;
+use lumiduct_base::math::{Frame, from_cosine};
+use std::f64::consts::PI;
+
+/// Directions in which the medium is sounded, on a spiral over the sphere.
+const DIRECTIONS: usize = 48;
+
+/// Volumes, mm³, of the balls of the three nested windows about a place of a path, as far as its medium reaches; `turn`
+/// and `tilt`, uniform in [0, 1), turn the directions.
+pub(crate) fn clipped_volumes(
+    scene: &Scene,
+    path: &Path,
+    point: DVec3,
+    window: Window,
+    [turn, tilt]: [f64; 2],
+) -> [f64; NESTED] {
+    let radii = window.nested().map(|window| window.radius);
+    let frame = Frame::from_axis(DVec3::ZERO, from_cosine(1.0 - 2.0 * tilt, turn));
+    let mut volumes = [0.0; NESTED];
+    for place in 0..DIRECTIONS {
+        let cos = 1.0 - (2 * place + 1) as f64 / DIRECTIONS as f64;
+        let turns = (place as f64 * GOLDEN_TURN + turn).fract();
+        let dir = frame.to_world(from_cosine(cos, turns));
+        let reach = clear_way(scene, path, &Ray::new(point, dir), radii[0]);
+        for (volume, radius) in volumes.iter_mut().zip(radii) {
+            *volume += 4.0 * PI / 3.0 * reach.min(radius).powi(3) / DIRECTIONS as f64;
+        }
+    }
+    volumes
+}
+
+/// How far a ray stays in the medium of a path, mm, up to a distance.
+fn clear_way(scene: &Scene, path: &Path, ray: &Ray, most: f64) -> f64 {
+    let (mut ray, mut way) = (*ray, 0.0);
+    let (mut on, mut inside): (On, Inside) = (On::default(), path.inside.clone());
+    let medium: MediumId = path.medium;
+    while way < most {
+        let Some(hits) = scene.find_next(&ray, &on, &inside) else { return most };
+        way += hits.distance();
+        let point = ray.at(hits.distance());
+        let meeting = Meeting { point, dir: ray.dir() };
+        match scene.interface(&hits, &meeting, &inside, medium).visibility {
+            Visibility::Visible => return way.min(most),
+            // A joint, or a body of the same medium: the records of a medium know no bodies.
+            Visibility::Invisible => {
+                hits.cross(&mut inside);
+                on = On::hits(&hits);
+                ray = Ray::new(point, ray.dir());
+            }
+        }
+    }
+    most
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::Medium;
+    use crate::scene::shape::{Shape, Sphere};
+    use crate::scene::{Builder, FaceSpec, Owner, Piece, Solid};
+    use crate::transport::WAVELENGTH;
+    use lumiduct_base::math::Aabb;
+    use lumiduct_base::units::FluxUnit;
+
+    const RADIUS: f64 = 5.0;
+
+    /// A ball of glass about the origin.
+    fn glass_ball() -> Scene {
+        let mut builder = Builder::new(DVec3::ZERO, Medium::new("air", 1.0, 0.0), FluxUnit::Lumen);
+        let medium = builder.add_medium(Medium::new("glass", 1.5, 0.0));
+        let solid = builder.add_solid(Solid {
+            name: "ball".into(),
+            medium,
+            priority: 0,
+            bounds: Aabb::EMPTY,
+            volume: None,
+        });
+        builder.add_face(FaceSpec {
+            name: "ball.surface".into(),
+            owner: Owner::Solid(solid),
+            front: None,
+            back: None,
+            pieces: vec![Piece::whole(Shape::Sphere(Sphere::zone(
+                Frame::WORLD,
+                RADIUS,
+                -RADIUS,
+                RADIUS,
+            )))],
+        });
+        builder.build()
+    }
+
+    /// Mean volumes about a place on the x axis, over many turns.
+    fn mean_volumes(x: f64, radius: f64) -> [f64; NESTED] {
+        const TURNS: u32 = 400;
+        let scene = glass_ball();
+        let point = DVec3::new(x, 0.0, 0.0);
+        let inside: Inside = std::iter::once(crate::scene::SolidId::new(0)).collect();
+        let path = Path {
+            ray: Ray::new(point, DVec3::Z),
+            throughput: 1.0,
+            wavelength: WAVELENGTH,
+            source: None,
+            medium: scene.medium_in(&inside),
+            inside,
+            on: On::default(),
+            depth: 0,
+        };
+        let window = Window { radius, theta_max: 0.1 };
+        let mut mean = [0.0; NESTED];
+        for turn in 0..TURNS {
+            let share = f64::from(turn) / f64::from(TURNS);
+            let turns = [share, (share * 7.0 + 0.3).fract()];
+            let volumes = clipped_volumes(&scene, &path, point, window, turns);
+            for (mean, volume) in mean.iter_mut().zip(volumes) {
+                *mean += volume / f64::from(TURNS);
+            }
+        }
+        mean
+    }
+
+    #[test]
+    fn a_ball_deep_in_its_medium_is_whole() {
+        let volumes = mean_volumes(1.0, 2.0);
+        for (volume, radius) in volumes.into_iter().zip([2.0, 2f64.sqrt(), 1.0]) {
+            assert!((volume / (4.0 / 3.0 * PI * radius.powi(3)) - 1.0).abs() < 1e-9, "{volume}");
+        }
+    }
+
+    #[test]
+    fn a_ball_over_the_edge_of_its_medium_keeps_what_two_balls_share() {
+        // Two balls of radii R and r at a distance d share π (R + r - d)² (d² + 2 d (R + r) - 3 (R - r)²)/(12 d).
+        for (d, r) in [(4.0, 1.5), (4.9, 1.0), (3.5, 3.0)] {
+            let shared = PI
+                * (RADIUS + r - d).powi(2)
+                * (d * d + 2.0 * d * (RADIUS + r) - 3.0 * (RADIUS - r).powi(2))
+                / (12.0 * d);
+            let [wide, ..] = mean_volumes(d, r);
+            assert!((wide / shared - 1.0).abs() < 0.01, "{d}, {r}: {wide}, not {shared}");
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! How much of a window lies on its surface: windows at rims are clipped by the true area.
+//!
+//! A window is a disk in the tangent plane of its middle. What of it has the surface below or above it is found on a
+//! sunflower of points (Vogel, Math. Biosci. 44 (1979) 179), whose inner parts fill the nested windows evenly.
+
+use crate::scene::shape::{ChartRect, Crossing, Start};
+use crate::scene::{PrimId, Ray, Scene, Surface};
+use crate::transport::gather::surfaces::{Slot, Surfaces};
+use crate::transport::gather::window::{NESTED, Window};
+use glam::{DVec2, DVec3};
+use lumiduct_base::math::circle;
+
+/// Points in the widest window. Half of them fill the next, a quarter the narrowest.
+const POINTS: usize = 96;
+/// Normals of one surface in one window agree at least so well, 1.
+pub(crate) const AGREEING: f64 = 0.9;
+/// How far above or below its tangent plane the surface of a window may lie, in radii, 1: what normals that agree so
+/// well allow.
+pub(crate) const HEIGHT: f64 = 0.5;
+/// Turns from point to point of a sunflower, 2 less the golden ratio.
+pub(crate) const GOLDEN_TURN: f64 = 0.381_966_011_250_105_1;
+
+/// A surface of so many pieces is asked piece by piece, one of more by way of the whole scene's boxes.
+const FEW_PIECES: usize = 4;
+
+/// The middle of a window.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Middle {
+    pub(crate) prim: PrimId,
+    pub(crate) surface: Slot,
+    pub(crate) point: DVec3,
+    /// Unit normal of the surface there, of either side.
+    pub(crate) normal: DVec3,
+}
+
+/// Shares, 1, of the three nested windows that lie on the surface. `turn`, in turns, rotates the points.
+pub(crate) fn coverage(
+    scene: &Scene,
+    surfaces: &Surfaces,
+    middle: &Middle,
+    window: Window,
+    turn: f64,
+) -> [f64; NESTED] {
+    if lies_within(scene, middle, window) {
+        return [1.0; NESTED];
+    }
+    let frame = lumiduct_base::math::Frame::from_axis(middle.point, middle.normal);
+    let mut covered = [0usize; NESTED];
+    for place in 0..POINTS {
+        let radius = window.radius * ((place as f64 + 0.5) / POINTS as f64).sqrt();
+        let turns = (place as f64 * GOLDEN_TURN + turn).fract();
+        let offset = frame.to_world((radius * circle(turns)).extend(0.0));
+        if is_over_surface(scene, surfaces, middle, offset, window.radius) {
+            for (window, covered) in covered.iter_mut().enumerate() {
+                *covered += usize::from(place < POINTS >> window);
+            }
+        }
+    }
+    // The middle itself is on the surface, however thin the surface is there.
+    [0, 1, 2].map(|window| covered[window].max(1) as f64 / (POINTS >> window) as f64)
+}
+
+/// Whether a square around the window is wholly on an analytic piece that unrolls without stretching.
+fn lies_within(scene: &Scene, middle: &Middle, window: Window) -> bool {
+    /// Rounding of an area, relative.
+    const ROUNDING: f64 = 1e-9;
+    match scene.surface(middle.prim) {
+        Surface::Patch(patch) => {
+            let uv = patch.chart(middle.point);
+            let reach = DVec2::splat(window.radius);
+            let square = ChartRect { min: uv - reach, max: uv + reach };
+            (patch.area_in(square) / square.area() - 1.0).abs() < ROUNDING
+        }
+        Surface::Triangle(..) => false,
+    }
+}
+
+fn is_over_surface(
+    scene: &Scene,
+    surfaces: &Surfaces,
+    middle: &Middle,
+    offset: DVec3,
+    reach: f64,
+) -> bool {
+    let reach = HEIGHT * reach;
+    let ray = Ray::new(middle.point + offset + reach * middle.normal, -middle.normal);
+    let lies = |prim: PrimId, crossing: Crossing| {
+        crossing.t > 0.0
+            && crossing.t < 2.0 * reach
+            && scene.normal(prim, ray.at(crossing.t)).dot(middle.normal).abs() > AGREEING
+    };
+    let mut found = false;
+    let pieces = surfaces.patches(middle.surface);
+    if (1..=FEW_PIECES).contains(&pieces.len()) {
+        for &prim in pieces {
+            let patch = &scene.patches[prim.index()];
+            patch.crossings(&ray, Start::Elsewhere, |crossing| found |= lies(prim, crossing));
+        }
+    } else {
+        scene.all_crossings(&ray, |prim, crossing| {
+            found |= surfaces.of(prim) == middle.surface && lies(prim, crossing);
+        });
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::Medium;
+    use crate::scene::shape::{Flat, Region, Shape};
+    use crate::scene::{Builder, FaceSpec, Owner, Piece};
+    use lumiduct_base::math::Frame;
+    use lumiduct_base::units::FluxUnit;
+
+    /// A square of 20 mm.
+    fn square() -> Scene {
+        let mut builder = Builder::new(DVec3::ZERO, Medium::new("air", 1.0, 0.0), FluxUnit::Lumen);
+        let region = Region::Rectangle { half_x: 10.0, half_y: 10.0 };
+        builder.add_face(FaceSpec {
+            name: "square.surface".into(),
+            owner: Owner::Sheet,
+            front: None,
+            back: None,
+            pieces: vec![Piece::whole(Shape::Flat(Flat::new(Frame::WORLD, region)))],
+        });
+        builder.build()
+    }
+
+    /// Mean shares over turns of a window at a distance inside the edges at +x and +y, mm.
+    fn mean_shares(inside: DVec2, radius: f64) -> [f64; NESTED] {
+        const TURNS: u32 = 200;
+        let (scene, prim) = (square(), PrimId::new(0));
+        let surfaces = Surfaces::new(&scene);
+        let point = (DVec2::splat(10.0) - inside).extend(0.0);
+        let middle = Middle { prim, surface: surfaces.of(prim), point, normal: DVec3::NEG_Z };
+        let window = Window { radius, theta_max: 0.1 };
+        let mut mean = [0.0; NESTED];
+        for turn in 0..TURNS {
+            let turn = f64::from(turn) / f64::from(TURNS);
+            let shares = coverage(&scene, &surfaces, &middle, window, turn);
+            for (mean, share) in mean.iter_mut().zip(shares) {
+                *mean += share / f64::from(TURNS);
+            }
+        }
+        mean
+    }
+
+    #[test]
+    fn a_window_over_a_straight_edge_is_clipped_by_the_segment_of_its_circle() {
+        // Reference case ES-02: 1 less the circular segment beyond the edge, at a distance of s radii.
+        let reference = [
+            (0.0, 0.5),
+            (0.25, 0.6574811788),
+            (0.5, 0.8044988905),
+            (0.75, 0.9278531936),
+            (1.0, 1.0),
+        ];
+        for (s, expected) in reference {
+            let [wide, ..] = mean_shares(DVec2::new(s, 10.0), 1.0);
+            assert!((wide / expected - 1.0).abs() < 0.01, "{s}: {wide}, not {expected}");
+            // A window of double the radius holds it as the narrowest of three.
+            let [.., narrow] = mean_shares(DVec2::new(s, 10.0), 2.0);
+            assert!((narrow - expected).abs() < 0.02, "{s}: {narrow}, not {expected}");
+        }
+    }
+
+    #[test]
+    fn a_window_in_a_corner_keeps_a_quarter() {
+        let [wide, ..] = mean_shares(DVec2::splat(1e-9), 1.0);
+        assert!((wide - 0.25).abs() < 0.01, "{wide}");
+        let [wide, ..] = mean_shares(DVec2::splat(3.0), 1.0);
+        assert!((wide - 1.0).abs() < 1e-12, "{wide}");
+    }
+}

@@ -1,0 +1,159 @@
+//! What a photon is worth to a gather record: the position and the position-and-angle estimate, and that within media.
+//!
+//! `L*(x,ω) = 1/n² Σ Φ_p K_r K_θ / |cos θ_p|` (docs/method.md, eq. 15): `K_r` is 1/ΔA over the disk of the window in the tangent
+//! plane, clipped at rims, times the cosine between the normals at record and photon, so that it integrates to 1 over a
+//! curved surface, too. `K_θ` is 1/ΔΩ over the cone. Where the cone comes near the horizon of the photon's place,
+//! `K_θ / |cos θ_p|` becomes 1/∫ cos θ dω over the part of the cone above the horizon: it integrates to the same, and no
+//! photon at grazing incidence has to be left out or weighs without bound.
+//!
+//! Within a medium that scatters, `L*(x,ω) = 1/n² Σ Φ_p p(ω_p→ω) / (σ_s ΔV)` over the photons that are scattered in the ball of
+//! the window (eq. 24, after Jensen & Christensen, SIGGRAPH 1998, eq. 15): where gather paths are scattered themselves by
+//! the same chance, what they find there needs no other factor.
+
+use crate::optics::{Incidence, evaluate};
+use crate::scene::MediumId;
+use crate::transport::gather::coverage::{AGREEING, HEIGHT};
+use crate::transport::gather::records::{GatherRecord, Wanted};
+use crate::transport::gather::surfaces::Slot;
+use crate::transport::gather::window::{ANGLE_OF, COUNTED, NESTED, RADIUS_OF, Window};
+use glam::DVec3;
+use lumiduct_base::math::projected_cap;
+
+/// Cosines that the directions of a cone must stay above for `1/|cos θ_p|` to be used, 1.
+const GRAZING: f64 = 0.03;
+
+/// A photon that may belong to records.
+#[derive(Debug, Clone, Copy)]
+pub enum Arriving {
+    /// One that meets a surface.
+    AtSurface(Meeting),
+    /// One that is scattered within a medium.
+    Within(Colliding),
+}
+
+/// A photon that meets a surface.
+#[derive(Debug, Clone, Copy)]
+pub struct Meeting {
+    /// The smooth surface, by its place in the list of all.
+    pub surface: Slot,
+    /// The medium that it arrives in.
+    pub medium: MediumId,
+    /// Where, mm.
+    pub point: DVec3,
+    /// How it arrives, about the normal of the surface itself on the side it comes from.
+    pub incidence: Incidence,
+}
+
+/// A photon that is scattered within a medium.
+#[derive(Debug, Clone, Copy)]
+pub struct Colliding {
+    /// The medium, by its place among surfaces and media.
+    pub medium: Slot,
+    /// Where, mm.
+    pub point: DVec3,
+    /// Unit direction of travel before.
+    pub dir: DVec3,
+}
+
+/// The nested windows of a pass.
+#[derive(Debug, Clone, Copy)]
+pub struct NestedWindows {
+    radii_squared: [f64; NESTED],
+    chords_squared: [f64; NESTED],
+    theta_max: [f64; NESTED],
+    /// 1/ΔΩ, 1/sr.
+    per_solid_angle: [f64; NESTED],
+    /// Sine of the widest angle.
+    sin_widest: f64,
+}
+
+impl NestedWindows {
+    /// Those of the widest window.
+    pub fn new(window: Window) -> Self {
+        let nested = window.nested();
+        Self {
+            radii_squared: nested.map(|window| window.radius.powi(2)),
+            chords_squared: nested.map(|window| window.chord().powi(2)),
+            theta_max: nested.map(|window| window.theta_max),
+            per_solid_angle: nested.map(|window| 1.0 / window.solid_angle()),
+            sin_widest: window.theta_max.sin(),
+        }
+    }
+
+    /// Flux that each unit of a photon's flux makes in the cells of a record, for each window; `None` if it belongs to
+    /// none of them.
+    #[inline]
+    pub fn flux(&self, record: &GatherRecord<'_>, photon: &Arriving) -> Option<[f64; COUNTED]> {
+        match photon {
+            Arriving::AtSurface(meeting) => self.at_surface(record, meeting),
+            Arriving::Within(colliding) => self.within(record, colliding),
+        }
+    }
+
+    #[inline]
+    fn at_surface(&self, record: &GatherRecord<'_>, photon: &Meeting) -> Option<[f64; COUNTED]> {
+        let offset = photon.point - record.point;
+        let height = offset.dot(record.normal);
+        let across = offset.length_squared() - height * height;
+        let [widest, ..] = self.radii_squared;
+        let agreement = record.normal.dot(photon.incidence.normal);
+        if across > widest
+            || height * height > HEIGHT * HEIGHT * widest
+            || agreement < AGREEING
+            || record.surface != photon.surface
+            || record.medium != photon.medium
+        {
+            return None;
+        }
+        let within = |window: usize| across <= self.radii_squared[RADIUS_OF[window]];
+        match record.wanted {
+            Wanted::Along(wanted) => {
+                let apart = photon.incidence.dir.distance_squared(wanted);
+                let [widest, ..] = self.chords_squared;
+                if apart > widest {
+                    return None;
+                }
+                let cos_wanted = -wanted.dot(photon.incidence.normal);
+                Some(self.each(record, |window| {
+                    let angle = ANGLE_OF[window];
+                    let inside = within(window) && apart <= self.chords_squared[angle];
+                    let per_angle = || self.per_projected(angle, cos_wanted, photon);
+                    if inside { agreement * per_angle() } else { 0.0 }
+                }))
+            }
+            Wanted::Scattered { bsdf, out } => {
+                let scattered = agreement * evaluate(bsdf, &photon.incidence, out);
+                Some(self.each(record, |window| if within(window) { scattered } else { 0.0 }))
+            }
+            // It waits for none of those.
+            Wanted::Collided { .. } => None,
+        }
+    }
+
+    fn within(&self, record: &GatherRecord<'_>, photon: &Colliding) -> Option<[f64; COUNTED]> {
+        let Wanted::Collided { scattering, out } = record.wanted else { return None };
+        let apart = photon.point.distance_squared(record.point);
+        let [widest, ..] = self.radii_squared;
+        if apart > widest || record.surface != photon.medium {
+            return None;
+        }
+        let turned = scattering.phase(photon.dir.dot(out));
+        let within = |window: usize| apart <= self.radii_squared[RADIUS_OF[window]];
+        Some(self.each(record, |window| if within(window) { turned } else { 0.0 }))
+    }
+
+    #[inline]
+    fn each(&self, record: &GatherRecord<'_>, share: impl Fn(usize) -> f64) -> [f64; COUNTED] {
+        std::array::from_fn(|window| record.values[RADIUS_OF[window]] * share(window))
+    }
+
+    /// `K_θ / |cos θ_p|` for one of the nested angles, 1/sr; `cos_wanted` is that of the cone's axis at the photon's place.
+    #[inline]
+    fn per_projected(&self, angle: usize, cos_wanted: f64, photon: &Meeting) -> f64 {
+        if cos_wanted > self.sin_widest + GRAZING {
+            self.per_solid_angle[angle] / photon.incidence.cos()
+        } else {
+            1.0 / projected_cap(cos_wanted, self.theta_max[angle])
+        }
+    }
+}

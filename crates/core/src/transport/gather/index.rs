@@ -1,0 +1,338 @@
+//! An index of records by place and direction: one look into it tells which records a photon may belong to.
+//!
+//! Records are sorted into cells of position and of direction, hashed. A record stands in every cell that its window
+//! touches, so that a photon looks into one cell only. Directions are keyed by their three components: there is no
+//! seam. A filter tells most photons before that their cell is empty.
+
+#[cfg(test)]
+mod tests;
+
+use crate::transport::gather::coverage::HEIGHT;
+use crate::transport::gather::surfaces::Slot;
+use crate::transport::gather::window::Window;
+use crate::transport::stop::Pace;
+use glam::{DVec3, Vec3};
+use smallvec::SmallVec;
+use std::ops::Range;
+
+/// Size of the cells of position in radii, and of direction in chords of the angle: a record stands in about eight
+/// cells. What a look-up costs is waiting for memory, so that smaller tables win over sharper ones: docs/method.md.
+const POSITION_CELL: f64 = 4.0;
+const DIRECTION_CELL: f64 = 2.5;
+/// Photons that are looked up together: enough to wait for memory together, few enough to stay near, and no more than a
+/// word has bits.
+pub(crate) const TOGETHER: usize = 64;
+/// Bits of the filter for each entry of an index.
+const FILTER_BITS: usize = 8;
+/// By how much single precision may err in the distance of two points, relative to their coordinates: a few units of
+/// 2^-24 each.
+const SINGLE_ROUNDING: f64 = 1e-6;
+
+/// A record as the index knows it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Indexed {
+    /// Its place in the list of records.
+    pub(crate) record: u32,
+    /// The smooth surface it is on.
+    pub(crate) surface: Slot,
+    /// Where, mm.
+    pub(crate) point: DVec3,
+    /// Unit normal of the surface.
+    pub(crate) normal: DVec3,
+    /// Unit direction of the photons that it takes; the same of all records of an index that take any.
+    pub(crate) dir: DVec3,
+}
+
+/// By what a photon is looked up.
+#[derive(Debug, Clone, Copy)]
+pub struct Key {
+    /// The smooth surface it is on.
+    pub surface: Slot,
+    /// Where, mm.
+    pub point: DVec3,
+    /// Unit direction of travel.
+    pub dir: DVec3,
+}
+
+/// Records by place and direction.
+#[derive(Debug)]
+pub(crate) struct Index {
+    filter: Filter,
+    lattice: Lattice,
+    /// Number of buckets less one: a power of two less one.
+    mask: u64,
+    /// Where the entries of each bucket start; one more at the end.
+    starts: Vec<u32>,
+    entries: Vec<Entry>,
+    /// Squares of how far apart, with room for rounding, a photon and a record may be: points, mm², and directions.
+    point_reach_squared: f32,
+    dir_reach_squared: f32,
+}
+
+/// A record in a cell.
+#[derive(Debug, Clone, Copy, Default)]
+struct Entry {
+    record: u32,
+    /// The part of the cell's hash that the bucket does not tell: cells that share a bucket are told apart by it.
+    tag: u32,
+    /// Point and direction of the record: most entries of a cell are elsewhere, and their records need not be fetched.
+    point: [f32; 3],
+    dir: [f32; 3],
+}
+
+impl Index {
+    /// Indexes records with a common widest window; `None` if that was stopped.
+    pub(crate) fn new(
+        records: impl Iterator<Item = Indexed>,
+        window: Window,
+        pace: &Pace<'_>,
+    ) -> Option<Self> {
+        let lattice = Lattice::new(window);
+        let mut placed: Vec<(u64, Entry)> = Vec::new();
+        let mut farthest: f64 = 0.0;
+        for record in records {
+            farthest = farthest.max(record.point.abs().max_element());
+            let own = Entry {
+                record: record.record,
+                tag: 0,
+                point: record.point.as_vec3().to_array(),
+                dir: record.dir.as_vec3().to_array(),
+            };
+            let before = placed.len();
+            lattice.each_cell(&record, window, |hash| {
+                placed.push((hash, Entry { tag: tag(hash), ..own }));
+            });
+            if pace.spend(1 + (placed.len() - before) as u32).is_break() {
+                return None;
+            }
+        }
+        let mask = placed.len().next_power_of_two() as u64 - 1;
+        let filter = Filter::new(&placed, pace)?;
+        let (starts, entries) = sorted(placed, mask, pace)?;
+        let reach = ball(window);
+        let point_reach = reach + SINGLE_ROUNDING * (farthest + reach);
+        let dir_reach = window.chord() + SINGLE_ROUNDING;
+        Some(Self {
+            filter,
+            lattice,
+            mask,
+            starts,
+            entries,
+            point_reach_squared: point_reach.powi(2) as f32,
+            dir_reach_squared: dir_reach.powi(2) as f32,
+        })
+    }
+
+    /// Whether there may be records near a photon.
+    #[inline(always)]
+    pub(crate) fn may_hold(&self, surface: Slot, point: DVec3, dir: DVec3) -> bool {
+        !self.entries.is_empty() && self.filter.may_hold(self.lattice.hash(surface, point, dir))
+    }
+
+    /// Visits the records that each of some photons may belong to, each once, photon by photon.
+    ///
+    /// Every step is taken for all photons before the next: then many places of memory are waited for at once.
+    pub(crate) fn visit(&self, photons: &[Key], mut visit: impl FnMut(usize, u32)) {
+        if self.entries.is_empty() {
+            return;
+        }
+        let keyed = photons.iter().map(|key| {
+            let hash = self.lattice.hash(key.surface, key.point, key.dir);
+            let place = (hash & self.mask) as usize;
+            (tag(hash), self.starts[place] as usize..self.starts[place + 1] as usize)
+        });
+        let buckets: SmallVec<[(u32, Range<usize>); TOGETHER]> = keyed.collect();
+        let first = |(_, bucket): &(u32, Range<usize>)| {
+            self.entries[bucket.clone()].first().copied().unwrap_or_default()
+        };
+        let firsts: SmallVec<[Entry; TOGETHER]> = buckets.iter().map(first).collect();
+        for (index, ((tag, bucket), first)) in buckets.into_iter().zip(&firsts).enumerate() {
+            let Some((_, others)) = self.entries[bucket].split_first() else { continue };
+            let Key { point, dir, .. } = photons[index];
+            let (point, dir) = (point.as_vec3(), dir.as_vec3());
+            for entry in std::iter::once(first).chain(others) {
+                if entry.tag == tag
+                    && dir.distance_squared(Vec3::from_array(entry.dir)) <= self.dir_reach_squared
+                    && point.distance_squared(Vec3::from_array(entry.point))
+                        <= self.point_reach_squared
+                {
+                    visit(index, entry.record);
+                }
+            }
+        }
+    }
+}
+
+/// Entries in the order of their buckets, and where each bucket starts; `None` if that was stopped.
+fn sorted(placed: Vec<(u64, Entry)>, mask: u64, pace: &Pace<'_>) -> Option<(Vec<u32>, Vec<Entry>)> {
+    let mut starts = vec![0u32; mask as usize + 2];
+    for (hash, _) in &placed {
+        starts[(hash & mask) as usize + 1] += 1;
+        if pace.spend(1).is_break() {
+            return None;
+        }
+    }
+    let mut sum = 0;
+    starts.iter_mut().for_each(|start| {
+        sum += *start;
+        *start = sum;
+    });
+    let mut next = starts.clone();
+    let mut entries = vec![Entry::default(); placed.len()];
+    for (hash, entry) in placed {
+        let place = &mut next[(hash & mask) as usize];
+        entries[*place as usize] = entry;
+        *place += 1;
+        if pace.spend(1).is_break() {
+            return None;
+        }
+    }
+    Some((starts, entries))
+}
+
+/// A Bloom filter (Bloom, Commun. ACM 13 (1970) 422) of cells. The bits of a cell share a word, so that asking costs one
+/// access.
+#[derive(Debug)]
+struct Filter {
+    /// A power of two of them.
+    words: Vec<u64>,
+}
+
+impl Filter {
+    /// `None` if it was stopped.
+    fn new(cells: &[(u64, Entry)], pace: &Pace<'_>) -> Option<Self> {
+        let bits = (FILTER_BITS * cells.len()).next_power_of_two();
+        let mut words = vec![0; bits.div_ceil(64)];
+        for &(hash, _) in cells {
+            let (word, bits) = Self::place(hash, words.len());
+            words[word] |= bits;
+            if pace.spend(1).is_break() {
+                return None;
+            }
+        }
+        Some(Self { words })
+    }
+
+    /// The word of a cell, of so many, and its bits.
+    #[inline(always)]
+    fn place(hash: u64, words: usize) -> (usize, u64) {
+        let bit = |from: u32| 1u64 << ((hash >> from) & 63);
+        // Bits that the buckets do not use first: the filter is finer than they are.
+        ((hash >> 26) as usize & (words - 1), bit(46) | bit(52) | bit(58))
+    }
+
+    #[inline(always)]
+    fn may_hold(&self, hash: u64) -> bool {
+        let (word, bits) = Self::place(hash, self.words.len());
+        self.words[word] & bits == bits
+    }
+}
+
+/// A division of positions and directions into cubes.
+#[derive(Debug, Clone, Copy)]
+struct Lattice {
+    /// Cells per mm, and per unit of a direction.
+    position_scale: f64,
+    direction_scale: f64,
+}
+
+/// A cube of a division, by the multiples of its size at which its middle is.
+type Cell = [i32; 3];
+
+impl Lattice {
+    fn new(window: Window) -> Self {
+        Self {
+            position_scale: 1.0 / (POSITION_CELL * window.radius),
+            direction_scale: 1.0 / (DIRECTION_CELL * window.chord()),
+        }
+    }
+
+    #[inline(always)]
+    fn hash(&self, surface: Slot, point: DVec3, dir: DVec3) -> u64 {
+        hash(surface, cell_of(point, self.position_scale), cell_of(dir, self.direction_scale))
+    }
+
+    /// Visits the hashes of all cells in which photons of a record may lie.
+    fn each_cell(&self, record: &Indexed, window: Window, mut visit: impl FnMut(u64)) {
+        let mut directions: SmallVec<[Cell; 27]> = SmallVec::new();
+        if record.dir == DVec3::ZERO {
+            directions.push([0; 3]);
+        } else {
+            let size = 1.0 / self.direction_scale;
+            each_near(record.dir, window.chord(), self.direction_scale, |cell| {
+                // Directions lie on the unit sphere: cells wholly inside or outside of it hold none.
+                let (near, far) = corner_distances(cell, size);
+                if near <= 1.0 && far >= 1.0 {
+                    directions.push(cell);
+                }
+            });
+        }
+        let size = 1.0 / self.position_scale;
+        // Half of the cell's extent along the normal, and how far the surface may bend away within the window.
+        let half = 0.5 * size * record.normal.abs().element_sum() + HEIGHT * window.radius;
+        each_near(record.point, ball(window), self.position_scale, |cell| {
+            let middle = DVec3::from(cell.map(f64::from)) * size;
+            if (middle - record.point).dot(record.normal).abs() <= half {
+                directions.iter().for_each(|dir| visit(hash(record.surface, cell, *dir)));
+            }
+        });
+    }
+}
+
+/// Radius of the ball about a record that holds its window on the surface, mm.
+fn ball(window: Window) -> f64 {
+    window.radius * 1f64.hypot(HEIGHT)
+}
+
+#[inline(always)]
+fn cell_of(p: DVec3, scale: f64) -> Cell {
+    // Numbers of this size have no digits behind the point, and their last bits are whole numbers, also negative ones.
+    const WHOLE: f64 = 1.5 * (1u64 << 52) as f64;
+    (p * scale + WHOLE).to_array().map(|whole| whole.to_bits() as i32)
+}
+
+/// Distances from the origin to the nearest and the farthest point of a cell, with room for rounding.
+fn corner_distances(cell: Cell, size: f64) -> (f64, f64) {
+    let (mut near, mut far) = (0.0, 0.0);
+    for at in cell.map(f64::from) {
+        let (low, high) = ((at - 0.5) * size, (at + 0.5) * size);
+        let outside = low.max(-high).max(0.0);
+        near += outside * outside;
+        far += low.abs().max(high.abs()).powi(2);
+    }
+    (near.sqrt() * (1.0 - 1e-9), far.sqrt() * (1.0 + 1e-9))
+}
+
+/// The block of cells that a ball about `p` may touch.
+fn each_near(p: DVec3, reach: f64, scale: f64, mut visit: impl FnMut(Cell)) {
+    let (min, max) = (cell_of(p - reach, scale), cell_of(p + reach, scale));
+    for x in min[0]..=max[0] {
+        for y in min[1]..=max[1] {
+            for z in min[2]..=max[2] {
+                visit([x, y, z]);
+            }
+        }
+    }
+}
+
+/// The bits of a hash that tell cells of one bucket apart.
+#[inline]
+fn tag(hash: u64) -> u32 {
+    (hash >> 32) as u32
+}
+
+/// A well mixed number of a cell on a surface (multiply and fold, after Steele, Lea & Flood's `SplitMix64`).
+#[inline]
+fn hash(surface: Slot, position: Cell, direction: Cell) -> u64 {
+    let pair = |a: i32, b: i32| u64::from(a as u32) << 32 | u64::from(b as u32);
+    let mut key = u64::from(surface);
+    for word in [
+        pair(position[0], position[1]),
+        pair(position[2], direction[0]),
+        pair(direction[1], direction[2]),
+    ] {
+        key = (key ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        key ^= key >> 29;
+    }
+    key.wrapping_mul(0xbf58_476d_1ce4_e5b9) ^ (key >> 32)
+}

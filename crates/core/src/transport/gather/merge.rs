@@ -1,0 +1,289 @@
+//! Merging of forward, backward and gather by multiple importance sampling: how much of a path each may count.
+//!
+//! All three can find the same path of discrete directions; the balance heuristic (Veach & Guibas, SIGGRAPH 1995)
+//! shares its light among them by the densities with which they do. Per etendue these are `c_F = N p_e`, `c_B = M p_g` and
+//! `c_M = N p_e M p_g G/q` (docs/method.md, eq. 16 to 18). Where the shares come from is not known here, nor who
+//! traces the paths.
+
+use crate::optics::{Bsdf, Incidence, Side, chances};
+use crate::scene::Scene;
+use crate::transport::gather::window::{COUNTED, Window};
+use crate::transport::walk::scatter::Facing;
+use glam::DVec3;
+use lumiduct_base::math::projected_cap;
+use std::collections::{BTreeSet, VecDeque};
+
+/// Merged paths have no roulette above this throughput, 1: it would change their densities.
+pub(crate) const ROULETTE_BELOW: f64 = 1e-4;
+/// Least probability of a lobe, 1: rounding near total reflection must not divide by nothing. The same for all three.
+const LEAST_CHANCE: f64 = 1e-9;
+/// No window: the path has no vertex D.
+pub(crate) const NO_WINDOW: [f64; COUNTED] = [0.0; COUNTED];
+
+/// The etendues that weigh a path, mm² sr.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Etendues {
+    /// Which one photon stands for where the path starts, `1/(N p_e)`.
+    pub(crate) photon: f64,
+    /// Which one gather path stands for where it ends, `1/(M p_g)`.
+    pub(crate) gather: f64,
+    /// Of each window at vertex D over the probability of the lobe there, G/q; 0 for paths without vertex D.
+    pub(crate) window: [f64; COUNTED],
+}
+
+impl Etendues {
+    /// The share that a photon in the sensor's cell counts, for each window, 1: eq. (21).
+    pub(crate) fn forward(&self) -> [f64; COUNTED] {
+        self.window.map(|window| 1.0 / (1.0 + (self.photon + window) / self.gather))
+    }
+
+    /// The share that a gather path counts where it meets emission, for each window, 1: eq. (21).
+    pub(crate) fn backward(&self) -> [f64; COUNTED] {
+        self.window.map(|window| 1.0 / (1.0 + (self.gather + window) / self.photon))
+    }
+
+    /// The share that a photon and a record count together, for each window, 1: eq. (21).
+    pub(crate) fn pair(&self) -> [f64; COUNTED] {
+        self.window.map(|window| window / (self.photon + self.gather + window))
+    }
+}
+
+/// Light at a face that it meets, and how it goes on.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Passage<'s> {
+    bsdf: &'s Bsdf,
+    /// Of the light, also where a gather path tells it.
+    incidence: Incidence,
+    side: Side,
+}
+
+impl<'s> Passage<'s> {
+    /// Of a photon that meets a face.
+    pub(crate) fn of_photon(facing: &Facing<'s>, side: Side) -> Self {
+        Self { bsdf: facing.faces.own, incidence: facing.incidence, side }
+    }
+
+    /// Of the light that a gather path which meets a face would find along `dir`.
+    pub(crate) fn of_gather_path(facing: &Facing<'s>, dir: DVec3, side: Side) -> Self {
+        let own = facing.incidence;
+        let (bsdf, incidence) = match side {
+            Side::Reflected => (facing.faces.own, Incidence { dir: -dir, ..own }),
+            Side::Transmitted => (
+                facing.faces.behind,
+                Incidence {
+                    dir: -dir,
+                    normal: -own.normal,
+                    index_from: own.index_to,
+                    index_to: own.index_from,
+                    grain: own.grain,
+                },
+            ),
+        };
+        Self { bsdf, incidence, side }
+    }
+
+    /// G/q, mm² sr: n² π r² ∫ cos θ dω over the cone about the light, above the horizon, over the probability that a
+    /// path takes the side it takes. Windows are not clipped: eq. (20).
+    pub(crate) fn etendues(&self, window: Window) -> [f64; COUNTED] {
+        let Incidence { index_from, .. } = self.incidence;
+        let chance = chances(self.bsdf, &self.incidence).of(self.side).max(LEAST_CHANCE);
+        let (cos, basic) = (self.incidence.cos(), index_from * index_from / chance);
+        window.counted().map(|window| basic * window.area() * projected_cap(cos, window.theta_max))
+    }
+}
+
+/// The last faces that a photon has met, as many as lead from vertex D to a sensor.
+#[derive(Debug)]
+pub(crate) struct Recent<'s> {
+    passages: VecDeque<Passage<'s>>,
+    /// Vertex at which gather paths leave records, D.
+    depth: usize,
+}
+
+impl<'s> Recent<'s> {
+    pub(crate) fn new(depth: u32) -> Self {
+        Self { passages: VecDeque::new(), depth: depth as usize }
+    }
+
+    pub(crate) fn clear(&mut self) {
+        self.passages.clear();
+    }
+
+    pub(crate) fn push(&mut self, passage: Passage<'s>) {
+        if self.passages.len() > self.depth {
+            self.passages.pop_front();
+        }
+        self.passages.push_back(passage);
+    }
+
+    /// G/q at vertex D, counted from where the photon is; nothing where it has not met so many faces.
+    pub(crate) fn etendues(&self, window: Window) -> [f64; COUNTED] {
+        match self.passages.front() {
+            Some(passage) if self.passages.len() > self.depth => passage.etendues(window),
+            Some(_) | None => NO_WINDOW,
+        }
+    }
+}
+
+/// What scatters light off discrete directions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scatterer<'s> {
+    /// A finish.
+    Finish {
+        /// Its name, or a description of an inline one.
+        finish: &'s str,
+        /// Dotted name of the first face that has it.
+        face: &'s str,
+    },
+    /// A medium, by its name.
+    Medium(&'s str),
+}
+
+impl std::fmt::Display for Scatterer<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Finish { finish, face } => write!(f, "the finish `{finish}` on `{face}`"),
+            Self::Medium(name) => write!(f, "the medium `{name}`"),
+        }
+    }
+}
+
+/// The media of a scene that scatter.
+pub fn turbid_media(scene: &Scene) -> impl Iterator<Item = Scatterer<'_>> {
+    let turbid = scene.media.iter().filter(|medium| medium.scattering().is_some());
+    turbid.map(|medium| Scatterer::Medium(medium.name()))
+}
+
+/// The finishes and media of a scene that keep the three estimators from being merged: where light is scattered, a gather path
+/// and a photon that meet by their windows are not the same path as either of them; and where one side has several
+/// discrete directions, the chance of a side is not that of a path.
+pub fn scatterers(scene: &Scene) -> Vec<Scatterer<'_>> {
+    let mut seen = BTreeSet::new();
+    let sides = scene.faces.iter().flat_map(|face| {
+        let patterns = face.patterns.iter().map(|&number| &scene.patterns[number]);
+        let elements = patterns.flat_map(|pattern| {
+            let bore = pattern.wall.map(|wall| wall.bore);
+            [Some(pattern.front), Some(pattern.back), bore]
+        });
+        [face.front, face.back].into_iter().chain(elements).map(move |id| (face, id))
+    });
+    sides
+        .filter_map(|(face, id)| {
+            let finish = &scene.finishes[id?.index()];
+            let is_new = !finish.bsdf.has_one_direction_a_side() && seen.insert(id);
+            is_new.then(|| Scatterer::Finish { finish: &finish.name, face: &face.name })
+        })
+        .chain(turbid_media(scene))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn weights_are_the_balance_heuristic_and_add_up_to_one() {
+        for (c_f, c_b) in [(1.0, 1.0), (3e6, 20.0), (1e-3, 4e9), (0.25, 1e-12)] {
+            for c_m in [[0.0; COUNTED], [1.0, 0.25, 0.0625, 0.5, 0.5], [1e9, 1e3, 1e-9, 1.0, 1e2]] {
+                let [window, ..] = [c_m.map(|c_m| c_m / (c_f * c_b))];
+                let etendues = Etendues { photon: 1.0 / c_f, gather: 1.0 / c_b, window };
+                for (k, c_m) in c_m.into_iter().enumerate() {
+                    let sum = c_f + c_b + c_m;
+                    let shares =
+                        [etendues.forward()[k], etendues.backward()[k], etendues.pair()[k]];
+                    assert!((shares.iter().sum::<f64>() - 1.0).abs() < 1e-12, "{shares:?}");
+                    for (share, c) in shares.into_iter().zip([c_f, c_b, c_m]) {
+                        assert!((share - c / sum).abs() < 1e-12, "{shares:?}, {c} of {sum}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_path_that_only_one_estimator_finds_is_all_its_own() {
+        let never = f64::INFINITY;
+        let seen = Etendues { photon: 2.0, gather: never, window: NO_WINDOW };
+        assert_eq!(seen.forward(), [1.0; COUNTED]);
+        let met = Etendues { photon: never, gather: 3.0, window: NO_WINDOW };
+        assert_eq!((met.backward(), met.forward()), ([1.0; COUNTED], [0.0; COUNTED]));
+    }
+
+    /// A gather path in glass that meets air, refracted.
+    fn refracted() -> (Facing<'static>, DVec3) {
+        let (sin, index) = (0.5f64, 1.5);
+        let dir = DVec3::new(sin, 0.0, -(1.0 - sin * sin).sqrt());
+        let incidence = Incidence {
+            dir,
+            normal: DVec3::Z,
+            index_from: index,
+            index_to: 1.0,
+            grain: DVec3::ZERO,
+        };
+        let faces = crate::optics::Faces { own: &Bsdf::Smooth, behind: &Bsdf::Smooth };
+        let out = DVec3::new(index * sin, 0.0, -(1.0 - (index * sin).powi(2)).sqrt());
+        (Facing { faces, incidence, facet: DVec3::Z }, out)
+    }
+
+    #[test]
+    fn a_gather_path_and_the_photon_of_the_same_path_tell_the_same_window() {
+        let window = Window { radius: 0.5, theta_max: 0.02 };
+        let (facing, out) = refracted();
+        for side in [Side::Reflected, Side::Transmitted] {
+            let Incidence { dir, normal, index_from, index_to, grain } = facing.incidence;
+            let (out, light) = match side {
+                Side::Reflected => {
+                    let out = DVec3::new(dir.x, 0.0, -dir.z);
+                    (out, Incidence { dir: -out, normal, index_from, index_to, grain })
+                }
+                Side::Transmitted => (
+                    out,
+                    Incidence {
+                        dir: -out,
+                        normal: -normal,
+                        index_from: index_to,
+                        index_to: index_from,
+                        grain: DVec3::ZERO,
+                    },
+                ),
+            };
+            let photon = Facing { incidence: light, facet: light.normal, faces: facing.faces };
+            let told = Passage::of_gather_path(&facing, out, side).etendues(window);
+            let expected = Passage::of_photon(&photon, side).etendues(window);
+            let chance = chances(&Bsdf::Smooth, &light).of(side);
+            // n² |cos θ| π r² 2π (1 - cos θ_max) / q
+            let formula =
+                light.index_from.powi(2) * light.cos() * window.area() * window.solid_angle()
+                    / chance;
+            for (told, expected) in told.into_iter().zip(expected) {
+                assert!((told / expected - 1.0).abs() < 1e-12, "{side:?}: {told}, {expected}");
+            }
+            assert!((told[0] / formula - 1.0).abs() < 1e-3, "{side:?}: {}, {formula}", told[0]);
+        }
+    }
+
+    #[test]
+    fn vertex_d_is_counted_from_the_sensor() {
+        let window = Window { radius: 0.5, theta_max: 0.02 };
+        let at = |index_from: f64| {
+            let incidence = Incidence {
+                dir: DVec3::NEG_Z,
+                normal: DVec3::Z,
+                index_from,
+                index_to: index_from,
+                grain: DVec3::ZERO,
+            };
+            Passage { bsdf: &Bsdf::Open, incidence, side: Side::Transmitted }
+        };
+        let mut recent = Recent::new(2);
+        for (met, index) in [1.0, 2.0, 3.0, 4.0].into_iter().enumerate() {
+            let [wide, ..] = recent.etendues(window);
+            assert_eq!(wide > 0.0, met > 2, "{met} faces");
+            recent.push(at(index));
+        }
+        // The third from the end.
+        assert_eq!(recent.etendues(window), at(2.0).etendues(window));
+        recent.clear();
+        assert_eq!(recent.etendues(window), NO_WINDOW);
+    }
+}

@@ -1,0 +1,15 @@
+//! A run: batches in waves, its state, slices and shards, and what it has found.
+
+mod findings;
+mod prepare;
+mod rounds;
+mod shard;
+mod slices;
+mod state;
+
+pub use findings::{Findings, Gathered};
+pub use prepare::batch_paths;
+pub use rounds::{Phase, Run};
+pub use shard::Shard;
+pub use slices::{Slice, Unsliceable};
+pub use state::State;

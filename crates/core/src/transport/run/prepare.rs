@@ -1,0 +1,208 @@
+//! What is decided before a run: the estimator of each sensor, and how large its batches are.
+
+use crate::plan::{Estimator, Request, RunPlan};
+use crate::scene::{Scene, SensorId};
+use crate::transport::Choice;
+use crate::transport::backward::estimator::Backward;
+use crate::transport::choose::pilot::choose;
+use crate::transport::forward::Forward;
+use crate::transport::gather::estimator::Gather;
+use crate::transport::gather::settings::{PhotonPilot, settle};
+use crate::transport::gather::stages::{FIRST_PASSES, Stages};
+use crate::transport::run::rounds::{Phase, Run};
+use crate::transport::stop::StopSignal;
+use crate::transport::tally::readings::GROUPS;
+use crate::transport::tally::sums::Sums;
+use crate::transport::tally::work;
+use std::time::{Duration, Instant};
+
+/// Straight pieces that a batch should hold: long enough that summing up costs little, short enough that little is lost
+/// when a run is stopped.
+const BATCH_SEGMENTS: u64 = 1 << 15;
+/// Most paths in a batch.
+const BATCH_PATHS: u64 = 4096;
+/// Paths from which the length of paths is learnt before a run, and bounces of them that are looked at.
+const PILOT_PATHS: u64 = 64;
+const PILOT_BOUNCES: u32 = 10_000;
+/// Where the time is limited: passes of gathering for which it should be good, by the time that photon paths alone take,
+/// which records and other programs multiply; and the paths by which that time is measured.
+const PASSES_IN_TIME: f64 = 16.0;
+const TIMED: Duration = Duration::from_millis(10);
+const TIMED_BATCHES: u64 = 64;
+/// Share of the work that goes to photons where all sensors are estimated backward: for the balance and what is beside
+/// the aim, 1. Else photons and gather paths have half each.
+const PHOTON_SHARE: f64 = 0.1;
+
+impl<'s> Run<'s> {
+    /// Prepares a run that nothing stops from outside; nothing is counted yet.
+    pub fn new(scene: &'s Scene, plan: &RunPlan) -> Self {
+        Self::start(scene, plan, &StopSignal::default(), &mut |_| ()).expect("nothing stops it")
+    }
+
+    /// Prepares a run that a signal may stop; `None` if it did so before anything could be counted. `watch` learns what is
+    /// tried in a pilot. A pilot may take half of the time that is left; one that takes longer is given up, and sensors
+    /// without an estimator of their own are estimated forward.
+    pub fn start(
+        scene: &'s Scene,
+        plan: &RunPlan,
+        signal: &StopSignal,
+        watch: &mut dyn FnMut(Phase),
+    ) -> Option<Self> {
+        let early = signal.with_grace();
+        let segments = segments_per_path(scene, plan, &early)?;
+        let pilot = PhotonPilot::new(segments as f64);
+        let (estimators, choices) = estimators(scene, plan, pilot, signal, watch)?;
+        let of = |wanted| sensors_of(&estimators, wanted);
+        let stages =
+            stages(scene, plan, (&of(Estimator::Gather), &of(Estimator::Mis)), pilot, signal);
+        let stages = stages?;
+        let mixed = of(Estimator::Mix);
+        let followed = [of(Estimator::Backward), mixed.clone()].concat();
+        let share = match (&stages, followed.is_empty()) {
+            (_, true) => 1.0,
+            // Photons also count for the sensors that are estimated forward, or mixed.
+            (None, false) if of(Estimator::Forward).is_empty() && mixed.is_empty() => PHOTON_SHARE,
+            (_, false) => 0.5,
+        };
+        let usual = plan.batch_paths.unwrap_or(usual_batch(segments));
+        let photons = match (&stages, plan.stop.paths) {
+            (Some(stages), _) => stages.settings.photons,
+            (None, Some(paths)) if followed.is_empty() => paths.div_ceil(
+                plan.stop.batches.unwrap_or(GROUPS * paths.div_ceil(GROUPS * usual).max(1)),
+            ),
+            (None, _) => (share * usual as f64).ceil() as u64,
+        };
+        // A path of each source at least.
+        let photons = photons.max(scene.sources.len() as u64).max(1);
+        let backward = if followed.is_empty() {
+            None
+        } else {
+            let backward = Backward::new(scene, &followed, plan.seed, plan.bounce_limit);
+            let by_photons = photons as f64 * work::of_photon_path(pilot.segments_per_path);
+            let others = (1.0 - share) / share * by_photons;
+            let paths = others / backward.work_of_path(&early)? / followed.len() as f64;
+            Some((backward.with_paths(paths as u64).mixed(&mixed), Sums::default()))
+        };
+        Some(Self {
+            estimators,
+            choices,
+            forward: Forward::new(scene, plan.seed, plan.bounce_limit, photons),
+            photons: Sums::default(),
+            backward,
+            wave_batches: if stages.is_some() { FIRST_PASSES } else { GROUPS },
+            stages,
+            signal: signal.clone(),
+            batches: 0,
+            paths: 0,
+            paths_asked: plan.stop.paths,
+            batches_asked: plan.stop.batches,
+        })
+    }
+}
+
+/// The sensors of an estimator.
+fn sensors_of(estimators: &[Estimator], wanted: Estimator) -> Vec<SensorId> {
+    let all = estimators.iter().enumerate();
+    all.filter(|(_, own)| **own == wanted).map(|(index, _)| SensorId::new(index)).collect()
+}
+
+/// The stages of sensors that are gathered alone, or merged; no stages where there are none, and `None` if the signal
+/// stopped it.
+fn stages<'s>(
+    scene: &'s Scene,
+    plan: &RunPlan,
+    (alone, merged): (&[SensorId], &[SensorId]),
+    pilot: PhotonPilot,
+    signal: &StopSignal,
+) -> Option<Option<Stages<'s>>> {
+    let gathered = if merged.is_empty() { alone } else { merged };
+    if gathered.is_empty() {
+        return Some(None);
+    }
+    let early = signal.with_grace();
+    let work = signal.work_left(|| time_of_piece(scene, plan, &early));
+    let pilot = work.map_or(pilot, |work| pilot.with_passes_up_to(work / PASSES_IN_TIME));
+    let mut settings = settle(scene, plan, gathered, pilot, &early)?;
+    if work.is_some() && plan.gather.records.is_none() && !merged.is_empty() {
+        // Merged gather paths go on as far as photons do.
+        let most = settings.photons / gathered.len() as u64;
+        settings.gather_paths = settings.gather_paths.min(most).max(1);
+    }
+    let mut gather = Gather::new(scene, gathered, plan.seed, settings.depth);
+    gather.merging = (!merged.is_empty()).then_some(plan.bounce_limit);
+    Some(Some(Stages::new(gather, settings)))
+}
+
+/// Photon paths of a batch that suit a scene: what [`RunPlan::batch_paths`] is when nothing is said.
+pub fn batch_paths(scene: &Scene, plan: &RunPlan) -> u64 {
+    let segments = segments_per_path(scene, plan, &StopSignal::default());
+    usual_batch(segments.expect("nothing stops it"))
+}
+
+fn usual_batch(segments_per_path: u64) -> u64 {
+    (BATCH_SEGMENTS / segments_per_path).clamp(1, BATCH_PATHS)
+}
+
+/// Straight pieces of a photon path on the average, from a few of them; `None` if they were stopped.
+fn segments_per_path(scene: &Scene, plan: &RunPlan, signal: &StopSignal) -> Option<u64> {
+    let limit = plan.bounce_limit.min(PILOT_BOUNCES);
+    let forward = Forward::new(scene, plan.seed, limit, PILOT_PATHS);
+    let pilot = forward.batch(0, signal)?;
+    // Light that the pilot cuts off goes on, at the longest to the bounce limit of the run.
+    let flux = scene.source_flux();
+    let cut = pilot.groups[0].sums[forward.layout.cut()];
+    let rest = if flux > 0.0 { cut / flux * f64::from(plan.bounce_limit - limit) } else { 0.0 };
+    Some(pilot.segments.div_ceil(pilot.paths().max(1)).max(1) + rest as u64)
+}
+
+/// How long a straight piece of a photon path takes, s, by the clock; `None` if that was stopped.
+fn time_of_piece(scene: &Scene, plan: &RunPlan, signal: &StopSignal) -> Option<f64> {
+    let limit = plan.bounce_limit.min(PILOT_BOUNCES);
+    let forward = Forward::new(scene, plan.seed, limit, PILOT_PATHS);
+    let (start, mut segments) = (Instant::now(), 0);
+    for batch in 0..TIMED_BATCHES {
+        segments += forward.batch(batch, signal)?.segments;
+        if start.elapsed() >= TIMED {
+            break;
+        }
+    }
+    Some(start.elapsed().as_secs_f64() / segments.max(1) as f64)
+}
+
+/// The estimator of each sensor: its own, the one that was asked for, or what a pilot chooses.
+fn estimators(
+    scene: &Scene,
+    plan: &RunPlan,
+    pilot: PhotonPilot,
+    signal: &StopSignal,
+    watch: &mut dyn FnMut(Phase),
+) -> Option<(Vec<Estimator>, Vec<Choice>)> {
+    let own = |sensor: usize| plan.own_estimator(sensor);
+    let sensors = 0..scene.sensors.len();
+    let all = |estimator: Estimator| {
+        let estimators = sensors.clone().map(|sensor| own(sensor).unwrap_or(estimator));
+        Some((estimators.collect(), Vec::new()))
+    };
+    match plan.estimator {
+        Request::Forward => all(Estimator::Forward),
+        Request::Backward => all(Estimator::Backward),
+        Request::Mix => all(Estimator::Mix),
+        Request::Gather => all(Estimator::Gather),
+        Request::Mis => all(Estimator::Mis),
+        Request::Auto if sensors.clone().all(|sensor| own(sensor).is_some()) => {
+            all(Estimator::Forward)
+        }
+        Request::Auto => {
+            let mut tried = |estimator| watch(Phase::Pilot(estimator));
+            let choices = choose(scene, plan, pilot, &signal.with_half(), &mut tried);
+            let Some(mut choices) = choices else {
+                // Nobody knows what is best; photons find something everywhere.
+                return if signal.is_due() { None } else { all(Estimator::Forward) };
+            };
+            for (sensor, choice) in choices.iter_mut().enumerate() {
+                choice.chosen = own(sensor).unwrap_or(choice.chosen);
+            }
+            Some((choices.iter().map(|choice| choice.chosen).collect(), choices))
+        }
+    }
+}

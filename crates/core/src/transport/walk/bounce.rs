@@ -1,0 +1,164 @@
+//! The one bounce loop, at interfaces and within media. Visitors see what happens and decide nothing but when to end.
+//!
+//! It does not know what is counted: the forward estimator counts photons, a gather path would look for its end.
+
+use crate::optics::{Lobe, Scattered, Side, VolumeScattering};
+use crate::rng::{Dimension, Numbers, Sampler};
+use crate::scene::{Hits, Meeting, On, Ray, Scene, Visibility};
+use crate::transport::walk::event::{
+    Carries, Collision, Departure, Event, Segment, Vertex, Visitor,
+};
+use crate::transport::walk::path::Path;
+use crate::transport::walk::scatter::{scatter, scatter_radiance};
+use glam::DVec3;
+use std::ops::ControlFlow;
+
+/// Follows a path until it ends or the visitor breaks.
+#[inline]
+pub fn walk<V: Visitor>(
+    scene: &Scene,
+    mut path: Path,
+    bounce_limit: u32,
+    sampler: &mut Sampler<impl Numbers>,
+    visitor: &mut V,
+) {
+    // A copy of the path's that no visitor sees: it stays in registers from bounce to bounce.
+    let mut ray = path.ray;
+    loop {
+        let hits = scene.find_next(&ray, &path.on, &path.inside);
+        let medium = &scene.media[path.medium.index()];
+        let mut length = hits.as_ref().map_or(f64::INFINITY, Hits::distance);
+        let mut scattered = None;
+        // Clear media draw nothing; a path that meets no surface has left all bodies, or leaks.
+        if let (Some(scattering), Some(_)) = (medium.scattering(), &hits) {
+            let free = scattering.free_path(sampler.one(Dimension::FreePath));
+            if free < length {
+                (length, scattered) = (free, Some(scattering));
+            }
+        }
+        let arriving = path.throughput * medium.transmittance(path.wavelength, length);
+        let segment = Segment {
+            ray: &path.ray,
+            length,
+            medium: path.medium,
+            throughput: path.throughput,
+            arriving,
+        };
+        if visitor.see(&path, Event::Travel(&segment)).is_break() {
+            return;
+        }
+        path.throughput = arriving;
+        let Some(hits) = &hits else {
+            leave(&path, visitor);
+            return;
+        };
+        let next = match scattered {
+            None => bounce(scene, &mut path, &ray, hits, sampler, visitor),
+            Some(scattering) => collide(scattering, &mut path, ray.at(length), sampler, visitor),
+        };
+        match next {
+            ControlFlow::Continue(next) => ray = next,
+            ControlFlow::Break(()) => return,
+        }
+        if path.depth >= bounce_limit {
+            _ = visitor.see(&path, Event::Cut(path.throughput));
+            return;
+        }
+        if path.throughput < visitor.roulette_below()
+            && roulette(&mut path, sampler, visitor).is_break()
+        {
+            return;
+        }
+    }
+}
+
+/// Ends a path that meets nothing: it has left the scene, or a solid through a hole. The visitor cannot keep it.
+fn leave<V: Visitor>(path: &Path, visitor: &mut V) {
+    let event = if path.inside.is_empty() {
+        Event::Escaped(path.throughput)
+    } else {
+        Event::Leaked(&path.ray, path.throughput)
+    };
+    _ = visitor.see(path, event);
+}
+
+/// Ends a path of small throughput, or lets it go on with the threshold's.
+#[inline(always)]
+fn roulette<V: Visitor>(
+    path: &mut Path,
+    sampler: &mut Sampler<impl Numbers>,
+    visitor: &mut V,
+) -> ControlFlow<()> {
+    let below = visitor.roulette_below();
+    let survives = sampler.one(Dimension::Roulette) * below < path.throughput;
+    let after = if survives { below } else { 0.0 };
+    visitor.see(path, Event::Roulette(path.throughput - after))?;
+    path.throughput = after;
+    if survives { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+}
+
+/// Takes a path through the interface it has met: the ray on which it goes on.
+#[inline(always)]
+fn bounce<V: Visitor>(
+    scene: &Scene,
+    path: &mut Path,
+    ray: &Ray,
+    hits: &Hits,
+    sampler: &mut Sampler<impl Numbers>,
+    visitor: &mut V,
+) -> ControlFlow<(), Ray> {
+    let (point, dir) = (ray.at(hits.distance()), ray.dir());
+    let interface = scene.interface(hits, &Meeting { point, dir }, &path.inside, path.medium);
+    let vertex = Vertex { point, dir, hits, interface: &interface, throughput: path.throughput };
+    visitor.see(path, Event::Arrive(&vertex))?;
+    let out = match interface.visibility {
+        Visibility::Invisible => straight_on(dir),
+        Visibility::Visible => {
+            path.depth += 1;
+            let out = match V::CARRIES {
+                Carries::Flux => scatter(scene, path, &interface, point, dir, sampler),
+                Carries::Radiance => scatter_radiance(scene, path, &vertex, sampler),
+            };
+            let Some(out) = out else {
+                visitor.see(path, Event::Absorbed(&vertex))?;
+                return ControlFlow::Break(());
+            };
+            out
+        }
+    };
+    path.on = On::hits(hits);
+    let next = Ray::new(point, out.dir);
+    path.ray = next;
+    path.throughput *= out.factor;
+    let Scattered { side, lobe, .. } = out;
+    let departure = Departure { dir: next.dir(), throughput: path.throughput, side, lobe };
+    visitor.see(path, Event::Depart(&vertex, &departure))?;
+    if out.side == Side::Transmitted {
+        path.medium = interface.to;
+        hits.cross(&mut path.inside);
+    }
+    ControlFlow::Continue(next)
+}
+
+/// Scatters a path within its medium: the ray on which it goes on.
+#[inline(never)]
+fn collide<V: Visitor>(
+    scattering: &VolumeScattering,
+    path: &mut Path,
+    point: DVec3,
+    sampler: &mut Sampler<impl Numbers>,
+    visitor: &mut V,
+) -> ControlFlow<(), Ray> {
+    let (dir, medium, throughput) = (path.ray.dir(), path.medium, path.throughput);
+    let collision = Collision { point, dir, medium, scattering, throughput };
+    visitor.see(path, Event::Collide(&collision))?;
+    path.depth += 1;
+    path.on = On::default();
+    // The phase function knows but the angle between two directions: radiance goes the same way as flux.
+    path.ray = Ray::new(point, scattering.scatter(dir, sampler.pair(Dimension::Scatter)));
+    ControlFlow::Continue(path.ray)
+}
+
+fn straight_on(dir: DVec3) -> Scattered {
+    Scattered { dir, factor: 1.0, side: Side::Transmitted, lobe: Lobe::Specular }
+}

@@ -1,0 +1,304 @@
+//! Gather paths from a sensor: what they see of the sources, and where they could end.
+//!
+//! The path starts as its sensor says, has to come through the sensor's aim, and meets emission on its way. Who collects
+//! the light decides at every visible interface whether it goes on.
+
+use crate::rng::{Numbers, Sampler};
+use crate::scene::shape::{Crossing, Start, Toward};
+use crate::scene::{
+    Arrival, Begins, Counts, Owner, Passage, Place, Scene, SensorId, SensorKind, SurfaceSensor,
+    Visibility,
+};
+use crate::transport::stop::Pace;
+use crate::transport::walk::emitters::{Emitters, Met, SegmentStart};
+use crate::transport::{
+    Carries, Collision, Departure, Event, Loss, Path, ROULETTE_BELOW, Segment, Vertex, Visitor,
+    walk,
+};
+use smallvec::SmallVec;
+use std::ops::ControlFlow;
+
+/// Who collects what gather paths bring.
+pub trait Collector {
+    /// Throughput below which roulette ends paths, 1.
+    fn roulette_below(&self) -> f64 {
+        ROULETTE_BELOW
+    }
+
+    /// Takes the emission that a path has met.
+    fn meet(&mut self, path: &Path, met: Met);
+
+    /// Learns that a path of this throughput was lost: nobody knows what it would have met.
+    fn lose(&mut self, _throughput: f64, _loss: Loss) {}
+
+    /// Sees a visible interface before it acts; a break ends the path there.
+    fn arrive(&mut self, _path: &Path, _vertex: &Vertex<'_>) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+
+    /// Sees where a path is going to be scattered within a medium; a break ends the path there.
+    fn collide(&mut self, _path: &Path, _collision: &Collision<'_>) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+
+    /// Sees where a path goes on from an interface; a break ends the path there.
+    fn depart(
+        &mut self,
+        _path: &Path,
+        _vertex: &Vertex<'_>,
+        _departure: &Departure,
+    ) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+}
+
+/// What the gather paths of a sensor have in common.
+#[derive(Debug, Clone, Copy)]
+pub struct Gathering<'a, 's> {
+    /// The scene.
+    pub scene: &'s Scene,
+    /// What the paths may see of its sources.
+    pub emitters: &'a Emitters<'s>,
+    /// The sensor that they start from.
+    pub sensor: SensorId,
+    /// Interfaces after which a path is cut, 1.
+    pub bounce_limit: u32,
+    /// What may stop the paths; `None` where nothing does.
+    pub pace: Option<&'a Pace<'a>>,
+}
+
+/// Follows one gather path; gives back the number of straight pieces it had.
+pub fn follow(
+    gathering: Gathering<'_, '_>,
+    arrival: &Arrival,
+    sampler: &mut Sampler<impl Numbers>,
+    collector: &mut impl Collector,
+) -> u64 {
+    let path = Path::arriving(gathering.scene, arrival);
+    let (stage, limit) = match arrival.begins {
+        // A photon is counted as it leaves the face, before it can be cut there.
+        Begins::BeforeFace => (Stage::BeforeFace, gathering.bounce_limit.saturating_add(1)),
+        Begins::OnSensor => (Stage::First, gathering.bounce_limit),
+    };
+    let mut follower = Follower::new(gathering, collector, stage);
+    walk(gathering.scene, path, limit, sampler, &mut follower);
+    follower.segments
+}
+
+/// Follows one gather path on from an interface, with the aim behind it; gives back the number of straight pieces.
+pub fn follow_on(
+    gathering: Gathering<'_, '_>,
+    path: Path,
+    sampler: &mut Sampler<impl Numbers>,
+    collector: &mut impl Collector,
+) -> u64 {
+    let mut follower = Follower::new(gathering, collector, Stage::Beyond);
+    walk(gathering.scene, path, gathering.bounce_limit, sampler, &mut follower);
+    follower.segments
+}
+
+/// How far a gather path has come.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Stage {
+    /// It has yet to meet the sensor's own face.
+    BeforeFace,
+    /// It is on its first segment, which has to come through the aim.
+    First,
+    /// The aim lies behind it.
+    Beyond,
+}
+
+struct Follower<'a, 's, 'c, C> {
+    gathering: Gathering<'a, 's>,
+    collector: &'c mut C,
+    stage: Stage,
+    /// Emission met at the end of the first segment: it counts if the segment ends at the aim.
+    before_aim: SmallVec<[Met; 2]>,
+    segments: u64,
+    /// The sensor, if light counts on its first passage alone.
+    first_passage: Option<&'s SurfaceSensor>,
+    /// Whether the last interface was the sensor's own face, from which the path begins.
+    at_own_face: bool,
+}
+
+impl<'a, 's, 'c, C: Collector> Follower<'a, 's, 'c, C> {
+    fn new(gathering: Gathering<'a, 's>, collector: &'c mut C, stage: Stage) -> Self {
+        let first_passage = match &gathering.scene.sensors[gathering.sensor.index()].kind {
+            SensorKind::Surface(surface) if surface.passage == Passage::First => Some(surface),
+            SensorKind::Surface(_) | SensorKind::Goniometer(_) => None,
+        };
+        Self {
+            gathering,
+            collector,
+            stage,
+            before_aim: SmallVec::new(),
+            segments: 0,
+            first_passage,
+            at_own_face: false,
+        }
+    }
+
+    /// Travels along a segment as far as the light of it counts; a break ends the path where the light has passed the
+    /// sensor before.
+    fn travel_counted(&mut self, path: &Path, segment: &Segment<'_>) -> ControlFlow<()> {
+        let Some(length) = self.passed_at(segment) else {
+            self.travel(path, segment);
+            return ControlFlow::Continue(());
+        };
+        self.travel(path, &Segment { length, ..*segment });
+        ControlFlow::Break(())
+    }
+
+    /// How far along a segment, mm, its light has passed the sensor before, as photons would have been counted: at the end of
+    /// a segment of theirs, not at its start.
+    fn passed_at(&self, segment: &Segment<'_>) -> Option<f64> {
+        let sensor = self.first_passage.filter(|sensor| sensor.place == Place::Port)?;
+        let Gathering { scene, .. } = self.gathering;
+        let tolerance = scene.tolerance;
+        // The first segment starts on the sensor.
+        let least = if self.segments == 1 { tolerance } else { -tolerance };
+        let mut nearest: Option<f64> = None;
+        for patch in sensor.faces.iter().flat_map(|&face| scene.face_patches(face)) {
+            patch.crossings(segment.ray, Start::Elsewhere, |Crossing { t, toward }| {
+                let is_within = t > least && t < segment.length - tolerance;
+                if is_within && sensor.sides.include(sensor.counts, toward.opposite()) {
+                    nearest = Some(nearest.map_or(t, |other| other.min(t)));
+                }
+            });
+        }
+        // What shines from the place of the sensor has passed it.
+        nearest.map(|t| (t - 2.0 * tolerance).max(0.0))
+    }
+
+    /// Whether the light that a path brings from an interface has passed the sensor there before.
+    fn has_passed(&self, vertex: &Vertex<'_>, departure: &Departure) -> bool {
+        let Some(sensor) = self.first_passage.filter(|_| !self.at_own_face) else { return false };
+        let light = match sensor.counts {
+            Counts::Incident => -departure.dir,
+            Counts::Leaving => -vertex.dir,
+        };
+        sensor.place == Place::Face
+            && vertex.hits.all().filter(|hit| sensor.faces.contains(&hit.face)).any(|hit| {
+                let normal = self.gathering.scene.normal(hit.prim, vertex.point);
+                sensor.sides.include(sensor.counts, Toward::of(light, normal))
+            })
+    }
+
+    fn travel(&mut self, path: &Path, segment: &Segment<'_>) {
+        let Gathering { scene, emitters, sensor, .. } = self.gathering;
+        match self.stage {
+            // What shines from the face itself does not leave it by the face's doing.
+            Stage::BeforeFace => {}
+            Stage::Beyond => {
+                emitters.along(path, segment, SegmentStart::Interface, |met| {
+                    self.collector.meet(path, met);
+                });
+            }
+            Stage::First => {
+                let opening = aim_opening(scene, sensor, segment);
+                if opening.is_some() {
+                    self.stage = Stage::Beyond;
+                }
+                let from = opening.unwrap_or(segment.length) - scene.tolerance;
+                // Only a sensor on a face starts paths on a surface.
+                let start = if path.on.iter().next().is_none() {
+                    SegmentStart::Sensor
+                } else {
+                    SegmentStart::Face
+                };
+                emitters.along(path, segment, start, |met| {
+                    if met.t < from {
+                        return;
+                    }
+                    match opening {
+                        Some(_) => self.collector.meet(path, met),
+                        None => self.before_aim.push(met),
+                    }
+                });
+            }
+        }
+    }
+
+    fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>) -> ControlFlow<()> {
+        if self.stage == Stage::First {
+            let aim = &self.gathering.scene.sensors[self.gathering.sensor.index()].aim;
+            if !vertex.hits.all().any(|hit| aim.contains(&hit.face)) {
+                return ControlFlow::Break(());
+            }
+            for met in self.before_aim.drain(..) {
+                self.collector.meet(path, met);
+            }
+        }
+        self.at_own_face = self.stage == Stage::BeforeFace;
+        self.stage = Stage::Beyond;
+        match vertex.interface.visibility {
+            Visibility::Visible => self.collector.arrive(path, vertex),
+            Visibility::Invisible => ControlFlow::Continue(()),
+        }
+    }
+
+    fn collide(&mut self, path: &Path, collision: &Collision<'_>) -> ControlFlow<()> {
+        match self.stage {
+            // Light that is scattered in front of the aim does not come through it.
+            Stage::First => ControlFlow::Break(()),
+            Stage::BeforeFace | Stage::Beyond => self.collector.collide(path, collision),
+        }
+    }
+}
+
+impl<C: Collector> Visitor for Follower<'_, '_, '_, C> {
+    const CARRIES: Carries = Carries::Radiance;
+
+    #[inline]
+    fn roulette_below(&self) -> f64 {
+        self.collector.roulette_below()
+    }
+
+    #[inline]
+    fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
+        match event {
+            Event::Travel(segment) => {
+                self.segments += 1;
+                self.travel_counted(path, segment)?;
+                self.gathering.pace.map_or(ControlFlow::Continue(()), |pace| pace.spend(1))
+            }
+            Event::Arrive(vertex) => self.arrive(path, vertex),
+            Event::Collide(collision) => self.collide(path, collision),
+            Event::Depart(vertex, departure) if self.has_passed(vertex, departure) => {
+                ControlFlow::Break(())
+            }
+            Event::Depart(vertex, departure) => self.collector.depart(path, vertex, departure),
+            Event::Cut(throughput) => {
+                self.collector.lose(throughput, Loss::Cut);
+                ControlFlow::Continue(())
+            }
+            Event::Leaked(_, throughput) => {
+                self.collector.lose(throughput, Loss::Leaked);
+                ControlFlow::Continue(())
+            }
+            Event::Absorbed(_) | Event::Roulette(_) | Event::Escaped(_) => {
+                ControlFlow::Continue(())
+            }
+        }
+    }
+}
+
+/// How far along its first segment a gather path comes through the aim: at once without any, else where it crosses a
+/// port of the aim; `None` where only the segment's end can be on the aim.
+fn aim_opening(scene: &Scene, sensor: SensorId, segment: &Segment<'_>) -> Option<f64> {
+    let aim = &scene.sensors[sensor.index()].aim;
+    if aim.is_empty() {
+        return Some(0.0);
+    }
+    let mut opening: Option<f64> = None;
+    for &face in aim.iter().filter(|face| scene.faces[face.index()].owner == Owner::Port) {
+        for patch in scene.face_patches(face) {
+            patch.crossings(segment.ray, Start::Elsewhere, |Crossing { t, .. }| {
+                if t > 0.0 && t <= segment.length + scene.tolerance {
+                    opening = Some(opening.map_or(t, |first| first.min(t)));
+                }
+            });
+        }
+    }
+    opening
+}

@@ -5,25 +5,24 @@
 //! what clock, is not known here.
 
 mod metropolis;
+mod one_sensor;
 mod primary;
 mod sppm;
 mod whitted;
 
 use lumiduct_core::plan::RunPlan;
-use lumiduct_core::rng::Sampler;
-use lumiduct_core::scene::{Arrival, Arrivals, Scene, SensorId};
+use lumiduct_core::scene::{Scene, SensorId};
 use lumiduct_core::tally::Tally;
-use lumiduct_core::transport::tally::readings::Counted;
+use lumiduct_core::transport::Readings;
 use lumiduct_core::transport::tally::sums::Sums;
-use lumiduct_core::transport::walk::emitters::{Emitters, Met};
-use lumiduct_core::transport::walk::follow::{Collector, Gathering, follow};
-use lumiduct_core::transport::{Layout, Path, Readings};
 use metropolis::Metropolis;
 use rayon::prelude::*;
 use sppm::Sppm;
 use whitted::Whitted;
 
 pub use sppm::sppm_area_ratio;
+
+use crate::one_sensor::{Batch, OneSensor};
 
 /// A method to compare with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -49,13 +48,6 @@ impl Baseline {
         }
     }
 }
-
-/// Straight pieces that a batch should hold.
-const BATCH_SEGMENTS: u64 = 1 << 16;
-/// Gather paths from which their length is learnt.
-const PILOT_PATHS: u64 = 64;
-/// Stream of random numbers of these.
-const PILOT_STREAM: u64 = 8 << 32;
 
 /// A baseline at work on one sensor.
 #[derive(Debug)]
@@ -113,13 +105,6 @@ impl<'s> BaselineRun<'s> {
     }
 }
 
-/// What a batch has counted.
-struct Batch {
-    readings: Readings,
-    /// Throughput cut off per gather path, 1.
-    cut: f64,
-}
-
 impl Work<'_> {
     fn batch(&self, batch: u64) -> Batch {
         match self {
@@ -128,70 +113,4 @@ impl Work<'_> {
             Self::Metropolis(metropolis) => Batch { readings: metropolis.chain(batch), cut: 0.0 },
         }
     }
-}
-
-/// The gather paths of one sensor.
-#[derive(Debug)]
-struct OneSensor<'s> {
-    scene: &'s Scene,
-    layout: Layout,
-    emitters: Emitters<'s>,
-    id: SensorId,
-    arrivals: Arrivals<'s>,
-    seed: u64,
-    bounce_limit: u32,
-}
-
-impl<'s> OneSensor<'s> {
-    fn new(scene: &'s Scene, id: SensorId, plan: &RunPlan) -> Self {
-        Self {
-            scene,
-            layout: Layout::new(scene),
-            emitters: Emitters::new(scene),
-            id,
-            arrivals: Arrivals::new(scene, id),
-            seed: plan.seed,
-            bounce_limit: plan.bounce_limit,
-        }
-    }
-
-    /// What its gather paths have in common, up to a depth.
-    fn gathering(&self, bounce_limit: u32) -> Gathering<'_, 's> {
-        let Self { scene, emitters, id: sensor, .. } = self;
-        Gathering { scene, emitters, sensor: *sensor, bounce_limit, pace: None }
-    }
-
-    /// The etendue that a gather path stands for, mm² sr.
-    fn etendue(&self, arrival: &Arrival) -> f64 {
-        Path::arriving(self.scene, arrival).etendue(self.scene, arrival.extent)
-    }
-
-    /// A batch of so many paths, to be counted into.
-    fn empty(&self, paths: u64, batch: u64) -> Readings {
-        Readings::of_batch(self.scene, &self.layout, self.seed, paths, batch)
-    }
-
-    fn count(&self, readings: &mut Readings, cells: &[usize], light: &Counted) {
-        readings.count(&self.layout, self.id, cells, light);
-    }
-
-    /// Gather paths that make a batch of about as much work in every scene; the same for the same seed.
-    fn batch_paths(&self) -> u64 {
-        let mut segments = 0;
-        for index in 0..PILOT_PATHS {
-            let mut sampler = Sampler::for_path(self.seed, PILOT_STREAM, index);
-            if let Some(arrival) = self.arrivals.draw(&mut sampler) {
-                let gathering = self.gathering(self.bounce_limit.min(10_000));
-                segments += follow(gathering, &arrival, &mut sampler, &mut Onlooker);
-            }
-        }
-        (BATCH_SEGMENTS * PILOT_PATHS / segments.max(1)).clamp(16, 1 << 14)
-    }
-}
-
-/// Collects nothing.
-struct Onlooker;
-
-impl Collector for Onlooker {
-    fn meet(&mut self, _: &Path, _: Met) {}
 }

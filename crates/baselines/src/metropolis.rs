@@ -6,7 +6,7 @@
 //! by the probability that the chain goes on with them. Every batch is a chain of its own with a b of its own: the
 //! flux on the sensor is free of bias, its division among cells only as far as chains are long.
 
-use crate::OneSensor;
+use crate::one_sensor::OneSensor;
 use crate::primary::{Mutation, Primary};
 use lumiduct_core::rng::{Numbers, Sampler};
 use lumiduct_core::transport::tally::readings::Counted;

@@ -5,7 +5,7 @@
 //! of its own, and the mean over passes is the value. Gather paths go on through specular surfaces and wait for photons
 //! where a surface scatters; on purely specular scenes they see only what they meet.
 
-use crate::{BATCH_SEGMENTS, OneSensor};
+use crate::one_sensor::{BATCH_SEGMENTS, OneSensor};
 use lumiduct_core::optics::{Incidence, Lobe};
 use lumiduct_core::plan::RunPlan;
 use lumiduct_core::rng::Sampler;

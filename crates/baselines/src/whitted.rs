@@ -4,7 +4,7 @@
 //! drawn there: both rays are followed until what they carry falls below a cut-off, and what is cut off is told, not made
 //! up for. Finishes that scatter sample one direction.
 
-use crate::{Batch, OneSensor};
+use crate::one_sensor::{Batch, OneSensor};
 use lumiduct_core::optics::{Scattered, Side, scatter_toward};
 use lumiduct_core::rng::Sampler;
 use lumiduct_core::scene::{On, Ray};

@@ -231,7 +231,7 @@ fn largest(evidence: &Evidence<'_>, sphere: &Sphere<'_>) -> Measure {
         })
         .collect();
     let found = uniformity::largest(&cells, evidence.readings.batch_count());
-    evidence.statistic(&found, evidence.scene.unit.intensity())
+    found.measure(evidence, evidence.scene.unit.intensity())
 }
 
 /// Beam and field angle on the mean curve over C, and in the planes C0-C180 and C90-C270.

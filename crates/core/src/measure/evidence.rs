@@ -2,7 +2,7 @@
 //!
 //! Errors come from groups of batches. This module does not know what the scalars mean.
 
-use crate::measure::{Measure, Statistic, Status};
+use crate::measure::{Measure, Status};
 use crate::plan::Estimator;
 use crate::scene::{Scene, SensorId};
 use crate::transport::{Layout, Readings};
@@ -74,14 +74,6 @@ impl<'a> Evidence<'a> {
             paths: self.readings.paths(),
             estimator: self.estimator,
             status,
-        }
-    }
-
-    /// A statistic of a map or of a sphere as a measure.
-    pub(crate) fn statistic(&self, found: &Statistic, unit: &str) -> Measure {
-        Measure {
-            bias: found.bias,
-            ..self.measure(found.value, found.std_error, unit, found.status)
         }
     }
 

@@ -43,7 +43,7 @@ pub use gathered::{GatheredFacts, Resolution, StageFacts};
 pub use map::{Axes, SensorMap};
 pub use paths::{Action, DepthBin, Extent, LostPaths, PathClass, PathStep, SensorPaths, strongest};
 pub use record::{Measure, Status};
-pub use replicates::{Replicates, replicates};
+pub use replicates::Replicates;
 pub use uniformity::{Statistic, Uniformity, UniformitySummary};
 
 use crate::measure::evidence::Evidence;
@@ -176,4 +176,14 @@ pub fn relative_error(measures: &Measures, name: &str) -> Option<f64> {
 
 fn add(values: &mut IndexMap<String, Measure>, sensor: &str, measures: IndexMap<String, Measure>) {
     values.extend(measures.into_iter().map(|(name, m)| (format!("{sensor}.{name}"), m)));
+}
+
+/// What single groups of batches say of a measure; `None` for those that need a map, whose cells are not kept by group.
+pub fn replicates(scene: &Scene, findings: &Findings, name: &str) -> Option<Replicates> {
+    let (first, rest) = name.split_once('.')?;
+    let found = match scene.sensors.iter().position(|sensor| sensor.name == first) {
+        Some(index) => sensor::replicates(scene, findings, SensorId::new(index), rest)?,
+        None => balance::replicates(scene, &findings.photons, name)?,
+    };
+    found.0.iter().all(|(_, value)| value.is_finite()).then_some(found)
 }

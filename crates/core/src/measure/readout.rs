@@ -43,7 +43,7 @@ fn summary_measures(
     map: &SensorMap,
     add: &mut impl FnMut(&str, Measure),
 ) {
-    let of = |statistic: &Statistic, unit: &str| evidence.statistic(statistic, unit);
+    let of = |statistic: &Statistic, unit: &str| statistic.measure(evidence, unit);
     let summary = &map.summary;
     let quantity = &map.quantity;
     match seeing {

@@ -5,9 +5,6 @@
 //! may be a ratio, is its jackknife pseudo-value g θ - (g - 1) θ₋ₖ (Tukey, Ann. Math. Stat. 29 (1958) 614), where θ₋ₖ
 //! is the measure without that group.
 
-use crate::measure::{balance, sensor};
-use crate::scene::{Scene, SensorId};
-use crate::transport::Findings;
 use serde::{Deserialize, Serialize};
 
 /// What each group of batches says of a measure, in the unit of the measure: pseudo-values, by group, ascending.
@@ -28,14 +25,4 @@ impl Replicates {
             && self.0.len() == other.0.len()
             && self.0.iter().zip(&other.0).all(|(own, other)| own.0 == other.0)
     }
-}
-
-/// What single groups of batches say of a measure; `None` for those that need a map, whose cells are not kept by group.
-pub fn replicates(scene: &Scene, findings: &Findings, name: &str) -> Option<Replicates> {
-    let (first, rest) = name.split_once('.')?;
-    let found = match scene.sensors.iter().position(|sensor| sensor.name == first) {
-        Some(index) => sensor::replicates(scene, findings, SensorId::new(index), rest)?,
-        None => balance::replicates(scene, &findings.photons, name)?,
-    };
-    found.0.iter().all(|(_, value)| value.is_finite()).then_some(found)
 }

@@ -4,10 +4,10 @@
 //! size of the cells, and all are given with an interval for 95 of 100 cases. This module knows values and areas, no
 //! sensors.
 
-use crate::measure::Status;
 use crate::measure::counted::Part;
-use crate::measure::evidence::{MIN_COUNTS, counted, enough_batches};
+use crate::measure::evidence::{Evidence, MIN_COUNTS, counted, enough_batches};
 use crate::measure::extremes::{Extreme, TWO_SIDED_95, evenness, maximum};
+use crate::measure::{Measure, Status};
 use serde::Serialize;
 
 /// An extreme that was corrected by more than this share (of the average for the smallest, of itself for the
@@ -34,6 +34,14 @@ pub struct Statistic {
     pub correction: f64,
     /// Whether all this can be relied on.
     pub status: Status,
+}
+
+impl Statistic {
+    /// The same as a measure.
+    pub(crate) fn measure(&self, evidence: &Evidence<'_>, unit: &str) -> Measure {
+        let Self { value, std_error, bias, status, .. } = *self;
+        Measure { bias, ..evidence.measure(value, std_error, unit, status) }
+    }
 }
 
 /// Extremes and their ratios over a set of cells or points.

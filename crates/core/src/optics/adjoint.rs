@@ -18,8 +18,9 @@
 //!   that scatters into o is drawn, also through a face that totally reflects the gather path's own direction, and
 //!   nothing is drawn that does not.
 
-use crate::optics::bsdf::{choose_side, leaving_normal, pick, specular, straight};
-use crate::optics::shares::smooth_direction;
+use crate::optics::incidence::{choose_side, leaving_normal, specular, straight};
+use crate::optics::scatter::pick;
+use crate::optics::smooth::smooth_direction;
 use crate::optics::{Bsdf, Gaussian, Haze, Incidence, Lobe, Scattered, Shares, Side, shares};
 use crate::rng::{Dimension, Numbers, Sampler};
 use glam::DVec3;

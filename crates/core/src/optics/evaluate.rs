@@ -4,8 +4,8 @@
 //! Realistic Image Synthesis Using Photon Mapping, 2001, chapter 7). Discrete directions have no finite value and count
 //! as 0 here. It knows nothing of a face's two finishes: the one that the photons meet is to be asked.
 
-use crate::optics::bsdf::{leaving_normal, straight};
-use crate::optics::shares::smooth_direction;
+use crate::optics::incidence::{leaving_normal, straight};
+use crate::optics::smooth::smooth_direction;
 use crate::optics::{Bsdf, Gaussian, Incidence, Side, shares};
 use glam::DVec3;
 use std::f64::consts::PI;

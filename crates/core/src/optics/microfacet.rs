@@ -8,7 +8,7 @@
 //!
 //! `f(i→o)/n_o²` is the same both ways, so that a gather path does what a photon does, without a factor.
 
-use crate::optics::bsdf::{choose_side, specular};
+use crate::optics::incidence::{choose_side, specular};
 use crate::optics::{Incidence, Lobe, Scattered, Shares, Side, fresnel};
 use crate::rng::{Dimension, Numbers, Sampler};
 use glam::DVec3;

@@ -1,27 +1,8 @@
-//! What share of arriving light a finish sends to each side, and about which direction.
+//! What share of arriving light a finish sends to each side.
 
-use crate::optics::{AngleTable, Bsdf, Incidence, Side, fresnel};
-use glam::DVec3;
-
-/// Shares of the arriving flux that leave to the two sides; the rest is absorbed. 1.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Shares {
-    /// Share that goes back.
-    pub reflected: f64,
-    /// Share that goes through.
-    pub transmitted: f64,
-}
-
-impl Shares {
-    /// The share that leaves to one side, 1.
-    #[inline]
-    pub fn of(self, side: Side) -> f64 {
-        match side {
-            Side::Reflected => self.reflected,
-            Side::Transmitted => self.transmitted,
-        }
-    }
-}
+use crate::optics::incidence::{Incidence, Shares};
+use crate::optics::smooth::smooth;
+use crate::optics::{AngleTable, Bsdf, fresnel};
 
 /// Probabilities with which [`Bsdf::scatter`] sends light that it does not absorb to the two sides, 1; both are 0 where
 /// it always absorbs. The parts of a mixture count by their weights.
@@ -92,17 +73,6 @@ fn mean(parts: &[(f64, Bsdf)], of: impl Fn(&Bsdf) -> Shares) -> Shares {
     mean
 }
 
-/// Fresnel's shares; between equal indices all goes through, also along the face.
-pub(crate) fn smooth(incidence: &Incidence) -> Shares {
-    let Incidence { index_from, index_to, .. } = *incidence;
-    let reflected = if index_from == index_to {
-        0.0
-    } else {
-        fresnel::dielectric(incidence.cos(), index_from, index_to).unpolarised()
-    };
-    Shares { reflected, transmitted: 1.0 - reflected }
-}
-
 /// The table's shares at the angle in the medium of the lower index, so that they are the same from both sides.
 fn coated(table: &AngleTable, incidence: &Incidence) -> Shares {
     let Incidence { index_from, index_to, .. } = *incidence;
@@ -115,28 +85,15 @@ fn coated(table: &AngleTable, incidence: &Incidence) -> Shares {
     Shares { reflected, transmitted: 1.0 - reflected }
 }
 
-/// The discrete direction of a smooth interface, a unit vector but for rounding: mirrored, or refracted (`None` under
-/// total reflection).
-pub(crate) fn smooth_direction(incidence: &Incidence, side: Side) -> Option<DVec3> {
-    let Incidence { dir, normal, index_from, index_to, .. } = *incidence;
-    match side {
-        Side::Reflected => Some(fresnel::mirrored(dir, normal)),
-        Side::Transmitted if index_from == index_to => Some(dir),
-        Side::Transmitted => {
-            let cos_i = incidence.cos();
-            let cos_t = fresnel::cos_transmitted(cos_i, index_from, index_to)?;
-            Some(fresnel::refracted(dir, normal, cos_i, cos_t, index_from / index_to))
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::optics::Side;
     use crate::optics::testing::incidence;
     use crate::optics::{Facets, Gaussian, Haze, HazeBase, HazeLaw, Microfacet};
     use crate::rng::Sampler;
     use crate::tally::Tally;
+    use glam::DVec3;
     use std::f64::consts::FRAC_PI_2;
 
     #[test]

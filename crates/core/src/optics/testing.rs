@@ -1,6 +1,6 @@
 //! What tests of finishes share: light that meets a face, and samples against the distribution function.
 
-use crate::optics::bsdf::leaving_normal;
+use crate::optics::incidence::leaving_normal;
 use crate::optics::{Bsdf, Incidence, Lobe, Side, evaluate};
 use crate::rng::Sampler;
 use glam::DVec3;

@@ -6,7 +6,7 @@
 
 use crate::rng::{Dimension, Numbers, Sampler};
 use crate::scene::area::{AreaPoint, FaceArea};
-use crate::scene::intersect::Just;
+use crate::scene::hit::Just;
 use crate::scene::shape::Toward;
 use crate::scene::{
     Counts, Goniometer, Inside, Place, PrimId, Ray, Scene, Seeing, SensorId, SensorKind, Sides,

@@ -1,15 +1,15 @@
 //! Putting a scene together: tables first, then the whole.
 
 use crate::optics::{Bsdf, Medium};
-use crate::scene::convex::Convex;
+use crate::scene::convex::{Convex, Room};
 use crate::scene::mesh::Mesh;
 use crate::scene::pattern::Pattern;
+use crate::scene::relief::surfaces::surfaces;
 use crate::scene::relief::{Cut, Ground, Relief, Trim};
-use crate::scene::shape::Shape;
-use crate::scene::sweep::WallChart;
 use crate::scene::{
     Accel, COINCIDENCE, Extent, Face, FaceId, Finish, FinishId, LightGroups, MediumId, MeshBody,
-    Owner, Patch, PrimId, Scene, Sensor, SensorId, SensorKind, Solid, SolidId, Source, SourceId,
+    Owner, Patch, Piece, PrimId, Scene, Sensor, SensorId, SensorKind, Solid, SolidId, Source,
+    SourceId,
 };
 use glam::DVec3;
 use lumiduct_base::math::Aabb;
@@ -39,26 +39,6 @@ pub struct FaceSpec {
     pub back: Option<FinishId>,
     /// The smooth pieces it consists of.
     pub pieces: Vec<Piece>,
-}
-
-/// A smooth piece of a face to be added.
-#[derive(Debug, Clone)]
-pub struct Piece {
-    /// The surface.
-    pub shape: Shape,
-    /// Tangent-continuous pieces share this number within their solid or sheet.
-    pub smooth: u32,
-    /// Leads from the shape's chart to that of the whole sweep; `None` where they are the same.
-    pub chart: Option<WallChart>,
-    /// What limits it beside the edges of its shape.
-    pub trim: Option<Arc<Trim>>,
-}
-
-impl Piece {
-    /// A piece that is a face of its own.
-    pub fn whole(shape: Shape) -> Self {
-        Self { shape, smooth: 0, chart: None, trim: None }
-    }
 }
 
 impl Builder {
@@ -263,11 +243,36 @@ impl Builder {
         scene.accel = Accel::new(&boxes, scene.patches.len(), scene.bounds.largest_coordinate());
         if let Accel::Scan(_) = scene.accel {
             let solids = (0..scene.solids.len()).map(SolidId::new);
-            scene.convex = solids.filter_map(|solid| Convex::of(&scene, solid)).collect();
+            let room = Room {
+                patches: &scene.patches,
+                meshes: &scene.meshes,
+                diagonal: scene.bounds.diagonal(),
+                tolerance: scene.tolerance,
+            };
+            scene.convex = solids.filter_map(|solid| Convex::of(&room, solid)).collect();
         }
         let convex: Vec<PrimId> = scene.convex.iter().flat_map(Convex::faces).collect();
         scene.loose = (0..scene.patches.len()).map(PrimId::new).collect();
         scene.loose.retain(|prim| !convex.contains(prim));
         scene
+    }
+}
+
+impl Relief {
+    /// The surfaces of all elements.
+    fn pieces(&self, lap: f64) -> Vec<Piece> {
+        let mut pieces = Vec::new();
+        let round = self.element.round.map(|_| {
+            let cut = Cut::Round { ground: self.ground, way: self.element.way, lap };
+            Arc::new(Trim { cuts: vec![cut] })
+        });
+        for (place, at) in self.field.places() {
+            for made in surfaces(&self.element, place, &self.ground, at, lap) {
+                let smooth = pieces.len() as u32;
+                let trim = round.clone().filter(|_| made.is_trimmed);
+                pieces.push(Piece { shape: made.shape, smooth, chart: None, trim });
+            }
+        }
+        pieces
     }
 }

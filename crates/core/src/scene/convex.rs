@@ -4,9 +4,9 @@
 //! that it comes behind, wherever the edges are: no edge need be looked at, and none can be missed. Parallel faces are
 //! asked together, as a slab (Kay & Kajiya, SIGGRAPH 1986, section 3.1). It knows nothing of other solids.
 
-use crate::scene::intersect::Nearest;
+use crate::scene::hit::Nearest;
 use crate::scene::shape::{Crossing, Cylinder, Flat, Shape, Start, Toward};
-use crate::scene::{On, Owner, PrimId, Ray, Scene, SolidId};
+use crate::scene::{MeshBody, On, Owner, Patch, PrimId, Ray, SolidId};
 use glam::DVec3;
 
 /// Unit normals this far apart are opposite but for rounding; 1.
@@ -55,15 +55,26 @@ impl Slab {
     }
 }
 
+/// What all solids are made of.
+#[derive(Debug)]
+pub(super) struct Room<'a> {
+    pub(super) patches: &'a [Patch],
+    pub(super) meshes: &'a [MeshBody],
+    /// Diagonal of the box around everything, mm.
+    pub(super) diagonal: f64,
+    /// Faces closer than this are one, mm.
+    pub(super) tolerance: f64,
+}
+
 impl Convex {
     /// The solid of this number, if it is convex.
-    pub(crate) fn of(scene: &Scene, solid: SolidId) -> Option<Self> {
+    pub(super) fn of(room: &Room<'_>, solid: SolidId) -> Option<Self> {
         let owner = Owner::Solid(solid);
-        if scene.meshes.iter().any(|body| body.owner == owner) {
+        if room.meshes.iter().any(|body| body.owner == owner) {
             return None;
         }
         let (mut flats, mut round) = (Vec::new(), None);
-        for (index, patch) in scene.patches.iter().enumerate() {
+        for (index, patch) in room.patches.iter().enumerate() {
             let prim = PrimId::new(index);
             match &patch.shape {
                 _ if patch.owner != owner => {}
@@ -84,9 +95,9 @@ impl Convex {
         let mut convex = Self { slabs: Vec::new(), round, solid };
         for (prim, flat) in &flats {
             // Twice the diagonal is out of reach of any ray inside.
-            convex.add_plane(*prim, flat, 2.0 * scene.bounds.diagonal())?;
+            convex.add_plane(*prim, flat, 2.0 * room.diagonal)?;
         }
-        convex.is_bounded_by(&flats, scene.tolerance).then_some(convex)
+        convex.is_bounded_by(&flats, room.tolerance).then_some(convex)
     }
 
     /// Adds the plane of a face; `None` for a second face in the same one.
@@ -191,6 +202,7 @@ mod tests {
     use super::*;
     use crate::optics::Medium;
     use crate::rng::{Dimension, Sampler};
+    use crate::scene::Scene;
     use crate::scene::shape::Region;
     use crate::scene::{Builder, FaceSpec, Inside, Piece, Solid};
     use lumiduct_base::math::{Aabb, Frame, circle, uniform_sphere};
@@ -345,7 +357,16 @@ mod tests {
 
     #[test]
     fn solids_with_holes_inward_corners_or_split_faces_are_not_convex() {
-        let convex = |shapes| Convex::of(&solid_of(shapes), SolidId::new(0)).is_some();
+        let convex = |shapes| {
+            let scene = solid_of(shapes);
+            let room = Room {
+                patches: &scene.patches,
+                meshes: &scene.meshes,
+                diagonal: scene.bounds.diagonal(),
+                tolerance: scene.tolerance,
+            };
+            Convex::of(&room, SolidId::new(0)).is_some()
+        };
         assert!(convex(rod()) && convex(prism(6)));
         let mut pipe = rod();
         pipe.push(Shape::Cylinder(Cylinder::new(frame(), 0.5 * RADIUS, LENGTH).inward()));

@@ -1,7 +1,7 @@
 //! How a source spreads its flux over directions.
 
 use crate::rng::{Dimension, Sampler};
-use crate::scene::Sky;
+use crate::scene::sky::{EmitterKind, Sky};
 use glam::DVec3;
 use lumiduct_base::math::{
     Frame, cone_direction, cosine_hemisphere, cosine_power_hemisphere, projected_cap,
@@ -32,19 +32,6 @@ pub enum Emission {
     Isotropic,
     /// The luminance of the sky; `dir` of the emitter's frame is where its light goes.
     Sky(Sky),
-}
-
-/// What kind of thing emits: it decides the measure in which a law is uniform.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum EmitterKind {
-    /// A point: laws are intensities.
-    Point,
-    /// A surface: laws are radiances, flux goes with the cosine to the normal.
-    Surface,
-    /// A volume: laws are intensities.
-    Volume,
-    /// The far distance: laws are radiances, and a disk across each direction takes the flux.
-    Far,
 }
 
 impl Emission {

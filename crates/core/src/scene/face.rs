@@ -1,7 +1,7 @@
 //! Faces: the named parts of solids and sheets, and the smooth pieces they are made of.
 
 use crate::scene::mesh::Mesh;
-use crate::scene::relief::Trim;
+use crate::scene::relief::{Ground, Trim};
 use crate::scene::shape::{ChartRect, Crossing, Shape, Start, Toward, Wanted};
 use crate::scene::sweep::WallChart;
 use crate::scene::{FaceId, FinishId, Ray, SolidId};
@@ -195,5 +195,59 @@ impl Patch {
                 .trim
                 .as_ref()
                 .map_or(0.0, |trim| trim.area_in(rect.intersection(&self.chart_bounds())))
+    }
+}
+
+/// A smooth piece of a face to be added.
+#[derive(Debug, Clone)]
+pub struct Piece {
+    /// The surface.
+    pub shape: Shape,
+    /// Tangent-continuous pieces share this number within their solid or sheet.
+    pub smooth: u32,
+    /// Leads from the shape's chart to that of the whole sweep; `None` where they are the same.
+    pub chart: Option<WallChart>,
+    /// What limits it beside the edges of its shape.
+    pub trim: Option<Arc<Trim>>,
+}
+
+impl Piece {
+    /// A piece that is a face of its own.
+    pub fn whole(shape: Shape) -> Self {
+        Self { shape, smooth: 0, chart: None, trim: None }
+    }
+}
+
+impl Ground {
+    /// The wall of a patch: a flat one, or a round one all around with its front outside.
+    pub fn of(patch: &Patch) -> Option<Self> {
+        match &patch.shape {
+            Shape::Flat(flat) => {
+                let Frame { origin, x, y, z } = *flat.frame();
+                let at = patch.chart(origin);
+                let [by_x, by_y] = [x, y].map(|step| patch.chart(origin + step) - at);
+                let (u, v) = (by_x.x * x + by_y.x * y, by_x.y * x + by_y.y * y);
+                let (u, v) = (u.try_normalize()?, v.try_normalize()?);
+                Some(Self { origin: origin - at.x * u - at.y * v, x: u, y: v, z, radius: None })
+            }
+            Shape::Cylinder(wall) if wall.is_whole() => {
+                let start = patch.shape.sample([0.25, 0.5]);
+                let (at, out) = (patch.chart(start), patch.shape.normal(start));
+                let (along, radius) = (patch.along(start), wall.radius());
+                // u grows counter-clockwise about the axis.
+                let (sin, cos) = (at.x / radius).sin_cos();
+                let around = along.cross(out);
+                let (x, y) = (cos * out - sin * around, sin * out + cos * around);
+                let origin = start - radius * out - at.y * along;
+                Some(Self { origin, x, y, z: along, radius: Some(radius) })
+            }
+            Shape::Cylinder(_)
+            | Shape::Cone(_)
+            | Shape::Torus(_)
+            | Shape::Sphere(_)
+            | Shape::Paraboloid(_)
+            | Shape::ParabolicCylinder(_)
+            | Shape::CompoundParabola(_) => None,
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! Light groups: sources whose light is also measured together.
 
-use crate::scene::{Scene, SourceId};
+use crate::scene::SourceId;
 
 /// Sources that are measured together, beside each for itself.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -18,11 +18,4 @@ pub struct LightGroups {
     pub groups: Vec<LightGroup>,
     /// Names of the weathers that shine; no two of them shine at the same time.
     pub weathers: Vec<String>,
-}
-
-impl Scene {
-    /// Flux of some sources, lm or W.
-    pub fn flux_of(&self, sources: &[SourceId]) -> f64 {
-        sources.iter().map(|source| self.sources[source.index()].flux).sum()
-    }
 }

@@ -5,10 +5,22 @@
 
 use crate::optics::{SkyBound, SkyModel};
 use crate::rng::{Dimension, Numbers, Sampler};
-use crate::scene::EmitterKind;
 use glam::DVec3;
 use lumiduct_base::math::{Frame, cosine_hemisphere, from_cosine, uniform_sphere};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// What kind of thing emits: it decides the measure in which a law is uniform.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EmitterKind {
+    /// A point: laws are intensities.
+    Point,
+    /// A surface: laws are radiances, flux goes with the cosine to the normal.
+    Surface,
+    /// A volume: laws are intensities.
+    Volume,
+    /// The far distance: laws are radiances, and a disk across each direction takes the flux.
+    Far,
+}
 
 /// Steps of the quadrature from zenith to horizon, with two points of Gauss each, and around. The edges of what a tilted
 /// plane sees leave an error of 1e-5; skies on a level plane come out to 1e-9.

@@ -1,12 +1,9 @@
 //! Sources: where light starts.
 
-use crate::rng::{Dimension, Sampler};
-use crate::scene::emission::EmitterKind;
-use crate::scene::intersect::Just;
 use crate::scene::shape::{Shape, Sphere};
-use crate::scene::{Emission, Inside, PrimId, Ray, Scene, SolidId};
+use crate::scene::{Emission, Inside, PrimId, Ray, SolidId};
 use glam::DVec3;
-use lumiduct_base::math::{Aabb, Frame, disk};
+use lumiduct_base::math::{Aabb, Frame};
 
 /// A source of light.
 #[derive(Debug, Clone)]
@@ -165,113 +162,4 @@ impl Emitter {
             Self::Far { center, radius, .. } => Aabb::of([*center]).grown(*radius),
         }
     }
-}
-
-impl Source {
-    /// Starts a photon path.
-    pub fn emit(&self, scene: &Scene, sampler: &mut Sampler) -> Emitted {
-        let (ray, shape) = match &self.emitter {
-            Emitter::Point(frame) => {
-                let dir = frame.to_world(self.emission.sample(EmitterKind::Point, sampler));
-                (Ray::new(frame.origin, dir), 0)
-            }
-            Emitter::Line { frame, length } => (self.emit_from_line(frame, *length, sampler), 0),
-            Emitter::Surface { shapes, side, frame } => {
-                let shape = choose_shape(shapes, sampler);
-                let ray = self.emit_from_surface(&shapes[shape].0, *side, frame.as_ref(), sampler);
-                (ray, shape)
-            }
-            Emitter::Far { center, radius, reach, .. } => {
-                (self.emit_from_afar(*center, *radius, *reach, sampler), 0)
-            }
-            Emitter::Volume { solid, bounds } => {
-                (self.emit_from_volume(scene, *solid, bounds, sampler), 0)
-            }
-        };
-        let inside = match self.start {
-            Start::Outside => Inside::default(),
-            Start::Ahead => scene.inside_at(&ray, Just::Ahead),
-            Start::Behind => scene.inside_at(&ray, Just::Behind),
-        };
-        // Only surface sources lie on anything.
-        let on = self.on.get(shape).copied();
-        Emitted { ray, inside, on, shape }
-    }
-
-    fn emit_from_line(&self, frame: &Frame, length: f64, sampler: &mut Sampler) -> Ray {
-        let along = length * (sampler.one(Dimension::EmitPosition) - 0.5);
-        let local = match self.emission {
-            // A coordinate of a uniform point of the disk has density ∝ sqrt(1 - c²) = sin θ: Lambertian for a thin line.
-            Emission::Lambertian => {
-                let u = sampler.pair(Dimension::EmitDirection);
-                let cos = disk(u).x;
-                let around = sampler.one(Dimension::EmitDirection) * std::f64::consts::TAU;
-                let sin = (1.0 - cos * cos).sqrt();
-                DVec3::new(sin * around.cos(), sin * around.sin(), cos)
-            }
-            Emission::CosinePower(_)
-            | Emission::Cone { .. }
-            | Emission::Collimated { .. }
-            | Emission::Isotropic
-            | Emission::Sky(_) => self.emission.sample(EmitterKind::Point, sampler),
-        };
-        Ray::new(frame.origin + along * frame.z, frame.to_world(local))
-    }
-
-    fn emit_from_surface(
-        &self,
-        shape: &Shape,
-        side: EmitSide,
-        reference: Option<&Frame>,
-        sampler: &mut Sampler,
-    ) -> Ray {
-        let point = shape.sample(sampler.pair(Dimension::EmitPosition));
-        let normal = match side {
-            EmitSide::Front => shape.normal(point),
-            EmitSide::Back => -shape.normal(point),
-        };
-        let frame = match reference {
-            Some(reference) => *reference,
-            None => Frame::from_axis(DVec3::ZERO, normal),
-        };
-        Ray::new(point, frame.to_world(self.emission.sample(EmitterKind::Surface, sampler)))
-    }
-
-    /// A direction by the law alone, and a line evenly over the disk across it.
-    fn emit_from_afar(&self, center: DVec3, radius: f64, reach: f64, sampler: &mut Sampler) -> Ray {
-        let dir = self.emission.sample(EmitterKind::Far, sampler);
-        let across = reach * disk(sampler.pair(Dimension::EmitPosition));
-        let back = (radius * radius - across.length_squared()).sqrt();
-        let frame = Frame::from_axis(center, dir);
-        Ray::new(frame.point_to_world(across.with_z(-back)), dir)
-    }
-
-    fn emit_from_volume(
-        &self,
-        scene: &Scene,
-        solid: SolidId,
-        bounds: &Aabb,
-        sampler: &mut Sampler,
-    ) -> Ray {
-        loop {
-            let [u, v] = sampler.pair(Dimension::EmitPosition);
-            let w = sampler.one(Dimension::EmitPosition);
-            let point = bounds.min + DVec3::new(u, v, w) * (bounds.max - bounds.min);
-            let local = self.emission.sample(EmitterKind::Volume, sampler);
-            let ray = Ray::new(point, local);
-            if scene.inside_at(&ray, Just::Ahead).contains(solid) {
-                return ray;
-            }
-        }
-    }
-}
-
-/// One of the shapes, in proportion to their areas; no draw for a single one.
-fn choose_shape(shapes: &[(Shape, f64)], sampler: &mut Sampler) -> usize {
-    let last = shapes.len() - 1;
-    if last == 0 {
-        return 0;
-    }
-    let area = sampler.one(Dimension::EmitPosition) * shapes[last].1;
-    shapes.partition_point(|(_, up_to)| *up_to <= area).min(last)
 }

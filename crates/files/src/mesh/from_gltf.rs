@@ -4,10 +4,11 @@
 //! out of bounds on bad files and refuses harmless ones. Skins, morph targets and animations are not followed.
 //! Source: Khronos, glTF 2.0 Specification (2021), sections 3.5-3.7 and 4.
 
+use crate::mesh::error::MeshError;
+use crate::mesh::format::LengthUnit;
 use crate::mesh::gltf_buffers::{Buffers, Elements, broken};
 use crate::mesh::gltf_copies::refuse_too_many_copies;
 use crate::mesh::gltf_nodes::{cofactors, placed_nodes};
-use crate::mesh::{LengthUnit, MeshError};
 use glam::{DAffine3, DMat3, DVec3};
 use gltf::json::Root;
 use gltf::json::accessor::{ComponentType, Type};
@@ -194,8 +195,8 @@ fn unsigned(bytes: &[u8], component: ComponentType) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::error::{MAX_COPIES_BYTES, TRIANGLE_BYTES};
     use crate::mesh::samples::{glb, glb_of, gltf_parts, mutants};
-    use crate::mesh::{MAX_COPIES_BYTES, TRIANGLE_BYTES};
     use lumiduct_base::mesh::bodies::{Normals, rod};
     use lumiduct_base::mesh::health;
     use serde_json::{Value, json};

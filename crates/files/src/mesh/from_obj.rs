@@ -4,7 +4,8 @@
 //! Curves, lines, points and texture coordinates are passed over. Source: Wavefront, Advanced Visualizer manual,
 //! appendix B1 (version 3.0).
 
-use crate::mesh::{LengthUnit, MeshError, MeshFormat};
+use crate::mesh::error::MeshError;
+use crate::mesh::format::{LengthUnit, MeshFormat};
 use glam::DVec3;
 use lumiduct_base::mesh::{MeshBuilder, TriangleMesh, UNNAMED_FACE, area_vector};
 

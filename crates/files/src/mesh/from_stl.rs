@@ -4,7 +4,8 @@
 //! Layout: 3D Systems, Stereolithography Interface Specification (1988). Many binary files start with "solid" as
 //! ASCII ones do, so the length decides: 84 bytes and 50 for every triangle.
 
-use crate::mesh::{LengthUnit, MeshError, MeshFormat};
+use crate::mesh::error::MeshError;
+use crate::mesh::format::{LengthUnit, MeshFormat};
 use glam::DVec3;
 use lumiduct_base::mesh::{MAX_TRIANGLES, MeshBuilder, TriangleMesh, UNNAMED_FACE, UnusableMesh};
 

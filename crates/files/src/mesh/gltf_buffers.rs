@@ -1,7 +1,9 @@
 //! The bytes behind a glTF document: the blob of a GLB, data URIs and files beside it; accessors with their bounds
 //! checked once, before anything is read.
 
-use crate::mesh::{MAX_FILE_BYTES, MeshError, MeshFormat, read_file};
+use crate::mesh::error::{MAX_FILE_BYTES, MeshError};
+use crate::mesh::file::read_file;
+use crate::mesh::format::MeshFormat;
 use gltf::json::accessor::{Accessor, ComponentType, Type};
 use gltf::json::validation::Checked;
 use gltf::json::{Index, Root};

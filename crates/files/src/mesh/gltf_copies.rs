@@ -1,7 +1,7 @@
 //! How much the nodes of a glTF document repeat its meshes: a file of a megabyte can ask for any amount of memory.
 
+use crate::mesh::error::{MAX_COPIES_BYTES, MeshError, TRIANGLE_BYTES};
 use crate::mesh::gltf_buffers::Buffers;
-use crate::mesh::{MAX_COPIES_BYTES, MeshError, TRIANGLE_BYTES};
 use gltf::json::accessor::Type;
 use gltf::json::mesh::{Mesh, Primitive, Semantic};
 use gltf::json::validation::Checked;

@@ -1,6 +1,6 @@
 //! Where the nodes of a glTF document stand in its scene. Broken trees are refused: a node has one parent at most.
 
-use crate::mesh::MeshError;
+use crate::mesh::error::MeshError;
 use crate::mesh::gltf_buffers::broken;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use gltf::json::scene::Node;

@@ -12,7 +12,7 @@ mod survey;
 
 pub use survey::{acceptance_angle, along_prisms};
 
-use crate::optics::bsdf::specular;
+use crate::optics::incidence::specular;
 use crate::optics::{Incidence, Scattered, Shares, Side};
 use crate::rng::{Dimension, Numbers, Sampler};
 use cell::{After, Cell, Exit, Indices, Step};

@@ -14,10 +14,10 @@ mod profile;
 
 pub use profile::HazeLaw;
 
-use crate::optics::bsdf::{leaving_normal, specular, straight};
 use crate::optics::haze::horizon::{Horizon, Indices};
 use crate::optics::haze::profile::Profile;
-use crate::optics::shares::{smooth, smooth_direction};
+use crate::optics::incidence::{leaving_normal, specular, straight};
+use crate::optics::smooth::{smooth, smooth_direction};
 use crate::optics::{Incidence, Lobe, Scattered, Shares, Side};
 use crate::rng::{Dimension, Numbers, Sampler};
 use glam::DVec3;

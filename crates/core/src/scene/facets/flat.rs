@@ -1,6 +1,6 @@
 //! Flat outlines with corners, and with holes: no grid fits them.
 
-use crate::scene::facets::Facets;
+use crate::scene::facets::triangles::Facets;
 use crate::scene::shape::{Flat, Region};
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::planar::triangulate;

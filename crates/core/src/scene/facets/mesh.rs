@@ -1,6 +1,6 @@
 //! Faces of meshes, with fine triangles joined.
 
-use crate::scene::facets::Facets;
+use crate::scene::facets::triangles::Facets;
 use crate::scene::mesh::Mesh;
 use glam::{DVec3, I64Vec3};
 use std::collections::{BTreeMap, BTreeSet};

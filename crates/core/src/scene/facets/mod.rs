@@ -6,8 +6,10 @@
 mod flat;
 mod mesh;
 mod outline;
+mod triangles;
 
-use crate::scene::relief::Trim;
+pub use triangles::Facets;
+
 use crate::scene::shape::Shape;
 use crate::scene::{Extent, FaceId, Patch, Scene};
 use glam::DVec3;
@@ -22,17 +24,6 @@ const MOST_SQUARES: usize = 512;
 const LOOKED_AT: [f64; 3] = [0.3, 0.5, 0.65];
 /// Points of a patch nearer to each other than this share of its size are one, 1.
 const SAME: f64 = 1e-6;
-
-/// A surface as triangles.
-#[derive(Debug, Clone, Default)]
-pub struct Facets {
-    /// Corners, mm.
-    pub points: Vec<DVec3>,
-    /// Triangles, as numbers of corners.
-    pub triangles: Vec<[usize; 3]>,
-    /// Lines along the rims, as numbers of corners.
-    pub rims: Vec<Vec<usize>>,
-}
 
 /// How fine facets are to be.
 #[derive(Debug, Clone, Copy)]
@@ -52,30 +43,6 @@ pub struct FaceFacets {
     pub facets: Facets,
     /// One in so many of the pieces of the face is there: 1 where it is whole.
     pub one_in: usize,
-}
-
-impl Facets {
-    /// Adds another surface.
-    pub fn append(&mut self, other: Self) {
-        let first = self.points.len();
-        self.points.extend(other.points);
-        self.triangles.extend(other.triangles.iter().map(|corners| corners.map(|i| first + i)));
-        let rims = other.rims.into_iter();
-        self.rims.extend(rims.map(|rim| rim.into_iter().map(|i| first + i).collect()));
-    }
-
-    /// The mean of the corners, mm; `None` without any.
-    pub fn middle(&self) -> Option<DVec3> {
-        let count = self.points.len() as f64;
-        (!self.points.is_empty()).then(|| self.points.iter().sum::<DVec3>() / count)
-    }
-
-    fn keep(&mut self, trim: &Trim) {
-        let points = &self.points;
-        self.triangles
-            .retain(|corners| trim.keeps(corners.iter().map(|i| points[*i]).sum::<DVec3>() / 3.0));
-        self.rims.retain(|rim| rim.iter().all(|i| trim.keeps(points[*i])));
-    }
 }
 
 impl Scene {

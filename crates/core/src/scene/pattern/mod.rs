@@ -4,14 +4,13 @@
 //! million elements cost no more than ten. It knows what lies where; finishes are named by id, and what they do is not known
 //! here.
 
-mod along;
 mod apart;
 mod rows;
 
-pub use along::Along;
+pub use crate::scene::along::Along;
 pub use rows::{Graded, Rows};
 
-use crate::scene::relief::Element;
+use crate::scene::element::Element;
 use crate::scene::shape::ChartRect;
 use crate::scene::{FaceId, FinishId};
 use glam::DVec2;

@@ -2,7 +2,7 @@
 //!
 //! On flat walls in closed form. Where a ball or a saw cut meets a round wall there is none: there it is a sum over strips.
 
-use crate::scene::relief::element::{Cap, Element, Form, Span, Way};
+use crate::scene::element::{Cap, Element, Form, Span, Way};
 use crate::scene::shape::ChartRect;
 use glam::DVec2;
 use lumiduct_base::math::planar::disk_overlap;

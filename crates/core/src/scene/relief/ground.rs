@@ -1,7 +1,5 @@
 //! The wall that a relief lies on, in space: from unrolled coordinates to points, and back.
 
-use crate::scene::Patch;
-use crate::scene::shape::Shape;
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::Frame;
 
@@ -9,14 +7,14 @@ use lumiduct_base::math::Frame;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ground {
     /// Of a flat wall the point (0, 0) of its chart; of a round one the point of its axis at v = 0. mm.
-    origin: DVec3,
+    pub(crate) origin: DVec3,
     /// Of a flat wall the direction of u; of a round one from the axis toward u = 0.
-    x: DVec3,
+    pub(crate) x: DVec3,
     /// Of a flat wall along it; of a round one from the axis toward a quarter of a turn.
-    y: DVec3,
+    pub(crate) y: DVec3,
     /// Of a flat wall out of the solid; of a round one along its axis.
-    z: DVec3,
-    radius: Option<f64>,
+    pub(crate) z: DVec3,
+    pub(crate) radius: Option<f64>,
 }
 
 /// A place of a wall: a point and three directions across each other.
@@ -45,38 +43,6 @@ impl Site {
 }
 
 impl Ground {
-    /// The wall of a patch: a flat one, or a round one all around with its front outside.
-    pub fn of(patch: &Patch) -> Option<Self> {
-        match &patch.shape {
-            Shape::Flat(flat) => {
-                let Frame { origin, x, y, z } = *flat.frame();
-                let at = patch.chart(origin);
-                let [by_x, by_y] = [x, y].map(|step| patch.chart(origin + step) - at);
-                let (u, v) = (by_x.x * x + by_y.x * y, by_x.y * x + by_y.y * y);
-                let (u, v) = (u.try_normalize()?, v.try_normalize()?);
-                Some(Self { origin: origin - at.x * u - at.y * v, x: u, y: v, z, radius: None })
-            }
-            Shape::Cylinder(wall) if wall.is_whole() => {
-                let start = patch.shape.sample([0.25, 0.5]);
-                let (at, out) = (patch.chart(start), patch.shape.normal(start));
-                let (along, radius) = (patch.along(start), wall.radius());
-                // u grows counter-clockwise about the axis.
-                let (sin, cos) = (at.x / radius).sin_cos();
-                let around = along.cross(out);
-                let (x, y) = (cos * out - sin * around, sin * out + cos * around);
-                let origin = start - radius * out - at.y * along;
-                Some(Self { origin, x, y, z: along, radius: Some(radius) })
-            }
-            Shape::Cylinder(_)
-            | Shape::Cone(_)
-            | Shape::Torus(_)
-            | Shape::Sphere(_)
-            | Shape::Paraboloid(_)
-            | Shape::ParabolicCylinder(_)
-            | Shape::CompoundParabola(_) => None,
-        }
-    }
-
     /// Whether the wall is flat.
     pub fn is_flat(&self) -> bool {
         self.radius.is_none()

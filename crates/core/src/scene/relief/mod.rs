@@ -5,18 +5,17 @@
 //! end at the wall by the same numbers. A relief knows geometry only; which finish it has is decided elsewhere.
 
 mod amounts;
-mod element;
 mod ground;
-mod surfaces;
+pub(super) mod surfaces;
 #[cfg(test)]
 mod tests;
 
-pub use element::{Cap, CapSize, Element, Form, Span, Way};
+pub use crate::scene::element::{Cap, CapSize, Element, Form, Span, Way};
 pub use ground::{Ground, Site};
 
+use crate::scene::FaceId;
 use crate::scene::pattern::{Field, Outline};
 use crate::scene::shape::ChartRect;
-use crate::scene::{FaceId, Piece};
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::planar::{clip, edges, signed_area};
 use std::ops::Range;
@@ -121,23 +120,6 @@ impl Relief {
         // A little more, for rows that end at the edge of what is asked.
         let reach = 0.5 * longest * (1.0 + 1e-9);
         Self { name, wall, field, element, ground, reach }
-    }
-
-    /// The surfaces of all elements.
-    pub(super) fn pieces(&self, lap: f64) -> Vec<Piece> {
-        let mut pieces = Vec::new();
-        let round = self.element.round.map(|_| {
-            let cut = Cut::Round { ground: self.ground, way: self.element.way, lap };
-            Arc::new(Trim { cuts: vec![cut] })
-        });
-        for (place, at) in self.field.places() {
-            for made in surfaces::surfaces(&self.element, place, &self.ground, at, lap) {
-                let smooth = pieces.len() as u32;
-                let trim = round.clone().filter(|_| made.is_trimmed);
-                pieces.push(Piece { shape: made.shape, smooth, chart: None, trim });
-            }
-        }
-        pieces
     }
 
     /// Volume that is taken from the solid (below 0) or added to it, mm³.

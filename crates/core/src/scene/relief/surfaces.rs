@@ -2,7 +2,7 @@
 //!
 //! Surfaces that meet in an edge overlap there by a few units in the last place, so that rounding leaves no gap.
 
-use crate::scene::relief::element::{Cap, Element, Form, Span, Way};
+use crate::scene::element::{Cap, Element, Form, Span, Way};
 use crate::scene::relief::ground::{Ground, Site};
 use crate::scene::shape::{Cone, Flat, Region, Shape, Sphere};
 use glam::{DVec2, DVec3};
@@ -10,10 +10,10 @@ use lumiduct_base::math::planar::signed_area;
 
 /// A surface of an element.
 #[derive(Debug)]
-pub(super) struct Made {
-    pub(super) shape: Shape,
+pub(crate) struct Made {
+    pub(crate) shape: Shape,
     /// Whether it has to be cut off at the wall, since its own edges do not end there.
-    pub(super) is_trimmed: bool,
+    pub(crate) is_trimmed: bool,
 }
 
 impl Made {
@@ -23,7 +23,7 @@ impl Made {
 }
 
 /// The surfaces of an element of the row at `place`, with its middle at `at` of the wall; they overlap by `lap`, mm.
-pub(super) fn surfaces(
+pub(crate) fn surfaces(
     element: &Element,
     place: f64,
     ground: &Ground,

@@ -4,7 +4,7 @@ use crate::rng::{Dimension, Sampler};
 use crate::scene::pattern::{Along, Columns, Rows};
 use crate::scene::shape::{Flat, Region, Shape, Start};
 use crate::scene::{
-    Accel, Builder, FaceSpec, Inside, On, Owner, PrimId, Ray, Scene, Solid, SolidId,
+    Accel, Builder, FaceSpec, Inside, On, Owner, Piece, PrimId, Ray, Scene, Solid, SolidId,
 };
 use lumiduct_base::math::{Aabb, Frame, uniform_sphere};
 use lumiduct_base::units::FluxUnit;

@@ -5,6 +5,7 @@ use super::*;
 use crate::rng::{Dimension, Sampler};
 use crate::scene::Ray;
 use crate::scene::shape::{Start, Toward};
+use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 #[test]

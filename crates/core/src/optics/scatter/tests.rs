@@ -1,5 +1,5 @@
 use super::*;
-use crate::optics::{Facets, HazeBase, HazeLaw};
+use crate::optics::{AngleTable, Facets, Gaussian, Haze, HazeBase, HazeLaw, Microfacet};
 use crate::tally::Tally;
 
 fn incidence(angle_deg: f64, index_from: f64, index_to: f64) -> Incidence {

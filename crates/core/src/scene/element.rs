@@ -3,7 +3,7 @@
 //! What it takes of the wall is told in unrolled coordinates about its middle: u across or around, v along. It knows
 //! neither where it lies nor what its surfaces look like in space.
 
-use crate::scene::pattern::Along;
+use crate::scene::along::Along;
 use glam::DVec2;
 
 /// An element with relief.

@@ -1,0 +1,125 @@
+//! Light that arrives at a face, light that goes on from it, and the sides to which it goes.
+
+use crate::optics::fresnel;
+use crate::rng::{Dimension, Numbers, Sampler};
+use glam::DVec3;
+
+/// Light arriving at a face.
+#[derive(Debug, Clone, Copy)]
+pub struct Incidence {
+    /// Unit direction of travel.
+    pub dir: DVec3,
+    /// Unit normal on the side from which the light comes: `dir · normal` is negative.
+    pub normal: DVec3,
+    /// Refractive index of the medium it comes from.
+    pub index_from: f64,
+    /// Refractive index of the medium behind the face.
+    pub index_to: f64,
+    /// Unit direction along the face by which a finish with a grain is laid; zero for finishes without.
+    pub grain: DVec3,
+}
+
+impl Incidence {
+    /// Cosine of the angle of incidence, in 0..=1.
+    #[inline]
+    pub fn cos(&self) -> f64 {
+        let cos = -self.dir.dot(self.normal);
+        let cos = if cos < 1.0 { cos } else { 1.0 };
+        if cos > 0.0 { cos } else { 0.0 }
+    }
+}
+
+/// Which side of a face light leaves to, seen from where it came.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// Back to the side it came from.
+    Reflected,
+    /// Through the face.
+    Transmitted,
+}
+
+/// Whether a direction was one of a discrete few or drawn from a density.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Lobe {
+    /// A discrete direction: mirrored, refracted or straight on.
+    Specular,
+    /// A direction drawn from a density over solid angle.
+    Diffuse,
+}
+
+/// Light that goes on from a face.
+#[derive(Debug, Clone, Copy)]
+pub struct Scattered {
+    /// New direction of travel, not yet normalised.
+    pub dir: DVec3,
+    /// Share of the arriving flux that this path goes on with; 1 - factor is absorbed by the face.
+    pub factor: f64,
+    /// Reflected or transmitted.
+    pub side: Side,
+    /// Discrete or drawn.
+    pub lobe: Lobe,
+}
+
+/// Shares of the arriving flux that leave to the two sides; the rest is absorbed. 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shares {
+    /// Share that goes back.
+    pub reflected: f64,
+    /// Share that goes through.
+    pub transmitted: f64,
+}
+
+impl Shares {
+    /// The share that leaves to one side, 1.
+    #[inline]
+    pub fn of(self, side: Side) -> f64 {
+        match side {
+            Side::Reflected => self.reflected,
+            Side::Transmitted => self.transmitted,
+        }
+    }
+}
+
+/// Light that goes on in a discrete direction.
+#[inline]
+pub(crate) fn specular(dir: DVec3, factor: f64, side: Side) -> Scattered {
+    Scattered { dir, factor, side, lobe: Lobe::Specular }
+}
+
+/// Light that goes on in a direction that was drawn.
+pub(crate) fn diffuse(dir: DVec3, factor: f64, side: Side) -> Scattered {
+    Scattered { dir, factor, side, lobe: Lobe::Diffuse }
+}
+
+/// Reflected or transmitted in proportion to the shares; no draw where only one is possible.
+#[inline]
+pub(crate) fn choose_side(
+    reflectance: f64,
+    transmittance: f64,
+    sampler: &mut Sampler<impl Numbers>,
+) -> Option<Side> {
+    if transmittance == 0.0 {
+        return (reflectance > 0.0).then_some(Side::Reflected);
+    }
+    let reflected = reflectance > 0.0
+        && sampler.one(Dimension::Lobe) * (reflectance + transmittance) < reflectance;
+    Some(if reflected { Side::Reflected } else { Side::Transmitted })
+}
+
+/// The discrete direction of a thin sheet: mirrored, or straight on.
+#[inline]
+pub(crate) fn straight(incidence: &Incidence, side: Side) -> DVec3 {
+    match side {
+        Side::Reflected => fresnel::mirrored(incidence.dir, incidence.normal),
+        Side::Transmitted => incidence.dir,
+    }
+}
+
+/// The normal of the side to which light leaves.
+#[inline]
+pub(crate) fn leaving_normal(incidence: &Incidence, side: Side) -> DVec3 {
+    match side {
+        Side::Reflected => incidence.normal,
+        Side::Transmitted => -incidence.normal,
+    }
+}

@@ -1,0 +1,128 @@
+//! What a ray has met: the surfaces at the nearest place.
+
+use crate::scene::inside::Inside;
+use crate::scene::shape::{Crossing, Toward};
+use crate::scene::{FaceId, Owner, PrimId, SolidId};
+use std::hint::select_unpredictable;
+use std::iter;
+
+/// One of the surfaces met at a hit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PrimHit {
+    /// Which surface.
+    pub prim: PrimId,
+    /// Its face.
+    pub face: FaceId,
+    /// What its face belongs to.
+    pub owner: Owner,
+    /// Which way the ray goes through it.
+    pub toward: Toward,
+}
+
+/// The nearest hit: all surfaces at one place.
+#[derive(Debug, Clone)]
+pub struct Hits {
+    pub(super) distance: f64,
+    pub(super) nearest: PrimHit,
+    /// Mostly none: on the heap, so that the usual hit stays in registers.
+    pub(super) others: Box<[PrimHit]>,
+}
+
+impl Hits {
+    /// Distance to the place, mm, never negative.
+    #[inline]
+    pub fn distance(&self) -> f64 {
+        self.distance
+    }
+
+    /// The surface met first.
+    #[inline]
+    pub fn nearest(&self) -> &PrimHit {
+        &self.nearest
+    }
+
+    /// Other surfaces at the same place.
+    #[inline]
+    pub fn others(&self) -> &[PrimHit] {
+        &self.others
+    }
+
+    /// All surfaces that meet there.
+    #[inline]
+    pub fn all(&self) -> impl Iterator<Item = &PrimHit> {
+        iter::once(&self.nearest).chain(&self.others)
+    }
+
+    /// Whether a face of `solid` is among them.
+    #[inline]
+    pub fn meet(&self, solid: SolidId) -> bool {
+        self.all().any(|hit| hit.owner == Owner::Solid(solid))
+    }
+
+    /// Takes a path through all of them.
+    #[inline]
+    pub fn cross(&self, inside: &mut Inside) {
+        for hit in self.all() {
+            if let Owner::Solid(solid) = hit.owner {
+                match hit.toward {
+                    Toward::Front => inside.leave(solid),
+                    Toward::Back => inside.enter(solid),
+                }
+            }
+        }
+    }
+}
+
+/// The search for the nearest hit.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Nearest {
+    pub(crate) prim: PrimId,
+    pub(crate) crossing: Crossing,
+    /// Distance of the next one, as far as it was seen, mm.
+    pub(super) runner_up: f64,
+}
+
+impl Nearest {
+    pub(crate) const NONE: Self = Self {
+        prim: PrimId::new(0),
+        crossing: Crossing { t: f64::INFINITY, toward: Toward::Front },
+        runner_up: f64::INFINITY,
+    };
+
+    #[inline(always)]
+    pub(crate) fn consider(&mut self, prim: PrimId, crossing: Crossing) {
+        if crossing.t < self.crossing.t {
+            *self = Self { prim, crossing, runner_up: self.crossing.t };
+        } else {
+            self.consider_runner_up(crossing.t);
+        }
+    }
+
+    /// The same by choices instead of jumps, where it cannot be foreseen which is nearer.
+    #[inline(always)]
+    pub(crate) fn choose(&mut self, prim: PrimId, crossing: Crossing) {
+        let nearer = crossing.t < self.crossing.t;
+        let further = if nearer { self.crossing.t } else { crossing.t };
+        self.consider_runner_up(further);
+        self.prim = select_unpredictable(nearer, prim, self.prim);
+        self.crossing = Crossing {
+            t: select_unpredictable(nearer, crossing.t, self.crossing.t),
+            toward: select_unpredictable(nearer, crossing.toward, self.crossing.toward),
+        };
+    }
+
+    #[inline(always)]
+    pub(super) fn consider_runner_up(&mut self, t: f64) {
+        // Not `min`, which would ask both for numbers that are none.
+        self.runner_up = if t < self.runner_up { t } else { self.runner_up };
+    }
+}
+
+/// On which side of its start point a path is asked about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Just {
+    /// Just ahead along its direction: a source on a face is already beyond it.
+    Ahead,
+    /// Just behind: light of a source on a face still has to cross it.
+    Behind,
+}

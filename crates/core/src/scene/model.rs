@@ -1,0 +1,115 @@
+//! Everything a path can meet, and the media and finishes that it is made of.
+
+use crate::optics::{Bsdf, Medium};
+use crate::scene::convex::Convex;
+use crate::scene::pattern::Pattern;
+use crate::scene::relief::Relief;
+use crate::scene::{
+    Accel, Face, Inside, LightGroups, MediumId, MeshBody, Patch, PrimId, Sensor, SolidId, Source,
+    SourceId,
+};
+use glam::DVec3;
+use lumiduct_base::math::Aabb;
+use lumiduct_base::units::FluxUnit;
+use std::sync::Arc;
+
+/// Relative to the size of the scene: faces closer than this are one face.
+pub const COINCIDENCE: f64 = 1e-12;
+
+/// A solid: a closed set of faces around a medium.
+#[derive(Debug, Clone)]
+pub struct Solid {
+    /// Name in the scene file.
+    pub name: String,
+    /// What it is made of.
+    pub medium: MediumId,
+    /// Where solids overlap, the one of higher priority counts.
+    pub priority: i32,
+    /// Box around it, mm.
+    pub bounds: Aabb,
+    /// Volume, mm³, where it is known in closed form.
+    pub volume: Option<f64>,
+}
+
+/// A finish with its name.
+#[derive(Debug, Clone)]
+pub struct Finish {
+    /// Name in the scene file, or a description of an inline one.
+    pub name: String,
+    /// What it does.
+    pub bsdf: Bsdf,
+}
+
+/// Everything a path can meet, ready to be traced. Made by [`Builder`].
+#[derive(Debug, Clone)]
+pub struct Scene {
+    /// The user's coordinates of the internal origin, mm.
+    pub origin: DVec3,
+    /// Box around everything, sources and sensors included, mm.
+    pub bounds: Aabb,
+    /// Whether fluxes are luminous or radiant.
+    pub unit: FluxUnit,
+    /// All media; the surroundings are [`Scene::surroundings`].
+    pub media: Vec<Medium>,
+    /// The medium outside every solid.
+    pub surroundings: MediumId,
+    /// All finishes.
+    pub finishes: Vec<Finish>,
+    /// All solids.
+    pub solids: Vec<Solid>,
+    /// All faces: of solids, of sheets, and open ports.
+    pub faces: Vec<Face>,
+    /// Holes, dots and patches on faces.
+    pub patterns: Vec<Pattern>,
+    /// Dimples, grooves and the like on walls of solids.
+    pub reliefs: Vec<Arc<Relief>>,
+    /// Analytic pieces of solids and sheets.
+    pub patches: Vec<Patch>,
+    /// Bodies of triangles; their triangles are numbered after the patches.
+    pub meshes: Vec<MeshBody>,
+    /// Pieces of open ports and virtual sensors: light passes.
+    pub ports: Vec<Patch>,
+    /// All sources.
+    pub sources: Vec<Source>,
+    /// Sources that are measured together.
+    pub light: LightGroups,
+    /// All sensors.
+    pub sensors: Vec<Sensor>,
+    /// Faces closer than this are one, mm.
+    pub tolerance: f64,
+    pub(super) accel: Accel,
+    /// Solids that are convex, where all patches are scanned.
+    pub(super) convex: Vec<Convex>,
+    /// The patches of everything else.
+    pub(super) loose: Vec<PrimId>,
+}
+
+impl Scene {
+    /// Sum of the flux of all sources, lm or W.
+    pub fn source_flux(&self) -> f64 {
+        self.sources.iter().map(|source| source.flux).sum()
+    }
+
+    /// Flux of some sources, lm or W.
+    pub fn flux_of(&self, sources: &[SourceId]) -> f64 {
+        sources.iter().map(|source| self.sources[source.index()].flux).sum()
+    }
+
+    /// The medium that counts at a point inside the given solids.
+    pub fn medium_in(&self, inside: &Inside) -> MediumId {
+        self.medium_of(inside.iter())
+    }
+
+    /// The medium of the highest priority; the surroundings without any solid.
+    #[inline]
+    pub(super) fn medium_of(&self, solids: impl Iterator<Item = SolidId>) -> MediumId {
+        let mut best: Option<&Solid> = None;
+        for id in solids {
+            let solid = &self.solids[id.index()];
+            if best.is_none_or(|best| solid.priority > best.priority) {
+                best = Some(solid);
+            }
+        }
+        best.map_or(self.surroundings, |solid| solid.medium)
+    }
+}

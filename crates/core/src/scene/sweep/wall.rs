@@ -1,0 +1,83 @@
+//! The walls of a sweep: one surface of each piece of the path.
+
+use crate::scene::shape::{ChartRect, Flat, Region, Shape};
+use crate::scene::sweep::chart::WallChart;
+use glam::{DVec2, DVec3};
+use lumiduct_base::math::Frame;
+
+/// A wall of one piece of the path.
+#[derive(Debug, Clone)]
+pub struct Part {
+    /// The surface; its front is outside.
+    pub shape: Shape,
+    /// Which wall of the sweep it belongs to.
+    pub wall: Wall,
+    /// Parts that continue each other without an edge have the same number.
+    pub smooth: u32,
+    /// Leads from the chart of the shape to that of the sweep.
+    pub chart: WallChart,
+}
+
+/// A wall of a sweep, as faces are named by it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Wall {
+    /// The one wall of a circle.
+    Round,
+    /// The wall on the edge of the polygon with this number.
+    Edge(usize),
+    /// The mirror plate across a corner.
+    Mitre,
+}
+
+impl Part {
+    /// A piece of a mitre plate.
+    pub(super) fn mitre(shape: Shape, smooth: u32) -> Self {
+        let chart = WallChart::Along { offset: DVec2::ZERO, scale: DVec2::ONE };
+        Self { shape, wall: Wall::Mitre, smooth, chart }
+    }
+
+    /// The same wall seen from the other side: that of a bore, whose front is toward the path. `None` for walls of other
+    /// legs than straight ones.
+    pub fn turned(&self) -> Option<Self> {
+        let turned = |shape, scale: DVec2| match self.chart {
+            WallChart::Along { offset, scale: before } => {
+                let chart = WallChart::Along { offset, scale: scale * before };
+                Some(Self { shape, chart, ..self.clone() })
+            }
+            WallChart::Across { .. } | WallChart::Trapezoid { .. } | WallChart::Sector { .. } => {
+                None
+            }
+        };
+        match &self.shape {
+            Shape::Cylinder(wall) => turned(Shape::Cylinder(wall.clone().inward()), DVec2::ONE),
+            // Rectangles are the same seen from behind.
+            Shape::Flat(wall) if matches!(wall.region(), Region::Rectangle { .. }) => {
+                let frame = *wall.frame();
+                let behind = Frame { x: -frame.x, z: -frame.z, ..frame };
+                let flat = Flat::new(behind, wall.region().clone());
+                turned(Shape::Flat(flat), DVec2::new(-1.0, 1.0))
+            }
+            Shape::Flat(_)
+            | Shape::Cone(_)
+            | Shape::Torus(_)
+            | Shape::Sphere(_)
+            | Shape::Paraboloid(_)
+            | Shape::ParabolicCylinder(_)
+            | Shape::CompoundParabola(_) => None,
+        }
+    }
+
+    /// Unrolled coordinates of a point of the part in the chart of the whole sweep, mm: u around the profile, in
+    /// lengths of the profile at the entry, from the azimuth 0 of a circle or point 0 of a polygon; v along the path.
+    /// A taper stretches the chart, and the walls outside of a bend are longer than their share of v.
+    ///
+    /// A mitre plate is no part of that chart: it has coordinates of its own, from its centre, v along the bend axis.
+    pub fn chart(&self, p: DVec3) -> DVec2 {
+        self.chart.of(self.shape.chart(p))
+    }
+
+    /// Area of the part whose [`Self::chart`] lies in `rect`, mm².
+    pub fn area_in(&self, rect: ChartRect) -> f64 {
+        self.chart.area_in(&self.shape, rect)
+    }
+}

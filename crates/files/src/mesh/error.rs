@@ -1,0 +1,78 @@
+//! Why a mesh could not be read, and how large it may be.
+
+use crate::mesh::format::MeshFormat;
+use lumiduct_base::mesh::UnusableMesh;
+
+/// Longest file that is read, bytes: 50 million triangles of binary STL fit in.
+pub const MAX_FILE_BYTES: u64 = 4 << 30;
+/// Most memory that copies of the meshes of a file may take, bytes.
+pub const MAX_COPIES_BYTES: u64 = 1 << 30;
+/// Memory of a triangle while a scene is made of it, bytes: measured, 345 with normals (200 copies of 1,024 triangles against 50).
+pub(crate) const TRIANGLE_BYTES: u64 = 350;
+
+/// Why a mesh could not be read.
+#[derive(Debug, thiserror::Error)]
+pub enum MeshError {
+    /// The operating system refuses the file.
+    #[error("the file cannot be read: {0}; check the name and the permissions")]
+    Unreadable(#[from] std::io::Error),
+    /// The ending of the name is none of a mesh.
+    #[error("`.{ending}` is not the ending of a known mesh format; use .glb, .gltf, .stl or .obj")]
+    UnknownFormat {
+        /// The ending, without its dot.
+        ending: String,
+    },
+    /// The file is one of CAD, which has to become a mesh first.
+    #[error(
+        "`.{ending}` is a CAD file, which is not read: docs/cad.md tells how to make a mesh of it"
+    )]
+    CadFile {
+        /// The ending, without its dot.
+        ending: String,
+    },
+    /// The file is not what its format prescribes.
+    #[error("not a usable {format} file: {problem}; export the mesh again")]
+    Broken {
+        /// The format.
+        format: MeshFormat,
+        /// What is wrong, with the place.
+        problem: String,
+    },
+    /// The file is right, but uses something that is not read here.
+    #[error("{what}; {remedy}")]
+    Unsupported {
+        /// What the file uses.
+        what: String,
+        /// What to change on export.
+        remedy: &'static str,
+    },
+    /// A buffer of a glTF file lies in another file, which cannot be read.
+    #[error(
+        "the buffer file `{uri}` cannot be read: {source}; keep it beside the .gltf file or export a .glb"
+    )]
+    BufferFile {
+        /// The name as the file gives it.
+        uri: String,
+        /// What the operating system said.
+        source: std::io::Error,
+    },
+    /// The file, or the files together, are longer than [`MAX_FILE_BYTES`].
+    #[error("the file has more than {} GiB; export a coarser mesh with smooth normals", MAX_FILE_BYTES >> 30)]
+    FileTooLong,
+    /// Nodes of a glTF file repeat its meshes so often that the copies take more than [`MAX_COPIES_BYTES`].
+    #[error(
+        "its {nodes} nodes repeat meshes to {triangles} triangles, about {} MiB in memory, and copies may take {} MiB; \
+         export fewer copies", bytes >> 20, MAX_COPIES_BYTES >> 20
+    )]
+    TooManyCopies {
+        /// Nodes with a mesh.
+        nodes: usize,
+        /// Triangles of all of them.
+        triangles: u64,
+        /// Memory that they would take, bytes.
+        bytes: u64,
+    },
+    /// The triangles make no mesh that can be traced.
+    #[error(transparent)]
+    Unusable(#[from] UnusableMesh),
+}

@@ -238,6 +238,17 @@ pub fn required_set(schema: &Value) -> Option<RequiredSet<'_>> {
         .or_else(|| keys("anyOf").map(RequiredSet::AtLeastOne))
 }
 
+/// The required key that shows which form a table has: no other form requires it.
+pub(crate) fn marker<'a>(form: &'a Value, forms: &[&Value]) -> Option<&'a str> {
+    let requires = |form: &Value, name: &str| {
+        form["required"].as_array().is_some_and(|keys| keys.iter().any(|key| key == name))
+    };
+    let keys = form["required"].as_array().into_iter().flatten().filter_map(Value::as_str);
+    keys.into_iter().find(|name| {
+        !forms.iter().any(|other| !std::ptr::eq(*other, form) && requires(other, name))
+    })
+}
+
 /// Whether a schema says nothing but which keys must be there.
 pub(crate) fn is_required_only(option: &Value) -> bool {
     option.as_object().is_some_and(|option| option.len() == 1 && option.contains_key("required"))

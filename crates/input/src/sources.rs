@@ -64,7 +64,7 @@ impl Source {
     pub fn label(&self) -> PathBuf {
         match &self.kind {
             SourceKind::File(path) => path.clone(),
-            SourceKind::Argument => format!("-D {}", self.text.escape_debug()).into(),
+            SourceKind::Argument => argument_label(&self.text).into(),
         }
     }
 
@@ -203,6 +203,11 @@ impl fmt::Display for Unreadable {
             Self::Io(error) => write!(out, "cannot be read: {error}"),
         }
     }
+}
+
+/// How a message names the argument `-D text`.
+pub(crate) fn argument_label(text: &str) -> String {
+    format!("-D {}", text.escape_debug())
 }
 
 fn read(path: &Path) -> Result<String, Unreadable> {

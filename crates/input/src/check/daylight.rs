@@ -1,6 +1,6 @@
 //! The sun and the sky: that each says once where the sun is, and where up and north are.
 
-use crate::check::Scene;
+use crate::check::scene::Scene;
 use crate::keys::Key;
 use crate::problems::Problems;
 use crate::spec::daylight::{SkyModelSpec, SunPlaceSpec, WhenSpec};

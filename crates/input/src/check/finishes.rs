@@ -1,14 +1,12 @@
 //! Finishes give back no more light than they get.
 
-use crate::check::surfaces::{self, Law};
-use crate::check::{Scene, references};
+use crate::check::references;
+use crate::check::scene::Scene;
+use crate::check::surfaces::{self, Law, Least, check_sum};
 use crate::keys::Key;
 use crate::problems::Problems;
 use crate::scatter;
 use crate::spec::finish::{FinishRef, FinishSpec};
-
-/// Rounding that a sum of decimal fractions may have.
-pub(super) const SUM_TOLERANCE: f64 = 1e-12;
 
 pub(crate) fn check(scene: Scene<'_>, problems: &mut Problems) {
     for (name, finish) in &scene.spec.finishes {
@@ -74,31 +72,5 @@ fn check_one(scene: Scene<'_>, key: &Key, finish: &FinishSpec, problems: &mut Pr
         | FinishSpec::Open(_)
         | FinishSpec::PrismFilm(_)
         | FinishSpec::Mixture(_) => {}
-    }
-}
-
-/// The least that reflectance and transmittance may add up to.
-#[derive(Clone, Copy, PartialEq)]
-pub(super) enum Least {
-    Zero,
-    AboveZero,
-}
-
-pub(super) fn check_sum(
-    key: &Key,
-    [reflectance, transmittance]: [f64; 2],
-    least: Least,
-    problems: &mut Problems,
-) {
-    let sum = reflectance + transmittance;
-    if sum > 1.0 + SUM_TOLERANCE {
-        let message = format!(
-            "reflectance {reflectance} and transmittance {transmittance} add up to {sum}, expected at most 1"
-        );
-        problems.error(key, message);
-    }
-    if sum == 0.0 && least == Least::AboveZero {
-        let message = "reflectance and transmittance are both 0, expected a sum above 0";
-        problems.error(key, message).hint("a finish that absorbs everything is `absorber = {}`");
     }
 }

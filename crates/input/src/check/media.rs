@@ -1,6 +1,6 @@
 //! Rules of media.
 
-use crate::check::Scene;
+use crate::check::scene::Scene;
 use crate::keys::Key;
 use crate::problems::Problems;
 

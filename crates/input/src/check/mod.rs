@@ -2,7 +2,8 @@
 //!
 //! Geometry, and whether a named face exists, is decided when the scene is built.
 
-use crate::keys::{Key, Places};
+use crate::check::scene::Scene;
+use crate::keys::Places;
 use crate::problems::Problems;
 use crate::spec::SceneSpec;
 
@@ -13,6 +14,7 @@ mod names;
 mod placements;
 mod references;
 mod run;
+mod scene;
 mod sensors;
 mod shapes;
 mod sources;
@@ -40,22 +42,4 @@ pub fn check_rules(spec: &SceneSpec, places: &Places, problems: &mut Problems) {
     daylight::check(scene, problems);
     sensors::check(scene, problems);
     run::check(scene, problems);
-}
-
-/// A scene as a file says it, and where.
-#[derive(Clone, Copy)]
-struct Scene<'a> {
-    spec: &'a SceneSpec,
-    places: &'a Places,
-}
-
-/// Notes an error unless `small < large`; both are keys of the table at `table`.
-fn require_order(table: &Key, small: (&str, f64), large: (&str, f64), problems: &mut Problems) {
-    let ((small_key, small), (large_key, large)) = (small, large);
-    if small >= large {
-        problems.error(
-            &table.field(small_key),
-            format!("{small} is not below `{large_key}`, which is {large}"),
-        );
-    }
 }

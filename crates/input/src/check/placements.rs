@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::check::Scene;
+use crate::check::scene::Scene;
 use crate::keys::Key;
 use crate::problems::Problems;
 use crate::spec::placement::{PlacementSpec, SpacePlacementSpec};

@@ -2,7 +2,7 @@
 
 use indexmap::{IndexMap, IndexSet};
 
-use crate::check::Scene;
+use crate::check::scene::Scene;
 use crate::keys::Key;
 use crate::problems::{Problems, name_hint};
 use crate::spec::finish::{FinishRef, FinishSpec};

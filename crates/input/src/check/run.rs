@@ -1,6 +1,6 @@
 //! Expectations that can be met.
 
-use crate::check::Scene;
+use crate::check::scene::Scene;
 use crate::keys::Key;
 use crate::problems::Problems;
 use crate::spec::run::CheckSpec;

@@ -1,6 +1,6 @@
 //! Keys of a sensor that fit its kind and its place, and the number of its cells.
 
-use crate::check::Scene;
+use crate::check::scene::Scene;
 use crate::keys::Key;
 use crate::problems::Problems;
 use crate::spec::sensor::{

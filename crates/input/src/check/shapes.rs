@@ -1,6 +1,6 @@
 //! Lengths of one shape that have an order.
 
-use crate::check::{Scene, require_order};
+use crate::check::scene::Scene;
 use crate::keys::Key;
 use crate::problems::Problems;
 use crate::spec::sheet::SheetSpec;
@@ -103,5 +103,16 @@ fn check_corners(key: &Key, sweep: &SweepSpec, problems: &mut Problems) {
                 .warning(&old_key, "is the old name of `fold_mirror`")
                 .hint(format!("write fold_mirror = {mitred}, which is the same"));
         }
+    }
+}
+
+/// Notes an error unless `small < large`; both are keys of the table at `table`.
+fn require_order(table: &Key, small: (&str, f64), large: (&str, f64), problems: &mut Problems) {
+    let ((small_key, small), (large_key, large)) = (small, large);
+    if small >= large {
+        problems.error(
+            &table.field(small_key),
+            format!("{small} is not below `{large_key}`, which is {large}"),
+        );
     }
 }

@@ -1,6 +1,6 @@
 //! Keys of a source that fit its kind and its emission.
 
-use crate::check::Scene;
+use crate::check::scene::Scene;
 use crate::keys::Key;
 use crate::problems::Problems;
 use crate::spec::source::{BodySpec, EmissionSpec, SourceCommonSpec, SourceSpec};

@@ -1,7 +1,9 @@
-//! Haze scatters no more light than there is, and tables against the angle are complete.
+//! Rules that several finishes share: reflectance and transmittance add up to no more than 1, haze
+//! scatters no more light than there is, and tables against the angle are complete.
+//!
+//! Does not know which finish has to keep which rule.
 
-use crate::check::Scene;
-use crate::check::finishes::{Least, SUM_TOLERANCE, check_sum};
+use crate::check::scene::Scene;
 use crate::keys::Key;
 use crate::problems::Problems;
 use crate::scatter;
@@ -9,12 +11,41 @@ use crate::spec::finish::{HazeSheetSpec, TabulatedSpec};
 use lumiduct_base::number::format_value;
 use lumiduct_core::optics::{HazeLaw, HazeSides, integrated_scatter};
 
+/// Rounding that a sum of decimal fractions may have.
+const SUM_TOLERANCE: f64 = 1e-12;
+
 /// Haze as a file states it.
 pub(super) struct Law<'a> {
     pub(super) key: Key,
     pub(super) law: HazeLaw,
     /// The key to which what is scattered is proportional.
     pub(super) strength: &'a str,
+}
+
+/// The least that reflectance and transmittance may add up to.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Least {
+    Zero,
+    AboveZero,
+}
+
+pub(super) fn check_sum(
+    key: &Key,
+    [reflectance, transmittance]: [f64; 2],
+    least: Least,
+    problems: &mut Problems,
+) {
+    let sum = reflectance + transmittance;
+    if sum > 1.0 + SUM_TOLERANCE {
+        let message = format!(
+            "reflectance {reflectance} and transmittance {transmittance} add up to {sum}, expected at most 1"
+        );
+        problems.error(key, message);
+    }
+    if sum == 0.0 && least == Least::AboveZero {
+        let message = "reflectance and transmittance are both 0, expected a sum above 0";
+        problems.error(key, message).hint("a finish that absorbs everything is `absorber = {}`");
+    }
 }
 
 pub(super) fn check_haze(

@@ -1,7 +1,6 @@
 //! What can only be judged when the scene stands: solids that fill the same space, and faces that cannot be open.
 
 use crate::keys::Key;
-use crate::lower::kind_key;
 use crate::problems::Problems;
 use crate::spec::SceneSpec;
 use glam::DVec3;
@@ -100,5 +99,5 @@ pub(super) fn check_open_faces(spec: &SceneSpec, scene: &Scene, problems: &mut P
 
 pub(super) fn solid_key(spec: &SceneSpec, solid: &Solid) -> Key {
     let kind = spec.solids.get(&solid.name).map_or("", |spec| spec.kind());
-    kind_key("solids", &solid.name, kind)
+    Key::of(&["solids", &solid.name, kind])
 }

@@ -1,8 +1,8 @@
 //! The sun and the sky: where their light starts, from where it comes, and how much it is.
 
 use crate::keys::Key;
-use crate::lower::Context;
-use crate::lower::light_groups::{Daylight, Member};
+use crate::lower::context::Context;
+use crate::lower::weathers::{Daylight, Member};
 use crate::problems::name_hint;
 use crate::spec::daylight::{SkyModelSpec, SkySpec, SunPlaceSpec, SunSpec, WhenSpec};
 use glam::DVec3;

@@ -1,7 +1,7 @@
 //! Finishes: names, references and tables in place.
 
 use crate::keys::Key;
-use crate::lower::Context;
+use crate::lower::context::Context;
 use crate::scatter;
 use crate::spec::finish::{
     FinishRef, FinishSpec, GaussianSpec, GrainSpec, PrismFilmSpec, PrismSideSpec,

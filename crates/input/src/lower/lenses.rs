@@ -1,7 +1,7 @@
 //! Lenses: two spherical or flat faces and the edge between them.
 
 use crate::keys::Key;
-use crate::lower::Context;
+use crate::lower::context::Context;
 use crate::lower::surfaces::{Ends, NamedFace, Surfaces, disk_facing};
 use crate::spec::solid::{LensFaceSpec, LensSpec};
 use lumiduct_base::math::Frame;

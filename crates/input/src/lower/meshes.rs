@@ -1,7 +1,7 @@
 //! Solids from mesh files: read, examined, placed.
 
 use crate::keys::Key;
-use crate::lower::Context;
+use crate::lower::context::Context;
 use crate::problems::face_hint;
 use crate::spec::finish::FinishRef;
 use crate::spec::solid::{MeshNormals, MeshSpec, MeshUnit};

@@ -5,8 +5,10 @@
 
 mod consistency;
 mod contacts;
+mod context;
 mod daylight;
 mod finishes;
+mod flux;
 mod lenses;
 mod light_groups;
 mod meshes;
@@ -22,9 +24,11 @@ mod sources;
 mod starts;
 mod surfaces;
 mod tubes;
+mod weathers;
 
 use crate::keys::{Key, Places};
-use crate::problems::{Problems, face_hint};
+use crate::lower::context::Context;
+use crate::problems::Problems;
 use crate::spec::SceneSpec;
 use crate::spec::finish::ScatteringSpec;
 use crate::spec::placement::PlacementSpec;
@@ -35,7 +39,7 @@ use lumiduct_base::digest::Digest;
 use lumiduct_base::units::FluxUnit;
 use lumiduct_core::optics::{Medium, VolumeScattering};
 use lumiduct_core::plan::{Check, RunPlan};
-use lumiduct_core::scene::{Builder, FaceId, FinishId, MediumId, Scene};
+use lumiduct_core::scene::{Builder, MediumId, Scene};
 
 /// What lowering makes of a scene file.
 #[derive(Debug)]
@@ -45,23 +49,6 @@ pub(crate) struct Lowered {
     pub(crate) checks: Vec<Check>,
     /// Tells apart what the mesh files said.
     pub(crate) meshes: Digest,
-}
-
-/// Everything that the parts of the lowering share.
-pub(crate) struct Context<'a> {
-    pub(crate) spec: &'a SceneSpec,
-    pub(crate) places: &'a Places,
-    pub(crate) problems: &'a mut Problems,
-    pub(crate) builder: Builder,
-    meshes: Digest,
-    media: IndexMap<String, MediumId>,
-    finishes: IndexMap<String, FinishId>,
-    /// What light from behind meets, of finishes that were asked for it.
-    behind: IndexMap<FinishId, FinishId>,
-    /// Faces by dotted name; a name such as `duct.wall` may stand for several.
-    faces: IndexMap<String, Vec<FaceId>>,
-    /// All sources, by what decides their light group.
-    members: Vec<light_groups::Member>,
 }
 
 /// Lowers a validated spec. `None` when a problem left nothing to trace.
@@ -130,11 +117,6 @@ fn flux_unit(spec: &SceneSpec) -> FluxUnit {
     if spec.sources.values().any(is_radiant) { FluxUnit::Watt } else { FluxUnit::Lumen }
 }
 
-/// The key of a thing's table, such as `solids.pipe.sweep`.
-fn kind_key(family: &str, name: &str, kind: &str) -> Key {
-    Key::of(&[family, name, kind])
-}
-
 impl Context<'_> {
     fn lower_media(&mut self) {
         for (name, medium) in &self.spec.media {
@@ -196,27 +178,6 @@ impl Context<'_> {
             Some(PlacementSpec::InSpace(_)) | None => None,
         }
     }
-
-    /// The faces of a dotted name, or an error with the nearest known names.
-    fn faces_named(&mut self, name: &str, key: &Key) -> Option<Vec<FaceId>> {
-        if let Some(faces) = self.faces.get(name) {
-            return Some(faces.clone());
-        }
-        // What could not be built has been told, and has no faces.
-        let owner = name.split('.').next().unwrap_or_default();
-        let is_due = self.spec.solids.contains_key(owner) || self.spec.sheets.contains_key(owner);
-        let has_faces = self.faces.keys().any(|face| face.split('.').next() == Some(owner));
-        if is_due && !has_faces && !self.problems.is_free_of_errors() {
-            return None;
-        }
-        let all = self.faces.keys().map(String::as_str);
-        // Of a known body its own faces, of an unknown one all that there are.
-        let known: Vec<&str> =
-            all.filter(|face| !has_faces || face.split('.').next() == Some(owner)).collect();
-        let hint = face_hint(name, known.iter().copied());
-        self.problems.error(key, format!("unknown face `{name}`")).hint(hint);
-        None
-    }
 }
 
 /// A solid or sheet by name.
@@ -235,8 +196,8 @@ impl Body {
 
     fn key(&self, spec: &SceneSpec) -> Key {
         match self {
-            Self::Solid(name) => kind_key("solids", name, spec.solids[name.as_str()].kind()),
-            Self::Sheet(name) => kind_key("sheets", name, spec.sheets[name.as_str()].kind()),
+            Self::Solid(name) => Key::of(&["solids", name, spec.solids[name.as_str()].kind()]),
+            Self::Sheet(name) => Key::of(&["sheets", name, spec.sheets[name.as_str()].kind()]),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Placements: frames in space or at a flat face.
 
 use crate::keys::Key;
-use crate::lower::Context;
+use crate::lower::context::Context;
 use crate::spec::placement::{FacePlacementSpec, PlacementSpec, SpacePlacementSpec};
 use glam::DVec3;
 use lumiduct_base::math::Frame;

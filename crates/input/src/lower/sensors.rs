@@ -1,7 +1,7 @@
 //! Sensors: cells on faces and ports, goniometers, directions of view.
 
 use crate::keys::Key;
-use crate::lower::Context;
+use crate::lower::context::Context;
 use crate::lower::place::Facing;
 use crate::lower::surfaces::tilted;
 use crate::spec::sensor::{

@@ -1,7 +1,6 @@
 //! Remarks on what a scene may say and seldom means: the light is traced as the file says, and the numbers look plausible.
 
 use crate::keys::Key;
-use crate::lower::kind_key;
 use crate::problems::Problems;
 use crate::spec::SceneSpec;
 use crate::spec::placement::PlacementSpec;
@@ -94,7 +93,7 @@ fn check_cut_solids(spec: &SceneSpec, scene: &Scene, problems: &mut Problems) {
             let [inside, outside] = [inside, outside].map(|point| place(point + scene.origin));
             problems
                 .warning(
-                    &kind_key("sheets", name, sheet.kind()),
+                    &Key::of(&["sheets", name, sheet.kind()]),
                     format!(
                         "cuts through the solid `{}`: at {inside} it stands inside, at {outside} outside; light inside the \
                          solid meets it, too",

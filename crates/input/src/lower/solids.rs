@@ -1,7 +1,7 @@
 //! Closed bodies.
 
 use crate::keys::Key;
-use crate::lower::Context;
+use crate::lower::context::Context;
 use crate::lower::place::Facing;
 use crate::lower::surfaces::{BodyPart, NamedFace, Surfaces};
 use crate::problems::face_hint;

@@ -1,27 +1,20 @@
-//! Sources: shapes, laws of emission and amounts of light.
+//! Sources: shapes and laws of emission.
 
 use crate::keys::Key;
-use crate::lower::Context;
-use crate::lower::light_groups::Member;
+use crate::lower::context::Context;
 use crate::lower::place::Facing;
 use crate::lower::surfaces::tilted;
+use crate::lower::weathers::Member;
 use crate::problems::name_hint;
 use crate::spec::source::{
     BodySpec, ContactSpec, EmissionSpec, FaceSide, SourceCommonSpec, SourceSpec,
 };
 use lumiduct_base::math::Frame;
-use lumiduct_base::number::format_value;
-use lumiduct_base::units::per_m2_to_per_mm2;
 use lumiduct_core::scene::shape::{Cylinder, Flat, Region, Shape, Sphere};
 use lumiduct_core::scene::{
     Emission, EmitSide, Emitter, Extent, FaceSpec, FinishId, Owner, Piece, PrimId, SolidId, Source,
     Start,
 };
-
-/// Least flux of a source that is not dark, lm or W: shares of it in 1e9 cells have squares that are no subnormal numbers.
-const LEAST_FLUX: f64 = 1e-30;
-/// Largest flux of a source, lm or W: far from where sums of squares overflow.
-const LARGEST_FLUX: f64 = 1e30;
 
 impl Context<'_> {
     pub(super) fn lower_sources(&mut self) {
@@ -212,64 +205,6 @@ impl Context<'_> {
         let known: Vec<&str> = scene.solids.iter().map(|solid| solid.name.as_str()).collect();
         let hint = name_hint(of, known.iter().copied());
         self.problems.error(key, format!("unknown solid `{of}`")).hint(hint);
-        None
-    }
-
-    /// Flux in lm or W from whichever amount is given.
-    fn flux(
-        &mut self,
-        common: &SourceCommonSpec,
-        emitter: &Emitter,
-        law: Emission,
-        key: &Key,
-    ) -> Option<f64> {
-        for (name, flux) in [("flux_lm", common.flux_lm), ("flux_w", common.flux_w)] {
-            if let Some(flux) = flux {
-                return self.carried([flux, flux], &key.field(name));
-            }
-        }
-        if let Some(luminance) = common.luminance_cd_m2 {
-            let per_luminance = emitter.area().zip(law.projected_solid_angle());
-            let Some((area, projected)) = per_luminance else {
-                self.problems
-                    .error(
-                        &key.field("luminance_cd_m2"),
-                        "needs a source with an area and a `lambertian` or cone emission",
-                    )
-                    .hint("give flux_lm instead");
-                return None;
-            };
-            let flux = per_m2_to_per_mm2(luminance) * area * projected;
-            return self.carried([luminance, flux], &key.field("luminance_cd_m2"));
-        }
-        let intensity = common.intensity_cd?;
-        let per_intensity = match emitter {
-            Emitter::Point(_) => law.flux_per_peak_intensity(),
-            Emitter::Line { .. }
-            | Emitter::Surface { .. }
-            | Emitter::Volume { .. }
-            | Emitter::Far { .. } => None,
-        };
-        if per_intensity.is_none() {
-            self.problems
-                .error(&key.field("intensity_cd"), "needs a `point` source that is not collimated")
-                .hint("give flux_lm instead");
-        }
-        self.carried([intensity, intensity * per_intensity?], &key.field("intensity_cd"))
-    }
-
-    /// The flux, lm or W, that a stated amount makes, where its squares and their sums are numbers: an error elsewhere.
-    pub(super) fn carried(&mut self, [stated, flux]: [f64; 2], amount: &Key) -> Option<f64> {
-        if stated == 0.0 || (LEAST_FLUX..=LARGEST_FLUX).contains(&flux) {
-            return Some(flux);
-        }
-        let unit = self.builder.scene().unit.flux();
-        let found = format_value(flux);
-        self.problems
-            .error(amount, format!("makes a source of {found} {unit}, which cannot be counted"))
-            .hint(format!(
-                "expected 0, or an amount that makes {LEAST_FLUX:e} to {LARGEST_FLUX:e} {unit}"
-            ));
         None
     }
 

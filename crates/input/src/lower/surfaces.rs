@@ -1,7 +1,7 @@
 //! Named surfaces that solids and ducts share: sweeps and reflectors of revolution.
 
 use crate::keys::Key;
-use crate::lower::Context;
+use crate::lower::context::Context;
 use crate::spec::sweep::{CompoundParabolicSpec, LegSpec, ParaboloidSpec, ProfileSpec, SweepSpec};
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::{Frame, planar};

@@ -1,7 +1,7 @@
 //! Straight tubes with a wall of their own.
 
 use crate::keys::Key;
-use crate::lower::Context;
+use crate::lower::context::Context;
 use crate::lower::surfaces::{BodyPart, NamedFace, Surfaces};
 use crate::spec::solid::{TubeOuterSpec, TubeSolidSpec};
 use lumiduct_base::math::{Frame, planar};

@@ -3,8 +3,6 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::spec::source::enabled;
-
 /// The sun's disk. Exactly one of `elevation_deg`, `elevations_deg` and `when`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(extend("oneOf" = [
@@ -109,6 +107,11 @@ pub enum SkyModelSpec {
     Clear,
     /// A type of CIE S 011 (ISO 15469), 1 to 15; all but 1, 3 and 5 need the sun.
     CieType(#[schemars(range(min = 1, max = 15))] u32),
+}
+
+/// Sources emit unless they are switched off.
+pub(super) fn enabled() -> bool {
+    true
 }
 
 fn mean_half_angle() -> f64 {

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::spec::daylight::{SkySpec, SunSpec};
+use crate::spec::daylight::{SkySpec, SunSpec, enabled};
 use crate::spec::finish::{EmptySpec, FinishRef};
 use crate::spec::placement::PlacementSpec;
 use crate::spec::solid::SphereSpec;
@@ -123,11 +123,6 @@ pub struct SourceCommonSpec {
     pub enabled: bool,
     /// Where the source stands. A `face` or `volume` is where its solid is.
     pub at: Option<PlacementSpec>,
-}
-
-/// Sources emit unless they are switched off.
-pub(crate) fn enabled() -> bool {
-    true
 }
 
 /// A flat disk, or a ring if it has an inner radius.

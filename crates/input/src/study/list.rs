@@ -4,7 +4,7 @@ use crate::keys::{Key, Places};
 use crate::problems::{Problems, name_hint};
 use crate::sources::{Origin, SourceId};
 use crate::spec::study::MOST_DESIGNS;
-use crate::study::{Parameter, Setting};
+use crate::study::parameters::{Parameter, Setting};
 use csv::{ReaderBuilder, StringRecord, Trim};
 
 /// The rows of a table, a setting for each parameter. An empty cell leaves a parameter as the scene has it.

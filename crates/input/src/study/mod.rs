@@ -12,6 +12,7 @@ pub use parameters::{DESIGN_COLUMN, Domain, OTHER_COLUMNS, Parameter, Setting, T
 use crate::keys::{Key, Places};
 use crate::lower::plan;
 use crate::problems::Problems;
+use crate::sources::argument_label;
 use crate::spec::run::TargetSpec;
 use crate::spec::solid::{Solid, SolidSpec};
 use crate::spec::study::{BestSpec, KeepSpec, PlanSpec, SamplesSpec, StudyRunSpec, StudySpec};
@@ -226,7 +227,9 @@ fn of_study(error: Error, spec: &StudySpec, places: &Places) -> Error {
     for diagnostic in found {
         let set = spec.set.iter().find(|(key, value)| {
             let line = parameters::toml_text(value).map(|text| format!("{key}={text}"));
-            line.is_some_and(|line| diagnostic.file.as_deref() == Some(Path::new(&label(&line))))
+            line.is_some_and(|line| {
+                diagnostic.file.as_deref() == Some(Path::new(&argument_label(&line)))
+            })
         });
         match set {
             Some((key, _)) => {
@@ -240,11 +243,6 @@ fn of_study(error: Error, spec: &StudySpec, places: &Places) -> Error {
     }
     let own = own.into_diagnostics(places);
     Error::Input(own.into_iter().chain(rest).collect())
-}
-
-/// What stands for a file where an override is wrong.
-fn label(line: &str) -> String {
-    format!("-D {}", line.escape_debug())
 }
 
 /// What all designs have in common: the study's keys and stop rules, and those of the command line over them.
@@ -293,15 +291,5 @@ fn lower_plan(spec: &PlanSpec, rows: Vec<Vec<Setting>>) -> Plan {
         PlanSpec::Sobol(own) => Plan::Sobol(samples(own)),
         PlanSpec::Tolerance(own) => Plan::Tolerance(samples(own)),
         PlanSpec::List(_) => Plan::List(rows),
-    }
-}
-
-/// The problems of a scene with some overrides, without what is wrong with it alone.
-fn problems_of_scene(scene: &Path, settings: &Settings) -> Vec<Diagnostic> {
-    match draft(scene, &settings.overrides) {
-        Ok(Draft { problems, places, .. }) => problems.into_diagnostics(&places),
-        Err(Error::Input(diagnostics)) => diagnostics,
-        // Files that went away in between are told by the designs.
-        Err(Error::Usage(_) | Error::Io { .. } | Error::Output { .. }) => Vec::new(),
     }
 }

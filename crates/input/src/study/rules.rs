@@ -4,15 +4,15 @@ use crate::check::{check_demands, check_length, check_name, check_title};
 use crate::keys::{Key, Places};
 use crate::overrides::parse_key;
 use crate::problems::Problems;
+use crate::sources::argument_label;
 use crate::spec::study::{
     MOST_DESIGNS, MOST_PARAMETERS, NormalSpec, ParameterSpec, PlanSpec, SpreadSpec, StudySpec,
     TiedKeySpec,
 };
-use crate::study::parameters::{DESIGN_COLUMN, OTHER_COLUMNS, column};
-use crate::study::{Domain, Parameter, label, problems_of_scene};
-use crate::{Job, Settings};
+use crate::study::parameters::{DESIGN_COLUMN, Domain, OTHER_COLUMNS, Parameter, column};
+use crate::{Draft, Job, Settings, draft};
 use indexmap::IndexMap;
-use lumiduct_base::error::{Diagnostic, DiagnosticKind};
+use lumiduct_base::error::{Diagnostic, DiagnosticKind, Error};
 use lumiduct_base::text::is_control;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -308,10 +308,20 @@ pub(super) fn check_keys(
 
 /// What is wrong with an override of a scene.
 fn problems_of_override(scene: &Path, common: &Settings, line: String) -> Vec<Diagnostic> {
-    let label = label(&line);
+    let label = argument_label(&line);
     let mut found = problems_of_scene(scene, &common.with([line]));
     found.retain(|own| is_about(own, &label));
     found
+}
+
+/// The problems of a scene with some overrides, without what is wrong with it alone.
+fn problems_of_scene(scene: &Path, settings: &Settings) -> Vec<Diagnostic> {
+    match draft(scene, &settings.overrides) {
+        Ok(Draft { problems, places, .. }) => problems.into_diagnostics(&places),
+        Err(Error::Input(diagnostics)) => diagnostics,
+        // Files that went away in between are told by the designs.
+        Err(Error::Usage(_) | Error::Io { .. } | Error::Output { .. }) => Vec::new(),
+    }
 }
 
 fn is_about(found: &Diagnostic, label: &str) -> bool {

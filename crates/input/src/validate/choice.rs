@@ -3,7 +3,7 @@
 use serde_json::{Map, Value as Json};
 
 use crate::problems::name_hint;
-use crate::schema::Choice;
+use crate::schema::{Choice, marker};
 use crate::tree::{Node, Value};
 use crate::validate::{At, Completeness, Entries, Walk, unknown, wording};
 
@@ -175,17 +175,6 @@ impl Walk<'_> {
             }
         }
     }
-}
-
-/// The required key that no other form requires.
-pub(crate) fn marker<'a>(form: &'a Json, forms: &[&Json]) -> Option<&'a str> {
-    let requires = |form: &Json, name: &str| {
-        form["required"].as_array().is_some_and(|keys| keys.iter().any(|key| key == name))
-    };
-    let keys = form["required"].as_array().into_iter().flatten().filter_map(Json::as_str);
-    keys.into_iter().find(|name| {
-        !forms.iter().any(|other| !std::ptr::eq(*other, form) && requires(other, name))
-    })
 }
 
 fn has(form: &Json, name: &str) -> bool {

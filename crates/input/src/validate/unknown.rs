@@ -3,7 +3,7 @@
 use crate::keys::Segment;
 use crate::problems::{name_hint, nearest};
 use crate::schema;
-use crate::validate::{At, Entries, Walk, choice, wording};
+use crate::validate::{At, Entries, Walk, wording};
 
 /// Endings by which a user may have named another unit.
 const FOREIGN_UNITS: [&str; 36] = [
@@ -47,7 +47,7 @@ impl Walk<'_> {
             return format!("the key is `{right}`{unit}");
         }
         let other_form = table.forms.iter().find(|form| form["properties"].get(name).is_some());
-        if let Some(marker) = other_form.and_then(|form| choice::marker(form, table.forms)) {
+        if let Some(marker) = other_form.and_then(|form| schema::marker(form, table.forms)) {
             return format!("`{name}` goes with `{marker}`");
         }
         if table.outer.is_some_and(|outer| outer.contains_key(name))

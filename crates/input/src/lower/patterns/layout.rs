@@ -1,8 +1,8 @@
 //! Where the elements of a pattern are: rows, grids, staggered and hexagonal fields on a face.
 
 use crate::keys::Key;
-use crate::lower::Context;
-use crate::lower::patterns::Ground;
+use crate::lower::context::Context;
+use crate::lower::patterns::ground::Ground;
 use crate::spec::pattern::{AlongSpec, GridSpec, HexagonalSpec, LawSpec, LayoutSpec, RowSpec};
 use lumiduct_core::scene::pattern::{Along, Columns, Graded, Rows};
 use lumiduct_core::scene::shape::ChartRect;

@@ -1,7 +1,7 @@
 //! Whether patterns on one face keep clear of each other.
 
 use crate::keys::Key;
-use crate::lower::Context;
+use crate::lower::context::Context;
 use lumiduct_core::scene::FaceId;
 use lumiduct_core::scene::pattern::Field;
 

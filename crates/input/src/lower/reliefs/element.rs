@@ -1,8 +1,8 @@
 //! What an element of a relief is, and whether such a thing can be.
 
 use crate::keys::Key;
-use crate::lower::Context;
-use crate::lower::reliefs::Wall;
+use crate::lower::context::Context;
+use crate::lower::reliefs::wall::Wall;
 use crate::spec::pattern::AlongSpec;
 use crate::spec::relief::{CourseSpec, ReliefElementSpec};
 use lumiduct_core::scene::pattern::{Along, Field};

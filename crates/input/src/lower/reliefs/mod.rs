@@ -2,25 +2,18 @@
 
 mod element;
 mod room;
+mod wall;
 
 use crate::keys::Key;
-use crate::lower::Context;
-use crate::lower::patterns::Ground;
+use crate::lower::context::Context;
+use crate::lower::reliefs::wall::Wall;
 use crate::spec::pattern::LayoutSpec;
 use crate::spec::relief::ReliefSpec;
 use lumiduct_core::scene::pattern::{Field, Outline};
-use lumiduct_core::scene::relief::{self, Relief, Span};
-use lumiduct_core::scene::{Owner, Patch};
+use lumiduct_core::scene::relief::{Relief, Span};
 
 /// Elements that a relief may have: each is made of surfaces of its own.
 const MOST_ELEMENTS: u64 = 1_000_000;
-
-/// The wall of a relief, unrolled and in space.
-#[derive(Debug, Clone, Copy)]
-struct Wall {
-    unrolled: Ground,
-    ground: relief::Ground,
-}
 
 impl Context<'_> {
     /// Makes the reliefs parts of their solids.
@@ -54,27 +47,6 @@ impl Context<'_> {
         let id = self.builder.add_relief(relief, &sides, finishes);
         self.faces.insert(name, vec![id]);
         Some(())
-    }
-
-    /// The wall of a solid that a relief can lie on.
-    fn wall(&mut self, on: &str, key: &Key) -> Option<Wall> {
-        let unrolled = self.ground(on, key)?;
-        let scene = self.builder.scene();
-        let is_solid = matches!(scene.owner(unrolled.face), Owner::Solid(_));
-        let ground = match scene.face_patches(unrolled.face) {
-            [patch] => relief::Ground::of(patch),
-            [] | [_, _, ..] => None,
-        };
-        let (true, Some(ground)) = (is_solid, ground) else {
-            self.problems
-                .error(
-                    key,
-                    format!("`{on}` is neither one flat wall nor the outer wall of a straight round rod, of a solid"),
-                )
-                .hint("a relief is a part of the boundary of a solid; sheets have patterns");
-            return None;
-        };
-        Some(Wall { unrolled, ground })
     }
 
     fn relief(
@@ -124,10 +96,4 @@ impl Context<'_> {
         }
         is_plain.then_some(())
     }
-}
-
-/// Whether a patch belongs to a face that a relief has made.
-fn is_of_relief(scene: &lumiduct_core::scene::Scene, patch: &Patch) -> bool {
-    let name = &scene.faces[patch.face.index()].name;
-    scene.reliefs.iter().any(|relief| relief.name == *name)
 }

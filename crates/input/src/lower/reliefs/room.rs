@@ -1,8 +1,7 @@
 //! Whether the elements of a relief have room in their solid, and which other walls they cut through.
 
 use crate::keys::Key;
-use crate::lower::Context;
-use crate::lower::reliefs::is_of_relief;
+use crate::lower::context::Context;
 use glam::{DVec2, DVec3};
 use lumiduct_core::scene::relief::{Ground, Relief, Site, Span, Way};
 use lumiduct_core::scene::shape::{Shape, Start};
@@ -84,6 +83,12 @@ impl Context<'_> {
 fn walls_of(scene: &Scene, owner: Owner) -> impl Iterator<Item = (usize, &Patch)> {
     let patches = scene.patches.iter().enumerate();
     patches.filter(move |(_, patch)| patch.owner == owner && !is_of_relief(scene, patch))
+}
+
+/// Whether a patch belongs to a face that a relief has made.
+fn is_of_relief(scene: &Scene, patch: &Patch) -> bool {
+    let name = &scene.faces[patch.face.index()].name;
+    scene.reliefs.iter().any(|relief| relief.name == *name)
 }
 
 /// The flat side of a solid with an outward normal that holds a point.

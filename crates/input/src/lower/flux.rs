@@ -1,0 +1,75 @@
+//! The flux of a source, from the amount of light that the file states for it.
+
+use crate::keys::Key;
+use crate::lower::context::Context;
+use crate::spec::source::SourceCommonSpec;
+use lumiduct_base::number::format_value;
+use lumiduct_base::units::per_m2_to_per_mm2;
+use lumiduct_core::scene::{Emission, Emitter};
+
+/// Least flux of a source that is not dark, lm or W: shares of it in 1e9 cells have squares that
+/// are no subnormal numbers.
+const LEAST_FLUX: f64 = 1e-30;
+/// Largest flux of a source, lm or W: far from where sums of squares overflow.
+const LARGEST_FLUX: f64 = 1e30;
+
+impl Context<'_> {
+    /// Flux in lm or W from whichever amount is given.
+    pub(super) fn flux(
+        &mut self,
+        common: &SourceCommonSpec,
+        emitter: &Emitter,
+        law: Emission,
+        key: &Key,
+    ) -> Option<f64> {
+        for (name, flux) in [("flux_lm", common.flux_lm), ("flux_w", common.flux_w)] {
+            if let Some(flux) = flux {
+                return self.carried([flux, flux], &key.field(name));
+            }
+        }
+        if let Some(luminance) = common.luminance_cd_m2 {
+            let per_luminance = emitter.area().zip(law.projected_solid_angle());
+            let Some((area, projected)) = per_luminance else {
+                self.problems
+                    .error(
+                        &key.field("luminance_cd_m2"),
+                        "needs a source with an area and a `lambertian` or cone emission",
+                    )
+                    .hint("give flux_lm instead");
+                return None;
+            };
+            let flux = per_m2_to_per_mm2(luminance) * area * projected;
+            return self.carried([luminance, flux], &key.field("luminance_cd_m2"));
+        }
+        let intensity = common.intensity_cd?;
+        let per_intensity = match emitter {
+            Emitter::Point(_) => law.flux_per_peak_intensity(),
+            Emitter::Line { .. }
+            | Emitter::Surface { .. }
+            | Emitter::Volume { .. }
+            | Emitter::Far { .. } => None,
+        };
+        if per_intensity.is_none() {
+            self.problems
+                .error(&key.field("intensity_cd"), "needs a `point` source that is not collimated")
+                .hint("give flux_lm instead");
+        }
+        self.carried([intensity, intensity * per_intensity?], &key.field("intensity_cd"))
+    }
+
+    /// The flux, lm or W, that a stated amount makes; an error where its squares, or sums of them,
+    /// are no numbers.
+    pub(super) fn carried(&mut self, [stated, flux]: [f64; 2], amount: &Key) -> Option<f64> {
+        if stated == 0.0 || (LEAST_FLUX..=LARGEST_FLUX).contains(&flux) {
+            return Some(flux);
+        }
+        let unit = self.builder.scene().unit.flux();
+        let found = format_value(flux);
+        self.problems
+            .error(amount, format!("makes a source of {found} {unit}, which cannot be counted"))
+            .hint(format!(
+                "expected 0, or an amount that makes {LEAST_FLUX:e} to {LARGEST_FLUX:e} {unit}"
+            ));
+        None
+    }
+}

@@ -1,0 +1,85 @@
+//! The faces that patterns and reliefs can lie on: those that unroll without being stretched.
+
+use crate::keys::Key;
+use crate::lower::context::Context;
+use glam::DVec2;
+use lumiduct_core::scene::shape::{ChartRect, Region, Shape};
+use lumiduct_core::scene::sweep::WallChart;
+use lumiduct_core::scene::{FaceId, Patch};
+use std::f64::consts::TAU;
+
+/// Deviation from a stretch of 1 that is taken as rounding, 1.
+const ROUNDING: f64 = 1e-6;
+
+/// A face as a pattern sees it.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::lower) struct Ground {
+    pub(in crate::lower) face: FaceId,
+    pub(in crate::lower) rect: ChartRect,
+    /// Radius of a round face that closes on itself, mm.
+    pub(in crate::lower) radius: Option<f64>,
+}
+
+impl Ground {
+    pub(in crate::lower) fn size(&self) -> DVec2 {
+        self.rect.max - self.rect.min
+    }
+
+    /// Length once around, mm.
+    pub(in crate::lower) fn period(&self) -> Option<f64> {
+        self.radius.map(|radius| TAU * radius)
+    }
+}
+
+impl Context<'_> {
+    /// The face of a pattern: one whose chart is not stretched.
+    pub(in crate::lower) fn ground(&mut self, name: &str, key: &Key) -> Option<Ground> {
+        let faces = self.faces_named(name, key)?;
+        let [face] = faces[..] else {
+            self.problems
+                .error(key, format!("`{name}` stands for {} faces, expected one", faces.len()))
+                .hint("name one of them, such as `wall_plus_x`");
+            return None;
+        };
+        let scene = self.builder.scene();
+        let patches = scene.face_patches(face);
+        let (true, Some(rect)) =
+            (!patches.is_empty() && patches.iter().all(is_unrolled_truly), scene.face_rect(face))
+        else {
+            self.problems
+                .error(
+                    key,
+                    format!(
+                        "`{name}` is neither a flat rectangle nor the wall of a straight round tube or rod"
+                    ),
+                )
+                .hint("a pattern needs a face that unrolls without being stretched");
+            return None;
+        };
+        let is_round = matches!(&patches[0].shape, Shape::Cylinder(wall) if wall.is_closed());
+        let radius = is_round.then(|| (rect.max.x - rect.min.x) / TAU);
+        Some(Ground { face, rect, radius })
+    }
+}
+
+/// Whether lengths on a patch are those of its chart.
+fn is_unrolled_truly(patch: &Patch) -> bool {
+    let keeps_lengths = match &patch.chart {
+        None => true,
+        Some(WallChart::Along { scale, .. }) => (scale.abs() - DVec2::ONE).length() < ROUNDING,
+        Some(WallChart::Across { .. } | WallChart::Trapezoid { .. } | WallChart::Sector { .. }) => {
+            false
+        }
+    };
+    let is_whole = match &patch.shape {
+        Shape::Flat(flat) => matches!(flat.region(), Region::Rectangle { .. }),
+        Shape::Cylinder(_) => true,
+        Shape::Cone(_)
+        | Shape::Torus(_)
+        | Shape::Sphere(_)
+        | Shape::Paraboloid(_)
+        | Shape::ParabolicCylinder(_)
+        | Shape::CompoundParabola(_) => false,
+    };
+    keeps_lengths && is_whole
+}

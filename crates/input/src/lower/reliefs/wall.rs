@@ -1,0 +1,36 @@
+//! The walls of solids that reliefs can lie on.
+
+use crate::keys::Key;
+use crate::lower::context::Context;
+use crate::lower::patterns::ground::Ground;
+use lumiduct_core::scene::{Owner, relief};
+
+/// The wall of a relief, unrolled and in space.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Wall {
+    pub(super) unrolled: Ground,
+    pub(super) ground: relief::Ground,
+}
+
+impl Context<'_> {
+    /// The wall of a solid that a relief can lie on.
+    pub(super) fn wall(&mut self, on: &str, key: &Key) -> Option<Wall> {
+        let unrolled = self.ground(on, key)?;
+        let scene = self.builder.scene();
+        let is_solid = matches!(scene.owner(unrolled.face), Owner::Solid(_));
+        let ground = match scene.face_patches(unrolled.face) {
+            [patch] => relief::Ground::of(patch),
+            [] | [_, _, ..] => None,
+        };
+        let (true, Some(ground)) = (is_solid, ground) else {
+            self.problems
+                .error(
+                    key,
+                    format!("`{on}` is neither one flat wall nor the outer wall of a straight round rod, of a solid"),
+                )
+                .hint("a relief is a part of the boundary of a solid; sheets have patterns");
+            return None;
+        };
+        Some(Wall { unrolled, ground })
+    }
+}

@@ -6,30 +6,30 @@ mod compare;
 mod console;
 mod diff;
 mod display;
+mod exit;
 mod film;
+mod junit;
 mod merge;
 mod mesh;
+mod process;
 mod run;
 mod values;
 
 use crate::cli::batch::BatchArgs;
 use crate::cli::check::CheckArgs;
 use crate::cli::compare::CompareArgs;
-use crate::cli::console::{print, print_coloured, print_error};
+use crate::cli::console::print_error;
 use crate::cli::diff::DiffArgs;
+use crate::cli::exit::finish;
 use crate::cli::film::FilmArgs;
 use crate::cli::merge::MergeArgs;
 use crate::cli::mesh::MeshArgs;
 use crate::cli::run::RunArgs;
 use clap::{CommandFactory, Parser, Subcommand};
-use lumiduct_base::error::{Diagnostic, Error};
+use lumiduct_base::error::Error;
 use lumiduct_base::text::visible;
-use lumiduct_core::transport::{Interrupt, StopAnswer};
 use lumiduct_input as input;
-use lumiduct_input::diagnostic::{self, Colour};
-use lumiduct_report::{Existing, JunitFile};
-use std::io::{ErrorKind, IsTerminal};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Photometric sensor data for light tubes and light guides: flux, uniformity, maps and far fields with error bars.
@@ -42,9 +42,6 @@ struct Cli {
 
 const EXIT_CODES: &str = "Exit codes: 0 good; 1 a check was missed, or reports differ; 2 not run (usage or input); 3 internal or I/O \
 error; 130 stopped by Ctrl-C.";
-
-/// What shells give for a program that was stopped by Ctrl-C: 128 and the number of the signal.
-const INTERRUPTED: u8 = 130;
 
 #[derive(Debug, Subcommand)]
 enum Command {
@@ -142,105 +139,6 @@ fn print_usage(error: &clap::Error) {
     match Cli::try_parse_from(arguments) {
         Err(error) => _ = error.print(),
         Ok(_) => print_error(&error.render().to_string()),
-    }
-}
-
-/// Sets the number of threads, all cores if none is given.
-fn use_threads(threads: Option<u16>) -> Result<(), Error> {
-    let Some(threads) = threads else { return Ok(()) };
-    rayon::ThreadPoolBuilder::new()
-        .num_threads(usize::from(threads))
-        .build_global()
-        .map_err(|reason| Error::Usage(format!("--threads {threads}: {reason}")))
-}
-
-/// A flag that Ctrl-C raises. It ends tracing; the second time, and while nothing is traced, it ends the program.
-fn on_ctrl_c() -> Interrupt {
-    let interrupt = Interrupt::default();
-    let on_signal = interrupt.clone();
-    // Without a handler Ctrl-C ends the program at once: worse, but no reason not to run.
-    _ = ctrlc::set_handler(move || match on_signal.request() {
-        StopAnswer::EndRun => {}
-        StopAnswer::EndProgram => {
-            print_error("interrupted: the program ends here, and writes nothing more\n");
-            std::process::exit(INTERRUPTED.into());
-        }
-    });
-    interrupt
-}
-
-/// The JUnit XML file, where one is wanted. `output` is the folder of the report.
-fn open_junit(
-    file: Option<&Path>,
-    output: Option<&Path>,
-    existing: Existing,
-) -> Result<Option<JunitFile>, Error> {
-    let Some(file) = file else { return Ok(None) };
-    if output == Some(file) {
-        let file = file.display();
-        return Err(Error::Usage(format!("--junit {file}: is the folder after -o; name a file")));
-    }
-    JunitFile::open(file, existing).map(Some)
-}
-
-/// Writes a JUnit XML file where one is wanted, and gives back the exit code of the rest.
-fn write_junit(
-    file: Option<&JunitFile>,
-    xml: impl FnOnce() -> Result<String, Error>,
-    code: ExitCode,
-) -> ExitCode {
-    match file.map_or(Ok(()), |file| file.write(&xml()?)) {
-        Ok(()) => code,
-        Err(error) => fail(&error),
-    }
-}
-
-/// Prints a text, or says why there is none.
-fn finish(text: lumiduct_base::error::Result<String>) -> ExitCode {
-    match text.and_then(|text| print(&text)) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => fail(&error),
-    }
-}
-
-fn warn(warnings: &[Diagnostic]) {
-    if !warnings.is_empty() {
-        print_coloured(&rendered(warnings));
-    }
-}
-
-/// Diagnostics with the lines they are about, in colour on a terminal.
-fn rendered(diagnostics: &[Diagnostic]) -> String {
-    let colour = if std::io::stderr().is_terminal() { Colour::Always } else { Colour::Never };
-    diagnostic::render(diagnostics, &diagnostic::sources_of(diagnostics), colour)
-}
-
-fn fail(error: &Error) -> ExitCode {
-    match error {
-        Error::Input(diagnostics) => {
-            print_coloured(&rendered(diagnostics));
-            ExitCode::from(2)
-        }
-        Error::Usage(message) => {
-            print_error(&format!("error: {message}\n"));
-            ExitCode::from(2)
-        }
-        Error::Io { .. } | Error::Output { .. } => {
-            print_error(&format!("error: {error}\n"));
-            ExitCode::from(if is_of_a_name(error) { 2 } else { 3 })
-        }
-    }
-}
-
-/// Whether a file fails because of its name: a folder where a file should be, a file where a folder should be, or a name
-/// that no file can have.
-fn is_of_a_name(error: &Error) -> bool {
-    match error {
-        Error::Io { source, .. } => matches!(
-            source.kind(),
-            ErrorKind::IsADirectory | ErrorKind::NotADirectory | ErrorKind::InvalidFilename
-        ),
-        Error::Input(_) | Error::Usage(_) | Error::Output { .. } => false,
     }
 }
 

@@ -3,6 +3,7 @@
 mod check;
 mod checkpoint;
 mod compare;
+mod output;
 mod parts;
 mod progress;
 mod repeat;
@@ -14,15 +15,20 @@ mod stop_tests;
 mod tests;
 mod timing;
 mod tracing;
+mod version;
 
 pub use check::{CheckPage, CheckPictures, Checked, check};
-pub use checkpoint::Start;
 pub use compare::{CompareWishes, Compared, Method, TruthWish, compare};
+pub use output::{Output, Start};
 pub use parts::{SliceWishes, SliceWritten, has_slice, merge_slices, run_slice};
 pub use progress::{Progress, TargetProgress};
-pub use tracing::{Traced, trace};
+pub(crate) use sense::expect_measures;
+pub use tracing::{Stop, Traced, trace};
+pub(crate) use version::{BUILD, VERSION};
 
 use crate::pipeline::checkpoint::Keeper;
+use crate::pipeline::output::output_dir;
+use crate::pipeline::progress::gathering;
 use crate::pipeline::sense::expect_sense;
 use crate::pipeline::tracing::{Pause, trace_kept};
 use lumiduct_base::error::{Diagnostic, Result};
@@ -34,66 +40,7 @@ use lumiduct_report::{
     self as report, CheckResult, Existing, Folder, FolderLock, Inventory, Recipe, Report, RunFacts,
     SceneFacts, TargetFacts, Written,
 };
-pub(crate) use sense::expect_measures;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
-
-/// Version of the program, for reports.
-pub(crate) const VERSION: &str = env!("CARGO_PKG_VERSION");
-
-/// The exact build of the program: its version and a digest of its sources. For files that are no part of a report.
-pub(crate) const BUILD: &str = env!("LUMIDUCT_BUILD");
-
-/// Where the report goes, and whether one that is there may be replaced.
-#[derive(Debug, Clone)]
-pub struct Output {
-    /// The folder of the report; `reports/NAME` when none is given.
-    pub dir: Option<PathBuf>,
-    /// What to do with a report that is there.
-    pub existing: Existing,
-    /// How often a checkpoint is kept in the folder; `None` for never.
-    pub checkpoint_every: Option<Duration>,
-    /// Whether to go on from the checkpoint that is there.
-    pub start: Start,
-}
-
-impl Output {
-    /// A report in a folder, without checkpoints.
-    pub fn new(dir: Option<PathBuf>, existing: Existing) -> Self {
-        Self { dir, existing, checkpoint_every: None, start: Start::Anew }
-    }
-}
-
-/// Why a run ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stop {
-    /// All paths that were asked for are traced.
-    Paths,
-    /// The time is up.
-    Time,
-    /// The target is met.
-    Target,
-    /// The noise is well below the target, and what is left is a bias that more paths do not take away.
-    Bias,
-    /// Nothing of the target's measure was found in very many paths.
-    Dark,
-    /// The user asked to stop.
-    Interrupted,
-}
-
-impl Stop {
-    /// A sentence for the report. It names no time: reports do not depend on the clock.
-    pub fn reason(self) -> &'static str {
-        match self {
-            Self::Paths => "all requested paths were traced",
-            Self::Time => "the time limit was reached",
-            Self::Target => "the target error was reached",
-            Self::Bias => "more paths would not help: the target is below the bias of its measure",
-            Self::Dark => "more paths would hardly help: the target's measure is still nothing",
-            Self::Interrupted => "interrupted: this report is partial",
-        }
-    }
-}
 
 /// Runs a scene file and writes its report.
 pub fn run_one(
@@ -236,17 +183,4 @@ const REPORT_PATHS: usize = 60;
 
 fn shown_tracks(job: &Job, count: usize) -> Vec<Track> {
     tracks(&job.scene, job.run.seed, job.run.bounce_limit, count)
-}
-
-/// How gathering was set, in words; empty where nothing was gathered.
-fn gathering(findings: &Findings) -> String {
-    findings.gathered.as_ref().map_or(String::new(), |own| report::settled(&own.settings))
-}
-
-/// `reports/NAME` after the scene file, unless told otherwise.
-fn output_dir(scene: &Path, output: &Output) -> PathBuf {
-    output
-        .dir
-        .clone()
-        .unwrap_or_else(|| Path::new("reports").join(scene.file_stem().unwrap_or_default()))
 }

@@ -1,8 +1,11 @@
 //! `lumiduct batch`: a study becomes a folder of results.
 
+use crate::cli::console::print;
 use crate::cli::display::Display;
+use crate::cli::exit::{INTERRUPTED, fail, warn};
+use crate::cli::junit::{open_junit, write_junit};
+use crate::cli::process::{on_ctrl_c, use_threads};
 use crate::cli::values::{parse_count, parse_percent, parse_shard};
-use crate::cli::{INTERRUPTED, fail, on_ctrl_c, open_junit, print, use_threads, warn, write_junit};
 use crate::study::{BatchWishes, Finished, OnExisting, run_study};
 use clap::Args;
 use lumiduct_core::transport::Shard;

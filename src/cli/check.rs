@@ -1,6 +1,6 @@
 //! Arguments of `lumiduct check`.
 
-use crate::cli::{fail, finish, warn};
+use crate::cli::exit::{fail, finish, warn};
 use crate::pipeline::{self, CheckPage, CheckPictures};
 use clap::Args;
 use glam::DVec3;

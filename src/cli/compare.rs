@@ -1,8 +1,10 @@
 //! Arguments of `lumiduct compare`.
 
+use crate::cli::console::print_error;
+use crate::cli::exit::{INTERRUPTED, fail, finish, warn};
+use crate::cli::process::{on_ctrl_c, use_threads};
 use crate::cli::run::GatherArgs;
 use crate::cli::values::{parse_number, parse_time, words};
-use crate::cli::{fail, finish, on_ctrl_c, print_error, use_threads, warn};
 use crate::pipeline::{self, CompareWishes, Method, Output, TruthWish};
 use clap::Args;
 use lumiduct_input::Settings;
@@ -129,7 +131,7 @@ pub(super) fn compare(args: &CompareArgs) -> ExitCode {
         }
         Err(error) if interrupt.is_raised() => {
             fail(&error);
-            ExitCode::from(crate::cli::INTERRUPTED)
+            ExitCode::from(INTERRUPTED)
         }
         Err(error) => fail(&error),
     }

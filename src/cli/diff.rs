@@ -1,7 +1,9 @@
 //! `lumiduct diff`: two reports side by side.
 
+use crate::cli::console::print;
+use crate::cli::exit::fail;
+use crate::cli::junit::{open_junit, write_junit};
 use crate::cli::values::{parse_percent, parse_sigmas};
-use crate::cli::{fail, open_junit, print, write_junit};
 use clap::Args;
 use lumiduct_base::error::{Error, Result};
 use lumiduct_report::diff::{

@@ -1,6 +1,6 @@
 //! How runs and batches show their progress.
 
-use crate::cli::print_error;
+use crate::cli::console::print_error;
 use crate::pipeline::Progress;
 use crate::study::BatchProgress;
 use indicatif::{ProgressBar, ProgressStyle};

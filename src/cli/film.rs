@@ -1,7 +1,7 @@
 //! Arguments of `lumiduct film`.
 
+use crate::cli::exit::{fail, finish, warn};
 use crate::cli::values::{parse_index, parse_step};
-use crate::cli::{fail, finish, warn};
 use clap::Args;
 use lumiduct_base::error::Error;
 use lumiduct_input::{self as input, Settings};

@@ -1,6 +1,8 @@
 //! `lumiduct merge`: parts become the whole.
 
-use crate::cli::{batch, fail, open_junit, run, write_junit};
+use crate::cli::exit::fail;
+use crate::cli::junit::{open_junit, write_junit};
+use crate::cli::{batch, run};
 use crate::pipeline::{Output, has_slice, merge_slices};
 use crate::study::{OnExisting, has_study, merge_study};
 use clap::Args;

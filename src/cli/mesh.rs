@@ -1,6 +1,7 @@
 //! Arguments of `lumiduct mesh`.
 
-use crate::cli::{fail, print};
+use crate::cli::console::print;
+use crate::cli::exit::fail;
 use clap::{Args, ValueEnum};
 use lumiduct_base::error::Error;
 use lumiduct_base::mesh::health;

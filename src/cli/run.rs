@@ -1,13 +1,13 @@
 //! `lumiduct run`: a scene becomes a report, or a part of one.
 
+use crate::cli::console::{print, print_error};
 use crate::cli::display::Display;
+use crate::cli::exit::{INTERRUPTED, fail, finish, warn};
+use crate::cli::junit::{open_junit, write_junit};
+use crate::cli::process::{on_ctrl_c, use_threads};
 use crate::cli::values::{
     parse_angle, parse_count, parse_percent, parse_radius, parse_records, parse_shard, parse_time,
     words,
-};
-use crate::cli::{
-    INTERRUPTED, fail, finish, on_ctrl_c, open_junit, print, print_error, use_threads, warn,
-    write_junit,
 };
 use crate::pipeline::{self, Finished, Output, SliceWishes, SliceWritten, Start, Stop};
 use clap::Args;

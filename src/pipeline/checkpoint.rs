@@ -1,6 +1,6 @@
 //! Checkpoints of a long run: how far it has come, on disk every now and then.
 
-use crate::pipeline::Output;
+use crate::pipeline::output::{Output, Start};
 use crate::pipeline::snapshot::{self, Kind};
 use lumiduct_base::error::{Error, Result};
 use lumiduct_core::transport::{Run, State};
@@ -11,15 +11,6 @@ use std::time::Duration;
 
 /// Name of the checkpoint in the folder of a report.
 const NAME: &str = "checkpoint.bin";
-
-/// Whether a run begins anew or goes on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Start {
-    /// From its first path.
-    Anew,
-    /// From the checkpoint in the folder of its report, if there is one.
-    Resume,
-}
 
 /// A run as it was saved.
 #[derive(Serialize, Deserialize)]

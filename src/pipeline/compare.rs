@@ -3,79 +3,29 @@
 //! A run of an estimator is looked at now and then; that costs it no time. How errors follow from what it had found is
 //! for the report to say.
 
+mod bench;
+mod method;
 mod runner;
 mod truth;
 
+pub use method::Method;
 pub use truth::TruthWish;
 
-use crate::pipeline::{Output, VERSION, expect_sense, output_dir};
+use crate::pipeline::compare::bench::Bench;
+use crate::pipeline::compare::runner::{Stint, trace};
+use crate::pipeline::compare::truth::Known;
+use crate::pipeline::output::{Output, output_dir};
+use crate::pipeline::sense::expect_sense;
+use crate::pipeline::version::VERSION;
 use lumiduct_base::error::{Diagnostic, Error, Result};
 use lumiduct_baselines::Baseline;
-use lumiduct_core::plan::{Request, RunPlan, StopRules};
+use lumiduct_core::plan::Request;
 use lumiduct_core::scene::SensorId;
 use lumiduct_core::transport::{Activity, Interrupt, invisible, scatterers, turbid_media};
 use lumiduct_input::{self as input, Job, Settings};
 use lumiduct_report::{self as report, Comparison, Contestant, Folder, FolderLock};
-use runner::{Stint, trace};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
-use truth::Known;
-
-/// What can be compared: the estimators of this program and baselines.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Method {
-    /// An estimator.
-    Run(Request),
-    /// A baseline.
-    Baseline(Baseline),
-}
-
-impl Method {
-    /// All of them.
-    pub const ALL: [Self; 9] = [
-        Self::Run(Request::Forward),
-        Self::Run(Request::Backward),
-        Self::Run(Request::Mix),
-        Self::Baseline(Baseline::Sppm),
-        Self::Baseline(Baseline::Whitted),
-        Self::Baseline(Baseline::Metropolis),
-        Self::Run(Request::Gather),
-        Self::Run(Request::Mis),
-        Self::Run(Request::Auto),
-    ];
-
-    /// Its name on the command line and in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Run(request) => request.name(),
-            Self::Baseline(baseline) => baseline.name(),
-        }
-    }
-
-    /// The one of a name.
-    pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|method| method.name() == name)
-    }
-
-    /// Whether it can tell the first passage of a path through a sensor from later ones.
-    fn knows_first_passages(self) -> bool {
-        match self {
-            Self::Run(Request::Auto | Request::Forward | Request::Backward | Request::Mix)
-            | Self::Baseline(Baseline::Metropolis) => true,
-            Self::Run(Request::Gather | Request::Mis)
-            | Self::Baseline(Baseline::Sppm | Baseline::Whitted) => false,
-        }
-    }
-
-    /// Whether its gather paths have to meet the sources.
-    fn meets_sources(self) -> bool {
-        match self {
-            Self::Run(Request::Auto | Request::Forward | Request::Mix) => false,
-            Self::Run(Request::Backward | Request::Gather | Request::Mis) => true,
-            Self::Baseline(Baseline::Sppm | Baseline::Whitted | Baseline::Metropolis) => true,
-        }
-    }
-}
 
 /// Refuses methods that know no first passages where the sensor counts nothing else.
 fn expect_passages(job: &Job, sensor: SensorId, methods: &[Method]) -> Result<()> {
@@ -149,7 +99,7 @@ pub fn compare(
     let folder = Folder::open(lock, output.existing, None)?;
     let truth = match known {
         Known::Truth(truth) => truth,
-        Known::Takes(time) => truth::find(&bench, wishes, time, watch)?,
+        Known::Takes(time) => truth::find(&bench, wishes.repetitions, time, watch)?,
     };
     let mut contestants = Vec::new();
     for &method in &wishes.methods {
@@ -180,31 +130,6 @@ pub fn compare(
         folder.path().display()
     );
     Ok(Compared { text, dir: folder.path().to_path_buf(), warnings: job.warnings })
-}
-
-/// A scene and the sensor on which methods are compared.
-struct Bench<'j> {
-    job: &'j Job,
-    id: SensorId,
-    interrupt: &'j Interrupt,
-    /// Time of an independent run.
-    run_time: Duration,
-}
-
-impl Bench<'_> {
-    /// Dotted name of the measure that is compared.
-    fn measure(&self) -> String {
-        format!("{}.flux", self.job.scene.sensors[self.id.index()].name)
-    }
-
-    /// The plan of an independent run: as the job's, but for seed and time.
-    fn plan(&self, estimator: Request, run: u64) -> RunPlan {
-        let seed = self.job.run.seed.wrapping_add(run);
-        let stop = StopRules { time: Some(self.run_time), ..StopRules::default() };
-        // What a sensor asks for itself is no part of a comparison.
-        let sensor_estimators = Vec::new();
-        RunPlan { estimator, sensor_estimators, seed, stop, ..self.job.run.clone() }
-    }
 }
 
 /// All runs of a method.

@@ -1,7 +1,9 @@
 //! Parts of one run, traced on several machines and put together to the very report of the whole run.
 
+use crate::pipeline::output::{Output, output_dir};
 use crate::pipeline::snapshot::{self, Kind};
-use crate::pipeline::{Finished, Output, Stop, compose, output_dir, prepare, recipe};
+use crate::pipeline::tracing::Stop;
+use crate::pipeline::{Finished, compose, prepare, recipe};
 use lumiduct_base::error::{Error, Result};
 use lumiduct_core::transport::{Activity, Interrupt, Run, Shard, Slice, StopSignal, Unsliceable};
 use lumiduct_input::{Job, Settings};

@@ -2,8 +2,9 @@
 
 use lumiduct_core::measure::{self, Measure};
 use lumiduct_core::plan::RunPlan;
-use lumiduct_core::transport::{Phase, Run};
+use lumiduct_core::transport::{Findings, Phase, Run};
 use lumiduct_input::Job;
+use lumiduct_report::settled;
 use std::time::Duration;
 
 /// How far a run has come: for progress displays.
@@ -118,4 +119,9 @@ impl Progress {
         }
         text
     }
+}
+
+/// How gathering was set, in words; empty where nothing was gathered.
+pub(super) fn gathering(findings: &Findings) -> String {
+    findings.gathered.as_ref().map_or(String::new(), |own| settled(&own.settings))
 }

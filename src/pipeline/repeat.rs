@@ -1,6 +1,6 @@
 //! The command that repeats a run which the clock or the user has ended.
 
-use crate::pipeline::Stop;
+use crate::pipeline::tracing::Stop;
 use lumiduct_core::plan::Estimator;
 use lumiduct_core::transport::{Findings, Gathered};
 use lumiduct_input::Job;

@@ -3,7 +3,7 @@
 //! A file has a line that says what it is, the length of what follows, that itself (postcard), and a digest of it; so that
 //! one that was cut off, changed, or is of another kind is told from a good one before anything in it is believed.
 
-use crate::pipeline::BUILD;
+use crate::pipeline::version::BUILD;
 use lumiduct_base::digest::Digest;
 use lumiduct_base::error::{Error, Result};
 use lumiduct_report::{Existing, write_whole};

@@ -1,6 +1,6 @@
 //! Seconds, outside of the reproducible set of files.
 
-use crate::pipeline::Traced;
+use crate::pipeline::tracing::Traced;
 use lumiduct_base::error::Result;
 use lumiduct_report::Folder;
 

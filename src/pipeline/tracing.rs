@@ -1,7 +1,7 @@
 //! Tracing until a stop rule holds, the clock runs out, or the user stops it.
 
 use crate::pipeline::checkpoint::Checkpoint;
-use crate::pipeline::{Progress, Stop, TargetProgress, gathering};
+use crate::pipeline::progress::{Progress, TargetProgress, gathering};
 use lumiduct_base::error::{Error, Result};
 use lumiduct_core::measure::{self, Status};
 use lumiduct_core::plan::RunPlan;
@@ -10,6 +10,38 @@ use lumiduct_core::transport::{
 };
 use lumiduct_input::Job;
 use std::time::{Duration, Instant};
+
+/// Why a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stop {
+    /// All paths that were asked for are traced.
+    Paths,
+    /// The time is up.
+    Time,
+    /// The target is met.
+    Target,
+    /// The noise is well below the target, and what is left is a bias that more paths do not take
+    /// away.
+    Bias,
+    /// Nothing of the target's measure was found in very many paths.
+    Dark,
+    /// The user asked to stop.
+    Interrupted,
+}
+
+impl Stop {
+    /// A sentence for the report. It names no time: reports do not depend on the clock.
+    pub fn reason(self) -> &'static str {
+        match self {
+            Self::Paths => "all requested paths were traced",
+            Self::Time => "the time limit was reached",
+            Self::Target => "the target error was reached",
+            Self::Bias => "more paths would not help: the target is below the bias of its measure",
+            Self::Dark => "more paths would hardly help: the target's measure is still nothing",
+            Self::Interrupted => "interrupted: this report is partial",
+        }
+    }
+}
 
 /// What tracing gave.
 #[derive(Debug)]

@@ -14,6 +14,7 @@ mod sampling;
 mod store;
 
 pub use execute::BatchProgress;
+pub use store::OnExisting;
 
 use crate::pipeline::{self, VERSION};
 use crate::study::designs::designs;
@@ -44,17 +45,6 @@ pub struct BatchWishes {
     pub jobs: usize,
     /// Which part of the designs is computed.
     pub shard: Shard,
-}
-
-/// What to do with results that are there.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum OnExisting {
-    /// Refuse to touch them.
-    Keep,
-    /// Go on where they end.
-    Resume,
-    /// Begin anew.
-    Replace,
 }
 
 /// A batch that has come to its end.

@@ -3,7 +3,6 @@
 //! A record appears whole or not at all, so that a batch that was killed at any moment can go on. Which designs are done
 //! is told from the records alone. Facts and records are sealed: one that was changed is refused by its name.
 
-use crate::study::OnExisting;
 use lumiduct_base::error::{Error, Result};
 use lumiduct_report::study::{DESIGN_FORMAT, DesignRecord, FACTS_FORMAT, StudyFacts};
 use lumiduct_report::{
@@ -24,6 +23,17 @@ const TIMING: &str = "timing.csv";
 const REMOVE: &str = "remove it, and `batch --resume` computes the design anew";
 /// What to do about facts that are none.
 const BEGIN_ANEW: &str = "use --overwrite to begin anew, or -o for another folder";
+
+/// What to do with results that are there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum OnExisting {
+    /// Refuse to touch them.
+    Keep,
+    /// Go on where they end.
+    Resume,
+    /// Begin anew.
+    Replace,
+}
 
 /// The folder of a batch.
 #[derive(Debug)]

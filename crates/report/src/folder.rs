@@ -3,6 +3,7 @@
 #[cfg(test)]
 mod tests;
 
+use crate::destination::folder_of;
 use crate::leftovers::{REPLACING, STAGED, is_staged, remove_if_there, sweep};
 use crate::manifest::{MANIFEST, Manifest};
 use crate::recipe::Found;
@@ -10,7 +11,7 @@ use crate::{FolderLock, OutputFile, Recipe};
 use lumiduct_base::error::{Error, Result};
 use std::fs;
 use std::io::{ErrorKind, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// What to do with output that is there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -166,53 +167,6 @@ impl Folder {
     }
 }
 
-/// Makes a folder in which a file can be made, which tells more than permissions do.
-pub fn expect_room(folder: &Path) -> Result<()> {
-    if folder.is_file() {
-        return Err(Error::Usage(format!("{} is a file, not a folder", folder.display())));
-    }
-    fs::create_dir_all(folder).map_err(|source| match source.kind() {
-        // A link that leads nowhere, a file where a folder should be, a name that is too long.
-        ErrorKind::AlreadyExists | ErrorKind::NotADirectory | ErrorKind::InvalidFilename => {
-            Error::Usage(format!("{} cannot be made a folder: {source}", folder.display()))
-        }
-        _ => Error::io(folder, source),
-    })?;
-    tempfile::tempfile_in(folder)
-        .map(|_| ())
-        .map_err(|source| Error::io(folder, source.kind().into()))
-}
-
-/// Makes sure, before any work is done, that a file can be written. Folders are made once there is something to put into
-/// them.
-pub fn expect_file(path: &Path) -> Result<()> {
-    let refuse = |why: &str| Err(Error::Usage(format!("{}: {why}", path.display())));
-    if path.exists() && !path.is_file() {
-        return refuse("is no file that could be replaced");
-    }
-    let folders = folder_of(path).ancestors().filter(|folder| !folder.as_os_str().is_empty());
-    let there = folders.into_iter().find(|folder| folder.exists()).unwrap_or(Path::new("."));
-    expect_room(there)?;
-    let missing = path.strip_prefix(there).unwrap_or(path);
-    for name in missing {
-        match fs::symlink_metadata(there.join(name)) {
-            Err(error) if error.kind() == ErrorKind::InvalidFilename => {
-                return refuse("a name is too long for this file system");
-            }
-            // Other faults show when it is written.
-            Ok(_) | Err(_) => {}
-        }
-    }
-    Ok(())
-}
-
-/// Whether a folder is one of these, by whatever path.
-pub fn is_among(folder: &Path, others: &[PathBuf]) -> bool {
-    let place = |path: &Path| path.canonicalize().ok();
-    let own = place(folder);
-    own.is_some() && others.iter().any(|other| place(other) == own)
-}
-
 /// Whether a folder holds anything but what a program that was killed has left half written.
 fn holds_files(folder: &Path) -> Result<bool> {
     let entries = fs::read_dir(folder).map_err(|source| Error::io(folder, source))?;
@@ -276,9 +230,4 @@ fn stage(path: &Path, bytes: &[u8]) -> Result<tempfile::NamedTempFile> {
     file.as_file_mut().write_all(bytes).map_err(failed)?;
     file.as_file().sync_all().map_err(failed)?;
     Ok(file)
-}
-
-/// The folder that a file lies in.
-pub(crate) fn folder_of(path: &Path) -> &Path {
-    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }

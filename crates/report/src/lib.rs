@@ -9,6 +9,7 @@ mod by_sun;
 mod compare;
 mod contents;
 mod csv;
+mod destination;
 pub mod diff;
 mod drawing;
 mod figures;
@@ -24,9 +25,12 @@ mod lock;
 mod manifest;
 mod markdown;
 mod mesh;
+mod output;
 pub mod png;
 mod recipe;
 mod record;
+mod remarks;
+mod run_page;
 pub mod seal;
 mod section;
 mod spreadsheet;
@@ -39,10 +43,10 @@ mod words;
 pub use compare::{
     Comparison, Contestant, Row, Sample, Truth, comparison_files, comparison_table, rows,
 };
+pub use destination::{expect_file, expect_room, is_among};
 pub use drawing::{Drawing, drawing};
 pub use film::film_tables;
 pub use folder::{Existing, Folder, Written, write_whole};
-pub use folder::{expect_file, expect_room, is_among};
 pub use html::check::check_page;
 pub use inventory::{Inventory, Listing};
 pub use junit::{JunitFile, diff_junit, run_junit, study_junit};
@@ -50,39 +54,20 @@ pub use leftovers::{is_staged, remove_report};
 pub use leftovers::{remove_if_there, sweep};
 pub use lock::FolderLock;
 pub use manifest::{Manifest, report_files};
-
 pub use mesh::mesh_report;
+pub use output::OutputFile;
 pub use recipe::Recipe;
 pub use record::{
-    CheckResult, Outcome, Report, RunFacts, SceneFacts, TargetFacts, asked, leak_places,
-    remark_on_paths, remarks, remarks_on_passages, settled, wishes,
+    CheckResult, Outcome, Report, RunFacts, SceneFacts, TargetFacts, asked, leak_places, settled,
+    wishes,
 };
+pub use remarks::{remark_on_paths, remarks, remarks_on_passages};
 pub use seal::{seal, unseal};
 pub use section::{CutPlane, SectionView, scene_picture};
 pub use terminal::terminal;
 
+use crate::output::{LOGO, SUMMARY};
 use lumiduct_base::error::Result;
-
-/// A file of a report: its name and its bytes.
-#[derive(Debug)]
-pub struct OutputFile {
-    /// Name within the folder.
-    pub name: String,
-    /// Contents.
-    pub bytes: Vec<u8>,
-}
-
-impl OutputFile {
-    fn text(name: impl Into<String>, text: String) -> Self {
-        Self { name: name.into(), bytes: text.into_bytes() }
-    }
-}
-
-/// Name of the file with the logo of a project.
-pub(crate) const LOGO: &str = "project_logo.png";
-
-/// Name of the file with everything for programs.
-pub(crate) const SUMMARY: &str = "summary.json";
 
 /// All files of a report, in the reproducible order: pictures and tables first, so that the page can name them.
 pub fn files(report: &Report, scene_text: &str) -> Result<Vec<OutputFile>> {
@@ -94,7 +79,7 @@ pub fn files(report: &Report, scene_text: &str) -> Result<Vec<OutputFile>> {
     let logo = report.scene.project.as_ref().and_then(|project| project.logo.clone());
     files.extend(logo.map(|bytes| OutputFile { name: LOGO.to_owned(), bytes }));
     files.push(OutputFile::text("report.md", markdown::markdown(report)));
-    files.push(OutputFile::text("report.html", html::html(report)?));
+    files.push(OutputFile::text("report.html", run_page::html(report)?));
     let names: Vec<&str> = files.iter().map(|file| file.name.as_str()).chain([SUMMARY]).collect();
     files.push(OutputFile::text(SUMMARY, summary::json(report, &names)?));
     Ok(files)

@@ -1,6 +1,6 @@
 //! One program at a time writes into a folder.
 
-use crate::expect_room;
+use crate::destination::expect_room;
 use lumiduct_base::error::{Error, Result};
 use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};

@@ -1,8 +1,9 @@
 //! `report.md`: the page for people, wherever Markdown is rendered.
 
+use crate::Report;
 use crate::contents::{parts, verdict};
 use crate::html::frame::{Block, Part, Plots};
-use crate::{LOGO, Report};
+use crate::output::LOGO;
 use lumiduct_base::text::{markdown_cell, markdown_page};
 use lumiduct_input::Project;
 use std::fmt::Write;

@@ -1,6 +1,7 @@
 //! What decides the bytes of a report, so that a run over its own report is told from a run over another one.
 
-use crate::{Manifest, SUMMARY};
+use crate::Manifest;
+use crate::output::SUMMARY;
 use lumiduct_core::plan::{Estimator, GatherPlan, NUMERICS, Request, RunPlan};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;

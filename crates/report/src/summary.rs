@@ -1,6 +1,7 @@
 //! `summary.json`: the record for programs. `measures` maps dotted names to numbers with their errors.
 
-use crate::{Report, SUMMARY};
+use crate::Report;
+use crate::output::SUMMARY;
 use lumiduct_base::error::{Error, Result};
 use serde::Serialize;
 

@@ -1,6 +1,7 @@
 //! One timed run of one method.
 
-use crate::pipeline::compare::{Bench, Method};
+use crate::pipeline::compare::bench::Bench;
+use crate::pipeline::compare::method::Method;
 use lumiduct_base::error::{Error, Result};
 use lumiduct_baselines::BaselineRun;
 use lumiduct_core::measure;

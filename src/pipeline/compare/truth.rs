@@ -1,7 +1,8 @@
 //! What estimators are held against: a given value, one from a file, or a long run of an unbiased estimator.
 
+use crate::pipeline::compare::bench::Bench;
+use crate::pipeline::compare::method::Method;
 use crate::pipeline::compare::runner::{Estimate, Stint, trace};
-use crate::pipeline::compare::{Bench, CompareWishes, Method};
 use lumiduct_base::error::{Error, Result};
 use lumiduct_core::plan::Request;
 use lumiduct_core::transport::invisible;
@@ -51,13 +52,13 @@ pub(super) fn known(bench: &Bench<'_>, wish: &TruthWish) -> Result<Known> {
 /// Finds the truth by a long run of the unbiased estimator whose error is the smaller after a short time.
 pub(super) fn find(
     bench: &Bench<'_>,
-    wishes: &CompareWishes,
+    repetitions: u32,
     time: Duration,
     watch: &mut dyn FnMut(&str),
 ) -> Result<Truth> {
     let scene = &bench.job.scene;
     // Seeds beyond those of the runs that are compared.
-    let seed = u64::from(wishes.repetitions);
+    let seed = u64::from(repetitions);
     let is_visible = scene.sources.iter().all(|source| invisible(source, scene).is_none());
     let candidates = [Request::Forward, Request::Backward];
     let able = candidates.into_iter().filter(|request| is_visible || *request == Request::Forward);

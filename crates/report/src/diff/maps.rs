@@ -1,7 +1,8 @@
 //! Differences of maps, cell by cell. Maps are known by their tables: places, values and errors.
 
 use crate::OutputFile;
-use crate::html::data::{Cells, MapWords};
+use crate::html::cells::Cells;
+use crate::html::data::MapWords;
 use crate::png::{ColourMap, HeatMap, Scale, heat_map};
 use csv::ReaderBuilder;
 use lumiduct_base::error::Result;

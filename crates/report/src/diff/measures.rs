@@ -1,6 +1,5 @@
 //! Whether two values of a measure differ.
 
-use crate::diff::Pair;
 use indexmap::IndexMap;
 use lumiduct_core::measure::{Measure, Status};
 
@@ -54,6 +53,20 @@ pub enum Judgement {
     Beyond,
     /// Not to be told from one another: the value or the error of one of them is not to be relied on.
     Unknown,
+}
+
+/// A measure that both sides have.
+#[derive(Debug)]
+pub(crate) struct Pair {
+    /// Its name, with the design it is of.
+    pub(crate) name: String,
+    /// Its dotted name.
+    pub(crate) measure: String,
+    /// What both say of it.
+    pub(crate) values: [Measure; 2],
+    /// The value whose rounding it shares, in its unit: its own greater one, but for a sum that
+    /// should be nothing.
+    pub(crate) scale: f64,
 }
 
 /// Two values of a measure.

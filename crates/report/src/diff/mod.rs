@@ -9,14 +9,17 @@ mod maps;
 mod measures;
 mod page;
 mod read;
+mod record;
 
 pub use maps::{MapDiff, MapOutcome, MapTable};
 pub use measures::{DiffRow, Judgement, Limits, MapLimit};
 pub(crate) use page::sentence;
 pub use page::{Rows, diff_table};
 pub use read::{Content, DesignRow, RunFiles, Side, read};
+pub use record::Diff;
 
 use crate::OutputFile;
+use crate::diff::measures::Pair;
 use indexmap::IndexMap;
 use lumiduct_base::error::{Error, Result};
 use lumiduct_core::measure::{Measure, nearest};
@@ -28,46 +31,6 @@ pub struct DiffWishes {
     pub limits: Limits,
     /// Beginnings of the names of the measures that are compared; all of them if there are none.
     pub only: Vec<String>,
-}
-
-/// Two reports side by side.
-#[derive(Debug)]
-pub struct Diff {
-    /// What both are: their names.
-    pub names: [String; 2],
-    /// What both are, in a line each.
-    pub facts: [String; 2],
-    /// From where on two values differ.
-    pub limits: Limits,
-    /// The measures that both have, the worst first.
-    pub rows: Vec<DiffRow>,
-    /// Names of measures that only one of them has.
-    pub only_in: [Vec<String>; 2],
-    /// The maps that both have.
-    pub maps: Vec<MapDiff>,
-    /// Names of measures that checks of either judge, in their order.
-    pub checks: Vec<String>,
-}
-
-impl Diff {
-    /// How many measures were judged so.
-    pub fn count(&self, wanted: Judgement) -> usize {
-        self.rows.iter().filter(|row| row.judgement == wanted).count()
-    }
-
-    /// Whether no measure, and no map that counts, differs by more than the limits allow.
-    pub fn is_within(&self) -> bool {
-        self.count(Judgement::Beyond) == 0 && self.maps_that_count().all(MapDiff::is_noise)
-    }
-
-    /// The maps that count.
-    pub fn maps_that_count(&self) -> impl Iterator<Item = &MapDiff> {
-        let maps = match self.limits.maps {
-            MapLimit::Told => &[][..],
-            MapLimit::Noise => &self.maps,
-        };
-        maps.iter()
-    }
 }
 
 /// Compares two reports of the same kind.
@@ -141,19 +104,6 @@ pub fn diff_files(diff: &Diff) -> Result<Vec<OutputFile>> {
     files.push(OutputFile::text("diff.md", page));
     files.push(OutputFile::text("diff.html", html::html(diff)?));
     Ok(files)
-}
-
-/// A measure that both sides have.
-#[derive(Debug)]
-pub(crate) struct Pair {
-    /// Its name, with the design it is of.
-    pub(crate) name: String,
-    /// Its dotted name.
-    pub(crate) measure: String,
-    /// What both say of it.
-    pub(crate) values: [Measure; 2],
-    /// The value whose rounding it shares, in its unit: its own greater one, but for a sum that should be nothing.
-    pub(crate) scale: f64,
 }
 
 /// What both sides have, and what only one of them has.

@@ -1,7 +1,8 @@
 //! Reports read back from their folders.
 
 use crate::diff::maps::MapTable;
-use crate::{Manifest, SUMMARY, study, summary};
+use crate::output::SUMMARY;
+use crate::{Manifest, study, summary};
 use indexmap::IndexMap;
 use lumiduct_base::error::{Error, Result};
 use lumiduct_core::measure::Measure;

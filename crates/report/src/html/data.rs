@@ -5,14 +5,13 @@
 use crate::drawing::{Drawing, Fate};
 use crate::figures::{directions_map, sensor_map};
 use crate::html::axes::{chart_axes, dial_axes, ink, map_axes};
-use crate::html::coarse::{coarse, joined};
+use crate::html::cells::{Cells, coarse, joined};
 use crate::local_axes::LocalAxes;
 use crate::png::{
     self, ErrorForm, HeatMap, LinePlot, MapFrame, PolarPlot, Scale, SeriesForm, series_ink,
 };
 use glam::DVec3;
 use lumiduct_core::measure::{Axes, Balance, IntensityTable, Measure, SensorMap, not_below_zero};
-use ndarray::Array2;
 use serde_json::{Value, json};
 
 /// Significant digits of numbers.
@@ -48,21 +47,6 @@ fn with_errors<'a>(values: impl Iterator<Item = (&'a f64, &'a f64)>) -> [Value; 
         errors.push(number(*error, ERROR_DIGITS));
     }
     [shown, errors].map(Value::from)
-}
-
-/// The cells of a map, rows by columns.
-#[derive(Debug, Clone)]
-pub(crate) struct Cells {
-    /// Edges of the columns.
-    pub(crate) x: Vec<f64>,
-    /// Edges of the rows.
-    pub(crate) y: Vec<f64>,
-    /// Values; NaN where there is none.
-    pub(crate) values: Array2<f64>,
-    /// Standard errors.
-    pub(crate) errors: Array2<f64>,
-    /// Indicators of bias, where there may be one.
-    pub(crate) biases: Option<Array2<f64>>,
 }
 
 impl Cells {

@@ -1,6 +1,5 @@
-//! Whether the best design lies at the edge of what was tried.
+//! Which numbers of a parameter were tried, and whether the best design lies at their edge.
 
-use crate::study::figures::numbers_of;
 use crate::study::{DesignRecord, ParameterFacts, StudyReport};
 use lumiduct_base::number::format_value;
 use lumiduct_input::Domain;
@@ -49,6 +48,16 @@ fn edge(parameter: &ParameterFacts, best: &DesignRecord, all: &[DesignRecord]) -
     };
     let [own, from, to] = [own, from, to].map(format_value);
     Some(format!("{} is {own}, at the {end} end of {from} to {to}", parameter.label()))
+}
+
+/// Distinct numbers of a parameter; none unless all designs have one.
+pub(super) fn numbers_of(parameter: &ParameterFacts, designs: &[DesignRecord]) -> Vec<f64> {
+    let numbers: Option<Vec<f64>> =
+        designs.iter().map(|design| parameter.setting_in(design).number()).collect();
+    let mut numbers = numbers.unwrap_or_default();
+    numbers.sort_by(f64::total_cmp);
+    numbers.dedup();
+    numbers
 }
 
 #[cfg(test)]

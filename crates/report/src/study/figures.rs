@@ -6,6 +6,7 @@ use crate::png::{
     SeriesForm, SeriesPoint, bar_chart, line_plot, scatter_matrix,
 };
 use crate::study::contents::setting_word;
+use crate::study::edge::numbers_of;
 use crate::study::{DesignRecord, Effect, ParameterFacts, PlanFacts, StudyReport};
 use lumiduct_base::error::Result;
 use lumiduct_base::number::format_value;
@@ -91,16 +92,6 @@ fn measure_label(report: &StudyReport, measure: &str) -> String {
         "1" => measure.to_owned(),
         unit => format!("{measure} in {unit}"),
     }
-}
-
-/// Distinct numbers of a parameter; none unless all designs have one.
-pub(super) fn numbers_of(parameter: &ParameterFacts, designs: &[DesignRecord]) -> Vec<f64> {
-    let numbers: Option<Vec<f64>> =
-        designs.iter().map(|design| parameter.setting_in(design).number()).collect();
-    let mut numbers = numbers.unwrap_or_default();
-    numbers.sort_by(f64::total_cmp);
-    numbers.dedup();
-    numbers
 }
 
 /// A measure over the parameter with the most levels, a curve for each setting of all others; of grids and tables.

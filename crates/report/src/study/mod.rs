@@ -17,7 +17,8 @@ pub use record::{
 
 pub use terminal::terminal;
 
-use crate::{LOGO, OutputFile};
+use crate::OutputFile;
+use crate::output::LOGO;
 use indexmap::IndexMap;
 use lumiduct_base::error::{Error, Result};
 use lumiduct_core::measure::{Measure, Outcome};

@@ -1,10 +1,24 @@
-//! Maps of very many cells, made coarser for a page: the tables of numbers have them all.
+//! The cells of a map on a page. Very many are joined: the tables of numbers have them all.
 
-use crate::html::data::Cells;
 use ndarray::Array2;
 
 /// Cells of a map that a page holds; more would make it slow to open.
 const MOST_CELLS: usize = 40_000;
+
+/// The cells of a map, rows by columns.
+#[derive(Debug, Clone)]
+pub(crate) struct Cells {
+    /// Edges of the columns.
+    pub(crate) x: Vec<f64>,
+    /// Edges of the rows.
+    pub(crate) y: Vec<f64>,
+    /// Values; NaN where there is none.
+    pub(crate) values: Array2<f64>,
+    /// Standard errors.
+    pub(crate) errors: Array2<f64>,
+    /// Indicators of bias, where there may be one.
+    pub(crate) biases: Option<Array2<f64>>,
+}
 
 /// How many cells along each side are shown as one: 1 where there are few.
 pub(crate) fn joined(cells: &Array2<f64>) -> usize {

@@ -1,0 +1,25 @@
+//! A file of a report before it is written, and the names of files that several modules know.
+//!
+//! What is in the files, and where they go, is not known here.
+
+/// A file of a report: its name and its bytes.
+#[derive(Debug)]
+pub struct OutputFile {
+    /// Name within the folder.
+    pub name: String,
+    /// Contents.
+    pub bytes: Vec<u8>,
+}
+
+impl OutputFile {
+    /// A file of text.
+    pub(crate) fn text(name: impl Into<String>, text: String) -> Self {
+        Self { name: name.into(), bytes: text.into_bytes() }
+    }
+}
+
+/// Name of the file with the logo of a project.
+pub(crate) const LOGO: &str = "project_logo.png";
+
+/// Name of the file with everything for programs.
+pub(crate) const SUMMARY: &str = "summary.json";

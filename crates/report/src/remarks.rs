@@ -1,0 +1,145 @@
+//! Remarks on results that need care: light that was lost, missed or counted more than once.
+//!
+//! They are part of the record; where a page shows them is not known here.
+
+use crate::by_light::remark_on_weathers;
+use lumiduct_base::number::{format_percent, format_with_error};
+use lumiduct_core::measure::{GatheredFacts, LostPaths, Measures, Status};
+use lumiduct_core::scene::{Counts, Place, Scene, Seeing, Sensor, SensorKind};
+use lumiduct_core::transport::GROUPS;
+
+/// Share of the flux cut by the bounce limit that is worth a remark, 1.
+const CUT_SHARE: f64 = 1e-3;
+/// Errors between a gathered flux and that counted by photons that are worth a remark, 1.
+const CONTRADICTED: f64 = 4.0;
+
+/// Remarks that the results ask for.
+pub fn remarks(measures: &Measures, scene: &Scene) -> Vec<String> {
+    let mut remarks = Vec::new();
+    let value = |name: &str| measures.values.get(name).map_or(0.0, |measure| measure.value);
+    if value("balance.leaked") > 0.0 {
+        remarks.push("light leaked through holes in the geometry: see balance.leaked".to_owned());
+    }
+    let cut = value("balance.cut") / measures.source_flux;
+    if cut > CUT_SHARE {
+        remarks.push(format!(
+            "{} of the light was still on its way at the bounce limit: see balance.cut; raise run.bounce_limit, or \
+             give walls and media their losses",
+            format_percent(cut)
+        ));
+    }
+    for paths in &measures.sensor_paths {
+        let sensor = &paths.sensor;
+        remarks.extend(paths.lost.and_then(|lost| remark_on_lost_paths(sensor, lost)));
+        let (flux, other) =
+            (value(&format!("{sensor}.flux")), value(&format!("{sensor}.flux_other_side")));
+        let outside = value(&format!("{sensor}.flux_outside_aim"));
+        if flux == 0.0 && outside == 0.0 && other > 0.0 {
+            remarks.push(remark_on_other_side(sensor, scene));
+        }
+        if outside > flux {
+            remarks.push(format!(
+                "sensor `{sensor}` counts the light of its aim alone, and more reaches it from elsewhere: see \
+                 {sensor}.flux_outside_aim; aim at all that lights it"
+            ));
+        }
+        let own = measures.values.get(&format!("{sensor}.flux"));
+        if own.is_some_and(|own| own.status == Status::Contradicted) {
+            remarks.push(format!(
+                "photons of the same run found more light on sensor `{sensor}` than its gather paths, which hardly ever \
+                 meet one of the sources: use `--estimator forward` or `mix`"
+            ));
+        }
+    }
+    remarks.extend(remark_on_weathers(measures));
+    remarks.extend(measures.gathered.iter().filter_map(remark_on_gathering));
+    remarks
+}
+
+/// Errors by which more light than was emitted, or than entered, has to be counted for a remark, 1.
+const CLEARLY: f64 = 4.0;
+/// By how much it has to be more in any case, 1: rounding of sums.
+const ROUNDING: f64 = 1e-9;
+
+/// Remarks on sensors that count more light than there is, as it passes them more than once.
+pub fn remarks_on_passages(scene: &Scene, measures: &Measures) -> Vec<String> {
+    let remark = |sensor: &Sensor| {
+        let name = &sensor.name;
+        let is_above = |what: &&str| {
+            measures.values.get(&format!("{name}.{what}")).is_some_and(|share| {
+                share.value > 1.0 + ROUNDING && share.value - 1.0 > CLEARLY * share.total_error()
+            })
+        };
+        let what = ["efficiency", "transmission"].into_iter().find(is_above)?;
+        let way_out = match &sensor.kind {
+            SensorKind::Surface(surface)
+                if matches!(surface.seeing, Seeing::All) && sensor.aim.is_empty() =>
+            {
+                format!("; to count each path once, write passage = \"first\" in sensors.{name}")
+            }
+            SensorKind::Surface(_) | SensorKind::Goniometer(_) => String::new(),
+        };
+        let value = &measures.values[&format!("{name}.{what}")];
+        Some(format!(
+            "the {what} of sensor `{name}` is {}, above 1: light passes it more than once and counts each time{way_out}",
+            format_with_error(value.value, value.std_error)
+        ))
+    };
+    scene.sensors.iter().filter_map(remark).collect()
+}
+
+/// A remark on a sensor that counted nothing while light met its other side. Light that leaves a
+/// solid inward was reflected or let in there: that is no light from the other side.
+fn remark_on_other_side(name: &str, scene: &Scene) -> String {
+    let kind = scene.sensors.iter().find(|sensor| sensor.name == name).map(|sensor| &sensor.kind);
+    match kind {
+        Some(SensorKind::Surface(surface))
+            if surface.counts == Counts::Leaving && surface.place == Place::Face =>
+        {
+            format!(
+                "no light left the side of sensor `{name}` that counts: all that met its face was reflected or let in there; \
+                 see {name}.flux_other_side"
+            )
+        }
+        Some(SensorKind::Surface(_) | SensorKind::Goniometer(_)) | None => {
+            format!("sensor `{name}` was lit on its other side only: turn its axis, or set `side`")
+        }
+    }
+}
+
+/// A remark where more than next to nothing of the gather paths of a sensor was lost.
+fn remark_on_lost_paths(sensor: &str, lost: LostPaths) -> Option<String> {
+    let LostPaths { cut, leaked } = lost;
+    (cut + leaked > CUT_SHARE).then(|| {
+        format!(
+            "{} of the throughput of gather paths from sensor `{sensor}` was cut by the bounce limit and {} lost through \
+             holes in the geometry, and with it their share of the light they would have met; raise run.bounce_limit, or \
+             mend the geometry",
+            format_percent(cut),
+            format_percent(leaked)
+        )
+    })
+}
+
+/// A remark where the photons of a run do not agree with what was gathered from them.
+fn remark_on_gathering(facts: &GatheredFacts) -> Option<String> {
+    let off = facts.off.filter(|off| off.abs() > CONTRADICTED)?;
+    let [flux, error] = facts.by_photons;
+    Some(format!(
+        "the gathered flux of sensor `{}` is {:.1} errors {} what photons of the same run counted there ({}): a feature \
+         of the light is smaller than the windows; take a smaller radius_mm or angle_deg, or another estimator",
+        facts.sensor,
+        off.abs(),
+        if off > 0.0 { "above" } else { "below" },
+        format_with_error(flux, error)
+    ))
+}
+
+/// A remark where a run had to trace noticeably more paths than it was asked for.
+pub fn remark_on_paths(asked: Option<u64>, traced: u64) -> Option<String> {
+    let asked = asked.filter(|&asked| traced > asked + asked / 10)?;
+    Some(format!(
+        "{traced} paths were traced where {asked} were asked for: a run ends with a whole wave, of {GROUPS} batches with at \
+         least one path of each source, or of passes with all of their photons and gather paths"
+    ))
+}

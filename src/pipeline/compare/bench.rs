@@ -1,0 +1,32 @@
+//! What all runs of a comparison have in common: the scene, the sensor and the time.
+
+use lumiduct_core::plan::{Request, RunPlan, StopRules};
+use lumiduct_core::scene::SensorId;
+use lumiduct_core::transport::Interrupt;
+use lumiduct_input::Job;
+use std::time::Duration;
+
+/// A scene and the sensor on which methods are compared.
+pub(super) struct Bench<'j> {
+    pub(super) job: &'j Job,
+    pub(super) id: SensorId,
+    pub(super) interrupt: &'j Interrupt,
+    /// Time of an independent run.
+    pub(super) run_time: Duration,
+}
+
+impl Bench<'_> {
+    /// Dotted name of the measure that is compared.
+    pub(super) fn measure(&self) -> String {
+        format!("{}.flux", self.job.scene.sensors[self.id.index()].name)
+    }
+
+    /// The plan of an independent run: as the job's, but for seed and time.
+    pub(super) fn plan(&self, estimator: Request, run: u64) -> RunPlan {
+        let seed = self.job.run.seed.wrapping_add(run);
+        let stop = StopRules { time: Some(self.run_time), ..StopRules::default() };
+        // What a sensor asks for itself is no part of a comparison.
+        let sensor_estimators = Vec::new();
+        RunPlan { estimator, sensor_estimators, seed, stop, ..self.job.run.clone() }
+    }
+}

@@ -1,0 +1,60 @@
+//! The methods that can be compared, and what each of them cannot do.
+
+use lumiduct_baselines::Baseline;
+use lumiduct_core::plan::Request;
+
+/// What can be compared: the estimators of this program and baselines.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Method {
+    /// An estimator.
+    Run(Request),
+    /// A baseline.
+    Baseline(Baseline),
+}
+
+impl Method {
+    /// All of them.
+    pub const ALL: [Self; 9] = [
+        Self::Run(Request::Forward),
+        Self::Run(Request::Backward),
+        Self::Run(Request::Mix),
+        Self::Baseline(Baseline::Sppm),
+        Self::Baseline(Baseline::Whitted),
+        Self::Baseline(Baseline::Metropolis),
+        Self::Run(Request::Gather),
+        Self::Run(Request::Mis),
+        Self::Run(Request::Auto),
+    ];
+
+    /// Its name on the command line and in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Run(request) => request.name(),
+            Self::Baseline(baseline) => baseline.name(),
+        }
+    }
+
+    /// The one of a name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|method| method.name() == name)
+    }
+
+    /// Whether it can tell the first passage of a path through a sensor from later ones.
+    pub(super) fn knows_first_passages(self) -> bool {
+        match self {
+            Self::Run(Request::Auto | Request::Forward | Request::Backward | Request::Mix)
+            | Self::Baseline(Baseline::Metropolis) => true,
+            Self::Run(Request::Gather | Request::Mis)
+            | Self::Baseline(Baseline::Sppm | Baseline::Whitted) => false,
+        }
+    }
+
+    /// Whether its gather paths have to meet the sources.
+    pub(super) fn meets_sources(self) -> bool {
+        match self {
+            Self::Run(Request::Auto | Request::Forward | Request::Mix) => false,
+            Self::Run(Request::Backward | Request::Gather | Request::Mis) => true,
+            Self::Baseline(Baseline::Sppm | Baseline::Whitted | Baseline::Metropolis) => true,
+        }
+    }
+}

@@ -1,4 +1,4 @@
-//! Computes the identifier of the exact build, the version with a digest of all sources, for `src/pipeline.rs`. Only files that
+//! Computes the identifier of the exact build, the version with a digest of all sources, for `src/pipeline/version.rs`. Only files that
 //! no other build may read contain it; a report never does.
 
 use std::env;

@@ -1,26 +1,24 @@
-//! The layer order of the crate: a module uses only modules of lower layers, and children never reach for `super::`.
+//! House rules: no circles of modules, children never reach for `super::`, and what the repository promises is there.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod graph;
+#[path = "../package/mod.rs"]
 mod package;
 
+use graph::{Graph, circles};
 use std::path::{Path, PathBuf};
 
-/// Folders of sources with their layers from the bottom up; modules of one layer do not see each other. Crates see each
-/// other as their manifests say.
-const CRATES: &[(&str, &[&[&str]])] = &[
-    ("crates/base/src", &[&["error", "units", "number", "text", "math"], &["mesh"], &["digest"]]),
-    (
-        "crates/core/src",
-        &[&["rng", "tally", "plan"], &["optics"], &["scene"], &["transport"], &["measure"]],
-    ),
-    ("crates/files/src", &[&["mesh"]]),
-    ("src", &[&["pipeline"], &["study"], &["cli"], &["main"]]),
+/// Sources of all crates. They see each other as their manifests say.
+const CRATES: [&str; 7] = [
+    "crates/base/src",
+    "crates/core/src",
+    "crates/files/src",
+    "crates/baselines/src",
+    "crates/input/src",
+    "crates/report/src",
+    "src",
 ];
-
-fn layer(layers: &[&[&str]], module: &str) -> Option<usize> {
-    layers.iter().position(|layer| layer.contains(&module))
-}
 
 fn sources(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
@@ -48,42 +46,31 @@ fn code(path: &Path) -> Vec<(usize, String)> {
         .collect()
 }
 
-/// The top-level module that a source file belongs to.
-fn module_of(path: &Path, root: &Path) -> String {
-    let relative = path.strip_prefix(root).unwrap();
-    let first = relative.components().next().unwrap();
-    Path::new(first.as_os_str()).file_stem().unwrap().to_string_lossy().into_owned()
+#[test]
+fn no_folder_has_a_circle_of_modules() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut found = Vec::new();
+    for folder in CRATES {
+        let arrows = Graph::of_crate(&root.join(folder)).arrows();
+        assert!(!arrows.is_empty(), "{folder} has no modules that use each other");
+        found.extend(circles(&arrows).into_iter().map(|circle| format!("{folder}: {circle}")));
+    }
+    assert!(found.is_empty(), "circles of modules:\n{}", found.join("\n"));
 }
 
 #[test]
-fn modules_use_only_lower_layers() {
-    let mut wrong = Vec::new();
-    for (folder, layers) in CRATES {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
-        for path in sources(&root) {
-            let module = module_of(&path, &root);
-            if module == "lib" {
-                continue;
-            }
-            let Some(own) = layer(layers, &module) else {
-                wrong.push(format!("{}: module `{module}` has no layer", path.display()));
-                continue;
-            };
-            for (line, text) in code(&path) {
-                for used in text.split("crate::").skip(1) {
-                    let name: String =
-                        used.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
-                    if let Some(other) = layer(layers, &name)
-                        && name != module
-                        && other >= own
-                    {
-                        wrong.push(format!("{}:{line}: `{module}` uses `{name}`", path.display()));
-                    }
-                }
-            }
-        }
+fn a_circle_through_a_re_export_is_found() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, code) in [
+        ("lib.rs", "mod a;\nmod b;\npub use b::B;"),
+        ("a.rs", "use crate::B;\npub struct A(B);"),
+        ("b.rs", "pub struct B;\n#[cfg(test)]\nmod tests { use crate::a::A; }"),
+    ] {
+        std::fs::write(folder.path().join(name), code).unwrap();
     }
-    assert!(wrong.is_empty(), "upward imports:\n{}", wrong.join("\n"));
+    assert!(circles(&Graph::of_crate(folder.path()).arrows()).is_empty());
+    std::fs::write(folder.path().join("b.rs"), "pub struct B(crate::a::A);").unwrap();
+    assert_eq!(circles(&Graph::of_crate(folder.path()).arrows()), [": a -> b -> a"]);
 }
 
 #[test]

@@ -1,8 +1,10 @@
-//! Laws that hold for every map of every committed report: the extremes enclose the average, the middle, the points of
-//! a uniformity and every cell that counts for itself.
+//! Committed reports belong to their scenes, and laws hold for every map of theirs: the extremes enclose the average, the
+//! middle, the points of a uniformity and every cell that counts for itself.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
 
+use lumiduct_input::{Settings, StudySettings, load, load_study};
+use lumiduct_report::Recipe;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -90,6 +92,37 @@ fn reports(folder: &Path) -> Vec<Report> {
         }
     }
     found
+}
+
+#[test]
+fn every_committed_report_is_of_its_scene_and_of_these_numerics() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    if !root.join("reports").exists() {
+        // The package has no reports.
+        return;
+    }
+    let read = |path: PathBuf| -> Value {
+        serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap()
+    };
+    let mut found = 0;
+    for entry in std::fs::read_dir(root.join("scenes")).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|extension| extension == "toml") {
+            let job = load(&path, &Settings::default()).unwrap();
+            let summary = read(root.join("reports").join(&job.name).join("summary.json"));
+            let identity = serde_json::to_value(Recipe::new(&job.hash, &job.run)).unwrap();
+            assert_eq!(summary["run"]["identity"], identity, "{}", path.display());
+            found += 1;
+        }
+    }
+    for entry in std::fs::read_dir(root.join("scenes/studies")).unwrap() {
+        let path = entry.unwrap().path();
+        let study = load_study(&path, &StudySettings::default()).unwrap();
+        let summary = read(root.join("reports/studies").join(&study.name).join("study.json"));
+        assert_eq!(summary["hash"], *study.hash, "{}", path.display());
+        found += 1;
+    }
+    assert!(found > 30, "{found} reports");
 }
 
 #[test]

@@ -97,7 +97,7 @@ impl Reader<'_> {
     }
 
     /// A path of the own crate from its root; `None` for others.
-    fn from_root(&self, path: &[String]) -> Option<Names> {
+    fn absolute(&self, path: &[String]) -> Option<Names> {
         let (first, rest) = path.split_first()?;
         match first.as_str() {
             "crate" => Some(rest.to_vec()),
@@ -129,7 +129,7 @@ impl Reader<'_> {
     }
 
     fn add(&mut self, path: &[String], name: &str, is_export: bool) {
-        let Some(path) = self.from_root(path) else { return };
+        let Some(path) = self.absolute(path) else { return };
         if is_export {
             self.module.exports.insert(name.to_owned(), path);
         } else {
@@ -161,7 +161,7 @@ impl<'c> Visit<'c> for Reader<'_> {
     fn visit_path(&mut self, path: &'c syn::Path) {
         let names: Names = path.segments.iter().map(|part| part.ident.to_string()).collect();
         if names.len() > 1
-            && let Some(path) = self.from_root(&names)
+            && let Some(path) = self.absolute(&names)
         {
             self.module.uses.insert(path);
         }

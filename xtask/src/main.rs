@@ -3,10 +3,13 @@
 #![allow(clippy::print_stdout, reason = "a program for developers")]
 
 mod manual;
+mod verify;
 
+use crate::verify::{Share, verify};
 use clap::Parser;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 
 /// Chores of the repository.
 #[derive(Debug, Parser)]
@@ -14,16 +17,30 @@ use std::path::{Path, PathBuf};
 enum Chore {
     /// Write the pages on scene and study files in docs from the schemas.
     Manual,
+    /// Run all scenes and studies anew and compare their committed reports byte by byte.
+    VerifyReports {
+        /// Only one in ten; the number of commits says which.
+        #[arg(long)]
+        tenth: bool,
+        /// The program to run, instead of one that is built for it.
+        #[arg(long)]
+        program: Option<PathBuf>,
+    },
 }
 
-fn main() -> io::Result<()> {
+fn main() -> io::Result<ExitCode> {
     match Chore::parse() {
         Chore::Manual => {
             for (page, markdown) in manual::pages() {
                 std::fs::write(root().join(page), markdown)?;
                 println!("{page}");
             }
-            Ok(())
+            Ok(ExitCode::SUCCESS)
+        }
+        Chore::VerifyReports { tenth, program } => {
+            let share = if tenth { Share::Tenth } else { Share::All };
+            let is_same = verify(share, program)?;
+            Ok(if is_same { ExitCode::SUCCESS } else { ExitCode::FAILURE })
         }
     }
 }

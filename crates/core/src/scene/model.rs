@@ -40,7 +40,7 @@ pub struct Finish {
     pub bsdf: Bsdf,
 }
 
-/// Everything a path can meet, ready to be traced. Made by [`Builder`].
+/// Everything a path can meet, ready to be traced. Made by [`Builder`](crate::scene::Builder).
 #[derive(Debug, Clone)]
 pub struct Scene {
     /// The user's coordinates of the internal origin, mm.

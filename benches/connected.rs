@@ -1,9 +1,10 @@
-//! The truth of `remote_cell_scatter` by another way: every photon is joined with the cell at every wall it meets.
+//! The truth of `remote_cell_scatter` by an independent method: every photon is connected to the
+//! cell from every wall it meets.
 //!
-//! `cargo bench --bench connected`. What the wall scatters toward a point of the cell counts by the value of its
-//! distribution function, so that the estimate has neither window nor bias, and no gather path takes part in it. Backward
-//! paths are weighed by ratios of cosines whose variance has no bound where the first wall is met at grazing incidence;
-//! these photons are not.
+//! `cargo bench --bench connected`. The scattering toward a point of the cell is weighted by the
+//! BSDF of the wall, so that the estimate has neither window nor bias and uses no gather path.
+//! Backward paths carry ratios of cosines whose variance is unbounded where they meet the first
+//! wall at grazing incidence; these photons do not.
 #![allow(clippy::print_stdout, reason = "a bench prints its result")]
 
 use glam::DVec3;
@@ -32,7 +33,7 @@ fn main() {
     println!("cell.flux {:.7} ± {:.7} lm, seed {SEED}", flux.mean(), flux.std_error());
 }
 
-/// Flux on the cell by the photons of a batch, lm.
+/// Flux on the cell from the photons of a batch, lm.
 fn flux(scene: &Scene, batch: u64) -> f64 {
     let wall = scene
         .finishes
@@ -63,7 +64,7 @@ fn flux(scene: &Scene, batch: u64) -> f64 {
     sum * source.flux / PATHS as f64
 }
 
-/// Throughput per area that the wall at a vertex scatters to a place on the cell, 1/mm².
+/// Throughput per area that the wall at a vertex scatters to a point of the cell, 1/mm².
 fn joined(
     scene: &Scene,
     wall: &Bsdf,

@@ -1,4 +1,5 @@
-//! What design elements cost: prism film against its planes, many elements against few, and the building of reliefs.
+//! The cost of design elements: prism film against its planes, many elements against few, and
+//! building reliefs.
 //!
 //! `cargo bench --bench elements`. One thread, two programs in turn; medians of the ratios of pairs, with their extremes.
 #![allow(clippy::print_stdout, reason = "a bench prints its results")]
@@ -13,7 +14,7 @@ use spread::Spread;
 
 /// Pairs of runs.
 const PAIRS: usize = 7;
-/// Segments of a run, about.
+/// Approximate number of segments of a run.
 const SEGMENTS: u64 = 3_000_000;
 
 /// A scene of the repository with some keys set.
@@ -39,7 +40,8 @@ fn speeds(job: &Job) -> [f64; 2] {
     [done.paths() as f64 / seconds, done.segments as f64 / seconds]
 }
 
-/// Both in turn: the paths per second of the first over those of the second, and segments per second of each.
+/// Runs both in turn: paths per second of the first over those of the second, and segments per
+/// second of each.
 fn compare(one: &Job, other: &Job) -> [Spread; 3] {
     let pairs: Vec<[[f64; 2]; 2]> = (0..PAIRS).map(|_| [speeds(one), speeds(other)]).collect();
     [
@@ -55,7 +57,7 @@ fn show(spread: Spread) -> String {
 }
 
 fn main() {
-    // On this thread, so that its clock sees all work.
+    // On this thread, so that its clock counts all the work.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build();
     pool.expect("one thread can be had").install(measure);
 }

@@ -1,11 +1,14 @@
-//! The method against forward and backward tracing on the scenes of docs/method.md: noise after the same CPU time, bias
-//! against committed truths, what the pilot of `auto` chooses, and what looking up records adds to a stream of photons.
+//! The method against forward and backward tracing on the scenes of docs/method.md: noise after the
+//! same CPU time, bias against committed truths, what the pilot of `auto` chooses, and what record
+//! look-ups add to tracing photons.
 //!
-//! `cargo bench --bench gather`, with the names of scenes after `--` for those alone. One thread; the estimators run in turn
-//! on each scene, gathering with its automatic settings. The variances are those of the flux (of an image: Σσ²/Σmean² over its
-//! pixels) within the widest window of the first stage, and of the value freed of the bias that goes with the window's square,
-//! from four runs of 64 passes with seeds of their own; confidence intervals are those of the ratio of two variances of normal
-//! samples. The truths are long unbiased runs, made once: see `ROWS`.
+//! `cargo bench --bench gather`, with scene names after `--` to restrict it to those. One thread;
+//! the estimators run in turn on each scene, gathering with its automatic settings. The variances
+//! are those of the flux (of an image: Σσ²/Σmean² over its pixels) within the widest window of the
+//! first stage, and of the value extrapolated to remove the bias that scales with the window's
+//! square, from four runs of 64 passes with separate seeds. Confidence intervals are those of the
+//! ratio of two variances of normal samples. The truths are long unbiased runs, made once: see
+//! `ROWS`.
 #![allow(clippy::print_stdout, reason = "a bench prints its table")]
 
 mod clock;
@@ -25,8 +28,8 @@ struct Row {
     std_error: f64,
 }
 
-/// Where nothing else is said: `lumiduct run scenes/NAME.toml --estimator backward --paths 60M` with the seeds named, means
-/// weighted by variance.
+/// Unless noted: `lumiduct run scenes/NAME.toml --estimator backward --paths 60M` with the seeds
+/// named, means weighted by variance.
 const ROWS: [Row; 7] = [
     // Seeds 20261, 20262, 20263.
     Row { scene: "remote_cell_sun", truth: 0.10938, std_error: 0.00028 },
@@ -40,18 +43,18 @@ const ROWS: [Row; 7] = [
     Row { scene: "remote_cell_led", truth: 0.0031524, std_error: 0.0000071 },
     // --time 280s, seed 20291.
     Row { scene: "remote_cell_bend", truth: 0.00596, std_error: 0.00017 },
-    // The image holds the whole exit: its flux is that of remote_cell_scatter.
+    // The image contains the whole exit, so its flux is that of remote_cell_scatter.
     Row { scene: "luminance_image_scatter", truth: 0.011507, std_error: 0.000023 },
 ];
-/// Runs of each estimator, with seeds of their own.
+/// Runs of each estimator, each with its own seed.
 const RUNS: u64 = 4;
-/// Passes of the gather method in a run, and waves of photons or backward paths.
+/// Passes of the gather method in a run; also waves of photons or backward paths.
 const PASSES: u64 = 64;
 const WAVES: u64 = 8;
 /// Groups of batches in a wave, and passes in a wave of passes.
 const GROUPS: f64 = 128.0;
 const WAVE_PASSES: u64 = 16;
-/// Relative error that times are told for, 1.
+/// Relative error that the reported times refer to, 1.
 const ERROR: f64 = 0.01;
 
 fn main() {
@@ -68,20 +71,20 @@ fn main() {
     }
 }
 
-/// What an estimator has found on the only sensor of a scene, and the CPU seconds it took.
+/// Result of an estimator on the only sensor of a scene, and the CPU seconds it took.
 struct Found {
     /// The flux and its standard error, lm.
     flux: f64,
     std_error: f64,
     /// Σ σ² over the cells, lm².
     variance: f64,
-    /// Σ mean² over the cells, without what noise adds, lm².
+    /// Σ mean² over the cells, less the contribution of noise, lm².
     square: f64,
     seconds: f64,
 }
 
 impl Found {
-    /// In one run.
+    /// Result of one run.
     fn new(scene: &Scene, readings: &Readings, seconds: f64) -> Self {
         let slot = Layout::new(scene).sensor_flux(SensorId::new(0), SourceId::new(0));
         let total = readings.scalar(slot);
@@ -99,7 +102,7 @@ impl Found {
         Self { flux, std_error, variance, square, seconds }
     }
 
-    /// In all of some runs of the same length.
+    /// Result of several runs of the same length together.
     fn in_all(runs: &[Self]) -> Self {
         let mean = |of: fn(&Self) -> f64| runs.iter().map(of).sum::<f64>() / runs.len() as f64;
         let shared = 1.0 / runs.len() as f64;
@@ -112,7 +115,8 @@ impl Found {
         }
     }
 
-    /// CPU seconds until noise is a share `ERROR` of what is to be measured, whose square is given.
+    /// CPU seconds until the noise is the share `ERROR` of the measured value, whose square is
+    /// given.
     fn time(&self, square: f64) -> f64 {
         self.variance / square * self.seconds / (ERROR * ERROR)
     }
@@ -144,7 +148,7 @@ fn compare(row: &Row) -> String {
         forward.time(square),
         backward.time(square),
         mix.time(square),
-        // No value without a first wave of passes.
+        // There is no value before the first wave of passes.
         value.time(square).max(value.seconds * WAVE_PASSES as f64 / (RUNS * PASSES) as f64),
     ];
     let [by_forward, by_backward, by_mix, by_gather] = times.map(|time| format!("{time:.1}"));
@@ -171,7 +175,7 @@ fn compare(row: &Row) -> String {
     )
 }
 
-/// What an estimator without windows finds.
+/// Result of an estimator without windows.
 fn plain(job: &Job, request: Request) -> Found {
     let of_run = |run| {
         let (seconds, findings) = traced(&job.scene, &plan(job, request, run), WAVES);
@@ -181,13 +185,13 @@ fn plain(job: &Job, request: Request) -> Found {
     Found::in_all(&(0..RUNS).map(of_run).collect::<Vec<Found>>())
 }
 
-/// What gathering finds.
+/// Result of gathering.
 struct Gathering {
     /// Within the widest window of the first stage, E1.
     wide: Found,
-    /// Freed of the bias that goes with the window's square, E0.
+    /// Extrapolated: without the bias that scales with the window's square, E0.
     value: Found,
-    /// Time of look-ups over that of the photons alone, 1.
+    /// Time of the look-ups over that of the photons alone, 1.
     look_up: f64,
 }
 
@@ -214,7 +218,7 @@ fn over_truth(row: &Row, found: &Found) -> (f64, f64) {
     (ratio, ratio * (found.std_error / found.flux).hypot(row.std_error / row.truth))
 }
 
-/// Traces some waves of a scene; CPU seconds and what was found.
+/// Traces some waves of a scene; returns CPU seconds and findings.
 fn traced(scene: &Scene, plan: &RunPlan, waves: u64) -> (f64, Findings) {
     let mut run = Run::new(scene, plan);
     let (seconds, ()) = cpu_seconds(|| (0..waves).for_each(|_| run.next_wave()));
@@ -234,7 +238,8 @@ fn photons_alone(job: &Job) -> f64 {
     seconds
 }
 
-/// CPU seconds of the gather paths of all passes, of their records and of the index, with a photon for each.
+/// CPU seconds of the gather paths of all passes, their records and the index, with one photon per
+/// pass.
 fn records_alone(job: &Job, settings: &GatherSettings) -> f64 {
     let gather = GatherPlan {
         records: Some(settings.gather_paths),
@@ -245,7 +250,7 @@ fn records_alone(job: &Job, settings: &GatherSettings) -> f64 {
     traced(&job.scene, &plan, PASSES / WAVE_PASSES).0
 }
 
-/// CPU seconds of the pilot of a run to the error that times are told for, and what it chooses.
+/// CPU seconds of the pilot of a run to the error `ERROR`, and the estimator it chooses.
 fn pilot(job: &Job) -> (f64, Estimator) {
     let measure = format!("{}.flux", job.scene.sensors[0].name);
     let target = Some(Target { measure, relative_error: ERROR });
@@ -256,7 +261,7 @@ fn pilot(job: &Job) -> (f64, Estimator) {
     (seconds, run.findings().estimators[0])
 }
 
-/// What to run, with automatic settings of the gather method, a seed for each run, and no end.
+/// The plan of a run: automatic settings of the gather method, a seed per run, no stop rule.
 fn plan(job: &Job, estimator: Request, run: u64) -> RunPlan {
     RunPlan {
         estimator,

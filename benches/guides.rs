@@ -1,4 +1,4 @@
-//! The guides of the benchmark scenes (DESIGN section 6), put together without a scene file.
+//! The guides of the benchmark scenes (DESIGN section 6), built without a scene file.
 
 use glam::DVec3;
 use lumiduct_base::math::{Aabb, Frame};
@@ -250,7 +250,7 @@ fn add_exit_sensor(builder: &mut Builder, face: FaceId, place: Place, half: f64)
     let area_in = |rect| builder.scene().face_area_in(face, rect);
     let areas = grid.cell_areas(area_in);
     let covered = grid.cell_cover(&areas, area_in);
-    // Light passes through an open exit and arrives from behind; out of a solid it leaves to the front.
+    // Light passes an open exit and arrives from behind; it leaves a solid to the front.
     let (counts, sides) = match place {
         Place::Port => (Counts::Incident, Sides::Back),
         Place::Face => (Counts::Leaving, Sides::Front),

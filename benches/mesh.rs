@@ -1,9 +1,10 @@
-//! What a ray meets next in a body of triangles: ours beside all triangles one by one, and beside a bare box tree.
+//! Finding the next triangle along a ray: our search against testing all triangles, and against a
+//! bare BVH.
 //!
-//! `cargo bench --bench mesh`. A round rod of 20,000 triangles; the rays are the straight pieces of real photon paths.
-//! All three ask a triangle the same question, and must give the same answers. The bare tree keeps the nearest crossing
-//! and nothing else: no coincident faces, no media. Ratios are medians of pairs of runs in turn, with the smallest and
-//! the largest.
+//! `cargo bench --bench mesh`. A round rod of 20,000 triangles; the rays are segments of real
+//! photon paths. All three use the same triangle test and must give the same answers. The bare tree
+//! keeps only the nearest crossing: no coincident faces, no media. Ratios are medians of pairs of
+//! runs in turn, with the smallest and the largest.
 #![allow(clippy::print_stdout, reason = "a bench prints its table")]
 
 #[allow(dead_code, reason = "shared with the other bench")]
@@ -32,11 +33,11 @@ use std::time::Duration;
 
 /// Facets around the rod and rings along it: 2 · 141 · 71 triangles.
 const FACETS: [u32; 2] = [141, 70];
-/// Rays asked in each run.
+/// Rays traced in each run.
 const RAYS: usize = 40_000;
-/// Every so many of them are asked of all triangles.
+/// Every how many rays one is tested against all triangles.
 const BRUTE_EVERY: usize = 500;
-/// How often a run asks all of its rays: a run is to last longer than a tick of the clock.
+/// How often a run repeats all its rays: a run must last longer than a tick of the clock.
 const ROUNDS: usize = 10;
 /// Pairs of runs.
 const PAIRS: usize = 9;
@@ -60,17 +61,17 @@ fn main() {
     println!("| all triangles, same test | {} |", compare(&few, brute, &queries, ours));
 }
 
-/// A ray to be followed to the next surface.
+/// A ray to follow to the next surface.
 #[derive(Clone)]
 struct Query {
     path: Path,
     /// The triangle it starts on.
     from: Option<usize>,
-    /// Which way it may go through a triangle: out of the rod or into it.
+    /// In which direction it may cross a triangle: out of the rod or into it.
     wanted: Toward,
 }
 
-/// The straight pieces of photon paths, in their order.
+/// The segments of photon paths, in order.
 fn queries(scene: &Scene) -> Vec<Query> {
     let mut queries = Vec::with_capacity(RAYS);
     for index in 0.. {
@@ -124,7 +125,8 @@ fn by_bare_tree(tree: &Bvh2, mesh: &Mesh, query: &Query) -> f64 {
     nearest
 }
 
-/// Distance to a triangle that counts, mm: passed the right way, and not the one that the ray starts on.
+/// Distance to a valid triangle, mm: crossed in the right direction, and not the one the ray starts
+/// on.
 #[inline]
 fn distance(mesh: &Mesh, triangle: usize, line: &Line, query: &Query) -> f64 {
     if query.from == Some(triangle) {
@@ -147,7 +149,7 @@ fn bare_tree(mesh: &Mesh) -> Bvh2 {
     build_bvh2(&boxes, BvhBuildParams::medium_build(), &mut Duration::default())
 }
 
-/// A fast wrong answer is none.
+/// All searches must agree: speed of a wrong answer means nothing.
 fn check(scene: &Scene, mesh: &Mesh, tree: &Bvh2, queries: &[Query], few: &[Query]) {
     let same = |a: f64, b: f64| a == b || (a - b).abs() < 1e-9;
     for query in queries {

@@ -1,7 +1,8 @@
-//! The same guides traced by hand: one loop for each, nothing general, as one would write it for this guide alone.
+//! The same guides traced by hand-written loops, one for each guide, with nothing general.
 //!
-//! The measure of what the general tracer costs. The physics is the same: Lambertian disk, mirror or Fresnel coin,
-//! roulette below the same throughput, flux by batch, a map of the exit and for the round rod the far field.
+//! They measure the cost of the general tracer. The physics is the same: Lambertian disk, mirror or
+//! Fresnel coin, roulette below the same throughput, flux by batch, a map of the exit and for the
+//! round rod the far field.
 
 use crate::guides::{FAR_RINGS, MAP_CELLS, Rod, Section, Tube};
 use glam::DVec3;
@@ -9,10 +10,10 @@ use rand_core::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use std::f64::consts::{PI, TAU};
 
-/// What a loop counts. Flux in units of the source's.
+/// What a loop counts. Flux is relative to that of the source.
 #[derive(Debug, Clone)]
 pub(crate) struct Counted {
-    /// Straight pieces, the last one into the open included.
+    /// Segments, including the last one that leaves the scene.
     pub(crate) segments: u64,
     /// Flux through the exit in each batch.
     pub(crate) batches: Vec<f64>,
@@ -157,7 +158,7 @@ fn square_path(rod: &Rod, half: f64, tracer: &mut Tracer) {
     }
 }
 
-/// How light goes on from an interface.
+/// How light continues from an interface.
 enum Leg {
     Reflected(DVec3),
     Refracted(DVec3),
@@ -190,7 +191,8 @@ impl Tracer {
         (p, DVec3::new(s * cos, s * sin, (1.0 - u).sqrt()))
     }
 
-    /// Starts a path before the rod and brings it in; `None` when it misses the entry or is reflected.
+    /// Starts a path before the rod and refracts it into the rod; `None` when it misses the entry
+    /// or is reflected.
     fn enter(&mut self, rod: &Rod, hits: impl Fn(DVec3) -> bool) -> Option<(DVec3, DVec3)> {
         let center = DVec3::new(rod.source_at[0], rod.source_at[1], -rod.gap);
         let (p, d) = self.lambertian_disk(center, rod.source_radius);
@@ -210,7 +212,7 @@ impl Tracer {
         }
     }
 
-    /// Fresnel for unpolarised light, from index `index` times that behind.
+    /// Fresnel for unpolarised light, where the index ahead is `index` times that behind.
     fn reflect_or_refract(&mut self, d: DVec3, normal: DVec3, index: f64) -> Leg {
         let cos = -d.dot(normal);
         let sin2 = index * index * (1.0 - cos * cos);
@@ -225,7 +227,7 @@ impl Tracer {
         Leg::Reflected(mirrored(d, normal, cos))
     }
 
-    /// A path of throughput 1 leaves the rod; `end` tells that it leaves through entry or exit.
+    /// A path of throughput 1 leaves the rod; `end` is true if it leaves through entry or exit.
     fn leave(&mut self, p: DVec3, d: DVec3, length: f64, end: bool) {
         self.counted.segments += 1;
         if end && p.z > 0.5 * length {

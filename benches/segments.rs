@@ -1,9 +1,11 @@
-//! How fast paths are traced: segments per second and what they are worth, beside a loop written by hand.
+//! How fast paths are traced: segments per second and their worth, compared with hand-written
+//! loops.
 //!
-//! `cargo bench --bench segments`. Ours and the plain loop run in turn on one thread; the ratio is the median over
-//! the pairs, with the smallest and largest. Worth is 1/(relative variance of the exit flux × CPU s). A last table
-//! compares two threads with one by the clock on the wall: it says something only on an otherwise idle machine.
-//! Fluxes are checked against the exact values: a fast wrong answer is none.
+//! `cargo bench --bench segments`. Ours and the plain loop run in turn on one thread; the ratio is
+//! the median over the pairs, with the smallest and largest. Worth is 1/(relative variance of the
+//! exit flux × CPU s). A last table compares two threads with one by elapsed time, which is
+//! meaningful only on an otherwise idle machine. Fluxes are checked against the exact values, for
+//! speed of a wrong answer means nothing.
 #![allow(clippy::print_stdout, reason = "a bench prints its table")]
 
 mod clock;
@@ -27,7 +29,7 @@ use std::time::Instant;
 
 /// Pairs of runs of each guide.
 const PAIRS: u64 = 7;
-/// Batches of both programs: one in each group of the readings.
+/// Batches of both programs: one per group of the readings.
 const BATCHES: u64 = 128;
 /// A flux further than this from the exact value is wrong, in standard errors.
 const TOO_FAR: f64 = 5.0;
@@ -129,7 +131,7 @@ fn compare(case: &Case, pool: &ThreadPool) -> String {
     format!("{head} | {} | {ratio} | {} | {} |", plain.speed(), ours.worth(), plain.worth())
 }
 
-/// What a run found.
+/// Result of a run.
 struct Outcome {
     segments: u64,
     flux: Tally,

@@ -1,4 +1,4 @@
-//! The command line: arguments, progress, exit codes. Its child `console` is all that prints.
+//! The command line: arguments, progress, exit codes. Only its child `console` prints.
 
 mod batch;
 mod check;
@@ -132,8 +132,8 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// Prints what is wrong with the arguments, or the help that was asked for. It names arguments with their control
-/// characters written out; a closed pipe is nobody's error.
+/// Prints what is wrong with the arguments, or the requested help. Control characters of arguments
+/// are escaped; a closed pipe is not an error.
 fn print_usage(error: &clap::Error) {
     let arguments = std::env::args_os().map(|argument| visible(&argument.to_string_lossy()));
     match Cli::try_parse_from(arguments) {

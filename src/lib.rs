@@ -1,8 +1,9 @@
 //! Photometric sensor data for light tubes and light guides.
 //!
-//! Light reaches the exit of a guide after tens or hundreds of specular bounces. Lumiduct follows it on exact surfaces
-//! in f64 and counts it on virtual sensors: flux, efficiency, illuminance maps, uniformity, intensity and luminance,
-//! each with an error bar, beside a flux balance that closes.
+//! Light reaches the exit of a guide after tens or hundreds of specular bounces. Lumiduct follows
+//! it on exact surfaces in f64 and counts it on virtual sensors: flux, efficiency, illuminance
+//! maps, uniformity, intensity and luminance, each with an error bar, together with a flux balance
+//! that closes.
 //!
 //! The flow, top to bottom in [`crate::pipeline`]:
 //!

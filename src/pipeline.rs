@@ -54,7 +54,8 @@ pub fn run_one(
     let dir = output_dir(scene, output);
     let lock = FolderLock::take(&dir)?;
     let (mut keeper, stand) = Keeper::open(&dir, recipe(&job), output)?;
-    // What a run has left in its own folder when it was stopped may be replaced by its whole report.
+    // A partial report that a stopped run left in its own folder may be replaced by the whole
+    // report.
     let existing = if stand.is_some() { Existing::Replace } else { output.existing };
     let folder = Folder::open(lock, existing, repeatable(&job).as_ref())?;
     let mut keep = |run: &Run<'_>, pause: Pause| match pause {
@@ -96,7 +97,7 @@ pub struct Finished {
     pub written: Written,
     /// Why the run ended.
     pub stop: Stop,
-    /// Where the report lies.
+    /// Folder of the report.
     pub dir: PathBuf,
     /// Remarks on the scene file.
     pub warnings: Vec<Diagnostic>,
@@ -107,7 +108,7 @@ fn recipe(job: &Job) -> Recipe {
     Recipe::new(&job.hash, &job.run)
 }
 
-/// What decides the bytes of a job's report; nothing does when the clock stops the run.
+/// What determines the bytes of a job's report; `None` where the clock stops the run.
 fn repeatable(job: &Job) -> Option<Recipe> {
     job.run.stop.time.is_none().then(|| recipe(job))
 }
@@ -178,7 +179,7 @@ fn inventory_of(job: &Job) -> Inventory {
     Inventory::of(&job.scene, &Outline::of(job.places.root()))
 }
 
-/// Paths that a report draws.
+/// Number of paths that a report draws.
 const REPORT_PATHS: usize = 60;
 
 fn shown_tracks(job: &Job, count: usize) -> Vec<Track> {

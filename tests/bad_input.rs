@@ -1,9 +1,10 @@
-//! Bad scene files, each with its expected problems written beside the lines that have them.
+//! Bad scene files, each with its expected problems written next to the lines that have them.
 //!
-//! A comment `#~ key: words | words` at the end of a line expects one diagnostic for that line, with that key, and
-//! with these words in its message or hint; `#~7 ...` expects it for line 7, `#~0 ...` for no line. A line
-//! `#~-D key=value` sets a value on the command line, `#~include file` expects the problems that another file states.
-//! Every problem is to be reported, and nothing else.
+//! A comment `#~ key: words | words` at the end of a line expects one diagnostic for that line,
+//! with that key, and with these words in its message or hint; `#~7 ...` expects it for line 7,
+//! `#~0 ...` for no line. A line `#~-D key=value` sets a value on the command line,
+//! `#~include file` expects the problems given in another file. Every problem must be reported, and
+//! nothing else.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
 
@@ -164,7 +165,7 @@ fn relative_paths_start_at_the_folder_of_the_file_that_names_them() {
     assert_eq!(loaded.places.line(&cells), Some(1));
 }
 
-/// Numbers that look random and are the same in every run (Steele et al., OOPSLA 2014, `SplitMix64`).
+/// Pseudo-random numbers, the same in every run (Steele et al., OOPSLA 2014, `SplitMix64`).
 fn random(state: &mut u64) -> u64 {
     *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let mut z = *state;

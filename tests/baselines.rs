@@ -1,5 +1,5 @@
-//! The baselines of the comparison against closed forms. They are small programs, but a comparison with a wrong one
-//! would say nothing.
+//! The baselines of the comparison against closed forms. They are small programs, but a comparison
+//! with a wrong one would be worthless.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
 
@@ -37,7 +37,7 @@ fn value(job: &Job, readings: &Readings, name: &str) -> Measure {
     measure::value_of(&job.scene, &Findings::forward(readings.clone()), name).unwrap()
 }
 
-/// The flux is what it has to be, within 4 standard errors, which are at most `most`, and a bias.
+/// Asserts the expected flux within a bias and 4 standard errors of at most `most` each.
 fn assert_flux(job: &Job, baseline: Baseline, batches: u64, expected: f64, [most, bias]: [f64; 2]) {
     let (readings, _) = traced(job, baseline, batches);
     let name = format!("{}.flux", job.scene.sensors[0].name);
@@ -148,7 +148,8 @@ radius_mm = 4
 
 #[test]
 fn metropolis_divides_light_among_cells_as_gather_paths_do() {
-    // A lamp of two parts, one of them nine times as bright, behind a rod: most paths bring nothing.
+    // A lamp of two parts, one of them nine times as bright, behind a rod: most paths carry
+    // nothing.
     let job = job(&format!(
         "{}{}",
         include_str!("rod.toml"),

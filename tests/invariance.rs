@@ -1,5 +1,5 @@
-//! What must not change: the answer with the unit and the place of a scene, the skew of a ray with its bounces, and the
-//! sum of all light in any scene.
+//! Invariances: results do not depend on the unit and the place of a scene, the skew of a ray is
+//! conserved over bounces, and so is the sum of all light in any scene.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
 
@@ -12,17 +12,18 @@ use lumiduct_input::{self as input, Job, Settings};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-/// Paths of a run here: a single one that goes another way shows as 1e-5 of the flux.
+/// Paths of a run: a single path that diverges shows as 1e-5 of the flux.
 const PATHS: u64 = 100_000;
-/// Curved walls spread rounding by a factor at every bounce, so the last digit sends one of the longest paths elsewhere
-/// now and then: the most of them here. Noise alone would be some hundreds of paths.
+/// Curved walls spread rounding by a factor at every bounce, so the last digit diverts one of the
+/// longest paths now and then: this is the largest share of them. Noise alone would be some
+/// hundreds of paths.
 const ASTRAY: f64 = 5e-5;
-/// Segments over all shipped scenes in which none may leak, and those of a scene with a mesh, which takes ten times as
-/// long for one.
+/// Segments over all shipped scenes, none of which may leak, and those of a scene with a mesh,
+/// which takes ten times as long per segment.
 const SEGMENTS: u64 = 100_000_000;
 const MESH_SEGMENTS: u64 = 5_000_000;
 
-/// A folder of scenes that ends with the test.
+/// A folder of scenes that is removed after the test.
 struct Scenes(tempfile::TempDir);
 
 impl Scenes {
@@ -40,7 +41,7 @@ impl Scenes {
 
 fn load(path: &Path, overrides: &[&str]) -> Job {
     let overrides = overrides.iter().map(|one| (*one).to_owned()).collect();
-    // Photons see all of a scene.
+    // Photons reach all parts of a scene.
     let estimator = Some(Request::Forward);
     let settings = Settings { overrides, paths: Some(PATHS), estimator, ..Settings::default() };
     match input::load(path, &settings) {
@@ -180,8 +181,8 @@ fn answers_do_not_depend_on_the_place_of_a_scene() {
     }
 }
 
-/// Largest change of x dy - y dx about the z axis over the vertices of some paths, mm, with the number of vertices of
-/// the shortest path. The scene's solids and sheets stand at the origin.
+/// Largest change of x dy - y dx about the z axis over the vertices of some paths, mm, with the
+/// number of vertices of the shortest path. The scene's solids and sheets are at the origin.
 fn drift_of_skew(job: &Job) -> (f64, usize) {
     const LOOKS: u64 = 50;
     let (mut drift, mut shortest) = (0.0f64, usize::MAX);

@@ -1,4 +1,4 @@
-//! Memory of the gather method goes with its records: neither passes nor photons are kept.
+//! Memory of the gather method scales with its records: neither passes nor photons are kept.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
 #![allow(clippy::print_stdout, reason = "figures, shown by --nocapture and on failure")]
@@ -8,7 +8,8 @@ use lumiduct_core::transport::Run;
 use lumiduct_input::{self as input, GatherSettings, Settings};
 use peak_alloc::PeakAlloc;
 
-/// Counts what is allocated: what the system lends a process besides depends on its threads and its load.
+/// Counts allocated memory: what the system gives a process beyond that depends on threads and
+/// load.
 #[global_allocator]
 static ALLOCATED: PeakAlloc = PeakAlloc;
 
@@ -34,11 +35,11 @@ const RECORDS: u64 = 4000;
 /// Photons of a pass. Kept, those of 1,000 passes would take 100 MB at 50 bytes each, and records 800 MB.
 const PHOTONS: u64 = 2000;
 const WAVE: u64 = 16;
-/// What memory may change by, MB: the sums over passes, of which as many are held as their number has binary digits, each
-/// of 0.2 MB here.
+/// Allowed change of memory, MB: the sums over passes, as many as their number has binary digits,
+/// each of 0.2 MB here.
 const LEEWAY_MB: f64 = 2.0;
 
-/// Memory after each of some numbers of passes: what is held, and the most that was, MB.
+/// Memory after each of some numbers of passes: current and peak, MB.
 fn memory<const N: usize>(photons: u64, passes: [u64; N]) -> [[f64; 2]; N] {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("tube.toml");
@@ -63,7 +64,7 @@ fn memory<const N: usize>(photons: u64, passes: [u64; N]) -> [[f64; 2]; N] {
     })
 }
 
-/// A scene of plain cylinders side by side, each a solid of its own.
+/// A scene of plain cylinders side by side, each a separate solid.
 fn cylinders(count: usize) -> String {
     let mut text = String::from(
         "lumiduct = 1\ntitle = \"Many\"\n[media.acrylic]\nindex = 1.49\n[sources.led.point]\nat = { position_mm = [0, 0, -1] }\n\
@@ -78,7 +79,8 @@ fn cylinders(count: usize) -> String {
     text
 }
 
-/// The most memory that is needed beyond what was held before: to read a scene, to trace a wave, and to draw it for its page, MB.
+/// Peak memory beyond the initial one: to read a scene, to trace a wave, and to draw it for its
+/// page, MB.
 fn most_for_cylinders(count: usize) -> f64 {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("many.toml");
@@ -94,10 +96,10 @@ fn most_for_cylinders(count: usize) -> f64 {
     f64::from(ALLOCATED.peak_usage_as_mb() - before)
 }
 
-/// Most memory of a plain solid, MB: its three faces have six sums in each of 128 groups, twice.
+/// Largest memory of a plain solid, MB: its three faces have six sums in each of 128 groups, twice.
 const SOLID_MB: f64 = 0.020;
 
-/// One test alone, for memory belongs to the whole process.
+/// A single test, as memory is counted for the whole process.
 #[test]
 fn memory_grows_neither_with_passes_nor_with_photons_and_little_with_solids() {
     let [few, many] = [600, 1600].map(most_for_cylinders);
@@ -107,7 +109,7 @@ fn memory_grows_neither_with_passes_nor_with_photons_and_little_with_solids() {
     let [[early, _], [late, most]] = memory(PHOTONS, [112, 1120]);
     println!("held after 112 passes {early:.1} MB, after 1120 {late:.1} MB, at most {most:.1} MB");
     assert!(late - early < LEEWAY_MB, "1,008 passes took {:.1} MB", late - early);
-    // Most of it within a pass counts here, for what a pass keeps is given back at its end.
+    // The peak within a pass counts here, as the memory of a pass is freed at its end.
     let [[_, with_many]] = memory(50 * PHOTONS, [32]);
     println!("with 50 times the photons at most {with_many:.1} MB");
     assert!(with_many - most < LEEWAY_MB, "photons took {:.1} MB", with_many - most);

@@ -15,7 +15,7 @@ fn the_light_guide_of_the_scenes_is_sound() {
     let health = health(&mesh);
     assert!(health.is_sound(), "{health:?}");
     assert_eq!((health.shells, health.opposed_normals.count, &health.facets), (1, 0, &None));
-    // A bent rod is as big as a straight one (Pappus): π r² L, less what 96 facets cut off.
+    // A bent rod has the volume of a straight one (Pappus): π r² L, less what 96 facets cut off.
     let share = health.signed_volume_mm3 / (PI * 4.0 * 40.0);
     assert!((share - (TAU / 96.0).sin() / (TAU / 96.0)).abs() < 1e-4, "{share}");
 }

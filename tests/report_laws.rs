@@ -1,5 +1,5 @@
-//! Committed reports belong to their scenes, and laws hold for every map of theirs: the extremes enclose the average, the
-//! middle, the points of a uniformity and every cell that counts for itself.
+//! Committed reports belong to their scenes, and every map obeys these laws: the extremes enclose
+//! the average, the middle, the points of a uniformity and every cell that counts for itself.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
 
@@ -8,11 +8,11 @@ use lumiduct_report::Recipe;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
-/// Errors that two numbers of one report may differ by against a law.
+/// Errors by which two numbers of one report may violate a law.
 const SIGMAS: f64 = 4.0;
-/// Chance that the noise of any of the cells of a map breaks a law.
+/// Probability that the noise of any cell of a map breaks a law.
 const CHANCE: f64 = 1e-3;
-/// Share of a cell on the sensor from which it counts for itself.
+/// Least share of a cell on the sensor for it to count for itself.
 const WHOLE: f64 = 0.5;
 
 /// A value with its total error.
@@ -23,7 +23,7 @@ struct Reading {
 }
 
 impl Reading {
-    /// Asserts that this is no larger than another, within so many errors of both.
+    /// Asserts that this is no larger than another, within this many errors of both.
     fn assert_below(self, other: Self, sigmas: f64, law: &str) {
         let room = sigmas * self.error.hypot(other.error) + 1e-9 * self.value.abs();
         assert!(self.value <= other.value + room, "{law}: {self:?} above {other:?}");

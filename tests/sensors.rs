@@ -1,4 +1,4 @@
-//! What sensors count of light that comes from, passes by, or is absorbed at special places.
+//! Sensor counts of light that starts at, passes, or is absorbed at special places.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
 
@@ -166,14 +166,15 @@ fn an_image_shows_the_rim_of_a_wall_where_the_eye_sees_it() {
     for (estimator, paths) in [(Request::Forward, 2_000_000), (Request::Backward, 100_000)] {
         let found = measures_by(estimator, paths, &text);
         let (left, right) = (&found.values["camera.cell.0.0"], &found.values["camera.cell.1.0"]);
-        // The rim bends away from the line between the pixels, 3.6 of 53 mm at the edge of the field, and points of the
-        // aperture see it shifted by up to 10 mm.
+        // The rim deviates from the line between the pixels, by 3.6 of 53 mm at the edge of the
+        // field, and points of the aperture see it shifted by up to 10 mm.
         assert!(left.value > 0.85 * WALL_LUMINANCE, "{estimator:?}: {left}");
         assert!(right.value < 0.15 * WALL_LUMINANCE, "{estimator:?}: {right}");
     }
 }
 
-/// A mirror that every gather path of the cell meets, where the bounce limit of one interface cuts it.
+/// A mirror that every gather path of the cell meets, where a bounce limit of one interface ends
+/// it.
 #[test]
 fn what_the_bounce_limit_cuts_of_gather_paths_is_told() {
     let text = r#"
@@ -202,7 +203,7 @@ fn what_the_bounce_limit_cuts_of_gather_paths_is_told() {
     }
 }
 
-/// Light that a photon brings over one interface, the sensor's own, is not beyond a limit of one.
+/// Light that a photon carries across one interface, the sensor's own, is within a limit of one.
 #[test]
 fn gather_paths_of_leaving_light_reach_as_far_as_photons() {
     let text = r#"
@@ -277,7 +278,7 @@ far = {{ goniometer = {{ c_step_deg = 360, gamma_step_deg = 180 }}, aim = ["bloc
         assert!(one.value > 0.3 && error < 0.1 * one.value, "{name}: {one} and {other}");
         assert!((one.value - other.value).abs() < 4.0 * error, "{name}: {one} and {other}");
     }
-    // The mean over a curved face is over its area.
+    // The mean over a curved face is taken over its area.
     let mean = value(&forward, "wall.illuminance_avg") / value(&forward, "wall.flux");
     assert!((mean * 306.8e-6 - 1.0).abs() < 1e-3, "{mean}");
 }
@@ -331,7 +332,7 @@ fn a_lamp_at_40_degrees_is_the_brightest_in_an_image() {
         "#,
     );
     let found = &found.values["cam.luminance_max"];
-    // 25 paths a pixel: the error of the largest of some 28 bright pixels is below a fifth.
+    // 25 paths per pixel: the error of the largest of some 28 bright pixels is below a fifth.
     assert!(found.total_error() < 2e4, "{found}");
     assert!((found.value - 1e5).abs() < 3.0 * found.total_error(), "{found}");
 }

@@ -1,4 +1,5 @@
-//! The example studies: their results in the repository are those of the studies as they are, and come out the same.
+//! The example studies: their results in the repository belong to the current studies and are
+//! reproducible.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -12,7 +13,7 @@ use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The design of each study that is traced again; another would do.
+/// The design of each study that is traced again; any other would do.
 const AGAIN: u64 = 3;
 
 fn studies() -> Vec<PathBuf> {
@@ -76,14 +77,15 @@ fn a_design_of_every_study_comes_out_as_it_is_in_the_repository() {
         let record = |folder: &Path| -> DesignRecord {
             let path = folder.join(format!("designs/{AGAIN:04}.json"));
             let record: DesignRecord = serde_json::from_slice(&fs::read(path).unwrap()).unwrap();
-            // Another build may have traced what is in the repository; its numbers are the same.
+            // Another build may have traced the results in the repository; its numbers are the
+            // same.
             DesignRecord { build: String::new(), ..record }
         };
         assert_eq!(record(folder.path()), record(&results(&path)), "{}", path.display());
     }
 }
 
-/// A rod of two indices, under a seed.
+/// A rod with two indices, for a seed.
 const PAIR: &str = r#"
 lumiduct_study = 1
 title = "Two rods"
@@ -130,7 +132,7 @@ fn the_error_of_a_difference_is_what_it_says_and_smaller_than_that_of_independen
         errors.push(behind.std_error);
         alone.push(first.std_error.hypot(second.std_error));
     }
-    // The spread over seeds is the truth; of 48 it is itself known to 1/sqrt(2 * 47) = 10 %.
+    // The spread over seeds is the truth; with 48 seeds its own error is 1/sqrt(2 * 47) = 10 %.
     let spread = lumiduct_core::tally::Tally::of(differences.iter().copied());
     let spread = spread.std_error() * (differences.len() as f64).sqrt();
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;

@@ -97,7 +97,7 @@ pub(super) fn batch(args: &BatchArgs) -> ExitCode {
     match outcome {
         Ok(finished) => {
             let code = tell(&finished, args.quiet);
-            // A batch that was stopped has judged no study yet.
+            // A batch that was stopped has no verdict yet.
             let Some(report) = &finished.report else { return code };
             write_junit(junit.as_ref(), || study_junit(report), code)
         }
@@ -105,7 +105,7 @@ pub(super) fn batch(args: &BatchArgs) -> ExitCode {
     }
 }
 
-/// Prints what came of a batch; the exit code says whether every design is what was wanted.
+/// Prints the outcome of a batch; the exit code says whether every design is as requested.
 pub(super) fn tell(finished: &Finished, quiet: bool) -> ExitCode {
     if !quiet {
         warn(&finished.warnings);

@@ -13,7 +13,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
 
-/// How much longer than a method the truth is traced, unless told otherwise.
+/// Default ratio of the time for the truth to the time of a method.
 const TRUTH_TIMES: u32 = 10;
 
 #[derive(Debug, Args)]

@@ -1,13 +1,13 @@
 //! What is printed: results on stdout, everything else on stderr.
 //!
-//! Streams may be closed or full. That never ends the program with a panic: exit codes say what the work deserves.
-//! Control characters of names and titles never reach a terminal.
+//! Streams may be closed or full. The program never panics because of it, and the exit code still
+//! reflects the work. Control characters in names and titles never reach a terminal.
 
 use lumiduct_base::error::Error;
 use lumiduct_base::text::visible;
 use std::io::{ErrorKind, Write};
 
-/// Prints to stdout; a reader that closed the pipe has seen enough.
+/// Prints to stdout; a pipe that the reader has closed is not an error.
 pub(super) fn print(text: &str) -> Result<(), Error> {
     let (text, mut stdout) = (visible(text), std::io::stdout());
     match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
@@ -18,12 +18,13 @@ pub(super) fn print(text: &str) -> Result<(), Error> {
     }
 }
 
-/// Prints to stderr in one write. A text that nobody can read is lost, for there is no place left to say so.
+/// Prints to stderr in one write. If stderr fails the text is lost: there is nowhere left to report
+/// it.
 pub(super) fn print_error(text: &str) {
     _ = std::io::stderr().write_all(visible(text).as_bytes());
 }
 
-/// The same for a text in colours: of control characters the sequences that set a colour stay.
+/// The same for coloured text: of the control characters only colour sequences are kept.
 pub(super) fn print_coloured(text: &str) {
     let mut pieces = text.split("\u{1b}[");
     let mut shown = visible(pieces.next().unwrap_or_default());

@@ -6,10 +6,10 @@ use lumiduct_input::diagnostic::{self, Colour};
 use std::io::{ErrorKind, IsTerminal};
 use std::process::ExitCode;
 
-/// What shells give for a program that was stopped by Ctrl-C: 128 and the number of the signal.
+/// The exit code that shells use after Ctrl-C: 128 plus the number of the signal.
 pub(super) const INTERRUPTED: u8 = 130;
 
-/// Prints a text, or says why there is none.
+/// Prints a text, or the error in place of it.
 pub(super) fn finish(text: Result<String>) -> ExitCode {
     match text.and_then(|text| print(&text)) {
         Ok(()) => ExitCode::SUCCESS,

@@ -20,7 +20,7 @@ pub(super) fn open_junit(
     JunitFile::open(file, existing).map(Some)
 }
 
-/// Writes a JUnit XML file where one is wanted, and gives back the exit code of the rest.
+/// Writes a JUnit XML file where one is wanted, and returns the exit code of the rest.
 pub(super) fn write_junit(
     file: Option<&JunitFile>,
     xml: impl FnOnce() -> Result<String, Error>,

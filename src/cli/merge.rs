@@ -1,4 +1,4 @@
-//! `lumiduct merge`: parts become the whole.
+//! `lumiduct merge`: joins parts to the whole.
 
 use crate::cli::exit::fail;
 use crate::cli::junit::{open_junit, write_junit};

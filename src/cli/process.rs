@@ -14,12 +14,12 @@ pub(super) fn use_threads(threads: Option<u16>) -> Result<(), Error> {
         .map_err(|reason| Error::Usage(format!("--threads {threads}: {reason}")))
 }
 
-/// A flag that Ctrl-C raises. It ends tracing; the second time, and while nothing is traced, it
-/// ends the program.
+/// A flag that Ctrl-C sets. It ends tracing; a second Ctrl-C, or one while nothing is traced, ends
+/// the program.
 pub(super) fn on_ctrl_c() -> Interrupt {
     let interrupt = Interrupt::default();
     let on_signal = interrupt.clone();
-    // Without a handler Ctrl-C ends the program at once: worse, but no reason not to run.
+    // Without a handler Ctrl-C ends the program at once, which is no reason not to run.
     _ = ctrlc::set_handler(move || match on_signal.request() {
         StopAnswer::EndRun => {}
         StopAnswer::EndProgram => {

@@ -100,7 +100,7 @@ pub(super) struct GatherArgs {
 }
 
 impl GatherArgs {
-    /// The wishes.
+    /// The gather settings.
     pub(super) fn settings(&self) -> GatherSettings {
         GatherSettings {
             depth: self.depth,
@@ -159,7 +159,7 @@ pub(super) fn run(args: &RunArgs) -> ExitCode {
     }
 }
 
-/// Prints what a run has found; the exit code says whether it is what its scene asked for.
+/// Prints the results of a run; the exit code says whether it meets what its scene asks for.
 pub(super) fn tell(finished: &Finished, quiet: bool) -> ExitCode {
     let is_kept = matches!(finished.written, Written::Nothing { .. });
     let text = lumiduct_report::terminal(&finished.report, &finished.dir, &finished.written);

@@ -19,7 +19,7 @@ pub(super) fn parse_count(text: &str) -> Result<u64, String> {
     if !(1.0..=9e15).contains(&count) {
         return Err(format!("`{text}` is out of range, expected 1 to 9e15"));
     }
-    // 1.0001k has 1000.1; products of decimal fractions are a little off.
+    // 1.0001k is 1000.1; products of decimal fractions are slightly inexact.
     if (count - count.round()).abs() > 1e-9 * count {
         return Err(format!("`{text}` is no whole number"));
     }
@@ -37,7 +37,7 @@ pub(super) fn parse_records(text: &str) -> Result<u64, String> {
     Ok(count)
 }
 
-/// A relative error with its percent sign: without one, 0.5 might be taken for a half of a percent or for a half.
+/// A relative error with its percent sign: without one, 0.5 might mean half a percent or a half.
 pub(super) fn parse_percent(text: &str) -> Result<f64, String> {
     let value = text.strip_suffix('%').and_then(|digits| digits.trim().parse::<f64>().ok());
     let fraction = 0.01 * value.ok_or_else(|| format!("`{text}` is no percentage; try 0.5%"))?;
@@ -93,12 +93,12 @@ pub(super) fn parse_number(text: &str) -> Result<f64, String> {
     if value.is_finite() { Ok(value) } else { Err(format!("`{text}` is not finite")) }
 }
 
-/// A number of errors that is above 0.
+/// A number of standard errors above 0.
 pub(super) fn parse_sigmas(text: &str) -> Result<f64, String> {
     parse_between(text, "a number of errors", f64::INFINITY, "a finite number above 0")
 }
 
-/// One of some words, and what it stands for.
+/// One of some words, and its value.
 pub(super) fn words<T: Clone + Send + Sync + 'static, const N: usize>(
     names: [&'static str; N],
     named: fn(&str) -> Option<T>,

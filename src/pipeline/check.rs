@@ -14,11 +14,11 @@ const CHECK_PATHS: usize = 50;
 pub struct CheckPictures {
     /// The file of the cross-section; `None` is NAME.check.png in this folder.
     pub picture: Option<PathBuf>,
-    /// What becomes of a `picture` that is there.
+    /// What to do with an existing `picture`.
     pub existing: Existing,
     /// How the cross-section is drawn.
     pub section: SectionView,
-    /// Whether the scene in three dimensions is written beside the picture.
+    /// Whether the 3D page of the scene is written next to the picture.
     pub page: CheckPage,
 }
 
@@ -68,7 +68,7 @@ pub fn check(scene: &Path, settings: &Settings, wished: &CheckPictures) -> Resul
     Ok(Checked { text, warnings: job.warnings })
 }
 
-/// The file of the page beside a picture.
+/// The file of the page next to a picture.
 fn page_beside(picture: &Path) -> Result<PathBuf> {
     let path = picture.with_extension("html");
     if path != picture {

@@ -1,4 +1,4 @@
-//! Checkpoints of a long run: how far it has come, on disk every now and then.
+//! Checkpoints of a long run: its state, saved to disk at intervals.
 
 use crate::pipeline::output::{Output, Start};
 use crate::pipeline::snapshot::{self, Kind};
@@ -16,9 +16,9 @@ const NAME: &str = "checkpoint.bin";
 #[derive(Serialize, Deserialize)]
 pub(super) struct Checkpoint {
     pub(super) state: State,
-    /// Waves after which the stop rules are looked at next.
+    /// Waves after which the stop rules are checked next.
     pub(super) round_end: u64,
-    /// Time that it has taken so far.
+    /// Elapsed time so far.
     pub(super) elapsed: Duration,
 }
 
@@ -31,8 +31,8 @@ pub(super) struct Keeper {
 }
 
 impl Keeper {
-    /// Looks for a checkpoint of this recipe to resume. One that is not to be resumed is in the way, unless it may be
-    /// replaced.
+    /// Looks for a checkpoint of this recipe to resume. One that is not to be resumed is an error,
+    /// unless it may be replaced.
     pub(super) fn open(
         dir: &Path,
         recipe: Recipe,
@@ -93,7 +93,7 @@ impl Keeper {
         snapshot::write(&self.path, Kind::Checkpoint, &(&self.recipe, &checkpoint))
     }
 
-    /// Keeps a checkpoint of a run that the user has stopped, if any were wanted.
+    /// Keeps a checkpoint of a run that the user has stopped, if checkpoints are enabled.
     pub(super) fn keep_last(
         &mut self,
         run: &Run<'_>,
@@ -103,7 +103,7 @@ impl Keeper {
         if self.every.is_some() { self.keep(run, round_end, elapsed) } else { Ok(()) }
     }
 
-    /// Takes the checkpoint of a run away that has come to its end.
+    /// Removes the checkpoint of a run that has ended.
     pub(super) fn remove(&self) -> Result<()> {
         remove_if_there(&self.path)
     }

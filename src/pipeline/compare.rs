@@ -1,7 +1,8 @@
-//! The comparison of estimators: each in turn on the same time, several runs each, against a truth.
+//! The comparison of estimators: each in turn for the same time, several runs each, against a
+//! truth.
 //!
-//! A run of an estimator is looked at now and then; that costs it no time. How errors follow from what it had found is
-//! for the report to say.
+//! A run of an estimator is sampled at checkpoints, which does not count toward its time. The
+//! report computes the errors from the samples.
 
 mod bench;
 mod method;
@@ -27,7 +28,7 @@ use lumiduct_report::{self as report, Comparison, Contestant, Folder, FolderLock
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Refuses methods that know no first passages where the sensor counts nothing else.
+/// Refuses methods without first passages where the sensor counts only those.
 fn expect_passages(job: &Job, sensor: SensorId, methods: &[Method]) -> Result<()> {
     let sensor = &job.scene.sensors[sensor.index()];
     let unable: Vec<&str> = methods
@@ -56,7 +57,7 @@ pub struct CompareWishes {
     pub time: Duration,
     /// Independent runs of each method, 2 at least.
     pub repetitions: u32,
-    /// What is held against them.
+    /// What they are compared with.
     pub truth: TruthWish,
 }
 
@@ -65,7 +66,7 @@ pub struct CompareWishes {
 pub struct Compared {
     /// The table, for the terminal.
     pub text: String,
-    /// Where the files lie.
+    /// Folder of the files.
     pub dir: PathBuf,
     /// Remarks on the scene file.
     pub warnings: Vec<Diagnostic>,
@@ -75,7 +76,7 @@ pub struct Compared {
 const CHECKPOINTS: i32 = 13;
 const CHECKPOINT_RATIO: f64 = std::f64::consts::SQRT_2;
 
-/// Compares methods on a sensor of a scene file and writes what came out.
+/// Compares methods on a sensor of a scene file and writes the results.
 pub fn compare(
     scene: &Path,
     settings: &Settings,
@@ -84,7 +85,7 @@ pub fn compare(
     interrupt: &Interrupt,
     watch: &mut dyn FnMut(&str),
 ) -> Result<Compared> {
-    // Wishes for gathering are of use; which estimator the file asks for is not.
+    // The gather settings of the file are used; its choice of estimator is not.
     let loading =
         Settings { estimator: Some(Request::Auto), time: Some(wishes.time), ..settings.clone() };
     let job = input::load(scene, &loading)?;
@@ -154,7 +155,7 @@ fn contestant(
     Ok(Contestant { name: method.name().to_owned(), runs, cut })
 }
 
-/// The sensor of a name, or the only one.
+/// The sensor of this name, or the only one.
 fn sensor(job: &Job, name: Option<&str>) -> Result<SensorId> {
     let names: Vec<&str> = job.scene.sensors.iter().map(|sensor| sensor.name.as_str()).collect();
     let all = names.join(", ");
@@ -203,7 +204,7 @@ fn expect_able(job: &Job, methods: &[Method]) -> Result<()> {
     }
 }
 
-/// `reports/NAME-compare` after the scene file, unless told otherwise.
+/// `reports/NAME-compare` after the scene file, unless a folder is given.
 fn dir_of(scene: &Path, output: &Output) -> PathBuf {
     match output.dir {
         Some(_) => output_dir(scene, output),

@@ -1,19 +1,19 @@
-//! Where the report of a run goes, and what may happen to files that are there.
+//! Where the report of a run goes, and what may happen to existing files.
 
 use lumiduct_report::Existing;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Where the report goes, and whether one that is there may be replaced.
+/// Where the report goes, and whether an existing one may be replaced.
 #[derive(Debug, Clone)]
 pub struct Output {
     /// The folder of the report; `reports/NAME` when none is given.
     pub dir: Option<PathBuf>,
-    /// What to do with a report that is there.
+    /// What to do with an existing report.
     pub existing: Existing,
     /// How often a checkpoint is kept in the folder; `None` for never.
     pub checkpoint_every: Option<Duration>,
-    /// Whether to go on from the checkpoint that is there.
+    /// Whether to resume from an existing checkpoint.
     pub start: Start,
 }
 
@@ -24,7 +24,7 @@ impl Output {
     }
 }
 
-/// Whether a run begins anew or goes on.
+/// Whether a run starts over or resumes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Start {
     /// From its first path.
@@ -33,7 +33,7 @@ pub enum Start {
     Resume,
 }
 
-/// `reports/NAME` after the scene file, unless told otherwise.
+/// `reports/NAME` after the scene file, unless a folder is given.
 pub(super) fn output_dir(scene: &Path, output: &Output) -> PathBuf {
     output
         .dir

@@ -1,4 +1,4 @@
-//! Parts of one run, traced on several machines and put together to the very report of the whole run.
+//! Parts of one run, traced on several machines and merged to exactly the report of the whole run.
 
 use crate::pipeline::output::{Output, output_dir};
 use crate::pipeline::snapshot::{self, Kind};
@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 /// Name of the file of a part in its folder.
 const NAME: &str = "slice.bin";
 
-/// A part of a run as it lies on disk: what it is a part of, and what was counted.
+/// A part of a run on disk: the run it belongs to, and what was counted.
 #[derive(Serialize, Deserialize)]
 struct Part {
     recipe: Recipe,
@@ -32,7 +32,7 @@ pub struct SliceWishes {
     pub shard: Shard,
     /// Its folder; `reports/NAME.KofN` when none is given.
     pub dir: Option<PathBuf>,
-    /// What to do with a part that is there.
+    /// What to do with an existing part.
     pub existing: Existing,
 }
 
@@ -45,11 +45,11 @@ pub struct SliceWritten {
     pub batches: Option<Range<u64>>,
     /// Batches of the whole run.
     pub of: u64,
-    /// Where it lies.
+    /// Its folder.
     pub dir: PathBuf,
 }
 
-/// Traces a part of the run of a scene; `watch` is told which share is done, 0..=1.
+/// Traces a part of the run of a scene; `watch` receives the share done, 0..=1.
 pub fn run_slice(
     scene: &Path,
     settings: &Settings,
@@ -91,13 +91,13 @@ pub fn run_slice(
     Ok(SliceWritten { title, batches: Some(batches), of, dir })
 }
 
-/// Whether a folder holds a part of a run.
+/// Whether a folder contains a part of a run.
 pub fn has_slice(dir: &Path) -> bool {
     dir.join(NAME).is_file()
 }
 
-/// Puts the parts of a run together and writes the report of the whole. The scene is read again, from where the parts
-/// found it or from `scene`.
+/// Merges the parts of a run and writes the report of the whole. The scene is read again, from
+/// where the parts found it or from `scene`.
 pub fn merge_slices(dirs: &[PathBuf], scene: Option<&Path>, output: &Output) -> Result<Finished> {
     let mut parts: Vec<(PathBuf, Part)> = Vec::new();
     for dir in dirs {
@@ -177,7 +177,7 @@ fn expect_all(parts: &[(PathBuf, Part)]) -> Result<()> {
     }
 }
 
-/// Refuses runs that end depending on what they find, or by the clock.
+/// Refuses runs whose end depends on their results or on the clock.
 fn expect_fixed_end(job: &Job) -> Result<()> {
     let stop = &job.run.stop;
     let is_fixed = stop.paths.is_some() && stop.target.is_none() && stop.time.is_none();

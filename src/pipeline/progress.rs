@@ -1,4 +1,4 @@
-//! How far a run has come.
+//! Progress of a run.
 
 use lumiduct_core::measure::{self, Measure};
 use lumiduct_core::plan::RunPlan;
@@ -7,20 +7,20 @@ use lumiduct_input::Job;
 use lumiduct_report::settled;
 use std::time::Duration;
 
-/// How far a run has come: for progress displays.
+/// Progress of a run, for displays.
 #[derive(Debug, Clone)]
 pub struct Progress {
     /// What the run is doing.
     pub phase: Phase,
     /// Paths traced.
     pub paths: u64,
-    /// Paths asked for, when that is a stop rule.
+    /// Paths requested, where that is a stop rule.
     pub planned_paths: Option<u64>,
     /// Time since the start of tracing.
     pub elapsed: Duration,
-    /// The time asked for, when that is a stop rule.
+    /// Time requested, where that is a stop rule.
     pub time_limit: Option<Duration>,
-    /// How gathering was set, in words, once at the start; else empty.
+    /// Gather settings in words, once at the start; else empty.
     pub gathering: String,
     /// The target: name, value, relative error reached and wanted; at the end of a round.
     pub target: Option<TargetProgress>,
@@ -47,7 +47,7 @@ impl TargetProgress {
 }
 
 impl Progress {
-    /// How far a run has come after `elapsed`; `target` as it was at the end of the last round.
+    /// Progress after `elapsed`; `target` is that at the end of the last round.
     pub(super) fn of(
         plan: &RunPlan,
         run: &Run<'_>,
@@ -65,7 +65,7 @@ impl Progress {
         }
     }
 
-    /// A run that has yet to begin, after `elapsed`.
+    /// A run that has not begun, after `elapsed`.
     pub(super) fn before(plan: &RunPlan, phase: Phase, elapsed: Duration) -> Self {
         Self {
             phase,
@@ -121,7 +121,7 @@ impl Progress {
     }
 }
 
-/// How gathering was set, in words; empty where nothing was gathered.
+/// Gather settings in words; empty where nothing was gathered.
 pub(super) fn gathering(findings: &Findings) -> String {
     findings.gathered.as_ref().map_or(String::new(), |own| settled(&own.settings))
 }

@@ -6,8 +6,8 @@ use lumiduct_core::transport::{Findings, Gathered};
 use lumiduct_input::Job;
 use lumiduct_input::keys::Key;
 
-/// The command that comes to the same numbers without a pilot and without a clock; `None` for a run that its own scene
-/// repeats.
+/// The command that gives the same numbers without pilot and clock; `None` where the scene alone
+/// repeats the run.
 pub(super) fn command(job: &Job, findings: &Findings, stop: Stop) -> Option<String> {
     match stop {
         Stop::Time | Stop::Interrupted => {}
@@ -48,8 +48,8 @@ pub(super) fn command(job: &Job, findings: &Findings, stop: Stop) -> Option<Stri
     Some(words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" "))
 }
 
-/// Photons and gather paths of a pass: as the command line has them, or, where the clock ends the run, as they were
-/// chosen by the time.
+/// Photons and gather paths of a pass: as on the command line, or as chosen from the time where the
+/// clock ends the run.
 fn pass_size(job: &Job, findings: &Findings) -> [Option<u64>; 2] {
     let asked = &job.settings.gather;
     match (&findings.gathered, job.run.stop.time) {
@@ -62,7 +62,7 @@ fn pass_size(job: &Job, findings: &Findings) -> [Option<u64>; 2] {
     }
 }
 
-/// A word as a POSIX shell takes it.
+/// A word quoted for a POSIX shell.
 fn quoted(word: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "._-=/%+,:".contains(c);
     if !word.is_empty() && word.chars().all(is_plain) {

@@ -1,5 +1,5 @@
-//! What can be said of a job before it is traced: that there is light, that every name is known, that estimators can
-//! meet the sources.
+//! Checks of a job before it is traced: there is light, every name is known, and the estimators can
+//! hit the sources.
 
 use lumiduct_base::error::{Diagnostic, Result};
 use lumiduct_core::measure;
@@ -10,8 +10,8 @@ use lumiduct_input::Job;
 use lumiduct_input::keys::Key;
 use lumiduct_input::problems::Problems;
 
-/// Refuses a scene without light, and checks and targets that name no measure of it, before any work is done. Gives
-/// back remarks.
+/// Refuses a scene without light, and checks and targets that name no measure of it, before any
+/// work is done. Returns remarks.
 pub(super) fn expect_sense(job: &Job) -> Result<Vec<Diagnostic>> {
     let target = job
         .run
@@ -56,7 +56,7 @@ fn expect_light(job: &Job, problems: &mut Problems) {
     }
 }
 
-/// Notes names that no measure of a scene has.
+/// Notes names that match no measure of a scene.
 pub(crate) fn expect_measures<'a>(
     scene: &Scene,
     wanted: impl Iterator<Item = (Key, &'a String)>,
@@ -71,7 +71,7 @@ pub(crate) fn expect_measures<'a>(
     }
 }
 
-/// Remarks on sensors from which no gather path could bring light.
+/// Remarks on sensors whose gather paths cannot reach any light.
 fn expect_sight(job: &Job, problems: &mut Problems) {
     let request = |sensor: SensorId| job.run.request(sensor.index());
     let sensors: Vec<SensorId> = (0..job.scene.sensors.len())
@@ -90,7 +90,7 @@ fn expect_sight(job: &Job, problems: &mut Problems) {
     }
 }
 
-/// Whether all light has to come by gather paths; else photons find what these do not.
+/// Whether all light must come from gather paths; else photons find the rest.
 fn is_by_gather_paths(request: Request) -> bool {
     match request {
         Request::Auto | Request::Forward | Request::Mix => false,
@@ -98,7 +98,8 @@ fn is_by_gather_paths(request: Request) -> bool {
     }
 }
 
-/// What is asked for all sensors, as far as there are any without an estimator of their own, and what single ones ask for.
+/// The estimator for all sensors, if any has none of its own, and those that single sensors ask
+/// for.
 fn requests(job: &Job) -> Vec<(Key, Request)> {
     let sensors = &job.scene.sensors;
     let own = |sensor: usize| job.run.own_estimator(sensor);
@@ -110,7 +111,7 @@ fn requests(job: &Job) -> Vec<(Key, Request)> {
     for_all.into_iter().chain(single).collect()
 }
 
-/// Refuses estimators that have to meet the sources where a source cannot be met.
+/// Refuses estimators that must hit the sources where a source cannot be hit.
 fn expect_visible_sources(job: &Job, problems: &mut Problems) {
     for (key, request) in requests(job) {
         for source in job.scene.sources.iter().filter(|_| is_by_gather_paths(request)) {
@@ -124,7 +125,7 @@ fn expect_visible_sources(job: &Job, problems: &mut Problems) {
     }
 }
 
-/// Refuses estimators that gather photons for a sensor which counts the first passage of each alone.
+/// Refuses estimators that gather photons for a sensor that counts only first passages.
 fn expect_passages(job: &Job, problems: &mut Problems) {
     for (index, sensor) in job.scene.sensors.iter().enumerate() {
         let request = job.run.request(index);

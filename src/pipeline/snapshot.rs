@@ -1,7 +1,8 @@
-//! Files that hold what was counted so far: checkpoints, and slices of a run.
+//! Files with what was counted so far: checkpoints, and slices of a run.
 //!
-//! A file has a line that says what it is, the length of what follows, that itself (postcard), and a digest of it; so that
-//! one that was cut off, changed, or is of another kind is told from a good one before anything in it is believed.
+//! A file has a line that names its kind, the length of the contents, the contents (postcard), and
+//! their digest. So a file that is truncated, changed or of another kind is recognised before its
+//! contents are used.
 
 use crate::pipeline::version::BUILD;
 use lumiduct_base::digest::Digest;
@@ -12,10 +13,10 @@ use serde::de::DeserializeOwned;
 use std::fs;
 use std::path::Path;
 
-/// What a file holds.
+/// Kind of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
-    /// How far a run has come.
+    /// The state of a run.
     Checkpoint,
     /// What was counted in some of the batches of a run.
     Slice,
@@ -29,7 +30,8 @@ impl Kind {
         }
     }
 
-    /// The first line of a file. The number is that of its layout; the build of the program is part of the contents.
+    /// The first line of a file. The number is the version of its layout; the build of the program
+    /// is part of the contents.
     fn line(self) -> String {
         format!("lumiduct {} 2\n", self.name())
     }
@@ -55,7 +57,7 @@ fn framed(kind: Kind, contents: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// Reads a file, or says why it is not what it should be.
+/// Reads a file, or reports what is wrong with it.
 pub(super) fn read<T: DeserializeOwned>(path: &Path, kind: Kind) -> Result<T> {
     let bytes = fs::read(path).map_err(|source| Error::io(path, source))?;
     let refuse = |why: &str| {

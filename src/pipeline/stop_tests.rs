@@ -1,4 +1,5 @@
-//! Runs that are stopped at a given look at the signal, wherever that is: in the pilot, in a batch, in a path.
+//! Runs that are stopped at a given poll of the signal, be it in the pilot, in a batch or in a
+//! path.
 
 use crate::pipeline::tests::job as short_rod;
 use crate::pipeline::*;
@@ -28,14 +29,14 @@ fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(work)
 }
 
-/// Traces a job that is interrupted at a look.
+/// Traces a job that is interrupted at the given poll.
 fn stopped_at(look: u64, job: &Job) -> (Result<Traced>, u64) {
     let interrupt = Interrupt::at_look(look);
     let traced = trace(job, &interrupt, &mut |_| ());
     (traced, interrupt.looks() - look.min(interrupt.looks()))
 }
 
-/// The numbers of a run; how estimators were chosen is not one of them.
+/// The numbers of a run, without how estimators were chosen.
 fn numbers(findings: &Findings) -> Findings {
     Findings { choices: Vec::new(), ..findings.clone() }
 }
@@ -48,7 +49,8 @@ fn a_stopped_run_ends_at_its_next_looks_and_its_command_repeats_it_on_any_thread
         let (mut stopped, mut empty) = (0, 0);
         for look in [1, 3, 20, 150, 201, 333] {
             let (traced, late) = on_threads(2, || stopped_at(look, &job));
-            // Batches in progress look once more, and so does each that had yet to begin in its piece.
+            // Batches in progress poll once more, and so does each batch of the piece that had not
+            // begun.
             assert!(late <= 32, "{late} looks after look {look} of {}", estimator.name());
             let Ok(traced) = traced else {
                 empty += 1;
@@ -112,7 +114,7 @@ fn a_pilot_that_takes_half_of_the_time_is_given_up_and_photons_go_on() {
         let clock = Interrupt::default();
         let mut run = start(&StopSignal::ending_at_look(&clock, looks, 10)).unwrap();
         if is_given_up {
-            // Each batch that was yet to begin looks once.
+            // Each batch that had not begun polls once.
             assert!(clock.looks() <= looks / 2 + 40, "{} of {looks} looks", clock.looks());
         }
         on_threads(1, || run.next_piece());
@@ -128,7 +130,7 @@ fn passes_of_gathering_fit_into_a_short_time_and_their_command_repeats_them() {
     let time = Some(std::time::Duration::from_secs(3600));
     let wishes = Settings { estimator: Some(Request::Gather), time, ..Settings::default() };
     let job = short_rod(folder.path(), &wishes);
-    // An automatic pass without a clock has four million straight pieces, which are 3900 looks.
+    // An automatic pass without a clock has four million segments, which are 3900 polls.
     let (looks, grace) = (600, 40);
     let clock = Interrupt::default();
     let signal = StopSignal::ending_at_look(&clock, looks, grace);
@@ -162,7 +164,7 @@ fn merged_passes_fit_into_a_short_time_where_paths_never_end() {
     let time = Some(std::time::Duration::from_secs(3600));
     let wishes = Settings { estimator: Some(Request::Mis), time, ..Settings::default() };
     let job = prepare(&scene, &wishes).unwrap();
-    // A path has 20 looks, and 640 of them go into learning that.
+    // A path has 20 polls, and the pilot takes 640 of them.
     let (looks, clock) = (3000, Interrupt::default());
     let signal = StopSignal::ending_at_look(&clock, looks, 100);
     let mut run = on_threads(1, || Run::start(&job.scene, &job.run, &signal, &mut |_| ())).unwrap();
@@ -215,7 +217,7 @@ fn a_look_comes_within_a_path_that_never_ends() {
     }
 }
 
-/// A closed box of perfect mirrors: every path has as many bounces as it may, and 19 looks.
+/// A closed box of perfect mirrors: every path reaches the bounce limit, and has 19 polls.
 const MIRROR_BOX: &str = r#"
 lumiduct = 1
 title = "mirror box"

@@ -21,7 +21,7 @@ pub(super) fn job(folder: &Path, settings: &Settings) -> Job {
     prepare(&scene, settings).unwrap()
 }
 
-/// Traces a job from where it saved, with where it stood at every pause.
+/// Traces a job from a checkpoint, and returns its state at every pause.
 fn pauses(job: &Job, checkpoint: Option<Checkpoint>) -> (Traced, Vec<Checkpoint>) {
     let mut saved = Vec::new();
     let mut keep = |run: &Run<'_>, pause: Pause| {

@@ -1,10 +1,10 @@
-//! Seconds, outside of the reproducible set of files.
+//! Timings, which are outside the reproducible set of files.
 
 use crate::pipeline::tracing::Traced;
 use lumiduct_base::error::Result;
 use lumiduct_report::Folder;
 
-/// Writes `timing.csv` beside a report.
+/// Writes `timing.csv` next to a report.
 pub(super) fn write(folder: &Folder, traced: &Traced) -> Result<()> {
     let seconds = traced.elapsed.as_secs_f64();
     let (paths, segments) =

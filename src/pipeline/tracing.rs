@@ -14,14 +14,13 @@ use std::time::{Duration, Instant};
 /// Why a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stop {
-    /// All paths that were asked for are traced.
+    /// All requested paths are traced.
     Paths,
     /// The time is up.
     Time,
     /// The target is met.
     Target,
-    /// The noise is well below the target, and what is left is a bias that more paths do not take
-    /// away.
+    /// The noise is well below the target; what remains is a bias that more paths do not reduce.
     Bias,
     /// Nothing of the target's measure was found in very many paths.
     Dark,
@@ -30,7 +29,7 @@ pub enum Stop {
 }
 
 impl Stop {
-    /// A sentence for the report. It names no time: reports do not depend on the clock.
+    /// A sentence for the report, without times, as reports do not depend on the clock.
     pub fn reason(self) -> &'static str {
         match self {
             Self::Paths => "all requested paths were traced",
@@ -43,7 +42,7 @@ impl Stop {
     }
 }
 
-/// What tracing gave.
+/// The outcome of tracing.
 #[derive(Debug)]
 pub struct Traced {
     /// Everything that was counted.
@@ -54,14 +53,15 @@ pub struct Traced {
     pub elapsed: Duration,
 }
 
-/// Traces rounds until a stop rule holds; an error where it was stopped before there was anything to report.
+/// Traces rounds until a stop rule holds; an error if it was stopped before there was anything to
+/// report.
 pub fn trace(job: &Job, interrupt: &Interrupt, watch: &mut dyn FnMut(&Progress)) -> Result<Traced> {
     trace_kept(job, None, &mut |_, _| Ok(()), interrupt, watch)
 }
 
 /// A moment at which a checkpoint may be kept.
 pub(super) enum Pause {
-    /// The run goes on.
+    /// The run continues.
     Between { round_end: u64, elapsed: Duration },
     /// The user has stopped it.
     Last { round_end: u64, elapsed: Duration },
@@ -71,7 +71,7 @@ pub(super) enum Pause {
 struct Clock<'a> {
     plan: &'a RunPlan,
     start: Instant,
-    /// What it had taken before it was resumed.
+    /// Time taken before it was resumed.
     before: Duration,
     interrupt: &'a Interrupt,
 }
@@ -86,14 +86,15 @@ impl Clock<'_> {
         StopSignal::new(self.interrupt, left.and_then(|left| self.start.checked_add(left)))
     }
 
-    /// Whether a run that has traced something has to end.
+    /// Whether the time of a run that has traced something is up.
     fn is_up(&self, run: &Run<'_>) -> bool {
         let grace = if run.paths() == 0 { FIRST_BATCH_GRACE } else { Duration::ZERO };
         self.plan.stop.time.is_some_and(|limit| self.elapsed() >= limit.saturating_add(grace))
     }
 }
 
-/// Traces rounds from where a run stands until a stop rule holds; `keep` may keep a checkpoint at every pause.
+/// Traces rounds from the state of a run until a stop rule holds; `keep` may save a checkpoint at
+/// every pause.
 pub(super) fn trace_kept(
     job: &Job,
     checkpoint: Option<Checkpoint>,
@@ -135,7 +136,7 @@ pub(super) fn trace_kept(
         target = TargetProgress::of(job, &run);
         watch(&Progress::of(&job.run, &run, elapsed(), target.clone()));
         let stop = target.as_ref().and_then(|target| target_stop(target, run.paths()));
-        // Smaller windows take a bias away.
+        // Smaller windows reduce the bias.
         if let Some(stop) = stop.filter(|stop| *stop != Stop::Bias || !run.shrinks()) {
             break stop;
         }
@@ -151,7 +152,7 @@ pub(super) fn trace_kept(
     Ok(Traced { findings: run.findings(), stop, elapsed: elapsed() })
 }
 
-/// A run that is prepared, from where it stands, and the waves after which its stop rules are looked at next.
+/// A prepared run, new or resumed, and the waves after which its stop rules are checked next.
 fn started<'j>(
     job: &'j Job,
     checkpoint: Option<Checkpoint>,
@@ -195,12 +196,13 @@ fn nothing_to_report(during: &str, interrupt: &Interrupt) -> Error {
     })
 }
 
-/// A run to a target gives up on one that its bias keeps from it once the noise is this share of what is wanted, 1.
+/// A run gives up on a target that its bias prevents once the noise is this share of the wanted
+/// error, 1.
 const NOISE_DONE: f64 = 0.3;
-/// Paths after which a run to a target gives up on a measure that is nothing.
+/// Paths after which a run to a target gives up on a measure that is still zero.
 const DARK_PATHS: u64 = 200_000_000;
 
-/// What the target of a run says about its end.
+/// Whether the target ends the run, and why.
 fn target_stop(target: &TargetProgress, paths: u64) -> Option<Stop> {
     let (reached, wanted) = (&target.reached, target.wanted);
     if reached.relative_error() <= wanted {
@@ -213,14 +215,14 @@ fn target_stop(target: &TargetProgress, paths: u64) -> Option<Stop> {
     (reached.value == 0.0 && paths >= DARK_PATHS).then_some(Stop::Dark)
 }
 
-/// Whether a smaller window brings the target nearer than more of the same work.
+/// Whether a smaller window reduces the error more than more paths would.
 fn is_held_by_bias(target: &TargetProgress) -> bool {
     let reached = &target.reached;
     reached.status == Status::BiasNotResolved
         || reached.bias.is_some_and(|bias| bias > reached.std_error)
 }
 
-/// What may end a run before its round is over.
+/// What ends a run before its round is over.
 fn early_stop(run: &Run<'_>, clock: &Clock<'_>) -> Option<Stop> {
     if run.is_complete() {
         Some(Stop::Paths)

@@ -3,6 +3,6 @@
 /// Version of the program, for reports.
 pub(crate) const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// The exact build of the program: its version and a digest of its sources. For files that are no
+/// The exact build of the program: its version and a digest of its sources. For files that are not
 /// part of a report.
 pub(crate) const BUILD: &str = env!("LUMIDUCT_BUILD");

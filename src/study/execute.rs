@@ -1,8 +1,8 @@
 //! Tracing the designs of a study.
 //!
-//! A few designs are in flight at once, each looked after by a thread of its own that feeds one common pool. So all
-//! threads are busy whether designs are many and small or few and large: while one design is read, judged or written,
-//! batches of another are traced.
+//! A few designs are in flight at once, each managed by its own thread, which feeds one common
+//! pool. So all threads are busy whether designs are many and small or few and large: while one
+//! design is read, judged or written, batches of another are traced.
 
 use crate::pipeline::{self, BUILD, Stop};
 use crate::study::designs::Design;
@@ -19,18 +19,18 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-/// The batches of a design hold the same paths in all designs, and this part of what the scene alone would take: designs
-/// are small, and end between waves of 128 batches.
+/// A batch contains the same paths in all designs, and this fraction of those of a run of the scene
+/// alone: designs are small, and end between waves of 128 batches.
 const BATCH_PARTS: u64 = 8;
 
-/// How far a batch has come.
+/// Progress of a batch.
 #[derive(Debug, Clone, Copy)]
 pub struct BatchProgress {
-    /// Designs with a record, those of an earlier run included.
+    /// Designs with a record, including those of an earlier run.
     pub done: usize,
-    /// Designs that are to have one.
+    /// Designs that need one.
     pub wanted: usize,
-    /// Designs that an earlier run has left.
+    /// Designs recorded by an earlier run.
     pub found: usize,
     /// Share of this run's work that is done, 0..=1: designs that have ended, and parts of those in flight.
     pub fraction: f64,
@@ -66,8 +66,8 @@ pub(crate) struct Batch<'a> {
     pub(crate) watch: &'a (dyn Fn(&BatchProgress) + Sync),
 }
 
-/// Traces those of the wanted designs (numbers from 1) that have no record yet. Ends at the first error of a file system,
-/// or when it is interrupted; designs that have ended by then have their records.
+/// Traces those of the wanted designs (numbers from 1) that have no record yet. Ends at the first
+/// file system error or when interrupted; designs finished by then have their records.
 pub(crate) fn execute(batch: &Batch<'_>, wanted: &[usize]) -> Result<()> {
     let records = batch.store.records()?;
     expect_designs(batch, &records)?;
@@ -92,7 +92,8 @@ pub(crate) fn execute(batch: &Batch<'_>, wanted: &[usize]) -> Result<()> {
                         return;
                     }
                     if let Err(error) = trace_timed(batch, design, &common, &board) {
-                        // The others end, too, and what they have is lost: it can be computed again.
+                        // The others end, too, and lose their unfinished work, which can be
+                        // recomputed.
                         batch.interrupt.raise();
                         if let Ok(mut trouble) = trouble.lock() {
                             trouble.get_or_insert(error);
@@ -108,7 +109,7 @@ pub(crate) fn execute(batch: &Batch<'_>, wanted: &[usize]) -> Result<()> {
     }
 }
 
-/// Makes sure that every record is that of the design of its number.
+/// Checks that every record belongs to the design of its number.
 fn expect_designs(batch: &Batch<'_>, records: &BTreeMap<usize, DesignRecord>) -> Result<()> {
     for (number, record) in records {
         let design = number.checked_sub(1).and_then(|index| batch.designs.get(index));
@@ -126,7 +127,7 @@ fn settings(study: &Study, design: &Design) -> IndexMap<String, Setting> {
     names.zip(design.settings.iter().cloned()).collect()
 }
 
-/// How a design has ended.
+/// How a design ended.
 enum Ended {
     /// It has its record.
     Recorded,
@@ -184,7 +185,7 @@ fn trace(
     Ok(Ended::Recorded)
 }
 
-/// What tracing gives; `None` when it was interrupted.
+/// The result of tracing; `None` if interrupted.
 fn trace_job(
     batch: &Batch<'_>,
     design: &Design,
@@ -231,7 +232,7 @@ fn trace_job(
     }))
 }
 
-/// What is wrong with a scene, without the places of files, which differ from machine to machine.
+/// The problems of a scene without file locations, which differ between machines.
 fn sentences(diagnostics: &[Diagnostic]) -> String {
     let errors = diagnostics.iter().filter(|diagnostic| match diagnostic.kind {
         DiagnosticKind::Error => true,
@@ -248,7 +249,7 @@ fn sentences(diagnostics: &[Diagnostic]) -> String {
     errors.map(sentence).collect::<Vec<_>>().join("; ")
 }
 
-/// What all designs in flight have done so far.
+/// Progress of all designs in flight.
 struct Board<'a> {
     wanted: usize,
     pending: usize,

@@ -1,11 +1,12 @@
-//! Studies: many designs of one scene, traced with the same random numbers, and what follows from them together.
+//! Studies: many designs of one scene, traced with the same random numbers, and their joint
+//! analysis.
 //!
 //! ```text
 //! study file -> designs -> a record on disk for each, as soon as it ends -> analysis -> report
 //! ```
 //!
-//! Results are written from the records alone, so that a batch that was killed and resumed, or was computed in shards
-//! on several machines, ends with the same bytes.
+//! Results are written from the records alone, so that a batch that was killed and resumed, or
+//! computed in shards on several machines, ends with the same bytes.
 
 mod analysis;
 mod designs;
@@ -32,14 +33,14 @@ use lumiduct_report::{self as report, Existing, Folder, Written, is_among};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// How a study is to be run.
+/// How to run a study.
 #[derive(Debug, Clone)]
 pub struct BatchWishes {
-    /// What the command line asks of all designs.
+    /// Command-line settings for all designs.
     pub settings: StudySettings,
     /// The folder of the results; `reports/studies/NAME` when none is given.
     pub dir: Option<PathBuf>,
-    /// What to do with results that are there.
+    /// What to do with existing results.
     pub existing: OnExisting,
     /// Designs in flight at once.
     pub jobs: usize,
@@ -47,18 +48,18 @@ pub struct BatchWishes {
     pub shard: Shard,
 }
 
-/// A batch that has come to its end.
+/// A batch that has ended.
 #[derive(Debug)]
 pub struct Finished {
     /// What the study is.
     pub facts: StudyFacts,
-    /// The whole report; `None` of a shard, or of a batch that was interrupted.
+    /// The whole report; `None` for a shard or an interrupted batch.
     pub report: Option<StudyReport>,
-    /// Whether the files were there before.
+    /// Whether the files existed before.
     pub written: Written,
-    /// Designs with a record, and designs that were to have one.
+    /// Designs with a record, and designs that need one.
     pub done: [usize; 2],
-    /// Where the results lie.
+    /// Folder of the results.
     pub dir: PathBuf,
     /// Remarks on study and scene.
     pub warnings: Vec<Diagnostic>,
@@ -94,12 +95,12 @@ pub fn run_study(
     Ok(Finished { facts, report: Some(report), written, done, dir, warnings })
 }
 
-/// Whether a folder holds results of a study.
+/// Whether a folder contains results of a study.
 pub fn has_study(dir: &Path) -> bool {
     Store::is_there(dir)
 }
 
-/// Puts the parts of a study together and writes the results of the whole.
+/// Merges the parts of a study and writes the results of the whole.
 pub fn merge_study(
     parts: &[PathBuf],
     dir: Option<&Path>,
@@ -134,7 +135,7 @@ pub fn merge_study(
     }
     let text = first.text()?;
     let dir = dir.map_or_else(|| default_dir(&facts.name), Path::to_path_buf);
-    // What is put into a part of itself would be cleared before it is read.
+    // Merging into one of the parts would clear it before it is read.
     if is_among(&dir, parts) {
         return Err(Error::Usage(format!(
             "{} is one of the parts; use -o for a folder of the whole",
@@ -151,7 +152,7 @@ pub fn merge_study(
     Ok(Finished { facts, report: Some(report), written, done, dir, warnings: Vec::new() })
 }
 
-/// Where results lie when nothing is said.
+/// The default folder of the results.
 fn default_dir(name: &str) -> PathBuf {
     Path::new("reports/studies").join(name)
 }

@@ -18,8 +18,8 @@ pub(crate) fn random(samples: &Samples, dimensions: usize) -> Vec<Vec<f64>> {
     (0..u64::from(samples.count)).map(one).collect()
 }
 
-/// Samples of which each dimension has one in each of as many equal parts (`McKay`, Beckman & Conover, Technometrics 21
-/// (1979) 239).
+/// Samples with exactly one per equal interval in every dimension (`McKay`, Beckman & Conover,
+/// Technometrics 21 (1979) 239).
 pub(crate) fn latin_hypercube(samples: &Samples, dimensions: usize) -> Vec<Vec<f64>> {
     let count = samples.count as usize;
     let mut rows = vec![Vec::with_capacity(dimensions); count];
@@ -51,7 +51,7 @@ pub(crate) fn sobol(samples: &Samples, dimensions: usize) -> Vec<Vec<f64>> {
     (0..samples.count).map(one).collect()
 }
 
-/// What a parameter is set to at a share of its distribution, 0..1.
+/// The setting of a parameter at a quantile of its distribution, 0..1.
 pub(crate) fn quantile(parameter: &Parameter, share: f64) -> Setting {
     match &parameter.domain {
         Domain::Levels(levels) => {
@@ -62,13 +62,13 @@ pub(crate) fn quantile(parameter: &Parameter, share: f64) -> Setting {
                 .unwrap_or(Setting::AsInScene)
         }
         Domain::Uniform { from, to } if parameter.whole => {
-            // Every whole number between the ends is as likely.
+            // Every whole number between the ends is equally likely.
             let (first, last) = (from.ceil(), to.floor());
             Setting::whole((first + (share * (last - first + 1.0)).floor()).min(last))
         }
         Domain::Uniform { from, to } => Setting::Number(from + (to - from) * share),
         Domain::Normal { mean, std_dev, from, to } if parameter.whole => {
-            // What rounds to a whole number within the limits.
+            // The range that rounds to whole numbers within the limits.
             let limits = [from.map(|from| from.ceil() - 0.5), to.map(|to| to.floor() + 0.5)];
             let value = normal([*mean, *std_dev], limits, share).round();
             // A half rounds away from zero, beyond a limit of the curve.
@@ -82,7 +82,7 @@ pub(crate) fn quantile(parameter: &Parameter, share: f64) -> Setting {
     }
 }
 
-/// Quantile of a normal distribution that is cut off at limits.
+/// Quantile of a normal distribution truncated at limits.
 fn normal([mean, std_dev]: [f64; 2], [from, to]: [Option<f64>; 2], share: f64) -> f64 {
     let curve = Normal::standard();
     let below = |limit: Option<f64>, open: f64| {
@@ -111,7 +111,7 @@ mod tests {
             parts.sort_unstable();
             assert_eq!(parts, (0..512).collect::<Vec<_>>());
         }
-        // The orders of two dimensions have nothing to do with each other.
+        // The orders of two dimensions are uncorrelated.
         let pairs = rows.iter().map(|row| (row[0] - 0.5) * (row[1] - 0.5) * 12.0);
         assert!(Tally::of(pairs).mean().abs() < 0.15);
     }
@@ -145,7 +145,8 @@ mod tests {
         // Abramowitz & Stegun, table 26.5: 1.959964 at 0.975.
         assert!((normal([0.0, 1.0], none, 0.975) - 1.959_963_985).abs() < 1e-8);
         assert!(normal([0.0, 1.0], none, 0.0).is_finite());
-        // Cut off at one standard deviation to both sides: a quarter of the way lies at Φ(x) = 0.5 - 0.3413/2.
+        // Truncated at one standard deviation on both sides: the quartile is at
+        // Φ(x) = 0.5 - 0.3413/2.
         let cut = normal([0.0, 1.0], [Some(-1.0), Some(1.0)], 0.25);
         assert!((cut + 0.441_770_547).abs() < 1e-8, "{cut}");
         let end = normal([0.0, 1.0], [Some(-1.0), Some(1.0)], 0.0);

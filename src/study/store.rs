@@ -1,7 +1,8 @@
 //! Results of a batch on disk: the facts of the study, and a record of every design as soon as it has one.
 //!
-//! A record appears whole or not at all, so that a batch that was killed at any moment can go on. Which designs are done
-//! is told from the records alone. Facts and records are sealed: one that was changed is refused by its name.
+//! A record appears whole or not at all, so that a batch killed at any moment can be resumed. The
+//! records alone show which designs are done. Facts and records are sealed: a changed one is
+//! refused by name.
 
 use lumiduct_base::error::{Error, Result};
 use lumiduct_report::study::{DESIGN_FORMAT, DesignRecord, FACTS_FORMAT, StudyFacts};
@@ -19,17 +20,17 @@ const FACTS: &str = "batch.json";
 const DESIGNS: &str = "designs";
 const TIMING: &str = "timing.csv";
 
-/// What to do about a record that is none.
+/// Hint for an invalid record.
 const REMOVE: &str = "remove it, and `batch --resume` computes the design anew";
-/// What to do about facts that are none.
+/// Hint for invalid facts.
 const BEGIN_ANEW: &str = "use --overwrite to begin anew, or -o for another folder";
 
-/// What to do with results that are there.
+/// What to do with existing results.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum OnExisting {
     /// Refuse to touch them.
     Keep,
-    /// Go on where they end.
+    /// Resume where they end.
     Resume,
     /// Begin anew.
     Replace,
@@ -40,13 +41,13 @@ pub enum OnExisting {
 pub(crate) struct Store {
     dir: PathBuf,
     facts: StudyFacts,
-    /// Keeps other programs from writing here; of one that is only read, there is none.
+    /// Keeps other programs from writing here; `None` for a folder that is only read.
     lock: Option<FolderLock>,
 }
 
 impl Store {
-    /// Makes sure, before any work is done, that results of a study can be written to a folder, and writes what the
-    /// study is.
+    /// Checks, before any work is done, that results of a study can be written to a folder, and
+    /// writes the facts of the study.
     pub(crate) fn open(
         dir: &Path,
         facts: &StudyFacts,
@@ -80,7 +81,7 @@ impl Store {
         Ok(Self { dir: dir.to_path_buf(), facts, lock: None })
     }
 
-    /// Makes sure that results that are there are of this study, and that they may be gone on with.
+    /// Checks that existing results belong to this study and may be resumed.
     fn expect_same(&self, found: &StudyFacts, existing: OnExisting) -> Result<()> {
         let dir = self.dir.display();
         if !found.is_same_study(&self.facts) {
@@ -117,7 +118,7 @@ impl Store {
         self.dir.join(format!("{}.toml", self.facts.name))
     }
 
-    /// Takes over all records of another folder, and the reports of its designs.
+    /// Copies all records of another folder, and the reports of its designs.
     pub(crate) fn take(&self, other: &Self) -> Result<()> {
         for (design, record) in other.records()? {
             self.write(&record)?;
@@ -128,7 +129,7 @@ impl Store {
         Ok(())
     }
 
-    /// Makes sure that the reports of these designs, where there are any, are as they were written.
+    /// Checks that the reports of these designs, where they exist, are unchanged.
     pub(crate) fn expect_whole_reports<'a>(
         &self,
         designs: impl IntoIterator<Item = &'a usize>,
@@ -142,12 +143,12 @@ impl Store {
         if folder.is_dir() { report_files(&folder) } else { Ok(Vec::new()) }
     }
 
-    /// Whether a folder holds results of a study, readable or not.
+    /// Whether a folder contains results of a study, readable or not.
     pub(crate) fn is_there(dir: &Path) -> bool {
         dir.join(FACTS).exists()
     }
 
-    /// What study a folder holds results of; `None` if it holds none.
+    /// The facts of the study in a folder; `None` if it contains no results.
     fn facts_in(dir: &Path) -> Result<Option<StudyFacts>> {
         if !Self::is_there(dir) {
             return Ok(None);
@@ -169,7 +170,7 @@ impl Store {
         &self.dir
     }
 
-    /// Where a whole report of a design lies.
+    /// Folder of the whole report of a design.
     pub(crate) fn report_of(&self, design: usize) -> PathBuf {
         self.dir.join(DESIGNS).join(format!("{design:04}"))
     }
@@ -179,7 +180,7 @@ impl Store {
         write_sealed(&self.record_path(record.design), serde_json::to_string(record))
     }
 
-    /// Begins the table of seconds, which lies outside of the reproducible files, if it is not there.
+    /// Creates the table of timings, which is outside the reproducible files, if it is missing.
     pub(crate) fn begin_timing(&self) -> Result<()> {
         let path = self.dir.join(TIMING);
         let header = b"design,seconds\n";
@@ -191,12 +192,12 @@ impl Store {
         let path = self.dir.join(TIMING);
         let line = format!("{design},{seconds:.3}\n");
         let file = OpenOptions::new().append(true).open(&path);
-        // One write of a short line: those of several threads do not mix.
+        // One write of a short line: lines of several threads do not mix.
         file.and_then(|mut file| file.write_all(line.as_bytes()))
             .map_err(|source| Error::io(&path, source))
     }
 
-    /// All records that are there, by the numbers of their designs.
+    /// All existing records, by the numbers of their designs.
     pub(crate) fn records(&self) -> Result<BTreeMap<usize, DesignRecord>> {
         let designs = self.dir.join(DESIGNS);
         let mut records = BTreeMap::new();
@@ -221,7 +222,7 @@ impl Store {
         Ok(records)
     }
 
-    /// Why the record of a design is none.
+    /// Error for an invalid record of a design.
     pub(crate) fn no_record(&self, design: usize, why: &str) -> Error {
         refusal(&self.record_path(design), why)
     }
@@ -244,14 +245,15 @@ impl Store {
         )))
     }
 
-    /// Takes away what a killed batch left half written.
+    /// Removes what a killed batch left half written.
     fn sweep(&self) -> Result<()> {
         sweep(&self.dir)?;
         sweep(&self.dir.join(DESIGNS))
     }
 
-    /// Takes away the results of an older batch: files that whole manifests list, and the records of its designs. Where the
-    /// facts of that batch are not whole, only records go that this one is going to write. Files of others stay.
+    /// Removes the results of an older batch: files that intact manifests list, and the records of
+    /// its designs. Where the facts of that batch are damaged, it removes only records that this
+    /// batch will write. Other files stay.
     fn clear(&self) -> Result<()> {
         self.sweep()?;
         let older = Self::facts_in(&self.dir).ok().flatten();
@@ -267,13 +269,13 @@ impl Store {
             if number.filter(|design| (1..=designs).contains(design)).filter(is_own).is_none() {
                 continue;
             }
-            // A link to a folder leads elsewhere.
+            // A link to a folder points elsewhere.
             if path.is_symlink() || path.is_file() {
                 remove_if_there(&path)?;
             } else {
                 sweep(&path)?;
                 remove_report(&path)?;
-                // A folder with files of others stays.
+                // A folder with other files stays.
                 if entries(&path)?.is_empty() {
                     fs::remove_dir(&path).map_err(|source| Error::io(&path, source))?;
                 }
@@ -283,7 +285,7 @@ impl Store {
     }
 }
 
-/// Why a file is no record of a design.
+/// Error for a file that is not a record of a design.
 fn refusal(path: &Path, why: &str) -> Error {
     Error::Usage(format!("{} is no record of this study: {why}; {REMOVE}", path.display()))
 }
@@ -297,7 +299,7 @@ fn write_sealed(path: &Path, json: serde_json::Result<String>) -> Result<()> {
     write_whole(path, seal(&json).as_bytes(), Existing::Replace)
 }
 
-/// Everything in a folder, by name; nothing of one that is not there.
+/// Everything in a folder, by name; empty if it does not exist.
 fn entries(folder: &Path) -> Result<Vec<PathBuf>> {
     let failed = |source| Error::io(folder, source);
     let entries = match fs::read_dir(folder) {

@@ -1,7 +1,7 @@
 //! The gather method is consistent: against stored truths, bias and noise fall with the stages as predicted.
 //!
-//! Read is the widest window alone, E1: it has a bias to look at. What is predicted holds where light is smooth and pairs
-//! of photons and records limit the noise (docs/method.md).
+//! The test reads only the widest window, E1, as it has a visible bias. The prediction holds where
+//! light is smooth and pairs of photons and records limit the noise (docs/method.md).
 
 use crate::trial::{Gathering, Way, load};
 use lumiduct::pipeline::{self, Stop};
@@ -22,7 +22,7 @@ const PHOTONS: u64 = 100;
 /// Exceeded by chance once in 1,000 times, by a χ² of 3 degrees of freedom.
 const CHI_SQUARE_OF_3: f64 = 16.3;
 
-/// A scene, its window, and the truth about its eye.
+/// A scene, its window, and the true reading of its sensor `eye`.
 struct Subject {
     text: &'static str,
     window: Gathering,
@@ -30,8 +30,9 @@ struct Subject {
     truth: [f64; 2],
 }
 
-/// A rod under a lamp whose luminance falls with the angle, seen along its axis; records are left at its exit.
-/// Truth: this text as scene.toml, `lumiduct run scene.toml --estimator backward --paths 40M --seed 7`.
+/// A rod under a lamp whose luminance falls with the angle, seen along its axis; records lie at its
+/// exit. Truth: this text as scene.toml,
+/// `lumiduct run scene.toml --estimator backward --paths 40M --seed 7`.
 const ROD: Subject = Subject {
     text: r#"
 [media.acrylic]
@@ -75,7 +76,7 @@ eye = { luminance = { disk = { radius_mm = 1 }, cells = [1, 1], acceptance_half_
     truth: [172_647.2, 1.7],
 };
 
-/// A run of a subject with a seed of its own.
+/// The plan of a run of a subject with its own seed.
 fn plan(job: &Job, seed: u64, schedule: Schedule) -> RunPlan {
     let mut plan = RunPlan { seed, ..job.run.clone() };
     plan.gather.schedule = schedule;
@@ -89,14 +90,14 @@ fn wide(job: &Job, run: &Run<'_>) -> Measure {
     measure::value_of(&job.scene, &wide, MEASURE).unwrap()
 }
 
-/// What the runs of a subject have found in a stage, as shares of the truth.
+/// Results of the runs of a subject in a stage, relative to the truth.
 #[derive(Debug, Default, Clone)]
 struct Found {
     /// Values less the truth.
     errors: Tally,
     /// Squares of them.
     squares: Tally,
-    /// Squares of the standard errors that the runs tell.
+    /// Squares of the standard errors that the runs report.
     told: Tally,
     /// Photon paths of one run.
     cost: f64,
@@ -150,7 +151,7 @@ fn stages(subject: &Subject) -> Vec<Found> {
     found
 }
 
-/// χ² of biases that are `first` times powers of `factor`, with the `first` that makes it least.
+/// χ² of biases against `first` times powers of `factor`, minimised over `first`.
 fn misfit(biases: &[[f64; 2]], factor: f64) -> f64 {
     let share = |stage: usize| factor.powi(stage as i32);
     let weighted = |of: &dyn Fn(usize, f64) -> f64| -> f64 {
@@ -175,7 +176,8 @@ fn slope(points: &[[f64; 2]]) -> f64 {
     along(1, y) / along(0, x)
 }
 
-/// Stages halve bias and standard error at 8 times the cost, so that the mean square error goes as cost^(-2/3).
+/// Stages halve bias and standard error at 8 times the cost, so the mean square error falls as
+/// cost^(-2/3).
 fn falls_as_predicted(what: &str, subject: &Subject) {
     let found = stages(subject);
     for (stage, found) in found.iter().enumerate() {
@@ -192,7 +194,8 @@ fn falls_as_predicted(what: &str, subject: &Subject) {
         "{what}: the truth is not known well enough"
     );
 
-    // What the runs tell of their noise is what they scatter by: χ² of 44 degrees of freedom, within four of its deviations.
+    // The noise that the runs report equals their scatter: χ² of 44 degrees of freedom, within four
+    // of its standard deviations.
     let scatter: f64 = found
         .iter()
         .map(|found| found.errors.std_error().powi(2) / found.bias()[1].powi(2))
@@ -203,14 +206,15 @@ fn falls_as_predicted(what: &str, subject: &Subject) {
         "{what}: χ² {scatter} of {freedom}"
     );
 
-    // Noise halves, a little less at first, where pairs are not rare enough to make all of it; with 4 times the passes
-    // it would fall by 1.4. It is known to 5 % in the first stage, of 15 degrees of freedom a run, and better later.
+    // Noise halves, slightly less at first, where pairs are not rare enough to dominate it; with 4
+    // times the passes it would fall by 1.4. It is known to 5 % in the first stage, of 15 degrees
+    // of freedom a run, and better later.
     for pair in found.windows(2) {
         let ratio = pair[0].noise() / pair[1].noise();
         assert!((1.6..2.4).contains(&ratio), "{what}: noise falls by {ratio}");
     }
 
-    // So does the bias.
+    // The bias halves, too.
     let [halved, slower, constant] =
         [0.5, 0.5_f64.sqrt(), 1.0].map(|factor| misfit(&biases, factor));
     println!(
@@ -237,7 +241,7 @@ fn a_brushed_mirror_converges_with_the_stages_as_predicted() {
     falls_as_predicted("brushed mirror", &FOLD);
 }
 
-/// At first the windows are a tenth apart: only smaller ones reach the target.
+/// With the first windows the estimates differ by a tenth: only smaller windows reach the target.
 #[test]
 fn a_run_to_a_target_goes_on_to_windows_small_enough_for_it() {
     let window = Gathering { records: 500, photons: 1000, ..FOLD.window };

@@ -1,9 +1,10 @@
-//! The sun and the sky: light that starts on a port, on glass, and around a thing; and amounts that integrals tell.
+//! The sun and the sky: light that starts on a port, on glass, and around a body; and amounts given
+//! by integrals.
 
 use crate::trial::{Gathering, Way, agree, measures};
 
-/// A bent tube under a roof, with a glass pane or a dome above it; its light as given, aimed at the entry, the pane or
-/// the dome.
+/// A bent tube under a roof, with a glass pane or a dome above it; with the given light, aimed at
+/// the entry, the pane or the dome.
 fn tube(light: &str) -> String {
     format!(
         r#"
@@ -86,7 +87,7 @@ fn a_wide_sun_on_a_port_and_from_afar() {
     }
 }
 
-/// A level plane and a wall in the open, under a light that is aimed at a small plate near them.
+/// A horizontal plane and a wall in the open, under a light aimed at a small plate near them.
 fn open(light: &str) -> String {
     format!(
         r#"
@@ -104,7 +105,8 @@ wall = {{ plane = {{ disk = {{ radius_mm = 10 }} }}, at = {{ axis = [0, 1, 0] }}
 #[test]
 fn illuminances_in_the_open_are_those_of_integrals() {
     use std::f64::consts::PI;
-    // π L and half of it; 7/9 π Lz on level ground, and ∫ (1 + 2 cos Z)/3 cos θ dω = π/6 + 4/9 on a wall.
+    // π L and half of it; 7/9 π Lz on the horizontal plane, and ∫ (1 + 2 cos Z)/3 cos θ
+    // dω = π/6 + 4/9 on a wall.
     for (model, level, wall) in
         [("uniform", PI, 0.5 * PI), ("overcast", 7.0 / 9.0 * PI, PI / 6.0 + 4.0 / 9.0)]
     {
@@ -116,7 +118,7 @@ fn illuminances_in_the_open_are_those_of_integrals() {
             for (name, expected) in [("level", level), ("wall", wall)] {
                 let measure = &found.values[&format!("{name}.illuminance_avg")];
                 let off = (measure.value - 1000.0 * expected).abs();
-                // Backward paths under an even sky all bring the same: nothing but rounding is left.
+                // Backward paths under a uniform sky all carry the same: only rounding remains.
                 let allowed = 4.0 * measure.std_error + 1e-6 * measure.value;
                 assert!(off < allowed, "{model}, {}, {name}: {measure}", way.name());
             }

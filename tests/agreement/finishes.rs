@@ -1,4 +1,4 @@
-//! Every finish: adjoint factors, and no light counted twice or never.
+//! Every finish: adjoint factors are right, and all light is counted exactly once.
 
 use crate::trial::{all_agree, shallow_agree};
 
@@ -23,7 +23,8 @@ cell = {{ plane = {{ rectangle = {{ width_mm = 4, height_mm = 4 }} }}, at = {{ p
     )
 }
 
-/// A window with a finish, tilted, between the lamp and a cell behind it; another cell sees what comes back.
+/// A window with a finish, tilted, between the lamp and a cell behind it; another cell sees the
+/// returning light.
 pub(crate) fn window(finish: &str, back: &str) -> String {
     format!(
         r#"
@@ -216,7 +217,7 @@ fn faces_of_glass_with_films() {
     }
 }
 
-/// A coating against reflection, as a table.
+/// An anti-reflection coating, as a table.
 const COATING: &str =
     "{ coated = { angles_deg = [0, 40, 60, 80, 90], reflectance = [0.005, 0.01, 0.04, 0.3, 1] } }";
 

@@ -1,5 +1,5 @@
-//! Fields that are known exactly: inside a furnace luminance is the same everywhere, whatever stands in it, and a
-//! plate of glass before a wide lamp has closed forms.
+//! Fields that are known exactly: inside a furnace luminance is the same everywhere, whatever is in
+//! it, and a glass plate before a wide lamp has closed forms.
 
 use crate::trial::{Comparison, Gathering, Way, measures};
 use std::f64::consts::PI;
@@ -10,8 +10,8 @@ const WALLS: f64 = 1000.0;
 const EDGE_MM: f64 = 20.0;
 const INDEX: f64 = 1.49;
 
-/// A cube of glowing walls around things that take no light: L is that of the walls everywhere, n² as much in glass,
-/// where light from outside comes to.
+/// A cube of glowing walls around things that absorb no light: L is that of the walls everywhere,
+/// and n² times as much in glass, where light from outside reaches.
 const FURNACE: &str = r#"
 [media.glass]
 index = 1.49
@@ -66,7 +66,7 @@ fn assert_even(what: &str, furnace: &str) {
     expected
         .extend((0..2).map(|view| (format!("inside.luminance_avg.{view}"), INDEX * INDEX * WALLS)));
     expected.extend((0..3).map(|ring| (format!("near.ring.{ring}"), lit * 49.0 * mm2)));
-    // An even field has no bias in any window.
+    // A uniform field has no bias in any window.
     let gather = |depth| {
         Way::Gather(Gathering { radius_mm: 0.9, angle_deg: 25.0, ..Gathering::to_depth(depth) })
     };
@@ -74,7 +74,7 @@ fn assert_even(what: &str, furnace: &str) {
     for way in [Way::Forward, Way::Backward, gather(0), gather(2), gather(8)] {
         let found = measures(furnace, way);
         for (name, expected) in &expected {
-            // Hardly any photon comes to the narrow cones.
+            // Hardly any photon hits the narrow cones.
             if matches!(way, Way::Forward) && name.contains("luminance") {
                 continue;
             }
@@ -85,7 +85,7 @@ fn assert_even(what: &str, furnace: &str) {
     comparison.assert(what, 50);
 }
 
-/// A lamp wide enough to be all that can be seen along the axis through a plate.
+/// A lamp wide enough to fill the view along the axis through a plate.
 const PLATE: &str = r#"
 [media.glass]
 index = 1.49
@@ -107,7 +107,7 @@ fn luminance_behind_and_inside_a_plate_is_what_fresnel_says() {
     // Reflected at one face, at normal incidence; within 3 deg it is the same to 1e-6.
     let once = ((INDEX - 1.0) / (INDEX + 1.0)).powi(2);
     let behind = WALLS * (1.0 - once) / (1.0 + once);
-    // Light on its way up: what the lower face lets in, and what comes back from both.
+    // Upward light: transmitted by the lower face, and reflected back from both faces.
     let inside = WALLS * INDEX * INDEX / (1.0 + once);
     let gather = |depth| {
         Way::Gather(Gathering { radius_mm: 1.0, angle_deg: 6.0, ..Gathering::to_depth(depth) })

@@ -1,5 +1,5 @@
-//! What is known about errors: bias that falls with the window as it should, depths that agree, light that is
-//! neither made nor lost.
+//! Laws of errors: bias falls with the window as predicted, depths agree, and light is neither
+//! created nor lost.
 
 use crate::trial::{Comparison, Gathering, Way, findings, load, measures};
 use lumiduct_core::measure::{self, Measure};
@@ -7,7 +7,7 @@ use lumiduct_core::plan::{GatherPlan, RunPlan};
 use lumiduct_core::transport::{Findings, Run};
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
-/// A guide and its lamp, in which nothing absorbs.
+/// A guide and its lamp, without absorption.
 const ROD: &str = r#"
 [media.acrylic]
 index = 1.49
@@ -99,7 +99,7 @@ fn guides_without_loss_lose_and_make_no_light() {
     comparison.assert("lossless", 10);
 }
 
-/// The wide window of a gather run alone: E1.
+/// The widest window of a gather run: E1.
 fn wide(text: &str, gathering: Gathering, name: &str) -> Measure {
     let way = Way::Gather(gathering);
     let job = load(text, way);
@@ -109,7 +109,8 @@ fn wide(text: &str, gathering: Gathering, name: &str) -> Measure {
     measure::value_of(&job.scene, &wide, name).unwrap()
 }
 
-/// Holds E1 within three windows, each smaller by √2, against what it should be, and its bias against half of the last.
+/// Compares E1 in three windows, each smaller by √2, with its expected value, and its bias with
+/// half of the previous one.
 fn follows(
     what: &str,
     text: &str,
@@ -210,9 +211,10 @@ eye = { luminance = { disk = { radius_mm = 1 }, cells = [1, 1], acceptance_half_
     follows("angle", text, "eye.luminance_avg.0", window, normal, law);
 }
 
-/// Reference case ES-01: at the exit of a black tube of radius a and length 10 a, under a Lambertian disk that fills its
-/// entry, L is that of the disk within atan(1/10); a wider cone dilutes it by the ratio of solid angles. Light steeper
-/// than 8 deg cannot come there: the lamp leaves it out.
+/// Reference case ES-01: at the exit of a black tube of radius a and length 10 a, under a
+/// Lambertian disk that fills its entry, L is that of the disk within atan(1/10); a wider cone
+/// dilutes it by the ratio of solid angles. The lamp omits light steeper than 8 deg, which cannot
+/// reach the exit.
 #[test]
 fn a_cone_wider_than_the_light_dilutes_it_by_the_ratio_of_solid_angles() {
     let text = &under_a_tube(
@@ -250,8 +252,8 @@ fn photons_of_the_run_contradict_windows_that_are_wider_than_the_light() {
     assert!(narrow.abs() < 4.0 && wide < -4.0, "{narrow} and {wide} errors");
 }
 
-/// The automatic angle is half of the half-width of the light at the records: of its emission where a source fills the
-/// guide, of the source seen from there where it does not.
+/// The automatic angle is half the half-width of the light at the records: of the emission where a
+/// source fills the guide, of the source as seen from there where it does not.
 #[test]
 fn automatic_windows_fit_the_light() {
     let lamp = |radius_mm: f64, emission: &str| {

@@ -1,7 +1,8 @@
-//! Forward, backward and gathered values agree, in scenes that hold one thing each: every finish, source, sensor and
-//! kind of guide, rims and corners, known fields, and known biases.
+//! Forward, backward and gathered values agree, in scenes with one feature each: every finish,
+//! source, sensor and kind of guide, rims and corners, known fields, and known biases.
 //!
-//! Forward is the oracle: it shares neither adjoints nor windows with the others. Seeds are fixed.
+//! Forward is the reference: it shares neither adjoints nor windows with the others. Seeds are
+//! fixed.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
 #![allow(

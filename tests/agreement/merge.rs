@@ -72,7 +72,7 @@ fn right_angles() {
 fn meshes_with_interpolated_normals() {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/meshes/lightguide.glb");
     let mesh = format!("[solids.pipe.mesh]\nfile = '{file}'\nunit = \"m\"\nmedium = \"acrylic\"");
-    // Triangles are asked one by one how much of a window they hold: few records.
+    // The overlap of a window is computed triangle by triangle, so there are few records.
     let few = Gathering { radius_mm: 0.4, records: 60, photons: 2000, ..Gathering::to_depth(1) };
     agree("mesh", &guide(&mesh, "leaving"), &[Way::Forward, Way::Merged(few)]);
 }
@@ -90,7 +90,7 @@ fn finishes() {
     shallow_agree("two sides of a splitter", &window(clear, dim));
 }
 
-/// A rod with some sources in turn, each by its kind and keys.
+/// A rod with several sources in turn, each by its kind and keys.
 fn sources_agree(sources: &[(&str, &str)]) {
     for (what, source) in sources {
         let source = source.replacen("]\n", "]\nflux_lm = 10\n", 1);
@@ -209,7 +209,7 @@ fn variances(text: &str, gathering: Gathering) -> [f64; 4] {
         };
         let flux = readings.scalar(slot);
         if flux.mean() == 0.0 {
-            // Nothing was met.
+            // No light was found.
             return f64::INFINITY;
         }
         (flux.std_error() / flux.mean()).powi(2) * readings.paths() as f64 / paths as f64
@@ -225,9 +225,9 @@ enum Best {
     Gather,
 }
 
-/// Merged, the noise is about that of the best one, whichever it is.
+/// The noise of the merged estimate is about that of the best one, whichever it is.
 fn noise_is_that_of(best: Best, text: &str, gathering: Gathering) {
-    /// 64 passes know a variance to 18 %: this is 2.3 standard errors of a ratio above 1.
+    /// 64 passes give a variance to 18 %: this is 2.3 standard errors of a ratio above 1.
     const MOST: f64 = 1.6;
     let [forward, backward, gather, merged] = variances(text, gathering);
     println!("forward {forward:.2e} backward {backward:.2e} gather {gather:.2e} mis {merged:.2e}");
@@ -268,8 +268,9 @@ fn noise_where_forward_is_best() {
     noise_is_that_of(Best::Forward, &tube_with(100, "radius_mm = 0.5", exit), gathering);
 }
 
-/// Holds the flux within each window, merged where each of the three has a good share, against an exact value, lm: where
-/// light fills all directions evenly, windows have no bias to hide behind.
+/// Compares the flux in each window with an exact value, lm, merged where each of the three
+/// estimators has a good share. Light fills all directions uniformly, so windows have no bias that
+/// could hide an error.
 fn flux_is(what: &str, pane: &str, depth: u32, expected: f64) {
     let text = format!(
         r#"

@@ -1,4 +1,5 @@
-//! Forward and backward mixed: right where only one of them finds light, and better than both where each finds some.
+//! Forward and backward mixed: correct where only one of them finds light, and better than both
+//! where each finds some.
 
 use crate::trial::{Way, agree, findings, load};
 use lumiduct_core::plan::{Estimator, Request, RunPlan, StopRules};
@@ -38,7 +39,7 @@ fn sources_that_paths_cannot_meet_are_left_to_photons() {
 #[test]
 fn auto_takes_the_mix_for_light_of_two_kinds() {
     let job = load(&tube(&format!("{SKY}{SUN}")), Way::Forward);
-    // A pilot of less would not see the sun.
+    // A shorter pilot would not find the sun.
     let stop = StopRules { paths: Some(20_000_000), ..StopRules::default() };
     let plan = RunPlan { estimator: Request::Auto, stop, ..job.run.clone() };
     let mut run = Run::new(&job.scene, &plan);
@@ -47,7 +48,7 @@ fn auto_takes_the_mix_for_light_of_two_kinds() {
     assert_eq!(found.estimators, [Estimator::Mix], "{:?}", found.choices);
 }
 
-/// Relative variance of the flux times the straight pieces traced for it.
+/// Relative variance of the flux times the segments traced for it.
 fn cost(text: &str, way: Way) -> f64 {
     let job = load(text, way);
     let found = findings(&job, way);
@@ -73,6 +74,6 @@ fn light_of_two_kinds_costs_less_than_by_either_alone() {
     let [forward, backward, mixed] =
         [Way::Forward, Way::Backward, Way::Mixed].map(|way| cost(&text, way));
     println!("forward {forward:.1}, backward {backward:.1}, mixed {mixed:.1}");
-    // Variances from 128 groups are known to 13 %: three standard errors of a ratio.
+    // Variances from 128 groups have an error of 13 %: three standard errors of a ratio.
     assert!(1.7 * mixed < forward.min(backward), "{mixed} against {forward} and {backward}");
 }

@@ -1,8 +1,9 @@
-//! First passages: photons and gather paths count a path once, on ports and on faces, whichever way it comes back.
+//! First passages: photons and gather paths count a path once, on ports and on faces, whichever way
+//! it returns.
 
 use crate::trial::{Way, agree, measures};
 
-/// A mirror duct that leads its light back through its own entry and exit, with its exit sensor.
+/// A mirror duct that returns its light through its own entry and exit, with an exit sensor.
 fn open_bend(reflectance: f64, passage: &str) -> String {
     format!(
         r#"

@@ -1,4 +1,4 @@
-//! Patterns on faces: holes with and without a wall, and dots, are the same both ways.
+//! Patterns on faces: holes with and without a wall, and dots, agree forward and backward.
 
 use crate::trial::all_agree;
 

@@ -1,4 +1,4 @@
-//! Reliefs on walls of solids are the same both ways.
+//! Reliefs on walls of solids agree forward and backward.
 
 use crate::trial::all_agree;
 

@@ -2,7 +2,7 @@
 
 use crate::trial::{Gathering, Way, agree};
 
-/// All ways, with windows that are as wide as the things they lie on.
+/// All ways, with windows as wide as the faces they lie on.
 fn all_agree(what: &str, text: &str) {
     let gather = [0, 2].map(|depth| {
         Way::Gather(Gathering { radius_mm: 1.0, angle_deg: 6.0, ..Gathering::to_depth(depth) })

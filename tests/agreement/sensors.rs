@@ -2,8 +2,9 @@
 
 use crate::trial::shallow_agree as agree;
 
-/// A mirror tube with a tilted pane in it, a block of glass behind, and sensors. The glass absorbs: light cannot come from
-/// where it would be totally reflected for ever, but a gather path that starts inside has to find that out.
+/// A mirror tube with a tilted pane in it, a block of glass behind, and sensors. The glass absorbs:
+/// no light arrives along directions of endless total reflection, but a gather path that starts
+/// inside can take them.
 pub(crate) fn scene(sensors: &str) -> String {
     format!(
         r#"

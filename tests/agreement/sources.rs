@@ -1,8 +1,10 @@
-//! Every source that gather paths can meet: in free space, on a face, in a solid, and with a body of its own.
+//! Every source that gather paths can meet: in free space, on a face, in a solid, and with its own
+//! body.
 
 use crate::trial::{Gathering, Way, agree};
 
-/// All ways; at depth 0 more work makes up for light that meets a window of the size of the exit only.
+/// All ways; at depth 0 more work compensates for light that meets only a window of the size of the
+/// exit.
 fn all_agree(what: &str, text: &str) {
     let gather = [
         Gathering { angle_deg: 9.0, records: 3000, photons: 5000, ..Gathering::to_depth(0) },
@@ -13,7 +15,7 @@ fn all_agree(what: &str, text: &str) {
     agree(what, text, &[Way::Forward, Way::Backward, Way::Mixed, shallow, middle, deep]);
 }
 
-/// A rod with a mirror around it, its lamp as given.
+/// A rod with a mirror around it and the given lamp.
 pub(crate) fn rod(source: &str) -> String {
     format!(
         r#"

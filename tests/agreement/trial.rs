@@ -1,4 +1,4 @@
-//! A scene from its text, run by each estimator, and what it measures held against something else.
+//! A scene from its text, run by each estimator, and comparisons of its measures.
 
 use lumiduct_core::measure::{self, Measure, Measures, Status};
 use lumiduct_core::plan::Request;
@@ -12,7 +12,7 @@ pub(crate) const SIGMAS: f64 = 4.0;
 const PHOTONS: u64 = 150_000;
 /// Waves of 16 passes of a gather run: 64 passes, so that errors are known to a tenth.
 const GATHER_WAVES: u64 = 4;
-/// Most that the bias of a gathered flux may be told to be, over the value: more would hide what is looked for.
+/// Largest reported bias of a gathered flux, relative to the value: more would hide errors.
 const MOST_BIAS: f64 = 0.25;
 const SEED: u64 = 3;
 
@@ -69,7 +69,7 @@ impl Way {
                 Settings { estimator: Some(Request::Forward), paths: Some(PHOTONS), ..usual }
             }
             Self::Backward => Settings { estimator: Some(Request::Backward), ..usual },
-            // Other photons than those it is held against.
+            // A different seed from the run it is compared with.
             Self::Mixed => {
                 Settings { estimator: Some(Request::Mix), seed: Some(SEED + 1), ..usual }
             }
@@ -114,7 +114,7 @@ pub(crate) fn load(text: &str, way: Way) -> Job {
     }
 }
 
-/// Everything that a run counts.
+/// All findings of a run.
 pub(crate) fn findings(job: &Job, way: Way) -> Findings {
     let mut run = Run::new(&job.scene, &job.run);
     for _ in 0..way.waves() {
@@ -123,7 +123,8 @@ pub(crate) fn findings(job: &Job, way: Way) -> Findings {
     run.findings()
 }
 
-/// The same on one thread, for tests run beside each other; backward and the mix get half a wave, of 64 batches.
+/// The same on one thread, for tests run in parallel; backward and mixed get half a wave, of 64
+/// batches.
 fn findings_alone(job: &Job, way: Way) -> Findings {
     const PIECES: usize = 16;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
@@ -137,7 +138,7 @@ fn findings_alone(job: &Job, way: Way) -> Findings {
     })
 }
 
-/// Everything that a run measures.
+/// All measures of a run.
 pub(crate) fn measures(text: &str, way: Way) -> Measures {
     let job = load(text, way);
     let findings = findings_alone(&job, way);
@@ -154,7 +155,7 @@ pub(crate) struct Comparison {
 }
 
 impl Comparison {
-    /// Holds a value against another; the total error of neither may be needed to be infinite.
+    /// Compares a value with an expected one and its error; a NaN deviation fails.
     pub(crate) fn add(&mut self, what: &str, found: &Measure, expected: f64, error: f64) {
         let z = (found.value - expected) / found.total_error().hypot(error);
         let line = format!("{what}: {found}, expected {expected:.6} ± {error:.1e}, {z:+.2} sigmas");
@@ -171,7 +172,7 @@ impl Comparison {
         self.failed.push(line);
     }
 
-    /// Everything agreed, and there were at least so many values.
+    /// Asserts that everything agreed, and that there were at least `least` values.
     pub(crate) fn assert(self, what: &str, least: usize) {
         println!(
             "{}{what}: {} values, largest {:.2} sigmas",
@@ -182,7 +183,8 @@ impl Comparison {
     }
 }
 
-/// Whether a measure is a sum or mean of light, which every estimator gives without a further bias.
+/// Whether a measure is a sum or mean of light, which every estimator gives without additional
+/// bias.
 fn is_plain(name: &str) -> bool {
     let Some((sensor, rest)) = name.split_once('.') else { return false };
     let rest = rest.split('.').next().unwrap_or(rest);
@@ -193,15 +195,16 @@ fn is_dark(measure: &Measure) -> bool {
     measure.status == Status::NoSignal
 }
 
-/// Whether a mean number of bounces tells nothing: the reference has seen one number only and does not know what it has
-/// missed, or a window has let in trapped light, of many bounces and hardly any flux, and says that its bias is not known.
+/// Whether a mean number of bounces is meaningless: the reference has seen only one number and
+/// cannot know what it missed, or a window has let in trapped light, of many bounces and hardly any
+/// flux, and reports its bias as unknown.
 fn is_uncertain(name: &str, reference: &Measure, found: &Measure) -> bool {
     name.ends_with(".bounces_mean")
         && (reference.std_error < 1e-9
             || matches!(found.status, Status::BiasInNoise | Status::BiasNotResolved))
 }
 
-/// Holds the values of each way against those of the first.
+/// Compares the values of each way with those of the first.
 pub(crate) fn agree(what: &str, text: &str, ways: &[Way]) {
     let mut comparison = Comparison::default();
     let (first, others) = ways.split_first().unwrap();
@@ -233,7 +236,7 @@ pub(crate) fn all_agree(what: &str, text: &str) {
     agree(what, text, &[Way::Forward, Way::Backward, Way::Mixed, shallow, middle, deep]);
 }
 
-/// The same without the deepest, for scenes in which light meets few surfaces.
+/// The same without the deepest, for scenes where light meets few surfaces.
 pub(crate) fn shallow_agree(what: &str, text: &str) {
     let [shallow, middle] = [0, 2].map(|depth| Way::Gather(Gathering::to_depth(depth)));
     agree(what, text, &[Way::Forward, Way::Backward, Way::Mixed, shallow, middle]);

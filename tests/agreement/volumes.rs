@@ -1,8 +1,9 @@
-//! Media that scatter: published values, invariances that hold however much they scatter, and all estimators alike.
+//! Media that scatter: published values, invariances that hold for any amount of scattering, and
+//! agreement of all estimators.
 
 use crate::trial::{Comparison, Gathering, Way, agree, measures, shallow_agree};
 
-/// A thin beam on a wide slab of a medium, from below; what goes up and what comes back.
+/// A thin beam on a wide slab of a medium, from below; counts transmitted and reflected light.
 fn slab(thickness_mm: f64, index: f64, anisotropy: f64) -> String {
     format!(
         r#"
@@ -33,8 +34,8 @@ fn a_slab_lets_through_and_sends_back_what_is_published() {
     let found = measures(&slab(0.2, 1.0, 0.75), Way::Forward);
     comparison.add("slab, up", &found.values["up.flux"], 0.66096, 5e-6);
     comparison.add("slab, back", &found.values["back.flux"], 0.09739, 5e-6);
-    // Giovanelli, Opt. Acta 2 (1955) 153, as in table 2 there: half space of index 1.5, albedo 0.9, isotropic, with what the
-    // surface itself reflects. Four digits.
+    // Giovanelli, Opt. Acta 2 (1955) 153, as in table 2 there: half space of index 1.5, albedo 0.9,
+    // isotropic, including the reflection of the surface itself. Four digits.
     let found = measures(&slab(200.0, 1.5, 0.0), Way::Forward);
     comparison.add("half space, back", &found.values["back.flux"], 0.2600, 5e-5);
     comparison.assert("slab", 3);
@@ -42,8 +43,9 @@ fn a_slab_lets_through_and_sends_back_what_is_published() {
 
 #[test]
 fn light_from_all_sides_stays_as_long_in_a_body_that_scatters_as_in_a_clear_one() {
-    // Blanco & Fournier, Europhys. Lett. 61 (2003) 168: the mean length of path is 4 V/S, however much is scattered.
-    // A weak absorption α takes the share α 4 V/S of the light; the next term is of the order of α times the edge.
+    // Blanco & Fournier, Europhys. Lett. 61 (2003) 168: the mean path length is 4 V/S, for any
+    // amount of scattering. A weak absorption α takes the share α 4 V/S of the light; the next term
+    // is of the order of α times the edge.
     const EDGE_MM: f64 = 10.0;
     const ABSORPTION: f64 = 1e-6;
     let mut comparison = Comparison::default();
@@ -79,7 +81,8 @@ around = {{ face = {{ of = "cube.wall", side = "back", luminance_cd_m2 = 1000 }}
 
 #[test]
 fn light_that_is_not_scattered_falls_off_by_both_coefficients() {
-    // Far ahead a disk as wide as the beam sees it alone: of scattered light less than 1e-7.
+    // Far ahead a disk as wide as the beam sees only the beam: less than 1e-7 of the scattered
+    // light.
     let text = slab(0.3, 1.0, 0.0).replace(
         "[sensors]",
         "[sensors]\nahead = { plane = { disk = { radius_mm = 0.11 } }, at = { position_mm = [0, 0, 500], axis = [0, 0, -1] } }",

@@ -1,4 +1,4 @@
-//! What a user does in a browser.
+//! User actions in a browser.
 
 use crate::protocol::Browser;
 use base64::Engine;
@@ -8,9 +8,9 @@ use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// Names of programs that will do.
+/// Names of suitable programs.
 const NAMES: [&str; 3] = ["chromium", "chromium-browser", "google-chrome"];
-/// What a page tells when something is wrong with it.
+/// Events by which a page reports an error.
 const COMPLAINTS: [&str; 3] =
     ["Runtime.exceptionThrown", "Runtime.consoleAPICalled", "Log.entryAdded"];
 
@@ -24,7 +24,8 @@ pub(crate) enum Modifier {
     Ctrl,
 }
 
-/// A browser of this machine. Without one the test says so and is over, unless the environment demands it.
+/// A browser of this machine. Without one the test reports this and ends, unless the environment
+/// demands it.
 pub(crate) fn find() -> Option<PathBuf> {
     let path = std::env::var_os("PATH").unwrap_or_default();
     let found = std::env::split_paths(&path)
@@ -53,12 +54,12 @@ impl Open {
         Self(RefCell::new(browser))
     }
 
-    /// Gives the browser a command.
+    /// Sends the browser a command.
     pub(crate) fn call(&self, method: &str, parameters: Value) -> Value {
         self.0.borrow_mut().call(method, parameters)
     }
 
-    /// What an expression of the page comes to.
+    /// The value of an expression in the page.
     pub(crate) fn ask(&self, expression: &str) -> Value {
         let wrapped = format!("JSON.stringify({expression}) ?? 'null'");
         let mut answer = self.call("Runtime.evaluate", json!({ "expression": wrapped }));
@@ -72,7 +73,7 @@ impl Open {
         self.ask(expression).as_str().unwrap().to_owned()
     }
 
-    /// Waits until an expression is true: pages draw when they come to it.
+    /// Waits until an expression is true: pages draw asynchronously.
     pub(crate) fn expect(&self, expression: &str) {
         let start = Instant::now();
         while self.ask(expression) != Value::Bool(true) {
@@ -81,7 +82,7 @@ impl Open {
         }
     }
 
-    /// A place at a share of the width and height of an element, brought into view.
+    /// A place at a share of the width and height of an element, scrolled into view.
     pub(crate) fn place(&self, element: &str, share: [f64; 2]) -> [f64; 2] {
         let box_of = format!(
             "(() => {{ const e = {element}; e.scrollIntoView({{ block: 'center', behavior: 'instant' }}); \
@@ -116,7 +117,7 @@ impl Open {
         self.mouse("mouseReleased", end, "left");
     }
 
-    /// Turns the wheel over an element, down by 100 pixels, and waits until the page comes to rest.
+    /// Turns the wheel over an element, down by 100 pixels, and waits until the page stops moving.
     pub(crate) fn wheel(&self, element: &str, with: Modifier) {
         let [x, y] = self.place(element, [0.5, 0.5]);
         let modifiers = match with {
@@ -138,7 +139,7 @@ impl Open {
         self.call("Input.dispatchMouseEvent", event);
     }
 
-    /// The page with a wish for light or dark.
+    /// The page with a preference for light or dark.
     pub(crate) fn prefer(&self, scheme: &str) {
         let feature = json!({ "name": "prefers-color-scheme", "value": scheme });
         self.call("Emulation.setEmulatedMedia", json!({ "features": [feature] }));
@@ -151,7 +152,7 @@ impl Open {
         self.call("Emulation.setDeviceMetricsOverride", size);
     }
 
-    /// The page on a phone: so many CSS pixels wide, and under a finger.
+    /// The page on a phone of this size in CSS pixels, with touch input.
     pub(crate) fn on_phone(&self, width: u32, height: u32) {
         let size =
             json!({ "width": width, "height": height, "deviceScaleFactor": 2, "mobile": true });
@@ -159,8 +160,8 @@ impl Open {
         self.call("Emulation.setTouchEmulationEnabled", json!({ "enabled": true }));
     }
 
-    /// Moves a finger over an element from one place to another, and waits until a page that it has set in motion
-    /// comes to rest.
+    /// Moves a finger over an element from one place to another, and waits until the page stops
+    /// moving.
     pub(crate) fn stroke(&self, element: &str, from: [f64; 2], to: [f64; 2]) {
         const STEPS: u32 = 8;
         let start = self.place(element, from);
@@ -177,10 +178,10 @@ impl Open {
         self.rest();
     }
 
-    /// Waits until the page scrolls no more: it moves on for a while after a finger has left it, and that motion adds
-    /// to whatever scrolls the page next.
+    /// Waits until the page stops scrolling: it coasts for a while after a finger has left it,
+    /// which would add to the next scroll.
     fn rest(&self) {
-        /// So many looks in a row see the page at the same place.
+        /// Consecutive looks that must see the page at the same place.
         const LOOKS: usize = 15;
         let start = Instant::now();
         let mut seen = vec![self.ask("scrollY")];
@@ -211,7 +212,7 @@ impl Open {
         pixels.chunks_exact(step).map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect()
     }
 
-    /// Fails where the page has complained.
+    /// Fails if the page has reported an error.
     pub(crate) fn expect_no_complaints(&self) {
         let browser = self.0.borrow();
         let is_complaint = |event: &&Value| COMPLAINTS.iter().any(|name| event["method"] == *name);
@@ -220,7 +221,7 @@ impl Open {
     }
 }
 
-/// The file in an answer.
+/// The file in a response.
 fn bytes(answer: &Value) -> Vec<u8> {
     BASE64_STANDARD.decode(answer["data"].as_str().unwrap()).unwrap()
 }

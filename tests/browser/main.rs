@@ -16,7 +16,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
-/// A rod with a sensor of each kind, and a title that would like to be more than text.
+/// A rod with a sensor of each kind, and a title with markup that must stay text.
 const SCENE: &str = concat!(
     "lumiduct = 1\ntitle = \"Short rod </script><b>&\\\"\"\n",
     include_str!("../rod.toml"),
@@ -33,7 +33,7 @@ min = 0.5
 "#
 );
 
-/// The report of a small run in a folder of its own.
+/// The report of a small run in its own folder.
 struct Report(TempDir);
 
 impl Report {
@@ -64,7 +64,7 @@ fn figure(label: &str, nth: usize) -> String {
     )
 }
 
-/// The value and the error at the start of what a readout says after a colon.
+/// The value and the error after the colon of a readout.
 fn told(readout: &str) -> [f64; 2] {
     // Large numbers have narrow spaces between groups of three digits.
     let numbers = readout.rsplit(": ").next().unwrap().replace('\u{202f}', "");
@@ -178,7 +178,7 @@ fn the_page_of_a_check_shows_the_axes_that_are_chosen() {
     assert!(output.unwrap().status.success());
     let page = Open::new(&program, &dir.path().join("rod.check.html"));
     let painted = "document.querySelector('.scene canvas').toDataURL()";
-    // The wall has no sensor, so that its axes are drawn on demand alone.
+    // The wall has no sensor, so its axes are drawn on demand only.
     let wall =
         "[...document.querySelectorAll('.axes button')].find((b) => b.textContent === 'rod.wall')";
     assert_eq!(page.text(&format!("{wall}.ariaPressed")), "false");

@@ -1,10 +1,10 @@
-//! `report.html` on a phone: 390 CSS pixels and a finger.
+//! `report.html` on a phone: 390 CSS pixels and touch input.
 
 use crate::{Report, driver, figure};
 use serde_json::Value;
 
 const WIDTH: u32 = 390;
-/// Letters below this size cannot be read, CSS pixels.
+/// Smallest readable font size, CSS pixels.
 const LEAST_LETTERS: f64 = 11.0;
 
 /// Sizes of all letters in drawings, as they are on the screen.

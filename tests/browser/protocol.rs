@@ -8,8 +8,8 @@ use std::time::{Duration, Instant};
 use tempfile::TempDir;
 use tungstenite::{Message, WebSocket};
 
-/// No window, no sandbox (there is none to be had within containers), no graphics card, no network, no first steps. The
-/// system chooses the port.
+/// No window, no sandbox (unavailable in containers), no graphics card, no network, no first-run
+/// dialogs. The system chooses the port.
 const ARGUMENTS: [&str; 11] = [
     "--headless=new",
     "--no-sandbox",
@@ -33,9 +33,9 @@ pub(crate) struct Browser {
     /// The page that commands are for.
     session: Option<String>,
     last_command: u64,
-    /// Everything it has told unasked.
+    /// Everything it has reported unasked.
     events: Vec<Value>,
-    // Goes when the browser has ended.
+    // Removed when the browser has ended.
     _profile: TempDir,
 }
 
@@ -93,14 +93,14 @@ impl Browser {
         }
     }
 
-    /// Everything it has told unasked so far.
+    /// Everything it has reported unasked so far.
     pub(crate) fn events(&self) -> &[Value] {
         &self.events
     }
 
     fn next(&mut self) -> Value {
         loop {
-            // A browser that says nothing any more ends the test.
+            // A browser that no longer answers fails the test.
             if let Message::Text(text) = self.socket.read().unwrap() {
                 return serde_json::from_str(&text).unwrap();
             }

@@ -25,14 +25,14 @@ estimator = "forward"
 measure = "exit.efficiency"
 "#;
 
-/// A place with a study beside its scene.
+/// A place with a study and its scene.
 fn study(text: &str) -> Place {
     let place = Place::new();
     fs::write(place.path("study.toml"), text).unwrap();
     place
 }
 
-/// All files of a batch, those of its designs included.
+/// All files of a batch, including those of its designs.
 fn results(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut all = contents(folder);
     for (name, bytes) in contents(&folder.join("designs")) {
@@ -121,7 +121,7 @@ fn a_killed_batch_goes_on_without_repeating_designs_to_the_same_bytes() {
     let stamp = |name: &str| fs::metadata(designs.join(name)).unwrap().modified().unwrap();
     let first = names(&designs).into_iter().find(|name| name.ends_with(".json")).unwrap();
     let before = stamp(&first);
-    // What a kill in the middle of a write leaves.
+    // The leftovers of a kill in the middle of a write.
     fs::write(designs.join(".lumiduct-half"), "{").unwrap();
 
     assert!(place.bad(2, "batch study.toml -o cut").contains("--resume"));
@@ -155,7 +155,7 @@ fn two_batches_are_not_at_work_in_one_folder() {
     }
     first.kill().unwrap();
     first.wait().unwrap();
-    // Whichever of two comes first to a new folder, the other is refused.
+    // Whichever of two opens a new folder first, the other is refused.
     for _ in 0..5 {
         _ = fs::remove_dir_all(place.path("out"));
         let mut pair = [start(""), start("")];
@@ -240,7 +240,7 @@ fn samples_tell_the_share_that_fails_and_what_it_hangs_on() {
         rows(&place, "out").iter().filter(|row| row["check exit.efficiency"] == "failed").count();
     assert_eq!(fails as u64, count("failed"));
     let indices = summary["analysis"]["sensitivities"][0]["indices"].as_array().unwrap().clone();
-    // Fresnel's losses grow with the index, and a clear rod does not mind its length.
+    // Fresnel losses grow with the index, and the length of a clear rod has no effect.
     let index = indices.iter().find(|own| own["parameter"] == "index").unwrap();
     assert!(index["value"].as_f64().unwrap() < -0.8, "{index}");
     assert!(place.path("out/distribution.exit.efficiency.png").exists());
@@ -295,7 +295,7 @@ fn tables_choices_and_whole_reports() {
     }
     assert!(!place.path("bad").exists());
 
-    // Nothing of an older study lies beside the new results.
+    // Nothing of an older study remains next to the new results.
     fs::write(place.path("study.toml"), text.replace("keep = \"reports\"", "")).unwrap();
     fs::write(place.path("designs.csv"), "index,length\nlight,5\n").unwrap();
     place.good("batch study.toml -o out --overwrite");
@@ -322,7 +322,7 @@ fn a_file_that_a_choice_names_is_part_of_the_study() {
     place.good("batch study.toml -o out --overwrite");
     fs::write(place.path("fine.toml"), "plane = { cells = [9, 9] }\n").unwrap();
     assert!(place.bad(2, "batch study.toml -o out --resume").contains("another study"));
-    // One that makes no scene counts, too: with other parameters it might.
+    // A choice that makes no scene counts, too: with other parameters it might.
     fs::write(place.path("fine.toml"), "plane = { cells = [9, 0] }\n").unwrap();
     assert_eq!(code(&place.run("batch study.toml -o out --overwrite")), 1);
     assert_eq!(code(&place.run("batch study.toml -o out --resume")), 1);
@@ -369,7 +369,7 @@ fn a_table_may_say_what_the_scene_says() {
         .replace("values = [5, 10, 20]\n", "")
         .replace("range = { from = 1.4, to = 1.6, count = 2 }\n", "");
     let place = study(&text);
-    // The rod of the scene has a length of 10 mm: these differ in their index alone.
+    // The rod of the scene has a length of 10 mm: these differ only in their index.
     fs::write(place.path("designs.csv"), "length,index\n,1.4\n10,1.6\n").unwrap();
     place.good("batch study.toml -o out");
     let summary: Value =
@@ -469,6 +469,6 @@ fn bad_studies_are_refused_with_the_line_to_change_and_write_nothing() {
     }
 }
 
-/// A parameter whose name no file could have beside those of its measures.
+/// A parameter whose name is too long for a file name together with that of a measure.
 const LONG_PARAMETER: &str =
     "[parameters.length_6789_123456789_123456789_123456789_123456789_123456789_12345]";

@@ -105,7 +105,7 @@ fn a_check_is_cut_as_it_is_asked_and_writes_a_page() {
         assert!(page.contains(words), "{words}");
     }
     assert!(page.matches("\"group\":").count() >= 40, "paths");
-    // A page at a place that was named is not replaced unasked.
+    // A page at a given place is not replaced unless requested.
     place.good("check rod.toml --html -o shown.png");
     let longer = "check rod.toml --html -o shown.png -D solids.rod.cylinder.length_mm=20";
     assert!(place.bad(2, longer).contains("--overwrite"));

@@ -27,7 +27,7 @@ fn a_comparison_writes_a_page_a_table_a_plot_and_its_truth() {
         assert!(table.lines().any(|line| line.starts_with(&format!("{name},"))), "{table}");
     }
 
-    // What was found can be used again, and what is there is kept.
+    // The truth found can be reused, and existing results are kept.
     let again = "compare rod.toml --sensor exit --estimators forward --time 0.1s --runs 2 --truth-file out/truth.csv";
     assert!(place.bad(2, &format!("{again} -o out")).contains("--overwrite"));
     place.good(&format!("{again} -q"));

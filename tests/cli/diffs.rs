@@ -1,4 +1,4 @@
-//! Reports held against each other, and checks for machines that run them.
+//! Comparisons of reports, and checks for CI machines.
 
 use crate::*;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus};
@@ -109,7 +109,7 @@ fn a_changed_scene_fails_and_the_measure_is_named() {
     let (kind, ty, message) = trouble(flux);
     assert_eq!((kind, ty), (NonSuccessKind::Failure, "beyond"));
     assert!(message.contains("the limit is 4 sigmas"), "{message}");
-    // A difference that is too small to matter is told, and fails nothing.
+    // A difference that is too small to matter is reported, but is not a failure.
     let said = place.good("diff a b --only exit.flux --only exit.eff --relative 60%");
     assert!(said.contains("by too little to matter"), "{said}");
     place.good("diff a b --only exit.flux --sigmas 1000");
@@ -185,7 +185,7 @@ max_std_error = 1e-9
     assert_eq!((kind, ty), (NonSuccessKind::Failure, "failed"));
     assert!(message.contains("at least 0.99 is wanted"), "{message}");
     assert_eq!(trouble(undecided).1, "undecided");
-    // A later run has the file for itself; one of others is told of before any work is done.
+    // A later run replaces its own file; a file of others is reported before any work is done.
     assert_eq!(code(&place.run("run rod.toml -q -o b --paths 40k --junit ci/run.xml")), 1);
     assert!(matches!(trouble(&cases(&junit(&place, "ci/run.xml"))[1]), (_, "failed", _)));
     fs::write(place.path("mine.xml"), "<mine/>").unwrap();

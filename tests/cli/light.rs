@@ -1,9 +1,9 @@
-//! Light groups, dark sources, weathers, and light that comes back: what is said of them.
+//! Light groups, dark sources, weathers, and returning light: how they are reported.
 
 use crate::Place;
 use std::fs;
 
-/// Two lamps over two ports, each with a wall of its own.
+/// Two lamps over two ports, each with its own wall.
 const LAMPS: &str = r#"
 lumiduct = 1
 title = "Two lamps"
@@ -113,7 +113,7 @@ fn no_page_adds_weathers_up_without_saying_so() {
     let sum = value("exit.flux.from.clear") + value("exit.flux.from.sun");
     assert!((value("exit.flux.from.clear_and_sun") / sum - 1.0).abs() < 1e-12);
     assert!(summary["measures"].get("exit.share.from.sun").is_none());
-    // One weather, by the scene file or as the others are off, is no sum.
+    // A single weather, by the scene file or because the others are off, is not a sum.
     for one in [
         "overcast.sky.enabled=false",
         "overcast.sky.group=\"day\" -D sources.clear.sky.group=\"day\"",

@@ -1,5 +1,5 @@
-//! The program as a user runs it: files, exit codes, and what is said. Runs are short; their numbers are judged
-//! elsewhere.
+//! The program as a user runs it: files, exit codes, and messages. Runs are short; their numbers
+//! are tested elsewhere.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
 
@@ -26,7 +26,7 @@ use std::path::{Path, PathBuf};
 use std::process::Output;
 use tempfile::TempDir;
 
-/// A short rod, so that little is traced, with a sensor of each kind that has pictures.
+/// A short rod, so that tracing is quick, with a sensor of each kind that has pictures.
 const SCENE: &str = concat!(
     "lumiduct = 1\ntitle = \"Short rod\"\n",
     include_str!("../rod.toml"),
@@ -71,7 +71,7 @@ impl Place {
         String::from_utf8(output.stdout).unwrap()
     }
 
-    /// What is said about a run that must end with this exit code and print nothing else.
+    /// The messages of a run that must end with this exit code and print nothing else.
     fn bad(&self, expected: i32, arguments: &str) -> String {
         let output = self.run(arguments);
         assert_eq!(code(&output), expected, "{arguments}: {}", errors(&output));

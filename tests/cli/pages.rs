@@ -1,4 +1,4 @@
-//! What the pages of a run show, and in which order.
+//! Contents and order of the pages of a run.
 
 use crate::*;
 
@@ -23,7 +23,7 @@ fn lamp() -> Place {
     place
 }
 
-/// Where `words` begin on a page, which has to have them.
+/// Where `words` begin on a page, which must contain them.
 fn at(page: &str, words: &str) -> usize {
     page.find(words).unwrap_or_else(|| panic!("no {words} in {page}"))
 }
@@ -108,7 +108,7 @@ fn a_project_heads_its_report_with_logo_and_date_as_typed() {
     assert!(html.contains("Client: Lamps &amp; Sons") && html.contains("Date: 22 Nov"));
     let summary = place.summary("out");
     assert_eq!(summary["scene"]["project"]["client"], "Lamps & Sons");
-    // A study of the scene has the same head, also where its parts are put together.
+    // A study of the scene has the same head, also when its parts are merged.
     let study = "lumiduct_study = 1\ntitle = \"How long?\"\nscene = \"rod.toml\"\nmeasures = [\"exit.efficiency\"]\nplan = \"grid\"\n\
                  [parameters.length]\nkeys = [\"solids.rod.cylinder.length_mm\"]\nvalues = [5, 10]\n[run]\npaths = 20_000\n";
     fs::write(place.path("study.toml"), study).unwrap();
@@ -124,7 +124,7 @@ fn a_project_heads_its_report_with_logo_and_date_as_typed() {
     assert!(at(&markdown, "Client: Lamps & Sons · Date: 22 Nov") < at(&markdown, "## "));
     assert_eq!(fs::read(place.path("study/project_logo.png")).unwrap(), pixel);
     assert!(!page("study.json").contains(PIXEL) && page("study.json").contains("D-17"));
-    // Another logo makes other pages.
+    // A different logo changes the pages.
     fs::write(place.path("art/logo.png"), [pixel, vec![0]].concat()).unwrap();
     place.good("run rod.toml -o other -q");
     assert_ne!(place.summary("other")["scene"]["hash"], summary["scene"]["hash"]);

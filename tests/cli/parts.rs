@@ -1,4 +1,4 @@
-//! Runs in parts, and runs that were killed: both must come to the very bytes of the whole.
+//! Runs in parts, and killed runs: both must give exactly the bytes of the whole.
 
 use crate::*;
 use std::process::{Command as Process, Stdio};
@@ -64,7 +64,7 @@ fn parts_that_do_not_make_a_whole_are_refused_with_the_reason() {
     assert!(!place.path("merged").exists());
 }
 
-/// Starts a run and kills it as soon as a file is there.
+/// Starts a run and kills it as soon as a file exists.
 fn kill_when(place: &Place, arguments: &str, is_time: impl Fn() -> bool) {
     let mut child = Process::new(env!("CARGO_BIN_EXE_lumiduct"))
         .current_dir(place.0.path())
@@ -84,7 +84,7 @@ fn kill_when(place: &Place, arguments: &str, is_time: impl Fn() -> bool) {
 #[test]
 fn a_killed_run_goes_on_from_its_checkpoint_to_the_same_bytes() {
     let place = Place::new();
-    // The rounds of a gathering run depend on what was found: all of it must be in the checkpoint.
+    // The rounds of a gather run depend on its findings, so all of them must be in the checkpoint.
     for run in [
         "run rod.toml --paths 3M --estimator forward",
         "run rod.toml --estimator gather --paths 600k --depth 0 --radius-mm 1 --angle-deg 20 --photons 2k --records 500",
@@ -152,7 +152,7 @@ fn the_commands_for_gnu_parallel_in_the_docs_do_what_they_say() {
         .args(["-euc", &commands])
         .current_dir(place.0.path())
         .env("PATH", path.unwrap())
-        // It asks to be cited on a terminal, and waits for an answer where it finds none.
+        // GNU parallel asks to be cited on a terminal, and waits for an answer where there is none.
         .env("PARALLEL", "--will-cite")
         .output()
         .unwrap();

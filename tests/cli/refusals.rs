@@ -1,4 +1,4 @@
-//! What is refused, and what is left alone.
+//! Refused input, and files left alone.
 
 use crate::*;
 
@@ -84,7 +84,7 @@ fn bad_wishes_for_gathering_are_refused_with_the_figure_that_is_wrong() {
         let said =
             place.bad(2, &format!("run rod.toml --estimator gather -D run.gather.{key}={figure}"));
         assert!(said.contains(&format!("run.gather.{key}")), "{key}: {said}");
-        // What is not finite is named as such.
+        // Non-finite values are reported as such.
         assert!(said.contains(figure) || said.contains("finite"), "{key}: {said}");
     }
     assert_eq!(place.names(), ["rod.toml"]);

@@ -1,4 +1,4 @@
-//! Runs that do what they are asked to.
+//! Runs that do what they are asked to do.
 
 use crate::*;
 use lumiduct::pipeline::{self, Output};
@@ -9,7 +9,8 @@ use lumiduct_report::Existing;
 
 #[test]
 fn only_a_sensor_that_was_lit_from_behind_is_told_to_turn() {
-    // All light that meets the side of this prism from inside is reflected; the plane looks away from the rod.
+    // All light that meets the side of this prism from inside is reflected; the plane faces away
+    // from the rod.
     let scene = r#"lumiduct = 1
 title = "Total reflection"
 [media.glass]
@@ -105,7 +106,7 @@ fn the_page_for_browsers_names_every_measure_and_is_one_small_file() {
     }
     assert!(page.contains(r#"<p class="verdict bad">1 of 1 checks missed</p>"#));
     assert!(page.len() < PAGE_BYTES, "{} bytes", page.len());
-    // Only pictures of the folder are named, and only for readers without scripts.
+    // Only pictures in the folder are referenced, and only for readers without scripts.
     for (at, _) in page.match_indices("src=") {
         assert!(page[..at].ends_with("<noscript><img "), "something is loaded");
     }
@@ -125,7 +126,7 @@ fn the_page_for_browsers_draws_60_paths_by_where_they_end() {
         let group = groups.iter().find(|group| group["name"] == name);
         group.map_or(0, |group| group["count"].as_u64().unwrap())
     };
-    // Nothing absorbs: light leaves by the exit, or by another way past the sphere around everything.
+    // Nothing absorbs: light leaves by the exit, or otherwise through the sphere around everything.
     assert_eq!(count("counted by exit") + count("counted by far"), 60, "{groups:?}");
     assert!((40..60).contains(&count("counted by exit")), "some 85 % of the flux: {groups:?}");
     let faces = scene["faces"].as_array().unwrap();
@@ -139,7 +140,7 @@ fn numbers_in_summary_and_balance_make_sense() {
     place.good("run rod.toml -o out -q");
     let summary = place.summary("out");
     let measure = |name: &str| summary["measures"][name]["value"].as_f64().unwrap();
-    // Fresnel losses of two faces take some 15 % of the flux, and nothing can be gained.
+    // Fresnel losses at two faces take some 15 % of the flux, and there is no gain.
     assert!((7.0..9.0).contains(&flux(&summary)), "{}", flux(&summary));
     assert!((measure("exit.efficiency") - flux(&summary) / 10.0).abs() < 1e-12);
     assert!(measure("balance.residual").abs() < 1e-9 * 10.0 && measure("balance.leaked") == 0.0);
@@ -217,7 +218,7 @@ fn ctrl_c_leaves_a_partial_report_and_ends_with_130() {
         .stdout(Stdio::piped())
         .spawn()
         .unwrap();
-    // The first checkpoint is kept after the first batches: there is something to report.
+    // The first checkpoint is saved after the first batches, so there is something to report.
     let start = Instant::now();
     while !place.path("out/checkpoint.bin").is_file() {
         assert!(start.elapsed() < Duration::from_secs(60), "the run has not begun");
@@ -233,7 +234,8 @@ fn ctrl_c_leaves_a_partial_report_and_ends_with_130() {
 #[test]
 fn the_command_in_the_report_of_a_stopped_run_repeats_its_numbers() {
     let place = Place::new();
-    // Each batch looks when it begins: this run is stopped in the middle of its batches, as by Ctrl-C.
+    // Each batch polls when it begins, so this run is stopped in the middle of its batches, as by
+    // Ctrl-C.
     let estimator = Some(Request::Forward);
     let settings = Settings { seed: Some(3), estimator, ..Settings::default() };
     let output = Output::new(Some(place.path("out")), Existing::Keep);
@@ -357,7 +359,7 @@ paths = 20_000
     let page = fs::read_to_string(report.join("report.md")).unwrap();
     assert!(page.contains("| sun_67_5 | 67.50° | 0."), "{page}");
     assert!(page.contains("(exit.transmission.png)"), "{page}");
-    // Without several suns there is nothing to tell.
+    // Without several suns there is no table.
     place.good("run rod.toml -q");
     assert!(!names(&place.path("reports/rod")).iter().any(|name| name.contains("transmission")));
 }

@@ -1,4 +1,4 @@
-//! The printed JSON Schemas, judged by a validator that is not ours: what editors check files against.
+//! The printed JSON Schemas, which editors use, tested with an independent validator.
 
 use crate::*;
 use jsonschema::Validator;

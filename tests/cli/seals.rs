@@ -1,4 +1,4 @@
-//! Reports and records that were changed, mixed or left half done are refused by their names.
+//! Reports and records that were changed, mixed or left incomplete are refused by name.
 
 use crate::*;
 use lumiduct_report::FolderLock;
@@ -29,7 +29,7 @@ fn a_design_record_with_a_changed_digit_is_refused_by_its_name() {
             assert!(said.contains("0002.json") && said.contains("changed"), "{said}");
         }
     }
-    // A record of another design in its place is none either.
+    // A record of another design in its place is refused, too.
     fs::copy(place.path("out/designs/0001.json"), &path).unwrap();
     assert!(place.bad(2, "batch study.toml -o out --resume").contains("another design"));
     fs::write(&path, r#"{"lumiduct_design":1,"study":"33fe9f8655e5f076","design":2}"#).unwrap();

@@ -38,7 +38,7 @@ fn every_map_has_a_matrix_with_its_edges_and_measures_have_their_status() {
     }
     let matrices: Vec<String> =
         names(&place.path("out")).into_iter().filter(|name| name.contains(".matrix.")).collect();
-    // A map of a single cell has none.
+    // A map of a single cell has no matrix.
     let expected = ["exit.illuminance", "far.intensity", "rings.illuminance"];
     assert_eq!(matrices, expected.map(|name| format!("{name}.matrix.csv")));
 

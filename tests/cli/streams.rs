@@ -1,15 +1,15 @@
-//! Streams that are closed or full: nothing panics, and exit codes stay what the work deserves.
+//! Streams that are closed or full: nothing panics, and exit codes still reflect the work.
 
 use crate::*;
 use std::io::pipe;
 use std::process::Stdio;
 
-/// A sensor that looks away from the rod, so that a run has something to say on stderr.
+/// A sensor that faces away from the rod, so that a run prints a remark on stderr.
 const BLIND: &str = "[sensors.eye]\nat = { position_mm = [0, 0, 20], axis = [0, 0, 1] }\n\
      luminance = { disk = { radius_mm = 1 }, cells = [1, 1], acceptance_half_angle_deg = 1, \
      directions = [{ theta_deg = 0, phi_deg = 0 }] }\n";
 
-/// A stream whose reader has gone.
+/// A stream whose reader has closed it.
 fn closed() -> Stdio {
     let (_, writer) = pipe().unwrap();
     writer.into()
@@ -21,7 +21,7 @@ fn code_of(place: &Place, arguments: &str, stdout: Stdio, stderr: Stdio) -> Opti
     command.stdout(stdout).stderr(stderr).status().unwrap().code()
 }
 
-/// Arguments and the exit code that they deserve.
+/// Arguments and the expected exit code.
 const CASES: [(&str, i32); 7] = [
     ("run rod.toml -o out --estimator backward --paths 3k --overwrite", 0),
     ("check rod.toml -D run.estimator=\"backward\"", 0),

@@ -1,4 +1,4 @@
-//! Names and titles of users never act upon a terminal, a spreadsheet or a page.
+//! Names and titles of users never act as commands on a terminal, in a spreadsheet or on a page.
 
 use crate::*;
 

@@ -1,4 +1,5 @@
-//! House rules: no circles of modules, children never reach for `super::`, and what the repository promises is there.
+//! House rules: no dependency cycles of modules, children never use `super::`, and the files that
+//! the repository promises exist.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -9,7 +10,7 @@ mod package;
 use graph::{Graph, circles};
 use std::path::{Path, PathBuf};
 
-/// Sources of all crates. They see each other as their manifests say.
+/// Sources of all crates. Their manifests define which crates they can use.
 const CRATES: [&str; 7] = [
     "crates/base/src",
     "crates/core/src",
@@ -36,7 +37,7 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// Lines of a file before its tests, comments left out.
+/// Lines of a file before its tests, without comments.
 fn code(path: &Path) -> Vec<(usize, String)> {
     let text = std::fs::read_to_string(path).unwrap();
     text.lines()
@@ -162,14 +163,14 @@ fn every_example_that_a_scene_names_is_there() {
     assert!(named > 0, "no scene names an example");
 }
 
-/// Pictures of the page of the project, by the reports that they are of.
+/// Pictures on the project page, by their reports.
 const PICTURES: [&str; 3] = [
     "led_indicator/exit.illuminance.png",
     "luminance_image_scatter/camera.luminance.png",
     "studies/led_pipe_length/response.exit.efficiency.png",
 ];
 
-/// Where a picture of the page lies.
+/// Path of a picture on the project page.
 fn picture_of_the_page(picture: &str) -> PathBuf {
     let name = picture.rsplit('/').next().unwrap();
     Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/pictures").join(name)

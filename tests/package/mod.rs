@@ -1,9 +1,9 @@
-//! What of the repository is not in the package that `cargo package` makes of it.
+//! Parts of the repository that are not in the package made by `cargo package`.
 
 use std::path::Path;
 
-/// Whether this is the package, which leaves out `reports/`: then it says that a test is skipped. In the repository the
-/// reports are there, and a test fails that misses them.
+/// Whether this is the package, which leaves out `reports/`: then it prints that a test is skipped.
+/// In the repository the reports exist, and a test without them fails.
 #[allow(clippy::print_stderr, reason = "the reason belongs to the output of the test")]
 pub(crate) fn is_without_reports() -> bool {
     // Cargo adds this file to every package.

@@ -1,11 +1,11 @@
-//! Whether a solid with relief is what its elements make of it, told without any of its surfaces.
+//! Whether a solid with relief has the shape given by its elements, tested without its surfaces.
 
 use crate::{BODIES, LAMP, load};
 use glam::DVec3;
 use lumiduct_core::rng::{Dimension, Sampler};
 use lumiduct_core::scene::{Inside, Just, On, Ray, Scene, SolidId};
 
-/// A direction along no axis of anything.
+/// A direction not aligned with any axis.
 fn direction(sampler: &mut Sampler) -> DVec3 {
     lumiduct_base::math::uniform_sphere(sampler.pair(Dimension::EmitDirection))
 }
@@ -17,8 +17,9 @@ fn point(sampler: &mut Sampler, min: DVec3, max: DVec3) -> DVec3 {
     min + DVec3::new(x, y, z) * (max - min)
 }
 
-/// Follows lines through a solid: every stretch between two surfaces is as `holds` says of its middle, which has the
-/// middle of the wall's start as origin. Volume by points, and that in the scene, are the same.
+/// Follows lines through a solid: every segment between two surfaces is inside or outside as
+/// `holds` says of its middle, relative to the middle of the wall's start. The volume by points
+/// equals that in the scene.
 fn assert_is(name: &str, relief: &str, min: DVec3, max: DVec3, holds: impl Fn(DVec3) -> bool) {
     let job = load(&format!("{BODIES}{relief}{LAMP}"), 1);
     let scene: &Scene = &job.scene;
@@ -35,7 +36,7 @@ fn assert_is(name: &str, relief: &str, min: DVec3, max: DVec3, holds: impl Fn(DV
         assert_eq!(inside.contains(solid), holds(start), "{relief}: {start}");
         let mut on = On::default();
         while let Some(hits) = scene.find_next(&ray, &on, &inside) {
-            // Rounding decides about stretches shorter than that.
+            // Rounding dominates shorter segments.
             if hits.distance() > 1e-9 {
                 let middle = ray.at(0.5 * hits.distance());
                 let within = (middle - min).cmpgt(DVec3::ZERO).all()
@@ -103,7 +104,7 @@ fn dimples_and_bumps_on_a_plate_are_balls_taken_out_and_put_on() {
         })
         .collect();
     for (side, sign) in [("plus", 1.0), ("minus", -1.0)] {
-        // On the lower wall u runs the other way.
+        // On the lower wall u runs in the opposite direction.
         let ball = |p: DVec3, height: f64, radius: f64| {
             centers.iter().any(|c| {
                 let c = DVec3::new(-sign * c.x, sign * (2.0 + height), c.z);
@@ -122,7 +123,8 @@ fn dimples_and_bumps_on_a_plate_are_balls_taken_out_and_put_on() {
     }
 }
 
-/// A wedge with its middle at z, of a height and two cotangents, over or under a plane at the distance d from it.
+/// A wedge with its middle at z, with a height and two cotangents, above or below a plane at
+/// distance d from it.
 fn in_wedge(from: f64, away: f64, height: f64, [before, after]: [f64; 2]) -> bool {
     let edge = 0.5 * height * (before - after);
     let left = height - away;

@@ -1,4 +1,5 @@
-//! What reliefs do to light: exact turns, even fields that stay even, the same guide built in another way, no leaks.
+//! The effect of reliefs on light: exact deflections, uniform fields that stay uniform, the same
+//! guide built in another way, no leaks.
 
 use crate::{BODIES, LAMP, load};
 use glam::DVec3;
@@ -77,7 +78,7 @@ out = {{ plane = {{ rectangle = {{ width_mm = 1, height_mm = 1 }} }}, at = {{ po
     }
 }
 
-/// A room with glowing walls, of 1 lm/mm² in all, around the plate and the rod.
+/// A room with glowing walls, of 1 lm/mm² each, around the plate and the rod.
 fn furnace(relief: &str) -> Job {
     load(
         &format!(
@@ -125,7 +126,7 @@ layout = { row = { pitch_mm = 2.5, along_mm = [14, 29] } }
     let scene = &job.scene;
     let fluxes: Vec<f64> = scene.sources.iter().map(|source| source.flux).collect();
     let count = 240_000u64;
-    // Of light that arrives at a face from outside: the sum and that of the squares.
+    // Sum and sum of squares of the light that arrives at a face from outside.
     let mut sums = vec![[0.0f64; 2]; scene.faces.len()];
     for index in 0..count {
         let id = SourceId::new(index as usize % fluxes.len());
@@ -155,9 +156,10 @@ layout = { row = { pitch_mm = 2.5, along_mm = [14, 29] } }
         if !is_glass {
             continue;
         }
-        // In an even field as much falls on every mm², wherever it looks: here 1 lm. What has gone through glass is a part of it.
+        // In a uniform field every mm² receives the same, whatever its orientation: here 1 lm,
+        // including light that has passed through glass.
         let area = scene.face_area(FaceId::new(index));
-        // Of bumps on a round wall the area is known to a percent only.
+        // The area of bumps on a round wall is known only to a percent.
         let area_error = if face.name == "rod.bumps" { 0.01 * area } else { 0.0 };
         let [sum, squares] = sums[index];
         let sigmas = (sum - area) / squares.sqrt().hypot(area_error);
@@ -230,7 +232,8 @@ fn a_row_of_grooves_is_the_same_as_a_profile_with_teeth() {
             continue;
         }
         let expected = &sweep.values[name.as_str()];
-        // The same random numbers take the same paths: what differs is rounding, which may turn one of them.
+        // The same random numbers give the same paths: only rounding differs, which may divert one
+        // of them.
         let apart = (found.value - expected.value).abs() / expected.std_error.max(1e-9);
         assert!(apart < 0.1, "{name}: {found}, with teeth {expected}");
         compared += 1;
@@ -239,7 +242,7 @@ fn a_row_of_grooves_is_the_same_as_a_profile_with_teeth() {
     assert!(relief.values["up.flux"].value > 1.0);
 }
 
-/// No leak and a closed balance after so many segments.
+/// Asserts no leak and a closed balance after this many segments.
 fn assert_tight(what: &str, job: &Job, segments: u64) {
     let mut run = Run::new(&job.scene, &job.run);
     run.next_wave();
@@ -345,7 +348,8 @@ fn the_map_of_a_wall_knows_what_elements_take_of_it() {
     let rings = "[reliefs.a]\non = \"rod.wall\"\nelement = { groove = { depth_mm = 1, angle_deg = 90, course = \"ring\" } }\nlayout = { row = { pitch_mm = 4 } }\n";
     let found = area(&text(rings, "on = \"rod.wall\""));
     assert!((found - 2.0 * PI * 3.0 * (30.0 - 14.0)).abs() < 1e-9, "{found}");
-    // A ball on a round wall: over the seam it counts once, and the closed form is that of the curve v² + 4Rc sin²(φ/2) = a².
+    // A ball on a round wall: across the seam it counts once, and the closed form is that of the
+    // curve v² + 4Rc sin²(φ/2) = a².
     let balls = "[reliefs.a]\non = \"rod.wall\"\nelement = { dimple = { radius_mm = 1.2, depth_mm = 0.7 } }\nlayout = { row = { pitch_mm = 4, around_deg = 0 } }\n";
     let found = area(&text(balls, "on = \"rod.wall\""));
     let (c, n) = (3.5f64, 200_000);

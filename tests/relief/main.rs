@@ -1,4 +1,5 @@
-//! Reliefs on walls of solids: where they are, what light they turn, and that no light is lost between a wall and its elements.
+//! Reliefs on walls of solids: their geometry, their effect on light, and that no light is lost
+//! between a wall and its elements.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
 #![allow(clippy::print_stdout, reason = "figures, shown by --nocapture and on failure")]
@@ -9,7 +10,7 @@ mod light;
 use lumiduct_core::plan::Request;
 use lumiduct_input::{self as input, Job, Settings};
 
-/// A scene from its text without the head, for so many photons.
+/// A scene from its text without the head, for this many photons.
 fn load(text: &str, paths: u64) -> Job {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("scene.toml");
@@ -22,7 +23,7 @@ fn load(text: &str, paths: u64) -> Job {
     }
 }
 
-/// Any lamp and any sensor: a scene needs them.
+/// An arbitrary lamp and sensor, which every scene needs.
 const LAMP: &str = r#"
 [sources.lamp.disk]
 radius_mm = 0.1
@@ -32,7 +33,8 @@ at = { position_mm = [0, 0, -50] }
 out = { plane = { rectangle = { width_mm = 1, height_mm = 1 } }, at = { position_mm = [0, 0, 150] } }
 "#;
 
-/// A plate of 12 x 4 x 30 mm from z = 0, and a rod of radius 3 mm, length 30 mm, away from the axes of the world.
+/// A plate of 12 x 4 x 30 mm from z = 0, and a rod of radius 3 mm, length 30 mm, away from the
+/// coordinate axes.
 const BODIES: &str = r#"
 [media.glass]
 index = 1.5

@@ -4,7 +4,7 @@ use glam::DVec2;
 use lumiduct_core::scene::{FaceId, Scene};
 use lumiduct_input::{Settings, load};
 
-/// Every kind of shape and of chart, all of them somewhere off the axes of the scene.
+/// Every kind of shape and of chart, all off the axes of the scene.
 const FACES: &str = r#"
 lumiduct = 1
 title = "axes"
@@ -69,7 +69,7 @@ fn axes_are_those_of_the_chart() {
         let wanted = DVec2::ZERO.clamp(axes.rect.min, axes.rect.max);
         assert!(axes.at.distance(wanted) < 1e-6 * size, "{name}: {axes:?}");
         assert!(axes.u.dot(axes.v).abs() + axes.u.dot(axes.normal).abs() < 1e-9, "{name}");
-        // A step inward from the origin, where the face goes on.
+        // A step inward from the origin, where the face continues.
         let patches = scene.face_patches(FaceId::new(index));
         let middle = 0.5 * (axes.rect.min + axes.rect.max);
         let inward = middle - axes.at;

@@ -63,7 +63,7 @@ fn a_cut_goes_through_both_of_two_pipes() {
 
 #[test]
 fn a_cut_holds_the_bends_of_a_duct_in_a_room() {
-    // Elbows in the plane of z and of a direction 30 degrees off x; the room is much larger.
+    // Elbows in the plane of z and a direction 30 degrees off x; the room is much larger.
     let (scene, guides) = guides_of(
         r#"
 [sheets.room.tube]
@@ -124,6 +124,6 @@ flux_lm = 1
 "#,
     );
     assert!((guides.plane.origin + scene.origin).distance(DVec3::new(7.0, 8.0, 9.0)) < 1e-9);
-    // The lamp is not so near that it belongs to the ball.
+    // The lamp is too far away to belong to the ball.
     assert!((guides.bounds.max - guides.bounds.min).max_element() < 6.1);
 }

@@ -1,4 +1,4 @@
-//! What is known of a scene besides the way of light through it: axes, cuts and outlines.
+//! Properties of a scene other than light paths: axes, cuts and outlines.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 

@@ -1,4 +1,4 @@
-//! Reference values that a function of the library gives without noise: they are met to 1e-6.
+//! Reference values that a function of the library gives without noise, met to 1e-6.
 
 use crate::run::scene_file;
 use glam::DVec3;
@@ -18,12 +18,12 @@ const PMMA: f64 = 1.49;
 const ALUMINIUM: [f64; 2] = [0.789405353, 5.851936501];
 /// Thickness of the plate that shifts a beam, mm.
 const PLATE_MM: f64 = 20.0;
-/// Length of the rod in which the way of a ray is measured, mm.
+/// Length of the rod in which the path length of a ray is measured, mm.
 const ROD_MM: f64 = 10.0;
-/// Paths that are looked through for one that goes straight through.
+/// Paths that are searched for one that passes straight through.
 const TRACKS: usize = 100;
 
-/// A value of a function beside that of the reference.
+/// A value of a function and that of the reference.
 #[derive(Debug)]
 pub(crate) struct Computed {
     pub(crate) case: &'static str,
@@ -108,7 +108,7 @@ fn shift() -> Vec<Computed> {
                 format!("sources.led.disk.tilt_deg={degrees}"),
                 format!("solids.plate.box.size_mm=[2000, 2000, {PLATE_MM}]"),
             ];
-            // Start, entry, exit and a point behind: neither face has reflected it.
+            // Start, entry, exit and a point behind: not reflected at either face.
             let straight = track("fr_02", &overrides, |track| track.points.len() == 4);
             let [start, entry, exit] = [0, 1, 2].map(|point| straight.points[point]);
             let ours = (exit - start).cross((entry - start).normalize()).length();
@@ -117,7 +117,7 @@ fn shift() -> Vec<Computed> {
         .collect()
 }
 
-/// SR-02: the way of a ray through a rod over its length.
+/// SR-02: the path length of a ray through a rod over the rod's length.
 fn way() -> Computed {
     let track = track("sr_02", &["sources.led.face.tilt_deg=40".to_owned()], |track| {
         track.points.iter().any(|point| is_at_exit(*point))
@@ -146,7 +146,7 @@ fn schedule() -> Vec<Computed> {
     .collect()
 }
 
-/// The exit of the rod is across z; 1e-9 of its length for rounding.
+/// The exit of the rod is normal to z; 1e-9 of its length for rounding.
 fn is_at_exit(point: DVec3) -> bool {
     (point.z - ROD_MM).abs() < 1e-9 * ROD_MM
 }

@@ -1,5 +1,6 @@
-//! Reference values that do not come from this program: every value is traced until its error is small enough, and
-//! must be met. `docs/validation.md` is made of the results; `UPDATE_GOLDEN=1` rewrites it.
+//! Reference values that do not come from this program: every value is traced until its error is
+//! small enough, and must be met. `docs/validation.md` is made from the results; `UPDATE_GOLDEN=1`
+//! rewrites it.
 
 #![allow(
     clippy::print_stdout,
@@ -46,7 +47,8 @@ static FAMILIES: [Family; 9] = [
 /// Seeds of a family start at its number times this.
 const SEEDS: u64 = 1000;
 
-/// What the runs of a family found; they are made once, and one family at a time, for each run takes all threads.
+/// The findings of a family's runs. They are made once, and one family at a time, as each run takes
+/// all threads.
 fn findings(number: usize) -> &'static [Finding] {
     static TRACING: Mutex<()> = Mutex::new(());
     let family = &FAMILIES[number];
@@ -84,7 +86,7 @@ fn waiting() -> Waiting {
     toml::from_str(include_str!("waiting.toml")).expect("the list beside this file is valid")
 }
 
-/// All values of a family are met.
+/// Asserts that all values of a family are met.
 fn check(name: &str) {
     let number = FAMILIES.iter().position(|family| family.name == name).expect("a known family");
     let wrong: Vec<String> =
@@ -152,12 +154,13 @@ fn deviations_look_like_a_standard_normal() {
     assert!((0.8..=1.3).contains(&rms), "rms {rms} of {} runs", deviations.len());
 }
 
-/// Benchmark scenes (B1 to B4), daylight (DL) and elements (EL: films as planes, holes as patterns): cases that are not of the reference.
+/// Benchmark scenes (B1 to B4), daylight (DL) and elements (EL: films as planes, holes as
+/// patterns): cases that are not in the reference.
 fn is_our_own(id: &str) -> bool {
     id.starts_with("DL") || id.starts_with("EL") || id.starts_with('B') && !id.starts_with("BD")
 }
 
-/// Number of values in the reference, our own cases apart.
+/// Number of values in the reference, without our own cases.
 const REFERENCE_VALUES: usize = 444;
 
 #[test]

@@ -1,4 +1,4 @@
-//! `docs/validation.md`, made of what was found.
+//! `docs/validation.md`, made from the findings.
 
 use crate::formulas::Computed;
 use crate::run::{Expected, Finding};
@@ -6,7 +6,7 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// What is not checked here, or not at all.
+/// Values that are not checked here, or not at all.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Waiting {
@@ -14,7 +14,7 @@ pub(crate) struct Waiting {
     pub(crate) elsewhere: Vec<Elsewhere>,
     /// Values that nothing in the program gives, nor should.
     pub(crate) formula: Vec<Reason>,
-    /// Values that something still to be built would give.
+    /// Values of features not yet built.
     pub(crate) waiting: Vec<Reason>,
 }
 
@@ -25,13 +25,13 @@ impl Waiting {
     }
 }
 
-/// Values of a case that a test beside the code checks.
+/// Values of a case that a unit test checks.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Elsewhere {
     /// Name of the reference case.
     pub(crate) case: String,
-    /// Names of the values, and what they are.
+    /// Names of the values, and the values.
     pub(crate) values: BTreeMap<String, f64>,
     /// File of the test.
     pub(crate) file: String,

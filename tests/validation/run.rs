@@ -1,4 +1,4 @@
-//! One run of a scene, until every value is known as well as its class demands.
+//! One run of a scene, until every value is as accurate as its class demands.
 
 use crate::table::{By, Case, Class, Value, Variant};
 use lumiduct_core::measure::{self, Measure};
@@ -19,7 +19,7 @@ const SIGMAS_MONTE_CARLO: f64 = 3.0;
 /// Rounding of values without noise, relative.
 const ROUNDING: f64 = 1e-9;
 
-/// What a run found for one value.
+/// The finding of a run for one value.
 #[derive(Debug)]
 pub(crate) struct Finding {
     pub(crate) case: String,
@@ -27,11 +27,11 @@ pub(crate) struct Finding {
     pub(crate) scene: String,
     pub(crate) over: String,
     pub(crate) class: Class,
-    /// Why it is known less well than its class asks; empty where it is not.
+    /// Why it is less accurate than its class demands; empty where it is not.
     pub(crate) why: String,
-    /// Where the reference has it from.
+    /// The source given by the reference.
     pub(crate) source: String,
-    /// What the reference says.
+    /// The value of the reference.
     pub(crate) expected: Expected,
     /// Ours, normalised as the reference is.
     pub(crate) ours: Measure,
@@ -39,11 +39,11 @@ pub(crate) struct Finding {
     pub(crate) deviation: Option<f64>,
     /// Whether it is the first value with noise of its run: those of different runs are independent.
     pub(crate) independent: bool,
-    /// What is wrong with it.
+    /// Its faults.
     pub(crate) faults: Vec<String>,
 }
 
-/// What the reference says.
+/// The value of the reference.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Expected {
     Value(f64),
@@ -55,7 +55,7 @@ pub(crate) fn run(case: &Case, variant: &Variant, seed: u64) -> Vec<Finding> {
     let settings = Settings {
         overrides: case.overrides(variant),
         seed: Some(seed),
-        // What the other estimators find is held against forward in tests/agreement.
+        // The other estimators are compared with forward in tests/agreement.
         estimator: Some(match case.by {
             By::Photons => Request::Forward,
             By::WideWindow => Request::Gather,
@@ -92,7 +92,7 @@ pub(crate) fn scene_file(name: &str) -> PathBuf {
     scenes.join(name).with_extension("toml")
 }
 
-/// A value that is looked for.
+/// A wanted value.
 struct Wanted<'a> {
     value: &'a Value,
     check: &'a Check,
@@ -109,7 +109,7 @@ impl<'a> Wanted<'a> {
         let check = &job.checks[value.check.unwrap_or(place)];
         assert!(check.source.is_some(), "{}: a check without a source", job.name);
         let scale = value.scale.or(check.equals).or(check.max).expect("a value or a limit");
-        // Nothing of the source's light: held against all of it.
+        // Zero is expected: errors are relative to all light of the source.
         let scale = if scale == 0.0 { 1.0 } else { scale };
         let std_error = value.reach.unwrap_or(value.class.std_error()) * scale;
         Self { value, check, by, name, uncertainty: value.uncertainty(variant), std_error }
@@ -126,7 +126,8 @@ impl<'a> Wanted<'a> {
         let read = |findings: &Findings| measure::value_of(&job.scene, findings, name);
         let found = match self.by {
             By::Photons => read(findings),
-            // The photons are what was traced; there are few gather paths, and many photons for each.
+            // Photons count as the paths traced; there are few gather paths, and many photons for
+            // each.
             By::WideWindow => read(&wide_window(findings))
                 .map(|wide| Measure { paths: findings.photons.paths(), ..wide }),
         };
@@ -134,7 +135,7 @@ impl<'a> Wanted<'a> {
     }
 }
 
-/// What was gathered within the widest window, as readings like any other.
+/// The gathered light in the widest window, as ordinary readings.
 fn wide_window(findings: &Findings) -> Findings {
     let gathered = findings.gathered.as_ref().expect("the case asks for gathering");
     let stage = gathered.stages.last().expect("a wave has been traced");
@@ -143,7 +144,7 @@ fn wide_window(findings: &Findings) -> Findings {
 
 /// Traces whole rounds until all errors are reached, or too many paths are traced.
 fn trace(job: &Job, wanted: &[Wanted<'_>]) -> (Findings, bool) {
-    // Which errors are reached is looked at here, not by a rule of the scene.
+    // Whether the errors are reached is checked here, not by a rule of the scene.
     let plan = RunPlan { stop: StopRules::default(), ..job.run.clone() };
     let mut run = Run::new(&job.scene, &plan);
     loop {
@@ -154,7 +155,8 @@ fn trace(job: &Job, wanted: &[Wanted<'_>]) -> (Findings, bool) {
         if left <= 1.0 || run.paths() > MOST_PATHS {
             return (findings, left <= 1.0);
         }
-        // Errors fall as one over the square root of the paths: no look before half of what is missing is traced.
+        // Errors fall as one over the square root of the paths: no check before half of the missing
+        // paths are traced.
         let missing = run.waves() as f64 * (left * left - 1.0);
         for _ in 0..(0.5 * missing).min(run.waves() as f64) as u64 {
             run.next_wave();
@@ -162,7 +164,7 @@ fn trace(job: &Job, wanted: &[Wanted<'_>]) -> (Findings, bool) {
     }
 }
 
-/// Faults in the books of a run: light lost in the geometry, or a balance that does not close.
+/// Faults in the balance of a run: light lost in the geometry, or a balance that does not close.
 fn books(job: &Job, findings: &Findings) -> Vec<String> {
     let balance = measure::measure(&job.scene, findings).balance;
     let mut faults = Vec::new();
@@ -180,7 +182,7 @@ fn judge(case: &Case, job: &Job, findings: &Findings, wanted: &Wanted<'_>) -> Fi
     let ours = normalised(wanted.measure(job, findings), value.per);
     let mut faults = Vec::new();
     let mut deviation = None;
-    // Zero within so much is a limit for what is never negative.
+    // Zero within a tolerance is an upper limit for what is never negative.
     let most = check.within.filter(|_| check.equals == Some(0.0)).or(check.max);
     let equals = check.equals.filter(|equals| *equals != 0.0 || most.is_none());
     let expected = match (equals, most) {

@@ -1,7 +1,8 @@
-//! The tables of cases beside this file: which scene with which overrides gives which reference values.
+//! The tables of cases next to this file: which scene with which overrides gives which reference
+//! values.
 //!
-//! A value itself and its citation stand in the scene file, as the check at the same place; a variant overrides
-//! them together with the geometry.
+//! The value and its citation are in the scene file, as the check at the same place; a variant
+//! overrides them together with the geometry.
 
 use serde::Deserialize;
 
@@ -13,7 +14,7 @@ pub(crate) struct Table {
     pub(crate) case: Vec<Case>,
 }
 
-/// A scene and what is read off it.
+/// A scene and the values read from it.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Case {
@@ -21,7 +22,7 @@ pub(crate) struct Case {
     pub(crate) id: String,
     /// Scene file in `scenes/validation`, without its ending.
     pub(crate) scene: String,
-    /// What is read off it, one for each check of the scene unless told otherwise.
+    /// The values read from it, by default one for each check of the scene.
     pub(crate) values: Vec<Value>,
     /// What reads them.
     #[serde(default)]
@@ -41,7 +42,8 @@ pub(crate) enum By {
     /// Photons in the cells of the sensors.
     #[default]
     Photons,
-    /// Gather records in the widest window alone, without what is made of three: cases about windows.
+    /// Gather records in the widest window only, without extrapolation from three: cases about
+    /// windows.
     WideWindow,
 }
 
@@ -51,7 +53,7 @@ pub(crate) enum By {
 pub(crate) struct Value {
     /// Name of the reference case, where it is not that of the table's entry.
     id: Option<String>,
-    /// Name in the reference; `{}` stands for the name of the variant.
+    /// Name in the reference; `{}` is replaced by the name of the variant.
     name: String,
     /// Tolerance class.
     pub(crate) class: Class,
@@ -62,9 +64,9 @@ pub(crate) struct Value {
     pub(crate) per: f64,
     /// What errors are relative to. Omitted: the value.
     pub(crate) scale: Option<f64>,
-    /// Standard error that is reached in place of that of its class, relative.
+    /// Standard error to reach in place of that of its class, relative.
     pub(crate) reach: Option<f64>,
-    /// Why.
+    /// The reason for `reach`.
     #[serde(default)]
     pub(crate) why: String,
     /// What the mean is taken over, where the reference states a point value; the scene says how.
@@ -89,14 +91,14 @@ pub(crate) struct Variant {
     unc: f64,
 }
 
-/// How well a value must be known and met, relative to the value.
+/// How accurate a value must be and how well it must be met, relative to the value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 pub(crate) enum Class {
     /// Flux.
     F,
     /// Local illuminance or intensity.
     I,
-    /// Flux that the reference knows by Monte Carlo, too.
+    /// Flux that the reference has computed by Monte Carlo, too.
     M,
     /// Invariance.
     X,
@@ -124,7 +126,7 @@ impl Class {
 }
 
 impl Table {
-    /// Reads a table and holds it against its own rules.
+    /// Reads a table and checks it against its own rules.
     pub(crate) fn parse(text: &str) -> Self {
         let table: Self = toml::from_str(text).expect("the tables beside this file are valid");
         for case in &table.case {
@@ -152,7 +154,7 @@ impl Case {
         if self.variants.is_empty() { vec![AS_IT_IS] } else { self.variants.iter().collect() }
     }
 
-    /// What the command line would say after `-D`.
+    /// The overrides as after `-D` on the command line.
     pub(crate) fn overrides(&self, variant: &Variant) -> Vec<String> {
         self.keys.iter().zip(&variant.set).map(|(key, value)| format!("{key}={value}")).collect()
     }

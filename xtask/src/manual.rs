@@ -1,6 +1,6 @@
 //! The manual pages of the formats of scenes and studies, made from their schemas.
 //!
-//! What a schema cannot say, conventions and examples, is in `xtask/templates`.
+//! Conventions and examples, which a schema cannot express, are in `xtask/templates`.
 
 mod parts;
 #[cfg(test)]
@@ -35,7 +35,8 @@ fn study_markdown() -> String {
     STUDY_TEMPLATE.replace("{{reference}}", reference(&schema::study_schema()).trim_end())
 }
 
-/// All tables with their keys: first those at the top of a file, then those that several of them share.
+/// All tables with their keys: first those at the top level of a file, then those that several
+/// share.
 fn reference(schema: &Json) -> String {
     let mut manual =
         Manual { schema, text: String::new(), wanted: Vec::new(), written: BTreeSet::new() };
@@ -46,7 +47,7 @@ fn reference(schema: &Json) -> String {
         manual.section(name);
     }
     manual.text += "## Shared tables\n\n";
-    // Sections ask for further ones while they are written.
+    // Writing a section may request further ones.
     let mut next = 0;
     while let Some(name) = manual.wanted.get(next).cloned() {
         manual.section(&name);
@@ -77,7 +78,7 @@ const FAMILIES: [(&str, &str); 15] = [
 struct Manual<'a> {
     schema: &'a Json,
     text: String,
-    /// Definitions that were named, in this order.
+    /// Definitions referred to, in this order.
     wanted: Vec<String>,
     written: BTreeSet<String>,
 }
@@ -104,7 +105,7 @@ impl Manual<'_> {
         }
     }
 
-    /// What may stand where there is a choice: words as a list, tables with their keys.
+    /// The alternatives of a choice: words as a list, tables with their keys.
     fn choices(&mut self, definition: &Json, heading: &str) {
         let options = options(definition);
         let shared = shared_keys(self.schema, &options);
@@ -179,7 +180,7 @@ impl Manual<'_> {
         }
     }
 
-    /// A table of all keys but some, and the rule about them.
+    /// A table of all keys except `left_out`, and the rule about them.
     fn keys(&mut self, table: &Json, left_out: &[&str]) {
         self.rows(table, |name| !left_out.contains(&name));
         if left_out.is_empty() {

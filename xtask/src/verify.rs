@@ -1,4 +1,4 @@
-//! Committed reports, run anew and compared byte by byte.
+//! Reruns committed reports and compares them byte by byte.
 
 use crate::root;
 use std::collections::BTreeSet;
@@ -7,10 +7,10 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What lies beside a report and says which build made it or how long it took.
+/// Files next to a report that depend on the build or on time.
 const BESIDE: [&str; 2] = ["timing.csv", "designs"];
 
-/// Which of the reports.
+/// Which reports to verify.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Share {
     /// All of them.
@@ -26,7 +26,8 @@ struct Job {
     report: PathBuf,
 }
 
-/// Runs scenes and studies and prints what differs; gives back whether nothing does. Without a program it builds one.
+/// Runs scenes and studies and prints what differs; returns whether nothing does. Without a program
+/// it builds one.
 pub(crate) fn verify(share: Share, program: Option<PathBuf>) -> io::Result<bool> {
     let program = match program {
         Some(program) => program.canonicalize()?,
@@ -62,7 +63,7 @@ fn jobs(folder: &str, command: &'static str, reports: &str) -> io::Result<Vec<Jo
     Ok(jobs)
 }
 
-/// Files that are not the same in the committed report and in a new one.
+/// Files that differ between the committed report and a new one.
 fn differences(program: &Path, job: &Job) -> io::Result<Vec<String>> {
     let folder = tempfile::tempdir()?;
     let anew = folder.path().join("report");

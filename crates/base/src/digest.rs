@@ -1,10 +1,10 @@
-//! A number that tells inputs apart: 64-bit FNV-1a (Fowler, Noll & Vo; draft-eastlake-fnv).
+//! A digest to distinguish inputs: 64-bit FNV-1a (Fowler, Noll & Vo; draft-eastlake-fnv).
 
 use crate::mesh::TriangleMesh;
 use glam::DVec3;
 use std::fmt;
 
-/// A digest of everything that was added so far, in that order.
+/// A digest of everything added so far, in order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Digest(u64);
 
@@ -21,7 +21,7 @@ impl Digest {
         self.add_bytes(piece);
     }
 
-    /// Adds what was read of a mesh.
+    /// Adds everything read from a mesh.
     pub fn add_mesh(&mut self, mesh: &TriangleMesh) {
         self.add_bytes(&mesh.positions.len().to_le_bytes());
         mesh.positions.iter().for_each(|position| self.add_vector(*position));

@@ -1,4 +1,4 @@
-//! What can go wrong, and how it is said.
+//! Errors and how they are worded.
 //!
 //! Input problems are collected: one [`Error::Input`] carries every [`Diagnostic`] of a file, each with the place
 //! to change. Everything else is a single sentence. This module knows no other module of the crate.
@@ -13,7 +13,8 @@ pub type Result<T> = std::result::Result<T, Error>;
 /// Why a run did not happen or could not be finished.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// The scene, or something that it names, is not usable. Holds at least one diagnostic of kind `Error`.
+    /// The scene, or something it refers to, is not usable. Contains at least one diagnostic of
+    /// kind `Error`.
     #[error("{}", join(.0))]
     Input(Vec<Diagnostic>),
     /// The command line asks for something that makes no sense.
@@ -24,13 +25,13 @@ pub enum Error {
     Io {
         /// The file.
         path: PathBuf,
-        /// What the operating system said.
+        /// The error of the operating system.
         source: std::io::Error,
     },
     /// A report could not be drawn or written in its format.
     #[error("{what}: {reason}")]
     Output {
-        /// What was being made.
+        /// What was being written.
         what: String,
         /// Why it failed.
         reason: String,

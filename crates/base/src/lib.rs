@@ -1,7 +1,8 @@
-//! What all crates of Lumiduct stand on: errors with their places, numbers and texts as people read them, units at the
-//! border, digests, the mathematics of frames, boxes and roots, and triangle meshes.
+//! The foundation of all Lumiduct crates: errors with their places, formatting of numbers and
+//! texts, unit conversion for output, digests, the mathematics of frames, boxes and roots, and
+//! triangle meshes.
 //!
-//! This crate knows no light and no file format.
+//! This crate knows nothing of light and of file formats.
 
 pub mod digest;
 pub mod error;

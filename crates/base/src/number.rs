@@ -1,4 +1,4 @@
-//! How numbers are written for people: in pictures, in text reports and in verdicts, never in data files.
+//! Number formatting for people: in pictures, in text reports and in verdicts, never in data files.
 //!
 //! Knows no units. Negative numbers have a true minus sign, powers of ten are written ×10ⁿ.
 
@@ -6,13 +6,13 @@
 const FIRST_SMALL_EXPONENT: i32 = -4;
 /// Exponents of ten from here on are written out: 10⁵.
 const FIRST_LARGE_EXPONENT: i32 = 5;
-/// Percentages below this have no digits left at two decimals.
+/// Percentages below this would be zero at two decimals.
 const LEAST_PERCENT: f64 = 0.01;
 /// Percentages below this are rounding.
 const FAINT_PERCENT: f64 = 1e-9;
 /// Errors below this share of their value are rounding.
 const FAINT_ERROR: f64 = 1e-9;
-/// More digits than these are not written beside an error bar.
+/// Most digits written with an error bar.
 const MOST_DIGITS: i32 = 9;
 
 /// A value with four significant digits, without trailing zeros: "0.8419", "12.5", "12346", "1.235×10⁻⁷".
@@ -25,13 +25,14 @@ pub fn format_length(value: f64) -> String {
     format_significant(value, 3)
 }
 
-/// The least length that would do: three significant digits, rounded up, so that the number as written is enough.
+/// The least sufficient length: three significant digits, rounded up, so that the number as written
+/// suffices.
 pub fn format_least_length(value: f64) -> String {
     if !(value.is_finite() && value > 0.0) {
         return format_length(value);
     }
     let scale = 10_f64.powi(2 - value.log10().floor() as i32);
-    // Rounding in the last bits is no reason for another unit of the third digit.
+    // Rounding in the last bits must not raise the third digit.
     format_length((value * scale * (1.0 - 1e-12)).ceil() / scale)
 }
 
@@ -48,11 +49,12 @@ fn format_significant(value: f64, digits: i32) -> String {
     }
 }
 
-/// A value and its standard error, both with the digits that the error leaves: "0.8419 ± 0.0006",
-/// "(1.234 ± 0.020)×10⁻⁷". An error that is rounding is none: "100 ± 0".
+/// A value and its standard error, both with the digits that the error justifies: "0.8419 ±
+/// 0.0006", "(1.234 ± 0.020)×10⁻⁷". An error at rounding level becomes 0: "100 ± 0".
 ///
-/// The error has two digits up to 0.354 of its power of ten and one digit beyond (Particle Data Group, Review of
-/// Particle Physics, introduction, section 5.3). An infinite value stands alone.
+/// The error has two digits up to 0.354 of its power of ten and one digit beyond (Particle Data
+/// Group, Review of Particle Physics, introduction, section 5.3). An infinite value is written
+/// alone.
 pub fn format_with_error(value: f64, std_error: f64) -> String {
     if !value.is_finite() {
         return not_finite(value).to_string();
@@ -85,7 +87,7 @@ pub fn format_with_error(value: f64, std_error: f64) -> String {
     }
 }
 
-/// A value that has no error bar, with nine digits at most: "0.75", "1200".
+/// A value that has no error bar, with at most nine digits: "0.75", "1200".
 pub fn format_exact(value: f64) -> String {
     if value.is_finite() {
         format_long(value, rounded_exponent(value, MOST_DIGITS))
@@ -94,7 +96,8 @@ pub fn format_exact(value: f64) -> String {
     }
 }
 
-/// A share of a whole, as percent with two decimals: "84.19 %"; more for what would be nothing by them: "1.25×10⁻⁴ %".
+/// A share of a whole, as percent with two decimals: "84.19 %"; more digits where that would give
+/// zero: "1.25×10⁻⁴ %".
 pub fn format_percent(share: f64) -> String {
     let percent = 100.0 * share;
     if share.is_finite() && (FAINT_PERCENT..LEAST_PERCENT).contains(&percent.abs()) {
@@ -106,7 +109,7 @@ pub fn format_percent(share: f64) -> String {
     }
 }
 
-/// A value with a given number of decimals; fewer than none rounds to tens, hundreds and so on.
+/// A value with a given number of decimals; a negative number rounds to tens, hundreds and so on.
 pub fn format_fixed(value: f64, decimals: i32) -> String {
     let text = if decimals >= 0 {
         format!("{value:.*}", decimals as usize)
@@ -115,7 +118,7 @@ pub fn format_fixed(value: f64, decimals: i32) -> String {
         format!("{:.0}", (value / unit).round() * unit)
     };
     match text.strip_prefix('-') {
-        // A negative number that rounds to nothing is zero.
+        // A negative number that rounds to zero has no sign.
         Some(digits) if digits.chars().all(|c| c == '0' || c == '.') => digits.to_string(),
         Some(digits) => format!("−{digits}"),
         None => text,
@@ -132,7 +135,7 @@ pub fn superscript(exponent: i32) -> String {
         .collect()
 }
 
-/// A text of at most `longest` characters, what is too much cut out of the middle: `housin…et_12`.
+/// A text cut to at most `longest` characters by removing the middle: `housin…et_12`.
 pub fn shorten(text: &str, longest: usize) -> String {
     let letters: Vec<char> = text.chars().collect();
     if letters.len() <= longest {
@@ -175,11 +178,11 @@ fn round_error(std_error: f64) -> (f64, i32) {
     let place = if leading < 3.55 { exponent - 1 } else { exponent };
     let unit = 10f64.powi(place);
     let rounded = (std_error / unit).round() * unit;
-    // The very largest number has nothing to be rounded up to.
+    // The very largest number cannot be rounded up.
     (if rounded.is_finite() { rounded } else { std_error }, place)
 }
 
-/// A value with as many digits as are ever written.
+/// A value with the most digits ever written.
 fn format_long(value: f64, exponent: i32) -> String {
     if is_plain(exponent) {
         trimmed(format_fixed(value, MOST_DIGITS - 1 - exponent))

@@ -1,13 +1,14 @@
-//! Texts of users, made harmless where they are shown: on terminals, in spreadsheets and on pages.
+//! User texts made harmless for display on terminals, in spreadsheets and on pages.
 
-/// Whether a character is shown by nothing of its own and changes how others are shown: control characters of ASCII and
-/// ISO 6429, and those that turn the direction of writing (Unicode 16, chapter 23.2; "Trojan Source", Boucher & Anderson 2023).
+/// Whether a character is invisible and changes how others are shown: control characters of ASCII
+/// and ISO 6429, and those that change the direction of writing (Unicode 16, chapter 23.2; "Trojan
+/// Source", Boucher & Anderson 2023).
 pub fn is_control(letter: char) -> bool {
     letter.is_control()
         || matches!(letter, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
-/// The same text with its control characters written out, as `\u{1b}`; line breaks and tabs stay.
+/// The same text with its control characters escaped, as `\u{1b}`; line breaks and tabs stay.
 pub fn visible(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     for letter in text.chars() {
@@ -20,15 +21,15 @@ pub fn visible(text: &str) -> String {
     shown
 }
 
-/// A cell of a table in which no spreadsheet sees a formula: a text that begins as one gets an apostrophe (OWASP, CSV
-/// Injection). Numbers stay as they are.
+/// A table cell that no spreadsheet reads as a formula: a text that begins like one gets an
+/// apostrophe (OWASP, CSV Injection). Numbers stay as they are.
 pub fn spreadsheet_cell(text: &str) -> String {
     let is_formula = text.starts_with(['=', '+', '-', '@', '\t', '\r']);
     if is_formula && text.parse::<f64>().is_err() { format!("'{text}") } else { text.to_owned() }
 }
 
-/// A page of Markdown in which no text is taken for HTML (`CommonMark` 0.31, section 6.6: what a tag begins with), with its
-/// control characters written out.
+/// A page of Markdown in which no text is read as HTML (`CommonMark` 0.31, section 6.6: how a tag
+/// begins), with its control characters escaped.
 pub fn markdown_page(page: &str) -> String {
     let page = visible(page);
     let mut safe = String::with_capacity(page.len());
@@ -41,7 +42,7 @@ pub fn markdown_page(page: &str) -> String {
     safe
 }
 
-/// A cell of a table in Markdown: bars and line breaks do not end it.
+/// A table cell in Markdown, with bars and line breaks escaped so that they do not end it.
 pub fn markdown_cell(text: &str) -> String {
     text.replace('|', "\\|").replace('\n', " ")
 }

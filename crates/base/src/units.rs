@@ -1,7 +1,8 @@
-//! Units at the border.
+//! Units inside the program and in its output.
 //!
-//! Inside, lengths are millimetres, angles radians, flux lumens (watts in radiometric runs), wavelengths nanometres.
-//! Illuminance, in lm/mm², and luminance [lm/(mm² sr)] become lx and cd/m² here, on the way out.
+//! Inside, lengths are millimetres, angles radians, flux lumens (watts in radiometric runs),
+//! wavelengths nanometres. Illuminance, in lm/mm², and luminance [lm/(mm² sr)] are converted to lx
+//! and cd/m² here, for output.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,8 +1,8 @@
 //! Baselines: methods that others use, for comparison with the estimators of this program.
 //!
-//! Each is kept small and ordinary and estimates one sensor: flux per cell and by source, as [`Readings`] of batches
-//! that the measure layer reads like any other. No scene can ask for them. What they are compared with, and by
-//! what clock, is not known here.
+//! Each is a small textbook implementation that estimates one sensor: flux per cell and by source,
+//! as [`Readings`] of batches that the measure layer reads like any other. A scene cannot select
+//! them. This crate does not know what they are compared with, nor the clock.
 
 mod metropolis;
 mod one_sensor;
@@ -49,7 +49,7 @@ impl Baseline {
     }
 }
 
-/// A baseline at work on one sensor.
+/// A running baseline on one sensor.
 #[derive(Debug)]
 pub struct BaselineRun<'s> {
     work: Work<'s>,
@@ -66,7 +66,8 @@ enum Work<'s> {
 }
 
 impl<'s> BaselineRun<'s> {
-    /// Prepares a run; nothing is counted yet. Of the plan, its seed, its bounce limit and its wishes for gathering count.
+    /// Prepares a run; nothing is counted yet. Of the plan it uses the seed, the bounce limit and
+    /// the gather settings.
     pub fn new(scene: &'s Scene, sensor: SensorId, plan: &RunPlan, baseline: Baseline) -> Self {
         let sensor = OneSensor::new(scene, sensor, plan);
         let work = match baseline {
@@ -83,7 +84,7 @@ impl<'s> BaselineRun<'s> {
         self.trace_until(end);
     }
 
-    /// Traces until so many batches are done.
+    /// Traces until `batches` batches are done.
     pub fn trace_until(&mut self, batches: u64) {
         let traced: Vec<Batch> =
             (self.batches..batches).into_par_iter().map(|batch| self.work.batch(batch)).collect();
@@ -99,7 +100,8 @@ impl<'s> BaselineRun<'s> {
         self.sums.total()
     }
 
-    /// Throughput that was cut off, as a share of all gather paths, 1: light that came that way is missing.
+    /// Throughput that was cut off, as a share of all gather paths, 1: the light along it is
+    /// missing.
     pub fn cut(&self) -> f64 {
         self.cut.mean()
     }

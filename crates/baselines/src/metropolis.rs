@@ -1,10 +1,11 @@
 //! Metropolis light transport in primary sample space, on gather paths.
 //!
-//! Veach & Guibas, Metropolis Light Transport, SIGGRAPH 1997; Kelemen et al. 2002 (see [`crate::primary`]). A chain
-//! varies the random numbers of a gather path and visits paths in proportion to the flux they bring, I. It knows where
-//! light is and not how much: the mean of I over paths drawn afresh, b, makes flux of it. Proposal and state both count,
-//! by the probability that the chain goes on with them. Every batch is a chain of its own with a b of its own: the
-//! flux on the sensor is free of bias, its division among cells only as far as chains are long.
+//! Veach & Guibas, Metropolis Light Transport, SIGGRAPH 1997; Kelemen et al. 2002 (see
+//! [`crate::primary`]). A chain varies the random numbers of a gather path and visits paths in
+//! proportion to the flux they carry, I. This gives the distribution of light but not its amount:
+//! the mean of I over independent paths, b, scales it to flux. Proposal and state both count,
+//! weighted by the acceptance probability. Every batch is a separate chain with its own b: the flux
+//! on the sensor is unbiased, its distribution over cells only in the limit of long chains.
 
 use crate::one_sensor::OneSensor;
 use crate::primary::{Mutation, Primary};
@@ -63,7 +64,7 @@ impl<'s> Metropolis<'s> {
     }
 }
 
-/// The light that a path has brought.
+/// The light that a path has collected.
 #[derive(Debug, Default)]
 struct Seen {
     cells: SmallVec<[usize; 1]>,
@@ -76,16 +77,16 @@ struct Seen {
 struct Chain<'a, 's> {
     metropolis: &'a Metropolis<'s>,
     state: Seen,
-    /// Sum of I over paths drawn afresh.
+    /// Sum of I over independent paths.
     fresh_flux: f64,
     fresh_paths: u64,
-    /// Weight of all states that bring light.
+    /// Weight of all states that carry light.
     weight: f64,
     readings: &'a mut Readings,
 }
 
 impl Chain<'_, '_> {
-    /// Chooses the first state among paths drawn afresh, in proportion to their flux.
+    /// Chooses the first state among independent paths, in proportion to their flux.
     fn start(&mut self, primary: &mut Primary) {
         let proposal = self.propose(primary, Mutation::Large);
         let share = if proposal.flux > 0.0 { proposal.flux / self.fresh_flux } else { 0.0 };
@@ -97,7 +98,7 @@ impl Chain<'_, '_> {
         let large = primary.decide() < LARGE_STEPS;
         let mutation = if large { Mutation::Large } else { Mutation::Small };
         let proposal = self.propose(primary, mutation);
-        // Where there is no light any other path is as good.
+        // A state without light always accepts the proposal.
         let is_lit = self.state.flux > 0.0;
         let acceptance = if is_lit { (proposal.flux / self.state.flux).min(1.0) } else { 1.0 };
         self.count(&proposal, acceptance);
@@ -139,7 +140,7 @@ impl Chain<'_, '_> {
 }
 
 impl OneSensor<'_> {
-    /// The light of the gather path that these numbers make.
+    /// The light of the gather path that these random numbers generate.
     fn look(&self, sampler: &mut Sampler<impl Numbers>) -> Seen {
         let Some(arrival) = self.arrivals.draw(sampler) else { return Seen::default() };
         let mut looking = Looking { etendue: self.etendue(&arrival), seen: Seen::default() };

@@ -8,11 +8,11 @@ use lumiduct_core::transport::walk::emitters::{Emitters, Met};
 use lumiduct_core::transport::walk::follow::{Collector, Gathering, follow};
 use lumiduct_core::transport::{Layout, Path, Readings};
 
-/// Straight pieces that a batch should hold.
+/// Segments that a batch should contain.
 pub(crate) const BATCH_SEGMENTS: u64 = 1 << 16;
-/// Gather paths from which their length is learnt.
+/// Gather paths from which the mean length is estimated.
 const PILOT_PATHS: u64 = 64;
-/// Stream of random numbers of these.
+/// Stream of random numbers of the pilot.
 const PILOT_STREAM: u64 = 8 << 32;
 
 /// What a batch has counted.
@@ -47,18 +47,18 @@ impl<'s> OneSensor<'s> {
         }
     }
 
-    /// What its gather paths have in common, up to a depth.
+    /// The settings its gather paths share, up to a depth.
     pub(crate) fn gathering(&self, bounce_limit: u32) -> Gathering<'_, 's> {
         let Self { scene, emitters, id: sensor, .. } = self;
         Gathering { scene, emitters, sensor: *sensor, bounce_limit, pace: None }
     }
 
-    /// The etendue that a gather path stands for, mm² sr.
+    /// The etendue that a gather path represents, mm² sr.
     pub(crate) fn etendue(&self, arrival: &Arrival) -> f64 {
         Path::arriving(self.scene, arrival).etendue(self.scene, arrival.extent)
     }
 
-    /// A batch of so many paths, to be counted into.
+    /// An empty batch of `paths` paths.
     pub(crate) fn empty(&self, paths: u64, batch: u64) -> Readings {
         Readings::of_batch(self.scene, &self.layout, self.seed, paths, batch)
     }
@@ -67,7 +67,7 @@ impl<'s> OneSensor<'s> {
         readings.count(&self.layout, self.id, cells, light);
     }
 
-    /// Gather paths that make a batch of about as much work in every scene; the same for the same seed.
+    /// Gather paths per batch, for about the same work in every scene; deterministic for a seed.
     pub(crate) fn batch_paths(&self) -> u64 {
         let mut segments = 0;
         for index in 0..PILOT_PATHS {

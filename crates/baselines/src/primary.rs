@@ -1,8 +1,9 @@
 //! Recorded random numbers of a path that a Markov chain varies: primary sample space.
 //!
-//! Kelemen, Szirmay-Kalos, Antal & Csonka, A Simple and Robust Mutation Strategy for the Metropolis Light Transport
-//! Algorithm, Computer Graphics Forum 21 (2002) 531. A number is varied when a path asks for it and not before, so that
-//! a path may ask for any number of them. What a path makes of the numbers is not known here.
+//! Kelemen, Szirmay-Kalos, Antal & Csonka, A Simple and Robust Mutation Strategy for the Metropolis
+//! Light Transport Algorithm, Computer Graphics Forum 21 (2002) 531. A number is varied only when a
+//! path draws it, so that a path may draw any number of them. This module does not know what a path
+//! does with the numbers.
 
 use lumiduct_core::rng::{Dimension, Numbers, Sampler};
 
@@ -13,24 +14,24 @@ const LARGEST_STEP: f64 = 1.0 / 64.0;
 /// How a proposal is made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Mutation {
-    /// All numbers anew.
+    /// Redraws all numbers.
     Large,
-    /// Each number a little to either side.
+    /// Perturbs each number a little.
     Small,
 }
 
-/// The numbers of a chain's state, and of its proposal while a path asks for them.
+/// The numbers of a chain's state, and of its proposal while a path draws them.
 #[derive(Debug, Clone)]
 pub(crate) struct Primary {
     own: Sampler,
     numbers: Vec<Number>,
-    /// Steps since the start of the chain, that of the proposal included.
+    /// Steps since the start of the chain, including the proposal.
     step: u64,
-    /// The last step that made all numbers anew and was accepted, or is being proposed.
+    /// The last large step that was accepted or is being proposed.
     anew: u64,
     mutation: Mutation,
     next: usize,
-    /// What a rejected proposal leaves behind: numbers as they were, and the last step that made all anew.
+    /// What restores a rejected proposal: the previous numbers, and the last large step.
     changed: Vec<(usize, Number)>,
     known: usize,
     anew_before: u64,
@@ -44,7 +45,8 @@ struct Number {
 }
 
 impl Primary {
-    /// A chain that draws its own random numbers from `own`. Its first proposal has to be a large one.
+    /// A chain that draws its own random numbers from `own`. Its first proposal must be a large
+    /// step.
     pub(crate) fn new(own: Sampler) -> Self {
         Self {
             own,
@@ -59,7 +61,7 @@ impl Primary {
         }
     }
 
-    /// Begins a proposal: a path may ask for its numbers.
+    /// Begins a proposal: a path may then draw its numbers.
     pub(crate) fn propose(&mut self, mutation: Mutation) {
         self.step += 1;
         self.mutation = mutation;
@@ -72,7 +74,7 @@ impl Primary {
         }
     }
 
-    /// Goes back to the state before the proposal. A proposal that is not rejected is the new state.
+    /// Restores the state before the proposal. A proposal that is not rejected is the new state.
     pub(crate) fn reject(&mut self) {
         for (place, number) in self.changed.drain(..) {
             self.numbers[place] = number;
@@ -87,17 +89,18 @@ impl Primary {
         self.own.one(Dimension::Resampling)
     }
 
-    /// A step whose size has the density 1/size between its bounds, around the ends of [0, 1).
+    /// A step whose size has the density 1/size between its bounds, wrapped around the ends of [0,
+    /// 1).
     fn small_step(&mut self, value: f64) -> f64 {
         let size = LARGEST_STEP * (LEAST_STEP / LARGEST_STEP).powf(self.decide());
         let moved = if self.decide() < 0.5 { value + size } else { value - size };
         let wrapped = moved - moved.floor();
-        // The floor of a tiny negative number leaves 1.
+        // Subtracting the floor of a tiny negative number gives 1.
         if wrapped < 1.0 { wrapped } else { 0.0 }
     }
 }
 
-/// The numbers of the proposal, in the order in which a path asks for them.
+/// The numbers of the proposal, in the order in which a path draws them.
 impl Numbers for &mut Primary {
     fn next(&mut self) -> f64 {
         let place = self.next;
@@ -107,14 +110,14 @@ impl Numbers for &mut Primary {
                 self.changed.push((place, *number));
                 *number
             }
-            // As if it had been there since before all were made anew.
+            // As if it had existed since before the first large step.
             None => Number { value: 0.0, step: 0 },
         };
         let mut varied = number;
         if number.step < self.anew || number.step == 0 {
             varied = Number { value: self.decide(), step: self.anew };
         }
-        // Steps since in which no path asked for it: rejected ones have been taken back.
+        // Steps since then in which no path drew it; rejected steps have been undone.
         while varied.step < self.step {
             varied.value = self.small_step(varied.value);
             varied.step += 1;

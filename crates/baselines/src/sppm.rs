@@ -1,9 +1,10 @@
 //! Stochastic progressive photon mapping without an estimate on specular surfaces.
 //!
-//! Hachisuka & Jensen, Stochastic Progressive Photon Mapping, ACM Trans. Graph. 28 (2009) 141, with the radii of Knaus &
-//! Zwicker, Progressive Photon Mapping: A Probabilistic Approach, ACM Trans. Graph. 30 (2011) 25: every pass is a photon map
-//! of its own, and the mean over passes is the value. Gather paths go on through specular surfaces and wait for photons
-//! where a surface scatters; on purely specular scenes they see only what they meet.
+//! Hachisuka & Jensen, Stochastic Progressive Photon Mapping, ACM Trans. Graph. 28 (2009) 141, with
+//! the radii of Knaus & Zwicker, Progressive Photon Mapping: A Probabilistic Approach, ACM Trans.
+//! Graph. 30 (2011) 25: every pass is a separate photon map, and the value is the mean over passes.
+//! Gather paths continue through specular surfaces and leave records where a surface scatters; in
+//! purely specular scenes they count only the sources they hit.
 
 use crate::one_sensor::{BATCH_SEGMENTS, OneSensor};
 use lumiduct_core::optics::{Incidence, Lobe};
@@ -29,7 +30,7 @@ use std::ops::ControlFlow;
 const PATH_STREAM: u64 = 9 << 32;
 /// α of the radii, 1: squares fall as i^(α-1); 2/3 is best for the mean square error (Knaus & Zwicker 2011).
 const ALPHA: f64 = 2.0 / 3.0;
-/// Gather paths end after so many interfaces.
+/// Gather paths end after this many interfaces.
 const DEEPEST: u32 = 1000;
 /// Work of a pass in batches of the other baselines: small passes shrink the radius sooner.
 const PASS_BATCHES: u64 = 4;
@@ -70,7 +71,7 @@ impl<'s> Sppm<'s> {
     /// Runs one pass: gather paths, then photons past their records.
     pub(super) fn pass(&self, batch: u64) -> Readings {
         let mut readings = self.sensor.empty(self.paths, batch);
-        // The angle plays no part: there are no records with a direction.
+        // The angle is irrelevant: no record has a direction.
         let radius = self.radius * sppm_area_ratio(batch, ALPHA).sqrt();
         let window = Window { radius, theta_max: 0.1 };
         let mut waiting = Waiting::default();
@@ -117,7 +118,7 @@ pub fn sppm_area_ratio(pass: u64, alpha: f64) -> f64 {
     (1..=pass).fold(1.0, |ratio, i| ratio * (i as f64 + alpha) / (i as f64 + 1.0))
 }
 
-/// Gather paths of a pass that wait for photons: their cells, path by path, and their records.
+/// The records of the gather paths of a pass, and the cell of each path.
 #[derive(Default)]
 struct Waiting<'s> {
     cells: Vec<SmallVec<[usize; 1]>>,
@@ -154,7 +155,7 @@ impl Collector for Gatherer<'_, '_> {
             // L* of the light that leaves, in the medium of the gather path: docs/method.md, eq. (22), over its n².
             let index = facing.incidence.index_from;
             let value = self.etendue * vertex.throughput / (index * index);
-            // The whole disk counts also at rims: that bias goes with the radius.
+            // The whole disk counts also at rims; that bias vanishes with the radius.
             let values = self.window.nested().map(|window| value / window.area());
             self.waiting.records.push(GatherRecord {
                 point: vertex.point,
@@ -172,14 +173,14 @@ impl Collector for Gatherer<'_, '_> {
 
     fn depart(&mut self, _: &Path, _: &Vertex<'_>, departure: &Departure) -> ControlFlow<()> {
         match departure.lobe {
-            // The photons at the record bring it.
+            // The photons at the record account for it.
             Lobe::Diffuse => ControlFlow::Break(()),
             Lobe::Specular => ControlFlow::Continue(()),
         }
     }
 }
 
-/// Photons that stream past the records.
+/// Photons traced past the records.
 struct Stream<'p, 's> {
     sppm: &'p Sppm<'s>,
     nested: NestedWindows,

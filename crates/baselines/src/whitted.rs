@@ -1,8 +1,9 @@
 //! Gather paths that split at every smooth interface into the reflected and the refracted ray.
 //!
-//! Whitted, An Improved Illumination Model for Shaded Display, Communications of the ACM 23 (1980) 343. No choice is
-//! drawn there: both rays are followed until what they carry falls below a cut-off, and what is cut off is told, not made
-//! up for. Finishes that scatter sample one direction.
+//! Whitted, An Improved Illumination Model for Shaded Display, Communications of the ACM 23
+//! (1980) 343. Nothing is drawn at random there: both rays are followed until their throughput
+//! falls below a cut-off. What is cut off is reported, not compensated. Finishes that scatter
+//! sample one direction.
 
 use crate::one_sensor::{Batch, OneSensor};
 use lumiduct_core::optics::{Scattered, Side, scatter_toward};
@@ -15,12 +16,12 @@ use lumiduct_core::transport::walk::scatter::{facing, scatter_radiance};
 use lumiduct_core::transport::{Path, Readings, Vertex};
 use std::ops::ControlFlow;
 
-/// Streams of random numbers of the paths and of what they draw at interfaces.
+/// Streams of random numbers of the paths and of their choices at interfaces.
 const PATH_STREAM: u64 = 5 << 32;
 const BRANCH_STREAM: u64 = 6 << 32;
 /// Branches of less throughput are cut off, 1.
 const CUT_OFF: f64 = 1e-3;
-/// Branches are cut off after so many interfaces.
+/// Branches are cut off after this many interfaces.
 const DEEPEST: u32 = 1000;
 
 /// What all batches of a run have in common.
@@ -49,7 +50,7 @@ impl<'s> Whitted<'s> {
         Batch { readings, cut: cut / self.paths as f64 }
     }
 
-    /// Traces all branches of a gather path; gives back the throughput that was cut off.
+    /// Traces all branches of a gather path; returns the throughput that was cut off.
     fn trace(&self, index: u64, readings: &mut Readings) -> f64 {
         let Self { sensor, deepest, .. } = self;
         let mut sampler = Sampler::for_path(sensor.seed, PATH_STREAM, index);
@@ -82,7 +83,7 @@ impl<'s> Whitted<'s> {
 
 /// A ray still to be followed.
 struct Branch {
-    /// Its start, at throughput 1, so that nothing takes it for a weak path.
+    /// Its start, at throughput 1, so that roulette does not treat it as weak.
     path: Path,
     /// The throughput up to there.
     factor: f64,
@@ -97,7 +98,7 @@ struct Splitter<'a, 's> {
     /// Throughput up to the start of the branch, 1.
     factor: f64,
     branches: Vec<Branch>,
-    /// For what is drawn at interfaces.
+    /// For random choices at interfaces.
     sampler: Sampler,
     cut: f64,
     readings: &'a mut Readings,

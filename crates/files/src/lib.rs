@@ -1,4 +1,4 @@
-//! Foreign files, read and written. This crate knows no scene and stands alone: it gives the triangle meshes of
+//! Reads foreign file formats. This crate knows no scenes; it gives the triangle meshes of
 //! [`lumiduct_base`].
 
 pub mod mesh;

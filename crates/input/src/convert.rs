@@ -11,7 +11,8 @@ use crate::spec::study::StudySpec;
 use crate::spec::{AIR, FORMAT_VERSION, NORTH, SceneSpec, UP};
 use crate::tree::{Node, Value};
 
-/// The spec that a tree says. A key with an error is left out, and with it an entry that is nothing without the key.
+/// The spec of a tree. A key with an error is left out, and with it an entry that is meaningless
+/// without the key.
 pub fn scene(root: &Node, problems: &mut Problems) -> SceneSpec {
     SceneSpec {
         lumiduct: FORMAT_VERSION,
@@ -30,12 +31,13 @@ pub fn scene(root: &Node, problems: &mut Problems) -> SceneSpec {
         sources: entries(root, "sources", problems),
         sensors: entries(root, "sensors", problems),
         run: value(root, "run", problems).unwrap_or_default(),
-        // One bad check takes the others with it: their places in the list would no longer fit their keys.
+        // One bad check drops the others, too: their indices in the list would no longer match
+        // their keys.
         check: value(root, "check", problems).unwrap_or_default(),
     }
 }
 
-/// The study that a tree says; `None` where nothing could be made of it, which has been noted then.
+/// The study of a tree; `None` if that fails, which has then been noted.
 pub fn study(root: &Node, problems: &mut Problems) -> Option<StudySpec> {
     one(root, &Key::root(), problems)
 }
@@ -80,7 +82,8 @@ fn one<T: DeserializeOwned>(node: &Node, key: &Key, problems: &mut Problems) -> 
     }
 }
 
-/// Takes a key out of a table. An item of an array stays: without it, those after it would have other numbers.
+/// Removes a key from a table. An item of an array stays, as its removal would renumber those after
+/// it.
 fn drop_key(json: &mut Json, path: &[Segment]) {
     let Some((last, around)) = path.split_last() else {
         *json = Json::Null;

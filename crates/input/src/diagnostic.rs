@@ -8,7 +8,7 @@ use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use crate::sources::Sources;
 use lumiduct_base::error::{Diagnostic, DiagnosticKind};
 
-/// Whether text carries the colour codes of a terminal.
+/// Whether text contains the colour codes of a terminal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Colour {
     /// Plain text.
@@ -17,7 +17,7 @@ pub enum Colour {
     Always,
 }
 
-/// The files that diagnostics name, read for their lines. What cannot be read is left out.
+/// The files that diagnostics refer to, read for their lines. Unreadable files are left out.
 pub fn sources_of(diagnostics: &[Diagnostic]) -> Sources {
     let with_line = diagnostics.iter().filter(|diagnostic| diagnostic.line.is_some());
     Sources::of_files(with_line.filter_map(|diagnostic| diagnostic.file.as_deref()))
@@ -67,7 +67,7 @@ struct Cut {
     span: std::ops::Range<usize>,
 }
 
-/// Most bytes of a line that are shown on each side of what is underlined, and of that itself.
+/// Most bytes of a line that are shown on each side of the underlined part, and of that part.
 const CUT_BYTES: usize = 120;
 
 fn cut(diagnostic: &Diagnostic, file: &Path, sources: &Sources) -> Option<Cut> {

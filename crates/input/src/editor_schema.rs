@@ -1,17 +1,19 @@
-//! The JSON Schemas that editors check files against while they are written.
+//! The JSON Schemas that editors use to check files during editing.
 //!
-//! A scene is validated after its sensor files have been joined with it. An editor sees one file at a time: a sensor that names a
-//! `file` has some of its keys there, so that none can be missing here, and the same holds for a sensor file.
+//! A scene is validated after its sensor files have been merged into it. An editor sees one file at
+//! a time: a sensor with a `file` has some of its keys there, so no key is required here, nor in a
+//! sensor file.
 
 use serde_json::{Map, Value, json};
 
 use crate::schema::{is_required_only, json_schema, resolve};
 
-/// The name of the definition of a sensor in [`json_schema`], and of one whose keys are in part elsewhere.
+/// The name of the definition of a sensor in [`json_schema`], and of one with some keys in another
+/// file.
 const SENSOR: &str = "Sensor";
 const PARTIAL_SENSOR: &str = "PartialSensor";
 
-/// The JSON Schema (draft 2020-12) of a scene file as it stands on disk.
+/// The JSON Schema (draft 2020-12) of a scene file as it is on disk.
 pub fn scene_file_schema() -> Value {
     let mut schema = json_schema();
     let partial = without_required_keys(&schema, &schema["$defs"][SENSOR]);
@@ -24,7 +26,8 @@ pub fn scene_file_schema() -> Value {
     schema
 }
 
-/// The JSON Schema (draft 2020-12) of a sensor file: the keys of a sensor but for `file`, none of them required.
+/// The JSON Schema (draft 2020-12) of a sensor file: the keys of a sensor except `file`, none
+/// required.
 pub fn sensor_file_schema() -> Value {
     let schema = json_schema();
     let mut sensor = without_required_keys(&schema, &schema["$defs"][SENSOR]);
@@ -43,8 +46,8 @@ pub fn sensor_file_schema() -> Value {
     Value::Object(file)
 }
 
-/// A schema with its definitions written out in place and without its rules about keys that must be there. The types of sensors
-/// do not contain themselves.
+/// A schema with its definitions inlined and without its rules about required keys. The sensor
+/// types are not recursive.
 fn without_required_keys(root: &Value, schema: &Value) -> Value {
     let is_rule = |word: &str, rule: &Value| {
         word == "required"
@@ -53,7 +56,7 @@ fn without_required_keys(root: &Value, schema: &Value) -> Value {
     };
     match resolve(root, schema) {
         Value::Object(words) => {
-            // A reference may stand beside a description of its own.
+            // A reference may have its own description.
             let own = schema.as_object().into_iter().flatten().filter(|(word, _)| *word != "$ref");
             let all = words.iter().chain(own).filter(|(word, rule)| !is_rule(word, rule));
             Value::Object(

@@ -1,7 +1,7 @@
-//! Wishes for the gather estimator: those of the command line go over those of the file, and both are held against
-//! the scene.
+//! Requested settings of the gather estimator: the command line overrides the file, and both are
+//! checked against the scene.
 //!
-//! What a value on its own may be is known to the schema of the file and to the arguments of the command line.
+//! The range of a single value is checked by the schema of the file and by the command-line parser.
 
 use crate::keys::Key;
 use crate::problems::Problems;
@@ -12,10 +12,10 @@ use lumiduct_core::scene::{Owner, Scene};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// First radius that is usual, as a share of half the width of a guide.
+/// Usual first radius, as a share of half the width of a guide.
 const USUAL_RADIUS: f64 = 0.2;
 
-/// What the command line asks of the gather estimator; what is left out stays as the scene file has it.
+/// Gather settings of the command line; omitted ones stay as in the scene file.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct GatherSettings {
     /// Depth at which gather paths end at the latest.
@@ -33,7 +33,7 @@ pub struct GatherSettings {
 }
 
 impl GatherSettings {
-    /// The plan with these wishes in it.
+    /// The plan with these settings applied.
     pub(crate) fn over(&self, plan: &GatherPlan) -> GatherPlan {
         GatherPlan {
             depth: self.depth.or(plan.depth),
@@ -59,7 +59,7 @@ impl GatherSettings {
     }
 }
 
-/// Notes wishes of the file and of the command line that the estimator has no use for.
+/// Notes settings of the file and the command line that the estimator does not use.
 pub(crate) fn check_use(
     request: Request,
     file: &GatherPlan,
@@ -91,7 +91,7 @@ pub(crate) fn check_use(
     }
 }
 
-/// Notes a radius that no guide of the scene is wide enough for. `plan` holds what counts in the end.
+/// Notes a radius too large for any guide of the scene. `plan` contains the final settings.
 pub(crate) fn check_radius(
     plan: &GatherPlan,
     settings: &GatherSettings,
@@ -119,13 +119,13 @@ fn gather_key() -> Key {
     Key::of(&["run", "gather"])
 }
 
-/// The names of what is given.
+/// The names of the given settings.
 fn given(all: &[(&'static str, bool)]) -> Vec<&'static str> {
     all.iter().filter(|(_, is_given)| *is_given).map(|(name, _)| *name).collect()
 }
 
-/// The solid or sheet whose box is the widest where it is narrowest, and half that width, mm. Flat things, which have
-/// no width, are left out.
+/// The solid or sheet whose box has the greatest narrowest side, and half that width, mm. Flat
+/// things, which have no width, are left out.
 fn widest(scene: &Scene) -> Option<(&str, f64)> {
     let mut boxes: BTreeMap<&str, Aabb> =
         scene.solids.iter().map(|solid| (solid.name.as_str(), solid.bounds)).collect();

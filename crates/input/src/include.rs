@@ -1,4 +1,4 @@
-//! Sensor files: tables of a scene that take keys over from another file.
+//! Sensor files: tables of a scene that include keys from another file.
 
 use std::path::Path;
 
@@ -7,11 +7,11 @@ use crate::problems::{Problems, nearest};
 use crate::sources::{Origin, Sources, Unreadable};
 use crate::tree::{self, Entry, Node, SyntaxError, Value};
 
-/// The key that names another file.
+/// The key with the name of another file.
 const FILE: &str = "file";
 
-/// Joins each sensor that names a file with the keys of that file; keys of the scene win. Gives back the breaks of
-/// the syntax of those files.
+/// Merges the keys of its file into each sensor that refers to one; keys of the scene win. Returns
+/// the syntax errors of those files.
 pub fn join_sensor_files(
     root: &mut Node,
     sources: &mut Sources,
@@ -43,7 +43,7 @@ pub fn join_sensor_files(
                 );
             }
             Err(reason) => {
-                // Keys that only this file gives are not to be missed now.
+                // Keys that only this file gives must not be reported as missing now.
                 if let Value::Table(entries) = &mut sensor.node.value
                     && let Some(file) = entries.get_mut(FILE)
                 {
@@ -98,7 +98,7 @@ enum Refused {
     Scene,
 }
 
-/// `base` with the keys of `over`, which win; tables are joined key by key.
+/// `base` with the keys of `over`, which win; tables are merged key by key.
 fn joined(base: Node, over: Node) -> Node {
     match (base.value, over.value) {
         (Value::Table(mut entries), Value::Table(own)) => {
@@ -122,7 +122,7 @@ fn placeholder(origin: &Origin) -> Node {
     Node { origin: origin.clone(), value: Value::Unreadable }
 }
 
-/// A file of the same folder with nearly the name.
+/// A file of the same folder with a similar name.
 fn similar_file(path: &Path) -> Option<String> {
     let names = std::fs::read_dir(path.parent()?).ok()?.take(1000).flatten();
     let mut names: Vec<_> =

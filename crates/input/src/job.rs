@@ -1,4 +1,4 @@
-//! The whole way from a scene file to a job: read, lowered, with the wishes of the command line.
+//! From a scene file to a job: read, lowered, with the command-line settings applied.
 
 use crate::gather::{GatherSettings, check_radius, check_use};
 use crate::keys::{Key, Places};
@@ -15,18 +15,18 @@ use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::time::Duration;
 
-/// What the command line asks for beside the scene file.
+/// Command-line settings in addition to the scene file.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Settings {
     /// `key=value` for keys of the scene.
     pub overrides: Vec<String>,
-    /// How flux is to be estimated.
+    /// Estimator of flux.
     pub estimator: Option<Request>,
-    /// Wishes for the gather estimator.
+    /// Gather settings.
     pub gather: GatherSettings,
     /// Relative error of the target measure.
     pub target: Option<f64>,
-    /// The target measure; that of the file if it is left out.
+    /// The target measure; by default that of the file.
     pub target_measure: Option<String>,
     /// Number of paths.
     pub paths: Option<u64>,
@@ -34,42 +34,42 @@ pub struct Settings {
     pub time: Option<Duration>,
     /// Seed of the random numbers.
     pub seed: Option<u64>,
-    /// Photon paths of a batch, so that batches of several scenes hold the same paths.
+    /// Photon paths of a batch, so that batches of several scenes contain the same paths.
     pub batch_paths: Option<u64>,
 }
 
 impl Settings {
-    /// The same with further overrides, which go over those here.
+    /// The same with further overrides, which take precedence.
     pub fn with(&self, further: impl IntoIterator<Item = String>) -> Self {
         let overrides = self.overrides.iter().cloned().chain(further).collect();
         Self { overrides, ..self.clone() }
     }
 }
 
-/// A scene to be run.
+/// A scene to run.
 #[derive(Debug)]
 pub struct Job {
-    /// Name: that of the file without its ending.
+    /// Name: that of the file without its extension.
     pub name: String,
     /// Title for reports.
     pub title: String,
-    /// What the scene is for.
+    /// The purpose of the scene.
     pub description: Option<String>,
-    /// Whom and what the report is for.
+    /// The project of the report.
     pub project: Option<Project>,
-    /// What is traced.
+    /// The scene to trace.
     pub scene: Scene,
-    /// How, and when to stop.
+    /// How to trace it, and when to stop.
     pub run: RunPlan,
-    /// What is expected.
+    /// The checks.
     pub checks: Vec<Check>,
     /// The scene file, byte for byte.
     pub text: String,
-    /// Where the files say it.
+    /// The places of its keys in the files.
     pub places: Places,
     /// Overrides of the command line, as given.
     pub overrides: Vec<String>,
-    /// All that the command line asks for.
+    /// All command-line settings.
     pub settings: Settings,
     /// Identifies scene file, included files, meshes and overrides: 64-bit FNV-1a, in hexadecimal.
     pub hash: String,
@@ -77,7 +77,7 @@ pub struct Job {
     pub warnings: Vec<Diagnostic>,
 }
 
-/// Loads a scene file and everything it names.
+/// Loads a scene file and everything it refers to.
 pub fn load(path: &Path, settings: &Settings) -> Result<Job> {
     let Draft { spec, places, text, mut problems } = draft(path, &settings.overrides)?;
     let whole = problems.is_free_of_errors();
@@ -87,7 +87,7 @@ pub fn load(path: &Path, settings: &Settings) -> Result<Job> {
     }
     let project = project(&spec, &places, &mut problems);
     let warnings = problems.finish(&places)?;
-    // Without an error there is a scene.
+    // If there is no error there is a scene.
     let Some(Lowered { scene, mut run, checks, meshes }) = lowered else {
         return Err(Error::Input(warnings));
     };
@@ -114,7 +114,7 @@ pub fn load(path: &Path, settings: &Settings) -> Result<Job> {
     })
 }
 
-/// The command line's estimator and wishes for it go over those of the file.
+/// The estimator and gather settings of the command line override those of the file.
 fn apply_method(settings: &Settings, scene: &Scene, run: &mut RunPlan, problems: &mut Problems) {
     run.estimator = settings.estimator.unwrap_or(run.estimator);
     check_estimators(run, scene, problems);
@@ -129,7 +129,8 @@ fn apply_method(settings: &Settings, scene: &Scene, run: &mut RunPlan, problems:
     }
 }
 
-/// Refuses sensors that are merged beside others that may be gathered alone: photons pass one set of records.
+/// Refuses merged sensors together with others that may be gathered alone: photons pass one set of
+/// records.
 fn check_estimators(run: &RunPlan, scene: &Scene, problems: &mut Problems) {
     let request = |sensor: usize| run.request(sensor);
     let is_alone =
@@ -175,7 +176,7 @@ fn apply(settings: &Settings, scene: &Scene, run: &mut RunPlan) -> Result<()> {
         }
         (None, _) => None,
     };
-    // The batches of the file divide the paths of the command line as those of the file.
+    // The batches of the file divide the paths of the command line as they do those of the file.
     let batches = settings.paths.and(run.stop.batches);
     run.stop = StopRules { paths: settings.paths, batches, time: settings.time, target };
     Ok(())

@@ -1,4 +1,4 @@
-//! Dotted keys, and where in the files they stand.
+//! Dotted keys and their places in the files.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -59,7 +59,7 @@ impl Key {
         Self { segments: self.segments[..self.segments.len().saturating_sub(1)].to_vec() }
     }
 
-    /// Whether this is `other` or lies inside it.
+    /// Whether this is `other` or inside it.
     pub fn is_within(&self, other: &Self) -> bool {
         self.segments.starts_with(&other.segments)
     }
@@ -86,7 +86,7 @@ pub fn is_bare(name: &str) -> bool {
     !name.is_empty() && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_' || b == b'-')
 }
 
-/// Where the keys of a scene stand in its files.
+/// The places of the keys of a scene in its files.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Places {
     root: Node,
@@ -109,24 +109,24 @@ impl Places {
         &self.sources
     }
 
-    /// The whole text of the file that the tree is of.
+    /// The whole text of the file of the tree.
     pub fn root_text(&self) -> &str {
         self.sources.get(self.root.origin.source).text()
     }
 
-    /// Whether the files say something at this key.
+    /// Whether the files contain this key.
     pub fn has(&self, key: &Key) -> bool {
         self.node(key).is_some()
     }
 
-    /// What the files say at this key; `None` where they say nothing.
+    /// The node at this key; `None` where the files do not contain it.
     pub fn node(&self, key: &Key) -> Option<&Node> {
         let (node, depth) = self.walk(key);
         (depth == key.segments.len()).then_some(node)
     }
 
-    /// Where the value of a key stands, or that of the innermost table around it that is there. `None` when nothing
-    /// of it is.
+    /// The place of the value of a key, or of the innermost existing table around it. `None` if
+    /// there is none.
     pub fn value(&self, key: &Key) -> Option<&Origin> {
         let (node, depth) = self.walk(key);
         (depth > 0).then_some(&node.origin)
@@ -138,8 +138,8 @@ impl Places {
         self.sources.get(origin.source).line(origin.span.start)
     }
 
-    /// The folder that a relative path at this key starts from: that of the file that names it; for the command line
-    /// that of the scene.
+    /// The folder that a relative path at this key starts from: that of the file that contains the
+    /// key; for the command line that of the scene.
     pub fn folder(&self, key: &Key) -> PathBuf {
         let own = self.sources.folder(&self.walk(key).0.origin);
         own.or_else(|| self.sources.folder(&self.root.origin))

@@ -1,8 +1,9 @@
 //! From a scene file to validated, typed specs.
 //!
-//! The file becomes a tree that knows its places, the tree is held against the schema, becomes a [`SceneSpec`], and
-//! the spec is held against the rules that span several keys. Every problem is noted on the way and all are given back
-//! together. Geometry and optics are not known here, but for what the lowering of a spec needs.
+//! The file becomes a tree that knows its places. The tree is validated against the schema and
+//! becomes a [`SceneSpec`], which is checked against the rules that span several keys. Every
+//! problem is noted on the way and all are returned together. This crate knows geometry and optics
+//! only as far as the lowering of a spec needs them.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -52,9 +53,9 @@ pub use study::{
 /// A scene that was read without errors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Loaded {
-    /// What the files say.
+    /// The content of the files.
     pub spec: SceneSpec,
-    /// Where they say it; holds the texts of all files, too.
+    /// Its places; also contains the texts of all files.
     pub places: Places,
     /// The scene file, byte for byte.
     pub text: String,
@@ -62,16 +63,17 @@ pub struct Loaded {
     pub warnings: Vec<Diagnostic>,
 }
 
-/// A scene with what is wrong with it so far.
+/// A scene with the problems found so far.
 #[derive(Debug)]
 pub struct Draft {
-    /// What the files say. A key with an error is left out, and an entry that is nothing without it.
+    /// The content of the files. A key with an error is left out, and so is an entry that is
+    /// meaningless without it.
     pub spec: SceneSpec,
-    /// Where they say it; holds the texts of all files, too.
+    /// Its places; also contains the texts of all files.
     pub places: Places,
     /// The scene file, byte for byte.
     pub text: String,
-    /// What is wrong.
+    /// The problems.
     pub problems: Problems,
 }
 
@@ -83,8 +85,9 @@ pub fn read(path: &Path, overrides: &[String]) -> Result<Loaded> {
     Ok(Loaded { spec, places, text, warnings })
 }
 
-/// Reads a scene file as far as it goes, so that further problems can be found in what is good. Fails only if there
-/// is nothing to go on with: the file cannot be read or is of another format.
+/// Reads a scene file as far as possible, so that further problems can be found in the valid part.
+/// Fails only if there is nothing to continue with: the file cannot be read or is of another
+/// format.
 pub fn draft(path: &Path, overrides: &[String]) -> Result<Draft> {
     let mut sources = Sources::default();
     let mut problems = Problems::default();
@@ -109,7 +112,7 @@ pub fn draft(path: &Path, overrides: &[String]) -> Result<Draft> {
     note_breaks(&breaks, &mut problems);
     let spec = convert::scene(&root, &mut problems);
     let places = Places::new(root, sources);
-    // With a break of the syntax, names may be missing that are only out of sight.
+    // After a syntax error, names may seem missing that are only hidden.
     if breaks.is_empty() {
         note_broken_rules(&spec, &places, &mut problems);
         check::check_names(&spec, &places, &mut problems);
@@ -129,7 +132,7 @@ fn unreadable(path: &Path, reason: &str) -> Error {
     }])
 }
 
-/// Whether the file is a study or of another version; then it is not to be measured by this schema.
+/// Whether the file is a study or of another version, so that this schema does not apply.
 fn is_other_kind(root: &Node, problems: &mut Problems) -> bool {
     match root.get("lumiduct") {
         None if root.get("lumiduct_study").is_some() => {
@@ -157,11 +160,13 @@ fn note_breaks(breaks: &[SyntaxError], problems: &mut Problems) {
     }
 }
 
-/// Holds the spec against the rules. One about a table that has a wrong key may hold once the key is right.
+/// Checks the spec against the rules. A broken rule about a table with a wrong key is skipped, as
+/// it may hold once the key is corrected.
 fn note_broken_rules(spec: &SceneSpec, places: &Places, problems: &mut Problems) {
     let mut found = Problems::default();
     check::check_rules(spec, places, &mut found);
-    // The tables of entries and those inside them: one entry says nothing about its neighbours.
+    // The tables of entries and those inside them: an error in one entry does not affect its
+    // neighbours.
     let wrong = problems.error_keys().map(Key::parent);
     let tables: Vec<Key> = wrong.filter(|table| table.segments().len() > 1).collect();
     problems.append(found, |problem| {
@@ -169,7 +174,7 @@ fn note_broken_rules(spec: &SceneSpec, places: &Places, problems: &mut Problems)
     });
 }
 
-/// Holds the tree against the schema, and drops what stands in a line whose syntax is broken.
+/// Validates the tree against the schema, and drops problems in a line with a syntax error.
 fn note_differences(
     root: &Node,
     schema: &Json,

@@ -1,4 +1,4 @@
-//! What can be run: the scenes, studies and sensor files below a folder.
+//! Lists the scenes, studies and sensor files below a folder.
 
 use crate::sources::{Sources, Unreadable};
 use lumiduct_base::error::{Error, Result};
@@ -6,7 +6,7 @@ use lumiduct_base::text::visible;
 use std::fs;
 use std::path::Path;
 
-/// Folders below the start that are still looked into.
+/// Depth to which subfolders are searched.
 const DEPTH: usize = 4;
 
 /// A line for each scene and study, with its title, and for each sensor file, in the order of their paths.
@@ -31,7 +31,8 @@ fn collect(folder: &Path, depth: usize, lines: &mut Vec<(String, String)>) -> Re
     for path in paths {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         if path.is_dir() {
-            // Reports hold copies of scenes, wherever they lie; build products and tests hold none to be run.
+            // Reports contain copies of scenes, wherever they are; build output and tests contain
+            // none to run.
             let is_report =
                 ["summary.json", "batch.json"].iter().any(|name| path.join(name).is_file());
             let is_passed_by =
@@ -48,12 +49,13 @@ fn collect(folder: &Path, depth: usize, lines: &mut Vec<(String, String)>) -> Re
     Ok(())
 }
 
-/// A text as a line of a list.
+/// A text as one line of a list.
 fn one_line(text: &str) -> String {
     visible(text).replace(['\n', '\t'], " ")
 }
 
-/// The title of a scene or a study, or the kind of a sensor file, or that it cannot be read; `None` for anything else.
+/// The title of a scene or a study, or the kind of a sensor file, or a note that it cannot be read;
+/// `None` for anything else.
 fn describe(path: &Path) -> Option<String> {
     let mut sources = Sources::default();
     let table = match sources.add_file(path) {

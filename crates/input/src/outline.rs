@@ -1,13 +1,13 @@
-//! What a scene file says of each of its entries, in words: `cylinder, radius 1.5 mm, length 25.4 mm`.
+//! The entries of a scene file in words: `cylinder, radius 1.5 mm, length 25.4 mm`.
 //!
-//! The words are made of the keys, whose endings are units, so that no list of all keys is needed. Overrides and sensor
-//! files are in the tree already.
+//! The words come from the keys, whose suffixes are units, so no list of all keys is needed.
+//! Overrides and sensor files are in the tree already.
 
 use crate::tree::Node;
 use lumiduct_base::number::format_exact;
 use serde_json::Value;
 
-/// Endings of keys and the units that they name, the longer ones first.
+/// Suffixes of keys and their units, the longer ones first.
 const UNITS: [(&str, &str); 12] = [
     ("_cd_m2", "cd/m²"),
     ("_per_mm", "/mm"),
@@ -41,8 +41,8 @@ impl Outline {
         Self { root: root.to_json() }
     }
 
-    /// What an entry is and how large: its kind and its keys, but for those in `without`. Empty where the file has no such
-    /// entry.
+    /// The kind and size of an entry: its kind and its keys, except those in `without`. Empty where
+    /// the file has no such entry.
     pub fn entry(&self, section: &str, name: &str, without: &[&str]) -> String {
         let fields = self.fields(section, name).into_iter();
         let shown = fields.filter(|(key, _)| !without.contains(key));

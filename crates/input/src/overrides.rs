@@ -1,6 +1,6 @@
 //! Values set on the command line: `-D solids.pipe.sweep.path.0.straight_mm=20`.
 //!
-//! They are put into the tree before it is validated, and judged like any other value.
+//! They are inserted into the tree before it is validated, and validated like any other value.
 
 use crate::keys::{Key, Segment};
 use crate::problems::{Problems, name_hint};
@@ -11,13 +11,13 @@ use crate::tree::{self, Entry, Node, Value};
 #[derive(Debug, Clone, PartialEq)]
 pub struct Override {
     key: Key,
-    /// Where the key stands in the argument.
+    /// The place of the key in the argument.
     key_origin: Origin,
     node: Node,
 }
 
 impl Override {
-    /// Whether it names the file of a sensor, which is to be known before the file is read.
+    /// Whether it sets the file of a sensor, which must be known before that file is read.
     pub fn names_a_sensor_file(&self) -> bool {
         match self.key.segments() {
             [Segment::Field(family), _, Segment::Field(key)] => {
@@ -29,7 +29,8 @@ impl Override {
     }
 }
 
-/// Reads arguments, each `key=value` without the `-D`. The value is TOML; what is not, is taken as text.
+/// Reads arguments, each `key=value` without the `-D`. The value is TOML; anything else is taken as
+/// text.
 pub fn read(arguments: &[String], sources: &mut Sources, problems: &mut Problems) -> Vec<Override> {
     let mut overrides = Vec::new();
     for argument in arguments {
@@ -76,7 +77,7 @@ fn read_one(
     })
 }
 
-/// A dotted key, as before the `=` of an argument; `None` if it is none.
+/// A dotted key, as before the `=` of an argument; `None` if it is not a key.
 pub fn parse_key(text: &str) -> Option<Key> {
     let (segments, equals) = read_key(&format!("{text}="))?;
     (equals == text.len())
@@ -115,7 +116,8 @@ fn read_key(text: &str) -> Option<(Vec<Segment>, usize)> {
     None
 }
 
-/// Puts a value into the tree. The table or array around it must be there, but for a table at the top of the file.
+/// Inserts a value into the tree. The table or array around it must exist, except a table at the
+/// top of the file.
 pub fn apply(one: &Override, root: &mut Node, problems: &mut Problems) {
     let Some((last, way)) = one.key.segments().split_last() else { return };
     let mut node = root;
@@ -193,7 +195,7 @@ fn step<'a>(node: &'a mut Node, segment: &Segment) -> Result<&'a mut Node, (Stri
     }
 }
 
-/// The name that a step is in a table; a table may have names of digits.
+/// The name of a step in a table, which may consist of digits.
 fn name_of(segment: &Segment) -> String {
     match segment {
         Segment::Field(name) => name.clone(),

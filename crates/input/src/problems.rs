@@ -1,17 +1,17 @@
-//! The problems of a scene, gathered so that all are reported in one go.
+//! The problems of a scene, collected so that all are reported together.
 
 use crate::keys::{Key, Places};
 use crate::sources::{Origin, Sources};
 use lumiduct_base::error::{Diagnostic, DiagnosticKind, Error, Result};
 
-/// Most problems that are reported; a file with more is wrong as a whole.
+/// Most problems that are reported; a file with more is entirely wrong.
 pub const MAX_PROBLEMS: usize = 1000;
 
-/// Everything that was found so far.
+/// All problems found so far.
 #[derive(Debug, Default)]
 pub struct Problems {
     list: Vec<Problem>,
-    /// The last one that did not fit.
+    /// The last one beyond the limit.
     spare: Option<Problem>,
     left_out: usize,
     errors: usize,
@@ -33,7 +33,7 @@ impl Problem {
         Self { kind, key: key.clone(), origin: None, message, hint: None }
     }
 
-    /// The key that it is about.
+    /// The key it refers to.
     pub fn key(&self) -> &Key {
         &self.key
     }
@@ -89,7 +89,7 @@ impl Problems {
         self.errors == 0
     }
 
-    /// Adds what was found elsewhere, but for what is an echo of something known.
+    /// Adds problems found elsewhere, except echoes of known ones.
     pub fn append(&mut self, other: Self, is_echo: impl Fn(&Problem) -> bool) {
         for problem in other.list.into_iter().chain(other.spare) {
             if !is_echo(&problem) {
@@ -151,7 +151,7 @@ fn diagnostic(problem: Problem, origin: Option<Origin>, sources: &Sources) -> Di
     }
 }
 
-/// The known name that a user most likely meant; `None` when none is close.
+/// The known name that a user most likely meant; `None` if none is close.
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let name = name.to_lowercase();
     let rate = |candidate: &str| {
@@ -162,7 +162,7 @@ pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Opti
         let begins_alike = longest > 6 && strsim::jaro_winkler(&name, candidate) > 0.8;
         (is_close || begins_alike).then_some(distance)
     };
-    // The cost grows with the product of the lengths; no name of ours is this long.
+    // The cost grows with the product of the lengths; none of our names is this long.
     if name.chars().count() > 100 {
         return None;
     }
@@ -173,7 +173,7 @@ pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Opti
         .map(|(_, c)| c)
 }
 
-/// What to say when a name is not known: the nearest one, or all.
+/// The hint for an unknown name: the closest one, or all.
 pub fn name_hint<'a>(name: &str, known: impl IntoIterator<Item = &'a str> + Clone) -> String {
     if let Some(near) = nearest(name, known.clone()) {
         return format!("did you mean `{near}`?");
@@ -189,7 +189,7 @@ pub fn name_hint<'a>(name: &str, known: impl IntoIterator<Item = &'a str> + Clon
     }
 }
 
-/// What to say when a face is not known: the nearest name, and all that there are.
+/// The hint for an unknown face: the closest name, and all faces.
 pub fn face_hint<'a>(name: &str, known: impl IntoIterator<Item = &'a str> + Clone) -> String {
     let list = name_hint("", known.clone()).replacen("known names", "faces", 1);
     match nearest(name, known) {

@@ -1,4 +1,4 @@
-//! Whom and what a report is for, with its logo read.
+//! The project that a report belongs to, with its logo read.
 
 use crate::keys::{Key, Places};
 use crate::problems::Problems;
@@ -8,19 +8,19 @@ use std::path::Path;
 
 /// First bytes of every PNG file (PNG specification, third edition, section 5.2).
 const PNG_SIGNATURE: [u8; 8] = [0x89, b'P', b'N', b'G', b'\r', b'\n', 0x1a, b'\n'];
-/// A logo is part of every page: larger ones are refused, bytes.
+/// Largest logo, bytes: it is part of every page.
 const LARGEST_LOGO: usize = 1_000_000;
 
-/// What stands at the head of a report.
+/// The head of a report.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Project {
-    /// Whom the report is for.
+    /// The client.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub client: Option<String>,
-    /// Who made it.
+    /// The author.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub author: Option<String>,
-    /// A date as it was written.
+    /// The date as in the file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub date: Option<String>,
     /// Number of a drawing.
@@ -32,7 +32,7 @@ pub struct Project {
 }
 
 impl Project {
-    /// The entries that are there, each with its name.
+    /// The given entries, each with its name.
     pub fn entries(&self) -> Vec<(&'static str, &str)> {
         let all = [
             ("Client", &self.client),

@@ -1,6 +1,6 @@
-//! Finishes by small facets, haze and tables: from what a file says to what light meets.
+//! Finishes with microfacets, haze and tables: from the spec to the BSDF.
 //!
-//! Knows no keys and no problems. The checks ask it for what a haze scatters.
+//! Knows no keys and no problems. The checks use it to compute what a haze scatters.
 
 use crate::spec::finish::{AbgSpec, GgxSpec, HarveySpec, HazeSheetSpec, HazeSidesSpec};
 use lumiduct_core::optics::{

@@ -10,8 +10,8 @@ use serde_json::{Map, Value, json};
 use crate::spec::SceneSpec;
 use crate::spec::study::StudySpec;
 
-/// The JSON Schema (draft 2020-12) of a scene whose sensor files are joined with it. Every table is closed: a key that is not
-/// listed is an error.
+/// The JSON Schema (draft 2020-12) of a scene merged with its sensor files. Every table is closed:
+/// a key that is not listed is an error.
 pub fn json_schema() -> Value {
     schema_of::<SceneSpec>()
 }
@@ -60,7 +60,8 @@ fn short_name(name: &str) -> String {
     short
 }
 
-/// Closes tables, takes out null (which TOML does not have), gives integers their range, and unwraps text.
+/// Closes tables, removes null (which TOML does not have), gives integers their range, and unwraps
+/// text.
 fn tidy(schema: &mut Value, names: &Map<String, Value>) {
     match schema {
         Value::Object(object) => {
@@ -139,7 +140,7 @@ const DEFINITIONS: &str = "#/$defs/";
 /// The schema that a `$ref` names, or the schema itself.
 pub fn resolve<'a>(root: &'a Value, schema: &'a Value) -> &'a Value {
     let mut schema = schema;
-    // A chain of references is as long as the types nest; no loop is made of references alone.
+    // A chain of references is as long as the types nest; references alone form no loop.
     for _ in 0..16 {
         match schema
             .get("$ref")
@@ -153,7 +154,7 @@ pub fn resolve<'a>(root: &'a Value, schema: &'a Value) -> &'a Value {
     schema
 }
 
-/// Whether a schema says nothing about its value.
+/// Whether a schema accepts any value.
 pub fn takes_anything(schema: &Value) -> bool {
     match schema {
         Value::Bool(takes) => *takes,
@@ -162,7 +163,7 @@ pub fn takes_anything(schema: &Value) -> bool {
     }
 }
 
-/// One of the things that a value may be.
+/// One alternative for a value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Choice<'a> {
     /// This word.
@@ -173,11 +174,11 @@ pub enum Choice<'a> {
     Plain(&'a Value),
     /// A table whose only key is this, with what the key takes.
     Kind(&'a str, &'a Value),
-    /// A table with these properties, told from others by a key that it needs.
+    /// A table with these properties, identified by a key that only it requires.
     Form(&'a Value),
 }
 
-/// What a value may be, if there is a choice; empty if there is none.
+/// The alternatives for a value; empty if there is no choice.
 pub fn choices<'a>(root: &'a Value, schema: &'a Value) -> Vec<Choice<'a>> {
     let schema = resolve(root, schema);
     let options = ["oneOf", "anyOf"].iter().find_map(|word| schema.get(word)?.as_array());
@@ -208,7 +209,7 @@ fn single_choice<'a>(option: &'a Value, resolved: &'a Value) -> Choice<'a> {
     }
     let properties = resolved.get("properties").and_then(Value::as_object);
     let only = properties.filter(|keys| keys.len() == 1).and_then(|keys| keys.iter().next());
-    // Kinds are written out in place, forms are types of their own.
+    // Kinds are inlined, forms are separate types.
     match only.filter(|_| option.get("$ref").is_none()) {
         Some((kind, inner)) => Choice::Kind(kind, inner),
         None => Choice::Form(resolved),
@@ -249,17 +250,17 @@ pub(crate) fn marker<'a>(form: &'a Value, forms: &[&Value]) -> Option<&'a str> {
     })
 }
 
-/// Whether a schema says nothing but which keys must be there.
+/// Whether a schema only says which keys are required.
 pub(crate) fn is_required_only(option: &Value) -> bool {
     option.as_object().is_some_and(|option| option.len() == 1 && option.contains_key("required"))
 }
 
-/// The unit in which a key is given, by the ending of its name.
+/// The unit of a key, by the suffix of its name.
 pub fn unit(key: &str) -> Option<&'static str> {
     UNITS.iter().find(|(ending, _)| key.ends_with(ending)).map(|(_, unit)| *unit)
 }
 
-/// Endings of keys and what they mean; the longer of two that fit comes first.
+/// Suffixes of keys and their meaning; the longer of two that fit comes first.
 const UNITS: [(&str, &str); 10] = [
     ("_cd_m2", "cd/m²"),
     ("per_mm", "1/mm"),

@@ -1,6 +1,6 @@
 //! The texts that input comes from: files and arguments of the command line.
 //!
-//! Knows nothing of what the texts say. A file is read whole, once, within a limit of size.
+//! Knows nothing of the contents of the texts. A file is read whole, once, within a limit of size.
 
 use std::fmt;
 use std::fs::File;
@@ -8,7 +8,7 @@ use std::io::{ErrorKind, Read};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// Largest file that is read, bytes.
+/// Largest readable file, bytes.
 pub const MAX_FILE_BYTES: u64 = 16 << 20;
 
 /// One of the texts of a [`Sources`].
@@ -92,7 +92,7 @@ pub struct Sources {
 }
 
 impl Sources {
-    /// Reads a file, or finds it if it was read before.
+    /// Reads a file, or returns it if it was read before.
     pub fn add_file(&mut self, path: &Path) -> Result<SourceId, Unreadable> {
         let known = self
             .list
@@ -122,7 +122,7 @@ impl Sources {
         SourceId(self.list.len() - 1)
     }
 
-    /// One text. Ids of another `Sources` are not to be used here.
+    /// One text. Ids of another `Sources` are invalid here.
     pub fn get(&self, id: SourceId) -> &Source {
         &self.list[id.0]
     }
@@ -135,7 +135,7 @@ impl Sources {
         }
     }
 
-    /// All texts in the order in which they were first met.
+    /// All texts in the order of their first use.
     pub fn iter(&self) -> impl Iterator<Item = &Source> {
         self.list.iter()
     }
@@ -147,11 +147,12 @@ impl Sources {
             .find(|source| matches!(&source.kind, SourceKind::File(file) if file == path))
     }
 
-    /// The files that diagnostics name, read again for their lines. What cannot be read is left out.
+    /// The files that diagnostics refer to, read again for their lines. Unreadable files are left
+    /// out.
     pub fn of_files<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Self {
         let mut sources = Self::default();
         for path in paths {
-            // A file that has gone leaves a message without its line, which is still a message.
+            // If a file is gone, its message is shown without the line.
             _ = sources.add_file(path);
         }
         sources
@@ -165,7 +166,7 @@ impl Sources {
             let cut: String = line.chars().take(EXCERPT_CHARS - 3).collect();
             return format!("{}...", cut.escape_debug());
         }
-        // Quotes stay as the user wrote them; only what a terminal could take for a command is escaped.
+        // Quotes stay as the user wrote them; only terminal control characters are escaped.
         line.chars()
             .map(|c| if c.is_control() { c.escape_debug().to_string() } else { c.to_string() })
             .collect()
@@ -189,7 +190,7 @@ pub enum Unreadable {
         /// Line, from 1.
         line: usize,
     },
-    /// The system says why.
+    /// An error of the system.
     Io(std::io::Error),
 }
 
@@ -215,7 +216,7 @@ fn read(path: &Path) -> Result<String, Unreadable> {
         ErrorKind::NotFound => Unreadable::Missing,
         _ => Unreadable::Io(error),
     };
-    // Asked before opening: opening a pipe waits for its writer.
+    // Checked before opening: opening a pipe waits for its writer.
     if !std::fs::metadata(path).map_err(failed)?.is_file() {
         return Err(Unreadable::NotAFile);
     }

@@ -1,6 +1,7 @@
-//! A TOML text as a tree that knows where each of its values stands.
+//! A TOML text as a tree that knows the place of each of its values.
 //!
-//! Knows nothing of scenes. Unlike the parser's own tree it owns its text, and parts of several files may be joined.
+//! Knows nothing of scenes. Unlike the parser's own tree it owns its text, and parts of several
+//! files may be merged.
 
 use indexmap::IndexMap;
 use toml::Spanned;
@@ -12,12 +13,12 @@ use lumiduct_base::text::is_control;
 /// Deepest nesting of tables and arrays.
 pub const MAX_DEPTH: usize = 64;
 
-/// A value and where it stands.
+/// A value and its place.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Node {
     /// The value, or the header or key of a table.
     pub origin: Origin,
-    /// What it is.
+    /// The value itself.
     pub value: Value,
 }
 
@@ -32,20 +33,20 @@ pub enum Value {
     String(String),
     /// An integer.
     Integer(i64),
-    /// A number with a point or an exponent; may be infinite or not a number.
+    /// A number with a point or an exponent; may be infinite or NaN.
     Float(f64),
     /// True or false.
     Boolean(bool),
     /// A date or a time, which no key of a scene takes.
     Datetime,
-    /// A value that breaks the syntax; said already, and to be passed over.
+    /// A value with a syntax error, which has been reported and is skipped.
     Unreadable,
 }
 
 /// A key of a table with its value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Entry {
-    /// Where the key stands.
+    /// The place of the key.
     pub key: Origin,
     /// Its value.
     pub node: Node,
@@ -85,7 +86,7 @@ impl Node {
         }
     }
 
-    /// The same tree without places. Dates, numbers that are not finite and unreadable values become null.
+    /// The same tree without places. Dates, non-finite numbers and unreadable values become null.
     pub fn to_json(&self) -> serde_json::Value {
         match &self.value {
             Value::Table(entries) => {
@@ -101,18 +102,19 @@ impl Node {
     }
 }
 
-/// A break of the syntax.
+/// A syntax error.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SyntaxError {
     /// Where.
     pub origin: Origin,
-    /// The key that it is about, if it is about one.
+    /// The key it refers to, if any.
     pub key: String,
     /// What is wrong.
     pub message: String,
 }
 
-/// The tree of a whole text, and all breaks of its syntax. What can be read in spite of them is in the tree.
+/// The tree of a whole text, and all its syntax errors. The tree has everything readable despite
+/// them.
 pub fn parse(sources: &Sources, source: SourceId) -> (Node, Vec<SyntaxError>) {
     let text = sources.get(source).text();
     let (table, failures) = DeTable::parse_recoverable(text);
@@ -122,7 +124,7 @@ pub fn parse(sources: &Sources, source: SourceId) -> (Node, Vec<SyntaxError>) {
     (root, one_per_line(sources, reader.errors))
 }
 
-/// The value that a part of a text says, from `offset` to the end; or the breaks of its syntax.
+/// The value in a part of a text, from `offset` to the end; or its syntax errors.
 pub fn parse_value(
     sources: &Sources,
     source: SourceId,
@@ -181,7 +183,7 @@ impl Reader {
 
     fn node(&mut self, value: Spanned<DeValue<'_>>, depth: usize) -> Node {
         let span = value.span();
-        // The parser puts a zero at the start of the file where it found no value.
+        // Where the parser finds no value it puts a zero with the span of the file start.
         let missing = span == (0..0);
         if depth > MAX_DEPTH {
             let value = self.error(span.clone(), &format!("nested deeper than {MAX_DEPTH} levels"));
@@ -232,7 +234,8 @@ fn decimal_comma(text: &str, at: usize) -> Option<String> {
     value_starts.filter_map(with_decimal_comma).next()
 }
 
-/// The message for a text that begins with a number with a decimal comma, and with no further key behind it.
+/// The message for a text that begins with a number with a decimal comma, and with no further key
+/// after it.
 fn with_decimal_comma(text: &str) -> Option<String> {
     let (whole, rest) = text.split_once(',')?;
     let decimals = &rest[..rest.find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.len())];

@@ -1,11 +1,11 @@
-//! Pictures within pages and within JSON files: their bytes as letters.
+//! Base64 of pictures embedded in pages and JSON files.
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// Digits of base64 (RFC 4648, section 4).
 const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
-/// The address of a PNG file that is within the page.
+/// The data URI of a PNG file embedded in a page.
 pub(crate) fn png_uri(bytes: &[u8]) -> String {
     format!("data:image/png;base64,{}", base64(bytes))
 }
@@ -30,14 +30,14 @@ fn base64(bytes: &[u8]) -> String {
         let bits = byte(0) << 16 | byte(1) << 8 | byte(2);
         for place in 0..4 {
             let digit = DIGITS[(bits >> (18 - 6 * place)) as usize & 63];
-            // Of n bytes n + 1 digits are theirs.
+            // n bytes take n + 1 digits.
             text.push(if place <= part.len() { char::from(digit) } else { '=' });
         }
     }
     text
 }
 
-/// The bytes that base64 with padding means; `None` of any other text.
+/// The bytes of base64 with padding; `None` for any other text.
 fn bytes(text: &str) -> Option<Vec<u8>> {
     let digits = text.trim_end_matches('=');
     let is_whole = text.len().is_multiple_of(4) && text.len() - digits.len() < 3;
@@ -48,7 +48,7 @@ fn bytes(text: &str) -> Option<Vec<u8>> {
             let digit = part.get(place).map_or(Some(0), |own| DIGITS.iter().position(|d| d == own));
             bits = bits << 6 | digit? as u32;
         }
-        // Of n + 1 digits n bytes are theirs.
+        // n + 1 digits give n bytes.
         bytes.extend(&bits.to_be_bytes()[1..part.len()]);
     }
     is_whole.then_some(bytes)

@@ -1,26 +1,27 @@
-//! What each source or light group brings to each sensor, and the words where totals add weathers up.
+//! The contribution of each source or light group to each sensor, and the wording where totals sum
+//! over weathers.
 
 use crate::words::quantity;
 use lumiduct_core::measure::{Measure, Measures};
 
-/// Least number of sources and groups that are held against each other.
+/// Least number of sources and groups that are compared.
 const SEVERAL: usize = 2;
 
-/// What stands before the rows of the table by source.
+/// Text before the table by source.
 pub(crate) const HEAD: &str = "Efficiency is the part of a source's own light that comes to the sensor. Share is the part \
     of the sensor's light that comes from the source; that of a source meant for another sensor is the crosstalk.";
 
 /// A source or light group at a sensor.
 pub(crate) struct Share<'a> {
-    /// Of the source or group.
+    /// Name of the source or group.
     pub(crate) name: &'a str,
-    /// Over what the source or group emits.
+    /// Flux over the emission of the source or group.
     pub(crate) efficiency: &'a Measure,
-    /// Over all light of the sensor; `None` where that adds weathers up.
+    /// Share of all light on the sensor; `None` where that sums over weathers.
     pub(crate) share: Option<&'a Measure>,
 }
 
-/// Light groups and the sources of none, in the order of the sources; dark ones are left out.
+/// Light groups and ungrouped sources, in the order of the sources; dark ones are left out.
 fn names(measures: &Measures) -> Vec<&str> {
     let mut names: Vec<&str> = Vec::new();
     let lit = measures.balance.emitted_by_source.iter().filter(|(_, flux)| flux.value > 0.0);
@@ -34,7 +35,7 @@ fn names(measures: &Measures) -> Vec<&str> {
     names
 }
 
-/// What sources and groups bring to a sensor; empty where there are not several.
+/// The contributions of sources and groups to a sensor; empty unless there are several.
 pub(crate) fn shares<'a>(measures: &'a Measures, sensor: &str) -> Vec<Share<'a>> {
     let names = names(measures);
     if names.len() < SEVERAL {
@@ -54,8 +55,8 @@ pub(crate) struct Matrix {
     pub(crate) rows: Vec<Vec<String>>,
 }
 
-/// Efficiencies of all sources and groups on all sensors, with the shares where they have a sense; `None` where there are
-/// not several sources.
+/// Efficiencies of all sources and groups on all sensors, with the shares where meaningful; `None`
+/// unless there are several sources.
 pub(crate) fn matrix(measures: &Measures) -> Option<Matrix> {
     let sensors = || measures.sensor_paths.iter().map(|paths| paths.sensor.as_str());
     let all: Vec<(&str, Vec<Share<'_>>)> =
@@ -77,12 +78,12 @@ pub(crate) fn matrix(measures: &Measures) -> Option<Matrix> {
     Some(Matrix { head, rows })
 }
 
-/// "sum over 2 weathers", where all sources together are never seen.
+/// "sum over 2 weathers", where the sources never shine all together.
 pub(crate) fn sum_over_weathers(count: usize) -> Option<String> {
     (count > 1).then(|| format!("sum over {count} weathers"))
 }
 
-/// The sentence about totals that add weathers up.
+/// The sentence about totals that sum over weathers.
 pub(crate) fn remark_on_weathers(measures: &Measures) -> Option<String> {
     let words = sum_over_weathers(measures.weathers.len())?;
     let is_measured = |name: &&String| {

@@ -1,7 +1,7 @@
 //! Transmission by the elevation of the sun: a table, a plot and numbers, for scenes with several suns.
 //!
-//! It is the tube transmission efficiency of CIE 173:2012: flux that leaves a tube over flux that enters it. Skies of
-//! the scene stand beside the suns.
+//! This is the tube transmission efficiency of CIE 173:2012: flux that leaves a tube over flux that
+//! enters it. Skies of the scene are listed with the suns.
 
 use crate::csv::table;
 use crate::png::{ErrorForm, LinePlot, Look, Scale, Series, SeriesForm, SeriesPoint, line_plot};
@@ -10,18 +10,19 @@ use crate::{OutputFile, Report};
 use lumiduct_base::error::Result;
 use lumiduct_core::measure::Measure;
 
-/// Suns that make a table.
+/// Least number of suns for a table.
 const SEVERAL: usize = 2;
 
 /// A sun or another source.
 struct Line<'a> {
     source: &'a str,
-    /// Of a sun, deg.
+    /// Elevation of a sun, deg.
     elevation: Option<f64>,
     transmission: &'a Measure,
 }
 
-/// Suns from the zenith down, then all other sources; empty unless there are several suns and a port that light enters.
+/// Suns from the zenith down, then all other sources; empty unless there are several suns and an
+/// entry port.
 fn lines<'a>(report: &'a Report, sensor: &str) -> Vec<Line<'a>> {
     let measures = &report.measures;
     let prefix = format!("{sensor}.transmission.from.");
@@ -56,7 +57,7 @@ pub(crate) fn files(report: &Report) -> Result<Vec<OutputFile>> {
     Ok(files)
 }
 
-/// What stands before the rows of [`BySun`].
+/// Text before the rows of [`BySun`].
 pub(crate) const HEAD: &str = "Transmission, flux that leaves over flux that enters: the tube transmission efficiency of CIE 173:2012.";
 
 /// The transmission of a sensor by the elevation of the sun.
@@ -67,7 +68,7 @@ pub(crate) struct BySun {
     pub(crate) plot: LinePlot,
 }
 
-/// The transmission of a sensor; `None` without several suns.
+/// The transmission of a sensor; `None` unless there are several suns.
 pub(crate) fn by_sun(report: &Report, sensor: &str) -> Option<BySun> {
     let lines = lines(report, sensor);
     let row = |Line { source, elevation, transmission }: &Line<'_>| {
@@ -88,7 +89,7 @@ fn numbers(sensor: &str, lines: &[Line<'_>]) -> Result<OutputFile> {
     table(format!("{sensor}.transmission.csv"), &header, rows)
 }
 
-/// Suns as dots with error bars on a line, everything else as a level dashed line.
+/// Suns as dots with error bars on a line, all other sources as a horizontal dashed line.
 fn plot(sensor: &str, lines: &[Line<'_>]) -> LinePlot {
     let point = |x: f64, line: &Line<'_>| SeriesPoint {
         x,

@@ -1,7 +1,8 @@
 //! The comparison of estimators: one record, and pure functions that turn it into a page, a table and a plot.
 //!
-//! Errors here are real ones: how far runs of one length lie from a truth found otherwise. What a run says about its
-//! own error plays no part. Times depend on the machine, so these files lie outside of the reproducible set.
+//! Errors here are actual deviations: how far runs of one length are from an independent truth. The
+//! errors that runs report play no part. Times depend on the machine, so these files are outside
+//! the reproducible set.
 
 use crate::OutputFile;
 use crate::csv::table;
@@ -17,7 +18,7 @@ use std::fmt::Write;
 pub struct Comparison {
     /// Title of the scene.
     pub title: String,
-    /// Name and hash of the scene file, and what the command line set in it.
+    /// Name and hash of the scene file, and its command-line overrides.
     pub scene: String,
     /// The program, its seed and its threads.
     pub program: String,
@@ -25,17 +26,17 @@ pub struct Comparison {
     pub measure: String,
     /// Its unit.
     pub unit: String,
-    /// What it should be.
+    /// Its true value.
     pub truth: Truth,
     /// Independent runs of each estimator.
     pub repetitions: u32,
-    /// Time that a run was given, s.
+    /// Time limit of a run, s.
     pub run_time: f64,
     /// The estimators in the order of the request.
     pub contestants: Vec<Contestant>,
 }
 
-/// What a measure should be.
+/// The true value of a measure.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Truth {
     /// In the unit of the measure; not 0.
@@ -46,34 +47,35 @@ pub struct Truth {
     pub origin: String,
 }
 
-/// What an estimator has found.
+/// The results of an estimator.
 #[derive(Debug, Clone)]
 pub struct Contestant {
     /// Its name.
     pub name: String,
-    /// For each run what it had found at each checkpoint, as far as it had something to say.
+    /// For each run its sample at each checkpoint, `None` where it had no value yet.
     pub runs: Vec<Vec<Option<Sample>>>,
-    /// Throughput of its gather paths that it cut off, as a share, 1.
+    /// Share of the throughput of its gather paths that it cut off, 1.
     pub cut: f64,
 }
 
-/// What a run had found at a checkpoint.
+/// The state of a run at a checkpoint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
     /// Time spent, s.
     pub seconds: f64,
-    /// Straight pieces traced: the work, which depends on no clock.
+    /// Segments traced: the work, independent of any clock.
     pub segments: u64,
     /// The value, in the unit of the measure.
     pub value: f64,
 }
 
-/// The errors of an estimator at a checkpoint, over its runs. In the unit of the measure, but for time and work.
+/// The errors of an estimator at a checkpoint, over its runs. In the unit of the measure, except
+/// time and work.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Row {
     /// Mean time of a run, s.
     pub seconds: f64,
-    /// Mean number of straight pieces.
+    /// Mean number of segments.
     pub segments: f64,
     /// Mean of the runs.
     pub value: f64,
@@ -83,7 +85,7 @@ pub struct Row {
     pub noise: f64,
     /// Mean less truth.
     pub bias: f64,
-    /// Standard error of the bias, that of the truth included.
+    /// Standard error of the bias, including that of the truth.
     pub bias_std_error: f64,
     /// Root mean square deviation of a run from the truth: noise and bias together.
     pub total_error: f64,
@@ -121,7 +123,8 @@ fn row(samples: &[Sample], truth: &Truth) -> Row {
     }
 }
 
-/// All files of a comparison: `compare.csv`, `compare.png`, `compare.md`, and `truth.csv` to be used again.
+/// All files of a comparison: `compare.csv`, `compare.png`, `compare.md`, and `truth.csv` for
+/// reuse.
 pub fn comparison_files(comparison: &Comparison) -> Result<Vec<OutputFile>> {
     Ok(vec![
         csv(comparison)?,

@@ -1,7 +1,7 @@
-//! What is in the report of a run, part by part, whatever the format of the page.
+//! The contents of the report of a run, part by part, for any page format.
 //!
-//! The order is that of a reader: the verdict, the numbers that were asked for, pictures and readings of each sensor, what
-//! was simulated, where the light went, and how it was computed.
+//! In the order of a reader's interest: the verdict, the requested numbers, pictures and readings
+//! of each sensor, what was simulated, where the light went, and how it was computed.
 
 use crate::by_light::{self, Matrix, matrix, remark_on_totals, sum_over_weathers};
 use crate::csv::{map_name, map_words};
@@ -18,10 +18,11 @@ use crate::{Report, by_sun, record};
 use lumiduct_base::number::format_value;
 use lumiduct_core::measure::{Measure, Outcome, SensorMap, SensorPaths, Status};
 
-/// Share of the flux that the histogram of bounces shows by decades, where more is to be seen of a tail.
+/// Share of the flux that the logarithmic histogram of bounces shows, which reveals more of the
+/// tail.
 const BOUNCES_BY_DECADES: f64 = 0.9999;
 
-/// All parts in their order; their plots are added to `plots`.
+/// All parts in order; their plots are added to `plots`.
 pub(crate) fn parts(report: &Report, plots: &mut Plots) -> Vec<Part> {
     let mut parts: Vec<Part> = checks(report).into_iter().collect();
     parts.push(results(report));
@@ -33,7 +34,7 @@ pub(crate) fn parts(report: &Report, plots: &mut Plots) -> Vec<Part> {
     parts
 }
 
-/// What has become of the checks.
+/// The outcome of the checks.
 pub(crate) fn verdict(report: &Report) -> (Standing, String) {
     let count = report.checks.len();
     let missed = report.checks.iter().filter(|one| one.verdict.outcome != Outcome::Passed).count();
@@ -58,7 +59,7 @@ pub(crate) fn verdict(report: &Report) -> (Standing, String) {
     (standing, words)
 }
 
-/// Checks and remarks; `None` of a scene without either.
+/// Checks and remarks; `None` without either.
 fn checks(report: &Report) -> Option<Part> {
     let mut blocks = Vec::new();
     if !report.checks.is_empty() {
@@ -78,7 +79,7 @@ fn checks(report: &Report) -> Option<Part> {
     (!blocks.is_empty()).then(|| Part { title: title.into(), blocks })
 }
 
-/// The numbers that were asked for: the measure of the target, and the key figures of every sensor.
+/// The requested numbers: the measure of the target, and the key figures of every sensor.
 fn results(report: &Report) -> Part {
     let measures = &report.measures;
     let mut blocks = Vec::new();
@@ -89,7 +90,7 @@ fn results(report: &Report) -> Part {
     }
     let mut rows = Vec::new();
     for paths in &measures.sensor_paths {
-        // The name of a sensor is at its first figure.
+        // Only the first figure of a sensor carries its name.
         let names = std::iter::once(paths.sensor.clone()).chain(std::iter::repeat(String::new()));
         let figures = key_figures(measures, &paths.sensor).into_iter();
         rows.extend(
@@ -160,7 +161,7 @@ fn evenness(map: &SensorMap) -> Vec<Block> {
     ]
 }
 
-/// The measures of a sensor that are listed in one place; those without any light folded away.
+/// The measures of a sensor that are listed in one place; those without any light are folded away.
 fn measures_of(report: &Report, sensor: &str, place: Listed) -> Vec<Block> {
     let (dark, lit): (Vec<_>, Vec<_>) = measures_rows(report, sensor, place)
         .into_iter()
@@ -197,7 +198,7 @@ fn measures_table(rows: MeasureRows<'_>) -> Block {
     trimmed(["measure", "value ± standard error", "bias up to", "remark"], rows)
 }
 
-/// A table folded away behind some words.
+/// A table folded away behind a summary.
 fn folded(table: Block, what: String) -> Block {
     match table {
         Block::Table { head, rows, folded: _ } => Block::Table { head, rows, folded: Some(what) },
@@ -208,7 +209,7 @@ fn folded(table: Block, what: String) -> Block {
     }
 }
 
-/// A table without the columns that say nothing in any row; the first one stays.
+/// A table without the columns that are empty in every row; the first one stays.
 fn trimmed<const N: usize>(head: [&str; N], rows: Vec<Vec<String>>) -> Block {
     let kept: Vec<usize> = (0..N)
         .filter(|&column| column == 0 || rows.iter().any(|row| !is_silent(&row[column])))
@@ -272,7 +273,7 @@ fn balance(report: &Report, plots: &mut Plots) -> Part {
     Part { title: "Flux balance".into(), blocks }
 }
 
-/// How the light came to the sensors, how it was estimated, and what it takes to run it again.
+/// How the light reached the sensors, how it was estimated, and how to repeat the run.
 fn computation(report: &Report, plots: &mut Plots) -> Part {
     let measures = &report.measures;
     let mut blocks = Vec::new();
@@ -287,7 +288,7 @@ fn computation(report: &Report, plots: &mut Plots) -> Part {
     Part { title: "Computation".into(), blocks }
 }
 
-/// How the light came to a sensor.
+/// How the light reached a sensor.
 fn journey(report: &Report, paths: &SensorPaths, plots: &mut Plots) -> Vec<Block> {
     let mut blocks = Vec::new();
     if !paths.depths.is_empty() {

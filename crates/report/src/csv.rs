@@ -8,7 +8,7 @@ use lumiduct_base::number::format_value;
 use lumiduct_base::text::spreadsheet_cell;
 use lumiduct_core::measure::{Axes, IntensityTable, SensorMap};
 
-/// All tables of a report but those for spreadsheets.
+/// All tables of a report except those for spreadsheets.
 pub(crate) fn files(report: &Report) -> Result<Vec<OutputFile>> {
     let measures = &report.measures;
     let mut files = Vec::new();
@@ -31,7 +31,7 @@ pub(crate) fn files(report: &Report) -> Result<Vec<OutputFile>> {
     Ok(files)
 }
 
-/// File name of a map without its ending.
+/// File name of a map without its extension.
 pub(crate) fn map_name(map: &SensorMap) -> String {
     let view = map.view.map_or(String::new(), |view| format!(".view{view}"));
     format!("{}.{}{view}", map.sensor, map.quantity)
@@ -96,7 +96,7 @@ fn intensity_table(intensity: &IntensityTable) -> Result<OutputFile> {
     table(format!("{}.intensity.csv", intensity.sensor), &header, rows)
 }
 
-/// Header of a column that tells how far off values may be on top of their noise.
+/// Header of the column of possible bias on top of the noise.
 fn bias_column(unit: &str) -> String {
     format!("bias_{unit}")
 }

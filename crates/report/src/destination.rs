@@ -1,17 +1,19 @@
-//! Where files are to go, and whether they can be written there. What is written is not known here.
+//! Where files go, and whether they can be written there. This module does not know what is
+//! written.
 
 use lumiduct_base::error::{Error, Result};
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-/// Makes a folder in which a file can be made, which tells more than permissions do.
+/// Creates a folder and checks that a file can be created in it, which is safer than checking
+/// permissions.
 pub fn expect_room(folder: &Path) -> Result<()> {
     if folder.is_file() {
         return Err(Error::Usage(format!("{} is a file, not a folder", folder.display())));
     }
     fs::create_dir_all(folder).map_err(|source| match source.kind() {
-        // A link that leads nowhere, a file where a folder should be, a name that is too long.
+        // A dangling link, a file in place of a folder, a name that is too long.
         ErrorKind::AlreadyExists | ErrorKind::NotADirectory | ErrorKind::InvalidFilename => {
             Error::Usage(format!("{} cannot be made a folder: {source}", folder.display()))
         }
@@ -22,7 +24,7 @@ pub fn expect_room(folder: &Path) -> Result<()> {
         .map_err(|source| Error::io(folder, source.kind().into()))
 }
 
-/// Makes sure, before any work is done, that a file can be written. Folders are made once there is
+/// Checks, before any work is done, that a file can be written. Folders are created when there is
 /// something to put into them.
 pub fn expect_file(path: &Path) -> Result<()> {
     let refuse = |why: &str| Err(Error::Usage(format!("{}: {why}", path.display())));
@@ -38,7 +40,7 @@ pub fn expect_file(path: &Path) -> Result<()> {
             Err(error) if error.kind() == ErrorKind::InvalidFilename => {
                 return refuse("a name is too long for this file system");
             }
-            // Other faults show when it is written.
+            // Other faults show on writing.
             Ok(_) | Err(_) => {}
         }
     }

@@ -1,6 +1,7 @@
-//! The scene as it is drawn in three dimensions: faces as triangles, sources and sensors by name, and some paths of light.
+//! The scene for drawing in three dimensions: faces as triangles, sources and sensors by name, and
+//! some paths of light.
 //!
-//! Plain data in the user's coordinates. How it is looked at is not known here.
+//! Plain data in the user's coordinates. The view is not known here.
 
 use crate::upright::is_lit_from_above;
 use glam::DVec3;
@@ -12,22 +13,22 @@ use lumiduct_core::transport::{Track, TrackEnd};
 use serde::Serialize;
 use std::collections::BTreeSet;
 
-/// Deviation of chords that nobody sees, as a share of the size of the scene, 1.
+/// Invisible deviation of chords, as a share of the size of the scene, 1.
 const DEVIATION: f64 = 2e-4;
-/// Edge of the cubes in which corners of meshes become one, likewise.
+/// Edge of the cubes in which mesh vertices are merged, likewise.
 const MESH_CELL: f64 = 0.004;
 /// Most pieces of a face that are drawn.
 const PATCHES: usize = 500;
-/// Most faces that are drawn: more make a page of many megabytes, in which nobody finds anything.
+/// Most faces that are drawn: more make an unusable page of many megabytes.
 const FACES: usize = 1500;
 /// Most elements of a pattern that are drawn.
 const ELEMENTS: usize = 600;
 /// Most points of a path that are drawn.
 const POINTS: usize = 100;
-/// Paths are drawn as far as this from the middle, in radii of the scene, 1.
+/// Paths are drawn up to this distance from the middle, in radii of the scene, 1.
 const REACH: f64 = 1.25;
 
-/// What there is to be seen of a scene.
+/// Everything drawn of a scene.
 #[derive(Debug, Clone)]
 pub struct Drawing {
     /// Middle of all faces, mm.
@@ -36,13 +37,13 @@ pub struct Drawing {
     pub radius: f64,
     /// Faces, and the surfaces of sources.
     pub faces: Vec<DrawnFace>,
-    /// Names with places.
+    /// Names and their places.
     pub marks: Vec<Mark>,
     /// Paths of light.
     pub paths: Vec<DrawnPath>,
     /// Whether +z is up, as light comes from above.
     pub is_upright: bool,
-    /// What was left out.
+    /// Remarks on what was left out.
     pub remarks: Vec<String>,
 }
 
@@ -57,7 +58,7 @@ pub struct DrawnFace {
     pub facets: Facets,
 }
 
-/// What something drawn is.
+/// The kind of a drawn thing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Role {
@@ -80,7 +81,7 @@ pub enum Role {
 pub struct Mark {
     /// The name.
     pub name: String,
-    /// Of what.
+    /// Kind of the named thing.
     pub role: Role,
     /// Where, mm.
     pub at: DVec3,
@@ -91,23 +92,23 @@ pub struct Mark {
 pub struct DrawnPath {
     /// Its points, mm.
     pub points: Vec<DVec3>,
-    /// What became of it.
+    /// Its fate.
     pub fate: Fate,
     /// The same in words: `absorbed by pipe.wall`.
     pub end: String,
 }
 
-/// What became of a path.
+/// The fate of a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Fate {
-    /// A sensor counted it at its end, or after it had left everything else.
+    /// A sensor counted it at its end, or after it had left all surfaces.
     Counted,
-    /// A face took it, or faces and media little by little.
+    /// A face absorbed it, or faces and media absorbed it gradually.
     Absorbed,
     /// It left the scene.
     Escaped,
-    /// It leaked, or was cut.
+    /// It leaked, or was cut off.
     Lost,
 }
 
@@ -157,7 +158,7 @@ impl Drawing {
     }
 }
 
-/// The box around everything but the far distance.
+/// The box around everything that is not at infinity.
 fn solid_bounds(scene: &Scene) -> Aabb {
     let patches = scene.patches.iter().chain(&scene.ports).map(|patch| patch.shape.bounds());
     let meshes = scene.meshes.iter().map(|body| body.bounds());
@@ -224,7 +225,7 @@ fn sensed_faces(scene: &Scene) -> Vec<FaceId> {
     scene.sensors.iter().flat_map(|sensor| of(&sensor.kind)).collect()
 }
 
-/// The surfaces of sources that have some.
+/// The surfaces of extended sources.
 fn sources(scene: &Scene, deviation: f64) -> Vec<DrawnFace> {
     let mut faces = Vec::new();
     let one_in = scene.sources.len().div_ceil(FACES).max(1);
@@ -246,7 +247,7 @@ fn sources(scene: &Scene, deviation: f64) -> Vec<DrawnFace> {
     faces
 }
 
-/// Sources without a surface that are in the scene and not far away.
+/// Sources in the scene without a surface.
 fn small_sources(scene: &Scene) -> impl Iterator<Item = DVec3> {
     scene.sources.iter().filter_map(|source| match &source.emitter {
         Emitter::Point(frame) => Some(frame.origin),
@@ -321,7 +322,7 @@ fn within(from: DVec3, to: DVec3, middle: DVec3, radius: f64) -> Option<[DVec3; 
     })
 }
 
-/// What became of a path, and the same in words.
+/// The fate of a path, and its wording.
 pub(crate) fn fate(scene: &Scene, track: &Track) -> (Fate, String) {
     let counted = |id: lumiduct_core::scene::SensorId| {
         (Fate::Counted, format!("counted by {}", scene.sensors[id.index()].name))
@@ -338,7 +339,7 @@ pub(crate) fn fate(scene: &Scene, track: &Track) -> (Fate, String) {
                 .map_or_else(|| (Fate::Absorbed, format!("absorbed by {name}")), |id| counted(*id))
         }
         TrackEnd::Escaped => {
-            // A sensor at some place tells more than a sphere around everything.
+            // A sensor at a place is more informative than a sphere around everything.
             let surface =
                 track.counted_by.iter().rev().find(|id| match &scene.sensors[id.index()].kind {
                     SensorKind::Surface(_) => true,

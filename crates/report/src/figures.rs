@@ -1,4 +1,4 @@
-//! Which pictures a report has, and what is on them.
+//! The pictures of a report and their contents.
 
 use crate::by_light::sum_over_weathers;
 use crate::csv::{map_name, map_words};
@@ -164,7 +164,8 @@ pub(crate) fn intensity_plot(table: &IntensityTable) -> PolarPlot {
     }
 }
 
-/// At which distance an intensity is, and of how many weathers: `far field`, `at 50 mm, sum over 2 weathers`.
+/// Distance of an intensity, and its number of weathers: `far field`,
+/// `at 50 mm, sum over 2 weathers`.
 pub(crate) fn where_and_when(table: &IntensityTable) -> String {
     let distance = table
         .radius_mm
@@ -173,10 +174,11 @@ pub(crate) fn where_and_when(table: &IntensityTable) -> String {
     weathers.map_or(distance.clone(), |words| format!("{distance}, {words}"))
 }
 
-/// Share of the flux that the histogram of bounces shows; a few paths go on for thousands.
+/// Share of the flux that the histogram of bounces shows; a few paths continue for thousands of
+/// bounces.
 pub(crate) const BOUNCES_SHOWN: f64 = 0.995;
 
-/// The histogram of bounces of a sensor, up to where it has brought the given share of its flux.
+/// The histogram of bounces of a sensor, up to the given share of its flux.
 pub(crate) fn bounce_plot(paths: &SensorPaths, unit: &str, share: f64) -> LinePlot {
     let total: f64 = paths.depths.iter().map(|bin| bin.flux).sum();
     let mut so_far = 0.0;
@@ -187,7 +189,7 @@ pub(crate) fn bounce_plot(paths: &SensorPaths, unit: &str, share: f64) -> LinePl
     });
     let points: Vec<SeriesPoint> = shown
         .map(|bin| {
-            // Bins of several depths show the mean of one.
+            // Bins of several depths show the mean per depth.
             let width = (bin.to - bin.from + 1) as f64;
             SeriesPoint {
                 x: 0.5 * (bin.from + bin.to) as f64,
@@ -218,7 +220,7 @@ pub(crate) fn bounce_plot(paths: &SensorPaths, unit: &str, share: f64) -> LinePl
     }
 }
 
-/// Colours of the kinds of losses, as places in the palette.
+/// Colours of the kinds of losses, as indices into the palette.
 mod kind {
     pub(super) const ESCAPED: usize = 0;
     pub(super) const FACE: usize = 1;
@@ -282,7 +284,8 @@ exit = { plane = { rectangle = { width_mm = 1, height_mm = 1 }, cells = [2, 2] }
 far = { goniometer = { c_step_deg = 90, gamma_step_deg = 30 } }
 "#;
 
-    /// What a plane and a goniometer have seen that extrapolation has made negative in the first cell and the first ring.
+    /// Readings of a plane and a goniometer that extrapolation has made negative in the first cell
+    /// and the first ring.
     fn dim(weathers: &[&str]) -> Measures {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("dim.toml");

@@ -1,4 +1,4 @@
-//! What prism films do against the angle, as a table.
+//! Properties of prism films against the angle, as a table.
 
 use lumiduct_base::number::format_value;
 use lumiduct_core::optics::film::{acceptance_angle, along_prisms};
@@ -7,19 +7,19 @@ use lumiduct_core::scene::Finish;
 use std::f64::consts::FRAC_PI_2;
 use std::fmt::Write;
 
-/// Places of a period at which shares are found: to about a thousandth.
+/// Sample points per period for the shares, which gives about a thousandth.
 const PLACES: u32 = 1000;
 
-/// A table of reflectance, transmittance and loss for each prism film among some finishes, lit from both sides, in steps
-/// of an angle in degrees from the normal, in the plane along the prisms and the plane across them; `None` without any
-/// film. `index` is that of the medium around them, 1.
+/// A table of reflectance, transmittance and loss for each prism film among some finishes, lit from
+/// both sides, in steps of the angle from the normal, in degrees, in the plane along the prisms and
+/// the plane across them; `None` without any film. `index` is that of the medium around them, 1.
 pub fn film_tables(finishes: &[Finish], index: f64, step_deg: f64) -> Option<String> {
     let tables: Vec<String> = finishes
         .iter()
         .enumerate()
         .filter_map(|(place, finish)| {
             let Bsdf::PrismFilm { film, .. } = &finish.bsdf else { return None };
-            // What lies behind a film is the same film, and is in its table.
+            // The back of a film is the same film and is in its table.
             (!is_behind(finish, &finishes[..place]))
                 .then(|| table(&finish.name, film, index, step_deg))
         })
@@ -27,7 +27,7 @@ pub fn film_tables(finishes: &[Finish], index: f64, step_deg: f64) -> Option<Str
     (!tables.is_empty()).then(|| tables.join("\n"))
 }
 
-/// Whether a finish is what lies behind one of those before it.
+/// Whether a finish is the back of one of those before it.
 fn is_behind(finish: &Finish, finishes: &[Finish]) -> bool {
     let front = finish.bsdf.from_behind();
     finishes.iter().any(|other| Some(&other.bsdf) == front.as_ref())

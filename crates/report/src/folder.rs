@@ -1,4 +1,4 @@
-//! Writing files whole or not at all.
+//! Writes files whole or not at all.
 
 #[cfg(test)]
 mod tests;
@@ -13,7 +13,7 @@ use std::fs;
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 
-/// What to do with output that is there.
+/// What to do with existing output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Existing {
     /// Refuse to change it.
@@ -27,16 +27,16 @@ pub enum Existing {
 pub enum Written {
     /// At least one file is new or replaced.
     New,
-    /// Everything was there before, the same to the byte.
+    /// Everything existed before, byte for byte.
     Same,
-    /// Nothing: these files are there with other contents and may not be replaced.
+    /// Nothing: these files exist with other contents and may not be replaced.
     Nothing {
         /// Their names.
         differing: Vec<String>,
     },
 }
 
-/// The folder of a report, which no other program writes into.
+/// The folder of a report, locked against other programs.
 #[derive(Debug)]
 pub struct Folder {
     lock: FolderLock,
@@ -44,9 +44,9 @@ pub struct Folder {
 }
 
 impl Folder {
-    /// Makes sure, before any work is done, that a report can be written to a folder: it is empty, or its files may be
-    /// replaced, or it holds the report of this very `recipe`, which is going to be the same. A run that the clock stops
-    /// has no recipe. What a run that was killed has left there goes away.
+    /// Checks, before any work is done, that a report can be written to a folder: it is empty, or
+    /// its files may be replaced, or it contains the report of the same `recipe`, whose bytes will
+    /// be equal. A run that the clock stops has no recipe. Leftovers of a killed run are removed.
     pub fn open(lock: FolderLock, existing: Existing, recipe: Option<&Recipe>) -> Result<Self> {
         let path = lock.path();
         sweep(path)?;
@@ -71,8 +71,8 @@ impl Folder {
         Ok(Self { lock, existing })
     }
 
-    /// The folder of files that follow from other reports alone, and so may be there already; others may not, unless they
-    /// may be replaced.
+    /// The folder of files derived from other reports, which may therefore exist already. Others
+    /// may not, unless they may be replaced.
     pub fn of_derived(lock: FolderLock, existing: Existing, files: &[OutputFile]) -> Result<Self> {
         let path = lock.path();
         sweep(path)?;
@@ -91,21 +91,22 @@ impl Folder {
         Ok(Self { lock, existing })
     }
 
-    /// Where it is.
+    /// Its path.
     pub fn path(&self) -> &Path {
         self.lock.path()
     }
 
-    /// Writes all files and their manifest, each under a temporary name first; none takes its place before all are complete,
-    /// and the manifest does so last. A file that is there with the same bytes is left alone. Where one differs that may
-    /// not be replaced, none is written. Files of an older report that are none of these go away where they may.
+    /// Writes all files and their manifest, each under a temporary name first. None is renamed
+    /// before all are complete, and the manifest is renamed last. An existing file with the same
+    /// bytes is left alone. Where one differs and may not be replaced, none is written. Other files
+    /// of an older report are removed where permitted.
     pub fn write(&self, files: &[OutputFile]) -> Result<Written> {
         let manifest = Manifest::of(files).file(MANIFEST)?;
         let (mut staged, mut differing) = (Vec::new(), Vec::new());
         for file in files.iter().chain([&manifest]) {
             let path = self.path().join(&file.name);
             match (compare(&path, &file.bytes)?, self.existing) {
-                // As files take their places, the manifest goes: it takes its own in any case.
+                // While files are renamed the manifest is removed, so it is always written again.
                 (Comparison::Same, _) if staged.is_empty() || file.name != MANIFEST => {}
                 (Comparison::Different, Existing::Keep) => differing.push(file.name.clone()),
                 (Comparison::Different, Existing::Replace)
@@ -115,7 +116,7 @@ impl Folder {
             }
         }
         if !differing.is_empty() {
-            // With others the manifest differs because of them.
+            // If other files differ, so does the manifest.
             if differing.len() > 1 {
                 differing.retain(|name| name != MANIFEST);
             }
@@ -142,7 +143,7 @@ impl Folder {
         Ok(Written::New)
     }
 
-    /// Files of an older whole report that are none of the new one, where they may be replaced.
+    /// Files of an older whole report that are not in the new one, where they may be replaced.
     fn outdated(&self, files: &[OutputFile]) -> Result<Vec<String>> {
         let is_new = |name: &str| files.iter().any(|file| file.name == name);
         Ok(match (self.existing, Manifest::read(self.path(), MANIFEST)) {
@@ -156,7 +157,8 @@ impl Folder {
         })
     }
 
-    /// Writes a file that lies outside of the reproducible set. One that is there stays, unless it may be replaced.
+    /// Writes a file outside the reproducible set. An existing one stays, unless it may be
+    /// replaced.
     pub fn write_beside(&self, name: &str, bytes: &[u8]) -> Result<()> {
         let path = self.path().join(name);
         if self.existing == Existing::Keep && path.exists() {
@@ -167,7 +169,7 @@ impl Folder {
     }
 }
 
-/// Whether a folder holds anything but what a program that was killed has left half written.
+/// Whether a folder contains anything except half-written files of a killed program.
 fn holds_files(folder: &Path) -> Result<bool> {
     let entries = fs::read_dir(folder).map_err(|source| Error::io(folder, source))?;
     for entry in entries {
@@ -179,7 +181,7 @@ fn holds_files(folder: &Path) -> Result<bool> {
     Ok(false)
 }
 
-/// Writes one file, whole or not at all. One that is there with the same bytes is left alone.
+/// Writes one file, whole or not at all. An existing file with the same bytes is left alone.
 pub fn write_whole(path: &Path, bytes: &[u8], existing: Existing) -> Result<()> {
     match (compare(path, bytes)?, existing) {
         (Comparison::Same, _) => return Ok(()),
@@ -197,7 +199,7 @@ pub fn write_whole(path: &Path, bytes: &[u8], existing: Existing) -> Result<()> 
     Ok(())
 }
 
-/// How a file on the disk compares with what is to be written.
+/// How a file on disk compares with what is to be written.
 enum Comparison {
     Missing,
     Same,
@@ -213,7 +215,7 @@ fn compare(path: &Path, bytes: &[u8]) -> Result<Comparison> {
     }
 }
 
-/// A complete file under a temporary name, readable as any other file the user makes.
+/// A complete file under a temporary name, with the usual permissions of the user's files.
 fn stage(path: &Path, bytes: &[u8]) -> Result<tempfile::NamedTempFile> {
     let failed = |source| Error::io(path, source);
     let mut builder = tempfile::Builder::new();
@@ -221,10 +223,10 @@ fn stage(path: &Path, bytes: &[u8]) -> Result<tempfile::NamedTempFile> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        // The file mode creation mask takes away what the user does not want.
+        // The umask removes unwanted permissions.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    // The temporary name would tell nobody anything.
+    // The temporary name would mean nothing to the user.
     let mut file =
         builder.tempfile_in(folder_of(path)).map_err(|error| failed(error.kind().into()))?;
     file.as_file_mut().write_all(bytes).map_err(failed)?;

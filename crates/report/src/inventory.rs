@@ -1,7 +1,8 @@
-//! What is in a scene: media, finishes, solids, faces, sources and sensors with their sizes and places.
+//! The contents of a scene: media, finishes, solids, faces, sources and sensors with their sizes
+//! and places.
 //!
-//! One description for `check`, `report.md` and the page. What the scene file says is told in its own words; areas,
-//! volumes and etendues come from the scene itself.
+//! One description for `check`, `report.md` and the page. The content of the scene file is given in
+//! its own words; areas, volumes and etendues are computed from the scene.
 
 use glam::DVec3;
 use lumiduct_base::number::format_value;
@@ -17,7 +18,7 @@ use std::fmt::Write;
 /// Entries of a list that are shown.
 const SHOWN: usize = 40;
 
-/// Heads of columns that need no head in a line of text.
+/// Head of columns that are not labelled in a line of text.
 const WHAT: &str = "what";
 const WHAT_IT_DOES: &str = "what it does";
 
@@ -28,7 +29,7 @@ pub struct Inventory {
     pub lists: Vec<Listing>,
 }
 
-/// A list of what is of one kind.
+/// A list of things of one kind.
 #[derive(Debug, Clone)]
 pub struct Listing {
     /// What its entries are called: `solid`.
@@ -42,7 +43,7 @@ pub struct Listing {
 }
 
 impl Listing {
-    /// A list of `count` entries, of which only those that are shown are put into words.
+    /// A list of `count` entries, where only the shown ones are put into words.
     fn new<const N: usize>(
         what: &'static str,
         head: [&'static str; N],
@@ -116,7 +117,7 @@ fn media(scene: &Scene) -> Listing {
     Listing::new("medium", head, scene.media.len(), rows)
 }
 
-/// The finishes of faces and patterns; those without a name are told where they are.
+/// The finishes of faces and patterns; those without a name are listed by their place.
 fn finishes(scene: &Scene, outline: &Outline) -> Listing {
     let of_faces = scene.faces.iter().flat_map(|face| [face.front, face.back]).flatten();
     let of_patterns = scene.patterns.iter().flat_map(|pattern| [pattern.front, pattern.back]);
@@ -135,7 +136,7 @@ fn finishes(scene: &Scene, outline: &Outline) -> Listing {
     Listing::new("finish", ["finish", WHAT_IT_DOES], rows.len(), rows.into_iter())
 }
 
-/// What finishes do that need no definition.
+/// The effect of finishes that need no definition.
 fn predefined(name: &str) -> Option<&'static str> {
     match name {
         "polished" => Some("smooth: reflects and refracts after Fresnel"),
@@ -220,7 +221,7 @@ fn faces(scene: &Scene) -> Listing {
             own[0] += &format!(", {}", face.name);
             continue;
         }
-        // Beyond those that are shown only their number counts.
+        // Only the number of further ones matters.
         if rows.len() > SHOWN {
             break;
         }
@@ -282,7 +283,7 @@ fn sources(scene: &Scene, outline: &Outline) -> Listing {
     Listing::new("source", head, scene.sources.len(), rows)
 }
 
-/// Where the file puts a source, its middle, and where the sun stands.
+/// Where the file puts a source, its middle, and the position of the sun.
 fn source_place(scene: &Scene, source: &Source, outline: &Outline) -> String {
     let middle = match &source.emitter {
         Emitter::Far { .. } => None,
@@ -313,7 +314,7 @@ fn etendue(scene: &Scene, source: &Source) -> Option<f64> {
         Emission::Lambertian | Emission::Cone { .. } | Emission::Sky(_) => {
             source.emission.projected_solid_angle()
         }
-        // Light in every direction of the half space, however it is spread.
+        // Light in every direction of the half space, whatever its distribution.
         Emission::CosinePower(_) | Emission::Isotropic => Some(PI),
         Emission::Collimated { .. } => Some(0.0),
     }?;
@@ -356,7 +357,7 @@ fn kind(sensor: &Sensor) -> String {
 
 /// A place in the user's coordinates.
 fn point(at: DVec3) -> String {
-    // Rounding of computed places is no news.
+    // Hides the rounding of computed places.
     let place = at.to_array().map(|x| format_value((1e6 * x).round() / 1e6));
     format!("[{}] mm", place.join(", "))
 }

@@ -13,9 +13,9 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// How the files begin that this program writes.
+/// The beginning of the files that this program writes.
 const HEAD: &str = r#"<testsuites name="lumiduct""#;
-/// Bytes within which that stands.
+/// Bytes within which that must occur.
 const HEAD_BYTES: u64 = 200;
 
 /// Where JUnit XML goes.
@@ -23,8 +23,8 @@ const HEAD_BYTES: u64 = 200;
 pub struct JunitFile(PathBuf);
 
 impl JunitFile {
-    /// Makes sure, before any work is done, that the file can be written. One that this program has written is replaced, and
-    /// so is an empty one; another one is, where it may be.
+    /// Checks, before any work is done, that the file can be written. A file written by this
+    /// program or an empty one is replaced; any other only where permitted.
     pub fn open(path: &Path, existing: Existing) -> Result<Self> {
         let failed = |why: &str| Error::Usage(format!("--junit {why}"));
         match expect_file(path) {
@@ -46,7 +46,7 @@ impl JunitFile {
     }
 }
 
-/// Whether a file is empty, or by this program.
+/// Whether a file is empty or written by this program.
 fn is_ours(path: &Path) -> Result<bool> {
     let failed = |source| Error::io(path, source);
     let mut head = Vec::new();
@@ -55,7 +55,8 @@ fn is_ours(path: &Path) -> Result<bool> {
     Ok(head.is_empty() || String::from_utf8_lossy(&head).contains(HEAD))
 }
 
-/// The checks of a run. A run with checks that is partial or off its target is not what was asked for; both have a case.
+/// The checks of a run. A run with checks that is partial or misses its target is not as requested;
+/// each gets a case.
 pub fn run_junit(report: &Report) -> Result<String> {
     let name = &report.scene.name;
     let mut suite = TestSuite::new(name.as_str());
@@ -91,7 +92,7 @@ pub fn study_junit(report: &StudyReport) -> Result<String> {
     written(suite)
 }
 
-/// The measures of a comparison. One that cannot be judged was skipped.
+/// The measures of a comparison. One that cannot be judged counts as skipped.
 pub fn diff_junit(diff: &Diff) -> Result<String> {
     let [a, b] = &diff.names;
     let name = if a == b { format!("diff {a}") } else { format!("diff {a} {b}") };
@@ -124,7 +125,7 @@ fn diff_status(diff: &Diff, row: &DiffRow) -> TestCaseStatus {
     }
 }
 
-/// The cases of checks; each is called by its measure.
+/// The cases of checks; each is named after its measure.
 fn check_cases(class: &str, all: &[CheckResult]) -> impl Iterator<Item = TestCase> {
     let measures: Vec<&str> = all.iter().map(|result| result.check.measure.as_str()).collect();
     let named = numbered(&measures).into_iter().zip(all);

@@ -25,7 +25,7 @@ const FIGURES: [(&str, &str, bool); 8] = [
     ("field_angle", "field angle", false),
 ];
 
-/// Flux, efficiency, and what the kind of the sensor is there for.
+/// Flux, efficiency, and the main figures of the kind of sensor.
 pub(crate) fn key_figures<'r>(measures: &'r Measures, sensor: &str) -> Vec<KeyFigure<'r>> {
     let value = |name: &str| measures.values.get(&format!("{sensor}.{name}"));
     let mut figures: Vec<KeyFigure<'r>> = FIGURES
@@ -70,7 +70,7 @@ pub(crate) fn is_one_cell(map: &SensorMap) -> bool {
     map.values.len() == 1
 }
 
-/// Measures of a single cell that say nothing beyond its value: its extremes and how even it is.
+/// Measures that are redundant for a single cell: extremes and uniformity.
 const OF_SEVERAL_CELLS: [&str; 11] = [
     "uniformity",
     "cv",
@@ -92,12 +92,12 @@ pub(crate) fn is_shown(measures: &Measures, sensor: &str, rest: &str) -> bool {
     !one_cell || !OF_SEVERAL_CELLS.iter().any(|start| rest.starts_with(start))
 }
 
-/// What a measure tells about: where it is listed.
+/// The subject of a measure, which decides where it is listed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Listed {
     /// What the sensor reads.
     Reading,
-    /// How the light came to it.
+    /// How the light reached it.
     Journey,
     /// One of many cells or rings.
     Cell,

@@ -1,7 +1,7 @@
-//! What a program that was killed has left in a folder, and how it goes away.
+//! Leftovers of a killed program in a folder, and their removal.
 //!
-//! Files appear under temporary names. While those of a report take their places, a list of their names lies beside them, so
-//! that a part of them is never mistaken for files of anybody's own.
+//! Files are created under temporary names. While those of a report are renamed, a list of their
+//! names lies next to them, so that a partial report is never mistaken for files of the user.
 
 use crate::manifest::Manifest;
 use lumiduct_base::error::{Error, Result};
@@ -9,24 +9,24 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
 
-/// How the names of files begin that are not complete yet.
+/// Prefix of the names of incomplete files.
 pub(crate) const STAGED: &str = ".lumiduct-";
 /// The list of files that are being replaced.
 pub(crate) const REPLACING: &str = ".lumiduct-replacing.json";
 
-/// Whether a file is one that is not complete yet, or was left so.
+/// Whether a file is incomplete.
 pub fn is_staged(path: &Path) -> bool {
     path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(STAGED))
 }
 
-/// Takes away what a program that was killed has left in a folder: files under temporary names, and those of a report that
-/// was never whole. A folder that is not there holds nothing.
+/// Removes what a killed program left in a folder: files under temporary names, and those of a
+/// report that was never complete. A missing folder counts as empty.
 pub fn sweep(folder: &Path) -> Result<()> {
     let entries = match fs::read_dir(folder) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
         other => other.map_err(|source| Error::io(folder, source))?,
     };
-    // A list that is not whole was never acted upon.
+    // An incomplete list was never acted upon.
     if let Ok(Some(replacing)) = Manifest::read(folder, REPLACING) {
         for name in replacing.names() {
             remove_if_there(&folder.join(name))?;
@@ -41,7 +41,8 @@ pub fn sweep(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Takes away an older report: the files that its manifest lists, if that is whole, and the manifest. Others stay.
+/// Removes an older report: the files that its manifest lists, if that is intact, and the manifest.
+/// Other files stay.
 pub fn remove_report(folder: &Path) -> Result<()> {
     let Ok(manifest) = Manifest::expect(folder) else { return Ok(()) };
     for name in manifest.names() {
@@ -50,7 +51,7 @@ pub fn remove_report(folder: &Path) -> Result<()> {
     remove_if_there(&folder.join(crate::manifest::MANIFEST))
 }
 
-/// Takes a file away; one that is not there is no error.
+/// Removes a file; a missing one is not an error.
 pub fn remove_if_there(path: &Path) -> Result<()> {
     match fs::remove_file(path) {
         Err(error) if error.kind() != ErrorKind::NotFound => Err(Error::io(path, error)),

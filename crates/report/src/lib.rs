@@ -1,7 +1,8 @@
-//! What is handed to the user: one record, and pure functions that turn it into files.
+//! The output for the user: one record, and pure functions that turn it into files.
 //!
-//! A report depends on the scene, the seed and the number of paths alone: no clock, no thread count and no machine is
-//! known here, but for `timing.csv` and the comparison of estimators, which lie outside of the reproducible set.
+//! A report depends on the scene, the seed and the number of paths alone: this crate knows no
+//! clock, thread count or machine, except in `timing.csv` and the comparison of estimators, which
+//! are outside the reproducible set.
 
 mod base64;
 mod by_light;

@@ -12,7 +12,7 @@ pub(crate) struct LocalAxes {
     pub(crate) name: String,
     /// What it is.
     pub(crate) role: Role,
-    /// Where u and v are 0, mm in the user's coordinates; for the middle of a goniometer, where all three are.
+    /// Where u and v are 0, mm in the user's coordinates; for a goniometer, its middle.
     pub(crate) origin: DVec3,
     /// Unit vector along u; the direction of C = 0 of a goniometer.
     pub(crate) u: DVec3,

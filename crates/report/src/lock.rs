@@ -1,4 +1,4 @@
-//! One program at a time writes into a folder.
+//! A lock that lets only one program at a time write into a folder.
 
 use crate::destination::expect_room;
 use lumiduct_base::error::{Error, Result};
@@ -6,16 +6,17 @@ use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// A folder that no other run or batch writes into as long as this value, or a copy of it, lives.
+/// A folder that no other run or batch writes into while this value or a copy of it exists.
 #[derive(Debug, Clone)]
 pub struct FolderLock {
     path: PathBuf,
-    /// The folder itself, which nothing replaces; `None` where the system opens no folders as files.
+    /// The folder itself, which is never replaced; `None` where the system does not open folders as
+    /// files.
     _file: Option<Arc<File>>,
 }
 
 impl FolderLock {
-    /// Makes the folder where it is missing, and locks it; an error where another program holds it.
+    /// Creates the folder if missing and locks it; an error if another program has the lock.
     pub fn take(path: &Path) -> Result<Self> {
         expect_room(path)?;
         let own = |file| Self { path: path.to_path_buf(), _file: file };

@@ -1,5 +1,5 @@
-//! `manifest.json`: the files of a report, with a digest of each. It is the last file to take its place, so that files of
-//! two runs, or of a run that was killed, are never taken for a report.
+//! `manifest.json`: the files of a report, with a digest of each. It is the last file to be
+//! renamed, so that files of two runs, or of a killed run, are never taken for a report.
 
 use crate::OutputFile;
 use crate::seal::{digest, seal, unseal};
@@ -39,7 +39,7 @@ impl Manifest {
         Ok(OutputFile::text(name, seal(&text)))
     }
 
-    /// The one in a folder, if there is one. One that is not whole is an error.
+    /// The manifest in a folder, if there is one. A damaged one is an error.
     pub(crate) fn read(folder: &Path, name: &str) -> Result<Option<Self>> {
         let path = folder.join(name);
         let bytes = match fs::read(&path) {
@@ -65,12 +65,12 @@ impl Manifest {
         })
     }
 
-    /// Names of the files, those that lie in the folder itself: the manifest may have been made by others.
+    /// Names of the files, restricted to the folder itself: the manifest may come from elsewhere.
     pub(crate) fn names(&self) -> impl Iterator<Item = &str> {
         self.files.keys().map(String::as_str).filter(|name| is_plain(name))
     }
 
-    /// Makes sure that a file of the folder is the one that the report was written with.
+    /// Checks that a file of the folder is as the report was written.
     pub fn expect_file(&self, path: &Path, bytes: &[u8]) -> Result<()> {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         if self.files.get(name.as_ref()).is_some_and(|known| *known == digest(bytes)) {
@@ -84,7 +84,7 @@ impl Manifest {
     }
 }
 
-/// The files of the whole report in a folder, the manifest last; an error where one is not what it was written as.
+/// The files of the whole report in a folder, the manifest last; an error where one has changed.
 pub fn report_files(folder: &Path) -> Result<Vec<OutputFile>> {
     let manifest = Manifest::expect(folder)?;
     let mut files = Vec::new();
@@ -100,7 +100,7 @@ pub fn report_files(folder: &Path) -> Result<Vec<OutputFile>> {
     Ok(files)
 }
 
-/// Whether a name is that of a file in the folder itself, and not hidden.
+/// Whether a name is that of a file in the folder itself that is not hidden.
 fn is_plain(name: &str) -> bool {
     let mut components = Path::new(name).components();
     let first = components.next();

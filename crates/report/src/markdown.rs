@@ -1,4 +1,4 @@
-//! `report.md`: the page for people, wherever Markdown is rendered.
+//! `report.md`: the page for Markdown viewers.
 
 use crate::Report;
 use crate::contents::{parts, verdict};
@@ -20,7 +20,7 @@ pub(crate) fn markdown(report: &Report) -> String {
     if report.run.partial {
         page += "**This report is partial: the run was interrupted.**\n\n";
     }
-    // Plots are for scripts; here their pictures are shown.
+    // Plots need scripts; Markdown shows their pictures.
     parts(report, &mut Plots::default()).iter().for_each(|part| add(&mut page, part));
     markdown_page(page.trim_end()) + "\n"
 }

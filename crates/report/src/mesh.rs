@@ -1,16 +1,17 @@
-//! The health of a mesh, as a page: what keeps it from being a solid, and what its facets will do to light.
+//! The health of a mesh, as a page: what prevents its use as a solid, and how its facets affect
+//! light.
 
 use lumiduct_base::mesh::{Defects, MeshHealth, TriangleMesh, area_vector};
 use lumiduct_base::number::format_value;
 use std::fmt::Write;
 
-/// Bounces for which the drift of a faceted wall is told.
+/// Bounces for which the drift of a faceted wall is reported.
 const DRIFT_BOUNCES: [f64; 3] = [10.0, 100.0, 1000.0];
 
-/// Beyond this drift, 1, nothing is left of the skewness that light had, and the law of the drift ends.
+/// Beyond this drift, 1, the initial skewness is lost and the law of the drift no longer holds.
 const LOST: f64 = 0.3;
 
-/// What there is to say about a mesh, lengths in mm.
+/// The report on a mesh, lengths in mm.
 pub fn mesh_report(name: &str, mesh: &TriangleMesh, health: &MeshHealth) -> String {
     let (bounds, number) = (mesh.bounds(), |value: f64| format_value(value));
     let size = bounds.max - bounds.min;
@@ -73,7 +74,7 @@ fn defects(text: &mut String, what: &str, defects: &Defects) {
     text.push('\n');
 }
 
-/// How coarsely curved walls are drawn, and what that does to light.
+/// How coarse the facets of curved walls are, and how that affects light.
 fn facets(text: &mut String, health: &MeshHealth) {
     match (&health.facets, health.sagitta_mm) {
         (None, None) => text.push_str("  none: all facets are flat faces\n"),

@@ -1,6 +1,6 @@
-//! A file of a report before it is written, and the names of files that several modules know.
+//! A file of a report before it is written, and file names that several modules use.
 //!
-//! What is in the files, and where they go, is not known here.
+//! This module knows neither the contents of the files nor their destination.
 
 /// A file of a report: its name and its bytes.
 #[derive(Debug)]

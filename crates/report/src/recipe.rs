@@ -1,4 +1,5 @@
-//! What decides the bytes of a report, so that a run over its own report is told from a run over another one.
+//! Everything that determines the bytes of a report, which distinguishes a rerun over its own
+//! report from a run over another one.
 
 use crate::Manifest;
 use crate::output::SUMMARY;
@@ -8,41 +9,41 @@ use serde_json::Value;
 use std::fs;
 use std::path::Path;
 
-/// The identity of a run: two runs of one recipe write the same bytes, with the same binary on the same kind of machine.
-/// Its names in files are fixed, whatever the code says.
+/// The identity of a run: two runs of one recipe write the same bytes, with the same binary on the
+/// same kind of machine. Its field names in files are fixed, independent of the code.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Recipe {
-    /// Number of the numerics.
+    /// Version of the numerics.
     #[serde(rename = "numerics")]
     pub numerics: u32,
     /// Identifies scene file, included files, meshes and overrides.
     #[serde(rename = "scene")]
     pub scene_hash: String,
-    /// How it is traced, and when that ends.
+    /// How it is traced, and when it stops.
     #[serde(rename = "plan")]
     pub plan: RunPlan,
 }
 
-/// What lies in the folder of a report.
+/// Contents of the folder of a report.
 #[derive(Debug, PartialEq)]
 pub(crate) enum Found {
     /// The whole report of a run.
     Report(Box<Recipe>),
     /// The report of a run that was stopped.
     Partial,
-    /// A report that does not say what identifies its run, as those of older versions of the program.
+    /// A report without the identity of its run, as from older versions of the program.
     Older,
     /// Anything else.
     Other,
 }
 
 impl Recipe {
-    /// That of a scene and a plan, by the present numerics.
+    /// The recipe of a scene and a plan, with the present numerics.
     pub fn new(scene_hash: &str, plan: &RunPlan) -> Self {
         Self { numerics: NUMERICS, scene_hash: scene_hash.to_owned(), plan: plan.clone() }
     }
 
-    /// How another recipe, which is not the same, differs from this one.
+    /// How a different recipe differs from this one.
     pub fn difference_of(&self, other: &Self) -> &'static str {
         let (plan, own) = (&other.plan, &self.plan);
         if other.numerics != self.numerics {
@@ -65,7 +66,7 @@ fn method(plan: &RunPlan) -> (Request, &[Option<Estimator>], GatherPlan) {
 }
 
 impl Found {
-    /// What lies in a folder that holds files.
+    /// The contents of a folder that is not empty.
     pub(crate) fn read(folder: &Path) -> Self {
         let bytes = fs::read(folder.join(SUMMARY)).ok();
         let summary: Option<Value> = bytes.and_then(|bytes| serde_json::from_slice(&bytes).ok());

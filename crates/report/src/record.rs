@@ -1,4 +1,4 @@
-//! The one record that all formats of a report are made from.
+//! The record from which all formats of a report are made.
 
 use crate::{Drawing, Inventory, Recipe};
 use glam::DVec3;
@@ -18,14 +18,14 @@ pub struct Report {
     pub run: RunFacts,
     /// What was measured.
     pub measures: Measures,
-    /// What was expected, and what came of it.
+    /// The checks and their verdicts.
     pub checks: Vec<CheckResult>,
     /// Remarks on the scene and on the results.
     pub warnings: Vec<String>,
-    /// The scene to look at: pictures alone, and no part of the record for programs.
+    /// The drawing of the scene: for pictures only, not part of the record for programs.
     #[serde(skip)]
     pub drawing: Drawing,
-    /// What is in the scene: for pages alone, likewise.
+    /// The contents of the scene: for pages only, likewise.
     #[serde(skip)]
     pub inventory: Inventory,
 }
@@ -33,13 +33,13 @@ pub struct Report {
 /// The scene of a report.
 #[derive(Debug, Clone, Serialize)]
 pub struct SceneFacts {
-    /// Name: that of the file without its ending.
+    /// Name: that of the file without its extension.
     pub name: String,
     /// Title.
     pub title: String,
-    /// What it is for.
+    /// Its purpose.
     pub description: Option<String>,
-    /// Whom the report is for, and by whom.
+    /// Client and author of the report.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub project: Option<Project>,
     /// Identifies scene file, included files, meshes and overrides.
@@ -57,15 +57,15 @@ pub struct RunFacts {
     pub identity: Recipe,
     /// Seed of the random numbers.
     pub seed: u64,
-    /// How flux was to be estimated.
+    /// The requested estimator of flux.
     pub estimator: Request,
-    /// Wishes for the gather estimator, in words: see [`wishes`]. Empty without any.
+    /// Requested gather settings, in words: see [`wishes`]. Empty without any.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub gather: String,
-    /// How gathering was set, in words: see [`settled`]. Empty where nothing was gathered.
+    /// Gather settings used, in words: see [`settled`]. Empty where nothing was gathered.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub gathering: String,
-    /// Whether the run ended by itself, or the user ended it.
+    /// Whether the user ended the run.
     pub partial: bool,
     /// The stop rules, in words: see [`asked`].
     pub asked: String,
@@ -98,21 +98,21 @@ pub struct TargetFacts {
 pub struct CheckResult {
     /// What was expected.
     pub check: Check,
-    /// What came of it.
+    /// Its verdict.
     pub verdict: Verdict,
 }
 
-/// Whether a run is what its scene asked for.
+/// Whether a run meets what its scene asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outcome {
     /// No check was missed.
     Good,
-    /// A check was missed, or the run is partial or off its target while there are checks.
+    /// A check was missed, or the run has checks and is partial or misses its target.
     Missed,
 }
 
 impl Report {
-    /// Whether the run is what its scene asked for.
+    /// Whether the run meets what its scene asks for.
     pub fn outcome(&self) -> Outcome {
         let missed =
             self.checks.iter().any(|result| result.verdict.outcome != measure::Outcome::Passed);
@@ -123,14 +123,14 @@ impl Report {
 }
 
 impl TargetFacts {
-    /// The target of a plan, held against what was measured.
+    /// The target of a plan, compared with the measured error.
     pub fn new(target: &Target, measures: &Measures) -> Self {
         let reached =
             measure::relative_error(measures, &target.measure).filter(|error| error.is_finite());
         Self { measure: target.measure.clone(), wanted: target.relative_error, reached }
     }
 
-    /// What was wanted, and what was reached.
+    /// The wanted and the reached error.
     pub fn sentence(&self) -> String {
         let reached = self.reached.map_or("unknown".into(), format_percent);
         format!(
@@ -157,7 +157,7 @@ pub fn asked(stop: &StopRules) -> String {
     [paths, time, target].into_iter().flatten().collect::<Vec<_>>().join(" or ")
 }
 
-/// Wishes for the gather estimator in words: "depth 8, radius 0.5 mm, angle 0.15 deg".
+/// Requested gather settings in words: "depth 8, radius 0.5 mm, angle 0.15 deg".
 pub fn wishes(gather: &GatherPlan) -> String {
     let schedule = match gather.schedule {
         Schedule::Stages => None,
@@ -166,7 +166,7 @@ pub fn wishes(gather: &GatherPlan) -> String {
     let all = [
         gather.depth.map(|depth| format!("depth {depth}")),
         gather.radius.map(|radius| format!("radius {radius} mm")),
-        // Nine digits hide that degrees came by way of radians.
+        // Nine digits hide the conversion from radians.
         gather.theta_max.map(|angle| format!("angle {} deg", format_exact(angle.to_degrees()))),
         gather.records.map(|records| format!("{records} records")),
         gather.photons.map(|photons| format!("{photons} photons")),
@@ -175,7 +175,7 @@ pub fn wishes(gather: &GatherPlan) -> String {
     all.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
-/// Settings of the gather estimator in words, those that were asked for and those that were chosen.
+/// Settings of the gather estimator in words, both requested and chosen ones.
 pub fn settled(settings: &GatherSettings) -> String {
     let GatherSettings { depth, window, gather_paths, photons, schedule, inradius: _ } = settings;
     let schedule = match schedule {

@@ -1,6 +1,6 @@
 //! Remarks on results that need care: light that was lost, missed or counted more than once.
 //!
-//! They are part of the record; where a page shows them is not known here.
+//! They are part of the record; the pages decide where to show them.
 
 use crate::by_light::remark_on_weathers;
 use lumiduct_base::number::{format_percent, format_with_error};
@@ -8,9 +8,10 @@ use lumiduct_core::measure::{GatheredFacts, LostPaths, Measures, Status};
 use lumiduct_core::scene::{Counts, Place, Scene, Seeing, Sensor, SensorKind};
 use lumiduct_core::transport::GROUPS;
 
-/// Share of the flux cut by the bounce limit that is worth a remark, 1.
+/// Share of the flux cut by the bounce limit above which there is a remark, 1.
 const CUT_SHARE: f64 = 1e-3;
-/// Errors between a gathered flux and that counted by photons that are worth a remark, 1.
+/// Deviation in errors between a gathered flux and that counted by photons above which there is a
+/// remark, 1.
 const CONTRADICTED: f64 = 4.0;
 
 /// Remarks that the results ask for.
@@ -56,12 +57,12 @@ pub fn remarks(measures: &Measures, scene: &Scene) -> Vec<String> {
     remarks
 }
 
-/// Errors by which more light than was emitted, or than entered, has to be counted for a remark, 1.
+/// Errors by which the counted light must exceed what was emitted or entered for a remark, 1.
 const CLEARLY: f64 = 4.0;
-/// By how much it has to be more in any case, 1: rounding of sums.
+/// Relative excess required in any case, 1: rounding of sums.
 const ROUNDING: f64 = 1e-9;
 
-/// Remarks on sensors that count more light than there is, as it passes them more than once.
+/// Remarks on sensors that count more light than exists, as it passes them more than once.
 pub fn remarks_on_passages(scene: &Scene, measures: &Measures) -> Vec<String> {
     let remark = |sensor: &Sensor| {
         let name = &sensor.name;
@@ -89,7 +90,7 @@ pub fn remarks_on_passages(scene: &Scene, measures: &Measures) -> Vec<String> {
 }
 
 /// A remark on a sensor that counted nothing while light met its other side. Light that leaves a
-/// solid inward was reflected or let in there: that is no light from the other side.
+/// solid inward was reflected or let in there: that is not light from the other side.
 fn remark_on_other_side(name: &str, scene: &Scene) -> String {
     let kind = scene.sensors.iter().find(|sensor| sensor.name == name).map(|sensor| &sensor.kind);
     match kind {
@@ -107,7 +108,7 @@ fn remark_on_other_side(name: &str, scene: &Scene) -> String {
     }
 }
 
-/// A remark where more than next to nothing of the gather paths of a sensor was lost.
+/// A remark where a noticeable share of the gather paths of a sensor was lost.
 fn remark_on_lost_paths(sensor: &str, lost: LostPaths) -> Option<String> {
     let LostPaths { cut, leaked } = lost;
     (cut + leaked > CUT_SHARE).then(|| {
@@ -121,7 +122,7 @@ fn remark_on_lost_paths(sensor: &str, lost: LostPaths) -> Option<String> {
     })
 }
 
-/// A remark where the photons of a run do not agree with what was gathered from them.
+/// A remark where the photon count of a run disagrees with the gathered value.
 fn remark_on_gathering(facts: &GatheredFacts) -> Option<String> {
     let off = facts.off.filter(|off| off.abs() > CONTRADICTED)?;
     let [flux, error] = facts.by_photons;
@@ -135,7 +136,7 @@ fn remark_on_gathering(facts: &GatheredFacts) -> Option<String> {
     ))
 }
 
-/// A remark where a run had to trace noticeably more paths than it was asked for.
+/// A remark where a run traced noticeably more paths than requested.
 pub fn remark_on_paths(asked: Option<u64>, traced: u64) -> Option<String> {
     let asked = asked.filter(|&asked| traced > asked + asked / 10)?;
     Some(format!(

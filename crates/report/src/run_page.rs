@@ -1,6 +1,6 @@
-//! `report.html`: the page of a run for people with a browser.
+//! `report.html`: the page of a run for a browser.
 //!
-//! What is on it is that of `contents`, which `report.md` shows as well.
+//! Its contents come from `contents`, as those of `report.md`.
 
 use crate::Report;
 use crate::contents::{parts, verdict};

@@ -1,24 +1,24 @@
-//! Seals of JSON files: a digest of all that stands before it, as the last key. A file that was cut off or changed is
-//! never believed.
+//! Seals of JSON files: a digest of everything before it, as the last key. A truncated or changed
+//! file is rejected.
 
 use lumiduct_base::digest::Digest;
 use serde::de::DeserializeOwned;
 use std::fmt;
 
-/// What stands before the digest, and after it.
+/// Text before and after the digest.
 const HEAD: &str = ",\n\"digest\": \"";
 const TAIL: &str = "\"}\n";
 /// Letters of a digest.
 const DIGEST_LETTERS: usize = 16;
 
-/// Why a file is not believed.
+/// Why a file is rejected.
 #[derive(Debug)]
 pub enum Damage {
     /// It does not end with a digest.
     Unsealed,
-    /// Its digest is that of other contents.
+    /// Its digest does not match its contents.
     Changed,
-    /// It is whole, and holds something else.
+    /// It is intact, but contains something else.
     Foreign(serde_json::Error),
 }
 
@@ -42,7 +42,7 @@ pub fn seal(object: &str) -> String {
     format!("{body}{HEAD}{}{TAIL}", digest(body.as_bytes()))
 }
 
-/// What a sealed file holds.
+/// The contents of a sealed file.
 pub fn unseal<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, Damage> {
     let body = bytes.len().checked_sub(HEAD.len() + DIGEST_LETTERS + TAIL.len());
     let (body, end) = body.map(|length| bytes.split_at(length)).ok_or(Damage::Unsealed)?;

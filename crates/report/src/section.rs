@@ -14,23 +14,25 @@ use std::collections::BTreeSet;
 
 /// Margin around what is shown, in diagonals of its box, 1.
 const MARGIN: f64 = 0.06;
-/// Margin around what is zoomed in on, in lengths of its longer side, 1.
+/// Margin around the zoomed object, in lengths of its longer side, 1.
 const ZOOM_MARGIN: f64 = 0.25;
-/// Shorter side of a picture that is zoomed in, in lengths of the longer side, 1.
+/// Least shorter side of a zoomed picture, in lengths of the longer side, 1.
 const ZOOM_ASPECT: f64 = 0.5;
-/// Sine of the angle between a direction and the normal of the plane below which they are parallel: a degree.
+/// Sine of the angle between a direction and the plane's normal below which they count as parallel:
+/// a degree.
 const PARALLEL: f64 = 0.017;
 /// Coordinates below this share of the size of the scene are 0, 1.
 const ROUNDING: f64 = 1e-9;
-/// Names of things outside of the picture that are listed.
+/// Most listed names of things outside the picture.
 const OUTSIDE: usize = 6;
 
-/// How the cut of a check is to be drawn; what is left out is chosen by the scene.
+/// How to draw the cut of a check; omitted values are chosen from the scene.
 #[derive(Debug, Clone, Default)]
 pub struct SectionView {
-    /// The plane; else that of the centre line of the guide.
+    /// The plane; by default that of the centre line of the guide.
     pub plane: Option<CutPlane>,
-    /// A face, solid, sheet, source or sensor to be shown alone; else the guide and what is near it.
+    /// A face, solid, sheet, source or sensor to zoom in on; by default the guide and its
+    /// surroundings.
     pub zoom: Option<String>,
     /// The direction that points up in the picture.
     pub up: Option<DVec3>,
@@ -39,7 +41,7 @@ pub struct SectionView {
 /// A plane across an axis of the coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CutPlane {
-    /// The axis across it: 0 is x, 1 is y, 2 is z.
+    /// The axis normal to it: 0 is x, 1 is y, 2 is z.
     pub across: usize,
     /// Its place on that axis, mm; `None` is the middle of what is shown.
     pub at_mm: Option<f64>,
@@ -86,13 +88,13 @@ fn triple(v: DVec3) -> String {
     format!("({x}, {y}, {z})")
 }
 
-/// How a scene is looked at.
+/// The view of a scene.
 struct View {
     /// The plane of the cut; x and y are the axes of the picture.
     plane: Frame,
     /// Its origin along its axes, in the user's coordinates, mm.
     origin: DVec2,
-    /// What of the plane is drawn, mm.
+    /// The part of the plane that is drawn, mm.
     window: ChartRect,
 }
 
@@ -126,7 +128,7 @@ impl View {
         Ok(Self { plane, origin: DVec2::new(origin.dot(x), origin.dot(y)), window })
     }
 
-    /// Which plane it is, how many paths there are, and what is not in the picture.
+    /// The plane, the number of paths, and what is outside the picture.
     fn words(
         &self,
         scene: &Scene,
@@ -139,7 +141,7 @@ impl View {
         let name = across.trim_start_matches('-');
         let mut words = match AXES.iter().position(|axis| *axis == name) {
             Some(axis) => {
-                // What is left of rounding is nothing.
+                // Removes rounding noise.
                 let rounding = ROUNDING * scene.bounds.diagonal();
                 let at = if origin[axis].abs() < rounding { 0.0 } else { origin[axis] };
                 format!("cut at {name} = {} mm", format_value(at))
@@ -193,7 +195,7 @@ impl View {
         RayPath {
             points: track.points.iter().map(|point| self.shown(self.seen(*point))).collect(),
             end: match fate(scene, track).0 {
-                // A sphere around everything counts whatever escapes.
+                // A sphere around everything counts all escaping light.
                 Fate::Counted if !meets_surface(scene, track) => RayEnd::Escaped,
                 Fate::Counted => RayEnd::Sensor,
                 Fate::Absorbed => RayEnd::Absorbed,
@@ -258,7 +260,7 @@ fn reach(bounds: &Aabb, along: DVec3) -> [f64; 2] {
     [middle - half, middle + half]
 }
 
-/// A box as it is seen, with a margin, mm.
+/// A box in projection, with a margin, mm.
 fn around(plane: &Frame, bounds: &Aabb, margin: f64) -> ChartRect {
     let [[left, right], [low, high]] = [plane.x, plane.y]
         .map(|axis| reach(bounds, axis).map(|place| place - plane.origin.dot(axis)));
@@ -266,17 +268,17 @@ fn around(plane: &Frame, bounds: &Aabb, margin: f64) -> ChartRect {
     ChartRect { min: min - margin, max: max + margin }
 }
 
-/// A box as it is seen, with room around it, mm.
+/// A box in projection, with room around it, mm.
 fn zoomed(plane: &Frame, bounds: &Aabb) -> ChartRect {
     let close = around(plane, bounds, 0.0);
     let (middle, half) = (0.5 * (close.min + close.max), 0.5 * (close.max - close.min));
-    // A point has no size, and is shown with its surroundings of a millimetre.
+    // A point has no size and is shown with a millimetre around it.
     let longest = if half.max_element() > 0.0 { half.max_element() } else { 0.5 };
     let half = half.max(DVec2::splat(ZOOM_ASPECT * longest)) + 2.0 * ZOOM_MARGIN * longest;
     ChartRect { min: middle - half, max: middle + half }
 }
 
-/// The box around a face, solid, sheet, source or sensor of a name, mm.
+/// The box around the face, solid, sheet, source or sensor of this name, mm.
 fn bounds_of(scene: &Scene, name: &str) -> Result<Aabb> {
     if let Some(face) = scene.face_named(name) {
         return Ok(scene.face_bounds(face));

@@ -1,7 +1,7 @@
 //! Tables for spreadsheets: the measures, and each map and intensity distribution as a matrix.
 //!
-//! They begin with a UTF-8 byte-order mark, without which Excel takes the letters of units such as `mm²` for others. All
-//! other tables go without one; every reader of this program accepts both.
+//! They begin with a UTF-8 byte-order mark, without which Excel misreads units such as `mm²`. All
+//! other tables have none; this program reads both.
 
 use crate::csv::{map_name, table};
 use crate::{OutputFile, Report};
@@ -9,7 +9,7 @@ use lumiduct_base::error::Result;
 use lumiduct_core::measure::{Axes, IntensityTable, SensorMap};
 use ndarray::Array2;
 
-/// What a UTF-8 file for a spreadsheet begins with.
+/// First character of a UTF-8 file for a spreadsheet.
 const BYTE_ORDER_MARK: &str = "\u{feff}";
 
 /// All tables for spreadsheets of a report. A map of a single cell has no matrix.
@@ -25,7 +25,7 @@ pub(crate) fn files(report: &Report) -> Result<Vec<OutputFile>> {
     Ok(files)
 }
 
-/// Every measure with what may be made of it.
+/// Every measure with its error and remarks.
 fn values(report: &Report) -> Result<OutputFile> {
     let rows = report.measures.values.iter().map(|(name, measure)| {
         let bias = measure.bias.map_or(String::new(), |bias| bias.to_string());
@@ -44,13 +44,13 @@ fn marked(mut file: OutputFile) -> OutputFile {
     file
 }
 
-/// Values in rows and columns, between edges that stand in two columns on the left and two rows at the top.
+/// Values in rows and columns; the cell edges fill two columns on the left and two rows at the top.
 struct Matrix<'a> {
-    /// File name without its ending.
+    /// File name without its extension.
     name: String,
     /// What is shown, with its unit: `illuminance in lx`.
     quantity: String,
-    /// What the edges of the rows are, with the unit: `v`, `mm`.
+    /// Coordinate of the rows, with its unit: `v`, `mm`.
     rows: [&'static str; 2],
     row_edges: &'a [f64],
     /// The same of the columns.
@@ -58,11 +58,11 @@ struct Matrix<'a> {
     column_edges: &'a [f64],
     /// Rows by columns; NaN where there is none.
     values: &'a Array2<f64>,
-    /// Which row stands on top.
+    /// Which row is on top.
     top: Top,
 }
 
-/// Which row of a matrix stands on top.
+/// Which row of a matrix is on top.
 #[derive(Clone, Copy)]
 enum Top {
     /// That of the greatest values, as in a picture.

@@ -33,7 +33,7 @@ struct Summary<'r> {
     files: &'r [&'r str],
 }
 
-/// The record as JSON. `files` are all files of the report, itself included.
+/// The record as JSON. `files` are all files of the report, including this one.
 pub(crate) fn json(report: &Report, files: &[&str]) -> Result<String> {
     let measures = &report.measures;
     let summary = Summary {
@@ -43,7 +43,7 @@ pub(crate) fn json(report: &Report, files: &[&str]) -> Result<String> {
         unit: measures.unit,
         source_flux: measures.source_flux,
         light_groups: &measures.light_groups,
-        // One weather is no sum.
+        // A single weather is not a sum.
         sum_over_weathers: if measures.weathers.len() > 1 { &measures.weathers } else { &[] },
         paths: measures.paths,
         batches: measures.batches,

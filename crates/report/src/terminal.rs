@@ -1,4 +1,4 @@
-//! The few lines that a run prints when it is done.
+//! The lines that a run prints at its end.
 
 use crate::by_light::{Share, shares, sum_over_weathers};
 use crate::key_figures::key_figures;
@@ -8,7 +8,7 @@ use lumiduct_core::measure::{Measures, Outcome};
 use lumiduct_core::plan::Estimator;
 use std::path::Path;
 
-/// The sensors for which a pilot has taken another estimator than the plain one.
+/// The sensors for which a pilot chose an estimator other than forward.
 fn choices(measures: &Measures) -> Option<String> {
     let chosen = measures.choices.iter().map(|(sensor, choice)| (sensor, choice.chosen));
     let told: Vec<String> = chosen
@@ -18,7 +18,7 @@ fn choices(measures: &Measures) -> Option<String> {
     (!told.is_empty()).then(|| format!("  computed {} (chosen by a pilot)\n", told.join(", ")))
 }
 
-/// What a sensor has read, in a line.
+/// The reading of a sensor, in a line.
 fn reading(measures: &Measures, sensor: &str) -> String {
     let figures: Vec<String> = key_figures(measures, sensor)
         .iter()
@@ -33,7 +33,7 @@ fn reading(measures: &Measures, sensor: &str) -> String {
 /// Sources and light groups that are printed for a sensor.
 const SHOWN: usize = 8;
 
-/// What each source or light group brings to a sensor.
+/// The contribution of each source or light group to a sensor.
 fn by_source(measures: &Measures, sensor: &str) -> String {
     let shares = shares(measures, sensor);
     let line = |part: &Share<'_>| {
@@ -49,7 +49,7 @@ fn by_source(measures: &Measures, sensor: &str) -> String {
     text
 }
 
-/// Sensors, checks and where the report lies.
+/// Sensors, checks and the folder of the report.
 pub fn terminal(report: &Report, dir: &Path, written: &Written) -> String {
     let measures = &report.measures;
     let mut text =

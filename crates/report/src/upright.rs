@@ -1,4 +1,4 @@
-//! Which way is up in a picture, when nobody says so.
+//! Which way is up in a picture by default.
 
 use glam::DVec3;
 use lumiduct_core::scene::{Emission, EmitSide, Emitter, Scene, Source};
@@ -16,7 +16,7 @@ pub(super) fn is_lit_from_above(scene: &Scene) -> bool {
         || !scene.sources.is_empty() && scene.sources.iter().all(shines_down)
 }
 
-/// The direction that a point or a flat surface shines along; `None` of all others.
+/// The direction along which a point or a flat surface shines; `None` for all others.
 fn axis(source: &Source) -> Option<DVec3> {
     match &source.emitter {
         Emitter::Point(frame) => {
@@ -56,9 +56,9 @@ mod tests {
         let sky = "[sources.sky.sky]\nmodel = \"overcast\"\nhorizontal_illuminance_lx = 10_000\naim = \"rod\"\n";
         assert!(is_upright(down) && is_upright(sky));
         assert!(!is_upright(up));
-        // Sources that shine either way do not say so; daylight does.
+        // Sources that shine both ways leave it open; daylight decides it.
         assert!(!is_upright(&format!("{down}{up}")) && is_upright(&format!("{up}{sky}")));
-        // Nor does a ball or a bare point.
+        // A ball or a bare point leaves it open, too.
         let ball = "[sources.ball.sphere]\nradius_mm = 1\nat = { position_mm = [0, 0, 30], axis = [0, 0, -1] }\nflux_lm = 1\n";
         let point = "[sources.lamp.point]\nat = { position_mm = [0, 0, 30], axis = [0, 0, -1] }\nflux_lm = 1\nemission = \"isotropic\"\n";
         assert!(!is_upright(ball) && !is_upright(point));

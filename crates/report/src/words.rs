@@ -1,4 +1,5 @@
-//! What formats of a report say alike: numbers with their errors, verdicts, and rows of tables.
+//! Wording shared by all formats of a report: numbers with their errors, verdicts, and rows of
+//! tables.
 
 use crate::Report;
 use lumiduct_base::number::{format_percent, format_value, format_with_error};
@@ -9,31 +10,31 @@ use lumiduct_core::measure::{
 use lumiduct_core::plan::Estimator;
 use lumiduct_core::transport::{Choice, Objection, Trial};
 
-/// A bias is told from this share of the standard error on, 1.
+/// A bias is shown from this share of the standard error on, 1.
 const BIAS_TOLD: f64 = 0.3;
 
 /// Path classes that are listed one by one for a sensor.
 const CLASSES_SHOWN: usize = 8;
 
-/// What stands before the rows of [`class_rows`].
+/// Text before the rows of [`class_rows`].
 pub(crate) const CLASSES_HEAD: &str =
     "How photons came (R reflected, T transmitted, steps in a row taken once):";
-/// What stands before the rows of [`choice_row`].
+/// Text before the rows of [`choice_row`].
 pub(crate) const CHOICES_HEAD: &str = "A pilot has tried the estimators on each sensor. The table has the time that one \
     thread would need until the sensor's flux or map is known to 1 %, estimated from counted work \
     (docs/method.md). Gathering is not chosen where its windows differ by more than noise, or where an \
     unbiased estimator contradicts it. No estimator is chosen that found significantly less light of a source than another did.";
-/// What stands after the results.
+/// Text after the results.
 pub(crate) const ERRORS: &str = "± is one standard error of the simulation. For fluxes, means and their ratios, the value \
     that infinitely many paths would give lies within one standard error in 68 of 100 runs and within two in 95. Extremes, \
     uniformities and angles are not normally distributed and keep a small bias: a bias is an error beside the standard error, \
     of which only a bound is known, and uniformities have a 95 % interval in brackets. Values that are limited by noise or \
     have too few counts need more paths. Tolerances of parts and materials are not in these errors.";
-/// What stands after the lines of the balance.
+/// Text after the lines of the balance.
 pub(crate) const NO_LINES: &str =
     "Virtual sensors let light pass: they are no lines of the balance.";
 
-/// Names that are told apart: those that several share are numbered.
+/// Distinct names: those that several share are numbered.
 pub(crate) fn numbered(names: &[&str]) -> Vec<String> {
     let count = |own: &str, of: &[&str]| of.iter().filter(|other| **other == own).count();
     let label = |(index, name): (usize, &&str)| match count(name, names) {
@@ -48,7 +49,7 @@ pub(crate) fn quantity(measure: &Measure) -> String {
     let unit = if measure.unit == "1" { String::new() } else { format!(" {}", measure.unit) };
     let (value, error) = (measure.value, measure.std_error);
     if measure.status == Status::NoSignal && value == 0.0 && error.is_finite() {
-        // The error of nothing is what a single path or count would have brought.
+        // The error of zero is the contribution of a single path or count.
         return format!("0{unit} (nothing counted; one path is {}{unit})", format_value(error));
     }
     if measure.status == Status::NoSignal && error.is_infinite() {
@@ -57,7 +58,7 @@ pub(crate) fn quantity(measure: &Measure) -> String {
     if is_boundless(measure) {
         return BOUNDLESS.into();
     }
-    // A bias well below the noise is no news.
+    // A bias well below the noise is not shown.
     let bias = measure
         .bias
         .filter(|bias| *bias > BIAS_TOLD * error)
@@ -73,10 +74,10 @@ fn is_boundless(measure: &Measure) -> bool {
     measure.unit == "deg" && measure.value >= 360.0
 }
 
-/// Value with standard error, bias, and what there is to be said of them, each empty where there is nothing.
+/// Value with standard error, bias, and remark; each may be empty.
 pub(crate) fn measure_cells(measure: &Measure) -> [String; 3] {
     let unit = if measure.unit == "1" { String::new() } else { format!(" {}", measure.unit) };
-    // What the error of nothing is takes words.
+    // The error of zero needs words.
     if measure.status == Status::NoSignal || is_boundless(measure) {
         return [quantity(measure), String::new(), String::new()];
     }
@@ -87,17 +88,17 @@ pub(crate) fn measure_cells(measure: &Measure) -> [String; 3] {
     ]
 }
 
-/// What cells of tables say where there is nothing to be said.
+/// Text of table cells without a value.
 const NOTHING_COUNTED: &str = "unknown (nothing counted)";
 const FOUND_NOTHING: &str = "found nothing";
 const NOT_POSSIBLE: &str = "not possible";
 
-/// Whether a cell of a table says nothing.
+/// Whether a table cell has no content.
 pub(crate) fn is_silent(cell: &str) -> bool {
     ["", FOUND_NOTHING, NOT_POSSIBLE, NOTHING_COUNTED].contains(&cell)
 }
 
-/// What there is to be said of a number that cannot be relied on.
+/// The remark on an unreliable number.
 pub(crate) fn remark(status: Status) -> &'static str {
     match status {
         Status::Ok => "",
@@ -120,7 +121,7 @@ pub(crate) fn outcome_word(outcome: Outcome) -> &'static str {
     }
 }
 
-/// The estimator that was chosen, and what a pilot found out about each.
+/// The chosen estimator, and the pilot's findings on each.
 pub(crate) fn choice_row(choice: &Choice) -> Vec<String> {
     let tried = [Estimator::Forward, Estimator::Backward, Estimator::Mix, Estimator::Gather];
     let words = tried.map(|estimator| {
@@ -142,7 +143,8 @@ fn trial_words(trial: &Trial) -> String {
     }
 }
 
-/// A time in two digits, which is what a pilot knows; beyond an hour only its order matters.
+/// A time with two digits, the accuracy of a pilot; beyond an hour only its order of magnitude
+/// matters.
 fn waiting(seconds: f64) -> String {
     const MINUTE: f64 = 60.0;
     const HOUR: f64 = 3600.0;
@@ -161,7 +163,7 @@ fn waiting(seconds: f64) -> String {
     }
 }
 
-/// How gathered values came about, in paragraphs.
+/// How gathered values were obtained, in paragraphs.
 pub(crate) fn gathering(facts: &GatheredFacts, unit: &str) -> Vec<String> {
     let from = facts.stages.iter().find(|stage| stage.number == facts.stage);
     let mut text = from.map_or(String::new(), |stage| {
@@ -214,7 +216,7 @@ pub(crate) fn stage_row(stage: &StageFacts) -> Vec<String> {
     ]
 }
 
-/// What became of gather paths that ended before their end.
+/// The fate of gather paths that ended prematurely.
 pub(crate) fn lost_paths(lost: LostPaths) -> String {
     format!(
         "Of the throughput of gather paths from the sensor, {} was cut by the bounce limit and {} lost through holes in the geometry.",
@@ -223,7 +225,7 @@ pub(crate) fn lost_paths(lost: LostPaths) -> String {
     )
 }
 
-/// What the uniformity of a map was taken over; `None` for a single cell, which is even.
+/// The area over which the uniformity of a map was taken; `None` for a single cell.
 pub(crate) fn evenness_head(map: &SensorMap) -> Option<String> {
     let summary = &map.summary;
     if summary.cells == 1 {
@@ -238,7 +240,7 @@ pub(crate) fn evenness_head(map: &SensorMap) -> Option<String> {
     ))
 }
 
-/// Over what, and min/avg, min/max, max/min.
+/// Area, and min/avg, min/max, max/min.
 pub(crate) fn evenness_rows(map: &SensorMap) -> Vec<(&'static str, [String; 3])> {
     let summary = &map.summary;
     let sets = [
@@ -290,7 +292,7 @@ fn steps(class: &PathClass) -> String {
     }
 }
 
-/// Name, flux and share of the lines of the balance that are worth telling.
+/// Name, flux and share of the lines of the balance worth showing.
 pub(crate) fn balance_lines(report: &Report) -> Vec<(&str, String, String)> {
     let whole = report.measures.source_flux;
     let lines = report.measures.values.iter().filter(|(name, measure)| {
@@ -304,7 +306,7 @@ pub(crate) fn balance_lines(report: &Report) -> Vec<(&str, String, String)> {
         .collect()
 }
 
-/// The record of a run, a line each.
+/// The facts of a run, a line each.
 pub(crate) fn run_lines(report: &Report) -> Vec<String> {
     let (run, measures) = (&report.run, &report.measures);
     let mut lines = vec![

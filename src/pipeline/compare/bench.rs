@@ -21,11 +21,11 @@ impl Bench<'_> {
         format!("{}.flux", self.job.scene.sensors[self.id.index()].name)
     }
 
-    /// The plan of an independent run: as the job's, but for seed and time.
+    /// The plan of an independent run: the job's except for seed and time.
     pub(super) fn plan(&self, estimator: Request, run: u64) -> RunPlan {
         let seed = self.job.run.seed.wrapping_add(run);
         let stop = StopRules { time: Some(self.run_time), ..StopRules::default() };
-        // What a sensor asks for itself is no part of a comparison.
+        // Estimators that sensors ask for play no part in a comparison.
         let sensor_estimators = Vec::new();
         RunPlan { estimator, sensor_estimators, seed, stop, ..self.job.run.clone() }
     }

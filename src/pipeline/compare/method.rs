@@ -34,12 +34,12 @@ impl Method {
         }
     }
 
-    /// The one of a name.
+    /// The method of this name.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|method| method.name() == name)
     }
 
-    /// Whether it can tell the first passage of a path through a sensor from later ones.
+    /// Whether it can distinguish the first passage of a path through a sensor from later ones.
     pub(super) fn knows_first_passages(self) -> bool {
         match self {
             Self::Run(Request::Auto | Request::Forward | Request::Backward | Request::Mix)
@@ -49,7 +49,7 @@ impl Method {
         }
     }
 
-    /// Whether its gather paths have to meet the sources.
+    /// Whether its gather paths must hit the sources.
     pub(super) fn meets_sources(self) -> bool {
         match self {
             Self::Run(Request::Auto | Request::Forward | Request::Mix) => false,

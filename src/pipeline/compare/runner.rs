@@ -11,33 +11,34 @@ use lumiduct_core::transport::{Findings, Run, StopSignal};
 use lumiduct_report::Sample;
 use std::time::{Duration, Instant};
 
-/// A run to be done.
+/// A run to do.
 pub(super) struct Stint<'a> {
     pub(super) method: Method,
     /// Number of the run: its seed.
     pub(super) run: u64,
-    /// When it is looked at; the last is its end.
+    /// When it is sampled; the last is its end.
     pub(super) checkpoints: &'a [Duration],
 }
 
 /// A run that was done.
 pub(super) struct Traced {
-    /// What it had found at each checkpoint, as far as it had something to say.
+    /// Its sample at each checkpoint, `None` where it had no value yet.
     pub(super) samples: Vec<Option<Sample>>,
-    /// What it had found at its end, with its own error.
+    /// Its final value, with its own error.
     pub(super) last: Option<Estimate>,
     /// Throughput of gather paths that it cut off, 1.
     pub(super) cut: f64,
 }
 
-/// A value with the error that a run states itself.
+/// A value with the error that the run reports.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Estimate {
     pub(super) value: f64,
     pub(super) std_error: f64,
 }
 
-/// Traces one run until its last checkpoint. Preparing it is part of its time, looking at it is not.
+/// Traces one run until its last checkpoint. Its preparation counts toward its time, sampling it
+/// does not.
 pub(super) fn trace(bench: &Bench<'_>, stint: &Stint<'_>) -> Result<Traced> {
     let Stint { method, run, checkpoints } = *stint;
     let start = Instant::now();
@@ -72,7 +73,7 @@ pub(super) fn trace(bench: &Bench<'_>, stint: &Stint<'_>) -> Result<Traced> {
     Ok(Traced { samples, last: last.map(|(_, estimate)| estimate), cut: runner.cut() })
 }
 
-/// A method at work.
+/// A running method.
 enum Runner<'s> {
     Run {
         run: Box<Run<'s>>,
@@ -115,7 +116,7 @@ impl<'s> Runner<'s> {
         }
     }
 
-    /// Whether what it tells holds everything it has done: later waves are told when they are whole.
+    /// Whether its readings include all its work: waves are included only when complete.
     fn is_readable(&self) -> bool {
         match self {
             Self::Run { run, .. } => run.waves() == 0 || run.is_between_waves(),
@@ -123,7 +124,7 @@ impl<'s> Runner<'s> {
         }
     }
 
-    /// Whether it has to be looked at whenever it can be.
+    /// Whether it must be sampled whenever it is readable.
     fn is_rarely_readable(&self) -> bool {
         match self {
             Self::Run { run, .. } => run.waves() > 0,
@@ -131,7 +132,7 @@ impl<'s> Runner<'s> {
         }
     }
 
-    /// What it has found so far.
+    /// Its results so far.
     fn look(&self, bench: &Bench<'_>, spent: Duration) -> Option<(Sample, Estimate)> {
         let (findings, segments) = match self {
             Self::Run { run, .. } => {
@@ -159,7 +160,7 @@ impl<'s> Runner<'s> {
     }
 }
 
-/// Straight pieces of photon and gather paths; of gather records, those of the stages that are still told.
+/// Segments of photon and gather paths; for gather records, of the stages still reported.
 fn segments(findings: &Findings) -> u64 {
     let followed = findings.backward.as_ref().map_or(0, |readings| readings.segments);
     let stages = findings.gathered.iter().flat_map(|gathered| &gathered.stages);

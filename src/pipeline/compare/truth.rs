@@ -1,4 +1,5 @@
-//! What estimators are held against: a given value, one from a file, or a long run of an unbiased estimator.
+//! What estimators are compared with: a given value, one from a file, or a long run of an unbiased
+//! estimator.
 
 use crate::pipeline::compare::bench::Bench;
 use crate::pipeline::compare::method::Method;
@@ -11,7 +12,7 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Where the truth is to come from.
+/// Where the truth comes from.
 #[derive(Debug, Clone, PartialEq)]
 pub enum TruthWish {
     /// It is known, in the unit of the measure.
@@ -21,13 +22,13 @@ pub enum TruthWish {
         /// Its standard error.
         std_error: f64,
     },
-    /// A `measures.csv` of a report, or a `truth.csv` of a comparison; lines with `#` are remarks.
+    /// A `measures.csv` of a report, or a `truth.csv` of a comparison; lines with `#` are comments.
     File(PathBuf),
     /// The better of forward and backward for this time.
     Run(Duration),
 }
 
-/// Share of the time of a long run in which it is chosen, for each of two.
+/// Share of the time of a long run that the trial of each of the two estimators takes.
 const TRIAL: f64 = 0.05;
 
 /// What is known of the truth before any work.
@@ -49,7 +50,8 @@ pub(super) fn known(bench: &Bench<'_>, wish: &TruthWish) -> Result<Known> {
     }
 }
 
-/// Finds the truth by a long run of the unbiased estimator whose error is the smaller after a short time.
+/// Finds the truth by a long run of the unbiased estimator with the smaller error after a short
+/// trial.
 pub(super) fn find(
     bench: &Bench<'_>,
     repetitions: u32,

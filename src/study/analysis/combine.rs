@@ -11,9 +11,9 @@ pub(super) struct Term<'a> {
     pub(super) design: &'a DesignRecord,
 }
 
-/// The weighted sum of a measure over designs. Where all have the same groups of batches its error is told group by
-/// group, so that what they have in common cancels; else as if they were independent. `None` where a design has no
-/// such measure.
+/// The weighted sum of a measure over designs. Where all designs have the same groups of batches,
+/// the error is computed group by group, so that common noise cancels; else as if they were
+/// independent. `None` where a design lacks the measure.
 pub(super) fn combine(terms: &[Term<'_>], measure: &str) -> Option<Estimate> {
     let value = |term: &Term<'_>| Some(term.weight * term.design.measure(measure)?.value);
     let value = terms.iter().map(value).sum::<Option<f64>>()?;

@@ -1,4 +1,4 @@
-//! Main effects: what a parameter does to a measure on the average over all others.
+//! Main effects: the effect of a parameter on a measure, averaged over all others.
 
 use crate::study::analysis::combine::{Term, combine};
 use indexmap::IndexMap;
@@ -8,7 +8,8 @@ use lumiduct_report::study::{
 };
 use std::cmp::Ordering;
 
-/// The effects of all parameters on all measures. Samples have as many settings as designs, and none.
+/// The effects of all parameters on all measures. Samples have none: every design has its own
+/// settings.
 pub(super) fn effects(facts: &StudyFacts, designs: &[DesignRecord]) -> Vec<Effect> {
     match facts.plan {
         PlanFacts::Grid | PlanFacts::OneAtATime | PlanFacts::List => {}
@@ -30,12 +31,12 @@ pub(super) fn effects(facts: &StudyFacts, designs: &[DesignRecord]) -> Vec<Effec
         .collect()
 }
 
-/// A design, with its setting of the parameter that is looked at.
+/// A design, with its setting of the parameter under study.
 type Own<'a> = (Setting, &'a DesignRecord);
 
-/// The mean at every setting, over the same blocks for all settings: so that nothing but the parameter differs between
-/// them, where a design of a grid has failed and in a list, too. Settings that have no partners, such as one that makes no
-/// scene, are left out.
+/// The mean at every setting, over the same blocks for all settings, so that only the parameter
+/// differs between them, even in a list or where a design of a grid has failed. Settings without
+/// partners, such as one that makes no scene, are left out.
 fn points(
     facts: &StudyFacts,
     designs: &[DesignRecord],
@@ -48,7 +49,7 @@ fn points(
         .filter(|(setting, own)| *setting != Setting::AsInScene && own.measure(measure).is_some())
         .collect();
     let all = blocks(facts, &own, parameter);
-    // The settings of the block that has most; of several, the first.
+    // The settings of the block with the most; among equals, the first.
     let settings = all
         .iter()
         .map(|block| in_order(block))
@@ -80,7 +81,7 @@ fn mean_of<'a>(blocks: &[Vec<Own<'a>>], setting: &Setting, sign: f64) -> Vec<Ter
     terms
 }
 
-/// All settings, each once: numbers in their order, then choices as they came.
+/// All settings, each once: numbers in ascending order, then choices in order of appearance.
 fn in_order(own: &[Own<'_>]) -> Vec<Setting> {
     let mut settings: Vec<Setting> = Vec::new();
     for (setting, _) in own {
@@ -97,7 +98,7 @@ fn in_order(own: &[Own<'_>]) -> Vec<Setting> {
     settings
 }
 
-/// Groups of designs that are the same but for a parameter.
+/// Groups of designs that differ in one parameter only.
 fn blocks<'a>(
     facts: &StudyFacts,
     own: &[Own<'a>],

@@ -1,4 +1,4 @@
-//! How many designs of a tolerance run fail, and what that tells of all that are ever made.
+//! How many designs of a tolerance run fail, and what that implies for all of production.
 
 use lumiduct_core::measure::Outcome;
 use lumiduct_core::plan::Check;
@@ -8,7 +8,8 @@ use statrs::distribution::{Beta, ContinuousCDF};
 /// Share of cases in which an interval misses the truth, 1.
 const MISSED: f64 = 0.05;
 
-/// One for all demands together, then one for each; none without demands, or of designs that are no random samples.
+/// One for all demands together, then one for each; none without demands, or for designs that are
+/// not random samples.
 pub(super) fn failures(facts: &StudyFacts, designs: &[DesignRecord]) -> Vec<FailureShare> {
     match facts.plan {
         PlanFacts::Tolerance(_) => {}
@@ -21,7 +22,7 @@ pub(super) fn failures(facts: &StudyFacts, designs: &[DesignRecord]) -> Vec<Fail
     if facts.checks.is_empty() {
         return Vec::new();
     }
-    // What makes no scene cannot be made, and fails.
+    // A design that makes no scene cannot be made, so it fails.
     let all = designs.iter().map(|design| design.verdict().unwrap_or(Outcome::Failed));
     let mut shares = vec![share("all checks together".into(), all)];
     for (place, check) in facts.checks.iter().enumerate() {
@@ -67,11 +68,11 @@ fn share(demand: String, outcomes: impl Iterator<Item = Outcome>) -> FailureShar
     }
 }
 
-/// Interval that holds the probability of an event of which `hits` of `count` trials were seen (Clopper & Pearson,
-/// Biometrika 26 (1934) 404): it covers the truth in 95 % of cases or more.
+/// Confidence interval of the probability of an event seen in `hits` of `count` trials (Clopper &
+/// Pearson, Biometrika 26 (1934) 404): it covers the truth in 95 % of cases or more.
 fn interval(hits: usize, count: usize) -> [f64; 2] {
     let quantile = |a: usize, b: usize, share: f64| {
-        // Both are 1 at least, for which the distribution exists.
+        // Both are at least 1, where the distribution exists.
         Beta::new(a as f64, b as f64).map_or(f64::NAN, |beta| beta.inverse_cdf(share))
     };
     let low = if hits == 0 { 0.0 } else { quantile(hits, count - hits + 1, MISSED / 2.0) };
@@ -86,8 +87,8 @@ mod tests {
 
     #[test]
     fn intervals_are_those_of_clopper_and_pearson() {
-        // None of n: 1 - 0.025^(1/n). Values for 10 of 100: Brown, Cai & DasGupta, Stat. Sci. 16 (2001) 101, by the
-        // F distribution: 0.04900 to 0.17622.
+        // 0 of n: 1 - 0.025^(1/n). Values for 10 of 100: Brown, Cai & DasGupta, Stat. Sci. 16
+        // (2001) 101, by the F distribution: 0.04900 to 0.17622.
         let [low, high] = interval(0, 20);
         assert_eq!(low, 0.0);
         assert!((high - (1.0 - 0.025f64.powf(0.05))).abs() < 1e-6, "{high}");

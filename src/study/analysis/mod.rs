@@ -35,7 +35,7 @@ fn sharpness(measure: &str, designs: &[DesignRecord]) -> Option<Sharpness> {
         .collect();
     factors.sort_by(f64::total_cmp);
     let last = factors.len().checked_sub(1)?;
-    // An even number has two in the middle.
+    // An even number of factors has two in the middle.
     let factor = (factors[last / 2] + factors[last.div_ceil(2)]) / 2.0;
     Some(Sharpness { measure: measure.to_owned(), factor, pairs: factors.len() })
 }
@@ -84,7 +84,7 @@ pub(super) mod testing {
         }
     }
 
-    /// A design with a value, and what four groups of batches say: the value and a noise of their own.
+    /// A design with a value and four groups of batches: the value plus the noise of each group.
     pub(super) fn design(
         number: usize,
         settings: [f64; 2],
@@ -133,7 +133,7 @@ mod tests {
     use super::*;
     use lumiduct_report::study::{DesignOutcome, Effect, PlanFacts, SensitivityMethod};
 
-    /// 3 a + b on a grid of a and b in -1, 0, 1, with noise that all share.
+    /// 3 a + b on a grid of a and b in -1, 0, 1, with common noise.
     fn grid() -> Vec<DesignRecord> {
         let pairs = (0..9).map(|i| [f64::from(i / 3) - 1.0, f64::from(i % 3) - 1.0]);
         let numbered = pairs.enumerate();
@@ -147,7 +147,7 @@ mod tests {
         let behind = found.ranked[1].behind.unwrap();
         assert!((behind.value - 1.0).abs() < 1e-12 && behind.std_error < 1e-12, "{behind:?}");
         assert_eq!(behind.evidence, Pairing::Paired);
-        // A design that has other groups is taken for an independent one.
+        // A design with other groups counts as independent.
         let mut other = grid();
         let DesignOutcome::Done(result) = &mut other[8].outcome else { panic!("no result") };
         result.replicates["exit.flux"].0.pop();
@@ -161,7 +161,7 @@ mod tests {
         let found = analysis(&facts(PlanFacts::Grid), &grid());
         let [sensitivity] = &found.sensitivities[..] else { panic!("not one") };
         assert_eq!(sensitivity.method, SensitivityMethod::FirstOrder);
-        // Variances 9 and 1 of ten.
+        // Variances 9 and 1 out of 10.
         assert!((sensitivity.indices[0].value - 0.9).abs() < 1e-12);
         assert!((sensitivity.indices[1].value - 0.1).abs() < 1e-12);
         assert!((sensitivity.explained - 1.0).abs() < 1e-12);
@@ -174,13 +174,14 @@ mod tests {
         let effect = &found.effects[0];
         let means: Vec<f64> = effect.points.iter().map(|point| point.mean.value).collect();
         assert!(means.iter().zip([7.0, 10.0, 13.0]).all(|(a, b)| (a - b).abs() < 1e-12));
-        // Noise that all share does not average out.
+        // Common noise does not average out.
         assert!((effect.points[0].mean.std_error - 0.5 / 3f64.sqrt()).abs() < 1e-12);
     }
 
     #[test]
     fn a_main_effect_compares_designs_that_differ_in_nothing_else() {
-        // The design of the highest value is missing: its two neighbours with the same b leave the means, too.
+        // The design of the highest value is missing: its two neighbours with the same b drop out
+        // of the means, too.
         let mut designs = grid();
         designs[8].outcome = DesignOutcome::Failed("no scene".into());
         let found = analysis(&facts(PlanFacts::Grid), &designs);
@@ -189,11 +190,11 @@ mod tests {
         let whole = analysis(&facts(PlanFacts::Grid), &grid());
         let step = |effect: &Effect| effect.points[1].mean.value - effect.points[0].mean.value;
         assert!((step(a) - step(&whole.effects[0])).abs() < 1e-12);
-        // What the designs have in common cancels in the step, though not in the means.
+        // Common noise cancels in the step, though not in the means.
         let told = a.points[2].from_first.unwrap();
         assert!((told.value - 6.0).abs() < 1e-12 && told.std_error < 1e-12, "{told:?}");
         assert!(a.points[0].from_first.is_none() && a.points[2].mean.std_error > 0.1);
-        // A level that makes no scene leaves the others as they are.
+        // A level that makes no scene does not change the others.
         let mut designs = grid();
         (6..9).for_each(|place| designs[place].outcome = DesignOutcome::Failed("no".into()));
         let found = analysis(&facts(PlanFacts::Grid), &designs);

@@ -1,10 +1,10 @@
-//! Which design is the best, and how sure that is.
+//! Which design is the best, and with what certainty.
 
 use crate::study::analysis::combine::{Term, combine};
 use lumiduct_input::Best;
 use lumiduct_report::study::{DesignRecord, Ranked, StudyFacts};
 
-/// All designs that were traced, the best first; equal ones in the order of their numbers.
+/// All traced designs, the best first; ties in the order of their numbers.
 pub(super) fn ranked(facts: &StudyFacts, designs: &[DesignRecord]) -> Vec<Ranked> {
     let Some(ranking) = &facts.ranking else { return Vec::new() };
     let value = |design: &DesignRecord| {

@@ -1,8 +1,9 @@
-//! How much of what a measure varies comes from each parameter.
+//! How much of the variance of a measure comes from each parameter.
 //!
-//! Of a full grid the first-order indices of Sobol follow from the means over levels, as in an analysis of variance
-//! (Sobol, Math. Comput. Simul. 55 (2001) 271, eq. 8); of samples a linear regression gives standardised coefficients
-//! (Saltelli et al., Global Sensitivity Analysis, 2008, section 1.2.5).
+//! For a full grid the first-order Sobol indices follow from the means over levels, as in an
+//! analysis of variance (Sobol, Math. Comput. Simul. 55 (2001) 271, eq. 8); for samples a linear
+//! regression gives standardised coefficients (Saltelli et al., Global Sensitivity Analysis, 2008,
+//! section 1.2.5).
 
 use lumiduct_base::math::least_squares;
 use lumiduct_core::measure::Replicates;
@@ -24,7 +25,7 @@ pub(super) fn sensitivities(facts: &StudyFacts, designs: &[DesignRecord]) -> Vec
     facts.measures.iter().filter_map(of).collect()
 }
 
-/// First-order indices of a grid of which every design was traced.
+/// First-order indices of a grid whose designs were all traced.
 fn first_order(facts: &StudyFacts, designs: &[DesignRecord], measure: &str) -> Option<Sensitivity> {
     let values: Option<Vec<f64>> =
         designs.iter().map(|design| Some(design.measure(measure)?.value)).collect();
@@ -46,7 +47,8 @@ fn first_order(facts: &StudyFacts, designs: &[DesignRecord], measure: &str) -> O
     })
 }
 
-/// Variance of the means over the levels of each parameter, over the variance of all; `None` where nothing varies.
+/// Variance of the means over the levels of each parameter, over the total variance; `None` where
+/// nothing varies.
 fn indices(facts: &StudyFacts, designs: &[DesignRecord], values: &[f64]) -> Option<Vec<f64>> {
     let whole = variance(values);
     let of = |parameter: &str| {
@@ -65,9 +67,9 @@ fn indices(facts: &StudyFacts, designs: &[DesignRecord], values: &[f64]) -> Opti
     all.filter(|_| whole > 0.0 && whole.is_finite())
 }
 
-/// Indices with their errors from leaving out each group of batches of all designs in turn; `None` where the designs do not
-/// have the same groups. What noise adds to the variances, as the square of the error of a value, is taken away by it
-/// (Quenouille, Biometrika 43 (1956) 353).
+/// Indices with their errors by the jackknife over groups of batches of all designs; `None` where
+/// the designs do not have the same groups. It also removes what noise adds to the variances, the
+/// squared error of a value (Quenouille, Biometrika 43 (1956) 353).
 fn jackknife(
     facts: &StudyFacts,
     designs: &[DesignRecord],
@@ -159,7 +161,8 @@ mod tests {
     use lumiduct_core::rng::{Dimension, Sampler};
     use lumiduct_report::study::DesignOutcome;
 
-    /// A grid of a and b in 0, 1, 2 of which only a does anything, with noise of its own in every group of every design.
+    /// A grid of a and b in 0, 1, 2 where only a has an effect, with independent noise in every
+    /// group of every design.
     fn noisy_grid(study: u64) -> Vec<DesignRecord> {
         const GROUPS: usize = 16;
         let mut designs = Vec::new();

@@ -6,7 +6,7 @@ use crate::manual::FAMILIES;
 use lumiduct_input::schema;
 use lumiduct_input::validate::wording;
 
-/// Alternatives of a choice, as written.
+/// Alternatives of a choice, as in the schema.
 pub(super) fn options(definition: &Json) -> Vec<&Json> {
     ["oneOf", "anyOf"]
         .iter()
@@ -16,13 +16,13 @@ pub(super) fn options(definition: &Json) -> Vec<&Json> {
         .collect()
 }
 
-/// The kind that an alternative is, and what it takes.
+/// The kind of an alternative, and what it takes.
 pub(super) fn kind_of(option: &Json) -> Option<(&str, &Json)> {
     let (kind, value) = option["properties"].as_object()?.iter().next()?;
     Some((kind, value))
 }
 
-/// Keys that kinds have in the same way.
+/// Keys that kinds share unchanged.
 pub(super) struct Shared<'a> {
     pub(super) names: Vec<&'a str>,
     /// The table of a kind that has them.
@@ -31,7 +31,7 @@ pub(super) struct Shared<'a> {
     pub(super) apart: Vec<&'a str>,
 }
 
-/// Keys that all kinds have in the same way, but for kinds that have nothing in common with the first.
+/// Keys that all kinds share unchanged, except kinds that have nothing in common with the first.
 pub(super) fn shared_keys<'a>(root: &'a Json, options: &[&'a Json]) -> Option<Shared<'a>> {
     let tables = options.iter().map(|option| {
         let (kind, value) = kind_of(option)?;
@@ -61,7 +61,7 @@ pub(super) fn description(schema: &Json) -> &str {
     schema["description"].as_str().unwrap_or_default()
 }
 
-/// A default without needless ".0".
+/// A default without a redundant ".0".
 pub(super) fn default_of(default: &Json) -> String {
     match default {
         Json::Number(_) => wording::short(default),

@@ -12,7 +12,7 @@ pub struct Aabb {
 }
 
 impl Aabb {
-    /// The box that holds nothing.
+    /// The empty box.
     pub const EMPTY: Self = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
 
     /// The smallest box around some points.
@@ -37,10 +37,11 @@ impl Aabb {
         self.min.cmple(other.max).all() && other.min.cmple(self.max).all()
     }
 
-    /// Whether the box around a straight piece meets this box: most pieces do not, and are not asked further.
+    /// Whether the box around a segment meets this box: a quick rejection of most segments.
     #[inline(always)]
     pub fn is_near(&self, start: DVec3, end: DVec3) -> bool {
-        // Written so that an undefined end, of a ray along a plane of coordinates that meets nothing, is near.
+        // Written so that a NaN end, from a ray parallel to a coordinate plane that meets nothing,
+        // counts as near.
         !(start.max(end).cmplt(self.min).any() || start.min(end).cmpgt(self.max).any())
     }
 
@@ -49,7 +50,7 @@ impl Aabb {
         self.min.cmple(p).all() && p.cmple(self.max).all()
     }
 
-    /// Whether the box holds nothing.
+    /// Whether the box is empty.
     pub fn is_empty(&self) -> bool {
         !self.min.cmple(self.max).all()
     }

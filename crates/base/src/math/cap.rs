@@ -1,10 +1,11 @@
 //! Solid angles of a cone of directions that a horizon may cut.
 //!
-//! The cone has half-angle h and an axis at angle i to the normal of a plane; what counts is its part above the plane,
-//! also when the axis itself lies below. Where the circle of the cone crosses the horizon, the axis, the crossing and
-//! the point of the horizon below the axis make a right spherical triangle: hypotenuse h, angle φ at the axis, leg ψ
-//! on the horizon, leg e (the elevation of the axis, signed). All that follows is written in them, so that nothing
-//! cancels for cones as narrow as the sun's or narrower.
+//! The cone has half-angle h and an axis at angle i to the normal of a plane; what counts is its
+//! part above the plane, also when the axis itself lies below. Where the circle of the cone crosses
+//! the horizon, the axis, the crossing and the point of the horizon below the axis form a right
+//! spherical triangle: hypotenuse h, angle φ at the axis, leg ψ on the horizon, leg e (the
+//! elevation of the axis, signed). All formulas use these, so that nothing cancels for cones as
+//! narrow as the sun's or narrower.
 
 use std::f64::consts::PI;
 
@@ -14,7 +15,7 @@ enum Cut {
     Above,
     /// None of it is.
     Below,
-    /// A part is; the angles of the triangle, rad.
+    /// Part of it is; the angles of the triangle, rad.
     Through {
         /// Half of the circle's arc below the horizon, seen from the axis: cos φ = cot h cot i.
         phi: f64,
@@ -37,7 +38,7 @@ pub fn projected_cap(cos_axis: f64, half_angle: f64) -> f64 {
         Cut::Through { phi, psi } => {
             let arc = (PI - phi) * sin_h * sin_h * cos_axis;
             let chord = 0.5 * (2.0 * psi).sin();
-            // Where next to nothing is above, rounding must not make it negative.
+            // Rounding must not make a tiny part negative.
             (arc + 0.5 * less_its_sine(2.0 * psi) + chord * cos_axis * cos_axis).max(0.0)
         }
     }
@@ -63,7 +64,8 @@ pub fn cap_solid_angle_above(cos_axis: f64, half_angle: f64) -> f64 {
 
 fn cut(cos_axis: f64, half_angle: f64) -> Cut {
     let (sin_h, cos_h) = half_angle.sin_cos();
-    // The elevation of the axis against the half-angle, by their sines: for narrow cones cosines could not tell.
+    // The elevation of the axis against the half-angle, by their sines: cosines are too coarse for
+    // narrow cones.
     if cos_axis.abs() >= sin_h {
         return if cos_axis > 0.0 { Cut::Above } else { Cut::Below };
     }
@@ -93,8 +95,8 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Projected and plain solid angle by the midpoint rule over rings about the axis: of the ring at angle θ the
-    /// azimuths |φ| < w are above, and there cos = sin e cos θ + cos e sin θ cos φ.
+    /// Projected and plain solid angle by the midpoint rule over rings about the axis: of the ring
+    /// at angle θ the azimuths |φ| < w are above, with cos = sin e cos θ + cos e sin θ cos φ.
     fn by_rings(cos_axis: f64, half_angle: f64) -> [f64; 2] {
         let sin_axis = sin_from_cos(cos_axis);
         let elevation = cos_axis.asin();
@@ -102,7 +104,7 @@ mod tests {
             let n = 4000;
             let mut sums = [0.0; 2];
             for k in 0..n {
-                // Points crowded at the ends take the edge off the square roots there.
+                // Points crowded at the ends resolve the square roots there.
                 let s = (f64::from(k) + 0.5) / f64::from(n);
                 let theta = from + (to - from) * s * s * (3.0 - 2.0 * s);
                 let d_theta = (to - from) * 6.0 * s * (1.0 - s) / f64::from(n);
@@ -145,7 +147,7 @@ mod tests {
     #[test]
     fn known_values_come_out_to_rounding() {
         let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-12, "{a} against {b}");
-        // The half space, from straight up to its edge, where a quarter sphere is left.
+        // The half space, from an upright axis to a level one, where a quarter sphere remains.
         close(projected_cap(1.0, 0.5 * PI), PI);
         close(projected_cap(0.0, 0.5 * PI), 0.5 * PI);
         close(cap_solid_angle_above(1.0, 0.5 * PI), 2.0 * PI);
@@ -153,7 +155,7 @@ mod tests {
         // Two half spaces at 60 degrees overlap in a lune: plain 2 (π - i), projected π/2 (1 + cos i).
         close(cap_solid_angle_above(0.5, 0.5 * PI), 2.0 * (PI - PI / 3.0));
         close(projected_cap(0.5, 0.5 * PI), 0.75 * PI);
-        // Half of a narrow cone: 2/3 h³ and π h²/2 to their first orders.
+        // Half of a narrow cone: 2/3 h³ and π h²/2 to leading order.
         let h = 1e-6;
         close(projected_cap(0.0, h), 2.0 / 3.0 * h * h * h);
         close(cap_solid_angle_above(0.0, h), 0.5 * PI * h * h);

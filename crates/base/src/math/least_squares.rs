@@ -1,26 +1,26 @@
 //! Linear regression on a few inputs.
 
-/// What a regression gives.
+/// Result of a regression.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LeastSquares {
     /// One for each input.
     pub coefficients: Vec<f64>,
-    /// Their standard errors, from what the fit leaves over.
+    /// Their standard errors, from the residuals.
     pub std_errors: Vec<f64>,
-    /// Share of the variance that the fit tells, 1.
+    /// Share of the variance that the fit explains, 1.
     pub r_squared: f64,
 }
 
-/// Fits `values` by a linear combination of input columns; all have zero mean, so that no constant is needed. By the
-/// normal equations, which are well behaved for standardised inputs. `None` where inputs depend on each other, or there
-/// are no more values than unknowns.
+/// Fits `values` by a linear combination of input columns; all have zero mean, so no constant is
+/// needed. Uses the normal equations, which are well conditioned for standardised inputs. `None`
+/// where inputs are linearly dependent or there are no more values than unknowns.
 pub fn least_squares(inputs: &[Vec<f64>], values: &[f64]) -> Option<LeastSquares> {
     let (count, unknowns) = (values.len(), inputs.len());
     if unknowns == 0 || count <= unknowns + 1 {
         return None;
     }
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    // The matrix with the right side and the unit matrix behind it; the latter becomes the inverse.
+    // The matrix augmented by the right side and the unit matrix; the latter becomes the inverse.
     let mut rows: Vec<Vec<f64>> = (0..unknowns)
         .map(|row| {
             let products = inputs.iter().map(|input| dot(&inputs[row], input));
@@ -38,7 +38,7 @@ pub fn least_squares(inputs: &[Vec<f64>], values: &[f64]) -> Option<LeastSquares
             (values[place] - fit).powi(2)
         })
         .sum();
-    // One more degree of freedom went into the mean.
+    // The mean takes one more degree of freedom.
     let variance = left_over / (count - unknowns - 1) as f64;
     let diagonal = rows.iter().enumerate().map(|(place, row)| row[unknowns + 1 + place]);
     Some(LeastSquares {
@@ -48,7 +48,7 @@ pub fn least_squares(inputs: &[Vec<f64>], values: &[f64]) -> Option<LeastSquares
     })
 }
 
-/// A pivot below this share of the largest is taken for nothing, 1.
+/// A pivot below this share of the largest counts as zero, 1.
 const SINGULAR: f64 = 1e-12;
 
 /// Gauss-Jordan elimination with pivots from the rows below; `None` where there is none above `least`.

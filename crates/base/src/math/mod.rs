@@ -1,4 +1,5 @@
-//! Frames, boxes, roots of polynomials and maps from the unit square: the mathematics that the physics stands on.
+//! Frames, boxes, roots of polynomials and maps from the unit square: the mathematics behind the
+//! physics.
 
 mod aabb;
 mod cap;
@@ -20,7 +21,7 @@ pub use sampling::{
 
 use glam::DVec3;
 
-/// The unit vector along `v`, quickly where `v` is one but for rounding.
+/// The unit vector along `v`; fast where `v` has unit length up to rounding.
 #[inline]
 pub fn unit(v: DVec3) -> DVec3 {
     let excess = v.length_squared() - 1.0;

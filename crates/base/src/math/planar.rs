@@ -38,7 +38,8 @@ pub fn area_moment(polygon: &[DVec2]) -> DVec2 {
 
 /// The part of a polygon with `normal · p <= offset` (Sutherland & Hodgman, Commun. ACM 17 (1974) 32).
 ///
-/// Pieces of a non-convex polygon stay joined by edges along the line that cancel each other in areas and moments.
+/// Pieces of a non-convex polygon stay joined by edges along the line, which cancel in areas and
+/// moments.
 pub fn clip(polygon: &[DVec2], normal: DVec2, offset: f64) -> Vec<DVec2> {
     let mut kept = Vec::with_capacity(polygon.len() + 1);
     for (a, b) in edges(polygon) {
@@ -60,8 +61,8 @@ pub fn clip_to_rectangle(polygon: &[DVec2], min: DVec2, max: DVec2) -> Vec<DVec2
         .fold(polygon.to_vec(), |rest, (normal, offset)| clip(&rest, normal, offset))
 }
 
-/// Area that a polygon shares with the disk of `radius` about the origin, mm²: the sum over its edges of the signed
-/// area of the disk within the triangle of the origin and the edge.
+/// Area that a polygon shares with the disk of `radius` about the origin, mm²: the sum over its
+/// edges of the signed area common to the disk and the triangle of origin and edge.
 pub fn disk_overlap(radius: f64, polygon: &[DVec2]) -> f64 {
     let sector = |a: DVec2, b: DVec2| 0.5 * radius * radius * a.perp_dot(b).atan2(a.dot(b));
     edges(polygon)
@@ -87,7 +88,7 @@ pub fn triangulate(polygon: &[DVec2]) -> Vec<[DVec2; 3]> {
     let mut triangles = Vec::new();
     while rest.len() >= 3 {
         let n = rest.len();
-        // Rounding may hide the ears of a nearly flat rest: then any corner will do.
+        // Rounding may hide the ears of a nearly flat remainder; then any corner will do.
         let ear = (0..n).find(|&i| is_ear(&rest, i)).unwrap_or(0);
         triangles.push([rest[(ear + n - 1) % n], rest[ear], rest[(ear + 1) % n]]);
         rest.remove(ear);
@@ -95,7 +96,7 @@ pub fn triangulate(polygon: &[DVec2]) -> Vec<[DVec2; 3]> {
     triangles
 }
 
-/// Whether the corner `i` is convex and holds no other vertex.
+/// Whether the ear at corner `i` is convex and contains no other vertex.
 fn is_ear(polygon: &[DVec2], i: usize) -> bool {
     let n = polygon.len();
     let [a, b, c] = [polygon[(i + n - 1) % n], polygon[i], polygon[(i + 1) % n]];

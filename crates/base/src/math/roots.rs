@@ -1,15 +1,16 @@
 //! Real roots, accurate to rounding also where textbook formulas cancel.
 //!
-//! Nothing here compares with a small number: roots are found where a sign changes, so what is found is consistent
-//! (between two crossings upward there is one downward), also for rays that graze a surface.
+//! No tolerances: roots are located by sign changes, so they are consistent (between two upward
+//! crossings there is one downward), also for rays that graze a surface.
 
 use smallvec::SmallVec;
 
 /// The real roots of a polynomial in ascending order.
 pub type Roots = SmallVec<[f64; 4]>;
 
-/// Real roots of `a t² + 2 b t + c` (note the halved middle coefficient), ascending; a double root is given twice.
-/// The form that never subtracts nearly equal numbers (Press et al., Numerical Recipes, 3rd ed., eq. 5.6.4).
+/// Real roots of `a t² + 2 b t + c` (note the halved middle coefficient), ascending; a double root
+/// is given twice. Uses the form that never subtracts nearly equal numbers (Press et al., Numerical
+/// Recipes, 3rd ed., eq. 5.6.4).
 #[inline]
 pub fn quadratic(a: f64, half_b: f64, c: f64) -> Option<[f64; 2]> {
     let discriminant = half_b * half_b - a * c;
@@ -31,10 +32,11 @@ pub fn cubic(coefficients: [f64; 4], lo: f64, hi: f64) -> Roots {
 
 /// Real roots of `Σ coefficients[i] tⁱ`, up to t⁴, in the finite interval [`lo`, `hi`], ascending.
 ///
-/// The roots are the places where the sign changes, zero counting as positive: a root of even order is given twice
-/// or not at all, and a root at an end only if the polynomial is negative beside it. Between two neighbouring roots
-/// of its derivative a polynomial is monotonic, so each piece holds one root or none. Leading coefficients may be
-/// zero or tiny; the zero polynomial and one with coefficients that are not finite have no roots.
+/// The roots are the places where the sign changes, zero counting as positive: a root of even order
+/// is given twice or not at all, and a root at an end only if the polynomial is negative next to
+/// it. Between two neighbouring roots of its derivative a polynomial is monotonic, so each piece
+/// contains one root or none. Leading coefficients may be zero or tiny; the zero polynomial and one
+/// with non-finite coefficients have no roots.
 pub fn quartic(coefficients: [f64; 5], lo: f64, hi: f64) -> Roots {
     in_units_of(coefficients, lo, hi, |[e, d, c, b, a], lo, hi| {
         let critical = unscaled_cubic([d, 2.0 * c, 3.0 * b, 4.0 * a], lo, hi);
@@ -76,7 +78,7 @@ fn power_of_two_below(x: f64) -> f64 {
 
 #[inline]
 fn unscaled_cubic([d, c, b, a]: [f64; 4], lo: f64, hi: f64) -> Roots {
-    // Roots of the derivative beyond the interval, infinite or undefined for a = 0, split nothing.
+    // Roots of the derivative outside the interval, infinite or NaN for a = 0, do not split it.
     let all = quadratic(3.0 * a, b, c).into_iter().flatten();
     let critical: Roots = all.filter(|t| (lo..=hi).contains(t)).collect();
     roots_of_pieces([d, c, b, a], lo, hi, &critical)
@@ -147,15 +149,17 @@ pub fn bracketed_root(lo: f64, hi: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
     t
 }
 
-/// Where a convex function falls through zero and where it rises through zero again, in [`lo`, `hi`]; `f` gives value
-/// and derivative (any one-sided one at a kink). Without an end inside the interval there are both or none.
+/// Where a convex function falls through zero and where it rises through it again, in [`lo`, `hi`];
+/// `f` gives value and derivative (any one-sided one at a kink). If it is not negative at either
+/// end, both exist or neither.
 ///
 /// Newton's method never oversteps a root of a convex function from outside: from the two ends it walks to the two
 /// roots, or past the other end where there are none.
 pub fn convex_roots(lo: f64, hi: f64, f: impl Fn(f64) -> (f64, f64)) -> [Option<f64>; 2] {
     match (f(lo).0 < 0.0, f(hi).0 < 0.0) {
         (true, true) => [None, None],
-        // The sign differs between the ends: a root missed by rounding lies at the end that is inside.
+        // The sign differs between the ends: a root missed by rounding lies at the end where it is
+        // negative.
         (true, false) => [None, Some(newton_inward(hi, lo, &f).unwrap_or(lo))],
         (false, true) => [Some(newton_inward(lo, hi, &f).unwrap_or(hi)), None],
         (false, false) => {
@@ -168,7 +172,8 @@ pub fn convex_roots(lo: f64, hi: f64, f: impl Fn(f64) -> (f64, f64)) -> [Option<
 
 /// The root of a convex function that is first met from `from`, where it is not negative, toward `limit`.
 fn newton_inward(from: f64, limit: f64, f: impl Fn(f64) -> (f64, f64)) -> Option<f64> {
-    // Quadratic convergence but where two roots nearly meet, then a factor of 1/2: 53 steps and some.
+    // Quadratic convergence, but a factor of 1/2 where two roots nearly meet: 53 steps and a few
+    // more.
     const MAX_STEPS: u32 = 128;
     let inward = (limit - from).signum();
     let mut t = from;
@@ -224,7 +229,7 @@ mod tests {
         })
     }
 
-    /// Rounding error that a root must have at least: an ulp of every term, over the slope.
+    /// Least rounding error of a root: an ulp of every term, over the slope.
     fn conditioning(coefficients: &[f64], t: f64) -> f64 {
         let terms: f64 = coefficients.iter().rev().fold(0.0, |sum, c| sum * t.abs() + c.abs());
         let padded = std::array::from_fn(|i| coefficients.get(i).copied().unwrap_or(0.0));
@@ -268,7 +273,7 @@ mod tests {
 
         #[test]
         fn near_double_roots_come_in_pairs(a in -512i32..512, b in 513i32..1024, gap in 1i32..24) {
-            // The pair is 2^-gap apart; its digits get lost as 1/gap.
+            // The pair is 2^-gap apart; it loses digits as 1/gap.
             let (a, b) = (f64::from(a) / 512.0, f64::from(b) / 512.0);
             let width = 2f64.powi(-gap);
             let coefficients = with_roots(&[a, a + width, b + 1.0]);

@@ -1,13 +1,13 @@
-//! Meshes of simple bodies whose volumes and areas are known, for tests and benches.
+//! Meshes of simple bodies of known volume and area, for tests and benches.
 //!
-//! Sizes are mm. All functions panic on sizes that are not finite or beyond
+//! Sizes are mm. All functions panic on sizes that are non-finite or beyond
 //! [`MAX_COORDINATE_MM`](crate::mesh::MAX_COORDINATE_MM).
 
 use crate::mesh::{MeshBuilder, TriangleMesh};
 use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
 
-/// Whether a sample carries the normals of the surface it stands for.
+/// Whether a mesh carries the normals of the surface it approximates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Normals {
     /// Normals of the surface.
@@ -16,7 +16,7 @@ pub enum Normals {
     None,
 }
 
-/// A mesh in the making whose sizes are known to be sound.
+/// A mesh under construction whose sizes are known to be valid.
 #[derive(Default)]
 struct Body(MeshBuilder);
 
@@ -52,7 +52,7 @@ pub fn block(size: DVec3) -> TriangleMesh {
     builder.finish()
 }
 
-/// A sphere about the origin: an icosahedron whose triangles were split in four `level` times.
+/// A sphere about the origin: an icosahedron with each triangle split into four, `level` times.
 pub fn icosphere(radius: f64, level: u32, normals: Normals) -> TriangleMesh {
     let golden = 0.5 * (1.0 + 5.0f64.sqrt());
     let mut corners = Vec::new();
@@ -88,7 +88,7 @@ pub fn icosphere(radius: f64, level: u32, normals: Normals) -> TriangleMesh {
 }
 
 fn split([a, b, c]: [DVec3; 3]) -> [[DVec3; 3]; 4] {
-    // Sums commute exactly, so that neighbours get the same middle.
+    // Sums commute exactly, so neighbours get the same midpoint.
     let middle = |p: DVec3, q: DVec3| (p.normalize() + q.normalize()).normalize();
     let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
     [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
@@ -120,12 +120,12 @@ pub fn rod(radius: f64, length: f64, sides: u32, normals: Normals) -> TriangleMe
 /// A closed pipe of radius 1.5 along +z whose far end is cut by a plane at 45 degrees, faces entry, wall and mirror.
 pub fn mirror_pipe(sides: u32, normals: Normals) -> TriangleMesh {
     let mut builder = Body::default();
-    // The middle of a facet, not an edge, lies where the wall meets the plane at 45 degrees.
+    // A facet centre, not an edge, lies where the wall meets the plane at 45 degrees.
     let point = |side: u32, far: bool| {
         let (sin, cos) = (TAU * (f64::from(side % sides) + 0.5) / f64::from(sides)).sin_cos();
         let (x, y) = (1.5 * cos, 1.5 * sin);
         let point = DVec3::new(x, y, if far { 20.0 + x } else { 0.0 });
-        // As a GLB has it: single precision, in metres.
+        // As in a GLB: single precision, in metres.
         1000.0 * (1e-3 * point).as_vec3().as_dvec3()
     };
     let given = |corners: [DVec3; 3]| (normals == Normals::Smooth).then_some(corners);

@@ -1,4 +1,4 @@
-//! Collects triangles of any format, welds equal positions and refuses numbers that are none.
+//! Collects triangles of any format, welds equal positions and refuses non-finite numbers.
 
 use crate::mesh::{MAX_COORDINATE_MM, MAX_TRIANGLES, TriangleMesh, UNNAMED_FACE, area_vector};
 use glam::DVec3;
@@ -35,7 +35,7 @@ pub enum UnusableMesh {
     },
 }
 
-/// A mesh in the making.
+/// A mesh under construction.
 #[derive(Debug, Default)]
 pub struct MeshBuilder {
     positions: Vec<DVec3>,
@@ -70,7 +70,7 @@ impl MeshBuilder {
         Ok(())
     }
 
-    /// The mesh; corners without a normal get that of their facet if others have one.
+    /// The mesh; corners without a normal get that of their facet if other corners have one.
     pub fn finish(self) -> Result<TriangleMesh, UnusableMesh> {
         if self.triangles.is_empty() {
             return Err(UnusableMesh::NoTriangles);
@@ -118,7 +118,7 @@ impl MeshBuilder {
     }
 
     fn vertex(&mut self, position: DVec3) -> u32 {
-        // Adding zero turns -0 into +0, which is the same place.
+        // Adding zero turns -0 into +0, the same position.
         let position = position + DVec3::ZERO;
         let next = self.positions.len() as u32;
         let index = *self.index_of.entry(position.to_array().map(f64::to_bits)).or_insert(next);

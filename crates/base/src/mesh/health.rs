@@ -1,4 +1,5 @@
-//! Is a mesh closed, the right way out, and fine enough? Judged here; what to do about it is for the caller.
+//! Is a mesh closed, the right way out, and fine enough? This module only judges; the caller
+//! decides what to do about it.
 
 #[cfg(test)]
 mod tests;
@@ -7,24 +8,26 @@ use crate::mesh::topology::{Groups, HalfEdge, half_edges, same_edge};
 use crate::mesh::{TriangleMesh, area_vector};
 use glam::DVec3;
 
-/// Below this turn, degrees, two facets belong to a flat face of rounded coordinates.
+/// Below this turn, degrees, two facets belong to one flat face with rounded coordinates.
 const FLAT_DEG: f64 = 0.1;
-/// Above this turn, degrees, an edge is meant to be one.
+/// Above this turn, degrees, an edge is intended.
 const SHARP_DEG: f64 = 45.0;
-/// Angles of a facet with its neighbours that make one curved wall are alike within this factor, 1.
+/// The angles of a facet with its neighbours on a curved wall agree within this factor, 1.
 const ALIKE: f64 = 2.0;
-/// A curved wall without normals has at least so many facets in a row or a field: fewer are flat faces that meet at angles.
+/// A curved wall without normals has at least this many facets in a row or a field; fewer are flat
+/// faces that meet at angles.
 const LEAST_FACETS: usize = 6;
-/// Corner normals nearer to that of their facet than this, rad, are its own: nothing is smoothed.
+/// Corner normals within this angle of the facet normal, rad, equal it: nothing is smoothed.
 const OWN_NORMAL: f64 = 1.0e-3;
-/// Corner normals nearer than this, rad, were one normal before they were rounded to 16 bits or more.
+/// Corner normals within this angle of each other, rad, were equal before rounding to 16 bits or
+/// more.
 const SAME_NORMAL: f64 = 1.0e-4;
 
-/// Thinner than this share of the size of its mesh, 1, a triangle is a sliver: positions in single precision, of 6e-8,
-/// leave the direction of its facet uncertain by hundredths.
+/// A triangle thinner than this share of the size of its mesh, 1, is a sliver: single precision
+/// positions, of 6e-8, leave its normal uncertain by hundredths.
 const SLIVER: f64 = 1.0e-5;
 
-/// Places of a mesh that have something wrong.
+/// Defects of one kind in a mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Defects {
     /// How many.
@@ -40,22 +43,23 @@ impl Defects {
     }
 }
 
-/// What there is to say about a mesh before light is traced through it.
+/// The state of a mesh before light is traced through it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct MeshHealth {
     /// Edges with only one triangle: holes.
     pub open_edges: Defects,
     /// Edges with more than two triangles.
     pub crowded_edges: Defects,
-    /// Edges whose two triangles walk them the same way: one of the two is the wrong way out.
+    /// Edges that both triangles traverse in the same direction: one of the two is inside out.
     pub inconsistent_edges: Defects,
-    /// Triangles without area; they do no harm.
+    /// Triangles without area; they are harmless.
     pub degenerate_triangles: Defects,
-    /// Triangles so thin that their facet has no certain direction.
+    /// Triangles so thin that their normal is uncertain.
     pub slivers: Defects,
-    /// Triangles with a corner normal that points into their back.
+    /// Triangles with a corner normal that points to their back side.
     pub opposed_normals: Defects,
-    /// How far facets lie from the surface that their corner normals describe, at most, mm; without normals `None`.
+    /// Largest distance of facets from the surface that their corner normals describe, mm; `None`
+    /// without normals.
     pub sagitta_mm: Option<f64>,
     /// Volume, mm³; negative when the mesh is inside out. Meaningless unless it is closed.
     pub signed_volume_mm3: f64,
@@ -63,12 +67,13 @@ pub struct MeshHealth {
     pub area_mm2: f64,
     /// Parts that are not connected by an edge.
     pub shells: usize,
-    /// How coarsely curved parts are drawn, if there are facets that no normals smooth.
+    /// How coarsely curved parts are faceted, if there are facets that no normals smooth.
     pub facets: Option<Facets>,
 }
 
 impl MeshHealth {
-    /// Whether the mesh has an inside: no open, crowded or inconsistent edges, and a volume that is positive.
+    /// Whether the mesh has an inside: no open, crowded or inconsistent edges, and a positive
+    /// volume.
     pub fn is_sound(&self) -> bool {
         self.open_edges.count == 0
             && self.crowded_edges.count == 0
@@ -77,12 +82,13 @@ impl MeshHealth {
     }
 }
 
-/// Facets that stand for a curved surface and are not smoothed by corner normals.
+/// Facets that approximate a curved surface and are not smoothed by corner normals.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Facets {
-    /// Typical angle between neighbours, degrees: median over area of each triangle's largest one.
+    /// Typical angle between neighbours, degrees: area-weighted median of each triangle's largest
+    /// angle.
     pub turn_deg: f64,
-    /// Share of the mesh's area that is drawn this way, 1.
+    /// Share of the mesh's area that is faceted this way, 1.
     pub area_share: f64,
 }
 
@@ -92,8 +98,9 @@ impl Facets {
         360.0 / self.turn_deg
     }
 
-    /// Expected relative drift of the skew invariant after `bounces` in a rod of such facets, 1: (3.2/N) sqrt(bounces).
-    /// Light whose skewness drifts leaves the guide where it should be kept in.
+    /// Expected relative drift of the skew invariant after `bounces` in a rod of such facets, 1:
+    /// (3.2/N) sqrt(bounces). Light whose skewness drifts leaves the guide where it should stay
+    /// inside.
     pub fn skew_drift(&self, bounces: f64) -> f64 {
         // Coefficient fitted to rods of 64 to 1024 facets.
         3.2 / self.per_turn() * bounces.sqrt()
@@ -125,7 +132,7 @@ pub fn health(mesh: &TriangleMesh) -> MeshHealth {
             _ => health.crowded_edges.add(middle),
         }
     }
-    // About a point of the mesh: far from the origin the tetrahedra would cancel.
+    // Relative to a point of the mesh: far from the origin the tetrahedra would cancel.
     let center = mesh.bounds().center();
     let thin = SLIVER * mesh.bounds().diagonal();
     for triangle in 0..mesh.triangles.len() {
@@ -175,7 +182,7 @@ fn shells(mesh: &TriangleMesh, half_edges: &[HalfEdge]) -> usize {
             groups.join(edge[0].triangle, other.triangle);
         }
     }
-    // Collapsed triangles have no edges and are no shells.
+    // Collapsed triangles have no edges and form no shell.
     let group = groups.numbered();
     let mut present: Vec<u32> =
         half_edges.iter().map(|half_edge| group[half_edge.triangle as usize]).collect();
@@ -184,7 +191,7 @@ fn shells(mesh: &TriangleMesh, half_edges: &[HalfEdge]) -> usize {
     present.len()
 }
 
-/// An edge between two flat pieces of a mesh, none of them smoothed by normals.
+/// An edge between two flat pieces of a mesh, neither smoothed by normals.
 struct Turn {
     triangles: [u32; 2],
     pieces: [u32; 2],
@@ -192,9 +199,10 @@ struct Turn {
     angle_deg: f64,
 }
 
-/// Flat pieces in a row or a field, each with two neighbours or more to which it turns the same way by angles that are
-/// alike: what a curved wall becomes without normals. A piece whose normals are those of a curved surface bends light as
-/// that surface does, and flat faces that meet at an angle are none of it.
+/// Flat pieces in a row or a field, each with two or more neighbours to which it turns the same way
+/// by similar angles, as on a curved wall without normals. A piece with the normals of a curved
+/// surface bends light as that surface does, so it does not count, and neither do flat faces that
+/// meet at an angle.
 fn facets(mesh: &TriangleMesh, half_edges: &[HalfEdge]) -> Option<Facets> {
     let piece_of = flat_pieces(mesh, half_edges);
     let turns = turns(mesh, half_edges, &piece_of);
@@ -230,7 +238,7 @@ fn flat_pieces(mesh: &TriangleMesh, half_edges: &[HalfEdge]) -> Vec<u32> {
     pieces.numbered()
 }
 
-/// The edges at which the surface turns a little and no normals smooth it.
+/// The edges at which the surface turns slightly and no normals smooth it.
 fn turns(mesh: &TriangleMesh, half_edges: &[HalfEdge], piece_of: &[u32]) -> Vec<Turn> {
     let mut turns = Vec::new();
     for edge in half_edges.chunk_by(same_edge) {
@@ -254,7 +262,7 @@ fn turns(mesh: &TriangleMesh, half_edges: &[HalfEdge], piece_of: &[u32]) -> Vec<
     turns
 }
 
-/// Whether the corners of a triangle have no other normals than its facet.
+/// Whether all corner normals of a triangle equal its facet normal.
 fn has_own_normals(mesh: &TriangleMesh, triangle: usize) -> bool {
     let Some(normals) = &mesh.normals else { return true };
     let facet = area_vector(mesh.corners(triangle)).normalize_or_zero();
@@ -275,7 +283,8 @@ fn turns_of_walls(count: usize, turns: &[Turn], piece_of: &[u32]) -> Vec<f64> {
             *other != from && (next / angle) < ALIKE && (angle / next) < ALIKE && next * angle > 0.0
         })
     };
-    // A turn is one of a wall when the wall goes on beyond one of its two pieces, likewise.
+    // A turn belongs to a wall if the wall continues with similar turns beyond one of its two
+    // pieces.
     let is_of_wall: Vec<bool> = turns
         .iter()
         .map(|Turn { pieces: [a, b], angle_deg, .. }| {

@@ -1,8 +1,9 @@
-//! Triangle meshes with named faces, whatever they come from.
+//! Triangle meshes with named faces, from any source.
 //!
-//! A [`TriangleMesh`] has positions in f64 millimetres, welded where they coincide exactly, normals per corner, and a face
-//! for every triangle. [`MeshBuilder`] makes one of single triangles; [`health()`] says whether it is closed and the
-//! right way out. What a face does to light is not known here, nor any file format.
+//! A [`TriangleMesh`] has positions in f64 millimetres, welded where they coincide exactly, normals
+//! per corner, and a face for every triangle. [`MeshBuilder`] builds one from single triangles;
+//! [`health()`] reports whether it is closed and the right way out. This module knows no optical
+//! properties and no file format.
 
 pub mod bodies;
 mod builder;
@@ -22,12 +23,13 @@ pub const MAX_COORDINATE_MM: f64 = 1.0e9;
 /// Name of the face of triangles that have neither material nor group.
 pub const UNNAMED_FACE: &str = "surface";
 
-/// Triangles with what belongs to them.
+/// Triangles with their faces and normals.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TriangleMesh {
     /// Vertices, mm; no two are equal.
     pub positions: Vec<DVec3>,
-    /// Three indices into `positions` each; counter-clockwise seen from outside, if the file is right.
+    /// Three indices into `positions` each; counter-clockwise seen from outside, if the file is
+    /// correct.
     pub triangles: Vec<[u32; 3]>,
     /// Unit normals of the three corners of each triangle, if the file has normals.
     pub normals: Option<Vec<[DVec3; 3]>>,

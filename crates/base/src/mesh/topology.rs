@@ -1,4 +1,4 @@
-//! Which triangles meet at which edge, and which belong together.
+//! Which triangles share an edge, and which are connected.
 
 /// A triangle's side of an edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -31,8 +31,8 @@ impl HalfEdge {
     }
 }
 
-/// All half edges, sorted so that those of one edge are neighbours: `half_edges.chunk_by(same_edge)`.
-/// Triangles that name a vertex twice have none: whatever is left of them closes upon itself.
+/// All half edges, sorted so that those of one edge are adjacent: `half_edges.chunk_by(same_edge)`.
+/// Triangles that use a vertex twice have none, as they collapse to a line or a point.
 pub fn half_edges(triangles: &[[u32; 3]]) -> Vec<HalfEdge> {
     let mut all = Vec::with_capacity(3 * triangles.len());
     for (index, triangle) in triangles.iter().enumerate() {
@@ -58,31 +58,31 @@ pub fn same_edge(one: &HalfEdge, other: &HalfEdge) -> bool {
     one.low == other.low && one.high == other.high
 }
 
-/// Whether a triangle names a vertex twice.
+/// Whether a triangle uses a vertex twice.
 pub fn is_collapsed([a, b, c]: &[u32; 3]) -> bool {
     a == b || b == c || c == a
 }
 
-/// Disjoint sets of things numbered from 0 (Tarjan, J. ACM 22 (1975) 215; path halving).
+/// Disjoint sets of items numbered from 0 (Tarjan, J. ACM 22 (1975) 215; path halving).
 #[derive(Debug, Clone)]
 pub struct Groups {
     parent: Vec<u32>,
 }
 
 impl Groups {
-    /// `count` things, each in a group of its own.
+    /// `count` items, each in its own group.
     pub fn new(count: usize) -> Self {
         Self { parent: (0..count as u32).collect() }
     }
 
-    /// Makes one group of the groups of two things.
+    /// Joins the groups of two items.
     pub fn join(&mut self, one: u32, other: u32) {
         let (one, other) = (self.root(one), self.root(other));
         // The smaller index leads, so that the result does not depend on the order of the calls.
         self.parent[one.max(other) as usize] = one.min(other);
     }
 
-    /// The group of each thing, numbered from 0 in order of appearance.
+    /// The group of each item, numbered from 0 in order of appearance.
     pub fn numbered(mut self) -> Vec<u32> {
         let mut number = vec![0; self.parent.len()];
         let mut next = 0;

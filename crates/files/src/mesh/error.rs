@@ -1,13 +1,14 @@
-//! Why a mesh could not be read, and how large it may be.
+//! Errors of reading a mesh, and limits of its size.
 
 use crate::mesh::format::MeshFormat;
 use lumiduct_base::mesh::UnusableMesh;
 
-/// Longest file that is read, bytes: 50 million triangles of binary STL fit in.
+/// Longest file that is read, bytes: enough for 50 million triangles of binary STL.
 pub const MAX_FILE_BYTES: u64 = 4 << 30;
 /// Most memory that copies of the meshes of a file may take, bytes.
 pub const MAX_COPIES_BYTES: u64 = 1 << 30;
-/// Memory of a triangle while a scene is made of it, bytes: measured, 345 with normals (200 copies of 1,024 triangles against 50).
+/// Memory per triangle while its scene is built, bytes: measured, 345 with normals (200 copies of
+/// 1,024 triangles against 50).
 pub(crate) const TRIANGLE_BYTES: u64 = 350;
 
 /// Why a mesh could not be read.
@@ -16,21 +17,21 @@ pub enum MeshError {
     /// The operating system refuses the file.
     #[error("the file cannot be read: {0}; check the name and the permissions")]
     Unreadable(#[from] std::io::Error),
-    /// The ending of the name is none of a mesh.
+    /// The file name extension is not one of a mesh format.
     #[error("`.{ending}` is not the ending of a known mesh format; use .glb, .gltf, .stl or .obj")]
     UnknownFormat {
-        /// The ending, without its dot.
+        /// The extension, without its dot.
         ending: String,
     },
-    /// The file is one of CAD, which has to become a mesh first.
+    /// The file is a CAD file, which must be converted to a mesh first.
     #[error(
         "`.{ending}` is a CAD file, which is not read: docs/cad.md tells how to make a mesh of it"
     )]
     CadFile {
-        /// The ending, without its dot.
+        /// The extension, without its dot.
         ending: String,
     },
-    /// The file is not what its format prescribes.
+    /// The file violates its format.
     #[error("not a usable {format} file: {problem}; export the mesh again")]
     Broken {
         /// The format.
@@ -38,7 +39,7 @@ pub enum MeshError {
         /// What is wrong, with the place.
         problem: String,
     },
-    /// The file is right, but uses something that is not read here.
+    /// The file is valid, but uses an unsupported feature.
     #[error("{what}; {remedy}")]
     Unsupported {
         /// What the file uses.
@@ -51,9 +52,9 @@ pub enum MeshError {
         "the buffer file `{uri}` cannot be read: {source}; keep it beside the .gltf file or export a .glb"
     )]
     BufferFile {
-        /// The name as the file gives it.
+        /// The name as given in the file.
         uri: String,
-        /// What the operating system said.
+        /// The error of the operating system.
         source: std::io::Error,
     },
     /// The file, or the files together, are longer than [`MAX_FILE_BYTES`].

@@ -1,4 +1,4 @@
-//! Which format a file has by its ending, and its bytes, which are not trusted.
+//! The format of a file by its extension, and reading of its untrusted bytes.
 
 use crate::mesh::error::MeshError;
 use crate::mesh::format::MeshFormat;
@@ -7,7 +7,7 @@ use std::io::Read;
 use std::path::Path;
 
 impl MeshFormat {
-    /// The format that the ending of a file name stands for.
+    /// The format of a file name extension.
     pub fn of(path: &Path) -> Result<Self, MeshError> {
         let ending = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
         match ending.as_str() {
@@ -20,13 +20,13 @@ impl MeshFormat {
     }
 }
 
-/// Whether an ending in small letters is that of a CAD file with exact surfaces or a model tree.
+/// Whether an extension in lower case is that of a CAD file with exact surfaces or a model tree.
 fn is_cad_ending(ending: &str) -> bool {
     ["step", "stp", "p21", "iges", "igs", "x_t", "x_b", "sat", "sldprt", "sldasm", "ipt", "3dm"]
         .contains(&ending)
 }
 
-/// The message for a mesh or CAD file given in place of a scene; `None` for any other ending.
+/// The message for a mesh or CAD file given in place of a scene; `None` for any other extension.
 pub fn no_scene(path: &Path) -> Option<String> {
     let ending = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
     match MeshFormat::of(path) {
@@ -40,7 +40,7 @@ pub fn no_scene(path: &Path) -> Option<String> {
     }
 }
 
-/// All bytes of a regular file that has at most `limit` of them.
+/// All bytes of a regular file of at most `limit` bytes.
 pub(crate) fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, MeshError> {
     let about = fs::metadata(path)?;
     // A pipe or a device may never end.

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// The length that 1 in the file stands for.
+/// The length unit of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LengthUnit {
     /// 1 mm.
@@ -27,7 +27,7 @@ impl LengthUnit {
     }
 }
 
-/// File formats that hold meshes.
+/// File formats of meshes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MeshFormat {
     /// glTF 2.0, as JSON or as GLB.

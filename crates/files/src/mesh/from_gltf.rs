@@ -1,8 +1,9 @@
 //! glTF 2.0 and GLB: all triangles of the scene, with the transforms of their nodes applied in f64.
 //!
-//! Every index is looked up with its bound: the crate's own validation is not used, because it indexes an accessor
-//! out of bounds on bad files and refuses harmless ones. Skins, morph targets and animations are not followed.
-//! Source: Khronos, glTF 2.0 Specification (2021), sections 3.5-3.7 and 4.
+//! Every index is checked against its bound. The validation of the `gltf` crate is not used,
+//! because it indexes an accessor out of bounds on bad files and refuses harmless ones. Skins,
+//! morph targets and animations are not followed. Source: Khronos, glTF 2.0 Specification (2021),
+//! sections 3.5-3.7 and 4.
 
 use crate::mesh::error::MeshError;
 use crate::mesh::format::LengthUnit;
@@ -20,7 +21,7 @@ use std::path::Path;
 /// Length of a GLB's header, bytes.
 const GLB_HEADER: usize = 12;
 
-/// Reads a glTF document or a GLB; files that it names are looked for in `folder`.
+/// Reads a glTF document or a GLB; files that it references are read from `folder`.
 pub(crate) fn read(
     bytes: &[u8],
     folder: &Path,
@@ -64,7 +65,7 @@ fn open_glb(bytes: &[u8]) -> Result<gltf::Glb<'_>, MeshError> {
     gltf::Glb::from_slice(bytes).map_err(|error| broken(error.to_string()))
 }
 
-/// Required extensions that only describe looks do no harm; others may hide geometry.
+/// Required extensions that affect only appearance are harmless; others may hide geometry.
 fn refuse_unknown_extensions(root: &Root) -> Result<(), MeshError> {
     let harmless = |name: &str| name.starts_with("KHR_materials_") || name.contains("_texture_");
     match root.extensions_required.iter().find(|name| !harmless(name)) {
@@ -76,7 +77,7 @@ fn refuse_unknown_extensions(root: &Root) -> Result<(), MeshError> {
     }
 }
 
-/// Positions and normals of a primitive, where they belong in the scene.
+/// Positions and normals of a primitive, with the transform to the scene.
 struct Vertices<'a> {
     positions: Elements<'a>,
     normals: Option<Elements<'a>>,
@@ -119,7 +120,7 @@ fn add_primitive(
     }
     let mirrored = to_scene.matrix3.determinant() < 0.0;
     for first in (0..count).step_by(3) {
-        // A mirror image turns the other way round.
+        // Mirroring reverses the orientation.
         let corners = if mirrored { [0, 2, 1] } else { [0, 1, 2] }.map(|corner| {
             let index = match indices {
                 Some((elements, component)) => unsigned(elements.get(first + corner)?, component)?,
@@ -205,7 +206,7 @@ mod tests {
         read(&glb(json, blob), Path::new(""), LengthUnit::Millimetre)
     }
 
-    /// The rod under test, its document and its buffer.
+    /// The test rod, its document and its buffer.
     fn rod_parts() -> (TriangleMesh, Value, Vec<u8>) {
         let rod = rod(2.0, 40.0, 24, Normals::Smooth);
         let (json, blob) = gltf_parts(&rod);
@@ -350,7 +351,7 @@ mod tests {
     fn mutated_files_never_panic_and_good_results_are_finite() {
         let (json, blob) = gltf_parts(&rod(2.0, 40.0, 4, Normals::Smooth));
         let (mut good, mut bad) = (0, 0);
-        // The document is shorter than the whole, so that damage hits it often.
+        // The document alone is shorter than a GLB, so damage hits it often.
         for original in [glb(&json, &blob), json.to_string().into_bytes()] {
             for (index, bytes) in mutants(&original, 400, 9).enumerate() {
                 let bytes = if original.starts_with(b"{") { glb_of(&bytes, &blob) } else { bytes };
@@ -363,7 +364,7 @@ mod tests {
                 }
             }
         }
-        // Both must occur, or the damage is too small or too great to test anything.
+        // Both must occur, or the damage is too small or too large to test anything.
         assert!(good > 20 && bad > 20, "{good} good, {bad} bad");
     }
 }

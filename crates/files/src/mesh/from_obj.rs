@@ -1,18 +1,19 @@
 //! Wavefront OBJ: vertices, normals, polygons, and the names of materials or groups.
 //!
-//! Materials count by name alone, so the .mtl file is not needed; without materials the names of `g` and `o` count.
-//! Curves, lines, points and texture coordinates are passed over. Source: Wavefront, Advanced Visualizer manual,
-//! appendix B1 (version 3.0).
+//! Materials are used by name only, so the .mtl file is not needed; without materials the names of
+//! `g` and `o` count. Curves, lines, points and texture coordinates are ignored. Source: Wavefront,
+//! Advanced Visualizer manual, appendix B1 (version 3.0).
 
 use crate::mesh::error::MeshError;
 use crate::mesh::format::{LengthUnit, MeshFormat};
 use glam::DVec3;
 use lumiduct_base::mesh::{MeshBuilder, TriangleMesh, UNNAMED_FACE, area_vector};
 
-/// Polygons with more corners are only tried from their first one: trying all takes the square of the corners.
+/// Polygons with more corners are fanned from the first corner only: trying all takes quadratic
+/// time.
 const MAX_FANS: usize = 64;
 
-/// What names a face.
+/// What gives a face its name.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum NamedBy {
     Material,
@@ -135,7 +136,7 @@ fn fan_start(polygon: &[Corner]) -> Option<usize> {
     let (area, start) = (0..starts)
         .map(|start| (smallest(start), start))
         .max_by(|one, other| one.0.total_cmp(&other.0).then(other.1.cmp(&one.1)))?;
-    // Corners on a straight side give triangles of no area, which rounding may turn over.
+    // Corners on a straight side give triangles of zero area, which rounding may invert.
     (area >= -1e-6 * whole.length_squared()).then_some(start)
 }
 

@@ -1,5 +1,5 @@
-//! STL, binary and ASCII. The names of ASCII solids become faces; the normals of the file are facet normals and are
-//! not read.
+//! STL, binary and ASCII. The names of ASCII solids become faces; the normals in the file are facet
+//! normals and are ignored.
 //!
 //! Layout: 3D Systems, Stereolithography Interface Specification (1988). Many binary files start with "solid" as
 //! ASCII ones do, so the length decides: 84 bytes and 50 for every triangle.

@@ -1,5 +1,5 @@
-//! The bytes behind a glTF document: the blob of a GLB, data URIs and files beside it; accessors with their bounds
-//! checked once, before anything is read.
+//! The bytes behind a glTF document: the blob of a GLB, data URIs and external files; the bounds of
+//! accessors are checked once, before anything is read.
 
 use crate::mesh::error::{MAX_FILE_BYTES, MeshError};
 use crate::mesh::file::read_file;
@@ -31,7 +31,7 @@ impl<'a> Elements<'a> {
         self.count
     }
 
-    /// The bytes of one, if there is such a one.
+    /// The bytes of one element, if it exists.
     pub(crate) fn get(&self, index: usize) -> Option<&'a [u8]> {
         let start = (index < self.count).then_some(index * self.stride)?;
         self.bytes.get(start..start + self.size)

@@ -7,7 +7,7 @@ use gltf::json::mesh::{Mesh, Primitive, Semantic};
 use gltf::json::validation::Checked;
 use gltf::json::{Index, Root};
 
-/// Refuses copies of meshes that take more than [`MAX_COPIES_BYTES`], before any of them is made.
+/// Refuses copies of meshes that take more than [`MAX_COPIES_BYTES`], before any is made.
 pub(crate) fn refuse_too_many_copies(
     root: &Root,
     buffers: &Buffers<'_>,

@@ -1,4 +1,5 @@
-//! Where the nodes of a glTF document stand in its scene. Broken trees are refused: a node has one parent at most.
+//! Transforms of the nodes of a glTF document to its scene. Broken trees are refused: a node has at
+//! most one parent.
 
 use crate::mesh::error::MeshError;
 use crate::mesh::gltf_buffers::broken;
@@ -15,7 +16,7 @@ pub(crate) fn placed_nodes(root: &Root) -> Result<Vec<(&Node, DAffine3)>, MeshEr
     let scene = scene.ok_or_else(|| broken("it has no scene".into()))?;
     let mut seen = vec![false; root.nodes.len()];
     let mut placed = Vec::new();
-    // A stack of our own: a chain of nodes may be longer than the thread's stack.
+    // An explicit stack: a chain of nodes may overflow the thread's stack.
     let mut open: Vec<(Index<Node>, DAffine3)> =
         scene.nodes.iter().rev().map(|node| (*node, DAffine3::IDENTITY)).collect();
     while let Some((index, parent)) = open.pop() {
@@ -65,7 +66,8 @@ fn local_transform(node: &Node) -> Result<DAffine3, &'static str> {
     if volume == 0.0 { Err("makes everything flat") } else { Ok(transform) }
 }
 
-/// What takes normals along: the inverse transpose times the size of the determinant, so that nothing is divided.
+/// The matrix that transforms normals: the inverse transpose times the magnitude of the
+/// determinant, which avoids a division.
 pub(crate) fn cofactors(matrix: DMat3) -> DMat3 {
     let (x, y, z) = (matrix.x_axis, matrix.y_axis, matrix.z_axis);
     DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * matrix.determinant().signum()

@@ -1,9 +1,10 @@
 //! Triangle meshes from files: glTF and GLB, STL, OBJ.
 //!
-//! All readers give the same [`TriangleMesh`]: millimetres in f64, positions welded where they coincide exactly,
-//! normals per corner, and a face name for every triangle. A reader never trusts a count or an index of the file:
-//! broken or hostile data is a [`MeshError`], never a panic. Whether the mesh is closed and the right way out is
-//! asked afterwards ([`lumiduct_base::mesh::health()`]). What a face does to light is not known here.
+//! All readers give the same [`TriangleMesh`]: millimetres in f64, positions welded where they
+//! coincide exactly, normals per corner, and a face name for every triangle. A reader never trusts
+//! a count or an index of the file: broken or hostile data gives a [`MeshError`], never a panic.
+//! Whether the mesh is closed and the right way out is checked afterwards
+//! ([`lumiduct_base::mesh::health()`]). This module knows no optical properties.
 
 mod error;
 mod file;
@@ -26,7 +27,7 @@ use lumiduct_base::mesh::TriangleMesh;
 use lumiduct_base::text::visible;
 use std::path::Path;
 
-/// Reads a mesh whose lengths are in `unit`; the ending of the name tells the format.
+/// Reads a mesh whose lengths are in `unit`; the file name extension gives the format.
 pub fn read(path: &Path, unit: LengthUnit) -> Result<TriangleMesh, MeshError> {
     let format = MeshFormat::of(path)?;
     let bytes = read_file(path, MAX_FILE_BYTES)?;

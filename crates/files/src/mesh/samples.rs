@@ -6,7 +6,7 @@ use rand_core::{Rng, SeedableRng};
 use rand_xoshiro::SplitMix64;
 use serde_json::{Value, json};
 
-/// `count` damaged copies of a file: bytes changed, cut out, doubled, and the end missing.
+/// `count` damaged copies of a file: bytes changed, removed or duplicated, or the end missing.
 pub(crate) fn mutants(original: &[u8], count: u64, seed: u64) -> impl Iterator<Item = Vec<u8>> {
     (0..count).map(move |index| {
         let mut random = SplitMix64::seed_from_u64(seed << 32 | index);

@@ -1,4 +1,4 @@
-//! The sun and the sky: that each says once where the sun is, and where up and north are.
+//! The sun and the sky: each gives the place of the sun exactly once, and up and north are valid.
 
 use crate::check::scene::Scene;
 use crate::keys::Key;
@@ -86,7 +86,7 @@ fn check_place(key: &Key, place: &SunPlaceSpec, problems: &mut Problems) {
     judge("time", time, read_time(time).err(), "write it as \"14:30\" or \"14:30:15\"");
 }
 
-/// Up and north have to be two directions.
+/// Up and north must not be parallel.
 fn check_world(scene: Scene<'_>, problems: &mut Problems) {
     let [up, north] = [scene.spec.up, scene.spec.north].map(DVec3::from);
     for (name, direction) in [("up", up), ("north", north)] {
@@ -97,7 +97,7 @@ fn check_world(scene: Scene<'_>, problems: &mut Problems) {
         }
     }
     if Frame::from_axis_and_x(DVec3::ZERO, up, north).is_none() {
-        // `north` may be the one that nobody wrote.
+        // `north` may be omitted in the file.
         let name = if scene.places.has(&Key::of(&["north"])) { "north" } else { "up" };
         problems
             .error(&Key::of(&[name]), "`up` and `north` are parallel")

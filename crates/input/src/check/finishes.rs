@@ -1,4 +1,4 @@
-//! Finishes give back no more light than they get.
+//! Finishes return no more light than they receive.
 
 use crate::check::references;
 use crate::check::scene::Scene;

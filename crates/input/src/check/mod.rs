@@ -1,4 +1,4 @@
-//! Rules of a scene that span several keys and need nothing but the file.
+//! Rules of a scene that span several keys and need only the file.
 //!
 //! Geometry, and whether a named face exists, is decided when the scene is built.
 
@@ -23,7 +23,7 @@ mod surfaces;
 pub(crate) use names::{check_length, check_name, check_title};
 pub(crate) use run::check_demands;
 
-/// Notes names that are taken twice, and names of things that are not there.
+/// Notes duplicate names, and references to missing things.
 pub fn check_names(spec: &SceneSpec, places: &Places, problems: &mut Problems) {
     let scene = Scene { spec, places };
     check_title(&spec.title, problems);

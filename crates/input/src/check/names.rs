@@ -1,4 +1,4 @@
-//! Names: their letters, and that none is used twice.
+//! Names: their characters, and that they are unique.
 
 use crate::keys::{Key, Places, is_bare};
 use crate::problems::{Problem, Problems};
@@ -10,7 +10,8 @@ const SHARED: [&str; 4] = ["solids", "sheets", "sources", "sensors"];
 /// Names that measures of the whole scene have.
 const RESERVED: [&str; 1] = ["balance"];
 
-/// Most letters of a name: names of files hold up to three of them, and file systems take 255 bytes (POSIX `NAME_MAX`).
+/// Most letters of a name: file names contain up to three of them, and file systems take 255 bytes
+/// (POSIX `NAME_MAX`).
 const MOST_LETTERS: usize = 64;
 
 pub(crate) fn check(places: &Places, problems: &mut Problems) {
@@ -45,7 +46,7 @@ pub(crate) fn check(places: &Places, problems: &mut Problems) {
     }
 }
 
-/// Notes a title that would break the head of a report.
+/// Notes a title that would break the heading of a report.
 pub(crate) fn check_title(title: &str, problems: &mut Problems) {
     if title.contains(char::is_control) {
         problems
@@ -54,7 +55,7 @@ pub(crate) fn check_title(title: &str, problems: &mut Problems) {
     }
 }
 
-/// Notes a name that files and columns cannot have.
+/// Notes a name that is invalid for files and columns.
 pub(crate) fn check_name<'p>(
     name: &str,
     key: &Key,

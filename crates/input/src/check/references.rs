@@ -1,4 +1,4 @@
-//! Names of media and finishes that are used: that they exist, and that finishes are not made of themselves.
+//! References to media and finishes: they exist, and no finish contains itself.
 
 use indexmap::{IndexMap, IndexSet};
 
@@ -33,7 +33,8 @@ pub(crate) fn check(scene: Scene<'_>, problems: &mut Problems) {
     check_loops(scene, problems);
 }
 
-/// Names in a table of the file, and the predefined ones. A medium or finish with an error of its own is known, too.
+/// Names in a table of the file, and the predefined ones. A medium or finish with an error counts
+/// as known, too.
 fn known<'a>(scene: Scene<'a>, family: &str, predefined: &[&'a str]) -> IndexSet<&'a str> {
     let table = scene.places.root().get(family).and_then(Node::table);
     table
@@ -140,7 +141,8 @@ fn parts(finish: &FinishSpec) -> &[crate::spec::finish::MixturePartSpec] {
     }
 }
 
-/// Finds mixtures that contain themselves: what is left when finishes that use no unresolved one are taken away.
+/// Finds mixtures that contain themselves: the rest after repeatedly removing finishes that use no
+/// unresolved one.
 fn check_loops(scene: Scene<'_>, problems: &mut Problems) {
     let finishes = &scene.spec.finishes;
     let mut users: IndexMap<&str, Vec<&str>> = IndexMap::new();

@@ -1,9 +1,9 @@
-//! The scene that the rules are held against: what its file says, and where. Knows no rule.
+//! The scene that the rules check: the content of its file, with places. Knows no rule.
 
 use crate::keys::Places;
 use crate::spec::SceneSpec;
 
-/// A scene as a file says it, and where.
+/// The content of a scene file, with places.
 #[derive(Clone, Copy)]
 pub(super) struct Scene<'a> {
     pub(super) spec: &'a SceneSpec,

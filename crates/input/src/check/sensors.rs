@@ -1,4 +1,4 @@
-//! Keys of a sensor that fit its kind and its place, and the number of its cells.
+//! The keys of a sensor fit its kind and place, and its number of cells is within limits.
 
 use crate::check::scene::Scene;
 use crate::keys::Key;
@@ -72,7 +72,7 @@ fn check_place(key: &Key, sensor: &SensorSpec, problems: &mut Problems) {
     }
 }
 
-/// First passages are known of a surface that light meets from anywhere.
+/// First passages are defined for a surface that light can meet from anywhere.
 fn check_passage(key: &Key, sensor: &SensorSpec, problems: &mut Problems) {
     if sensor.passage == PassageSpec::Every {
         return;
@@ -93,7 +93,7 @@ fn check_passage(key: &Key, sensor: &SensorSpec, problems: &mut Problems) {
     }
 }
 
-/// Which shapes a sensor names for its area.
+/// The shapes that a sensor gives for its area.
 struct Area {
     rectangle: bool,
     disk: bool,
@@ -174,7 +174,7 @@ fn check_goniometer(key: &Key, goniometer: &GoniometerSpec, problems: &mut Probl
 /// The number of steps in a full range, if it is whole.
 fn check_step(key: &Key, step: f64, full: f64, problems: &mut Problems) -> Option<f64> {
     let count = full / step;
-    // Steps such as 0.1 are not exact in binary: 1e-9 of the range is far below any step that is.
+    // Steps such as 0.1 are not exact in binary; 1e-9 of the range is far below any real step.
     if (count - count.round()).abs() <= 1e-9 * count {
         return Some(count);
     }
@@ -185,7 +185,8 @@ fn check_step(key: &Key, step: f64, full: f64, problems: &mut Problems) -> Optio
     None
 }
 
-/// A goniometer is a sphere, and an image looks along its axis: they are on no face, choose no side, and stop no light.
+/// A goniometer is a sphere, and an image looks along its axis: they have no face and no side, and
+/// absorb no light.
 fn check_free(key: &Key, what: &str, sensor: &SensorSpec, problems: &mut Problems) {
     let given = [
         ("on", sensor.on.is_some()),
@@ -200,7 +201,7 @@ fn check_free(key: &Key, what: &str, sensor: &SensorSpec, problems: &mut Problem
 }
 
 fn check_image(key: &Key, image: &ImageSpec, sensor: &SensorSpec, problems: &mut Problems) {
-    // What `on` takes the place of is told with `on`.
+    // Keys that `on` replaces are reported with `on`.
     if sensor.on.is_none() {
         let area = Area { rectangle: image.rectangle.is_some(), disk: image.disk.is_some() };
         check_area(key, "image", area, sensor, problems);

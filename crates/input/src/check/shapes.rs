@@ -1,4 +1,4 @@
-//! Lengths of one shape that have an order.
+//! Lengths of one shape that must be ordered.
 
 use crate::check::scene::Scene;
 use crate::keys::Key;
@@ -65,7 +65,7 @@ fn check_paraboloid(key: &Key, shape: &ParaboloidSpec, problems: &mut Problems) 
     );
 }
 
-/// Checks the old keys of a lens, which exclude the new ones.
+/// Checks the old keys of a lens, which cannot be mixed with the new ones.
 fn check_lens(key: &Key, lens: &LensSpec, problems: &mut Problems) {
     let ends = [
         ("entry", lens.entry.is_some(), "entry_radius_mm", lens.entry_radius_mm, 1.0),

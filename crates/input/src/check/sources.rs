@@ -1,4 +1,4 @@
-//! Keys of a source that fit its kind and its emission.
+//! The keys of a source fit its kind and its emission.
 
 use crate::check::scene::Scene;
 use crate::keys::Key;
@@ -18,7 +18,7 @@ pub(crate) fn check(scene: Scene<'_>, problems: &mut Problems) {
     check_units(scene, problems);
 }
 
-/// What a kind of source emits from.
+/// The extent of a kind of source.
 #[derive(Clone, Copy, PartialEq)]
 enum Extent {
     Point,
@@ -28,14 +28,14 @@ enum Extent {
     Volume,
 }
 
-/// A source with keys of its own.
+/// The keys specific to a kind of source.
 struct Kind<'a> {
     common: &'a SourceCommonSpec,
     extent: Extent,
     name: &'static str,
 }
 
-/// `None` of the sun and the sky, which emit from afar.
+/// `None` for the sun and the sky, which emit from infinity.
 fn extent(source: &SourceSpec) -> Option<Extent> {
     let extent = match source {
         SourceSpec::Point(_) => Extent::Point,

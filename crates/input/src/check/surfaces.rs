@@ -1,7 +1,7 @@
 //! Rules that several finishes share: reflectance and transmittance add up to no more than 1, haze
-//! scatters no more light than there is, and tables against the angle are complete.
+//! scatters no more light than available, and tables against the angle are complete.
 //!
-//! Does not know which finish has to keep which rule.
+//! Does not know which rule applies to which finish.
 
 use crate::check::scene::Scene;
 use crate::keys::Key;
@@ -11,18 +11,18 @@ use crate::spec::finish::{HazeSheetSpec, TabulatedSpec};
 use lumiduct_base::number::format_value;
 use lumiduct_core::optics::{HazeLaw, HazeSides, integrated_scatter};
 
-/// Rounding that a sum of decimal fractions may have.
+/// Rounding error allowed for a sum of decimal fractions.
 const SUM_TOLERANCE: f64 = 1e-12;
 
-/// Haze as a file states it.
+/// Haze as given in a file.
 pub(super) struct Law<'a> {
     pub(super) key: Key,
     pub(super) law: HazeLaw,
-    /// The key to which what is scattered is proportional.
+    /// The key that scales the scattered light.
     pub(super) strength: &'a str,
 }
 
-/// The least that reflectance and transmittance may add up to.
+/// The least sum of reflectance and transmittance.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Least {
     Zero,
@@ -120,7 +120,7 @@ pub(super) fn check_tabulated(key: &Key, spec: &TabulatedSpec, problems: &mut Pr
     }
 }
 
-/// Angles of a table go up from 0 to 90 deg: nothing is to be guessed beyond its ends.
+/// Angles of a table increase from 0 to 90 deg: nothing is extrapolated.
 pub(super) fn check_angles(key: &Key, angles: &[f64], problems: &mut Problems) {
     let key = key.field("angles_deg");
     if let Some(place) = angles.windows(2).position(|pair| pair[1] <= pair[0]) {

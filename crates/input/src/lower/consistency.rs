@@ -1,4 +1,5 @@
-//! What can only be judged when the scene stands: solids that fill the same space, and faces that cannot be open.
+//! Checks that need the built scene: solids that fill the same space, and faces that cannot be
+//! open.
 
 use crate::keys::Key;
 use crate::problems::Problems;
@@ -7,10 +8,10 @@ use glam::DVec3;
 use lumiduct_core::rng::{Dimension, Sampler};
 use lumiduct_core::scene::{Just, Owner, Ray, Scene, Solid, SolidId};
 
-/// Points that are tried in the space that the boxes of two solids share.
+/// Points tried in the space common to the boxes of two solids.
 const PROBES: u64 = 512;
 
-/// Notes pairs of solids of equal priority that overlap: nothing says which medium counts.
+/// Notes pairs of solids of equal priority that overlap: it is undefined which medium counts.
 pub(super) fn check_overlaps(spec: &SceneSpec, scene: &Scene, problems: &mut Problems) {
     for (first, one) in scene.solids.iter().enumerate() {
         for (second, other) in scene.solids.iter().enumerate().skip(first + 1) {
@@ -46,13 +47,13 @@ fn common_point(scene: &Scene, first: SolidId, second: SolidId) -> Option<DVec3>
         let [u, v] = sampler.pair(Dimension::EmitPosition);
         let w = sampler.one(Dimension::EmitPosition);
         let point = min + DVec3::new(u, v, w) * (max - min);
-        // A direction along no axis of anything.
+        // A direction not aligned with any axis.
         let inside = scene.inside_at(&Ray::new(point, DVec3::new(0.41, 0.57, 0.71)), Just::Ahead);
         (inside.contains(first) && inside.contains(second)).then_some(point)
     })
 }
 
-/// Notes faces of solids that light passes unbent though the index changes there.
+/// Notes open faces of solids where the index changes, as light would pass them without refraction.
 pub(super) fn check_open_faces(spec: &SceneSpec, scene: &Scene, problems: &mut Problems) {
     let index = |medium: lumiduct_core::scene::MediumId| scene.media[medium.index()].index(0.0);
     for pattern in &scene.patterns {

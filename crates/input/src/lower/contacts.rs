@@ -1,7 +1,7 @@
-//! Solids that come so near to each other that they were meant to touch, and do not.
+//! Solids so close to each other that they were meant to touch, but do not.
 //!
-//! Faces that coincide to rounding are one interface. Numbers of a mesh in single precision, or of a drawing that was
-//! rounded, leave a layer between them that light meets though nobody wants it.
+//! Faces that coincide to rounding are one interface. Single precision coordinates of a mesh, or
+//! rounded ones of a drawing, leave an unintended layer between them.
 
 use crate::lower::consistency::solid_key;
 use crate::problems::Problems;
@@ -12,20 +12,21 @@ use lumiduct_core::scene::shape::Toward;
 use lumiduct_core::scene::{AreaPoint, FaceArea, FaceId, Owner, Ray, Scene, SolidId};
 use std::collections::BTreeMap;
 
-/// Solids nearer than this, mm, were meant to touch: two wavelengths of light, below which rays do not hold.
+/// Solids closer than this, mm, were meant to touch: two wavelengths, below which ray optics does
+/// not hold.
 const TOUCHING_MM: f64 = 1e-3;
-/// Points that are tried on a face.
+/// Points tried on a face.
 const PROBES: u64 = 48;
-/// Cosine of the angle between faces that lie side by side, 1.
+/// Least cosine of the angle between adjacent faces, 1.
 const PARALLEL: f64 = 0.99;
 
-/// Two solids side by side.
+/// A gap between two solids.
 #[derive(Debug, Clone, Copy)]
 struct Gap {
     /// The face it was found from.
     face: FaceId,
     points: u64,
-    /// The widest place, mm.
+    /// The widest gap, mm.
     widest: f64,
 }
 
@@ -56,7 +57,7 @@ pub(super) fn check_contacts(spec: &SceneSpec, scene: &Scene, problems: &mut Pro
     }
 }
 
-/// Looks from points of a face for other solids just before it or just behind.
+/// Searches from points of a face for other solids just before or behind it.
 fn probe(scene: &Scene, face: FaceId, solid: SolidId, gaps: &mut BTreeMap<[SolidId; 2], Gap>) {
     let area = FaceArea::new(scene, &[face]);
     for probe in 0..PROBES {
@@ -73,7 +74,8 @@ fn probe(scene: &Scene, face: FaceId, solid: SolidId, gaps: &mut BTreeMap<[Solid
             if other == solid || beyond.abs() > TOUCHING_MM || beyond.abs() <= scene.tolerance {
                 return;
             }
-            // A layer is left where the other begins beyond the face, or ends before it; else they overlap.
+            // There is a gap where the other solid begins beyond the face or ends before it; else
+            // they overlap.
             let is_layer = (beyond > 0.0) == (crossing.toward == Toward::Back);
             let is_beside = scene.normal(prim, ray.at(crossing.t)).dot(normal).abs() > PARALLEL;
             if is_layer && is_beside {

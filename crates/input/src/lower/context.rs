@@ -1,5 +1,5 @@
-//! What the parts of the lowering share: the file, the scene as far as it is built, and the names
-//! of what is in it. Does not know how anything is lowered.
+//! What the parts of the lowering share: the file, the scene built so far, and the names in it.
+//! Does not know how anything is lowered.
 
 use crate::keys::{Key, Places};
 use crate::lower::weathers::Member;
@@ -18,21 +18,21 @@ pub(crate) struct Context<'a> {
     pub(super) meshes: Digest,
     pub(super) media: IndexMap<String, MediumId>,
     pub(super) finishes: IndexMap<String, FinishId>,
-    /// What light from behind meets, of finishes that were asked for it.
+    /// The back of finishes, as far as it was requested.
     pub(super) behind: IndexMap<FinishId, FinishId>,
-    /// Faces by dotted name; a name such as `duct.wall` may stand for several.
+    /// Faces by dotted name; a name such as `duct.wall` may refer to several.
     pub(super) faces: IndexMap<String, Vec<FaceId>>,
-    /// All sources, by what decides their light group.
+    /// All sources, by what determines their light group.
     pub(super) members: Vec<Member>,
 }
 
 impl Context<'_> {
-    /// The faces of a dotted name, or an error with the nearest known names.
+    /// The faces of a dotted name, or an error with the closest known names.
     pub(super) fn faces_named(&mut self, name: &str, key: &Key) -> Option<Vec<FaceId>> {
         if let Some(faces) = self.faces.get(name) {
             return Some(faces.clone());
         }
-        // What could not be built has been told, and has no faces.
+        // A body that could not be built has been reported and has no faces.
         let owner = name.split('.').next().unwrap_or_default();
         let is_due = self.spec.solids.contains_key(owner) || self.spec.sheets.contains_key(owner);
         let has_faces = self.faces.keys().any(|face| face.split('.').next() == Some(owner));
@@ -40,7 +40,7 @@ impl Context<'_> {
             return None;
         }
         let all = self.faces.keys().map(String::as_str);
-        // Of a known body its own faces, of an unknown one all that there are.
+        // For a known body its own faces, for an unknown one all faces.
         let known: Vec<&str> =
             all.filter(|face| !has_faces || face.split('.').next() == Some(owner)).collect();
         let hint = face_hint(name, known.iter().copied());

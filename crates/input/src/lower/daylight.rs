@@ -1,4 +1,4 @@
-//! The sun and the sky: where their light starts, from where it comes, and how much it is.
+//! The sun and the sky: where their light starts, its directions, and its flux.
 
 use crate::keys::Key;
 use crate::lower::context::Context;
@@ -17,51 +17,51 @@ use lumiduct_core::scene::{
 };
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Azimuth of a sun of which none is told, deg: south.
+/// Default azimuth of a sun, deg: south.
 const SOUTH_DEG: f64 = 180.0;
-/// By how much the sphere from which light starts is larger than what it has to hold, 1.
+/// Ratio of the sphere from which light starts to what it must contain, 1.
 const ROOM: f64 = 1.01;
-/// Areas of surfaces that differ by no more than this, relative, are the same.
+/// Areas of surfaces that differ by at most this, relative, are the same.
 const SAME_AREA: f64 = 1e-9;
 /// Type number of the clear sky of low turbidity, CIE S 011/E:2003.
 const CLEAR: usize = 12;
 
-/// Where light from the distance starts.
+/// Where light from infinity starts.
 struct Aim {
     emitter: Emitter,
     kind: EmitterKind,
     /// The frame that laws of emission refer to.
     frame: Frame,
-    /// That the luminance times the projected solid angle is taken by, mm².
+    /// The area that multiplies luminance times projected solid angle, mm².
     area: f64,
     start: Start,
 }
 
-/// Around a thing that light is aimed at.
+/// A ball around a thing that light is aimed at.
 struct Ball {
     center: DVec3,
     /// mm
     radius: f64,
 }
 
-/// A place of the sun above the horizon.
+/// A position of the sun above the horizon.
 #[derive(Debug, Clone, Copy)]
 struct Sun {
     /// rad
     elevation: f64,
     /// From north, clockwise, rad.
     azimuth: f64,
-    /// Toward it, unit vector of the frame with x east, y north, z up.
+    /// Toward the sun, unit vector in the frame with x east, y north, z up.
     toward: DVec3,
 }
 
-/// What a source of daylight emits.
+/// Emission of a daylight source.
 #[derive(Debug)]
 struct FarLight {
     emission: Emission,
     /// lm
     flux: f64,
-    /// Of a sun, rad.
+    /// Elevation of a sun, rad.
     elevation: Option<f64>,
     sun: Option<SunAngles>,
 }
@@ -101,7 +101,7 @@ impl Context<'_> {
         }
     }
 
-    /// Whether a thing of the file, or a source made so far, has a name.
+    /// Whether a name is taken in the file or by a source made so far.
     pub(super) fn is_taken(&self, name: &str) -> bool {
         let spec = self.spec;
         spec.sources.contains_key(name)
@@ -123,7 +123,7 @@ impl Context<'_> {
                 .hint("turn the face to the sun, or aim at a solid or sheet by its name");
             return;
         }
-        // E = π L sin²h on a plane across the axis.
+        // E = π L sin²h on a plane normal to the axis.
         let luminance = per_m2_to_per_mm2(spec.illuminance_lx) / (PI * half_angle.sin().powi(2));
         let projected = match aim.kind {
             EmitterKind::Surface => PI * half_angle.sin().powi(2) * axis.z,
@@ -146,7 +146,7 @@ impl Context<'_> {
 
     pub(super) fn lower_sky(&mut self, name: &str, spec: &SkySpec, key: &Key) {
         let sun = match (spec.place.elevation_deg, &spec.place.when) {
-            // Only skies that are the same on all sides have none.
+            // Only skies without dependence on the azimuth have none.
             (None, None) => Some(Sun::new(FRAC_PI_2.to_degrees(), SOUTH_DEG)),
             (Some(_), _) | (_, Some(_)) => self.sun(&spec.place, key),
         };
@@ -208,20 +208,20 @@ impl Context<'_> {
     /// East, north and up as x, y and z.
     fn sky_frame(&self) -> Option<Frame> {
         let [up, north] = [self.spec.up, self.spec.north].map(DVec3::from);
-        // The second axis of this frame is to the left of north.
+        // The second axis of this frame points west.
         let Frame { x: north, y: west, z: up, .. } =
             Frame::from_axis_and_x(DVec3::ZERO, up, north)?;
         Some(Frame { origin: DVec3::ZERO, x: -west, y: north, z: up })
     }
 
-    /// Where the sun is; an error where that is below the horizon.
+    /// The position of the sun; an error if below the horizon.
     fn sun(&mut self, place: &SunPlaceSpec, key: &Key) -> Option<Sun> {
         if let Some(elevation) = place.elevation_deg {
             return Some(Sun::new(elevation, place.azimuth_deg.unwrap_or(SOUTH_DEG)));
         }
         let WhenSpec { date, time, utc_offset_h, latitude_deg, longitude_deg } =
             place.when.as_ref()?;
-        // What cannot be read has been told.
+        // An unreadable value has been reported.
         let hours = read_time(time).ok()? - utc_offset_h;
         let days = Date::read(date).ok()?.days() + hours / 24.0;
         let (latitude_deg, longitude_deg) = (*latitude_deg, *longitude_deg);
@@ -239,14 +239,14 @@ impl Context<'_> {
         Some(Sun::new(position.elevation_deg, position.azimuth_deg))
     }
 
-    /// Where light starts that is aimed at a flat face, a solid or a sheet.
+    /// Where light aimed at a flat face, a solid or a sheet starts.
     fn aim_of_daylight(&mut self, name: &str, key: &Key) -> Option<Aim> {
         let key = key.field("aim");
         if let Some(ball) = self.ball_around(name) {
             return Some(self.aim_at_body(ball));
         }
         if self.spec.solids.contains_key(name) || self.spec.sheets.contains_key(name) {
-            // It could not be built, which has been told.
+            // It could not be built, which has been reported.
             return None;
         }
         if !name.contains('.') {
@@ -274,14 +274,14 @@ impl Context<'_> {
             return None;
         }
         let (center, half) = (bounds.center(), 0.5 * (bounds.max - bounds.min));
-        // A whole sphere fills its box from side to side, and keeps away from its corners.
+        // A whole sphere touches the sides of its box, but not the corners.
         let sphere_area = 4.0 * PI * half.x * half.x;
         let is_whole = |shape: &Shape| (shape.area() / sphere_area - 1.0).abs() < SAME_AREA;
         let is_sphere = matches!(shapes.as_slice(), [shape @ Shape::Sphere(_)] if is_whole(shape));
         Some(Ball { center, radius: if is_sphere { half.x } else { half.length() } })
     }
 
-    /// Light starts outside of all solids and sheets: one that stands in its way shades.
+    /// Light starts outside all solids and sheets, so that those in its way cast shadows.
     fn aim_at_body(&self, ball: Ball) -> Aim {
         let Ball { center, radius } = ball;
         let bodies = self.builder.scene();
@@ -328,7 +328,7 @@ impl Context<'_> {
         let frame = Frame { y: -plane.y, z: -plane.z, ..plane };
         let emitter = Emitter::surface(shapes, EmitSide::Back, Some(frame));
         let area = emitter.area()?;
-        // It has to cross the face, as light from afar does.
+        // It must cross the face, as light from infinity does.
         Some(Aim { emitter, kind: EmitterKind::Surface, frame, area, start: Start::Behind })
     }
 }

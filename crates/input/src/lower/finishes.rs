@@ -1,4 +1,4 @@
-//! Finishes: names, references and tables in place.
+//! Finishes: names, references and inline tables.
 
 use crate::keys::Key;
 use crate::lower::context::Context;
@@ -36,7 +36,7 @@ impl Context<'_> {
         }
     }
 
-    /// The finish that light meets which comes from behind one: another one for films.
+    /// The finish that light from behind meets: a different one for films.
     pub(super) fn behind(&mut self, finish: FinishId) -> FinishId {
         if let Some(behind) = self.behind.get(&finish) {
             return *behind;
@@ -53,7 +53,7 @@ impl Context<'_> {
         behind
     }
 
-    /// The finish behind one where the file may say it; what lies behind a film is the film.
+    /// The finish behind one where the file may give it; the back of a film is the film.
     pub(super) fn declared_behind(
         &mut self,
         front: Option<FinishId>,
@@ -109,9 +109,10 @@ impl Context<'_> {
         }
     }
 
-    /// The finish of a part of a mixture. A mixture of itself was refused by the validation; the depth is a backstop.
+    /// The finish of a part of a mixture. A mixture of itself was refused by the validation; the
+    /// depth limit is a safeguard.
     fn referenced(&self, reference: &FinishRef, depth: usize) -> Bsdf {
-        /// Deeper mixtures of mixtures cannot be told from one that contains itself.
+        /// Deeper nesting of mixtures is treated as a mixture that contains itself.
         const DEEPEST: usize = 16;
         match reference {
             FinishRef::Inline(spec) if depth <= DEEPEST => self.bsdf(spec, depth),

@@ -1,4 +1,4 @@
-//! The flux of a source, from the amount of light that the file states for it.
+//! The flux of a source, from the amount of light given in the file.
 
 use crate::keys::Key;
 use crate::lower::context::Context;
@@ -7,10 +7,10 @@ use lumiduct_base::number::format_value;
 use lumiduct_base::units::per_m2_to_per_mm2;
 use lumiduct_core::scene::{Emission, Emitter};
 
-/// Least flux of a source that is not dark, lm or W: shares of it in 1e9 cells have squares that
-/// are no subnormal numbers.
+/// Least flux of a source that is not dark, lm or W: the squares of its shares in 1e9 cells are not
+/// subnormal.
 const LEAST_FLUX: f64 = 1e-30;
-/// Largest flux of a source, lm or W: far from where sums of squares overflow.
+/// Largest flux of a source, lm or W: sums of squares are far from overflow.
 const LARGEST_FLUX: f64 = 1e30;
 
 impl Context<'_> {
@@ -57,8 +57,8 @@ impl Context<'_> {
         self.carried([intensity, intensity * per_intensity?], &key.field("intensity_cd"))
     }
 
-    /// The flux, lm or W, that a stated amount makes; an error where its squares, or sums of them,
-    /// are no numbers.
+    /// The flux, lm or W, of a given amount; an error where its squares, or sums of them, underflow
+    /// or overflow.
     pub(super) fn carried(&mut self, [stated, flux]: [f64; 2], amount: &Key) -> Option<f64> {
         if stated == 0.0 || (LEAST_FLUX..=LARGEST_FLUX).contains(&flux) {
             return Some(flux);

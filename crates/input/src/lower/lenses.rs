@@ -8,10 +8,10 @@ use lumiduct_base::math::Frame;
 use lumiduct_base::number::{format_least_length, format_length};
 use lumiduct_core::scene::shape::{Cylinder, Shape, Sphere};
 
-/// A spherical face as the file says it.
+/// A spherical face as given in the file.
 struct Curved {
     key: Key,
-    /// Radius of curvature, mm: positive where the centre lies further along the axis.
+    /// Radius of curvature, mm: positive where the centre is further along the axis.
     radius: f64,
 }
 
@@ -45,7 +45,7 @@ impl Context<'_> {
         let (entry, entry_edge) = lens_end(frame, 0.0, radius(entry), rim, Ends::Entry);
         let (exit, exit_edge) = lens_end(frame, thickness, radius(exit), rim, Ends::Exit);
         let edge = exit_edge - entry_edge;
-        // A hemisphere's rim meets its flat side: no edge is left but rounding.
+        // The rim of a hemisphere meets its flat side: any remaining edge is rounding.
         let no_edge = 1e-12 * lens.diameter_mm;
         if edge < -no_edge {
             let least = format_least_length(thickness - edge);
@@ -105,7 +105,7 @@ impl Context<'_> {
 
 /// Radius, mm, of the sphere whose cap is `sag` mm high over a rim of radius `rim` mm: rim² = sag (2 R - sag).
 fn radius_of_cap(sag: f64, rim: f64) -> f64 {
-    // The exact half sphere must not miss its rim by rounding.
+    // Rounding must not make an exact hemisphere miss its rim.
     (0.5 * (rim * rim / sag + sag)).max(rim)
 }
 
@@ -115,7 +115,7 @@ fn lens_end(frame: Frame, vertex: f64, radius: Option<f64>, rim: f64, end: Ends)
     let size = radius.abs();
     let sag = rim * rim / (size + (size * size - rim * rim).sqrt());
     let center = frame.shifted((vertex + radius) * frame.z);
-    // Seen from the centre the vertex lies against the axis for a positive radius.
+    // Seen from the centre, the vertex lies opposite to the axis for a positive radius.
     let (shape, edge) = if radius > 0.0 {
         (Sphere::zone(center, size, -size, sag - size), vertex + sag)
     } else {

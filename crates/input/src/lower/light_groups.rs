@@ -7,7 +7,8 @@ use crate::lower::weathers::{Member, weathers};
 use indexmap::IndexMap;
 use lumiduct_core::scene::{LightGroup, LightGroups, SourceId};
 
-/// Most letters of the names of several sources joined; beyond, a name is that of the first and how many more there are.
+/// Most letters of the joined names of several sources; a longer name becomes the first and the
+/// number of others.
 const MOST_JOINED: usize = 64;
 
 impl Context<'_> {
@@ -42,7 +43,7 @@ impl Context<'_> {
         self.builder.set_light(LightGroups { groups: groups.collect(), weathers: names });
     }
 
-    /// Groups and sources share their names, as measures tell them apart by nothing else.
+    /// Groups and sources share one name space, as measures distinguish them by name only.
     fn check_group_names(&mut self, members: &[Member]) {
         for member in members {
             let Some((name, key)) = &member.group else { continue };
@@ -66,7 +67,7 @@ impl Context<'_> {
             }
         }
         let joined = names.join("_and_");
-        // A list of many sources is no name for a column.
+        // A list of many sources is too long for the name of a column.
         match names.as_slice() {
             [first, others @ ..] if joined.len() > MOST_JOINED => {
                 format!("{first}_and_{}_more", others.len())

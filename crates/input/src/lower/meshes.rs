@@ -12,7 +12,7 @@ use lumiduct_core::scene::mesh::Mesh;
 use lumiduct_core::scene::{FinishId, SolidId};
 use lumiduct_files::mesh::{self, LengthUnit};
 
-/// Bounces for which the drift of a faceted wall is told.
+/// Bounces for which the drift of a faceted wall is reported.
 const DRIFT_BOUNCES: u32 = 100;
 
 impl Context<'_> {
@@ -41,7 +41,7 @@ impl Context<'_> {
         Some(mesh)
     }
 
-    /// Notes what is wrong or coarse about a mesh.
+    /// Notes defects and coarseness of a mesh.
     fn examine(&mut self, spec: &MeshSpec, health: &MeshHealth, key: &Key) {
         let name = &spec.file;
         let defects = [

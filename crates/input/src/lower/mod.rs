@@ -1,7 +1,8 @@
-//! From what the file says to what the program traces.
+//! From the spec of the file to the scene that is traced.
 //!
-//! Things that stand at faces of other things are placed after them. Every function notes what is wrong and goes on,
-//! so that all problems of a scene are reported together; what could not be built is left out.
+//! Things placed at faces of other things are built after them. Every function notes problems and
+//! continues, so that all problems of a scene are reported together; what cannot be built is left
+//! out.
 
 mod consistency;
 mod contacts;
@@ -41,13 +42,13 @@ use lumiduct_core::optics::{Medium, VolumeScattering};
 use lumiduct_core::plan::{Check, RunPlan};
 use lumiduct_core::scene::{Builder, MediumId, Scene};
 
-/// What lowering makes of a scene file.
+/// The result of lowering a scene file.
 #[derive(Debug)]
 pub(crate) struct Lowered {
     pub(crate) scene: Scene,
     pub(crate) run: RunPlan,
     pub(crate) checks: Vec<Check>,
-    /// Tells apart what the mesh files said.
+    /// Identifies the contents of the mesh files.
     pub(crate) meshes: Digest,
 }
 
@@ -93,8 +94,8 @@ pub(crate) fn lower(spec: &SceneSpec, places: &Places, problems: &mut Problems) 
     context.problems.is_free_of_errors().then_some(Lowered { scene, run, checks, meshes })
 }
 
-/// The middle of the positions that the file names: internal coordinates are about it, so that a scene far from the
-/// user's origin keeps its digits.
+/// The middle of the positions in the file: internal coordinates are relative to it, so that a
+/// scene far from the user's origin keeps its precision.
 fn origin(spec: &SceneSpec) -> DVec3 {
     let solids = spec.solids.values().map(|solid| solid.common().at.as_ref());
     let sheets = spec.sheets.values().map(|sheet| sheet.common().at());
@@ -102,7 +103,7 @@ fn origin(spec: &SceneSpec) -> DVec3 {
     if free.is_empty() { DVec3::ZERO } else { free.iter().sum::<DVec3>() / free.len() as f64 }
 }
 
-/// The position of a thing that stands in space.
+/// The position of a thing placed in free space.
 fn position(at: Option<&PlacementSpec>) -> Option<DVec3> {
     match at {
         None => Some(DVec3::ZERO),
@@ -135,7 +136,7 @@ impl Context<'_> {
         }
     }
 
-    /// Builds solids and sheets, each after what it stands at.
+    /// Builds solids and sheets, each after the body it is placed at.
     fn lower_bodies(&mut self) {
         let mut waiting: Vec<Body> =
             self.spec.solids.keys().map(|name| Body::Solid(name.clone())).collect();
@@ -167,7 +168,7 @@ impl Context<'_> {
         }
     }
 
-    /// The name of the thing at whose face a body stands.
+    /// The name of the thing at whose face a body is placed.
     fn support(&self, body: &Body) -> Option<String> {
         let at = match body {
             Body::Solid(name) => self.spec.solids[name.as_str()].common().at.as_ref(),

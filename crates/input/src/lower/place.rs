@@ -6,17 +6,17 @@ use crate::spec::placement::{FacePlacementSpec, PlacementSpec, SpacePlacementSpe
 use glam::DVec3;
 use lumiduct_base::math::Frame;
 
-/// Which way a thing at a face points.
+/// The direction in which a thing at a face points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Facing {
-    /// Away from the face: a solid or sheet goes on from it.
+    /// Away from the face: a solid or sheet extends from it.
     Away,
     /// At the face: a source shines on it, a sensor looks at it.
     Toward,
 }
 
 impl Context<'_> {
-    /// The frame of a placement, about the scene's origin; the origin of the user when none is given.
+    /// The frame of a placement, relative to the scene's origin; by default at the user's origin.
     pub(super) fn place(
         &mut self,
         at: Option<&PlacementSpec>,

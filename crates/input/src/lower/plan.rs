@@ -10,7 +10,7 @@ use lumiduct_core::plan::{
 use lumiduct_core::scene::{Scene, Sensor};
 use std::time::Duration;
 
-/// Paths of a run that names no stop rule.
+/// Paths of a run without a stop rule.
 const DEFAULT_PATHS: u64 = 2_000_000;
 
 pub(super) fn run(spec: &SceneSpec) -> RunPlan {
@@ -37,7 +37,7 @@ pub(super) fn run(spec: &SceneSpec) -> RunPlan {
     }
 }
 
-/// The estimators that sensors ask for themselves, in the order of the scene.
+/// The estimators set for single sensors, in the order of the scene.
 pub(super) fn sensor_estimators(spec: &SceneSpec, scene: &Scene) -> Vec<Option<Estimator>> {
     let of_sensor = |sensor: &Sensor| {
         spec.sensors.get(&sensor.name)?.estimator.map(|estimator| match estimator {
@@ -51,7 +51,7 @@ pub(super) fn sensor_estimators(spec: &SceneSpec, scene: &Scene) -> Vec<Option<E
     scene.sensors.iter().map(of_sensor).collect()
 }
 
-/// How flux is to be estimated.
+/// The requested estimator of flux.
 pub(crate) fn request(spec: EstimatorSpec) -> Request {
     match spec {
         EstimatorSpec::Auto => Request::Auto,

@@ -97,7 +97,7 @@ impl Context<'_> {
     ) -> Option<SurfaceSensor> {
         let whole = Division::Cells([1, 1]);
         let mut sensor = self.surface(name, spec, image.rectangle, image.disk, whole, key)?;
-        // Validated: an image is on no face, its aperture is flat.
+        // Validated: an image has no face, its aperture is flat.
         let frame = sensor.frame?;
         let pixels = image.pixels.map(|count| count as usize);
         sensor.seeing =
@@ -111,7 +111,7 @@ impl Context<'_> {
         goniometer: &GoniometerSpec,
         key: &Key,
     ) -> Option<Goniometer> {
-        // The pole is where the light of the face goes.
+        // The pole points along the light that leaves the face.
         let frame = self.place(spec.at.as_ref(), key, Facing::Away)?;
         Some(Goniometer {
             frame,
@@ -207,7 +207,7 @@ impl Context<'_> {
         Some((faces, if port { Place::Port } else { Place::Face }))
     }
 
-    /// The face that a free sensor brings: a port that light passes, or a sheet that absorbs.
+    /// The own face of a free sensor: a port that light passes, or a sheet that absorbs.
     fn own_face(
         &mut self,
         name: &str,
@@ -248,8 +248,8 @@ fn division(plane: &PlaneSpec) -> Division {
     }
 }
 
-/// The grid over some faces; `None` when rings are asked of a face that is not round and flat, or several cells of one
-/// that cannot be unrolled.
+/// The grid over some faces; `None` if rings are requested on a face that is not round and flat, or
+/// several cells on one that cannot be unrolled.
 fn grid(scene: &Scene, faces: &[FaceId], division: &Division) -> Option<Grid> {
     let rects: Option<Vec<ChartRect>> = match division {
         Division::Cells([1, 1]) => {
@@ -272,8 +272,8 @@ fn grid(scene: &Scene, faces: &[FaceId], division: &Division) -> Option<Grid> {
     }
 }
 
-/// The rectangle of a face that is one cell. All points of a curved face of a mesh have the coordinates (0, 0), so that a
-/// square of the same area about them holds all of it.
+/// The rectangle of a face that is one cell. All points of a curved face of a mesh have the
+/// coordinates (0, 0), so a square of the same area around them contains all of it.
 fn whole_rect(scene: &Scene, face: FaceId) -> ChartRect {
     scene.face_rect(face).unwrap_or_else(|| {
         let max = DVec2::splat(0.5 * scene.face_area(face).sqrt());
@@ -281,7 +281,7 @@ fn whole_rect(scene: &Scene, face: FaceId) -> ChartRect {
     })
 }
 
-/// The area of a curved face of a mesh, mm², which is in one cell; `None` for all other faces.
+/// The area of a curved face of a mesh, mm², which is one cell; `None` for all other faces.
 fn curved_area(scene: &Scene, face: FaceId) -> Option<f64> {
     scene.face_rect(face).is_none().then(|| scene.face_area(face))
 }
@@ -305,8 +305,8 @@ fn views(luminance: &LuminanceSpec, frame: &Frame) -> Views {
     }
 }
 
-/// Projected solid angle of the part of a cone above the surface, sr: π sin²h cos θ when all of it is; else by the
-/// midpoint rule over the cone's rings.
+/// Projected solid angle of the part of a cone above the surface, sr: π sin²h cos θ if the whole
+/// cone is; else by the midpoint rule over its rings.
 fn projected_cone(tilt: f64, half_angle: f64) -> f64 {
     if tilt + half_angle <= 0.5 * PI {
         return PI * half_angle.sin().powi(2) * tilt.cos();

@@ -1,4 +1,5 @@
-//! Remarks on what a scene may say and seldom means: the light is traced as the file says, and the numbers look plausible.
+//! Remarks on valid input that is seldom intended: the light is traced as the file says, and the
+//! numbers look plausible.
 
 use crate::keys::Key;
 use crate::problems::Problems;
@@ -14,7 +15,7 @@ use lumiduct_core::scene::{
     Emitted, FaceArea, FaceId, FinishId, Just, Owner, Ray, Scene, Solid, SolidId,
 };
 
-/// Points that are tried on a face of a sheet: a cut of a hundredth of it is missed once in ten sheets.
+/// Points tried on a face of a sheet: a cut of a hundredth of it is missed once in ten sheets.
 const PROBES: u64 = 256;
 
 /// Remarks on sources, sheets and sensors.
@@ -24,8 +25,8 @@ pub(super) fn check_slips(spec: &SceneSpec, scene: &Scene, problems: &mut Proble
     check_sides(spec, problems);
 }
 
-/// Notes a free source whose light all starts inside a guide. A source with a `body` is a component cast into the guide, and
-/// an explicit `contact` states the intent; neither is noted.
+/// Notes a free source whose light all starts inside a guide. Not noted are a source with a `body`,
+/// which is a component cast into the guide, and an explicit `contact`, which states the intent.
 pub(super) fn check_embedded(
     scene: &Scene,
     source: &SourceSpec,
@@ -61,8 +62,8 @@ fn stands_free(source: &SourceSpec, common: &SourceCommonSpec) -> bool {
         && !matches!(common.at, Some(PlacementSpec::AtFace(_)))
 }
 
-/// Whether light is meant to come into a solid by an entry: not into a ball, such as the dome of a chip, nor where the entry is
-/// black.
+/// Whether light is meant to enter a solid by an entry: not a ball, such as the dome of a chip, nor
+/// where the entry is black.
 fn is_a_guide(scene: &Scene, solid: &Solid) -> bool {
     let name = format!("{}.entry", solid.name);
     let is_black = |finish: FinishId| scene.finishes[finish.index()].bsdf == Bsdf::Absorber;
@@ -71,13 +72,14 @@ fn is_a_guide(scene: &Scene, solid: &Solid) -> bool {
         && faces.any(|face| face.name == name && !face.back.is_some_and(is_black))
 }
 
-/// Whether the medium of a solid differs from the surroundings: if not, its faces are no obstacle.
+/// Whether the medium of a solid differs from the surroundings: if not, its faces have no effect.
 fn has_an_index_step(scene: &Scene, solid: &Solid) -> bool {
     let index = |medium: lumiduct_core::scene::MediumId| scene.media[medium.index()].index(0.0);
     index(solid.medium) != index(scene.surroundings)
 }
 
-/// Notes sheets that stand partly inside a guide and partly outside of it. Boards and roofs do go through domes.
+/// Notes sheets partly inside a guide and partly outside it. Boards and roofs do pass through
+/// domes.
 fn check_cut_solids(spec: &SceneSpec, scene: &Scene, problems: &mut Problems) {
     for (name, sheet) in &spec.sheets {
         let is_own = |face: &FaceId| {
@@ -105,7 +107,7 @@ fn check_cut_solids(spec: &SceneSpec, scene: &Scene, problems: &mut Problems) {
     }
 }
 
-/// A point of some faces inside a solid, and one outside of it, if there are both.
+/// A point of some faces inside a solid, and one outside it, if both exist.
 fn cut(scene: &Scene, faces: &[FaceId], solid: SolidId) -> Option<[DVec3; 2]> {
     let bounds = scene.solids[solid.index()].bounds;
     let near = |face: &&FaceId| {
@@ -113,7 +115,7 @@ fn cut(scene: &Scene, faces: &[FaceId], solid: SolidId) -> Option<[DVec3; 2]> {
         patches.any(|patch| patch.shape.bounds().overlaps(&bounds))
     };
     let mut found = [None, None];
-    // A sheet is smaller than its faces together only where it has several walls; each of them is looked at by itself.
+    // Each face is tested separately, as a sheet may have several walls.
     for face in faces.iter().filter(near) {
         let area = FaceArea::new(scene, std::slice::from_ref(face));
         for probe in 0..PROBES {
@@ -122,7 +124,7 @@ fn cut(scene: &Scene, faces: &[FaceId], solid: SolidId) -> Option<[DVec3; 2]> {
             let ray = Ray::new(at.point, at.normal);
             let [ahead, behind] =
                 [Just::Ahead, Just::Behind].map(|side| scene.inside_at(&ray, side).contains(solid));
-            // On a face of the solid the two differ: the sheet lies on it.
+            // They differ on a face of the solid: the sheet lies on it.
             if ahead == behind {
                 found[usize::from(!ahead)].get_or_insert(at.point);
             }
@@ -139,7 +141,8 @@ fn place(point: DVec3) -> String {
     format!("[{x}, {y}, {z}] mm")
 }
 
-/// Notes sources that stand before a face whose leaving light a sensor counts: their light goes in there, against the sensor.
+/// Notes sources before a face where a sensor counts leaving light: their light enters there,
+/// against the sensor.
 fn check_sources_at_exits(spec: &SceneSpec, problems: &mut Problems) {
     for (name, source) in &spec.sources {
         let at = source.common().and_then(|common| common.at.as_ref());
@@ -149,7 +152,7 @@ fn check_sources_at_exits(spec: &SceneSpec, problems: &mut Problems) {
                 && sensor.counts == Some(CountsSpec::Leaving)
                 && sensor.side.is_none()
         };
-        // A sensor on an entry counts what comes back.
+        // A sensor on an entry counts the returning light.
         let is_entry = at.face.ends_with(".entry");
         let Some((sensor, _)) = spec.sensors.iter().find(|(_, sensor)| counts_there(sensor)) else {
             continue;
@@ -166,7 +169,7 @@ fn check_sources_at_exits(spec: &SceneSpec, problems: &mut Problems) {
     }
 }
 
-/// Notes a `side` that counts the light against its way on the exit of a guide.
+/// Notes a `side` that counts light opposite to its direction at the exit of a guide.
 fn check_sides(spec: &SceneSpec, problems: &mut Problems) {
     for (name, sensor) in &spec.sensors {
         let Some(on) = sensor.on.as_ref().filter(|on| on.ends_with(".exit")) else { continue };

@@ -79,12 +79,12 @@ impl Context<'_> {
             SolidSpec::Lens(lens) => self.lens_surfaces(&lens.shape, frame, key),
             SolidSpec::CompoundParabolic(cpc) => self.compound_parabolic(&cpc.shape, frame, key),
             SolidSpec::Paraboloid(paraboloid) => Some(self.paraboloid(&paraboloid.shape, frame)),
-            // Meshes bring their faces from a file.
+            // The faces of meshes come from a file.
             SolidSpec::Mesh(_) => None,
         }
     }
 
-    /// Finishes by face name: `wall` stands for all walls, a side's own name wins over it.
+    /// Finishes by face name: `wall` applies to all walls, the name of a side overrides it.
     pub(super) fn face_finishes(
         &mut self,
         body: &str,

@@ -45,7 +45,8 @@ impl Context<'_> {
         if let Some(finish) = self.body_finish(&common.body) {
             on = self.add_body(name, &emitter, finish);
         }
-        // Whether paths have to be asked for their solids is settled when all is built.
+        // Whether the solids at the start must be found for each path is decided when the scene is
+        // complete.
         let start = match common.contact {
             Some(ContactSpec::Air) => Start::Behind,
             Some(ContactSpec::Optical) | None => Start::Ahead,
@@ -106,7 +107,7 @@ impl Context<'_> {
         Some(emission)
     }
 
-    /// What emits, and the surfaces of the scene it lies on.
+    /// The emitter, and the surfaces of the scene it lies on.
     fn emitter(
         &mut self,
         source: &SourceSpec,
@@ -180,7 +181,8 @@ impl Context<'_> {
                 on.extend(patch_range(&entry.extent).map(PrimId::new));
             }
         }
-        // A flat face has axes that a tilted beam can refer to; its z must be the direction of emission.
+        // The axes of a flat face are the reference of a tilted beam; z must be the direction of
+        // emission.
         let plane = match faces.as_slice() {
             [face] => scene.face_plane(*face),
             _ => None,

@@ -1,4 +1,5 @@
-//! Where sources start their light: outside of all solids, in one, or, which is refused, partly here and partly there.
+//! Where the light of sources starts: outside all solids, in one, or partly in one, which is
+//! refused.
 
 use crate::keys::Key;
 use crate::lower::slips::check_embedded;
@@ -13,10 +14,10 @@ use lumiduct_core::optics::Bsdf;
 use lumiduct_core::rng::Sampler;
 use lumiduct_core::scene::{Emitted, FaceId, FinishId, Owner, Scene, SolidId, Start};
 
-/// Starts that are looked at, per source: a part of a source that is missed is less than a hundredth of it.
+/// Starts tested per source: any part that is missed is less than a hundredth of the source.
 const LOOKS: u64 = 1024;
 
-/// Sources that touch no solid start all their paths outside, without asking.
+/// Sources that touch no solid start all their paths outside, without a search.
 pub(super) fn settle_starts(scene: &mut Scene) {
     let boxes: Vec<_> =
         scene.solids.iter().map(|solid| solid.bounds.grown(scene.tolerance)).collect();
@@ -28,8 +29,8 @@ pub(super) fn settle_starts(scene: &mut Scene) {
     }
 }
 
-/// Remarks on sources without a gap: there may be glue or a hair of air between, which is not the same light. A gap below
-/// the tolerance of coincident faces is none.
+/// Remarks on sources without a gap: glue or a thin air gap in between gives different light. A gap
+/// below the tolerance of coincident faces counts as none.
 pub(super) fn note_joints(
     spec: &SceneSpec,
     scene: &Scene,
@@ -60,7 +61,7 @@ pub(super) fn note_joints(
     }
 }
 
-/// Notes sources that start where their light cannot get out.
+/// Notes sources whose light cannot escape from where it starts.
 pub(super) fn check_starts(spec: &SceneSpec, scene: &Scene, problems: &mut Problems) {
     for source in &scene.sources {
         let Some(kind) = spec.sources.get(&source.name).map(SourceSpec::kind) else { continue };
@@ -92,7 +93,7 @@ pub(super) fn check_starts(spec: &SceneSpec, scene: &Scene, problems: &mut Probl
     }
 }
 
-/// Whether a source is a surface that stands by itself: one at a face may be wider than it.
+/// Whether a source is a surface in free space: one at a face may be wider than the face.
 fn is_in_space(spec: &SceneSpec, name: &str) -> bool {
     spec.sources.get(name).is_some_and(|source| {
         let at_face =
@@ -103,7 +104,7 @@ fn is_in_space(spec: &SceneSpec, name: &str) -> bool {
     })
 }
 
-/// Notes a source that starts some of its light in a solid, such as a dome, and some outside of it.
+/// Notes a source that starts some of its light in a solid, such as a dome, and some outside it.
 fn check_covered(scene: &Scene, starts: &[Emitted], key: &Key, problems: &mut Problems) {
     for (index, solid) in scene.solids.iter().enumerate() {
         let is_in = |start: &&Emitted| start.inside.contains(SolidId::new(index));
@@ -123,7 +124,7 @@ fn check_covered(scene: &Scene, starts: &[Emitted], key: &Key, problems: &mut Pr
     }
 }
 
-/// Whether every face of a solid takes all light.
+/// Whether every face of a solid absorbs all light.
 fn is_opaque(scene: &Scene, solid: SolidId) -> bool {
     let absorbs = |finish: Option<FinishId>| {
         finish.is_some_and(|finish| scene.finishes[finish.index()].bsdf == Bsdf::Absorber)

@@ -12,14 +12,14 @@ use lumiduct_core::scene::sweep::{
     CornerKind, Leg, Profile, ProfileError, SweepError, SweepProblem, Wall, sweep,
 };
 
-/// A named face of a body that is being built.
+/// A named face of a body under construction.
 #[derive(Debug)]
 pub(super) struct NamedFace {
-    /// Name without that of the body.
+    /// Name without the name of the body.
     pub(super) name: String,
     /// Whether it is the wall, or an end that ducts leave open.
     pub(super) part: BodyPart,
-    /// What it consists of.
+    /// Its pieces.
     pub(super) pieces: Vec<Piece>,
 }
 
@@ -51,7 +51,7 @@ impl NamedFace {
 }
 
 impl Context<'_> {
-    /// The faces of a profile carried along a path.
+    /// The faces of a profile swept along a path.
     pub(super) fn sweep_surfaces(
         &mut self,
         spec: &SweepSpec,
@@ -151,7 +151,7 @@ impl Context<'_> {
             faces
                 .push(NamedFace::end("entry", disk_facing(frame, height(hole), hole, Ends::Entry)));
         }
-        // Half of base times height, less that of the tip that the hole cuts off.
+        // Half of base times height, less the tip that the hole cuts off.
         let volume =
             0.5 * std::f64::consts::PI * (rim * rim * height(rim) - hole * hole * height(hole));
         Surfaces { faces, volume: Some(volume) }
@@ -167,7 +167,7 @@ pub(super) enum Ends {
     Exit,
 }
 
-/// A disk across the axis at height `z`, facing out of the body.
+/// A disk normal to the axis at height `z`, facing out of the body.
 pub(super) fn disk_facing(frame: Frame, z: f64, radius: f64, end: Ends) -> Shape {
     let frame = frame.shifted(z * frame.z);
     let frame = match end {
@@ -212,7 +212,7 @@ fn leg(spec: &LegSpec) -> Leg {
     }
 }
 
-/// What to write instead, with the least length that would do where a length is at fault.
+/// What to write instead, with the least sufficient length where a length is at fault.
 fn remedy(error: &SweepError, path: &[LegSpec]) -> Option<String> {
     let leg = path.get(error.leg?)?;
     match &error.problem {

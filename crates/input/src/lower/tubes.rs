@@ -1,4 +1,4 @@
-//! Straight tubes with a wall of their own.
+//! Straight tubes with a solid wall.
 
 use crate::keys::Key;
 use crate::lower::context::Context;
@@ -51,7 +51,7 @@ fn straight(frame: Frame, profile: &Profile, length: f64) -> Result<Sweep, Sweep
     sweep(frame, profile, &[Leg::Straight { length, end_scale: 1.0 }])
 }
 
-/// How far edges of the outside cut into a round bore, mm; on flat sides prisms stand on the wall.
+/// How far edges of the outside cut into a round bore, mm; on flat sides prisms lie on the wall.
 fn reach_into_bore(inner: &Profile, outer: &Profile) -> Option<f64> {
     let (Profile::Circle { radius }, Profile::Polygon { points }) = (inner, outer) else {
         return None;
@@ -79,7 +79,7 @@ fn outline(inner: &Profile, outer: &TubeOuterSpec) -> Result<Profile, OutlineErr
     }
 }
 
-/// `None` where a wall is none of a straight leg, which does not happen here.
+/// `None` where a wall is not that of a straight leg, which does not happen here.
 fn tube(inner: &Sweep, outer: &Sweep) -> Option<Surfaces> {
     let bore: Option<Vec<Part>> = inner.parts.iter().map(Part::turned).collect();
     let wall = |name: &str, parts: Vec<Part>| NamedFace {

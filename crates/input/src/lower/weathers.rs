@@ -1,27 +1,27 @@
 //! Weathers: which sources of daylight shine together, and which never do.
 //!
-//! A sun and the skies about it are one weather; another place of the sun is another weather, and
-//! so is an overcast sky. Does not know how a weather is named.
+//! A sun and its skies are one weather; another position of the sun is another weather, and so is
+//! an overcast sky. Does not know how a weather is named.
 
 use crate::keys::Key;
 use crate::spec::daylight::{SkyModelSpec, SkySpec};
 use glam::DVec3;
 use lumiduct_core::scene::SourceId;
 
-/// Suns nearer than this are one sun, by the distance of their unit vectors: below a second of arc.
+/// Suns whose unit vectors are closer than this are one sun: below a second of arc.
 const SAME_SUN: f64 = 1e-6;
 
-/// A daylight source by what it shines with.
+/// A daylight source by the light it shines together with.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Daylight {
     /// The sun's disk, toward this unit vector.
     Sun(DVec3),
     /// A sky.
     Sky {
-        /// Toward the sun, of a sky that is brighter about it.
+        /// Toward the sun, for a sky that is brighter around it.
         sun: Option<DVec3>,
         model: SkyModelSpec,
-        /// Zenith luminance and horizontal illuminance; exactly one is given.
+        /// Zenith luminance and horizontal illuminance; exactly one of them is given.
         amount: [Option<f64>; 2],
     },
 }
@@ -64,7 +64,7 @@ impl Daylight {
     }
 }
 
-/// What decides the light group of a source.
+/// What determines the light group of a source.
 #[derive(Debug)]
 pub(super) struct Member {
     pub(super) source: SourceId,
@@ -73,8 +73,7 @@ pub(super) struct Member {
     pub(super) daylight: Option<Daylight>,
 }
 
-/// Daylight sources by the weather in which they shine; those of one group in the scene file are
-/// one weather.
+/// Daylight sources by their weather; those of one group in the scene file are one weather.
 pub(super) fn weathers(members: &[Member]) -> Vec<Vec<&Member>> {
     let daylight = |member: &Member| member.daylight.clone();
     let mut skies: Vec<Vec<&Member>> = Vec::new();
@@ -103,7 +102,8 @@ pub(super) fn weathers(members: &[Member]) -> Vec<Vec<&Member>> {
         let mut about = weathers.iter_mut().filter(has_sun);
         match (about.next(), about.next()) {
             (Some(sky), None) => sky.extend(sun),
-            // Two skies about one sun are two weathers, and nobody says to which the sun belongs.
+            // Two skies with one sun are two weathers, and it is undefined to which the sun
+            // belongs.
             (None, _) | (Some(_), Some(_)) => weathers.push(sun),
         }
     }

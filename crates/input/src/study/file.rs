@@ -9,7 +9,7 @@ use crate::{convert, note_breaks, note_differences, schema, unreadable};
 use lumiduct_base::error::{Error, Result};
 use std::path::{Path, PathBuf};
 
-/// A study file that was read, with what is wrong with it so far.
+/// A study file that was read, with the problems found so far.
 pub(super) struct StudyDraft {
     pub(super) spec: StudySpec,
     pub(super) places: Places,
@@ -18,7 +18,7 @@ pub(super) struct StudyDraft {
     pub(super) problems: Problems,
 }
 
-/// Reads a study file and the table that it names.
+/// Reads a study file and the table it refers to.
 pub(super) fn read(path: &Path) -> Result<StudyDraft> {
     let (mut sources, mut problems) = (Sources::default(), Problems::default());
     let source = sources.add_file(path).map_err(|reason| unreadable(path, &reason.to_string()))?;
@@ -57,7 +57,7 @@ fn table_file(spec: &StudySpec, study: &Path) -> Option<PathBuf> {
     }
 }
 
-/// Whether a file is no study of this version; then it is not to be measured by this schema.
+/// Whether a file is not a study of this version, so that this schema does not apply.
 fn is_other_kind(root: &Node, problems: &mut Problems) -> bool {
     match (root.get("lumiduct_study"), root.get("lumiduct")) {
         (Some(Node { value: Value::Integer(version), origin }), _)

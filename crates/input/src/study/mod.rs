@@ -1,6 +1,6 @@
-//! The whole way from a study file to a study: what is varied in which scene, and what is asked of every design.
+//! From a study file to a study: what is varied in which scene, and what every design must meet.
 //!
-//! Which designs follow from the plan is not known here, and nothing is computed.
+//! This module does not expand the plan into designs, and computes nothing.
 
 mod file;
 mod list;
@@ -26,7 +26,8 @@ use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What the command line asks for beside the study file. Its names are part of the identity of a study.
+/// Command-line settings in addition to the study file. The field names are part of the identity of
+/// a study.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct StudySettings {
     /// `key=value` for keys of the scene, set for all designs after those of the study.
@@ -43,7 +44,7 @@ pub struct StudySettings {
     pub seed: Option<u64>,
 }
 
-/// Which designs are made of the parameters.
+/// How designs are made from the parameters.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Plan {
@@ -89,7 +90,7 @@ pub enum Best {
     Lowest,
 }
 
-/// What is kept of each design beside its row.
+/// What is kept of each design besides its row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Keep {
@@ -99,24 +100,24 @@ pub enum Keep {
     Reports,
 }
 
-/// A study to be run.
+/// A study to run.
 #[derive(Debug)]
 pub struct Study {
-    /// Name: that of the file without its ending.
+    /// Name: that of the file without its extension.
     pub name: String,
     /// Title for reports.
     pub title: String,
-    /// What the study is for.
+    /// The purpose of the study.
     pub description: Option<String>,
-    /// The scene that is varied, as it is without any parameter set.
+    /// The scene that is varied, without any parameter set.
     pub base: Job,
     /// Its file.
     pub scene: PathBuf,
-    /// What all designs have in common; overrides of a design come after those here.
+    /// Settings common to all designs; overrides of a design come after these.
     pub common: Settings,
     /// What is varied.
     pub parameters: Vec<Parameter>,
-    /// Which designs are made of it.
+    /// How designs are made from the parameters.
     pub plan: Plan,
     /// Dotted names of the measures that are recorded.
     pub measures: Vec<String>,
@@ -126,17 +127,18 @@ pub struct Study {
     pub checks: Vec<Check>,
     /// What is kept of each design.
     pub keep: Keep,
-    /// Where the study file says all this.
+    /// The places of the keys in the study file.
     pub places: Places,
     /// The study file, byte for byte.
     pub text: String,
-    /// Identifies study, scene, files that they and all choices name, and overrides: 64-bit FNV-1a, in hexadecimal.
+    /// Identifies study, scene, files referenced by them and by all choices, and overrides: 64-bit
+    /// FNV-1a, in hexadecimal.
     pub hash: String,
     /// Remarks on study and scene.
     pub warnings: Vec<Diagnostic>,
 }
 
-/// Loads a study file, its scene and everything that they name.
+/// Loads a study file, its scene and everything they refer to.
 pub fn load_study(path: &Path, settings: &StudySettings) -> Result<Study> {
     let StudyDraft { spec, places, table, mut problems } = read(path)?;
     let scene = path.parent().unwrap_or(Path::new("")).join(&spec.scene);
@@ -193,7 +195,7 @@ pub fn load_study(path: &Path, settings: &StudySettings) -> Result<Study> {
     })
 }
 
-/// Adds the scene of every choice: one may name a file that the scene alone does not.
+/// Adds the scene of every choice: a choice may refer to a file that the scene alone does not.
 fn add_choices(parameters: &[Parameter], scene: &Path, common: &Settings, hash: &mut Digest) {
     for parameter in parameters {
         for name in parameter.choices.keys() {
@@ -201,14 +203,14 @@ fn add_choices(parameters: &[Parameter], scene: &Path, common: &Settings, hash: 
             let settings = common.with(own);
             match load(scene, &settings) {
                 Ok(job) => hash.add(job.hash.as_bytes()),
-                // With other parameters it may become a scene: its files count all the same.
+                // With other parameters it may become valid, so its files count all the same.
                 Err(_) => add_files(scene, &settings, hash),
             }
         }
     }
 }
 
-/// Adds the files that a scene names, as far as it can be read.
+/// Adds the files that a scene refers to, as far as it can be read.
 fn add_files(scene: &Path, settings: &Settings, hash: &mut Digest) {
     let Ok(Draft { spec, places, .. }) = draft(scene, &settings.overrides) else { return };
     places.sources().iter().for_each(|source| hash.add(source.text().as_bytes()));
@@ -220,7 +222,7 @@ fn add_files(scene: &Path, settings: &Settings, hash: &mut Digest) {
     }
 }
 
-/// What is wrong with the scene of a study; what its `set` brought is told where it stands there.
+/// The problems of the scene of a study; those from its `set` are reported at their place there.
 fn of_study(error: Error, spec: &StudySpec, places: &Places) -> Error {
     let Error::Input(found) = error else { return error };
     let (mut own, mut rest) = (Problems::default(), Vec::new());
@@ -245,7 +247,8 @@ fn of_study(error: Error, spec: &StudySpec, places: &Places) -> Error {
     Error::Input(own.into_iter().chain(rest).collect())
 }
 
-/// What all designs have in common: the study's keys and stop rules, and those of the command line over them.
+/// Settings common to all designs: keys and stop rules of the study, overridden by those of the
+/// command line.
 fn common_settings(
     spec: &StudySpec,
     settings: &StudySettings,

@@ -1,4 +1,4 @@
-//! What a study varies: values, and the overrides of the scene that they make.
+//! The parameters of a study: values, and the scene overrides they make.
 
 use crate::Job;
 use crate::keys::Key;
@@ -12,7 +12,7 @@ use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// What a parameter is set to.
+/// The setting of a parameter.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Setting {
@@ -20,12 +20,12 @@ pub enum Setting {
     Number(f64),
     /// One of the choices of the parameter, by name.
     Choice(String),
-    /// Nothing: the scene says it.
+    /// Unset: the value of the scene applies.
     AsInScene,
 }
 
 impl Setting {
-    /// The nearest whole number. Its zero has no sign: there is one setting 0.
+    /// The nearest whole number. Zero has no sign, so that there is only one setting 0.
     pub fn whole(number: f64) -> Self {
         Self::Number(number.round() + 0.0)
     }
@@ -60,13 +60,13 @@ pub struct Tie {
     pub offset: f64,
 }
 
-/// What a parameter may be set to.
+/// The domain of a parameter.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Domain {
     /// One of these.
     Levels(Vec<Setting>),
-    /// Any number between two, each as likely.
+    /// Any number between two, all equally likely.
     Uniform {
         /// The least.
         from: f64,
@@ -75,16 +75,16 @@ pub enum Domain {
     },
     /// A number about a mean, within limits.
     Normal {
-        /// Mean of the curve before it is cut off.
+        /// Mean before truncation.
         mean: f64,
-        /// Standard deviation of the curve before it is cut off.
+        /// Standard deviation before truncation.
         std_dev: f64,
         /// The least.
         from: Option<f64>,
         /// The greatest.
         to: Option<f64>,
     },
-    /// What a table says.
+    /// The values of a table.
     Listed,
 }
 
@@ -97,11 +97,11 @@ pub struct Parameter {
     pub unit: Option<String>,
     /// The keys it sets.
     pub ties: Vec<Tie>,
-    /// What it may be set to.
+    /// Its domain.
     pub domain: Domain,
-    /// What the choices stand for, as TOML.
+    /// The values of the choices, as TOML.
     pub choices: IndexMap<String, String>,
-    /// What the scene says without it, if that is a number that all keys agree upon.
+    /// Its value in the scene, if that is a number on which all keys agree.
     pub nominal: Setting,
     /// Whether numbers are rounded to whole ones.
     pub whole: bool,
@@ -132,7 +132,7 @@ impl Parameter {
                 let (from, to) = (from.unwrap_or(f64::NEG_INFINITY), to.unwrap_or(f64::INFINITY));
                 vec![Setting::Number(mean.max(from).min(to))]
             }
-            // What a table will say is not known yet: what the scene says will do.
+            // The values of the table are not known yet: the value of the scene will do.
             Domain::Listed => vec![self.nominal.clone()],
         }
     }
@@ -140,10 +140,11 @@ impl Parameter {
 
 /// The column of the table of results before those of parameters and measures.
 pub const DESIGN_COLUMN: &str = "design";
-/// Those behind them.
+/// The columns after them.
 pub const OTHER_COLUMNS: [&str; 4] = ["rank", "paths", "ended", "error"];
 
-/// The column of a parameter in the table of results: "`length_mm`"; the name alone if it ends so.
+/// The column of a parameter in the table of results: "`length_mm`"; the name alone if it has this
+/// ending.
 pub fn column(name: &str, unit: Option<&str>) -> String {
     match unit {
         Some(unit) if !name.ends_with(&format!("_{unit}")) => format!("{name}_{unit}"),
@@ -178,7 +179,7 @@ fn tie(spec: &TiedKeySpec) -> Tie {
     }
 }
 
-/// What all keys of a parameter say in the scene, told as its value.
+/// The common value of all keys of a parameter in the scene.
 fn nominal(ties: &[Tie], base: &Job) -> Setting {
     let value = |tie: &Tie| {
         let node = base.places.node(&parse_key(&tie.key)?)?;
@@ -195,7 +196,7 @@ fn nominal(ties: &[Tie], base: &Job) -> Setting {
         (tie.factor != 0.0).then(|| (number - tie.offset) / tie.factor)
     };
     let values: Option<Vec<f64>> = ties.iter().map(value).collect();
-    // Offsets and factors round.
+    // Offsets and factors cause rounding.
     let agrees = |a: f64, b: f64| (a - b).abs() <= 1e-12 * a.abs().max(b.abs());
     match values.as_deref() {
         Some([first, rest @ ..]) if rest.iter().all(|other| agrees(*first, *other)) => {
@@ -205,7 +206,7 @@ fn nominal(ties: &[Tie], base: &Job) -> Setting {
     }
 }
 
-/// What a parameter may be set to. That it is given once and fits the plan has been checked.
+/// The domain of a parameter. Checks have ensured that it is given once and fits the plan.
 fn domain(spec: &ParameterSpec, plan: &PlanSpec) -> Domain {
     let is_stepped = match plan {
         PlanSpec::Grid | PlanSpec::OneAtATime => true,
@@ -239,7 +240,7 @@ fn domain(spec: &ParameterSpec, plan: &PlanSpec) -> Domain {
     }
 }
 
-/// A number with twelve digits: sums of decimal fractions are a little off.
+/// A number with twelve digits: sums of decimal fractions are slightly inexact.
 fn rounded(number: f64) -> f64 {
     format!("{number:.11e}").parse().unwrap_or(number)
 }
@@ -255,7 +256,7 @@ fn choices(spec: &ParameterSpec, key: &Key, problems: &mut Problems) -> IndexMap
     made
 }
 
-/// A value as TOML in one line; `None` of what TOML does not have.
+/// A value as TOML in one line; `None` for what TOML does not have.
 pub(super) fn toml_text(value: &serde_json::Value) -> Option<String> {
     Some(toml::Value::try_from(value).ok()?.to_string())
 }

@@ -17,7 +17,7 @@ use lumiduct_base::text::is_control;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Notes what cannot be meant, whatever the scene.
+/// Notes what is invalid for any scene.
 pub(super) fn check(
     spec: &StudySpec,
     places: &Places,
@@ -53,7 +53,7 @@ pub(super) fn check(
     check_count(spec, problems);
 }
 
-/// Notes a unit that no column can have.
+/// Notes a unit that is invalid for a column.
 fn check_unit(parameter: &ParameterSpec, key: &Key, problems: &mut Problems) {
     let (Some(unit), key) = (&parameter.unit, key.field("unit")) else { return };
     if unit.contains(is_control) {
@@ -63,7 +63,7 @@ fn check_unit(parameter: &ParameterSpec, key: &Key, problems: &mut Problems) {
     }
 }
 
-/// Notes columns of the table of results that would have one name.
+/// Notes columns of the table of results with the same name.
 fn check_columns(spec: &StudySpec, problems: &mut Problems) {
     let mut known: Vec<String> = OTHER_COLUMNS.map(str::to_owned).to_vec();
     known.push(DESIGN_COLUMN.to_owned());
@@ -86,7 +86,7 @@ fn check_columns(spec: &StudySpec, problems: &mut Problems) {
     }
 }
 
-/// Notes a factor by which a parameter does nothing.
+/// Notes a factor that makes a parameter ineffective.
 fn check_factor(tied: &TiedKeySpec, key: &Key, problems: &mut Problems) {
     match tied {
         TiedKeySpec::Scaled(own) if own.factor == 0.0 => {
@@ -96,9 +96,9 @@ fn check_factor(tied: &TiedKeySpec, key: &Key, problems: &mut Problems) {
     }
 }
 
-/// Notes a parameter whose values are not given, or twice, or not as the plan needs them.
+/// Notes a parameter whose values are missing, given twice, or not as the plan needs them.
 fn check_source(places: &Places, plan: &PlanSpec, key: &Key, problems: &mut Problems) {
-    // One that cannot be read is given, too.
+    // An unreadable one counts as given, too.
     let given: Vec<&str> = ["values", "range", "choices", "spread"]
         .into_iter()
         .filter(|name| places.has(&key.field(name)))
@@ -128,7 +128,7 @@ fn check_source(places: &Places, plan: &PlanSpec, key: &Key, problems: &mut Prob
     }
 }
 
-/// Notes ranges and spreads without room.
+/// Notes empty ranges and spreads.
 fn check_room(spec: &ParameterSpec, key: &Key, problems: &mut Problems) {
     if let Some(SpreadSpec::Normal(own)) = &spec.spread {
         check_limits(own, &key.field("spread").field("normal"), problems);
@@ -146,7 +146,7 @@ fn check_room(spec: &ParameterSpec, key: &Key, problems: &mut Problems) {
     }
 }
 
-/// The least and the greatest value of a parameter that has them, and the table that says so.
+/// The least and the greatest value of a parameter that has them, and their table.
 fn ends(spec: &ParameterSpec, key: &Key) -> Option<(f64, f64, Key)> {
     if let Some(own) = &spec.range {
         return Some((own.from, own.to, key.field("range")));
@@ -158,7 +158,7 @@ fn ends(spec: &ParameterSpec, key: &Key) -> Option<(f64, f64, Key)> {
     }
 }
 
-/// Notes values that are there twice, also by rounding: their designs would be the same.
+/// Notes duplicate values, also after rounding: their designs would be the same.
 pub(super) fn check_levels(parameters: &[Parameter], places: &Places, problems: &mut Problems) {
     for parameter in parameters {
         let Domain::Levels(levels) = &parameter.domain else { continue };
@@ -182,7 +182,7 @@ fn check_key(text: &str, key: &Key, problems: &mut Problems) {
     }
 }
 
-/// Notes a normal spread of which its limits leave next to nothing.
+/// Notes a normal spread whose limits exclude nearly all of it.
 fn check_limits(spec: &NormalSpec, key: &Key, problems: &mut Problems) {
     let NormalSpec { mean, std_dev, from, to } = spec;
     let far = FARTHEST_LIMIT * std_dev;
@@ -194,10 +194,11 @@ fn check_limits(spec: &NormalSpec, key: &Key, problems: &mut Problems) {
     }
 }
 
-/// Standard deviations beside the mean beyond which less than a millionth of a normal curve lies, 1.
+/// Standard deviations from the mean beyond which less than a millionth of a normal distribution
+/// lies, 1.
 const FARTHEST_LIMIT: f64 = 4.75;
 
-/// Notes keys that are set twice, or lie in one another: the later would win without a word.
+/// Notes keys that are set twice or contain one another: the later would silently win.
 fn check_shared_keys(spec: &StudySpec, problems: &mut Problems) {
     let mut known: Vec<(Key, String)> = Vec::new();
     for (name, parameter) in &spec.parameters {
@@ -215,7 +216,7 @@ fn check_shared_keys(spec: &StudySpec, problems: &mut Problems) {
     }
 }
 
-/// Notes keys under `set` that a study has other words for, or that a parameter takes away.
+/// Notes keys under `set` for which a study has its own keys, or that a parameter overrides.
 fn check_set(spec: &StudySpec, problems: &mut Problems) {
     for name in spec.set.keys() {
         let key = Key::of(&["set", name]);
@@ -230,7 +231,7 @@ fn check_set(spec: &StudySpec, problems: &mut Problems) {
     }
 }
 
-/// Notes overrides of the command line that a parameter takes away.
+/// Notes command-line overrides that a parameter overrides in turn.
 fn check_overrides(spec: &StudySpec, overrides: &[String], problems: &mut Problems) {
     for line in overrides {
         let key = line.split_once('=').and_then(|(key, _)| parse_key(key.trim()));
@@ -243,7 +244,7 @@ fn check_overrides(spec: &StudySpec, overrides: &[String], problems: &mut Proble
     }
 }
 
-/// The parameter that sets a key, or something that it is a part of.
+/// The parameter that sets a key or a table around it.
 fn varied_by<'a>(spec: &'a StudySpec, wanted: &Key) -> Option<&'a str> {
     let sets = |parameter: &ParameterSpec| {
         let mut keys = parameter.keys.iter().filter_map(|tied| parse_key(tied.key()));
@@ -275,8 +276,8 @@ fn check_count(spec: &StudySpec, problems: &mut Problems) {
     }
 }
 
-/// Notes keys that the scene does not have, or that take no value of their parameter. Where they take some, designs with
-/// the others say what is wrong with them.
+/// Notes keys that the scene does not have, or that accept no value of their parameter. Where they
+/// accept some, the designs with the others report their problems.
 pub(super) fn check_keys(
     parameters: &[Parameter],
     scene: &Path,
@@ -306,7 +307,7 @@ pub(super) fn check_keys(
     }
 }
 
-/// What is wrong with an override of a scene.
+/// The problems of an override of a scene.
 fn problems_of_override(scene: &Path, common: &Settings, line: String) -> Vec<Diagnostic> {
     let label = argument_label(&line);
     let mut found = problems_of_scene(scene, &common.with([line]));
@@ -314,12 +315,12 @@ fn problems_of_override(scene: &Path, common: &Settings, line: String) -> Vec<Di
     found
 }
 
-/// The problems of a scene with some overrides, without what is wrong with it alone.
+/// The problems of a scene with some overrides, without those of the scene alone.
 fn problems_of_scene(scene: &Path, settings: &Settings) -> Vec<Diagnostic> {
     match draft(scene, &settings.overrides) {
         Ok(Draft { problems, places, .. }) => problems.into_diagnostics(&places),
         Err(Error::Input(diagnostics)) => diagnostics,
-        // Files that went away in between are told by the designs.
+        // Files that disappeared in between are reported by the designs.
         Err(Error::Usage(_) | Error::Io { .. } | Error::Output { .. }) => Vec::new(),
     }
 }
@@ -332,7 +333,7 @@ fn is_about(found: &Diagnostic, label: &str) -> bool {
     is_error && found.file.as_deref() == Some(Path::new(label))
 }
 
-/// Notes a scene that stops by the clock.
+/// Notes a scene with a time limit.
 pub(super) fn check_clock(base: &Job, problems: &mut Problems) {
     if base.run.stop.time.is_some() {
         problems

@@ -1,4 +1,4 @@
-//! Values of which the schema allows several kinds.
+//! Values for which the schema allows several kinds.
 
 use serde_json::{Map, Value as Json};
 
@@ -68,7 +68,7 @@ impl Walk<'_> {
         self.error(node, at, format!("expected {expected}, found {found}")).hint(hint);
     }
 
-    /// A table whose only key names its kind.
+    /// A table whose only key is its kind.
     fn kinds(
         &mut self,
         node: &Node,
@@ -138,7 +138,7 @@ impl Walk<'_> {
         }
     }
 
-    /// A table whose form shows in the keys that only this form needs.
+    /// A table whose form is identified by the keys that only this form requires.
     fn forms(&mut self, node: &Node, entries: &Entries, forms: &[&Json], at: &At<'_>) {
         let marked: Vec<_> =
             forms.iter().filter_map(|form| Some((marker(form, forms)?, *form))).collect();
@@ -206,7 +206,7 @@ fn form<'a>(choice: &Choice<'a>) -> Option<&'a Json> {
     }
 }
 
-/// The schema of a number or an array, if it is of one of some types.
+/// The schema of a number or an array, if it has one of some types.
 fn plain<'a>(choice: &Choice<'a>, types: &[&str]) -> Option<&'a Json> {
     match choice {
         Choice::Plain(schema) => {

@@ -1,7 +1,7 @@
-//! A tree held against the JSON Schema: every problem of it, each at its place.
+//! Validates a tree against the JSON Schema: every problem, each at its place.
 //!
-//! Knows the words of JSON Schema that the spec types make, and nothing of what the keys mean. Rules across several
-//! tables are in `input::check`.
+//! Knows the keywords of JSON Schema that the spec types produce, but not the meaning of keys.
+//! Rules across several tables are in `input::check`.
 
 use serde_json::{Map, Value as Json};
 
@@ -18,16 +18,16 @@ pub mod wording;
 
 type Entries = indexmap::IndexMap<String, Entry>;
 
-/// Whether a tree holds everything that its files say.
+/// Whether a tree contains everything in its files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Completeness {
-    /// It does: a key that is not there is missing.
+    /// It does: an absent key is missing.
     Whole,
-    /// A break of the syntax may have hidden some keys.
+    /// A syntax error may have hidden some keys.
     Broken,
 }
 
-/// Notes everything in which a tree differs from a schema.
+/// Notes every difference of a tree from a schema.
 pub fn validate(
     root: &Node,
     schema: &Json,
@@ -39,7 +39,7 @@ pub fn validate(
     walk.value(root, schema, &At::ROOT);
 }
 
-/// What the walk through a tree carries along.
+/// The context of the walk through a tree.
 struct Walk<'a> {
     /// The whole schema, for its definitions.
     schema: &'a Json,
@@ -52,11 +52,11 @@ struct Walk<'a> {
 #[derive(Clone, Copy)]
 struct At<'a> {
     around: Option<(&'a At<'a>, Step<'a>)>,
-    /// Where the key stands, if there is one of its own.
+    /// The place of the key, if there is one.
     key: Option<&'a Origin>,
     /// Unit of the numbers in it, from its key or that of an array around it.
     unit: Option<&'static str>,
-    /// Keys of the table around it, for keys that stand one level too deep.
+    /// Keys of the table around it, for keys placed one level too deep.
     outer: Option<&'a Map<String, Json>>,
     /// The forms that the table may have, for keys that belong to another one.
     forms: &'a [&'a Json],

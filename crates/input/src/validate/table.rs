@@ -1,4 +1,4 @@
-//! The keys of one table: known, missing, and as many as there must be.
+//! The keys of one table: known, missing, and the required number.
 
 use serde_json::{Map, Value as Json};
 
@@ -29,7 +29,7 @@ impl Walk<'_> {
         self.required_set(node, entries, schema, at);
     }
 
-    /// Whether all that the files say in a table is in it.
+    /// Whether a table contains all its keys in the files.
     fn is_whole(&self, entries: &Entries) -> bool {
         let is_readable = |entry: &Entry| entry.node.value != Value::Unreadable;
         self.completeness == Completeness::Whole && entries.values().all(is_readable)

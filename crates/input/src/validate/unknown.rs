@@ -5,7 +5,7 @@ use crate::problems::{name_hint, nearest};
 use crate::schema;
 use crate::validate::{At, Entries, Walk, wording};
 
-/// Endings by which a user may have named another unit.
+/// Suffixes of other units that a user may have written.
 const FOREIGN_UNITS: [&str; 36] = [
     "mm", "cm", "dm", "m", "um", "nm", "in", "inch", "inches", "ft", "mm2", "m2", "deg", "degree",
     "degrees", "rad", "radians", "mrad", "lm", "lumen", "w", "mw", "watt", "cd", "mcd", "nits",
@@ -80,7 +80,7 @@ impl Walk<'_> {
     }
 }
 
-/// The known key that is the same but for its unit: `radius_mm` for `radius_cm` or `radius`.
+/// The known key that is the same except for its unit: `radius_mm` for `radius_cm` or `radius`.
 fn other_unit<'a>(name: &str, mut known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let stem = stem(name);
     known.find(|candidate| {
@@ -98,7 +98,7 @@ fn meant<'a>(name: &str, known: impl Iterator<Item = &'a str> + Clone) -> Option
     other_unit(name, known.clone()).or_else(|| nearest(name, known))
 }
 
-/// Whether a key is missing only because it is misspelt, which is said where it stands.
+/// Whether a key is missing only because it is misspelt, which is reported at its place.
 pub(crate) fn is_misspelt<'a>(
     missing: &str,
     entries: &Entries,

@@ -1,4 +1,4 @@
-//! How the schema and the values of a file are put into words.
+//! Wording of the schema and the values of a file.
 
 use serde_json::Value as Json;
 
@@ -27,7 +27,7 @@ pub(crate) fn expected(root: &Json, schema: &Json, unit: Option<&str>) -> String
     }
 }
 
-/// What may stand where there is a choice.
+/// The alternatives of a choice.
 fn one_of(root: &Json, choices: &[Choice<'_>], unit: Option<&str>) -> String {
     let mut parts = Vec::new();
     for choice in choices {
@@ -72,7 +72,7 @@ pub fn range(schema: &Json) -> Option<String> {
     (!parts.is_empty()).then(|| parts.join(", "))
 }
 
-/// A number without a needless ".0".
+/// A number without a redundant ".0".
 pub fn short(limit: &Json) -> String {
     limit
         .as_i64()
@@ -103,12 +103,12 @@ pub fn length(schema: &Json, unit: Option<&str>) -> String {
     }
 }
 
-/// A number of entries that was found.
+/// The number of entries found.
 pub(crate) fn count(count: usize) -> String {
     if count == 0 { "none".into() } else { count.to_string() }
 }
 
-/// What a file has, with its text where that is short.
+/// The value found in a file, with its text where that is short.
 pub(crate) fn found(node: &Node, sources: &Sources) -> String {
     let text = || sources.excerpt(&node.origin);
     match &node.value {
@@ -123,7 +123,7 @@ pub(crate) fn found(node: &Node, sources: &Sources) -> String {
     }
 }
 
-/// Names one after the other, each in the quotes of a key.
+/// A list of names, each in the quotes of a key.
 pub fn list<'a>(names: impl Iterator<Item = &'a str>) -> String {
     names.map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
 }

@@ -1,4 +1,4 @@
-//! `diff.html`: a comparison for people with a browser, with what the customer asks for first.
+//! `diff.html`: a comparison as a page for a browser, with what matters to the customer first.
 
 use crate::diff::page::{HEADER, cells, findings, remark, title};
 use crate::diff::{Diff, DiffRow, MapDiff, MapOutcome, maps};
@@ -6,7 +6,7 @@ use crate::html::data::drawn_map;
 use crate::html::frame::{Block, Page, Part, Plots, Standing, render};
 use lumiduct_base::error::Result;
 
-/// Rows of a table that are shown; those beyond are folded away.
+/// Rows of a table that are shown; further ones are folded away.
 const ROWS_SHOWN: usize = 60;
 
 /// The whole page.
@@ -36,7 +36,7 @@ pub(crate) fn html(diff: &Diff) -> Result<String> {
     render(&page, &plots)
 }
 
-/// What came of it, in a sentence.
+/// The outcome, in a sentence.
 fn verdict(diff: &Diff) -> String {
     let maps = diff.maps_that_count().filter(|map| !map.is_noise()).count();
     let words = findings(diff).pop().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Differences of maps, cell by cell. Maps are known by their tables: places, values and errors.
+//! Differences of maps, cell by cell. Maps are read from their tables: places, values and errors.
 
 use crate::OutputFile;
 use crate::html::cells::Cells;
@@ -9,14 +9,16 @@ use lumiduct_base::error::Result;
 use lumiduct_base::number::format_fixed;
 use ndarray::Array2;
 
-/// Chance that noise alone exceeds the bound of a map.
+/// Probability that noise alone exceeds the bound of a map.
 const FALSE_ALARM: f64 = 1e-3;
-/// A cell is judged whose value and error are those of so many counts at least: with fewer the error itself is too
-/// uncertain for z-scores (with 32 batches a cell, 27 maps of 300 were beyond the bound by noise alone; with 128, none).
+/// A cell is judged if its value and error correspond to at least this many counts: with fewer the
+/// error itself is too uncertain for z-scores (with 32 batches a cell, 27 maps of 300 were beyond
+/// the bound by noise alone; with 128, none).
 const COUNTS: f64 = 128.0;
-/// Share of the cells that may lie beyond the colours of a picture, so that a few noisy ones do not drown the others.
+/// Share of the cells that may exceed the colour range of a picture, so that a few noisy ones do
+/// not drown the others.
 const BEYOND_COLOURS: f64 = 0.01;
-/// Places nearer than this share of the extent of a map are the same: other machines round otherwise.
+/// Places closer than this share of the extent of a map are the same: machines round differently.
 const SAME_PLACE: f64 = 1e-9;
 
 /// The axes of a table.
@@ -29,7 +31,7 @@ enum Kind {
 }
 
 impl Kind {
-    /// The kind of a table by the names of its first columns; `None` where it is no map.
+    /// The kind of a table by the names of its first columns; `None` if it is not a map.
     fn of(header: &[&str]) -> Option<Self> {
         match header {
             ["u_mm", "v_mm", ..] => Some(Self::Surface),
@@ -78,7 +80,7 @@ impl Kind {
     }
 }
 
-/// A map as its table has it.
+/// A map as in its table.
 #[derive(Debug, Clone)]
 pub struct MapTable {
     name: String,
@@ -93,7 +95,7 @@ pub struct MapTable {
 }
 
 impl MapTable {
-    /// Reads a table; `None` where it is none of a map.
+    /// Reads a table; `None` if it is not that of a map.
     pub(crate) fn parse(name: &str, text: &str) -> std::result::Result<Option<Self>, String> {
         let mut reader = ReaderBuilder::new().from_reader(text.as_bytes());
         let header = reader.headers().map_err(|reason| reason.to_string())?.clone();
@@ -132,7 +134,7 @@ impl MapTable {
         self.kind.words()
     }
 
-    /// Whether cells, quantity and unit are those of another map.
+    /// Whether cells, quantity and unit equal those of another map.
     fn is_like(&self, other: &Self) -> bool {
         let largest = self.places.iter().flatten().fold(0.0f64, |most, at| most.max(at.abs()));
         let near = |a: f64, b: f64| (a - b).abs() <= SAME_PLACE * largest;
@@ -143,16 +145,16 @@ impl MapTable {
     }
 }
 
-/// What came of two maps of a name.
+/// The comparison of two maps of one name.
 #[derive(Debug)]
 pub struct MapDiff {
     /// Sensor and quantity: `exit.illuminance`.
     pub name: String,
-    /// What came of it.
+    /// The outcome.
     pub outcome: MapOutcome,
 }
 
-/// What came of comparing two maps.
+/// The outcome of comparing two maps.
 #[derive(Debug)]
 pub enum MapOutcome {
     /// Their cells are not the same.
@@ -161,9 +163,10 @@ pub enum MapOutcome {
     Compared {
         /// Second map less the first, in its unit, at the places of the first.
         difference: MapTable,
-        /// Cells that can be judged: enough was counted there on both sides.
+        /// Cells that can be judged: both sides have enough counts.
         judged: usize,
-        /// Root of the mean square of all z-scores, differences over their errors, 1; 1 by noise alone.
+        /// Root of the mean square of all z-scores, differences over their errors, 1; 1 for pure
+        /// noise.
         rms: f64,
         /// Largest |z|, 1.
         largest: f64,
@@ -173,7 +176,7 @@ pub enum MapOutcome {
 }
 
 impl MapDiff {
-    /// Whether noise alone may have made the difference; not of maps with other cells.
+    /// Whether noise alone may explain the difference; false for maps with different cells.
     pub fn is_noise(&self) -> bool {
         match &self.outcome {
             MapOutcome::OtherCells => false,
@@ -181,7 +184,7 @@ impl MapDiff {
         }
     }
 
-    /// The line that is told of a map.
+    /// The line that reports a map.
     pub(crate) fn sentence(&self) -> String {
         let MapOutcome::Compared { difference, judged, rms, largest, bound } = &self.outcome else {
             return "its cells are not the same, so it is not compared".to_owned();
@@ -293,14 +296,14 @@ fn picture(
     }
 }
 
-/// The value at the upper end of the colours; its opposite is at the lower end.
+/// The value at the upper end of the colours; its negative is at the lower end.
 fn limit(values: &[f64]) -> f64 {
     let mut sizes: Vec<f64> =
         values.iter().filter(|value| value.is_finite()).map(|value| value.abs()).collect();
     sizes.sort_by(f64::total_cmp);
     let beyond = (BEYOND_COLOURS * sizes.len() as f64) as usize;
     let limit = sizes.len().checked_sub(beyond + 1).map_or(0.0, |place| sizes[place]);
-    // Where hardly a cell differs, those that do are all that there is to be seen.
+    // Where hardly any cell differs, the range covers those that do.
     [Some(limit), sizes.last().copied()]
         .into_iter()
         .flatten()
@@ -316,8 +319,8 @@ fn lines(places: &[[f64; 2]], axis: usize) -> Vec<f64> {
     lines
 }
 
-/// Edges of cells from their middles: half way between them, and the first and the last cell as wide as their
-/// neighbours. There are two at least.
+/// Edges of at least two cells from their middles: half way between them, with the first and last
+/// cell as wide as their neighbours.
 fn edges(middles: &[f64], scale: Scale) -> Vec<f64> {
     let [to, from]: [fn(f64) -> f64; 2] = match scale {
         Scale::Linear | Scale::Log => [|place| place, |place| place],

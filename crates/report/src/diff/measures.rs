@@ -3,19 +3,19 @@
 use indexmap::IndexMap;
 use lumiduct_core::measure::{Measure, Status};
 
-/// Differences below this share of a value are rounding: sums over millions of paths in other orders, or on other
-/// machines. The flux balance closes as well.
+/// Differences below this share of a value are rounding: sums over millions of paths in another
+/// order, or on another machine. The flux balance closes to the same.
 const ROUNDING: f64 = 1e-9;
-/// Where nothing was counted, up to three paths' flux may have been missed, with 95 % confidence: see
-/// [`Status::NoSignal`].
+/// Where nothing was counted, the flux of up to three paths may have been missed, with 95 %
+/// confidence: see [`Status::NoSignal`].
 const PATHS_MISSED: f64 = 3.0;
 
-/// From where on two values differ.
+/// Limits beyond which two values differ.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
-    /// A difference counts beyond so many errors of it.
+    /// A difference counts beyond this many of its errors.
     pub sigmas: f64,
-    /// It must exceed this share of the first value, too, to count.
+    /// To count, it must also exceed this share of the first value.
     pub relative: Option<f64>,
     /// Whether maps count.
     pub maps: MapLimit,
@@ -24,9 +24,10 @@ pub struct Limits {
 /// What a difference of two maps means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MapLimit {
-    /// It is told, and no more.
+    /// It is only reported.
     Told,
-    /// One beyond what noise alone does once in a thousand maps counts, and so do other cells.
+    /// It counts if noise alone would exceed it less than once in a thousand maps, or if the cells
+    /// differ.
     Noise,
 }
 
@@ -35,46 +36,46 @@ impl Limits {
     pub fn words(self) -> String {
         let sigmas = self.sigmas;
         self.relative.map_or(format!("{sigmas} sigmas"), |share| {
-            // What was said as percent came with a factor of a hundred.
+            // Undoes the rounding of the conversion from percent.
             let percent = (1e11 * share).round() / 1e9;
             format!("{sigmas} sigmas and {percent} %")
         })
     }
 }
 
-/// What two values of a measure are.
+/// How two values of a measure compare.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Judgement {
-    /// The same within the errors.
+    /// Equal within the errors.
     Within,
-    /// Different, and by too little to matter.
+    /// Different, but by too little to matter.
     Tolerated,
     /// Different.
     Beyond,
-    /// Not to be told from one another: the value or the error of one of them is not to be relied on.
+    /// Unknown: the value or the error of one of them is unreliable.
     Unknown,
 }
 
-/// A measure that both sides have.
+/// A measure on both sides.
 #[derive(Debug)]
 pub(crate) struct Pair {
-    /// Its name, with the design it is of.
+    /// Its name, with its design.
     pub(crate) name: String,
     /// Its dotted name.
     pub(crate) measure: String,
-    /// What both say of it.
+    /// Its values on both sides.
     pub(crate) values: [Measure; 2],
-    /// The value whose rounding it shares, in its unit: its own greater one, but for a sum that
-    /// should be nothing.
+    /// The value that sets its rounding, in its unit: the greater of its own, except for a sum that
+    /// should vanish.
     pub(crate) scale: f64,
 }
 
 /// Two values of a measure.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DiffRow {
-    /// Its name, with the design it is of.
+    /// Its name, with its design.
     pub name: String,
-    /// What both reports say.
+    /// The values of both reports.
     pub values: [Measure; 2],
     /// Second value less the first, in the unit of the measure.
     pub difference: f64,
@@ -82,29 +83,29 @@ pub struct DiffRow {
     pub error: f64,
     /// The difference over its error, 1.
     pub sigmas: f64,
-    /// Whether there is more to the error than rounding.
+    /// Whether the error exceeds rounding.
     pub is_noisy: bool,
     /// Whether they differ.
     pub judgement: Judgement,
-    /// Why that is not known, if it is not.
+    /// Why that is unknown, if it is.
     pub doubt: Option<String>,
 }
 
 impl DiffRow {
-    /// Dotted name of the measure, without the design it is of.
+    /// Dotted name of the measure, without its design.
     pub fn measure(&self) -> &str {
         self.name.rsplit(": ").next().unwrap_or(&self.name)
     }
 
-    /// The difference as a share of the first value, 1; `None` where that is nothing.
+    /// The difference as a share of the first value, 1; `None` where that is zero.
     pub fn relative(&self) -> Option<f64> {
         let [a, _] = &self.values;
         (a.value != 0.0 && a.value.is_finite()).then(|| self.difference / a.value.abs())
     }
 }
 
-/// The value whose rounding a measure shares, in its unit. The residual of the balance is nothing but rounding of what
-/// was emitted.
+/// The value that sets the rounding of a measure, in its unit. The residual of the balance is pure
+/// rounding of the emitted flux.
 pub(crate) fn scale(name: &str, sides: [&IndexMap<String, Measure>; 2]) -> f64 {
     let whole = if name == "balance.residual" { "balance.emitted" } else { name };
     let values = sides.iter().flat_map(|side| [side.get(name), side.get(whole)]);
@@ -168,7 +169,7 @@ fn doubt(values: &[Measure; 2]) -> Option<String> {
     })
 }
 
-/// Sorts the worst first; what cannot be judged comes last. Equals keep the order of the measures.
+/// Sorts the worst first, unjudged ones last. Ties keep the order of the measures.
 pub(crate) fn sort(rows: &mut [DiffRow]) {
     let rank = |row: &DiffRow| match row.judgement {
         Judgement::Beyond => 0,

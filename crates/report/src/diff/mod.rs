@@ -1,8 +1,9 @@
-//! What two reports say of the same measures, and whether they differ by more than their errors.
+//! Compares the measures of two reports: whether they differ by more than their errors.
 //!
-//! Reading is one function, [`read()`]; all that follows is pure. Reports are known by their files alone: scenes are not
-//! loaded, and nothing is traced. The errors of both sides are taken as independent. Runs of the same seed are not quite:
-//! their noise has much in common, and the differences are then smaller than the errors that are told.
+//! Reading is one function, [`read()`]; the rest is pure. Only the files of reports are used: no
+//! scene is loaded, nothing is traced. The errors of both sides are taken as independent. Runs with
+//! the same seed are not: their noise is correlated, so their differences are smaller than the
+//! reported errors.
 
 mod html;
 mod maps;
@@ -27,9 +28,9 @@ use lumiduct_core::measure::{Measure, nearest};
 /// What is compared, and how.
 #[derive(Debug, Clone)]
 pub struct DiffWishes {
-    /// From where on two values differ.
+    /// Limits beyond which two values differ.
     pub limits: Limits,
-    /// Beginnings of the names of the measures that are compared; all of them if there are none.
+    /// Prefixes of the names of the measures to compare; empty for all.
     pub only: Vec<String>,
 }
 
@@ -106,7 +107,7 @@ pub fn diff_files(diff: &Diff) -> Result<Vec<OutputFile>> {
     Ok(files)
 }
 
-/// What both sides have, and what only one of them has.
+/// What both sides have, and what only one has.
 #[derive(Debug, Default)]
 struct Pairs {
     both: Vec<Pair>,
@@ -130,12 +131,12 @@ impl Pairs {
         self.only_in[1].extend(strange.map(|name| format!("{prefix}{name}")));
     }
 
-    /// Pairs designs by their settings, whatever their numbers.
+    /// Pairs designs by their settings, regardless of their numbers.
     fn add_designs(&mut self, a: &[DesignRow], b: &[DesignRow]) {
         let mut left: Vec<&DesignRow> = b.iter().collect();
         let nothing = IndexMap::new();
         for own in a {
-            // A list may name a design twice; each has a partner of its own.
+            // A list may contain a design twice; each gets its own partner.
             match left.iter().position(|other| other.settings == own.settings) {
                 Some(place) => {
                     let other = left.remove(place);
@@ -149,7 +150,7 @@ impl Pairs {
         }
     }
 
-    /// Keeps measures whose name begins with one of these; each has to be the beginning of one at least.
+    /// Keeps measures whose name has one of these prefixes; each prefix must match at least one.
     fn keep_only(&mut self, only: &[String]) -> Result<()> {
         for pattern in only {
             if !self.both.iter().any(|pair| pair.measure.starts_with(pattern)) {
@@ -169,7 +170,7 @@ impl Pairs {
     }
 }
 
-/// Whether a name begins with one of these, or there are none.
+/// Whether a name has one of these prefixes, or there are none.
 fn is_named(only: &[String], name: &str) -> bool {
     only.is_empty() || only.iter().any(|pattern| name.starts_with(pattern))
 }

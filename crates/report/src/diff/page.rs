@@ -11,9 +11,9 @@ use std::fmt::Write;
 
 /// Rows of the table on the terminal, unless all are wanted.
 const ROWS_SHOWN: usize = 12;
-/// Names of a list that are told one by one.
+/// Names of a list that are listed one by one.
 const NAMES_SHOWN: usize = 5;
-/// Differences beyond so many errors are counted and held against chance.
+/// Differences beyond this many errors are counted and compared with chance.
 const REMARKABLE: f64 = 3.0;
 
 /// How much of the table is shown.
@@ -28,7 +28,7 @@ pub enum Rows {
 /// The heads of the columns.
 pub(crate) const HEADER: [&str; 6] = ["measure", "A", "B", "B − A", "sigmas", "relative"];
 
-/// What is printed: both reports, the worst measures or all, and what follows.
+/// The printed text: both reports, the worst measures or all, and the findings.
 pub fn diff_table(diff: &Diff, rows: Rows) -> String {
     let shown = match rows {
         Rows::Worst => diff.rows.len().min(ROWS_SHOWN),
@@ -123,7 +123,7 @@ fn word(judgement: Judgement) -> &'static str {
     }
 }
 
-/// What there is to be said of a row besides its numbers.
+/// The remark on a row besides its numbers.
 pub(crate) fn remark(row: &DiffRow) -> String {
     match row.judgement {
         Judgement::Within => String::new(),
@@ -150,7 +150,7 @@ pub(crate) fn cells(row: &DiffRow) -> [String; 6] {
         Some(_) => unknown(),
         None => "n/a".to_owned(),
     };
-    // What is rounding alone has no error bar worth telling.
+    // An error that is pure rounding is not shown.
     let difference = if row.is_noisy {
         format_with_error(row.difference, row.error)
     } else if row.sigmas.abs() < 1.0 {
@@ -161,7 +161,7 @@ pub(crate) fn cells(row: &DiffRow) -> [String; 6] {
     [row.name.clone(), a.to_string(), b.to_string(), difference, sigmas, relative]
 }
 
-/// A number of errors: with one decimal, and from ten thousand on it does not matter how many.
+/// A number of errors with one decimal; beyond ten thousand the exact number does not matter.
 fn sigmas(sigmas: f64) -> String {
     const MANY: f64 = 1e4;
     match sigmas {
@@ -171,7 +171,7 @@ fn sigmas(sigmas: f64) -> String {
     }
 }
 
-/// Everything but the table, a line each; the last one says whether the reports differ.
+/// Everything except the table, one line each; the last says whether the reports differ.
 pub(crate) fn findings(diff: &Diff) -> Vec<String> {
     let mut lines = vec![chance(diff)];
     let unknown: Vec<&DiffRow> =
@@ -209,7 +209,7 @@ pub(crate) fn findings(diff: &Diff) -> Vec<String> {
     lines
 }
 
-/// How many measures differ remarkably, and how many do so by chance.
+/// How many measures differ remarkably, and how many would by chance.
 fn chance(diff: &Diff) -> String {
     let judged = |row: &&DiffRow| row.judgement != Judgement::Unknown;
     let noisy = diff.rows.iter().filter(judged).filter(|row| row.is_noisy).count();
@@ -223,7 +223,7 @@ fn chance(diff: &Diff) -> String {
     )
 }
 
-/// How often noise alone is beyond so many of its errors, to either side.
+/// Probability that noise alone exceeds this many errors on either side.
 fn chance_beyond(sigmas: f64) -> f64 {
     2.0 * Normal::standard().sf(sigmas)
 }
@@ -244,7 +244,7 @@ fn list(names: impl ExactSizeIterator<Item = String>) -> String {
     shown.join(", ") + &rest
 }
 
-/// Columns beside one another: the first to the left, the others to the right.
+/// Aligned columns: the first to the left, the others to the right.
 fn aligned(lines: &[[String; 6]]) -> String {
     let mut widths = [0; 6];
     for line in lines {

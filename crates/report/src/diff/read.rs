@@ -13,12 +13,12 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
 
-/// One of the two that are compared.
+/// One of the two reports compared.
 #[derive(Debug)]
 pub struct Side {
     /// Name of the scene or the study.
     pub name: String,
-    /// What it is, in a line: name, hash, seed and paths.
+    /// Its facts in a line: name, hash, seed and paths.
     pub facts: String,
     /// Names of the measures that its checks judge.
     pub checks: Vec<String>,
@@ -29,9 +29,9 @@ pub struct Side {
 /// The numbers of a report.
 #[derive(Debug)]
 pub enum Content {
-    /// Those of a run.
+    /// Numbers of a run.
     Run(RunFiles),
-    /// Those of the designs of a study.
+    /// Numbers of the designs of a study.
     Study(Vec<DesignRow>),
 }
 
@@ -51,13 +51,13 @@ pub struct DesignRow {
     pub design: usize,
     /// What its parameters are set to.
     pub settings: IndexMap<String, Setting>,
-    /// The recorded measures by their dotted names; none of a design that makes no scene.
+    /// The recorded measures by their dotted names; none for a design that makes no scene.
     #[serde(default)]
     pub measures: IndexMap<String, Measure>,
 }
 
 impl DesignRow {
-    /// What stands before the names of its measures: "design 3 (leg 5, radius 8): ".
+    /// Prefix of the names of its measures: "design 3 (leg 5, radius 8): ".
     pub(crate) fn prefix(&self) -> String {
         let words = self.settings.iter().map(|(name, setting)| match setting {
             Setting::Number(_) | Setting::Choice(_) => format!("{name} {setting}"),
@@ -67,7 +67,7 @@ impl DesignRow {
     }
 }
 
-/// Format of a file, to be read before the rest of it.
+/// Format of a file, which is read before the rest.
 #[derive(Deserialize)]
 struct Format {
     #[serde(alias = "lumiduct_study_summary")]
@@ -175,12 +175,12 @@ fn run_side(folder: &Path, found: RunSummary, manifest: &Manifest) -> Result<Sid
         facts += ", partial: the run was interrupted";
     }
     let mut maps = Vec::new();
-    // A report names files of its own folder alone; what lies elsewhere is no part of it.
+    // A report refers only to files in its own folder; anything elsewhere is not part of it.
     let own = |file: &&String| file.ends_with(".csv") && !file.contains(['/', '\\']);
     for file in files.iter().filter(own) {
         let path = folder.join(file);
         let text = match fs::read_to_string(&path) {
-            // Numbers may be kept without their tables.
+            // The summary may be kept without its tables.
             Err(error) if error.kind() == ErrorKind::NotFound => continue,
             Err(error) if error.kind() == ErrorKind::InvalidData => {
                 let path = path.display();

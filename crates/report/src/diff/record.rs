@@ -1,15 +1,15 @@
-//! The one record of a comparison that all of its formats are made from.
+//! The record of a comparison, from which all its formats are made.
 
 use crate::diff::{DiffRow, Judgement, Limits, MapDiff, MapLimit};
 
 /// Two reports side by side.
 #[derive(Debug)]
 pub struct Diff {
-    /// What both are: their names.
+    /// Names of both.
     pub names: [String; 2],
-    /// What both are, in a line each.
+    /// Facts of both, a line each.
     pub facts: [String; 2],
-    /// From where on two values differ.
+    /// Limits beyond which two values differ.
     pub limits: Limits,
     /// The measures that both have, the worst first.
     pub rows: Vec<DiffRow>,
@@ -17,12 +17,12 @@ pub struct Diff {
     pub only_in: [Vec<String>; 2],
     /// The maps that both have.
     pub maps: Vec<MapDiff>,
-    /// Names of measures that checks of either judge, in their order.
+    /// Names of measures that checks of either judge, in order.
     pub checks: Vec<String>,
 }
 
 impl Diff {
-    /// How many measures were judged so.
+    /// How many measures have this judgement.
     pub fn count(&self, wanted: Judgement) -> usize {
         self.rows.iter().filter(|row| row.judgement == wanted).count()
     }

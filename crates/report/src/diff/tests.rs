@@ -72,7 +72,7 @@ fn a_relative_limit_tolerates_what_is_significant_and_small() {
     let judgement = |share| judged(measure(10.0, 0.01), measure(10.2, 0.01), limits(share));
     assert_eq!(judgement(0.03).judgement, Judgement::Tolerated);
     assert_eq!(judgement(0.01).judgement, Judgement::Beyond);
-    // What is large and not significant is within.
+    // A difference that is large but not significant is within.
     let noisy = judged(measure(10.0, 2.0), measure(13.0, 2.0), limits(0.01));
     assert_eq!(noisy.judgement, Judgement::Within);
     assert_eq!(limits(0.01).words(), "4 sigmas and 1 %");
@@ -214,7 +214,7 @@ fn maps_are_compared_cell_by_cell() {
     let MapOutcome::Compared { judged, rms, largest, bound, .. } = &maps[0].outcome else {
         panic!("the cells are the same")
     };
-    // The third cell of the first map has counted too little.
+    // The third cell of the first map has too few counts.
     assert_eq!(*judged, 3);
     assert!((rms - (17.0f64 / 3.0).sqrt()).abs() < 1e-9 && (largest - 4.0).abs() < 1e-9);
     assert!((bound - (2.0 * 3000.0f64.ln()).sqrt()).abs() < 1e-12);

@@ -49,12 +49,12 @@ fn a_report_is_not_replaced_unless_asked_and_other_files_stay() {
     let written = open(Existing::Replace).unwrap().write(&[file("a.csv", "2")]).unwrap();
     assert_eq!(written, Written::New);
     assert_eq!(fs::read_to_string(path.join("a.csv")).unwrap(), "2");
-    // A file that others have changed comes back, and the manifest stays.
+    // A changed file is restored, and the manifest stays.
     fs::write(path.join("a.csv"), "3").unwrap();
     open(Existing::Replace).unwrap().write(&[file("a.csv", "2")]).unwrap();
     assert_eq!(fs::read_to_string(path.join("a.csv")).unwrap(), "2");
     assert_eq!(fs::read_to_string(path.join("notes.txt")).unwrap(), "mine");
-    // Of two runs there is one report, and no temporary file.
+    // Two runs leave one report, and no temporary file.
     assert_eq!(names(&path), ["a.csv", "manifest.json", "notes.txt"]);
 }
 
@@ -73,7 +73,7 @@ fn a_report_of_the_same_recipe_may_be_run_again_and_must_come_out_the_same() {
     assert_eq!(fs::read_to_string(dir.path().join("a.csv")).unwrap(), "1");
     let own = ["a.csv", "manifest.json", "summary.json"];
     assert_eq!(names(dir.path()), own, "a file was written in spite of it");
-    // Without its manifest it is no report.
+    // Without its manifest it is not a report.
     fs::remove_file(dir.path().join("manifest.json")).unwrap();
     assert!(open(Some(&recipe(1))).unwrap_err().to_string().contains("no complete report"));
 }
@@ -97,7 +97,8 @@ fn files_of_a_run_that_was_killed_while_they_took_their_places_go_away() {
     fs::write(dir.path().join("notes.txt"), "mine").unwrap();
     let files = [file("a.csv", "1"), file("summary.json", &summary(1, false))];
     open(dir.path(), Existing::Replace, None).unwrap().write(&files).unwrap();
-    // A second run was killed after its first file: its list and a staged file are left, and no manifest.
+    // A second run was killed after its first file: its list and a staged file remain, and no
+    // manifest.
     let list = Manifest::of(&files).file(REPLACING).unwrap();
     fs::write(dir.path().join(REPLACING), &list.bytes).unwrap();
     fs::write(dir.path().join(".lumiduct-x1y2"), "half").unwrap();

@@ -1,4 +1,4 @@
-//! Axes, colour bars and inks of curves as plain data: those that the pictures are drawn with.
+//! Axes, colour bars and inks of curves as plain data, the same as in the pictures.
 
 use crate::png::{
     BarScale, ColourMap, LinePlot, MapFrame, MarkedAxis, PolarPlot, Scale, SeriesInk,
@@ -6,7 +6,7 @@ use crate::png::{
 };
 use serde_json::{Value, json};
 
-/// An axis: its ends, its scale, its label, and its marks with and without words.
+/// An axis: its ends, scale and label, and its marks with and without labels.
 fn axis(marked: &MarkedAxis) -> Value {
     let MarkedAxis { axis, ticks, label } = marked;
     let major: Vec<Value> =
@@ -36,7 +36,7 @@ fn bar(scale: &BarScale) -> Value {
     data
 }
 
-/// Axes and bars of a map, and axes for sections of any length.
+/// Axes and colour bars of a map, and axes for sections of any length.
 pub(crate) fn map_axes(frame: &MapFrame) -> Value {
     /// Length of the axis of a section, pixels.
     const SECTION: f64 = 400.0;
@@ -50,7 +50,7 @@ pub(crate) fn map_axes(frame: &MapFrame) -> Value {
     json!({ "x": axis(x), "y": axis(y), "bars": bars, "along": along })
 }
 
-/// Axes of curves with an upright axis of this scale.
+/// Axes of curves with a vertical axis of this scale.
 pub(crate) fn chart_axes(plot: &LinePlot, scale: Scale) -> Value {
     let [x, y] = line_axes(plot, scale);
     json!({ "x": axis(&x), "y": axis(&y) })

@@ -1,8 +1,8 @@
-//! The cells of a map on a page. Very many are joined: the tables of numbers have them all.
+//! The cells of a map on a page. Large maps are coarsened; the tables have all cells.
 
 use ndarray::Array2;
 
-/// Cells of a map that a page holds; more would make it slow to open.
+/// Most cells of a map on a page; more would make it slow to open.
 const MOST_CELLS: usize = 40_000;
 
 /// The cells of a map, rows by columns.
@@ -16,17 +16,17 @@ pub(crate) struct Cells {
     pub(crate) values: Array2<f64>,
     /// Standard errors.
     pub(crate) errors: Array2<f64>,
-    /// Indicators of bias, where there may be one.
+    /// Bias indicators, where a bias is possible.
     pub(crate) biases: Option<Array2<f64>>,
 }
 
-/// How many cells along each side are shown as one: 1 where there are few.
+/// How many cells along each side are shown as one; 1 for small maps.
 pub(crate) fn joined(cells: &Array2<f64>) -> usize {
     ((cells.len() as f64 / MOST_CELLS as f64).sqrt().ceil() as usize).max(1)
 }
 
-/// Cells with `side` by `side` of them as their mean. Cells without a value are left out; those of an image and of a
-/// goniometer count alike, which is close enough for a picture.
+/// Averages blocks of `side` by `side` cells. Cells without a value are left out; cells of an image
+/// or a goniometer have equal weight, which is close enough for a picture.
 pub(crate) fn coarse(cells: &Cells, side: usize) -> Cells {
     let (rows, columns) = cells.values.dim();
     let shape = (rows.div_ceil(side), columns.div_ceil(side));

@@ -16,7 +16,7 @@ const MOST_NAMES: usize = 40;
 const AXES_WORDS: &str = "u and v are the coordinates of maps, patterns and cells on a face, in mm; n is the normal of its front. \
 The origin is the point with u = v = 0 or, on a face that does not reach so far, the point of the face next to it.";
 
-/// The page of a check. `listed` is what there is in the scene, line by line.
+/// The page of a check. `listed` is the contents of the scene, line by line.
 pub fn check_page(title: &str, scene: &Scene, tracks: &[Track], listed: &str) -> Result<String> {
     let mut plots = Plots::default();
     let mut drawing = drawing(scene, tracks);
@@ -52,7 +52,7 @@ pub fn check_page(title: &str, scene: &Scene, tracks: &[Track], listed: &str) ->
 
 /// The names of solids and sheets, each at the middle of its box.
 fn names(scene: &Scene) -> Vec<Mark> {
-    // The body of a source has the name of the source, which is there already.
+    // The body of a source has the name of the source, which is already in the picture.
     let is_source = |name: &str| scene.sources.iter().any(|source| source.name == name);
     let bodies = scene.bodies().into_iter().filter(|body| !is_source(&body.name));
     let mut marks = Vec::new();

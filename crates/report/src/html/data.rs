@@ -21,7 +21,7 @@ const ERROR_DIGITS: i32 = 3;
 /// Digits of coordinates below the size of a scene.
 const PLACE_DIGITS: i32 = 4;
 
-/// A number with some significant digits; none where it is not finite.
+/// A number with some significant digits; null where it is non-finite.
 fn number(value: f64, digits: i32) -> Value {
     if !value.is_finite() {
         return Value::Null;
@@ -50,7 +50,7 @@ fn with_errors<'a>(values: impl Iterator<Item = (&'a f64, &'a f64)>) -> [Value; 
 }
 
 impl Cells {
-    /// What scripts draw a map from, but for its words.
+    /// The data from which scripts draw a map, without its words.
     fn data(&self) -> Value {
         let side = joined(&self.values);
         if side > 1 {
@@ -68,7 +68,7 @@ impl Cells {
     }
 }
 
-/// What a map is about.
+/// Subject of a map.
 pub(crate) struct MapWords<'a> {
     /// How places are drawn: `cartesian`, `angular`, `polar` or `directions`.
     pub(crate) geometry: &'a str,
@@ -80,7 +80,7 @@ pub(crate) struct MapWords<'a> {
     pub(crate) units: [&'a str; 2],
 }
 
-/// A map as it is on its picture, with its cells and what they are called.
+/// A map as in its picture, with its cells and their names.
 pub(crate) fn drawn_map(cells: &Cells, map: &HeatMap, words: &MapWords<'_>) -> Value {
     let MapWords { geometry, quantity, names, units } = words;
     let mut data = cells.data();
@@ -123,7 +123,7 @@ pub(crate) fn map(map: &SensorMap) -> Value {
     drawn_map(&cells, &sensor_map(map), &words)
 }
 
-/// The intensity of a goniometer by both of its angles; `None` where it tells no azimuths apart.
+/// The intensity of a goniometer by both of its angles; `None` where it does not resolve azimuths.
 pub(crate) fn directions(table: &IntensityTable) -> Option<Value> {
     if table.values.ncols() < 2 {
         return None;
@@ -199,7 +199,7 @@ pub(crate) fn chart(plot: &LinePlot, unit: &str) -> Value {
     })
 }
 
-/// Curves over an axis that goes further where the scale is logarithmic: there more is to be seen of a tail.
+/// Curves over an axis that extends further on a logarithmic scale, which shows more of the tail.
 pub(crate) fn chart_with_tail(plot: &LinePlot, with_tail: &LinePlot, unit: &str) -> Value {
     let mut data = chart(with_tail, unit);
     data["axes"]["linear"] = chart_axes(plot, Scale::Linear);

@@ -1,7 +1,7 @@
 //! The frame of a page: title, parts, tables, places for plots, and everything that draws them in the same file.
 //!
-//! It knows no report: whoever has titles, tables and plots as plain data gets one self-contained file. Nothing on it is
-//! loaded from anywhere; only without scripts does it show the pictures that lie beside it.
+//! It knows no report: it turns titles, tables and plots as plain data into one self-contained
+//! file. The page loads nothing; only without scripts it shows the picture files next to it.
 
 use crate::png::{ColourMap, curve_colours};
 use lumiduct_base::error::{Error, Result};
@@ -35,47 +35,47 @@ const SCRIPTS: [&str; 12] = [
 pub(crate) struct Page {
     /// Its title.
     pub(crate) title: String,
-    /// Whom it is for, and by whom.
+    /// Client and author.
     pub(crate) masthead: Option<Masthead>,
-    /// What it is about, if anything is to be said.
+    /// Its description, if any.
     pub(crate) description: Option<String>,
     /// The verdict, in words.
     pub(crate) verdict: String,
-    /// What the verdict comes to.
+    /// The verdict as a status.
     pub(crate) standing: Standing,
-    /// What is on it, in order.
+    /// Its contents, in order.
     pub(crate) parts: Vec<Part>,
-    /// Where it comes from, in small letters at its end.
+    /// Its origin, in small print at the end.
     pub(crate) footer: String,
 }
 
-/// Whom a page is for, and by whom.
+/// Client and author of a page.
 #[derive(Debug, Serialize)]
 pub(crate) struct Masthead {
     /// Lines with their names: `Client`, `Date`.
     pub(crate) lines: Vec<[String; 2]>,
-    /// Address of a picture that is within the page.
+    /// Data URI of a picture embedded in the page.
     pub(crate) logo: Option<String>,
 }
 
-/// What a verdict comes to.
+/// A verdict as a status.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Standing {
-    /// All is as it was wanted.
+    /// Everything is as requested.
     Good,
     /// Something is not.
     Bad,
-    /// Nothing was wanted.
+    /// Nothing was requested.
     Open,
 }
 
-/// A part of a page, with a heading that the page's list of contents leads to.
+/// A part of a page, with a heading that the table of contents links to.
 #[derive(Debug, Serialize)]
 pub(crate) struct Part {
     /// Its heading.
     pub(crate) title: String,
-    /// What is in it.
+    /// Its contents.
     pub(crate) blocks: Vec<Block>,
 }
 
@@ -113,7 +113,7 @@ pub(crate) enum Block {
         label: String,
         /// Its number among the plots of the page.
         index: usize,
-        /// Name of a file beside the page that shows the same without scripts.
+        /// Name of a picture file next to the page for use without scripts.
         picture: Option<String>,
     },
 }
@@ -123,7 +123,8 @@ pub(crate) enum Block {
 pub(crate) struct Plots(Vec<serde_json::Value>);
 
 impl Plots {
-    /// Adds a plot and gives back its place. `data` has the `plot` that names the script which draws it.
+    /// Adds a plot and returns its place. The field `plot` of `data` names the script that draws
+    /// it.
     pub(crate) fn add(
         &mut self,
         label: impl Into<String>,
@@ -150,7 +151,7 @@ pub(crate) fn render(page: &Page, plots: &Plots) -> Result<String> {
     let data = serde_json::to_string(&data).map_err(|reason| failed(reason.to_string()))?;
     let mut environment = Environment::new();
     environment.set_auto_escape_callback(|_| AutoEscape::Html);
-    // Tags leave no lines of their own.
+    // Template tags leave no empty lines.
     let syntax = SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).build();
     environment.set_syntax(syntax.map_err(|reason| failed(reason.to_string()))?);
     environment
@@ -160,7 +161,7 @@ pub(crate) fn render(page: &Page, plots: &Plots) -> Result<String> {
                 page => Serde(page),
                 style => Value::from_safe_string(STYLE.to_owned()),
                 scripts => Value::from_safe_string(SCRIPTS.concat()),
-                // No text within the data can end the element that holds them.
+                // No text within the data can close the element that contains them.
                 data => Value::from_safe_string(data.replace('<', "\\u003c")),
                 series => Serde(curve_colours()),
             },
@@ -203,7 +204,7 @@ mod tests {
     #[test]
     fn nothing_is_loaded_from_anywhere() {
         let html = page("words");
-        // The one name space that is no address.
+        // The only XML namespace, which is not an address to load.
         let html = html.replace("http://www.w3.org/2000/svg", "");
         for address in ["http:", "https:", "//", "src=", "href=\"", "@import", "url("] {
             let found: Vec<&str> = html

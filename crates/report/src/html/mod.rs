@@ -1,7 +1,8 @@
-//! What pages for people with a browser are made of: one file each, without anything to load.
+//! Building blocks of HTML pages: one file each, with nothing to load.
 //!
 //! `frame` makes a page of titles, tables and plots; `data` gives plots as numbers, which the
-//! scripts in `assets` draw. No report is known here: each kind has its own file for its page.
+//! scripts in `assets` draw. This module knows no report: each kind has its own module for its
+//! page.
 
 mod axes;
 pub(crate) mod cells;

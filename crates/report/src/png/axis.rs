@@ -1,4 +1,4 @@
-//! Axes: from values to fractions of a length, and the round numbers that stand beside it.
+//! Axes: from values to fractions of a length, and the round numbers at the marks.
 //!
 //! Knows nothing of pixels.
 
@@ -9,13 +9,13 @@ use lumiduct_base::number::{format_fixed, format_value, superscript};
 pub enum Scale {
     /// Equal differences.
     Linear,
-    /// Equal ratios; values of zero and below lie beyond the lower end.
+    /// Equal ratios; values of zero and below are beyond the lower end.
     Log,
     /// Equal differences of the tangent of an angle in deg, within ±89: the plane of an image.
     Tangent,
 }
 
-/// A range of values laid along a length.
+/// A range of values mapped to a length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Axis {
     min: f64,
@@ -30,22 +30,22 @@ pub(crate) struct Ticks {
     pub(crate) major: Vec<Tick>,
     /// Marks without a label, between the others.
     pub(crate) minor: Vec<f64>,
-    /// The labels are to be multiplied with this power of ten.
+    /// Power of ten that multiplies the labels.
     pub(crate) exponent: i32,
 }
 
 /// A mark with a label.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Tick {
-    /// Where it stands.
+    /// Its position.
     pub(crate) value: f64,
-    /// What is written there.
+    /// Its text.
     pub(crate) label: String,
 }
 
-/// Values beyond this are drawn as if they were it.
+/// Values beyond this are clamped to it.
 const LARGEST: f64 = 1e290;
-/// Ranges narrower than this share of their values hold rounding noise only.
+/// Ranges narrower than this share of their values are rounding noise.
 const NARROWEST: f64 = 1e-9;
 /// Fractions beyond this are far outside of every picture.
 const FARTHEST: f64 = 1e4;
@@ -53,8 +53,8 @@ const FARTHEST: f64 = 1e4;
 const MOST_DECADES: i32 = 12;
 
 impl Axis {
-    /// The axis from `min` to `max`. A range that is empty, upside down or not finite is made a sensible one; a
-    /// logarithmic axis without positive values becomes linear.
+    /// The axis from `min` to `max`. An empty, inverted or non-finite range is replaced by a
+    /// sensible one; a logarithmic axis without positive values becomes linear.
     pub(crate) fn new(min: f64, max: f64, scale: Scale) -> Self {
         let finite = |value: f64, other: f64| {
             let value = if value.is_finite() { value } else { other };
@@ -95,7 +95,7 @@ impl Axis {
         self.max
     }
 
-    /// The difference of its ends, as long as it is drawn.
+    /// The difference of its ends, as drawn.
     pub(crate) fn extent(&self) -> f64 {
         match self.scale {
             Scale::Linear | Scale::Log => self.max - self.min,
@@ -118,7 +118,7 @@ impl Axis {
         fraction.clamp(-FARTHEST, FARTHEST)
     }
 
-    /// At most `most` labelled marks (at least two where that is possible) on round values.
+    /// At most `most` labelled marks (at least two where possible) on round values.
     pub(crate) fn ticks(&self, most: usize) -> Ticks {
         match self.scale {
             Scale::Linear | Scale::Tangent => self.linear_ticks(most),
@@ -146,7 +146,8 @@ impl Axis {
         Ticks { major, minor: Vec::new(), exponent }
     }
 
-    /// Marks on powers of ten, or on 1, 2 and 5 times them where there are few; `None` where even those are too few.
+    /// Marks at powers of ten, or at 1, 2 and 5 times them where there are few; `None` if even
+    /// those are too few.
     fn log_ticks(&self, most: usize) -> Option<Ticks> {
         let inside =
             |value: &f64| self.min * (1.0 - 1e-9) <= *value && *value <= self.max * (1.0 + 1e-9);
@@ -174,7 +175,7 @@ impl Axis {
     }
 }
 
-/// Numbers as long as they are short, powers of ten otherwise: all in one form.
+/// Plain numbers if all are short, else powers of ten: all in one form.
 fn log_labels(values: &[f64]) -> Vec<Tick> {
     let plain = values.iter().all(|value| (-3..=4).contains(&decade(value * 1.001)));
     let label = |value: f64| {
@@ -211,7 +212,7 @@ fn round_step(least: f64, min: f64, max: f64, most: usize) -> f64 {
     last
 }
 
-/// A range that has a width: around one value it reaches to zero.
+/// A range of nonzero width: around a single value it extends to zero.
 fn widened(low: f64, high: f64) -> (f64, f64) {
     let largest = low.abs().max(high.abs());
     if largest < 1.0 / LARGEST {

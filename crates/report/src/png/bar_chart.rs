@@ -19,7 +19,7 @@ pub struct BarChart {
     pub unit: String,
     /// The value that is 100 %; `None` to show no percents.
     pub whole: Option<f64>,
-    /// The bars, from top to bottom. Only the first 40 are drawn; the others are added up.
+    /// The bars, from top to bottom. Only the first 40 are drawn; the others are summed.
     pub bars: Vec<Bar>,
 }
 

@@ -1,8 +1,9 @@
-//! The paper: areas, lines, dots, bitmaps and lettering in pixels, and the PNG file made of it.
+//! The canvas: areas, lines, dots, bitmaps and text in pixels, and the PNG file made from it.
 //!
-//! The only place that names png. Knows nothing of axes and data. The origin is the upper left corner, whole
-//! numbers are edges of pixels. Everything is drawn [`FINER`] times finer and averaged at the end, so that slanted
-//! edges are smooth while edges on whole pixels stay sharp.
+//! The only module that uses the `png` crate. Knows nothing of axes and data. The origin is the
+//! upper left corner, whole numbers are edges of pixels. Everything is drawn [`FINER`] times finer
+//! and averaged at the end, so that slanted edges are smooth while edges on whole pixels stay
+//! sharp.
 
 use crate::png::geometry::{Point, Rect, clip, distance};
 use crate::png::palette::{PAPER, Rgb};
@@ -17,7 +18,7 @@ const FINER: usize = 3;
 pub(crate) struct Ink {
     /// The colour.
     pub(crate) colour: Rgb,
-    /// From 0, not to be seen, to 1.
+    /// From 0, invisible, to 1.
     pub(crate) opacity: f64,
 }
 
@@ -39,19 +40,19 @@ pub(crate) struct Pen {
     pub(crate) dash: &'static [f64],
 }
 
-/// A picture in the making.
+/// A picture under construction.
 pub(crate) struct Canvas {
     width: usize,
     height: usize,
     fine: Vec<u8>,
-    /// Which stroke touched a fine pixel last: a stroke inks every pixel once.
+    /// Which stroke touched a fine pixel last, so that a stroke inks every pixel once.
     touched: Vec<u32>,
     stroke: u32,
     clip: Rect,
 }
 
 impl Canvas {
-    /// White paper of a size in pixels.
+    /// A white canvas of a size in pixels.
     pub(crate) fn new(width: usize, height: usize) -> Self {
         let count = width * height * FINER * FINER;
         Self {
@@ -64,7 +65,7 @@ impl Canvas {
         }
     }
 
-    /// Lines, dots and areas are from now on drawn only inside `area`.
+    /// From now on lines, dots and areas are drawn only inside `area`.
     pub(crate) fn clip_to(&mut self, area: Rect) {
         self.clip = Rect {
             left: area.left.max(0.0),
@@ -74,7 +75,7 @@ impl Canvas {
         };
     }
 
-    /// Everything is drawn again.
+    /// Ends the clipping.
     pub(crate) fn clip_to_all(&mut self) {
         self.clip = Rect::new(0.0, 0.0, self.width as f64, self.height as f64);
     }
@@ -94,7 +95,7 @@ impl Canvas {
         self.rect(Rect { left: right - 1.0, top, right, bottom }, ink);
     }
 
-    /// Fills a polygon, by the even-odd rule; corners that are not finite are left out.
+    /// Fills a polygon, by the even-odd rule; non-finite corners are left out.
     pub(crate) fn area(&mut self, corners: &[Point], ink: Ink) {
         self.stroke += 1;
         let corners: Vec<Point> =
@@ -119,7 +120,7 @@ impl Canvas {
         }
     }
 
-    /// A line through points; points that are not finite interrupt it.
+    /// A line through points; non-finite points interrupt it.
     pub(crate) fn line(&mut self, points: &[Point], pen: &Pen) {
         self.stroke += 1;
         let mut walked = 0.0;
@@ -135,7 +136,7 @@ impl Canvas {
         }
     }
 
-    /// A filled circle; none where the centre is not finite.
+    /// A filled circle; none where the centre is non-finite.
     pub(crate) fn dot(&mut self, centre: Point, radius: f64, ink: Ink) {
         self.stroke += 1;
         if centre.iter().all(|coordinate| coordinate.is_finite())
@@ -145,8 +146,8 @@ impl Canvas {
         }
     }
 
-    /// Fills `area`, given in whole pixels of the paper, with the colour that `colour_of` has for each of its
-    /// pixels (column, row).
+    /// Fills `area`, given in whole pixels of the paper, with the colour that `colour_of` gives for
+    /// each of its pixels (column, row).
     pub(crate) fn bitmap(&mut self, area: Rect, colour_of: impl Fn(usize, usize) -> Rgb) {
         let (left, top) = (area.left as usize, area.top as usize);
         for row in 0..area.height() as usize {

@@ -1,6 +1,6 @@
-//! The bar beside a map that says which colour is which value.
+//! The colour bar of a map.
 //!
-//! Decides which values the ends of the bar are; knows nothing of cells and places.
+//! Chooses the values at the ends of the bar; knows nothing of cells and places.
 
 use crate::png::axis::{Axis, Scale, Ticks};
 use crate::png::canvas::{Canvas, Ink, Pen};
@@ -13,7 +13,7 @@ use lumiduct_base::error::Result;
 
 /// Width of the bar without its numbers, pixels.
 pub(crate) const BAR_WIDTH: f64 = 20.0;
-/// Height of the tips that stand for values beyond the bar, pixels.
+/// Height of the tips that represent values beyond the bar, pixels.
 pub(crate) const TIP: f64 = 12.0;
 
 /// Fewer values than these have no outliers.
@@ -33,7 +33,7 @@ pub(crate) struct Colouring<'a> {
     pub(crate) limits: Option<[f64; 2]>,
 }
 
-/// Which colour is which value: the description that pictures and pages draw alike.
+/// The mapping of colours to values: the description shared by pictures and pages.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct BarScale {
     /// From values to fractions of the bar; its label is the unit.
@@ -60,7 +60,7 @@ impl BarScale {
     }
 }
 
-/// The bar that says which colour is which value.
+/// A colour bar.
 pub(crate) struct ColourBar {
     axis: Axis,
     ticks: Ticks,
@@ -89,7 +89,7 @@ impl ColourBar {
         self.width
     }
 
-    /// The colour of a value; neutral where it is not finite.
+    /// The colour of a value; neutral if non-finite.
     pub(crate) fn colour_of(&self, value: f64) -> Rgb {
         if value.is_finite() { self.colours.colour(self.axis.fraction(value)) } else { NEUTRAL }
     }
@@ -133,7 +133,7 @@ impl ColourBar {
     }
 }
 
-/// The marks of the bar; none where there is nothing to be read.
+/// The marks of the bar; none where there is nothing to read.
 fn bar_ticks(axis: &Axis, values: &[f64], height: f64) -> Ticks {
     if values.is_empty() {
         return Ticks { major: Vec::new(), minor: Vec::new(), exponent: 0 };
@@ -160,15 +160,15 @@ fn limits(values: &[f64], scale: Scale, colours: ColourMap) -> [f64; 2] {
         }
         (ColourMap::Sequential, Scale::Linear | Scale::Tangent) => {
             let high = without_outliers(values);
-            // Values that differ by less than a half are shown in full contrast. A little less than nothing is noise, and
-            // looks like nothing.
+            // Values that differ by less than a half are shown in full contrast. A value slightly
+            // below zero is noise and looks like zero.
             if least.abs() <= 0.5 * high { [0.0, high] } else { [least, high] }
         }
     }
 }
 
-/// The greatest value, but for at most one in a thousand (one at least, of [`FEWEST`] or more) that is ten times all
-/// others.
+/// The greatest value, except at most one in a thousand (at least one, of [`FEWEST`] or more) that
+/// exceeds all others tenfold.
 fn without_outliers(values: &[f64]) -> f64 {
     let last = values.len() - 1;
     let most = if values.len() < FEWEST { 0 } else { (values.len() / 1000).max(1) };

@@ -89,11 +89,11 @@ pub struct RayPath {
 pub enum RayEnd {
     /// It reached a sensor.
     Sensor,
-    /// A surface or a medium took it.
+    /// A surface or a medium absorbed it.
     Absorbed,
     /// It left the scene.
     Escaped,
-    /// It leaked, or was cut by the bounce limit or by roulette.
+    /// It leaked, or was ended by the bounce limit or by roulette.
     Lost,
 }
 
@@ -130,14 +130,14 @@ impl RayEnd {
 
 /// Largest size of the plot itself, pixels.
 const MOST: [f64; 2] = [780.0, 640.0];
-/// A plot longer than this is squeezed.
+/// Plots of a greater aspect ratio are squeezed.
 const LONGEST: f64 = 10.0;
 /// Radius of the dots of an outline, pixels.
 const DOT: f64 = 1.1;
 
 /// Distance of a name from its place, pixels.
 const NAME_GAP: f64 = 7.0;
-/// Steps up and down in search of room for a name.
+/// Steps up and down in the search for room for a name.
 const NAME_STEPS: u32 = 12;
 
 /// Draws outlines as dots and paths of light as thin lines, each path with a mark at its end; then names.
@@ -179,7 +179,7 @@ pub fn cross_section(section: &CrossSection) -> Result<Vec<u8>> {
     canvas.into_png()
 }
 
-/// One entry per name of an outline and per end of a path that occurs, with the number of paths.
+/// One entry per outline name and per path end that occurs, with the number of paths.
 fn legend_names(section: &CrossSection) -> Vec<(Sample, String)> {
     let mut entries: Vec<(Sample, String)> = Vec::new();
     for outline in &section.outlines {
@@ -225,7 +225,7 @@ fn draw_rays(canvas: &mut Canvas, frame: &Axes, area: Rect, rays: &[RayPath]) {
     }
 }
 
-/// Names beside their places, on paper, where there is room.
+/// Names next to their places, on a white background, where there is room.
 fn draw_names(canvas: &mut Canvas, frame: &Axes, area: Rect, places: &[NamedPlace]) -> Result<()> {
     let mut taken: Vec<Rect> = Vec::new();
     let inside = || {
@@ -247,7 +247,7 @@ fn draw_names(canvas: &mut Canvas, frame: &Axes, area: Rect, places: &[NamedPlac
             is_inside && !taken.iter().any(|other| own.meets(*other))
         };
         let steps = (0..NAME_STEPS).flat_map(|step| [f64::from(step), -f64::from(step)]);
-        // A name without room is in the text of the check.
+        // A name without room is listed in the text of the check.
         let Some(own) = steps.map(room).find(is_free) else { continue };
         canvas.rect(own.grown(1.0), Ink { colour: PAPER, opacity: 0.8 });
         let base = own.top + 0.5 * (height + LABEL.cap_height());
@@ -323,7 +323,7 @@ mod tests {
         let one = named(0.0, 1);
         assert!(one.places(PlaceOf::Source.colour()).len() > 10);
         assert!(one.places(PlaceOf::Sensor.colour()).is_empty());
-        // Names at one place stand above each other: more ink than one has, and none of it below the plot.
+        // Names at one place are stacked: more ink than for one name, and no ink below the plot.
         let ink = |picture: &Decoded| picture.places(INK);
         let bare = ink(&named(0.0, 0));
         let own = ink(&one).len() - bare.len();
@@ -338,7 +338,7 @@ mod tests {
         let ray = |y: f64, end: RayEnd| RayPath { points: vec![[-9.0, y], [5.0, y]], end };
         let rays = vec![ray(-4.0, RayEnd::Sensor), ray(4.0, RayEnd::Lost)];
         let picture = section([-10.0, 10.0], Vec::new(), rays);
-        // The lines are translucent: the full colour is found in the marks only, here and in the legend.
+        // The lines are translucent: only the marks have the full colour, here and in the legend.
         let sensor = picture.places(RayEnd::Sensor.colour());
         let lost = picture.places(RayEnd::Lost.colour());
         assert!(sensor.len() > 20 && lost.len() > 20);

@@ -1,9 +1,9 @@
-//! Places on the paper, in pixels: right and down from the upper left corner.
+//! Points on the canvas, in pixels: right and down from the upper left corner.
 
-/// A place on the paper, pixels.
+/// A point on the canvas, pixels.
 pub(crate) type Point = [f64; 2];
 
-/// An upright rectangle, pixels.
+/// An axis-parallel rectangle, pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Rect {
     /// Left edge.
@@ -60,12 +60,12 @@ impl Rect {
     }
 }
 
-/// Distance of two places, pixels.
+/// Distance of two points, pixels.
 pub(crate) fn distance(a: Point, b: Point) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
-/// The part of a stretch inside a rectangle (Liang & Barsky, ACM Trans. Graphics 3 (1984) 1).
+/// The part of a segment inside a rectangle (Liang & Barsky, ACM Trans. Graphics 3 (1984) 1).
 pub(crate) fn clip(from: Point, to: Point, rect: Rect) -> Option<[Point; 2]> {
     let along = [to[0] - from[0], to[1] - from[1]];
     let (mut first, mut last) = (0.0f64, 1.0f64);

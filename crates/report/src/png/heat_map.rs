@@ -1,4 +1,4 @@
-//! Maps: a value per cell of a rectangle, in colours.
+//! False-colour maps: a value per cell of a rectangle.
 
 use crate::png::axis::{Axis, Scale};
 use crate::png::canvas::Canvas;
@@ -31,8 +31,8 @@ pub struct HeatMap {
     pub y_range: [f64; 2],
     /// How places become fractions of both axes.
     pub axes: Scale,
-    /// The values, `[[row, column]]`: row 0 is drawn at the bottom, column 0 at the left. What is not finite lies
-    /// outside of the sensor and is drawn grey.
+    /// The values, `[[row, column]]`: row 0 is drawn at the bottom, column 0 at the left.
+    /// Non-finite values are outside the sensor and drawn grey.
     pub values: Array2<f64>,
     /// Unit of the values; may be empty.
     pub unit: String,
@@ -46,15 +46,16 @@ pub struct HeatMap {
 
 /// Largest size of the map itself, pixels.
 const MOST: [f64; 2] = [640.0, 600.0];
-/// A map longer than this is squeezed.
+/// Maps of a greater aspect ratio are squeezed.
 const LONGEST: f64 = 4.0;
 /// Space between the map and the colour bar, pixels.
 const BAR_GAP: f64 = 26.0;
 
 /// Draws a map with axes, colour bar and a line with the least and greatest of its cells.
 ///
-/// Zero is an end of a linear bar where the values come near it. At most one cell in a thousand that sticks out
-/// tenfold does not stretch the bar, which then has a tip. A logarithmic bar spans at most six decades.
+/// A linear bar ends at zero where the values come near it. Up to one cell in a thousand that
+/// exceeds the others tenfold does not stretch the bar, which then has a tip. A logarithmic bar
+/// spans at most six decades.
 pub fn heat_map(map: &HeatMap) -> Result<Vec<u8>> {
     let (axes, size) = map_axes(map);
     let size = whole_cells(size, &map.values);
@@ -103,14 +104,14 @@ fn map_axes(map: &HeatMap) -> ([MarkedAxis; 2], PlotSize) {
     ([x, MarkedAxis::upright(y, &map.y_label, size.height)], size)
 }
 
-/// A map but for its cells: the description that pictures and pages draw alike.
+/// A map without its cells: the description shared by pictures and pages.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct MapFrame {
     /// Its axes.
     pub(crate) axes: [MarkedAxis; 2],
     /// Its bar on the map's own scale.
     pub(crate) bar: BarScale,
-    /// Its bar on a logarithmic scale; `None` of a map with colours for both sides of zero.
+    /// Its bar on a logarithmic scale; `None` for a map with colours for both sides of zero.
     pub(crate) log_bar: Option<BarScale>,
 }
 
@@ -131,17 +132,17 @@ impl MapFrame {
     }
 }
 
-/// A size at which every cell has the same number of pixels, if one is near.
+/// A size at which every cell has the same number of pixels, if one is close.
 fn whole_cells(size: PlotSize, values: &Array2<f64>) -> PlotSize {
     let (rows, columns) = values.dim();
     if rows == 0 || columns == 0 {
         return size;
     }
     let cell = [size.width / columns as f64, size.height / rows as f64];
-    // Rounded down, so that the map never grows beyond its room.
+    // Rounded down, so that the map always fits.
     let whole = cell.map(f64::floor);
     let near = cell.iter().zip(whole).all(|(cell, whole)| whole >= 0.8 * cell);
-    // Cells that are square stay square; others may change their aspect by less than a hundredth.
+    // Square cells stay square; others may change their aspect by less than 1 %.
     let same = whole[0] * cell[1] / (whole[1] * cell[0]);
     if near && (same - 1.0).abs() < 0.01 {
         PlotSize { width: whole[0] * columns as f64, height: whole[1] * rows as f64, ..size }
@@ -211,7 +212,8 @@ mod tests {
         }
     }
 
-    /// Left, top, right and bottom of the cell of a colour, which fills it: places of the colour bar do not count.
+    /// Left, top, right and bottom of the cell of a colour, which fills it: pixels of the colour
+    /// bar do not count.
     fn cell(picture: &Decoded, colour: [u8; 3]) -> [usize; 4] {
         let same = |x: usize, y: usize| picture.at(x, y) == colour;
         let mut places = picture.places(colour);

@@ -1,4 +1,5 @@
-//! What pictures have in common: heading, legend, frame with axes, and how large a plot of millimetres is drawn.
+//! Common parts of pictures: heading, legend, frame with axes, and the size of a plot in
+//! millimetres.
 
 use crate::png::axis::{Axis, Ticks};
 use crate::png::canvas::{Canvas, Ink, Pen};
@@ -19,7 +20,7 @@ const MINOR_LENGTH: f64 = 3.0;
 /// Space between a mark and its label, pixels.
 const TICK_GAP: f64 = 4.0;
 
-/// Writes a level label in the usual dark grey.
+/// Writes a horizontal label in the usual dark grey.
 pub(crate) fn write(
     canvas: &mut Canvas,
     text: &str,
@@ -30,7 +31,7 @@ pub(crate) fn write(
     canvas.text(&Label { text, at, font, align, direction: Direction::Level, colour: INK })
 }
 
-/// Writes a remark, small and soft, that begins there.
+/// Writes a remark in small grey letters that begins there.
 pub(crate) fn remark(canvas: &mut Canvas, text: &str, at: Point) -> Result<()> {
     let (align, direction) = (Align::Left, Direction::Level);
     canvas.text(&Label { text, at, font: TICK, align, direction, colour: SOFT_INK })
@@ -102,7 +103,7 @@ pub(crate) struct Legend {
     height: f64,
 }
 
-/// What comes after this many names is only counted.
+/// Further names are only counted.
 const MOST_ENTRIES: usize = 24;
 /// Width of the sample and its space, pixels.
 const SAMPLE_WIDTH: f64 = 34.0;
@@ -220,7 +221,7 @@ impl Axes {
         TICK_LENGTH + TICK_GAP + TICK.line_step() + label
     }
 
-    /// Where a point of the data lies on the paper; NaN where it has no place.
+    /// Where a point of the data lies on the canvas; NaN where it has no place.
     pub(crate) fn place(&self, area: Rect, [x, y]: Point) -> Point {
         [
             area.left + self.x.fraction(x) * area.width(),
@@ -310,23 +311,24 @@ pub(crate) struct PlotSize {
     pub(crate) width: f64,
     /// Height, whole pixels.
     pub(crate) height: f64,
-    /// Whether a millimetre is as long in both directions.
+    /// Whether a millimetre is equally long in both directions.
     pub(crate) aspect: Aspect,
 }
 
-/// Whether a unit is as long in both directions.
+/// Whether a unit is equally long in both directions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Aspect {
     /// It is.
     True,
-    /// One direction is squeezed, or the plot would be too narrow to be read.
+    /// One direction is squeezed, for the plot would be too narrow to read.
     Squeezed,
 }
 
-/// What is written below a plot whose aspect is not true.
+/// Remark below a plot whose aspect is not true.
 pub(crate) const SQUEEZED_REMARK: &str = "The axes are not to the same scale.";
 
-/// The largest size within `most` pixels of a plot of these ranges, at true aspect unless that is beyond `longest`.
+/// The largest size within `most` pixels of a plot of these ranges, at true aspect unless that
+/// exceeds `longest`.
 pub(crate) fn plot_size([x, y]: [Axis; 2], most: [f64; 2], longest: f64) -> PlotSize {
     let ratio = x.extent() / y.extent();
     let aspect =

@@ -25,7 +25,7 @@ pub struct LinePlot {
     pub y_label: String,
     /// Horizontal scale; points at zero and below have no place on a logarithmic one.
     pub x_scale: Scale,
-    /// Vertical scale; zero lies below the frame of a logarithmic one.
+    /// Vertical scale; zero is below the frame of a logarithmic one.
     pub y_scale: Scale,
     /// The curves; those without a name are not in the legend.
     pub series: Vec<Series>,
@@ -36,26 +36,26 @@ pub struct LinePlot {
 pub struct Series {
     /// Its name in the legend; may be empty.
     pub name: String,
-    /// Its points, in the order in which they are joined; values that are not finite interrupt it.
+    /// Its points, in the order in which they are joined; non-finite values interrupt it.
     pub points: Vec<SeriesPoint>,
     /// How the points are joined.
     pub form: SeriesForm,
     /// How the standard errors are shown.
     pub errors: ErrorForm,
-    /// How it is told apart from the others.
+    /// How it is distinguished from the others.
     pub look: Look,
 }
 
-/// How a curve is told apart from the others.
+/// How a curve is distinguished from the others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Look {
-    /// By the colour and dashes of its place among all.
+    /// By the colour and dashes of its index among all.
     InTurn,
     /// Solid, in the colour of a number.
     Solid(usize),
     /// Dashed, in the colour of a number.
     Dashed(usize),
-    /// A thin dotted grey line: a bound, not a result.
+    /// A thin dotted grey line, for a bound, not a result.
     Bound,
 }
 
@@ -66,7 +66,7 @@ pub struct SeriesPoint {
     pub x: f64,
     /// How much.
     pub y: f64,
-    /// Standard error of y; zero or not finite where there is none.
+    /// Standard error of y; zero or non-finite where there is none.
     pub std_error: f64,
 }
 
@@ -75,7 +75,7 @@ pub struct SeriesPoint {
 pub enum SeriesForm {
     /// By straight lines.
     Line,
-    /// Each is a level step that reaches half way to its neighbours, as in a histogram.
+    /// Each is a horizontal step that extends half way to its neighbours, as in a histogram.
     Steps,
     /// Not at all: each is a dot.
     Dots,
@@ -134,14 +134,15 @@ pub fn line_plot(plot: &LinePlot) -> Result<Vec<u8>> {
     canvas.into_png()
 }
 
-/// The axes of curves, the upright one with this scale: the description that pictures and pages draw alike.
+/// The axes of curves, the vertical one with this scale: the description shared by pictures and
+/// pages.
 pub(crate) fn line_axes(plot: &LinePlot, y_scale: Scale) -> [MarkedAxis; 2] {
     let [x, y] = data_axes(plot, y_scale);
     let x = MarkedAxis::level(x, &plot.x_label, WIDTH - 4.0 * MARGIN);
     [x, MarkedAxis::upright(y, &plot.y_label, HEIGHT)]
 }
 
-/// How a curve is drawn, by its place among all.
+/// How a curve is drawn, by its index among all.
 pub(crate) fn ink(series: &Series, index: usize) -> SeriesInk {
     match series.look {
         Look::InTurn => series_ink(index),
@@ -188,8 +189,8 @@ fn outline(series: &Series) -> Vec<Point> {
     }
 }
 
-/// The edges of a step: half way to its neighbours, as far out as in where there is only one, half a unit where
-/// there is none.
+/// The edges of a step: half way to its neighbours; symmetric where there is only one, half a unit
+/// where there is none.
 fn step_edges(x: f64, before: Option<f64>, after: Option<f64>) -> [f64; 2] {
     let halves = [before.map(|before| 0.5 * (x - before)), after.map(|after| 0.5 * (after - x))];
     let left = halves[0].or(halves[1]).unwrap_or(0.5);
@@ -242,7 +243,7 @@ fn draw_errors(canvas: &mut Canvas, frame: &Axes, area: Rect, series: &Series, i
             };
             let (lower, upper) = (shifted(-1.0), shifted(1.0));
             let band = Ink { colour: ink.colour, opacity: 0.22 };
-            // Piece by piece, so that gaps of the curve stay gaps.
+            // Piece by piece, so that gaps of the curve are preserved.
             for (low, high) in lower.windows(2).zip(upper.windows(2)) {
                 let corners = [low[0], low[1], high[1], high[0]].map(|p| frame.place(area, p));
                 if corners.iter().flatten().all(|coordinate| coordinate.is_finite()) {

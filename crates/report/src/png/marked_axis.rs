@@ -1,7 +1,7 @@
-//! Axes with their marks and labels: the description that pictures and pages draw alike.
+//! Axes with their marks and labels: the description shared by pictures and pages.
 //!
-//! How many marks an axis has follows from its length on a picture. A page leaves out labels that have no room; it makes
-//! none of its own.
+//! The number of marks on an axis follows from its length in a picture. A page omits labels without
+//! room; it adds none.
 
 use crate::png::axis::{Axis, Scale, Ticks};
 use crate::png::text::TICK;
@@ -18,13 +18,13 @@ pub(crate) struct MarkedAxis {
     pub(crate) label: String,
 }
 
-/// Space between two numbers that stand side by side, pixels.
+/// Space between two adjacent numbers, pixels.
 const GAP: f64 = 18.0;
-/// Width of a digit over the size of the letters: no sign of a number is much wider on average.
+/// Width of a digit over the font size: the characters of a number are hardly wider on average.
 const DIGIT_EM: f64 = 0.64;
 
 impl MarkedAxis {
-    /// A level axis of a length in pixels, with as many marks as have room side by side.
+    /// A horizontal axis of a length in pixels, with as many marks as fit side by side.
     pub(crate) fn level(axis: Axis, label: &str, length: f64) -> Self {
         let mut most = (length / 50.0).clamp(3.0, 12.0) as usize;
         let mut ticks = axis.ticks(most);
@@ -35,7 +35,7 @@ impl MarkedAxis {
         Self::new(axis, ticks, label)
     }
 
-    /// An upright axis of a length in pixels.
+    /// A vertical axis of a length in pixels.
     pub(crate) fn upright(axis: Axis, label: &str, length: f64) -> Self {
         Self::new(axis, axis.ticks((length / 38.0).clamp(3.0, 12.0) as usize), label)
     }
@@ -48,7 +48,7 @@ impl MarkedAxis {
 
     /// The axes of a path of any length up to `longest`: each is half as long as the one before.
     pub(crate) fn of_lengths(longest: f64, pixels: f64) -> Vec<Self> {
-        /// A path shorter than the last of them is a point on any map.
+        /// Number of axes: a path shorter than the last is a point on any map.
         const COUNT: i32 = 10;
         let lengths = (0..COUNT).map(|halvings| longest * 0.5f64.powi(halvings));
         lengths
@@ -57,7 +57,7 @@ impl MarkedAxis {
     }
 }
 
-/// Whether labels side by side along so many pixels touch one another nowhere.
+/// Whether labels side by side along `length` pixels do not touch.
 fn have_room(axis: &Axis, ticks: &Ticks, length: f64) -> bool {
     let places: Vec<f64> =
         ticks.major.iter().map(|tick| axis.fraction(tick.value) * length).collect();
@@ -66,7 +66,7 @@ fn have_room(axis: &Axis, ticks: &Ticks, length: f64) -> bool {
     letters as f64 * DIGIT_EM * TICK.size + GAP <= step
 }
 
-/// A label that says what the numbers are to be multiplied with.
+/// A label with the factor that multiplies the numbers.
 pub(crate) fn with_factor(label: &str, exponent: i32) -> String {
     match (exponent, label.is_empty()) {
         (0, _) => label.to_string(),

@@ -1,7 +1,7 @@
 //! Pictures: pure functions from plain data to the bytes of PNG files.
 //!
-//! Same data, same bytes: no files, no clock, no fonts of the system. Knows neither scenes nor readings; what is
-//! plotted, its units and its words come from the caller. No other module names plotters, png or colorous.
+//! Same data, same bytes: no files, no clock, no system fonts. Knows neither scenes nor readings;
+//! data, units and words come from the caller. No other module uses plotters, png or colorous.
 
 mod axis;
 mod bar_chart;
@@ -85,7 +85,7 @@ mod tests {
             ]
         }
 
-        /// Whether the paper is white all around.
+        /// Whether the margins are white.
         fn has_white_margins(&self) -> bool {
             let edge = |column: usize, row: usize| {
                 column < 8 || row < 8 || column + 8 >= self.width || row + 8 >= self.height
@@ -200,7 +200,7 @@ mod tests {
         }
     }
 
-    /// A picture of each kind that shows `one` and `other` wherever a number can stand.
+    /// A picture of each kind with `one` and `other` in place of every number.
     fn pictures(one: f64, other: f64, scale: Scale) -> [Vec<u8>; 5] {
         [
             heat_map(&map(one, other, scale)),

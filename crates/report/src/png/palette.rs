@@ -1,4 +1,5 @@
-//! All colours of the pictures: on white, safe for colour-blind readers, and told apart in grey as well.
+//! All colours of the pictures: on white, safe for colour-blind readers, and distinguishable in
+//! grey as well.
 //!
 //! Series differ in colour (Okabe & Ito, Color Universal Design, 2008) and in their dashes.
 
@@ -53,10 +54,10 @@ impl ColourMap {
     }
 }
 
-/// Steps between the stops of a colour map; interpolation between them is off by less than an eye sees.
+/// Steps between the stops of a colour map; the interpolation error is invisible.
 const STOPS: u8 = 32;
 
-/// How a series is told apart from the others.
+/// How a series is distinguished from the others.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SeriesInk {
     /// Colour of lines and bands.
@@ -76,7 +77,7 @@ const COLOURS: [Rgb; 7] = [
     [230, 159, 0],
 ];
 
-/// Further colours of pairs.
+/// Additional colours of pairs.
 const MORE: [Rgb; 2] = [[94, 60, 153], [140, 81, 10]];
 
 /// All colours of curves, those of series first.

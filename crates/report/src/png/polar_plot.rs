@@ -38,8 +38,8 @@ pub enum Pole {
 pub struct Curve {
     /// Its name in the legend: "C0 / C180".
     pub name: String,
-    /// Gamma in degrees and the value there, in the order in which they are joined. Positive gamma is drawn on the
-    /// right (C0), negative gamma on the left (C180).
+    /// Gamma in degrees and its value, in the order in which they are joined. Positive gamma is
+    /// drawn on the right (C0), negative gamma on the left (C180).
     pub points: Vec<(f64, f64)>,
     /// Standard error of each value, drawn as a band; empty for none.
     pub std_errors: Vec<f64>,
@@ -56,12 +56,12 @@ const SPOKES: usize = 30;
 /// Which part of the circle is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Part {
-    /// Gamma from −90° to 90°: there is nothing beyond.
+    /// Gamma from −90° to 90°: there is no data beyond.
     Half,
     Whole,
 }
 
-/// The place of a polar plot on the paper.
+/// The place of a polar plot on the canvas.
 struct Dial {
     centre: Point,
     pole: Pole,
@@ -71,7 +71,8 @@ struct Dial {
     ticks: Ticks,
 }
 
-/// Draws curves over the angle in concentric circles, only the half circle where nothing lies beyond 90°.
+/// Draws curves over the angle in concentric circles, only the half circle where no data lies
+/// beyond 90°.
 pub fn polar_plot(plot: &PolarPlot) -> Result<Vec<u8>> {
     let header = Header::new(&plot.title, &plot.subtitle, WIDTH - 2.0 * MARGIN)?;
     let entries: Vec<(Sample, &str)> = plot
@@ -134,15 +135,15 @@ fn rings(curves: &[Curve]) -> (f64, Ticks) {
         [first, second, ..] => second.value - first.value,
         [_] | [] => axis.max(),
     };
-    // The curve may reach a little beyond a circle, but not beyond the last one.
+    // The curve may extend slightly beyond a circle, but not beyond the last one.
     let outer = (axis.max() / step - 1e-6).ceil().max(1.0) * step;
     (outer, Axis::new(0.0, outer, Scale::Linear).ticks(7))
 }
 
-/// Decades of a logarithmic dial: below them is the middle.
+/// Range of a logarithmic dial: values below it are at the centre.
 const DECADES: f64 = 1e4;
 
-/// The axis from the middle to the outermost circle: the description that pictures and pages draw alike.
+/// The axis from the centre to the outermost circle: the description shared by pictures and pages.
 pub(crate) fn dial_axis(plot: &PolarPlot, scale: Scale) -> MarkedAxis {
     let (outer, ticks) = rings(&plot.curves);
     let label = format!("intensity in {}", plot.unit);
@@ -164,10 +165,10 @@ fn part(curves: &[Curve]) -> Part {
 }
 
 impl Dial {
-    /// Where a value lies on the paper; NaN where it has no place.
+    /// Where a value lies on the canvas; NaN where it has no place.
     fn place(&self, gamma_deg: f64, value: f64) -> Point {
         let value = if value.is_finite() { value } else { f64::NAN };
-        // Bands may reach a little beyond the outermost circle.
+        // Bands may extend slightly beyond the outermost circle.
         self.at(gamma_deg, RADIUS * (value / self.outer).clamp(0.0, 1.05))
     }
 
@@ -223,7 +224,7 @@ impl Dial {
                     Pole::Down => cos,
                     Pole::Up => -cos,
                 };
-                // The letters are pushed outward by as much as they reach inward.
+                // The label is pushed outward by as much as it extends inward.
                 let half_width = 0.5 * TICK.width(&text)?;
                 let at = [x + half_width * sin, y + 0.5 * TICK.cap_height() * (1.0 + down)];
                 write(canvas, &text, at, TICK, Align::Centre)?;
@@ -250,7 +251,8 @@ impl Dial {
         }
     }
 
-    /// The values of the circles: beside the straight edge of a half circle, on the right spoke of a whole one.
+    /// The values of the circles: along the straight edge of a half circle, on the right spoke of a
+    /// whole one.
     fn draw_values(&self, canvas: &mut Canvas) -> Result<()> {
         let y = match (self.part, self.pole) {
             (Part::Half, Pole::Up) => self.centre[1] + 10.0 + TICK.cap_height(),

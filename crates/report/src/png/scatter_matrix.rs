@@ -1,4 +1,4 @@
-//! Scatter matrices: several quantities of the same things, each against each.
+//! Scatter matrices: several quantities of the same items, each against each.
 
 use crate::png::axis::{Axis, Scale};
 use crate::png::canvas::{Canvas, Ink, Pen};
@@ -9,7 +9,7 @@ use crate::png::text::{Align, LABEL, TICK};
 use lumiduct_base::error::Result;
 use lumiduct_base::number::format_value;
 
-/// Several quantities of the same things.
+/// Several quantities of the same items.
 #[derive(Debug, Clone)]
 pub struct ScatterMatrix {
     /// What is shown.
@@ -18,9 +18,9 @@ pub struct ScatterMatrix {
     pub subtitle: String,
     /// The quantities; the first eight are drawn.
     pub columns: Vec<ScatterColumn>,
-    /// The kind of each thing, as a place in `kinds`.
+    /// The kind of each item, as an index into `kinds`.
     pub kind_of: Vec<usize>,
-    /// Names of the kinds; three at most are told apart.
+    /// Names of the kinds; at most three are distinguished.
     pub kinds: Vec<String>,
 }
 
@@ -29,7 +29,7 @@ pub struct ScatterMatrix {
 pub struct ScatterColumn {
     /// Name and unit.
     pub label: String,
-    /// A value for each thing; those that are not finite are left out.
+    /// A value for each item; non-finite ones are left out.
     pub values: Vec<f64>,
 }
 
@@ -40,10 +40,10 @@ const WIDTH: f64 = 900.0;
 const GAP: f64 = 8.0;
 /// Room for the numbers left of the panels, pixels.
 const LEFT: f64 = 62.0;
-/// Share of a range that is left free at its ends.
+/// Share of a range that is left free at each end.
 const PADDING: f64 = 0.06;
 
-/// Draws every quantity against every other; names and ranges stand on the diagonal.
+/// Draws every quantity against every other; names and ranges are on the diagonal.
 pub fn scatter_matrix(matrix: &ScatterMatrix) -> Result<Vec<u8>> {
     let columns = &matrix.columns[..matrix.columns.len().min(MOST)];
     let header = Header::new(&matrix.title, &matrix.subtitle, WIDTH - 2.0 * MARGIN)?;

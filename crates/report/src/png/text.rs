@@ -1,7 +1,8 @@
-//! Lettering: measures and draws text in the font that is built in.
+//! Lettering: measures and draws text in the built-in font.
 //!
-//! The only place that names plotters. The font is `DejaVu` Sans cut down to Latin, Greek, Cyrillic and the signs of
-//! physics (`font/`); no font of the system is ever looked for, so the same picture comes out everywhere.
+//! The only module that uses plotters. The font is `DejaVu` Sans cut down to Latin, Greek, Cyrillic
+//! and the symbols of physics (`font/`); system fonts are never used, so pictures are the same
+//! everywhere.
 
 use crate::png::palette::Rgb;
 use lumiduct_base::error::{Error, Result};
@@ -15,7 +16,7 @@ const FAMILY: &str = "lumiduct";
 static REGULAR: &[u8] = include_bytes!("font/lumiduct-regular.ttf");
 static BOLD: &[u8] = include_bytes!("font/lumiduct-bold.ttf");
 
-/// Ascent plus descent of the font, in em: the library asks for this height, not for the em.
+/// Ascent plus descent of the font, in em: the library takes this height, not the em.
 const LINE_HEIGHT_EM: f64 = 2384.0 / 2048.0;
 /// Height of capitals and digits, in em.
 const CAP_HEIGHT_EM: f64 = 1493.0 / 2048.0;
@@ -61,11 +62,11 @@ pub(crate) enum Align {
 pub(crate) enum Direction {
     /// From left to right.
     Level,
-    /// From below to above.
+    /// From bottom to top.
     Upward,
 }
 
-/// A line of text and where it stands.
+/// A line of text and its place.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Label<'a> {
     /// What is written.
@@ -102,7 +103,7 @@ impl Font {
         Ok(f64::from(width) / MAGNIFIED)
     }
 
-    /// The text, with its middle cut out if it is wider than `width` pixels.
+    /// The text, with its middle removed if it is wider than `width` pixels.
     pub(crate) fn fit(self, text: &str, width: f64) -> Result<String> {
         let mut fitting = text.to_string();
         let mut letters = text.chars().count();
@@ -114,7 +115,8 @@ impl Font {
         Ok(fitting)
     }
 
-    /// The text in lines of at most `width` pixels, broken between words; what needs more than `most` lines is cut.
+    /// The text in lines of at most `width` pixels, broken between words; text beyond `most` lines
+    /// is cut.
     pub(crate) fn wrap(self, text: &str, width: f64, most: usize) -> Result<Vec<String>> {
         let mut lines: Vec<String> = Vec::new();
         for word in text.split_whitespace() {
@@ -143,13 +145,13 @@ impl Font {
         Ok(FontDesc::new(FontFamily::Name(FAMILY), self.drawn_height(scale), style))
     }
 
-    /// The height that the library is asked for: a whole, even number, so that its rounding moves no glyph.
+    /// The height passed to the library: a whole, even number, so that its rounding moves no glyph.
     fn drawn_height(self, scale: f64) -> f64 {
         (LINE_HEIGHT_EM * self.size * scale / 2.0).round() * 2.0
     }
 }
 
-/// Draws a label into RGB pixels of a picture that is `scale` times enlarged.
+/// Draws a label into RGB pixels of a picture enlarged `scale` times.
 pub(crate) fn draw(
     pixels: &mut [u8],
     size: (u32, u32),
@@ -180,7 +182,7 @@ pub(crate) fn draw(
         .map_err(font_error)
 }
 
-/// The text without line breaks and other signs that have no shape.
+/// The text without line breaks and other characters without a glyph.
 fn printable(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }
@@ -202,7 +204,7 @@ fn font_error(reason: impl std::fmt::Display) -> Error {
 mod tests {
     use super::*;
 
-    /// A text in black at (100, 30) of a picture of 200 by 40.
+    /// A text in black at (100, 30) in a picture of 200 by 40.
     fn drawn(text: &str, align: Align) -> Vec<u8> {
         let mut pixels = vec![255; 200 * 40 * 3];
         let at = [100.0, 30.0];

@@ -43,7 +43,7 @@ fn a_straight_guide_is_cut_along_its_axis_wherever_it_stands() {
     let scene = scene_of(&format!("{ROD}at = {{ position_mm = [30, -7, 5] }}\n"));
     let view = view(&scene, SectionView::default());
     expect_on_plane(&scene, &view, &[[30.0, -7.0, 5.0], [30.0, -7.0, 45.0]]);
-    // It lies, and its length goes by its coordinates from left to right.
+    // It is horizontal, with its coordinates increasing from left to right.
     let [start, end] = [5.0, 45.0].map(|z| drawn_at(&scene, &view, [30.0, -7.0, z]));
     assert!((start[0] - 5.0).abs() < 1e-6 && (end[0] - 45.0).abs() < 1e-6, "{start:?} {end:?}");
     assert!((start[1] - end[1]).abs() < 1e-6);
@@ -56,7 +56,7 @@ fn a_slanting_guide_is_cut_along_its_axis() {
     let along =
         |length: f64| [1.0 + length / 3.0, 2.0 + 2.0 * length / 3.0, 3.0 + 2.0 * length / 3.0];
     expect_on_plane(&scene, &view, &[along(0.0), along(20.0), along(40.0)]);
-    // Both walls are cut: the outline is as high as the rod is thick, across the axis.
+    // Both walls are cut: the height of the outline across the axis is the thickness of the rod.
     let [start, end] =
         [0.0, 40.0].map(|length| DVec2::from(drawn_at(&scene, &view, along(length))));
     let across = (end - start).perp().normalize();
@@ -99,7 +99,7 @@ fn a_plane_and_a_direction_are_those_that_are_asked_for() {
     expect_near(drawn_at(&scene, &own, [31.0, 0.0, 6.0]), [31.0, -6.0]);
     let words = own.words(&scene, 50, &own.outlines(&scene), &own.places(&scene, &[]));
     assert!(words.starts_with("cut at y = −6.5 mm; 50 paths"), "{words}");
-    // Without a place it goes through the middle of what is shown.
+    // Without a place it passes through the middle of what is shown.
     let plane = Some(CutPlane { across: 2, at_mm: None });
     let own = view(&scene, SectionView { plane, ..SectionView::default() });
     expect_on_plane(&scene, &own, &[[30.0, -7.0, 25.0]]);
@@ -117,7 +117,8 @@ fn a_zoom_shows_one_thing_with_its_surroundings() {
     let view = zoomed("rod.exit").unwrap();
     expect_on_plane(&scene, &view, &[[0.0, 0.0, 40.0]]);
     expect_near(view.shown(0.5 * (view.window.min + view.window.max)), [40.0, 0.0]);
-    // The face is 4 mm high: a quarter of that is added on every side, and the picture is no strip.
+    // The face is 4 mm high: a quarter of that is added on every side, and the picture is not a
+    // strip.
     let size = view.window.max - view.window.min;
     assert!((size - DVec2::new(4.0, 6.0)).abs().max_element() < 1e-6, "{size}");
     let wrong = zoomed("rod.exitt").err().unwrap().to_string();

@@ -1,4 +1,4 @@
-//! What is said of a study, part by part, whatever the format of the page.
+//! The contents of the report of a study, part by part, for any page format.
 
 use crate::study::edge::edge_remark;
 use crate::study::{
@@ -11,7 +11,7 @@ use lumiduct_core::measure::Outcome;
 use lumiduct_input::{Best, Domain, Setting};
 use std::fmt::Write;
 
-/// Errors of a difference from which on a design is told to be behind the best, 1.
+/// Errors of a difference above which a design counts as behind the best, 1.
 const BEHIND_ERRORS: f64 = 3.0;
 
 /// A part of a page.
@@ -30,7 +30,8 @@ pub(super) enum Item {
     Table { head: Vec<String>, rows: Vec<Vec<String>> },
 }
 
-/// All parts but the pictures, in their order: those that come before them, up to the first table, and those after.
+/// All parts except the pictures, in order: those before them, up to the first table, and those
+/// after.
 pub(super) fn parts(report: &StudyReport) -> [Vec<Part>; 2] {
     let mut before: Vec<Part> = [
         failures(report),
@@ -51,7 +52,7 @@ pub(super) fn parts(report: &StudyReport) -> [Vec<Part>; 2] {
     [before, after]
 }
 
-/// What came of it, in a sentence.
+/// The outcome, in a sentence.
 pub(super) fn verdict(report: &StudyReport) -> String {
     let (count, bad) = (report.designs.len(), report.counts());
     let designs = if count == 1 { "design" } else { "designs" };
@@ -244,7 +245,7 @@ fn parameters(report: &StudyReport) -> Part {
     Part { title: "Parameters", items: vec![Item::Table { head, rows }] }
 }
 
-/// What a parameter may be set to, in words.
+/// The domain of a parameter, in words.
 fn domain_words(domain: &Domain) -> String {
     match domain {
         Domain::Levels(levels) => levels.iter().map(setting_word).collect::<Vec<_>>().join(", "),
@@ -266,7 +267,7 @@ fn domain_words(domain: &Domain) -> String {
     }
 }
 
-/// Remarks of the designs, each told once.
+/// Remarks of the designs, each listed once.
 fn remarks(report: &StudyReport) -> Option<Part> {
     let mut told: Vec<(&str, Vec<usize>)> = Vec::new();
     for design in &report.designs {

@@ -1,13 +1,14 @@
-//! Which numbers of a parameter were tried, and whether the best design lies at their edge.
+//! Whether the best design is at the edge of the values tried for a parameter.
 
 use crate::study::{DesignRecord, ParameterFacts, StudyReport};
 use lumiduct_base::number::format_value;
 use lumiduct_input::Domain;
 
-/// Of fewer settings than this every one is at an edge.
+/// With fewer settings than this every one is at an edge.
 const FEWEST: usize = 3;
 
-/// A remark on a best design with the least or the greatest setting of a parameter, which may be better still beyond it.
+/// A remark on a best design at the least or greatest setting of a parameter: beyond it there may
+/// be a better one.
 pub(super) fn edge_remark(report: &StudyReport) -> Option<String> {
     let best = report.analysis.ranked.first()?;
     let best = report.designs.iter().find(|design| design.design == best.design)?;
@@ -24,7 +25,7 @@ pub(super) fn edge_remark(report: &StudyReport) -> Option<String> {
     })
 }
 
-/// At which edge of a parameter a design lies, in words; `None` of one inside, and of choices.
+/// At which edge of a parameter a design is, in words; `None` for one inside, and for choices.
 fn edge(parameter: &ParameterFacts, best: &DesignRecord, all: &[DesignRecord]) -> Option<String> {
     let own = parameter.setting_in(best).number()?;
     let tried = numbers_of(parameter, all);
@@ -34,9 +35,10 @@ fn edge(parameter: &ParameterFacts, best: &DesignRecord, all: &[DesignRecord]) -
     }
     let ([from, to], part) = match parameter.domain {
         Domain::Levels(_) | Domain::Listed => ([least, greatest], 0.0),
-        // Of samples that fill a range evenly, about one lies in the outermost part of the range at either end.
+        // For samples that fill a range evenly, about one lies in the outermost interval at either
+        // end.
         Domain::Uniform { from, to } => ([from, to], (to - from) / all.len() as f64),
-        // Scatter of production has no edge.
+        // Production scatter has no edge.
         Domain::Normal { .. } => return None,
     };
     let end = if own <= from + part {

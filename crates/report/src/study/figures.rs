@@ -1,4 +1,4 @@
-//! Which pictures a study has, and what is on them.
+//! The pictures of a study and their contents.
 
 use crate::OutputFile;
 use crate::png::{
@@ -12,9 +12,9 @@ use lumiduct_base::error::Result;
 use lumiduct_base::number::format_value;
 use lumiduct_core::measure::Outcome;
 
-/// Curves of a response plot; more cannot be told apart.
+/// Most curves of a response plot; more cannot be distinguished.
 const MOST_CURVES: usize = 12;
-/// Bins of a histogram over the square root of the number of designs, about.
+/// Approximate bins of a histogram over the square root of the number of designs.
 const BINS_PER_ROOT: f64 = 1.2;
 
 /// A picture of a study.
@@ -23,11 +23,11 @@ pub(super) struct Figure {
     pub(super) file: String,
     /// What it shows, in words.
     pub(super) label: String,
-    /// What is on it.
+    /// Its contents.
     pub(super) drawing: Drawing,
 }
 
-/// What is on a picture.
+/// Contents of a picture.
 pub(super) enum Drawing {
     /// Curves; the unit is that of their values.
     Curves(LinePlot, String),
@@ -94,7 +94,8 @@ fn measure_label(report: &StudyReport, measure: &str) -> String {
     }
 }
 
-/// A measure over the parameter with the most levels, a curve for each setting of all others; of grids and tables.
+/// A measure over the parameter with the most levels, a curve for each setting of all others; for
+/// grids and tables.
 fn response(report: &StudyReport, measure: &str) -> Option<LinePlot> {
     match report.facts.plan {
         PlanFacts::Grid | PlanFacts::List => {}
@@ -105,7 +106,7 @@ fn response(report: &StudyReport, measure: &str) -> Option<LinePlot> {
     }
     let levels = |parameter: &&ParameterFacts| numbers_of(parameter, &report.designs).len();
     let parameters = &report.facts.parameters;
-    // Of several with as many levels, the first.
+    // Among parameters with equally many levels, the first.
     let across = parameters.iter().rev().max_by_key(levels).filter(|own| levels(own) > 1)?;
     let others: Vec<&ParameterFacts> =
         parameters.iter().filter(|own| own.name != across.name).collect();
@@ -144,7 +145,7 @@ fn response(report: &StudyReport, measure: &str) -> Option<LinePlot> {
     })
 }
 
-/// A parameter with what it is set to in a design: "leg 5 mm".
+/// A parameter with its setting in a design: "leg 5 mm".
 pub(super) fn setting_words(parameter: &ParameterFacts, design: &DesignRecord) -> String {
     let unit = parameter.unit.as_ref().map_or(String::new(), |unit| format!(" {unit}"));
     let found = parameter.setting_in(design);
@@ -152,7 +153,7 @@ pub(super) fn setting_words(parameter: &ParameterFacts, design: &DesignRecord) -
     format!("{} {}{unit}", parameter.name, setting_word(found))
 }
 
-/// How often a measure has which value, with the limits of its checks; of samples.
+/// Histogram of a measure with the limits of its checks; for samples.
 fn distribution(report: &StudyReport, measure: &str) -> Option<LinePlot> {
     match report.facts.plan {
         PlanFacts::LatinHypercube(_) | PlanFacts::Sobol(_) | PlanFacts::Tolerance(_) => {}
@@ -166,7 +167,7 @@ fn distribution(report: &StudyReport, measure: &str) -> Option<LinePlot> {
         .collect();
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    // Too few or all alike have no distribution to draw.
+    // Too few or equal values have no distribution to draw.
     if values.len() < 10 || low >= high {
         return None;
     }

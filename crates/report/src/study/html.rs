@@ -1,4 +1,4 @@
-//! `study.html`: what came of a study, for people with a browser, in one file without anything to load.
+//! `study.html`: the results of a study for a browser, in one file with nothing to load.
 
 use crate::html::data::chart;
 use crate::html::frame::{self, Block, Page, Plots, Standing, render};
@@ -11,7 +11,7 @@ use crate::study::contents::{Item, Part, parts, verdict};
 use crate::study::figures::{Drawing, Figure};
 use lumiduct_base::error::Result;
 
-/// Tables of more rows than this are folded away.
+/// Tables with more rows than this are folded away.
 const ROWS_SHOWN: usize = 60;
 
 /// The whole page.
@@ -56,7 +56,7 @@ fn blocks(report: &StudyReport, figure: &Figure, plots: &mut Plots) -> Vec<Block
         Drawing::Curves(plot, unit) => {
             vec![plots.add(figure.label.clone(), chart(plot, unit), picture)]
         }
-        // Choices have no place on an axis: the table of main effects says as much.
+        // Choices have no place on an axis: the table of main effects shows the same.
         Drawing::Bars(_) => Vec::new(),
         Drawing::Scatter(matrix) => {
             let pairs = scatter_plots(report, matrix).into_iter();

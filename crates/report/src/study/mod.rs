@@ -1,4 +1,4 @@
-//! What is handed to the user of a study: one record, and pure functions that turn it into files.
+//! The output of a study: one record, and pure functions that turn it into files.
 
 mod contents;
 mod edge;
@@ -57,7 +57,7 @@ struct Summary<'a> {
     files: Vec<&'a str>,
 }
 
-/// A design without what single groups of batches say.
+/// A design without the values of single groups of batches.
 #[derive(Serialize)]
 struct Row<'a> {
     design: usize,

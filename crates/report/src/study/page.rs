@@ -1,4 +1,4 @@
-//! `study.md`: what came of a study, for people.
+//! `study.md`: the results of a study for a reader.
 
 use crate::markdown::masthead;
 use crate::study::StudyReport;

@@ -1,4 +1,4 @@
-//! What is known of a study: its facts, a record of every design, and what follows from all of them together.
+//! The record of a study: its facts, a record of every design, and their joint analysis.
 
 use crate::base64;
 use crate::{CheckResult, TargetFacts};
@@ -20,31 +20,31 @@ pub struct StudyFacts {
     pub lumiduct_batch: u32,
     /// Version of the program.
     pub version: String,
-    /// Name: that of the study file without its ending.
+    /// Name: that of the study file without its extension.
     pub name: String,
     /// Title.
     pub title: String,
-    /// What it is for.
+    /// Its purpose.
     pub description: Option<String>,
-    /// Whom the study is for, and by whom: the project of its scene, without the logo.
+    /// Client and author of the study: the project of its scene, without the logo.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub project: Option<Project>,
     /// The logo of the project, a PNG file, byte for byte.
     #[serde(default, skip_serializing_if = "Option::is_none", with = "base64")]
     pub logo: Option<Vec<u8>>,
-    /// Identifies study, scene, files that they name, overrides and numerics.
+    /// Identifies study, scene, referenced files, overrides and numerics.
     pub hash: String,
     /// Name of the scene that is varied.
     pub scene: String,
-    /// Overrides that all designs have in common.
+    /// Overrides common to all designs.
     pub overrides: Vec<String>,
-    /// Which designs are made of the parameters.
+    /// How designs are made from the parameters.
     pub plan: PlanFacts,
     /// Number of designs.
     pub designs: usize,
     /// Seed of the random numbers of light.
     pub seed: u64,
-    /// How flux was to be estimated.
+    /// The requested estimator of flux.
     pub estimator: String,
     /// Stop rules of a design, in words.
     pub asked: String,
@@ -67,13 +67,13 @@ impl StudyFacts {
         Some(Project { logo: self.logo.clone(), ..project })
     }
 
-    /// Whether these are of the same study, so that their designs go together.
+    /// Whether both belong to the same study, so that their designs can be merged.
     pub fn is_same_study(&self, other: &Self) -> bool {
         (&self.name, &self.hash, self.designs) == (&other.name, &other.hash, other.designs)
     }
 }
 
-/// Which designs are made of the parameters.
+/// How designs are made from the parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PlanFacts {
@@ -100,14 +100,14 @@ pub struct ParameterFacts {
     pub unit: Option<String>,
     /// The keys that it sets.
     pub keys: Vec<String>,
-    /// What it may be set to.
+    /// Its domain.
     pub domain: Domain,
-    /// What the scene says without it.
+    /// Its value in the scene.
     pub nominal: Setting,
 }
 
 impl ParameterFacts {
-    /// What it is set to in a design; what the scene says, where that is known.
+    /// Its setting in a design; its value in the scene where that is known.
     pub fn setting_in<'a>(&'a self, design: &'a DesignRecord) -> &'a Setting {
         match design.settings.get(&self.name) {
             Some(own @ (Setting::Number(_) | Setting::Choice(_))) => own,
@@ -123,13 +123,13 @@ impl ParameterFacts {
         }
     }
 
-    /// Name and unit, as for a column: "`length_mm`"; the name alone if it ends so.
+    /// Name and unit, as for a column: "`length_mm`"; the name alone if it has this ending.
     pub fn column(&self) -> String {
         column(&self.name, self.unit.as_deref())
     }
 }
 
-/// What is known of one design.
+/// The record of one design.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DesignRecord {
     /// Format of the record, [`DESIGN_FORMAT`].
@@ -140,13 +140,13 @@ pub struct DesignRecord {
     pub study: String,
     /// Its number, from 1.
     pub design: usize,
-    /// What the parameters were set to, by their names.
+    /// The settings of the parameters, by name.
     pub settings: IndexMap<String, Setting>,
-    /// What came of it.
+    /// Its outcome.
     pub outcome: DesignOutcome,
 }
 
-/// What came of a design.
+/// The outcome of a design.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DesignOutcome {
@@ -156,16 +156,16 @@ pub enum DesignOutcome {
     Failed(String),
 }
 
-/// What tracing a design gave.
+/// The result of tracing a design.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DesignResult {
     /// Identifies the design's scene with everything in it.
     pub scene_hash: String,
     /// The recorded measures by their dotted names.
     pub measures: IndexMap<String, Measure>,
-    /// What single groups of batches say of them, where it is known.
+    /// Their values by group of batches, where known.
     pub replicates: IndexMap<String, Replicates>,
-    /// What was demanded, and what came of it.
+    /// The checks and their verdicts.
     pub checks: Vec<CheckResult>,
     /// The target, and whether it was reached.
     pub target: Option<TargetFacts>,
@@ -178,7 +178,7 @@ pub struct DesignResult {
 }
 
 impl DesignRecord {
-    /// What tracing gave; `None` of a design that makes no scene.
+    /// The result of tracing; `None` for a design that makes no scene.
     pub fn result(&self) -> Option<&DesignResult> {
         match &self.outcome {
             DesignOutcome::Done(result) => Some(result),
@@ -204,21 +204,22 @@ pub struct Estimate {
     pub value: f64,
     /// Its standard error.
     pub std_error: f64,
-    /// What the error was told from.
+    /// How the error was computed.
     pub evidence: Pairing,
 }
 
-/// What the error of a function of several designs was told from.
+/// How the error of a function of several designs was computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Pairing {
-    /// Group by group, for the designs have the same random numbers.
+    /// Group by group, as the designs share their random numbers.
     Paired,
-    /// From the errors of the single designs, as if they were independent; too large where they err alike.
+    /// From the errors of the single designs, as if independent; too large where they are
+    /// correlated.
     Independent,
 }
 
-/// What follows from all designs together.
+/// The joint analysis of all designs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Analysis {
     /// All designs that were traced, the best first; empty without a ranking.
@@ -227,18 +228,18 @@ pub struct Analysis {
     pub effects: Vec<Effect>,
     /// How much of the variance of a measure comes from each parameter.
     pub sensitivities: Vec<Sensitivity>,
-    /// Share of the designs that fail; of tolerance runs alone.
+    /// Share of the designs that fail; for tolerance runs only.
     pub failures: Vec<FailureShare>,
-    /// How much sharper differences between designs are than if each had random numbers of its own.
+    /// How much sharper differences between designs are than with independent random numbers.
     pub sharpness: Vec<Sharpness>,
 }
 
-/// A design's place.
+/// The rank of a design.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Ranked {
     /// Its number.
     pub design: usize,
-    /// How much it is behind the best, in the unit of the measure; nothing for the best itself.
+    /// How much it is behind the best, in the unit of the measure; `None` for the best itself.
     pub behind: Option<Estimate>,
 }
 
@@ -258,11 +259,11 @@ pub struct Effect {
 pub struct EffectPoint {
     /// The setting.
     pub setting: Setting,
-    /// Number of designs behind it.
+    /// Number of designs it is taken over.
     pub designs: usize,
     /// The mean, in the unit of the measure.
     pub mean: Estimate,
-    /// How much it is above that of the first setting; nothing for the first itself.
+    /// How much it is above that of the first setting; `None` for the first itself.
     pub from_first: Option<Estimate>,
 }
 
@@ -273,7 +274,8 @@ pub struct Sensitivity {
     pub measure: String,
     /// How it was found.
     pub method: SensitivityMethod,
-    /// Share of the variance that these tell, 1: the sum of first-order indices, or R² of the regression.
+    /// Share of the variance that these explain, 1: the sum of first-order indices, or R² of the
+    /// regression.
     pub explained: f64,
     /// One for each parameter that can be judged.
     pub indices: Vec<SensitivityIndex>,
@@ -311,38 +313,40 @@ pub struct FailureShare {
     pub failed: usize,
     /// Designs whose error bar leaves it open.
     pub undecided: usize,
-    /// Share that fails if those that are undecided pass, 1.
+    /// Share that fails if the undecided ones pass, 1.
     pub least: f64,
-    /// Share that fails if those that are undecided fail, 1.
+    /// Share that fails if the undecided ones fail, 1.
     pub most: f64,
-    /// 95 % interval of the share of all that are ever made: its low end from `least`, its high end from `most`, 1.
+    /// 95 % confidence interval of the share in all of production: its low end from `least`, its
+    /// high end from `most`, 1.
     pub interval: [f64; 2],
 }
 
-/// How much sharper differences are than if each design had random numbers of its own.
+/// How much sharper differences are than with independent random numbers.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Sharpness {
     /// The measure.
     pub measure: String,
-    /// Median over neighbouring designs of the error as if independent over the error that is told, 1.
+    /// Median over neighbouring designs of the error as if independent over the reported error, 1.
     pub factor: f64,
-    /// Pairs of designs behind it.
+    /// Pairs of designs it is taken over.
     pub pairs: usize,
 }
 
-/// Everything that the files of a study say.
+/// Everything in the files of a study.
 #[derive(Debug, Clone)]
 pub struct StudyReport {
-    /// What it is.
+    /// Its facts.
     pub facts: StudyFacts,
     /// All designs in the order of their numbers.
     pub designs: Vec<DesignRecord>,
-    /// What follows from them.
+    /// Their joint analysis.
     pub analysis: Analysis,
 }
 
 impl StudyReport {
-    /// The measure that decides and which end of it is the best: the ranking, or the first measure at its highest.
+    /// The measure that decides and its best end: from the ranking, or the highest value of the
+    /// first measure.
     pub fn leading(&self) -> (&str, Best) {
         match &self.facts.ranking {
             Some(ranking) => (&ranking.measure, ranking.best),
@@ -375,7 +379,7 @@ fn is_off_target(design: &DesignRecord) -> bool {
     target.is_some_and(|target| !target.is_reached())
 }
 
-/// How many designs are not what was wanted.
+/// How many designs are not as requested.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StudyCounts {
     /// They make no scene.
@@ -389,7 +393,7 @@ pub struct StudyCounts {
 }
 
 impl StudyCounts {
-    /// Whether every design is what was wanted.
+    /// Whether every design is as requested.
     pub fn is_clean(self) -> bool {
         let Self { broken, failed, undecided, off_target } = self;
         broken + failed + undecided + off_target == 0

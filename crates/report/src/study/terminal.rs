@@ -1,4 +1,4 @@
-//! What a batch prints when it has ended.
+//! The lines that a batch prints at its end.
 
 use crate::study::contents::verdict;
 use crate::study::figures::setting_words;

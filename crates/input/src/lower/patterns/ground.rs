@@ -1,4 +1,4 @@
-//! The faces that patterns and reliefs can lie on: those that unroll without being stretched.
+//! The faces that patterns and reliefs can lie on: those that unroll without stretching.
 
 use crate::keys::Key;
 use crate::lower::context::Context;
@@ -8,7 +8,7 @@ use lumiduct_core::scene::sweep::WallChart;
 use lumiduct_core::scene::{FaceId, Patch};
 use std::f64::consts::TAU;
 
-/// Deviation from a stretch of 1 that is taken as rounding, 1.
+/// Deviation from a stretch of 1 that counts as rounding, 1.
 const ROUNDING: f64 = 1e-6;
 
 /// A face as a pattern sees it.
@@ -25,7 +25,7 @@ impl Ground {
         self.rect.max - self.rect.min
     }
 
-    /// Length once around, mm.
+    /// Circumference, mm.
     pub(in crate::lower) fn period(&self) -> Option<f64> {
         self.radius.map(|radius| TAU * radius)
     }

@@ -7,11 +7,11 @@ use crate::spec::pattern::{AlongSpec, GridSpec, HexagonalSpec, LawSpec, LayoutSp
 use lumiduct_core::scene::pattern::{Along, Columns, Graded, Rows};
 use lumiduct_core::scene::shape::ChartRect;
 
-/// Pieces by which a power law is drawn.
+/// Pieces that approximate a power law.
 const PIECES: u32 = 256;
-/// Deviation from a whole number of columns around a tube that is taken as rounding, 1.
+/// Deviation from a whole number of columns around a tube that counts as rounding, 1.
 const WHOLE: f64 = 1e-6;
-/// Rows that a pattern may have.
+/// Most rows of a pattern.
 const MOST_ROWS: f64 = 1e7;
 
 impl Context<'_> {
@@ -118,7 +118,7 @@ impl Context<'_> {
         Some((rows, Columns { first, pitch, count: count as usize, shift }))
     }
 
-    /// As many rows as fit into a part of the face, centred.
+    /// As many rows as fit into a part of the face, centred in it.
     fn rows(
         &mut self,
         pitch: &AlongSpec,
@@ -141,7 +141,7 @@ impl Context<'_> {
         })
     }
 
-    /// A length along the face, in its chart.
+    /// The extent along the face, in its chart.
     pub(in crate::lower) fn along(
         &mut self,
         spec: &AlongSpec,

@@ -12,7 +12,7 @@ use crate::spec::sheet::{SheetCommon, SheetSpec};
 use lumiduct_core::scene::pattern::{Field, HoleWall, Outline, Pattern};
 
 impl Context<'_> {
-    /// Lays the patterns on their faces.
+    /// Places the patterns on their faces.
     pub(super) fn lower_patterns(&mut self) {
         for (name, spec) in &self.spec.patterns {
             let key = Key::of(&["patterns", name]);
@@ -25,7 +25,8 @@ impl Context<'_> {
     fn pattern(&mut self, name: &str, spec: &PatternSpec, key: &Key) -> Option<Pattern> {
         let ground = self.ground(&spec.on, &key.field("on"))?;
         let finish = self.finish(&spec.finish)?;
-        // The finish that a plain sheet names is that of its front; of solids and ducts, that of the inside.
+        // The finish that a plain sheet names is that of its front; for solids and ducts, that of
+        // the inside.
         let owner = spec.on.split('.').next().unwrap_or_default();
         let sheet = self.spec.sheets.get(owner).map(SheetSpec::common);
         let (front, back) = match sheet {
@@ -52,7 +53,7 @@ impl Context<'_> {
         self.is_clear(pattern.face, &pattern.field, key).then_some(pattern)
     }
 
-    /// Whether the elements of a field keep clear of each other and lie on their face.
+    /// Whether the elements of a field do not overlap and lie on their face.
     pub(super) fn check_field(
         &mut self,
         field: &Field,

@@ -1,4 +1,4 @@
-//! Whether patterns on one face keep clear of each other.
+//! Whether patterns on one face overlap.
 
 use crate::keys::Key;
 use crate::lower::context::Context;
@@ -6,7 +6,7 @@ use lumiduct_core::scene::FaceId;
 use lumiduct_core::scene::pattern::Field;
 
 impl Context<'_> {
-    /// Whether a field shares no place with the patterns and reliefs that lie on its face already.
+    /// Whether a field does not overlap the patterns and reliefs already on its face.
     pub(in crate::lower) fn is_clear(&mut self, face: FaceId, field: &Field, key: &Key) -> bool {
         let scene = self.builder.scene();
         let patterns = scene.patterns.iter().filter(|other| other.face == face);

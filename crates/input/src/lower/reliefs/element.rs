@@ -1,4 +1,4 @@
-//! What an element of a relief is, and whether such a thing can be.
+//! The elements of a relief, and whether they are possible.
 
 use crate::keys::Key;
 use crate::lower::context::Context;
@@ -8,7 +8,7 @@ use crate::spec::relief::{CourseSpec, ReliefElementSpec};
 use lumiduct_core::scene::pattern::{Along, Field};
 use lumiduct_core::scene::relief::{CapSize, Element, Form, Span, Way};
 
-/// What a groove and a ridge have in common.
+/// The common keys of a groove and a ridge.
 struct WedgeKeys<'s> {
     height: &'s AlongSpec,
     /// The key of the height.
@@ -20,7 +20,7 @@ struct WedgeKeys<'s> {
     way: Way,
 }
 
-/// What a dimple and a bump have in common.
+/// The common keys of a dimple and a bump.
 struct CapKeys<'s> {
     radius: Option<&'s AlongSpec>,
     diameter: Option<&'s AlongSpec>,
@@ -178,7 +178,8 @@ impl Context<'_> {
         Some(flanks)
     }
 
-    /// Whether every row has elements that can be: at most half a ball, and not through the axis of a rod.
+    /// Whether the elements of every row are possible: at most half a ball, and not through the
+    /// axis of a rod.
     pub(super) fn check_heights(
         &mut self,
         element: &Element,

@@ -12,11 +12,11 @@ use crate::spec::relief::ReliefSpec;
 use lumiduct_core::scene::pattern::{Field, Outline};
 use lumiduct_core::scene::relief::{Relief, Span};
 
-/// Elements that a relief may have: each is made of surfaces of its own.
+/// Most elements of a relief: each has its own surfaces.
 const MOST_ELEMENTS: u64 = 1_000_000;
 
 impl Context<'_> {
-    /// Makes the reliefs parts of their solids.
+    /// Adds the reliefs to their solids.
     pub(super) fn lower_reliefs(&mut self) {
         for (name, spec) in &self.spec.reliefs {
             let key = Key::of(&["reliefs", name]);
@@ -83,7 +83,7 @@ impl Context<'_> {
             .then(|| Relief::new(name, wall.unrolled.face, element, field, wall.ground))
     }
 
-    /// Rings go around: a row of them lies nowhere across.
+    /// Rings go all around, so a row of them has no position across.
     fn require_plain_row(&mut self, layout: &LayoutSpec, key: &Key) -> Option<()> {
         let is_plain = match layout {
             LayoutSpec::Row(row) => row.around_deg.is_none() && row.across_mm.is_none(),

@@ -1,4 +1,4 @@
-//! Whether the elements of a relief have room in their solid, and which other walls they cut through.
+//! Whether the elements of a relief fit into their solid, and which other walls they cut.
 
 use crate::keys::Key;
 use crate::lower::context::Context;
@@ -7,13 +7,16 @@ use lumiduct_core::scene::relief::{Ground, Relief, Site, Span, Way};
 use lumiduct_core::scene::shape::{Shape, Start};
 use lumiduct_core::scene::{Owner, Patch, Ray, Scene};
 
-/// Normals that differ by less are the same but for rounding; 1. Lengths likewise, as a share of the width of the wall.
+/// Normals that differ by less are equal up to rounding, 1. Lengths likewise, as a share of the
+/// width of the wall.
 const ROUNDING: f64 = 1e-9;
-/// The outline of an element is looked at this share inside, so that it is not on the edge of the wall.
+/// The outline of an element is tested this share inside, so that it is not on the edge of the
+/// wall.
 const INSET: f64 = 1e-6;
 
 impl Context<'_> {
-    /// The patches of the solid that grooves from side to side end in, with their walls; none for other elements.
+    /// The patches of the solid in which grooves from side to side end, with their walls; none for
+    /// other elements.
     pub(super) fn sides(&mut self, relief: &Relief, key: &Key) -> Option<Vec<(usize, Ground)>> {
         let (Some(Span::Through(width)), Way::Into, None) =
             (relief.element.span(), relief.element.way, relief.element.round)
@@ -42,7 +45,7 @@ impl Context<'_> {
         Some(sides)
     }
 
-    /// Whether the elements neither come through another wall nor into the elements of one.
+    /// Whether the elements cut neither another wall nor its elements.
     pub(super) fn has_room(&mut self, relief: &Relief, on: &str, key: &Key) -> Option<()> {
         let scene = self.builder.scene();
         if relief.ground.is_flat()
@@ -79,19 +82,19 @@ impl Context<'_> {
     }
 }
 
-/// The patches of a solid but those of its reliefs, with their numbers.
+/// The patches of a solid except those of its reliefs, with their numbers.
 fn walls_of(scene: &Scene, owner: Owner) -> impl Iterator<Item = (usize, &Patch)> {
     let patches = scene.patches.iter().enumerate();
     patches.filter(move |(_, patch)| patch.owner == owner && !is_of_relief(scene, patch))
 }
 
-/// Whether a patch belongs to a face that a relief has made.
+/// Whether a patch belongs to a face made by a relief.
 fn is_of_relief(scene: &Scene, patch: &Patch) -> bool {
     let name = &scene.faces[patch.face.index()].name;
     scene.reliefs.iter().any(|relief| relief.name == *name)
 }
 
-/// The flat side of a solid with an outward normal that holds a point.
+/// The flat side of a solid with this outward normal that contains a point.
 fn side_at(walls: &[(usize, &Patch)], point: DVec3, outward: DVec3, width: f64) -> Option<usize> {
     let ray = Ray::new(point - width * outward, outward);
     let found = walls.iter().find(|(_, patch)| {
@@ -105,7 +108,7 @@ fn side_at(walls: &[(usize, &Patch)], point: DVec3, outward: DVec3, width: f64) 
     found.map(|(index, _)| *index)
 }
 
-/// The first row with an element that has less room than its height, and how much there is, mm.
+/// The first row with an element that has less room than its height, and that room, mm.
 fn first_without_room(scene: &Scene, relief: &Relief) -> Option<(f64, f64)> {
     let walls: Vec<(usize, &Patch)> = walls_of(scene, scene.owner(relief.wall)).collect();
     relief.field.places().find_map(|(place, middle)| {
@@ -120,7 +123,8 @@ fn first_without_room(scene: &Scene, relief: &Relief) -> Option<(f64, f64)> {
     })
 }
 
-/// How far it is from a place of a wall to the next wall of the same solid, or to the elements that are sunk into it, mm.
+/// Distance from a point of a wall to the next wall of the same solid, or to the elements sunk into
+/// it, mm.
 fn room_at(scene: &Scene, relief: &Relief, walls: &[(usize, &Patch)], site: &Site) -> f64 {
     let dir = relief.element.way.sign() * site.out;
     let ray = Ray::new(site.origin, dir);
@@ -140,7 +144,8 @@ fn room_at(scene: &Scene, relief: &Relief, walls: &[(usize, &Patch)], site: &Sit
     room
 }
 
-/// Whether the boxes around the elements of two flat walls of one solid share a place, in the axes of the first.
+/// Whether the boxes around the elements of two flat walls of one solid overlap, in the axes of the
+/// first.
 fn boxes_meet(one: &Relief, other: &Relief) -> bool {
     let [min, max] = one.extent();
     let [from, to] = other.extent();

@@ -1,8 +1,8 @@
-//! The range of an axis, from the data. What is drawn along it is not known here.
+//! The range of an axis, from the data. This module does not know what is drawn along it.
 
 use crate::png::axis::{Axis, Scale};
 
-/// A logarithmic axis made from data spans at most this ratio.
+/// Largest ratio that a logarithmic axis made from data spans.
 const WIDEST_RATIO: f64 = 1e8;
 
 /// Whether an axis reaches beyond its data.
@@ -11,7 +11,7 @@ pub(super) enum Padding {
     Around,
 }
 
-/// The axis that holds some values.
+/// The axis that contains some values.
 pub(super) fn range(values: &[f64], scale: Scale, padding: Padding) -> Axis {
     let usable = |value: &&f64| match scale {
         Scale::Linear | Scale::Tangent => value.is_finite(),
@@ -22,7 +22,7 @@ pub(super) fn range(values: &[f64], scale: Scale, padding: Padding) -> Axis {
     let single = high - low <= 1e-9 * high.abs().max(low.abs());
     match (padding, scale) {
         (Padding::None, Scale::Linear | Scale::Log | Scale::Tangent) if single => {
-            // In the middle of the picture.
+            // Puts a single value in the middle of the picture.
             let space = if high == 0.0 { 0.5 } else { 0.5 * high.abs() };
             Axis::new(low - space, high + space, scale)
         }
@@ -32,7 +32,7 @@ pub(super) fn range(values: &[f64], scale: Scale, padding: Padding) -> Axis {
             Axis::new(low.max(high / WIDEST_RATIO) / 1.5, high * 1.5, scale)
         }
         (Padding::Around, Scale::Linear | Scale::Tangent) => {
-            // Zero belongs to the picture where the values come near it.
+            // The axis includes zero where the values come near it.
             let low = if low > 0.0 && low <= 0.5 * high { 0.0 } else { low };
             let high = if high < 0.0 && high >= 0.5 * low { 0.0 } else { high };
             let space = 0.05 * (high - low);

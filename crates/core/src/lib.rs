@@ -1,4 +1,5 @@
-//! Light in, numbers with errors out: what Lumiduct computes, without any file.
+//! The physics of Lumiduct, independent of any file format: light goes in, numbers with error bars
+//! come out.
 //!
 //! ```text
 //! Scene -> paths (photons from sources, gather paths from sensors) -> readings -> measures with uncertainty

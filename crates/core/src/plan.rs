@@ -1,22 +1,23 @@
-//! What a scene file asks of a run besides the scene: how to estimate, when to stop, and what to check.
+//! Run settings of a scene file: how to estimate, when to stop, and what to check.
 
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
-/// Number of the numerics: raised with every change that alters a committed report, so that a report, a checkpoint or a
-/// record by older numerics is never taken for one by the present ones.
+/// Version of the numerics. Every change that alters a committed report raises it, so that a
+/// report, a checkpoint or a record from older numerics is never mistaken for a current one.
 pub const NUMERICS: u32 = 3;
 
-/// How to trace and when to stop. Its names in files are part of the identity of a run, and fixed whatever the code says.
+/// How to trace and when to stop. Its names in files are part of the identity of a run, and stay
+/// fixed when the code changes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunPlan {
-    /// How flux is to be estimated.
+    /// The requested estimator.
     #[serde(rename = "estimator")]
     pub estimator: Request,
-    /// Estimators of single sensors, in their order; the others follow `estimator`.
+    /// Estimators of single sensors, in sensor order; the others follow `estimator`.
     #[serde(rename = "sensor_estimators")]
     pub sensor_estimators: Vec<Option<Estimator>>,
-    /// Wishes for the gather estimator.
+    /// Settings for the gather estimator.
     #[serde(rename = "gather")]
     pub gather: GatherPlan,
     /// Seed of all random streams.
@@ -25,8 +26,8 @@ pub struct RunPlan {
     /// Paths are cut after this many interfaces; the flux they carry is a line of the balance.
     #[serde(rename = "bounce_limit")]
     pub bounce_limit: u32,
-    /// Photon paths of a batch; `None` leaves it to how long paths are. Runs with the same number have the same paths in
-    /// the same batches.
+    /// Photon paths of a batch; `None` chooses it by the length of paths. Runs with the same number
+    /// have the same paths in the same batches.
     #[serde(rename = "batch_paths")]
     pub batch_paths: Option<u64>,
     /// The first rule that is met ends the run.
@@ -34,10 +35,10 @@ pub struct RunPlan {
     pub stop: StopRules,
 }
 
-/// How flux is to be estimated: what was asked for.
+/// The requested estimator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Request {
-    /// For every sensor what a pilot finds best.
+    /// The best for each sensor, as found by a pilot.
     #[serde(rename = "auto")]
     Auto,
     /// [`Estimator::Forward`] for all sensors.
@@ -58,19 +59,19 @@ pub enum Request {
 }
 
 impl RunPlan {
-    /// How the flux of a sensor is to be estimated.
+    /// The estimator requested for a sensor.
     pub fn request(&self, sensor: usize) -> Request {
         self.own_estimator(sensor).map_or(self.estimator, Estimator::request)
     }
 
-    /// The estimator that is asked for a sensor alone.
+    /// The estimator requested for this sensor alone.
     pub fn own_estimator(&self, sensor: usize) -> Option<Estimator> {
         self.sensor_estimators.get(sensor).copied().flatten()
     }
 }
 
 impl Request {
-    /// All of them.
+    /// All requests.
     pub const ALL: [Self; 6] =
         [Self::Auto, Self::Forward, Self::Backward, Self::Mix, Self::Gather, Self::Mis];
 
@@ -86,7 +87,7 @@ impl Request {
         }
     }
 
-    /// The one of a name.
+    /// The request with this name.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|request| request.name() == name)
     }
@@ -109,7 +110,7 @@ pub enum Estimator {
     /// Gather paths from the sensors' cells, followed until they meet emission.
     #[serde(rename = "backward")]
     Backward,
-    /// Both of these, weighed path by path by the balance heuristic.
+    /// Both, weighted path by path by the balance heuristic.
     #[serde(rename = "mix")]
     Mix,
     /// Gather paths of limited depth that end in records, where photons are gathered.
@@ -144,13 +145,13 @@ impl Estimator {
     }
 }
 
-/// Most gather paths of a pass that may be wished for: they have to fit into memory.
+/// Largest number of gather paths of a pass that may be set: they must fit into memory.
 pub const MOST_RECORDS: u64 = 1 << 22;
 
-/// Wishes for the gather estimator; what is left out is chosen by a pilot.
+/// Settings for the gather estimator; a pilot chooses those left out.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct GatherPlan {
-    /// Depth at which gather paths end at the latest; the first surface has depth 0.
+    /// Largest depth at which gather paths end; the first surface has depth 0.
     #[serde(rename = "depth")]
     pub depth: Option<u32>,
     /// Radius of the window of the first pass, mm.
@@ -183,7 +184,7 @@ pub enum Schedule {
 }
 
 impl Schedule {
-    /// All of them.
+    /// All schedules.
     pub const ALL: [Self; 2] = [Self::Stages, Self::PerPass];
 
     /// Its name in files and on the command line.
@@ -194,7 +195,7 @@ impl Schedule {
         }
     }
 
-    /// The one of a name.
+    /// The schedule with this name.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|schedule| schedule.name() == name)
     }
@@ -206,19 +207,19 @@ pub struct StopRules {
     /// After this many paths, rounded up to whole waves (of 128 batches, or 16 passes of gathering).
     #[serde(rename = "paths")]
     pub paths: Option<u64>,
-    /// Batches, or passes, into which the paths are divided: a run of them ends after exactly so many. `None` for whole
-    /// waves.
+    /// Batches, or passes, into which the paths are divided: such a run ends after exactly this
+    /// many. `None` for whole waves.
     #[serde(rename = "batches")]
     pub batches: Option<u64>,
     /// After this time.
     #[serde(rename = "time")]
     pub time: Option<Duration>,
-    /// When a measure is known well enough.
+    /// When a measure is known accurately enough.
     #[serde(rename = "target")]
     pub target: Option<Target>,
 }
 
-/// A measure and how well it is wanted.
+/// A measure and its target error.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Target {
     /// Dotted name, such as `exit.flux`.
@@ -234,10 +235,10 @@ pub struct Target {
 pub struct Check {
     /// Dotted name of the measure.
     pub measure: String,
-    /// The least value that passes.
+    /// The smallest value that passes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub min: Option<f64>,
-    /// The greatest value that passes.
+    /// The largest value that passes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max: Option<f64>,
     /// The value it must agree with.
@@ -249,7 +250,7 @@ pub struct Check {
     /// Deviation from `equals` that passes, in standard errors.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sigmas: Option<f64>,
-    /// The run must reach at least this standard error.
+    /// The standard error must not be larger than this.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max_std_error: Option<f64>,
     /// Where the expected value comes from.
@@ -283,7 +284,8 @@ mod tests {
         assert_eq!(Request::named("sideways"), None);
     }
 
-    /// Reports, checkpoints and records of older runs hold this text: a name that changes makes strangers of them.
+    /// Reports, checkpoints and records of older runs contain this text; a renamed field makes them
+    /// unreadable.
     #[test]
     fn a_plan_has_fixed_names_in_files_and_comes_back_from_them() {
         let gather = GatherPlan {

@@ -1,8 +1,8 @@
 //! Random numbers that belong to a path, not to a thread.
 //!
-//! Every path has a stream of its own, made from (seed, stream, index), so a result does not depend on which thread
-//! traced it or in what order. Numbers are asked for by purpose ([`Dimension`]): a low-discrepancy set can later
-//! answer the first of them without a change to the callers.
+//! Every path has a stream of its own, made from (seed, stream, index), so a result does not depend
+//! on which thread traced it or in what order. Numbers are requested by purpose ([`Dimension`]), so
+//! a low-discrepancy set can later provide the first of them without a change to the callers.
 //!
 //! Generator: xoshiro256++ (Blackman & Vigna, ACM Trans. Math. Softw. 47 (2021) 36), seeded by `SplitMix64`.
 //! Instead of fresh numbers a path can be given recorded ones ([`Numbers`]), so that it can be repeated and varied.
@@ -10,38 +10,38 @@
 use rand_core::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-/// What a random number is used for.
+/// The purpose of a random number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dimension {
-    /// Where on a source a path starts.
+    /// Start point of a path on a source.
     EmitPosition,
-    /// In which direction it starts.
+    /// Start direction of a path.
     EmitDirection,
-    /// Where on a sensor a gather path starts, and toward which point of its aim.
+    /// Start point of a gather path on a sensor, and the point of its aim.
     GatherPosition,
-    /// In which direction it starts.
+    /// Start direction of a gather path.
     GatherDirection,
-    /// How far light goes in a medium before it is scattered.
+    /// Distance in a medium up to a scattering.
     FreePath,
-    /// Which lobe of a finish is taken: reflected or transmitted, or a part of a mixture.
+    /// Lobe of a finish: reflected or transmitted, or a part of a mixture.
     Lobe,
     /// The direction within a lobe, or of a phase function.
     Scatter,
     /// Whether a path of small throughput survives.
     Roulette,
-    /// What a parameter of a study is set to.
+    /// Value of a parameter of a study.
     Design,
-    /// Noise that is added to a result to learn its error.
+    /// Noise added to a result to find its error.
     Resampling,
 }
 
-/// Where the numbers of a path come from.
+/// The origin of the numbers of a path.
 pub trait Numbers {
-    /// The next one, in [0, 1).
+    /// The next number, in [0, 1).
     fn next(&mut self) -> f64;
 }
 
-/// Numbers that nobody has seen before.
+/// Fresh numbers.
 #[derive(Debug, Clone)]
 pub struct Fresh(Xoshiro256PlusPlus);
 
@@ -53,8 +53,8 @@ impl Numbers for Fresh {
     }
 }
 
-/// A stream of numbers in [0, 1) that belongs to one path. Where they come from is known to the compiler: asking at every
-/// number cost a path 4 % of its time.
+/// A stream of numbers in [0, 1) that belongs to one path. Their origin is known at compile time: a
+/// check at every number cost a path 4 % of its time.
 #[derive(Debug, Clone)]
 pub struct Sampler<N = Fresh> {
     numbers: N,
@@ -64,7 +64,7 @@ impl Sampler {
     /// The stream of path `index` of `stream` (a pass, or a purpose) under `seed`.
     #[inline]
     pub fn for_path(seed: u64, stream: u64, index: u64) -> Self {
-        // Each word is mixed before the next comes in: neighbouring indices share no structure.
+        // Each word is mixed before the next is added, so neighbouring indices share no structure.
         let key = split_mix(split_mix(split_mix(seed) ^ stream) ^ index);
         // The four words are the next numbers of SplitMix64; written out, they need not go through memory one by one.
         let mut seed = [0; 32];
@@ -77,7 +77,7 @@ impl Sampler {
 }
 
 impl<N: Numbers> Sampler<N> {
-    /// The stream of other numbers, such as those of a Markov chain's proposal.
+    /// A stream of other numbers, such as those of a Markov chain's proposal.
     pub fn of(numbers: N) -> Self {
         Self { numbers }
     }
@@ -95,7 +95,7 @@ impl<N: Numbers> Sampler<N> {
     }
 }
 
-/// By how much the state of `SplitMix64` grows from number to number: 2^64 over the golden ratio.
+/// Increment of the state of `SplitMix64` per number: 2^64 over the golden ratio.
 const GOLDEN_GAMMA: u64 = 0x9e37_79b9_7f4a_7c15;
 
 /// One step of `SplitMix64` (Steele, Lea & Flood, OOPSLA 2014, fig. 17).

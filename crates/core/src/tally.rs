@@ -21,10 +21,11 @@ impl Tally {
         tally
     }
 
-    /// The tally of means of several samples each, with their numbers: the weights of the means.
+    /// The tally of means of several samples each; the numbers of samples are their weights.
     ///
-    /// The variance of a mean goes as one over its weight w, so that Σ w (x - mean)² / ((n - 1) Σ w) is that of the
-    /// weighted mean (Bevington & Robinson, Data Reduction and Error Analysis, 3rd ed., eq. 4.22).
+    /// The variance of a mean is proportional to 1/w, with w its weight, so that Σ w (x - mean)² /
+    /// ((n - 1) Σ w) is that of the weighted mean (Bevington & Robinson, Data Reduction and Error
+    /// Analysis, 3rd ed., eq. 4.22).
     pub fn weighted(means: impl Iterator<Item = (f64, u64)> + Clone) -> Self {
         let (mut sum, mut weights, mut count) = (0.0, 0.0, 0);
         for (mean, weight) in means.clone() {
@@ -83,7 +84,7 @@ impl Tally {
         self.std_error() * (self.count as f64).sqrt()
     }
 
-    /// How many standard errors the mean lies from `expected`; 0 when they are equal.
+    /// Distance of the mean from `expected` in standard errors; 0 when they are equal.
     pub fn sigmas_from(&self, expected: f64) -> f64 {
         sigmas(self.mean, self.std_error(), expected)
     }

@@ -1,8 +1,9 @@
 //! Goniometers: intensity by direction, beam and field angles, and flux by zones.
 //!
-//! Intensity is flux over solid angle, a mean over each cell of the goniometric sphere (type C: γ from the pole, C
-//! about it). A cell stands for the γ that halves its solid angle, cos γ = (cos γ₁ + cos γ₂)/2. Cells are taken as
-//! independent, which makes the errors of large shares of the flux too large rather than too small.
+//! Intensity is flux over solid angle, a mean over each cell of the goniometric sphere (type C: γ
+//! from the pole, C about it). The nominal γ of a cell halves its solid angle, cos γ = (cos γ₁ +
+//! cos γ₂)/2. Cells are treated as independent, which overestimates the errors of large shares of
+//! the flux rather than underestimating them.
 
 use crate::measure::counted::{Noisy, Part};
 use crate::measure::evidence::{Evidence, counted};
@@ -13,36 +14,36 @@ use ndarray::Array2;
 use serde::Serialize;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Width of the zones that flux is added up over, deg.
+/// Width of the zones over which flux is summed, deg.
 const ZONE_DEG: usize = 10;
-/// Rings have names of their own up to this number.
+/// Rings have their own names up to this number.
 const NAMED_RINGS: usize = 180;
-/// Planes C0-C180 and C90-C270 are looked at from this number of sectors on.
+/// Planes C0-C180 and C90-C270 are evaluated from this number of sectors on.
 const SECTORS_FOR_PLANES: usize = 4;
 /// Shares of the maximum that bound the beam and the field (ANSI/IES LS-1; CIE S 017: half of the maximum).
 const BEAM: f64 = 0.5;
 const FIELD: f64 = 0.1;
 
-/// What a goniometer has seen, cell by cell.
+/// Intensity measured by a goniometer, cell by cell.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct IntensityTable {
     /// Name of the sensor.
     pub sensor: String,
-    /// Weathers whose light it adds up: more than one never shine together.
+    /// Number of weathers whose light is summed; if there are several, they never shine together.
     pub weathers: usize,
     /// Unit of intensity, such as `cd`.
     pub unit: String,
     /// Rings (γ, from the pole) by sectors (C), in `unit`.
     pub values: Array2<f64>,
-    /// Standard errors, likewise.
+    /// Standard errors, same layout.
     pub std_errors: Array2<f64>,
-    /// Indicators of bias, likewise; `None` of unbiased estimates.
+    /// Indicators of bias, same layout; `None` for unbiased estimates.
     pub biases: Option<Array2<f64>>,
     /// Edges of the rings, deg.
     pub gamma_deg: Vec<f64>,
     /// Edges of the sectors, deg.
     pub c_deg: Vec<f64>,
-    /// The γ that each ring stands for, deg.
+    /// Nominal γ of each ring, deg.
     pub ring_gamma_deg: Vec<f64>,
     /// Mean intensity over C of each ring, in `unit`.
     pub ring_values: Vec<f64>,
@@ -63,7 +64,7 @@ pub struct PlaneCurve {
     pub gamma_deg: Vec<f64>,
     /// Intensity, in the unit of the table.
     pub values: Vec<f64>,
-    /// Standard errors, likewise.
+    /// Standard errors, same layout.
     pub std_errors: Vec<f64>,
 }
 
@@ -114,11 +115,12 @@ impl<'a> Sphere<'a> {
         (0..self.goniometer.gamma_cells).map(|ring| self.intensity(ring, &all)).collect()
     }
 
-    /// The intensity of each ring in a half-plane: of the sector it lies in, or of both where it lies between two.
+    /// The intensity of each ring in a half-plane: from the sector it lies in, or from both where
+    /// it lies between two.
     fn half_plane(&self, c: f64) -> Vec<Noisy> {
         let sectors = self.goniometer.c_cells;
         let place = (c / TAU * sectors as f64).rem_euclid(sectors as f64);
-        // A plane that is computed to lie on an edge may be a few ulp beside it.
+        // Rounding may put a plane that lies on an edge a few ulp off it.
         let on_edge = (place - place.round()).abs() < 1e-9;
         let at = if on_edge {
             let edge = place.round() as usize % sectors;
@@ -144,12 +146,12 @@ fn plane_curve(sphere: &Sphere<'_>, c: f64) -> PlaneCurve {
     }
 }
 
-/// C of the planes that are looked at, rad; none of a goniometer with few sectors.
+/// C of the planes to evaluate, rad; none for a goniometer with few sectors.
 fn planes(goniometer: &Goniometer) -> &'static [f64] {
     if goniometer.c_cells >= SECTORS_FOR_PLANES { &[0.0, FRAC_PI_2] } else { &[] }
 }
 
-/// The γ that each ring stands for, rad.
+/// Nominal γ of each ring, rad.
 fn ring_gammas(rings: usize) -> Vec<f64> {
     let edge = |ring: usize| (PI * ring as f64 / rings as f64).cos();
     (0..rings).map(|ring| (0.5 * (edge(ring) + edge(ring + 1))).acos()).collect()
@@ -185,7 +187,7 @@ pub(crate) fn table(
     }
 }
 
-/// What is read off the sphere, by the last part of the dotted names.
+/// The measures of the sphere, by the last part of their dotted names.
 pub(crate) fn measures(
     evidence: &Evidence<'_>,
     id: SensorId,
@@ -215,8 +217,8 @@ pub(crate) fn measures(
     out
 }
 
-/// Rings and sectors in an order in which neighbours in the list are neighbours on the sphere: around the pole first, where
-/// cells are small and the light of most beams is.
+/// Rings and sectors ordered so that neighbours in the list are neighbours on the sphere. The order
+/// starts around the pole, where cells are small and most beams have their light.
 pub(crate) fn sphere_cells(rings: usize, sectors: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..rings * sectors).map(move |place| (place / sectors, place % sectors))
 }
@@ -267,7 +269,7 @@ fn angles(
     }
 }
 
-/// A value as a measure; one that counted nothing is known to one count.
+/// A value as a measure; where nothing was counted, its error is one count.
 fn single(evidence: &Evidence<'_>, found: Noisy, unit: &str) -> Measure {
     let status = counted(found.value, found.std_error);
     let std_error = if status == Status::NoSignal { found.count } else { found.std_error };
@@ -362,7 +364,7 @@ mod tests {
         let scene = scene(&[("led", 1.0)], vec![("far", goniometer(3, 12))]);
         let measures = measure(&scene, &cosine_power(&scene, 1.0));
         assert!(measures.values.keys().all(|name| !name.contains("zonal_flux")));
-        // Three sectors are too few to tell planes apart.
+        // Three sectors are too few to separate planes.
         assert!(measures.values.keys().all(|name| !name.ends_with(".c0")));
     }
 }

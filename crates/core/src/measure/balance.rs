@@ -1,7 +1,7 @@
 //! The flux balance: where all the light went.
 //!
-//! Every line is counted on its own and none is made to fit, so that what is left over, the residual, tells whether
-//! any light was lost in the bookkeeping. Virtual sensors let light pass and have no line here.
+//! Every line is counted separately and none is adjusted, so the remainder, the residual, shows
+//! whether the bookkeeping lost any light. Virtual sensors let light pass and have no line here.
 
 use crate::measure::evidence::Evidence;
 use crate::measure::{Measure, Replicates};
@@ -10,7 +10,7 @@ use crate::transport::Readings;
 use indexmap::IndexMap;
 use serde::Serialize;
 
-/// Where the light went, lm or W. The lines add up to what was emitted.
+/// Where the light went, lm or W. The lines sum to the emitted flux.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Balance {
     /// Flux that started, all sources together.
@@ -27,15 +27,15 @@ pub struct Balance {
     pub escaped_directly: Measure,
     /// Flux cut by the bounce limit.
     pub cut: Measure,
-    /// Flux that roulette took, less what its survivors gained: zero but for noise.
+    /// Flux removed by roulette, less the gain of its survivors: zero apart from noise.
     pub roulette: Measure,
     /// Flux lost through holes in the geometry.
     pub leaked: Measure,
-    /// Emitted less all other lines: rounding only.
+    /// Emitted flux less all other lines: only rounding.
     pub residual: Measure,
 }
 
-/// Draws up the balance.
+/// Computes the balance.
 pub(crate) fn balance(evidence: &Evidence<'_>) -> Balance {
     let (scene, layout) = (evidence.scene, evidence.layout);
     let line = |slot: usize| evidence.entry(|flux| flux(slot));
@@ -100,7 +100,7 @@ impl Balance {
     }
 }
 
-/// What single groups of batches say of a line, by its whole name.
+/// Values of a line in single groups of batches, by its full name.
 pub(crate) fn replicates(scene: &Scene, photons: &Readings, name: &str) -> Option<Replicates> {
     let value = |photons: &Readings| {
         let line = balance(&Evidence::new(scene, photons)).measures().swap_remove(name)?;
@@ -113,7 +113,7 @@ pub(crate) fn replicates(scene: &Scene, photons: &Readings, name: &str) -> Optio
     Some(Replicates::new(value(photons)?, &without.collect::<Option<Vec<_>>>()?))
 }
 
-/// The scalars of everything that can happen to emitted light.
+/// The scalars of every possible fate of emitted light.
 fn spent(evidence: &Evidence<'_>) -> Vec<usize> {
     let (scene, layout) = (evidence.scene, evidence.layout);
     let faces = || (0..scene.faces.len()).map(FaceId::new);
@@ -165,7 +165,7 @@ mod tests {
         assert_eq!(value("escaped_directly"), 2.0);
         assert_eq!((value("cut"), value("roulette"), value("leaked")), (0.125, -0.0625, 0.03125));
         assert_eq!(value("residual"), 4.0 - 2.84375);
-        // The wall is no solid that light could leave.
+        // The wall is not a solid that light could leave.
         assert!(measures.balance.escaped.is_empty());
     }
 

@@ -1,11 +1,12 @@
 //! The angle over which a beam keeps a share of its largest intensity.
 //!
-//! A plane through the pole has two half-planes. In each, the edge of the beam is where the intensity, interpolated
-//! linearly between rings, first falls below the level on the way outward from that half-plane's own maximum: a
-//! maximum off the axis, or a dip on it, is inside the beam, and weak lobes further out are not. Where one half-plane
-//! never reaches the level, the beam lies wholly in the other, and the inner edge there bounds it. The level is a
-//! share of the largest intensity in the plane, its noise taken out. A curve that never falls below the level gives
-//! 360 deg.
+//! A plane through the pole has two half-planes. In each, the edge of the beam is where the
+//! intensity, interpolated linearly between rings, first falls below the level on the way outward
+//! from that half-plane's own maximum: a maximum off the axis, or a dip on it, is inside the beam,
+//! and weak lobes further out are not. Where one half-plane never reaches the level, the beam lies
+//! wholly in the other, and the inner edge there bounds it. The level is a share of the largest
+//! intensity in the plane, corrected for noise. A curve that never falls below the level gives 360
+//! deg.
 
 use crate::measure::Status;
 use crate::measure::counted::{Noisy, Part, Sample};
@@ -15,20 +16,23 @@ use crate::measure::smoothing::Smoothing;
 use crate::tally::Tally;
 use std::f64::consts::{PI, TAU};
 
-/// Times the curve is drawn anew with its noise to learn the error of the angle: good to 1/sqrt(2 · 100) = 7 %.
+/// Number of redraws of the curve with its noise that give the error of the angle: good to 1/sqrt(2
+/// · 100) = 7 %.
 const REPLICAS: usize = 100;
-/// The part of the mean deviation of replicas that is taken off as bias, 1. This and the next four were chosen with the
-/// trials of docs/trials.md.
+/// Fraction of the mean deviation of replicas that is subtracted as bias, 1. This and the next four
+/// were chosen with the trials of docs/trials.md.
 const BIAS_TAKEN: f64 = 0.8;
-/// Counts that the curve is averaged over to find its edges, and its top, which moves both.
+/// Counts over which the curve is averaged to find its edges, and its top, which moves both.
 const COUNTS_AT_EDGE: f64 = 100.0;
 const COUNTS_AT_TOP: f64 = 20.0;
-/// Rings that this takes at most to each side, as part of those that hold the middle half of the light.
+/// Largest number of rings used for this on each side, as a fraction of those that contain the
+/// middle half of the light.
 const REACH_AT_EDGE: f64 = 0.25;
 const REACH_AT_TOP: f64 = 0.5;
-/// Richardson's 2² - 1: twice the window adds three times a bias that goes with its square.
+/// Richardson's 2² - 1: twice the window adds three times a bias that scales with its square.
 const RICHARDSON: f64 = 3.0;
-/// Part of the top that averaging for the edges has to keep, 1; else edges are read off the curve averaged for the top.
+/// Fraction of the top that averaging for the edges must keep, 1; otherwise edges are read from the
+/// curve averaged for the top.
 const TOP_KEPT: f64 = 0.6;
 
 /// A full angle, rad.
@@ -36,16 +40,17 @@ const TOP_KEPT: f64 = 0.6;
 pub(crate) struct FullAngle {
     pub(crate) value: f64,
     pub(crate) std_error: f64,
-    /// How far off it may be by rings and averages of finite width, rad.
+    /// Possible bias from rings and averages of finite width, rad.
     pub(crate) bias: f64,
     pub(crate) status: Status,
 }
 
 /// Full angle at `share` of the maximum; `gammas` are the angles of the rings from the pole, rad. `None` in the dark.
 ///
-/// The angle is read off the curve averaged over neighbouring rings. What noise does to such a reading is found from
-/// curves drawn anew about this one (a parametric bootstrap, as in [`crate::measure::extremes`]): their scatter is the
-/// error, and most of their mean deviation is taken off.
+/// The angle is read off the curve averaged over neighbouring rings. The effect of noise on this
+/// reading is found from curves redrawn about this one (a parametric bootstrap, as in
+/// [`crate::measure::extremes`]): their scatter is the error, and most of their mean deviation is
+/// subtracted.
 pub(crate) fn full_angle(gammas: &[f64], halves: [&[Noisy]; 2], share: f64) -> Option<FullAngle> {
     let plane = Plane::of(gammas, halves);
     let read = &plane.sample.values;
@@ -77,7 +82,7 @@ pub(crate) fn full_angle(gammas: &[f64], halves: [&[Noisy]; 2], share: f64) -> O
     })
 }
 
-/// What a curve is averaged over.
+/// The windows over which a curve is averaged.
 struct Averaging {
     top: Smoothing,
     edge: Smoothing,
@@ -89,7 +94,7 @@ impl Averaging {
     }
 }
 
-/// The curve in a plane through the pole, as one line over it.
+/// The curve in a plane through the pole, as one line across it.
 struct Plane {
     parts: Vec<Part>,
     sample: Sample,
@@ -97,7 +102,7 @@ struct Plane {
 }
 
 impl Plane {
-    /// A curve that is the same on both sides has the same noise on both, and is one half alone.
+    /// A curve that is the same on both sides has the same noise on both, and is one half only.
     fn of(gammas: &[f64], [ahead, behind]: [&[Noisy]; 2]) -> Self {
         let part = |(read, gamma): (&Noisy, &f64)| Part { read: *read, weight: gamma.sin() };
         let half = |half: &[Noisy]| half.iter().zip(gammas).map(part).collect::<Vec<_>>();
@@ -112,7 +117,7 @@ impl Plane {
         Self { sample: Sample::of(&parts), parts, rings: ahead.len() }
     }
 
-    /// Something of both halves of a line.
+    /// Applies a function to both halves of a line.
     fn split<T>(&self, line: &[f64], of: impl Fn([&[f64]; 2]) -> T) -> T {
         if line.len() == self.rings {
             return of([line, line]);
@@ -122,7 +127,8 @@ impl Plane {
         of([ahead, &behind])
     }
 
-    /// The full angle of a line at a share of its largest value, both of the line averaged.
+    /// The full angle of a line at a share of its largest value, each from its own average of the
+    /// line.
     fn angle(&self, gammas: &[f64], line: &[f64], share: f64, averaging: &Averaging) -> f64 {
         let top = averaging.top.smooth(&self.sample, line);
         let level = share * top[highest(&top)];
@@ -130,7 +136,7 @@ impl Plane {
         self.split(&line, |halves| width(gammas, halves, level))
     }
 
-    /// What the noise of a line asks for.
+    /// The averaging that the noise of a line requires.
     fn averaging(&self, line: &[f64]) -> Averaging {
         let half = self.half_of_light(line);
         let over = |counts: f64, reach: f64| {
@@ -146,7 +152,7 @@ impl Plane {
         Averaging { edge: if is_flattened { top.clone() } else { edge }, top }
     }
 
-    /// Rings to each side of the middle that hold half of the light of a line.
+    /// Rings on each side of the middle that contain half of the light of a line.
     fn half_of_light(&self, line: &[f64]) -> f64 {
         let light = || line.iter().zip(&self.sample.weights).map(|(value, weight)| value * weight);
         let total: f64 = light().sum();
@@ -166,10 +172,11 @@ fn highest_of(halves: [&[f64]; 2]) -> f64 {
     halves.map(|half| half[highest(half)]).into_iter().fold(0.0, f64::max)
 }
 
-/// How far the angle moves by the width of the rings: half of its change when rings are taken in pairs. Of an error that
-/// goes with the width this is half, of one that goes with its square it is one and a half times.
+/// Shift of the angle by the width of the rings: half of its change when rings are taken in pairs.
+/// This is half of an error that scales with the width, and one and a half times one that scales
+/// with its square.
 fn ring_bias(gammas: &[f64], halves: [&[f64]; 2], level: impl Fn([&[f64]; 2]) -> f64) -> f64 {
-    // Solid angles of rings of one width go with the sine.
+    // Solid angles of rings of equal width are proportional to the sine.
     let paired = |values: &[f64]| -> Vec<f64> {
         let rings = values.chunks(2).zip(gammas.chunks(2));
         let mean = |(values, gammas): (&[f64], &[f64])| {
@@ -207,7 +214,7 @@ fn edge(gammas: &[f64], own: &[f64], other: &[f64], level: f64) -> f64 {
     -below.map_or(0.0, |ring| crossing(gammas, other, ring + 1, level))
 }
 
-/// Where the line from the ring before to this one passes the level, rad.
+/// Where the line from the previous ring to this one crosses the level, rad.
 fn crossing(gammas: &[f64], values: &[f64], ring: usize, level: f64) -> f64 {
     let (before, after) = (values[ring - 1], values[ring]);
     let part = if before == after { 0.5 } else { (before - level) / (before - after) };

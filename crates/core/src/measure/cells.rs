@@ -1,10 +1,10 @@
-//! The cells of a surface sensor, or the pixels of its image: flux, area, and the noise of both together.
+//! The cells of a surface sensor, or the pixels of its image: flux, area, and their joint noise.
 //!
-//! A cell's error is that of the mean over batches; cells are taken as independent. Cells without area are not part
-//! of the sensor. The area of a pixel is the aperture times its projected solid angle, in mm² sr. Cells that the rim or
-//! a hole cuts to less than half of their own area hold few counts. For the extremes they are taken together with
-//! their neighbours along the rim until half a cell is full, so that all light of the sensor counts and the average
-//! lies between the extremes.
+//! A cell's error is that of the mean over batches; cells are treated as independent. Cells without
+//! area are not part of the sensor. The area of a pixel is the aperture times its projected solid
+//! angle, in mm² sr. Cells that the rim or a hole cuts to less than half of their own area hold few
+//! counts. For the extremes they are merged with their neighbours along the rim until half a cell
+//! is full, so that all light of the sensor counts and the average lies between the extremes.
 
 use crate::measure::counted::{Noisy, Part};
 use crate::measure::evidence::Evidence;
@@ -15,10 +15,10 @@ use std::borrow::Cow;
 
 /// Cells with less than this share of their own area on the sensor are not part of it.
 const NO_AREA: f64 = 1e-9;
-/// Cells with at least this share of their own area count for the extremes on their own.
+/// Cells with at least this share of their own area count individually for the extremes.
 const ENOUGH_AREA: f64 = 0.5;
 
-/// A value for a picture: what extrapolation has made negative is shown as zero.
+/// A value for a picture: a value that extrapolation made negative is shown as zero.
 pub fn not_below_zero(value: f64) -> f64 {
     // NaN, off the sensor, stays.
     if value < 0.0 { 0.0 } else { value }
@@ -36,7 +36,7 @@ pub(crate) struct SensorCells<'a> {
     flux: Vec<(f64, f64)>,
     /// Area per cell, mm², or mm² sr.
     pub(crate) areas: Cow<'a, [f64]>,
-    /// The part of each cell that lies on the sensor, 1; `None` of pixels, which are all whole.
+    /// Fraction of each cell that lies on the sensor, 1; `None` for pixels, which are all whole.
     covered: Option<&'a [f64]>,
     grid: &'a Grid,
     pub(crate) area: f64,
@@ -44,7 +44,7 @@ pub(crate) struct SensorCells<'a> {
     pub(crate) factor: f64,
     /// Flux of one count, lm or W.
     count: f64,
-    /// Whether this is all light that the sensor counts.
+    /// Whether this is all the light that the sensor counts.
     pub(crate) all_light: bool,
 }
 
@@ -91,14 +91,14 @@ impl<'a> SensorCells<'a> {
         self.cover(cell) >= ENOUGH_AREA
     }
 
-    /// The share of a cell's own area that lies on the sensor, 1.
+    /// The fraction of a cell's own area that lies on the sensor, 1.
     pub(crate) fn cover(&self, cell: usize) -> f64 {
         self.covered.map_or(1.0, |covered| covered[cell])
     }
 
-    /// What the extremes are taken of, in the unit of the map: the full cells, and those cut by the rim, some together.
-    /// The average is their mean by area. They come along a curve that fills the grid (Morton 1966), so that
-    /// neighbours in the list are neighbours on the sensor.
+    /// The parts for the extremes, in the unit of the map: the full cells, and those cut by the
+    /// rim, some merged. The average is their mean by area. They follow a curve that fills the grid
+    /// (Morton 1966), so that neighbours in the list are neighbours on the sensor.
     pub(crate) fn for_extremes(&self) -> Vec<Part> {
         let full = (0..self.areas.len()).filter(|&cell| self.is_full(cell)).map(|cell| vec![cell]);
         let mut groups: Vec<Vec<usize>> = full.chain(self.rim()).collect();
@@ -111,8 +111,8 @@ impl<'a> SensorCells<'a> {
         groups.into_iter().map(part).collect()
     }
 
-    /// The cells cut to less than half, in the order of their direction from the middle of the grid, together as far as
-    /// they make half a cell.
+    /// The cells cut to less than half, ordered by their direction from the middle of the grid, and
+    /// merged until they make half a cell.
     fn rim(&self) -> Vec<Vec<usize>> {
         let rect = self.grid.rect();
         let middle = 0.5 * (rect.min + rect.max);
@@ -133,7 +133,7 @@ impl<'a> SensorCells<'a> {
             cover += self.cover(cell);
             groups.last_mut().expect("a group was pushed for the first cell").push(cell);
         }
-        // What is left over at the end goes to the group before.
+        // The remainder at the end joins the previous group.
         if cover < ENOUGH_AREA && groups.len() > 1 {
             let rest = groups.pop().expect("there are two");
             groups.last_mut().expect("there are two").extend(rest);
@@ -151,7 +151,7 @@ impl<'a> SensorCells<'a> {
         Noisy { value: mean * factor, std_error: error * factor, count: self.count * factor }
     }
 
-    /// Some cells taken together, in the unit of the map.
+    /// Some cells merged, in the unit of the map.
     pub(crate) fn mean(&self, cells: impl IntoIterator<Item = usize>) -> Noisy {
         let (mut flux, mut variance, mut area) = (0.0, 0.0, 0.0);
         for cell in cells {

@@ -1,6 +1,7 @@
-//! Whether measures are what the scene demands.
+//! Whether measures meet the demands of the scene.
 //!
-//! A demand whose answer the error bar leaves open is undecided, which counts as missed: more paths are needed.
+//! A demand that the error bar leaves open is undecided, which counts as missed: more paths are
+//! needed.
 
 use crate::measure::{Measure, Measures, Status};
 use crate::plan::Check;
@@ -10,13 +11,14 @@ use serde::{Deserialize, Serialize};
 
 /// A limit nearer to the value than this many total errors is undecided.
 const LIMIT_ERRORS: f64 = 3.0;
-/// From this many errors on it does not matter how many they are.
+/// From this many errors on, the exact number does not matter.
 const FAR_ERRORS: f64 = 100.0;
-/// What rounding may do to a value without noise, relative to it: sums over many paths keep 12 digits or more.
+/// Possible relative rounding of a value without noise: sums over many paths keep 12 digits or
+/// more.
 const ROUNDING: f64 = 1e-9;
 /// Deviation from `equals` that passes, in total errors, where the check names neither `sigmas` nor `within`.
 const DEFAULT_SIGMAS: f64 = 4.0;
-/// Number of known names that are suggested for an unknown one.
+/// Number of known names suggested for an unknown one.
 const SUGGESTIONS: usize = 3;
 
 /// The outcome of a check and why.
@@ -45,10 +47,12 @@ pub enum Outcome {
 /// Judges a check. All of its demands must be met; the worst of them decides.
 ///
 /// * `min` and `max`: undecided within 3 total errors (noise and bias) of the limit.
-/// * A value without noise meets a limit or an expected value from which it is off by rounding, a relative 1e-9.
+/// * A value without noise meets a limit or an expected value if it differs from it only by
+///   rounding, a relative 1e-9.
 /// * `equals`: passes within `within`, or within `sigmas` total errors; either suffices. Without both, 4 total errors.
 /// * `max_std_error`: a larger standard error leaves a check undecided that would pass.
-/// * A value that cannot be relied on is undecided, but for one thing: nothing counted is at most three paths' flux.
+/// * A value that cannot be relied on is undecided, with one exception: nothing counted is at most
+///   three paths' flux.
 pub fn verdict(check: &Check, measures: &Measures) -> Verdict {
     match measures.values.get(&check.measure) {
         Some(measure) => judge(check, measure),
@@ -68,18 +72,19 @@ fn judge(check: &Check, measure: &Measure) -> Verdict {
         findings.push((Outcome::Undecided, text));
     }
     if let Some(doubt) = doubt(measure) {
-        // A failure by the figures is not to be relied on either.
+        // A numerical failure cannot be relied on either.
         findings.retain(|(outcome, _)| *outcome == Outcome::Undecided);
         findings.push((Outcome::Undecided, doubt.to_owned()));
     }
     let outcome = findings.iter().map(|(outcome, _)| *outcome).max().unwrap_or(Outcome::Passed);
-    // Of several demands, those that decide are told.
+    // Of several demands, only the deciding ones are reported.
     let told: Vec<&str> =
         findings.iter().filter(|(own, _)| *own == outcome).map(|(_, text)| text.as_str()).collect();
     Verdict { outcome, reason: format!("{} = {measure}: {}", check.measure, told.join("; ")) }
 }
 
-/// Why a measure cannot be judged at all. Nothing counted can: its error is the flux of a path, or infinite.
+/// Why a measure cannot be judged at all. A count of nothing can be judged: its error is the flux
+/// of a path, or infinite.
 fn doubt(measure: &Measure) -> Option<&'static str> {
     match measure.status {
         Status::Ok | Status::BiasInNoise | Status::NoSignal => None,
@@ -130,7 +135,7 @@ fn limit(measure: &Measure, limit: f64, bound: Bound) -> (Outcome, String) {
     }
 }
 
-/// Deviation from an expected number that is rounding: of values without noise alone.
+/// Deviation from an expected number that is due to rounding: only for values without noise.
 fn rounding(measure: &Measure, expected: f64) -> f64 {
     let room = ROUNDING * measure.value.abs().max(expected.abs());
     if measure.total_error() <= room { room } else { 0.0 }
@@ -141,7 +146,7 @@ fn equality(check: &Check, measure: &Measure, expected: f64) -> (Outcome, String
     let error = measure.total_error();
     let default = if check.within.is_some() { 0.0 } else { DEFAULT_SIGMAS };
     let wanted = check.sigmas.unwrap_or(default);
-    // Zero errors allow nothing, also where the error is not known.
+    // Zero errors allow nothing, even where the error is not known.
     let by_error = if wanted > 0.0 { wanted * error } else { 0.0 };
     let rounding = rounding(measure, expected);
     let allowed = by_error.max(check.within.unwrap_or(0.0)).max(rounding);

@@ -1,12 +1,12 @@
 //! Values that are known with noise, as counts are: how they scatter, and how they would come out if counted again.
 //!
-//! The error of a count goes as its root, and so does that of a sum of equal counts. This module knows nothing of sensors;
-//! units are those of its input.
+//! The error of a count scales as its square root, and so does that of a sum of equal counts. This
+//! module does not know sensors; units are those of its input.
 
 use crate::measure::multiscale::Multiscale;
 use crate::measure::noise::Noise;
 
-/// Counts by which the size of a count in all cells weighs against that in one, 1.
+/// Weight, in counts, of the size of a count over all cells against that in one cell, 1.
 const COUNTS_OF_ALL: f64 = 4.0;
 
 /// A value that is known with noise, zero or positive.
@@ -14,7 +14,7 @@ const COUNTS_OF_ALL: f64 = 4.0;
 pub(crate) struct Noisy {
     pub(crate) value: f64,
     pub(crate) std_error: f64,
-    /// What one count more would add: how far a value of zero can be trusted.
+    /// Size of one more count: how far a value of zero can be trusted.
     pub(crate) count: f64,
 }
 
@@ -26,8 +26,8 @@ pub(crate) struct Part {
 }
 
 impl Noisy {
-    /// What one count is worth here: from the value's own noise as far as it has counts, else from that of all. The error
-    /// then goes as the root of the value times this.
+    /// Size of one count here: from the value's own noise as far as it has counts, otherwise from
+    /// all values. The error is then the square root of the value times this.
     fn count_size(&self) -> f64 {
         let own = self.std_error * self.std_error / self.value;
         if self.value <= 0.0 || self.count == 0.0 || own == 0.0 {
@@ -37,26 +37,26 @@ impl Noisy {
         (counts * own + COUNTS_OF_ALL * self.count) / (counts + COUNTS_OF_ALL)
     }
 
-    /// The value that light can have: what extrapolation has made negative is zero.
+    /// A physically possible value: one that extrapolation made negative is zero.
     fn lit(&self) -> f64 {
         self.value.max(0.0)
     }
 }
 
-/// Values with what their noise is like.
+/// Values and the size of their noise.
 #[derive(Debug)]
 pub(crate) struct Sample {
     /// Shares of the weight.
     pub(crate) weights: Vec<f64>,
-    /// As read, but not below zero.
+    /// As read, but not negative.
     pub(crate) values: Vec<f64>,
-    /// Worth of a count in each.
+    /// Size of a count in each.
     pub(crate) counts: Vec<f64>,
     scales: Multiscale,
 }
 
 impl Sample {
-    /// Of at least one value. Neighbours in the list are neighbours on the sensor.
+    /// From at least one value. Neighbours in the list are neighbours on the sensor.
     pub(crate) fn of(parts: &[Part]) -> Self {
         let total: f64 = parts.iter().map(|part| part.weight).sum();
         let weights: Vec<f64> = parts.iter().map(|part| part.weight / total).collect();
@@ -66,18 +66,18 @@ impl Sample {
         Self { weights, values, counts, scales }
     }
 
-    /// The smallest value with the worth of a count there.
+    /// The smallest value with the size of a count there.
     pub(crate) fn darkest(&self) -> (f64, f64) {
         let cells = self.values.iter().copied().zip(self.counts.iter().copied());
         cells.min_by(|a, b| a.0.total_cmp(&b.0)).expect("there is at least one value")
     }
 
-    /// Such values with their noise taken out.
+    /// Such values with their noise removed.
     pub(crate) fn without_noise(&self, values: &[f64]) -> Vec<f64> {
         self.scales.without_noise(values)
     }
 
-    /// The values as if counted anew about some means.
+    /// The values redrawn as counts about some means.
     pub(crate) fn drawn(&self, means: &[f64], noise: &mut Noise) -> Vec<f64> {
         let again = |(&mean, &count): (&f64, &f64)| {
             if count > 0.0 { count * noise.poisson(mean / count) } else { mean }

@@ -8,40 +8,42 @@ use crate::scene::{Scene, SensorId};
 use crate::transport::{Layout, Readings};
 use std::ops::Range;
 
-/// Fewer groups of batches than this with anything in them give no trustworthy error bar: the spread of ten samples
-/// is itself known to a quarter, 1/sqrt(2 · 9).
+/// With fewer groups of batches than this that contain anything, the error bar is not trustworthy:
+/// the spread of ten samples is itself known to a quarter, 1/sqrt(2 · 9).
 pub(crate) const MIN_LIT_GROUPS: usize = 10;
-/// Fewer counts than this give none either, 1. n counts of equal flux have a relative error of 1/sqrt(n).
+/// With fewer counts than this it is not trustworthy either, 1. n counts of equal flux have a
+/// relative error of 1/sqrt(n).
 pub(crate) const MIN_COUNTS: f64 = 10.0;
 
-/// Variance from batch to batch, relative to the square of the mean, that rounding in a sum of squares may make.
+/// Variance between batches, relative to the square of the mean, that rounding in a sum of squares
+/// may cause.
 const SQUARES_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// A scene and what was counted in it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Evidence<'a> {
     pub(crate) scene: &'a Scene,
-    /// What speaks for a sensor's light.
+    /// The readings that give a sensor's light.
     pub(crate) readings: &'a Readings,
-    /// What speaks for everything that only photons know.
+    /// The readings for all that only photons can measure.
     photons: &'a Readings,
     pub(crate) layout: Layout,
     estimator: Estimator,
 }
 
 impl<'a> Evidence<'a> {
-    /// Photons speak for everything.
+    /// Photons give all values.
     pub(crate) fn new(scene: &'a Scene, photons: &'a Readings) -> Self {
         let (layout, estimator) = (Layout::new(scene), Estimator::Forward);
         Self { scene, readings: photons, photons, layout, estimator }
     }
 
-    /// Other readings speak for a sensor's light.
+    /// Other readings give a sensor's light.
     pub(crate) fn by(self, readings: &'a Readings, estimator: Estimator) -> Self {
         Self { readings, estimator, ..self }
     }
 
-    /// What the readings were made by.
+    /// The estimator that made the readings.
     pub(crate) fn estimator(&self) -> Estimator {
         self.estimator
     }
@@ -56,7 +58,7 @@ impl<'a> Evidence<'a> {
         self.scene.source_flux() / self.readings.paths() as f64
     }
 
-    /// A measure by these readings.
+    /// A measure from these readings.
     pub(crate) fn measure(
         &self,
         value: f64,
@@ -116,22 +118,23 @@ impl<'a> Evidence<'a> {
         if whole.value == 0.0 {
             return self.measure(0.0, f64::INFINITY, "1", Status::NoSignal);
         }
-        // Counted by different paths, the two are independent; where photons have a share in both, the error is a little
-        // too large.
+        // Counted by different paths, the two are independent; where photons contribute to both,
+        // the error is slightly too large.
         let value = part.value / whole.value;
         let std_error = part.std_error.hypot(value * whole.std_error) / whole.value;
         self.measure(value, std_error, "1", part.status.worst(whole.status))
     }
 
-    /// A line of the run's own books: what was counted is what happened, also where it is nothing.
+    /// A line of the run's own books: the count is exact, even where it is zero.
     pub(crate) fn entry(&self, value: impl Fn(&dyn Fn(usize) -> f64) -> f64) -> Measure {
         let tally = self.readings.function(value);
         let unit = self.scene.unit.flux();
         self.measure(tally.mean(), tally.std_error(), unit, Status::Ok)
     }
 
-    /// Mean flux over batches with its standard error for some values of a sensor, lm or W. A single batch leaves the
-    /// errors infinite. No flux is below zero: where extrapolation makes one negative, it is off by as much at least.
+    /// Mean flux over batches with its standard error for some values of a sensor, lm or W. A
+    /// single batch leaves the errors infinite. No flux is negative: where extrapolation makes it
+    /// so, its error is at least as large.
     pub(crate) fn cell_flux(&self, id: SensorId, values: Range<usize>) -> Vec<(f64, f64)> {
         let cells = &self.readings.sensors[id.index()].cells;
         let batches = self.readings.batch_count();
@@ -148,7 +151,8 @@ impl<'a> Evidence<'a> {
         values.map(mean).map(|(mean, error)| (mean, known(mean, error).max(-mean))).collect()
     }
 
-    /// Flux that one count adds to a cell, lm or W. Counting n of them gives a mean of n and a variance of n squares.
+    /// Flux that one count adds to a cell, lm or W. n counts have a mean of n and a variance of n
+    /// squares.
     pub(crate) fn count_flux(&self, cells: &[(f64, f64)]) -> f64 {
         let total: f64 = cells.iter().map(|(mean, _)| mean).sum();
         let variance: f64 = cells.iter().map(|(_, error)| error * error).sum();

@@ -1,13 +1,15 @@
 //! The smallest and the largest of many values that are known with noise, their ratios, and the spread of all.
 //!
-//! The smallest of noisy values is too small: of 1024 cells of equal illuminance known to 1 %, the darkest reads 3.2 %
-//! below. So the extremes are those of the values without noise ([`crate::measure::multiscale`]). What that does to a
-//! statistic is estimated by a parametric bootstrap about these values (Efron & Tibshirani, An Introduction
-//! to the Bootstrap (1993), chapters 6 and 10): counts are drawn anew, and the statistic is taken of each drawing in the same way. The scatter of drawings is
-//! the standard error; half of their mean deviation is subtracted, the other half is reported as bias. docs/trials.md
-//! has the figures behind this choice.
+//! The smallest of noisy values is too small: of 1024 cells of equal illuminance known to 1 %, the
+//! darkest reads 3.2 % below. So the extremes are those of the values without noise
+//! ([`crate::measure::multiscale`]). The effect on a statistic is estimated by a parametric
+//! bootstrap about these values (Efron & Tibshirani, An Introduction to the Bootstrap (1993),
+//! chapters 6 and 10): counts are redrawn, and the statistic is computed from each drawing in the
+//! same way. The scatter of drawings is the standard error; half of their mean deviation is
+//! subtracted, the other half is reported as bias. docs/trials.md contains the figures behind this
+//! choice.
 //!
-//! This module knows nothing of sensors. Units are those of its input.
+//! This module does not know sensors. Units are those of its input.
 
 use crate::measure::counted::{Part, Sample};
 use crate::measure::noise::Noise;
@@ -15,25 +17,25 @@ use crate::tally::Tally;
 
 /// Drawings: the error of an error is then 9 %.
 const REPLICAS: u64 = 64;
-/// On large maps no further once so many counts were drawn, but at least [`MIN_REPLICAS`] times.
+/// On large maps drawing stops after this many counts, but not before [`MIN_REPLICAS`] drawings.
 const DRAWS: usize = 4_000_000;
 const MIN_REPLICAS: u64 = 16;
-/// The part of the mean deviation of drawings that is taken off as bias, 1.
+/// Fraction of the mean deviation of drawings that is subtracted as bias, 1.
 const BIAS_TAKEN: f64 = 0.5;
-/// Scatter of an extreme of n values over that of its drawings, less 1, over ln n: drawings are made about values that are
-/// a little too even, and of many all the more.
+/// Scatter of an extreme of n values over that of its drawings, less 1, over ln n: the values that
+/// drawings are made about are slightly too even, the more so the more there are.
 const SCATTER: f64 = 0.05;
 /// Scatter of a CV over that of its drawings.
 const SCATTER_OF_CV: f64 = 1.06;
 /// Two-sided 95 % point of the normal distribution.
 pub(crate) const TWO_SIDED_95: f64 = 1.959_964;
-/// Length of the interval away from the other values and toward them, in [`TWO_SIDED_95`] standard errors: an
-/// extreme is rather found too far out than too far in.
+/// Length of the interval away from the other values and toward them, in [`TWO_SIDED_95`] standard
+/// errors: an extreme is more often found too far out than too far in.
 const OUTWARD: f64 = 1.1;
 const INWARD: f64 = 1.7;
 /// The same for the ratio of two extremes, since both estimates lie too far out.
 const INWARD_OF_BOTH: f64 = 1.8;
-/// Counts expected that are next to nothing, 1.
+/// Expected counts that are negligible, 1.
 const NEXT_TO_NOTHING: f64 = 0.1;
 /// Posterior standard deviation of the mean of a Poisson count that came out as 0, with Jeffreys' prior: ½^½ (Jeffreys, Theory
 /// of Probability (1961), section 3.1).
@@ -49,9 +51,9 @@ pub(crate) struct Extreme {
     /// Corrected.
     pub(crate) value: f64,
     pub(crate) std_error: f64,
-    /// How far off the corrected value may be on top of the noise.
+    /// Possible bias of the corrected value, in addition to the noise.
     pub(crate) bias: f64,
-    /// Holds the true value in 95 of 100 cases.
+    /// Contains the true value in 95 of 100 cases.
     pub(crate) interval: [f64; 2],
 }
 
@@ -66,7 +68,7 @@ pub(crate) struct Evenness<T> {
     pub(crate) min_max: T,
     /// Standard deviation over average by weight, 1.
     pub(crate) cv: T,
-    /// Its square, which may be negative where noise is taken out of it, 1.
+    /// Its square, which may be negative where noise is subtracted from it, 1.
     pub(crate) variance: T,
 }
 
@@ -137,7 +139,7 @@ fn statistics(sample: &Sample, values: &[f64], denoised: &[f64], noise: f64) -> 
     }
 }
 
-/// The variance that the noise of values alone would make, Σ w (1 - w) σ².
+/// The variance that the noise of values alone would cause, Σ w (1 - w) σ².
 fn noise_variance(sample: &Sample, values: &[f64]) -> f64 {
     let parts = sample.weights.iter().zip(values).zip(&sample.counts);
     parts.map(|((weight, value), count)| weight * (1.0 - weight) * value * count).sum()
@@ -148,7 +150,7 @@ fn found(sample: &Sample, values: &[f64]) -> Evenness<f64> {
     statistics(sample, values, &denoised, noise_variance(sample, values))
 }
 
-/// What the statistics come out as when counts are drawn anew about some means.
+/// The distribution of the statistics when counts are redrawn about some means.
 fn scatter(sample: &Sample, means: &[f64]) -> Evenness<Tally> {
     let mut noise = Noise::new();
     let few = (DRAWS / means.len()) as u64;
@@ -170,14 +172,14 @@ fn exact(raw: f64) -> Extreme {
     Extreme { raw, value: raw, std_error: 0.0, bias: 0.0, interval: [raw; 2] }
 }
 
-/// What is known of a statistic without any error.
+/// A statistic of unknown error.
 fn unknown(raw: f64) -> Extreme {
     let interval = [0.0, f64::INFINITY];
     Extreme { raw, value: raw, std_error: f64::INFINITY, bias: 0.0, interval }
 }
 
-/// The coefficient of variation: the variance of the noise is taken out of it already. Its interval is that of the
-/// variance, which has no bound at zero.
+/// The coefficient of variation, from which the variance of the noise is already subtracted. Its
+/// interval is that of the variance, which has no bound at zero.
 fn variation([raw, found]: [&Evenness<f64>; 2], drawn: &Evenness<Tally>) -> Extreme {
     let reach = TWO_SIDED_95 * SCATTER_OF_CV * drawn.variance.std_deviation();
     let root = |variance: f64| variance.max(0.0).sqrt();
@@ -198,8 +200,8 @@ enum Side {
     Ratio,
 }
 
-/// A statistic of some cells as read, of the values without noise, and of those that drawings are made about, with what
-/// drawings give.
+/// A statistic of some cells as read, of the values without noise, and of the centre of the
+/// drawings, corrected by what the drawings give.
 fn corrected(side: Side, cells: usize, [raw, found, centre]: [f64; 3], drawn: &Tally) -> Extreme {
     let deviation = drawn.mean() - centre;
     let std_error = (1.0 + SCATTER * (cells as f64).ln()) * drawn.std_deviation();
@@ -220,20 +222,21 @@ fn corrected(side: Side, cells: usize, [raw, found, centre]: [f64; 3], drawn: &T
 }
 
 impl Extreme {
-    /// That of something that cannot be larger.
+    /// The same, limited to at most this.
     fn below(self, limit: f64) -> Self {
         let value = self.value.min(limit);
         // Sums round differently.
         Self { value, interval: self.interval.map(|end| end.min(limit.max(value))), ..self }
     }
 
-    /// That of something that cannot be smaller.
+    /// The same, limited to at least this.
     fn above(self, limit: f64) -> Self {
         let value = self.value.max(limit);
         Self { value, interval: self.interval.map(|end| end.max(limit.min(value))), ..self }
     }
 
-    /// Where nothing was counted and next to nothing is expected, a value is known to about a count.
+    /// Where nothing was counted and next to nothing is expected, a value is known to about one
+    /// count.
     fn not_counted(self, count: f64) -> Self {
         if self.raw > 0.0 || self.value > NEXT_TO_NOTHING * count {
             return self;

@@ -1,4 +1,4 @@
-//! What a sensor has counted altogether: flux, efficiency, transmission, and how deep the paths went.
+//! The totals of a sensor: flux, efficiency, transmission, and depth of the paths.
 //!
 //! These come from the scalars alone and cost next to nothing, whatever the size of the map.
 
@@ -20,18 +20,18 @@ pub(crate) fn totals(evidence: &Evidence<'_>, id: SensorId) -> IndexMap<String, 
     out
 }
 
-/// The scalars that make the flux on a sensor: one per source.
+/// The scalars that make up the flux on a sensor: one per source.
 pub(crate) fn flux_slots(evidence: &Evidence<'_>, id: SensorId) -> Vec<usize> {
     (0..evidence.scene.sources.len())
         .map(|source| evidence.layout.sensor_flux(id, SourceId::new(source)))
         .collect()
 }
 
-/// Light that is measured apart: of a source, or of a light group.
+/// Light that is measured separately: from a source, or from a light group.
 struct Part<'a> {
     name: &'a str,
     sources: Vec<SourceId>,
-    /// Emitted, lm or W.
+    /// Emitted flux, lm or W.
     emitted: f64,
 }
 
@@ -50,7 +50,7 @@ fn parts(scene: &Scene) -> Vec<Part<'_>> {
     sources.chain(groups).collect()
 }
 
-/// The same, but for the only source of a scene, which is all light.
+/// The same, except the only source of a scene, which is all light.
 fn parts_beside_all(scene: &Scene) -> Vec<Part<'_>> {
     let is_all = |part: &Part<'_>| scene.sources.len() == 1 && part.name == scene.sources[0].name;
     parts(scene).into_iter().filter(|part| !is_all(part)).collect()
@@ -60,7 +60,7 @@ impl Part<'_> {
     /// Its share of the flux on a sensor, times a factor that leads to `unit`.
     fn sum(&self, evidence: &Evidence<'_>, id: SensorId, factor: f64, unit: &str) -> Measure {
         if self.emitted == 0.0 {
-            // Nothing comes of nothing, and no path is needed to know it.
+            // No source flux gives no flux, and no path is needed to know it.
             return evidence.measure(0.0, 0.0, unit, Status::Ok);
         }
         evidence.sum(&self.slots(evidence, id), factor, unit)
@@ -77,7 +77,7 @@ impl Part<'_> {
         self.sum(evidence, id, 1.0 / self.emitted, "1")
     }
 
-    /// Of all light on a sensor.
+    /// Its share of all light on a sensor.
     fn share(&self, evidence: &Evidence<'_>, id: SensorId, all: &[usize]) -> Measure {
         if self.emitted == 0.0 {
             return evidence.measure(0.0, 0.0, "1", Status::Ok);
@@ -86,7 +86,7 @@ impl Part<'_> {
     }
 }
 
-/// Flux, and over what the sources emit: the efficiency.
+/// Flux, and its ratio to the emitted flux: the efficiency.
 fn by_source(evidence: &Evidence<'_>, id: SensorId, out: &mut IndexMap<String, Measure>) {
     let scene = evidence.scene;
     let unit = scene.unit.flux();
@@ -98,7 +98,7 @@ fn by_source(evidence: &Evidence<'_>, id: SensorId, out: &mut IndexMap<String, M
     }
     for part in parts_beside_all(scene) {
         out.insert(format!("efficiency.from.{}", part.name), part.efficiency(evidence, id));
-        // Of light that never shines together no part is a share.
+        // Light that never shines together has no shares.
         if scene.light.weathers.len() < 2 {
             out.insert(format!("share.from.{}", part.name), part.share(evidence, id, &all));
         }
@@ -126,7 +126,7 @@ fn entering(evidence: &Evidence<'_>, id: SensorId, out: &mut IndexMap<String, Me
     }
 }
 
-/// Flux that met the sensor but does not count: only photons know it.
+/// Flux that met the sensor but does not count: only photons can measure it.
 fn elsewhere(evidence: &Evidence<'_>, id: SensorId, out: &mut IndexMap<String, Measure>) {
     let evidence = &evidence.of_photons();
     let sensor = &evidence.scene.sensors[id.index()];
@@ -144,8 +144,8 @@ fn elsewhere(evidence: &Evidence<'_>, id: SensorId, out: &mut IndexMap<String, M
     }
 }
 
-/// Mean illuminance of a surface sensor, or mean luminance of an image, where all light that is counted makes one mean: a
-/// sensor with views has one for each view.
+/// Mean illuminance of a surface sensor, or mean luminance of an image, where all counted light
+/// gives one mean: a sensor with views has one for each view.
 fn density(evidence: &Evidence<'_>, id: SensorId, out: &mut IndexMap<String, Measure>) {
     let SensorKind::Surface(surface) = &evidence.scene.sensors[id.index()].kind else { return };
     let unit = evidence.scene.unit;
@@ -159,7 +159,7 @@ fn density(evidence: &Evidence<'_>, id: SensorId, out: &mut IndexMap<String, Mea
     };
     let factor = MM2_PER_M2 / etendue;
     if matches!(surface.seeing, Seeing::All) {
-        // That of an image is read off its map.
+        // The mean of an image is read from its map.
         let mean = evidence.sum(&flux_slots(evidence, id), factor, symbol);
         out.insert(format!("{name}_avg"), mean);
     }
@@ -169,7 +169,8 @@ fn density(evidence: &Evidence<'_>, id: SensorId, out: &mut IndexMap<String, Mea
     }
 }
 
-/// Mean number of interfaces met before the sensor, and the share of the flux that met more than some.
+/// Mean number of interfaces met before the sensor, and the share of the flux that met more than a
+/// given number.
 fn depths(evidence: &Evidence<'_>, id: SensorId, out: &mut IndexMap<String, Measure>) {
     let flux = flux_slots(evidence, id);
     let layout = evidence.layout;
@@ -190,7 +191,7 @@ mod tests {
         SensorId::new(0)
     }
 
-    /// Two sources, of which the exit gets 0.6 of 3 lm and 0.1 of 1 lm, with a swing that both fluxes share.
+    /// Two sources; the exit gets 0.6 of 3 lm and 0.1 of 1 lm, with a swing that both fluxes share.
     fn measured(batches: u64) -> Measures {
         let scene = scene(&[("led", 3.0), ("lamp", 1.0)], vec![("exit", rectangle(10.0, 1, 1))]);
         let readings = readings(&scene, batches, |index, layout, batch| {

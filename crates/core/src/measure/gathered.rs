@@ -1,10 +1,12 @@
 //! Values of the gather method: which stage gives them, and whether their bias is known.
 //!
-//! Within nested windows of size 1, 1/√2 and 1/2 the same photons give E1, E2 and E3. A bias that goes with the square
-//! of the window, as that of a smooth field does, has (E1 - E2)/(E2 - E3) = 2. Where that is found, within its error
-//! and out of the noise, E0 is the value, which is free of such a bias. It is, too, where all differences are noise, but
-//! then the bias is not resolved. Where they follow another law E3 is the value, and its bias is not resolved. |E1 - E2|
-//! is the indicator of bias in all cases. All is decided once per sensor and stage, from its flux, never per cell.
+//! Within nested windows of size 1, 1/√2 and 1/2 the same photons give E1, E2 and E3. A bias that
+//! scales with the square of the window, as that of a smooth field does, gives (E1 - E2)/(E2 - E3)
+//! = 2. If this holds, within its error and above the noise, the value is E0, which is free of such
+//! a bias. Where all differences are noise the value is also E0, but the bias is not resolved.
+//! Where they follow another law the value is E3, and its bias is not resolved. |E1 - E2| is the
+//! indicator of bias in all cases. The decision is made once per sensor and stage, from its flux,
+//! never per cell.
 
 use crate::measure::evidence::{Evidence, MIN_LIT_GROUPS};
 use crate::measure::flux::flux_slots;
@@ -15,50 +17,54 @@ use crate::tally::Tally;
 use crate::transport::{Findings, Group, Readings, Stage, Windows};
 use serde::Serialize;
 
-/// Standard errors that E2 - E3 has to exceed to count as more than noise.
+/// Standard errors that E2 - E3 must exceed to count as more than noise.
 const OUT_OF_NOISE: f64 = 2.0;
-/// Standard errors within which (E1 - E2) - 2 (E2 - E3) has to be nothing.
+/// Standard errors within which (E1 - E2) - 2 (E2 - E3) must vanish.
 const WITHIN: f64 = 2.0;
-/// Deviation of the ratio from 2 that is let pass however well it is known, 1: higher orders of the window's size.
+/// Deviation of the ratio from 2 that is accepted however well it is known, 1: higher orders of the
+/// window's size.
 const RATIO_TOLERANCE: f64 = 0.15;
 
 /// What is known about the bias of a sensor's values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Resolution {
-    /// It goes with the square of the window: it has been extrapolated away, and the rest is smaller.
+    /// It scales with the square of the window: it has been removed by extrapolation, and the rest
+    /// is smaller.
     Resolved,
-    /// The windows agree within their noise; a bias by the square of the window would have been extrapolated away.
+    /// The windows agree within their noise; a bias that scales with the square of the window would
+    /// have been removed by extrapolation.
     InNoise,
-    /// They differ, and not as the square of the window.
+    /// They differ, but not as the square of the window.
     NotResolved,
 }
 
-/// How the values of a gathered sensor came about.
+/// How the values of a gathered sensor were found.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct GatheredFacts {
     /// Name of the sensor.
     pub sensor: String,
-    /// Vertex at which its gather paths ended at the latest; the first surface has depth 0.
+    /// Deepest vertex at which its gather paths ended; the first surface has depth 0.
     pub depth: u32,
     /// The stage that gave the values, from 0.
     pub stage: u32,
     /// Whether their bias is resolved.
     pub resolution: Resolution,
-    /// The flux that photons of the same run have brought to the sensor, with its standard error: without bias, mostly
-    /// with more noise; lm or W.
+    /// The flux from photons of the same run on the sensor, with its standard error: unbiased,
+    /// mostly with more noise; lm or W.
     pub by_photons: [f64; 2],
-    /// Total errors of both by which the gathered flux is off that, 1; `None` where either has found too little to
-    /// tell. A merged flux holds a part of the same photons, which makes this smaller.
+    /// Difference of the gathered flux from that, in total errors of both, 1; `None` where either
+    /// has found too little to decide. A merged flux contains part of the same photons, which makes
+    /// this smaller.
     pub off: Option<f64>,
-    /// The last finished stage and the one after it, as far as that has come.
+    /// The last finished stage and the one after it, as far as it has got.
     pub stages: Vec<StageFacts>,
 }
 
 /// A stage, and the flux of a sensor within its nested windows.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StageFacts {
-    /// Which, from 0.
+    /// Number of the stage, from 0.
     pub number: u32,
     /// Radius of its widest window, mm.
     pub radius_mm: f64,
@@ -68,14 +74,14 @@ pub struct StageFacts {
     pub passes: u64,
     /// Gather paths of a pass from each sensor.
     pub gather_paths: u64,
-    /// E1, E2 and E3, the flux within windows of size 1, 1/√2 and 1/2, and E0, free of a bias by the square of that; lm or
-    /// W.
+    /// E1, E2 and E3, the flux within windows of size 1, 1/√2 and 1/2, and E0, free of a bias that
+    /// scales with their square; lm or W.
     pub flux: [f64; 4],
-    /// Their standard errors, likewise.
+    /// Their standard errors, same layout.
     pub std_errors: [f64; 4],
 }
 
-/// A stage that speaks for a sensor.
+/// The stage that gives a sensor's values.
 pub(crate) struct Judged<'a> {
     photons: Evidence<'a>,
     estimator: Estimator,
@@ -83,7 +89,7 @@ pub(crate) struct Judged<'a> {
     pub(crate) resolution: Resolution,
 }
 
-/// The stage with the least total error of a sensor's flux.
+/// The stage with the smallest total error of a sensor's flux.
 pub(crate) fn judged<'a>(
     photons: Evidence<'a>,
     findings: &'a Findings,
@@ -113,14 +119,14 @@ pub(crate) fn is_held_by_bias(photons: Evidence<'_>, findings: &Findings, id: Se
 }
 
 impl<'a> Judged<'a> {
-    /// The evidence of the value, and that within the wide and the middle window.
+    /// The evidence for the value, and that within the wide and the middle window.
     pub(crate) fn evidences(&self) -> [Evidence<'a>; 3] {
         let Windows { wide, middle, .. } = &self.stage.windows;
         [chosen(&self.stage.windows, self.resolution), wide, middle]
             .map(|readings| self.photons.by(readings, self.estimator))
     }
 
-    /// How the values came about; `None` without anything gathered.
+    /// How the values were found; `None` if nothing was gathered.
     pub(crate) fn facts(&self, findings: &Findings, id: SensorId) -> Option<GatheredFacts> {
         let gathered = findings.gathered.as_ref()?;
         let slots = flux_slots(&self.photons, id);
@@ -145,7 +151,7 @@ impl<'a> Judged<'a> {
         })
     }
 
-    /// Tells the bias of a measure by what it is within the two wider windows.
+    /// Sets the bias of a measure from its values within the two wider windows.
     pub(crate) fn tell_bias(&self, measure: &mut Measure, wide: &Measure, middle: &Measure) {
         if measure.estimator != self.estimator {
             return;
@@ -183,7 +189,7 @@ fn resolution(windows: &Windows, slots: &[usize]) -> Resolution {
     let curved = difference(windows, slots, |[e1, e2, e3]| e1 - 3.0 * e2 + 2.0 * e3);
     let is_seen = |tally: &Tally| tally.mean().abs() > OUT_OF_NOISE * tally.std_error();
     let room = (WITHIN * curved.std_error()).max(RATIO_TOLERANCE * inner.mean().abs());
-    // Noise must not be all that lets the ratio pass: both differences have one sign.
+    // Noise alone must not make the ratio acceptable: both differences have one sign.
     let quadratic = curved.mean().abs() <= room && outer.mean() * inner.mean() > 0.0;
     if is_seen(&inner) && quadratic {
         Resolution::Resolved
@@ -194,7 +200,7 @@ fn resolution(windows: &Windows, slots: &[usize]) -> Resolution {
     }
 }
 
-/// Standard error and bias of the sum of some scalars together, relative to it.
+/// Combined standard error and bias of the sum of some scalars, relative to it.
 fn total_error(windows: &Windows, resolution: Resolution, slots: &[usize]) -> f64 {
     let delta = difference(windows, slots, |[e1, e2, _]| e1 - e2).mean();
     let value = flux(chosen(windows, resolution), slots);
@@ -233,7 +239,7 @@ mod tests {
     use crate::scene::SourceId;
     use crate::transport::Layout;
 
-    /// Passes of which each finds these fluxes within the three windows, and some noise.
+    /// Passes that each find these fluxes within the three windows, and some noise.
     fn decided(means: [f64; 3], noise: impl Fn(u64) -> [f64; 3]) -> Resolution {
         let scene = scene(&[("lamp", 10.0)], vec![("cell", rectangle(2.0, 1, 1))]);
         let slot = Layout::new(&scene).sensor_flux(SensorId::new(0), SourceId::new(0));
@@ -247,7 +253,7 @@ mod tests {
         resolution(&Windows { wide, middle, narrow, extrapolated }, &[slot])
     }
 
-    /// Plus and minus the size, in turn.
+    /// Plus and minus the size, alternating.
     fn wobble(pass: u64, size: f64) -> f64 {
         if pass.is_multiple_of(2) { size } else { -size }
     }

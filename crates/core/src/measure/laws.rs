@@ -9,7 +9,7 @@ use crate::transport::Findings;
 use glam::DVec2;
 use lumiduct_base::math::Frame;
 
-/// Place of a cell from the middle of its map, in half-widths.
+/// Position of a cell from the middle of its map, in half-widths.
 fn place(grid: &Grid, cell: usize) -> DVec2 {
     let at = grid.center(cell);
     match grid {
@@ -36,7 +36,8 @@ fn extents(sensor: &SurfaceSensor) -> (Vec<f64>, Grid) {
     }
 }
 
-/// Readings of a field in 128 batches, each cell with noise of so many counts per unit of flux; none for no noise.
+/// Readings of a field in 128 batches, each cell with noise of so many counts per unit of flux;
+/// `None` gives no noise.
 fn lit(scene: &Scene, counts: Option<f64>, seed: u64, field: &dyn Fn(DVec2) -> f64) -> Findings {
     let (extents, grid) = extents(sensor(scene));
     let whole: f64 = extents.iter().sum();
@@ -77,7 +78,7 @@ fn kinds() -> [(&'static str, SensorKind); 5] {
     ]
 }
 
-/// Light per area, by the place from the middle.
+/// Light per area, by the position from the middle.
 type Light = Box<dyn Fn(DVec2) -> f64>;
 
 fn fields() -> Vec<(&'static str, Light)> {

@@ -1,5 +1,5 @@
-//! Maps of surface sensors: illuminance per cell, luminance per cell and view, or luminance per pixel of an image, and
-//! how even they are.
+//! Maps of surface sensors: illuminance per cell, luminance per cell and view, or luminance per
+//! pixel of an image, and their uniformity.
 
 #[cfg(test)]
 mod tests;
@@ -16,29 +16,29 @@ use ndarray::Array2;
 use serde::Serialize;
 use std::f64::consts::PI;
 
-/// What a surface sensor has seen, cell by cell.
+/// Values of a surface sensor, cell by cell.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SensorMap {
     /// Name of the sensor.
     pub sensor: String,
-    /// Which view of a luminance sensor, from 0; `None` of all light, and of an image.
+    /// View of a luminance sensor, from 0; `None` for all light, and for an image.
     pub view: Option<usize>,
-    /// Where a view looks from: angle from the sensor's normal and azimuth from its local +x, deg.
+    /// Direction of a view: angle from the sensor's normal and azimuth from its local +x, deg.
     pub seen_from_deg: Option<[f64; 2]>,
-    /// What is mapped, such as `illuminance`.
+    /// The mapped quantity, such as `illuminance`.
     pub quantity: String,
-    /// Weathers whose light it adds up: more than one never shine together.
+    /// Number of weathers whose light is summed; if there are several, they never shine together.
     pub weathers: usize,
     /// Its unit, such as `lx`.
     pub unit: String,
     /// Rows (v, or rings) by columns (u, or sectors), in `unit`; NaN outside the sensor.
     pub values: Array2<f64>,
-    /// Standard errors, likewise.
+    /// Standard errors, same layout.
     pub std_errors: Array2<f64>,
-    /// Indicators of bias, likewise; `None` of unbiased estimates.
+    /// Indicators of bias, same layout; `None` for unbiased estimates.
     pub biases: Option<Array2<f64>>,
-    /// The share of each cell's own area that lies on the sensor, 1. Cells with at least half count for the extremes on
-    /// their own, others together with their neighbours along the rim.
+    /// The fraction of each cell's own area that lies on the sensor, 1. Cells with at least half
+    /// count individually for the extremes, others together with their neighbours along the rim.
     pub on_sensor: Array2<f64>,
     /// Where the cells are.
     pub axes: Axes,
@@ -48,7 +48,7 @@ pub struct SensorMap {
     pub summary: UniformitySummary,
 }
 
-/// Where the cells of a map are, on the unrolled face, or in the field of view of an image.
+/// Positions of the cells of a map, on the unrolled face, or in the field of view of an image.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Axes {
@@ -59,7 +59,7 @@ pub enum Axes {
         /// Edges of the rows, mm.
         v_mm: Vec<f64>,
     },
-    /// Columns and rows of pixels that are equal in the tangents of their angles.
+    /// Columns and rows of pixels of equal size in the tangents of their angles.
     Angular {
         /// Edges of the columns, deg to the right of the axis.
         u_deg: Vec<f64>,
@@ -204,7 +204,7 @@ fn at_points(points: &[Vec<usize>], seen: &SensorCells<'_>, field: &Field<'_>) -
     let read: Vec<Noisy> = points.iter().map(|cells| seen.mean(cells.iter().copied())).collect();
     let n = read.len() as f64;
     let sum: f64 = read.iter().map(|point| point.value).sum();
-    // Points that read the same cells are one for the extremes, and their noise is the same noise.
+    // Points that read the same cells count once for the extremes, since their noise is the same.
     let mut distinct: Vec<Part> = Vec::new();
     let mut variance = 0.0;
     for (index, point) in read.iter().enumerate() {

@@ -1,9 +1,10 @@
 //! From readings to photometric measures with uncertainty.
 //!
-//! Pure functions of a scene and its readings: the same readings give the same bits. Each quantity has a dotted name,
-//! such as `exit.flux` or `balance.leaked`, and the set of names depends on the scene alone, not on what was counted.
-//! Units are made here on the way out: lx, cd, cd/m², deg (W/m², W/sr, W/(m² sr) in radiometric runs). This layer
-//! does not know how light was traced, and draws and writes nothing.
+//! Pure functions of a scene and its readings: the same readings give the same bits. Each quantity
+//! has a dotted name, such as `exit.flux` or `balance.leaked`, and the set of names depends on the
+//! scene alone, not on what was counted. Output units are applied here: lx, cd, cd/m², deg (W/m²,
+//! W/sr, W/(m² sr) in radiometric runs). This layer does not know how light was traced, and draws
+//! and writes nothing.
 
 mod angular;
 mod balance;
@@ -67,11 +68,11 @@ pub struct Measures {
     pub intensities: Vec<IntensityTable>,
     /// How each sensor was estimated, by its name.
     pub estimators: IndexMap<String, Estimator>,
-    /// What a pilot found out about each sensor; empty unless it was asked to choose.
+    /// Findings of the pilot about each sensor; empty unless the run is to choose.
     pub choices: IndexMap<String, Choice>,
-    /// How the values of gathered sensors came about.
+    /// How the values of gathered sensors were found.
     pub gathered: Vec<GatheredFacts>,
-    /// How the light came to each sensor.
+    /// How the light reached each sensor.
     pub sensor_paths: Vec<SensorPaths>,
     /// Whether fluxes are luminous or radiant.
     pub unit: FluxUnit,
@@ -81,7 +82,8 @@ pub struct Measures {
     /// Sources of each light group, by its name.
     #[serde(skip_serializing_if = "IndexMap::is_empty")]
     pub light_groups: IndexMap<String, Vec<String>>,
-    /// Weathers whose light the totals of all sources add up, though no two of them shine at the same time.
+    /// Weathers whose light the totals of all sources sum, though no two of them shine at the same
+    /// time.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub weathers: Vec<String>,
     /// Flux of all sources, lm or W.
@@ -111,7 +113,7 @@ pub fn measure(scene: &Scene, findings: &Findings) -> Measures {
     let names = scene.sensors.iter().map(|sensor| sensor.name.clone());
     let choices = names.zip(findings.choices.iter().cloned());
     let suns = scene.sources.iter().filter_map(|source| {
-        // As the file says it, without the rounding of radians.
+        // As in the file, without the rounding of radians.
         let degrees = (1e9 * source.elevation?.to_degrees()).round() / 1e9;
         Some((source.name.clone(), degrees))
     });
@@ -144,7 +146,8 @@ fn light_groups(scene: &Scene) -> IndexMap<String, Vec<String>> {
     groups.map(|group| (group.name.clone(), group.sources.iter().map(name).collect())).collect()
 }
 
-/// Whether a smaller window brings the flux of a gathered sensor nearer to the truth than more of the same work.
+/// Whether a smaller window improves the flux of a gathered sensor more than more work with the
+/// same window.
 pub fn is_held_by_bias(scene: &Scene, findings: &Findings) -> bool {
     let sensors = (0..scene.sensors.len()).map(SensorId::new);
     let evidence = Evidence::new(scene, &findings.photons);
@@ -168,8 +171,8 @@ pub fn names(scene: &Scene) -> Vec<String> {
     measure(scene, &Findings::forward(nothing)).values.into_keys().collect()
 }
 
-/// Total error of a measure over its value: what the target of a run is held against. Infinite where there is no
-/// error bar to rely on, `None` for an unknown name.
+/// Total error of a measure over its value, which is compared with the target of a run. Infinite
+/// where there is no reliable error bar, `None` for an unknown name.
 pub fn relative_error(measures: &Measures, name: &str) -> Option<f64> {
     measures.values.get(name).map(Measure::relative_error)
 }
@@ -178,7 +181,8 @@ fn add(values: &mut IndexMap<String, Measure>, sensor: &str, measures: IndexMap<
     values.extend(measures.into_iter().map(|(name, m)| (format!("{sensor}.{name}"), m)));
 }
 
-/// What single groups of batches say of a measure; `None` for those that need a map, whose cells are not kept by group.
+/// Values of a measure in single groups of batches; `None` for those that need a map, whose cells
+/// are not kept by group.
 pub fn replicates(scene: &Scene, findings: &Findings, name: &str) -> Option<Replicates> {
     let (first, rest) = name.split_once('.')?;
     let found = match scene.sensors.iter().position(|sensor| sensor.name == first) {

@@ -1,29 +1,32 @@
-//! A map or curve with its noise taken out, scale by scale.
+//! A map or curve with its noise removed, scale by scale.
 //!
-//! Neighbours in the list are neighbours on the sensor. The list is halved again and again, and each half differs from
-//! the other by a contrast whose noise is known. Of N contrasts d of one scale with variances s², the excess of
-//! mean d²/s² over 1 estimates their ratio of signal to noise, q. All are shrunk by (q/(1+q))^0.4, so that what is left has
-//! a little more than the spread of the signal, which the power ½ would leave (constrained empirical Bayes: Louis,
-//! J. Am. Stat. Assoc. 79 (1984) 393; by scales as in Abramovich, Sapatinas & Silverman, J. R. Stat. Soc. B 60 (1998)
-//! 725). A contrast far out of the noise of its scale is kept (threshold a little above s (2 ln N)^½: Donoho &
-//! Johnstone, Biometrika 81 (1994) 425). Means over halves are kept, and so is the mean of all. The cost is linear in
-//! the length of the list.
+//! Neighbours in the list are neighbours on the sensor. The list is halved repeatedly, and the two
+//! halves differ by a contrast of known noise. Of N contrasts d of one scale with variances s², the
+//! excess of mean d²/s² over 1 estimates their ratio of signal to noise, q. All are shrunk by
+//! (q/(1+q))^0.4, so that the result has slightly more than the spread of the signal, which the
+//! power ½ would give (constrained empirical Bayes: Louis, J. Am. Stat. Assoc. 79 (1984) 393; by
+//! scales as in Abramovich, Sapatinas & Silverman, J. R. Stat. Soc. B 60 (1998) 725). A contrast
+//! far above the noise of its scale is kept (threshold a little above s (2 ln N)^½: Donoho &
+//! Johnstone, Biometrika 81 (1994) 425). Means over halves are kept, and so is the mean of all. The
+//! cost is linear in the length of the list.
 
 /// Excess of mean d²/s² that counts as noise, in its standard errors (2/N)^½.
 const EXCESS: f64 = 1.2;
-/// Power of the share of signal that contrasts are shrunk by, 1; chosen with the trials of docs/trials.md, as all numbers here.
+/// Power of the share of signal that contrasts are shrunk by, 1; chosen with the trials of
+/// docs/trials.md, like all numbers here.
 const SHRINKAGE: f64 = 0.4;
 /// Cap on d²/s² in the mean of a scale: larger contrasts are judged one by one.
 const LARGEST: f64 = 8.0;
 /// Values below this part of the mean are rounding, 1.
 const ROUNDING: f64 = 1e-12;
-/// What the square of a contrast has to exceed beyond 2 ln N, in squares of its standard error, to be kept.
+/// Margin beyond 2 ln N by which the square of a contrast is kept, in squares of its standard
+/// error.
 const MARGIN: f64 = 2.75;
-/// Squares of contrasts so many times the threshold are kept whole; between, a part of them
+/// Squares of contrasts this many times above the threshold are kept whole; between, a part of them
 /// (firm shrinkage: Gao & Bruce, Stat. Sinica 7 (1997) 855).
 const FIRM: f64 = 2.5;
 
-/// The halves of a list, of those the halves, and so on.
+/// The halves of a list, the halves of those, and so on.
 #[derive(Debug)]
 pub(crate) struct Multiscale {
     leaves: usize,
@@ -34,7 +37,7 @@ pub(crate) struct Multiscale {
 
 #[derive(Debug)]
 struct Node {
-    /// Places of both halves: leaves first, then nodes.
+    /// Positions of both halves: leaves first, then nodes.
     halves: [usize; 2],
     /// Their shares of the weight.
     shares: [f64; 2],
@@ -43,7 +46,7 @@ struct Node {
     noise: f64,
 }
 
-/// What is known of a part of the list.
+/// The known values of a part of the list.
 struct Span {
     place: usize,
     weight: f64,
@@ -52,7 +55,7 @@ struct Span {
 }
 
 impl Multiscale {
-    /// Of values with these weights, and variances over their means.
+    /// From values with these weights, and variances over their means.
     pub(crate) fn new(weights: &[f64], noise: &[f64]) -> Self {
         let leaves = weights.len();
         let mut tree = Self { leaves, nodes: Vec::with_capacity(leaves), levels: 0 };
@@ -79,7 +82,7 @@ impl Multiscale {
     /// The values without their noise.
     pub(crate) fn without_noise(&self, values: &[f64]) -> Vec<f64> {
         let mut means = values.to_vec();
-        // Excess over 1 of d²/s², and how many there are, by scale.
+        // Excess over 1 of d²/s², and the number of contrasts, by scale.
         let mut scales = vec![(0.0, 0.0); self.levels];
         for node in &self.nodes {
             let [a, b] = node.halves.map(|half| means[half]);
@@ -103,7 +106,7 @@ impl Multiscale {
             denoised[node.halves[1]] = (mean - node.shares[0] * kept * (a - b)).max(0.0);
         }
         denoised.truncate(self.leaves);
-        // What is left of a dark cell by rounding is nothing.
+        // A dark cell that holds only rounding is zero.
         let faint = ROUNDING * means.last().copied().unwrap_or(0.0);
         denoised.iter_mut().filter(|value| **value < faint).for_each(|value| *value = 0.0);
         denoised
@@ -112,9 +115,9 @@ impl Multiscale {
 
 /// How contrasts of one scale are shrunk.
 struct Scale {
-    /// The factor of all, 1.
+    /// The factor applied to all, 1.
     factor: f64,
-    /// The d²/s² up to which none is kept for itself.
+    /// The d²/s² up to which no contrast is kept individually.
     threshold: f64,
 }
 
@@ -126,7 +129,7 @@ impl Scale {
         Self { factor, threshold: MARGIN + 2.0 * count.ln() }
     }
 
-    /// The part of a contrast with this square that is kept.
+    /// The fraction of a contrast with this square that is kept.
     fn keeps(&self, square: f64, variance: f64) -> f64 {
         if variance <= 0.0 {
             return 1.0;

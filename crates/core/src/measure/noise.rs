@@ -1,4 +1,4 @@
-//! Counts drawn anew, to learn how far a statistic of a map is scattered by noise.
+//! Redrawn counts, which show how far noise scatters a statistic of a map.
 
 use crate::rng::{Dimension, Sampler};
 use statrs::distribution::{ContinuousCDF, Normal};
@@ -6,7 +6,7 @@ use statrs::distribution::{ContinuousCDF, Normal};
 /// Seed and stream: the same readings always give the same measures.
 const SEED: u64 = 0x6d65_6173;
 const STREAM: u64 = 0;
-/// From so many counts on, their number is drawn from the normal distribution.
+/// From this many counts on, their number is drawn from the normal distribution.
 const MANY: f64 = 25.0;
 
 /// A stream of counts.
@@ -29,7 +29,7 @@ impl Noise {
     /// A standard normal number.
     pub(crate) fn normal(&mut self) -> f64 {
         let [u, _] = self.sampler.pair(Dimension::Resampling);
-        // In the middle of its 2^-53: neither 0 nor 1.
+        // In the middle of its interval of 2^-53: neither 0 nor 1.
         self.normal.inverse_cdf(u + 0.5 / (1u64 << 53) as f64)
     }
 

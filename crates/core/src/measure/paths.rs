@@ -1,34 +1,34 @@
-//! How the light came to a sensor: how many interfaces it met, and by which faces.
+//! How the light reached a sensor: how many interfaces it met, and at which faces.
 
 use crate::measure::evidence::Evidence;
 use crate::scene::{Scene, SensorId};
 use crate::transport::{ClassSum, Loss, Trail};
 use serde::Serialize;
 
-/// Depths from here on share a bin with others: one bin for each doubling.
+/// Depths from here on share bins: one bin for each doubling.
 const SINGLE_DEPTHS: usize = 1024;
-/// Path classes that are told one by one, for each sensor.
+/// Path classes reported individually, for each sensor.
 const CLASSES: usize = 20;
 
-/// How the light came to a sensor.
+/// How the light reached a sensor.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SensorPaths {
     /// Name of the sensor.
     pub sensor: String,
-    /// Flux by the number of interfaces met, from none up to the deepest that brought any. A table of its own
-    /// (`SENSOR.bounces.csv`), and no part of the record for programs.
+    /// Flux by the number of interfaces met, from zero to the deepest with any flux. It is a table
+    /// of its own (`SENSOR.bounces.csv`) and not part of the machine-readable record.
     #[serde(skip)]
     pub depths: Vec<DepthBin>,
-    /// The strongest path classes, in descending order, and all others as one: a sample of the photons that came to the
-    /// sensor, shares without error bars.
+    /// The strongest path classes, in descending order, and all others as one: a sample of the
+    /// photons that reached the sensor, as shares without error bars.
     pub classes: Vec<PathClass>,
-    /// What was lost of the gather paths from the sensor; `None` where nothing was.
+    /// Losses of the gather paths from the sensor; `None` where there are none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lost: Option<LostPaths>,
 }
 
-/// Gather paths that ended before their end, by throughput, as shares of all that were drawn, those included that miss
-/// the sensor or its aim: nobody knows what they would have met.
+/// Gather paths that ended early, by throughput, as shares of all that were drawn, including those
+/// that miss the sensor or its aim. What they would have met is unknown.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct LostPaths {
     /// Cut by the bounce limit, 1.
@@ -40,9 +40,9 @@ pub struct LostPaths {
 /// Flux of the paths that met some number of interfaces.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DepthBin {
-    /// Least number of interfaces.
+    /// Smallest number of interfaces.
     pub from: u64,
-    /// Greatest number of interfaces.
+    /// Largest number of interfaces.
     pub to: u64,
     /// Mean flux, lm or W.
     pub flux: f64,
@@ -50,12 +50,12 @@ pub struct DepthBin {
     pub std_error: f64,
 }
 
-/// Paths that met the same faces in the same order, the same step in a row counted once.
+/// Paths that met the same faces in the same order, with repeats of a step counted once.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PathClass {
     /// The steps.
     pub steps: Vec<PathStep>,
-    /// Whether the steps are all there are.
+    /// Whether the steps are complete.
     pub extent: Extent,
     /// Share of the sensor's flux, 1.
     pub share: f64,
@@ -76,21 +76,21 @@ pub struct PathStep {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Action {
-    /// It went back.
+    /// Light was reflected.
     Reflected,
-    /// It went through.
+    /// Light was transmitted.
     Transmitted,
 }
 
-/// Whether the steps of a class are all there are.
+/// Whether the steps of a class are complete.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Extent {
-    /// They are.
+    /// They are complete.
     Whole,
     /// Only the first steps are kept.
     CutOff,
-    /// These are all the weaker classes together.
+    /// All the weaker classes together.
     Others,
 }
 
@@ -146,7 +146,7 @@ pub fn strongest(classes: &[PathClass], count: usize) -> Vec<PathClass> {
     kept
 }
 
-/// Least and greatest depth of a bin of the histogram.
+/// Smallest and largest depth of a bin of the histogram.
 fn depths_of_bin(bin: usize) -> (u64, u64) {
     if bin < SINGLE_DEPTHS {
         return (bin as u64, bin as u64);

@@ -10,11 +10,11 @@ use crate::scene::Grid;
 use glam::DVec2;
 use std::f64::consts::TAU;
 
-/// Middles of three equal fields, as parts of the width.
+/// Middles of three equal fields, as fractions of the width.
 const FIELDS: [f64; 3] = [1.0 / 6.0, 0.5, 5.0 / 6.0];
-/// Corner points, as parts of the width.
+/// Corner points, as fractions of the width.
 const CORNERS: [f64; 2] = [0.1, 0.9];
-/// Nearer than this to a line between cells, in cells, a point lies on it.
+/// A point nearer than this to a line between cells, in cells, lies on it.
 const ON_LINE: f64 = 1e-9;
 /// With fewer columns or rows than this, neighbouring points would read the same cells.
 const MIN_CELLS: usize = 3;
@@ -40,14 +40,14 @@ pub(crate) fn center(grid: &Grid) -> Vec<usize> {
     cells_at(grid, DVec2::splat(0.5))
 }
 
-/// The cells at all pairs of places; `None` if one of them is outside.
+/// The cells at all pairs of positions; `None` if one of them is outside.
 fn at_all(grid: &Grid, places: &[f64]) -> Option<Vec<Vec<usize>>> {
     let pairs = places.iter().flat_map(|&y| places.iter().map(move |&x| DVec2::new(x, y)));
     let points: Vec<_> = pairs.map(|place| cells_at(grid, place)).collect();
     points.iter().all(|cells| !cells.is_empty()).then_some(points)
 }
 
-/// The cells that touch a place, given as parts of width and height; none outside the grid.
+/// The cells that touch a position, given as fractions of width and height; none outside the grid.
 fn cells_at(grid: &Grid, place: DVec2) -> Vec<usize> {
     match grid {
         Grid::Cartesian { nu, nv, .. } => {
@@ -75,7 +75,7 @@ fn cells_at(grid: &Grid, place: DVec2) -> Vec<usize> {
     }
 }
 
-/// The bins of unit width that touch a place.
+/// The bins of unit width that touch a position.
 fn bins_at(place: f64, bins: usize) -> Vec<usize> {
     let low = (place - ON_LINE).floor().max(0.0) as usize;
     let high = (place + ON_LINE).floor().max(0.0) as usize;

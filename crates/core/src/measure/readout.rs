@@ -1,4 +1,5 @@
-//! What is read off the maps of a sensor: extremes, uniformity, the middle, and single cells and rings by name.
+//! The values read from the maps of a sensor: extremes, uniformity, the middle, and single cells
+//! and rings by name.
 
 use crate::measure::cells::SensorCells;
 use crate::measure::counted::Noisy;
@@ -9,10 +10,10 @@ use crate::measure::{Measure, Status, points};
 use crate::scene::{Grid, Seeing, SensorId, SurfaceSensor};
 use indexmap::IndexMap;
 
-/// Cells and rings have names of their own up to this number.
+/// Cells and rings have their own names up to this number.
 const NAMED_CELLS: usize = 100;
 
-/// What is read off the maps of a sensor, by the last part of the dotted names.
+/// The values read from the maps of a sensor, by the last part of their dotted names.
 pub(crate) fn measures(
     evidence: &Evidence<'_>,
     id: SensorId,
@@ -47,7 +48,7 @@ fn summary_measures(
     let summary = &map.summary;
     let quantity = &map.quantity;
     match seeing {
-        // Among the totals.
+        // Included in the totals.
         Seeing::All => {}
         Seeing::Views(_) | Seeing::Pixels(_) => {
             add(&format!("{quantity}_avg"), of(&summary.all.avg, &map.unit));
@@ -92,7 +93,7 @@ fn cell_measures(
     }
 }
 
-/// A cell as a measure; one that counted nothing is known to one count.
+/// A cell as a measure; where nothing was counted, its error is one count.
 fn cell_measure(evidence: &Evidence<'_>, map: &SensorMap, cell: Noisy) -> Measure {
     let status = counted(cell.value, cell.std_error);
     let std_error = if status == Status::NoSignal { cell.count } else { cell.std_error };

@@ -11,10 +11,11 @@ pub struct Measure {
     /// The value, in `unit`.
     #[serde(deserialize_with = "null_is_infinite")]
     pub value: f64,
-    /// Standard error of the value, in `unit`; infinite where nothing is known about it.
+    /// Standard error of the value, in `unit`; infinite where it is unknown.
     #[serde(deserialize_with = "null_is_infinite")]
     pub std_error: f64,
-    /// How far off the value may be on top of the noise, in `unit`; `None` for unbiased estimates.
+    /// Possible bias of the value, in addition to the noise, in `unit`; `None` for unbiased
+    /// estimates.
     pub bias: Option<f64>,
     /// Unit, such as `lm`; `1` for ratios.
     pub unit: String,
@@ -24,7 +25,7 @@ pub struct Measure {
     pub paths: u64,
     /// How it was estimated.
     pub estimator: Estimator,
-    /// Whether value and error can be relied on.
+    /// Whether value and error are reliable.
     pub status: Status,
 }
 
@@ -33,11 +34,11 @@ fn null_is_infinite<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D
     Ok(Option::deserialize(deserializer)?.unwrap_or(f64::INFINITY))
 }
 
-/// Whether a value and its error can be relied on.
+/// Whether a value and its error are reliable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
-    /// Both can.
+    /// Both are reliable.
     Ok,
     /// Nothing was counted. The error of a flux is then the flux of one path: three of them are the 95 % upper limit
     /// ("rule of three", Hanley & Lippman-Hand, JAMA 249 (1983) 1743).
@@ -46,14 +47,14 @@ pub enum Status {
     TooFew,
     /// An extreme of a map that is mostly noise: the correction for it exceeds a tenth of the value.
     NoiseLimited,
-    /// Nested windows of a gathered value agree within their noise: the value is that of the smallest, and a bias that
-    /// goes with the square of the window is below the error told.
+    /// Nested windows of a gathered value agree within their noise. The value is that of the
+    /// smallest, and a bias that scales with the square of the window is below the reported error.
     BiasInNoise,
-    /// Nested windows of a gathered value differ, and not as the square of the window: the value is that of the
-    /// smallest, and the bias told is no bound.
+    /// Nested windows of a gathered value differ, but not as the square of the window. The value is
+    /// that of the smallest, and the reported bias is not a bound.
     BiasNotResolved,
-    /// Photons of the same run brought the sensor more light of a source than its estimator found, by more than four
-    /// errors: its paths hardly ever meet that source.
+    /// Photons of the same run found more light from a source on the sensor than its estimator did,
+    /// by more than four errors: its paths hardly ever meet that source.
     Contradicted,
 }
 
@@ -88,12 +89,12 @@ impl Status {
 }
 
 impl Measure {
-    /// Standard error and bias together, in `unit`.
+    /// Combined standard error and bias, in `unit`.
     pub fn total_error(&self) -> f64 {
         self.std_error.hypot(self.bias.unwrap_or(0.0))
     }
 
-    /// Total error over value, 1; infinite where there is no value or no error bar to rely on.
+    /// Total error over value, 1; infinite where there is no value or no reliable error bar.
     pub fn relative_error(&self) -> f64 {
         match self.status {
             Status::Ok | Status::BiasInNoise if self.value != 0.0 && self.value.is_finite() => {

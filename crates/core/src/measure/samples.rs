@@ -117,7 +117,8 @@ fn surface(grid: Grid, area_in: impl Fn(ChartRect) -> f64) -> SurfaceSensor {
     }
 }
 
-/// Readings of some batches of 1000 paths, each filled in by `fill`, which knows the number of the batch.
+/// Readings of some batches of 1000 paths, each filled in by `fill`, which receives the number of
+/// the batch.
 pub(crate) fn readings(
     scene: &Scene,
     batches: u64,

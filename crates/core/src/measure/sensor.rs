@@ -1,4 +1,4 @@
-//! All measures of one sensor, by whatever estimator found them.
+//! All measures of one sensor, from any estimator.
 
 use crate::measure::evidence::{Evidence, MIN_LIT_GROUPS};
 use crate::measure::gathered::{GatheredFacts, Judged, judged};
@@ -11,16 +11,16 @@ use crate::scene::{Scene, SensorId, SensorKind};
 use crate::transport::Findings;
 use indexmap::IndexMap;
 
-/// What is measured of a sensor.
+/// The measures of a sensor.
 pub(crate) struct SensorMeasures {
-    /// By the last part of their dotted names.
+    /// Measures by the last part of their dotted names.
     pub(crate) values: IndexMap<String, Measure>,
-    /// One, or one for each view.
+    /// One map, or one for each view.
     pub(crate) maps: Vec<SensorMap>,
-    /// Of a goniometer.
+    /// Table of a goniometer.
     pub(crate) intensity: Option<IntensityTable>,
     pub(crate) paths: SensorPaths,
-    /// Of a gathered sensor.
+    /// Facts about a gathered sensor.
     pub(crate) gathered: Option<GatheredFacts>,
 }
 
@@ -56,7 +56,7 @@ pub(crate) fn measures(scene: &Scene, findings: &Findings, id: SensorId) -> Sens
     }
 }
 
-/// One measure of a sensor, at no more cost than it needs: maps are not looked at for its flux.
+/// One measure of a sensor, at no more cost than it needs: its flux needs no maps.
 pub(crate) fn value_of(
     scene: &Scene,
     findings: &Findings,
@@ -80,7 +80,7 @@ pub(crate) fn value_of(
     }
 }
 
-/// What single groups of batches say of a measure that follows from scalars alone.
+/// Values, in single groups of batches, of a measure that follows from scalars alone.
 pub(crate) fn replicates(
     scene: &Scene,
     findings: &Findings,
@@ -101,17 +101,18 @@ pub(crate) fn replicates(
     Some(Replicates::new(value, &without.collect::<Option<Vec<_>>>()?))
 }
 
-/// Standard errors of both by which photons have to find more than gather paths to contradict them.
+/// Standard errors of both by which photons must find more than gather paths to contradict them.
 const CONTRADICTED: f64 = 4.0;
 
-/// What rounding may do to a flux, relative to it.
+/// Possible relative rounding of a flux.
 const ROUNDING: f64 = 1e-9;
 
-/// Whether photons have brought a sensor more light of a source than gather paths, which all but never meet it, have found.
+/// Whether photons found more light of a source on a sensor than gather paths, which almost never
+/// meet it.
 fn is_contradicted(evidence: &Evidence<'_>, id: SensorId) -> bool {
     match evidence.estimator() {
         Estimator::Backward => {}
-        // Photons are among what was counted, or its bias is told by other means.
+        // Photons are included in the count, or its bias is reported by other means.
         Estimator::Forward | Estimator::Mix | Estimator::Gather | Estimator::Mis => return false,
     }
     flux::flux_slots(evidence, id).iter().any(|&slot| {
@@ -129,11 +130,11 @@ fn distrust(measure: &mut Measure) {
     }
 }
 
-/// Which readings speak for a sensor.
+/// The readings that give the values of a sensor.
 enum Spoken<'a> {
-    /// One set.
+    /// One set of readings.
     Plainly(Evidence<'a>),
-    /// Those of nested windows.
+    /// Readings within nested windows.
     InWindows(Judged<'a>),
 }
 

@@ -1,13 +1,13 @@
-//! A curve over rings about the pole, averaged over as many rings as its noise asks for.
+//! A curve over rings about the pole, averaged over as many rings as its noise requires.
 
 use crate::measure::counted::Sample;
 
-/// How many rings to each side every ring of a curve is averaged over.
+/// The number of rings on each side over which each ring of a curve is averaged.
 #[derive(Debug, Clone)]
 pub(crate) struct Smoothing(Vec<usize>);
 
 impl Smoothing {
-    /// As few rings as hold so many counts of a line, but at most so many to each side.
+    /// As few rings as contain this many counts of a line, limited on each side.
     pub(crate) fn of(sample: &Sample, line: &[f64], counts: f64, most: usize) -> Self {
         let counts_of = |ring: usize| match (sample.counts[ring], line[ring]) {
             (count, value) if count > 0.0 => value / count,
@@ -48,8 +48,9 @@ impl Smoothing {
     }
 }
 
-/// Rings at most `window` away. Beyond its ends a line is mirrored: exact for a curve that is the same all round, and an
-/// approximation about γ = 180° for a line of two different halves, which would join there.
+/// Rings at most `window` away. A line is mirrored beyond its ends. That is exact for a curve that
+/// is the same all round, and an approximation about γ = 180° for a line with two different halves,
+/// which would join there.
 fn around(rings: usize, ring: usize, window: usize) -> impl Iterator<Item = usize> {
     let window = window.min(rings);
     (rings + ring - window..=rings + ring + window).map(move |at| mirrored(rings, at))
@@ -62,7 +63,7 @@ fn outermost(rings: usize, ring: usize, window: usize) -> impl Iterator<Item = u
     both.into_iter().take(if window == 0 { 1 } else { 2 }).map(move |at| mirrored(rings, at))
 }
 
-/// The ring at a place of a line mirrored at its ends, counted from `rings` before the first.
+/// The ring at a position of a line mirrored at its ends, counted from `rings` before the first.
 fn mirrored(rings: usize, at: usize) -> usize {
     let at = at % (2 * rings);
     if at < rings { rings - 1 - at } else { at - rings }

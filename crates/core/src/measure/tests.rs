@@ -210,7 +210,7 @@ fn errors_of_a_traced_field_are_what_they_say() {
         }
     }
     for (name, square) in squares {
-        // Mean square of 40 normal numbers: 1 ± 0.22; extremes are given more room than they need.
+        // Mean square of 40 normal numbers: 1 ± 0.22; extremes get more room than they need.
         let least = if name.contains("min") || name.contains("max") { 0.1 } else { 0.4 };
         assert!(square > least && square < 1.9, "{name}: {square}");
     }
@@ -234,7 +234,7 @@ fn photons_contradict_gather_paths_beyond_noise_and_rounding() {
         let findings = Findings { backward, estimators, ..every_batch(photons) };
         measure(&scene, &findings).values["exit.flux"].status
     };
-    // Seen in a lossless duct, whose sums over both kinds of paths have no noise.
+    // Found in a lossless duct, where sums over both kinds of paths have no noise.
     assert_eq!(status(1.000_000_000_000_000_7, 0.999_999_999_999_971_8), Status::Ok);
     assert_eq!(status(1.001, 1.0), Status::Contradicted);
 }

@@ -1,6 +1,7 @@
-//! How statistics of maps and curves scatter when the same field is counted again and again: their errors and intervals
-//! against their real scatter. The command `LUMIDUCT_TRIALS=1000 cargo test -p lumiduct-core trials -- --nocapture` prints the table
-//! of docs/trials.md.
+//! Scatter of the statistics of maps and curves over repeated counts of the same field: reported
+//! errors and intervals against the real scatter. The command
+//! `LUMIDUCT_TRIALS=1000 cargo test -p lumiduct-core trials -- --nocapture` prints the table of
+//! docs/trials.md.
 
 use crate::measure::angular::sphere_cells;
 use crate::measure::beam::full_angle;
@@ -13,7 +14,7 @@ use std::f64::consts::PI;
 /// A cell of a field: mean and area.
 type Cell = (f64, f64);
 
-/// Trials of a statistic of known true value.
+/// Trials of a statistic with a known true value.
 struct Trials {
     name: String,
     truth: f64,
@@ -26,7 +27,7 @@ struct Trial {
     interval: [f64; 2],
 }
 
-/// What many trials say.
+/// Summary of many trials.
 #[derive(Debug)]
 struct Summary {
     mean: f64,
@@ -34,7 +35,7 @@ struct Summary {
     scatter: f64,
     /// Mean standard error over the scatter.
     error: f64,
-    /// Share of intervals that hold the truth.
+    /// Share of intervals that contain the truth.
     held: f64,
     /// Mean width of the intervals over that of the middle 95 % of the values.
     width: f64,
@@ -71,7 +72,7 @@ impl Trials {
         )
     }
 
-    /// Asserts that errors and intervals are what they say, as well as so many trials can tell.
+    /// Asserts that errors and intervals are correct, as far as this many trials can show.
     fn assert_calibrated(&self) {
         let Summary { error, held, width, .. } = self.summary();
         let trials = self.found.len() as f64;
@@ -91,7 +92,7 @@ fn place(cell: usize, across: usize) -> [f64; 2] {
     [cell % across, cell / across].map(|at| (at as f64 + 0.5) / across as f64 * 2.0 - 1.0)
 }
 
-/// Places of the cells of a square grid along a curve that fills it.
+/// Positions of the cells of a square grid along a curve that fills it.
 fn square(across: usize) -> Vec<[f64; 2]> {
     let bits =
         |at: usize, from: u32| (0..8).map(|bit| (at >> (2 * bit + from) & 1) << bit).sum::<usize>();
@@ -141,7 +142,7 @@ fn truth(field: &[Cell]) -> [f64; 3] {
     [least / mean, least / most, sum(&|value| (value - mean).powi(2)).sqrt() / mean]
 }
 
-/// Cells as if counted, so many counts in an average cell.
+/// Cells as if counted, with this many counts in an average cell.
 pub(crate) fn counted(field: &[Cell], counts: f64, noise: &mut Noise) -> Vec<Part> {
     let whole: f64 = field.iter().map(|(mean, weight)| mean * weight).sum();
     let one = whole / (counts * field.len() as f64);
@@ -176,12 +177,12 @@ fn field_trials(name: &str, field: &[Cell], counts: f64, trials: usize) -> [Tria
     })
 }
 
-/// Which curve of a goniometer is read.
+/// The curve of a goniometer that is read.
 #[derive(Clone, Copy, PartialEq)]
 enum Curve {
     /// The mean over C.
     Mean,
-    /// That in a plane, of two of 24 sectors.
+    /// The curve in a plane, from two of 24 sectors.
     Plane,
 }
 
@@ -302,8 +303,8 @@ fn errors_and_intervals_of_counted_fields_are_what_they_say() {
             }
         }
         Err(_) => {
-            // docs/trials.md has these two with the others: noise hides the smallest beside the largest, and
-            // a plane of few counts has a wide interval.
+            // docs/trials.md lists these two with the others: noise hides the smallest next to the
+            // largest, and a plane with few counts has a wide interval.
             let is_beyond = |one: &&Trials| {
                 one.name.starts_with("20 rings, hot 10 m")
                     || one.name.starts_with("cos^5 plane, 90 rings 3000 field")

@@ -1,8 +1,9 @@
-//! How even a field is: extremes over average, extremes over each other, and the coefficient of variation.
+//! Uniformity of a field: extremes over average, extremes over each other, and the coefficient of
+//! variation.
 //!
-//! All of these are biased by noise and corrected for it ([`crate::measure::extremes`] tells how), all depend on the
-//! size of the cells, and all are given with an interval for 95 of 100 cases. This module knows values and areas, no
-//! sensors.
+//! All of these are biased by noise and corrected for it (see [`crate::measure::extremes`]), depend
+//! on the size of the cells, and have an interval for 95 of 100 cases. This module knows values and
+//! areas, not sensors.
 
 use crate::measure::counted::Part;
 use crate::measure::evidence::{Evidence, MIN_COUNTS, counted, enough_batches};
@@ -21,18 +22,19 @@ const HIGH: usize = 1;
 /// A statistic of a map, corrected for noise.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Statistic {
-    /// Corrected value, in the unit of the map or 1. Where the status is `noise_limited`, the bound that the true value
-    /// keeps: smallest values and their ratios are at least so large, largest values at most.
+    /// Corrected value, in the unit of the map or 1. Where the status is `noise_limited`, a bound
+    /// of the true value: a lower bound for smallest values and their ratios, an upper bound for
+    /// largest values.
     pub value: f64,
     /// Standard error of the value.
     pub std_error: f64,
-    /// How far off the corrected value may be on top of the noise; `None` where it is unbiased.
+    /// Possible bias of the corrected value, in addition to the noise; `None` where it is unbiased.
     pub bias: Option<f64>,
-    /// Holds the true value in 95 of 100 cases.
+    /// Contains the true value in 95 of 100 cases.
     pub interval: [f64; 2],
-    /// The correction that is part of the value: the value as read is `value - correction`.
+    /// The correction included in the value: the value as read is `value - correction`.
     pub correction: f64,
-    /// Whether all this can be relied on.
+    /// Whether these values are reliable.
     pub status: Status,
 }
 
@@ -61,26 +63,27 @@ pub struct Uniformity {
     pub max_min: Statistic,
 }
 
-/// How even a map is.
+/// Uniformity of a map.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct UniformitySummary {
-    /// Parts of the sensor that the extremes are taken of: cells with at least half of their own area on it, and cells
-    /// that the rim cuts to less, as many together as make half a cell.
+    /// Number of parts of the sensor that the extremes use: cells with at least half of their own
+    /// area on it, and groups of cells cut to less by the rim, merged until they make half a cell.
     pub cells: usize,
-    /// Size of a cell in the unit of the map's axes: width and height; of rings, their width and the mean length of an
-    /// arc; of an image, that of a pixel in its middle.
+    /// Size of a cell in the unit of the map's axes: width and height; for rings, their width and
+    /// the mean length of an arc; for an image, the size of a pixel in its middle.
     pub cell_size: [f64; 2],
     /// Over all these cells; the average is over the whole sensor.
     pub all: Uniformity,
     /// Standard deviation over mean by area, over the whole sensor, 1.
     pub cv: Statistic,
-    /// Over the middles of 3 x 3 equal fields; `None` where one of them is not on the sensor or cells are too few.
+    /// Over the middles of 3 x 3 equal fields; `None` where one of them is not on the sensor or
+    /// there are too few cells.
     pub nine: Option<Uniformity>,
     /// Over these nine and four points near the corners.
     pub thirteen: Option<Uniformity>,
 }
 
-/// Values over a surface with what is known of their noise.
+/// Values over a surface with their noise.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Field<'a> {
     /// The values that count for the extremes, with their areas; neighbours in the list are neighbours on the surface.
@@ -89,7 +92,7 @@ pub(crate) struct Field<'a> {
     pub(crate) avg: [f64; 2],
     /// Counts in an average cell, 1.
     pub(crate) counts: f64,
-    /// Batches behind them.
+    /// Number of batches.
     pub(crate) batches: u64,
 }
 
@@ -104,7 +107,7 @@ impl Field<'_> {
         }
     }
 
-    /// Of the largest value alone: it may be well known where most of a field is dark.
+    /// Status of the largest value alone: it may be well known where most of a field is dark.
     fn status_of_largest(&self, status: Status) -> Status {
         let reads = self.cells.iter().map(|part| part.read);
         match reads.max_by(|a, b| a.value.total_cmp(&b.value)) {
@@ -128,7 +131,7 @@ pub(crate) fn uniformity(field: &Field<'_>) -> (Uniformity, Statistic) {
         return (dark, level);
     }
     if let [_] = field.cells {
-        // One cell is all three, however noisy it is.
+        // A single cell is all three, however noisy it is.
         let (value, std_error, interval) = (1.0, 0.0, [1.0, 1.0]);
         let even = Statistic { value, std_error, interval, ..avg };
         let one =
@@ -171,8 +174,8 @@ fn average(field: &Field<'_>, status: Status) -> Statistic {
     }
 }
 
-/// A corrected statistic; where the correction is large against `scale`, noise hides the value, and a bound of the
-/// interval stands in its place.
+/// A corrected statistic. Where the correction is large against `scale`, noise hides the value, and
+/// it is replaced by a bound of the interval.
 fn extreme(found: &Extreme, end: usize, scale: f64, status: Status) -> Statistic {
     let is_hidden = (found.value - found.raw).abs() > NOISE_LIMIT * scale;
     let value = if is_hidden { found.interval[end] } else { found.value };
@@ -187,7 +190,7 @@ fn extreme(found: &Extreme, end: usize, scale: f64, status: Status) -> Statistic
 }
 
 impl Statistic {
-    /// Nothing is known but an upper limit.
+    /// A statistic known only by an upper limit.
     fn unknown(limit: f64) -> Self {
         Self {
             value: 0.0,
@@ -199,12 +202,12 @@ impl Statistic {
         }
     }
 
-    /// With a status at least as bad.
+    /// The same with a status at least as bad.
     fn worst(self, status: Status) -> Self {
         Self { status: self.status.worst(status), ..self }
     }
 
-    /// One over it.
+    /// Its reciprocal.
     fn inverse(self) -> Self {
         let value = 1.0 / self.value;
         if !value.is_finite() {

@@ -1,22 +1,24 @@
 //! What a face does to a gather path, which follows light backwards and carries basic radiance L* = L/n².
 //!
-//! A photon of direction i scatters into o with the density `f(i→o) cos θ_o` of its finish. The gather path arrives
-//! along -o and has to choose i: `L*_o = ∫ (n_i²/n_o²) f(i→o) cos θ_i L*_i dω_i`, and the factor of a drawn i is the
-//! integrand without `L*_i` over its density (Veach, Robust Monte Carlo Methods for Light Transport Simulation, 1997, section 5.2,
-//! there for L). For the finishes this gives:
+//! A photon of direction i scatters into o with the density `f(i→o) cos θ_o` of its finish. The
+//! gather path arrives along -o and must choose i: `L*_o = ∫ (n_i²/n_o²) f(i→o) cos θ_i L*_i dω_i`,
+//! and the factor of a drawn i is the integrand without `L*_i` over its density (Veach, Robust
+//! Monte Carlo Methods for Light Transport Simulation, 1997, section 5.2, there for L). For the
+//! finishes this gives:
 //!
-//! * Smooth: n² cos θ dω is kept by refraction and Fresnel's R and T are the same from both sides. What a photon does,
-//!   the gather path does, without a factor.
-//! * Light that passes without being bent, whatever the indices are, keeps cos θ dω and not n² cos θ dω; and a diffuser
-//!   mixes radiance, not basic radiance. Then `n_i²/n_o²` stays.
-//! * Small facets, and haze between two media: `f/n_o²` is the same both ways, and that is all that is wanted.
-//! * Prism films: every path through the film is smooth interfaces; it is the same both ways, and so is the place of the
-//!   period, which is drawn evenly.
-//! * Gaussian scatter: a photon meets a smooth face or a thin sheet first and the lobe afterwards, so the gather path
-//!   meets the lobe first. It draws the mean direction m of the photon from p(m|o), which costs
-//!   `p(o|m) cos θ_m / (p(m|o) cos θ_o)`, and goes on from m as from a face without scatter. So every photon direction
-//!   that scatters into o is drawn, also through a face that totally reflects the gather path's own direction, and
-//!   nothing is drawn that does not.
+//! * Smooth: refraction conserves n² cos θ dω, and Fresnel's R and T are the same from both sides.
+//!   The gather path does what a photon does, without a factor.
+//! * Light that passes without being bent, whatever the indices are, conserves cos θ dω and not n²
+//!   cos θ dω; and a diffuser mixes radiance, not basic radiance. The factor `n_i²/n_o²` then
+//!   remains.
+//! * Small facets, and haze between two media: `f/n_o²` is the same both ways, which is sufficient.
+//! * Prism films: every path through the film consists of smooth interfaces, so it is the same both
+//!   ways. So is the position in the period, which is drawn evenly.
+//! * Gaussian scatter: a photon meets a smooth face or a thin sheet first and the lobe afterwards,
+//!   so the gather path meets the lobe first. It draws the mean direction m of the photon from
+//!   p(m|o), which costs `p(o|m) cos θ_m / (p(m|o) cos θ_o)`, and continues from m as at a face
+//!   without scatter. So exactly the photon directions that scatter into o are drawn, even through
+//!   a face that totally reflects the gather path's own direction.
 
 use crate::optics::incidence::{choose_side, leaving_normal, specular, straight};
 use crate::optics::scatter::pick;
@@ -32,17 +34,17 @@ mod tests;
 /// The finishes that a gather path meets at a face.
 #[derive(Debug, Clone, Copy)]
 pub struct Faces<'a> {
-    /// Acts on light that arrives from the side from which the gather path comes: on what is reflected.
+    /// Acts on light that arrives from the gather path's side: on reflected light.
     pub own: &'a Bsdf,
-    /// Acts on light that arrives from the other side: on what is transmitted.
+    /// Acts on light that arrives from the other side: on transmitted light.
     pub behind: &'a Bsdf,
 }
 
-/// Sends a gather path on to where its light came from, or ends it where there is none (`None`).
+/// Sends a gather path on toward the origin of its light, or ends it where there is none (`None`).
 ///
-/// `incidence` is that of the gather path: it travels along `dir`, the light it collects leaves along `-dir`, and
-/// `index_to` is that of the medium from which transmitted light came. The `factor` of what is returned is that on
-/// basic radiance; unlike a photon's it can exceed 1.
+/// `incidence` is that of the gather path: it travels along `dir`, the light it collects leaves
+/// along `-dir`, and `index_to` is that of the medium from which transmitted light came. The
+/// returned `factor` applies to basic radiance; unlike a photon's it can exceed 1.
 #[inline]
 pub fn scatter_radiance(
     faces: Faces<'_>,
@@ -108,8 +110,9 @@ fn by_two_finishes(
     Some(Scattered { factor: out.factor * ((reflected + transmitted) / chance), ..out })
 }
 
-/// About the shares of [`shares()`], nowhere 0 where the adjoint is not: scatter of a rough dielectric reaches
-/// directions that are themselves totally reflected, or hardly reflected.
+/// Probabilities close to the shares of [`shares()`], but nowhere 0 where the adjoint is not:
+/// scatter of a rough dielectric reaches directions that are themselves totally reflected, or
+/// hardly reflected.
 fn chances(bsdf: &Bsdf, incidence: &Incidence) -> Shares {
     match bsdf {
         Bsdf::GaussianDielectric { .. } if incidence.index_from != incidence.index_to => {
@@ -120,7 +123,7 @@ fn chances(bsdf: &Bsdf, incidence: &Incidence) -> Shares {
             let reflected = shares(&Bsdf::Smooth, incidence).reflected.clamp(0.1, 0.9);
             Shares { reflected, transmitted: 1.0 - reflected }
         }
-        // Whatever they are, no side is left out.
+        // Whatever the shares are, no side is left out.
         Bsdf::PrismFilm { .. } => Shares { reflected: 0.5, transmitted: 0.5 },
         Bsdf::Mixture(parts) => {
             let mut sum = Shares { reflected: 0.0, transmitted: 0.0 };
@@ -146,8 +149,9 @@ fn chances(bsdf: &Bsdf, incidence: &Incidence) -> Shares {
     }
 }
 
-/// The part of the adjoint that goes to one side: as [`scatter_radiance`], but the factor holds the share of that side.
-/// `bsdf` acts on the light that comes from there: the finish met for reflection, the one behind for transmission.
+/// The part of the adjoint that goes to one side: like [`scatter_radiance`], but the factor
+/// includes the share of that side. `bsdf` acts on the light that comes from there: the finish met
+/// for reflection, the one behind for transmission.
 pub fn scatter_toward(
     bsdf: &Bsdf,
     side: Side,
@@ -187,7 +191,8 @@ pub fn scatter_toward(
             smooth_toward(&Bsdf::Smooth, side, &mean).map(|out| diffused(out, factor))
         }
         Bsdf::PrismFilm { film, face } => {
-            // The light meets the face on its own side, the gather path that on the side it comes from.
+            // The light meets the face on its own side; the gather path meets it on the side it
+            // comes from.
             let met = match side {
                 Side::Reflected => *face,
                 Side::Transmitted => face.opposite(),
@@ -205,8 +210,9 @@ fn smooth_toward(bsdf: &Bsdf, side: Side, incidence: &Incidence) -> Option<Scatt
     (share > 0.0).then(|| specular(dir, share, side))
 }
 
-/// The gather path before it met a lobe: as if it had come along the mean direction of the photons whose scatter it
-/// collects; and the factor `p(o|m) cos θ_m / (p(m|o) cos θ_o)`. `None` along the face, where it has no value.
+/// The gather path before it met a lobe, as if it had come along the mean direction of the photons
+/// that scatter into it, and the factor `p(o|m) cos θ_m / (p(m|o) cos θ_o)`. `None` along the face,
+/// where it has no value.
 fn scattered_from(
     lobe: &Gaussian,
     incidence: &Incidence,
@@ -223,7 +229,8 @@ fn scattered_from(
     Some((inner, exchange * inner.cos() / cos))
 }
 
-/// What passes a face without being bent, or is mixed by a diffuser, keeps radiance and not basic radiance.
+/// Light that passes a face without being bent, or is mixed by a diffuser, conserves radiance and
+/// not basic radiance.
 #[inline]
 fn unrefracted(out: Scattered, incidence: &Incidence) -> Scattered {
     match out.side {

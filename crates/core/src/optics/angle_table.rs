@@ -1,4 +1,5 @@
-//! A value against the angle of incidence, linear between the angles of a table. Knows no finish and no index.
+//! A value against the angle of incidence, linear between the angles of a table. It does not know
+//! finishes or indices.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -30,7 +31,7 @@ impl AngleTable {
         low + (high - low) * ((angle - from) / (to - from)).min(1.0)
     }
 
-    /// The greatest value of all, 1.
+    /// The largest value, 1.
     pub fn greatest(&self) -> f64 {
         self.rows.iter().map(|row| row[1]).fold(f64::NEG_INFINITY, f64::max)
     }

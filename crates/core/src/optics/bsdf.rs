@@ -1,7 +1,8 @@
 //! What a face does to light that meets it.
 //!
-//! A closed set of finishes. Mirrors and total internal reflection draw no random numbers; a dielectric draws one to
-//! choose between the reflected and the refracted part. Everything that a finish does not send on is absorbed by it.
+//! A closed set of finishes. Mirrors and total internal reflection draw no random numbers; a
+//! dielectric draws one to choose between the reflected and the refracted part. A finish absorbs
+//! all light that it does not send on.
 
 use crate::optics::{AngleTable, FilmFace, Gaussian, Haze, Microfacet, PrismFilm};
 
@@ -24,9 +25,9 @@ pub enum Bsdf {
         /// Imaginary part of the index, positive.
         k: f64,
     },
-    /// Takes everything.
+    /// Absorbs all light.
     Absorber,
-    /// Nothing is there: light goes straight on.
+    /// No interface: light goes straight on.
     Open,
     /// Diffuse reflection and transmission by Lambert's law.
     Lambertian {
@@ -56,8 +57,8 @@ pub enum Bsdf {
         /// Share that goes straight on.
         transmittance: AngleTable,
     },
-    /// A coated interface of two media: it reflects as the table says, by the angle in the medium of the lower index,
-    /// and refracts the rest; total reflection stays.
+    /// A coated interface of two media: it reflects as the table says, by the angle in the medium
+    /// of the lower index, and refracts the rest; total reflection is unchanged.
     Coated {
         /// Share that is mirrored.
         reflectance: AngleTable,

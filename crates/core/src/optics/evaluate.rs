@@ -1,8 +1,9 @@
 //! The value of a finish's distribution function, for estimates that join two given directions.
 //!
-//! Photons that arrive with flux `Φ_p` on an area ΔA make there the radiance `L(o) = Σ f(i_p→o) Φ_p / ΔA` (Jensen,
-//! Realistic Image Synthesis Using Photon Mapping, 2001, chapter 7). Discrete directions have no finite value and count
-//! as 0 here. It knows nothing of a face's two finishes: the one that the photons meet is to be asked.
+//! Photons that arrive with flux `Φ_p` on an area ΔA give the radiance `L(o) = Σ f(i_p→o) Φ_p / ΔA`
+//! (Jensen, Realistic Image Synthesis Using Photon Mapping, 2001, chapter 7). Discrete directions
+//! have no finite value and count as 0 here. This module does not know a face's two finishes:
+//! evaluate the one that the photons meet.
 
 use crate::optics::incidence::{leaving_normal, straight};
 use crate::optics::smooth::smooth_direction;
@@ -10,9 +11,10 @@ use crate::optics::{Bsdf, Gaussian, Incidence, Side, shares};
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// The bidirectional distribution function f(i→o), in 1/sr, of a finish for a photon that arrives as `incidence` says
-/// and leaves along the unit vector `out`: reflected on the side of the normal, otherwise transmitted. Its discrete
-/// part is left out: 0 for specular finishes. `f cos θ_o dω_o` is the share of the photon's flux that leaves into `dω_o`.
+/// The bidirectional distribution function f(i→o), in 1/sr, of a finish for a photon that arrives
+/// with `incidence` and leaves along the unit vector `out`: reflected on the side of the normal,
+/// otherwise transmitted. Its discrete part is left out: 0 for specular finishes. `f cos θ_o dω_o`
+/// is the share of the photon's flux that leaves into `dω_o`.
 pub fn evaluate(bsdf: &Bsdf, incidence: &Incidence, out: DVec3) -> f64 {
     let cos = out.dot(incidence.normal);
     let side = if cos > 0.0 { Side::Reflected } else { Side::Transmitted };

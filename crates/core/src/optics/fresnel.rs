@@ -4,7 +4,8 @@
 
 use glam::DVec3;
 
-/// Reflectances for light polarised across (s) and in (p) the plane of incidence; 1.
+/// Reflectances for light polarised perpendicular (s) and parallel (p) to the plane of incidence;
+/// 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Polarised {
     /// Reflectance of s-polarised light.
@@ -38,12 +39,12 @@ pub fn dielectric(cos_i: f64, n_i: f64, n_t: f64) -> Polarised {
     }
 }
 
-/// As [`dielectric`], for a refracted angle that is known.
+/// Like [`dielectric`], for a known refracted angle.
 #[inline]
 pub fn dielectric_refracting(cos_i: f64, cos_t: f64, n_i: f64, n_t: f64) -> Polarised {
     let (s_less, s_sum) = (n_i * cos_i - n_t * cos_t, n_i * cos_i + n_t * cos_t);
     let (p_less, p_sum) = (n_t * cos_i - n_i * cos_t, n_t * cos_i + n_i * cos_t);
-    // One division for both: a bounce waits for it.
+    // One division for both, since it is on the critical path of a bounce.
     let inverse = 1.0 / (s_sum * p_sum);
     let (s, p) = (s_less * p_sum * inverse, p_less * s_sum * inverse);
     Polarised { s: s * s, p: p * p }
@@ -93,8 +94,9 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Transmittance of a clear plate of index 1.49 at an angle of incidence, with all orders: (1 - R)/(1 + R), the mean of both
-    /// polarisations, and that of light which is unpolarised at each of the two faces.
+    /// Transmittance of a clear plate of index 1.49 at an angle of incidence, with all orders: (1 -
+    /// R)/(1 + R), the mean of both polarisations, and the value for light that is unpolarised at
+    /// each of the two faces.
     fn plate(cos_i: f64) -> [f64; 2] {
         let through = |r: f64| (1.0 - r) / (1.0 + r);
         let face = dielectric(cos_i, 1.0, 1.49);
@@ -105,7 +107,7 @@ mod tests {
     fn what_the_unpolarised_mean_costs_is_what_the_docs_say() {
         let [kept, mean] = plate(75f64.to_radians().cos());
         assert!((kept / mean - 1.036).abs() < 5e-4, "{kept}, {mean}");
-        // Under Lambertian light, as a rod with two polished ends: the mean over sin²θ.
+        // Under Lambertian light, like a rod with two polished ends: the mean over sin²θ.
         let cos = |i: u32| (1.0 - (f64::from(i) + 0.5) / 1e4).sqrt();
         let [kept, mean] = [0, 1].map(|way| (0..10_000).map(|i| plate(cos(i))[way]).sum::<f64>());
         assert!((kept / mean - 1.007).abs() < 5e-4, "{kept}, {mean}");

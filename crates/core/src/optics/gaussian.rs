@@ -1,8 +1,9 @@
 //! Gaussian scatter about a mean direction, normalised above the horizon.
 //!
-//! The density about the mean direction m is p(o) = exp(-θ²/2σ²) / N(m), θ the angle between o and m, over the half
-//! space of m; N keeps the integral at 1 also where the horizon cuts the lobe. The shape exp(-θ²/2σ²) is symmetric in
-//! o and m, so p(o|i) N(i) = p(i|o) N(o): the adjoint of a path needs only the two norms and cosines.
+//! The density about the mean direction m is p(o) = exp(-θ²/2σ²) / N(m), θ the angle between o and
+//! m, over the half space of m; N keeps the integral at 1 even where the horizon cuts the lobe. The
+//! shape exp(-θ²/2σ²) is symmetric in o and m, so p(o|i) N(i) = p(i|o) N(o): the adjoint of a path
+//! needs only the two norms and cosines.
 
 use crate::rng::{Dimension, Numbers, Sampler};
 use glam::DVec3;
@@ -11,7 +12,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Nodes of the table of norms over the elevation of the mean direction.
 const NODES: usize = 513;
-/// The horizon cuts nothing worth counting (4e-10) beyond this many σ.
+/// The horizon cuts a negligible part (4e-10) beyond this many σ.
 const REACH: f64 = 6.5;
 
 /// A Gaussian lobe of directions.
@@ -90,12 +91,14 @@ fn norm(sigma: f64, elevation: f64) -> f64 {
     let integrand = |theta: f64| {
         (-0.5 * (theta / sigma).powi(2)).exp() * theta.sin() * azimuth_above(theta, elevation)
     };
-    // The horizon begins to cut the circle of angle θ at θ = elevation and leaves nothing of it from π - elevation on.
+    // The horizon starts to cut the circle of angle θ at θ = elevation, and nothing is left from π
+    // - elevation on.
     let cut = elevation.min(end);
     simpson(0.0, cut, integrand) + simpson(cut, (PI - elevation).min(end).max(cut), integrand)
 }
 
-/// Simpson's rule over `from..to`; the ends are taken from within, where a kink lies on them.
+/// Simpson's rule over `from..to`; the ends are evaluated slightly inside, where a kink lies on
+/// them.
 fn simpson(from: f64, to: f64, f: impl Fn(f64) -> f64) -> f64 {
     if to.next_down() <= from.next_up() {
         return 0.0;
@@ -107,7 +110,7 @@ fn simpson(from: f64, to: f64, f: impl Fn(f64) -> f64) -> f64 {
     (at(0) + inner + at(steps)) * h / 3.0
 }
 
-/// How much azimuth of the circle at angle `theta` about the mean lies above the horizon, rad.
+/// Azimuth range of the circle at angle `theta` about the mean that lies above the horizon, rad.
 fn azimuth_above(theta: f64, elevation: f64) -> f64 {
     let across = elevation.cos() * theta.sin();
     let along = elevation.sin() * theta.cos();

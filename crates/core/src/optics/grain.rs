@@ -1,9 +1,9 @@
-//! Finishes that are laid on a face in a direction, and look different from behind.
+//! Finishes with a direction on the face, or a different response from behind.
 
 use crate::optics::Bsdf;
 
 impl Bsdf {
-    /// Whether light goes on in one discrete direction to each side, or not at all.
+    /// Whether light leaves in one discrete direction to each side, or not at all.
     pub fn has_one_direction_a_side(&self) -> bool {
         self.is_specular() && !self.has_grain()
     }
@@ -29,7 +29,7 @@ impl Bsdf {
         }
     }
 
-    /// The same finish as light meets it that comes from the other side, where that is another one.
+    /// The same finish as met by light from the other side, if it differs there.
     pub fn from_behind(&self) -> Option<Self> {
         if let Self::PrismFilm { film, face } = self {
             return Some(Self::PrismFilm { film: film.clone(), face: face.opposite() });

@@ -1,4 +1,4 @@
-//! Light that arrives at a face, light that goes on from it, and the sides to which it goes.
+//! Light that arrives at a face, light that leaves it, and the sides to which it leaves.
 
 use crate::optics::fresnel;
 use crate::rng::{Dimension, Numbers, Sampler};
@@ -9,13 +9,13 @@ use glam::DVec3;
 pub struct Incidence {
     /// Unit direction of travel.
     pub dir: DVec3,
-    /// Unit normal on the side from which the light comes: `dir · normal` is negative.
+    /// Unit normal on the side the light comes from: `dir · normal` is negative.
     pub normal: DVec3,
     /// Refractive index of the medium it comes from.
     pub index_from: f64,
     /// Refractive index of the medium behind the face.
     pub index_to: f64,
-    /// Unit direction along the face by which a finish with a grain is laid; zero for finishes without.
+    /// Unit direction of the grain of a finish along the face; zero for finishes without grain.
     pub grain: DVec3,
 }
 
@@ -29,7 +29,7 @@ impl Incidence {
     }
 }
 
-/// Which side of a face light leaves to, seen from where it came.
+/// The side of a face to which light leaves, as seen from where it came.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Side {
     /// Back to the side it came from.
@@ -38,7 +38,7 @@ pub enum Side {
     Transmitted,
 }
 
-/// Whether a direction was one of a discrete few or drawn from a density.
+/// Whether a direction was discrete or drawn from a density.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Lobe {
     /// A discrete direction: mirrored, refracted or straight on.
@@ -47,12 +47,12 @@ pub enum Lobe {
     Diffuse,
 }
 
-/// Light that goes on from a face.
+/// Light that leaves a face.
 #[derive(Debug, Clone, Copy)]
 pub struct Scattered {
     /// New direction of travel, not yet normalised.
     pub dir: DVec3,
-    /// Share of the arriving flux that this path goes on with; 1 - factor is absorbed by the face.
+    /// Share of the arriving flux that this path carries on; 1 - factor is absorbed by the face.
     pub factor: f64,
     /// Reflected or transmitted.
     pub side: Side,
@@ -63,9 +63,9 @@ pub struct Scattered {
 /// Shares of the arriving flux that leave to the two sides; the rest is absorbed. 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shares {
-    /// Share that goes back.
+    /// Share that is reflected.
     pub reflected: f64,
-    /// Share that goes through.
+    /// Share that is transmitted.
     pub transmitted: f64,
 }
 
@@ -80,13 +80,13 @@ impl Shares {
     }
 }
 
-/// Light that goes on in a discrete direction.
+/// Light that leaves in a discrete direction.
 #[inline]
 pub(crate) fn specular(dir: DVec3, factor: f64, side: Side) -> Scattered {
     Scattered { dir, factor, side, lobe: Lobe::Specular }
 }
 
-/// Light that goes on in a direction that was drawn.
+/// Light that leaves in a drawn direction.
 pub(crate) fn diffuse(dir: DVec3, factor: f64, side: Side) -> Scattered {
     Scattered { dir, factor, side, lobe: Lobe::Diffuse }
 }

@@ -39,7 +39,7 @@ impl Medium {
         self.absorption
     }
 
-    /// How it scatters; `None` of a clear medium.
+    /// Scattering of the medium; `None` for a clear medium.
     #[inline]
     pub fn scattering(&self) -> Option<&VolumeScattering> {
         self.scattering.as_ref()

@@ -1,12 +1,13 @@
-//! Rough interfaces and rough mirrors of many small plane facets that are too small to be seen.
+//! Rough interfaces and rough mirrors made of many unresolved plane facets.
 //!
-//! Slopes are distributed by GGX and masked as Smith says, for light that arrives and light that leaves each by itself
-//! (Walter, Marschner, Li & Torrance, Microfacet models for refraction through rough surfaces, EGSR 2007: WMLT below).
-//! Facets are drawn as light sees them (Heitz, Sampling the GGX distribution of visible normals, JCGT 7 (2018) 4).
-//! Light meets one facet: what another facet would have caught on the way out counts as absorbed. Knows no media but
-//! by their indices.
+//! Slopes follow GGX with Smith masking, separately for arriving and leaving light (Walter,
+//! Marschner, Li & Torrance, Microfacet models for refraction through rough surfaces, EGSR 2007:
+//! WMLT below). Facets are drawn from the distribution of visible normals (Heitz, Sampling the GGX
+//! distribution of visible normals, JCGT 7 (2018) 4). Light meets one facet: light that another
+//! facet would catch on the way out counts as absorbed. This module knows media only by their
+//! indices.
 //!
-//! `f(i→o)/n_o²` is the same both ways, so that a gather path does what a photon does, without a factor.
+//! `f(i→o)/n_o²` is the same both ways, so a gather path does what a photon does, without a factor.
 
 use crate::optics::incidence::{choose_side, specular};
 use crate::optics::{Incidence, Lobe, Scattered, Shares, Side, fresnel};
@@ -18,7 +19,7 @@ use std::f64::consts::PI;
 #[cfg(test)]
 mod tests;
 
-/// Facets of a quadrature over those that light sees, along each of two axes.
+/// Facets of a quadrature over the visible ones, along each of two axes.
 const FACETS: u32 = 48;
 
 /// A rough surface.
@@ -28,7 +29,7 @@ pub struct Microfacet {
     facets: Facets,
 }
 
-/// What its facets are.
+/// The kind of its facets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Facets {
     /// Smooth interfaces of the two media.
@@ -48,17 +49,18 @@ pub enum Facets {
 }
 
 impl Microfacet {
-    /// A surface of the roughness α (WMLT eq. 33): the root mean square slope of what is seen in its middle, above 0.
+    /// A surface of roughness α (WMLT eq. 33): the root mean square slope of the facets visible in
+    /// its middle, above 0.
     pub fn new(roughness: f64, facets: Facets) -> Self {
         Self { roughness, facets }
     }
 
-    /// About by how much it turns mirrored light, rad: twice the angle by which its facets are tilted.
+    /// Approximate spread of mirrored light, rad: twice the tilt of its facets.
     pub fn spread(&self) -> f64 {
         2.0 * self.roughness
     }
 
-    /// Whether light can only go through it, unbent: facets between equal indices do nothing.
+    /// Whether light can only pass through it, unbent: facets between equal indices have no effect.
     fn is_nothing(&self, incidence: &Incidence) -> bool {
         self.facets == Facets::Interface && incidence.index_from == incidence.index_to
     }
@@ -78,7 +80,7 @@ impl Microfacet {
         self.sent(&facet, side, incidence, reflected + transmitted)
     }
 
-    /// The same to one side only; the factor holds the share of that side.
+    /// The same to one side only; the factor includes the share of that side.
     pub(crate) fn scatter_toward(
         &self,
         side: Side,
@@ -93,7 +95,7 @@ impl Microfacet {
         if share > 0.0 { self.sent(&facet, side, incidence, share) } else { None }
     }
 
-    /// f(i→o), 1/sr: WMLT eq. 20 and, with the square of the index where light goes, eq. 21.
+    /// f(i→o), 1/sr: WMLT eq. 20 and, with the square of the index on the exit side, eq. 21.
     pub(crate) fn evaluate(&self, incidence: &Incidence, out: DVec3) -> f64 {
         let frame = Frame::from_axis(DVec3::ZERO, incidence.normal);
         let (from, out) = (frame.to_local(-incidence.dir), frame.to_local(out));
@@ -119,8 +121,8 @@ impl Microfacet {
         shares.transmitted * seen * cos_i * cos_o.abs() * (n_o * n_o) / (jacobian * jacobian)
     }
 
-    /// The shares of the two sides, and the chances that light goes there: integrals over the facets that are seen, to
-    /// 4e-3.
+    /// The shares of the two sides, and the probabilities with which light goes there: integrals
+    /// over the visible facets, to 4e-3.
     pub(crate) fn sides(&self, incidence: &Incidence) -> (Shares, Shares) {
         if self.is_nothing(incidence) {
             let through = Shares { reflected: 0.0, transmitted: 1.0 };
@@ -129,7 +131,7 @@ impl Microfacet {
         let middle = |cell: u32| (f64::from(cell) + 0.5) / f64::from(FACETS);
         let (mut flux, mut chance) = ([0.0; 2], [0.0; 2]);
         for cell in 0..FACETS * FACETS {
-            // Steep facets are few, and it is there that light is totally reflected.
+            // Steep facets are few, and light is totally reflected there.
             let steep = middle(cell / FACETS);
             let weight = 3.0 * steep * steep / f64::from(FACETS * FACETS);
             let facet = self.seen(incidence, [1.0 - steep.powi(3), middle(cell % FACETS)]);
@@ -150,8 +152,9 @@ impl Microfacet {
         self.seen(incidence, sampler.pair(Dimension::Scatter))
     }
 
-    /// The facet of two numbers in 0..1, in proportion to its area as the light sees it (Heitz 2018, section 3): the
-    /// surface is stretched until it is a half sphere, whose projection is a disk that is cut by its own edge.
+    /// The facet of two numbers in 0..1, in proportion to its area as seen from the direction of
+    /// the light (Heitz 2018, section 3). The surface is stretched until it is a hemisphere; its
+    /// projection is a disk cut by its own edge.
     fn seen(&self, incidence: &Incidence, u: [f64; 2]) -> Facet {
         let frame = Frame::from_axis(DVec3::ZERO, incidence.normal);
         let local = frame.to_local(-incidence.dir);
@@ -169,7 +172,7 @@ impl Microfacet {
         Facet { normal, cos: from.dot(normal).clamp(0.0, 1.0), frame }
     }
 
-    /// What one facet reflects and transmits.
+    /// Light that one facet reflects and transmits.
     fn of_facet(&self, facet: &Facet, incidence: &Incidence) -> Shares {
         let Incidence { index_from, index_to, .. } = *incidence;
         match self.facets {
@@ -185,7 +188,8 @@ impl Microfacet {
         }
     }
 
-    /// Light that a facet sends to a side with this share, less what is masked on the way out; `None` into the surface.
+    /// Light that a facet sends to a side with this share, less the part masked on the way out;
+    /// `None` into the surface.
     fn sent(
         &self,
         facet: &Facet,
@@ -231,6 +235,6 @@ struct Facet {
     normal: DVec3,
     /// Cosine of the angle of incidence on it.
     cos: f64,
-    /// The frame of the surface, +z where the light comes from.
+    /// The frame of the surface, with +z on the side the light comes from.
     frame: Frame,
 }

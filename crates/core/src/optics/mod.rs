@@ -1,7 +1,7 @@
-//! What interfaces and media do to light: pure physics of one place, in a frame of its own.
+//! What interfaces and media do to light: pure local physics, in a local frame.
 //!
-//! This layer knows no scene, no path and no sensor. Media and finishes are asked at a wavelength, so that dispersion
-//! needs no other interface.
+//! This layer does not know scenes, paths or sensors. Media and finishes take a wavelength, so that
+//! dispersion needs no other interface.
 
 mod adjoint;
 mod angle_table;

@@ -1,4 +1,4 @@
-//! What becomes of a photon at a finish.
+//! Scattering of a photon at a finish.
 
 use crate::optics::bsdf::Bsdf;
 use crate::optics::fresnel;
@@ -41,7 +41,8 @@ impl Bsdf {
             | Self::PrismFilm { .. }
             | Self::Mixture(_) => {
                 let out = self.scatter_rarely(incidence, sampler)?;
-                // Normalised here, not copied: so what mirrors send on need not go through memory either.
+                // Normalised here rather than copied, so light from mirrors need not go through
+                // memory either.
                 Some(Scattered { dir: unit(out.dir), ..out })
             }
         }

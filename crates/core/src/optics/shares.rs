@@ -1,4 +1,4 @@
-//! What share of arriving light a finish sends to each side.
+//! The share of arriving light that a finish sends to each side.
 
 use crate::optics::incidence::{Incidence, Shares};
 use crate::optics::smooth::smooth;
@@ -30,10 +30,11 @@ pub fn chances(bsdf: &Bsdf, incidence: &Incidence) -> Shares {
     }
 }
 
-/// Places of a period at which the shares of a film are found; between two of them a tip may lie. 1.
+/// Positions in a period at which the shares of a film are computed; a tip may lie between two of
+/// them. 1.
 const PLACES_OF_A_FILM: u32 = 64;
 
-/// The shares of a finish for light that arrives as `incidence` says.
+/// The shares of a finish for light that arrives with `incidence`.
 pub fn shares(bsdf: &Bsdf, incidence: &Incidence) -> Shares {
     match bsdf {
         Bsdf::Smooth | Bsdf::GaussianDielectric { .. } => smooth(incidence),
@@ -156,7 +157,7 @@ mod tests {
                     let flux = (sent(|factor| factor), shares(bsdf, &incidence).of(side));
                     let number = (sent(|_| 1.0), chances(bsdf, &incidence).of(side));
                     for (seen, told) in [flux, number] {
-                        // A constant share is met but for rounding.
+                        // A constant share is exact up to rounding.
                         let met =
                             (seen.mean() - told).abs() < 1e-9 || seen.sigmas_from(told).abs() < 4.0;
                         assert!(met, "{bsdf:?} at {angle}, {side:?}: {seen:?}, told {told}");

@@ -1,10 +1,11 @@
-//! How bright the sky is: the standard skies of the CIE, relative to the zenith.
+//! Brightness of the sky: the standard skies of the CIE, relative to the zenith.
 //!
-//! Directions lead toward the sky, in a frame with x east, y north and z up. Nothing is known here of absolute
-//! amounts, of the sun's disk, or of what the light falls on.
+//! Directions point toward the sky, in a frame with x east, y north and z up. This module does not
+//! know absolute amounts, the sun's disk, or what the light falls on.
 //!
-//! CIE S 011/E:2003, ISO 15469:2004: luminance goes with a gradation by the angle Z from the zenith and an indicatrix
-//! by the angle χ from the sun. Numbers as printed by Darula & Kittler, Proc. eSim 2002, 11, tables 1 and 2.
+//! CIE S 011/E:2003, ISO 15469:2004: luminance is the product of a gradation in the angle Z from
+//! the zenith and an indicatrix in the angle χ from the sun. Numbers as printed by Darula &
+//! Kittler, Proc. eSim 2002, 11, tables 1 and 2.
 
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
@@ -45,7 +46,7 @@ const GROUPS: [[usize; 2]; CIE_TYPES] = [
     [6, 6],
 ];
 
-/// How luminance goes with the angle from the zenith.
+/// Variation of luminance with the angle from the zenith.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Gradation {
     /// 1 + a exp(b / cos Z).
@@ -59,9 +60,9 @@ enum Gradation {
 pub struct SkyModel {
     gradation: Gradation,
     indicatrix: [f64; 3],
-    /// Toward the sun, unit vector.
+    /// Unit vector toward the sun.
     sun: DVec3,
-    /// What makes the zenith 1.
+    /// Factor that makes the zenith 1.
     scale: f64,
 }
 
@@ -101,7 +102,7 @@ impl SkyModel {
 
     fn indicatrix_at(&self, toward: DVec3) -> f64 {
         let [c, d, e] = self.indicatrix;
-        // Most gray skies are the same on all sides.
+        // Most gray skies have no dependence on azimuth.
         if c == 0.0 && e == 0.0 {
             return 1.0;
         }
@@ -112,7 +113,7 @@ impl SkyModel {
     /// Bounds of the luminance, relative to the zenith: everywhere at most `even` + `glow` exp(-`decay` χ).
     pub fn bound(&self) -> SkyBound {
         let [c, d, e] = self.indicatrix;
-        // The gradation is monotonic: the most is at one of its ends.
+        // The gradation is monotonic: its largest value is at one of its ends.
         let most = self.scale * self.gradation.of(1.0).max(self.gradation.of(0.0));
         SkyBound {
             even: most * (1.0 - c * (d * FRAC_PI_2).exp() + e),
@@ -123,16 +124,16 @@ impl SkyModel {
     }
 }
 
-/// What a sky's luminance nowhere exceeds: an even part, and a glow about the sun.
+/// Upper bound of a sky's luminance: an even part, and a glow about the sun.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SkyBound {
     /// The even part, relative to the zenith, 1.
     pub even: f64,
     /// The glow in the direction of the sun, relative to the zenith, 1; 0 where there is none.
     pub glow: f64,
-    /// How fast the glow falls with the angle from the sun, 1/rad.
+    /// Fall-off of the glow with the angle from the sun, 1/rad.
     pub decay: f64,
-    /// Toward the sun, unit vector.
+    /// Unit vector toward the sun.
     pub sun: DVec3,
 }
 
@@ -173,7 +174,7 @@ mod tests {
         assert_eq!(SkyModel::of_type(5, sun).unwrap().luminance(toward(3.0, 7.0)), 1.0);
         let overcast = SkyModel::overcast().luminance(toward(1e-9, 0.0));
         assert!((overcast - 1.0 / 3.0).abs() < 1e-9);
-        // Type 1 is the overcast sky 1:3 in other words: within 3 % of it at 30 and 60 degrees.
+        // Type 1 is nearly the overcast sky 1:3: within 3 % of it at 30 and 60 degrees.
         for elevation in [30.0, 60.0] {
             let ratio = SkyModel::of_type(1, sun).unwrap().luminance(toward(elevation, 0.0))
                 / SkyModel::overcast().luminance(toward(elevation, 0.0));
@@ -183,8 +184,9 @@ mod tests {
 
     #[test]
     fn the_clear_sky_is_that_of_kittler() {
-        // CIE clear sky (Kittler 1967, CIE 22:1973) with the sun at 30 degrees, straight to the sun:
-        // (0.91 + 10 + 0.45) (1 - exp(-0.32 / sin 30°)) over (0.91 + 10 exp(-3 π/3) + 0.45 cos² 60°) (1 - exp(-0.32)).
+        // CIE clear sky (Kittler 1967, CIE 22:1973) with the sun at 30 degrees, directly toward the
+        // sun: (0.91 + 10 + 0.45) (1 - exp(-0.32 / sin 30°)) over (0.91 + 10 exp(-3 π/3) + 0.45
+        // cos² 60°) (1 - exp(-0.32)).
         let printed = 11.36 * (1.0 - (-0.64f64).exp())
             / ((0.91 + 10.0 * (-std::f64::consts::PI).exp() + 0.45 * 0.25)
                 * (1.0 - (-0.32f64).exp()));

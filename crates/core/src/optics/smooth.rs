@@ -4,7 +4,7 @@ use crate::optics::fresnel;
 use crate::optics::incidence::{Incidence, Shares, Side};
 use glam::DVec3;
 
-/// Fresnel's shares; between equal indices all goes through, also along the face.
+/// Fresnel's shares; between equal indices all light passes, even along the face.
 pub(crate) fn smooth(incidence: &Incidence) -> Shares {
     let Incidence { index_from, index_to, .. } = *incidence;
     let reflected = if index_from == index_to {
@@ -15,8 +15,8 @@ pub(crate) fn smooth(incidence: &Incidence) -> Shares {
     Shares { reflected, transmitted: 1.0 - reflected }
 }
 
-/// The discrete direction of a smooth interface, a unit vector but for rounding: mirrored, or refracted (`None` under
-/// total reflection).
+/// The discrete direction of a smooth interface, a unit vector up to rounding: mirrored, or
+/// refracted (`None` under total reflection).
 pub(crate) fn smooth_direction(incidence: &Incidence, side: Side) -> Option<DVec3> {
     let Incidence { dir, normal, index_from, index_to, .. } = *incidence;
     match side {

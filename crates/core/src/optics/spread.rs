@@ -1,9 +1,9 @@
-//! How far a finish spreads light about its discrete directions, for those who choose windows.
+//! How far a finish spreads light about its discrete directions, for the choice of windows.
 
 use crate::optics::Bsdf;
 
-/// Below this standard deviation, rad, scatter is narrow: within twice of it the solid angle is 0.13 sr, 2 % of a
-/// half space, so that light must still be looked for near a discrete direction.
+/// Below this standard deviation, rad, scatter is narrow: within twice this the solid angle is 0.13
+/// sr, 2 % of a half space, so light must still be searched near a discrete direction.
 const NARROW: f64 = 0.1;
 
 /// How far a finish spreads light.
@@ -13,13 +13,13 @@ pub enum Spread {
     Discrete,
     /// About them, with this standard deviation in rad, less than 0.1.
     Narrow(f64),
-    /// Over a good part of the half space.
+    /// Over a large part of the half space.
     Broad,
 }
 
 impl Bsdf {
-    /// Standard deviation of scatter about discrete directions, rad; `None` without any. Of a mixture that of its narrowest
-    /// such part, since a window has to resolve it.
+    /// Standard deviation of scatter about discrete directions, rad; `None` without any. For a
+    /// mixture it is that of the narrowest such part, since a window must resolve it.
     pub fn width(&self) -> Option<f64> {
         match self {
             Self::GaussianSheet { lobe, .. } | Self::GaussianDielectric { lobe } => {
@@ -42,8 +42,8 @@ impl Bsdf {
         }
     }
 
-    /// How far the finish spreads light. A mixture is as broad as its broadest part, of whatever weight: it can have
-    /// discrete directions and narrower lobes beside that.
+    /// How far the finish spreads light. A mixture is as broad as its broadest part, whatever its
+    /// weight: it can also have discrete directions and narrower lobes.
     pub fn kind(&self) -> Spread {
         match self {
             Self::GaussianSheet { lobe, .. } | Self::GaussianDielectric { lobe }
@@ -52,7 +52,8 @@ impl Bsdf {
                 Spread::Narrow(lobe.sigma())
             }
             Self::Microfacet(rough) if rough.spread() < NARROW => Spread::Narrow(rough.spread()),
-            // The tails of haze reach over the half space; what goes on undisturbed is told apart by its lobe.
+            // The tails of haze reach over the half space; undisturbed light is separated by its
+            // lobe.
             Self::GaussianSheet { .. }
             | Self::GaussianDielectric { .. }
             | Self::Microfacet(_)

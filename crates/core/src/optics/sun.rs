@@ -1,13 +1,14 @@
 //! The position of the sun, by date, time and place.
 //!
-//! Low-accuracy formulas of Meeus, Astronomical Algorithms, 2nd ed. (1998): chapter 25 for the sun (0.01 deg), 12 for
-//! sidereal time, 13 for the horizon, 16 for refraction at 1010 hPa and 10 °C. Universal Time stands for both UT1 and
-//! Terrestrial Time: the minute between them moves the sun by 0.001 deg. Knows no scene and no frame.
+//! Low-accuracy formulas of Meeus, Astronomical Algorithms, 2nd ed. (1998): chapter 25 for the sun
+//! (0.01 deg), 12 for sidereal time, 13 for the horizon, 16 for refraction at 1010 hPa and 10 °C.
+//! Universal Time is used for both UT1 and Terrestrial Time: the minute between them moves the sun
+//! by 0.001 deg. This module knows neither scenes nor frames.
 
 use std::fmt;
 
-/// Half of the angle under which the sun's disk is seen from one astronomical unit, deg: a radius of 695,700 km
-/// (IAU 2015 resolution B3) at 149,597,870.7 km; over a year it is 0.262 to 0.271.
+/// Half of the apparent angle of the sun's disk at one astronomical unit, deg: a radius of 695,700
+/// km (IAU 2015 resolution B3) at 149,597,870.7 km; over a year it is 0.262 to 0.271.
 pub const HALF_ANGLE_DEG: f64 = 0.26645;
 /// First and last year for which the formulas are trusted here.
 pub const YEARS: [i32; 2] = [1900, 2100];
@@ -23,7 +24,7 @@ pub struct Observation {
     pub longitude_deg: f64,
 }
 
-/// Where the middle of the sun is seen.
+/// Apparent position of the sun's centre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SunPosition {
     /// Above the horizon, with refraction, deg.
@@ -40,14 +41,14 @@ pub struct Date {
     day: u32,
 }
 
-/// Why a date or a time was not understood.
+/// Why a date or a time could not be read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Misread {
-    /// It does not look like `2026-06-21`, or `14:30`.
+    /// It does not have the form of `2026-06-21`, or `14:30`.
     Form,
     /// There is no such day, or no such time of day.
     Missing,
-    /// The year is not one of [`YEARS`].
+    /// The year is outside [`YEARS`].
     Year,
 }
 
@@ -115,7 +116,7 @@ pub fn read_time(text: &str) -> Result<f64, Misread> {
     Ok(f64::from(hour) + f64::from(minute) / 60.0 + f64::from(second) / 3600.0)
 }
 
-/// Numbers of these many digits with a mark between them.
+/// Numbers with these counts of digits and a mark between them.
 fn numbers<const N: usize>(text: &str, mark: char, digits: [usize; N]) -> Option<[u32; N]> {
     let mut found = [0; N];
     let mut parts = text.split(mark);
@@ -127,13 +128,14 @@ fn numbers<const N: usize>(text: &str, mark: char, digits: [usize; N]) -> Option
     parts.next().is_none().then_some(found)
 }
 
-/// Where the sun is seen; refraction of the air included, which below the horizon means nothing and is left out.
+/// Apparent position of the sun, including refraction by the air; below the horizon refraction has
+/// no meaning and is left out.
 pub fn sun_position(observation: Observation) -> SunPosition {
     let Observation { days, latitude_deg, longitude_deg } = observation;
     let (right_ascension, declination) = equatorial(days);
     let hour_angle = (sidereal_time_deg(days) + longitude_deg).to_radians() - right_ascension;
     let latitude = latitude_deg.to_radians();
-    // Meeus eq. (13.5) and (13.6), his azimuth being from the south.
+    // Meeus eq. (13.5) and (13.6), where azimuth is from the south.
     let elevation = (latitude.sin() * declination.sin()
         + latitude.cos() * declination.cos() * hour_angle.cos())
     .clamp(-1.0, 1.0)
@@ -172,9 +174,9 @@ fn sidereal_time_deg(days: f64) -> f64 {
     (280.460_618_37 + 360.985_647_366_29 * days + t * t * 0.000_387_933).rem_euclid(360.0)
 }
 
-/// By how much the air lifts a body at this true elevation, deg: Sæmundsson, Meeus eq. (16.4).
+/// Lift of a body at this true elevation by the air, deg: Sæmundsson, Meeus eq. (16.4).
 fn refraction_deg(elevation_deg: f64) -> f64 {
-    // The disk is still seen, in part, from here on.
+    // The disk is still partly visible from here on.
     if elevation_deg < -1.0 {
         return 0.0;
     }
@@ -192,8 +194,8 @@ mod tests {
 
     #[test]
     fn the_sun_of_1992_october_13_is_where_meeus_prints_it() {
-        // Example 25.a: right ascension 198.38083 deg, declination -7.78507 deg; the exact theory says 198.378178 and
-        // -7.783872.
+        // Example 25.a: right ascension 198.38083 deg, declination -7.78507 deg; the exact theory
+        // gives 198.378178 and -7.783872.
         let (right_ascension, declination) = equatorial(days("1992-10-13", 0.0));
         assert!((right_ascension.to_degrees().rem_euclid(360.0) - 198.38083).abs() < 1e-5);
         assert!((declination.to_degrees() + 7.78507).abs() < 1e-5);
@@ -235,7 +237,7 @@ mod tests {
 
     #[test]
     fn refraction_at_the_horizon_is_about_half_a_degree() {
-        // Meeus, chapter 16: 34' or so for a body that is seen at the horizon.
+        // Meeus, chapter 16: about 34' for a body seen at the horizon.
         assert!((refraction_deg(-0.5667) - 0.5667).abs() < 0.02, "{}", refraction_deg(-0.5667));
         assert_eq!(refraction_deg(90.0), 0.0);
         assert_eq!(refraction_deg(-20.0), 0.0);

@@ -1,4 +1,5 @@
-//! What tests of finishes share: light that meets a face, and samples against the distribution function.
+//! Shared parts of the tests of finishes: light that meets a face, and samples against the
+//! distribution function.
 
 use crate::optics::incidence::leaving_normal;
 use crate::optics::{Bsdf, Incidence, Lobe, Side, evaluate};
@@ -34,8 +35,8 @@ fn integrals(bsdf: &Bsdf, incidence: &Incidence, side: Side) -> Vec<f64> {
     cells
 }
 
-/// Holds light that is scattered to a side against the distribution function, by chi-square over cells of direction
-/// cosines; and gives its share back, 1.
+/// Compares light that is scattered to a side with the distribution function, by chi-square over
+/// cells of direction cosines, and returns its share, 1.
 pub(crate) fn assert_follows(bsdf: &Bsdf, incidence: &Incidence, side: Side) -> f64 {
     let expected = integrals(bsdf, incidence, side);
     let paths = 60_000u32;
@@ -65,7 +66,7 @@ pub(crate) fn assert_follows(bsdf: &Bsdf, incidence: &Incidence, side: Side) -> 
     expected.iter().sum()
 }
 
-/// Holds `f(i→o)/n_o²` against the value for the same path backwards.
+/// Compares `f(i→o)/n_o²` with the value for the same path backwards.
 pub(crate) fn assert_reciprocal(bsdf: &Bsdf, indices: [f64; 2]) {
     for (angle, out_angle, turn) in [(0.3f64, 0.5f64, 0.4), (0.9, 0.2, 2.0), (0.6, 1.3, 3.0)] {
         let there = incidence(angle, indices);

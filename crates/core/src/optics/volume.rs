@@ -1,16 +1,18 @@
-//! Scattering within a medium: how far light goes before it is scattered, and where to.
+//! Scattering within a medium: how far light travels before it is scattered, and in which
+//! direction.
 //!
-//! It knows one place in a medium, not the body the medium fills; what a medium absorbs is the medium's own affair.
+//! This module knows one point in a medium, not the body the medium fills; absorption belongs to
+//! the medium itself.
 
 use glam::DVec3;
 use lumiduct_base::math::{Frame, from_cosine};
 use std::f64::consts::PI;
 
-/// Anisotropies nearer to 0 than this, 1, are drawn as isotropic: the inversion divides by them.
+/// Anisotropies closer to 0 than this, 1, are drawn as isotropic: the inversion divides by them.
 const ISOTROPIC: f64 = 1e-6;
 
-/// Scattering by particles that are small against the bodies they are in, evenly spread: lengths of path between two
-/// scatterings are exponential, and angles follow the law of Henyey and Greenstein.
+/// Scattering by particles that are small compared with the bodies they are in, evenly distributed:
+/// free path lengths are exponential, and angles follow the law of Henyey and Greenstein.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VolumeScattering {
     coefficient: f64,
@@ -18,23 +20,25 @@ pub struct VolumeScattering {
 }
 
 impl VolumeScattering {
-    /// Scattering with a coefficient, in 1/mm and above 0, and a mean cosine of the angle, in 1 and between -1 and 1.
+    /// Scattering with a coefficient, in 1/mm and above 0, and a mean cosine of the angle, 1,
+    /// between -1 and 1.
     pub fn new(coefficient_per_mm: f64, anisotropy: f64) -> Self {
         Self { coefficient: coefficient_per_mm, anisotropy }
     }
 
-    /// Scattering coefficient, 1/mm: one over the mean length of path between two scatterings.
+    /// Scattering coefficient, 1/mm: the reciprocal of the mean free path.
     #[inline]
     pub fn coefficient(&self) -> f64 {
         self.coefficient
     }
 
-    /// Mean cosine of the angle of scattering, 1: 0 of scattering to all sides alike, near 1 of forward scattering.
+    /// Mean cosine of the scattering angle, 1: 0 for isotropic scattering, near 1 for forward
+    /// scattering.
     pub fn anisotropy(&self) -> f64 {
         self.anisotropy
     }
 
-    /// A length of path up to a scattering, mm, for uniform `u` in [0, 1): density `σ exp(-σ s)`, in 1/mm.
+    /// A free path length, mm, for uniform `u` in [0, 1): density `σ exp(-σ s)`, in 1/mm.
     #[inline]
     pub fn free_path(&self, u: f64) -> f64 {
         -(-u).ln_1p() / self.coefficient
@@ -48,8 +52,8 @@ impl VolumeScattering {
         (1.0 - g * g) / (4.0 * PI * square * square.sqrt())
     }
 
-    /// The direction of travel after a scattering of light that travels along `dir`, both unit vectors, for uniform `u`:
-    /// the cosine by inversion of the integral of the phase function.
+    /// The direction after scattering of light that travels along `dir`, both unit vectors, for
+    /// uniform `u`: the cosine by inversion of the integral of the phase function.
     pub fn scatter(&self, dir: DVec3, u: [f64; 2]) -> DVec3 {
         let g = self.anisotropy;
         let cos = if g.abs() < ISOTROPIC {
@@ -70,8 +74,8 @@ mod tests {
 
     const ANISOTROPIES: [f64; 7] = [-0.7, -0.2, 0.0, 1e-7, 0.3, 0.8, 0.98];
 
-    /// Integral of a function of the cosine, weighted by the phase function, over all directions. The cosine goes with the
-    /// fourth power near 1, where forward peaks are.
+    /// Integral of a function of the cosine, weighted by the phase function, over all directions.
+    /// The cosine varies with the fourth power near 1, where forward peaks are.
     fn over_directions(scattering: &VolumeScattering, f: impl Fn(f64) -> f64) -> f64 {
         const STEPS: u32 = 200_000;
         let step = 2f64.powf(0.25) / f64::from(STEPS);
@@ -91,7 +95,7 @@ mod tests {
 
     #[test]
     fn all_scattered_light_goes_somewhere_and_its_moments_are_powers_of_the_anisotropy() {
-        // The Legendre moments of the law are g^k: the property for which it was chosen.
+        // The Legendre moments of the law are g^k, which defines it.
         for g in ANISOTROPIES {
             let scattering = VolumeScattering::new(1.0, g);
             for k in 0..4 {
@@ -103,7 +107,8 @@ mod tests {
 
     #[test]
     fn directions_are_drawn_by_the_phase_function() {
-        // Chi-square over cells of equal probability, and over turns about the direction before.
+        // Chi-square over cells of equal probability, and over azimuths about the previous
+        // direction.
         const PATHS: u32 = 100_000;
         const CELLS: usize = 20;
         let dir = DVec3::new(0.36, -0.48, 0.8);

@@ -1,4 +1,4 @@
-//! Which surfaces a ray may meet, nearest first. The only file that names obvhs.
+//! The surfaces that a ray may meet, nearest first. Only this file names obvhs.
 //!
 //! Boxes are f32, padded outward, and cull only: shapes intersect in f64 inside the closure. Up to a handful of shapes
 //! a linear scan is faster. (obvhs's own triangle test and its 8-wide traversal are not used: the first rejects
@@ -14,7 +14,7 @@ use obvhs::{BvhBuildParams, fast_stack};
 use std::fmt;
 use std::time::Duration;
 
-/// Up to this many patches are scanned one after the other.
+/// Up to this many patches are scanned one by one.
 const SCAN_LIMIT: usize = 12;
 /// Boxes grow by this many f32 ulp of the largest coordinate: rounding of the box, of the ray's origin, and of the slab test.
 const PADDING_ULP: f64 = 8.0;
@@ -39,8 +39,8 @@ impl fmt::Debug for Tree {
 }
 
 impl Accel {
-    /// A structure over `boxes`, of which the first `patches` are those of patches, others those of triangles; ray
-    /// origins will have coordinates up to `largest_coordinate`, mm.
+    /// A structure over `boxes`: the first `patches` belong to patches, the others to triangles.
+    /// Ray origins have coordinates up to `largest_coordinate`, mm.
     pub fn new(boxes: &[Aabb], patches: usize, largest_coordinate: f64) -> Self {
         if boxes.len() == patches && patches <= SCAN_LIMIT {
             return Self::Scan(patches);
@@ -51,8 +51,8 @@ impl Accel {
         Self::Tree(Tree(Box::new(build_bvh2(&boxes, params, &mut Duration::default()))))
     }
 
-    /// Calls `visit` with the index of every surface whose box the ray meets before the distance that the last
-    /// `visit` returned: beyond it nothing is of interest.
+    /// Calls `visit` with the index of every surface whose box the ray meets before the distance
+    /// that the last `visit` returned.
     #[inline]
     pub fn visit(&self, ray: &Ray, mut visit: impl FnMut(usize) -> f64) {
         match self {
@@ -67,7 +67,7 @@ impl Accel {
 }
 
 impl Tree {
-    /// As [`Accel::visit`], nearer boxes first.
+    /// Like [`Accel::visit`], nearer boxes first.
     #[inline]
     pub fn visit(&self, ray: &Ray, mut visit: impl FnMut(usize) -> f64) {
         let tree = &self.0;
@@ -86,7 +86,7 @@ impl Tree {
     }
 }
 
-/// The next f32 above a value, so that culling never takes a hit away.
+/// The next f32 above a value, so that culling never removes a hit.
 #[inline]
 fn round_up(value: f64) -> f32 {
     (value as f32).next_up()

@@ -1,9 +1,9 @@
-//! A quantity that changes along a face: a table with straight lines in between.
+//! A quantity that changes along a face: a table with linear interpolation.
 
-/// Values at places along a face; constant before the first and after the last.
+/// Values at positions along a face; constant before the first and after the last.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Along {
-    /// Places, mm, increasing, with their values.
+    /// Positions, mm, increasing, with their values.
     knots: Vec<[f64; 2]>,
 }
 
@@ -13,13 +13,14 @@ impl Along {
         Self { knots: vec![[0.0, value]] }
     }
 
-    /// A table of places, mm, and values; `None` without any, or where the places do not increase.
+    /// A table of positions, mm, and values; `None` without any, or where the positions do not
+    /// increase.
     pub fn table(knots: Vec<[f64; 2]>) -> Option<Self> {
         let increases = knots.windows(2).all(|pair| pair[0][0] < pair[1][0]);
         (increases && !knots.is_empty()).then_some(Self { knots })
     }
 
-    /// The value at a place, mm.
+    /// The value at a position, mm.
     #[inline]
     pub fn at(&self, place: f64) -> f64 {
         match self.knots.as_slice() {
@@ -42,13 +43,14 @@ impl Along {
         self.knots.iter().map(|knot| knot[1]).fold(f64::INFINITY, f64::min)
     }
 
-    /// The table with places counted from another origin, mm before this one's.
+    /// The table with positions measured from another origin, `by` mm before this one's.
     pub fn shifted(mut self, by: f64) -> Self {
         self.knots.iter_mut().for_each(|knot| knot[0] += by);
         self
     }
 
-    /// The pieces between two places, each with the values at its ends: `[from, to, before, after]`.
+    /// The pieces between two positions, each with the values at its ends:
+    /// `[from, to, before, after]`.
     pub(super) fn pieces(&self, from: f64, to: f64) -> Vec<[f64; 4]> {
         let inner =
             self.knots.iter().map(|knot| knot[0]).filter(|place| *place > from && *place < to);

@@ -1,6 +1,7 @@
-//! Points drawn evenly over faces, and how densely that fills the directions toward them.
+//! Points drawn evenly over faces, and the density this gives for the directions toward them.
 //!
-//! It knows faces of all kinds: analytic pieces, open ports, and faces of meshes. It knows no sensor and no path.
+//! It knows faces of all kinds: analytic pieces, open ports, and faces of meshes. It does not know
+//! sensors or paths.
 
 use crate::scene::shape::{Crossing, Start};
 use crate::scene::{Extent, FaceId, MeshBody, Patch, PrimId, Ray, Scene};
@@ -18,7 +19,7 @@ pub struct FaceArea<'s> {
 /// A part of the area.
 #[derive(Debug, Clone, Copy)]
 enum Piece<'s> {
-    /// An analytic piece; a port's is no surface of the scene.
+    /// An analytic piece; a port is not a surface of the scene.
     Patch(&'s Patch, Option<PrimId>),
     /// A face of a mesh, by its number there.
     Mesh(&'s MeshBody, usize),
@@ -27,7 +28,7 @@ enum Piece<'s> {
 /// A point of the area.
 #[derive(Debug, Clone, Copy)]
 pub struct AreaPoint {
-    /// Where, mm.
+    /// Position, mm.
     pub point: DVec3,
     /// Unit normal of the front.
     pub normal: DVec3,
@@ -53,24 +54,26 @@ impl<'s> FaceArea<'s> {
         Self { scene, pieces, area_up_to }
     }
 
-    /// All of it, mm², with the places that [`Self::sample`] finds taken by others.
+    /// The whole area, mm², including the positions that [`Self::sample`] finds occupied by others.
     pub fn area(&self) -> f64 {
         self.area_up_to.last().copied().unwrap_or(0.0)
     }
 
-    /// A point, uniform over the area for uniform `u`; `None` where there is no area, or a relief takes the place.
+    /// A point, uniform over the area for uniform `u`; `None` where there is no area, or a relief
+    /// occupies the position.
     pub fn sample(&self, u: [f64; 2]) -> Option<AreaPoint> {
         let area = Some(self.area()).filter(|area| *area > 0.0)?;
         let wanted = (u[0] * area).min(area.next_down());
         let index = self.area_up_to.partition_point(|up_to| *up_to <= wanted);
         let before = if index == 0 { 0.0 } else { self.area_up_to[index - 1] };
-        // The rest of the first number is uniform again within the piece.
+        // The remainder of the first number is again uniform within the piece.
         let rest = (wanted - before) / (self.area_up_to[index] - before);
         self.pieces[index].sample(self.scene, [rest.clamp(0.0, 1.0), u[1]])
     }
 
-    /// Density over solid angle, 1/sr, with which lines from the ray's origin to points drawn from the area take the
-    /// ray's direction: Σ t²/(A |cos|) over all places where the ray meets the area.
+    /// Density over solid angle, 1/sr, with which a line from the ray's origin to a point drawn
+    /// from the area has the ray's direction: Σ t²/(A |cos|) over all points where the ray meets
+    /// the area.
     pub fn density_toward(&self, ray: &Ray) -> f64 {
         let mut sum = 0.0;
         for piece in &self.pieces {
@@ -83,8 +86,9 @@ impl<'s> FaceArea<'s> {
         sum / self.area()
     }
 
-    /// Density over area across the ray's line, 1/mm², with which lines of its direction through points drawn from the
-    /// area are it: Σ 1/(A |cos|) over all places where the ray meets the area.
+    /// Density over area across the ray's line, 1/mm², with which a line of its direction through a
+    /// point drawn from the area coincides with it: Σ 1/(A |cos|) over all points where the ray
+    /// meets the area.
     pub fn density_across(&self, ray: &Ray) -> f64 {
         let mut sum = 0.0;
         for piece in &self.pieces {
@@ -136,7 +140,7 @@ impl Piece<'_> {
         }
     }
 
-    /// Every place where the ray's line meets it: distance along the ray, mm, and unit normal.
+    /// Every point where the ray's line meets it: distance along the ray, mm, and unit normal.
     fn crossings(&self, ray: &Ray, mut visit: impl FnMut(f64, DVec3)) {
         match self {
             Self::Patch(patch, _) => {

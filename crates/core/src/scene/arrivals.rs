@@ -1,8 +1,8 @@
-//! Where light can come from when it arrives at a sensor: the starts of gather paths.
+//! The origin of light that arrives at a sensor: the starts of gather paths.
 //!
-//! A gather path goes against the light. It is drawn from the cells and directions of its sensor and knows the extent
-//! that it stands for, so that the mean of radiance times extent is the flux on the sensor. What the path meets
-//! is not known here.
+//! A gather path travels against the light. It is drawn from the cells and directions of its sensor
+//! and carries the extent that it represents, so that the mean of radiance times extent is the flux
+//! on the sensor. This module does not know what the path meets.
 
 use crate::rng::{Dimension, Numbers, Sampler};
 use crate::scene::area::{AreaPoint, FaceArea};
@@ -17,8 +17,8 @@ use lumiduct_base::math::{Aabb, Frame, cone_direction, cosine_hemisphere, disk, 
 use smallvec::{SmallVec, smallvec};
 use std::f64::consts::{PI, TAU};
 
-/// A path that has to meet the face it starts in front of starts this far off, relative to the size of the scene: far
-/// above rounding, far below anything that can be built.
+/// A path that must meet the face it starts in front of starts this far from it, relative to the
+/// size of the scene: far above rounding, far below any manufacturable size.
 const STEP_BACK: f64 = 1e-9;
 
 /// The start of a gather path.
@@ -30,11 +30,12 @@ pub struct Arrival {
     pub inside: Inside,
     /// The surface of the scene that it starts on.
     pub on: Option<PrimId>,
-    /// Whether it starts in front of the sensor's own face and has to go through it first.
+    /// Whether it starts in front of the sensor's own face and must first pass through it.
     pub begins: Begins,
-    /// |cos θ| dA dω over the density of the draw, mm² sr: with radiance it makes flux, and times n² it is etendue.
+    /// |cos θ| dA dω over the density of the draw, mm² sr: times radiance it is flux, times n² it
+    /// is etendue.
     pub extent: f64,
-    /// The values of the sensor that its light belongs to: cells, or cells of views.
+    /// The values of the sensor that receive its light: cells, or cells of views.
     pub cells: SmallVec<[usize; 1]>,
 }
 
@@ -56,7 +57,7 @@ pub struct Arrivals<'s> {
     aim: Option<FaceArea<'s>>,
 }
 
-/// What gather paths start from.
+/// The set from which gather paths start.
 #[derive(Debug)]
 enum Origin<'s> {
     Surface(&'s SurfaceSensor, FaceArea<'s>),
@@ -92,8 +93,8 @@ impl<'s> Arrivals<'s> {
         Self { scene, place, aim }
     }
 
-    /// Draws a start; `None` where the draw fell beside the sensor or on a side that does not count: such a draw
-    /// stands for no light.
+    /// Draws a start; `None` where the draw misses the sensor or is on a side that does not count:
+    /// such a draw represents no light.
     pub fn draw(&self, sampler: &mut Sampler<impl Numbers>) -> Option<Arrival> {
         match &self.place {
             Origin::Surface(sensor, area) => {
@@ -109,8 +110,9 @@ impl<'s> Arrivals<'s> {
         }
     }
 
-    /// What a draw of a start stands for, as [`Arrival::extent`] says, mm² sr: here for a start that need not have been
-    /// drawn. The ray leaves the sensor against light that the sensor counts; `normal` is that of a surface sensor.
+    /// Extent of a draw of a start, as in [`Arrival::extent`], mm² sr, for a start that was not
+    /// necessarily drawn. The ray leaves the sensor against light that the sensor counts; `normal`
+    /// is that of a surface sensor.
     pub fn extent(&self, ray: &Ray, normal: DVec3) -> f64 {
         match &self.place {
             Origin::Surface(sensor, area) => {
@@ -147,14 +149,14 @@ impl<'s> Arrivals<'s> {
         }
     }
 
-    /// Over the density across it with which a ray of a far field is drawn, mm².
+    /// The reciprocal of the density over area with which a ray of a far field is drawn, mm².
     fn across(&self, ray: &Ray, around: Around) -> f64 {
         let aimed = self.aim.as_ref();
         aimed.map_or(PI * around.radius * around.radius, |aim| 1.0 / aim.density_across(ray))
     }
 
-    /// A direction against the light for a point of a surface sensor, with |cos θ| over its density, sr, and the views
-    /// that take it in.
+    /// A direction against the light for a point of a surface sensor, with |cos θ| over its
+    /// density, sr, and the views that accept it.
     fn surface_direction(
         &self,
         sensor: &SurfaceSensor,
@@ -179,7 +181,7 @@ impl<'s> Arrivals<'s> {
             Sides::Back => false,
             Sides::Both => sampler.one(Dimension::GatherDirection) < 0.5,
         };
-        // Arriving light comes from the side that counts, leaving light goes there.
+        // Arriving light comes from the side that counts; leaving light goes to it.
         let outward = front == (sensor.counts == Counts::Incident);
         let axis = if outward { start.normal } else { -start.normal };
         let local = cosine_hemisphere(sampler.pair(Dimension::GatherDirection));
@@ -236,7 +238,7 @@ impl<'s> Arrivals<'s> {
                 frame.point_to_world(around.radius * disk(u))
             }
         };
-        // Beyond the ball, whichever point of it the ray goes through.
+        // Beyond the ball, whichever point of it the ray passes through.
         let ray = Ray::new(through + 2.0 * around.radius * out, -out);
         let extent = self.across(&ray, around) * 4.0 * PI;
         extent
@@ -293,7 +295,7 @@ struct Drawn {
     dir: DVec3,
     /// |cos θ| over the density of the direction, sr.
     projected: f64,
-    /// The views or the pixel that take it in.
+    /// The views or the pixel that accept it.
     views: SmallVec<[usize; 1]>,
 }
 
@@ -302,8 +304,8 @@ fn projected_toward(aim: &FaceArea<'_>, ray: &Ray, normal: DVec3) -> f64 {
     ray.dir().dot(normal).abs() / aim.density_toward(ray)
 }
 
-/// The direction toward a point drawn from the aim: density `p(y) dist²/cos θ_y`, whichever
-/// point of the aim lies that way.
+/// The direction toward a point drawn from the aim: density `p(y) dist²/cos θ_y`, whichever point
+/// of the aim lies in that direction.
 fn toward(aim: &FaceArea<'_>, start: &AreaPoint, target: DVec3) -> Option<Drawn> {
     let offset = target - start.point;
     if offset == DVec3::ZERO {
@@ -314,7 +316,7 @@ fn toward(aim: &FaceArea<'_>, start: &AreaPoint, target: DVec3) -> Option<Drawn>
     projected.is_finite().then(|| Drawn { dir: ray.dir(), projected, views: SmallVec::new() })
 }
 
-/// A direction in the acceptance cone of one of the views; cones that overlap share it.
+/// A direction in the acceptance cone of one of the views, shared by all cones that contain it.
 fn view_direction(
     views: &Views,
     counts: Counts,
@@ -330,7 +332,7 @@ fn view_direction(
     let seen = Frame::from_axis(DVec3::ZERO, views.directions[view]).to_world(local);
     let mut accepting: SmallVec<[usize; 1]> = views.accepting(seen).collect();
     if accepting.is_empty() {
-        // Drawn on the very rim of the cone.
+        // Drawn exactly on the rim of the cone.
         accepting.push(view);
     }
     let dir = away(seen, counts);
@@ -338,14 +340,14 @@ fn view_direction(
     Some(Drawn { dir, projected, views: accepting })
 }
 
-/// |cos θ| over the density of a direction that so many views accept, sr.
+/// |cos θ| over the density of a direction that this many views accept, sr.
 fn views_projected(views: &Views, accepting: usize, cos: f64) -> f64 {
     let solid_angle = 2.0 * TAU * (0.5 * views.half_angle).sin().powi(2);
     let density = accepting as f64 / (views.directions.len() as f64 * solid_angle);
     cos.abs() / density
 }
 
-/// From a direction against the light to that away from the face in which a view looks, and back.
+/// Converts between a direction against the light and a view's direction away from the face.
 fn away(dir: DVec3, counts: Counts) -> DVec3 {
     match counts {
         Counts::Incident => dir,
@@ -364,6 +366,6 @@ fn around(scene: &Scene) -> Around {
     let meshes = scene.meshes.iter().map(|body| body.bounds());
     let sources = scene.sources.iter().map(|source| source.emitter.bounds());
     let bounds = solids.chain(meshes).chain(sources).fold(Aabb::EMPTY, Aabb::union);
-    // A little more, for rounding.
+    // Slightly larger, for rounding.
     Around { center: bounds.center(), radius: 0.5 * bounds.diagonal() * (1.0 + 1e-9) }
 }

@@ -1,6 +1,7 @@
 //! The local axes of a face: u and v of its unrolled coordinates, and its normal.
 //!
-//! Maps, patterns and places of a face all refer to them; they are found from the chart itself, whatever the shape.
+//! Maps, patterns and positions on a face all refer to them; they are found from the chart itself,
+//! whatever the shape.
 
 use crate::scene::shape::{ChartRect, Shape};
 use crate::scene::{FaceId, Patch, Scene};
@@ -8,19 +9,20 @@ use glam::{DVec2, DVec3};
 
 /// Steps of a grid in search of the origin of a chart, along each side.
 const STEPS: u32 = 16;
-/// How often the grid is made finer.
+/// Number of refinements of the grid.
 const ROUNDS: u32 = 24;
-/// Size of the grid against the one before it, 1.
+/// Size of the grid relative to the previous one, 1.
 const FINER: f64 = 0.35;
 /// Step by which the sense of u is found, in sizes of the chart, 1.
 const STEP: f64 = 1e-6;
 
-/// Where the unrolled coordinates of a face are counted from, and which way.
+/// Origin and directions of the unrolled coordinates of a face.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FaceAxes {
     /// The point with (u, v) = [`Self::at`], mm.
     pub origin: DVec3,
-    /// Coordinates of the origin, mm: (0, 0), or what comes nearest to it on a face that does not reach so far.
+    /// Coordinates of the origin, mm: (0, 0), or the nearest point to it on a face that does not
+    /// reach that far.
     pub at: DVec2,
     /// Unit tangent along which u grows.
     pub u: DVec3,
@@ -28,7 +30,7 @@ pub struct FaceAxes {
     pub v: DVec3,
     /// Unit normal: the front.
     pub normal: DVec3,
-    /// What the coordinates cover, mm.
+    /// The range of the coordinates, mm.
     pub rect: ChartRect,
 }
 
@@ -60,7 +62,7 @@ impl Scene {
 
 fn patch_axes(patch: &Patch, rect: ChartRect) -> FaceAxes {
     let origin = match (&patch.shape, &patch.chart) {
-        // The middle of a ring is none of its points.
+        // The middle of a ring is not one of its points.
         (Shape::Flat(flat), None) => flat.frame().origin,
         (
             Shape::Flat(_)
@@ -82,7 +84,7 @@ fn patch_axes(patch: &Patch, rect: ChartRect) -> FaceAxes {
         let moved = patch.chart(origin + sign * step * across).x - at.x;
         sign * moved
     });
-    // On one side of the origin there may be the seam, where u jumps by a turn.
+    // The seam, where u jumps by a turn, may lie on one side of the origin.
     let grows = if ahead.abs() < behind.abs() { ahead } else { behind };
     FaceAxes { origin, at, u: if grows < 0.0 { -across } else { across }, v, normal, rect }
 }

@@ -16,11 +16,11 @@ use lumiduct_base::math::Aabb;
 use lumiduct_base::units::FluxUnit;
 use std::sync::Arc;
 
-/// Surfaces of a relief overlap where they meet by this many ulp of the largest coordinate: rounding of a point on a ray and
-/// of the question on which side of an edge it is.
+/// Surfaces of a relief overlap by this many ulp of the largest coordinate where they meet:
+/// rounding of a point on a ray and of the test for the side of an edge.
 const LAP_ULP: f64 = 8.0;
 
-/// Collects the parts of a scene. Coordinates are about `origin` of the user's.
+/// Collects the parts of a scene. Coordinates are relative to `origin` in the user's coordinates.
 #[derive(Debug)]
 pub struct Builder {
     scene: Scene,
@@ -31,7 +31,7 @@ pub struct Builder {
 pub struct FaceSpec {
     /// Dotted name.
     pub name: String,
-    /// What it belongs to.
+    /// Its owner.
     pub owner: Owner,
     /// Finish met from the front.
     pub front: Option<FinishId>,
@@ -123,8 +123,8 @@ impl Builder {
         face
     }
 
-    /// Adds a closed mesh as the boundary of a solid; `finishes` has an entry for each of its faces, and the names
-    /// of the faces are those of the mesh behind `prefix`.
+    /// Adds a closed mesh as the boundary of a solid. `finishes` has an entry for each of its
+    /// faces; a face's name is `prefix` followed by its name in the mesh.
     pub fn add_mesh(
         &mut self,
         prefix: &str,
@@ -151,7 +151,7 @@ impl Builder {
         }
         let faces: Vec<FaceId> = (first_face..self.scene.faces.len()).map(FaceId::new).collect();
         let planes = (0..faces.len()).map(|face| mesh.chart_plane(face)).collect();
-        // The number of the first triangle is known when all patches are.
+        // The number of the first triangle is known once all patches are added.
         self.scene.meshes.push(MeshBody { mesh, owner, faces: faces.clone(), planes, first: 0 });
         faces
     }
@@ -164,15 +164,15 @@ impl Builder {
         self.scene.bounds = self.scene.bounds.union(bounds);
     }
 
-    /// Lays a pattern on the face that it names.
+    /// Adds a pattern to the face that it names.
     pub fn add_pattern(&mut self, pattern: Pattern) {
         self.scene.faces[pattern.face.index()].patterns.push(self.scene.patterns.len());
         self.scene.patterns.push(pattern);
     }
 
-    /// Makes a relief a part of the solid of its wall; `sides` are the patches that its grooves cut through at their ends, by
-    /// their numbers.
-    /// Its elements are a face of their own with the given finishes, front and back.
+    /// Makes a relief part of the solid of its wall; `sides` are the patches that its grooves cut
+    /// through at their ends, by their numbers. Its elements form a separate face with the given
+    /// finishes, front and back.
     pub fn add_relief(
         &mut self,
         relief: Relief,
@@ -204,7 +204,7 @@ impl Builder {
         self.add_face(FaceSpec { name, owner, front, back, pieces })
     }
 
-    /// Sets the medium outside every solid; it is the one given to [`Builder::new`] otherwise.
+    /// Sets the medium outside every solid; the default is the one given to [`Builder::new`].
     pub fn set_surroundings(&mut self, medium: MediumId) {
         self.scene.surroundings = medium;
     }
@@ -216,7 +216,7 @@ impl Builder {
         SourceId::new(self.scene.sources.len() - 1)
     }
 
-    /// Sets which sources are measured together.
+    /// Sets the sources that are measured together.
     pub fn set_light(&mut self, light: LightGroups) {
         self.scene.light = light;
     }

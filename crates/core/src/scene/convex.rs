@@ -1,20 +1,22 @@
-//! Solids that are all that lies behind their own surfaces: boxes, pyramids, prisms, round rods.
+//! Convex solids, bounded by the surfaces they lie behind: boxes, pyramids, prisms, round rods.
 //!
-//! A path inside one leaves through the surface that is nearest ahead, a path outside enters through the last surface
-//! that it comes behind, wherever the edges are: no edge need be looked at, and none can be missed. Parallel faces are
-//! asked together, as a slab (Kay & Kajiya, SIGGRAPH 1986, section 3.1). It knows nothing of other solids.
+//! A path inside one leaves through the nearest surface ahead, and a path outside enters through
+//! the last surface that it passes behind. No edge needs to be tested, and none can be missed.
+//! Parallel faces are tested together, as a slab (Kay & Kajiya, SIGGRAPH 1986, section 3.1). This
+//! module does not know other solids.
 
 use crate::scene::hit::Nearest;
 use crate::scene::shape::{Crossing, Cylinder, Flat, Shape, Start, Toward};
 use crate::scene::{MeshBody, On, Owner, Patch, PrimId, Ray, SolidId};
 use glam::DVec3;
 
-/// Unit normals this far apart are opposite but for rounding; 1.
+/// Unit normals this close to opposite are opposite up to rounding; 1.
 const OPPOSITE: f64 = 1e-15;
-/// Faces whose normals differ by less may be pieces of one plane: then the plane does not tell the piece; 1.
+/// Faces whose normals differ by less may be pieces of one plane, so that the plane does not
+/// identify the piece; 1.
 const SAME: f64 = 1e-6;
 
-/// A convex solid, as the common part of slabs and at most one endless cylinder.
+/// A convex solid, as the intersection of slabs and at most one infinite cylinder.
 #[derive(Debug, Clone)]
 pub(crate) struct Convex {
     slabs: Vec<Slab>,
@@ -22,20 +24,20 @@ pub(crate) struct Convex {
     solid: SolidId,
 }
 
-/// The points between two parallel faces; where there is only one, the other is beyond reach.
+/// The points between two parallel faces; if there is only one, the other is out of reach.
 #[derive(Debug, Clone, Copy)]
 struct Slab {
     normal: DVec3,
-    /// Where its middle is along the normal, mm.
+    /// Position of its middle along the normal, mm.
     middle: f64,
     /// Half of its thickness, mm.
     half: f64,
-    /// The faces through which a ray leaves that goes against or along the normal.
+    /// The faces through which a ray leaves against or along the normal.
     faces: [PrimId; 2],
 }
 
 impl Slab {
-    /// The distance at which a ray leaves, and through which face; not a number within a face.
+    /// The distance at which a ray leaves, and through which face; NaN within a face.
     #[inline(always)]
     fn exit(&self, ray: &Ray) -> (f64, PrimId) {
         let across = ray.dir().dot(self.normal);
@@ -55,14 +57,14 @@ impl Slab {
     }
 }
 
-/// What all solids are made of.
+/// Shared data of all solids.
 #[derive(Debug)]
 pub(super) struct Room<'a> {
     pub(super) patches: &'a [Patch],
     pub(super) meshes: &'a [MeshBody],
     /// Diagonal of the box around everything, mm.
     pub(super) diagonal: f64,
-    /// Faces closer than this are one, mm.
+    /// Faces closer than this are the same, mm.
     pub(super) tolerance: f64,
 }
 
@@ -122,8 +124,9 @@ impl Convex {
         Some(())
     }
 
-    /// Whether all faces lie within all slabs and the cylinder. Then the solid is their common part: its boundary is
-    /// a closed surface on the boundary of that part, so it is all of it.
+    /// Whether all faces lie within all slabs and the cylinder. Then the solid is their
+    /// intersection: its boundary is a closed surface on the boundary of the intersection, and so
+    /// is all of it.
     fn is_bounded_by(&self, flats: &[(PrimId, &Flat)], tolerance: f64) -> bool {
         let round = self.round.as_ref().map(|(_, round)| round);
         let behind = |normal: DVec3, offset: f64| {
@@ -139,7 +142,7 @@ impl Convex {
                 .is_none_or(|round| flats.iter().all(|(_, flat)| round.encloses(flat, tolerance)))
     }
 
-    /// Which solid it is.
+    /// The number of the solid.
     #[inline(always)]
     pub(crate) fn solid(&self) -> SolidId {
         self.solid
@@ -154,8 +157,8 @@ impl Convex {
         flats.flatten().chain(self.round.iter().map(|(prim, _)| *prim))
     }
 
-    /// Where a ray inside leaves; `None` where rounding has put it beyond a face, or where it starts on the face that
-    /// it leaves through: then edges have to be asked.
+    /// Where a ray inside leaves; `None` where rounding has put it beyond a face, or where it
+    /// starts on the face that it leaves through: then edges must be tested.
     #[inline(always)]
     pub(crate) fn exit(&self, ray: &Ray, from: &On, tolerance: f64) -> Option<Nearest> {
         let mut nearest = Nearest::NONE;
@@ -174,7 +177,8 @@ impl Convex {
         (nearest.crossing.t >= -tolerance).then_some(nearest)
     }
 
-    /// Where a ray outside enters. One that starts on a face has left the solid and does not come back.
+    /// Where a ray outside enters. A ray that starts on a face has left the solid and does not
+    /// return.
     #[inline(always)]
     pub(crate) fn entry(&self, ray: &Ray, from: &On, tolerance: f64) -> Option<(PrimId, Crossing)> {
         let (mut enter, mut leave) = (f64::NEG_INFINITY, f64::INFINITY);
@@ -288,7 +292,7 @@ mod tests {
                 let start = frame().point_to_world(across + along * DVec3::Z);
                 let mut ray = Ray::new(start, uniform_sphere(pair()));
                 let mut on = On::default();
-                // From within, and from the face that was met, back into the solid.
+                // From inside, and from the face that was met, back into the solid.
                 for _ in 0..3 {
                     let found = scene.find_next(&ray, &on, &inside).unwrap();
                     let expected = by_edges.find_next(&ray, &on, &inside).unwrap();
@@ -319,7 +323,7 @@ mod tests {
                 let start = frame().point_to_world(4.0 * LENGTH * uniform_sphere(pair()));
                 let across = frame().to_world(1.5 * RADIUS * lumiduct_base::math::disk(pair()));
                 let target = frame().origin + across + pair()[0] * LENGTH * axis;
-                // Also rays along the axis, that no wall is met by.
+                // Includes rays along the axis, which meet no wall.
                 let ray = if index % 4 == 0 {
                     Ray::new(target - 2.0 * LENGTH * axis, axis)
                 } else {
@@ -374,7 +378,7 @@ mod tests {
         let mut split = prism(4);
         split.push(split[3].clone());
         assert!(!convex(split));
-        // A wall that stands further in than the ends reach.
+        // A wall closer to the axis than the rim of the ends.
         let mut waisted = prism(6);
         let Shape::Flat(wall) = &waisted[4] else { unreachable!() };
         let moved = wall.frame().shifted(-0.1 * wall.frame().z);

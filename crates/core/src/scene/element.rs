@@ -1,7 +1,7 @@
 //! One element of a relief: a part of a sphere, a wedge or a pyramid, sunk into a wall or raised from it.
 //!
-//! What it takes of the wall is told in unrolled coordinates about its middle: u across or around, v along. It knows
-//! neither where it lies nor what its surfaces look like in space.
+//! Its outline on the wall is in unrolled coordinates about its middle: u across or around, v
+//! along. It knows neither its position nor its surfaces in space.
 
 use crate::scene::along::Along;
 use glam::DVec2;
@@ -11,18 +11,18 @@ use glam::DVec2;
 pub struct Element {
     /// Its form.
     pub form: Form,
-    /// Which way it goes from the wall.
+    /// Whether it is sunk or raised.
     pub way: Way,
     /// Radius of the round wall that it lies on, mm; `None` for a flat one.
     pub round: Option<f64>,
 }
 
-/// Which way an element goes from its wall.
+/// Direction of an element from its wall.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Way {
-    /// Into the solid: what is in it is outside.
+    /// Into the solid: the inside of the element is outside the solid.
     Into,
-    /// Out of the solid: what is in it is inside.
+    /// Out of the solid: the inside of the element is inside the solid.
     OutOf,
 }
 
@@ -41,18 +41,19 @@ impl Way {
 pub enum Form {
     /// A part of a ball, at most half of it.
     Cap {
-        /// How wide it is.
+        /// Its width.
         size: CapSize,
-        /// How far it reaches from the wall, mm.
+        /// Extent from the wall, mm.
         height: Along,
     },
     /// Two flanks that meet in an edge across the guide.
     Wedge {
-        /// How far it reaches from the wall, mm.
+        /// Extent from the wall, mm.
         height: Along,
-        /// Cotangents of the angles between the wall and its flanks: the one toward the start of the guide first.
+        /// Cotangents of the angles between the wall and its flanks, starting with the one toward
+        /// the start of the guide.
         slopes: [f64; 2],
-        /// How far it goes across the guide.
+        /// Extent across the guide.
         span: Span,
     },
     /// Four sides that meet in a point.
@@ -61,12 +62,12 @@ pub enum Form {
         width: f64,
         /// Length along the guide, mm.
         length: f64,
-        /// How far it reaches from the wall, mm.
+        /// Extent from the wall, mm.
         height: Along,
     },
 }
 
-/// How wide a cap is.
+/// Width of a cap.
 #[derive(Debug, Clone, PartialEq)]
 pub enum CapSize {
     /// Radius of its sphere, mm.
@@ -75,12 +76,12 @@ pub enum CapSize {
     Opening(Along),
 }
 
-/// How far a wedge goes across the guide.
+/// Extent of a wedge across the guide.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Span {
     /// From side to side of a face of this width, mm, or straight across a round wall.
     Through(f64),
-    /// This far, mm, between ends of its own.
+    /// This length, mm, between its own ends.
     Within(f64),
     /// All around a round wall.
     Ring,
@@ -91,7 +92,7 @@ pub enum Span {
 pub struct Cap {
     /// Radius of its sphere.
     pub radius: f64,
-    /// How far it reaches from the wall.
+    /// Extent from the wall.
     pub height: f64,
     /// Half of its opening along the guide.
     pub rim: f64,
@@ -120,7 +121,7 @@ impl Cap {
 }
 
 impl Element {
-    /// How far the elements of a row reach from the wall, mm.
+    /// Extent of the elements of a row from the wall, mm.
     pub fn height(&self, place: f64) -> f64 {
         match &self.form {
             Form::Cap { height, .. }
@@ -129,7 +130,7 @@ impl Element {
         }
     }
 
-    /// How far a wedge goes across; `None` for other elements.
+    /// Extent of a wedge across the guide; `None` for other elements.
     pub fn span(&self) -> Option<Span> {
         match &self.form {
             Form::Wedge { span, .. } => Some(*span),
@@ -137,7 +138,7 @@ impl Element {
         }
     }
 
-    /// The cap that the elements of a row are, if they are.
+    /// The cap of the elements of a row, if they are caps.
     pub fn cap(&self, place: f64) -> Option<Cap> {
         match &self.form {
             Form::Cap { size, height } => Some(Cap::new(size, height, place)),
@@ -145,8 +146,8 @@ impl Element {
         }
     }
 
-    /// Width and length of the room that the elements of a row need on the wall, mm: what they take of it, and on a round wall
-    /// what they take below it.
+    /// Width and length that the elements of a row need on the wall, mm: their footprint, and on a
+    /// round wall also their extent below it.
     pub fn size(&self, place: f64) -> DVec2 {
         match &self.form {
             Form::Cap { .. } => {
@@ -159,7 +160,7 @@ impl Element {
         }
     }
 
-    /// Whether two elements with their middles `apart` have less room than they need.
+    /// Whether two elements with their middles `apart` overlap.
     pub fn overlap(&self, places: [f64; 2], apart: DVec2) -> bool {
         let [one, other] = places.map(|place| self.size(place));
         let room = 0.5 * (one + other) * (1.0 - 1e-12);
@@ -171,7 +172,7 @@ impl Element {
         }
     }
 
-    /// Length along the guide of what an element of a row takes of the wall, mm.
+    /// Length along the guide of the footprint of an element of a row, mm.
     pub(super) fn length(&self, place: f64) -> f64 {
         match &self.form {
             Form::Cap { size, height } => 2.0 * Cap::new(size, height, place).rim,
@@ -180,7 +181,7 @@ impl Element {
         }
     }
 
-    /// Where the edge or the top of an element of a row lies along the guide, from its middle, mm.
+    /// Position of the edge or the top of an element of a row along the guide, from its middle, mm.
     pub fn edge(&self, place: f64) -> f64 {
         match &self.form {
             Form::Wedge { height, slopes, .. } => 0.5 * height.at(place) * (slopes[0] - slopes[1]),
@@ -188,8 +189,8 @@ impl Element {
         }
     }
 
-    /// Half of the width that an element of a row takes of the wall, mm, at a distance along the guide from its middle;
-    /// below 0 where it takes nothing.
+    /// Half of the width of the footprint of an element of a row, mm, at a distance along the guide
+    /// from its middle; below 0 where there is none.
     pub(super) fn half_width(&self, place: f64, v: f64) -> f64 {
         if 2.0 * v.abs() > self.length(place) {
             return -1.0;
@@ -200,7 +201,7 @@ impl Element {
                 let half = ((cap.rim - v) * (cap.rim + v)).max(0.0).sqrt();
                 match self.round {
                     None => half,
-                    // Of the points at u the sphere holds those with v² + 4 R c sin²(u/2R) <= rim².
+                    // The sphere contains the points at u with v² + 4 R c sin²(u/2R) <= rim².
                     Some(wall) => {
                         let c = cap.center_from_axis(wall, self.way);
                         2.0 * wall * (0.5 * half / (wall * c).sqrt()).min(1.0).asin()
@@ -213,7 +214,7 @@ impl Element {
                     let height = self.wedge_height(place, v, slopes);
                     2.0 * wall * (0.5 * height / wall).clamp(0.0, 1.0).sqrt().asin()
                 }
-                // A little more, so that rounding leaves nothing of the wall at its sides.
+                // Slightly more, so that rounding leaves no strip of the wall at its sides.
                 (Span::Through(width), None) => 0.5 * width * (1.0 + 1e-9),
                 (Span::Within(width), _) => 0.5 * width,
             },
@@ -221,7 +222,7 @@ impl Element {
         }
     }
 
-    /// How far a wedge reaches from the wall at a distance along the guide from its middle, mm.
+    /// Extent of a wedge from the wall at a distance along the guide from its middle, mm.
     fn wedge_height(&self, place: f64, v: f64, slopes: &[f64; 2]) -> f64 {
         let from_edge = v - self.edge(place);
         let slope = if from_edge < 0.0 { slopes[0] } else { slopes[1] };
@@ -239,14 +240,15 @@ impl Element {
         if tangent < wall * wall { wall * (cap.radius / c).min(1.0).asin() } else { 0.0 }
     }
 
-    /// Whether an element of a row takes a point of the wall at `from` its middle, mm.
+    /// Whether the footprint of an element of a row contains a point of the wall at `from` its
+    /// middle, mm.
     #[inline]
     pub fn contains(&self, place: f64, from: DVec2) -> bool {
         from.x.abs() <= self.half_width(place, from.y)
     }
 
-    /// Whether a wedge of a row goes through a point at a distance along the guide from its middle, at a depth below the
-    /// wall, mm: what it takes of the sides of the guide.
+    /// Whether a wedge of a row passes through a point at a distance along the guide from its
+    /// middle, at a depth below the wall, mm: its cut in the sides of the guide.
     pub(super) fn cuts_side(&self, place: f64, along: f64, depth: f64) -> bool {
         match &self.form {
             Form::Wedge { height, slopes, .. } => {

@@ -30,7 +30,8 @@ pub enum Emission {
     },
     /// The same intensity in every direction (of the half space in front of a surface).
     Isotropic,
-    /// The luminance of the sky; `dir` of the emitter's frame is where its light goes.
+    /// The luminance of the sky; `dir` in the emitter's frame is the direction of travel of its
+    /// light.
     Sky(Sky),
 }
 
@@ -57,8 +58,9 @@ impl Emission {
         }
     }
 
-    /// Density, in 1/sr, with which [`Emission::sample`] draws the unit vector `dir`; 0 where it never does. `None` for
-    /// a collimated beam, which has one direction and no density. Lines draw Lambertian light by a law of their own.
+    /// Density, in 1/sr, with which [`Emission::sample`] draws the unit vector `dir`; 0 where it
+    /// never does. `None` for a collimated beam, which has one direction and no density. Lines use
+    /// a separate law for Lambertian light.
     pub fn density(&self, kind: EmitterKind, dir: DVec3) -> Option<f64> {
         let density = match (self, kind) {
             (Self::Collimated { .. }, _) => return None,

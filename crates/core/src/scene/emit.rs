@@ -35,7 +35,7 @@ impl Source {
             Start::Ahead => scene.inside_at(&ray, Just::Ahead),
             Start::Behind => scene.inside_at(&ray, Just::Behind),
         };
-        // Only surface sources lie on anything.
+        // Only surface sources lie on a surface.
         let on = self.on.get(shape).copied();
         Emitted { ray, inside, on, shape }
     }
@@ -79,7 +79,7 @@ impl Source {
         Ray::new(point, frame.to_world(self.emission.sample(EmitterKind::Surface, sampler)))
     }
 
-    /// A direction by the law alone, and a line evenly over the disk across it.
+    /// A direction from the law alone, and a line drawn evenly over the disk across it.
     fn emit_from_afar(&self, center: DVec3, radius: f64, reach: f64, sampler: &mut Sampler) -> Ray {
         let dir = self.emission.sample(EmitterKind::Far, sampler);
         let across = reach * disk(sampler.pair(Dimension::EmitPosition));

@@ -10,14 +10,14 @@ use lumiduct_base::math::{Aabb, Frame};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// What a face belongs to.
+/// The owner of a face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Owner {
     /// The boundary of a solid; its front is outside.
     Solid(SolidId),
     /// An open, two-sided sheet.
     Sheet,
-    /// Nothing is there: the open end of a tube, or a virtual sensor.
+    /// No material: the open end of a tube, or a virtual sensor.
     Port,
 }
 
@@ -26,7 +26,7 @@ pub enum Owner {
 pub struct Face {
     /// Dotted name.
     pub name: String,
-    /// What it belongs to.
+    /// Its owner.
     pub owner: Owner,
     /// Finish met from the front; `None` is the smooth interface of the two media, not declared.
     pub front: Option<FinishId>,
@@ -39,18 +39,18 @@ pub struct Face {
 }
 
 impl Face {
-    /// The finish that it declares for light going toward one of its sides.
+    /// The finish that it declares for light travelling toward one of its sides.
     #[inline]
     pub fn finish_against(&self, toward: Toward) -> Option<FinishId> {
         match toward {
-            // Light going toward the front meets the back.
+            // Light travelling toward the front meets the back.
             Toward::Front => self.back,
             Toward::Back => self.front,
         }
     }
 }
 
-/// Where the pieces of a face are.
+/// The location of the pieces of a face.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Extent {
     /// In the scene's table of patches.
@@ -59,9 +59,9 @@ pub enum Extent {
     Ports(Range<usize>),
     /// In a mesh.
     Mesh {
-        /// Which mesh of the scene.
+        /// Mesh of the scene.
         mesh: usize,
-        /// Which of its faces.
+        /// Face of the mesh.
         face: usize,
     },
 }
@@ -71,7 +71,7 @@ pub enum Extent {
 pub struct MeshBody {
     /// Its triangles.
     pub mesh: Mesh,
-    /// What its faces belong to.
+    /// The owner of its faces.
     pub owner: Owner,
     /// The scene's face of each face of the mesh.
     pub faces: Vec<FaceId>,
@@ -89,7 +89,7 @@ impl MeshBody {
     }
 }
 
-/// Points by which the area of a surface is found that is cut off at a round wall.
+/// Points used to find the area of a surface cut off at a round wall.
 const AREA_POINTS: u32 = 400;
 const GOLDEN_RATIO: f64 = 1.618_033_988_749_895;
 
@@ -100,13 +100,13 @@ pub struct Patch {
     pub shape: Shape,
     /// The face it belongs to.
     pub face: FaceId,
-    /// What the face belongs to.
+    /// The owner of the face.
     pub owner: Owner,
     /// Tangent-continuous patches share this number.
     pub smooth: u32,
-    /// Leads from the shape's chart to that of the whole sweep; `None` where they are the same.
+    /// Maps the shape's chart to that of the whole sweep; `None` where they are the same.
     pub chart: Option<WallChart>,
-    /// What limits it beside the edges of its shape; mostly nothing.
+    /// Limits in addition to the edges of its shape; usually none.
     pub trim: Option<Arc<Trim>>,
 }
 
@@ -146,18 +146,19 @@ impl Patch {
         self.trim.as_ref().is_none_or(|trim| trim.keeps(ray.at(crossing.t)))
     }
 
-    /// A point, uniform over the area for uniform `u`; `None` where something else takes its place.
+    /// A point, uniform over the area for uniform `u`; `None` where something else occupies the
+    /// position.
     pub fn sample(&self, u: [f64; 2]) -> Option<DVec3> {
         let point = self.shape.sample(u);
         self.trim.as_ref().is_none_or(|trim| trim.keeps(point)).then_some(point)
     }
 
-    /// Area, mm²; of a surface that is cut off at a round wall to about a percent.
+    /// Area, mm²; to about a percent for a surface cut off at a round wall.
     pub fn area(&self) -> f64 {
         let whole = self.shape.area();
         let Some(trim) = &self.trim else { return whole };
         if trim.is_of_element() {
-            // A lattice of the golden ratio.
+            // A golden-ratio lattice.
             let point = |i: u32| {
                 let u = (f64::from(i) + 0.5) / f64::from(AREA_POINTS);
                 self.sample([u, (f64::from(i) / GOLDEN_RATIO).fract()])
@@ -174,7 +175,7 @@ impl Patch {
         self.chart.as_ref().map_or(uv, |chart| chart.of(uv))
     }
 
-    /// Unit tangent at a point along which v of the chart grows while u stays: along the guide.
+    /// Unit tangent at a point along which v of the chart grows at constant u: along the guide.
     pub fn along(&self, p: DVec3) -> DVec3 {
         self.chart.as_ref().map_or_else(|| self.shape.along(p), |chart| chart.along(&self.shape, p))
     }
@@ -205,9 +206,9 @@ pub struct Piece {
     pub shape: Shape,
     /// Tangent-continuous pieces share this number within their solid or sheet.
     pub smooth: u32,
-    /// Leads from the shape's chart to that of the whole sweep; `None` where they are the same.
+    /// Maps the shape's chart to that of the whole sweep; `None` where they are the same.
     pub chart: Option<WallChart>,
-    /// What limits it beside the edges of its shape.
+    /// Limits in addition to the edges of its shape.
     pub trim: Option<Arc<Trim>>,
 }
 

@@ -85,9 +85,10 @@ impl Grid {
         }
     }
 
-    /// The part of every cell that lies on the sensor, by area, 1. A cell that spans a hole or the rim is held against
-    /// the area it would have without, never against other cells: rings are wider outside, and charts of bends and
-    /// cones stretch. `areas` and `area_in` are those of [`Grid::cell_areas`].
+    /// The part of every cell that lies on the sensor, by area, 1. A cell that spans a hole or the
+    /// rim is compared with the area it would have without it, never with other cells, since outer
+    /// rings are larger and charts of bends and cones stretch. `areas` and `area_in` are those of
+    /// [`Grid::cell_areas`].
     pub fn cell_cover(&self, areas: &[f64], area_in: impl Fn(ChartRect) -> f64) -> Vec<f64> {
         match self {
             // The only cell is the whole sensor.
@@ -100,7 +101,7 @@ impl Grid {
         }
     }
 
-    /// The rectangle of a cell in the chart; of a polar cell, that of the whole grid.
+    /// The rectangle of a cell in the chart; for a polar cell, that of the whole grid.
     fn cell_rect(&self, cell: usize) -> ChartRect {
         match self {
             Self::Cartesian { rect, nu, nv } => {
@@ -112,8 +113,8 @@ impl Grid {
         }
     }
 
-    /// Area of the sensor in every cell, mm²: cells cut by its rim count what is left of them.
-    /// `area_in` tells the area within a rectangle of the chart.
+    /// Area of the sensor in every cell, mm²: cells cut by its rim count only their remaining part.
+    /// `area_in` gives the area within a rectangle of the chart.
     pub fn cell_areas(&self, area_in: impl Fn(ChartRect) -> f64) -> Vec<f64> {
         match self {
             Self::Cartesian { .. } => {
@@ -133,13 +134,13 @@ impl Grid {
     }
 }
 
-/// The part of a cell of the chart that lies on the sensor, by area, 1: of the cell's ninths, that with the most area is
-/// taken for whole.
+/// The fraction of a cell of the chart that lies on the sensor, by area, 1: of the cell's ninths,
+/// the one with the largest area is assumed whole.
 fn cover(area: f64, rect: ChartRect, area_in: impl Fn(ChartRect) -> f64) -> f64 {
     const SIDE: u32 = 3;
-    /// Areas are known to this share of that of the rectangle, 1.
+    /// Relative accuracy of areas, as a share of that of the rectangle, 1.
     const ROUNDING: f64 = 1e-9;
-    // Most cells of flat sensors are done here.
+    // Most cells of flat sensors are complete at this point.
     if (area - rect.area()).abs() <= ROUNDING * rect.area() {
         return 1.0;
     }
@@ -156,7 +157,8 @@ fn cover(area: f64, rect: ChartRect, area_in: impl Fn(ChartRect) -> f64) -> f64 
     if most > 0.0 { area / (f64::from(SIDE * SIDE) * most) } else { 0.0 }
 }
 
-/// The bin of a place in 0..=1; the far end belongs to the last bin, up to rounding of points on the rim.
+/// The bin of a position in 0..=1; the far end belongs to the last bin, up to rounding of points on
+/// the rim.
 #[inline]
 fn bin(place: f64, bins: usize) -> Option<usize> {
     // A point computed to lie on a rim may be a few ulp beyond it.

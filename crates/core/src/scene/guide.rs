@@ -1,22 +1,24 @@
-//! Which of the bodies of a scene guide light, and the plane that holds their centre line: for pictures alone.
+//! The bodies of a scene that guide light, and the plane that contains their centre line: for
+//! pictures alone.
 //!
-//! A guide is a body with an entry, an exit and walls that are large beside both. Rooms, panels and boards are not.
+//! A guide is a body with an entry, an exit, and walls that are large compared with both. Rooms,
+//! panels and boards are not.
 
 use crate::scene::{Emitter, Extent, FaceId, Scene, SensorKind};
 use glam::DVec3;
 use lumiduct_base::math::{Aabb, Frame};
 
-/// Area of the walls of a guide over that of its ends, at least, 1: a cube has 2.
+/// Smallest ratio of the walls of a guide to its ends, by area, 1: a cube has 2.
 const LEAST_WALLS: f64 = 2.5;
-/// Bodies with less than this share of the greatest such ratio are no guides beside one, 1.
+/// Bodies with less than this share of the largest such ratio do not count as guides, 1.
 const LEAST_SHARE: f64 = 0.15;
-/// Sine of the angle below which two directions are one: a degree.
+/// Sine of the angle below which two directions are the same: a degree.
 const SAME_DIRECTION: f64 = 0.017;
-/// Other bodies are shown with the guides when they come as near as this, in diagonals of the guides, 1.
+/// Other bodies are shown with the guides when they are this close, in diagonals of the guides, 1.
 const NEAR_BODY: f64 = 0.05;
-/// Sources and sensors are shown when they come as near as this, likewise.
+/// Sources and sensors are shown when they are this close, in the same unit.
 const NEAR_MARK: f64 = 0.5;
-/// A body is flat when its thickness is less than this share of its size, 1.
+/// A body is flat if its thickness is less than this share of its size, 1.
 const FLAT: f64 = 1e-9;
 
 /// The faces of a solid or of a sheet.
@@ -30,7 +32,7 @@ pub struct NamedBody {
     pub bounds: Aabb,
 }
 
-/// The bodies that guide light, and where their centre line lies.
+/// The bodies that guide light, and the position of their centre line.
 #[derive(Debug, Clone)]
 pub struct Guides {
     /// The plane of the centre line: its origin is on the line, z across the plane.
@@ -44,7 +46,7 @@ impl Scene {
     pub fn bodies(&self) -> Vec<NamedBody> {
         let mut bodies: Vec<NamedBody> = Vec::new();
         for (index, face) in self.faces.iter().enumerate() {
-            // The face of a sensor in free space has the name of the sensor alone.
+            // The face of a sensor in free space has only the name of the sensor.
             let Some((name, _)) = face.name.split_once('.') else { continue };
             let bounds = self.face_bounds(FaceId::new(index));
             match bodies.iter_mut().find(|body| body.name == name) {
@@ -78,7 +80,8 @@ impl Scene {
         }
     }
 
-    /// The guides of the scene; without any, all that is not flat; of an empty scene, its middle.
+    /// The guides of the scene; if there are none, everything that is not flat; for an empty scene,
+    /// its middle.
     pub fn guides(&self) -> Guides {
         let bodies = self.bodies();
         let ratios: Vec<f64> = bodies.iter().map(|body| self.wall_ratio(body)).collect();
@@ -96,7 +99,7 @@ impl Scene {
         };
         let own = around(&found);
         let own = if own.is_empty() { self.bounds } else { own };
-        // Light goes through a pane from one end to the other as well.
+        // Light also goes through a pane from one end to the other.
         let led: Vec<&NamedBody> =
             found.iter().copied().filter(|body| self.wall_ratio(body) > 0.0).collect();
         let plane = self.centre_plane(&led, own);
@@ -117,7 +120,7 @@ impl Scene {
         self.face_named(&format!("{}.{end}", body.name))
     }
 
-    /// The middle of a face and, of a flat one, its normal.
+    /// The middle of a face and, for a flat one, its normal.
     fn middle(&self, face: FaceId) -> (DVec3, Option<DVec3>) {
         match self.face_plane(face) {
             Some(frame) => (frame.origin, Some(frame.z)),
@@ -125,9 +128,9 @@ impl Scene {
         }
     }
 
-    /// The plane that holds the axis of the first guide and the first direction that leads out of it: to the exit, to
-    /// its middle, along the axis at its exit, to other guides, to faces with sensors and patterns, to sources; at last
-    /// along x or y.
+    /// The plane that contains the axis of the first guide and the first direction off that axis:
+    /// to the exit, to its middle, along the axis at its exit, to other guides, to faces with
+    /// sensors and patterns, to sources; finally along x or y.
     fn centre_plane(&self, guides: &[&NamedBody], bounds: Aabb) -> Frame {
         let ends = |guide: &NamedBody| {
             ["entry", "exit"].map(|end| self.end(guide, end).map(|face| self.middle(face)))
@@ -151,8 +154,8 @@ impl Scene {
         Frame::from_axis(entry, normal)
     }
 
-    /// Where one looks from to see sensors and patterns on walls, and the way to sources and to sensors in free space; of
-    /// those that are near.
+    /// Directions from which to view sensors and patterns on walls, and directions to sources and
+    /// to sensors in free space; only for those that are near.
     fn looks(&self, bounds: Aabb) -> Vec<DVec3> {
         let patterns = self.patterns.iter().map(|pattern| pattern.face);
         let reliefs = self.reliefs.iter().map(|relief| relief.wall);
@@ -203,7 +206,7 @@ impl Scene {
     }
 }
 
-/// The bodies that are not flat, without those that all the others are in.
+/// The bodies that are not flat, without those that contain all the others.
 fn solid_bodies(bodies: &[NamedBody]) -> Vec<&NamedBody> {
     let is_flat = |body: &NamedBody| {
         let size = body.bounds.max - body.bounds.min;
@@ -234,7 +237,7 @@ fn plane_of_box(bounds: Aabb) -> Frame {
     Frame::from_axis(bounds.center(), normal)
 }
 
-/// A direction without the rounding that keeps it off an axis of the coordinates.
+/// A direction without the rounding that keeps it off a coordinate axis.
 fn snapped(direction: DVec3) -> DVec3 {
     let rounded = direction.round();
     if (direction - rounded).length() < 1e-9 { rounded } else { direction }

@@ -1,4 +1,4 @@
-//! What a ray has met: the surfaces at the nearest place.
+//! The surfaces that a ray meets at the nearest distance.
 
 use crate::scene::inside::Inside;
 use crate::scene::shape::{Crossing, Toward};
@@ -9,13 +9,13 @@ use std::iter;
 /// One of the surfaces met at a hit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PrimHit {
-    /// Which surface.
+    /// The surface.
     pub prim: PrimId,
     /// Its face.
     pub face: FaceId,
-    /// What its face belongs to.
+    /// The owner of its face.
     pub owner: Owner,
-    /// Which way the ray goes through it.
+    /// Direction in which the ray crosses it.
     pub toward: Toward,
 }
 
@@ -24,12 +24,12 @@ pub struct PrimHit {
 pub struct Hits {
     pub(super) distance: f64,
     pub(super) nearest: PrimHit,
-    /// Mostly none: on the heap, so that the usual hit stays in registers.
+    /// Usually empty: on the heap, so that the usual hit stays in registers.
     pub(super) others: Box<[PrimHit]>,
 }
 
 impl Hits {
-    /// Distance to the place, mm, never negative.
+    /// Distance to the hit, mm, never negative.
     #[inline]
     pub fn distance(&self) -> f64 {
         self.distance
@@ -41,7 +41,7 @@ impl Hits {
         &self.nearest
     }
 
-    /// Other surfaces at the same place.
+    /// Other surfaces at the same point.
     #[inline]
     pub fn others(&self) -> &[PrimHit] {
         &self.others
@@ -78,7 +78,7 @@ impl Hits {
 pub(crate) struct Nearest {
     pub(crate) prim: PrimId,
     pub(crate) crossing: Crossing,
-    /// Distance of the next one, as far as it was seen, mm.
+    /// Distance of the next surface, as far as known, mm.
     pub(super) runner_up: f64,
 }
 
@@ -98,7 +98,7 @@ impl Nearest {
         }
     }
 
-    /// The same by choices instead of jumps, where it cannot be foreseen which is nearer.
+    /// The same with selects instead of jumps, where it is unpredictable which is nearer.
     #[inline(always)]
     pub(crate) fn choose(&mut self, prim: PrimId, crossing: Crossing) {
         let nearer = crossing.t < self.crossing.t;
@@ -113,16 +113,16 @@ impl Nearest {
 
     #[inline(always)]
     pub(super) fn consider_runner_up(&mut self, t: f64) {
-        // Not `min`, which would ask both for numbers that are none.
+        // Not `min`, which would check both for NaN.
         self.runner_up = if t < self.runner_up { t } else { self.runner_up };
     }
 }
 
-/// On which side of its start point a path is asked about.
+/// The side of a path's start point that a query refers to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Just {
-    /// Just ahead along its direction: a source on a face is already beyond it.
+    /// Just ahead along its direction: past the face that a source lies on.
     Ahead,
-    /// Just behind: light of a source on a face still has to cross it.
+    /// Just behind: light of a source on a face must still cross it.
     Behind,
 }

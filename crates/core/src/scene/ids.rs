@@ -52,7 +52,7 @@ impl SmoothId {
         Self((owner as u64) << 32 | smooth as u64)
     }
 
-    /// A number of its own.
+    /// The number of the surface.
     #[inline]
     pub fn key(self) -> u64 {
         self.0

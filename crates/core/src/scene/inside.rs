@@ -1,9 +1,9 @@
-//! Which solids a path is in.
+//! The solids that a path is in.
 
 use crate::scene::SolidId;
 use smallvec::SmallVec;
 
-/// The set of solids that a point lies in: a bit for each of the first 64, a list for any others.
+/// The set of solids that a point lies in: a bit for each of the first 64, a list for the others.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Inside {
     first: u64,
@@ -32,7 +32,7 @@ impl Inside {
         }
     }
 
-    /// Whether the point lies in no solid but perhaps `solid`.
+    /// Whether the point lies in no solid, except perhaps `solid`.
     #[inline]
     pub fn holds_no_other(&self, solid: SolidId) -> bool {
         self.others.is_empty() && bit(solid).is_some_and(|bit| self.first & !bit == 0)

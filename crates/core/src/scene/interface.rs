@@ -1,8 +1,9 @@
-//! From the surfaces that meet at one place to the one interface that light sees.
+//! From the surfaces that meet at one point to the one interface that light sees.
 //!
-//! All enterings and leavings are applied first; the interface is then between the medium before and the medium
-//! after. A face inside a solid of higher priority does nothing; of several faces, a declared finish acts before an
-//! undeclared one, a sheet before a solid, the higher priority before the lower.
+//! All entries and exits are applied first; the interface is then between the medium before and the
+//! medium after. A face inside a solid of higher priority has no effect; of several faces, a
+//! declared finish acts before an undeclared one, a sheet before a solid, the higher priority
+//! before the lower.
 
 use crate::scene::pattern::Part;
 use crate::scene::shape::Toward;
@@ -11,15 +12,15 @@ use crate::scene::{
 };
 use glam::{DVec2, DVec3};
 
-/// Step over which a direction is followed along a chart, as a share of the scene's size, 1.
+/// Step along a direction for its slope on a chart, as a share of the scene's size, 1.
 const SLOPE_STEP: f64 = 1e-7;
 
-/// What light sees where faces meet.
+/// The interface where faces meet.
 #[derive(Debug, Clone, Copy)]
 pub struct Interface<'h> {
     /// The surface whose normal and finish act.
     pub acting: &'h PrimHit,
-    /// What acts there: the face, or a part of a pattern on it.
+    /// The acting part: the face, or an element of a pattern on it.
     pub part: Part,
     /// Its declared finish on the side the light comes from; `None` is the smooth interface of the media.
     pub finish: Option<FinishId>,
@@ -27,20 +28,21 @@ pub struct Interface<'h> {
     pub from: MediumId,
     /// The medium behind.
     pub to: MediumId,
-    /// Whether nothing happens to light here: equal media and no finish, or a face buried in another solid.
+    /// Invisible if nothing happens to light here: equal media and no finish, or a face buried in
+    /// another solid.
     pub visibility: Visibility,
 }
 
-/// Where and how a path arrives.
+/// Point and direction of an arriving path.
 #[derive(Debug, Clone, Copy)]
 pub struct Meeting {
-    /// Where, mm.
+    /// Position, mm.
     pub point: DVec3,
     /// Unit direction of travel.
     pub dir: DVec3,
 }
 
-/// Whether an interface does anything.
+/// Whether an interface has any effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Visibility {
     /// A finish or a step of the index acts.
@@ -50,7 +52,8 @@ pub enum Visibility {
 }
 
 impl Scene {
-    /// The interface at a hit, for a path inside `inside` in medium `from` that arrives as `meeting` says.
+    /// The interface at a hit, for a path inside `inside` in medium `from` that arrives with
+    /// `meeting`.
     #[inline(always)]
     pub fn interface<'h>(
         &self,
@@ -59,7 +62,7 @@ impl Scene {
         inside: &Inside,
         from: MediumId,
     ) -> Interface<'h> {
-        // One face, and no solid around it but perhaps its own: the usual case needs no ranks.
+        // One face, and no solid around it except perhaps its own: the usual case needs no ranks.
         let hit = hits.nearest();
         let to = match (hit.owner, hits.others()) {
             (Owner::Sheet | Owner::Port, []) => from,
@@ -136,7 +139,7 @@ impl Scene {
         self.finish_of_part(acting.face, *part, acting.toward.opposite())
     }
 
-    /// What acts at a face on light arriving at it, and its finish.
+    /// The part of a face that acts on arriving light, and its finish.
     #[inline(always)]
     fn declared(&self, hit: &PrimHit, meeting: &Meeting) -> (Part, Option<FinishId>) {
         let face = &self.faces[hit.face.index()];
@@ -147,7 +150,7 @@ impl Scene {
         (part, self.finish_of_part(hit.face, part, hit.toward))
     }
 
-    /// The finish of a part of a face, for light going toward one of its sides.
+    /// The finish of a part of a face, for light travelling toward one of its sides.
     fn finish_of_part(&self, face: FaceId, part: Part, toward: Toward) -> Option<FinishId> {
         match part {
             Part::Face => self.faces[face.index()].finish_against(toward),
@@ -162,7 +165,7 @@ impl Scene {
     /// The part of a face with patterns that light meets.
     #[inline(never)]
     fn part_at(&self, hit: &PrimHit, meeting: &Meeting) -> Part {
-        // Patterns lie on patches alone.
+        // Patterns lie only on patches.
         let Surface::Patch(patch) = self.surface(hit.prim) else { return Part::Face };
         let at = patch.chart(meeting.point);
         let numbers = &self.faces[hit.face.index()].patterns;
@@ -173,7 +176,7 @@ impl Scene {
         parts.into_iter().next().unwrap_or(Part::Face)
     }
 
-    /// How far light goes along the chart of a patch for each mm that it goes through it, mm/mm.
+    /// Distance of light along the chart of a patch per mm through it, mm/mm.
     fn slope(&self, patch: &Patch, period: Option<f64>, meeting: &Meeting) -> DVec2 {
         let Meeting { point, dir } = *meeting;
         let normal = patch.shape.normal(point);
@@ -186,7 +189,7 @@ impl Scene {
         moved / (step * through.abs())
     }
 
-    /// How strongly a face claims to act; `None` when it is buried in a solid of higher priority.
+    /// The precedence of a face; `None` when it is buried in a solid of higher priority.
     fn rank(&self, hit: &PrimHit, hits: &Hits, inside: &Inside) -> Option<i64> {
         match hit.owner {
             Owner::Sheet | Owner::Port => Some(i64::MAX),

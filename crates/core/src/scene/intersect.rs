@@ -1,9 +1,10 @@
-//! What a ray meets next.
+//! The next surface that a ray meets.
 //!
-//! There are no epsilons against hitting the same surface twice. Of a solid, only crossings whose orientation fits
-//! count: a path inside can only leave, a path outside can only enter; with that, a start point that rounding has put
-//! a hair beyond an edge is still caught. Of the surface the ray starts on, the root at the start is no root.
-//! Surfaces within [`Scene::tolerance`] of the nearest hit are one event.
+//! There are no epsilons against hitting the same surface twice. For a solid, only crossings of the
+//! right orientation count: a path inside can only leave, a path outside can only enter. A start
+//! point that rounding has put slightly beyond an edge is therefore still caught. For the surface
+//! the ray starts on, the root at the start is excluded. Surfaces within [`Scene::tolerance`] of
+//! the nearest hit are one event.
 
 use crate::scene::accel::{Accel, Tree};
 use crate::scene::hit::{Hits, Just, Nearest, PrimHit};
@@ -13,7 +14,7 @@ use crate::scene::{Inside, On, Owner, PrimId, Ray, Scene, Surface};
 use smallvec::SmallVec;
 
 impl Scene {
-    /// What a ray meets next that starts on the surfaces `from`, inside the solids `inside`.
+    /// The next hit of a ray that starts on the surfaces `from`, inside the solids `inside`.
     #[inline(always)]
     pub fn find_next(&self, ray: &Ray, from: &On, inside: &Inside) -> Option<Hits> {
         let nearest = match &self.accel {
@@ -52,7 +53,7 @@ impl Scene {
         nearest
     }
 
-    /// The same with all edges asked, for a path that rounding has put slightly off its place.
+    /// The same with all edges tested, for a path that rounding has put slightly off its position.
     #[inline(never)]
     fn nearest_by_edges(&self, ray: &Ray, from: &On, inside: &Inside) -> Nearest {
         let mut nearest = Nearest::NONE;
@@ -60,7 +61,7 @@ impl Scene {
         nearest
     }
 
-    /// Asks patches one after the other.
+    /// Tests patches one by one.
     #[inline(always)]
     fn scan(
         &self,
@@ -95,7 +96,7 @@ impl Scene {
         nearest
     }
 
-    /// The other surfaces at the place of the nearest hit.
+    /// The other surfaces at the nearest hit.
     #[inline(never)]
     fn find_others(
         &self,
@@ -136,7 +137,8 @@ impl Scene {
                 patch.first_crossing(ray, start_on(prim, from), &wanted)
             }
             Surface::Triangle(body, triangle) => {
-                // Most triangles are missed: what counts is asked of the others.
+                // Most triangles are missed; whether a crossing counts is checked only for the
+                // others.
                 let crossing = body.mesh.crossing_of(triangle, line?)?;
                 let wanted = self.wanted(body.owner, inside, limit)?;
                 (wanted.includes(&crossing) && !from.contains(prim)).then_some(crossing)
@@ -144,7 +146,7 @@ impl Scene {
         }
     }
 
-    /// Which crossings count: of a solid, those whose orientation fits.
+    /// The crossings that count: for a solid, those of the right orientation.
     #[inline(always)]
     fn wanted(&self, owner: Owner, inside: &Inside, max: f64) -> Option<Wanted> {
         let (toward, min) = match owner {
@@ -162,9 +164,10 @@ impl Scene {
         PrimHit { prim, face: surface.face(), owner: surface.owner(), toward }
     }
 
-    /// The solids in which a path finds itself just ahead of its start or just behind.
+    /// The solids that contain a path just ahead of its start or just behind.
     pub fn inside_at(&self, ray: &Ray, when: Just) -> Inside {
-        // The nearest crossing of each solid beyond the start tells: leaving it means having been in it.
+        // The nearest crossing of each solid beyond the start decides: leaving it means having been
+        // in it.
         let mut nearest: SmallVec<[(f64, Toward); 8]> =
             SmallVec::from_elem((f64::INFINITY, Toward::Back), self.solids.len());
         let beyond = match when {
@@ -203,7 +206,7 @@ impl Scene {
         });
     }
 
-    /// The form of a ray that triangles are asked with, made once; none without meshes.
+    /// The form of a ray for triangle tests, made once; none without meshes.
     #[inline]
     fn line(&self, ray: &Ray) -> Option<Line> {
         (!self.meshes.is_empty()).then(|| Line::of(ray))

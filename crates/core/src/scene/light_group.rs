@@ -2,7 +2,7 @@
 
 use crate::scene::SourceId;
 
-/// Sources that are measured together, beside each for itself.
+/// Sources that are measured together, in addition to each one separately.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LightGroup {
     /// Name, which no source has.
@@ -14,7 +14,7 @@ pub struct LightGroup {
 /// The light groups of a scene, and the weathers that its daylight belongs to.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct LightGroups {
-    /// Those of the scene file, then those that different weathers make.
+    /// Those of the scene file, then those of different weathers.
     pub groups: Vec<LightGroup>,
     /// Names of the weathers that shine; no two of them shine at the same time.
     pub weathers: Vec<String>,

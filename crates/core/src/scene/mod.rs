@@ -1,10 +1,12 @@
-//! What is in the room: media, finishes, solids, sheets, sources and sensors, and what a ray meets next.
+//! Contents of the scene: media, finishes, solids, sheets, sources and sensors, and what a ray
+//! meets next.
 //!
-//! Every solid is closed and has a medium and a priority; a path knows which solids it is in. Sheets are open and
-//! two-sided. Both are made of smooth patches (and triangles of meshes) with named faces. Coordinates are millimetres
-//! about the middle of the scene ([`Scene::origin`] leads back to the user's).
+//! Every solid is closed and has a medium and a priority; a path knows which solids it is in.
+//! Sheets are open and two-sided. Both are made of smooth patches (and triangles of meshes) with
+//! named faces. Coordinates are millimetres about the middle of the scene ([`Scene::origin`]
+//! converts to the user's coordinates).
 //!
-//! This layer knows neither paths nor photons, and no file format.
+//! This layer does not know paths, photons or file formats.
 
 mod accel;
 mod along;

@@ -13,7 +13,7 @@ use lumiduct_base::math::Aabb;
 use lumiduct_base::units::FluxUnit;
 use std::sync::Arc;
 
-/// Relative to the size of the scene: faces closer than this are one face.
+/// Relative to the size of the scene: faces closer than this are the same face.
 pub const COINCIDENCE: f64 = 1e-12;
 
 /// A solid: a closed set of faces around a medium.
@@ -21,9 +21,9 @@ pub const COINCIDENCE: f64 = 1e-12;
 pub struct Solid {
     /// Name in the scene file.
     pub name: String,
-    /// What it is made of.
+    /// Its material.
     pub medium: MediumId,
-    /// Where solids overlap, the one of higher priority counts.
+    /// Where solids overlap, the one of higher priority applies.
     pub priority: i32,
     /// Box around it, mm.
     pub bounds: Aabb,
@@ -36,7 +36,7 @@ pub struct Solid {
 pub struct Finish {
     /// Name in the scene file, or a description of an inline one.
     pub name: String,
-    /// What it does.
+    /// Its scattering function.
     pub bsdf: Bsdf,
 }
 
@@ -67,7 +67,7 @@ pub struct Scene {
     pub patches: Vec<Patch>,
     /// Bodies of triangles; their triangles are numbered after the patches.
     pub meshes: Vec<MeshBody>,
-    /// Pieces of open ports and virtual sensors: light passes.
+    /// Pieces of open ports and virtual sensors, which light passes.
     pub ports: Vec<Patch>,
     /// All sources.
     pub sources: Vec<Source>,
@@ -75,7 +75,7 @@ pub struct Scene {
     pub light: LightGroups,
     /// All sensors.
     pub sensors: Vec<Sensor>,
-    /// Faces closer than this are one, mm.
+    /// Faces closer than this are the same, mm.
     pub tolerance: f64,
     pub(super) accel: Accel,
     /// Solids that are convex, where all patches are scanned.
@@ -85,7 +85,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Sum of the flux of all sources, lm or W.
+    /// Flux of all sources, lm or W.
     pub fn source_flux(&self) -> f64 {
         self.sources.iter().map(|source| source.flux).sum()
     }
@@ -95,12 +95,12 @@ impl Scene {
         sources.iter().map(|source| self.sources[source.index()].flux).sum()
     }
 
-    /// The medium that counts at a point inside the given solids.
+    /// The effective medium at a point inside the given solids.
     pub fn medium_in(&self, inside: &Inside) -> MediumId {
         self.medium_of(inside.iter())
     }
 
-    /// The medium of the highest priority; the surroundings without any solid.
+    /// The medium of the highest priority; the surroundings if there is no solid.
     #[inline]
     pub(super) fn medium_of(&self, solids: impl Iterator<Item = SolidId>) -> MediumId {
         let mut best: Option<&Solid> = None;

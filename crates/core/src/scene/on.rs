@@ -2,11 +2,11 @@
 
 use crate::scene::{Hits, PrimId};
 
-/// Where a ray starts: on no surface, on one, or rarely on several that meet there.
+/// Start of a ray: on no surface, on one, or rarely on several that meet there.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct On {
     first: Option<PrimId>,
-    /// On the heap, so that asking for the usual one costs a comparison.
+    /// On the heap, so that a test of the usual one costs one comparison.
     others: Box<[PrimId]>,
 }
 

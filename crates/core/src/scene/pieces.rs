@@ -1,4 +1,4 @@
-//! Questions about surfaces, whether they are analytic patches or triangles of a mesh.
+//! Queries on surfaces, whether they are analytic patches or triangles of a mesh.
 
 use crate::scene::Ray;
 use crate::scene::mesh::Line;
@@ -26,7 +26,7 @@ impl Surface<'_> {
         }
     }
 
-    /// What its face belongs to.
+    /// The owner of its face.
     #[inline]
     pub fn owner(self) -> Owner {
         match self {
@@ -35,7 +35,7 @@ impl Surface<'_> {
         }
     }
 
-    /// Every crossing of a ray's line; `line` is that of the ray where there are triangles.
+    /// Every crossing of a ray's line; `line` is the line of the ray if there are triangles.
     pub(crate) fn crossings(
         self,
         ray: &Ray,
@@ -53,7 +53,7 @@ impl Surface<'_> {
 }
 
 impl MeshBody {
-    /// Where a line crosses a triangle; never the one that it starts from.
+    /// Where a line crosses a triangle; never the one that it starts on.
     #[inline]
     fn crossing(&self, triangle: usize, line: Option<&Line>, start: Start) -> Option<Crossing> {
         match start {
@@ -64,7 +64,7 @@ impl MeshBody {
 }
 
 impl Scene {
-    /// The surface of a number.
+    /// The surface with a number.
     #[inline]
     pub fn surface(&self, prim: PrimId) -> Surface<'_> {
         let index = prim.index();
@@ -101,7 +101,7 @@ impl Scene {
         match self.surface(prim) {
             // Patches are numbered within their face.
             Surface::Patch(patch) => SmoothId::of(patch.face.index() as u32, patch.smooth),
-            // Triangles are numbered within their mesh; meshes count from the other end.
+            // Triangles are numbered within their mesh; meshes count down from the largest number.
             Surface::Triangle(body, triangle) => {
                 let mesh = self.meshes.partition_point(|other| other.first < body.first);
                 SmoothId::of(u32::MAX - mesh as u32, body.mesh.smooth_id(triangle))
@@ -119,7 +119,7 @@ impl Scene {
         }
     }
 
-    /// The face of a name such as `pipe.exit`.
+    /// The face with a name such as `pipe.exit`.
     pub fn face_named(&self, name: &str) -> Option<FaceId> {
         self.faces.iter().position(|face| face.name == name).map(FaceId::new)
     }
@@ -190,7 +190,7 @@ impl Scene {
         }
     }
 
-    /// What a face belongs to.
+    /// The owner of a face.
     #[inline]
     pub fn owner(&self, face: FaceId) -> Owner {
         self.faces[face.index()].owner

@@ -1,8 +1,8 @@
 //! The pixels of an image: directions behind a lens without distortion.
 //!
-//! A plane at distance 1 before the aperture is divided into equal squares, as the sensor behind a lens is, so that
-//! straight lines of the scene are straight in the image. A place in that plane is a pair of tangents. Nothing is
-//! known here of the aperture.
+//! A plane at distance 1 in front of the aperture is divided into equal squares, like the sensor
+//! behind a lens, so straight lines of the scene are straight in the image. A point in that plane
+//! is a pair of tangents. This module does not know the aperture.
 
 use crate::scene::Grid;
 use crate::scene::shape::ChartRect;
@@ -12,7 +12,7 @@ use lumiduct_base::math::Frame;
 /// The pixels of an imaging luminance meter.
 #[derive(Debug, Clone)]
 pub struct Pixels {
-    /// To the right as the eye at the aperture sees it, unit vector.
+    /// To the right as seen from the aperture, unit vector.
     right: DVec3,
     /// Up, unit vector.
     up: DVec3,
@@ -25,8 +25,9 @@ pub struct Pixels {
 }
 
 impl Pixels {
-    /// An image of so many columns and rows whose pixel in the middle would be seen under the angle `pixel`, rad. It
-    /// looks along the z of `frame`, with y up and, since the eye looks along z, x to the left.
+    /// An image of `columns` by `rows` in which a pixel in the middle would subtend the angle
+    /// `pixel`, rad. It looks along the z of `frame`, with y up and, because the view is along z, x
+    /// to the left.
     pub fn new(frame: &Frame, [columns, rows]: [usize; 2], pixel: f64) -> Self {
         let pitch = 2.0 * (0.5 * pixel).tan();
         let half = 0.5 * pitch * DVec2::new(columns as f64, rows as f64);
@@ -136,7 +137,8 @@ mod tests {
     fn the_image_is_as_the_eye_sees_it() {
         let image = Pixels::new(&Frame::WORLD, [2, 2], 0.1);
         let seen = |x: f64, y: f64| image.pixel(DVec3::new(x, y, 1.0).normalize());
-        // Looking along +z with +y up, +x is on the left. Pixels go from the left and from below.
+        // Looking along +z with +y up, +x is on the left. Pixels count from the left and from
+        // below.
         assert_eq!(seen(0.05, -0.05), Some(0));
         assert_eq!(seen(-0.05, -0.05), Some(1));
         assert_eq!(seen(0.05, 0.05), Some(2));

@@ -1,7 +1,7 @@
 //! A cut through the scene: the lines in which a plane meets every face, as points.
 //!
-//! The plane is scanned by two families of parallel rays; where one family runs along a surface the other crosses it.
-//! That serves every kind of surface alike, without a formula for each.
+//! The plane is scanned by two families of parallel rays; where one family runs along a surface the
+//! other crosses it. That works for every kind of surface, without a formula for each.
 
 use crate::optics::Bsdf;
 use crate::scene::pattern::Part;

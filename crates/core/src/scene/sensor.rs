@@ -1,4 +1,5 @@
-//! Virtual sensors: where and how flux is counted. They never bend or stop light, unless their face absorbs.
+//! Virtual sensors: where and how flux is counted. They never bend or stop light unless their face
+//! absorbs.
 
 use crate::scene::shape::Toward;
 use crate::scene::{FaceId, Grid, Pixels, Ray};
@@ -11,11 +12,11 @@ use std::f64::consts::TAU;
 pub struct Sensor {
     /// Name in the scene file.
     pub name: String,
-    /// What is measured.
+    /// The measured quantity.
     pub kind: SensorKind,
     /// Faces or open ports through which a remote sensor is lit; empty: from anywhere.
     pub aim: Vec<FaceId>,
-    /// The port whose entering flux the transmission is counted against.
+    /// The port whose entering flux is the reference of the transmission.
     pub entering: Option<FaceId>,
 }
 
@@ -29,7 +30,7 @@ pub enum SensorKind {
 }
 
 impl Sensor {
-    /// Whether a path counts on its first passage alone.
+    /// Whether a path counts only on its first passage.
     #[inline]
     pub fn counts_first_passage(&self) -> bool {
         match &self.kind {
@@ -50,7 +51,7 @@ impl Sensor {
 /// Flux through or on faces.
 #[derive(Debug, Clone)]
 pub struct SurfaceSensor {
-    /// The faces that make the sensor.
+    /// The faces that form the sensor.
     pub faces: Vec<FaceId>,
     /// Whether they are faces of the scene or a port in free space.
     pub place: Place,
@@ -64,9 +65,10 @@ pub struct SurfaceSensor {
     pub grid: Grid,
     /// Area of each cell, mm².
     pub areas: Vec<f64>,
-    /// The part of each cell that lies on the sensor, by area, 1: less than 1 where the rim or a hole cuts it.
+    /// The fraction of each cell that lies on the sensor, by area, 1: less than 1 where the rim or
+    /// a hole cuts it.
     pub covered: Vec<f64>,
-    /// The directions that are told apart.
+    /// The directions that are separated.
     pub seeing: Seeing,
     /// For drawings and files: middle and axes of a flat sensor.
     pub frame: Option<Frame>,
@@ -77,7 +79,7 @@ pub struct SurfaceSensor {
 pub enum Passage {
     /// All of them.
     Every,
-    /// The first one: flux is that of light which has passed at all.
+    /// Only the first: the flux of light that has passed at least once.
     First,
 }
 
@@ -98,27 +100,27 @@ impl SurfaceSensor {
     }
 }
 
-/// Which directions of light a surface sensor tells apart.
+/// The directions of light that a surface sensor separates.
 #[derive(Debug, Clone)]
 pub enum Seeing {
-    /// None: all light counts alike, as illuminance.
+    /// None: all light counts equally, as illuminance.
     All,
-    /// Some cones, in each of which all cells see: luminance by cell and view.
+    /// Some cones, each seen by all cells: luminance by cell and view.
     Views(Views),
-    /// The pixels of an image, which all of the one cell sees: luminance by direction.
+    /// The pixels of an image, all seen by the single cell: luminance by direction.
     Pixels(Box<Pixels>),
 }
 
-/// Where a surface sensor is.
+/// Location of a surface sensor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Place {
     /// On material faces of the scene: counted at the interface.
     Face,
-    /// On a port: light passes through it, counted along its way.
+    /// On a port: light passes through it and is counted on its path.
     Port,
 }
 
-/// Which light counts.
+/// The light that counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Counts {
     /// Light before the interface acts.
@@ -127,14 +129,14 @@ pub enum Counts {
     Leaving,
 }
 
-/// On which sides of a face light counts: the side it arrives from, or leaves to.
+/// The sides of a face on which light counts: the side it arrives from, or leaves to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sides {
     /// The side of the normal.
     Front,
     /// The other side.
     Back,
-    /// Both.
+    /// Both sides.
     Both,
 }
 
@@ -157,7 +159,8 @@ impl Sides {
 /// The directions of a luminance sensor: unit vectors away from the face, and one acceptance cone.
 #[derive(Debug, Clone)]
 pub struct Views {
-    /// Away from the face: toward where arriving light comes from, or where leaving light goes to.
+    /// Away from the face: toward the origin of arriving light, or the destination of leaving
+    /// light.
     pub directions: Vec<DVec3>,
     /// Half-angle of the acceptance cone, rad.
     pub half_angle: f64,
@@ -166,7 +169,7 @@ pub struct Views {
 }
 
 impl Views {
-    /// The views that take in light along `away`, a unit vector away from the face.
+    /// The views that accept light along `away`, a unit vector away from the face.
     #[inline]
     pub fn accepting(&self, away: DVec3) -> impl Iterator<Item = usize> + Clone + '_ {
         // |a - b| = 2 sin(θ/2) keeps the digits of narrow cones.
@@ -238,7 +241,7 @@ impl Goniometer {
         if discriminant < 0.0 {
             return None;
         }
-        // The further root is the way out; a start beyond it has it behind.
+        // The further root is the exit; from a start beyond it, it lies behind.
         let t = -half_b + discriminant.sqrt();
         (t > 0.0 && t <= length).then(|| (t, (ray.at(t) - self.frame.origin) / radius))
     }

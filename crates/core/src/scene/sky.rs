@@ -1,7 +1,7 @@
-//! Light of the sky as a law of emission: which directions it comes from, in the frame of what it starts on.
+//! Light of the sky as a law of emission: its directions, in the frame of the emitter.
 //!
-//! It knows how bright the sky is relative to the zenith, and how to draw from that; neither where light starts nor
-//! how much there is.
+//! It knows the luminance of the sky relative to the zenith and how to sample it, but not where
+//! light starts or how much there is.
 
 use crate::optics::{SkyBound, SkyModel};
 use crate::rng::{Dimension, Numbers, Sampler};
@@ -9,23 +9,24 @@ use glam::DVec3;
 use lumiduct_base::math::{Frame, cosine_hemisphere, from_cosine, uniform_sphere};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// What kind of thing emits: it decides the measure in which a law is uniform.
+/// The kind of emitter, which sets the measure in which a law is uniform.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EmitterKind {
     /// A point: laws are intensities.
     Point,
-    /// A surface: laws are radiances, flux goes with the cosine to the normal.
+    /// A surface: laws are radiances, and flux is proportional to the cosine to the normal.
     Surface,
     /// A volume: laws are intensities.
     Volume,
-    /// The far distance: laws are radiances, and a disk across each direction takes the flux.
+    /// The far distance: laws are radiances, and a disk across each direction receives the flux.
     Far,
 }
 
-/// Steps of the quadrature from zenith to horizon, with two points of Gauss each, and around. The edges of what a tilted
-/// plane sees leave an error of 1e-5; skies on a level plane come out to 1e-9.
+/// Steps of the quadrature from zenith to horizon, with two points of Gauss each, and around. The
+/// edges of the field of a tilted plane leave an error of 1e-5; skies on a level plane are accurate
+/// to 1e-9.
 const STEPS: [u32; 2] = [256, 512];
-/// A surface that gets less than this share of what a level one gets sees no sky worth tracing.
+/// A surface that receives less than this share of a level one's flux sees no sky worth tracing.
 const LEAST_SHARE: f64 = 1e-3;
 
 /// A sky, seen from an emitter.
@@ -37,10 +38,10 @@ pub struct Sky {
     amounts: Amounts,
 }
 
-/// What a sky of unit zenith luminance gives, sr.
+/// Integrals of a sky of unit zenith luminance, sr.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Amounts {
-    /// ∫ L dω: per disk that is turned across every direction.
+    /// ∫ L dω: for a disk turned across every direction.
     across: f64,
     /// ∫ L cos θ dω over the half space in front of the emitter's plane.
     on_plane: f64,
@@ -67,12 +68,12 @@ impl Sky {
         }
     }
 
-    /// Whether a surface gets enough of the sky to be traced.
+    /// Whether a surface receives enough of the sky to be traced.
     pub fn is_seen_by_surface(&self) -> bool {
         self.amounts.on_plane > LEAST_SHARE * self.amounts.level
     }
 
-    /// Density in 1/sr with which [`Sky::sample`] draws the direction `dir` in which light goes.
+    /// Density in 1/sr with which [`Sky::sample`] draws the direction of travel `dir`.
     pub fn density(&self, kind: EmitterKind, dir: DVec3) -> f64 {
         let cos = match kind {
             EmitterKind::Surface => dir.z.max(0.0),
@@ -81,8 +82,8 @@ impl Sky {
         self.luminance(dir) * cos / self.projected_solid_angle(kind)
     }
 
-    /// A direction in which light goes, in proportion to the flux: by rejection from an even part and a glow about the
-    /// sun that together are nowhere less than the sky.
+    /// A direction of travel, in proportion to the flux: by rejection from an even part and a glow
+    /// about the sun that together are nowhere less than the sky.
     pub fn sample(&self, kind: EmitterKind, sampler: &mut Sampler<impl Numbers>) -> DVec3 {
         let SkyBound { even, glow, decay, sun } = self.model.bound();
         let sun = self.frame.to_world(sun);
@@ -102,7 +103,7 @@ impl Sky {
             };
             let from_sun = (-dir.dot(sun)).clamp(-1.0, 1.0).acos();
             let bound = even + if glow == 0.0 { 0.0 } else { glow * (-decay * from_sun).exp() };
-            // The even part of a surface is drawn with the cosine already.
+            // The even part of a surface is already drawn with the cosine.
             let cos = match (kind, is_even) {
                 (EmitterKind::Surface, false) => dir.z,
                 (EmitterKind::Surface, true)
@@ -114,7 +115,7 @@ impl Sky {
         }
     }
 
-    /// Luminance over that of the zenith of the light that goes along `dir`, 1.
+    /// Luminance of the light that travels along `dir` relative to that of the zenith, 1.
     fn luminance(&self, dir: DVec3) -> f64 {
         self.model.luminance(self.frame.to_local(-dir))
     }
@@ -148,7 +149,7 @@ fn amounts(model: &SkyModel, frame: &Frame) -> Amounts {
     let [rings, sectors] = STEPS;
     let (ring, sector) = (FRAC_PI_2 / f64::from(rings), TAU / f64::from(sectors));
     let mut sum = Amounts { across: 0.0, on_plane: 0.0, level: 0.0 };
-    // Points of Gauss: 1/√3 of the half step from its middle.
+    // Gauss points: 1/√3 of the half step from its middle.
     let offset = 0.5 / 3f64.sqrt();
     let places = (0..rings).map(f64::from).flat_map(|i| [i + 0.5 - offset, i + 0.5 + offset]);
     for place in places {
@@ -191,7 +192,7 @@ mod tests {
         let even = Sky::new(SkyModel::uniform(), level());
         let overcast = Sky::new(SkyModel::overcast(), level());
         let wall = Frame { origin: DVec3::ZERO, x: DVec3::Y, y: DVec3::Z, z: DVec3::X };
-        // Per disk across all directions 2π L and 4/3 π Lz; illuminance of a wall half of π L.
+        // For a disk across all directions 2π L and 4/3 π Lz; illuminance of a wall half of π L.
         for (found, expected) in [
             (even.projected_solid_angle(EmitterKind::Far), TAU),
             (overcast.projected_solid_angle(EmitterKind::Far), 4.0 / 3.0 * PI),

@@ -12,17 +12,18 @@ pub struct Source {
     pub name: String,
     /// Emitted flux, lm or W.
     pub flux: f64,
-    /// What emits.
+    /// The emitting geometry.
     pub emitter: Emitter,
-    /// In which directions.
+    /// The directions of its light.
     pub emission: Emission,
     /// How the solids around a start point are found.
     pub start: Start,
-    /// For each of its shapes the surface of the scene that it is, if it is one: light does not meet it at its start.
+    /// For each of its shapes, the surface of the scene that coincides with it, if any: light does
+    /// not meet it at its start.
     pub on: Vec<PrimId>,
-    /// Of a sun, its elevation above the horizon, rad.
+    /// For a sun, its elevation above the horizon, rad.
     pub elevation: Option<f64>,
-    /// Of daylight that depends on the sun, where that stands.
+    /// For daylight that depends on the sun, the position of the sun.
     pub sun: Option<SunAngles>,
 }
 
@@ -35,7 +36,7 @@ pub struct SunAngles {
     pub azimuth: f64,
 }
 
-/// What emits.
+/// The geometry of a source.
 #[derive(Debug, Clone)]
 pub enum Emitter {
     /// A point; +z of the frame is its axis.
@@ -56,7 +57,8 @@ pub enum Emitter {
         /// For tilted cones and beams: the frame that a flat source's directions refer to.
         frame: Option<Frame>,
     },
-    /// The far distance: a sphere around everything that shines inward, at a smaller one about the same middle.
+    /// The far distance: a sphere around everything that shines inward, at a smaller concentric
+    /// one.
     Far {
         /// The sphere where light starts, its front inside, with its area, mm².
         shapes: [(Shape, f64); 1],
@@ -90,27 +92,28 @@ pub enum EmitSide {
 pub enum Start {
     /// The source touches no solid: all paths start outside.
     Outside,
-    /// Asked for every path, just ahead of the start: a source on a face emits beyond it.
+    /// Tested for every path, just ahead of the start: a source on a face emits beyond it.
     Ahead,
-    /// Asked for every path, just behind the start: light still has to cross a face that the source lies on.
+    /// Tested for every path, just behind the start: light must still cross a face that the source
+    /// lies on.
     Behind,
 }
 
 /// The start of a photon path.
 #[derive(Debug, Clone)]
 pub struct Emitted {
-    /// Where and in which direction.
+    /// Position and direction.
     pub ray: Ray,
     /// The solids it starts in.
     pub inside: Inside,
     /// The surface of the scene that it starts on.
     pub on: Option<PrimId>,
-    /// The shape of a surface source that it starts on, by its place; 0 of other sources.
+    /// The index of the shape of a surface source that it starts on; 0 for other sources.
     pub shape: usize,
 }
 
 impl Source {
-    /// Whether it emits at all: one that is switched off, or of zero flux, is there and dark.
+    /// Whether it emits at all: false for one that is switched off, or of zero flux.
     #[inline]
     pub fn is_lit(&self) -> bool {
         self.flux > 0.0
@@ -131,7 +134,8 @@ impl Emitter {
         Self::Surface { shapes, side, frame }
     }
 
-    /// The far distance, shining at a sphere from another one of a larger `radius` about it; all in mm.
+    /// The far distance, shining at a sphere of radius `reach` from a concentric one of larger
+    /// `radius`; all in mm.
     pub fn far(center: DVec3, reach: f64, radius: f64) -> Self {
         let frame = Frame { origin: center, ..Frame::WORLD };
         let shape = Shape::Sphere(Sphere::zone(frame, radius, -radius, radius).inward());

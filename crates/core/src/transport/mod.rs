@@ -1,7 +1,8 @@
-//! Light through a scene: photon paths, the one bounce loop, estimators, and the readings they leave.
+//! Light through a scene: photon paths, the one bounce loop, estimators, and their readings.
 //!
-//! This layer knows no file format and no report. What it produces is one serialisable value, [`Readings`]. Folders from
-//! the bottom up: `stop`, `tally`, `walk`, `forward`, `gather`, `backward`, `choose`, `run`.
+//! This layer does not know file formats or reports. Its output is one serialisable value,
+//! [`Readings`]. Folders from the bottom up: `stop`, `tally`, `walk`, `forward`, `gather`,
+//! `backward`, `choose`, `run`.
 
 mod backward;
 mod choose;

@@ -1,7 +1,7 @@
-//! What ends a run from outside, the user or the clock, and how often tracing looks at it.
+//! External ends of a run, by the user or the clock, and how often tracing checks for them.
 //!
-//! Between two looks lies a fixed amount of counted work, not of time. Work that was stopped is dropped as a whole:
-//! results depend on the number of finished batches alone.
+//! The interval between two checks is a fixed amount of counted work, not of time. Stopped work is
+//! dropped as a whole: results depend only on the number of finished batches.
 
 use std::cell::Cell;
 use std::ops::ControlFlow;
@@ -9,36 +9,39 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-/// Work between two looks, in straight pieces of paths: a tenth of a millisecond in simple scenes, some milliseconds where
-/// a ray is expensive.
+/// Work between two checks, in straight pieces of paths: a tenth of a millisecond in simple scenes,
+/// some milliseconds where a ray is expensive.
 pub(crate) const LOOK_EVERY: u32 = 1024;
-/// Work of a gather path with its records, in straight pieces: `transport::work` has the times that this follows from.
+/// Work of a gather path with its records, in straight pieces: it follows from the times in
+/// `transport::work`.
 pub(crate) const RECORD_WORK: u32 = 32;
-/// By how much a run may exceed its time if it has no finished batch, so that short runs have something to report.
+/// Time by which a run may exceed its limit if it has no finished batch, so that short runs have
+/// something to report.
 pub const FIRST_BATCH_GRACE: Duration = Duration::from_millis(400);
 
-/// What a program is doing when the user asks it to stop.
+/// Activity of a program when the user requests a stop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Activity {
-    /// It reads, computes, compares or draws what counts as a whole only: nothing is lost or half written if it ends at once.
+    /// It reads, computes, compares or draws something that is only useful as a whole: nothing is
+    /// lost or half written if it ends at once.
     Computing,
-    /// It traces: paths end at their next look, and what was traced is reported.
+    /// It traces: paths end at their next check, and the finished work is reported.
     Tracing,
-    /// Files take their places, which ends soon.
+    /// Files are moved into place, which takes little time.
     Writing,
 }
 
-/// What a request to stop leads to.
+/// Effect of a request to stop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StopAnswer {
     /// The run ends by itself.
     EndRun,
-    /// The program has to end now.
+    /// The program must end now.
     EndProgram,
 }
 
-/// A flag that asks a run to stop.
+/// A flag that stops a run.
 #[derive(Debug, Clone, Default)]
 pub struct Interrupt(Arc<Flag>);
 
@@ -47,9 +50,9 @@ struct Flag {
     raised: AtomicBool,
     /// An [`Activity`].
     activity: AtomicU8,
-    /// Looks of runs in progress.
+    /// Checks by runs in progress.
     looks: AtomicU64,
-    /// The look at which the flag is raised.
+    /// The check at which the flag is raised.
     raised_at: u64,
 }
 
@@ -65,35 +68,36 @@ impl Default for Flag {
 }
 
 impl Interrupt {
-    /// A flag that is raised at the given look of a run, counted from 1: for tests that do not depend on time.
+    /// A flag that is raised at the given check of a run, counted from 1: for tests that do not
+    /// depend on time.
     pub fn at_look(look: u64) -> Self {
         Self(Arc::new(Flag { raised_at: look, ..Flag::default() }))
     }
 
-    /// Notes what the program does from now on.
+    /// Records the activity of the program from now on.
     pub fn begin(&self, activity: Activity) {
         self.0.activity.store(activity as u8, Ordering::SeqCst);
     }
 
-    /// Asks the program to stop, as the user does; what that leads to depends on what it is doing. The second request ends
-    /// it in any case.
+    /// Requests a stop, as the user does; the effect depends on the current activity. The second
+    /// request ends the program in any case.
     pub fn request(&self) -> StopAnswer {
         let is_second = self.0.raised.swap(true, Ordering::SeqCst);
         let is_computing = self.0.activity.load(Ordering::SeqCst) == Activity::Computing as u8;
         if is_second || is_computing { StopAnswer::EndProgram } else { StopAnswer::EndRun }
     }
 
-    /// Asks the run to stop.
+    /// Requests the run to stop.
     pub fn raise(&self) {
         self.0.raised.store(true, Ordering::Relaxed);
     }
 
-    /// Whether the run was asked to stop.
+    /// Whether the run is requested to stop.
     pub fn is_raised(&self) -> bool {
         self.0.raised.load(Ordering::Relaxed)
     }
 
-    /// How often runs have looked at it.
+    /// Number of checks by runs.
     pub fn looks(&self) -> u64 {
         self.0.looks.load(Ordering::Relaxed)
     }
@@ -107,19 +111,19 @@ impl Interrupt {
     }
 }
 
-/// What ends a run from outside: an interrupt, and the end of its time.
+/// External ends of a run: an interrupt, and its time limit.
 #[derive(Debug, Clone, Default)]
 pub struct StopSignal {
     interrupt: Interrupt,
     end: Option<End>,
 }
 
-/// When the time of a run is over.
+/// The end of a run's time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum End {
     /// At a time.
     At(Instant),
-    /// After so many looks, and some more as grace: a clock that counts work.
+    /// After this many checks, and some more as grace: a clock that counts work.
     AtLook { look: u64, grace: u64 },
 }
 
@@ -129,13 +133,13 @@ impl StopSignal {
         Self { interrupt: interrupt.clone(), end: end.map(End::At) }
     }
 
-    /// A time that is over at a look of the interrupt, with so many looks of grace: a clock that counts work and not
-    /// time, for tests.
+    /// A time that ends at a check of the interrupt, with some more checks of grace: a clock that
+    /// counts work and not time, for tests.
     pub fn ending_at_look(interrupt: &Interrupt, look: u64, grace: u64) -> Self {
         Self { interrupt: interrupt.clone(), end: Some(End::AtLook { look, grace }) }
     }
 
-    /// Whether work has to stop.
+    /// Whether work must stop.
     pub(crate) fn is_due(&self) -> bool {
         self.interrupt.look() || self.end.is_some_and(|end| self.is_over(end))
     }
@@ -155,7 +159,7 @@ impl StopSignal {
         })
     }
 
-    /// The same with half of the time that is left.
+    /// The same with half of the remaining time.
     pub(crate) fn with_half(&self) -> Self {
         let now = Instant::now();
         self.with_end(|end| match end {
@@ -167,8 +171,8 @@ impl StopSignal {
         })
     }
 
-    /// Straight pieces of paths that the time which is left is good for; `None` where it is not limited. `time` measures how
-    /// long a piece takes, s.
+    /// Straight pieces of paths that fit in the remaining time; `None` if it is not limited. `time`
+    /// measures the time of a piece, s.
     pub(crate) fn work_left(&self, time: impl FnOnce() -> Option<f64>) -> Option<f64> {
         match self.end? {
             End::At(end) => {
@@ -187,17 +191,17 @@ impl StopSignal {
     }
 }
 
-/// The work of one batch or pass, which ends it when a signal says so.
+/// The work of one batch or pass, which a signal can end.
 #[derive(Debug)]
 pub struct Pace<'a> {
     signal: &'a StopSignal,
-    /// Work until the next look.
+    /// Work until the next check.
     left: Cell<u32>,
     is_stopped: Cell<bool>,
 }
 
 impl<'a> Pace<'a> {
-    /// Looks at the signal for the first time.
+    /// Checks the signal for the first time.
     pub fn new(signal: &'a StopSignal) -> Self {
         let pace = Self { signal, left: Cell::new(0), is_stopped: Cell::new(false) };
         _ = pace.look();
@@ -215,7 +219,7 @@ impl<'a> Pace<'a> {
         self.look()
     }
 
-    /// Whether the batch has to be dropped.
+    /// Whether the batch must be dropped.
     pub(crate) fn is_stopped(&self) -> bool {
         self.is_stopped.get()
     }
@@ -223,7 +227,7 @@ impl<'a> Pace<'a> {
     #[cold]
     #[inline(never)]
     fn look(&self) -> ControlFlow<()> {
-        // Of a batch that is stopped, nothing is left: every further piece of work comes here and ends.
+        // For a stopped batch nothing is left: every further piece of work gets here and ends.
         if !self.is_stopped() && !self.signal.is_due() {
             self.left.set(LOOK_EVERY);
             return ControlFlow::Continue(());

@@ -1,9 +1,10 @@
 //! One period of a prism film in its cross-section, and what light does there from interface to interface.
 //!
-//! Lengths are in pitches. x runs across the prisms, y from the flat face into the film, w along the prisms: the flat face
-//! is y = 0, valleys are at x = 0 (and 1, 2, ...) and y = base, tips at x = ½ and y = top. The third component of a
-//! direction never changes its size, so that a step is plane geometry; Fresnel's equations are those of space. It knows
-//! neither finishes nor pitches in mm.
+//! Lengths are in pitches. x runs across the prisms, y from the flat face into the film, w along
+//! the prisms: the flat face is y = 0, valleys are at x = 0 (and 1, 2, ...) and y = base, tips at x
+//! = ½ and y = top. The third component of a direction never changes its magnitude, so a step is
+//! plane geometry; Fresnel's equations use all three components. This module knows neither finishes
+//! nor pitches in mm.
 
 use crate::optics::fresnel;
 use glam::{DVec2, DVec3};
@@ -15,9 +16,10 @@ pub(super) struct Cell {
     pub(super) base: f64,
     /// Height of the tips above the flat face, pitches.
     pub(super) top: f64,
-    /// Outward unit normal of the facet from a valley up to the tip at larger x; that of the other one is mirrored.
+    /// Outward unit normal of the facet that rises from a valley to the tip at larger x; the normal
+    /// of the other one is mirrored.
     pub(super) facet: DVec2,
-    /// Share of a facet, half of it at each end, that is rounded: light that meets it is lost. 1.
+    /// Share of a facet that is rounded, half of it at each end; light that meets it is lost. 1.
     pub(super) rounded: f64,
 }
 
@@ -29,29 +31,29 @@ pub(super) struct Indices {
     pub(super) prisms: f64,
 }
 
-/// Where light is in the cell.
+/// Position and direction of light in the cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct State {
-    /// Pitches; x is counted within the period of the room.
+    /// Position, pitches; x is relative to the period of the room.
     at: DVec2,
     /// Unit direction (x, y, w).
     dir: DVec3,
     pub(super) room: Room,
     on: Option<Facet>,
-    /// Way in the film until here, pitches.
+    /// Path length in the film so far, pitches.
     way: f64,
 }
 
 /// A part of the cell without inner faces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Room {
-    /// A prism; x in 0..1 between its valleys. The base below is passed in one go.
+    /// A prism; x in 0..1 between its valleys. The base below it is crossed in one step.
     Prism,
     /// The groove between two prisms, below the tips; x in -½..½ about the valley.
     Groove,
 }
 
-/// A facet of a prism, or a side of a groove, by the way it rises.
+/// A facet of a prism, or a side of a groove, by the direction in which it rises.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Facet {
     /// Toward larger x.
@@ -63,8 +65,8 @@ enum Facet {
 /// What happens next to light in the cell.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Step {
-    /// It met an interface: it goes on reflected with the share `reflectance`, and refracted with the rest. `refracted` is
-    /// `None` under total reflection.
+    /// It met an interface: the share `reflectance` is reflected, and the rest is refracted.
+    /// `refracted` is `None` under total reflection.
     Met { reflectance: f64, reflected: State, refracted: Option<After> },
     /// It left past the tips.
     Out(Exit),
@@ -72,12 +74,12 @@ pub(super) enum Step {
     Lost,
 }
 
-/// Where refracted light goes.
+/// Destination of refracted light.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum After {
-    /// On in the cell.
+    /// It stays in the cell.
     Inside(State),
-    /// Out of the flat face.
+    /// It leaves through the flat face.
     Out(Exit),
 }
 
@@ -86,13 +88,13 @@ pub(super) enum After {
 pub(super) struct Exit {
     /// Unit direction (x, y, w).
     pub(super) dir: DVec3,
-    /// Way in the film, pitches.
+    /// Path length in the film, pitches.
     pub(super) way: f64,
 }
 
 impl Cell {
-    /// Light that comes to the flat face at a place of the period: its reflectance, the direction of what is reflected,
-    /// and what is refracted.
+    /// Light that arrives at the flat face at a position in the period: its reflectance, the
+    /// direction of the reflected part, and the refracted part.
     #[inline(always)]
     pub(super) fn enter_flat(&self, x: f64, dir: DVec3, indices: &Indices) -> (f64, DVec3, State) {
         let normal = DVec3::NEG_Y;
@@ -102,14 +104,14 @@ impl Cell {
         (reflectance, fresnel::mirrored(dir, normal), state)
     }
 
-    /// Light that comes to the prisms at the level of the tips.
+    /// Light that arrives at the prisms at the level of the tips.
     pub(super) fn enter_prisms(&self, x: f64, dir: DVec3) -> State {
         let at = DVec2::new(x - 0.5, self.top);
         State { at, dir, room: Room::Groove, on: None, way: 0.0 }
     }
 
     /// The next thing that happens.
-    // All of a step in one piece, so that states stay in registers.
+    // A step is inlined as one piece, so that states stay in registers.
     #[inline(always)]
     pub(super) fn step(&self, state: &State, indices: &Indices) -> Step {
         let meets = |facet: Facet| self.distance(state, facet);
@@ -135,7 +137,7 @@ impl Cell {
         }
     }
 
-    /// Light that goes up from a place of the flat face, as it comes into a prism.
+    /// Light that goes up from a position on the flat face, as it enters a prism.
     #[inline(always)]
     fn rise(&self, x: f64, dir: DVec3, way: f64) -> State {
         let length = self.base / dir.y;
@@ -145,7 +147,7 @@ impl Cell {
         State { at, dir, room: Room::Prism, on: None, way: way + length }
     }
 
-    /// What the flat face does to light that comes down to it.
+    /// Light that comes down to the flat face.
     #[inline(always)]
     fn meet_flat(&self, state: &State, indices: &Indices) -> Step {
         let dir = state.dir;
@@ -168,25 +170,25 @@ impl Cell {
         }
     }
 
-    /// How far it is to a facet, pitches; infinite where light does not go toward it.
+    /// Distance to a facet, pitches; infinite where light does not go toward it.
     #[inline(always)]
     fn distance(&self, state: &State, facet: Facet) -> f64 {
         if state.on == Some(facet) {
             return f64::INFINITY;
         }
         let normal = self.normal(facet).truncate();
-        // Of a prism, both facets end at its tip; of a groove, in its valley.
+        // The facets of a prism end at its tip; those of a groove end in its valley.
         let (corner, sense) = match state.room {
             Room::Prism => (DVec2::new(0.5, self.top), 1.0),
             Room::Groove => (DVec2::new(0.0, self.base), -1.0),
         };
         let toward = sense * state.dir.truncate().dot(normal);
         let gap = sense * (corner - state.at).dot(normal);
-        // Rounding may have put light that came along a facet a hair beyond it.
+        // Rounding may have put light that travelled along a facet slightly beyond it.
         if toward > 0.0 { (gap / toward).max(0.0) } else { f64::INFINITY }
     }
 
-    /// What a facet does to light.
+    /// Light that meets a facet.
     #[inline(always)]
     fn meet(
         &self,

@@ -1,11 +1,14 @@
-//! Prism film: flat on one face, with prisms side by side on the other, thin against everything around it.
+//! Prism film: flat on one face, with parallel prisms on the other, thin compared with everything
+//! around it.
 //!
-//! Light that meets it is traced through one period from a place that is drawn evenly over it, and leaves where it arrived:
-//! a film of any size costs no memory. Along the prisms nothing changes but by refraction at faces that contain that
-//! direction, so light keeps its angle to them: a duct lined with film guides light that is near enough to its axis.
-//! For prisms of 90 degrees that is sin θ < tan(π/8) sqrt(n² - 1) at every azimuth (docs/theory.md, eq. 4a; Whitehead,
-//! Nodwell & Curzon, Applied Optics 21 (1982) 2755, describe the guide). Nothing of that is put in here: Snell, Fresnel
-//! for unpolarised light and total reflection at flat facets are. Shifts of a pitch or two along the film are left out.
+//! Light that meets it is traced through one period from a position drawn evenly over it, and
+//! leaves where it arrived: a film of any size costs no memory. All faces contain the direction of
+//! the prisms, so refraction keeps the angle of light to them: a duct lined with film guides light
+//! that is close enough to its axis. For prisms of 90 degrees that is sin θ < tan(π/8) sqrt(n² - 1)
+//! at every azimuth (docs/theory.md, eq. 4a; Whitehead, Nodwell & Curzon, Applied Optics 21 (1982)
+//! 2755, describe the guide). That formula is not used here; the model uses Snell, Fresnel for
+//! unpolarised light and total reflection at flat facets. Shifts of a pitch or two along the film
+//! are neglected.
 
 mod cell;
 mod survey;
@@ -18,14 +21,17 @@ use crate::rng::{Dimension, Numbers, Sampler};
 use cell::{After, Cell, Exit, Indices, Step};
 use glam::{DVec2, DVec3};
 
-/// Steps after which light is taken as absorbed: only light that rounding has caught between faces takes so many.
+/// Steps after which light is treated as absorbed: only light that rounding has trapped between
+/// faces takes this many.
 const MOST_STEPS: usize = 100_000;
-/// Steps after which light that has not come back to the flat face, or only under total reflection, is taken as caught.
+/// Steps after which light that has not returned to the flat face, or only under total reflection,
+/// is treated as trapped.
 const PASSAGE: usize = 1000;
-/// Share of the arriving flux below which a branch goes on by chance, and then with this share, 1.
+/// Share of the arriving flux below which a branch plays roulette; survivors continue with this
+/// share, 1.
 const LEAST_SHARE: f64 = 1e-4;
 
-/// A film with prisms, from its makers' point of view.
+/// A film with prisms, as specified by its maker.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FilmMake {
     /// Refractive index, 1.
@@ -38,16 +44,17 @@ pub struct FilmMake {
     pub base: f64,
     /// Absorption coefficient (natural logarithm), 1/mm.
     pub absorption: f64,
-    /// Share of the facets that is rounded, half of it at tips and half in valleys; light that meets it is lost. 1.
+    /// Share of the facets that is rounded, half at tips and half in valleys; light that meets it
+    /// is lost. 1.
     pub rounded: f64,
-    /// Which way the prisms run.
+    /// Direction of the prisms.
     pub run: Grain,
 }
 
-/// Which way something runs on a face.
+/// Direction of a structure on a face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Grain {
-    /// With the grain of [`Incidence`].
+    /// Along the grain of [`Incidence`].
     Along,
     /// Across it.
     Around,
@@ -56,14 +63,14 @@ pub enum Grain {
 /// A face of a film.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FilmFace {
-    /// The flat one.
+    /// The flat face.
     Flat,
-    /// The one with prisms.
+    /// The face with prisms.
     Prisms,
 }
 
 impl FilmFace {
-    /// The other one.
+    /// The other face.
     pub fn opposite(self) -> Self {
         match self {
             Self::Flat => Self::Prisms,
@@ -82,7 +89,7 @@ pub struct PrismFilm {
     run: Grain,
 }
 
-/// How light comes to a film, in the frame of its cell.
+/// Direction of arriving light, in the frame of the film's cell.
 struct Approach {
     /// Across the prisms, from the flat face into the film, and along the prisms.
     axes: [DVec3; 3],
@@ -91,7 +98,7 @@ struct Approach {
 }
 
 impl PrismFilm {
-    /// The film of a make.
+    /// The film of a specification.
     pub fn new(make: &FilmMake) -> Self {
         let (sin, cos) = (0.5 * make.prism_angle).sin_cos();
         let base = make.base / make.pitch;
@@ -105,8 +112,8 @@ impl PrismFilm {
         Self { cell, index: make.index, absorption, run: make.run }
     }
 
-    /// Sends light on that meets one of the faces, or absorbs it (`None`). The directions are discrete, and which of
-    /// them is taken is random.
+    /// Sends on light that meets one of the faces, or absorbs it (`None`). The directions are
+    /// discrete, and one of them is chosen at random.
     pub fn scatter(
         &self,
         face: FilmFace,
@@ -147,12 +154,12 @@ impl PrismFilm {
         None
     }
 
-    /// Shares of light that meets one of the faces evenly: the mean over `places` places of the period, at each of
-    /// which light is split at every interface and weak branches go on by chance. Two places are apart enough for a tip or valley
-    /// to lie between them.
+    /// Shares of light that meets one of the faces evenly: the mean over `places` positions in the
+    /// period, at each of which light is split at every interface and weak branches play roulette.
+    /// Two positions are far enough apart for a tip or valley to lie between them.
     pub fn shares(&self, face: FilmFace, incidence: &Incidence, places: u32) -> Shares {
         let approach = self.approach(face, incidence);
-        // Always the same numbers: a share is no random quantity.
+        // Always the same numbers: a share is not a random quantity.
         let mut sampler = Sampler::for_path(0, 0, 0);
         let mut sums = [0.0; 2];
         for place in 0..places {
@@ -170,8 +177,8 @@ impl PrismFilm {
         Self { cell: Cell { rounded: 0.0, ..self.cell }, ..*self }
     }
 
-    /// Whether any light that enters the flat face evenly is not totally reflected before it is back there, as far as so
-    /// many places tell.
+    /// Whether some light that enters the flat face evenly is not totally reflected before it
+    /// returns there, as far as this many positions show.
     fn leaks(&self, incidence: &Incidence, places: u32) -> bool {
         let Approach { dir, indices, .. } = self.approach(FilmFace::Flat, incidence);
         (0..places).any(|place| {
@@ -187,13 +194,13 @@ impl PrismFilm {
                     Step::Met { .. } | Step::Lost | Step::Out(_) => return true,
                 };
             }
-            // Light that rounding has caught has not leaked.
+            // Light that rounding has trapped has not leaked.
             false
         })
     }
 
-    /// Follows the branches of light from one place: the face through which each leaves, how, and its share before
-    /// absorption.
+    /// Follows the branches of light from one position: the face through which each leaves, its
+    /// direction, and its share before absorption.
     fn split_from(
         &self,
         face: FilmFace,
@@ -236,7 +243,7 @@ impl PrismFilm {
         }
     }
 
-    /// Light that arrived at one face and leaves through another one or the same.
+    /// Light that arrived at one face and leaves through the other or the same one.
     fn leave(
         &self,
         approach: &Approach,
@@ -268,18 +275,18 @@ impl PrismFilm {
         }
     }
 
-    /// Beer and Lambert, over a way in pitches.
+    /// Beer and Lambert, over a path length in pitches.
     fn transmittance(&self, length: f64) -> f64 {
         if self.absorption == 0.0 { 1.0 } else { (-self.absorption * length).exp() }
     }
 }
 
-/// The middle of a place of the period, pitches.
+/// The middle of a position interval in the period, pitches.
 fn middle(place: u32, places: u32) -> f64 {
     (f64::from(place) + 0.5) / f64::from(places)
 }
 
-/// One draw; none where only one is possible.
+/// One draw; none where only one outcome is possible.
 fn is_reflected(reflectance: f64, sampler: &mut Sampler<impl Numbers>) -> bool {
     reflectance > 0.0 && sampler.one(Dimension::Lobe) < reflectance
 }

@@ -1,21 +1,22 @@
-//! What a film does over all directions, as its users ask for it.
+//! Properties of a film over all directions, for its users.
 
 use crate::optics::{Incidence, PrismFilm};
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 
-/// Places of the period that are tried for a leak.
+/// Positions in the period that are tried for a leak.
 const PLACES: u32 = 64;
 /// Azimuths that are tried at each refinement.
 const AZIMUTHS: u32 = 180;
 /// Narrowest range of azimuths that is refined, rad: below it the angle changes by less than its rounding.
 const NARROWEST: f64 = 1e-6;
-/// To which an angle is found, rad.
+/// Precision of an angle, rad.
 const FINEST: f64 = 1e-12;
 
-/// The largest angle to the prisms, in rad, up to which light that meets the flat face comes back from every azimuth about
-/// them, none of it transmitted; 0 where none does. `index` is that of the medium on both sides. By trial, not by formula;
-/// rounded edges are left out. Light of one azimuth is taken to leak at all angles beyond the first.
+/// The largest angle to the prisms, in rad, up to which light that meets the flat face returns from
+/// every azimuth about them with no transmission; 0 if there is none. `index` is that of the medium
+/// on both sides. It is found by trial, not by formula; rounded edges are left out. Light of one
+/// azimuth is assumed to leak at all angles beyond the first.
 pub fn acceptance_angle(film: &PrismFilm, index: f64) -> f64 {
     // Rounded edges lose light at every angle: the cone is that of the facets between them.
     let film = &film.with_sharp_edges();

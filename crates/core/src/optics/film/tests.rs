@@ -19,7 +19,7 @@ fn film(index: f64) -> PrismFilm {
     PrismFilm::new(&make(index))
 }
 
-/// The film of a random make, for properties.
+/// A film of random specification, for properties.
 fn any_film() -> impl Strategy<Value = FilmMake> {
     (1.3..1.9f64, 40.0..140.0f64, 0.0..0.5f64).prop_map(|(index, angle, base)| FilmMake {
         prism_angle: angle.to_radians(),
@@ -57,7 +57,8 @@ fn light_within_the_cone_is_mirrored_and_light_outside_is_not() {
 
 #[test]
 fn light_across_the_film_leaves_in_the_plane_it_came_in_turned_back_by_two_facets() {
-    // Along the normal, 1.5: both facets reflect totally at 45 degrees, the flat face takes 4 % there and 4 % back.
+    // Along the normal, index 1.5: both facets reflect totally at 45 degrees; the flat face
+    // reflects 4 % on entry and 4 % on exit.
     let incidence = along_prisms(FRAC_PI_2, 0.0, 1.0);
     let shares = film(1.5).shares(FilmFace::Flat, &incidence, 500);
     assert!((shares.reflected - 1.0).abs() < 1e-4 && shares.transmitted == 0.0, "{shares:?}");
@@ -96,7 +97,7 @@ fn photons_take_the_shares_that_splitting_tells() {
                 out.filter(|out| out.side == side).map_or(0.0, |out| out.factor)
             }));
             let apart = (seen.mean() - told.of(side)).abs();
-            // Tips lie between two places: 1e-3 of the period.
+            // Tips lie between two positions: 1e-3 of the period.
             assert!(apart < 4.0 * seen.std_error() + 1e-3, "{face:?} {angle}: {seen:?}, {told:?}");
         }
     }
@@ -119,7 +120,7 @@ fn a_share_of_rounded_facets_loses_light_that_meets_them() {
     // Along the normal light meets two facets, at the same height of both.
     let incidence = along_prisms(FRAC_PI_2, 0.0, 1.0);
     let shares = rounded.shares(FilmFace::Flat, &incidence, 10_000);
-    // Light that is turned back comes down at the mirrored place: it is lost at once or never.
+    // Light that is turned back comes down at the mirrored position: it is lost at once or never.
     let (front, whole) = (0.04, 0.9);
     let expected = front + (1.0 - front) * whole;
     assert!((shares.reflected - expected).abs() < 1e-3, "{shares:?}, expected {expected}");
@@ -151,8 +152,9 @@ proptest! {
     fn light_that_passes_one_way_passes_the_other_way(
         make in any_film(), angle in 0.1..1.5f64, azimuth in -1.4..1.4f64,
     ) {
-        // Reciprocity of basic radiance: L n² dk_x dk_w is kept, k the direction in the plane of the film, and k_w is
-        // kept itself. So the share from i to o is that from o to i times dk_x(o)/dk_x(i).
+        // Reciprocity of basic radiance: L n² dk_x dk_w is conserved, with k the direction in the
+        // plane of the film, and so is k_w. So the share from i to o is that from o to i times
+        // dk_x(o)/dk_x(i).
         let film = PrismFilm::new(&make);
         let incidence = along_prisms(angle, azimuth, 1.0);
         let step = 1e-5;

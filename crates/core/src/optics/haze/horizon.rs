@@ -1,9 +1,10 @@
-//! How much of a lobe lies above the horizon.
+//! The part of a lobe above the horizon.
 //!
-//! Directions that leave into a medium of index n are the points of a disk of radius n, the lobe is centred on a point
-//! at the distance p from its middle. Within that disk lies
-//! `C(p, n) = (1/2π) ∮ (M(d_out) - M(d_in)) dφ`, where the ray of azimuth φ from the centre of the lobe is in the disk
-//! between `d_in` (0 where the centre is in it) and `d_out`, and M(d) is the lobe within the distance d.
+//! Directions that leave into a medium of index n are the points of a disk of radius n, and the
+//! lobe is centred on a point at the distance p from its middle. The part within that disk is
+//! `C(p, n) = (1/2π) ∮ (M(d_out) - M(d_in)) dφ`, where the ray of azimuth φ from the centre of the
+//! lobe lies in the disk between `d_in` (0 where the centre is in it) and `d_out`, and M(d) is the
+//! part of the lobe within the distance d.
 
 use crate::optics::haze::profile::Profile;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -16,13 +17,13 @@ const OUTSIDE: usize = 65;
 const FARTHEST: f64 = 4.0;
 /// Nodes over the inverse of the index, from 1/4 to 1.
 const INDICES: usize = 13;
-/// The greatest index.
+/// The largest index.
 const GREATEST: f64 = 4.0;
 
-/// For which indices the share above the horizon is wanted.
+/// The indices for which the share above the horizon is needed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Indices {
-    /// As in air, for sheets.
+    /// 1, as in air, for sheets.
     One,
     /// 1 to 4, for interfaces.
     Any,
@@ -34,7 +35,7 @@ pub(super) struct Horizon {
     rows: Vec<Row>,
 }
 
-/// Of one index.
+/// The table of one index.
 #[derive(Debug, Clone, PartialEq)]
 struct Row {
     inside: Vec<f64>,
@@ -70,7 +71,7 @@ fn inverse_index(node: usize) -> f64 {
     GREATEST.recip() + (1.0 - GREATEST.recip()) * node as f64 / (INDICES - 1) as f64
 }
 
-/// The node below a place in 0..=1 on a grid, and how far the place is toward the next one.
+/// The node below a position in 0..=1 on a grid, and the fraction of the way to the next one.
 fn split(place: f64, nodes: usize) -> (usize, f64) {
     let place = place.clamp(0.0, 1.0) * (nodes - 1) as f64;
     let node = (place as usize).min(nodes - 2);
@@ -104,7 +105,8 @@ impl Row {
 fn above(profile: &Profile, center: f64, index: f64) -> f64 {
     let nodes = 128;
     let steps = || (0..nodes).map(|i| (f64::from(i) + 0.5) / f64::from(nodes));
-    // Half of the chord, and how far its middle is from the centre of the lobe, at an azimuth from the nearest rim.
+    // Half of the chord, and the distance of its middle from the centre of the lobe, at an azimuth
+    // from the nearest rim.
     let chord = |phi: f64| {
         let half = (index * index - (center * phi.sin()).powi(2)).max(0.0).sqrt();
         (half, center * phi.cos())

@@ -1,13 +1,16 @@
-//! Haze: faint scatter with long tails about light that is otherwise mirrored, refracted or let through.
+//! Haze: faint scatter with long tails about light that is otherwise mirrored, refracted or
+//! transmitted.
 //!
-//! The lobe depends only on the distance between the arriving and the leaving direction in the plane of direction
-//! cosines, as data sheets and the theory of smooth surfaces have it (Harvey & Shack; Stover, Optical Scattering, 3rd ed. 2012,
-//! chapter 4). What it scatters is taken from the light that goes on undisturbed. Where the horizon cuts the lobe, less is
-//! scattered. Knows no shape of the lobe but by its law.
+//! The lobe depends only on the distance between the arriving and the leaving direction in the
+//! plane of direction cosines, as in data sheets and the theory of smooth surfaces (Harvey & Shack;
+//! Stover, Optical Scattering, 3rd ed. 2012, chapter 4). Scattered light is subtracted from the
+//! undisturbed light. Where the horizon cuts the lobe, less is scattered. This module knows the
+//! shape of the lobe only by its law.
 //!
-//! A sheet has `f = S(|β_o - β_i|)`, with the sines β of angles. Between two media the distance is that of `n β`, which
-//! refraction keeps, and `f = n_o² S(|n_o β_o - n_i β_i|)` on both sides: then `f(i→o)/n_o²` and all that is left
-//! undisturbed are the same both ways, and light that is totally reflected is scattered out of the guide, too.
+//! A sheet has `f = S(|β_o - β_i|)`, with the sines β of angles. Between two media the distance is
+//! that of `n β`, which refraction conserves, and `f = n_o² S(|n_o β_o - n_i β_i|)` on both sides:
+//! then `f(i→o)/n_o²` and the undisturbed share are the same both ways, and totally reflected light
+//! is also scattered out of the guide.
 
 mod horizon;
 mod profile;
@@ -34,23 +37,23 @@ pub struct Haze {
     base: HazeBase,
 }
 
-/// What it is without haze.
+/// The finish without haze.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum HazeBase {
     /// The smooth interface of the two media.
     Interface,
     /// A sheet with shares that do not depend on the angle.
     Sheet {
-        /// Share that is reflected, with what is scattered, 0..=1.
+        /// Share that is reflected, including scattered light, 0..=1.
         reflectance: f64,
-        /// Share that is transmitted, with what is scattered, 0..=1 with the reflectance.
+        /// Share that is transmitted, including scattered light, 0..=1 with the reflectance.
         transmittance: f64,
         /// The sides to which light is scattered.
         scatters: HazeSides,
     },
 }
 
-/// To which sides a sheet scatters; never to one without a share.
+/// The sides to which a sheet scatters; never one without a share.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum HazeSides {
     /// About the mirrored and about the straight direction.
@@ -64,18 +67,19 @@ pub enum HazeSides {
 /// Shares of the arriving light.
 struct Parts {
     scattered: Shares,
-    /// Mirrored, refracted or let through.
+    /// Mirrored, refracted or transmitted.
     undisturbed: Shares,
 }
 
-/// Total integrated scatter, 1: the share of light at normal incidence that is scattered to one side, into a medium
-/// of this index (1 for sheets). It is less at every other angle.
+/// Total integrated scatter, 1: the share of light at normal incidence that is scattered to one
+/// side, into a medium of this index (1 for sheets). It is smaller at every other angle.
 pub fn integrated_scatter(law: HazeLaw, index: f64) -> f64 {
     Profile::new(law).within(index)
 }
 
 impl Haze {
-    /// Haze of this law. A sheet takes what is scattered from its shares: [`integrated_scatter`] is to be less.
+    /// Haze of this law. A sheet subtracts scattered light from its shares, so
+    /// [`integrated_scatter`] must be smaller.
     pub fn new(law: HazeLaw, base: HazeBase) -> Self {
         let profile = Profile::new(law);
         let indices = match base {
@@ -123,7 +127,7 @@ impl Haze {
         self.one_of([scattered, undisturbed].as_flattened(), incidence, sampler)
     }
 
-    /// The same to one side only; the factor holds the share of that side.
+    /// The same to one side only; the factor includes the share of that side.
     pub(crate) fn scatter_toward(
         &self,
         side: Side,
@@ -135,7 +139,7 @@ impl Haze {
         self.one_of(&lobes, incidence, sampler)
     }
 
-    /// f(i→o), 1/sr, without the light that goes on undisturbed.
+    /// f(i→o), 1/sr, without the undisturbed light.
     pub(crate) fn evaluate(&self, incidence: &Incidence, out: DVec3, side: Side) -> f64 {
         let [index_from, index_out] = self.indices(incidence, side);
         let along = index_out * out - index_from * incidence.dir;
@@ -200,7 +204,7 @@ impl Haze {
                 transmitted: transmittance - scattered.transmitted,
             },
         };
-        // Rounding, where all is scattered.
+        // Rounding, where all light is scattered.
         let undisturbed = Shares {
             reflected: undisturbed.reflected.max(0.0),
             transmitted: undisturbed.transmitted.max(0.0),
@@ -232,7 +236,8 @@ impl Haze {
         }
     }
 
-    /// By what direction cosines count: of the light that arrives, and of that which leaves to a side.
+    /// The indices that multiply direction cosines: for arriving light, and for light that leaves
+    /// to a side.
     fn indices(&self, incidence: &Incidence, side: Side) -> [f64; 2] {
         let Incidence { index_from, index_to, .. } = *incidence;
         match (self.base, side) {
@@ -242,7 +247,7 @@ impl Haze {
         }
     }
 
-    /// A direction by the lobe, above the horizon.
+    /// A direction drawn from the lobe, above the horizon.
     fn drawn(
         &self,
         incidence: &Incidence,
@@ -257,7 +262,7 @@ impl Haze {
         let frame = Frame::from_axis_and_x(DVec3::ZERO, normal, toward_middle)
             .unwrap_or_else(|| Frame::from_axis(DVec3::ZERO, normal));
         let range = [(away - index_out).max(0.0), away + index_out];
-        // Turns about the direction to the middle of the disk in which there is some of it.
+        // Angles about the direction to the middle of the disk at which part of it lies.
         let widest =
             if away > index_out { (index_out / away).asin() / std::f64::consts::TAU } else { 0.5 };
         loop {

@@ -1,16 +1,18 @@
-//! How scatter falls off from the mirrored or refracted direction, in the space of direction cosines.
+//! Fall-off of scatter from the mirrored or refracted direction, in the space of direction cosines.
 //!
-//! Knows neither a direction nor a horizon: only the distance d between two points of that plane.
+//! This module knows neither directions nor a horizon: only the distance d between two points of
+//! that plane.
 
 use crate::rng::{Dimension, Numbers, Sampler};
 use std::f64::consts::PI;
 
 /// Rings of a table over the distance.
 const RINGS: usize = 256;
-/// The farthest distance: that of two directions along a face between two media of index 4.
+/// The largest distance: that of two directions along a face between two media of index 4.
 pub(super) const FARTHEST: f64 = 8.0;
 
-/// The law of the scatter, 1/sr, over the distance d of direction cosines; it nowhere grows with d.
+/// The law of the scatter, 1/sr, over the distance d of direction cosines; it never increases with
+/// d.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum HazeLaw {
     /// `A / (B + d^g)`: the `ABg` model of data sheets.
@@ -29,7 +31,7 @@ pub enum HazeLaw {
         b0: f64,
         /// Distance of the shoulder, above 0.
         shoulder: f64,
-        /// Slope beyond it on doubly logarithmic paper, not positive.
+        /// Slope beyond it on log-log axes, not positive.
         slope: f64,
     },
 }
@@ -46,10 +48,10 @@ impl HazeLaw {
         }
     }
 
-    /// The distance at which it begins to fall.
+    /// The distance at which it starts to fall.
     fn knee(&self) -> f64 {
         match *self {
-            // g = 0 has none.
+            // g = 0 has no knee.
             Self::Abg { b, g, .. } => b.powf(1.0 / g.max(0.1)),
             Self::Harvey { shoulder, .. } => shoulder,
         }
@@ -60,11 +62,11 @@ impl HazeLaw {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Profile {
     pub(super) law: HazeLaw,
-    /// From the middle outwards, the last one at the farthest distance.
+    /// From the middle outwards, the last one at the largest distance.
     rings: Vec<Ring>,
 }
 
-/// What lies within a circle, and how bright it is there.
+/// The integral within a circle, and the value of the law there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Ring {
     /// Square of its radius.
@@ -73,7 +75,7 @@ struct Ring {
     value: f64,
     /// ∫ S dA within, 1.
     within: f64,
-    /// The same for steps: between two circles the value of the inner one. 1
+    /// The same for steps, with the value of the inner circle between two circles. 1
     bound: f64,
 }
 
@@ -107,7 +109,7 @@ impl Profile {
         inner.within + (outer.within - inner.within) * fraction.min(1.0)
     }
 
-    /// A distance between two others in proportion to the law, as light scattered to all sides would have it.
+    /// A distance between two others in proportion to the law, as for light scattered to all sides.
     pub(super) fn sample(&self, [from, to]: [f64; 2], sampler: &mut Sampler<impl Numbers>) -> f64 {
         let [low, high] = [from, to].map(|distance| self.bound(distance));
         loop {
@@ -128,7 +130,7 @@ impl Profile {
         inner.bound + PI * (radius2 - inner.radius2) * inner.value
     }
 
-    /// The last ring that is within; there is always one outside of it.
+    /// The last ring that is within; there is always one outside it.
     fn inner(&self, is_within: impl Fn(&Ring) -> bool) -> usize {
         self.rings.partition_point(is_within).clamp(1, self.rings.len() - 1) - 1
     }

@@ -1,4 +1,4 @@
-//! Flat outlines with corners, and with holes: no grid fits them.
+//! Flat outlines with corners, and with holes, which no grid fits.
 
 use crate::scene::facets::triangles::Facets;
 use crate::scene::shape::{Flat, Region};
@@ -8,7 +8,7 @@ use lumiduct_base::math::planar::triangulate;
 /// Corners of a round outline.
 const ROUND: usize = 32;
 
-/// A flat surface with corners or a hole as triangles; `None` where a grid serves.
+/// A flat surface with corners or a hole as triangles; `None` where a grid works.
 pub(super) fn facets(flat: &Flat) -> Option<Facets> {
     let to_world = |p: &DVec2| flat.frame().point_to_world(p.extend(0.0));
     match flat.region() {
@@ -47,7 +47,7 @@ fn of_triangles(
     facets
 }
 
-/// An outline and a hole as one polygon, with a cut from one to the other where they are nearest.
+/// An outline and a hole as one polygon, with a cut between their nearest points.
 fn joined(outline: &[DVec2], hole: &[DVec2]) -> Vec<DVec2> {
     let mut nearest = (0, 0, f64::INFINITY);
     for (i, p) in outline.iter().enumerate() {

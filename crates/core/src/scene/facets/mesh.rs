@@ -5,9 +5,9 @@ use crate::scene::mesh::Mesh;
 use glam::{DVec3, I64Vec3};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Most triangles of a face.
+/// Largest number of triangles of a face.
 const MOST_TRIANGLES: usize = 3000;
-/// Cubes grow by this factor until there are no more, 1.
+/// Cubes grow by this factor until the limit is met, 1.
 const GROWTH: f64 = 1.4;
 
 /// A face of a mesh with fine triangles joined: in cubes of `cell` mm, or in larger ones where there are very many.
@@ -22,7 +22,7 @@ pub(super) fn facets(mesh: &Mesh, face: usize, cell: f64) -> Facets {
     }
 }
 
-/// A face with all corners of a cube in one place, and without the triangles that vanish by it.
+/// A face with all corners in a cube merged, and without the triangles that this collapses.
 fn joined(mesh: &Mesh, face: usize, cell: f64) -> Facets {
     let mut facets = Facets::default();
     let mut corner_of: BTreeMap<[i64; 3], usize> = BTreeMap::new();

@@ -1,7 +1,8 @@
 //! Surfaces as triangles, for pictures alone: light never meets them.
 //!
-//! Every shape maps the unit square onto its surface, so that one grid of points serves all of them; only flat outlines
-//! with corners and meshes have ways of their own. How fine a grid is follows from how far its chords lie off the surface.
+//! Every shape maps the unit square onto its surface, so one grid of points works for all of them;
+//! only flat outlines with corners and meshes are treated separately. The deviation of chords from
+//! the surface sets the spacing of a grid.
 
 mod flat;
 mod mesh;
@@ -14,25 +15,27 @@ use crate::scene::shape::Shape;
 use crate::scene::{Extent, FaceId, Patch, Scene};
 use glam::DVec3;
 
-/// Chords may lie off a surface by this share of what the coarsest grid lies off, 1.
+/// Allowed deviation of chords from a surface, as a share of the deviation of the coarsest grid, 1.
 const RELATIVE: f64 = 0.006;
-/// Most steps of a grid along one side.
+/// Largest number of steps of a grid along one side.
 const MOST_STEPS: usize = 32;
-/// Most squares of a grid.
+/// Largest number of squares of a grid.
 const MOST_SQUARES: usize = 512;
-/// Places along a chord where its distance from the surface is looked at, 1: no two are mirror images.
+/// Positions along a chord where its distance from the surface is computed, 1: no two are mirror
+/// images.
 const LOOKED_AT: [f64; 3] = [0.3, 0.5, 0.65];
-/// Points of a patch nearer to each other than this share of its size are one, 1.
+/// Points of a patch closer to each other than this share of its size are the same, 1.
 const SAME: f64 = 1e-6;
 
-/// How fine facets are to be.
+/// The fineness of facets.
 #[derive(Debug, Clone, Copy)]
 pub struct Fineness {
-    /// Distance of a chord from the surface that nobody sees, mm.
+    /// Invisible distance of a chord from the surface, mm.
     pub deviation: f64,
-    /// Edge of the cubes in which corners of fine meshes become one, mm.
+    /// Edge of the cubes in which corners of fine meshes are merged, mm.
     pub mesh_cell: f64,
-    /// Most patches of one face: of more, only every second, third and so on is drawn.
+    /// Largest number of patches of one face: beyond it, only every second, third and so on is
+    /// drawn.
     pub patches: usize,
 }
 
@@ -41,7 +44,7 @@ pub struct Fineness {
 pub struct FaceFacets {
     /// The triangles.
     pub facets: Facets,
-    /// One in so many of the pieces of the face is there: 1 where it is whole.
+    /// One in this many of the pieces of the face is included: 1 where it is whole.
     pub one_in: usize,
 }
 
@@ -65,7 +68,8 @@ fn patch_facets(patches: &[Patch], fineness: &Fineness) -> FaceFacets {
     let mut facets = Facets::default();
     for patch in patches.iter().step_by(one_in) {
         let mut piece = shape_facets(&patch.shape, fineness.deviation);
-        // Walls are drawn whole, their elements before them; what elements are cut off at is not drawn.
+        // Walls are drawn whole, with their elements in front; the surfaces that cut elements off
+        // are not drawn.
         if let Some(trim) = patch.trim.as_ref().filter(|trim| trim.is_of_element()) {
             piece.keep(trim);
         }
@@ -74,7 +78,8 @@ fn patch_facets(patches: &[Patch], fineness: &Fineness) -> FaceFacets {
     FaceFacets { facets, one_in }
 }
 
-/// A shape as triangles whose chords lie off it by `deviation` mm, or by a little of its own size.
+/// A shape as triangles whose chords deviate from it by `deviation` mm, or by a small share of its
+/// own size.
 pub fn shape_facets(shape: &Shape, deviation: f64) -> Facets {
     if let Shape::Flat(flat) = shape
         && let Some(facets) = flat::facets(flat)
@@ -103,7 +108,8 @@ fn steps(shape: &Shape, axis: usize, deviation: f64) -> usize {
     steps
 }
 
-/// How far chords over `steps` equal parts of the grid lines along `axis` lie off the surface, mm.
+/// Deviation of chords over `steps` equal parts of the grid lines along `axis` from the surface,
+/// mm.
 fn bulge(shape: &Shape, axis: usize, steps: usize) -> f64 {
     let mut most = 0.0_f64;
     for across in [0.0, 0.5, 1.0] {
@@ -148,7 +154,7 @@ fn grid(shape: &Shape, [columns, rows]: [usize; 2]) -> Facets {
     let mut rims: Vec<Vec<usize>> = Vec::new();
     for [one, other] in [along_rows, along_columns] {
         let (one, other): (Vec<usize>, Vec<usize>) = (one, other);
-        // A surface that closes on itself has no rim at its seam.
+        // A closed surface has no rim at its seam.
         if !one.iter().zip(&other).all(|(a, b)| same(*a, *b)) {
             rims.extend(
                 [one, other].into_iter().filter(|rim| rim.iter().any(|i| !same(*i, rim[0]))),

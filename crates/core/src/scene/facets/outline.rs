@@ -10,12 +10,13 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Corners of a round outline.
 const ROUND: usize = 12;
-/// Sides of a rectangle have a corner after each such share of the face that they lie on, 1: it may be curved.
+/// Sides of a rectangle have a corner after each such share of the face that they lie on, 1,
+/// because it may be curved.
 const SIDE: f64 = 1.0 / 24.0;
 
 impl Scene {
-    /// The outlines of the elements of a pattern; of more than `most`, only those of every second, third and so on.
-    /// Elements with relief are pieces of their face, and have none here.
+    /// The outlines of the elements of a pattern; beyond `most`, only those of every second, third
+    /// and so on. Elements with relief are pieces of their face, and have none here.
     pub fn element_outlines(&self, pattern: &Pattern, most: usize) -> FaceFacets {
         let mut facets = Facets::default();
         if let Outline::Relief(_) = pattern.field.outline {
@@ -36,7 +37,8 @@ impl Scene {
     }
 }
 
-/// Corners of the outline of an element in a row, mm from its middle. One that goes all around a face is as wide as that.
+/// Corners of the outline of an element in a row, mm from its middle. One that goes all around a
+/// face is as wide as the face.
 fn corners(outline: &Outline, place: f64, size: DVec2) -> Vec<DVec2> {
     let half = 0.5 * outline.size(place).min(size);
     match outline {
@@ -56,10 +58,11 @@ fn corners(outline: &Outline, place: f64, size: DVec2) -> Vec<DVec2> {
     }
 }
 
-/// A face with the way back from its unrolled coordinates, which are those of its shape but for place, scale and order.
+/// A face with the inverse of its unrolled coordinates, which are those of its shape up to
+/// position, scale and order.
 struct Unrolled<'a> {
     surface: Surface<'a>,
-    /// A place of the shape, in its own coordinates, mm, with its unrolled coordinates.
+    /// A point of the shape, in its own coordinates, mm, with its unrolled coordinates.
     from: [DVec2; 2],
     /// Own coordinates for unrolled ones.
     back: DMat2,

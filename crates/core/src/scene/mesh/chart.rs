@@ -11,8 +11,9 @@ use smallvec::SmallVec;
 type Outline = SmallVec<[DVec2; 8]>;
 
 impl Mesh {
-    /// The plane of a flat face: origin at the centroid, z outward. `None` if a vertex lies off the plane by more than
-    /// single precision explains (2^-22 of the largest coordinate in the file), or if facets look opposite ways.
+    /// The plane of a flat face: origin at the centroid, z outward. `None` if a vertex lies off the
+    /// plane by more than single precision explains (2^-22 of the largest coordinate in the file),
+    /// or if facets face opposite ways.
     pub fn chart_plane(&self, face: usize) -> Option<Frame> {
         let triangles = || self.face_triangles(face).iter().map(|index| *index as usize);
         let normal = triangles().map(|triangle| area_vector(self.corners[triangle])).sum::<DVec3>();

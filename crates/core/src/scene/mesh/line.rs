@@ -1,10 +1,11 @@
-//! The test of a line against a triangle that leaves no gap between neighbours.
+//! A line–triangle test that leaves no gap between neighbours.
 //!
-//! Vertices are seen along the line, as points of a plane about it; a triangle is passed if the line's point is on
-//! the same side of its three edges. The point of a vertex does not depend on the triangle, and the side of an edge is
-//! the sign of a difference of two products: rounding is monotonic, so the sign is right or zero, and zero counts as
-//! passed on both sides. So the plane is covered without gaps whatever the rounding
-//! (Woop, Benthin & Wald, JCGT 2 (2013) 1, section 3; there by shear, here by an orthonormal pair).
+//! Vertices are projected along the line onto a plane across it; the line crosses a triangle if its
+//! point is on the same side of the three edges. The projection of a vertex does not depend on the
+//! triangle, and the side of an edge is the sign of a difference of two products: rounding is
+//! monotonic, so the sign is right or zero, and zero counts as a crossing on both sides. So the
+//! plane is covered without gaps whatever the rounding (Woop, Benthin & Wald, JCGT 2 (2013) 1,
+//! section 3; there by shear, here by an orthonormal pair).
 
 use crate::scene::Ray;
 use crate::scene::shape::Toward;
@@ -27,12 +28,14 @@ impl Line {
         Self { origin: ray.origin(), dir: ray.dir(), across: [x, y] }
     }
 
-    /// Which way the line goes through a triangle, if it does. Edges and vertices count, triangles seen edge-on do not.
+    /// The direction in which the line crosses a triangle, if it does. Edges and vertices count,
+    /// triangles seen edge-on do not.
     #[inline]
     pub(super) fn passes(&self, corners: &[DVec3; 3]) -> Option<Toward> {
         let [a, b, c] = corners.map(|corner| self.seen(corner));
         let sides = [side(b, c), side(c, a), side(a, b)];
-        // Seen along the line, a triangle that faces along it runs counter-clockwise in the right-handed frame.
+        // Seen along the line, a triangle that faces along it is counter-clockwise in the
+        // right-handed frame.
         if sides.iter().all(|side| *side >= 0.0) && sides.iter().any(|side| *side > 0.0) {
             Some(Toward::Front)
         } else if sides.iter().all(|side| *side <= 0.0) && sides.iter().any(|side| *side < 0.0) {
@@ -42,15 +45,16 @@ impl Line {
         }
     }
 
-    /// Distance to the plane of a triangle that the line passes, mm, kept between the nearest and the farthest vertex:
-    /// at grazing incidence the plane alone would be wrong, for a triangle without area undefined.
+    /// Distance to the plane of a triangle that the line crosses, mm, limited to the range of the
+    /// vertices: at grazing incidence the plane alone would be wrong, and for a triangle without
+    /// area undefined.
     #[inline]
     pub(super) fn distance(&self, corners: &[DVec3; 3], normal: DVec3) -> f64 {
         let along = corners.map(|corner| (corner - self.origin).dot(self.dir));
         let nearest = along[0].min(along[1]).min(along[2]);
         let farthest = along[0].max(along[1]).max(along[2]);
         let t = (corners[0] - self.origin).dot(normal) / self.dir.dot(normal);
-        // `max` also replaces an undefined t.
+        // `max` also replaces a NaN t.
         t.max(nearest).min(farthest)
     }
 
@@ -61,7 +65,8 @@ impl Line {
     }
 }
 
-/// Positive if the origin is to the left of the way from p to q; exactly the opposite for the way back.
+/// Positive if the origin is to the left of the way from p to q; exactly the negative for the way
+/// back.
 #[inline]
 fn side(p: DVec2, q: DVec2) -> f64 {
     p.x * q.y - p.y * q.x
@@ -117,7 +122,8 @@ mod tests {
                 let ours = mesh.crossing(triangle, &ray);
                 let expected = by_definition(corners, &ray);
                 let Some((t, weights)) = expected else {
-                    // Allowed only where rounding decides: none of these rays is that near to an edge.
+                    // Allowed only where rounding decides: none of these rays is that close to an
+                    // edge.
                     assert_eq!(ours, None);
                     continue;
                 };
@@ -131,7 +137,7 @@ mod tests {
         assert!(hits > 50, "{hits}");
     }
 
-    /// Points of a closed mesh at which rounding is most likely to go wrong.
+    /// Points of a closed mesh at which rounding errors are most likely.
     fn delicate_points(mesh: &Mesh) -> Vec<DVec3> {
         let of_triangle = |triangle: usize| {
             let [a, b, c] = *mesh.corners(triangle);
@@ -161,7 +167,7 @@ mod tests {
                     let away = uniform_sphere(sampler.pair(Dimension::EmitDirection));
                     for origin in [inside, inside + 1e-3 * away, target + 1e-9 * (inside - target)]
                     {
-                        // Convex and started inside: out ahead of the ray, in behind it.
+                        // Convex and started inside: the ray leaves ahead, and entered behind.
                         let ray = Ray::new(origin, target - origin);
                         let crossings = all_crossings(&mesh, &ray);
                         let ahead: Vec<_> =

@@ -1,9 +1,10 @@
-//! Closed triangle meshes for tracing: where a line crosses a triangle, and what the surface is like there.
+//! Closed triangle meshes for tracing: where a line crosses a triangle, and the normal of the
+//! surface there.
 //!
-//! Light can not slip between triangles: whether a line passes an edge is decided by numbers that both triangles
-//! compute alike ([`Line`]), and a line exactly through an edge or a vertex crosses every triangle there. A path that
-//! leaves a triangle skips that triangle; otherwise orientation decides, not a small distance. The mesh knows nothing
-//! of finishes, media, or of the tree that finds the candidates.
+//! Light cannot leak between triangles: both triangles at an edge use identical numbers for the
+//! side of a line ([`Line`]), and a line exactly through an edge or a vertex crosses every triangle
+//! there. A path that leaves a triangle skips that triangle; otherwise orientation decides, not a
+//! small distance. The mesh does not know finishes, media, or the tree that finds the candidates.
 
 mod chart;
 mod line;
@@ -17,21 +18,22 @@ use glam::DVec3;
 use lumiduct_base::math::{Aabb, Frame};
 use lumiduct_base::mesh::{TriangleMesh, area_vector};
 
-/// Rounding of coordinates in single precision, relative to the largest of them: two bits more than the 2^-24 of
-/// one f32, for a vertex and a plane through three of them. Real facets of curved surfaces turn far more.
+/// Rounding of coordinates in single precision, relative to the largest of them: two bits more than
+/// the 2^-24 of one f32, for a vertex and a plane through three of them. The facets of real curved
+/// surfaces differ by far more.
 const FLATNESS: f64 = 1.0 / (1u64 << 22) as f64;
 
 /// A mesh placed in the scene.
 #[derive(Debug, Clone)]
 pub struct Mesh {
-    /// What the inner loop needs, and nothing else: 72 bytes per triangle.
+    /// Only the data of the inner loop: 72 bytes per triangle.
     corners: Vec<[DVec3; 3]>,
     facet_normals: Vec<DVec3>,
     corner_normals: Option<Vec<[DVec3; 3]>>,
     smooth_ids: Vec<u32>,
     face_of: Vec<u32>,
     faces: Vec<Face>,
-    /// How far vertices of a flat face may lie off its plane, mm.
+    /// Largest distance of vertices of a flat face from its plane, mm.
     flatness: f64,
 }
 
@@ -47,16 +49,17 @@ struct Face {
 /// A point of a mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeshPoint {
-    /// The triangle that it lies on.
+    /// Its triangle.
     pub triangle: usize,
     /// The point, mm.
     pub point: DVec3,
 }
 
 impl Mesh {
-    /// A mesh in the frame `at`. Indices of `mesh` must be valid, as those of every mesh that was read are.
+    /// A mesh in the frame `at`. Indices of `mesh` must be valid, as those of every mesh from a
+    /// file are.
     pub fn new(mesh: &TriangleMesh, at: &Frame) -> Self {
-        // Vertex by vertex, so that triangles with a common vertex agree on it to the last bit.
+        // Vertex by vertex, so that triangles share a common vertex to the last bit.
         let positions: Vec<DVec3> =
             mesh.positions.iter().map(|position| at.point_to_world(*position)).collect();
         let corners: Vec<[DVec3; 3]> = mesh
@@ -87,7 +90,7 @@ impl Mesh {
         }
     }
 
-    /// How many triangles there are; they are numbered from 0.
+    /// Number of triangles; they are numbered from 0.
     pub fn triangle_count(&self) -> usize {
         self.corners.len()
     }
@@ -108,8 +111,8 @@ impl Mesh {
         0.5 * area_vector(self.corners[triangle]).length()
     }
 
-    /// Where the line of a ray crosses a triangle. Edges and vertices belong to all of their triangles.
-    /// For many triangles make the [`Line`] once and ask [`Self::crossing_of`].
+    /// Where the line of a ray crosses a triangle. Edges and vertices belong to all of their
+    /// triangles. For many triangles make the [`Line`] once and call [`Self::crossing_of`].
     pub fn crossing(&self, triangle: usize, ray: &Ray) -> Option<Crossing> {
         self.crossing_of(triangle, &Line::of(ray))
     }
@@ -128,8 +131,9 @@ impl Mesh {
         self.facet_normals[triangle]
     }
 
-    /// Unit normal of the surface that the mesh stands for, outward: the corner normals interpolated at a point of the
-    /// triangle (Phong, Commun. ACM 18 (1975) 311), or the facet's without corner normals or if they contradict it.
+    /// Unit normal of the surface that the mesh approximates, outward: the corner normals
+    /// interpolated at a point of the triangle (Phong, Commun. ACM 18 (1975) 311), or the facet's
+    /// if there are no corner normals or they contradict it.
     pub fn shading_normal(&self, triangle: usize, point: DVec3) -> DVec3 {
         let facet = self.facet_normals[triangle];
         let Some(normals) = &self.corner_normals else { return facet };
@@ -176,7 +180,7 @@ impl Mesh {
         let index = face.area_up_to.partition_point(|area| *area <= wanted);
         let before = if index == 0 { 0.0 } else { face.area_up_to[index - 1] };
         let triangle = face.triangles[index] as usize;
-        // The rest of the first number is uniform again within the triangle.
+        // The remainder of the first number is again uniform within the triangle.
         let rest = ((wanted - before) / (face.area_up_to[index] - before)).clamp(0.0, 1.0);
         let [a, b, c] = self.corners[triangle];
         // Uniform over a triangle: Turk, Graphics Gems (1990) 24.
@@ -186,7 +190,8 @@ impl Mesh {
     }
 }
 
-/// The normal of the plane; for a triangle without area the corners' mean, or else any direction across it.
+/// The normal of the plane; for a triangle without area, the mean of the corner normals, or else
+/// any direction across it.
 fn facet_normal(corners: &[DVec3; 3], normals: Option<&[DVec3; 3]>) -> DVec3 {
     area_vector(*corners)
         .try_normalize()
@@ -327,7 +332,7 @@ mod tests {
         assert_eq!(patches(&icosphere(1.0, 2, Normals::Smooth)), 1);
     }
 
-    /// The nearest way out of a mesh that a path inside meets, other than the triangle that it is on.
+    /// The nearest exit from a mesh for a path inside, other than the triangle that it is on.
     fn next_exit(mesh: &Mesh, ray: &Ray, on: usize) -> Option<(usize, f64)> {
         let line = Line::of(ray);
         (0..mesh.triangle_count())

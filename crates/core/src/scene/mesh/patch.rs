@@ -1,10 +1,10 @@
-//! Which triangles are one smooth surface.
+//! Grouping of triangles into smooth surfaces.
 
 use lumiduct_base::mesh::topology::{Groups, HalfEdge, half_edges, same_edge};
 use lumiduct_base::mesh::{TriangleMesh, area_vector, normals_agree};
 
-/// The smooth patch of each triangle, numbered from 0 in order of appearance; `flatness` is how far, mm, a vertex of a
-/// plane may lie off it.
+/// The smooth patch of each triangle, numbered from 0 in order of appearance; `flatness` is the
+/// largest distance, mm, of a vertex of a plane from it.
 pub(super) fn smooth_ids(mesh: &TriangleMesh, flatness: f64) -> Vec<u32> {
     let mut groups = Groups::new(mesh.triangles.len());
     for edge in half_edges(&mesh.triangles).chunk_by(same_edge) {
@@ -17,7 +17,8 @@ pub(super) fn smooth_ids(mesh: &TriangleMesh, flatness: f64) -> Vec<u32> {
     groups.numbered()
 }
 
-/// Whether each triangle's far vertex lies in the plane of the other one, and both face the same way.
+/// Whether each triangle's opposite vertex lies in the plane of the other one, and both face the
+/// same way.
 fn in_one_plane(mesh: &TriangleMesh, one: &HalfEdge, other: &HalfEdge, flatness: f64) -> bool {
     let [a, b] = [one, other].map(|side| mesh.corners(side.triangle as usize));
     let [normal_a, normal_b] = [a, b].map(|corners| area_vector(corners).normalize_or_zero());

@@ -1,12 +1,12 @@
-//! Whether the elements of two fields on one face keep clear of each other: every pair that could meet is asked.
+//! Whether the elements of two fields on one face stay apart: every pair that could meet is tested.
 
 use crate::scene::pattern::{Columns, Field, Outline};
 use glam::DVec2;
 
-/// Elements that touch may share this part of their sizes, 1: rounding.
+/// Overlap of touching elements that is accepted as rounding, as a share of their sizes, 1.
 const TOUCHING: f64 = 1e-12;
 
-/// The room that an element takes of its face.
+/// The footprint of an element on its face.
 #[derive(Debug, Clone, Copy)]
 enum Room {
     /// A disk of some radius, mm.
@@ -21,7 +21,7 @@ impl Room {
         match outline {
             Outline::Circle { .. } => Self::Disk(half.x),
             Outline::Rectangle { .. } => Self::Rectangle(half),
-            // What a ball takes below a round wall is wider around than along: the disk about both.
+            // Below a round wall a ball is wider around than along: the disk about both.
             Outline::Relief(element) if element.cap(place).is_some() => {
                 Self::Disk(half.max_element())
             }
@@ -37,7 +37,7 @@ impl Room {
         }
     }
 
-    /// Whether it shares more than an edge with another one whose middle is `apart` of its own.
+    /// Whether it shares more than an edge with another one at `apart` from its own middle.
     fn meets(self, other: Self, apart: DVec2) -> bool {
         let apart = apart.abs();
         match (self, other) {
@@ -54,7 +54,8 @@ impl Room {
 }
 
 impl Field {
-    /// The middle, mm of the unrolled face, of the first element that meets one of another field on the same face.
+    /// The middle, mm of the unrolled face, of the first element that overlaps one of another field
+    /// on the same face.
     pub fn first_met(&self, other: &Self) -> Option<DVec2> {
         let rows = 0..other.rows.count();
         let widest = rows.map(|row| Room::of(&other.outline, other.rows.place(row)).half());
@@ -71,11 +72,11 @@ impl Field {
         found.map(|(_, middle)| middle)
     }
 
-    /// The elements whose middles are nearer to a place than `reach` across and along: their rows, and how far across they
-    /// are, mm.
+    /// The elements with middles closer to a position than `reach` across and along: their rows,
+    /// and their distance across, mm.
     fn near(&self, at: DVec2, reach: DVec2) -> impl Iterator<Item = (usize, f64)> {
         let rows = self.rows.between(at.y - reach.y, at.y + reach.y);
-        // Around a face that closes on itself an element is near by either way.
+        // Around a closed face an element is near in either direction.
         let turns = match self.period {
             Some(period) => [0.0, period, -period],
             None => [0.0, f64::NAN, f64::NAN],
@@ -91,7 +92,8 @@ impl Field {
     }
 }
 
-/// The columns, of so many from 0, at multiples of a pitch between two places; none for places that are no numbers.
+/// The columns, numbered from 0 up to `count`, at multiples of a pitch between two positions; none
+/// for non-finite positions.
 fn columns_between(from: f64, to: f64, pitch: f64, count: usize) -> std::ops::Range<usize> {
     if from.is_nan() || to.is_nan() {
         return 0..0;

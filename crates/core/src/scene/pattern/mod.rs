@@ -1,8 +1,8 @@
 //! Holes, dots and patches on a face, in its unrolled coordinates: u around or across, v along.
 //!
-//! A pattern is a rule, not a list: whether a place lies in an element is computed from its rows and columns, so that ten
-//! million elements cost no more than ten. It knows what lies where; finishes are named by id, and what they do is not known
-//! here.
+//! A pattern is a rule, not a list: whether a point lies in an element is computed from its rows
+//! and columns, so ten million elements cost no more than ten. It knows the positions of elements;
+//! finishes are only ids here.
 
 mod apart;
 mod rows;
@@ -15,24 +15,24 @@ use crate::scene::shape::ChartRect;
 use crate::scene::{FaceId, FinishId};
 use glam::DVec2;
 
-/// Elements on a face that act in its place.
+/// Elements on a face that replace its finish.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pattern {
     /// Name in the scene file.
     pub name: String,
     /// The face it lies on.
     pub face: FaceId,
-    /// Where its elements are.
+    /// Positions of its elements.
     pub field: Field,
     /// Finish of the elements met from the front.
     pub front: FinishId,
     /// Finish of the elements met from the back.
     pub back: FinishId,
-    /// The wall that the elements are holes through, if it counts.
+    /// The wall that the elements are holes through, if its thickness matters.
     pub wall: Option<HoleWall>,
 }
 
-/// A wall of some thickness about holes. The face is the middle of it.
+/// A wall of some thickness around holes. The face is its middle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HoleWall {
     /// Thickness, mm.
@@ -41,7 +41,7 @@ pub struct HoleWall {
     pub bore: FinishId,
 }
 
-/// What acts at a place of a face.
+/// The acting part at a point of a face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
     /// The face itself.
@@ -55,31 +55,31 @@ pub enum Part {
 /// Elements in rows and columns.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Field {
-    /// Where the rows are.
+    /// Positions of the rows.
     pub rows: Rows,
-    /// Where the elements of a row are.
+    /// Positions of the elements of a row.
     pub columns: Columns,
-    /// What an element looks like.
+    /// Shape of an element.
     pub outline: Outline,
-    /// Length once around a face that closes on itself, mm.
+    /// Circumference of a closed face, mm.
     pub period: Option<f64>,
 }
 
-/// The places of the elements of a row across a face.
+/// The positions of the elements of a row across a face.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Columns {
-    /// Place of the first of the first row, mm.
+    /// Position of the first element of the first row, mm.
     pub first: f64,
-    /// Distance from one to the next, mm; anything where there is only one.
+    /// Distance between neighbours, mm; arbitrary where there is only one.
     pub pitch: f64,
-    /// How many there are.
+    /// Number of elements.
     pub count: usize,
-    /// By how much every other row is shifted, mm.
+    /// Shift of every other row, mm.
     pub shift: f64,
 }
 
 impl Columns {
-    /// Where an element of a row lies across the face, mm.
+    /// Position of an element of a row across the face, mm.
     pub fn place(&self, row: usize, column: usize) -> f64 {
         let first = if row % 2 == 1 { self.first + self.shift } else { self.first };
         first + column as f64 * self.pitch
@@ -101,7 +101,7 @@ pub enum Outline {
         /// Length along the face, mm.
         length: f64,
     },
-    /// What an element with relief takes of its wall.
+    /// Footprint of an element with relief on its wall.
     Relief(Box<Element>),
 }
 
@@ -124,7 +124,7 @@ impl Outline {
         }
     }
 
-    /// Whether an element of a row holds a point at `from` its centre, mm.
+    /// Whether an element of a row contains a point at `from` its centre, mm.
     #[inline]
     fn contains(&self, place: f64, from: DVec2) -> bool {
         match self {
@@ -152,12 +152,12 @@ impl Outline {
 }
 
 impl Field {
-    /// Whether a place of the face, mm, lies in an element.
+    /// Whether a point of the face, mm, lies in an element.
     pub fn contains(&self, at: DVec2) -> bool {
         self.element(at).is_some()
     }
 
-    /// Row and column of the element in which a place of the face, mm, lies.
+    /// Row and column of the element that contains a point of the face, mm.
     #[inline]
     pub fn element(&self, at: DVec2) -> Option<(usize, usize)> {
         self.rows.near(at.y).find_map(|row| {
@@ -176,7 +176,7 @@ impl Field {
         let half = 0.5 * pitch * (count.max(1) - 1) as f64;
         let from_middle = u - first - half;
         let from_middle = match self.period {
-            // Into one turn about the middle of the row.
+            // Reduced to one turn about the middle of the row.
             Some(period) => from_middle - period * (from_middle / period).round(),
             None => from_middle,
         };
@@ -185,7 +185,7 @@ impl Field {
         (column as usize, from_first - pitch * column)
     }
 
-    /// Every element: the place of its row, mm, and where its middle is.
+    /// Every element: the position of its row, mm, and of its middle.
     pub fn places(&self) -> impl Iterator<Item = (f64, DVec2)> + '_ {
         let columns = self.columns;
         (0..self.rows.count()).flat_map(move |row| {
@@ -195,7 +195,7 @@ impl Field {
         })
     }
 
-    /// How many elements there are.
+    /// Number of elements.
     pub fn count(&self) -> u64 {
         (self.rows.count() as u64).saturating_mul(self.columns.count as u64)
     }
@@ -206,7 +206,7 @@ impl Field {
         rows.sum::<f64>() * self.columns.count as f64
     }
 
-    /// The first row with an element that overlaps another one of its row or the next two.
+    /// The first row with an element that overlaps another one in its row or the next two.
     pub fn first_overlap(&self) -> Option<usize> {
         let Columns { pitch, count, shift, .. } = self.columns;
         (0..self.rows.count()).find(|&row| {
@@ -224,7 +224,7 @@ impl Field {
     /// The first row with an element that reaches beyond a rectangle of the face, and by how much, mm.
     pub fn first_outside(&self, rect: ChartRect) -> Option<(usize, f64)> {
         let Columns { first, pitch, count, shift } = self.columns;
-        // Rounding of a field that fills its face.
+        // Allows for rounding of a field that fills its face.
         let least = 1e-9 * (rect.max - rect.min).max_element();
         (0..self.rows.count()).find_map(|row| {
             let place = self.rows.place(row);
@@ -233,7 +233,7 @@ impl Field {
             let to = from + pitch * (count.max(1) - 1) as f64;
             let along = (rect.min.y - (place - half.y)).max(place + half.y - rect.max.y);
             let across = match self.period {
-                // Rings go around and are not wider than that.
+                // Rings go around and are no wider than the circumference.
                 Some(period) if half.x.is_finite() => 2.0 * half.x - period,
                 Some(_) => 0.0,
                 None => (rect.min.x - (from - half.x)).max(to + half.x - rect.max.x),
@@ -245,15 +245,15 @@ impl Field {
 }
 
 impl Pattern {
-    /// What acts at a place of the face on light that goes by `slope` across it for each mm through it, mm/mm; `None`
-    /// where the face itself does.
+    /// The acting part at a point of the face for light that travels by `slope` across it per mm
+    /// through it, mm/mm; `None` for the face itself.
     #[inline]
     pub fn part(&self, number: usize, at: DVec2, slope: impl Fn() -> DVec2) -> Option<Part> {
         let Some(wall) = &self.wall else {
             return self.field.contains(at).then_some(Part::Element(number));
         };
-        // The face is the middle of the wall, so that a path is the same both ways. It gets through where both of its ends
-        // are in one element, and with them the middle.
+        // The face is the middle of the wall, so that a path is the same both ways. Light passes
+        // where both ends of its path, and therefore the middle, are in one element.
         let middle = self.field.element(at)?;
         let half = 0.5 * wall.thickness * slope();
         let passes =

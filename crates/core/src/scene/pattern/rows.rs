@@ -1,19 +1,20 @@
-//! Rows of a pattern: lines across a face, one after the other along it. However many there are, each is found at once.
+//! Rows of a pattern: lines across a face, one after the other along it. Each row is found
+//! directly, however many there are.
 
 use crate::scene::pattern::Along;
 
-/// The places of rows along a face.
+/// The positions of rows along a face.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Rows {
-    /// At places of a list, mm, increasing.
+    /// At listed positions, mm, increasing.
     Listed(Vec<f64>),
-    /// At even distances.
+    /// At equal distances.
     Even {
-        /// Place of the first, mm.
+        /// Position of the first row, mm.
         first: f64,
         /// Distance from row to row, mm.
         pitch: f64,
-        /// How many.
+        /// Number of rows.
         count: usize,
     },
     /// At distances that change along the face.
@@ -27,21 +28,21 @@ pub struct Graded {
     count: usize,
 }
 
-/// A part of the face in which the distance is a straight line.
+/// A part of the face in which the distance is linear.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Piece {
-    /// Where it begins and ends, mm.
+    /// Its start and end, mm.
     from: f64,
     to: f64,
-    /// Distance at its beginning, mm, and how it grows, 1.
+    /// Distance at its start, mm, and its slope, 1.
     pitch: f64,
     growth: f64,
-    /// N at its beginning, 1.
+    /// N at its start, 1.
     number: f64,
 }
 
 impl Piece {
-    /// Rows between the beginning of the piece and a place: ∫ dv/(p + k v) = ln(1 + k v/p)/k.
+    /// Rows between the start of the piece and a position: ∫ dv/(p + k v) = ln(1 + k v/p)/k.
     fn number_to(&self, place: f64) -> f64 {
         let way = place - self.from;
         if self.growth == 0.0 {
@@ -50,7 +51,7 @@ impl Piece {
         (self.growth * way / self.pitch).ln_1p() / self.growth
     }
 
-    /// The place at which so many rows lie behind the beginning of the piece.
+    /// The position at this number of rows from the start of the piece.
     fn place_of(&self, number: f64) -> f64 {
         let way = if self.growth == 0.0 {
             number * self.pitch
@@ -62,7 +63,8 @@ impl Piece {
 }
 
 impl Graded {
-    /// As many whole rows as fit between two places, mm, at the distances of `pitch`, which are positive.
+    /// As many whole rows as fit between two positions, mm, at the distances of `pitch`, which are
+    /// positive.
     pub fn new(pitch: &Along, from: f64, to: f64) -> Self {
         let mut number = 0.0;
         let mut pieces = Vec::new();
@@ -72,7 +74,7 @@ impl Graded {
             number += piece.number_to(to);
             pieces.push(piece);
         }
-        // Rounding must not take the last row away.
+        // Rounding must not remove the last row.
         let count = (number * (1.0 + 1e-12)).floor() as usize;
         Self { pieces, count }
     }
@@ -92,7 +94,7 @@ impl Graded {
 }
 
 impl Rows {
-    /// How many there are.
+    /// Number of rows.
     pub fn count(&self) -> usize {
         match self {
             Self::Listed(places) => places.len(),
@@ -101,7 +103,7 @@ impl Rows {
         }
     }
 
-    /// Where a row lies along the face, mm.
+    /// Position of a row along the face, mm.
     #[inline]
     pub fn place(&self, row: usize) -> f64 {
         match self {
@@ -111,7 +113,7 @@ impl Rows {
         }
     }
 
-    /// The rows from one place along the face to another, mm.
+    /// The rows from one position along the face to another, mm.
     pub(in crate::scene) fn between(&self, from: f64, to: f64) -> std::ops::Range<usize> {
         let before = |limit: f64| {
             let (mut low, mut high) = (0, self.count());
@@ -128,7 +130,7 @@ impl Rows {
         before(from)..before(to)
     }
 
-    /// The rows that may reach a place: those beside it and one more on either side.
+    /// The rows that may reach a position: its neighbours and one more on either side.
     #[inline]
     pub(in crate::scene) fn near(&self, place: f64) -> std::ops::Range<usize> {
         let middle = match self {
@@ -158,7 +160,7 @@ mod tests {
             for row in 0..rows.count() {
                 let near = rows.near(rows.place(row));
                 assert!(near.contains(&row) && near.len() <= 3, "{rows:?}, {row}: {near:?}");
-                // Half way to the next row both are near.
+                // Half way to the next row, both are near.
                 if row + 1 < rows.count() {
                     let near = rows.near(0.5 * (rows.place(row) + rows.place(row + 1)));
                     assert!(near.contains(&row) && near.contains(&(row + 1)), "{rows:?}, {row}");

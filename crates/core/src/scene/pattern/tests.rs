@@ -49,7 +49,7 @@ fn points_in_elements_cover_the_area_of_all_elements() {
     ];
     for field in fields {
         let (found, area) = (covered(&field, rect), field.area());
-        // Elements are some ten points wide.
+        // Elements are about ten points wide.
         assert!((found / area - 1.0).abs() < 0.02, "{field:?}: {found}, {area}");
         assert_eq!((field.first_overlap(), field.first_outside(rect)), (None, None));
     }
@@ -92,7 +92,7 @@ fn a_field_around_a_closed_face_goes_on_over_its_seam() {
 fn elements_that_overlap_or_leave_the_face_are_told_with_their_row() {
     let wide = Field { outline: circles(6.5), ..grid(0.0, None) };
     assert_eq!(wide.first_overlap(), Some(0));
-    // Staggered by 3 at a row distance of 4 they touch at 5.
+    // Staggered by 3 at a row distance of 4, they touch at 5.
     assert_eq!(Field { outline: circles(4.9), ..grid(3.0, None) }.first_overlap(), None);
     assert_eq!(Field { outline: circles(5.1), ..grid(3.0, None) }.first_overlap(), Some(0));
     let growing = Along::table(vec![[5.0, 1.0], [41.0, 5.0]]).unwrap();
@@ -121,12 +121,12 @@ fn a_hole_through_a_wall_passes_what_does_not_meet_its_side() {
     let part = |u: f64, slope: f64| pattern.part(0, DVec2::new(u, 0.0), || DVec2::new(slope, 0.0));
     assert_eq!(part(0.0, 0.0), Some(Part::Element(0)));
     assert_eq!(part(0.8, 1.0), Some(Part::Bore(0)));
-    // The same path from the other side, and light that meets the face beside the hole.
+    // The same path from the other side, and light that meets the face next to the hole.
     assert_eq!(part(0.8, -1.0), Some(Part::Bore(0)));
     assert_eq!((part(1.1, 1.0), part(1.1, -1.0)), (None, None));
     assert_eq!(part(0.2, 1.5), Some(Part::Element(0)));
     assert_eq!(part(0.2, -1.5), Some(Part::Element(0)));
-    // The share that passes a bore at a slope: two circles shifted by it.
+    // The share that passes a bore at a slope: two circles shifted by the slope.
     let (n, slope) = (2000, 0.7f64);
     let passed = (0..n)
         .flat_map(|i| (0..n).map(move |j| (i, j)))

@@ -1,6 +1,7 @@
-//! How much an element takes: area of the wall, volume of the solid.
+//! Amounts of an element: its area on the wall, and its volume in the solid.
 //!
-//! On flat walls in closed form. Where a ball or a saw cut meets a round wall there is none: there it is a sum over strips.
+//! On flat walls they are in closed form. Where a ball or a saw cut meets a round wall there is
+//! none, and they are sums over strips.
 
 use crate::scene::element::{Cap, Element, Form, Span, Way};
 use crate::scene::shape::ChartRect;
@@ -8,11 +9,11 @@ use glam::DVec2;
 use lumiduct_base::math::planar::disk_overlap;
 use std::f64::consts::{PI, TAU};
 
-/// Steps by which areas and volumes on round walls are summed up.
+/// Number of strips for areas and volumes on round walls.
 const STEPS: u32 = 128;
 
 impl Element {
-    /// Area that an element of a row takes of the wall, mm².
+    /// Area of the footprint of an element of a row on the wall, mm².
     pub fn area(&self, place: f64) -> f64 {
         match (&self.form, self.round) {
             (Form::Cap { size, height }, None) => PI * Cap::new(size, height, place).rim.powi(2),
@@ -28,14 +29,15 @@ impl Element {
         }
     }
 
-    /// Area that an element with its middle at `at` takes of a part of the wall, mm².
+    /// Area of the footprint, within a part of the wall, of an element with its middle at `at`,
+    /// mm².
     pub(super) fn area_in(&self, place: f64, at: DVec2, rect: ChartRect) -> f64 {
         let rect = ChartRect { min: rect.min - at, max: rect.max - at };
         let half = 0.5 * self.length(place);
         match (&self.form, self.round) {
             (Form::Cap { .. }, None) => return disk_overlap(half, &rect.corners()),
             (Form::Cap { .. } | Form::Wedge { span: Span::Through(_), .. }, Some(_)) => {}
-            // All others take a rectangle.
+            // All others have a rectangular footprint.
             (Form::Wedge { .. } | Form::Pyramid { .. }, _) => {
                 let reach = DVec2::new(self.half_width(place, self.edge(place)), half);
                 return rect.intersection(&ChartRect { min: -reach, max: reach }).area();
@@ -47,7 +49,7 @@ impl Element {
         })
     }
 
-    /// Volume that an element of a row takes from the solid or adds to it, mm³.
+    /// Volume that an element of a row removes from the solid or adds to it, mm³.
     pub fn volume(&self, place: f64) -> f64 {
         match (&self.form, self.round) {
             // Archimedes' cap.
@@ -78,7 +80,7 @@ impl Element {
             (Form::Wedge { .. }, _) => {
                 let wall = self.round.unwrap_or(f64::INFINITY);
                 let (height, length) = (self.height(place), self.length(place));
-                // Chords times what is left of the length at their depth.
+                // Chords times the remaining length at their depth.
                 let half = 0.5 * height;
                 self.integral(place, half, [-half, half], |from_middle| {
                     let depth = 0.5 * height + from_middle;
@@ -90,8 +92,8 @@ impl Element {
         }
     }
 
-    /// The integral over a part of [-half, half] of what may fall to 0 at the ends like a root, and may break at the edge of
-    /// the element.
+    /// The integral over a part of [-half, half] of a function that may fall to 0 at the ends like
+    /// a square root, and may have a kink at the edge of the element.
     fn integral(&self, place: f64, half: f64, part: [f64; 2], of: impl Fn(f64) -> f64) -> f64 {
         // v = half sin θ, by the middles of equal steps of θ on either side of the edge.
         let angle = |v: f64| (v / half).clamp(-1.0, 1.0).asin();
@@ -117,7 +119,7 @@ fn lens(one: f64, other: f64, apart: f64) -> f64 {
     }
     // Distances of the common chord from the two middles.
     let to_chord = 0.5 * (apart * apart + (one - other) * (one + other)) / apart;
-    // Of a turn of x to the chord's ends: r² (x - sin x)/2.
+    // For the turn x to the chord's ends: r² (x - sin x)/2.
     let segment = |radius: f64, distance: f64| {
         let half = ((radius - distance) * (radius + distance)).max(0.0).sqrt();
         0.5 * radius * radius * less_its_sine(2.0 * half.atan2(distance))
@@ -125,7 +127,7 @@ fn lens(one: f64, other: f64, apart: f64) -> f64 {
     segment(one, to_chord) + segment(other, apart - to_chord)
 }
 
-/// x - sin x, with its digits where both are nearly the same.
+/// x - sin x, accurate where both are nearly equal.
 fn less_its_sine(x: f64) -> f64 {
     if x > 0.3 {
         return x - x.sin();

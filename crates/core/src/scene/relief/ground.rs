@@ -6,18 +6,19 @@ use lumiduct_base::math::Frame;
 /// A flat wall, or a round one all around.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ground {
-    /// Of a flat wall the point (0, 0) of its chart; of a round one the point of its axis at v = 0. mm.
+    /// For a flat wall, the point (0, 0) of its chart; for a round one, the point of its axis at v
+    /// = 0. mm.
     pub(crate) origin: DVec3,
-    /// Of a flat wall the direction of u; of a round one from the axis toward u = 0.
+    /// For a flat wall, the direction of u; for a round one, from the axis toward u = 0.
     pub(crate) x: DVec3,
-    /// Of a flat wall along it; of a round one from the axis toward a quarter of a turn.
+    /// For a flat wall, along it; for a round one, from the axis toward a quarter of a turn.
     pub(crate) y: DVec3,
-    /// Of a flat wall out of the solid; of a round one along its axis.
+    /// For a flat wall, out of the solid; for a round one, along its axis.
     pub(crate) z: DVec3,
     pub(crate) radius: Option<f64>,
 }
 
-/// A place of a wall: a point and three directions across each other.
+/// A position on a wall: a point and three perpendicular directions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Site {
     /// The point, mm.
@@ -62,7 +63,7 @@ impl Ground {
         }
     }
 
-    /// The place of the wall with unrolled coordinates (u, v), mm.
+    /// The position on the wall with unrolled coordinates (u, v), mm.
     pub fn site(&self, at: DVec2) -> Site {
         match self.radius {
             None => Site {

@@ -1,8 +1,9 @@
 //! Reliefs: dimples, bumps, grooves, ridges and pyramids on the wall of a solid, as parts of its own boundary.
 //!
-//! The solid is what it was without the elements that go into it and with those that go out of it. Where an element is, the
-//! wall is not: that is asked of a rule ([`Field`]), however many elements there are. Their surfaces are patches of their own, which
-//! end at the wall by the same numbers. A relief knows geometry only; which finish it has is decided elsewhere.
+//! Sunk elements are removed from the solid, raised ones are added. An element replaces the wall: a
+//! rule decides where ([`Field`]), however many elements there are. Their surfaces are separate
+//! patches, which end at the wall by the same numbers. A relief knows only geometry, not its
+//! finish.
 
 mod amounts;
 mod ground;
@@ -24,21 +25,21 @@ use std::sync::Arc;
 /// Elements with relief on one wall of a solid.
 #[derive(Debug, Clone)]
 pub struct Relief {
-    /// Dotted name of the face that its elements make.
+    /// Dotted name of the face formed by its elements.
     pub name: String,
     /// The wall.
     pub wall: FaceId,
-    /// Where its elements are.
+    /// Positions of its elements.
     pub field: Field,
-    /// What an element is.
+    /// Shape of an element.
     pub element: Element,
     /// The wall in space.
     pub ground: Ground,
-    /// How far its longest element reaches along the guide, mm.
+    /// How far its longest element extends along the guide, mm.
     reach: f64,
 }
 
-/// What limits a patch beside the edges of its shape: all of it has to be fulfilled.
+/// Limits of a patch in addition to the edges of its shape; all must hold.
 #[derive(Debug, Clone)]
 pub struct Trim {
     /// The conditions.
@@ -48,9 +49,9 @@ pub struct Trim {
 /// A condition for the points of a patch.
 #[derive(Debug, Clone)]
 pub(super) enum Cut {
-    /// A wall, where no element takes its place.
+    /// A wall, where no element replaces it.
     Wall(Arc<Relief>),
-    /// A side of the guide, where no groove of another wall goes through it.
+    /// A side of the guide, where no groove of another wall cuts it.
     Side {
         /// The grooves.
         relief: Arc<Relief>,
@@ -63,13 +64,13 @@ pub(super) enum Cut {
         ground: Ground,
         /// The side on which the element is.
         way: Way,
-        /// By how much it may reach beyond the wall, mm: rounding.
+        /// Allowed reach beyond the wall for rounding, mm.
         lap: f64,
     },
 }
 
 impl Trim {
-    /// Whether a point of the patch is there.
+    /// Whether a point of the patch exists.
     pub fn keeps(&self, p: DVec3) -> bool {
         self.cuts.iter().all(|cut| cut.keeps(p))
     }
@@ -82,7 +83,7 @@ impl Trim {
         })
     }
 
-    /// Area, mm², that reliefs take of the part of a patch whose chart lies in `rect`.
+    /// Area, mm², that reliefs remove from the part of a patch whose chart lies in `rect`.
     pub(super) fn area_in(&self, rect: ChartRect) -> f64 {
         self.cuts
             .iter()
@@ -117,12 +118,12 @@ impl Relief {
         let field = Field { outline: Outline::Relief(Box::new(element.clone())), ..field };
         let rows = (0..field.rows.count()).map(|row| field.rows.place(row));
         let longest = rows.map(|place| element.size(place).y).fold(0.0, f64::max);
-        // A little more, for rows that end at the edge of what is asked.
+        // Slightly more, for rows that end at the edge of the query.
         let reach = 0.5 * longest * (1.0 + 1e-9);
         Self { name, wall, field, element, ground, reach }
     }
 
-    /// Volume that is taken from the solid (below 0) or added to it, mm³.
+    /// Volume that is removed from the solid (below 0) or added to it, mm³.
     pub fn volume(&self) -> f64 {
         let rows = (0..self.field.rows.count()).map(|row| self.field.rows.place(row));
         let sum: f64 = rows.map(|place| self.element.volume(place)).sum();
@@ -147,7 +148,7 @@ impl Relief {
         rows.map(|place| self.element.height(place)).fold(0.0, f64::max)
     }
 
-    /// Whether a groove goes through a point of a side of the guide.
+    /// Whether a groove cuts through a point of a side of the guide.
     fn cuts_side(&self, p: DVec3) -> bool {
         let at = self.ground.unroll(p);
         let rows = &self.field.rows;
@@ -157,7 +158,8 @@ impl Relief {
         })
     }
 
-    /// Area that grooves take of the part of a side of the guide whose chart lies in `rect`, mm².
+    /// Area that grooves remove from the part of a side of the guide whose chart lies in `rect`,
+    /// mm².
     fn side_area_in(&self, side: &Ground, rect: ChartRect) -> f64 {
         let mut cell = rect.corners().map(|corner| {
             let local = self.ground.unroll(side.site(corner).origin);
@@ -182,7 +184,7 @@ impl Relief {
         .sum()
     }
 
-    /// Area that the elements take of the part of the wall in `rect`, mm².
+    /// Area of the footprints of the elements in the part of the wall in `rect`, mm².
     fn area_in(&self, rect: ChartRect) -> f64 {
         let Field { rows, columns, period, .. } = &self.field;
         // Around a closed wall an element may lie on both sides of the seam.

@@ -12,7 +12,7 @@ use lumiduct_base::math::planar::signed_area;
 #[derive(Debug)]
 pub(crate) struct Made {
     pub(crate) shape: Shape,
-    /// Whether it has to be cut off at the wall, since its own edges do not end there.
+    /// Whether it must be cut off at the wall, since its own edges do not end there.
     pub(crate) is_trimmed: bool,
 }
 
@@ -22,7 +22,8 @@ impl Made {
     }
 }
 
-/// The surfaces of an element of the row at `place`, with its middle at `at` of the wall; they overlap by `lap`, mm.
+/// The surfaces of an element of the row at `place`, with its middle at `at` on the wall; they
+/// overlap by `lap`, mm.
 pub(crate) fn surfaces(
     element: &Element,
     place: f64,
@@ -50,7 +51,7 @@ pub(crate) fn surfaces(
 
 fn spherical(element: &Element, cap: &Cap, site: &Site, lap: f64) -> Made {
     let Cap { radius, height, rim } = *cap;
-    // Height of the wall over the centre, as the frame of the sphere counts it.
+    // Height of the wall over the centre, in the frame of the sphere.
     let wall = radius - height;
     let center = site.at(0.0, 0.0, -element.way.sign() * wall);
     let frame = Site::frame(center, site.out, site.along);
@@ -58,7 +59,8 @@ fn spherical(element: &Element, cap: &Cap, site: &Site, lap: f64) -> Made {
         (Way::Into, _) => Sphere::zone(frame, radius, -radius, lap - wall).inward(),
         (Way::OutOf, None) => Sphere::zone(frame, radius, wall - lap, radius),
         (Way::OutOf, Some(round)) => {
-            // The wall falls away from its tangent: where it meets the sphere furthest around it is lower by rim²/2c.
+            // The wall falls away from its tangent: where it meets the sphere furthest around, it
+            // is lower by rim²/2c.
             let lowest = wall - 0.5 * rim * rim / cap.center_from_axis(round, element.way);
             Sphere::zone(frame, radius, lowest - lap, radius)
         }
@@ -75,7 +77,7 @@ struct Wedge {
 }
 
 impl Wedge {
-    /// Where its two feet are along the guide and where its edge is, from its middle, mm.
+    /// Positions of its two feet along the guide and of its edge, from its middle, mm.
     fn feet_and_edge(&self) -> ([f64; 2], f64) {
         let [before, after] = self.slopes.map(|slope| slope * self.height);
         let half = 0.5 * (before + after);
@@ -137,7 +139,7 @@ fn triangle(corners: [DVec3; 3], normal: DVec3, lap: f64) -> Made {
     if signed_area(&local) < 0.0 {
         local.reverse();
     }
-    // No edge is nearer to the middle than a third of the height on the longest one.
+    // No edge is closer to the middle than a third of the height on the longest one.
     let longest = (0..3).map(|i| local[i].distance(local[(i + 1) % 3])).fold(0.0, f64::max);
     let nearest = 2.0 / 3.0 * signed_area(&local) / longest;
     let grown = local.map(|corner| (1.0 + lap / nearest) * corner).to_vec();
@@ -157,7 +159,7 @@ fn pyramid(size: DVec2, height: f64, way: Way, site: &Site, lap: f64) -> Vec<Mad
     ];
     sides
         .map(|(first, second, aside, reach)| {
-            // Raised sides look away from the top, sunk ones toward it, both out of the wall.
+            // Raised sides face away from the top, sunk ones toward it, both out of the wall.
             let normal = (sign * height * aside + reach * site.out).normalize();
             triangle([corner(first.0, first.1), top, corner(second.0, second.1)], normal, lap)
         })
@@ -193,7 +195,7 @@ fn rings(
                 );
                 return Made::whole(Shape::Cone(cone));
             }
-            // Upright: the front looks along the guide where the radius falls.
+            // Upright: the front faces along the guide where the radius falls.
             let z = if first > last { site.along } else { -site.along };
             let (inner, outer) = (first.min(last) - lap, first.max(last) + lap);
             let ring = Region::Annulus { inner, outer };

@@ -118,7 +118,7 @@ fn fronts_look_out_of_the_solid_and_surfaces_end_at_the_wall() {
                 for (sign, expected) in [(1.0, Inside::default()), (-1.0, solid.clone())] {
                     let ray = Ray::new(point + 1e-9 * sign * out, DVec3::new(0.13, 0.24, 0.96));
                     let inside = scene.inside_at(&ray, crate::scene::Just::Ahead);
-                    // Beside an edge a hair beyond the surface may be beyond another one.
+                    // Near an edge, a point slightly beyond the surface may be beyond another one.
                     let is_near_an_edge = side < 1e-6 || !(1e-6..0.3 - 1e-6).contains(&side);
                     assert!(inside == expected || is_near_an_edge, "{point} {sign}");
                 }
@@ -176,7 +176,7 @@ fn a_ray_on_the_rim_of_an_element_never_slips_between_it_and_the_wall() {
     let scene = slab(wedge(0.25, [1.0, 1.0], Span::Within(1.0), Way::Into, None));
     let inside: Inside = [SolidId::new(0)].into_iter().collect();
     for index in 0..4000u32 {
-        // Straight up and aslant into the rims at v = -9.75, ..., which are not exact in any way.
+        // Straight up and at a slant into the rims at v = -9.75, ..., none of which is exact.
         let row = f64::from(index % 20);
         let target = DVec3::new(-9.3 + 0.001 * f64::from(index), row - 9.75, 1.0);
         let from = DVec3::new(target.x, target.y + 0.01 * f64::from(index % 7), -0.9);

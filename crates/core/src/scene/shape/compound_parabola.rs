@@ -30,7 +30,8 @@ struct Line {
     dir: DVec3,
 }
 
-/// A point of the meridian plane as the parabola sees it, from the focus: x along the vertex tangent, y along the axis.
+/// A point of the meridian plane in the parabola's coordinates, from the focus: x along the vertex
+/// tangent, y along the axis.
 struct Meridian {
     /// Distance from the concentrator's axis, mm.
     radius: f64,
@@ -48,7 +49,8 @@ impl CompoundParabola {
         Self { frame, small_radius, length, cos, sin, focal_length: small_radius * (1.0 + sin) }
     }
 
-    /// Length at which the wall has become parallel to the axis, mm: (a + a') / tan θ with a = a' / sin θ.
+    /// Length at which the wall becomes parallel to the axis, mm: (a + a') / tan θ with a = a' /
+    /// sin θ.
     pub fn full_length(small_radius: f64, acceptance_half_angle: f64) -> f64 {
         small_radius * (1.0 + 1.0 / acceptance_half_angle.sin()) / acceptance_half_angle.tan()
     }
@@ -58,7 +60,8 @@ impl CompoundParabola {
         self.profile(self.parameter(z)).x
     }
 
-    /// (r, z) of the wall at the parabola's parameter `w`, its slope against the vertex tangent: x = 2fw, y = f (w² - 1).
+    /// (r, z) of the wall at the parabola's parameter `w`, its slope relative to the vertex
+    /// tangent: x = 2fw, y = f (w² - 1).
     fn profile(&self, w: f64) -> DVec2 {
         let (x, y) = (2.0 * self.focal_length * w, self.focal_length * (w * w - 1.0));
         DVec2::new(x * self.cos - y * self.sin - self.small_radius, x * self.sin + y * self.cos)
@@ -66,7 +69,7 @@ impl CompoundParabola {
 
     /// The parabola's parameter where the wall has the height `z`.
     fn parameter(&self, z: f64) -> f64 {
-        // The positive root of z(w), without the difference of two numbers that grow as 1/cos θ.
+        // The positive root of z(w), without the difference of two numbers that diverge as 1/cos θ.
         let in_focal_lengths = z / self.focal_length;
         (self.cos + in_focal_lengths) / (self.sin + (1.0 + in_focal_lengths * self.cos).sqrt())
     }
@@ -91,7 +94,8 @@ impl CompoundParabola {
         let [w_min, w_max] = [0.0, self.length].map(|z| self.parameter(z));
         box_by_reach(&self.frame, |e| {
             let reach = |w: f64| self.profile(w).dot(DVec2::new(across(e), e.z));
-            // Stationary where the profile's tangent is across e; elsewhere the ends reach further.
+            // Stationary where the profile's tangent is perpendicular to e; elsewhere the ends
+            // reach further.
             let stationary =
                 (self.cos * across(e) + self.sin * e.z) / (self.sin * across(e) - self.cos * e.z);
             let stationary = stationary.max(w_min).min(w_max);
@@ -109,7 +113,7 @@ impl CompoundParabola {
                 }
             }
             Start::Elsewhere => {
-                // From the point nearest to the middle: far away, differences have lost their digits.
+                // From the point nearest to the middle: from far away, differences lose digits.
                 let shift = (0.5 * self.length * DVec3::Z - from).dot(dir);
                 let line = Line { from: from + shift * dir, dir };
                 let Some([lo, hi]) = self.between_ends(&line) else { return };
@@ -128,7 +132,7 @@ impl CompoundParabola {
         let half_length = 0.5 * self.length;
         let from_middle = line.from - half_length * DVec3::Z;
         let middle = -from_middle.dot(line.dir);
-        // Twice as large as it must be: the planes and the surface decide, not the sphere.
+        // Twice the necessary size: the planes and the surface decide, not the sphere.
         let squared_reach = 4.0 * (half_length.powi(2) + self.largest_radius().powi(2));
         let squared_half_chord = squared_reach - (from_middle + middle * line.dir).length_squared();
         if squared_half_chord < 0.0 {
@@ -144,7 +148,7 @@ impl CompoundParabola {
     fn meridian(&self, line: &Line, t: f64) -> Meridian {
         let p = line.from + t * line.dir;
         let radius = p.truncate().length();
-        // On the axis any slope between those of both sides will do.
+        // On the axis any slope between those of both sides is valid.
         let radius_slope =
             if radius > 0.0 { p.truncate().dot(line.dir.truncate()) / radius } else { 0.0 };
         let from_focus = radius + self.small_radius;
@@ -172,7 +176,8 @@ impl CompoundParabola {
 
     /// The other crossing of a line that starts on the wall.
     ///
-    /// (G(t) - G(0)) / t, written without that difference, has no root at the start, and rises, as G is convex.
+    /// (G(t) - G(0)) / t, written without that difference, has no root at the start, and increases,
+    /// as G is convex.
     fn other_from_surface(&self, line: &Line) -> Option<Crossing> {
         let start = self.meridian(line, 0.0);
         let across_dir = line.dir.truncate();
@@ -184,7 +189,7 @@ impl CompoundParabola {
             let numerator = 2.0 * along + t * across_dir.length_squared();
             let rise = numerator / radii;
             let rise_slope = (across_dir.length_squared() - rise * at.radius_slope) / radii;
-            // The same of x; of y.
+            // The same for x, then for y.
             let x_rise = rise * self.cos + line.dir.z * self.sin;
             let y_rise = line.dir.z * self.cos - rise * self.sin;
             let x_sum = 2.0 * start.x + t * x_rise;

@@ -19,14 +19,14 @@ pub struct Cone {
     length: f64,
     /// Growth of the radius per length.
     slope: f64,
-    /// The side toward which a ray passes that comes out of the cone.
+    /// The side toward which a ray passes as it leaves the cone.
     leaving: Toward,
     wedge: Option<Wedge>,
 }
 
 impl Cone {
-    /// The wall about the z axis of `frame` whose radius goes from `radius_start` at z = 0 to `radius_end` at
-    /// z = `length`, mm. Neither radius is negative, and they are not both zero.
+    /// The wall about the z axis of `frame` with radius `radius_start` at z = 0 and `radius_end` at
+    /// z = `length`, mm. Neither radius is negative, and at least one is positive.
     pub fn new(frame: Frame, radius_start: f64, radius_end: f64, length: f64) -> Self {
         let slope = (radius_end - radius_start) / length;
         let leaving = Toward::Front;
@@ -55,8 +55,9 @@ impl Cone {
         arc(self.radius_start, 0.0).union(arc(self.radius_end, self.length))
     }
 
-    /// The cone is across² = w² with w = `radius_start` + slope · z; the gradient of half the difference of the two
-    /// points outward on the nappe w > 0, which is the only one with z in [0, length].
+    /// The cone is across² = w² with w = `radius_start` + slope · z. The gradient of half the
+    /// difference of the two sides points outward on the nappe w > 0, which is the only one with z
+    /// in [0, length].
     #[inline]
     pub(super) fn crossings(&self, ray: &Ray, start: Start, mut visit: impl FnMut(Crossing)) {
         let axis = self.frame.z;
@@ -72,7 +73,7 @@ impl Cone {
         let half_b = across_origin.dot(across_dir) - w_origin * w_dir;
         let mut offer = |t: f64, toward: Toward| {
             let z = along_origin + t * along_dir;
-            // An infinite or undefined t fails here: its z is no number, or outside.
+            // An infinite or NaN t fails here: its z is NaN, or outside.
             if z >= 0.0
                 && z <= self.length
                 && t.is_finite()
@@ -93,7 +94,7 @@ impl Cone {
                 }
                 let c = across_origin.length_squared() - w_origin * w_origin;
                 if let Some([first, second]) = quadratic(a, half_b, c) {
-                    // The quadratic falls through its first root when it opens upward.
+                    // The quadratic decreases through its first root when it opens upward.
                     let at_first =
                         if a.is_sign_positive() { self.leaving.opposite() } else { self.leaving };
                     offer(first, at_first);
@@ -132,7 +133,8 @@ impl Cone {
 
     pub(super) fn sample(&self, u: [f64; 2]) -> DVec3 {
         let (start, end) = (self.radius_start, self.radius_end);
-        // The area below a radius w goes with w² - start²; z = (w - start) / slope without the division by 0.
+        // The area below a radius w is proportional to w² - start²; z = (w - start) / slope without
+        // the division by 0.
         let w = (start * start + u[1] * (end * end - start * start)).sqrt();
         let z = self.length * u[1] * (start + end) / (start + w);
         point_on_circle(&self.frame, w, u[0] * turn(self.wedge.as_ref()), z)
@@ -184,8 +186,9 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { rng_seed: proptest::test_runner::RngSeed::Fixed(31), cases: 2000, ..ProptestConfig::default() })]
 
-        /// Two random points of the wall: the line through them crosses at both, in at one and out at the other as
-        /// the normals say, and from either the other is found without a trace of the start.
+        /// Two random points of the wall: the line through them crosses at both, in at one and out
+        /// at the other as given by the normals. From either one the other is found, without the
+        /// start.
         #[test]
         fn a_chord_between_two_points_of_the_wall_is_found_from_either_end(
             u in proptest::array::uniform4(0.0..1.0f64), end in 0.0..4.0f64, angle in 1.0..7.0f64,
@@ -222,7 +225,7 @@ mod tests {
         assert_eq!(found.len(), 1, "{found:?}");
         assert!((ray.at(found[0].t) - DVec3::new(-0.5, 0.0, 1.5)).length() < 1e-14);
         assert_eq!(found[0].toward, Toward::Front);
-        // Beyond the apex, z > 2, lies the other nappe; z ends before.
+        // Beyond the apex, z > 2, lies the other nappe; the wall ends before it.
         let across = Ray::new(DVec3::new(-9.0, 0.0, 3.0), DVec3::X);
         assert!(crossings(&cone, &across, Start::Elsewhere).is_empty());
     }

@@ -1,8 +1,9 @@
 //! Analytic surfaces in f64, one file each.
 //!
-//! A shape is a trimmed, oriented surface: its normal is the *front*. A shape knows where a ray crosses it, nothing
-//! of finishes, solids or photons. There are no epsilons: a ray that starts on a quadric is told so ([`Start::On`])
-//! and the root at the start is taken out of the equation, not compared with a small number.
+//! A shape is a trimmed, oriented surface: its normal is the *front*. A shape knows where a ray
+//! crosses it, but not finishes, solids or photons. There are no epsilons: for a ray that starts on
+//! a quadric ([`Start::On`]) the root at the start is removed from the equation, not compared with
+//! a small number.
 //!
 //! Every shape has a chart: it unrolls the surface into a rectangle of millimetres, for flux maps on curved walls.
 
@@ -33,28 +34,28 @@ use crate::scene::Ray;
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::Aabb;
 
-/// Whether a ray starts on the very surface that is asked.
+/// Whether a ray starts on the surface under test.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Start {
     /// The origin is elsewhere: every root counts.
     Elsewhere,
-    /// The origin lies on this surface: the root at the origin is none.
+    /// The origin lies on this surface: the root at the origin does not count.
     On,
 }
 
-/// A place where a ray crosses a surface.
+/// A point where a ray crosses a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Crossing {
     /// Distance along the ray, mm; may be negative.
     pub t: f64,
-    /// Which way the ray goes through.
+    /// Direction of the crossing.
     pub toward: Toward,
 }
 
-/// Which crossings of a ray matter to the one who asks.
+/// The crossings of a ray that matter to the caller.
 #[derive(Debug, Clone, Copy)]
 pub struct Wanted {
-    /// Those that go through this way only.
+    /// Only crossings in this direction.
     pub toward: Option<Toward>,
     /// Smallest distance along the ray, mm.
     pub min: f64,
@@ -75,7 +76,7 @@ impl Wanted {
     }
 }
 
-/// Which way a ray goes through a surface.
+/// Direction in which a ray crosses a surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Toward {
     /// Along the normal: out of a solid.
@@ -91,7 +92,7 @@ impl Toward {
         if dir.dot(normal) > 0.0 { Self::Front } else { Self::Back }
     }
 
-    /// The other way.
+    /// The opposite direction.
     #[inline]
     pub fn opposite(self) -> Self {
         match self {
@@ -139,7 +140,7 @@ impl ChartRect {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
-    /// What both rectangles share; empty when they are apart.
+    /// The common part of both rectangles; empty if they do not overlap.
     pub fn intersection(&self, other: &Self) -> Self {
         Self { min: self.min.max(other.min), max: self.max.min(other.max) }
     }
@@ -161,7 +162,8 @@ impl ChartRect {
     }
 }
 
-/// A trimmed, oriented analytic surface. A tag of its own, not hidden in some field, is the quickest to look at.
+/// A trimmed, oriented analytic surface. A separate tag, rather than one hidden in a field, is the
+/// fastest to read.
 #[derive(Debug, Clone)]
 #[repr(u8)]
 pub enum Shape {
@@ -213,8 +215,8 @@ impl Shape {
         }
     }
 
-    /// The first crossing of the ray's line that is `wanted`. Planes and cylinders, most of all surfaces, answer it
-    /// sooner than a list of all crossings.
+    /// The first crossing of the ray's line that is `wanted`. Planes and cylinders, which are most
+    /// of all surfaces, compute it faster than a list of all crossings.
     #[inline(always)]
     pub fn first_crossing(&self, ray: &Ray, start: Start, wanted: &Wanted) -> Option<Crossing> {
         match self {
@@ -254,8 +256,9 @@ impl Shape {
         }
     }
 
-    /// Unit normal on the side from which a ray comes that goes through `toward`. Planes and cylinders answer in
-    /// registers; a factor in every arm keeps a normal that was returned in memory from spoiling that.
+    /// Unit normal on the side from which a ray comes that crosses `toward`. Planes and cylinders
+    /// return it in registers; a factor in every arm prevents a normal returned in memory from
+    /// spoiling that.
     #[inline(always)]
     pub fn normal_against(&self, toward: Toward, p: DVec3) -> DVec3 {
         let sign = match toward {
@@ -274,7 +277,7 @@ impl Shape {
         }
     }
 
-    /// Unit tangent at a point of the surface along which v of the chart grows while u stays.
+    /// Unit tangent at a point of the surface along which v of the chart grows at constant u.
     pub fn along(&self, p: DVec3) -> DVec3 {
         match self {
             Self::Flat(shape) => shape.frame().y,
@@ -359,7 +362,8 @@ impl Shape {
     }
 }
 
-/// The unit tangent toward larger z of a surface of revolution; anything across the normal where it is along the axis.
+/// The unit tangent toward larger z of a surface of revolution; any direction perpendicular to the
+/// normal where that is along the axis.
 fn up_the_meridian(axis: DVec3, normal: DVec3) -> DVec3 {
     (axis - axis.dot(normal) * normal)
         .try_normalize()

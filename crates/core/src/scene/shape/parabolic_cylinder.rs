@@ -69,7 +69,7 @@ impl ParabolicCylinder {
                 offer(t, if t > 0.0 { Toward::Back } else { Toward::Front });
             }
             Start::Elsewhere => {
-                // From the point nearest to the vertex line: far away, x² - 4fz has lost its digits.
+                // From the point nearest to the vertex line: from far away, x² - 4fz loses digits.
                 let across = DVec2::new(dir.x, dir.z);
                 let shift = -DVec2::new(from.x, from.z).dot(across) / across.length_squared();
                 let near = from + shift * dir;

@@ -1,4 +1,4 @@
-//! A zone of a paraboloid of revolution: the reflector that makes a beam of a point.
+//! A zone of a paraboloid of revolution: the reflector that collimates a point source.
 
 use crate::scene::Ray;
 use crate::scene::shape::support::{across, box_by_reach, front};
@@ -17,7 +17,7 @@ pub struct Paraboloid {
     focal_length: f64,
     radius_min: f64,
     radius_max: f64,
-    /// How a ray that leaves the bowl goes through.
+    /// Direction in which a ray crosses as it leaves the bowl.
     leaving: Toward,
 }
 
@@ -28,7 +28,7 @@ impl Paraboloid {
         Self { frame, focal_length, radius_min, radius_max, leaving: Toward::Front }
     }
 
-    /// The same surface with the front on the other side: that of the focus.
+    /// The same surface with the front on the other side, toward the focus.
     pub fn inward(self) -> Self {
         Self { leaving: Toward::Back, ..self }
     }
@@ -67,7 +67,7 @@ impl Paraboloid {
                 offer(t, if t > 0.0 { self.leaving } else { self.leaving.opposite() });
             }
             Start::Elsewhere => {
-                // From the point nearest to the vertex: far away, r² - 4fz has lost its digits.
+                // From the point nearest to the vertex: from far away, r² - 4fz loses digits.
                 let shift = -from.dot(dir);
                 let near = from + shift * dir;
                 let c = near.truncate().length_squared() - 4.0 * self.focal_length * near.z;
@@ -79,7 +79,8 @@ impl Paraboloid {
         }
     }
 
-    /// Whether a height of the frame lies between the rims; without a hole the vertex has no rim to fall over.
+    /// Whether a height of the frame lies between the rims; without a hole there is no rim at the
+    /// vertex.
     #[inline]
     fn contains_height(&self, z: f64) -> bool {
         z <= self.height(self.radius_max)
@@ -151,7 +152,7 @@ mod tests {
     };
     use crate::scene::shape::{HalfSpace, Shape};
 
-    /// (r² - 4fz) / 4f and a bit, in the frame: a length near the surface.
+    /// Approximately (r² - 4fz) / 4f, in the frame: a length near the surface.
     fn implicit(f: f64, p: DVec3) -> f64 {
         let p = tilted(1.0).point_to_local(p);
         (p.truncate().length_squared() - 4.0 * f * p.z) / (4.0 * f)
@@ -189,7 +190,7 @@ mod tests {
         };
         let rings: f64 = (0..n).map(ring).sum();
         assert!((shape.area() / rings - 1.0).abs() < 1e-9, "{} {rings}", shape.area());
-        // Almost flat: the digits stay.
+        // Almost flat: no digits are lost.
         let flat = Paraboloid::new(tilted(1.0), 1e9, 0.0, 1.0);
         assert!((flat.area() / PI - 1.0).abs() < 1e-15);
     }

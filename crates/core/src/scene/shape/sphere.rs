@@ -16,7 +16,7 @@ pub struct Sphere {
     radius: f64,
     z_min: f64,
     z_max: f64,
-    /// How a ray that leaves the ball goes through.
+    /// Direction in which a ray crosses as it leaves the ball.
     leaving: Toward,
 }
 
@@ -28,7 +28,7 @@ impl Sphere {
         Self { frame, radius, z_min, z_max, leaving: Toward::Front }
     }
 
-    /// The same surface with the front on the other side: the centre's.
+    /// The same surface with the front on the other side, toward the centre.
     pub fn inward(self) -> Self {
         Self { leaving: Toward::Back, ..self }
     }
@@ -68,7 +68,8 @@ impl Sphere {
         }
     }
 
-    /// Whether a height of the frame lies between the planes; a pole that is not cut off has no rim to fall over.
+    /// Whether a height of the frame lies between the planes; a pole that is not cut off has no
+    /// rim.
     #[inline]
     fn contains_height(&self, z: f64) -> bool {
         (z >= self.z_min || self.z_min <= -self.radius)

@@ -1,4 +1,5 @@
-//! What convex surfaces share: the box from how far they reach in a direction, and the side that is the front.
+//! Shared functions of convex surfaces: the box from the reach in each direction, and the front
+//! side.
 
 use crate::scene::shape::Toward;
 use glam::DVec3;
@@ -19,7 +20,7 @@ pub(super) fn across(e: DVec3) -> f64 {
     e.truncate().length()
 }
 
-/// The front normal of a surface that is left as `leaving` by rays that go outward.
+/// The front normal of a surface that outward rays cross `leaving`.
 #[inline]
 pub(super) fn front(outward: DVec3, leaving: Toward) -> DVec3 {
     match leaving {

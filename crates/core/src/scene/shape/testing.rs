@@ -1,4 +1,4 @@
-//! What every shape has to fulfil, for the tests of the shapes.
+//! Required properties of every shape, for the tests of the shapes.
 
 use crate::rng::{Dimension, Sampler};
 use crate::scene::Ray;
@@ -9,7 +9,7 @@ use lumiduct_base::math::{Aabb, Frame, uniform_sphere};
 /// Seed of all tests of shapes.
 const SEED: u64 = 20_260;
 
-/// What a test knows of a shape, independently of its code.
+/// Independent description of a shape for a test.
 pub(super) struct Truth<'a> {
     pub(super) shape: &'a Shape,
     /// Positive on the front side, negative on the back, at least near the surface.
@@ -18,7 +18,7 @@ pub(super) struct Truth<'a> {
     pub(super) inside_trim: &'a dyn Fn(DVec3) -> f64,
 }
 
-/// A frame like any other, away from the origin.
+/// A general frame, away from the origin.
 pub(super) fn tilted(scale: f64) -> Frame {
     Frame::from_axis(scale * DVec3::new(3.0, -2.0, 5.0), DVec3::new(0.3, 0.9, -0.4))
 }
@@ -92,7 +92,8 @@ pub(super) fn assert_crossings_match_a_scan(truth: &Truth, rays: u64) {
     assert!(seen > 20, "only {seen} crossings in {rays} rays: the test tests nothing");
 }
 
-/// From a point of the surface, [`Start::On`] gives what [`Start::Elsewhere`] gives without the start; never the start.
+/// From a point of the surface, [`Start::On`] gives the crossings of [`Start::Elsewhere`] without
+/// the start.
 pub(super) fn assert_starting_on_it_drops_only_the_start(shape: &Shape, rays: u64) {
     let size = shape.bounds().diagonal();
     for index in 0..rays {
@@ -108,7 +109,7 @@ pub(super) fn assert_starting_on_it_drops_only_the_start(shape: &Shape, rays: u6
         let mut elsewhere = crossings_of(shape, &ray, Start::Elsewhere);
         let start = (0..elsewhere.len())
             .min_by(|&i, &k| elsewhere[i].t.abs().total_cmp(&elsewhere[k].t.abs()));
-        // At the very rim of the trim, the start itself may be missing.
+        // Exactly on the rim of the trim, the start itself may be missing.
         if let Some(start) = start.filter(|&i| elsewhere[i].t.abs() < 1e-11 * size / grazing) {
             assert_eq!(
                 elsewhere[start].toward,
@@ -172,7 +173,7 @@ pub(super) fn bounce(
     }
 }
 
-/// Rays into a closed shape at 1 to 1e-14 rad from the wall reach it again.
+/// Rays into a closed shape at 1 to 1e-14 rad from the wall meet it again.
 pub(super) fn assert_grazing_rays_come_back(shape: &Shape) {
     const RAYS: u64 = 50_000;
     let mut inward = 0;
@@ -183,7 +184,7 @@ pub(super) fn assert_grazing_rays_come_back(shape: &Shape) {
         let along = uniform_sphere(sampler.pair(Dimension::EmitDirection)).cross(normal);
         let angle = 10f64.powf(-14.0 * sampler.one(Dimension::Scatter));
         let ray = Ray::new(p, along.normalize() - angle * normal);
-        // At the smallest angles rounding turns some rays out.
+        // At the smallest angles rounding turns some rays outward.
         if Toward::of(ray.dir(), normal) == Toward::Front || ray.dir().dot(normal) == 0.0 {
             continue;
         }
@@ -265,7 +266,7 @@ pub(super) fn assert_hit_from_far_away(truth: &Truth, steepness: f64) {
                 found += 1;
             }
         }
-        // Few are so near to a rim or so grazing that they may miss.
+        // Few are so close to a rim or so grazing that they may miss.
         assert!(found >= RAYS - 2, "from {distance}: {found}");
     }
 }

@@ -8,12 +8,13 @@ use glam::{DVec2, DVec3};
 use lumiduct_base::math::{Aabb, Frame, Roots, bracketed_root, cubic, quartic};
 use std::f64::consts::TAU;
 
-/// An arc of a torus about the z axis of its frame; the front is outside of the tube.
+/// An arc of a torus about the z axis of its frame; the front is the outside of the tube.
 ///
-/// The arc starts at the frame's x axis and goes counter-clockwise. The chart: v = R θ along the arc; u = r φ around
-/// the tube's section, in [0, 2πr), where φ counts counter-clockwise about the direction of the arc, so that it
-/// continues the chart of a cylinder whose z axis goes the same way. φ = 0 is the outermost point, away from the bend
-/// axis (R + r), unless [`Torus::with_section_zero`] says otherwise.
+/// The arc starts at the frame's x axis and goes counter-clockwise. The chart: v = R θ along the
+/// arc; u = r φ around the tube's section, in [0, 2πr), where φ counts counter-clockwise about the
+/// direction of the arc, so that it continues the chart of a cylinder with its z axis in the same
+/// direction. φ = 0 is the outermost point, away from the bend axis (R + r), unless set by
+/// [`Torus::with_section_zero`].
 #[derive(Debug, Clone)]
 pub struct Torus {
     frame: Frame,
@@ -25,8 +26,9 @@ pub struct Torus {
 }
 
 impl Torus {
-    /// The wall of a tube of radius `minor_radius` whose centre line is the arc of radius `major_radius`, mm, about the
-    /// z axis of `frame`, from its x axis by `angle`, rad, up to 2π. The minor radius must be the smaller one.
+    /// The wall of a tube of radius `minor_radius` whose centre line is the arc of radius
+    /// `major_radius`, mm, about the z axis of `frame`, from its x axis by `angle`, rad, up to 2π.
+    /// The minor radius must be smaller than the major one.
     pub fn new(frame: Frame, major_radius: f64, minor_radius: f64, angle: f64) -> Self {
         let arc = Wedge::new(angle);
         Self { frame, major_radius, minor_radius, arc, section_zero: 0.0 }
@@ -59,7 +61,8 @@ impl Torus {
             Start::On => with_start(others_from_surface(from, dir, tube)),
             Start::Elsewhere => all_roots(from, dir, tube),
         };
-        // A line is outside at both ends, so it enters and leaves by turns, also where it grazes.
+        // A line is outside at both ends, so it enters and leaves alternately, even where it
+        // grazes.
         for (i, &t) in roots.iter().enumerate() {
             let is_start = start == Start::On && t == 0.0;
             if !is_start && self.arc_contains((from + t * dir).truncate()) {
@@ -87,8 +90,8 @@ impl Torus {
 
     #[inline]
     pub(super) fn normal(&self, p: DVec3) -> DVec3 {
-        // The same operations as in the crossings: for a thin tube ρ - 1 has lost digits, but the same ones, so that a
-        // ray that grazes the wall inward is inside there too.
+        // The same operations as in the crossings: for a thin tube ρ - 1 has lost digits, but the
+        // same ones, so a ray that grazes the wall inward is inside there too.
         let from = self.frame.point_to_local(p) / self.major_radius;
         let distance = from.truncate().length();
         let outward = ((distance - 1.0) / distance * from.truncate()).extend(from.z);
@@ -185,7 +188,7 @@ fn all_roots(from: DVec3, dir: DVec3, tube: f64) -> Roots {
     polished.into_iter().map(|t| shift + t).collect()
 }
 
-/// Parameters of the crossings of a line that starts on the torus, but the start.
+/// Parameters of the crossings of a line that starts on the torus, except the start.
 ///
 /// On the surface A = 2ρ exactly, and the quartic's constant term is zero; what remains is a cubic, here written so
 /// that its terms are small where the tube is thin.
@@ -204,7 +207,8 @@ fn others_from_surface(from: DVec3, dir: DVec3, tube: f64) -> Roots {
     let reach = along * along + (1.0 + tube) * (1.0 + tube) - from.length_squared();
     let half_chord = bracket(reach.max(0.0));
     let roots = cubic(coefficients, -along - half_chord, -along + half_chord);
-    // Of F = (ρ - 1)² + z² the change (F(t) - F(0)) / t, written without that difference, and its derivative.
+    // For F = (ρ - 1)² + z², the change (F(t) - F(0)) / t, written without that difference, and its
+    // derivative.
     polish(roots, |t| {
         let now = (across_axis + t * across_dir).length();
         let now_slope = (across_along + t * across_dir2) / now;
@@ -221,8 +225,8 @@ fn others_from_surface(from: DVec3, dir: DVec3, tube: f64) -> Roots {
 /// Roots of the squared equation, improved by a step of Newton's method on an unsquared one, which loses fewer digits
 /// near the axis and for thin tubes.
 fn polish(mut roots: Roots, unsquared: impl Fn(f64) -> (f64, f64)) -> Roots {
-    // Steps are some 1e-15; only for grazing rays, where two roots nearly meet and the step may miss, they are larger
-    // than this, and there the distance from the surface is small already.
+    // Steps are about 1e-15. They are larger than this only for grazing rays, where two roots
+    // nearly meet and the step may miss; there the distance from the surface is already small.
     const LARGEST_STEP: f64 = 1e-11;
     for t in &mut roots {
         let (value, slope) = unsquared(*t);
@@ -234,9 +238,10 @@ fn polish(mut roots: Roots, unsquared: impl Fn(f64) -> (f64, f64)) -> Roots {
     roots
 }
 
-/// Half an interval that surely holds all crossings, from the squared half chord of the enclosing sphere.
+/// Half an interval that certainly contains all crossings, from the squared half chord of the
+/// enclosing sphere.
 fn bracket(squared_half_chord: f64) -> f64 {
-    // Any margin above rounding will do: beyond the sphere there are no roots.
+    // Any margin above rounding works: there are no roots beyond the sphere.
     squared_half_chord.sqrt() + 0.01
 }
 
@@ -264,7 +269,7 @@ mod tests {
         (p.truncate().length() - major).hypot(p.z) - minor
     }
 
-    /// How far inside the arc a point lies, as a length.
+    /// Depth of a point inside the arc, as a length.
     fn inside_arc(frame: &Frame, angle: f64, p: DVec3) -> f64 {
         let p = frame.point_to_local(p);
         let theta = p.y.atan2(p.x).rem_euclid(TAU);

@@ -1,4 +1,4 @@
-//! A range of azimuths, to trim surfaces of revolution.
+//! A range of azimuths that trims surfaces of revolution.
 
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::{Aabb, Frame};

@@ -3,19 +3,19 @@
 use crate::scene::shape::{ChartRect, Shape};
 use glam::{DVec2, DVec3};
 
-/// How the chart of a part's shape is laid into the chart of its sweep.
+/// The map from the chart of a part's shape to the chart of its sweep.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum WallChart {
     /// Shifted and scaled: `offset + scale * (u, v)`.
     Along {
-        /// Where the shape's (0, 0) comes to lie, mm.
+        /// Position of the shape's (0, 0), mm.
         offset: DVec2,
         /// Factors along u and v.
         scale: DVec2,
     },
     /// The shape's v goes around and its u along: `offset + scale * (v, u)`.
     Across {
-        /// Where the shape's (0, 0) comes to lie, mm.
+        /// Position of the shape's (0, 0), mm.
         offset: DVec2,
         /// Factors along the sweep's u and v.
         scale: DVec2,
@@ -56,7 +56,7 @@ pub struct Sector {
     pub(super) sense: Sense,
 }
 
-/// Which way a sector's azimuth counts.
+/// Direction in which a sector's azimuth counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sense {
     /// Along the path.
@@ -76,7 +76,7 @@ impl WallChart {
         }
     }
 
-    /// Unit tangent of `shape` at a point along which the sweep's v grows while u stays.
+    /// Unit tangent of `shape` at a point along which the sweep's v grows at constant u.
     pub(crate) fn along(&self, shape: &Shape, p: DVec3) -> DVec3 {
         match self {
             Self::Along { .. } => shape.along(p),
@@ -132,7 +132,8 @@ impl ChartRect {
         self.min + share * (self.max - self.min)
     }
 
-    /// The part of this rectangle that lies in another one, in shares of width and height; may be empty.
+    /// The part of this rectangle that lies in another one, as shares of width and height; may be
+    /// empty.
     fn share_in(&self, other: ChartRect) -> ChartRect {
         let size = self.max - self.min;
         let common = self.intersection(&other);
@@ -154,7 +155,7 @@ impl Trapezoid {
         DVec2::new((at.x - from) / width, share)
     }
 
-    /// By how much x grows with y along a line of constant share of the width, 1.
+    /// Growth of x with y along a line of constant share of the width, 1.
     fn lean(&self, at: DVec2) -> f64 {
         let share = self.share_of(at).x;
         let [from, to] = [0, 1].map(|end| self.top[end] - self.bottom[end]);
@@ -169,7 +170,7 @@ impl Trapezoid {
 
 impl Sector {
     fn share_of(&self, at: DVec2) -> DVec2 {
-        // Counted from the middle, the azimuth of a sector has no jump.
+        // Measured from the middle, the azimuth of a sector has no jump.
         let middle = DVec2::from_angle(0.5 * self.angle);
         let turned = middle.perp_dot(at).atan2(middle.dot(at)) / self.angle;
         let along = match self.sense {

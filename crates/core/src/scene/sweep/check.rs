@@ -1,4 +1,5 @@
-//! Whether the pieces of a path fit: enough room between corners, no ring, no leg through another one.
+//! Whether the pieces of a path fit: enough room between corners, no closed ring, no leg through
+//! another one.
 
 use crate::scene::shape::Polygon;
 use crate::scene::sweep::path::{End, Form, Path, Piece, bend_frame, direction, unit};
@@ -7,13 +8,13 @@ use glam::{DVec2, DVec3};
 use lumiduct_base::math::{Aabb, planar};
 use std::f64::consts::TAU;
 
-/// Touching is no overlap: points count as inside from this share of the profile's size on.
+/// Touching is not overlap: points count as inside from this share of the profile's size on.
 const MARGIN: f64 = 1e-9;
 /// The most sections of a piece, and the most points of a section, at which an overlap is looked for.
 const MAX_SECTIONS: usize = 400;
 const MAX_SECTION_POINTS: usize = 64;
 
-/// The first reason why the pieces of `path` make no sweep of `profile`.
+/// The first reason why the pieces of `path` are not a valid sweep of `profile`.
 pub(super) fn check(profile: &Profile, path: &Path) -> Result<(), SweepError> {
     let size = profile.size();
     for piece in &path.pieces {
@@ -33,7 +34,8 @@ pub(super) fn check(profile: &Profile, path: &Path) -> Result<(), SweepError> {
     find_overlap(profile, path)
 }
 
-/// By how much the planes of the ceiling dip below those of the floor, mm; negative where there is room to spare.
+/// Depth by which the planes of the ceiling dip below those of the floor, mm; negative where there
+/// is room to spare.
 fn missing_length(profile: &Profile, scale: f64, floor: &End, ceiling: &End) -> f64 {
     let mut missing = f64::NEG_INFINITY;
     for below in &floor.slopes {
@@ -53,8 +55,8 @@ struct Body<'a> {
     bounds: Aabb,
 }
 
-/// Looks for points on the walls of a piece that lie within another piece. Legs that really cross share much more than
-/// the distance between these points.
+/// Searches for points on the walls of a piece that lie within another piece. Legs that really
+/// cross share much more than the distance between these points.
 fn find_overlap(profile: &Profile, path: &Path) -> Result<(), SweepError> {
     let outline = Outline::new(profile, path.exit.along);
     let bodies: Vec<Body> = path
@@ -88,7 +90,7 @@ fn common_point(outline: &Outline, one: &Body, other: &Body) -> Option<DVec3> {
     one.samples.iter().filter(near).find(|p| holds(outline, other.piece, **p)).copied()
 }
 
-/// The profile at the entry, made ready for questions.
+/// The profile at the entry, prepared for queries.
 struct Outline<'a> {
     profile: &'a Profile,
     polygon: Option<Polygon>,

@@ -210,7 +210,8 @@ fn flat_bend(
     let (frame, sense) = if to.x > from.x {
         (level, Sense::Forward)
     } else {
-        // The front looks down the axis: counted from the end of the arc, it is counter-clockwise again.
+        // The front looks down the axis: measured from the end of the arc, it is counter-clockwise
+        // again.
         let last = direction(about, unit(arc.angle));
         (Frame { x: last, y: last.cross(about.z), z: -about.z, ..level }, Sense::Backward)
     };

@@ -1,10 +1,10 @@
-//! What a path is made of, as its user says it, and what can be wrong with it.
+//! The legs of a path as specified by the user, and possible errors in them.
 
 use crate::scene::sweep::ProfileError;
 use lumiduct_base::number::format_length;
 
-/// A leg of a path. Lengths in mm, angles in rad. `toward` is the azimuth in the section as it arrives, 0 = the local
-/// +x, to which the path turns.
+/// A leg of a path. Lengths in mm, angles in rad. `toward` is the azimuth to which the path turns,
+/// in the section as it arrives; 0 = the local +x.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Leg {
     /// Straight on.
@@ -16,21 +16,22 @@ pub enum Leg {
     },
     /// An arc.
     Bend {
-        /// By how much the path turns, up to 2π.
+        /// Angle of the turn, up to 2π.
         angle: f64,
         /// Radius of the centre line, mm.
         radius: f64,
-        /// To which azimuth.
+        /// Azimuth of the turn.
         toward: f64,
     },
-    /// A sharp corner. The legs beside it end where its inner edge is; the walls are drawn out to the plane that halves
-    /// the corner, so that in a duct of width w a right-angled corner is a square of w by w.
+    /// A sharp corner. The legs next to it end at its inner edge; the walls are extended to the
+    /// plane that bisects the corner, so that in a duct of width w a right-angled corner is a
+    /// square of w by w.
     Corner {
-        /// By how much the path turns, below π.
+        /// Angle of the turn, below π.
         angle: f64,
-        /// To which azimuth.
+        /// Azimuth of the turn.
         toward: f64,
-        /// What its outside looks like.
+        /// Shape of its outside.
         kind: CornerKind,
     },
 }
@@ -49,9 +50,9 @@ pub enum CornerKind {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{problem}")]
 pub struct SweepError {
-    /// The leg, from 0; `None` when it is no leg's fault.
+    /// The leg, from 0; `None` when no leg is at fault.
     pub leg: Option<usize>,
-    /// What is wrong.
+    /// The problem.
     pub problem: SweepProblem,
 }
 
@@ -67,7 +68,7 @@ pub enum SweepProblem {
     /// A length or a factor is out of range.
     #[error("{what} is {value}, expected a positive number up to 1e9")]
     OutOfRange {
-        /// Which one.
+        /// Name of the quantity.
         what: &'static str,
         /// Its value.
         value: f64,
@@ -75,20 +76,20 @@ pub enum SweepProblem {
     /// An angle is out of range.
     #[error("{what} is {value_deg} degrees, expected {expected}")]
     Angle {
-        /// Which one.
+        /// Name of the quantity.
         what: &'static str,
         /// Its value, degrees.
         value_deg: f64,
         /// The range.
         expected: &'static str,
     },
-    /// The section has been scaled out of any sense.
+    /// The section has been scaled beyond reasonable size.
     #[error("the section is scaled to {scale} of its size at the entry, expected 1e-6 to 1e6")]
     Scaled {
         /// Scale relative to the entry.
         scale: f64,
     },
-    /// The bend axis goes through the profile.
+    /// The bend axis passes through the profile.
     #[error(
         "the bend has a radius of {} mm but the profile reaches {} mm toward its axis",
         format_length(*.radius),
@@ -97,7 +98,7 @@ pub enum SweepProblem {
     TightBend {
         /// Radius of the centre line, mm.
         radius: f64,
-        /// How far the profile reaches, mm.
+        /// Reach of the profile, mm.
         reach: f64,
     },
     /// A mitre plate, or the walls between two corners, need more length.
@@ -106,13 +107,13 @@ pub enum SweepProblem {
         format_length(*.missing)
     )]
     TooShort {
-        /// The length to be added, mm.
+        /// The missing length, mm.
         missing: f64,
     },
     /// The path ends where it began.
     #[error("the path closes on itself: its exit lies on its entry")]
     ClosedRing,
-    /// Two legs take the same room.
+    /// Two legs overlap.
     #[error(
         "this leg runs through leg {other} (counted from 1) near ({}, {}, {}) mm",
         format_length(*.x),

@@ -1,9 +1,10 @@
 //! A cross-section carried along straight legs, bends and corners: the exact surfaces of rods, tubes and ducts.
 //!
-//! Every piece is a quadric, a torus or a plane, never an approximation: a circle sweeps cylinders, cones and tori; an
-//! edge of a polygon sweeps planes, and about a bend axis in its own plane a cylinder, a cone or a plane again. A sweep
-//! knows geometry only: whether it is a solid (parts and ports are its faces) or a hollow duct (the parts alone) and
-//! what its faces do to light is decided elsewhere.
+//! Every piece is a quadric, a torus or a plane, never an approximation: a circle sweeps cylinders,
+//! cones and tori; an edge of a polygon sweeps planes, and about a bend axis in its own plane a
+//! cylinder, a cone or a plane again. A sweep knows only geometry. Its caller decides whether it is
+//! a solid (parts and ports are its faces) or a hollow duct (the parts alone), and sets the
+//! finishes of its faces.
 
 mod chart;
 mod check;
@@ -38,11 +39,12 @@ pub struct Sweep {
     pub parts: Vec<Part>,
     /// The cross-sections at the entry and at the exit.
     pub ports: [Port; 2],
-    /// Length of the path, mm; through a corner, the way to the point where the centre lines meet and on from there.
+    /// Length of the path, mm; through a corner it is measured along both centre lines to the point
+    /// where they meet.
     pub length: f64,
     /// Length of the profile's outline at the entry, mm.
     pub perimeter: f64,
-    /// Volume that is enclosed, mm³.
+    /// Enclosed volume, mm³.
     pub volume: f64,
 }
 
@@ -57,8 +59,8 @@ pub struct Port {
 
 /// Carries `profile` along `legs`, starting in `frame` toward its z with the profile's x and y along the frame's.
 ///
-/// The frame goes along by rotation about the bend axes only, so that `toward` of each leg refers to the section as it
-/// arrives there.
+/// The frame rotates only about the bend axes, so that `toward` of each leg refers to the section
+/// as it arrives there.
 pub fn sweep(frame: Frame, profile: &Profile, legs: &[Leg]) -> Result<Sweep, SweepError> {
     let path = path::trace(frame, profile, legs)?;
     check::check(profile, &path)?;

@@ -1,5 +1,5 @@
-//! From legs to pieces: where every straight, taper, bend and corner lies, with the walls at a corner drawn out to the
-//! planes that end them.
+//! From legs to pieces: where every straight, taper, bend and corner lies, with the walls at a
+//! corner extended to the planes that end them.
 
 use crate::scene::sweep::profile::MAX_LENGTH;
 use crate::scene::sweep::{CornerKind, Leg, Profile, SweepError, SweepProblem};
@@ -7,14 +7,14 @@ use glam::{DVec2, DVec3};
 use lumiduct_base::math::Frame;
 use std::f64::consts::{PI, TAU};
 
-/// The pieces of a path in order, and the section behind the last one.
+/// The pieces of a path in order, and the section after the last one.
 #[derive(Debug, Clone)]
 pub(super) struct Path {
     pub(super) pieces: Vec<Piece>,
     pub(super) exit: Section,
 }
 
-/// A place on the path.
+/// A position on the path.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Section {
     /// Origin on the centre line, z along it.
@@ -28,14 +28,14 @@ pub(super) struct Section {
 /// A piece of the path that sweeps one surface per wall.
 #[derive(Debug, Clone)]
 pub(super) struct Piece {
-    /// Which leg it is due to.
+    /// Its leg.
     pub(super) leg: usize,
-    /// Where it begins. Straight pieces may begin before or behind this section, as their floor says.
+    /// Its start. Straight pieces may start before or after this section, as set by their floor.
     pub(super) start: Section,
     pub(super) form: Form,
 }
 
-/// What a piece is.
+/// The geometry of a piece.
 #[derive(Debug, Clone)]
 pub(super) enum Form {
     /// All points over the profile between two ends.
@@ -63,12 +63,12 @@ impl End {
         Self { height, toward: DVec2::X, slopes: vec![0.0] }
     }
 
-    /// Height of the highest plane over `q`, mm: where a prism begins whose floor this is.
+    /// Height of the highest plane over `q`, mm: the start of a prism with this floor.
     pub(super) fn highest(&self, q: DVec2) -> f64 {
         self.heights(q).fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Height of the lowest plane over `q`, mm: where a prism ends whose ceiling this is.
+    /// Height of the lowest plane over `q`, mm: the end of a prism with this ceiling.
     pub(super) fn lowest(&self, q: DVec2) -> f64 {
         self.heights(q).fold(f64::INFINITY, f64::min)
     }
@@ -85,7 +85,7 @@ impl End {
 }
 
 impl Section {
-    /// The section after going on along z.
+    /// The section advanced along z.
     fn advanced(&self, length: f64) -> Self {
         let frame = self.frame.shifted(length * self.frame.z);
         Self { frame, along: self.along + length, ..*self }
@@ -116,14 +116,16 @@ fn turned(frame: &Frame, angle: f64, toward: DVec2) -> Frame {
     Frame { origin: frame.origin, x, y: z.cross(x), z }
 }
 
-/// The frame about whose z a bend turns: x points from the axis to the start of the bend, y along the path there.
+/// The frame of a bend, which turns about its z: x points from the axis to the start of the bend, y
+/// along the path there.
 pub(super) fn bend_frame(start: &Frame, radius: f64, toward: DVec2) -> Frame {
     let inner = direction(start, toward);
     Frame { origin: start.origin + radius * inner, x: -inner, y: start.z, z: start.z.cross(inner) }
 }
 
-/// The frame of the plate across a mitred corner, of which `before` is the section arriving at the crossing: z points
-/// out of the guide, x half way between the two directions of the path, y along the bend axis.
+/// The frame of the plate across a mitred corner, where `before` is the section arriving at the
+/// crossing: z points out of the guide, x half way between the two directions of the path, y along
+/// the bend axis.
 pub(super) fn mitre_frame(before: &Frame, angle: f64, toward: DVec2) -> Frame {
     let inner = direction(before, toward);
     let DVec2 { x: cos, y: sin } = unit(0.5 * angle);
@@ -155,7 +157,8 @@ pub(super) fn trace(frame: Frame, profile: &Profile, legs: &[Leg]) -> Result<Pat
     Ok(Path { pieces: tracer.pieces, exit: tracer.at })
 }
 
-/// Walks along the legs. Straight legs and the walls of corners that continue each other become one prism.
+/// Follows the legs. Straight legs and the walls of corners that continue each other become one
+/// prism.
 struct Tracer<'a> {
     profile: &'a Profile,
     at: Section,
@@ -257,7 +260,7 @@ impl Tracer<'_> {
         Ok(())
     }
 
-    /// Draws the open prism out by `length`; begins one here if there is none.
+    /// Extends the open prism by `length`; starts one here if there is none.
     fn extend(&mut self, leg: usize, length: f64) -> &mut OpenPrism {
         let start = self.at;
         let prism = self.open.get_or_insert_with(|| OpenPrism {
@@ -271,7 +274,7 @@ impl Tracer<'_> {
         prism
     }
 
-    /// Ends the prism that is being drawn, if any, here: by slanted planes or by the section.
+    /// Ends the open prism, if any, here: by slanted planes or by the section.
     fn close(&mut self, slanted: Option<(DVec2, Vec<f64>)>) {
         let Some(OpenPrism { leg, start, floor, length }) = self.open.take() else { return };
         let ceiling = match slanted {
@@ -292,7 +295,7 @@ fn positive(what: &'static str, value: f64) -> Result<(), SweepProblem> {
 }
 
 fn check_azimuth(toward: f64) -> Result<(), SweepProblem> {
-    // Far beyond any use, and where the azimuth would lose its digits.
+    // Far beyond any practical value, where the azimuth would lose its digits.
     let usable = toward.abs() <= 1e3 * TAU;
     if usable { Ok(()) } else { Err(out_of_range("`toward`", toward, "a finite azimuth")) }
 }

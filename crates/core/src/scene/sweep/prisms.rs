@@ -1,32 +1,32 @@
-//! Outlines around a profile: grown by a wall, and set with prisms.
+//! Outlines around a profile: offset by a wall, and lined with prisms.
 
 use crate::scene::sweep::{Profile, ProfileError};
 use glam::DVec2;
 use lumiduct_base::math::planar;
 use std::f64::consts::PI;
 
-/// Prisms that stand side by side on an outline.
+/// Prisms side by side on an outline.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Prisms {
-    /// How many.
+    /// Number of prisms.
     pub number: PrismNumber,
     /// Angle between the facets of a prism at its tip, rad.
     pub angle: f64,
 }
 
-/// How many prisms stand on an outline.
+/// Number of prisms on an outline.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PrismNumber {
-    /// So many around a circle, or on each side of a polygon.
+    /// This many around a circle, or on each side of a polygon.
     Count(usize),
     /// As many as fit at this distance from valley to valley, mm.
     Pitch(f64),
 }
 
-/// Why a profile cannot be grown or set with prisms.
+/// Why a profile cannot be offset or lined with prisms.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum OutlineError {
-    /// The outline itself is no profile.
+    /// The outline itself is not a valid profile.
     #[error(transparent)]
     Profile(#[from] ProfileError),
     /// The polygon has an inward corner.
@@ -40,9 +40,9 @@ pub enum OutlineError {
     Gap {
         /// The pitch, mm.
         pitch: f64,
-        /// How many fit.
+        /// Number that fit.
         fit: f64,
-        /// On how much, mm.
+        /// Available length, mm.
         length: f64,
         /// The nearest number of prisms.
         nearest: f64,
@@ -84,8 +84,8 @@ impl Profile {
         }
     }
 
-    /// This outline set with prisms all around: its corners, or points of a circle, are valleys. On a circle a pitch is
-    /// counted along the arc.
+    /// This outline lined with prisms all around: its corners, or points of a circle, are valleys.
+    /// On a circle a pitch is measured along the arc.
     pub fn with_prisms(&self, prisms: &Prisms) -> Result<Self, OutlineError> {
         let valleys = match self {
             Self::Circle { radius } => {
@@ -114,7 +114,7 @@ impl Profile {
     }
 }
 
-/// How many prisms stand on a length, mm.
+/// Number of prisms on a length, mm.
 fn number(number: PrismNumber, length: f64) -> Result<usize, OutlineError> {
     match number {
         PrismNumber::Count(count) => Ok(count),

@@ -1,4 +1,4 @@
-//! The cross-section that is swept, and what makes a usable one.
+//! The cross-section of a sweep, and its validity.
 
 use crate::scene::shape::Region;
 use glam::DVec2;
@@ -15,7 +15,7 @@ pub enum Profile {
         /// Radius, mm.
         radius: f64,
     },
-    /// A simple polygon. Wall `i` stands on the edge from point `i` to the next one.
+    /// A simple polygon. Wall `i` is on the edge from point `i` to the next one.
     Polygon {
         /// The vertices, counter-clockwise, mm.
         points: Vec<DVec2>,
@@ -36,10 +36,10 @@ pub enum ProfileError {
     /// Too few or too many corners.
     #[error("the profile has {0} corners, expected {min} to {max}", min = MIN_POINTS, max = MAX_POINTS)]
     Count(usize),
-    /// A coordinate is no number, or far too large.
+    /// A coordinate is NaN, or far too large.
     #[error("point {index} of the profile is ({x}, {y}), expected two finite numbers")]
     NotFinite {
-        /// Which point, from 0.
+        /// Index of the point, from 0.
         index: usize,
         /// Its x.
         x: f64,
@@ -49,7 +49,7 @@ pub enum ProfileError {
     /// A point lies on the one before it.
     #[error("point {index} of the profile repeats the point before it, ({x}, {y})")]
     Repeated {
-        /// Which point, from 0.
+        /// Index of the point, from 0.
         index: usize,
         /// Its x, mm.
         x: f64,
@@ -65,16 +65,16 @@ pub enum ProfileError {
     /// Two edges touch that are not neighbours, or a corner folds back.
     #[error("edges {first} and {second} of the profile cross or touch")]
     SelfCrossing {
-        /// Which edge, from 0: the one from the point of the same number.
+        /// Index of the edge, from 0: the one from the point of the same number.
         first: usize,
         /// The other edge.
         second: usize,
     },
 }
 
-/// A polygon has at least so many corners.
+/// Smallest number of corners of a polygon.
 const MIN_POINTS: usize = 3;
-/// ... and at most so many: every one becomes a surface on every leg.
+/// Largest number of corners: each becomes a surface on every leg.
 const MAX_POINTS: usize = 1000;
 /// Lengths up to 1000 km, mm: far from the overflow of their fourth powers.
 pub(super) const MAX_LENGTH: f64 = 1e9;
@@ -133,7 +133,7 @@ impl Profile {
         }
     }
 
-    /// How far the profile reaches along `direction`: the largest p · direction over its points.
+    /// Reach of the profile along `direction`: the largest p · direction over its points.
     pub fn reach(&self, direction: DVec2) -> f64 {
         match self {
             Self::Circle { radius } => radius * direction.length(),
@@ -182,7 +182,7 @@ impl Profile {
         }
     }
 
-    /// What keeps the profile from being swept, if anything does.
+    /// What prevents the profile from being swept, if anything.
     pub(super) fn check(&self) -> Result<(), ProfileError> {
         match self {
             Self::Circle { radius } => length("the radius", *radius),
@@ -243,7 +243,7 @@ fn crossing_edges(points: &[DVec2]) -> Option<(usize, usize)> {
 fn meet(edges: &[(DVec2, DVec2)], i: usize, k: usize) -> bool {
     let ((a, b), (c, d)) = (edges[i], edges[k]);
     if k == i + 1 || (i == 0 && k + 1 == edges.len()) {
-        // Neighbours: only a fold that runs back along itself. (Of the last edge the next one is edge 0.)
+        // Neighbours: only a fold that runs back along itself. (After the last edge comes edge 0.)
         let (first, second) = if k == i + 1 { (b - a, d - c) } else { (d - c, b - a) };
         let sine = first.perp_dot(second);
         let fold = first.dot(second) < 0.0;

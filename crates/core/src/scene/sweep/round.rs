@@ -49,7 +49,7 @@ fn prism(start: &Section, radius: f64, floor: &End, ceiling: &End) -> Shape {
         let frame = frame.shifted(bottom * frame.z);
         return Shape::Cylinder(Cylinder::new(frame, radius, top - bottom));
     }
-    // `up` = 1 keeps what is below the planes of an end, -1 what is above.
+    // `up` = 1 keeps the part below the planes of an end, -1 the part above.
     let planes = |end: &End, up: f64| {
         let through = frame.origin + end.height * frame.z;
         let across = direction(&frame, end.toward);

@@ -1,14 +1,14 @@
-//! Which parts continue each other without an edge.
+//! Parts that continue each other without an edge.
 
 use crate::scene::sweep::path::{Form, Piece};
 use glam::DVec2;
 
-/// The numbers of the smooth surfaces that the walls of a sweep belong to, as the path goes on.
+/// The numbers of the smooth surfaces that the walls of a sweep belong to, along the path.
 pub(super) struct Smooth {
     /// One for each wall.
     ids: Vec<u32>,
     next: u32,
-    /// Growth of the scale per length of the piece before, 1/mm; `None` at the entry.
+    /// Growth of the scale per length of the previous piece, 1/mm; `None` at the entry.
     growth: Option<f64>,
 }
 
@@ -17,8 +17,9 @@ impl Smooth {
         Self { ids: (0u32..).take(walls).collect(), next: walls as u32, growth: None }
     }
 
-    /// Goes on to the next piece. `turns(wall, toward)` says whether a corner toward an azimuth changes the direction of a
-    /// wall; the walls along the plane of the corner go through it.
+    /// Advances to the next piece. `turns(wall, toward)` is true if a corner toward an azimuth
+    /// changes the direction of a wall; the walls along the plane of the corner continue through
+    /// it.
     pub(super) fn enter(&mut self, piece: &Piece, turns: impl Fn(usize, DVec2) -> bool) {
         let growth = match &piece.form {
             Form::Corner { toward, .. } => {
@@ -33,7 +34,7 @@ impl Smooth {
             Form::Prism { .. } | Form::Bend { .. } => 0.0,
         };
         let before = self.growth.replace(growth).unwrap_or(growth);
-        // Equal but for rounding: two legs of one cone.
+        // Equal up to rounding: two legs of one cone.
         if (growth - before).abs() > 1e-9 * growth.abs().max(before.abs()) {
             for wall in 0..self.ids.len() {
                 self.ids[wall] = self.fresh();
@@ -41,12 +42,12 @@ impl Smooth {
         }
     }
 
-    /// The number of a wall on the present piece.
+    /// The number of a wall on the current piece.
     pub(super) fn id(&self, wall: usize) -> u32 {
         self.ids[wall]
     }
 
-    /// A number of its own.
+    /// A new number.
     pub(super) fn fresh(&mut self) -> u32 {
         self.next += 1;
         self.next - 1

@@ -1,4 +1,4 @@
-//! Profiles and paths to try sweeps on, and what rays meet there, for the tests of sweeps.
+//! Profiles and paths for the tests of sweeps, and the surfaces that rays meet there.
 
 use crate::rng::{Dimension, Sampler};
 use crate::scene::Ray;

@@ -20,7 +20,7 @@ fn every_line_goes_in_and_out_by_turns_through_a_closed_sweep() {
             let by_turns = turns.into_iter().all(|(toward, crossing)| toward == crossing.toward);
             assert!(found.len().is_multiple_of(2) && by_turns, "{name}: {ray:?} {found:?}");
             seen += found.len();
-            // From between two crossings, the next surface lets out, whatever the direction.
+            // From between two crossings the next surface is an exit, whatever the direction.
             for pair in found.chunks(2) {
                 let inside = ray.at(0.5 * (pair[0].t + pair[1].t));
                 let dir = direction_of(&mut Sampler::for_path(SEED, 1, index));
@@ -203,7 +203,7 @@ fn a_round_light_pipe_is_one_smooth_surface_of_known_size() {
     assert_eq!(pipe.parts.len(), 3);
     assert!(pipe.parts.iter().all(|part| part.smooth == 0 && part.wall == Wall::Round));
     assert!((pipe.length - length).abs() < 1e-12);
-    // The inner and the outer half of a bend make up for each other (Pappus).
+    // The inner and the outer half of a bend compensate each other (Pappus).
     assert!((pipe.wall_area() - TAU * 1.5 * length).abs() < 1e-11);
     assert!((pipe.volume - PI * 2.25 * length).abs() < 1e-11);
     let [entry, exit] = &pipe.ports;

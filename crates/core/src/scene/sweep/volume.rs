@@ -23,7 +23,7 @@ pub(super) fn volume(profile: &Profile, path: &Path) -> f64 {
                     area * length * (scale * scale + scale * end_scale + end_scale * end_scale)
                         / 3.0
                 }
-                // Pappus: area times the way of its centroid.
+                // Pappus: area times the path length of its centroid.
                 Form::Bend { angle, radius, toward } => {
                     let moment: f64 = profile.half_moments(*toward).iter().sum();
                     angle * (area * scale.powi(2) * radius - scale.powi(3) * moment)
@@ -34,8 +34,9 @@ pub(super) fn volume(profile: &Profile, path: &Path) -> f64 {
         .sum()
 }
 
-/// Integral over the profile at the entry, mm³, of a rise that is linear on either side of the path in the direction
-/// `toward`: of the planes of a mitre one rules over the outer half and one over the inner half.
+/// Integral over the profile at the entry, mm³, of a rise that is linear on either side of the path
+/// in the direction `toward`: of the planes of a mitre, one applies over the outer half and one
+/// over the inner half.
 fn slanted(profile: &Profile, toward: DVec2, rise: impl Fn(DVec2) -> f64) -> f64 {
     let [outer, inner] = profile.half_moments(toward);
     inner * rise(toward) - outer * rise(-toward)

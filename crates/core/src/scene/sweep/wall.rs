@@ -10,15 +10,15 @@ use lumiduct_base::math::Frame;
 pub struct Part {
     /// The surface; its front is outside.
     pub shape: Shape,
-    /// Which wall of the sweep it belongs to.
+    /// The wall of the sweep that it belongs to.
     pub wall: Wall,
     /// Parts that continue each other without an edge have the same number.
     pub smooth: u32,
-    /// Leads from the chart of the shape to that of the sweep.
+    /// Maps the chart of the shape to that of the sweep.
     pub chart: WallChart,
 }
 
-/// A wall of a sweep, as faces are named by it.
+/// A wall of a sweep, which gives its face a name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Wall {
     /// The one wall of a circle.
@@ -36,8 +36,8 @@ impl Part {
         Self { shape, wall: Wall::Mitre, smooth, chart }
     }
 
-    /// The same wall seen from the other side: that of a bore, whose front is toward the path. `None` for walls of other
-    /// legs than straight ones.
+    /// The same wall seen from the other side: that of a bore, with its front toward the path.
+    /// `None` except for walls of straight legs.
     pub fn turned(&self) -> Option<Self> {
         let turned = |shape, scale: DVec2| match self.chart {
             WallChart::Along { offset, scale: before } => {
@@ -71,7 +71,8 @@ impl Part {
     /// lengths of the profile at the entry, from the azimuth 0 of a circle or point 0 of a polygon; v along the path.
     /// A taper stretches the chart, and the walls outside of a bend are longer than their share of v.
     ///
-    /// A mitre plate is no part of that chart: it has coordinates of its own, from its centre, v along the bend axis.
+    /// A mitre plate is not part of that chart: its own coordinates start at its centre, with v
+    /// along the bend axis.
     pub fn chart(&self, p: DVec3) -> DVec2 {
         self.chart.of(self.shape.chart(p))
     }

@@ -1,8 +1,9 @@
 //! The backward estimator: gather paths from the sensors, followed until they meet emission.
 //!
-//! A gather path carries basic radiance L/n² and stands for an etendue of its sensor: the mean of their product is the
-//! flux on the sensor. Points, lines and collimated beams cannot be met; a run with such sources is refused before.
-//! Mixed with forward, photons count on the sensors, too, and both count by their weights (`mix`).
+//! A gather path carries basic radiance L/n² and represents an etendue of its sensor: the mean of
+//! their product is the flux on the sensor. Points, lines and collimated beams cannot be met; a run
+//! with such sources is refused beforehand. When mixed with forward, photons also count on the
+//! sensors, and both count by their weights (`mix`).
 
 use crate::rng::Sampler;
 use crate::scene::{Arrivals, Scene, SensorId};
@@ -15,15 +16,15 @@ use crate::transport::walk::follow::{Collector, Gathering, follow};
 use crate::transport::{Departure, Layout, Loss, Path, Readings, Vertex};
 use std::ops::ControlFlow;
 
-/// Stream of random numbers of the gather paths; each sensor has one of its own from here on.
+/// Stream of random numbers of the gather paths; each sensor has a separate one from here on.
 const STREAM: u64 = 1 << 32;
 
-/// Gather paths of each sensor that tell how much work they are.
+/// Gather paths of each sensor that measure their work.
 const PILOT_PATHS: u64 = 64;
-/// The batch that they are of: none that is counted.
+/// Batch of the pilot paths: not one that counts.
 const PILOT_BATCH: u64 = 1 << 40;
 
-/// What all batches of a run have in common.
+/// Shared data of all batches of a run.
 #[derive(Debug)]
 pub(crate) struct Backward<'s> {
     pub(crate) scene: &'s Scene,
@@ -34,7 +35,7 @@ pub(crate) struct Backward<'s> {
     bounce_limit: u32,
     /// Gather paths per batch of each sensor.
     pub(crate) paths: u64,
-    /// The sensors on which forward has a share.
+    /// The sensors to which forward contributes.
     pub(crate) mixed: Vec<SensorId>,
 }
 
@@ -58,12 +59,12 @@ impl<'s> Backward<'s> {
         }
     }
 
-    /// The same with so many paths a batch from each sensor.
+    /// The same with this many paths per batch from each sensor.
     pub(crate) fn with_paths(self, paths: u64) -> Self {
         Self { paths: paths.max(1), ..self }
     }
 
-    /// The same, with forward having a share in some of the sensors.
+    /// The same, with forward contributing to some of the sensors.
     pub(crate) fn mixed(self, sensors: &[SensorId]) -> Self {
         Self { mixed: sensors.to_vec(), ..self }
     }
@@ -79,8 +80,8 @@ impl<'s> Backward<'s> {
         self.paths * self.sensors.len() as u64
     }
 
-    /// Traces one batch beside one of photons with these fluxes, lm or W, by source. It is not closed: photons may have
-    /// a share in it. `None` if it was stopped.
+    /// Traces one batch along with one of photons with these fluxes, lm or W, by source. It is not
+    /// closed, since photons may contribute to it. `None` if it was stopped.
     pub(crate) fn batch(
         &self,
         batch: u64,
@@ -133,18 +134,18 @@ impl<'s> Backward<'s> {
     }
 }
 
-/// What is beside the gather paths of a batch.
+/// Context of the gather paths of a batch.
 #[derive(Clone, Copy)]
 struct Beside<'a> {
     /// Mixed: flux of one photon of each source, lm or W.
     mixed_with: Option<&'a [f64]>,
-    /// What may stop them.
+    /// Stops the paths.
     pace: &'a Pace<'a>,
 }
 
 /// Counts the light of one gather path.
 struct Counter<'a> {
-    /// Etendue per basic radiance of this path, its share of the batch, mm² sr.
+    /// Etendue of this path per basic radiance, its share of the batch, mm² sr.
     etendue: f64,
     cells: &'a [usize],
     id: SensorId,

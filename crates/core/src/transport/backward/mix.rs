@@ -1,8 +1,9 @@
-//! Forward and backward mixed: each counts the light of a path by how well it finds it.
+//! Forward and backward mixed: each counts the light of a path in proportion to how well it samples
+//! it.
 //!
-//! Both know the ends of every path that they find, and so the weights of docs/method.md, eq. (21), without a window. What
-//! lies between the ends does not enter, so that finishes may scatter. Sources that rays cannot meet are left to
-//! photons. What gather paths count is counted in `backward`.
+//! Both know the ends of every path that they find, and therefore the weights of docs/method.md,
+//! eq. (21), without a window. The path between the ends does not matter, so finishes may scatter.
+//! Sources that rays cannot meet are left to photons. `backward` counts the share of gather paths.
 
 use crate::scene::SourceId;
 use crate::transport::backward::estimator::Backward;
@@ -16,7 +17,7 @@ use smallvec::SmallVec;
 pub(crate) struct Mixing<'m, 's> {
     backward: &'m Backward<'s>,
     photon_fluxes: &'m [f64],
-    /// Etendue that the photon being traced stands for, mm² sr; 0 of one that no gather path could meet.
+    /// Etendue represented by the current photon, mm² sr; 0 if no gather path could meet it.
     photon: f64,
     readings: &'m mut Readings,
 }

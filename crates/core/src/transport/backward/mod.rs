@@ -1,4 +1,5 @@
-//! The backward estimator: gather paths from the sensors to the sources, alone or weighed with photons.
+//! The backward estimator: gather paths from the sensors to the sources, alone or weighted with
+//! photons.
 
 pub(crate) mod estimator;
 pub(crate) mod mix;

@@ -1,6 +1,7 @@
-//! Sensors that see nothing: from there no gather path could bring light.
+//! Sensors that see nothing: no gather path from them could find light.
 //!
-//! What a sensor sees is tried, not proved. That the light of a source comes there is not asked.
+//! What a sensor sees is sampled, not proved. Whether the light of a source reaches it is not
+//! checked.
 
 use crate::rng::Sampler;
 use crate::scene::{Arrivals, Scene, SensorId};
@@ -9,12 +10,13 @@ use crate::transport::walk::follow::{Collector, Gathering, follow};
 use crate::transport::{Path, Vertex};
 use std::ops::ControlFlow;
 
-/// Gather paths that are tried from a sensor.
+/// Gather paths tried from a sensor.
 pub const BLIND_PATHS: u64 = 1000;
 /// Stream of random numbers of these.
 const STREAM: u64 = 10 << 32;
 
-/// Those of some sensors of which none of [`BLIND_PATHS`] gather paths meets a surface or a source (beyond its aim, if it has one).
+/// The sensors for which none of [`BLIND_PATHS`] gather paths meets a surface or a source (beyond
+/// its aim, if it has one).
 pub fn blind_sensors(scene: &Scene, sensors: &[SensorId], seed: u64) -> Vec<SensorId> {
     let emitters = Emitters::new(scene);
     let sensors = sensors.iter().copied();
@@ -37,7 +39,7 @@ fn sees<'s>(scene: &'s Scene, emitters: &Emitters<'s>, sensor: SensorId, seed: u
     false
 }
 
-/// Notes whether anything is met, and looks no further.
+/// Notes whether anything is met, and then stops.
 struct Look {
     sees: bool,
 }

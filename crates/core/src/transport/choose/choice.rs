@@ -1,30 +1,31 @@
-//! What a pilot has found out: how each estimator did, and which was chosen.
+//! Findings of a pilot: the performance of each estimator, and the choice.
 
 use crate::plan::Estimator;
 use serde::{Deserialize, Serialize};
 
-/// What a pilot has found out about a sensor, and what was chosen.
+/// Findings of a pilot about a sensor, and the chosen estimator.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Choice {
-    /// The estimator that was taken.
+    /// The chosen estimator.
     pub chosen: Estimator,
-    /// How each that could be tried did.
+    /// The trial of each estimator that could be tried.
     pub tried: Vec<Trial>,
 }
 
-/// How an estimator did in a pilot.
+/// Performance of an estimator in a pilot.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Trial {
-    /// Which.
+    /// The estimator.
     pub estimator: Estimator,
-    /// Work × relative variance, in seconds of one thread of the reference machine: over the square of a relative
-    /// error it is the time until that error is reached. `None` where nothing was found.
+    /// Work × relative variance, in seconds of one thread of the reference machine: divided by the
+    /// square of a relative error, it is the time to reach that error. `None` where nothing was
+    /// found.
     pub cost: Option<f64>,
-    /// |E1 - E2| over the value, of a gathered one, 1.
+    /// |E1 - E2| over the value, for a gathered one, 1.
     pub bias: Option<f64>,
-    /// What it needs to tell anything, in seconds likewise: the passes of a first stage.
+    /// Smallest work for any result, in the same seconds: the passes of a first stage.
     pub least: f64,
-    /// What keeps it from being chosen, whatever it costs.
+    /// What excludes it, whatever it costs.
     pub objection: Option<Objection>,
 }
 
@@ -43,12 +44,13 @@ impl Trial {
     }
 }
 
-/// What speaks against gathering.
+/// Objections to gathering.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Objection {
     /// Its nested windows differ by more than the target, beyond their noise.
     WindowsDiffer,
-    /// Its flux is not that of an unbiased estimator; of an unbiased one, it is less than that of another.
+    /// Its flux disagrees with an unbiased estimator's; for an unbiased one, it is less than
+    /// another's.
     Contradicted,
 }

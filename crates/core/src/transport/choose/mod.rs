@@ -1,4 +1,4 @@
-//! The choice between the estimators, and sensors that gather paths leave dark.
+//! The choice between the estimators, and sensors where gather paths find no light.
 
 mod blind;
 mod choice;

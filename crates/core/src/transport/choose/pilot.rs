@@ -1,13 +1,14 @@
 //! The choice between the estimators, by measurement: a pilot of each on every sensor.
 //!
-//! The work until a relative error is reached is t = work × relative variance / error², and that of the passes without
-//! which gathering tells nothing at least. The pilot measures it for forward, backward, their mix and gather with a small
-//! part of the budget, in counted work, never in time; the least t is taken. A run to a target has the budget that a
-//! first, small pilot says the best needs.
-//! Gathering is left out where something speaks against it: nested windows that differ by more than the target and
-//! their noise, or a flux that the best of the unbiased ones contradicts. Two windows alone are blind to a feature that
-//! is smaller than both. An unbiased estimator is left out that found too little beside another: what it has missed so
-//! far is missing from its variance, too.
+//! The work to reach a relative error is t = work × relative variance / error², and at least that
+//! of the passes without which gathering gives no result. The pilot measures it for forward,
+//! backward, their mix and gather with a small part of the budget, in counted work, never in time,
+//! and takes the smallest t. The budget of a run to a target is what the best needs according to a
+//! first, small pilot. Gathering is excluded if there is an objection: nested windows that differ
+//! by more than the target and their noise, or a flux that the best of the unbiased ones
+//! contradicts. Two windows alone cannot see a feature that is smaller than both. An unbiased
+//! estimator is excluded if it found too little compared with another: its variance does not
+//! contain what it has missed so far.
 
 use crate::plan::{Estimator, RunPlan};
 use crate::scene::{Scene, SensorId, Source};
@@ -23,22 +24,23 @@ use crate::transport::walk::emitters::invisible;
 const SHARE: f64 = 0.05;
 /// Estimators that are tried.
 const TRIALS: f64 = 4.0;
-/// Budget of a run that is given none: a minute of one thread, s.
+/// Default budget of a run: a minute of one thread, s.
 const USUAL_BUDGET: f64 = 60.0;
-/// Least and most that a pilot takes, s.
+/// Shortest and longest time of a pilot, s.
 const BOUNDS: [f64; 2] = [0.1, 4.0];
-/// A second pilot is worth its while if it may take so many times as long as the first, 1.
+/// A second pilot is worthwhile if it may take this many times as long as the first, 1.
 const WORTH_ANOTHER: f64 = 3.0;
-/// Relative error of a flux that may contradict another: ten counts have it, 1.
+/// Relative error of a flux that may contradict another: that of ten counts, 1.
 const KNOWN: f64 = 0.32;
-/// Standard errors beyond which a difference counts.
+/// Standard errors beyond which a difference is significant.
 const SIGMAS: f64 = 3.0;
-/// What rounding may do to a flux, relative to it, 1.
+/// Possible relative rounding of a flux, 1.
 const ROUNDING: f64 = 1e-9;
-/// Relative error that windows may differ by where no target is set, 1.
+/// Relative difference allowed between windows if there is no target, 1.
 const USUAL_TARGET: f64 = 0.01;
 
-/// Tries the estimators on all sensors and chooses; `None` if that was stopped before anything was known. `watch` learns what is tried.
+/// Tries the estimators on all sensors and chooses; `None` if stopped before anything was known.
+/// `watch` receives the current trial.
 pub(crate) fn choose(
     scene: &Scene,
     plan: &RunPlan,
@@ -62,7 +64,8 @@ pub(crate) fn choose(
     Some(second.unwrap_or(first))
 }
 
-/// What a run is given, in seconds of one thread of the reference machine; `None` where it has but a target.
+/// Budget of a run, in seconds of one thread of the reference machine; `None` if it has only a
+/// target.
 fn budget(plan: &RunPlan, photons: PhotonPilot) -> Option<f64> {
     let path = 1e-9 * work::of_photon_path(photons.segments_per_path);
     let by_paths = plan.stop.paths.map(|paths| paths as f64 * path);
@@ -70,7 +73,8 @@ fn budget(plan: &RunPlan, photons: PhotonPilot) -> Option<f64> {
     by_paths.into_iter().chain(by_time).reduce(f64::min)
 }
 
-/// Tries all that may be tried on each sensor, for a run of so many seconds; `None` if that was stopped.
+/// Tries all permitted estimators on each sensor, for a run of this many seconds; `None` if
+/// stopped.
 fn choices(
     trials: &Trials<'_>,
     budget: f64,
@@ -101,7 +105,7 @@ fn choices(
     let of_sensor = |sensor: &SensorId| {
         let unbiased = [&forward, &backward, &mix].map(|tried| tried.get(sensor.index()));
         let unbiased: Vec<&Tried> = unbiased.into_iter().flatten().collect();
-        // Photons do not know at a record which sensors they have passed.
+        // At a record, the sensors that a photon has passed are unknown.
         let counts_first = scene.sensors[sensor.index()].counts_first_passage();
         let gathered = gather.get(sensor.index()).filter(|_| !counts_first);
         let gathered = gathered.map(|gathered| Trial {
@@ -125,14 +129,14 @@ fn least_error(tried: &[Trial], budget: f64) -> Option<f64> {
     costs.min_by(f64::total_cmp).map(|cost| (cost / budget).sqrt())
 }
 
-/// The quickest estimator to which nothing is objected; forward where none found anything.
+/// The fastest estimator without an objection; forward if none found anything.
 fn best(tried: &[Trial], error: Option<f64>) -> Estimator {
     let fit = tried.iter().filter(|trial| trial.objection.is_none());
     let known = fit.filter_map(|trial| Some((trial.time(error?)?, trial.estimator)));
     known.min_by(|(a, _), (b, _)| a.total_cmp(b)).map_or(Estimator::Forward, |(_, best)| best)
 }
 
-/// Standard error over value; infinite or not a number in the dark.
+/// Standard error over value; infinite or NaN in the dark.
 fn relative_error(flux: &Tally) -> f64 {
     flux.std_error() / flux.mean()
 }
@@ -148,7 +152,7 @@ fn misses_light(tried: &Tried, others: &[&Tried]) -> bool {
     })
 }
 
-/// What speaks against a gathered flux, beside what the unbiased estimators found.
+/// The objection to a gathered flux, given the results of the unbiased estimators.
 fn objection(gathered: &Gathered, unbiased: &[&Tried], target: f64) -> Option<Objection> {
     let (flux, apart) = (&gathered.tried.flux, &gathered.apart);
     gathered.tried.trial.cost?;

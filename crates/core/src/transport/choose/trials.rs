@@ -1,4 +1,5 @@
-//! Trials of the estimators on all sensors, each with the same effort. What follows from them is not known here.
+//! Trials of the estimators on all sensors, each with the same effort. This module does not draw
+//! conclusions.
 
 use crate::plan::{Estimator, RunPlan};
 use crate::scene::{Scene, SensorId, SourceId};
@@ -18,17 +19,19 @@ use rayon::prelude::*;
 
 /// Batches from which an estimator is judged.
 const BATCHES: u64 = 16;
-/// Passes from which gathering is judged: fewer would hold more pairs, and tell less of the variance.
+/// Passes from which gathering is judged: fewer would contain more pairs, but give the variance
+/// less accurately.
 const PASSES: u64 = 8;
-/// Variance of E0 over that of E1 where pairs limit both, 1: weights of 5, 1, 1 and -3 in the quarters of the window. So
-/// few pairs as a pilot has tell the latter far better.
+/// Variance of E0 over that of E1 where pairs limit both, 1: weights of 5, 1, 1 and -3 in the
+/// quarters of the window. With the few pairs of a pilot, the latter is known much better.
 const EXTRAPOLATED: f64 = 9.0;
-/// Least relative variance of a pass times its photons, or its gather paths: what pairs without limit would leave.
+/// Smallest relative variance of a pass times its photons, or its gather paths: the limit for
+/// unlimited pairs.
 const PER_PATH: f64 = 4.0;
-/// Random numbers of the pilot are those of another seed: what it chooses by is not counted again.
+/// The pilot uses random numbers of another seed, so that its paths do not count again in the run.
 const SEED: u64 = 0x7069_6c6f_7431;
 
-/// What is tried, and how hard.
+/// The estimators to try, and the effort.
 #[derive(Debug)]
 pub(super) struct Trials<'a> {
     pub(super) scene: &'a Scene,
@@ -37,11 +40,11 @@ pub(super) struct Trials<'a> {
     pub(super) sensors: &'a [SensorId],
     /// Work for each estimator.
     pub(super) effort: f64,
-    /// What may stop it.
+    /// Stops the trial.
     pub(super) signal: &'a StopSignal,
 }
 
-/// A trial, and the flux it found, batch by batch: in all, and of each source.
+/// A trial, and the flux it found, batch by batch: in total, and from each source.
 #[derive(Debug)]
 pub(super) struct Tried {
     pub(super) trial: Trial,
@@ -49,7 +52,7 @@ pub(super) struct Tried {
     pub(super) by_source: Vec<Tally>,
 }
 
-/// A trial of gathering, and how far its nested windows are apart: E1 - E2, pass by pass.
+/// A trial of gathering, and the difference of its nested windows: E1 - E2, pass by pass.
 #[derive(Debug)]
 pub(super) struct Gathered {
     pub(super) tried: Tried,
@@ -101,8 +104,8 @@ impl Trials<'_> {
         Some(self.judged(&batches, work, Estimator::Mix))
     }
 
-    /// Passes that are smaller than those of a run by one factor in photons and gather paths, and what those of the run
-    /// would cost: pairs, and with them the work they make, grow with the square of that factor.
+    /// Passes with fewer photons and gather paths than those of a run, by one factor, and the cost
+    /// of the run's passes: pairs, and the work they cause, grow with the square of that factor.
     pub(super) fn gather(&self) -> Option<Vec<Gathered>> {
         let Self { scene, plan, photons: pilot, sensors, effort, signal } = *self;
         let settings = settle(scene, plan, sensors, pilot, signal)?;
@@ -133,7 +136,7 @@ impl Trials<'_> {
             let trial = &mut tried.trial;
             trial.bias = (wide.mean() != 0.0).then(|| (apart.mean() / wide.mean()).abs());
             trial.least = FIRST_PASSES as f64 * seconds;
-            // Of one pass, and one of the run's.
+            // The cost of one pass, and of one of the run's.
             let of_pass = |cost: f64| {
                 (EXTRAPOLATED * cost * PASSES as f64 * part * part).max(seconds * least)
             };
@@ -143,13 +146,13 @@ impl Trials<'_> {
         Some(judged.collect())
     }
 
-    /// Batches of photons that take so much work in all.
+    /// Batches of photons with this much work in total.
     fn photons_for(&self, effort: f64) -> Forward<'_> {
         let path = work::of_photon_path(self.photons.segments_per_path);
         self.photons_of((effort / BATCHES as f64 / path) as u64)
     }
 
-    /// Batches of gather paths of all sensors that take so much work in all.
+    /// Batches of gather paths of all sensors with this much work in total.
     fn gather_paths_for(&self, effort: f64) -> Option<Backward<'_>> {
         let Self { scene, plan, sensors, signal, .. } = *self;
         let backward = Backward::new(scene, sensors, plan.seed ^ SEED, plan.bounce_limit);
@@ -158,7 +161,7 @@ impl Trials<'_> {
         Some(backward.with_paths(paths as u64))
     }
 
-    /// Work of the gather paths of each sensor: alone it would have had its share.
+    /// Work of the gather paths of each sensor: its share if it were alone.
     fn work_of_one(&self, backward: &Backward<'_>, batches: &[Readings]) -> f64 {
         let segments = batches.iter().map(|batch| batch.segments).sum();
         let work = work::of_gather_paths(BATCHES * backward.batch_paths(), segments);
@@ -171,7 +174,7 @@ impl Trials<'_> {
         Forward::new(scene, plan.seed ^ SEED, plan.bounce_limit, paths.max(least))
     }
 
-    /// How an estimator did on each sensor with so much work.
+    /// Performance of an estimator on each sensor with this much work.
     fn judged(&self, batches: &[Readings], work: f64, estimator: Estimator) -> Vec<Tried> {
         let merged = batches.iter().skip(1).fold(batches[0].clone(), |sum, batch| sum.merge(batch));
         let of_sensor = |&sensor: &SensorId| {
@@ -198,14 +201,15 @@ fn combined(passes: &[PassReadings], [e1, e2, e0]: [f64; 3]) -> Vec<Readings> {
     passes.iter().map(of_pass).collect()
 }
 
-/// Work of a pass of the run, of which a pass of the pilot with so many gather paths was a part.
+/// Work of a pass of the run, from a pass of the pilot that is a part of it with this many gather
+/// paths.
 fn work_of_whole(pass: &PassReadings, gather_paths: u64, part: f64) -> f64 {
     let RecordWork { records, look_ups, near, pairs } = pass.work;
     let grown = |count: u64, factor: f64| (count as f64 / factor) as u64;
     let near_of_whole = grown(near, part * part).min(grown(pass.photons.segments, part));
     let records = RecordWork {
         records: grown(records, part),
-        // The filter is made for the records: its errors go with the photons alone.
+        // The filter is built for the records, so its errors scale with the photons alone.
         look_ups: grown(look_ups - near, part) + near_of_whole,
         near: near_of_whole,
         pairs: grown(pairs, part * part),
@@ -241,7 +245,7 @@ fn flux(scene: &Scene, batches: &[Readings], sensor: SensorId) -> Tally {
     flux_of(scene, batches, sensor, sources(scene))
 }
 
-/// That of some sources.
+/// The flux of some sources.
 fn flux_of(
     scene: &Scene,
     batches: &[Readings],

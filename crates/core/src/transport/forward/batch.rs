@@ -1,4 +1,4 @@
-//! One batch of photons, which others may watch.
+//! One batch of photons, with an optional watcher.
 
 use crate::scene::SourceId;
 use crate::transport::Readings;
@@ -7,7 +7,8 @@ use crate::transport::forward::counter::Counter;
 use crate::transport::forward::watcher::PhotonWatcher;
 use crate::transport::stop::{Pace, StopSignal};
 
-/// Path classes are taken from every so many paths: they are shares for the reader, not measures.
+/// Path classes are sampled from one path in this many: they are shares for the reader, not
+/// measures.
 const CLASS_EVERY: u64 = 8;
 
 impl Forward<'_> {
@@ -16,7 +17,7 @@ impl Forward<'_> {
         self.batch_watched(batch, &mut (), &Pace::new(signal))
     }
 
-    /// Traces one batch while someone watches its photons; `None` if it was stopped.
+    /// Traces one batch while `watcher` sees its photons; `None` if it was stopped.
     pub fn batch_watched(
         &self,
         batch: u64,
@@ -30,7 +31,8 @@ impl Forward<'_> {
         for ((source, &paths), flux) in self.shares.iter().enumerate().zip(self.photon_fluxes()) {
             let source = SourceId::new(source);
             for place in 0..paths {
-                // Shifted by the batch, so that a source of few paths has its share of classes, too.
+                // Shifted by the batch, so that a source with few paths also gets its share of
+                // classes.
                 counter.classed = (place + batch).is_multiple_of(CLASS_EVERY);
                 counter.trace(source, flux, index);
                 index += 1;
@@ -42,7 +44,7 @@ impl Forward<'_> {
         Some(counter.finish())
     }
 
-    /// Flux of one photon of each source, lm or W; 0 of dark ones, which have none.
+    /// Flux of one photon of each source, lm or W; 0 for dark ones, which have none.
     pub(crate) fn photon_fluxes(&self) -> Vec<f64> {
         let sources = self.scene.sources.iter().zip(&self.shares);
         sources.map(|(source, &paths)| source.flux / paths.max(1) as f64).collect()

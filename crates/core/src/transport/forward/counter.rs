@@ -1,4 +1,4 @@
-//! Photons of one batch, counted where they meet a sensor, and every loss of theirs.
+//! Photons of one batch, counted where they meet a sensor, and all of their losses.
 
 mod surfaces;
 
@@ -24,27 +24,27 @@ pub(super) struct Counter<'r, 's, W> {
     watcher: &'r mut W,
     pace: &'r Pace<'r>,
     readings: Readings,
-    /// The scalars of the readings, until it is finished.
+    /// The scalars of the readings, until the batch is finished.
     sums: Vec<f64>,
-    /// Flux of the photon being traced at throughput 1, lm or W.
+    /// Flux of the current photon at throughput 1, lm or W.
     flux: f64,
     pub(super) source: SourceId,
     pub(super) classed: bool,
     travel_start: TravelStart,
     trail: Trail,
     last_left: Option<FaceId>,
-    /// Sensors of first passages that the photon has passed.
+    /// First-passage sensors that the photon has passed.
     passed: SmallVec<[SensorId; 2]>,
-    /// Those by whose entry port it has entered.
+    /// Sensors through whose entry port it has entered.
     entered: SmallVec<[SensorId; 2]>,
 }
 
 /// Where a straight piece starts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum TravelStart {
-    /// At the source: what it crosses at its start has not been counted.
+    /// At the source: crossings at its start have not been counted.
     Source,
-    /// At an interface, at the end of a piece that has counted what is there.
+    /// At an interface: the previous piece has counted the crossings there.
     Interface,
 }
 
@@ -190,7 +190,8 @@ impl<'r, 's, W: PhotonWatcher> Counter<'r, 's, W> {
         }
     }
 
-    /// Adds a step to the trail of a path; the same step in a row counts once, a full trail is marked as cut off.
+    /// Adds a step to the trail of a path; repeats of a step count once, and a full trail is marked
+    /// as cut off.
     fn step(&mut self, step: Step) {
         if self.trail.last() == Some(&Some(step)) || self.trail.last() == Some(&None) {
             return;
@@ -261,7 +262,7 @@ pub(super) struct Light {
     /// Unit direction of travel.
     pub(super) dir: DVec3,
     pub(super) throughput: f64,
-    /// How it leaves; `None` of arriving light.
+    /// The side it leaves to; `None` for arriving light.
     pub(super) side: Option<Side>,
     /// The medium it is in.
     pub(super) medium: MediumId,

@@ -1,13 +1,13 @@
 //! The forward estimator: photon paths from the sources, counted where they meet a sensor.
 //!
-//! Every photon carries flux; sensors add it up per cell. What surfaces and media take, what escapes and what is cut
-//! is counted independently, so that the balance can be checked, not enforced.
+//! Every photon carries flux; sensors sum it per cell. Flux absorbed by surfaces and media, escaped
+//! flux and cut flux are counted independently, so that the balance is a check, not an assumption.
 
 use crate::scene::Scene;
 use crate::transport::Layout;
 use crate::transport::forward::watch::Watch;
 
-/// What all batches of a run have in common.
+/// Shared data of all batches of a run.
 #[derive(Debug)]
 pub struct Forward<'s> {
     pub(crate) scene: &'s Scene,
@@ -33,8 +33,9 @@ impl<'s> Forward<'s> {
     }
 }
 
-/// Paths per batch of each source: none of a dark one, at least one of each other, by flux, what rounding leaves to those
-/// that miss most of a path. Their sum is `batch_paths` where there are no more sources than that.
+/// Paths per batch of each source, by flux: none for a dark one, at least one for each other, and
+/// the remainder of rounding to those that miss the largest part of a path. Their sum is
+/// `batch_paths` unless there are more sources than that.
 pub(super) fn shares(scene: &Scene, batch_paths: u64) -> Vec<u64> {
     let total = scene.source_flux();
     let wanted: Vec<f64> =

@@ -1,4 +1,5 @@
-//! Single photons to look at, with the sensors that count them. Nothing of it reaches the readings of a run.
+//! Single photons to look at, with the sensors that count them. They do not affect the readings of
+//! a run.
 
 use crate::rng::Sampler;
 use crate::scene::{SensorId, SourceId};
@@ -8,7 +9,7 @@ use crate::transport::stop::{Pace, StopSignal};
 use crate::transport::{Event, Path, Readings, Vertex, Visitor, walk};
 use std::ops::ControlFlow;
 
-/// Remembers which sensors have counted a photon, each at its latest.
+/// Remembers the sensors that have counted a photon, ordered by their latest count.
 #[derive(Default)]
 struct Met(Vec<SensorId>);
 
@@ -23,7 +24,7 @@ impl PhotonWatcher for Met {
     }
 }
 
-/// Counts a photon while someone looks on.
+/// Counts a photon and passes it to a watcher.
 struct Shown<'a, 'r, 's> {
     counter: Counter<'r, 's, Met>,
     see: &'a mut dyn FnMut(&Path, &Event<'_>),

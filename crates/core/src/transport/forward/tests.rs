@@ -130,7 +130,7 @@ fn readings_have_the_same_bits_on_any_number_of_threads() {
     }
 }
 
-/// Counts what it sees.
+/// Counts the events it sees.
 #[derive(Debug, Default, PartialEq)]
 struct Onlooker {
     started: usize,

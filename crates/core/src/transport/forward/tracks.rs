@@ -1,4 +1,4 @@
-//! A few paths to look at: where they went and how they ended.
+//! A few paths to look at: their course and their end.
 
 use crate::rng::Sampler;
 use crate::scene::{FaceId, Ray, Scene, SensorId, SourceId};
@@ -7,22 +7,22 @@ use crate::transport::{Event, Path};
 use glam::DVec3;
 use lumiduct_base::math::Aabb;
 
-/// Stream of random numbers of the paths that are drawn.
+/// Stream of random numbers of the drawn paths.
 const STREAM: u64 = 2;
 
-/// Bounces that are drawn of a path: more only blacken the picture.
+/// Largest number of bounces drawn of a path: more only blacken the picture.
 const BOUNCES_DRAWN: u32 = 500;
 
 /// How a drawn path ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TrackEnd {
-    /// A face took the rest of it.
+    /// A face absorbed the rest of it.
     Absorbed(FaceId),
     /// It left the scene.
     Escaped,
-    /// Faces and media had taken most of it, and roulette the rest.
+    /// Faces and media absorbed most of it, and roulette removed the rest.
     Faded,
-    /// It was cut by the bounce limit, or goes on undrawn.
+    /// It was cut by the bounce limit, or continues undrawn.
     Cut,
     /// It was lost through a hole in the geometry.
     Leaked,
@@ -31,7 +31,7 @@ pub enum TrackEnd {
 /// A path as a chain of points.
 #[derive(Debug, Clone)]
 pub struct Track {
-    /// Where it starts.
+    /// Its source.
     pub source: SourceId,
     /// Its start, its vertices, and a last point a little outside for one that escaped; mm.
     pub points: Vec<DVec3>,
@@ -63,13 +63,13 @@ fn track(forward: &Forward<'_>, source: SourceId, index: usize) -> Track {
         Event::Collide(collision) => points.push(collision.point),
         Event::Absorbed(vertex) => end = TrackEnd::Absorbed(vertex.interface.acting.face),
         Event::Escaped(_) => {
-            // Out of the scene, and a stub to show where it went.
+            // Out of the scene, with a stub that shows its direction.
             let way = way_out(&scene.bounds, &path.ray) + 0.05 * scene.bounds.diagonal();
             points.push(path.ray.at(way));
             end = TrackEnd::Escaped;
         }
         Event::Leaked(..) => end = TrackEnd::Leaked,
-        // A survivor gains, and goes on.
+        // A survivor gains, and continues.
         Event::Roulette(taken) => {
             end = if *taken > 0.0 { TrackEnd::Faded } else { TrackEnd::Cut };
         }
@@ -79,11 +79,12 @@ fn track(forward: &Forward<'_>, source: SourceId, index: usize) -> Track {
     Track { source, points, end, counted_by }
 }
 
-/// How far it is along a ray to where it leaves a box, mm; 0 from outside of it.
+/// Distance along a ray to where it leaves a box, mm; 0 from outside it.
 fn way_out(bounds: &Aabb, ray: &Ray) -> f64 {
     let (origin, dir) = (ray.origin(), ray.dir());
     let ahead = DVec3::select(dir.cmpgt(DVec3::ZERO), bounds.max, bounds.min);
-    // Along a side of the box a ray never comes to the others: infinite, or no number where it runs in one.
+    // Along a side of the box a ray never reaches the others: infinite, or NaN where it runs in
+    // one.
     let ways = ((ahead - origin) / dir).to_array();
     ways.into_iter().filter(|way| way.is_finite()).fold(f64::INFINITY, f64::min).max(0.0)
 }

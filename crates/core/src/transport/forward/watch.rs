@@ -1,4 +1,4 @@
-//! Which sensors watch what: looked up once per run, asked at every event.
+//! Sensors by what they watch: looked up once per run, queried at every event.
 
 use crate::scene::{
     Counts, FaceId, Goniometer, Owner, Patch, Place, Scene, SensorId, SensorKind, SurfaceSensor,
@@ -11,7 +11,7 @@ use lumiduct_base::math::Aabb;
 pub(crate) struct Watch<'s> {
     /// Sensors on ports: every segment is tested against their patches.
     pub(crate) ports: Vec<OnPort<'s>>,
-    /// For every face, which light is counted on it.
+    /// For every face, the light that is counted on it.
     pub(crate) watched: Vec<Watched>,
     /// For every face, the sensors on it.
     pub(crate) faces: Vec<Vec<(SensorId, &'s SurfaceSensor)>>,
@@ -19,13 +19,13 @@ pub(crate) struct Watch<'s> {
     pub(crate) far: Vec<(SensorId, &'s Goniometer)>,
     /// Goniometers of finite radius: every segment is tested.
     pub(crate) near: Vec<(SensorId, &'s Goniometer)>,
-    /// For every face, the sensors whose transmission counts what enters through it.
+    /// For every face, the sensors with a transmission relative to the flux that enters through it.
     pub(crate) entries: Vec<Vec<SensorId>>,
     /// Open ports that are such entries.
     pub(crate) entry_ports: Vec<(FaceId, &'s [Patch])>,
 }
 
-/// Which light is counted on a face.
+/// The light that is counted on a face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Watched {
     incident: bool,
@@ -33,7 +33,7 @@ pub(crate) struct Watched {
 }
 
 impl Watched {
-    /// Whether arriving or leaving light is.
+    /// Whether arriving or leaving light is counted.
     #[inline(always)]
     pub(crate) fn includes(self, counts: Counts) -> bool {
         match counts {
@@ -48,7 +48,7 @@ impl Watched {
 pub(crate) struct OnPort<'s> {
     /// The sensor.
     pub(crate) id: SensorId,
-    /// What it counts.
+    /// Its surface sensor.
     pub(crate) sensor: &'s SurfaceSensor,
     /// The pieces of its port.
     pub(crate) patches: Vec<&'s Patch>,
@@ -57,7 +57,7 @@ pub(crate) struct OnPort<'s> {
 }
 
 impl OnPort<'_> {
-    /// Whether a segment comes near the port; most do not, and are not asked further.
+    /// Whether a segment comes near the port; most do not, and need no further test.
     #[inline(always)]
     pub(crate) fn may_be_crossed(&self, segment: &Segment<'_>) -> bool {
         self.bounds.is_near(segment.ray.origin(), segment.ray.at(segment.length))

@@ -1,10 +1,11 @@
-//! Those who watch photons while forward traces them. What they make of them is not known here.
+//! Watchers of the photons of the forward estimator. This module does not know what they do with
+//! them.
 
 use crate::scene::{Arrivals, MediumId, Ray, Scene, SensorId, SourceId};
 use crate::transport::{Collision, Departure, Path, ROULETTE_BELOW, Vertex};
 use glam::DVec3;
 
-/// Someone who sees photons as they arrive at interfaces.
+/// A watcher of photons that arrive at interfaces.
 pub trait PhotonWatcher {
     /// Throughput below which roulette ends photons, 1.
     #[inline(always)]
@@ -19,12 +20,12 @@ pub trait PhotonWatcher {
     /// Sees a photon before the interface acts; `flux` is its flux at throughput 1, lm or W.
     fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>, flux: f64, source: SourceId);
 
-    /// Sees a photon that is going to be scattered within a medium; `flux` as above.
+    /// Sees a photon before it is scattered within a medium; `flux` as above.
     #[inline(always)]
     fn collide(&mut self, _path: &Path, _collision: &Collision<'_>, _flux: f64, _source: SourceId) {
     }
 
-    /// Sees how a photon goes on.
+    /// Sees how a photon continues.
     #[inline(always)]
     fn depart(&mut self, _path: &Path, _vertex: &Vertex<'_>, _departure: &Departure) {}
 
@@ -39,11 +40,11 @@ pub trait PhotonWatcher {
     }
 }
 
-/// Light that has come to a sensor.
+/// Light that has reached a sensor.
 #[derive(Debug, Clone, Copy)]
 pub struct Detected {
     pub(crate) sensor: SensorId,
-    /// Where on the sensor, mm; of a far field any place on its way.
+    /// Position on the sensor, mm; for a far field, any point of its path.
     pub(crate) point: DVec3,
     /// Unit direction of travel.
     pub(crate) dir: DVec3,
@@ -57,7 +58,7 @@ pub struct Detected {
 }
 
 impl Detected {
-    /// The gather paths of its sensor, if that is among some.
+    /// The gather paths of its sensor, if that is among those given.
     pub(crate) fn arrivals<'a, 's>(
         &self,
         sensors: &'a [(SensorId, Arrivals<'s>)],
@@ -65,20 +66,21 @@ impl Detected {
         sensors.iter().find(|(id, _)| *id == self.sensor).map(|(_, arrivals)| arrivals)
     }
 
-    /// Etendue that a gather path which comes back along the light would stand for, if the sensor had but one, mm² sr.
+    /// Etendue that a gather path back along the light would represent if the sensor had only one,
+    /// mm² sr.
     pub(crate) fn etendue(&self, scene: &Scene, arrivals: &Arrivals<'_>, wavelength: f64) -> f64 {
         let index = scene.media[self.medium.index()].index(wavelength);
         index * index * arrivals.extent(&Ray::new(self.point, -self.dir), self.normal)
     }
 }
 
-/// Nobody.
+/// No watcher.
 impl PhotonWatcher for () {
     #[inline(always)]
     fn arrive(&mut self, _: &Path, _: &Vertex<'_>, _: f64, _: SourceId) {}
 }
 
-/// Two, the first of them first; only what the first says about roulette counts.
+/// Two watchers, called in order; only the first sets the roulette threshold.
 impl<A: PhotonWatcher, B: PhotonWatcher> PhotonWatcher for (&mut A, &mut B) {
     #[inline(always)]
     fn roulette_below(&self) -> f64 {

@@ -1,8 +1,9 @@
-//! How much of a ball lies in its medium: windows of records within media are clipped by the true volume.
+//! Volume of a ball within its medium: windows of records within media are clipped by the true
+//! volume.
 //!
-//! From the middle the medium is sounded in some directions: a part in solid angle of the ball reaches as far as the medium
-//! does, `ΔV = ∫ min(r, d(ω))³/3 dω`. Of a medium that bends back into the ball the nearer part counts; what lies beyond
-//! is an error that shrinks with the window.
+//! From the middle, the medium is probed in some directions: `ΔV = ∫ min(r, d(ω))³/3 dω`, with d(ω)
+//! the extent of the medium. If a medium bends back into the ball, only the nearer part counts; the
+//! rest is an error that shrinks with the window.
 
 use crate::scene::{Inside, MediumId, Meeting, On, Ray, Scene, Visibility};
 use crate::transport::Path;
@@ -12,11 +13,11 @@ use glam::DVec3;
 use lumiduct_base::math::{Frame, from_cosine};
 use std::f64::consts::PI;
 
-/// Directions in which the medium is sounded, on a spiral over the sphere.
+/// Directions in which the medium is probed, on a spiral over the sphere.
 const DIRECTIONS: usize = 48;
 
-/// Volumes, mm³, of the balls of the three nested windows about a place of a path, as far as its medium reaches; `turn`
-/// and `tilt`, uniform in [0, 1), turn the directions.
+/// Volumes, mm³, of the balls of the three nested windows about the position of a path, limited to
+/// its medium; `turn` and `tilt`, uniform in [0, 1), rotate the directions.
 pub(crate) fn clipped_volumes(
     scene: &Scene,
     path: &Path,
@@ -39,7 +40,7 @@ pub(crate) fn clipped_volumes(
     volumes
 }
 
-/// How far a ray stays in the medium of a path, mm, up to a distance.
+/// Distance that a ray stays in the medium of a path, mm, up to a limit.
 fn clear_way(scene: &Scene, path: &Path, ray: &Ray, most: f64) -> f64 {
     let (mut ray, mut way) = (*ray, 0.0);
     let (mut on, mut inside): (On, Inside) = (On::default(), path.inside.clone());
@@ -51,7 +52,8 @@ fn clear_way(scene: &Scene, path: &Path, ray: &Ray, most: f64) -> f64 {
         let meeting = Meeting { point, dir: ray.dir() };
         match scene.interface(&hits, &meeting, &inside, medium).visibility {
             Visibility::Visible => return way.min(most),
-            // A joint, or a body of the same medium: the records of a medium know no bodies.
+            // A joint, or a body of the same medium: the records of a medium do not distinguish
+            // bodies.
             Visibility::Invisible => {
                 hits.cross(&mut inside);
                 on = On::hits(&hits);
@@ -100,7 +102,7 @@ mod tests {
         builder.build()
     }
 
-    /// Mean volumes about a place on the x axis, over many turns.
+    /// Mean volumes about a point on the x axis, over many turns.
     fn mean_volumes(x: f64, radius: f64) -> [f64; NESTED] {
         const TURNS: u32 = 400;
         let scene = glass_ball();

@@ -1,4 +1,4 @@
-//! One gather path on its way: the light that it meets counts, and where it ends it leaves records.
+//! One gather path: it counts the light that it meets, and leaves records where it ends.
 
 use crate::optics::{Bsdf, Lobe, Side, Spread, scatter_toward, shares};
 use crate::rng::{Dimension, Sampler};
@@ -37,7 +37,7 @@ pub(crate) struct Collecting<'c, 's> {
     /// The number of the path among those of its sensor.
     pub(crate) index: u64,
     pub(crate) cells: &'c SmallVec<[usize; 1]>,
-    /// For what records draw; the path has a stream of its own.
+    /// For the draws of records; the path has a separate stream.
     pub(crate) sampler: Sampler,
     /// The interface that the path has just met.
     pub(crate) facing: Option<Facing<'s>>,
@@ -86,7 +86,7 @@ impl Collector for Collecting<'_, '_> {
 
     fn collide(&mut self, path: &Path, collision: &Collision<'_>) -> ControlFlow<()> {
         self.add_collided(path, collision);
-        // All light that is scattered there, the record brings.
+        // The record counts all light that is scattered there.
         ControlFlow::Break(())
     }
 
@@ -99,7 +99,7 @@ impl Collector for Collecting<'_, '_> {
             let passage = Passage::of_gather_path(&facing, departure.dir, departure.side);
             merging.pass_vertex_d(passage.etendues(self.window));
         }
-        // What a broad lobe brings, the records at the vertex bring.
+        // The records at the vertex count the light of a broad lobe.
         match departure.lobe {
             Lobe::Diffuse if is_broad(&facing, departure.side) => ControlFlow::Break(()),
             Lobe::Diffuse | Lobe::Specular => ControlFlow::Continue(()),
@@ -107,8 +107,8 @@ impl Collector for Collecting<'_, '_> {
     }
 }
 
-/// Whether light that comes from a side is scattered broadly: reflected light by the finish met, transmitted light by
-/// that of the other side.
+/// Whether light from a side is scattered broadly: reflected light by the finish met, transmitted
+/// light by that of the other side.
 fn is_broad(facing: &Facing<'_>, side: Side) -> bool {
     match finish(facing, side).kind() {
         Spread::Broad => true,
@@ -130,13 +130,14 @@ impl<'s> Collecting<'_, 's> {
         if bsdf.width().is_none() && shares(bsdf, &facing.incidence).of(side) == 0.0 {
             return;
         }
-        // L* of the light that leaves, in the medium of the gather path.
+        // L* of the leaving light, in the medium of the gather path.
         let index = facing.incidence.index_from;
         let value = self.etendue * vertex.throughput / (index * index);
         self.add(path, vertex, facing, side, value, Wanted::Scattered { bsdf, out: -vertex.dir });
     }
 
-    /// A record for photons near the direction in which the gather path would go on: docs/method.md, eq. (15).
+    /// A record for photons near the direction in which the gather path would continue:
+    /// docs/method.md, eq. (15).
     fn add_along(&mut self, path: &Path, vertex: &Vertex<'_>, facing: &Facing<'s>, side: Side) {
         let bsdf = finish(facing, side);
         let Some(out) = scatter_toward(bsdf, side, &facing.incidence, &mut self.sampler) else {
@@ -146,7 +147,7 @@ impl<'s> Collecting<'_, 's> {
             return;
         }
         let out = facing.corrected(out);
-        // L* of the light that arrives, in the medium it arrives in.
+        // L* of the arriving light, in the medium it arrives in.
         let index = match out.side {
             Side::Reflected => facing.incidence.index_from,
             Side::Transmitted => facing.incidence.index_to,
@@ -181,7 +182,7 @@ impl<'s> Collecting<'_, 's> {
         });
     }
 
-    /// `value` is the etendue of the path times what its throughput makes of flux per area (and solid angle).
+    /// `value` is the etendue of the path times its throughput per flux per area (and solid angle).
     fn add(
         &mut self,
         path: &Path,
@@ -216,7 +217,7 @@ impl<'s> Collecting<'_, 's> {
         });
     }
 
-    /// The place of this path among those that have ended in records.
+    /// The index of this path among those that have ended in records.
     fn place(&mut self) -> u32 {
         let of_this = |last: &Ended| (last.sensor, last.index) == (self.id, self.index);
         if self.merging.is_some() || !self.found.paths.last().is_some_and(of_this) {

@@ -1,7 +1,8 @@
-//! How much of a window lies on its surface: windows at rims are clipped by the true area.
+//! The part of a window on its surface: windows at rims are clipped by the true area.
 //!
-//! A window is a disk in the tangent plane of its middle. What of it has the surface below or above it is found on a
-//! sunflower of points (Vogel, Math. Biosci. 44 (1979) 179), whose inner parts fill the nested windows evenly.
+//! A window is a disk in the tangent plane of its middle. The part of it with the surface below or
+//! above it is found on a sunflower of points (Vogel, Math. Biosci. 44 (1979) 179), whose inner
+//! parts fill the nested windows evenly.
 
 use crate::scene::shape::{ChartRect, Crossing, Start};
 use crate::scene::{PrimId, Ray, Scene, Surface};
@@ -12,15 +13,16 @@ use lumiduct_base::math::circle;
 
 /// Points in the widest window. Half of them fill the next, a quarter the narrowest.
 const POINTS: usize = 96;
-/// Normals of one surface in one window agree at least so well, 1.
+/// Least agreement of the normals of one surface in one window, as a cosine, 1.
 pub(crate) const AGREEING: f64 = 0.9;
-/// How far above or below its tangent plane the surface of a window may lie, in radii, 1: what normals that agree so
-/// well allow.
+/// Largest height of the surface of a window above or below its tangent plane, in radii, 1: the
+/// limit for normals that agree this well.
 pub(crate) const HEIGHT: f64 = 0.5;
 /// Turns from point to point of a sunflower, 2 less the golden ratio.
 pub(crate) const GOLDEN_TURN: f64 = 0.381_966_011_250_105_1;
 
-/// A surface of so many pieces is asked piece by piece, one of more by way of the whole scene's boxes.
+/// A surface of up to this many pieces is tested piece by piece, one of more through the boxes of
+/// the whole scene.
 const FEW_PIECES: usize = 4;
 
 /// The middle of a window.
@@ -159,7 +161,7 @@ mod tests {
         for (s, expected) in reference {
             let [wide, ..] = mean_shares(DVec2::new(s, 10.0), 1.0);
             assert!((wide / expected - 1.0).abs() < 0.01, "{s}: {wide}, not {expected}");
-            // A window of double the radius holds it as the narrowest of three.
+            // In a window of double the radius it is the narrowest of three.
             let [.., narrow] = mean_shares(DVec2::new(s, 10.0), 2.0);
             assert!((narrow - expected).abs() < 0.02, "{s}: {narrow}, not {expected}");
         }

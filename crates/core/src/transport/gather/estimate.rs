@@ -1,14 +1,17 @@
-//! What a photon is worth to a gather record: the position and the position-and-angle estimate, and that within media.
+//! Contribution of a photon to a gather record: the position and the position-and-angle estimate,
+//! and that within media.
 //!
-//! `L*(x,ω) = 1/n² Σ Φ_p K_r K_θ / |cos θ_p|` (docs/method.md, eq. 15): `K_r` is 1/ΔA over the disk of the window in the tangent
-//! plane, clipped at rims, times the cosine between the normals at record and photon, so that it integrates to 1 over a
-//! curved surface, too. `K_θ` is 1/ΔΩ over the cone. Where the cone comes near the horizon of the photon's place,
-//! `K_θ / |cos θ_p|` becomes 1/∫ cos θ dω over the part of the cone above the horizon: it integrates to the same, and no
-//! photon at grazing incidence has to be left out or weighs without bound.
+//! `L*(x,ω) = 1/n² Σ Φ_p K_r K_θ / |cos θ_p|` (docs/method.md, eq. 15): `K_r` is 1/ΔA over the disk
+//! of the window in the tangent plane, clipped at rims, times the cosine between the normals at
+//! record and photon, so that it integrates to 1 over a curved surface, too. `K_θ` is 1/ΔΩ over the
+//! cone. Where the cone comes near the horizon at the photon's position, `K_θ / |cos θ_p|` becomes
+//! 1/∫ cos θ dω over the part of the cone above the horizon. It has the same integral, and photons
+//! at grazing incidence need not be left out and have bounded weights.
 //!
-//! Within a medium that scatters, `L*(x,ω) = 1/n² Σ Φ_p p(ω_p→ω) / (σ_s ΔV)` over the photons that are scattered in the ball of
-//! the window (eq. 24, after Jensen & Christensen, SIGGRAPH 1998, eq. 15): where gather paths are scattered themselves by
-//! the same chance, what they find there needs no other factor.
+//! Within a medium that scatters, `L*(x,ω) = 1/n² Σ Φ_p p(ω_p→ω) / (σ_s ΔV)` over the photons that
+//! are scattered in the ball of the window (eq. 24, after Jensen & Christensen, SIGGRAPH 1998, eq.
+//! 15): gather paths are scattered with the same probability there, so their estimate needs no
+//! other factor.
 
 use crate::optics::{Incidence, evaluate};
 use crate::scene::MediumId;
@@ -25,33 +28,33 @@ const GRAZING: f64 = 0.03;
 /// A photon that may belong to records.
 #[derive(Debug, Clone, Copy)]
 pub enum Arriving {
-    /// One that meets a surface.
+    /// A photon that meets a surface.
     AtSurface(Meeting),
-    /// One that is scattered within a medium.
+    /// A photon that is scattered within a medium.
     Within(Colliding),
 }
 
 /// A photon that meets a surface.
 #[derive(Debug, Clone, Copy)]
 pub struct Meeting {
-    /// The smooth surface, by its place in the list of all.
+    /// The smooth surface, by its index in the list of all.
     pub surface: Slot,
-    /// The medium that it arrives in.
+    /// The medium it arrives in.
     pub medium: MediumId,
-    /// Where, mm.
+    /// Position, mm.
     pub point: DVec3,
-    /// How it arrives, about the normal of the surface itself on the side it comes from.
+    /// Its incidence, about the geometric normal of the surface on the side it comes from.
     pub incidence: Incidence,
 }
 
 /// A photon that is scattered within a medium.
 #[derive(Debug, Clone, Copy)]
 pub struct Colliding {
-    /// The medium, by its place among surfaces and media.
+    /// The medium, by its index among surfaces and media.
     pub medium: Slot,
-    /// Where, mm.
+    /// Position, mm.
     pub point: DVec3,
-    /// Unit direction of travel before.
+    /// Unit direction of travel before scattering.
     pub dir: DVec3,
 }
 
@@ -68,7 +71,7 @@ pub struct NestedWindows {
 }
 
 impl NestedWindows {
-    /// Those of the widest window.
+    /// The nested windows of the widest one.
     pub fn new(window: Window) -> Self {
         let nested = window.nested();
         Self {
@@ -80,8 +83,8 @@ impl NestedWindows {
         }
     }
 
-    /// Flux that each unit of a photon's flux makes in the cells of a record, for each window; `None` if it belongs to
-    /// none of them.
+    /// Flux in the cells of a record per unit of a photon's flux, for each window; `None` if the
+    /// photon is in none of them.
     #[inline]
     pub fn flux(&self, record: &GatherRecord<'_>, photon: &Arriving) -> Option<[f64; COUNTED]> {
         match photon {
@@ -125,7 +128,7 @@ impl NestedWindows {
                 let scattered = agreement * evaluate(bsdf, &photon.incidence, out);
                 Some(self.each(record, |window| if within(window) { scattered } else { 0.0 }))
             }
-            // It waits for none of those.
+            // The record does not take such photons.
             Wanted::Collided { .. } => None,
         }
     }
@@ -147,7 +150,8 @@ impl NestedWindows {
         std::array::from_fn(|window| record.values[RADIUS_OF[window]] * share(window))
     }
 
-    /// `K_θ / |cos θ_p|` for one of the nested angles, 1/sr; `cos_wanted` is that of the cone's axis at the photon's place.
+    /// `K_θ / |cos θ_p|` for one of the nested angles, 1/sr; `cos_wanted` is that of the cone's
+    /// axis at the photon's position.
     #[inline]
     fn per_projected(&self, angle: usize, cos_wanted: f64, photon: &Meeting) -> f64 {
         if cos_wanted > self.sin_widest + GRAZING {

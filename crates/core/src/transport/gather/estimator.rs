@@ -1,4 +1,5 @@
-//! What all passes of gathering have in common, what one pass is, and what waits for its photons.
+//! Shared data of all passes of gathering, the definition of one pass, and the records that wait
+//! for its photons.
 
 use crate::scene::{Arrivals, Scene, SensorId};
 use crate::transport::gather::merge::Etendues;
@@ -10,7 +11,7 @@ use crate::transport::walk::emitters::Emitters;
 use crate::transport::{Layout, Readings};
 use smallvec::SmallVec;
 
-/// What all passes of a run have in common.
+/// Shared data of all passes of a run.
 #[derive(Debug)]
 pub(crate) struct Gather<'s> {
     pub(super) scene: &'s Scene,
@@ -21,11 +22,12 @@ pub(crate) struct Gather<'s> {
     pub(super) seed: u64,
     /// Vertex at which gather paths end, D.
     pub(crate) depth: u32,
-    /// Merged with forward and backward: gather paths go on from vertex D, to so many interfaces.
+    /// Merged with forward and backward: gather paths continue from vertex D, up to this many
+    /// interfaces.
     pub(crate) merging: Option<u32>,
 }
 
-/// One pass: which, within what window, and from how many gather paths of each sensor.
+/// One pass: its number, its window, and its gather paths of each sensor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Pass {
     pub(crate) batch: u64,
@@ -33,14 +35,14 @@ pub(crate) struct Pass {
     pub(crate) gather_paths: u64,
 }
 
-/// What a pass has counted.
+/// Counts of a pass.
 #[derive(Debug)]
 pub(crate) struct PassReadings {
-    /// By the photons in the sensors' cells, and the balance.
+    /// Counts by photons in the sensors' cells, and the balance.
     pub(crate) photons: Readings,
-    /// By the records: E1, E2, E3 and E0; not yet closed.
+    /// Counts by records: E1, E2, E3 and E0; not yet closed.
     pub(crate) windows: [Readings; ESTIMATES],
-    /// What was done beside tracing.
+    /// Work in addition to tracing.
     pub(crate) work: RecordWork,
 }
 
@@ -59,7 +61,7 @@ impl<'s> Gather<'s> {
         }
     }
 
-    /// The sensors it estimates.
+    /// Number of sensors it estimates.
     pub(crate) fn sensors(&self) -> u64 {
         self.sensors.len() as u64
     }
@@ -79,6 +81,6 @@ pub(super) struct Ended {
     pub(super) index: u64,
     pub(super) sensor: SensorId,
     pub(super) cells: SmallVec<[usize; 1]>,
-    /// Merged: what weighs its record, of which it then has one; the photon's part is still missing.
+    /// Merged: the etendues that weight its only record; the photon's part is still missing.
     pub(super) etendues: Option<Etendues>,
 }

@@ -1,8 +1,9 @@
-//! An index of records by place and direction: one look into it tells which records a photon may belong to.
+//! An index of records by position and direction: one look-up gives the records a photon may belong
+//! to.
 //!
-//! Records are sorted into cells of position and of direction, hashed. A record stands in every cell that its window
-//! touches, so that a photon looks into one cell only. Directions are keyed by their three components: there is no
-//! seam. A filter tells most photons before that their cell is empty.
+//! Records are sorted into hashed cells of position and direction. A record is entered in every
+//! cell that its window touches, so a photon needs only one cell. Directions are keyed by their
+//! three components, so there is no seam. A filter first rejects most photons in empty cells.
 
 #[cfg(test)]
 mod tests;
@@ -15,56 +16,59 @@ use glam::{DVec3, Vec3};
 use smallvec::SmallVec;
 use std::ops::Range;
 
-/// Size of the cells of position in radii, and of direction in chords of the angle: a record stands in about eight
-/// cells. What a look-up costs is waiting for memory, so that smaller tables win over sharper ones: docs/method.md.
+/// Size of the cells of position in radii, and of direction in chords of the angle: a record is in
+/// about eight cells. The cost of a look-up is memory latency, so smaller tables beat sharper ones:
+/// docs/method.md.
 const POSITION_CELL: f64 = 4.0;
 const DIRECTION_CELL: f64 = 2.5;
-/// Photons that are looked up together: enough to wait for memory together, few enough to stay near, and no more than a
-/// word has bits.
+/// Photons that are looked up together: enough to overlap memory latency, few enough to stay in
+/// cache, and no more than a word has bits.
 pub(crate) const TOGETHER: usize = 64;
 /// Bits of the filter for each entry of an index.
 const FILTER_BITS: usize = 8;
-/// By how much single precision may err in the distance of two points, relative to their coordinates: a few units of
-/// 2^-24 each.
+/// Single-precision error in the distance of two points, relative to their coordinates: a few units
+/// of 2^-24 each.
 const SINGLE_ROUNDING: f64 = 1e-6;
 
-/// A record as the index knows it.
+/// A record in the index.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Indexed {
-    /// Its place in the list of records.
+    /// Its position in the list of records.
     pub(crate) record: u32,
     /// The smooth surface it is on.
     pub(crate) surface: Slot,
-    /// Where, mm.
+    /// Position, mm.
     pub(crate) point: DVec3,
     /// Unit normal of the surface.
     pub(crate) normal: DVec3,
-    /// Unit direction of the photons that it takes; the same of all records of an index that take any.
+    /// Unit direction of the photons that it takes; the same for all records of an index that takes
+    /// any direction.
     pub(crate) dir: DVec3,
 }
 
-/// By what a photon is looked up.
+/// The key by which a photon is looked up.
 #[derive(Debug, Clone, Copy)]
 pub struct Key {
     /// The smooth surface it is on.
     pub surface: Slot,
-    /// Where, mm.
+    /// Position, mm.
     pub point: DVec3,
     /// Unit direction of travel.
     pub dir: DVec3,
 }
 
-/// Records by place and direction.
+/// Records by position and direction.
 #[derive(Debug)]
 pub(crate) struct Index {
     filter: Filter,
     lattice: Lattice,
     /// Number of buckets less one: a power of two less one.
     mask: u64,
-    /// Where the entries of each bucket start; one more at the end.
+    /// Start of the entries of each bucket; one more at the end.
     starts: Vec<u32>,
     entries: Vec<Entry>,
-    /// Squares of how far apart, with room for rounding, a photon and a record may be: points, mm², and directions.
+    /// Squares of the largest distances, with room for rounding, between a photon and a record:
+    /// points, mm², and directions.
     point_reach_squared: f32,
     dir_reach_squared: f32,
 }
@@ -73,15 +77,16 @@ pub(crate) struct Index {
 #[derive(Debug, Clone, Copy, Default)]
 struct Entry {
     record: u32,
-    /// The part of the cell's hash that the bucket does not tell: cells that share a bucket are told apart by it.
+    /// The part of the cell's hash beyond the bucket, which separates cells that share a bucket.
     tag: u32,
-    /// Point and direction of the record: most entries of a cell are elsewhere, and their records need not be fetched.
+    /// Point and direction of the record: most entries of a cell are out of range, and their
+    /// records need not be fetched.
     point: [f32; 3],
     dir: [f32; 3],
 }
 
 impl Index {
-    /// Indexes records with a common widest window; `None` if that was stopped.
+    /// Indexes records with a common widest window; `None` if stopped.
     pub(crate) fn new(
         records: impl Iterator<Item = Indexed>,
         window: Window,
@@ -131,7 +136,7 @@ impl Index {
 
     /// Visits the records that each of some photons may belong to, each once, photon by photon.
     ///
-    /// Every step is taken for all photons before the next: then many places of memory are waited for at once.
+    /// Every step is done for all photons before the next, so that many memory accesses overlap.
     pub(crate) fn visit(&self, photons: &[Key], mut visit: impl FnMut(usize, u32)) {
         if self.entries.is_empty() {
             return;
@@ -163,7 +168,7 @@ impl Index {
     }
 }
 
-/// Entries in the order of their buckets, and where each bucket starts; `None` if that was stopped.
+/// Entries in the order of their buckets, and the start of each bucket; `None` if stopped.
 fn sorted(placed: Vec<(u64, Entry)>, mask: u64, pace: &Pace<'_>) -> Option<(Vec<u32>, Vec<Entry>)> {
     let mut starts = vec![0u32; mask as usize + 2];
     for (hash, _) in &placed {
@@ -190,11 +195,11 @@ fn sorted(placed: Vec<(u64, Entry)>, mask: u64, pace: &Pace<'_>) -> Option<(Vec<
     Some((starts, entries))
 }
 
-/// A Bloom filter (Bloom, Commun. ACM 13 (1970) 422) of cells. The bits of a cell share a word, so that asking costs one
-/// access.
+/// A Bloom filter (Bloom, Commun. ACM 13 (1970) 422) of cells. The bits of a cell share a word, so
+/// a query costs one access.
 #[derive(Debug)]
 struct Filter {
-    /// A power of two of them.
+    /// Their number is a power of two.
     words: Vec<u64>,
 }
 
@@ -213,11 +218,11 @@ impl Filter {
         Some(Self { words })
     }
 
-    /// The word of a cell, of so many, and its bits.
+    /// The word of a cell, out of `words`, and its bits.
     #[inline(always)]
     fn place(hash: u64, words: usize) -> (usize, u64) {
         let bit = |from: u32| 1u64 << ((hash >> from) & 63);
-        // Bits that the buckets do not use first: the filter is finer than they are.
+        // Bits that the buckets do not use come first: the filter is finer than they are.
         ((hash >> 26) as usize & (words - 1), bit(46) | bit(52) | bit(58))
     }
 
@@ -236,7 +241,7 @@ struct Lattice {
     direction_scale: f64,
 }
 
-/// A cube of a division, by the multiples of its size at which its middle is.
+/// A cube of a division, by the position of its middle in multiples of its size.
 type Cell = [i32; 3];
 
 impl Lattice {
@@ -260,7 +265,7 @@ impl Lattice {
         } else {
             let size = 1.0 / self.direction_scale;
             each_near(record.dir, window.chord(), self.direction_scale, |cell| {
-                // Directions lie on the unit sphere: cells wholly inside or outside of it hold none.
+                // Directions lie on the unit sphere: cells wholly inside or outside it are empty.
                 let (near, far) = corner_distances(cell, size);
                 if near <= 1.0 && far >= 1.0 {
                     directions.push(cell);
@@ -268,7 +273,8 @@ impl Lattice {
             });
         }
         let size = 1.0 / self.position_scale;
-        // Half of the cell's extent along the normal, and how far the surface may bend away within the window.
+        // Half of the cell's extent along the normal, and the largest sag of the surface within the
+        // window.
         let half = 0.5 * size * record.normal.abs().element_sum() + HEIGHT * window.radius;
         each_near(record.point, ball(window), self.position_scale, |cell| {
             let middle = DVec3::from(cell.map(f64::from)) * size;
@@ -279,14 +285,15 @@ impl Lattice {
     }
 }
 
-/// Radius of the ball about a record that holds its window on the surface, mm.
+/// Radius of the ball about a record that contains its window on the surface, mm.
 fn ball(window: Window) -> f64 {
     window.radius * 1f64.hypot(HEIGHT)
 }
 
 #[inline(always)]
 fn cell_of(p: DVec3, scale: f64) -> Cell {
-    // Numbers of this size have no digits behind the point, and their last bits are whole numbers, also negative ones.
+    // Numbers of this size have no fractional digits, so their last bits are integers, including
+    // negative ones.
     const WHOLE: f64 = 1.5 * (1u64 << 52) as f64;
     (p * scale + WHOLE).to_array().map(|whole| whole.to_bits() as i32)
 }
@@ -315,13 +322,14 @@ fn each_near(p: DVec3, reach: f64, scale: f64, mut visit: impl FnMut(Cell)) {
     }
 }
 
-/// The bits of a hash that tell cells of one bucket apart.
+/// The bits of a hash that separate cells of one bucket.
 #[inline]
 fn tag(hash: u64) -> u32 {
     (hash >> 32) as u32
 }
 
-/// A well mixed number of a cell on a surface (multiply and fold, after Steele, Lea & Flood's `SplitMix64`).
+/// A well mixed hash of a cell on a surface (multiply and fold, after Steele, Lea & Flood's
+/// `SplitMix64`).
 #[inline]
 fn hash(surface: Slot, position: Cell, direction: Cell) -> u64 {
     let pair = |a: i32, b: i32| u64::from(a as u32) << 32 | u64::from(b as u32);

@@ -1,9 +1,10 @@
-//! Merging of forward, backward and gather by multiple importance sampling: how much of a path each may count.
+//! Merging of forward, backward and gather by multiple importance sampling: the share of a path
+//! that each counts.
 //!
-//! All three can find the same path of discrete directions; the balance heuristic (Veach & Guibas, SIGGRAPH 1995)
-//! shares its light among them by the densities with which they do. Per etendue these are `c_F = N p_e`, `c_B = M p_g` and
-//! `c_M = N p_e M p_g G/q` (docs/method.md, eq. 16 to 18). Where the shares come from is not known here, nor who
-//! traces the paths.
+//! All three can find the same path of discrete directions; the balance heuristic (Veach & Guibas,
+//! SIGGRAPH 1995) divides its light among them by their densities. Per etendue these are
+//! `c_F = N p_e`, `c_B = M p_g` and `c_M = N p_e M p_g G/q` (docs/method.md, eq. 16 to 18). This
+//! module does not trace paths, and does not know the origin of the shares.
 
 use crate::optics::{Bsdf, Incidence, Side, chances};
 use crate::scene::Scene;
@@ -15,55 +16,57 @@ use std::collections::{BTreeSet, VecDeque};
 
 /// Merged paths have no roulette above this throughput, 1: it would change their densities.
 pub(crate) const ROULETTE_BELOW: f64 = 1e-4;
-/// Least probability of a lobe, 1: rounding near total reflection must not divide by nothing. The same for all three.
+/// Smallest probability of a lobe, 1: rounding near total reflection must not divide by zero. The
+/// same for all three.
 const LEAST_CHANCE: f64 = 1e-9;
 /// No window: the path has no vertex D.
 pub(crate) const NO_WINDOW: [f64; COUNTED] = [0.0; COUNTED];
 
-/// The etendues that weigh a path, mm² sr.
+/// The etendues that weight a path, mm² sr.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Etendues {
-    /// Which one photon stands for where the path starts, `1/(N p_e)`.
+    /// Etendue of one photon where the path starts, `1/(N p_e)`.
     pub(crate) photon: f64,
-    /// Which one gather path stands for where it ends, `1/(M p_g)`.
+    /// Etendue of one gather path where it ends, `1/(M p_g)`.
     pub(crate) gather: f64,
-    /// Of each window at vertex D over the probability of the lobe there, G/q; 0 for paths without vertex D.
+    /// Etendue of each window at vertex D over the probability of the lobe there, G/q; 0 for paths
+    /// without vertex D.
     pub(crate) window: [f64; COUNTED],
 }
 
 impl Etendues {
-    /// The share that a photon in the sensor's cell counts, for each window, 1: eq. (21).
+    /// The share counted by a photon in the sensor's cell, for each window, 1: eq. (21).
     pub(crate) fn forward(&self) -> [f64; COUNTED] {
         self.window.map(|window| 1.0 / (1.0 + (self.photon + window) / self.gather))
     }
 
-    /// The share that a gather path counts where it meets emission, for each window, 1: eq. (21).
+    /// The share counted by a gather path that meets emission, for each window, 1: eq. (21).
     pub(crate) fn backward(&self) -> [f64; COUNTED] {
         self.window.map(|window| 1.0 / (1.0 + (self.gather + window) / self.photon))
     }
 
-    /// The share that a photon and a record count together, for each window, 1: eq. (21).
+    /// The share counted by a photon and a record together, for each window, 1: eq. (21).
     pub(crate) fn pair(&self) -> [f64; COUNTED] {
         self.window.map(|window| window / (self.photon + self.gather + window))
     }
 }
 
-/// Light at a face that it meets, and how it goes on.
+/// Light at a face that it meets, and its continuation.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Passage<'s> {
     bsdf: &'s Bsdf,
-    /// Of the light, also where a gather path tells it.
+    /// Incidence of the light, also when it comes from a gather path.
     incidence: Incidence,
     side: Side,
 }
 
 impl<'s> Passage<'s> {
-    /// Of a photon that meets a face.
+    /// For a photon that meets a face.
     pub(crate) fn of_photon(facing: &Facing<'s>, side: Side) -> Self {
         Self { bsdf: facing.faces.own, incidence: facing.incidence, side }
     }
 
-    /// Of the light that a gather path which meets a face would find along `dir`.
+    /// For the light that a gather path at a face would find along `dir`.
     pub(crate) fn of_gather_path(facing: &Facing<'s>, dir: DVec3, side: Side) -> Self {
         let own = facing.incidence;
         let (bsdf, incidence) = match side {
@@ -82,8 +85,8 @@ impl<'s> Passage<'s> {
         Self { bsdf, incidence, side }
     }
 
-    /// G/q, mm² sr: n² π r² ∫ cos θ dω over the cone about the light, above the horizon, over the probability that a
-    /// path takes the side it takes. Windows are not clipped: eq. (20).
+    /// G/q, mm² sr: n² π r² ∫ cos θ dω over the cone about the light, above the horizon, over the
+    /// probability of the path's side. Windows are not clipped: eq. (20).
     pub(crate) fn etendues(&self, window: Window) -> [f64; COUNTED] {
         let Incidence { index_from, .. } = self.incidence;
         let chance = chances(self.bsdf, &self.incidence).of(self.side).max(LEAST_CHANCE);
@@ -92,7 +95,7 @@ impl<'s> Passage<'s> {
     }
 }
 
-/// The last faces that a photon has met, as many as lead from vertex D to a sensor.
+/// The last faces that a photon has met, as many as there are from vertex D to a sensor.
 #[derive(Debug)]
 pub(crate) struct Recent<'s> {
     passages: VecDeque<Passage<'s>>,
@@ -116,7 +119,7 @@ impl<'s> Recent<'s> {
         self.passages.push_back(passage);
     }
 
-    /// G/q at vertex D, counted from where the photon is; nothing where it has not met so many faces.
+    /// G/q at vertex D, counted back from the photon's position; zero if it has met too few faces.
     pub(crate) fn etendues(&self, window: Window) -> [f64; COUNTED] {
         match self.passages.front() {
             Some(passage) if self.passages.len() > self.depth => passage.etendues(window),
@@ -125,7 +128,7 @@ impl<'s> Recent<'s> {
     }
 }
 
-/// What scatters light off discrete directions.
+/// A cause of scatter off discrete directions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scatterer<'s> {
     /// A finish.
@@ -154,9 +157,10 @@ pub fn turbid_media(scene: &Scene) -> impl Iterator<Item = Scatterer<'_>> {
     turbid.map(|medium| Scatterer::Medium(medium.name()))
 }
 
-/// The finishes and media of a scene that keep the three estimators from being merged: where light is scattered, a gather path
-/// and a photon that meet by their windows are not the same path as either of them; and where one side has several
-/// discrete directions, the chance of a side is not that of a path.
+/// The finishes and media of a scene that prevent merging the three estimators. Where light is
+/// scattered, a gather path and a photon that meet in their windows do not form the same path as
+/// either of them; and where one side has several discrete directions, the probability of a side is
+/// not that of a path.
 pub fn scatterers(scene: &Scene) -> Vec<Scatterer<'_>> {
     let mut seen = BTreeSet::new();
     let sides = scene.faces.iter().flat_map(|face| {

@@ -1,7 +1,9 @@
-//! Gathering merged with forward and backward: what each of the three counts of a path, by the weights of `merge`.
+//! Gathering merged with forward and backward: the share of a path that each of the three counts,
+//! by the weights of `merge`.
 //!
-//! Photons that sensors count, gather paths that meet emission, and pairs of photons and records are of the same
-//! passes. All light of a sensor is in the readings of the windows; how paths are traced is not known here.
+//! Photons that sensors count, gather paths that meet emission, and pairs of photons and records
+//! belong to the same passes. The readings of the windows contain all light of a sensor. This
+//! module does not know how paths are traced.
 
 use crate::scene::{SourceId, Visibility};
 use crate::transport::forward::{Detected, PhotonWatcher};
@@ -15,14 +17,14 @@ use crate::transport::walk::scatter::facing;
 use crate::transport::{Departure, Path, Vertex};
 use smallvec::SmallVec;
 
-/// What weighs the light of one gather path.
+/// Weights for the light of one gather path.
 #[derive(Debug)]
 pub(super) struct Merging<'a> {
     /// Etendue of the path, mm² sr.
     etendue: f64,
     /// Flux of one photon of each source, lm or W.
     photon_fluxes: &'a [f64],
-    /// G/q of vertex D once it lies behind the path, mm² sr.
+    /// G/q of vertex D once the path has passed it, mm² sr.
     window: [f64; COUNTED],
 }
 
@@ -31,31 +33,32 @@ impl<'a> Merging<'a> {
         Self { etendue, photon_fluxes, window: NO_WINDOW }
     }
 
-    /// Vertex D lies behind: G/q of the side that the path took there, mm² sr.
+    /// The path has passed vertex D: G/q of the side that it took there, mm² sr.
     pub(super) fn pass_vertex_d(&mut self, window: [f64; COUNTED]) {
         self.window = window;
     }
 
-    /// What weighs a record of vertex D with this G/q, as far as the gather path knows it.
+    /// Etendues that weight a record of vertex D with this G/q, as far as the gather path knows
+    /// them.
     pub(super) fn waiting(&self, window: [f64; COUNTED]) -> Etendues {
         Etendues { photon: f64::INFINITY, gather: self.etendue, window }
     }
 
-    /// How much emission counts that the path has met, for each window, 1.
+    /// Share counted by emission that the path has met, for each window, 1.
     pub(super) fn weights(&self, met: &Met) -> [f64; COUNTED] {
         let photon = self.photon_fluxes[met.source.index()] / met.emitted;
         Etendues { photon, gather: self.etendue, window: self.window }.backward()
     }
 }
 
-/// Photons that stream past the records, and count in the cells of sensors, too.
+/// Photons that stream past the records, and also count in the cells of sensors.
 pub(super) struct MergedStream<'m, 'p, 's> {
     stream: &'m mut Stream<'p, 's>,
     window: Window,
     /// Gather paths of each sensor in the pass.
     gather_paths: f64,
     photon_fluxes: &'m [f64],
-    /// Etendue that the photon being traced stands for, mm² sr.
+    /// Etendue represented by the current photon, mm² sr.
     photon: f64,
     recent: Recent<'s>,
 }

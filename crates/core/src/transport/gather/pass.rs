@@ -1,11 +1,14 @@
-//! The gather method: gather paths of limited depth from the sensors end in records, photons are streamed past them.
+//! The gather method: gather paths of limited depth from the sensors end in records, and photons
+//! are streamed past them.
 //!
-//! A gather path goes on through specular and narrow scatter up to vertex D, where it leaves records for photons that
-//! travel near the mirrored and the refracted direction: the position-and-angle estimate. On a surface that scatters
-//! broadly, and where a medium scatters, it leaves records for all photons: the position estimate. Emission that it meets on its way counts as it is;
-//! all other light, and what could be seen through vertex D, is brought by photons. So nothing counts twice.
-//! All sensors share one stream of photons, and no photon is kept: memory goes with the records.
-//! Merged with forward and backward, gather paths go on to the sources, and everything counts by its weight (`merge`).
+//! A gather path continues through specular and narrow scatter up to vertex D, where it leaves
+//! records for photons that travel near the mirrored and the refracted direction: the
+//! position-and-angle estimate. On a surface that scatters broadly, and where a medium scatters, it
+//! leaves records for all photons: the position estimate. Emission that it meets counts directly;
+//! photons give all other light, including what could be seen through vertex D. So nothing counts
+//! twice. All sensors share one stream of photons, and no photon is kept: memory scales with the
+//! records. When merged with forward and backward, gather paths continue to the sources, and
+//! everything counts by its weight (`merge`).
 
 use crate::rng::Sampler;
 use crate::scene::Arrival;
@@ -20,13 +23,14 @@ use crate::transport::stop::{Pace, RECORD_WORK, StopSignal};
 use crate::transport::walk::follow::{Gathering, follow};
 use crate::transport::{Path, Readings};
 
-/// Streams of random numbers of the gather paths and of their records; each sensor has one of its own.
+/// Streams of random numbers of the gather paths and of their records; each sensor has a separate
+/// one.
 const PATH_STREAM: u64 = 2 << 32;
 const RECORD_STREAM: u64 = 3 << 32;
 
 impl<'s> Gather<'s> {
-    /// Runs one pass with the photons of a batch, which someone else may watch, too, unless all is merged. `None` if it was
-    /// stopped.
+    /// Runs one pass with the photons of a batch, which can have another watcher unless all is
+    /// merged. `None` if it was stopped.
     pub(crate) fn pass(
         &self,
         forward: &Forward<'_>,
@@ -101,11 +105,11 @@ impl<'s> Gather<'s> {
     }
 }
 
-/// What is beside the gather paths of a pass.
+/// Context of the gather paths of a pass.
 #[derive(Clone, Copy)]
 struct Beside<'a> {
     /// Flux of one photon of each source, lm or W.
     photon_fluxes: &'a [f64],
-    /// What may stop them.
+    /// Stops the paths.
     pace: &'a Pace<'a>,
 }

@@ -1,6 +1,7 @@
-//! Where gather paths end and wait for photons, so that a photon finds the records it may belong to at once.
+//! Records where gather paths end, stored so that a photon finds those it may belong to with one
+//! look-up.
 //!
-//! What a record is worth to a photon is not known here.
+//! This module does not know the contribution of a photon to a record.
 
 use crate::optics::{Bsdf, VolumeScattering};
 use crate::scene::MediumId;
@@ -12,45 +13,48 @@ use glam::DVec3;
 use lumiduct_base::math::Aabb;
 use smallvec::SmallVec;
 
-/// Where a gather path waits for photons.
+/// A point where a gather path waits for photons.
 #[derive(Debug, Clone, Copy)]
 pub struct GatherRecord<'s> {
-    /// Where, mm.
+    /// Position, mm.
     pub point: DVec3,
     /// Unit normal of the surface on the side that photons come from; zero within a medium.
     pub normal: DVec3,
-    /// Which smooth surface photons have to meet, or in which medium they have to be scattered.
+    /// The smooth surface that photons must meet, or the medium in which they must be scattered.
     pub surface: Slot,
     /// The medium they arrive in.
     pub medium: MediumId,
-    /// Which photons it takes.
+    /// The photons it takes.
     pub wanted: Wanted<'s>,
     /// Etendue times throughput over n² and the area of the window, clipped at rims: sr (times mm²/mm²), per window; within
     /// a medium over n², the scattering coefficient and the volume of the window, clipped at its bounds.
     pub values: [f64; NESTED],
-    /// The gather path, by its place in the list of paths.
+    /// The gather path, by its index in the list of paths.
     pub path: u32,
-    /// Interfaces met from the sensor to the record, its own included.
+    /// Interfaces met from the sensor to the record, including its own.
     pub depth: u32,
 }
 
-/// Which photons a record takes.
+/// The photons that a record takes.
 #[derive(Debug, Clone, Copy)]
 pub enum Wanted<'s> {
-    /// Those that travel along this direction, up to the angle of the window: docs/method.md, eq. (15).
+    /// Photons that travel along this direction, up to the angle of the window: docs/method.md, eq.
+    /// (15).
     Along(DVec3),
-    /// All, weighted by the broad part of a finish toward a direction: docs/method.md, eq. (22).
+    /// All photons, weighted by the broad part of a finish toward a direction: docs/method.md, eq.
+    /// (22).
     Scattered {
         /// The finish that acts on them.
         bsdf: &'s Bsdf,
-        /// Unit direction in which the light has to leave.
+        /// Unit direction in which the light must leave.
         out: DVec3,
     },
-    /// All that are scattered within a medium, weighted by the phase function: docs/method.md, eq. (24).
+    /// All photons that are scattered within a medium, weighted by the phase function:
+    /// docs/method.md, eq. (24).
     Collided {
-        /// How the medium scatters.
+        /// Scattering of the medium.
         scattering: VolumeScattering,
-        /// Unit direction in which the light has to travel on.
+        /// Unit direction of the light after scattering.
         out: DVec3,
     },
 }
@@ -59,7 +63,7 @@ pub enum Wanted<'s> {
 #[derive(Debug)]
 pub struct Records<'s> {
     pub(crate) all: Vec<GatherRecord<'s>>,
-    /// By surface: where its records are, and in which directions they look.
+    /// By surface: the positions of its records, and their directions.
     reach: Vec<Reach>,
     along: Index,
     scattered: Index,
@@ -73,7 +77,7 @@ struct Reach {
 }
 
 impl<'s> Records<'s> {
-    /// Indexes records with a common widest window; `None` if that was stopped.
+    /// Indexes records with a common widest window; `None` if stopped.
     pub fn new(
         all: Vec<GatherRecord<'s>>,
         window: Window,
@@ -127,8 +131,8 @@ impl<'s> Records<'s> {
                 || self.scattered.may_hold(surface, point, NO_DIRECTION))
     }
 
-    /// Visits the records that each of some photons may belong to, each once: photon by photon those that want a
-    /// direction, then photon by photon those that take all.
+    /// Visits the records that each of some photons may belong to, each once: photon by photon
+    /// those with a direction, then photon by photon those that take all.
     pub fn visit(&self, photons: &[Key], mut visit: impl FnMut(usize, &GatherRecord<'s>)) {
         self.along.visit(photons, |photon, id| visit(photon, &self.all[id as usize]));
         let keyed = photons.iter().map(|key| Key { dir: NO_DIRECTION, ..*key });
@@ -137,5 +141,5 @@ impl<'s> Records<'s> {
     }
 }
 
-/// The direction by which records are keyed that take photons of any direction.
+/// The key direction of records that take photons of any direction.
 const NO_DIRECTION: DVec3 = DVec3::ZERO;

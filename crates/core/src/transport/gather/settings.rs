@@ -1,4 +1,5 @@
-//! How the gather method is set: what was asked for, and automatic values for the rest, from a few pilot paths.
+//! Settings of the gather method: the user's values, and automatic values for the rest, from a few
+//! pilot paths.
 
 use crate::optics::Spread;
 use crate::plan::{RunPlan, Schedule};
@@ -19,7 +20,7 @@ const STREAM: u64 = 4 << 32;
 const PILOT_PATHS: u64 = 64;
 /// Radius of the first window over the inradius of the guide, 1 (measured on prototypes; docs/method.md).
 const RADIUS_PER_INRADIUS: f64 = 0.2;
-/// And at most this share of the radius of the smallest source, 1.
+/// Largest radius as a share of the radius of the smallest source, 1.
 const RADIUS_PER_SOURCE: f64 = 0.5;
 /// A source of at least this share of the guide's inradius fills it, 1.
 const FILLS: f64 = 0.8;
@@ -29,14 +30,16 @@ const THETA_DEG: [f64; 2] = [0.05, 3.0];
 const DEPTH: [f64; 2] = [1.0, 8.0];
 /// Straight pieces of photon paths in an automatic pass: seconds of work, so that the first stage ends soon.
 const PASS_SEGMENTS: f64 = 4e6;
-/// Least photons of an automatic pass: in closed mirrors each of them has 100,000 straight pieces.
+/// Smallest number of photons of an automatic pass: in closed mirrors each has 100,000 straight
+/// pieces.
 const LEAST_PHOTONS: f64 = 32.0;
-/// Straight pieces of photon paths that a gather path and its records cost, as measured, and what share of the work of
-/// the photons they get: limited by pairs, noise is least at equal shares; looking them up costs less with fewer.
+/// Cost of a gather path and its records in straight pieces of photon paths, as measured, and their
+/// work as a share of the work of the photons: limited by pairs, noise is least at equal shares;
+/// fewer records are cheaper to look up.
 const RECORD_SEGMENTS: f64 = 50.0;
 const RECORD_SHARE: f64 = 0.27;
 
-/// How the gather method works in a run.
+/// Settings of the gather method in a run.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct GatherSettings {
     /// Vertex at which gather paths end, D; the first surface has depth 0.
@@ -53,22 +56,22 @@ pub struct GatherSettings {
     pub inradius: f64,
 }
 
-/// What pilot photons have told.
+/// Measurements by pilot photons.
 #[derive(Debug, Clone, Copy)]
 pub struct PhotonPilot {
-    /// Straight pieces of a photon path, mean.
+    /// Mean number of straight pieces of a photon path.
     pub(crate) segments_per_path: f64,
     /// Straight pieces of photon paths in an automatic pass.
     pub(crate) pass_segments: f64,
 }
 
 impl PhotonPilot {
-    /// Photons with so many straight pieces per path, in passes of the usual size.
+    /// Photons with this many straight pieces per path, in passes of the usual size.
     pub fn new(segments_per_path: f64) -> Self {
         Self { segments_per_path, pass_segments: PASS_SEGMENTS }
     }
 
-    /// The same with passes of so many straight pieces at most.
+    /// The same with passes of at most this many straight pieces.
     pub(crate) fn with_passes_up_to(self, segments: f64) -> Self {
         Self { pass_segments: self.pass_segments.min(segments), ..self }
     }
@@ -80,7 +83,7 @@ impl PhotonPilot {
     }
 }
 
-/// Settles how some sensors are gathered; `None` if that was stopped.
+/// Settings for gathering some sensors; `None` if stopped.
 pub fn settle(
     scene: &Scene,
     plan: &RunPlan,
@@ -119,11 +122,11 @@ pub fn settle(
     })
 }
 
-/// Half of the angular half-width of the narrowest source, or the scatter of the walls if that is more, rad. (Twice the
-/// scatter made a bias of 1.7 % where this makes a quarter of it: docs/method.md.)
+/// Half of the angular half-width of the narrowest source, or the scatter of the walls if that is
+/// more, rad. (Twice the scatter gave a bias of 1.7 %; this gives a quarter of it: docs/method.md.)
 ///
-/// A source that fills the guide is as wide as its emission: the images of its rim in the walls join. A smaller one is
-/// seen from the records at the distance told, mm.
+/// A source that fills the guide is as wide as its emission: the images of its rim in the walls
+/// join. A smaller one is seen from the records at its distance in `from_sources`, mm.
 fn angle(scene: &Scene, inradius: f64, from_sources: &[f64]) -> f64 {
     let lit = scene.sources.iter().zip(from_sources).filter(|(source, _)| source.is_lit());
     let sources = lit.map(|(source, distance)| {
@@ -148,7 +151,8 @@ fn angle(scene: &Scene, inradius: f64, from_sources: &[f64]) -> f64 {
     (0.5 * narrowest).max(widest).clamp(least, most)
 }
 
-/// Half of the width of a source, mm: of the shorter side of a flat one, the radius of a round one.
+/// Half of the width of a source, mm: for a flat one, of the shorter side; for a round one, the
+/// radius.
 fn half_width(emitter: &Emitter) -> f64 {
     let bounds = emitter.bounds();
     let mut extents = (bounds.max - bounds.min).to_array();
@@ -157,15 +161,16 @@ fn half_width(emitter: &Emitter) -> f64 {
     0.5 * middle
 }
 
-/// What pilot paths have told about the guide, medians in mm.
+/// Pilot measurements of the guide, medians in mm.
 struct Sounded {
     inradius: f64,
-    /// From where records will be to each source.
+    /// Distance of the records from each source.
     from_sources: Vec<f64>,
 }
 
-/// Sounds the vertices of pilot paths: half the way across the guide there, or the radius of a disk of the area of the
-/// face, whichever is less, and how far the sources are. `None` if that was stopped.
+/// Probes the vertices of pilot paths: half the distance across the guide there, or the radius of a
+/// disk with the area of the face, whichever is less, and the distances of the sources. `None` if
+/// stopped.
 fn sound(
     scene: &Scene,
     sensors: &[SensorId],
@@ -193,7 +198,7 @@ fn sound(
             }
         }
     }
-    // Without any vertex there is nothing to gather from, and any window will do.
+    // Without any vertex there is nothing to gather from, and any window works.
     let size = scene.bounds.diagonal();
     let sounded = Sounded {
         inradius: median(sounding.across).unwrap_or(0.1 * size),
@@ -211,13 +216,13 @@ fn median(mut found: Vec<f64>) -> Option<f64> {
     found.get(found.len() / 2).copied()
 }
 
-/// Sounds the guide where gather paths meet it.
+/// Probes the guide where gather paths meet it.
 struct Sounding<'s> {
     scene: &'s Scene,
     depth: u32,
-    /// Half the way across, mm.
+    /// Half the distance across, mm.
     across: Vec<f64>,
-    /// To each source, mm.
+    /// Distances to each source, mm.
     distances: Vec<Vec<f64>>,
 }
 

@@ -1,9 +1,10 @@
 //! Stages of the gather method: passes within one window, then more passes within a smaller one.
 //!
-//! Within a stage radius and angle are fixed, so that its passes are independent samples of one quantity and their
-//! spread is an honest error bar. Between stages the window shrinks by √2, the number of gather paths doubles as far as
-//! memory allows and the number of passes grows by 8, for pairs get rare: bias and standard error both halve. A value
-//! comes from one stage alone. With the schedule `per-pass` there is one stage whose window shrinks from pass to pass.
+//! Within a stage radius and angle are fixed, so its passes are independent samples of one quantity
+//! and their spread is a valid error bar. Between stages the window shrinks by √2, the number of
+//! gather paths doubles as far as memory allows and the number of passes grows by 8, since pairs
+//! become rare: bias and standard error both halve. A value comes from one stage alone. With the
+//! schedule `per-pass` there is one stage whose window shrinks from pass to pass.
 
 use crate::plan::Schedule;
 use crate::transport::gather::estimator::{Gather, Pass};
@@ -15,14 +16,15 @@ use serde::{Deserialize, Serialize};
 
 /// Passes of the first stage, and of a wave of passes.
 pub(crate) const FIRST_PASSES: u64 = 16;
-/// By how much passes times gather paths grow from stage to stage. Of the pairs of a pass a quarter is left, for the
-/// window shrinks in four dimensions, and half the standard error takes four times as many in all.
+/// Growth of passes times gather paths from stage to stage. A quarter of the pairs of a pass
+/// remains, since the window shrinks in four dimensions, and half the standard error requires four
+/// times as many in total.
 const GROWTH: u64 = 16;
-/// Most gather paths of a pass, from all sensors, that stages grow to: with its record and the entries of an index each
-/// takes about 600 bytes.
+/// Largest number of gather paths of a pass, from all sensors, that stages grow to: with its record
+/// and the entries of an index, each takes about 600 bytes.
 const MOST_GATHER_PATHS: u64 = 1 << 20;
 
-/// Readings of the estimates that windows of several sizes make of the same photons and records.
+/// Readings of the estimates within windows of several sizes, from the same photons and records.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Windows {
     /// Within the whole window, E1.
@@ -31,7 +33,8 @@ pub struct Windows {
     pub middle: Readings,
     /// Within half of them, E3.
     pub narrow: Readings,
-    /// E0 = 2 E(r/√2, θ) + 2 E(r, θ/√2) - 3 E1: what is left if the bias goes with the squares of radius and angle.
+    /// E0 = 2 E(r/√2, θ) + 2 E(r, θ/√2) - 3 E1: the remainder if the bias scales with the squares
+    /// of radius and angle.
     pub extrapolated: Readings,
 }
 
@@ -65,7 +68,7 @@ impl Windows {
     }
 }
 
-/// What of the stages changes in a run.
+/// The state of the stages that changes in a run.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(crate) struct StagesState {
     number: u32,
@@ -75,22 +78,22 @@ pub(crate) struct StagesState {
 }
 
 impl StagesState {
-    /// The only stage of a schedule without stages, with all that was counted.
+    /// The only stage of a schedule without stages, with all counts.
     pub(crate) fn only(sums: Sums<Windows>) -> Self {
         Self { number: 0, first_batch: 0, sums, finished: Vec::new() }
     }
 }
 
-/// What a stage has found.
+/// Findings of a stage.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Stage {
-    /// Which, from 0.
+    /// Number of the stage, from 0.
     pub number: u32,
     /// Its widest window; with the schedule `per-pass` that of the last pass.
     pub window: Window,
     /// Gather paths of a pass from each sensor.
     pub gather_paths: u64,
-    /// What was counted.
+    /// Its counts.
     pub windows: Windows,
 }
 
@@ -151,12 +154,12 @@ impl<'s> Stages<'s> {
         self.sums.batches()
     }
 
-    /// Takes what a pass has counted.
+    /// Adds the counts of a pass.
     pub(crate) fn push(&mut self, windows: [Readings; ESTIMATES]) {
         self.sums.push(Windows::closed(windows));
     }
 
-    /// What of it changes in a run.
+    /// The part that changes in a run.
     pub(crate) fn state(&self) -> StagesState {
         StagesState {
             number: self.number,
@@ -173,7 +176,8 @@ impl<'s> Stages<'s> {
         (self.sums, self.finished) = (sums, finished);
     }
 
-    /// Goes on to the next stage; the value comes from the one that ends here until the next is as good.
+    /// Starts the next stage; the value comes from the one that ends here until the next is as
+    /// good.
     pub(crate) fn next_stage(&mut self) {
         let ends = self.in_progress();
         self.finished.drain(..self.finished.len().saturating_sub(1));
@@ -183,8 +187,8 @@ impl<'s> Stages<'s> {
         self.sums = Sums::default();
     }
 
-    /// The stage in progress and the one before it. A stage without a pass does not count: a run that is stopped as it
-    /// begins reports what one reports that ends there.
+    /// The stage in progress and the one before it. A stage without a pass does not count, so a run
+    /// that is stopped as it starts one reports the same as a run that ends there.
     pub(crate) fn found(&self) -> Vec<Stage> {
         let new = self.in_progress();
         let skipped = if new.is_some() { self.finished.len().saturating_sub(1) } else { 0 };

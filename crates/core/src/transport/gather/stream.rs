@@ -1,6 +1,6 @@
 //! Photons that stream past the records of a pass: each is counted by every record that takes it.
 //!
-//! Those that may belong to records wait until there are some, and are looked up together.
+//! Photons that may belong to records are buffered and looked up together.
 
 use crate::optics::Incidence;
 use crate::scene::shape::Toward;
@@ -24,7 +24,7 @@ pub(super) struct Stream<'p, 's> {
     waiting: &'p Waiting<'s>,
     pace: &'p Pace<'p>,
     pub(super) windows: &'p mut [Readings; ESTIMATES],
-    /// Photons to be looked up, and by what.
+    /// Photons to be looked up, and their keys.
     passing: Vec<Passing>,
     keys: Vec<Key>,
     work: RecordWork,
@@ -34,15 +34,15 @@ pub(super) struct Stream<'p, 's> {
 #[derive(Debug, Clone, Copy)]
 struct Passing {
     at: At,
-    /// lm or W.
+    /// Flux, lm or W.
     flux: f64,
     depth: u32,
     source: SourceId,
-    /// Merged: the etendue it stands for, mm² sr.
+    /// Merged: the etendue it represents, mm² sr.
     etendue: f64,
 }
 
-/// Where a photon is.
+/// Location of a photon.
 #[derive(Debug, Clone, Copy)]
 enum At {
     /// At an interface.
@@ -51,10 +51,10 @@ enum At {
         toward: Toward,
         /// The media before and behind it.
         media: [MediumId; 2],
-        /// nm.
+        /// Wavelength, nm.
         wavelength: f64,
     },
-    /// Within a medium that is going to scatter it.
+    /// Within a medium, before it is scattered.
     Medium,
 }
 
@@ -76,13 +76,13 @@ impl PhotonWatcher for Stream<'_, '_> {
     }
 }
 
-/// What a photon carries from its start.
+/// Start values of a photon.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Starting {
     /// Flux at throughput 1, lm or W.
     pub(super) flux: f64,
     pub(super) source: SourceId,
-    /// Merged: the etendue it stands for, mm² sr.
+    /// Merged: the etendue it represents, mm² sr.
     pub(super) etendue: f64,
 }
 
@@ -105,7 +105,7 @@ impl<'p, 's> Stream<'p, 's> {
         }
     }
 
-    /// Looks up what is left; what was done.
+    /// Looks up the remaining photons; returns the work done.
     pub(super) fn finish(mut self) -> RecordWork {
         self.look_up();
         self.work
@@ -130,7 +130,7 @@ impl<'p, 's> Stream<'p, 's> {
         self.push(path, key, at, Starting { flux: starting.flux * vertex.throughput, ..starting });
     }
 
-    /// `starting` with the flux that the photon has now.
+    /// `starting` with the current flux of the photon.
     fn push(&mut self, path: &Path, key: Key, at: At, starting: Starting) {
         self.keys.push(key);
         let Starting { flux, source, etendue } = starting;
@@ -179,7 +179,7 @@ impl<'p, 's> Stream<'p, 's> {
     }
 }
 
-/// A photon as records take it.
+/// A photon in the form that records take.
 fn arriving(scene: &Scene, key: &Key, photon: &Passing) -> Arriving {
     let &Key { surface, point, dir } = key;
     match photon.at {
@@ -195,7 +195,7 @@ fn arriving(scene: &Scene, key: &Key, photon: &Passing) -> Arriving {
                 },
                 index_from: index(from),
                 index_to: index(to),
-                // Records ask finishes that scatter, which have none.
+                // Records evaluate only finishes that scatter, which have no grain.
                 grain: DVec3::ZERO,
             };
             Arriving::AtSurface(Meeting { surface, medium: from, point, incidence })

@@ -3,21 +3,21 @@
 use crate::scene::{MediumId, PrimId, Scene, SmoothId};
 use std::collections::BTreeMap;
 
-/// A smooth surface by its place in the list of all, or a medium by its place behind them.
+/// A smooth surface by its index in the list of all, or a medium by its index after them.
 pub type Slot = u32;
 
-/// The smooth surfaces of a scene, numbered, and behind them the media.
+/// The smooth surfaces of a scene, numbered, followed by the media.
 #[derive(Debug)]
 pub struct Surfaces {
     slots: Vec<Slot>,
     pub(super) count: usize,
     pub(super) media: usize,
-    /// By surface: its analytic pieces; none of a mesh.
+    /// By surface: its analytic pieces; none for a mesh.
     patches: Vec<Vec<PrimId>>,
 }
 
 impl Surfaces {
-    /// Those of a scene.
+    /// The surfaces of a scene.
     pub fn new(scene: &Scene) -> Self {
         let triangles: usize = scene.meshes.iter().map(|body| body.mesh.triangle_count()).sum();
         let mut known: BTreeMap<SmoothId, Slot> = BTreeMap::new();
@@ -35,12 +35,12 @@ impl Surfaces {
         Self { slots, count, media: scene.media.len(), patches }
     }
 
-    /// The analytic pieces of a surface; none of a mesh.
+    /// The analytic pieces of a surface; none for a mesh.
     pub(crate) fn patches(&self, surface: Slot) -> &[PrimId] {
         &self.patches[surface as usize]
     }
 
-    /// The number of a medium, whose records take light that is scattered within it.
+    /// The number of a medium for the records of light scattered within it.
     pub(crate) fn of_medium(&self, medium: MediumId) -> Slot {
         (self.count + medium.index()) as Slot
     }

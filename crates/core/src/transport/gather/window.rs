@@ -12,21 +12,23 @@ pub struct Window {
     pub theta_max: f64,
 }
 
-/// Nested windows that are counted from the same photons.
+/// Nested windows that count the same photons.
 pub(crate) const NESTED: usize = 3;
-/// Their size relative to the widest: the bias of a smooth field goes with the square, 1 : 1/2 : 1/4.
+/// Their size relative to the widest: the bias of a smooth field scales with the square, 1 : 1/2 :
+/// 1/4.
 const SIZES: [f64; NESTED] = [1.0, FRAC_1_SQRT_2, 0.5];
 
-/// Windows in which pairs are counted: the nested ones, one that is smaller in position alone, one in angle alone.
+/// Windows in which pairs are counted: the nested ones, one smaller only in position, and one only
+/// in angle.
 pub(crate) const COUNTED: usize = 5;
-/// Which of the nested sizes their radius and their angle have.
+/// Indices of their radius and their angle among the nested sizes.
 pub(crate) const RADIUS_OF: [usize; COUNTED] = [0, 1, 2, 1, 0];
 pub(crate) const ANGLE_OF: [usize; COUNTED] = [0, 1, 2, 0, 1];
-/// Estimates that are made of them: E1, E2 and E3 within the nested windows, and E0.
+/// Estimates from these windows: E1, E2 and E3 within the nested ones, and E0.
 pub(crate) const ESTIMATES: usize = 4;
 
-/// The estimates from what each window counts. E0 = 2 E(r/√2, θ) + 2 E(r, θ/√2) - 3 E1 is free of a bias that goes with
-/// the squares of radius and angle: docs/method.md, eq. (23).
+/// The estimates from the counts of each window. E0 = 2 E(r/√2, θ) + 2 E(r, θ/√2) - 3 E1 is free of
+/// a bias that scales with the squares of radius and angle: docs/method.md, eq. (23).
 #[inline]
 pub(crate) fn estimates(counted: [f64; COUNTED]) -> [f64; ESTIMATES] {
     let [wide, middle, narrow, smaller, sharper] = counted;

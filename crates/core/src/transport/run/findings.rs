@@ -1,6 +1,6 @@
-//! What a run has found: readings by photons, by gather paths, and by stages of the gather method.
+//! Findings of a run: readings by photons, by gather paths, and by stages of the gather method.
 //!
-//! One serialisable value. Which of its readings speak for a sensor follows from the sensor's estimator.
+//! One serialisable value. The sensor's estimator decides which of the readings give its values.
 
 use crate::plan::Estimator;
 use crate::scene::SensorId;
@@ -19,18 +19,18 @@ pub struct Findings {
     pub gathered: Option<Gathered>,
     /// How each sensor is estimated.
     pub estimators: Vec<Estimator>,
-    /// What a pilot found out about each sensor, if it was asked to choose.
+    /// Findings of the pilot about each sensor, if the run is to choose.
     pub choices: Vec<Choice>,
-    /// Photon and gather paths behind it.
+    /// Number of photon and gather paths.
     pub paths: u64,
 }
 
-/// What the gather method has found.
+/// Findings of the gather method.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Gathered {
-    /// How it was set.
+    /// Its settings.
     pub settings: GatherSettings,
-    /// The last finished stage and the one after it, as far as that has come.
+    /// The last finished stage and the one after it, as far as it has got.
     pub stages: Vec<Stage>,
 }
 

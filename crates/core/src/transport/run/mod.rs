@@ -1,4 +1,4 @@
-//! A run: batches in waves, its state, slices and shards, and what it has found.
+//! A run: batches in waves, its state, slices and shards, and its findings.
 
 mod findings;
 mod prepare;

@@ -1,4 +1,4 @@
-//! What is decided before a run: the estimator of each sensor, and how large its batches are.
+//! Decisions before a run: the estimator of each sensor, and the size of its batches.
 
 use crate::plan::{Estimator, Request, RunPlan};
 use crate::scene::{Scene, SensorId};
@@ -16,21 +16,22 @@ use crate::transport::tally::sums::Sums;
 use crate::transport::tally::work;
 use std::time::{Duration, Instant};
 
-/// Straight pieces that a batch should hold: long enough that summing up costs little, short enough that little is lost
-/// when a run is stopped.
+/// Target number of straight pieces of a batch: long enough that summing costs little, short enough
+/// that little is lost when a run is stopped.
 const BATCH_SEGMENTS: u64 = 1 << 15;
 /// Most paths in a batch.
 const BATCH_PATHS: u64 = 4096;
-/// Paths from which the length of paths is learnt before a run, and bounces of them that are looked at.
+/// Paths that measure the length of paths before a run, and the number of their bounces that are
+/// traced.
 const PILOT_PATHS: u64 = 64;
 const PILOT_BOUNCES: u32 = 10_000;
-/// Where the time is limited: passes of gathering for which it should be good, by the time that photon paths alone take,
-/// which records and other programs multiply; and the paths by which that time is measured.
+/// For a limited time: passes of gathering that it should allow, by the time of photon paths alone,
+/// which records and other programs multiply; and the paths that measure that time.
 const PASSES_IN_TIME: f64 = 16.0;
 const TIMED: Duration = Duration::from_millis(10);
 const TIMED_BATCHES: u64 = 64;
-/// Share of the work that goes to photons where all sensors are estimated backward: for the balance and what is beside
-/// the aim, 1. Else photons and gather paths have half each.
+/// Share of the work for photons where all sensors are estimated backward: for the balance and for
+/// light outside the aim, 1. Otherwise photons and gather paths have half each.
 const PHOTON_SHARE: f64 = 0.1;
 
 impl<'s> Run<'s> {
@@ -39,9 +40,10 @@ impl<'s> Run<'s> {
         Self::start(scene, plan, &StopSignal::default(), &mut |_| ()).expect("nothing stops it")
     }
 
-    /// Prepares a run that a signal may stop; `None` if it did so before anything could be counted. `watch` learns what is
-    /// tried in a pilot. A pilot may take half of the time that is left; one that takes longer is given up, and sensors
-    /// without an estimator of their own are estimated forward.
+    /// Prepares a run that a signal may stop; `None` if it did so before anything could be counted.
+    /// `watch` receives the trials of a pilot. A pilot may take half of the remaining time; one
+    /// that takes longer is abandoned, and sensors without an explicit estimator are estimated
+    /// forward.
     pub fn start(
         scene: &'s Scene,
         plan: &RunPlan,
@@ -72,7 +74,7 @@ impl<'s> Run<'s> {
             ),
             (None, _) => (share * usual as f64).ceil() as u64,
         };
-        // A path of each source at least.
+        // At least one path of each source.
         let photons = photons.max(scene.sources.len() as u64).max(1);
         let backward = if followed.is_empty() {
             None
@@ -106,8 +108,8 @@ fn sensors_of(estimators: &[Estimator], wanted: Estimator) -> Vec<SensorId> {
     all.filter(|(_, own)| **own == wanted).map(|(index, _)| SensorId::new(index)).collect()
 }
 
-/// The stages of sensors that are gathered alone, or merged; no stages where there are none, and `None` if the signal
-/// stopped it.
+/// The stages of sensors that are gathered alone, or merged; no stages if there are no such
+/// sensors, and `None` if the signal stopped it.
 fn stages<'s>(
     scene: &'s Scene,
     plan: &RunPlan,
@@ -124,7 +126,7 @@ fn stages<'s>(
     let pilot = work.map_or(pilot, |work| pilot.with_passes_up_to(work / PASSES_IN_TIME));
     let mut settings = settle(scene, plan, gathered, pilot, &early)?;
     if work.is_some() && plan.gather.records.is_none() && !merged.is_empty() {
-        // Merged gather paths go on as far as photons do.
+        // Merged gather paths continue as far as photons do.
         let most = settings.photons / gathered.len() as u64;
         settings.gather_paths = settings.gather_paths.min(most).max(1);
     }
@@ -133,7 +135,7 @@ fn stages<'s>(
     Some(Some(Stages::new(gather, settings)))
 }
 
-/// Photon paths of a batch that suit a scene: what [`RunPlan::batch_paths`] is when nothing is said.
+/// Suitable number of photon paths of a batch for a scene: the default of [`RunPlan::batch_paths`].
 pub fn batch_paths(scene: &Scene, plan: &RunPlan) -> u64 {
     let segments = segments_per_path(scene, plan, &StopSignal::default());
     usual_batch(segments.expect("nothing stops it"))
@@ -143,19 +145,20 @@ fn usual_batch(segments_per_path: u64) -> u64 {
     (BATCH_SEGMENTS / segments_per_path).clamp(1, BATCH_PATHS)
 }
 
-/// Straight pieces of a photon path on the average, from a few of them; `None` if they were stopped.
+/// Mean number of straight pieces of a photon path, from a few of them; `None` if they were
+/// stopped.
 fn segments_per_path(scene: &Scene, plan: &RunPlan, signal: &StopSignal) -> Option<u64> {
     let limit = plan.bounce_limit.min(PILOT_BOUNCES);
     let forward = Forward::new(scene, plan.seed, limit, PILOT_PATHS);
     let pilot = forward.batch(0, signal)?;
-    // Light that the pilot cuts off goes on, at the longest to the bounce limit of the run.
+    // Light that the pilot cuts off continues, at most to the bounce limit of the run.
     let flux = scene.source_flux();
     let cut = pilot.groups[0].sums[forward.layout.cut()];
     let rest = if flux > 0.0 { cut / flux * f64::from(plan.bounce_limit - limit) } else { 0.0 };
     Some(pilot.segments.div_ceil(pilot.paths().max(1)).max(1) + rest as u64)
 }
 
-/// How long a straight piece of a photon path takes, s, by the clock; `None` if that was stopped.
+/// Time of a straight piece of a photon path, s, by the clock; `None` if stopped.
 fn time_of_piece(scene: &Scene, plan: &RunPlan, signal: &StopSignal) -> Option<f64> {
     let limit = plan.bounce_limit.min(PILOT_BOUNCES);
     let forward = Forward::new(scene, plan.seed, limit, PILOT_PATHS);
@@ -169,7 +172,7 @@ fn time_of_piece(scene: &Scene, plan: &RunPlan, signal: &StopSignal) -> Option<f
     Some(start.elapsed().as_secs_f64() / segments.max(1) as f64)
 }
 
-/// The estimator of each sensor: its own, the one that was asked for, or what a pilot chooses.
+/// The estimator of each sensor: its own, the requested one, or a pilot's choice.
 fn estimators(
     scene: &Scene,
     plan: &RunPlan,
@@ -196,7 +199,7 @@ fn estimators(
             let mut tried = |estimator| watch(Phase::Pilot(estimator));
             let choices = choose(scene, plan, pilot, &signal.with_half(), &mut tried);
             let Some(mut choices) = choices else {
-                // Nobody knows what is best; photons find something everywhere.
+                // The best is unknown; photons find something everywhere.
                 return if signal.is_due() { None } else { all(Estimator::Forward) };
             };
             for (sensor, choice) in choices.iter_mut().enumerate() {

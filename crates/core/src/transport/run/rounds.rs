@@ -1,8 +1,9 @@
 //! Rounds of work: bounded waves of batches over all threads, summed in a fixed order.
 //!
-//! A batch holds photon paths and, where sensors are estimated backward or by gathering, gather paths. A wave is one
-//! batch of each group, or, with gathering, some passes; waves are traced in pieces. A signal stops a run at any time: what
-//! counts then are the batches before the first unfinished one, so that a run of as many batches repeats it.
+//! A batch holds photon paths and, where sensors are estimated backward or by gathering, gather
+//! paths. A wave is one batch of each group, or, with gathering, some passes; waves are traced in
+//! pieces. A signal stops a run at any time: the batches before the first unfinished one then
+//! count, so that a run of that many batches reproduces it.
 
 use crate::plan::{Estimator, Schedule};
 use crate::transport::backward::estimator::Backward;
@@ -19,7 +20,7 @@ use std::fmt;
 
 /// Batches of a piece per thread: threads wait for the last batch of a piece.
 pub(super) const PIECE_BATCHES: u64 = 4;
-/// What a run is doing.
+/// Activity of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Phase {
     /// An estimator is tried before the run.
@@ -30,7 +31,7 @@ pub enum Phase {
     Pass {
         /// Gather, or mis.
         estimator: Estimator,
-        /// Which pass.
+        /// Number of the pass.
         number: u64,
     },
 }
@@ -66,7 +67,7 @@ pub struct Run<'s> {
     pub(super) batches_asked: Option<u64>,
 }
 
-/// What a batch has counted.
+/// Counts of a batch.
 pub(super) struct Batch {
     pub(super) photons: Readings,
     pub(super) backward: Option<Readings>,
@@ -74,8 +75,8 @@ pub(super) struct Batch {
 }
 
 impl<'s> Run<'s> {
-    /// Traces the next piece of a wave: a few batches for each thread. Where the signal stops it, the batches before the
-    /// first unfinished one count, and the others are dropped.
+    /// Traces the next piece of a wave: a few batches for each thread. If the signal stops it, the
+    /// batches before the first unfinished one count, and the others are dropped.
     pub fn next_piece(&mut self) {
         let per_thread = if self.stages.is_some() { 1 } else { PIECE_BATCHES };
         let piece = per_thread * rayon::current_num_threads() as u64;
@@ -108,8 +109,8 @@ impl<'s> Run<'s> {
         Some(Batch { photons, backward: Some(readings), windows })
     }
 
-    /// Traces the photons of a batch, which someone watches, and gathers them where that is asked for; `None` if it was
-    /// stopped.
+    /// Traces the photons of a batch, with a watcher, and gathers them if requested; `None` if it
+    /// was stopped.
     pub(super) fn photons(
         &self,
         batch: u64,
@@ -174,7 +175,7 @@ impl<'s> Run<'s> {
         self.batches
     }
 
-    /// What it is doing.
+    /// The current activity.
     pub fn phase(&self) -> Phase {
         match (&self.stages, &self.backward) {
             (Some(stages), _) if stages.gather.merging.is_some() => {
@@ -199,7 +200,8 @@ impl<'s> Run<'s> {
         self.batches.is_multiple_of(self.wave_batches)
     }
 
-    /// Whether all paths that were asked for have been traced: the batches they are divided into, or whole waves.
+    /// Whether all requested paths have been traced: the batches they are divided into, or whole
+    /// waves.
     pub fn is_complete(&self) -> bool {
         match self.batches_asked {
             Some(asked) => self.batches >= asked,
@@ -209,12 +211,13 @@ impl<'s> Run<'s> {
         }
     }
 
-    /// Paths traced so far, those of a wave in progress included.
+    /// Paths traced so far, including those of a wave in progress.
     pub fn paths(&self) -> u64 {
         self.paths
     }
 
-    /// Paths asked for, rounded up to whole waves where their batches were not given; `None` without such a rule.
+    /// Requested paths, rounded up to whole waves if their batches were not given; `None` without
+    /// such a rule.
     pub fn planned_paths(&self) -> Option<u64> {
         let batch = self.batch_paths();
         if let Some(batches) = self.batches_asked {
@@ -230,7 +233,7 @@ impl<'s> Run<'s> {
         self.paths_asked.map(|asked| before.saturating_add(left(asked)))
     }
 
-    /// Whether the stage of the gather method in progress has the passes it was planned for.
+    /// Whether the stage of the gather method in progress has its planned passes.
     pub fn may_end_stage(&self) -> bool {
         self.stages.as_ref().is_some_and(|stages| stages.passes() >= stages.planned_passes())
     }
@@ -240,7 +243,7 @@ impl<'s> Run<'s> {
         self.stages.as_ref().is_some_and(|own| own.settings.schedule == Schedule::Stages)
     }
 
-    /// Goes on to the next stage of the gather method: a smaller window.
+    /// Starts the next stage of the gather method: a smaller window.
     pub fn next_stage(&mut self) {
         if let Some(stages) = &mut self.stages {
             stages.next_stage();

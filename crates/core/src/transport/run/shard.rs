@@ -1,4 +1,4 @@
-//! One of several parts of a piece of work, to be done on a machine of its own.
+//! One of several parts of a job, each for a separate machine.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -12,9 +12,9 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// Everything.
+    /// The whole job.
     pub const WHOLE: Self = Self { number: 1, count: 1 };
-    /// Most parts.
+    /// Largest number of parts.
     pub const MOST: u64 = 1 << 20;
 
     /// Part `number` of `count`; `None` where there is no such part.
@@ -23,12 +23,12 @@ impl Shard {
         is_one.then_some(Self { number, count })
     }
 
-    /// Whether it is everything.
+    /// Whether it is the whole job.
     pub fn is_whole(self) -> bool {
         self.count == 1
     }
 
-    /// Which of so many things are in this part; every thing is in exactly one.
+    /// The indices of this part among `things`; every index is in exactly one part.
     pub fn of(self, things: u64) -> Range<u64> {
         let edge =
             |part: u64| (u128::from(things) * u128::from(part) / u128::from(self.count)) as u64;

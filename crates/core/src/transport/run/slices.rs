@@ -1,7 +1,8 @@
-//! Slices of a run: some of its batches, to be traced elsewhere and put together to the same bits.
+//! Slices of a run: some of its batches, traced elsewhere and merged to the same bits.
 //!
-//! The batches of a run are the leaves of one binary tree over their index. A slice keeps the sums of the largest nodes
-//! of this tree that lie in it; all slices together have what the run itself would have folded.
+//! The batches of a run are the leaves of one binary tree over their index. A slice keeps the sums
+//! of the largest nodes of this tree that lie in it; all slices together contain the same sums as
+//! the run itself.
 
 use crate::plan::Schedule;
 use crate::transport::run::rounds::{Batch, PIECE_BATCHES, Run};
@@ -12,7 +13,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
-/// What was counted in some of the batches of a run.
+/// Counts of some of the batches of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Slice {
     /// The batches.
@@ -28,14 +29,14 @@ pub struct Slice {
 /// Why a run cannot be cut into slices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unsliceable {
-    /// Its end depends on what is found, or on the clock.
+    /// Its end depends on the findings, or on the clock.
     OpenEnd,
-    /// Gathering goes on to smaller windows depending on what is found.
+    /// The next, smaller windows of gathering depend on the findings.
     Stages,
 }
 
 impl Run<'_> {
-    /// Batches of the whole run; an error where slices of it could not know what they are to trace.
+    /// Batches of the whole run; an error if the batches of a slice are not known in advance.
     pub fn sliceable_batches(&self) -> Result<u64, Unsliceable> {
         let has_stages =
             self.stages.as_ref().is_some_and(|own| own.settings.schedule == Schedule::Stages);
@@ -49,8 +50,8 @@ impl Run<'_> {
         Ok(asked.div_ceil(self.wave_batches * self.batch_paths()) * self.wave_batches)
     }
 
-    /// Traces some batches of a run that has `of` in all. `watch` learns how many are done. `None` if the signal stopped
-    /// it.
+    /// Traces some batches of a run that has `of` in all. `watch` receives the number of finished
+    /// ones. `None` if the signal stopped it.
     pub fn slice(&self, batches: Range<u64>, of: u64, watch: &mut dyn FnMut(u64)) -> Option<Slice> {
         let mut slice = Slice {
             batches: batches.clone(),
@@ -85,7 +86,7 @@ impl Run<'_> {
         self.state_after(batches, photons, backward, windows)
     }
 
-    /// Paths of so many batches.
+    /// Paths of this many batches.
     pub fn paths_of(&self, batches: u64) -> u64 {
         batches * self.batch_paths()
     }

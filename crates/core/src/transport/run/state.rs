@@ -1,4 +1,4 @@
-//! What of a run changes as it traces, so that it can be saved and restored.
+//! The part of a run that changes as it traces, so that it can be saved and restored.
 
 use crate::plan::{Estimator, RunPlan};
 use crate::transport::gather::stages::{Stages, StagesState};
@@ -7,7 +7,8 @@ use crate::transport::tally::sums::Sums;
 use crate::transport::{Choice, Readings, Windows};
 use serde::{Deserialize, Serialize};
 
-/// How far a run has come: everything counted, a wave in progress included. All else follows from scene and plan.
+/// Progress of a run: everything counted, including a wave in progress. All else follows from scene
+/// and plan.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct State {
     batches: u64,
@@ -15,7 +16,7 @@ pub struct State {
     photons: Sums<Readings>,
     backward: Option<Sums<Readings>>,
     stages: Option<StagesState>,
-    /// How it was prepared, which depends on the clock where the time of the run is limited.
+    /// Its estimators, which depend on the clock if the time of the run is limited.
     estimators: Vec<Estimator>,
     choices: Vec<Choice>,
     pass: Option<PassSize>,
@@ -30,7 +31,8 @@ struct PassSize {
 }
 
 impl State {
-    /// The plan by which a run of this state is prepared again. Without a clock the same plan comes to the same.
+    /// The plan that prepares a run of this state again. Without a clock the same plan gives the
+    /// same run.
     pub fn plan(&self, plan: &RunPlan) -> RunPlan {
         let mut own = plan.clone();
         if own.stop.time.is_some() {
@@ -43,7 +45,7 @@ impl State {
 }
 
 impl Run<'_> {
-    /// How far it has come.
+    /// The current state.
     pub fn state(&self) -> State {
         State {
             batches: self.batches,
@@ -70,7 +72,7 @@ impl Run<'_> {
         }
     }
 
-    /// The state after all batches, from what slices have counted.
+    /// The state after all batches, from the counts of slices.
     pub(super) fn state_after(
         &self,
         batches: u64,

@@ -6,12 +6,12 @@ use std::collections::BTreeMap;
 /// A map is kept dense once it is no larger than this many cells, or once a quarter of it is lit.
 const DENSE_CELLS: usize = 4096;
 
-/// For every cell: the sum over batches of what a batch counted, and the sum of its square.
+/// For every cell: the sum over batches of the batch's count, and the sum of its square.
 ///
 /// A batch itself is an accumulator whose squares are filled in by [`Cells::close_batch`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Cells {
-    /// Lit cells only, of this many.
+    /// Lit cells only, with the total number of cells.
     Sparse(usize, BTreeMap<u32, [f64; 2]>),
     /// All cells.
     Dense(Vec<[f64; 2]>),
@@ -49,7 +49,7 @@ impl Cells {
         }
     }
 
-    /// What a batch of its own would have counted that is `a` times this one and `b` times another of the same size.
+    /// The counts of a batch that is `a` times this one and `b` times another of the same size.
     pub(crate) fn combined(&self, [a, b]: [f64; 2], other: &Self) -> Self {
         let mut sum = self.clone();
         match &mut sum {

@@ -1,4 +1,4 @@
-//! Where each scalar of the readings stands in the row of sums.
+//! The position of each scalar of the readings in the row of sums.
 //!
 //! The order is fixed by the scene alone, so that readings made elsewhere from the same scene can be added.
 
@@ -7,7 +7,7 @@ use crate::scene::{FaceId, MediumId, Scene, SensorId, SourceId};
 /// Depths for which the flux of deeper paths is kept, in interfaces met.
 pub const TAILS: [u32; 6] = [10, 50, 100, 200, 500, 1000];
 
-/// How a path is lost without an end of its own.
+/// A way to lose a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Loss {
     /// By the bounce limit.
@@ -16,7 +16,7 @@ pub enum Loss {
     Leaked,
 }
 
-/// The place of every scalar.
+/// The position of every scalar.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Layout {
     sources: usize,
@@ -63,7 +63,7 @@ impl Layout {
         self.sources + self.faces + medium.index()
     }
 
-    /// Flux that escaped, by the solid face it last left through; `None`: it never left a solid.
+    /// Flux that escaped, by the solid face it last left through; `None` if it never left a solid.
     pub fn escaped(&self, face: Option<FaceId>) -> usize {
         self.sources + self.faces + self.media + face.map_or(self.faces, FaceId::index)
     }
@@ -73,7 +73,7 @@ impl Layout {
         self.sources + 2 * self.faces + self.media + 1
     }
 
-    /// Flux that roulette took, less what its survivors gained.
+    /// Flux removed by roulette, less the gain of its survivors.
     pub fn roulette(&self) -> usize {
         self.cut() + 1
     }
@@ -105,7 +105,7 @@ impl Layout {
         self.outside_aim(sensor) + 2
     }
 
-    /// Flux on a sensor by paths deeper than entry `tail` of [`TAILS`].
+    /// Flux on a sensor from paths deeper than entry `tail` of [`TAILS`].
     #[inline]
     pub fn deeper(&self, sensor: SensorId, tail: usize) -> usize {
         self.outside_aim(sensor) + 3 + tail
@@ -120,7 +120,7 @@ impl Layout {
         }
     }
 
-    /// Flux that entered by the sensor's entry port, by source.
+    /// Flux that entered through the sensor's entry port, by source.
     pub fn entering(&self, sensor: SensorId, source: SourceId) -> usize {
         self.lost_paths(sensor, Loss::Leaked) + 1 + source.index()
     }

@@ -1,4 +1,4 @@
-//! What is counted: cells, scalars by their layout, losses, and sums over batches.
+//! Counts: cells, scalars by their layout, losses, and sums over batches.
 
 mod cells;
 mod layout;

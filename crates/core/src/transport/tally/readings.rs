@@ -1,4 +1,4 @@
-//! What a run has counted: one serialisable value that can be added to another of the same scene.
+//! The counts of a run: one serialisable value that can be added to another of the same scene.
 //!
 //! Scalars (the balance, the flux on each sensor) are summed in [`GROUPS`] groups of batches, so that errors of ratios
 //! and other functions of them follow from the groups. Maps keep a sum and a sum of squares over batches per cell.
@@ -18,7 +18,7 @@ use std::ops::Range;
 pub const GROUPS: u64 = 128;
 /// Bins of the histogram of depths: 0 to 1023 interfaces one by one, then one for each doubling.
 pub const DEPTH_BINS: usize = 1024 + 32;
-/// Path classes kept per sensor; the weakest beyond that are added up as one.
+/// Path classes kept per sensor; the weakest beyond that are summed as one.
 const CLASS_LIMIT: usize = 256;
 /// Places of leaks that are kept.
 const LEAK_LIMIT: usize = 8;
@@ -28,7 +28,7 @@ const FORMAT: u32 = 1;
 /// Sums over the batches of one group.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Group {
-    /// Which group.
+    /// Number of the group.
     pub group: u64,
     /// Number of batches in it.
     pub batches: u64,
@@ -41,11 +41,12 @@ pub struct Group {
 pub struct Step {
     /// Index of the face.
     pub face: u32,
-    /// Whether it went through.
+    /// Whether the light was transmitted.
     pub transmitted: bool,
 }
 
-/// A path class: the steps of a path, the same step in a row taken once; `None` ends a trail that was cut off.
+/// A path class: the steps of a path, with repeats of a step counted once; `None` ends a trail that
+/// was cut off.
 pub type Trail = SmallVec<[Option<Step>; 8]>;
 
 /// Flux of a path class.
@@ -57,7 +58,7 @@ pub struct ClassSum {
     pub depth_weighted: f64,
 }
 
-/// What one sensor has counted.
+/// Counts of one sensor.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SensorReading {
     /// Flux per cell, lm or W.
@@ -69,10 +70,10 @@ pub struct SensorReading {
     pub classes: BTreeMap<Trail, ClassSum>,
 }
 
-/// A place where a path was lost.
+/// A point where a path was lost.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Leak {
-    /// Start of the last segment, mm, about the scene's origin.
+    /// Start of the last segment, mm, relative to the scene's origin.
     pub point: DVec3,
     /// Its direction.
     pub dir: DVec3,
@@ -100,7 +101,7 @@ pub struct Readings {
 }
 
 impl Readings {
-    /// An empty batch, to be counted into.
+    /// An empty batch.
     pub fn of_batch(
         scene: &Scene,
         layout: &Layout,
@@ -139,7 +140,7 @@ impl Readings {
         self.batch_count() * self.batch_paths
     }
 
-    /// Ends a batch: squares are taken.
+    /// Ends a batch: squares are computed.
     pub fn close_batch(&mut self) {
         for sensor in &mut self.sensors {
             sensor.cells.close_batch();
@@ -147,7 +148,8 @@ impl Readings {
         }
     }
 
-    /// The batch that would have counted `a` times this one and `b` times another of the same paths; not yet closed.
+    /// A batch with `a` times the counts of this one and `b` times those of another of the same
+    /// paths; not yet closed.
     pub fn combined(&self, [a, b]: [f64; 2], other: &Self) -> Self {
         let mut sum = self.clone();
         for (own, other) in sum.groups.iter_mut().zip(&other.groups) {
@@ -188,7 +190,7 @@ impl Readings {
         self
     }
 
-    /// The scalars of all groups but one; nothing of cells.
+    /// The scalars of all groups except one, without cells.
     pub fn without_group(&self, left_out: u64) -> Self {
         let kept = self.groups.iter().filter(|group| group.group != left_out);
         Self {
@@ -200,7 +202,7 @@ impl Readings {
         }
     }
 
-    /// Counts light that a gather path brought to some cells of a sensor, in a batch.
+    /// Counts light that a gather path found for some cells of a sensor, in a batch.
     pub fn count(&mut self, layout: &Layout, id: SensorId, cells: &[usize], light: &Counted) {
         let reading = &mut self.sensors[id.index()];
         for &cell in cells {
@@ -226,7 +228,7 @@ impl Readings {
         self.function(|sums| sums(slot))
     }
 
-    /// A function of scalars for each group, as a tally: right for sums and differences.
+    /// A function of scalars for each group, as a tally: valid for sums and differences.
     pub fn function(&self, f: impl Fn(&dyn Fn(usize) -> f64) -> f64) -> Tally {
         let of_group = |group: &Group| f(&|slot| group.sums[slot] / group.batches as f64);
         let first = self.groups.first().map(|group| group.batches);
@@ -237,8 +239,8 @@ impl Readings {
         Tally::weighted(self.groups.iter().map(|group| (of_group(group), group.batches)))
     }
 
-    /// Any smooth function of mean scalars, with its standard error by the delete-one-group jackknife
-    /// (Miller, Biometrika 61 (1974) 1): right for ratios.
+    /// Any smooth function of mean scalars, with its standard error by the delete-one-group
+    /// jackknife (Miller, Biometrika 61 (1974) 1): valid for ratios.
     pub fn jackknife(&self, f: impl Fn(&dyn Fn(usize) -> f64) -> f64) -> (f64, f64) {
         let batches: u64 = self.groups.iter().map(|group| group.batches).sum();
         let total = |slot: usize| self.groups.iter().map(|group| group.sums[slot]).sum::<f64>();
@@ -252,14 +254,14 @@ impl Readings {
     }
 }
 
-/// Light that has come to a sensor.
+/// Light that has reached a sensor.
 #[derive(Debug, Clone, Copy)]
 pub struct Counted {
     /// Its flux, lm or W.
     pub flux: f64,
-    /// Interfaces met on its way.
+    /// Interfaces met before it.
     pub depth: u32,
-    /// Where it comes from.
+    /// Its source.
     pub source: SourceId,
 }
 
@@ -301,7 +303,7 @@ fn merge_classes(own: &mut BTreeMap<Trail, ClassSum>, other: &BTreeMap<Trail, Cl
     }
 }
 
-/// Maps with keys that are no strings, as lists of pairs.
+/// Maps with non-string keys, as lists of pairs.
 mod pairs {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
     use std::collections::BTreeMap;

@@ -1,14 +1,14 @@
 //! Partial sums over batches in a fixed binary tree over their index.
 //!
-//! Whatever thread counted a batch and in whatever pieces they came, the sum has the same bits; and only as many
-//! partial sums are kept as the number of batches has binary digits.
+//! The sum has the same bits whichever thread counted a batch and in whatever pieces they came; and
+//! only as many partial sums are kept as the number of batches has binary digits.
 
 use crate::transport::Readings;
 use serde::{Deserialize, Serialize};
 
-/// What can be added to what follows directly.
+/// A sum that can be added to the one that follows directly.
 pub trait Merge: Clone {
-    /// Batches that it covers.
+    /// Number of batches that it covers.
     fn batch_count(&self) -> u64;
     /// The first of them.
     fn first_batch(&self) -> u64;
@@ -81,8 +81,9 @@ fn fold<T: Merge>(partial: &mut Vec<T>, mut node: T) {
     partial.push(node);
 }
 
-/// Adds a node to partial sums that may begin anywhere: neighbours become one only where they are the two halves of a
-/// node of the tree over all batches. Any split of the batches into slices so comes to the same nodes.
+/// Adds a node to partial sums that may start anywhere: neighbours become one only if they are the
+/// two halves of a node of the tree over all batches. Any split of the batches into slices
+/// therefore gives the same nodes.
 pub(crate) fn fold_aligned<T: Merge>(partial: &mut Vec<T>, mut node: T) {
     while let Some(left) = partial.pop_if(|left| {
         left.batch_count() == node.batch_count()
@@ -97,7 +98,7 @@ pub(crate) fn fold_aligned<T: Merge>(partial: &mut Vec<T>, mut node: T) {
 mod tests {
     use super::*;
 
-    /// A sum whose bits tell in which order it was made.
+    /// A sum whose bits depend on the order of its additions.
     #[derive(Debug, Clone, PartialEq)]
     struct Trace {
         first: u64,

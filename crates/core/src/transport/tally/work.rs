@@ -1,4 +1,5 @@
-//! Work, counted instead of timed: the same on every machine, so that choices made by it repeat.
+//! Work, counted instead of timed: the same on every machine, so that choices based on it are
+//! reproducible.
 //!
 //! The constants are nanoseconds on one thread of the machine of benches/results/2026-11-21.md; only their ratios matter.
 
@@ -15,16 +16,16 @@ const RECORD: f64 = 1800.0;
 const LOOK_UP: f64 = 200.0;
 const PAIR: f64 = 80.0;
 
-/// What a pass did beside tracing.
+/// Work of a pass in addition to tracing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct RecordWork {
     /// Records made.
     pub(crate) records: u64,
     /// Photons that may have met one.
     pub(crate) look_ups: u64,
-    /// Those of them that have met one.
+    /// Photons that have met one, among those.
     pub(crate) near: u64,
-    /// Photons taken, each by each record that took it.
+    /// Photons taken, counted for each record that took them.
     pub(crate) pairs: u64,
 }
 
@@ -33,17 +34,17 @@ pub(crate) fn of_photons(readings: &Readings) -> f64 {
     PHOTON_PATH * readings.paths() as f64 + PHOTON_SEGMENT * readings.segments as f64
 }
 
-/// Work of a photon path with so many straight pieces.
+/// Work of a photon path with this many straight pieces.
 pub(crate) fn of_photon_path(segments: f64) -> f64 {
     PHOTON_PATH + PHOTON_SEGMENT * segments
 }
 
-/// Work of a gather path with so many straight pieces.
+/// Work of a gather path with this many straight pieces.
 pub(crate) fn of_gather_path(segments: f64) -> f64 {
     GATHER_PATH + GATHER_SEGMENT * segments
 }
 
-/// Work of a gather path with so many straight pieces that ends in a record.
+/// Work of a gather path with this many straight pieces that ends in a record.
 pub(crate) fn of_recorded_path(segments: f64) -> f64 {
     of_gather_path(segments) + RECORD
 }

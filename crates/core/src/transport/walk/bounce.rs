@@ -1,6 +1,8 @@
-//! The one bounce loop, at interfaces and within media. Visitors see what happens and decide nothing but when to end.
+//! The one bounce loop, at interfaces and within media. Visitors see events and can only end a
+//! path.
 //!
-//! It does not know what is counted: the forward estimator counts photons, a gather path would look for its end.
+//! This module does not know what is counted: the forward estimator counts photons, a gather path
+//! would look for its end.
 
 use crate::optics::{Lobe, Scattered, Side, VolumeScattering};
 use crate::rng::{Dimension, Numbers, Sampler};
@@ -22,7 +24,7 @@ pub fn walk<V: Visitor>(
     sampler: &mut Sampler<impl Numbers>,
     visitor: &mut V,
 ) {
-    // A copy of the path's that no visitor sees: it stays in registers from bounce to bounce.
+    // A copy of the path's ray that no visitor sees: it stays in registers from bounce to bounce.
     let mut ray = path.ray;
     loop {
         let hits = scene.find_next(&ray, &path.on, &path.inside);
@@ -72,7 +74,8 @@ pub fn walk<V: Visitor>(
     }
 }
 
-/// Ends a path that meets nothing: it has left the scene, or a solid through a hole. The visitor cannot keep it.
+/// Ends a path that meets nothing: it has left the scene, or a solid through a hole. The visitor
+/// cannot prevent it.
 fn leave<V: Visitor>(path: &Path, visitor: &mut V) {
     let event = if path.inside.is_empty() {
         Event::Escaped(path.throughput)
@@ -82,7 +85,7 @@ fn leave<V: Visitor>(path: &Path, visitor: &mut V) {
     _ = visitor.see(path, event);
 }
 
-/// Ends a path of small throughput, or lets it go on with the threshold's.
+/// Ends a path of small throughput, or continues it with the threshold's.
 #[inline(always)]
 fn roulette<V: Visitor>(
     path: &mut Path,
@@ -97,7 +100,7 @@ fn roulette<V: Visitor>(
     if survives { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
 }
 
-/// Takes a path through the interface it has met: the ray on which it goes on.
+/// Takes a path through the interface it has met: the ray on which it continues.
 #[inline(always)]
 fn bounce<V: Visitor>(
     scene: &Scene,
@@ -140,7 +143,7 @@ fn bounce<V: Visitor>(
     ControlFlow::Continue(next)
 }
 
-/// Scatters a path within its medium: the ray on which it goes on.
+/// Scatters a path within its medium: the ray on which it continues.
 #[inline(never)]
 fn collide<V: Visitor>(
     scattering: &VolumeScattering,
@@ -154,7 +157,8 @@ fn collide<V: Visitor>(
     visitor.see(path, Event::Collide(&collision))?;
     path.depth += 1;
     path.on = On::default();
-    // The phase function knows but the angle between two directions: radiance goes the same way as flux.
+    // The phase function depends only on the angle between two directions: it is the same for
+    // radiance and flux.
     path.ray = Ray::new(point, scattering.scatter(dir, sampler.pair(Dimension::Scatter)));
     ControlFlow::Continue(path.ray)
 }

@@ -1,7 +1,7 @@
-//! What gather paths see of the sources: the basic radiance they emit against a ray.
+//! Sources as gather paths see them: the basic radiance they emit against a ray.
 //!
-//! Points, lines and collimated beams have no radiance that a ray could meet; the sources say so, and an estimator that
-//! needs to meet them is refused.
+//! Points, lines and collimated beams have no radiance that a ray could meet; an estimator that
+//! must meet such sources is refused.
 
 use crate::scene::shape::{Crossing, Shape, Start};
 use crate::scene::{
@@ -16,7 +16,7 @@ use std::f64::consts::PI;
 /// Light of a source behind a face is met at the start of a segment, up to rounding of this size, relative to the scene.
 const AT_START: f64 = 1e-9;
 
-/// The sources of a scene as rays meet them.
+/// The sources of a scene, prepared for rays.
 #[derive(Debug)]
 pub struct Emitters<'s> {
     scene: &'s Scene,
@@ -38,7 +38,7 @@ enum Body<'s> {
         shining: Shining<'s>,
         on: &'s [PrimId],
         contact: Contact,
-        /// Around the shapes, with room for rounding, mm.
+        /// Box around the shapes, with room for rounding, mm.
         bounds: Aabb,
     },
     Volume {
@@ -50,28 +50,28 @@ enum Body<'s> {
     },
 }
 
-/// How the shapes of a source shine.
+/// Emission of the shapes of a source.
 #[derive(Debug, Clone, Copy)]
 struct Shining<'s> {
     emission: &'s Emission,
     from: ShinesFrom<'s>,
-    /// Flux per area, lm/mm²; of the far distance per area across the light.
+    /// Flux per area, lm/mm²; for the far distance, per area across the light.
     exitance: f64,
 }
 
-/// Where a source shines from.
+/// Geometry of the emission.
 #[derive(Debug, Clone, Copy)]
 enum ShinesFrom<'s> {
-    /// A surface, to one side, with directions in a frame of its own or about its normal.
+    /// A surface, to one side, with directions in its own frame or about its normal.
     Surface { side: EmitSide, frame: Option<&'s Frame> },
     /// The far distance: along lines that pass this middle at no more than this distance, mm.
     Far { center: DVec3, reach: f64 },
 }
 
-/// How a source lies on a face.
+/// Position of a source relative to a face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Contact {
-    /// On none.
+    /// On no face.
     Free,
     /// It shines away from the face: a ray meets it before the face acts.
     Before,
@@ -79,31 +79,33 @@ enum Contact {
     Behind,
 }
 
-/// Where a segment starts, for what is met right there.
+/// Start of a segment, which decides about emission right there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum SegmentStart {
-    /// On a free sensor: what is there counts.
+    /// On a free sensor: emission there counts.
     Sensor,
-    /// On a face that is the sensor: what shines away from it there does not arrive at it.
+    /// On a face that is the sensor: emission away from it there does not arrive at it.
     Face,
-    /// At an interface: what is there was met by the segment before.
+    /// At an interface: the previous segment met the emission there.
     Interface,
 }
 
-/// Basic radiance that a path meets on its way.
+/// Basic radiance that a path meets.
 #[derive(Debug, Clone, Copy)]
 pub struct Met {
     /// The source that is met.
     pub source: SourceId,
     /// Distance along the segment, mm.
     pub(crate) t: f64,
-    /// Basic radiance at the start of the path, lm/(mm² sr): what the source emits times the throughput up to it.
+    /// Basic radiance at the start of the path, lm/(mm² sr): the emitted one times the throughput
+    /// up to it.
     pub radiance: f64,
-    /// Basic radiance where it is emitted, lm/(mm² sr); of a volume that of a path of usual length through it.
+    /// Basic radiance where it is emitted, lm/(mm² sr); for a volume, that of a path of usual
+    /// length through it.
     pub(crate) emitted: f64,
 }
 
-/// Why rays cannot meet a source; `None` where they can, or need not, as it is dark.
+/// Why rays cannot meet a source; `None` if they can, or if it is dark.
 pub fn invisible(source: &Source, scene: &Scene) -> Option<&'static str> {
     if !source.is_lit() {
         return None;
@@ -130,7 +132,7 @@ pub fn invisible(source: &Source, scene: &Scene) -> Option<&'static str> {
 }
 
 impl<'s> Emitters<'s> {
-    /// The sources of a scene that shine and that rays can meet.
+    /// The shining sources of a scene that rays can meet.
     pub fn new(scene: &'s Scene) -> Self {
         let visible = scene.sources.iter().enumerate();
         let visible =
@@ -214,8 +216,9 @@ impl<'s> Emitters<'s> {
         }
     }
 
-    /// Basic radiance that a source emits along the start of a photon's path, from one of its shapes, lm/(mm² sr): the
-    /// same that a gather path meets there as [`Met::emitted`]. 0 of a source that rays cannot meet.
+    /// Basic radiance that a source emits along the start of a photon's path, from one of its
+    /// shapes, lm/(mm² sr): the same that a gather path meets there as [`Met::emitted`]. 0 for a
+    /// source that rays cannot meet.
     pub(crate) fn emitted(&self, source: SourceId, path: &Path, shape: usize) -> f64 {
         let Some(seen) = self.seen.iter().find(|seen| seen.id == source) else { return 0.0 };
         match &seen.body {
@@ -227,7 +230,8 @@ impl<'s> Emitters<'s> {
         }
     }
 
-    /// Basic radiance of a path of usual length through a glowing solid, lm/(mm² sr); 0 of a surface.
+    /// Basic radiance of a path of usual length through a glowing solid, lm/(mm² sr); 0 for a
+    /// surface.
     fn volume_radiance(&self, seen: &Seen<'_>, path: &Path, out: DVec3) -> f64 {
         let Body::Volume { density, usual_length, .. } = &seen.body else { return 0.0 };
         let index = self.scene.media[path.medium.index()].index(path.wavelength);
@@ -251,7 +255,7 @@ impl<'s> Emitters<'s> {
 }
 
 impl Shining<'_> {
-    /// Basic radiance from a place on a shape toward `out`, in a medium of an index, lm/(mm² sr).
+    /// Basic radiance from a point on a shape toward `out`, in a medium of an index, lm/(mm² sr).
     fn radiance(&self, shape: &Shape, point: DVec3, out: DVec3, index: f64) -> f64 {
         let per_exitance = match self.from {
             ShinesFrom::Surface { side, frame } => {

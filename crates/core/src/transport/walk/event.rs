@@ -1,4 +1,4 @@
-//! What happens to a path, and who watches it.
+//! Events of a path, and their visitors.
 
 use crate::optics::{Lobe, Side, VolumeScattering};
 use crate::scene::{Hits, Interface, MediumId, Ray};
@@ -6,8 +6,9 @@ use crate::transport::walk::Path;
 use glam::DVec3;
 use std::ops::ControlFlow;
 
-/// Below this throughput a path survives with probability throughput/threshold and then has the threshold's:
-/// the mean is kept, and mirrors above it cost no random number. 1. Chosen by measurement: docs/speed.md.
+/// Below this throughput a path survives with probability throughput/threshold and then has the
+/// threshold's: the mean is unchanged, and mirrors above it cost no random number. 1. Chosen by
+/// measurement: docs/speed.md.
 pub const ROULETTE_BELOW: f64 = 0.1;
 
 /// A straight piece of a path, in one medium.
@@ -28,7 +29,7 @@ pub struct Segment<'a> {
 /// The meeting of a path with an interface.
 #[derive(Debug)]
 pub struct Vertex<'a> {
-    /// Where, mm.
+    /// Position, mm.
     pub point: DVec3,
     /// Unit direction of travel before it.
     pub dir: DVec3,
@@ -43,19 +44,19 @@ pub struct Vertex<'a> {
 /// A scattering of a path within a medium.
 #[derive(Debug)]
 pub struct Collision<'a> {
-    /// Where, mm.
+    /// Position, mm.
     pub point: DVec3,
     /// Unit direction of travel before it.
     pub dir: DVec3,
     /// The medium.
     pub medium: MediumId,
-    /// How it scatters.
+    /// Its scattering.
     pub scattering: &'a VolumeScattering,
     /// Throughput, before and after.
     pub throughput: f64,
 }
 
-/// How a path goes on from a vertex.
+/// Continuation of a path from a vertex.
 #[derive(Debug)]
 pub struct Departure {
     /// Unit direction of travel.
@@ -73,15 +74,15 @@ pub struct Departure {
 pub enum Event<'a> {
     /// It went straight through a medium.
     Travel(&'a Segment<'a>),
-    /// It is going to be scattered within a medium, which absorbs nothing by that.
+    /// It is about to be scattered within a medium, which absorbs nothing in doing so.
     Collide(&'a Collision<'a>),
-    /// It met an interface; nothing has been decided.
+    /// It met an interface, which has not acted yet.
     Arrive(&'a Vertex<'a>),
-    /// The interface sent it on; what its throughput lost, the acting face absorbed.
+    /// The interface sent it on; the acting face absorbed the loss of throughput.
     Depart(&'a Vertex<'a>, &'a Departure),
     /// The acting face absorbed all of it.
     Absorbed(&'a Vertex<'a>),
-    /// Roulette took this throughput away; negative where a survivor gained it.
+    /// Roulette removed this throughput; negative where a survivor gained it.
     Roulette(f64),
     /// It left the scene.
     Escaped(f64),
@@ -91,7 +92,7 @@ pub enum Event<'a> {
     Leaked(&'a Ray, f64),
 }
 
-/// What a path carries from interface to interface.
+/// The quantity a path carries from interface to interface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Carries {
     /// Flux, with the light: photon paths.
@@ -100,9 +101,9 @@ pub enum Carries {
     Radiance,
 }
 
-/// Someone who watches a path; a closure is one, of photon paths.
+/// A watcher of a path; a closure is a watcher of photon paths.
 pub trait Visitor {
-    /// What the paths carry that it watches.
+    /// The quantity carried by the paths it watches.
     const CARRIES: Carries = Carries::Flux;
 
     /// Throughput below which roulette ends paths, 1.
@@ -111,7 +112,8 @@ pub trait Visitor {
         ROULETTE_BELOW
     }
 
-    /// Sees what happens; a break ends the path. Inlined into the loop it saves a tenth of a mirror bounce.
+    /// Sees an event; a break ends the path. Inlined into the loop it saves a tenth of a mirror
+    /// bounce.
     fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()>;
 }
 

@@ -1,7 +1,7 @@
-//! Gather paths from a sensor: what they see of the sources, and where they could end.
+//! Gather paths from a sensor: the sources they meet, and where they could end.
 //!
-//! The path starts as its sensor says, has to come through the sensor's aim, and meets emission on its way. Who collects
-//! the light decides at every visible interface whether it goes on.
+//! The path starts as given by its sensor, must pass through the sensor's aim, and meets emission
+//! on the way. The collector decides at every visible interface whether it continues.
 
 use crate::rng::{Numbers, Sampler};
 use crate::scene::shape::{Crossing, Start, Toward};
@@ -18,7 +18,7 @@ use crate::transport::{
 use smallvec::SmallVec;
 use std::ops::ControlFlow;
 
-/// Who collects what gather paths bring.
+/// Collects the light of gather paths.
 pub trait Collector {
     /// Throughput below which roulette ends paths, 1.
     fn roulette_below(&self) -> f64 {
@@ -28,7 +28,7 @@ pub trait Collector {
     /// Takes the emission that a path has met.
     fn meet(&mut self, path: &Path, met: Met);
 
-    /// Learns that a path of this throughput was lost: nobody knows what it would have met.
+    /// Counts a lost path of this throughput; what it would have met is unknown.
     fn lose(&mut self, _throughput: f64, _loss: Loss) {}
 
     /// Sees a visible interface before it acts; a break ends the path there.
@@ -36,12 +36,12 @@ pub trait Collector {
         ControlFlow::Continue(())
     }
 
-    /// Sees where a path is going to be scattered within a medium; a break ends the path there.
+    /// Sees a path before it is scattered within a medium; a break ends the path there.
     fn collide(&mut self, _path: &Path, _collision: &Collision<'_>) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 
-    /// Sees where a path goes on from an interface; a break ends the path there.
+    /// Sees how a path continues from an interface; a break ends the path there.
     fn depart(
         &mut self,
         _path: &Path,
@@ -52,22 +52,22 @@ pub trait Collector {
     }
 }
 
-/// What the gather paths of a sensor have in common.
+/// Shared data of the gather paths of a sensor.
 #[derive(Debug, Clone, Copy)]
 pub struct Gathering<'a, 's> {
     /// The scene.
     pub scene: &'s Scene,
-    /// What the paths may see of its sources.
+    /// The sources of the scene that the paths may meet.
     pub emitters: &'a Emitters<'s>,
     /// The sensor that they start from.
     pub sensor: SensorId,
     /// Interfaces after which a path is cut, 1.
     pub bounce_limit: u32,
-    /// What may stop the paths; `None` where nothing does.
+    /// Stops the paths; `None` if nothing does.
     pub pace: Option<&'a Pace<'a>>,
 }
 
-/// Follows one gather path; gives back the number of straight pieces it had.
+/// Follows one gather path; returns its number of straight pieces.
 pub fn follow(
     gathering: Gathering<'_, '_>,
     arrival: &Arrival,
@@ -85,7 +85,7 @@ pub fn follow(
     follower.segments
 }
 
-/// Follows one gather path on from an interface, with the aim behind it; gives back the number of straight pieces.
+/// Follows one gather path from an interface beyond the aim; returns the number of straight pieces.
 pub fn follow_on(
     gathering: Gathering<'_, '_>,
     path: Path,
@@ -97,14 +97,14 @@ pub fn follow_on(
     follower.segments
 }
 
-/// How far a gather path has come.
+/// Progress of a gather path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Stage {
     /// It has yet to meet the sensor's own face.
     BeforeFace,
-    /// It is on its first segment, which has to come through the aim.
+    /// It is on its first segment, which must pass through the aim.
     First,
-    /// The aim lies behind it.
+    /// It has passed the aim.
     Beyond,
 }
 
@@ -115,9 +115,9 @@ struct Follower<'a, 's, 'c, C> {
     /// Emission met at the end of the first segment: it counts if the segment ends at the aim.
     before_aim: SmallVec<[Met; 2]>,
     segments: u64,
-    /// The sensor, if light counts on its first passage alone.
+    /// The sensor, if light counts only on its first passage.
     first_passage: Option<&'s SurfaceSensor>,
-    /// Whether the last interface was the sensor's own face, from which the path begins.
+    /// Whether the last interface was the sensor's own face, where the path starts.
     at_own_face: bool,
 }
 
@@ -138,8 +138,8 @@ impl<'a, 's, 'c, C: Collector> Follower<'a, 's, 'c, C> {
         }
     }
 
-    /// Travels along a segment as far as the light of it counts; a break ends the path where the light has passed the
-    /// sensor before.
+    /// Travels along a segment as far as its light counts; a break ends the path where the light
+    /// has passed the sensor before.
     fn travel_counted(&mut self, path: &Path, segment: &Segment<'_>) -> ControlFlow<()> {
         let Some(length) = self.passed_at(segment) else {
             self.travel(path, segment);
@@ -149,8 +149,8 @@ impl<'a, 's, 'c, C: Collector> Follower<'a, 's, 'c, C> {
         ControlFlow::Break(())
     }
 
-    /// How far along a segment, mm, its light has passed the sensor before, as photons would have been counted: at the end of
-    /// a segment of theirs, not at its start.
+    /// Distance along a segment, mm, at which its light has passed the sensor before, as photons
+    /// would be counted: at the end of their segment, not at its start.
     fn passed_at(&self, segment: &Segment<'_>) -> Option<f64> {
         let sensor = self.first_passage.filter(|sensor| sensor.place == Place::Port)?;
         let Gathering { scene, .. } = self.gathering;
@@ -166,11 +166,11 @@ impl<'a, 's, 'c, C: Collector> Follower<'a, 's, 'c, C> {
                 }
             });
         }
-        // What shines from the place of the sensor has passed it.
+        // Emission at the position of the sensor has passed it.
         nearest.map(|t| (t - 2.0 * tolerance).max(0.0))
     }
 
-    /// Whether the light that a path brings from an interface has passed the sensor there before.
+    /// Whether the light of a path from an interface has passed the sensor there before.
     fn has_passed(&self, vertex: &Vertex<'_>, departure: &Departure) -> bool {
         let Some(sensor) = self.first_passage.filter(|_| !self.at_own_face) else { return false };
         let light = match sensor.counts {
@@ -187,7 +187,7 @@ impl<'a, 's, 'c, C: Collector> Follower<'a, 's, 'c, C> {
     fn travel(&mut self, path: &Path, segment: &Segment<'_>) {
         let Gathering { scene, emitters, sensor, .. } = self.gathering;
         match self.stage {
-            // What shines from the face itself does not leave it by the face's doing.
+            // Emission from the face itself does not leave by the action of the face.
             Stage::BeforeFace => {}
             Stage::Beyond => {
                 emitters.along(path, segment, SegmentStart::Interface, |met| {
@@ -239,7 +239,7 @@ impl<'a, 's, 'c, C: Collector> Follower<'a, 's, 'c, C> {
 
     fn collide(&mut self, path: &Path, collision: &Collision<'_>) -> ControlFlow<()> {
         match self.stage {
-            // Light that is scattered in front of the aim does not come through it.
+            // Light that is scattered in front of the aim does not pass through it.
             Stage::First => ControlFlow::Break(()),
             Stage::BeforeFace | Stage::Beyond => self.collector.collide(path, collision),
         }
@@ -283,8 +283,9 @@ impl<C: Collector> Visitor for Follower<'_, '_, '_, C> {
     }
 }
 
-/// How far along its first segment a gather path comes through the aim: at once without any, else where it crosses a
-/// port of the aim; `None` where only the segment's end can be on the aim.
+/// Distance along its first segment at which a gather path passes the aim: zero if there is none,
+/// otherwise where it crosses a port of the aim; `None` where only the segment's end can be on the
+/// aim.
 fn aim_opening(scene: &Scene, sensor: SensorId, segment: &Segment<'_>) -> Option<f64> {
     let aim = &scene.sensors[sensor.index()].aim;
     if aim.is_empty() {

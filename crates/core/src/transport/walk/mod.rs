@@ -1,4 +1,4 @@
-//! Paths: the one bounce loop, what happens on it, and gather paths with what they see of the sources.
+//! Paths: the one bounce loop, its events, and gather paths with the sources they meet.
 
 mod bounce;
 pub mod emitters;

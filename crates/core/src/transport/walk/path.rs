@@ -5,16 +5,16 @@ use crate::scene::{Arrival, Emitted, Inside, MediumId, On, Ray, Scene, SourceId}
 /// Wavelength of all light for now, nm: the peak of V(λ), CIE 018:2019.
 pub const WAVELENGTH: f64 = 555.0;
 
-/// Everything a path takes with it from one interface to the next.
+/// The state a path carries from one interface to the next.
 #[derive(Debug, Clone)]
 pub struct Path {
-    /// Where it is and where it goes.
+    /// Position and direction.
     pub ray: Ray,
-    /// Factor picked up since the start, 1.
+    /// Factor accumulated since the start, 1.
     pub throughput: f64,
     /// Wavelength, nm.
     pub wavelength: f64,
-    /// Where its light comes from; unknown of a gather path.
+    /// Source of its light; unknown for a gather path.
     pub source: Option<SourceId>,
     /// The solids it is in.
     pub inside: Inside,

@@ -1,6 +1,6 @@
-//! What the acting finish makes of a path at an interface, for photons and for gather paths.
+//! The effect of the acting finish on a path at an interface, for photons and for gather paths.
 //!
-//! It brings the finish, the normal and the indices together; the physics is in `optics`.
+//! It combines the finish, the normal and the indices; the physics is in `optics`.
 
 use crate::optics::{Bsdf, Faces, Incidence, Scattered, Side, scatter_radiance as adjoint};
 use crate::rng::{Numbers, Sampler};
@@ -12,7 +12,7 @@ use glam::DVec3;
 /// The smooth interface of two media, where no finish is declared.
 static SMOOTH: Bsdf = Bsdf::Smooth;
 
-/// Asks the acting finish.
+/// Applies the acting finish.
 #[inline(always)]
 pub(super) fn scatter(
     scene: &Scene,
@@ -39,7 +39,8 @@ pub(super) fn scatter(
             };
             let facet = facing(body.mesh.facet_normal(triangle));
             let shading = facing(body.mesh.shading_normal(triangle, point));
-            // An interpolated normal may face away from grazing light; then the facet's own is taken.
+            // An interpolated normal may face away from grazing light; then the facet's normal is
+            // used.
             let normal = if shading.dot(dir) < 0.0 { shading } else { facet };
             let out = bsdf.scatter(
                 &Incidence { dir, normal, index_from, index_to, grain: DVec3::ZERO },
@@ -50,7 +51,8 @@ pub(super) fn scatter(
     }
 }
 
-/// The direction by which a finish is laid on a patch. Meshes have none; finishes with a grain are refused there.
+/// The grain direction of a finish on a patch. Meshes have none; finishes with a grain are refused
+/// there.
 #[inline(always)]
 fn grain(bsdf: &Bsdf, patch: &Patch, point: DVec3) -> DVec3 {
     if bsdf.has_grain() { patch.along(point) } else { DVec3::ZERO }
@@ -63,9 +65,9 @@ fn finish_of(scene: &Scene, finish: Option<FinishId>) -> &Bsdf {
 
 /// An interface as a gather path meets it.
 pub struct Facing<'s> {
-    /// What acts on light from either side.
+    /// The finishes that act on light from either side.
     pub faces: Faces<'s>,
-    /// How the path arrives, about the normal that acts.
+    /// Incidence of the path about the acting normal.
     pub incidence: Incidence,
     /// The normal of the surface itself, on the side the path comes from: a facet's, for a mesh.
     pub facet: DVec3,
@@ -122,9 +124,10 @@ pub fn scatter_radiance(
 }
 
 impl Facing<'_> {
-    /// What an interpolated normal makes of basic radiance. Flux through the facet is conserved and solid angles turn
-    /// about the normal n that acts, so that `L* |cos_f| dω n²` is, with `cos_f` to the facet: the factor is
-    /// `|cos_f(i)/cos_n(i)| |cos_n(o)/cos_f(o)|`, i where the path goes on, o where it came from (Veach, thesis 1997, 5.3).
+    /// Effect of an interpolated normal on basic radiance. Flux through the facet is conserved and
+    /// solid angles turn about the acting normal n, so that `L* |cos_f| dω n²` is, with `cos_f` to
+    /// the facet: the factor is `|cos_f(i)/cos_n(i)| |cos_n(o)/cos_f(o)|`, i where the path
+    /// continues, o where it came from (Veach, thesis 1997, 5.3).
     pub fn corrected(&self, out: Scattered) -> Scattered {
         let Incidence { dir, normal, .. } = self.incidence;
         if normal == self.facet {
@@ -135,14 +138,14 @@ impl Facing<'_> {
         let cos = |dir: DVec3, normal: DVec3| dir.dot(normal).abs();
         let factor = cos(kept.dir, self.facet) / cos(before, normal) * cos(dir, normal)
             / cos(dir, self.facet);
-        // Light along the facet itself carries none.
+        // Light along the facet itself carries no radiance.
         let factor = if factor.is_finite() { factor } else { 0.0 };
         Scattered { factor: out.factor * factor, ..kept }
     }
 }
 
-/// With an interpolated normal light may leave into the facet that it should leave: it is mirrored once more about
-/// the facet.
+/// With an interpolated normal light may go into the facet instead of leaving it: it is then
+/// mirrored once more about the facet.
 fn kept_on_its_side(out: Scattered, facet: DVec3) -> Scattered {
     let along = out.dir.dot(facet);
     let wrong = match out.side {

@@ -19,9 +19,9 @@ pub struct Cylinder {
     radius: f64,
     z_min: f64,
     z_max: f64,
-    /// The side toward which a ray passes that comes out of the cylinder.
+    /// The side toward which a ray passes as it leaves the cylinder.
     leaving: Toward,
-    /// `None` for the plain wall, so that the usual ray asks one question only.
+    /// `None` for the plain wall, so that the usual ray needs only one test.
     trims: Option<Box<Trims>>,
 }
 
@@ -32,7 +32,7 @@ struct Along {
     dir: f64,
 }
 
-/// Further conditions for points of the wall, all to be fulfilled.
+/// Further conditions for points of the wall; all must hold.
 #[derive(Debug, Clone, Default)]
 struct Trims {
     wedge: Option<Wedge>,
@@ -87,7 +87,7 @@ impl Cylinder {
             + self.radius * across
     }
 
-    /// Whether a disk across the axis lies within the endless cylinder; any other flat is taken not to.
+    /// Whether a disk across the axis lies within the infinite cylinder; false for any other flat.
     pub(crate) fn encloses(&self, flat: &Flat, tolerance: f64) -> bool {
         let (plane, Region::Annulus { outer, .. }) = (flat.frame(), flat.region()) else {
             return false;
@@ -97,7 +97,8 @@ impl Cylinder {
         (plane.z - lean).length() * outer <= tolerance && aside + outer <= self.radius + tolerance
     }
 
-    /// The distance at which a ray inside leaves the endless cylinder, mm; infinite along the axis.
+    /// The distance at which a ray inside leaves the infinite cylinder, mm; infinite along the
+    /// axis.
     #[inline(always)]
     pub(crate) fn exit(&self, ray: &Ray, start: Start) -> f64 {
         match self.roots(ray, start) {
@@ -107,7 +108,7 @@ impl Cylinder {
         }
     }
 
-    /// The distances between which a line is in the endless cylinder, mm; infinite along the axis.
+    /// The distances between which a line is in the infinite cylinder, mm; infinite along the axis.
     #[inline(always)]
     pub(crate) fn span(&self, ray: &Ray) -> Option<[f64; 2]> {
         match self.roots(ray, Start::Elsewhere) {
@@ -149,8 +150,8 @@ impl Cylinder {
         (wanted.includes(&second) && self.holds(ray, &along, &second)).then_some(second)
     }
 
-    /// Where the line of a ray crosses the endless cylinder, in ascending order; the second is missing for a ray that
-    /// starts on the wall: it is the start.
+    /// Where the line of a ray crosses the infinite cylinder, in ascending order; for a ray that
+    /// starts on the wall the second is omitted, since it is the start.
     #[inline(always)]
     fn roots(&self, ray: &Ray, start: Start) -> Option<(Along, Crossing, Option<Crossing>)> {
         let axis = self.frame.z;
@@ -181,14 +182,14 @@ impl Cylinder {
         }
     }
 
-    /// Whether a point of the endless cylinder belongs to this wall.
+    /// Whether a point of the infinite cylinder belongs to this wall.
     #[inline(always)]
     fn holds(&self, ray: &Ray, along: &Along, crossing: &Crossing) -> bool {
         let z = along.origin + crossing.t * along.dir;
         z >= self.z_min && z <= self.z_max && self.keeps(ray, crossing.t)
     }
 
-    /// Whether the point of the wall at distance `t` fulfils the further conditions.
+    /// Whether the point of the wall at distance `t` meets the further conditions.
     #[inline(always)]
     fn keeps(&self, ray: &Ray, t: f64) -> bool {
         self.trims.as_ref().is_none_or(|trims| {
@@ -244,12 +245,13 @@ impl Cylinder {
             }
             target -= strip.area();
         }
-        // Rounding of the sum, or nothing left by the cuts: the end of the wall.
+        // Rounding of the sum, or nothing left by the cuts: use the end of the wall.
         let last = turn(self.wedge());
         (last, strips.last().map_or([self.z_min; 2], |strip| strip.heights(last)))
     }
 
-    /// The point with these unrolled coordinates on the whole wall, mm: the way back from [`Self::chart`].
+    /// The point with these unrolled coordinates on the whole wall, mm: the inverse of
+    /// [`Self::chart`].
     pub(in crate::scene) fn unrolled(&self, at: DVec2) -> DVec3 {
         let across = DVec2::from_angle(at.x / self.radius) * self.radius;
         self.frame.point_to_world(across.extend(at.y))
@@ -321,7 +323,8 @@ mod tests {
             (Cylinder::new(frame(), 1.5, 5.0), TAU * 7.5),
             (Cylinder::sector(frame(), 1.5, 1.0, 3.0, 2.0).inward(), 6.0),
             (Cylinder::sector(frame(), 1.5, 1.0, 3.0, 4.5), 13.5),
-            // The mitre takes the mean of r |cos φ| = 2r/π off the height, the tilt of the lower end nothing.
+            // The mitre subtracts the mean of r |cos φ| = 2r/π from the height, the tilt of the
+            // lower end nothing.
             (mitred(), TAU * 1.5 * (5.0 - 2.0 * 1.5 / PI)),
         ]
     }

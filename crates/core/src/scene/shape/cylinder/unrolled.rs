@@ -38,7 +38,8 @@ impl Unrolled {
             Self { floors: vec![level(heights[0])], ceilings: vec![level(heights[1])] };
         for cut in cuts {
             let normal = frame.to_local(cut.normal);
-            // A plane along the axis stands for one that is tilted by 1e-12 rad: far below any area that counts.
+            // A plane along the axis is replaced by one tilted by 1e-12 rad: far below any area
+            // that matters.
             let slope = if normal.z.abs() < 1e-12 { 1e-12f64.copysign(normal.z) } else { normal.z };
             let wave = Wave {
                 mean: (cut.offset - cut.normal.dot(frame.origin)) / slope,
@@ -50,8 +51,8 @@ impl Unrolled {
         unrolled
     }
 
-    /// The wall for azimuths in [`from`, `to`] within [0, 2π], cut up so that floor and ceiling are the same waves all
-    /// over a strip.
+    /// The wall for azimuths in [`from`, `to`] within [0, 2π], divided so that floor and ceiling
+    /// are the same waves over a whole strip.
     pub(super) fn strips(&self, from: f64, to: f64) -> Vec<Strip> {
         let waves: Vec<Wave> = self.floors.iter().chain(&self.ceilings).copied().collect();
         let mut breaks = vec![from, to];
@@ -89,7 +90,7 @@ impl Strip {
     pub(super) fn azimuth_of_share(&self, share: f64) -> f64 {
         let target = share * self.area();
         let (mut low, mut high) = (self.from, self.to);
-        // The area grows with the azimuth: 53 halvings use up the digits of an f64.
+        // The area grows with the azimuth: 53 halvings exhaust the digits of an f64.
         for _ in 0..53 {
             let middle = 0.5 * (low + high);
             if self.area_to(middle) < target { low = middle } else { high = middle }
@@ -126,7 +127,7 @@ impl Wave {
     fn zeros(&self) -> impl Iterator<Item = f64> {
         let amplitude = self.cos.hypot(self.sin);
         let crest = self.sin.atan2(self.cos);
-        // NaN, which drops out below, where the wave never comes down to 0.
+        // NaN, which drops out below, if the wave never reaches 0.
         let half_width = (-self.mean / amplitude).acos();
         [crest - half_width, crest + half_width]
             .into_iter()

@@ -54,7 +54,7 @@ impl Flat {
         }
     }
 
-    /// The crossing, if it is wanted: the cheap questions come first.
+    /// The crossing, if it is wanted: cheap tests come first.
     #[inline(always)]
     pub(super) fn first_crossing(
         &self,

@@ -1,4 +1,4 @@
-//! A simple polygon, made ready for many point tests.
+//! A simple polygon, prepared for many point tests.
 
 use crate::scene::shape::ChartRect;
 use glam::DVec2;
@@ -6,9 +6,10 @@ use lumiduct_base::math::planar::{clip_to_rectangle, edges, is_convex, signed_ar
 
 /// A simple polygon with counter-clockwise vertices, convex or not.
 ///
-/// A point on the border belongs to the side that it would fall on if it were shifted by an infinitesimal step along
-/// +x and a much smaller one along +y. The side of an edge is computed from the same numbers in the same order
-/// whichever polygon asks, so two polygons with a common edge leave no gap and do not overlap, to the last bit.
+/// A point on the border belongs to the side where it would be after a shift by an infinitesimal
+/// step along +x and a much smaller one along +y. The side of an edge is computed from the same
+/// numbers in the same order for every polygon, so two polygons with a common edge leave no gap and
+/// do not overlap, to the last bit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Polygon {
     vertices: Vec<DVec2>,
@@ -16,7 +17,7 @@ pub struct Polygon {
     edges: Vec<Edge>,
     outline: Outline,
     triangles: Vec<[DVec2; 3]>,
-    /// Areas of the triangles, added up, mm².
+    /// Cumulative areas of the triangles, mm².
     areas: Vec<f64>,
 }
 
@@ -31,7 +32,7 @@ enum Outline {
 struct Edge {
     low: DVec2,
     high: DVec2,
-    /// Where the polygon lies.
+    /// Side of the polygon's interior.
     interior: Side,
 }
 
@@ -76,7 +77,7 @@ impl Polygon {
         &self.triangles
     }
 
-    /// Whether the polygon holds a point.
+    /// Whether the polygon contains a point.
     #[inline]
     pub fn contains(&self, p: DVec2) -> bool {
         match self.outline {
@@ -111,7 +112,7 @@ impl Polygon {
         let below = if i == 0 { 0.0 } else { self.areas[i - 1] };
         let first = ((target - below) / (self.areas[i] - below)).clamp(0.0, 1.0);
         let [a, b, c] = self.triangles[i];
-        // Uniform in the triangle: the share of the height goes with the square root.
+        // Uniform in the triangle: the share of the height is the square root.
         let height = first.sqrt();
         a + height * (1.0 - u[1]) * (b - a) + height * u[1] * (c - a)
     }
@@ -128,11 +129,11 @@ impl Edge {
 
     #[inline]
     fn side(&self, p: DVec2) -> Side {
-        // On the line itself: right, which is where the shift along +x goes.
+        // On the line itself: right, the side of the shift along +x.
         if (self.high - self.low).perp_dot(p - self.low) > 0.0 { Side::Left } else { Side::Right }
     }
 
-    /// Whether a ray from `p` along +x goes through the edge.
+    /// Whether a ray from `p` along +x crosses the edge.
     #[inline]
     fn is_right_of(&self, p: DVec2) -> bool {
         self.low.y <= p.y && p.y < self.high.y && self.side(p) == Side::Left
@@ -172,7 +173,7 @@ mod tests {
         ) {
             let [p, q, r, s] = [(-5.0, -5.0), (5.0, -5.0), (5.0, 5.0), (-5.0, 5.0)].map(DVec2::from);
             let (m, n) = (DVec2::new(x[0], x[1]), DVec2::new(x[2] + 2.1, x[1]));
-            // A notch at m and n: the lower piece is not convex, the others fill it up.
+            // A notch at m and n: the lower piece is not convex, the others fill it.
             let pieces = [vec![p, q, n, m], vec![q, r, n], vec![r, s, m, n], vec![s, p, m]]
                 .map(Polygon::new);
             let ends = [(p, m), (q, n), (r, n), (s, m), (m, n), (m, m), (n, n), (n, m)][which];
@@ -187,7 +188,7 @@ mod tests {
             let (shape, n, size) = (ell(), 60_000u32, 2.0 / f64::from(cells));
             let mut counts = vec![0u32; (cells * cells) as usize];
             for i in 0..n {
-                // A rank-1 lattice: as good as uniform, and the same every time.
+                // A rank-1 lattice: nearly uniform, and reproducible.
                 let u = [(f64::from(i) + 0.5) / f64::from(n), (f64::from(i) * 0.618_033_988_749_894_9).fract()];
                 let at = (shape.sample(u) / size).floor().clamp(DVec2::ZERO, DVec2::splat(f64::from(cells - 1)));
                 counts[(at.y as u32 * cells + at.x as u32) as usize] += 1;

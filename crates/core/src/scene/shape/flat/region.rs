@@ -1,4 +1,4 @@
-//! Which part of a plane a flat surface covers.
+//! The part of a plane that a flat surface covers.
 
 use crate::scene::shape::ChartRect;
 use crate::scene::shape::flat::polygon::Polygon;
@@ -68,7 +68,7 @@ impl Holed {
 }
 
 impl Region {
-    /// Corners of the outer outline, counter-clockwise; `round` of them for a whole turn.
+    /// Corners of the outer outline, counter-clockwise; `round` corners for a whole turn.
     pub fn rim(&self, round: usize) -> Vec<DVec2> {
         let turn = |part: usize, angle: f64| circle(angle / TAU * part as f64 / round as f64);
         match self {
@@ -90,12 +90,13 @@ impl Region {
         }
     }
 
-    /// What is left of a region outside of a hole that lies within it.
+    /// A region without a hole that lies within it.
     pub fn holed(outline: Self, hole: Self) -> Self {
         Self::Holed(Box::new(Holed { outline, hole }))
     }
 
-    /// The annulus between two radii from +x counter-clockwise to `angle`, rad; all of it from a whole turn on.
+    /// The annulus between two radii from +x counter-clockwise to `angle`, rad; the whole annulus
+    /// from a full turn on.
     pub fn sector(inner: f64, outer: f64, angle: f64) -> Self {
         match Wedge::new(angle) {
             Some(wedge) => Self::Sector { inner, outer, wedge },
@@ -154,7 +155,7 @@ impl Region {
         ChartRect { min: -half, max: half }
     }
 
-    /// The largest p · e over its points, mm; of a sector that of the whole disk.
+    /// The largest p · e over its points, mm; for a sector, that of the whole disk.
     pub(super) fn reach(&self, e: DVec2) -> f64 {
         match self {
             Self::Annulus { outer, .. } | Self::Sector { outer, .. } => outer * e.length(),
@@ -223,8 +224,8 @@ impl Region {
         }
     }
 
-    /// The point below which a share u of the area lies: to the left, and in a narrow strip beneath. Slow; for regions
-    /// that have no other way.
+    /// The point below which a share u of the area lies: to the left, and in a narrow strip
+    /// beneath. Slow; for regions that have no other method.
     fn sample_by_area(&self, u: [f64; 2]) -> DVec2 {
         let ChartRect { min, max } = self.bounds();
         let left_of = |x: f64| self.area_in(ChartRect { min, max: DVec2::new(x, max.y) });
@@ -236,10 +237,10 @@ impl Region {
     }
 }
 
-/// Half the width of a strip in which an area is taken for a length, as a share of the whole.
+/// Half the width of a strip whose area is treated as a length, as a share of the whole.
 const STRIP: f64 = 1e-6;
 
-/// Where a growing function reaches a value, to the last digits.
+/// Where an increasing function reaches a value, to the last digits.
 fn halve(mut low: f64, mut high: f64, value: f64, of: impl Fn(f64) -> f64) -> f64 {
     for _ in 0..f64::MANTISSA_DIGITS {
         let middle = 0.5 * (low + high);
@@ -266,7 +267,7 @@ fn sector_overlap(radius: f64, wedge: &Wedge, polygon: &[DVec2]) -> f64 {
     if wedge.angle() <= PI {
         return narrow(polygon, wedge.angle());
     }
-    // The upper half plane, and what is left of the wedge turned by half a turn.
+    // The upper half plane, and the rest of the wedge rotated by half a turn.
     let turned: Vec<DVec2> = polygon.iter().map(|p| -*p).collect();
     narrow(polygon, PI) + narrow(&turned, wedge.angle() - PI)
 }

@@ -1,6 +1,7 @@
-//! Counting light on surface sensors: on material faces, and on the ports and spheres that it crosses on its way.
+//! Counts light on surface sensors: on material faces, and on the ports and spheres that it
+//! crosses.
 //!
-//! It does not know where paths come from or how they go on.
+//! This module does not know where paths come from or how they continue.
 
 use crate::optics::Side;
 use crate::scene::shape::{Crossing, Start, Toward};
@@ -17,14 +18,14 @@ struct Seen {
     toward: Toward,
     point: DVec3,
     dir: DVec3,
-    /// Of the surface.
+    /// Normal of the surface.
     normal: DVec3,
     medium: MediumId,
     throughput: f64,
 }
 
 impl<'s, W: PhotonWatcher> Counter<'_, 's, W> {
-    /// Counts light that passes through ports and out of goniometers on its way.
+    /// Counts light that passes through ports and out of goniometers.
     #[inline(never)]
     pub(super) fn travel_watched(&mut self, path: &Path, segment: &Segment<'_>) {
         let run = self.run;
@@ -49,7 +50,7 @@ impl<'s, W: PhotonWatcher> Counter<'_, 's, W> {
         }
     }
 
-    /// Counts light that passes through a port sensor on its way.
+    /// Counts light that passes through a port sensor.
     fn cross_port(&mut self, path: &Path, segment: &Segment<'_>, port: &OnPort<'s>) {
         let OnPort { id, sensor, patches, .. } = port;
         for patch in patches {
@@ -83,7 +84,8 @@ impl<'s, W: PhotonWatcher> Counter<'_, 's, W> {
         segment.throughput * medium.transmittance(path.wavelength, t.max(0.0))
     }
 
-    /// Counts light on a sphere that it meets at the distance `t` if it came by way of the sensor's aim.
+    /// Counts light on a sphere that it meets at the distance `t` if it came through the sensor's
+    /// aim.
     pub(super) fn count_on_sphere(
         &mut self,
         path: &Path,
@@ -96,7 +98,7 @@ impl<'s, W: PhotonWatcher> Counter<'_, 's, W> {
             let (ray, medium) = (&path.ray, path.medium);
             let point = if t.is_finite() { ray.at(t) } else { ray.origin() };
             let (flux, source) = (self.flux * throughput, self.source);
-            // How a sphere is met follows from the place.
+            // The direction and normal on a sphere follow from the position.
             let (dir, normal) = (ray.dir(), ray.dir());
             let light = Detected { sensor: id, point, dir, normal, medium, flux, source };
             self.watcher.detect(path, &light, std::iter::once(cell));
@@ -106,8 +108,8 @@ impl<'s, W: PhotonWatcher> Counter<'_, 's, W> {
         }
     }
 
-    /// Whether a crossing belongs to this segment: light at its end counts, light at its start has counted before, but
-    /// for that of a source.
+    /// Whether a crossing belongs to this segment: light at its end counts; light at its start has
+    /// already been counted, except at a source.
     #[inline]
     fn within(&self, segment: &Segment<'_>, t: f64) -> bool {
         let tolerance = self.run.scene.tolerance;
@@ -172,7 +174,7 @@ impl<'s, W: PhotonWatcher> Counter<'_, 's, W> {
         }
     }
 
-    /// Counts light that enters through a face, for the sensors whose entry that is.
+    /// Counts light that enters through a face, for the sensors with that entry.
     fn enter(&mut self, face: usize, throughput: f64) {
         let run = self.run;
         for &id in &run.watch.entries[face] {
@@ -186,7 +188,8 @@ impl<'s, W: PhotonWatcher> Counter<'_, 's, W> {
         }
     }
 
-    /// Whether a passage through a sensor counts: where only first ones do, it is remembered.
+    /// Whether a passage through a sensor counts; where only first passages count, this one is
+    /// remembered.
     #[inline]
     fn passes(&mut self, id: SensorId, passage: Passage) -> bool {
         match passage {
@@ -199,7 +202,7 @@ impl<'s, W: PhotonWatcher> Counter<'_, 's, W> {
         }
     }
 
-    /// Counts light on a cell of a surface sensor, and in the views or the pixel that take it in.
+    /// Counts light on a cell of a surface sensor, and in the views or the pixel that accept it.
     #[inline]
     fn count_on_surface(
         &mut self,

@@ -1,7 +1,7 @@
 //! Putting a scene together: tables first, then the whole.
 
 use crate::optics::{Bsdf, Medium};
-use crate::scene::convex::{Convex, Room};
+use crate::scene::crossing::convex::{Convex, Room};
 use crate::scene::mesh::Mesh;
 use crate::scene::pattern::Pattern;
 use crate::scene::relief::surfaces::surfaces;

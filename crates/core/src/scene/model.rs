@@ -1,7 +1,7 @@
 //! Everything a path can meet, and the media and finishes that it is made of.
 
 use crate::optics::{Bsdf, Medium};
-use crate::scene::convex::Convex;
+use crate::scene::crossing::convex::Convex;
 use crate::scene::pattern::Pattern;
 use crate::scene::relief::Relief;
 use crate::scene::{

@@ -4,13 +4,15 @@
 //! and columns, so ten million elements cost no more than ten. It knows the positions of elements;
 //! finishes are only ids here.
 
+pub(crate) mod along;
 mod apart;
+pub(crate) mod element;
 mod rows;
 
-pub use crate::scene::along::Along;
+pub use crate::scene::pattern::along::Along;
 pub use rows::{Graded, Rows};
 
-use crate::scene::element::Element;
+use crate::scene::pattern::element::Element;
 use crate::scene::shape::ChartRect;
 use crate::scene::{FaceId, FinishId};
 use glam::DVec2;

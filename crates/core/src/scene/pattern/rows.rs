@@ -114,7 +114,7 @@ impl Rows {
     }
 
     /// The rows from one position along the face to another, mm.
-    pub(in crate::scene) fn between(&self, from: f64, to: f64) -> std::ops::Range<usize> {
+    pub(crate) fn between(&self, from: f64, to: f64) -> std::ops::Range<usize> {
         let before = |limit: f64| {
             let (mut low, mut high) = (0, self.count());
             while low < high {
@@ -132,7 +132,7 @@ impl Rows {
 
     /// The rows that may reach a position: its neighbours and one more on either side.
     #[inline]
-    pub(in crate::scene) fn near(&self, place: f64) -> std::ops::Range<usize> {
+    pub(crate) fn near(&self, place: f64) -> std::ops::Range<usize> {
         let middle = match self {
             Self::Listed(places) => places.partition_point(|row| *row < place) as f64 - 0.5,
             Self::Even { first, pitch, .. } => ((place - first) / pitch).round(),

@@ -3,7 +3,7 @@
 //! On flat walls they are in closed form. Where a ball or a saw cut meets a round wall there is
 //! none, and they are sums over strips.
 
-use crate::scene::element::{Cap, Element, Form, Span, Way};
+use crate::scene::pattern::element::{Cap, Element, Form, Span, Way};
 use crate::scene::shape::ChartRect;
 use glam::DVec2;
 use lumiduct_base::math::planar::disk_overlap;

@@ -11,7 +11,7 @@ pub(super) mod surfaces;
 #[cfg(test)]
 mod tests;
 
-pub use crate::scene::element::{Cap, CapSize, Element, Form, Span, Way};
+pub use crate::scene::pattern::element::{Cap, CapSize, Element, Form, Span, Way};
 pub use ground::{Ground, Site};
 
 use crate::scene::FaceId;

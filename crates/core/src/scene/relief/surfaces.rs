@@ -2,7 +2,7 @@
 //!
 //! Surfaces that meet in an edge overlap there by a few units in the last place, so that rounding leaves no gap.
 
-use crate::scene::element::{Cap, Element, Form, Span, Way};
+use crate::scene::pattern::element::{Cap, Element, Form, Span, Way};
 use crate::scene::relief::ground::{Ground, Site};
 use crate::scene::shape::{Cone, Flat, Region, Shape, Sphere};
 use glam::{DVec2, DVec3};

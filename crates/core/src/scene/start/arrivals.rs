@@ -5,9 +5,9 @@
 //! on the sensor. This module does not know what the path meets.
 
 use crate::rng::{Dimension, Numbers, Sampler};
-use crate::scene::area::{AreaPoint, FaceArea};
-use crate::scene::hit::Just;
+use crate::scene::crossing::hit::Just;
 use crate::scene::shape::Toward;
+use crate::scene::start::area::{AreaPoint, FaceArea};
 use crate::scene::{
     Counts, Goniometer, Inside, Place, PrimId, Ray, Scene, Seeing, SensorId, SensorKind, Sides,
     SurfaceSensor, Views,

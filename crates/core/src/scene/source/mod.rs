@@ -1,5 +1,9 @@
 //! Sources: where light starts.
 
+pub(crate) mod emission;
+pub(crate) mod light_group;
+pub(crate) mod sky;
+
 use crate::scene::shape::{Shape, Sphere};
 use crate::scene::{Emission, Inside, PrimId, Ray, SolidId};
 use glam::DVec3;

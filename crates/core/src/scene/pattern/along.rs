@@ -51,7 +51,7 @@ impl Along {
 
     /// The pieces between two positions, each with the values at its ends:
     /// `[from, to, before, after]`.
-    pub(super) fn pieces(&self, from: f64, to: f64) -> Vec<[f64; 4]> {
+    pub(crate) fn pieces(&self, from: f64, to: f64) -> Vec<[f64; 4]> {
         let inner =
             self.knots.iter().map(|knot| knot[0]).filter(|place| *place > from && *place < to);
         let places: Vec<f64> =

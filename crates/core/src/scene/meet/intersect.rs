@@ -6,8 +6,8 @@
 //! the ray starts on, the root at the start is excluded. Surfaces within [`Scene::tolerance`] of
 //! the nearest hit are one event.
 
-use crate::scene::accel::{Accel, Tree};
-use crate::scene::hit::{Hits, Just, Nearest, PrimHit};
+use crate::scene::crossing::accel::{Accel, Tree};
+use crate::scene::crossing::hit::{Hits, Just, Nearest, PrimHit};
 use crate::scene::mesh::Line;
 use crate::scene::shape::{Crossing, Start, Toward, Wanted};
 use crate::scene::{Inside, On, Owner, PrimId, Ray, Scene, Surface};

@@ -5,7 +5,7 @@
 //! Parallel faces are tested together, as a slab (Kay & Kajiya, SIGGRAPH 1986, section 3.1). This
 //! module does not know other solids.
 
-use crate::scene::hit::Nearest;
+use crate::scene::crossing::hit::Nearest;
 use crate::scene::shape::{Crossing, Cylinder, Flat, Shape, Start, Toward};
 use crate::scene::{MeshBody, On, Owner, Patch, PrimId, Ray, SolidId};
 use glam::DVec3;
@@ -59,18 +59,18 @@ impl Slab {
 
 /// Shared data of all solids.
 #[derive(Debug)]
-pub(super) struct Room<'a> {
-    pub(super) patches: &'a [Patch],
-    pub(super) meshes: &'a [MeshBody],
+pub(crate) struct Room<'a> {
+    pub(crate) patches: &'a [Patch],
+    pub(crate) meshes: &'a [MeshBody],
     /// Diagonal of the box around everything, mm.
-    pub(super) diagonal: f64,
+    pub(crate) diagonal: f64,
     /// Faces closer than this are the same, mm.
-    pub(super) tolerance: f64,
+    pub(crate) tolerance: f64,
 }
 
 impl Convex {
     /// The solid of this number, if it is convex.
-    pub(super) fn of(room: &Room<'_>, solid: SolidId) -> Option<Self> {
+    pub(crate) fn of(room: &Room<'_>, solid: SolidId) -> Option<Self> {
         let owner = Owner::Solid(solid);
         if room.meshes.iter().any(|body| body.owner == owner) {
             return None;

@@ -2,7 +2,7 @@
 
 use crate::rng::{Dimension, Sampler};
 use crate::scene::shape::Shape;
-use crate::scene::sky::EmitterKind;
+use crate::scene::source::sky::EmitterKind;
 use crate::scene::{
     Emission, EmitSide, Emitted, Emitter, Inside, Just, Ray, Scene, SolidId, Source, Start,
 };

@@ -1,6 +1,6 @@
 //! The surfaces that a ray meets at the nearest distance.
 
-use crate::scene::inside::Inside;
+use crate::scene::crossing::inside::Inside;
 use crate::scene::shape::{Crossing, Toward};
 use crate::scene::{FaceId, Owner, PrimId, SolidId};
 use std::hint::select_unpredictable;
@@ -22,10 +22,10 @@ pub struct PrimHit {
 /// The nearest hit: all surfaces at one place.
 #[derive(Debug, Clone)]
 pub struct Hits {
-    pub(super) distance: f64,
-    pub(super) nearest: PrimHit,
+    pub(crate) distance: f64,
+    pub(crate) nearest: PrimHit,
     /// Usually empty: on the heap, so that the usual hit stays in registers.
-    pub(super) others: Box<[PrimHit]>,
+    pub(crate) others: Box<[PrimHit]>,
 }
 
 impl Hits {
@@ -79,7 +79,7 @@ pub(crate) struct Nearest {
     pub(crate) prim: PrimId,
     pub(crate) crossing: Crossing,
     /// Distance of the next surface, as far as known, mm.
-    pub(super) runner_up: f64,
+    pub(crate) runner_up: f64,
 }
 
 impl Nearest {
@@ -112,7 +112,7 @@ impl Nearest {
     }
 
     #[inline(always)]
-    pub(super) fn consider_runner_up(&mut self, t: f64) {
+    pub(crate) fn consider_runner_up(&mut self, t: f64) {
         // Not `min`, which would check both for NaN.
         self.runner_up = if t < self.runner_up { t } else { self.runner_up };
     }

@@ -1,7 +1,7 @@
 //! Faces of meshes, with fine triangles joined.
 
-use crate::scene::facets::triangles::Facets;
 use crate::scene::mesh::Mesh;
+use crate::scene::picture::facets::triangles::Facets;
 use glam::{DVec3, I64Vec3};
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,7 +1,7 @@
 //! Outlines of the elements of patterns, for pictures alone.
 
-use crate::scene::facets::{FaceFacets, Facets};
 use crate::scene::pattern::{Outline, Pattern};
+use crate::scene::picture::facets::{FaceFacets, Facets};
 use crate::scene::shape::{Cylinder, Shape};
 use crate::scene::{FaceId, Scene};
 use glam::{DMat2, DVec2, DVec3};

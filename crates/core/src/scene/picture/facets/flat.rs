@@ -1,6 +1,6 @@
 //! Flat outlines with corners, and with holes, which no grid fits.
 
-use crate::scene::facets::triangles::Facets;
+use crate::scene::picture::facets::triangles::Facets;
 use crate::scene::shape::{Flat, Region};
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::planar::triangulate;

@@ -3,7 +3,7 @@
 //! Its outline on the wall is in unrolled coordinates about its middle: u across or around, v
 //! along. It knows neither its position nor its surfaces in space.
 
-use crate::scene::along::Along;
+use crate::scene::pattern::along::Along;
 use glam::DVec2;
 
 /// An element with relief.
@@ -99,7 +99,7 @@ pub struct Cap {
 }
 
 impl Cap {
-    pub(super) fn new(size: &CapSize, height: &Along, place: f64) -> Self {
+    pub(crate) fn new(size: &CapSize, height: &Along, place: f64) -> Self {
         let height = height.at(place);
         match size {
             CapSize::Sphere(radius) => {
@@ -115,7 +115,7 @@ impl Cap {
     }
 
     /// Distance of the centre of the sphere from the axis of a round wall, mm.
-    pub(super) fn center_from_axis(&self, wall: f64, way: Way) -> f64 {
+    pub(crate) fn center_from_axis(&self, wall: f64, way: Way) -> f64 {
         wall - way.sign() * (self.radius - self.height)
     }
 }
@@ -173,7 +173,7 @@ impl Element {
     }
 
     /// Length along the guide of the footprint of an element of a row, mm.
-    pub(super) fn length(&self, place: f64) -> f64 {
+    pub(crate) fn length(&self, place: f64) -> f64 {
         match &self.form {
             Form::Cap { size, height } => 2.0 * Cap::new(size, height, place).rim,
             Form::Wedge { height, slopes, .. } => height.at(place) * (slopes[0] + slopes[1]),
@@ -191,7 +191,7 @@ impl Element {
 
     /// Half of the width of the footprint of an element of a row, mm, at a distance along the guide
     /// from its middle; below 0 where there is none.
-    pub(super) fn half_width(&self, place: f64, v: f64) -> f64 {
+    pub(crate) fn half_width(&self, place: f64, v: f64) -> f64 {
         if 2.0 * v.abs() > self.length(place) {
             return -1.0;
         }
@@ -249,7 +249,7 @@ impl Element {
 
     /// Whether a wedge of a row passes through a point at a distance along the guide from its
     /// middle, at a depth below the wall, mm: its cut in the sides of the guide.
-    pub(super) fn cuts_side(&self, place: f64, along: f64, depth: f64) -> bool {
+    pub(crate) fn cuts_side(&self, place: f64, along: f64, depth: f64) -> bool {
         match &self.form {
             Form::Wedge { height, slopes, .. } => {
                 let (left, from_edge) = (height.at(place) - depth, along - self.edge(place));
@@ -263,7 +263,7 @@ impl Element {
     }
 
     /// The corners of a section of an element of a row along the guide, mm: along it from its middle, and out of the wall.
-    pub(super) fn section(&self, place: f64) -> [DVec2; 3] {
+    pub(crate) fn section(&self, place: f64) -> [DVec2; 3] {
         let (half, top) = (0.5 * self.length(place), self.way.sign() * self.height(place));
         [DVec2::new(-half, 0.0), DVec2::new(self.edge(place), top), DVec2::new(half, 0.0)]
     }

@@ -1,6 +1,9 @@
 //! Virtual sensors: where and how flux is counted. They never bend or stop light unless their face
 //! absorbs.
 
+pub(crate) mod grid;
+pub(crate) mod pixels;
+
 use crate::scene::shape::Toward;
 use crate::scene::{FaceId, Grid, Pixels, Ray};
 use glam::DVec3;

@@ -1,7 +1,7 @@
 //! How a source spreads its flux over directions.
 
 use crate::rng::{Dimension, Sampler};
-use crate::scene::sky::{EmitterKind, Sky};
+use crate::scene::source::sky::{EmitterKind, Sky};
 use glam::DVec3;
 use lumiduct_base::math::{
     Frame, cone_direction, cosine_hemisphere, cosine_power_hemisphere, projected_cap,

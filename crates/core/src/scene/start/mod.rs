@@ -1,0 +1,5 @@
+//! Where paths start: photons on their sources, gather paths on their sensors.
+
+pub(crate) mod area;
+pub(crate) mod arrivals;
+pub(crate) mod emit;

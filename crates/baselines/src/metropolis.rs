@@ -11,10 +11,10 @@ use crate::one_sensor::OneSensor;
 use crate::primary::{Mutation, Primary};
 use lumiduct_core::rng::{Numbers, Sampler};
 use lumiduct_core::transport::tally::readings::Counted;
-use lumiduct_core::transport::walk::emitters::Met;
-use lumiduct_core::transport::walk::follow::{Collector, follow};
-use lumiduct_core::transport::{Path, Readings};
+use lumiduct_core::transport::walk::follow::follow;
+use lumiduct_core::transport::{Event, Observer, Path, Readings};
 use smallvec::SmallVec;
+use std::ops::ControlFlow;
 
 /// Stream of random numbers of the chains.
 const STREAM: u64 = 7 << 32;
@@ -156,10 +156,12 @@ struct Looking {
     seen: Seen,
 }
 
-impl Collector for Looking {
-    fn meet(&mut self, path: &Path, met: Met) {
+impl Observer for Looking {
+    fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
+        let Event::Meet(met) = event else { return ControlFlow::Continue(()) };
         let flux = met.radiance * self.etendue;
         self.seen.flux += flux;
         self.seen.lights.push(Counted { flux, depth: path.depth, source: met.source });
+        ControlFlow::Continue(())
     }
 }

@@ -4,9 +4,9 @@ use lumiduct_core::plan::RunPlan;
 use lumiduct_core::rng::Sampler;
 use lumiduct_core::scene::{Arrival, Arrivals, Scene, SensorId};
 use lumiduct_core::transport::tally::readings::Counted;
-use lumiduct_core::transport::walk::emitters::{Emitters, Met};
-use lumiduct_core::transport::walk::follow::{Collector, Gathering, follow};
-use lumiduct_core::transport::{Layout, Path, Readings};
+use lumiduct_core::transport::walk::emitters::Emitters;
+use lumiduct_core::transport::walk::follow::{Gathering, follow};
+use lumiduct_core::transport::{Layout, Path, Readings, Unobserved};
 
 /// Segments that a batch should contain.
 pub(crate) const BATCH_SEGMENTS: u64 = 1 << 16;
@@ -74,16 +74,9 @@ impl<'s> OneSensor<'s> {
             let mut sampler = Sampler::for_path(self.seed, PILOT_STREAM, index);
             if let Some(arrival) = self.arrivals.draw(&mut sampler) {
                 let gathering = self.gathering(self.bounce_limit.min(10_000));
-                segments += follow(gathering, &arrival, &mut sampler, &mut Onlooker);
+                segments += follow(gathering, &arrival, &mut sampler, &mut Unobserved);
             }
         }
         (BATCH_SEGMENTS * PILOT_PATHS / segments.max(1)).clamp(16, 1 << 14)
     }
-}
-
-/// Collects nothing.
-struct Onlooker;
-
-impl Collector for Onlooker {
-    fn meet(&mut self, _: &Path, _: Met) {}
 }

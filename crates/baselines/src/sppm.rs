@@ -10,8 +10,8 @@ use crate::one_sensor::{BATCH_SEGMENTS, OneSensor};
 use lumiduct_core::optics::{Incidence, Lobe};
 use lumiduct_core::plan::RunPlan;
 use lumiduct_core::rng::Sampler;
-use lumiduct_core::scene::{SourceId, Visibility};
-use lumiduct_core::transport::forward::{Forward, PhotonWatcher};
+use lumiduct_core::scene::Visibility;
+use lumiduct_core::transport::forward::Forward;
 use lumiduct_core::transport::gather::estimate::{Arriving, Meeting, NestedWindows};
 use lumiduct_core::transport::gather::index::Key;
 use lumiduct_core::transport::gather::records::{GatherRecord, Records, Wanted};
@@ -19,10 +19,11 @@ use lumiduct_core::transport::gather::settings::{PhotonPilot, settle};
 use lumiduct_core::transport::gather::surfaces::Surfaces;
 use lumiduct_core::transport::stop::{Pace, StopSignal};
 use lumiduct_core::transport::tally::readings::Counted;
-use lumiduct_core::transport::walk::emitters::Met;
-use lumiduct_core::transport::walk::follow::{Collector, follow};
+use lumiduct_core::transport::walk::follow::follow;
 use lumiduct_core::transport::walk::scatter::facing;
-use lumiduct_core::transport::{Departure, Path, Readings, Vertex, Window};
+use lumiduct_core::transport::{
+    Emergence, Event, MetEmission, Observer, Path, Readings, Vertex, Window,
+};
 use smallvec::SmallVec;
 use std::ops::ControlFlow;
 
@@ -84,10 +85,16 @@ impl<'s> Sppm<'s> {
         let records =
             Records::new(records, window, &self.surfaces, &pace).expect("nothing stops it");
         let nested = NestedWindows::new(window);
-        let mut stream =
-            Stream { sppm: self, nested, records: &records, cells, readings: &mut readings };
+        let mut stream = Stream {
+            sppm: self,
+            nested,
+            records: &records,
+            cells,
+            photon: None,
+            readings: &mut readings,
+        };
         let photons =
-            self.forward.batch_watched(batch, &mut stream, &pace).expect("nothing stops it");
+            self.forward.batch_observed(batch, &mut stream, &pace).expect("nothing stops it");
         readings.segments += photons.segments;
         readings.close_batch();
         readings
@@ -136,14 +143,38 @@ struct Gatherer<'a, 's> {
     readings: &'a mut Readings,
 }
 
-impl Collector for Gatherer<'_, '_> {
-    fn meet(&mut self, path: &Path, met: Met) {
+impl Observer for Gatherer<'_, '_> {
+    fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
+        match event {
+            Event::Meet(met) => self.meet(path, met),
+            Event::Arrive(vertex) => self.leave_records(path, vertex),
+            // The photons at the record account for it.
+            Event::Depart(_, departure) if departure.lobe == Lobe::Diffuse => {
+                return ControlFlow::Break(());
+            }
+            Event::Start(_)
+            | Event::Travel(_)
+            | Event::Collide(_)
+            | Event::Depart(..)
+            | Event::Absorbed(_)
+            | Event::Detect(_)
+            | Event::Roulette(_)
+            | Event::Escaped(_)
+            | Event::Cut(_)
+            | Event::Leaked(..) => {}
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+impl Gatherer<'_, '_> {
+    fn meet(&mut self, path: &Path, met: &MetEmission) {
         let (flux, depth) = (met.radiance * self.etendue, path.depth);
         let light = Counted { flux, depth, source: met.source };
         self.sppm.sensor.count(self.readings, self.cells, &light);
     }
 
-    fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>) -> ControlFlow<()> {
+    fn leave_records(&mut self, path: &Path, vertex: &Vertex<'_>) {
         let Sppm { sensor, surfaces, .. } = self.sppm;
         let facing = facing(sensor.scene, path, vertex);
         let interface = vertex.interface;
@@ -168,15 +199,6 @@ impl Collector for Gatherer<'_, '_> {
                 depth: path.depth + 1,
             });
         }
-        ControlFlow::Continue(())
-    }
-
-    fn depart(&mut self, _: &Path, _: &Vertex<'_>, departure: &Departure) -> ControlFlow<()> {
-        match departure.lobe {
-            // The photons at the record account for it.
-            Lobe::Diffuse => ControlFlow::Break(()),
-            Lobe::Specular => ControlFlow::Continue(()),
-        }
     }
 }
 
@@ -185,12 +207,35 @@ struct Stream<'p, 's> {
     sppm: &'p Sppm<'s>,
     nested: NestedWindows,
     records: &'p Records<'s>,
+    /// The current photon.
+    photon: Option<Emergence>,
     cells: Vec<SmallVec<[usize; 1]>>,
     readings: &'p mut Readings,
 }
 
-impl PhotonWatcher for Stream<'_, '_> {
-    fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>, flux: f64, source: SourceId) {
+impl Observer for Stream<'_, '_> {
+    fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
+        match event {
+            Event::Start(start) => self.photon = Some(*start),
+            Event::Arrive(vertex) => self.arrive(path, vertex),
+            Event::Travel(_)
+            | Event::Collide(_)
+            | Event::Depart(..)
+            | Event::Absorbed(_)
+            | Event::Detect(_)
+            | Event::Meet(_)
+            | Event::Roulette(_)
+            | Event::Escaped(_)
+            | Event::Cut(_)
+            | Event::Leaked(..) => {}
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+impl Stream<'_, '_> {
+    fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>) {
+        let Some(Emergence { flux, source, .. }) = self.photon else { return };
         let Sppm { sensor, surfaces, .. } = self.sppm;
         let interface = vertex.interface;
         let surface = surfaces.of(interface.acting.prim);

@@ -10,10 +10,9 @@ use lumiduct_core::optics::{Scattered, Side, scatter_toward};
 use lumiduct_core::rng::Sampler;
 use lumiduct_core::scene::{On, Ray};
 use lumiduct_core::transport::tally::readings::Counted;
-use lumiduct_core::transport::walk::emitters::Met;
-use lumiduct_core::transport::walk::follow::{Collector, follow, follow_on};
+use lumiduct_core::transport::walk::follow::{follow, follow_on};
 use lumiduct_core::transport::walk::scatter::{facing, scatter_radiance};
-use lumiduct_core::transport::{Path, Readings, Vertex};
+use lumiduct_core::transport::{Event, MetEmission, Observer, Path, Readings, Vertex};
 use std::ops::ControlFlow;
 
 /// Streams of random numbers of the paths and of their choices at interfaces.
@@ -122,14 +121,37 @@ impl Splitter<'_, '_> {
     }
 }
 
-impl Collector for Splitter<'_, '_> {
-    fn meet(&mut self, path: &Path, met: Met) {
+impl Observer for Splitter<'_, '_> {
+    fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
+        match event {
+            Event::Meet(met) => self.meet(path, met),
+            Event::Arrive(vertex) => {
+                self.split(path, vertex);
+                return ControlFlow::Break(());
+            }
+            Event::Start(_)
+            | Event::Travel(_)
+            | Event::Collide(_)
+            | Event::Depart(..)
+            | Event::Absorbed(_)
+            | Event::Detect(_)
+            | Event::Roulette(_)
+            | Event::Escaped(_)
+            | Event::Cut(_)
+            | Event::Leaked(..) => {}
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+impl Splitter<'_, '_> {
+    fn meet(&mut self, path: &Path, met: &MetEmission) {
         let flux = met.radiance * self.factor * self.etendue;
         let light = Counted { flux, depth: path.depth, source: met.source };
         self.whitted.sensor.count(self.readings, self.cells, &light);
     }
 
-    fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>) -> ControlFlow<()> {
+    fn split(&mut self, path: &Path, vertex: &Vertex<'_>) {
         let scene = self.whitted.sensor.scene;
         let facing = facing(scene, path, vertex);
         let sides = [(Side::Reflected, facing.faces.own), (Side::Transmitted, facing.faces.behind)];
@@ -143,6 +165,5 @@ impl Collector for Splitter<'_, '_> {
         } else if let Some(out) = scatter_radiance(scene, path, vertex, &mut self.sampler) {
             self.push(path, vertex, out);
         }
-        ControlFlow::Break(())
     }
 }

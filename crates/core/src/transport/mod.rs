@@ -24,6 +24,6 @@ pub use tally::readings::{
 pub use tally::{Cells, Layout, Loss, TAILS};
 pub use walk::emitters::invisible;
 pub use walk::{
-    Carries, Collision, Departure, Event, Path, ROULETTE_BELOW, Segment, Vertex, Visitor,
-    WAVELENGTH, walk,
+    Carries, Collision, Departure, Detection, Emergence, Event, MetEmission, Observer, Path,
+    ROULETTE_BELOW, Segment, Unobserved, Vertex, WAVELENGTH, walk,
 };

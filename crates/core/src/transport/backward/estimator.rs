@@ -11,9 +11,9 @@ use crate::transport::gather::merge::{Etendues, NO_WINDOW};
 use crate::transport::stop::{Pace, StopSignal};
 use crate::transport::tally::readings::Counted;
 use crate::transport::tally::work;
-use crate::transport::walk::emitters::{Emitters, Met};
-use crate::transport::walk::follow::{Collector, Gathering, follow};
-use crate::transport::{Departure, Layout, Loss, Path, Readings, Vertex};
+use crate::transport::walk::emitters::Emitters;
+use crate::transport::walk::follow::{Gathering, follow};
+use crate::transport::{Event, Layout, Loss, MetEmission, Observer, Path, Readings};
 use std::ops::ControlFlow;
 
 /// Stream of random numbers of the gather paths; each sensor has a separate one from here on.
@@ -155,8 +155,28 @@ struct Counter<'a> {
     readings: &'a mut Readings,
 }
 
-impl Collector for Counter<'_> {
-    fn meet(&mut self, path: &Path, met: Met) {
+impl Observer for Counter<'_> {
+    fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
+        match event {
+            Event::Meet(met) => self.meet(path, met),
+            Event::Cut(throughput) => self.lose(throughput, Loss::Cut),
+            Event::Leaked(_, throughput) => self.lose(throughput, Loss::Leaked),
+            Event::Start(_)
+            | Event::Travel(_)
+            | Event::Collide(_)
+            | Event::Arrive(_)
+            | Event::Depart(..)
+            | Event::Absorbed(_)
+            | Event::Detect(_)
+            | Event::Roulette(_)
+            | Event::Escaped(_) => {}
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+impl Counter<'_> {
+    fn meet(&mut self, path: &Path, met: &MetEmission) {
         let weight = self.mixed_with.map_or(1.0, |photon_fluxes| {
             let photon = photon_fluxes[met.source.index()] / met.emitted;
             let [weight, ..] =
@@ -170,13 +190,5 @@ impl Collector for Counter<'_> {
 
     fn lose(&mut self, throughput: f64, loss: Loss) {
         self.readings.count_lost(&self.layout, self.id, throughput, loss);
-    }
-
-    fn arrive(&mut self, _: &Path, _: &Vertex<'_>) -> ControlFlow<()> {
-        ControlFlow::Continue(())
-    }
-
-    fn depart(&mut self, _: &Path, _: &Vertex<'_>, _: &Departure) -> ControlFlow<()> {
-        ControlFlow::Continue(())
     }
 }

@@ -5,13 +5,12 @@
 //! eq. (21), without a window. The path between the ends does not matter, so finishes may scatter.
 //! Sources that rays cannot meet are left to photons. `backward` counts the share of gather paths.
 
-use crate::scene::SourceId;
 use crate::transport::backward::estimator::Backward;
-use crate::transport::forward::{Detected, PhotonWatcher};
 use crate::transport::gather::merge::{Etendues, NO_WINDOW};
 use crate::transport::tally::readings::Counted;
-use crate::transport::{Path, Readings, Vertex};
-use smallvec::SmallVec;
+use crate::transport::walk::follow::{arrivals_of, etendue_of};
+use crate::transport::{Detection, Event, Observer, Path, Readings};
+use std::ops::ControlFlow;
 
 /// Counts the share of photons on the mixed sensors.
 pub(crate) struct Mixing<'m, 's> {
@@ -33,28 +32,37 @@ impl<'m, 's> Mixing<'m, 's> {
     }
 }
 
-impl PhotonWatcher for Mixing<'_, '_> {
-    fn start(&mut self, path: &Path, source: SourceId, shape: usize) {
-        let emitted = self.backward.emitters.emitted(source, path, shape);
-        self.photon =
-            if emitted > 0.0 { self.photon_fluxes[source.index()] / emitted } else { 0.0 };
+impl Observer for Mixing<'_, '_> {
+    fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
+        match event {
+            Event::Start(start) => {
+                let emitted = self.backward.emitters.emitted(start.source, path, start.shape);
+                let flux = self.photon_fluxes[start.source.index()];
+                self.photon = if emitted > 0.0 { flux / emitted } else { 0.0 };
+            }
+            Event::Detect(light) => self.detect(path, light),
+            Event::Travel(_)
+            | Event::Collide(_)
+            | Event::Arrive(_)
+            | Event::Depart(..)
+            | Event::Absorbed(_)
+            | Event::Meet(_)
+            | Event::Roulette(_)
+            | Event::Escaped(_)
+            | Event::Cut(_)
+            | Event::Leaked(..) => {}
+        }
+        ControlFlow::Continue(())
     }
+}
 
-    #[inline(always)]
-    fn arrive(&mut self, _: &Path, _: &Vertex<'_>, _: f64, _: SourceId) {}
-
-    fn detect(
-        &mut self,
-        path: &Path,
-        light: &Detected,
-        cells: impl Iterator<Item = usize> + Clone,
-    ) {
+impl Mixing<'_, '_> {
+    fn detect(&mut self, path: &Path, light: &Detection<'_>) {
         let Backward { scene, layout, sensors, mixed, paths, .. } = self.backward;
-        let known = light.arrivals(sensors).filter(|_| mixed.contains(&light.sensor));
-        let cells: SmallVec<[usize; 4]> = cells.collect();
-        let (Some(arrivals), false) = (known, cells.is_empty()) else { return };
+        let known = arrivals_of(light, sensors).filter(|_| mixed.contains(&light.sensor));
+        let (Some(arrivals), false) = (known, light.cells.is_empty()) else { return };
         let weight = if self.photon > 0.0 {
-            let gather = light.etendue(scene, arrivals, path.wavelength) / *paths as f64;
+            let gather = etendue_of(light, scene, arrivals, path.wavelength) / *paths as f64;
             let [weight, ..] =
                 Etendues { photon: self.photon, gather, window: NO_WINDOW }.forward();
             weight
@@ -63,6 +71,6 @@ impl PhotonWatcher for Mixing<'_, '_> {
         };
         let (flux, source) = (light.flux * weight, light.source);
         let counted = Counted { flux, depth: path.depth, source };
-        self.readings.count(layout, light.sensor, &cells, &counted);
+        self.readings.count(layout, light.sensor, light.cells, &counted);
     }
 }

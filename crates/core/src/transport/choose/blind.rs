@@ -5,9 +5,9 @@
 
 use crate::rng::Sampler;
 use crate::scene::{Arrivals, Scene, SensorId};
-use crate::transport::walk::emitters::{Emitters, Met};
-use crate::transport::walk::follow::{Collector, Gathering, follow};
-use crate::transport::{Path, Vertex};
+use crate::transport::walk::emitters::Emitters;
+use crate::transport::walk::follow::{Gathering, follow};
+use crate::transport::{Event, Path};
 use std::ops::ControlFlow;
 
 /// Gather paths tried from a sensor.
@@ -26,31 +26,19 @@ pub fn blind_sensors(scene: &Scene, sensors: &[SensorId], seed: u64) -> Vec<Sens
 fn sees<'s>(scene: &'s Scene, emitters: &Emitters<'s>, sensor: SensorId, seed: u64) -> bool {
     let arrivals = Arrivals::new(scene, sensor);
     let gathering = Gathering { scene, emitters, sensor, bounce_limit: u32::MAX, pace: None };
-    let mut look = Look { sees: false };
     for index in 0..BLIND_PATHS {
         let mut sampler = Sampler::for_path(seed, STREAM + sensor.index() as u64, index);
         if let Some(arrival) = arrivals.draw(&mut sampler) {
+            let mut sees = false;
+            let mut look = |_: &Path, event: Event<'_>| {
+                sees |= matches!(event, Event::Meet(_) | Event::Arrive(_));
+                if sees { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            };
             follow(gathering, &arrival, &mut sampler, &mut look);
-        }
-        if look.sees {
-            return true;
+            if sees {
+                return true;
+            }
         }
     }
     false
-}
-
-/// Notes whether anything is met, and then stops.
-struct Look {
-    sees: bool,
-}
-
-impl Collector for Look {
-    fn meet(&mut self, _: &Path, _: Met) {
-        self.sees = true;
-    }
-
-    fn arrive(&mut self, _: &Path, _: &Vertex<'_>) -> ControlFlow<()> {
-        self.sees = true;
-        ControlFlow::Break(())
-    }
 }

@@ -4,7 +4,6 @@
 use crate::plan::{Estimator, RunPlan};
 use crate::scene::{Scene, SensorId, SourceId};
 use crate::tally::Tally;
-use crate::transport::Layout;
 use crate::transport::backward::estimator::Backward;
 use crate::transport::backward::mix::Mixing;
 use crate::transport::choose::choice::Trial;
@@ -15,6 +14,7 @@ use crate::transport::gather::stages::FIRST_PASSES;
 use crate::transport::stop::{Pace, StopSignal};
 use crate::transport::tally::readings::Readings;
 use crate::transport::tally::work::{self, RecordWork};
+use crate::transport::{Layout, Unobserved};
 use rayon::prelude::*;
 
 /// Batches from which an estimator is judged.
@@ -94,7 +94,7 @@ impl Trials<'_> {
             let mut readings = backward.batch(batch, &photon_fluxes, self.signal)?;
             let mut mixing = Mixing::new(&backward, &photon_fluxes, &mut readings);
             let pace = Pace::new(self.signal);
-            let photons = forward.batch_watched(batch, &mut mixing, &pace)?;
+            let photons = forward.batch_observed(batch, &mut mixing, &pace)?;
             readings.close_batch();
             Some((work::of_photons(&photons), readings))
         };
@@ -120,7 +120,7 @@ impl Trials<'_> {
         let pass = |batch| Pass { batch, window, gather_paths };
         let passes: Option<Vec<PassReadings>> = (0..PASSES)
             .into_par_iter()
-            .map(|batch| gather.pass(&forward, pass(batch), &mut (), signal))
+            .map(|batch| gather.pass(&forward, pass(batch), &mut Unobserved, signal))
             .collect();
         let passes = passes?;
         let [wide, values, apart] = [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [1.0, -1.0, 0.0]]

@@ -1,11 +1,10 @@
-//! One batch of photons, with an optional watcher.
+//! One batch of photons, with an optional observer.
 
 use crate::scene::SourceId;
-use crate::transport::Readings;
 use crate::transport::forward::Forward;
 use crate::transport::forward::counter::Counter;
-use crate::transport::forward::watcher::PhotonWatcher;
 use crate::transport::stop::{Pace, StopSignal};
+use crate::transport::{Observer, Readings, Unobserved};
 
 /// Path classes are sampled from one path in this many: they are shares for the reader, not
 /// measures.
@@ -14,19 +13,19 @@ const CLASS_EVERY: u64 = 8;
 impl Forward<'_> {
     /// Traces one batch; `None` if it was stopped.
     pub fn batch(&self, batch: u64, signal: &StopSignal) -> Option<Readings> {
-        self.batch_watched(batch, &mut (), &Pace::new(signal))
+        self.batch_observed(batch, &mut Unobserved, &Pace::new(signal))
     }
 
-    /// Traces one batch while `watcher` sees its photons; `None` if it was stopped.
-    pub fn batch_watched(
+    /// Traces one batch while `observer` sees its photons; `None` if it was stopped.
+    pub fn batch_observed(
         &self,
         batch: u64,
-        watcher: &mut impl PhotonWatcher,
+        observer: &mut impl Observer,
         pace: &Pace<'_>,
     ) -> Option<Readings> {
         let batch_paths = self.shares.iter().sum();
         let readings = Readings::of_batch(self.scene, &self.layout, self.seed, batch_paths, batch);
-        let mut counter = Counter::new(self, readings, watcher, pace);
+        let mut counter = Counter::new(self, readings, observer, pace);
         let mut index = batch * batch_paths;
         for ((source, &paths), flux) in self.shares.iter().enumerate().zip(self.photon_fluxes()) {
             let source = SourceId::new(source);

@@ -7,10 +7,11 @@ use crate::rng::Sampler;
 use crate::scene::shape::Toward;
 use crate::scene::{Counts, FaceId, MediumId, Owner, SensorId, SourceId};
 use crate::transport::forward::Forward;
-use crate::transport::forward::watcher::PhotonWatcher;
 use crate::transport::stop::Pace;
 use crate::transport::tally::readings::{Counted, SensorReading, Step, Trail, count_totals};
-use crate::transport::{Departure, Event, Leak, Path, Readings, Segment, Vertex, Visitor, walk};
+use crate::transport::{
+    Departure, Emergence, Event, Leak, Observer, Path, Readings, Segment, Vertex, walk,
+};
 use glam::DVec3;
 use smallvec::SmallVec;
 use std::ops::ControlFlow;
@@ -19,9 +20,9 @@ use std::ops::ControlFlow;
 const STREAM: u64 = 1;
 
 /// Counts one batch.
-pub(super) struct Counter<'r, 's, W> {
+pub(super) struct Counter<'r, 's, O> {
     run: &'r Forward<'s>,
-    watcher: &'r mut W,
+    observer: &'r mut O,
     pace: &'r Pace<'r>,
     readings: Readings,
     /// The scalars of the readings, until the batch is finished.
@@ -48,16 +49,16 @@ enum TravelStart {
     Interface,
 }
 
-impl<'r, 's, W: PhotonWatcher> Counter<'r, 's, W> {
+impl<'r, 's, O: Observer> Counter<'r, 's, O> {
     pub(super) fn new(
         run: &'r Forward<'s>,
         mut readings: Readings,
-        watcher: &'r mut W,
+        observer: &'r mut O,
         pace: &'r Pace<'r>,
     ) -> Self {
         Self {
             run,
-            watcher,
+            observer,
             pace,
             sums: std::mem::take(&mut readings.groups[0].sums),
             readings,
@@ -92,7 +93,7 @@ impl<'r, 's, W: PhotonWatcher> Counter<'r, 's, W> {
         self.add(self.run.layout.emitted(source), 1.0);
         let shape = emitted.shape;
         let path = Path::emitted(scene, source, emitted);
-        self.watcher.start(&path, source, shape);
+        _ = self.observer.see(&path, Event::Start(&Emergence { source, shape, flux }));
         walk(scene, path, self.run.bounce_limit, &mut sampler, self);
     }
 
@@ -115,7 +116,7 @@ impl<'r, 's, W: PhotonWatcher> Counter<'r, 's, W> {
 
     #[inline(always)]
     fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>) {
-        self.watcher.arrive(path, vertex, self.flux, self.source);
+        _ = self.observer.see(path, Event::Arrive(vertex));
         let light = Light {
             counts: Counts::Incident,
             dir: vertex.dir,
@@ -128,7 +129,7 @@ impl<'r, 's, W: PhotonWatcher> Counter<'r, 's, W> {
 
     #[inline(always)]
     fn depart(&mut self, path: &Path, vertex: &Vertex<'_>, departure: &Departure) {
-        self.watcher.depart(path, vertex, departure);
+        _ = self.observer.see(path, Event::Depart(vertex, departure));
         let face = vertex.interface.acting.face;
         let absorbed = vertex.throughput - departure.throughput;
         if absorbed > 0.0 {
@@ -209,10 +210,10 @@ impl<'r, 's, W: PhotonWatcher> Counter<'r, 's, W> {
     }
 }
 
-impl<W: PhotonWatcher> Visitor for Counter<'_, '_, W> {
+impl<O: Observer> Observer for Counter<'_, '_, O> {
     #[inline(always)]
     fn roulette_below(&self) -> f64 {
-        self.watcher.roulette_below()
+        self.observer.roulette_below()
     }
 
     #[inline(always)]
@@ -225,9 +226,7 @@ impl<W: PhotonWatcher> Visitor for Counter<'_, '_, W> {
             }
             Event::Arrive(vertex) => self.arrive(path, vertex),
             Event::Depart(vertex, departure) => self.depart(path, vertex, departure),
-            Event::Collide(collision) => {
-                self.watcher.collide(path, collision, self.flux, self.source);
-            }
+            Event::Collide(_) => return self.observer.see(path, event),
             Event::Absorbed(vertex) => {
                 let face = vertex.interface.acting.face;
                 self.add(layout.absorbed_by_face(face), vertex.throughput);
@@ -246,6 +245,8 @@ impl<W: PhotonWatcher> Visitor for Counter<'_, '_, W> {
                 }
             }
             Event::Cut(throughput) => self.add(layout.cut(), throughput),
+            // It makes these itself, and gather paths alone meet emission.
+            Event::Start(_) | Event::Detect(_) | Event::Meet(_) => {}
             Event::Leaked(ray, throughput) => {
                 self.add(layout.leaked(), throughput);
                 self.readings.leaks.push(Leak { point: ray.origin(), dir: ray.dir() });

@@ -8,8 +8,6 @@ mod shown;
 mod tests;
 mod tracks;
 mod watch;
-mod watcher;
 
 pub use estimator::Forward;
 pub use tracks::{Track, TrackEnd, tracks};
-pub use watcher::{Detected, PhotonWatcher};

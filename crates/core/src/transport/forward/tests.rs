@@ -8,12 +8,13 @@ use crate::scene::{
     Scene, Seeing, Sensor, SensorId, SensorKind, Sides, Source, SourceId, Start, SurfaceSensor,
 };
 use crate::tally::sigmas;
-use crate::transport::forward::{Detected, Forward, PhotonWatcher};
+use crate::transport::forward::Forward;
 use crate::transport::stop::{Pace, StopSignal};
-use crate::transport::{Departure, Path, Readings, Run, Vertex};
+use crate::transport::{Event, Observer, Path, Readings, Run};
 use glam::DVec3;
 use lumiduct_base::math::{Aabb, Frame};
 use lumiduct_base::units::FluxUnit;
+use std::ops::ControlFlow;
 
 /// A mirror tube of radius 5 with a Lambertian disk in its entry and a sensor in its exit.
 fn mirror_tube(reflectance: f64, length: f64) -> Scene {
@@ -139,32 +140,34 @@ struct Onlooker {
     detected: usize,
 }
 
-impl PhotonWatcher for Onlooker {
-    fn start(&mut self, _: &Path, _: SourceId, _: usize) {
-        self.started += 1;
-    }
-
-    fn arrive(&mut self, _: &Path, _: &Vertex<'_>, _: f64, _: SourceId) {
-        self.arrived += 1;
-    }
-
-    fn depart(&mut self, _: &Path, _: &Vertex<'_>, _: &Departure) {
-        self.departed += 1;
-    }
-
-    fn detect(&mut self, _: &Path, _: &Detected, cells: impl Iterator<Item = usize> + Clone) {
-        self.detected += cells.count();
+impl Observer for Onlooker {
+    fn see(&mut self, _: &Path, event: Event<'_>) -> ControlFlow<()> {
+        match event {
+            Event::Start(_) => self.started += 1,
+            Event::Arrive(_) => self.arrived += 1,
+            Event::Depart(..) => self.departed += 1,
+            Event::Detect(light) => self.detected += light.cells.len(),
+            Event::Travel(_)
+            | Event::Collide(_)
+            | Event::Absorbed(_)
+            | Event::Meet(_)
+            | Event::Roulette(_)
+            | Event::Escaped(_)
+            | Event::Cut(_)
+            | Event::Leaked(..) => {}
+        }
+        ControlFlow::Continue(())
     }
 }
 
 #[test]
-fn two_who_watch_the_same_photons_see_the_same() {
+fn two_observers_of_the_same_photons_see_the_same() {
     let scene = mirror_tube(0.95, 20.0);
     let (mut first, mut second) = (Onlooker::default(), Onlooker::default());
     let signal = StopSignal::default();
     let pace = Pace::new(&signal);
     let forward = Forward::new(&scene, 1, 1000, 500);
-    forward.batch_watched(0, &mut (&mut first, &mut second), &pace).unwrap();
+    forward.batch_observed(0, &mut (&mut first, &mut second), &pace).unwrap();
     assert_eq!(first, second);
     assert_eq!(first.started, 500);
     assert!(first.detected > 100 && first.arrived > 500 && first.departed > 500, "{first:?}");

@@ -73,7 +73,12 @@ fn track(forward: &Forward<'_>, source: SourceId, index: usize) -> Track {
         Event::Roulette(taken) => {
             end = if *taken > 0.0 { TrackEnd::Faded } else { TrackEnd::Cut };
         }
-        Event::Travel(_) | Event::Depart(..) | Event::Cut(_) => {}
+        Event::Start(_)
+        | Event::Travel(_)
+        | Event::Depart(..)
+        | Event::Detect(_)
+        | Event::Meet(_)
+        | Event::Cut(_) => {}
     };
     let counted_by = forward.show(source, path, &mut sampler, &mut see);
     Track { source, points, end, counted_by }

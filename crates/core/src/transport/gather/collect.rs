@@ -11,10 +11,11 @@ use crate::transport::gather::merged::Merging;
 use crate::transport::gather::records::{GatherRecord, Wanted};
 use crate::transport::gather::window::{COUNTED, ESTIMATES, Window, estimates};
 use crate::transport::tally::readings::Counted;
-use crate::transport::walk::emitters::Met;
-use crate::transport::walk::follow::Collector;
 use crate::transport::walk::scatter::{Facing, facing};
-use crate::transport::{Collision, Departure, Loss, Path, ROULETTE_BELOW, Readings, Vertex};
+use crate::transport::{
+    Collision, Departure, Event, Loss, MetEmission, Observer, Path, ROULETTE_BELOW, Readings,
+    Vertex,
+};
 use glam::DVec3;
 use smallvec::SmallVec;
 use std::ops::ControlFlow;
@@ -45,14 +46,38 @@ pub(crate) struct Collecting<'c, 's> {
     pub(crate) windows: &'c mut [Readings; ESTIMATES],
 }
 
-impl Collector for Collecting<'_, '_> {
+impl Observer for Collecting<'_, '_> {
     fn roulette_below(&self) -> f64 {
         self.merging.as_ref().map_or(ROULETTE_BELOW, |_| merge::ROULETTE_BELOW)
     }
 
-    fn meet(&mut self, path: &Path, met: Met) {
+    fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
+        match event {
+            Event::Meet(met) => self.meet(path, met),
+            Event::Cut(throughput) => self.lose(throughput, Loss::Cut),
+            Event::Leaked(_, throughput) => self.lose(throughput, Loss::Leaked),
+            Event::Arrive(vertex) => return self.arrive(path, vertex),
+            Event::Depart(_, departure) => return self.depart(path, departure),
+            Event::Collide(collision) => {
+                self.add_collided(path, collision);
+                // The record counts all light that is scattered there.
+                return ControlFlow::Break(());
+            }
+            Event::Start(_)
+            | Event::Travel(_)
+            | Event::Absorbed(_)
+            | Event::Detect(_)
+            | Event::Roulette(_)
+            | Event::Escaped(_) => {}
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+impl Collecting<'_, '_> {
+    fn meet(&mut self, path: &Path, met: &MetEmission) {
         let flux = met.radiance * self.etendue;
-        let weights = self.merging.as_ref().map_or([1.0; COUNTED], |merging| merging.weights(&met));
+        let weights = self.merging.as_ref().map_or([1.0; COUNTED], |merging| merging.weights(met));
         for (readings, weight) in self.windows.iter_mut().zip(estimates(weights)) {
             let light = Counted { flux: flux * weight, depth: path.depth, source: met.source };
             readings.count(&self.gather.layout, self.id, self.cells, &light);
@@ -84,13 +109,7 @@ impl Collector for Collecting<'_, '_> {
         ControlFlow::Continue(())
     }
 
-    fn collide(&mut self, path: &Path, collision: &Collision<'_>) -> ControlFlow<()> {
-        self.add_collided(path, collision);
-        // The record counts all light that is scattered there.
-        ControlFlow::Break(())
-    }
-
-    fn depart(&mut self, path: &Path, _: &Vertex<'_>, departure: &Departure) -> ControlFlow<()> {
+    fn depart(&mut self, path: &Path, departure: &Departure) -> ControlFlow<()> {
         // Nothing faces the path where it meets no visible interface.
         let Some(facing) = self.facing.take() else { return ControlFlow::Continue(()) };
         if let Some(merging) = &mut self.merging

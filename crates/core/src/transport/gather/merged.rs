@@ -5,17 +5,16 @@
 //! belong to the same passes. The readings of the windows contain all light of a sensor. This
 //! module does not know how paths are traced.
 
-use crate::scene::{SourceId, Visibility};
-use crate::transport::forward::{Detected, PhotonWatcher};
+use crate::scene::Visibility;
 use crate::transport::gather::estimator::Pass;
 use crate::transport::gather::merge::{Etendues, NO_WINDOW, Passage, ROULETTE_BELOW, Recent};
-use crate::transport::gather::stream::{Starting, Stream};
+use crate::transport::gather::stream::{Photon, Stream};
 use crate::transport::gather::window::{COUNTED, Window, estimates};
 use crate::transport::tally::readings::Counted;
-use crate::transport::walk::emitters::Met;
+use crate::transport::walk::follow::{arrivals_of, etendue_of};
 use crate::transport::walk::scatter::facing;
-use crate::transport::{Departure, Path, Vertex};
-use smallvec::SmallVec;
+use crate::transport::{Departure, Detection, Event, MetEmission, Observer, Path, Vertex};
+use std::ops::ControlFlow;
 
 /// Weights for the light of one gather path.
 #[derive(Debug)]
@@ -45,7 +44,7 @@ impl<'a> Merging<'a> {
     }
 
     /// Share counted by emission that the path has met, for each window, 1.
-    pub(super) fn weights(&self, met: &Met) -> [f64; COUNTED] {
+    pub(super) fn weights(&self, met: &MetEmission) -> [f64; COUNTED] {
         let photon = self.photon_fluxes[met.source.index()] / met.emitted;
         Etendues { photon, gather: self.etendue, window: self.window }.backward()
     }
@@ -80,23 +79,38 @@ impl<'m, 'p, 's> MergedStream<'m, 'p, 's> {
     }
 }
 
-impl PhotonWatcher for MergedStream<'_, '_, '_> {
+impl Observer for MergedStream<'_, '_, '_> {
     fn roulette_below(&self) -> f64 {
         ROULETTE_BELOW
     }
 
-    fn start(&mut self, path: &Path, source: SourceId, shape: usize) {
-        let emitted = self.stream.gather.emitters.emitted(source, path, shape);
-        self.photon = self.photon_fluxes[source.index()] / emitted;
-        self.recent.clear();
-    }
-
-    fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>, flux: f64, source: SourceId) {
-        if self.stream.may_take(vertex) {
-            self.stream.take(path, vertex, Starting { flux, source, etendue: self.photon });
+    #[inline(always)]
+    fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
+        match event {
+            Event::Start(start) => {
+                let gather = self.stream.gather;
+                let emitted = gather.emitters.emitted(start.source, path, start.shape);
+                self.photon = self.photon_fluxes[start.source.index()] / emitted;
+                self.stream.photon = Photon::of(start, self.photon);
+                self.recent.clear();
+            }
+            Event::Arrive(_) => return self.stream.see(path, event),
+            Event::Depart(vertex, departure) => self.depart(path, vertex, departure),
+            Event::Detect(light) => self.detect(path, light),
+            Event::Travel(_)
+            | Event::Collide(_)
+            | Event::Absorbed(_)
+            | Event::Meet(_)
+            | Event::Roulette(_)
+            | Event::Escaped(_)
+            | Event::Cut(_)
+            | Event::Leaked(..) => {}
         }
+        ControlFlow::Continue(())
     }
+}
 
+impl MergedStream<'_, '_, '_> {
     fn depart(&mut self, path: &Path, vertex: &Vertex<'_>, departure: &Departure) {
         if vertex.interface.visibility == Visibility::Visible {
             let facing = facing(self.stream.gather.scene, path, vertex);
@@ -104,17 +118,11 @@ impl PhotonWatcher for MergedStream<'_, '_, '_> {
         }
     }
 
-    fn detect(
-        &mut self,
-        path: &Path,
-        light: &Detected,
-        cells: impl Iterator<Item = usize> + Clone,
-    ) {
-        let cells: SmallVec<[usize; 4]> = cells.collect();
+    fn detect(&mut self, path: &Path, light: &Detection<'_>) {
         let gather = self.stream.gather;
-        let known = light.arrivals(&gather.sensors);
-        let (Some(arrivals), false) = (known, cells.is_empty()) else { return };
-        let gathered = light.etendue(gather.scene, arrivals, path.wavelength);
+        let known = arrivals_of(light, &gather.sensors);
+        let (Some(arrivals), false) = (known, light.cells.is_empty()) else { return };
+        let gathered = etendue_of(light, gather.scene, arrivals, path.wavelength);
         let etendues = Etendues {
             photon: self.photon,
             gather: gathered / self.gather_paths,
@@ -124,7 +132,7 @@ impl PhotonWatcher for MergedStream<'_, '_, '_> {
         for (readings, weight) in self.stream.windows.iter_mut().zip(weights) {
             let (flux, source) = (light.flux * weight, light.source);
             let counted = Counted { flux, depth: path.depth, source };
-            readings.count(&gather.layout, light.sensor, &cells, &counted);
+            readings.count(&gather.layout, light.sensor, light.cells, &counted);
         }
     }
 }

@@ -12,7 +12,7 @@
 
 use crate::rng::Sampler;
 use crate::scene::Arrival;
-use crate::transport::forward::{Forward, PhotonWatcher};
+use crate::transport::forward::Forward;
 use crate::transport::gather::collect::{Collecting, Found};
 use crate::transport::gather::estimator::{Gather, Pass, PassReadings, Waiting};
 use crate::transport::gather::merged::{MergedStream, Merging};
@@ -21,7 +21,7 @@ use crate::transport::gather::stream::Stream;
 use crate::transport::gather::window::ESTIMATES;
 use crate::transport::stop::{Pace, RECORD_WORK, StopSignal};
 use crate::transport::walk::follow::{Gathering, follow};
-use crate::transport::{Path, Readings};
+use crate::transport::{Observer, Path, Readings};
 
 /// Streams of random numbers of the gather paths and of their records; each sensor has a separate
 /// one.
@@ -29,13 +29,13 @@ const PATH_STREAM: u64 = 2 << 32;
 const RECORD_STREAM: u64 = 3 << 32;
 
 impl<'s> Gather<'s> {
-    /// Runs one pass with the photons of a batch, which can have another watcher unless all is
+    /// Runs one pass with the photons of a batch, which can have another observer unless all is
     /// merged. `None` if it was stopped.
     pub(crate) fn pass(
         &self,
         forward: &Forward<'_>,
         pass: Pass,
-        beside: &mut impl PhotonWatcher,
+        beside: &mut impl Observer,
         signal: &StopSignal,
     ) -> Option<PassReadings> {
         let pace = Pace::new(signal);
@@ -47,10 +47,10 @@ impl<'s> Gather<'s> {
         let waiting = self.gather_paths(pass, beside_paths, &mut windows)?;
         let mut stream = Stream::new(self, pass, (&waiting, &pace), &mut windows);
         let photons = match self.merging {
-            None => forward.batch_watched(pass.batch, &mut (&mut stream, beside), &pace)?,
+            None => forward.batch_observed(pass.batch, &mut (&mut stream, beside), &pace)?,
             Some(_) => {
                 let mut merged = MergedStream::new(&mut stream, pass, &photon_fluxes);
-                forward.batch_watched(pass.batch, &mut merged, &pace)?
+                forward.batch_observed(pass.batch, &mut merged, &pace)?
             }
         };
         let work = stream.finish();

@@ -6,10 +6,10 @@ use crate::plan::{RunPlan, Schedule};
 use crate::rng::Sampler;
 use crate::scene::{Arrivals, Emission, Emitter, FaceId, On, Ray, Scene, SensorId};
 use crate::transport::stop::{Pace, StopSignal};
-use crate::transport::walk::emitters::{Emitters, Met};
-use crate::transport::walk::follow::{Collector, Gathering, follow};
+use crate::transport::walk::emitters::Emitters;
+use crate::transport::walk::follow::{Gathering, follow};
 use crate::transport::walk::scatter::facing;
-use crate::transport::{Departure, Path, Vertex, Window};
+use crate::transport::{Event, Observer, Path, Vertex, Window};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
@@ -226,10 +226,15 @@ struct Sounding<'s> {
     distances: Vec<Vec<f64>>,
 }
 
-impl Collector for Sounding<'_> {
-    fn meet(&mut self, _: &Path, _: Met) {}
+impl Observer for Sounding<'_> {
+    fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
+        let Event::Arrive(vertex) = event else { return ControlFlow::Continue(()) };
+        self.probe(path, vertex)
+    }
+}
 
-    fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>) -> ControlFlow<()> {
+impl Sounding<'_> {
+    fn probe(&mut self, path: &Path, vertex: &Vertex<'_>) -> ControlFlow<()> {
         let normal = facing(self.scene, path, vertex).facet;
         let across = Ray::new(vertex.point, normal);
         let far = self.scene.find_next(&across, &On::hits(vertex.hits), &path.inside);
@@ -240,9 +245,5 @@ impl Collector for Sounding<'_> {
             distances.push(source.emitter.bounds().center().distance(vertex.point));
         }
         if path.depth < self.depth { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
-    }
-
-    fn depart(&mut self, _: &Path, _: &Vertex<'_>, _: &Departure) -> ControlFlow<()> {
-        ControlFlow::Continue(())
     }
 }

@@ -5,7 +5,6 @@
 use crate::optics::Incidence;
 use crate::scene::shape::Toward;
 use crate::scene::{MediumId, PrimHit, PrimId, Scene, SourceId, Visibility};
-use crate::transport::forward::PhotonWatcher;
 use crate::transport::gather::estimate::{Arriving, Colliding, Meeting, NestedWindows};
 use crate::transport::gather::estimator::{Ended, Gather, Pass, Waiting};
 use crate::transport::gather::index::{Key, TOGETHER};
@@ -14,8 +13,9 @@ use crate::transport::gather::window::{COUNTED, ESTIMATES, estimates};
 use crate::transport::stop::Pace;
 use crate::transport::tally::readings::Counted;
 use crate::transport::tally::work::RecordWork;
-use crate::transport::{Collision, Path, Readings, Vertex};
+use crate::transport::{Collision, Emergence, Event, Observer, Path, Readings, Vertex};
 use glam::DVec3;
+use std::ops::ControlFlow;
 
 /// Photons that stream past the records.
 pub(super) struct Stream<'p, 's> {
@@ -24,6 +24,8 @@ pub(super) struct Stream<'p, 's> {
     waiting: &'p Waiting<'s>,
     pace: &'p Pace<'p>,
     pub(super) windows: &'p mut [Readings; ESTIMATES],
+    /// The current photon.
+    pub(super) photon: Photon,
     /// Photons to be looked up, and their keys.
     passing: Vec<Passing>,
     keys: Vec<Key>,
@@ -58,32 +60,42 @@ enum At {
     Medium,
 }
 
-impl PhotonWatcher for Stream<'_, '_> {
+impl Observer for Stream<'_, '_> {
     #[inline(always)]
-    fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>, flux: f64, source: SourceId) {
-        if self.may_take(vertex) {
-            self.take(path, vertex, Starting { flux, source, etendue: 0.0 });
+    fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
+        match event {
+            Event::Start(start) => self.photon = Photon::of(start, 0.0),
+            Event::Arrive(vertex) if self.may_take(vertex) => self.take(path, vertex),
+            Event::Collide(collision) => self.collide(path, collision),
+            Event::Travel(_)
+            | Event::Arrive(_)
+            | Event::Depart(..)
+            | Event::Absorbed(_)
+            | Event::Detect(_)
+            | Event::Meet(_)
+            | Event::Roulette(_)
+            | Event::Escaped(_)
+            | Event::Cut(_)
+            | Event::Leaked(..) => {}
         }
-    }
-
-    fn collide(&mut self, path: &Path, collision: &Collision<'_>, flux: f64, source: SourceId) {
-        let &Collision { point, dir, medium, throughput, .. } = collision;
-        let surface = self.gather.surfaces.of_medium(medium);
-        if self.waiting.records.may_take(surface, point, dir) {
-            let now = Starting { flux: flux * throughput, source, etendue: 0.0 };
-            self.push(path, Key { surface, point, dir }, At::Medium, now);
-        }
+        ControlFlow::Continue(())
     }
 }
 
-/// Start values of a photon.
+/// A photon as it starts.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Starting {
+pub(super) struct Photon {
     /// Flux at throughput 1, lm or W.
-    pub(super) flux: f64,
-    pub(super) source: SourceId,
+    flux: f64,
+    source: SourceId,
     /// Merged: the etendue it represents, mm² sr.
-    pub(super) etendue: f64,
+    etendue: f64,
+}
+
+impl Photon {
+    pub(super) fn of(start: &Emergence, etendue: f64) -> Self {
+        Self { flux: start.flux, source: start.source, etendue }
+    }
 }
 
 impl<'p, 's> Stream<'p, 's> {
@@ -100,6 +112,7 @@ impl<'p, 's> Stream<'p, 's> {
             waiting,
             pace,
             windows,
+            photon: Photon { flux: 0.0, source: SourceId::new(0), etendue: 0.0 },
             passing: Vec::with_capacity(TOGETHER),
             keys: Vec::with_capacity(TOGETHER),
         }
@@ -113,7 +126,7 @@ impl<'p, 's> Stream<'p, 's> {
 
     /// Whether there may be records for a photon.
     #[inline(always)]
-    pub(super) fn may_take(&self, vertex: &Vertex<'_>) -> bool {
+    fn may_take(&self, vertex: &Vertex<'_>) -> bool {
         let surface = self.gather.surfaces.of(vertex.interface.acting.prim);
         vertex.interface.visibility == Visibility::Visible
             && self.waiting.records.may_take(surface, vertex.point, vertex.dir)
@@ -121,19 +134,27 @@ impl<'p, 's> Stream<'p, 's> {
 
     /// Takes a photon that is to be looked up.
     #[inline(never)]
-    pub(super) fn take(&mut self, path: &Path, vertex: &Vertex<'_>, starting: Starting) {
+    fn take(&mut self, path: &Path, vertex: &Vertex<'_>) {
         let interface = vertex.interface;
         let PrimHit { prim, toward, .. } = *interface.acting;
         let (surface, media) = (self.gather.surfaces.of(prim), [interface.from, interface.to]);
         let key = Key { surface, point: vertex.point, dir: vertex.dir };
         let at = At::Surface { prim, toward, media, wavelength: path.wavelength };
-        self.push(path, key, at, Starting { flux: starting.flux * vertex.throughput, ..starting });
+        self.push(path, key, at, vertex.throughput);
     }
 
-    /// `starting` with the current flux of the photon.
-    fn push(&mut self, path: &Path, key: Key, at: At, starting: Starting) {
+    fn collide(&mut self, path: &Path, collision: &Collision<'_>) {
+        let &Collision { point, dir, medium, throughput, .. } = collision;
+        let surface = self.gather.surfaces.of_medium(medium);
+        if self.waiting.records.may_take(surface, point, dir) {
+            self.push(path, Key { surface, point, dir }, At::Medium, throughput);
+        }
+    }
+
+    fn push(&mut self, path: &Path, key: Key, at: At, throughput: f64) {
         self.keys.push(key);
-        let Starting { flux, source, etendue } = starting;
+        let Photon { flux, source, etendue } = self.photon;
+        let flux = flux * throughput;
         self.passing.push(Passing { at, flux, depth: path.depth, source, etendue });
         if self.passing.len() == TOGETHER {
             self.look_up();

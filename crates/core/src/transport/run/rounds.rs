@@ -8,13 +8,13 @@
 use crate::plan::{Estimator, Schedule};
 use crate::transport::backward::estimator::Backward;
 use crate::transport::backward::mix::Mixing;
-use crate::transport::forward::{Forward, PhotonWatcher};
+use crate::transport::forward::Forward;
 use crate::transport::gather::stages::{FIRST_PASSES, Stages};
 use crate::transport::gather::window::ESTIMATES;
 use crate::transport::run::findings::{Findings, Gathered};
 use crate::transport::stop::{Pace, StopSignal};
 use crate::transport::tally::sums::Sums;
-use crate::transport::{Choice, Readings};
+use crate::transport::{Choice, Observer, Readings, Unobserved};
 use rayon::prelude::*;
 use std::fmt;
 
@@ -94,13 +94,13 @@ impl<'s> Run<'s> {
     /// Traces one batch; `None` if it was stopped.
     pub(super) fn batch(&self, batch: u64, signal: &StopSignal) -> Option<Batch> {
         let Some((backward, _)) = &self.backward else {
-            let (photons, windows) = self.photons(batch, &mut (), signal)?;
+            let (photons, windows) = self.photons(batch, &mut Unobserved, signal)?;
             return Some(Batch { photons, backward: None, windows });
         };
         let photon_fluxes = self.forward.photon_fluxes();
         let mut readings = backward.batch(batch, &photon_fluxes, signal)?;
         let (photons, windows) = if backward.mixed.is_empty() {
-            self.photons(batch, &mut (), signal)?
+            self.photons(batch, &mut Unobserved, signal)?
         } else {
             let mut mixing = Mixing::new(backward, &photon_fluxes, &mut readings);
             self.photons(batch, &mut mixing, signal)?
@@ -109,19 +109,19 @@ impl<'s> Run<'s> {
         Some(Batch { photons, backward: Some(readings), windows })
     }
 
-    /// Traces the photons of a batch, with a watcher, and gathers them if requested; `None` if it
+    /// Traces the photons of a batch, with an observer, and gathers them if requested; `None` if it
     /// was stopped.
     pub(super) fn photons(
         &self,
         batch: u64,
-        watcher: &mut impl PhotonWatcher,
+        observer: &mut impl Observer,
         signal: &StopSignal,
     ) -> Option<(Readings, Option<[Readings; ESTIMATES]>)> {
         let Some(stages) = &self.stages else {
-            let readings = self.forward.batch_watched(batch, watcher, &Pace::new(signal))?;
+            let readings = self.forward.batch_observed(batch, observer, &Pace::new(signal))?;
             return Some((readings, None));
         };
-        let pass = stages.gather.pass(&self.forward, stages.pass(batch), watcher, signal)?;
+        let pass = stages.gather.pass(&self.forward, stages.pass(batch), observer, signal)?;
         Some((pass.photons, Some(pass.windows)))
     }
 

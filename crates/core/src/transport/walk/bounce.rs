@@ -1,4 +1,4 @@
-//! The one bounce loop, at interfaces and within media. Visitors see events and can only end a
+//! The one bounce loop, at interfaces and within media. Observers see events and can only end a
 //! path.
 //!
 //! This module does not know what is counted: the forward estimator counts photons, a gather path
@@ -8,23 +8,23 @@ use crate::optics::{Lobe, Scattered, Side, VolumeScattering};
 use crate::rng::{Dimension, Numbers, Sampler};
 use crate::scene::{Hits, Meeting, On, Ray, Scene, Visibility};
 use crate::transport::walk::event::{
-    Carries, Collision, Departure, Event, Segment, Vertex, Visitor,
+    Carries, Collision, Departure, Event, Observer, Segment, Vertex,
 };
 use crate::transport::walk::path::Path;
 use crate::transport::walk::scatter::{scatter, scatter_radiance};
 use glam::DVec3;
 use std::ops::ControlFlow;
 
-/// Follows a path until it ends or the visitor breaks.
+/// Follows a path until it ends or the observer breaks.
 #[inline]
-pub fn walk<V: Visitor>(
+pub fn walk<V: Observer>(
     scene: &Scene,
     mut path: Path,
     bounce_limit: u32,
     sampler: &mut Sampler<impl Numbers>,
-    visitor: &mut V,
+    observer: &mut V,
 ) {
-    // A copy of the path's ray that no visitor sees: it stays in registers from bounce to bounce.
+    // A copy of the path's ray that no observer sees: it stays in registers from bounce to bounce.
     let mut ray = path.ray;
     loop {
         let hits = scene.find_next(&ray, &path.on, &path.inside);
@@ -46,74 +46,74 @@ pub fn walk<V: Visitor>(
             throughput: path.throughput,
             arriving,
         };
-        if visitor.see(&path, Event::Travel(&segment)).is_break() {
+        if observer.see(&path, Event::Travel(&segment)).is_break() {
             return;
         }
         path.throughput = arriving;
         let Some(hits) = &hits else {
-            leave(&path, visitor);
+            leave(&path, observer);
             return;
         };
         let next = match scattered {
-            None => bounce(scene, &mut path, &ray, hits, sampler, visitor),
-            Some(scattering) => collide(scattering, &mut path, ray.at(length), sampler, visitor),
+            None => bounce(scene, &mut path, &ray, hits, sampler, observer),
+            Some(scattering) => collide(scattering, &mut path, ray.at(length), sampler, observer),
         };
         match next {
             ControlFlow::Continue(next) => ray = next,
             ControlFlow::Break(()) => return,
         }
         if path.depth >= bounce_limit {
-            _ = visitor.see(&path, Event::Cut(path.throughput));
+            _ = observer.see(&path, Event::Cut(path.throughput));
             return;
         }
-        if path.throughput < visitor.roulette_below()
-            && roulette(&mut path, sampler, visitor).is_break()
+        if path.throughput < observer.roulette_below()
+            && roulette(&mut path, sampler, observer).is_break()
         {
             return;
         }
     }
 }
 
-/// Ends a path that meets nothing: it has left the scene, or a solid through a hole. The visitor
+/// Ends a path that meets nothing: it has left the scene, or a solid through a hole. The observer
 /// cannot prevent it.
-fn leave<V: Visitor>(path: &Path, visitor: &mut V) {
+fn leave<V: Observer>(path: &Path, observer: &mut V) {
     let event = if path.inside.is_empty() {
         Event::Escaped(path.throughput)
     } else {
         Event::Leaked(&path.ray, path.throughput)
     };
-    _ = visitor.see(path, event);
+    _ = observer.see(path, event);
 }
 
 /// Ends a path of small throughput, or continues it with the threshold's.
 #[inline(always)]
-fn roulette<V: Visitor>(
+fn roulette<V: Observer>(
     path: &mut Path,
     sampler: &mut Sampler<impl Numbers>,
-    visitor: &mut V,
+    observer: &mut V,
 ) -> ControlFlow<()> {
-    let below = visitor.roulette_below();
+    let below = observer.roulette_below();
     let survives = sampler.one(Dimension::Roulette) * below < path.throughput;
     let after = if survives { below } else { 0.0 };
-    visitor.see(path, Event::Roulette(path.throughput - after))?;
+    observer.see(path, Event::Roulette(path.throughput - after))?;
     path.throughput = after;
     if survives { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
 }
 
 /// Takes a path through the interface it has met: the ray on which it continues.
 #[inline(always)]
-fn bounce<V: Visitor>(
+fn bounce<V: Observer>(
     scene: &Scene,
     path: &mut Path,
     ray: &Ray,
     hits: &Hits,
     sampler: &mut Sampler<impl Numbers>,
-    visitor: &mut V,
+    observer: &mut V,
 ) -> ControlFlow<(), Ray> {
     let (point, dir) = (ray.at(hits.distance()), ray.dir());
     let interface = scene.interface(hits, &Meeting { point, dir }, &path.inside, path.medium);
     let vertex = Vertex { point, dir, hits, interface: &interface, throughput: path.throughput };
-    visitor.see(path, Event::Arrive(&vertex))?;
+    observer.see(path, Event::Arrive(&vertex))?;
     let out = match interface.visibility {
         Visibility::Invisible => straight_on(dir),
         Visibility::Visible => {
@@ -123,7 +123,7 @@ fn bounce<V: Visitor>(
                 Carries::Radiance => scatter_radiance(scene, path, &vertex, sampler),
             };
             let Some(out) = out else {
-                visitor.see(path, Event::Absorbed(&vertex))?;
+                observer.see(path, Event::Absorbed(&vertex))?;
                 return ControlFlow::Break(());
             };
             out
@@ -135,7 +135,7 @@ fn bounce<V: Visitor>(
     path.throughput *= out.factor;
     let Scattered { side, lobe, .. } = out;
     let departure = Departure { dir: next.dir(), throughput: path.throughput, side, lobe };
-    visitor.see(path, Event::Depart(&vertex, &departure))?;
+    observer.see(path, Event::Depart(&vertex, &departure))?;
     if out.side == Side::Transmitted {
         path.medium = interface.to;
         hits.cross(&mut path.inside);
@@ -145,16 +145,16 @@ fn bounce<V: Visitor>(
 
 /// Scatters a path within its medium: the ray on which it continues.
 #[inline(never)]
-fn collide<V: Visitor>(
+fn collide<V: Observer>(
     scattering: &VolumeScattering,
     path: &mut Path,
     point: DVec3,
     sampler: &mut Sampler<impl Numbers>,
-    visitor: &mut V,
+    observer: &mut V,
 ) -> ControlFlow<(), Ray> {
     let (dir, medium, throughput) = (path.ray.dir(), path.medium, path.throughput);
     let collision = Collision { point, dir, medium, scattering, throughput };
-    visitor.see(path, Event::Collide(&collision))?;
+    observer.see(path, Event::Collide(&collision))?;
     path.depth += 1;
     path.on = On::default();
     // The phase function depends only on the angle between two directions: it is the same for

@@ -8,7 +8,7 @@ use crate::scene::{
     Emission, EmitSide, Emitter, EmitterKind, PrimId, Scene, SolidId, Source, SourceId,
     Start as SourceStart,
 };
-use crate::transport::{Path, Segment};
+use crate::transport::{MetEmission, Path, Segment};
 use glam::DVec3;
 use lumiduct_base::math::{Aabb, Frame};
 use std::f64::consts::PI;
@@ -90,21 +90,6 @@ pub(crate) enum SegmentStart {
     Interface,
 }
 
-/// Basic radiance that a path meets.
-#[derive(Debug, Clone, Copy)]
-pub struct Met {
-    /// The source that is met.
-    pub source: SourceId,
-    /// Distance along the segment, mm.
-    pub(crate) t: f64,
-    /// Basic radiance at the start of the path, lm/(mm² sr): the emitted one times the throughput
-    /// up to it.
-    pub radiance: f64,
-    /// Basic radiance where it is emitted, lm/(mm² sr); for a volume, that of a path of usual
-    /// length through it.
-    pub(crate) emitted: f64,
-}
-
 /// Why rays cannot meet a source; `None` if they can, or if it is dark.
 pub fn invisible(source: &Source, scene: &Scene) -> Option<&'static str> {
     if !source.is_lit() {
@@ -153,7 +138,7 @@ impl<'s> Emitters<'s> {
         path: &Path,
         segment: &Segment<'_>,
         start: SegmentStart,
-        mut visit: impl FnMut(Met),
+        mut visit: impl FnMut(MetEmission),
     ) {
         for seen in &self.seen {
             match &seen.body {
@@ -166,7 +151,12 @@ impl<'s> Emitters<'s> {
                     if path.inside.contains(*solid) {
                         let radiance = self.volume(seen, *density, path, segment);
                         let emitted = self.volume_radiance(seen, path, -path.ray.dir());
-                        visit(Met { source: seen.id, t: segment.length, radiance, emitted });
+                        visit(MetEmission {
+                            source: seen.id,
+                            t: segment.length,
+                            radiance,
+                            emitted,
+                        });
                     }
                 }
             }
@@ -179,7 +169,7 @@ impl<'s> Emitters<'s> {
         path: &Path,
         segment: &Segment<'_>,
         start: SegmentStart,
-        visit: &mut impl FnMut(Met),
+        visit: &mut impl FnMut(MetEmission),
     ) {
         let Body::Surface { shapes, shining, on, contact, .. } = &seen.body else { return };
         let (scene, ray) = (self.scene, segment.ray);
@@ -210,14 +200,19 @@ impl<'s> Emitters<'s> {
                 if emitted > 0.0 {
                     let arriving =
                         segment.throughput * medium.transmittance(path.wavelength, t.max(0.0));
-                    visit(Met { source: seen.id, t, radiance: emitted * arriving, emitted });
+                    visit(MetEmission {
+                        source: seen.id,
+                        t,
+                        radiance: emitted * arriving,
+                        emitted,
+                    });
                 }
             });
         }
     }
 
     /// Basic radiance that a source emits along the start of a photon's path, from one of its
-    /// shapes, lm/(mm² sr): the same that a gather path meets there as [`Met::emitted`]. 0 for a
+    /// shapes, lm/(mm² sr): the same that a gather path meets there as [`MetEmission::emitted`]. 0 for a
     /// source that rays cannot meet.
     pub(crate) fn emitted(&self, source: SourceId, path: &Path, shape: usize) -> f64 {
         let Some(seen) = self.seen.iter().find(|seen| seen.id == source) else { return 0.0 };

@@ -1,7 +1,11 @@
-//! Events of a path, and their visitors.
+//! Events of a path, and its observers.
+//!
+//! The bounce loop makes most events. What counts photons on sensors adds their start and their
+//! detections, what follows gather paths adds the emission that they meet; both pass the others on.
+//! So one trait serves everything that looks at a path.
 
 use crate::optics::{Lobe, Side, VolumeScattering};
-use crate::scene::{Hits, Interface, MediumId, Ray};
+use crate::scene::{Hits, Interface, MediumId, Ray, SensorId, SourceId};
 use crate::transport::walk::Path;
 use glam::DVec3;
 use std::ops::ControlFlow;
@@ -69,9 +73,58 @@ pub struct Departure {
     pub lobe: Lobe,
 }
 
+/// Start of a photon path.
+#[derive(Debug, Clone, Copy)]
+pub struct Emergence {
+    /// Its source.
+    pub source: SourceId,
+    /// The shape of the source that it starts on.
+    pub shape: usize,
+    /// Its flux at throughput 1, lm or W.
+    pub flux: f64,
+}
+
+/// Light of a photon path that a sensor counts.
+#[derive(Debug, Clone, Copy)]
+pub struct Detection<'a> {
+    /// The sensor.
+    pub sensor: SensorId,
+    /// Its cells that count the light; there may be none.
+    pub cells: &'a [usize],
+    /// Position on the sensor, mm; for a far field, any point of the path.
+    pub point: DVec3,
+    /// Unit direction of travel.
+    pub dir: DVec3,
+    /// Unit normal of the sensor.
+    pub normal: DVec3,
+    /// The medium it is in.
+    pub medium: MediumId,
+    /// Its flux, lm or W.
+    pub flux: f64,
+    /// Its source.
+    pub source: SourceId,
+}
+
+/// Emission that a gather path meets.
+#[derive(Debug, Clone, Copy)]
+pub struct MetEmission {
+    /// The source that is met.
+    pub source: SourceId,
+    /// Distance along the segment, mm.
+    pub(crate) t: f64,
+    /// Basic radiance at the start of the path, lm/(mm² sr): the emitted one times the throughput
+    /// up to it.
+    pub radiance: f64,
+    /// Basic radiance where it is emitted, lm/(mm² sr); for a volume, that of a path of usual
+    /// length through it.
+    pub(crate) emitted: f64,
+}
+
 /// What happens to a path, in this order: travel, arrive, depart, travel, collide, travel, ...
-#[derive(Debug)]
+#[derive(Debug, Clone, Copy)]
 pub enum Event<'a> {
+    /// It starts at a source.
+    Start(&'a Emergence),
     /// It went straight through a medium.
     Travel(&'a Segment<'a>),
     /// It is about to be scattered within a medium, which absorbs nothing in doing so.
@@ -82,6 +135,10 @@ pub enum Event<'a> {
     Depart(&'a Vertex<'a>, &'a Departure),
     /// The acting face absorbed all of it.
     Absorbed(&'a Vertex<'a>),
+    /// A sensor counts it.
+    Detect(&'a Detection<'a>),
+    /// It meets emission.
+    Meet(&'a MetEmission),
     /// Roulette removed this throughput; negative where a survivor gained it.
     Roulette(f64),
     /// It left the scene.
@@ -101,9 +158,9 @@ pub enum Carries {
     Radiance,
 }
 
-/// A watcher of a path; a closure is a watcher of photon paths.
-pub trait Visitor {
-    /// The quantity carried by the paths it watches.
+/// An observer of paths; a closure observes photon paths.
+pub trait Observer {
+    /// The quantity carried by the paths it observes in the bounce loop.
     const CARRIES: Carries = Carries::Flux;
 
     /// Throughput below which roulette ends paths, 1.
@@ -117,9 +174,34 @@ pub trait Visitor {
     fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()>;
 }
 
-impl<F: FnMut(&Path, Event<'_>) -> ControlFlow<()>> Visitor for F {
+impl<F: FnMut(&Path, Event<'_>) -> ControlFlow<()>> Observer for F {
     #[inline]
     fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
         self(path, event)
+    }
+}
+
+/// Nobody observes.
+#[derive(Debug, Clone, Copy)]
+pub struct Unobserved;
+
+impl Observer for Unobserved {
+    #[inline(always)]
+    fn see(&mut self, _: &Path, _: Event<'_>) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+}
+
+/// Two observers, called in order; only the first sets the roulette threshold.
+impl<A: Observer, B: Observer> Observer for (&mut A, &mut B) {
+    #[inline(always)]
+    fn roulette_below(&self) -> f64 {
+        self.0.roulette_below()
+    }
+
+    #[inline(always)]
+    fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
+        self.0.see(path, event)?;
+        self.1.see(path, event)
     }
 }

@@ -1,56 +1,22 @@
 //! Gather paths from a sensor: the sources they meet, and where they could end.
 //!
 //! The path starts as given by its sensor, must pass through the sensor's aim, and meets emission
-//! on the way. The collector decides at every visible interface whether it continues.
+//! on the way. The observer decides at every visible interface whether it continues.
 
 use crate::rng::{Numbers, Sampler};
 use crate::scene::shape::{Crossing, Start, Toward};
 use crate::scene::{
-    Arrival, Begins, Counts, Owner, Passage, Place, Scene, SensorId, SensorKind, SurfaceSensor,
-    Visibility,
+    Arrival, Arrivals, Begins, Counts, Owner, Passage, Place, Ray, Scene, SensorId, SensorKind,
+    SurfaceSensor, Visibility,
 };
 use crate::transport::stop::Pace;
-use crate::transport::walk::emitters::{Emitters, Met, SegmentStart};
+use crate::transport::walk::emitters::{Emitters, SegmentStart};
 use crate::transport::{
-    Carries, Collision, Departure, Event, Loss, Path, ROULETTE_BELOW, Segment, Vertex, Visitor,
+    Carries, Collision, Departure, Detection, Event, MetEmission, Observer, Path, Segment, Vertex,
     walk,
 };
 use smallvec::SmallVec;
 use std::ops::ControlFlow;
-
-/// Collects the light of gather paths.
-pub trait Collector {
-    /// Throughput below which roulette ends paths, 1.
-    fn roulette_below(&self) -> f64 {
-        ROULETTE_BELOW
-    }
-
-    /// Takes the emission that a path has met.
-    fn meet(&mut self, path: &Path, met: Met);
-
-    /// Counts a lost path of this throughput; what it would have met is unknown.
-    fn lose(&mut self, _throughput: f64, _loss: Loss) {}
-
-    /// Sees a visible interface before it acts; a break ends the path there.
-    fn arrive(&mut self, _path: &Path, _vertex: &Vertex<'_>) -> ControlFlow<()> {
-        ControlFlow::Continue(())
-    }
-
-    /// Sees a path before it is scattered within a medium; a break ends the path there.
-    fn collide(&mut self, _path: &Path, _collision: &Collision<'_>) -> ControlFlow<()> {
-        ControlFlow::Continue(())
-    }
-
-    /// Sees how a path continues from an interface; a break ends the path there.
-    fn depart(
-        &mut self,
-        _path: &Path,
-        _vertex: &Vertex<'_>,
-        _departure: &Departure,
-    ) -> ControlFlow<()> {
-        ControlFlow::Continue(())
-    }
-}
 
 /// Shared data of the gather paths of a sensor.
 #[derive(Debug, Clone, Copy)]
@@ -72,7 +38,7 @@ pub fn follow(
     gathering: Gathering<'_, '_>,
     arrival: &Arrival,
     sampler: &mut Sampler<impl Numbers>,
-    collector: &mut impl Collector,
+    observer: &mut impl Observer,
 ) -> u64 {
     let path = Path::arriving(gathering.scene, arrival);
     let (stage, limit) = match arrival.begins {
@@ -80,7 +46,7 @@ pub fn follow(
         Begins::BeforeFace => (Stage::BeforeFace, gathering.bounce_limit.saturating_add(1)),
         Begins::OnSensor => (Stage::First, gathering.bounce_limit),
     };
-    let mut follower = Follower::new(gathering, collector, stage);
+    let mut follower = Follower::new(gathering, observer, stage);
     walk(gathering.scene, path, limit, sampler, &mut follower);
     follower.segments
 }
@@ -90,11 +56,31 @@ pub fn follow_on(
     gathering: Gathering<'_, '_>,
     path: Path,
     sampler: &mut Sampler<impl Numbers>,
-    collector: &mut impl Collector,
+    observer: &mut impl Observer,
 ) -> u64 {
-    let mut follower = Follower::new(gathering, collector, Stage::Beyond);
+    let mut follower = Follower::new(gathering, observer, Stage::Beyond);
     walk(gathering.scene, path, gathering.bounce_limit, sampler, &mut follower);
     follower.segments
+}
+
+/// The gather paths of the sensor that counts some light, if it is among those given.
+pub(crate) fn arrivals_of<'a, 's>(
+    light: &Detection<'_>,
+    sensors: &'a [(SensorId, Arrivals<'s>)],
+) -> Option<&'a Arrivals<'s>> {
+    sensors.iter().find(|(id, _)| *id == light.sensor).map(|(_, arrivals)| arrivals)
+}
+
+/// Etendue that a gather path back along some light would represent if the sensor had only one,
+/// mm² sr.
+pub(crate) fn etendue_of(
+    light: &Detection<'_>,
+    scene: &Scene,
+    arrivals: &Arrivals<'_>,
+    wavelength: f64,
+) -> f64 {
+    let index = scene.media[light.medium.index()].index(wavelength);
+    index * index * arrivals.extent(&Ray::new(light.point, -light.dir), light.normal)
 }
 
 /// Progress of a gather path.
@@ -108,12 +94,12 @@ enum Stage {
     Beyond,
 }
 
-struct Follower<'a, 's, 'c, C> {
+struct Follower<'a, 's, 'o, O> {
     gathering: Gathering<'a, 's>,
-    collector: &'c mut C,
+    observer: &'o mut O,
     stage: Stage,
     /// Emission met at the end of the first segment: it counts if the segment ends at the aim.
-    before_aim: SmallVec<[Met; 2]>,
+    before_aim: SmallVec<[MetEmission; 2]>,
     segments: u64,
     /// The sensor, if light counts only on its first passage.
     first_passage: Option<&'s SurfaceSensor>,
@@ -121,15 +107,15 @@ struct Follower<'a, 's, 'c, C> {
     at_own_face: bool,
 }
 
-impl<'a, 's, 'c, C: Collector> Follower<'a, 's, 'c, C> {
-    fn new(gathering: Gathering<'a, 's>, collector: &'c mut C, stage: Stage) -> Self {
+impl<'a, 's, 'o, O: Observer> Follower<'a, 's, 'o, O> {
+    fn new(gathering: Gathering<'a, 's>, observer: &'o mut O, stage: Stage) -> Self {
         let first_passage = match &gathering.scene.sensors[gathering.sensor.index()].kind {
             SensorKind::Surface(surface) if surface.passage == Passage::First => Some(surface),
             SensorKind::Surface(_) | SensorKind::Goniometer(_) => None,
         };
         Self {
             gathering,
-            collector,
+            observer,
             stage,
             before_aim: SmallVec::new(),
             segments: 0,
@@ -191,7 +177,7 @@ impl<'a, 's, 'c, C: Collector> Follower<'a, 's, 'c, C> {
             Stage::BeforeFace => {}
             Stage::Beyond => {
                 emitters.along(path, segment, SegmentStart::Interface, |met| {
-                    self.collector.meet(path, met);
+                    _ = self.observer.see(path, Event::Meet(&met));
                 });
             }
             Stage::First => {
@@ -211,7 +197,7 @@ impl<'a, 's, 'c, C: Collector> Follower<'a, 's, 'c, C> {
                         return;
                     }
                     match opening {
-                        Some(_) => self.collector.meet(path, met),
+                        Some(_) => _ = self.observer.see(path, Event::Meet(&met)),
                         None => self.before_aim.push(met),
                     }
                 });
@@ -226,13 +212,13 @@ impl<'a, 's, 'c, C: Collector> Follower<'a, 's, 'c, C> {
                 return ControlFlow::Break(());
             }
             for met in self.before_aim.drain(..) {
-                self.collector.meet(path, met);
+                _ = self.observer.see(path, Event::Meet(&met));
             }
         }
         self.at_own_face = self.stage == Stage::BeforeFace;
         self.stage = Stage::Beyond;
         match vertex.interface.visibility {
-            Visibility::Visible => self.collector.arrive(path, vertex),
+            Visibility::Visible => self.observer.see(path, Event::Arrive(vertex)),
             Visibility::Invisible => ControlFlow::Continue(()),
         }
     }
@@ -241,17 +227,17 @@ impl<'a, 's, 'c, C: Collector> Follower<'a, 's, 'c, C> {
         match self.stage {
             // Light that is scattered in front of the aim does not pass through it.
             Stage::First => ControlFlow::Break(()),
-            Stage::BeforeFace | Stage::Beyond => self.collector.collide(path, collision),
+            Stage::BeforeFace | Stage::Beyond => self.observer.see(path, Event::Collide(collision)),
         }
     }
 }
 
-impl<C: Collector> Visitor for Follower<'_, '_, '_, C> {
+impl<O: Observer> Observer for Follower<'_, '_, '_, O> {
     const CARRIES: Carries = Carries::Radiance;
 
     #[inline]
     fn roulette_below(&self) -> f64 {
-        self.collector.roulette_below()
+        self.observer.roulette_below()
     }
 
     #[inline]
@@ -267,18 +253,13 @@ impl<C: Collector> Visitor for Follower<'_, '_, '_, C> {
             Event::Depart(vertex, departure) if self.has_passed(vertex, departure) => {
                 ControlFlow::Break(())
             }
-            Event::Depart(vertex, departure) => self.collector.depart(path, vertex, departure),
-            Event::Cut(throughput) => {
-                self.collector.lose(throughput, Loss::Cut);
-                ControlFlow::Continue(())
-            }
-            Event::Leaked(_, throughput) => {
-                self.collector.lose(throughput, Loss::Leaked);
-                ControlFlow::Continue(())
-            }
-            Event::Absorbed(_) | Event::Roulette(_) | Event::Escaped(_) => {
-                ControlFlow::Continue(())
-            }
+            Event::Depart(..) | Event::Cut(_) | Event::Leaked(..) => self.observer.see(path, event),
+            Event::Start(_)
+            | Event::Detect(_)
+            | Event::Meet(_)
+            | Event::Absorbed(_)
+            | Event::Roulette(_)
+            | Event::Escaped(_) => ControlFlow::Continue(()),
         }
     }
 }

@@ -8,5 +8,8 @@ mod path;
 pub mod scatter;
 
 pub use bounce::walk;
-pub use event::{Carries, Collision, Departure, Event, ROULETTE_BELOW, Segment, Vertex, Visitor};
+pub use event::{
+    Carries, Collision, Departure, Detection, Emergence, Event, MetEmission, Observer,
+    ROULETTE_BELOW, Segment, Unobserved, Vertex,
+};
 pub use path::{Path, WAVELENGTH};

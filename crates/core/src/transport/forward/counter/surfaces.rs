@@ -8,9 +8,9 @@ use crate::scene::shape::{Crossing, Start, Toward};
 use crate::scene::{Counts, MediumId, Owner, Passage, PrimHit, Seeing, SensorId, SurfaceSensor};
 use crate::transport::forward::counter::{Counter, Light, TravelStart};
 use crate::transport::forward::watch::OnPort;
-use crate::transport::forward::watcher::{Detected, PhotonWatcher};
-use crate::transport::{Path, Segment, Vertex};
+use crate::transport::{Detection, Event, Observer, Path, Segment, Vertex};
 use glam::{DVec2, DVec3};
+use smallvec::SmallVec;
 
 /// Light at a surface sensor.
 struct Seen {
@@ -24,7 +24,7 @@ struct Seen {
     throughput: f64,
 }
 
-impl<'s, W: PhotonWatcher> Counter<'_, 's, W> {
+impl<'s, O: Observer> Counter<'_, 's, O> {
     /// Counts light that passes through ports and out of goniometers.
     #[inline(never)]
     pub(super) fn travel_watched(&mut self, path: &Path, segment: &Segment<'_>) {
@@ -100,8 +100,9 @@ impl<'s, W: PhotonWatcher> Counter<'_, 's, W> {
             let (flux, source) = (self.flux * throughput, self.source);
             // The direction and normal on a sphere follow from the position.
             let (dir, normal) = (ray.dir(), ray.dir());
-            let light = Detected { sensor: id, point, dir, normal, medium, flux, source };
-            self.watcher.detect(path, &light, std::iter::once(cell));
+            let cells = &[cell];
+            let light = Detection { sensor: id, cells, point, dir, normal, medium, flux, source };
+            _ = self.observer.see(path, Event::Detect(&light));
             self.count(path, id, cell, throughput);
         } else {
             self.add(self.run.layout.outside_aim(id), throughput);
@@ -225,33 +226,32 @@ impl<'s, W: PhotonWatcher> Counter<'_, 's, W> {
         let away = if seen.counts == Counts::Incident { -seen.dir } else { seen.dir };
         let cells = sensor.grid.cells();
         let (flux, source) = (self.flux * throughput, self.source);
-        let light = Detected { sensor: id, point, dir, normal, medium, flux, source };
+        let light =
+            |cells| Detection { sensor: id, cells, point, dir, normal, medium, flux, source };
         let views = match &sensor.seeing {
             Seeing::All => {
-                self.watcher.detect(path, &light, std::iter::once(cell));
+                _ = self.observer.see(path, Event::Detect(&light(&[cell])));
                 return self.count(path, id, cell, throughput);
             }
             Seeing::Views(views) => views,
             Seeing::Pixels(pixels) => {
                 if let Some(pixel) = pixels.pixel(away) {
                     let cell = pixel * cells + cell;
-                    self.watcher.detect(path, &light, std::iter::once(cell));
+                    _ = self.observer.see(path, Event::Detect(&light(&[cell])));
                     self.count(path, id, cell, throughput);
                 }
                 return;
             }
         };
-        let lit = views.accepting(away).map(|view| view * cells + cell);
-        self.watcher.detect(path, &light, lit);
-        let mut first = true;
-        for view in views.accepting(away) {
-            if first {
-                self.count_totals(path, id, throughput);
-                first = false;
-            }
-            self.readings.sensors[id.index()]
-                .cells
-                .add(view * cells + cell, self.flux * throughput);
+        let lit: SmallVec<[usize; 4]> =
+            views.accepting(away).map(|view| view * cells + cell).collect();
+        if lit.is_empty() {
+            return;
+        }
+        _ = self.observer.see(path, Event::Detect(&light(&lit)));
+        self.count_totals(path, id, throughput);
+        for &cell in &lit {
+            self.readings.sensors[id.index()].cells.add(cell, self.flux * throughput);
         }
     }
 }

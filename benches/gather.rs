@@ -16,7 +16,7 @@ mod clock;
 use clock::cpu_seconds;
 use lumiduct_core::plan::{Estimator, GatherPlan, Request, RunPlan, StopRules, Target};
 use lumiduct_core::scene::{Scene, SensorId, SourceId};
-use lumiduct_core::transport::{Findings, GatherSettings, Layout, Readings, Run};
+use lumiduct_core::transport::{Findings, GatherSettings, Layout, Readings, Run, Windows};
 use lumiduct_input::{self as input, Job, Settings};
 use rayon::ThreadPoolBuilder;
 use std::path::Path;
@@ -179,8 +179,8 @@ fn compare(row: &Row) -> String {
 fn plain(job: &Job, request: Request) -> Found {
     let of_run = |run| {
         let (seconds, findings) = traced(&job.scene, &plan(job, request, run), WAVES);
-        let readings = findings.backward.unwrap_or(findings.photons);
-        Found::new(&job.scene, &readings, seconds)
+        let followed = findings.others.first().map(|own| own.stages[0].counts.first());
+        Found::new(&job.scene, followed.unwrap_or(&findings.photons), seconds)
     };
     Found::in_all(&(0..RUNS).map(of_run).collect::<Vec<Found>>())
 }
@@ -200,14 +200,14 @@ fn gathered(job: &Job) -> Gathering {
     for run in 0..RUNS {
         let waves = PASSES / WAVE_PASSES;
         let (seconds, findings) = traced(&job.scene, &plan(job, Request::Gather, run), waves);
-        let mut gathered = findings.gathered.expect("it was asked for");
-        let windows = gathered.stages.remove(0).windows;
+        let gathered = findings.by(Estimator::Gather).expect("it was asked for");
+        let windows = Windows::of(&gathered.stages[0].counts);
         if run == 0 {
-            let streamed = seconds - records_alone(job, &gathered.settings);
+            let streamed = seconds - records_alone(job, findings.gathering().expect("it gathers"));
             look_up = streamed / photons_alone(job) - 1.0;
         }
-        wide.push(Found::new(&job.scene, &windows.wide, seconds));
-        value.push(Found::new(&job.scene, &windows.extrapolated, seconds));
+        wide.push(Found::new(&job.scene, windows.wide, seconds));
+        value.push(Found::new(&job.scene, windows.extrapolated, seconds));
     }
     Gathering { wide: Found::in_all(&wide), value: Found::in_all(&value), look_up }
 }

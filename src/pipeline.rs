@@ -9,6 +9,7 @@ mod progress;
 mod repeat;
 mod sense;
 mod snapshot;
+mod stop;
 #[cfg(test)]
 mod stop_tests;
 #[cfg(test)]
@@ -23,18 +24,19 @@ pub use output::{Output, Start};
 pub use parts::{SliceWishes, SliceWritten, has_slice, merge_slices, run_slice};
 pub use progress::{Progress, TargetProgress};
 pub(crate) use sense::expect_measures;
-pub use tracing::{Stop, Traced, trace};
+pub use stop::Stop;
+pub use tracing::{Traced, trace};
 pub(crate) use version::{BUILD, VERSION};
 
-use crate::pipeline::checkpoint::Keeper;
+use crate::pipeline::checkpoint::{CheckpointFile, Pause};
 use crate::pipeline::output::output_dir;
 use crate::pipeline::progress::gathering;
 use crate::pipeline::sense::expect_sense;
-use crate::pipeline::tracing::{Pause, trace_kept};
+use crate::pipeline::tracing::trace_from;
 use lumiduct_base::error::{Diagnostic, Result};
 use lumiduct_core::measure;
 use lumiduct_core::plan::Request;
-use lumiduct_core::transport::{Activity, Findings, Interrupt, Run, Track, tracks};
+use lumiduct_core::transport::{Activity, Findings, Interrupt, Track, tracks};
 use lumiduct_input::{self as input, Job, Outline, Settings};
 use lumiduct_report::{
     self as report, CheckResult, Existing, Folder, FolderLock, Inventory, Recipe, Report, RunFacts,
@@ -53,16 +55,13 @@ pub fn run_one(
     let job = prepare(scene, settings)?;
     let dir = output_dir(scene, output);
     let lock = FolderLock::take(&dir)?;
-    let (mut keeper, stand) = Keeper::open(&dir, recipe(&job), output)?;
+    let (mut checkpoints, checkpoint) = CheckpointFile::open(&dir, recipe(&job), output)?;
     // A partial report that a stopped run left in its own folder may be replaced by the whole
     // report.
-    let existing = if stand.is_some() { Existing::Replace } else { output.existing };
+    let existing = if checkpoint.is_some() { Existing::Replace } else { output.existing };
     let folder = Folder::open(lock, existing, repeatable(&job).as_ref())?;
-    let mut keep = |run: &Run<'_>, pause: Pause| match pause {
-        Pause::Between { round_end, elapsed } => keeper.keep_if_due(run, round_end, elapsed),
-        Pause::Last { round_end, elapsed } => keeper.keep_last(run, round_end, elapsed),
-    };
-    let traced = trace_kept(&job, stand, &mut keep, interrupt, watch)?;
+    let mut save = |pause: &Pause<'_>| checkpoints.save(pause);
+    let traced = trace_from(&job, checkpoint, &mut save, interrupt, watch)?;
     interrupt.begin(Activity::Computing);
     let report = compose(&job, &traced.findings, traced.stop);
     let files = report::files(&report, &job.text)?;
@@ -70,7 +69,7 @@ pub fn run_one(
     let written = folder.write(&files)?;
     timing::write(&folder, &traced)?;
     if traced.stop != Stop::Interrupted {
-        keeper.remove()?;
+        checkpoints.remove()?;
     }
     Ok(Finished {
         report,

@@ -22,15 +22,41 @@ pub(super) struct Checkpoint {
     pub(super) elapsed: Duration,
 }
 
-/// Keeps checkpoints of a run.
-pub(super) struct Keeper {
+/// A moment at which a checkpoint may be saved.
+pub(super) struct Pause<'a> {
+    pub(super) run: &'a Run<'a>,
+    /// Waves after which the stop rules are checked next.
+    pub(super) round_end: u64,
+    pub(super) elapsed: Duration,
+    pub(super) follows: Follows,
+}
+
+/// What follows a pause.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Follows {
+    /// More work.
+    Work,
+    /// Nothing: the user has stopped the run.
+    End,
+}
+
+impl Pause<'_> {
+    /// The run as it is now.
+    pub(super) fn checkpoint(&self) -> Checkpoint {
+        let &Self { run, round_end, elapsed, .. } = self;
+        Checkpoint { state: run.state(), round_end, elapsed }
+    }
+}
+
+/// Where the checkpoints of a run are saved.
+pub(super) struct CheckpointFile {
     path: PathBuf,
     recipe: Recipe,
     every: Option<Duration>,
     last: Duration,
 }
 
-impl Keeper {
+impl CheckpointFile {
     /// Looks for a checkpoint of this recipe to resume. One that is not to be resumed is an error,
     /// unless it may be replaced.
     pub(super) fn open(
@@ -39,19 +65,19 @@ impl Keeper {
         output: &Output,
     ) -> Result<(Self, Option<Checkpoint>)> {
         let (path, every) = (dir.join(NAME), output.checkpoint_every);
-        let keeper = Self { path, recipe, every, last: Duration::ZERO };
+        let file = Self { path, recipe, every, last: Duration::ZERO };
         if output.start == Start::Resume {
             sweep(dir)?;
         }
-        if !keeper.path.exists() {
-            return Ok((keeper, None));
+        if !file.path.exists() {
+            return Ok((file, None));
         }
         match (output.start, output.existing) {
             (Start::Resume, _) => {
-                let checkpoint = keeper.read()?;
-                Ok((Self { last: checkpoint.elapsed, ..keeper }, Some(checkpoint)))
+                let checkpoint = file.read()?;
+                Ok((Self { last: checkpoint.elapsed, ..file }, Some(checkpoint)))
             }
-            (Start::Anew, Existing::Replace) => Ok((keeper, None)),
+            (Start::Anew, Existing::Replace) => Ok((file, None)),
             (Start::Anew, Existing::Keep) => Err(Error::Usage(format!(
                 "{} holds a checkpoint of a run that was stopped; use --resume to go on, or --overwrite to begin anew",
                 dir.display()
@@ -72,35 +98,15 @@ impl Keeper {
         Ok(checkpoint)
     }
 
-    /// Keeps a checkpoint if one is due.
-    pub(super) fn keep_if_due(
-        &mut self,
-        run: &Run<'_>,
-        round_end: u64,
-        elapsed: Duration,
-    ) -> Result<()> {
-        match self.every {
-            Some(every) if elapsed.saturating_sub(self.last) >= every => {
-                self.keep(run, round_end, elapsed)
-            }
-            Some(_) | None => Ok(()),
+    /// Saves a checkpoint if one is due, or if the user has stopped the run.
+    pub(super) fn save(&mut self, pause: &Pause<'_>) -> Result<()> {
+        let Some(every) = self.every else { return Ok(()) };
+        let is_due = pause.elapsed.saturating_sub(self.last) >= every;
+        if !is_due && pause.follows == Follows::Work {
+            return Ok(());
         }
-    }
-
-    fn keep(&mut self, run: &Run<'_>, round_end: u64, elapsed: Duration) -> Result<()> {
-        self.last = elapsed;
-        let checkpoint = Checkpoint { state: run.state(), round_end, elapsed };
-        snapshot::write(&self.path, Kind::Checkpoint, &(&self.recipe, &checkpoint))
-    }
-
-    /// Keeps a checkpoint of a run that the user has stopped, if checkpoints are enabled.
-    pub(super) fn keep_last(
-        &mut self,
-        run: &Run<'_>,
-        round_end: u64,
-        elapsed: Duration,
-    ) -> Result<()> {
-        if self.every.is_some() { self.keep(run, round_end, elapsed) } else { Ok(()) }
+        self.last = pause.elapsed;
+        snapshot::write(&self.path, Kind::Checkpoint, &(&self.recipe, &pause.checkpoint()))
     }
 
     /// Removes the checkpoint of a run that has ended.

@@ -2,7 +2,7 @@
 
 use crate::pipeline::output::{Output, output_dir};
 use crate::pipeline::snapshot::{self, Kind};
-use crate::pipeline::tracing::Stop;
+use crate::pipeline::stop::Stop;
 use crate::pipeline::{Finished, compose, prepare, recipe};
 use lumiduct_base::error::{Error, Result};
 use lumiduct_core::transport::{Activity, Interrupt, Run, Shard, Slice, StopSignal, Unsliceable};

@@ -4,7 +4,6 @@ use lumiduct_core::measure::{self, Measure};
 use lumiduct_core::plan::RunPlan;
 use lumiduct_core::transport::{Findings, Phase, Run};
 use lumiduct_input::Job;
-use lumiduct_report::settled;
 use std::time::Duration;
 
 /// Progress of a run, for displays.
@@ -121,7 +120,7 @@ impl Progress {
     }
 }
 
-/// Gather settings in words; empty where nothing was gathered.
+/// Settings of gathering in words; empty where nothing is gathered.
 pub(super) fn gathering(findings: &Findings) -> String {
-    findings.gathered.as_ref().map_or(String::new(), |own| settled(&own.settings))
+    findings.gathering().map_or(String::new(), ToString::to_string)
 }

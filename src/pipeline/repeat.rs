@@ -1,8 +1,7 @@
 //! The command that repeats a run which the clock or the user has ended.
 
-use crate::pipeline::tracing::Stop;
-use lumiduct_core::plan::Estimator;
-use lumiduct_core::transport::{Findings, Gathered};
+use crate::pipeline::stop::Stop;
+use lumiduct_core::transport::Findings;
 use lumiduct_input::Job;
 use lumiduct_input::keys::Key;
 
@@ -52,12 +51,8 @@ pub(super) fn command(job: &Job, findings: &Findings, stop: Stop) -> Option<Stri
 /// clock ends the run.
 fn pass_size(job: &Job, findings: &Findings) -> [Option<u64>; 2] {
     let asked = &job.settings.gather;
-    match (&findings.gathered, job.run.stop.time) {
-        (Some(Gathered { settings, .. }), Some(_)) => {
-            let is_gathered = |own: &&Estimator| matches!(own, Estimator::Gather | Estimator::Mis);
-            let sensors = findings.estimators.iter().filter(is_gathered).count() as u64;
-            [Some(settings.photons), Some(settings.gather_paths * sensors)]
-        }
+    match (findings.gathering(), job.run.stop.time) {
+        (Some(own), Some(_)) => [Some(own.photons), Some(own.gather_paths * own.sensors)],
         (_, None) | (None, Some(_)) => [asked.photons, asked.records],
     }
 }

@@ -3,7 +3,7 @@
 
 use lumiduct_base::error::{Diagnostic, Result};
 use lumiduct_core::measure;
-use lumiduct_core::plan::Request;
+use lumiduct_core::plan::{Estimator, Request};
 use lumiduct_core::scene::{Scene, SensorId, Source};
 use lumiduct_core::transport::{BLIND_PATHS, blind_sensors, invisible, scatterers};
 use lumiduct_input::Job;
@@ -76,7 +76,7 @@ fn expect_sight(job: &Job, problems: &mut Problems) {
     let request = |sensor: SensorId| job.run.request(sensor.index());
     let sensors: Vec<SensorId> = (0..job.scene.sensors.len())
         .map(SensorId::new)
-        .filter(|&sensor| is_by_gather_paths(request(sensor)))
+        .filter(|&sensor| is_asked(request(sensor), Estimator::must_meet_sources))
         .collect();
     for sensor in blind_sensors(&job.scene, &sensors, job.run.seed) {
         let name = &job.scene.sensors[sensor.index()].name;
@@ -87,14 +87,6 @@ fn expect_sight(job: &Job, problems: &mut Problems) {
         problems
             .warning(&Key::of(&["sensors", name]), message)
             .hint("turn its axis toward the port, or name the port in its `aim`");
-    }
-}
-
-/// Whether all light must come from gather paths; else photons find the rest.
-fn is_by_gather_paths(request: Request) -> bool {
-    match request {
-        Request::Auto | Request::Forward | Request::Mix => false,
-        Request::Backward | Request::Gather | Request::Mis => true,
     }
 }
 
@@ -114,7 +106,10 @@ fn requests(job: &Job) -> Vec<(Key, Request)> {
 /// Refuses estimators that must hit the sources where a source cannot be hit.
 fn expect_visible_sources(job: &Job, problems: &mut Problems) {
     for (key, request) in requests(job) {
-        for source in job.scene.sources.iter().filter(|_| is_by_gather_paths(request)) {
+        if !is_asked(request, Estimator::must_meet_sources) {
+            continue;
+        }
+        for source in &job.scene.sources {
             let Some(why) = invisible(source, &job.scene) else { continue };
             let (name, wanted) = (&source.name, request.name());
             let message = format!("`{wanted}` paths cannot meet the source `{name}`: {why}");
@@ -129,14 +124,9 @@ fn expect_visible_sources(job: &Job, problems: &mut Problems) {
 fn expect_passages(job: &Job, problems: &mut Problems) {
     for (index, sensor) in job.scene.sensors.iter().enumerate() {
         let request = job.run.request(index);
-        match request {
-            Request::Gather | Request::Mis if sensor.counts_first_passage() => {}
-            Request::Auto
-            | Request::Forward
-            | Request::Backward
-            | Request::Mix
-            | Request::Gather
-            | Request::Mis => continue,
+        let is_able = !is_asked(request, |one| !one.can_count_first_passages());
+        if is_able || !sensor.counts_first_passage() {
+            continue;
         }
         let (name, wanted) = (&sensor.name, request.name());
         let message = format!(
@@ -151,7 +141,8 @@ fn expect_passages(job: &Job, problems: &mut Problems) {
 /// Refuses merging where a finish scatters.
 fn expect_discrete_directions(job: &Job, problems: &mut Problems) {
     let requests = requests(job);
-    let Some((key, _)) = requests.iter().find(|(_, request)| *request == Request::Mis) else {
+    let is_one = |request| is_asked(request, Estimator::needs_discrete_directions);
+    let Some((key, _)) = requests.iter().find(|(_, request)| is_one(*request)) else {
         return;
     };
     for scatterer in scatterers(&job.scene) {
@@ -161,4 +152,9 @@ fn expect_discrete_directions(job: &Job, problems: &mut Problems) {
             .error(key, message)
             .hint("use `auto`, or one of `forward`, `backward`, `mix` and `gather`");
     }
+}
+
+/// Whether an estimator is requested of which something is true; not where a pilot chooses.
+fn is_asked(request: Request, is_true: impl Fn(Estimator) -> bool) -> bool {
+    request.estimator().is_some_and(is_true)
 }

@@ -4,7 +4,7 @@
 use crate::pipeline::tests::job as short_rod;
 use crate::pipeline::*;
 use lumiduct_core::plan::Estimator;
-use lumiduct_core::transport::{Phase, StopAnswer, StopSignal};
+use lumiduct_core::transport::{Phase, Run, StopAnswer, StopSignal};
 use lumiduct_input::GatherSettings;
 
 /// The short rod by one estimator, in small batches or passes, with a plan for more than is traced.
@@ -143,7 +143,7 @@ fn passes_of_gathering_fit_into_a_short_time_and_their_command_repeats_them() {
     let findings = run.findings();
 
     let command = compose(&job, &findings, Stop::Time).run.repeat.unwrap();
-    let settings = findings.gathered.as_ref().unwrap().settings;
+    let settings = *findings.gathering().unwrap();
     let [photons, records] = [settings.photons, settings.gather_paths];
     assert!(command.contains(&format!("--records {records} --photons {photons}")), "{command}");
     let plan = run.state().plan(&job.run);

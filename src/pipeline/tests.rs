@@ -24,13 +24,12 @@ pub(super) fn job(folder: &Path, settings: &Settings) -> Job {
 /// Traces a job from a checkpoint, and returns its state at every pause.
 fn pauses(job: &Job, checkpoint: Option<Checkpoint>) -> (Traced, Vec<Checkpoint>) {
     let mut saved = Vec::new();
-    let mut keep = |run: &Run<'_>, pause: Pause| {
-        let (Pause::Between { round_end, elapsed } | Pause::Last { round_end, elapsed }) = pause;
-        saved.push(Checkpoint { state: run.state(), round_end, elapsed });
+    let mut save = |pause: &Pause<'_>| {
+        saved.push(pause.checkpoint());
         Ok(())
     };
     let traced =
-        trace_kept(job, checkpoint, &mut keep, &Interrupt::default(), &mut |_| ()).unwrap();
+        trace_from(job, checkpoint, &mut save, &Interrupt::default(), &mut |_| ()).unwrap();
     (traced, saved)
 }
 

@@ -1,46 +1,15 @@
 //! Tracing until a stop rule holds, the clock runs out, or the user stops it.
 
-use crate::pipeline::checkpoint::Checkpoint;
+use crate::pipeline::checkpoint::{Checkpoint, Follows, Pause};
 use crate::pipeline::progress::{Progress, TargetProgress, gathering};
+use crate::pipeline::stop::{Stop, by_target, is_limited_by_bias};
 use lumiduct_base::error::{Error, Result};
-use lumiduct_core::measure::{self, Status};
 use lumiduct_core::plan::RunPlan;
 use lumiduct_core::transport::{
     Activity, FIRST_BATCH_GRACE, Findings, Interrupt, Phase, Run, StopSignal,
 };
 use lumiduct_input::Job;
 use std::time::{Duration, Instant};
-
-/// Why a run ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stop {
-    /// All requested paths are traced.
-    Paths,
-    /// The time is up.
-    Time,
-    /// The target is met.
-    Target,
-    /// The noise is well below the target; what remains is a bias that more paths do not reduce.
-    Bias,
-    /// Nothing of the target's measure was found in very many paths.
-    Dark,
-    /// The user asked to stop.
-    Interrupted,
-}
-
-impl Stop {
-    /// A sentence for the report, without times, as reports do not depend on the clock.
-    pub fn reason(self) -> &'static str {
-        match self {
-            Self::Paths => "all requested paths were traced",
-            Self::Time => "the time limit was reached",
-            Self::Target => "the target error was reached",
-            Self::Bias => "more paths would not help: the target is below the bias of its measure",
-            Self::Dark => "more paths would hardly help: the target's measure is still nothing",
-            Self::Interrupted => "interrupted: this report is partial",
-        }
-    }
-}
 
 /// The outcome of tracing.
 #[derive(Debug)]
@@ -56,15 +25,29 @@ pub struct Traced {
 /// Traces rounds until a stop rule holds; an error if it was stopped before there was anything to
 /// report.
 pub fn trace(job: &Job, interrupt: &Interrupt, watch: &mut dyn FnMut(&Progress)) -> Result<Traced> {
-    trace_kept(job, None, &mut |_, _| Ok(()), interrupt, watch)
+    trace_from(job, None, &mut |_| Ok(()), interrupt, watch)
 }
 
-/// A moment at which a checkpoint may be kept.
-pub(super) enum Pause {
-    /// The run continues.
-    Between { round_end: u64, elapsed: Duration },
-    /// The user has stopped it.
-    Last { round_end: u64, elapsed: Duration },
+/// Traces rounds, from a checkpoint if there is one, until a stop rule holds; `save` may save a
+/// checkpoint at every pause.
+pub(super) fn trace_from(
+    job: &Job,
+    checkpoint: Option<Checkpoint>,
+    save: &mut dyn FnMut(&Pause<'_>) -> Result<()>,
+    interrupt: &Interrupt,
+    watch: &mut dyn FnMut(&Progress),
+) -> Result<Traced> {
+    interrupt.begin(Activity::Tracing);
+    let mut tracing = Tracing::start(job, checkpoint, interrupt, watch)?;
+    let stop = loop {
+        if let Some(stop) = tracing.trace_round(save, watch)? {
+            break stop;
+        }
+        if let Some(stop) = tracing.end_round(watch) {
+            break stop;
+        }
+    };
+    Ok(Traced { findings: tracing.run.findings(), stop, elapsed: tracing.clock.elapsed() })
 }
 
 /// The time of a run.
@@ -93,84 +76,107 @@ impl Clock<'_> {
     }
 }
 
-/// Traces rounds from the state of a run until a stop rule holds; `keep` may save a checkpoint at
-/// every pause.
-pub(super) fn trace_kept(
-    job: &Job,
-    checkpoint: Option<Checkpoint>,
-    keep: &mut dyn FnMut(&Run<'_>, Pause) -> Result<()>,
-    interrupt: &Interrupt,
-    watch: &mut dyn FnMut(&Progress),
-) -> Result<Traced> {
-    interrupt.begin(Activity::Tracing);
-    let before = checkpoint.as_ref().map_or(Duration::ZERO, |checkpoint| checkpoint.elapsed);
-    let clock = Clock { plan: &job.run, start: Instant::now(), before, interrupt };
-    let (mut run, mut round_end) = started(job, checkpoint, &clock, watch)?;
-    let elapsed = || clock.elapsed();
-    let (mut target, mut is_gathering_reported) = (None, false);
-    let stop = loop {
-        let mut early = early_stop(&run, &clock);
-        while run.waves() < round_end && early.is_none() {
-            run.next_piece();
-            early = early_stop(&run, &clock);
-            if run.paths() == 0 {
-                continue;
-            }
-            keep(&run, Pause::Between { round_end, elapsed: elapsed() })?;
-            let mut progress = Progress::of(&job.run, &run, elapsed(), target.clone());
-            if !is_gathering_reported {
-                progress.gathering = gathering(&run.findings());
-                is_gathering_reported = true;
-            }
-            watch(&progress);
-        }
-        if let Some(stop) = early {
-            if run.paths() == 0 {
-                return Err(nothing_to_report(first_work(run.phase()), interrupt));
-            }
-            if stop == Stop::Interrupted {
-                keep(&run, Pause::Last { round_end, elapsed: elapsed() })?;
-            }
-            break stop;
-        }
-        target = TargetProgress::of(job, &run);
-        watch(&Progress::of(&job.run, &run, elapsed(), target.clone()));
-        let stop = target.as_ref().and_then(|target| target_stop(target, run.paths()));
-        // Smaller windows reduce the bias.
-        if let Some(stop) = stop.filter(|stop| *stop != Stop::Bias || !run.shrinks()) {
-            break stop;
-        }
-        let is_held = || match &target {
-            Some(target) => is_held_by_bias(target),
-            None => measure::is_held_by_bias(&job.scene, &run.findings()),
-        };
-        if run.may_end_stage() && is_held() {
-            run.next_stage();
-        }
-        round_end = run.round_end();
-    };
-    Ok(Traced { findings: run.findings(), stop, elapsed: elapsed() })
+/// A run, its clock, and when its stop rules are checked next.
+struct Tracing<'j> {
+    job: &'j Job,
+    run: Run<'j>,
+    clock: Clock<'j>,
+    /// Waves after which the round ends.
+    round_end: u64,
+    target: Option<TargetProgress>,
+    is_gathering_reported: bool,
 }
 
-/// A prepared run, new or resumed, and the waves after which its stop rules are checked next.
-fn started<'j>(
-    job: &'j Job,
-    checkpoint: Option<Checkpoint>,
-    clock: &Clock<'_>,
-    watch: &mut dyn FnMut(&Progress),
-) -> Result<(Run<'j>, u64)> {
-    let resumed = checkpoint.as_ref().map(|checkpoint| checkpoint.state.plan(&job.run));
-    let plan = resumed.as_ref().unwrap_or(&job.run);
-    let run = Run::start(&job.scene, plan, &clock.signal(), &mut |phase| {
-        watch(&Progress::before(&job.run, phase, clock.elapsed()));
-    });
-    let mut run = run.ok_or_else(|| nothing_to_report("the pilot", clock.interrupt))?;
-    let Some(checkpoint) = checkpoint else {
-        let round_end = run.round_end();
-        return Ok((run, round_end));
-    };
-    run.restore(checkpoint.state);
-    Ok((run, checkpoint.round_end))
+impl<'j> Tracing<'j> {
+    /// Prepares a run, new or resumed.
+    fn start(
+        job: &'j Job,
+        checkpoint: Option<Checkpoint>,
+        interrupt: &'j Interrupt,
+        watch: &mut dyn FnMut(&Progress),
+    ) -> Result<Self> {
+        let before = checkpoint.as_ref().map_or(Duration::ZERO, |checkpoint| checkpoint.elapsed);
+        let clock = Clock { plan: &job.run, start: Instant::now(), before, interrupt };
+        let resumed = checkpoint.as_ref().map(|checkpoint| checkpoint.state.plan(&job.run));
+        let plan = resumed.as_ref().unwrap_or(&job.run);
+        let run = Run::start(&job.scene, plan, &clock.signal(), &mut |phase| {
+            watch(&Progress::before(&job.run, phase, clock.elapsed()));
+        });
+        let mut run = run.ok_or_else(|| nothing_to_report("the pilot", interrupt))?;
+        let mut round_end = run.round_end();
+        if let Some(checkpoint) = checkpoint {
+            run.restore(checkpoint.state);
+            round_end = checkpoint.round_end;
+        }
+        Ok(Self { job, run, clock, round_end, target: None, is_gathering_reported: false })
+    }
+
+    /// Traces until the round is over, or until something ends the run before.
+    fn trace_round(
+        &mut self,
+        save: &mut dyn FnMut(&Pause<'_>) -> Result<()>,
+        watch: &mut dyn FnMut(&Progress),
+    ) -> Result<Option<Stop>> {
+        let mut early = self.early_stop();
+        while self.run.waves() < self.round_end && early.is_none() {
+            self.run.next_piece();
+            early = self.early_stop();
+            if self.run.paths() > 0 {
+                save(&self.pause(Follows::Work))?;
+                watch(&self.progress());
+            }
+        }
+        if early.is_some() && self.run.paths() == 0 {
+            return Err(nothing_to_report(first_work(self.run.phase()), self.clock.interrupt));
+        }
+        if early == Some(Stop::Interrupted) {
+            save(&self.pause(Follows::End))?;
+        }
+        Ok(early)
+    }
+
+    /// Checks the target, and lets the estimators decide how to go on.
+    fn end_round(&mut self, watch: &mut dyn FnMut(&Progress)) -> Option<Stop> {
+        self.target = TargetProgress::of(self.job, &self.run);
+        watch(&self.progress());
+        let stop = self.target.as_ref().and_then(|target| by_target(target, self.run.paths()));
+        let may_help = stop == Some(Stop::Bias) && self.run.can_reduce_bias();
+        if stop.is_some() && !may_help {
+            return stop;
+        }
+        let target = &self.target;
+        self.round_end = self.run.end_round(|run| match target {
+            Some(target) => is_limited_by_bias(target),
+            None => run.is_limited_by_bias(),
+        });
+        None
+    }
+
+    /// What ends the run before its round is over.
+    fn early_stop(&self) -> Option<Stop> {
+        if self.run.is_complete() {
+            Some(Stop::Paths)
+        } else if self.clock.interrupt.is_raised() {
+            Some(Stop::Interrupted)
+        } else {
+            self.clock.is_up(&self.run).then_some(Stop::Time)
+        }
+    }
+
+    fn pause(&self, follows: Follows) -> Pause<'_> {
+        let Self { run, round_end, .. } = self;
+        Pause { run, round_end: *round_end, elapsed: self.clock.elapsed(), follows }
+    }
+
+    fn progress(&mut self) -> Progress {
+        let elapsed = self.clock.elapsed();
+        let mut progress = Progress::of(&self.job.run, &self.run, elapsed, self.target.clone());
+        if !self.is_gathering_reported {
+            progress.gathering = gathering(&self.run.findings());
+            self.is_gathering_reported = true;
+        }
+        progress
+    }
 }
 
 /// What a run does first.
@@ -194,41 +200,4 @@ fn nothing_to_report(during: &str, interrupt: &Interrupt) -> Error {
              fewer --photons and --records, or --estimator forward, whose batches are short"
         )
     })
-}
-
-/// A run gives up on a target that its bias prevents once the noise is this share of the wanted
-/// error, 1.
-const NOISE_DONE: f64 = 0.3;
-/// Paths after which a run to a target gives up on a measure that is still zero.
-const DARK_PATHS: u64 = 200_000_000;
-
-/// Whether the target ends the run, and why.
-fn target_stop(target: &TargetProgress, paths: u64) -> Option<Stop> {
-    let (reached, wanted) = (&target.reached, target.wanted);
-    if reached.relative_error() <= wanted {
-        return Some(Stop::Target);
-    }
-    let noise_done = NOISE_DONE * wanted * reached.value.abs();
-    if reached.value != 0.0 && reached.std_error <= noise_done {
-        return Some(Stop::Bias);
-    }
-    (reached.value == 0.0 && paths >= DARK_PATHS).then_some(Stop::Dark)
-}
-
-/// Whether a smaller window reduces the error more than more paths would.
-fn is_held_by_bias(target: &TargetProgress) -> bool {
-    let reached = &target.reached;
-    reached.status == Status::BiasNotResolved
-        || reached.bias.is_some_and(|bias| bias > reached.std_error)
-}
-
-/// What ends a run before its round is over.
-fn early_stop(run: &Run<'_>, clock: &Clock<'_>) -> Option<Stop> {
-    if run.is_complete() {
-        Some(Stop::Paths)
-    } else if clock.interrupt.is_raised() {
-        Some(Stop::Interrupted)
-    } else {
-        clock.is_up(run).then_some(Stop::Time)
-    }
 }

@@ -6,9 +6,9 @@
 use crate::trial::{Gathering, Way, load};
 use lumiduct::pipeline::{self, Stop};
 use lumiduct_core::measure::{self, Measure};
-use lumiduct_core::plan::{RunPlan, Schedule, StopRules, Target};
+use lumiduct_core::plan::{Estimator, RunPlan, Schedule, StopRules, Target};
 use lumiduct_core::tally::Tally;
-use lumiduct_core::transport::{Findings, Interrupt, Run};
+use lumiduct_core::transport::{Findings, Interrupt, Run, Windows};
 use lumiduct_input::Job;
 use rayon::prelude::*;
 
@@ -85,8 +85,10 @@ fn plan(job: &Job, seed: u64, schedule: Schedule) -> RunPlan {
 
 /// E1 of the stage in progress.
 fn wide(job: &Job, run: &Run<'_>) -> Measure {
-    let stages = run.findings().gathered.unwrap().stages;
-    let wide = Findings::forward(stages.last().unwrap().windows.wide.clone());
+    let findings = run.findings();
+    let stages = &findings.by(Estimator::Gather).unwrap().stages;
+    let wide = Windows::of(&stages.last().unwrap().counts).wide;
+    let wide = Findings::forward(wide.clone());
     measure::value_of(&job.scene, &wide, MEASURE).unwrap()
 }
 
@@ -250,7 +252,7 @@ fn a_run_to_a_target_goes_on_to_windows_small_enough_for_it() {
     job.run.stop = StopRules { target: Some(target), ..StopRules::default() };
     let traced = pipeline::trace(&job, &Interrupt::default(), &mut |_| {}).unwrap();
     let reached = measure::value_of(&job.scene, &traced.findings, MEASURE).unwrap();
-    let stages = traced.findings.gathered.unwrap().stages;
+    let stages = &traced.findings.by(Estimator::Gather).unwrap().stages;
     println!("{reached}, up to stage {}", stages.last().unwrap().number);
     assert_eq!(traced.stop, Stop::Target);
     assert!(stages.last().unwrap().number >= 1);

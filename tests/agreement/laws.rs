@@ -3,8 +3,8 @@
 
 use crate::trial::{Comparison, Gathering, Way, findings, load, measures};
 use lumiduct_core::measure::{self, Measure};
-use lumiduct_core::plan::{GatherPlan, RunPlan};
-use lumiduct_core::transport::{Findings, Run};
+use lumiduct_core::plan::{Estimator, GatherPlan, RunPlan};
+use lumiduct_core::transport::{Findings, Run, Windows};
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 /// A guide and its lamp, without absorption.
@@ -104,8 +104,9 @@ fn wide(text: &str, gathering: Gathering, name: &str) -> Measure {
     let way = Way::Gather(gathering);
     let job = load(text, way);
     let found = findings(&job, way);
-    let stages = found.gathered.unwrap().stages;
-    let wide = Findings::forward(stages.last().unwrap().windows.wide.clone());
+    let stages = &found.by(Estimator::Gather).unwrap().stages;
+    let wide = Windows::of(&stages.last().unwrap().counts).wide;
+    let wide = Findings::forward(wide.clone());
     measure::value_of(&job.scene, &wide, name).unwrap()
 }
 
@@ -246,7 +247,7 @@ fn photons_of_the_run_contradict_windows_that_are_wider_than_the_light() {
     let off = |angle_deg| {
         let window =
             Gathering { depth: 0, radius_mm: 0.4, angle_deg, records: 500, photons: 50_000 };
-        measures(text, Way::Gather(window)).gathered[0].off.unwrap()
+        measures(text, Way::Gather(window)).accounts[0].off_photons.unwrap()
     };
     let (narrow, wide) = (off(3.0), off(40.0));
     assert!(narrow.abs() < 4.0 && wide < -4.0, "{narrow} and {wide} errors");
@@ -268,7 +269,7 @@ fn automatic_windows_fit_the_light() {
         let plan = RunPlan { gather: GatherPlan::default(), ..job.run.clone() };
         let mut run = Run::new(&job.scene, &plan);
         run.next_piece();
-        run.findings().gathered.unwrap().settings.window
+        run.findings().gathering().unwrap().window
     };
     let sun = lamp(5.0, "{ cone_half_angle_deg = 0.5 }");
     assert!((sun.theta_max.to_degrees() - 0.25).abs() < 1e-9, "{sun:?}");

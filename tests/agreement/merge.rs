@@ -8,7 +8,7 @@ use crate::trial::{Gathering, Way, agree, findings, load};
 use glam::DVec3;
 use lumiduct_core::rng::Sampler;
 use lumiduct_core::scene::{Arrival, Arrivals, SensorId, SensorKind, SourceId};
-use lumiduct_core::transport::Layout;
+use lumiduct_core::transport::{Layout, Windows};
 
 /// Forward, backward, and merged at depths 0, 2 and 8.
 fn all_agree(what: &str, text: &str) {
@@ -199,13 +199,12 @@ fn variances(text: &str, gathering: Gathering) -> [f64; 4] {
         let found = findings(&job, way);
         let layout = Layout::new(&job.scene);
         let slot = layout.sensor_flux(SensorId::new(0), SourceId::new(0));
-        let windows = found.gathered.as_ref().map(|own| &own.stages[0].windows.wide);
         let (readings, paths) = match way {
             Way::Forward => (&found.photons, PASSES * gathering.photons),
-            Way::Backward | Way::Mixed => {
-                (found.backward.as_ref().unwrap(), PASSES * gathering.records)
+            // Of passes, within the widest window.
+            Way::Backward | Way::Mixed | Way::Gather(_) | Way::Merged(_) => {
+                (found.others[0].stages[0].counts.first(), PASSES * gathering.records)
             }
-            Way::Gather(_) | Way::Merged(_) => (windows.unwrap(), PASSES * gathering.records),
         };
         let flux = readings.scalar(slot);
         if flux.mean() == 0.0 {
@@ -300,8 +299,8 @@ exit = {{ plane = {{}}, on = "tube.exit", counts = "incident", side = "both" }}
     let job = load(&text, way);
     let found = findings(&job, way);
     let slot = Layout::new(&job.scene).sensor_flux(SensorId::new(0), SourceId::new(0));
-    let windows = &found.gathered.as_ref().unwrap().stages[0].windows;
-    for readings in [&windows.wide, &windows.middle, &windows.narrow] {
+    let windows = Windows::of(&found.others[0].stages[0].counts);
+    for readings in [windows.wide, windows.middle, windows.narrow] {
         let flux = readings.scalar(slot);
         println!("{what}, depth {depth}: {} ± {}", flux.mean(), flux.std_error());
         assert!(flux.std_error() < 0.01 * expected, "{what}: {flux:?}");

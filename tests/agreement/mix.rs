@@ -52,7 +52,7 @@ fn auto_takes_the_mix_for_light_of_two_kinds() {
 fn cost(text: &str, way: Way) -> f64 {
     let job = load(text, way);
     let found = findings(&job, way);
-    let readings = found.backward.as_ref().unwrap_or(&found.photons);
+    let readings = found.others.first().map_or(&found.photons, |own| own.stages[0].counts.first());
     let layout = Layout::new(&job.scene);
     let slots: Vec<usize> = (0..job.scene.sources.len())
         .map(|source| layout.sensor_flux(SensorId::new(0), SourceId::new(source)))

@@ -5,7 +5,7 @@ use lumiduct_core::measure::{self, Measure};
 use lumiduct_core::plan::Request;
 use lumiduct_core::plan::{Check, RunPlan, StopRules};
 use lumiduct_core::tally::sigmas;
-use lumiduct_core::transport::{Findings, Run};
+use lumiduct_core::transport::{Findings, Run, Windows};
 use lumiduct_input::{self as input, Job, Settings};
 use std::path::{Path, PathBuf};
 
@@ -137,9 +137,9 @@ impl<'a> Wanted<'a> {
 
 /// The gathered light in the widest window, as ordinary readings.
 fn wide_window(findings: &Findings) -> Findings {
-    let gathered = findings.gathered.as_ref().expect("the case asks for gathering");
+    let gathered = findings.others.first().expect("the case asks for gathering");
     let stage = gathered.stages.last().expect("a wave has been traced");
-    Findings::forward(stage.windows.wide.clone())
+    Findings::forward(Windows::of(&stage.counts).wide.clone())
 }
 
 /// Traces whole rounds until all errors are reached, or too many paths are traced.

@@ -12,17 +12,19 @@ use lumiduct_core::plan::RunPlan;
 use lumiduct_core::rng::Sampler;
 use lumiduct_core::scene::Visibility;
 use lumiduct_core::transport::forward::Forward;
-use lumiduct_core::transport::gather::estimate::{Arriving, Meeting, NestedWindows};
+use lumiduct_core::transport::gather::contribution::{NestedWindows, PhotonHit, SurfaceHit};
 use lumiduct_core::transport::gather::index::Key;
-use lumiduct_core::transport::gather::records::{GatherRecord, Records, Wanted};
-use lumiduct_core::transport::gather::settings::{PhotonPilot, settle};
+use lumiduct_core::transport::gather::records::{
+    GatherRecord, RecordKind, RecordPath, Records, SurfaceRecord,
+};
+use lumiduct_core::transport::gather::settings::settle;
 use lumiduct_core::transport::gather::surfaces::Surfaces;
 use lumiduct_core::transport::stop::{Pace, StopSignal};
 use lumiduct_core::transport::tally::readings::Counted;
 use lumiduct_core::transport::walk::follow::follow;
 use lumiduct_core::transport::walk::scatter::facing;
 use lumiduct_core::transport::{
-    Emergence, Event, MetEmission, Observer, Path, Readings, Vertex, Window,
+    Emergence, Event, MetEmission, Observer, Path, PhotonPilot, Readings, Vertex, Window,
 };
 use smallvec::SmallVec;
 use std::ops::ControlFlow;
@@ -188,16 +190,19 @@ impl Gatherer<'_, '_> {
             let value = self.etendue * vertex.throughput / (index * index);
             // The whole disk counts also at rims; that bias vanishes with the radius.
             let values = self.window.nested().map(|window| value / window.area());
-            self.waiting.records.push(GatherRecord {
+            let record = SurfaceRecord {
                 point: vertex.point,
                 normal,
                 surface: surfaces.of(interface.acting.prim),
                 medium,
-                wanted: Wanted::Scattered { bsdf, out: -vertex.dir },
+                kind: RecordKind::Scattered { bsdf, out: -vertex.dir },
                 values,
-                path: self.waiting.cells.len() as u32 - 1,
-                depth: path.depth + 1,
-            });
+                path: RecordPath {
+                    place: self.waiting.cells.len() as u32 - 1,
+                    depth: path.depth + 1,
+                },
+            };
+            self.waiting.records.push(GatherRecord::Surface(record));
         }
     }
 }
@@ -247,15 +252,16 @@ impl Stream<'_, '_> {
         let facing = facing(sensor.scene, path, vertex);
         let incidence = Incidence { normal: facing.facet, ..facing.incidence };
         let medium = interface.from;
-        let photon = Meeting { surface, medium, point: vertex.point, incidence };
-        let photon = Arriving::AtSurface(photon);
+        let photon = SurfaceHit { surface, medium, point: vertex.point, incidence };
+        let photon = PhotonHit::Surface(photon);
         let Self { nested, cells, readings, .. } = self;
         let key = Key { surface, point: vertex.point, dir: vertex.dir };
         self.records.visit(&[key], |_, record| {
             let Some([share, ..]) = nested.flux(record, &photon) else { return };
-            let (flux, depth) = (flux * vertex.throughput * share, path.depth + record.depth);
+            let (flux, depth) =
+                (flux * vertex.throughput * share, path.depth + record.path().depth);
             let light = Counted { flux, depth, source };
-            sensor.count(readings, &cells[record.path as usize], &light);
+            sensor.count(readings, &cells[record.path().place as usize], &light);
         });
     }
 }

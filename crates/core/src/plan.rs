@@ -77,19 +77,24 @@ impl Request {
 
     /// Its name in files and on the command line.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Auto => "auto",
-            Self::Forward => Estimator::Forward.name(),
-            Self::Backward => Estimator::Backward.name(),
-            Self::Mix => Estimator::Mix.name(),
-            Self::Gather => Estimator::Gather.name(),
-            Self::Mis => Estimator::Mis.name(),
-        }
+        self.estimator().map_or("auto", Estimator::name)
     }
 
     /// The request with this name.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|request| request.name() == name)
+    }
+
+    /// The estimator it names; `None` if a pilot chooses.
+    pub fn estimator(self) -> Option<Estimator> {
+        match self {
+            Self::Auto => None,
+            Self::Forward => Some(Estimator::Forward),
+            Self::Backward => Some(Estimator::Backward),
+            Self::Mix => Some(Estimator::Mix),
+            Self::Gather => Some(Estimator::Gather),
+            Self::Mis => Some(Estimator::Mis),
+        }
     }
 
     /// Whether gather records may be made, so that a [`GatherPlan`] matters.

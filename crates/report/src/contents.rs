@@ -10,13 +10,15 @@ use crate::html::data;
 use crate::html::frame::{Block, Part, Plots, Standing, table};
 use crate::key_figures::{Listed, is_one_cell, is_shown, key_figures, listed};
 use crate::words::{
-    CHOICES_HEAD, CLASSES_HEAD, ERRORS, NO_LINES, balance_lines, choice_row, class_rows,
-    evenness_head, evenness_rows, gathering, is_silent, lost_paths, measure_cells, outcome_word,
-    quantity, run_lines, stage_row, variation,
+    CHOICES_HEAD, CLASSES_HEAD, ERRORS, NO_LINES, balance_lines, choice_row, class_rows, entry,
+    evenness_head, evenness_rows, is_silent, lost_paths, measure_cells, outcome_word, quantity,
+    run_lines, variation,
 };
 use crate::{Report, by_sun, record};
 use lumiduct_base::number::format_value;
 use lumiduct_core::measure::{Measure, Outcome, SensorMap, SensorPaths, Status};
+use lumiduct_core::plan::Estimator;
+use lumiduct_core::transport::Entry;
 
 /// Share of the flux that the logarithmic histogram of bounces shows, which reveals more of the
 /// tail.
@@ -67,7 +69,7 @@ fn checks(report: &Report) -> Option<Part> {
             let word = outcome_word(result.verdict.outcome).to_owned();
             vec![result.check.measure.clone(), word, result.verdict.reason.clone()]
         };
-        blocks.push(table(["check", "result", "why"], report.checks.iter().map(row).collect()));
+        blocks.push(table(&["check", "result", "why"], report.checks.iter().map(row).collect()));
     }
     if !report.warnings.is_empty() {
         if !blocks.is_empty() {
@@ -99,7 +101,7 @@ fn results(report: &Report) -> Part {
     }
     let sum = sum_over_weathers(measures.weathers.len());
     let sum = sum.map_or(String::new(), |words| format!(", {words}"));
-    blocks.push(table(["sensor", "", &format!("value ± standard error{sum}")], rows));
+    blocks.push(table(&["sensor", "", &format!("value ± standard error{sum}")], rows));
     blocks.push(Block::Words { text: ERRORS.into() });
     if let Some(Matrix { head, rows }) = matrix(measures) {
         blocks.push(Block::Heading { text: "By source".into() });
@@ -135,7 +137,7 @@ fn sensor(report: &Report, name: &str, plots: &mut Plots) -> Part {
         blocks.push(plots.add("transmission by the elevation of the sun", chart, picture));
         blocks.push(Block::Words { text: by_sun::HEAD.into() });
         let rows = found.rows.into_iter().map(Vec::from).collect();
-        blocks.push(table(["source", "elevation of the sun", "transmission"], rows));
+        blocks.push(table(&["source", "elevation of the sun", "transmission"], rows));
     }
     blocks.push(Block::Heading { text: "Measures".into() });
     blocks.extend(remark_on_totals(measures).map(|text| Block::Words { text }));
@@ -156,7 +158,7 @@ fn evenness(map: &SensorMap) -> Vec<Block> {
     let rows = evenness_rows(map).into_iter().map(row).collect();
     vec![
         Block::Words { text: head },
-        trimmed(["over", "min/avg", "min/max", "max/min"], rows),
+        trimmed(&["over", "min/avg", "min/max", "max/min"], rows),
         Block::Words { text: variation(map) },
     ]
 }
@@ -195,7 +197,7 @@ fn measures_table(rows: MeasureRows<'_>) -> Block {
         std::iter::once(name.clone()).chain(measure_cells(measure)).collect()
     };
     let rows = rows.into_iter().map(row).collect();
-    trimmed(["measure", "value ± standard error", "bias up to", "remark"], rows)
+    trimmed(&["measure", "value ± standard error", "bias up to", "remark"], rows)
 }
 
 /// A table folded away behind a summary.
@@ -210,8 +212,8 @@ fn folded(table: Block, what: String) -> Block {
 }
 
 /// A table without the columns that are empty in every row; the first one stays.
-fn trimmed<const N: usize>(head: [&str; N], rows: Vec<Vec<String>>) -> Block {
-    let kept: Vec<usize> = (0..N)
+fn trimmed(head: &[&str], rows: Vec<Vec<String>>) -> Block {
+    let kept: Vec<usize> = (0..head.len())
         .filter(|&column| column == 0 || rows.iter().any(|row| !is_silent(&row[column])))
         .collect();
     let pick = |row: &Vec<String>| kept.iter().map(|&column| row[column].clone()).collect();
@@ -262,7 +264,7 @@ fn balance(report: &Report, plots: &mut Plots) -> Part {
     let rows = lines.iter().map(row).collect();
     let mut blocks = vec![
         plots.add("where the light went", flow, Some("balance.png".into())),
-        table(["line", "flux", "share"], rows),
+        table(&["line", "flux", "share"], rows),
     ];
     if !rest.is_empty() {
         let folded = Some(format!("{} lines without light", rest.len()));
@@ -303,7 +305,7 @@ fn journey(report: &Report, paths: &SensorPaths, plots: &mut Plots) -> Vec<Block
     if !paths.classes.is_empty() {
         blocks.push(Block::Words { text: CLASSES_HEAD.into() });
         let rows = class_rows(&paths.classes).into_iter().map(Vec::from).collect();
-        blocks.push(table(["share", "mean bounces", "path"], rows));
+        blocks.push(table(&["share", "mean bounces", "path"], rows));
     }
     blocks
 }
@@ -313,26 +315,26 @@ fn estimators(report: &Report) -> Vec<Block> {
     let measures = &report.measures;
     let mut blocks = Vec::new();
     if measures.choices.is_empty() {
-        let row = |(sensor, estimator): (&String, &lumiduct_core::plan::Estimator)| {
+        let row = |(sensor, estimator): (&String, &Estimator)| {
             vec![sensor.clone(), estimator.name().to_owned()]
         };
-        blocks.push(table(["sensor", "estimator"], measures.estimators.iter().map(row).collect()));
+        blocks.push(table(&["sensor", "estimator"], measures.estimators.iter().map(row).collect()));
     } else {
         let rows = measures.choices.iter().map(|(sensor, choice)| {
             std::iter::once(sensor.clone()).chain(choice_row(choice)).collect()
         });
-        let head = ["sensor", "chosen", "forward", "backward", "mix", "gather"];
+        let tried = Estimator::TRIED.map(Estimator::name);
+        let head: Vec<&str> = ["sensor", "chosen"].into_iter().chain(tried).collect();
         blocks.push(Block::Words { text: CHOICES_HEAD.into() });
-        blocks.push(trimmed(head, rows.collect()));
+        blocks.push(trimmed(&head, rows.collect()));
     }
-    let unit = measures.unit.flux();
-    for facts in &measures.gathered {
-        let gathered = gathering(facts, unit).into_iter();
-        blocks.push(Block::Heading { text: format!("Gathering for {}", facts.sensor) });
-        blocks.extend(gathered.map(|text| Block::Words { text }));
-        let e1 = format!("E1 in {unit}");
-        let head = ["stage", "passes", "radius", "angle", e1.as_str(), "E2", "E3", "E0"];
-        blocks.push(table(head, facts.stages.iter().map(stage_row).collect()));
+    for account in &measures.accounts {
+        let name = account.estimator.name();
+        blocks.push(Block::Heading { text: format!("Sensor {}, by {name}", account.sensor) });
+        let sentences = account.sentences.iter().cloned();
+        blocks.extend(sentences.map(|text| Block::Words { text }));
+        let row = |row: &Vec<Entry>| row.iter().map(entry).collect();
+        blocks.push(table(&account.columns, account.rows.iter().map(row).collect()));
     }
     for paths in &measures.sensor_paths {
         blocks.extend(paths.lost.map(|lost| Block::Words {

@@ -59,8 +59,7 @@ pub use mesh::mesh_report;
 pub use output::OutputFile;
 pub use recipe::Recipe;
 pub use record::{
-    CheckResult, Outcome, Report, RunFacts, SceneFacts, TargetFacts, asked, leak_places, settled,
-    wishes,
+    CheckResult, Outcome, Report, RunFacts, SceneFacts, TargetFacts, asked, leak_places, wishes,
 };
 pub use remarks::{remark_on_paths, remarks, remarks_on_passages};
 pub use seal::{seal, unseal};

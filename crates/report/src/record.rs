@@ -5,7 +5,7 @@ use glam::DVec3;
 use lumiduct_base::number::{format_exact, format_percent};
 use lumiduct_core::measure::{self, Measures, Verdict};
 use lumiduct_core::plan::{Check, GatherPlan, Request, Schedule, StopRules, Target};
-use lumiduct_core::transport::{GatherSettings, Leak};
+use lumiduct_core::transport::Leak;
 use lumiduct_input::Project;
 use serde::{Deserialize, Serialize};
 
@@ -62,7 +62,7 @@ pub struct RunFacts {
     /// Requested gather settings, in words: see [`wishes`]. Empty without any.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub gather: String,
-    /// Gather settings used, in words: see [`settled`]. Empty where nothing was gathered.
+    /// Gather settings used, in words. Empty where nothing was gathered.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub gathering: String,
     /// Whether the user ended the run.
@@ -173,21 +173,6 @@ pub fn wishes(gather: &GatherPlan) -> String {
         schedule,
     ];
     all.into_iter().flatten().collect::<Vec<_>>().join(", ")
-}
-
-/// Settings of the gather estimator in words, both requested and chosen ones.
-pub fn settled(settings: &GatherSettings) -> String {
-    let GatherSettings { depth, window, gather_paths, photons, schedule, inradius: _ } = settings;
-    let schedule = match schedule {
-        Schedule::Stages => "in stages",
-        Schedule::PerPass => "from pass to pass",
-    };
-    format!(
-        "depth {depth}, windows from {} mm and {} deg shrinking {schedule}, {photons} photons and {gather_paths} gather \
-         paths from each sensor in the first passes",
-        format_exact(window.radius),
-        format_exact(window.theta_max.to_degrees())
-    )
 }
 
 /// Places of leaks in the user's coordinates, mm.

@@ -4,15 +4,12 @@
 
 use crate::by_light::remark_on_weathers;
 use lumiduct_base::number::{format_percent, format_with_error};
-use lumiduct_core::measure::{GatheredFacts, LostPaths, Measures, Status};
+use lumiduct_core::measure::{LostPaths, Measures, Status};
 use lumiduct_core::scene::{Counts, Place, Scene, Seeing, Sensor, SensorKind};
 use lumiduct_core::transport::GROUPS;
 
 /// Share of the flux cut by the bounce limit above which there is a remark, 1.
 const CUT_SHARE: f64 = 1e-3;
-/// Deviation in errors between a gathered flux and that counted by photons above which there is a
-/// remark, 1.
-const CONTRADICTED: f64 = 4.0;
 
 /// Remarks that the results ask for.
 pub fn remarks(measures: &Measures, scene: &Scene) -> Vec<String> {
@@ -53,7 +50,7 @@ pub fn remarks(measures: &Measures, scene: &Scene) -> Vec<String> {
         }
     }
     remarks.extend(remark_on_weathers(measures));
-    remarks.extend(measures.gathered.iter().filter_map(remark_on_gathering));
+    remarks.extend(measures.accounts.iter().filter_map(|account| account.warning.clone()));
     remarks
 }
 
@@ -120,20 +117,6 @@ fn remark_on_lost_paths(sensor: &str, lost: LostPaths) -> Option<String> {
             format_percent(leaked)
         )
     })
-}
-
-/// A remark where the photon count of a run disagrees with the gathered value.
-fn remark_on_gathering(facts: &GatheredFacts) -> Option<String> {
-    let off = facts.off.filter(|off| off.abs() > CONTRADICTED)?;
-    let [flux, error] = facts.by_photons;
-    Some(format!(
-        "the gathered flux of sensor `{}` is {:.1} errors {} what photons of the same run counted there ({}): a feature \
-         of the light is smaller than the windows; take a smaller radius_mm or angle_deg, or another estimator",
-        facts.sensor,
-        off.abs(),
-        if off > 0.0 { "above" } else { "below" },
-        format_with_error(flux, error)
-    ))
 }
 
 /// A remark where a run traced noticeably more paths than requested.

@@ -25,7 +25,7 @@ struct Summary<'r> {
     estimators: &'r indexmap::IndexMap<String, lumiduct_core::plan::Estimator>,
     #[serde(skip_serializing_if = "indexmap::IndexMap::is_empty")]
     choices: &'r indexmap::IndexMap<String, lumiduct_core::transport::Choice>,
-    gathered: &'r [lumiduct_core::measure::GatheredFacts],
+    accounts: &'r [lumiduct_core::transport::Account],
     measures: &'r indexmap::IndexMap<String, lumiduct_core::measure::Measure>,
     checks: &'r [crate::CheckResult],
     paths_to_sensors: &'r [lumiduct_core::measure::SensorPaths],
@@ -50,7 +50,7 @@ pub(crate) fn json(report: &Report, files: &[&str]) -> Result<String> {
         segments: measures.segments,
         estimators: &measures.estimators,
         choices: &measures.choices,
-        gathered: &measures.gathered,
+        accounts: &measures.accounts,
         measures: &measures.values,
         checks: &report.checks,
         paths_to_sensors: &measures.sensor_paths,

@@ -4,11 +4,11 @@
 use crate::Report;
 use lumiduct_base::number::{format_percent, format_value, format_with_error};
 use lumiduct_core::measure::{
-    Action, Extent, GatheredFacts, LostPaths, Measure, Outcome, PathClass, PathStep, Resolution,
-    SensorMap, StageFacts, Statistic, Status, strongest,
+    Action, Extent, LostPaths, Measure, Outcome, PathClass, PathStep, SensorMap, Statistic, Status,
+    strongest,
 };
 use lumiduct_core::plan::Estimator;
-use lumiduct_core::transport::{Choice, Objection, Trial};
+use lumiduct_core::transport::{Choice, Entry, Objection, Trial};
 
 /// A bias is shown from this share of the standard error on, 1.
 const BIAS_TOLD: f64 = 0.3;
@@ -123,8 +123,7 @@ pub(crate) fn outcome_word(outcome: Outcome) -> &'static str {
 
 /// The chosen estimator, and the pilot's findings on each.
 pub(crate) fn choice_row(choice: &Choice) -> Vec<String> {
-    let tried = [Estimator::Forward, Estimator::Backward, Estimator::Mix, Estimator::Gather];
-    let words = tried.map(|estimator| {
+    let words = Estimator::TRIED.map(|estimator| {
         let trial = choice.tried.iter().find(|trial| trial.estimator == estimator);
         trial.map_or(NOT_POSSIBLE.into(), trial_words)
     });
@@ -135,10 +134,10 @@ fn trial_words(trial: &Trial) -> String {
     let time = trial.time(0.01);
     let time = time.map_or(FOUND_NOTHING.into(), waiting);
     match (trial.objection, trial.bias) {
-        (Some(Objection::WindowsDiffer), Some(bias)) => {
-            format!("{time} (its windows differ by {:.0} %)", 100.0 * bias)
+        (Some(Objection::Biased), Some(bias)) => {
+            format!("{time} (biased by {:.0} %)", 100.0 * bias)
         }
-        (Some(Objection::WindowsDiffer), None) | (None, Some(_) | None) => time,
+        (Some(Objection::Biased), None) | (None, Some(_) | None) => time,
         (Some(Objection::Contradicted), _) => time + " (contradicted)",
     }
 }
@@ -163,57 +162,13 @@ fn waiting(seconds: f64) -> String {
     }
 }
 
-/// How gathered values were obtained, in paragraphs.
-pub(crate) fn gathering(facts: &GatheredFacts, unit: &str) -> Vec<String> {
-    let from = facts.stages.iter().find(|stage| stage.number == facts.stage);
-    let mut text = from.map_or(String::new(), |stage| {
-        format!(
-            "Gathered at depth {}: the values are those of stage {} with {} passes and windows up to {} mm and {} deg. ",
-            facts.depth,
-            stage.number,
-            stage.passes,
-            format_value(stage.radius_mm),
-            format_value(stage.angle_deg)
-        )
-    });
-    text += match facts.resolution {
-        Resolution::Resolved => {
-            "Bias resolved: it goes with the square of the window, and E0, which is free of such a bias, is the value."
-        }
-        Resolution::InNoise => {
-            "Bias not resolved from noise: the windows agree within their errors. The value is E0, free of a bias by the square of the window."
-        }
-        Resolution::NotResolved => {
-            "Bias not resolved: the windows differ, and not by the square of their size. The value is E3, that of the smallest window, and |E1 - E2| is no bound."
-        }
-    };
-    let by_photons = facts.off.map(|off| {
-        let [flux, error] = facts.by_photons;
-        format!(
-            "Photons of this run that came to the sensor itself carried {} {unit}, which is {:.1} errors from the value.",
-            format_with_error(flux, error),
-            off.abs()
-        )
-    });
-    std::iter::once(text).chain(by_photons).collect()
-}
-
-/// Stage, passes, radius, angle, and the four estimates of a gathered flux.
-pub(crate) fn stage_row(stage: &StageFacts) -> Vec<String> {
-    let [e1, e2, e3, e0] =
-        [0, 1, 2, 3].map(|window| format_with_error(stage.flux[window], stage.std_errors[window]));
-    let (radius, angle) = (format_value(stage.radius_mm), format_value(stage.angle_deg));
-    let StageFacts { number, passes, .. } = stage;
-    vec![
-        number.to_string(),
-        passes.to_string(),
-        format!("{radius} mm"),
-        format!("{angle} deg"),
-        e1,
-        e2,
-        e3,
-        e0,
-    ]
+/// An entry of the table of an account.
+pub(crate) fn entry(entry: &Entry) -> String {
+    match entry {
+        Entry::Count(count) => count.to_string(),
+        Entry::Number(number) => format_value(*number),
+        Entry::Measured { value, std_error } => format_with_error(*value, *std_error),
+    }
 }
 
 /// The fate of gather paths that ended prematurely.

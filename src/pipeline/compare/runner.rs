@@ -6,7 +6,6 @@ use lumiduct_base::error::{Error, Result};
 use lumiduct_baselines::BaselineRun;
 use lumiduct_core::measure;
 use lumiduct_core::plan::Request;
-use lumiduct_core::scene::Scene;
 use lumiduct_core::transport::{Findings, Run, StopSignal};
 use lumiduct_report::Sample;
 use std::time::{Duration, Instant};
@@ -49,7 +48,7 @@ pub(super) fn trace(bench: &Bench<'_>, stint: &Stint<'_>) -> Result<Traced> {
     let mut last: Option<(Sample, Estimate)> = None;
     loop {
         let start = Instant::now();
-        runner.next_piece(&bench.job.scene);
+        runner.next_piece();
         spent += start.elapsed();
         if bench.interrupt.is_raised() {
             return Err(interrupted());
@@ -101,14 +100,11 @@ impl<'s> Runner<'s> {
         })
     }
 
-    fn next_piece(&mut self, scene: &Scene) {
+    fn next_piece(&mut self) {
         match self {
             Self::Run { run, round_end } => {
                 if run.is_between_waves() && run.waves() >= *round_end {
-                    if run.may_end_stage() && measure::is_held_by_bias(scene, &run.findings()) {
-                        run.next_stage();
-                    }
-                    *round_end = run.round_end();
+                    *round_end = run.end_round(Run::is_limited_by_bias);
                 }
                 run.next_piece();
             }
@@ -137,7 +133,7 @@ impl<'s> Runner<'s> {
         let (findings, segments) = match self {
             Self::Run { run, .. } => {
                 let findings = run.findings();
-                let segments = segments(&findings);
+                let segments = findings.segments();
                 (findings, segments)
             }
             Self::Baseline(run) => {
@@ -158,12 +154,4 @@ impl<'s> Runner<'s> {
             Self::Baseline(run) => run.cut(),
         }
     }
-}
-
-/// Segments of photon and gather paths; for gather records, of the stages still reported.
-fn segments(findings: &Findings) -> u64 {
-    let followed = findings.backward.as_ref().map_or(0, |readings| readings.segments);
-    let stages = findings.gathered.iter().flat_map(|gathered| &gathered.stages);
-    let gathered: u64 = stages.map(|stage| stage.windows.wide.segments).sum();
-    findings.photons.segments + followed + gathered
 }

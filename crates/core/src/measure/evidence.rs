@@ -5,12 +5,9 @@
 use crate::measure::{Measure, Status};
 use crate::plan::Estimator;
 use crate::scene::{Scene, SensorId};
-use crate::transport::{Layout, Readings};
+use crate::transport::{Layout, MIN_LIT_GROUPS, Readings};
 use std::ops::Range;
 
-/// With fewer groups of batches than this that contain anything, the error bar is not trustworthy:
-/// the spread of ten samples is itself known to a quarter, 1/sqrt(2 · 9).
-pub(crate) const MIN_LIT_GROUPS: usize = 10;
 /// With fewer counts than this it is not trustworthy either, 1. n counts of equal flux have a
 /// relative error of 1/sqrt(n).
 pub(crate) const MIN_COUNTS: f64 = 10.0;
@@ -41,11 +38,6 @@ impl<'a> Evidence<'a> {
     /// Other readings give a sensor's light.
     pub(crate) fn by(self, readings: &'a Readings, estimator: Estimator) -> Self {
         Self { readings, estimator, ..self }
-    }
-
-    /// The estimator that made the readings.
-    pub(crate) fn estimator(&self) -> Estimator {
-        self.estimator
     }
 
     /// The evidence of photons alone.
@@ -81,8 +73,8 @@ impl<'a> Evidence<'a> {
 
     /// Sum of fluxes, times a factor that leads to `unit`.
     pub(crate) fn sum(&self, slots: &[usize], factor: f64, unit: &str) -> Measure {
-        let total = self.readings.function(|flux| slots.iter().map(|&slot| flux(slot)).sum());
-        let lit = self.lit_groups(slots);
+        let total = self.readings.sum(slots);
+        let lit = self.readings.lit_groups(slots);
         if lit == 0 {
             return self.measure(0.0, self.path_flux() * factor, unit, Status::NoSignal);
         }
@@ -95,10 +87,10 @@ impl<'a> Evidence<'a> {
         let sum = |flux: &dyn Fn(usize) -> f64, slots: &[usize]| {
             slots.iter().map(|&slot| flux(slot)).sum::<f64>()
         };
-        if self.lit_groups(whole) == 0 {
+        if self.readings.lit_groups(whole) == 0 {
             return self.measure(0.0, f64::INFINITY, "1", Status::NoSignal);
         }
-        let lit = self.lit_groups(parts);
+        let lit = self.readings.lit_groups(parts);
         if lit == 0 {
             let whole = self.readings.function(|flux| sum(flux, whole)).mean();
             return self.measure(0.0, self.path_flux() / whole, "1", Status::NoSignal);
@@ -157,11 +149,6 @@ impl<'a> Evidence<'a> {
         let total: f64 = cells.iter().map(|(mean, _)| mean).sum();
         let variance: f64 = cells.iter().map(|(_, error)| error * error).sum();
         if total > 0.0 { variance / total } else { self.path_flux() }
-    }
-
-    pub(crate) fn lit_groups(&self, slots: &[usize]) -> usize {
-        let lit = |sums: &[f64]| slots.iter().any(|&slot| sums[slot] != 0.0);
-        self.readings.groups.iter().filter(|group| lit(&group.sums)).count()
     }
 }
 

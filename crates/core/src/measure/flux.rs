@@ -20,13 +20,6 @@ pub(crate) fn totals(evidence: &Evidence<'_>, id: SensorId) -> IndexMap<String, 
     out
 }
 
-/// The scalars that make up the flux on a sensor: one per source.
-pub(crate) fn flux_slots(evidence: &Evidence<'_>, id: SensorId) -> Vec<usize> {
-    (0..evidence.scene.sources.len())
-        .map(|source| evidence.layout.sensor_flux(id, SourceId::new(source)))
-        .collect()
-}
-
 /// Light that is measured separately: from a source, or from a light group.
 struct Part<'a> {
     name: &'a str,
@@ -90,7 +83,7 @@ impl Part<'_> {
 fn by_source(evidence: &Evidence<'_>, id: SensorId, out: &mut IndexMap<String, Measure>) {
     let scene = evidence.scene;
     let unit = scene.unit.flux();
-    let all = flux_slots(evidence, id);
+    let all = evidence.layout.flux_slots(id);
     out.insert("flux".into(), evidence.sum(&all, 1.0, unit));
     out.insert("efficiency".into(), evidence.sum(&all, 1.0 / scene.source_flux(), "1"));
     for part in parts(scene) {
@@ -117,7 +110,7 @@ fn entering(evidence: &Evidence<'_>, id: SensorId, out: &mut IndexMap<String, Me
     let all = entering(&mut (0..scene.sources.len()).map(SourceId::new));
     let photons = evidence.of_photons();
     out.insert("entering_flux".into(), photons.sum(&all, 1.0, scene.unit.flux()));
-    let transmission = evidence.ratio_to_photons(&flux_slots(evidence, id), &all);
+    let transmission = evidence.ratio_to_photons(&evidence.layout.flux_slots(id), &all);
     out.insert("transmission".into(), transmission);
     for part in parts_beside_all(scene) {
         let own = entering(&mut part.sources.iter().copied());
@@ -160,7 +153,7 @@ fn density(evidence: &Evidence<'_>, id: SensorId, out: &mut IndexMap<String, Mea
     let factor = MM2_PER_M2 / etendue;
     if matches!(surface.seeing, Seeing::All) {
         // The mean of an image is read from its map.
-        let mean = evidence.sum(&flux_slots(evidence, id), factor, symbol);
+        let mean = evidence.sum(&evidence.layout.flux_slots(id), factor, symbol);
         out.insert(format!("{name}_avg"), mean);
     }
     for part in parts_beside_all(evidence.scene) {
@@ -172,7 +165,7 @@ fn density(evidence: &Evidence<'_>, id: SensorId, out: &mut IndexMap<String, Mea
 /// Mean number of interfaces met before the sensor, and the share of the flux that met more than a
 /// given number.
 fn depths(evidence: &Evidence<'_>, id: SensorId, out: &mut IndexMap<String, Measure>) {
-    let flux = flux_slots(evidence, id);
+    let flux = evidence.layout.flux_slots(id);
     let layout = evidence.layout;
     out.insert("bounces_mean".into(), evidence.ratio(&[layout.depth_weighted(id)], &flux));
     for (tail, depth) in TAILS.iter().enumerate() {

@@ -7,7 +7,6 @@ mod tests;
 use crate::measure::cells::SensorCells;
 use crate::measure::counted::{Noisy, Part};
 use crate::measure::evidence::Evidence;
-use crate::measure::flux::flux_slots;
 use crate::measure::points;
 use crate::measure::uniformity::{Field, Uniformity, UniformitySummary, uniformity};
 use crate::scene::{Grid, Seeing, SensorId, SurfaceSensor};
@@ -193,7 +192,7 @@ fn summary(
 fn average(evidence: &Evidence<'_>, id: SensorId, seen: &SensorCells<'_>) -> [f64; 2] {
     if seen.all_light {
         let factor = seen.factor / seen.area;
-        let mean = evidence.sum(&flux_slots(evidence, id), factor, "");
+        let mean = evidence.sum(&evidence.layout.flux_slots(id), factor, "");
         return [mean.value, mean.std_error];
     }
     let mean = seen.mean(0..seen.areas.len());

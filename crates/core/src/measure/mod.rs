@@ -15,7 +15,6 @@ mod counted;
 mod evidence;
 mod extremes;
 mod flux;
-mod gathered;
 #[cfg(test)]
 mod laws;
 mod map;
@@ -40,7 +39,6 @@ pub use angular::{IntensityTable, PlaneCurve};
 pub use balance::Balance;
 pub use cells::not_below_zero;
 pub use check::{Outcome, Verdict, nearest, verdict};
-pub use gathered::{GatheredFacts, Resolution, StageFacts};
 pub use map::{Axes, SensorMap};
 pub use paths::{Action, DepthBin, Extent, LostPaths, PathClass, PathStep, SensorPaths, strongest};
 pub use record::{Measure, Status};
@@ -50,7 +48,7 @@ pub use uniformity::{Statistic, Uniformity, UniformitySummary};
 use crate::measure::evidence::Evidence;
 use crate::plan::Estimator;
 use crate::scene::{Scene, SensorId, SourceId};
-use crate::transport::{Choice, Findings, Layout, Readings};
+use crate::transport::{Account, Choice, Findings, Layout, Readings};
 use indexmap::IndexMap;
 use lumiduct_base::units::FluxUnit;
 use serde::Serialize;
@@ -70,8 +68,8 @@ pub struct Measures {
     pub estimators: IndexMap<String, Estimator>,
     /// Findings of the pilot about each sensor; empty unless the run is to choose.
     pub choices: IndexMap<String, Choice>,
-    /// How the values of gathered sensors were found.
-    pub gathered: Vec<GatheredFacts>,
+    /// How the values of sensors were computed, where there is something to say.
+    pub accounts: Vec<Account>,
     /// How the light reached each sensor.
     pub sensor_paths: Vec<SensorPaths>,
     /// Whether fluxes are luminous or radiant.
@@ -100,15 +98,14 @@ pub struct Measures {
 pub fn measure(scene: &Scene, findings: &Findings) -> Measures {
     let mut values = IndexMap::new();
     let (mut maps, mut intensities, mut sensor_paths) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut estimators, mut gathered) = (IndexMap::new(), Vec::new());
+    let mut estimators = IndexMap::new();
     for (index, sensor) in scene.sensors.iter().enumerate() {
         let found = sensor::measures(scene, findings, SensorId::new(index));
         add(&mut values, &sensor.name, found.values);
         maps.extend(found.maps);
         intensities.extend(found.intensity);
         sensor_paths.push(found.paths);
-        estimators.insert(sensor.name.clone(), findings.estimator(SensorId::new(index)));
-        gathered.extend(found.gathered);
+        estimators.insert(sensor.name.clone(), findings.estimators[index]);
     }
     let names = scene.sensors.iter().map(|sensor| sensor.name.clone());
     let choices = names.zip(findings.choices.iter().cloned());
@@ -127,7 +124,7 @@ pub fn measure(scene: &Scene, findings: &Findings) -> Measures {
         intensities,
         estimators,
         choices: choices.collect(),
-        gathered,
+        accounts: accounts(scene, findings),
         sensor_paths,
         unit: scene.unit,
         sun_elevations_deg: suns.collect(),
@@ -146,14 +143,9 @@ fn light_groups(scene: &Scene) -> IndexMap<String, Vec<String>> {
     groups.map(|group| (group.name.clone(), group.sources.iter().map(name).collect())).collect()
 }
 
-/// Whether a smaller window improves the flux of a gathered sensor more than more work with the
-/// same window.
-pub fn is_held_by_bias(scene: &Scene, findings: &Findings) -> bool {
+fn accounts(scene: &Scene, findings: &Findings) -> Vec<Account> {
     let sensors = (0..scene.sensors.len()).map(SensorId::new);
-    let evidence = Evidence::new(scene, &findings.photons);
-    sensors
-        .filter(|&id| matches!(findings.estimator(id), Estimator::Gather | Estimator::Mis))
-        .any(|id| gathered::is_held_by_bias(evidence, findings, id))
+    sensors.filter_map(|id| findings.account(scene, id)).collect()
 }
 
 /// One measure by its dotted name, at no more cost than it needs.

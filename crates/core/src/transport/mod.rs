@@ -1,27 +1,35 @@
 //! Light through a scene: photon paths, the one bounce loop, estimators, and their readings.
 //!
 //! This layer does not know file formats or reports. Its output is one serialisable value,
-//! [`Readings`]. Folders from the bottom up: `stop`, `tally`, `walk`, `forward`, `gather`,
-//! `backward`, `choose`, `run`.
+//! [`Findings`]. From the bottom up: `stop`, `tally`, `walk`; `task`, `trial` and `estimate`, what
+//! every estimator gets and gives; `forward`, `gather` and `backward`; `estimators`, the one seam in
+//! front of them; `choose`, `run`.
 
 mod backward;
 mod choose;
+mod estimate;
+mod estimators;
 pub mod forward;
 pub mod gather;
 mod run;
 pub mod stop;
 pub mod tally;
+mod task;
+mod trial;
 pub mod walk;
 
-pub use choose::{BLIND_PATHS, Choice, Objection, Trial, blind_sensors};
+pub use choose::{BLIND_PATHS, Choice, blind_sensors};
+pub use estimate::{Account, Bias, Entry, Estimate, Resolution};
+pub use estimators::Found;
 pub use forward::{Track, TrackEnd, tracks};
-pub use gather::{GatherSettings, Scatterer, Stage, Window, Windows, scatterers, turbid_media};
-pub use run::{Findings, Gathered, Phase, Run, Shard, Slice, State, Unsliceable, batch_paths};
+pub use gather::{GatherSettings, Scatterer, Window, Windows, scatterers, turbid_media};
+pub use run::{Findings, Phase, Run, Shard, Slice, State, Unsliceable, batch_paths};
 pub use stop::{Activity, FIRST_BATCH_GRACE, Interrupt, StopAnswer, StopSignal};
 pub use tally::readings::{
-    ClassSum, DEPTH_BINS, GROUPS, Group, Leak, Readings, SensorReading, Step, Trail,
+    ClassSum, DEPTH_BINS, GROUPS, Group, Leak, MIN_LIT_GROUPS, Readings, SensorReading, Step, Trail,
 };
-pub use tally::{Cells, Layout, Loss, TAILS};
+pub use tally::{Cells, Counts, Layout, Loss, Stage, TAILS};
+pub use trial::{Objection, PhotonPilot, Trial};
 pub use walk::emitters::invisible;
 pub use walk::{
     Carries, Collision, Departure, Detection, Emergence, Event, MetEmission, Observer, Path,

@@ -32,7 +32,7 @@ pub fn check_page(title: &str, scene: &Scene, tracks: &[Track], listed: &str) ->
     }
     let rows = axes.iter().map(row).collect();
     let head = ["face or sensor", "origin, mm", "u", "v", "n", "u from, to", "v from, to"];
-    let axes = vec![Block::Words { text: AXES_WORDS.into() }, table(head, rows)];
+    let axes = vec![Block::Words { text: AXES_WORDS.into() }, table(&head, rows)];
     let items = listed.lines().map(str::to_owned).collect();
     let page = Page {
         title: title.to_owned(),

@@ -137,8 +137,9 @@ impl Plots {
 }
 
 /// A table that is not folded away.
-pub(crate) fn table<const N: usize>(head: [&str; N], rows: Vec<Vec<String>>) -> Block {
-    Block::Table { head: head.map(str::to_owned).to_vec(), rows, folded: None }
+pub(crate) fn table(head: &[impl AsRef<str>], rows: Vec<Vec<String>>) -> Block {
+    let head = head.iter().map(|name| name.as_ref().to_owned()).collect();
+    Block::Table { head, rows, folded: None }
 }
 
 /// The page as one file.
@@ -177,7 +178,7 @@ mod tests {
         let mut plots = Plots::default();
         let plot = plots.add(text, serde_json::json!({"plot": "chart", "title": text}), None);
         let list = Block::List { items: vec![text.to_owned()] };
-        let cells = table(["head"], vec![vec![text.to_owned()]]);
+        let cells = table(&["head"], vec![vec![text.to_owned()]]);
         let part = Part { title: text.to_owned(), blocks: vec![list, cells, plot] };
         let page = Page {
             title: text.to_owned(),

@@ -5,15 +5,20 @@
 //! with such sources is refused beforehand. When mixed with forward, photons also count on the
 //! sensors, and both count by their weights (`mix`).
 
+use crate::plan::{Estimator, RunPlan};
 use crate::rng::Sampler;
 use crate::scene::{Arrivals, Scene, SensorId};
+use crate::transport::estimate::Estimate;
 use crate::transport::gather::merge::{Etendues, NO_WINDOW};
 use crate::transport::stop::{Pace, StopSignal};
-use crate::transport::tally::readings::Counted;
+use crate::transport::tally::readings::{Counted, MIN_LIT_GROUPS};
 use crate::transport::tally::work;
+use crate::transport::task::Task;
+use crate::transport::trial::{BATCHES, SEED, Trials, Tried};
 use crate::transport::walk::emitters::Emitters;
 use crate::transport::walk::follow::{Gathering, follow};
 use crate::transport::{Event, Layout, Loss, MetEmission, Observer, Path, Readings};
+use rayon::prelude::*;
 use std::ops::ControlFlow;
 
 /// Stream of random numbers of the gather paths; each sensor has a separate one from here on.
@@ -23,6 +28,11 @@ const STREAM: u64 = 1 << 32;
 const PILOT_PATHS: u64 = 64;
 /// Batch of the pilot paths: not one that counts.
 const PILOT_BATCH: u64 = 1 << 40;
+
+/// Standard errors of both by which photons must find more than gather paths to contradict them.
+const CONTRADICTED: f64 = 4.0;
+/// Possible relative rounding of a flux.
+const ROUNDING: f64 = 1e-9;
 
 /// Shared data of all batches of a run.
 #[derive(Debug)]
@@ -35,8 +45,16 @@ pub(crate) struct Backward<'s> {
     bounce_limit: u32,
     /// Gather paths per batch of each sensor.
     pub(crate) paths: u64,
-    /// The sensors to which forward contributes.
-    pub(crate) mixed: Vec<SensorId>,
+    weights: Weights,
+}
+
+/// How the light of gather paths counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Weights {
+    /// In full.
+    Full,
+    /// In shares, as photons count the rest.
+    Shared,
 }
 
 impl<'s> Backward<'s> {
@@ -55,7 +73,7 @@ impl<'s> Backward<'s> {
             seed,
             bounce_limit,
             paths: PILOT_PATHS,
-            mixed: Vec::new(),
+            weights: Weights::Full,
         }
     }
 
@@ -64,14 +82,16 @@ impl<'s> Backward<'s> {
         Self { paths: paths.max(1), ..self }
     }
 
-    /// The same, with forward contributing to some of the sensors.
-    pub(crate) fn mixed(self, sensors: &[SensorId]) -> Self {
-        Self { mixed: sensors.to_vec(), ..self }
+    /// The same with other weights.
+    pub(crate) fn with_weights(self, weights: Weights) -> Self {
+        Self { weights, ..self }
     }
 
     /// Work of a gather path, mean of a few that are not counted; `None` if they were stopped.
     pub(crate) fn work_of_path(&self, signal: &StopSignal) -> Option<f64> {
-        let segments = self.batch(PILOT_BATCH, &[], signal)?.segments;
+        let pace = Pace::new(signal);
+        let task = Task { batch: PILOT_BATCH, stage: 0, photon_fluxes: &[], pace: &pace };
+        let segments = self.trace(task)?.segments;
         Some(work::of_gather_paths(self.batch_paths(), segments) / self.batch_paths() as f64)
     }
 
@@ -80,35 +100,28 @@ impl<'s> Backward<'s> {
         self.paths * self.sensors.len() as u64
     }
 
-    /// Traces one batch along with one of photons with these fluxes, lm or W, by source. It is not
-    /// closed, since photons may contribute to it. `None` if it was stopped.
-    pub(crate) fn batch(
-        &self,
-        batch: u64,
-        photon_fluxes: &[f64],
-        signal: &StopSignal,
-    ) -> Option<Readings> {
-        let pace = Pace::new(signal);
+    /// Traces the gather paths of a batch. It is not closed, since photons may contribute to it.
+    /// `None` if it was stopped.
+    pub(crate) fn trace(&self, task: Task<'_>) -> Option<Readings> {
+        let Task { batch, pace, .. } = task;
         let mut readings =
             Readings::of_batch(self.scene, &self.layout, self.seed, self.paths, batch);
         for (id, arrivals) in &self.sensors {
-            let mixed_with = self.mixed.contains(id).then_some(photon_fluxes);
             for index in batch * self.paths..(batch + 1) * self.paths {
                 if pace.spend(1).is_break() {
                     return None;
                 }
-                let beside = Beside { mixed_with, pace: &pace };
-                self.trace((*id, arrivals), index, beside, &mut readings);
+                self.trace_path((*id, arrivals), index, task, &mut readings);
             }
         }
         (!pace.is_stopped()).then_some(readings)
     }
 
-    fn trace(
+    fn trace_path(
         &self,
         (id, arrivals): (SensorId, &Arrivals<'s>),
         index: u64,
-        Beside { mixed_with, pace }: Beside<'_>,
+        task: Task<'_>,
         readings: &mut Readings,
     ) {
         let mut sampler = Sampler::for_path(self.seed, STREAM + id.index() as u64, index);
@@ -118,7 +131,7 @@ impl<'s> Backward<'s> {
             emitters: &self.emitters,
             sensor: id,
             bounce_limit: self.bounce_limit,
-            pace: Some(pace),
+            pace: Some(task.pace),
         };
         let path = Path::arriving(self.scene, &arrival);
         let mut counter = Counter {
@@ -126,7 +139,10 @@ impl<'s> Backward<'s> {
             cells: &arrival.cells,
             id,
             layout: self.layout,
-            mixed_with,
+            mixed_with: match self.weights {
+                Weights::Full => None,
+                Weights::Shared => Some(task.photon_fluxes),
+            },
             readings,
         };
         let segments = follow(gathering, &arrival, &mut sampler, &mut counter);
@@ -134,13 +150,52 @@ impl<'s> Backward<'s> {
     }
 }
 
-/// Context of the gather paths of a batch.
-#[derive(Clone, Copy)]
-struct Beside<'a> {
-    /// Mixed: flux of one photon of each source, lm or W.
-    mixed_with: Option<&'a [f64]>,
-    /// Stops the paths.
-    pace: &'a Pace<'a>,
+/// Gather paths of some sensors with this much work in total, divided into batches.
+pub(crate) fn paths_for<'a>(trials: &Trials<'a>, effort: f64) -> Option<Backward<'a>> {
+    let Trials { scene, plan, sensors, signal, .. } = *trials;
+    let RunPlan { seed, bounce_limit, .. } = plan;
+    let backward = Backward::new(scene, sensors, seed ^ SEED, *bounce_limit);
+    let work = backward.work_of_path(signal)?;
+    let paths = effort / BATCHES as f64 / sensors.len() as f64 / work;
+    Some(backward.with_paths(paths as u64))
+}
+
+/// Work of the gather paths of each sensor: its share if it were alone.
+pub(crate) fn work_of_one(backward: &Backward<'_>, batches: &[Readings]) -> f64 {
+    let segments = batches.iter().map(|batch| batch.segments).sum();
+    let work = work::of_gather_paths(BATCHES * backward.batch_paths(), segments);
+    work / backward.sensors.len() as f64
+}
+
+/// Tries gather paths that meet the sources; `None` if stopped.
+pub(crate) fn trial(trials: &Trials<'_>) -> Option<Vec<Tried>> {
+    let backward = paths_for(trials, trials.effort)?;
+    let traced = |batch| {
+        let pace = Pace::new(trials.signal);
+        let mut readings =
+            backward.trace(Task { batch, stage: 0, photon_fluxes: &[], pace: &pace })?;
+        readings.close_batch();
+        Some(readings)
+    };
+    let batches: Option<Vec<Readings>> = (0..BATCHES).into_par_iter().map(traced).collect();
+    let batches = batches?;
+    Some(trials.judged(&batches, work_of_one(&backward, &batches), Estimator::Backward))
+}
+
+/// The estimate of a sensor: unbiased, unless its gather paths almost never meet a source.
+pub(crate) fn estimate<'a>(
+    own: &'a Readings,
+    photons: &Readings,
+    layout: &Layout,
+    id: SensorId,
+) -> Estimate<'a> {
+    let is_contradicted = layout.flux_slots(id).iter().any(|&slot| {
+        let [by_photons, by_paths] = [photons, own].map(|one| one.scalar(slot));
+        let error = by_photons.std_error().hypot(by_paths.std_error());
+        let room = CONTRADICTED * error + ROUNDING * by_paths.mean().abs();
+        photons.lit_groups(&[slot]) >= MIN_LIT_GROUPS && by_photons.mean() - by_paths.mean() > room
+    });
+    Estimate { estimator: Estimator::Backward, readings: own, bias: None, is_contradicted }
 }
 
 /// Counts the light of one gather path.

@@ -3,7 +3,6 @@
 mod blind;
 mod choice;
 pub(crate) mod pilot;
-mod trials;
 
 pub use blind::{BLIND_PATHS, blind_sensors};
-pub use choice::{Choice, Objection, Trial};
+pub use choice::Choice;

@@ -11,19 +11,16 @@
 //! contain what it has missed so far.
 
 use crate::plan::{Estimator, RunPlan};
-use crate::scene::{Scene, SensorId, Source};
+use crate::scene::{Scene, SensorId};
 use crate::tally::Tally;
-use crate::transport::choose::choice::{Choice, Objection, Trial};
-use crate::transport::choose::trials::{Gathered, Trials, Tried};
-use crate::transport::gather::settings::PhotonPilot;
+use crate::transport::choose::choice::Choice;
+use crate::transport::estimators;
 use crate::transport::stop::StopSignal;
 use crate::transport::tally::work;
-use crate::transport::walk::emitters::invisible;
+use crate::transport::trial::{Objection, PhotonPilot, Trial, Trials, Tried};
 
 /// Share of the budget of a run that the pilot may use, 1.
 const SHARE: f64 = 0.05;
-/// Estimators that are tried.
-const TRIALS: f64 = 4.0;
 /// Default budget of a run: a minute of one thread, s.
 const USUAL_BUDGET: f64 = 60.0;
 /// Shortest and longest time of a pilot, s.
@@ -52,7 +49,7 @@ pub(crate) fn choose(
     let given = budget(plan, photons);
     let mut choices = |budget: f64| {
         let [least, most] = BOUNDS;
-        let effort = 1e9 * (SHARE * budget).clamp(least, most) / TRIALS;
+        let effort = 1e9 * (SHARE * budget).clamp(least, most) / Estimator::TRIED.len() as f64;
         choices(&Trials { scene, plan, photons, sensors: &sensors, effort, signal }, budget, watch)
     };
     let Some(target) = &plan.stop.target else { return choices(given.unwrap_or(USUAL_BUDGET)) };
@@ -84,39 +81,21 @@ fn choices(
     if sensors.is_empty() {
         return Some(Vec::new());
     }
-    watch(Estimator::Forward);
-    let forward = trials.forward()?;
-    let can_meet = |source: &Source| invisible(source, scene).is_none();
-    let mix = if scene.sources.iter().any(can_meet) {
-        watch(Estimator::Mix);
-        trials.mix()?
-    } else {
-        Vec::new()
-    };
-    let (backward, gather) = if scene.sources.iter().all(can_meet) {
-        watch(Estimator::Backward);
-        let backward = trials.backward()?;
-        watch(Estimator::Gather);
-        (backward, trials.gather()?)
-    } else {
-        (Vec::new(), Vec::new())
-    };
+    let mut tried: Vec<Vec<Tried>> = Vec::new();
+    for estimator in Estimator::TRIED.into_iter().filter(|one| one.is_worth_a_trial(scene)) {
+        watch(estimator);
+        tried.push(estimators::trial(estimator, trials)?);
+    }
     let target = plan.stop.target.as_ref().map(|target| target.relative_error);
     let of_sensor = |sensor: &SensorId| {
-        let unbiased = [&forward, &backward, &mix].map(|tried| tried.get(sensor.index()));
-        let unbiased: Vec<&Tried> = unbiased.into_iter().flatten().collect();
-        // At a record, the sensors that a photon has passed are unknown.
-        let counts_first = scene.sensors[sensor.index()].counts_first_passage();
-        let gathered = gather.get(sensor.index()).filter(|_| !counts_first);
-        let gathered = gathered.map(|gathered| Trial {
-            objection: objection(gathered, &unbiased, target.unwrap_or(USUAL_TARGET)),
-            ..gathered.tried.trial.clone()
+        let own = &scene.sensors[sensor.index()];
+        let tried: Vec<&Tried> = tried.iter().map(|tried| &tried[sensor.index()]).collect();
+        let able = tried.iter().filter(|tried| tried.trial.estimator.can_estimate(own));
+        let judged = able.map(|one| Trial {
+            objection: objection(one, &tried, target.unwrap_or(USUAL_TARGET)),
+            ..one.trial.clone()
         });
-        let unbiased = unbiased.iter().map(|tried| Trial {
-            objection: misses_light(tried, &unbiased).then_some(Objection::Contradicted),
-            ..tried.trial.clone()
-        });
-        let tried: Vec<Trial> = unbiased.chain(gathered).collect();
+        let tried: Vec<Trial> = judged.collect();
         let chosen = best(&tried, target.or_else(|| least_error(&tried, budget)));
         Choice { chosen, tried }
     };
@@ -141,9 +120,18 @@ fn relative_error(flux: &Tally) -> f64 {
     flux.std_error() / flux.mean()
 }
 
+/// The objection to an estimator, given the results of all.
+fn objection(one: &Tried, all: &[&Tried], target: f64) -> Option<Objection> {
+    let unbiased = all.iter().copied().filter(|tried| tried.bias.is_none());
+    match &one.bias {
+        None => misses_light(one, unbiased).then_some(Objection::Contradicted),
+        Some(bias) => objection_to_biased(one, bias, unbiased, target),
+    }
+}
+
 /// Whether an unbiased estimator found less of the light of a source than another, beyond their errors.
-fn misses_light(tried: &Tried, others: &[&Tried]) -> bool {
-    others.iter().any(|other| {
+fn misses_light<'a>(tried: &Tried, mut others: impl Iterator<Item = &'a Tried>) -> bool {
+    others.any(|other| {
         tried.by_source.iter().zip(&other.by_source).any(|(own, other)| {
             let error = own.std_error().hypot(other.std_error());
             let room = SIGMAS * error + ROUNDING * own.mean().abs();
@@ -152,16 +140,20 @@ fn misses_light(tried: &Tried, others: &[&Tried]) -> bool {
     })
 }
 
-/// The objection to a gathered flux, given the results of the unbiased estimators.
-fn objection(gathered: &Gathered, unbiased: &[&Tried], target: f64) -> Option<Objection> {
-    let (flux, apart) = (&gathered.tried.flux, &gathered.apart);
-    gathered.tried.trial.cost?;
+/// The objection to a biased flux, given the results of the unbiased estimators.
+fn objection_to_biased<'a>(
+    tried: &Tried,
+    bias: &Tally,
+    unbiased: impl Iterator<Item = &'a Tried>,
+    target: f64,
+) -> Option<Objection> {
+    let flux = &tried.flux;
+    tried.trial.cost?;
     let allowed = target * flux.mean().abs();
-    if apart.mean().abs() > allowed + SIGMAS * apart.std_error() {
-        return Some(Objection::WindowsDiffer);
+    if bias.mean().abs() > allowed + SIGMAS * bias.std_error() {
+        return Some(Objection::Biased);
     }
     let other = unbiased
-        .iter()
         .filter(|tried| relative_error(&tried.flux) < KNOWN)
         .min_by(|a, b| relative_error(&a.flux).total_cmp(&relative_error(&b.flux)))?;
     let error = flux.std_error().hypot(other.flux.std_error());
@@ -179,11 +171,12 @@ mod tests {
 
     fn tried(estimator: Estimator, fluxes: [f64; 4]) -> Tried {
         let by_source = vec![Tally::of(fluxes)];
-        Tried { trial: trial(estimator, Some(1.0)), flux: Tally::of(fluxes), by_source }
+        let trial = trial(estimator, Some(1.0));
+        Tried { trial, flux: Tally::of(fluxes), by_source, bias: None }
     }
 
-    fn gathered(fluxes: [f64; 4], apart: [f64; 4]) -> Gathered {
-        Gathered { tried: tried(Estimator::Gather, fluxes), apart: Tally::of(apart) }
+    fn gathered(fluxes: [f64; 4], bias: [f64; 4]) -> Tried {
+        Tried { bias: Some(Tally::of(bias)), ..tried(Estimator::Gather, fluxes) }
     }
 
     #[test]
@@ -197,7 +190,7 @@ mod tests {
         trials[2].least = 2.0;
         assert_eq!(best(&trials, Some(0.01)), Estimator::Gather, "2 s instead of 3 s");
         assert_eq!(best(&trials, Some(0.02)), Estimator::Forward, "2 s instead of 0.75 s");
-        trials[2].objection = Some(Objection::WindowsDiffer);
+        trials[2].objection = Some(Objection::Biased);
         assert_eq!(best(&trials, Some(0.01)), Estimator::Forward);
         trials[0].cost = None;
         assert_eq!(best(&trials, Some(0.01)), Estimator::Forward, "in the dark");
@@ -205,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn a_choice_tells_the_time_of_what_was_chosen() {
+    fn a_choice_knows_the_time_of_what_was_chosen() {
         let forward = trial(Estimator::Forward, Some(3e-4));
         let gather = Trial { least: 1.5, ..trial(Estimator::Gather, Some(1e-4)) };
         let choice = Choice { chosen: Estimator::Gather, tried: vec![forward, gather] };
@@ -218,7 +211,7 @@ mod tests {
     fn windows_object_when_they_differ_beyond_target_and_noise() {
         let target = 0.01;
         let with = |apart| objection(&gathered([1.0; 4], apart), &[], target);
-        assert_eq!(with([0.2, 0.21, 0.2, 0.19]), Some(Objection::WindowsDiffer));
+        assert_eq!(with([0.2, 0.21, 0.2, 0.19]), Some(Objection::Biased));
         assert_eq!(with([0.009; 4]), None, "within the target");
         assert_eq!(with([0.3, -0.2, 0.25, -0.15]), None, "noise");
     }
@@ -228,9 +221,9 @@ mod tests {
         let sharp = tried(Estimator::Backward, [1.0, 1.001, 0.999, 1.0]);
         let all = tried(Estimator::Forward, [1.8, 2.2, 2.1, 1.9]);
         let noisy = tried(Estimator::Forward, [0.0, 6.0, 0.0, 2.0]);
-        assert!(misses_light(&sharp, &[&all, &sharp]));
-        assert!(!misses_light(&all, &[&all, &sharp]), "less is no reason to doubt more");
-        assert!(!misses_light(&sharp, &[&noisy, &sharp]), "noise");
+        assert!(misses_light(&sharp, [&all, &sharp].into_iter()));
+        assert!(!misses_light(&all, [&all, &sharp].into_iter()), "less is no reason to doubt more");
+        assert!(!misses_light(&sharp, [&noisy, &sharp].into_iter()), "noise");
     }
 
     #[test]

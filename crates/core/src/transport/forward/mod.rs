@@ -7,7 +7,9 @@ mod shown;
 #[cfg(test)]
 mod tests;
 mod tracks;
+mod trial;
 mod watch;
 
 pub use estimator::Forward;
 pub use tracks::{Track, TrackEnd, tracks};
+pub(crate) use trial::{photons_for, photons_of, trial};

@@ -8,7 +8,9 @@ use crate::transport::gather::coverage::{Middle, coverage};
 use crate::transport::gather::estimator::{Ended, Gather};
 use crate::transport::gather::merge::{self, Passage};
 use crate::transport::gather::merged::Merging;
-use crate::transport::gather::records::{GatherRecord, Wanted};
+use crate::transport::gather::records::{
+    GatherRecord, RecordKind, RecordPath, SurfaceRecord, VolumeRecord,
+};
 use crate::transport::gather::window::{COUNTED, ESTIMATES, Window, estimates};
 use crate::transport::tally::readings::Counted;
 use crate::transport::walk::scatter::{Facing, facing};
@@ -16,7 +18,6 @@ use crate::transport::{
     Collision, Departure, Event, Loss, MetEmission, Observer, Path, ROULETTE_BELOW, Readings,
     Vertex,
 };
-use glam::DVec3;
 use smallvec::SmallVec;
 use std::ops::ControlFlow;
 
@@ -97,7 +98,7 @@ impl Collecting<'_, '_> {
                 self.add_scattered(path, vertex, &facing, side);
             }
         }
-        if path.depth == self.gather.depth {
+        if path.depth == self.gather.settings.depth {
             for side in [Side::Reflected, Side::Transmitted] {
                 self.add_along(path, vertex, &facing, side);
             }
@@ -113,7 +114,7 @@ impl Collecting<'_, '_> {
         // Nothing faces the path where it meets no visible interface.
         let Some(facing) = self.facing.take() else { return ControlFlow::Continue(()) };
         if let Some(merging) = &mut self.merging
-            && path.depth == self.gather.depth + 1
+            && path.depth == self.gather.settings.depth + 1
         {
             let passage = Passage::of_gather_path(&facing, departure.dir, departure.side);
             merging.pass_vertex_d(passage.etendues(self.window));
@@ -152,7 +153,14 @@ impl<'s> Collecting<'_, 's> {
         // L* of the leaving light, in the medium of the gather path.
         let index = facing.incidence.index_from;
         let value = self.etendue * vertex.throughput / (index * index);
-        self.add(path, vertex, facing, side, value, Wanted::Scattered { bsdf, out: -vertex.dir });
+        self.add(
+            path,
+            vertex,
+            facing,
+            side,
+            value,
+            RecordKind::Scattered { bsdf, out: -vertex.dir },
+        );
     }
 
     /// A record for photons near the direction in which the gather path would continue:
@@ -173,7 +181,7 @@ impl<'s> Collecting<'_, 's> {
         };
         let value = self.etendue * vertex.throughput * out.factor / (index * index);
         let dir = out.dir.normalize();
-        self.add(path, vertex, facing, side, value, Wanted::Along(-dir));
+        self.add(path, vertex, facing, side, value, RecordKind::Along(-dir));
         if let (Some(merging), Some(ended)) = (&self.merging, self.found.paths.last_mut()) {
             let passage = Passage::of_gather_path(facing, dir, side);
             ended.etendues = Some(merging.waiting(passage.etendues(self.window)));
@@ -188,17 +196,15 @@ impl<'s> Collecting<'_, 's> {
         let value = self.etendue * throughput / (index * index * scattering.coefficient());
         let turn = self.sampler.pair(Dimension::GatherPosition);
         let volumes = clipped_volumes(scene, path, point, self.window, turn);
-        let path_place = self.place();
-        self.found.records.push(GatherRecord {
+        let record = VolumeRecord {
             point,
-            normal: DVec3::ZERO,
-            surface: surfaces.of_medium(medium),
-            medium,
-            wanted: Wanted::Collided { scattering: *scattering, out: -dir },
+            medium: surfaces.of_medium(medium),
+            scattering: *scattering,
+            out: -dir,
             values: volumes.map(|volume| value / volume),
-            path: path_place,
-            depth: path.depth + 1,
-        });
+            path: self.path_of_record(path),
+        };
+        self.found.records.push(GatherRecord::Volume(record));
     }
 
     /// `value` is the etendue of the path times its throughput per flux per area (and solid angle).
@@ -209,7 +215,7 @@ impl<'s> Collecting<'_, 's> {
         facing: &Facing<'s>,
         side: Side,
         value: f64,
-        wanted: Wanted<'s>,
+        kind: RecordKind<'s>,
     ) {
         let Gather { scene, surfaces, .. } = self.gather;
         let interface = vertex.interface;
@@ -223,26 +229,19 @@ impl<'s> Collecting<'_, 's> {
         let covered = coverage(scene, surfaces, &middle, self.window, turn);
         let nested = self.window.nested();
         let values = [0, 1, 2].map(|window| value / (covered[window] * nested[window].area()));
-        let path_place = self.place();
-        self.found.records.push(GatherRecord {
-            point: vertex.point,
-            normal,
-            surface: middle.surface,
-            medium,
-            wanted,
-            values,
-            path: path_place,
-            depth: path.depth + 1,
-        });
+        let path = self.path_of_record(path);
+        let (point, surface) = (vertex.point, middle.surface);
+        let record = SurfaceRecord { point, normal, surface, medium, kind, values, path };
+        self.found.records.push(GatherRecord::Surface(record));
     }
 
-    /// The index of this path among those that have ended in records.
-    fn place(&mut self) -> u32 {
+    /// This path, as one that ends in records.
+    fn path_of_record(&mut self, path: &Path) -> RecordPath {
         let of_this = |last: &Ended| (last.sensor, last.index) == (self.id, self.index);
         if self.merging.is_some() || !self.found.paths.last().is_some_and(of_this) {
             let (sensor, cells) = (self.id, self.cells.clone());
             self.found.paths.push(Ended { index: self.index, sensor, cells, etendues: None });
         }
-        self.found.paths.len() as u32 - 1
+        RecordPath { place: self.found.paths.len() as u32 - 1, depth: path.depth + 1 }
     }
 }

@@ -1,14 +1,16 @@
-//! Shared data of all passes of gathering, the definition of one pass, and the records that wait
-//! for its photons.
+//! The gather estimator of some sensors, and the records of a pass that wait for its photons.
 
+use crate::plan::RunPlan;
 use crate::scene::{Arrivals, Scene, SensorId};
+use crate::transport::gather::bias;
 use crate::transport::gather::merge::Etendues;
 use crate::transport::gather::records::Records;
+use crate::transport::gather::settings::{GatherSettings, settle};
 use crate::transport::gather::surfaces::Surfaces;
-use crate::transport::gather::window::{ESTIMATES, Window};
-use crate::transport::tally::work::RecordWork;
+use crate::transport::stop::StopSignal;
+use crate::transport::trial::PhotonPilot;
 use crate::transport::walk::emitters::Emitters;
-use crate::transport::{Layout, Readings};
+use crate::transport::{Layout, Stage};
 use smallvec::SmallVec;
 
 /// Shared data of all passes of a run.
@@ -20,35 +22,52 @@ pub(crate) struct Gather<'s> {
     pub(super) surfaces: Surfaces,
     pub(super) sensors: Vec<(SensorId, Arrivals<'s>)>,
     pub(super) seed: u64,
-    /// Vertex at which gather paths end, D.
-    pub(crate) depth: u32,
+    pub(crate) settings: GatherSettings,
     /// Merged with forward and backward: gather paths continue from vertex D, up to this many
     /// interfaces.
     pub(crate) merging: Option<u32>,
 }
 
-/// One pass: its number, its window, and its gather paths of each sensor.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Pass {
-    pub(crate) batch: u64,
-    pub(crate) window: Window,
-    pub(crate) gather_paths: u64,
-}
-
-/// Counts of a pass.
-#[derive(Debug)]
-pub(crate) struct PassReadings {
-    /// Counts by photons in the sensors' cells, and the balance.
-    pub(crate) photons: Readings,
-    /// Counts by records: E1, E2, E3 and E0; not yet closed.
-    pub(crate) windows: [Readings; ESTIMATES],
-    /// Work in addition to tracing.
-    pub(crate) work: RecordWork,
+/// What gather paths are combined with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Combination {
+    /// Nothing: they end at records.
+    Alone,
+    /// Forward and backward: they go on to the sources.
+    Merged,
 }
 
 impl<'s> Gather<'s> {
-    /// Prepares gather paths from some sensors that end at vertex `depth`.
-    pub(crate) fn new(scene: &'s Scene, sensors: &[SensorId], seed: u64, depth: u32) -> Self {
+    /// Prepares gather paths from some sensors, with settings found by a pilot. `None` if
+    /// stopped.
+    pub(crate) fn prepare(
+        scene: &'s Scene,
+        plan: &RunPlan,
+        (sensors, combination): (&[SensorId], Combination),
+        pilot: PhotonPilot,
+        signal: &StopSignal,
+    ) -> Option<Self> {
+        let mut settings = settle(scene, plan, sensors, pilot, signal)?;
+        if combination == Combination::Merged && pilot.is_limited() && plan.gather.records.is_none()
+        {
+            // Merged gather paths continue as far as photons do.
+            let most = settings.photons / sensors.len() as u64;
+            settings.gather_paths = settings.gather_paths.min(most).max(1);
+        }
+        let merging = match combination {
+            Combination::Alone => None,
+            Combination::Merged => Some(plan.bounce_limit),
+        };
+        Some(Self { merging, ..Self::new(scene, sensors, plan.seed, settings) })
+    }
+
+    /// Prepares gather paths from some sensors.
+    pub(crate) fn new(
+        scene: &'s Scene,
+        sensors: &[SensorId],
+        seed: u64,
+        settings: GatherSettings,
+    ) -> Self {
         Self {
             scene,
             layout: Layout::new(scene),
@@ -56,14 +75,15 @@ impl<'s> Gather<'s> {
             surfaces: Surfaces::new(scene),
             sensors: sensors.iter().map(|&id| (id, Arrivals::new(scene, id))).collect(),
             seed,
-            depth,
+            settings,
             merging: None,
         }
     }
 
-    /// Number of sensors it estimates.
-    pub(crate) fn sensors(&self) -> u64 {
-        self.sensors.len() as u64
+    /// Whether the bias of any sensor in a stage is above its noise.
+    pub(crate) fn is_limited_by_bias(&self, stage: &Stage) -> bool {
+        let mut sensors = self.sensors.iter();
+        sensors.any(|(id, _)| bias::is_limiting(stage, &self.layout.flux_slots(*id)))
     }
 }
 

@@ -39,8 +39,8 @@ pub(crate) struct Indexed {
     pub(crate) surface: Slot,
     /// Position, mm.
     pub(crate) point: DVec3,
-    /// Unit normal of the surface.
-    pub(crate) normal: DVec3,
+    /// Unit normal of the surface; `None` within a medium, where the window is a ball.
+    pub(crate) normal: Option<DVec3>,
     /// Unit direction of the photons that it takes; the same for all records of an index that takes
     /// any direction.
     pub(crate) dir: DVec3,
@@ -275,10 +275,14 @@ impl Lattice {
         let size = 1.0 / self.position_scale;
         // Half of the cell's extent along the normal, and the largest sag of the surface within the
         // window.
-        let half = 0.5 * size * record.normal.abs().element_sum() + HEIGHT * window.radius;
+        let half = |normal: DVec3| 0.5 * size * normal.abs().element_sum() + HEIGHT * window.radius;
+        let is_near = |middle: DVec3| {
+            let reaches = |normal| (middle - record.point).dot(normal).abs() <= half(normal);
+            record.normal.is_none_or(reaches)
+        };
         each_near(record.point, ball(window), self.position_scale, |cell| {
             let middle = DVec3::from(cell.map(f64::from)) * size;
-            if (middle - record.point).dot(record.normal).abs() <= half {
+            if is_near(middle) {
                 directions.iter().for_each(|dir| visit(hash(record.surface, cell, *dir)));
             }
         });

@@ -6,14 +6,15 @@
 //! module does not know how paths are traced.
 
 use crate::scene::Visibility;
-use crate::transport::gather::estimator::Pass;
 use crate::transport::gather::merge::{Etendues, NO_WINDOW, Passage, ROULETTE_BELOW, Recent};
 use crate::transport::gather::stream::{Photon, Stream};
-use crate::transport::gather::window::{COUNTED, Window, estimates};
+use crate::transport::gather::window::{COUNTED, ESTIMATES, estimates};
 use crate::transport::tally::readings::Counted;
 use crate::transport::walk::follow::{arrivals_of, etendue_of};
 use crate::transport::walk::scatter::facing;
-use crate::transport::{Departure, Detection, Event, MetEmission, Observer, Path, Vertex};
+use crate::transport::{
+    Departure, Detection, Event, MetEmission, Observer, Path, Readings, Vertex,
+};
 use std::ops::ControlFlow;
 
 /// Weights for the light of one gather path.
@@ -51,35 +52,29 @@ impl<'a> Merging<'a> {
 }
 
 /// Photons that stream past the records, and also count in the cells of sensors.
-pub(super) struct MergedStream<'m, 'p, 's> {
-    stream: &'m mut Stream<'p, 's>,
-    window: Window,
-    /// Gather paths of each sensor in the pass.
-    gather_paths: f64,
-    photon_fluxes: &'m [f64],
+pub(crate) struct MergedStream<'p, 's> {
+    stream: Stream<'p, 's>,
+    photon_fluxes: &'p [f64],
     /// Etendue represented by the current photon, mm² sr.
     photon: f64,
     recent: Recent<'s>,
 }
 
-impl<'m, 'p, 's> MergedStream<'m, 'p, 's> {
-    pub(super) fn new(
-        stream: &'m mut Stream<'p, 's>,
-        pass: Pass,
-        photon_fluxes: &'m [f64],
-    ) -> Self {
-        Self {
-            recent: Recent::new(stream.gather.depth),
-            stream,
-            window: pass.window,
-            gather_paths: pass.gather_paths as f64,
-            photon_fluxes,
-            photon: f64::INFINITY,
-        }
+impl<'p, 's> MergedStream<'p, 's> {
+    /// The records of a pass that wait for its photons.
+    pub(crate) fn new(stream: Stream<'p, 's>, photon_fluxes: &'p [f64]) -> Self {
+        let recent = Recent::new(stream.gather.settings.depth);
+        Self { stream, photon_fluxes, photon: f64::INFINITY, recent }
+    }
+
+    /// The counts, not yet closed.
+    pub(crate) fn finish(self) -> [Readings; ESTIMATES] {
+        let (windows, _) = self.stream.finish();
+        windows
     }
 }
 
-impl Observer for MergedStream<'_, '_, '_> {
+impl Observer for MergedStream<'_, '_> {
     fn roulette_below(&self) -> f64 {
         ROULETTE_BELOW
     }
@@ -110,7 +105,7 @@ impl Observer for MergedStream<'_, '_, '_> {
     }
 }
 
-impl MergedStream<'_, '_, '_> {
+impl MergedStream<'_, '_> {
     fn depart(&mut self, path: &Path, vertex: &Vertex<'_>, departure: &Departure) {
         if vertex.interface.visibility == Visibility::Visible {
             let facing = facing(self.stream.gather.scene, path, vertex);
@@ -119,14 +114,14 @@ impl MergedStream<'_, '_, '_> {
     }
 
     fn detect(&mut self, path: &Path, light: &Detection<'_>) {
-        let gather = self.stream.gather;
+        let (gather, pass) = (self.stream.gather, self.stream.pass);
         let known = arrivals_of(light, &gather.sensors);
         let (Some(arrivals), false) = (known, light.cells.is_empty()) else { return };
         let gathered = etendue_of(light, gather.scene, arrivals, path.wavelength);
         let etendues = Etendues {
             photon: self.photon,
-            gather: gathered / self.gather_paths,
-            window: self.recent.etendues(self.window),
+            gather: gathered / pass.gather_paths as f64,
+            window: self.recent.etendues(pass.window),
         };
         let weights = estimates(etendues.forward());
         for (readings, weight) in self.stream.windows.iter_mut().zip(weights) {

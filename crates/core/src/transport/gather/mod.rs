@@ -1,22 +1,28 @@
 //! The gather estimator: records at the ends of gather paths, and photons that are streamed past them.
 
+mod account;
 mod ball;
+mod bias;
 mod collect;
+pub mod contribution;
 mod coverage;
-pub mod estimate;
 pub(crate) mod estimator;
 pub mod index;
 pub(crate) mod merge;
-mod merged;
+pub(crate) mod merged;
 mod pass;
 pub mod records;
 pub mod settings;
 pub(crate) mod stages;
-mod stream;
+pub(crate) mod stream;
 pub mod surfaces;
+mod trial;
 pub(crate) mod window;
 
+pub(crate) use account::account;
+pub(crate) use bias::estimate;
 pub use merge::{Scatterer, scatterers, turbid_media};
 pub use settings::GatherSettings;
-pub use stages::{Stage, Windows};
+pub use stages::Windows;
+pub(crate) use trial::trial;
 pub use window::Window;

@@ -12,16 +12,17 @@
 
 use crate::rng::Sampler;
 use crate::scene::Arrival;
-use crate::transport::forward::Forward;
 use crate::transport::gather::collect::{Collecting, Found};
-use crate::transport::gather::estimator::{Gather, Pass, PassReadings, Waiting};
-use crate::transport::gather::merged::{MergedStream, Merging};
+use crate::transport::gather::estimator::{Gather, Waiting};
+use crate::transport::gather::merged::Merging;
 use crate::transport::gather::records::Records;
+use crate::transport::gather::stages::Pass;
 use crate::transport::gather::stream::Stream;
 use crate::transport::gather::window::ESTIMATES;
-use crate::transport::stop::{Pace, RECORD_WORK, StopSignal};
+use crate::transport::stop::RECORD_WORK;
+use crate::transport::task::Task;
 use crate::transport::walk::follow::{Gathering, follow};
-use crate::transport::{Observer, Path, Readings};
+use crate::transport::{Path, Readings};
 
 /// Streams of random numbers of the gather paths and of their records; each sensor has a separate
 /// one.
@@ -29,39 +30,22 @@ const PATH_STREAM: u64 = 2 << 32;
 const RECORD_STREAM: u64 = 3 << 32;
 
 impl<'s> Gather<'s> {
-    /// Runs one pass with the photons of a batch, which can have another observer unless all is
-    /// merged. `None` if it was stopped.
-    pub(crate) fn pass(
-        &self,
-        forward: &Forward<'_>,
-        pass: Pass,
-        beside: &mut impl Observer,
-        signal: &StopSignal,
-    ) -> Option<PassReadings> {
-        let pace = Pace::new(signal);
+    /// Traces the gather paths of a batch, whose records then wait for its photons. `None` if
+    /// stopped.
+    pub(crate) fn begin<'g>(&'g self, task: Task<'g>) -> Option<Stream<'g, 's>> {
+        let pass = self.settings.pass(task.stage, task.batch);
         let paths = pass.gather_paths;
         let empty = || Readings::of_batch(self.scene, &self.layout, self.seed, paths, pass.batch);
         let mut windows = [empty(), empty(), empty(), empty()];
-        let photon_fluxes = forward.photon_fluxes();
-        let beside_paths = Beside { photon_fluxes: &photon_fluxes, pace: &pace };
-        let waiting = self.gather_paths(pass, beside_paths, &mut windows)?;
-        let mut stream = Stream::new(self, pass, (&waiting, &pace), &mut windows);
-        let photons = match self.merging {
-            None => forward.batch_observed(pass.batch, &mut (&mut stream, beside), &pace)?,
-            Some(_) => {
-                let mut merged = MergedStream::new(&mut stream, pass, &photon_fluxes);
-                forward.batch_observed(pass.batch, &mut merged, &pace)?
-            }
-        };
-        let work = stream.finish();
-        (!pace.is_stopped()).then_some(PassReadings { photons, windows, work })
+        let waiting = self.gather_paths_of(pass, task, &mut windows)?;
+        Some(Stream::new(self, pass, (waiting, task.pace), windows))
     }
 
     /// Traces the gather paths of a pass; `None` if they were stopped.
-    fn gather_paths(
+    fn gather_paths_of(
         &self,
         pass: Pass,
-        Beside { photon_fluxes, pace }: Beside<'_>,
+        Task { photon_fluxes, pace, .. }: Task<'_>,
         windows: &mut [Readings; ESTIMATES],
     ) -> Option<Waiting<'s>> {
         let mut found = Found::default();
@@ -103,13 +87,4 @@ impl<'s> Gather<'s> {
         let records = Records::new(found.records, pass.window, &self.surfaces, pace)?;
         Some(Waiting { paths: found.paths, records })
     }
-}
-
-/// Context of the gather paths of a pass.
-#[derive(Clone, Copy)]
-struct Beside<'a> {
-    /// Flux of one photon of each source, lm or W.
-    photon_fluxes: &'a [f64],
-    /// Stops the paths.
-    pace: &'a Pace<'a>,
 }

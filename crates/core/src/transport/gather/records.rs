@@ -15,29 +15,63 @@ use smallvec::SmallVec;
 
 /// A point where a gather path waits for photons.
 #[derive(Debug, Clone, Copy)]
-pub struct GatherRecord<'s> {
+pub enum GatherRecord<'s> {
+    /// On a surface.
+    Surface(SurfaceRecord<'s>),
+    /// Within a medium.
+    Volume(VolumeRecord),
+}
+
+/// A record on a surface.
+#[derive(Debug, Clone, Copy)]
+pub struct SurfaceRecord<'s> {
     /// Position, mm.
     pub point: DVec3,
-    /// Unit normal of the surface on the side that photons come from; zero within a medium.
+    /// Unit normal of the surface on the side that photons come from.
     pub normal: DVec3,
-    /// The smooth surface that photons must meet, or the medium in which they must be scattered.
+    /// The smooth surface that photons must meet.
     pub surface: Slot,
     /// The medium they arrive in.
     pub medium: MediumId,
     /// The photons it takes.
-    pub wanted: Wanted<'s>,
-    /// Etendue times throughput over n² and the area of the window, clipped at rims: sr (times mm²/mm²), per window; within
-    /// a medium over n², the scattering coefficient and the volume of the window, clipped at its bounds.
+    pub kind: RecordKind<'s>,
+    /// Etendue times throughput over n² and the area of the window, clipped at rims: sr (times mm²/mm²), per window.
     pub values: [f64; NESTED],
-    /// The gather path, by its index in the list of paths.
-    pub path: u32,
+    /// The gather path.
+    pub path: RecordPath,
+}
+
+/// A record within a medium. It takes all photons that are scattered there, weighted by the phase
+/// function: docs/method.md, eq. (24).
+#[derive(Debug, Clone, Copy)]
+pub struct VolumeRecord {
+    /// Position, mm.
+    pub point: DVec3,
+    /// The medium in which photons must be scattered, by its place among surfaces and media.
+    pub medium: Slot,
+    /// Scattering of the medium.
+    pub scattering: VolumeScattering,
+    /// Unit direction of the light after scattering.
+    pub out: DVec3,
+    /// Etendue times throughput over n², the scattering coefficient and the volume of the window, clipped at its bounds,
+    /// per window.
+    pub values: [f64; NESTED],
+    /// The gather path.
+    pub path: RecordPath,
+}
+
+/// The gather path that ends in a record.
+#[derive(Debug, Clone, Copy)]
+pub struct RecordPath {
+    /// Its place in the list of paths.
+    pub place: u32,
     /// Interfaces met from the sensor to the record, including its own.
     pub depth: u32,
 }
 
-/// The photons that a record takes.
+/// The photons that a record on a surface takes.
 #[derive(Debug, Clone, Copy)]
-pub enum Wanted<'s> {
+pub enum RecordKind<'s> {
     /// Photons that travel along this direction, up to the angle of the window: docs/method.md, eq.
     /// (15).
     Along(DVec3),
@@ -49,14 +83,33 @@ pub enum Wanted<'s> {
         /// Unit direction in which the light must leave.
         out: DVec3,
     },
-    /// All photons that are scattered within a medium, weighted by the phase function:
-    /// docs/method.md, eq. (24).
-    Collided {
-        /// Scattering of the medium.
-        scattering: VolumeScattering,
-        /// Unit direction of the light after scattering.
-        out: DVec3,
-    },
+}
+
+impl GatherRecord<'_> {
+    /// The gather path that ends in it.
+    pub fn path(&self) -> RecordPath {
+        match self {
+            Self::Surface(record) => record.path,
+            Self::Volume(record) => record.path,
+        }
+    }
+
+    /// Its entry in the index, and the direction of the photons it takes if it takes no others.
+    fn indexed(&self, id: usize) -> (Indexed, Option<DVec3>) {
+        let (surface, point, normal, dir) = match self {
+            Self::Surface(SurfaceRecord { surface, point, normal, kind, .. }) => {
+                let dir = match kind {
+                    RecordKind::Along(dir) => Some(*dir),
+                    RecordKind::Scattered { .. } => None,
+                };
+                (*surface, *point, Some(*normal), dir)
+            }
+            Self::Volume(VolumeRecord { medium, point, .. }) => (*medium, *point, None, None),
+        };
+        let indexed =
+            Indexed { record: id as u32, surface, point, normal, dir: dir.unwrap_or(NO_DIRECTION) };
+        (indexed, dir)
+    }
 }
 
 /// Records of a pass, to be looked up by photons.
@@ -87,35 +140,18 @@ impl<'s> Records<'s> {
         let nowhere = Reach { positions: Aabb::EMPTY, directions: Aabb::EMPTY };
         let everywhere = Aabb { min: DVec3::NEG_ONE, max: DVec3::ONE };
         let mut reach = vec![nowhere; surfaces.count + surfaces.media];
-        for record in &all {
-            let own = &mut reach[record.surface as usize];
-            own.positions = own.positions.union(Aabb::of([record.point]).grown(window.radius));
-            let directions = match record.wanted {
-                Wanted::Along(dir) => Aabb::of([dir]).grown(window.chord()),
-                Wanted::Scattered { .. } | Wanted::Collided { .. } => everywhere,
-            };
+        let (mut along, mut scattered) = (Vec::new(), Vec::new());
+        for (id, record) in all.iter().enumerate() {
+            let (indexed, dir) = record.indexed(id);
+            let own = &mut reach[indexed.surface as usize];
+            own.positions = own.positions.union(Aabb::of([indexed.point]).grown(window.radius));
+            let directions = dir.map_or(everywhere, |dir| Aabb::of([dir]).grown(window.chord()));
             own.directions = own.directions.union(directions);
+            if dir.is_some() { along.push(indexed) } else { scattered.push(indexed) }
         }
-        let indexed = |id: usize, record: &GatherRecord<'_>, dir: DVec3| Indexed {
-            record: id as u32,
-            surface: record.surface,
-            point: record.point,
-            normal: record.normal,
-            dir,
-        };
-        let along = all.iter().enumerate().filter_map(|(id, record)| match record.wanted {
-            Wanted::Along(dir) => Some(indexed(id, record, dir)),
-            Wanted::Scattered { .. } | Wanted::Collided { .. } => None,
-        });
-        let scattered = all.iter().enumerate().filter_map(|(id, record)| match record.wanted {
-            Wanted::Along(_) => None,
-            Wanted::Scattered { .. } | Wanted::Collided { .. } => {
-                Some(indexed(id, record, NO_DIRECTION))
-            }
-        });
         Some(Self {
-            along: Index::new(along, window, pace)?,
-            scattered: Index::new(scattered, window, pace)?,
+            along: Index::new(along.into_iter(), window, pace)?,
+            scattered: Index::new(scattered.into_iter(), window, pace)?,
             reach,
             all,
         })

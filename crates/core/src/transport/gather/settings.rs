@@ -6,12 +6,15 @@ use crate::plan::{RunPlan, Schedule};
 use crate::rng::Sampler;
 use crate::scene::{Arrivals, Emission, Emitter, FaceId, On, Ray, Scene, SensorId};
 use crate::transport::stop::{Pace, StopSignal};
+use crate::transport::trial::{PASS_SEGMENTS, PhotonPilot};
 use crate::transport::walk::emitters::Emitters;
 use crate::transport::walk::follow::{Gathering, follow};
 use crate::transport::walk::scatter::facing;
 use crate::transport::{Event, Observer, Path, Vertex, Window};
+use lumiduct_base::number::format_exact;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
+use std::fmt;
 use std::ops::ControlFlow;
 
 /// Stream of random numbers of the pilot's gather paths.
@@ -28,8 +31,6 @@ const FILLS: f64 = 0.8;
 const THETA_DEG: [f64; 2] = [0.05, 3.0];
 /// Bounds of the automatic depth.
 const DEPTH: [f64; 2] = [1.0, 8.0];
-/// Straight pieces of photon paths in an automatic pass: seconds of work, so that the first stage ends soon.
-const PASS_SEGMENTS: f64 = 4e6;
 /// Smallest number of photons of an automatic pass: in closed mirrors each has 100,000 straight
 /// pieces.
 const LEAST_PHOTONS: f64 = 32.0;
@@ -46,6 +47,8 @@ pub struct GatherSettings {
     pub depth: u32,
     /// Window of the first stage.
     pub window: Window,
+    /// Number of sensors.
+    pub sensors: u64,
     /// Gather paths from each sensor in a pass of the first stage.
     pub gather_paths: u64,
     /// Photons in a pass.
@@ -56,28 +59,26 @@ pub struct GatherSettings {
     pub inradius: f64,
 }
 
-/// Measurements by pilot photons.
-#[derive(Debug, Clone, Copy)]
-pub struct PhotonPilot {
-    /// Mean number of straight pieces of a photon path.
-    pub(crate) segments_per_path: f64,
-    /// Straight pieces of photon paths in an automatic pass.
-    pub(crate) pass_segments: f64,
+impl fmt::Display for GatherSettings {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { depth, window, gather_paths, photons, schedule, sensors: _, inradius: _ } = self;
+        let schedule = match schedule {
+            Schedule::Stages => "in stages",
+            Schedule::PerPass => "from pass to pass",
+        };
+        write!(
+            out,
+            "depth {depth}, windows from {} mm and {} deg shrinking {schedule}, {photons} photons and {gather_paths} gather \
+             paths from each sensor in the first passes",
+            format_exact(window.radius),
+            format_exact(window.theta_max.to_degrees())
+        )
+    }
 }
 
 impl PhotonPilot {
-    /// Photons with this many straight pieces per path, in passes of the usual size.
-    pub fn new(segments_per_path: f64) -> Self {
-        Self { segments_per_path, pass_segments: PASS_SEGMENTS }
-    }
-
-    /// The same with passes of at most this many straight pieces.
-    pub(crate) fn with_passes_up_to(self, segments: f64) -> Self {
-        Self { pass_segments: self.pass_segments.min(segments), ..self }
-    }
-
     /// Photons of an automatic pass.
-    pub(crate) fn photons(self) -> u64 {
+    fn photons(self) -> u64 {
         let least = LEAST_PHOTONS * self.pass_segments / PASS_SEGMENTS;
         (self.pass_segments / self.segments_per_path).max(least).max(1.0) as u64
     }
@@ -115,6 +116,7 @@ pub fn settle(
             radius: plan.radius.unwrap_or(radius),
             theta_max: plan.theta_max.unwrap_or_else(|| angle(scene, inradius, &from_sources)),
         },
+        sensors,
         gather_paths: gather_paths.max(1),
         photons,
         schedule: plan.schedule,

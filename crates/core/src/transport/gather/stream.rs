@@ -5,10 +5,11 @@
 use crate::optics::Incidence;
 use crate::scene::shape::Toward;
 use crate::scene::{MediumId, PrimHit, PrimId, Scene, SourceId, Visibility};
-use crate::transport::gather::estimate::{Arriving, Colliding, Meeting, NestedWindows};
-use crate::transport::gather::estimator::{Ended, Gather, Pass, Waiting};
+use crate::transport::gather::contribution::{NestedWindows, PhotonHit, SurfaceHit, VolumeHit};
+use crate::transport::gather::estimator::{Ended, Gather, Waiting};
 use crate::transport::gather::index::{Key, TOGETHER};
 use crate::transport::gather::merge::Etendues;
+use crate::transport::gather::stages::Pass;
 use crate::transport::gather::window::{COUNTED, ESTIMATES, estimates};
 use crate::transport::stop::Pace;
 use crate::transport::tally::readings::Counted;
@@ -18,12 +19,14 @@ use glam::DVec3;
 use std::ops::ControlFlow;
 
 /// Photons that stream past the records.
-pub(super) struct Stream<'p, 's> {
+pub(crate) struct Stream<'p, 's> {
     pub(super) gather: &'p Gather<'s>,
     nested: NestedWindows,
-    waiting: &'p Waiting<'s>,
+    waiting: Waiting<'s>,
     pace: &'p Pace<'p>,
-    pub(super) windows: &'p mut [Readings; ESTIMATES],
+    /// Counts by records: E1, E2, E3 and E0; not yet closed.
+    pub(super) windows: [Readings; ESTIMATES],
+    pub(super) pass: Pass,
     /// The current photon.
     pub(super) photon: Photon,
     /// Photons to be looked up, and their keys.
@@ -102,8 +105,8 @@ impl<'p, 's> Stream<'p, 's> {
     pub(super) fn new(
         gather: &'p Gather<'s>,
         pass: Pass,
-        (waiting, pace): (&'p Waiting<'s>, &'p Pace<'p>),
-        windows: &'p mut [Readings; ESTIMATES],
+        (waiting, pace): (Waiting<'s>, &'p Pace<'p>),
+        windows: [Readings; ESTIMATES],
     ) -> Self {
         Self {
             gather,
@@ -112,16 +115,18 @@ impl<'p, 's> Stream<'p, 's> {
             waiting,
             pace,
             windows,
+            pass,
             photon: Photon { flux: 0.0, source: SourceId::new(0), etendue: 0.0 },
             passing: Vec::with_capacity(TOGETHER),
             keys: Vec::with_capacity(TOGETHER),
         }
     }
 
-    /// Looks up the remaining photons; returns the work done.
-    pub(super) fn finish(mut self) -> RecordWork {
+    /// Looks up the remaining photons: the counts, not yet closed, and the work in addition to
+    /// tracing.
+    pub(crate) fn finish(mut self) -> ([Readings; ESTIMATES], RecordWork) {
         self.look_up();
-        self.work
+        (self.windows, self.work)
     }
 
     /// Whether there may be records for a photon.
@@ -163,12 +168,12 @@ impl<'p, 's> Stream<'p, 's> {
 
     fn look_up(&mut self) {
         let Gather { scene, layout, .. } = self.gather;
-        let (nested, windows, work) = (&self.nested, &mut *self.windows, &mut self.work);
+        let (nested, windows, work) = (&self.nested, &mut self.windows, &mut self.work);
         let (passing, keys, pace) = (&self.passing, &self.keys, self.pace);
         work.look_ups += passing.len() as u64;
         // Most photons that pass the filter are near no record after all: one bit for each that is.
         let mut near = 0u64;
-        let mut known: Option<(usize, Arriving)> = None;
+        let mut known: Option<(usize, PhotonHit)> = None;
         self.waiting.records.visit(keys, |index, record| {
             if pace.spend(1).is_break() {
                 return;
@@ -182,10 +187,12 @@ impl<'p, 's> Stream<'p, 's> {
             near |= 1 << index;
             let Some(shares) = nested.flux(record, &met) else { return };
             work.pairs += 1;
-            let Ended { sensor, cells, etendues, .. } = &self.waiting.paths[record.path as usize];
-            let weights = etendues
-                .map_or([1.0; COUNTED], |own| Etendues { photon: photon.etendue, ..own }.pair());
-            let depth = photon.depth + record.depth;
+            let own = record.path();
+            let Ended { sensor, cells, etendues, .. } = &self.waiting.paths[own.place as usize];
+            let weights = etendues.map_or([1.0; COUNTED], |known| {
+                Etendues { photon: photon.etendue, ..known }.pair()
+            });
+            let depth = photon.depth + own.depth;
             let counted = std::array::from_fn(|window| shares[window] * weights[window]);
             for (readings, share) in windows.iter_mut().zip(estimates(counted)) {
                 if share != 0.0 {
@@ -201,10 +208,10 @@ impl<'p, 's> Stream<'p, 's> {
 }
 
 /// A photon in the form that records take.
-fn arriving(scene: &Scene, key: &Key, photon: &Passing) -> Arriving {
+fn arriving(scene: &Scene, key: &Key, photon: &Passing) -> PhotonHit {
     let &Key { surface, point, dir } = key;
     match photon.at {
-        At::Medium => Arriving::Within(Colliding { medium: surface, point, dir }),
+        At::Medium => PhotonHit::Volume(VolumeHit { medium: surface, point, dir }),
         At::Surface { prim, toward, media: [from, to], wavelength } => {
             let index = |medium: MediumId| scene.media[medium.index()].index(wavelength);
             let outward = scene.normal(prim, point);
@@ -219,7 +226,7 @@ fn arriving(scene: &Scene, key: &Key, photon: &Passing) -> Arriving {
                 // Records evaluate only finishes that scatter, which have no grain.
                 grain: DVec3::ZERO,
             };
-            Arriving::AtSurface(Meeting { surface, medium: from, point, incidence })
+            PhotonHit::Surface(SurfaceHit { surface, medium: from, point, incidence })
         }
     }
 }

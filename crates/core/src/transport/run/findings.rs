@@ -1,10 +1,12 @@
-//! Findings of a run: readings by photons, by gather paths, and by stages of the gather method.
+//! Findings of a run: readings by photons, and what each other estimator found.
 //!
-//! One serialisable value. The sensor's estimator decides which of the readings give its values.
+//! One serialisable value. The sensor's estimator decides which of it give its values.
 
 use crate::plan::Estimator;
-use crate::scene::SensorId;
-use crate::transport::{Choice, GatherSettings, Readings, Stage};
+use crate::scene::{Scene, SensorId};
+use crate::transport::estimate::{Account, Estimate};
+use crate::transport::estimators::{self, Found};
+use crate::transport::{Choice, GatherSettings, Readings};
 use serde::{Deserialize, Serialize};
 
 /// Everything a run has counted.
@@ -12,11 +14,8 @@ use serde::{Deserialize, Serialize};
 pub struct Findings {
     /// By photons: the balance, and all sensors.
     pub photons: Readings,
-    /// By gather paths that were followed to their sources: sensors estimated backward, and mixed ones with the share of
-    /// photons.
-    pub backward: Option<Readings>,
-    /// By gather records.
-    pub gathered: Option<Gathered>,
+    /// By the other estimators.
+    pub others: Vec<Found>,
     /// How each sensor is estimated.
     pub estimators: Vec<Estimator>,
     /// Findings of the pilot about each sensor, if the run is to choose.
@@ -25,25 +24,40 @@ pub struct Findings {
     pub paths: u64,
 }
 
-/// Findings of the gather method.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Gathered {
-    /// Its settings.
-    pub settings: GatherSettings,
-    /// The last finished stage and the one after it, as far as it has got.
-    pub stages: Vec<Stage>,
-}
-
 impl Findings {
     /// The findings of photons alone.
     pub fn forward(photons: Readings) -> Self {
         let estimators = vec![Estimator::Forward; photons.sensors.len()];
         let paths = photons.paths();
-        Self { photons, backward: None, gathered: None, estimators, choices: Vec::new(), paths }
+        Self { photons, others: Vec::new(), estimators, choices: Vec::new(), paths }
     }
 
-    /// How a sensor is estimated.
-    pub fn estimator(&self, sensor: SensorId) -> Estimator {
-        self.estimators[sensor.index()]
+    /// What an estimator other than forward found.
+    pub fn by(&self, estimator: Estimator) -> Option<&Found> {
+        self.others.iter().find(|found| found.estimator == estimator)
+    }
+
+    /// The estimate of a sensor.
+    pub fn estimate(&self, scene: &Scene, sensor: SensorId) -> Estimate<'_> {
+        let estimator = self.estimators[sensor.index()];
+        estimators::estimate(scene, (estimator, self.by(estimator)), &self.photons, sensor)
+    }
+
+    /// How the values of a sensor were computed, where there is something to say.
+    pub fn account(&self, scene: &Scene, sensor: SensorId) -> Option<Account> {
+        let found = self.by(self.estimators[sensor.index()])?;
+        estimators::account(scene, found, &self.photons, sensor)
+    }
+
+    /// Settings of gathering, if anything is gathered.
+    pub fn gathering(&self) -> Option<&GatherSettings> {
+        self.others.iter().find_map(|found| found.settings.as_ref())
+    }
+
+    /// Straight pieces of photon and gather paths, as far as they still count.
+    pub fn segments(&self) -> u64 {
+        let stages = self.others.iter().flat_map(|found| &found.stages);
+        let others: u64 = stages.map(|stage| stage.counts.first().segments).sum();
+        self.photons.segments + others
     }
 }

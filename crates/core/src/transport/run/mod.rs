@@ -7,7 +7,7 @@ mod shard;
 mod slices;
 mod state;
 
-pub use findings::{Findings, Gathered};
+pub use findings::Findings;
 pub use prepare::batch_paths;
 pub use rounds::{Phase, Run};
 pub use shard::Shard;

@@ -1,19 +1,20 @@
 //! Decisions before a run: the estimator of each sensor, and the size of its batches.
 
-use crate::plan::{Estimator, Request, RunPlan};
+use crate::plan::{Estimator, RunPlan};
 use crate::scene::{Scene, SensorId};
-use crate::transport::Choice;
-use crate::transport::backward::estimator::Backward;
+use crate::transport::backward::estimator::{Backward, Weights};
 use crate::transport::choose::pilot::choose;
+use crate::transport::estimators::{Portion, Prepared};
 use crate::transport::forward::Forward;
-use crate::transport::gather::estimator::Gather;
-use crate::transport::gather::settings::{PhotonPilot, settle};
-use crate::transport::gather::stages::{FIRST_PASSES, Stages};
+use crate::transport::gather::estimator::{Combination, Gather};
+use crate::transport::gather::stages::FIRST_PASSES;
 use crate::transport::run::rounds::{Phase, Run};
 use crate::transport::stop::StopSignal;
+use crate::transport::tally::Series;
 use crate::transport::tally::readings::GROUPS;
-use crate::transport::tally::sums::Sums;
 use crate::transport::tally::work;
+use crate::transport::trial::PhotonPilot;
+use crate::transport::{Choice, GatherSettings};
 use std::time::{Duration, Instant};
 
 /// Target number of straight pieces of a batch: long enough that summing costs little, short enough
@@ -55,44 +56,40 @@ impl<'s> Run<'s> {
         let pilot = PhotonPilot::new(segments as f64);
         let (estimators, choices) = estimators(scene, plan, pilot, signal, watch)?;
         let of = |wanted| sensors_of(&estimators, wanted);
-        let stages =
-            stages(scene, plan, (&of(Estimator::Gather), &of(Estimator::Mis)), pilot, signal);
-        let stages = stages?;
-        let mixed = of(Estimator::Mix);
-        let followed = [of(Estimator::Backward), mixed.clone()].concat();
-        let share = match (&stages, followed.is_empty()) {
+        let gathered =
+            gathered(scene, plan, (&of(Estimator::Gather), &of(Estimator::Mis)), pilot, signal)?;
+        let followed = [of(Estimator::Backward), of(Estimator::Mix)];
+        let share = match (gathered.is_empty(), followed.iter().all(Vec::is_empty)) {
             (_, true) => 1.0,
             // Photons also count for the sensors that are estimated forward, or mixed.
-            (None, false) if of(Estimator::Forward).is_empty() && mixed.is_empty() => PHOTON_SHARE,
+            (true, false) if of(Estimator::Forward).is_empty() && followed[1].is_empty() => {
+                PHOTON_SHARE
+            }
             (_, false) => 0.5,
         };
         let usual = plan.batch_paths.unwrap_or(usual_batch(segments));
-        let photons = match (&stages, plan.stop.paths) {
-            (Some(stages), _) => stages.settings.photons,
-            (None, Some(paths)) if followed.is_empty() => paths.div_ceil(
+        let by_pass = gathered.iter().map(|(settings, _)| settings.photons).max();
+        let photons = match (by_pass, plan.stop.paths) {
+            (Some(photons), _) => photons,
+            (None, Some(paths)) if share == 1.0 => paths.div_ceil(
                 plan.stop.batches.unwrap_or(GROUPS * paths.div_ceil(GROUPS * usual).max(1)),
             ),
             (None, _) => (share * usual as f64).ceil() as u64,
         };
         // At least one path of each source.
         let photons = photons.max(scene.sources.len() as u64).max(1);
-        let backward = if followed.is_empty() {
-            None
-        } else {
-            let backward = Backward::new(scene, &followed, plan.seed, plan.bounce_limit);
-            let by_photons = photons as f64 * work::of_photon_path(pilot.segments_per_path);
-            let others = (1.0 - share) / share * by_photons;
-            let paths = others / backward.work_of_path(&early)? / followed.len() as f64;
-            Some((backward.with_paths(paths as u64).mixed(&mixed), Sums::default()))
-        };
+        let by_photons = photons as f64 * work::of_photon_path(pilot.segments_per_path);
+        let others = (1.0 - share) / share * by_photons;
+        let mut prepared = backward(scene, plan, &followed, others, &early)?;
+        prepared.extend(gathered.into_iter().map(|(_, prepared)| prepared));
+        let has_passes = prepared.iter().any(|one| one.portion() == Portion::Pass);
         Some(Self {
             estimators,
             choices,
             forward: Forward::new(scene, plan.seed, plan.bounce_limit, photons),
-            photons: Sums::default(),
-            backward,
-            wave_batches: if stages.is_some() { FIRST_PASSES } else { GROUPS },
-            stages,
+            photons: Series::default(),
+            others: prepared.into_iter().map(|one| (one, Series::default())).collect(),
+            wave_batches: if has_passes { FIRST_PASSES } else { GROUPS },
             signal: signal.clone(),
             batches: 0,
             paths: 0,
@@ -108,31 +105,59 @@ fn sensors_of(estimators: &[Estimator], wanted: Estimator) -> Vec<SensorId> {
     all.filter(|(_, own)| **own == wanted).map(|(index, _)| SensorId::new(index)).collect()
 }
 
-/// The stages of sensors that are gathered alone, or merged; no stages if there are no such
-/// sensors, and `None` if the signal stopped it.
-fn stages<'s>(
+/// Gather paths from sensors that are estimated backward, and mixed, with this much work in a
+/// batch; `None` if the signal stopped it.
+fn backward<'s>(
+    scene: &'s Scene,
+    plan: &RunPlan,
+    followed: &[Vec<SensorId>; 2],
+    work: f64,
+    signal: &StopSignal,
+) -> Option<Vec<Prepared<'s>>> {
+    let all = followed.concat();
+    if all.is_empty() {
+        return Some(Vec::new());
+    }
+    let new = |sensors: &[SensorId]| Backward::new(scene, sensors, plan.seed, plan.bounce_limit);
+    let paths = (work / new(&all).work_of_path(signal)? / all.len() as f64) as u64;
+    let [alone, mixed] = followed;
+    let alone = (!alone.is_empty()).then(|| Prepared::Backward(new(alone).with_paths(paths)));
+    let mixed = (!mixed.is_empty())
+        .then(|| Prepared::Mix(new(mixed).with_paths(paths).with_weights(Weights::Shared)));
+    Some(alone.into_iter().chain(mixed).collect())
+}
+
+/// Gather paths from sensors that are gathered alone, and merged, with their settings; `None` if
+/// the signal stopped it.
+fn gathered<'s>(
     scene: &'s Scene,
     plan: &RunPlan,
     (alone, merged): (&[SensorId], &[SensorId]),
     pilot: PhotonPilot,
     signal: &StopSignal,
-) -> Option<Option<Stages<'s>>> {
-    let gathered = if merged.is_empty() { alone } else { merged };
-    if gathered.is_empty() {
-        return Some(None);
+) -> Option<Vec<(GatherSettings, Prepared<'s>)>> {
+    if alone.is_empty() && merged.is_empty() {
+        return Some(Vec::new());
     }
     let early = signal.with_grace();
     let work = signal.work_left(|| time_of_piece(scene, plan, &early));
     let pilot = work.map_or(pilot, |work| pilot.with_passes_up_to(work / PASSES_IN_TIME));
-    let mut settings = settle(scene, plan, gathered, pilot, &early)?;
-    if work.is_some() && plan.gather.records.is_none() && !merged.is_empty() {
-        // Merged gather paths continue as far as photons do.
-        let most = settings.photons / gathered.len() as u64;
-        settings.gather_paths = settings.gather_paths.min(most).max(1);
+    let mut prepared = Vec::new();
+    for (sensors, combination) in [(alone, Combination::Alone), (merged, Combination::Merged)] {
+        if sensors.is_empty() {
+            continue;
+        }
+        let gather = Gather::prepare(scene, plan, (sensors, combination), pilot, &early)?;
+        let settings = gather.settings;
+        prepared.push((
+            settings,
+            match combination {
+                Combination::Alone => Prepared::Gather(gather),
+                Combination::Merged => Prepared::Mis(gather),
+            },
+        ));
     }
-    let mut gather = Gather::new(scene, gathered, plan.seed, settings.depth);
-    gather.merging = (!merged.is_empty()).then_some(plan.bounce_limit);
-    Some(Some(Stages::new(gather, settings)))
+    Some(prepared)
 }
 
 /// Suitable number of photon paths of a batch for a scene: the default of [`RunPlan::batch_paths`].
@@ -186,26 +211,20 @@ fn estimators(
         let estimators = sensors.clone().map(|sensor| own(sensor).unwrap_or(estimator));
         Some((estimators.collect(), Vec::new()))
     };
-    match plan.estimator {
-        Request::Forward => all(Estimator::Forward),
-        Request::Backward => all(Estimator::Backward),
-        Request::Mix => all(Estimator::Mix),
-        Request::Gather => all(Estimator::Gather),
-        Request::Mis => all(Estimator::Mis),
-        Request::Auto if sensors.clone().all(|sensor| own(sensor).is_some()) => {
-            all(Estimator::Forward)
-        }
-        Request::Auto => {
-            let mut tried = |estimator| watch(Phase::Pilot(estimator));
-            let choices = choose(scene, plan, pilot, &signal.with_half(), &mut tried);
-            let Some(mut choices) = choices else {
-                // The best is unknown; photons find something everywhere.
-                return if signal.is_due() { None } else { all(Estimator::Forward) };
-            };
-            for (sensor, choice) in choices.iter_mut().enumerate() {
-                choice.chosen = own(sensor).unwrap_or(choice.chosen);
-            }
-            Some((choices.iter().map(|choice| choice.chosen).collect(), choices))
-        }
+    if let Some(estimator) = plan.estimator.estimator() {
+        return all(estimator);
     }
+    if sensors.clone().all(|sensor| own(sensor).is_some()) {
+        return all(Estimator::Forward);
+    }
+    let mut tried = |estimator| watch(Phase::Pilot(estimator));
+    let choices = choose(scene, plan, pilot, &signal.with_half(), &mut tried);
+    let Some(mut choices) = choices else {
+        // The best is unknown; photons find something everywhere.
+        return if signal.is_due() { None } else { all(Estimator::Forward) };
+    };
+    for (sensor, choice) in choices.iter_mut().enumerate() {
+        choice.chosen = own(sensor).unwrap_or(choice.chosen);
+    }
+    Some((choices.iter().map(|choice| choice.chosen).collect(), choices))
 }

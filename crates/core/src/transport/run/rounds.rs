@@ -5,16 +5,14 @@
 //! pieces. A signal stops a run at any time: the batches before the first unfinished one then
 //! count, so that a run of that many batches reproduces it.
 
-use crate::plan::{Estimator, Schedule};
-use crate::transport::backward::estimator::Backward;
-use crate::transport::backward::mix::Mixing;
+use crate::plan::Estimator;
+use crate::transport::estimators::{InProgress, Observers, Portion, Prepared};
 use crate::transport::forward::Forward;
-use crate::transport::gather::stages::{FIRST_PASSES, Stages};
-use crate::transport::gather::window::ESTIMATES;
-use crate::transport::run::findings::{Findings, Gathered};
+use crate::transport::run::findings::Findings;
 use crate::transport::stop::{Pace, StopSignal};
-use crate::transport::tally::sums::Sums;
-use crate::transport::{Choice, Observer, Readings, Unobserved};
+use crate::transport::tally::{Counts, Series};
+use crate::transport::task::Task;
+use crate::transport::{Choice, Unobserved};
 use rayon::prelude::*;
 use std::fmt;
 
@@ -52,9 +50,9 @@ pub struct Run<'s> {
     pub(super) estimators: Vec<Estimator>,
     pub(super) choices: Vec<Choice>,
     pub(super) forward: Forward<'s>,
-    pub(super) photons: Sums<Readings>,
-    pub(super) backward: Option<(Backward<'s>, Sums<Readings>)>,
-    pub(super) stages: Option<Stages<'s>>,
+    pub(super) photons: Series,
+    /// The other estimators, and what they have counted.
+    pub(super) others: Vec<(Prepared<'s>, Series)>,
     pub(super) signal: StopSignal,
     /// Batches or passes so far.
     pub(super) batches: u64,
@@ -67,19 +65,17 @@ pub struct Run<'s> {
     pub(super) batches_asked: Option<u64>,
 }
 
-/// Counts of a batch.
+/// Counts of a batch: by photons, and by each of the other estimators.
 pub(super) struct Batch {
-    pub(super) photons: Readings,
-    pub(super) backward: Option<Readings>,
-    pub(super) windows: Option<[Readings; ESTIMATES]>,
+    pub(super) photons: Counts,
+    pub(super) others: Vec<Counts>,
 }
 
 impl<'s> Run<'s> {
     /// Traces the next piece of a wave: a few batches for each thread. If the signal stops it, the
     /// batches before the first unfinished one count, and the others are dropped.
     pub fn next_piece(&mut self) {
-        let per_thread = if self.stages.is_some() { 1 } else { PIECE_BATCHES };
-        let piece = per_thread * rayon::current_num_threads() as u64;
+        let piece = self.piece();
         let wave_end = (self.waves() + 1) * self.wave_batches;
         let end = (self.batches + piece).min(wave_end).min(self.batches_asked.unwrap_or(u64::MAX));
         let signal = match self.batches {
@@ -91,48 +87,43 @@ impl<'s> Run<'s> {
         batches.into_iter().map_while(|batch| batch).for_each(|batch| self.add(batch));
     }
 
-    /// Traces one batch; `None` if it was stopped.
-    pub(super) fn batch(&self, batch: u64, signal: &StopSignal) -> Option<Batch> {
-        let Some((backward, _)) = &self.backward else {
-            let (photons, windows) = self.photons(batch, &mut Unobserved, signal)?;
-            return Some(Batch { photons, backward: None, windows });
-        };
-        let photon_fluxes = self.forward.photon_fluxes();
-        let mut readings = backward.batch(batch, &photon_fluxes, signal)?;
-        let (photons, windows) = if backward.mixed.is_empty() {
-            self.photons(batch, &mut Unobserved, signal)?
-        } else {
-            let mut mixing = Mixing::new(backward, &photon_fluxes, &mut readings);
-            self.photons(batch, &mut mixing, signal)?
-        };
-        readings.close_batch();
-        Some(Batch { photons, backward: Some(readings), windows })
+    /// Batches that are traced together: a few for each thread.
+    pub(super) fn piece(&self) -> u64 {
+        let has_passes = self.others.iter().any(|(own, _)| own.portion() == Portion::Pass);
+        let per_thread = if has_passes { 1 } else { PIECE_BATCHES };
+        per_thread * rayon::current_num_threads() as u64
     }
 
-    /// Traces the photons of a batch, with an observer, and gathers them if requested; `None` if it
+    /// Traces one batch: the gather paths of all estimators, then photons past them. `None` if it
     /// was stopped.
-    pub(super) fn photons(
-        &self,
-        batch: u64,
-        observer: &mut impl Observer,
-        signal: &StopSignal,
-    ) -> Option<(Readings, Option<[Readings; ESTIMATES]>)> {
-        let Some(stages) = &self.stages else {
-            let readings = self.forward.batch_observed(batch, observer, &Pace::new(signal))?;
-            return Some((readings, None));
+    pub(super) fn batch(&self, batch: u64, signal: &StopSignal) -> Option<Batch> {
+        let pace = Pace::new(signal);
+        let photon_fluxes = self.forward.photon_fluxes();
+        let mut others: Vec<InProgress<'_, 's>> = Vec::with_capacity(self.others.len());
+        for (own, series) in &self.others {
+            let stage = series.stage();
+            others.push(own.begin(Task {
+                batch,
+                stage,
+                photon_fluxes: &photon_fluxes,
+                pace: &pace,
+            })?);
+        }
+        let photons = if others.iter().any(InProgress::observes) {
+            self.forward.batch_observed(batch, &mut Observers(&mut others), &pace)?
+        } else {
+            self.forward.batch_observed(batch, &mut Unobserved, &pace)?
         };
-        let pass = stages.gather.pass(&self.forward, stages.pass(batch), observer, signal)?;
-        Some((pass.photons, Some(pass.windows)))
+        let others: Vec<Counts> = others.into_iter().map(InProgress::finish).collect();
+        let counts = Batch { photons: Counts::one(photons), others };
+        (!pace.is_stopped()).then_some(counts)
     }
 
     pub(super) fn add(&mut self, batch: Batch) {
         self.batches += 1;
         self.paths += self.batch_paths();
-        if let (Some(stages), Some(windows)) = (&mut self.stages, batch.windows) {
-            stages.push(windows);
-        }
-        if let (Some((_, sums)), Some(backward)) = (&mut self.backward, batch.backward) {
-            sums.push(backward);
+        for ((_, series), counts) in self.others.iter_mut().zip(batch.others) {
+            series.push(counts);
         }
         self.photons.push(batch.photons);
     }
@@ -145,24 +136,21 @@ impl<'s> Run<'s> {
         }
     }
 
-    /// Waves after which the next test of the stop rules is due: rounds grow by a quarter; with gathering they double
-    /// the passes of a stage, and end with it.
+    /// Waves after which the next test of the stop rules is due: where an estimator next decides
+    /// how to go on; else rounds grow by a quarter.
     pub fn round_end(&self) -> u64 {
         let waves = self.waves();
-        match &self.stages {
-            None => {
-                let next = (waves + 1).max(waves * 5 / 4);
-                self.paths_asked.map_or(next, |paths| {
-                    next.min(paths.div_ceil(self.wave_batches * self.batch_paths()))
-                })
-            }
-            Some(stages) => {
-                let (passes, planned) = (stages.passes(), stages.planned_passes());
-                let doubled = (2 * passes).max(FIRST_PASSES);
-                let end = if passes < planned { doubled.min(planned) } else { doubled };
-                waves + (end - passes).div_ceil(FIRST_PASSES)
-            }
-        }
+        let of_estimator = |(own, series): &(Prepared<'_>, Series)| {
+            let left = own.next_decision(series)? - series.batches();
+            Some(waves + left.div_ceil(self.wave_batches))
+        };
+        self.others.iter().filter_map(of_estimator).min().unwrap_or_else(|| {
+            let next = (waves + 1).max(waves * 5 / 4);
+            let asked = self.paths_asked;
+            asked.map_or(next, |paths| {
+                next.min(paths.div_ceil(self.wave_batches * self.batch_paths()))
+            })
+        })
     }
 
     /// Whole waves traced so far.
@@ -177,16 +165,11 @@ impl<'s> Run<'s> {
 
     /// The current activity.
     pub fn phase(&self) -> Phase {
-        match (&self.stages, &self.backward) {
-            (Some(stages), _) if stages.gather.merging.is_some() => {
-                Phase::Pass { estimator: Estimator::Mis, number: self.batches + 1 }
-            }
-            (Some(_), _) => Phase::Pass { estimator: Estimator::Gather, number: self.batches + 1 },
-            (None, Some((backward, _))) if backward.mixed.is_empty() => {
-                Phase::Batches(Estimator::Backward)
-            }
-            (None, Some(_)) => Phase::Batches(Estimator::Mix),
-            (None, None) => Phase::Batches(Estimator::Forward),
+        let Some((own, _)) = self.others.last() else { return Phase::Batches(Estimator::Forward) };
+        let estimator = own.estimator();
+        match own.portion() {
+            Portion::Batch => Phase::Batches(estimator),
+            Portion::Pass => Phase::Pass { estimator, number: self.batches + 1 },
         }
     }
 
@@ -233,32 +216,42 @@ impl<'s> Run<'s> {
         self.paths_asked.map(|asked| before.saturating_add(left(asked)))
     }
 
-    /// Whether the stage of the gather method in progress has its planned passes.
+    /// Whether an estimator can reduce its bias in further stages.
+    pub fn can_reduce_bias(&self) -> bool {
+        self.others.iter().any(|(own, _)| own.has_stages())
+    }
+
+    /// Whether a stage with less bias may follow now.
     pub fn may_end_stage(&self) -> bool {
-        self.stages.as_ref().is_some_and(|stages| stages.passes() >= stages.planned_passes())
+        self.others.iter().any(|(own, series)| own.may_end_stage(series))
     }
 
-    /// Whether there are stages, each with a smaller window.
-    pub fn shrinks(&self) -> bool {
-        self.stages.as_ref().is_some_and(|own| own.settings.schedule == Schedule::Stages)
+    /// Whether bias limits the flux of a sensor more than noise does.
+    pub fn is_limited_by_bias(&self) -> bool {
+        self.others.iter().any(|(own, series)| own.is_limited_by_bias(series))
     }
 
-    /// Starts the next stage of the gather method: a smaller window.
-    pub fn next_stage(&mut self) {
-        if let Some(stages) = &mut self.stages {
-            stages.next_stage();
+    /// Lets the estimators decide after a round how to go on: where bias limits the run, a stage
+    /// with less bias follows. Returns the waves after which the next round ends.
+    pub fn end_round(&mut self, is_limited_by_bias: impl FnOnce(&Self) -> bool) -> u64 {
+        if self.may_end_stage() && is_limited_by_bias(self) {
+            self.next_stage();
         }
+        self.round_end()
+    }
+
+    /// Starts the next stage of every estimator whose stage may end.
+    pub fn next_stage(&mut self) {
+        let may_end = self.others.iter_mut().filter(|(own, series)| own.may_end_stage(series));
+        may_end.for_each(|(_, series)| series.next_stage());
     }
 
     /// Everything counted so far. At least one batch has been traced.
     pub fn findings(&self) -> Findings {
+        let photons = self.photons.in_progress().expect("a batch has been traced");
         Findings {
-            photons: self.photons.total().expect("a batch has been traced"),
-            backward: self.backward.as_ref().and_then(|(_, sums)| sums.total()),
-            gathered: self
-                .stages
-                .as_ref()
-                .map(|stages| Gathered { settings: stages.settings, stages: stages.found() }),
+            photons: photons.counts.first().clone(),
+            others: self.others.iter().map(|(own, series)| own.found(series)).collect(),
             estimators: self.estimators.clone(),
             choices: self.choices.clone(),
             paths: self.paths,
@@ -266,8 +259,7 @@ impl<'s> Run<'s> {
     }
 
     pub(super) fn batch_paths(&self) -> u64 {
-        let backward = self.backward.as_ref().map_or(0, |(backward, _)| backward.batch_paths());
-        let gather = self.stages.as_ref().map_or(0, Stages::batch_paths);
-        self.photons_per_batch() + backward + gather
+        let others = self.others.iter().map(|(own, series)| own.batch_paths(series.stage()));
+        self.photons_per_batch() + others.sum::<u64>()
     }
 }

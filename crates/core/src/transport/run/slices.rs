@@ -4,11 +4,10 @@
 //! of the largest nodes of this tree that lie in it; all slices together contain the same sums as
 //! the run itself.
 
-use crate::plan::Schedule;
-use crate::transport::run::rounds::{Batch, PIECE_BATCHES, Run};
+use crate::transport::run::rounds::{Batch, Run};
 use crate::transport::run::state::State;
+use crate::transport::tally::Counts;
 use crate::transport::tally::sums::fold_aligned;
-use crate::transport::{Readings, Windows};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -21,9 +20,9 @@ pub struct Slice {
     /// Batches of the whole run.
     pub of: u64,
     /// Nodes of the tree over all batches, in their order.
-    photons: Vec<Readings>,
-    backward: Vec<Readings>,
-    windows: Vec<Windows>,
+    photons: Vec<Counts>,
+    /// The same for each of the other estimators.
+    others: Vec<Vec<Counts>>,
 }
 
 /// Why a run cannot be cut into slices.
@@ -31,16 +30,14 @@ pub struct Slice {
 pub enum Unsliceable {
     /// Its end depends on the findings, or on the clock.
     OpenEnd,
-    /// The next, smaller windows of gathering depend on the findings.
+    /// The next stage of an estimator depends on the findings.
     Stages,
 }
 
 impl Run<'_> {
     /// Batches of the whole run; an error if the batches of a slice are not known in advance.
     pub fn sliceable_batches(&self) -> Result<u64, Unsliceable> {
-        let has_stages =
-            self.stages.as_ref().is_some_and(|own| own.settings.schedule == Schedule::Stages);
-        if has_stages {
+        if self.can_reduce_bias() {
             return Err(Unsliceable::Stages);
         }
         let asked = self.paths_asked.ok_or(Unsliceable::OpenEnd)?;
@@ -57,11 +54,9 @@ impl Run<'_> {
             batches: batches.clone(),
             of,
             photons: Vec::new(),
-            backward: Vec::new(),
-            windows: Vec::new(),
+            others: vec![Vec::new(); self.others.len()],
         };
-        let per_thread = if self.stages.is_some() { 1 } else { PIECE_BATCHES };
-        let piece = per_thread * rayon::current_num_threads() as u64;
+        let piece = self.piece();
         let mut first = batches.start;
         while first < batches.end {
             let end = (first + piece).min(batches.end);
@@ -77,29 +72,22 @@ impl Run<'_> {
     /// The state of the whole run from all of its slices, in their order.
     pub fn state_of_slices(&self, slices: Vec<Slice>) -> State {
         let batches = slices.last().map_or(0, |slice| slice.of);
-        let (mut photons, mut backward, mut windows) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut photons, mut others) = (Vec::new(), vec![Vec::new(); self.others.len()]);
         for slice in slices {
             photons.extend(slice.photons);
-            backward.extend(slice.backward);
-            windows.extend(slice.windows);
+            for (own, nodes) in others.iter_mut().zip(slice.others) {
+                own.extend(nodes);
+            }
         }
-        self.state_after(batches, photons, backward, windows)
-    }
-
-    /// Paths of this many batches.
-    pub fn paths_of(&self, batches: u64) -> u64 {
-        batches * self.batch_paths()
+        self.state_after(batches, photons, others)
     }
 }
 
 impl Slice {
     fn add(&mut self, batch: Batch) {
         fold_aligned(&mut self.photons, batch.photons);
-        if let Some(backward) = batch.backward {
-            fold_aligned(&mut self.backward, backward);
-        }
-        if let Some(windows) = batch.windows {
-            fold_aligned(&mut self.windows, Windows::closed(windows));
+        for (nodes, counts) in self.others.iter_mut().zip(batch.others) {
+            fold_aligned(nodes, counts);
         }
     }
 }

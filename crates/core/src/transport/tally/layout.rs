@@ -89,6 +89,11 @@ impl Layout {
         self.sensor_base(sensor.index()) + source.index()
     }
 
+    /// The scalars that make up the flux on a sensor: one per source.
+    pub fn flux_slots(&self, sensor: SensorId) -> Vec<usize> {
+        (0..self.sources).map(|source| self.sensor_flux(sensor, SourceId::new(source))).collect()
+    }
+
     /// Flux on a sensor that did not come through its aim.
     pub fn outside_aim(&self, sensor: SensorId) -> usize {
         self.sensor_base(sensor.index()) + self.sources

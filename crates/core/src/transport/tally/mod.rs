@@ -1,10 +1,12 @@
 //! Counts: cells, scalars by their layout, losses, and sums over batches.
 
 mod cells;
+mod counts;
 mod layout;
 pub mod readings;
 pub mod sums;
 pub(crate) mod work;
 
 pub use cells::Cells;
+pub use counts::{Counts, Series, Stage};
 pub use layout::{Layout, Loss, TAILS};

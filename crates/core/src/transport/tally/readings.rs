@@ -16,6 +16,9 @@ use std::ops::Range;
 
 /// Number of groups of batches; batch i belongs to group i mod 128. A full set of groups is needed for an error bar.
 pub const GROUPS: u64 = 128;
+/// With fewer groups of batches than this that contain anything, the error bar is not trustworthy:
+/// the spread of ten samples is itself known to a quarter, 1/sqrt(2 · 9).
+pub const MIN_LIT_GROUPS: usize = 10;
 /// Bins of the histogram of depths: 0 to 1023 interfaces one by one, then one for each doubling.
 pub const DEPTH_BINS: usize = 1024 + 32;
 /// Path classes kept per sensor; the weakest beyond that are summed as one.
@@ -221,6 +224,17 @@ impl Readings {
         loss: Loss,
     ) {
         self.groups[0].sums[layout.lost_paths(id, loss)] += throughput / self.batch_paths as f64;
+    }
+
+    /// Groups of batches in which any of some scalars is not zero.
+    pub fn lit_groups(&self, slots: &[usize]) -> usize {
+        let lit = |sums: &[f64]| slots.iter().any(|&slot| sums[slot] != 0.0);
+        self.groups.iter().filter(|group| lit(&group.sums)).count()
+    }
+
+    /// The sum of some scalars as a mean over groups, with its standard error.
+    pub fn sum(&self, slots: &[usize]) -> Tally {
+        self.function(|flux| slots.iter().map(|&slot| flux(slot)).sum())
     }
 
     /// A scalar as a mean over groups, with its standard error.

@@ -43,8 +43,8 @@ pub fn follow(
     let path = Path::arriving(gathering.scene, arrival);
     let (stage, limit) = match arrival.begins {
         // A photon is counted as it leaves the face, before it can be cut there.
-        Begins::BeforeFace => (Stage::BeforeFace, gathering.bounce_limit.saturating_add(1)),
-        Begins::OnSensor => (Stage::First, gathering.bounce_limit),
+        Begins::BeforeFace => (Leg::BeforeFace, gathering.bounce_limit.saturating_add(1)),
+        Begins::OnSensor => (Leg::First, gathering.bounce_limit),
     };
     let mut follower = Follower::new(gathering, observer, stage);
     walk(gathering.scene, path, limit, sampler, &mut follower);
@@ -58,7 +58,7 @@ pub fn follow_on(
     sampler: &mut Sampler<impl Numbers>,
     observer: &mut impl Observer,
 ) -> u64 {
-    let mut follower = Follower::new(gathering, observer, Stage::Beyond);
+    let mut follower = Follower::new(gathering, observer, Leg::Beyond);
     walk(gathering.scene, path, gathering.bounce_limit, sampler, &mut follower);
     follower.segments
 }
@@ -85,7 +85,7 @@ pub(crate) fn etendue_of(
 
 /// Progress of a gather path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Stage {
+enum Leg {
     /// It has yet to meet the sensor's own face.
     BeforeFace,
     /// It is on its first segment, which must pass through the aim.
@@ -97,7 +97,7 @@ enum Stage {
 struct Follower<'a, 's, 'o, O> {
     gathering: Gathering<'a, 's>,
     observer: &'o mut O,
-    stage: Stage,
+    stage: Leg,
     /// Emission met at the end of the first segment: it counts if the segment ends at the aim.
     before_aim: SmallVec<[MetEmission; 2]>,
     segments: u64,
@@ -108,7 +108,7 @@ struct Follower<'a, 's, 'o, O> {
 }
 
 impl<'a, 's, 'o, O: Observer> Follower<'a, 's, 'o, O> {
-    fn new(gathering: Gathering<'a, 's>, observer: &'o mut O, stage: Stage) -> Self {
+    fn new(gathering: Gathering<'a, 's>, observer: &'o mut O, stage: Leg) -> Self {
         let first_passage = match &gathering.scene.sensors[gathering.sensor.index()].kind {
             SensorKind::Surface(surface) if surface.passage == Passage::First => Some(surface),
             SensorKind::Surface(_) | SensorKind::Goniometer(_) => None,
@@ -174,16 +174,16 @@ impl<'a, 's, 'o, O: Observer> Follower<'a, 's, 'o, O> {
         let Gathering { scene, emitters, sensor, .. } = self.gathering;
         match self.stage {
             // Emission from the face itself does not leave by the action of the face.
-            Stage::BeforeFace => {}
-            Stage::Beyond => {
+            Leg::BeforeFace => {}
+            Leg::Beyond => {
                 emitters.along(path, segment, SegmentStart::Interface, |met| {
                     _ = self.observer.see(path, Event::Meet(&met));
                 });
             }
-            Stage::First => {
+            Leg::First => {
                 let opening = aim_opening(scene, sensor, segment);
                 if opening.is_some() {
-                    self.stage = Stage::Beyond;
+                    self.stage = Leg::Beyond;
                 }
                 let from = opening.unwrap_or(segment.length) - scene.tolerance;
                 // Only a sensor on a face starts paths on a surface.
@@ -206,7 +206,7 @@ impl<'a, 's, 'o, O: Observer> Follower<'a, 's, 'o, O> {
     }
 
     fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>) -> ControlFlow<()> {
-        if self.stage == Stage::First {
+        if self.stage == Leg::First {
             let aim = &self.gathering.scene.sensors[self.gathering.sensor.index()].aim;
             if !vertex.hits.all().any(|hit| aim.contains(&hit.face)) {
                 return ControlFlow::Break(());
@@ -215,8 +215,8 @@ impl<'a, 's, 'o, O: Observer> Follower<'a, 's, 'o, O> {
                 _ = self.observer.see(path, Event::Meet(&met));
             }
         }
-        self.at_own_face = self.stage == Stage::BeforeFace;
-        self.stage = Stage::Beyond;
+        self.at_own_face = self.stage == Leg::BeforeFace;
+        self.stage = Leg::Beyond;
         match vertex.interface.visibility {
             Visibility::Visible => self.observer.see(path, Event::Arrive(vertex)),
             Visibility::Invisible => ControlFlow::Continue(()),
@@ -226,8 +226,8 @@ impl<'a, 's, 'o, O: Observer> Follower<'a, 's, 'o, O> {
     fn collide(&mut self, path: &Path, collision: &Collision<'_>) -> ControlFlow<()> {
         match self.stage {
             // Light that is scattered in front of the aim does not pass through it.
-            Stage::First => ControlFlow::Break(()),
-            Stage::BeforeFace | Stage::Beyond => self.observer.see(path, Event::Collide(collision)),
+            Leg::First => ControlFlow::Break(()),
+            Leg::BeforeFace | Leg::Beyond => self.observer.see(path, Event::Collide(collision)),
         }
     }
 }

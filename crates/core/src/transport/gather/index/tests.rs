@@ -13,7 +13,7 @@ fn records(count: u32) -> Vec<Indexed> {
             let normal = DVec3::new(cos, sin, 0.0);
             let point = 5.0 * normal + 20.0 * along * DVec3::Z;
             let dir = uniform_sphere(sampler.pair(Dimension::GatherDirection));
-            Indexed { record, surface: 0, point, normal, dir }
+            Indexed { record, surface: 0, point, normal: Some(normal), dir }
         })
         .collect()
 }

@@ -16,7 +16,7 @@
 use crate::optics::{Incidence, evaluate};
 use crate::scene::MediumId;
 use crate::transport::gather::coverage::{AGREEING, HEIGHT};
-use crate::transport::gather::records::{GatherRecord, Wanted};
+use crate::transport::gather::records::{GatherRecord, RecordKind, SurfaceRecord, VolumeRecord};
 use crate::transport::gather::surfaces::Slot;
 use crate::transport::gather::window::{ANGLE_OF, COUNTED, NESTED, RADIUS_OF, Window};
 use glam::DVec3;
@@ -27,16 +27,16 @@ const GRAZING: f64 = 0.03;
 
 /// A photon that may belong to records.
 #[derive(Debug, Clone, Copy)]
-pub enum Arriving {
+pub enum PhotonHit {
     /// A photon that meets a surface.
-    AtSurface(Meeting),
+    Surface(SurfaceHit),
     /// A photon that is scattered within a medium.
-    Within(Colliding),
+    Volume(VolumeHit),
 }
 
 /// A photon that meets a surface.
 #[derive(Debug, Clone, Copy)]
-pub struct Meeting {
+pub struct SurfaceHit {
     /// The smooth surface, by its index in the list of all.
     pub surface: Slot,
     /// The medium it arrives in.
@@ -49,7 +49,7 @@ pub struct Meeting {
 
 /// A photon that is scattered within a medium.
 #[derive(Debug, Clone, Copy)]
-pub struct Colliding {
+pub struct VolumeHit {
     /// The medium, by its index among surfaces and media.
     pub medium: Slot,
     /// Position, mm.
@@ -86,15 +86,23 @@ impl NestedWindows {
     /// Flux in the cells of a record per unit of a photon's flux, for each window; `None` if the
     /// photon is in none of them.
     #[inline]
-    pub fn flux(&self, record: &GatherRecord<'_>, photon: &Arriving) -> Option<[f64; COUNTED]> {
-        match photon {
-            Arriving::AtSurface(meeting) => self.at_surface(record, meeting),
-            Arriving::Within(colliding) => self.within(record, colliding),
+    pub fn flux(&self, record: &GatherRecord<'_>, photon: &PhotonHit) -> Option<[f64; COUNTED]> {
+        match (record, photon) {
+            (GatherRecord::Surface(record), PhotonHit::Surface(hit)) => {
+                self.at_surface(record, hit)
+            }
+            (GatherRecord::Volume(record), PhotonHit::Volume(hit)) => self.within(record, hit),
+            (GatherRecord::Surface(_), PhotonHit::Volume(_))
+            | (GatherRecord::Volume(_), PhotonHit::Surface(_)) => None,
         }
     }
 
     #[inline]
-    fn at_surface(&self, record: &GatherRecord<'_>, photon: &Meeting) -> Option<[f64; COUNTED]> {
+    fn at_surface(
+        &self,
+        record: &SurfaceRecord<'_>,
+        photon: &SurfaceHit,
+    ) -> Option<[f64; COUNTED]> {
         let offset = photon.point - record.point;
         let height = offset.dot(record.normal);
         let across = offset.length_squared() - height * height;
@@ -109,55 +117,53 @@ impl NestedWindows {
             return None;
         }
         let within = |window: usize| across <= self.radii_squared[RADIUS_OF[window]];
-        match record.wanted {
-            Wanted::Along(wanted) => {
+        match record.kind {
+            RecordKind::Along(wanted) => {
                 let apart = photon.incidence.dir.distance_squared(wanted);
                 let [widest, ..] = self.chords_squared;
                 if apart > widest {
                     return None;
                 }
                 let cos_wanted = -wanted.dot(photon.incidence.normal);
-                Some(self.each(record, |window| {
+                Some(each(record.values, |window| {
                     let angle = ANGLE_OF[window];
                     let inside = within(window) && apart <= self.chords_squared[angle];
                     let per_angle = || self.per_projected(angle, cos_wanted, photon);
                     if inside { agreement * per_angle() } else { 0.0 }
                 }))
             }
-            Wanted::Scattered { bsdf, out } => {
+            RecordKind::Scattered { bsdf, out } => {
                 let scattered = agreement * evaluate(bsdf, &photon.incidence, out);
-                Some(self.each(record, |window| if within(window) { scattered } else { 0.0 }))
+                Some(each(record.values, |window| if within(window) { scattered } else { 0.0 }))
             }
-            // The record does not take such photons.
-            Wanted::Collided { .. } => None,
         }
     }
 
-    fn within(&self, record: &GatherRecord<'_>, photon: &Colliding) -> Option<[f64; COUNTED]> {
-        let Wanted::Collided { scattering, out } = record.wanted else { return None };
+    fn within(&self, record: &VolumeRecord, photon: &VolumeHit) -> Option<[f64; COUNTED]> {
         let apart = photon.point.distance_squared(record.point);
         let [widest, ..] = self.radii_squared;
-        if apart > widest || record.surface != photon.medium {
+        if apart > widest || record.medium != photon.medium {
             return None;
         }
-        let turned = scattering.phase(photon.dir.dot(out));
+        let turned = record.scattering.phase(photon.dir.dot(record.out));
         let within = |window: usize| apart <= self.radii_squared[RADIUS_OF[window]];
-        Some(self.each(record, |window| if within(window) { turned } else { 0.0 }))
-    }
-
-    #[inline]
-    fn each(&self, record: &GatherRecord<'_>, share: impl Fn(usize) -> f64) -> [f64; COUNTED] {
-        std::array::from_fn(|window| record.values[RADIUS_OF[window]] * share(window))
+        Some(each(record.values, |window| if within(window) { turned } else { 0.0 }))
     }
 
     /// `K_θ / |cos θ_p|` for one of the nested angles, 1/sr; `cos_wanted` is that of the cone's
     /// axis at the photon's position.
     #[inline]
-    fn per_projected(&self, angle: usize, cos_wanted: f64, photon: &Meeting) -> f64 {
+    fn per_projected(&self, angle: usize, cos_wanted: f64, photon: &SurfaceHit) -> f64 {
         if cos_wanted > self.sin_widest + GRAZING {
             self.per_solid_angle[angle] / photon.incidence.cos()
         } else {
             1.0 / projected_cap(cos_wanted, self.theta_max[angle])
         }
     }
+}
+
+/// Values of a record times the share of a photon, for each window.
+#[inline]
+fn each(values: [f64; NESTED], share: impl Fn(usize) -> f64) -> [f64; COUNTED] {
+    std::array::from_fn(|window| values[RADIUS_OF[window]] * share(window))
 }

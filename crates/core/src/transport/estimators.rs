@@ -1,0 +1,305 @@
+//! The estimators behind one seam: what every one of them answers, with one `match` per question.
+//!
+//! Photons are traced in every run, for the balance and for what they count on all sensors; that is
+//! the forward estimator. The others trace gather paths of their own and may observe the photons.
+//! Who asks here knows no windows, weights or records.
+
+use crate::plan::Estimator;
+use crate::scene::{Scene, Sensor, SensorId, Source};
+use crate::transport::backward::estimator::{self as backward, Backward};
+use crate::transport::backward::mix::{self, Mixing};
+use crate::transport::estimate::{Account, Estimate};
+use crate::transport::gather::estimator::Gather;
+use crate::transport::gather::merged::MergedStream;
+use crate::transport::gather::stream::Stream;
+use crate::transport::gather::{self, GatherSettings};
+use crate::transport::tally::{Counts, Series, Stage};
+use crate::transport::task::Task;
+use crate::transport::trial::{Trials, Tried};
+use crate::transport::walk::emitters::invisible;
+use crate::transport::{Event, Layout, Observer, Path, ROULETTE_BELOW, Readings, forward};
+use serde::{Deserialize, Serialize};
+use std::ops::ControlFlow;
+
+/// An estimator with its sensors, ready to trace.
+#[derive(Debug)]
+pub(crate) enum Prepared<'s> {
+    Backward(Backward<'s>),
+    Mix(Backward<'s>),
+    Gather(Gather<'s>),
+    Mis(Gather<'s>),
+}
+
+/// What an estimator found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Found {
+    /// The estimator.
+    pub estimator: Estimator,
+    /// Settings of gathering.
+    pub settings: Option<GatherSettings>,
+    /// The last finished stage and the one after it, as far as it has got.
+    pub stages: Vec<Stage>,
+}
+
+/// The pieces of work that an estimator counts in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Portion {
+    /// Short batches.
+    Batch,
+    /// Long passes of photons and gather paths.
+    Pass,
+}
+
+/// A batch whose gather paths are traced, and which may observe its photons.
+pub(crate) enum InProgress<'b, 's> {
+    Backward(Box<Readings>),
+    Mix(Box<Mixing<'b, 's>>),
+    Gather(Box<Stream<'b, 's>>),
+    Mis(Box<MergedStream<'b, 's>>),
+}
+
+impl<'s> Prepared<'s> {
+    /// Its name.
+    pub(crate) fn estimator(&self) -> Estimator {
+        match self {
+            Self::Backward(_) => Estimator::Backward,
+            Self::Mix(_) => Estimator::Mix,
+            Self::Gather(_) => Estimator::Gather,
+            Self::Mis(_) => Estimator::Mis,
+        }
+    }
+
+    /// Gather paths of a batch of a stage, from all of its sensors.
+    pub(crate) fn batch_paths(&self, stage: u32) -> u64 {
+        match self {
+            Self::Backward(own) | Self::Mix(own) => own.batch_paths(),
+            Self::Gather(own) | Self::Mis(own) => own.settings.batch_paths(stage),
+        }
+    }
+
+    /// The pieces that it counts in.
+    pub(crate) fn portion(&self) -> Portion {
+        match self {
+            Self::Backward(_) | Self::Mix(_) => Portion::Batch,
+            Self::Gather(_) | Self::Mis(_) => Portion::Pass,
+        }
+    }
+
+    /// Traces the gather paths of a batch; `None` if it was stopped.
+    pub(crate) fn begin<'b>(&'b self, task: Task<'b>) -> Option<InProgress<'b, 's>> {
+        Some(match self {
+            Self::Backward(own) => InProgress::Backward(Box::new(own.trace(task)?)),
+            Self::Mix(own) => InProgress::Mix(Box::new(Mixing::begin(own, task)?)),
+            Self::Gather(own) => InProgress::Gather(Box::new(own.begin(task)?)),
+            Self::Mis(own) => {
+                let stream = own.begin(task)?;
+                InProgress::Mis(Box::new(MergedStream::new(stream, task.photon_fluxes)))
+            }
+        })
+    }
+
+    /// Batches of the stage in progress after which it decides how to go on; `None` if it has no
+    /// such decisions.
+    pub(crate) fn next_decision(&self, series: &Series) -> Option<u64> {
+        match self {
+            Self::Backward(_) | Self::Mix(_) => None,
+            Self::Gather(own) | Self::Mis(own) => {
+                Some(own.settings.next_decision(series.stage(), series.batches()))
+            }
+        }
+    }
+
+    /// Whether a stage with less bias may follow the one in progress now.
+    pub(crate) fn may_end_stage(&self, series: &Series) -> bool {
+        match self {
+            Self::Backward(_) | Self::Mix(_) => false,
+            Self::Gather(own) | Self::Mis(own) => {
+                series.batches() >= own.settings.planned_passes(series.stage())
+            }
+        }
+    }
+
+    /// Whether it has stages, each with less bias than the one before.
+    pub(crate) fn has_stages(&self) -> bool {
+        match self {
+            Self::Backward(_) | Self::Mix(_) => false,
+            Self::Gather(own) | Self::Mis(own) => own.settings.has_stages(),
+        }
+    }
+
+    /// Whether bias limits any of its values more than noise does.
+    pub(crate) fn is_limited_by_bias(&self, series: &Series) -> bool {
+        match self {
+            Self::Backward(_) | Self::Mix(_) => false,
+            Self::Gather(own) | Self::Mis(own) => {
+                series.in_progress().is_some_and(|stage| own.is_limited_by_bias(&stage))
+            }
+        }
+    }
+
+    /// What it has found so far.
+    pub(crate) fn found(&self, series: &Series) -> Found {
+        let settings = match self {
+            Self::Backward(_) | Self::Mix(_) => None,
+            Self::Gather(own) | Self::Mis(own) => Some(own.settings),
+        };
+        Found { estimator: self.estimator(), settings, stages: series.stages() }
+    }
+}
+
+impl InProgress<'_, '_> {
+    /// Whether it observes photons.
+    pub(crate) fn observes(&self) -> bool {
+        match self {
+            Self::Backward(_) => false,
+            Self::Mix(_) | Self::Gather(_) | Self::Mis(_) => true,
+        }
+    }
+
+    /// The counts of the batch, after its photons.
+    pub(crate) fn finish(self) -> Counts {
+        match self {
+            Self::Backward(readings) => Counts::closed([*readings]),
+            Self::Mix(mixing) => Counts::closed([mixing.readings]),
+            Self::Gather(stream) => Counts::closed(stream.finish().0),
+            Self::Mis(stream) => Counts::closed(stream.finish()),
+        }
+    }
+}
+
+impl Observer for InProgress<'_, '_> {
+    #[inline]
+    fn roulette_below(&self) -> f64 {
+        match self {
+            Self::Backward(_) => ROULETTE_BELOW,
+            Self::Mix(own) => own.roulette_below(),
+            Self::Gather(own) => own.roulette_below(),
+            Self::Mis(own) => own.roulette_below(),
+        }
+    }
+
+    #[inline]
+    fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
+        match self {
+            Self::Backward(_) => ControlFlow::Continue(()),
+            Self::Mix(own) => own.see(path, event),
+            Self::Gather(own) => own.see(path, event),
+            Self::Mis(own) => own.see(path, event),
+        }
+    }
+}
+
+/// All estimators of a batch, as one observer of its photons.
+pub(crate) struct Observers<'o, 'b, 's>(pub(crate) &'o mut [InProgress<'b, 's>]);
+
+impl Observer for Observers<'_, '_, '_> {
+    /// The smallest of all: merged paths have weights that roulette would change.
+    #[inline]
+    fn roulette_below(&self) -> f64 {
+        self.0.iter().map(Observer::roulette_below).fold(ROULETTE_BELOW, f64::min)
+    }
+
+    #[inline]
+    fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
+        self.0.iter_mut().try_for_each(|one| one.see(path, event))
+    }
+}
+
+/// The estimate of a sensor, from what its estimator found and from photons.
+pub(crate) fn estimate<'a>(
+    scene: &Scene,
+    (estimator, found): (Estimator, Option<&'a Found>),
+    photons: &'a Readings,
+    id: SensorId,
+) -> Estimate<'a> {
+    let layout = Layout::new(scene);
+    let stages = found.map_or(&[][..], |found| &found.stages);
+    let last = || stages.last().map(|stage| stage.counts.first());
+    let own = match estimator {
+        Estimator::Forward => None,
+        Estimator::Backward => last().map(|own| backward::estimate(own, photons, &layout, id)),
+        Estimator::Mix => last().map(|own| unbiased(estimator, own)),
+        Estimator::Gather | Estimator::Mis => {
+            gather::estimate(estimator, stages, &layout.flux_slots(id))
+        }
+    };
+    own.unwrap_or_else(|| unbiased(Estimator::Forward, photons))
+}
+
+fn unbiased(estimator: Estimator, readings: &Readings) -> Estimate<'_> {
+    Estimate { estimator, readings, bias: None, is_contradicted: false }
+}
+
+/// How the values of a sensor were computed, where there is something to say.
+pub(crate) fn account(
+    scene: &Scene,
+    found: &Found,
+    photons: &Readings,
+    id: SensorId,
+) -> Option<Account> {
+    match found.estimator {
+        Estimator::Forward | Estimator::Backward | Estimator::Mix => None,
+        Estimator::Gather | Estimator::Mis => {
+            let settings = found.settings.as_ref()?;
+            gather::account((scene, settings), found.estimator, (&found.stages, photons), id)
+        }
+    }
+}
+
+/// Tries an estimator on all sensors; `None` if stopped.
+pub(crate) fn trial(estimator: Estimator, trials: &Trials<'_>) -> Option<Vec<Tried>> {
+    match estimator {
+        Estimator::Forward => forward::trial(trials),
+        Estimator::Backward => backward::trial(trials),
+        Estimator::Mix => mix::trial(trials),
+        Estimator::Gather => gather::trial(trials),
+        // A pilot does not choose it.
+        Estimator::Mis => Some(Vec::new()),
+    }
+}
+
+impl Estimator {
+    /// Estimators that a pilot tries, in the order of its report.
+    pub const TRIED: [Self; 4] = [Self::Forward, Self::Backward, Self::Mix, Self::Gather];
+
+    /// Whether gather paths must meet a source for its light to count.
+    pub fn must_meet_sources(self) -> bool {
+        match self {
+            Self::Forward | Self::Mix => false,
+            Self::Backward | Self::Gather | Self::Mis => true,
+        }
+    }
+
+    /// Whether it can count only the first passage of a path through a sensor: at a record, the
+    /// sensors that a photon has passed are unknown.
+    pub fn can_count_first_passages(self) -> bool {
+        match self {
+            Self::Forward | Self::Backward | Self::Mix => true,
+            Self::Gather | Self::Mis => false,
+        }
+    }
+
+    /// Whether it works only where light takes discrete directions.
+    pub fn needs_discrete_directions(self) -> bool {
+        match self {
+            Self::Forward | Self::Backward | Self::Mix | Self::Gather => false,
+            Self::Mis => true,
+        }
+    }
+
+    /// Whether a trial in a scene could find more than photons alone do.
+    pub(crate) fn is_worth_a_trial(self, scene: &Scene) -> bool {
+        let can_meet = |source: &Source| invisible(source, scene).is_none();
+        match self {
+            Self::Forward => true,
+            Self::Mix => scene.sources.iter().any(can_meet),
+            Self::Backward | Self::Gather => scene.sources.iter().all(can_meet),
+            Self::Mis => false,
+        }
+    }
+
+    /// Whether it can estimate a sensor.
+    pub(crate) fn can_estimate(self, sensor: &Sensor) -> bool {
+        self.can_count_first_passages() || !sensor.counts_first_passage()
+    }
+}

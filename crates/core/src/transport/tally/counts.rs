@@ -1,0 +1,119 @@
+//! The counts of an estimator: one set of readings, or several of the same batches.
+//!
+//! Only the estimator knows what each of its readings means.
+
+use crate::transport::Readings;
+use crate::transport::tally::sums::{Merge, Sums};
+use serde::{Deserialize, Serialize};
+use std::ops::Range;
+
+/// Readings of the same batches, at least one.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Counts(Vec<Readings>);
+
+impl Counts {
+    /// One set of readings, of a batch that has ended.
+    pub(crate) fn one(readings: Readings) -> Self {
+        Self(vec![readings])
+    }
+
+    /// The counts of a batch that ends now.
+    pub(crate) fn closed(readings: impl IntoIterator<Item = Readings>) -> Self {
+        let mut all: Vec<Readings> = readings.into_iter().collect();
+        all.iter_mut().for_each(Readings::close_batch);
+        Self(all)
+    }
+
+    /// The first readings.
+    pub fn first(&self) -> &Readings {
+        &self.0[0]
+    }
+
+    /// All readings.
+    pub fn all(&self) -> &[Readings] {
+        &self.0
+    }
+
+    /// The batches.
+    pub fn batches(&self) -> &Range<u64> {
+        &self.first().batches
+    }
+}
+
+impl Merge for Counts {
+    fn batch_count(&self) -> u64 {
+        self.first().batch_count()
+    }
+
+    fn first_batch(&self) -> u64 {
+        self.batches().start
+    }
+
+    fn merge(self, later: &Self) -> Self {
+        let both = self.0.into_iter().zip(&later.0);
+        Self(both.map(|(own, later)| own.merge(later)).collect())
+    }
+}
+
+/// Counts of a stage: batches with the same settings.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Stage {
+    /// Number of the stage, from 0.
+    pub number: u32,
+    /// Its counts.
+    pub counts: Counts,
+}
+
+/// What an estimator has counted so far, stage by stage. Most estimators have only one stage.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub struct Series {
+    stage: u32,
+    sums: Sums<Counts>,
+    /// The last two finished stages.
+    finished: Vec<Stage>,
+}
+
+impl Series {
+    /// The first stage, from the nodes of the tree over all batches in their order.
+    pub(crate) fn of_nodes(nodes: Vec<Counts>) -> Self {
+        Self { stage: 0, sums: Sums::of_nodes(nodes), finished: Vec::new() }
+    }
+
+    /// Number of the stage in progress, from 0.
+    pub(crate) fn stage(&self) -> u32 {
+        self.stage
+    }
+
+    /// Batches of the stage in progress.
+    pub(crate) fn batches(&self) -> u64 {
+        self.sums.batches()
+    }
+
+    /// Adds the next batch.
+    pub(crate) fn push(&mut self, batch: Counts) {
+        self.sums.push(batch);
+    }
+
+    /// Starts the next stage; the value comes from the one that ends here until the next is as
+    /// good.
+    pub(crate) fn next_stage(&mut self) {
+        let ends = self.in_progress();
+        self.finished.drain(..self.finished.len().saturating_sub(1));
+        self.finished.extend(ends);
+        self.stage += 1;
+        self.sums = Sums::default();
+    }
+
+    /// The last finished stage and the one in progress. A stage without a batch does not count, so
+    /// a run that is stopped as it starts one reports the same as a run that ends there.
+    pub(crate) fn stages(&self) -> Vec<Stage> {
+        let new = self.in_progress();
+        let skipped = if new.is_some() { self.finished.len().saturating_sub(1) } else { 0 };
+        self.finished.iter().skip(skipped).cloned().chain(new).collect()
+    }
+
+    /// The stage in progress; `None` before its first batch.
+    pub(crate) fn in_progress(&self) -> Option<Stage> {
+        Some(Stage { number: self.stage, counts: self.sums.total()? })
+    }
+}

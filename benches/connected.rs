@@ -8,7 +8,7 @@
 #![allow(clippy::print_stdout, reason = "a bench prints its result")]
 
 use glam::DVec3;
-use lumiduct_core::optics::{Bsdf, Incidence, Spread, evaluate};
+use lumiduct_core::optics::{Bsdf, FinishModel, Incidence, Spread};
 use lumiduct_core::rng::{Dimension, Sampler};
 use lumiduct_core::scene::shape::Toward;
 use lumiduct_core::scene::{FaceArea, On, Ray, Scene, SensorKind, SourceId};
@@ -86,7 +86,7 @@ fn joined(
     }
     let incidence =
         Incidence { dir: vertex.dir, normal, index_from: 1.0, index_to: 1.0, grain: DVec3::ZERO };
-    let value = evaluate(wall, &incidence, dir);
+    let value = wall.evaluate(&incidence, dir);
     if value == 0.0 {
         return 0.0;
     }

@@ -7,7 +7,7 @@
 //! purely specular scenes they count only the sources they hit.
 
 use crate::one_sensor::{BATCH_SEGMENTS, OneSensor};
-use lumiduct_core::optics::{Incidence, Lobe};
+use lumiduct_core::optics::{FinishModel, Incidence, Lobe};
 use lumiduct_core::plan::RunPlan;
 use lumiduct_core::rng::Sampler;
 use lumiduct_core::scene::Visibility;

@@ -6,7 +6,7 @@
 //! sample one direction.
 
 use crate::one_sensor::{Batch, OneSensor};
-use lumiduct_core::optics::{Scattered, Side, scatter_toward};
+use lumiduct_core::optics::{FinishModel, Scattered, Side};
 use lumiduct_core::rng::Sampler;
 use lumiduct_core::scene::{On, Ray};
 use lumiduct_core::transport::tally::readings::Counted;
@@ -157,7 +157,7 @@ impl Splitter<'_, '_> {
         let sides = [(Side::Reflected, facing.faces.own), (Side::Transmitted, facing.faces.behind)];
         if sides.iter().all(|(_, finish)| finish.is_specular()) {
             for (side, finish) in sides {
-                let out = scatter_toward(finish, side, &facing.incidence, &mut self.sampler);
+                let out = finish.scatter_toward(side, &facing.incidence, &mut self.sampler);
                 if let Some(out) = out {
                     self.push(path, vertex, facing.corrected(out));
                 }

@@ -23,7 +23,7 @@ impl AngleTable {
     }
 
     /// The value at an angle of incidence of this cosine, 1.
-    pub fn at(&self, cos: f64) -> f64 {
+    pub(crate) fn at(&self, cos: f64) -> f64 {
         let angle = cos.clamp(0.0, 1.0).acos();
         let last = self.rows.len() - 1;
         let next = self.rows.partition_point(|row| row[0] <= angle).clamp(1, last);
@@ -32,7 +32,7 @@ impl AngleTable {
     }
 
     /// The largest value, 1.
-    pub fn greatest(&self) -> f64 {
+    pub(crate) fn greatest(&self) -> f64 {
         self.rows.iter().map(|row| row[1]).fold(f64::NEG_INFINITY, f64::max)
     }
 }

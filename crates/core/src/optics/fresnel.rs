@@ -25,7 +25,7 @@ impl Polarised {
 /// Cosine of the refracted angle by Snell's law, or `None` under total internal reflection.
 /// `cos_i` is the cosine of incidence in the medium of index `n_i`, in 0..=1.
 #[inline]
-pub fn cos_transmitted(cos_i: f64, n_i: f64, n_t: f64) -> Option<f64> {
+pub(crate) fn cos_transmitted(cos_i: f64, n_i: f64, n_t: f64) -> Option<f64> {
     let eta = n_i / n_t;
     let sin2_t = eta * eta * (1.0 - cos_i * cos_i).max(0.0);
     (sin2_t < 1.0).then(|| (1.0 - sin2_t).sqrt())
@@ -41,7 +41,7 @@ pub fn dielectric(cos_i: f64, n_i: f64, n_t: f64) -> Polarised {
 
 /// Like [`dielectric`], for a known refracted angle.
 #[inline]
-pub fn dielectric_refracting(cos_i: f64, cos_t: f64, n_i: f64, n_t: f64) -> Polarised {
+pub(crate) fn dielectric_refracting(cos_i: f64, cos_t: f64, n_i: f64, n_t: f64) -> Polarised {
     let (s_less, s_sum) = (n_i * cos_i - n_t * cos_t, n_i * cos_i + n_t * cos_t);
     let (p_less, p_sum) = (n_t * cos_i - n_i * cos_t, n_t * cos_i + n_i * cos_t);
     // One division for both, since it is on the critical path of a bounce.
@@ -79,13 +79,13 @@ pub fn critical_angle(n_i: f64, n_t: f64) -> Option<f64> {
 
 /// Direction mirrored at a unit normal, whichever way that points.
 #[inline]
-pub fn mirrored(dir: DVec3, normal: DVec3) -> DVec3 {
+pub(crate) fn mirrored(dir: DVec3, normal: DVec3) -> DVec3 {
     dir - 2.0 * dir.dot(normal) * normal
 }
 
 /// Refracted direction; `normal` points against `dir`.
 #[inline]
-pub fn refracted(dir: DVec3, normal: DVec3, cos_i: f64, cos_t: f64, eta: f64) -> DVec3 {
+pub(crate) fn refracted(dir: DVec3, normal: DVec3, cos_i: f64, cos_t: f64, eta: f64) -> DVec3 {
     eta * dir + (eta * cos_i - cos_t) * normal
 }
 

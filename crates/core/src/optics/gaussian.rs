@@ -5,9 +5,10 @@
 //! shape exp(-θ²/2σ²) is symmetric in o and m, so p(o|i) N(i) = p(i|o) N(o): the adjoint of a path
 //! needs only the two norms and cosines.
 
+use crate::optics::{Incidence, Lobe, Scattered};
 use crate::rng::{Dimension, Numbers, Sampler};
 use glam::DVec3;
-use lumiduct_base::math::Frame;
+use lumiduct_base::math::{Frame, unit};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Nodes of the table of norms over the elevation of the mean direction.
@@ -25,6 +26,23 @@ pub struct Gaussian {
     norms: Vec<f64>,
 }
 
+/// A gather path before it met a lobe, as if it had come along the mean direction m of the photons
+/// that scatter into it.
+pub(crate) struct Before {
+    /// At the face without scatter.
+    pub(crate) incidence: Incidence,
+    /// `p(o|m) cos θ_m / (p(m|o) cos θ_o)`.
+    factor: f64,
+}
+
+impl Before {
+    /// The gather path after it met the face without scatter as well.
+    pub(crate) fn continued(&self, out: Scattered) -> Scattered {
+        let factor = out.factor * self.factor;
+        Scattered { dir: unit(out.dir), factor, lobe: Lobe::Diffuse, ..out }
+    }
+}
+
 impl Gaussian {
     /// A lobe of standard deviation `sigma`, in rad, per angular coordinate.
     pub fn new(sigma: f64) -> Self {
@@ -35,12 +53,12 @@ impl Gaussian {
     }
 
     /// Standard deviation, rad.
-    pub fn sigma(&self) -> f64 {
+    pub(crate) fn sigma(&self) -> f64 {
         self.sigma
     }
 
     /// Density, in 1/sr, of scattering into `dir` about `mean`, both on the side of `normal`; 0 below the horizon.
-    pub fn pdf(&self, mean: DVec3, dir: DVec3, normal: DVec3) -> f64 {
+    pub(crate) fn pdf(&self, mean: DVec3, dir: DVec3, normal: DVec3) -> f64 {
         if dir.dot(normal) <= 0.0 {
             return 0.0;
         }
@@ -49,14 +67,46 @@ impl Gaussian {
         (-0.5 * (theta / self.sigma).powi(2)).exp() / self.norm_at(mean.dot(normal))
     }
 
+    /// `p(o|mean) / cos θ_o`, 1/sr; 0 along the horizon, where it has no value.
+    pub(crate) fn over_cosine(&self, mean: DVec3, out: DVec3, normal: DVec3) -> f64 {
+        let cos = out.dot(normal);
+        if cos > 0.0 { self.pdf(mean, out, normal) / cos } else { 0.0 }
+    }
+
+    /// What a gather path meets before the face. A photon meets a smooth face or a thin sheet first
+    /// and the lobe afterwards, so the gather path meets the lobe first: it draws m from p(m|o), and
+    /// continues from m as at a face without scatter. So exactly the photon directions that scatter
+    /// into o are drawn, even through a face that totally reflects the gather path's own direction.
+    /// `None` along the face, where the factor has no value.
+    pub(crate) fn before(
+        &self,
+        incidence: &Incidence,
+        sampler: &mut Sampler<impl Numbers>,
+    ) -> Option<Before> {
+        let cos = incidence.cos();
+        if cos == 0.0 {
+            return None;
+        }
+        let mean = unit(self.sample(-incidence.dir, incidence.normal, sampler));
+        let inner = Incidence { dir: -mean, ..*incidence };
+        // p(o|m) / p(m|o)
+        let exchange = self.exchange(cos, inner.cos());
+        Some(Before { incidence: inner, factor: exchange * inner.cos() / cos })
+    }
+
     /// p(a|b) / p(b|a) for two directions of cosines `cos_a` and `cos_b` to the normal: the shape is the same, the
     /// norms are not. 1.
-    pub fn exchange(&self, cos_a: f64, cos_b: f64) -> f64 {
+    pub(crate) fn exchange(&self, cos_a: f64, cos_b: f64) -> f64 {
         self.norm_at(cos_a) / self.norm_at(cos_b)
     }
 
     /// A direction about `mean` on the side of `normal`, with the density of [`Gaussian::pdf`].
-    pub fn sample(&self, mean: DVec3, normal: DVec3, sampler: &mut Sampler<impl Numbers>) -> DVec3 {
+    pub(crate) fn sample(
+        &self,
+        mean: DVec3,
+        normal: DVec3,
+        sampler: &mut Sampler<impl Numbers>,
+    ) -> DVec3 {
         let frame = Frame::from_axis(DVec3::ZERO, mean);
         loop {
             let [u, v] = sampler.pair(Dimension::Scatter);

@@ -3,6 +3,7 @@
 use crate::optics::fresnel;
 use crate::rng::{Dimension, Numbers, Sampler};
 use glam::DVec3;
+use lumiduct_base::math::unit;
 
 /// Light arriving at a face.
 #[derive(Debug, Clone, Copy)]
@@ -26,6 +27,29 @@ impl Incidence {
         let cos = -self.dir.dot(self.normal);
         let cos = if cos < 1.0 { cos } else { 1.0 };
         if cos > 0.0 { cos } else { 0.0 }
+    }
+
+    /// The side to which light goes along `out`.
+    pub(crate) fn side_of(&self, out: DVec3) -> Side {
+        if out.dot(self.normal) > 0.0 { Side::Reflected } else { Side::Transmitted }
+    }
+
+    /// The normal of the side to which light leaves.
+    #[inline]
+    pub(crate) fn leaving_normal(&self, side: Side) -> DVec3 {
+        match side {
+            Side::Reflected => self.normal,
+            Side::Transmitted => -self.normal,
+        }
+    }
+
+    /// The discrete direction of a thin sheet: mirrored, or straight on.
+    #[inline]
+    pub(crate) fn straight(&self, side: Side) -> DVec3 {
+        match side {
+            Side::Reflected => fresnel::mirrored(self.dir, self.normal),
+            Side::Transmitted => self.dir,
+        }
     }
 }
 
@@ -60,6 +84,38 @@ pub struct Scattered {
     pub lobe: Lobe,
 }
 
+impl Scattered {
+    /// Light that leaves in a discrete direction.
+    #[inline]
+    pub(crate) fn specular(dir: DVec3, factor: f64, side: Side) -> Self {
+        Self { dir, factor, side, lobe: Lobe::Specular }
+    }
+
+    /// Light that leaves in a drawn direction.
+    pub(crate) fn diffuse(dir: DVec3, factor: f64, side: Side) -> Self {
+        Self { dir, factor, side, lobe: Lobe::Diffuse }
+    }
+
+    /// The same light along a unit vector.
+    #[inline]
+    pub(crate) fn normalised(self) -> Self {
+        Self { dir: unit(self.dir), ..self }
+    }
+
+    /// A gather path whose light passed the face without being bent, or was mixed by a diffuser:
+    /// that conserves radiance and not basic radiance, so the factor `n_i²/n_o²` remains.
+    #[inline]
+    pub(crate) fn unrefracted(self, incidence: &Incidence) -> Self {
+        match self.side {
+            Side::Reflected => self,
+            Side::Transmitted => {
+                let ratio = incidence.index_to / incidence.index_from;
+                Self { factor: self.factor * ratio * ratio, ..self }
+            }
+        }
+    }
+}
+
 /// Shares of the arriving flux that leave to the two sides; the rest is absorbed. 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shares {
@@ -70,6 +126,9 @@ pub struct Shares {
 }
 
 impl Shares {
+    /// Of light that is absorbed.
+    pub(crate) const NONE: Self = Self { reflected: 0.0, transmitted: 0.0 };
+
     /// The share that leaves to one side, 1.
     #[inline]
     pub fn of(self, side: Side) -> f64 {
@@ -78,48 +137,35 @@ impl Shares {
             Side::Transmitted => self.transmitted,
         }
     }
-}
 
-/// Light that leaves in a discrete direction.
-#[inline]
-pub(crate) fn specular(dir: DVec3, factor: f64, side: Side) -> Scattered {
-    Scattered { dir, factor, side, lobe: Lobe::Specular }
-}
-
-/// Light that leaves in a drawn direction.
-pub(crate) fn diffuse(dir: DVec3, factor: f64, side: Side) -> Scattered {
-    Scattered { dir, factor, side, lobe: Lobe::Diffuse }
-}
-
-/// Reflected or transmitted in proportion to the shares; no draw where only one is possible.
-#[inline]
-pub(crate) fn choose_side(
-    reflectance: f64,
-    transmittance: f64,
-    sampler: &mut Sampler<impl Numbers>,
-) -> Option<Side> {
-    if transmittance == 0.0 {
-        return (reflectance > 0.0).then_some(Side::Reflected);
+    /// The share that is not absorbed, 1.
+    #[inline]
+    pub(crate) fn sum(self) -> f64 {
+        self.reflected + self.transmitted
     }
-    let reflected = reflectance > 0.0
-        && sampler.one(Dimension::Lobe) * (reflectance + transmittance) < reflectance;
-    Some(if reflected { Side::Reflected } else { Side::Transmitted })
-}
 
-/// The discrete direction of a thin sheet: mirrored, or straight on.
-#[inline]
-pub(crate) fn straight(incidence: &Incidence, side: Side) -> DVec3 {
-    match side {
-        Side::Reflected => fresnel::mirrored(incidence.dir, incidence.normal),
-        Side::Transmitted => incidence.dir,
+    /// The shares of both together.
+    pub(crate) fn plus(self, other: Self) -> Self {
+        Self {
+            reflected: self.reflected + other.reflected,
+            transmitted: self.transmitted + other.transmitted,
+        }
     }
-}
 
-/// The normal of the side to which light leaves.
-#[inline]
-pub(crate) fn leaving_normal(incidence: &Incidence, side: Side) -> DVec3 {
-    match side {
-        Side::Reflected => incidence.normal,
-        Side::Transmitted => -incidence.normal,
+    /// Both shares times a factor.
+    pub(crate) fn scaled(self, factor: f64) -> Self {
+        Self { reflected: factor * self.reflected, transmitted: factor * self.transmitted }
+    }
+
+    /// A side in proportion to the shares; no draw where only one is possible.
+    #[inline]
+    pub(crate) fn choose_side(self, sampler: &mut Sampler<impl Numbers>) -> Option<Side> {
+        let Self { reflected, transmitted } = self;
+        if transmitted == 0.0 {
+            return (reflected > 0.0).then_some(Side::Reflected);
+        }
+        let is_reflected =
+            reflected > 0.0 && sampler.one(Dimension::Lobe) * (reflected + transmitted) < reflected;
+        Some(if is_reflected { Side::Reflected } else { Side::Transmitted })
     }
 }

@@ -11,7 +11,7 @@ use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 
 /// The number of standard skies.
-pub const CIE_TYPES: usize = 15;
+pub(crate) const CIE_TYPES: usize = 15;
 
 /// Gradations of the six groups: a and b of φ = 1 + a exp(b / cos Z).
 const GRADATIONS: [[f64; 2]; 6] =
@@ -93,7 +93,7 @@ impl SkyModel {
     }
 
     /// Luminance over that of the zenith, 1, along a unit vector toward the sky; 0 at and below the horizon.
-    pub fn luminance(&self, toward: DVec3) -> f64 {
+    pub(crate) fn luminance(&self, toward: DVec3) -> f64 {
         if toward.z <= 0.0 {
             return 0.0;
         }
@@ -111,7 +111,7 @@ impl SkyModel {
     }
 
     /// Bounds of the luminance, relative to the zenith: everywhere at most `even` + `glow` exp(-`decay` χ).
-    pub fn bound(&self) -> SkyBound {
+    pub(crate) fn bound(&self) -> SkyBound {
         let [c, d, e] = self.indicatrix;
         // The gradation is monotonic: its largest value is at one of its ends.
         let most = self.scale * self.gradation.of(1.0).max(self.gradation.of(0.0));
@@ -126,15 +126,15 @@ impl SkyModel {
 
 /// Upper bound of a sky's luminance: an even part, and a glow about the sun.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SkyBound {
+pub(crate) struct SkyBound {
     /// The even part, relative to the zenith, 1.
-    pub even: f64,
+    pub(crate) even: f64,
     /// The glow in the direction of the sun, relative to the zenith, 1; 0 where there is none.
-    pub glow: f64,
+    pub(crate) glow: f64,
     /// Fall-off of the glow with the angle from the sun, 1/rad.
-    pub decay: f64,
+    pub(crate) decay: f64,
     /// Unit vector toward the sun.
-    pub sun: DVec3,
+    pub(crate) sun: DVec3,
 }
 
 impl Gradation {

@@ -40,7 +40,7 @@ impl VolumeScattering {
 
     /// A free path length, mm, for uniform `u` in [0, 1): density `σ exp(-σ s)`, in 1/mm.
     #[inline]
-    pub fn free_path(&self, u: f64) -> f64 {
+    pub(crate) fn free_path(&self, u: f64) -> f64 {
         -(-u).ln_1p() / self.coefficient
     }
 

@@ -5,6 +5,7 @@ use crate::keys::Key;
 use crate::problems::Problems;
 use crate::spec::SceneSpec;
 use glam::DVec3;
+use lumiduct_core::optics::FinishModel;
 use lumiduct_core::rng::{Dimension, Sampler};
 use lumiduct_core::scene::{Just, Owner, Ray, Scene, Solid, SolidId};
 

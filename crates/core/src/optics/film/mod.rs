@@ -15,7 +15,6 @@ mod survey;
 
 pub use survey::{acceptance_angle, along_prisms};
 
-use crate::optics::incidence::specular;
 use crate::optics::{Incidence, Scattered, Shares, Side};
 use crate::rng::{Dimension, Numbers, Sampler};
 use cell::{After, Cell, Exit, Indices, Step};
@@ -71,7 +70,7 @@ pub enum FilmFace {
 
 impl FilmFace {
     /// The other face.
-    pub fn opposite(self) -> Self {
+    pub(crate) fn opposite(self) -> Self {
         match self {
             Self::Flat => Self::Prisms,
             Self::Prisms => Self::Flat,
@@ -114,7 +113,7 @@ impl PrismFilm {
 
     /// Sends on light that meets one of the faces, or absorbs it (`None`). The directions are
     /// discrete, and one of them is chosen at random.
-    pub fn scatter(
+    pub(crate) fn scatter(
         &self,
         face: FilmFace,
         incidence: &Incidence,
@@ -254,7 +253,7 @@ impl PrismFilm {
         let [x, y, w] = approach.axes;
         let dir = exit.dir.x * x + exit.dir.y * y + exit.dir.z * w;
         let side = if through == arrived { Side::Reflected } else { Side::Transmitted };
-        specular(dir, self.transmittance(exit.way), side)
+        Scattered::specular(dir, self.transmittance(exit.way), side)
     }
 
     fn approach(&self, face: FilmFace, incidence: &Incidence) -> Approach {

@@ -22,7 +22,7 @@ const GREATEST: f64 = 4.0;
 
 /// The indices for which the share above the horizon is needed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Indices {
+pub(crate) enum Indices {
     /// 1, as in air, for sheets.
     One,
     /// 1 to 4, for interfaces.
@@ -31,7 +31,7 @@ pub(super) enum Indices {
 
 /// `C(p, n) / M(n)` in a table: 1 for a lobe in the middle of its disk.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Horizon {
+pub(crate) struct Horizon {
     rows: Vec<Row>,
 }
 
@@ -43,7 +43,7 @@ struct Row {
 }
 
 impl Horizon {
-    pub(super) fn new(profile: &Profile, indices: Indices) -> Self {
+    pub(crate) fn new(profile: &Profile, indices: Indices) -> Self {
         let rows = match indices {
             Indices::One => vec![Row::new(profile, 1.0)],
             Indices::Any => {
@@ -54,7 +54,7 @@ impl Horizon {
     }
 
     /// The share `C(p, n)/M(n)`, 1, of a lobe centred at `center` from the middle of a disk of radius `index`.
-    pub(super) fn share(&self, center: f64, index: f64) -> f64 {
+    pub(crate) fn share(&self, center: f64, index: f64) -> f64 {
         let place = center / index;
         let [first, ..] = self.rows.as_slice() else { return 0.0 };
         if self.rows.len() == 1 {

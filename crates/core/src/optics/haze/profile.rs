@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 /// Rings of a table over the distance.
 const RINGS: usize = 256;
 /// The largest distance: that of two directions along a face between two media of index 4.
-pub(super) const FARTHEST: f64 = 8.0;
+pub(crate) const FARTHEST: f64 = 8.0;
 
 /// The law of the scatter, 1/sr, over the distance d of direction cosines; it never increases with
 /// d.
@@ -38,7 +38,7 @@ pub enum HazeLaw {
 
 impl HazeLaw {
     /// The value at a distance, 1/sr.
-    pub fn at(&self, distance: f64) -> f64 {
+    pub(crate) fn at(&self, distance: f64) -> f64 {
         match *self {
             Self::Abg { a, b, g } => a / (b + distance.powf(g)),
             Self::Harvey { b0, shoulder, slope } => {
@@ -60,8 +60,8 @@ impl HazeLaw {
 
 /// A law with its integrals over rings.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Profile {
-    pub(super) law: HazeLaw,
+pub(crate) struct Profile {
+    pub(crate) law: HazeLaw,
     /// From the middle outwards, the last one at the largest distance.
     rings: Vec<Ring>,
 }
@@ -80,7 +80,7 @@ struct Ring {
 }
 
 impl Profile {
-    pub(super) fn new(law: HazeLaw) -> Self {
+    pub(crate) fn new(law: HazeLaw) -> Self {
         let first = (0.02 * law.knee()).clamp(1e-9, 0.01);
         let growth = (FARTHEST / first).powf(1.0 / (RINGS - 2) as f64);
         let mut rings = vec![Ring { radius2: 0.0, value: law.at(0.0), within: 0.0, bound: 0.0 }];
@@ -101,7 +101,7 @@ impl Profile {
     }
 
     /// `∫ S dA` within a circle about the middle, 1: the share of light scattered there.
-    pub(super) fn within(&self, distance: f64) -> f64 {
+    pub(crate) fn within(&self, distance: f64) -> f64 {
         let radius2 = distance * distance;
         let ring = self.inner(|ring| ring.radius2 <= radius2);
         let (inner, outer) = (self.rings[ring], self.rings[ring + 1]);
@@ -110,7 +110,7 @@ impl Profile {
     }
 
     /// A distance between two others in proportion to the law, as for light scattered to all sides.
-    pub(super) fn sample(&self, [from, to]: [f64; 2], sampler: &mut Sampler<impl Numbers>) -> f64 {
+    pub(crate) fn sample(&self, [from, to]: [f64; 2], sampler: &mut Sampler<impl Numbers>) -> f64 {
         let [low, high] = [from, to].map(|distance| self.bound(distance));
         loop {
             let [u, keep] = sampler.pair(Dimension::Scatter);

@@ -1,6 +1,6 @@
 //! One gather path: it counts the light that it meets, and leaves records where it ends.
 
-use crate::optics::{Bsdf, Lobe, Side, Spread, scatter_toward, shares};
+use crate::optics::{Bsdf, FinishModel, Lobe, Side, Spread};
 use crate::rng::{Dimension, Sampler};
 use crate::scene::SensorId;
 use crate::transport::gather::ball::clipped_volumes;
@@ -147,7 +147,7 @@ impl<'s> Collecting<'_, 's> {
     /// A record for photons that a broad finish scatters into the gather path: docs/method.md, eq. (22).
     fn add_scattered(&mut self, path: &Path, vertex: &Vertex<'_>, facing: &Facing<'s>, side: Side) {
         let bsdf = finish(facing, side);
-        if bsdf.width().is_none() && shares(bsdf, &facing.incidence).of(side) == 0.0 {
+        if bsdf.width().is_none() && bsdf.shares(&facing.incidence).of(side) == 0.0 {
             return;
         }
         // L* of the leaving light, in the medium of the gather path.
@@ -167,7 +167,7 @@ impl<'s> Collecting<'_, 's> {
     /// docs/method.md, eq. (15).
     fn add_along(&mut self, path: &Path, vertex: &Vertex<'_>, facing: &Facing<'s>, side: Side) {
         let bsdf = finish(facing, side);
-        let Some(out) = scatter_toward(bsdf, side, &facing.incidence, &mut self.sampler) else {
+        let Some(out) = bsdf.scatter_toward(side, &facing.incidence, &mut self.sampler) else {
             return;
         };
         if out.lobe == Lobe::Diffuse && is_broad(facing, side) {

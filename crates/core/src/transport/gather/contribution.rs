@@ -13,7 +13,7 @@
 //! 15): gather paths are scattered with the same probability there, so their estimate needs no
 //! other factor.
 
-use crate::optics::{Incidence, evaluate};
+use crate::optics::{FinishModel, Incidence};
 use crate::scene::MediumId;
 use crate::transport::gather::coverage::{AGREEING, HEIGHT};
 use crate::transport::gather::records::{GatherRecord, RecordKind, SurfaceRecord, VolumeRecord};
@@ -133,7 +133,7 @@ impl NestedWindows {
                 }))
             }
             RecordKind::Scattered { bsdf, out } => {
-                let scattered = agreement * evaluate(bsdf, &photon.incidence, out);
+                let scattered = agreement * bsdf.evaluate(&photon.incidence, out);
                 Some(each(record.values, |window| if within(window) { scattered } else { 0.0 }))
             }
         }

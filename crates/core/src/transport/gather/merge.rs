@@ -6,7 +6,7 @@
 //! `c_F = N p_e`, `c_B = M p_g` and `c_M = N p_e M p_g G/q` (docs/method.md, eq. 16 to 18). This
 //! module does not trace paths, and does not know the origin of the shares.
 
-use crate::optics::{Bsdf, Incidence, Side, chances};
+use crate::optics::{Bsdf, FinishModel, Incidence, Side};
 use crate::scene::Scene;
 use crate::transport::gather::window::{COUNTED, Window};
 use crate::transport::walk::scatter::Facing;
@@ -89,7 +89,7 @@ impl<'s> Passage<'s> {
     /// probability of the path's side. Windows are not clipped: eq. (20).
     pub(crate) fn etendues(&self, window: Window) -> [f64; COUNTED] {
         let Incidence { index_from, .. } = self.incidence;
-        let chance = chances(self.bsdf, &self.incidence).of(self.side).max(LEAST_CHANCE);
+        let chance = self.bsdf.chances(&self.incidence).of(self.side).max(LEAST_CHANCE);
         let (cos, basic) = (self.incidence.cos(), index_from * index_from / chance);
         window.counted().map(|window| basic * window.area() * projected_cap(cos, window.theta_max))
     }
@@ -254,7 +254,7 @@ mod tests {
             let photon = Facing { incidence: light, facet: light.normal, faces: facing.faces };
             let told = Passage::of_gather_path(&facing, out, side).etendues(window);
             let expected = Passage::of_photon(&photon, side).etendues(window);
-            let chance = chances(&Bsdf::Smooth, &light).of(side);
+            let chance = Bsdf::Smooth.chances(&light).of(side);
             // n² |cos θ| π r² 2π (1 - cos θ_max) / q
             let formula =
                 light.index_from.powi(2) * light.cos() * window.area() * window.solid_angle()

@@ -1,7 +1,7 @@
 //! Settings of the gather method: the user's values, and automatic values for the rest, from a few
 //! pilot paths.
 
-use crate::optics::Spread;
+use crate::optics::{FinishModel, Spread};
 use crate::plan::{RunPlan, Schedule};
 use crate::rng::Sampler;
 use crate::scene::{Arrivals, Emission, Emitter, FaceId, On, Ray, Scene, SensorId};

@@ -2,7 +2,9 @@
 //!
 //! It combines the finish, the normal and the indices; the physics is in `optics`.
 
-use crate::optics::{Bsdf, Faces, Incidence, Scattered, Side, scatter_radiance as adjoint};
+use crate::optics::{
+    Bsdf, Faces, FinishModel, Incidence, Scattered, Side, scatter_radiance as adjoint,
+};
 use crate::rng::{Numbers, Sampler};
 use crate::scene::shape::Toward;
 use crate::scene::{FinishId, Interface, MediumId, Patch, Scene, Surface};

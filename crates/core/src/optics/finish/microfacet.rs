@@ -9,15 +9,13 @@
 //!
 //! `f(i→o)/n_o²` is the same both ways, so a gather path does what a photon does, without a factor.
 
-use crate::optics::incidence::{choose_side, specular};
-use crate::optics::{Incidence, Lobe, Scattered, Shares, Side, fresnel};
+use crate::optics::finish::model::FinishModel;
+use crate::optics::finish::smooth::Smooth;
+use crate::optics::{Incidence, Scattered, Shares, Side, fresnel};
 use crate::rng::{Dimension, Numbers, Sampler};
 use glam::DVec3;
 use lumiduct_base::math::{Frame, disk};
 use std::f64::consts::PI;
-
-#[cfg(test)]
-mod tests;
 
 /// Facets of a quadrature over the visible ones, along each of two axes.
 const FACETS: u32 = 48;
@@ -48,55 +46,68 @@ pub enum Facets {
     },
 }
 
-impl Microfacet {
-    /// A surface of roughness α (WMLT eq. 33): the root mean square slope of the facets visible in
-    /// its middle, above 0.
-    pub fn new(roughness: f64, facets: Facets) -> Self {
-        Self { roughness, facets }
+/// A facet that light meets.
+struct Facet {
+    /// Its unit normal in the frame of the surface.
+    normal: DVec3,
+    /// Cosine of the angle of incidence on it.
+    cos: f64,
+    /// The frame of the surface, with +z on the side the light comes from.
+    frame: Frame,
+}
+
+impl FinishModel for Microfacet {
+    fn shares(&self, incidence: &Incidence) -> Shares {
+        self.sides(incidence).0
     }
 
-    /// Approximate spread of mirrored light, rad: twice the tilt of its facets.
-    pub fn spread(&self) -> f64 {
-        2.0 * self.roughness
-    }
-
-    /// Whether light can only pass through it, unbent: facets between equal indices have no effect.
-    fn is_nothing(&self, incidence: &Incidence) -> bool {
-        self.facets == Facets::Interface && incidence.index_from == incidence.index_to
-    }
-
-    /// Sends light on, or absorbs it: photons and gather paths.
-    pub(crate) fn scatter(
+    fn scatter(
         &self,
         incidence: &Incidence,
         sampler: &mut Sampler<impl Numbers>,
     ) -> Option<Scattered> {
         if self.is_nothing(incidence) {
-            return Some(specular(incidence.dir, 1.0, Side::Transmitted));
+            return Some(Scattered::specular(incidence.dir, 1.0, Side::Transmitted));
         }
         let facet = self.draw(incidence, sampler);
-        let Shares { reflected, transmitted } = self.of_facet(&facet, incidence);
-        let side = choose_side(reflected, transmitted, sampler)?;
-        self.sent(&facet, side, incidence, reflected + transmitted)
+        let shares = self.of_facet(&facet, incidence);
+        let side = shares.choose_side(sampler)?;
+        self.sent(&facet, side, incidence, shares.sum())
     }
 
-    /// The same to one side only; the factor includes the share of that side.
-    pub(crate) fn scatter_toward(
+    fn scatter_radiance(
+        &self,
+        incidence: &Incidence,
+        sampler: &mut Sampler<impl Numbers>,
+    ) -> Option<Scattered> {
+        self.scatter(incidence, sampler).map(Scattered::normalised)
+    }
+
+    fn scatter_toward(
         &self,
         side: Side,
         incidence: &Incidence,
         sampler: &mut Sampler<impl Numbers>,
     ) -> Option<Scattered> {
         if self.is_nothing(incidence) {
-            return (side == Side::Transmitted).then(|| specular(incidence.dir, 1.0, side));
+            return (side == Side::Transmitted)
+                .then(|| Scattered::specular(incidence.dir, 1.0, side));
         }
         let facet = self.draw(incidence, sampler);
         let share = self.of_facet(&facet, incidence).of(side);
         if share > 0.0 { self.sent(&facet, side, incidence, share) } else { None }
     }
 
-    /// f(i→o), 1/sr: WMLT eq. 20 and, with the square of the index on the exit side, eq. 21.
-    pub(crate) fn evaluate(&self, incidence: &Incidence, out: DVec3) -> f64 {
+    fn chances(&self, incidence: &Incidence) -> Shares {
+        self.sides(incidence).1
+    }
+
+    fn radiance_chances(&self, incidence: &Incidence) -> Shares {
+        Smooth::chances_about(incidence)
+    }
+
+    /// WMLT eq. 20 and, with the square of the index on the exit side, eq. 21.
+    fn evaluate(&self, incidence: &Incidence, out: DVec3) -> f64 {
         let frame = Frame::from_axis(DVec3::ZERO, incidence.normal);
         let (from, out) = (frame.to_local(-incidence.dir), frame.to_local(out));
         let (n_i, n_o) = (incidence.index_from, incidence.index_to);
@@ -121,9 +132,27 @@ impl Microfacet {
         shares.transmitted * seen * cos_i * cos_o.abs() * (n_o * n_o) / (jacobian * jacobian)
     }
 
+    /// Approximate: twice the tilt of the facets.
+    fn width(&self) -> Option<f64> {
+        Some(2.0 * self.roughness)
+    }
+}
+
+impl Microfacet {
+    /// A surface of roughness α (WMLT eq. 33): the root mean square slope of the facets visible in
+    /// its middle, above 0.
+    pub fn new(roughness: f64, facets: Facets) -> Self {
+        Self { roughness, facets }
+    }
+
+    /// Whether light can only pass through it, unbent: facets between equal indices have no effect.
+    fn is_nothing(&self, incidence: &Incidence) -> bool {
+        self.facets == Facets::Interface && incidence.index_from == incidence.index_to
+    }
+
     /// The shares of the two sides, and the probabilities with which light goes there: integrals
     /// over the visible facets, to 4e-3.
-    pub(crate) fn sides(&self, incidence: &Incidence) -> (Shares, Shares) {
+    fn sides(&self, incidence: &Incidence) -> (Shares, Shares) {
         if self.is_nothing(incidence) {
             let through = Shares { reflected: 0.0, transmitted: 1.0 };
             return (through, through);
@@ -136,7 +165,7 @@ impl Microfacet {
             let weight = 3.0 * steep * steep / f64::from(FACETS * FACETS);
             let facet = self.seen(incidence, [1.0 - steep.powi(3), middle(cell % FACETS)]);
             let shares = self.of_facet(&facet, incidence);
-            let sum = shares.reflected + shares.transmitted;
+            let sum = shares.sum();
             for (k, side) in [Side::Reflected, Side::Transmitted].into_iter().enumerate() {
                 let share = shares.of(side);
                 let Some(out) = self.sent(&facet, side, incidence, share) else { continue };
@@ -212,7 +241,7 @@ impl Microfacet {
             }
         };
         let factor = share * self.seen_over_cos(height) * height;
-        (height > 0.0).then_some(Scattered { dir, factor, side, lobe: Lobe::Diffuse })
+        (height > 0.0).then_some(Scattered::diffuse(dir, factor, side))
     }
 
     /// Area of facets per area and solid angle of their normal, 1/sr (WMLT eq. 33).
@@ -229,12 +258,113 @@ impl Microfacet {
     }
 }
 
-/// A facet that light meets.
-struct Facet {
-    /// Its unit normal in the frame of the surface.
-    normal: DVec3,
-    /// Cosine of the angle of incidence on it.
-    cos: f64,
-    /// The frame of the surface, with +z on the side the light comes from.
-    frame: Frame,
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::Bsdf;
+    use crate::optics::finish::testing::{
+        assert_follows, assert_mean_factors, assert_reciprocal, assert_sound, facets, incidence,
+        rough_metal,
+    };
+
+    const INDICES: [[f64; 2]; 2] = [[1.0, 1.49], [1.49, 1.0]];
+
+    fn rough(roughness: f64, facets: Facets) -> Bsdf {
+        Bsdf::Microfacet(Microfacet::new(roughness, facets))
+    }
+
+    fn all(roughness: f64) -> [Bsdf; 3] {
+        [Facets::Interface, Facets::Mirror { reflectance: 0.9 }, Facets::Metal { n: 0.8, k: 5.9 }]
+            .map(|facets| rough(roughness, facets))
+    }
+
+    #[test]
+    fn photons_and_gather_paths_follow_it() {
+        assert_sound(&facets(0.05));
+        assert_sound(&facets(0.5));
+        assert_sound(&rough_metal());
+        assert_mean_factors(&facets(0.7));
+    }
+
+    #[test]
+    fn scattered_light_follows_the_distribution_function_and_its_share_is_told() {
+        for bsdf in all(0.4).into_iter().chain([rough(0.15, Facets::Interface)]) {
+            for indices in INDICES {
+                for angle in [0.0, 0.6, 1.2] {
+                    let incidence = incidence(angle, indices);
+                    for side in [Side::Reflected, Side::Transmitted] {
+                        let integral = assert_follows(&bsdf, &incidence, side);
+                        let told = bsdf.shares(&incidence).of(side);
+                        assert!(
+                            (integral - told).abs() < 4e-3,
+                            "{side:?} {angle}: {integral}, {told}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_distribution_function_is_reciprocal() {
+        for bsdf in all(0.3) {
+            for indices in INDICES {
+                assert_reciprocal(&bsdf, indices);
+            }
+        }
+    }
+
+    #[test]
+    fn rougher_facets_catch_more_of_the_light_and_none_creates_any() {
+        for (roughness, most) in [(0.01, 5e-4), (0.1, 0.03), (0.3, 0.2), (1.0, 0.75)] {
+            let mirror = rough(roughness, Facets::Mirror { reflectance: 1.0 });
+            for angle in [0.0, 0.5, 1.0] {
+                let lost = 1.0 - mirror.shares(&incidence(angle, [1.0, 1.0])).reflected;
+                assert!((-1e-12..most).contains(&lost), "{roughness} at {angle}: {lost}");
+            }
+        }
+    }
+
+    #[test]
+    fn fine_facets_share_light_as_a_smooth_interface() {
+        let bsdf = rough(1e-3, Facets::Interface);
+        for indices in INDICES {
+            for angle in [0.0, 0.4, 0.6, 0.9, 1.2] {
+                let incidence = incidence(angle, indices);
+                let (fine, smooth) = (bsdf.shares(&incidence), Smooth.shares(&incidence));
+                assert!((fine.reflected - smooth.reflected).abs() < 1e-3, "{fine:?}, {smooth:?}");
+                assert!(
+                    (fine.transmitted - smooth.transmitted).abs() < 1e-3,
+                    "{fine:?}, {smooth:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn areas_of_facets_add_up_to_the_area_of_the_surface() {
+        // ∫ D cos θ dω = 1 (WMLT eq. 4).
+        for roughness in [0.05, 0.5, 1.0] {
+            let surface = Microfacet::new(roughness, Facets::Interface);
+            let steps = 20_000;
+            let sum: f64 = (0..steps)
+                .map(|i| {
+                    let cos = 1.0 - ((f64::from(i) + 0.5) / f64::from(steps)).powi(3);
+                    let width =
+                        3.0 * ((f64::from(i) + 0.5) / f64::from(steps)).powi(2) / f64::from(steps);
+                    2.0 * PI * surface.density(cos) * cos * width
+                })
+                .sum();
+            assert!((sum - 1.0).abs() < 1e-5, "{roughness}: {sum}");
+        }
+    }
+
+    #[test]
+    fn between_equal_indices_small_facets_do_nothing() {
+        let bsdf = rough(0.4, Facets::Interface);
+        let incidence = incidence(0.7, [1.3, 1.3]);
+        let mut sampler = Sampler::for_path(1, 0, 0);
+        let out = bsdf.scatter(&incidence, &mut sampler).unwrap();
+        assert_eq!((out.dir, out.factor, out.side), (incidence.dir, 1.0, Side::Transmitted));
+    }
 }

@@ -1,0 +1,82 @@
+//! A coated interface of two media: it reflects as a table says and refracts the rest. A gather
+//! path does what a photon does, as at a smooth interface.
+
+use crate::optics::finish::model::FinishModel;
+use crate::optics::finish::smooth::Smooth;
+use crate::optics::{AngleTable, Incidence, Scattered, Shares, Side, fresnel};
+use crate::rng::{Numbers, Sampler};
+
+pub(crate) struct Coated<'a> {
+    pub(crate) reflectance: &'a AngleTable,
+}
+
+impl FinishModel for Coated<'_> {
+    /// The table's shares at the angle in the medium of the lower index, so that they are the same from both sides.
+    fn shares(&self, incidence: &Incidence) -> Shares {
+        let Incidence { index_from, index_to, .. } = *incidence;
+        let outside = if index_from > index_to {
+            fresnel::cos_transmitted(incidence.cos(), index_from, index_to)
+        } else {
+            Some(incidence.cos())
+        };
+        let reflected = outside.map_or(1.0, |cos| self.reflectance.at(cos));
+        Shares { reflected, transmitted: 1.0 - reflected }
+    }
+
+    fn scatter(
+        &self,
+        incidence: &Incidence,
+        sampler: &mut Sampler<impl Numbers>,
+    ) -> Option<Scattered> {
+        let side = self.shares(incidence).choose_side(sampler)?;
+        Some(Scattered::specular(Smooth::direction(incidence, side)?, 1.0, side))
+    }
+
+    fn scatter_radiance(
+        &self,
+        incidence: &Incidence,
+        sampler: &mut Sampler<impl Numbers>,
+    ) -> Option<Scattered> {
+        self.scatter(incidence, sampler).map(Scattered::normalised)
+    }
+
+    fn scatter_toward(
+        &self,
+        side: Side,
+        incidence: &Incidence,
+        _sampler: &mut Sampler<impl Numbers>,
+    ) -> Option<Scattered> {
+        Smooth::toward(side, incidence, self.shares(incidence).of(side))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::Bsdf;
+    use crate::optics::finish::testing::{assert_sound, coated, incidence};
+    use std::f64::consts::FRAC_PI_2;
+
+    #[test]
+    fn photons_and_gather_paths_follow_it() {
+        assert_sound(&coated());
+    }
+
+    #[test]
+    fn a_coating_reflects_the_same_from_both_sides_and_keeps_total_reflection() {
+        let coated = Bsdf::Coated {
+            reflectance: AngleTable::new(vec![[0.0, 0.005], [1.0, 0.06], [FRAC_PI_2, 1.0]]),
+        };
+        let shares_at = |angle, indices| coated.shares(&incidence(angle, indices));
+        for angle in [0.0f64, 0.5, 1.0, 1.3] {
+            let inside = (angle.sin() / 1.52).asin();
+            let (there, back) = (shares_at(angle, [1.0, 1.52]), shares_at(inside, [1.52, 1.0]));
+            assert!(
+                (there.reflected - back.reflected).abs() < 1e-12,
+                "{angle}: {there:?}, {back:?}"
+            );
+        }
+        assert!((shares_at(0.5, [1.0, 1.52]).reflected - 0.0325).abs() < 1e-12);
+        assert_eq!(shares_at(0.8, [1.52, 1.0]), Shares { reflected: 1.0, transmitted: 0.0 });
+    }
+}

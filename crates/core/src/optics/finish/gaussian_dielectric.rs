@@ -1,0 +1,88 @@
+//! A rough dielectric: shares by Fresnel, Gaussian scatter about the mirrored and the refracted direction.
+
+use crate::optics::finish::model::FinishModel;
+use crate::optics::finish::smooth::Smooth;
+use crate::optics::{Gaussian, Incidence, Scattered, Shares, Side};
+use crate::rng::{Numbers, Sampler};
+use glam::DVec3;
+
+pub(crate) struct GaussianDielectric<'a> {
+    pub(crate) lobe: &'a Gaussian,
+}
+
+impl FinishModel for GaussianDielectric<'_> {
+    fn shares(&self, incidence: &Incidence) -> Shares {
+        Smooth.shares(incidence)
+    }
+
+    fn scatter(
+        &self,
+        incidence: &Incidence,
+        sampler: &mut Sampler<impl Numbers>,
+    ) -> Option<Scattered> {
+        let Scattered { dir, side, .. } = Smooth::send(incidence, sampler);
+        let dir = self.lobe.sample(dir.normalize(), incidence.leaving_normal(side), sampler);
+        Some(Scattered::diffuse(dir, 1.0, side))
+    }
+
+    fn scatter_radiance(
+        &self,
+        incidence: &Incidence,
+        sampler: &mut Sampler<impl Numbers>,
+    ) -> Option<Scattered> {
+        let before = self.lobe.before(incidence, sampler)?;
+        Some(before.continued(Smooth::send(&before.incidence, sampler)))
+    }
+
+    fn scatter_toward(
+        &self,
+        side: Side,
+        incidence: &Incidence,
+        sampler: &mut Sampler<impl Numbers>,
+    ) -> Option<Scattered> {
+        let before = self.lobe.before(incidence, sampler)?;
+        Smooth.scatter_toward(side, &before.incidence, sampler).map(|out| before.continued(out))
+    }
+
+    fn radiance_chances(&self, incidence: &Incidence) -> Shares {
+        if incidence.index_from == incidence.index_to {
+            self.shares(incidence)
+        } else {
+            Smooth::chances_about(incidence)
+        }
+    }
+
+    fn evaluate(&self, incidence: &Incidence, out: DVec3) -> f64 {
+        let side = incidence.side_of(out);
+        Smooth::direction(incidence, side).map_or(0.0, |mean| {
+            let normal = incidence.leaving_normal(side);
+            self.shares(incidence).of(side) * self.lobe.over_cosine(mean.normalize(), out, normal)
+        })
+    }
+
+    fn width(&self) -> Option<f64> {
+        Some(self.lobe.sigma())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::optics::finish::testing::{
+        assert_mean_factors, assert_moments, assert_sound, rough,
+    };
+    use crate::optics::{FinishModel, Spread};
+
+    #[test]
+    fn photons_and_gather_paths_follow_it() {
+        assert_sound(&rough(0.02));
+        assert_sound(&rough(0.3));
+        assert_moments(&rough(0.15));
+        assert_mean_factors(&rough(0.2));
+    }
+
+    #[test]
+    fn gaussian_scatter_is_narrow_up_to_a_tenth_of_a_radian() {
+        assert_eq!(rough(0.099).kind(), Spread::Narrow(0.099));
+        assert_eq!((rough(0.1).kind(), rough(0.1).width()), (Spread::Broad, Some(0.1)));
+    }
+}

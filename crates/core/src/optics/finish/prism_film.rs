@@ -1,0 +1,92 @@
+//! A thin film with prisms on one face.
+//!
+//! Every path through the film consists of smooth interfaces, so a gather path does what a photon
+//! does. The same holds for the position in the period, which is drawn evenly.
+
+use crate::optics::finish::model::FinishModel;
+use crate::optics::{FilmFace, Incidence, PrismFilm, Scattered, Shares, Side};
+use crate::rng::{Numbers, Sampler};
+
+/// Positions in a period at which the shares are computed; a tip may lie between two of them. 1.
+const PLACES: u32 = 64;
+
+/// A film as light meets it.
+pub(crate) struct MetFilm<'a> {
+    pub(crate) film: &'a PrismFilm,
+    pub(crate) face: FilmFace,
+}
+
+impl FinishModel for MetFilm<'_> {
+    fn shares(&self, incidence: &Incidence) -> Shares {
+        self.film.shares(self.face, incidence, PLACES)
+    }
+
+    fn scatter(
+        &self,
+        incidence: &Incidence,
+        sampler: &mut Sampler<impl Numbers>,
+    ) -> Option<Scattered> {
+        self.film.scatter(self.face, incidence, sampler)
+    }
+
+    fn scatter_radiance(
+        &self,
+        incidence: &Incidence,
+        sampler: &mut Sampler<impl Numbers>,
+    ) -> Option<Scattered> {
+        self.scatter(incidence, sampler).map(Scattered::normalised)
+    }
+
+    fn scatter_toward(
+        &self,
+        side: Side,
+        incidence: &Incidence,
+        sampler: &mut Sampler<impl Numbers>,
+    ) -> Option<Scattered> {
+        // The light meets the face on its own side; the gather path meets it on the side it comes
+        // from.
+        let met = match side {
+            Side::Reflected => self.face,
+            Side::Transmitted => self.face.opposite(),
+        };
+        self.film.scatter(met, incidence, sampler).filter(|out| out.side == side)
+    }
+
+    /// Whatever the shares are, no side is left out.
+    fn radiance_chances(&self, _incidence: &Incidence) -> Shares {
+        Shares { reflected: 0.5, transmitted: 0.5 }
+    }
+
+    fn has_grain(&self) -> bool {
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::finish::testing::{assert_adjoint, splitter};
+    use crate::optics::{Bsdf, Faces, FilmMake, Grain};
+
+    #[test]
+    fn films_are_the_same_film_from_both_sides() {
+        let make = FilmMake {
+            index: 1.59,
+            prism_angle: 1.4,
+            pitch: 0.3,
+            base: 0.05,
+            absorption: 0.4,
+            rounded: 0.03,
+            run: Grain::Around,
+        };
+        let film = Box::new(PrismFilm::new(&make));
+        for face in [FilmFace::Flat, FilmFace::Prisms] {
+            let own = Bsdf::PrismFilm { film: film.clone(), face };
+            let mixed = Bsdf::Mixture(vec![(2.0, own.clone()), (1.0, splitter())]);
+            for own in [own, mixed] {
+                let behind = own.from_behind().unwrap();
+                assert_adjoint(Faces { own: &own, behind: &behind });
+            }
+        }
+    }
+}

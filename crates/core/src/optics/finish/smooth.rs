@@ -1,0 +1,122 @@
+//! The smooth interface of two media: Fresnel for unpolarised light, Snell, total reflection.
+//!
+//! Refraction conserves n² cos θ dω, and Fresnel's R and T are the same from both sides. So a
+//! gather path does what a photon does, without a factor.
+
+use crate::optics::finish::model::FinishModel;
+use crate::optics::{Incidence, Scattered, Shares, Side, fresnel};
+use crate::rng::{Dimension, Numbers, Sampler};
+use glam::DVec3;
+
+pub(crate) struct Smooth;
+
+impl Smooth {
+    /// The photon; one draw, none under total reflection or between equal indices.
+    #[inline]
+    pub(crate) fn send(incidence: &Incidence, sampler: &mut Sampler<impl Numbers>) -> Scattered {
+        let Incidence { dir, normal, index_from, index_to, .. } = *incidence;
+        if index_from == index_to {
+            return Scattered::specular(dir, 1.0, Side::Transmitted);
+        }
+        let cos_i = incidence.cos();
+        if let Some(cos_t) = fresnel::cos_transmitted(cos_i, index_from, index_to) {
+            let reflectance =
+                fresnel::dielectric_refracting(cos_i, cos_t, index_from, index_to).unpolarised();
+            if sampler.one(Dimension::Lobe) >= reflectance {
+                let eta = index_from / index_to;
+                let refracted = fresnel::refracted(dir, normal, cos_i, cos_t, eta);
+                return Scattered::specular(refracted, 1.0, Side::Transmitted);
+            }
+        }
+        Scattered::specular(fresnel::mirrored(dir, normal), 1.0, Side::Reflected)
+    }
+
+    /// The discrete direction to a side, a unit vector up to rounding: mirrored, or refracted
+    /// (`None` under total reflection).
+    pub(crate) fn direction(incidence: &Incidence, side: Side) -> Option<DVec3> {
+        let Incidence { dir, normal, index_from, index_to, .. } = *incidence;
+        match side {
+            Side::Reflected => Some(fresnel::mirrored(dir, normal)),
+            Side::Transmitted if index_from == index_to => Some(dir),
+            Side::Transmitted => {
+                let cos_i = incidence.cos();
+                let cos_t = fresnel::cos_transmitted(cos_i, index_from, index_to)?;
+                Some(fresnel::refracted(dir, normal, cos_i, cos_t, index_from / index_to))
+            }
+        }
+    }
+
+    /// Light to one side in its discrete direction, with this share.
+    pub(crate) fn toward(side: Side, incidence: &Incidence, share: f64) -> Option<Scattered> {
+        let dir = Self::direction(incidence, side)?;
+        (share > 0.0).then(|| Scattered::specular(dir, share, side))
+    }
+
+    /// Shares that leave out no side, for rough interfaces: their scatter reaches directions that
+    /// are themselves totally reflected, or hardly reflected.
+    pub(crate) fn chances_about(incidence: &Incidence) -> Shares {
+        let reflected = Self.shares(incidence).reflected.clamp(0.1, 0.9);
+        Shares { reflected, transmitted: 1.0 - reflected }
+    }
+}
+
+impl FinishModel for Smooth {
+    /// Fresnel's shares; between equal indices all light passes, even along the face.
+    fn shares(&self, incidence: &Incidence) -> Shares {
+        let Incidence { index_from, index_to, .. } = *incidence;
+        let reflected = if index_from == index_to {
+            0.0
+        } else {
+            fresnel::dielectric(incidence.cos(), index_from, index_to).unpolarised()
+        };
+        Shares { reflected, transmitted: 1.0 - reflected }
+    }
+
+    #[inline]
+    fn scatter(
+        &self,
+        incidence: &Incidence,
+        sampler: &mut Sampler<impl Numbers>,
+    ) -> Option<Scattered> {
+        Some(Self::send(incidence, sampler))
+    }
+
+    #[inline]
+    fn scatter_radiance(
+        &self,
+        incidence: &Incidence,
+        sampler: &mut Sampler<impl Numbers>,
+    ) -> Option<Scattered> {
+        self.scatter(incidence, sampler)
+    }
+
+    fn scatter_toward(
+        &self,
+        side: Side,
+        incidence: &Incidence,
+        _sampler: &mut Sampler<impl Numbers>,
+    ) -> Option<Scattered> {
+        Self::toward(side, incidence, self.shares(incidence).of(side))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::Bsdf;
+    use crate::optics::finish::testing::{assert_sound, incidence};
+
+    #[test]
+    fn photons_and_gather_paths_follow_it() {
+        assert_sound(&Bsdf::Smooth);
+    }
+
+    #[test]
+    fn total_reflection_draws_no_numbers() {
+        let mut used = Sampler::for_path(1, 0, 0);
+        let mut fresh = used.clone();
+        let out = Smooth::send(&incidence(1.0, [1.49, 1.0]), &mut used);
+        assert_eq!((out.side, out.factor), (Side::Reflected, 1.0));
+        assert_eq!(used.one(Dimension::Lobe), fresh.one(Dimension::Lobe));
+    }
+}

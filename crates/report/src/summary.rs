@@ -24,7 +24,7 @@ struct Summary<'r> {
     segments: u64,
     estimators: &'r indexmap::IndexMap<String, lumiduct_core::plan::Estimator>,
     #[serde(skip_serializing_if = "indexmap::IndexMap::is_empty")]
-    choices: &'r indexmap::IndexMap<String, lumiduct_core::transport::Choice>,
+    choices: &'r indexmap::IndexMap<String, lumiduct_core::transport::EstimatorChoice>,
     accounts: &'r [lumiduct_core::transport::Account],
     measures: &'r indexmap::IndexMap<String, lumiduct_core::measure::Measure>,
     checks: &'r [crate::CheckResult],

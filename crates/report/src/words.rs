@@ -8,7 +8,7 @@ use lumiduct_core::measure::{
     strongest,
 };
 use lumiduct_core::plan::Estimator;
-use lumiduct_core::transport::{Choice, Entry, Objection, Trial};
+use lumiduct_core::transport::{Entry, EstimatorChoice, Objection, Trial};
 
 /// A bias is shown from this share of the standard error on, 1.
 const BIAS_TOLD: f64 = 0.3;
@@ -122,7 +122,7 @@ pub(crate) fn outcome_word(outcome: Outcome) -> &'static str {
 }
 
 /// The chosen estimator, and the pilot's findings on each.
-pub(crate) fn choice_row(choice: &Choice) -> Vec<String> {
+pub(crate) fn choice_row(choice: &EstimatorChoice) -> Vec<String> {
     let words = Estimator::TRIED.map(|estimator| {
         let trial = choice.tried.iter().find(|trial| trial.estimator == estimator);
         trial.map_or(NOT_POSSIBLE.into(), trial_words)

@@ -48,7 +48,7 @@ pub use uniformity::{Statistic, Uniformity, UniformitySummary};
 use crate::measure::evidence::Evidence;
 use crate::plan::Estimator;
 use crate::scene::{Scene, SensorId, SourceId};
-use crate::transport::{Account, Choice, Findings, Layout, Readings};
+use crate::transport::{Account, EstimatorChoice, Findings, Layout, Readings};
 use indexmap::IndexMap;
 use lumiduct_base::units::FluxUnit;
 use serde::Serialize;
@@ -67,7 +67,7 @@ pub struct Measures {
     /// How each sensor was estimated, by its name.
     pub estimators: IndexMap<String, Estimator>,
     /// Findings of the pilot about each sensor; empty unless the run is to choose.
-    pub choices: IndexMap<String, Choice>,
+    pub choices: IndexMap<String, EstimatorChoice>,
     /// How the values of sensors were computed, where there is something to say.
     pub accounts: Vec<Account>,
     /// How the light reached each sensor.

@@ -9,7 +9,7 @@ use crate::scene::{
     Builder, Emission, EmitSide, Emitter, FaceSpec, Owner, Piece, Sensor, SensorKind, Sides,
     Source, Start,
 };
-use crate::transport::{Counts, Found, Run, Stage};
+use crate::transport::{Counts, EstimatorFindings, Run, Stage};
 use glam::DVec3;
 use lumiduct_base::math::Frame;
 use std::f64::consts::TAU;
@@ -231,7 +231,8 @@ fn photons_contradict_gather_paths_beyond_noise_and_rounding() {
     let status = |photons: f64, gather_paths: f64| {
         let counts = Counts::one(every_batch(gather_paths).photons);
         let stages = vec![Stage { number: 0, counts }];
-        let others = vec![Found { estimator: Estimator::Backward, settings: None, stages }];
+        let others =
+            vec![EstimatorFindings { estimator: Estimator::Backward, settings: None, stages }];
         let estimators = vec![Estimator::Backward];
         let findings = Findings { others, estimators, ..every_batch(photons) };
         measure(&scene, &findings).values["exit.flux"].status

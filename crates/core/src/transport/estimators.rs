@@ -32,7 +32,7 @@ pub(crate) enum Prepared<'s> {
 
 /// What an estimator found.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Found {
+pub struct EstimatorFindings {
     /// The estimator.
     pub estimator: Estimator,
     /// Settings of gathering.
@@ -138,12 +138,12 @@ impl<'s> Prepared<'s> {
     }
 
     /// What it has found so far.
-    pub(crate) fn found(&self, series: &Series) -> Found {
+    pub(crate) fn found(&self, series: &Series) -> EstimatorFindings {
         let settings = match self {
             Self::Backward(_) | Self::Mix(_) => None,
             Self::Gather(own) | Self::Mis(own) => Some(own.settings),
         };
-        Found { estimator: self.estimator(), settings, stages: series.stages() }
+        EstimatorFindings { estimator: self.estimator(), settings, stages: series.stages() }
     }
 }
 
@@ -208,7 +208,7 @@ impl Observer for Observers<'_, '_, '_> {
 /// The estimate of a sensor, from what its estimator found and from photons.
 pub(crate) fn estimate<'a>(
     scene: &Scene,
-    (estimator, found): (Estimator, Option<&'a Found>),
+    (estimator, found): (Estimator, Option<&'a EstimatorFindings>),
     photons: &'a Readings,
     id: SensorId,
 ) -> Estimate<'a> {
@@ -233,7 +233,7 @@ fn unbiased(estimator: Estimator, readings: &Readings) -> Estimate<'_> {
 /// How the values of a sensor were computed, where there is something to say.
 pub(crate) fn account(
     scene: &Scene,
-    found: &Found,
+    found: &EstimatorFindings,
     photons: &Readings,
     id: SensorId,
 ) -> Option<Account> {

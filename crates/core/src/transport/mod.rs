@@ -18,9 +18,9 @@ mod task;
 mod trial;
 pub mod walk;
 
-pub use choose::{BLIND_PATHS, Choice, blind_sensors};
+pub use choose::{BLIND_PATHS, EstimatorChoice, blind_sensors};
 pub use estimate::{Account, Bias, Entry, Estimate, Resolution};
-pub use estimators::Found;
+pub use estimators::EstimatorFindings;
 pub use forward::{Track, TrackEnd, tracks};
 pub use gather::{GatherSettings, Scatterer, Window, Windows, scatterers, turbid_media};
 pub use run::{Findings, Phase, Run, Shard, Slice, State, Unsliceable, batch_paths};

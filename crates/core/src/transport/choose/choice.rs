@@ -6,14 +6,14 @@ use serde::{Deserialize, Serialize};
 
 /// Findings of a pilot about a sensor, and the chosen estimator.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Choice {
+pub struct EstimatorChoice {
     /// The chosen estimator.
     pub chosen: Estimator,
     /// The trial of each estimator that could be tried.
     pub tried: Vec<Trial>,
 }
 
-impl Choice {
+impl EstimatorChoice {
     /// Seconds of one thread of the reference machine until the chosen estimator has a relative error, 1; `None` where
     /// nothing was found.
     pub fn time(&self, error: f64) -> Option<f64> {

@@ -5,4 +5,4 @@ mod choice;
 pub(crate) mod pilot;
 
 pub use blind::{BLIND_PATHS, blind_sensors};
-pub use choice::Choice;
+pub use choice::EstimatorChoice;

@@ -13,7 +13,7 @@
 use crate::plan::{Estimator, RunPlan};
 use crate::scene::{Scene, SensorId};
 use crate::tally::Tally;
-use crate::transport::choose::choice::Choice;
+use crate::transport::choose::choice::EstimatorChoice;
 use crate::transport::estimators;
 use crate::transport::stop::StopSignal;
 use crate::transport::tally::work;
@@ -44,7 +44,7 @@ pub(crate) fn choose(
     photons: PhotonPilot,
     signal: &StopSignal,
     watch: &mut dyn FnMut(Estimator),
-) -> Option<Vec<Choice>> {
+) -> Option<Vec<EstimatorChoice>> {
     let sensors: Vec<SensorId> = (0..scene.sensors.len()).map(SensorId::new).collect();
     let given = budget(plan, photons);
     let mut choices = |budget: f64| {
@@ -55,7 +55,8 @@ pub(crate) fn choose(
     let Some(target) = &plan.stop.target else { return choices(given.unwrap_or(USUAL_BUDGET)) };
     let [least, _] = BOUNDS;
     let first = choices(least / SHARE)?;
-    let time = |choice: &Choice| choice.time(target.relative_error).unwrap_or(USUAL_BUDGET);
+    let time =
+        |choice: &EstimatorChoice| choice.time(target.relative_error).unwrap_or(USUAL_BUDGET);
     let needed = first.iter().map(time).fold(0.0, f64::max).min(given.unwrap_or(f64::INFINITY));
     let second = if SHARE * needed > WORTH_ANOTHER * least { choices(needed) } else { None };
     Some(second.unwrap_or(first))
@@ -76,7 +77,7 @@ fn choices(
     trials: &Trials<'_>,
     budget: f64,
     watch: &mut dyn FnMut(Estimator),
-) -> Option<Vec<Choice>> {
+) -> Option<Vec<EstimatorChoice>> {
     let Trials { scene, plan, sensors, .. } = trials;
     if sensors.is_empty() {
         return Some(Vec::new());
@@ -97,7 +98,7 @@ fn choices(
         });
         let tried: Vec<Trial> = judged.collect();
         let chosen = best(&tried, target.or_else(|| least_error(&tried, budget)));
-        Choice { chosen, tried }
+        EstimatorChoice { chosen, tried }
     };
     Some(sensors.iter().map(of_sensor).collect())
 }
@@ -201,7 +202,7 @@ mod tests {
     fn a_choice_knows_the_time_of_what_was_chosen() {
         let forward = trial(Estimator::Forward, Some(3e-4));
         let gather = Trial { least: 1.5, ..trial(Estimator::Gather, Some(1e-4)) };
-        let choice = Choice { chosen: Estimator::Gather, tried: vec![forward, gather] };
+        let choice = EstimatorChoice { chosen: Estimator::Gather, tried: vec![forward, gather] };
         assert_eq!(choice.time(0.005), Some(4.0));
         assert_eq!(choice.time(0.02), Some(1.5));
         assert!((least_error(&choice.tried, 4.0).unwrap() - 0.005).abs() < 1e-12);

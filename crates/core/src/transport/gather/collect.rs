@@ -23,7 +23,7 @@ use std::ops::ControlFlow;
 
 /// Gather paths that have ended, and their records.
 #[derive(Debug, Default)]
-pub(crate) struct Found<'s> {
+pub(crate) struct EndedPaths<'s> {
     pub(crate) paths: Vec<Ended>,
     pub(crate) records: Vec<GatherRecord<'s>>,
 }
@@ -43,7 +43,7 @@ pub(crate) struct Collecting<'c, 's> {
     pub(crate) sampler: Sampler,
     /// The interface that the path has just met.
     pub(crate) facing: Option<Facing<'s>>,
-    pub(crate) found: &'c mut Found<'s>,
+    pub(crate) found: &'c mut EndedPaths<'s>,
     pub(crate) windows: &'c mut [Readings; ESTIMATES],
 }
 

@@ -12,7 +12,7 @@
 
 use crate::rng::Sampler;
 use crate::scene::Arrival;
-use crate::transport::gather::collect::{Collecting, Found};
+use crate::transport::gather::collect::{Collecting, EndedPaths};
 use crate::transport::gather::estimator::{Gather, Waiting};
 use crate::transport::gather::merged::Merging;
 use crate::transport::gather::records::Records;
@@ -48,7 +48,7 @@ impl<'s> Gather<'s> {
         Task { photon_fluxes, pace, .. }: Task<'_>,
         windows: &mut [Readings; ESTIMATES],
     ) -> Option<Waiting<'s>> {
-        let mut found = Found::default();
+        let mut found = EndedPaths::default();
         for (id, arrivals) in &self.sensors {
             for index in pass.batch * pass.gather_paths..(pass.batch + 1) * pass.gather_paths {
                 if pace.spend(RECORD_WORK).is_break() {

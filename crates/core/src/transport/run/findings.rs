@@ -5,8 +5,8 @@
 use crate::plan::Estimator;
 use crate::scene::{Scene, SensorId};
 use crate::transport::estimate::{Account, Estimate};
-use crate::transport::estimators::{self, Found};
-use crate::transport::{Choice, GatherSettings, Readings};
+use crate::transport::estimators::{self, EstimatorFindings};
+use crate::transport::{EstimatorChoice, GatherSettings, Readings};
 use serde::{Deserialize, Serialize};
 
 /// Everything a run has counted.
@@ -15,11 +15,11 @@ pub struct Findings {
     /// By photons: the balance, and all sensors.
     pub photons: Readings,
     /// By the other estimators.
-    pub others: Vec<Found>,
+    pub others: Vec<EstimatorFindings>,
     /// How each sensor is estimated.
     pub estimators: Vec<Estimator>,
     /// Findings of the pilot about each sensor, if the run is to choose.
-    pub choices: Vec<Choice>,
+    pub choices: Vec<EstimatorChoice>,
     /// Number of photon and gather paths.
     pub paths: u64,
 }
@@ -33,7 +33,7 @@ impl Findings {
     }
 
     /// What an estimator other than forward found.
-    pub fn by(&self, estimator: Estimator) -> Option<&Found> {
+    pub fn by(&self, estimator: Estimator) -> Option<&EstimatorFindings> {
         self.others.iter().find(|found| found.estimator == estimator)
     }
 

@@ -14,7 +14,7 @@ use crate::transport::tally::Series;
 use crate::transport::tally::readings::GROUPS;
 use crate::transport::tally::work;
 use crate::transport::trial::PhotonPilot;
-use crate::transport::{Choice, GatherSettings};
+use crate::transport::{EstimatorChoice, GatherSettings};
 use std::time::{Duration, Instant};
 
 /// Target number of straight pieces of a batch: long enough that summing costs little, short enough
@@ -204,7 +204,7 @@ fn estimators(
     pilot: PhotonPilot,
     signal: &StopSignal,
     watch: &mut dyn FnMut(Phase),
-) -> Option<(Vec<Estimator>, Vec<Choice>)> {
+) -> Option<(Vec<Estimator>, Vec<EstimatorChoice>)> {
     let own = |sensor: usize| plan.own_estimator(sensor);
     let sensors = 0..scene.sensors.len();
     let all = |estimator: Estimator| {

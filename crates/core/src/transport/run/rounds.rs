@@ -12,7 +12,7 @@ use crate::transport::run::findings::Findings;
 use crate::transport::stop::{Pace, StopSignal};
 use crate::transport::tally::{Counts, Series};
 use crate::transport::task::Task;
-use crate::transport::{Choice, Unobserved};
+use crate::transport::{EstimatorChoice, Unobserved};
 use rayon::prelude::*;
 use std::fmt;
 
@@ -48,7 +48,7 @@ impl fmt::Display for Phase {
 #[derive(Debug)]
 pub struct Run<'s> {
     pub(super) estimators: Vec<Estimator>,
-    pub(super) choices: Vec<Choice>,
+    pub(super) choices: Vec<EstimatorChoice>,
     pub(super) forward: Forward<'s>,
     pub(super) photons: Series,
     /// The other estimators, and what they have counted.

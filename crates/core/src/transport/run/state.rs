@@ -1,7 +1,7 @@
 //! The part of a run that changes as it traces, so that it can be saved and restored.
 
 use crate::plan::{Estimator, RunPlan};
-use crate::transport::Choice;
+use crate::transport::EstimatorChoice;
 use crate::transport::run::rounds::Run;
 use crate::transport::tally::{Counts, Series};
 use serde::{Deserialize, Serialize};
@@ -16,7 +16,7 @@ pub struct State {
     others: Vec<Series>,
     /// Its estimators, which depend on the clock if the time of the run is limited.
     estimators: Vec<Estimator>,
-    choices: Vec<Choice>,
+    choices: Vec<EstimatorChoice>,
     /// Photons of a pass of gathering, and its gather paths from all sensors in the first stage.
     pass: Option<[u64; 2]>,
 }

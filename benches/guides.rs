@@ -8,9 +8,9 @@ use lumiduct_core::optics::{Bsdf, Medium};
 use lumiduct_core::scene::mesh::Mesh;
 use lumiduct_core::scene::shape::{ChartRect, Cylinder, Flat, Region, Shape};
 use lumiduct_core::scene::{
-    Builder, Counts, Emission, EmitSide, Emitter, FaceId, FaceSpec, Goniometer, Grid, Owner,
-    Passage, Piece, Place, Scene, Seeing, Sensor, SensorKind, Sides, Solid, SolidId, Source, Start,
-    SurfaceSensor,
+    Builder, CountedLight, Emission, EmitSide, Emitter, FaceId, FacePiece, FaceSpec, Goniometer,
+    Grid, Owner, Passage, Place, Scene, Seeing, Sensor, SensorKind, Sides, Solid, SolidId, Source,
+    StartSolids, SurfaceSensor,
 };
 use std::f64::consts::TAU;
 
@@ -84,7 +84,7 @@ pub(crate) fn tube_scene(tube: &Tube) -> Scene {
         owner: Owner::Port,
         front: None,
         back: None,
-        pieces: vec![Piece::whole(disk(DVec3::new(0.0, 0.0, tube.length), tube.radius))],
+        pieces: vec![FacePiece::whole(disk(DVec3::new(0.0, 0.0, tube.length), tube.radius))],
     });
     add_source(&mut builder, DVec3::ZERO, tube.radius);
     add_exit_sensor(&mut builder, port, Place::Port, tube.radius);
@@ -94,7 +94,7 @@ pub(crate) fn tube_scene(tube: &Tube) -> Scene {
 /// The scene of a rod with exact faces: a sensor on the exit, and for a round rod the far field.
 pub(crate) fn rod_scene(rod: &Rod) -> Scene {
     let (mut builder, solid) = with_rod(rod);
-    let face = |name: &str, pieces: Vec<Piece>| FaceSpec {
+    let face = |name: &str, pieces: Vec<FacePiece>| FaceSpec {
         name: format!("rod.{name}"),
         owner: Owner::Solid(solid),
         front: None,
@@ -113,10 +113,10 @@ pub(crate) fn rod_scene(rod: &Rod) -> Scene {
     };
     let back = Frame::from_axis(DVec3::ZERO, -DVec3::Z);
     let ahead = Frame::WORLD.shifted(DVec3::new(0.0, 0.0, rod.length));
-    builder.add_face(face("entry", vec![Piece::whole(Shape::Flat(Flat::new(back, entry)))]));
+    builder.add_face(face("entry", vec![FacePiece::whole(Shape::Flat(Flat::new(back, entry)))]));
     builder.add_face(face("wall", walls));
     let exit =
-        builder.add_face(face("exit", vec![Piece::whole(Shape::Flat(Flat::new(ahead, exit)))]));
+        builder.add_face(face("exit", vec![FacePiece::whole(Shape::Flat(Flat::new(ahead, exit)))]));
     add_rod_light(&mut builder, rod, exit);
     builder.build()
 }
@@ -188,8 +188,8 @@ fn with_rod(rod: &Rod) -> (Builder, SolidId) {
     (builder, solid)
 }
 
-fn wall(radius: f64, length: f64) -> Piece {
-    Piece::whole(Shape::Cylinder(Cylinder::new(Frame::WORLD, radius, length)))
+fn wall(radius: f64, length: f64) -> FacePiece {
+    FacePiece::whole(Shape::Cylinder(Cylinder::new(Frame::WORLD, radius, length)))
 }
 
 fn disk(center: DVec3, radius: f64) -> Shape {
@@ -197,7 +197,7 @@ fn disk(center: DVec3, radius: f64) -> Shape {
     Shape::Flat(Flat::new(Frame::WORLD.shifted(center), region))
 }
 
-fn square_walls(half: f64, length: f64) -> Vec<Piece> {
+fn square_walls(half: f64, length: f64) -> Vec<FacePiece> {
     [DVec3::X, DVec3::Y, DVec3::NEG_X, DVec3::NEG_Y]
         .into_iter()
         .map(|outward| {
@@ -205,7 +205,7 @@ fn square_walls(half: f64, length: f64) -> Vec<Piece> {
             let frame = Frame::from_axis_and_x(middle, outward, DVec3::Z)
                 .expect("the walls are parallel to z");
             let region = Region::Rectangle { half_x: 0.5 * length, half_y: half };
-            Piece::whole(Shape::Flat(Flat::new(frame, region)))
+            FacePiece::whole(Shape::Flat(Flat::new(frame, region)))
         })
         .collect()
 }
@@ -216,7 +216,7 @@ fn add_source(builder: &mut Builder, center: DVec3, radius: f64) {
         flux: 1.0,
         emitter: Emitter::surface(vec![disk(center, radius)], EmitSide::Front, Some(Frame::WORLD)),
         emission: Emission::Lambertian,
-        start: Start::Outside,
+        start: StartSolids::Outside,
         on: Vec::new(),
         elevation: None,
         sun: None,
@@ -252,8 +252,8 @@ fn add_exit_sensor(builder: &mut Builder, face: FaceId, place: Place, half: f64)
     let covered = grid.cell_cover(&areas, area_in);
     // Light passes an open exit and arrives from behind; it leaves a solid to the front.
     let (counts, sides) = match place {
-        Place::Port => (Counts::Incident, Sides::Back),
-        Place::Face => (Counts::Leaving, Sides::Front),
+        Place::Port => (CountedLight::Incident, Sides::Back),
+        Place::Face => (CountedLight::Leaving, Sides::Front),
     };
     builder.add_sensor(Sensor {
         name: "exit".into(),

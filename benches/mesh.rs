@@ -17,7 +17,7 @@ use clock::cpu_seconds;
 use guides::{B2, mesh_scene, rod_mesh};
 use lumiduct_base::math::Frame;
 use lumiduct_core::rng::Sampler;
-use lumiduct_core::scene::mesh::{Line, Mesh};
+use lumiduct_core::scene::mesh::{Mesh, TriangleLine};
 use lumiduct_core::scene::shape::Toward;
 use lumiduct_core::scene::{Ray, Scene, SourceId};
 use lumiduct_core::transport::{Event, Path, walk};
@@ -100,7 +100,7 @@ fn by_scene(scene: &Scene, query: &Query) -> f64 {
 }
 
 fn by_all_triangles(mesh: &Mesh, query: &Query) -> f64 {
-    let line = Line::of(&query.path.ray);
+    let line = TriangleLine::of(&query.path.ray);
     (0..mesh.triangle_count())
         .map(|triangle| distance(mesh, triangle, &line, query))
         .fold(f64::INFINITY, f64::min)
@@ -108,7 +108,7 @@ fn by_all_triangles(mesh: &Mesh, query: &Query) -> f64 {
 
 fn by_bare_tree(tree: &Bvh2, mesh: &Mesh, query: &Query) -> f64 {
     let ray: &Ray = &query.path.ray;
-    let line = Line::of(ray);
+    let line = TriangleLine::of(ray);
     let ray = Ray32::new_inf(ray.origin().as_vec3a(), ray.dir().as_vec3a());
     let mut nearest = f64::INFINITY;
     let mut hit = RayHit::none();
@@ -128,7 +128,7 @@ fn by_bare_tree(tree: &Bvh2, mesh: &Mesh, query: &Query) -> f64 {
 /// Distance to a valid triangle, mm: crossed in the right direction, and not the one the ray starts
 /// on.
 #[inline]
-fn distance(mesh: &Mesh, triangle: usize, line: &Line, query: &Query) -> f64 {
+fn distance(mesh: &Mesh, triangle: usize, line: &TriangleLine, query: &Query) -> f64 {
     if query.from == Some(triangle) {
         return f64::INFINITY;
     }

@@ -19,9 +19,9 @@ mod tracing;
 mod version;
 
 pub use check::{CheckPage, CheckPictures, Checked, check};
-pub use compare::{CompareWishes, Compared, Method, TruthWish, compare};
-pub use output::{Output, Start};
-pub use parts::{SliceWishes, SliceWritten, has_slice, merge_slices, run_slice};
+pub use compare::{CompareOptions, Compared, Method, TruthOption, compare};
+pub use output::{Output, RunStart};
+pub use parts::{SliceOptions, SliceWritten, has_slice, merge_slices, run_slice};
 pub use progress::{Progress, TargetProgress};
 pub(crate) use sense::expect_measures;
 pub use stop::Stop;
@@ -51,7 +51,7 @@ pub fn run_one(
     output: &Output,
     interrupt: &Interrupt,
     watch: &mut dyn FnMut(&Progress),
-) -> Result<Finished> {
+) -> Result<FinishedRun> {
     let job = prepare(scene, settings)?;
     let dir = output_dir(scene, output);
     let lock = FolderLock::take(&dir)?;
@@ -71,7 +71,7 @@ pub fn run_one(
     if traced.stop != Stop::Interrupted {
         checkpoints.remove()?;
     }
-    Ok(Finished {
+    Ok(FinishedRun {
         report,
         written,
         stop: traced.stop,
@@ -89,7 +89,7 @@ pub fn prepare(scene: &Path, settings: &Settings) -> Result<Job> {
 
 /// A run that has written its report.
 #[derive(Debug)]
-pub struct Finished {
+pub struct FinishedRun {
     /// What the report says.
     pub report: Report,
     /// Whether it was there before.
@@ -155,7 +155,7 @@ pub fn compose(job: &Job, findings: &Findings, stop: Stop) -> Report {
             identity: recipe(job),
             seed: job.run.seed,
             estimator: job.run.estimator,
-            gather: report::wishes(&job.run.gather),
+            gather: report::requested_gathering(&job.run.gather),
             gathering: gathering(findings),
             partial: stop == Stop::Interrupted,
             asked: report::asked(&job.run.stop),

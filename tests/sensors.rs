@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
 
-use lumiduct_core::measure::{self, Axes, Measures};
+use lumiduct_core::measure::{self, MapAxes, Measures};
 use lumiduct_core::plan::Request;
 use lumiduct_core::transport::Run;
 use lumiduct_input::{self as input, Settings};
@@ -140,7 +140,7 @@ fn an_image_of_a_glowing_wall_is_flat_and_has_its_luminance() {
             }
         }
         assert!(found.values["camera.cv"].value < 0.03, "{}", found.values["camera.cv"]);
-        let Axes::Angular { u_deg, v_deg } = &found.maps[0].axes else { panic!("no image") };
+        let MapAxes::Angular { u_deg, v_deg } = &found.maps[0].axes else { panic!("no image") };
         assert_eq!((u_deg.len(), v_deg.len()), (6, 5));
         // Two pixels of the tangent of 10 deg about the middle.
         assert!((v_deg[3] - (2.0 * 5f64.to_radians().tan()).atan().to_degrees()).abs() < 1e-12);

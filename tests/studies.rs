@@ -5,7 +5,7 @@
 
 mod package;
 
-use lumiduct::study::{BatchWishes, OnExisting, run_study};
+use lumiduct::study::{BatchOptions, OnExisting, run_study};
 use lumiduct_core::transport::{Interrupt, Shard};
 use lumiduct_input::{StudySettings, load_study};
 use lumiduct_report::study::{DesignRecord, Pairing};
@@ -66,14 +66,14 @@ fn a_design_of_every_study_comes_out_as_it_is_in_the_repository() {
     for path in studies() {
         let manifest = json(&results(&path).join("batch.json"));
         let folder = tempfile::tempdir().unwrap();
-        let wishes = BatchWishes {
+        let options = BatchOptions {
             settings: StudySettings::default(),
             dir: Some(folder.path().to_path_buf()),
             existing: OnExisting::Keep,
             jobs: 1,
             shard: Shard::new(AGAIN, manifest["designs"].as_u64().unwrap()).unwrap(),
         };
-        run_study(&path, &wishes, &Interrupt::default(), &|_| {}).unwrap();
+        run_study(&path, &options, &Interrupt::default(), &|_| {}).unwrap();
         let record = |folder: &Path| -> DesignRecord {
             let path = folder.join(format!("designs/{AGAIN:04}.json"));
             let record: DesignRecord = serde_json::from_slice(&fs::read(path).unwrap()).unwrap();
@@ -115,14 +115,14 @@ fn the_error_of_a_difference_is_what_it_says_and_smaller_than_that_of_independen
     fs::write(&path, PAIR).unwrap();
     let (mut differences, mut errors, mut alone) = (Vec::new(), Vec::new(), Vec::new());
     for seed in 1..=48 {
-        let wishes = BatchWishes {
+        let options = BatchOptions {
             settings: StudySettings { seed: Some(seed), ..StudySettings::default() },
             dir: Some(folder.path().join(format!("out{seed}"))),
             existing: OnExisting::Keep,
             jobs: 2,
             shard: Shard::WHOLE,
         };
-        let finished = run_study(&path, &wishes, &Interrupt::default(), &|_| {}).unwrap();
+        let finished = run_study(&path, &options, &Interrupt::default(), &|_| {}).unwrap();
         let report = finished.report.unwrap();
         let [first, second] =
             [0, 1].map(|place| report.designs[place].measure("exit.flux").unwrap());

@@ -6,7 +6,7 @@ use crate::cli::exit::{INTERRUPTED, fail, warn};
 use crate::cli::junit::{open_junit, write_junit};
 use crate::cli::process::{on_ctrl_c, use_threads};
 use crate::cli::values::{parse_count, parse_percent, parse_shard};
-use crate::study::{BatchWishes, Finished, OnExisting, run_study};
+use crate::study::{BatchOptions, FinishedStudy, OnExisting, run_study};
 use clap::Args;
 use lumiduct_core::transport::Shard;
 use lumiduct_input::StudySettings;
@@ -69,7 +69,7 @@ pub(super) fn batch(args: &BatchArgs) -> ExitCode {
         Err(error) => return fail(&error),
     };
     let interrupt = on_ctrl_c();
-    let wishes = BatchWishes {
+    let options = BatchOptions {
         settings: StudySettings {
             overrides: args.define.clone(),
             target: args.target,
@@ -86,7 +86,7 @@ pub(super) fn batch(args: &BatchArgs) -> ExitCode {
         shard: args.shard.unwrap_or(Shard::WHOLE),
     };
     let display = Mutex::new(Display::new(args.quiet));
-    let outcome = run_study(&args.study, &wishes, &interrupt, &|progress| {
+    let outcome = run_study(&args.study, &options, &interrupt, &|progress| {
         if let Ok(mut display) = display.lock() {
             display.show_batch(progress);
         }
@@ -106,7 +106,7 @@ pub(super) fn batch(args: &BatchArgs) -> ExitCode {
 }
 
 /// Prints the outcome of a batch; the exit code says whether every design is as requested.
-pub(super) fn tell(finished: &Finished, quiet: bool) -> ExitCode {
+pub(super) fn tell(finished: &FinishedStudy, quiet: bool) -> ExitCode {
     if !quiet {
         warn(&finished.warnings);
         if let Err(error) = print(&summary(finished)) {
@@ -123,7 +123,7 @@ pub(super) fn tell(finished: &Finished, quiet: bool) -> ExitCode {
     }
 }
 
-fn summary(finished: &Finished) -> String {
+fn summary(finished: &FinishedStudy) -> String {
     let [done, wanted] = finished.done;
     let dir = finished.dir.display();
     let Some(report) = &finished.report else {

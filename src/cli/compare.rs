@@ -5,7 +5,7 @@ use crate::cli::exit::{INTERRUPTED, fail, finish, warn};
 use crate::cli::process::{on_ctrl_c, use_threads};
 use crate::cli::run::GatherArgs;
 use crate::cli::values::{parse_number, parse_time, words};
-use crate::pipeline::{self, CompareWishes, Method, Output, TruthWish};
+use crate::pipeline::{self, CompareOptions, Method, Output, TruthOption};
 use clap::Args;
 use lumiduct_input::Settings;
 use lumiduct_report::Existing;
@@ -96,10 +96,12 @@ pub(super) fn compare(args: &CompareArgs) -> ExitCode {
         ..Settings::default()
     };
     let truth = match (args.truth, &args.truth_file) {
-        (Some(value), _) => TruthWish::Given { value, std_error: args.truth_error.unwrap_or(0.0) },
-        (None, Some(path)) => TruthWish::File(path.clone()),
+        (Some(value), _) => {
+            TruthOption::Given { value, std_error: args.truth_error.unwrap_or(0.0) }
+        }
+        (None, Some(path)) => TruthOption::File(path.clone()),
         (None, None) => {
-            TruthWish::Run(args.truth_time.unwrap_or(args.time.saturating_mul(TRUTH_TIMES)))
+            TruthOption::Run(args.truth_time.unwrap_or(args.time.saturating_mul(TRUTH_TIMES)))
         }
     };
     let mut methods: Vec<Method> = Vec::new();
@@ -108,7 +110,7 @@ pub(super) fn compare(args: &CompareArgs) -> ExitCode {
             methods.push(*method);
         }
     }
-    let wishes = CompareWishes {
+    let options = CompareOptions {
         sensor: args.sensor.clone(),
         methods,
         time: args.time,
@@ -123,7 +125,7 @@ pub(super) fn compare(args: &CompareArgs) -> ExitCode {
             print_error(&format!("{line}\n"));
         }
     };
-    match pipeline::compare(&args.scene, &settings, &wishes, &output, &interrupt, &mut tell) {
+    match pipeline::compare(&args.scene, &settings, &options, &output, &interrupt, &mut tell) {
         Ok(_) if args.quiet => ExitCode::SUCCESS,
         Ok(compared) => {
             warn(&compared.warnings);

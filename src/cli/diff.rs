@@ -7,7 +7,7 @@ use crate::cli::values::{parse_percent, parse_sigmas};
 use clap::Args;
 use lumiduct_base::error::{Error, Result};
 use lumiduct_report::diff::{
-    Diff, DiffWishes, Limits, MapLimit, Rows, diff, diff_files, diff_table, read,
+    Diff, DiffOptions, Limits, MapLimit, ShownRows, diff, diff_files, diff_table, read,
 };
 use lumiduct_report::{Existing, Folder, FolderLock, Written, diff_junit, is_among};
 use std::path::PathBuf;
@@ -67,7 +67,7 @@ fn compare(args: &DiffArgs, existing: Existing) -> Result<Diff> {
     let sides = [read(&args.a)?, read(&args.b)?];
     let maps = if args.maps { MapLimit::Noise } else { MapLimit::Told };
     let limits = Limits { sigmas: args.sigmas, relative: args.relative, maps };
-    let diff = diff(&sides, &DiffWishes { limits, only: args.only.clone() })?;
+    let diff = diff(&sides, &DiffOptions { limits, only: args.only.clone() })?;
     if let Some(dir) = &args.output {
         if is_among(dir, &[args.a.clone(), args.b.clone()]) {
             let dir = dir.display();
@@ -87,7 +87,7 @@ fn compare(args: &DiffArgs, existing: Existing) -> Result<Diff> {
         }
     }
     if !args.quiet {
-        let rows = if args.all { Rows::All } else { Rows::Worst };
+        let rows = if args.all { ShownRows::All } else { ShownRows::Worst };
         let mut text = diff_table(&diff, rows);
         if let Some(dir) = &args.output {
             text += &format!("report: {}\n", dir.join("diff.html").display());

@@ -9,12 +9,12 @@ use crate::cli::values::{
     parse_angle, parse_count, parse_percent, parse_radius, parse_records, parse_shard, parse_time,
     words,
 };
-use crate::pipeline::{self, Finished, Output, SliceWishes, SliceWritten, Start, Stop};
+use crate::pipeline::{self, FinishedRun, Output, RunStart, SliceOptions, SliceWritten, Stop};
 use clap::Args;
 use lumiduct_core::plan::{Request, Schedule};
 use lumiduct_core::transport::{Interrupt, Shard};
 use lumiduct_input::{GatherSettings, Settings};
-use lumiduct_report::{Existing, Outcome, Written, run_junit};
+use lumiduct_report::{Existing, RunOutcome, Written, run_junit};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
@@ -135,10 +135,10 @@ pub(super) fn run(args: &RunArgs) -> ExitCode {
         Err(error) => return fail(&error),
     };
     if let Some(shard) = args.shard {
-        let wishes = SliceWishes { shard, dir: args.output.clone(), existing };
-        return slice(args, &settings, &wishes, &interrupt);
+        let options = SliceOptions { shard, dir: args.output.clone(), existing };
+        return slice(args, &settings, &options, &interrupt);
     }
-    let start = if args.resume { Start::Resume } else { Start::Anew };
+    let start = if args.resume { RunStart::Resume } else { RunStart::Anew };
     let (dir, checkpoint_every) = (args.output.clone(), args.checkpoint);
     let output = Output { dir, existing, checkpoint_every, start };
     let mut display = Display::new(args.quiet);
@@ -160,7 +160,7 @@ pub(super) fn run(args: &RunArgs) -> ExitCode {
 }
 
 /// Prints the results of a run; the exit code says whether it meets what its scene asks for.
-pub(super) fn tell(finished: &Finished, quiet: bool) -> ExitCode {
+pub(super) fn tell(finished: &FinishedRun, quiet: bool) -> ExitCode {
     let is_kept = matches!(finished.written, Written::Nothing { .. });
     let text = lumiduct_report::terminal(&finished.report, &finished.dir, &finished.written);
     let printed = if quiet {
@@ -183,12 +183,12 @@ pub(super) fn tell(finished: &Finished, quiet: bool) -> ExitCode {
 fn slice(
     args: &RunArgs,
     settings: &Settings,
-    wishes: &SliceWishes,
+    options: &SliceOptions,
     interrupt: &Interrupt,
 ) -> ExitCode {
     let mut display = Display::new(args.quiet);
     let begin = Instant::now();
-    let written = pipeline::run_slice(&args.scene, settings, wishes, interrupt, &mut |share| {
+    let written = pipeline::run_slice(&args.scene, settings, options, interrupt, &mut |share| {
         display.show_share(share, begin.elapsed());
     });
     display.close();
@@ -196,7 +196,7 @@ fn slice(
         Ok(SliceWritten { title, batches: Some(batches), of, dir }) => {
             let text = format!(
                 "{title}\npart {}: {} of {of} batches are in {}\n",
-                wishes.shard,
+                options.shard,
                 batches.end - batches.start,
                 dir.display()
             );
@@ -210,12 +210,12 @@ fn slice(
     }
 }
 
-fn exit_code(stop: Stop, outcome: Outcome) -> ExitCode {
+fn exit_code(stop: Stop, outcome: RunOutcome) -> ExitCode {
     if stop == Stop::Interrupted {
         return ExitCode::from(INTERRUPTED);
     }
     match outcome {
-        Outcome::Missed => ExitCode::from(1),
-        Outcome::Good => ExitCode::SUCCESS,
+        RunOutcome::Missed => ExitCode::from(1),
+        RunOutcome::Good => ExitCode::SUCCESS,
     }
 }

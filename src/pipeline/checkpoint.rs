@@ -1,9 +1,9 @@
 //! Checkpoints of a long run: its state, saved to disk at intervals.
 
-use crate::pipeline::output::{Output, Start};
-use crate::pipeline::snapshot::{self, Kind};
+use crate::pipeline::output::{Output, RunStart};
+use crate::pipeline::snapshot::{self, SnapshotKind};
 use lumiduct_base::error::{Error, Result};
-use lumiduct_core::transport::{Run, State};
+use lumiduct_core::transport::{Run, RunState};
 use lumiduct_report::{Existing, Recipe, remove_if_there, sweep};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ const NAME: &str = "checkpoint.bin";
 /// A run as it was saved.
 #[derive(Serialize, Deserialize)]
 pub(super) struct Checkpoint {
-    pub(super) state: State,
+    pub(super) state: RunState,
     /// Waves after which the stop rules are checked next.
     pub(super) round_end: u64,
     /// Elapsed time so far.
@@ -66,19 +66,19 @@ impl CheckpointFile {
     ) -> Result<(Self, Option<Checkpoint>)> {
         let (path, every) = (dir.join(NAME), output.checkpoint_every);
         let file = Self { path, recipe, every, last: Duration::ZERO };
-        if output.start == Start::Resume {
+        if output.start == RunStart::Resume {
             sweep(dir)?;
         }
         if !file.path.exists() {
             return Ok((file, None));
         }
         match (output.start, output.existing) {
-            (Start::Resume, _) => {
+            (RunStart::Resume, _) => {
                 let checkpoint = file.read()?;
                 Ok((Self { last: checkpoint.elapsed, ..file }, Some(checkpoint)))
             }
-            (Start::Anew, Existing::Replace) => Ok((file, None)),
-            (Start::Anew, Existing::Keep) => Err(Error::Usage(format!(
+            (RunStart::Anew, Existing::Replace) => Ok((file, None)),
+            (RunStart::Anew, Existing::Keep) => Err(Error::Usage(format!(
                 "{} holds a checkpoint of a run that was stopped; use --resume to go on, or --overwrite to begin anew",
                 dir.display()
             ))),
@@ -87,7 +87,7 @@ impl CheckpointFile {
 
     fn read(&self) -> Result<Checkpoint> {
         let (recipe, checkpoint): (Recipe, Checkpoint) =
-            snapshot::read(&self.path, Kind::Checkpoint)?;
+            snapshot::read(&self.path, SnapshotKind::Checkpoint)?;
         if recipe != self.recipe {
             return Err(Error::Usage(format!(
                 "{} is no checkpoint of this run but of {}; use --overwrite to begin anew, or -o for another folder",
@@ -106,7 +106,7 @@ impl CheckpointFile {
             return Ok(());
         }
         self.last = pause.elapsed;
-        snapshot::write(&self.path, Kind::Checkpoint, &(&self.recipe, &pause.checkpoint()))
+        snapshot::write(&self.path, SnapshotKind::Checkpoint, &(&self.recipe, &pause.checkpoint()))
     }
 
     /// Removes the checkpoint of a run that has ended.

@@ -10,7 +10,7 @@ mod runner;
 mod truth;
 
 pub use method::Method;
-pub use truth::TruthWish;
+pub use truth::TruthOption;
 
 use crate::pipeline::compare::bench::Bench;
 use crate::pipeline::compare::runner::{Stint, trace};
@@ -48,7 +48,7 @@ fn expect_passages(job: &Job, sensor: SensorId, methods: &[Method]) -> Result<()
 
 /// What is to be compared, and for how long.
 #[derive(Debug, Clone)]
-pub struct CompareWishes {
+pub struct CompareOptions {
     /// Name of the sensor; the only one if none is given.
     pub sensor: Option<String>,
     /// The methods, in the order of the table.
@@ -58,7 +58,7 @@ pub struct CompareWishes {
     /// Independent runs of each method, 2 at least.
     pub repetitions: u32,
     /// What they are compared with.
-    pub truth: TruthWish,
+    pub truth: TruthOption,
 }
 
 /// A comparison that has been written.
@@ -80,31 +80,31 @@ const CHECKPOINT_RATIO: f64 = std::f64::consts::SQRT_2;
 pub fn compare(
     scene: &Path,
     settings: &Settings,
-    wishes: &CompareWishes,
+    options: &CompareOptions,
     output: &Output,
     interrupt: &Interrupt,
     watch: &mut dyn FnMut(&str),
 ) -> Result<Compared> {
     // The gather settings of the file are used; its choice of estimator is not.
     let loading =
-        Settings { estimator: Some(Request::Auto), time: Some(wishes.time), ..settings.clone() };
+        Settings { estimator: Some(Request::Auto), time: Some(options.time), ..settings.clone() };
     let job = input::load(scene, &loading)?;
     expect_sense(&job)?;
-    let id = sensor(&job, wishes.sensor.as_deref())?;
-    let run_time = wishes.time.div_f64(f64::from(wishes.repetitions));
+    let id = sensor(&job, options.sensor.as_deref())?;
+    let run_time = options.time.div_f64(f64::from(options.repetitions));
     let bench = Bench { id, job: &job, interrupt, run_time };
-    expect_able(&job, &wishes.methods)?;
-    expect_passages(&job, id, &wishes.methods)?;
-    let known = truth::known(&bench, &wishes.truth)?;
+    expect_able(&job, &options.methods)?;
+    expect_passages(&job, id, &options.methods)?;
+    let known = truth::known(&bench, &options.truth)?;
     let lock = FolderLock::take(&dir_of(scene, output))?;
     let folder = Folder::open(lock, output.existing, None)?;
     let truth = match known {
         Known::Truth(truth) => truth,
-        Known::Takes(time) => truth::find(&bench, wishes.repetitions, time, watch)?,
+        Known::Takes(time) => truth::find(&bench, options.repetitions, time, watch)?,
     };
     let mut contestants = Vec::new();
-    for &method in &wishes.methods {
-        contestants.push(contestant(&bench, method, wishes.repetitions, watch)?);
+    for &method in &options.methods {
+        contestants.push(contestant(&bench, method, options.repetitions, watch)?);
     }
     let comparison = Comparison {
         title: job.title.clone(),
@@ -117,7 +117,7 @@ pub fn compare(
         measure: bench.measure(),
         unit: job.scene.unit.flux().to_owned(),
         truth,
-        repetitions: wishes.repetitions,
+        repetitions: options.repetitions,
         run_time: run_time.as_secs_f64(),
         contestants,
     };

@@ -14,19 +14,19 @@ pub struct Output {
     /// How often a checkpoint is kept in the folder; `None` for never.
     pub checkpoint_every: Option<Duration>,
     /// Whether to resume from an existing checkpoint.
-    pub start: Start,
+    pub start: RunStart,
 }
 
 impl Output {
     /// A report in a folder, without checkpoints.
     pub fn new(dir: Option<PathBuf>, existing: Existing) -> Self {
-        Self { dir, existing, checkpoint_every: None, start: Start::Anew }
+        Self { dir, existing, checkpoint_every: None, start: RunStart::Anew }
     }
 }
 
 /// Whether a run starts over or resumes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Start {
+pub enum RunStart {
     /// From its first path.
     Anew,
     /// From the checkpoint in the folder of its report, if there is one.

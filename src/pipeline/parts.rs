@@ -1,9 +1,9 @@
 //! Parts of one run, traced on several machines and merged to exactly the report of the whole run.
 
 use crate::pipeline::output::{Output, output_dir};
-use crate::pipeline::snapshot::{self, Kind};
+use crate::pipeline::snapshot::{self, SnapshotKind};
 use crate::pipeline::stop::Stop;
-use crate::pipeline::{Finished, compose, prepare, recipe};
+use crate::pipeline::{FinishedRun, compose, prepare, recipe};
 use lumiduct_base::error::{Error, Result};
 use lumiduct_core::transport::{Activity, Interrupt, Run, Shard, Slice, StopSignal, Unsliceable};
 use lumiduct_input::{Job, Settings};
@@ -17,7 +17,7 @@ const NAME: &str = "slice.bin";
 
 /// A part of a run on disk: the run it belongs to, and what was counted.
 #[derive(Serialize, Deserialize)]
-struct Part {
+struct RunPart {
     recipe: Recipe,
     /// The scene file as the user named it.
     scene: String,
@@ -27,7 +27,7 @@ struct Part {
 
 /// Which part of a run is wanted, and where.
 #[derive(Debug, Clone)]
-pub struct SliceWishes {
+pub struct SliceOptions {
     /// The part.
     pub shard: Shard,
     /// Its folder; `reports/NAME.KofN` when none is given.
@@ -53,18 +53,18 @@ pub struct SliceWritten {
 pub fn run_slice(
     scene: &Path,
     settings: &Settings,
-    wishes: &SliceWishes,
+    options: &SliceOptions,
     interrupt: &Interrupt,
     watch: &mut dyn FnMut(f64),
 ) -> Result<SliceWritten> {
     let job = prepare(scene, settings)?;
     expect_fixed_end(&job)?;
-    let dir = wishes.dir.clone().unwrap_or_else(|| {
-        let part = wishes.shard.to_string().replace('/', "of");
+    let dir = options.dir.clone().unwrap_or_else(|| {
+        let part = options.shard.to_string().replace('/', "of");
         Path::new("reports").join(format!("{}.{part}", job.name))
     });
     let path = dir.join(NAME);
-    if path.exists() && wishes.existing == Existing::Keep {
+    if path.exists() && options.existing == Existing::Keep {
         return Err(Error::Usage(format!(
             "{} exists; use --overwrite to replace it, or -o for another folder",
             path.display()
@@ -79,15 +79,15 @@ pub fn run_slice(
         return Ok(nothing(0));
     };
     let of = run.sliceable_batches().map_err(refusal)?;
-    let batches = wishes.shard.of(of);
+    let batches = options.shard.of(of);
     let count = (batches.end - batches.start).max(1) as f64;
     let slice = run.slice(batches.clone(), of, &mut |done| watch(done as f64 / count));
     let Some(slice) = slice else { return Ok(nothing(of)) };
     let title = job.title.clone();
     let scene = scene.to_string_lossy().into_owned();
-    let part = Part { recipe: recipe(&job), scene, settings: settings.clone(), slice };
+    let part = RunPart { recipe: recipe(&job), scene, settings: settings.clone(), slice };
     interrupt.begin(Activity::Writing);
-    snapshot::write(&path, Kind::Slice, &part)?;
+    snapshot::write(&path, SnapshotKind::Slice, &part)?;
     Ok(SliceWritten { title, batches: Some(batches), of, dir })
 }
 
@@ -98,11 +98,15 @@ pub fn has_slice(dir: &Path) -> bool {
 
 /// Merges the parts of a run and writes the report of the whole. The scene is read again, from
 /// where the parts found it or from `scene`.
-pub fn merge_slices(dirs: &[PathBuf], scene: Option<&Path>, output: &Output) -> Result<Finished> {
-    let mut parts: Vec<(PathBuf, Part)> = Vec::new();
+pub fn merge_slices(
+    dirs: &[PathBuf],
+    scene: Option<&Path>,
+    output: &Output,
+) -> Result<FinishedRun> {
+    let mut parts: Vec<(PathBuf, RunPart)> = Vec::new();
     for dir in dirs {
         let path = dir.join(NAME);
-        parts.push((path.clone(), snapshot::read(&path, Kind::Slice)?));
+        parts.push((path.clone(), snapshot::read(&path, SnapshotKind::Slice)?));
     }
     parts.sort_by_key(|(_, part)| (part.slice.batches.start, part.slice.batches.end));
     let Some((first_path, first)) = parts.first() else {
@@ -135,7 +139,7 @@ pub fn merge_slices(dirs: &[PathBuf], scene: Option<&Path>, output: &Output) -> 
     let report = compose(&job, &run.findings(), Stop::Paths);
     let written = folder.write(&report::files(&report, &job.text)?)?;
     let dir = folder.path().to_path_buf();
-    Ok(Finished { report, written, stop: Stop::Paths, dir, warnings: job.warnings })
+    Ok(FinishedRun { report, written, stop: Stop::Paths, dir, warnings: job.warnings })
 }
 
 fn expect_same(wanted: &Recipe, found: &Recipe, of: &str, path: &Path) -> Result<()> {
@@ -147,7 +151,7 @@ fn expect_same(wanted: &Recipe, found: &Recipe, of: &str, path: &Path) -> Result
 }
 
 /// Makes sure that every batch is in exactly one part.
-fn expect_all(parts: &[(PathBuf, Part)]) -> Result<()> {
+fn expect_all(parts: &[(PathBuf, RunPart)]) -> Result<()> {
     let mut next = 0;
     for (path, part) in parts {
         let Range { start, end } = part.slice.batches;

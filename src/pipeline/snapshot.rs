@@ -15,14 +15,14 @@ use std::path::Path;
 
 /// Kind of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum SnapshotKind {
     /// The state of a run.
     Checkpoint,
     /// What was counted in some of the batches of a run.
     Slice,
 }
 
-impl Kind {
+impl SnapshotKind {
     fn name(self) -> &'static str {
         match self {
             Self::Checkpoint => "checkpoint",
@@ -42,14 +42,14 @@ const LENGTH_BYTES: usize = 8;
 const DIGEST_BYTES: usize = 16;
 
 /// Writes a file, whole or not at all.
-pub(super) fn write(path: &Path, kind: Kind, contents: &impl Serialize) -> Result<()> {
+pub(super) fn write(path: &Path, kind: SnapshotKind, contents: &impl Serialize) -> Result<()> {
     let contents = postcard::to_stdvec(&(BUILD, contents))
         .map_err(|reason| Error::Output { what: kind.name().into(), reason: reason.to_string() })?;
     write_whole(path, &framed(kind, &contents), Existing::Replace)
 }
 
 /// Contents between their line and length and their digest.
-fn framed(kind: Kind, contents: &[u8]) -> Vec<u8> {
+fn framed(kind: SnapshotKind, contents: &[u8]) -> Vec<u8> {
     let mut bytes = kind.line().into_bytes();
     bytes.extend((contents.len() as u64).to_le_bytes());
     bytes.extend(contents);
@@ -58,7 +58,7 @@ fn framed(kind: Kind, contents: &[u8]) -> Vec<u8> {
 }
 
 /// Reads a file, or reports what is wrong with it.
-pub(super) fn read<T: DeserializeOwned>(path: &Path, kind: Kind) -> Result<T> {
+pub(super) fn read<T: DeserializeOwned>(path: &Path, kind: SnapshotKind) -> Result<T> {
     let bytes = fs::read(path).map_err(|source| Error::io(path, source))?;
     let refuse = |why: &str| {
         Error::Usage(format!("{} is no {} to go on with: {why}", path.display(), kind.name()))
@@ -102,7 +102,7 @@ mod tests {
 
     fn refused(path: &Path, bytes: &[u8]) -> String {
         fs::write(path, bytes).unwrap();
-        read::<Vec<f64>>(path, Kind::Checkpoint).unwrap_err().to_string()
+        read::<Vec<f64>>(path, SnapshotKind::Checkpoint).unwrap_err().to_string()
     }
 
     #[test]
@@ -110,9 +110,9 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("checkpoint.bin");
         let numbers = vec![0.1, f64::MIN_POSITIVE, f64::INFINITY, -0.0];
-        write(&path, Kind::Checkpoint, &numbers).unwrap();
+        write(&path, SnapshotKind::Checkpoint, &numbers).unwrap();
         let bytes = fs::read(&path).unwrap();
-        let read: Vec<f64> = read(&path, Kind::Checkpoint).unwrap();
+        let read: Vec<f64> = read(&path, SnapshotKind::Checkpoint).unwrap();
         assert!(read.iter().zip(&numbers).all(|(a, b)| a.to_bits() == b.to_bits()));
 
         for cut in 0..bytes.len() {
@@ -124,15 +124,16 @@ mod tests {
             changed[place] ^= 1;
             refused(&path, &changed);
         }
-        write(&path, Kind::Slice, &numbers).unwrap();
+        write(&path, SnapshotKind::Slice, &numbers).unwrap();
         let slice = fs::read(&path).unwrap();
         assert!(refused(&path, &slice).contains("does not begin"));
-        write(&path, Kind::Checkpoint, &"other contents").unwrap();
+        write(&path, SnapshotKind::Checkpoint, &"other contents").unwrap();
         let other = fs::read(&path).unwrap();
         assert!(refused(&path, &other).contains("something else"));
         let foreign = postcard::to_stdvec(&("0.0.9+1", &numbers)).unwrap();
-        fs::write(&path, framed(Kind::Checkpoint, &foreign)).unwrap();
-        let said = super::read::<Vec<f64>>(&path, Kind::Checkpoint).unwrap_err().to_string();
+        fs::write(&path, framed(SnapshotKind::Checkpoint, &foreign)).unwrap();
+        let said =
+            super::read::<Vec<f64>>(&path, SnapshotKind::Checkpoint).unwrap_err().to_string();
         assert!(said.contains("another build of the program, 0.0.9+1"), "{said}");
     }
 }

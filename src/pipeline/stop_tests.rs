@@ -128,8 +128,8 @@ fn a_pilot_that_takes_half_of_the_time_is_given_up_and_photons_go_on() {
 fn passes_of_gathering_fit_into_a_short_time_and_their_command_repeats_them() {
     let folder = tempfile::tempdir().unwrap();
     let time = Some(std::time::Duration::from_secs(3600));
-    let wishes = Settings { estimator: Some(Request::Gather), time, ..Settings::default() };
-    let job = short_rod(folder.path(), &wishes);
+    let options = Settings { estimator: Some(Request::Gather), time, ..Settings::default() };
+    let job = short_rod(folder.path(), &options);
     // An automatic pass without a clock has four million segments, which are 3900 polls.
     let (looks, grace) = (600, 40);
     let clock = Interrupt::default();
@@ -162,8 +162,8 @@ fn merged_passes_fit_into_a_short_time_where_paths_never_end() {
     let scene = folder.path().join("box.toml");
     std::fs::write(&scene, MIRROR_BOX).unwrap();
     let time = Some(std::time::Duration::from_secs(3600));
-    let wishes = Settings { estimator: Some(Request::Mis), time, ..Settings::default() };
-    let job = prepare(&scene, &wishes).unwrap();
+    let options = Settings { estimator: Some(Request::Mis), time, ..Settings::default() };
+    let job = prepare(&scene, &options).unwrap();
     // A path has 20 polls, and the pilot takes 640 of them.
     let (looks, clock) = (3000, Interrupt::default());
     let signal = StopSignal::ending_at_look(&clock, looks, 100);
@@ -178,13 +178,13 @@ fn merged_passes_fit_into_a_short_time_where_paths_never_end() {
 #[test]
 fn a_request_ends_tracing_and_lets_files_take_their_places() {
     let folder = tempfile::tempdir().unwrap();
-    let wishes = settings(Request::Forward);
-    short_rod(folder.path(), &wishes);
+    let options = settings(Request::Forward);
+    short_rod(folder.path(), &options);
     let scene = folder.path().join("rod.toml");
     let output = Output::new(Some(folder.path().join("out")), Existing::Keep);
     let interrupt = Interrupt::default();
     let mut answers = Vec::new();
-    let finished = run_one(&scene, &wishes, &output, &interrupt, &mut |progress| {
+    let finished = run_one(&scene, &options, &output, &interrupt, &mut |progress| {
         if matches!(progress.phase, Phase::Batches(_)) && answers.is_empty() {
             answers.push(interrupt.request());
         }
@@ -193,7 +193,7 @@ fn a_request_ends_tracing_and_lets_files_take_their_places() {
     assert_eq!(finished.unwrap().stop, Stop::Interrupted);
     let whole = Interrupt::default();
     let output = Output::new(Some(folder.path().join("whole")), Existing::Keep);
-    run_one(&scene, &wishes, &output, &whole, &mut |_| ()).unwrap();
+    run_one(&scene, &options, &output, &whole, &mut |_| ()).unwrap();
     assert_eq!(whole.request(), StopAnswer::EndRun, "the last activity was to write");
 }
 
@@ -203,9 +203,9 @@ fn a_look_comes_within_a_path_that_never_ends() {
     let scene = folder.path().join("box.toml");
     std::fs::write(&scene, MIRROR_BOX).unwrap();
     for estimator in [Request::Forward, Request::Gather, Request::Auto] {
-        let wishes =
+        let options =
             Settings { estimator: Some(estimator), paths: Some(1000), ..Settings::default() };
-        let job = prepare(&scene, &wishes).unwrap();
+        let job = prepare(&scene, &options).unwrap();
         for look in [10, 1400] {
             let (traced, late) = on_threads(1, || stopped_at(look, &job));
             assert!(late <= 20, "{late} looks after look {look} of {}", estimator.name());

@@ -56,7 +56,7 @@ impl BatchProgress {
 }
 
 /// A batch in progress.
-pub(crate) struct Batch<'a> {
+pub(crate) struct DesignBatch<'a> {
     pub(crate) study: &'a Study,
     pub(crate) designs: &'a [Design],
     pub(crate) store: &'a Store,
@@ -68,7 +68,7 @@ pub(crate) struct Batch<'a> {
 
 /// Traces those of the wanted designs (numbers from 1) that have no record yet. Ends at the first
 /// file system error or when interrupted; designs finished by then have their records.
-pub(crate) fn execute(batch: &Batch<'_>, wanted: &[usize]) -> Result<()> {
+pub(crate) fn execute(batch: &DesignBatch<'_>, wanted: &[usize]) -> Result<()> {
     let records = batch.store.records()?;
     expect_designs(batch, &records)?;
     let pending: Vec<&Design> = wanted
@@ -110,7 +110,7 @@ pub(crate) fn execute(batch: &Batch<'_>, wanted: &[usize]) -> Result<()> {
 }
 
 /// Checks that every record belongs to the design of its number.
-fn expect_designs(batch: &Batch<'_>, records: &BTreeMap<usize, DesignRecord>) -> Result<()> {
+fn expect_designs(batch: &DesignBatch<'_>, records: &BTreeMap<usize, DesignRecord>) -> Result<()> {
     for (number, record) in records {
         let design = number.checked_sub(1).and_then(|index| batch.designs.get(index));
         let own = design.map(|design| settings(batch.study, design));
@@ -128,7 +128,7 @@ fn settings(study: &Study, design: &Design) -> IndexMap<String, Setting> {
 }
 
 /// How a design ended.
-enum Ended {
+enum DesignEnd {
     /// It has its record.
     Recorded,
     /// The user stopped it, and nothing was written.
@@ -137,15 +137,15 @@ enum Ended {
 
 /// Traces a design, and notes how long it took.
 fn trace_timed(
-    batch: &Batch<'_>,
+    batch: &DesignBatch<'_>,
     design: &Design,
     common: &Settings,
     board: &Board<'_>,
 ) -> Result<()> {
     let start = Instant::now();
     match trace(batch, design, common, board)? {
-        Ended::Stopped => Ok(()),
-        Ended::Recorded => {
+        DesignEnd::Stopped => Ok(()),
+        DesignEnd::Recorded => {
             board.end(design.number);
             batch.store.note_seconds(design.number, start.elapsed().as_secs_f64())
         }
@@ -154,18 +154,18 @@ fn trace_timed(
 
 /// Traces a design and writes its record, unless it is interrupted.
 fn trace(
-    batch: &Batch<'_>,
+    batch: &DesignBatch<'_>,
     design: &Design,
     common: &Settings,
     board: &Board<'_>,
-) -> Result<Ended> {
+) -> Result<DesignEnd> {
     let study = batch.study;
     let own = study.parameters.iter().zip(&design.settings);
     let own = own.flat_map(|(parameter, setting)| parameter.overrides(setting));
     let outcome = match pipeline::prepare(&study.scene, &common.with(own)) {
         Ok(job) => match trace_job(batch, design, job, board) {
             Ok(Some(result)) => DesignOutcome::Done(Box::new(result)),
-            Ok(None) => return Ok(Ended::Stopped),
+            Ok(None) => return Ok(DesignEnd::Stopped),
             // Its time was up before anything was counted.
             Err(Error::Usage(message)) => DesignOutcome::Failed(message),
             Err(error) => return Err(error),
@@ -182,12 +182,12 @@ fn trace(
         settings: settings(study, design),
         outcome,
     })?;
-    Ok(Ended::Recorded)
+    Ok(DesignEnd::Recorded)
 }
 
 /// The result of tracing; `None` if interrupted.
 fn trace_job(
-    batch: &Batch<'_>,
+    batch: &DesignBatch<'_>,
     design: &Design,
     mut job: Job,
     board: &Board<'_>,
@@ -260,7 +260,7 @@ struct Board<'a> {
 }
 
 impl<'a> Board<'a> {
-    fn new(wanted: usize, pending: usize, batch: &Batch<'a>) -> Self {
+    fn new(wanted: usize, pending: usize, batch: &DesignBatch<'a>) -> Self {
         let state = Mutex::new((0, Vec::new()));
         Self { wanted, pending, start: Instant::now(), watch: batch.watch, state }
     }

@@ -19,7 +19,7 @@ pub use store::OnExisting;
 
 use crate::pipeline::{self, VERSION};
 use crate::study::designs::designs;
-use crate::study::execute::{Batch, execute};
+use crate::study::execute::{DesignBatch, execute};
 use crate::study::store::Store;
 use lumiduct_base::error::{Diagnostic, Error, Result};
 use lumiduct_core::transport::{Activity, Interrupt, Shard};
@@ -35,7 +35,7 @@ use std::path::{Path, PathBuf};
 
 /// How to run a study.
 #[derive(Debug, Clone)]
-pub struct BatchWishes {
+pub struct BatchOptions {
     /// Command-line settings for all designs.
     pub settings: StudySettings,
     /// The folder of the results; `reports/studies/NAME` when none is given.
@@ -50,7 +50,7 @@ pub struct BatchWishes {
 
 /// A batch that has ended.
 #[derive(Debug)]
-pub struct Finished {
+pub struct FinishedStudy {
     /// What the study is.
     pub facts: StudyFacts,
     /// The whole report; `None` for a shard or an interrupted batch.
@@ -68,31 +68,38 @@ pub struct Finished {
 /// Runs a study file and writes its results.
 pub fn run_study(
     path: &Path,
-    wishes: &BatchWishes,
+    options: &BatchOptions,
     interrupt: &Interrupt,
     watch: &(dyn Fn(&BatchProgress) + Sync),
-) -> Result<Finished> {
-    let study = load_study(path, &wishes.settings)?;
+) -> Result<FinishedStudy> {
+    let study = load_study(path, &options.settings)?;
     expect_measures(&study)?;
     let all = designs(&study);
     let facts = facts(&study, all.len());
-    let dir = wishes.dir.clone().unwrap_or_else(|| default_dir(&study.name));
-    let store = Store::open(&dir, &facts, &study.text, wishes.existing)?;
+    let dir = options.dir.clone().unwrap_or_else(|| default_dir(&study.name));
+    let store = Store::open(&dir, &facts, &study.text, options.existing)?;
     let wanted: Vec<usize> =
-        wishes.shard.of(all.len() as u64).map(|index| index as usize + 1).collect();
-    let jobs = wishes.jobs;
-    let batch = Batch { study: &study, designs: &all, store: &store, jobs, interrupt, watch };
+        options.shard.of(all.len() as u64).map(|index| index as usize + 1).collect();
+    let jobs = options.jobs;
+    let batch = DesignBatch { study: &study, designs: &all, store: &store, jobs, interrupt, watch };
     execute(&batch, &wanted)?;
     let records = store.records()?;
     let done = [wanted.iter().filter(|design| records.contains_key(design)).count(), wanted.len()];
     let warnings = study.warnings.clone();
     if records.len() < all.len() {
-        return Ok(Finished { facts, report: None, written: Written::New, done, dir, warnings });
+        return Ok(FinishedStudy {
+            facts,
+            report: None,
+            written: Written::New,
+            done,
+            dir,
+            warnings,
+        });
     }
     interrupt.begin(Activity::Computing);
     let records = records.into_values().collect();
     let (report, written) = finish(&store, facts.clone(), records, &study.text, interrupt)?;
-    Ok(Finished { facts, report: Some(report), written, done, dir, warnings })
+    Ok(FinishedStudy { facts, report: Some(report), written, done, dir, warnings })
 }
 
 /// Whether a folder contains results of a study.
@@ -105,7 +112,7 @@ pub fn merge_study(
     parts: &[PathBuf],
     dir: Option<&Path>,
     existing: OnExisting,
-) -> Result<Finished> {
+) -> Result<FinishedStudy> {
     let stores: Vec<Store> = parts.iter().map(|part| Store::read(part)).collect::<Result<_>>()?;
     let Some(first) = stores.first() else {
         return Err(Error::Usage("there are no parts to put together".into()));
@@ -149,7 +156,7 @@ pub fn merge_study(
     let records: Vec<DesignRecord> = whole.records()?.into_values().collect();
     let done = [records.len(), facts.designs];
     let (report, written) = finish(&whole, facts.clone(), records, &text, &Interrupt::default())?;
-    Ok(Finished { facts, report: Some(report), written, done, dir, warnings: Vec::new() })
+    Ok(FinishedStudy { facts, report: Some(report), written, done, dir, warnings: Vec::new() })
 }
 
 /// The default folder of the results.

@@ -63,7 +63,7 @@ fn a_bad_command_line_ends_with_2_and_writes_nothing() {
 }
 
 #[test]
-fn bad_wishes_for_gathering_are_refused_with_the_figure_that_is_wrong() {
+fn bad_settings_for_gathering_are_refused_with_the_figure_that_is_wrong() {
     let place = Place::new();
     for (flag, key, figure) in [
         ("--depth", "depth", "1001"),
@@ -99,10 +99,10 @@ fn a_sensor_that_sees_no_port_is_told_of() {
              directions = [{{ theta_deg = 0, phi_deg = 0 }}] }}\n"
         ))
     };
-    let wishes = "--records 100 --photons 100 --paths 3k";
+    let options = "--records 100 --photons 100 --paths 3k";
     let (away, toward) = (look("1"), look("-1"));
     for estimator in ["backward", "gather", "mis"] {
-        let run = format!("run rod.toml -o {estimator} --estimator {estimator} {wishes}");
+        let run = format!("run rod.toml -o {estimator} --estimator {estimator} {options}");
         let output = away.run(&run);
         let said = errors(&output);
         assert_eq!(code(&output), 0, "{said}");

@@ -279,10 +279,11 @@ fn merged_values_name_their_estimator_and_their_windows() {
 }
 
 #[test]
-fn wishes_for_gathering_are_told_and_make_another_report() {
+fn settings_of_gathering_are_reported_and_make_another_report() {
     let place = Place::new();
-    let wishes = "--depth 8 --angle-deg 0.15 --records 10k --photons 1M --schedule per-pass";
-    let output = place.run(&format!("run rod.toml -o a --radius-mm 3 --estimator gather {wishes}"));
+    let options = "--depth 8 --angle-deg 0.15 --records 10k --photons 1M --schedule per-pass";
+    let output =
+        place.run(&format!("run rod.toml -o a --radius-mm 3 --estimator gather {options}"));
     assert_eq!(code(&output), 0);
     assert!(errors(&output).contains("`--radius-mm`: 3 mm is larger"), "{}", errors(&output));
     let told =
@@ -291,8 +292,8 @@ fn wishes_for_gathering_are_told_and_make_another_report() {
     assert_eq!(place.summary("a")["run"]["gather"], told);
     assert!(fs::read_to_string(place.path("a/report.md")).unwrap().contains(told));
     let other =
-        place.bad(2, &format!("run rod.toml -o a --radius-mm 2 --estimator gather {wishes}"));
-    assert!(other.contains("other wishes"), "{other}");
+        place.bad(2, &format!("run rod.toml -o a --radius-mm 2 --estimator gather {options}"));
+    assert!(other.contains("other settings"), "{other}");
 
     let idle = place.run("run rod.toml -o b --estimator forward --depth 8 --records 10k");
     let said = errors(&idle);

@@ -1,7 +1,7 @@
 //! Outlines of the elements of patterns.
 
 use lumiduct_core::scene::FaceFacets;
-use lumiduct_core::scene::pattern::Outline;
+use lumiduct_core::scene::pattern::ElementOutline;
 use lumiduct_input::{Settings, load};
 
 /// A plate with dots, and a rod with a row of them along its round wall, over the seam of its coordinates.
@@ -59,7 +59,7 @@ fn corners_of_elements_lie_on_their_face_as_far_from_the_middle_as_the_element_r
                     from.x -= period * (from.x / period).round();
                 }
                 let reach = match pattern.field.outline {
-                    Outline::Circle { .. } => from.length() / half.x,
+                    ElementOutline::Circle { .. } => from.length() / half.x,
                     _ => (from / half).abs().max_element(),
                 };
                 assert!((reach - 1.0).abs() < 1e-9, "{}: {reach}", pattern.name);

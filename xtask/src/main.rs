@@ -5,7 +5,7 @@
 mod manual;
 mod verify;
 
-use crate::verify::{Share, verify};
+use crate::verify::{ReportShare, verify};
 use clap::Parser;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -38,7 +38,7 @@ fn main() -> io::Result<ExitCode> {
             Ok(ExitCode::SUCCESS)
         }
         Chore::VerifyReports { tenth, program } => {
-            let share = if tenth { Share::Tenth } else { Share::All };
+            let share = if tenth { ReportShare::Tenth } else { ReportShare::All };
             let is_same = verify(share, program)?;
             Ok(if is_same { ExitCode::SUCCESS } else { ExitCode::FAILURE })
         }

@@ -12,7 +12,7 @@ const BESIDE: [&str; 2] = ["timing.csv", "designs"];
 
 /// Which reports to verify.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Share {
+pub(crate) enum ReportShare {
     /// All of them.
     All,
     /// One in ten; the number of commits says which.
@@ -20,7 +20,7 @@ pub(crate) enum Share {
 }
 
 /// A scene or a study with the folder of its report, from the root of the repository.
-struct Job {
+struct VerifiedReport {
     file: PathBuf,
     command: &'static str,
     report: PathBuf,
@@ -28,7 +28,7 @@ struct Job {
 
 /// Runs scenes and studies and prints what differs; returns whether nothing does. Without a program
 /// it builds one.
-pub(crate) fn verify(share: Share, program: Option<PathBuf>) -> io::Result<bool> {
+pub(crate) fn verify(share: ReportShare, program: Option<PathBuf>) -> io::Result<bool> {
     let program = match program {
         Some(program) => program.canonicalize()?,
         None => build()?,
@@ -36,8 +36,8 @@ pub(crate) fn verify(share: Share, program: Option<PathBuf>) -> io::Result<bool>
     let mut jobs = jobs("scenes", "run", "reports")?;
     jobs.extend(self::jobs("scenes/studies", "batch", "reports/studies")?);
     let (step, first) = match share {
-        Share::All => (1, 0),
-        Share::Tenth => (10, commits()? % 10),
+        ReportShare::All => (1, 0),
+        ReportShare::Tenth => (10, commits()? % 10),
     };
     let mut is_same = true;
     for job in jobs.iter().skip(first).step_by(step) {
@@ -49,14 +49,14 @@ pub(crate) fn verify(share: Share, program: Option<PathBuf>) -> io::Result<bool>
     Ok(is_same)
 }
 
-fn jobs(folder: &str, command: &'static str, reports: &str) -> io::Result<Vec<Job>> {
+fn jobs(folder: &str, command: &'static str, reports: &str) -> io::Result<Vec<VerifiedReport>> {
     let mut jobs = Vec::new();
     for entry in fs::read_dir(root().join(folder))? {
         let file = entry?.path();
         if let (Some(name), Some("toml")) =
             (file.file_stem(), file.extension().and_then(|extension| extension.to_str()))
         {
-            jobs.push(Job { report: Path::new(reports).join(name), file, command });
+            jobs.push(VerifiedReport { report: Path::new(reports).join(name), file, command });
         }
     }
     jobs.sort_by(|one, other| one.file.cmp(&other.file));
@@ -64,7 +64,7 @@ fn jobs(folder: &str, command: &'static str, reports: &str) -> io::Result<Vec<Jo
 }
 
 /// Files that differ between the committed report and a new one.
-fn differences(program: &Path, job: &Job) -> io::Result<Vec<String>> {
+fn differences(program: &Path, job: &VerifiedReport) -> io::Result<Vec<String>> {
     let folder = tempfile::tempdir()?;
     let anew = folder.path().join("report");
     let output = Command::new(program)

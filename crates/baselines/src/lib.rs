@@ -22,7 +22,7 @@ use whitted::Whitted;
 
 pub use sppm::sppm_area_ratio;
 
-use crate::one_sensor::{Batch, OneSensor};
+use crate::one_sensor::{BaselineBatch, OneSensor};
 
 /// A method to compare with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -86,7 +86,7 @@ impl<'s> BaselineRun<'s> {
 
     /// Traces until `batches` batches are done.
     pub fn trace_until(&mut self, batches: u64) {
-        let traced: Vec<Batch> =
+        let traced: Vec<BaselineBatch> =
             (self.batches..batches).into_par_iter().map(|batch| self.work.batch(batch)).collect();
         for batch in traced {
             self.sums.push(batch.readings);
@@ -108,11 +108,13 @@ impl<'s> BaselineRun<'s> {
 }
 
 impl Work<'_> {
-    fn batch(&self, batch: u64) -> Batch {
+    fn batch(&self, batch: u64) -> BaselineBatch {
         match self {
-            Self::Sppm(sppm) => Batch { readings: sppm.pass(batch), cut: 0.0 },
+            Self::Sppm(sppm) => BaselineBatch { readings: sppm.pass(batch), cut: 0.0 },
             Self::Whitted(whitted) => whitted.batch(batch),
-            Self::Metropolis(metropolis) => Batch { readings: metropolis.chain(batch), cut: 0.0 },
+            Self::Metropolis(metropolis) => {
+                BaselineBatch { readings: metropolis.chain(batch), cut: 0.0 }
+            }
         }
     }
 }

@@ -43,7 +43,7 @@ impl<'s> Metropolis<'s> {
         let mut primary = Primary::new(own);
         let mut chain = Chain {
             metropolis: self,
-            state: Seen::default(),
+            state: SeenLight::default(),
             fresh_flux: 0.0,
             fresh_paths: 0,
             weight: 0.0,
@@ -66,7 +66,7 @@ impl<'s> Metropolis<'s> {
 
 /// The light that a path has collected.
 #[derive(Debug, Default)]
-struct Seen {
+struct SeenLight {
     cells: SmallVec<[usize; 1]>,
     lights: SmallVec<[Counted; 2]>,
     /// All of it, I, lm or W.
@@ -76,7 +76,7 @@ struct Seen {
 
 struct Chain<'a, 's> {
     metropolis: &'a Metropolis<'s>,
-    state: Seen,
+    state: SeenLight,
     /// Sum of I over independent paths.
     fresh_flux: f64,
     fresh_paths: u64,
@@ -108,7 +108,7 @@ impl Chain<'_, '_> {
         self.go_on(primary, proposal, acceptance);
     }
 
-    fn propose(&mut self, primary: &mut Primary, mutation: Mutation) -> Seen {
+    fn propose(&mut self, primary: &mut Primary, mutation: Mutation) -> SeenLight {
         primary.propose(mutation);
         let seen = self.metropolis.sensor.look(&mut Sampler::of(primary));
         self.readings.segments += seen.segments;
@@ -119,7 +119,7 @@ impl Chain<'_, '_> {
         seen
     }
 
-    fn go_on(&mut self, primary: &mut Primary, proposal: Seen, acceptance: f64) {
+    fn go_on(&mut self, primary: &mut Primary, proposal: SeenLight, acceptance: f64) {
         if primary.decide() < acceptance {
             self.state = proposal;
         } else {
@@ -127,7 +127,7 @@ impl Chain<'_, '_> {
         }
     }
 
-    fn count(&mut self, seen: &Seen, weight: f64) {
+    fn count(&mut self, seen: &SeenLight, weight: f64) {
         if seen.flux == 0.0 {
             return;
         }
@@ -141,11 +141,11 @@ impl Chain<'_, '_> {
 
 impl OneSensor<'_> {
     /// The light of the gather path that these random numbers generate.
-    fn look(&self, sampler: &mut Sampler<impl Numbers>) -> Seen {
-        let Some(arrival) = self.arrivals.draw(sampler) else { return Seen::default() };
-        let mut looking = Looking { etendue: self.etendue(&arrival), seen: Seen::default() };
+    fn look(&self, sampler: &mut Sampler<impl Numbers>) -> SeenLight {
+        let Some(arrival) = self.arrivals.draw(sampler) else { return SeenLight::default() };
+        let mut looking = Looking { etendue: self.etendue(&arrival), seen: SeenLight::default() };
         let segments = follow(self.gathering(self.bounce_limit), &arrival, sampler, &mut looking);
-        Seen { cells: arrival.cells, segments, ..looking.seen }
+        SeenLight { cells: arrival.cells, segments, ..looking.seen }
     }
 }
 
@@ -153,7 +153,7 @@ impl OneSensor<'_> {
 struct Looking {
     /// Etendue of the path, mm² sr.
     etendue: f64,
-    seen: Seen,
+    seen: SeenLight,
 }
 
 impl Observer for Looking {

@@ -16,7 +16,7 @@ const PILOT_PATHS: u64 = 64;
 const PILOT_STREAM: u64 = 8 << 32;
 
 /// What a batch has counted.
-pub(crate) struct Batch {
+pub(crate) struct BaselineBatch {
     pub(crate) readings: Readings,
     /// Throughput cut off per gather path, 1.
     pub(crate) cut: f64,

@@ -13,12 +13,12 @@ use lumiduct_core::rng::Sampler;
 use lumiduct_core::scene::Visibility;
 use lumiduct_core::transport::forward::Forward;
 use lumiduct_core::transport::gather::contribution::{NestedWindows, PhotonHit, SurfaceHit};
-use lumiduct_core::transport::gather::index::Key;
+use lumiduct_core::transport::gather::index::PhotonKey;
 use lumiduct_core::transport::gather::records::{
     GatherRecord, RecordKind, RecordPath, Records, SurfaceRecord,
 };
 use lumiduct_core::transport::gather::settings::settle;
-use lumiduct_core::transport::gather::surfaces::Surfaces;
+use lumiduct_core::transport::gather::surfaces::SurfaceNumbers;
 use lumiduct_core::transport::stop::{Pace, StopSignal};
 use lumiduct_core::transport::tally::readings::Counted;
 use lumiduct_core::transport::walk::follow::follow;
@@ -44,7 +44,7 @@ const PHOTONS_PER_PATH: u64 = 4;
 #[derive(Debug)]
 pub(super) struct Sppm<'s> {
     sensor: OneSensor<'s>,
-    surfaces: Surfaces,
+    surfaces: SurfaceNumbers,
     forward: Forward<'s>,
     /// Radius of the first pass, mm.
     radius: f64,
@@ -63,7 +63,7 @@ impl<'s> Sppm<'s> {
         let settings = settle(scene, plan, &[sensor.id], pilot, &StopSignal::default());
         let window = settings.expect("nothing stops it").window;
         Self {
-            surfaces: Surfaces::new(scene),
+            surfaces: SurfaceNumbers::new(scene),
             forward: Forward::new(scene, seed, plan.bounce_limit, photons),
             radius: window.radius,
             paths: photons / PHOTONS_PER_PATH,
@@ -77,17 +77,17 @@ impl<'s> Sppm<'s> {
         // The angle is irrelevant: no record has a direction.
         let radius = self.radius * sppm_area_ratio(batch, ALPHA).sqrt();
         let window = Window { radius, theta_max: 0.1 };
-        let mut waiting = Waiting::default();
+        let mut waiting = SppmRecords::default();
         for index in batch * self.paths..(batch + 1) * self.paths {
             self.gather(index, window, &mut waiting, &mut readings);
         }
-        let Waiting { cells, records } = waiting;
+        let SppmRecords { cells, records } = waiting;
         let signal = StopSignal::default();
         let pace = Pace::new(&signal);
         let records =
             Records::new(records, window, &self.surfaces, &pace).expect("nothing stops it");
         let nested = NestedWindows::new(window);
-        let mut stream = Stream {
+        let mut stream = SppmStream {
             sppm: self,
             nested,
             records: &records,
@@ -106,7 +106,7 @@ impl<'s> Sppm<'s> {
         &self,
         index: u64,
         window: Window,
-        waiting: &mut Waiting<'s>,
+        waiting: &mut SppmRecords<'s>,
         readings: &mut Readings,
     ) {
         let sensor = &self.sensor;
@@ -129,7 +129,7 @@ pub fn sppm_area_ratio(pass: u64, alpha: f64) -> f64 {
 
 /// The records of the gather paths of a pass, and the cell of each path.
 #[derive(Default)]
-struct Waiting<'s> {
+struct SppmRecords<'s> {
     cells: Vec<SmallVec<[usize; 1]>>,
     records: Vec<GatherRecord<'s>>,
 }
@@ -141,7 +141,7 @@ struct Gatherer<'a, 's> {
     /// Etendue of the path, its share of the pass, mm² sr.
     etendue: f64,
     cells: &'a [usize],
-    waiting: &'a mut Waiting<'s>,
+    waiting: &'a mut SppmRecords<'s>,
     readings: &'a mut Readings,
 }
 
@@ -208,7 +208,7 @@ impl Gatherer<'_, '_> {
 }
 
 /// Photons traced past the records.
-struct Stream<'p, 's> {
+struct SppmStream<'p, 's> {
     sppm: &'p Sppm<'s>,
     nested: NestedWindows,
     records: &'p Records<'s>,
@@ -218,7 +218,7 @@ struct Stream<'p, 's> {
     readings: &'p mut Readings,
 }
 
-impl Observer for Stream<'_, '_> {
+impl Observer for SppmStream<'_, '_> {
     fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
         match event {
             Event::Start(start) => self.photon = Some(*start),
@@ -238,7 +238,7 @@ impl Observer for Stream<'_, '_> {
     }
 }
 
-impl Stream<'_, '_> {
+impl SppmStream<'_, '_> {
     fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>) {
         let Some(Emergence { flux, source, .. }) = self.photon else { return };
         let Sppm { sensor, surfaces, .. } = self.sppm;
@@ -255,7 +255,7 @@ impl Stream<'_, '_> {
         let photon = SurfaceHit { surface, medium, point: vertex.point, incidence };
         let photon = PhotonHit::Surface(photon);
         let Self { nested, cells, readings, .. } = self;
-        let key = Key { surface, point: vertex.point, dir: vertex.dir };
+        let key = PhotonKey { surface, point: vertex.point, dir: vertex.dir };
         self.records.visit(&[key], |_, record| {
             let Some([share, ..]) = nested.flux(record, &photon) else { return };
             let (flux, depth) =

@@ -5,7 +5,7 @@
 //! falls below a cut-off. What is cut off is reported, not compensated. Finishes that scatter
 //! sample one direction.
 
-use crate::one_sensor::{Batch, OneSensor};
+use crate::one_sensor::{BaselineBatch, OneSensor};
 use lumiduct_core::optics::{FinishModel, Scattered, Side};
 use lumiduct_core::rng::Sampler;
 use lumiduct_core::scene::{On, Ray};
@@ -39,14 +39,14 @@ impl<'s> Whitted<'s> {
     }
 
     /// Traces one batch.
-    pub(super) fn batch(&self, batch: u64) -> Batch {
+    pub(super) fn batch(&self, batch: u64) -> BaselineBatch {
         let mut readings = self.sensor.empty(self.paths, batch);
         let mut cut = 0.0;
         for index in batch * self.paths..(batch + 1) * self.paths {
             cut += self.trace(index, &mut readings);
         }
         readings.close_batch();
-        Batch { readings, cut: cut / self.paths as f64 }
+        BaselineBatch { readings, cut: cut / self.paths as f64 }
     }
 
     /// Traces all branches of a gather path; returns the throughput that was cut off.

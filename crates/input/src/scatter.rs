@@ -4,14 +4,14 @@
 
 use crate::spec::finish::{AbgSpec, GgxSpec, HarveySpec, HazeSheetSpec, HazeSidesSpec};
 use lumiduct_core::optics::{
-    AngleTable, Bsdf, Facets, Haze, HazeBase, HazeLaw, HazeSides, Microfacet,
+    AngleTable, Bsdf, FacetKind, Haze, HazeBase, HazeLaw, HazeSides, Microfacet,
 };
 
 pub(crate) fn ggx(spec: &GgxSpec) -> Bsdf {
     let facets = match (spec.reflectance, spec.metal) {
-        (Some(reflectance), _) => Facets::Mirror { reflectance },
-        (None, Some(metal)) => Facets::Metal { n: metal.n, k: metal.k },
-        (None, None) => Facets::Interface,
+        (Some(reflectance), _) => FacetKind::Mirror { reflectance },
+        (None, Some(metal)) => FacetKind::Metal { n: metal.n, k: metal.k },
+        (None, None) => FacetKind::Interface,
     };
     Bsdf::Microfacet(Microfacet::new(spec.roughness, facets))
 }

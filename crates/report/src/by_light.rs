@@ -12,7 +12,7 @@ pub(crate) const HEAD: &str = "Efficiency is the part of a source's own light th
     of the sensor's light that comes from the source; that of a source meant for another sensor is the crosstalk.";
 
 /// A source or light group at a sensor.
-pub(crate) struct Share<'a> {
+pub(crate) struct LightShare<'a> {
     /// Name of the source or group.
     pub(crate) name: &'a str,
     /// Flux over the emission of the source or group.
@@ -36,7 +36,7 @@ fn names(measures: &Measures) -> Vec<&str> {
 }
 
 /// The contributions of sources and groups to a sensor; empty unless there are several.
-pub(crate) fn shares<'a>(measures: &'a Measures, sensor: &str) -> Vec<Share<'a>> {
+pub(crate) fn shares<'a>(measures: &'a Measures, sensor: &str) -> Vec<LightShare<'a>> {
     let names = names(measures);
     if names.len() < SEVERAL {
         return Vec::new();
@@ -44,22 +44,22 @@ pub(crate) fn shares<'a>(measures: &'a Measures, sensor: &str) -> Vec<Share<'a>>
     let of = |name: &str, what: &str| measures.values.get(&format!("{sensor}.{what}.from.{name}"));
     let share = |name: &'a str| {
         let efficiency = of(name, "efficiency")?;
-        Some(Share { name, efficiency, share: of(name, "share") })
+        Some(LightShare { name, efficiency, share: of(name, "share") })
     };
     names.into_iter().filter_map(share).collect()
 }
 
 /// A matrix with its head: sensors in rows, sources and light groups in columns.
-pub(crate) struct Matrix {
+pub(crate) struct LightMatrix {
     pub(crate) head: Vec<String>,
     pub(crate) rows: Vec<Vec<String>>,
 }
 
 /// Efficiencies of all sources and groups on all sensors, with the shares where meaningful; `None`
 /// unless there are several sources.
-pub(crate) fn matrix(measures: &Measures) -> Option<Matrix> {
+pub(crate) fn matrix(measures: &Measures) -> Option<LightMatrix> {
     let sensors = || measures.sensor_paths.iter().map(|paths| paths.sensor.as_str());
-    let all: Vec<(&str, Vec<Share<'_>>)> =
+    let all: Vec<(&str, Vec<LightShare<'_>>)> =
         sensors().map(|sensor| (sensor, shares(measures, sensor))).collect();
     let (_, first) = all.iter().find(|(_, shares)| !shares.is_empty())?;
     let head = ["sensor", ""].into_iter().chain(first.iter().map(|share| share.name));
@@ -75,7 +75,7 @@ pub(crate) fn matrix(measures: &Measures) -> Option<Matrix> {
             shares.iter().map(|share| share.share.map(quantity)).collect();
         rows.extend(own.map(|cells| row("share", cells)));
     }
-    Some(Matrix { head, rows })
+    Some(LightMatrix { head, rows })
 }
 
 /// "sum over 2 weathers", where the sources never shine all together.

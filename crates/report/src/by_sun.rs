@@ -4,7 +4,9 @@
 //! enters it. Skies of the scene are listed with the suns.
 
 use crate::csv::table;
-use crate::png::{ErrorForm, LinePlot, Look, Scale, Series, SeriesForm, SeriesPoint, line_plot};
+use crate::png::{
+    AxisScale, ErrorForm, LinePlot, Look, PlotSeries, SeriesForm, SeriesPoint, line_plot,
+};
 use crate::words::quantity;
 use crate::{OutputFile, Report};
 use lumiduct_base::error::Result;
@@ -14,7 +16,7 @@ use lumiduct_core::measure::Measure;
 const SEVERAL: usize = 2;
 
 /// A sun or another source.
-struct Line<'a> {
+struct SunLine<'a> {
     source: &'a str,
     /// Elevation of a sun, deg.
     elevation: Option<f64>,
@@ -23,22 +25,22 @@ struct Line<'a> {
 
 /// Suns from the zenith down, then all other sources; empty unless there are several suns and an
 /// entry port.
-fn lines<'a>(report: &'a Report, sensor: &str) -> Vec<Line<'a>> {
+fn lines<'a>(report: &'a Report, sensor: &str) -> Vec<SunLine<'a>> {
     let measures = &report.measures;
     let prefix = format!("{sensor}.transmission.from.");
-    let mut lines: Vec<Line<'a>> = measures
+    let mut lines: Vec<SunLine<'a>> = measures
         .values
         .iter()
         .filter_map(|(name, transmission)| {
             let source = name.strip_prefix(&prefix)?;
             let elevation = measures.sun_elevations_deg.get(source).copied();
-            Some(Line { source, elevation, transmission })
+            Some(SunLine { source, elevation, transmission })
         })
         .collect();
     if lines.iter().filter(|line| line.elevation.is_some()).count() < SEVERAL {
         return Vec::new();
     }
-    let from_zenith = |line: &Line<'_>| -line.elevation.unwrap_or(f64::NEG_INFINITY);
+    let from_zenith = |line: &SunLine<'_>| -line.elevation.unwrap_or(f64::NEG_INFINITY);
     lines.sort_by(|a, b| from_zenith(a).total_cmp(&from_zenith(b)));
     lines
 }
@@ -71,7 +73,7 @@ pub(crate) struct BySun {
 /// The transmission of a sensor; `None` unless there are several suns.
 pub(crate) fn by_sun(report: &Report, sensor: &str) -> Option<BySun> {
     let lines = lines(report, sensor);
-    let row = |Line { source, elevation, transmission }: &Line<'_>| {
+    let row = |SunLine { source, elevation, transmission }: &SunLine<'_>| {
         let elevation = elevation.map_or(String::new(), |degrees| format!("{degrees:.2}°"));
         [(*source).to_owned(), elevation, quantity(transmission)]
     };
@@ -79,8 +81,8 @@ pub(crate) fn by_sun(report: &Report, sensor: &str) -> Option<BySun> {
         .then(|| BySun { rows: lines.iter().map(row).collect(), plot: plot(sensor, &lines) })
 }
 
-fn numbers(sensor: &str, lines: &[Line<'_>]) -> Result<OutputFile> {
-    let rows = lines.iter().map(|Line { source, elevation, transmission }| {
+fn numbers(sensor: &str, lines: &[SunLine<'_>]) -> Result<OutputFile> {
+    let rows = lines.iter().map(|SunLine { source, elevation, transmission }| {
         let elevation = elevation.map_or(String::new(), |degrees| degrees.to_string());
         let [value, error] = [transmission.value, transmission.std_error].map(|x| x.to_string());
         vec![(*source).to_owned(), elevation, value, error]
@@ -90,8 +92,8 @@ fn numbers(sensor: &str, lines: &[Line<'_>]) -> Result<OutputFile> {
 }
 
 /// Suns as dots with error bars on a line, all other sources as a horizontal dashed line.
-fn plot(sensor: &str, lines: &[Line<'_>]) -> LinePlot {
-    let point = |x: f64, line: &Line<'_>| SeriesPoint {
+fn plot(sensor: &str, lines: &[SunLine<'_>]) -> LinePlot {
+    let point = |x: f64, line: &SunLine<'_>| SeriesPoint {
         x,
         y: line.transmission.value,
         std_error: line.transmission.std_error,
@@ -104,8 +106,8 @@ fn plot(sensor: &str, lines: &[Line<'_>]) -> LinePlot {
         elevations().fold(f64::NEG_INFINITY, f64::max),
     ];
     let others = lines.iter().filter(|line| line.elevation.is_none()).enumerate();
-    let others: Vec<Series> = others
-        .map(|(place, line)| Series {
+    let others: Vec<PlotSeries> = others
+        .map(|(place, line)| PlotSeries {
             name: line.source.to_owned(),
             points: ends.map(|end| point(end, line)).to_vec(),
             form: SeriesForm::Line,
@@ -113,21 +115,21 @@ fn plot(sensor: &str, lines: &[Line<'_>]) -> LinePlot {
             look: Look::Dashed(place + 1),
         })
         .collect();
-    let curve = Series {
+    let curve = PlotSeries {
         name: "suns".into(),
         points: suns.clone(),
         form: SeriesForm::Line,
         errors: ErrorForm::Bars,
         look: Look::Solid(0),
     };
-    let dots = Series { name: String::new(), form: SeriesForm::Dots, ..curve.clone() };
+    let dots = PlotSeries { name: String::new(), form: SeriesForm::Dots, ..curve.clone() };
     LinePlot {
         title: format!("{sensor}: transmission by the elevation of the sun"),
         subtitle: "flux that leaves over flux that enters (CIE 173), with standard errors".into(),
         x_label: "elevation of the sun in deg".into(),
         y_label: "transmission".into(),
-        x_scale: Scale::Linear,
-        y_scale: Scale::Linear,
+        x_scale: AxisScale::Linear,
+        y_scale: AxisScale::Linear,
         series: [curve, dots].into_iter().chain(others).collect(),
     }
 }

@@ -6,7 +6,9 @@
 
 use crate::OutputFile;
 use crate::csv::table;
-use crate::png::{ErrorForm, LinePlot, Look, Scale, Series, SeriesForm, SeriesPoint, line_plot};
+use crate::png::{
+    AxisScale, ErrorForm, LinePlot, Look, PlotSeries, SeriesForm, SeriesPoint, line_plot,
+};
 use lumiduct_base::error::Result;
 use lumiduct_base::number::{format_percent, format_value, format_with_error};
 use lumiduct_base::text::markdown_page;
@@ -53,14 +55,14 @@ pub struct Contestant {
     /// Its name.
     pub name: String,
     /// For each run its sample at each checkpoint, `None` where it had no value yet.
-    pub runs: Vec<Vec<Option<Sample>>>,
+    pub runs: Vec<Vec<Option<CheckpointSample>>>,
     /// Share of the throughput of its gather paths that it cut off, 1.
     pub cut: f64,
 }
 
 /// The state of a run at a checkpoint.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sample {
+pub struct CheckpointSample {
     /// Time spent, s.
     pub seconds: f64,
     /// Segments traced: the work, independent of any clock.
@@ -72,7 +74,7 @@ pub struct Sample {
 /// The errors of an estimator at a checkpoint, over its runs. In the unit of the measure, except
 /// time and work.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Row {
+pub struct ErrorRow {
     /// Mean time of a run, s.
     pub seconds: f64,
     /// Mean number of segments.
@@ -91,7 +93,7 @@ pub struct Row {
     pub total_error: f64,
 }
 
-impl Row {
+impl ErrorRow {
     /// Whether the bias is more than noise: beyond two of its standard errors.
     pub fn is_biased(&self) -> bool {
         self.bias.abs() > 2.0 * self.bias_std_error
@@ -99,19 +101,19 @@ impl Row {
 }
 
 /// The errors of an estimator at all checkpoints that every run has reached.
-pub fn rows(contestant: &Contestant, truth: &Truth) -> Vec<Row> {
+pub fn rows(contestant: &Contestant, truth: &Truth) -> Vec<ErrorRow> {
     let checkpoints = contestant.runs.iter().map(Vec::len).min().unwrap_or(0);
-    let at = |place: usize| -> Option<Vec<Sample>> {
+    let at = |place: usize| -> Option<Vec<CheckpointSample>> {
         contestant.runs.iter().map(|run| run[place]).collect()
     };
     (0..checkpoints).filter_map(at).map(|samples| row(&samples, truth)).collect()
 }
 
-fn row(samples: &[Sample], truth: &Truth) -> Row {
-    let mean = |of: fn(&Sample) -> f64| Tally::of(samples.iter().map(of)).mean();
+fn row(samples: &[CheckpointSample], truth: &Truth) -> ErrorRow {
+    let mean = |of: fn(&CheckpointSample) -> f64| Tally::of(samples.iter().map(of)).mean();
     let values = Tally::of(samples.iter().map(|sample| sample.value));
     let squares = samples.iter().map(|sample| (sample.value - truth.value).powi(2));
-    Row {
+    ErrorRow {
         seconds: mean(|sample| sample.seconds),
         segments: mean(|sample| sample.segments as f64),
         value: values.mean(),
@@ -204,7 +206,7 @@ pub fn comparison_table(comparison: &Comparison) -> String {
          |---|--:|--:|--:|--:|--:|--:|--:|\n"
     );
     let last = |contestant: &Contestant| rows(contestant, truth).pop();
-    let cost = |row: &Row| row.total_error.powi(2) * row.seconds;
+    let cost = |row: &ErrorRow| row.total_error.powi(2) * row.seconds;
     let costs = contestants.iter().filter_map(last).map(|row| cost(&row));
     let least = costs.fold(f64::INFINITY, f64::min);
     for contestant in contestants {
@@ -237,7 +239,7 @@ fn picture(comparison: &Comparison) -> Result<Vec<u8>> {
         for row in &rows {
             (earliest, latest) = (earliest.min(row.seconds), latest.max(row.seconds));
         }
-        let curve = |name: &str, form, look, error: fn(&Row) -> f64| Series {
+        let curve = |name: &str, form, look, error: fn(&ErrorRow) -> f64| PlotSeries {
             name: name.to_owned(),
             points: rows
                 .iter()
@@ -247,7 +249,7 @@ fn picture(comparison: &Comparison) -> Result<Vec<u8>> {
             errors: ErrorForm::Hidden,
             look,
         };
-        let bias = |row: &Row| if row.is_biased() { row.bias.abs() } else { f64::NAN };
+        let bias = |row: &ErrorRow| if row.is_biased() { row.bias.abs() } else { f64::NAN };
         let (solid, dashed) = (Look::Solid(number), Look::Dashed(number));
         series.push(curve(&contestant.name, SeriesForm::Line, solid, |row| row.total_error));
         series.push(curve("", SeriesForm::Dots, solid, |row| row.total_error));
@@ -255,7 +257,7 @@ fn picture(comparison: &Comparison) -> Result<Vec<u8>> {
     }
     if truth.std_error > 0.0 && earliest < latest {
         let error = truth.std_error / truth.value.abs();
-        series.push(Series {
+        series.push(PlotSeries {
             name: "error of the truth".into(),
             points: [earliest, latest].map(|seconds| point(seconds, error)).into(),
             form: SeriesForm::Line,
@@ -271,8 +273,8 @@ fn picture(comparison: &Comparison) -> Result<Vec<u8>> {
         ),
         x_label: "time of a run in s".into(),
         y_label: "error over the truth".into(),
-        x_scale: Scale::Log,
-        y_scale: Scale::Log,
+        x_scale: AxisScale::Log,
+        y_scale: AxisScale::Log,
         series,
     })
 }
@@ -285,8 +287,8 @@ fn point(x: f64, y: f64) -> SeriesPoint {
 mod tests {
     use super::*;
 
-    fn sample(seconds: f64, value: f64) -> Option<Sample> {
-        Some(Sample { seconds, segments: (1e6 * seconds) as u64, value })
+    fn sample(seconds: f64, value: f64) -> Option<CheckpointSample> {
+        Some(CheckpointSample { seconds, segments: (1e6 * seconds) as u64, value })
     }
 
     fn comparison() -> Comparison {

@@ -3,11 +3,11 @@
 //! In the order of a reader's interest: the verdict, the requested numbers, pictures and readings
 //! of each sensor, what was simulated, where the light went, and how it was computed.
 
-use crate::by_light::{self, Matrix, matrix, remark_on_totals, sum_over_weathers};
+use crate::by_light::{self, LightMatrix, matrix, remark_on_totals, sum_over_weathers};
 use crate::csv::{map_name, map_words};
 use crate::figures::{BOUNCES_SHOWN, bounce_plot, intensity_plot, where_and_when};
 use crate::html::data;
-use crate::html::frame::{Block, Part, Plots, Standing, table};
+use crate::html::frame::{Block, PagePart, Plots, Standing, table};
 use crate::key_figures::{Listed, is_one_cell, is_shown, key_figures, listed};
 use crate::words::{
     CHOICES_HEAD, CLASSES_HEAD, ERRORS, NO_LINES, balance_lines, choice_row, class_rows, entry,
@@ -16,17 +16,17 @@ use crate::words::{
 };
 use crate::{Report, by_sun, record};
 use lumiduct_base::number::format_value;
-use lumiduct_core::measure::{Measure, Outcome, SensorMap, SensorPaths, Status};
+use lumiduct_core::measure::{CheckOutcome, Measure, SensorMap, SensorPaths, Status};
 use lumiduct_core::plan::Estimator;
-use lumiduct_core::transport::Entry;
+use lumiduct_core::transport::AccountEntry;
 
 /// Share of the flux that the logarithmic histogram of bounces shows, which reveals more of the
 /// tail.
 const BOUNCES_BY_DECADES: f64 = 0.9999;
 
 /// All parts in order; their plots are added to `plots`.
-pub(crate) fn parts(report: &Report, plots: &mut Plots) -> Vec<Part> {
-    let mut parts: Vec<Part> = checks(report).into_iter().collect();
+pub(crate) fn parts(report: &Report, plots: &mut Plots) -> Vec<PagePart> {
+    let mut parts: Vec<PagePart> = checks(report).into_iter().collect();
     parts.push(results(report));
     let sensors = &report.measures.sensor_paths;
     parts.extend(sensors.iter().map(|paths| sensor(report, &paths.sensor, plots)));
@@ -39,7 +39,8 @@ pub(crate) fn parts(report: &Report, plots: &mut Plots) -> Vec<Part> {
 /// The outcome of the checks.
 pub(crate) fn verdict(report: &Report) -> (Standing, String) {
     let count = report.checks.len();
-    let missed = report.checks.iter().filter(|one| one.verdict.outcome != Outcome::Passed).count();
+    let missed =
+        report.checks.iter().filter(|one| one.verdict.outcome != CheckOutcome::Passed).count();
     let mut words = match (count, missed) {
         (0, _) => "No checks".to_owned(),
         (1, 0) => "The check passed".to_owned(),
@@ -54,15 +55,15 @@ pub(crate) fn verdict(report: &Report) -> (Standing, String) {
     }
     let standing = match report.outcome() {
         _ if report.run.partial => Standing::Bad,
-        record::Outcome::Missed => Standing::Bad,
-        record::Outcome::Good if count == 0 => Standing::Open,
-        record::Outcome::Good => Standing::Good,
+        record::RunOutcome::Missed => Standing::Bad,
+        record::RunOutcome::Good if count == 0 => Standing::Open,
+        record::RunOutcome::Good => Standing::Good,
     };
     (standing, words)
 }
 
 /// Checks and remarks; `None` without either.
-fn checks(report: &Report) -> Option<Part> {
+fn checks(report: &Report) -> Option<PagePart> {
     let mut blocks = Vec::new();
     if !report.checks.is_empty() {
         let row = |result: &record::CheckResult| {
@@ -78,11 +79,11 @@ fn checks(report: &Report) -> Option<Part> {
         blocks.push(Block::List { items: report.warnings.clone() });
     }
     let title = if report.checks.is_empty() { "Remarks" } else { "Checks" };
-    (!blocks.is_empty()).then(|| Part { title: title.into(), blocks })
+    (!blocks.is_empty()).then(|| PagePart { title: title.into(), blocks })
 }
 
 /// The requested numbers: the measure of the target, and the key figures of every sensor.
-fn results(report: &Report) -> Part {
+fn results(report: &Report) -> PagePart {
     let measures = &report.measures;
     let mut blocks = Vec::new();
     if let Some(target) = &report.run.target {
@@ -103,16 +104,16 @@ fn results(report: &Report) -> Part {
     let sum = sum.map_or(String::new(), |words| format!(", {words}"));
     blocks.push(table(&["sensor", "", &format!("value ± standard error{sum}")], rows));
     blocks.push(Block::Words { text: ERRORS.into() });
-    if let Some(Matrix { head, rows }) = matrix(measures) {
+    if let Some(LightMatrix { head, rows }) = matrix(measures) {
         blocks.push(Block::Heading { text: "By source".into() });
         blocks.push(Block::Words { text: by_light::HEAD.into() });
         blocks.push(Block::Table { head, rows, folded: None });
     }
-    Part { title: "Results".into(), blocks }
+    PagePart { title: "Results".into(), blocks }
 }
 
 /// Pictures and readings of a sensor.
-fn sensor(report: &Report, name: &str, plots: &mut Plots) -> Part {
+fn sensor(report: &Report, name: &str, plots: &mut Plots) -> PagePart {
     let measures = &report.measures;
     let mut blocks = Vec::new();
     let maps = measures.maps.iter().filter(|map| map.sensor == name);
@@ -147,7 +148,7 @@ fn sensor(report: &Report, name: &str, plots: &mut Plots) -> Part {
         let what = format!("{} single cells and rings", cells.len());
         blocks.push(folded(measures_table(cells), what));
     }
-    Part { title: format!("Sensor {name}"), blocks }
+    PagePart { title: format!("Sensor {name}"), blocks }
 }
 
 fn evenness(map: &SensorMap) -> Vec<Block> {
@@ -221,7 +222,7 @@ fn trimmed(head: &[&str], rows: Vec<Vec<String>>) -> Block {
     Block::Table { head, rows: rows.iter().map(pick).collect(), folded: None }
 }
 
-fn scene(report: &Report, plots: &mut Plots) -> Part {
+fn scene(report: &Report, plots: &mut Plots) -> PagePart {
     let drawing = &report.drawing;
     let label = format!("the scene with {} paths by where they end", drawing.paths.len());
     let mut blocks = vec![plots.add(label, data::scene(drawing), None)];
@@ -244,10 +245,10 @@ fn scene(report: &Report, plots: &mut Plots) -> Part {
         blocks.push(Block::Table { head, rows: list.rows.clone(), folded: None });
         blocks.extend(list.left_out().map(|text| Block::Words { text }));
     }
-    Part { title: "Scene".into(), blocks }
+    PagePart { title: "Scene".into(), blocks }
 }
 
-fn balance(report: &Report, plots: &mut Plots) -> Part {
+fn balance(report: &Report, plots: &mut Plots) -> PagePart {
     let measures = &report.measures;
     let flow = data::flow(&measures.balance, measures.source_flux, measures.unit.flux());
     let lines = balance_lines(report);
@@ -272,11 +273,11 @@ fn balance(report: &Report, plots: &mut Plots) -> Part {
         blocks.push(Block::Table { head, rows: rest, folded });
     }
     blocks.push(Block::Words { text: NO_LINES.into() });
-    Part { title: "Flux balance".into(), blocks }
+    PagePart { title: "Flux balance".into(), blocks }
 }
 
 /// How the light reached the sensors, how it was estimated, and how to repeat the run.
-fn computation(report: &Report, plots: &mut Plots) -> Part {
+fn computation(report: &Report, plots: &mut Plots) -> PagePart {
     let measures = &report.measures;
     let mut blocks = Vec::new();
     for paths in &measures.sensor_paths {
@@ -287,7 +288,7 @@ fn computation(report: &Report, plots: &mut Plots) -> Part {
     blocks.extend(estimators(report));
     blocks.push(Block::Heading { text: "Run".into() });
     blocks.push(Block::List { items: run_lines(report) });
-    Part { title: "Computation".into(), blocks }
+    PagePart { title: "Computation".into(), blocks }
 }
 
 /// How the light reached a sensor.
@@ -333,7 +334,7 @@ fn estimators(report: &Report) -> Vec<Block> {
         blocks.push(Block::Heading { text: format!("Sensor {}, by {name}", account.sensor) });
         let sentences = account.sentences.iter().cloned();
         blocks.extend(sentences.map(|text| Block::Words { text }));
-        let row = |row: &Vec<Entry>| row.iter().map(entry).collect();
+        let row = |row: &Vec<AccountEntry>| row.iter().map(entry).collect();
         blocks.push(table(&account.columns, account.rows.iter().map(row).collect()));
     }
     for paths in &measures.sensor_paths {

@@ -6,7 +6,7 @@ use csv::Writer;
 use lumiduct_base::error::{Error, Result};
 use lumiduct_base::number::format_value;
 use lumiduct_base::text::spreadsheet_cell;
-use lumiduct_core::measure::{Axes, IntensityTable, SensorMap};
+use lumiduct_core::measure::{IntensityTable, MapAxes, SensorMap};
 
 /// All tables of a report except those for spreadsheets.
 pub(crate) fn files(report: &Report) -> Result<Vec<OutputFile>> {
@@ -55,9 +55,9 @@ fn map_table(map: &SensorMap) -> Result<OutputFile> {
     let name = format!("{}.csv", map_name(map));
     let middle = |edges: &[f64], index: usize| 0.5 * (edges[index] + edges[index + 1]);
     let (header, rows, columns) = match &map.axes {
-        Axes::Cartesian { u_mm, v_mm } => (["u_mm", "v_mm"], v_mm, u_mm),
-        Axes::Angular { u_deg, v_deg } => (["u_deg", "v_deg"], v_deg, u_deg),
-        Axes::Polar { radius_mm, sector_deg } => {
+        MapAxes::Cartesian { u_mm, v_mm } => (["u_mm", "v_mm"], v_mm, u_mm),
+        MapAxes::Angular { u_deg, v_deg } => (["u_deg", "v_deg"], v_deg, u_deg),
+        MapAxes::Polar { radius_mm, sector_deg } => {
             (["sector_deg", "radius_mm"], radius_mm, sector_deg)
         }
     };

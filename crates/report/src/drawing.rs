@@ -7,7 +7,8 @@ use crate::upright::is_lit_from_above;
 use glam::DVec3;
 use lumiduct_base::math::Aabb;
 use lumiduct_core::scene::{
-    Emitter, FaceFacets, FaceId, Facets, Fineness, Owner, Scene, SensorKind, SourceId, shape_facets,
+    Emitter, FaceFacets, FaceId, Fineness, Owner, Scene, SensorKind, SourceId, Triangulation,
+    shape_facets,
 };
 use lumiduct_core::transport::{Track, TrackEnd};
 use serde::Serialize;
@@ -30,7 +31,7 @@ const REACH: f64 = 1.25;
 
 /// Everything drawn of a scene.
 #[derive(Debug, Clone)]
-pub struct Drawing {
+pub struct SceneDrawing {
     /// Middle of all faces, mm.
     pub middle: DVec3,
     /// Radius of a ball around all faces, mm.
@@ -38,7 +39,7 @@ pub struct Drawing {
     /// Faces, and the surfaces of sources.
     pub faces: Vec<DrawnFace>,
     /// Names and their places.
-    pub marks: Vec<Mark>,
+    pub marks: Vec<NameMark>,
     /// Paths of light.
     pub paths: Vec<DrawnPath>,
     /// Whether +z is up, as light comes from above.
@@ -55,7 +56,7 @@ pub struct DrawnFace {
     /// What it is.
     pub role: Role,
     /// Its triangles, mm.
-    pub facets: Facets,
+    pub facets: Triangulation,
 }
 
 /// The kind of a drawn thing.
@@ -78,7 +79,7 @@ pub enum Role {
 
 /// A name at a place.
 #[derive(Debug, Clone)]
-pub struct Mark {
+pub struct NameMark {
     /// The name.
     pub name: String,
     /// Kind of the named thing.
@@ -113,7 +114,7 @@ pub enum Fate {
 }
 
 /// A scene with some paths, ready to be drawn.
-pub fn drawing(scene: &Scene, tracks: &[Track]) -> Drawing {
+pub fn drawing(scene: &Scene, tracks: &[Track]) -> SceneDrawing {
     let size = solid_bounds(scene).diagonal();
     let fineness =
         Fineness { deviation: DEVIATION * size, mesh_cell: MESH_CELL * size, patches: PATCHES };
@@ -134,7 +135,7 @@ pub fn drawing(scene: &Scene, tracks: &[Track]) -> Drawing {
     }
     let marks = marks(scene, &faces, &paths);
     faces.retain(|face| !face.facets.points.is_empty());
-    let mut drawing = Drawing {
+    let mut drawing = SceneDrawing {
         middle,
         radius,
         faces,
@@ -147,7 +148,7 @@ pub fn drawing(scene: &Scene, tracks: &[Track]) -> Drawing {
     drawing
 }
 
-impl Drawing {
+impl SceneDrawing {
     fn shift(&mut self, by: DVec3) {
         self.middle += by;
         let faces = self.faces.iter_mut().flat_map(|face| face.facets.points.iter_mut());
@@ -182,7 +183,7 @@ fn faces(scene: &Scene, fineness: &Fineness, remarks: &mut Vec<String>) -> Vec<D
         let found = if place % one_in == 0 {
             scene.face_facets(id, fineness)
         } else {
-            FaceFacets { facets: Facets::default(), one_in: 1 }
+            FaceFacets { facets: Triangulation::default(), one_in: 1 }
         };
         if found.one_in > 1 {
             remarks.push(format!("of `{}` one piece in {} is drawn", face.name, found.one_in));
@@ -230,7 +231,7 @@ fn sources(scene: &Scene, deviation: f64) -> Vec<DrawnFace> {
     let mut faces = Vec::new();
     let one_in = scene.sources.len().div_ceil(FACES).max(1);
     for source in scene.sources.iter().step_by(one_in) {
-        let mut facets = Facets::default();
+        let mut facets = Triangulation::default();
         match &source.emitter {
             Emitter::Surface { shapes, .. } => {
                 shapes.iter().for_each(|(shape, _)| facets.append(shape_facets(shape, deviation)));
@@ -258,21 +259,21 @@ fn small_sources(scene: &Scene) -> impl Iterator<Item = DVec3> {
     })
 }
 
-fn marks(scene: &Scene, faces: &[DrawnFace], paths: &[(SourceId, DrawnPath)]) -> Vec<Mark> {
+fn marks(scene: &Scene, faces: &[DrawnFace], paths: &[(SourceId, DrawnPath)]) -> Vec<NameMark> {
     let mut marks = Vec::new();
     for (index, source) in scene.sources.iter().enumerate() {
         let drawn = faces.iter().find(|face| face.role == Role::Source && face.name == source.name);
         let starts =
             paths.iter().filter(|(from, _)| from.index() == index).map(|(_, path)| path.points[0]);
-        let starts = Facets { points: starts.collect(), ..Facets::default() };
+        let starts = Triangulation { points: starts.collect(), ..Triangulation::default() };
         let at = drawn.and_then(|face| face.facets.middle()).or_else(|| starts.middle());
         let name = source.name.clone();
-        marks.extend(at.map(|at| Mark { name, role: Role::Source, at }));
+        marks.extend(at.map(|at| NameMark { name, role: Role::Source, at }));
     }
     for sensor in &scene.sensors {
         let at = match &sensor.kind {
             SensorKind::Surface(surface) => {
-                let mut all = Facets::default();
+                let mut all = Triangulation::default();
                 surface.faces.iter().for_each(|id| {
                     all.points.extend(&faces[id.index()].facets.points);
                 });
@@ -284,7 +285,7 @@ fn marks(scene: &Scene, faces: &[DrawnFace], paths: &[(SourceId, DrawnPath)]) ->
             SensorKind::Surface(_) => sensor.name.clone(),
             SensorKind::Goniometer(_) => format!("{} (all around)", sensor.name),
         };
-        marks.extend(at.map(|at| Mark { name, role: Role::Sensor, at }));
+        marks.extend(at.map(|at| NameMark { name, role: Role::Sensor, at }));
     }
     marks
 }

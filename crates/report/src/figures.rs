@@ -4,14 +4,15 @@ use crate::by_light::sum_over_weathers;
 use crate::csv::{map_name, map_words};
 use crate::key_figures::is_one_cell;
 use crate::png::{
-    Bar, BarChart, ColourMap, Curve, ErrorForm, HeatMap, LinePlot, Look, PolarPlot, Pole, Scale,
-    Series, SeriesForm, SeriesPoint, bar_chart, heat_map, line_plot, polar_plot,
+    AxisScale, Bar, BarChart, ColourMap, ErrorForm, HeatMap, LinePlot, Look, PlotSeries,
+    PolarCurve, PolarPlot, Pole, SeriesForm, SeriesPoint, bar_chart, heat_map, line_plot,
+    polar_plot,
 };
 use crate::{OutputFile, Report};
 use lumiduct_base::error::Result;
 use lumiduct_base::number::{format_percent, format_value, format_with_error};
 use lumiduct_core::measure::{
-    Axes, Balance, IntensityTable, PlaneCurve, SensorMap, SensorPaths, not_below_zero,
+    Balance, IntensityTable, MapAxes, PlaneCurve, SensorMap, SensorPaths, not_below_zero,
 };
 use ndarray::Axis;
 
@@ -41,13 +42,13 @@ pub(crate) fn files(report: &Report) -> Result<Vec<OutputFile>> {
 pub(crate) fn sensor_map(map: &SensorMap) -> HeatMap {
     let plane = ["u in mm", "v in mm"];
     let ([x_label, y_label], x_range, y_range, axes) = match &map.axes {
-        Axes::Cartesian { u_mm, v_mm } => (plane, ends(u_mm), ends(v_mm), Scale::Linear),
-        Axes::Angular { u_deg, v_deg } => {
-            (["to the right in deg", "up in deg"], ends(u_deg), ends(v_deg), Scale::Tangent)
+        MapAxes::Cartesian { u_mm, v_mm } => (plane, ends(u_mm), ends(v_mm), AxisScale::Linear),
+        MapAxes::Angular { u_deg, v_deg } => {
+            (["to the right in deg", "up in deg"], ends(u_deg), ends(v_deg), AxisScale::Tangent)
         }
-        Axes::Polar { radius_mm, .. } => {
+        MapAxes::Polar { radius_mm, .. } => {
             let [_, reach] = ends(radius_mm);
-            (plane, [-reach, reach], [-reach, reach], Scale::Linear)
+            (plane, [-reach, reach], [-reach, reach], AxisScale::Linear)
         }
     };
     HeatMap {
@@ -60,7 +61,7 @@ pub(crate) fn sensor_map(map: &SensorMap) -> HeatMap {
         axes,
         values: map.values.mapv(not_below_zero),
         unit: map.unit.clone(),
-        scale: Scale::Linear,
+        scale: AxisScale::Linear,
         colours: ColourMap::Sequential,
         limits: None,
     }
@@ -75,10 +76,10 @@ pub(crate) fn directions_map(table: &IntensityTable) -> HeatMap {
         y_label: "γ in deg".into(),
         x_range: ends(&table.c_deg),
         y_range: ends(&table.gamma_deg),
-        axes: Scale::Linear,
+        axes: AxisScale::Linear,
         values: table.values.mapv(not_below_zero),
         unit: table.unit.clone(),
-        scale: Scale::Linear,
+        scale: AxisScale::Linear,
         colours: ColourMap::Sequential,
         limits: None,
     }
@@ -91,20 +92,20 @@ fn mean_words(map: &SensorMap) -> String {
 
 fn map_picture(map: &SensorMap) -> Result<Vec<u8>> {
     match &map.axes {
-        Axes::Cartesian { .. } | Axes::Angular { .. } => heat_map(&sensor_map(map)),
-        Axes::Polar { radius_mm, sector_deg } => line_plot(&LinePlot {
+        MapAxes::Cartesian { .. } | MapAxes::Angular { .. } => heat_map(&sensor_map(map)),
+        MapAxes::Polar { radius_mm, sector_deg } => line_plot(&LinePlot {
             title: format!("{}: {}", map.sensor, map_words(map)),
             subtitle: mean_words(map),
             x_label: "radius in mm".into(),
             y_label: format!("{} in {}", map.quantity, map.unit),
-            x_scale: Scale::Linear,
-            y_scale: Scale::Linear,
+            x_scale: AxisScale::Linear,
+            y_scale: AxisScale::Linear,
             series: map
                 .values
                 .axis_iter(Axis(1))
                 .zip(map.std_errors.axis_iter(Axis(1)))
                 .enumerate()
-                .map(|(sector, (values, errors))| Series {
+                .map(|(sector, (values, errors))| PlotSeries {
                     name: format!("{:.0}° to {:.0}°", sector_deg[sector], sector_deg[sector + 1]),
                     points: values
                         .iter()
@@ -132,7 +133,7 @@ fn ends(edges: &[f64]) -> [f64; 2] {
 /// Curves through the planes C0-C180 and C90-C270, or the mean over C of a goniometer without sectors.
 pub(crate) fn intensity_plot(table: &IntensityTable) -> PolarPlot {
     let curves = if !table.planes.is_empty() {
-        let curve = |plane: &PlaneCurve| Curve {
+        let curve = |plane: &PlaneCurve| PolarCurve {
             name: format!("C{} to C{}", plane.c_deg, plane.c_deg + 180.0),
             points: {
                 let values = plane.values.iter().copied().map(not_below_zero);
@@ -153,7 +154,7 @@ pub(crate) fn intensity_plot(table: &IntensityTable) -> PolarPlot {
         let points = left.into_iter().rev().chain(right).collect();
         let errors =
             table.ring_std_errors.iter().rev().chain(&table.ring_std_errors).copied().collect();
-        vec![Curve { name: "mean over C".into(), points, std_errors: errors }]
+        vec![PolarCurve { name: "mean over C".into(), points, std_errors: errors }]
     };
     PolarPlot {
         title: format!("{}: intensity", table.sensor),
@@ -208,9 +209,9 @@ pub(crate) fn bounce_plot(paths: &SensorPaths, unit: &str, share: f64) -> LinePl
         ),
         x_label: "interfaces met".into(),
         y_label: format!("flux in {unit}"),
-        x_scale: Scale::Linear,
-        y_scale: Scale::Linear,
-        series: vec![Series {
+        x_scale: AxisScale::Linear,
+        y_scale: AxisScale::Linear,
+        series: vec![PlotSeries {
             name: paths.sensor.clone(),
             points,
             form: SeriesForm::Steps,

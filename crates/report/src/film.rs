@@ -51,7 +51,7 @@ fn table(name: &str, film: &PrismFilm, index: f64, step_deg: f64) -> String {
         let steps = (89.999 / step_deg).floor() as u32;
         for step in 0..=steps {
             let angle = f64::from(step) * step_deg;
-            let planes = [Plane::Along, Plane::Across];
+            let planes = [FilmPlane::Along, FilmPlane::Across];
             let shares = planes.map(|plane| {
                 film.shares(face, &in_plane(plane, angle.to_radians(), index), PLACES)
             });
@@ -65,16 +65,16 @@ fn table(name: &str, film: &PrismFilm, index: f64, step_deg: f64) -> String {
 
 /// A plane through the normal of a film.
 #[derive(Debug, Clone, Copy)]
-enum Plane {
+enum FilmPlane {
     Along,
     Across,
 }
 
 /// Light in a plane at an angle from the normal, rad.
-fn in_plane(plane: Plane, angle: f64, index: f64) -> Incidence {
+fn in_plane(plane: FilmPlane, angle: f64, index: f64) -> Incidence {
     match plane {
-        Plane::Along => along_prisms(FRAC_PI_2 - angle, 0.0, index),
-        Plane::Across => along_prisms(FRAC_PI_2, angle, index),
+        FilmPlane::Along => along_prisms(FRAC_PI_2 - angle, 0.0, index),
+        FilmPlane::Across => along_prisms(FRAC_PI_2, angle, index),
     }
 }
 

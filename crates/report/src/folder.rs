@@ -6,7 +6,7 @@ mod tests;
 use crate::destination::folder_of;
 use crate::leftovers::{REPLACING, STAGED, is_staged, remove_if_there, sweep};
 use crate::manifest::{MANIFEST, Manifest};
-use crate::recipe::Found;
+use crate::recipe::FoundIdentity;
 use crate::{FolderLock, OutputFile, Recipe};
 use lumiduct_base::error::{Error, Result};
 use std::fs;
@@ -51,17 +51,17 @@ impl Folder {
         let path = lock.path();
         sweep(path)?;
         if existing == Existing::Keep && holds_files(path)? {
-            let what = match (Found::read(path), recipe) {
-                (Found::Report(found), Some(recipe)) if *found == *recipe => {
+            let what = match (FoundIdentity::read(path), recipe) {
+                (FoundIdentity::Report(found), Some(recipe)) if *found == *recipe => {
                     return Ok(Self { lock, existing });
                 }
-                (Found::Report(found), Some(recipe)) => recipe.difference_of(&found),
-                (Found::Report(_), None) => {
+                (FoundIdentity::Report(found), Some(recipe)) => recipe.difference_of(&found),
+                (FoundIdentity::Report(_), None) => {
                     "a report, and a run that the clock stops never repeats one"
                 }
-                (Found::Partial, _) => "a report of a run that was stopped",
-                (Found::Older, _) => "a report by an older version of the program",
-                (Found::Other, _) => "files that are no complete report",
+                (FoundIdentity::Partial, _) => "a report of a run that was stopped",
+                (FoundIdentity::Older, _) => "a report by an older version of the program",
+                (FoundIdentity::Other, _) => "files that are no complete report",
             };
             return Err(Error::Usage(format!(
                 "{} holds {what}; use --overwrite to replace the files in it, or -o for another folder",
@@ -107,10 +107,10 @@ impl Folder {
             let path = self.path().join(&file.name);
             match (compare(&path, &file.bytes)?, self.existing) {
                 // While files are renamed the manifest is removed, so it is always written again.
-                (Comparison::Same, _) if staged.is_empty() || file.name != MANIFEST => {}
-                (Comparison::Different, Existing::Keep) => differing.push(file.name.clone()),
-                (Comparison::Different, Existing::Replace)
-                | (Comparison::Missing | Comparison::Same, _) => {
+                (FileComparison::Same, _) if staged.is_empty() || file.name != MANIFEST => {}
+                (FileComparison::Different, Existing::Keep) => differing.push(file.name.clone()),
+                (FileComparison::Different, Existing::Replace)
+                | (FileComparison::Missing | FileComparison::Same, _) => {
                     staged.push((stage(&path, &file.bytes)?, file.name.clone()));
                 }
             }
@@ -184,14 +184,14 @@ fn holds_files(folder: &Path) -> Result<bool> {
 /// Writes one file, whole or not at all. An existing file with the same bytes is left alone.
 pub fn write_whole(path: &Path, bytes: &[u8], existing: Existing) -> Result<()> {
     match (compare(path, bytes)?, existing) {
-        (Comparison::Same, _) => return Ok(()),
-        (Comparison::Different, Existing::Keep) => {
+        (FileComparison::Same, _) => return Ok(()),
+        (FileComparison::Different, Existing::Keep) => {
             return Err(Error::Usage(format!(
                 "{} exists with other contents; use --overwrite to replace it",
                 path.display()
             )));
         }
-        (Comparison::Different, Existing::Replace) | (Comparison::Missing, _) => {}
+        (FileComparison::Different, Existing::Replace) | (FileComparison::Missing, _) => {}
     }
     let folder = folder_of(path);
     fs::create_dir_all(folder).map_err(|source| Error::io(folder, source))?;
@@ -200,17 +200,17 @@ pub fn write_whole(path: &Path, bytes: &[u8], existing: Existing) -> Result<()> 
 }
 
 /// How a file on disk compares with what is to be written.
-enum Comparison {
+enum FileComparison {
     Missing,
     Same,
     Different,
 }
 
-fn compare(path: &Path, bytes: &[u8]) -> Result<Comparison> {
+fn compare(path: &Path, bytes: &[u8]) -> Result<FileComparison> {
     match fs::read(path) {
-        Ok(old) if old == bytes => Ok(Comparison::Same),
-        Ok(_) => Ok(Comparison::Different),
-        Err(error) if error.kind() == ErrorKind::NotFound => Ok(Comparison::Missing),
+        Ok(old) if old == bytes => Ok(FileComparison::Same),
+        Ok(_) => Ok(FileComparison::Different),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(FileComparison::Missing),
         Err(source) => Err(Error::io(path, source)),
     }
 }

@@ -7,7 +7,7 @@ use crate::study::{DesignOutcome, StudyReport};
 use crate::words::numbered;
 use crate::{CheckResult, Existing, Report, TargetFacts, expect_file, write_whole};
 use lumiduct_base::error::{Error, Result};
-use lumiduct_core::measure::Outcome;
+use lumiduct_core::measure::CheckOutcome;
 use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestSuite};
 use std::fs::File;
 use std::io::Read;
@@ -135,10 +135,10 @@ fn check_cases(class: &str, all: &[CheckResult]) -> impl Iterator<Item = TestCas
 fn check_status(result: &CheckResult) -> TestCaseStatus {
     let reason = &result.verdict.reason;
     match result.verdict.outcome {
-        Outcome::Passed => TestCaseStatus::success(),
-        Outcome::Undecided => failure("undecided", reason),
-        Outcome::Failed => failure("failed", reason),
-        Outcome::Unknown => error("unknown measure", reason),
+        CheckOutcome::Passed => TestCaseStatus::success(),
+        CheckOutcome::Undecided => failure("undecided", reason),
+        CheckOutcome::Failed => failure("failed", reason),
+        CheckOutcome::Unknown => error("unknown measure", reason),
     }
 }
 

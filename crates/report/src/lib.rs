@@ -42,10 +42,11 @@ mod upright;
 mod words;
 
 pub use compare::{
-    Comparison, Contestant, Row, Sample, Truth, comparison_files, comparison_table, rows,
+    CheckpointSample, Comparison, Contestant, ErrorRow, Truth, comparison_files, comparison_table,
+    rows,
 };
 pub use destination::{expect_file, expect_room, is_among};
-pub use drawing::{Drawing, drawing};
+pub use drawing::{SceneDrawing, drawing};
 pub use film::film_tables;
 pub use folder::{Existing, Folder, Written, write_whole};
 pub use html::check::check_page;
@@ -59,7 +60,8 @@ pub use mesh::mesh_report;
 pub use output::OutputFile;
 pub use recipe::Recipe;
 pub use record::{
-    CheckResult, Outcome, Report, RunFacts, SceneFacts, TargetFacts, asked, leak_places, wishes,
+    CheckResult, Report, RunFacts, RunOutcome, SceneFacts, TargetFacts, asked, leak_places,
+    requested_gathering,
 };
 pub use remarks::{remark_on_paths, remarks, remarks_on_passages};
 pub use seal::{seal, unseal};

@@ -2,7 +2,7 @@
 
 use crate::Report;
 use crate::contents::{parts, verdict};
-use crate::html::frame::{Block, Part, Plots};
+use crate::html::frame::{Block, PagePart, Plots};
 use crate::output::LOGO;
 use lumiduct_base::text::{markdown_cell, markdown_page};
 use lumiduct_input::Project;
@@ -33,7 +33,7 @@ pub(crate) fn masthead(project: Option<&Project>) -> String {
     format!("{logo}{}\n\n", lines.collect::<Vec<_>>().join(" · "))
 }
 
-fn add(page: &mut String, part: &Part) {
+fn add(page: &mut String, part: &PagePart) {
     _ = write!(page, "## {}\n\n", part.title);
     for block in &part.blocks {
         match block {

@@ -26,7 +26,7 @@ pub struct Recipe {
 
 /// Contents of the folder of a report.
 #[derive(Debug, PartialEq)]
-pub(crate) enum Found {
+pub(crate) enum FoundIdentity {
     /// The whole report of a run.
     Report(Box<Recipe>),
     /// The report of a run that was stopped.
@@ -51,7 +51,7 @@ impl Recipe {
         } else if other.scene_hash != self.scene_hash {
             "a report of another scene: the file, a file that it names, or -D differs"
         } else if method(plan) != method(own) {
-            "a report with another estimator or other wishes for it"
+            "a report with another estimator or other settings for it"
         } else if plan.seed != own.seed {
             "a report with another seed"
         } else {
@@ -65,7 +65,7 @@ fn method(plan: &RunPlan) -> (Request, &[Option<Estimator>], GatherPlan) {
     (plan.estimator, &plan.sensor_estimators, plan.gather)
 }
 
-impl Found {
+impl FoundIdentity {
     /// The contents of a folder that is not empty.
     pub(crate) fn read(folder: &Path) -> Self {
         let bytes = fs::read(folder.join(SUMMARY)).ok();

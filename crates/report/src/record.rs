@@ -1,6 +1,6 @@
 //! The record from which all formats of a report are made.
 
-use crate::{Drawing, Inventory, Recipe};
+use crate::{Inventory, Recipe, SceneDrawing};
 use glam::DVec3;
 use lumiduct_base::number::{format_exact, format_percent};
 use lumiduct_core::measure::{self, Measures, Verdict};
@@ -24,7 +24,7 @@ pub struct Report {
     pub warnings: Vec<String>,
     /// The drawing of the scene: for pictures only, not part of the record for programs.
     #[serde(skip)]
-    pub drawing: Drawing,
+    pub drawing: SceneDrawing,
     /// The contents of the scene: for pages only, likewise.
     #[serde(skip)]
     pub inventory: Inventory,
@@ -59,7 +59,7 @@ pub struct RunFacts {
     pub seed: u64,
     /// The requested estimator of flux.
     pub estimator: Request,
-    /// Requested gather settings, in words: see [`wishes`]. Empty without any.
+    /// Requested gather settings, in words: see [`requested_gathering`]. Empty without any.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub gather: String,
     /// Gather settings used, in words. Empty where nothing was gathered.
@@ -104,7 +104,7 @@ pub struct CheckResult {
 
 /// Whether a run meets what its scene asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Outcome {
+pub enum RunOutcome {
     /// No check was missed.
     Good,
     /// A check was missed, or the run has checks and is partial or misses its target.
@@ -113,12 +113,14 @@ pub enum Outcome {
 
 impl Report {
     /// Whether the run meets what its scene asks for.
-    pub fn outcome(&self) -> Outcome {
-        let missed =
-            self.checks.iter().any(|result| result.verdict.outcome != measure::Outcome::Passed);
+    pub fn outcome(&self) -> RunOutcome {
+        let missed = self
+            .checks
+            .iter()
+            .any(|result| result.verdict.outcome != measure::CheckOutcome::Passed);
         let off_target = self.run.target.as_ref().is_some_and(|target| !target.is_reached());
         let incomplete = !self.checks.is_empty() && (self.run.partial || off_target);
-        if missed || incomplete { Outcome::Missed } else { Outcome::Good }
+        if missed || incomplete { RunOutcome::Missed } else { RunOutcome::Good }
     }
 }
 
@@ -158,7 +160,7 @@ pub fn asked(stop: &StopRules) -> String {
 }
 
 /// Requested gather settings in words: "depth 8, radius 0.5 mm, angle 0.15 deg".
-pub fn wishes(gather: &GatherPlan) -> String {
+pub fn requested_gathering(gather: &GatherPlan) -> String {
     let schedule = match gather.schedule {
         Schedule::Stages => None,
         other @ Schedule::PerPass => Some(format!("schedule {}", other.name())),

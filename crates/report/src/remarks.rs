@@ -5,7 +5,7 @@
 use crate::by_light::remark_on_weathers;
 use lumiduct_base::number::{format_percent, format_with_error};
 use lumiduct_core::measure::{LostPaths, Measures, Status};
-use lumiduct_core::scene::{Counts, Place, Scene, Seeing, Sensor, SensorKind};
+use lumiduct_core::scene::{CountedLight, Place, Scene, Seeing, Sensor, SensorKind};
 use lumiduct_core::transport::GROUPS;
 
 /// Share of the flux cut by the bounce limit above which there is a remark, 1.
@@ -92,7 +92,7 @@ fn remark_on_other_side(name: &str, scene: &Scene) -> String {
     let kind = scene.sensors.iter().find(|sensor| sensor.name == name).map(|sensor| &sensor.kind);
     match kind {
         Some(SensorKind::Surface(surface))
-            if surface.counts == Counts::Leaving && surface.place == Place::Face =>
+            if surface.counts == CountedLight::Leaving && surface.place == Place::Face =>
         {
             format!(
                 "no light left the side of sensor `{name}` that counts: all that met its face was reflected or let in there; \

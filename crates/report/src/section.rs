@@ -1,7 +1,7 @@
 //! The picture of a check: a cut through the scene, with paths of light, sources and sensors.
 
 use crate::drawing::{Fate, Role, drawing, fate};
-use crate::png::{CrossSection, NamedPlace, Outline, PlaceOf, RayEnd, RayPath, cross_section};
+use crate::png::{CrossSection, NamedPlace, PlaceOf, RayEnd, RayPath, SurfaceDots, cross_section};
 use crate::upright::is_lit_from_above;
 use glam::{DVec2, DVec3};
 use lumiduct_base::error::{Error, Result};
@@ -133,7 +133,7 @@ impl View {
         &self,
         scene: &Scene,
         paths: usize,
-        outlines: &[Outline],
+        outlines: &[SurfaceDots],
         places: &[NamedPlace],
     ) -> String {
         let origin = self.plane.origin + scene.origin;
@@ -180,10 +180,10 @@ impl View {
         self.plane.point_to_local(point).truncate()
     }
 
-    fn outlines(&self, scene: &Scene) -> Vec<Outline> {
+    fn outlines(&self, scene: &Scene) -> Vec<SurfaceDots> {
         let found = scene.section(&self.plane, self.window).into_iter().enumerate();
         found
-            .map(|(colour, outline)| Outline {
+            .map(|(colour, outline)| SurfaceDots {
                 name: scene.faces[outline.face.index()].name.clone(),
                 colour,
                 points: outline.points.into_iter().map(|at| self.shown(at)).collect(),

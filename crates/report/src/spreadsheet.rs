@@ -6,7 +6,7 @@
 use crate::csv::{map_name, table};
 use crate::{OutputFile, Report};
 use lumiduct_base::error::Result;
-use lumiduct_core::measure::{Axes, IntensityTable, SensorMap};
+use lumiduct_core::measure::{IntensityTable, MapAxes, SensorMap};
 use ndarray::Array2;
 
 /// First character of a UTF-8 file for a spreadsheet.
@@ -45,7 +45,7 @@ fn marked(mut file: OutputFile) -> OutputFile {
 }
 
 /// Values in rows and columns; the cell edges fill two columns on the left and two rows at the top.
-struct Matrix<'a> {
+struct SpreadsheetMatrix<'a> {
     /// File name without its extension.
     name: String,
     /// What is shown, with its unit: `illuminance in lx`.
@@ -71,23 +71,32 @@ enum Top {
     First,
 }
 
-fn map_matrix(map: &SensorMap) -> Matrix<'_> {
+fn map_matrix(map: &SensorMap) -> SpreadsheetMatrix<'_> {
     let (rows, row_edges, columns, column_edges, top) = match &map.axes {
-        Axes::Cartesian { u_mm, v_mm } => (["v", "mm"], v_mm, ["u", "mm"], u_mm, Top::Last),
-        Axes::Angular { u_deg, v_deg } => {
+        MapAxes::Cartesian { u_mm, v_mm } => (["v", "mm"], v_mm, ["u", "mm"], u_mm, Top::Last),
+        MapAxes::Angular { u_deg, v_deg } => {
             (["up", "deg"], v_deg, ["right", "deg"], u_deg, Top::Last)
         }
-        Axes::Polar { radius_mm, sector_deg } => {
+        MapAxes::Polar { radius_mm, sector_deg } => {
             (["radius", "mm"], radius_mm, ["sector", "deg"], sector_deg, Top::First)
         }
     };
     let name = map_name(map);
     let quantity = format!("{} in {}", map.quantity, map.unit);
-    Matrix { name, quantity, rows, row_edges, columns, column_edges, values: &map.values, top }
+    SpreadsheetMatrix {
+        name,
+        quantity,
+        rows,
+        row_edges,
+        columns,
+        column_edges,
+        values: &map.values,
+        top,
+    }
 }
 
-fn intensity_matrix(intensity: &IntensityTable) -> Matrix<'_> {
-    Matrix {
+fn intensity_matrix(intensity: &IntensityTable) -> SpreadsheetMatrix<'_> {
+    SpreadsheetMatrix {
         name: format!("{}.intensity", intensity.sensor),
         quantity: format!("intensity in {}", intensity.unit),
         rows: ["gamma", "deg"],
@@ -99,7 +108,7 @@ fn intensity_matrix(intensity: &IntensityTable) -> Matrix<'_> {
     }
 }
 
-impl Matrix<'_> {
+impl SpreadsheetMatrix<'_> {
     fn file(&self) -> Result<OutputFile> {
         let cells = |label: [String; 2], edges: &[f64]| -> Vec<String> {
             label.into_iter().chain(edges.iter().map(f64::to_string)).collect()

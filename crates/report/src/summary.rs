@@ -9,7 +9,7 @@ use serde::Serialize;
 pub(crate) const FORMAT: u32 = 1;
 
 #[derive(Serialize)]
-struct Summary<'r> {
+struct SummaryRecord<'r> {
     lumiduct_summary: u32,
     scene: &'r crate::SceneFacts,
     run: &'r crate::RunFacts,
@@ -36,7 +36,7 @@ struct Summary<'r> {
 /// The record as JSON. `files` are all files of the report, including this one.
 pub(crate) fn json(report: &Report, files: &[&str]) -> Result<String> {
     let measures = &report.measures;
-    let summary = Summary {
+    let summary = SummaryRecord {
         lumiduct_summary: FORMAT,
         scene: &report.scene,
         run: &report.run,

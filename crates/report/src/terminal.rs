@@ -1,10 +1,10 @@
 //! The lines that a run prints at its end.
 
-use crate::by_light::{Share, shares, sum_over_weathers};
+use crate::by_light::{LightShare, shares, sum_over_weathers};
 use crate::key_figures::key_figures;
 use crate::words::quantity;
 use crate::{Report, Written};
-use lumiduct_core::measure::{Measures, Outcome};
+use lumiduct_core::measure::{CheckOutcome, Measures};
 use lumiduct_core::plan::Estimator;
 use std::path::Path;
 
@@ -36,7 +36,7 @@ const SHOWN: usize = 8;
 /// The contribution of each source or light group to a sensor.
 fn by_source(measures: &Measures, sensor: &str) -> String {
     let shares = shares(measures, sensor);
-    let line = |part: &Share<'_>| {
+    let line = |part: &LightShare<'_>| {
         let of_all = part.share.map_or(String::new(), |share| {
             format!(", {} of the light on {sensor}", quantity(share))
         });
@@ -60,10 +60,10 @@ pub fn terminal(report: &Report, dir: &Path, written: &Written) -> String {
     }
     for result in &report.checks {
         let word = match result.verdict.outcome {
-            Outcome::Passed => "passed",
-            Outcome::Undecided => "UNDECIDED",
-            Outcome::Failed => "FAILED",
-            Outcome::Unknown => "UNKNOWN MEASURE",
+            CheckOutcome::Passed => "passed",
+            CheckOutcome::Undecided => "UNDECIDED",
+            CheckOutcome::Failed => "FAILED",
+            CheckOutcome::Unknown => "UNKNOWN MEASURE",
         };
         text += &format!("  check {}: {word}, {}\n", result.check.measure, result.verdict.reason);
     }

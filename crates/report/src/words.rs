@@ -4,11 +4,11 @@
 use crate::Report;
 use lumiduct_base::number::{format_percent, format_value, format_with_error};
 use lumiduct_core::measure::{
-    Action, Extent, LostPaths, Measure, Outcome, PathClass, PathStep, SensorMap, Statistic, Status,
-    strongest,
+    Action, CheckOutcome, ClassExtent, LostPaths, Measure, PathClass, PathStep, SensorMap,
+    Statistic, Status, strongest,
 };
 use lumiduct_core::plan::Estimator;
-use lumiduct_core::transport::{Entry, EstimatorChoice, Objection, Trial};
+use lumiduct_core::transport::{AccountEntry, EstimatorChoice, Objection, Trial};
 
 /// A bias is shown from this share of the standard error on, 1.
 const BIAS_TOLD: f64 = 0.3;
@@ -112,12 +112,12 @@ pub(crate) fn remark(status: Status) -> &'static str {
 }
 
 /// A verdict in words.
-pub(crate) fn outcome_word(outcome: Outcome) -> &'static str {
+pub(crate) fn outcome_word(outcome: CheckOutcome) -> &'static str {
     match outcome {
-        Outcome::Passed => "passed",
-        Outcome::Undecided => "undecided",
-        Outcome::Failed => "failed",
-        Outcome::Unknown => "unknown measure",
+        CheckOutcome::Passed => "passed",
+        CheckOutcome::Undecided => "undecided",
+        CheckOutcome::Failed => "failed",
+        CheckOutcome::Unknown => "unknown measure",
     }
 }
 
@@ -163,11 +163,11 @@ fn waiting(seconds: f64) -> String {
 }
 
 /// An entry of the table of an account.
-pub(crate) fn entry(entry: &Entry) -> String {
+pub(crate) fn entry(entry: &AccountEntry) -> String {
     match entry {
-        Entry::Count(count) => count.to_string(),
-        Entry::Number(number) => format_value(*number),
-        Entry::Measured { value, std_error } => format_with_error(*value, *std_error),
+        AccountEntry::Count(count) => count.to_string(),
+        AccountEntry::Number(number) => format_value(*number),
+        AccountEntry::Measured { value, std_error } => format_with_error(*value, *std_error),
     }
 }
 
@@ -240,10 +240,10 @@ fn steps(class: &PathClass) -> String {
     };
     let text = class.steps.iter().map(step).collect::<Vec<_>>().join(", ");
     match class.extent {
-        Extent::Whole if text.is_empty() => "direct".into(),
-        Extent::Whole => text,
-        Extent::CutOff => text + ", ...",
-        Extent::Others => "all weaker classes".into(),
+        ClassExtent::Whole if text.is_empty() => "direct".into(),
+        ClassExtent::Whole => text,
+        ClassExtent::CutOff => text + ", ...",
+        ClassExtent::Others => "all weaker classes".into(),
     }
 }
 

@@ -7,7 +7,7 @@ use lumiduct_baselines::BaselineRun;
 use lumiduct_core::measure;
 use lumiduct_core::plan::Request;
 use lumiduct_core::transport::{Findings, Run, StopSignal};
-use lumiduct_report::Sample;
+use lumiduct_report::CheckpointSample;
 use std::time::{Duration, Instant};
 
 /// A run to do.
@@ -20,32 +20,32 @@ pub(super) struct Stint<'a> {
 }
 
 /// A run that was done.
-pub(super) struct Traced {
+pub(super) struct TracedRun {
     /// Its sample at each checkpoint, `None` where it had no value yet.
-    pub(super) samples: Vec<Option<Sample>>,
+    pub(super) samples: Vec<Option<CheckpointSample>>,
     /// Its final value, with its own error.
-    pub(super) last: Option<Estimate>,
+    pub(super) last: Option<ReportedValue>,
     /// Throughput of gather paths that it cut off, 1.
     pub(super) cut: f64,
 }
 
 /// A value with the error that the run reports.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Estimate {
+pub(super) struct ReportedValue {
     pub(super) value: f64,
     pub(super) std_error: f64,
 }
 
 /// Traces one run until its last checkpoint. Its preparation counts toward its time, sampling it
 /// does not.
-pub(super) fn trace(bench: &Bench<'_>, stint: &Stint<'_>) -> Result<Traced> {
+pub(super) fn trace(bench: &Bench<'_>, stint: &Stint<'_>) -> Result<TracedRun> {
     let Stint { method, run, checkpoints } = *stint;
     let start = Instant::now();
     let interrupted = || Error::Usage("interrupted: nothing was written".into());
     let mut runner = Runner::new(bench, method, run).ok_or_else(interrupted)?;
     let mut spent = start.elapsed();
-    let mut samples: Vec<Option<Sample>> = vec![None; checkpoints.len()];
-    let mut last: Option<(Sample, Estimate)> = None;
+    let mut samples: Vec<Option<CheckpointSample>> = vec![None; checkpoints.len()];
+    let mut last: Option<(CheckpointSample, ReportedValue)> = None;
     loop {
         let start = Instant::now();
         runner.next_piece();
@@ -69,7 +69,7 @@ pub(super) fn trace(bench: &Bench<'_>, stint: &Stint<'_>) -> Result<Traced> {
     if let (Some(end), Some((sample, _))) = (samples.last_mut(), &last) {
         *end = Some(*sample);
     }
-    Ok(Traced { samples, last: last.map(|(_, estimate)| estimate), cut: runner.cut() })
+    Ok(TracedRun { samples, last: last.map(|(_, estimate)| estimate), cut: runner.cut() })
 }
 
 /// A running method.
@@ -129,7 +129,11 @@ impl<'s> Runner<'s> {
     }
 
     /// Its results so far.
-    fn look(&self, bench: &Bench<'_>, spent: Duration) -> Option<(Sample, Estimate)> {
+    fn look(
+        &self,
+        bench: &Bench<'_>,
+        spent: Duration,
+    ) -> Option<(CheckpointSample, ReportedValue)> {
         let (findings, segments) = match self {
             Self::Run { run, .. } => {
                 let findings = run.findings();
@@ -144,8 +148,8 @@ impl<'s> Runner<'s> {
         };
         let measure = measure::value_of(&bench.job.scene, &findings, &bench.measure())?;
         let (value, std_error) = (measure.value, measure.std_error);
-        let sample = Sample { seconds: spent.as_secs_f64(), segments, value };
-        Some((sample, Estimate { value, std_error }))
+        let sample = CheckpointSample { seconds: spent.as_secs_f64(), segments, value };
+        Some((sample, ReportedValue { value, std_error }))
     }
 
     fn cut(&self) -> f64 {

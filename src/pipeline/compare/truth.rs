@@ -3,7 +3,7 @@
 
 use crate::pipeline::compare::bench::Bench;
 use crate::pipeline::compare::method::Method;
-use crate::pipeline::compare::runner::{Estimate, Stint, trace};
+use crate::pipeline::compare::runner::{ReportedValue, Stint, trace};
 use lumiduct_base::error::{Error, Result};
 use lumiduct_core::plan::Request;
 use lumiduct_core::transport::invisible;
@@ -14,7 +14,7 @@ use std::time::Duration;
 
 /// Where the truth comes from.
 #[derive(Debug, Clone, PartialEq)]
-pub enum TruthWish {
+pub enum TruthOption {
     /// It is known, in the unit of the measure.
     Given {
         /// The value.
@@ -39,14 +39,14 @@ pub(super) enum Known {
 }
 
 /// What is known of the truth before any work.
-pub(super) fn known(bench: &Bench<'_>, wish: &TruthWish) -> Result<Known> {
+pub(super) fn known(bench: &Bench<'_>, wish: &TruthOption) -> Result<Known> {
     match wish {
-        TruthWish::Given { value, std_error } => {
+        TruthOption::Given { value, std_error } => {
             let origin = "as given on the command line".to_owned();
             usable(bench, Truth { value: *value, std_error: *std_error, origin }).map(Known::Truth)
         }
-        TruthWish::File(path) => usable(bench, read(path, &bench.measure())?).map(Known::Truth),
-        TruthWish::Run(time) => Ok(Known::Takes(*time)),
+        TruthOption::File(path) => usable(bench, read(path, &bench.measure())?).map(Known::Truth),
+        TruthOption::Run(time) => Ok(Known::Takes(*time)),
     }
 }
 
@@ -82,7 +82,7 @@ pub(super) fn find(
     };
     let (name, seconds) = (request.name(), time.as_secs_f64());
     watch(&format!("truth: {name} for {seconds:.0} s"));
-    let Estimate { value, std_error } = run(bench, request, seed + 1, time)?;
+    let ReportedValue { value, std_error } = run(bench, request, seed + 1, time)?;
     let used = bench.plan(request, seed + 1).seed;
     usable(
         bench,
@@ -136,8 +136,8 @@ fn read(path: &Path, measure: &str) -> Result<Truth> {
     Err(unusable(format!("there is no measure `{measure}`")))
 }
 
-fn run(bench: &Bench<'_>, request: Request, run: u64, time: Duration) -> Result<Estimate> {
+fn run(bench: &Bench<'_>, request: Request, run: u64, time: Duration) -> Result<ReportedValue> {
     let stint = Stint { method: Method::Run(request), run, checkpoints: &[time] };
-    let nothing = Estimate { value: 0.0, std_error: f64::INFINITY };
+    let nothing = ReportedValue { value: 0.0, std_error: f64::INFINITY };
     Ok(trace(bench, &stint)?.last.unwrap_or(nothing))
 }

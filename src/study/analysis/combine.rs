@@ -2,7 +2,7 @@
 
 use lumiduct_core::measure::Replicates;
 use lumiduct_core::tally::Tally;
-use lumiduct_report::study::{DesignRecord, Estimate, Pairing};
+use lumiduct_report::study::{DesignRecord, Pairing, ValueWithError};
 
 /// A design with the weight that it has in a sum.
 #[derive(Debug, Clone, Copy)]
@@ -14,14 +14,14 @@ pub(super) struct Term<'a> {
 /// The weighted sum of a measure over designs. Where all designs have the same groups of batches,
 /// the error is computed group by group, so that common noise cancels; else as if they were
 /// independent. `None` where a design lacks the measure.
-pub(super) fn combine(terms: &[Term<'_>], measure: &str) -> Option<Estimate> {
+pub(super) fn combine(terms: &[Term<'_>], measure: &str) -> Option<ValueWithError> {
     let value = |term: &Term<'_>| Some(term.weight * term.design.measure(measure)?.value);
     let value = terms.iter().map(value).sum::<Option<f64>>()?;
     Some(match paired_error(terms, measure) {
-        Some(std_error) => Estimate { value, std_error, evidence: Pairing::Paired },
+        Some(std_error) => ValueWithError { value, std_error, evidence: Pairing::Paired },
         None => {
             let std_error = independent_error(terms, measure)?;
-            Estimate { value, std_error, evidence: Pairing::Independent }
+            ValueWithError { value, std_error, evidence: Pairing::Independent }
         }
     })
 }

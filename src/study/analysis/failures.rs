@@ -1,6 +1,6 @@
 //! How many designs of a tolerance run fail, and what that implies for all of production.
 
-use lumiduct_core::measure::Outcome;
+use lumiduct_core::measure::CheckOutcome;
 use lumiduct_core::plan::Check;
 use lumiduct_report::study::{DesignRecord, FailureShare, PlanFacts, StudyFacts};
 use statrs::distribution::{Beta, ContinuousCDF};
@@ -23,12 +23,12 @@ pub(super) fn failures(facts: &StudyFacts, designs: &[DesignRecord]) -> Vec<Fail
         return Vec::new();
     }
     // A design that makes no scene cannot be made, so it fails.
-    let all = designs.iter().map(|design| design.verdict().unwrap_or(Outcome::Failed));
+    let all = designs.iter().map(|design| design.verdict().unwrap_or(CheckOutcome::Failed));
     let mut shares = vec![share("all checks together".into(), all)];
     for (place, check) in facts.checks.iter().enumerate() {
         let outcomes = designs.iter().map(|design| {
             let own = design.result().and_then(|result| result.checks.get(place));
-            own.map_or(Outcome::Failed, |own| own.verdict.outcome)
+            own.map_or(CheckOutcome::Failed, |own| own.verdict.outcome)
         });
         shares.push(share(demand(check), outcomes));
     }
@@ -46,13 +46,13 @@ fn demand(check: &Check) -> String {
     format!("{}, {}", check.measure, parts.join(" and "))
 }
 
-fn share(demand: String, outcomes: impl Iterator<Item = Outcome>) -> FailureShare {
+fn share(demand: String, outcomes: impl Iterator<Item = CheckOutcome>) -> FailureShare {
     let [mut passed, mut failed, mut undecided] = [0usize; 3];
     for outcome in outcomes {
         match outcome {
-            Outcome::Passed => passed += 1,
-            Outcome::Undecided => undecided += 1,
-            Outcome::Failed | Outcome::Unknown => failed += 1,
+            CheckOutcome::Passed => passed += 1,
+            CheckOutcome::Undecided => undecided += 1,
+            CheckOutcome::Failed | CheckOutcome::Unknown => failed += 1,
         }
     }
     let count = passed + failed + undecided;
@@ -100,7 +100,12 @@ mod tests {
 
     #[test]
     fn undecided_designs_widen_the_share_to_both_sides() {
-        let outcomes = [Outcome::Passed, Outcome::Undecided, Outcome::Failed, Outcome::Passed];
+        let outcomes = [
+            CheckOutcome::Passed,
+            CheckOutcome::Undecided,
+            CheckOutcome::Failed,
+            CheckOutcome::Passed,
+        ];
         let share = share("all".into(), outcomes.into_iter());
         assert_eq!((share.least, share.most), (0.25, 0.5));
         assert!(share.interval[0] < 0.25 && share.interval[1] > 0.5);

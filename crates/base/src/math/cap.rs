@@ -10,7 +10,7 @@
 use std::f64::consts::PI;
 
 /// How the horizon cuts a cone.
-enum Cut {
+enum HorizonCut {
     /// All of it is above.
     Above,
     /// None of it is.
@@ -33,9 +33,9 @@ enum Cut {
 pub fn projected_cap(cos_axis: f64, half_angle: f64) -> f64 {
     let sin_h = half_angle.sin();
     match cut(cos_axis, half_angle) {
-        Cut::Above => PI * sin_h * sin_h * cos_axis,
-        Cut::Below => 0.0,
-        Cut::Through { phi, psi } => {
+        HorizonCut::Above => PI * sin_h * sin_h * cos_axis,
+        HorizonCut::Below => 0.0,
+        HorizonCut::Through { phi, psi } => {
             let arc = (PI - phi) * sin_h * sin_h * cos_axis;
             let chord = 0.5 * (2.0 * psi).sin();
             // Rounding must not make a tiny part negative.
@@ -52,9 +52,9 @@ pub fn cap_solid_angle_above(cos_axis: f64, half_angle: f64) -> f64 {
     // 2 (1 - cos h) without cancellation.
     let per_azimuth = 4.0 * (0.5 * half_angle).sin().powi(2);
     match cut(cos_axis, half_angle) {
-        Cut::Above => PI * per_azimuth,
-        Cut::Below => 0.0,
-        Cut::Through { phi, psi } => {
+        HorizonCut::Above => PI * per_azimuth,
+        HorizonCut::Below => 0.0,
+        HorizonCut::Through { phi, psi } => {
             let tan_half_elevation = cos_axis / (1.0 + sin_from_cos(cos_axis));
             let triangles = 4.0 * (tan_half_elevation * (0.5 * psi).tan()).atan();
             ((PI - phi) * per_azimuth + triangles).max(0.0)
@@ -62,16 +62,16 @@ pub fn cap_solid_angle_above(cos_axis: f64, half_angle: f64) -> f64 {
     }
 }
 
-fn cut(cos_axis: f64, half_angle: f64) -> Cut {
+fn cut(cos_axis: f64, half_angle: f64) -> HorizonCut {
     let (sin_h, cos_h) = half_angle.sin_cos();
     // The elevation of the axis against the half-angle, by their sines: cosines are too coarse for
     // narrow cones.
     if cos_axis.abs() >= sin_h {
-        return if cos_axis > 0.0 { Cut::Above } else { Cut::Below };
+        return if cos_axis > 0.0 { HorizonCut::Above } else { HorizonCut::Below };
     }
     let cos_phi = (cos_axis * cos_h / (sin_h * sin_from_cos(cos_axis))).clamp(-1.0, 1.0);
     let sin_phi = sin_from_cos(cos_phi);
-    Cut::Through { phi: sin_phi.atan2(cos_phi), psi: (sin_h * sin_phi).min(1.0).asin() }
+    HorizonCut::Through { phi: sin_phi.atan2(cos_phi), psi: (sin_h * sin_phi).min(1.0).asin() }
 }
 
 /// sin x for a cosine of x, x in 0..=π.

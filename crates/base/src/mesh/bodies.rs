@@ -18,9 +18,9 @@ pub enum Normals {
 
 /// A mesh under construction whose sizes are known to be valid.
 #[derive(Default)]
-struct Body(MeshBuilder);
+struct BodyBuilder(MeshBuilder);
 
-impl Body {
+impl BodyBuilder {
     fn add(&mut self, corners: [DVec3; 3], normals: Option<[DVec3; 3]>, face: &str) {
         self.0.add(corners, normals, face).expect("sizes are finite and moderate");
     }
@@ -32,7 +32,7 @@ impl Body {
 
 /// A closed box from the origin to `size`, one face per side, no normals.
 pub fn block(size: DVec3) -> TriangleMesh {
-    let mut builder = Body::default();
+    let mut builder = BodyBuilder::default();
     let corner = |bits: usize| {
         DVec3::new((bits & 1) as f64, (bits >> 1 & 1) as f64, (bits >> 2 & 1) as f64) * size
     };
@@ -78,7 +78,7 @@ pub fn icosphere(radius: f64, level: u32, normals: Normals) -> TriangleMesh {
     for _ in 0..level {
         triangles = triangles.into_iter().flat_map(split).collect();
     }
-    let mut builder = Body::default();
+    let mut builder = BodyBuilder::default();
     for triangle in triangles {
         let unit = triangle.map(DVec3::normalize);
         let normals = (normals == Normals::Smooth).then_some(unit);
@@ -96,7 +96,7 @@ fn split([a, b, c]: [DVec3; 3]) -> [[DVec3; 3]; 4] {
 
 /// A closed round rod of `sides` facets along +z, faces entry, exit and wall; caps have flat normals if any.
 pub fn rod(radius: f64, length: f64, sides: u32, normals: Normals) -> TriangleMesh {
-    let mut builder = Body::default();
+    let mut builder = BodyBuilder::default();
     let rim = |side: u32, z: f64| {
         let (sin, cos) = (TAU * f64::from(side % sides) / f64::from(sides)).sin_cos();
         DVec3::new(radius * cos, radius * sin, z)
@@ -119,7 +119,7 @@ pub fn rod(radius: f64, length: f64, sides: u32, normals: Normals) -> TriangleMe
 
 /// A closed pipe of radius 1.5 along +z whose far end is cut by a plane at 45 degrees, faces entry, wall and mirror.
 pub fn mirror_pipe(sides: u32, normals: Normals) -> TriangleMesh {
-    let mut builder = Body::default();
+    let mut builder = BodyBuilder::default();
     // A facet centre, not an edge, lies where the wall meets the plane at 45 degrees.
     let point = |side: u32, far: bool| {
         let (sin, cos) = (TAU * (f64::from(side % sides) + 0.5) / f64::from(sides)).sin_cos();
@@ -145,7 +145,7 @@ pub fn mirror_pipe(sides: u32, normals: Normals) -> TriangleMesh {
 
 /// A closed prism of length 7 along +z over a counter-clockwise outline, one face, no normals.
 pub fn prism(outline: &[[f64; 2]]) -> TriangleMesh {
-    let mut builder = Body::default();
+    let mut builder = BodyBuilder::default();
     let points: Vec<DVec2> = outline.iter().map(|p| DVec2::from(*p)).collect();
     for triangle in crate::math::planar::triangulate(&points) {
         let [a, b, c] = triangle.map(|p| p.extend(0.0));

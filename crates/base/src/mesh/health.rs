@@ -68,7 +68,7 @@ pub struct MeshHealth {
     /// Parts that are not connected by an edge.
     pub shells: usize,
     /// How coarsely curved parts are faceted, if there are facets that no normals smooth.
-    pub facets: Option<Facets>,
+    pub facets: Option<CoarseFacets>,
 }
 
 impl MeshHealth {
@@ -84,7 +84,7 @@ impl MeshHealth {
 
 /// Facets that approximate a curved surface and are not smoothed by corner normals.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Facets {
+pub struct CoarseFacets {
     /// Typical angle between neighbours, degrees: area-weighted median of each triangle's largest
     /// angle.
     pub turn_deg: f64,
@@ -92,7 +92,7 @@ pub struct Facets {
     pub area_share: f64,
 }
 
-impl Facets {
+impl CoarseFacets {
     /// How many facets make a full turn.
     pub fn per_turn(&self) -> f64 {
         360.0 / self.turn_deg
@@ -203,7 +203,7 @@ struct Turn {
 /// by similar angles, as on a curved wall without normals. A piece with the normals of a curved
 /// surface bends light as that surface does, so it does not count, and neither do flat faces that
 /// meet at an angle.
-fn facets(mesh: &TriangleMesh, half_edges: &[HalfEdge]) -> Option<Facets> {
+fn facets(mesh: &TriangleMesh, half_edges: &[HalfEdge]) -> Option<CoarseFacets> {
     let piece_of = flat_pieces(mesh, half_edges);
     let turns = turns(mesh, half_edges, &piece_of);
     let turn = turns_of_walls(mesh.triangles.len(), &turns, &piece_of);
@@ -222,7 +222,7 @@ fn facets(mesh: &TriangleMesh, half_edges: &[HalfEdge]) -> Option<Facets> {
         below += area;
         below >= 0.5 * curved
     })?;
-    Some(Facets { turn_deg: *turn_deg, area_share: curved / total })
+    Some(CoarseFacets { turn_deg: *turn_deg, area_share: curved / total })
 }
 
 /// The flat piece of each triangle.

@@ -11,7 +11,7 @@ mod health;
 pub mod topology;
 
 pub use builder::{MeshBuilder, UnusableMesh};
-pub use health::{Defects, Facets, MeshHealth, health, normals_agree};
+pub use health::{CoarseFacets, Defects, MeshHealth, health, normals_agree};
 
 use crate::math::Aabb;
 use glam::DVec3;

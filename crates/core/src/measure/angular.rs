@@ -5,7 +5,7 @@
 //! cos γ₂)/2. Cells are treated as independent, which overestimates the errors of large shares of
 //! the flux rather than underestimating them.
 
-use crate::measure::counted::{Noisy, Part};
+use crate::measure::counted::{Noisy, WeightedValue};
 use crate::measure::evidence::{Evidence, counted};
 use crate::measure::{Measure, Status, beam, uniformity};
 use crate::scene::{Goniometer, SensorId};
@@ -69,14 +69,14 @@ pub struct PlaneCurve {
 }
 
 /// Flux per cell of a sphere with its standard error, lm or W.
-struct Sphere<'a> {
+struct SphereFlux<'a> {
     goniometer: &'a Goniometer,
     flux: Vec<(f64, f64)>,
     /// Flux of one count, lm or W.
     count: f64,
 }
 
-impl<'a> Sphere<'a> {
+impl<'a> SphereFlux<'a> {
     fn of(evidence: &Evidence<'_>, id: SensorId, goniometer: &'a Goniometer) -> Self {
         let flux = evidence.cell_flux(id, 0..goniometer.cells());
         let count = evidence.count_flux(&flux);
@@ -133,7 +133,7 @@ impl<'a> Sphere<'a> {
 }
 
 /// The curve in the plane of C, rad, and the half opposite.
-fn plane_curve(sphere: &Sphere<'_>, c: f64) -> PlaneCurve {
+fn plane_curve(sphere: &SphereFlux<'_>, c: f64) -> PlaneCurve {
     let gammas = ring_gammas(sphere.goniometer.gamma_cells);
     let [ahead, behind] = [sphere.half_plane(c), sphere.half_plane(c + PI)];
     let second = gammas.iter().map(|gamma| -gamma).zip(behind).rev();
@@ -163,7 +163,7 @@ pub(crate) fn table(
     id: SensorId,
     goniometer: &Goniometer,
 ) -> IntensityTable {
-    let sphere = Sphere::of(evidence, id, goniometer);
+    let sphere = SphereFlux::of(evidence, id, goniometer);
     let (rings, sectors) = (goniometer.gamma_cells, goniometer.c_cells);
     let cells = |f: fn(Noisy) -> f64| {
         Array2::from_shape_fn((rings, sectors), |(ring, c)| f(sphere.intensity(ring, &[c])))
@@ -193,7 +193,7 @@ pub(crate) fn measures(
     id: SensorId,
     goniometer: &Goniometer,
 ) -> IndexMap<String, Measure> {
-    let sphere = Sphere::of(evidence, id, goniometer);
+    let sphere = SphereFlux::of(evidence, id, goniometer);
     let curve = sphere.curve();
     let unit = evidence.scene.unit;
     let mut out = IndexMap::new();
@@ -224,10 +224,10 @@ pub(crate) fn sphere_cells(rings: usize, sectors: usize) -> impl Iterator<Item =
 }
 
 /// The largest intensity of any cell, corrected for noise.
-fn largest(evidence: &Evidence<'_>, sphere: &Sphere<'_>) -> Measure {
+fn largest(evidence: &Evidence<'_>, sphere: &SphereFlux<'_>) -> Measure {
     let Goniometer { c_cells, gamma_cells, .. } = *sphere.goniometer;
-    let cells: Vec<Part> = sphere_cells(gamma_cells, c_cells)
-        .map(|(ring, sector)| Part {
+    let cells: Vec<WeightedValue> = sphere_cells(gamma_cells, c_cells)
+        .map(|(ring, sector)| WeightedValue {
             read: sphere.intensity(ring, &[sector]),
             weight: sphere.goniometer.solid_angle(ring * c_cells),
         })
@@ -239,7 +239,7 @@ fn largest(evidence: &Evidence<'_>, sphere: &Sphere<'_>) -> Measure {
 /// Beam and field angle on the mean curve over C, and in the planes C0-C180 and C90-C270.
 fn angles(
     evidence: &Evidence<'_>,
-    sphere: &Sphere<'_>,
+    sphere: &SphereFlux<'_>,
     curve: &[Noisy],
     out: &mut IndexMap<String, Measure>,
 ) {

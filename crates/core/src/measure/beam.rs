@@ -9,7 +9,7 @@
 //! deg.
 
 use crate::measure::Status;
-use crate::measure::counted::{Noisy, Part, Sample};
+use crate::measure::counted::{Noisy, NoisySample, WeightedValue};
 use crate::measure::evidence::counted;
 use crate::measure::noise::Noise;
 use crate::measure::smoothing::Smoothing;
@@ -52,7 +52,7 @@ pub(crate) struct FullAngle {
 /// [`crate::measure::extremes`]): their scatter is the error, and most of their mean deviation is
 /// subtracted.
 pub(crate) fn full_angle(gammas: &[f64], halves: [&[Noisy]; 2], share: f64) -> Option<FullAngle> {
-    let plane = Plane::of(gammas, halves);
+    let plane = PlaneLine::of(gammas, halves);
     let read = &plane.sample.values;
     let peak = plane.parts[highest(read)].read;
     if peak.value <= 0.0 {
@@ -95,16 +95,17 @@ impl Averaging {
 }
 
 /// The curve in a plane through the pole, as one line across it.
-struct Plane {
-    parts: Vec<Part>,
-    sample: Sample,
+struct PlaneLine {
+    parts: Vec<WeightedValue>,
+    sample: NoisySample,
     rings: usize,
 }
 
-impl Plane {
+impl PlaneLine {
     /// A curve that is the same on both sides has the same noise on both, and is one half only.
     fn of(gammas: &[f64], [ahead, behind]: [&[Noisy]; 2]) -> Self {
-        let part = |(read, gamma): (&Noisy, &f64)| Part { read: *read, weight: gamma.sin() };
+        let part =
+            |(read, gamma): (&Noisy, &f64)| WeightedValue { read: *read, weight: gamma.sin() };
         let half = |half: &[Noisy]| half.iter().zip(gammas).map(part).collect::<Vec<_>>();
         let mut parts = half(ahead);
         if ahead != behind {
@@ -114,7 +115,7 @@ impl Plane {
             line.append(&mut parts);
             parts = line;
         }
-        Self { sample: Sample::of(&parts), parts, rings: ahead.len() }
+        Self { sample: NoisySample::of(&parts), parts, rings: ahead.len() }
     }
 
     /// Applies a function to both halves of a line.

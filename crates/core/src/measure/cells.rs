@@ -6,7 +6,7 @@
 //! counts. For the extremes they are merged with their neighbours along the rim until half a cell
 //! is full, so that all light of the sensor counts and the average lies between the extremes.
 
-use crate::measure::counted::{Noisy, Part};
+use crate::measure::counted::{Noisy, WeightedValue};
 use crate::measure::evidence::Evidence;
 use crate::scene::{Grid, Seeing, SensorId, SurfaceSensor};
 use glam::DVec2;
@@ -99,12 +99,12 @@ impl<'a> SensorCells<'a> {
     /// The parts for the extremes, in the unit of the map: the full cells, and those cut by the
     /// rim, some merged. The average is their mean by area. They follow a curve that fills the grid
     /// (Morton 1966), so that neighbours in the list are neighbours on the sensor.
-    pub(crate) fn for_extremes(&self) -> Vec<Part> {
+    pub(crate) fn for_extremes(&self) -> Vec<WeightedValue> {
         let full = (0..self.areas.len()).filter(|&cell| self.is_full(cell)).map(|cell| vec![cell]);
         let mut groups: Vec<Vec<usize>> = full.chain(self.rim()).collect();
         let (columns, _) = self.grid.shape();
         groups.sort_by_cached_key(|cells| interleaved(cells[0] % columns, cells[0] / columns));
-        let part = |cells: Vec<usize>| Part {
+        let part = |cells: Vec<usize>| WeightedValue {
             weight: cells.iter().map(|&cell| self.areas[cell]).sum(),
             read: self.mean(cells),
         };

@@ -25,7 +25,7 @@ const SUGGESTIONS: usize = 3;
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Verdict {
     /// The outcome.
-    pub outcome: Outcome,
+    pub outcome: CheckOutcome,
     /// A sentence: value, demand, and by how much.
     pub reason: String,
 }
@@ -33,7 +33,7 @@ pub struct Verdict {
 /// The outcome of a check.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Outcome {
+pub enum CheckOutcome {
     /// The demand is met.
     Passed,
     /// The error bar leaves it open.
@@ -61,7 +61,7 @@ pub fn verdict(check: &Check, measures: &Measures) -> Verdict {
 }
 
 fn judge(check: &Check, measure: &Measure) -> Verdict {
-    let mut findings: Vec<(Outcome, String)> = Vec::new();
+    let mut findings: Vec<(CheckOutcome, String)> = Vec::new();
     findings.extend(check.min.map(|min| limit(measure, min, Bound::Least)));
     findings.extend(check.max.map(|max| limit(measure, max, Bound::Greatest)));
     findings.extend(check.equals.map(|expected| equality(check, measure, expected)));
@@ -69,14 +69,15 @@ fn judge(check: &Check, measure: &Measure) -> Verdict {
         && (measure.std_error > wanted || measure.std_error.is_nan())
     {
         let text = format!("its standard error is not below {wanted}");
-        findings.push((Outcome::Undecided, text));
+        findings.push((CheckOutcome::Undecided, text));
     }
     if let Some(doubt) = doubt(measure) {
         // A numerical failure cannot be relied on either.
-        findings.retain(|(outcome, _)| *outcome == Outcome::Undecided);
-        findings.push((Outcome::Undecided, doubt.to_owned()));
+        findings.retain(|(outcome, _)| *outcome == CheckOutcome::Undecided);
+        findings.push((CheckOutcome::Undecided, doubt.to_owned()));
     }
-    let outcome = findings.iter().map(|(outcome, _)| *outcome).max().unwrap_or(Outcome::Passed);
+    let outcome =
+        findings.iter().map(|(outcome, _)| *outcome).max().unwrap_or(CheckOutcome::Passed);
     // Of several demands, only the deciding ones are reported.
     let told: Vec<&str> =
         findings.iter().filter(|(own, _)| *own == outcome).map(|(_, text)| text.as_str()).collect();
@@ -103,7 +104,7 @@ enum Bound {
     Greatest,
 }
 
-fn limit(measure: &Measure, limit: f64, bound: Bound) -> (Outcome, String) {
+fn limit(measure: &Measure, limit: f64, bound: Bound) -> (CheckOutcome, String) {
     let (room, word) = match bound {
         Bound::Least => (measure.value - limit, "least"),
         Bound::Greatest => (limit - measure.value, "most"),
@@ -113,14 +114,14 @@ fn limit(measure: &Measure, limit: f64, bound: Bound) -> (Outcome, String) {
     let wanted = wanted.trim_end();
     let error = measure.total_error();
     if !room.is_finite() || !error.is_finite() {
-        return (Outcome::Undecided, format!("{wanted} is wanted, which is not known"));
+        return (CheckOutcome::Undecided, format!("{wanted} is wanted, which is not known"));
     }
     if room.abs() <= rounding(measure, limit) {
-        return (Outcome::Passed, format!("{wanted} is wanted, met to rounding"));
+        return (CheckOutcome::Passed, format!("{wanted} is wanted, met to rounding"));
     }
     if room.abs() < LIMIT_ERRORS * error {
         return (
-            Outcome::Undecided,
+            CheckOutcome::Undecided,
             format!("{wanted} is wanted, which is within {LIMIT_ERRORS} errors"),
         );
     }
@@ -129,9 +130,12 @@ fn limit(measure: &Measure, limit: f64, bound: Bound) -> (Outcome, String) {
     let apart =
         if errors < FAR_ERRORS { format!(", {errors:.1} errors away") } else { String::new() };
     if room >= 0.0 {
-        (Outcome::Passed, format!("{wanted} is wanted{apart}"))
+        (CheckOutcome::Passed, format!("{wanted} is wanted{apart}"))
     } else {
-        (Outcome::Failed, format!("{wanted} is wanted, missed by {}{apart}", format_value(-room)))
+        (
+            CheckOutcome::Failed,
+            format!("{wanted} is wanted, missed by {}{apart}", format_value(-room)),
+        )
     }
 }
 
@@ -141,7 +145,7 @@ fn rounding(measure: &Measure, expected: f64) -> f64 {
     if measure.total_error() <= room { room } else { 0.0 }
 }
 
-fn equality(check: &Check, measure: &Measure, expected: f64) -> (Outcome, String) {
+fn equality(check: &Check, measure: &Measure, expected: f64) -> (CheckOutcome, String) {
     let deviation = measure.value - expected;
     let error = measure.total_error();
     let default = if check.within.is_some() { 0.0 } else { DEFAULT_SIGMAS };
@@ -162,13 +166,13 @@ fn equality(check: &Check, measure: &Measure, expected: f64) -> (Outcome, String
         && expected != 0.0
         && deviation.abs() > check.within.unwrap_or(0.0)
     {
-        (Outcome::Undecided, format!("{expected} is expected, nothing was counted"))
+        (CheckOutcome::Undecided, format!("{expected} is expected, nothing was counted"))
     } else if !deviation.is_finite() || !allowed.is_finite() {
-        (Outcome::Undecided, format!("{expected} is expected, its error is not known"))
+        (CheckOutcome::Undecided, format!("{expected} is expected, its error is not known"))
     } else if deviation.abs() <= allowed {
-        (Outcome::Passed, text)
+        (CheckOutcome::Passed, text)
     } else {
-        (Outcome::Failed, text)
+        (CheckOutcome::Failed, text)
     }
 }
 
@@ -180,7 +184,7 @@ fn unknown<'a>(check: &Check, names: impl Iterator<Item = &'a str>) -> Verdict {
         format!("; nearest names: {}", nearest.join(", "))
     };
     let reason = format!("there is no measure `{}`{hint}", check.measure);
-    Verdict { outcome: Outcome::Unknown, reason }
+    Verdict { outcome: CheckOutcome::Unknown, reason }
 }
 
 /// The known names nearest to a word, the nearest first.
@@ -210,44 +214,44 @@ mod tests {
         }
     }
 
-    fn outcome(check: &Check, measure: &Measure) -> Outcome {
+    fn outcome(check: &Check, measure: &Measure) -> CheckOutcome {
         judge(check, measure).outcome
     }
 
     #[test]
     fn limits_within_three_errors_are_undecided() {
         let least = Check { min: Some(0.60), ..check() };
-        assert_eq!(outcome(&least, &measure(0.635, 0.01, "lm")), Outcome::Passed);
-        assert_eq!(outcome(&least, &measure(0.625, 0.01, "lm")), Outcome::Undecided);
-        assert_eq!(outcome(&least, &measure(0.575, 0.01, "lm")), Outcome::Undecided);
-        assert_eq!(outcome(&least, &measure(0.565, 0.01, "lm")), Outcome::Failed);
+        assert_eq!(outcome(&least, &measure(0.635, 0.01, "lm")), CheckOutcome::Passed);
+        assert_eq!(outcome(&least, &measure(0.625, 0.01, "lm")), CheckOutcome::Undecided);
+        assert_eq!(outcome(&least, &measure(0.575, 0.01, "lm")), CheckOutcome::Undecided);
+        assert_eq!(outcome(&least, &measure(0.565, 0.01, "lm")), CheckOutcome::Failed);
         let most = Check { max: Some(0.60), ..check() };
-        assert_eq!(outcome(&most, &measure(0.635, 0.01, "lm")), Outcome::Failed);
-        assert_eq!(outcome(&most, &measure(0.565, 0.01, "lm")), Outcome::Passed);
+        assert_eq!(outcome(&most, &measure(0.635, 0.01, "lm")), CheckOutcome::Failed);
+        assert_eq!(outcome(&most, &measure(0.565, 0.01, "lm")), CheckOutcome::Passed);
         let mut biased = measure(0.565, 0.01, "lm");
         biased.bias = Some(0.01);
-        assert_eq!(outcome(&most, &biased), Outcome::Undecided);
+        assert_eq!(outcome(&most, &biased), CheckOutcome::Undecided);
     }
 
     #[test]
     fn a_value_without_error_may_touch_its_limit() {
         let none = Check { max: Some(0.0), ..check() };
-        assert_eq!(outcome(&none, &measure(0.0, 0.0, "lm")), Outcome::Passed);
-        assert_eq!(outcome(&none, &measure(1e-12, 0.0, "lm")), Outcome::Failed);
+        assert_eq!(outcome(&none, &measure(0.0, 0.0, "lm")), CheckOutcome::Passed);
+        assert_eq!(outcome(&none, &measure(1e-12, 0.0, "lm")), CheckOutcome::Failed);
     }
 
     #[test]
     fn a_value_without_noise_is_judged_up_to_rounding() {
         let lossless = measure(1.0 + 4.5e-16, 0.0, "1");
         let most = Check { max: Some(1.0), ..check() };
-        assert_eq!(outcome(&most, &lossless), Outcome::Passed);
-        assert_eq!(outcome(&most, &measure(1.0 + 1e-8, 0.0, "1")), Outcome::Failed);
+        assert_eq!(outcome(&most, &lossless), CheckOutcome::Passed);
+        assert_eq!(outcome(&most, &measure(1.0 + 1e-8, 0.0, "1")), CheckOutcome::Failed);
         let rounded = measure(1.0 + 4.5e-16, 1e-17, "1");
-        assert_eq!(outcome(&most, &rounded), Outcome::Passed);
+        assert_eq!(outcome(&most, &rounded), CheckOutcome::Passed);
         let exact = Check { equals: Some(1.0), sigmas: Some(4.0), ..check() };
-        assert_eq!(outcome(&exact, &lossless), Outcome::Passed);
-        assert_eq!(outcome(&exact, &rounded), Outcome::Passed);
-        assert_eq!(outcome(&exact, &measure(1.0 + 1e-8, 0.0, "1")), Outcome::Failed);
+        assert_eq!(outcome(&exact, &lossless), CheckOutcome::Passed);
+        assert_eq!(outcome(&exact, &rounded), CheckOutcome::Passed);
+        assert_eq!(outcome(&exact, &measure(1.0 + 1e-8, 0.0, "1")), CheckOutcome::Failed);
         for value in [1.0 + 4.5e-16, 1.0 + 1e-8, 0.0, 2.0] {
             for check in [&most, &exact] {
                 let reason = judge(check, &measure(value, 0.0, "1")).reason;
@@ -255,29 +259,29 @@ mod tests {
             }
         }
         // Noise is not rounding.
-        assert_eq!(outcome(&most, &measure(1.0 + 1e-10, 1e-6, "1")), Outcome::Undecided);
+        assert_eq!(outcome(&most, &measure(1.0 + 1e-10, 1e-6, "1")), CheckOutcome::Undecided);
     }
 
     #[test]
     fn equality_passes_by_errors_or_by_an_absolute_deviation() {
         let value = measure(0.530, 0.01, "lm");
         let equals = |within, sigmas| Check { equals: Some(0.5), within, sigmas, ..check() };
-        assert_eq!(outcome(&equals(None, None), &value), Outcome::Passed);
-        assert_eq!(outcome(&equals(None, Some(2.0)), &value), Outcome::Failed);
-        assert_eq!(outcome(&equals(Some(0.02), None), &value), Outcome::Failed);
-        assert_eq!(outcome(&equals(Some(0.031), None), &value), Outcome::Passed);
-        assert_eq!(outcome(&equals(Some(0.02), Some(4.0)), &value), Outcome::Passed);
+        assert_eq!(outcome(&equals(None, None), &value), CheckOutcome::Passed);
+        assert_eq!(outcome(&equals(None, Some(2.0)), &value), CheckOutcome::Failed);
+        assert_eq!(outcome(&equals(Some(0.02), None), &value), CheckOutcome::Failed);
+        assert_eq!(outcome(&equals(Some(0.031), None), &value), CheckOutcome::Passed);
+        assert_eq!(outcome(&equals(Some(0.02), Some(4.0)), &value), CheckOutcome::Passed);
         let exact = Check { equals: Some(0.0), ..check() };
-        assert_eq!(outcome(&exact, &measure(0.0, 0.0, "lm")), Outcome::Passed);
-        assert_eq!(outcome(&exact, &measure(0.0, f64::INFINITY, "lm")), Outcome::Undecided);
+        assert_eq!(outcome(&exact, &measure(0.0, 0.0, "lm")), CheckOutcome::Passed);
+        assert_eq!(outcome(&exact, &measure(0.0, f64::INFINITY, "lm")), CheckOutcome::Undecided);
     }
 
     #[test]
     fn an_error_above_its_limit_leaves_the_check_undecided() {
         let strict = Check { equals: Some(0.5), max_std_error: Some(0.001), ..check() };
-        assert_eq!(outcome(&strict, &measure(0.5, 0.01, "lm")), Outcome::Undecided);
-        assert_eq!(outcome(&strict, &measure(0.5, 0.001, "lm")), Outcome::Passed);
-        assert_eq!(outcome(&strict, &measure(0.6, 0.001, "lm")), Outcome::Failed);
+        assert_eq!(outcome(&strict, &measure(0.5, 0.01, "lm")), CheckOutcome::Undecided);
+        assert_eq!(outcome(&strict, &measure(0.5, 0.001, "lm")), CheckOutcome::Passed);
+        assert_eq!(outcome(&strict, &measure(0.6, 0.001, "lm")), CheckOutcome::Failed);
     }
 
     #[test]
@@ -285,15 +289,15 @@ mod tests {
         let least = Check { min: Some(0.1), ..check() };
         let mut few = measure(0.9, 0.01, "lm");
         few.status = Status::TooFew;
-        assert_eq!(outcome(&least, &few), Outcome::Undecided);
+        assert_eq!(outcome(&least, &few), CheckOutcome::Undecided);
         let mut dark = measure(0.0, 1e-6, "lm");
         dark.status = Status::NoSignal;
-        assert_eq!(outcome(&least, &dark), Outcome::Failed);
+        assert_eq!(outcome(&least, &dark), CheckOutcome::Failed);
         let stray = |max| Check { max: Some(max), ..check() };
-        assert_eq!(outcome(&stray(1e-3), &dark), Outcome::Passed);
-        assert_eq!(outcome(&stray(2e-6), &dark), Outcome::Undecided);
+        assert_eq!(outcome(&stray(1e-3), &dark), CheckOutcome::Passed);
+        assert_eq!(outcome(&stray(2e-6), &dark), CheckOutcome::Undecided);
         dark.std_error = f64::INFINITY;
-        assert_eq!(outcome(&stray(1e-3), &dark), Outcome::Undecided);
+        assert_eq!(outcome(&stray(1e-3), &dark), CheckOutcome::Undecided);
     }
 
     #[test]
@@ -310,7 +314,7 @@ mod tests {
     fn an_unknown_measure_is_answered_with_the_nearest_names() {
         let verdict =
             unknown(&check(), ["far.flux", "exit.flux.from.led", "balance.cut"].into_iter());
-        assert_eq!(verdict.outcome, Outcome::Unknown);
+        assert_eq!(verdict.outcome, CheckOutcome::Unknown);
         assert!(verdict.reason.contains("nearest names: exit.flux.from.led"), "{}", verdict.reason);
     }
 }

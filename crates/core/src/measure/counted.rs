@@ -20,7 +20,7 @@ pub(crate) struct Noisy {
 
 /// A value with its weight in the average, such as its area.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Part {
+pub(crate) struct WeightedValue {
     pub(crate) read: Noisy,
     pub(crate) weight: f64,
 }
@@ -45,7 +45,7 @@ impl Noisy {
 
 /// Values and the size of their noise.
 #[derive(Debug)]
-pub(crate) struct Sample {
+pub(crate) struct NoisySample {
     /// Shares of the weight.
     pub(crate) weights: Vec<f64>,
     /// As read, but not negative.
@@ -55,9 +55,9 @@ pub(crate) struct Sample {
     scales: Multiscale,
 }
 
-impl Sample {
+impl NoisySample {
     /// From at least one value. Neighbours in the list are neighbours on the sensor.
-    pub(crate) fn of(parts: &[Part]) -> Self {
+    pub(crate) fn of(parts: &[WeightedValue]) -> Self {
         let total: f64 = parts.iter().map(|part| part.weight).sum();
         let weights: Vec<f64> = parts.iter().map(|part| part.weight / total).collect();
         let counts: Vec<f64> = parts.iter().map(|part| part.read.count_size()).collect();

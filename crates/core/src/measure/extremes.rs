@@ -11,7 +11,7 @@
 //!
 //! This module does not know sensors. Units are those of its input.
 
-use crate::measure::counted::{Part, Sample};
+use crate::measure::counted::{NoisySample, WeightedValue};
 use crate::measure::noise::Noise;
 use crate::tally::Tally;
 
@@ -73,13 +73,13 @@ pub(crate) struct Evenness<T> {
 }
 
 /// The largest value alone.
-pub(crate) fn maximum(parts: &[Part]) -> Extreme {
+pub(crate) fn maximum(parts: &[WeightedValue]) -> Extreme {
     evenness(parts).max
 }
 
 /// Extremes and spread of at least one value. Neighbours in the list are neighbours on the sensor.
-pub(crate) fn evenness(parts: &[Part]) -> Evenness<Extreme> {
-    let sample = Sample::of(parts);
+pub(crate) fn evenness(parts: &[WeightedValue]) -> Evenness<Extreme> {
+    let sample = NoisySample::of(parts);
     let raw = statistics(&sample, &sample.values, &sample.values, 0.0);
     if parts.iter().any(|part| !part.read.std_error.is_finite()) {
         return raw.map(unknown);
@@ -98,15 +98,15 @@ pub(crate) fn evenness(parts: &[Part]) -> Evenness<Extreme> {
     };
     let mean = sample.weights.iter().zip(&sample.values).map(|(w, value)| w * value).sum::<f64>();
     let [min, max] = [
-        judge(Side::Smallest, |one| one.min, &drawn.min).below(mean).not_counted(count),
-        judge(Side::Largest, |one| one.max, &drawn.max).above(mean),
+        judge(ExtremeSide::Smallest, |one| one.min, &drawn.min).below(mean).not_counted(count),
+        judge(ExtremeSide::Largest, |one| one.max, &drawn.max).above(mean),
     ];
     let relative = |extreme: Extreme, whole: f64| extreme.not_counted(count / whole).below(1.0);
     Evenness {
         min,
         max,
-        min_avg: relative(judge(Side::Smallest, |one| one.min_avg, &drawn.min_avg), mean),
-        min_max: relative(judge(Side::Ratio, |one| one.min_max, &drawn.min_max), max.value),
+        min_avg: relative(judge(ExtremeSide::Smallest, |one| one.min_avg, &drawn.min_avg), mean),
+        min_max: relative(judge(ExtremeSide::Ratio, |one| one.min_max, &drawn.min_max), max.value),
         cv: variation([&raw, &found], &drawn),
         variance: exact(found.variance),
     }
@@ -122,7 +122,7 @@ impl<T: Copy> Evenness<T> {
 }
 
 /// The statistics of values, with the extremes of `denoised` and a CV without the variance of this noise.
-fn statistics(sample: &Sample, values: &[f64], denoised: &[f64], noise: f64) -> Evenness<f64> {
+fn statistics(sample: &NoisySample, values: &[f64], denoised: &[f64], noise: f64) -> Evenness<f64> {
     let mean: f64 = sample.weights.iter().zip(values).map(|(weight, value)| weight * value).sum();
     let squares = sample.weights.iter().zip(values);
     let read: f64 = squares.map(|(weight, value)| weight * (value - mean).powi(2)).sum();
@@ -140,18 +140,18 @@ fn statistics(sample: &Sample, values: &[f64], denoised: &[f64], noise: f64) -> 
 }
 
 /// The variance that the noise of values alone would cause, Σ w (1 - w) σ².
-fn noise_variance(sample: &Sample, values: &[f64]) -> f64 {
+fn noise_variance(sample: &NoisySample, values: &[f64]) -> f64 {
     let parts = sample.weights.iter().zip(values).zip(&sample.counts);
     parts.map(|((weight, value), count)| weight * (1.0 - weight) * value * count).sum()
 }
 
-fn found(sample: &Sample, values: &[f64]) -> Evenness<f64> {
+fn found(sample: &NoisySample, values: &[f64]) -> Evenness<f64> {
     let denoised = sample.without_noise(values);
     statistics(sample, values, &denoised, noise_variance(sample, values))
 }
 
 /// The distribution of the statistics when counts are redrawn about some means.
-fn scatter(sample: &Sample, means: &[f64]) -> Evenness<Tally> {
+fn scatter(sample: &NoisySample, means: &[f64]) -> Evenness<Tally> {
     let mut noise = Noise::new();
     let few = (DRAWS / means.len()) as u64;
     let mut all = statistics(sample, means, means, 0.0).map(|_| Tally::default());
@@ -193,7 +193,7 @@ fn variation([raw, found]: [&Evenness<f64>; 2], drawn: &Evenness<Tally>) -> Extr
 }
 
 #[derive(Clone, Copy)]
-enum Side {
+enum ExtremeSide {
     Smallest,
     Largest,
     /// Of the smallest over the largest.
@@ -202,13 +202,18 @@ enum Side {
 
 /// A statistic of some cells as read, of the values without noise, and of the centre of the
 /// drawings, corrected by what the drawings give.
-fn corrected(side: Side, cells: usize, [raw, found, centre]: [f64; 3], drawn: &Tally) -> Extreme {
+fn corrected(
+    side: ExtremeSide,
+    cells: usize,
+    [raw, found, centre]: [f64; 3],
+    drawn: &Tally,
+) -> Extreme {
     let deviation = drawn.mean() - centre;
     let std_error = (1.0 + SCATTER * (cells as f64).ln()) * drawn.std_deviation();
     let [below, above] = match side {
-        Side::Smallest => [OUTWARD, INWARD],
-        Side::Largest => [INWARD, OUTWARD],
-        Side::Ratio => [OUTWARD, INWARD_OF_BOTH],
+        ExtremeSide::Smallest => [OUTWARD, INWARD],
+        ExtremeSide::Largest => [INWARD, OUTWARD],
+        ExtremeSide::Ratio => [OUTWARD, INWARD_OF_BOTH],
     };
     let value = (found - BIAS_TAKEN * deviation).max(0.0);
     let reach = TWO_SIDED_95 * std_error;
@@ -272,12 +277,12 @@ mod tests {
     fn what_is_not_counted_is_known_to_a_count_and_without_errors_nothing_is_known() {
         let dark = Noisy { value: 0.0, std_error: 0.0, count: 0.1 };
         let lit = Noisy { value: 1000.0, std_error: 10.0, count: 0.1 };
-        let parts = [lit, lit, dark, dark].map(|read| Part { read, weight: 1.0 });
+        let parts = [lit, lit, dark, dark].map(|read| WeightedValue { read, weight: 1.0 });
         let least = evenness(&parts).min;
         assert_eq!((least.value, least.std_error), (0.0, 0.5f64.sqrt() * 0.1));
         assert!((least.interval[1] - 0.369).abs() < 1e-3, "{least:?}");
         let lost = Noisy { std_error: f64::INFINITY, ..lit };
-        let parts = [lit, lost].map(|read| Part { read, weight: 1.0 });
+        let parts = [lit, lost].map(|read| WeightedValue { read, weight: 1.0 });
         assert_eq!(evenness(&parts).max.interval, [0.0, f64::INFINITY]);
     }
 

@@ -21,7 +21,7 @@ pub(crate) fn totals(evidence: &Evidence<'_>, id: SensorId) -> IndexMap<String, 
 }
 
 /// Light that is measured separately: from a source, or from a light group.
-struct Part<'a> {
+struct LightPart<'a> {
     name: &'a str,
     sources: Vec<SourceId>,
     /// Emitted flux, lm or W.
@@ -29,13 +29,13 @@ struct Part<'a> {
 }
 
 /// All sources, then all light groups.
-fn parts(scene: &Scene) -> Vec<Part<'_>> {
-    let sources = scene.sources.iter().enumerate().map(|(index, source)| Part {
+fn parts(scene: &Scene) -> Vec<LightPart<'_>> {
+    let sources = scene.sources.iter().enumerate().map(|(index, source)| LightPart {
         name: &source.name,
         sources: vec![SourceId::new(index)],
         emitted: source.flux,
     });
-    let groups = scene.light.groups.iter().map(|group| Part {
+    let groups = scene.light.groups.iter().map(|group| LightPart {
         name: &group.name,
         sources: group.sources.clone(),
         emitted: scene.flux_of(&group.sources),
@@ -44,12 +44,13 @@ fn parts(scene: &Scene) -> Vec<Part<'_>> {
 }
 
 /// The same, except the only source of a scene, which is all light.
-fn parts_beside_all(scene: &Scene) -> Vec<Part<'_>> {
-    let is_all = |part: &Part<'_>| scene.sources.len() == 1 && part.name == scene.sources[0].name;
+fn parts_beside_all(scene: &Scene) -> Vec<LightPart<'_>> {
+    let is_all =
+        |part: &LightPart<'_>| scene.sources.len() == 1 && part.name == scene.sources[0].name;
     parts(scene).into_iter().filter(|part| !is_all(part)).collect()
 }
 
-impl Part<'_> {
+impl LightPart<'_> {
     /// Its share of the flux on a sensor, times a factor that leads to `unit`.
     fn sum(&self, evidence: &Evidence<'_>, id: SensorId, factor: f64, unit: &str) -> Measure {
         if self.emitted == 0.0 {

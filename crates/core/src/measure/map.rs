@@ -5,10 +5,10 @@
 mod tests;
 
 use crate::measure::cells::SensorCells;
-use crate::measure::counted::{Noisy, Part};
+use crate::measure::counted::{Noisy, WeightedValue};
 use crate::measure::evidence::Evidence;
 use crate::measure::points;
-use crate::measure::uniformity::{Field, Uniformity, UniformitySummary, uniformity};
+use crate::measure::uniformity::{Uniformity, UniformitySummary, ValueField, uniformity};
 use crate::scene::{Grid, Seeing, SensorId, SurfaceSensor};
 use glam::DVec2;
 use ndarray::Array2;
@@ -40,7 +40,7 @@ pub struct SensorMap {
     /// count individually for the extremes, others together with their neighbours along the rim.
     pub on_sensor: Array2<f64>,
     /// Where the cells are.
-    pub axes: Axes,
+    pub axes: MapAxes,
     /// Area of the sensor, mm².
     pub area_mm2: f64,
     /// Extremes and uniformity.
@@ -50,7 +50,7 @@ pub struct SensorMap {
 /// Positions of the cells of a map, on the unrolled face, or in the field of view of an image.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Axes {
+pub enum MapAxes {
     /// Columns and rows.
     Cartesian {
         /// Edges of the columns, mm.
@@ -74,7 +74,7 @@ pub enum Axes {
     },
 }
 
-impl Axes {
+impl MapAxes {
     /// Unit of the width and height of a cell.
     pub fn unit(&self) -> &'static str {
         match self {
@@ -162,7 +162,7 @@ fn summary(
     seen: &SensorCells<'_>,
 ) -> UniformitySummary {
     let parts_of_it = seen.for_extremes();
-    let field = Field {
+    let field = ValueField {
         cells: &parts_of_it,
         avg: average(evidence, id, seen),
         counts: seen.counts_per_cell(parts_of_it.len()),
@@ -199,24 +199,24 @@ fn average(evidence: &Evidence<'_>, id: SensorId, seen: &SensorCells<'_>) -> [f6
     [mean.value, mean.std_error]
 }
 
-fn at_points(points: &[Vec<usize>], seen: &SensorCells<'_>, field: &Field<'_>) -> Uniformity {
+fn at_points(points: &[Vec<usize>], seen: &SensorCells<'_>, field: &ValueField<'_>) -> Uniformity {
     let read: Vec<Noisy> = points.iter().map(|cells| seen.mean(cells.iter().copied())).collect();
     let n = read.len() as f64;
     let sum: f64 = read.iter().map(|point| point.value).sum();
     // Points that read the same cells count once for the extremes, since their noise is the same.
-    let mut distinct: Vec<Part> = Vec::new();
+    let mut distinct: Vec<WeightedValue> = Vec::new();
     let mut variance = 0.0;
     for (index, point) in read.iter().enumerate() {
         if !points[..index].contains(&points[index]) {
             let times = points.iter().filter(|cells| **cells == points[index]).count() as f64;
             variance += (times * point.std_error).powi(2);
-            distinct.push(Part { read: *point, weight: times });
+            distinct.push(WeightedValue { read: *point, weight: times });
         }
     }
-    uniformity(&Field { cells: &distinct, avg: [sum / n, variance.sqrt() / n], ..*field }).0
+    uniformity(&ValueField { cells: &distinct, avg: [sum / n, variance.sqrt() / n], ..*field }).0
 }
 
-fn axes(sensor: &SurfaceSensor) -> Axes {
+fn axes(sensor: &SurfaceSensor) -> MapAxes {
     let edges = |from: f64, to: f64, bins: usize| -> Vec<f64> {
         (0..=bins).map(|i| from + (to - from) * i as f64 / bins as f64).collect()
     };
@@ -228,11 +228,11 @@ fn axes(sensor: &SurfaceSensor) -> Axes {
                 tangents.into_iter().map(|tangent| tangent.atan().to_degrees()).collect()
             };
             match &sensor.seeing {
-                Seeing::All | Seeing::Views(_) => Axes::Cartesian { u_mm: u, v_mm: v },
-                Seeing::Pixels(_) => Axes::Angular { u_deg: angles(u), v_deg: angles(v) },
+                Seeing::All | Seeing::Views(_) => MapAxes::Cartesian { u_mm: u, v_mm: v },
+                Seeing::Pixels(_) => MapAxes::Angular { u_deg: angles(u), v_deg: angles(v) },
             }
         }
-        Grid::Polar { radius, rings, sectors } => Axes::Polar {
+        Grid::Polar { radius, rings, sectors } => MapAxes::Polar {
             radius_mm: edges(0.0, *radius, *rings),
             sector_deg: edges(0.0, 360.0, *sectors),
         },

@@ -38,9 +38,11 @@ mod uniformity;
 pub use angular::{IntensityTable, PlaneCurve};
 pub use balance::Balance;
 pub use cells::not_below_zero;
-pub use check::{Outcome, Verdict, nearest, verdict};
-pub use map::{Axes, SensorMap};
-pub use paths::{Action, DepthBin, Extent, LostPaths, PathClass, PathStep, SensorPaths, strongest};
+pub use check::{CheckOutcome, Verdict, nearest, verdict};
+pub use map::{MapAxes, SensorMap};
+pub use paths::{
+    Action, ClassExtent, DepthBin, LostPaths, PathClass, PathStep, SensorPaths, strongest,
+};
 pub use record::{Measure, Status};
 pub use replicates::Replicates;
 pub use uniformity::{Statistic, Uniformity, UniformitySummary};

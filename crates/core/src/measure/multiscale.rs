@@ -31,12 +31,12 @@ const FIRM: f64 = 2.5;
 pub(crate) struct Multiscale {
     leaves: usize,
     /// Children before parents; the last one spans all.
-    nodes: Vec<Node>,
+    nodes: Vec<ScaleNode>,
     levels: usize,
 }
 
 #[derive(Debug)]
-struct Node {
+struct ScaleNode {
     /// Positions of both halves: leaves first, then nodes.
     halves: [usize; 2],
     /// Their shares of the weight.
@@ -47,7 +47,7 @@ struct Node {
 }
 
 /// The known values of a part of the list.
-struct Span {
+struct ListSpan {
     place: usize,
     weight: f64,
     /// Variance of the mean over the mean.
@@ -63,9 +63,9 @@ impl Multiscale {
         tree
     }
 
-    fn halve(&mut self, first: usize, weights: &[f64], noise: &[f64], level: usize) -> Span {
+    fn halve(&mut self, first: usize, weights: &[f64], noise: &[f64], level: usize) -> ListSpan {
         if let [weight] = weights {
-            return Span { place: first, weight: *weight, noise: noise[0] };
+            return ListSpan { place: first, weight: *weight, noise: noise[0] };
         }
         let half = weights.len() / 2;
         let a = self.halve(first, &weights[..half], &noise[..half], level + 1);
@@ -73,10 +73,10 @@ impl Multiscale {
         let weight = a.weight + b.weight;
         let shares = [a.weight / weight, b.weight / weight];
         let (halves, noise) = ([a.place, b.place], a.noise + b.noise);
-        self.nodes.push(Node { halves, shares, level, noise });
+        self.nodes.push(ScaleNode { halves, shares, level, noise });
         self.levels = self.levels.max(level + 1);
         let noise = shares[0].powi(2) * a.noise + shares[1].powi(2) * b.noise;
-        Span { place: self.leaves + self.nodes.len() - 1, weight, noise }
+        ListSpan { place: self.leaves + self.nodes.len() - 1, weight, noise }
     }
 
     /// The values without their noise.
@@ -95,7 +95,7 @@ impl Multiscale {
                 *count += 1.0;
             }
         }
-        let scales: Vec<Scale> = scales.into_iter().map(Scale::of).collect();
+        let scales: Vec<ShrunkScale> = scales.into_iter().map(ShrunkScale::of).collect();
         let mut denoised = means.clone();
         for (index, node) in self.nodes.iter().enumerate().rev() {
             let mean = denoised[self.leaves + index];
@@ -114,14 +114,14 @@ impl Multiscale {
 }
 
 /// How contrasts of one scale are shrunk.
-struct Scale {
+struct ShrunkScale {
     /// The factor applied to all, 1.
     factor: f64,
     /// The d²/s² up to which no contrast is kept individually.
     threshold: f64,
 }
 
-impl Scale {
+impl ShrunkScale {
     fn of((excess, count): (f64, f64)) -> Self {
         let count = f64::max(count, 1.0);
         let signal = ((excess - EXCESS * (2.0 * count).sqrt()) / count).max(0.0);

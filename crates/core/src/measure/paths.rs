@@ -56,7 +56,7 @@ pub struct PathClass {
     /// The steps.
     pub steps: Vec<PathStep>,
     /// Whether the steps are complete.
-    pub extent: Extent,
+    pub extent: ClassExtent,
     /// Share of the sensor's flux, 1.
     pub share: f64,
     /// Mean number of interfaces met.
@@ -85,7 +85,7 @@ pub enum Action {
 /// Whether the steps of a class are complete.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Extent {
+pub enum ClassExtent {
     /// They are complete.
     Whole,
     /// Only the first steps are kept.
@@ -130,7 +130,7 @@ fn lost(evidence: &Evidence<'_>, id: SensorId) -> Option<LostPaths> {
 /// The first `count` of sorted classes, and all others as one at the end.
 pub fn strongest(classes: &[PathClass], count: usize) -> Vec<PathClass> {
     let (named, mut rest): (Vec<&PathClass>, Vec<&PathClass>) =
-        classes.iter().partition(|class| class.extent != Extent::Others);
+        classes.iter().partition(|class| class.extent != ClassExtent::Others);
     rest.extend(named.iter().skip(count));
     let mut kept: Vec<PathClass> = named.into_iter().take(count).cloned().collect();
     let share: f64 = rest.iter().map(|class| class.share).sum();
@@ -138,7 +138,7 @@ pub fn strongest(classes: &[PathClass], count: usize) -> Vec<PathClass> {
         let bounces: f64 = rest.iter().map(|class| class.share * class.bounces_mean).sum();
         kept.push(PathClass {
             steps: Vec::new(),
-            extent: Extent::Others,
+            extent: ClassExtent::Others,
             share,
             bounces_mean: bounces / share,
         });
@@ -162,9 +162,9 @@ fn class(scene: &Scene, trail: &Trail, sum: &ClassSum, total: f64) -> PathClass 
     });
     PathClass {
         extent: match trail.as_slice() {
-            [None] => Extent::Others,
-            [.., None] => Extent::CutOff,
-            [.., Some(_)] | [] => Extent::Whole,
+            [None] => ClassExtent::Others,
+            [.., None] => ClassExtent::CutOff,
+            [.., Some(_)] | [] => ClassExtent::Whole,
         },
         steps: steps.collect(),
         share: sum.flux / total,
@@ -184,14 +184,14 @@ mod tests {
             PathClass { steps, extent, share, bounces_mean }
         };
         let classes = [
-            class("a", Extent::Whole, 0.4, 1.0),
-            class("", Extent::Others, 0.3, 10.0),
-            class("b", Extent::CutOff, 0.2, 2.0),
-            class("c", Extent::Whole, 0.1, 6.0),
+            class("a", ClassExtent::Whole, 0.4, 1.0),
+            class("", ClassExtent::Others, 0.3, 10.0),
+            class("b", ClassExtent::CutOff, 0.2, 2.0),
+            class("c", ClassExtent::Whole, 0.1, 6.0),
         ];
         let [first, second, others] = &strongest(&classes, 2)[..] else { panic!("not three") };
         assert_eq!((first, second), (&classes[0], &classes[2]));
-        assert_eq!((others.extent, others.steps.len()), (Extent::Others, 0));
+        assert_eq!((others.extent, others.steps.len()), (ClassExtent::Others, 0));
         assert!((others.share - 0.4).abs() < 1e-15 && (others.bounces_mean - 9.0).abs() < 1e-14);
         assert_eq!(strongest(&classes[..1], 2), classes[..1]);
         assert_eq!(strongest(&strongest(&classes, 3), 2), strongest(&classes, 2));

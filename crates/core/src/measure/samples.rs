@@ -3,9 +3,9 @@
 use crate::optics::{Bsdf, Medium};
 use crate::scene::shape::{ChartRect, Flat, Region, Shape};
 use crate::scene::{
-    Builder, Counts, Emission, EmitSide, Emitter, FaceSpec, Goniometer, Grid, Owner, Passage,
-    Piece, Pixels, Place, Scene, Seeing, Sensor, SensorKind, Sides, Source, Start, SurfaceSensor,
-    Views,
+    Builder, CountedLight, Emission, EmitSide, Emitter, FacePiece, FaceSpec, Goniometer, Grid,
+    Owner, Passage, Pixels, Place, Scene, Seeing, Sensor, SensorKind, Sides, Source, StartSolids,
+    SurfaceSensor, Views,
 };
 use crate::transport::{Findings, Layout, Readings};
 use glam::{DVec2, DVec3};
@@ -22,7 +22,7 @@ pub(crate) fn scene(sources: &[(&str, f64)], sensors: Vec<(&str, SensorKind)>) -
         owner: Owner::Sheet,
         front: Some(black),
         back: Some(black),
-        pieces: vec![Piece::whole(Shape::Flat(wall))],
+        pieces: vec![FacePiece::whole(Shape::Flat(wall))],
     });
     for (name, flux) in sources {
         let disk = Flat::new(Frame::WORLD, Region::Annulus { inner: 0.0, outer: 1.0 });
@@ -31,7 +31,7 @@ pub(crate) fn scene(sources: &[(&str, f64)], sensors: Vec<(&str, SensorKind)>) -
             flux: *flux,
             emitter: Emitter::surface(vec![Shape::Flat(disk)], EmitSide::Front, None),
             emission: Emission::Lambertian,
-            start: Start::Outside,
+            start: StartSolids::Outside,
             on: Vec::new(),
             elevation: None,
             sun: None,
@@ -107,7 +107,7 @@ fn surface(grid: Grid, area_in: impl Fn(ChartRect) -> f64) -> SurfaceSensor {
         covered: grid.cell_cover(&areas, area_in),
         faces: Vec::new(),
         place: Place::Port,
-        counts: Counts::Incident,
+        counts: CountedLight::Incident,
         sides: Sides::Front,
         passage: Passage::Every,
         grid,

@@ -1,6 +1,6 @@
 //! A curve over rings about the pole, averaged over as many rings as its noise requires.
 
-use crate::measure::counted::Sample;
+use crate::measure::counted::NoisySample;
 
 /// The number of rings on each side over which each ring of a curve is averaged.
 #[derive(Debug, Clone)]
@@ -8,7 +8,7 @@ pub(crate) struct Smoothing(Vec<usize>);
 
 impl Smoothing {
     /// As few rings as contain this many counts of a line, limited on each side.
-    pub(crate) fn of(sample: &Sample, line: &[f64], counts: f64, most: usize) -> Self {
+    pub(crate) fn of(sample: &NoisySample, line: &[f64], counts: f64, most: usize) -> Self {
         let counts_of = |ring: usize| match (sample.counts[ring], line[ring]) {
             (count, value) if count > 0.0 => value / count,
             (_, value) => {
@@ -36,7 +36,7 @@ impl Smoothing {
     }
 
     /// A line averaged by solid angle, the weights of `sample`.
-    pub(crate) fn smooth(&self, sample: &Sample, line: &[f64]) -> Vec<f64> {
+    pub(crate) fn smooth(&self, sample: &NoisySample, line: &[f64]) -> Vec<f64> {
         let mean = |(ring, window): (usize, &usize)| {
             let rings = around(line.len(), ring, *window);
             let (sum, weight) = rings.fold((0.0, 0.0), |(sum, weight), at| {
@@ -72,12 +72,12 @@ fn mirrored(rings: usize, at: usize) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measure::counted::{Noisy, Part};
+    use crate::measure::counted::{Noisy, WeightedValue};
 
-    fn sample(counts: &[f64]) -> Sample {
+    fn sample(counts: &[f64]) -> NoisySample {
         let read = |&value: &f64| Noisy { value, std_error: value.sqrt(), count: 1.0 };
-        let parts = counts.iter().map(|value| Part { read: read(value), weight: 1.0 });
-        Sample::of(&parts.collect::<Vec<_>>())
+        let parts = counts.iter().map(|value| WeightedValue { read: read(value), weight: 1.0 });
+        NoisySample::of(&parts.collect::<Vec<_>>())
     }
 
     #[test]

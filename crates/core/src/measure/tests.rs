@@ -6,8 +6,8 @@ use crate::optics::Medium;
 use crate::plan::{GatherPlan, Request, RunPlan, StopRules};
 use crate::scene::shape::{Flat, Region, Shape};
 use crate::scene::{
-    Builder, Emission, EmitSide, Emitter, FaceSpec, Owner, Piece, Sensor, SensorKind, Sides,
-    Source, Start,
+    Builder, Emission, EmitSide, Emitter, FacePiece, FaceSpec, Owner, Sensor, SensorKind, Sides,
+    Source, StartSolids,
 };
 use crate::transport::{Counts, EstimatorFindings, Run, Stage};
 use glam::DVec3;
@@ -132,14 +132,14 @@ fn facing_square(cells: usize) -> Scene {
         owner: Owner::Port,
         front: None,
         back: None,
-        pieces: vec![Piece::whole(Shape::Flat(Flat::new(at(1.0), square)))],
+        pieces: vec![FacePiece::whole(Shape::Flat(Flat::new(at(1.0), square)))],
     });
     builder.add_source(Source {
         name: "led".into(),
         flux: 1.0,
         emitter: Emitter::surface(vec![disk], EmitSide::Front, None),
         emission: Emission::Lambertian,
-        start: Start::Outside,
+        start: StartSolids::Outside,
         on: Vec::new(),
         elevation: None,
         sun: None,

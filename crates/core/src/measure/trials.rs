@@ -5,7 +5,7 @@
 
 use crate::measure::angular::sphere_cells;
 use crate::measure::beam::full_angle;
-use crate::measure::counted::{Noisy, Part};
+use crate::measure::counted::{Noisy, WeightedValue};
 use crate::measure::extremes::{Evenness, Extreme, TWO_SIDED_95, evenness, maximum};
 use crate::measure::noise::Noise;
 use crate::tally::Tally;
@@ -15,13 +15,13 @@ use std::f64::consts::PI;
 type Cell = (f64, f64);
 
 /// Trials of a statistic with a known true value.
-struct Trials {
+struct StatisticTrials {
     name: String,
     truth: f64,
-    found: Vec<Trial>,
+    found: Vec<StatisticTrial>,
 }
 
-struct Trial {
+struct StatisticTrial {
     value: f64,
     std_error: f64,
     interval: [f64; 2],
@@ -29,7 +29,7 @@ struct Trial {
 
 /// Summary of many trials.
 #[derive(Debug)]
-struct Summary {
+struct TrialSummary {
     mean: f64,
     /// Standard deviation of the values.
     scatter: f64,
@@ -41,19 +41,19 @@ struct Summary {
     width: f64,
 }
 
-impl Trials {
-    fn summary(&self) -> Summary {
-        let mean = |of: &dyn Fn(&Trial) -> f64| Tally::of(self.found.iter().map(of));
+impl StatisticTrials {
+    fn summary(&self) -> TrialSummary {
+        let mean = |of: &dyn Fn(&StatisticTrial) -> f64| Tally::of(self.found.iter().map(of));
         let values = mean(&|one| one.value);
         let scatter = values.std_deviation();
         let rounding = 1e-9 * self.truth;
-        let holds = |&Trial { interval: [low, high], .. }: &Trial| {
+        let holds = |&StatisticTrial { interval: [low, high], .. }: &StatisticTrial| {
             f64::from(u8::from(low - rounding <= self.truth && self.truth <= high + rounding))
         };
         let mut sorted: Vec<f64> = self.found.iter().map(|one| one.value).collect();
         sorted.sort_by(f64::total_cmp);
         let at = |share: f64| sorted[(share * (sorted.len() - 1) as f64).round() as usize];
-        Summary {
+        TrialSummary {
             mean: values.mean(),
             scatter,
             error: mean(&|one| one.std_error).mean() / scatter,
@@ -64,7 +64,7 @@ impl Trials {
 
     /// As a line of the table in docs/trials.md.
     fn row(&self) -> String {
-        let Summary { mean, scatter, error, held, width } = self.summary();
+        let TrialSummary { mean, scatter, error, held, width } = self.summary();
         let (off, held) = ((mean - self.truth) / scatter, 100.0 * held);
         let Self { name, truth, .. } = self;
         format!(
@@ -74,7 +74,7 @@ impl Trials {
 
     /// Asserts that errors and intervals are correct, as far as this many trials can show.
     fn assert_calibrated(&self) {
-        let Summary { error, held, width, .. } = self.summary();
+        let TrialSummary { error, held, width, .. } = self.summary();
         let trials = self.found.len() as f64;
         // A scatter is known to (2n)^-½, a share p to (p(1-p)/n)^½; 4 of these.
         let [scatter, share] =
@@ -143,13 +143,13 @@ fn truth(field: &[Cell]) -> [f64; 3] {
 }
 
 /// Cells as if counted, with this many counts in an average cell.
-pub(crate) fn counted(field: &[Cell], counts: f64, noise: &mut Noise) -> Vec<Part> {
+pub(crate) fn counted(field: &[Cell], counts: f64, noise: &mut Noise) -> Vec<WeightedValue> {
     let whole: f64 = field.iter().map(|(mean, weight)| mean * weight).sum();
     let one = whole / (counts * field.len() as f64);
     let part = |&(mean, weight): &Cell| {
         let count = one / weight;
         let found = noise.poisson(mean / count);
-        Part {
+        WeightedValue {
             read: Noisy { value: found * count, std_error: found.sqrt() * count, count },
             weight,
         }
@@ -157,20 +157,20 @@ pub(crate) fn counted(field: &[Cell], counts: f64, noise: &mut Noise) -> Vec<Par
     field.iter().map(part).collect()
 }
 
-fn field_trials(name: &str, field: &[Cell], counts: f64, trials: usize) -> [Trials; 3] {
+fn field_trials(name: &str, field: &[Cell], counts: f64, trials: usize) -> [StatisticTrials; 3] {
     let mut noise = Noise::of_stream(9);
-    let mut found = [const { Vec::<Trial>::new() }; 3];
+    let mut found = [const { Vec::<StatisticTrial>::new() }; 3];
     for _ in 0..trials {
         let Evenness { min_avg, min_max, cv, .. } = evenness(&counted(field, counts, &mut noise));
         for (all, Extreme { value, std_error, interval, .. }) in
             found.iter_mut().zip([min_avg, min_max, cv])
         {
-            all.push(Trial { value, std_error, interval });
+            all.push(StatisticTrial { value, std_error, interval });
         }
     }
     let truth = truth(field);
     let mut found = found.into_iter();
-    [(0, "min/avg"), (1, "min/max"), (2, "CV")].map(|(at, what)| Trials {
+    [(0, "min/avg"), (1, "min/max"), (2, "CV")].map(|(at, what)| StatisticTrials {
         name: format!("{name} {counts} {what}"),
         truth: truth[at],
         found: found.next().expect("three statistics"),
@@ -179,7 +179,7 @@ fn field_trials(name: &str, field: &[Cell], counts: f64, trials: usize) -> [Tria
 
 /// The curve of a goniometer that is read.
 #[derive(Clone, Copy, PartialEq)]
-enum Curve {
+enum TrialCurve {
     /// The mean over C.
     Mean,
     /// The curve in a plane, from two of 24 sectors.
@@ -187,13 +187,19 @@ enum Curve {
 }
 
 /// A cosine to a power, `rings` from pole to pole
-fn angle_trials(power: f64, rings: usize, curve: Curve, counts: f64, trials: usize) -> [Trials; 2] {
+fn angle_trials(
+    power: f64,
+    rings: usize,
+    curve: TrialCurve,
+    counts: f64,
+    trials: usize,
+) -> [StatisticTrials; 2] {
     let edge = |ring: usize| (PI * ring as f64 / rings as f64).cos();
     let gammas: Vec<f64> =
         (0..rings).map(|ring| (0.5 * (edge(ring) + edge(ring + 1))).acos()).collect();
     let part = match curve {
-        Curve::Mean => 1.0,
-        Curve::Plane => 2.0 / 24.0,
+        TrialCurve::Mean => 1.0,
+        TrialCurve::Plane => 2.0 / 24.0,
     };
     // Shares of the flux: the integral of cos^p sin over the ring.
     let shares: Vec<f64> = (0..rings)
@@ -215,22 +221,26 @@ fn angle_trials(power: f64, rings: usize, curve: Curve, counts: f64, trials: usi
         };
         let ahead = half();
         let behind = match curve {
-            Curve::Mean => ahead.clone(),
-            Curve::Plane => half(),
+            TrialCurve::Mean => ahead.clone(),
+            TrialCurve::Plane => half(),
         };
         for (all, share) in found.iter_mut().zip([0.5, 0.1]) {
             let angle = full_angle(&gammas, [&ahead, &behind], share).expect("lit");
             let [value, error, bias] =
                 [angle.value, angle.std_error, angle.bias].map(f64::to_degrees);
             let reach = TWO_SIDED_95 * error.hypot(bias);
-            all.push(Trial { value, std_error: error, interval: [value - reach, value + reach] });
+            all.push(StatisticTrial {
+                value,
+                std_error: error,
+                interval: [value - reach, value + reach],
+            });
         }
     }
     let mut found = found.into_iter();
-    [(0.5f64, "beam"), (0.1, "field")].map(|(share, what)| Trials {
+    [(0.5f64, "beam"), (0.1, "field")].map(|(share, what)| StatisticTrials {
         name: format!(
             "cos^{power}{}, {rings} rings {counts} {what}",
-            if curve == Curve::Plane { " plane" } else { "" }
+            if curve == TrialCurve::Plane { " plane" } else { "" }
         ),
         truth: 2.0 * share.powf(1.0 / power).acos().to_degrees(),
         found: found.next().expect("two angles"),
@@ -238,7 +248,7 @@ fn angle_trials(power: f64, rings: usize, curve: Curve, counts: f64, trials: usi
 }
 
 /// The largest intensity of a cosine to a power on a sphere of 90 rings and 24 sectors, over that on the axis.
-fn peak_trials(power: f64, counts: f64, trials: usize) -> Trials {
+fn peak_trials(power: f64, counts: f64, trials: usize) -> StatisticTrials {
     let (rings, sectors) = (90, 24);
     let edge = |ring: usize| (PI * ring as f64 / rings as f64).cos();
     let share = |ring: usize| {
@@ -249,31 +259,31 @@ fn peak_trials(power: f64, counts: f64, trials: usize) -> Trials {
     let mut noise = Noise::of_stream(9);
     let mut found = Vec::new();
     for _ in 0..trials {
-        let parts: Vec<Part> = sphere_cells(rings, sectors)
+        let parts: Vec<WeightedValue> = sphere_cells(rings, sectors)
             .map(|(ring, _)| {
                 let n = noise.poisson(counts * share(ring) / sectors as f64);
                 let count = 1.0 / (size(ring) * on_axis);
                 let read = Noisy { value: n * count, std_error: n.sqrt() * count, count };
-                Part { read, weight: size(ring) }
+                WeightedValue { read, weight: size(ring) }
             })
             .collect();
         let Extreme { value, std_error, interval, .. } = maximum(&parts);
-        found.push(Trial { value, std_error, interval });
+        found.push(StatisticTrial { value, std_error, interval });
     }
     let name = format!("cos^{power}, 90 rings of 24 {counts} peak");
-    Trials { name, truth: 1.0, found }
+    StatisticTrials { name, truth: 1.0, found }
 }
 
 /// Beams by their power and rings.
-const BEAMS: [(f64, usize, Curve); 5] = [
-    (1.0, 90, Curve::Mean),
-    (5.0, 90, Curve::Mean),
-    (20.0, 180, Curve::Mean),
-    (60.0, 180, Curve::Mean),
-    (5.0, 90, Curve::Plane),
+const BEAMS: [(f64, usize, TrialCurve); 5] = [
+    (1.0, 90, TrialCurve::Mean),
+    (5.0, 90, TrialCurve::Mean),
+    (20.0, 180, TrialCurve::Mean),
+    (60.0, 180, TrialCurve::Mean),
+    (5.0, 90, TrialCurve::Plane),
 ];
 
-fn all_trials(trials: usize) -> Vec<Trials> {
+fn all_trials(trials: usize) -> Vec<StatisticTrials> {
     let mut all = Vec::new();
     for (name, field) in fields() {
         for counts in [10.0, 100.0] {
@@ -305,14 +315,14 @@ fn errors_and_intervals_of_counted_fields_are_what_they_say() {
         Err(_) => {
             // docs/trials.md lists these two with the others: noise hides the smallest next to the
             // largest, and a plane with few counts has a wide interval.
-            let is_beyond = |one: &&Trials| {
+            let is_beyond = |one: &&StatisticTrials| {
                 one.name.starts_with("20 rings, hot 10 m")
                     || one.name.starts_with("cos^5 plane, 90 rings 3000 field")
             };
             all_trials(100)
                 .iter()
                 .filter(|one| !is_beyond(one))
-                .for_each(Trials::assert_calibrated);
+                .for_each(StatisticTrials::assert_calibrated);
         }
     }
 }

@@ -5,7 +5,7 @@
 //! on the size of the cells, and have an interval for 95 of 100 cases. This module knows values and
 //! areas, not sensors.
 
-use crate::measure::counted::Part;
+use crate::measure::counted::WeightedValue;
 use crate::measure::evidence::{Evidence, MIN_COUNTS, counted, enough_batches};
 use crate::measure::extremes::{Extreme, TWO_SIDED_95, evenness, maximum};
 use crate::measure::{Measure, Status};
@@ -85,9 +85,9 @@ pub struct UniformitySummary {
 
 /// Values over a surface with their noise.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Field<'a> {
+pub(crate) struct ValueField<'a> {
     /// The values that count for the extremes, with their areas; neighbours in the list are neighbours on the surface.
-    pub(crate) cells: &'a [Part],
+    pub(crate) cells: &'a [WeightedValue],
     /// Their average and its standard error.
     pub(crate) avg: [f64; 2],
     /// Counts in an average cell, 1.
@@ -96,7 +96,7 @@ pub(crate) struct Field<'a> {
     pub(crate) batches: u64,
 }
 
-impl Field<'_> {
+impl ValueField<'_> {
     fn status(&self) -> Status {
         if self.avg[0] <= 0.0 || self.cells.is_empty() {
             Status::NoSignal
@@ -120,7 +120,7 @@ impl Field<'_> {
 }
 
 /// Extremes, their ratios, and the coefficient of variation.
-pub(crate) fn uniformity(field: &Field<'_>) -> (Uniformity, Statistic) {
+pub(crate) fn uniformity(field: &ValueField<'_>) -> (Uniformity, Statistic) {
     let status = field.status();
     let avg = average(field, status);
     if status == Status::NoSignal {
@@ -149,7 +149,7 @@ pub(crate) fn uniformity(field: &Field<'_>) -> (Uniformity, Statistic) {
 }
 
 /// The largest of some values alone. It may be well known where most of them are dark.
-pub(crate) fn largest(cells: &[Part], batches: u64) -> Statistic {
+pub(crate) fn largest(cells: &[WeightedValue], batches: u64) -> Statistic {
     let reads = cells.iter().map(|part| part.read);
     match reads.max_by(|a, b| a.value.total_cmp(&b.value)) {
         Some(largest) if largest.value > 0.0 => {
@@ -161,7 +161,7 @@ pub(crate) fn largest(cells: &[Part], batches: u64) -> Statistic {
     }
 }
 
-fn average(field: &Field<'_>, status: Status) -> Statistic {
+fn average(field: &ValueField<'_>, status: Status) -> Statistic {
     let [value, std_error] = field.avg;
     let reach = TWO_SIDED_95 * std_error;
     Statistic {
@@ -231,15 +231,15 @@ mod tests {
     use crate::measure::counted::Noisy;
     use crate::measure::noise::Noise;
 
-    fn cell(value: f64, std_error: f64) -> Part {
-        Part { read: Noisy { value, std_error, count: 0.0 }, weight: 1.0 }
+    fn cell(value: f64, std_error: f64) -> WeightedValue {
+        WeightedValue { read: Noisy { value, std_error, count: 0.0 }, weight: 1.0 }
     }
 
-    fn field(cells: &[Part]) -> Field<'_> {
+    fn field(cells: &[WeightedValue]) -> ValueField<'_> {
         let n = cells.len() as f64;
         let avg = cells.iter().map(|cell| cell.read.value).sum::<f64>() / n;
         let error = cells.iter().map(|cell| cell.read.std_error.powi(2)).sum::<f64>().sqrt() / n;
-        Field { cells, avg: [avg, error], counts: 1e4, batches: 128 }
+        ValueField { cells, avg: [avg, error], counts: 1e4, batches: 128 }
     }
 
     #[test]
@@ -326,9 +326,9 @@ mod tests {
         );
         assert_eq!(found.min_avg.std_error, f64::INFINITY);
         let cells = [cell(1.0, 0.5); 9];
-        let (few, _) = uniformity(&Field { counts: 4.0, ..field(&cells) });
+        let (few, _) = uniformity(&ValueField { counts: 4.0, ..field(&cells) });
         assert_eq!(few.min_avg.status, Status::TooFew);
-        let (few, _) = uniformity(&Field { batches: 3, ..field(&cells) });
+        let (few, _) = uniformity(&ValueField { batches: 3, ..field(&cells) });
         assert_eq!(few.min_avg.status, Status::TooFew);
     }
 

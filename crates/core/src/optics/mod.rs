@@ -20,7 +20,7 @@ pub use film::{FilmFace, FilmMake, Grain, PrismFilm};
 pub use finish::bsdf::Bsdf;
 pub use finish::faces::{Faces, scatter_radiance};
 pub use finish::haze::{Haze, HazeBase, HazeSides, integrated_scatter};
-pub use finish::microfacet::{Facets, Microfacet};
+pub use finish::microfacet::{FacetKind, Microfacet};
 pub use finish::model::{FinishModel, Spread};
 pub use gaussian::Gaussian;
 pub use haze::profile::HazeLaw;

@@ -1,14 +1,14 @@
 //! Putting a scene together: tables first, then the whole.
 
 use crate::optics::{Bsdf, Medium};
-use crate::scene::crossing::convex::{Convex, Room};
+use crate::scene::crossing::convex::{Convex, ConvexSolids};
 use crate::scene::mesh::Mesh;
 use crate::scene::pattern::Pattern;
 use crate::scene::relief::surfaces::surfaces;
-use crate::scene::relief::{Cut, Ground, Relief, Trim};
+use crate::scene::relief::{PatchCut, Relief, ReliefWall, Trim};
 use crate::scene::{
-    Accel, COINCIDENCE, Extent, Face, FaceId, Finish, FinishId, LightGroups, MediumId, MeshBody,
-    Owner, Patch, Piece, PrimId, Scene, Sensor, SensorId, SensorKind, Solid, SolidId, Source,
+    Accel, COINCIDENCE, Face, FaceId, FacePiece, Finish, FinishId, LightGroups, MediumId, MeshBody,
+    Owner, Patch, PieceRange, PrimId, Scene, Sensor, SensorId, SensorKind, Solid, SolidId, Source,
     SourceId,
 };
 use glam::DVec3;
@@ -38,7 +38,7 @@ pub struct FaceSpec {
     /// Finish met from the back.
     pub back: Option<FinishId>,
     /// The smooth pieces it consists of.
-    pub pieces: Vec<Piece>,
+    pub pieces: Vec<FacePiece>,
 }
 
 impl Builder {
@@ -103,13 +103,13 @@ impl Builder {
         let mut bounds = Aabb::EMPTY;
         for piece in spec.pieces {
             bounds = bounds.union(piece.shape.bounds());
-            let Piece { shape, smooth, chart, trim } = piece;
+            let FacePiece { shape, smooth, chart, trim } = piece;
             table.push(Patch { shape, face, owner: spec.owner, smooth, chart, trim });
         }
         let range = first..table.len();
         let extent = match spec.owner {
-            Owner::Solid(_) | Owner::Sheet => Extent::Patches(range),
-            Owner::Port => Extent::Ports(range),
+            Owner::Solid(_) | Owner::Sheet => PieceRange::Patches(range),
+            Owner::Port => PieceRange::Ports(range),
         };
         self.grow(spec.owner, bounds);
         self.scene.faces.push(Face {
@@ -146,7 +146,7 @@ impl Builder {
                 front: *finish,
                 back: *finish,
                 patterns: Vec::new(),
-                extent: Extent::Mesh { mesh: self.scene.meshes.len(), face: index },
+                extent: PieceRange::Mesh { mesh: self.scene.meshes.len(), face: index },
             });
         }
         let faces: Vec<FaceId> = (first_face..self.scene.faces.len()).map(FaceId::new).collect();
@@ -176,7 +176,7 @@ impl Builder {
     pub fn add_relief(
         &mut self,
         relief: Relief,
-        sides: &[(usize, Ground)],
+        sides: &[(usize, ReliefWall)],
         [front, back]: [Option<FinishId>; 2],
     ) -> FaceId {
         let (wall, owner) = (relief.wall, self.scene.owner(relief.wall));
@@ -187,17 +187,17 @@ impl Builder {
             let volume = &mut self.scene.solids[solid.index()].volume;
             *volume = volume.map(|volume| volume + relief.volume());
         }
-        let mut cut = |index: usize, cut: Cut| {
+        let mut cut = |index: usize, cut: PatchCut| {
             let trim = &mut self.scene.patches[index].trim;
             let mut cuts = trim.take().map_or_else(Vec::new, |trim| trim.cuts.clone());
             cuts.push(cut);
             *trim = Some(Arc::new(Trim { cuts }));
         };
-        if let Extent::Patches(range) = &self.scene.faces[wall.index()].extent {
-            range.clone().for_each(|index| cut(index, Cut::Wall(Arc::clone(&relief))));
+        if let PieceRange::Patches(range) = &self.scene.faces[wall.index()].extent {
+            range.clone().for_each(|index| cut(index, PatchCut::Wall(Arc::clone(&relief))));
         }
         for (index, ground) in sides {
-            cut(*index, Cut::Side { relief: Arc::clone(&relief), side: *ground });
+            cut(*index, PatchCut::Side { relief: Arc::clone(&relief), side: *ground });
         }
         let name = relief.name.clone();
         self.scene.reliefs.push(relief);
@@ -243,7 +243,7 @@ impl Builder {
         scene.accel = Accel::new(&boxes, scene.patches.len(), scene.bounds.largest_coordinate());
         if let Accel::Scan(_) = scene.accel {
             let solids = (0..scene.solids.len()).map(SolidId::new);
-            let room = Room {
+            let room = ConvexSolids {
                 patches: &scene.patches,
                 meshes: &scene.meshes,
                 diagonal: scene.bounds.diagonal(),
@@ -260,17 +260,17 @@ impl Builder {
 
 impl Relief {
     /// The surfaces of all elements.
-    fn pieces(&self, lap: f64) -> Vec<Piece> {
+    fn pieces(&self, lap: f64) -> Vec<FacePiece> {
         let mut pieces = Vec::new();
         let round = self.element.round.map(|_| {
-            let cut = Cut::Round { ground: self.ground, way: self.element.way, lap };
+            let cut = PatchCut::Round { ground: self.ground, way: self.element.way, lap };
             Arc::new(Trim { cuts: vec![cut] })
         });
         for (place, at) in self.field.places() {
             for made in surfaces(&self.element, place, &self.ground, at, lap) {
                 let smooth = pieces.len() as u32;
                 let trim = round.clone().filter(|_| made.is_trimmed);
-                pieces.push(Piece { shape: made.shape, smooth, chart: None, trim });
+                pieces.push(FacePiece { shape: made.shape, smooth, chart: None, trim });
             }
         }
         pieces

@@ -1,8 +1,8 @@
 //! Faces: the named parts of solids and sheets, and the smooth pieces they are made of.
 
 use crate::scene::mesh::Mesh;
-use crate::scene::relief::{Ground, Trim};
-use crate::scene::shape::{ChartRect, Crossing, Shape, Start, Toward, Wanted};
+use crate::scene::relief::{ReliefWall, Trim};
+use crate::scene::shape::{ChartRect, Crossing, CrossingQuery, RayStart, Shape, Toward};
 use crate::scene::sweep::WallChart;
 use crate::scene::{FaceId, FinishId, Ray, SolidId};
 use glam::{DVec2, DVec3};
@@ -35,7 +35,7 @@ pub struct Face {
     /// Patterns on it, by their numbers.
     pub patterns: Vec<usize>,
     /// Its pieces.
-    pub extent: Extent,
+    pub extent: PieceRange,
 }
 
 impl Face {
@@ -52,7 +52,7 @@ impl Face {
 
 /// The location of the pieces of a face.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Extent {
+pub enum PieceRange {
     /// In the scene's table of patches.
     Patches(Range<usize>),
     /// In the scene's table of ports.
@@ -113,7 +113,7 @@ pub struct Patch {
 impl Patch {
     /// Calls `visit` for every crossing of the ray's whole line with the patch, in any order.
     #[inline]
-    pub fn crossings(&self, ray: &Ray, start: Start, mut visit: impl FnMut(Crossing)) {
+    pub fn crossings(&self, ray: &Ray, start: RayStart, mut visit: impl FnMut(Crossing)) {
         self.shape.crossings(ray, start, |crossing| {
             if self.keeps(ray, &crossing) {
                 visit(crossing);
@@ -123,7 +123,12 @@ impl Patch {
 
     /// The first crossing of the ray's line that is `wanted`.
     #[inline(always)]
-    pub fn first_crossing(&self, ray: &Ray, start: Start, wanted: &Wanted) -> Option<Crossing> {
+    pub fn first_crossing(
+        &self,
+        ray: &Ray,
+        start: RayStart,
+        wanted: &CrossingQuery,
+    ) -> Option<Crossing> {
         match &self.trim {
             None => self.shape.first_crossing(ray, start, wanted),
             Some(_) => self.first_kept(&ray.lent(), start, wanted),
@@ -131,7 +136,7 @@ impl Patch {
     }
 
     #[inline(never)]
-    fn first_kept(&self, ray: &Ray, start: Start, wanted: &Wanted) -> Option<Crossing> {
+    fn first_kept(&self, ray: &Ray, start: RayStart, wanted: &CrossingQuery) -> Option<Crossing> {
         let mut first: Option<Crossing> = None;
         self.shape.crossings(ray, start, |crossing| {
             let is_nearer = first.is_none_or(|first| crossing.t < first.t);
@@ -201,7 +206,7 @@ impl Patch {
 
 /// A smooth piece of a face to be added.
 #[derive(Debug, Clone)]
-pub struct Piece {
+pub struct FacePiece {
     /// The surface.
     pub shape: Shape,
     /// Tangent-continuous pieces share this number within their solid or sheet.
@@ -212,14 +217,14 @@ pub struct Piece {
     pub trim: Option<Arc<Trim>>,
 }
 
-impl Piece {
+impl FacePiece {
     /// A piece that is a face of its own.
     pub fn whole(shape: Shape) -> Self {
         Self { shape, smooth: 0, chart: None, trim: None }
     }
 }
 
-impl Ground {
+impl ReliefWall {
     /// The wall of a patch: a flat one, or a round one all around with its front outside.
     pub fn of(patch: &Patch) -> Option<Self> {
         match &patch.shape {

@@ -32,23 +32,24 @@ pub use crossing::accel::Accel;
 pub use crossing::hit::{Hits, Just, PrimHit};
 pub use crossing::inside::Inside;
 pub use crossing::on::On;
-pub use face::{Extent, Face, MeshBody, Owner, Patch, Piece};
+pub use face::{Face, FacePiece, MeshBody, Owner, Patch, PieceRange};
 pub use ids::{FaceId, FinishId, MediumId, PrimId, SensorId, SmoothId, SolidId, SourceId};
-pub use meet::interface::{Interface, Meeting, Visibility};
+pub use meet::interface::{Interface, MeetingPoint, Visibility};
 pub use meet::pieces::Surface;
 pub use model::{COINCIDENCE, Finish, Scene, Solid};
-pub use picture::facets::{FaceFacets, Facets, Fineness, shape_facets};
+pub use picture::facets::{FaceFacets, Fineness, Triangulation, shape_facets};
 pub use picture::guide::{Guides, NamedBody};
-pub use picture::section::Outline;
+pub use picture::section::SectionOutline;
 pub use ray::Ray;
 pub use sensor::grid::Grid;
 pub use sensor::pixels::Pixels;
 pub use sensor::{
-    Counts, Goniometer, Passage, Place, Seeing, Sensor, SensorKind, Sides, SurfaceSensor, Views,
+    CountedLight, Goniometer, Passage, Place, Seeing, Sensor, SensorKind, Sides, SurfaceSensor,
+    Views,
 };
 pub use source::emission::Emission;
 pub use source::light_group::{LightGroup, LightGroups};
 pub use source::sky::{EmitterKind, Sky};
-pub use source::{EmitSide, Emitted, Emitter, Source, Start, SunAngles};
+pub use source::{EmitSide, Emitted, Emitter, Source, StartSolids, SunAngles};
 pub use start::area::{AreaPoint, FaceArea};
 pub use start::arrivals::{Arrival, Arrivals, Begins};

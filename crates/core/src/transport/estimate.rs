@@ -56,7 +56,7 @@ pub struct Account {
     /// Columns of the table, with their units.
     pub columns: Vec<String>,
     /// Its rows.
-    pub rows: Vec<Vec<Entry>>,
+    pub rows: Vec<Vec<AccountEntry>>,
     /// A warning, where there is reason for one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub warning: Option<String>,
@@ -65,7 +65,7 @@ pub struct Account {
 /// An entry of a table.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(untagged)]
-pub enum Entry {
+pub enum AccountEntry {
     /// A count.
     Count(u64),
     /// A number.

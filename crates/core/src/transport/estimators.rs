@@ -11,7 +11,7 @@ use crate::transport::backward::mix::{self, Mixing};
 use crate::transport::estimate::{Account, Estimate};
 use crate::transport::gather::estimator::Gather;
 use crate::transport::gather::merged::MergedStream;
-use crate::transport::gather::stream::Stream;
+use crate::transport::gather::stream::PhotonStream;
 use crate::transport::gather::{self, GatherSettings};
 use crate::transport::tally::{Counts, Series, Stage};
 use crate::transport::task::Task;
@@ -54,7 +54,7 @@ pub(crate) enum Portion {
 pub(crate) enum InProgress<'b, 's> {
     Backward(Box<Readings>),
     Mix(Box<Mixing<'b, 's>>),
-    Gather(Box<Stream<'b, 's>>),
+    Gather(Box<PhotonStream<'b, 's>>),
     Mis(Box<MergedStream<'b, 's>>),
 }
 

@@ -19,14 +19,15 @@ mod trial;
 pub mod walk;
 
 pub use choose::{BLIND_PATHS, EstimatorChoice, blind_sensors};
-pub use estimate::{Account, Bias, Entry, Estimate, Resolution};
+pub use estimate::{Account, AccountEntry, Bias, Estimate, Resolution};
 pub use estimators::EstimatorFindings;
 pub use forward::{Track, TrackEnd, tracks};
 pub use gather::{GatherSettings, Scatterer, Window, Windows, scatterers, turbid_media};
-pub use run::{Findings, Phase, Run, Shard, Slice, State, Unsliceable, batch_paths};
+pub use run::{Findings, Phase, Run, RunState, Shard, Slice, Unsliceable, batch_paths};
 pub use stop::{Activity, FIRST_BATCH_GRACE, Interrupt, StopAnswer, StopSignal};
 pub use tally::readings::{
-    ClassSum, DEPTH_BINS, GROUPS, Group, Leak, MIN_LIT_GROUPS, Readings, SensorReading, Step, Trail,
+    ClassStep, ClassSum, DEPTH_BINS, GROUPS, Group, Leak, MIN_LIT_GROUPS, Readings, SensorReading,
+    Trail,
 };
 pub use tally::{Cells, Counts, Layout, Loss, Stage, TAILS};
 pub use trial::{Objection, PhotonPilot, Trial};

@@ -115,12 +115,12 @@ impl Interrupt {
 #[derive(Debug, Clone, Default)]
 pub struct StopSignal {
     interrupt: Interrupt,
-    end: Option<End>,
+    end: Option<TimeLimit>,
 }
 
 /// The end of a run's time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum End {
+enum TimeLimit {
     /// At a time.
     At(Instant),
     /// After this many checks, and some more as grace: a clock that counts work.
@@ -130,13 +130,13 @@ enum End {
 impl StopSignal {
     /// An interrupt, and an end if the time is limited.
     pub fn new(interrupt: &Interrupt, end: Option<Instant>) -> Self {
-        Self { interrupt: interrupt.clone(), end: end.map(End::At) }
+        Self { interrupt: interrupt.clone(), end: end.map(TimeLimit::At) }
     }
 
     /// A time that ends at a check of the interrupt, with some more checks of grace: a clock that
     /// counts work and not time, for tests.
     pub fn ending_at_look(interrupt: &Interrupt, look: u64, grace: u64) -> Self {
-        Self { interrupt: interrupt.clone(), end: Some(End::AtLook { look, grace }) }
+        Self { interrupt: interrupt.clone(), end: Some(TimeLimit::AtLook { look, grace }) }
     }
 
     /// Whether work must stop.
@@ -144,18 +144,18 @@ impl StopSignal {
         self.interrupt.look() || self.end.is_some_and(|end| self.is_over(end))
     }
 
-    fn is_over(&self, end: End) -> bool {
+    fn is_over(&self, end: TimeLimit) -> bool {
         match end {
-            End::At(end) => Instant::now() >= end,
-            End::AtLook { look, .. } => self.interrupt.looks() >= look,
+            TimeLimit::At(end) => Instant::now() >= end,
+            TimeLimit::AtLook { look, .. } => self.interrupt.looks() >= look,
         }
     }
 
     /// The same with [`FIRST_BATCH_GRACE`] more time.
     pub(crate) fn with_grace(&self) -> Self {
         self.with_end(|end| match end {
-            End::At(end) => End::At(end.checked_add(FIRST_BATCH_GRACE).unwrap_or(end)),
-            End::AtLook { look, grace } => End::AtLook { look: look + grace, grace },
+            TimeLimit::At(end) => TimeLimit::At(end.checked_add(FIRST_BATCH_GRACE).unwrap_or(end)),
+            TimeLimit::AtLook { look, grace } => TimeLimit::AtLook { look: look + grace, grace },
         })
     }
 
@@ -163,10 +163,10 @@ impl StopSignal {
     pub(crate) fn with_half(&self) -> Self {
         let now = Instant::now();
         self.with_end(|end| match end {
-            End::At(end) => End::At(now + end.saturating_duration_since(now) / 2),
-            End::AtLook { look, grace } => {
+            TimeLimit::At(end) => TimeLimit::At(now + end.saturating_duration_since(now) / 2),
+            TimeLimit::AtLook { look, grace } => {
                 let left = look.saturating_sub(self.interrupt.looks());
-                End::AtLook { look: look - left / 2, grace }
+                TimeLimit::AtLook { look: look - left / 2, grace }
             }
         })
     }
@@ -175,18 +175,18 @@ impl StopSignal {
     /// measures the time of a piece, s.
     pub(crate) fn work_left(&self, time: impl FnOnce() -> Option<f64>) -> Option<f64> {
         match self.end? {
-            End::At(end) => {
+            TimeLimit::At(end) => {
                 let time = time()?;
                 Some(end.saturating_duration_since(Instant::now()).as_secs_f64() / time)
             }
-            End::AtLook { look, .. } => {
+            TimeLimit::AtLook { look, .. } => {
                 let left = look.saturating_sub(self.interrupt.looks());
                 Some(left as f64 * f64::from(LOOK_EVERY))
             }
         }
     }
 
-    fn with_end(&self, other: impl FnOnce(End) -> End) -> Self {
+    fn with_end(&self, other: impl FnOnce(TimeLimit) -> TimeLimit) -> Self {
         Self { interrupt: self.interrupt.clone(), end: self.end.map(other) }
     }
 }
@@ -263,7 +263,7 @@ mod tests {
         let signal = StopSignal::new(&Interrupt::default(), Some(now));
         assert!(Pace::new(&signal).is_stopped());
         assert!(signal.with_half().is_due());
-        assert_eq!(signal.with_grace().end, Some(End::At(now + FIRST_BATCH_GRACE)));
+        assert_eq!(signal.with_grace().end, Some(TimeLimit::At(now + FIRST_BATCH_GRACE)));
         assert!(!Pace::new(&StopSignal::default()).is_stopped());
     }
 

@@ -13,7 +13,7 @@ use lumiduct_core::optics::sun::{Date, Observation, read_time, sun_position};
 use lumiduct_core::scene::shape::Shape;
 use lumiduct_core::scene::{
     Emission, EmitSide, Emitter, EmitterKind, FaceId, MeshBody, Owner, Sky, Source, SourceId,
-    Start, SunAngles,
+    StartSolids, SunAngles,
 };
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -34,7 +34,7 @@ struct Aim {
     frame: Frame,
     /// The area that multiplies luminance times projected solid angle, mm².
     area: f64,
-    start: Start,
+    start: StartSolids,
 }
 
 /// A ball around a thing that light is aimed at.
@@ -294,7 +294,7 @@ impl Context<'_> {
             kind: EmitterKind::Far,
             frame: Frame::WORLD,
             area: PI * radius * radius,
-            start: Start::Outside,
+            start: StartSolids::Outside,
         }
     }
 
@@ -329,6 +329,6 @@ impl Context<'_> {
         let emitter = Emitter::surface(shapes, EmitSide::Back, Some(frame));
         let area = emitter.area()?;
         // It must cross the face, as light from infinity does.
-        Some(Aim { emitter, kind: EmitterKind::Surface, frame, area, start: Start::Behind })
+        Some(Aim { emitter, kind: EmitterKind::Surface, frame, area, start: StartSolids::Behind })
     }
 }

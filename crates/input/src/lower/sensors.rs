@@ -13,8 +13,8 @@ use glam::DVec2;
 use lumiduct_base::math::Frame;
 use lumiduct_core::scene::shape::{ChartRect, Flat, Region, Shape};
 use lumiduct_core::scene::{
-    Counts, FaceId, FaceSpec, Goniometer, Grid, Owner, Passage, Piece, Pixels, Place, Scene,
-    Seeing, Sensor, SensorKind, Sides, SurfaceSensor, Views,
+    CountedLight, FaceId, FacePiece, FaceSpec, Goniometer, Grid, Owner, Passage, Pixels, Place,
+    Scene, Seeing, Sensor, SensorKind, Sides, SurfaceSensor, Views,
 };
 use std::f64::consts::PI;
 
@@ -137,8 +137,8 @@ impl Context<'_> {
             None => self.own_face(name, spec, rectangle, disk, key)?,
         };
         let counts = match spec.counts {
-            Some(CountsSpec::Leaving) => Counts::Leaving,
-            Some(CountsSpec::Incident) | None => Counts::Incident,
+            Some(CountsSpec::Leaving) => CountedLight::Leaving,
+            Some(CountsSpec::Incident) | None => CountedLight::Incident,
         };
         let sides = match (spec.side, spec.counts) {
             (Some(SensorSide::Front), _) => Sides::Front,
@@ -233,7 +233,7 @@ impl Context<'_> {
             owner,
             front: black,
             back: black,
-            pieces: vec![Piece::whole(Shape::Flat(Flat::new(frame, region)))],
+            pieces: vec![FacePiece::whole(Shape::Flat(Flat::new(frame, region)))],
         });
         Some((vec![face], place))
     }

@@ -12,8 +12,8 @@ use crate::spec::source::{
 use lumiduct_base::math::Frame;
 use lumiduct_core::scene::shape::{Cylinder, Flat, Region, Shape, Sphere};
 use lumiduct_core::scene::{
-    Emission, EmitSide, Emitter, Extent, FaceSpec, FinishId, Owner, Piece, PrimId, SolidId, Source,
-    Start,
+    Emission, EmitSide, Emitter, FacePiece, FaceSpec, FinishId, Owner, PieceRange, PrimId, SolidId,
+    Source, StartSolids,
 };
 
 impl Context<'_> {
@@ -48,10 +48,10 @@ impl Context<'_> {
         // Whether the solids at the start must be found for each path is decided when the scene is
         // complete.
         let start = match common.contact {
-            Some(ContactSpec::Air) => Start::Behind,
-            Some(ContactSpec::Optical) | None => Start::Ahead,
+            Some(ContactSpec::Air) => StartSolids::Behind,
+            Some(ContactSpec::Optical) | None => StartSolids::Ahead,
         };
-        if start == Start::Behind {
+        if start == StartSolids::Behind {
             on.clear();
         }
         let source = self.builder.add_source(Source {
@@ -226,7 +226,7 @@ impl Context<'_> {
             owner: Owner::Sheet,
             front: Some(finish),
             back: Some(finish),
-            pieces: shapes.iter().map(|(shape, _)| Piece::whole(shape.clone())).collect(),
+            pieces: shapes.iter().map(|(shape, _)| FacePiece::whole(shape.clone())).collect(),
         });
         self.faces.insert(format!("{name}.body"), vec![face]);
         patch_range(&self.builder.scene().faces[face.index()].extent).map(PrimId::new).collect()
@@ -250,9 +250,9 @@ pub(super) fn emits_from_a_surface(source: &SourceSpec) -> bool {
 }
 
 /// The patches of a face that light can meet.
-fn patch_range(extent: &Extent) -> std::ops::Range<usize> {
+fn patch_range(extent: &PieceRange) -> std::ops::Range<usize> {
     match extent {
-        Extent::Patches(range) => range.clone(),
-        Extent::Ports(_) | Extent::Mesh { .. } => 0..0,
+        PieceRange::Patches(range) => range.clone(),
+        PieceRange::Ports(_) | PieceRange::Mesh { .. } => 0..0,
     }
 }

@@ -12,7 +12,7 @@ use indexmap::IndexMap;
 use lumiduct_base::number::format_value;
 use lumiduct_core::optics::Bsdf;
 use lumiduct_core::rng::Sampler;
-use lumiduct_core::scene::{Emitted, FaceId, FinishId, Owner, Scene, SolidId, Start};
+use lumiduct_core::scene::{Emitted, FaceId, FinishId, Owner, Scene, SolidId, StartSolids};
 
 /// Starts tested per source: any part that is missed is less than a hundredth of the source.
 const LOOKS: u64 = 1024;
@@ -24,7 +24,7 @@ pub(super) fn settle_starts(scene: &mut Scene) {
     for source in &mut scene.sources {
         let bounds = source.emitter.bounds();
         if !boxes.iter().any(|solid| solid.overlaps(&bounds)) {
-            source.start = Start::Outside;
+            source.start = StartSolids::Outside;
         }
     }
 }
@@ -66,7 +66,7 @@ pub(super) fn check_starts(spec: &SceneSpec, scene: &Scene, problems: &mut Probl
     for source in &scene.sources {
         let Some(kind) = spec.sources.get(&source.name).map(SourceSpec::kind) else { continue };
         let key = Key::of(&["sources", &source.name, kind]);
-        if source.start == Start::Outside {
+        if source.start == StartSolids::Outside {
             continue;
         }
         let starts: Vec<_> = (0..LOOKS)

@@ -6,7 +6,7 @@ use crate::spec::sweep::{CompoundParabolicSpec, LegSpec, ParaboloidSpec, Profile
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::{Frame, planar};
 use lumiduct_base::number::format_least_length;
-use lumiduct_core::scene::Piece;
+use lumiduct_core::scene::FacePiece;
 use lumiduct_core::scene::shape::{CompoundParabola, Flat, Paraboloid, Region, Shape};
 use lumiduct_core::scene::sweep::{
     CornerKind, Leg, Profile, ProfileError, SweepError, SweepProblem, Wall, sweep,
@@ -20,7 +20,7 @@ pub(super) struct NamedFace {
     /// Whether it is the wall, or an end that ducts leave open.
     pub(super) part: BodyPart,
     /// Its pieces.
-    pub(super) pieces: Vec<Piece>,
+    pub(super) pieces: Vec<FacePiece>,
 }
 
 /// Which part of a body a face is.
@@ -42,11 +42,11 @@ pub(super) struct Surfaces {
 
 impl NamedFace {
     pub(super) fn wall(name: &str, shape: Shape) -> Self {
-        Self { name: name.to_owned(), part: BodyPart::Wall, pieces: vec![Piece::whole(shape)] }
+        Self { name: name.to_owned(), part: BodyPart::Wall, pieces: vec![FacePiece::whole(shape)] }
     }
 
     pub(super) fn end(name: &str, shape: Shape) -> Self {
-        Self { name: name.to_owned(), part: BodyPart::End, pieces: vec![Piece::whole(shape)] }
+        Self { name: name.to_owned(), part: BodyPart::End, pieces: vec![FacePiece::whole(shape)] }
     }
 }
 
@@ -83,7 +83,7 @@ impl Context<'_> {
                 }
                 Wall::Mitre => "wall_mitre".to_owned(),
             };
-            let piece = Piece {
+            let piece = FacePiece {
                 shape: part.shape.clone(),
                 smooth: part.smooth,
                 chart: Some(part.chart),

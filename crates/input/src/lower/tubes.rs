@@ -5,10 +5,10 @@ use crate::lower::context::Context;
 use crate::lower::surfaces::{BodyPart, NamedFace, Surfaces};
 use crate::spec::solid::{TubeOuterSpec, TubeSolidSpec};
 use lumiduct_base::math::{Frame, planar};
-use lumiduct_core::scene::Piece;
+use lumiduct_core::scene::FacePiece;
 use lumiduct_core::scene::shape::{Flat, Region, Shape};
 use lumiduct_core::scene::sweep::{
-    Leg, OutlineError, Part, PrismNumber, Prisms, Profile, Sweep, SweepError, sweep,
+    Leg, OutlineError, PrismNumber, Prisms, Profile, Sweep, SweepError, WallPart, sweep,
 };
 
 impl Context<'_> {
@@ -81,13 +81,13 @@ fn outline(inner: &Profile, outer: &TubeOuterSpec) -> Result<Profile, OutlineErr
 
 /// `None` where a wall is not that of a straight leg, which does not happen here.
 fn tube(inner: &Sweep, outer: &Sweep) -> Option<Surfaces> {
-    let bore: Option<Vec<Part>> = inner.parts.iter().map(Part::turned).collect();
-    let wall = |name: &str, parts: Vec<Part>| NamedFace {
+    let bore: Option<Vec<WallPart>> = inner.parts.iter().map(WallPart::turned).collect();
+    let wall = |name: &str, parts: Vec<WallPart>| NamedFace {
         name: name.to_owned(),
         part: BodyPart::Wall,
         pieces: parts
             .into_iter()
-            .map(|part| Piece {
+            .map(|part| FacePiece {
                 shape: part.shape,
                 smooth: part.smooth,
                 chart: Some(part.chart),

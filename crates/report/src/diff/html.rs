@@ -3,7 +3,7 @@
 use crate::diff::page::{HEADER, cells, findings, remark, title};
 use crate::diff::{Diff, DiffRow, MapDiff, MapOutcome, maps};
 use crate::html::data::drawn_map;
-use crate::html::frame::{Block, Page, Part, Plots, Standing, render};
+use crate::html::frame::{Block, Page, PagePart, Plots, Standing, render};
 use lumiduct_base::error::Result;
 
 /// Rows of a table that are shown; further ones are folded away.
@@ -19,11 +19,12 @@ pub(crate) fn html(diff: &Diff) -> Result<String> {
         ("All other measures, the worst first", others),
     ];
     let groups = groups.into_iter().filter(|(_, rows)| !rows.is_empty());
-    let mut parts: Vec<Part> =
-        groups.map(|(title, rows)| Part { title: title.into(), blocks: measures(&rows) }).collect();
+    let mut parts: Vec<PagePart> = groups
+        .map(|(title, rows)| PagePart { title: title.into(), blocks: measures(&rows) })
+        .collect();
     parts.extend(differences(diff, &mut plots));
     let items = findings(diff);
-    parts.push(Part { title: "What was found".into(), blocks: vec![Block::List { items }] });
+    parts.push(PagePart { title: "What was found".into(), blocks: vec![Block::List { items }] });
     let page = Page {
         title: title(diff),
         masthead: None,
@@ -85,7 +86,7 @@ fn measures(rows: &[&DiffRow]) -> Vec<Block> {
 }
 
 /// The differences of all maps that were compared.
-fn differences(diff: &Diff, plots: &mut Plots) -> Option<Part> {
+fn differences(diff: &Diff, plots: &mut Plots) -> Option<PagePart> {
     let block = |map: &MapDiff| {
         let MapOutcome::Compared { difference, .. } = &map.outcome else { return None };
         let (cells, picture) = maps::drawn(map, difference);
@@ -95,5 +96,5 @@ fn differences(diff: &Diff, plots: &mut Plots) -> Option<Part> {
         Some([plot, Block::Words { text: map.sentence() }])
     };
     let blocks: Vec<Block> = diff.maps.iter().filter_map(block).flatten().collect();
-    (!blocks.is_empty()).then(|| Part { title: "Maps".into(), blocks })
+    (!blocks.is_empty()).then(|| PagePart { title: "Maps".into(), blocks })
 }

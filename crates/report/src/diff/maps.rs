@@ -1,9 +1,9 @@
 //! Differences of maps, cell by cell. Maps are read from their tables: places, values and errors.
 
 use crate::OutputFile;
-use crate::html::cells::Cells;
+use crate::html::cells::MapCells;
 use crate::html::data::MapWords;
-use crate::png::{ColourMap, HeatMap, Scale, heat_map};
+use crate::png::{AxisScale, ColourMap, HeatMap, heat_map};
 use csv::ReaderBuilder;
 use lumiduct_base::error::Result;
 use lumiduct_base::number::format_fixed;
@@ -23,14 +23,14 @@ const SAME_PLACE: f64 = 1e-9;
 
 /// The axes of a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+enum AxesKind {
     Surface,
     Angles,
     Rings,
     Intensity,
 }
 
-impl Kind {
+impl AxesKind {
     /// The kind of a table by the names of its first columns; `None` if it is not a map.
     fn of(header: &[&str]) -> Option<Self> {
         match header {
@@ -72,10 +72,10 @@ impl Kind {
         MapWords { geometry, quantity: "difference B − A", names, units }
     }
 
-    fn scale(self) -> Scale {
+    fn scale(self) -> AxisScale {
         match self {
-            Self::Angles => Scale::Tangent,
-            Self::Surface | Self::Rings | Self::Intensity => Scale::Linear,
+            Self::Angles => AxisScale::Tangent,
+            Self::Surface | Self::Rings | Self::Intensity => AxisScale::Linear,
         }
     }
 }
@@ -84,7 +84,7 @@ impl Kind {
 #[derive(Debug, Clone)]
 pub struct MapTable {
     name: String,
-    kind: Kind,
+    kind: AxesKind,
     unit: String,
     /// Middles of the cells, mm or deg.
     places: Vec<[f64; 2]>,
@@ -100,7 +100,7 @@ impl MapTable {
         let mut reader = ReaderBuilder::new().from_reader(text.as_bytes());
         let header = reader.headers().map_err(|reason| reason.to_string())?.clone();
         let header: Vec<&str> = header.iter().collect();
-        let Some(kind) = Kind::of(&header) else { return Ok(None) };
+        let Some(kind) = AxesKind::of(&header) else { return Ok(None) };
         let first = kind.places();
         let unit = header.get(first + 1).and_then(|name| name.strip_prefix("std_error_"));
         let unit = unit.ok_or("there is no column of standard errors")?.to_owned();
@@ -120,8 +120,8 @@ impl MapTable {
                 )?;
             let (place, rest) = numbers.split_at(first);
             map.places.push(match kind {
-                Kind::Surface | Kind::Angles | Kind::Rings => [place[0], place[1]],
-                Kind::Intensity => [0.5 * (place[0] + place[1]), 0.5 * (place[2] + place[3])],
+                AxesKind::Surface | AxesKind::Angles | AxesKind::Rings => [place[0], place[1]],
+                AxesKind::Intensity => [0.5 * (place[0] + place[1]), 0.5 * (place[2] + place[3])],
             });
             map.values.push(rest[0]);
             map.errors.push(rest[1].hypot(rest.get(2).copied().unwrap_or(0.0)));
@@ -254,7 +254,7 @@ pub(crate) fn pictures(maps: &[MapDiff]) -> Result<Vec<OutputFile>> {
 }
 
 /// The difference of a map as cells with their errors, and as a picture.
-pub(crate) fn drawn(map: &MapDiff, difference: &MapTable) -> (Cells, HeatMap) {
+pub(crate) fn drawn(map: &MapDiff, difference: &MapTable) -> (MapCells, HeatMap) {
     let columns = lines(&difference.places, 0);
     let rows = lines(&difference.places, 1);
     let mut values = Array2::from_elem((rows.len(), columns.len()), f64::NAN);
@@ -268,7 +268,7 @@ pub(crate) fn drawn(map: &MapDiff, difference: &MapTable) -> (Cells, HeatMap) {
     let scale = difference.kind.scale();
     let [x, y] = [columns, rows].map(|middles| edges(&middles, scale));
     let picture = picture(map, difference, [&x, &y], &values);
-    (Cells { x, y, values, errors, biases: None }, picture)
+    (MapCells { x, y, values, errors, biases: None }, picture)
 }
 
 fn picture(
@@ -290,7 +290,7 @@ fn picture(
         axes: difference.kind.scale(),
         values: values.clone(),
         unit: difference.unit.clone(),
-        scale: Scale::Linear,
+        scale: AxisScale::Linear,
         colours: ColourMap::Diverging,
         limits: Some([-limit, limit]),
     }
@@ -321,10 +321,10 @@ fn lines(places: &[[f64; 2]], axis: usize) -> Vec<f64> {
 
 /// Edges of at least two cells from their middles: half way between them, with the first and last
 /// cell as wide as their neighbours.
-fn edges(middles: &[f64], scale: Scale) -> Vec<f64> {
+fn edges(middles: &[f64], scale: AxisScale) -> Vec<f64> {
     let [to, from]: [fn(f64) -> f64; 2] = match scale {
-        Scale::Linear | Scale::Log => [|place| place, |place| place],
-        Scale::Tangent => [|deg| deg.to_radians().tan(), |tan| tan.atan().to_degrees()],
+        AxisScale::Linear | AxisScale::Log => [|place| place, |place| place],
+        AxisScale::Tangent => [|deg| deg.to_radians().tan(), |tan| tan.atan().to_degrees()],
     };
     match middles {
         [] => vec![0.0, 1.0],

@@ -15,8 +15,8 @@ mod record;
 pub use maps::{MapDiff, MapOutcome, MapTable};
 pub use measures::{DiffRow, Judgement, Limits, MapLimit};
 pub(crate) use page::sentence;
-pub use page::{Rows, diff_table};
-pub use read::{Content, DesignRow, RunFiles, Side, read};
+pub use page::{ShownRows, diff_table};
+pub use read::{ComparedReport, Content, DesignRow, RunFiles, read};
 pub use record::Diff;
 
 use crate::OutputFile;
@@ -27,7 +27,7 @@ use lumiduct_core::measure::{Measure, nearest};
 
 /// What is compared, and how.
 #[derive(Debug, Clone)]
-pub struct DiffWishes {
+pub struct DiffOptions {
     /// Limits beyond which two values differ.
     pub limits: Limits,
     /// Prefixes of the names of the measures to compare; empty for all.
@@ -35,7 +35,7 @@ pub struct DiffWishes {
 }
 
 /// Compares two reports of the same kind.
-pub fn diff(sides: &[Side; 2], wishes: &DiffWishes) -> Result<Diff> {
+pub fn diff(sides: &[ComparedReport; 2], options: &DiffOptions) -> Result<Diff> {
     let [a, b] = sides;
     let mut pairs = Pairs::default();
     let mut maps = Vec::new();
@@ -46,7 +46,7 @@ pub fn diff(sides: &[Side; 2], wishes: &DiffWishes) -> Result<Diff> {
         }
         (Content::Study(a), Content::Study(b)) => pairs.add_designs(a, b),
         (Content::Run(_), Content::Study(_)) | (Content::Study(_), Content::Run(_)) => {
-            let kind = |side: &Side| match side.content {
+            let kind = |side: &ComparedReport| match side.content {
                 Content::Run(_) => "the report of a run",
                 Content::Study(_) => "the results of a study",
             };
@@ -59,11 +59,11 @@ pub fn diff(sides: &[Side; 2], wishes: &DiffWishes) -> Result<Diff> {
             )));
         }
     }
-    pairs.keep_only(&wishes.only)?;
-    let is_wanted = |name: &str| is_named(&wishes.only, name);
+    pairs.keep_only(&options.only)?;
+    let is_wanted = |name: &str| is_named(&options.only, name);
     maps.retain(|map| is_wanted(&map.name));
     let mut rows: Vec<DiffRow> =
-        pairs.both.into_iter().map(|pair| measures::judge(pair, wishes.limits)).collect();
+        pairs.both.into_iter().map(|pair| measures::judge(pair, options.limits)).collect();
     measures::sort(&mut rows);
     if !rows.iter().any(|row| row.judgement != Judgement::Unknown) {
         return Err(Error::Usage(match rows.first() {
@@ -79,7 +79,7 @@ pub fn diff(sides: &[Side; 2], wishes: &DiffWishes) -> Result<Diff> {
     Ok(Diff {
         names: [a.name.clone(), b.name.clone()],
         facts: [a.facts.clone(), b.facts.clone()],
-        limits: wishes.limits,
+        limits: options.limits,
         rows,
         only_in: pairs.only_in,
         maps,
@@ -87,7 +87,7 @@ pub fn diff(sides: &[Side; 2], wishes: &DiffWishes) -> Result<Diff> {
     })
 }
 
-fn nothing_in_common(a: &Side, b: &Side) -> String {
+fn nothing_in_common(a: &ComparedReport, b: &ComparedReport) -> String {
     let what = match a.content {
         Content::Run(_) => "no measure in common",
         Content::Study(_) => {

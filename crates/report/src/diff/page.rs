@@ -18,7 +18,7 @@ const REMARKABLE: f64 = 3.0;
 
 /// How much of the table is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Rows {
+pub enum ShownRows {
     /// The worst dozen.
     Worst,
     /// All of them.
@@ -29,10 +29,10 @@ pub enum Rows {
 pub(crate) const HEADER: [&str; 6] = ["measure", "A", "B", "B − A", "sigmas", "relative"];
 
 /// The printed text: both reports, the worst measures or all, and the findings.
-pub fn diff_table(diff: &Diff, rows: Rows) -> String {
+pub fn diff_table(diff: &Diff, rows: ShownRows) -> String {
     let shown = match rows {
-        Rows::Worst => diff.rows.len().min(ROWS_SHOWN),
-        Rows::All => diff.rows.len(),
+        ShownRows::Worst => diff.rows.len().min(ROWS_SHOWN),
+        ShownRows::All => diff.rows.len(),
     };
     let mut lines = vec![HEADER.map(str::to_owned)];
     lines.extend(diff.rows[..shown].iter().map(cells));

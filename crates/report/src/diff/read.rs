@@ -15,7 +15,7 @@ use std::path::Path;
 
 /// One of the two reports compared.
 #[derive(Debug)]
-pub struct Side {
+pub struct ComparedReport {
     /// Name of the scene or the study.
     pub name: String,
     /// Its facts in a line: name, hash, seed and paths.
@@ -117,7 +117,7 @@ struct StudySummary {
 }
 
 /// Reads the report of a run or the results of a study from their folder.
-pub fn read(folder: &Path) -> Result<Side> {
+pub fn read(folder: &Path) -> Result<ComparedReport> {
     if !folder.is_dir() {
         return Err(Error::Usage(format!(
             "{} is no folder; name the folder of a report, such as reports/NAME",
@@ -163,7 +163,7 @@ fn summary_in<T: DeserializeOwned>(
     Ok(Some((found, manifest)))
 }
 
-fn run_side(folder: &Path, found: RunSummary, manifest: &Manifest) -> Result<Side> {
+fn run_side(folder: &Path, found: RunSummary, manifest: &Manifest) -> Result<ComparedReport> {
     let RunSummary { scene, run, paths, measures, checks, files } = found;
     let SceneWords { name, hash, overrides } = scene;
     let seed = run.seed;
@@ -195,12 +195,12 @@ fn run_side(folder: &Path, found: RunSummary, manifest: &Manifest) -> Result<Sid
         maps.extend(table.map_err(|reason| Error::Usage(format!("{}: {reason}", path.display())))?);
     }
     let checks = checks.into_iter().map(|own| own.check.measure).collect();
-    Ok(Side { name, facts, checks, content: Content::Run(RunFiles { measures, maps }) })
+    Ok(ComparedReport { name, facts, checks, content: Content::Run(RunFiles { measures, maps }) })
 }
 
-fn study_side(found: StudySummary) -> Side {
+fn study_side(found: StudySummary) -> ComparedReport {
     let StudySummary { name, hash, seed, checks, rows } = found;
     let facts = format!("{name}, study {hash}, seed {seed}, {} designs", rows.len());
     let checks = checks.into_iter().map(|own| own.measure).collect();
-    Side { name, facts, checks, content: Content::Study(rows) }
+    ComparedReport { name, facts, checks, content: Content::Study(rows) }
 }

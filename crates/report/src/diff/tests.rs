@@ -29,20 +29,25 @@ fn judged(a: Measure, b: Measure, limits: Limits) -> DiffRow {
     measures::judge(Pair { name, measure, values: [a, b], scale }, limits)
 }
 
-fn run(measures: &[(&str, Measure)], maps: Vec<MapTable>) -> Side {
+fn run(measures: &[(&str, Measure)], maps: Vec<MapTable>) -> ComparedReport {
     let measures = measures.iter().map(|(name, own)| ((*name).to_owned(), own.clone())).collect();
     let content = Content::Run(RunFiles { measures, maps });
-    Side { name: "rod".to_owned(), facts: "rod, seed 1".to_owned(), checks: Vec::new(), content }
+    ComparedReport {
+        name: "rod".to_owned(),
+        facts: "rod, seed 1".to_owned(),
+        checks: Vec::new(),
+        content,
+    }
 }
 
-fn study(designs: &[(usize, f64, f64)]) -> Side {
+fn study(designs: &[(usize, f64, f64)]) -> ComparedReport {
     let design = |&(design, length, value): &(usize, f64, f64)| DesignRow {
         design,
         settings: [("length".to_owned(), Setting::Number(length))].into_iter().collect(),
         measures: [("exit.flux".to_owned(), measure(value, 0.1))].into_iter().collect(),
     };
     let content = Content::Study(designs.iter().map(design).collect());
-    Side {
+    ComparedReport {
         name: "lengths".to_owned(),
         facts: "lengths, seed 1".to_owned(),
         checks: Vec::new(),
@@ -50,8 +55,8 @@ fn study(designs: &[(usize, f64, f64)]) -> Side {
     }
 }
 
-fn wishes(only: &[&str]) -> DiffWishes {
-    DiffWishes { limits: LIMITS, only: only.iter().map(|&name| name.to_owned()).collect() }
+fn options(only: &[&str]) -> DiffOptions {
+    DiffOptions { limits: LIMITS, only: only.iter().map(|&name| name.to_owned()).collect() }
 }
 
 #[test]
@@ -101,9 +106,9 @@ fn the_residual_of_the_balance_is_rounding_of_what_was_emitted() {
             Vec::new(),
         )
     };
-    let rounding = diff(&[side(1e-13), side(-2e-13)], &wishes(&[])).unwrap();
+    let rounding = diff(&[side(1e-13), side(-2e-13)], &options(&[])).unwrap();
     assert!(rounding.is_within());
-    let leak = diff(&[side(1e-13), side(1e-6)], &wishes(&[])).unwrap();
+    let leak = diff(&[side(1e-13), side(1e-6)], &options(&[])).unwrap();
     assert_eq!(leak.rows[0].name, "balance.residual");
     assert!(!leak.is_within());
 }
@@ -129,7 +134,7 @@ fn what_cannot_be_relied_on_is_never_beyond() {
                 run(&[("exit.flux", with_status(1.0, 0.1, Status::TooFew))], Vec::new()),
                 run(&[("exit.flux", measure(2.0, 0.1))], Vec::new())
             ],
-            &wishes(&[])
+            &options(&[])
         )
         .unwrap_err()
         .to_string()
@@ -168,12 +173,12 @@ fn the_worst_comes_first_and_what_is_unknown_last() {
         ],
         Vec::new(),
     );
-    let found = diff(&[a, b], &wishes(&[])).unwrap();
+    let found = diff(&[a, b], &options(&[])).unwrap();
     let names: Vec<&str> = found.rows.iter().map(|row| row.name.as_str()).collect();
     assert_eq!(names, ["c", "d", "b", "a"]);
     assert_eq!(found.only_in, [["gone"], ["new"]].map(|names| names.map(str::to_owned).to_vec()));
     assert_eq!(found.count(Judgement::Beyond), 2);
-    let text = diff_table(&found, Rows::All);
+    let text = diff_table(&found, ShownRows::All);
     for words in [
         "4 measures compared, 3 of them with noise: 2 beyond 3 sigmas, where chance brings 0.01",
         "1 measure cannot be judged: a (counted too little in A)",
@@ -188,14 +193,14 @@ fn the_worst_comes_first_and_what_is_unknown_last() {
 #[test]
 fn designs_are_paired_by_their_settings() {
     let [a, b] = [study(&[(1, 5.0, 1.0), (2, 8.0, 2.0)]), study(&[(1, 8.0, 2.0), (2, 9.0, 7.0)])];
-    let found = diff(&[a, b], &wishes(&["exit."])).unwrap();
+    let found = diff(&[a, b], &options(&["exit."])).unwrap();
     let names: Vec<&str> = found.rows.iter().map(|row| row.name.as_str()).collect();
     assert_eq!(names, ["design 2 (length 8): exit.flux"]);
     assert!(found.is_within());
     assert_eq!(found.only_in[0], ["design 1 (length 5): exit.flux"]);
     assert_eq!(found.only_in[1], ["design 2 (length 9): exit.flux"]);
     let mixed = [study(&[(1, 5.0, 1.0)]), run(&[("exit.flux", measure(1.0, 0.1))], Vec::new())];
-    assert!(diff(&mixed, &wishes(&[])).unwrap_err().to_string().contains("two reports of runs"));
+    assert!(diff(&mixed, &options(&[])).unwrap_err().to_string().contains("two reports of runs"));
 }
 
 fn map(values: [f64; 4], error: f64) -> MapTable {

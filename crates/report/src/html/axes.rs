@@ -1,7 +1,7 @@
 //! Axes, colour bars and inks of curves as plain data, the same as in the pictures.
 
 use crate::png::{
-    BarScale, ColourMap, LinePlot, MapFrame, MarkedAxis, PolarPlot, Scale, SeriesInk,
+    AxisScale, BarScale, ColourMap, LinePlot, MapFrame, MarkedAxis, PolarPlot, SeriesInk,
     curve_colours, dial_axis, line_axes,
 };
 use serde_json::{Value, json};
@@ -17,11 +17,11 @@ fn axis(marked: &MarkedAxis) -> Value {
     })
 }
 
-fn scale_name(scale: Scale) -> &'static str {
+fn scale_name(scale: AxisScale) -> &'static str {
     match scale {
-        Scale::Linear => "linear",
-        Scale::Log => "log",
-        Scale::Tangent => "tangent",
+        AxisScale::Linear => "linear",
+        AxisScale::Log => "log",
+        AxisScale::Tangent => "tangent",
     }
 }
 
@@ -51,14 +51,15 @@ pub(crate) fn map_axes(frame: &MapFrame) -> Value {
 }
 
 /// Axes of curves with a vertical axis of this scale.
-pub(crate) fn chart_axes(plot: &LinePlot, scale: Scale) -> Value {
+pub(crate) fn chart_axes(plot: &LinePlot, scale: AxisScale) -> Value {
     let [x, y] = line_axes(plot, scale);
     json!({ "x": axis(&x), "y": axis(&y) })
 }
 
 /// Axes of a dial on either scale.
 pub(crate) fn dial_axes(plot: &PolarPlot) -> Value {
-    let [linear, log] = [Scale::Linear, Scale::Log].map(|scale| axis(&dial_axis(plot, scale)));
+    let [linear, log] =
+        [AxisScale::Linear, AxisScale::Log].map(|scale| axis(&dial_axis(plot, scale)));
     json!({ "linear": linear, "log": log })
 }
 
@@ -73,19 +74,19 @@ pub(crate) fn ink(ink: SeriesInk) -> [Value; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::png::{ErrorForm, Look, Series, SeriesForm, SeriesPoint, series_ink};
+    use crate::png::{ErrorForm, Look, PlotSeries, SeriesForm, SeriesPoint, series_ink};
 
     fn plot(points: &[(f64, f64)]) -> LinePlot {
         let points = points.iter().map(|&(x, y)| SeriesPoint { x, y, std_error: 0.0 }).collect();
         let (form, errors, look) = (SeriesForm::Line, ErrorForm::Hidden, Look::InTurn);
-        let series = Series { name: "exit".into(), points, form, errors, look };
+        let series = PlotSeries { name: "exit".into(), points, form, errors, look };
         LinePlot {
             title: String::new(),
             subtitle: String::new(),
             x_label: "interfaces met".into(),
             y_label: "flux in lm".into(),
-            x_scale: Scale::Linear,
-            y_scale: Scale::Linear,
+            x_scale: AxisScale::Linear,
+            y_scale: AxisScale::Linear,
             series: vec![series],
         }
     }
@@ -93,10 +94,10 @@ mod tests {
     #[test]
     fn axes_of_a_chart_are_those_of_its_picture() {
         let plot = plot(&[(0.0, 1e-11), (10.0, 2e5)]);
-        let linear = chart_axes(&plot, Scale::Linear);
+        let linear = chart_axes(&plot, AxisScale::Linear);
         assert_eq!(linear["y"]["label"], "flux in lm, ×10⁵");
         assert_eq!(linear["y"]["ticks"][1], json!([50_000.0, "0.5"]));
-        let log = chart_axes(&plot, Scale::Log);
+        let log = chart_axes(&plot, AxisScale::Log);
         assert_eq!((&log["y"]["scale"], &log["y"]["label"]), (&json!("log"), &json!("flux in lm")));
         // Eight decades below the greatest value, as in pictures.
         let from = log["y"]["from"].as_f64().unwrap();
@@ -105,7 +106,7 @@ mod tests {
 
     #[test]
     fn a_logarithmic_axis_of_nothing_is_a_linear_one() {
-        let axes = chart_axes(&plot(&[(0.0, 0.0), (1.0, 0.0)]), Scale::Log);
+        let axes = chart_axes(&plot(&[(0.0, 0.0), (1.0, 0.0)]), AxisScale::Log);
         assert_eq!(axes["y"]["scale"], "linear");
     }
 

@@ -7,7 +7,7 @@ const MOST_CELLS: usize = 40_000;
 
 /// The cells of a map, rows by columns.
 #[derive(Debug, Clone)]
-pub(crate) struct Cells {
+pub(crate) struct MapCells {
     /// Edges of the columns.
     pub(crate) x: Vec<f64>,
     /// Edges of the rows.
@@ -27,7 +27,7 @@ pub(crate) fn joined(cells: &Array2<f64>) -> usize {
 
 /// Averages blocks of `side` by `side` cells. Cells without a value are left out; cells of an image
 /// or a goniometer have equal weight, which is close enough for a picture.
-pub(crate) fn coarse(cells: &Cells, side: usize) -> Cells {
+pub(crate) fn coarse(cells: &MapCells, side: usize) -> MapCells {
     let (rows, columns) = cells.values.dim();
     let shape = (rows.div_ceil(side), columns.div_ceil(side));
     let of = |row: usize, column: usize| {
@@ -45,7 +45,7 @@ pub(crate) fn coarse(cells: &Cells, side: usize) -> Cells {
         let variance: f64 = of(row, column).map(|at| cells.errors[at].powi(2)).sum();
         variance.sqrt() / of(row, column).count() as f64
     });
-    Cells {
+    MapCells {
         x: coarse_edges(&cells.x, side),
         y: coarse_edges(&cells.y, side),
         values: mean(&cells.values),
@@ -69,7 +69,7 @@ mod tests {
 
     #[test]
     fn joined_cells_keep_the_mean_and_cells_without_a_value_do_not_count() {
-        let cells = Cells {
+        let cells = MapCells {
             x: vec![0.0, 1.0, 2.0, 3.0],
             y: vec![0.0, 1.0, 2.0],
             values: Array2::from_shape_vec((2, 3), vec![1.0, 2.0, 7.0, f64::NAN, 6.0, 9.0])

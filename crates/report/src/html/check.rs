@@ -1,8 +1,8 @@
 //! The page of a check: the scene in three dimensions before anything is traced, and the axes of its faces.
 
-use crate::drawing::{Mark, Role, drawing};
+use crate::drawing::{NameMark, Role, drawing};
 use crate::html::data;
-use crate::html::frame::{Block, Page, Part, Plots, Standing, render, table};
+use crate::html::frame::{Block, Page, PagePart, Plots, Standing, render, table};
 use crate::local_axes::{LocalAxes, local_axes};
 use glam::DVec3;
 use lumiduct_base::error::Result;
@@ -41,9 +41,9 @@ pub fn check_page(title: &str, scene: &Scene, tracks: &[Track], listed: &str) ->
         verdict: "A check of the scene: nothing was measured".into(),
         standing: Standing::Open,
         parts: vec![
-            Part { title: "Scene".into(), blocks },
-            Part { title: "Contents".into(), blocks: vec![Block::List { items }] },
-            Part { title: "Local axes".into(), blocks: axes },
+            PagePart { title: "Scene".into(), blocks },
+            PagePart { title: "Contents".into(), blocks: vec![Block::List { items }] },
+            PagePart { title: "Local axes".into(), blocks: axes },
         ],
         footer: format!("lumiduct {}", env!("CARGO_PKG_VERSION")),
     };
@@ -51,7 +51,7 @@ pub fn check_page(title: &str, scene: &Scene, tracks: &[Track], listed: &str) ->
 }
 
 /// The names of solids and sheets, each at the middle of its box.
-fn names(scene: &Scene) -> Vec<Mark> {
+fn names(scene: &Scene) -> Vec<NameMark> {
     // The body of a source has the name of the source, which is already in the picture.
     let is_source = |name: &str| scene.sources.iter().any(|source| source.name == name);
     let bodies = scene.bodies().into_iter().filter(|body| !is_source(&body.name));
@@ -61,7 +61,7 @@ fn names(scene: &Scene) -> Vec<Mark> {
             Owner::Solid(_) => Role::Solid,
             Owner::Sheet | Owner::Port => Role::Sheet,
         };
-        marks.push(Mark { name: body.name, role, at: body.bounds.center() + scene.origin });
+        marks.push(NameMark { name: body.name, role, at: body.bounds.center() + scene.origin });
     }
     marks
 }

@@ -2,16 +2,18 @@
 //!
 //! Numbers have six significant digits, which is more than a plot shows.
 
-use crate::drawing::{Drawing, Fate};
+use crate::drawing::{Fate, SceneDrawing};
 use crate::figures::{directions_map, sensor_map};
 use crate::html::axes::{chart_axes, dial_axes, ink, map_axes};
-use crate::html::cells::{Cells, coarse, joined};
+use crate::html::cells::{MapCells, coarse, joined};
 use crate::local_axes::LocalAxes;
 use crate::png::{
-    self, ErrorForm, HeatMap, LinePlot, MapFrame, PolarPlot, Scale, SeriesForm, series_ink,
+    self, AxisScale, ErrorForm, HeatMap, LinePlot, MapFrame, PolarPlot, SeriesForm, series_ink,
 };
 use glam::DVec3;
-use lumiduct_core::measure::{Axes, Balance, IntensityTable, Measure, SensorMap, not_below_zero};
+use lumiduct_core::measure::{
+    Balance, IntensityTable, MapAxes, Measure, SensorMap, not_below_zero,
+};
 use serde_json::{Value, json};
 
 /// Significant digits of numbers.
@@ -49,7 +51,7 @@ fn with_errors<'a>(values: impl Iterator<Item = (&'a f64, &'a f64)>) -> [Value; 
     [shown, errors].map(Value::from)
 }
 
-impl Cells {
+impl MapCells {
     /// The data from which scripts draw a map, without its words.
     fn data(&self) -> Value {
         let side = joined(&self.values);
@@ -81,7 +83,7 @@ pub(crate) struct MapWords<'a> {
 }
 
 /// A map as in its picture, with its cells and their names.
-pub(crate) fn drawn_map(cells: &Cells, map: &HeatMap, words: &MapWords<'_>) -> Value {
+pub(crate) fn drawn_map(cells: &MapCells, map: &HeatMap, words: &MapWords<'_>) -> Value {
     let MapWords { geometry, quantity, names, units } = words;
     let mut data = cells.data();
     data["axes"] = map_axes(&MapFrame::new(map));
@@ -104,15 +106,15 @@ pub(crate) fn drawn_map(cells: &Cells, map: &HeatMap, words: &MapWords<'_>) -> V
 /// The map of a sensor.
 pub(crate) fn map(map: &SensorMap) -> Value {
     let (x, y, geometry, names, units) = match &map.axes {
-        Axes::Cartesian { u_mm, v_mm } => (u_mm, v_mm, "cartesian", ["u", "v"], ["mm", "mm"]),
-        Axes::Angular { u_deg, v_deg } => {
+        MapAxes::Cartesian { u_mm, v_mm } => (u_mm, v_mm, "cartesian", ["u", "v"], ["mm", "mm"]),
+        MapAxes::Angular { u_deg, v_deg } => {
             (u_deg, v_deg, "angular", ["to the right", "up"], ["deg", "deg"])
         }
-        Axes::Polar { radius_mm, sector_deg } => {
+        MapAxes::Polar { radius_mm, sector_deg } => {
             (sector_deg, radius_mm, "polar", ["azimuth", "radius"], ["deg", "mm"])
         }
     };
-    let cells = Cells {
+    let cells = MapCells {
         x: x.clone(),
         y: y.clone(),
         values: map.values.mapv(not_below_zero),
@@ -128,7 +130,7 @@ pub(crate) fn directions(table: &IntensityTable) -> Option<Value> {
     if table.values.ncols() < 2 {
         return None;
     }
-    let cells = Cells {
+    let cells = MapCells {
         x: table.c_deg.clone(),
         y: table.gamma_deg.clone(),
         values: table.values.mapv(not_below_zero),
@@ -192,7 +194,7 @@ pub(crate) fn chart(plot: &LinePlot, unit: &str) -> Value {
             })
         })
         .collect();
-    let [linear, log] = [Scale::Linear, Scale::Log].map(|scale| chart_axes(plot, scale));
+    let [linear, log] = [AxisScale::Linear, AxisScale::Log].map(|scale| chart_axes(plot, scale));
     json!({
         "plot": "chart", "title": plot.title, "unit": unit, "series": series, "x_name": plot.x_label,
         "axes": { "linear": linear, "log": log },
@@ -202,7 +204,7 @@ pub(crate) fn chart(plot: &LinePlot, unit: &str) -> Value {
 /// Curves over an axis that extends further on a logarithmic scale, which shows more of the tail.
 pub(crate) fn chart_with_tail(plot: &LinePlot, with_tail: &LinePlot, unit: &str) -> Value {
     let mut data = chart(with_tail, unit);
-    data["axes"]["linear"] = chart_axes(plot, Scale::Linear);
+    data["axes"]["linear"] = chart_axes(plot, AxisScale::Linear);
     data
 }
 
@@ -233,8 +235,8 @@ pub(crate) fn flow(balance: &Balance, whole: f64, unit: &str) -> Value {
 }
 
 /// The scene in three dimensions.
-pub(crate) fn scene(drawing: &Drawing) -> Value {
-    let places = Places::of(drawing);
+pub(crate) fn scene(drawing: &SceneDrawing) -> Value {
+    let places = Decimals::of(drawing);
     let faces: Vec<Value> = drawing
         .faces
         .iter()
@@ -276,8 +278,8 @@ pub(crate) fn scene(drawing: &Drawing) -> Value {
 }
 
 /// Local axes in the scene: places as in the drawing, and three unit vectors each.
-pub(crate) fn axes(drawing: &Drawing, axes: &[LocalAxes]) -> Value {
-    let places = Places::of(drawing);
+pub(crate) fn axes(drawing: &SceneDrawing, axes: &[LocalAxes]) -> Value {
+    let places = Decimals::of(drawing);
     axes.iter()
         .map(|one| {
             let vectors = [one.u, one.v, one.normal].map(|unit| unit.to_array()).concat();
@@ -290,12 +292,12 @@ pub(crate) fn axes(drawing: &Drawing, axes: &[LocalAxes]) -> Value {
 }
 
 /// Coordinates with as many decimals as a picture can show.
-struct Places {
+struct Decimals {
     unit: f64,
 }
 
-impl Places {
-    fn of(drawing: &Drawing) -> Self {
+impl Decimals {
+    fn of(drawing: &SceneDrawing) -> Self {
         let exponent = drawing.radius.max(f64::MIN_POSITIVE).log10().floor() as i32;
         Self { unit: 10f64.powi(PLACE_DIGITS - exponent) }
     }

@@ -44,7 +44,7 @@ pub(crate) struct Page {
     /// The verdict as a status.
     pub(crate) standing: Standing,
     /// Its contents, in order.
-    pub(crate) parts: Vec<Part>,
+    pub(crate) parts: Vec<PagePart>,
     /// Its origin, in small print at the end.
     pub(crate) footer: String,
 }
@@ -72,7 +72,7 @@ pub(crate) enum Standing {
 
 /// A part of a page, with a heading that the table of contents links to.
 #[derive(Debug, Serialize)]
-pub(crate) struct Part {
+pub(crate) struct PagePart {
     /// Its heading.
     pub(crate) title: String,
     /// Its contents.
@@ -179,7 +179,7 @@ mod tests {
         let plot = plots.add(text, serde_json::json!({"plot": "chart", "title": text}), None);
         let list = Block::List { items: vec![text.to_owned()] };
         let cells = table(&["head"], vec![vec![text.to_owned()]]);
-        let part = Part { title: text.to_owned(), blocks: vec![list, cells, plot] };
+        let part = PagePart { title: text.to_owned(), blocks: vec![list, cells, plot] };
         let page = Page {
             title: text.to_owned(),
             masthead: Some(Masthead { lines: vec![[text, text].map(str::to_owned)], logo: None }),

@@ -6,7 +6,7 @@ use lumiduct_base::number::{format_fixed, format_value, superscript};
 
 /// Whether equal lengths are equal differences or equal ratios.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Scale {
+pub enum AxisScale {
     /// Equal differences.
     Linear,
     /// Equal ratios; values of zero and below are beyond the lower end.
@@ -17,10 +17,10 @@ pub enum Scale {
 
 /// A range of values mapped to a length.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Axis {
+pub(crate) struct PlotAxis {
     min: f64,
     max: f64,
-    scale: Scale,
+    scale: AxisScale,
 }
 
 /// The marks of an axis.
@@ -52,10 +52,10 @@ const FARTHEST: f64 = 1e4;
 /// Most decades that a logarithmic axis shows.
 const MOST_DECADES: i32 = 12;
 
-impl Axis {
+impl PlotAxis {
     /// The axis from `min` to `max`. An empty, inverted or non-finite range is replaced by a
     /// sensible one; a logarithmic axis without positive values becomes linear.
-    pub(crate) fn new(min: f64, max: f64, scale: Scale) -> Self {
+    pub(crate) fn new(min: f64, max: f64, scale: AxisScale) -> Self {
         let finite = |value: f64, other: f64| {
             let value = if value.is_finite() { value } else { other };
             if value.is_finite() { value.clamp(-LARGEST, LARGEST) } else { 0.0 }
@@ -63,25 +63,25 @@ impl Axis {
         let (one, other) = (finite(min, max), finite(max, min));
         let (low, high) = (one.min(other), one.max(other));
         match scale {
-            Scale::Log if high > 1.0 / LARGEST => {
+            AxisScale::Log if high > 1.0 / LARGEST => {
                 let lowest = high * 10f64.powi(-MOST_DECADES);
                 let low = if low > 0.0 { low.max(lowest) } else { high * 1e-3 };
                 let low = if low < high * (1.0 - NARROWEST) { low } else { high * 0.1 };
                 Self { min: low, max: high, scale }
             }
-            Scale::Tangent => {
+            AxisScale::Tangent => {
                 let (min, max) = widened(low.clamp(-89.0, 88.0), high.clamp(-88.0, 89.0));
                 Self { min, max, scale }
             }
-            Scale::Log | Scale::Linear => {
+            AxisScale::Log | AxisScale::Linear => {
                 let (min, max) = widened(low, high);
-                Self { min, max, scale: Scale::Linear }
+                Self { min, max, scale: AxisScale::Linear }
             }
         }
     }
 
     /// How values become fractions.
-    pub(crate) fn scale(&self) -> Scale {
+    pub(crate) fn scale(&self) -> AxisScale {
         self.scale
     }
 
@@ -98,22 +98,22 @@ impl Axis {
     /// The difference of its ends, as drawn.
     pub(crate) fn extent(&self) -> f64 {
         match self.scale {
-            Scale::Linear | Scale::Log => self.max - self.min,
-            Scale::Tangent => self.max.to_radians().tan() - self.min.to_radians().tan(),
+            AxisScale::Linear | AxisScale::Log => self.max - self.min,
+            AxisScale::Tangent => self.max.to_radians().tan() - self.min.to_radians().tan(),
         }
     }
 
     /// Where a value lies: 0 at the lower end, 1 at the upper; NaN stays NaN.
     pub(crate) fn fraction(&self, value: f64) -> f64 {
         let fraction = match self.scale {
-            Scale::Linear => (value - self.min) / (self.max - self.min),
-            Scale::Tangent => {
+            AxisScale::Linear => (value - self.min) / (self.max - self.min),
+            AxisScale::Tangent => {
                 let [tangent, min, max] =
                     [value, self.min, self.max].map(|angle| angle.to_radians().tan());
                 (tangent - min) / (max - min)
             }
-            Scale::Log if value <= 0.0 => f64::NEG_INFINITY,
-            Scale::Log => (value / self.min).ln() / (self.max / self.min).ln(),
+            AxisScale::Log if value <= 0.0 => f64::NEG_INFINITY,
+            AxisScale::Log => (value / self.min).ln() / (self.max / self.min).ln(),
         };
         fraction.clamp(-FARTHEST, FARTHEST)
     }
@@ -121,8 +121,8 @@ impl Axis {
     /// At most `most` labelled marks (at least two where possible) on round values.
     pub(crate) fn ticks(&self, most: usize) -> Ticks {
         match self.scale {
-            Scale::Linear | Scale::Tangent => self.linear_ticks(most),
-            Scale::Log => self.log_ticks(most).unwrap_or_else(|| self.linear_ticks(most)),
+            AxisScale::Linear | AxisScale::Tangent => self.linear_ticks(most),
+            AxisScale::Log => self.log_ticks(most).unwrap_or_else(|| self.linear_ticks(most)),
         }
     }
 
@@ -237,11 +237,11 @@ mod tests {
 
     #[test]
     fn marks_stand_on_round_numbers() {
-        let ticks = Axis::new(-5.0, 5.0, Scale::Linear).ticks(6);
+        let ticks = PlotAxis::new(-5.0, 5.0, AxisScale::Linear).ticks(6);
         assert_eq!(labels(&ticks), ["−4", "−2", "0", "2", "4"]);
-        let ticks = Axis::new(0.0, 0.84, Scale::Linear).ticks(5);
+        let ticks = PlotAxis::new(0.0, 0.84, AxisScale::Linear).ticks(5);
         assert_eq!(labels(&ticks), ["0.0", "0.2", "0.4", "0.6", "0.8"]);
-        let ticks = Axis::new(0.0, 250_000.0, Scale::Linear).ticks(6);
+        let ticks = PlotAxis::new(0.0, 250_000.0, AxisScale::Linear).ticks(6);
         assert_eq!(
             (labels(&ticks), ticks.exponent),
             (vec!["0.0", "0.5", "1.0", "1.5", "2.0", "2.5"], 5)
@@ -250,35 +250,38 @@ mod tests {
 
     #[test]
     fn logarithmic_marks_are_powers_of_ten_or_1_2_5() {
-        let ticks = Axis::new(1e-7, 1.0, Scale::Log).ticks(4);
+        let ticks = PlotAxis::new(1e-7, 1.0, AxisScale::Log).ticks(4);
         assert_eq!(labels(&ticks), ["10⁻⁶", "10⁻⁴", "10⁻²", "10⁰"]);
-        let ticks = Axis::new(0.9, 25.0, Scale::Log).ticks(6);
+        let ticks = PlotAxis::new(0.9, 25.0, AxisScale::Log).ticks(6);
         assert_eq!(labels(&ticks), ["1", "2", "5", "10", "20"]);
-        let ticks = Axis::new(3.1, 3.9, Scale::Log).ticks(5);
+        let ticks = PlotAxis::new(3.1, 3.9, AxisScale::Log).ticks(5);
         assert_eq!(labels(&ticks), ["3.2", "3.4", "3.6", "3.8"]);
     }
 
     #[test]
     fn a_single_value_has_an_axis_from_zero() {
         assert_eq!(
-            Axis::new(5.0, 5.0, Scale::Linear),
-            Axis { min: 0.0, max: 5.0, scale: Scale::Linear }
+            PlotAxis::new(5.0, 5.0, AxisScale::Linear),
+            PlotAxis { min: 0.0, max: 5.0, scale: AxisScale::Linear }
         );
         assert_eq!(
-            Axis::new(0.0, 0.0, Scale::Log),
-            Axis { min: 0.0, max: 1.0, scale: Scale::Linear }
+            PlotAxis::new(0.0, 0.0, AxisScale::Log),
+            PlotAxis { min: 0.0, max: 1.0, scale: AxisScale::Linear }
         );
-        assert_eq!(Axis::new(5.0, 5.0, Scale::Log), Axis { min: 0.5, max: 5.0, scale: Scale::Log });
+        assert_eq!(
+            PlotAxis::new(5.0, 5.0, AxisScale::Log),
+            PlotAxis { min: 0.5, max: 5.0, scale: AxisScale::Log }
+        );
     }
 
     #[test]
     fn fractions_run_from_one_end_to_the_other() {
-        let linear = Axis::new(-2.0, 6.0, Scale::Linear);
+        let linear = PlotAxis::new(-2.0, 6.0, AxisScale::Linear);
         assert_eq!(
             [-2.0, 0.0, 6.0, 8.0].map(|value| linear.fraction(value)),
             [0.0, 0.25, 1.0, 1.25]
         );
-        let log = Axis::new(1e-2, 1e2, Scale::Log);
+        let log = PlotAxis::new(1e-2, 1e2, AxisScale::Log);
         assert!((log.fraction(0.1) - 0.25).abs() < 1e-12);
         assert_eq!(log.fraction(0.0), -FARTHEST);
         assert!(log.fraction(f64::NAN).is_nan());
@@ -291,8 +294,8 @@ mod tests {
             a in any::<f64>(), b in any::<f64>(), narrow in -9.0..0.0f64, most in 2usize..12,
         ) {
             for (min, max) in [(a, b), (a, a * (1.0 + 10f64.powf(narrow))), (a, f64::NAN)] {
-                for scale in [Scale::Linear, Scale::Log] {
-                    let axis = Axis::new(min, max, scale);
+                for scale in [AxisScale::Linear, AxisScale::Log] {
+                    let axis = PlotAxis::new(min, max, scale);
                     prop_assert!(axis.min() < axis.max());
                     let ticks = axis.ticks(most);
                     prop_assert!((1..=most.max(3)).contains(&ticks.major.len()), "{axis:?} {most} {ticks:?}");

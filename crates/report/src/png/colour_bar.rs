@@ -2,7 +2,7 @@
 //!
 //! Chooses the values at the ends of the bar; knows nothing of cells and places.
 
-use crate::png::axis::{Axis, Scale, Ticks};
+use crate::png::axis::{AxisScale, PlotAxis, Ticks};
 use crate::png::canvas::{Canvas, Ink, Pen};
 use crate::png::geometry::Rect;
 use crate::png::layout::write;
@@ -26,7 +26,7 @@ pub(crate) struct Colouring<'a> {
     /// Their unit; may be empty.
     pub(crate) unit: &'a str,
     /// How values become fractions of the bar.
-    pub(crate) scale: Scale,
+    pub(crate) scale: AxisScale,
     /// How fractions become colours.
     pub(crate) colours: ColourMap,
     /// Values at the ends of the bar; `None` takes them from the values.
@@ -49,7 +49,7 @@ impl BarScale {
     pub(crate) fn new(colouring: &Colouring<'_>, height: f64) -> Self {
         let Colouring { values, scale, colours, .. } = *colouring;
         let [low, high] = colouring.limits.unwrap_or_else(|| limits(values, scale, colours));
-        let axis = Axis::new(low, high, scale);
+        let axis = PlotAxis::new(low, high, scale);
         let slack = 1e-9 * (axis.max() - axis.min());
         let beyond = [
             values.first().is_some_and(|&least| least < axis.min() - slack),
@@ -62,7 +62,7 @@ impl BarScale {
 
 /// A colour bar.
 pub(crate) struct ColourBar {
-    axis: Axis,
+    axis: PlotAxis,
     ticks: Ticks,
     colours: ColourMap,
     width: f64,
@@ -134,7 +134,7 @@ impl ColourBar {
 }
 
 /// The marks of the bar; none where there is nothing to read.
-fn bar_ticks(axis: &Axis, values: &[f64], height: f64) -> Ticks {
+fn bar_ticks(axis: &PlotAxis, values: &[f64], height: f64) -> Ticks {
     if values.is_empty() {
         return Ticks { major: Vec::new(), minor: Vec::new(), exponent: 0 };
     }
@@ -142,23 +142,23 @@ fn bar_ticks(axis: &Axis, values: &[f64], height: f64) -> Ticks {
 }
 
 /// The values at the ends of the colour bar, from values in ascending order.
-fn limits(values: &[f64], scale: Scale, colours: ColourMap) -> [f64; 2] {
+fn limits(values: &[f64], scale: AxisScale, colours: ColourMap) -> [f64; 2] {
     let (Some(&least), Some(&greatest)) = (values.first(), values.last()) else {
         return [0.0, 1.0];
     };
     match (colours, scale) {
-        (ColourMap::Diverging, Scale::Linear | Scale::Log | Scale::Tangent) => {
+        (ColourMap::Diverging, AxisScale::Linear | AxisScale::Log | AxisScale::Tangent) => {
             let far = least.abs().max(greatest.abs());
             if far > 0.0 { [-far, far] } else { [-1.0, 1.0] }
         }
-        (ColourMap::Sequential, Scale::Log) => {
+        (ColourMap::Sequential, AxisScale::Log) => {
             let high = without_outliers(values);
             let positive: Vec<f64> = values.iter().copied().filter(|&value| value > 0.0).collect();
             let inverse: Vec<f64> = positive.iter().rev().map(|value| 1.0 / value).collect();
             let low = if inverse.is_empty() { 0.0 } else { 1.0 / without_outliers(&inverse) };
             [low.max(high * 1e-6), high]
         }
-        (ColourMap::Sequential, Scale::Linear | Scale::Tangent) => {
+        (ColourMap::Sequential, AxisScale::Linear | AxisScale::Tangent) => {
             let high = without_outliers(values);
             // Values that differ by less than a half are shown in full contrast. A value slightly
             // below zero is noise and looks like zero.
@@ -186,22 +186,25 @@ mod tests {
     fn one_wild_cell_does_not_stretch_the_bar_but_a_beam_does() {
         let mut values: Vec<f64> = (0..1000).map(|index| 1.0 + f64::from(index) / 1000.0).collect();
         values.push(1e9);
-        assert_eq!(limits(&values, Scale::Linear, ColourMap::Sequential), [1.0, 1.999]);
+        assert_eq!(limits(&values, AxisScale::Linear, ColourMap::Sequential), [1.0, 1.999]);
         let beam: Vec<f64> = (0..400).rev().map(|r| (-f64::from(r) / 20.0).exp()).collect();
-        assert_eq!(limits(&[1.0, 1.0, 100.0], Scale::Linear, ColourMap::Sequential), [0.0, 100.0]);
-        assert_eq!(limits(&beam, Scale::Linear, ColourMap::Sequential), [0.0, 1.0]);
+        assert_eq!(
+            limits(&[1.0, 1.0, 100.0], AxisScale::Linear, ColourMap::Sequential),
+            [0.0, 100.0]
+        );
+        assert_eq!(limits(&beam, AxisScale::Linear, ColourMap::Sequential), [0.0, 1.0]);
     }
 
     #[test]
     fn the_bar_suits_the_values() {
         let sequential = |values: &[f64], scale| limits(values, scale, ColourMap::Sequential);
-        assert_eq!(sequential(&[2.0, 3.0, 5.0], Scale::Linear), [0.0, 5.0]);
-        assert_eq!(sequential(&[4.0, 5.0], Scale::Linear), [4.0, 5.0]);
-        assert_eq!(sequential(&[-1.0, 5.0], Scale::Linear), [0.0, 5.0]);
-        assert_eq!(sequential(&[-4.0, 5.0], Scale::Linear), [-4.0, 5.0]);
-        assert_eq!(sequential(&[0.0, 0.5, 5.0], Scale::Log), [0.5, 5.0]);
-        assert_eq!(sequential(&[0.0, 1e-3, 1.0, 1e4], Scale::Log), [1e-2, 1e4]);
-        assert_eq!(limits(&[-2.0, 5.0], Scale::Linear, ColourMap::Diverging), [-5.0, 5.0]);
-        assert_eq!(limits(&[], Scale::Linear, ColourMap::Diverging), [0.0, 1.0]);
+        assert_eq!(sequential(&[2.0, 3.0, 5.0], AxisScale::Linear), [0.0, 5.0]);
+        assert_eq!(sequential(&[4.0, 5.0], AxisScale::Linear), [4.0, 5.0]);
+        assert_eq!(sequential(&[-1.0, 5.0], AxisScale::Linear), [0.0, 5.0]);
+        assert_eq!(sequential(&[-4.0, 5.0], AxisScale::Linear), [-4.0, 5.0]);
+        assert_eq!(sequential(&[0.0, 0.5, 5.0], AxisScale::Log), [0.5, 5.0]);
+        assert_eq!(sequential(&[0.0, 1e-3, 1.0, 1e4], AxisScale::Log), [1e-2, 1e4]);
+        assert_eq!(limits(&[-2.0, 5.0], AxisScale::Linear, ColourMap::Diverging), [-5.0, 5.0]);
+        assert_eq!(limits(&[], AxisScale::Linear, ColourMap::Diverging), [0.0, 1.0]);
     }
 }

@@ -1,11 +1,11 @@
 //! A cut through the geometry with paths of light in it.
 
-use crate::png::axis::{Axis, Scale};
+use crate::png::axis::{AxisScale, PlotAxis};
 use crate::png::canvas::{Canvas, Ink, Pen};
 use crate::png::geometry::{Point, Rect};
 use crate::png::layout::{
-    Aspect, Axes, Header, Legend, MARGIN, Mark, SQUEEZED_REMARK, Sample, draw_mark, plot_size,
-    remark, write,
+    Aspect, EndMark, Header, Legend, LegendSample, MARGIN, PlotAxes, SQUEEZED_REMARK, draw_mark,
+    plot_size, remark, write,
 };
 use crate::png::marked_axis::MarkedAxis;
 use crate::png::palette::{PAPER, Rgb, outline_colour};
@@ -28,7 +28,7 @@ pub struct CrossSection {
     /// Least and greatest y of the picture, mm.
     pub y_range: [f64; 2],
     /// Surfaces in the plane.
-    pub outlines: Vec<Outline>,
+    pub outlines: Vec<SurfaceDots>,
     /// Paths of light, seen along the normal of the plane.
     pub rays: Vec<RayPath>,
     /// Sources and sensors, seen likewise.
@@ -66,7 +66,7 @@ impl PlaceOf {
 
 /// A surface in the plane, as dots.
 #[derive(Debug, Clone)]
-pub struct Outline {
+pub struct SurfaceDots {
     /// Its name in the legend; may be empty.
     pub name: String,
     /// Outlines of one kind have the same number and colour; 0 is the darkest.
@@ -118,12 +118,12 @@ impl RayEnd {
         }
     }
 
-    fn mark(self) -> Mark {
+    fn mark(self) -> EndMark {
         match self {
-            Self::Sensor => Mark::Dot,
-            Self::Absorbed => Mark::Cross,
-            Self::Escaped => Mark::Ring,
-            Self::Lost => Mark::Square,
+            Self::Sensor => EndMark::Dot,
+            Self::Absorbed => EndMark::Cross,
+            Self::Escaped => EndMark::Ring,
+            Self::Lost => EndMark::Square,
         }
     }
 }
@@ -142,18 +142,19 @@ const NAME_STEPS: u32 = 12;
 
 /// Draws outlines as dots and paths of light as thin lines, each path with a mark at its end; then names.
 pub fn cross_section(section: &CrossSection) -> Result<Vec<u8>> {
-    let axes = [section.x_range, section.y_range].map(|[a, b]| Axis::new(a, b, Scale::Linear));
+    let axes =
+        [section.x_range, section.y_range].map(|[a, b]| PlotAxis::new(a, b, AxisScale::Linear));
     let size = plot_size(axes, MOST, LONGEST);
     let [x, y] = axes;
     let x = MarkedAxis::level(x, &section.x_label, size.width);
     let y = MarkedAxis::upright(y, &section.y_label, size.height);
-    let frame = Axes::new([x, y], [size.width, size.height])?;
+    let frame = PlotAxes::new([x, y], [size.width, size.height])?;
     let content = MARGIN + frame.left_margin() + size.width + MARGIN + 6.0;
     let width = content.max(620.0).ceil();
     let left = (MARGIN + frame.left_margin() + 0.5 * (width - content)).round();
     let header = Header::new(&section.title, &section.subtitle, width - 2.0 * MARGIN)?;
     let names = legend_names(section);
-    let entries: Vec<(Sample, &str)> =
+    let entries: Vec<(LegendSample, &str)> =
         names.iter().map(|(sample, name)| (*sample, name.as_str())).collect();
     let legend = Legend::new(&entries, width - 2.0 * MARGIN)?;
     let top = (MARGIN + header.height() + legend.height()).round();
@@ -180,10 +181,10 @@ pub fn cross_section(section: &CrossSection) -> Result<Vec<u8>> {
 }
 
 /// One entry per outline name and per path end that occurs, with the number of paths.
-fn legend_names(section: &CrossSection) -> Vec<(Sample, String)> {
-    let mut entries: Vec<(Sample, String)> = Vec::new();
+fn legend_names(section: &CrossSection) -> Vec<(LegendSample, String)> {
+    let mut entries: Vec<(LegendSample, String)> = Vec::new();
     for outline in &section.outlines {
-        let entry = (Sample::Dot(outline_colour(outline.colour), 4.0), outline.name.clone());
+        let entry = (LegendSample::Dot(outline_colour(outline.colour), 4.0), outline.name.clone());
         if !entries.contains(&entry) {
             entries.push(entry);
         }
@@ -192,7 +193,7 @@ fn legend_names(section: &CrossSection) -> Vec<(Sample, String)> {
         let count = section.rays.iter().filter(|ray| ray.end == end).count();
         if count > 0 {
             entries.push((
-                Sample::MarkedLine(pen(end), end.mark()),
+                LegendSample::MarkedLine(pen(end), end.mark()),
                 format!("{} ({count})", end.name()),
             ));
         }
@@ -204,7 +205,7 @@ fn pen(end: RayEnd) -> Pen {
     Pen { ink: Ink { colour: end.colour(), opacity: 0.6 }, width: 1.1, dash: &[] }
 }
 
-fn draw_outlines(canvas: &mut Canvas, frame: &Axes, area: Rect, outlines: &[Outline]) {
+fn draw_outlines(canvas: &mut Canvas, frame: &PlotAxes, area: Rect, outlines: &[SurfaceDots]) {
     for outline in outlines {
         let ink = Ink::opaque(outline_colour(outline.colour));
         for point in &outline.points {
@@ -213,7 +214,7 @@ fn draw_outlines(canvas: &mut Canvas, frame: &Axes, area: Rect, outlines: &[Outl
     }
 }
 
-fn draw_rays(canvas: &mut Canvas, frame: &Axes, area: Rect, rays: &[RayPath]) {
+fn draw_rays(canvas: &mut Canvas, frame: &PlotAxes, area: Rect, rays: &[RayPath]) {
     for ray in rays {
         let places: Vec<Point> = ray.points.iter().map(|point| frame.place(area, *point)).collect();
         canvas.line(&places, &pen(ray.end));
@@ -226,7 +227,12 @@ fn draw_rays(canvas: &mut Canvas, frame: &Axes, area: Rect, rays: &[RayPath]) {
 }
 
 /// Names next to their places, on a white background, where there is room.
-fn draw_names(canvas: &mut Canvas, frame: &Axes, area: Rect, places: &[NamedPlace]) -> Result<()> {
+fn draw_names(
+    canvas: &mut Canvas,
+    frame: &PlotAxes,
+    area: Rect,
+    places: &[NamedPlace],
+) -> Result<()> {
     let mut taken: Vec<Rect> = Vec::new();
     let inside = || {
         let seen = places.iter().map(|place| (place, frame.place(area, place.at)));
@@ -234,7 +240,7 @@ fn draw_names(canvas: &mut Canvas, frame: &Axes, area: Rect, places: &[NamedPlac
     };
     // No mark lies on a name.
     for (place, at) in inside() {
-        draw_mark(canvas, Mark::Square, at, place.of.colour());
+        draw_mark(canvas, EndMark::Square, at, place.of.colour());
     }
     for (place, at) in inside() {
         let (width, height) = (LABEL.width(&place.name)?, LABEL.line_step());
@@ -264,12 +270,12 @@ mod tests {
     use crate::png::tests::Decoded;
 
     fn section_with(rays: Vec<RayPath>, places: Vec<NamedPlace>) -> Decoded {
-        let outline = Outline { name: String::new(), colour: 2, points: Vec::new() };
+        let outline = SurfaceDots { name: String::new(), colour: 2, points: Vec::new() };
         decoded(CrossSection { rays, places, ..empty([-10.0, 10.0], outline) })
     }
 
     fn section(x_range: [f64; 2], points: Vec<[f64; 2]>, rays: Vec<RayPath>) -> Decoded {
-        let outline = Outline { name: String::new(), colour: 2, points };
+        let outline = SurfaceDots { name: String::new(), colour: 2, points };
         decoded(CrossSection { rays, ..empty(x_range, outline) })
     }
 
@@ -277,7 +283,7 @@ mod tests {
         Decoded::new(&cross_section(&section).unwrap())
     }
 
-    fn empty(x_range: [f64; 2], outline: Outline) -> CrossSection {
+    fn empty(x_range: [f64; 2], outline: SurfaceDots) -> CrossSection {
         CrossSection {
             title: "Pipe".to_string(),
             subtitle: "plane y = 0".to_string(),

@@ -1,11 +1,11 @@
 //! False-colour maps: a value per cell of a rectangle.
 
-use crate::png::axis::{Axis, Scale};
+use crate::png::axis::{AxisScale, PlotAxis};
 use crate::png::canvas::Canvas;
 use crate::png::colour_bar::{BAR_WIDTH, BarScale, ColourBar, Colouring, TIP};
 use crate::png::geometry::Rect;
 use crate::png::layout::{
-    Aspect, Axes, Header, MARGIN, PlotSize, SQUEEZED_REMARK, plot_size, remark,
+    Aspect, Header, MARGIN, PlotAxes, PlotSize, SQUEEZED_REMARK, plot_size, remark,
 };
 use crate::png::marked_axis::MarkedAxis;
 use crate::png::palette::{ColourMap, NEUTRAL};
@@ -30,14 +30,14 @@ pub struct HeatMap {
     /// Outer edges of the first and the last row, in the unit of the label.
     pub y_range: [f64; 2],
     /// How places become fractions of both axes.
-    pub axes: Scale,
+    pub axes: AxisScale,
     /// The values, `[[row, column]]`: row 0 is drawn at the bottom, column 0 at the left.
     /// Non-finite values are outside the sensor and drawn grey.
     pub values: Array2<f64>,
     /// Unit of the values; may be empty.
     pub unit: String,
     /// How values become fractions of the colour bar.
-    pub scale: Scale,
+    pub scale: AxisScale,
     /// How fractions become colours.
     pub colours: ColourMap,
     /// Values at the ends of the colour bar; `None` takes them from the data.
@@ -59,7 +59,7 @@ const BAR_GAP: f64 = 26.0;
 pub fn heat_map(map: &HeatMap) -> Result<Vec<u8>> {
     let (axes, size) = map_axes(map);
     let size = whole_cells(size, &map.values);
-    let frame = Axes::new(axes, [size.width, size.height])?;
+    let frame = PlotAxes::new(axes, [size.width, size.height])?;
     let values = finite(&map.values);
     let colouring = Colouring {
         values: &values,
@@ -97,7 +97,7 @@ pub fn heat_map(map: &HeatMap) -> Result<Vec<u8>> {
 
 /// The axes of a map, and the size at which it is drawn, pixels.
 fn map_axes(map: &HeatMap) -> ([MarkedAxis; 2], PlotSize) {
-    let axes = [map.x_range, map.y_range].map(|[min, max]| Axis::new(min, max, map.axes));
+    let axes = [map.x_range, map.y_range].map(|[min, max]| PlotAxis::new(min, max, map.axes));
     let size = plot_size(axes, MOST, LONGEST);
     let [x, y] = axes;
     let x = MarkedAxis::level(x, &map.x_label, size.width);
@@ -120,12 +120,12 @@ impl MapFrame {
     pub(crate) fn new(map: &HeatMap) -> Self {
         let (axes, size) = map_axes(map);
         let values = finite(&map.values);
-        let bar = |scale: Scale| {
+        let bar = |scale: AxisScale| {
             let (unit, colours, limits) = (map.unit.as_str(), map.colours, map.limits);
             BarScale::new(&Colouring { values: &values, unit, scale, colours, limits }, size.height)
         };
         let log_bar = match map.colours {
-            ColourMap::Sequential => Some(bar(Scale::Log)),
+            ColourMap::Sequential => Some(bar(AxisScale::Log)),
             ColourMap::Diverging => None,
         };
         Self { axes, bar: bar(map.scale), log_bar }
@@ -203,10 +203,10 @@ mod tests {
             y_label: "y in mm".to_string(),
             x_range: [0.0, 3.0],
             y_range: [0.0, 2.0],
-            axes: Scale::Linear,
+            axes: AxisScale::Linear,
             values,
             unit: "lx".to_string(),
-            scale: Scale::Linear,
+            scale: AxisScale::Linear,
             colours: ColourMap::Sequential,
             limits: None,
         }

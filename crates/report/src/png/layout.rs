@@ -1,7 +1,7 @@
 //! Common parts of pictures: heading, legend, frame with axes, and the size of a plot in
 //! millimetres.
 
-use crate::png::axis::{Axis, Ticks};
+use crate::png::axis::{PlotAxis, Ticks};
 use crate::png::canvas::{Canvas, Ink, Pen};
 use crate::png::geometry::{Point, Rect};
 use crate::png::marked_axis::MarkedAxis;
@@ -75,18 +75,18 @@ impl Header {
 
 /// The sample before a name in a legend.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Sample {
+pub(crate) enum LegendSample {
     /// A piece of line.
     Line(Pen),
     /// A dot of a radius in pixels.
     Dot(Rgb, f64),
     /// A line that ends in a mark.
-    MarkedLine(Pen, Mark),
+    MarkedLine(Pen, EndMark),
 }
 
 /// The mark at the end of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Mark {
+pub(crate) enum EndMark {
     /// A filled circle.
     Dot,
     /// Two crossing strokes.
@@ -99,7 +99,7 @@ pub(crate) enum Mark {
 
 /// Names with samples, in rows.
 pub(crate) struct Legend {
-    entries: Vec<(Point, Sample, String)>,
+    entries: Vec<(Point, LegendSample, String)>,
     height: f64,
 }
 
@@ -110,11 +110,11 @@ const SAMPLE_WIDTH: f64 = 34.0;
 
 impl Legend {
     /// A legend of the entries that have a name, in rows of at most `width` pixels.
-    pub(crate) fn new(entries: &[(Sample, &str)], width: f64) -> Result<Self> {
+    pub(crate) fn new(entries: &[(LegendSample, &str)], width: f64) -> Result<Self> {
         const SPACE: f64 = 26.0;
         let (mut x, mut y) = (0.0, 0.0);
         let mut placed = Vec::new();
-        let named: Vec<&(Sample, &str)> =
+        let named: Vec<&(LegendSample, &str)> =
             entries.iter().filter(|(_, name)| !name.is_empty()).collect();
         for (index, (sample, name)) in named.iter().take(MOST_ENTRIES).enumerate() {
             let left_out = named.len().saturating_sub(MOST_ENTRIES - 1);
@@ -147,12 +147,12 @@ impl Legend {
             let middle = (baseline - 0.5 * LABEL.cap_height()).floor() + 0.5;
             let ends = [[x + 1.0, middle], [x + SAMPLE_WIDTH - 9.0, middle]];
             match *sample {
-                Sample::Line(pen) => canvas.line(&ends, &pen),
-                Sample::Dot(colour, radius) => {
+                LegendSample::Line(pen) => canvas.line(&ends, &pen),
+                LegendSample::Dot(colour, radius) => {
                     let centre = [0.5 * (ends[0][0] + ends[1][0]), middle];
                     canvas.dot(centre, radius, Ink::opaque(colour));
                 }
-                Sample::MarkedLine(pen, mark) => {
+                LegendSample::MarkedLine(pen, mark) => {
                     canvas.line(&ends, &pen);
                     draw_mark(canvas, mark, ends[1], pen.ink.colour);
                 }
@@ -164,31 +164,31 @@ impl Legend {
 }
 
 /// Draws the mark at the end of a line.
-pub(crate) fn draw_mark(canvas: &mut Canvas, mark: Mark, at: Point, colour: Rgb) {
+pub(crate) fn draw_mark(canvas: &mut Canvas, mark: EndMark, at: Point, colour: Rgb) {
     let ink = Ink::opaque(colour);
     let pen = Pen { ink, width: 1.4, dash: &[] };
     let corner = |dx: f64, dy: f64| [at[0] + dx, at[1] + dy];
     match mark {
-        Mark::Dot => canvas.dot(at, 2.8, ink),
-        Mark::Cross => {
+        EndMark::Dot => canvas.dot(at, 2.8, ink),
+        EndMark::Cross => {
             canvas.line(&[corner(-3.0, -3.0), corner(3.0, 3.0)], &pen);
             canvas.line(&[corner(-3.0, 3.0), corner(3.0, -3.0)], &pen);
         }
-        Mark::Ring => {
+        EndMark::Ring => {
             let circle: Vec<Point> = (0..=24)
                 .map(|step| (f64::from(step) * std::f64::consts::TAU / 24.0).sin_cos())
                 .map(|(sin, cos)| corner(3.0 * cos, 3.0 * sin))
                 .collect();
             canvas.line(&circle, &pen);
         }
-        Mark::Square => canvas.rect(Rect::new(at[0] - 2.8, at[1] - 2.8, 5.6, 5.6), ink),
+        EndMark::Square => canvas.rect(Rect::new(at[0] - 2.8, at[1] - 2.8, 5.6, 5.6), ink),
     }
 }
 
 /// The two axes of a plot, with marks and labels.
-pub(crate) struct Axes {
-    x: Axis,
-    y: Axis,
+pub(crate) struct PlotAxes {
+    x: PlotAxis,
+    y: PlotAxis,
     x_ticks: Ticks,
     y_ticks: Ticks,
     x_label: String,
@@ -196,7 +196,7 @@ pub(crate) struct Axes {
     tick_width: f64,
 }
 
-impl Axes {
+impl PlotAxes {
     /// Axes for a plot of a width and height in pixels.
     pub(crate) fn new([x, y]: [MarkedAxis; 2], [width, height]: [f64; 2]) -> Result<Self> {
         let mut tick_width = 0.0f64;
@@ -329,7 +329,7 @@ pub(crate) const SQUEEZED_REMARK: &str = "The axes are not to the same scale.";
 
 /// The largest size within `most` pixels of a plot of these ranges, at true aspect unless that
 /// exceeds `longest`.
-pub(crate) fn plot_size([x, y]: [Axis; 2], most: [f64; 2], longest: f64) -> PlotSize {
+pub(crate) fn plot_size([x, y]: [PlotAxis; 2], most: [f64; 2], longest: f64) -> PlotSize {
     let ratio = x.extent() / y.extent();
     let aspect =
         if (1.0 / longest..=longest).contains(&ratio) { Aspect::True } else { Aspect::Squeezed };

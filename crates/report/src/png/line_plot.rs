@@ -2,10 +2,10 @@
 
 mod range;
 
-use crate::png::axis::{Axis, Scale};
+use crate::png::axis::{AxisScale, PlotAxis};
 use crate::png::canvas::{Canvas, Ink, Pen};
 use crate::png::geometry::{Point, Rect};
-use crate::png::layout::{Axes, Header, Legend, MARGIN, Sample, write};
+use crate::png::layout::{Header, Legend, LegendSample, MARGIN, PlotAxes, write};
 use crate::png::marked_axis::MarkedAxis;
 use crate::png::palette::{SOFT_INK, SeriesInk, paired_colour, series_ink};
 use crate::png::text::{Align, LABEL};
@@ -24,16 +24,16 @@ pub struct LinePlot {
     /// Name and unit of the vertical axis.
     pub y_label: String,
     /// Horizontal scale; points at zero and below have no place on a logarithmic one.
-    pub x_scale: Scale,
+    pub x_scale: AxisScale,
     /// Vertical scale; zero is below the frame of a logarithmic one.
-    pub y_scale: Scale,
+    pub y_scale: AxisScale,
     /// The curves; those without a name are not in the legend.
-    pub series: Vec<Series>,
+    pub series: Vec<PlotSeries>,
 }
 
 /// One curve.
 #[derive(Debug, Clone)]
-pub struct Series {
+pub struct PlotSeries {
     /// Its name in the legend; may be empty.
     pub name: String,
     /// Its points, in the order in which they are joined; non-finite values interrupt it.
@@ -102,7 +102,7 @@ const HEIGHT: f64 = 400.0;
 /// Draws curves over two axes, with a legend above the frame.
 pub fn line_plot(plot: &LinePlot) -> Result<Vec<u8>> {
     let header = Header::new(&plot.title, &plot.subtitle, WIDTH - 2.0 * MARGIN)?;
-    let entries: Vec<(Sample, &str)> = plot
+    let entries: Vec<(LegendSample, &str)> = plot
         .series
         .iter()
         .enumerate()
@@ -111,7 +111,7 @@ pub fn line_plot(plot: &LinePlot) -> Result<Vec<u8>> {
     let legend = Legend::new(&entries, WIDTH - 2.0 * MARGIN)?;
 
     let top = MARGIN + header.height() + legend.height();
-    let frame = Axes::new(line_axes(plot, plot.y_scale), [WIDTH - 4.0 * MARGIN, HEIGHT])?;
+    let frame = PlotAxes::new(line_axes(plot, plot.y_scale), [WIDTH - 4.0 * MARGIN, HEIGHT])?;
     let left = MARGIN + frame.left_margin();
     let area = Rect::new(left, top.round(), WIDTH - MARGIN - 6.0 - left, HEIGHT);
     let height = area.bottom + frame.bottom_margin() + MARGIN - 6.0;
@@ -136,14 +136,14 @@ pub fn line_plot(plot: &LinePlot) -> Result<Vec<u8>> {
 
 /// The axes of curves, the vertical one with this scale: the description shared by pictures and
 /// pages.
-pub(crate) fn line_axes(plot: &LinePlot, y_scale: Scale) -> [MarkedAxis; 2] {
+pub(crate) fn line_axes(plot: &LinePlot, y_scale: AxisScale) -> [MarkedAxis; 2] {
     let [x, y] = data_axes(plot, y_scale);
     let x = MarkedAxis::level(x, &plot.x_label, WIDTH - 4.0 * MARGIN);
     [x, MarkedAxis::upright(y, &plot.y_label, HEIGHT)]
 }
 
 /// How a curve is drawn, by its index among all.
-pub(crate) fn ink(series: &Series, index: usize) -> SeriesInk {
+pub(crate) fn ink(series: &PlotSeries, index: usize) -> SeriesInk {
     match series.look {
         Look::InTurn => series_ink(index),
         Look::Solid(number) => SeriesInk { colour: paired_colour(number), dash: &[] },
@@ -160,10 +160,10 @@ fn error_of(point: &SeriesPoint) -> f64 {
     if point.std_error.is_finite() { point.std_error.abs() } else { 0.0 }
 }
 
-fn sample(series: &Series, ink: SeriesInk) -> Sample {
+fn sample(series: &PlotSeries, ink: SeriesInk) -> LegendSample {
     match series.form {
-        SeriesForm::Line | SeriesForm::Steps => Sample::Line(pen(ink)),
-        SeriesForm::Dots => Sample::Dot(ink.colour, 3.0),
+        SeriesForm::Line | SeriesForm::Steps => LegendSample::Line(pen(ink)),
+        SeriesForm::Dots => LegendSample::Dot(ink.colour, 3.0),
     }
 }
 
@@ -172,7 +172,7 @@ fn pen(ink: SeriesInk) -> Pen {
 }
 
 /// The points of a curve as they are joined, in units of the axes.
-fn outline(series: &Series) -> Vec<Point> {
+fn outline(series: &PlotSeries) -> Vec<Point> {
     let points = &series.points;
     match series.form {
         SeriesForm::Line | SeriesForm::Dots => points.iter().map(|p| [p.x, p.y]).collect(),
@@ -199,7 +199,7 @@ fn step_edges(x: f64, before: Option<f64>, after: Option<f64>) -> [f64; 2] {
 }
 
 /// Axes around all curves and their error bars.
-fn data_axes(plot: &LinePlot, y_scale: Scale) -> [Axis; 2] {
+fn data_axes(plot: &LinePlot, y_scale: AxisScale) -> [PlotAxis; 2] {
     let mut xs = Vec::new();
     let mut ys = Vec::new();
     for series in &plot.series {
@@ -217,7 +217,13 @@ fn data_axes(plot: &LinePlot, y_scale: Scale) -> [Axis; 2] {
     [range(&xs, plot.x_scale, Padding::None), range(&ys, y_scale, Padding::Around)]
 }
 
-fn draw_errors(canvas: &mut Canvas, frame: &Axes, area: Rect, series: &Series, ink: SeriesInk) {
+fn draw_errors(
+    canvas: &mut Canvas,
+    frame: &PlotAxes,
+    area: Rect,
+    series: &PlotSeries,
+    ink: SeriesInk,
+) {
     match series.errors {
         ErrorForm::Hidden => {}
         ErrorForm::Bars => {
@@ -239,7 +245,7 @@ fn draw_errors(canvas: &mut Canvas, frame: &Axes, area: Rect, series: &Series, i
                     y: point.y + sign * error_of(point),
                     ..*point
                 });
-                outline(&Series { points: points.collect(), ..series.clone() })
+                outline(&PlotSeries { points: points.collect(), ..series.clone() })
             };
             let (lower, upper) = (shifted(-1.0), shifted(1.0));
             let band = Ink { colour: ink.colour, opacity: 0.22 };
@@ -254,7 +260,13 @@ fn draw_errors(canvas: &mut Canvas, frame: &Axes, area: Rect, series: &Series, i
     }
 }
 
-fn draw_curve(canvas: &mut Canvas, frame: &Axes, area: Rect, series: &Series, ink: SeriesInk) {
+fn draw_curve(
+    canvas: &mut Canvas,
+    frame: &PlotAxes,
+    area: Rect,
+    series: &PlotSeries,
+    ink: SeriesInk,
+) {
     let places: Vec<Point> =
         outline(series).into_iter().map(|point| frame.place(area, point)).collect();
     match series.form {
@@ -276,11 +288,11 @@ mod tests {
     use super::*;
     use crate::png::tests::Decoded;
 
-    fn axes_of(plot: &LinePlot) -> [Axis; 2] {
+    fn axes_of(plot: &LinePlot) -> [PlotAxis; 2] {
         data_axes(plot, plot.y_scale)
     }
 
-    fn plot(y_scale: Scale, form: SeriesForm, points: &[[f64; 3]]) -> LinePlot {
+    fn plot(y_scale: AxisScale, form: SeriesForm, points: &[[f64; 3]]) -> LinePlot {
         let points =
             points.iter().map(|&[x, y, std_error]| SeriesPoint { x, y, std_error }).collect();
         LinePlot {
@@ -288,9 +300,9 @@ mod tests {
             subtitle: String::new(),
             x_label: "bounces".to_string(),
             y_label: "share of the flux".to_string(),
-            x_scale: Scale::Linear,
+            x_scale: AxisScale::Linear,
             y_scale,
-            series: vec![Series {
+            series: vec![PlotSeries {
                 name: String::new(),
                 points,
                 form,
@@ -302,7 +314,8 @@ mod tests {
 
     #[test]
     fn curves_that_belong_together_have_one_colour() {
-        let mut plot = plot(Scale::Linear, SeriesForm::Line, &[[0.0, 1.0, 0.0], [1.0, 2.0, 0.0]]);
+        let mut plot =
+            plot(AxisScale::Linear, SeriesForm::Line, &[[0.0, 1.0, 0.0], [1.0, 2.0, 0.0]]);
         let mut lit = |look: Look| {
             plot.series[0].look = look;
             Decoded::new(&line_plot(&plot).unwrap()).places(paired_colour(1)).len()
@@ -314,7 +327,7 @@ mod tests {
     #[test]
     fn steps_reach_half_way_to_their_neighbours() {
         let plot = plot(
-            Scale::Linear,
+            AxisScale::Linear,
             SeriesForm::Steps,
             &[[0.0, 1.0, 0.0], [1.0, 2.0, 0.0], [3.0, 4.0, 0.0]],
         );
@@ -328,19 +341,25 @@ mod tests {
 
     #[test]
     fn the_frame_holds_the_error_bars_and_begins_at_zero_where_values_come_near_it() {
-        let axes =
-            axes_of(&plot(Scale::Linear, SeriesForm::Line, &[[0.0, 2.0, 0.5], [1.0, 8.0, 2.0]]));
+        let axes = axes_of(&plot(
+            AxisScale::Linear,
+            SeriesForm::Line,
+            &[[0.0, 2.0, 0.5], [1.0, 8.0, 2.0]],
+        ));
         assert_eq!(axes[1].min(), 0.0);
         assert!(axes[1].max() > 10.0 && axes[1].max() < 11.0);
-        let axes =
-            axes_of(&plot(Scale::Linear, SeriesForm::Line, &[[0.0, 98.0, 0.5], [1.0, 99.0, 0.5]]));
+        let axes = axes_of(&plot(
+            AxisScale::Linear,
+            SeriesForm::Line,
+            &[[0.0, 98.0, 0.5], [1.0, 99.0, 0.5]],
+        ));
         assert!(axes[1].min() > 97.0 && axes[1].min() < 97.5);
     }
 
     #[test]
     fn zeros_lie_below_a_logarithmic_frame() {
         let points = [[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.01, 0.0]];
-        let axes = axes_of(&plot(Scale::Log, SeriesForm::Steps, &points));
+        let axes = axes_of(&plot(AxisScale::Log, SeriesForm::Steps, &points));
         assert!(axes[1].min() > 0.005 && axes[1].min() < 0.01);
         assert!(axes[1].fraction(0.0) < -1.0);
     }
@@ -349,7 +368,7 @@ mod tests {
     fn a_rising_line_is_drawn_from_the_lower_left_to_the_upper_right() {
         let points: Vec<[f64; 3]> = (0..=10).map(|i| [f64::from(i), f64::from(i), 0.0]).collect();
         let picture =
-            Decoded::new(&line_plot(&plot(Scale::Linear, SeriesForm::Line, &points)).unwrap());
+            Decoded::new(&line_plot(&plot(AxisScale::Linear, SeriesForm::Line, &points)).unwrap());
         let mut places = picture.places(series_ink(0).colour);
         places.sort_unstable();
         let (first, last) = (places[0], places[places.len() - 1]);
@@ -366,7 +385,7 @@ mod tests {
             [4.0, 1.0, 0.0],
         ];
         let picture =
-            Decoded::new(&line_plot(&plot(Scale::Linear, SeriesForm::Line, &points)).unwrap());
+            Decoded::new(&line_plot(&plot(AxisScale::Linear, SeriesForm::Line, &points)).unwrap());
         let [left, _, right, _] = picture.bounds(series_ink(0).colour);
         let places = picture.places(series_ink(0).colour);
         let middle = left + (right - left) / 2;

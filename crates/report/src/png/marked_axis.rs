@@ -3,7 +3,7 @@
 //! The number of marks on an axis follows from its length in a picture. A page omits labels without
 //! room; it adds none.
 
-use crate::png::axis::{Axis, Scale, Ticks};
+use crate::png::axis::{AxisScale, PlotAxis, Ticks};
 use crate::png::text::TICK;
 use lumiduct_base::number::superscript;
 
@@ -11,7 +11,7 @@ use lumiduct_base::number::superscript;
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct MarkedAxis {
     /// From values to fractions.
-    pub(crate) axis: Axis,
+    pub(crate) axis: PlotAxis,
     /// Its marks.
     pub(crate) ticks: Ticks,
     /// Name and unit, with the power of ten of the labels.
@@ -25,7 +25,7 @@ const DIGIT_EM: f64 = 0.64;
 
 impl MarkedAxis {
     /// A horizontal axis of a length in pixels, with as many marks as fit side by side.
-    pub(crate) fn level(axis: Axis, label: &str, length: f64) -> Self {
+    pub(crate) fn level(axis: PlotAxis, label: &str, length: f64) -> Self {
         let mut most = (length / 50.0).clamp(3.0, 12.0) as usize;
         let mut ticks = axis.ticks(most);
         while most > 1 && !have_room(&axis, &ticks, length) {
@@ -36,12 +36,12 @@ impl MarkedAxis {
     }
 
     /// A vertical axis of a length in pixels.
-    pub(crate) fn upright(axis: Axis, label: &str, length: f64) -> Self {
+    pub(crate) fn upright(axis: PlotAxis, label: &str, length: f64) -> Self {
         Self::new(axis, axis.ticks((length / 38.0).clamp(3.0, 12.0) as usize), label)
     }
 
     /// An axis with these marks.
-    pub(crate) fn new(axis: Axis, ticks: Ticks, label: &str) -> Self {
+    pub(crate) fn new(axis: PlotAxis, ticks: Ticks, label: &str) -> Self {
         let label = with_factor(label, ticks.exponent);
         Self { axis, ticks, label }
     }
@@ -52,13 +52,13 @@ impl MarkedAxis {
         const COUNT: i32 = 10;
         let lengths = (0..COUNT).map(|halvings| longest * 0.5f64.powi(halvings));
         lengths
-            .map(|length| Self::level(Axis::new(0.0, length, Scale::Linear), "", pixels))
+            .map(|length| Self::level(PlotAxis::new(0.0, length, AxisScale::Linear), "", pixels))
             .collect()
     }
 }
 
 /// Whether labels side by side along `length` pixels do not touch.
-fn have_room(axis: &Axis, ticks: &Ticks, length: f64) -> bool {
+fn have_room(axis: &PlotAxis, ticks: &Ticks, length: f64) -> bool {
     let places: Vec<f64> =
         ticks.major.iter().map(|tick| axis.fraction(tick.value) * length).collect();
     let step = places.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
@@ -82,8 +82,8 @@ mod tests {
     #[test]
     fn labels_of_a_level_axis_have_room() {
         for (min, max) in [(0.0, 1.0), (-1e-7, 3e-7), (99_990.0, 99_999.0), (1e-3, 1e5)] {
-            for scale in [Scale::Linear, Scale::Log] {
-                let axis = MarkedAxis::level(Axis::new(min, max, scale), "r in mm", 400.0);
+            for scale in [AxisScale::Linear, AxisScale::Log] {
+                let axis = MarkedAxis::level(PlotAxis::new(min, max, scale), "r in mm", 400.0);
                 assert!(!axis.ticks.major.is_empty(), "{axis:?}");
                 let widths = axis.ticks.major.iter().map(|tick| TICK.width(&tick.label).unwrap());
                 let widest = widths.fold(0.0, f64::max);
@@ -96,7 +96,8 @@ mod tests {
 
     #[test]
     fn large_numbers_are_multiples_of_a_power_in_the_label() {
-        let axis = MarkedAxis::upright(Axis::new(0.0, 4e5, Scale::Linear), "E in lx", 400.0);
+        let axis =
+            MarkedAxis::upright(PlotAxis::new(0.0, 4e5, AxisScale::Linear), "E in lx", 400.0);
         assert_eq!(axis.label, "E in lx, ×10⁵");
         assert_eq!(axis.ticks.major[1].label, "0.5");
     }

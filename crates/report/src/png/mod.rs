@@ -18,21 +18,21 @@ mod polar_plot;
 mod scatter_matrix;
 mod text;
 
-pub use axis::Scale;
+pub use axis::AxisScale;
 pub use bar_chart::{Bar, BarChart, bar_chart};
 pub(crate) use colour_bar::BarScale;
 pub use cross_section::{
-    CrossSection, NamedPlace, Outline, PlaceOf, RayEnd, RayPath, cross_section,
+    CrossSection, NamedPlace, PlaceOf, RayEnd, RayPath, SurfaceDots, cross_section,
 };
 pub(crate) use heat_map::MapFrame;
 pub use heat_map::{HeatMap, heat_map};
-pub use line_plot::{ErrorForm, LinePlot, Look, Series, SeriesForm, SeriesPoint, line_plot};
+pub use line_plot::{ErrorForm, LinePlot, Look, PlotSeries, SeriesForm, SeriesPoint, line_plot};
 pub(crate) use line_plot::{ink, line_axes};
 pub(crate) use marked_axis::MarkedAxis;
 pub use palette::ColourMap;
 pub(crate) use palette::{SeriesInk, curve_colours, series_ink};
 pub(crate) use polar_plot::dial_axis;
-pub use polar_plot::{Curve, PolarPlot, Pole, polar_plot};
+pub use polar_plot::{PolarCurve, PolarPlot, Pole, polar_plot};
 pub use scatter_matrix::{ScatterColumn, ScatterMatrix, scatter_matrix};
 
 #[cfg(test)]
@@ -116,7 +116,7 @@ mod tests {
         words.to_string()
     }
 
-    fn map(one: f64, other: f64, scale: Scale) -> HeatMap {
+    fn map(one: f64, other: f64, scale: AxisScale) -> HeatMap {
         HeatMap {
             title: text("Illuminance"),
             subtitle: text("sensor exit"),
@@ -124,7 +124,7 @@ mod tests {
             y_label: text("y in mm"),
             x_range: [one, other],
             y_range: [0.0, one],
-            axes: Scale::Linear,
+            axes: AxisScale::Linear,
             values: Array2::from_shape_vec((1, 2), vec![one, other]).unwrap(),
             unit: text("lx"),
             scale,
@@ -141,13 +141,13 @@ mod tests {
             subtitle: text("sensor far"),
             unit: text("cd"),
             pole: Pole::Down,
-            curves: vec![Curve { name: text("C0 / C180"), points, std_errors }],
+            curves: vec![PolarCurve { name: text("C0 / C180"), points, std_errors }],
         }
     }
 
-    fn lines(one: f64, other: f64, scale: Scale) -> LinePlot {
+    fn lines(one: f64, other: f64, scale: AxisScale) -> LinePlot {
         let point = |x: f64, y: f64| SeriesPoint { x, y, std_error: other };
-        let series = |form: SeriesForm, errors: ErrorForm| Series {
+        let series = |form: SeriesForm, errors: ErrorForm| PlotSeries {
             name: text("section"),
             points: vec![point(one, other), point(other, one), point(1.0, one)],
             form,
@@ -194,14 +194,14 @@ mod tests {
             y_label: text("z in mm"),
             x_range: [one, other],
             y_range: [-1.0, one],
-            outlines: vec![Outline { name: text("pipe"), colour: 0, points: points.clone() }],
+            outlines: vec![SurfaceDots { name: text("pipe"), colour: 0, points: points.clone() }],
             rays: vec![RayPath { points, end: RayEnd::Escaped }],
             places: vec![NamedPlace { name: text("led"), at: [one, other], of: PlaceOf::Source }],
         }
     }
 
     /// A picture of each kind with `one` and `other` in place of every number.
-    fn pictures(one: f64, other: f64, scale: Scale) -> [Vec<u8>; 5] {
+    fn pictures(one: f64, other: f64, scale: AxisScale) -> [Vec<u8>; 5] {
         [
             heat_map(&map(one, other, scale)),
             polar_plot(&polar(one, other)),
@@ -216,9 +216,9 @@ mod tests {
     fn pictures_of_nothing_are_still_pictures() {
         let values = Array2::zeros((0, 0));
         let files = [
-            heat_map(&HeatMap { values, ..map(1.0, 2.0, Scale::Linear) }),
+            heat_map(&HeatMap { values, ..map(1.0, 2.0, AxisScale::Linear) }),
             polar_plot(&PolarPlot { curves: Vec::new(), ..polar(1.0, 2.0) }),
-            line_plot(&LinePlot { series: Vec::new(), ..lines(1.0, 2.0, Scale::Log) }),
+            line_plot(&LinePlot { series: Vec::new(), ..lines(1.0, 2.0, AxisScale::Log) }),
             bar_chart(&BarChart { bars: Vec::new(), ..bars(1.0, 2.0) }),
             cross_section(&CrossSection {
                 outlines: Vec::new(),
@@ -235,7 +235,7 @@ mod tests {
     fn awkward_numbers_still_give_pictures_with_white_margins() {
         for (index, one) in AWKWARD.into_iter().enumerate() {
             let other = AWKWARD[(5 * index + 3) % AWKWARD.len()];
-            let scale = if index % 2 == 0 { Scale::Linear } else { Scale::Log };
+            let scale = if index % 2 == 0 { AxisScale::Linear } else { AxisScale::Log };
             for (kind, file) in pictures(one, other, scale).iter().enumerate() {
                 let picture = Decoded::new(file);
                 assert!((600..=950).contains(&picture.width), "{kind}: {one} {other}");
@@ -247,9 +247,9 @@ mod tests {
 
     #[test]
     fn the_same_data_give_the_same_bytes() {
-        let again = pictures(1.0, 2.5, Scale::Linear);
-        assert_eq!(pictures(1.0, 2.5, Scale::Linear), again);
-        for (file, changed) in again.iter().zip(pictures(1.0, 2.75, Scale::Linear)) {
+        let again = pictures(1.0, 2.5, AxisScale::Linear);
+        assert_eq!(pictures(1.0, 2.5, AxisScale::Linear), again);
+        for (file, changed) in again.iter().zip(pictures(1.0, 2.75, AxisScale::Linear)) {
             assert_ne!(*file, changed);
         }
     }

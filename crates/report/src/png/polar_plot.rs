@@ -1,9 +1,9 @@
 //! Luminous intensity distribution curves, as in the data sheets of luminaires.
 
-use crate::png::axis::{Axis, Scale, Ticks};
+use crate::png::axis::{AxisScale, PlotAxis, Ticks};
 use crate::png::canvas::{Canvas, Ink, Pen};
 use crate::png::geometry::{Point, Rect};
-use crate::png::layout::{Header, Legend, MARGIN, Sample, remark, write};
+use crate::png::layout::{Header, Legend, LegendSample, MARGIN, remark, write};
 use crate::png::marked_axis::{MarkedAxis, with_factor};
 use crate::png::palette::{GRID, INK, PAPER, SOFT_INK, SeriesInk, series_ink};
 use crate::png::text::{Align, LABEL, TICK};
@@ -21,7 +21,7 @@ pub struct PolarPlot {
     /// Where gamma = 0 is drawn.
     pub pole: Pole,
     /// The curves, usually one per pair of C half-planes.
-    pub curves: Vec<Curve>,
+    pub curves: Vec<PolarCurve>,
 }
 
 /// Where gamma = 0 is drawn.
@@ -35,7 +35,7 @@ pub enum Pole {
 
 /// One curve.
 #[derive(Debug, Clone)]
-pub struct Curve {
+pub struct PolarCurve {
     /// Its name in the legend: "C0 / C180".
     pub name: String,
     /// Gamma in degrees and its value, in the order in which they are joined. Positive gamma is
@@ -55,7 +55,7 @@ const SPOKES: usize = 30;
 
 /// Which part of the circle is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Part {
+enum CirclePart {
     /// Gamma from −90° to 90°: there is no data beyond.
     Half,
     Whole,
@@ -65,7 +65,7 @@ enum Part {
 struct Dial {
     centre: Point,
     pole: Pole,
-    part: Part,
+    part: CirclePart,
     /// Value at the outermost circle.
     outer: f64,
     ticks: Ticks,
@@ -75,20 +75,20 @@ struct Dial {
 /// beyond 90°.
 pub fn polar_plot(plot: &PolarPlot) -> Result<Vec<u8>> {
     let header = Header::new(&plot.title, &plot.subtitle, WIDTH - 2.0 * MARGIN)?;
-    let entries: Vec<(Sample, &str)> = plot
+    let entries: Vec<(LegendSample, &str)> = plot
         .curves
         .iter()
         .enumerate()
-        .map(|(index, curve)| (Sample::Line(pen(series_ink(index))), curve.name.as_str()))
+        .map(|(index, curve)| (LegendSample::Line(pen(series_ink(index))), curve.name.as_str()))
         .collect();
     let legend = Legend::new(&entries, WIDTH - 2.0 * MARGIN)?;
     let (outer, ticks) = rings(&plot.curves);
     let part = part(&plot.curves);
     let top = MARGIN + header.height() + legend.height();
     let (above, below) = match (part, plot.pole) {
-        (Part::Whole, Pole::Down | Pole::Up) => (RADIUS + ANGLE_ROOM, RADIUS + ANGLE_ROOM),
-        (Part::Half, Pole::Down) => (2.0 * TICK.line_step(), RADIUS + ANGLE_ROOM),
-        (Part::Half, Pole::Up) => (RADIUS + ANGLE_ROOM, 2.0 * TICK.line_step()),
+        (CirclePart::Whole, Pole::Down | Pole::Up) => (RADIUS + ANGLE_ROOM, RADIUS + ANGLE_ROOM),
+        (CirclePart::Half, Pole::Down) => (2.0 * TICK.line_step(), RADIUS + ANGLE_ROOM),
+        (CirclePart::Half, Pole::Up) => (RADIUS + ANGLE_ROOM, 2.0 * TICK.line_step()),
     };
     let centre = [0.5 * WIDTH + 0.5, (top + above).round() + 0.5];
     let dial = Dial { centre, pole: plot.pole, part, outer, ticks };
@@ -126,10 +126,10 @@ fn pen(ink: SeriesInk) -> Pen {
 }
 
 /// The value at the outermost circle and the marks up to it.
-fn rings(curves: &[Curve]) -> (f64, Ticks) {
+fn rings(curves: &[PolarCurve]) -> (f64, Ticks) {
     let values = curves.iter().flat_map(|curve| &curve.points).map(|point| point.1);
     let greatest = values.filter(|value| value.is_finite()).fold(0.0, f64::max);
-    let axis = Axis::new(0.0, greatest, Scale::Linear);
+    let axis = PlotAxis::new(0.0, greatest, AxisScale::Linear);
     let ticks = axis.ticks(6);
     let step = match ticks.major.as_slice() {
         [first, second, ..] => second.value - first.value,
@@ -137,31 +137,31 @@ fn rings(curves: &[Curve]) -> (f64, Ticks) {
     };
     // The curve may extend slightly beyond a circle, but not beyond the last one.
     let outer = (axis.max() / step - 1e-6).ceil().max(1.0) * step;
-    (outer, Axis::new(0.0, outer, Scale::Linear).ticks(7))
+    (outer, PlotAxis::new(0.0, outer, AxisScale::Linear).ticks(7))
 }
 
 /// Range of a logarithmic dial: values below it are at the centre.
 const DECADES: f64 = 1e4;
 
 /// The axis from the centre to the outermost circle: the description shared by pictures and pages.
-pub(crate) fn dial_axis(plot: &PolarPlot, scale: Scale) -> MarkedAxis {
+pub(crate) fn dial_axis(plot: &PolarPlot, scale: AxisScale) -> MarkedAxis {
     let (outer, ticks) = rings(&plot.curves);
     let label = format!("intensity in {}", plot.unit);
     match scale {
-        Scale::Linear | Scale::Tangent => {
-            MarkedAxis::new(Axis::new(0.0, outer, Scale::Linear), ticks, &label)
+        AxisScale::Linear | AxisScale::Tangent => {
+            MarkedAxis::new(PlotAxis::new(0.0, outer, AxisScale::Linear), ticks, &label)
         }
-        Scale::Log => {
-            let axis = Axis::new(outer / DECADES, outer, Scale::Log);
+        AxisScale::Log => {
+            let axis = PlotAxis::new(outer / DECADES, outer, AxisScale::Log);
             MarkedAxis::new(axis, axis.ticks(7), &label)
         }
     }
 }
 
-fn part(curves: &[Curve]) -> Part {
+fn part(curves: &[PolarCurve]) -> CirclePart {
     let mut points = curves.iter().flat_map(|curve| &curve.points);
     let beyond = points.any(|&(gamma, value)| gamma.abs() > 90.0 + 1e-6 && value > 0.0);
-    if beyond { Part::Whole } else { Part::Half }
+    if beyond { CirclePart::Whole } else { CirclePart::Half }
 }
 
 impl Dial {
@@ -184,8 +184,8 @@ impl Dial {
     /// Largest |gamma| that is drawn, degrees.
     fn widest(&self) -> usize {
         match self.part {
-            Part::Half => 90,
-            Part::Whole => 180,
+            CirclePart::Half => 90,
+            CirclePart::Whole => 180,
         }
     }
 
@@ -207,7 +207,7 @@ impl Dial {
             }
         }
         canvas.line(&circle(RADIUS), &edge);
-        if self.part == Part::Half {
+        if self.part == CirclePart::Half {
             canvas.line(&[self.at(-90.0, RADIUS), self.at(90.0, RADIUS)], &edge);
         }
         self.draw_angles(canvas)
@@ -233,7 +233,7 @@ impl Dial {
         Ok(())
     }
 
-    fn draw_band(&self, canvas: &mut Canvas, curve: &Curve, ink: SeriesInk) {
+    fn draw_band(&self, canvas: &mut Canvas, curve: &PolarCurve, ink: SeriesInk) {
         let band = Ink { colour: ink.colour, opacity: 0.22 };
         let places: Vec<[Point; 2]> = curve
             .points
@@ -255,19 +255,21 @@ impl Dial {
     /// whole one.
     fn draw_values(&self, canvas: &mut Canvas) -> Result<()> {
         let y = match (self.part, self.pole) {
-            (Part::Half, Pole::Up) => self.centre[1] + 10.0 + TICK.cap_height(),
-            (Part::Half, Pole::Down) | (Part::Whole, Pole::Down | Pole::Up) => self.centre[1] - 9.0,
+            (CirclePart::Half, Pole::Up) => self.centre[1] + 10.0 + TICK.cap_height(),
+            (CirclePart::Half, Pole::Down) | (CirclePart::Whole, Pole::Down | Pole::Up) => {
+                self.centre[1] - 9.0
+            }
         };
         for tick in self.ticks.major.iter().filter(|tick| tick.value > 0.0) {
             let width = TICK.width(&tick.label)?;
             let middle = RADIUS * tick.value / self.outer;
             // The last one of a whole circle stays inside.
             let middle = match self.part {
-                Part::Half => middle,
-                Part::Whole => middle.min(RADIUS - 0.5 * width - 5.0),
+                CirclePart::Half => middle,
+                CirclePart::Whole => middle.min(RADIUS - 0.5 * width - 5.0),
             };
             let left = (self.centre[0] + middle - 0.5 * width).round();
-            if self.part == Part::Whole {
+            if self.part == CirclePart::Whole {
                 let height = TICK.cap_height() + 4.0;
                 let back = Rect::new(left - 2.0, y - TICK.cap_height() - 2.0, width + 4.0, height);
                 canvas.rect(back, Ink { colour: PAPER, opacity: 0.8 });
@@ -285,7 +287,8 @@ mod tests {
     use crate::png::tests::Decoded;
 
     fn plot(pole: Pole, points: &[(f64, f64)]) -> Decoded {
-        let curve = Curve { name: String::new(), points: points.to_vec(), std_errors: Vec::new() };
+        let curve =
+            PolarCurve { name: String::new(), points: points.to_vec(), std_errors: Vec::new() };
         let plot = PolarPlot {
             title: "Luminous intensity".to_string(),
             subtitle: String::new(),
@@ -326,7 +329,7 @@ mod tests {
 
     #[test]
     fn no_value_lies_beyond_the_outermost_circle() {
-        let value = |top: f64| Curve {
+        let value = |top: f64| PolarCurve {
             name: String::new(),
             points: vec![(0.0, top)],
             std_errors: Vec::new(),

@@ -1,9 +1,9 @@
 //! Scatter matrices: several quantities of the same items, each against each.
 
-use crate::png::axis::{Axis, Scale};
+use crate::png::axis::{AxisScale, PlotAxis};
 use crate::png::canvas::{Canvas, Ink, Pen};
 use crate::png::geometry::{Point, Rect};
-use crate::png::layout::{Header, Legend, MARGIN, Mark, Sample, draw_mark, write};
+use crate::png::layout::{EndMark, Header, Legend, LegendSample, MARGIN, draw_mark, write};
 use crate::png::palette::{GRID, INK, Rgb, series_ink};
 use crate::png::text::{Align, LABEL, TICK};
 use lumiduct_base::error::Result;
@@ -47,7 +47,7 @@ const PADDING: f64 = 0.06;
 pub fn scatter_matrix(matrix: &ScatterMatrix) -> Result<Vec<u8>> {
     let columns = &matrix.columns[..matrix.columns.len().min(MOST)];
     let header = Header::new(&matrix.title, &matrix.subtitle, WIDTH - 2.0 * MARGIN)?;
-    let entries: Vec<(Sample, &str)> = matrix
+    let entries: Vec<(LegendSample, &str)> = matrix
         .kinds
         .iter()
         .enumerate()
@@ -63,7 +63,7 @@ pub fn scatter_matrix(matrix: &ScatterMatrix) -> Result<Vec<u8>> {
     let mut canvas = Canvas::new(WIDTH as usize, height as usize);
     header.draw(&mut canvas, MARGIN, MARGIN - 4.0)?;
     legend.draw(&mut canvas, MARGIN, MARGIN + header.height() - 8.0)?;
-    let axes: Vec<Axis> = columns.iter().map(axis).collect();
+    let axes: Vec<PlotAxis> = columns.iter().map(axis).collect();
     for row in 0..columns.len() {
         for column in 0..columns.len() {
             let left = MARGIN + LEFT + column as f64 * (size + GAP);
@@ -98,14 +98,14 @@ pub fn scatter_matrix(matrix: &ScatterMatrix) -> Result<Vec<u8>> {
 }
 
 /// Colour and mark of a kind.
-fn look(kind: usize) -> (Rgb, Mark) {
-    const MARKS: [Mark; 3] = [Mark::Dot, Mark::Cross, Mark::Ring];
+fn look(kind: usize) -> (Rgb, EndMark) {
+    const MARKS: [EndMark; 3] = [EndMark::Dot, EndMark::Cross, EndMark::Ring];
     (series_ink(kind % MARKS.len()).colour, MARKS[kind % MARKS.len()])
 }
 
-fn sample(kind: usize) -> Sample {
+fn sample(kind: usize) -> LegendSample {
     let (colour, mark) = look(kind);
-    Sample::MarkedLine(Pen { ink: Ink::opaque(colour), width: 0.0, dash: &[] }, mark)
+    LegendSample::MarkedLine(Pen { ink: Ink::opaque(colour), width: 0.0, dash: &[] }, mark)
 }
 
 fn finite(column: &ScatterColumn) -> [f64; 2] {
@@ -113,10 +113,10 @@ fn finite(column: &ScatterColumn) -> [f64; 2] {
     [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)]
 }
 
-fn axis(column: &ScatterColumn) -> Axis {
+fn axis(column: &ScatterColumn) -> PlotAxis {
     let [min, max] = finite(column);
     let padding = PADDING * (max - min);
-    Axis::new(min - padding, max + padding, Scale::Linear)
+    PlotAxis::new(min - padding, max + padding, AxisScale::Linear)
 }
 
 /// Name and range of a quantity, in its panel of the diagonal.

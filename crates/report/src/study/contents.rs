@@ -2,12 +2,12 @@
 
 use crate::study::edge::edge_remark;
 use crate::study::{
-    DesignOutcome, DesignRecord, Estimate, Pairing, ParameterFacts, PlanFacts, Sensitivity,
-    SensitivityMethod, StudyReport,
+    DesignOutcome, DesignRecord, Pairing, ParameterFacts, PlanFacts, Sensitivity,
+    SensitivityMethod, StudyReport, ValueWithError,
 };
 use crate::words::{outcome_word, quantity};
 use lumiduct_base::number::{format_percent, format_value, format_with_error};
-use lumiduct_core::measure::Outcome;
+use lumiduct_core::measure::CheckOutcome;
 use lumiduct_input::{Best, Domain, Setting};
 use std::fmt::Write;
 
@@ -15,7 +15,7 @@ use std::fmt::Write;
 const BEHIND_ERRORS: f64 = 3.0;
 
 /// A part of a page.
-pub(super) struct Part {
+pub(super) struct StudyPart {
     pub(super) title: &'static str,
     pub(super) items: Vec<Item>,
 }
@@ -32,8 +32,8 @@ pub(super) enum Item {
 
 /// All parts except the pictures, in order: those before them, up to the first table, and those
 /// after.
-pub(super) fn parts(report: &StudyReport) -> [Vec<Part>; 2] {
-    let mut before: Vec<Part> = [
+pub(super) fn parts(report: &StudyReport) -> [Vec<StudyPart>; 2] {
+    let mut before: Vec<StudyPart> = [
         failures(report),
         ranking(report),
         sensitivities(report),
@@ -46,7 +46,8 @@ pub(super) fn parts(report: &StudyReport) -> [Vec<Part>; 2] {
     .into_iter()
     .flatten()
     .collect();
-    let has_table = |part: &Part| part.items.iter().any(|item| matches!(item, Item::Table { .. }));
+    let has_table =
+        |part: &StudyPart| part.items.iter().any(|item| matches!(item, Item::Table { .. }));
     let first = before.iter().position(has_table).map_or(0, |place| place + 1);
     let after = before.split_off(first);
     [before, after]
@@ -60,7 +61,7 @@ pub(super) fn verdict(report: &StudyReport) -> String {
     if report.facts.checks.is_empty() {
         text += ", without checks";
     } else {
-        let passed = |own: &&DesignRecord| own.verdict() == Some(Outcome::Passed);
+        let passed = |own: &&DesignRecord| own.verdict() == Some(CheckOutcome::Passed);
         let passed = report.designs.iter().filter(passed).count();
         let (failed, undecided) = (bad.failed, bad.undecided);
         _ = write!(text, ": {passed} pass all checks, {failed} fail, {undecided} undecided");
@@ -74,7 +75,7 @@ pub(super) fn verdict(report: &StudyReport) -> String {
     text
 }
 
-fn failures(report: &StudyReport) -> Option<Part> {
+fn failures(report: &StudyReport) -> Option<StudyPart> {
     let shares = &report.analysis.failures;
     let words = "The interval holds the share of all that are ever made so with 95 % (Clopper and Pearson); where the error \
                  bar of a design leaves a check open, it counts as passed for the low end and as failed for the high end.";
@@ -92,10 +93,10 @@ fn failures(report: &StudyReport) -> Option<Part> {
     });
     let items =
         vec![Item::Words(words.into()), Item::Table { head: head.to_vec(), rows: rows.collect() }];
-    (!shares.is_empty()).then_some(Part { title: "Share of designs that fail", items })
+    (!shares.is_empty()).then_some(StudyPart { title: "Share of designs that fail", items })
 }
 
-fn ranking(report: &StudyReport) -> Option<Part> {
+fn ranking(report: &StudyReport) -> Option<StudyPart> {
     let ranking = report.facts.ranking.as_ref()?;
     let word = match ranking.best {
         Best::Highest => "highest",
@@ -118,10 +119,10 @@ fn ranking(report: &StudyReport) -> Option<Part> {
     });
     let mut items = vec![Item::Words(words), Item::Table { head, rows: rows.collect() }];
     items.extend(edge_remark(report).map(Item::Words));
-    Some(Part { title: "Ranking", items })
+    Some(StudyPart { title: "Ranking", items })
 }
 
-fn difference(behind: &Estimate) -> String {
+fn difference(behind: &ValueWithError) -> String {
     let number = format_with_error(behind.value, behind.std_error);
     let told = match behind.evidence {
         Pairing::Paired => "",
@@ -131,7 +132,7 @@ fn difference(behind: &Estimate) -> String {
     format!("{number}{told}{}", if is_close { ", not told apart" } else { "" })
 }
 
-fn sensitivities(report: &StudyReport) -> Option<Part> {
+fn sensitivities(report: &StudyReport) -> Option<StudyPart> {
     let all = &report.analysis.sensitivities;
     let first = all.first()?;
     let (words, sum) = match first.method {
@@ -157,13 +158,13 @@ fn sensitivities(report: &StudyReport) -> Option<Part> {
         [measure.clone()].into_iter().chain(indices).chain([format_value(*explained)]).collect()
     };
     let rows = all.iter().map(row).collect();
-    Some(Part {
+    Some(StudyPart {
         title: "Sensitivity",
         items: vec![Item::Words(words.into()), Item::Table { head, rows }],
     })
 }
 
-fn effects(report: &StudyReport) -> Option<Part> {
+fn effects(report: &StudyReport) -> Option<StudyPart> {
     let words = "The mean of a measure over designs with the same setting of a parameter. How much it differs from that of the \
                  first setting is known better than the means, for all designs are traced with the same random numbers. Settings \
                  without designs that differ from the others in nothing else are left out.";
@@ -184,7 +185,7 @@ fn effects(report: &StudyReport) -> Option<Part> {
     }
     let table = Item::Table { head: head.map(str::to_owned).to_vec(), rows };
     let items = vec![Item::Words(words.into()), table];
-    (!report.analysis.effects.is_empty()).then_some(Part { title: "Main effects", items })
+    (!report.analysis.effects.is_empty()).then_some(StudyPart { title: "Main effects", items })
 }
 
 /// A setting, without its unit.
@@ -196,7 +197,7 @@ pub(super) fn setting_word(setting: &Setting) -> String {
     }
 }
 
-fn designs(report: &StudyReport) -> Part {
+fn designs(report: &StudyReport) -> StudyPart {
     let facts = &report.facts;
     let labels = facts.parameters.iter().map(ParameterFacts::label);
     let head = ["design".to_owned()].into_iter().chain(labels);
@@ -218,7 +219,7 @@ fn designs(report: &StudyReport) -> Part {
         row.chain(values).chain([verdict]).collect()
     };
     let rows = report.designs.iter().map(row).collect();
-    Part { title: "Designs", items: vec![Item::Table { head, rows }] }
+    StudyPart { title: "Designs", items: vec![Item::Table { head, rows }] }
 }
 
 /// The settings of a design as cells of a table.
@@ -237,12 +238,12 @@ fn setting(parameter: &ParameterFacts, design: &DesignRecord) -> String {
     }
 }
 
-fn parameters(report: &StudyReport) -> Part {
+fn parameters(report: &StudyReport) -> StudyPart {
     let head = ["parameter", "values", "keys of the scene"].map(str::to_owned).to_vec();
     let row =
         |own: &ParameterFacts| vec![own.label(), domain_words(&own.domain), own.keys.join(", ")];
     let rows = report.facts.parameters.iter().map(row).collect();
-    Part { title: "Parameters", items: vec![Item::Table { head, rows }] }
+    StudyPart { title: "Parameters", items: vec![Item::Table { head, rows }] }
 }
 
 /// The domain of a parameter, in words.
@@ -268,7 +269,7 @@ fn domain_words(domain: &Domain) -> String {
 }
 
 /// Remarks of the designs, each listed once.
-fn remarks(report: &StudyReport) -> Option<Part> {
+fn remarks(report: &StudyReport) -> Option<StudyPart> {
     let mut told: Vec<(&str, Vec<usize>)> = Vec::new();
     for design in &report.designs {
         for warning in design.result().into_iter().flat_map(|result| &result.warnings) {
@@ -288,10 +289,10 @@ fn remarks(report: &StudyReport) -> Option<Part> {
         format!("{which}: {warning}")
     };
     let items = vec![Item::List(told.iter().map(line).collect())];
-    (!told.is_empty()).then_some(Part { title: "Remarks", items })
+    (!told.is_empty()).then_some(StudyPart { title: "Remarks", items })
 }
 
-fn run(report: &StudyReport) -> Part {
+fn run(report: &StudyReport) -> StudyPart {
     let facts = &report.facts;
     let plan = match facts.plan {
         PlanFacts::Grid => "grid of all combinations".to_owned(),
@@ -322,5 +323,5 @@ fn run(report: &StudyReport) -> Part {
     if !facts.overrides.is_empty() {
         lines.push(format!("set for all designs: {}", facts.overrides.join(", ")));
     }
-    Part { title: "Run", items: vec![Item::List(lines)] }
+    StudyPart { title: "Run", items: vec![Item::List(lines)] }
 }

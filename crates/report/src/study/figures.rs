@@ -2,7 +2,7 @@
 
 use crate::OutputFile;
 use crate::png::{
-    Bar, BarChart, ErrorForm, LinePlot, Look, Scale, ScatterColumn, ScatterMatrix, Series,
+    AxisScale, Bar, BarChart, ErrorForm, LinePlot, Look, PlotSeries, ScatterColumn, ScatterMatrix,
     SeriesForm, SeriesPoint, bar_chart, line_plot, scatter_matrix,
 };
 use crate::study::contents::setting_word;
@@ -10,7 +10,7 @@ use crate::study::edge::numbers_of;
 use crate::study::{DesignRecord, Effect, ParameterFacts, PlanFacts, StudyReport};
 use lumiduct_base::error::Result;
 use lumiduct_base::number::format_value;
-use lumiduct_core::measure::Outcome;
+use lumiduct_core::measure::CheckOutcome;
 
 /// Most curves of a response plot; more cannot be distinguished.
 const MOST_CURVES: usize = 12;
@@ -24,11 +24,11 @@ pub(super) struct Figure {
     /// What it shows, in words.
     pub(super) label: String,
     /// Its contents.
-    pub(super) drawing: Drawing,
+    pub(super) drawing: StudyDrawing,
 }
 
 /// Contents of a picture.
-pub(super) enum Drawing {
+pub(super) enum StudyDrawing {
     /// Curves; the unit is that of their values.
     Curves(LinePlot, String),
     /// Bars.
@@ -46,14 +46,14 @@ pub(super) fn figures(report: &StudyReport) -> Vec<Figure> {
             figures.push(Figure {
                 file: format!("response.{measure}.png"),
                 label: format!("response of {measure}"),
-                drawing: Drawing::Curves(plot, unit),
+                drawing: StudyDrawing::Curves(plot, unit),
             });
         }
         if let Some(plot) = distribution(report, measure) {
             figures.push(Figure {
                 file: format!("distribution.{measure}.png"),
                 label: format!("distribution of {measure}"),
-                drawing: Drawing::Curves(plot, "1".into()),
+                drawing: StudyDrawing::Curves(plot, "1".into()),
             });
         }
     }
@@ -68,7 +68,7 @@ pub(super) fn figures(report: &StudyReport) -> Vec<Figure> {
         figures.push(Figure {
             file: "scatter.png".into(),
             label: "all parameters and measures, each against each".into(),
-            drawing: Drawing::Scatter(scatter(report)),
+            drawing: StudyDrawing::Scatter(scatter(report)),
         });
     }
     figures
@@ -78,9 +78,9 @@ impl Figure {
     /// The picture as a file.
     pub(super) fn file(&self) -> Result<OutputFile> {
         let bytes = match &self.drawing {
-            Drawing::Curves(plot, _) => line_plot(plot)?,
-            Drawing::Bars(chart) => bar_chart(chart)?,
-            Drawing::Scatter(matrix) => scatter_matrix(matrix)?,
+            StudyDrawing::Curves(plot, _) => line_plot(plot)?,
+            StudyDrawing::Bars(chart) => bar_chart(chart)?,
+            StudyDrawing::Scatter(matrix) => scatter_matrix(matrix)?,
         };
         Ok(OutputFile { name: self.file.clone(), bytes })
     }
@@ -132,15 +132,21 @@ fn response(report: &StudyReport, measure: &str) -> Option<LinePlot> {
     };
     let series = curves.into_iter().take(MOST_CURVES).map(|(name, mut points)| {
         points.sort_by(|a, b| a.x.total_cmp(&b.x));
-        Series { name, points, form: SeriesForm::Line, errors: ErrorForm::Bars, look: Look::InTurn }
+        PlotSeries {
+            name,
+            points,
+            form: SeriesForm::Line,
+            errors: ErrorForm::Bars,
+            look: Look::InTurn,
+        }
     });
     Some(LinePlot {
         title: format!("{measure} over {}", across.name),
         subtitle: format!("bars: one standard error, with bias where there is one{more}"),
         x_label: across.label(),
         y_label: measure_label(report, measure),
-        x_scale: Scale::Linear,
-        y_scale: Scale::Linear,
+        x_scale: AxisScale::Linear,
+        y_scale: AxisScale::Linear,
         series: series.collect(),
     })
 }
@@ -183,7 +189,7 @@ fn distribution(report: &StudyReport, measure: &str) -> Option<LinePlot> {
         y: *count,
         std_error: count.sqrt(),
     });
-    let mut series = vec![Series {
+    let mut series = vec![PlotSeries {
         name: "designs".into(),
         points: points.collect(),
         form: SeriesForm::Steps,
@@ -193,7 +199,7 @@ fn distribution(report: &StudyReport, measure: &str) -> Option<LinePlot> {
     let own = report.facts.checks.iter().filter(|check| check.measure == measure);
     for limit in own.flat_map(|check| [check.min, check.max].into_iter().flatten()) {
         let at = |y| SeriesPoint { x: limit, y, std_error: 0.0 };
-        series.push(Series {
+        series.push(PlotSeries {
             name: format!("limit {}", format_value(limit)),
             points: vec![at(0.0), at(most)],
             form: SeriesForm::Line,
@@ -206,13 +212,13 @@ fn distribution(report: &StudyReport, measure: &str) -> Option<LinePlot> {
         subtitle: format!("{} designs", values.len()),
         x_label: measure_label(report, measure),
         y_label: "designs".into(),
-        x_scale: Scale::Linear,
-        y_scale: Scale::Linear,
+        x_scale: AxisScale::Linear,
+        y_scale: AxisScale::Linear,
         series,
     })
 }
 
-fn effect_drawing(report: &StudyReport, effect: &Effect) -> Drawing {
+fn effect_drawing(report: &StudyReport, effect: &Effect) -> StudyDrawing {
     let title = format!("{}: main effect of {}", effect.measure, effect.parameter);
     let used: usize = effect.points.iter().map(|point| point.designs).sum();
     let subtitle = if report.facts.plan == PlanFacts::OneAtATime {
@@ -232,15 +238,15 @@ fn effect_drawing(report: &StudyReport, effect: &Effect) -> Drawing {
         .collect();
     let facts = report.facts.parameters.iter().find(|own| own.name == effect.parameter);
     match points {
-        Some(points) => Drawing::Curves(
+        Some(points) => StudyDrawing::Curves(
             LinePlot {
                 title,
                 subtitle: subtitle.into(),
                 x_label: facts.map_or(effect.parameter.clone(), ParameterFacts::label),
                 y_label: measure_label(report, &effect.measure),
-                x_scale: Scale::Linear,
-                y_scale: Scale::Linear,
-                series: vec![Series {
+                x_scale: AxisScale::Linear,
+                y_scale: AxisScale::Linear,
+                series: vec![PlotSeries {
                     name: String::new(),
                     points,
                     form: SeriesForm::Line,
@@ -251,7 +257,7 @@ fn effect_drawing(report: &StudyReport, effect: &Effect) -> Drawing {
             report.unit(&effect.measure).to_owned(),
         ),
         // Choices have no place on an axis.
-        None => Drawing::Bars(BarChart {
+        None => StudyDrawing::Bars(BarChart {
             title,
             subtitle: subtitle.into(),
             unit: match report.unit(&effect.measure) {
@@ -298,9 +304,9 @@ fn scatter(report: &StudyReport) -> ScatterMatrix {
         (vec!["designs".to_owned()], vec![0; designs.len()])
     } else {
         let kind = |design: &DesignRecord| match design.verdict() {
-            Some(Outcome::Passed) => 0,
-            Some(Outcome::Failed | Outcome::Unknown) | None => 1,
-            Some(Outcome::Undecided) => 2,
+            Some(CheckOutcome::Passed) => 0,
+            Some(CheckOutcome::Failed | CheckOutcome::Unknown) | None => 1,
+            Some(CheckOutcome::Undecided) => 2,
         };
         let kinds = ["passes all checks", "fails", "undecided"].map(str::to_owned).to_vec();
         (kinds, designs.iter().map(kind).collect())

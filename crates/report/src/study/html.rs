@@ -4,11 +4,11 @@ use crate::html::data::chart;
 use crate::html::frame::{self, Block, Page, Plots, Standing, render};
 use crate::html::masthead;
 use crate::png::{
-    ErrorForm, LinePlot, Look, Scale, ScatterMatrix, Series, SeriesForm, SeriesPoint,
+    AxisScale, ErrorForm, LinePlot, Look, PlotSeries, ScatterMatrix, SeriesForm, SeriesPoint,
 };
 use crate::study::StudyReport;
-use crate::study::contents::{Item, Part, parts, verdict};
-use crate::study::figures::{Drawing, Figure};
+use crate::study::contents::{Item, StudyPart, parts, verdict};
+use crate::study::figures::{Figure, StudyDrawing};
 use lumiduct_base::error::Result;
 
 /// Tables with more rows than this are folded away.
@@ -20,7 +20,7 @@ pub(super) fn html(report: &StudyReport, figures: &[Figure]) -> Result<String> {
     let facts = &report.facts;
     let [before, after] = parts(report).map(|parts| parts.iter().map(part).collect::<Vec<_>>());
     let drawn = figures.iter().flat_map(|figure| blocks(report, figure, &mut plots)).collect();
-    let pictures = frame::Part { title: "Plots".into(), blocks: drawn };
+    let pictures = frame::PagePart { title: "Plots".into(), blocks: drawn };
     let page = Page {
         title: facts.title.clone(),
         masthead: masthead(facts.whole_project().as_ref()),
@@ -37,7 +37,7 @@ pub(super) fn html(report: &StudyReport, figures: &[Figure]) -> Result<String> {
     render(&page, &plots)
 }
 
-fn part(part: &Part) -> frame::Part {
+fn part(part: &StudyPart) -> frame::PagePart {
     let block = |item: &Item| match item {
         Item::Words(text) => Block::Words { text: text.clone() },
         Item::List(items) => Block::List { items: items.clone() },
@@ -47,18 +47,18 @@ fn part(part: &Part) -> frame::Part {
             folded: (rows.len() > ROWS_SHOWN).then(|| format!("{} rows", rows.len())),
         },
     };
-    frame::Part { title: part.title.to_owned(), blocks: part.items.iter().map(block).collect() }
+    frame::PagePart { title: part.title.to_owned(), blocks: part.items.iter().map(block).collect() }
 }
 
 fn blocks(report: &StudyReport, figure: &Figure, plots: &mut Plots) -> Vec<Block> {
     let picture = Some(figure.file.clone());
     match &figure.drawing {
-        Drawing::Curves(plot, unit) => {
+        StudyDrawing::Curves(plot, unit) => {
             vec![plots.add(figure.label.clone(), chart(plot, unit), picture)]
         }
         // Choices have no place on an axis: the table of main effects shows the same.
-        Drawing::Bars(_) => Vec::new(),
-        Drawing::Scatter(matrix) => {
+        StudyDrawing::Bars(_) => Vec::new(),
+        StudyDrawing::Scatter(matrix) => {
             let pairs = scatter_plots(report, matrix).into_iter();
             pairs
                 .map(|(plot, unit)| plots.add(plot.title.clone(), chart(&plot, &unit), None))
@@ -74,7 +74,7 @@ fn scatter_plots(report: &StudyReport, matrix: &ScatterMatrix) -> Vec<(LinePlot,
     let mut plots = Vec::new();
     for (measure, values) in measures.iter().zip(found) {
         for parameter in parameters {
-            let series = |kind: usize| Series {
+            let series = |kind: usize| PlotSeries {
                 name: matrix.kinds[kind].clone(),
                 points: report
                     .designs
@@ -98,8 +98,8 @@ fn scatter_plots(report: &StudyReport, matrix: &ScatterMatrix) -> Vec<(LinePlot,
                 subtitle: String::new(),
                 x_label: parameter.label.clone(),
                 y_label: values.label.clone(),
-                x_scale: Scale::Linear,
-                y_scale: Scale::Linear,
+                x_scale: AxisScale::Linear,
+                y_scale: AxisScale::Linear,
                 series: kinds.filter(|series| !series.points.is_empty()).collect(),
             };
             plots.push((plot, report.unit(measure).to_owned()));

@@ -11,8 +11,9 @@ mod terminal;
 
 pub use record::{
     Analysis, DESIGN_FORMAT, DesignOutcome, DesignRecord, DesignResult, Effect, EffectPoint,
-    Estimate, FACTS_FORMAT, FailureShare, Pairing, ParameterFacts, PlanFacts, Ranked, Sensitivity,
+    FACTS_FORMAT, FailureShare, Pairing, ParameterFacts, PlanFacts, Ranked, Sensitivity,
     SensitivityIndex, SensitivityMethod, Sharpness, StudyCounts, StudyFacts, StudyReport,
+    ValueWithError,
 };
 
 pub use terminal::terminal;
@@ -21,7 +22,7 @@ use crate::OutputFile;
 use crate::output::LOGO;
 use indexmap::IndexMap;
 use lumiduct_base::error::{Error, Result};
-use lumiduct_core::measure::{Measure, Outcome};
+use lumiduct_core::measure::{CheckOutcome, Measure};
 use lumiduct_input::Setting;
 use serde::Serialize;
 
@@ -48,18 +49,18 @@ pub fn study_files(report: &StudyReport, study_text: &str) -> Result<Vec<OutputF
 }
 
 #[derive(Serialize)]
-struct Summary<'a> {
+struct StudySummaryRecord<'a> {
     lumiduct_study_summary: u32,
     #[serde(flatten)]
     facts: StudyFacts,
-    rows: Vec<Row<'a>>,
+    rows: Vec<DesignSummaryRow<'a>>,
     analysis: &'a Analysis,
     files: Vec<&'a str>,
 }
 
 /// A design without the values of single groups of batches.
 #[derive(Serialize)]
-struct Row<'a> {
+struct DesignSummaryRow<'a> {
     design: usize,
     settings: &'a IndexMap<String, Setting>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -67,10 +68,10 @@ struct Row<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     measures: Option<&'a IndexMap<String, Measure>>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    verdict: Option<Outcome>,
+    verdict: Option<CheckOutcome>,
 }
 
-impl<'a> Row<'a> {
+impl<'a> DesignSummaryRow<'a> {
     fn of(design: &'a DesignRecord) -> Self {
         Self {
             design: design.design,
@@ -86,11 +87,11 @@ impl<'a> Row<'a> {
 }
 
 fn summary(report: &StudyReport, files: &[OutputFile]) -> Result<String> {
-    let summary = Summary {
+    let summary = StudySummaryRecord {
         lumiduct_study_summary: SUMMARY_FORMAT,
         // The logo has a file of its own.
         facts: StudyFacts { logo: None, ..report.facts.clone() },
-        rows: report.designs.iter().map(Row::of).collect(),
+        rows: report.designs.iter().map(DesignSummaryRow::of).collect(),
         analysis: &report.analysis,
         files: files.iter().map(|file| file.name.as_str()).chain([SUMMARY]).collect(),
     };

@@ -2,7 +2,7 @@
 
 use crate::markdown::masthead;
 use crate::study::StudyReport;
-use crate::study::contents::{Item, Part, parts, verdict};
+use crate::study::contents::{Item, StudyPart, parts, verdict};
 use crate::study::figures::Figure;
 use lumiduct_base::text::{markdown_cell, markdown_page};
 use std::fmt::Write;
@@ -30,7 +30,7 @@ pub(super) fn page(report: &StudyReport, figures: &[Figure]) -> String {
     markdown_page(page.trim_end()) + "\n"
 }
 
-fn add(page: &mut String, part: &Part) {
+fn add(page: &mut String, part: &StudyPart) {
     _ = write!(page, "## {}\n\n", part.title);
     for item in &part.items {
         match item {

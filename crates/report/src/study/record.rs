@@ -3,7 +3,7 @@
 use crate::base64;
 use crate::{CheckResult, TargetFacts};
 use indexmap::IndexMap;
-use lumiduct_core::measure::{Measure, Outcome, Replicates};
+use lumiduct_core::measure::{CheckOutcome, Measure, Replicates};
 use lumiduct_core::plan::Check;
 use lumiduct_input::{Best, Domain, Keep, Project, Ranking, Setting, column};
 use serde::{Deserialize, Serialize};
@@ -192,14 +192,14 @@ impl DesignRecord {
     }
 
     /// The worst outcome of its checks: failed before undecided before passed; `None` without checks or a result.
-    pub fn verdict(&self) -> Option<Outcome> {
+    pub fn verdict(&self) -> Option<CheckOutcome> {
         self.result()?.checks.iter().map(|check| check.verdict.outcome).max()
     }
 }
 
 /// A value with its standard error.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Estimate {
+pub struct ValueWithError {
     /// The value.
     pub value: f64,
     /// Its standard error.
@@ -240,7 +240,7 @@ pub struct Ranked {
     /// Its number.
     pub design: usize,
     /// How much it is behind the best, in the unit of the measure; `None` for the best itself.
-    pub behind: Option<Estimate>,
+    pub behind: Option<ValueWithError>,
 }
 
 /// The mean of a measure over all designs with the same setting of one parameter, setting by setting.
@@ -262,9 +262,9 @@ pub struct EffectPoint {
     /// Number of designs it is taken over.
     pub designs: usize,
     /// The mean, in the unit of the measure.
-    pub mean: Estimate,
+    pub mean: ValueWithError,
     /// How much it is above that of the first setting; `None` for the first itself.
-    pub from_first: Option<Estimate>,
+    pub from_first: Option<ValueWithError>,
 }
 
 /// How much of the variance of a measure comes from each parameter.
@@ -363,12 +363,13 @@ impl StudyReport {
     /// Designs that make no scene, fail a check, and are undecided.
     pub fn counts(&self) -> StudyCounts {
         let verdicts = || self.designs.iter().map(|design| (design.result(), design.verdict()));
-        let count =
-            |wanted: Outcome| verdicts().filter(|(_, verdict)| *verdict == Some(wanted)).count();
+        let count = |wanted: CheckOutcome| {
+            verdicts().filter(|(_, verdict)| *verdict == Some(wanted)).count()
+        };
         StudyCounts {
             broken: verdicts().filter(|(result, _)| result.is_none()).count(),
-            failed: count(Outcome::Failed) + count(Outcome::Unknown),
-            undecided: count(Outcome::Undecided),
+            failed: count(CheckOutcome::Failed) + count(CheckOutcome::Unknown),
+            undecided: count(CheckOutcome::Undecided),
             off_target: self.designs.iter().filter(|design| is_off_target(design)).count(),
         }
     }

@@ -25,7 +25,7 @@ pub(super) struct Cell {
 
 /// Refractive indices: before the flat face, of the film, and between the prisms. 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Indices {
+pub(super) struct FilmIndices {
     pub(super) flat: f64,
     pub(super) film: f64,
     pub(super) prisms: f64,
@@ -33,20 +33,20 @@ pub(super) struct Indices {
 
 /// Position and direction of light in the cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct State {
+pub(super) struct CellLight {
     /// Position, pitches; x is relative to the period of the room.
     at: DVec2,
     /// Unit direction (x, y, w).
     dir: DVec3,
-    pub(super) room: Room,
-    on: Option<Facet>,
+    pub(super) room: CellRoom,
+    on: Option<FilmFacet>,
     /// Path length in the film so far, pitches.
     way: f64,
 }
 
 /// A part of the cell without inner faces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Room {
+pub(super) enum CellRoom {
     /// A prism; x in 0..1 between its valleys. The base below it is crossed in one step.
     Prism,
     /// The groove between two prisms, below the tips; x in -½..½ about the valley.
@@ -55,7 +55,7 @@ pub(super) enum Room {
 
 /// A facet of a prism, or a side of a groove, by the direction in which it rises.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Facet {
+enum FilmFacet {
     /// Toward larger x.
     Up,
     /// Toward smaller x.
@@ -64,10 +64,10 @@ enum Facet {
 
 /// What happens next to light in the cell.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Step {
+pub(super) enum CellStep {
     /// It met an interface: the share `reflectance` is reflected, and the rest is refracted.
     /// `refracted` is `None` under total reflection.
-    Met { reflectance: f64, reflected: State, refracted: Option<After> },
+    Met { reflectance: f64, reflected: CellLight, refracted: Option<After> },
     /// It left past the tips.
     Out(Exit),
     /// It met a rounded edge.
@@ -78,7 +78,7 @@ pub(super) enum Step {
 #[derive(Debug, Clone, Copy)]
 pub(super) enum After {
     /// It stays in the cell.
-    Inside(State),
+    Inside(CellLight),
     /// It leaves through the flat face.
     Out(Exit),
 }
@@ -96,7 +96,12 @@ impl Cell {
     /// Light that arrives at the flat face at a position in the period: its reflectance, the
     /// direction of the reflected part, and the refracted part.
     #[inline(always)]
-    pub(super) fn enter_flat(&self, x: f64, dir: DVec3, indices: &Indices) -> (f64, DVec3, State) {
+    pub(super) fn enter_flat(
+        &self,
+        x: f64,
+        dir: DVec3,
+        indices: &FilmIndices,
+    ) -> (f64, DVec3, CellLight) {
         let normal = DVec3::NEG_Y;
         let (reflectance, refracted) = split(dir, normal, indices.flat, indices.film);
         // Under total reflection nothing is refracted, and the state has no share.
@@ -105,32 +110,32 @@ impl Cell {
     }
 
     /// Light that arrives at the prisms at the level of the tips.
-    pub(super) fn enter_prisms(&self, x: f64, dir: DVec3) -> State {
+    pub(super) fn enter_prisms(&self, x: f64, dir: DVec3) -> CellLight {
         let at = DVec2::new(x - 0.5, self.top);
-        State { at, dir, room: Room::Groove, on: None, way: 0.0 }
+        CellLight { at, dir, room: CellRoom::Groove, on: None, way: 0.0 }
     }
 
     /// The next thing that happens.
     // A step is inlined as one piece, so that states stay in registers.
     #[inline(always)]
-    pub(super) fn step(&self, state: &State, indices: &Indices) -> Step {
-        let meets = |facet: Facet| self.distance(state, facet);
-        let (up, down) = (meets(Facet::Up), meets(Facet::Down));
-        let (facet, length) = if down < up { (Facet::Down, down) } else { (Facet::Up, up) };
+    pub(super) fn step(&self, state: &CellLight, indices: &FilmIndices) -> CellStep {
+        let meets = |facet: FilmFacet| self.distance(state, facet);
+        let (up, down) = (meets(FilmFacet::Up), meets(FilmFacet::Down));
+        let (facet, length) = if down < up { (FilmFacet::Down, down) } else { (FilmFacet::Up, up) };
         let dir = state.dir;
         match state.room {
-            Room::Prism => {
+            CellRoom::Prism => {
                 let to_base = (self.base - state.at.y) / dir.y;
                 if dir.y < 0.0 && to_base <= length {
                     return self.meet_flat(state, indices);
                 }
-                let reached = State { way: state.way + length, ..*state };
+                let reached = CellLight { way: state.way + length, ..*state };
                 self.meet(&reached, facet, length, [indices.film, indices.prisms])
             }
-            Room::Groove => {
+            CellRoom::Groove => {
                 let to_tips = (self.top - state.at.y) / dir.y;
                 if dir.y > 0.0 && to_tips <= length {
-                    return Step::Out(Exit { dir, way: state.way });
+                    return CellStep::Out(Exit { dir, way: state.way });
                 }
                 self.meet(state, facet, length, [indices.prisms, indices.film])
             }
@@ -139,17 +144,17 @@ impl Cell {
 
     /// Light that goes up from a position on the flat face, as it enters a prism.
     #[inline(always)]
-    fn rise(&self, x: f64, dir: DVec3, way: f64) -> State {
+    fn rise(&self, x: f64, dir: DVec3, way: f64) -> CellLight {
         let length = self.base / dir.y;
         let x = x + length * dir.x;
         // Within the period; quicker than a remainder.
         let at = DVec2::new(x - x.floor(), self.base);
-        State { at, dir, room: Room::Prism, on: None, way: way + length }
+        CellLight { at, dir, room: CellRoom::Prism, on: None, way: way + length }
     }
 
     /// Light that comes down to the flat face.
     #[inline(always)]
-    fn meet_flat(&self, state: &State, indices: &Indices) -> Step {
+    fn meet_flat(&self, state: &CellLight, indices: &FilmIndices) -> CellStep {
         let dir = state.dir;
         let length = -state.at.y / dir.y;
         let way = state.way + length;
@@ -157,30 +162,30 @@ impl Cell {
         let reflected =
             self.rise(state.at.x + length * dir.x, fresnel::mirrored(dir, DVec3::Y), way);
         let refracted = refracted.map(|dir| After::Out(Exit { dir, way }));
-        Step::Met { reflectance, reflected, refracted }
+        CellStep::Met { reflectance, reflected, refracted }
     }
 
     /// Outward normal of a facet, out of the film.
     #[inline(always)]
-    fn normal(&self, facet: Facet) -> DVec3 {
+    fn normal(&self, facet: FilmFacet) -> DVec3 {
         let DVec2 { x, y } = self.facet;
         match facet {
-            Facet::Up => DVec3::new(x, y, 0.0),
-            Facet::Down => DVec3::new(-x, y, 0.0),
+            FilmFacet::Up => DVec3::new(x, y, 0.0),
+            FilmFacet::Down => DVec3::new(-x, y, 0.0),
         }
     }
 
     /// Distance to a facet, pitches; infinite where light does not go toward it.
     #[inline(always)]
-    fn distance(&self, state: &State, facet: Facet) -> f64 {
+    fn distance(&self, state: &CellLight, facet: FilmFacet) -> f64 {
         if state.on == Some(facet) {
             return f64::INFINITY;
         }
         let normal = self.normal(facet).truncate();
         // The facets of a prism end at its tip; those of a groove end in its valley.
         let (corner, sense) = match state.room {
-            Room::Prism => (DVec2::new(0.5, self.top), 1.0),
-            Room::Groove => (DVec2::new(0.0, self.base), -1.0),
+            CellRoom::Prism => (DVec2::new(0.5, self.top), 1.0),
+            CellRoom::Groove => (DVec2::new(0.0, self.base), -1.0),
         };
         let toward = sense * state.dir.truncate().dot(normal);
         let gap = sense * (corner - state.at).dot(normal);
@@ -192,36 +197,36 @@ impl Cell {
     #[inline(always)]
     fn meet(
         &self,
-        state: &State,
-        facet: Facet,
+        state: &CellLight,
+        facet: FilmFacet,
         length: f64,
         [index_from, index_to]: [f64; 2],
-    ) -> Step {
+    ) -> CellStep {
         let at = state.at + length * state.dir.truncate();
         let up = (at.y - self.base) / (self.top - self.base);
         let edge = 0.5 * self.rounded;
         let is_rounded = self.rounded > 0.0 && (up < edge || up > 1.0 - edge);
         if is_rounded || !length.is_finite() {
-            return Step::Lost;
+            return CellStep::Lost;
         }
         let normal = match state.room {
-            Room::Prism => -self.normal(facet),
-            Room::Groove => self.normal(facet),
+            CellRoom::Prism => -self.normal(facet),
+            CellRoom::Groove => self.normal(facet),
         };
         let (reflectance, refracted) = split(state.dir, normal, index_from, index_to);
-        let here = State { at, on: Some(facet), ..*state };
-        let reflected = State { dir: fresnel::mirrored(state.dir, normal), ..here };
+        let here = CellLight { at, on: Some(facet), ..*state };
+        let reflected = CellLight { dir: fresnel::mirrored(state.dir, normal), ..here };
         let refracted = refracted.map(|dir| {
             // A facet that rises toward larger x is on the right of its groove and on the left of its prism.
             let (room, x) = match (state.room, facet) {
-                (Room::Groove, Facet::Up) => (Room::Prism, at.x),
-                (Room::Groove, Facet::Down) => (Room::Prism, at.x + 1.0),
-                (Room::Prism, Facet::Up) => (Room::Groove, at.x),
-                (Room::Prism, Facet::Down) => (Room::Groove, at.x - 1.0),
+                (CellRoom::Groove, FilmFacet::Up) => (CellRoom::Prism, at.x),
+                (CellRoom::Groove, FilmFacet::Down) => (CellRoom::Prism, at.x + 1.0),
+                (CellRoom::Prism, FilmFacet::Up) => (CellRoom::Groove, at.x),
+                (CellRoom::Prism, FilmFacet::Down) => (CellRoom::Groove, at.x - 1.0),
             };
-            After::Inside(State { at: DVec2::new(x, at.y), dir, room, ..here })
+            After::Inside(CellLight { at: DVec2::new(x, at.y), dir, room, ..here })
         });
-        Step::Met { reflectance, reflected, refracted }
+        CellStep::Met { reflectance, reflected, refracted }
     }
 }
 

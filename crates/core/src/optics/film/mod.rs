@@ -17,7 +17,7 @@ pub use survey::{acceptance_angle, along_prisms};
 
 use crate::optics::{Incidence, Scattered, Shares, Side};
 use crate::rng::{Dimension, Numbers, Sampler};
-use cell::{After, Cell, Exit, Indices, Step};
+use cell::{After, Cell, CellStep, Exit, FilmIndices};
 use glam::{DVec2, DVec3};
 
 /// Steps after which light is treated as absorbed: only light that rounding has trapped between
@@ -93,7 +93,7 @@ struct Approach {
     /// Across the prisms, from the flat face into the film, and along the prisms.
     axes: [DVec3; 3],
     dir: DVec3,
-    indices: Indices,
+    indices: FilmIndices,
 }
 
 impl PrismFilm {
@@ -135,11 +135,11 @@ impl PrismFilm {
         };
         for _ in 0..MOST_STEPS {
             state = match self.cell.step(&state, &approach.indices) {
-                Step::Lost => return None,
-                Step::Out(exit) => {
+                CellStep::Lost => return None,
+                CellStep::Out(exit) => {
                     return Some(self.leave(&approach, face, FilmFace::Prisms, &exit));
                 }
-                Step::Met { reflectance, reflected, refracted } => match refracted {
+                CellStep::Met { reflectance, reflected, refracted } => match refracted {
                     Some(after) if !is_reflected(reflectance, sampler) => match after {
                         After::Inside(next) => next,
                         After::Out(exit) => {
@@ -188,9 +188,9 @@ impl PrismFilm {
             }
             for _ in 0..PASSAGE {
                 state = match self.cell.step(&state, &indices) {
-                    Step::Met { reflected, refracted: None, .. } => reflected,
-                    Step::Met { refracted: Some(After::Out(_)), .. } => return false,
-                    Step::Met { .. } | Step::Lost | Step::Out(_) => return true,
+                    CellStep::Met { reflected, refracted: None, .. } => reflected,
+                    CellStep::Met { refracted: Some(After::Out(_)), .. } => return false,
+                    CellStep::Met { .. } | CellStep::Lost | CellStep::Out(_) => return true,
                 };
             }
             // Light that rounding has trapped has not leaked.
@@ -227,9 +227,9 @@ impl PrismFilm {
             }
             let share = share.max(LEAST_SHARE);
             match self.cell.step(&state, &approach.indices) {
-                Step::Lost => {}
-                Step::Out(exit) => leave(FilmFace::Prisms, &exit, share),
-                Step::Met { reflectance, reflected, refracted } => {
+                CellStep::Lost => {}
+                CellStep::Out(exit) => leave(FilmFace::Prisms, &exit, share),
+                CellStep::Met { reflectance, reflected, refracted } => {
                     let refracted_share = (1.0 - reflectance) * share;
                     match refracted {
                         Some(After::Inside(next)) => waiting.push((next, refracted_share)),
@@ -270,7 +270,7 @@ impl PrismFilm {
         Approach {
             axes,
             dir: DVec3::from_array(axes.map(|axis| dir.dot(axis))),
-            indices: Indices { flat, film: self.index, prisms },
+            indices: FilmIndices { flat, film: self.index, prisms },
         }
     }
 

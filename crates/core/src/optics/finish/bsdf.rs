@@ -16,7 +16,7 @@ use crate::optics::finish::mixture::Mixture;
 use crate::optics::finish::model::{FinishModel, Spread};
 use crate::optics::finish::open::Open;
 use crate::optics::finish::prism_film::MetFilm;
-use crate::optics::finish::smooth::Smooth;
+use crate::optics::finish::smooth::SmoothInterface;
 use crate::optics::finish::specular::Specular;
 use crate::optics::finish::tabulated::Tabulated;
 use crate::optics::{
@@ -102,7 +102,7 @@ macro_rules! ask {
     ($bsdf:expr, $finish:ident => $answer:expr) => {
         match $bsdf {
             Bsdf::Smooth => {
-                let $finish = Smooth;
+                let $finish = SmoothInterface;
                 $answer
             }
             Bsdf::Specular { reflectance, transmittance } => {
@@ -193,7 +193,7 @@ impl FinishModel for Bsdf {
         sampler: &mut Sampler<impl Numbers>,
     ) -> Option<Scattered> {
         if let Self::Smooth = self {
-            return Smooth.scatter(incidence, sampler);
+            return SmoothInterface.scatter(incidence, sampler);
         }
         if let Self::Specular { reflectance, transmittance } = self {
             let shares = both(reflectance, transmittance);

@@ -2,7 +2,7 @@
 //! path does what a photon does, as at a smooth interface.
 
 use crate::optics::finish::model::FinishModel;
-use crate::optics::finish::smooth::Smooth;
+use crate::optics::finish::smooth::SmoothInterface;
 use crate::optics::{AngleTable, Incidence, Scattered, Shares, Side, fresnel};
 use crate::rng::{Numbers, Sampler};
 
@@ -29,7 +29,7 @@ impl FinishModel for Coated<'_> {
         sampler: &mut Sampler<impl Numbers>,
     ) -> Option<Scattered> {
         let side = self.shares(incidence).choose_side(sampler)?;
-        Some(Scattered::specular(Smooth::direction(incidence, side)?, 1.0, side))
+        Some(Scattered::specular(SmoothInterface::direction(incidence, side)?, 1.0, side))
     }
 
     fn scatter_radiance(
@@ -46,7 +46,7 @@ impl FinishModel for Coated<'_> {
         incidence: &Incidence,
         _sampler: &mut Sampler<impl Numbers>,
     ) -> Option<Scattered> {
-        Smooth::toward(side, incidence, self.shares(incidence).of(side))
+        SmoothInterface::toward(side, incidence, self.shares(incidence).of(side))
     }
 }
 

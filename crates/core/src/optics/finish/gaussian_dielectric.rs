@@ -1,7 +1,7 @@
 //! A rough dielectric: shares by Fresnel, Gaussian scatter about the mirrored and the refracted direction.
 
 use crate::optics::finish::model::FinishModel;
-use crate::optics::finish::smooth::Smooth;
+use crate::optics::finish::smooth::SmoothInterface;
 use crate::optics::{Gaussian, Incidence, Scattered, Shares, Side};
 use crate::rng::{Numbers, Sampler};
 use glam::DVec3;
@@ -12,7 +12,7 @@ pub(crate) struct GaussianDielectric<'a> {
 
 impl FinishModel for GaussianDielectric<'_> {
     fn shares(&self, incidence: &Incidence) -> Shares {
-        Smooth.shares(incidence)
+        SmoothInterface.shares(incidence)
     }
 
     fn scatter(
@@ -20,7 +20,7 @@ impl FinishModel for GaussianDielectric<'_> {
         incidence: &Incidence,
         sampler: &mut Sampler<impl Numbers>,
     ) -> Option<Scattered> {
-        let Scattered { dir, side, .. } = Smooth::send(incidence, sampler);
+        let Scattered { dir, side, .. } = SmoothInterface::send(incidence, sampler);
         let dir = self.lobe.sample(dir.normalize(), incidence.leaving_normal(side), sampler);
         Some(Scattered::diffuse(dir, 1.0, side))
     }
@@ -31,7 +31,7 @@ impl FinishModel for GaussianDielectric<'_> {
         sampler: &mut Sampler<impl Numbers>,
     ) -> Option<Scattered> {
         let before = self.lobe.before(incidence, sampler)?;
-        Some(before.continued(Smooth::send(&before.incidence, sampler)))
+        Some(before.continued(SmoothInterface::send(&before.incidence, sampler)))
     }
 
     fn scatter_toward(
@@ -41,20 +41,22 @@ impl FinishModel for GaussianDielectric<'_> {
         sampler: &mut Sampler<impl Numbers>,
     ) -> Option<Scattered> {
         let before = self.lobe.before(incidence, sampler)?;
-        Smooth.scatter_toward(side, &before.incidence, sampler).map(|out| before.continued(out))
+        SmoothInterface
+            .scatter_toward(side, &before.incidence, sampler)
+            .map(|out| before.continued(out))
     }
 
     fn radiance_chances(&self, incidence: &Incidence) -> Shares {
         if incidence.index_from == incidence.index_to {
             self.shares(incidence)
         } else {
-            Smooth::chances_about(incidence)
+            SmoothInterface::chances_about(incidence)
         }
     }
 
     fn evaluate(&self, incidence: &Incidence, out: DVec3) -> f64 {
         let side = incidence.side_of(out);
-        Smooth::direction(incidence, side).map_or(0.0, |mean| {
+        SmoothInterface::direction(incidence, side).map_or(0.0, |mean| {
             let normal = incidence.leaving_normal(side);
             self.shares(incidence).of(side) * self.lobe.over_cosine(mean.normalize(), out, normal)
         })

@@ -13,9 +13,9 @@
 //! is also scattered out of the guide.
 
 use crate::optics::finish::model::{FinishModel, Spread};
-use crate::optics::finish::smooth::Smooth;
-use crate::optics::haze::horizon::{Horizon, Indices};
-use crate::optics::haze::profile::Profile;
+use crate::optics::finish::smooth::SmoothInterface;
+use crate::optics::haze::horizon::{Horizon, HorizonIndices};
+use crate::optics::haze::profile::LawProfile;
 use crate::optics::{HazeLaw, Incidence, Lobe, Scattered, Shares, Side};
 use crate::rng::{Dimension, Numbers, Sampler};
 use glam::DVec3;
@@ -24,7 +24,7 @@ use lumiduct_base::math::{Frame, circle};
 /// A finish with haze.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Haze {
-    profile: Profile,
+    profile: LawProfile,
     horizon: Horizon,
     base: HazeBase,
 }
@@ -66,7 +66,7 @@ struct Parts {
 /// Total integrated scatter, 1: the share of light at normal incidence that is scattered to one
 /// side, into a medium of this index (1 for sheets). It is smaller at every other angle.
 pub fn integrated_scatter(law: HazeLaw, index: f64) -> f64 {
-    Profile::new(law).within(index)
+    LawProfile::new(law).within(index)
 }
 
 impl FinishModel for Haze {
@@ -137,10 +137,10 @@ impl Haze {
     /// Haze of this law. A sheet subtracts scattered light from its shares, so
     /// [`integrated_scatter`] must be smaller.
     pub fn new(law: HazeLaw, base: HazeBase) -> Self {
-        let profile = Profile::new(law);
+        let profile = LawProfile::new(law);
         let indices = match base {
-            HazeBase::Interface => Indices::Any,
-            HazeBase::Sheet { .. } => Indices::One,
+            HazeBase::Interface => HorizonIndices::Any,
+            HazeBase::Sheet { .. } => HorizonIndices::One,
         };
         Self { horizon: Horizon::new(&profile, indices), profile, base }
     }
@@ -186,7 +186,7 @@ impl Haze {
 
     fn undisturbed_direction(&self, incidence: &Incidence, side: Side) -> Option<DVec3> {
         match self.base {
-            HazeBase::Interface => Smooth::direction(incidence, side),
+            HazeBase::Interface => SmoothInterface::direction(incidence, side),
             HazeBase::Sheet { .. } => Some(incidence.straight(side)),
         }
     }
@@ -199,7 +199,7 @@ impl Haze {
         let undisturbed = match self.base {
             HazeBase::Interface => {
                 let rest = 1.0 - scattered.reflected - scattered.transmitted;
-                Smooth.shares(incidence).scaled(rest)
+                SmoothInterface.shares(incidence).scaled(rest)
             }
             HazeBase::Sheet { reflectance, transmittance, .. } => Shares {
                 reflected: reflectance - scattered.reflected,

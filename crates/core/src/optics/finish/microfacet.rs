@@ -10,7 +10,7 @@
 //! `f(i→o)/n_o²` is the same both ways, so a gather path does what a photon does, without a factor.
 
 use crate::optics::finish::model::FinishModel;
-use crate::optics::finish::smooth::Smooth;
+use crate::optics::finish::smooth::SmoothInterface;
 use crate::optics::{Incidence, Scattered, Shares, Side, fresnel};
 use crate::rng::{Dimension, Numbers, Sampler};
 use glam::DVec3;
@@ -24,12 +24,12 @@ const FACETS: u32 = 48;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Microfacet {
     roughness: f64,
-    facets: Facets,
+    facets: FacetKind,
 }
 
 /// The kind of its facets.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Facets {
+pub enum FacetKind {
     /// Smooth interfaces of the two media.
     Interface,
     /// Mirrors with the same reflectance, 1, at every angle.
@@ -47,7 +47,7 @@ pub enum Facets {
 }
 
 /// A facet that light meets.
-struct Facet {
+struct MetFacet {
     /// Its unit normal in the frame of the surface.
     normal: DVec3,
     /// Cosine of the angle of incidence on it.
@@ -103,7 +103,7 @@ impl FinishModel for Microfacet {
     }
 
     fn radiance_chances(&self, incidence: &Incidence) -> Shares {
-        Smooth::chances_about(incidence)
+        SmoothInterface::chances_about(incidence)
     }
 
     /// WMLT eq. 20 and, with the square of the index on the exit side, eq. 21.
@@ -121,7 +121,7 @@ impl FinishModel for Microfacet {
         if cos_i <= 0.0 || (cos_o > 0.0) != reflected || from.z <= 0.0 || out.z == 0.0 {
             return 0.0;
         }
-        let facet = Facet { normal, cos: cos_i.min(1.0), frame };
+        let facet = MetFacet { normal, cos: cos_i.min(1.0), frame };
         let shares = self.of_facet(&facet, incidence);
         let seen =
             self.density(normal.z) * self.seen_over_cos(from.z) * self.seen_over_cos(out.z.abs());
@@ -141,13 +141,13 @@ impl FinishModel for Microfacet {
 impl Microfacet {
     /// A surface of roughness α (WMLT eq. 33): the root mean square slope of the facets visible in
     /// its middle, above 0.
-    pub fn new(roughness: f64, facets: Facets) -> Self {
+    pub fn new(roughness: f64, facets: FacetKind) -> Self {
         Self { roughness, facets }
     }
 
     /// Whether light can only pass through it, unbent: facets between equal indices have no effect.
     fn is_nothing(&self, incidence: &Incidence) -> bool {
-        self.facets == Facets::Interface && incidence.index_from == incidence.index_to
+        self.facets == FacetKind::Interface && incidence.index_from == incidence.index_to
     }
 
     /// The shares of the two sides, and the probabilities with which light goes there: integrals
@@ -177,14 +177,14 @@ impl Microfacet {
         (of(flux), of(chance))
     }
 
-    fn draw(&self, incidence: &Incidence, sampler: &mut Sampler<impl Numbers>) -> Facet {
+    fn draw(&self, incidence: &Incidence, sampler: &mut Sampler<impl Numbers>) -> MetFacet {
         self.seen(incidence, sampler.pair(Dimension::Scatter))
     }
 
     /// The facet of two numbers in 0..1, in proportion to its area as seen from the direction of
     /// the light (Heitz 2018, section 3). The surface is stretched until it is a hemisphere; its
     /// projection is a disk cut by its own edge.
-    fn seen(&self, incidence: &Incidence, u: [f64; 2]) -> Facet {
+    fn seen(&self, incidence: &Incidence, u: [f64; 2]) -> MetFacet {
         let frame = Frame::from_axis(DVec3::ZERO, incidence.normal);
         let local = frame.to_local(-incidence.dir);
         let from = local.with_z(local.z.max(0.0));
@@ -198,19 +198,21 @@ impl Microfacet {
         let toward = (1.0 - x * x - y * y).max(0.0).sqrt();
         let bump = x * across + y * up + toward * view;
         let normal = (stretch * bump.with_z(bump.z.max(1e-12))).normalize();
-        Facet { normal, cos: from.dot(normal).clamp(0.0, 1.0), frame }
+        MetFacet { normal, cos: from.dot(normal).clamp(0.0, 1.0), frame }
     }
 
     /// Light that one facet reflects and transmits.
-    fn of_facet(&self, facet: &Facet, incidence: &Incidence) -> Shares {
+    fn of_facet(&self, facet: &MetFacet, incidence: &Incidence) -> Shares {
         let Incidence { index_from, index_to, .. } = *incidence;
         match self.facets {
-            Facets::Interface => {
+            FacetKind::Interface => {
                 let reflected = fresnel::dielectric(facet.cos, index_from, index_to).unpolarised();
                 Shares { reflected, transmitted: 1.0 - reflected }
             }
-            Facets::Mirror { reflectance } => Shares { reflected: reflectance, transmitted: 0.0 },
-            Facets::Metal { n, k } => {
+            FacetKind::Mirror { reflectance } => {
+                Shares { reflected: reflectance, transmitted: 0.0 }
+            }
+            FacetKind::Metal { n, k } => {
                 let reflected = fresnel::conductor(facet.cos, index_from, n, k).unpolarised();
                 Shares { reflected, transmitted: 0.0 }
             }
@@ -221,7 +223,7 @@ impl Microfacet {
     /// `None` into the surface.
     fn sent(
         &self,
-        facet: &Facet,
+        facet: &MetFacet,
         side: Side,
         incidence: &Incidence,
         share: f64,
@@ -269,13 +271,17 @@ mod tests {
 
     const INDICES: [[f64; 2]; 2] = [[1.0, 1.49], [1.49, 1.0]];
 
-    fn rough(roughness: f64, facets: Facets) -> Bsdf {
+    fn rough(roughness: f64, facets: FacetKind) -> Bsdf {
         Bsdf::Microfacet(Microfacet::new(roughness, facets))
     }
 
     fn all(roughness: f64) -> [Bsdf; 3] {
-        [Facets::Interface, Facets::Mirror { reflectance: 0.9 }, Facets::Metal { n: 0.8, k: 5.9 }]
-            .map(|facets| rough(roughness, facets))
+        [
+            FacetKind::Interface,
+            FacetKind::Mirror { reflectance: 0.9 },
+            FacetKind::Metal { n: 0.8, k: 5.9 },
+        ]
+        .map(|facets| rough(roughness, facets))
     }
 
     #[test]
@@ -288,7 +294,7 @@ mod tests {
 
     #[test]
     fn scattered_light_follows_the_distribution_function_and_its_share_is_told() {
-        for bsdf in all(0.4).into_iter().chain([rough(0.15, Facets::Interface)]) {
+        for bsdf in all(0.4).into_iter().chain([rough(0.15, FacetKind::Interface)]) {
             for indices in INDICES {
                 for angle in [0.0, 0.6, 1.2] {
                     let incidence = incidence(angle, indices);
@@ -317,7 +323,7 @@ mod tests {
     #[test]
     fn rougher_facets_catch_more_of_the_light_and_none_creates_any() {
         for (roughness, most) in [(0.01, 5e-4), (0.1, 0.03), (0.3, 0.2), (1.0, 0.75)] {
-            let mirror = rough(roughness, Facets::Mirror { reflectance: 1.0 });
+            let mirror = rough(roughness, FacetKind::Mirror { reflectance: 1.0 });
             for angle in [0.0, 0.5, 1.0] {
                 let lost = 1.0 - mirror.shares(&incidence(angle, [1.0, 1.0])).reflected;
                 assert!((-1e-12..most).contains(&lost), "{roughness} at {angle}: {lost}");
@@ -327,11 +333,11 @@ mod tests {
 
     #[test]
     fn fine_facets_share_light_as_a_smooth_interface() {
-        let bsdf = rough(1e-3, Facets::Interface);
+        let bsdf = rough(1e-3, FacetKind::Interface);
         for indices in INDICES {
             for angle in [0.0, 0.4, 0.6, 0.9, 1.2] {
                 let incidence = incidence(angle, indices);
-                let (fine, smooth) = (bsdf.shares(&incidence), Smooth.shares(&incidence));
+                let (fine, smooth) = (bsdf.shares(&incidence), SmoothInterface.shares(&incidence));
                 assert!((fine.reflected - smooth.reflected).abs() < 1e-3, "{fine:?}, {smooth:?}");
                 assert!(
                     (fine.transmitted - smooth.transmitted).abs() < 1e-3,
@@ -345,7 +351,7 @@ mod tests {
     fn areas_of_facets_add_up_to_the_area_of_the_surface() {
         // ∫ D cos θ dω = 1 (WMLT eq. 4).
         for roughness in [0.05, 0.5, 1.0] {
-            let surface = Microfacet::new(roughness, Facets::Interface);
+            let surface = Microfacet::new(roughness, FacetKind::Interface);
             let steps = 20_000;
             let sum: f64 = (0..steps)
                 .map(|i| {
@@ -361,7 +367,7 @@ mod tests {
 
     #[test]
     fn between_equal_indices_small_facets_do_nothing() {
-        let bsdf = rough(0.4, Facets::Interface);
+        let bsdf = rough(0.4, FacetKind::Interface);
         let incidence = incidence(0.7, [1.3, 1.3]);
         let mut sampler = Sampler::for_path(1, 0, 0);
         let out = bsdf.scatter(&incidence, &mut sampler).unwrap();

@@ -8,9 +8,9 @@ use crate::optics::{Incidence, Scattered, Shares, Side, fresnel};
 use crate::rng::{Dimension, Numbers, Sampler};
 use glam::DVec3;
 
-pub(crate) struct Smooth;
+pub(crate) struct SmoothInterface;
 
-impl Smooth {
+impl SmoothInterface {
     /// The photon; one draw, none under total reflection or between equal indices.
     #[inline]
     pub(crate) fn send(incidence: &Incidence, sampler: &mut Sampler<impl Numbers>) -> Scattered {
@@ -60,7 +60,7 @@ impl Smooth {
     }
 }
 
-impl FinishModel for Smooth {
+impl FinishModel for SmoothInterface {
     /// Fresnel's shares; between equal indices all light passes, even along the face.
     fn shares(&self, incidence: &Incidence) -> Shares {
         let Incidence { index_from, index_to, .. } = *incidence;
@@ -115,7 +115,7 @@ mod tests {
     fn total_reflection_draws_no_numbers() {
         let mut used = Sampler::for_path(1, 0, 0);
         let mut fresh = used.clone();
-        let out = Smooth::send(&incidence(1.0, [1.49, 1.0]), &mut used);
+        let out = SmoothInterface::send(&incidence(1.0, [1.49, 1.0]), &mut used);
         assert_eq!((out.side, out.factor), (Side::Reflected, 1.0));
         assert_eq!(used.one(Dimension::Lobe), fresh.one(Dimension::Lobe));
     }

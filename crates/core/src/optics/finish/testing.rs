@@ -1,7 +1,7 @@
 //! Properties that the tests of finishes check, and samples of finishes.
 
 use crate::optics::{
-    AngleTable, Bsdf, Faces, Facets, FinishModel, Gaussian, Haze, HazeBase, HazeLaw, HazeSides,
+    AngleTable, Bsdf, Faces, FacetKind, FinishModel, Gaussian, Haze, HazeBase, HazeLaw, HazeSides,
     Incidence, Lobe, Microfacet, Side, scatter_radiance,
 };
 use crate::rng::{Dimension, Sampler};
@@ -42,11 +42,11 @@ pub(crate) fn coated() -> Bsdf {
 }
 
 pub(crate) fn facets(roughness: f64) -> Bsdf {
-    Bsdf::Microfacet(Microfacet::new(roughness, Facets::Interface))
+    Bsdf::Microfacet(Microfacet::new(roughness, FacetKind::Interface))
 }
 
 pub(crate) fn rough_metal() -> Bsdf {
-    Bsdf::Microfacet(Microfacet::new(0.4, Facets::Metal { n: 0.8, k: 5.9 }))
+    Bsdf::Microfacet(Microfacet::new(0.4, FacetKind::Metal { n: 0.8, k: 5.9 }))
 }
 
 pub(crate) fn haze(base: HazeBase) -> Bsdf {

@@ -6,7 +6,7 @@
 //! lobe lies in the disk between `d_in` (0 where the centre is in it) and `d_out`, and M(d) is the
 //! part of the lobe within the distance d.
 
-use crate::optics::haze::profile::Profile;
+use crate::optics::haze::profile::LawProfile;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Nodes from the middle of the disk to its rim.
@@ -22,7 +22,7 @@ const GREATEST: f64 = 4.0;
 
 /// The indices for which the share above the horizon is needed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Indices {
+pub(crate) enum HorizonIndices {
     /// 1, as in air, for sheets.
     One,
     /// 1 to 4, for interfaces.
@@ -32,22 +32,22 @@ pub(crate) enum Indices {
 /// `C(p, n) / M(n)` in a table: 1 for a lobe in the middle of its disk.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Horizon {
-    rows: Vec<Row>,
+    rows: Vec<IndexRow>,
 }
 
 /// The table of one index.
 #[derive(Debug, Clone, PartialEq)]
-struct Row {
+struct IndexRow {
     inside: Vec<f64>,
     outside: Vec<f64>,
 }
 
 impl Horizon {
-    pub(crate) fn new(profile: &Profile, indices: Indices) -> Self {
+    pub(crate) fn new(profile: &LawProfile, indices: HorizonIndices) -> Self {
         let rows = match indices {
-            Indices::One => vec![Row::new(profile, 1.0)],
-            Indices::Any => {
-                (0..INDICES).map(|node| Row::new(profile, 1.0 / inverse_index(node))).collect()
+            HorizonIndices::One => vec![IndexRow::new(profile, 1.0)],
+            HorizonIndices::Any => {
+                (0..INDICES).map(|node| IndexRow::new(profile, 1.0 / inverse_index(node))).collect()
             }
         };
         Self { rows }
@@ -78,8 +78,8 @@ fn split(place: f64, nodes: usize) -> (usize, f64) {
     (node, place - node as f64)
 }
 
-impl Row {
-    fn new(profile: &Profile, index: f64) -> Self {
+impl IndexRow {
+    fn new(profile: &LawProfile, index: f64) -> Self {
         let all = profile.within(index);
         let share = |place: f64| above(profile, place * index, index) / all;
         let cube = |node: usize, nodes: usize| (node as f64 / (nodes - 1) as f64).powi(3);
@@ -102,7 +102,7 @@ impl Row {
 }
 
 /// C(p, n) by the midpoint rule; nodes crowd where the ray runs along the rim.
-fn above(profile: &Profile, center: f64, index: f64) -> f64 {
+fn above(profile: &LawProfile, center: f64, index: f64) -> f64 {
     let nodes = 128;
     let steps = || (0..nodes).map(|i| (f64::from(i) + 0.5) / f64::from(nodes));
     // Half of the chord, and the distance of its middle from the centre of the lobe, at an azimuth
@@ -158,8 +158,8 @@ mod tests {
             HazeLaw::Abg { a: 0.2, b: 1.0, g: 0.0 },
             HazeLaw::Harvey { b0: 1.0, shoulder: 0.1, slope: -1.5 },
         ] {
-            let profile = Profile::new(law);
-            let horizon = Horizon::new(&profile, Indices::Any);
+            let profile = LawProfile::new(law);
+            let horizon = Horizon::new(&profile, HorizonIndices::Any);
             for (center, index) in
                 [(0.0, 1.0), (0.7, 1.0), (0.98, 1.0), (1.0, 1.37), (1.2, 1.0), (1.49, 1.1)]
             {

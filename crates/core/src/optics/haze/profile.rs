@@ -60,7 +60,7 @@ impl HazeLaw {
 
 /// A law with its integrals over rings.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Profile {
+pub(crate) struct LawProfile {
     pub(crate) law: HazeLaw,
     /// From the middle outwards, the last one at the largest distance.
     rings: Vec<Ring>,
@@ -79,7 +79,7 @@ struct Ring {
     bound: f64,
 }
 
-impl Profile {
+impl LawProfile {
     pub(crate) fn new(law: HazeLaw) -> Self {
         let first = (0.02 * law.knee()).clamp(1e-9, 0.01);
         let growth = (FARTHEST / first).powf(1.0 / (RINGS - 2) as f64);
@@ -156,9 +156,9 @@ mod tests {
     fn integrals_over_circles_are_those_of_closed_forms() {
         // g = 2: π A ln(1 + d²/B). Harvey: 2π b0 l²/(s + 2) ((1 + d²/l²)^(s/2 + 1) - 1).
         let (a, b): (f64, f64) = (0.003, 1e-4);
-        let abg = Profile::new(HazeLaw::Abg { a, b, g: 2.0 });
+        let abg = LawProfile::new(HazeLaw::Abg { a, b, g: 2.0 });
         let (b0, shoulder, slope): (f64, f64, f64) = (2.0, 0.02, -1.5);
-        let harvey = Profile::new(HazeLaw::Harvey { b0, shoulder, slope });
+        let harvey = LawProfile::new(HazeLaw::Harvey { b0, shoulder, slope });
         for d in [1e-5, 1e-3, 0.01, 0.2, 1.0, 1.49, 7.9] {
             let expected = PI * a * (d * d / b).ln_1p();
             let off = abg.within(d) / expected - 1.0;
@@ -177,7 +177,7 @@ mod tests {
             HazeLaw::Abg { a: 0.2, b: 1.0, g: 0.0 },
             HazeLaw::Harvey { b0: 1.0, shoulder: 0.05, slope: -2.5 },
         ] {
-            let profile = Profile::new(law);
+            let profile = LawProfile::new(law);
             let [from, to] = [0.003, 1.3];
             let (bins, paths) = (20, 40_000);
             let mut seen = vec![0.0; bins];

@@ -6,7 +6,7 @@
 //! module does not know other solids.
 
 use crate::scene::crossing::hit::Nearest;
-use crate::scene::shape::{Crossing, Cylinder, Flat, Shape, Start, Toward};
+use crate::scene::shape::{Crossing, Cylinder, Flat, RayStart, Shape, Toward};
 use crate::scene::{MeshBody, On, Owner, Patch, PrimId, Ray, SolidId};
 use glam::DVec3;
 
@@ -59,7 +59,7 @@ impl Slab {
 
 /// Shared data of all solids.
 #[derive(Debug)]
-pub(crate) struct Room<'a> {
+pub(crate) struct ConvexSolids<'a> {
     pub(crate) patches: &'a [Patch],
     pub(crate) meshes: &'a [MeshBody],
     /// Diagonal of the box around everything, mm.
@@ -70,7 +70,7 @@ pub(crate) struct Room<'a> {
 
 impl Convex {
     /// The solid of this number, if it is convex.
-    pub(crate) fn of(room: &Room<'_>, solid: SolidId) -> Option<Self> {
+    pub(crate) fn of(room: &ConvexSolids<'_>, solid: SolidId) -> Option<Self> {
         let owner = Owner::Solid(solid);
         if room.meshes.iter().any(|body| body.owner == owner) {
             return None;
@@ -170,7 +170,7 @@ impl Convex {
             return None;
         }
         if let Some((prim, round)) = &self.round {
-            let start = if from.contains(*prim) { Start::On } else { Start::Elsewhere };
+            let start = if from.contains(*prim) { RayStart::On } else { RayStart::Elsewhere };
             let t = round.exit(ray, start);
             nearest.consider(*prim, Crossing { t, toward: Toward::Front });
         }
@@ -208,7 +208,7 @@ mod tests {
     use crate::rng::{Dimension, Sampler};
     use crate::scene::Scene;
     use crate::scene::shape::Region;
-    use crate::scene::{Builder, FaceSpec, Inside, Piece, Solid};
+    use crate::scene::{Builder, FacePiece, FaceSpec, Inside, Solid};
     use lumiduct_base::math::{Aabb, Frame, circle, uniform_sphere};
     use lumiduct_base::units::FluxUnit;
 
@@ -234,7 +234,7 @@ mod tests {
             owner: Owner::Solid(solid),
             front: None,
             back: None,
-            pieces: shapes.into_iter().map(Piece::whole).collect(),
+            pieces: shapes.into_iter().map(FacePiece::whole).collect(),
         });
         builder.build()
     }
@@ -363,7 +363,7 @@ mod tests {
     fn solids_with_holes_inward_corners_or_split_faces_are_not_convex() {
         let convex = |shapes| {
             let scene = solid_of(shapes);
-            let room = Room {
+            let room = ConvexSolids {
                 patches: &scene.patches,
                 meshes: &scene.meshes,
                 diagonal: scene.bounds.diagonal(),

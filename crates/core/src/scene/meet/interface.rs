@@ -5,7 +5,7 @@
 //! declared finish acts before an undeclared one, a sheet before a solid, the higher priority
 //! before the lower.
 
-use crate::scene::pattern::Part;
+use crate::scene::pattern::ActingPart;
 use crate::scene::shape::Toward;
 use crate::scene::{
     FaceId, FinishId, Hits, Inside, MediumId, Owner, Patch, PrimHit, Scene, Surface,
@@ -21,7 +21,7 @@ pub struct Interface<'h> {
     /// The surface whose normal and finish act.
     pub acting: &'h PrimHit,
     /// The acting part: the face, or an element of a pattern on it.
-    pub part: Part,
+    pub part: ActingPart,
     /// Its declared finish on the side the light comes from; `None` is the smooth interface of the media.
     pub finish: Option<FinishId>,
     /// The medium the light comes from.
@@ -35,7 +35,7 @@ pub struct Interface<'h> {
 
 /// Point and direction of an arriving path.
 #[derive(Debug, Clone, Copy)]
-pub struct Meeting {
+pub struct MeetingPoint {
     /// Position, mm.
     pub point: DVec3,
     /// Unit direction of travel.
@@ -58,7 +58,7 @@ impl Scene {
     pub fn interface<'h>(
         &self,
         hits: &'h Hits,
-        meeting: &Meeting,
+        meeting: &MeetingPoint,
         inside: &Inside,
         from: MediumId,
     ) -> Interface<'h> {
@@ -82,7 +82,7 @@ impl Scene {
     fn interface_of_several<'h>(
         &self,
         hits: &'h Hits,
-        meeting: &Meeting,
+        meeting: &MeetingPoint,
         inside: &Inside,
         from: MediumId,
     ) -> Interface<'h> {
@@ -111,7 +111,7 @@ impl Scene {
     fn interface_of<'h>(
         &self,
         acting: &'h PrimHit,
-        (part, finish): (Part, Option<FinishId>),
+        (part, finish): (ActingPart, Option<FinishId>),
         from: MediumId,
         to: MediumId,
     ) -> Interface<'h> {
@@ -141,44 +141,44 @@ impl Scene {
 
     /// The part of a face that acts on arriving light, and its finish.
     #[inline(always)]
-    fn declared(&self, hit: &PrimHit, meeting: &Meeting) -> (Part, Option<FinishId>) {
+    fn declared(&self, hit: &PrimHit, meeting: &MeetingPoint) -> (ActingPart, Option<FinishId>) {
         let face = &self.faces[hit.face.index()];
         if face.patterns.is_empty() {
-            return (Part::Face, face.finish_against(hit.toward));
+            return (ActingPart::Face, face.finish_against(hit.toward));
         }
         let part = self.part_at(hit, meeting);
         (part, self.finish_of_part(hit.face, part, hit.toward))
     }
 
     /// The finish of a part of a face, for light travelling toward one of its sides.
-    fn finish_of_part(&self, face: FaceId, part: Part, toward: Toward) -> Option<FinishId> {
+    fn finish_of_part(&self, face: FaceId, part: ActingPart, toward: Toward) -> Option<FinishId> {
         match part {
-            Part::Face => self.faces[face.index()].finish_against(toward),
-            Part::Element(pattern) => Some(match toward {
+            ActingPart::Face => self.faces[face.index()].finish_against(toward),
+            ActingPart::Element(pattern) => Some(match toward {
                 Toward::Front => self.patterns[pattern].back,
                 Toward::Back => self.patterns[pattern].front,
             }),
-            Part::Bore(pattern) => self.patterns[pattern].wall.map(|wall| wall.bore),
+            ActingPart::Bore(pattern) => self.patterns[pattern].wall.map(|wall| wall.bore),
         }
     }
 
     /// The part of a face with patterns that light meets.
     #[inline(never)]
-    fn part_at(&self, hit: &PrimHit, meeting: &Meeting) -> Part {
+    fn part_at(&self, hit: &PrimHit, meeting: &MeetingPoint) -> ActingPart {
         // Patterns lie only on patches.
-        let Surface::Patch(patch) = self.surface(hit.prim) else { return Part::Face };
+        let Surface::Patch(patch) = self.surface(hit.prim) else { return ActingPart::Face };
         let at = patch.chart(meeting.point);
         let numbers = &self.faces[hit.face.index()].patterns;
         let parts = numbers.iter().filter_map(|&number| {
             let pattern = &self.patterns[number];
             pattern.part(number, at, || self.slope(patch, pattern.field.period, meeting))
         });
-        parts.into_iter().next().unwrap_or(Part::Face)
+        parts.into_iter().next().unwrap_or(ActingPart::Face)
     }
 
     /// Distance of light along the chart of a patch per mm through it, mm/mm.
-    fn slope(&self, patch: &Patch, period: Option<f64>, meeting: &Meeting) -> DVec2 {
-        let Meeting { point, dir } = *meeting;
+    fn slope(&self, patch: &Patch, period: Option<f64>, meeting: &MeetingPoint) -> DVec2 {
+        let MeetingPoint { point, dir } = *meeting;
         let normal = patch.shape.normal(point);
         let through = dir.dot(normal);
         let step = SLOPE_STEP * self.bounds.diagonal();

@@ -8,8 +8,8 @@
 
 use crate::scene::crossing::accel::{Accel, Tree};
 use crate::scene::crossing::hit::{Hits, Just, Nearest, PrimHit};
-use crate::scene::mesh::Line;
-use crate::scene::shape::{Crossing, Start, Toward, Wanted};
+use crate::scene::mesh::TriangleLine;
+use crate::scene::shape::{Crossing, CrossingQuery, RayStart, Toward};
 use crate::scene::{Inside, On, Owner, PrimId, Ray, Scene, Surface};
 use smallvec::SmallVec;
 
@@ -126,7 +126,7 @@ impl Scene {
         &self,
         prim: PrimId,
         ray: &Ray,
-        line: Option<&Line>,
+        line: Option<&TriangleLine>,
         from: &On,
         inside: &Inside,
         limit: f64,
@@ -148,14 +148,14 @@ impl Scene {
 
     /// The crossings that count: for a solid, those of the right orientation.
     #[inline(always)]
-    fn wanted(&self, owner: Owner, inside: &Inside, max: f64) -> Option<Wanted> {
+    fn wanted(&self, owner: Owner, inside: &Inside, max: f64) -> Option<CrossingQuery> {
         let (toward, min) = match owner {
             Owner::Solid(solid) if inside.contains(solid) => (Some(Toward::Front), -self.tolerance),
             Owner::Solid(_) => (Some(Toward::Back), -self.tolerance),
             Owner::Sheet => (None, 0.0f64.next_up()),
             Owner::Port => return None,
         };
-        Some(Wanted { toward, min, max })
+        Some(CrossingQuery { toward, min, max })
     }
 
     #[inline]
@@ -177,7 +177,7 @@ impl Scene {
         let line = self.line(ray);
         self.accel.visit(ray, |index| {
             let surface = self.surface(PrimId::new(index));
-            surface.crossings(ray, line.as_ref(), Start::Elsewhere, |crossing| {
+            surface.crossings(ray, line.as_ref(), RayStart::Elsewhere, |crossing| {
                 if let Owner::Solid(solid) = surface.owner() {
                     let slot = &mut nearest[solid.index()];
                     if crossing.t > beyond && crossing.t < slot.0 {
@@ -201,20 +201,20 @@ impl Scene {
         self.accel.visit(ray, |index| {
             let prim = PrimId::new(index);
             let visit = |crossing| visit(prim, crossing);
-            self.surface(prim).crossings(ray, line.as_ref(), Start::Elsewhere, visit);
+            self.surface(prim).crossings(ray, line.as_ref(), RayStart::Elsewhere, visit);
             f64::INFINITY
         });
     }
 
     /// The form of a ray for triangle tests, made once; none without meshes.
     #[inline]
-    fn line(&self, ray: &Ray) -> Option<Line> {
-        (!self.meshes.is_empty()).then(|| Line::of(ray))
+    fn line(&self, ray: &Ray) -> Option<TriangleLine> {
+        (!self.meshes.is_empty()).then(|| TriangleLine::of(ray))
     }
 }
 
 /// Whether a ray that starts on the surfaces `from` starts on this one.
 #[inline(always)]
-fn start_on(prim: PrimId, from: &On) -> Start {
-    if from.contains(prim) { Start::On } else { Start::Elsewhere }
+fn start_on(prim: PrimId, from: &On) -> RayStart {
+    if from.contains(prim) { RayStart::On } else { RayStart::Elsewhere }
 }

@@ -1,9 +1,9 @@
 //! Queries on surfaces, whether they are analytic patches or triangles of a mesh.
 
 use crate::scene::Ray;
-use crate::scene::mesh::Line;
-use crate::scene::shape::{ChartRect, Crossing, Region, Shape, Start};
-use crate::scene::{Extent, FaceId, MeshBody, Owner, Patch, PrimId, Scene, SmoothId};
+use crate::scene::mesh::TriangleLine;
+use crate::scene::shape::{ChartRect, Crossing, RayStart, Region, Shape};
+use crate::scene::{FaceId, MeshBody, Owner, Patch, PieceRange, PrimId, Scene, SmoothId};
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::Frame;
 
@@ -39,8 +39,8 @@ impl Surface<'_> {
     pub(crate) fn crossings(
         self,
         ray: &Ray,
-        line: Option<&Line>,
-        start: Start,
+        line: Option<&TriangleLine>,
+        start: RayStart,
         visit: impl FnMut(Crossing),
     ) {
         match self {
@@ -55,10 +55,15 @@ impl Surface<'_> {
 impl MeshBody {
     /// Where a line crosses a triangle; never the one that it starts on.
     #[inline]
-    fn crossing(&self, triangle: usize, line: Option<&Line>, start: Start) -> Option<Crossing> {
+    fn crossing(
+        &self,
+        triangle: usize,
+        line: Option<&TriangleLine>,
+        start: RayStart,
+    ) -> Option<Crossing> {
         match start {
-            Start::On => None,
-            Start::Elsewhere => self.mesh.crossing_of(triangle, line?),
+            RayStart::On => None,
+            RayStart::Elsewhere => self.mesh.crossing_of(triangle, line?),
         }
     }
 }
@@ -127,9 +132,9 @@ impl Scene {
     /// The analytic pieces of a face; none for a face of a mesh.
     pub fn face_patches(&self, face: FaceId) -> &[Patch] {
         match &self.faces[face.index()].extent {
-            Extent::Patches(range) => &self.patches[range.clone()],
-            Extent::Ports(range) => &self.ports[range.clone()],
-            Extent::Mesh { .. } => &[],
+            PieceRange::Patches(range) => &self.patches[range.clone()],
+            PieceRange::Ports(range) => &self.ports[range.clone()],
+            PieceRange::Mesh { .. } => &[],
         }
     }
 
@@ -198,8 +203,8 @@ impl Scene {
 
     fn mesh_face(&self, face: FaceId) -> Option<(&MeshBody, usize)> {
         match self.faces[face.index()].extent {
-            Extent::Mesh { mesh, face } => Some((&self.meshes[mesh], face)),
-            Extent::Patches(_) | Extent::Ports(_) => None,
+            PieceRange::Mesh { mesh, face } => Some((&self.meshes[mesh], face)),
+            PieceRange::Patches(_) | PieceRange::Ports(_) => None,
         }
     }
 }

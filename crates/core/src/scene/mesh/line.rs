@@ -13,14 +13,14 @@ use glam::{DVec2, DVec3};
 
 /// The line of a ray, prepared for many triangles.
 #[derive(Debug, Clone, Copy)]
-pub struct Line {
+pub struct TriangleLine {
     origin: DVec3,
     dir: DVec3,
     /// Two directions across the line; with `dir` they form a right-handed frame.
     across: [DVec3; 2],
 }
 
-impl Line {
+impl TriangleLine {
     /// The line of a ray.
     #[inline]
     pub fn of(ray: &Ray) -> Self {

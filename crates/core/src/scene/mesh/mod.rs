@@ -10,7 +10,7 @@ mod chart;
 mod line;
 mod patch;
 
-pub use line::Line;
+pub use line::TriangleLine;
 
 use crate::scene::Ray;
 use crate::scene::shape::Crossing;
@@ -32,14 +32,14 @@ pub struct Mesh {
     corner_normals: Option<Vec<[DVec3; 3]>>,
     smooth_ids: Vec<u32>,
     face_of: Vec<u32>,
-    faces: Vec<Face>,
+    faces: Vec<MeshFace>,
     /// Largest distance of vertices of a flat face from its plane, mm.
     flatness: f64,
 }
 
 /// The triangles of one material or group.
 #[derive(Debug, Clone)]
-struct Face {
+struct MeshFace {
     name: String,
     triangles: Vec<u32>,
     /// Area of the triangles up to and including each one, mm².
@@ -114,12 +114,12 @@ impl Mesh {
     /// Where the line of a ray crosses a triangle. Edges and vertices belong to all of their
     /// triangles. For many triangles make the [`Line`] once and call [`Self::crossing_of`].
     pub fn crossing(&self, triangle: usize, ray: &Ray) -> Option<Crossing> {
-        self.crossing_of(triangle, &Line::of(ray))
+        self.crossing_of(triangle, &TriangleLine::of(ray))
     }
 
     /// Where a line crosses a triangle.
     #[inline(always)]
-    pub fn crossing_of(&self, triangle: usize, line: &Line) -> Option<Crossing> {
+    pub fn crossing_of(&self, triangle: usize, line: &TriangleLine) -> Option<Crossing> {
         let corners = &self.corners[triangle];
         let toward = line.passes(corners)?;
         Some(Crossing { t: line.distance(corners, self.facet_normals[triangle]), toward })
@@ -209,10 +209,13 @@ fn weights([a, b, c]: &[DVec3; 3], facet: DVec3, point: DVec3) -> DVec3 {
     weights.max(DVec3::ZERO)
 }
 
-fn faces(mesh: &TriangleMesh, corners: &[[DVec3; 3]]) -> Vec<Face> {
-    let empty =
-        |name: &String| Face { name: name.clone(), triangles: Vec::new(), area_up_to: Vec::new() };
-    let mut faces: Vec<Face> = mesh.faces.iter().map(empty).collect();
+fn faces(mesh: &TriangleMesh, corners: &[[DVec3; 3]]) -> Vec<MeshFace> {
+    let empty = |name: &String| MeshFace {
+        name: name.clone(),
+        triangles: Vec::new(),
+        area_up_to: Vec::new(),
+    };
+    let mut faces: Vec<MeshFace> = mesh.faces.iter().map(empty).collect();
     for (triangle, face) in mesh.face_of.iter().enumerate() {
         let face = &mut faces[*face as usize];
         let before = face.area_up_to.last().copied().unwrap_or(0.0);
@@ -334,7 +337,7 @@ mod tests {
 
     /// The nearest exit from a mesh for a path inside, other than the triangle that it is on.
     fn next_exit(mesh: &Mesh, ray: &Ray, on: usize) -> Option<(usize, f64)> {
-        let line = Line::of(ray);
+        let line = TriangleLine::of(ray);
         (0..mesh.triangle_count())
             .filter(|triangle| *triangle != on)
             .filter_map(|triangle| Some((triangle, mesh.crossing_of(triangle, &line)?)))

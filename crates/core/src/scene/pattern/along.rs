@@ -2,12 +2,12 @@
 
 /// Values at positions along a face; constant before the first and after the last.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Along {
+pub struct TableAlong {
     /// Positions, mm, increasing, with their values.
     knots: Vec<[f64; 2]>,
 }
 
-impl Along {
+impl TableAlong {
     /// The same value everywhere.
     pub fn constant(value: f64) -> Self {
         Self { knots: vec![[0.0, value]] }
@@ -69,14 +69,14 @@ mod tests {
 
     #[test]
     fn values_lie_on_straight_lines_between_the_places_and_stay_outside() {
-        let along = Along::table(vec![[10.0, 1.0], [20.0, 3.0], [40.0, 2.0]]).unwrap();
+        let along = TableAlong::table(vec![[10.0, 1.0], [20.0, 3.0], [40.0, 2.0]]).unwrap();
         for (place, value) in [(0.0, 1.0), (10.0, 1.0), (15.0, 2.0), (30.0, 2.5), (50.0, 2.0)] {
             assert_eq!(along.at(place), value);
         }
         assert_eq!(along.pieces(15.0, 45.0).len(), 3);
         assert_eq!(along.clone().shifted(5.0).at(20.0), 2.0);
-        assert_eq!((along.smallest(), Along::constant(7.0).at(-3.0)), (1.0, 7.0));
-        assert_eq!(Along::table(vec![[1.0, 1.0], [1.0, 2.0]]), None);
-        assert_eq!(Along::table(Vec::new()), None);
+        assert_eq!((along.smallest(), TableAlong::constant(7.0).at(-3.0)), (1.0, 7.0));
+        assert_eq!(TableAlong::table(vec![[1.0, 1.0], [1.0, 2.0]]), None);
+        assert_eq!(TableAlong::table(Vec::new()), None);
     }
 }

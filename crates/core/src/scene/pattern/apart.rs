@@ -1,6 +1,6 @@
 //! Whether the elements of two fields on one face stay apart: every pair that could meet is tested.
 
-use crate::scene::pattern::{Columns, Field, Outline};
+use crate::scene::pattern::{Columns, ElementField, ElementOutline};
 use glam::DVec2;
 
 /// Overlap of touching elements that is accepted as rounding, as a share of their sizes, 1.
@@ -8,24 +8,24 @@ const TOUCHING: f64 = 1e-12;
 
 /// The footprint of an element on its face.
 #[derive(Debug, Clone, Copy)]
-enum Room {
+enum Footprint {
     /// A disk of some radius, mm.
     Disk(f64),
     /// A rectangle by half of its sides across and along, mm.
     Rectangle(DVec2),
 }
 
-impl Room {
-    fn of(outline: &Outline, place: f64) -> Self {
+impl Footprint {
+    fn of(outline: &ElementOutline, place: f64) -> Self {
         let half = 0.5 * outline.size(place);
         match outline {
-            Outline::Circle { .. } => Self::Disk(half.x),
-            Outline::Rectangle { .. } => Self::Rectangle(half),
+            ElementOutline::Circle { .. } => Self::Disk(half.x),
+            ElementOutline::Rectangle { .. } => Self::Rectangle(half),
             // Below a round wall a ball is wider around than along: the disk about both.
-            Outline::Relief(element) if element.cap(place).is_some() => {
+            ElementOutline::Relief(element) if element.cap(place).is_some() => {
                 Self::Disk(half.max_element())
             }
-            Outline::Relief(_) => Self::Rectangle(half),
+            ElementOutline::Relief(_) => Self::Rectangle(half),
         }
     }
 
@@ -53,20 +53,20 @@ impl Room {
     }
 }
 
-impl Field {
+impl ElementField {
     /// The middle, mm of the unrolled face, of the first element that overlaps one of another field
     /// on the same face.
     pub fn first_met(&self, other: &Self) -> Option<DVec2> {
         let rows = 0..other.rows.count();
-        let widest = rows.map(|row| Room::of(&other.outline, other.rows.place(row)).half());
+        let widest = rows.map(|row| Footprint::of(&other.outline, other.rows.place(row)).half());
         let widest = widest.fold(DVec2::ZERO, DVec2::max);
         let found = self.places().find(|(place, middle)| {
-            let own = Room::of(&self.outline, *place);
+            let own = Footprint::of(&self.outline, *place);
             let reach = own.half() + widest;
             other.near(*middle, reach).any(|(row, across)| {
                 let place = other.rows.place(row);
                 let apart = DVec2::new(across, place - middle.y);
-                own.meets(Room::of(&other.outline, place), apart)
+                own.meets(Footprint::of(&other.outline, place), apart)
             })
         });
         found.map(|(_, middle)| middle)
@@ -107,22 +107,22 @@ fn columns_between(from: f64, to: f64, pitch: f64, count: usize) -> std::ops::Ra
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::pattern::{Along, Rows};
+    use crate::scene::pattern::{RowPositions, TableAlong};
 
-    fn field(outline: Outline, first: DVec2, pitch: f64) -> Field {
-        let rows = Rows::Even { first: first.y, pitch, count: 5 };
+    fn field(outline: ElementOutline, first: DVec2, pitch: f64) -> ElementField {
+        let rows = RowPositions::Even { first: first.y, pitch, count: 5 };
         let columns = Columns { first: first.x, pitch, count: 4, shift: 0.0 };
-        Field { rows, columns, outline, period: None }
+        ElementField { rows, columns, outline, period: None }
     }
 
-    fn disks(diameter: f64) -> Outline {
-        Outline::Circle { diameter: Along::constant(diameter) }
+    fn disks(diameter: f64) -> ElementOutline {
+        ElementOutline::Circle { diameter: TableAlong::constant(diameter) }
     }
 
     #[test]
     fn fields_meet_where_their_elements_share_more_than_an_edge() {
         let own = field(disks(2.0), DVec2::ZERO, 10.0);
-        let bars = Outline::Rectangle { width: 1.0, length: 6.0 };
+        let bars = ElementOutline::Rectangle { width: 1.0, length: 6.0 };
         for (outline, from, meets) in [
             (disks(1.0), DVec2::new(1.499, 0.0), true),
             (disks(1.0), DVec2::new(1.5, 0.0), false),
@@ -142,9 +142,11 @@ mod tests {
 
     #[test]
     fn around_a_closed_face_elements_meet_over_the_seam() {
-        let at =
-            |u: f64| Field { period: Some(30.0), ..field(disks(2.0), DVec2::new(u, 0.0), 100.0) };
-        let one = |u: f64| Field { columns: Columns { count: 1, ..at(u).columns }, ..at(u) };
+        let at = |u: f64| ElementField {
+            period: Some(30.0),
+            ..field(disks(2.0), DVec2::new(u, 0.0), 100.0)
+        };
+        let one = |u: f64| ElementField { columns: Columns { count: 1, ..at(u).columns }, ..at(u) };
         assert!(one(0.5).first_met(&one(29.0)).is_some());
         assert!(one(29.0).first_met(&one(0.5)).is_some());
         assert!(one(0.5).first_met(&one(28.0)).is_none());

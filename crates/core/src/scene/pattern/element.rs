@@ -3,14 +3,14 @@
 //! Its outline on the wall is in unrolled coordinates about its middle: u across or around, v
 //! along. It knows neither its position nor its surfaces in space.
 
-use crate::scene::pattern::along::Along;
+use crate::scene::pattern::along::TableAlong;
 use glam::DVec2;
 
 /// An element with relief.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Element {
     /// Its form.
-    pub form: Form,
+    pub form: ElementForm,
     /// Whether it is sunk or raised.
     pub way: Way,
     /// Radius of the round wall that it lies on, mm; `None` for a flat one.
@@ -38,23 +38,23 @@ impl Way {
 
 /// The form of an element. Heights are depths where it goes into the solid.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Form {
+pub enum ElementForm {
     /// A part of a ball, at most half of it.
     Cap {
         /// Its width.
         size: CapSize,
         /// Extent from the wall, mm.
-        height: Along,
+        height: TableAlong,
     },
     /// Two flanks that meet in an edge across the guide.
     Wedge {
         /// Extent from the wall, mm.
-        height: Along,
+        height: TableAlong,
         /// Cotangents of the angles between the wall and its flanks, starting with the one toward
         /// the start of the guide.
         slopes: [f64; 2],
         /// Extent across the guide.
-        span: Span,
+        span: WedgeSpan,
     },
     /// Four sides that meet in a point.
     Pyramid {
@@ -63,7 +63,7 @@ pub enum Form {
         /// Length along the guide, mm.
         length: f64,
         /// Extent from the wall, mm.
-        height: Along,
+        height: TableAlong,
     },
 }
 
@@ -71,14 +71,14 @@ pub enum Form {
 #[derive(Debug, Clone, PartialEq)]
 pub enum CapSize {
     /// Radius of its sphere, mm.
-    Sphere(Along),
+    Sphere(TableAlong),
     /// Diameter of its opening in a flat wall, mm; along the guide in a round one.
-    Opening(Along),
+    Opening(TableAlong),
 }
 
 /// Extent of a wedge across the guide.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Span {
+pub enum WedgeSpan {
     /// From side to side of a face of this width, mm, or straight across a round wall.
     Through(f64),
     /// This length, mm, between its own ends.
@@ -99,7 +99,7 @@ pub struct Cap {
 }
 
 impl Cap {
-    pub(crate) fn new(size: &CapSize, height: &Along, place: f64) -> Self {
+    pub(crate) fn new(size: &CapSize, height: &TableAlong, place: f64) -> Self {
         let height = height.at(place);
         match size {
             CapSize::Sphere(radius) => {
@@ -124,25 +124,25 @@ impl Element {
     /// Extent of the elements of a row from the wall, mm.
     pub fn height(&self, place: f64) -> f64 {
         match &self.form {
-            Form::Cap { height, .. }
-            | Form::Wedge { height, .. }
-            | Form::Pyramid { height, .. } => height.at(place),
+            ElementForm::Cap { height, .. }
+            | ElementForm::Wedge { height, .. }
+            | ElementForm::Pyramid { height, .. } => height.at(place),
         }
     }
 
     /// Extent of a wedge across the guide; `None` for other elements.
-    pub fn span(&self) -> Option<Span> {
+    pub fn span(&self) -> Option<WedgeSpan> {
         match &self.form {
-            Form::Wedge { span, .. } => Some(*span),
-            Form::Cap { .. } | Form::Pyramid { .. } => None,
+            ElementForm::Wedge { span, .. } => Some(*span),
+            ElementForm::Cap { .. } | ElementForm::Pyramid { .. } => None,
         }
     }
 
     /// The cap of the elements of a row, if they are caps.
     pub fn cap(&self, place: f64) -> Option<Cap> {
         match &self.form {
-            Form::Cap { size, height } => Some(Cap::new(size, height, place)),
-            Form::Wedge { .. } | Form::Pyramid { .. } => None,
+            ElementForm::Cap { size, height } => Some(Cap::new(size, height, place)),
+            ElementForm::Wedge { .. } | ElementForm::Pyramid { .. } => None,
         }
     }
 
@@ -150,11 +150,11 @@ impl Element {
     /// round wall also their extent below it.
     pub fn size(&self, place: f64) -> DVec2 {
         match &self.form {
-            Form::Cap { .. } => {
+            ElementForm::Cap { .. } => {
                 let widest = self.half_width(place, 0.0).max(self.half_width_inside(place));
                 DVec2::new(2.0 * widest, self.length(place))
             }
-            Form::Wedge { .. } | Form::Pyramid { .. } => {
+            ElementForm::Wedge { .. } | ElementForm::Pyramid { .. } => {
                 DVec2::new(2.0 * self.half_width(place, self.edge(place)), self.length(place))
             }
         }
@@ -165,8 +165,8 @@ impl Element {
         let [one, other] = places.map(|place| self.size(place));
         let room = 0.5 * (one + other) * (1.0 - 1e-12);
         match &self.form {
-            Form::Cap { .. } => apart.length() < room.max_element(),
-            Form::Wedge { .. } | Form::Pyramid { .. } => {
+            ElementForm::Cap { .. } => apart.length() < room.max_element(),
+            ElementForm::Wedge { .. } | ElementForm::Pyramid { .. } => {
                 apart.x.abs() < room.x && apart.y.abs() < room.y
             }
         }
@@ -175,17 +175,19 @@ impl Element {
     /// Length along the guide of the footprint of an element of a row, mm.
     pub(crate) fn length(&self, place: f64) -> f64 {
         match &self.form {
-            Form::Cap { size, height } => 2.0 * Cap::new(size, height, place).rim,
-            Form::Wedge { height, slopes, .. } => height.at(place) * (slopes[0] + slopes[1]),
-            Form::Pyramid { length, .. } => *length,
+            ElementForm::Cap { size, height } => 2.0 * Cap::new(size, height, place).rim,
+            ElementForm::Wedge { height, slopes, .. } => height.at(place) * (slopes[0] + slopes[1]),
+            ElementForm::Pyramid { length, .. } => *length,
         }
     }
 
     /// Position of the edge or the top of an element of a row along the guide, from its middle, mm.
     pub fn edge(&self, place: f64) -> f64 {
         match &self.form {
-            Form::Wedge { height, slopes, .. } => 0.5 * height.at(place) * (slopes[0] - slopes[1]),
-            Form::Cap { .. } | Form::Pyramid { .. } => 0.0,
+            ElementForm::Wedge { height, slopes, .. } => {
+                0.5 * height.at(place) * (slopes[0] - slopes[1])
+            }
+            ElementForm::Cap { .. } | ElementForm::Pyramid { .. } => 0.0,
         }
     }
 
@@ -196,7 +198,7 @@ impl Element {
             return -1.0;
         }
         match &self.form {
-            Form::Cap { size, height } => {
+            ElementForm::Cap { size, height } => {
                 let cap = Cap::new(size, height, place);
                 let half = ((cap.rim - v) * (cap.rim + v)).max(0.0).sqrt();
                 match self.round {
@@ -208,17 +210,17 @@ impl Element {
                     }
                 }
             }
-            Form::Wedge { slopes, span, .. } => match (span, self.round) {
-                (Span::Ring, _) => f64::INFINITY,
-                (Span::Through(_), Some(wall)) => {
+            ElementForm::Wedge { slopes, span, .. } => match (span, self.round) {
+                (WedgeSpan::Ring, _) => f64::INFINITY,
+                (WedgeSpan::Through(_), Some(wall)) => {
                     let height = self.wedge_height(place, v, slopes);
                     2.0 * wall * (0.5 * height / wall).clamp(0.0, 1.0).sqrt().asin()
                 }
                 // Slightly more, so that rounding leaves no strip of the wall at its sides.
-                (Span::Through(width), None) => 0.5 * width * (1.0 + 1e-9),
-                (Span::Within(width), _) => 0.5 * width,
+                (WedgeSpan::Through(width), None) => 0.5 * width * (1.0 + 1e-9),
+                (WedgeSpan::Within(width), _) => 0.5 * width,
             },
-            Form::Pyramid { width, .. } => 0.5 * width,
+            ElementForm::Pyramid { width, .. } => 0.5 * width,
         }
     }
 
@@ -251,14 +253,14 @@ impl Element {
     /// middle, at a depth below the wall, mm: its cut in the sides of the guide.
     pub(crate) fn cuts_side(&self, place: f64, along: f64, depth: f64) -> bool {
         match &self.form {
-            Form::Wedge { height, slopes, .. } => {
+            ElementForm::Wedge { height, slopes, .. } => {
                 let (left, from_edge) = (height.at(place) - depth, along - self.edge(place));
                 depth >= 0.0
                     && left >= 0.0
                     && from_edge >= -left * slopes[0]
                     && from_edge <= left * slopes[1]
             }
-            Form::Cap { .. } | Form::Pyramid { .. } => false,
+            ElementForm::Cap { .. } | ElementForm::Pyramid { .. } => false,
         }
     }
 

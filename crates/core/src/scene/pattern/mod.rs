@@ -9,8 +9,8 @@ mod apart;
 pub(crate) mod element;
 mod rows;
 
-pub use crate::scene::pattern::along::Along;
-pub use rows::{Graded, Rows};
+pub use crate::scene::pattern::along::TableAlong;
+pub use rows::{Graded, RowPositions};
 
 use crate::scene::pattern::element::Element;
 use crate::scene::shape::ChartRect;
@@ -25,7 +25,7 @@ pub struct Pattern {
     /// The face it lies on.
     pub face: FaceId,
     /// Positions of its elements.
-    pub field: Field,
+    pub field: ElementField,
     /// Finish of the elements met from the front.
     pub front: FinishId,
     /// Finish of the elements met from the back.
@@ -45,7 +45,7 @@ pub struct HoleWall {
 
 /// The acting part at a point of a face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Part {
+pub enum ActingPart {
     /// The face itself.
     Face,
     /// An element of a pattern, by the pattern's number.
@@ -56,13 +56,13 @@ pub enum Part {
 
 /// Elements in rows and columns.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Field {
+pub struct ElementField {
     /// Positions of the rows.
-    pub rows: Rows,
+    pub rows: RowPositions,
     /// Positions of the elements of a row.
     pub columns: Columns,
     /// Shape of an element.
-    pub outline: Outline,
+    pub outline: ElementOutline,
     /// Circumference of a closed face, mm.
     pub period: Option<f64>,
 }
@@ -90,11 +90,11 @@ impl Columns {
 
 /// The outline of an element.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Outline {
+pub enum ElementOutline {
     /// A circle.
     Circle {
         /// Its diameter, mm, along the face.
-        diameter: Along,
+        diameter: TableAlong,
     },
     /// A rectangle.
     Rectangle {
@@ -107,7 +107,7 @@ pub enum Outline {
     Relief(Box<Element>),
 }
 
-impl Outline {
+impl ElementOutline {
     /// Width and length of the elements of a row, mm.
     pub fn size(&self, place: f64) -> DVec2 {
         match self {
@@ -153,7 +153,7 @@ impl Outline {
     }
 }
 
-impl Field {
+impl ElementField {
     /// Whether a point of the face, mm, lies in an element.
     pub fn contains(&self, at: DVec2) -> bool {
         self.element(at).is_some()
@@ -250,9 +250,9 @@ impl Pattern {
     /// The acting part at a point of the face for light that travels by `slope` across it per mm
     /// through it, mm/mm; `None` for the face itself.
     #[inline]
-    pub fn part(&self, number: usize, at: DVec2, slope: impl Fn() -> DVec2) -> Option<Part> {
+    pub fn part(&self, number: usize, at: DVec2, slope: impl Fn() -> DVec2) -> Option<ActingPart> {
         let Some(wall) = &self.wall else {
-            return self.field.contains(at).then_some(Part::Element(number));
+            return self.field.contains(at).then_some(ActingPart::Element(number));
         };
         // The face is the middle of the wall, so that a path is the same both ways. Light passes
         // where both ends of its path, and therefore the middle, are in one element.
@@ -260,7 +260,7 @@ impl Pattern {
         let half = 0.5 * wall.thickness * slope();
         let passes =
             [at - half, at + half].iter().all(|end| self.field.element(*end) == Some(middle));
-        Some(if passes { Part::Element(number) } else { Part::Bore(number) })
+        Some(if passes { ActingPart::Element(number) } else { ActingPart::Bore(number) })
     }
 }
 

@@ -1,11 +1,11 @@
 //! Rows of a pattern: lines across a face, one after the other along it. Each row is found
 //! directly, however many there are.
 
-use crate::scene::pattern::Along;
+use crate::scene::pattern::TableAlong;
 
 /// The positions of rows along a face.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Rows {
+pub enum RowPositions {
     /// At listed positions, mm, increasing.
     Listed(Vec<f64>),
     /// At equal distances.
@@ -24,13 +24,13 @@ pub enum Rows {
 /// Rows whose distance p(v) changes: row j lies where N(v) = ∫ dv/p reaches j + ½.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Graded {
-    pieces: Vec<Piece>,
+    pieces: Vec<LinearPiece>,
     count: usize,
 }
 
 /// A part of the face in which the distance is linear.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Piece {
+struct LinearPiece {
     /// Its start and end, mm.
     from: f64,
     to: f64,
@@ -41,7 +41,7 @@ struct Piece {
     number: f64,
 }
 
-impl Piece {
+impl LinearPiece {
     /// Rows between the start of the piece and a position: ∫ dv/(p + k v) = ln(1 + k v/p)/k.
     fn number_to(&self, place: f64) -> f64 {
         let way = place - self.from;
@@ -65,12 +65,12 @@ impl Piece {
 impl Graded {
     /// As many whole rows as fit between two positions, mm, at the distances of `pitch`, which are
     /// positive.
-    pub fn new(pitch: &Along, from: f64, to: f64) -> Self {
+    pub fn new(pitch: &TableAlong, from: f64, to: f64) -> Self {
         let mut number = 0.0;
         let mut pieces = Vec::new();
         for [from, to, before, after] in pitch.pieces(from, to) {
             let growth = (after - before) / (to - from);
-            let piece = Piece { from, to, pitch: before, growth, number };
+            let piece = LinearPiece { from, to, pitch: before, growth, number };
             number += piece.number_to(to);
             pieces.push(piece);
         }
@@ -93,7 +93,7 @@ impl Graded {
     }
 }
 
-impl Rows {
+impl RowPositions {
     /// Number of rows.
     pub fn count(&self) -> usize {
         match self {
@@ -149,11 +149,11 @@ mod tests {
 
     #[test]
     fn rows_of_every_kind_are_found_beside_their_places() {
-        let pitch = Along::table(vec![[0.0, 2.0], [30.0, 0.5], [50.0, 0.5]]).unwrap();
+        let pitch = TableAlong::table(vec![[0.0, 2.0], [30.0, 0.5], [50.0, 0.5]]).unwrap();
         let kinds = [
-            Rows::Listed(vec![1.0, 2.5, 7.0, 20.0, 40.0]),
-            Rows::Even { first: 0.7, pitch: 1.3, count: 30 },
-            Rows::Graded(Graded::new(&pitch, 3.0, 48.0)),
+            RowPositions::Listed(vec![1.0, 2.5, 7.0, 20.0, 40.0]),
+            RowPositions::Even { first: 0.7, pitch: 1.3, count: 30 },
+            RowPositions::Graded(Graded::new(&pitch, 3.0, 48.0)),
         ];
         for rows in kinds {
             assert!(rows.count() > 4);
@@ -172,8 +172,8 @@ mod tests {
 
     #[test]
     fn graded_rows_keep_their_distances() {
-        let pitch = Along::table(vec![[0.0, 1.0], [100.0, 4.0]]).unwrap();
-        let rows = Rows::Graded(Graded::new(&pitch, 0.0, 100.0));
+        let pitch = TableAlong::table(vec![[0.0, 1.0], [100.0, 4.0]]).unwrap();
+        let rows = RowPositions::Graded(Graded::new(&pitch, 0.0, 100.0));
         // ∫ dv/(1 + 0.03 v) = ln(4)/0.03 = 46.2
         assert_eq!(rows.count(), 46);
         for row in 0..45 {
@@ -181,7 +181,7 @@ mod tests {
             let expected = pitch.at(0.5 * (here + next));
             assert!(((next - here) / expected - 1.0).abs() < 1e-3, "{row}: {here} {next}");
         }
-        let even = Rows::Graded(Graded::new(&Along::constant(2.5), 10.0, 35.0));
+        let even = RowPositions::Graded(Graded::new(&TableAlong::constant(2.5), 10.0, 35.0));
         assert_eq!((even.count(), even.place(0), even.place(9)), (10, 11.25, 33.75));
     }
 }

@@ -4,7 +4,7 @@
 //! A guide is a body with an entry, an exit, and walls that are large compared with both. Rooms,
 //! panels and boards are not.
 
-use crate::scene::{Emitter, Extent, FaceId, Scene, SensorKind};
+use crate::scene::{Emitter, FaceId, PieceRange, Scene, SensorKind};
 use glam::DVec3;
 use lumiduct_base::math::{Aabb, Frame};
 
@@ -66,11 +66,11 @@ impl Scene {
     /// Box around a face, mm.
     pub fn face_bounds(&self, face: FaceId) -> Aabb {
         match &self.faces[face.index()].extent {
-            Extent::Patches(_) | Extent::Ports(_) => self
+            PieceRange::Patches(_) | PieceRange::Ports(_) => self
                 .face_patches(face)
                 .iter()
                 .fold(Aabb::EMPTY, |bounds, patch| bounds.union(patch.shape.bounds())),
-            Extent::Mesh { mesh, face } => {
+            PieceRange::Mesh { mesh, face } => {
                 let mesh = &self.meshes[*mesh].mesh;
                 let triangles = mesh.face_triangles(*face).iter();
                 triangles.fold(Aabb::EMPTY, |bounds, triangle| {

@@ -4,8 +4,8 @@
 //! other crosses it. That works for every kind of surface, without a formula for each.
 
 use crate::optics::Bsdf;
-use crate::scene::pattern::Part;
-use crate::scene::shape::{ChartRect, Crossing, Start};
+use crate::scene::pattern::ActingPart;
+use crate::scene::shape::{ChartRect, Crossing, RayStart};
 use crate::scene::{FaceId, PrimId, Ray, Scene, Surface};
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::Frame;
@@ -15,7 +15,7 @@ const RAYS: usize = 1200;
 
 /// The points of one face in the plane of a section.
 #[derive(Debug, Clone)]
-pub struct Outline {
+pub struct SectionOutline {
     /// The face.
     pub face: FaceId,
     /// Points in the axes of the section, mm.
@@ -24,9 +24,9 @@ pub struct Outline {
 
 impl Scene {
     /// Where every face meets the plane z = 0 of `plane`, within `window` of its axes, mm.
-    pub fn section(&self, plane: &Frame, window: ChartRect) -> Vec<Outline> {
-        let mut outlines: Vec<Outline> = (0..self.faces.len())
-            .map(|face| Outline { face: FaceId::new(face), points: Vec::new() })
+    pub fn section(&self, plane: &Frame, window: ChartRect) -> Vec<SectionOutline> {
+        let mut outlines: Vec<SectionOutline> = (0..self.faces.len())
+            .map(|face| SectionOutline { face: FaceId::new(face), points: Vec::new() })
             .collect();
         let size = window.max - window.min;
         for ray in 0..RAYS {
@@ -57,7 +57,7 @@ impl Scene {
         });
         for port in &self.ports {
             let visit = |crossing: Crossing| visit(None, port.face, crossing.t);
-            port.shape.crossings(ray, Start::Elsewhere, visit);
+            port.shape.crossings(ray, RayStart::Elsewhere, visit);
         }
     }
 
@@ -70,6 +70,6 @@ impl Scene {
             let part = pattern.part(number, patch.chart(point), || DVec2::ZERO)?;
             Some((part, &self.finishes[pattern.front.index()].bsdf))
         });
-        matches!(parts.next(), Some((Part::Element(_), Bsdf::Open)))
+        matches!(parts.next(), Some((ActingPart::Element(_), Bsdf::Open)))
     }
 }

@@ -3,7 +3,7 @@
 //! On flat walls they are in closed form. Where a ball or a saw cut meets a round wall there is
 //! none, and they are sums over strips.
 
-use crate::scene::pattern::element::{Cap, Element, Form, Span, Way};
+use crate::scene::pattern::element::{Cap, Element, ElementForm, Way, WedgeSpan};
 use crate::scene::shape::ChartRect;
 use glam::DVec2;
 use lumiduct_base::math::planar::disk_overlap;
@@ -16,13 +16,21 @@ impl Element {
     /// Area of the footprint of an element of a row on the wall, mm².
     pub fn area(&self, place: f64) -> f64 {
         match (&self.form, self.round) {
-            (Form::Cap { size, height }, None) => PI * Cap::new(size, height, place).rim.powi(2),
-            (Form::Wedge { span: Span::Through(width) | Span::Within(width), .. }, None) => {
-                width * self.length(place)
+            (ElementForm::Cap { size, height }, None) => {
+                PI * Cap::new(size, height, place).rim.powi(2)
             }
-            (Form::Wedge { span: Span::Ring, .. }, Some(wall)) => TAU * wall * self.length(place),
-            (Form::Pyramid { width, length, .. }, _) => width * length,
-            (Form::Cap { .. } | Form::Wedge { .. }, _) => {
+            (
+                ElementForm::Wedge {
+                    span: WedgeSpan::Through(width) | WedgeSpan::Within(width),
+                    ..
+                },
+                None,
+            ) => width * self.length(place),
+            (ElementForm::Wedge { span: WedgeSpan::Ring, .. }, Some(wall)) => {
+                TAU * wall * self.length(place)
+            }
+            (ElementForm::Pyramid { width, length, .. }, _) => width * length,
+            (ElementForm::Cap { .. } | ElementForm::Wedge { .. }, _) => {
                 let half = 0.5 * self.length(place);
                 self.integral(place, half, [-half, half], |v| 2.0 * self.half_width(place, v))
             }
@@ -35,10 +43,13 @@ impl Element {
         let rect = ChartRect { min: rect.min - at, max: rect.max - at };
         let half = 0.5 * self.length(place);
         match (&self.form, self.round) {
-            (Form::Cap { .. }, None) => return disk_overlap(half, &rect.corners()),
-            (Form::Cap { .. } | Form::Wedge { span: Span::Through(_), .. }, Some(_)) => {}
+            (ElementForm::Cap { .. }, None) => return disk_overlap(half, &rect.corners()),
+            (
+                ElementForm::Cap { .. } | ElementForm::Wedge { span: WedgeSpan::Through(_), .. },
+                Some(_),
+            ) => {}
             // All others have a rectangular footprint.
-            (Form::Wedge { .. } | Form::Pyramid { .. }, _) => {
+            (ElementForm::Wedge { .. } | ElementForm::Pyramid { .. }, _) => {
                 let reach = DVec2::new(self.half_width(place, self.edge(place)), half);
                 return rect.intersection(&ChartRect { min: -reach, max: reach }).area();
             }
@@ -53,11 +64,11 @@ impl Element {
     pub fn volume(&self, place: f64) -> f64 {
         match (&self.form, self.round) {
             // Archimedes' cap.
-            (Form::Cap { size, height }, None) => {
+            (ElementForm::Cap { size, height }, None) => {
                 let Cap { radius, height, .. } = Cap::new(size, height, place);
                 PI * height * height * (radius - height / 3.0)
             }
-            (Form::Cap { size, height }, Some(wall)) => {
+            (ElementForm::Cap { size, height }, Some(wall)) => {
                 let cap = Cap::new(size, height, place);
                 let c = cap.center_from_axis(wall, self.way);
                 self.integral(place, cap.rim, [-cap.rim, cap.rim], |v| {
@@ -69,15 +80,19 @@ impl Element {
                     }
                 })
             }
-            (Form::Wedge { span: Span::Through(width) | Span::Within(width), .. }, None) => {
-                0.5 * width * self.height(place) * self.length(place)
-            }
+            (
+                ElementForm::Wedge {
+                    span: WedgeSpan::Through(width) | WedgeSpan::Within(width),
+                    ..
+                },
+                None,
+            ) => 0.5 * width * self.height(place) * self.length(place),
             // Pappus: the centre of the triangle lies a third of its height from the wall.
-            (Form::Wedge { span: Span::Ring, .. }, Some(wall)) => {
+            (ElementForm::Wedge { span: WedgeSpan::Ring, .. }, Some(wall)) => {
                 let (height, length) = (self.height(place), self.length(place));
                 PI * (wall + self.way.sign() * height / 3.0) * height * length
             }
-            (Form::Wedge { .. }, _) => {
+            (ElementForm::Wedge { .. }, _) => {
                 let wall = self.round.unwrap_or(f64::INFINITY);
                 let (height, length) = (self.height(place), self.length(place));
                 // Chords times the remaining length at their depth.
@@ -88,7 +103,9 @@ impl Element {
                     chord * length * (1.0 - depth / height)
                 })
             }
-            (Form::Pyramid { width, length, .. }, _) => width * length * self.height(place) / 3.0,
+            (ElementForm::Pyramid { width, length, .. }, _) => {
+                width * length * self.height(place) / 3.0
+            }
         }
     }
 

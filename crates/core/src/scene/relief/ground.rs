@@ -5,7 +5,7 @@ use lumiduct_base::math::Frame;
 
 /// A flat wall, or a round one all around.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Ground {
+pub struct ReliefWall {
     /// For a flat wall, the point (0, 0) of its chart; for a round one, the point of its axis at v
     /// = 0. mm.
     pub(crate) origin: DVec3,
@@ -43,7 +43,7 @@ impl Site {
     }
 }
 
-impl Ground {
+impl ReliefWall {
     /// Whether the wall is flat.
     pub fn is_flat(&self) -> bool {
         self.radius.is_none()

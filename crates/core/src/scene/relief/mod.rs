@@ -11,11 +11,11 @@ pub(super) mod surfaces;
 #[cfg(test)]
 mod tests;
 
-pub use crate::scene::pattern::element::{Cap, CapSize, Element, Form, Span, Way};
-pub use ground::{Ground, Site};
+pub use crate::scene::pattern::element::{Cap, CapSize, Element, ElementForm, Way, WedgeSpan};
+pub use ground::{ReliefWall, Site};
 
 use crate::scene::FaceId;
-use crate::scene::pattern::{Field, Outline};
+use crate::scene::pattern::{ElementField, ElementOutline};
 use crate::scene::shape::ChartRect;
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::planar::{clip, edges, signed_area};
@@ -30,11 +30,11 @@ pub struct Relief {
     /// The wall.
     pub wall: FaceId,
     /// Positions of its elements.
-    pub field: Field,
+    pub field: ElementField,
     /// Shape of an element.
     pub element: Element,
     /// The wall in space.
-    pub ground: Ground,
+    pub ground: ReliefWall,
     /// How far its longest element extends along the guide, mm.
     reach: f64,
 }
@@ -43,12 +43,12 @@ pub struct Relief {
 #[derive(Debug, Clone)]
 pub struct Trim {
     /// The conditions.
-    pub(super) cuts: Vec<Cut>,
+    pub(super) cuts: Vec<PatchCut>,
 }
 
 /// A condition for the points of a patch.
 #[derive(Debug, Clone)]
-pub(super) enum Cut {
+pub(super) enum PatchCut {
     /// A wall, where no element replaces it.
     Wall(Arc<Relief>),
     /// A side of the guide, where no groove of another wall cuts it.
@@ -56,12 +56,12 @@ pub(super) enum Cut {
         /// The grooves.
         relief: Arc<Relief>,
         /// The side.
-        side: Ground,
+        side: ReliefWall,
     },
     /// A surface of an element on a round wall, on its side of the wall.
     Round {
         /// The wall.
-        ground: Ground,
+        ground: ReliefWall,
         /// The side on which the element is.
         way: Way,
         /// Allowed reach beyond the wall for rounding, mm.
@@ -78,8 +78,8 @@ impl Trim {
     /// Whether it limits a surface of an element on a round wall.
     pub(super) fn is_of_element(&self) -> bool {
         self.cuts.iter().any(|cut| match cut {
-            Cut::Round { .. } => true,
-            Cut::Wall(_) | Cut::Side { .. } => false,
+            PatchCut::Round { .. } => true,
+            PatchCut::Wall(_) | PatchCut::Side { .. } => false,
         })
     }
 
@@ -88,15 +88,15 @@ impl Trim {
         self.cuts
             .iter()
             .map(|cut| match cut {
-                Cut::Wall(relief) => relief.area_in(rect),
-                Cut::Side { relief, side } => relief.side_area_in(side, rect),
-                Cut::Round { .. } => 0.0,
+                PatchCut::Wall(relief) => relief.area_in(rect),
+                PatchCut::Side { relief, side } => relief.side_area_in(side, rect),
+                PatchCut::Round { .. } => 0.0,
             })
             .sum()
     }
 }
 
-impl Cut {
+impl PatchCut {
     fn keeps(&self, p: DVec3) -> bool {
         match self {
             Self::Wall(relief) => !relief.field.contains(relief.ground.unroll(p).truncate()),
@@ -114,8 +114,15 @@ impl Cut {
 
 impl Relief {
     /// A relief of `element`s in the rows and columns of a field on a wall.
-    pub fn new(name: String, wall: FaceId, element: Element, field: Field, ground: Ground) -> Self {
-        let field = Field { outline: Outline::Relief(Box::new(element.clone())), ..field };
+    pub fn new(
+        name: String,
+        wall: FaceId,
+        element: Element,
+        field: ElementField,
+        ground: ReliefWall,
+    ) -> Self {
+        let field =
+            ElementField { outline: ElementOutline::Relief(Box::new(element.clone())), ..field };
         let rows = (0..field.rows.count()).map(|row| field.rows.place(row));
         let longest = rows.map(|place| element.size(place).y).fold(0.0, f64::max);
         // Slightly more, for rows that end at the edge of the query.
@@ -160,7 +167,7 @@ impl Relief {
 
     /// Area that grooves remove from the part of a side of the guide whose chart lies in `rect`,
     /// mm².
-    fn side_area_in(&self, side: &Ground, rect: ChartRect) -> f64 {
+    fn side_area_in(&self, side: &ReliefWall, rect: ChartRect) -> f64 {
         let mut cell = rect.corners().map(|corner| {
             let local = self.ground.unroll(side.site(corner).origin);
             DVec2::new(local.y, local.z)
@@ -186,14 +193,14 @@ impl Relief {
 
     /// Area of the footprints of the elements in the part of the wall in `rect`, mm².
     fn area_in(&self, rect: ChartRect) -> f64 {
-        let Field { rows, columns, period, .. } = &self.field;
+        let ElementField { rows, columns, period, .. } = &self.field;
         // Around a closed wall an element may lie on both sides of the seam.
         let turns = period.map_or([0.0; 3], |period| [0.0, -period, period]);
         let turns = &turns[..if period.is_some() { 3 } else { 1 }];
         let mut sum = 0.0;
         for row in self.rows_in(rect.min.y, rect.max.y) {
             let place = rows.place(row);
-            if self.element.span() == Some(Span::Ring) {
+            if self.element.span() == Some(WedgeSpan::Ring) {
                 let at = DVec2::new(0.5 * (rect.min.x + rect.max.x), place);
                 sum += self.element.area_in(place, at, rect);
                 continue;

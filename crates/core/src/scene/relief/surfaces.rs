@@ -2,8 +2,8 @@
 //!
 //! Surfaces that meet in an edge overlap there by a few units in the last place, so that rounding leaves no gap.
 
-use crate::scene::pattern::element::{Cap, Element, Form, Span, Way};
-use crate::scene::relief::ground::{Ground, Site};
+use crate::scene::pattern::element::{Cap, Element, ElementForm, Way, WedgeSpan};
+use crate::scene::relief::ground::{ReliefWall, Site};
 use crate::scene::shape::{Cone, Flat, Region, Shape, Sphere};
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::planar::signed_area;
@@ -27,7 +27,7 @@ impl Made {
 pub(crate) fn surfaces(
     element: &Element,
     place: f64,
-    ground: &Ground,
+    ground: &ReliefWall,
     at: DVec2,
     lap: f64,
 ) -> Vec<Made> {
@@ -35,17 +35,17 @@ pub(crate) fn surfaces(
     let height = element.height(place);
     match (&element.form, element.cap(place)) {
         (_, Some(cap)) => vec![spherical(element, &cap, &site, lap)],
-        (Form::Wedge { slopes, span: Span::Ring, .. }, _) => {
+        (ElementForm::Wedge { slopes, span: WedgeSpan::Ring, .. }, _) => {
             let radius = element.round.unwrap_or(0.0);
             rings(radius, height, slopes, element.way, &site, lap)
         }
-        (Form::Wedge { slopes, span, .. }, _) => {
-            wedge(element, Wedge { height, slopes: *slopes, span: *span }, &site, lap)
+        (ElementForm::Wedge { slopes, span, .. }, _) => {
+            wedge(element, ReliefWedge { height, slopes: *slopes, span: *span }, &site, lap)
         }
-        (Form::Pyramid { width, length, .. }, _) => {
+        (ElementForm::Pyramid { width, length, .. }, _) => {
             pyramid(DVec2::new(*width, *length), height, element.way, &site, lap)
         }
-        (Form::Cap { .. }, None) => Vec::new(),
+        (ElementForm::Cap { .. }, None) => Vec::new(),
     }
 }
 
@@ -70,13 +70,13 @@ fn spherical(element: &Element, cap: &Cap, site: &Site, lap: f64) -> Made {
 
 /// A wedge of a certain height, mm.
 #[derive(Debug, Clone, Copy)]
-struct Wedge {
+struct ReliefWedge {
     height: f64,
     slopes: [f64; 2],
-    span: Span,
+    span: WedgeSpan,
 }
 
-impl Wedge {
+impl ReliefWedge {
     /// Positions of its two feet along the guide and of its edge, from its middle, mm.
     fn feet_and_edge(&self) -> ([f64; 2], f64) {
         let [before, after] = self.slopes.map(|slope| slope * self.height);
@@ -86,16 +86,16 @@ impl Wedge {
 }
 
 /// The flanks of a wedge and, unless it goes through, its ends.
-fn wedge(element: &Element, wedge: Wedge, site: &Site, lap: f64) -> Vec<Made> {
+fn wedge(element: &Element, wedge: ReliefWedge, site: &Site, lap: f64) -> Vec<Made> {
     let sign = element.way.sign();
     let (feet, edge) = wedge.feet_and_edge();
     let half = match (wedge.span, element.round) {
         // Half of the chord at its depth.
-        (Span::Through(_) | Span::Ring, Some(round)) => {
+        (WedgeSpan::Through(_) | WedgeSpan::Ring, Some(round)) => {
             (wedge.height * (2.0 * round - wedge.height)).max(0.0).sqrt()
         }
-        (Span::Through(width) | Span::Within(width), _) => 0.5 * width,
-        (Span::Ring, None) => return Vec::new(),
+        (WedgeSpan::Through(width) | WedgeSpan::Within(width), _) => 0.5 * width,
+        (WedgeSpan::Ring, None) => return Vec::new(),
     };
     let is_trimmed = element.round.is_some();
     let mut made: Vec<Made> = [0, 1]
@@ -117,8 +117,8 @@ fn wedge(element: &Element, wedge: Wedge, site: &Site, lap: f64) -> Vec<Made> {
         })
         .into();
     let has_ends = match (wedge.span, element.way) {
-        (Span::Through(_), Way::Into) | (Span::Ring, _) => false,
-        (Span::Through(_), Way::OutOf) | (Span::Within(_), _) => true,
+        (WedgeSpan::Through(_), Way::Into) | (WedgeSpan::Ring, _) => false,
+        (WedgeSpan::Through(_), Way::OutOf) | (WedgeSpan::Within(_), _) => true,
     };
     if has_ends {
         for side in [-1.0, 1.0] {
@@ -175,7 +175,7 @@ fn rings(
     site: &Site,
     lap: f64,
 ) -> Vec<Made> {
-    let wedge = Wedge { height, slopes: *slopes, span: Span::Ring };
+    let wedge = ReliefWedge { height, slopes: *slopes, span: WedgeSpan::Ring };
     let (feet, edge) = wedge.feet_and_edge();
     let end = radius + way.sign() * height;
     let axis = |along: f64, z: DVec3| Site::frame(site.at(0.0, along, -radius), z, site.out);

@@ -1,10 +1,10 @@
 use super::*;
 use crate::optics::Medium;
 use crate::rng::{Dimension, Sampler};
-use crate::scene::pattern::{Along, Columns, Rows};
-use crate::scene::shape::{Flat, Region, Shape, Start};
+use crate::scene::pattern::{Columns, RowPositions, TableAlong};
+use crate::scene::shape::{Flat, RayStart, Region, Shape};
 use crate::scene::{
-    Accel, Builder, FaceSpec, Inside, On, Owner, Piece, PrimId, Ray, Scene, Solid, SolidId,
+    Accel, Builder, FacePiece, FaceSpec, Inside, On, Owner, PrimId, Ray, Scene, Solid, SolidId,
 };
 use lumiduct_base::math::{Aabb, Frame, uniform_sphere};
 use lumiduct_base::units::FluxUnit;
@@ -14,12 +14,16 @@ use std::f64::consts::PI;
 const HALF: DVec3 = DVec3::new(10.0, 10.0, 1.0);
 
 fn cap(radius: f64, height: f64, way: Way, round: Option<f64>) -> Element {
-    let size = CapSize::Sphere(Along::constant(radius));
-    Element { form: Form::Cap { size, height: Along::constant(height) }, way, round }
+    let size = CapSize::Sphere(TableAlong::constant(radius));
+    Element { form: ElementForm::Cap { size, height: TableAlong::constant(height) }, way, round }
 }
 
-fn wedge(height: f64, slopes: [f64; 2], span: Span, way: Way, round: Option<f64>) -> Element {
-    Element { form: Form::Wedge { height: Along::constant(height), slopes, span }, way, round }
+fn wedge(height: f64, slopes: [f64; 2], span: WedgeSpan, way: Way, round: Option<f64>) -> Element {
+    Element {
+        form: ElementForm::Wedge { height: TableAlong::constant(height), slopes, span },
+        way,
+        round,
+    }
 }
 
 /// A slab about the origin with a relief on its upper wall, 20 x 20 elements 1 mm apart.
@@ -43,16 +47,16 @@ fn slab(element: Element) -> Scene {
                 owner,
                 front: None,
                 back: None,
-                pieces: vec![Piece::whole(shape)],
+                pieces: vec![FacePiece::whole(shape)],
             }));
         }
     }
     let wall = walls[5];
-    let ground = Ground::of(&builder.scene().face_patches(wall)[0]).unwrap();
-    let field = Field {
-        rows: Rows::Even { first: -9.5, pitch: 1.0, count: 20 },
+    let ground = ReliefWall::of(&builder.scene().face_patches(wall)[0]).unwrap();
+    let field = ElementField {
+        rows: RowPositions::Even { first: -9.5, pitch: 1.0, count: 20 },
         columns: Columns { first: -9.5, pitch: 1.0, count: 20, shift: 0.0 },
-        outline: Outline::Relief(Box::new(element.clone())),
+        outline: ElementOutline::Relief(Box::new(element.clone())),
         period: None,
     };
     let relief = Relief::new("slab.relief".into(), wall, element, field, ground);
@@ -61,7 +65,7 @@ fn slab(element: Element) -> Scene {
 }
 
 fn slabs() -> Vec<Scene> {
-    let within = Span::Within(0.9);
+    let within = WedgeSpan::Within(0.9);
     vec![
         slab(cap(0.5, 0.4, Way::Into, None)),
         slab(cap(0.5, 0.5, Way::OutOf, None)),
@@ -139,7 +143,7 @@ fn walls_and_elements_add_up_to_the_closed_forms() {
     assert!((caps - n * 2.0 * PI * 0.5 * 0.4).abs() < 1e-9, "{caps}");
     assert!((volume - (whole - n * PI * 0.16 * (0.5 - 0.4 / 3.0))).abs() < 1e-9, "{volume}");
     let (wall, flanks, volume) =
-        areas(&slab(wedge(0.3, [1.0, 1.5], Span::Within(0.9), Way::OutOf, None)));
+        areas(&slab(wedge(0.3, [1.0, 1.5], WedgeSpan::Within(0.9), Way::OutOf, None)));
     assert!((wall - (400.0 - n * 0.75 * 0.9)).abs() < 1e-9, "{wall}");
     let slants = 0.3 * (2f64.sqrt() + 3.25f64.sqrt());
     assert!((flanks - n * (0.9 * slants + 0.75 * 0.3)).abs() < 1e-8, "{flanks}");
@@ -162,7 +166,7 @@ fn on_a_very_large_rod_an_element_takes_what_it_takes_of_a_plane() {
 
 #[test]
 fn rows_may_touch_but_not_overlap() {
-    let groove = wedge(0.5, [1.0, 1.0], Span::Through(4.0), Way::Into, None);
+    let groove = wedge(0.5, [1.0, 1.0], WedgeSpan::Through(4.0), Way::Into, None);
     assert!(!groove.overlap([0.0, 1.0], DVec2::new(0.0, 1.0)));
     assert!(groove.overlap([0.0, 0.999], DVec2::new(0.0, 0.999)));
     // A deep dimple in a rod is wider inside than on the wall.
@@ -173,7 +177,7 @@ fn rows_may_touch_but_not_overlap() {
 
 #[test]
 fn a_ray_on_the_rim_of_an_element_never_slips_between_it_and_the_wall() {
-    let scene = slab(wedge(0.25, [1.0, 1.0], Span::Within(1.0), Way::Into, None));
+    let scene = slab(wedge(0.25, [1.0, 1.0], WedgeSpan::Within(1.0), Way::Into, None));
     let inside: Inside = [SolidId::new(0)].into_iter().collect();
     for index in 0..4000u32 {
         // Straight up and at a slant into the rims at v = -9.75, ..., none of which is exact.
@@ -185,7 +189,7 @@ fn a_ray_on_the_rim_of_an_element_never_slips_between_it_and_the_wall() {
         assert!((hits.distance() - (target - from).length()).abs() < 1e-9, "{target}");
         let mut around = 0;
         for patch in &scene.patches {
-            patch.crossings(&ray, Start::Elsewhere, |_| around += 1);
+            patch.crossings(&ray, RayStart::Elsewhere, |_| around += 1);
         }
         assert!(around >= 2, "{around}");
     }

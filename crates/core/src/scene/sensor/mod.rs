@@ -59,7 +59,7 @@ pub struct SurfaceSensor {
     /// Whether they are faces of the scene or a port in free space.
     pub place: Place,
     /// Light that arrives, or light that leaves.
-    pub counts: Counts,
+    pub counts: CountedLight,
     /// On which sides.
     pub sides: Sides,
     /// Which of the passages of a path count.
@@ -125,7 +125,7 @@ pub enum Place {
 
 /// The light that counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Counts {
+pub enum CountedLight {
     /// Light before the interface acts.
     Incident,
     /// Light after it: transmitted and reflected.
@@ -146,10 +146,10 @@ pub enum Sides {
 impl Sides {
     /// Whether light travelling `toward` a side counts, arriving (it comes from the opposite side) or leaving.
     #[inline]
-    pub fn include(self, counts: Counts, toward: Toward) -> bool {
+    pub fn include(self, counts: CountedLight, toward: Toward) -> bool {
         let front = match counts {
-            Counts::Incident => toward == Toward::Back,
-            Counts::Leaving => toward == Toward::Front,
+            CountedLight::Incident => toward == Toward::Back,
+            CountedLight::Leaving => toward == Toward::Front,
         };
         match self {
             Self::Front => front,

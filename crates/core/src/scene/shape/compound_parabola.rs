@@ -2,7 +2,7 @@
 
 use crate::scene::Ray;
 use crate::scene::shape::support::{across, box_by_reach};
-use crate::scene::shape::{ChartRect, Crossing, Start, Toward};
+use crate::scene::shape::{ChartRect, Crossing, RayStart, Toward};
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::{Aabb, Frame, bracketed_root, convex_roots};
 use std::f64::consts::{PI, TAU};
@@ -25,7 +25,7 @@ pub struct CompoundParabola {
 }
 
 /// A line in the frame of a concentrator.
-struct Line {
+struct LocalLine {
     from: DVec3,
     dir: DVec3,
 }
@@ -103,19 +103,19 @@ impl CompoundParabola {
         })
     }
 
-    pub(super) fn crossings(&self, ray: &Ray, start: Start, mut visit: impl FnMut(Crossing)) {
+    pub(super) fn crossings(&self, ray: &Ray, start: RayStart, mut visit: impl FnMut(Crossing)) {
         let dir = self.frame.to_local(ray.dir());
         let from = self.frame.point_to_local(ray.origin());
         match start {
-            Start::On => {
-                if let Some(crossing) = self.other_from_surface(&Line { from, dir }) {
+            RayStart::On => {
+                if let Some(crossing) = self.other_from_surface(&LocalLine { from, dir }) {
                     visit(crossing);
                 }
             }
-            Start::Elsewhere => {
+            RayStart::Elsewhere => {
                 // From the point nearest to the middle: from far away, differences lose digits.
                 let shift = (0.5 * self.length * DVec3::Z - from).dot(dir);
-                let line = Line { from: from + shift * dir, dir };
+                let line = LocalLine { from: from + shift * dir, dir };
                 let Some([lo, hi]) = self.between_ends(&line) else { return };
                 let [enter, leave] = convex_roots(lo, hi, |t| self.implicit(&line, t));
                 for (t, toward) in [(enter, Toward::Back), (leave, Toward::Front)] {
@@ -128,7 +128,7 @@ impl CompoundParabola {
     }
 
     /// The interval of a line between the planes of the two ends, bounded by a sphere around the wall.
-    fn between_ends(&self, line: &Line) -> Option<[f64; 2]> {
+    fn between_ends(&self, line: &LocalLine) -> Option<[f64; 2]> {
         let half_length = 0.5 * self.length;
         let from_middle = line.from - half_length * DVec3::Z;
         let middle = -from_middle.dot(line.dir);
@@ -145,7 +145,7 @@ impl CompoundParabola {
         (lo < hi).then_some([lo, hi])
     }
 
-    fn meridian(&self, line: &Line, t: f64) -> Meridian {
+    fn meridian(&self, line: &LocalLine, t: f64) -> Meridian {
         let p = line.from + t * line.dir;
         let radius = p.truncate().length();
         // On the axis any slope between those of both sides is valid.
@@ -164,7 +164,7 @@ impl CompoundParabola {
     ///
     /// That is eq. (r cosθ + z sinθ)² + 2a'(1+sinθ)² r - 2a' cosθ (2+sinθ) z - a'²(1+sinθ)(3+sinθ) of Welford &
     /// Winston. For z >= 0 it is convex along every line, as r is, and x, which is positive: no quartic is needed.
-    fn implicit(&self, line: &Line, t: f64) -> (f64, f64) {
+    fn implicit(&self, line: &LocalLine, t: f64) -> (f64, f64) {
         let at = self.meridian(line, t);
         let x_slope = at.radius_slope * self.cos + line.dir.z * self.sin;
         let y_slope = line.dir.z * self.cos - at.radius_slope * self.sin;
@@ -178,7 +178,7 @@ impl CompoundParabola {
     ///
     /// (G(t) - G(0)) / t, written without that difference, has no root at the start, and increases,
     /// as G is convex.
-    fn other_from_surface(&self, line: &Line) -> Option<Crossing> {
+    fn other_from_surface(&self, line: &LocalLine) -> Option<Crossing> {
         let start = self.meridian(line, 0.0);
         let across_dir = line.dir.truncate();
         let along = line.from.truncate().dot(across_dir);
@@ -335,7 +335,7 @@ mod tests {
         for i in 1..50 {
             let x = -large + 2.0 * large * f64::from(i) / 50.0;
             let ray = Ray::new(frame.point_to_world(DVec3::new(x, 0.0, length)), dir);
-            let hit = *crossings_of(&shape, &ray, Start::Elsewhere).last().unwrap();
+            let hit = *crossings_of(&shape, &ray, RayStart::Elsewhere).last().unwrap();
             assert_eq!(hit.toward, Toward::Front);
             let p = ray.at(hit.t);
             let normal = shape.normal(p);

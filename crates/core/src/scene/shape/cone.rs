@@ -2,7 +2,7 @@
 
 use crate::scene::Ray;
 use crate::scene::shape::wedge::{Wedge, arc_bounds, azimuth, point_on_circle, turn};
-use crate::scene::shape::{ChartRect, Crossing, Start, Toward};
+use crate::scene::shape::{ChartRect, Crossing, RayStart, Toward};
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::{Aabb, Frame, quadratic};
 
@@ -59,7 +59,7 @@ impl Cone {
     /// difference of the two sides points outward on the nappe w > 0, which is the only one with z
     /// in [0, length].
     #[inline]
-    pub(super) fn crossings(&self, ray: &Ray, start: Start, mut visit: impl FnMut(Crossing)) {
+    pub(super) fn crossings(&self, ray: &Ray, start: RayStart, mut visit: impl FnMut(Crossing)) {
         let axis = self.frame.z;
         let from = ray.origin() - self.frame.origin;
         let (along_origin, along_dir) = (from.dot(axis), ray.dir().dot(axis));
@@ -84,11 +84,11 @@ impl Cone {
         };
         match start {
             // The constant term is 0: the other root is -2b/a, where the slope of the quadratic, a t + b, is -b.
-            Start::On => {
+            RayStart::On => {
                 let t = -2.0 * half_b / a;
                 offer(t, if half_b < 0.0 { self.leaving } else { self.leaving.opposite() });
             }
-            Start::Elsewhere => {
+            RayStart::Elsewhere => {
                 if a == 0.0 && half_b == 0.0 {
                     return;
                 }
@@ -176,7 +176,7 @@ mod tests {
         Frame::from_axis(DVec3::new(0.4, -0.2, 1.0), DVec3::new(0.2, -0.5, 0.6))
     }
 
-    fn crossings(cone: &Cone, ray: &Ray, start: Start) -> Vec<Crossing> {
+    fn crossings(cone: &Cone, ray: &Ray, start: RayStart) -> Vec<Crossing> {
         let mut found = Vec::new();
         cone.crossings(ray, start, |crossing| found.push(crossing));
         found.sort_by(|a, b| a.t.total_cmp(&b.t));
@@ -202,13 +202,13 @@ mod tests {
                 let ray = Ray::new(p, q - p);
                 prop_assume!(cone.normal(p).dot(ray.dir()).abs() > 1e-3);
                 prop_assume!(cone.normal(q).dot(ray.dir()).abs() > 1e-3);
-                let from_outside = crossings(&cone, &ray.advanced(-7.0), Start::Elsewhere);
+                let from_outside = crossings(&cone, &ray.advanced(-7.0), RayStart::Elsewhere);
                 prop_assert_eq!(from_outside.len(), 2);
                 for (crossing, point) in from_outside.iter().zip([p, q]) {
                     prop_assert!((ray.at(crossing.t - 7.0) - point).length() < 1e-9);
                     prop_assert_eq!(crossing.toward, Toward::of(ray.dir(), cone.normal(point)));
                 }
-                let on = crossings(&cone, &ray, Start::On);
+                let on = crossings(&cone, &ray, RayStart::On);
                 prop_assert_eq!(on.len(), 1);
                 prop_assert!((ray.at(on[0].t) - q).length() < 1e-9);
                 prop_assert_eq!(on[0].toward, from_outside[1].toward);
@@ -221,13 +221,13 @@ mod tests {
         let cone = Cone::new(Frame::WORLD, 2.0, 0.25, 1.75);
         // Slope -1: this ray is parallel to the generator through (2, 0, 0).
         let ray = Ray::new(DVec3::new(1.0, 0.0, 0.0), DVec3::new(-1.0, 0.0, 1.0));
-        let found = crossings(&cone, &ray, Start::Elsewhere);
+        let found = crossings(&cone, &ray, RayStart::Elsewhere);
         assert_eq!(found.len(), 1, "{found:?}");
         assert!((ray.at(found[0].t) - DVec3::new(-0.5, 0.0, 1.5)).length() < 1e-14);
         assert_eq!(found[0].toward, Toward::Front);
         // Beyond the apex, z > 2, lies the other nappe; the wall ends before it.
         let across = Ray::new(DVec3::new(-9.0, 0.0, 3.0), DVec3::X);
-        assert!(crossings(&cone, &across, Start::Elsewhere).is_empty());
+        assert!(crossings(&cone, &across, RayStart::Elsewhere).is_empty());
     }
 
     #[test]

@@ -36,7 +36,7 @@ use lumiduct_base::math::Aabb;
 
 /// Whether a ray starts on the surface under test.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Start {
+pub enum RayStart {
     /// The origin is elsewhere: every root counts.
     Elsewhere,
     /// The origin lies on this surface: the root at the origin does not count.
@@ -54,7 +54,7 @@ pub struct Crossing {
 
 /// The crossings of a ray that matter to the caller.
 #[derive(Debug, Clone, Copy)]
-pub struct Wanted {
+pub struct CrossingQuery {
     /// Only crossings in this direction.
     pub toward: Option<Toward>,
     /// Smallest distance along the ray, mm.
@@ -63,7 +63,7 @@ pub struct Wanted {
     pub max: f64,
 }
 
-impl Wanted {
+impl CrossingQuery {
     /// Whether a crossing matters.
     #[inline]
     pub fn includes(&self, crossing: &Crossing) -> bool {
@@ -202,7 +202,7 @@ impl Shape {
 
     /// Calls `visit` for every crossing of the ray's whole line with the surface, in any order.
     #[inline]
-    pub fn crossings(&self, ray: &Ray, start: Start, visit: impl FnMut(Crossing)) {
+    pub fn crossings(&self, ray: &Ray, start: RayStart, visit: impl FnMut(Crossing)) {
         match self {
             Self::Flat(shape) => shape.crossings(ray, start, visit),
             Self::Cylinder(shape) => shape.crossings(ray, start, visit),
@@ -218,7 +218,12 @@ impl Shape {
     /// The first crossing of the ray's line that is `wanted`. Planes and cylinders, which are most
     /// of all surfaces, compute it faster than a list of all crossings.
     #[inline(always)]
-    pub fn first_crossing(&self, ray: &Ray, start: Start, wanted: &Wanted) -> Option<Crossing> {
+    pub fn first_crossing(
+        &self,
+        ray: &Ray,
+        start: RayStart,
+        wanted: &CrossingQuery,
+    ) -> Option<Crossing> {
         match self {
             Self::Flat(shape) => shape.first_crossing(ray, start, wanted),
             Self::Cylinder(shape) => shape.first_crossing(ray, start, wanted),
@@ -232,7 +237,7 @@ impl Shape {
     }
 
     #[inline(never)]
-    fn first_of_all(&self, ray: &Ray, start: Start, wanted: &Wanted) -> Option<Crossing> {
+    fn first_of_all(&self, ray: &Ray, start: RayStart, wanted: &CrossingQuery) -> Option<Crossing> {
         let mut first: Option<Crossing> = None;
         self.crossings(ray, start, |crossing| {
             if wanted.includes(&crossing) && first.is_none_or(|first| crossing.t < first.t) {

@@ -2,7 +2,7 @@
 
 use crate::scene::Ray;
 use crate::scene::shape::support::box_by_reach;
-use crate::scene::shape::{ChartRect, Crossing, Start, Toward};
+use crate::scene::shape::{ChartRect, Crossing, RayStart, Toward};
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::{Aabb, Frame, bracketed_root, quadratic};
 
@@ -47,7 +47,7 @@ impl ParabolicCylinder {
     }
 
     #[inline]
-    pub(super) fn crossings(&self, ray: &Ray, start: Start, mut visit: impl FnMut(Crossing)) {
+    pub(super) fn crossings(&self, ray: &Ray, start: RayStart, mut visit: impl FnMut(Crossing)) {
         let from = self.frame.point_to_local(ray.origin());
         let dir = self.frame.to_local(ray.dir());
         let a = dir.x * dir.x;
@@ -63,12 +63,12 @@ impl ParabolicCylinder {
         };
         match start {
             // On the surface c = 0. A ray in a plane x = constant has its other root at infinity.
-            Start::On => {
+            RayStart::On => {
                 let t = -2.0 * half_b(from) / a;
                 // The further root leaves the concave side, which is the front.
                 offer(t, if t > 0.0 { Toward::Back } else { Toward::Front });
             }
-            Start::Elsewhere => {
+            RayStart::Elsewhere => {
                 // From the point nearest to the vertex line: from far away, x² - 4fz loses digits.
                 let across = DVec2::new(dir.x, dir.z);
                 let shift = -DVec2::new(from.x, from.z).dot(across) / across.length_squared();
@@ -179,7 +179,7 @@ mod tests {
         let shape = Shape::ParabolicCylinder(shape);
         for i in 0..50 {
             let ray = Ray::new(DVec3::new(-4.95 + 0.2 * f64::from(i), 1.0, 9.0), DVec3::NEG_Z);
-            let found = crossings_of(&shape, &ray, Start::Elsewhere);
+            let found = crossings_of(&shape, &ray, RayStart::Elsewhere);
             assert_eq!(found.len(), 1);
             assert_eq!(found[0].toward, Toward::Back);
             let p = ray.at(found[0].t);
@@ -188,11 +188,11 @@ mod tests {
             let reflected = ray.dir() - 2.0 * ray.dir().dot(normal) * normal;
             let to_focus = (DVec3::new(0.0, 1.0, 2.0) - p).normalize();
             assert!((reflected - to_focus).length() < 1e-14);
-            assert!(crossings_of(&shape, &Ray::new(p, DVec3::Z), Start::On).is_empty());
+            assert!(crossings_of(&shape, &Ray::new(p, DVec3::Z), RayStart::On).is_empty());
         }
         let along = Ray::new(DVec3::new(0.0, -90.0, 0.0), DVec3::Y);
-        assert!(crossings_of(&shape, &along, Start::Elsewhere).is_empty());
-        assert!(crossings_of(&shape, &along, Start::On).is_empty());
+        assert!(crossings_of(&shape, &along, RayStart::Elsewhere).is_empty());
+        assert!(crossings_of(&shape, &along, RayStart::On).is_empty());
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use crate::scene::Ray;
 use crate::scene::shape::support::{across, box_by_reach, front};
-use crate::scene::shape::{ChartRect, Crossing, Start, Toward};
+use crate::scene::shape::{ChartRect, Crossing, RayStart, Toward};
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::{Aabb, Frame, quadratic};
 use std::f64::consts::{PI, TAU};
@@ -49,7 +49,7 @@ impl Paraboloid {
     }
 
     #[inline]
-    pub(super) fn crossings(&self, ray: &Ray, start: Start, mut visit: impl FnMut(Crossing)) {
+    pub(super) fn crossings(&self, ray: &Ray, start: RayStart, mut visit: impl FnMut(Crossing)) {
         let dir = self.frame.to_local(ray.dir());
         let from = self.frame.point_to_local(ray.origin());
         let along_axis = 2.0 * self.focal_length * dir.z;
@@ -62,11 +62,11 @@ impl Paraboloid {
         };
         match start {
             // On the surface c = 0. A ray along the axis has its other root at infinity.
-            Start::On => {
+            RayStart::On => {
                 let t = -2.0 * half_b(from) / a;
                 offer(t, if t > 0.0 { self.leaving } else { self.leaving.opposite() });
             }
-            Start::Elsewhere => {
+            RayStart::Elsewhere => {
                 // From the point nearest to the vertex: from far away, r² - 4fz loses digits.
                 let shift = -from.dot(dir);
                 let near = from + shift * dir;
@@ -205,11 +205,11 @@ mod tests {
         for i in 0..50 {
             let target = outward.sample([f64::from(i) / 50.0, (f64::from(i) * 0.618).fract()]);
             let ray = Ray::new(focus, target - focus);
-            let hit = *crossings_of(&outward, &ray, Start::Elsewhere).last().unwrap();
+            let hit = *crossings_of(&outward, &ray, RayStart::Elsewhere).last().unwrap();
             assert!((ray.at(hit.t) - target).length() < 1e-13);
             assert_eq!(hit.toward, Toward::Front);
             assert_eq!(
-                crossings_of(&inward, &ray, Start::Elsewhere).last().unwrap().toward,
+                crossings_of(&inward, &ray, RayStart::Elsewhere).last().unwrap().toward,
                 Toward::Back
             );
             let normal = inward.normal(target);
@@ -225,9 +225,9 @@ mod tests {
         let shape = Shape::Paraboloid(Paraboloid::new(Frame::WORLD, 2.0, 0.0, 5.0));
         for (dir, toward) in [(DVec3::Z, Toward::Back), (DVec3::NEG_Z, Toward::Front)] {
             let ray = Ray::new(DVec3::new(4.0, 0.0, 1.0), dir);
-            let found = crossings_of(&shape, &ray, Start::Elsewhere);
+            let found = crossings_of(&shape, &ray, RayStart::Elsewhere);
             assert_eq!(found, [Crossing { t: dir.z, toward }]);
-            assert!(crossings_of(&shape, &ray.advanced(dir.z), Start::On).is_empty());
+            assert!(crossings_of(&shape, &ray.advanced(dir.z), RayStart::On).is_empty());
         }
     }
 

@@ -2,7 +2,7 @@
 
 use crate::scene::Ray;
 use crate::scene::shape::support::{across, box_by_reach, front};
-use crate::scene::shape::{ChartRect, Crossing, Start, Toward};
+use crate::scene::shape::{ChartRect, Crossing, RayStart, Toward};
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::{Aabb, Frame};
 use std::f64::consts::TAU;
@@ -43,7 +43,7 @@ impl Sphere {
     }
 
     #[inline]
-    pub(super) fn crossings(&self, ray: &Ray, start: Start, mut visit: impl FnMut(Crossing)) {
+    pub(super) fn crossings(&self, ray: &Ray, start: RayStart, mut visit: impl FnMut(Crossing)) {
         let from = ray.origin() - self.frame.origin;
         let middle = -from.dot(ray.dir()) / ray.dir().length_squared();
         let mut offer = |t: f64, toward: Toward| {
@@ -53,11 +53,11 @@ impl Sphere {
         };
         match start {
             // The chord lies symmetrically about the point nearest to the centre.
-            Start::On => {
+            RayStart::On => {
                 let t = 2.0 * middle;
                 offer(t, if t > 0.0 { self.leaving } else { self.leaving.opposite() });
             }
-            Start::Elsewhere => {
+            RayStart::Elsewhere => {
                 let nearest = (from + middle * ray.dir()).length();
                 if nearest <= self.radius {
                     let half_chord = ((self.radius - nearest) * (self.radius + nearest)).sqrt();
@@ -163,7 +163,7 @@ mod tests {
         assert!(inward.normal(p).dot(tilted(1.0).origin - p) > 1.999);
         assert_eq!(inward.normal(p), -outward.normal(p));
         let ray = Ray::new(tilted(1.0).origin, p - tilted(1.0).origin);
-        let toward = |shape| crossings_of(shape, &ray, Start::Elsewhere)[0].toward;
+        let toward = |shape| crossings_of(shape, &ray, RayStart::Elsewhere)[0].toward;
         assert_eq!((toward(&outward), toward(&inward)), (Toward::Front, Toward::Back));
         assert_starting_on_it_drops_only_the_start(&inward, 1000);
     }

@@ -2,7 +2,7 @@
 
 use crate::rng::{Dimension, Sampler};
 use crate::scene::Ray;
-use crate::scene::shape::{ChartRect, Crossing, HalfSpace, Shape, Start, Toward};
+use crate::scene::shape::{ChartRect, Crossing, HalfSpace, RayStart, Shape, Toward};
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::{Aabb, Frame, uniform_sphere};
 
@@ -24,7 +24,7 @@ pub(super) fn tilted(scale: f64) -> Frame {
 }
 
 /// All crossings, sorted.
-pub(super) fn crossings_of(shape: &Shape, ray: &Ray, start: Start) -> Vec<Crossing> {
+pub(super) fn crossings_of(shape: &Shape, ray: &Ray, start: RayStart) -> Vec<Crossing> {
     let mut all = Vec::new();
     shape.crossings(ray, start, |crossing| all.push(crossing));
     all.sort_by(|a, b| a.t.total_cmp(&b.t));
@@ -49,7 +49,7 @@ pub(super) fn assert_crossings_match_a_scan(truth: &Truth, rays: u64) {
     let mut seen = 0;
     for index in 0..rays {
         let ray = ray_in(&bounds, &mut Sampler::for_path(SEED, 1, index));
-        let found = crossings_of(truth.shape, &ray, Start::Elsewhere);
+        let found = crossings_of(truth.shape, &ray, RayStart::Elsewhere);
         let step = 2.0 * size / f64::from(STEPS);
         let at = |i: u32| -size + step * (f64::from(i) + 0.31);
         let value = |t: f64| (truth.implicit)(ray.at(t));
@@ -105,8 +105,8 @@ pub(super) fn assert_starting_on_it_drops_only_the_start(shape: &Shape, rays: u6
         if grazing < 1e-3 {
             continue;
         }
-        let on = crossings_of(shape, &ray, Start::On);
-        let mut elsewhere = crossings_of(shape, &ray, Start::Elsewhere);
+        let on = crossings_of(shape, &ray, RayStart::On);
+        let mut elsewhere = crossings_of(shape, &ray, RayStart::Elsewhere);
         let start = (0..elsewhere.len())
             .min_by(|&i, &k| elsewhere[i].t.abs().total_cmp(&elsewhere[k].t.abs()));
         // Exactly on the rim of the trim, the start itself may be missing.
@@ -144,7 +144,7 @@ pub(super) fn bounce(
         dir = -dir;
     }
     let mut ray = Ray::new(p, dir);
-    let mut start = Start::On;
+    let mut start = RayStart::On;
     let mut hits = 0;
     while hits < BOUNCES {
         let next =
@@ -153,7 +153,7 @@ pub(super) fn bounce(
         if let Some(crossing) = next {
             p = ray.at(crossing.t);
             normal = shape.normal(p);
-            start = Start::On;
+            start = RayStart::On;
             hits += 1;
         } else {
             let distance = |lid: &HalfSpace| {
@@ -164,10 +164,10 @@ pub(super) fn bounce(
                 ahead.min_by(|a, b| distance(a).total_cmp(&distance(b))).expect("a closed room");
             p = ray.at(distance(lid));
             normal = lid.normal;
-            start = Start::Elsewhere;
+            start = RayStart::Elsewhere;
         }
         ray = Ray::new(p, ray.dir() - 2.0 * ray.dir().dot(normal) * normal);
-        if start == Start::On {
+        if start == RayStart::On {
             visit(&ray);
         }
     }
@@ -190,7 +190,7 @@ pub(super) fn assert_grazing_rays_come_back(shape: &Shape) {
         }
         inward += 1;
         let comes_back = |c: &Crossing| c.t > 0.0 && c.toward == Toward::Front;
-        assert!(crossings_of(shape, &ray, Start::On).iter().any(comes_back), "{angle}: {ray:?}");
+        assert!(crossings_of(shape, &ray, RayStart::On).iter().any(comes_back), "{angle}: {ray:?}");
     }
     assert!(inward > RAYS * 9 / 10);
 }
@@ -256,7 +256,7 @@ pub(super) fn assert_hit_from_far_away(truth: &Truth, steepness: f64) {
             let target = shape.sample(sampler.pair(Dimension::EmitPosition));
             let dir = uniform_sphere(sampler.pair(Dimension::EmitDirection));
             let ray = Ray::new(target - distance * dir, dir);
-            let crossings = crossings_of(shape, &ray, Start::Elsewhere);
+            let crossings = crossings_of(shape, &ray, RayStart::Elsewhere);
             for crossing in &crossings {
                 let off = (truth.implicit)(ray.at(crossing.t)).abs();
                 assert!(off < steepness * rounding, "from {distance}: {off}");
@@ -280,9 +280,12 @@ pub(super) fn assert_scales(make: impl Fn(f64) -> Shape) {
         assert!((other.area() / (one.area() * scale * scale) - 1.0).abs() < 1e-12);
         for index in 0..500 {
             let ray = ray_in(&bounds, &mut Sampler::for_path(SEED, 5, index));
-            let a = crossings_of(&one, &ray, Start::Elsewhere);
-            let b =
-                crossings_of(&other, &Ray::new(scale * ray.origin(), ray.dir()), Start::Elsewhere);
+            let a = crossings_of(&one, &ray, RayStart::Elsewhere);
+            let b = crossings_of(
+                &other,
+                &Ray::new(scale * ray.origin(), ray.dir()),
+                RayStart::Elsewhere,
+            );
             assert_eq!(a.len(), b.len(), "{ray:?}");
             for (a, b) in a.iter().zip(&b) {
                 assert_eq!(a.toward, b.toward);

@@ -3,7 +3,7 @@
 use crate::scene::Ray;
 use crate::scene::shape::support::{across, box_by_reach};
 use crate::scene::shape::wedge::{Wedge, turn};
-use crate::scene::shape::{ChartRect, Crossing, Start, Toward};
+use crate::scene::shape::{ChartRect, Crossing, RayStart, Toward};
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::{Aabb, Frame, Roots, bracketed_root, cubic, quartic};
 use std::f64::consts::TAU;
@@ -51,20 +51,20 @@ impl Torus {
         })
     }
 
-    pub(super) fn crossings(&self, ray: &Ray, start: Start, mut visit: impl FnMut(Crossing)) {
+    pub(super) fn crossings(&self, ray: &Ray, start: RayStart, mut visit: impl FnMut(Crossing)) {
         // In units of the major radius.
         let unit = self.major_radius;
         let from = self.frame.point_to_local(ray.origin()) / unit;
         let dir = self.frame.to_local(ray.dir());
         let tube = self.minor_radius / unit;
         let roots = match start {
-            Start::On => with_start(others_from_surface(from, dir, tube)),
-            Start::Elsewhere => all_roots(from, dir, tube),
+            RayStart::On => with_start(others_from_surface(from, dir, tube)),
+            RayStart::Elsewhere => all_roots(from, dir, tube),
         };
         // A line is outside at both ends, so it enters and leaves alternately, even where it
         // grazes.
         for (i, &t) in roots.iter().enumerate() {
-            let is_start = start == Start::On && t == 0.0;
+            let is_start = start == RayStart::On && t == 0.0;
             if !is_start && self.arc_contains((from + t * dir).truncate()) {
                 let toward = if i % 2 == 0 { Toward::Back } else { Toward::Front };
                 visit(Crossing { t: t * unit, toward });
@@ -360,15 +360,15 @@ mod tests {
     fn a_ray_along_the_axis_misses_and_one_through_the_equator_crosses_four_times() {
         let shape = Shape::Torus(Torus::new(Frame::WORLD, 8.0, 1.5, TAU));
         let along_axis = Ray::new(DVec3::ZERO, DVec3::Z);
-        assert!(crossings_of(&shape, &along_axis, Start::Elsewhere).is_empty());
+        assert!(crossings_of(&shape, &along_axis, RayStart::Elsewhere).is_empty());
         let equator = Ray::new(DVec3::ZERO, DVec3::X);
         let found: Vec<f64> =
-            crossings_of(&shape, &equator, Start::Elsewhere).iter().map(|c| c.t).collect();
+            crossings_of(&shape, &equator, RayStart::Elsewhere).iter().map(|c| c.t).collect();
         for (t, expected) in found.iter().zip([-9.5, -6.5, 6.5, 9.5]) {
             assert!((t - expected).abs() < 1e-14);
         }
         assert_eq!(found.len(), 4);
         let from_outermost = Ray::new(9.5 * DVec3::X, -DVec3::X);
-        assert_eq!(crossings_of(&shape, &from_outermost, Start::On).len(), 3);
+        assert_eq!(crossings_of(&shape, &from_outermost, RayStart::On).len(), 3);
     }
 }

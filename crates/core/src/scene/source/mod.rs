@@ -21,7 +21,7 @@ pub struct Source {
     /// The directions of its light.
     pub emission: Emission,
     /// How the solids around a start point are found.
-    pub start: Start,
+    pub start: StartSolids,
     /// For each of its shapes, the surface of the scene that coincides with it, if any: light does
     /// not meet it at its start.
     pub on: Vec<PrimId>,
@@ -93,7 +93,7 @@ pub enum EmitSide {
 
 /// How the solids around a start point are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Start {
+pub enum StartSolids {
     /// The source touches no solid: all paths start outside.
     Outside,
     /// Tested for every path, just ahead of the start: a source on a face emits beyond it.

@@ -3,22 +3,22 @@
 //! It knows faces of all kinds: analytic pieces, open ports, and faces of meshes. It does not know
 //! sensors or paths.
 
-use crate::scene::shape::{Crossing, Start};
-use crate::scene::{Extent, FaceId, MeshBody, Patch, PrimId, Ray, Scene};
+use crate::scene::shape::{Crossing, RayStart};
+use crate::scene::{FaceId, MeshBody, Patch, PieceRange, PrimId, Ray, Scene};
 use glam::{DVec2, DVec3};
 
 /// Some faces as one area.
 #[derive(Debug, Clone)]
 pub struct FaceArea<'s> {
     scene: &'s Scene,
-    pieces: Vec<Piece<'s>>,
+    pieces: Vec<AreaPiece<'s>>,
     /// Area up to and including each piece, mm².
     area_up_to: Vec<f64>,
 }
 
 /// A part of the area.
 #[derive(Debug, Clone, Copy)]
-enum Piece<'s> {
+enum AreaPiece<'s> {
     /// An analytic piece; a port is not a surface of the scene.
     Patch(&'s Patch, Option<PrimId>),
     /// A face of a mesh, by its number there.
@@ -41,7 +41,7 @@ pub struct AreaPoint {
 impl<'s> FaceArea<'s> {
     /// The area of some faces of a scene.
     pub fn new(scene: &'s Scene, faces: &[FaceId]) -> Self {
-        let pieces: Vec<Piece<'s>> =
+        let pieces: Vec<AreaPiece<'s>> =
             faces.iter().flat_map(|&face| pieces_of(scene, face)).collect();
         let mut area = 0.0;
         let area_up_to = pieces
@@ -102,20 +102,20 @@ impl<'s> FaceArea<'s> {
     }
 }
 
-fn pieces_of(scene: &Scene, face: FaceId) -> Vec<Piece<'_>> {
+fn pieces_of(scene: &Scene, face: FaceId) -> Vec<AreaPiece<'_>> {
     match &scene.faces[face.index()].extent {
-        Extent::Patches(range) => range
+        PieceRange::Patches(range) => range
             .clone()
-            .map(|index| Piece::Patch(&scene.patches[index], Some(PrimId::new(index))))
+            .map(|index| AreaPiece::Patch(&scene.patches[index], Some(PrimId::new(index))))
             .collect(),
-        Extent::Ports(range) => {
-            scene.ports[range.clone()].iter().map(|patch| Piece::Patch(patch, None)).collect()
+        PieceRange::Ports(range) => {
+            scene.ports[range.clone()].iter().map(|patch| AreaPiece::Patch(patch, None)).collect()
         }
-        Extent::Mesh { mesh, face } => vec![Piece::Mesh(&scene.meshes[*mesh], *face)],
+        PieceRange::Mesh { mesh, face } => vec![AreaPiece::Mesh(&scene.meshes[*mesh], *face)],
     }
 }
 
-impl Piece<'_> {
+impl AreaPiece<'_> {
     fn area(&self) -> f64 {
         match self {
             Self::Patch(patch, _) => patch.shape.area(),
@@ -144,7 +144,7 @@ impl Piece<'_> {
     fn crossings(&self, ray: &Ray, mut visit: impl FnMut(f64, DVec3)) {
         match self {
             Self::Patch(patch, _) => {
-                patch.crossings(ray, Start::Elsewhere, |Crossing { t, .. }| {
+                patch.crossings(ray, RayStart::Elsewhere, |Crossing { t, .. }| {
                     visit(t, patch.shape.normal(ray.at(t)));
                 });
             }

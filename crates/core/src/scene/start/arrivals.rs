@@ -9,8 +9,8 @@ use crate::scene::crossing::hit::Just;
 use crate::scene::shape::Toward;
 use crate::scene::start::area::{AreaPoint, FaceArea};
 use crate::scene::{
-    Counts, Goniometer, Inside, Place, PrimId, Ray, Scene, Seeing, SensorId, SensorKind, Sides,
-    SurfaceSensor, Views,
+    CountedLight, Goniometer, Inside, Place, PrimId, Ray, Scene, Seeing, SensorId, SensorKind,
+    Sides, SurfaceSensor, Views,
 };
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::{Aabb, Frame, cone_direction, cosine_hemisphere, disk, uniform_sphere};
@@ -52,14 +52,14 @@ pub enum Begins {
 #[derive(Debug)]
 pub struct Arrivals<'s> {
     scene: &'s Scene,
-    place: Origin<'s>,
+    place: StartSet<'s>,
     /// The faces through which the sensor is lit, if it names any that matter.
     aim: Option<FaceArea<'s>>,
 }
 
 /// The set from which gather paths start.
 #[derive(Debug)]
-enum Origin<'s> {
+enum StartSet<'s> {
     Surface(&'s SurfaceSensor, FaceArea<'s>),
     /// A goniometric sphere, finite or in the far field.
     Sphere(&'s Goniometer, Around),
@@ -78,14 +78,14 @@ impl<'s> Arrivals<'s> {
         let sensor = &scene.sensors[sensor.index()];
         let place = match &sensor.kind {
             SensorKind::Surface(surface) => {
-                Origin::Surface(surface, FaceArea::new(scene, &surface.faces))
+                StartSet::Surface(surface, FaceArea::new(scene, &surface.faces))
             }
-            SensorKind::Goniometer(goniometer) => Origin::Sphere(goniometer, around(scene)),
+            SensorKind::Goniometer(goniometer) => StartSet::Sphere(goniometer, around(scene)),
         };
         let aimed = match &sensor.kind {
             // Light that leaves a face comes from the face.
             SensorKind::Surface(surface) => {
-                surface.place == Place::Port || surface.counts == Counts::Incident
+                surface.place == Place::Port || surface.counts == CountedLight::Incident
             }
             SensorKind::Goniometer(_) => true,
         };
@@ -97,13 +97,13 @@ impl<'s> Arrivals<'s> {
     /// such a draw represents no light.
     pub fn draw(&self, sampler: &mut Sampler<impl Numbers>) -> Option<Arrival> {
         match &self.place {
-            Origin::Surface(sensor, area) => {
+            StartSet::Surface(sensor, area) => {
                 let start = area.sample(sampler.pair(Dimension::GatherPosition))?;
                 let cell = sensor.grid.cell(start.uv)?;
                 let toward = self.surface_direction(sensor, &start, sampler)?;
                 self.at_surface(sensor, &start, cell, toward, area.area())
             }
-            Origin::Sphere(goniometer, around) => match goniometer.radius {
+            StartSet::Sphere(goniometer, around) => match goniometer.radius {
                 None => self.in_far_field(goniometer, *around, sampler),
                 Some(radius) => self.on_sphere(goniometer, radius, sampler),
             },
@@ -115,10 +115,10 @@ impl<'s> Arrivals<'s> {
     /// is that of a surface sensor.
     pub fn extent(&self, ray: &Ray, normal: DVec3) -> f64 {
         match &self.place {
-            Origin::Surface(sensor, area) => {
+            StartSet::Surface(sensor, area) => {
                 area.area() * self.surface_projected(sensor, ray, normal)
             }
-            Origin::Sphere(goniometer, around) => match goniometer.radius {
+            StartSet::Sphere(goniometer, around) => match goniometer.radius {
                 None => {
                     let beyond = ray.origin() - 4.0 * around.radius * ray.dir();
                     self.across(&Ray::new(beyond, ray.dir()), *around) * 4.0 * PI
@@ -182,7 +182,7 @@ impl<'s> Arrivals<'s> {
             Sides::Both => sampler.one(Dimension::GatherDirection) < 0.5,
         };
         // Arriving light comes from the side that counts; leaving light goes to it.
-        let outward = front == (sensor.counts == Counts::Incident);
+        let outward = front == (sensor.counts == CountedLight::Incident);
         let axis = if outward { start.normal } else { -start.normal };
         let local = cosine_hemisphere(sampler.pair(Dimension::GatherDirection));
         let dir = Frame::from_axis(DVec3::ZERO, axis).to_world(local);
@@ -203,8 +203,8 @@ impl<'s> Arrivals<'s> {
             return None;
         }
         let begins = match (sensor.place, sensor.counts) {
-            (Place::Port, _) | (Place::Face, Counts::Incident) => Begins::OnSensor,
-            (Place::Face, Counts::Leaving) => Begins::BeforeFace,
+            (Place::Port, _) | (Place::Face, CountedLight::Incident) => Begins::OnSensor,
+            (Place::Face, CountedLight::Leaving) => Begins::BeforeFace,
         };
         let (ray, on) = match begins {
             Begins::OnSensor => (Ray::new(start.point, dir), start.prim),
@@ -319,7 +319,7 @@ fn toward(aim: &FaceArea<'_>, start: &AreaPoint, target: DVec3) -> Option<Drawn>
 /// A direction in the acceptance cone of one of the views, shared by all cones that contain it.
 fn view_direction(
     views: &Views,
-    counts: Counts,
+    counts: CountedLight,
     start: &AreaPoint,
     sampler: &mut Sampler<impl Numbers>,
 ) -> Option<Drawn> {
@@ -348,10 +348,10 @@ fn views_projected(views: &Views, accepting: usize, cos: f64) -> f64 {
 }
 
 /// Converts between a direction against the light and a view's direction away from the face.
-fn away(dir: DVec3, counts: Counts) -> DVec3 {
+fn away(dir: DVec3, counts: CountedLight) -> DVec3 {
     match counts {
-        Counts::Incident => dir,
-        Counts::Leaving => -dir,
+        CountedLight::Incident => dir,
+        CountedLight::Leaving => -dir,
     }
 }
 

@@ -4,7 +4,7 @@ use crate::rng::{Dimension, Sampler};
 use crate::scene::shape::Shape;
 use crate::scene::source::sky::EmitterKind;
 use crate::scene::{
-    Emission, EmitSide, Emitted, Emitter, Inside, Just, Ray, Scene, SolidId, Source, Start,
+    Emission, EmitSide, Emitted, Emitter, Inside, Just, Ray, Scene, SolidId, Source, StartSolids,
 };
 use glam::DVec3;
 use lumiduct_base::math::{Aabb, Frame, disk};
@@ -31,9 +31,9 @@ impl Source {
             }
         };
         let inside = match self.start {
-            Start::Outside => Inside::default(),
-            Start::Ahead => scene.inside_at(&ray, Just::Ahead),
-            Start::Behind => scene.inside_at(&ray, Just::Behind),
+            StartSolids::Outside => Inside::default(),
+            StartSolids::Ahead => scene.inside_at(&ray, Just::Ahead),
+            StartSolids::Behind => scene.inside_at(&ray, Just::Behind),
         };
         // Only surface sources lie on a surface.
         let on = self.on.get(shape).copied();

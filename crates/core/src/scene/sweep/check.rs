@@ -2,7 +2,9 @@
 //! another one.
 
 use crate::scene::shape::Polygon;
-use crate::scene::sweep::path::{End, Form, Path, Piece, bend_frame, direction, unit};
+use crate::scene::sweep::path::{
+    PathPiece, PieceForm, PrismEnd, SweptPath, bend_frame, direction, unit,
+};
 use crate::scene::sweep::{Profile, SweepError, SweepProblem};
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::{Aabb, planar};
@@ -15,10 +17,10 @@ const MAX_SECTIONS: usize = 400;
 const MAX_SECTION_POINTS: usize = 64;
 
 /// The first reason why the pieces of `path` are not a valid sweep of `profile`.
-pub(super) fn check(profile: &Profile, path: &Path) -> Result<(), SweepError> {
+pub(super) fn check(profile: &Profile, path: &SweptPath) -> Result<(), SweepError> {
     let size = profile.size();
     for piece in &path.pieces {
-        if let Form::Prism { floor, ceiling } = &piece.form {
+        if let PieceForm::Prism { floor, ceiling } = &piece.form {
             let missing = missing_length(profile, piece.start.scale, floor, ceiling);
             if missing > 1e-12 * (size + ceiling.height.abs()) {
                 let problem = SweepProblem::TooShort { missing };
@@ -36,7 +38,7 @@ pub(super) fn check(profile: &Profile, path: &Path) -> Result<(), SweepError> {
 
 /// Depth by which the planes of the ceiling dip below those of the floor, mm; negative where there
 /// is room to spare.
-fn missing_length(profile: &Profile, scale: f64, floor: &End, ceiling: &End) -> f64 {
+fn missing_length(profile: &Profile, scale: f64, floor: &PrismEnd, ceiling: &PrismEnd) -> f64 {
     let mut missing = f64::NEG_INFINITY;
     for below in &floor.slopes {
         for above in &ceiling.slopes {
@@ -49,24 +51,24 @@ fn missing_length(profile: &Profile, scale: f64, floor: &End, ceiling: &End) -> 
 }
 
 /// A piece as a set of points.
-struct Body<'a> {
-    piece: &'a Piece,
+struct PieceBody<'a> {
+    piece: &'a PathPiece,
     samples: Vec<DVec3>,
     bounds: Aabb,
 }
 
 /// Searches for points on the walls of a piece that lie within another piece. Legs that really
 /// cross share much more than the distance between these points.
-fn find_overlap(profile: &Profile, path: &Path) -> Result<(), SweepError> {
-    let outline = Outline::new(profile, path.exit.along);
-    let bodies: Vec<Body> = path
+fn find_overlap(profile: &Profile, path: &SweptPath) -> Result<(), SweepError> {
+    let outline = ProfileOutline::new(profile, path.exit.along);
+    let bodies: Vec<PieceBody> = path
         .pieces
         .iter()
-        .filter(|piece| !matches!(piece.form, Form::Corner { .. }))
+        .filter(|piece| !matches!(piece.form, PieceForm::Corner { .. }))
         .map(|piece| {
             let samples = samples(&outline, piece);
             let bounds = Aabb::of(samples.iter().copied()).grown(outline.size * piece.start.scale);
-            Body { piece, samples, bounds }
+            PieceBody { piece, samples, bounds }
         })
         .collect();
     for (i, later) in bodies.iter().enumerate() {
@@ -85,13 +87,13 @@ fn find_overlap(profile: &Profile, path: &Path) -> Result<(), SweepError> {
     Ok(())
 }
 
-fn common_point(outline: &Outline, one: &Body, other: &Body) -> Option<DVec3> {
+fn common_point(outline: &ProfileOutline, one: &PieceBody, other: &PieceBody) -> Option<DVec3> {
     let near = |p: &&DVec3| other.bounds.contains(**p);
     one.samples.iter().filter(near).find(|p| holds(outline, other.piece, **p)).copied()
 }
 
 /// The profile at the entry, prepared for queries.
-struct Outline<'a> {
+struct ProfileOutline<'a> {
     profile: &'a Profile,
     polygon: Option<Polygon>,
     size: f64,
@@ -100,7 +102,7 @@ struct Outline<'a> {
     points: Vec<DVec2>,
 }
 
-impl<'a> Outline<'a> {
+impl<'a> ProfileOutline<'a> {
     fn new(profile: &'a Profile, path_length: f64) -> Self {
         let size = profile.size();
         // The second term is the rounding of coordinates.
@@ -144,7 +146,7 @@ fn distance(q: DVec2, a: DVec2, b: DVec2) -> f64 {
 }
 
 /// Points of a piece: sections along it at most a quarter of the profile's size apart, unless it is very long.
-fn samples(outline: &Outline, piece: &Piece) -> Vec<DVec3> {
+fn samples(outline: &ProfileOutline, piece: &PathPiece) -> Vec<DVec3> {
     let start = &piece.start;
     let size = outline.size * start.scale;
     let count = |length: f64| (4.0 * length / size).ceil().clamp(8.0, MAX_SECTIONS as f64) as usize;
@@ -152,7 +154,7 @@ fn samples(outline: &Outline, piece: &Piece) -> Vec<DVec3> {
     let at = |q: DVec2, z: f64| start.frame.origin + direction(&start.frame, q) + z * start.frame.z;
     let mut points = Vec::new();
     match &piece.form {
-        Form::Prism { floor, ceiling } => {
+        PieceForm::Prism { floor, ceiling } => {
             for share in shares(count(ceiling.height - floor.height)) {
                 points.extend(outline.points.iter().map(|q| {
                     let q = start.scale * *q;
@@ -161,13 +163,13 @@ fn samples(outline: &Outline, piece: &Piece) -> Vec<DVec3> {
                 }));
             }
         }
-        Form::Taper { length, end_scale } => {
+        PieceForm::Taper { length, end_scale } => {
             for share in shares(count(*length)) {
                 let scale = start.scale + share * (end_scale - start.scale);
                 points.extend(outline.points.iter().map(|q| at(scale * *q, share * length)));
             }
         }
-        Form::Bend { angle, radius, toward } => {
+        PieceForm::Bend { angle, radius, toward } => {
             let about = bend_frame(&start.frame, *radius, *toward);
             for share in shares(count(radius * angle)) {
                 let outward = direction(&about, unit(share * angle));
@@ -179,27 +181,27 @@ fn samples(outline: &Outline, piece: &Piece) -> Vec<DVec3> {
                 }));
             }
         }
-        Form::Corner { .. } => {}
+        PieceForm::Corner { .. } => {}
     }
     points
 }
 
 /// Whether a point lies within a piece, not just on its surface.
-fn holds(outline: &Outline, piece: &Piece, p: DVec3) -> bool {
+fn holds(outline: &ProfileOutline, piece: &PathPiece, p: DVec3) -> bool {
     let start = &piece.start;
     let margin = outline.margin;
     let between = |x: f64, from: f64, to: f64| x > from + margin && x < to - margin;
     let local = start.frame.point_to_local(p);
     let q = local.truncate();
     match &piece.form {
-        Form::Prism { floor, ceiling } => {
+        PieceForm::Prism { floor, ceiling } => {
             between(local.z, floor.highest(q), ceiling.lowest(q)) && outline.holds(q, start.scale)
         }
-        Form::Taper { length, end_scale } => {
+        PieceForm::Taper { length, end_scale } => {
             let scale = start.scale + local.z / length * (end_scale - start.scale);
             between(local.z, 0.0, *length) && outline.holds(q, scale)
         }
-        Form::Bend { angle, radius, toward } => {
+        PieceForm::Bend { angle, radius, toward } => {
             let around = bend_frame(&start.frame, *radius, *toward).point_to_local(p);
             let azimuth = around.y.atan2(around.x).rem_euclid(TAU);
             let from_axis = around.truncate().length();
@@ -207,7 +209,7 @@ fn holds(outline: &Outline, piece: &Piece, p: DVec3) -> bool {
             let q = (radius - from_axis) * *toward + around.z * toward.perp();
             between(azimuth * from_axis, 0.0, angle * from_axis) && outline.holds(q, start.scale)
         }
-        Form::Corner { .. } => false,
+        PieceForm::Corner { .. } => false,
     }
 }
 

@@ -4,10 +4,10 @@
 use crate::scene::shape::{ChartRect, Cone, Cylinder, Flat, Region, Shape};
 use crate::scene::sweep::chart::{Sector, Sense, Trapezoid, WallChart};
 use crate::scene::sweep::path::{
-    End, Form, Path, Section, bend_frame, direction, mitre_frame, unit,
+    PieceForm, PrismEnd, Section, SweptPath, bend_frame, direction, mitre_frame, unit,
 };
-use crate::scene::sweep::smooth::Smooth;
-use crate::scene::sweep::{CornerKind, Part, Wall};
+use crate::scene::sweep::smooth::SmoothNumbers;
+use crate::scene::sweep::{CornerKind, Wall, WallPart};
 use glam::DVec2;
 use lumiduct_base::math::{Frame, planar};
 
@@ -15,7 +15,7 @@ use lumiduct_base::math::{Frame, planar};
 const ROUNDING: f64 = 1e-12;
 
 /// An edge of the profile at the entry.
-struct Edge {
+struct ProfileEdge {
     from: DVec2,
     to: DVec2,
     /// Length of the outline before it, mm.
@@ -23,7 +23,7 @@ struct Edge {
     length: f64,
 }
 
-impl Edge {
+impl ProfileEdge {
     /// Unit vector from its start to its end.
     fn along(&self) -> DVec2 {
         (self.to - self.from) / self.length
@@ -50,53 +50,64 @@ struct Arc {
 }
 
 /// The walls along `path` of the polygon with the counter-clockwise `points` at the entry, mm.
-pub(super) fn parts(points: &[DVec2], path: &Path) -> Vec<Part> {
+pub(super) fn parts(points: &[DVec2], path: &SweptPath) -> Vec<WallPart> {
     let edges = edges(points);
-    let mut smooth = Smooth::new(edges.len());
+    let mut smooth = SmoothNumbers::new(edges.len());
     let mut parts = Vec::new();
     for piece in &path.pieces {
         // The outward normal of a wall in the section is its edge turned by -90°.
         smooth.enter(piece, |wall, toward| edges[wall].along().perp_dot(toward).abs() > ROUNDING);
         let start = &piece.start;
-        if let Form::Corner { angle, toward, kind } = &piece.form {
+        if let PieceForm::Corner { angle, toward, kind } = &piece.form {
             if *kind == CornerKind::Mitred {
                 let id = smooth.fresh();
                 let plates = mitre(points, start, *angle, *toward);
-                parts.extend(plates.into_iter().map(|shape| Part::mitre(shape, id)));
+                parts.extend(plates.into_iter().map(|shape| WallPart::mitre(shape, id)));
             }
             continue;
         }
         for (i, edge) in edges.iter().enumerate() {
             let wall = match &piece.form {
-                Form::Prism { floor, ceiling } => prism(edge, start, floor, ceiling),
-                Form::Taper { length, end_scale } => Some(taper(edge, start, *length, *end_scale)),
-                Form::Bend { angle, radius, toward } => {
+                PieceForm::Prism { floor, ceiling } => prism(edge, start, floor, ceiling),
+                PieceForm::Taper { length, end_scale } => {
+                    Some(taper(edge, start, *length, *end_scale))
+                }
+                PieceForm::Bend { angle, radius, toward } => {
                     let arc = Arc { angle: *angle, radius: *radius, toward: *toward };
                     Some(bend(edge, start, &arc))
                 }
-                Form::Corner { .. } => None,
+                PieceForm::Corner { .. } => None,
             };
-            let part =
-                |(shape, chart)| Part { shape, wall: Wall::Edge(i), smooth: smooth.id(i), chart };
+            let part = |(shape, chart)| WallPart {
+                shape,
+                wall: Wall::Edge(i),
+                smooth: smooth.id(i),
+                chart,
+            };
             parts.extend(wall.map(part));
         }
     }
     parts
 }
 
-fn edges(points: &[DVec2]) -> Vec<Edge> {
+fn edges(points: &[DVec2]) -> Vec<ProfileEdge> {
     let mut around = 0.0;
     planar::edges(points)
         .map(|(from, to)| {
             let length = (to - from).length();
             around += length;
-            Edge { from, to, around: around - length, length }
+            ProfileEdge { from, to, around: around - length, length }
         })
         .collect()
 }
 
 /// The wall over an edge between two ends; `None` where the ends meet all along it.
-fn prism(edge: &Edge, start: &Section, floor: &End, ceiling: &End) -> Option<(Shape, WallChart)> {
+fn prism(
+    edge: &ProfileEdge,
+    start: &Section,
+    floor: &PrismEnd,
+    ceiling: &PrismEnd,
+) -> Option<(Shape, WallChart)> {
     let Section { frame, scale, along } = *start;
     let (across, half) = (direction(&frame, edge.along()), 0.5 * scale * edge.length);
     let middle = frame.origin + scale * direction(&frame, edge.middle());
@@ -134,14 +145,14 @@ fn prism(edge: &Edge, start: &Section, floor: &End, ceiling: &End) -> Option<(Sh
 
 /// The places on an edge, as shares of its length, where an end has its corners: the ends of the edge, and where the
 /// planes of a mitre cross.
-fn kinks(edge: &Edge, end: &End) -> Vec<f64> {
+fn kinks(edge: &ProfileEdge, end: &PrismEnd) -> Vec<f64> {
     let [from, to] = [edge.from, edge.to].map(|p| p.dot(end.toward));
     let crosses = end.slopes.len() > 1 && from * to < 0.0;
     let kink = crosses.then(|| from / (from - to));
     [Some(0.0), kink, Some(1.0)].into_iter().flatten().collect()
 }
 
-fn taper(edge: &Edge, start: &Section, length: f64, end_scale: f64) -> (Shape, WallChart) {
+fn taper(edge: &ProfileEdge, start: &Section, length: f64, end_scale: f64) -> (Shape, WallChart) {
     let Section { frame, scale, along } = *start;
     let across = direction(&frame, edge.along());
     let growth = end_scale - scale;
@@ -165,7 +176,7 @@ fn taper(edge: &Edge, start: &Section, length: f64, end_scale: f64) -> (Shape, W
     (Shape::Flat(Flat::new(wall, region)), chart)
 }
 
-fn bend(edge: &Edge, start: &Section, arc: &Arc) -> (Shape, WallChart) {
+fn bend(edge: &ProfileEdge, start: &Section, arc: &Arc) -> (Shape, WallChart) {
     let Section { frame, scale, along } = *start;
     let Arc { angle, radius, toward } = *arc;
     let about = bend_frame(&frame, radius, toward);
@@ -199,7 +210,7 @@ fn bend(edge: &Edge, start: &Section, arc: &Arc) -> (Shape, WallChart) {
 
 /// The wall on an edge at right angles to the bend axis; `ends` are the edge's distances from it and heights along it.
 fn flat_bend(
-    edge: &Edge,
+    edge: &ProfileEdge,
     along: f64,
     arc: &Arc,
     about: &Frame,

@@ -25,7 +25,7 @@ mod wall;
 pub use leg::{CornerKind, Leg, SweepError, SweepProblem};
 pub use prisms::{OutlineError, PrismNumber, Prisms};
 pub use profile::{Profile, ProfileError};
-pub use wall::{Part, Wall};
+pub use wall::{Wall, WallPart};
 
 use crate::scene::shape::{ChartRect, Flat, Region, Shape};
 pub use chart::{Sector, Sense, Trapezoid, WallChart};
@@ -36,7 +36,7 @@ use lumiduct_base::math::Frame;
 #[derive(Debug, Clone)]
 pub struct Sweep {
     /// The walls, from the entry to the exit; every front is outside.
-    pub parts: Vec<Part>,
+    pub parts: Vec<WallPart>,
     /// The cross-sections at the entry and at the exit.
     pub ports: [Port; 2],
     /// Length of the path, mm; through a corner it is measured along both centre lines to the point

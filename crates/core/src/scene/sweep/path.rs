@@ -9,8 +9,8 @@ use std::f64::consts::{PI, TAU};
 
 /// The pieces of a path in order, and the section after the last one.
 #[derive(Debug, Clone)]
-pub(super) struct Path {
-    pub(super) pieces: Vec<Piece>,
+pub(super) struct SweptPath {
+    pub(super) pieces: Vec<PathPiece>,
     pub(super) exit: Section,
 }
 
@@ -27,19 +27,19 @@ pub(super) struct Section {
 
 /// A piece of the path that sweeps one surface per wall.
 #[derive(Debug, Clone)]
-pub(super) struct Piece {
+pub(super) struct PathPiece {
     /// Its leg.
     pub(super) leg: usize,
     /// Its start. Straight pieces may start before or after this section, as set by their floor.
     pub(super) start: Section,
-    pub(super) form: Form,
+    pub(super) form: PieceForm,
 }
 
 /// The geometry of a piece.
 #[derive(Debug, Clone)]
-pub(super) enum Form {
+pub(super) enum PieceForm {
     /// All points over the profile between two ends.
-    Prism { floor: End, ceiling: End },
+    Prism { floor: PrismEnd, ceiling: PrismEnd },
     /// A straight leg that changes its size, to `end_scale` relative to the entry.
     Taper { length: f64, end_scale: f64 },
     /// An arc.
@@ -51,14 +51,14 @@ pub(super) enum Form {
 /// The end of a prism, as planes through one point of its axis: z = height + slope (q · toward) over the point q of the
 /// section.
 #[derive(Debug, Clone)]
-pub(super) struct End {
+pub(super) struct PrismEnd {
     pub(super) height: f64,
     pub(super) toward: DVec2,
     /// One for each plane; 0 for a plain section.
     pub(super) slopes: Vec<f64>,
 }
 
-impl End {
+impl PrismEnd {
     fn flat(height: f64) -> Self {
         Self { height, toward: DVec2::X, slopes: vec![0.0] }
     }
@@ -138,7 +138,11 @@ pub(super) fn mitre_frame(before: &Frame, angle: f64, toward: DVec2) -> Frame {
 }
 
 /// Lays out the legs, starting at `frame`, and checks each of them against the profile.
-pub(super) fn trace(frame: Frame, profile: &Profile, legs: &[Leg]) -> Result<Path, SweepError> {
+pub(super) fn trace(
+    frame: Frame,
+    profile: &Profile,
+    legs: &[Leg],
+) -> Result<SweptPath, SweepError> {
     let nowhere = |problem| SweepError { leg: None, problem };
     profile.check().map_err(|error| nowhere(error.into()))?;
     if legs.is_empty() {
@@ -154,7 +158,7 @@ pub(super) fn trace(frame: Frame, profile: &Profile, legs: &[Leg]) -> Result<Pat
         tracer.go(leg, step).map_err(|problem| SweepError { leg: Some(leg), problem })?;
     }
     tracer.close(None);
-    Ok(Path { pieces: tracer.pieces, exit: tracer.at })
+    Ok(SweptPath { pieces: tracer.pieces, exit: tracer.at })
 }
 
 /// Follows the legs. Straight legs and the walls of corners that continue each other become one
@@ -163,14 +167,14 @@ struct Tracer<'a> {
     profile: &'a Profile,
     at: Section,
     open: Option<OpenPrism>,
-    pieces: Vec<Piece>,
+    pieces: Vec<PathPiece>,
 }
 
 /// A prism that may still grow; its end so far is `at` of the tracer.
 struct OpenPrism {
     leg: usize,
     start: Section,
-    floor: End,
+    floor: PrismEnd,
     length: f64,
 }
 
@@ -195,7 +199,7 @@ impl Tracer<'_> {
             return Err(SweepProblem::Scaled { scale });
         }
         self.close(None);
-        self.push(leg, self.at, Form::Taper { length, end_scale: scale });
+        self.push(leg, self.at, PieceForm::Taper { length, end_scale: scale });
         self.at = Section { scale, ..self.at.advanced(length) };
         Ok(())
     }
@@ -218,7 +222,7 @@ impl Tracer<'_> {
             return Err(SweepProblem::TightBend { radius, reach });
         }
         self.close(None);
-        self.push(leg, self.at, Form::Bend { angle, radius, toward });
+        self.push(leg, self.at, PieceForm::Bend { angle, radius, toward });
         let center = self.at.frame.origin + radius * direction(&self.at.frame, toward);
         let frame = turned(&self.at.frame, angle, toward);
         let origin = center - radius * direction(&frame, toward);
@@ -250,11 +254,11 @@ impl Tracer<'_> {
         let to_crossing = tan * self.at.scale * self.profile.reach(toward);
         self.extend(leg, to_crossing);
         self.close(Some((toward, slopes.clone())));
-        self.push(leg, self.at, Form::Corner { angle, toward, kind });
+        self.push(leg, self.at, PieceForm::Corner { angle, toward, kind });
         self.at.frame = turned(&self.at.frame, angle, toward);
         // The other side is the mirror image.
         let slopes = slopes.into_iter().map(|slope| -slope).collect();
-        let floor = End { height: 0.0, toward, slopes };
+        let floor = PrismEnd { height: 0.0, toward, slopes };
         self.open = Some(OpenPrism { leg, start: self.at, floor, length: 0.0 });
         self.extend(leg, to_crossing);
         Ok(())
@@ -266,7 +270,7 @@ impl Tracer<'_> {
         let prism = self.open.get_or_insert_with(|| OpenPrism {
             leg,
             start,
-            floor: End::flat(0.0),
+            floor: PrismEnd::flat(0.0),
             length: 0.0,
         });
         prism.length += length;
@@ -278,14 +282,14 @@ impl Tracer<'_> {
     fn close(&mut self, slanted: Option<(DVec2, Vec<f64>)>) {
         let Some(OpenPrism { leg, start, floor, length }) = self.open.take() else { return };
         let ceiling = match slanted {
-            Some((toward, slopes)) => End { height: length, toward, slopes },
-            None => End::flat(length),
+            Some((toward, slopes)) => PrismEnd { height: length, toward, slopes },
+            None => PrismEnd::flat(length),
         };
-        self.push(leg, start, Form::Prism { floor, ceiling });
+        self.push(leg, start, PieceForm::Prism { floor, ceiling });
     }
 
-    fn push(&mut self, leg: usize, start: Section, form: Form) {
-        self.pieces.push(Piece { leg, start, form });
+    fn push(&mut self, leg: usize, start: Section, form: PieceForm) {
+        self.pieces.push(PathPiece { leg, start, form });
     }
 }
 

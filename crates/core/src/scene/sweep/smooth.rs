@@ -1,10 +1,10 @@
 //! Parts that continue each other without an edge.
 
-use crate::scene::sweep::path::{Form, Piece};
+use crate::scene::sweep::path::{PathPiece, PieceForm};
 use glam::DVec2;
 
 /// The numbers of the smooth surfaces that the walls of a sweep belong to, along the path.
-pub(super) struct Smooth {
+pub(super) struct SmoothNumbers {
     /// One for each wall.
     ids: Vec<u32>,
     next: u32,
@@ -12,7 +12,7 @@ pub(super) struct Smooth {
     growth: Option<f64>,
 }
 
-impl Smooth {
+impl SmoothNumbers {
     pub(super) fn new(walls: usize) -> Self {
         Self { ids: (0u32..).take(walls).collect(), next: walls as u32, growth: None }
     }
@@ -20,9 +20,9 @@ impl Smooth {
     /// Advances to the next piece. `turns(wall, toward)` is true if a corner toward an azimuth
     /// changes the direction of a wall; the walls along the plane of the corner continue through
     /// it.
-    pub(super) fn enter(&mut self, piece: &Piece, turns: impl Fn(usize, DVec2) -> bool) {
+    pub(super) fn enter(&mut self, piece: &PathPiece, turns: impl Fn(usize, DVec2) -> bool) {
         let growth = match &piece.form {
-            Form::Corner { toward, .. } => {
+            PieceForm::Corner { toward, .. } => {
                 for wall in 0..self.ids.len() {
                     if turns(wall, *toward) {
                         self.ids[wall] = self.fresh();
@@ -30,8 +30,8 @@ impl Smooth {
                 }
                 return;
             }
-            Form::Taper { length, end_scale } => (end_scale - piece.start.scale) / length,
-            Form::Prism { .. } | Form::Bend { .. } => 0.0,
+            PieceForm::Taper { length, end_scale } => (end_scale - piece.start.scale) / length,
+            PieceForm::Prism { .. } | PieceForm::Bend { .. } => 0.0,
         };
         let before = self.growth.replace(growth).unwrap_or(growth);
         // Equal up to rounding: two legs of one cone.

@@ -2,7 +2,7 @@
 
 use crate::rng::{Dimension, Sampler};
 use crate::scene::Ray;
-use crate::scene::shape::{Crossing, Shape, Start};
+use crate::scene::shape::{Crossing, RayStart, Shape};
 use crate::scene::sweep::{CornerKind, Leg, Profile, Sweep, sweep};
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::{Aabb, Frame, uniform_sphere};
@@ -111,7 +111,7 @@ pub(super) fn bounds(sweep: &Sweep) -> Aabb {
 pub(super) fn crossings(surfaces: &[&Shape], ray: &Ray) -> Vec<Crossing> {
     let mut found = Vec::new();
     for shape in surfaces {
-        shape.crossings(ray, Start::Elsewhere, |crossing| found.push(crossing));
+        shape.crossings(ray, RayStart::Elsewhere, |crossing| found.push(crossing));
     }
     found.sort_by(|a, b| a.t.total_cmp(&b.t));
     found

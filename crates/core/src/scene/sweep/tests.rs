@@ -4,7 +4,7 @@ use super::testing::*;
 use super::*;
 use crate::rng::{Dimension, Sampler};
 use crate::scene::Ray;
-use crate::scene::shape::{Start, Toward};
+use crate::scene::shape::{RayStart, Toward};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -68,7 +68,7 @@ fn samples_lie_on_their_surface_and_in_its_box() {
             scan(shape, 100, |p, _| {
                 let ray = Ray::new(p - shape.normal(p), shape.normal(p));
                 let mut hit = false;
-                shape.crossings(&ray, Start::Elsewhere, |crossing| {
+                shape.crossings(&ray, RayStart::Elsewhere, |crossing| {
                     hit |= (crossing.t - 1.0).abs() < 1e-9 && crossing.toward == Toward::Front;
                 });
                 assert!(hit && bounds.contains(p), "{name}: {p} {shape:?}");
@@ -173,7 +173,7 @@ fn a_mirrored_path_stays_inside_for_2000_bounces() {
             for bounce in 0..2000 {
                 let mut nearest = (f64::INFINITY, usize::MAX);
                 for (i, shape) in surfaces.iter().enumerate() {
-                    let state = if i == on { Start::On } else { Start::Elsewhere };
+                    let state = if i == on { RayStart::On } else { RayStart::Elsewhere };
                     shape.crossings(&ray, state, |crossing| {
                         if crossing.toward == Toward::Front
                             && crossing.t >= -tolerance

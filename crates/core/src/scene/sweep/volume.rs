@@ -1,34 +1,34 @@
 //! The volume that a sweep encloses, in closed form.
 
 use crate::scene::sweep::Profile;
-use crate::scene::sweep::path::{Form, Path};
+use crate::scene::sweep::path::{PieceForm, SweptPath};
 use glam::DVec2;
 
 /// Volume of all pieces of `path`, mm³.
-pub(super) fn volume(profile: &Profile, path: &Path) -> f64 {
+pub(super) fn volume(profile: &Profile, path: &SweptPath) -> f64 {
     let area = profile.area();
     path.pieces
         .iter()
         .map(|piece| {
             let scale = piece.start.scale;
             match &piece.form {
-                Form::Prism { floor, ceiling } => {
+                PieceForm::Prism { floor, ceiling } => {
                     let below = slanted(profile, floor.toward, |q| floor.highest(q) - floor.height);
                     let above =
                         slanted(profile, ceiling.toward, |q| ceiling.lowest(q) - ceiling.height);
                     area * scale.powi(2) * (ceiling.height - floor.height)
                         + scale.powi(3) * (above - below)
                 }
-                Form::Taper { length, end_scale } => {
+                PieceForm::Taper { length, end_scale } => {
                     area * length * (scale * scale + scale * end_scale + end_scale * end_scale)
                         / 3.0
                 }
                 // Pappus: area times the path length of its centroid.
-                Form::Bend { angle, radius, toward } => {
+                PieceForm::Bend { angle, radius, toward } => {
                     let moment: f64 = profile.half_moments(*toward).iter().sum();
                     angle * (area * scale.powi(2) * radius - scale.powi(3) * moment)
                 }
-                Form::Corner { .. } => 0.0,
+                PieceForm::Corner { .. } => 0.0,
             }
         })
         .sum()

@@ -7,7 +7,7 @@ use lumiduct_base::math::Frame;
 
 /// A wall of one piece of the path.
 #[derive(Debug, Clone)]
-pub struct Part {
+pub struct WallPart {
     /// The surface; its front is outside.
     pub shape: Shape,
     /// The wall of the sweep that it belongs to.
@@ -29,7 +29,7 @@ pub enum Wall {
     Mitre,
 }
 
-impl Part {
+impl WallPart {
     /// A piece of a mitre plate.
     pub(super) fn mitre(shape: Shape, smooth: u32) -> Self {
         let chart = WallChart::Along { offset: DVec2::ZERO, scale: DVec2::ONE };

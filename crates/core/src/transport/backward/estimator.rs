@@ -134,7 +134,7 @@ impl<'s> Backward<'s> {
             pace: Some(task.pace),
         };
         let path = Path::arriving(self.scene, &arrival);
-        let mut counter = Counter {
+        let mut counter = GatherPathCounter {
             etendue: path.etendue(self.scene, arrival.extent) / self.paths as f64,
             cells: &arrival.cells,
             id,
@@ -199,7 +199,7 @@ pub(crate) fn estimate<'a>(
 }
 
 /// Counts the light of one gather path.
-struct Counter<'a> {
+struct GatherPathCounter<'a> {
     /// Etendue of this path per basic radiance, its share of the batch, mm² sr.
     etendue: f64,
     cells: &'a [usize],
@@ -210,7 +210,7 @@ struct Counter<'a> {
     readings: &'a mut Readings,
 }
 
-impl Observer for Counter<'_> {
+impl Observer for GatherPathCounter<'_> {
     fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
         match event {
             Event::Meet(met) => self.meet(path, met),
@@ -230,7 +230,7 @@ impl Observer for Counter<'_> {
     }
 }
 
-impl Counter<'_> {
+impl GatherPathCounter<'_> {
     fn meet(&mut self, path: &Path, met: &MetEmission) {
         let weight = self.mixed_with.map_or(1.0, |photon_fluxes| {
             let photon = photon_fluxes[met.source.index()] / met.emitted;

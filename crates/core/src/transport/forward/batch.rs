@@ -2,7 +2,7 @@
 
 use crate::scene::SourceId;
 use crate::transport::forward::Forward;
-use crate::transport::forward::counter::Counter;
+use crate::transport::forward::counter::PhotonCounter;
 use crate::transport::stop::{Pace, StopSignal};
 use crate::transport::{Observer, Readings, Unobserved};
 
@@ -25,7 +25,7 @@ impl Forward<'_> {
     ) -> Option<Readings> {
         let batch_paths = self.shares.iter().sum();
         let readings = Readings::of_batch(self.scene, &self.layout, self.seed, batch_paths, batch);
-        let mut counter = Counter::new(self, readings, observer, pace);
+        let mut counter = PhotonCounter::new(self, readings, observer, pace);
         let mut index = batch * batch_paths;
         for ((source, &paths), flux) in self.shares.iter().enumerate().zip(self.photon_fluxes()) {
             let source = SourceId::new(source);

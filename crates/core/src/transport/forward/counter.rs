@@ -5,10 +5,10 @@ mod surfaces;
 use crate::optics::Side;
 use crate::rng::Sampler;
 use crate::scene::shape::Toward;
-use crate::scene::{Counts, FaceId, MediumId, Owner, SensorId, SourceId};
+use crate::scene::{CountedLight, FaceId, MediumId, Owner, SensorId, SourceId};
 use crate::transport::forward::Forward;
 use crate::transport::stop::Pace;
-use crate::transport::tally::readings::{Counted, SensorReading, Step, Trail, count_totals};
+use crate::transport::tally::readings::{ClassStep, Counted, SensorReading, Trail, count_totals};
 use crate::transport::{
     Departure, Emergence, Event, Leak, Observer, Path, Readings, Segment, Vertex, walk,
 };
@@ -20,7 +20,7 @@ use std::ops::ControlFlow;
 const STREAM: u64 = 1;
 
 /// Counts one batch.
-pub(super) struct Counter<'r, 's, O> {
+pub(super) struct PhotonCounter<'r, 's, O> {
     run: &'r Forward<'s>,
     observer: &'r mut O,
     pace: &'r Pace<'r>,
@@ -49,7 +49,7 @@ enum TravelStart {
     Interface,
 }
 
-impl<'r, 's, O: Observer> Counter<'r, 's, O> {
+impl<'r, 's, O: Observer> PhotonCounter<'r, 's, O> {
     pub(super) fn new(
         run: &'r Forward<'s>,
         mut readings: Readings,
@@ -118,7 +118,7 @@ impl<'r, 's, O: Observer> Counter<'r, 's, O> {
     fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>) {
         _ = self.observer.see(path, Event::Arrive(vertex));
         let light = Light {
-            counts: Counts::Incident,
+            counts: CountedLight::Incident,
             dir: vertex.dir,
             throughput: vertex.throughput,
             side: None,
@@ -136,7 +136,7 @@ impl<'r, 's, O: Observer> Counter<'r, 's, O> {
             self.add(self.run.layout.absorbed_by_face(face), absorbed);
         }
         let light = Light {
-            counts: Counts::Leaving,
+            counts: CountedLight::Leaving,
             dir: departure.dir,
             throughput: departure.throughput,
             side: Some(departure.side),
@@ -155,7 +155,7 @@ impl<'r, 's, O: Observer> Counter<'r, 's, O> {
             }
         }
         if self.classed {
-            self.step(Step { face: face.index() as u32, transmitted });
+            self.step(ClassStep { face: face.index() as u32, transmitted });
         }
     }
 
@@ -193,7 +193,7 @@ impl<'r, 's, O: Observer> Counter<'r, 's, O> {
 
     /// Adds a step to the trail of a path; repeats of a step count once, and a full trail is marked
     /// as cut off.
-    fn step(&mut self, step: Step) {
+    fn step(&mut self, step: ClassStep) {
         if self.trail.last() == Some(&Some(step)) || self.trail.last() == Some(&None) {
             return;
         }
@@ -210,7 +210,7 @@ impl<'r, 's, O: Observer> Counter<'r, 's, O> {
     }
 }
 
-impl<O: Observer> Observer for Counter<'_, '_, O> {
+impl<O: Observer> Observer for PhotonCounter<'_, '_, O> {
     #[inline(always)]
     fn roulette_below(&self) -> f64 {
         self.observer.roulette_below()
@@ -259,7 +259,7 @@ impl<O: Observer> Observer for Counter<'_, '_, O> {
 /// Light arriving at, or leaving, the faces of a vertex.
 #[derive(Clone, Copy)]
 pub(super) struct Light {
-    pub(super) counts: Counts,
+    pub(super) counts: CountedLight,
     /// Unit direction of travel.
     pub(super) dir: DVec3,
     pub(super) throughput: f64,

@@ -4,14 +4,14 @@
 use crate::rng::Sampler;
 use crate::scene::{SensorId, SourceId};
 use crate::transport::forward::Forward;
-use crate::transport::forward::counter::Counter;
+use crate::transport::forward::counter::PhotonCounter;
 use crate::transport::stop::{Pace, StopSignal};
 use crate::transport::{Event, Observer, Path, Readings, walk};
 use std::ops::ControlFlow;
 
 /// Counts a photon and passes it to another observer.
 struct Shown<'a, 'r, 's, O> {
-    counter: Counter<'r, 's, O>,
+    counter: PhotonCounter<'r, 's, O>,
     see: &'a mut dyn FnMut(&Path, &Event<'_>),
 }
 
@@ -42,7 +42,7 @@ impl Forward<'_> {
         let readings = Readings::of_batch(self.scene, &self.layout, self.seed, 1, 0);
         let signal = StopSignal::default();
         let pace = Pace::new(&signal);
-        let mut counter = Counter::new(self, readings, &mut note, &pace);
+        let mut counter = PhotonCounter::new(self, readings, &mut note, &pace);
         counter.source = source;
         walk(self.scene, path, self.bounce_limit, sampler, &mut Shown { counter, see });
         counted_by

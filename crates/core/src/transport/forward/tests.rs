@@ -4,8 +4,9 @@ use crate::optics::{Bsdf, Medium};
 use crate::plan::{GatherPlan, Request, RunPlan, StopRules};
 use crate::scene::shape::{Cylinder, Flat, Region, Shape};
 use crate::scene::{
-    Builder, Counts, Emission, EmitSide, Emitter, FaceSpec, Grid, Owner, Passage, Piece, Place,
-    Scene, Seeing, Sensor, SensorId, SensorKind, Sides, Source, SourceId, Start, SurfaceSensor,
+    Builder, CountedLight, Emission, EmitSide, Emitter, FacePiece, FaceSpec, Grid, Owner, Passage,
+    Place, Scene, Seeing, Sensor, SensorId, SensorKind, Sides, Source, SourceId, StartSolids,
+    SurfaceSensor,
 };
 use crate::tally::sigmas;
 use crate::transport::forward::Forward;
@@ -26,7 +27,7 @@ fn mirror_tube(reflectance: f64, length: f64) -> Scene {
         owner: Owner::Sheet,
         front: Some(black),
         back: Some(mirror),
-        pieces: vec![Piece::whole(Shape::Cylinder(Cylinder::new(Frame::WORLD, 5.0, length)))],
+        pieces: vec![FacePiece::whole(Shape::Cylinder(Cylinder::new(Frame::WORLD, 5.0, length)))],
     });
     let disk = |z: f64| {
         Shape::Flat(Flat::new(
@@ -39,14 +40,14 @@ fn mirror_tube(reflectance: f64, length: f64) -> Scene {
         owner: Owner::Port,
         front: None,
         back: None,
-        pieces: vec![Piece::whole(disk(length))],
+        pieces: vec![FacePiece::whole(disk(length))],
     });
     builder.add_source(Source {
         name: "led".into(),
         flux: 1.0,
         emitter: Emitter::surface(vec![disk(0.0)], EmitSide::Front, None),
         emission: Emission::Lambertian,
-        start: Start::Outside,
+        start: StartSolids::Outside,
         on: Vec::new(),
         elevation: None,
         sun: None,
@@ -60,7 +61,7 @@ fn mirror_tube(reflectance: f64, length: f64) -> Scene {
         kind: SensorKind::Surface(SurfaceSensor {
             faces: vec![port],
             place: Place::Port,
-            counts: Counts::Incident,
+            counts: CountedLight::Incident,
             sides: Sides::Back,
             passage: Passage::Every,
             grid,

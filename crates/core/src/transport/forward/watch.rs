@@ -1,7 +1,8 @@
 //! Sensors by what they watch: looked up once per run, queried at every event.
 
 use crate::scene::{
-    Counts, FaceId, Goniometer, Owner, Patch, Place, Scene, SensorId, SensorKind, SurfaceSensor,
+    CountedLight, FaceId, Goniometer, Owner, Patch, Place, Scene, SensorId, SensorKind,
+    SurfaceSensor,
 };
 use crate::transport::Segment;
 use lumiduct_base::math::Aabb;
@@ -35,10 +36,10 @@ pub(crate) struct Watched {
 impl Watched {
     /// Whether arriving or leaving light is counted.
     #[inline(always)]
-    pub(crate) fn includes(self, counts: Counts) -> bool {
+    pub(crate) fn includes(self, counts: CountedLight) -> bool {
         match counts {
-            Counts::Incident => self.incident,
-            Counts::Leaving => self.leaving,
+            CountedLight::Incident => self.incident,
+            CountedLight::Leaving => self.leaving,
         }
     }
 }
@@ -99,8 +100,8 @@ impl<'s> Watch<'s> {
                 let any = |counts| sensors.iter().any(|(_, sensor)| sensor.counts == counts);
                 // Light enters where it leaves the face inward.
                 Watched {
-                    incident: any(Counts::Incident),
-                    leaving: any(Counts::Leaving) || !entries.is_empty(),
+                    incident: any(CountedLight::Incident),
+                    leaving: any(CountedLight::Leaving) || !entries.is_empty(),
                 }
             })
             .collect();

@@ -2,7 +2,7 @@
 
 use crate::plan::Estimator;
 use crate::scene::{Scene, SensorId};
-use crate::transport::estimate::{Account, Entry, Resolution};
+use crate::transport::estimate::{Account, AccountEntry, Resolution};
 use crate::transport::gather::bias::{Judged, best, chosen, total_error};
 use crate::transport::gather::settings::GatherSettings;
 use crate::transport::gather::stages::Windows;
@@ -94,19 +94,19 @@ fn columns(scene: &Scene) -> Vec<String> {
 }
 
 /// A stage, and the flux of a sensor within its nested windows.
-fn row(settings: &GatherSettings, stage: &Stage, slots: &[usize]) -> Vec<Entry> {
+fn row(settings: &GatherSettings, stage: &Stage, slots: &[usize]) -> Vec<AccountEntry> {
     let pass = settings.last_pass(stage);
     let Windows { wide, middle, narrow, extrapolated } = Windows::of(&stage.counts);
     let measured = [wide, middle, narrow, extrapolated].map(|readings| {
         let flux = readings.sum(slots);
-        Entry::Measured { value: flux.mean(), std_error: flux.std_error() }
+        AccountEntry::Measured { value: flux.mean(), std_error: flux.std_error() }
     });
     let own = [
-        Entry::Count(u64::from(stage.number)),
-        Entry::Count(wide.batch_count()),
-        Entry::Count(pass.gather_paths),
-        Entry::Number(pass.window.radius),
-        Entry::Number(pass.window.theta_max.to_degrees()),
+        AccountEntry::Count(u64::from(stage.number)),
+        AccountEntry::Count(wide.batch_count()),
+        AccountEntry::Count(pass.gather_paths),
+        AccountEntry::Number(pass.window.radius),
+        AccountEntry::Number(pass.window.theta_max.to_degrees()),
     ];
     own.into_iter().chain(measured).collect()
 }

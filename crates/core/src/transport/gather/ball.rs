@@ -5,7 +5,7 @@
 //! the extent of the medium. If a medium bends back into the ball, only the nearer part counts; the
 //! rest is an error that shrinks with the window.
 
-use crate::scene::{Inside, MediumId, Meeting, On, Ray, Scene, Visibility};
+use crate::scene::{Inside, MediumId, MeetingPoint, On, Ray, Scene, Visibility};
 use crate::transport::Path;
 use crate::transport::gather::coverage::GOLDEN_TURN;
 use crate::transport::gather::window::{NESTED, Window};
@@ -49,7 +49,7 @@ fn clear_way(scene: &Scene, path: &Path, ray: &Ray, most: f64) -> f64 {
         let Some(hits) = scene.find_next(&ray, &on, &inside) else { return most };
         way += hits.distance();
         let point = ray.at(hits.distance());
-        let meeting = Meeting { point, dir: ray.dir() };
+        let meeting = MeetingPoint { point, dir: ray.dir() };
         match scene.interface(&hits, &meeting, &inside, medium).visibility {
             Visibility::Visible => return way.min(most),
             // A joint, or a body of the same medium: the records of a medium do not distinguish
@@ -69,7 +69,7 @@ mod tests {
     use super::*;
     use crate::optics::Medium;
     use crate::scene::shape::{Shape, Sphere};
-    use crate::scene::{Builder, FaceSpec, Owner, Piece, Solid};
+    use crate::scene::{Builder, FacePiece, FaceSpec, Owner, Solid};
     use crate::transport::WAVELENGTH;
     use lumiduct_base::math::Aabb;
     use lumiduct_base::units::FluxUnit;
@@ -92,7 +92,7 @@ mod tests {
             owner: Owner::Solid(solid),
             front: None,
             back: None,
-            pieces: vec![Piece::whole(Shape::Sphere(Sphere::zone(
+            pieces: vec![FacePiece::whole(Shape::Sphere(Sphere::zone(
                 Frame::WORLD,
                 RADIUS,
                 -RADIUS,

@@ -5,15 +5,15 @@ use crate::rng::{Dimension, Sampler};
 use crate::scene::SensorId;
 use crate::transport::gather::ball::clipped_volumes;
 use crate::transport::gather::coverage::{Middle, coverage};
-use crate::transport::gather::estimator::{Ended, Gather};
-use crate::transport::gather::merge::{self, Passage};
+use crate::transport::gather::estimator::{Gather, RecordedPath};
+use crate::transport::gather::merge::{self, FacePassage};
 use crate::transport::gather::merged::Merging;
 use crate::transport::gather::records::{
     GatherRecord, RecordKind, RecordPath, SurfaceRecord, VolumeRecord,
 };
 use crate::transport::gather::window::{COUNTED, ESTIMATES, Window, estimates};
 use crate::transport::tally::readings::Counted;
-use crate::transport::walk::scatter::{Facing, facing};
+use crate::transport::walk::scatter::{MetInterface, facing};
 use crate::transport::{
     Collision, Departure, Event, Loss, MetEmission, Observer, Path, ROULETTE_BELOW, Readings,
     Vertex,
@@ -24,7 +24,7 @@ use std::ops::ControlFlow;
 /// Gather paths that have ended, and their records.
 #[derive(Debug, Default)]
 pub(crate) struct EndedPaths<'s> {
-    pub(crate) paths: Vec<Ended>,
+    pub(crate) paths: Vec<RecordedPath>,
     pub(crate) records: Vec<GatherRecord<'s>>,
 }
 
@@ -42,7 +42,7 @@ pub(crate) struct Collecting<'c, 's> {
     /// For the draws of records; the path has a separate stream.
     pub(crate) sampler: Sampler,
     /// The interface that the path has just met.
-    pub(crate) facing: Option<Facing<'s>>,
+    pub(crate) facing: Option<MetInterface<'s>>,
     pub(crate) found: &'c mut EndedPaths<'s>,
     pub(crate) windows: &'c mut [Readings; ESTIMATES],
 }
@@ -116,7 +116,7 @@ impl Collecting<'_, '_> {
         if let Some(merging) = &mut self.merging
             && path.depth == self.gather.settings.depth + 1
         {
-            let passage = Passage::of_gather_path(&facing, departure.dir, departure.side);
+            let passage = FacePassage::of_gather_path(&facing, departure.dir, departure.side);
             merging.pass_vertex_d(passage.etendues(self.window));
         }
         // The records at the vertex count the light of a broad lobe.
@@ -129,14 +129,14 @@ impl Collecting<'_, '_> {
 
 /// Whether light from a side is scattered broadly: reflected light by the finish met, transmitted
 /// light by that of the other side.
-fn is_broad(facing: &Facing<'_>, side: Side) -> bool {
+fn is_broad(facing: &MetInterface<'_>, side: Side) -> bool {
     match finish(facing, side).kind() {
         Spread::Broad => true,
         Spread::Discrete | Spread::Narrow(_) => false,
     }
 }
 
-fn finish<'s>(facing: &Facing<'s>, side: Side) -> &'s Bsdf {
+fn finish<'s>(facing: &MetInterface<'s>, side: Side) -> &'s Bsdf {
     match side {
         Side::Reflected => facing.faces.own,
         Side::Transmitted => facing.faces.behind,
@@ -145,7 +145,13 @@ fn finish<'s>(facing: &Facing<'s>, side: Side) -> &'s Bsdf {
 
 impl<'s> Collecting<'_, 's> {
     /// A record for photons that a broad finish scatters into the gather path: docs/method.md, eq. (22).
-    fn add_scattered(&mut self, path: &Path, vertex: &Vertex<'_>, facing: &Facing<'s>, side: Side) {
+    fn add_scattered(
+        &mut self,
+        path: &Path,
+        vertex: &Vertex<'_>,
+        facing: &MetInterface<'s>,
+        side: Side,
+    ) {
         let bsdf = finish(facing, side);
         if bsdf.width().is_none() && bsdf.shares(&facing.incidence).of(side) == 0.0 {
             return;
@@ -165,7 +171,13 @@ impl<'s> Collecting<'_, 's> {
 
     /// A record for photons near the direction in which the gather path would continue:
     /// docs/method.md, eq. (15).
-    fn add_along(&mut self, path: &Path, vertex: &Vertex<'_>, facing: &Facing<'s>, side: Side) {
+    fn add_along(
+        &mut self,
+        path: &Path,
+        vertex: &Vertex<'_>,
+        facing: &MetInterface<'s>,
+        side: Side,
+    ) {
         let bsdf = finish(facing, side);
         let Some(out) = bsdf.scatter_toward(side, &facing.incidence, &mut self.sampler) else {
             return;
@@ -183,7 +195,7 @@ impl<'s> Collecting<'_, 's> {
         let dir = out.dir.normalize();
         self.add(path, vertex, facing, side, value, RecordKind::Along(-dir));
         if let (Some(merging), Some(ended)) = (&self.merging, self.found.paths.last_mut()) {
-            let passage = Passage::of_gather_path(facing, dir, side);
+            let passage = FacePassage::of_gather_path(facing, dir, side);
             ended.etendues = Some(merging.waiting(passage.etendues(self.window)));
         }
     }
@@ -212,7 +224,7 @@ impl<'s> Collecting<'_, 's> {
         &mut self,
         path: &Path,
         vertex: &Vertex<'_>,
-        facing: &Facing<'s>,
+        facing: &MetInterface<'s>,
         side: Side,
         value: f64,
         kind: RecordKind<'s>,
@@ -237,10 +249,15 @@ impl<'s> Collecting<'_, 's> {
 
     /// This path, as one that ends in records.
     fn path_of_record(&mut self, path: &Path) -> RecordPath {
-        let of_this = |last: &Ended| (last.sensor, last.index) == (self.id, self.index);
+        let of_this = |last: &RecordedPath| (last.sensor, last.index) == (self.id, self.index);
         if self.merging.is_some() || !self.found.paths.last().is_some_and(of_this) {
             let (sensor, cells) = (self.id, self.cells.clone());
-            self.found.paths.push(Ended { index: self.index, sensor, cells, etendues: None });
+            self.found.paths.push(RecordedPath {
+                index: self.index,
+                sensor,
+                cells,
+                etendues: None,
+            });
         }
         RecordPath { place: self.found.paths.len() as u32 - 1, depth: path.depth + 1 }
     }

@@ -4,9 +4,9 @@
 //! above it is found on a sunflower of points (Vogel, Math. Biosci. 44 (1979) 179), whose inner
 //! parts fill the nested windows evenly.
 
-use crate::scene::shape::{ChartRect, Crossing, Start};
+use crate::scene::shape::{ChartRect, Crossing, RayStart};
 use crate::scene::{PrimId, Ray, Scene, Surface};
-use crate::transport::gather::surfaces::{Slot, Surfaces};
+use crate::transport::gather::surfaces::{Slot, SurfaceNumbers};
 use crate::transport::gather::window::{NESTED, Window};
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::circle;
@@ -38,7 +38,7 @@ pub(crate) struct Middle {
 /// Shares, 1, of the three nested windows that lie on the surface. `turn`, in turns, rotates the points.
 pub(crate) fn coverage(
     scene: &Scene,
-    surfaces: &Surfaces,
+    surfaces: &SurfaceNumbers,
     middle: &Middle,
     window: Window,
     turn: f64,
@@ -79,7 +79,7 @@ fn lies_within(scene: &Scene, middle: &Middle, window: Window) -> bool {
 
 fn is_over_surface(
     scene: &Scene,
-    surfaces: &Surfaces,
+    surfaces: &SurfaceNumbers,
     middle: &Middle,
     offset: DVec3,
     reach: f64,
@@ -96,7 +96,7 @@ fn is_over_surface(
     if (1..=FEW_PIECES).contains(&pieces.len()) {
         for &prim in pieces {
             let patch = &scene.patches[prim.index()];
-            patch.crossings(&ray, Start::Elsewhere, |crossing| found |= lies(prim, crossing));
+            patch.crossings(&ray, RayStart::Elsewhere, |crossing| found |= lies(prim, crossing));
         }
     } else {
         scene.all_crossings(&ray, |prim, crossing| {
@@ -111,7 +111,7 @@ mod tests {
     use super::*;
     use crate::optics::Medium;
     use crate::scene::shape::{Flat, Region, Shape};
-    use crate::scene::{Builder, FaceSpec, Owner, Piece};
+    use crate::scene::{Builder, FacePiece, FaceSpec, Owner};
     use lumiduct_base::math::Frame;
     use lumiduct_base::units::FluxUnit;
 
@@ -124,7 +124,7 @@ mod tests {
             owner: Owner::Sheet,
             front: None,
             back: None,
-            pieces: vec![Piece::whole(Shape::Flat(Flat::new(Frame::WORLD, region)))],
+            pieces: vec![FacePiece::whole(Shape::Flat(Flat::new(Frame::WORLD, region)))],
         });
         builder.build()
     }
@@ -133,7 +133,7 @@ mod tests {
     fn mean_shares(inside: DVec2, radius: f64) -> [f64; NESTED] {
         const TURNS: u32 = 200;
         let (scene, prim) = (square(), PrimId::new(0));
-        let surfaces = Surfaces::new(&scene);
+        let surfaces = SurfaceNumbers::new(&scene);
         let point = (DVec2::splat(10.0) - inside).extend(0.0);
         let middle = Middle { prim, surface: surfaces.of(prim), point, normal: DVec3::NEG_Z };
         let window = Window { radius, theta_max: 0.1 };

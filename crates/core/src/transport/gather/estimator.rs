@@ -6,7 +6,7 @@ use crate::transport::gather::bias;
 use crate::transport::gather::merge::Etendues;
 use crate::transport::gather::records::Records;
 use crate::transport::gather::settings::{GatherSettings, settle};
-use crate::transport::gather::surfaces::Surfaces;
+use crate::transport::gather::surfaces::SurfaceNumbers;
 use crate::transport::stop::StopSignal;
 use crate::transport::trial::PhotonPilot;
 use crate::transport::walk::emitters::Emitters;
@@ -19,7 +19,7 @@ pub(crate) struct Gather<'s> {
     pub(super) scene: &'s Scene,
     pub(super) layout: Layout,
     pub(super) emitters: Emitters<'s>,
-    pub(super) surfaces: Surfaces,
+    pub(super) surfaces: SurfaceNumbers,
     pub(super) sensors: Vec<(SensorId, Arrivals<'s>)>,
     pub(super) seed: u64,
     pub(crate) settings: GatherSettings,
@@ -72,7 +72,7 @@ impl<'s> Gather<'s> {
             scene,
             layout: Layout::new(scene),
             emitters: Emitters::new(scene),
-            surfaces: Surfaces::new(scene),
+            surfaces: SurfaceNumbers::new(scene),
             sensors: sensors.iter().map(|&id| (id, Arrivals::new(scene, id))).collect(),
             seed,
             settings,
@@ -89,14 +89,14 @@ impl<'s> Gather<'s> {
 
 /// Gather paths that have ended, and their records, ready for photons.
 #[derive(Debug)]
-pub(super) struct Waiting<'s> {
-    pub(super) paths: Vec<Ended>,
+pub(super) struct WaitingRecords<'s> {
+    pub(super) paths: Vec<RecordedPath>,
     pub(super) records: Records<'s>,
 }
 
 /// A gather path that has ended in records.
 #[derive(Debug)]
-pub(super) struct Ended {
+pub(super) struct RecordedPath {
     /// Its number among those of its sensor.
     pub(super) index: u64,
     pub(super) sensor: SensorId,

@@ -48,7 +48,7 @@ pub(crate) struct Indexed {
 
 /// The key by which a photon is looked up.
 #[derive(Debug, Clone, Copy)]
-pub struct Key {
+pub struct PhotonKey {
     /// The smooth surface it is on.
     pub surface: Slot,
     /// Position, mm.
@@ -66,7 +66,7 @@ pub(crate) struct Index {
     mask: u64,
     /// Start of the entries of each bucket; one more at the end.
     starts: Vec<u32>,
-    entries: Vec<Entry>,
+    entries: Vec<IndexEntry>,
     /// Squares of the largest distances, with room for rounding, between a photon and a record:
     /// points, mm², and directions.
     point_reach_squared: f32,
@@ -75,7 +75,7 @@ pub(crate) struct Index {
 
 /// A record in a cell.
 #[derive(Debug, Clone, Copy, Default)]
-struct Entry {
+struct IndexEntry {
     record: u32,
     /// The part of the cell's hash beyond the bucket, which separates cells that share a bucket.
     tag: u32,
@@ -93,11 +93,11 @@ impl Index {
         pace: &Pace<'_>,
     ) -> Option<Self> {
         let lattice = Lattice::new(window);
-        let mut placed: Vec<(u64, Entry)> = Vec::new();
+        let mut placed: Vec<(u64, IndexEntry)> = Vec::new();
         let mut farthest: f64 = 0.0;
         for record in records {
             farthest = farthest.max(record.point.abs().max_element());
-            let own = Entry {
+            let own = IndexEntry {
                 record: record.record,
                 tag: 0,
                 point: record.point.as_vec3().to_array(),
@@ -105,7 +105,7 @@ impl Index {
             };
             let before = placed.len();
             lattice.each_cell(&record, window, |hash| {
-                placed.push((hash, Entry { tag: tag(hash), ..own }));
+                placed.push((hash, IndexEntry { tag: tag(hash), ..own }));
             });
             if pace.spend(1 + (placed.len() - before) as u32).is_break() {
                 return None;
@@ -137,7 +137,7 @@ impl Index {
     /// Visits the records that each of some photons may belong to, each once, photon by photon.
     ///
     /// Every step is done for all photons before the next, so that many memory accesses overlap.
-    pub(crate) fn visit(&self, photons: &[Key], mut visit: impl FnMut(usize, u32)) {
+    pub(crate) fn visit(&self, photons: &[PhotonKey], mut visit: impl FnMut(usize, u32)) {
         if self.entries.is_empty() {
             return;
         }
@@ -150,10 +150,10 @@ impl Index {
         let first = |(_, bucket): &(u32, Range<usize>)| {
             self.entries[bucket.clone()].first().copied().unwrap_or_default()
         };
-        let firsts: SmallVec<[Entry; TOGETHER]> = buckets.iter().map(first).collect();
+        let firsts: SmallVec<[IndexEntry; TOGETHER]> = buckets.iter().map(first).collect();
         for (index, ((tag, bucket), first)) in buckets.into_iter().zip(&firsts).enumerate() {
             let Some((_, others)) = self.entries[bucket].split_first() else { continue };
-            let Key { point, dir, .. } = photons[index];
+            let PhotonKey { point, dir, .. } = photons[index];
             let (point, dir) = (point.as_vec3(), dir.as_vec3());
             for entry in std::iter::once(first).chain(others) {
                 if entry.tag == tag
@@ -169,7 +169,11 @@ impl Index {
 }
 
 /// Entries in the order of their buckets, and the start of each bucket; `None` if stopped.
-fn sorted(placed: Vec<(u64, Entry)>, mask: u64, pace: &Pace<'_>) -> Option<(Vec<u32>, Vec<Entry>)> {
+fn sorted(
+    placed: Vec<(u64, IndexEntry)>,
+    mask: u64,
+    pace: &Pace<'_>,
+) -> Option<(Vec<u32>, Vec<IndexEntry>)> {
     let mut starts = vec![0u32; mask as usize + 2];
     for (hash, _) in &placed {
         starts[(hash & mask) as usize + 1] += 1;
@@ -183,7 +187,7 @@ fn sorted(placed: Vec<(u64, Entry)>, mask: u64, pace: &Pace<'_>) -> Option<(Vec<
         *start = sum;
     });
     let mut next = starts.clone();
-    let mut entries = vec![Entry::default(); placed.len()];
+    let mut entries = vec![IndexEntry::default(); placed.len()];
     for (hash, entry) in placed {
         let place = &mut next[(hash & mask) as usize];
         entries[*place as usize] = entry;
@@ -205,7 +209,7 @@ struct Filter {
 
 impl Filter {
     /// `None` if it was stopped.
-    fn new(cells: &[(u64, Entry)], pace: &Pace<'_>) -> Option<Self> {
+    fn new(cells: &[(u64, IndexEntry)], pace: &Pace<'_>) -> Option<Self> {
         let bits = (FILTER_BITS * cells.len()).next_power_of_two();
         let mut words = vec![0; bits.div_ceil(64)];
         for &(hash, _) in cells {

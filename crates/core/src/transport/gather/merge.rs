@@ -9,7 +9,7 @@
 use crate::optics::{Bsdf, FinishModel, Incidence, Side};
 use crate::scene::Scene;
 use crate::transport::gather::window::{COUNTED, Window};
-use crate::transport::walk::scatter::Facing;
+use crate::transport::walk::scatter::MetInterface;
 use glam::DVec3;
 use lumiduct_base::math::projected_cap;
 use std::collections::{BTreeSet, VecDeque};
@@ -53,21 +53,21 @@ impl Etendues {
 
 /// Light at a face that it meets, and its continuation.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Passage<'s> {
+pub(crate) struct FacePassage<'s> {
     bsdf: &'s Bsdf,
     /// Incidence of the light, also when it comes from a gather path.
     incidence: Incidence,
     side: Side,
 }
 
-impl<'s> Passage<'s> {
+impl<'s> FacePassage<'s> {
     /// For a photon that meets a face.
-    pub(crate) fn of_photon(facing: &Facing<'s>, side: Side) -> Self {
+    pub(crate) fn of_photon(facing: &MetInterface<'s>, side: Side) -> Self {
         Self { bsdf: facing.faces.own, incidence: facing.incidence, side }
     }
 
     /// For the light that a gather path at a face would find along `dir`.
-    pub(crate) fn of_gather_path(facing: &Facing<'s>, dir: DVec3, side: Side) -> Self {
+    pub(crate) fn of_gather_path(facing: &MetInterface<'s>, dir: DVec3, side: Side) -> Self {
         let own = facing.incidence;
         let (bsdf, incidence) = match side {
             Side::Reflected => (facing.faces.own, Incidence { dir: -dir, ..own }),
@@ -98,7 +98,7 @@ impl<'s> Passage<'s> {
 /// The last faces that a photon has met, as many as there are from vertex D to a sensor.
 #[derive(Debug)]
 pub(crate) struct Recent<'s> {
-    passages: VecDeque<Passage<'s>>,
+    passages: VecDeque<FacePassage<'s>>,
     /// Vertex at which gather paths leave records, D.
     depth: usize,
 }
@@ -112,7 +112,7 @@ impl<'s> Recent<'s> {
         self.passages.clear();
     }
 
-    pub(crate) fn push(&mut self, passage: Passage<'s>) {
+    pub(crate) fn push(&mut self, passage: FacePassage<'s>) {
         if self.passages.len() > self.depth {
             self.passages.pop_front();
         }
@@ -214,7 +214,7 @@ mod tests {
     }
 
     /// A gather path in glass that meets air, refracted.
-    fn refracted() -> (Facing<'static>, DVec3) {
+    fn refracted() -> (MetInterface<'static>, DVec3) {
         let (sin, index) = (0.5f64, 1.5);
         let dir = DVec3::new(sin, 0.0, -(1.0 - sin * sin).sqrt());
         let incidence = Incidence {
@@ -226,7 +226,7 @@ mod tests {
         };
         let faces = crate::optics::Faces { own: &Bsdf::Smooth, behind: &Bsdf::Smooth };
         let out = DVec3::new(index * sin, 0.0, -(1.0 - (index * sin).powi(2)).sqrt());
-        (Facing { faces, incidence, facet: DVec3::Z }, out)
+        (MetInterface { faces, incidence, facet: DVec3::Z }, out)
     }
 
     #[test]
@@ -251,9 +251,10 @@ mod tests {
                     },
                 ),
             };
-            let photon = Facing { incidence: light, facet: light.normal, faces: facing.faces };
-            let told = Passage::of_gather_path(&facing, out, side).etendues(window);
-            let expected = Passage::of_photon(&photon, side).etendues(window);
+            let photon =
+                MetInterface { incidence: light, facet: light.normal, faces: facing.faces };
+            let told = FacePassage::of_gather_path(&facing, out, side).etendues(window);
+            let expected = FacePassage::of_photon(&photon, side).etendues(window);
             let chance = Bsdf::Smooth.chances(&light).of(side);
             // n² |cos θ| π r² 2π (1 - cos θ_max) / q
             let formula =
@@ -277,7 +278,7 @@ mod tests {
                 index_to: index_from,
                 grain: DVec3::ZERO,
             };
-            Passage { bsdf: &Bsdf::Open, incidence, side: Side::Transmitted }
+            FacePassage { bsdf: &Bsdf::Open, incidence, side: Side::Transmitted }
         };
         let mut recent = Recent::new(2);
         for (met, index) in [1.0, 2.0, 3.0, 4.0].into_iter().enumerate() {

@@ -6,8 +6,8 @@
 //! module does not know how paths are traced.
 
 use crate::scene::Visibility;
-use crate::transport::gather::merge::{Etendues, NO_WINDOW, Passage, ROULETTE_BELOW, Recent};
-use crate::transport::gather::stream::{Photon, Stream};
+use crate::transport::gather::merge::{Etendues, FacePassage, NO_WINDOW, ROULETTE_BELOW, Recent};
+use crate::transport::gather::stream::{Photon, PhotonStream};
 use crate::transport::gather::window::{COUNTED, ESTIMATES, estimates};
 use crate::transport::tally::readings::Counted;
 use crate::transport::walk::follow::{arrivals_of, etendue_of};
@@ -53,7 +53,7 @@ impl<'a> Merging<'a> {
 
 /// Photons that stream past the records, and also count in the cells of sensors.
 pub(crate) struct MergedStream<'p, 's> {
-    stream: Stream<'p, 's>,
+    stream: PhotonStream<'p, 's>,
     photon_fluxes: &'p [f64],
     /// Etendue represented by the current photon, mm² sr.
     photon: f64,
@@ -62,7 +62,7 @@ pub(crate) struct MergedStream<'p, 's> {
 
 impl<'p, 's> MergedStream<'p, 's> {
     /// The records of a pass that wait for its photons.
-    pub(crate) fn new(stream: Stream<'p, 's>, photon_fluxes: &'p [f64]) -> Self {
+    pub(crate) fn new(stream: PhotonStream<'p, 's>, photon_fluxes: &'p [f64]) -> Self {
         let recent = Recent::new(stream.gather.settings.depth);
         Self { stream, photon_fluxes, photon: f64::INFINITY, recent }
     }
@@ -109,7 +109,7 @@ impl MergedStream<'_, '_> {
     fn depart(&mut self, path: &Path, vertex: &Vertex<'_>, departure: &Departure) {
         if vertex.interface.visibility == Visibility::Visible {
             let facing = facing(self.stream.gather.scene, path, vertex);
-            self.recent.push(Passage::of_photon(&facing, departure.side));
+            self.recent.push(FacePassage::of_photon(&facing, departure.side));
         }
     }
 

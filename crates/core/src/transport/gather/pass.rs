@@ -13,11 +13,11 @@
 use crate::rng::Sampler;
 use crate::scene::Arrival;
 use crate::transport::gather::collect::{Collecting, EndedPaths};
-use crate::transport::gather::estimator::{Gather, Waiting};
+use crate::transport::gather::estimator::{Gather, WaitingRecords};
 use crate::transport::gather::merged::Merging;
 use crate::transport::gather::records::Records;
 use crate::transport::gather::stages::Pass;
-use crate::transport::gather::stream::Stream;
+use crate::transport::gather::stream::PhotonStream;
 use crate::transport::gather::window::ESTIMATES;
 use crate::transport::stop::RECORD_WORK;
 use crate::transport::task::Task;
@@ -32,13 +32,13 @@ const RECORD_STREAM: u64 = 3 << 32;
 impl<'s> Gather<'s> {
     /// Traces the gather paths of a batch, whose records then wait for its photons. `None` if
     /// stopped.
-    pub(crate) fn begin<'g>(&'g self, task: Task<'g>) -> Option<Stream<'g, 's>> {
+    pub(crate) fn begin<'g>(&'g self, task: Task<'g>) -> Option<PhotonStream<'g, 's>> {
         let pass = self.settings.pass(task.stage, task.batch);
         let paths = pass.gather_paths;
         let empty = || Readings::of_batch(self.scene, &self.layout, self.seed, paths, pass.batch);
         let mut windows = [empty(), empty(), empty(), empty()];
         let waiting = self.gather_paths_of(pass, task, &mut windows)?;
-        Some(Stream::new(self, pass, (waiting, task.pace), windows))
+        Some(PhotonStream::new(self, pass, (waiting, task.pace), windows))
     }
 
     /// Traces the gather paths of a pass; `None` if they were stopped.
@@ -47,7 +47,7 @@ impl<'s> Gather<'s> {
         pass: Pass,
         Task { photon_fluxes, pace, .. }: Task<'_>,
         windows: &mut [Readings; ESTIMATES],
-    ) -> Option<Waiting<'s>> {
+    ) -> Option<WaitingRecords<'s>> {
         let mut found = EndedPaths::default();
         for (id, arrivals) in &self.sensors {
             for index in pass.batch * pass.gather_paths..(pass.batch + 1) * pass.gather_paths {
@@ -85,6 +85,6 @@ impl<'s> Gather<'s> {
             }
         }
         let records = Records::new(found.records, pass.window, &self.surfaces, pace)?;
-        Some(Waiting { paths: found.paths, records })
+        Some(WaitingRecords { paths: found.paths, records })
     }
 }

@@ -5,8 +5,8 @@
 
 use crate::optics::{Bsdf, VolumeScattering};
 use crate::scene::MediumId;
-use crate::transport::gather::index::{Index, Indexed, Key, TOGETHER};
-use crate::transport::gather::surfaces::{Slot, Surfaces};
+use crate::transport::gather::index::{Index, Indexed, PhotonKey, TOGETHER};
+use crate::transport::gather::surfaces::{Slot, SurfaceNumbers};
 use crate::transport::gather::window::{NESTED, Window};
 use crate::transport::stop::Pace;
 use glam::DVec3;
@@ -134,7 +134,7 @@ impl<'s> Records<'s> {
     pub fn new(
         all: Vec<GatherRecord<'s>>,
         window: Window,
-        surfaces: &Surfaces,
+        surfaces: &SurfaceNumbers,
         pace: &Pace<'_>,
     ) -> Option<Self> {
         let nowhere = Reach { positions: Aabb::EMPTY, directions: Aabb::EMPTY };
@@ -169,10 +169,10 @@ impl<'s> Records<'s> {
 
     /// Visits the records that each of some photons may belong to, each once: photon by photon
     /// those with a direction, then photon by photon those that take all.
-    pub fn visit(&self, photons: &[Key], mut visit: impl FnMut(usize, &GatherRecord<'s>)) {
+    pub fn visit(&self, photons: &[PhotonKey], mut visit: impl FnMut(usize, &GatherRecord<'s>)) {
         self.along.visit(photons, |photon, id| visit(photon, &self.all[id as usize]));
-        let keyed = photons.iter().map(|key| Key { dir: NO_DIRECTION, ..*key });
-        let keyed: SmallVec<[Key; TOGETHER]> = keyed.collect();
+        let keyed = photons.iter().map(|key| PhotonKey { dir: NO_DIRECTION, ..*key });
+        let keyed: SmallVec<[PhotonKey; TOGETHER]> = keyed.collect();
         self.scattered.visit(&keyed, |photon, id| visit(photon, &self.all[id as usize]));
     }
 }

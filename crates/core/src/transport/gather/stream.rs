@@ -6,8 +6,8 @@ use crate::optics::Incidence;
 use crate::scene::shape::Toward;
 use crate::scene::{MediumId, PrimHit, PrimId, Scene, SourceId, Visibility};
 use crate::transport::gather::contribution::{NestedWindows, PhotonHit, SurfaceHit, VolumeHit};
-use crate::transport::gather::estimator::{Ended, Gather, Waiting};
-use crate::transport::gather::index::{Key, TOGETHER};
+use crate::transport::gather::estimator::{Gather, RecordedPath, WaitingRecords};
+use crate::transport::gather::index::{PhotonKey, TOGETHER};
 use crate::transport::gather::merge::Etendues;
 use crate::transport::gather::stages::Pass;
 use crate::transport::gather::window::{COUNTED, ESTIMATES, estimates};
@@ -19,10 +19,10 @@ use glam::DVec3;
 use std::ops::ControlFlow;
 
 /// Photons that stream past the records.
-pub(crate) struct Stream<'p, 's> {
+pub(crate) struct PhotonStream<'p, 's> {
     pub(super) gather: &'p Gather<'s>,
     nested: NestedWindows,
-    waiting: Waiting<'s>,
+    waiting: WaitingRecords<'s>,
     pace: &'p Pace<'p>,
     /// Counts by records: E1, E2, E3 and E0; not yet closed.
     pub(super) windows: [Readings; ESTIMATES],
@@ -31,14 +31,14 @@ pub(crate) struct Stream<'p, 's> {
     pub(super) photon: Photon,
     /// Photons to be looked up, and their keys.
     passing: Vec<Passing>,
-    keys: Vec<Key>,
+    keys: Vec<PhotonKey>,
     work: RecordWork,
 }
 
 /// A photon that may belong to records.
 #[derive(Debug, Clone, Copy)]
 struct Passing {
-    at: At,
+    at: PhotonPlace,
     /// Flux, lm or W.
     flux: f64,
     depth: u32,
@@ -49,7 +49,7 @@ struct Passing {
 
 /// Location of a photon.
 #[derive(Debug, Clone, Copy)]
-enum At {
+enum PhotonPlace {
     /// At an interface.
     Surface {
         prim: PrimId,
@@ -63,7 +63,7 @@ enum At {
     Medium,
 }
 
-impl Observer for Stream<'_, '_> {
+impl Observer for PhotonStream<'_, '_> {
     #[inline(always)]
     fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
         match event {
@@ -101,11 +101,11 @@ impl Photon {
     }
 }
 
-impl<'p, 's> Stream<'p, 's> {
+impl<'p, 's> PhotonStream<'p, 's> {
     pub(super) fn new(
         gather: &'p Gather<'s>,
         pass: Pass,
-        (waiting, pace): (Waiting<'s>, &'p Pace<'p>),
+        (waiting, pace): (WaitingRecords<'s>, &'p Pace<'p>),
         windows: [Readings; ESTIMATES],
     ) -> Self {
         Self {
@@ -143,8 +143,8 @@ impl<'p, 's> Stream<'p, 's> {
         let interface = vertex.interface;
         let PrimHit { prim, toward, .. } = *interface.acting;
         let (surface, media) = (self.gather.surfaces.of(prim), [interface.from, interface.to]);
-        let key = Key { surface, point: vertex.point, dir: vertex.dir };
-        let at = At::Surface { prim, toward, media, wavelength: path.wavelength };
+        let key = PhotonKey { surface, point: vertex.point, dir: vertex.dir };
+        let at = PhotonPlace::Surface { prim, toward, media, wavelength: path.wavelength };
         self.push(path, key, at, vertex.throughput);
     }
 
@@ -152,11 +152,11 @@ impl<'p, 's> Stream<'p, 's> {
         let &Collision { point, dir, medium, throughput, .. } = collision;
         let surface = self.gather.surfaces.of_medium(medium);
         if self.waiting.records.may_take(surface, point, dir) {
-            self.push(path, Key { surface, point, dir }, At::Medium, throughput);
+            self.push(path, PhotonKey { surface, point, dir }, PhotonPlace::Medium, throughput);
         }
     }
 
-    fn push(&mut self, path: &Path, key: Key, at: At, throughput: f64) {
+    fn push(&mut self, path: &Path, key: PhotonKey, at: PhotonPlace, throughput: f64) {
         self.keys.push(key);
         let Photon { flux, source, etendue } = self.photon;
         let flux = flux * throughput;
@@ -188,7 +188,8 @@ impl<'p, 's> Stream<'p, 's> {
             let Some(shares) = nested.flux(record, &met) else { return };
             work.pairs += 1;
             let own = record.path();
-            let Ended { sensor, cells, etendues, .. } = &self.waiting.paths[own.place as usize];
+            let RecordedPath { sensor, cells, etendues, .. } =
+                &self.waiting.paths[own.place as usize];
             let weights = etendues.map_or([1.0; COUNTED], |known| {
                 Etendues { photon: photon.etendue, ..known }.pair()
             });
@@ -208,11 +209,11 @@ impl<'p, 's> Stream<'p, 's> {
 }
 
 /// A photon in the form that records take.
-fn arriving(scene: &Scene, key: &Key, photon: &Passing) -> PhotonHit {
-    let &Key { surface, point, dir } = key;
+fn arriving(scene: &Scene, key: &PhotonKey, photon: &Passing) -> PhotonHit {
+    let &PhotonKey { surface, point, dir } = key;
     match photon.at {
-        At::Medium => PhotonHit::Volume(VolumeHit { medium: surface, point, dir }),
-        At::Surface { prim, toward, media: [from, to], wavelength } => {
+        PhotonPlace::Medium => PhotonHit::Volume(VolumeHit { medium: surface, point, dir }),
+        PhotonPlace::Surface { prim, toward, media: [from, to], wavelength } => {
             let index = |medium: MediumId| scene.media[medium.index()].index(wavelength);
             let outward = scene.normal(prim, point);
             let incidence = Incidence {

@@ -8,7 +8,7 @@ pub type Slot = u32;
 
 /// The smooth surfaces of a scene, numbered, followed by the media.
 #[derive(Debug)]
-pub struct Surfaces {
+pub struct SurfaceNumbers {
     slots: Vec<Slot>,
     pub(super) count: usize,
     pub(super) media: usize,
@@ -16,7 +16,7 @@ pub struct Surfaces {
     patches: Vec<Vec<PrimId>>,
 }
 
-impl Surfaces {
+impl SurfaceNumbers {
     /// The surfaces of a scene.
     pub fn new(scene: &Scene) -> Self {
         let triangles: usize = scene.meshes.iter().map(|body| body.mesh.triangle_count()).sum();

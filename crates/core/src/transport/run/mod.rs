@@ -12,4 +12,4 @@ pub use prepare::batch_paths;
 pub use rounds::{Phase, Run};
 pub use shard::Shard;
 pub use slices::{Slice, Unsliceable};
-pub use state::State;
+pub use state::RunState;

@@ -66,7 +66,7 @@ pub struct Run<'s> {
 }
 
 /// Counts of a batch: by photons, and by each of the other estimators.
-pub(super) struct Batch {
+pub(super) struct BatchCounts {
     pub(super) photons: Counts,
     pub(super) others: Vec<Counts>,
 }
@@ -82,7 +82,7 @@ impl<'s> Run<'s> {
             0 => self.signal.with_grace(),
             _ => self.signal.clone(),
         };
-        let batches: Vec<Option<Batch>> =
+        let batches: Vec<Option<BatchCounts>> =
             (self.batches..end).into_par_iter().map(|batch| self.batch(batch, &signal)).collect();
         batches.into_iter().map_while(|batch| batch).for_each(|batch| self.add(batch));
     }
@@ -96,7 +96,7 @@ impl<'s> Run<'s> {
 
     /// Traces one batch: the gather paths of all estimators, then photons past them. `None` if it
     /// was stopped.
-    pub(super) fn batch(&self, batch: u64, signal: &StopSignal) -> Option<Batch> {
+    pub(super) fn batch(&self, batch: u64, signal: &StopSignal) -> Option<BatchCounts> {
         let pace = Pace::new(signal);
         let photon_fluxes = self.forward.photon_fluxes();
         let mut others: Vec<InProgress<'_, 's>> = Vec::with_capacity(self.others.len());
@@ -115,11 +115,11 @@ impl<'s> Run<'s> {
             self.forward.batch_observed(batch, &mut Unobserved, &pace)?
         };
         let others: Vec<Counts> = others.into_iter().map(InProgress::finish).collect();
-        let counts = Batch { photons: Counts::one(photons), others };
+        let counts = BatchCounts { photons: Counts::one(photons), others };
         (!pace.is_stopped()).then_some(counts)
     }
 
-    pub(super) fn add(&mut self, batch: Batch) {
+    pub(super) fn add(&mut self, batch: BatchCounts) {
         self.batches += 1;
         self.paths += self.batch_paths();
         for ((_, series), counts) in self.others.iter_mut().zip(batch.others) {

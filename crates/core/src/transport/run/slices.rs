@@ -4,8 +4,8 @@
 //! of the largest nodes of this tree that lie in it; all slices together contain the same sums as
 //! the run itself.
 
-use crate::transport::run::rounds::{Batch, Run};
-use crate::transport::run::state::State;
+use crate::transport::run::rounds::{BatchCounts, Run};
+use crate::transport::run::state::RunState;
 use crate::transport::tally::Counts;
 use crate::transport::tally::sums::fold_aligned;
 use rayon::prelude::*;
@@ -60,7 +60,7 @@ impl Run<'_> {
         let mut first = batches.start;
         while first < batches.end {
             let end = (first + piece).min(batches.end);
-            let traced: Option<Vec<Batch>> =
+            let traced: Option<Vec<BatchCounts>> =
                 (first..end).into_par_iter().map(|batch| self.batch(batch, &self.signal)).collect();
             traced?.into_iter().for_each(|batch| slice.add(batch));
             first = end;
@@ -70,7 +70,7 @@ impl Run<'_> {
     }
 
     /// The state of the whole run from all of its slices, in their order.
-    pub fn state_of_slices(&self, slices: Vec<Slice>) -> State {
+    pub fn state_of_slices(&self, slices: Vec<Slice>) -> RunState {
         let batches = slices.last().map_or(0, |slice| slice.of);
         let (mut photons, mut others) = (Vec::new(), vec![Vec::new(); self.others.len()]);
         for slice in slices {
@@ -84,7 +84,7 @@ impl Run<'_> {
 }
 
 impl Slice {
-    fn add(&mut self, batch: Batch) {
+    fn add(&mut self, batch: BatchCounts) {
         fold_aligned(&mut self.photons, batch.photons);
         for (nodes, counts) in self.others.iter_mut().zip(batch.others) {
             fold_aligned(nodes, counts);

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// Progress of a run: everything counted, including a wave in progress. All else follows from scene
 /// and plan.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct State {
+pub struct RunState {
     batches: u64,
     paths: u64,
     photons: Series,
@@ -21,7 +21,7 @@ pub struct State {
     pass: Option<[u64; 2]>,
 }
 
-impl State {
+impl RunState {
     /// The plan that prepares a run of this state again. Without a clock the same plan gives the
     /// same run.
     pub fn plan(&self, plan: &RunPlan) -> RunPlan {
@@ -37,14 +37,14 @@ impl State {
 
 impl Run<'_> {
     /// The current state.
-    pub fn state(&self) -> State {
+    pub fn state(&self) -> RunState {
         let others = self.others.iter().map(|(_, series)| series.clone()).collect();
         self.state_of(self.batches, self.paths, self.photons.clone(), others)
     }
 
     /// Restores the state of a run of the same scene and plan; it continues to the same bits.
-    pub fn restore(&mut self, state: State) {
-        let State { batches, paths, photons, others, choices, .. } = state;
+    pub fn restore(&mut self, state: RunState) {
+        let RunState { batches, paths, photons, others, choices, .. } = state;
         (self.batches, self.paths, self.photons) = (batches, paths, photons);
         self.choices = choices;
         for ((_, own), series) in self.others.iter_mut().zip(others) {
@@ -58,15 +58,15 @@ impl Run<'_> {
         batches: u64,
         photons: Vec<Counts>,
         others: Vec<Vec<Counts>>,
-    ) -> State {
+    ) -> RunState {
         let others = others.into_iter().map(Series::of_nodes).collect();
         let paths = batches * self.batch_paths();
         self.state_of(batches, paths, Series::of_nodes(photons), others)
     }
 
-    fn state_of(&self, batches: u64, paths: u64, photons: Series, others: Vec<Series>) -> State {
+    fn state_of(&self, batches: u64, paths: u64, photons: Series, others: Vec<Series>) -> RunState {
         let settings = self.others.iter().find_map(|(own, series)| own.found(series).settings);
-        State {
+        RunState {
             batches,
             paths,
             photons,

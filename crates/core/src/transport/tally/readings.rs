@@ -41,7 +41,7 @@ pub struct Group {
 
 /// One step of a path class: a face, and whether the light was reflected or transmitted there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub struct Step {
+pub struct ClassStep {
     /// Index of the face.
     pub face: u32,
     /// Whether the light was transmitted.
@@ -50,7 +50,7 @@ pub struct Step {
 
 /// A path class: the steps of a path, with repeats of a step counted once; `None` ends a trail that
 /// was cut off.
-pub type Trail = SmallVec<[Option<Step>; 8]>;
+pub type Trail = SmallVec<[Option<ClassStep>; 8]>;
 
 /// Flux of a path class.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]

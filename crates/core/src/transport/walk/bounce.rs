@@ -6,7 +6,7 @@
 
 use crate::optics::{Lobe, Scattered, Side, VolumeScattering};
 use crate::rng::{Dimension, Numbers, Sampler};
-use crate::scene::{Hits, Meeting, On, Ray, Scene, Visibility};
+use crate::scene::{Hits, MeetingPoint, On, Ray, Scene, Visibility};
 use crate::transport::walk::event::{
     Carries, Collision, Departure, Event, Observer, Segment, Vertex,
 };
@@ -111,7 +111,7 @@ fn bounce<V: Observer>(
     observer: &mut V,
 ) -> ControlFlow<(), Ray> {
     let (point, dir) = (ray.at(hits.distance()), ray.dir());
-    let interface = scene.interface(hits, &Meeting { point, dir }, &path.inside, path.medium);
+    let interface = scene.interface(hits, &MeetingPoint { point, dir }, &path.inside, path.medium);
     let vertex = Vertex { point, dir, hits, interface: &interface, throughput: path.throughput };
     observer.see(path, Event::Arrive(&vertex))?;
     let out = match interface.visibility {

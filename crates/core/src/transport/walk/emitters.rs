@@ -3,10 +3,10 @@
 //! Points, lines and collimated beams have no radiance that a ray could meet; an estimator that
 //! must meet such sources is refused.
 
-use crate::scene::shape::{Crossing, Shape, Start};
+use crate::scene::shape::{Crossing, RayStart, Shape};
 use crate::scene::{
     Emission, EmitSide, Emitter, EmitterKind, PrimId, Scene, SolidId, Source, SourceId,
-    Start as SourceStart,
+    StartSolids as SourceStart,
 };
 use crate::transport::{MetEmission, Path, Segment};
 use glam::DVec3;
@@ -20,19 +20,19 @@ const AT_START: f64 = 1e-9;
 #[derive(Debug)]
 pub struct Emitters<'s> {
     scene: &'s Scene,
-    seen: Vec<Seen<'s>>,
+    seen: Vec<SeenSource<'s>>,
 }
 
 /// A source that rays can meet.
 #[derive(Debug)]
-struct Seen<'s> {
+struct SeenSource<'s> {
     id: SourceId,
     emission: &'s Emission,
-    body: Body<'s>,
+    body: EmittingBody<'s>,
 }
 
 #[derive(Debug)]
-enum Body<'s> {
+enum EmittingBody<'s> {
     Surface {
         shapes: &'s [(Shape, f64)],
         shining: Shining<'s>,
@@ -123,7 +123,7 @@ impl<'s> Emitters<'s> {
         let visible =
             visible.filter(|(_, source)| source.is_lit() && invisible(source, scene).is_none());
         let seen = visible.filter_map(|(index, source)| {
-            Some(Seen {
+            Some(SeenSource {
                 id: SourceId::new(index),
                 emission: &source.emission,
                 body: body(scene, source)?,
@@ -142,12 +142,12 @@ impl<'s> Emitters<'s> {
     ) {
         for seen in &self.seen {
             match &seen.body {
-                Body::Surface { bounds, .. } => {
+                EmittingBody::Surface { bounds, .. } => {
                     if bounds.is_near(segment.ray.origin(), segment.ray.at(segment.length)) {
                         self.surface(seen, path, segment, start, &mut visit);
                     }
                 }
-                Body::Volume { solid, density, .. } => {
+                EmittingBody::Volume { solid, density, .. } => {
                     if path.inside.contains(*solid) {
                         let radiance = self.volume(seen, *density, path, segment);
                         let emitted = self.volume_radiance(seen, path, -path.ray.dir());
@@ -165,13 +165,13 @@ impl<'s> Emitters<'s> {
 
     fn surface(
         &self,
-        seen: &Seen<'_>,
+        seen: &SeenSource<'_>,
         path: &Path,
         segment: &Segment<'_>,
         start: SegmentStart,
         visit: &mut impl FnMut(MetEmission),
     ) {
-        let Body::Surface { shapes, shining, on, contact, .. } = &seen.body else { return };
+        let EmittingBody::Surface { shapes, shining, on, contact, .. } = &seen.body else { return };
         let (scene, ray) = (self.scene, segment.ray);
         let tolerance = scene.tolerance;
         let medium = &scene.media[segment.medium.index()];
@@ -191,7 +191,7 @@ impl<'s> Emitters<'s> {
         };
         for (place, (shape, _)) in shapes.iter().enumerate() {
             let starts_there = on.get(place).is_some_and(|prim| path.on.contains(*prim));
-            let shape_start = if starts_there { Start::On } else { Start::Elsewhere };
+            let shape_start = if starts_there { RayStart::On } else { RayStart::Elsewhere };
             shape.crossings(ray, shape_start, |Crossing { t, .. }| {
                 if t < from || t > to {
                     return;
@@ -217,25 +217,31 @@ impl<'s> Emitters<'s> {
     pub(crate) fn emitted(&self, source: SourceId, path: &Path, shape: usize) -> f64 {
         let Some(seen) = self.seen.iter().find(|seen| seen.id == source) else { return 0.0 };
         match &seen.body {
-            Body::Surface { shapes, shining, .. } => {
+            EmittingBody::Surface { shapes, shining, .. } => {
                 let index = self.scene.media[path.medium.index()].index(path.wavelength);
                 shining.radiance(&shapes[shape].0, path.ray.origin(), path.ray.dir(), index)
             }
-            Body::Volume { .. } => self.volume_radiance(seen, path, path.ray.dir()),
+            EmittingBody::Volume { .. } => self.volume_radiance(seen, path, path.ray.dir()),
         }
     }
 
     /// Basic radiance of a path of usual length through a glowing solid, lm/(mm² sr); 0 for a
     /// surface.
-    fn volume_radiance(&self, seen: &Seen<'_>, path: &Path, out: DVec3) -> f64 {
-        let Body::Volume { density, usual_length, .. } = &seen.body else { return 0.0 };
+    fn volume_radiance(&self, seen: &SeenSource<'_>, path: &Path, out: DVec3) -> f64 {
+        let EmittingBody::Volume { density, usual_length, .. } = &seen.body else { return 0.0 };
         let index = self.scene.media[path.medium.index()].index(path.wavelength);
         let law = seen.emission.density(EmitterKind::Volume, out).unwrap_or(0.0);
         density * law * usual_length / (index * index)
     }
 
     /// Emission along a segment in a glowing solid: ∫ ε exp(-αs) ds, lm/(mm² sr), over n².
-    fn volume(&self, seen: &Seen<'_>, density: f64, path: &Path, segment: &Segment<'_>) -> f64 {
+    fn volume(
+        &self,
+        seen: &SeenSource<'_>,
+        density: f64,
+        path: &Path,
+        segment: &Segment<'_>,
+    ) -> f64 {
         let medium = &self.scene.media[segment.medium.index()];
         let index = medium.index(path.wavelength);
         let absorption = medium.absorption(path.wavelength);
@@ -279,9 +285,9 @@ impl Shining<'_> {
     }
 }
 
-fn body<'s>(scene: &'s Scene, source: &'s Source) -> Option<Body<'s>> {
+fn body<'s>(scene: &'s Scene, source: &'s Source) -> Option<EmittingBody<'s>> {
     match &source.emitter {
-        Emitter::Surface { shapes, side, frame } => Some(Body::Surface {
+        Emitter::Surface { shapes, side, frame } => Some(EmittingBody::Surface {
             shapes,
             shining: Shining {
                 emission: &source.emission,
@@ -292,7 +298,7 @@ fn body<'s>(scene: &'s Scene, source: &'s Source) -> Option<Body<'s>> {
             contact: contact(source),
             bounds: source.emitter.bounds().grown(2.0 * AT_START * scene.bounds.diagonal()),
         }),
-        Emitter::Far { shapes, center, reach, .. } => Some(Body::Surface {
+        Emitter::Far { shapes, center, reach, .. } => Some(EmittingBody::Surface {
             shapes,
             shining: Shining {
                 emission: &source.emission,
@@ -305,7 +311,7 @@ fn body<'s>(scene: &'s Scene, source: &'s Source) -> Option<Body<'s>> {
         }),
         Emitter::Volume { solid, .. } => {
             let volume = scene.solids[solid.index()].volume?;
-            Some(Body::Volume {
+            Some(EmittingBody::Volume {
                 solid: *solid,
                 density: source.flux / volume,
                 usual_length: volume.cbrt(),

@@ -4,10 +4,10 @@
 //! on the way. The observer decides at every visible interface whether it continues.
 
 use crate::rng::{Numbers, Sampler};
-use crate::scene::shape::{Crossing, Start, Toward};
+use crate::scene::shape::{Crossing, RayStart, Toward};
 use crate::scene::{
-    Arrival, Arrivals, Begins, Counts, Owner, Passage, Place, Ray, Scene, SensorId, SensorKind,
-    SurfaceSensor, Visibility,
+    Arrival, Arrivals, Begins, CountedLight, Owner, Passage, Place, Ray, Scene, SensorId,
+    SensorKind, SurfaceSensor, Visibility,
 };
 use crate::transport::stop::Pace;
 use crate::transport::walk::emitters::{Emitters, SegmentStart};
@@ -43,8 +43,8 @@ pub fn follow(
     let path = Path::arriving(gathering.scene, arrival);
     let (stage, limit) = match arrival.begins {
         // A photon is counted as it leaves the face, before it can be cut there.
-        Begins::BeforeFace => (Leg::BeforeFace, gathering.bounce_limit.saturating_add(1)),
-        Begins::OnSensor => (Leg::First, gathering.bounce_limit),
+        Begins::BeforeFace => (FollowedLeg::BeforeFace, gathering.bounce_limit.saturating_add(1)),
+        Begins::OnSensor => (FollowedLeg::First, gathering.bounce_limit),
     };
     let mut follower = Follower::new(gathering, observer, stage);
     walk(gathering.scene, path, limit, sampler, &mut follower);
@@ -58,7 +58,7 @@ pub fn follow_on(
     sampler: &mut Sampler<impl Numbers>,
     observer: &mut impl Observer,
 ) -> u64 {
-    let mut follower = Follower::new(gathering, observer, Leg::Beyond);
+    let mut follower = Follower::new(gathering, observer, FollowedLeg::Beyond);
     walk(gathering.scene, path, gathering.bounce_limit, sampler, &mut follower);
     follower.segments
 }
@@ -85,7 +85,7 @@ pub(crate) fn etendue_of(
 
 /// Progress of a gather path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Leg {
+enum FollowedLeg {
     /// It has yet to meet the sensor's own face.
     BeforeFace,
     /// It is on its first segment, which must pass through the aim.
@@ -97,7 +97,7 @@ enum Leg {
 struct Follower<'a, 's, 'o, O> {
     gathering: Gathering<'a, 's>,
     observer: &'o mut O,
-    stage: Leg,
+    stage: FollowedLeg,
     /// Emission met at the end of the first segment: it counts if the segment ends at the aim.
     before_aim: SmallVec<[MetEmission; 2]>,
     segments: u64,
@@ -108,7 +108,7 @@ struct Follower<'a, 's, 'o, O> {
 }
 
 impl<'a, 's, 'o, O: Observer> Follower<'a, 's, 'o, O> {
-    fn new(gathering: Gathering<'a, 's>, observer: &'o mut O, stage: Leg) -> Self {
+    fn new(gathering: Gathering<'a, 's>, observer: &'o mut O, stage: FollowedLeg) -> Self {
         let first_passage = match &gathering.scene.sensors[gathering.sensor.index()].kind {
             SensorKind::Surface(surface) if surface.passage == Passage::First => Some(surface),
             SensorKind::Surface(_) | SensorKind::Goniometer(_) => None,
@@ -145,7 +145,7 @@ impl<'a, 's, 'o, O: Observer> Follower<'a, 's, 'o, O> {
         let least = if self.segments == 1 { tolerance } else { -tolerance };
         let mut nearest: Option<f64> = None;
         for patch in sensor.faces.iter().flat_map(|&face| scene.face_patches(face)) {
-            patch.crossings(segment.ray, Start::Elsewhere, |Crossing { t, toward }| {
+            patch.crossings(segment.ray, RayStart::Elsewhere, |Crossing { t, toward }| {
                 let is_within = t > least && t < segment.length - tolerance;
                 if is_within && sensor.sides.include(sensor.counts, toward.opposite()) {
                     nearest = Some(nearest.map_or(t, |other| other.min(t)));
@@ -160,8 +160,8 @@ impl<'a, 's, 'o, O: Observer> Follower<'a, 's, 'o, O> {
     fn has_passed(&self, vertex: &Vertex<'_>, departure: &Departure) -> bool {
         let Some(sensor) = self.first_passage.filter(|_| !self.at_own_face) else { return false };
         let light = match sensor.counts {
-            Counts::Incident => -departure.dir,
-            Counts::Leaving => -vertex.dir,
+            CountedLight::Incident => -departure.dir,
+            CountedLight::Leaving => -vertex.dir,
         };
         sensor.place == Place::Face
             && vertex.hits.all().filter(|hit| sensor.faces.contains(&hit.face)).any(|hit| {
@@ -174,16 +174,16 @@ impl<'a, 's, 'o, O: Observer> Follower<'a, 's, 'o, O> {
         let Gathering { scene, emitters, sensor, .. } = self.gathering;
         match self.stage {
             // Emission from the face itself does not leave by the action of the face.
-            Leg::BeforeFace => {}
-            Leg::Beyond => {
+            FollowedLeg::BeforeFace => {}
+            FollowedLeg::Beyond => {
                 emitters.along(path, segment, SegmentStart::Interface, |met| {
                     _ = self.observer.see(path, Event::Meet(&met));
                 });
             }
-            Leg::First => {
+            FollowedLeg::First => {
                 let opening = aim_opening(scene, sensor, segment);
                 if opening.is_some() {
-                    self.stage = Leg::Beyond;
+                    self.stage = FollowedLeg::Beyond;
                 }
                 let from = opening.unwrap_or(segment.length) - scene.tolerance;
                 // Only a sensor on a face starts paths on a surface.
@@ -206,7 +206,7 @@ impl<'a, 's, 'o, O: Observer> Follower<'a, 's, 'o, O> {
     }
 
     fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>) -> ControlFlow<()> {
-        if self.stage == Leg::First {
+        if self.stage == FollowedLeg::First {
             let aim = &self.gathering.scene.sensors[self.gathering.sensor.index()].aim;
             if !vertex.hits.all().any(|hit| aim.contains(&hit.face)) {
                 return ControlFlow::Break(());
@@ -215,8 +215,8 @@ impl<'a, 's, 'o, O: Observer> Follower<'a, 's, 'o, O> {
                 _ = self.observer.see(path, Event::Meet(&met));
             }
         }
-        self.at_own_face = self.stage == Leg::BeforeFace;
-        self.stage = Leg::Beyond;
+        self.at_own_face = self.stage == FollowedLeg::BeforeFace;
+        self.stage = FollowedLeg::Beyond;
         match vertex.interface.visibility {
             Visibility::Visible => self.observer.see(path, Event::Arrive(vertex)),
             Visibility::Invisible => ControlFlow::Continue(()),
@@ -226,8 +226,10 @@ impl<'a, 's, 'o, O: Observer> Follower<'a, 's, 'o, O> {
     fn collide(&mut self, path: &Path, collision: &Collision<'_>) -> ControlFlow<()> {
         match self.stage {
             // Light that is scattered in front of the aim does not pass through it.
-            Leg::First => ControlFlow::Break(()),
-            Leg::BeforeFace | Leg::Beyond => self.observer.see(path, Event::Collide(collision)),
+            FollowedLeg::First => ControlFlow::Break(()),
+            FollowedLeg::BeforeFace | FollowedLeg::Beyond => {
+                self.observer.see(path, Event::Collide(collision))
+            }
         }
     }
 }
@@ -275,7 +277,7 @@ fn aim_opening(scene: &Scene, sensor: SensorId, segment: &Segment<'_>) -> Option
     let mut opening: Option<f64> = None;
     for &face in aim.iter().filter(|face| scene.faces[face.index()].owner == Owner::Port) {
         for patch in scene.face_patches(face) {
-            patch.crossings(segment.ray, Start::Elsewhere, |Crossing { t, .. }| {
+            patch.crossings(segment.ray, RayStart::Elsewhere, |Crossing { t, .. }| {
                 if t > 0.0 && t <= segment.length + scene.tolerance {
                     opening = Some(opening.map_or(t, |first| first.min(t)));
                 }

@@ -66,7 +66,7 @@ fn finish_of(scene: &Scene, finish: Option<FinishId>) -> &Bsdf {
 }
 
 /// An interface as a gather path meets it.
-pub struct Facing<'s> {
+pub struct MetInterface<'s> {
     /// The finishes that act on light from either side.
     pub faces: Faces<'s>,
     /// Incidence of the path about the acting normal.
@@ -76,7 +76,7 @@ pub struct Facing<'s> {
 }
 
 /// An interface as a gather path meets it at a vertex.
-pub fn facing<'s>(scene: &'s Scene, path: &Path, vertex: &Vertex<'_>) -> Facing<'s> {
+pub fn facing<'s>(scene: &'s Scene, path: &Path, vertex: &Vertex<'_>) -> MetInterface<'s> {
     let interface = vertex.interface;
     let toward = interface.acting.toward;
     let faces = Faces {
@@ -100,7 +100,7 @@ pub fn facing<'s>(scene: &'s Scene, path: &Path, vertex: &Vertex<'_>) -> Facing<
         }
     };
     let index = |medium: MediumId| scene.media[medium.index()].index(path.wavelength);
-    Facing {
+    MetInterface {
         faces,
         incidence: Incidence {
             dir: vertex.dir,
@@ -125,7 +125,7 @@ pub fn scatter_radiance(
     Some(facing.corrected(out))
 }
 
-impl Facing<'_> {
+impl MetInterface<'_> {
     /// Effect of an interpolated normal on basic radiance. Flux through the facet is conserved and
     /// solid angles turn about the acting normal n, so that `L* |cos_f| dω n²` is, with `cos_f` to
     /// the facet: the factor is `|cos_f(i)/cos_n(i)| |cos_n(o)/cos_f(o)|`, i where the path

@@ -4,7 +4,7 @@ use crate::keys::Key;
 use crate::lower::context::Context;
 use crate::lower::patterns::ground::Ground;
 use crate::spec::pattern::{AlongSpec, GridSpec, HexagonalSpec, LawSpec, LayoutSpec, RowSpec};
-use lumiduct_core::scene::pattern::{Along, Columns, Graded, Rows};
+use lumiduct_core::scene::pattern::{Columns, Graded, RowPositions, TableAlong};
 use lumiduct_core::scene::shape::ChartRect;
 
 /// Pieces that approximate a power law.
@@ -21,7 +21,7 @@ impl Context<'_> {
         spec: &LayoutSpec,
         ground: &Ground,
         key: &Key,
-    ) -> Option<(Rows, Columns)> {
+    ) -> Option<(RowPositions, Columns)> {
         let (rows, columns) = match spec {
             LayoutSpec::Row(row) => self.row(row, ground, &key.field("row"))?,
             LayoutSpec::Grid(grid) => self.grid(grid, 0.0, ground, &key.field("grid"))?,
@@ -40,7 +40,12 @@ impl Context<'_> {
         Some((rows, columns))
     }
 
-    fn row(&mut self, spec: &RowSpec, ground: &Ground, key: &Key) -> Option<(Rows, Columns)> {
+    fn row(
+        &mut self,
+        spec: &RowSpec,
+        ground: &Ground,
+        key: &Key,
+    ) -> Option<(RowPositions, Columns)> {
         let middle = 0.5 * (ground.rect.min.x + ground.rect.max.x);
         let first = match (spec.around_deg, spec.across_mm, ground.radius) {
             (Some(_), Some(_), _) => {
@@ -70,7 +75,7 @@ impl Context<'_> {
                     );
                     return None;
                 }
-                Rows::Listed(positions.iter().map(|position| start + position).collect())
+                RowPositions::Listed(positions.iter().map(|position| start + position).collect())
             }
             (None, Some(pitch)) => {
                 let along =
@@ -89,7 +94,7 @@ impl Context<'_> {
         stagger: f64,
         ground: &Ground,
         key: &Key,
-    ) -> Option<(Rows, Columns)> {
+    ) -> Option<(RowPositions, Columns)> {
         let along = self.range(spec.along_mm, ground, Axis::Along, &key.field("along_mm"))?;
         let rows = self.rows(&spec.pitch_mm, along, ground, &key.field("pitch_mm"))?;
         let pitch = spec.across_pitch_mm;
@@ -125,7 +130,7 @@ impl Context<'_> {
         [from, to]: [f64; 2],
         ground: &Ground,
         key: &Key,
-    ) -> Option<Rows> {
+    ) -> Option<RowPositions> {
         let along = self.along(pitch, ground, key)?;
         if (to - from) / along.smallest() > MOST_ROWS {
             self.problems.error(key, format!("makes more than {MOST_ROWS} rows"));
@@ -135,9 +140,11 @@ impl Context<'_> {
             AlongSpec::Same(pitch) => {
                 let count = ((to - from) / pitch * (1.0 + WHOLE)).floor();
                 let first = from + 0.5 * (to - from - (count - 1.0) * pitch);
-                Rows::Even { first, pitch: *pitch, count: count as usize }
+                RowPositions::Even { first, pitch: *pitch, count: count as usize }
             }
-            AlongSpec::Table(_) | AlongSpec::Law(_) => Rows::Graded(Graded::new(&along, from, to)),
+            AlongSpec::Table(_) | AlongSpec::Law(_) => {
+                RowPositions::Graded(Graded::new(&along, from, to))
+            }
         })
     }
 
@@ -147,10 +154,10 @@ impl Context<'_> {
         spec: &AlongSpec,
         ground: &Ground,
         key: &Key,
-    ) -> Option<Along> {
+    ) -> Option<TableAlong> {
         let start = ground.rect.min.y;
         match spec {
-            AlongSpec::Same(length) => Some(Along::constant(*length)),
+            AlongSpec::Same(length) => Some(TableAlong::constant(*length)),
             AlongSpec::Table(knots) => {
                 if let Some(at) = knots.iter().position(|knot| knot[1].is_nan() || knot[1] <= 0.0) {
                     self.problems.error(
@@ -159,14 +166,14 @@ impl Context<'_> {
                     );
                     return None;
                 }
-                let along = Along::table(knots.clone());
+                let along = TableAlong::table(knots.clone());
                 if along.is_none() {
                     self.problems.error(key, "the places of the table do not increase");
                 }
                 along.map(|along| along.shifted(start))
             }
             AlongSpec::Law(law) => {
-                Along::table(law_knots(law, ground.size().y)).map(|along| along.shifted(start))
+                TableAlong::table(law_knots(law, ground.size().y)).map(|along| along.shifted(start))
             }
         }
     }

@@ -9,7 +9,7 @@ use crate::lower::context::Context;
 use crate::lower::patterns::ground::Ground;
 use crate::spec::pattern::{ElementSpec, PatternSpec};
 use crate::spec::sheet::{SheetCommon, SheetSpec};
-use lumiduct_core::scene::pattern::{Field, HoleWall, Outline, Pattern};
+use lumiduct_core::scene::pattern::{ElementField, ElementOutline, HoleWall, Pattern};
 
 impl Context<'_> {
     /// Places the patterns on their faces.
@@ -56,7 +56,7 @@ impl Context<'_> {
     /// Whether the elements of a field do not overlap and lie on their face.
     pub(super) fn check_field(
         &mut self,
-        field: &Field,
+        field: &ElementField,
         ground: &Ground,
         on: &str,
         key: &Key,
@@ -90,18 +90,20 @@ impl Context<'_> {
         Some(())
     }
 
-    fn field(&mut self, spec: &PatternSpec, ground: &Ground, key: &Key) -> Option<Field> {
+    fn field(&mut self, spec: &PatternSpec, ground: &Ground, key: &Key) -> Option<ElementField> {
         let outline = match &spec.element {
             ElementSpec::Circle(circle) => {
                 let place = key.field("element").field("circle").field("diameter_mm");
-                Outline::Circle { diameter: self.along(&circle.diameter_mm, ground, &place)? }
+                ElementOutline::Circle {
+                    diameter: self.along(&circle.diameter_mm, ground, &place)?,
+                }
             }
             ElementSpec::Rectangle(r) => {
-                Outline::Rectangle { width: r.width_mm, length: r.length_mm }
+                ElementOutline::Rectangle { width: r.width_mm, length: r.length_mm }
             }
         };
         let layout = key.field("layout");
         let (rows, columns) = self.rows_and_columns(&spec.layout, ground, &layout)?;
-        Some(Field { rows, columns, outline, period: ground.period() })
+        Some(ElementField { rows, columns, outline, period: ground.period() })
     }
 }

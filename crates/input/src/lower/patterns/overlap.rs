@@ -3,11 +3,16 @@
 use crate::keys::Key;
 use crate::lower::context::Context;
 use lumiduct_core::scene::FaceId;
-use lumiduct_core::scene::pattern::Field;
+use lumiduct_core::scene::pattern::ElementField;
 
 impl Context<'_> {
     /// Whether a field does not overlap the patterns and reliefs already on its face.
-    pub(in crate::lower) fn is_clear(&mut self, face: FaceId, field: &Field, key: &Key) -> bool {
+    pub(in crate::lower) fn is_clear(
+        &mut self,
+        face: FaceId,
+        field: &ElementField,
+        key: &Key,
+    ) -> bool {
         let scene = self.builder.scene();
         let patterns = scene.patterns.iter().filter(|other| other.face == face);
         let patterns = patterns.map(|other| ("pattern", &other.name, &other.field));

@@ -5,8 +5,8 @@ use crate::lower::context::Context;
 use crate::lower::reliefs::wall::Wall;
 use crate::spec::pattern::AlongSpec;
 use crate::spec::relief::{CourseSpec, ReliefElementSpec};
-use lumiduct_core::scene::pattern::{Along, Field};
-use lumiduct_core::scene::relief::{CapSize, Element, Form, Span, Way};
+use lumiduct_core::scene::pattern::{ElementField, TableAlong};
+use lumiduct_core::scene::relief::{CapSize, Element, ElementForm, Way, WedgeSpan};
 
 /// The common keys of a groove and a ridge.
 struct WedgeKeys<'s> {
@@ -84,14 +84,14 @@ impl Context<'_> {
                     self.along(&pyramid.height_mm, &wall.unrolled, &key.field("height_mm"))?;
                 self.require_flat(wall, &key)?;
                 let (width, length) = (pyramid.width_mm, pyramid.length_mm);
-                (Form::Pyramid { width, length, height }, Way::OutOf)
+                (ElementForm::Pyramid { width, length, height }, Way::OutOf)
             }
             ReliefElementSpec::Pit(pit) => {
                 let key = key.field("pit");
                 let height = self.along(&pit.depth_mm, &wall.unrolled, &key.field("depth_mm"))?;
                 self.require_flat(wall, &key)?;
                 let (width, length) = (pit.width_mm, pit.length_mm);
-                (Form::Pyramid { width, length, height }, Way::Into)
+                (ElementForm::Pyramid { width, length, height }, Way::Into)
             }
         };
         Some(Element { form, way, round: wall.unrolled.radius })
@@ -107,7 +107,7 @@ impl Context<'_> {
         Some(())
     }
 
-    fn cap(&mut self, keys: &CapKeys<'_>, wall: &Wall, key: &Key) -> Option<Form> {
+    fn cap(&mut self, keys: &CapKeys<'_>, wall: &Wall, key: &Key) -> Option<ElementForm> {
         let height = self.along(keys.height, &wall.unrolled, &key.field(keys.height_key))?;
         let size = match (keys.radius, keys.diameter) {
             (Some(radius), _) => {
@@ -119,11 +119,12 @@ impl Context<'_> {
             // Validated: one of the two is given.
             (None, None) => return None,
         };
-        Some(Form::Cap { size, height })
+        Some(ElementForm::Cap { size, height })
     }
 
-    fn wedge(&mut self, keys: &WedgeKeys<'_>, wall: &Wall, key: &Key) -> Option<Form> {
-        let height: Along = self.along(keys.height, &wall.unrolled, &key.field(keys.height_key))?;
+    fn wedge(&mut self, keys: &WedgeKeys<'_>, wall: &Wall, key: &Key) -> Option<ElementForm> {
+        let height: TableAlong =
+            self.along(keys.height, &wall.unrolled, &key.field(keys.height_key))?;
         let angles = match (keys.angle_deg, keys.flank_angles_deg) {
             (Some(angle), _) => [90.0 - 0.5 * angle; 2],
             (None, Some(flanks)) => self.flanks(flanks, &key.field("flank_angles_deg"))?,
@@ -152,11 +153,11 @@ impl Context<'_> {
                     .hint("course = \"ring\" puts it all around");
                 return None;
             }
-            (CourseSpec::Ring, _) => Span::Ring,
-            (CourseSpec::Straight, Some(length)) => Span::Within(length),
-            (CourseSpec::Straight, None) => Span::Through(wall.unrolled.size().x),
+            (CourseSpec::Ring, _) => WedgeSpan::Ring,
+            (CourseSpec::Straight, Some(length)) => WedgeSpan::Within(length),
+            (CourseSpec::Straight, None) => WedgeSpan::Through(wall.unrolled.size().x),
         };
-        Some(Form::Wedge { height, slopes, span })
+        Some(ElementForm::Wedge { height, slopes, span })
     }
 
     fn flanks(&mut self, flanks: [f64; 2], key: &Key) -> Option<[f64; 2]> {
@@ -183,7 +184,7 @@ impl Context<'_> {
     pub(super) fn check_heights(
         &mut self,
         element: &Element,
-        field: &Field,
+        field: &ElementField,
         wall: &Wall,
         on: &str,
         key: &Key,

@@ -9,8 +9,8 @@ use crate::lower::context::Context;
 use crate::lower::reliefs::wall::Wall;
 use crate::spec::pattern::LayoutSpec;
 use crate::spec::relief::ReliefSpec;
-use lumiduct_core::scene::pattern::{Field, Outline};
-use lumiduct_core::scene::relief::{Relief, Span};
+use lumiduct_core::scene::pattern::{ElementField, ElementOutline};
+use lumiduct_core::scene::relief::{Relief, WedgeSpan};
 
 /// Most elements of a relief: each has its own surfaces.
 const MOST_ELEMENTS: u64 = 1_000_000;
@@ -58,14 +58,14 @@ impl Context<'_> {
     ) -> Option<Relief> {
         let element = self.relief_element(&spec.element, wall, &key.field("element"))?;
         let layout = key.field("layout");
-        if element.span() == Some(Span::Ring) {
+        if element.span() == Some(WedgeSpan::Ring) {
             self.require_plain_row(&spec.layout, &layout)?;
         }
         let (rows, columns) = self.rows_and_columns(&spec.layout, &wall.unrolled, &layout)?;
-        let field = Field {
+        let field = ElementField {
             rows,
             columns,
-            outline: Outline::Relief(Box::new(element.clone())),
+            outline: ElementOutline::Relief(Box::new(element.clone())),
             period: wall.unrolled.period(),
         };
         if field.count() > MOST_ELEMENTS {

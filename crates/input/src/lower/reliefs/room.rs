@@ -3,8 +3,8 @@
 use crate::keys::Key;
 use crate::lower::context::Context;
 use glam::{DVec2, DVec3};
-use lumiduct_core::scene::relief::{Ground, Relief, Site, Span, Way};
-use lumiduct_core::scene::shape::{Shape, Start};
+use lumiduct_core::scene::relief::{Relief, ReliefWall, Site, Way, WedgeSpan};
+use lumiduct_core::scene::shape::{RayStart, Shape};
 use lumiduct_core::scene::{Owner, Patch, Ray, Scene};
 
 /// Normals that differ by less are equal up to rounding, 1. Lengths likewise, as a share of the
@@ -17,15 +17,15 @@ const INSET: f64 = 1e-6;
 impl Context<'_> {
     /// The patches of the solid in which grooves from side to side end, with their walls; none for
     /// other elements.
-    pub(super) fn sides(&mut self, relief: &Relief, key: &Key) -> Option<Vec<(usize, Ground)>> {
-        let (Some(Span::Through(width)), Way::Into, None) =
+    pub(super) fn sides(&mut self, relief: &Relief, key: &Key) -> Option<Vec<(usize, ReliefWall)>> {
+        let (Some(WedgeSpan::Through(width)), Way::Into, None) =
             (relief.element.span(), relief.element.way, relief.element.round)
         else {
             return Some(Vec::new());
         };
         let scene = self.builder.scene();
         let walls: Vec<(usize, &Patch)> = walls_of(scene, scene.owner(relief.wall)).collect();
-        let mut sides: Vec<(usize, Ground)> = Vec::new();
+        let mut sides: Vec<(usize, ReliefWall)> = Vec::new();
         for (place, middle) in relief.field.places() {
             let site = relief.ground.site(middle);
             for side in [-1.0, 1.0] {
@@ -38,7 +38,9 @@ impl Context<'_> {
                     return None;
                 };
                 if sides.iter().all(|(index, _)| *index != found) {
-                    sides.extend(Ground::of(&scene.patches[found]).map(|ground| (found, ground)));
+                    sides.extend(
+                        ReliefWall::of(&scene.patches[found]).map(|ground| (found, ground)),
+                    );
                 }
             }
         }
@@ -100,7 +102,7 @@ fn side_at(walls: &[(usize, &Patch)], point: DVec3, outward: DVec3, width: f64) 
     let found = walls.iter().find(|(_, patch)| {
         let Shape::Flat(flat) = &patch.shape else { return false };
         let mut holds = false;
-        patch.shape.crossings(&ray, Start::Elsewhere, |crossing| {
+        patch.shape.crossings(&ray, RayStart::Elsewhere, |crossing| {
             holds |= (crossing.t / width - 1.0).abs() < ROUNDING;
         });
         holds && flat.frame().z.distance(outward) < ROUNDING
@@ -130,7 +132,7 @@ fn room_at(scene: &Scene, relief: &Relief, walls: &[(usize, &Patch)], site: &Sit
     let ray = Ray::new(site.origin, dir);
     let mut room = f64::INFINITY;
     for (_, wall) in walls.iter().filter(|(_, wall)| wall.face != relief.wall) {
-        wall.shape.crossings(&ray, Start::Elsewhere, |crossing| {
+        wall.shape.crossings(&ray, RayStart::Elsewhere, |crossing| {
             let sunk = scene
                 .reliefs
                 .iter()

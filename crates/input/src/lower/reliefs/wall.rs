@@ -9,7 +9,7 @@ use lumiduct_core::scene::{Owner, relief};
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Wall {
     pub(super) unrolled: Ground,
-    pub(super) ground: relief::Ground,
+    pub(super) ground: relief::ReliefWall,
 }
 
 impl Context<'_> {
@@ -19,7 +19,7 @@ impl Context<'_> {
         let scene = self.builder.scene();
         let is_solid = matches!(scene.owner(unrolled.face), Owner::Solid(_));
         let ground = match scene.face_patches(unrolled.face) {
-            [patch] => relief::Ground::of(patch),
+            [patch] => relief::ReliefWall::of(patch),
             [] | [_, _, ..] => None,
         };
         let (true, Some(ground)) = (is_solid, ground) else {

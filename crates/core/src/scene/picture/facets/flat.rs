@@ -1,6 +1,6 @@
 //! Flat outlines with corners, and with holes, which no grid fits.
 
-use crate::scene::picture::facets::triangles::Facets;
+use crate::scene::picture::facets::triangles::Triangulation;
 use crate::scene::shape::{Flat, Region};
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::planar::triangulate;
@@ -9,7 +9,7 @@ use lumiduct_base::math::planar::triangulate;
 const ROUND: usize = 32;
 
 /// A flat surface with corners or a hole as triangles; `None` where a grid works.
-pub(super) fn facets(flat: &Flat) -> Option<Facets> {
+pub(super) fn facets(flat: &Flat) -> Option<Triangulation> {
     let to_world = |p: &DVec2| flat.frame().point_to_world(p.extend(0.0));
     match flat.region() {
         Region::Annulus { .. }
@@ -32,8 +32,8 @@ fn of_triangles(
     triangles: &[[DVec2; 3]],
     outlines: &[&[DVec2]],
     to_world: impl Fn(&DVec2) -> DVec3,
-) -> Facets {
-    let mut facets = Facets::default();
+) -> Triangulation {
+    let mut facets = Triangulation::default();
     for triangle in triangles {
         let first = facets.points.len();
         facets.points.extend(triangle.iter().map(&to_world));

@@ -1,7 +1,7 @@
 //! Faces of meshes, with fine triangles joined.
 
 use crate::scene::mesh::Mesh;
-use crate::scene::picture::facets::triangles::Facets;
+use crate::scene::picture::facets::triangles::Triangulation;
 use glam::{DVec3, I64Vec3};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,7 +11,7 @@ const MOST_TRIANGLES: usize = 3000;
 const GROWTH: f64 = 1.4;
 
 /// A face of a mesh with fine triangles joined: in cubes of `cell` mm, or in larger ones where there are very many.
-pub(super) fn facets(mesh: &Mesh, face: usize, cell: f64) -> Facets {
+pub(super) fn facets(mesh: &Mesh, face: usize, cell: f64) -> Triangulation {
     let mut cell = cell;
     loop {
         let facets = joined(mesh, face, cell);
@@ -23,8 +23,8 @@ pub(super) fn facets(mesh: &Mesh, face: usize, cell: f64) -> Facets {
 }
 
 /// A face with all corners in a cube merged, and without the triangles that this collapses.
-fn joined(mesh: &Mesh, face: usize, cell: f64) -> Facets {
-    let mut facets = Facets::default();
+fn joined(mesh: &Mesh, face: usize, cell: f64) -> Triangulation {
+    let mut facets = Triangulation::default();
     let mut corner_of: BTreeMap<[i64; 3], usize> = BTreeMap::new();
     let mut known: BTreeSet<[usize; 3]> = BTreeSet::new();
     for triangle in mesh.face_triangles(face) {

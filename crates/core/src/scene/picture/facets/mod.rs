@@ -9,10 +9,10 @@ mod mesh;
 mod outline;
 mod triangles;
 
-pub use triangles::Facets;
+pub use triangles::Triangulation;
 
 use crate::scene::shape::Shape;
-use crate::scene::{Extent, FaceId, Patch, Scene};
+use crate::scene::{FaceId, Patch, PieceRange, Scene};
 use glam::DVec3;
 
 /// Allowed deviation of chords from a surface, as a share of the deviation of the coarsest grid, 1.
@@ -43,7 +43,7 @@ pub struct Fineness {
 #[derive(Debug, Clone)]
 pub struct FaceFacets {
     /// The triangles.
-    pub facets: Facets,
+    pub facets: Triangulation,
     /// One in this many of the pieces of the face is included: 1 where it is whole.
     pub one_in: usize,
 }
@@ -52,10 +52,10 @@ impl Scene {
     /// A face as triangles.
     pub fn face_facets(&self, face: FaceId, fineness: &Fineness) -> FaceFacets {
         match &self.faces[face.index()].extent {
-            Extent::Patches(_) | Extent::Ports(_) => {
+            PieceRange::Patches(_) | PieceRange::Ports(_) => {
                 patch_facets(self.face_patches(face), fineness)
             }
-            Extent::Mesh { mesh, face } => {
+            PieceRange::Mesh { mesh, face } => {
                 let facets = mesh::facets(&self.meshes[*mesh].mesh, *face, fineness.mesh_cell);
                 FaceFacets { facets, one_in: 1 }
             }
@@ -65,7 +65,7 @@ impl Scene {
 
 fn patch_facets(patches: &[Patch], fineness: &Fineness) -> FaceFacets {
     let one_in = patches.len().div_ceil(fineness.patches).max(1);
-    let mut facets = Facets::default();
+    let mut facets = Triangulation::default();
     for patch in patches.iter().step_by(one_in) {
         let mut piece = shape_facets(&patch.shape, fineness.deviation);
         // Walls are drawn whole, with their elements in front; the surfaces that cut elements off
@@ -80,7 +80,7 @@ fn patch_facets(patches: &[Patch], fineness: &Fineness) -> FaceFacets {
 
 /// A shape as triangles whose chords deviate from it by `deviation` mm, or by a small share of its
 /// own size.
-pub fn shape_facets(shape: &Shape, deviation: f64) -> Facets {
+pub fn shape_facets(shape: &Shape, deviation: f64) -> Triangulation {
     if let Shape::Flat(flat) = shape
         && let Some(facets) = flat::facets(flat)
     {
@@ -132,7 +132,7 @@ fn distance_from_chord(p: DVec3, from: DVec3, to: DVec3) -> f64 {
     p.distance(from + share * chord)
 }
 
-fn grid(shape: &Shape, [columns, rows]: [usize; 2]) -> Facets {
+fn grid(shape: &Shape, [columns, rows]: [usize; 2]) -> Triangulation {
     let share = |index: usize, steps: usize| index as f64 / steps as f64;
     let points: Vec<DVec3> = (0..=rows)
         .flat_map(|row| (0..=columns).map(move |column| (row, column)))
@@ -161,7 +161,7 @@ fn grid(shape: &Shape, [columns, rows]: [usize; 2]) -> Facets {
             );
         }
     }
-    Facets { points, triangles, rims }
+    Triangulation { points, triangles, rims }
 }
 
 #[cfg(test)]
@@ -171,7 +171,7 @@ mod tests {
     use glam::DVec2;
     use lumiduct_base::math::Frame;
 
-    fn area(facets: &Facets) -> f64 {
+    fn area(facets: &Triangulation) -> f64 {
         let area = |corners: &[usize; 3]| {
             let [a, b, c] = corners.map(|i| facets.points[i]);
             0.5 * (b - a).cross(c - a).length()

@@ -1,7 +1,7 @@
 //! Outlines of the elements of patterns, for pictures alone.
 
-use crate::scene::pattern::{Outline, Pattern};
-use crate::scene::picture::facets::{FaceFacets, Facets};
+use crate::scene::pattern::{ElementOutline, Pattern};
+use crate::scene::picture::facets::{FaceFacets, Triangulation};
 use crate::scene::shape::{Cylinder, Shape};
 use crate::scene::{FaceId, Scene};
 use glam::{DMat2, DVec2, DVec3};
@@ -18,12 +18,12 @@ impl Scene {
     /// The outlines of the elements of a pattern; beyond `most`, only those of every second, third
     /// and so on. Elements with relief are pieces of their face, and have none here.
     pub fn element_outlines(&self, pattern: &Pattern, most: usize) -> FaceFacets {
-        let mut facets = Facets::default();
-        if let Outline::Relief(_) = pattern.field.outline {
+        let mut facets = Triangulation::default();
+        if let ElementOutline::Relief(_) = pattern.field.outline {
             return FaceFacets { facets, one_in: 1 };
         }
         let one_in = (pattern.field.count().div_ceil(most as u64)).max(1) as usize;
-        let Some(unrolled) = Unrolled::of(self, pattern.face) else {
+        let Some(unrolled) = UnrolledFace::of(self, pattern.face) else {
             return FaceFacets { facets, one_in };
         };
         let size = self.face_rect(pattern.face).map_or(DVec2::INFINITY, |rect| rect.max - rect.min);
@@ -39,13 +39,13 @@ impl Scene {
 
 /// Corners of the outline of an element in a row, mm from its middle. One that goes all around a
 /// face is as wide as the face.
-fn corners(outline: &Outline, place: f64, size: DVec2) -> Vec<DVec2> {
+fn corners(outline: &ElementOutline, place: f64, size: DVec2) -> Vec<DVec2> {
     let half = 0.5 * outline.size(place).min(size);
     match outline {
-        Outline::Circle { .. } => (0..ROUND)
+        ElementOutline::Circle { .. } => (0..ROUND)
             .map(|corner| half * DVec2::from_angle(corner as f64 / ROUND as f64 * TAU))
             .collect(),
-        Outline::Rectangle { .. } | Outline::Relief(_) => {
+        ElementOutline::Rectangle { .. } | ElementOutline::Relief(_) => {
             let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
             let corners = corners.map(|corner| half * DVec2::from(corner));
             let side = |index: usize| {
@@ -60,8 +60,8 @@ fn corners(outline: &Outline, place: f64, size: DVec2) -> Vec<DVec2> {
 
 /// A face with the inverse of its unrolled coordinates, which are those of its shape up to
 /// position, scale and order.
-struct Unrolled<'a> {
-    surface: Surface<'a>,
+struct UnrolledFace<'a> {
+    surface: PatternSurface<'a>,
     /// A point of the shape, in its own coordinates, mm, with its unrolled coordinates.
     from: [DVec2; 2],
     /// Own coordinates for unrolled ones.
@@ -69,22 +69,24 @@ struct Unrolled<'a> {
 }
 
 /// A surface that patterns may lie on.
-enum Surface<'a> {
+enum PatternSurface<'a> {
     Plane(Frame),
     Wall(&'a Cylinder),
 }
 
-impl<'a> Unrolled<'a> {
+impl<'a> UnrolledFace<'a> {
     fn of(scene: &'a Scene, face: FaceId) -> Option<Self> {
         let patch = scene.face_patches(face).first();
         let surface = match patch.map(|patch| &patch.shape) {
-            Some(Shape::Cylinder(wall)) => Surface::Wall(wall),
-            Some(_) | None => Surface::Plane(scene.face_plane(face)?),
+            Some(Shape::Cylinder(wall)) => PatternSurface::Wall(wall),
+            Some(_) | None => PatternSurface::Plane(scene.face_plane(face)?),
         };
         // Far from the seam of a round wall.
         let (start, step) = match &surface {
-            Surface::Plane(_) => (DVec2::ZERO, 1.0),
-            Surface::Wall(wall) => (DVec2::new(FRAC_PI_2 * wall.radius(), 0.0), wall.radius()),
+            PatternSurface::Plane(_) => (DVec2::ZERO, 1.0),
+            PatternSurface::Wall(wall) => {
+                (DVec2::new(FRAC_PI_2 * wall.radius(), 0.0), wall.radius())
+            }
         };
         let chart = |own: DVec2| match patch {
             Some(patch) => patch.chart(surface.point(own)),
@@ -103,7 +105,7 @@ impl<'a> Unrolled<'a> {
     }
 }
 
-impl Surface<'_> {
+impl PatternSurface<'_> {
     fn point(&self, own: DVec2) -> DVec3 {
         match self {
             Self::Plane(frame) => frame.point_to_world(own.extend(0.0)),

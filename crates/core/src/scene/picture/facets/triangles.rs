@@ -5,7 +5,7 @@ use glam::DVec3;
 
 /// A surface as triangles.
 #[derive(Debug, Clone, Default)]
-pub struct Facets {
+pub struct Triangulation {
     /// Corners, mm.
     pub points: Vec<DVec3>,
     /// Triangles, as numbers of corners.
@@ -14,7 +14,7 @@ pub struct Facets {
     pub rims: Vec<Vec<usize>>,
 }
 
-impl Facets {
+impl Triangulation {
     /// Adds another surface.
     pub fn append(&mut self, other: Self) {
         let first = self.points.len();

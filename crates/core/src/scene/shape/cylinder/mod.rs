@@ -5,10 +5,12 @@ mod unrolled;
 
 use crate::scene::Ray;
 use crate::scene::shape::wedge::{Wedge, arc_bounds, azimuth, point_on_circle, turn};
-use crate::scene::shape::{ChartRect, Crossing, Flat, HalfSpace, Region, Start, Toward, Wanted};
+use crate::scene::shape::{
+    ChartRect, Crossing, CrossingQuery, Flat, HalfSpace, RayStart, Region, Toward,
+};
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::{Aabb, Frame, quadratic, unit};
-use unrolled::{Strip, Unrolled};
+use unrolled::{Strip, UnrolledWall};
 
 /// A piece of a cylinder's wall; the front is outside unless it has been turned [`Self::inward`].
 ///
@@ -27,7 +29,7 @@ pub struct Cylinder {
 
 /// A ray along the axis of the cylinder: z = origin + t dir.
 #[derive(Debug, Clone, Copy)]
-struct Along {
+struct AxialRay {
     origin: f64,
     dir: f64,
 }
@@ -100,7 +102,7 @@ impl Cylinder {
     /// The distance at which a ray inside leaves the infinite cylinder, mm; infinite along the
     /// axis.
     #[inline(always)]
-    pub(crate) fn exit(&self, ray: &Ray, start: Start) -> f64 {
+    pub(crate) fn exit(&self, ray: &Ray, start: RayStart) -> f64 {
         match self.roots(ray, start) {
             Some((_, _, Some(exit))) => exit.t,
             Some((_, Crossing { t, .. }, None)) if t > 0.0 => t,
@@ -111,7 +113,7 @@ impl Cylinder {
     /// The distances between which a line is in the infinite cylinder, mm; infinite along the axis.
     #[inline(always)]
     pub(crate) fn span(&self, ray: &Ray) -> Option<[f64; 2]> {
-        match self.roots(ray, Start::Elsewhere) {
+        match self.roots(ray, RayStart::Elsewhere) {
             Some((_, enter, leave)) => Some([enter.t, leave?.t]),
             None => {
                 let along = ray.dir().cross(self.frame.z) == DVec3::ZERO;
@@ -129,7 +131,7 @@ impl Cylinder {
     }
 
     #[inline]
-    pub(super) fn crossings(&self, ray: &Ray, start: Start, visit: impl FnMut(Crossing)) {
+    pub(super) fn crossings(&self, ray: &Ray, start: RayStart, visit: impl FnMut(Crossing)) {
         let Some((along, first, second)) = self.roots(ray, start) else { return };
         let on_wall = |crossing: &Crossing| self.holds(ray, &along, crossing);
         [Some(first), second].into_iter().flatten().filter(on_wall).for_each(visit);
@@ -139,8 +141,8 @@ impl Cylinder {
     pub(super) fn first_crossing(
         &self,
         ray: &Ray,
-        start: Start,
-        wanted: &Wanted,
+        start: RayStart,
+        wanted: &CrossingQuery,
     ) -> Option<Crossing> {
         let (along, first, second) = self.roots(ray, start)?;
         if wanted.includes(&first) && self.holds(ray, &along, &first) {
@@ -153,10 +155,10 @@ impl Cylinder {
     /// Where the line of a ray crosses the infinite cylinder, in ascending order; for a ray that
     /// starts on the wall the second is omitted, since it is the start.
     #[inline(always)]
-    fn roots(&self, ray: &Ray, start: Start) -> Option<(Along, Crossing, Option<Crossing>)> {
+    fn roots(&self, ray: &Ray, start: RayStart) -> Option<(AxialRay, Crossing, Option<Crossing>)> {
         let axis = self.frame.z;
         let from = ray.origin() - self.frame.origin;
-        let along = Along { origin: from.dot(axis), dir: ray.dir().dot(axis) };
+        let along = AxialRay { origin: from.dot(axis), dir: ray.dir().dot(axis) };
         // Perpendicular parts as vectors: 1 - (d·a)² would lose the digits of rays nearly along the axis.
         let across_origin = from - along.origin * axis;
         let across_dir = ray.dir() - along.dir * axis;
@@ -167,13 +169,13 @@ impl Cylinder {
         let half_b = across_origin.dot(across_dir);
         match start {
             // On the wall c = 0, so the other root is -2b/a, whatever the angle.
-            Start::On => {
+            RayStart::On => {
                 let t = -2.0 * half_b / a;
                 // The further root leaves the cylinder, the nearer one enters it.
                 let toward = if t > 0.0 { self.leaving } else { self.leaving.opposite() };
                 Some((along, Crossing { t, toward }, None))
             }
-            Start::Elsewhere => {
+            RayStart::Elsewhere => {
                 let c = across_origin.length_squared() - self.radius * self.radius;
                 let [enter, leave] = quadratic(a, half_b, c)?;
                 let enter = Crossing { t: enter, toward: self.leaving.opposite() };
@@ -184,7 +186,7 @@ impl Cylinder {
 
     /// Whether a point of the infinite cylinder belongs to this wall.
     #[inline(always)]
-    fn holds(&self, ray: &Ray, along: &Along, crossing: &Crossing) -> bool {
+    fn holds(&self, ray: &Ray, along: &AxialRay, crossing: &Crossing) -> bool {
         let z = along.origin + crossing.t * along.dir;
         z >= self.z_min && z <= self.z_max && self.keeps(ray, crossing.t)
     }
@@ -282,7 +284,7 @@ impl Cylinder {
     }
 
     fn strips(&self, rect: ChartRect) -> Vec<Strip> {
-        Unrolled::new(&self.frame, self.radius, [rect.min.y, rect.max.y], self.cuts())
+        UnrolledWall::new(&self.frame, self.radius, [rect.min.y, rect.max.y], self.cuts())
             .strips(rect.min.x / self.radius, rect.max.x / self.radius)
     }
 
@@ -359,7 +361,7 @@ mod tests {
                 let p = wall.sample(u);
                 let ray = Ray::new(p - 1e-3 * wall.normal(p), wall.normal(p));
                 let mut found = false;
-                wall.crossings(&ray, Start::Elsewhere, |crossing| {
+                wall.crossings(&ray, RayStart::Elsewhere, |crossing| {
                     found |= (crossing.t - 1e-3).abs() < 1e-12 && crossing.toward == Toward::Front;
                 });
                 assert!(found, "{p}");
@@ -379,9 +381,9 @@ mod tests {
         let from = f.point_to_world(DVec3::new(0.0, -2.0, 5.0));
         let ray = Ray::new(from, f.to_world(DVec3::new(0.1, 1.0, 0.3)));
         for (wall, start, count, toward) in [
-            (&whole, Start::On, 1, Toward::Front),
-            (&whole, Start::Elsewhere, 2, Toward::Front),
-            (&half, Start::Elsewhere, 1, Toward::Back),
+            (&whole, RayStart::On, 1, Toward::Front),
+            (&whole, RayStart::Elsewhere, 2, Toward::Front),
+            (&half, RayStart::Elsewhere, 1, Toward::Back),
         ] {
             let mut found = Vec::new();
             wall.crossings(&ray, start, |crossing| found.push(crossing));

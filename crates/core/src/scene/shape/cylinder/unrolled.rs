@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 
 /// The part of a cylinder's wall below all ceilings and above all floors.
 #[derive(Debug, Clone)]
-pub(super) struct Unrolled {
+pub(super) struct UnrolledWall {
     floors: Vec<Wave>,
     ceilings: Vec<Wave>,
 }
@@ -30,7 +30,7 @@ pub(super) struct Strip {
     ceiling: Wave,
 }
 
-impl Unrolled {
+impl UnrolledWall {
     /// The wall of `radius` about the z axis of `frame` with z in `heights`, inside all `cuts`.
     pub(super) fn new(frame: &Frame, radius: f64, heights: [f64; 2], cuts: &[HalfSpace]) -> Self {
         let level = |mean: f64| Wave { mean, cos: 0.0, sin: 0.0 };

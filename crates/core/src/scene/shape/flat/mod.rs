@@ -7,7 +7,7 @@ pub use polygon::Polygon;
 pub use region::Region;
 
 use crate::scene::Ray;
-use crate::scene::shape::{ChartRect, Crossing, Start, Toward, Wanted};
+use crate::scene::shape::{ChartRect, Crossing, CrossingQuery, RayStart, Toward};
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::{Aabb, Frame};
 
@@ -47,8 +47,8 @@ impl Flat {
     }
 
     #[inline]
-    pub(super) fn crossings(&self, ray: &Ray, start: Start, mut visit: impl FnMut(Crossing)) {
-        let any = Wanted { toward: None, min: f64::MIN, max: f64::MAX };
+    pub(super) fn crossings(&self, ray: &Ray, start: RayStart, mut visit: impl FnMut(Crossing)) {
+        let any = CrossingQuery { toward: None, min: f64::MIN, max: f64::MAX };
         if let Some(crossing) = self.first_crossing(ray, start, &any) {
             visit(crossing);
         }
@@ -59,12 +59,12 @@ impl Flat {
     pub(super) fn first_crossing(
         &self,
         ray: &Ray,
-        start: Start,
-        wanted: &Wanted,
+        start: RayStart,
+        wanted: &CrossingQuery,
     ) -> Option<Crossing> {
         let across = ray.dir().dot(self.frame.z);
         let toward = if across > 0.0 { Toward::Front } else { Toward::Back };
-        if !wanted.includes_way(toward) || start == Start::On {
+        if !wanted.includes_way(toward) || start == RayStart::On {
             return None;
         }
         let t = (self.frame.origin - ray.origin()).dot(self.frame.z) / across;
@@ -122,13 +122,13 @@ mod tests {
             let target = flat.frame().point_to_world(local.extend(0.0));
             let mut found = Vec::new();
             let ray = Ray::new(target - DVec3::Z, DVec3::Z);
-            flat.crossings(&ray, Start::Elsewhere, |crossing| found.push(crossing));
+            flat.crossings(&ray, RayStart::Elsewhere, |crossing| found.push(crossing));
             found
         };
         let back = Crossing { t: 1.0, toward: Toward::Back };
         assert_eq!(hits(DVec2::new(0.5, 0.5)), [back]);
         assert_eq!(hits(DVec2::new(1.0, 1.0)), []);
         let along = Ray::new(DVec3::new(0.5, 0.5, 3.0), DVec3::X);
-        flat.crossings(&along, Start::Elsewhere, |crossing| panic!("{crossing:?}"));
+        flat.crossings(&along, RayStart::Elsewhere, |crossing| panic!("{crossing:?}"));
     }
 }

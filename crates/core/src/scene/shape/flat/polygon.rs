@@ -14,30 +14,30 @@ use lumiduct_base::math::planar::{clip_to_rectangle, edges, is_convex, signed_ar
 pub struct Polygon {
     vertices: Vec<DVec2>,
     bounds: ChartRect,
-    edges: Vec<Edge>,
-    outline: Outline,
+    edges: Vec<PolygonEdge>,
+    outline: PolygonOutline,
     triangles: Vec<[DVec2; 3]>,
     /// Cumulative areas of the triangles, mm².
     areas: Vec<f64>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Outline {
+enum PolygonOutline {
     Convex,
     Free,
 }
 
 /// An edge from its lower end to its higher one; a horizontal edge points to -x.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Edge {
+struct PolygonEdge {
     low: DVec2,
     high: DVec2,
     /// Side of the polygon's interior.
-    interior: Side,
+    interior: PolygonSide,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Side {
+enum PolygonSide {
     Left,
     Right,
 }
@@ -62,8 +62,9 @@ impl Polygon {
                 sum
             })
             .collect();
-        let edges = edges(&vertices).map(|(a, b)| Edge::new(a, b)).collect();
-        let outline = if is_convex(&vertices) { Outline::Convex } else { Outline::Free };
+        let edges = edges(&vertices).map(|(a, b)| PolygonEdge::new(a, b)).collect();
+        let outline =
+            if is_convex(&vertices) { PolygonOutline::Convex } else { PolygonOutline::Free };
         Self { vertices, bounds, edges, outline, triangles, areas }
     }
 
@@ -81,8 +82,8 @@ impl Polygon {
     #[inline]
     pub fn contains(&self, p: DVec2) -> bool {
         match self.outline {
-            Outline::Convex => self.edges.iter().all(|edge| edge.side(p) == edge.interior),
-            Outline::Free => {
+            PolygonOutline::Convex => self.edges.iter().all(|edge| edge.side(p) == edge.interior),
+            PolygonOutline::Free => {
                 p.cmpge(self.bounds.min).all()
                     && p.cmple(self.bounds.max).all()
                     && self.edges.iter().filter(|edge| edge.is_right_of(p)).count() % 2 == 1
@@ -118,25 +119,29 @@ impl Polygon {
     }
 }
 
-impl Edge {
+impl PolygonEdge {
     fn new(from: DVec2, to: DVec2) -> Self {
         if from.y < to.y || (from.y == to.y && from.x > to.x) {
-            Self { low: from, high: to, interior: Side::Left }
+            Self { low: from, high: to, interior: PolygonSide::Left }
         } else {
-            Self { low: to, high: from, interior: Side::Right }
+            Self { low: to, high: from, interior: PolygonSide::Right }
         }
     }
 
     #[inline]
-    fn side(&self, p: DVec2) -> Side {
+    fn side(&self, p: DVec2) -> PolygonSide {
         // On the line itself: right, the side of the shift along +x.
-        if (self.high - self.low).perp_dot(p - self.low) > 0.0 { Side::Left } else { Side::Right }
+        if (self.high - self.low).perp_dot(p - self.low) > 0.0 {
+            PolygonSide::Left
+        } else {
+            PolygonSide::Right
+        }
     }
 
     /// Whether a ray from `p` along +x crosses the edge.
     #[inline]
     fn is_right_of(&self, p: DVec2) -> bool {
-        self.low.y <= p.y && p.y < self.high.y && self.side(p) == Side::Left
+        self.low.y <= p.y && p.y < self.high.y && self.side(p) == PolygonSide::Left
     }
 }
 
@@ -155,11 +160,11 @@ mod tests {
 
     #[test]
     fn an_l_has_no_points_in_its_notch_and_a_square_is_convex() {
-        assert_eq!(ell().outline, Outline::Free);
+        assert_eq!(ell().outline, PolygonOutline::Free);
         assert!(ell().contains(DVec2::new(0.5, 1.5)) && ell().contains(DVec2::new(1.5, 0.5)));
         assert!(!ell().contains(DVec2::new(1.5, 1.5)) && !ell().contains(DVec2::new(2.5, 0.5)));
         let square = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(DVec2::from).to_vec();
-        assert_eq!(Polygon::new(square).outline, Outline::Convex);
+        assert_eq!(Polygon::new(square).outline, PolygonOutline::Convex);
     }
 
     proptest! {

@@ -4,17 +4,19 @@
 //! This module does not know where paths come from or how they continue.
 
 use crate::optics::Side;
-use crate::scene::shape::{Crossing, Start, Toward};
-use crate::scene::{Counts, MediumId, Owner, Passage, PrimHit, Seeing, SensorId, SurfaceSensor};
-use crate::transport::forward::counter::{Counter, Light, TravelStart};
+use crate::scene::shape::{Crossing, RayStart, Toward};
+use crate::scene::{
+    CountedLight, MediumId, Owner, Passage, PrimHit, Seeing, SensorId, SurfaceSensor,
+};
+use crate::transport::forward::counter::{Light, PhotonCounter, TravelStart};
 use crate::transport::forward::watch::OnPort;
 use crate::transport::{Detection, Event, Observer, Path, Segment, Vertex};
 use glam::{DVec2, DVec3};
 use smallvec::SmallVec;
 
 /// Light at a surface sensor.
-struct Seen {
-    counts: Counts,
+struct LightAtSensor {
+    counts: CountedLight,
     toward: Toward,
     point: DVec3,
     dir: DVec3,
@@ -24,7 +26,7 @@ struct Seen {
     throughput: f64,
 }
 
-impl<'s, O: Observer> Counter<'_, 's, O> {
+impl<'s, O: Observer> PhotonCounter<'_, 's, O> {
     /// Counts light that passes through ports and out of goniometers.
     #[inline(never)]
     pub(super) fn travel_watched(&mut self, path: &Path, segment: &Segment<'_>) {
@@ -40,7 +42,7 @@ impl<'s, O: Observer> Counter<'_, 's, O> {
         }
         for (face, patches) in &run.watch.entry_ports {
             for patch in *patches {
-                patch.crossings(segment.ray, Start::Elsewhere, |Crossing { t, toward }| {
+                patch.crossings(segment.ray, RayStart::Elsewhere, |Crossing { t, toward }| {
                     if toward == Toward::Back && self.within(segment, t) {
                         let throughput = self.arriving_at(path, segment, t);
                         self.enter(face.index(), throughput);
@@ -54,12 +56,12 @@ impl<'s, O: Observer> Counter<'_, 's, O> {
     fn cross_port(&mut self, path: &Path, segment: &Segment<'_>, port: &OnPort<'s>) {
         let OnPort { id, sensor, patches, .. } = port;
         for patch in patches {
-            patch.crossings(segment.ray, Start::Elsewhere, |Crossing { t, toward }| {
+            patch.crossings(segment.ray, RayStart::Elsewhere, |Crossing { t, toward }| {
                 if !self.within(segment, t) {
                     return;
                 }
                 let throughput = self.arriving_at(path, segment, t);
-                let seen = Seen {
+                let seen = LightAtSensor {
                     counts: sensor.counts,
                     toward,
                     point: segment.ray.at(t),
@@ -132,7 +134,7 @@ impl<'s, O: Observer> Counter<'_, 's, O> {
                 }
                 Owner::Port => scene.face_patches(face).iter().any(|patch| {
                     let mut crossed = false;
-                    patch.crossings(&path.ray, Start::Elsewhere, |crossing| {
+                    patch.crossings(&path.ray, RayStart::Elsewhere, |crossing| {
                         crossed |= crossing.t >= -scene.tolerance && crossing.t < t;
                     });
                     crossed
@@ -162,9 +164,9 @@ impl<'s, O: Observer> Counter<'_, 's, O> {
             let normal = run.scene.normal(hit.prim, point);
             // Light is reflected to the side it came from: its direction tells the side it leaves to.
             let toward = if side.is_none() { hit.toward } else { Toward::of(dir, normal) };
-            let seen = Seen { counts, toward, point, dir, normal, medium, throughput };
+            let seen = LightAtSensor { counts, toward, point, dir, normal, medium, throughput };
             let distance = point.distance(path.ray.origin());
-            if counts == Counts::Incident && !self.through_aim(path, id, distance) {
+            if counts == CountedLight::Incident && !self.through_aim(path, id, distance) {
                 if sensor.sides.include(counts, toward) {
                     self.add(run.layout.outside_aim(id), throughput);
                 }
@@ -211,9 +213,9 @@ impl<'s, O: Observer> Counter<'_, 's, O> {
         id: SensorId,
         sensor: &SurfaceSensor,
         uv: DVec2,
-        seen: &Seen,
+        seen: &LightAtSensor,
     ) {
-        let &Seen { point, dir, normal, medium, throughput, .. } = seen;
+        let &LightAtSensor { point, dir, normal, medium, throughput, .. } = seen;
         if !sensor.sides.include(seen.counts, seen.toward) {
             self.add(self.run.layout.other_side(id), throughput);
             return;
@@ -223,7 +225,7 @@ impl<'s, O: Observer> Counter<'_, 's, O> {
             return;
         }
         // Away from the face: back along arriving light, along leaving light.
-        let away = if seen.counts == Counts::Incident { -seen.dir } else { seen.dir };
+        let away = if seen.counts == CountedLight::Incident { -seen.dir } else { seen.dir };
         let cells = sensor.grid.cells();
         let (flux, source) = (self.flux * throughput, self.source);
         let light =

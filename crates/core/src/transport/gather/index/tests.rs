@@ -36,7 +36,7 @@ fn a_look_up_finds_each_record_that_a_scan_finds_once() {
         let scanned: Vec<u32> = all.iter().filter(near).map(|record| record.record).collect();
         let mut found = Vec::new();
         let Indexed { surface, point, dir, .. } = photon;
-        index.visit(&[Key { surface, point, dir }], |_, record| found.push(record));
+        index.visit(&[PhotonKey { surface, point, dir }], |_, record| found.push(record));
         found.sort_unstable();
         assert!(found.windows(2).all(|two| two[0] != two[1]), "{found:?}");
         assert!(scanned.iter().all(|record| found.contains(record)), "{scanned:?}, {found:?}");

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod package;
+mod skip;
 
 use lumiduct::study::{BatchOptions, OnExisting, run_study};
 use lumiduct_core::transport::{Interrupt, Shard};

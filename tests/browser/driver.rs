@@ -1,6 +1,7 @@
 //! User actions in a browser.
 
 use crate::protocol::Browser;
+use crate::skip;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use serde_json::{Value, json};
@@ -34,10 +35,7 @@ pub(crate) fn find() -> Option<PathBuf> {
     if found.is_none() {
         let demanded = std::env::var("LUMIDUCT_BROWSER").is_ok_and(|wish| wish == "required");
         assert!(!demanded, "no browser: none of {NAMES:?} is on the path");
-        #[allow(clippy::print_stderr, reason = "whoever runs the tests has to know")]
-        {
-            eprintln!("skipped the browser: none of {NAMES:?} is on the path");
-        }
+        skip::report(&format!("no browser, none of {NAMES:?} is on the path"));
     }
     found
 }

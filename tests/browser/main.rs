@@ -1,12 +1,15 @@
 //! `report.html` and `study.html` in a browser, as a user sees it: values under the pointer, switches, sections, turning, printing.
 //!
-//! Needs Chromium. Without it the tests say so and pass; `LUMIDUCT_BROWSER=required` makes them fail.
+//! Needs Chromium. Without it each test says on the terminal that it is skipped, and passes;
+//! `LUMIDUCT_BROWSER=required` makes it fail.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
 
 mod driver;
 mod phone;
 mod protocol;
+#[path = "../skip/mod.rs"]
+mod skip;
 mod study;
 
 use assert_cmd::Command;

@@ -14,6 +14,8 @@ mod refusals;
 mod runs;
 mod schemas;
 mod seals;
+#[path = "../skip/mod.rs"]
+mod skip;
 mod spreadsheets;
 mod streams;
 mod texts;

@@ -131,10 +131,7 @@ fn the_commands_for_gnu_parallel_in_the_docs_do_what_they_say() {
     let found = Process::new("parallel").arg("--version").output();
     if !found.is_ok_and(|output| output.status.success()) {
         assert!(std::env::var_os("LUMIDUCT_PARALLEL").is_none(), "GNU parallel is not here");
-        #[allow(clippy::print_stderr, reason = "a test that skips says so")]
-        {
-            eprintln!("skipped: GNU parallel is not here");
-        }
+        skip::report("GNU parallel is not on the path");
         return;
     }
     let docs = include_str!("../../docs/cluster.md");

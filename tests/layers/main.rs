@@ -6,6 +6,8 @@
 mod graph;
 #[path = "../package/mod.rs"]
 mod package;
+#[path = "../skip/mod.rs"]
+mod skip;
 
 use graph::{Graph, circles};
 use std::path::{Path, PathBuf};

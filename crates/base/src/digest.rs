@@ -60,9 +60,20 @@ mod tests {
         digest
     }
 
+    /// Vectors of draft-eastlake-fnv, section 8.
+    #[test]
+    fn bytes_have_the_digest_that_is_published() {
+        for (text, expected) in
+            [("", "cbf29ce484222325"), ("a", "af63dc4c8601ec8c"), ("foobar", "85944171f73967e8")]
+        {
+            let mut digest = Digest::default();
+            digest.add_bytes(text.as_bytes());
+            assert_eq!(digest.to_string(), expected);
+        }
+    }
+
     #[test]
     fn the_end_of_a_piece_counts() {
-        assert_eq!(of(&["ab", "c"]), of(&["ab", "c"]));
         assert_ne!(of(&["ab", "c"]), of(&["a", "bc"]));
         assert_ne!(of(&["ab"]), of(&["ab", ""]));
     }

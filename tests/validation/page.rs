@@ -1,7 +1,10 @@
-//! `docs/validation.md`, made from the findings.
+//! `docs/validation.md`, made from the tables of cases and what was traced for them.
 
 use crate::formulas::Computed;
-use crate::run::{Expected, Finding};
+use crate::results::{Cells, Results};
+use crate::run::{Expected, Row};
+use lumiduct_base::digest::Digest;
+use lumiduct_core::plan::NUMERICS;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -53,23 +56,25 @@ pub(crate) struct Reason {
     pub(crate) why: String,
 }
 
-/// Deviations of independent runs, in standard errors.
-pub(crate) fn deviations(findings: &[&Finding]) -> Vec<f64> {
-    let first = findings.iter().filter(|finding| finding.independent);
-    first.filter_map(|finding| finding.deviation).collect()
-}
-
-/// Root of the mean square; of a standard normal it is 1.
-pub(crate) fn rms(deviations: &[f64]) -> f64 {
-    (deviations.iter().map(|z| z * z).sum::<f64>() / deviations.len() as f64).sqrt()
+/// What the page is made of.
+pub(crate) struct Contents<'a> {
+    /// Values that are traced, in their order.
+    pub(crate) rows: &'a [Row],
+    /// What came out of them.
+    pub(crate) results: &'a Results,
+    pub(crate) computed: &'a [Computed],
+    pub(crate) waiting: &'a Waiting,
+    /// Digest of tables and scenes.
+    pub(crate) inputs: Digest,
 }
 
 /// The whole page.
-pub(crate) fn page(findings: &[&Finding], computed: &[Computed], waiting: &Waiting) -> String {
+pub(crate) fn page(contents: &Contents<'_>) -> String {
+    let Contents { rows, results, computed, waiting, .. } = *contents;
     let mut text = INTRODUCTION.to_owned();
-    summary(&mut text, findings, computed, waiting);
-    traced(&mut text, findings);
-    coarse(&mut text, findings);
+    summary(&mut text, contents);
+    traced(&mut text, rows, results);
+    coarse(&mut text, rows, results);
     formulas(&mut text, computed);
     elsewhere(&mut text, &waiting.elsewhere);
     let formulas = "Formulas and contrasts";
@@ -102,10 +107,10 @@ What the reference has no cases for is held against published values and laws by
 const INTRODUCTION: &str = "\
 # Validation
 
-Values that do not come from this program, and what it makes of them. The page is written by
-`UPDATE_GOLDEN=1 cargo test --test validation`; without the variable the same command traces every value anew, holds it
-against its reference, and fails when this page is not what comes out: seeds are fixed, and results have the same bits on
-any number of threads. Citations stand beside the expected values in the scene files.
+Values that do not come from this program, and what it makes of them. `cargo xtask validate` traces every value anew, holds
+it against its reference, and fails when this page is not what comes out: seeds are fixed, and results have the same bits on
+any number of threads; `cargo xtask validate --write` writes the page. Citations stand beside the expected values in the
+scene files.
 
 A run goes on until the standard error of each of its values is small enough: 0.07 % for fluxes (class F, and M where the
 reference itself is a Monte Carlo value), 0.3 % for what is local (I), 0.03 % for invariances (X). The value must then lie
@@ -113,46 +118,38 @@ within 4 standard errors or, if that is more, within 0.2 % (F), 1 % (I), 0.1 % (
 together and 0.3 %; a limit may be exceeded by 4 standard errors at most. In every run no light may leak and the flux
 balance must close to 1e-9. Sensors count photons, except in the cases about windows (ES): there they gather, and the
 widest window is read, bias and all.
+
+`cargo test` holds every value against its reference, too, with the same limits and errors of 0.15 % (F and M), 0.7 % (I)
+and 0.09 % (X), and checks that this page belongs to the scenes, tables and numerics of the program.
 ";
 
-fn summary(text: &mut String, findings: &[&Finding], computed: &[Computed], waiting: &Waiting) {
-    let deviations = deviations(findings);
-    let largest = deviations.iter().fold(0.0, |most: f64, z| most.max(z.abs()));
-    let beyond_two = deviations.iter().filter(|z| z.abs() > 2.0).count();
+fn summary(text: &mut String, contents: &Contents<'_>) {
+    let Contents { rows, results, computed, waiting, inputs } = contents;
     let count =
         |reasons: &[Reason]| reasons.iter().map(|reason| reason.values.len()).sum::<usize>();
     let elsewhere: usize = waiting.elsewhere.iter().map(|one| one.values.len()).sum();
     let (formulas, waiting) = (count(&waiting.formula), count(&waiting.waiting));
+    let (traced, computed) = (rows.len(), computed.len());
     let line = format!(
-        "\n{} values were traced, {} are computed by a function, {elsewhere} are checked by a test beside the code, \
-         {formulas} are formulas or contrasts, {waiting} are not checked yet. Of {} independent runs with noise one deviation each was taken, in standard errors: their root \
-         mean square is {:.2}, the largest is {largest:.1}, and {beyond_two} are beyond 2 (for a normal distribution \
-         {:.0} are expected).\n",
-        findings.len(),
-        computed.len(),
-        deviations.len(),
-        rms(&deviations),
-        // 4.55 % of a normal distribution lie beyond two standard deviations.
-        0.0455 * deviations.len() as f64,
+        "\n{traced} values are traced, {computed} are computed by a function, {elsewhere} are checked by a test beside the code, \
+         {formulas} are formulas or contrasts, {waiting} are not checked yet. Numerics {NUMERICS}; digest of tables and scenes {inputs}.\n\n{}\n",
+        results.deviations,
     );
     text.push_str(&line);
 }
 
-fn traced(text: &mut String, findings: &[&Finding]) {
+fn traced(text: &mut String, rows: &[Row], results: &Results) {
     text.push_str("\n## Traced values\n\n");
     text.push_str("| case | value | class | reference | ours | errors off | paths | source |\n");
     text.push_str("|---|---|---|--:|--:|--:|--:|---|\n");
-    for finding in findings {
-        let Finding { case, name, scene, over, class, expected, ours, deviation, source, .. } =
-            finding;
+    for (row, cells) in rows.iter().zip(&results.cells) {
+        let Row { case, name, scene, over, class, expected, source, .. } = row;
+        let Cells { ours, deviation, paths, .. } = cells;
         let expected = match expected {
             Expected::Value(value) => short(*value),
             Expected::Most(most) => format!("at most {}", short(*most)),
         };
-        let deviation = deviation.map_or("exact".to_owned(), |z| format!("{z:+.2}"));
-        let deviation = if matches!(finding.expected, Expected::Most(_)) { "" } else { &deviation };
         let mean = if over.is_empty() { String::new() } else { format!(", mean: {over}") };
-        let paths = millions(ours.paths);
         line(
             text,
             &format!(
@@ -163,13 +160,17 @@ fn traced(text: &mut String, findings: &[&Finding]) {
     }
 }
 
-fn coarse(text: &mut String, findings: &[&Finding]) {
-    text.push_str("\n## Known less well than their class asks\n\n| case | value | error | why |\n|---|---|--:|---|\n");
-    for finding in findings.iter().filter(|finding| !finding.why.is_empty()) {
-        let Finding { case, name, ours, why, .. } = finding;
-        line(text, &format!("{case} | {name} | {:.2} % | {why}", 100.0 * ours.relative_error()));
+fn coarse(text: &mut String, rows: &[Row], results: &Results) {
+    text.push_str(COARSE);
+    text.push_str("\n\n| case | value | error | why |\n|---|---|--:|---|\n");
+    for (row, cells) in rows.iter().zip(&results.cells).filter(|(row, _)| !row.why.is_empty()) {
+        let Row { case, name, why, .. } = row;
+        line(text, &format!("{case} | {name} | {} | {why}", cells.error));
     }
 }
+
+/// Heading of the values whose table has an error in its third column.
+pub(crate) const COARSE: &str = "\n## Known less well than their class asks";
 
 fn formulas(text: &mut String, computed: &[Computed]) {
     text.push_str("\n## Computed by a function\n\nWithout noise; met to 1e-6 of the value.\n\n");
@@ -205,8 +206,4 @@ fn line(text: &mut String, cells: &str) {
 fn short(value: f64) -> String {
     let rounded: f64 = format!("{value:.9e}").parse().expect("it was a number");
     rounded.to_string()
-}
-
-fn millions(paths: u64) -> String {
-    format!("{:.1} M", paths as f64 / 1e6)
 }

@@ -1,6 +1,6 @@
-//! One run of a scene, until every value is as accurate as its class demands.
+//! One run of a scene, until every value is as accurate as its class and the precision demand.
 
-use crate::table::{By, Case, Class, Value, Variant};
+use crate::table::{By, Case, Class, Precision, Value, Variant};
 use lumiduct_core::measure::{self, Measure};
 use lumiduct_core::plan::Request;
 use lumiduct_core::plan::{Check, RunPlan, StopRules};
@@ -19,9 +19,9 @@ const SIGMAS_MONTE_CARLO: f64 = 3.0;
 /// Rounding of values without noise, relative.
 const ROUNDING: f64 = 1e-9;
 
-/// The finding of a run for one value.
+/// A value of the reference, as the page lists it.
 #[derive(Debug)]
-pub(crate) struct Finding {
+pub(crate) struct Row {
     pub(crate) case: String,
     pub(crate) name: String,
     pub(crate) scene: String,
@@ -33,6 +33,13 @@ pub(crate) struct Finding {
     pub(crate) source: String,
     /// The value of the reference.
     pub(crate) expected: Expected,
+}
+
+/// The finding of a run for one value.
+#[derive(Debug)]
+pub(crate) struct Finding {
+    /// The value of the reference.
+    pub(crate) row: Row,
     /// Ours, normalised as the reference is.
     pub(crate) ours: Measure,
     /// Deviation in standard errors, that of the reference included; `None` for values without noise.
@@ -50,28 +57,17 @@ pub(crate) enum Expected {
     Most(f64),
 }
 
+/// The values that a variant of a case is held against, and the hash of its scene.
+pub(crate) fn rows(case: &Case, variant: &Variant) -> (Vec<Row>, String) {
+    let job = load(case, variant, 0);
+    let wanted = wanted(case, variant, &job, Precision::Page);
+    (wanted.iter().map(|wanted| row(case, wanted)).collect(), job.hash)
+}
+
 /// Runs a variant of a case.
-pub(crate) fn run(case: &Case, variant: &Variant, seed: u64) -> Vec<Finding> {
-    let settings = Settings {
-        overrides: case.overrides(variant),
-        seed: Some(seed),
-        // The other estimators are compared with forward in tests/agreement.
-        estimator: Some(match case.by {
-            By::Photons => Request::Forward,
-            By::WideWindow => Request::Gather,
-        }),
-        ..Settings::default()
-    };
-    let job = match input::load(&scene_file(&case.scene), &settings) {
-        Ok(job) => job,
-        Err(error) => panic!("{} {settings:?}: {error}", case.id),
-    };
-    let wanted: Vec<Wanted<'_>> = case
-        .values
-        .iter()
-        .enumerate()
-        .map(|(place, value)| Wanted::new(&job, place, value, variant, case.by))
-        .collect();
+pub(crate) fn run(case: &Case, variant: &Variant, seed: u64, precision: Precision) -> Vec<Finding> {
+    let job = load(case, variant, seed);
+    let wanted = wanted(case, variant, &job, precision);
     let (findings, reached) = trace(&job, &wanted);
     let mut faults = books(&job, &findings);
     if !reached {
@@ -84,6 +80,48 @@ pub(crate) fn run(case: &Case, variant: &Variant, seed: u64) -> Vec<Finding> {
         first.independent = true;
     }
     findings
+}
+
+fn load(case: &Case, variant: &Variant, seed: u64) -> Job {
+    let settings = Settings {
+        overrides: case.overrides(variant),
+        seed: Some(seed),
+        // The other estimators are compared with forward in tests/agreement.
+        estimator: Some(match case.by {
+            By::Photons => Request::Forward,
+            By::WideWindow => Request::Gather,
+        }),
+        ..Settings::default()
+    };
+    match input::load(&scene_file(&case.scene), &settings) {
+        Ok(job) => job,
+        Err(error) => panic!("{} {settings:?}: {error}", case.id),
+    }
+}
+
+fn wanted<'a>(
+    case: &'a Case,
+    variant: &Variant,
+    job: &'a Job,
+    precision: Precision,
+) -> Vec<Wanted<'a>> {
+    let values = case.values.iter().enumerate();
+    values
+        .map(|(place, value)| {
+            let check = &job.checks[value.check.unwrap_or(place)];
+            assert!(check.source.is_some(), "{}: a check without a source", job.name);
+            let std_error = value.std_error(precision) * scale(value, check);
+            let (name, uncertainty) = (value.name(variant), value.uncertainty(variant));
+            Wanted { value, check, by: case.by, name, uncertainty, std_error }
+        })
+        .collect()
+}
+
+/// What errors of a value are relative to, in the unit of the measure.
+fn scale(value: &Value, check: &Check) -> f64 {
+    let scale = value.scale.or(check.equals).or(check.max).expect("a value or a limit");
+    // Zero is expected: errors are relative to all light of the source.
+    if scale == 0.0 { 1.0 } else { scale }
 }
 
 /// A scene of the validation.
@@ -103,18 +141,7 @@ struct Wanted<'a> {
     std_error: f64,
 }
 
-impl<'a> Wanted<'a> {
-    fn new(job: &'a Job, place: usize, value: &'a Value, variant: &Variant, by: By) -> Self {
-        let name = value.name(variant);
-        let check = &job.checks[value.check.unwrap_or(place)];
-        assert!(check.source.is_some(), "{}: a check without a source", job.name);
-        let scale = value.scale.or(check.equals).or(check.max).expect("a value or a limit");
-        // Zero is expected: errors are relative to all light of the source.
-        let scale = if scale == 0.0 { 1.0 } else { scale };
-        let std_error = value.reach.unwrap_or(value.class.std_error()) * scale;
-        Self { value, check, by, name, uncertainty: value.uncertainty(variant), std_error }
-    }
-
+impl Wanted<'_> {
     /// The standard error, over the one that must be reached.
     fn error_left(&self, job: &Job, findings: &Findings) -> f64 {
         let error = self.measure(job, findings).total_error();
@@ -177,40 +204,17 @@ fn books(job: &Job, findings: &Findings) -> Vec<String> {
     faults
 }
 
-fn judge(case: &Case, job: &Job, findings: &Findings, wanted: &Wanted<'_>) -> Finding {
-    let Wanted { value, check, name, uncertainty, .. } = wanted;
-    let ours = normalised(wanted.measure(job, findings), value.per);
-    let mut faults = Vec::new();
-    let mut deviation = None;
+fn row(case: &Case, wanted: &Wanted<'_>) -> Row {
+    let Wanted { value, check, name, .. } = wanted;
     // Zero within a tolerance is an upper limit for what is never negative.
     let most = check.within.filter(|_| check.equals == Some(0.0)).or(check.max);
     let equals = check.equals.filter(|equals| *equals != 0.0 || most.is_none());
     let expected = match (equals, most) {
-        (Some(equals), _) => {
-            let expected = equals / value.per;
-            let error = ours.total_error().hypot(*uncertainty);
-            let allowed = allowed(value, expected, ours.total_error(), error);
-            let off = ours.value - expected;
-            if off.abs() > allowed {
-                faults.push(format!("off by {off:e}, allowed {allowed:e}"));
-            }
-            if ours.value != 0.0 && ours.std_error > ROUNDING * ours.value.abs() {
-                deviation = Some(sigmas(ours.value, error, expected));
-            }
-            Expected::Value(expected)
-        }
-        (None, Some(most)) => {
-            let most = most / value.per;
-            let error = ours.total_error();
-            let beyond = ours.value - most;
-            if beyond > SIGMAS * error {
-                faults.push(format!("beyond {most:e} by {beyond:e}, with an error of {error:e}"));
-            }
-            Expected::Most(most)
-        }
-        (None, None) => panic!("{}: a check without a value", job.name),
+        (Some(equals), _) => Expected::Value(equals / value.per),
+        (None, Some(most)) => Expected::Most(most / value.per),
+        (None, None) => panic!("{} {name}: a check without a value", case.id),
     };
-    Finding {
+    Row {
         case: value.case(case).to_owned(),
         name: name.clone(),
         scene: case.scene.clone(),
@@ -219,11 +223,36 @@ fn judge(case: &Case, job: &Job, findings: &Findings, wanted: &Wanted<'_>) -> Fi
         why: value.why.clone(),
         source: check.source.clone().unwrap_or_default(),
         expected,
-        ours,
-        deviation,
-        independent: false,
-        faults,
     }
+}
+
+fn judge(case: &Case, job: &Job, findings: &Findings, wanted: &Wanted<'_>) -> Finding {
+    let Wanted { value, uncertainty, .. } = wanted;
+    let row = row(case, wanted);
+    let ours = normalised(wanted.measure(job, findings), value.per);
+    let mut faults = Vec::new();
+    let mut deviation = None;
+    match row.expected {
+        Expected::Value(expected) => {
+            let error = ours.total_error().hypot(*uncertainty);
+            let allowed = allowed(value, expected, ours.total_error(), error);
+            let off = ours.value - expected;
+            if off.is_nan() || off.abs() > allowed {
+                faults.push(format!("off by {off:e}, allowed {allowed:e}"));
+            }
+            if ours.value != 0.0 && ours.std_error > ROUNDING * ours.value.abs() {
+                deviation = Some(sigmas(ours.value, error, expected));
+            }
+        }
+        Expected::Most(most) => {
+            let error = ours.total_error();
+            let beyond = ours.value - most;
+            if beyond.is_nan() || beyond > SIGMAS * error {
+                faults.push(format!("beyond {most:e} by {beyond:e}, with an error of {error:e}"));
+            }
+        }
+    }
+    Finding { row, ours, deviation, independent: false, faults }
 }
 
 /// A measure as the reference states it.

@@ -91,6 +91,16 @@ pub(crate) struct Variant {
     unc: f64,
 }
 
+/// How long values are traced.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Precision {
+    /// Until the standard error is below the tolerance of the class, so that a wrong formula is
+    /// seen: `cargo test`.
+    Quick,
+    /// As docs/validation.md has them: `cargo xtask validate`.
+    Page,
+}
+
 /// How accurate a value must be and how well it must be met, relative to the value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 pub(crate) enum Class {
@@ -106,11 +116,14 @@ pub(crate) enum Class {
 
 impl Class {
     /// Standard error that a run must reach.
-    pub(crate) fn std_error(self) -> f64 {
-        match self {
-            Self::F | Self::M => 0.0007,
-            Self::I => 0.003,
-            Self::X => 0.0003,
+    fn std_error(self, precision: Precision) -> f64 {
+        match (self, precision) {
+            (Self::F | Self::M, Precision::Page) => 0.0007,
+            (Self::I, Precision::Page) => 0.003,
+            (Self::X, Precision::Page) => 0.0003,
+            (Self::F | Self::M, Precision::Quick) => 0.0015,
+            (Self::I, Precision::Quick) => 0.007,
+            (Self::X, Precision::Quick) => 0.0009,
         }
     }
 
@@ -169,6 +182,11 @@ impl Value {
     /// Its name in a variant.
     pub(crate) fn name(&self, variant: &Variant) -> String {
         self.name.replace("{}", &variant.name)
+    }
+
+    /// Standard error to reach, relative.
+    pub(crate) fn std_error(&self, precision: Precision) -> f64 {
+        self.reach.unwrap_or(0.0).max(self.class.std_error(precision))
     }
 
     /// Standard error of the reference.

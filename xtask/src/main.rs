@@ -3,13 +3,15 @@
 #![allow(clippy::print_stdout, reason = "a program for developers")]
 
 mod manual;
+mod validate;
 mod verify;
 
-use crate::verify::{ReportShare, verify};
+use crate::validate::{Page, validate};
+use crate::verify::verify;
 use clap::Parser;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
+use std::process::{Command, ExitCode};
 
 /// Chores of the repository.
 #[derive(Debug, Parser)]
@@ -26,6 +28,30 @@ enum Chore {
         #[arg(long)]
         program: Option<PathBuf>,
     },
+    /// Trace the values of docs/validation.md anew and compare the page.
+    Validate {
+        /// Only one run in ten; the number of commits says which.
+        #[arg(long)]
+        tenth: bool,
+        /// Write the page instead.
+        #[arg(long, conflicts_with = "tenth")]
+        write: bool,
+    },
+}
+
+/// How much a chore does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Share {
+    /// All of it.
+    All,
+    /// One in ten; the number of commits says which.
+    Tenth,
+}
+
+impl Share {
+    fn new(is_tenth: bool) -> Self {
+        if is_tenth { Self::Tenth } else { Self::All }
+    }
 }
 
 fn main() -> io::Result<ExitCode> {
@@ -38,14 +64,27 @@ fn main() -> io::Result<ExitCode> {
             Ok(ExitCode::SUCCESS)
         }
         Chore::VerifyReports { tenth, program } => {
-            let share = if tenth { ReportShare::Tenth } else { ReportShare::All };
-            let is_same = verify(share, program)?;
-            Ok(if is_same { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+            Ok(exit_code(verify(Share::new(tenth), program)?))
+        }
+        Chore::Validate { tenth, write } => {
+            let page = if write { Page::Write } else { Page::Verify };
+            Ok(exit_code(validate(Share::new(tenth), page)?))
         }
     }
+}
+
+fn exit_code(is_good: bool) -> ExitCode {
+    if is_good { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
 /// The root of the repository.
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// Commits up to the present one.
+fn commits() -> io::Result<usize> {
+    let mut git = Command::new("git");
+    let printed = git.args(["rev-list", "--count", "HEAD"]).current_dir(root()).output()?.stdout;
+    String::from_utf8_lossy(&printed).trim().parse().map_err(io::Error::other)
 }

@@ -1,6 +1,6 @@
 //! Reruns committed reports and compares them byte by byte.
 
-use crate::root;
+use crate::{Share, commits, root};
 use std::collections::BTreeSet;
 use std::fs;
 use std::io;
@@ -9,15 +9,6 @@ use std::process::Command;
 
 /// Files next to a report that depend on the build or on time.
 const BESIDE: [&str; 2] = ["timing.csv", "designs"];
-
-/// Which reports to verify.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum ReportShare {
-    /// All of them.
-    All,
-    /// One in ten; the number of commits says which.
-    Tenth,
-}
 
 /// A scene or a study with the folder of its report, from the root of the repository.
 struct VerifiedReport {
@@ -28,7 +19,7 @@ struct VerifiedReport {
 
 /// Runs scenes and studies and prints what differs; returns whether nothing does. Without a program
 /// it builds one.
-pub(crate) fn verify(share: ReportShare, program: Option<PathBuf>) -> io::Result<bool> {
+pub(crate) fn verify(share: Share, program: Option<PathBuf>) -> io::Result<bool> {
     let program = match program {
         Some(program) => program.canonicalize()?,
         None => build()?,
@@ -36,8 +27,8 @@ pub(crate) fn verify(share: ReportShare, program: Option<PathBuf>) -> io::Result
     let mut jobs = jobs("scenes", "run", "reports")?;
     jobs.extend(self::jobs("scenes/studies", "batch", "reports/studies")?);
     let (step, first) = match share {
-        ReportShare::All => (1, 0),
-        ReportShare::Tenth => (10, commits()? % 10),
+        Share::All => (1, 0),
+        Share::Tenth => (10, commits()? % 10),
     };
     let mut is_same = true;
     for job in jobs.iter().skip(first).step_by(step) {
@@ -101,12 +92,6 @@ fn files(folder: &Path) -> io::Result<Vec<PathBuf>> {
         }
     }
     Ok(found)
-}
-
-fn commits() -> io::Result<usize> {
-    let mut git = Command::new("git");
-    let printed = git.args(["rev-list", "--count", "HEAD"]).current_dir(root()).output()?.stdout;
-    String::from_utf8_lossy(&printed).trim().parse().map_err(io::Error::other)
 }
 
 /// Builds the program as the README does.

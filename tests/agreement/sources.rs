@@ -6,12 +6,28 @@ use crate::trial::{Gathering, Way, agree};
 /// All ways; at depth 0 more work compensates for light that meets only a window of the size of the
 /// exit.
 fn all_agree(what: &str, text: &str) {
-    let gather = [
-        Gathering { angle_deg: 9.0, records: 3000, photons: 5000, ..Gathering::to_depth(0) },
-        Gathering { angle_deg: 7.0, photons: 4000, ..Gathering::to_depth(2) },
-        Gathering::to_depth(8),
-    ];
-    let [shallow, middle, deep] = gather.map(Way::Gather);
+    let shallow =
+        Gathering { angle_deg: 9.0, records: 3000, photons: 5000, ..Gathering::to_depth(0) };
+    let middle = Gathering { angle_deg: 7.0, photons: 4000, ..Gathering::to_depth(2) };
+    agree_in(what, text, [shallow, middle]);
+}
+
+/// The same for sources that shine beyond the critical angle of the rod. What they shine there stays
+/// in the rod for many bounces; a wide window at the exit lets in enough of it to change the mean
+/// number of bounces: at depth 0 by 18 % with 9 degrees and by 4 % with 2.5, for light from a disk.
+fn all_agree_in_narrow_windows(what: &str, text: &str, angle_deg: f64) {
+    let [shallow, middle] = [0, 2].map(|depth| Gathering {
+        angle_deg,
+        records: 6000,
+        photons: 10_000,
+        ..Gathering::to_depth(depth)
+    });
+    agree_in(what, text, [shallow, middle]);
+}
+
+/// All ways, with windows for depths 0 and 2.
+fn agree_in(what: &str, text: &str, [shallow, middle]: [Gathering; 2]) {
+    let [shallow, middle, deep] = [shallow, middle, Gathering::to_depth(8)].map(Way::Gather);
     agree(what, text, &[Way::Forward, Way::Backward, Way::Mixed, shallow, middle, deep]);
 }
 
@@ -43,9 +59,10 @@ cell = {{ plane = {{ rectangle = {{ width_mm = 4, height_mm = 4 }} }}, at = {{ p
 
 #[test]
 fn sources_on_faces() {
-    all_agree(
+    all_agree_in_narrow_windows(
         "disk in optical contact",
         &rod("[sources.lamp.disk]\nradius_mm = 2\nflux_lm = 10\nat = { face = \"rod.entry\" }"),
+        2.5,
     );
     all_agree(
         "disk on a face with air",
@@ -57,9 +74,10 @@ fn sources_on_faces() {
         "a face that shines out",
         &rod("[sources.lamp.face]\nof = \"rod.exit\"\nflux_lm = 10"),
     );
-    all_agree(
+    all_agree_in_narrow_windows(
         "a face that shines in, and out through itself",
         &rod("[sources.lamp.face]\nof = \"rod.wall\"\nside = \"back\"\nflux_lm = 10"),
+        1.5,
     );
     all_agree(
         "a face that shines in with air",
@@ -71,7 +89,8 @@ fn sources_on_faces() {
 
 #[test]
 fn sources_with_volume_and_shape() {
-    all_agree("glowing solid", &rod("[sources.lamp.volume]\nof = \"rod\"\nflux_lm = 10"));
+    let glowing = rod("[sources.lamp.volume]\nof = \"rod\"\nflux_lm = 10");
+    all_agree_in_narrow_windows("glowing solid", &glowing, 1.5);
     all_agree(
         "sphere",
         &rod(
@@ -84,11 +103,12 @@ fn sources_with_volume_and_shape() {
             "[sources.lamp.cylinder]\nradius_mm = 1\nlength_mm = 2\nflux_lm = 10\nat = { position_mm = [0.5, 0, -2.5] }",
         ),
     );
-    all_agree(
+    all_agree_in_narrow_windows(
         "sphere in the rod",
         &rod(
             "[sources.lamp.sphere]\nradius_mm = 1\nflux_lm = 10\nat = { position_mm = [0.5, 0, 3] }",
         ),
+        1.5,
     );
 }
 

@@ -2,7 +2,8 @@
 
 use crate::gather::{GatherSettings, check_radius, check_use};
 use crate::keys::{Key, Places};
-use crate::lower::{Lowered, lower};
+use crate::lower::Lowered;
+use crate::lower::context::Scope;
 use crate::problems::Problems;
 use crate::project::{Project, project};
 use crate::{Draft, draft};
@@ -79,9 +80,9 @@ pub struct Job {
 
 /// Loads a scene file and everything it refers to.
 pub fn load(path: &Path, settings: &Settings) -> Result<Job> {
-    let Draft { spec, places, text, mut problems } = draft(path, &settings.overrides)?;
-    let whole = problems.is_free_of_errors();
-    let mut lowered = if whole { lower(&spec, &places, &mut problems) } else { None };
+    let mut draft = draft(path, &settings.overrides)?;
+    let mut lowered = draft.lower(Scope::Scene);
+    let Draft { spec, places, text, mut problems, .. } = draft;
     if let Some(Lowered { scene, run, .. }) = &mut lowered {
         apply_method(settings, scene, run, &mut problems);
     }

@@ -1,14 +1,16 @@
 //! From a scene file to validated, typed specs.
 //!
 //! The file becomes a tree that knows its places. The tree is validated against the schema and
-//! becomes a [`SceneSpec`], which is checked against the rules that span several keys. Every
-//! problem is noted on the way and all are returned together. This crate knows geometry and optics
-//! only as far as the lowering of a spec needs them.
+//! becomes a [`SceneSpec`], which one pass checks and lowers, topic by topic. Every problem is noted
+//! on the way and all are returned together. This crate knows geometry and optics only as far as the
+//! lowering of a spec needs them.
 
 use std::collections::BTreeSet;
 use std::path::Path;
 
 use crate::keys::{Key, Places};
+use crate::lower::Lowered;
+use crate::lower::context::Scope;
 use crate::problems::Problems;
 use crate::sources::Sources;
 use crate::spec::{FORMAT_VERSION, SceneSpec};
@@ -18,7 +20,6 @@ use lumiduct_base::error::{Diagnostic, DiagnosticKind, Error, Result};
 use lumiduct_files::mesh::no_scene;
 use serde_json::Value as Json;
 
-pub mod check;
 pub mod convert;
 pub mod diagnostic;
 pub mod editor_schema;
@@ -32,7 +33,6 @@ mod outline;
 pub mod overrides;
 pub mod problems;
 mod project;
-mod scatter;
 pub mod schema;
 pub mod sources;
 pub mod spec;
@@ -75,17 +75,33 @@ pub struct Draft {
     pub text: String,
     /// The problems.
     pub problems: Problems,
+    /// After a syntax error, names may seem missing that are only hidden.
+    completeness: Completeness,
 }
 
-/// Reads a scene file. Each override is `key=value`, as after `-D` on the command line. All problems come as one
-/// [`Error::Input`].
+impl Draft {
+    /// Checks the spec and lowers it as far as asked for.
+    pub(crate) fn lower(&mut self, scope: Scope) -> Option<Lowered> {
+        match self.completeness {
+            Completeness::Whole => {
+                lower::lower(&self.spec, &self.places, scope, &mut self.problems)
+            }
+            Completeness::Broken => None,
+        }
+    }
+}
+
+/// Reads a scene file and checks its keys and names. Each override is `key=value`, as after `-D` on the command line.
+/// All problems come as one [`Error::Input`].
 pub fn read(path: &Path, overrides: &[String]) -> Result<Loaded> {
-    let Draft { spec, places, text, problems } = draft(path, overrides)?;
+    let mut draft = draft(path, overrides)?;
+    draft.lower(Scope::Keys);
+    let Draft { spec, places, text, problems, .. } = draft;
     let warnings = problems.finish(&places)?;
     Ok(Loaded { spec, places, text, warnings })
 }
 
-/// Reads a scene file as far as possible, so that further problems can be found in the valid part.
+/// Reads a scene file as far as it fits the schema, so that further problems can be found in the valid part.
 /// Fails only if there is nothing to continue with: the file cannot be read or is of another
 /// format.
 pub fn draft(path: &Path, overrides: &[String]) -> Result<Draft> {
@@ -112,12 +128,7 @@ pub fn draft(path: &Path, overrides: &[String]) -> Result<Draft> {
     note_breaks(&breaks, &mut problems);
     let spec = convert::scene(&root, &mut problems);
     let places = Places::new(root, sources);
-    // After a syntax error, names may seem missing that are only hidden.
-    if breaks.is_empty() {
-        note_broken_rules(&spec, &places, &mut problems);
-        check::check_names(&spec, &places, &mut problems);
-    }
-    Ok(Draft { spec, places, text, problems })
+    Ok(Draft { spec, places, text, problems, completeness: completeness(&breaks) })
 }
 
 fn unreadable(path: &Path, reason: &str) -> Error {
@@ -160,18 +171,8 @@ fn note_breaks(breaks: &[SyntaxError], problems: &mut Problems) {
     }
 }
 
-/// Checks the spec against the rules. A broken rule about a table with a wrong key is skipped, as
-/// it may hold once the key is corrected.
-fn note_broken_rules(spec: &SceneSpec, places: &Places, problems: &mut Problems) {
-    let mut found = Problems::default();
-    check::check_rules(spec, places, &mut found);
-    // The tables of entries and those inside them: an error in one entry does not affect its
-    // neighbours.
-    let wrong = problems.error_keys().map(Key::parent);
-    let tables: Vec<Key> = wrong.filter(|table| table.segments().len() > 1).collect();
-    problems.append(found, |problem| {
-        tables.iter().any(|table| *table == *problem.key() || *table == problem.key().parent())
-    });
+fn completeness(breaks: &[SyntaxError]) -> Completeness {
+    if breaks.is_empty() { Completeness::Whole } else { Completeness::Broken }
 }
 
 /// Validates the tree against the schema, and drops problems in a line with a syntax error.
@@ -182,9 +183,8 @@ fn note_differences(
     breaks: &[SyntaxError],
     problems: &mut Problems,
 ) {
-    let completeness = if breaks.is_empty() { Completeness::Whole } else { Completeness::Broken };
     let mut found = Problems::default();
-    validate::validate(root, schema, sources, completeness, &mut found);
+    validate::validate(root, schema, sources, completeness(breaks), &mut found);
     let line = |origin: &sources::Origin| {
         (origin.source, sources.get(origin.source).line(origin.span.start))
     };

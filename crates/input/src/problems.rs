@@ -15,6 +15,11 @@ pub struct Problems {
     spare: Option<Problem>,
     left_out: usize,
     errors: usize,
+    /// Wrong keys from before rules were checked, and the tables of entries that have them.
+    wrong: Vec<Key>,
+    doubtful: Vec<Key>,
+    /// The last one that was dropped as an echo.
+    dropped: Option<Problem>,
 }
 
 /// One thing that is wrong or odd.
@@ -62,12 +67,25 @@ impl Problems {
         self.push(Problem::new(DiagnosticKind::Error, key, message.into()))
     }
 
+    /// Notes an error that holds whatever becomes of the other keys of its table.
+    pub fn certain_error(&mut self, key: &Key, message: impl Into<String>) -> &mut Problem {
+        self.keep(Problem::new(DiagnosticKind::Error, key, message.into()))
+    }
+
     /// Notes a warning at a key.
     pub fn warning(&mut self, key: &Key, message: impl Into<String>) -> &mut Problem {
         self.push(Problem::new(DiagnosticKind::Warning, key, message.into()))
     }
 
     fn push(&mut self, problem: Problem) -> &mut Problem {
+        let is_echo = |table: &Key| *table == problem.key || *table == problem.key.parent();
+        if self.doubtful.iter().any(is_echo) {
+            return self.dropped.insert(problem);
+        }
+        self.keep(problem)
+    }
+
+    fn keep(&mut self, problem: Problem) -> &mut Problem {
         self.errors += usize::from(problem.kind == DiagnosticKind::Error);
         if self.list.len() >= MAX_PROBLEMS {
             self.left_out += 1;
@@ -82,6 +100,20 @@ impl Problems {
     pub fn error_keys(&self) -> impl Iterator<Item = &Key> {
         let errors = self.list.iter().filter(|problem| problem.kind == DiagnosticKind::Error);
         errors.map(Problem::key)
+    }
+
+    /// From here on, rules are checked that span several keys. What is noted of a table of an entry
+    /// that has a wrong key, or of another key in it, is dropped: it may hold once that one is
+    /// corrected.
+    pub fn expect_echoes(&mut self) {
+        self.wrong = self.error_keys().cloned().collect();
+        let tables = self.wrong.iter().map(Key::parent);
+        self.doubtful = tables.filter(|table| table.segments().len() > 1).collect();
+    }
+
+    /// Whether no key at `key` or inside it was wrong before rules were checked.
+    pub fn is_whole(&self, key: &Key) -> bool {
+        self.left_out == 0 && !self.wrong.iter().any(|wrong| wrong.is_within(key))
     }
 
     /// Whether nothing is wrong so far.

@@ -7,7 +7,7 @@ use crate::spec::SceneSpec;
 use glam::DVec3;
 use lumiduct_core::optics::FinishModel;
 use lumiduct_core::rng::{Dimension, Sampler};
-use lumiduct_core::scene::{Just, Owner, Ray, Scene, Solid, SolidId};
+use lumiduct_core::scene::{FinishId, Just, Owner, Ray, Scene, Solid, SolidId};
 
 /// Points tried in the space common to the boxes of two solids.
 const PROBES: u64 = 512;
@@ -20,15 +20,13 @@ pub(super) fn check_overlaps(spec: &SceneSpec, scene: &Scene, problems: &mut Pro
                 continue;
             }
             if let Some(place) = common_point(scene, SolidId::new(first), SolidId::new(second)) {
-                let place = place + scene.origin;
+                let [x, y, z] = (place + scene.origin).to_array();
+                let message = format!(
+                    "overlaps `{}` at [{x:.4}, {y:.4}, {z:.4}] mm with the same priority, {}",
+                    one.name, one.priority
+                );
                 problems
-                    .error(
-                        &solid_key(spec, other).field("priority"),
-                        format!(
-                            "overlaps `{}` at [{:.4}, {:.4}, {:.4}] mm with the same priority, {}",
-                            one.name, place.x, place.y, place.z, one.priority
-                        ),
-                    )
+                    .error(&solid_key(spec, other).field("priority"), message)
                     .hint("give the one whose medium counts a higher `priority`");
             }
         }
@@ -56,46 +54,40 @@ fn common_point(scene: &Scene, first: SolidId, second: SolidId) -> Option<DVec3>
 
 /// Notes open faces of solids where the index changes, as light would pass them without refraction.
 pub(super) fn check_open_faces(spec: &SceneSpec, scene: &Scene, problems: &mut Problems) {
-    let index = |medium: lumiduct_core::scene::MediumId| scene.media[medium.index()].index(0.0);
+    // The solid, and the step of the index if the finish lets light pass straight on.
+    let step = |owner: Owner, finish: FinishId| {
+        let Owner::Solid(solid) = owner else { return None };
+        let solid = &scene.solids[solid.index()];
+        let [inside, outside] =
+            [solid.medium, scene.surroundings].map(|medium| scene.media[medium.index()].index(0.0));
+        let is_open = scene.finishes[finish.index()].bsdf.passes_straight();
+        let step =
+            format!("lets light pass straight on, but the index steps from {inside} to {outside}");
+        (inside != outside && is_open).then_some((solid, step))
+    };
     for pattern in &scene.patterns {
         let face = &scene.faces[pattern.face.index()];
-        let Owner::Solid(solid) = face.owner else { continue };
-        let solid = &scene.solids[solid.index()];
-        let steps = index(solid.medium) != index(scene.surroundings);
-        if steps && scene.finishes[pattern.back.index()].bsdf.passes_straight() {
-            let (inside, outside) = (index(solid.medium), index(scene.surroundings));
-            problems
-                .error(
-                    &Key::of(&["patterns", &pattern.name]).field("finish"),
-                    format!(
-                        "lets light pass straight on, but the index steps from {inside} to {outside} at `{}`",
-                        face.name
-                    ),
-                )
-                .hint("holes are for sheets; on a solid use dots that scatter, or leave the face polished");
-        }
+        let Some((_, step)) = step(face.owner, pattern.back) else { continue };
+        let hint =
+            "holes are for sheets; on a solid use dots that scatter, or leave the face polished";
+        problems
+            .error(
+                &Key::of(&["patterns", &pattern.name, "finish"]),
+                format!("{step} at `{}`", face.name),
+            )
+            .hint(hint);
     }
     for face in &scene.faces {
-        let (Owner::Solid(solid), Some(finish)) = (face.owner, face.front) else { continue };
-        let solid = &scene.solids[solid.index()];
-        let steps = index(solid.medium) != index(scene.surroundings);
-        if steps && scene.finishes[finish.index()].bsdf.passes_straight() {
-            let (inside, outside) = (index(solid.medium), index(scene.surroundings));
-            let is_relief = scene.reliefs.iter().any(|relief| relief.name == face.name);
-            let key = match face.name.split_once('.') {
-                Some((_, relief)) if is_relief => Key::of(&["reliefs", relief, "finish"]),
-                Some(_) | None => solid_key(spec, solid).field("faces"),
-            };
-            problems
-                .error(
-                    &key,
-                    format!(
-                        "`{}` lets light pass straight on, but the index steps from {inside} to {outside} there",
-                        face.name
-                    ),
-                )
-                .hint("such a finish is for sheets and for solids of the surrounding medium; leave the face polished");
-        }
+        let Some((solid, step)) = face.front.and_then(|finish| step(face.owner, finish)) else {
+            continue;
+        };
+        let is_relief = scene.reliefs.iter().any(|relief| relief.name == face.name);
+        let key = match face.name.split_once('.') {
+            Some((_, relief)) if is_relief => Key::of(&["reliefs", relief, "finish"]),
+            Some(_) | None => solid_key(spec, solid).field("faces"),
+        };
+        let hint = "such a finish is for sheets and for solids of the surrounding medium; leave the face polished";
+        problems.error(&key, format!("`{}` {step} there", face.name)).hint(hint);
     }
 }
 

@@ -44,16 +44,13 @@ pub(super) fn check_contacts(spec: &SceneSpec, scene: &Scene, problems: &mut Pro
         let face = &scene.faces[face.index()];
         let other = if face.owner == Owner::Solid(one) { other } else { one };
         let (face, other) = (&face.name, &scene.solids[other.index()]);
-        problems
-            .warning(
-                &solid_key(spec, other),
-                format!(
-                    "`{}` and `{face}` lie up to {} mm apart without touching, at {points} of {PROBES} points of that face: light meets a thin layer there",
-                    other.name,
-                    format_value(widest)
-                ),
-            )
-            .hint("let one of them reach into the other and give it the higher `priority`, or place it `at` the face");
+        let message = format!(
+            "`{}` and `{face}` lie up to {} mm apart without touching, at {points} of {PROBES} points of that face: light meets a thin layer there",
+            other.name,
+            format_value(widest)
+        );
+        let hint = "let one of them reach into the other and give it the higher `priority`, or place it `at` the face";
+        problems.warning(&solid_key(spec, other), message).hint(hint);
     }
 }
 

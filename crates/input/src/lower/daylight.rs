@@ -2,14 +2,14 @@
 
 use crate::keys::Key;
 use crate::lower::context::Context;
-use crate::lower::weathers::{Daylight, Member};
+use crate::lower::sun::{SOUTH_DEG, Sun};
+use crate::lower::weathers::{Daylight, Member, group};
 use crate::problems::name_hint;
-use crate::spec::daylight::{SkyModelSpec, SkySpec, SunPlaceSpec, SunSpec, WhenSpec};
+use crate::spec::daylight::{SkyModelSpec, SkySpec, SunSpec};
 use glam::DVec3;
 use lumiduct_base::math::{Aabb, Frame};
 use lumiduct_base::units::per_m2_to_per_mm2;
 use lumiduct_core::optics::SkyModel;
-use lumiduct_core::optics::sun::{Date, Observation, read_time, sun_position};
 use lumiduct_core::scene::shape::Shape;
 use lumiduct_core::scene::{
     Emission, EmitSide, Emitter, EmitterKind, FaceId, MeshBody, Owner, Sky, Source, SourceId,
@@ -17,8 +17,6 @@ use lumiduct_core::scene::{
 };
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Default azimuth of a sun, deg: south.
-const SOUTH_DEG: f64 = 180.0;
 /// Ratio of the sphere from which light starts to what it must contain, 1.
 const ROOM: f64 = 1.01;
 /// Areas of surfaces that differ by at most this, relative, are the same.
@@ -27,6 +25,7 @@ const SAME_AREA: f64 = 1e-9;
 const CLEAR: usize = 12;
 
 /// Where light from infinity starts.
+#[derive(Clone)]
 struct Aim {
     emitter: Emitter,
     kind: EmitterKind,
@@ -44,17 +43,6 @@ struct Ball {
     radius: f64,
 }
 
-/// A position of the sun above the horizon.
-#[derive(Debug, Clone, Copy)]
-struct Sun {
-    /// rad
-    elevation: f64,
-    /// From north, clockwise, rad.
-    azimuth: f64,
-    /// Toward the sun, unit vector in the frame with x east, y north, z up.
-    toward: DVec3,
-}
-
 /// Emission of a daylight source.
 #[derive(Debug)]
 struct FarLight {
@@ -66,37 +54,27 @@ struct FarLight {
     sun: Option<SunAngles>,
 }
 
-impl Sun {
-    fn angles(&self) -> SunAngles {
-        SunAngles { elevation: self.elevation, azimuth: self.azimuth }
-    }
-
-    fn new(elevation_deg: f64, azimuth_deg: f64) -> Self {
-        let (elevation, azimuth) = (elevation_deg.to_radians(), azimuth_deg.to_radians());
-        let level = elevation.cos() * DVec3::new(azimuth.sin(), azimuth.cos(), 0.0);
-        Self { elevation, azimuth, toward: level.with_z(elevation.sin()) }
-    }
-}
-
 impl Context<'_> {
     pub(super) fn lower_sun(&mut self, name: &str, spec: &SunSpec, key: &Key) {
         let azimuth = spec.place.azimuth_deg.unwrap_or(SOUTH_DEG);
         let Some(elevations) = &spec.elevations_deg else {
-            if let Some(sun) = self.sun(&spec.place, key) {
-                self.add_sun(name, spec, sun, key);
+            let sun = self.sun(&spec.place, key);
+            let aim = self.aim_of_daylight(&spec.common.aim, key);
+            if let Some((sun, aim)) = sun.zip(aim) {
+                self.add_sun(name, spec, sun, aim, key);
             }
             return;
         };
+        let Some(aim) = self.aim_of_daylight(&spec.common.aim, key) else { return };
         for (index, &elevation) in elevations.iter().enumerate() {
             let own = format!("{name}_{}", elevation.to_string().replace('.', "_"));
             if self.is_taken(&own) {
                 let message = format!("makes a source `{own}`, and that name is taken");
                 let at = key.field("elevations_deg").index(index);
-                self.problems
-                    .error(&at, message)
-                    .hint("give each elevation once, and no other thing this name");
+                let hint = "give each elevation once, and no other thing this name";
+                self.problems.error(&at, message).hint(hint);
             } else {
-                self.add_sun(&own, spec, Sun::new(elevation, azimuth), key);
+                self.add_sun(&own, spec, Sun::new(elevation, azimuth), aim.clone(), key);
             }
         }
     }
@@ -111,17 +89,16 @@ impl Context<'_> {
             || self.builder.scene().sources.iter().any(|source| source.name == name)
     }
 
-    fn add_sun(&mut self, name: &str, spec: &SunSpec, sun: Sun, key: &Key) {
-        let Some(aim) = self.aim_of_daylight(&spec.aim, key) else { return };
-        let Some(world) = self.sky_frame() else { return };
+    fn add_sun(&mut self, name: &str, spec: &SunSpec, sun: Sun, aim: Aim, key: &Key) -> Option<()> {
+        self.may_build(key)?;
+        let world = self.sky_frame()?;
         let half_angle = spec.half_angle_deg.to_radians();
         let axis = aim.frame.to_local(-world.to_world(sun.toward));
         if aim.kind == EmitterKind::Surface && axis.z <= half_angle.sin() {
-            let message = format!("the sun does not stand before the plane of `{}`", spec.aim);
-            self.problems
-                .error(&key.field("aim"), message)
-                .hint("turn the face to the sun, or aim at a solid or sheet by its name");
-            return;
+            let message =
+                format!("the sun does not stand before the plane of `{}`", spec.common.aim);
+            let hint = "turn the face to the sun, or aim at a solid or sheet by its name";
+            return self.refuse(&key.field("aim"), message, hint);
         }
         // E = π L sin²h on a plane normal to the axis.
         let luminance = per_m2_to_per_mm2(spec.illuminance_lx) / (PI * half_angle.sin().powi(2));
@@ -134,61 +111,65 @@ impl Context<'_> {
         let emission = Emission::Cone { half_angle, axis };
         let per_area = luminance * projected;
         let amount = key.field("illuminance_lx");
-        let flux = self.carried([spec.illuminance_lx, per_area * aim.area], &amount);
-        let Some(flux) = flux else { return };
-        let flux = if spec.enabled { flux } else { 0.0 };
+        let flux = self.carried([spec.illuminance_lx, per_area * aim.area], &amount)?;
+        let flux = if spec.common.enabled { flux } else { 0.0 };
         let angles = Some(sun.angles());
         let light = FarLight { emission, flux, elevation: Some(sun.elevation), sun: angles };
         let source = self.add_daylight(name, aim, light);
-        let group = spec.group.clone().map(|group| (group, key.field("group")));
-        self.members.push(Member { source, group, daylight: Some(Daylight::Sun(sun.toward)) });
+        let daylight = Daylight::Sun(sun.toward);
+        self.members.push(Member {
+            source,
+            group: group(spec.common.group.as_ref(), key),
+            daylight: Some(daylight),
+        });
+        Some(())
     }
 
-    pub(super) fn lower_sky(&mut self, name: &str, spec: &SkySpec, key: &Key) {
-        let sun = match (spec.place.elevation_deg, &spec.place.when) {
-            // Only skies without dependence on the azimuth have none.
-            (None, None) => Some(Sun::new(FRAC_PI_2.to_degrees(), SOUTH_DEG)),
-            (Some(_), _) | (_, Some(_)) => self.sun(&spec.place, key),
-        };
-        let Some(sun) = sun else { return };
-        let toward_sun = sun.toward;
+    pub(super) fn lower_sky(&mut self, name: &str, spec: &SkySpec, key: &Key) -> Option<()> {
+        let place = &spec.place;
+        self.check_need(spec.model, place, key);
+        let has_sun = place.elevation_deg.is_some() || place.when.is_some();
+        // Only skies without dependence on the azimuth have none.
+        let zenith = Sun::new(FRAC_PI_2.to_degrees(), SOUTH_DEG);
+        let sun = if has_sun { self.sun(place, key) } else { Some(zenith) };
+        let aim = self.aim_of_daylight(&spec.common.aim, key);
+        self.may_build(key)?;
+        let (sun, aim) = sun.zip(aim)?;
         let model = match spec.model {
             SkyModelSpec::Uniform => Some(SkyModel::uniform()),
             SkyModelSpec::Overcast => Some(SkyModel::overcast()),
             SkyModelSpec::Clear => SkyModel::of_type(CLEAR, sun.toward),
             SkyModelSpec::CieType(number) => SkyModel::of_type(number as usize, sun.toward),
-        };
-        let Some(model) = model else { return };
-        let Some(aim) = self.aim_of_daylight(&spec.aim, key) else { return };
-        let Some(world) = self.sky_frame() else { return };
+        }?;
+        let world = self.sky_frame()?;
         let local = |axis: DVec3| aim.frame.to_local(axis);
         let axes =
             Frame { origin: DVec3::ZERO, x: local(world.x), y: local(world.y), z: local(world.z) };
         let sky = Sky::new(model, axes);
         if aim.kind == EmitterKind::Surface && !sky.is_seen_by_surface() {
-            let message = format!("`{}` faces the ground and sees no sky", spec.aim);
-            self.problems
-                .error(&key.field("aim"), message)
-                .hint("turn the face up, or say with `up` which way that is");
-            return;
+            let message = format!("`{}` faces the ground and sees no sky", spec.common.aim);
+            let hint = "turn the face up, or say with `up` which way that is";
+            return self.refuse(&key.field("aim"), message, hint);
         }
         let level = spec.horizontal_illuminance_lx.map(|lx| lx / sky.level_illuminance());
-        let Some(zenith) = spec.zenith_luminance_cd_m2.or(level) else { return };
+        let zenith = spec.zenith_luminance_cd_m2.or(level)?;
         let per_area = per_m2_to_per_mm2(zenith) * sky.projected_solid_angle(aim.kind);
         let (amount, stated) = match (spec.zenith_luminance_cd_m2, spec.horizontal_illuminance_lx) {
             (Some(stated), _) => ("zenith_luminance_cd_m2", stated),
             (None, stated) => ("horizontal_illuminance_lx", stated.unwrap_or(0.0)),
         };
-        let flux = self.carried([stated, per_area * aim.area], &key.field(amount));
-        let Some(flux) = flux else { return };
-        let flux = if spec.enabled { flux } else { 0.0 };
-        let has_sun = spec.place.elevation_deg.is_some() || spec.place.when.is_some();
+        let flux = self.carried([stated, per_area * aim.area], &key.field(amount))?;
+        let flux = if spec.common.enabled { flux } else { 0.0 };
         let angles = has_sun.then(|| sun.angles());
         let light = FarLight { emission: Emission::Sky(sky), flux, elevation: None, sun: angles };
         let source = self.add_daylight(name, aim, light);
-        let group = spec.group.clone().map(|group| (group, key.field("group")));
-        let daylight = Some(Daylight::of_sky(spec, has_sun.then_some(toward_sun)));
-        self.members.push(Member { source, group, daylight });
+        let daylight = Daylight::of_sky(spec, has_sun.then_some(sun.toward));
+        self.members.push(Member {
+            source,
+            group: group(spec.common.group.as_ref(), key),
+            daylight: Some(daylight),
+        });
+        Some(())
     }
 
     fn add_daylight(&mut self, name: &str, aim: Aim, light: FarLight) -> SourceId {
@@ -205,55 +186,21 @@ impl Context<'_> {
         })
     }
 
-    /// East, north and up as x, y and z.
-    fn sky_frame(&self) -> Option<Frame> {
-        let [up, north] = [self.spec.up, self.spec.north].map(DVec3::from);
-        // The second axis of this frame points west.
-        let Frame { x: north, y: west, z: up, .. } =
-            Frame::from_axis_and_x(DVec3::ZERO, up, north)?;
-        Some(Frame { origin: DVec3::ZERO, x: -west, y: north, z: up })
-    }
-
-    /// The position of the sun; an error if below the horizon.
-    fn sun(&mut self, place: &SunPlaceSpec, key: &Key) -> Option<Sun> {
-        if let Some(elevation) = place.elevation_deg {
-            return Some(Sun::new(elevation, place.azimuth_deg.unwrap_or(SOUTH_DEG)));
-        }
-        let WhenSpec { date, time, utc_offset_h, latitude_deg, longitude_deg } =
-            place.when.as_ref()?;
-        // An unreadable value has been reported.
-        let hours = read_time(time).ok()? - utc_offset_h;
-        let days = Date::read(date).ok()?.days() + hours / 24.0;
-        let (latitude_deg, longitude_deg) = (*latitude_deg, *longitude_deg);
-        let position = sun_position(Observation { days, latitude_deg, longitude_deg });
-        if position.elevation_deg <= 0.0 {
-            let message = format!(
-                "the sun is below the horizon there and then, at {:.1} deg",
-                position.elevation_deg
-            );
-            self.problems.error(&key.field("when"), message).hint(
-                "check `utc_offset_h`, and the signs of latitude (north +) and longitude (east +)",
-            );
-            return None;
-        }
-        Some(Sun::new(position.elevation_deg, position.azimuth_deg))
-    }
-
     /// Where light aimed at a flat face, a solid or a sheet starts.
     fn aim_of_daylight(&mut self, name: &str, key: &Key) -> Option<Aim> {
         let key = key.field("aim");
         if let Some(ball) = self.ball_around(name) {
             return Some(self.aim_at_body(ball));
         }
-        if self.spec.solids.contains_key(name) || self.spec.sheets.contains_key(name) {
+        let bodies: Vec<&str> =
+            self.names("solids").into_iter().chain(self.names("sheets")).collect();
+        if bodies.contains(&name) {
             // It could not be built, which has been reported.
             return None;
         }
         if !name.contains('.') {
-            let bodies = self.spec.solids.keys().chain(self.spec.sheets.keys());
-            let hint = name_hint(name, bodies.map(String::as_str));
-            self.problems.error(&key, format!("unknown solid or sheet `{name}`")).hint(hint);
-            return None;
+            let hint = name_hint(name, bodies.iter().copied());
+            return self.refuse(&key, format!("unknown solid or sheet `{name}`"), hint);
         }
         let faces = self.faces_named(name, &key)?;
         self.aim_at_face(name, &faces, &key)
@@ -309,20 +256,17 @@ impl Context<'_> {
         let patches = || faces.iter().flat_map(|face| scene.face_patches(*face));
         if patches().any(|patch| patch.trim.is_some()) {
             let message = format!("`{name}` has a relief, on which no light can start");
-            self.problems.error(key, message).hint(instead);
-            return None;
+            return self.refuse(key, message, instead);
         }
         let shapes: Vec<_> = patches().map(|patch| patch.shape.clone()).collect();
         let (Some(plane), false) = (plane, shapes.is_empty()) else {
             let message = format!("`{name}` is not a single flat face");
-            self.problems.error(key, message).hint(instead);
-            return None;
+            return self.refuse(key, message, instead);
         };
         if owner == Owner::Sheet {
             let message =
                 format!("`{name}` is a sheet with two sides, on which no light can start");
-            self.problems.error(key, message).hint(instead);
-            return None;
+            return self.refuse(key, message, instead);
         }
         // Half a turn about x: light goes in.
         let frame = Frame { y: -plane.y, z: -plane.z, ..plane };

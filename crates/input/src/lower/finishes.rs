@@ -1,39 +1,86 @@
-//! Finishes: names, references and inline tables.
+//! Finishes: names, references, tables in place, and the BSDF of each kind.
 
 use crate::keys::Key;
 use crate::lower::context::Context;
-use crate::scatter;
+use crate::spec::PREDEFINED_FINISHES;
 use crate::spec::finish::{
-    FinishRef, FinishSpec, GaussianSpec, GrainSpec, PrismFilmSpec, PrismSideSpec,
+    FinishRef, FinishSpec, GaussianSpec, GgxSpec, GrainSpec, MixturePartSpec, PrismFilmSpec,
+    PrismSideSpec,
 };
-use lumiduct_core::optics::{AngleTable, Bsdf, FilmFace, FilmMake, Gaussian, Grain, PrismFilm};
+use indexmap::{IndexMap, IndexSet};
+use lumiduct_core::optics::{
+    Bsdf, FacetKind, FilmFace, FilmMake, Gaussian, Grain, Microfacet, PrismFilm,
+};
 use lumiduct_core::scene::FinishId;
 
-impl Context<'_> {
+/// Rounding error allowed for a sum of decimal fractions.
+pub(super) const SUM_TOLERANCE: f64 = 1e-12;
+/// Most mixtures inside each other: the number of their parts may double with each.
+const DEEPEST: usize = 16;
+
+/// The least sum of reflectance and transmittance.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Least {
+    Zero,
+    AboveZero,
+}
+
+/// Named finishes that are being looked at, and those found to contain themselves.
+#[derive(Default)]
+struct OpenMixtures<'a> {
+    open: Vec<&'a str>,
+    endless: IndexSet<&'a str>,
+}
+
+impl<'a> Context<'a> {
     /// Adds the named finishes, the predefined ones first; a definition of the same name wins.
     pub(super) fn lower_finishes(&mut self) {
-        for (name, bsdf) in
-            [("polished", Bsdf::Smooth), ("black", Bsdf::Absorber), ("open", Bsdf::Open)]
-        {
+        let predefined = [Bsdf::Smooth, Bsdf::Absorber, Bsdf::Open];
+        for (name, bsdf) in PREDEFINED_FINISHES.into_iter().zip(predefined) {
             let id = self.builder.add_finish(name, bsdf);
             self.finishes.insert(name.to_owned(), id);
         }
+        let mut mixing = OpenMixtures::default();
         for (name, spec) in &self.spec.finishes {
-            let bsdf = self.bsdf(spec, 0);
-            let id = self.builder.add_finish(name, bsdf);
-            self.finishes.insert(name.clone(), id);
+            if let Some(bsdf) = self.named(name, spec, &mut mixing) {
+                let id = self.builder.add_finish(name, bsdf);
+                self.finishes.insert(name.clone(), id);
+            } else {
+                self.finishes.shift_remove(name);
+            }
+        }
+        for name in self.spec.finishes.keys().filter(|name| mixing.endless.contains(name.as_str()))
+        {
+            let message = "this mixture contains itself, or another one that does";
+            self.problems.certain_error(&Key::of(&["finishes", name]), message);
         }
     }
 
-    /// The finish of a reference. Unknown names were found by the validation.
-    pub(super) fn finish(&mut self, reference: &FinishRef) -> Option<FinishId> {
+    /// The finish of a reference.
+    pub(super) fn finish(&mut self, reference: &'a FinishRef, key: &Key) -> Option<FinishId> {
         match reference {
-            FinishRef::Name(name) => self.finishes.get(name).copied(),
+            FinishRef::Name(name) => {
+                let finish = self.finishes.get(name).copied();
+                if finish.is_none() {
+                    let what = ["finish", "finishes"];
+                    self.require_known(what, name, &PREDEFINED_FINISHES, key);
+                }
+                finish
+            }
             FinishRef::Inline(spec) => {
-                let bsdf = self.bsdf(spec, 0);
+                let bsdf = self.bsdf(spec, key, &mut OpenMixtures::default())?;
                 Some(self.builder.add_finish("in place", bsdf))
             }
         }
+    }
+
+    /// The finishes of a table of faces.
+    pub(super) fn declared(
+        &mut self,
+        faces: &'a IndexMap<String, FinishRef>,
+        key: &Key,
+    ) -> IndexMap<&'a str, Option<FinishId>> {
+        faces.iter().map(|(face, of)| (face.as_str(), self.finish(of, &key.field(face)))).collect()
     }
 
     /// The finish that light from behind meets: a different one for films.
@@ -57,74 +104,174 @@ impl Context<'_> {
     pub(super) fn declared_behind(
         &mut self,
         front: Option<FinishId>,
-        declared: Option<&FinishRef>,
+        declared: Option<FinishId>,
         key: &Key,
     ) -> Option<FinishId> {
         let film = front.map(|front| self.behind(front)).filter(|behind| Some(*behind) != front);
-        match declared {
-            Some(_) if film.is_some() => {
-                self.problems
-                    .error(key, "a prism film has no other finish behind it")
-                    .hint("leave this out: light from behind meets the same film");
+        if declared.is_some() && film.is_some() {
+            let hint = "leave this out: light from behind meets the same film";
+            return self.refuse(key, "a prism film has no other finish behind it", hint);
+        }
+        declared.or(film)
+    }
+
+    fn named(
+        &mut self,
+        name: &'a str,
+        spec: &'a FinishSpec,
+        mixing: &mut OpenMixtures<'a>,
+    ) -> Option<Bsdf> {
+        if let Some(known) = self.bsdfs.get(name) {
+            return known.clone();
+        }
+        mixing.open.push(name);
+        let bsdf = self.bsdf(spec, &Key::of(&["finishes", name]), mixing);
+        mixing.open.pop();
+        self.bsdfs.insert(name.to_owned(), bsdf.clone());
+        bsdf
+    }
+
+    fn bsdf(
+        &mut self,
+        spec: &'a FinishSpec,
+        key: &Key,
+        mixing: &mut OpenMixtures<'a>,
+    ) -> Option<Bsdf> {
+        match spec {
+            FinishSpec::Smooth(_) => Some(Bsdf::Smooth),
+            FinishSpec::Specular(s) => {
+                let (reflectance, transmittance) = (s.reflectance, s.transmittance);
+                self.check_sum(&key.field("specular"), [reflectance, transmittance], Least::Zero)?;
+                Some(Bsdf::Specular { reflectance, transmittance })
+            }
+            FinishSpec::Metal(metal) => Some(Bsdf::Metal { n: metal.n, k: metal.k }),
+            FinishSpec::Absorber(_) => Some(Bsdf::Absorber),
+            FinishSpec::Open(_) => Some(Bsdf::Open),
+            FinishSpec::Lambertian(s) => {
+                let (reflectance, transmittance) = (s.reflectance, s.transmittance);
+                let key = key.field("lambertian");
+                self.check_sum(&key, [reflectance, transmittance], Least::AboveZero)?;
+                Some(Bsdf::Lambertian { reflectance, transmittance })
+            }
+            FinishSpec::Gaussian(spec) => self.gaussian(spec, &key.field("gaussian")),
+            FinishSpec::Ggx(spec) => self.ggx(spec, &key.field("ggx")),
+            FinishSpec::Abg(spec) => self.abg(spec, &key.field("abg")),
+            FinishSpec::Harvey(spec) => self.harvey(spec, &key.field("harvey")),
+            FinishSpec::Tabulated(spec) => self.tabulated(spec, &key.field("tabulated")),
+            FinishSpec::Coated(spec) => {
+                let (angles, shares) = (&spec.angles_deg, &spec.reflectance);
+                let key = key.field("coated");
+                let [reflectance] = self.table(angles, [("reflectance", shares)], &key)?;
+                Some(Bsdf::Coated { reflectance })
+            }
+            FinishSpec::PrismFilm(film) => Some(prism_film(film)),
+            FinishSpec::Mixture(parts) => self.mixture(parts, &key.field("mixture"), mixing),
+        }
+    }
+
+    /// Notes reflectance and transmittance with an impossible sum.
+    pub(super) fn check_sum(
+        &mut self,
+        key: &Key,
+        [reflectance, transmittance]: [f64; 2],
+        least: Least,
+    ) -> Option<()> {
+        let sum = reflectance + transmittance;
+        if sum > 1.0 + SUM_TOLERANCE {
+            let message = format!(
+                "reflectance {reflectance} and transmittance {transmittance} add up to {sum}, expected at most 1"
+            );
+            self.problems.error(key, message);
+            return None;
+        }
+        if sum == 0.0 && least == Least::AboveZero {
+            let message = "reflectance and transmittance are both 0, expected a sum above 0";
+            let hint = "a finish that absorbs everything is `absorber = {}`";
+            return self.refuse(key, message, hint);
+        }
+        Some(())
+    }
+
+    fn gaussian(&mut self, spec: &GaussianSpec, key: &Key) -> Option<Bsdf> {
+        let lobe = Gaussian::new(spec.sigma_deg.to_radians());
+        if let (None, None) = (spec.reflectance, spec.transmittance) {
+            return Some(Bsdf::GaussianDielectric { lobe });
+        }
+        let reflectance = spec.reflectance.unwrap_or(0.0);
+        let transmittance = spec.transmittance.unwrap_or(0.0);
+        self.check_sum(key, [reflectance, transmittance], Least::AboveZero)?;
+        Some(Bsdf::GaussianSheet { lobe, reflectance, transmittance })
+    }
+
+    fn ggx(&mut self, spec: &GgxSpec, key: &Key) -> Option<Bsdf> {
+        let facets = match (spec.reflectance, spec.metal) {
+            (Some(_), Some(_)) => {
+                let message = "facets are metal or have a reflectance, not both";
+                self.problems.error(&key.field("metal"), message);
+                return None;
+            }
+            (Some(reflectance), None) => FacetKind::Mirror { reflectance },
+            (None, Some(metal)) => FacetKind::Metal { n: metal.n, k: metal.k },
+            (None, None) => FacetKind::Interface,
+        };
+        Some(Bsdf::Microfacet(Microfacet::new(spec.roughness, facets)))
+    }
+
+    fn mixture(
+        &mut self,
+        parts: &'a [MixturePartSpec],
+        key: &Key,
+        mixing: &mut OpenMixtures<'a>,
+    ) -> Option<Bsdf> {
+        let part = |(index, part): (usize, &'a MixturePartSpec)| {
+            let key = key.index(index).field("finish");
+            Some((part.weight, self.part(&part.finish, &key, mixing)?))
+        };
+        // All parts are looked at, whatever is wrong with the first.
+        let made: Vec<Option<(f64, Bsdf)>> = parts.iter().enumerate().map(part).collect();
+        let mixture = Bsdf::Mixture(made.into_iter().collect::<Option<_>>()?);
+        if depth(&mixture) > DEEPEST {
+            let message = format!("mixtures are more than {DEEPEST} deep in each other");
+            self.problems.error(key, message);
+            return None;
+        }
+        Some(mixture)
+    }
+
+    fn part(
+        &mut self,
+        reference: &'a FinishRef,
+        key: &Key,
+        mixing: &mut OpenMixtures<'a>,
+    ) -> Option<Bsdf> {
+        let name = match reference {
+            FinishRef::Inline(spec) => return self.bsdf(spec, key, mixing),
+            FinishRef::Name(name) => name.as_str(),
+        };
+        if mixing.open.contains(&name) || mixing.endless.contains(name) {
+            mixing.endless.extend(mixing.open.iter().copied());
+            return None;
+        }
+        match self.spec.finishes.get_key_value(name) {
+            // The finishes in between would be looked at one inside the other.
+            Some(_) if mixing.open.len() > DEEPEST => {
+                let message = format!("mixtures are more than {DEEPEST} deep in each other");
+                self.problems.error(key, message);
                 None
             }
-            Some(declared) => self.finish(declared),
-            None => film,
+            Some((name, spec)) => self.named(name, spec, mixing),
+            None => {
+                let finish = self.finish(reference, key)?;
+                Some(self.builder.scene().finishes[finish.index()].bsdf.clone())
+            }
         }
     }
+}
 
-    fn bsdf(&self, spec: &FinishSpec, depth: usize) -> Bsdf {
-        match spec {
-            FinishSpec::Smooth(_) => Bsdf::Smooth,
-            FinishSpec::Specular(s) => {
-                Bsdf::Specular { reflectance: s.reflectance, transmittance: s.transmittance }
-            }
-            FinishSpec::Metal(metal) => Bsdf::Metal { n: metal.n, k: metal.k },
-            FinishSpec::Absorber(_) => Bsdf::Absorber,
-            FinishSpec::Open(_) => Bsdf::Open,
-            FinishSpec::Lambertian(s) => {
-                Bsdf::Lambertian { reflectance: s.reflectance, transmittance: s.transmittance }
-            }
-            FinishSpec::Gaussian(spec) => gaussian(spec),
-            FinishSpec::Ggx(spec) => scatter::ggx(spec),
-            FinishSpec::Abg(spec) => scatter::haze(scatter::abg(spec), &spec.sheet),
-            FinishSpec::Harvey(spec) => scatter::haze(scatter::harvey(spec), &spec.sheet),
-            FinishSpec::Tabulated(spec) => Bsdf::Tabulated {
-                reflectance: scatter::table(&spec.angles_deg, &spec.reflectance),
-                transmittance: spec.transmittance.as_ref().map_or_else(
-                    || AngleTable::constant(0.0),
-                    |values| scatter::table(&spec.angles_deg, values),
-                ),
-            },
-            FinishSpec::Coated(spec) => {
-                Bsdf::Coated { reflectance: scatter::table(&spec.angles_deg, &spec.reflectance) }
-            }
-            FinishSpec::PrismFilm(film) => prism_film(film),
-            FinishSpec::Mixture(parts) => Bsdf::Mixture(
-                parts
-                    .iter()
-                    .map(|part| (part.weight, self.referenced(&part.finish, depth + 1)))
-                    .collect(),
-            ),
-        }
-    }
-
-    /// The finish of a part of a mixture. A mixture of itself was refused by the validation; the
-    /// depth limit is a safeguard.
-    fn referenced(&self, reference: &FinishRef, depth: usize) -> Bsdf {
-        /// Deeper nesting of mixtures is treated as a mixture that contains itself.
-        const DEEPEST: usize = 16;
-        match reference {
-            FinishRef::Inline(spec) if depth <= DEEPEST => self.bsdf(spec, depth),
-            FinishRef::Name(name) if depth <= DEEPEST => match self.spec.finishes.get(name) {
-                Some(spec) => self.bsdf(spec, depth),
-                None => self.finishes.get(name).map_or(Bsdf::Absorber, |id| {
-                    self.builder.scene().finishes[id.index()].bsdf.clone()
-                }),
-            },
-            FinishRef::Inline(_) | FinishRef::Name(_) => Bsdf::Absorber,
-        }
-    }
+/// How many mixtures are inside each other.
+fn depth(bsdf: &Bsdf) -> usize {
+    let Bsdf::Mixture(parts) = bsdf else { return 0 };
+    1 + parts.iter().map(|(_, part)| depth(part)).max().unwrap_or(0)
 }
 
 fn prism_film(spec: &PrismFilmSpec) -> Bsdf {
@@ -145,16 +292,4 @@ fn prism_film(spec: &PrismFilmSpec) -> Bsdf {
         PrismSideSpec::Before => FilmFace::Prisms,
     };
     Bsdf::PrismFilm { film: Box::new(PrismFilm::new(&make)), face }
-}
-
-fn gaussian(spec: &GaussianSpec) -> Bsdf {
-    let lobe = Gaussian::new(spec.sigma_deg.to_radians());
-    match (spec.reflectance, spec.transmittance) {
-        (None, None) => Bsdf::GaussianDielectric { lobe },
-        (reflectance, transmittance) => Bsdf::GaussianSheet {
-            lobe,
-            reflectance: reflectance.unwrap_or(0.0),
-            transmittance: transmittance.unwrap_or(0.0),
-        },
-    }
 }

@@ -2,9 +2,10 @@
 
 use crate::keys::Key;
 use crate::lower::context::Context;
-use crate::spec::source::SourceCommonSpec;
+use crate::spec::SceneSpec;
+use crate::spec::source::{SourceCommonSpec, SourceSpec};
 use lumiduct_base::number::format_value;
-use lumiduct_base::units::per_m2_to_per_mm2;
+use lumiduct_base::units::{FluxUnit, per_m2_to_per_mm2};
 use lumiduct_core::scene::{Emission, Emitter};
 
 /// Least flux of a source that is not dark, lm or W: the squares of its shares in 1e9 cells are not
@@ -12,6 +13,12 @@ use lumiduct_core::scene::{Emission, Emitter};
 const LEAST_FLUX: f64 = 1e-30;
 /// Largest flux of a source, lm or W: sums of squares are far from overflow.
 const LARGEST_FLUX: f64 = 1e30;
+
+/// Lumens, unless a source is given in watts.
+pub(super) fn unit(spec: &SceneSpec) -> FluxUnit {
+    let is_radiant = |source: &SourceSpec| source.common().is_some_and(|c| c.flux_w.is_some());
+    if spec.sources.values().any(is_radiant) { FluxUnit::Watt } else { FluxUnit::Lumen }
+}
 
 impl Context<'_> {
     /// Flux in lm or W from whichever amount is given.
@@ -29,19 +36,15 @@ impl Context<'_> {
         }
         if let Some(luminance) = common.luminance_cd_m2 {
             let per_luminance = emitter.area().zip(law.projected_solid_angle());
+            let key = key.field("luminance_cd_m2");
             let Some((area, projected)) = per_luminance else {
-                self.problems
-                    .error(
-                        &key.field("luminance_cd_m2"),
-                        "needs a source with an area and a `lambertian` or cone emission",
-                    )
-                    .hint("give flux_lm instead");
-                return None;
+                let message = "needs a source with an area and a `lambertian` or cone emission";
+                return self.refuse(&key, message, "give flux_lm instead");
             };
             let flux = per_m2_to_per_mm2(luminance) * area * projected;
-            return self.carried([luminance, flux], &key.field("luminance_cd_m2"));
+            return self.carried([luminance, flux], &key);
         }
-        let intensity = common.intensity_cd?;
+        let (intensity, key) = (common.intensity_cd?, key.field("intensity_cd"));
         let per_intensity = match emitter {
             Emitter::Point(_) => law.flux_per_peak_intensity(),
             Emitter::Line { .. }
@@ -49,12 +52,11 @@ impl Context<'_> {
             | Emitter::Volume { .. }
             | Emitter::Far { .. } => None,
         };
-        if per_intensity.is_none() {
-            self.problems
-                .error(&key.field("intensity_cd"), "needs a `point` source that is not collimated")
-                .hint("give flux_lm instead");
-        }
-        self.carried([intensity, intensity * per_intensity?], &key.field("intensity_cd"))
+        let Some(per_intensity) = per_intensity else {
+            let message = "needs a `point` source that is not collimated";
+            return self.refuse(&key, message, "give flux_lm instead");
+        };
+        self.carried([intensity, intensity * per_intensity], &key)
     }
 
     /// The flux, lm or W, of a given amount; an error where its squares, or sums of them, underflow
@@ -65,11 +67,10 @@ impl Context<'_> {
         }
         let unit = self.builder.scene().unit.flux();
         let found = format_value(flux);
-        self.problems
-            .error(amount, format!("makes a source of {found} {unit}, which cannot be counted"))
-            .hint(format!(
-                "expected 0, or an amount that makes {LEAST_FLUX:e} to {LARGEST_FLUX:e} {unit}"
-            ));
-        None
+        let message = format!("makes a source of {found} {unit}, which cannot be counted");
+        let hint = format!(
+            "expected 0, or an amount that makes {LEAST_FLUX:e} to {LARGEST_FLUX:e} {unit}"
+        );
+        self.refuse(amount, message, hint)
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::keys::Key;
 use crate::lower::context::Context;
-use crate::lower::surfaces::{Ends, NamedFace, Surfaces, disk_facing};
+use crate::lower::surfaces::{BodySurfaces, Ends, NamedFace, disk_facing};
 use crate::spec::solid::{LensFaceSpec, LensSpec};
 use lumiduct_base::math::Frame;
 use lumiduct_base::number::{format_least_length, format_length};
@@ -22,22 +22,18 @@ impl Context<'_> {
         lens: &LensSpec,
         frame: Frame,
         key: &Key,
-    ) -> Option<Surfaces> {
+    ) -> Option<BodySurfaces> {
         let rim = 0.5 * lens.diameter_mm;
-        let entry = self.curved(lens, rim, Ends::Entry, key)?;
-        let exit = self.curved(lens, rim, Ends::Exit, key)?;
+        let entry = self.curved(lens, rim, Ends::Entry, key);
+        let exit = self.curved(lens, rim, Ends::Exit, key);
+        let (entry, exit) = (entry?, exit?);
         for Curved { key, radius } in [&entry, &exit].into_iter().flatten() {
             if radius.abs() < rim {
                 let [size, wanted] = [radius.abs(), rim].map(format_length);
-                self.problems
-                    .error(
-                        key,
-                        format!(
-                            "a sphere of radius {size} mm does not reach the rim at {wanted} mm"
-                        ),
-                    )
-                    .hint(format!("make it at least {}", format_least_length(rim)));
-                return None;
+                let message =
+                    format!("a sphere of radius {size} mm does not reach the rim at {wanted} mm");
+                let hint = format!("make it at least {}", format_least_length(rim));
+                return self.refuse(key, message, hint);
             }
         }
         let thickness = lens.thickness_mm;
@@ -49,22 +45,18 @@ impl Context<'_> {
         let no_edge = 1e-12 * lens.diameter_mm;
         if edge < -no_edge {
             let least = format_least_length(thickness - edge);
-            self.problems
-                .error(
-                    &key.field("thickness_mm"),
-                    format!("the two ends cross before the rim, by {} mm", format_length(-edge)),
-                )
-                .hint(format!(
-                    "make it at least {least}, or the diameter smaller or the ends flatter"
-                ));
-            return None;
+            let beyond = format_length(-edge);
+            let message = format!("the two ends cross before the rim, by {beyond} mm");
+            let hint =
+                format!("make it at least {least}, or the diameter smaller or the ends flatter");
+            return self.refuse(&key.field("thickness_mm"), message, hint);
         }
         let mut faces = vec![NamedFace::end("entry", entry), NamedFace::end("exit", exit)];
         if edge > no_edge {
             let wall = Cylinder::new(frame.shifted(entry_edge * frame.z), rim, edge);
             faces.push(NamedFace::wall("wall", Shape::Cylinder(wall)));
         }
-        Some(Surfaces { faces, volume: None })
+        Some(BodySurfaces { faces, volume: None })
     }
 
     /// One end of a lens: `Some(None)` where it is flat, `None` after an error.
@@ -75,12 +67,37 @@ impl Context<'_> {
         end: Ends,
         key: &Key,
     ) -> Option<Option<Curved>> {
-        let (name, face, old_name, old) = match end {
-            Ends::Entry => ("entry", lens.entry, "entry_radius_mm", lens.entry_radius_mm),
-            Ends::Exit => ("exit", lens.exit, "exit_radius_mm", lens.exit_radius_mm),
+        let (name, face, old_name, old, convex_sign) = match end {
+            Ends::Entry => ("entry", lens.entry, "entry_radius_mm", lens.entry_radius_mm, 1.0),
+            Ends::Exit => ("exit", lens.exit, "exit_radius_mm", lens.exit_radius_mm, -1.0),
         };
+        let old_key = key.field(old_name);
+        match (face, old) {
+            (_, None) => {}
+            (_, Some(0.0)) => {
+                let message = "is 0, expected a positive or negative radius";
+                return self.refuse(&old_key, message, "omit it for a flat end");
+            }
+            (Some(_), Some(_)) => {
+                return self.refuse(
+                    &old_key,
+                    format!("says again what `{name}` says"),
+                    "remove it",
+                );
+            }
+            (None, Some(radius)) => {
+                let word = if radius * convex_sign > 0.0 { "convex" } else { "concave" };
+                let size = radius.abs();
+                self.problems
+                    .warning(&old_key, "is an old key, whose sign says which way the face bulges")
+                    .hint(format!(
+                        "write {name} = {{ {word}_radius_mm = {size} }}, which is the same"
+                    ));
+            }
+        }
+        self.may_build(key)?;
         let Some(face) = face else {
-            return Some(old.map(|radius| Curved { key: key.field(old_name), radius }));
+            return Some(old.map(|radius| Curved { key: old_key, radius }));
         };
         let key = key.field(name).field(face.name());
         let (size, is_convex) = match face {
@@ -93,10 +110,8 @@ impl Context<'_> {
             && sag > rim
         {
             let [sag, most] = [sag, rim].map(format_length);
-            self.problems
-                .error(&key, format!("{sag} mm on a rim of {most} mm is more than half a sphere"))
-                .hint(format!("make it at most {most}"));
-            return None;
+            let message = format!("{sag} mm on a rim of {most} mm is more than half a sphere");
+            return self.refuse(&key, message, format!("make it at most {most}"));
         }
         let radius = if (end == Ends::Entry) == is_convex { size } else { -size };
         Some(Some(Curved { key, radius }))

@@ -1,8 +1,8 @@
 //! Light groups: those of the scene file, and those of daylight that shines in one weather.
 
-use crate::check::check_name;
 use crate::keys::Key;
 use crate::lower::context::Context;
+use crate::lower::names::check_name;
 use crate::lower::weathers::{Member, weathers};
 use indexmap::IndexMap;
 use lumiduct_core::scene::{LightGroup, LightGroups, SourceId};
@@ -49,9 +49,10 @@ impl Context<'_> {
             let Some((name, key)) = &member.group else { continue };
             let is_wrong = check_name(name, key, self.problems).is_some();
             if !is_wrong && self.builder.scene().sources.iter().any(|source| source.name == *name) {
+                let hint = "sources and light groups share their names: give the group another one";
                 self.problems
                     .error(key, format!("`{name}` is the name of a source already"))
-                    .hint("sources and light groups share their names: give the group another one");
+                    .hint(hint);
             }
         }
     }

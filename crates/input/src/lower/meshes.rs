@@ -2,8 +2,6 @@
 
 use crate::keys::Key;
 use crate::lower::context::Context;
-use crate::problems::face_hint;
-use crate::spec::finish::FinishRef;
 use crate::spec::solid::{MeshNormals, MeshSpec, MeshUnit};
 use indexmap::IndexMap;
 use lumiduct_base::math::Frame;
@@ -19,6 +17,7 @@ impl Context<'_> {
     /// Reads a mesh; problems with it are noted at its key.
     pub(super) fn read_mesh(&mut self, spec: &MeshSpec, key: &Key) -> Option<TriangleMesh> {
         let file = key.field("file");
+        self.may_build(&file)?;
         let path = self.places.folder(&file).join(&spec.file);
         let unit = match spec.unit {
             MeshUnit::Mm => LengthUnit::Millimetre,
@@ -58,15 +57,9 @@ impl Context<'_> {
             }
         }
         if health.open_edges.count == 0 && health.signed_volume_mm3 < 0.0 {
-            self.problems
-                .error(
-                    key,
-                    format!(
-                        "`{name}` is inside out: its volume is {:.4} mm³",
-                        health.signed_volume_mm3
-                    ),
-                )
-                .hint("flip the orientation of its triangles");
+            let volume = health.signed_volume_mm3;
+            let message = format!("`{name}` is inside out: its volume is {volume:.4} mm³");
+            self.problems.error(key, message).hint("flip the orientation of its triangles");
         }
         let remarks = [
             (health.degenerate_triangles, "triangles without area"),
@@ -94,42 +87,40 @@ impl Context<'_> {
         }
     }
 
+    /// The declared finishes of the faces of a mesh, in their order.
+    pub(super) fn mesh_finishes(
+        &mut self,
+        name: &str,
+        mesh: &TriangleMesh,
+        declared: &IndexMap<&str, Option<FinishId>>,
+        key: &Key,
+    ) -> Vec<Option<FinishId>> {
+        let known: Vec<&str> = mesh.faces.iter().map(String::as_str).collect();
+        let mut finishes = vec![None; known.len()];
+        for (&face, &finish) in declared {
+            if finish.is_some_and(|finish| self.behind(finish) != finish) {
+                let message =
+                    "a prism film cannot be laid on a mesh: it has no direction along the guide";
+                self.problems.error(&key.field(face), message).hint("use a sweep or a tube");
+            }
+            match known.iter().position(|name| *name == face) {
+                Some(index) => finishes[index] = finish,
+                None => self.note_no_face(name, face, &known, key),
+            }
+        }
+        finishes
+    }
+
     /// Adds a mesh as the boundary of a solid.
     pub(super) fn add_mesh(
         &mut self,
         name: &str,
         solid: SolidId,
         mesh: &TriangleMesh,
-        declared: &IndexMap<String, FinishRef>,
+        finishes: &[Option<FinishId>],
         frame: &Frame,
-        key: &Key,
     ) {
-        let known: Vec<&str> = mesh.faces.iter().map(String::as_str).collect();
-        let mut finishes: Vec<Option<FinishId>> = vec![None; known.len()];
-        for (face, reference) in declared {
-            let finish = self.finish(reference);
-            if finish.is_some_and(|finish| self.behind(finish) != finish) {
-                self.problems
-                    .error(
-                        &key.field("faces").field(face),
-                        "a prism film cannot be laid on a mesh: it has no direction along the guide",
-                    )
-                    .hint("use a sweep or a tube");
-            }
-            match known.iter().position(|name| name == face) {
-                Some(index) => finishes[index] = finish,
-                None => {
-                    let hint = face_hint(face, known.iter().copied());
-                    self.problems
-                        .error(
-                            &key.field("faces").field(face),
-                            format!("`{name}` has no face `{face}`"),
-                        )
-                        .hint(hint);
-                }
-            }
-        }
-        let faces = self.builder.add_mesh(name, solid, Mesh::new(mesh, frame), &finishes);
+        let faces = self.builder.add_mesh(name, solid, Mesh::new(mesh, frame), finishes);
         for (face, id) in mesh.faces.iter().zip(faces) {
             self.faces.insert(format!("{name}.{face}"), vec![id]);
         }

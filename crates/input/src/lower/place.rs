@@ -17,6 +17,7 @@ pub(super) enum Facing {
 
 impl Context<'_> {
     /// The frame of a placement, relative to the scene's origin; by default at the user's origin.
+    /// `key` is that of the thing.
     pub(super) fn place(
         &mut self,
         at: Option<&PlacementSpec>,
@@ -32,38 +33,44 @@ impl Context<'_> {
 
     fn in_space(&mut self, space: &SpacePlacementSpec, key: &Key) -> Option<Frame> {
         let origin = DVec3::from(space.position_mm) - self.builder.scene().origin;
-        let Some(axis) = DVec3::from(space.axis).try_normalize() else {
-            self.problems
-                .error(&key.field("axis"), "a direction of length zero")
-                .hint("for example [0, 0, 1]");
-            return None;
-        };
+        let axis = self.direction(space.axis, &key.field("axis"))?.normalize();
         let frame = match space.x_axis {
             None => Frame::from_axis(origin, axis),
-            Some(x) => match Frame::from_axis_and_x(origin, axis, DVec3::from(x)) {
-                Some(frame) => frame,
-                None => {
-                    self.problems
-                        .error(&key.field("x_axis"), "is parallel to the axis, or of length zero");
-                    return None;
+            Some(x_axis) => {
+                let key = key.field("x_axis");
+                let x_axis = self.direction(x_axis, &key)?;
+                let frame = Frame::from_axis_and_x(origin, axis, x_axis);
+                if frame.is_none() {
+                    let message = "points along the axis, expected another direction";
+                    self.problems.error(&key, message);
                 }
-            },
+                frame?
+            }
         };
         Some(rolled(frame, space.roll_deg))
     }
 
+    fn direction(&mut self, direction: [f64; 3], key: &Key) -> Option<DVec3> {
+        let direction = DVec3::from(direction);
+        let largest = direction.abs().max_element();
+        if largest == 0.0 {
+            self.problems.error(key, "has no direction: all three numbers are 0");
+            return None;
+        }
+        // Of some directions the square overflows or vanishes.
+        Some(direction.try_normalize().map_or(direction / largest, |_| direction))
+    }
+
     fn at_face(&mut self, at: &FacePlacementSpec, key: &Key, facing: Facing) -> Option<Frame> {
-        let faces = self.faces_named(&at.face, &key.field("face"))?;
-        let scene = self.builder.scene();
+        let key = key.field("face");
+        let faces = self.faces_named(&at.face, &key)?;
         let plane = match faces.as_slice() {
-            [face] => scene.face_plane(*face),
+            [face] => self.builder.scene().face_plane(*face),
             _ => None,
         };
         let Some(plane) = plane else {
-            self.problems
-                .error(&key.field("face"), format!("`{}` is not a single flat face", at.face))
-                .hint("use position_mm and axis instead");
-            return None;
+            let message = format!("`{}` is not a single flat face", at.face);
+            return self.refuse(&key, message, "use position_mm and axis instead");
         };
         let origin = plane.origin
             + at.offset_mm[0] * plane.x

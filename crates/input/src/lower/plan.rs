@@ -1,6 +1,7 @@
 //! The run and the checks.
 
 use crate::keys::Key;
+use crate::lower::context::Context;
 use crate::problems::{Problems, name_hint};
 use crate::spec::SceneSpec;
 use crate::spec::run::{CheckSpec, EstimatorSpec, GatherSpec, ScheduleSpec, SensorEstimatorSpec};
@@ -13,7 +14,7 @@ use std::time::Duration;
 /// Paths of a run without a stop rule.
 const DEFAULT_PATHS: u64 = 2_000_000;
 
-pub(super) fn run(spec: &SceneSpec) -> RunPlan {
+pub(super) fn run(spec: &SceneSpec, scene: &Scene) -> RunPlan {
     let run = &spec.run;
     let target = run.target.as_ref().map(|target| Target {
         measure: target.measure.clone(),
@@ -22,7 +23,7 @@ pub(super) fn run(spec: &SceneSpec) -> RunPlan {
     let none = run.paths.is_none() && run.time_s.is_none() && target.is_none();
     RunPlan {
         estimator: request(run.estimator),
-        sensor_estimators: Vec::new(),
+        sensor_estimators: sensor_estimators(spec, scene),
         gather: gather(&run.gather),
         seed: run.seed,
         bounce_limit: run.bounce_limit,
@@ -38,7 +39,7 @@ pub(super) fn run(spec: &SceneSpec) -> RunPlan {
 }
 
 /// The estimators set for single sensors, in the order of the scene.
-pub(super) fn sensor_estimators(spec: &SceneSpec, scene: &Scene) -> Vec<Option<Estimator>> {
+fn sensor_estimators(spec: &SceneSpec, scene: &Scene) -> Vec<Option<Estimator>> {
     let of_sensor = |sensor: &Sensor| {
         spec.sensors.get(&sensor.name)?.estimator.map(|estimator| match estimator {
             SensorEstimatorSpec::Forward => Estimator::Forward,
@@ -77,8 +78,25 @@ fn gather(spec: &GatherSpec) -> GatherPlan {
     }
 }
 
-/// A demand on a measure.
-pub(crate) fn check(spec: &CheckSpec) -> Check {
+/// Demands on measures; those that nothing can meet are noted.
+pub(crate) fn checks(specs: &[CheckSpec], problems: &mut Problems) -> Vec<Check> {
+    let lower = |(index, spec)| check(spec, &Key::of(&["check"]).index(index), problems);
+    specs.iter().enumerate().map(lower).collect()
+}
+
+fn check(spec: &CheckSpec, key: &Key, problems: &mut Problems) -> Check {
+    if let (Some(min), Some(max)) = (spec.min, spec.max)
+        && min > max
+    {
+        problems.error(&key.field("min"), format!("{min} is above `max`, which is {max}"));
+    }
+    for (name, is_given) in [("within", spec.within.is_some()), ("sigmas", spec.sigmas.is_some())] {
+        if is_given && spec.equals.is_none() {
+            problems
+                .error(&key.field(name), "is only for `equals`")
+                .hint(format!("remove `{name}`"));
+        }
+    }
     Check {
         measure: spec.measure.clone(),
         min: spec.min,
@@ -91,21 +109,24 @@ pub(crate) fn check(spec: &CheckSpec) -> Check {
     }
 }
 
-/// Notes checks and targets whose measure cannot exist: the first word must be a sensor or `balance`.
-pub(super) fn check_measures(spec: &SceneSpec, scene: &Scene, problems: &mut Problems) {
-    let mut known: Vec<&str> = scene.sensors.iter().map(|sensor| sensor.name.as_str()).collect();
-    known.push("balance");
-    let mut judge = |measure: &str, key: &Key| {
-        let first = measure.split('.').next().unwrap_or_default();
-        if !known.contains(&first) {
-            let hint = name_hint(first, known.iter().copied());
-            problems.error(key, format!("`{measure}` names no sensor")).hint(hint);
+impl Context<'_> {
+    /// Notes checks and targets whose measure cannot exist: the first word must be a sensor or
+    /// `balance`.
+    pub(super) fn check_measures(&mut self) {
+        let spec = self.spec;
+        let known: Vec<&str> = self.names("sensors").into_iter().chain(["balance"]).collect();
+        let target =
+            spec.run.target.iter().map(|target| (&target.measure, Key::of(&["run", "target"])));
+        let checks = spec.check.iter().enumerate();
+        let checks =
+            checks.map(|(index, check)| (&check.measure, Key::of(&["check"]).index(index)));
+        for (measure, key) in target.chain(checks) {
+            let first = measure.split('.').next().unwrap_or_default();
+            if !known.contains(&first) {
+                let hint = name_hint(first, known.iter().copied());
+                let message = format!("`{measure}` names no sensor");
+                self.problems.error(&key.field("measure"), message).hint(hint);
+            }
         }
-    };
-    if let Some(target) = &spec.run.target {
-        judge(&target.measure, &Key::of(&["run", "target", "measure"]));
-    }
-    for (index, check) in spec.check.iter().enumerate() {
-        judge(&check.measure, &Key::of(&["check"]).index(index).field("measure"));
     }
 }

@@ -3,12 +3,12 @@
 use crate::keys::Key;
 use crate::lower::context::Context;
 use crate::lower::place::Facing;
+use crate::lower::sensor_keys::Division;
 use crate::lower::surfaces::tilted;
 use crate::spec::sensor::{
-    CountsSpec, DirectionSpec, GoniometerSpec, ImageSpec, LuminanceSpec, PassageSpec, PlaneSpec,
-    SensorKind as KindSpec, SensorSide, SensorSpec,
+    CountsSpec, DirectionSpec, GoniometerSpec, ImageSpec, LuminanceSpec, PassageSpec,
+    SensorKindSpec, SensorSide, SensorSpec,
 };
-use crate::spec::sweep::{CircleSpec, RectangleSpec};
 use glam::DVec2;
 use lumiduct_base::math::Frame;
 use lumiduct_core::scene::shape::{ChartRect, Flat, Region, Shape};
@@ -18,12 +18,6 @@ use lumiduct_core::scene::{
 };
 use std::f64::consts::PI;
 
-/// How a sensor is divided.
-enum Division {
-    Cells([u32; 2]),
-    Rings(u32, u32),
-}
-
 impl Context<'_> {
     pub(super) fn lower_sensors(&mut self) {
         let spec = self.spec;
@@ -32,57 +26,63 @@ impl Context<'_> {
         }
     }
 
-    fn lower_sensor(&mut self, name: &str, spec: &SensorSpec, key: &Key) {
-        let Some(kind) = spec.kind() else { return };
-        let kind = match kind {
-            KindSpec::Plane(plane) => {
-                let division = division(plane);
-                self.surface(name, spec, plane.rectangle, plane.disk, division, key)
-                    .map(SensorKind::Surface)
+    fn lower_sensor(&mut self, name: &str, spec: &SensorSpec, key: &Key) -> Option<()> {
+        let kind = spec.kind()?;
+        self.check_keys(spec, kind, key);
+        let inner = key.field(kind.name());
+        let made = match kind {
+            SensorKindSpec::Plane(plane) => {
+                let region = self.region(spec, &plane.area, &inner);
+                let division = self.division(plane, &inner);
+                let surface = self.surface(name, spec, region, division, key);
+                surface.map(SensorKind::Surface)
             }
-            KindSpec::Luminance(luminance) => {
-                self.luminance(name, spec, luminance, key).map(SensorKind::Surface)
+            SensorKindSpec::Luminance(luminance) => {
+                let region = self.region(spec, &luminance.area, &inner);
+                self.luminance(name, spec, region, luminance, key).map(SensorKind::Surface)
             }
-            KindSpec::Image(image) => self.image(name, spec, image, key).map(SensorKind::Surface),
-            KindSpec::Goniometer(goniometer) => {
+            SensorKindSpec::Image(image) => {
+                self.image(name, spec, image, key).map(SensorKind::Surface)
+            }
+            SensorKindSpec::Goniometer(goniometer) => {
                 self.goniometer(spec, goniometer, key).map(SensorKind::Goniometer)
             }
         };
         let aim = self.aim(spec, key);
-        let entering = match &spec.entering {
-            Some(face) => self.faces_named(face, &key.field("entering")).map(|faces| faces[0]),
-            None => None,
-        };
-        let (Some(kind), Some(aim)) = (kind, aim) else { return };
-        self.builder.add_sensor(Sensor { name: name.to_owned(), kind, aim, entering });
+        let entering = spec.entering.as_ref();
+        let entering = entering.and_then(|face| self.faces_named(face, &key.field("entering")));
+        let entering = entering.map(|faces| faces[0]);
+        self.may_build(key)?;
+        self.builder.add_sensor(Sensor { name: name.to_owned(), kind: made?, aim: aim?, entering });
+        Some(())
     }
 
     fn aim(&mut self, spec: &SensorSpec, key: &Key) -> Option<Vec<FaceId>> {
-        let mut faces = Vec::new();
-        for (index, face) in spec.aim.iter().flatten().enumerate() {
-            faces.extend(self.faces_named(face, &key.field("aim").index(index))?);
-        }
-        Some(faces)
+        let key = key.field("aim");
+        let aims = spec.aim.iter().flatten().enumerate();
+        let faces: Vec<_> =
+            aims.map(|(index, face)| self.faces_named(face, &key.index(index))).collect();
+        Some(faces.into_iter().collect::<Option<Vec<_>>>()?.concat())
     }
 
     fn luminance(
         &mut self,
         name: &str,
         spec: &SensorSpec,
+        region: Option<Region>,
         luminance: &LuminanceSpec,
         key: &Key,
     ) -> Option<SurfaceSensor> {
-        let division = Division::Cells(luminance.cells);
-        let mut sensor =
-            self.surface(name, spec, luminance.rectangle, luminance.disk, division, key)?;
+        let [nx, ny] = luminance.cells;
+        let cells = f64::from(nx) * f64::from(ny) * luminance.directions.len() as f64;
+        let good = self.check_cells(cells, &key.field("luminance").field("cells"));
+        let division = good.map(|()| Division::Cells(luminance.cells));
+        let mut sensor = self.surface(name, spec, region, division, key)?;
         let Some(frame) = sensor.frame else {
-            self.problems
-                .error(
-                    &key.field("on"),
-                    "a luminance sensor needs a flat face: its directions refer to one normal",
-                )
-                .hint("choose an end face, or a plane of its own by `at`");
-            return None;
+            let message =
+                "a luminance sensor needs a flat face: its directions refer to one normal";
+            let hint = "choose an end face, or a plane of its own by `at`";
+            return self.refuse(&key.field("on"), message, hint);
         };
         sensor.seeing = Seeing::Views(views(luminance, &frame));
         Some(sensor)
@@ -95,13 +95,19 @@ impl Context<'_> {
         image: &ImageSpec,
         key: &Key,
     ) -> Option<SurfaceSensor> {
-        let whole = Division::Cells([1, 1]);
-        let mut sensor = self.surface(name, spec, image.rectangle, image.disk, whole, key)?;
-        // Validated: an image has no face, its aperture is flat.
-        let frame = sensor.frame?;
+        let inner = key.field("image");
+        let [columns, rows] = image.pixels;
+        let good = self.check_cells(f64::from(columns) * f64::from(rows), &inner.field("pixels"));
+        if spec.on.is_some() {
+            // Reported: an image has no face, and its aperture is flat.
+            return None;
+        }
+        let region = self.region(spec, &image.area, &inner);
+        let whole = good.map(|()| Division::Cells([1, 1]));
+        let mut sensor = self.surface(name, spec, region, whole, key)?;
         let pixels = image.pixels.map(|count| count as usize);
-        sensor.seeing =
-            Seeing::Pixels(Box::new(Pixels::new(&frame, pixels, image.pixel_deg.to_radians())));
+        let pixels = Pixels::new(&sensor.frame?, pixels, image.pixel_deg.to_radians());
+        sensor.seeing = Seeing::Pixels(Box::new(pixels));
         Some(sensor)
     }
 
@@ -112,30 +118,36 @@ impl Context<'_> {
         key: &Key,
     ) -> Option<Goniometer> {
         // The pole points along the light that leaves the face.
-        let frame = self.place(spec.at.as_ref(), key, Facing::Away)?;
+        let frame = self.place(spec.at.as_ref(), key, Facing::Away);
+        let key = key.field("goniometer");
+        let c_cells = self.steps(goniometer.c_step_deg, 360.0, &key.field("c_step_deg"));
+        let gamma_cells =
+            self.steps(goniometer.gamma_step_deg, 180.0, &key.field("gamma_step_deg"));
+        let (c_cells, gamma_cells) = c_cells.zip(gamma_cells)?;
+        self.check_cells(c_cells * gamma_cells, &key)?;
         Some(Goniometer {
-            frame,
-            // Validated: the steps divide 360 and 180.
-            c_cells: (360.0 / goniometer.c_step_deg).round() as usize,
-            gamma_cells: (180.0 / goniometer.gamma_step_deg).round() as usize,
+            frame: frame?,
+            c_cells: c_cells.round() as usize,
+            gamma_cells: gamma_cells.round() as usize,
             radius: goniometer.radius_mm,
         })
     }
 
-    /// The faces, cells and sides of a surface sensor.
+    /// The faces, cells and sides of a surface sensor, on a face or with a region of its own.
     fn surface(
         &mut self,
         name: &str,
         spec: &SensorSpec,
-        rectangle: Option<RectangleSpec>,
-        disk: Option<CircleSpec>,
-        division: Division,
+        region: Option<Region>,
+        division: Option<Division>,
         key: &Key,
     ) -> Option<SurfaceSensor> {
         let (faces, place) = match &spec.on {
-            Some(on) => self.on_faces(on, key)?,
-            None => self.own_face(name, spec, rectangle, disk, key)?,
+            Some(on) => self.on_faces(on, &key.field("on"))?,
+            None => self.own_face(name, spec, region, key)?,
         };
+        self.may_build(key)?;
+        let division = division?;
         let counts = match spec.counts {
             Some(CountsSpec::Leaving) => CountedLight::Leaving,
             Some(CountsSpec::Incident) | None => CountedLight::Incident,
@@ -151,8 +163,8 @@ impl Context<'_> {
             [face] => scene.face_plane(*face),
             _ => None,
         };
-        let Some(grid) = grid(scene, &faces, &division) else {
-            let (wanted, hint) = match division {
+        let Some(grid) = grid(scene, &faces, division) else {
+            let (message, hint) = match division {
                 Division::Rings(..) => (
                     "rings and sectors need a round, flat sensor",
                     "use `cells = [nx, ny]` on a face that is flat or swept",
@@ -162,8 +174,7 @@ impl Context<'_> {
                     "use `plane = {}`, one cell over the whole face, or put a `plane` with cells of its own before it by `at`",
                 ),
             };
-            self.problems.error(key, wanted).hint(hint);
-            return None;
+            return self.refuse(key, message, hint);
         };
         let whole: Vec<Option<f64>> = faces.iter().map(|face| curved_area(scene, *face)).collect();
         let area_in = |rect| {
@@ -194,14 +205,15 @@ impl Context<'_> {
     }
 
     fn on_faces(&mut self, on: &str, key: &Key) -> Option<(Vec<FaceId>, Place)> {
-        let faces = self.faces_named(on, &key.field("on"))?;
+        let faces = self.faces_named(on, key)?;
         let scene = self.builder.scene();
         if let Some(relief) = scene.reliefs.iter().find(|relief| relief.name == on) {
             let wall = &scene.faces[relief.wall.index()].name;
-            self.problems
-                .error(&key.field("on"), format!("`{on}` is a relief, which does not unroll into a map"))
-                .hint(format!("put the sensor on `{wall}` or on a plane before it; the balance tells what goes through the relief"));
-            return None;
+            let hint = format!(
+                "put the sensor on `{wall}` or on a plane before it; the balance tells what goes through the relief"
+            );
+            let message = format!("`{on}` is a relief, which does not unroll into a map");
+            return self.refuse(key, message, hint);
         }
         let port = faces.iter().any(|face| scene.faces[face.index()].owner == Owner::Port);
         Some((faces, if port { Place::Port } else { Place::Face }))
@@ -212,19 +224,11 @@ impl Context<'_> {
         &mut self,
         name: &str,
         spec: &SensorSpec,
-        rectangle: Option<RectangleSpec>,
-        disk: Option<CircleSpec>,
+        region: Option<Region>,
         key: &Key,
     ) -> Option<(Vec<FaceId>, Place)> {
         let frame = self.place(spec.at.as_ref(), key, Facing::Toward)?;
-        let region = match (rectangle, disk) {
-            (Some(r), _) => {
-                Region::Rectangle { half_x: 0.5 * r.width_mm, half_y: 0.5 * r.height_mm }
-            }
-            (None, Some(disk)) => Region::Annulus { inner: 0.0, outer: disk.radius_mm },
-            // Validated: a free sensor has a shape.
-            (None, None) => return None,
-        };
+        self.may_build(key)?;
         let black = self.finishes.get("black").copied().filter(|_| spec.absorbing);
         let (owner, place) =
             if spec.absorbing { (Owner::Sheet, Place::Face) } else { (Owner::Port, Place::Port) };
@@ -233,24 +237,15 @@ impl Context<'_> {
             owner,
             front: black,
             back: black,
-            pieces: vec![FacePiece::whole(Shape::Flat(Flat::new(frame, region)))],
+            pieces: vec![FacePiece::whole(Shape::Flat(Flat::new(frame, region?)))],
         });
         Some((vec![face], place))
     }
 }
 
-fn division(plane: &PlaneSpec) -> Division {
-    match (plane.rings, plane.cells) {
-        (Some(rings), _) => Division::Rings(rings, plane.sectors.unwrap_or(1)),
-        (None, Some(cells)) => Division::Cells(cells),
-        // A sensor without cells is one cell.
-        (None, None) => Division::Cells([1, 1]),
-    }
-}
-
 /// The grid over some faces; `None` if rings are requested on a face that is not round and flat, or
 /// several cells on one that cannot be unrolled.
-fn grid(scene: &Scene, faces: &[FaceId], division: &Division) -> Option<Grid> {
+fn grid(scene: &Scene, faces: &[FaceId], division: Division) -> Option<Grid> {
     let rects: Option<Vec<ChartRect>> = match division {
         Division::Cells([1, 1]) => {
             Some(faces.iter().map(|face| whole_rect(scene, *face)).collect())
@@ -262,12 +257,12 @@ fn grid(scene: &Scene, faces: &[FaceId], division: &Division) -> Option<Grid> {
     let rect = rects?.into_iter().reduce(ChartRect::union)?;
     match division {
         Division::Cells([nu, nv]) => {
-            Some(Grid::Cartesian { rect, nu: *nu as usize, nv: *nv as usize })
+            Some(Grid::Cartesian { rect, nu: nu as usize, nv: nv as usize })
         }
         Division::Rings(rings, sectors) => {
             let [face] = faces else { return None };
             let radius = scene.face_disk_radius(*face)?;
-            Some(Grid::Polar { radius, rings: *rings as usize, sectors: *sectors as usize })
+            Some(Grid::Polar { radius, rings: rings as usize, sectors: sectors as usize })
         }
     }
 }

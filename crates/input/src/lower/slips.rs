@@ -45,15 +45,12 @@ pub(super) fn check_embedded(
     let Some(solid) = (0..scene.solids.len()).map(SolidId::new).find(holds_all) else { return };
     let solid = &scene.solids[solid.index()];
     let medium = scene.media[solid.medium.index()].name();
-    problems
-        .warning(
-            key,
-            format!(
-                "lies inside the solid `{}`: its light starts in `{medium}` and crosses no face on its way in",
-                solid.name
-            ),
-        )
-        .hint("move it out of the solid, or write contact = \"optical\" if it is cast in");
+    let message = format!(
+        "lies inside the solid `{}`: its light starts in `{medium}` and crosses no face on its way in",
+        solid.name
+    );
+    let hint = "move it out of the solid, or write contact = \"optical\" if it is cast in";
+    problems.warning(key, message).hint(hint);
 }
 
 /// Whether a source is placed by a position, not by a face or solid.
@@ -93,16 +90,14 @@ fn check_cut_solids(spec: &SceneSpec, scene: &Scene, problems: &mut Problems) {
             }
             let Some([inside, outside]) = cut(scene, &faces, SolidId::new(index)) else { continue };
             let [inside, outside] = [inside, outside].map(|point| place(point + scene.origin));
-            problems
-                .warning(
-                    &Key::of(&["sheets", name, sheet.kind()]),
-                    format!(
-                        "cuts through the solid `{}`: at {inside} it stands inside, at {outside} outside; light inside the \
-                         solid meets it, too",
-                        solid.name
-                    ),
-                )
-                .hint("leave a hole for the solid, as an `annulus` has, or keep the sheet clear of it");
+            let message = format!(
+                "cuts through the solid `{}`: at {inside} it stands inside, at {outside} outside; light inside the \
+                 solid meets it, too",
+                solid.name
+            );
+            let hint =
+                "leave a hole for the solid, as an `annulus` has, or keep the sheet clear of it";
+            problems.warning(&Key::of(&["sheets", name, sheet.kind()]), message).hint(hint);
         }
     }
 }
@@ -159,12 +154,12 @@ fn check_sources_at_exits(spec: &SceneSpec, problems: &mut Problems) {
         };
         if !is_entry {
             let face = &at.face;
-            problems
-                .warning(
-                    &Key::of(&["sources", name, source.kind(), "at", "face"]),
-                    format!("shines into `{face}`, and the sensor `{sensor}` counts light that leaves there"),
-                )
-                .hint("place the source at the entry, or give the sensor a `side` if it counts what comes back");
+            let message = format!(
+                "shines into `{face}`, and the sensor `{sensor}` counts light that leaves there"
+            );
+            let hint = "place the source at the entry, or give the sensor a `side` if it counts what comes back";
+            let key = Key::of(&["sources", name, source.kind(), "at", "face"]);
+            problems.warning(&key, message).hint(hint);
         }
     }
 }
@@ -188,12 +183,10 @@ fn check_sides(spec: &SceneSpec, problems: &mut Problems) {
             (_, Some(SensorSide::Front | SensorSide::Back | SensorSide::Both) | None) => continue,
         };
         if is_alone && !lit_from_outside {
-            problems
-                .warning(
-                    &Key::of(&["sensors", name, "side"]),
-                    format!("counts light that {what} at `{on}`, against the light of the guide"),
-                )
-                .hint(format!("write side = \"{other}\" for the light that the guide brings"));
+            let message =
+                format!("counts light that {what} at `{on}`, against the light of the guide");
+            let hint = format!("write side = \"{other}\" for the light that the guide brings");
+            problems.warning(&Key::of(&["sensors", name, "side"]), message).hint(hint);
         }
     }
 }

@@ -3,113 +3,115 @@
 use crate::keys::Key;
 use crate::lower::context::Context;
 use crate::lower::place::Facing;
-use crate::lower::surfaces::{BodyPart, NamedFace, Surfaces};
+use crate::lower::surfaces::{BodyPart, BodySurfaces, NamedFace};
 use crate::problems::face_hint;
-use crate::spec::finish::FinishRef;
 use crate::spec::solid::{BoxSpec, CylinderSpec, SolidSpec};
 use crate::spec::sweep::{
     CircleSpec, LegSpec, ProfileSpec, RectangleSpec, StraightSpec, SweepSpec,
 };
 use indexmap::IndexMap;
 use lumiduct_base::math::{Aabb, Frame};
+use lumiduct_base::mesh::health;
 use lumiduct_core::scene::shape::{Shape, Sphere};
-use lumiduct_core::scene::{FaceId, FaceSpec, FinishId, Owner, Solid, SolidId};
+use lumiduct_core::scene::{FaceId, FaceSpec, FinishId, MediumId, Owner, Solid};
 use std::f64::consts::PI;
 
-impl Context<'_> {
+impl<'a> Context<'a> {
     /// Builds a solid with its faces.
-    pub(super) fn lower_solid(&mut self, name: &str) {
-        let spec = self.spec;
-        let solid = &spec.solids[name];
-        let key = Key::of(&["solids", name, solid.kind()]);
+    pub(super) fn lower_solid(
+        &mut self,
+        name: &str,
+        solid: &'a SolidSpec,
+        key: &Key,
+    ) -> Option<()> {
         let common = solid.common();
-        let (Some(frame), Some(&medium)) =
-            (self.place(common.at.as_ref(), &key, Facing::Away), self.media.get(&common.medium))
-        else {
-            return;
+        let medium = self.medium(&common.medium, &key.field("medium"));
+        let declared = self.declared(&common.faces, &key.field("faces"));
+        let frame = self.place(common.at.as_ref(), key, Facing::Away);
+        // What stands at its faces is checked even if its medium is unknown.
+        let medium = medium.unwrap_or(MediumId::new(0));
+        let add = |this: &mut Self, volume| {
+            this.may_build(key)?;
+            Some(this.builder.add_solid(Solid {
+                name: name.to_owned(),
+                medium,
+                priority: common.priority,
+                bounds: Aabb::EMPTY,
+                volume,
+            }))
         };
         if let SolidSpec::Mesh(spec) = solid {
-            let Some(mesh) = self.read_mesh(&spec.shape, &key) else { return };
-            let volume = Some(lumiduct_base::mesh::health(&mesh).signed_volume_mm3);
-            let id = self.add_solid(name, medium, common.priority, volume);
-            self.add_mesh(name, id, &mesh, &common.faces, &frame, &key);
-            return;
+            let mesh = self.read_mesh(&spec.shape, key)?;
+            let finishes = self.mesh_finishes(name, &mesh, &declared, &key.field("faces"));
+            let (frame, volume) = (frame?, health(&mesh).signed_volume_mm3);
+            let id = add(self, Some(volume))?;
+            self.add_mesh(name, id, &mesh, &finishes, &frame);
+            return Some(());
         }
-        let Some(surfaces) = self.solid_surfaces(solid, frame, &key) else { return };
-        let id = self.add_solid(name, medium, common.priority, surfaces.volume);
-        let finishes =
-            self.face_finishes(name, &surfaces.faces, &common.faces, &key.field("faces"));
+        // Whether a shape is possible does not depend on its place.
+        let surfaces = self.solid_surfaces(solid, frame.unwrap_or(Frame::WORLD), key)?;
+        let finishes = self.face_finishes(name, &surfaces.faces, &declared, &key.field("faces"));
+        let id = frame.and_then(|_| add(self, surfaces.volume))?;
         let outside: IndexMap<String, FinishId> =
             finishes.iter().map(|(face, finish)| (face.clone(), self.behind(*finish))).collect();
         self.add_faces(name, Owner::Solid(id), surfaces.faces, |_, face| {
             (outside.get(face).copied(), finishes.get(face).copied())
         });
+        Some(())
     }
 
-    fn add_solid(
+    fn solid_surfaces(
         &mut self,
-        name: &str,
-        medium: lumiduct_core::scene::MediumId,
-        priority: i32,
-        volume: Option<f64>,
-    ) -> SolidId {
-        self.builder.add_solid(Solid {
-            name: name.to_owned(),
-            medium,
-            priority,
-            bounds: Aabb::EMPTY,
-            volume,
-        })
-    }
-
-    fn solid_surfaces(&mut self, solid: &SolidSpec, frame: Frame, key: &Key) -> Option<Surfaces> {
+        solid: &SolidSpec,
+        frame: Frame,
+        key: &Key,
+    ) -> Option<BodySurfaces> {
         match solid {
             SolidSpec::Sweep(sweep) => self.sweep_surfaces(&sweep.shape, frame, key),
             SolidSpec::Cylinder(cylinder) => {
                 self.sweep_surfaces(&cylinder_sweep(&cylinder.shape), frame, key)
             }
-            SolidSpec::Box(cuboid) => self.sweep_surfaces(&box_sweep(&cuboid.shape), frame, key),
+            SolidSpec::Box(cuboid) => {
+                self.may_build(&key.field("size_mm"))?;
+                self.sweep_surfaces(&box_sweep(&cuboid.shape), frame, key)
+            }
             SolidSpec::Tube(tube) => self.tube_surfaces(&tube.shape, frame, key),
             SolidSpec::Sphere(sphere) => {
                 let radius = sphere.shape.radius_mm;
                 let shape = Shape::Sphere(Sphere::zone(frame, radius, -radius, radius));
                 let volume = Some(4.0 / 3.0 * PI * radius.powi(3));
-                Some(Surfaces { faces: vec![NamedFace::wall("surface", shape)], volume })
+                Some(BodySurfaces { faces: vec![NamedFace::wall("surface", shape)], volume })
             }
             SolidSpec::Lens(lens) => self.lens_surfaces(&lens.shape, frame, key),
             SolidSpec::CompoundParabolic(cpc) => self.compound_parabolic(&cpc.shape, frame, key),
-            SolidSpec::Paraboloid(paraboloid) => Some(self.paraboloid(&paraboloid.shape, frame)),
+            SolidSpec::Paraboloid(paraboloid) => self.paraboloid(&paraboloid.shape, frame, key),
             // The faces of meshes come from a file.
             SolidSpec::Mesh(_) => None,
         }
     }
 
-    /// Finishes by face name: `wall` applies to all walls, the name of a side overrides it.
+    /// Finishes by face name: `wall` applies to all walls, the name of a side overrides it. `key`
+    /// is that of the table of declared ones.
     pub(super) fn face_finishes(
         &mut self,
         body: &str,
         faces: &[NamedFace],
-        declared: &IndexMap<String, FinishRef>,
+        declared: &IndexMap<&str, Option<FinishId>>,
         key: &Key,
     ) -> IndexMap<String, FinishId> {
+        let known: Vec<&str> = faces.iter().map(|face| face.name.as_str()).collect();
         let mut finishes = IndexMap::new();
-        for (name, reference) in declared {
-            let Some(finish) = self.finish(reference) else { continue };
-            let named: Vec<&NamedFace> = faces
-                .iter()
-                .filter(|face| {
-                    face.name == *name || (name == "wall" && face.part == BodyPart::Wall)
-                })
-                .collect();
+        for (&name, &finish) in declared {
+            let is_meant = |face: &&NamedFace| {
+                face.name == name || (name == "wall" && face.part == BodyPart::Wall)
+            };
+            let named: Vec<&NamedFace> = faces.iter().filter(is_meant).collect();
             if named.is_empty() {
-                let known: Vec<&str> = faces.iter().map(|face| face.name.as_str()).collect();
-                let hint = face_hint(name, known.iter().copied());
-                self.problems
-                    .error(&key.field(name), format!("`{body}` has no face `{name}`"))
-                    .hint(hint);
+                self.note_no_face(body, name, &known, key);
             }
+            let Some(finish) = finish else { continue };
             for face in named {
-                if face.name == *name {
+                if face.name == name {
                     finishes.insert(face.name.clone(), finish);
                 } else {
                     finishes.entry(face.name.clone()).or_insert(finish);
@@ -117,6 +119,13 @@ impl Context<'_> {
             }
         }
         finishes
+    }
+
+    /// Notes a face with a finish that the body does not have.
+    pub(super) fn note_no_face(&mut self, body: &str, name: &str, known: &[&str], key: &Key) {
+        let hint = face_hint(name, known.iter().copied());
+        let message = format!("`{body}` has no face `{name}`");
+        self.problems.error(&key.field(name), message).hint(hint);
     }
 
     /// Adds the faces of a body under their dotted names; `finish` gives the finish of the front and of the back.
@@ -153,16 +162,18 @@ impl Context<'_> {
 
 fn cylinder_sweep(spec: &CylinderSpec) -> SweepSpec {
     let end_scale = spec.end_radius_mm.map_or(1.0, |end| end / spec.radius_mm);
-    SweepSpec {
-        profile: ProfileSpec::Circle(CircleSpec { radius_mm: spec.radius_mm }),
-        path: vec![LegSpec::Straight(StraightSpec { straight_mm: spec.length_mm, end_scale })],
-    }
+    straight(
+        ProfileSpec::Circle(CircleSpec { radius_mm: spec.radius_mm }),
+        spec.length_mm,
+        end_scale,
+    )
 }
 
 fn box_sweep(spec: &BoxSpec) -> SweepSpec {
     let [width_mm, height_mm, length] = spec.size_mm;
-    SweepSpec {
-        profile: ProfileSpec::Rectangle(RectangleSpec { width_mm, height_mm }),
-        path: vec![LegSpec::Straight(StraightSpec { straight_mm: length, end_scale: 1.0 })],
-    }
+    straight(ProfileSpec::Rectangle(RectangleSpec { width_mm, height_mm }), length, 1.0)
+}
+
+fn straight(profile: ProfileSpec, straight_mm: f64, end_scale: f64) -> SweepSpec {
+    SweepSpec { profile, path: vec![LegSpec::Straight(StraightSpec { straight_mm, end_scale })] }
 }

@@ -1,48 +1,68 @@
-//! Sources: shapes and laws of emission.
+//! Sources in the scene: how their light is spread, and what keys go with which kind.
 
 use crate::keys::Key;
 use crate::lower::context::Context;
+use crate::lower::emitters::{SourceExtent, patch_range};
 use crate::lower::place::Facing;
 use crate::lower::surfaces::tilted;
-use crate::lower::weathers::Member;
-use crate::problems::name_hint;
-use crate::spec::source::{
-    BodySpec, ContactSpec, EmissionSpec, FaceSide, SourceCommonSpec, SourceSpec,
-};
-use lumiduct_base::math::Frame;
-use lumiduct_core::scene::shape::{Cylinder, Flat, Region, Shape, Sphere};
+use crate::lower::weathers::{Member, group};
+use crate::spec::source::{BodySpec, ContactSpec, EmissionSpec, SourceCommonSpec, SourceSpec};
 use lumiduct_core::scene::{
-    Emission, EmitSide, Emitter, FacePiece, FaceSpec, FinishId, Owner, PieceRange, PrimId, SolidId,
-    Source, StartSolids,
+    Emission, Emitter, FacePiece, FaceSpec, FinishId, Owner, PrimId, Source, StartSolids,
 };
 
-impl Context<'_> {
+/// The keys of a source, by its kind.
+struct SourceKeys<'a> {
+    common: &'a SourceCommonSpec,
+    extent: SourceExtent,
+    kind: &'static str,
+}
+
+impl<'a> Context<'a> {
     pub(super) fn lower_sources(&mut self) {
+        self.check_units();
         let spec = self.spec;
         for (name, source) in &spec.sources {
             let key = Key::of(&["sources", name, source.kind()]);
-            match source {
-                SourceSpec::Sun(sun) => self.lower_sun(name, sun, &key),
-                SourceSpec::Sky(sky) => self.lower_sky(name, sky, &key),
-                SourceSpec::Point(_)
-                | SourceSpec::Disk(_)
-                | SourceSpec::Rectangle(_)
-                | SourceSpec::Sphere(_)
-                | SourceSpec::Line(_)
-                | SourceSpec::Cylinder(_)
-                | SourceSpec::Face(_)
-                | SourceSpec::Volume(_) => self.lower_source(name, source, &key),
+            if let SourceSpec::Sun(sun) = source {
+                self.lower_sun(name, sun, &key);
+            } else if let SourceSpec::Sky(sky) = source {
+                self.lower_sky(name, sky, &key);
+            } else {
+                self.lower_source(name, source, &key);
             }
         }
     }
 
-    fn lower_source(&mut self, name: &str, source: &SourceSpec, key: &Key) {
-        let Some(common) = source.common() else { return };
-        let Some(emission) = self.emission(source, common, key) else { return };
-        let Some(frame) = self.place(common.at.as_ref(), key, Facing::Toward) else { return };
-        let Some((emitter, mut on)) = self.emitter(source, frame, key) else { return };
-        let Some(flux) = self.flux(common, &emitter, emission, key) else { return };
-        if let Some(finish) = self.body_finish(&common.body) {
+    /// Light in lm and light in W cannot be added without spectra.
+    fn check_units(&mut self) {
+        let sources = || self.spec.sources.iter();
+        let is_radiant = |source: &SourceSpec| source.common().is_some_and(|c| c.flux_w.is_some());
+        let luminous = sources().find(|(_, source)| !is_radiant(source));
+        let Some((luminous, _)) = luminous else { return };
+        for (name, source) in sources().filter(|(_, source)| is_radiant(source)) {
+            let key = Key::of(&["sources", name, source.kind(), "flux_w"]);
+            let message = format!(
+                "a scene has sources in W or in lm, not both; `sources.{luminous}` is in lm"
+            );
+            self.problems.error(&key, message);
+        }
+    }
+
+    fn lower_source(&mut self, name: &str, source: &'a SourceSpec, key: &Key) -> Option<()> {
+        let (common, extent) = source.common().zip(SourceExtent::of(source))?;
+        let keys = SourceKeys { common, extent, kind: source.kind() };
+        let amount = self.check_amount(&keys, key);
+        self.check_place(&keys, key);
+        let emission = self.emission(&keys, key);
+        let body = self.body_finish(&common.body, &key.field("body"));
+        let frame = self.place(common.at.as_ref(), key, Facing::Toward);
+        let emitter = frame.and_then(|frame| self.emitter(source, frame, key));
+        self.may_build(key)?;
+        let (emitter, mut on) = emitter?;
+        let emission = amount.and(emission)?;
+        let flux = self.flux(common, &emitter, emission, key)?;
+        if let Some(finish) = body {
             on = self.add_body(name, &emitter, finish);
         }
         // Whether the solids at the start must be found for each path is decided when the scene is
@@ -64,22 +84,51 @@ impl Context<'_> {
             elevation: None,
             sun: None,
         });
-        let group = common.group.clone().map(|group| (group, key.field("group")));
-        self.members.push(Member { source, group, daylight: None });
+        self.members.push(Member {
+            source,
+            group: group(common.group.as_ref(), key),
+            daylight: None,
+        });
+        Some(())
     }
 
-    fn emission(
-        &mut self,
-        source: &SourceSpec,
-        common: &SourceCommonSpec,
-        key: &Key,
-    ) -> Option<Emission> {
+    fn check_amount(&mut self, keys: &SourceKeys<'_>, key: &Key) -> Option<()> {
+        let SourceKeys { common, extent, kind } = *keys;
+        if common.luminance_cd_m2.is_some() && !extent.has_area() {
+            let message = format!("a {kind} has no area and so no luminance");
+            return self.refuse(&key.field("luminance_cd_m2"), message, "give `flux_lm`");
+        }
+        if common.intensity_cd.is_some() && extent != SourceExtent::Point {
+            let message = format!("is for a `point` only, found with `{kind}`");
+            let hint = if extent.has_area() {
+                "give `flux_lm` or `luminance_cd_m2`"
+            } else {
+                "give `flux_lm`"
+            };
+            return self.refuse(&key.field("intensity_cd"), message, hint);
+        }
+        Some(())
+    }
+
+    fn check_place(&mut self, keys: &SourceKeys<'_>, key: &Key) {
+        let SourceKeys { common, extent, kind } = *keys;
+        let is_in_place = extent == SourceExtent::Face || extent == SourceExtent::Volume;
+        if is_in_place && common.at.is_some() {
+            let message = format!("a {kind} is where its solid is");
+            self.problems.error(&key.field("at"), message).hint("remove `at`");
+        }
+        if common.body != BodySpec::Transparent && extent != SourceExtent::Area {
+            let message = format!("a {kind} has no body of its own that light could meet");
+            self.problems.error(&key.field("body"), message).hint("remove `body`");
+        }
+    }
+
+    /// The law of emission, with the axis of a tilted beam.
+    fn emission(&mut self, keys: &SourceKeys<'_>, key: &Key) -> Option<Emission> {
+        let SourceKeys { common, extent, .. } = *keys;
+        let is_volume = extent == SourceExtent::Volume;
+        let default = if is_volume { EmissionSpec::Isotropic } else { EmissionSpec::Lambertian };
         let axis = tilted(common.tilt_deg, common.azimuth_deg);
-        let default = if matches!(source, SourceSpec::Volume(_)) {
-            EmissionSpec::Isotropic
-        } else {
-            EmissionSpec::Lambertian
-        };
         let emission = match common.emission.unwrap_or(default) {
             EmissionSpec::Lambertian => Emission::Lambertian,
             EmissionSpec::Isotropic => Emission::Isotropic,
@@ -89,170 +138,51 @@ impl Context<'_> {
                 Emission::Cone { half_angle: degrees.to_radians(), axis }
             }
         };
+        let is_about_normal = matches!(emission, Emission::Lambertian | Emission::CosinePower(_));
+        if is_volume && is_about_normal {
+            let message = "a volume has no normal that light could be spread about";
+            self.problems.error(&key.field("emission"), message).hint("give \"isotropic\"");
+        }
+        let is_directed = matches!(emission, Emission::Collimated { .. } | Emission::Cone { .. });
+        let tilt = key.field("tilt_deg");
+        if !is_directed && common.tilt_deg != 0.0 {
+            let message = "only a collimated beam or a cone can be tilted";
+            return self.refuse(&tilt, message, "turn the source itself with `at`");
+        }
         if let Emission::Cone { half_angle, .. } = emission
-            && emits_from_a_surface(source)
+            && extent.has_area()
         {
             let reach = half_angle.to_degrees() + common.tilt_deg;
             // Rounding of 90 degrees to radians and back.
             if reach > 90.0 + 1e-9 {
-                self.problems
-                    .error(
-                        &key.field("tilt_deg"),
-                        format!("the tilted cone reaches {reach} deg, below the surface"),
-                    )
-                    .hint("keep tilt_deg plus the cone's half-angle at 90 or less");
-                return None;
+                let message = format!("the tilted cone reaches {reach} deg, below the surface");
+                let hint = "keep tilt_deg plus the cone's half-angle at 90 or less";
+                return self.refuse(&tilt, message, hint);
             }
         }
         Some(emission)
     }
 
-    /// The emitter, and the surfaces of the scene it lies on.
-    fn emitter(
-        &mut self,
-        source: &SourceSpec,
-        frame: Frame,
-        key: &Key,
-    ) -> Option<(Emitter, Vec<PrimId>)> {
-        let flat = |region| {
-            let shape = Shape::Flat(Flat::new(frame, region));
-            Some((Emitter::surface(vec![shape], EmitSide::Front, Some(frame)), Vec::new()))
-        };
-        match source {
-            SourceSpec::Point(_) => Some((Emitter::Point(frame), Vec::new())),
-            SourceSpec::Line(line) => {
-                Some((Emitter::Line { frame, length: line.shape.length_mm }, Vec::new()))
-            }
-            SourceSpec::Disk(disk) => {
-                let (inner, outer) = (disk.shape.inner_radius_mm, disk.shape.radius_mm);
-                flat(Region::Annulus { inner, outer })
-            }
-            SourceSpec::Rectangle(r) => flat(Region::Rectangle {
-                half_x: 0.5 * r.shape.width_mm,
-                half_y: 0.5 * r.shape.height_mm,
-            }),
-            SourceSpec::Sphere(sphere) => {
-                let radius = sphere.shape.radius_mm;
-                let shape = Shape::Sphere(Sphere::zone(frame, radius, -radius, radius));
-                Some((Emitter::surface(vec![shape], EmitSide::Front, None), Vec::new()))
-            }
-            SourceSpec::Cylinder(cylinder) => {
-                let shape = Shape::Cylinder(Cylinder::new(
-                    frame,
-                    cylinder.shape.radius_mm,
-                    cylinder.shape.length_mm,
-                ));
-                Some((Emitter::surface(vec![shape], EmitSide::Front, None), Vec::new()))
-            }
-            SourceSpec::Face(face) => {
-                self.face_emitter(&face.shape.of, face.shape.side, &key.field("of"))
-            }
-            SourceSpec::Volume(volume) => self.volume_emitter(&volume.shape.of, &key.field("of")),
-            // Lowered on their own.
-            SourceSpec::Sun(_) | SourceSpec::Sky(_) => None,
-        }
-    }
-
-    fn face_emitter(
-        &mut self,
-        of: &str,
-        side: FaceSide,
-        key: &Key,
-    ) -> Option<(Emitter, Vec<PrimId>)> {
-        let faces = self.faces_named(of, key)?;
-        let side = match side {
-            FaceSide::Front => EmitSide::Front,
-            FaceSide::Back => EmitSide::Back,
-        };
-        let scene = self.builder.scene();
-        let patches = || faces.iter().flat_map(|face| scene.face_patches(*face));
-        if patches().any(|patch| patch.trim.is_some()) {
-            self.problems
-                .error(key, format!("`{of}` has a relief; it cannot emit"))
-                .hint("let a plane close to it emit, or leave the relief out");
-            return None;
-        }
-        let mut shapes = Vec::new();
-        let mut on = Vec::new();
-        for &face in &faces {
-            shapes.extend(scene.face_patches(face).iter().map(|patch| patch.shape.clone()));
-            let entry = &scene.faces[face.index()];
-            {
-                on.extend(patch_range(&entry.extent).map(PrimId::new));
-            }
-        }
-        // The axes of a flat face are the reference of a tilted beam; z must be the direction of
-        // emission.
-        let plane = match faces.as_slice() {
-            [face] => scene.face_plane(*face),
-            _ => None,
-        };
-        let frame = plane.map(|plane| match side {
-            EmitSide::Front => plane,
-            EmitSide::Back => Frame { y: -plane.y, z: -plane.z, ..plane },
-        });
-        if shapes.is_empty() {
-            self.problems.error(key, format!("`{of}` is part of a mesh; it cannot emit"));
-            return None;
-        }
-        Some((Emitter::surface(shapes, side, frame), on))
-    }
-
-    fn volume_emitter(&mut self, of: &str, key: &Key) -> Option<(Emitter, Vec<PrimId>)> {
-        let scene = self.builder.scene();
-        if let Some(index) = scene.solids.iter().position(|solid| solid.name == of) {
-            let bounds = scene.solids[index].bounds;
-            return Some((Emitter::Volume { solid: SolidId::new(index), bounds }, Vec::new()));
-        }
-        let known: Vec<&str> = scene.solids.iter().map(|solid| solid.name.as_str()).collect();
-        let hint = name_hint(of, known.iter().copied());
-        self.problems.error(key, format!("unknown solid `{of}`")).hint(hint);
-        None
-    }
-
-    fn body_finish(&mut self, body: &BodySpec) -> Option<FinishId> {
+    fn body_finish(&mut self, body: &'a BodySpec, key: &Key) -> Option<FinishId> {
         match body {
             BodySpec::Transparent => None,
             BodySpec::Absorbing => self.finishes.get("black").copied(),
-            BodySpec::Finish(reference) => self.finish(reference),
+            BodySpec::Finish(reference) => self.finish(reference, key),
         }
     }
 
     /// Makes the emitter's surfaces a sheet that light meets.
     fn add_body(&mut self, name: &str, emitter: &Emitter, finish: FinishId) -> Vec<PrimId> {
         let Emitter::Surface { shapes, .. } = emitter else { return Vec::new() };
+        let name = format!("{name}.body");
         let face = self.builder.add_face(FaceSpec {
-            name: format!("{name}.body"),
+            name: name.clone(),
             owner: Owner::Sheet,
             front: Some(finish),
             back: Some(finish),
             pieces: shapes.iter().map(|(shape, _)| FacePiece::whole(shape.clone())).collect(),
         });
-        self.faces.insert(format!("{name}.body"), vec![face]);
+        self.faces.insert(name, vec![face]);
         patch_range(&self.builder.scene().faces[face.index()].extent).map(PrimId::new).collect()
-    }
-}
-
-/// Whether directions are counted from a surface's normal.
-pub(super) fn emits_from_a_surface(source: &SourceSpec) -> bool {
-    match source {
-        SourceSpec::Disk(_)
-        | SourceSpec::Rectangle(_)
-        | SourceSpec::Sphere(_)
-        | SourceSpec::Cylinder(_)
-        | SourceSpec::Face(_) => true,
-        SourceSpec::Point(_)
-        | SourceSpec::Line(_)
-        | SourceSpec::Volume(_)
-        | SourceSpec::Sun(_)
-        | SourceSpec::Sky(_) => false,
-    }
-}
-
-/// The patches of a face that light can meet.
-fn patch_range(extent: &PieceRange) -> std::ops::Range<usize> {
-    match extent {
-        PieceRange::Patches(range) => range.clone(),
-        PieceRange::Ports(_) | PieceRange::Mesh { .. } => 0..0,
     }
 }

@@ -2,8 +2,8 @@
 //! refused.
 
 use crate::keys::Key;
+use crate::lower::emitters::SourceExtent;
 use crate::lower::slips::check_embedded;
-use crate::lower::sources::emits_from_a_surface;
 use crate::problems::Problems;
 use crate::spec::SceneSpec;
 use crate::spec::placement::PlacementSpec;
@@ -78,12 +78,10 @@ pub(super) fn check_starts(spec: &SceneSpec, scene: &Scene, problems: &mut Probl
         if let Some(solid) = (0..scene.solids.len()).map(SolidId::new).find(|solid| buried(*solid))
         {
             let name = &scene.solids[solid.index()].name;
-            problems
-                .error(
-                    &key,
-                    format!("lies inside the opaque solid `{name}`: none of its light gets out"),
-                )
-                .hint("move the source, or give a face of the solid another finish");
+            let message =
+                format!("lies inside the opaque solid `{name}`: none of its light gets out");
+            let hint = "move the source, or give a face of the solid another finish";
+            problems.error(&key, message).hint(hint);
         } else if let Some(of) = spec.sources.get(&source.name) {
             check_embedded(scene, of, &starts, &key, problems);
         }
@@ -98,8 +96,7 @@ fn is_in_space(spec: &SceneSpec, name: &str) -> bool {
     spec.sources.get(name).is_some_and(|source| {
         let at_face =
             |common: &SourceCommonSpec| matches!(common.at, Some(PlacementSpec::AtFace(_)));
-        emits_from_a_surface(source)
-            && !matches!(source, SourceSpec::Face(_))
+        SourceExtent::of(source) == Some(SourceExtent::Area)
             && !source.common().is_some_and(at_face)
     })
 }
@@ -111,15 +108,12 @@ fn check_covered(scene: &Scene, starts: &[Emitted], key: &Key, problems: &mut Pr
         let missed = starts.iter().find(|start| !is_in(start));
         if let (Some(missed), Some(_)) = (missed, starts.iter().find(is_in)) {
             let [x, y, z] = (missed.ray.origin() + scene.origin).to_array();
-            problems
-                .error(
-                    key,
-                    format!(
-                        "shines in `{}` from one part and outside of it from another, as at [{x:.4}, {y:.4}, {z:.4}] mm",
-                        solid.name
-                    ),
-                )
-                .hint("move or enlarge the solid, or make two sources of it");
+            let message = format!(
+                "shines in `{}` from one part and outside of it from another, as at [{x:.4}, {y:.4}, {z:.4}] mm",
+                solid.name
+            );
+            let hint = "move or enlarge the solid, or make two sources of it";
+            problems.error(key, message).hint(hint);
         }
     }
 }

@@ -2,14 +2,16 @@
 
 use crate::keys::Key;
 use crate::lower::context::Context;
-use crate::spec::sweep::{CompoundParabolicSpec, LegSpec, ParaboloidSpec, ProfileSpec, SweepSpec};
+use crate::spec::sweep::{
+    CompoundParabolicSpec, CornerSpec, LegSpec, ParaboloidSpec, ProfileSpec, SweepSpec,
+};
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::{Frame, planar};
 use lumiduct_base::number::format_least_length;
 use lumiduct_core::scene::FacePiece;
 use lumiduct_core::scene::shape::{CompoundParabola, Flat, Paraboloid, Region, Shape};
 use lumiduct_core::scene::sweep::{
-    CornerKind, Leg, Profile, ProfileError, SweepError, SweepProblem, Wall, sweep,
+    CornerKind, Leg, Profile, ProfileError, SweepError, SweepProblem, Wall, WallPart, sweep,
 };
 
 /// A named face of a body under construction.
@@ -34,7 +36,7 @@ pub(super) enum BodyPart {
 
 /// The faces of a body and its volume.
 #[derive(Debug)]
-pub(super) struct Surfaces {
+pub(super) struct BodySurfaces {
     pub(super) faces: Vec<NamedFace>,
     /// Volume, mm³, where known.
     pub(super) volume: Option<f64>,
@@ -57,7 +59,11 @@ impl Context<'_> {
         spec: &SweepSpec,
         frame: Frame,
         key: &Key,
-    ) -> Option<Surfaces> {
+    ) -> Option<BodySurfaces> {
+        for (index, leg) in spec.path.iter().enumerate() {
+            self.check_old_key(leg, &key.field("path").index(index));
+        }
+        self.may_build(&key.field("path"))?;
         let profile = self.profile(&spec.profile, &key.field("profile"))?;
         let legs: Vec<Leg> = spec.path.iter().map(leg).collect();
         let swept = match sweep(frame, &profile, &legs) {
@@ -83,12 +89,7 @@ impl Context<'_> {
                 }
                 Wall::Mitre => "wall_mitre".to_owned(),
             };
-            let piece = FacePiece {
-                shape: part.shape.clone(),
-                smooth: part.smooth,
-                chart: Some(part.chart),
-                trim: None,
-            };
+            let piece = piece(part.clone());
             match faces.iter_mut().find(|face| face.name == name) {
                 Some(face) => face.pieces.push(piece),
                 None => faces.push(NamedFace { name, part: BodyPart::Wall, pieces: vec![piece] }),
@@ -97,17 +98,45 @@ impl Context<'_> {
         let [entry, exit] = &swept.ports;
         faces.push(NamedFace::end("entry", entry.shape.clone()));
         faces.push(NamedFace::end("exit", exit.shape.clone()));
-        Some(Surfaces { faces, volume: Some(swept.volume) })
+        Some(BodySurfaces { faces, volume: Some(swept.volume) })
+    }
+
+    /// Notes the old name of a fold mirror.
+    fn check_old_key(&mut self, leg: &LegSpec, key: &Key) {
+        let LegSpec::Corner(CornerSpec { fold_mirror, mitred: Some(mitred), .. }) = leg else {
+            return;
+        };
+        let key = key.field("mitred");
+        if fold_mirror.is_some() {
+            self.problems.error(&key, "says again what `fold_mirror` says").hint("remove it");
+        } else {
+            self.problems
+                .warning(&key, "is the old name of `fold_mirror`")
+                .hint(format!("write fold_mirror = {mitred}, which is the same"));
+        }
     }
 
     pub(super) fn profile(&mut self, spec: &ProfileSpec, key: &Key) -> Option<Profile> {
-        match profile_of(spec) {
-            Ok(profile) => Some(profile),
-            Err(error) => {
-                self.problems.error(key, error.to_string());
-                None
-            }
+        self.may_build(key)?;
+        let profile = profile_of(spec);
+        if let Err(error) = &profile {
+            self.problems.error(key, error.to_string());
         }
+        profile.ok()
+    }
+
+    /// Notes two keys of the table at `table` of which the first is not below the second.
+    pub(super) fn require_order(
+        &mut self,
+        table: &Key,
+        (small_key, small): (&str, f64),
+        (large_key, large): (&str, f64),
+    ) -> Option<()> {
+        if small >= large {
+            let message = format!("{small} is not below `{large_key}`, which is {large}");
+            self.problems.error(&table.field(small_key), message);
+        }
+        (small < large).then_some(())
     }
 
     /// The faces of a compound parabolic concentrator.
@@ -116,18 +145,15 @@ impl Context<'_> {
         spec: &CompoundParabolicSpec,
         frame: Frame,
         key: &Key,
-    ) -> Option<Surfaces> {
+    ) -> Option<BodySurfaces> {
+        self.may_build(key)?;
         let angle = spec.acceptance_half_angle_deg.to_radians();
         let full = CompoundParabola::full_length(spec.small_radius_mm, angle);
         let length = spec.length_mm.unwrap_or(full);
         if length > full * (1.0 + 1e-12) {
-            self.problems
-                .error(
-                    &key.field("length_mm"),
-                    format!("{length} is longer than the full length, {full:.6} mm"),
-                )
-                .hint("leave length_mm out for the full length");
-            return None;
+            let message = format!("{length} is longer than the full length, {full:.6} mm");
+            let hint = "leave length_mm out for the full length";
+            return self.refuse(&key.field("length_mm"), message, hint);
         }
         let wall = CompoundParabola::new(frame, spec.small_radius_mm, angle, length);
         let wide = wall.radius_at(length);
@@ -136,12 +162,18 @@ impl Context<'_> {
             NamedFace::end("entry", disk_facing(frame, 0.0, spec.small_radius_mm, Ends::Entry)),
             NamedFace::end("exit", disk_facing(frame, length, wide, Ends::Exit)),
         ];
-        Some(Surfaces { faces, volume: None })
+        Some(BodySurfaces { faces, volume: None })
     }
 
     /// The faces of a paraboloid.
-    pub(super) fn paraboloid(&self, spec: &ParaboloidSpec, frame: Frame) -> Surfaces {
+    pub(super) fn paraboloid(
+        &mut self,
+        spec: &ParaboloidSpec,
+        frame: Frame,
+        key: &Key,
+    ) -> Option<BodySurfaces> {
         let (focal, hole, rim) = (spec.focal_length_mm, spec.hole_radius_mm, spec.radius_mm);
+        self.require_order(key, ("hole_radius_mm", hole), ("radius_mm", rim))?;
         let height = |radius: f64| radius * radius / (4.0 * focal);
         let mut faces = vec![
             NamedFace::wall("wall", Shape::Paraboloid(Paraboloid::new(frame, focal, hole, rim))),
@@ -154,8 +186,13 @@ impl Context<'_> {
         // Half of base times height, less the tip that the hole cuts off.
         let volume =
             0.5 * std::f64::consts::PI * (rim * rim * height(rim) - hole * hole * height(hole));
-        Surfaces { faces, volume: Some(volume) }
+        Some(BodySurfaces { faces, volume: Some(volume) })
     }
+}
+
+/// A piece of a face from a part of a sweep.
+pub(super) fn piece(part: WallPart) -> FacePiece {
+    FacePiece { shape: part.shape, smooth: part.smooth, chart: Some(part.chart), trim: None }
 }
 
 /// Which end of a body a disk closes.

@@ -2,10 +2,9 @@
 
 use crate::keys::Key;
 use crate::lower::context::Context;
-use crate::lower::surfaces::{BodyPart, NamedFace, Surfaces};
+use crate::lower::surfaces::{BodyPart, BodySurfaces, NamedFace, piece};
 use crate::spec::solid::{TubeOuterSpec, TubeSolidSpec};
 use lumiduct_base::math::{Frame, planar};
-use lumiduct_core::scene::FacePiece;
 use lumiduct_core::scene::shape::{Flat, Region, Shape};
 use lumiduct_core::scene::sweep::{
     Leg, OutlineError, PrismNumber, Prisms, Profile, Sweep, SweepError, WallPart, sweep,
@@ -18,7 +17,8 @@ impl Context<'_> {
         spec: &TubeSolidSpec,
         frame: Frame,
         key: &Key,
-    ) -> Option<Surfaces> {
+    ) -> Option<BodySurfaces> {
+        self.may_build(&key.field("outer"))?;
         let inner = self.profile(&spec.inner, &key.field("inner"))?;
         let outer = match outline(&inner, &spec.outer) {
             Ok(outer) => outer,
@@ -28,13 +28,9 @@ impl Context<'_> {
             }
         };
         if let Some(beyond) = reach_into_bore(&inner, &outer) {
-            self.problems
-                .error(
-                    &key.field("outer"),
-                    format!("the facets of the prisms reach {beyond:.4} mm into the bore"),
-                )
-                .hint("make base_mm larger, prism_angle_deg smaller or the prisms more");
-            return None;
+            let message = format!("the facets of the prisms reach {beyond:.4} mm into the bore");
+            let hint = "make base_mm larger, prism_angle_deg smaller or the prisms more";
+            return self.refuse(&key.field("outer"), message, hint);
         }
         let swept = |profile| straight(frame, profile, spec.length_mm);
         match (swept(&inner), swept(&outer)) {
@@ -80,20 +76,12 @@ fn outline(inner: &Profile, outer: &TubeOuterSpec) -> Result<Profile, OutlineErr
 }
 
 /// `None` where a wall is not that of a straight leg, which does not happen here.
-fn tube(inner: &Sweep, outer: &Sweep) -> Option<Surfaces> {
+fn tube(inner: &Sweep, outer: &Sweep) -> Option<BodySurfaces> {
     let bore: Option<Vec<WallPart>> = inner.parts.iter().map(WallPart::turned).collect();
     let wall = |name: &str, parts: Vec<WallPart>| NamedFace {
         name: name.to_owned(),
         part: BodyPart::Wall,
-        pieces: parts
-            .into_iter()
-            .map(|part| FacePiece {
-                shape: part.shape,
-                smooth: part.smooth,
-                chart: Some(part.chart),
-                trim: None,
-            })
-            .collect(),
+        pieces: parts.into_iter().map(piece).collect(),
     };
     let mut faces = vec![wall("inner", bore?), wall("outer", outer.parts.clone())];
     for (name, end) in [("entry", 0), ("exit", 1)] {
@@ -105,5 +93,5 @@ fn tube(inner: &Sweep, outer: &Sweep) -> Option<Surfaces> {
         let region = Region::holed(outline.region().clone(), hole.region().clone());
         faces.push(NamedFace::end(name, Shape::Flat(Flat::new(*outline.frame(), region))));
     }
-    Some(Surfaces { faces, volume: Some(outer.volume - inner.volume) })
+    Some(BodySurfaces { faces, volume: Some(outer.volume - inner.volume) })
 }

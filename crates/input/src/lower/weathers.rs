@@ -73,6 +73,11 @@ pub(super) struct Member {
     pub(super) daylight: Option<Daylight>,
 }
 
+/// The light group of a source with its key.
+pub(super) fn group(name: Option<&String>, source: &Key) -> Option<(String, Key)> {
+    name.cloned().map(|name| (name, source.field("group")))
+}
+
 /// Daylight sources by their weather; those of one group in the scene file are one weather.
 pub(super) fn weathers(members: &[Member]) -> Vec<Vec<&Member>> {
     let daylight = |member: &Member| member.daylight.clone();

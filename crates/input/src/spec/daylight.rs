@@ -26,14 +26,9 @@ pub struct SunSpec {
     #[serde(default = "mean_half_angle")]
     #[schemars(extend("exclusiveMinimum" = 0.0), range(max = 5.0))]
     pub half_angle_deg: f64,
-    /// The light group. Omitted: a sun and the skies about it are one where there is other daylight, or another source.
-    pub group: Option<String>,
-    /// Whether it shines. One that does not is dark, as with an amount of 0.
-    #[serde(default = "enabled")]
-    pub enabled: bool,
-    /// What it shines on: a flat face or port such as `duct.entry`, on which its light starts, or a solid or sheet such
-    /// as a collector dome, at which light comes from outside the scene.
-    pub aim: String,
+    /// Keys of all daylight.
+    #[serde(flatten)]
+    pub common: DaylightCommonSpec,
 }
 
 /// The light of the sky without the sun's disk; exactly one of `zenith_luminance_cd_m2` and `horizontal_illuminance_lx`.
@@ -54,6 +49,14 @@ pub struct SkySpec {
     /// The position of the sun, for a sky that is brighter about it.
     #[serde(flatten)]
     pub place: SunPlaceSpec,
+    /// Keys of all daylight.
+    #[serde(flatten)]
+    pub common: DaylightCommonSpec,
+}
+
+/// What the sun and the sky have in common.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct DaylightCommonSpec {
     /// The light group. Omitted: a sun and the skies about it are one where there is other daylight, or another source.
     pub group: Option<String>,
     /// Whether it shines. One that does not is dark, as with an amount of 0.

@@ -2,7 +2,7 @@
 //!
 //! The JSON Schema, the page `docs/scene_format.md` and the validation of a file are all made from these types, so
 //! the comments here are read by users. Nothing is computed here, and no rule that spans several keys is known here
-//! (see `input::check`).
+//! (see `input::lower`).
 
 use indexmap::IndexMap;
 use schemars::JsonSchema;

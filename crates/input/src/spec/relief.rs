@@ -26,49 +26,55 @@ pub struct ReliefSpec {
 #[serde(rename_all = "snake_case")]
 pub enum ReliefElementSpec {
     /// A part of a ball, at most half of it, sunk into the wall.
-    Dimple(DimpleSpec),
+    Dimple(CapSpec<DepthSpec>),
     /// A part of a ball, at most half of it, raised from the wall.
-    Bump(BumpSpec),
+    Bump(CapSpec<HeightSpec>),
     /// A V-groove across the guide.
-    Groove(GrooveSpec),
-    /// A ridge with two flanks across the guide, a prism.
-    Ridge(RidgeSpec),
+    Groove(WedgeSpec<DepthSpec>),
+    /// A ridge with two flanks across the guide, a prism. On a round wall only as a `ring`.
+    Ridge(WedgeSpec<HeightSpec>),
     /// A pyramid raised from a flat wall.
-    Pyramid(PyramidSpec),
+    Pyramid(PyramidSpec<HeightSpec>),
     /// A pyramid sunk into a flat wall.
-    Pit(PitSpec),
+    Pit(PyramidSpec<DepthSpec>),
 }
 
-/// A dimple; exactly one of `radius_mm` and `diameter_mm`.
+/// How far an element is sunk into its wall.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(rename = "Dimple", extend("oneOf" = [{ "required": ["radius_mm"] }, { "required": ["diameter_mm"] }]))]
-pub struct DimpleSpec {
-    /// Radius of the sphere: a number, or one that changes along the guide.
-    pub radius_mm: Option<AlongSpec>,
-    /// Diameter of the opening; on a round wall the opening along the guide.
-    pub diameter_mm: Option<AlongSpec>,
+#[schemars(rename = "Sunk")]
+pub struct DepthSpec {
     /// Depth below the wall: a number, or one that changes along the guide.
     pub depth_mm: AlongSpec,
 }
 
-/// A bump; exactly one of `radius_mm` and `diameter_mm`.
+/// How far an element is raised from its wall.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(rename = "Bump", extend("oneOf" = [{ "required": ["radius_mm"] }, { "required": ["diameter_mm"] }]))]
-pub struct BumpSpec {
-    /// Radius of the sphere: a number, or one that changes along the guide.
-    pub radius_mm: Option<AlongSpec>,
-    /// Diameter of its foot; on a round wall the diameter along the guide.
-    pub diameter_mm: Option<AlongSpec>,
+#[schemars(rename = "Raised")]
+pub struct HeightSpec {
     /// Height over the wall: a number, or one that changes along the guide.
     pub height_mm: AlongSpec,
 }
 
-/// A groove; exactly one of `angle_deg` and `flank_angles_deg`.
+/// A part of a ball; exactly one of `radius_mm` and `diameter_mm`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(rename = "Groove", extend("oneOf" = [{ "required": ["angle_deg"] }, { "required": ["flank_angles_deg"] }]))]
-pub struct GrooveSpec {
-    /// Depth below the wall: a number, or one that changes along the guide.
-    pub depth_mm: AlongSpec,
+#[schemars(rename = "{Extent}Cap", extend("oneOf" = [{ "required": ["radius_mm"] }, { "required": ["diameter_mm"] }]))]
+pub struct CapSpec<Extent> {
+    /// Radius of the sphere: a number, or one that changes along the guide.
+    pub radius_mm: Option<AlongSpec>,
+    /// Diameter of the opening or the foot; on a round wall the diameter along the guide.
+    pub diameter_mm: Option<AlongSpec>,
+    /// How deep or high it is.
+    #[serde(flatten)]
+    pub extent: Extent,
+}
+
+/// Two flanks; exactly one of `angle_deg` and `flank_angles_deg`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(rename = "{Extent}Wedge", extend("oneOf" = [{ "required": ["angle_deg"] }, { "required": ["flank_angles_deg"] }]))]
+pub struct WedgeSpec<Extent> {
+    /// How deep or high it is.
+    #[serde(flatten)]
+    pub extent: Extent,
     /// Angle between its flanks, which are alike.
     #[schemars(extend("exclusiveMinimum" = 0.0, "exclusiveMaximum" = 180.0))]
     pub angle_deg: Option<f64>,
@@ -82,51 +88,19 @@ pub struct GrooveSpec {
     pub course: CourseSpec,
 }
 
-/// A ridge; exactly one of `angle_deg` and `flank_angles_deg`. On a round wall only as a `ring`.
+/// A pyramid.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(rename = "Ridge", extend("oneOf" = [{ "required": ["angle_deg"] }, { "required": ["flank_angles_deg"] }]))]
-pub struct RidgeSpec {
-    /// Height over the wall: a number, or one that changes along the guide.
-    pub height_mm: AlongSpec,
-    /// Angle between its flanks, which are alike.
-    #[schemars(extend("exclusiveMinimum" = 0.0, "exclusiveMaximum" = 180.0))]
-    pub angle_deg: Option<f64>,
-    /// Angles between the wall and the two flanks, that toward the start of the guide first; 90 is upright.
-    pub flank_angles_deg: Option<[f64; 2]>,
-    /// Length across the guide, on a flat wall. Omitted: the whole width.
-    #[schemars(extend("exclusiveMinimum" = 0.0))]
-    pub length_mm: Option<f64>,
-    /// Its course on a round wall.
-    #[serde(default)]
-    pub course: CourseSpec,
-}
-
-/// A raised pyramid.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(rename = "Pyramid")]
-pub struct PyramidSpec {
+#[schemars(rename = "{Extent}Pyramid")]
+pub struct PyramidSpec<Extent> {
     /// Width across the guide.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub width_mm: f64,
     /// Length along the guide.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub length_mm: f64,
-    /// Height over the wall: a number, or one that changes along the guide.
-    pub height_mm: AlongSpec,
-}
-
-/// A sunk pyramid.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(rename = "Pit")]
-pub struct PitSpec {
-    /// Width across the guide.
-    #[schemars(extend("exclusiveMinimum" = 0.0))]
-    pub width_mm: f64,
-    /// Length along the guide.
-    #[schemars(extend("exclusiveMinimum" = 0.0))]
-    pub length_mm: f64,
-    /// Depth below the wall: a number, or one that changes along the guide.
-    pub depth_mm: AlongSpec,
+    /// How deep or high it is.
+    #[serde(flatten)]
+    pub extent: Extent,
 }
 
 /// How a groove or a ridge goes over a wall.

@@ -52,7 +52,7 @@ pub struct SensorSpec {
 
 /// The kind of a sensor, with its keys.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum SensorKind<'a> {
+pub enum SensorKindSpec<'a> {
     /// Illuminance over an area.
     Plane(&'a PlaneSpec),
     /// Intensity over directions.
@@ -63,7 +63,7 @@ pub enum SensorKind<'a> {
     Image(&'a ImageSpec),
 }
 
-impl SensorKind<'_> {
+impl SensorKindSpec<'_> {
     /// The key of the kind.
     pub fn name(self) -> &'static str {
         match self {
@@ -77,23 +77,31 @@ impl SensorKind<'_> {
 
 impl SensorSpec {
     /// The kind; `None` in a spec that was never validated.
-    pub fn kind(&self) -> Option<SensorKind<'_>> {
-        let plane = self.plane.as_ref().map(SensorKind::Plane);
-        let goniometer = self.goniometer.as_ref().map(SensorKind::Goniometer);
-        let luminance = self.luminance.as_ref().map(SensorKind::Luminance);
-        let image = self.image.as_ref().map(SensorKind::Image);
+    pub fn kind(&self) -> Option<SensorKindSpec<'_>> {
+        let plane = self.plane.as_ref().map(SensorKindSpec::Plane);
+        let goniometer = self.goniometer.as_ref().map(SensorKindSpec::Goniometer);
+        let luminance = self.luminance.as_ref().map(SensorKindSpec::Luminance);
+        let image = self.image.as_ref().map(SensorKindSpec::Image);
         plane.or(goniometer).or(luminance).or(image)
     }
+}
+
+/// The area of a sensor that is not `on` a face.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct AreaSpec {
+    /// A rectangular area about the position.
+    pub rectangle: Option<RectangleSpec>,
+    /// A round area about the position.
+    pub disk: Option<CircleSpec>,
 }
 
 /// A grid of cells over a flat area or a face: `cells`, or `rings` and `sectors`; one cell without them. A `rectangle` or
 /// a `disk` gives the area; a sensor `on` a face has the area of the face.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PlaneSpec {
-    /// A rectangular area about the position.
-    pub rectangle: Option<RectangleSpec>,
-    /// A round area about the position.
-    pub disk: Option<CircleSpec>,
+    /// The area of its own.
+    #[serde(flatten)]
+    pub area: AreaSpec,
     /// Cells along the local x and y, over the bounding rectangle of the area.
     #[schemars(inner(range(min = 1, max = 100_000_000)))]
     pub cells: Option<[u32; 2]>,
@@ -124,10 +132,9 @@ pub struct GoniometerSpec {
 /// A grid of cells over a flat area or a face, looked at from one or more directions.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LuminanceSpec {
-    /// A rectangular area about the position.
-    pub rectangle: Option<RectangleSpec>,
-    /// A round area about the position.
-    pub disk: Option<CircleSpec>,
+    /// The area of its own.
+    #[serde(flatten)]
+    pub area: AreaSpec,
     /// Cells along the local x and y, over the bounding rectangle of the area.
     #[schemars(inner(range(min = 1, max = 100_000_000)))]
     pub cells: [u32; 2],
@@ -145,10 +152,9 @@ pub struct LuminanceSpec {
 /// from the left, rows from below. Choose an aperture that is small against what is to be resolved, as there is no focus.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ImageSpec {
-    /// A rectangular aperture about the position.
-    pub rectangle: Option<RectangleSpec>,
-    /// A round aperture about the position.
-    pub disk: Option<CircleSpec>,
+    /// The area of its own.
+    #[serde(flatten)]
+    pub area: AreaSpec,
     /// Columns and rows.
     #[schemars(inner(range(min = 1, max = 100_000_000)))]
     pub pixels: [u32; 2],

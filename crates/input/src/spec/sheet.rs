@@ -16,50 +16,46 @@ use crate::spec::sweep::{
 #[serde(rename_all = "snake_case")]
 pub enum SheetSpec {
     /// A disk about the position, facing along the axis. Face `surface`.
-    Disk(Sheet<CircleSpec>),
+    Disk(PlainSheetSpec<CircleSpec>),
     /// A disk with a round hole, facing along the axis. Face `surface`.
-    Annulus(Sheet<AnnulusSpec>),
+    Annulus(PlainSheetSpec<AnnulusSpec>),
     /// A rectangle about the position, facing along the axis. Face `surface`.
-    Rectangle(Sheet<RectangleSpec>),
+    Rectangle(PlainSheetSpec<RectangleSpec>),
     /// The part of a sphere about the axis; the centre of the sphere lies at the position. Face `surface`.
-    SphericalCap(Sheet<SphericalCapSpec>),
+    SphericalCap(PlainSheetSpec<SphericalCapSpec>),
     /// A trough with z = x²/(4 f); its front is the concave side. Face `surface`.
-    ParabolicCylinder(Sheet<ParabolicCylinderSpec>),
+    ParabolicCylinder(PlainSheetSpec<ParabolicCylinderSpec>),
     /// A hollow tube or duct: a profile carried along a path. Faces and wall names as for a `sweep`; `entry` and
     /// `exit` are open ports.
-    Tube(Duct<SweepSpec>),
+    Tube(DuctSpec<SweepSpec>),
     /// A hollow compound parabolic reflector. Ports `entry` (the small end) and `exit`, face `wall`.
-    CompoundParabolic(Duct<CompoundParabolicSpec>),
+    CompoundParabolic(DuctSpec<CompoundParabolicSpec>),
     /// A paraboloid reflector. Port `exit`, and `entry` if there is a hole; face `wall`.
-    Paraboloid(Duct<ParaboloidSpec>),
+    Paraboloid(DuctSpec<ParaboloidSpec>),
 }
 
 impl SheetSpec {
     /// The key of the kind, such as `disk`.
     pub fn kind(&self) -> &'static str {
-        match self {
-            Self::Disk(_) => "disk",
-            Self::Annulus(_) => "annulus",
-            Self::Rectangle(_) => "rectangle",
-            Self::SphericalCap(_) => "spherical_cap",
-            Self::ParabolicCylinder(_) => "parabolic_cylinder",
-            Self::Tube(_) => "tube",
-            Self::CompoundParabolic(_) => "compound_parabolic",
-            Self::Paraboloid(_) => "paraboloid",
-        }
+        self.entry().0
     }
 
     /// The keys that every kind of the sheet's family has.
     pub fn common(&self) -> SheetCommon<'_> {
+        self.entry().1
+    }
+
+    fn entry(&self) -> (&'static str, SheetCommon<'_>) {
+        use SheetCommon::{Duct, Sheet};
         match self {
-            Self::Disk(sheet) => SheetCommon::Sheet(&sheet.common),
-            Self::Annulus(sheet) => SheetCommon::Sheet(&sheet.common),
-            Self::Rectangle(sheet) => SheetCommon::Sheet(&sheet.common),
-            Self::SphericalCap(sheet) => SheetCommon::Sheet(&sheet.common),
-            Self::ParabolicCylinder(sheet) => SheetCommon::Sheet(&sheet.common),
-            Self::Tube(duct) => SheetCommon::Duct(&duct.common),
-            Self::CompoundParabolic(duct) => SheetCommon::Duct(&duct.common),
-            Self::Paraboloid(duct) => SheetCommon::Duct(&duct.common),
+            Self::Disk(sheet) => ("disk", Sheet(&sheet.common)),
+            Self::Annulus(sheet) => ("annulus", Sheet(&sheet.common)),
+            Self::Rectangle(sheet) => ("rectangle", Sheet(&sheet.common)),
+            Self::SphericalCap(sheet) => ("spherical_cap", Sheet(&sheet.common)),
+            Self::ParabolicCylinder(sheet) => ("parabolic_cylinder", Sheet(&sheet.common)),
+            Self::Tube(duct) => ("tube", Duct(&duct.common)),
+            Self::CompoundParabolic(duct) => ("compound_parabolic", Duct(&duct.common)),
+            Self::Paraboloid(duct) => ("paraboloid", Duct(&duct.common)),
         }
     }
 }
@@ -86,7 +82,7 @@ impl<'a> SheetCommon<'a> {
 /// A plain surface with a front and a back.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(rename = "{Shape}Sheet")]
-pub struct Sheet<Shape> {
+pub struct PlainSheetSpec<Shape> {
     /// Keys of the shape.
     #[serde(flatten)]
     pub shape: Shape,
@@ -109,7 +105,7 @@ pub struct SheetCommonSpec {
 /// A hollow duct with an inside and an outside.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(rename = "{Shape}Duct")]
-pub struct Duct<Shape> {
+pub struct DuctSpec<Shape> {
     /// Keys of the shape.
     #[serde(flatten)]
     pub shape: Shape,

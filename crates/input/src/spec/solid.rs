@@ -15,54 +15,48 @@ pub enum SolidSpec {
     /// A profile carried along a path. Faces `entry`, `exit` and `wall`. The wall of a rectangle is also
     /// `wall_plus_x`, `wall_plus_y`, `wall_minus_x` and `wall_minus_y`, that of a polygon also `wall_1`, `wall_2`
     /// and so on, one per side.
-    Sweep(Solid<SweepSpec>),
+    Sweep(ShapedSolidSpec<SweepSpec>),
     /// A cylinder or a frustum of a cone, from the position along the axis. Faces `entry`, `exit`, `wall`.
-    Cylinder(Solid<CylinderSpec>),
+    Cylinder(ShapedSolidSpec<CylinderSpec>),
     /// A box, from the position along the axis. Faces `entry`, `exit`, `wall`, and the four walls as for a rectangle.
-    Box(Solid<BoxSpec>),
+    Box(ShapedSolidSpec<BoxSpec>),
     /// A straight tube with a wall of its own, from the position along the axis, which can carry prisms outside. Faces
     /// `entry` and `exit` (the ends of the wall), `inner` and `outer`; `wall` is both.
-    Tube(Solid<TubeSolidSpec>),
+    Tube(ShapedSolidSpec<TubeSolidSpec>),
     /// A sphere about the position. Face `surface`.
-    Sphere(Solid<SphereSpec>),
+    Sphere(ShapedSolidSpec<SphereSpec>),
     /// A lens with spherical or flat ends, the vertex of the entry at the position. Faces `entry`, `exit`, `wall`.
-    Lens(Solid<LensSpec>),
+    Lens(ShapedSolidSpec<LensSpec>),
     /// A compound parabolic concentrator. Faces `entry` (the small end), `exit` (the wide end), `wall`.
-    CompoundParabolic(Solid<CompoundParabolicSpec>),
+    CompoundParabolic(ShapedSolidSpec<CompoundParabolicSpec>),
     /// A paraboloid. Faces `wall`, `exit`, and `entry` if there is a hole.
-    Paraboloid(Solid<ParaboloidSpec>),
+    Paraboloid(ShapedSolidSpec<ParaboloidSpec>),
     /// A closed triangle mesh from a file. Its faces are named as its materials, or `surface` if it has none.
-    Mesh(Solid<MeshSpec>),
+    Mesh(ShapedSolidSpec<MeshSpec>),
 }
 
 impl SolidSpec {
     /// The key of the kind, such as `sweep`.
     pub fn kind(&self) -> &'static str {
-        match self {
-            Self::Sweep(_) => "sweep",
-            Self::Cylinder(_) => "cylinder",
-            Self::Box(_) => "box",
-            Self::Tube(_) => "tube",
-            Self::Sphere(_) => "sphere",
-            Self::Lens(_) => "lens",
-            Self::CompoundParabolic(_) => "compound_parabolic",
-            Self::Paraboloid(_) => "paraboloid",
-            Self::Mesh(_) => "mesh",
-        }
+        self.entry().0
     }
 
     /// The keys that every kind has.
     pub fn common(&self) -> &SolidCommonSpec {
+        self.entry().1
+    }
+
+    fn entry(&self) -> (&'static str, &SolidCommonSpec) {
         match self {
-            Self::Sweep(solid) => &solid.common,
-            Self::Cylinder(solid) => &solid.common,
-            Self::Box(solid) => &solid.common,
-            Self::Tube(solid) => &solid.common,
-            Self::Sphere(solid) => &solid.common,
-            Self::Lens(solid) => &solid.common,
-            Self::CompoundParabolic(solid) => &solid.common,
-            Self::Paraboloid(solid) => &solid.common,
-            Self::Mesh(solid) => &solid.common,
+            Self::Sweep(solid) => ("sweep", &solid.common),
+            Self::Cylinder(solid) => ("cylinder", &solid.common),
+            Self::Box(solid) => ("box", &solid.common),
+            Self::Tube(solid) => ("tube", &solid.common),
+            Self::Sphere(solid) => ("sphere", &solid.common),
+            Self::Lens(solid) => ("lens", &solid.common),
+            Self::CompoundParabolic(solid) => ("compound_parabolic", &solid.common),
+            Self::Paraboloid(solid) => ("paraboloid", &solid.common),
+            Self::Mesh(solid) => ("mesh", &solid.common),
         }
     }
 }
@@ -70,7 +64,7 @@ impl SolidSpec {
 /// A shape filled with a medium.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(rename = "{Shape}Solid")]
-pub struct Solid<Shape> {
+pub struct ShapedSolidSpec<Shape> {
     /// Keys of the shape.
     #[serde(flatten)]
     pub shape: Shape,

@@ -14,21 +14,21 @@ use crate::spec::sweep::RectangleSpec;
 #[serde(rename_all = "snake_case")]
 pub enum SourceSpec {
     /// A point at the position.
-    Point(Emitter<EmptySpec>),
+    Point(EmitterSpec<EmptySpec>),
     /// A flat disk or ring about the position, shining along the axis.
-    Disk(Emitter<DiskSourceSpec>),
+    Disk(EmitterSpec<DiskSourceSpec>),
     /// A flat rectangle about the position, shining along the axis.
-    Rectangle(Emitter<RectangleSpec>),
+    Rectangle(EmitterSpec<RectangleSpec>),
     /// The outside of a sphere about the position.
-    Sphere(Emitter<SphereSpec>),
+    Sphere(EmitterSpec<SphereSpec>),
     /// A line along the axis, centred at the position.
-    Line(Emitter<LineSourceSpec>),
+    Line(EmitterSpec<LineSourceSpec>),
     /// The outside of the wall of a cylinder, from the position along the axis.
-    Cylinder(Emitter<CylinderSourceSpec>),
+    Cylinder(EmitterSpec<CylinderSourceSpec>),
     /// A face of a solid or sheet.
-    Face(Emitter<FaceSourceSpec>),
+    Face(EmitterSpec<FaceSourceSpec>),
     /// The inside of a solid, evenly filled.
-    Volume(Emitter<VolumeSourceSpec>),
+    Volume(EmitterSpec<VolumeSourceSpec>),
     /// The sun.
     Sun(SunSpec),
     /// The sky.
@@ -38,32 +38,26 @@ pub enum SourceSpec {
 impl SourceSpec {
     /// The key of the kind, such as `disk`.
     pub fn kind(&self) -> &'static str {
-        match self {
-            Self::Point(_) => "point",
-            Self::Disk(_) => "disk",
-            Self::Rectangle(_) => "rectangle",
-            Self::Sphere(_) => "sphere",
-            Self::Line(_) => "line",
-            Self::Cylinder(_) => "cylinder",
-            Self::Face(_) => "face",
-            Self::Volume(_) => "volume",
-            Self::Sun(_) => "sun",
-            Self::Sky(_) => "sky",
-        }
+        self.entry().0
     }
 
     /// The keys that all kinds but the sun and the sky have.
     pub fn common(&self) -> Option<&SourceCommonSpec> {
+        self.entry().1
+    }
+
+    fn entry(&self) -> (&'static str, Option<&SourceCommonSpec>) {
         match self {
-            Self::Point(source) => Some(&source.common),
-            Self::Disk(source) => Some(&source.common),
-            Self::Rectangle(source) => Some(&source.common),
-            Self::Sphere(source) => Some(&source.common),
-            Self::Line(source) => Some(&source.common),
-            Self::Cylinder(source) => Some(&source.common),
-            Self::Face(source) => Some(&source.common),
-            Self::Volume(source) => Some(&source.common),
-            Self::Sun(_) | Self::Sky(_) => None,
+            Self::Point(source) => ("point", Some(&source.common)),
+            Self::Disk(source) => ("disk", Some(&source.common)),
+            Self::Rectangle(source) => ("rectangle", Some(&source.common)),
+            Self::Sphere(source) => ("sphere", Some(&source.common)),
+            Self::Line(source) => ("line", Some(&source.common)),
+            Self::Cylinder(source) => ("cylinder", Some(&source.common)),
+            Self::Face(source) => ("face", Some(&source.common)),
+            Self::Volume(source) => ("volume", Some(&source.common)),
+            Self::Sun(_) => ("sun", None),
+            Self::Sky(_) => ("sky", None),
         }
     }
 }
@@ -77,7 +71,7 @@ impl SourceSpec {
     { "required": ["intensity_cd"] }
 ]))]
 #[schemars(rename = "{Shape}Emitter")]
-pub struct Emitter<Shape> {
+pub struct EmitterSpec<Shape> {
     /// Keys of the shape.
     #[serde(flatten)]
     pub shape: Shape,

@@ -14,7 +14,7 @@ use crate::lower::plan;
 use crate::problems::Problems;
 use crate::sources::argument_label;
 use crate::spec::run::TargetSpec;
-use crate::spec::solid::{Solid, SolidSpec};
+use crate::spec::solid::{ShapedSolidSpec, SolidSpec};
 use crate::spec::study::{BestSpec, KeepSpec, PlanSpec, SamplesSpec, StudyRunSpec, StudySpec};
 use crate::study::file::{StudyDraft, read};
 use crate::{Draft, Job, Settings, draft, load};
@@ -144,6 +144,7 @@ pub fn load_study(path: &Path, settings: &StudySettings) -> Result<Study> {
     let scene = path.parent().unwrap_or(Path::new("")).join(&spec.scene);
     let common = common_settings(&spec, settings, &mut problems);
     rules::check(&spec, &places, &settings.overrides, &mut problems);
+    let checks = plan::checks(&spec.check, &mut problems);
     if !scene.is_file() {
         let message = format!("there is no file {}", scene.display());
         problems.error(&Key::of(&["scene"]), message);
@@ -183,7 +184,7 @@ pub fn load_study(path: &Path, settings: &StudySettings) -> Result<Study> {
                 BestSpec::Lowest => Best::Lowest,
             },
         }),
-        checks: spec.check.iter().map(plan::check).collect(),
+        checks,
         keep: match spec.keep {
             KeepSpec::Records => Keep::Records,
             KeepSpec::Reports => Keep::Reports,
@@ -216,7 +217,7 @@ fn add_files(scene: &Path, settings: &Settings, hash: &mut Digest) {
     places.sources().iter().for_each(|source| hash.add(source.text().as_bytes()));
     let folder = scene.parent().unwrap_or(Path::new(""));
     for solid in spec.solids.values() {
-        if let SolidSpec::Mesh(Solid { shape, .. }) = solid {
+        if let SolidSpec::Mesh(ShapedSolidSpec { shape, .. }) = solid {
             hash.add(&fs::read(folder.join(&shape.file)).unwrap_or_default());
         }
     }

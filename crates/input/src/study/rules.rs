@@ -1,7 +1,8 @@
 //! Rules of a study that span several keys, or that need its scene.
 
-use crate::check::{check_demands, check_length, check_name, check_title};
 use crate::keys::{Key, Places};
+use crate::lower::context::Scope;
+use crate::lower::names::{check_length, check_name, check_title};
 use crate::overrides::parse_key;
 use crate::problems::Problems;
 use crate::sources::argument_label;
@@ -10,7 +11,7 @@ use crate::spec::study::{
     TiedKeySpec,
 };
 use crate::study::parameters::{DESIGN_COLUMN, Domain, OTHER_COLUMNS, Parameter, column};
-use crate::{Draft, Job, Settings, draft};
+use crate::{Job, Settings, draft};
 use indexmap::IndexMap;
 use lumiduct_base::error::{Diagnostic, DiagnosticKind, Error};
 use lumiduct_base::text::is_control;
@@ -47,7 +48,6 @@ pub(super) fn check(
     }
     check_columns(spec, problems);
     check_shared_keys(spec, problems);
-    check_demands(&spec.check, problems);
     check_set(spec, problems);
     check_overrides(spec, overrides, problems);
     check_count(spec, problems);
@@ -318,7 +318,10 @@ fn problems_of_override(scene: &Path, common: &Settings, line: String) -> Vec<Di
 /// The problems of a scene with some overrides, without those of the scene alone.
 fn problems_of_scene(scene: &Path, settings: &Settings) -> Vec<Diagnostic> {
     match draft(scene, &settings.overrides) {
-        Ok(Draft { problems, places, .. }) => problems.into_diagnostics(&places),
+        Ok(mut draft) => {
+            _ = draft.lower(Scope::Keys);
+            draft.problems.into_diagnostics(&draft.places)
+        }
         Err(Error::Input(diagnostics)) => diagnostics,
         // Files that disappeared in between are reported by the designs.
         Err(Error::Usage(_) | Error::Io { .. } | Error::Output { .. }) => Vec::new(),

@@ -13,14 +13,14 @@ const ROUNDING: f64 = 1e-6;
 
 /// A face as a pattern sees it.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::lower) struct Ground {
+pub(in crate::lower) struct UnrolledFace {
     pub(in crate::lower) face: FaceId,
     pub(in crate::lower) rect: ChartRect,
     /// Radius of a round face that closes on itself, mm.
     pub(in crate::lower) radius: Option<f64>,
 }
 
-impl Ground {
+impl UnrolledFace {
     pub(in crate::lower) fn size(&self) -> DVec2 {
         self.rect.max - self.rect.min
     }
@@ -33,32 +33,26 @@ impl Ground {
 
 impl Context<'_> {
     /// The face of a pattern: one whose chart is not stretched.
-    pub(in crate::lower) fn ground(&mut self, name: &str, key: &Key) -> Option<Ground> {
+    pub(in crate::lower) fn ground(&mut self, name: &str, key: &Key) -> Option<UnrolledFace> {
         let faces = self.faces_named(name, key)?;
         let [face] = faces[..] else {
-            self.problems
-                .error(key, format!("`{name}` stands for {} faces, expected one", faces.len()))
-                .hint("name one of them, such as `wall_plus_x`");
-            return None;
+            let message = format!("`{name}` stands for {} faces, expected one", faces.len());
+            return self.refuse(key, message, "name one of them, such as `wall_plus_x`");
         };
         let scene = self.builder.scene();
         let patches = scene.face_patches(face);
         let (true, Some(rect)) =
             (!patches.is_empty() && patches.iter().all(is_unrolled_truly), scene.face_rect(face))
         else {
-            self.problems
-                .error(
-                    key,
-                    format!(
-                        "`{name}` is neither a flat rectangle nor the wall of a straight round tube or rod"
-                    ),
-                )
-                .hint("a pattern needs a face that unrolls without being stretched");
-            return None;
+            let message = format!(
+                "`{name}` is neither a flat rectangle nor the wall of a straight round tube or rod"
+            );
+            let hint = "a pattern needs a face that unrolls without being stretched";
+            return self.refuse(key, message, hint);
         };
         let is_round = matches!(&patches[0].shape, Shape::Cylinder(wall) if wall.is_closed());
         let radius = is_round.then(|| (rect.max.x - rect.min.x) / TAU);
-        Some(Ground { face, rect, radius })
+        Some(UnrolledFace { face, rect, radius })
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::keys::Key;
 use crate::lower::context::Context;
-use crate::lower::patterns::ground::Ground;
+use crate::lower::patterns::ground::UnrolledFace;
 use crate::spec::pattern::{AlongSpec, GridSpec, HexagonalSpec, LawSpec, LayoutSpec, RowSpec};
 use lumiduct_core::scene::pattern::{Columns, Graded, RowPositions, TableAlong};
 use lumiduct_core::scene::shape::ChartRect;
@@ -19,7 +19,7 @@ impl Context<'_> {
     pub(in crate::lower) fn rows_and_columns(
         &mut self,
         spec: &LayoutSpec,
-        ground: &Ground,
+        ground: &UnrolledFace,
         key: &Key,
     ) -> Option<(RowPositions, Columns)> {
         let (rows, columns) = match spec {
@@ -31,11 +31,9 @@ impl Context<'_> {
             }
         };
         if rows.count() == 0 || columns.count == 0 {
-            let size = ground.size();
-            self.problems
-                .error(key, "no element fits on the face")
-                .hint(format!("it is {:.4} mm across and {:.4} mm along", size.x, size.y));
-            return None;
+            let (x, y) = ground.size().into();
+            let hint = format!("it is {x:.4} mm across and {y:.4} mm along");
+            return self.refuse(key, "no element fits on the face", hint);
         }
         Some((rows, columns))
     }
@@ -43,24 +41,20 @@ impl Context<'_> {
     fn row(
         &mut self,
         spec: &RowSpec,
-        ground: &Ground,
+        ground: &UnrolledFace,
         key: &Key,
     ) -> Option<(RowPositions, Columns)> {
         let middle = 0.5 * (ground.rect.min.x + ground.rect.max.x);
         let first = match (spec.around_deg, spec.across_mm, ground.radius) {
             (Some(_), Some(_), _) => {
-                self.problems.error(
-                    &key.field("around_deg"),
-                    "stands beside across_mm, expected one of them",
-                );
+                let message = "stands beside across_mm, expected one of them";
+                self.problems.error(&key.field("around_deg"), message);
                 return None;
             }
             (Some(around), None, Some(radius)) => radius * around.to_radians(),
             (Some(_), None, None) => {
-                self.problems
-                    .error(&key.field("around_deg"), "the face is not round")
-                    .hint("use across_mm, counted from the middle of the face");
-                return None;
+                let hint = "use across_mm, counted from the middle of the face";
+                return self.refuse(&key.field("around_deg"), "the face is not round", hint);
             }
             (None, across, _) => middle + across.unwrap_or(0.0),
         };
@@ -69,17 +63,19 @@ impl Context<'_> {
         let rows = match (&spec.positions_mm, &spec.pitch_mm) {
             (Some(positions), _) => {
                 if let Some(at) = positions.windows(2).position(|pair| pair[0] >= pair[1]) {
-                    self.problems.error(
-                        &key.field("positions_mm").index(at + 1),
-                        "is not above the one before it",
-                    );
+                    let key = key.field("positions_mm").index(at + 1);
+                    self.problems.error(&key, "is not above the one before it");
                     return None;
                 }
                 RowPositions::Listed(positions.iter().map(|position| start + position).collect())
             }
             (None, Some(pitch)) => {
-                let along =
-                    self.range(spec.along_mm, ground, Axis::Along, &key.field("along_mm"))?;
+                let along = self.range(
+                    spec.along_mm,
+                    ground,
+                    FieldAxis::TableAlong,
+                    &key.field("along_mm"),
+                )?;
                 self.rows(pitch, along, ground, &key.field("pitch_mm"))?
             }
             // Validated: one of the two is given.
@@ -92,10 +88,11 @@ impl Context<'_> {
         &mut self,
         spec: &GridSpec,
         stagger: f64,
-        ground: &Ground,
+        ground: &UnrolledFace,
         key: &Key,
     ) -> Option<(RowPositions, Columns)> {
-        let along = self.range(spec.along_mm, ground, Axis::Along, &key.field("along_mm"))?;
+        let along =
+            self.range(spec.along_mm, ground, FieldAxis::TableAlong, &key.field("along_mm"))?;
         let rows = self.rows(&spec.pitch_mm, along, ground, &key.field("pitch_mm"))?;
         let pitch = spec.across_pitch_mm;
         let shift = stagger * pitch;
@@ -103,20 +100,19 @@ impl Context<'_> {
             let fit = period / pitch;
             let count = fit.round().max(1.0);
             if (fit - count).abs() > WHOLE * count {
-                self.problems
-                    .error(
-                        key,
-                        format!(
-                            "columns {pitch} mm apart do not close: {fit:.4} of them fit around"
-                        ),
-                    )
-                    .hint(format!("{count} of {:.6} mm do", period / count));
-                return None;
+                let message =
+                    format!("columns {pitch} mm apart do not close: {fit:.4} of them fit around");
+                return self.refuse(
+                    key,
+                    message,
+                    format!("{count} of {:.6} mm do", period / count),
+                );
             }
             let columns = Columns { first: 0.5 * pitch, pitch, count: count as usize, shift };
             return Some((rows, columns));
         }
-        let across = self.range(spec.across_mm, ground, Axis::Across, &key.field("across_mm"))?;
+        let across =
+            self.range(spec.across_mm, ground, FieldAxis::Across, &key.field("across_mm"))?;
         let width = across[1] - across[0] - shift;
         let count = (width / pitch * (1.0 + WHOLE)).floor().max(0.0);
         let first = across[0] + 0.5 * (width - (count - 1.0) * pitch);
@@ -128,7 +124,7 @@ impl Context<'_> {
         &mut self,
         pitch: &AlongSpec,
         [from, to]: [f64; 2],
-        ground: &Ground,
+        ground: &UnrolledFace,
         key: &Key,
     ) -> Option<RowPositions> {
         let along = self.along(pitch, ground, key)?;
@@ -152,7 +148,7 @@ impl Context<'_> {
     pub(in crate::lower) fn along(
         &mut self,
         spec: &AlongSpec,
-        ground: &Ground,
+        ground: &UnrolledFace,
         key: &Key,
     ) -> Option<TableAlong> {
         let start = ground.rect.min.y;
@@ -160,10 +156,8 @@ impl Context<'_> {
             AlongSpec::Same(length) => Some(TableAlong::constant(*length)),
             AlongSpec::Table(knots) => {
                 if let Some(at) = knots.iter().position(|knot| knot[1].is_nan() || knot[1] <= 0.0) {
-                    self.problems.error(
-                        &key.index(at),
-                        format!("{} is out of range, expected above 0", knots[at][1]),
-                    );
+                    let message = format!("{} is out of range, expected above 0", knots[at][1]);
+                    self.problems.error(&key.index(at), message);
                     return None;
                 }
                 let along = TableAlong::table(knots.clone());
@@ -182,14 +176,14 @@ impl Context<'_> {
     fn range(
         &mut self,
         given: Option<[f64; 2]>,
-        ground: &Ground,
-        axis: Axis,
+        ground: &UnrolledFace,
+        axis: FieldAxis,
         key: &Key,
     ) -> Option<[f64; 2]> {
         let ChartRect { min, max } = ground.rect;
         let (whole, origin) = match axis {
-            Axis::Along => ([min.y, max.y], min.y),
-            Axis::Across => ([min.x, max.x], 0.5 * (min.x + max.x)),
+            FieldAxis::TableAlong => ([min.y, max.y], min.y),
+            FieldAxis::Across => ([min.x, max.x], 0.5 * (min.x + max.x)),
         };
         let Some(given) = given else { return Some(whole) };
         let range = given.map(|place| origin + place);
@@ -211,8 +205,8 @@ impl Context<'_> {
 
 /// An axis of a face.
 #[derive(Debug, Clone, Copy)]
-enum Axis {
-    Along,
+enum FieldAxis {
+    TableAlong,
     Across,
 }
 

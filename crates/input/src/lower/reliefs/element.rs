@@ -2,114 +2,90 @@
 
 use crate::keys::Key;
 use crate::lower::context::Context;
-use crate::lower::reliefs::wall::Wall;
+use crate::lower::reliefs::wall::ReliefWall;
 use crate::spec::pattern::AlongSpec;
-use crate::spec::relief::{CourseSpec, ReliefElementSpec};
+use crate::spec::relief::{
+    CapSpec, CourseSpec, DepthSpec, HeightSpec, PyramidSpec, ReliefElementSpec, WedgeSpec,
+};
 use lumiduct_core::scene::pattern::{ElementField, TableAlong};
 use lumiduct_core::scene::relief::{CapSize, Element, ElementForm, Way, WedgeSpan};
 
-/// The common keys of a groove and a ridge.
-struct WedgeKeys<'s> {
-    height: &'s AlongSpec,
-    /// The key of the height.
-    height_key: &'static str,
-    angle_deg: Option<f64>,
-    flank_angles_deg: Option<[f64; 2]>,
-    length_mm: Option<f64>,
-    course: CourseSpec,
-    way: Way,
+/// How far an element goes into or out of its wall.
+trait ReliefExtent {
+    const KEY: &str;
+    const WAY: Way;
+    fn length(&self) -> &AlongSpec;
 }
 
-/// The common keys of a dimple and a bump.
-struct CapKeys<'s> {
-    radius: Option<&'s AlongSpec>,
-    diameter: Option<&'s AlongSpec>,
-    height: &'s AlongSpec,
-    height_key: &'static str,
+impl ReliefExtent for DepthSpec {
+    const KEY: &str = "depth_mm";
+    const WAY: Way = Way::Into;
+    fn length(&self) -> &AlongSpec {
+        &self.depth_mm
+    }
+}
+
+impl ReliefExtent for HeightSpec {
+    const KEY: &str = "height_mm";
+    const WAY: Way = Way::OutOf;
+    fn length(&self) -> &AlongSpec {
+        &self.height_mm
+    }
 }
 
 impl Context<'_> {
     pub(super) fn relief_element(
         &mut self,
         spec: &ReliefElementSpec,
-        wall: &Wall,
+        wall: &ReliefWall,
         key: &Key,
     ) -> Option<Element> {
         let (form, way) = match spec {
-            ReliefElementSpec::Dimple(dimple) => {
-                let keys = CapKeys {
-                    radius: dimple.radius_mm.as_ref(),
-                    diameter: dimple.diameter_mm.as_ref(),
-                    height: &dimple.depth_mm,
-                    height_key: "depth_mm",
-                };
-                (self.cap(&keys, wall, &key.field("dimple"))?, Way::Into)
-            }
-            ReliefElementSpec::Bump(bump) => {
-                let keys = CapKeys {
-                    radius: bump.radius_mm.as_ref(),
-                    diameter: bump.diameter_mm.as_ref(),
-                    height: &bump.height_mm,
-                    height_key: "height_mm",
-                };
-                (self.cap(&keys, wall, &key.field("bump"))?, Way::OutOf)
-            }
-            ReliefElementSpec::Groove(groove) => {
-                let keys = WedgeKeys {
-                    height: &groove.depth_mm,
-                    height_key: "depth_mm",
-                    angle_deg: groove.angle_deg,
-                    flank_angles_deg: groove.flank_angles_deg,
-                    length_mm: groove.length_mm,
-                    course: groove.course,
-                    way: Way::Into,
-                };
-                (self.wedge(&keys, wall, &key.field("groove"))?, Way::Into)
-            }
-            ReliefElementSpec::Ridge(ridge) => {
-                let keys = WedgeKeys {
-                    height: &ridge.height_mm,
-                    height_key: "height_mm",
-                    angle_deg: ridge.angle_deg,
-                    flank_angles_deg: ridge.flank_angles_deg,
-                    length_mm: ridge.length_mm,
-                    course: ridge.course,
-                    way: Way::OutOf,
-                };
-                (self.wedge(&keys, wall, &key.field("ridge"))?, Way::OutOf)
-            }
-            ReliefElementSpec::Pyramid(pyramid) => {
-                let key = key.field("pyramid");
-                let height =
-                    self.along(&pyramid.height_mm, &wall.unrolled, &key.field("height_mm"))?;
-                self.require_flat(wall, &key)?;
-                let (width, length) = (pyramid.width_mm, pyramid.length_mm);
-                (ElementForm::Pyramid { width, length, height }, Way::OutOf)
-            }
-            ReliefElementSpec::Pit(pit) => {
-                let key = key.field("pit");
-                let height = self.along(&pit.depth_mm, &wall.unrolled, &key.field("depth_mm"))?;
-                self.require_flat(wall, &key)?;
-                let (width, length) = (pit.width_mm, pit.length_mm);
-                (ElementForm::Pyramid { width, length, height }, Way::Into)
-            }
-        };
+            ReliefElementSpec::Dimple(spec) => self.cap(spec, wall, &key.field("dimple")),
+            ReliefElementSpec::Bump(spec) => self.cap(spec, wall, &key.field("bump")),
+            ReliefElementSpec::Groove(spec) => self.wedge(spec, wall, &key.field("groove")),
+            ReliefElementSpec::Ridge(spec) => self.wedge(spec, wall, &key.field("ridge")),
+            ReliefElementSpec::Pyramid(spec) => self.pyramid(spec, wall, &key.field("pyramid")),
+            ReliefElementSpec::Pit(spec) => self.pyramid(spec, wall, &key.field("pit")),
+        }?;
         Some(Element { form, way, round: wall.unrolled.radius })
     }
 
-    fn require_flat(&mut self, wall: &Wall, key: &Key) -> Option<()> {
-        if wall.unrolled.radius.is_some() {
-            self.problems
-                .error(key, "pyramids stand on flat walls, and this one is round")
-                .hint("a round wall takes dimples, bumps, grooves, and ridges as rings");
-            return None;
-        }
-        Some(())
+    fn height<E: ReliefExtent>(
+        &mut self,
+        extent: &E,
+        wall: &ReliefWall,
+        key: &Key,
+    ) -> Option<TableAlong> {
+        self.along(extent.length(), &wall.unrolled, &key.field(E::KEY))
     }
 
-    fn cap(&mut self, keys: &CapKeys<'_>, wall: &Wall, key: &Key) -> Option<ElementForm> {
-        let height = self.along(keys.height, &wall.unrolled, &key.field(keys.height_key))?;
-        let size = match (keys.radius, keys.diameter) {
+    fn pyramid<E: ReliefExtent>(
+        &mut self,
+        spec: &PyramidSpec<E>,
+        wall: &ReliefWall,
+        key: &Key,
+    ) -> Option<(ElementForm, Way)> {
+        let height = self.height(&spec.extent, wall, key)?;
+        if wall.unrolled.radius.is_some() {
+            let message = "pyramids stand on flat walls, and this one is round";
+            let hint = "a round wall takes dimples, bumps, grooves, and ridges as rings";
+            return self.refuse(key, message, hint);
+        }
+        Some((
+            ElementForm::Pyramid { width: spec.width_mm, length: spec.length_mm, height },
+            E::WAY,
+        ))
+    }
+
+    fn cap<E: ReliefExtent>(
+        &mut self,
+        spec: &CapSpec<E>,
+        wall: &ReliefWall,
+        key: &Key,
+    ) -> Option<(ElementForm, Way)> {
+        let height = self.height(&spec.extent, wall, key)?;
+        let size = match (&spec.radius_mm, &spec.diameter_mm) {
             (Some(radius), _) => {
                 CapSize::Sphere(self.along(radius, &wall.unrolled, &key.field("radius_mm"))?)
             }
@@ -119,13 +95,17 @@ impl Context<'_> {
             // Validated: one of the two is given.
             (None, None) => return None,
         };
-        Some(ElementForm::Cap { size, height })
+        Some((ElementForm::Cap { size, height }, E::WAY))
     }
 
-    fn wedge(&mut self, keys: &WedgeKeys<'_>, wall: &Wall, key: &Key) -> Option<ElementForm> {
-        let height: TableAlong =
-            self.along(keys.height, &wall.unrolled, &key.field(keys.height_key))?;
-        let angles = match (keys.angle_deg, keys.flank_angles_deg) {
+    fn wedge<E: ReliefExtent>(
+        &mut self,
+        spec: &WedgeSpec<E>,
+        wall: &ReliefWall,
+        key: &Key,
+    ) -> Option<(ElementForm, Way)> {
+        let height = self.height(&spec.extent, wall, key)?;
+        let angles = match (spec.angle_deg, spec.flank_angles_deg) {
             (Some(angle), _) => [90.0 - 0.5 * angle; 2],
             (None, Some(flanks)) => self.flanks(flanks, &key.field("flank_angles_deg"))?,
             // Validated: one of the two is given.
@@ -134,30 +114,25 @@ impl Context<'_> {
         let slopes =
             angles.map(|angle| if angle == 90.0 { 0.0 } else { 1.0 / angle.to_radians().tan() });
         let is_round = wall.unrolled.radius.is_some();
-        let span = match (keys.course, keys.length_mm) {
+        let span = match (spec.course, spec.length_mm) {
             (CourseSpec::Ring, _) if !is_round => {
-                self.problems.error(&key.field("course"), "a ring needs a round wall").hint(
-                    "a flat wall takes grooves and ridges across the guide: leave `course` out",
-                );
-                return None;
+                let hint =
+                    "a flat wall takes grooves and ridges across the guide: leave `course` out";
+                return self.refuse(&key.field("course"), "a ring needs a round wall", hint);
             }
             (CourseSpec::Ring | CourseSpec::Straight, Some(_)) if is_round => {
-                self.problems
-                    .error(&key.field("length_mm"), "the wall is round: it ends the groove itself")
-                    .hint("leave `length_mm` out");
-                return None;
+                let message = "the wall is round: it ends the groove itself";
+                return self.refuse(&key.field("length_mm"), message, "leave `length_mm` out");
             }
-            (CourseSpec::Straight, None) if is_round && keys.way == Way::OutOf => {
-                self.problems
-                    .error(key, "a straight ridge has no foot on a round wall")
-                    .hint("course = \"ring\" puts it all around");
-                return None;
+            (CourseSpec::Straight, None) if is_round && E::WAY == Way::OutOf => {
+                let message = "a straight ridge has no foot on a round wall";
+                return self.refuse(key, message, "course = \"ring\" puts it all around");
             }
             (CourseSpec::Ring, _) => WedgeSpan::Ring,
             (CourseSpec::Straight, Some(length)) => WedgeSpan::Within(length),
             (CourseSpec::Straight, None) => WedgeSpan::Through(wall.unrolled.size().x),
         };
-        Some(ElementForm::Wedge { height, slopes, span })
+        Some((ElementForm::Wedge { height, slopes, span }, E::WAY))
     }
 
     fn flanks(&mut self, flanks: [f64; 2], key: &Key) -> Option<[f64; 2]> {
@@ -171,10 +146,8 @@ impl Context<'_> {
             }
         }
         if flanks[0] + flanks[1] >= 180.0 {
-            self.problems
-                .error(key, "two upright flanks do not meet")
-                .hint("make one of them lean");
-            return None;
+            let message = "two upright flanks do not meet";
+            return self.refuse(key, message, "make one of them lean");
         }
         Some(flanks)
     }
@@ -185,7 +158,7 @@ impl Context<'_> {
         &mut self,
         element: &Element,
         field: &ElementField,
-        wall: &Wall,
+        wall: &ReliefWall,
         on: &str,
         key: &Key,
     ) -> Option<()> {
@@ -201,16 +174,14 @@ impl Context<'_> {
                 && height > cap.radius.min(cap.rim) * (1.0 + 1e-12)
             {
                 let (name, deep, depth) = what;
-                self.problems
-                    .error(
-                        key,
-                        format!(
-                            "the {name} {at:.4} mm along `{on}` is {height:.4} mm {deep}, more than half of its ball of radius {:.4} mm",
-                            cap.radius
-                        ),
-                    )
-                    .hint(format!("keep the {depth} at or below half the diameter, or below the radius of the sphere"));
-                return None;
+                let message = format!(
+                    "the {name} {at:.4} mm along `{on}` is {height:.4} mm {deep}, more than half of its ball of radius {:.4} mm",
+                    cap.radius
+                );
+                let hint = format!(
+                    "keep the {depth} at or below half the diameter, or below the radius of the sphere"
+                );
+                return self.refuse(key, message, hint);
             }
             if let Some(radius) = wall.unrolled.radius {
                 self.check_round(element, place, radius, at, on, key)?;
@@ -240,13 +211,10 @@ impl Context<'_> {
         }
         let size = element.size(place);
         if element.cap(place).is_some() && size.x >= std::f64::consts::PI * radius {
-            self.problems
-                .error(
-                    key,
-                    format!("{at:.4} mm along `{on}` it is as wide as the rod, whose radius is {radius:.4} mm"),
-                )
-                .hint("make the sphere smaller");
-            return None;
+            let message = format!(
+                "{at:.4} mm along `{on}` it is as wide as the rod, whose radius is {radius:.4} mm"
+            );
+            return self.refuse(key, message, "make the sphere smaller");
         }
         Some(())
     }

@@ -6,7 +6,7 @@ mod wall;
 
 use crate::keys::Key;
 use crate::lower::context::Context;
-use crate::lower::reliefs::wall::Wall;
+use crate::lower::reliefs::wall::ReliefWall;
 use crate::spec::pattern::LayoutSpec;
 use crate::spec::relief::ReliefSpec;
 use lumiduct_core::scene::pattern::{ElementField, ElementOutline};
@@ -15,7 +15,7 @@ use lumiduct_core::scene::relief::{Relief, WedgeSpan};
 /// Most elements of a relief: each has its own surfaces.
 const MOST_ELEMENTS: u64 = 1_000_000;
 
-impl Context<'_> {
+impl<'a> Context<'a> {
     /// Adds the reliefs to their solids.
     pub(super) fn lower_reliefs(&mut self) {
         for (name, spec) in &self.spec.reliefs {
@@ -24,22 +24,20 @@ impl Context<'_> {
         }
     }
 
-    fn lower_relief(&mut self, name: &str, spec: &ReliefSpec, key: &Key) -> Option<()> {
+    fn lower_relief(&mut self, name: &str, spec: &'a ReliefSpec, key: &Key) -> Option<()> {
+        let finish = spec.finish.as_ref();
+        let inside = finish.map(|finish| self.finish(finish, &key.field("finish")));
         let wall = self.wall(&spec.on, &key.field("on"))?;
         let body = spec.on.split('.').next().unwrap_or_default();
         let name = format!("{body}.{name}");
         if self.faces.contains_key(&name) {
-            self.problems
-                .error(key, format!("`{name}` is a face of the solid already"))
-                .hint("give the relief another name");
-            return None;
+            let message = format!("`{name}` is a face of the solid already");
+            return self.refuse(key, message, "give the relief another name");
         }
-        let finishes = match &spec.finish {
+        self.may_build(key)?;
+        let finishes = match inside {
             None => [None; 2],
-            Some(finish) => {
-                let inside = self.finish(finish)?;
-                [Some(self.behind(inside)), Some(inside)]
-            }
+            Some(inside) => [Some(self.behind(inside?)), inside],
         };
         let relief = self.relief(name.clone(), spec, &wall, key)?;
         let sides = self.sides(&relief, &key.field("element"))?;
@@ -53,11 +51,14 @@ impl Context<'_> {
         &mut self,
         name: String,
         spec: &ReliefSpec,
-        wall: &Wall,
+        wall: &ReliefWall,
         key: &Key,
     ) -> Option<Relief> {
-        let element = self.relief_element(&spec.element, wall, &key.field("element"))?;
         let layout = key.field("layout");
+        let Some(element) = self.relief_element(&spec.element, wall, &key.field("element")) else {
+            _ = self.rows_and_columns(&spec.layout, &wall.unrolled, &layout);
+            return None;
+        };
         if element.span() == Some(WedgeSpan::Ring) {
             self.require_plain_row(&spec.layout, &layout)?;
         }
@@ -69,13 +70,10 @@ impl Context<'_> {
             period: wall.unrolled.period(),
         };
         if field.count() > MOST_ELEMENTS {
-            self.problems
-                .error(
-                    &layout,
-                    format!("makes {} elements, expected at most {MOST_ELEMENTS}", field.count()),
-                )
-                .hint("each has surfaces of its own; dots of a pattern cost nothing");
-            return None;
+            let count = field.count();
+            let message = format!("makes {count} elements, expected at most {MOST_ELEMENTS}");
+            let hint = "each has surfaces of its own; dots of a pattern cost nothing";
+            return self.refuse(&layout, message, hint);
         }
         self.check_heights(&element, &field, wall, &spec.on, &key.field("element"))?;
         self.check_field(&field, &wall.unrolled, &spec.on, key)?;
@@ -90,10 +88,10 @@ impl Context<'_> {
             LayoutSpec::Grid(_) | LayoutSpec::Staggered(_) | LayoutSpec::Hexagonal(_) => false,
         };
         if !is_plain {
-            self.problems
-                .error(key, "rings go all around, expected a `row` without a place around")
-                .hint("row = { pitch_mm = ... } or row = { positions_mm = [...] }");
+            let message = "rings go all around, expected a `row` without a place around";
+            let hint = "row = { pitch_mm = ... } or row = { positions_mm = [...] }";
+            return self.refuse(key, message, hint);
         }
-        is_plain.then_some(())
+        Some(())
     }
 }

@@ -32,10 +32,8 @@ impl Context<'_> {
                 let (along, depth) = (relief.element.edge(place), relief.element.height(place));
                 let end = site.at(0.5 * side * width, along, -depth);
                 let Some(found) = side_at(&walls, end, side * site.across, width) else {
-                    self.problems
-                        .error(key, "goes from side to side, but does not end in flat sides at right angles to its wall")
-                        .hint("give it a length_mm, or make it less deep");
-                    return None;
+                    let message = "goes from side to side, but does not end in flat sides at right angles to its wall";
+                    return self.refuse(key, message, "give it a length_mm, or make it less deep");
                 };
                 if sides.iter().all(|(index, _)| *index != found) {
                     sides.extend(
@@ -58,17 +56,12 @@ impl Context<'_> {
                 Way::Into => ("depth", "the solid goes on"),
                 Way::OutOf => ("height", "there is room"),
             };
-            self.problems
-                .error(
-                    &key.field("element"),
-                    format!(
-                        "{:.4} mm along `{on}` its {height} is {:.4} mm, and {beyond} for {room:.4} mm",
-                        along - start,
-                        relief.element.height(along)
-                    ),
-                )
-                .hint("make it smaller");
-            return None;
+            let message = format!(
+                "{:.4} mm along `{on}` its {height} is {:.4} mm, and {beyond} for {room:.4} mm",
+                along - start,
+                relief.element.height(along)
+            );
+            return self.refuse(&key.field("element"), message, "make it smaller");
         }
         let owner = scene.owner(relief.wall);
         let others = scene.reliefs.iter().filter(|other| {
@@ -77,8 +70,7 @@ impl Context<'_> {
         let mut met = others.filter(|other| relief.ground.is_flat() && boxes_meet(relief, other));
         if let Some(other) = met.next() {
             let message = format!("may cut into the elements of `{}` on another wall", other.name);
-            self.problems.error(key, message).hint("leave elements out near the common edge");
-            return None;
+            return self.refuse(key, message, "leave elements out near the common edge");
         }
         Some(())
     }

@@ -2,19 +2,19 @@
 
 use crate::keys::Key;
 use crate::lower::context::Context;
-use crate::lower::patterns::ground::Ground;
+use crate::lower::patterns::ground::UnrolledFace;
 use lumiduct_core::scene::{Owner, relief};
 
 /// The wall of a relief, unrolled and in space.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Wall {
-    pub(super) unrolled: Ground,
+pub(super) struct ReliefWall {
+    pub(super) unrolled: UnrolledFace,
     pub(super) ground: relief::ReliefWall,
 }
 
 impl Context<'_> {
     /// The wall of a solid that a relief can lie on.
-    pub(super) fn wall(&mut self, on: &str, key: &Key) -> Option<Wall> {
+    pub(super) fn wall(&mut self, on: &str, key: &Key) -> Option<ReliefWall> {
         let unrolled = self.ground(on, key)?;
         let scene = self.builder.scene();
         let is_solid = matches!(scene.owner(unrolled.face), Owner::Solid(_));
@@ -23,14 +23,12 @@ impl Context<'_> {
             [] | [_, _, ..] => None,
         };
         let (true, Some(ground)) = (is_solid, ground) else {
-            self.problems
-                .error(
-                    key,
-                    format!("`{on}` is neither one flat wall nor the outer wall of a straight round rod, of a solid"),
-                )
-                .hint("a relief is a part of the boundary of a solid; sheets have patterns");
-            return None;
+            let message = format!(
+                "`{on}` is neither one flat wall nor the outer wall of a straight round rod, of a solid"
+            );
+            let hint = "a relief is a part of the boundary of a solid; sheets have patterns";
+            return self.refuse(key, message, hint);
         };
-        Some(Wall { unrolled, ground })
+        Some(ReliefWall { unrolled, ground })
     }
 }

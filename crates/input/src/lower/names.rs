@@ -30,15 +30,19 @@ pub(crate) fn check(places: &Places, problems: &mut Problems) {
     for (family, name, entry) in all {
         let key = Key::of(&[family, name]);
         if RESERVED.contains(&name.as_str()) {
-            let problem = problems
-                .error(&key, format!("the name `{name}` is taken by measures of the whole scene"));
+            let problem = problems.certain_error(
+                &key,
+                format!("the name `{name}` is taken by measures of the whole scene"),
+            );
             problem.at(&entry.key);
         }
         if let Some(other) = first_by_name.get(name) {
             let line =
                 places.line(other).map(|line| format!(" in line {line}")).unwrap_or_default();
-            let problem = problems
-                .error(&key, format!("the name `{name}` is used twice, first by `{other}`{line}"));
+            let problem = problems.certain_error(
+                &key,
+                format!("the name `{name}` is used twice, first by `{other}`{line}"),
+            );
             problem.hint("solids, sheets, sources and sensors share their names").at(&entry.key);
         } else {
             first_by_name.insert(name.clone(), key);
@@ -50,7 +54,7 @@ pub(crate) fn check(places: &Places, problems: &mut Problems) {
 pub(crate) fn check_title(title: &str, problems: &mut Problems) {
     if title.contains(char::is_control) {
         problems
-            .error(&Key::of(&["title"]), "a title is one line")
+            .certain_error(&Key::of(&["title"]), "a title is one line")
             .hint("what needs more is for `description`");
     }
 }
@@ -62,7 +66,7 @@ pub(crate) fn check_name<'p>(
     problems: &'p mut Problems,
 ) -> Option<&'p mut Problem> {
     if !is_bare(name) {
-        return Some(problems.error(key, "a name is made of letters, digits, `_` and `-`"));
+        return Some(problems.certain_error(key, "a name is made of letters, digits, `_` and `-`"));
     }
     check_length("name", name, key, problems)
 }
@@ -77,7 +81,7 @@ pub(crate) fn check_length<'p>(
     let letters = text.chars().count();
     (letters > MOST_LETTERS).then(|| {
         let message = format!("a {what} of {letters} letters is too long, at most {MOST_LETTERS}");
-        problems.error(key, message).hint("files and columns of reports are named after it")
+        problems.certain_error(key, message).hint("files and columns of reports are named after it")
     })
 }
 

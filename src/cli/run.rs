@@ -74,7 +74,7 @@ pub(super) struct RunArgs {
     gather: GatherArgs,
 }
 
-/// Wishes for the gather estimator.
+/// Settings of the gather estimator.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Gather")]
 pub(super) struct GatherArgs {

@@ -19,6 +19,8 @@ struct Module {
     /// Where the names that it re-exports are found.
     exports: BTreeMap<String, Names>,
     uses: BTreeSet<Names>,
+    /// Types that it defines.
+    types: BTreeSet<String>,
 }
 
 /// All modules of a crate.
@@ -36,6 +38,7 @@ impl Graph {
         let code = syn::parse_file(&fs::read_to_string(file).unwrap()).unwrap();
         let mut reader = Reader { names: &names, module: Module::default() };
         reader.find_children(&code);
+        reader.find_types(&code);
         reader.visit_file(&code);
         let module = reader.module;
         for child in &module.children {
@@ -62,6 +65,12 @@ impl Graph {
             }
         }
         (names, String::new())
+    }
+
+    /// The types of the crate, each with its module.
+    pub(crate) fn types(&self) -> impl Iterator<Item = (&String, String)> {
+        let modules = self.0.iter().map(|(names, module)| (names.join("::"), &module.types));
+        modules.flat_map(|(names, types)| types.iter().map(move |name| (name, names.clone())))
     }
 
     pub(crate) fn arrows(&self) -> Arrows {
@@ -92,6 +101,20 @@ impl Reader<'_> {
                 && !is_test(&item.attrs)
             {
                 self.module.children.insert(item.ident.to_string());
+            }
+        }
+    }
+
+    fn find_types(&mut self, code: &syn::File) {
+        for item in &code.items {
+            let (name, attributes) = match item {
+                syn::Item::Struct(item) => (&item.ident, &item.attrs),
+                syn::Item::Enum(item) => (&item.ident, &item.attrs),
+                syn::Item::Trait(item) => (&item.ident, &item.attrs),
+                _ => continue,
+            };
+            if !is_test(attributes) {
+                self.module.types.insert(name.to_string());
             }
         }
     }

@@ -10,6 +10,7 @@ mod package;
 mod skip;
 
 use graph::{Graph, circles};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Sources of all crates. Their manifests define which crates they can use.
@@ -47,6 +48,64 @@ fn code(path: &Path) -> Vec<(usize, String)> {
         .take_while(|(_, line)| !line.ends_with("mod tests {"))
         .map(|(number, line)| (number + 1, line.split("//").next().unwrap_or_default().to_owned()))
         .collect()
+}
+
+#[test]
+fn a_type_name_means_one_thing() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut places: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for folder in CRATES {
+        for (name, module) in Graph::of_crate(&root.join(folder)).types() {
+            places.entry(name.clone()).or_default().push(format!("{folder}: {module}"));
+        }
+    }
+    assert!(places.len() > 500, "{} types", places.len());
+    places.retain(|_, modules| modules.len() > 1);
+    assert!(places.is_empty(), "names of several types: {places:#?}");
+}
+
+/// Rows of a table of the glossary, cell by cell.
+fn glossary(heading: &str) -> Vec<Vec<String>> {
+    let text = std::fs::read_to_string(package::path("docs/glossary.md")).unwrap();
+    let section = text.split("\n## ").find(|section| section.starts_with(heading)).unwrap();
+    let rows = section.lines().filter(|line| line.starts_with('|')).skip(2);
+    let cells = |row: &str| row.trim_matches('|').split('|').map(|cell| cell.trim().to_owned());
+    rows.map(|row| cells(row).collect()).collect()
+}
+
+#[test]
+fn the_glossary_defines_each_term_once() {
+    let mut terms: Vec<String> = ["Photometry", "Scene", "Paths", "Estimators and runs"]
+        .into_iter()
+        .flat_map(glossary)
+        .flat_map(|row| row[0].split(", ").map(str::to_owned).collect::<Vec<_>>())
+        .collect();
+    assert!(terms.len() > 40, "{} terms", terms.len());
+    terms.sort();
+    let twice: Vec<_> = terms.windows(2).filter(|pair| pair[0] == pair[1]).collect();
+    assert!(twice.is_empty(), "{twice:?}");
+}
+
+#[test]
+fn prose_and_code_avoid_the_words_that_the_glossary_replaces() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut files: Vec<PathBuf> = CRATES.iter().flat_map(|folder| sources(&root.join(folder))).collect();
+    let pages = ["docs", "xtask/templates"].map(|folder| root.join(folder));
+    let pages = pages.iter().filter_map(|folder| std::fs::read_dir(folder).ok()).flatten();
+    let pages = pages.map(|entry| entry.unwrap().path());
+    files.extend(pages.filter(|page| page.extension().is_some_and(|ending| ending == "md")));
+    files.extend(["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md"].map(|page| root.join(page)));
+    files.retain(|file| !file.ends_with("glossary.md"));
+    let avoided = glossary("Avoided");
+    assert!(avoided.len() > 5, "{avoided:?}");
+    let mut found = Vec::new();
+    for file in files {
+        let text = std::fs::read_to_string(&file).unwrap().to_lowercase();
+        for row in &avoided {
+            found.extend(text.contains(&row[0]).then(|| format!("{}: {}", file.display(), row[0])));
+        }
+    }
+    assert!(found.is_empty(), "{found:#?}");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Brightness of the sky: the standard skies of the CIE, relative to the zenith.
+//! Luminance of the sky: the standard skies of the CIE, relative to the zenith.
 //!
 //! Directions point toward the sky, in a frame with x east, y north and z up. This module does not
 //! know absolute amounts, the sun's disk, or what the light falls on.

@@ -27,7 +27,7 @@ pub struct RunSpec {
     /// How flux is estimated.
     #[serde(default)]
     pub estimator: EstimatorSpec,
-    /// Wishes for the estimators `gather` and `mis`, and for `auto` where it gathers.
+    /// Settings of the estimators `gather` and `mis`, and for `auto` where it gathers.
     #[serde(default)]
     pub gather: GatherSpec,
     /// Number of surfaces after which a path is given up; the flux that this cuts off is reported.
@@ -97,7 +97,7 @@ pub enum SensorEstimatorSpec {
     Mis,
 }
 
-/// Wishes for the estimators `gather` and `mis`. What is left out is chosen by a short trial, and told in the report. The window
+/// Settings of the estimators `gather` and `mis`. What is left out is chosen by a short trial, and reported. The window
 /// of a record is a disk on the surface and a cone of directions; photons inside both are gathered.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 pub struct GatherSpec {

@@ -129,7 +129,7 @@ fn difference(behind: &ValueWithError) -> String {
         Pairing::Independent => " (as if independent)",
     };
     let is_close = behind.value.abs() <= BEHIND_ERRORS * behind.std_error;
-    format!("{number}{told}{}", if is_close { ", not told apart" } else { "" })
+    format!("{number}{told}{}", if is_close { ", difference within error" } else { "" })
 }
 
 fn sensitivities(report: &StudyReport) -> Option<StudyPart> {

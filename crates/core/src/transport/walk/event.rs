@@ -181,7 +181,7 @@ impl<F: FnMut(&Path, Event<'_>) -> ControlFlow<()>> Observer for F {
     }
 }
 
-/// Nobody observes.
+/// No observer.
 #[derive(Debug, Clone, Copy)]
 pub struct Unobserved;
 

@@ -6,7 +6,7 @@ mod manual;
 mod validate;
 mod verify;
 
-use crate::validate::{Page, validate};
+use crate::validate::{ResultsPage, validate};
 use crate::verify::verify;
 use clap::Parser;
 use std::io;
@@ -67,7 +67,7 @@ fn main() -> io::Result<ExitCode> {
             Ok(exit_code(verify(Share::new(tenth), program)?))
         }
         Chore::Validate { tenth, write } => {
-            let page = if write { Page::Write } else { Page::Verify };
+            let page = if write { ResultsPage::Write } else { ResultsPage::Verify };
             Ok(exit_code(validate(Share::new(tenth), page)?))
         }
     }

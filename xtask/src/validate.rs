@@ -6,7 +6,7 @@ use std::process::Command;
 
 /// What becomes of docs/validation.md.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Page {
+pub(crate) enum ResultsPage {
     /// It must be what comes out.
     Verify,
     /// It is written anew.
@@ -15,7 +15,7 @@ pub(crate) enum Page {
 
 /// Traces cases with the errors of docs/validation.md; returns whether all values are met, and the
 /// page is right.
-pub(crate) fn validate(share: Share, page: Page) -> io::Result<bool> {
+pub(crate) fn validate(share: Share, page: ResultsPage) -> io::Result<bool> {
     let scope = match share {
         Share::All => "all".to_owned(),
         Share::Tenth => format!("{}/10", commits()? % 10),
@@ -25,8 +25,8 @@ pub(crate) fn validate(share: Share, page: Page) -> io::Result<bool> {
         .env("LUMIDUCT_VALIDATION", scope)
         .current_dir(root());
     match page {
-        Page::Verify => test.env_remove("UPDATE_GOLDEN"),
-        Page::Write => test.env("UPDATE_GOLDEN", "1"),
+        ResultsPage::Verify => test.env_remove("UPDATE_GOLDEN"),
+        ResultsPage::Write => test.env("UPDATE_GOLDEN", "1"),
     };
     Ok(test.status()?.success())
 }

@@ -5,7 +5,7 @@ use indexmap::IndexMap;
 use serde::de::DeserializeOwned;
 use serde_json::Value as Json;
 
-use crate::keys::{Key, Segment};
+use crate::keys::{Key, KeySegment};
 use crate::problems::Problems;
 use crate::spec::study::StudySpec;
 use crate::spec::{AIR, FORMAT_VERSION, NORTH, SceneSpec, UP};
@@ -84,16 +84,16 @@ fn one<T: DeserializeOwned>(node: &Node, key: &Key, problems: &mut Problems) -> 
 
 /// Removes a key from a table. An item of an array stays, as its removal would renumber those after
 /// it.
-fn drop_key(json: &mut Json, path: &[Segment]) {
+fn drop_key(json: &mut Json, path: &[KeySegment]) {
     let Some((last, around)) = path.split_last() else {
         *json = Json::Null;
         return;
     };
     let table = around.iter().try_fold(json, |json, segment| match segment {
-        Segment::Field(name) => json.get_mut(name),
-        Segment::Index(index) => json.get_mut(index),
+        KeySegment::Field(name) => json.get_mut(name),
+        KeySegment::Index(index) => json.get_mut(index),
     });
-    if let (Some(Json::Object(entries)), Segment::Field(name)) = (table, last) {
+    if let (Some(Json::Object(entries)), KeySegment::Field(name)) = (table, last) {
         entries.shift_remove(name);
     }
 }

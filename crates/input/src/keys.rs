@@ -9,12 +9,12 @@ use crate::tree::{Node, Value};
 /// A path through tables and arrays, such as `solids.pipe.sweep.path.0.straight_mm`.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Key {
-    segments: Vec<Segment>,
+    segments: Vec<KeySegment>,
 }
 
 /// One step of a key.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Segment {
+pub enum KeySegment {
     /// Into a table.
     Field(String),
     /// Into an array, from 0.
@@ -29,28 +29,28 @@ impl Key {
 
     /// A path through tables only.
     pub fn of(fields: &[&str]) -> Self {
-        Self { segments: fields.iter().map(|field| Segment::Field((*field).into())).collect() }
+        Self { segments: fields.iter().map(|field| KeySegment::Field((*field).into())).collect() }
     }
 
     /// The key of a field of the table at this key.
     pub fn field(&self, name: &str) -> Self {
-        self.step(Segment::Field(name.into()))
+        self.step(KeySegment::Field(name.into()))
     }
 
     /// The key of an entry of the array at this key, from 0.
     pub fn index(&self, index: usize) -> Self {
-        self.step(Segment::Index(index))
+        self.step(KeySegment::Index(index))
     }
 
     /// The key one step further.
-    pub fn step(&self, segment: Segment) -> Self {
+    pub fn step(&self, segment: KeySegment) -> Self {
         let mut segments = self.segments.clone();
         segments.push(segment);
         Self { segments }
     }
 
     /// The steps.
-    pub fn segments(&self) -> &[Segment] {
+    pub fn segments(&self) -> &[KeySegment] {
         &self.segments
     }
 
@@ -72,9 +72,9 @@ impl fmt::Display for Key {
                 write!(out, ".")?;
             }
             match segment {
-                Segment::Field(name) if is_bare(name) => write!(out, "{name}")?,
-                Segment::Field(name) => write!(out, "\"{}\"", name.escape_debug())?,
-                Segment::Index(index) => write!(out, "{index}")?,
+                KeySegment::Field(name) if is_bare(name) => write!(out, "{name}")?,
+                KeySegment::Field(name) => write!(out, "\"{}\"", name.escape_debug())?,
+                KeySegment::Index(index) => write!(out, "{index}")?,
             }
         }
         Ok(())
@@ -152,11 +152,11 @@ impl Places {
         let mut node = &self.root;
         for (depth, segment) in key.segments.iter().enumerate() {
             let next = match (segment, &node.value) {
-                (Segment::Field(name), Value::Table(entries)) => {
+                (KeySegment::Field(name), Value::Table(entries)) => {
                     entries.get(name).map(|entry| &entry.node)
                 }
-                (Segment::Index(index), Value::Array(items)) => items.get(*index),
-                (Segment::Field(_) | Segment::Index(_), _) => None,
+                (KeySegment::Index(index), Value::Array(items)) => items.get(*index),
+                (KeySegment::Field(_) | KeySegment::Index(_), _) => None,
             };
             match next {
                 Some(next) => node = next,

@@ -2,7 +2,7 @@
 //!
 //! They are inserted into the tree before it is validated, and validated like any other value.
 
-use crate::keys::{Key, Segment};
+use crate::keys::{Key, KeySegment};
 use crate::problems::{Problems, name_hint};
 use crate::sources::{Origin, SourceId, Sources};
 use crate::tree::{self, Entry, Node, Value};
@@ -20,10 +20,10 @@ impl Override {
     /// Whether it sets the file of a sensor, which must be known before that file is read.
     pub fn names_a_sensor_file(&self) -> bool {
         match self.key.segments() {
-            [Segment::Field(family), _, Segment::Field(key)] => {
+            [KeySegment::Field(family), _, KeySegment::Field(key)] => {
                 family == "sensors" && key == "file"
             }
-            [Segment::Field(family), _] => family == "sensors" && self.node.get("file").is_some(),
+            [KeySegment::Field(family), _] => family == "sensors" && self.node.get("file").is_some(),
             _ => false,
         }
     }
@@ -85,7 +85,7 @@ pub fn parse_key(text: &str) -> Option<Key> {
 }
 
 /// The steps before the first `=` outside quotes, and where that is. A step of digits only is an index.
-fn read_key(text: &str) -> Option<(Vec<Segment>, usize)> {
+fn read_key(text: &str) -> Option<(Vec<KeySegment>, usize)> {
     let mut segments = Vec::new();
     let mut word = String::new();
     let mut quote = None;
@@ -101,8 +101,8 @@ fn read_key(text: &str) -> Option<(Vec<Segment>, usize)> {
                     return None;
                 }
                 segments.push(match name.parse() {
-                    Ok(index) if !was_quoted => Segment::Index(index),
-                    _ => Segment::Field(name.into()),
+                    Ok(index) if !was_quoted => KeySegment::Index(index),
+                    _ => KeySegment::Field(name.into()),
                 });
                 if c == '=' {
                     return Some((segments, i));
@@ -123,7 +123,7 @@ pub fn apply(one: &Override, root: &mut Node, problems: &mut Problems) {
     let mut node = root;
     let mut key = Key::root();
     for segment in way {
-        if let ([Segment::Field(name)], Value::Table(entries)) = (way, &mut node.value) {
+        if let ([KeySegment::Field(name)], Value::Table(entries)) = (way, &mut node.value) {
             entries.entry(name.clone()).or_insert_with(|| empty_table(&one.key_origin));
         }
         node = match step(node, segment) {
@@ -135,7 +135,7 @@ pub fn apply(one: &Override, root: &mut Node, problems: &mut Problems) {
         };
         key = key.step(segment.clone());
     }
-    if let (Value::Table(entries), Segment::Field(_) | Segment::Index(_)) = (&mut node.value, last)
+    if let (Value::Table(entries), KeySegment::Field(_) | KeySegment::Index(_)) = (&mut node.value, last)
     {
         let name = name_of(last);
         let key =
@@ -152,7 +152,7 @@ pub fn apply(one: &Override, root: &mut Node, problems: &mut Problems) {
     }
 }
 
-fn step<'a>(node: &'a mut Node, segment: &Segment) -> Result<&'a mut Node, (String, String)> {
+fn step<'a>(node: &'a mut Node, segment: &KeySegment) -> Result<&'a mut Node, (String, String)> {
     match (&mut node.value, segment) {
         (Value::Table(entries), _) => {
             let name = name_of(segment);
@@ -164,7 +164,7 @@ fn step<'a>(node: &'a mut Node, segment: &Segment) -> Result<&'a mut Node, (Stri
                 }
             }
         }
-        (Value::Array(items), Segment::Index(index)) => {
+        (Value::Array(items), KeySegment::Index(index)) => {
             let count = items.len();
             let hint = match count {
                 0 => "the array is empty".into(),
@@ -173,7 +173,7 @@ fn step<'a>(node: &'a mut Node, segment: &Segment) -> Result<&'a mut Node, (Stri
             };
             items.get_mut(*index).ok_or_else(|| (format!("index {index} is out of range"), hint))
         }
-        (Value::Array(items), Segment::Field(_)) => {
+        (Value::Array(items), KeySegment::Field(_)) => {
             let hint = format!(
                 "write the number of an entry, from 0 to {}",
                 items.len().saturating_sub(1)
@@ -196,10 +196,10 @@ fn step<'a>(node: &'a mut Node, segment: &Segment) -> Result<&'a mut Node, (Stri
 }
 
 /// The name of a step in a table, which may consist of digits.
-fn name_of(segment: &Segment) -> String {
+fn name_of(segment: &KeySegment) -> String {
     match segment {
-        Segment::Field(name) => name.clone(),
-        Segment::Index(index) => index.to_string(),
+        KeySegment::Field(name) => name.clone(),
+        KeySegment::Index(index) => index.to_string(),
     }
 }
 

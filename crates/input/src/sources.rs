@@ -35,14 +35,14 @@ pub enum SourceKind {
 
 /// A text with its lines.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Source {
+pub struct SourceText {
     kind: SourceKind,
     text: String,
     /// Offset of the first byte of each line.
     line_starts: Vec<usize>,
 }
 
-impl Source {
+impl SourceText {
     fn new(kind: SourceKind, text: String) -> Self {
         let line_starts = std::iter::once(0)
             .chain(text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(i, _)| i + 1));
@@ -88,7 +88,7 @@ impl Source {
 /// All texts that one scene is made of.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Sources {
-    list: Vec<Source>,
+    list: Vec<SourceText>,
 }
 
 impl Sources {
@@ -118,12 +118,12 @@ impl Sources {
     }
 
     fn add(&mut self, kind: SourceKind, text: String) -> SourceId {
-        self.list.push(Source::new(kind, text));
+        self.list.push(SourceText::new(kind, text));
         SourceId(self.list.len() - 1)
     }
 
     /// One text. Ids of another `Sources` are invalid here.
-    pub fn get(&self, id: SourceId) -> &Source {
+    pub fn get(&self, id: SourceId) -> &SourceText {
         &self.list[id.0]
     }
 
@@ -136,12 +136,12 @@ impl Sources {
     }
 
     /// All texts in the order of their first use.
-    pub fn iter(&self) -> impl Iterator<Item = &Source> {
+    pub fn iter(&self) -> impl Iterator<Item = &SourceText> {
         self.list.iter()
     }
 
     /// The text of a file, if it was read.
-    pub fn file(&self, path: &Path) -> Option<&Source> {
+    pub fn file(&self, path: &Path) -> Option<&SourceText> {
         self.list
             .iter()
             .find(|source| matches!(&source.kind, SourceKind::File(file) if file == path))
@@ -241,7 +241,7 @@ mod tests {
 
     #[test]
     fn lines_are_counted_from_one_and_end_before_the_line_break() {
-        let source = Source::new(SourceKind::File("a".into()), "one\r\ntwo\nthree".into());
+        let source = SourceText::new(SourceKind::File("a".into()), "one\r\ntwo\nthree".into());
         assert_eq!((source.line(0), source.line(4), source.line(5)), (Some(1), Some(1), Some(2)));
         let lines: Vec<_> =
             (0..5).map(|line| source.line_span(line).map(|span| &source.text[span])).collect();

@@ -5,7 +5,7 @@
 
 use serde_json::{Map, Value as Json};
 
-use crate::keys::{Key, Segment};
+use crate::keys::{Key, KeySegment};
 use crate::problems::{Problem, Problems};
 use crate::schema;
 use crate::sources::{Origin, Sources};
@@ -95,8 +95,8 @@ impl<'a> At<'a> {
     fn to_key(self) -> Key {
         match self.around {
             None => Key::root(),
-            Some((around, Step::Field(name))) => around.to_key().step(Segment::Field(name.into())),
-            Some((around, Step::Index(index))) => around.to_key().step(Segment::Index(index)),
+            Some((around, Step::Field(name))) => around.to_key().step(KeySegment::Field(name.into())),
+            Some((around, Step::Index(index))) => around.to_key().step(KeySegment::Index(index)),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Keys that the schema does not know, and what was probably meant.
 
-use crate::keys::Segment;
+use crate::keys::KeySegment;
 use crate::problems::{name_hint, nearest};
 use crate::schema;
 use crate::validate::{At, Entries, Walk, wording};
@@ -36,7 +36,7 @@ impl Walk<'_> {
         if let Some(right) = other_unit(name, known.iter().copied()) {
             let key = table.to_key();
             if right == CANDELA
-                && let Some(Segment::Field(kind)) = key.segments().last()
+                && let Some(KeySegment::Field(kind)) = key.segments().last()
                 && kind != POINT
             {
                 return format!(

@@ -13,14 +13,14 @@ const ROUNDING: f64 = 1e-6;
 
 /// A face as a pattern sees it.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::lower) struct UnrolledFace {
+pub(in crate::lower) struct PatternGround {
     pub(in crate::lower) face: FaceId,
     pub(in crate::lower) rect: ChartRect,
     /// Radius of a round face that closes on itself, mm.
     pub(in crate::lower) radius: Option<f64>,
 }
 
-impl UnrolledFace {
+impl PatternGround {
     pub(in crate::lower) fn size(&self) -> DVec2 {
         self.rect.max - self.rect.min
     }
@@ -33,7 +33,7 @@ impl UnrolledFace {
 
 impl Context<'_> {
     /// The face of a pattern: one whose chart is not stretched.
-    pub(in crate::lower) fn ground(&mut self, name: &str, key: &Key) -> Option<UnrolledFace> {
+    pub(in crate::lower) fn ground(&mut self, name: &str, key: &Key) -> Option<PatternGround> {
         let faces = self.faces_named(name, key)?;
         let [face] = faces[..] else {
             let message = format!("`{name}` stands for {} faces, expected one", faces.len());
@@ -52,7 +52,7 @@ impl Context<'_> {
         };
         let is_round = matches!(&patches[0].shape, Shape::Cylinder(wall) if wall.is_closed());
         let radius = is_round.then(|| (rect.max.x - rect.min.x) / TAU);
-        Some(UnrolledFace { face, rect, radius })
+        Some(PatternGround { face, rect, radius })
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::keys::Key;
 use crate::lower::context::Context;
-use crate::lower::patterns::ground::UnrolledFace;
+use crate::lower::patterns::ground::PatternGround;
 use crate::spec::pattern::{AlongSpec, GridSpec, HexagonalSpec, LawSpec, LayoutSpec, RowSpec};
 use lumiduct_core::scene::pattern::{Columns, Graded, RowPositions, TableAlong};
 use lumiduct_core::scene::shape::ChartRect;
@@ -19,7 +19,7 @@ impl Context<'_> {
     pub(in crate::lower) fn rows_and_columns(
         &mut self,
         spec: &LayoutSpec,
-        ground: &UnrolledFace,
+        ground: &PatternGround,
         key: &Key,
     ) -> Option<(RowPositions, Columns)> {
         let (rows, columns) = match spec {
@@ -41,7 +41,7 @@ impl Context<'_> {
     fn row(
         &mut self,
         spec: &RowSpec,
-        ground: &UnrolledFace,
+        ground: &PatternGround,
         key: &Key,
     ) -> Option<(RowPositions, Columns)> {
         let middle = 0.5 * (ground.rect.min.x + ground.rect.max.x);
@@ -88,7 +88,7 @@ impl Context<'_> {
         &mut self,
         spec: &GridSpec,
         stagger: f64,
-        ground: &UnrolledFace,
+        ground: &PatternGround,
         key: &Key,
     ) -> Option<(RowPositions, Columns)> {
         let along =
@@ -124,7 +124,7 @@ impl Context<'_> {
         &mut self,
         pitch: &AlongSpec,
         [from, to]: [f64; 2],
-        ground: &UnrolledFace,
+        ground: &PatternGround,
         key: &Key,
     ) -> Option<RowPositions> {
         let along = self.along(pitch, ground, key)?;
@@ -148,7 +148,7 @@ impl Context<'_> {
     pub(in crate::lower) fn along(
         &mut self,
         spec: &AlongSpec,
-        ground: &UnrolledFace,
+        ground: &PatternGround,
         key: &Key,
     ) -> Option<TableAlong> {
         let start = ground.rect.min.y;
@@ -176,7 +176,7 @@ impl Context<'_> {
     fn range(
         &mut self,
         given: Option<[f64; 2]>,
-        ground: &UnrolledFace,
+        ground: &PatternGround,
         axis: FieldAxis,
         key: &Key,
     ) -> Option<[f64; 2]> {

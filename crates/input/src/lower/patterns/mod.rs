@@ -5,7 +5,7 @@ mod layout;
 
 use crate::keys::Key;
 use crate::lower::context::Context;
-use crate::lower::patterns::ground::UnrolledFace;
+use crate::lower::patterns::ground::PatternGround;
 use crate::spec::pattern::{ElementSpec, PatternSpec};
 use crate::spec::sheet::{SheetCommon, SheetSpec};
 use lumiduct_core::scene::FaceId;
@@ -58,7 +58,7 @@ impl<'a> Context<'a> {
     pub(super) fn check_field(
         &mut self,
         field: &ElementField,
-        ground: &UnrolledFace,
+        ground: &PatternGround,
         on: &str,
         key: &Key,
     ) -> Option<()> {
@@ -85,7 +85,7 @@ impl<'a> Context<'a> {
     fn field(
         &mut self,
         spec: &PatternSpec,
-        ground: &UnrolledFace,
+        ground: &PatternGround,
         key: &Key,
     ) -> Option<ElementField> {
         let outline = match &spec.element {

@@ -2,7 +2,7 @@
 
 use crate::keys::Key;
 use crate::lower::context::Context;
-use crate::lower::reliefs::wall::ReliefWall;
+use crate::lower::reliefs::wall::UnrolledReliefWall;
 use crate::spec::pattern::AlongSpec;
 use crate::spec::relief::{
     CapSpec, CourseSpec, DepthSpec, HeightSpec, PyramidSpec, ReliefElementSpec, WedgeSpec,
@@ -37,7 +37,7 @@ impl Context<'_> {
     pub(super) fn relief_element(
         &mut self,
         spec: &ReliefElementSpec,
-        wall: &ReliefWall,
+        wall: &UnrolledReliefWall,
         key: &Key,
     ) -> Option<Element> {
         let (form, way) = match spec {
@@ -54,7 +54,7 @@ impl Context<'_> {
     fn height<E: ReliefExtent>(
         &mut self,
         extent: &E,
-        wall: &ReliefWall,
+        wall: &UnrolledReliefWall,
         key: &Key,
     ) -> Option<TableAlong> {
         self.along(extent.length(), &wall.unrolled, &key.field(E::KEY))
@@ -63,7 +63,7 @@ impl Context<'_> {
     fn pyramid<E: ReliefExtent>(
         &mut self,
         spec: &PyramidSpec<E>,
-        wall: &ReliefWall,
+        wall: &UnrolledReliefWall,
         key: &Key,
     ) -> Option<(ElementForm, Way)> {
         let height = self.height(&spec.extent, wall, key)?;
@@ -81,7 +81,7 @@ impl Context<'_> {
     fn cap<E: ReliefExtent>(
         &mut self,
         spec: &CapSpec<E>,
-        wall: &ReliefWall,
+        wall: &UnrolledReliefWall,
         key: &Key,
     ) -> Option<(ElementForm, Way)> {
         let height = self.height(&spec.extent, wall, key)?;
@@ -101,7 +101,7 @@ impl Context<'_> {
     fn wedge<E: ReliefExtent>(
         &mut self,
         spec: &WedgeSpec<E>,
-        wall: &ReliefWall,
+        wall: &UnrolledReliefWall,
         key: &Key,
     ) -> Option<(ElementForm, Way)> {
         let height = self.height(&spec.extent, wall, key)?;
@@ -158,7 +158,7 @@ impl Context<'_> {
         &mut self,
         element: &Element,
         field: &ElementField,
-        wall: &ReliefWall,
+        wall: &UnrolledReliefWall,
         on: &str,
         key: &Key,
     ) -> Option<()> {

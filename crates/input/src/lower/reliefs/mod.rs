@@ -6,7 +6,7 @@ mod wall;
 
 use crate::keys::Key;
 use crate::lower::context::Context;
-use crate::lower::reliefs::wall::ReliefWall;
+use crate::lower::reliefs::wall::UnrolledReliefWall;
 use crate::spec::pattern::LayoutSpec;
 use crate::spec::relief::ReliefSpec;
 use lumiduct_core::scene::pattern::{ElementField, ElementOutline};
@@ -51,7 +51,7 @@ impl<'a> Context<'a> {
         &mut self,
         name: String,
         spec: &ReliefSpec,
-        wall: &ReliefWall,
+        wall: &UnrolledReliefWall,
         key: &Key,
     ) -> Option<Relief> {
         let layout = key.field("layout");

@@ -2,19 +2,19 @@
 
 use crate::keys::Key;
 use crate::lower::context::Context;
-use crate::lower::patterns::ground::UnrolledFace;
+use crate::lower::patterns::ground::PatternGround;
 use lumiduct_core::scene::{Owner, relief};
 
 /// The wall of a relief, unrolled and in space.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct ReliefWall {
-    pub(super) unrolled: UnrolledFace,
+pub(super) struct UnrolledReliefWall {
+    pub(super) unrolled: PatternGround,
     pub(super) ground: relief::ReliefWall,
 }
 
 impl Context<'_> {
     /// The wall of a solid that a relief can lie on.
-    pub(super) fn wall(&mut self, on: &str, key: &Key) -> Option<ReliefWall> {
+    pub(super) fn wall(&mut self, on: &str, key: &Key) -> Option<UnrolledReliefWall> {
         let unrolled = self.ground(on, key)?;
         let scene = self.builder.scene();
         let is_solid = matches!(scene.owner(unrolled.face), Owner::Solid(_));
@@ -29,6 +29,6 @@ impl Context<'_> {
             let hint = "a relief is a part of the boundary of a solid; sheets have patterns";
             return self.refuse(key, message, hint);
         };
-        Some(ReliefWall { unrolled, ground })
+        Some(UnrolledReliefWall { unrolled, ground })
     }
 }

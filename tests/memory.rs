@@ -3,9 +3,9 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
 #![allow(clippy::print_stdout, reason = "figures, shown by --nocapture and on failure")]
 
-use lumiduct_core::plan::{Request, Schedule};
+use lumiduct_core::plan::{GatherPlan, Request, Schedule};
 use lumiduct_core::transport::Run;
-use lumiduct_input::{self as input, GatherSettings, Settings};
+use lumiduct_input::{self as input, Settings};
 use peak_alloc::PeakAlloc;
 
 /// Counts allocated memory: what the system gives a process beyond that depends on threads and
@@ -44,7 +44,7 @@ fn memory<const N: usize>(photons: u64, passes: [u64; N]) -> [[f64; 2]; N] {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("tube.toml");
     std::fs::write(&path, TUBE).unwrap();
-    let gather = GatherSettings {
+    let gather = GatherPlan {
         depth: Some(2),
         radius_mm: Some(0.3),
         angle_deg: Some(3.0),

@@ -11,9 +11,9 @@ use crate::cli::values::{
 };
 use crate::pipeline::{self, FinishedRun, Output, RunStart, SliceOptions, SliceWritten, Stop};
 use clap::Args;
-use lumiduct_core::plan::{Request, Schedule};
+use lumiduct_core::plan::{GatherPlan, Request, Schedule};
 use lumiduct_core::transport::{Interrupt, Shard};
-use lumiduct_input::{GatherSettings, Settings};
+use lumiduct_input::Settings;
 use lumiduct_report::{Existing, RunOutcome, Written, run_junit};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -101,8 +101,8 @@ pub(super) struct GatherArgs {
 
 impl GatherArgs {
     /// The gather settings.
-    pub(super) fn settings(&self) -> GatherSettings {
-        GatherSettings {
+    pub(super) fn settings(&self) -> GatherPlan {
+        GatherPlan {
             depth: self.depth,
             radius_mm: self.radius_mm,
             angle_deg: self.angle_deg,

@@ -3,15 +3,14 @@
 
 use crate::pipeline::tests::job as short_rod;
 use crate::pipeline::*;
-use lumiduct_core::plan::Estimator;
+use lumiduct_core::plan::{Estimator, GatherPlan};
 use lumiduct_core::transport::{Phase, Run, StopAnswer, StopSignal};
-use lumiduct_input::GatherSettings;
 
 /// The short rod by one estimator, in small batches or passes, with a plan for more than is traced.
 fn settings(estimator: Request) -> Settings {
     Settings {
         estimator: Some(estimator),
-        gather: GatherSettings {
+        gather: GatherPlan {
             depth: Some(0),
             radius_mm: Some(1.0),
             angle_deg: Some(20.0),
@@ -83,7 +82,7 @@ fn a_stopped_run_ends_at_its_next_looks_and_its_command_repeats_it_on_any_thread
 #[test]
 fn a_run_stopped_in_the_pilot_says_so_and_one_after_it_repeats_without_a_pilot() {
     let folder = tempfile::tempdir().unwrap();
-    let auto = Settings { gather: GatherSettings::default(), ..settings(Request::Auto) };
+    let auto = Settings { gather: GatherPlan::default(), ..settings(Request::Auto) };
     let job = short_rod(folder.path(), &auto);
     let error = stopped_at(8, &job).0.unwrap_err().to_string();
     assert!(error.contains("interrupted during the pilot"), "{error}");
@@ -101,7 +100,7 @@ fn a_run_stopped_in_the_pilot_says_so_and_one_after_it_repeats_without_a_pilot()
 #[test]
 fn a_pilot_that_takes_half_of_the_time_is_given_up_and_photons_go_on() {
     let folder = tempfile::tempdir().unwrap();
-    let auto = Settings { gather: GatherSettings::default(), ..settings(Request::Auto) };
+    let auto = Settings { gather: GatherPlan::default(), ..settings(Request::Auto) };
     let job = short_rod(folder.path(), &auto);
     let start = |signal: &StopSignal| {
         on_threads(1, || Run::start(&job.scene, &job.run, signal, &mut |_| ()))

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::pipeline::checkpoint::Checkpoint;
-use lumiduct_input::GatherSettings;
+use lumiduct_core::plan::GatherPlan;
 
 /// The short rod of the tests, with a sensor that can be estimated by photons and gathered.
 pub(super) const SCENE: &str = concat!(
@@ -57,7 +57,7 @@ fn a_run_resumes_at_every_pause_to_the_same_end_the_last_pause_included() {
     resumes_at_every_pause(&forward, Stop::Paths);
     let gather = Settings {
         estimator: Some(Request::Gather),
-        gather: GatherSettings {
+        gather: GatherPlan {
             depth: Some(0),
             radius_mm: Some(1.0),
             angle_deg: Some(20.0),

@@ -79,7 +79,7 @@ eye = { luminance = { disk = { radius_mm = 1 }, cells = [1, 1], acceptance_half_
 /// The plan of a run of a subject with its own seed.
 fn plan(job: &Job, seed: u64, schedule: Schedule) -> RunPlan {
     let mut plan = RunPlan { seed, ..job.run.clone() };
-    plan.gather.schedule = schedule;
+    plan.gather.schedule = Some(schedule);
     plan
 }
 

@@ -1,9 +1,9 @@
 //! A scene from its text, run by each estimator, and comparisons of its measures.
 
 use lumiduct_core::measure::{self, Measure, Measures, Status};
-use lumiduct_core::plan::Request;
+use lumiduct_core::plan::{GatherPlan, Request};
 use lumiduct_core::transport::{Findings, Run};
-use lumiduct_input::{self as input, GatherSettings, Job, Settings};
+use lumiduct_input::{self as input, Job, Settings};
 use std::fmt::Write;
 
 /// Deviation that passes, in standard errors of both sides together.
@@ -40,8 +40,8 @@ impl Gathering {
         }
     }
 
-    fn settings(self) -> GatherSettings {
-        GatherSettings {
+    fn settings(self) -> GatherPlan {
+        GatherPlan {
             depth: Some(self.depth),
             radius_mm: Some(self.radius_mm),
             angle_deg: Some(self.angle_deg),

@@ -1,5 +1,9 @@
-//! Run settings of a scene file: how to estimate, when to stop, and what to check.
+//! Run settings: how to estimate, when to stop, and what to check.
+//!
+//! Scene files, the command line, checkpoints and reports share these types, their names in files
+//! and their schema; the documentation of keys and values becomes the manual.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
@@ -35,25 +39,27 @@ pub struct RunPlan {
     pub stop: StopRules,
 }
 
-/// The requested estimator.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+/// How flux is estimated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 pub enum Request {
-    /// The best for each sensor, as found by a pilot.
+    /// For every sensor, what a short trial finds best; the report names the choice and its figures.
+    #[default]
     #[serde(rename = "auto")]
     Auto,
-    /// [`Estimator::Forward`] for all sensors.
+    /// Photon paths from the sources, counted by the sensors.
     #[serde(rename = "forward")]
     Forward,
-    /// [`Estimator::Backward`] for all sensors.
+    /// Gather paths from the sensors, followed until they meet a source.
     #[serde(rename = "backward")]
     Backward,
-    /// [`Estimator::Mix`] for all sensors.
+    /// Forward and backward at once, weighed path by path; sources that paths cannot meet are left to photons.
     #[serde(rename = "mix")]
     Mix,
-    /// [`Estimator::Gather`] for all sensors.
+    /// Gather paths from the sensors that end in records, and photon paths from the sources that are gathered there.
     #[serde(rename = "gather")]
     Gather,
-    /// [`Estimator::Mis`] for all sensors.
+    /// Forward, backward and gather at once, weighed path by path (multiple importance sampling); for scenes whose
+    /// finishes do not scatter.
     #[serde(rename = "mis")]
     Mis,
 }
@@ -106,22 +112,22 @@ impl Request {
     }
 }
 
-/// How the flux of a sensor was estimated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+/// How flux is estimated on one sensor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Estimator {
-    /// Photon paths from the sources, counted in the sensors' cells.
+    /// Photon paths from the sources, counted by the sensor.
     #[serde(rename = "forward")]
     Forward,
-    /// Gather paths from the sensors' cells, followed until they meet emission.
+    /// Gather paths from the sensor, followed until they meet a source.
     #[serde(rename = "backward")]
     Backward,
-    /// Both, weighted path by path by the balance heuristic.
+    /// Forward and backward at once, weighed path by path.
     #[serde(rename = "mix")]
     Mix,
-    /// Gather paths of limited depth that end in records, where photons are gathered.
+    /// Gather paths from the sensor that end in records, and photon paths that are gathered there.
     #[serde(rename = "gather")]
     Gather,
-    /// Forward, backward and gather merged by multiple importance sampling.
+    /// Forward, backward and gather at once; only where no other sensor may be gathered without it.
     #[serde(rename = "mis")]
     Mis,
 }
@@ -153,37 +159,64 @@ impl Estimator {
 /// Largest number of gather paths of a pass that may be set: they must fit into memory.
 pub const MOST_RECORDS: u64 = 1 << 22;
 
-/// Settings for the gather estimator; a pilot chooses those left out.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+/// Settings of the estimators `gather` and `mis`. What is left out is chosen by a short trial, and reported. The window
+/// of a record is a disk on the surface and a cone of directions; photons inside both are gathered.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 pub struct GatherPlan {
-    /// Largest depth at which gather paths end; the first surface has depth 0.
-    #[serde(rename = "depth")]
+    /// Depth at which gather paths end at the latest; the first surface they meet has depth 0.
+    #[schemars(range(max = 1000))]
     pub depth: Option<u32>,
-    /// Radius of the window of the first pass, mm.
-    #[serde(rename = "radius_mm")]
-    pub radius: Option<f64>,
-    /// Half-angle of the window of the first pass, rad.
-    #[serde(rename = "angle_rad")]
-    pub theta_max: Option<f64>,
-    /// Gather paths of a pass, over all sensors.
-    #[serde(rename = "records")]
+    /// Radius of the window in the first pass.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub radius_mm: Option<f64>,
+    /// Half-angle of the window in the first pass.
+    #[schemars(extend("exclusiveMinimum" = 0.0, "exclusiveMaximum" = 90.0))]
+    pub angle_deg: Option<f64>,
+    /// Number of gather paths in a pass, over all sensors. Each takes about 600 bytes in every thread.
+    #[schemars(range(min = 1, max = MOST_RECORDS))]
     pub records: Option<u64>,
-    /// Photons of a pass.
-    #[serde(rename = "photons")]
+    /// Number of photon paths in a pass.
+    #[schemars(range(min = 1))]
     pub photons: Option<u64>,
-    /// How the window shrinks.
-    #[serde(rename = "schedule")]
-    pub schedule: Schedule,
+    /// How the window shrinks. Omitted: in stages.
+    pub schedule: Option<Schedule>,
 }
 
-/// How the window of the gather estimator shrinks.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+impl GatherPlan {
+    /// These settings, and for those left out the others.
+    pub fn or(&self, others: &Self) -> Self {
+        Self {
+            depth: self.depth.or(others.depth),
+            radius_mm: self.radius_mm.or(others.radius_mm),
+            angle_deg: self.angle_deg.or(others.angle_deg),
+            records: self.records.or(others.records),
+            photons: self.photons.or(others.photons),
+            schedule: self.schedule.or(others.schedule),
+        }
+    }
+
+    /// Names of the settings that are given.
+    pub fn given(&self) -> Vec<&'static str> {
+        let all = [
+            ("depth", self.depth.is_some()),
+            ("radius_mm", self.radius_mm.is_some()),
+            ("angle_deg", self.angle_deg.is_some()),
+            ("records", self.records.is_some()),
+            ("photons", self.photons.is_some()),
+            ("schedule", self.schedule.is_some()),
+        ];
+        all.into_iter().filter(|(_, is_given)| *is_given).map(|(name, _)| name).collect()
+    }
+}
+
+/// How the window shrinks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 pub enum Schedule {
-    /// In stages of many passes with one window; the last stage gives the value.
+    /// In stages of many passes with the same window; the value comes from the last stage alone.
     #[default]
     #[serde(rename = "stages")]
     Stages,
-    /// From pass to pass; all passes give the value.
+    /// A little from pass to pass; the value comes from all passes. For comparison: its error bar is less sure.
     #[serde(rename = "per-pass")]
     PerPass,
 }
@@ -224,41 +257,44 @@ pub struct StopRules {
     pub target: Option<Target>,
 }
 
-/// A measure and its target error.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// An uncertainty to reach.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Target {
-    /// Dotted name, such as `exit.flux`.
-    #[serde(rename = "measure")]
+    /// Name of the measure, such as `exit.flux`.
     pub measure: String,
-    /// Standard error over value.
-    #[serde(rename = "relative_error")]
+    /// Standard error relative to the value.
+    #[schemars(extend("exclusiveMinimum" = 0.0, "exclusiveMaximum" = 1.0))]
     pub relative_error: f64,
 }
 
-/// A demand on a measure.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// What is expected of one measure: a limit (`min`, `max`) or a value (`equals`).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(extend("anyOf" = [{ "required": ["min"] }, { "required": ["max"] }, { "required": ["equals"] }]))]
 pub struct Check {
-    /// Dotted name of the measure.
+    /// Name of the measure, such as `exit.efficiency`.
     pub measure: String,
-    /// The smallest value that passes.
+    /// Lowest value that passes, in the unit of the measure.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub min: Option<f64>,
-    /// The largest value that passes.
+    /// Highest value that passes, in the unit of the measure.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max: Option<f64>,
-    /// The value it must agree with.
+    /// Expected value, in the unit of the measure.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub equals: Option<f64>,
-    /// Absolute deviation from `equals` that passes in any case.
+    /// Largest deviation from `equals` that passes, in the unit of the measure.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0))]
     pub within: Option<f64>,
-    /// Deviation from `equals` that passes, in standard errors.
+    /// Largest deviation from `equals` that passes, in standard errors. Omitted, and `within` too: 4.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub sigmas: Option<f64>,
-    /// The standard error must not be larger than this.
+    /// Largest standard error with which the check counts as passed, in the unit of the measure.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub max_std_error: Option<f64>,
-    /// Where the expected value comes from.
+    /// Where the expectation comes from.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub source: Option<String>,
 }
@@ -295,11 +331,11 @@ mod tests {
     fn a_plan_has_fixed_names_in_files_and_comes_back_from_them() {
         let gather = GatherPlan {
             depth: Some(8),
-            radius: Some(0.5),
-            theta_max: Some(0.1),
+            radius_mm: Some(0.5),
+            angle_deg: Some(6.0),
             records: Some(1000),
             photons: Some(5000),
-            schedule: Schedule::PerPass,
+            schedule: Some(Schedule::PerPass),
         };
         let target = Target { measure: "exit.flux".into(), relative_error: 0.005 };
         let (paths, time) = (Some(20), Some(Duration::from_millis(1500)));
@@ -314,7 +350,7 @@ mod tests {
         };
         let text = serde_json::to_string(&plan).unwrap();
         let expected = concat!(
-            r#"{"estimator":"gather","sensor_estimators":[null,"mis"],"gather":{"depth":8,"radius_mm":0.5,"angle_rad":0.1,"records":1000,"#,
+            r#"{"estimator":"gather","sensor_estimators":[null,"mis"],"gather":{"depth":8,"radius_mm":0.5,"angle_deg":6.0,"records":1000,"#,
             r#""photons":5000,"schedule":"per-pass"},"seed":7,"bounce_limit":100,"batch_paths":null,"#,
             r#""stop":{"paths":20,"batches":3,"time":{"secs":1,"nanos":500000000},"#,
             r#""target":{"measure":"exit.flux","relative_error":0.005}}}"#

@@ -1,6 +1,6 @@
 //! From a scene file to a job: read, lowered, with the command-line settings applied.
 
-use crate::gather::{GatherSettings, check_radius, check_use};
+use crate::gather::{check_radius, check_use};
 use crate::keys::{Key, Places};
 use crate::lower::Lowered;
 use crate::lower::context::Scope;
@@ -10,7 +10,7 @@ use crate::{Draft, draft};
 use lumiduct_base::digest::Digest;
 use lumiduct_base::error::{Diagnostic, Error, Result};
 use lumiduct_base::text::visible;
-use lumiduct_core::plan::{Check, Request, RunPlan, StopRules, Target};
+use lumiduct_core::plan::{Check, GatherPlan, Request, RunPlan, StopRules, Target};
 use lumiduct_core::scene::Scene;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -24,7 +24,7 @@ pub struct Settings {
     /// Estimator of flux.
     pub estimator: Option<Request>,
     /// Gather settings.
-    pub gather: GatherSettings,
+    pub gather: GatherPlan,
     /// Relative error of the target measure.
     pub target: Option<f64>,
     /// The target measure; by default that of the file.
@@ -124,7 +124,7 @@ fn apply_method(settings: &Settings, scene: &Scene, run: &mut RunPlan, problems:
     if !may_gather {
         check_use(run.estimator, &run.gather, &settings.gather, problems);
     }
-    run.gather = settings.gather.over(&run.gather);
+    run.gather = settings.gather.or(&run.gather);
     if may_gather {
         check_radius(&run.gather, &settings.gather, scene, problems);
     }

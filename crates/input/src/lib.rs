@@ -40,7 +40,6 @@ mod study;
 pub mod tree;
 pub mod validate;
 
-pub use gather::GatherSettings;
 pub use job::{Job, Settings, load};
 pub use list::list;
 pub use outline::Outline;

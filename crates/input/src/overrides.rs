@@ -23,7 +23,9 @@ impl Override {
             [KeySegment::Field(family), _, KeySegment::Field(key)] => {
                 family == "sensors" && key == "file"
             }
-            [KeySegment::Field(family), _] => family == "sensors" && self.node.get("file").is_some(),
+            [KeySegment::Field(family), _] => {
+                family == "sensors" && self.node.get("file").is_some()
+            }
             _ => false,
         }
     }
@@ -135,7 +137,8 @@ pub fn apply(one: &Override, root: &mut Node, problems: &mut Problems) {
         };
         key = key.step(segment.clone());
     }
-    if let (Value::Table(entries), KeySegment::Field(_) | KeySegment::Index(_)) = (&mut node.value, last)
+    if let (Value::Table(entries), KeySegment::Field(_) | KeySegment::Index(_)) =
+        (&mut node.value, last)
     {
         let name = name_of(last);
         let key =

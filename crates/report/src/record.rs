@@ -161,18 +161,16 @@ pub fn asked(stop: &StopRules) -> String {
 
 /// Requested gather settings in words: "depth 8, radius 0.5 mm, angle 0.15 deg".
 pub fn requested_gathering(gather: &GatherPlan) -> String {
-    let schedule = match gather.schedule {
-        Schedule::Stages => None,
-        other @ Schedule::PerPass => Some(format!("schedule {}", other.name())),
-    };
     let all = [
         gather.depth.map(|depth| format!("depth {depth}")),
-        gather.radius.map(|radius| format!("radius {radius} mm")),
-        // Nine digits hide the conversion from radians.
-        gather.theta_max.map(|angle| format!("angle {} deg", format_exact(angle.to_degrees()))),
+        gather.radius_mm.map(|radius| format!("radius {radius} mm")),
+        gather.angle_deg.map(|angle| format!("angle {} deg", format_exact(angle))),
         gather.records.map(|records| format!("{records} records")),
         gather.photons.map(|photons| format!("{photons} photons")),
-        schedule,
+        gather
+            .schedule
+            .filter(|own| *own != Schedule::default())
+            .map(|own| format!("schedule {}", own.name())),
     ];
     all.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }

@@ -78,7 +78,7 @@ pub(crate) fn lower(
     context.lower_sensors();
     context.check_measures();
     let Context { builder, faces, meshes, problems, .. } = context;
-    let checks = plan::checks(&spec.check, problems);
+    plan::checks(&spec.check, problems);
     if scope == Scope::Keys || !problems.is_free_of_errors() {
         return None;
     }
@@ -91,5 +91,5 @@ pub(crate) fn lower(
     consistency::check_open_faces(spec, &scene, problems);
     contacts::check_contacts(spec, &scene, problems);
     slips::check_slips(spec, &scene, problems);
-    problems.is_free_of_errors().then_some(Lowered { scene, run, checks, meshes })
+    problems.is_free_of_errors().then(|| Lowered { scene, run, checks: spec.check.clone(), meshes })
 }

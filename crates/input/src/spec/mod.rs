@@ -22,9 +22,10 @@ pub mod study;
 pub mod sweep;
 
 use finish::{FinishSpec, MediumSpec};
+use lumiduct_core::plan::Check;
 use pattern::PatternSpec;
 use relief::ReliefSpec;
-use run::{CheckSpec, RunSpec};
+use run::RunSpec;
 use sensor::SensorSpec;
 use sheet::SheetSpec;
 use solid::SolidSpec;
@@ -84,7 +85,7 @@ pub struct SceneSpec {
     pub run: RunSpec,
     /// What is expected of the results, in any number of `[[check]]` tables.
     #[serde(default)]
-    pub check: Vec<CheckSpec>,
+    pub check: Vec<Check>,
 }
 
 /// What stands at the head of the report.

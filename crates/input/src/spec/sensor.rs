@@ -1,10 +1,10 @@
 //! Sensors as a scene file states them.
 
+use lumiduct_core::plan::Estimator;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::spec::placement::PlacementSpec;
-use crate::spec::run::SensorEstimatorSpec;
 use crate::spec::sweep::{CircleSpec, RectangleSpec};
 
 /// A sensor; exactly one of `plane`, `goniometer`, `luminance` and `image`.
@@ -41,7 +41,7 @@ pub struct SensorSpec {
     #[serde(default)]
     pub absorbing: bool,
     /// How its flux is estimated. Omitted: as `run.estimator` or `--estimator` says for all sensors; this key goes over both.
-    pub estimator: Option<SensorEstimatorSpec>,
+    pub estimator: Option<Estimator>,
     /// Which passages count of light that passes the sensor more than once: `every`, or the `first`, also through the port
     /// `entering`. Only for a `plane` without `aim`; photons and paths of `backward` and `mix` know it.
     #[serde(default)]

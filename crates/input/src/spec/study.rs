@@ -1,7 +1,7 @@
 //! Studies as a study file states them: one scene, many designs of it.
 
-use crate::spec::run::{CheckSpec, EstimatorSpec, TargetSpec};
 use indexmap::IndexMap;
+use lumiduct_core::plan::{Check, Request, Target};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -45,7 +45,7 @@ pub struct StudySpec {
     pub ranking: Option<RankingSpec>,
     /// What every design has to meet, in any number of `[[check]]` tables. Those of the scene are not looked at.
     #[serde(default)]
-    pub check: Vec<CheckSpec>,
+    pub check: Vec<Check>,
     /// What is kept of each design beside its row.
     #[serde(default)]
     pub keep: KeepSpec,
@@ -198,11 +198,11 @@ pub struct StudyRunSpec {
     #[schemars(range(min = 1))]
     pub paths: Option<u64>,
     /// Uncertainty to reach.
-    pub target: Option<TargetSpec>,
+    pub target: Option<Target>,
     /// Seed of the random numbers of light.
     pub seed: Option<u64>,
     /// How flux is estimated.
-    pub estimator: Option<EstimatorSpec>,
+    pub estimator: Option<Request>,
 }
 
 /// What the best design is.

@@ -13,7 +13,6 @@ use crate::keys::{Key, Places};
 use crate::lower::plan;
 use crate::problems::Problems;
 use crate::sources::argument_label;
-use crate::spec::run::TargetSpec;
 use crate::spec::solid::{ShapedSolidSpec, SolidSpec};
 use crate::spec::study::{BestSpec, KeepSpec, PlanSpec, SamplesSpec, StudyRunSpec, StudySpec};
 use crate::study::file::{StudyDraft, read};
@@ -144,7 +143,7 @@ pub fn load_study(path: &Path, settings: &StudySettings) -> Result<Study> {
     let scene = path.parent().unwrap_or(Path::new("")).join(&spec.scene);
     let common = common_settings(&spec, settings, &mut problems);
     rules::check(&spec, &places, &settings.overrides, &mut problems);
-    let checks = plan::checks(&spec.check, &mut problems);
+    plan::checks(&spec.check, &mut problems);
     if !scene.is_file() {
         let message = format!("there is no file {}", scene.display());
         problems.error(&Key::of(&["scene"]), message);
@@ -184,7 +183,7 @@ pub fn load_study(path: &Path, settings: &StudySettings) -> Result<Study> {
                 BestSpec::Lowest => Best::Lowest,
             },
         }),
-        checks,
+        checks: spec.check.clone(),
         keep: match spec.keep {
             KeepSpec::Records => Keep::Records,
             KeepSpec::Reports => Keep::Reports,
@@ -262,7 +261,7 @@ fn common_settings(
     );
     let is_asked = settings.paths.is_some() || settings.target.is_some();
     let (paths, error) = if is_asked { from_command } else { from_study };
-    let measure = target.as_ref().map(|TargetSpec { measure, .. }| measure.clone());
+    let measure = target.as_ref().map(|target| target.measure.clone());
     let mut overrides = Vec::new();
     for (key, value) in &spec.set {
         match parameters::toml_text(value) {
@@ -276,7 +275,7 @@ fn common_settings(
     overrides.extend(settings.overrides.iter().cloned());
     Settings {
         overrides,
-        estimator: estimator.map(plan::request),
+        estimator: *estimator,
         target: error,
         target_measure: measure,
         paths,

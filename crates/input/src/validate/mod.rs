@@ -95,7 +95,9 @@ impl<'a> At<'a> {
     fn to_key(self) -> Key {
         match self.around {
             None => Key::root(),
-            Some((around, Step::Field(name))) => around.to_key().step(KeySegment::Field(name.into())),
+            Some((around, Step::Field(name))) => {
+                around.to_key().step(KeySegment::Field(name.into()))
+            }
             Some((around, Step::Index(index))) => around.to_key().step(KeySegment::Index(index)),
         }
     }

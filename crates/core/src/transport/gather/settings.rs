@@ -113,13 +113,15 @@ pub fn settle(
     Some(GatherSettings {
         depth,
         window: Window {
-            radius: plan.radius.unwrap_or(radius),
-            theta_max: plan.theta_max.unwrap_or_else(|| angle(scene, inradius, &from_sources)),
+            radius: plan.radius_mm.unwrap_or(radius),
+            theta_max: plan
+                .angle_deg
+                .map_or_else(|| angle(scene, inradius, &from_sources), f64::to_radians),
         },
         sensors,
         gather_paths: gather_paths.max(1),
         photons,
-        schedule: plan.schedule,
+        schedule: plan.schedule.unwrap_or_default(),
         inradius,
     })
 }

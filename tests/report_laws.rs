@@ -45,7 +45,7 @@ impl Report {
         Some(Reading { value, error: error.hypot(bias) })
     }
 
-    /// The maps: sensor, quantity, and the view with its dot.
+    /// The maps: sensor, quantity, and the view and light group with their dots.
     fn maps(&self) -> Vec<(String, String, String)> {
         let names = self.measures.as_object().unwrap().keys();
         let map = |name: &String| {
@@ -59,8 +59,10 @@ impl Report {
 
     /// The cells that count for themselves.
     fn cells(&self, sensor: &str, quantity: &str, view: &str) -> Vec<Reading> {
+        let (view, light) = view.split_once(".from.").map_or((view, None), |(v, l)| (v, Some(l)));
         let view = view.strip_prefix('.').map_or(String::new(), |view| format!(".view{view}"));
-        let path = self.folder.join(format!("{sensor}.{quantity}{view}.csv"));
+        let light = light.map_or(String::new(), |light| format!(".from_{light}"));
+        let path = self.folder.join(format!("{sensor}.{quantity}{view}{light}.csv"));
         let mut reader = csv::Reader::from_path(&path).unwrap();
         let header = reader.headers().unwrap().clone();
         let column = |name: &str| header.iter().position(|title| title.starts_with(name));

@@ -62,6 +62,43 @@ fn each_lamp_has_its_efficiency_and_its_crosstalk() {
 }
 
 #[test]
+fn each_light_group_has_maps_pages_and_differences_of_its_own() {
+    let place = Place::new();
+    let lamps = LAMPS
+        .replace("flux_lm = 2", "flux_lm = 2, group = \"red\"")
+        .replace("flux_lm = 1,", "flux_lm = 1, group = \"green\",")
+        .replace("disk = { radius_mm = 2 } }", "disk = { radius_mm = 2 }, cells = [3, 3] }")
+        + "[sensors.far]\ngoniometer = { c_step_deg = 90, gamma_step_deg = 30 }\n";
+    fs::write(place.path("lamps.toml"), lamps).unwrap();
+    place.good("run lamps.toml");
+    let page = page(&place, "lamps");
+    for text in [
+        "![illuminance from red](below_left.illuminance.from_red.png)",
+        "![intensity from green, far field](far.intensity.from_green.png)",
+        "| below_right | uniformity min/avg | ",
+    ] {
+        assert!(page.contains(text), "{text}: {page}");
+    }
+    let at = |text: &str| page.find(text).unwrap();
+    assert!(at("(below_left.illuminance.png)") < at("(below_left.illuminance.from_red.png)"));
+    let html = fs::read_to_string(place.path("reports/lamps/report.html")).unwrap();
+    assert!(html.contains("below_left: illuminance from red"));
+    assert!(html.contains("far: intensity from green"));
+    let matrix = place.path("reports/lamps/below_left.illuminance.from_green.matrix.csv");
+    assert!(fs::read_to_string(matrix).unwrap().contains("illuminance in lx"));
+    assert!(place.path("reports/lamps/far.intensity.from_red.csv").exists());
+    let summary = place.summary("reports/lamps");
+    let even = &summary["measures"]["below_left.uniformity_min_avg.from.red"]["value"];
+    assert!(even.as_f64().is_some_and(|even| even > 0.0 && even <= 1.0), "{even}");
+    place.good("run lamps.toml --seed 2 -o other");
+    place.good("diff reports/lamps other -o difference");
+    for picture in ["below_left.illuminance.from_red", "far.intensity.from_green"] {
+        let path = place.path(&format!("difference/{picture}.difference.png"));
+        assert!(path.exists(), "{picture}");
+    }
+}
+
+#[test]
 fn a_lamp_that_is_off_is_dark_and_a_scene_without_light_is_refused() {
     let place = Place::new();
     fs::write(place.path("lamps.toml"), LAMPS).unwrap();
@@ -104,6 +141,7 @@ fn no_page_adds_weathers_up_without_saying_so() {
     let page = page(&place, "tube");
     assert!(page.contains("| value ± standard error, sum over 2 weathers |"), "{page}");
     assert!(page.contains("![illuminance, sum over 2 weathers]"), "{page}");
+    assert!(page.contains("![illuminance from clear_and_sun]"), "{page}");
     assert!(page.contains("`from` in its name is a sum over 2 weathers"), "{page}");
     let html = fs::read_to_string(place.path("reports/tube/report.html")).unwrap();
     assert!(html.contains("value ± standard error, sum over 2 weathers"));

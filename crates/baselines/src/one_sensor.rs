@@ -64,7 +64,7 @@ impl<'s> OneSensor<'s> {
     }
 
     pub(crate) fn count(&self, readings: &mut Readings, cells: &[usize], light: &Counted) {
-        readings.count(&self.layout, self.id, cells, light);
+        readings.count((&self.layout, &self.scene.light), self.id, cells, light);
     }
 
     /// Gather paths per batch, for about the same work in every scene; deterministic for a seed.

@@ -1,8 +1,9 @@
 //! The contribution of each source or light group to each sensor, and the wording where totals sum
 //! over weathers.
 
+use crate::key_figures::{is_one_cell, view_words};
 use crate::words::quantity;
-use lumiduct_core::measure::{Measure, Measures};
+use lumiduct_core::measure::{Measure, Measures, SensorMap};
 
 /// Least number of sources and groups that are compared.
 const SEVERAL: usize = 2;
@@ -55,8 +56,8 @@ pub(crate) struct LightMatrix {
     pub(crate) rows: Vec<Vec<String>>,
 }
 
-/// Efficiencies of all sources and groups on all sensors, with the shares where meaningful; `None`
-/// unless there are several sources.
+/// Efficiencies of all sources and groups on all sensors, with the shares where meaningful, and the
+/// uniformity of maps by group; `None` unless there are several sources.
 pub(crate) fn matrix(measures: &Measures) -> Option<LightMatrix> {
     let sensors = || measures.sensor_paths.iter().map(|paths| paths.sensor.as_str());
     let all: Vec<(&str, Vec<LightShare<'_>>)> =
@@ -74,8 +75,36 @@ pub(crate) fn matrix(measures: &Measures) -> Option<LightMatrix> {
         let own: Option<Vec<String>> =
             shares.iter().map(|share| share.share.map(quantity)).collect();
         rows.extend(own.map(|cells| row("share", cells)));
+        let even = uniformities(measures, sensor, shares).into_iter();
+        rows.extend(even.map(|(what, cells)| row(&what, cells)));
     }
     Some(LightMatrix { head, rows })
+}
+
+/// What is measured and its value for each group, for every map with several cells; nothing for
+/// sources that are in no group.
+fn uniformities(
+    measures: &Measures,
+    sensor: &str,
+    shares: &[Share<'_>],
+) -> Vec<(String, Vec<String>)> {
+    let is_own = |map: &&SensorMap| map.sensor == sensor && map.light.is_none();
+    let maps = measures.maps.iter().filter(is_own).filter(|map| !is_one_cell(map));
+    let row = |map: &SensorMap| {
+        let view = map.view.map_or(String::new(), |view| format!(".{view}"));
+        let of = |name: &str| format!("{sensor}.uniformity_min_avg{view}.from.{name}");
+        let found: Vec<_> =
+            shares.iter().map(|share| measures.values.get(&of(share.name))).collect();
+        let cells = found.iter().map(|own| own.map_or(String::new(), quantity)).collect();
+        let is_known = found.iter().any(Option::is_some);
+        is_known.then(|| (format!("uniformity min/avg{}", view_words(map)), cells))
+    };
+    maps.filter_map(row).collect()
+}
+
+/// " from red", where a map shows the light of a group alone.
+pub(crate) fn from_light(light: Option<&str>) -> String {
+    light.map_or(String::new(), |name| format!(" from {name}"))
 }
 
 /// "sum over 2 weathers", where the sources never shine all together.

@@ -3,8 +3,8 @@
 //! In the order of a reader's interest: the verdict, the requested numbers, pictures and readings
 //! of each sensor, what was simulated, where the light went, and how it was computed.
 
-use crate::by_light::{self, LightMatrix, matrix, remark_on_totals, sum_over_weathers};
-use crate::csv::{map_name, map_words};
+use crate::by_light::{self, LightMatrix, from_light, matrix, remark_on_totals, sum_over_weathers};
+use crate::csv::{intensity_name, map_name, map_words};
 use crate::figures::{BOUNCES_SHOWN, bounce_plot, intensity_plot, where_and_when};
 use crate::html::data;
 use crate::html::frame::{Block, PagePart, Plots, Standing, table};
@@ -124,12 +124,14 @@ fn sensor(report: &Report, name: &str, plots: &mut Plots) -> PagePart {
     }
     for intensity in measures.intensities.iter().filter(|table| table.sensor == name) {
         let polar = data::polar(&intensity_plot(intensity));
-        let label = format!("intensity, {}", where_and_when(intensity));
-        blocks.push(plots.add(label, polar, Some(format!("{name}.intensity.png"))));
+        let light = from_light(intensity.light.as_deref());
+        let label = format!("intensity{light}, {}", where_and_when(intensity));
+        let picture = Some(format!("{}.png", intensity_name(intensity)));
+        blocks.push(plots.add(label, polar, picture));
         let all = data::directions(intensity);
         let sum = sum_over_weathers(intensity.weathers);
         let label = sum.map_or(String::new(), |words| format!(", {words}"));
-        let label = format!("intensity by direction{label}");
+        let label = format!("intensity{light} by direction{label}");
         blocks.extend(all.map(|all| plots.add(label, all, None)));
     }
     if let Some(found) = by_sun::by_sun(report, name) {

@@ -1,6 +1,6 @@
 //! Tables: one file for each map, intensity distribution and histogram, a row for each cell, units in the header.
 
-use crate::by_light::sum_over_weathers;
+use crate::by_light::{from_light, sum_over_weathers};
 use crate::{OutputFile, Report};
 use csv::Writer;
 use lumiduct_base::error::{Error, Result};
@@ -34,10 +34,21 @@ pub(crate) fn files(report: &Report) -> Result<Vec<OutputFile>> {
 /// File name of a map without its extension.
 pub(crate) fn map_name(map: &SensorMap) -> String {
     let view = map.view.map_or(String::new(), |view| format!(".view{view}"));
-    format!("{}.{}{view}", map.sensor, map.quantity)
+    format!("{}.{}{view}{}", map.sensor, map.quantity, light_part(map.light.as_deref()))
 }
 
-/// What a map shows, in words: its quantity, and where a view looks from.
+/// File name of a table or picture of intensities without its extension.
+pub(crate) fn intensity_name(table: &IntensityTable) -> String {
+    format!("{}.intensity{}", table.sensor, light_part(table.light.as_deref()))
+}
+
+/// The part of a file name that names a light group: `.from_red`. Names have no points, so that no
+/// other sensor or view has the same.
+fn light_part(light: Option<&str>) -> String {
+    light.map_or(String::new(), |name| format!(".from_{name}"))
+}
+
+/// What a map shows, in words: its quantity, the light group, and where a view looks from.
 pub(crate) fn map_words(map: &SensorMap) -> String {
     let from = map.seen_from_deg.map_or(String::new(), |angles| {
         let [theta, phi] = angles.map(|angle| format_value((1e6 * angle).round() / 1e6));
@@ -46,7 +57,8 @@ pub(crate) fn map_words(map: &SensorMap) -> String {
     let view = map.view.map_or(String::new(), |view| format!(" of view {view}"));
     let weathers =
         sum_over_weathers(map.weathers).map_or(String::new(), |words| format!(", {words}"));
-    format!("{}{view}{from}{weathers}", map.quantity)
+    let light = from_light(map.light.as_deref());
+    format!("{}{light}{view}{from}{weathers}", map.quantity)
 }
 
 fn map_table(map: &SensorMap) -> Result<OutputFile> {
@@ -93,7 +105,7 @@ fn intensity_table(intensity: &IntensityTable) -> Result<OutputFile> {
         let bias = intensity.biases.as_ref().map(|biases| biases[at]);
         numbers(place.into_iter().chain([*value, intensity.std_errors[at]]).chain(bias))
     });
-    table(format!("{}.intensity.csv", intensity.sensor), &header, rows)
+    table(format!("{}.csv", intensity_name(intensity)), &header, rows)
 }
 
 /// Header of the column of possible bias on top of the noise.

@@ -1,7 +1,7 @@
 //! The pictures of a report and their contents.
 
-use crate::by_light::sum_over_weathers;
-use crate::csv::{map_name, map_words};
+use crate::by_light::{from_light, sum_over_weathers};
+use crate::csv::{intensity_name, map_name, map_words};
 use crate::key_figures::is_one_cell;
 use crate::png::{
     AxisScale, Bar, BarChart, ColourMap, ErrorForm, HeatMap, LinePlot, Look, PlotSeries,
@@ -25,7 +25,7 @@ pub(crate) fn files(report: &Report) -> Result<Vec<OutputFile>> {
     }
     for table in &measures.intensities {
         files.push(OutputFile {
-            name: format!("{}.intensity.png", table.sensor),
+            name: format!("{}.png", intensity_name(table)),
             bytes: polar_plot(&intensity_plot(table))?,
         });
     }
@@ -70,7 +70,7 @@ pub(crate) fn sensor_map(map: &SensorMap) -> HeatMap {
 /// The intensity of a goniometer by both of its angles.
 pub(crate) fn directions_map(table: &IntensityTable) -> HeatMap {
     HeatMap {
-        title: format!("{}: intensity", table.sensor),
+        title: intensity_title(table),
         subtitle: sum_over_weathers(table.weathers).unwrap_or_default(),
         x_label: "C in deg".into(),
         y_label: "γ in deg".into(),
@@ -157,12 +157,16 @@ pub(crate) fn intensity_plot(table: &IntensityTable) -> PolarPlot {
         vec![PolarCurve { name: "mean over C".into(), points, std_errors: errors }]
     };
     PolarPlot {
-        title: format!("{}: intensity", table.sensor),
+        title: intensity_title(table),
         subtitle: where_and_when(table),
         unit: table.unit.clone(),
         pole: Pole::Up,
         curves,
     }
+}
+
+fn intensity_title(table: &IntensityTable) -> String {
+    format!("{}: intensity{}", table.sensor, from_light(table.light.as_deref()))
 }
 
 /// Distance of an intensity, and its number of weathers: `far field`,
@@ -293,7 +297,7 @@ far = { goniometer = { c_step_deg = 90, gamma_step_deg = 30 } }
         std::fs::write(&path, SCENE).unwrap();
         let mut scene = load(&path, &Settings::default()).unwrap().scene;
         let weathers = weathers.iter().map(|name| (*name).to_owned()).collect();
-        scene.light = LightGroups { groups: Vec::new(), weathers };
+        scene.light = LightGroups::new(Vec::new(), weathers);
         let layout = Layout::new(&scene);
         let [one, other] = [0, 1].map(|index| {
             let mut batch = Readings::of_batch(&scene, &layout, 1, 1000, index);

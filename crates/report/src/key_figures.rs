@@ -35,7 +35,8 @@ pub(crate) fn key_figures<'r>(measures: &'r Measures, sensor: &str) -> Vec<KeyFi
             Some(KeyFigure { label, measure, is_brief: *is_brief })
         })
         .collect();
-    for map in measures.maps.iter().filter(|map| map.sensor == sensor) {
+    let is_own = |map: &&SensorMap| map.sensor == sensor && map.light.is_none();
+    for map in measures.maps.iter().filter(is_own) {
         let view = map.view.map_or(String::new(), |view| format!(".{view}"));
         let named = |name: &str, label: String, is_brief: bool| {
             Some(KeyFigure { label, measure: value(&format!("{name}{view}"))?, is_brief })
@@ -54,7 +55,7 @@ pub(crate) fn key_figures<'r>(measures: &'r Measures, sensor: &str) -> Vec<KeyFi
 }
 
 /// Where a view looks from: ` at 30° from the normal, azimuth 0°`.
-fn view_words(map: &SensorMap) -> String {
+pub(crate) fn view_words(map: &SensorMap) -> String {
     map.seen_from_deg.map_or(String::new(), |angles| {
         let [theta, phi] = angles.map(|angle| format_value((1e6 * angle).round() / 1e6));
         if theta == "0" {

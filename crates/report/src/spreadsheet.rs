@@ -3,7 +3,7 @@
 //! They begin with a UTF-8 byte-order mark, without which Excel misreads units such as `mm²`. All
 //! other tables have none; this program reads both.
 
-use crate::csv::{map_name, table};
+use crate::csv::{intensity_name, map_name, table};
 use crate::{OutputFile, Report};
 use lumiduct_base::error::Result;
 use lumiduct_core::measure::{IntensityTable, MapAxes, SensorMap};
@@ -97,7 +97,7 @@ fn map_matrix(map: &SensorMap) -> SpreadsheetMatrix<'_> {
 
 fn intensity_matrix(intensity: &IntensityTable) -> SpreadsheetMatrix<'_> {
     SpreadsheetMatrix {
-        name: format!("{}.intensity", intensity.sensor),
+        name: intensity_name(intensity),
         quantity: format!("intensity in {}", intensity.unit),
         rows: ["gamma", "deg"],
         row_edges: &intensity.gamma_deg,

@@ -5,8 +5,12 @@
 //! cos γ₂)/2. Cells are treated as independent, which overestimates the errors of large shares of
 //! the flux rather than underestimating them.
 
+#[cfg(test)]
+mod tests;
+
 use crate::measure::counted::{Noisy, WeightedValue};
 use crate::measure::evidence::{Evidence, counted};
+use crate::measure::light::LightSelection;
 use crate::measure::{Measure, Status, beam, uniformity};
 use crate::scene::{Goniometer, SensorId};
 use indexmap::IndexMap;
@@ -29,6 +33,9 @@ const FIELD: f64 = 0.1;
 pub struct IntensityTable {
     /// Name of the sensor.
     pub sensor: String,
+    /// Light group whose light it is; `None` for the light of all sources.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub light: Option<String>,
     /// Number of weathers whose light is summed; if there are several, they never shine together.
     pub weathers: usize,
     /// Unit of intensity, such as `cd`.
@@ -77,8 +84,13 @@ struct SphereFlux<'a> {
 }
 
 impl<'a> SphereFlux<'a> {
-    fn of(evidence: &Evidence<'_>, id: SensorId, goniometer: &'a Goniometer) -> Self {
-        let flux = evidence.cell_flux(id, 0..goniometer.cells());
+    fn of(
+        evidence: &Evidence<'_>,
+        id: SensorId,
+        goniometer: &'a Goniometer,
+        light: LightSelection,
+    ) -> Self {
+        let flux = evidence.cell_flux(id, light, 0..goniometer.cells());
         let count = evidence.count_flux(&flux);
         Self { goniometer, flux, count }
     }
@@ -157,13 +169,14 @@ fn ring_gammas(rings: usize) -> Vec<f64> {
     (0..rings).map(|ring| (0.5 * (edge(ring) + edge(ring + 1))).acos()).collect()
 }
 
-/// The intensities of a goniometer.
+/// The intensities of some light on a goniometer.
 pub(crate) fn table(
     evidence: &Evidence<'_>,
     id: SensorId,
     goniometer: &Goniometer,
+    light: LightSelection,
 ) -> IntensityTable {
-    let sphere = SphereFlux::of(evidence, id, goniometer);
+    let sphere = SphereFlux::of(evidence, id, goniometer, light);
     let (rings, sectors) = (goniometer.gamma_cells, goniometer.c_cells);
     let cells = |f: fn(Noisy) -> f64| {
         Array2::from_shape_fn((rings, sectors), |(ring, c)| f(sphere.intensity(ring, &[c])))
@@ -172,7 +185,8 @@ pub(crate) fn table(
     let curve = sphere.curve();
     IntensityTable {
         sensor: evidence.scene.sensors[id.index()].name.clone(),
-        weathers: evidence.scene.light.weathers.len(),
+        light: light.name(evidence.scene).map(str::to_owned),
+        weathers: light.weathers(evidence.scene),
         unit: evidence.scene.unit.intensity().to_owned(),
         values: cells(|cell| cell.value),
         std_errors: cells(|cell| cell.std_error),
@@ -187,20 +201,45 @@ pub(crate) fn table(
     }
 }
 
-/// The measures of the sphere, by the last part of their dotted names.
+/// The measures of some light on the sphere, by the last part of their dotted names; zones and
+/// single rings for all light only.
 pub(crate) fn measures(
     evidence: &Evidence<'_>,
     id: SensorId,
     goniometer: &Goniometer,
+    light: LightSelection,
 ) -> IndexMap<String, Measure> {
-    let sphere = SphereFlux::of(evidence, id, goniometer);
+    let scene = evidence.scene;
+    let sphere = SphereFlux::of(evidence, id, goniometer, light);
     let curve = sphere.curve();
-    let unit = evidence.scene.unit;
+    let unit = scene.unit.intensity();
+    let [most, axis] = if light.is_dark(scene) {
+        [evidence.no_light(unit), evidence.no_light(unit)]
+    } else {
+        [largest(evidence, &sphere), single(evidence, curve[0], unit)]
+    };
+    let from = light.suffix(scene);
     let mut out = IndexMap::new();
-    out.insert("intensity_max".into(), largest(evidence, &sphere));
-    out.insert("intensity_axis".into(), single(evidence, curve[0], unit.intensity()));
-    angles(evidence, &sphere, &curve, &mut out);
-    let rings = goniometer.gamma_cells;
+    out.insert(format!("intensity_max{from}"), most);
+    out.insert(format!("intensity_axis{from}"), axis);
+    let angles = angles(evidence, &sphere, &curve).into_iter();
+    out.extend(angles.map(|(name, angle)| (format!("{name}{from}"), angle)));
+    match light {
+        LightSelection::All => zones(evidence, &sphere, &curve, &mut out),
+        LightSelection::Group(_) => {}
+    }
+    out
+}
+
+/// Flux by zones, and the intensity of single rings.
+fn zones(
+    evidence: &Evidence<'_>,
+    sphere: &Sphere<'_>,
+    curve: &[Noisy],
+    out: &mut IndexMap<String, Measure>,
+) {
+    let unit = evidence.scene.unit;
+    let rings = curve.len();
     if (rings * ZONE_DEG).is_multiple_of(180) {
         let per_zone = rings * ZONE_DEG / 180;
         for zone in 0..180 / ZONE_DEG {
@@ -214,7 +253,6 @@ pub(crate) fn measures(
             out.insert(format!("ring.{ring}"), single(evidence, *intensity, unit.intensity()));
         }
     }
-    out
 }
 
 /// Rings and sectors ordered so that neighbours in the list are neighbours on the sphere. The order
@@ -237,13 +275,9 @@ fn largest(evidence: &Evidence<'_>, sphere: &SphereFlux<'_>) -> Measure {
 }
 
 /// Beam and field angle on the mean curve over C, and in the planes C0-C180 and C90-C270.
-fn angles(
-    evidence: &Evidence<'_>,
-    sphere: &SphereFlux<'_>,
-    curve: &[Noisy],
-    out: &mut IndexMap<String, Measure>,
-) {
+fn angles(evidence: &Evidence<'_>, sphere: &SphereFlux<'_>, curve: &[Noisy]) -> Vec<(String, Measure)> {
     let gammas = ring_gammas(curve.len());
+    let mut out = Vec::new();
     let mut profiles = vec![(String::new(), curve.to_vec(), curve.to_vec())];
     for c in planes(sphere.goniometer) {
         let name = format!(".c{:.0}", c.to_degrees());
@@ -264,9 +298,10 @@ fn angles(
                 },
                 None => evidence.measure(0.0, f64::INFINITY, "deg", Status::NoSignal),
             };
-            out.insert(format!("{name}{plane}"), measure);
+            out.push((format!("{name}{plane}"), measure));
         }
     }
+    out
 }
 
 /// A value as a measure; where nothing was counted, its error is one count.
@@ -274,97 +309,4 @@ fn single(evidence: &Evidence<'_>, found: Noisy, unit: &str) -> Measure {
     let status = counted(found.value, found.std_error);
     let std_error = if status == Status::NoSignal { found.count } else { found.std_error };
     evidence.measure(found.value, std_error, unit, status)
-}
-
-#[cfg(test)]
-mod tests {
-    use crate::measure::noise::Noise;
-    use crate::measure::samples::{goniometer, readings, scene};
-    use crate::measure::{Status, measure};
-    use crate::scene::{Scene, SensorKind};
-    use crate::transport::Findings;
-    use std::f64::consts::PI;
-
-    /// Readings without noise of an intensity I(C, γ) [cd], exact over each cell for intensities ∝ cos^m γ.
-    fn cosine_power(scene: &Scene, m: f64) -> Findings {
-        let SensorKind::Goniometer(sphere) = &scene.sensors[0].kind else { panic!("no sphere") };
-        let edge = |ring: usize| {
-            let cos = (std::f64::consts::PI * ring as f64 / sphere.gamma_cells as f64).cos();
-            cos.max(0.0).powf(m + 1.0)
-        };
-        readings(scene, 2, |_, _, batch| {
-            for cell in 0..sphere.cells() {
-                let ring = cell / sphere.c_cells;
-                let flux = (edge(ring) - edge(ring + 1)) / sphere.c_cells as f64;
-                batch.sensors[0].cells.add(cell, flux);
-            }
-        })
-    }
-
-    #[test]
-    fn a_cosine_power_source_has_its_axis_intensity_and_half_angle() {
-        let scene = scene(&[("led", 1.0)], vec![("far", goniometer(8, 720))]);
-        let measures = measure(&scene, &cosine_power(&scene, 5.0));
-        let value = |name: &str| measures.values[name].value;
-        // I₀ = (m + 1)/2π per lumen.
-        let axis = 6.0 / std::f64::consts::TAU;
-        assert!((value("far.intensity_axis") / axis - 1.0).abs() < 5e-5);
-        assert!((value("far.intensity_max") / axis - 1.0).abs() < 5e-5);
-        // acos(0.5^(1/5)) = 29.477 deg.
-        for name in ["far.beam_angle", "far.beam_angle.c0", "far.beam_angle.c90"] {
-            assert!((value(name) - 2.0 * 29.477).abs() < 3e-3, "{name}: {}", value(name));
-        }
-        let tenth = 2.0 * 0.1f64.powf(0.2).acos().to_degrees();
-        assert!((value("far.field_angle") - tenth).abs() < 3e-3);
-    }
-
-    #[test]
-    fn a_peak_of_few_counts_is_right_within_its_error_or_a_bound() {
-        let scene = scene(&[("led", 1.0)], vec![("far", goniometer(24, 90))]);
-        let exactly = cosine_power(&scene, 20.0);
-        let peak = measure(&scene, &exactly).values["far.intensity_max"].value;
-        let SensorKind::Goniometer(sphere) = &scene.sensors[0].kind else { panic!("no sphere") };
-        let edge = |ring: usize| (PI * ring as f64 / 90.0).cos().max(0.0).powi(21) / 24.0;
-        let share = |cell: usize| edge(cell / 24) - edge(cell / 24 + 1);
-        for (stream, counts, most) in [(1, 1e4, 1.6), (5, 1e4, 1.6), (3, 1e5, 1.4), (4, 1e6, 1.1)] {
-            let mut noise = Noise::of_stream(stream);
-            let counted = readings(&scene, 128, |_, _, batch| {
-                for cell in 0..sphere.cells() {
-                    let found = noise.poisson(share(cell) * counts / 128.0);
-                    batch.sensors[0].cells.add(cell, found * 128.0 / counts);
-                }
-            });
-            let found = &measure(&scene, &counted).values["far.intensity_max"];
-            assert!(found.value < most * peak, "{counts} counts: {found}, {peak} expected");
-            let is_off = (found.value - peak).abs() > 3.0 * found.total_error();
-            assert!(!is_off, "{counts} counts: {found}, {peak} expected");
-            assert_eq!(found.status == Status::Ok, counts > 1e4, "{counts} counts: {found}");
-        }
-    }
-
-    #[test]
-    fn zones_and_rings_add_up_to_all_of_the_flux() {
-        let scene = scene(&[("led", 1.0)], vec![("far", goniometer(24, 90))]);
-        let measures = measure(&scene, &cosine_power(&scene, 1.0));
-        let zones = (0..18).map(|zone| format!("far.zonal_flux.{}-{}", 10 * zone, 10 * zone + 10));
-        let total: f64 = zones.map(|name| measures.values[&name].value).sum();
-        assert!((total - 1.0).abs() < 1e-12);
-        // Lambertian: sin² 20° - sin² 10°.
-        let second = 20f64.to_radians().sin().powi(2) - 10f64.to_radians().sin().powi(2);
-        assert!((measures.values["far.zonal_flux.10-20"].value - second).abs() < 1e-12);
-        let table = &measures.intensities[0];
-        assert_eq!(table.values.dim(), (90, 24));
-        assert_eq!(table.ring_values[40], measures.values["far.ring.40"].value);
-        assert!((table.values[[40, 3]] - table.ring_values[40]).abs() < 1e-12);
-        assert_eq!((table.gamma_deg[1], table.c_deg[1]), (2.0, 15.0));
-    }
-
-    #[test]
-    fn zones_that_do_not_fit_the_rings_are_left_out() {
-        let scene = scene(&[("led", 1.0)], vec![("far", goniometer(3, 12))]);
-        let measures = measure(&scene, &cosine_power(&scene, 1.0));
-        assert!(measures.values.keys().all(|name| !name.contains("zonal_flux")));
-        // Three sectors are too few to separate planes.
-        assert!(measures.values.keys().all(|name| !name.ends_with(".c0")));
-    }
 }

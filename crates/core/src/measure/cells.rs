@@ -8,6 +8,7 @@
 
 use crate::measure::counted::{Noisy, WeightedValue};
 use crate::measure::evidence::Evidence;
+use crate::measure::light::LightSelection;
 use crate::scene::{Grid, Seeing, SensorId, SurfaceSensor};
 use glam::DVec2;
 use lumiduct_base::units::MM2_PER_M2;
@@ -30,7 +31,7 @@ fn interleaved(column: usize, row: usize) -> u64 {
     (0..u32::BITS).map(|place| (bit(column, place) | bit(row, place) << 1) << (2 * place)).sum()
 }
 
-/// The cells of one view.
+/// The cells of one view, lit by all light or by a light group.
 pub(crate) struct SensorCells<'a> {
     /// Mean flux per cell with its standard error, lm or W.
     flux: Vec<(f64, f64)>,
@@ -44,8 +45,10 @@ pub(crate) struct SensorCells<'a> {
     pub(crate) factor: f64,
     /// Flux of one count, lm or W.
     count: f64,
-    /// Whether this is all the light that the sensor counts.
-    pub(crate) all_light: bool,
+    /// The scalars of the same light; `None` for a view, which is only a part of what they sum.
+    pub(crate) flux_slots: Option<Vec<usize>>,
+    /// Whether this is light that no source emits.
+    pub(crate) is_dark: bool,
 }
 
 impl<'a> SensorCells<'a> {
@@ -53,6 +56,7 @@ impl<'a> SensorCells<'a> {
         evidence: &Evidence<'_>,
         id: SensorId,
         sensor: &'a SurfaceSensor,
+        light: LightSelection,
         view: Option<usize>,
     ) -> Self {
         let (areas, covered, grid) = match &sensor.seeing {
@@ -70,7 +74,8 @@ impl<'a> SensorCells<'a> {
             (Seeing::Views(_), None) | (Seeing::All | Seeing::Pixels(_), _) => 1.0,
         };
         let first = view.unwrap_or(0) * areas.len();
-        let flux = evidence.cell_flux(id, first..first + areas.len());
+        let flux = evidence.cell_flux(id, light, first..first + areas.len());
+        let flux_slots = || light.flux_slots(evidence.scene, &evidence.layout, id);
         Self {
             covered,
             grid,
@@ -78,7 +83,8 @@ impl<'a> SensorCells<'a> {
             areas,
             factor: MM2_PER_M2 / projected,
             count: evidence.count_flux(&flux),
-            all_light: view.is_none(),
+            flux_slots: view.is_none().then(flux_slots),
+            is_dark: light.is_dark(evidence.scene),
             flux,
         }
     }

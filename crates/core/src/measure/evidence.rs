@@ -2,6 +2,7 @@
 //!
 //! Errors come from groups of batches. This module does not know what the scalars mean.
 
+use crate::measure::light::LightSelection;
 use crate::measure::{Measure, Status};
 use crate::plan::Estimator;
 use crate::scene::{Scene, SensorId};
@@ -117,6 +118,11 @@ impl<'a> Evidence<'a> {
         self.measure(value, std_error, "1", part.status.worst(whole.status))
     }
 
+    /// A level of light that is known to be zero.
+    pub(crate) fn no_light(&self, unit: &str) -> Measure {
+        self.measure(0.0, 0.0, unit, Status::Ok)
+    }
+
     /// A line of the run's own books: the count is exact, even where it is zero.
     pub(crate) fn entry(&self, value: impl Fn(&dyn Fn(usize) -> f64) -> f64) -> Measure {
         let tally = self.readings.function(value);
@@ -124,11 +130,20 @@ impl<'a> Evidence<'a> {
         self.measure(tally.mean(), tally.std_error(), unit, Status::Ok)
     }
 
-    /// Mean flux over batches with its standard error for some values of a sensor, lm or W. A
-    /// single batch leaves the errors infinite. No flux is negative: where extrapolation makes it
+    /// Mean flux of some light over batches with its standard error for some values of a sensor, lm
+    /// or W. A single batch leaves the errors infinite. No flux is negative: where extrapolation makes it
     /// so, its error is at least as large.
-    pub(crate) fn cell_flux(&self, id: SensorId, values: Range<usize>) -> Vec<(f64, f64)> {
-        let cells = &self.readings.sensors[id.index()].cells;
+    pub(crate) fn cell_flux(
+        &self,
+        id: SensorId,
+        light: LightSelection,
+        values: Range<usize>,
+    ) -> Vec<(f64, f64)> {
+        let reading = &self.readings.sensors[id.index()];
+        let cells = match light {
+            LightSelection::All => &reading.cells,
+            LightSelection::Group(group) => &reading.groups[group.index()],
+        };
         let batches = self.readings.batch_count();
         let known = |mean: f64, error: f64| {
             if error.is_nan() {

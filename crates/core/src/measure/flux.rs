@@ -35,7 +35,7 @@ fn parts(scene: &Scene) -> Vec<LightPart<'_>> {
         sources: vec![SourceId::new(index)],
         emitted: source.flux,
     });
-    let groups = scene.light.groups.iter().map(|group| LightPart {
+    let groups = scene.light.groups().iter().map(|group| LightPart {
         name: &group.name,
         sources: group.sources.clone(),
         emitted: scene.flux_of(&group.sources),
@@ -55,7 +55,7 @@ impl LightPart<'_> {
     fn sum(&self, evidence: &Evidence<'_>, id: SensorId, factor: f64, unit: &str) -> Measure {
         if self.emitted == 0.0 {
             // No source flux gives no flux, and no path is needed to know it.
-            return evidence.measure(0.0, 0.0, unit, Status::Ok);
+            return evidence.no_light(unit);
         }
         evidence.sum(&self.slots(evidence, id), factor, unit)
     }
@@ -74,7 +74,7 @@ impl LightPart<'_> {
     /// Its share of all light on a sensor.
     fn share(&self, evidence: &Evidence<'_>, id: SensorId, all: &[usize]) -> Measure {
         if self.emitted == 0.0 {
-            return evidence.measure(0.0, 0.0, "1", Status::Ok);
+            return evidence.no_light("1");
         }
         evidence.ratio(&self.slots(evidence, id), all)
     }
@@ -93,7 +93,7 @@ fn by_source(evidence: &Evidence<'_>, id: SensorId, out: &mut IndexMap<String, M
     for part in parts_beside_all(scene) {
         out.insert(format!("efficiency.from.{}", part.name), part.efficiency(evidence, id));
         // Light that never shines together has no shares.
-        if scene.light.weathers.len() < 2 {
+        if scene.light.weathers().len() < 2 {
             out.insert(format!("share.from.{}", part.name), part.share(evidence, id, &all));
         }
     }
@@ -177,9 +177,9 @@ fn depths(evidence: &Evidence<'_>, id: SensorId, out: &mut IndexMap<String, Meas
 
 #[cfg(test)]
 mod tests {
-    use crate::measure::samples::{add, readings, rectangle, scene};
+    use crate::measure::samples::{add, light_groups, readings, rectangle, scene};
     use crate::measure::{Measures, Status, measure};
-    use crate::scene::{LightGroup, SensorId, SourceId};
+    use crate::scene::{SensorId, SourceId};
 
     fn exit() -> SensorId {
         SensorId::new(0)
@@ -230,11 +230,7 @@ mod tests {
     fn light_groups_add_up_their_sources_and_dark_sources_are_exactly_nothing() {
         let sources = [("red", 3.0), ("blue", 1.0), ("off", 0.0)];
         let mut scene = scene(&sources, vec![("exit", rectangle(10.0, 1, 1))]);
-        let group = |name: &str, sources: &[usize]| LightGroup {
-            name: name.into(),
-            sources: sources.iter().map(|&source| SourceId::new(source)).collect(),
-        };
-        scene.light.groups = vec![group("colours", &[0, 1]), group("spare", &[2])];
+        scene.light = light_groups(&[("colours", &[0, 1]), ("spare", &[2])]);
         let readings = readings(&scene, 128, |index, layout, batch| {
             let swing = if index % 2 == 0 { 0.9 } else { 1.1 };
             for (source, flux) in [(0, 1.5), (1, 0.5)] {

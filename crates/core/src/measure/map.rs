@@ -7,6 +7,7 @@ mod tests;
 use crate::measure::cells::SensorCells;
 use crate::measure::counted::{Noisy, WeightedValue};
 use crate::measure::evidence::Evidence;
+use crate::measure::light::LightSelection;
 use crate::measure::points;
 use crate::measure::uniformity::{Uniformity, UniformitySummary, ValueField, uniformity};
 use crate::scene::{Grid, Seeing, SensorId, SurfaceSensor};
@@ -22,6 +23,9 @@ pub struct SensorMap {
     pub sensor: String,
     /// View of a luminance sensor, from 0; `None` for all light, and for an image.
     pub view: Option<usize>,
+    /// Light group whose light it shows; `None` for the light of all sources.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub light: Option<String>,
     /// Direction of a view: angle from the sensor's normal and azimuth from its local +x, deg.
     pub seen_from_deg: Option<[f64; 2]>,
     /// The mapped quantity, such as `illuminance`.
@@ -106,25 +110,26 @@ pub(crate) fn map_grid(sensor: &SurfaceSensor) -> &Grid {
     }
 }
 
-/// The map of a surface sensor, or one for each view.
+/// The map of some light on a surface sensor, or one for each view.
 pub(crate) fn maps(
     evidence: &Evidence<'_>,
     id: SensorId,
     sensor: &SurfaceSensor,
+    light: LightSelection,
 ) -> Vec<SensorMap> {
+    let map = |view| map(evidence, id, sensor, light, view);
     match &sensor.seeing {
-        Seeing::All | Seeing::Pixels(_) => vec![map(evidence, id, sensor, None)],
-        Seeing::Views(views) => {
-            (0..views.directions.len()).map(|view| map(evidence, id, sensor, Some(view))).collect()
-        }
+        Seeing::All | Seeing::Pixels(_) => vec![map(None)],
+        Seeing::Views(views) => (0..views.directions.len()).map(|view| map(Some(view))).collect(),
     }
 }
 
-/// The map of a view, of an image, or of all light.
+/// The map of a view, of an image, or of light from everywhere.
 fn map(
     evidence: &Evidence<'_>,
     id: SensorId,
     sensor: &SurfaceSensor,
+    light: LightSelection,
     view: Option<usize>,
 ) -> SensorMap {
     let unit = evidence.scene.unit;
@@ -132,7 +137,7 @@ fn map(
         Seeing::All => (unit.illuminance_name(), unit.illuminance()),
         Seeing::Views(_) | Seeing::Pixels(_) => (unit.luminance_name(), unit.luminance()),
     };
-    let seen = SensorCells::of(evidence, id, sensor, view);
+    let seen = SensorCells::of(evidence, id, sensor, light, view);
     let (columns, rows) = map_grid(sensor).shape();
     let table = |f: &dyn Fn(usize) -> f64| {
         let at = |cell| if seen.is_on(cell) { f(cell) } else { f64::NAN };
@@ -141,9 +146,10 @@ fn map(
     SensorMap {
         sensor: evidence.scene.sensors[id.index()].name.clone(),
         view,
+        light: light.name(evidence.scene).map(str::to_owned),
         seen_from_deg: view.and_then(|view| seen_from(sensor, view)),
         quantity: quantity.to_owned(),
-        weathers: evidence.scene.light.weathers.len(),
+        weathers: light.weathers(evidence.scene),
         unit: symbol.to_owned(),
         values: table(&|cell| seen.at(cell).value),
         std_errors: table(&|cell| seen.at(cell).std_error),
@@ -151,22 +157,22 @@ fn map(
         on_sensor: table(&|cell| seen.cover(cell)),
         axes: axes(sensor),
         area_mm2: sensor.area(),
-        summary: summary(evidence, id, sensor, &seen),
+        summary: summary(evidence, sensor, &seen),
     }
 }
 
 fn summary(
     evidence: &Evidence<'_>,
-    id: SensorId,
     sensor: &SurfaceSensor,
     seen: &SensorCells<'_>,
 ) -> UniformitySummary {
     let parts_of_it = seen.for_extremes();
     let field = ValueField {
         cells: &parts_of_it,
-        avg: average(evidence, id, seen),
+        avg: average(evidence, seen),
         counts: seen.counts_per_cell(parts_of_it.len()),
         batches: evidence.readings.batch_count(),
+        is_dark: seen.is_dark,
     };
     let on_points = |points: Option<Vec<Vec<usize>>>| {
         let points = points?;
@@ -188,11 +194,13 @@ fn summary(
     }
 }
 
-/// Average over the sensor with its standard error: from groups of batches where the sensor's flux is all light.
-fn average(evidence: &Evidence<'_>, id: SensorId, seen: &SensorCells<'_>) -> [f64; 2] {
-    if seen.all_light {
-        let factor = seen.factor / seen.area;
-        let mean = evidence.sum(&evidence.layout.flux_slots(id), factor, "");
+/// Average over the sensor with its standard error: from groups of batches where scalars have the same light.
+fn average(evidence: &Evidence<'_>, seen: &SensorCells<'_>) -> [f64; 2] {
+    if seen.is_dark {
+        return [0.0, 0.0];
+    }
+    if let Some(slots) = &seen.flux_slots {
+        let mean = evidence.sum(slots, seen.factor / seen.area, "");
         return [mean.value, mean.std_error];
     }
     let mean = seen.mean(0..seen.areas.len());

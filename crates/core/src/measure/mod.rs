@@ -17,6 +17,7 @@ mod extremes;
 mod flux;
 #[cfg(test)]
 mod laws;
+mod light;
 mod map;
 mod multiscale;
 mod noise;
@@ -62,9 +63,10 @@ pub struct Measures {
     pub values: IndexMap<String, Measure>,
     /// Where the light went.
     pub balance: Balance,
-    /// Maps of surface sensors, one for each view of a luminance sensor.
+    /// Maps of surface sensors, one for each view of a luminance sensor: of all light, then of each
+    /// light group.
     pub maps: Vec<SensorMap>,
-    /// Intensities of goniometers.
+    /// Intensities of goniometers: of all light, then of each light group.
     pub intensities: Vec<IntensityTable>,
     /// How each sensor was estimated, by its name.
     pub estimators: IndexMap<String, Estimator>,
@@ -105,7 +107,7 @@ pub fn measure(scene: &Scene, findings: &Findings) -> Measures {
         let found = sensor::measures(scene, findings, SensorId::new(index));
         add(&mut values, &sensor.name, found.values);
         maps.extend(found.maps);
-        intensities.extend(found.intensity);
+        intensities.extend(found.intensities);
         sensor_paths.push(found.paths);
         estimators.insert(sensor.name.clone(), findings.estimators[index]);
     }
@@ -131,7 +133,7 @@ pub fn measure(scene: &Scene, findings: &Findings) -> Measures {
         unit: scene.unit,
         sun_elevations_deg: suns.collect(),
         light_groups: light_groups(scene),
-        weathers: scene.light.weathers.clone(),
+        weathers: scene.light.weathers().to_vec(),
         source_flux: scene.source_flux(),
         batches: photons.batch_count(),
         paths: findings.paths,
@@ -141,7 +143,7 @@ pub fn measure(scene: &Scene, findings: &Findings) -> Measures {
 
 fn light_groups(scene: &Scene) -> IndexMap<String, Vec<String>> {
     let name = |source: &SourceId| scene.sources[source.index()].name.clone();
-    let groups = scene.light.groups.iter();
+    let groups = scene.light.groups().iter();
     groups.map(|group| (group.name.clone(), group.sources.iter().map(name).collect())).collect()
 }
 

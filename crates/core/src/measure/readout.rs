@@ -1,9 +1,10 @@
 //! The values read from the maps of a sensor: extremes, uniformity, the middle, and single cells
-//! and rings by name.
+//! and rings by name; cells and rings for all light only.
 
 use crate::measure::cells::SensorCells;
 use crate::measure::counted::Noisy;
 use crate::measure::evidence::{Evidence, counted};
+use crate::measure::light::LightSelection;
 use crate::measure::map::{SensorMap, map_grid};
 use crate::measure::uniformity::Statistic;
 use crate::measure::{Measure, Status, points};
@@ -13,27 +14,36 @@ use indexmap::IndexMap;
 /// Cells and rings have their own names up to this number.
 const NAMED_CELLS: usize = 100;
 
-/// The values read from the maps of a sensor, by the last part of their dotted names.
+/// The values read from the maps of some light on a sensor, by the last part of their dotted names.
 pub(crate) fn measures(
     evidence: &Evidence<'_>,
     id: SensorId,
     sensor: &SurfaceSensor,
+    light: LightSelection,
     maps: &[SensorMap],
 ) -> IndexMap<String, Measure> {
     let mut out = IndexMap::new();
+    let from = light.suffix(evidence.scene);
     for map in maps {
         let view = map.view.map_or(String::new(), |view| format!(".{view}"));
-        let seen = SensorCells::of(evidence, id, sensor, map.view);
+        let seen = SensorCells::of(evidence, id, sensor, light, map.view);
         let mut add = |name: &str, measure| {
-            out.insert(format!("{name}{view}"), measure);
+            out.insert(format!("{name}{view}{from}"), measure);
         };
         summary_measures(evidence, &sensor.seeing, map, &mut add);
         let middle = points::center(map_grid(sensor));
         if middle.iter().any(|&cell| seen.is_on(cell)) {
-            let center = cell_measure(evidence, map, seen.mean(middle));
+            let center = if seen.is_dark {
+                evidence.no_light(&map.unit)
+            } else {
+                cell_measure(evidence, map, seen.mean(middle))
+            };
             add(&format!("{}_center", map.quantity), center);
         }
-        cell_measures(evidence, sensor, map, &seen, &mut add);
+        match light {
+            LightSelection::All => cell_measures(evidence, sensor, map, &seen, &mut add),
+            LightSelection::Group(_) => {}
+        }
     }
     out
 }
@@ -50,6 +60,7 @@ fn summary_measures(
     match seeing {
         // Included in the totals.
         Seeing::All => {}
+        Seeing::Pixels(_) if map.light.is_some() => {}
         Seeing::Views(_) | Seeing::Pixels(_) => {
             add(&format!("{quantity}_avg"), of(&summary.all.avg, &map.unit));
         }

@@ -3,9 +3,9 @@
 use crate::optics::{Bsdf, Medium};
 use crate::scene::shape::{ChartRect, Flat, Region, Shape};
 use crate::scene::{
-    Builder, CountedLight, Emission, EmitSide, Emitter, FacePiece, FaceSpec, Goniometer, Grid,
-    Owner, Passage, Pixels, Place, Scene, Seeing, Sensor, SensorKind, Sides, Source, StartSolids,
-    SurfaceSensor, Views,
+    Builder, CountedLight, Emission, EmitSide, Emitter, FaceSpec, Goniometer, Grid, LightGroup,
+    LightGroups, Owner, Passage, FacePiece, Pixels, Place, Scene, Seeing, Sensor, SensorKind, Sides,
+    Source, SourceId, StartSolids, SurfaceSensor, Views,
 };
 use crate::transport::{Findings, Layout, Readings};
 use glam::{DVec2, DVec3};
@@ -136,6 +136,15 @@ pub(crate) fn readings(
         });
     }
     Findings::forward(all.expect("tests ask for at least one batch"))
+}
+
+/// Light groups with these names and sources.
+pub(crate) fn light_groups(groups: &[(&str, &[usize])]) -> LightGroups {
+    let group = |(name, sources): &(&str, &[usize])| LightGroup {
+        name: (*name).into(),
+        sources: sources.iter().map(|&source| SourceId::new(source)).collect(),
+    };
+    LightGroups::new(groups.iter().map(group).collect(), Vec::new())
 }
 
 /// Adds to a scalar of a batch.

@@ -1,6 +1,7 @@
 //! All measures of one sensor, from any estimator.
 
 use crate::measure::evidence::Evidence;
+use crate::measure::light::LightSelection;
 use crate::measure::{
     IntensityTable, Measure, Replicates, SensorMap, SensorPaths, Status, angular, flux, map, paths,
     readout,
@@ -13,10 +14,10 @@ use indexmap::IndexMap;
 pub(crate) struct SensorMeasures {
     /// Measures by the last part of their dotted names.
     pub(crate) values: IndexMap<String, Measure>,
-    /// One map, or one for each view.
+    /// One map, or one for each view, of all light and of each light group.
     pub(crate) maps: Vec<SensorMap>,
-    /// Table of a goniometer.
-    pub(crate) intensity: Option<IntensityTable>,
+    /// Tables of a goniometer, likewise.
+    pub(crate) intensities: Vec<IntensityTable>,
     pub(crate) paths: SensorPaths,
 }
 
@@ -37,10 +38,9 @@ pub(crate) fn measures(scene: &Scene, findings: &Findings, id: SensorId) -> Sens
     for (map, (one, other)) in found.maps.iter_mut().zip(one.maps.iter().zip(&other.maps)) {
         map.biases = Some((&one.values - &other.values).abs());
     }
-    if let (Some(own), Some(one), Some(other)) =
-        (&mut found.intensity, one.intensity, other.intensity)
-    {
-        own.biases = Some((one.values - other.values).abs());
+    let others = one.intensities.iter().zip(&other.intensities);
+    for (own, (one, other)) in found.intensities.iter_mut().zip(others) {
+        own.biases = Some((&one.values - &other.values).abs());
     }
     found
 }
@@ -116,29 +116,35 @@ fn set_bias(
 fn by_evidence(evidence: &Evidence<'_>, id: SensorId) -> SensorMeasures {
     let scene = evidence.scene;
     let mut values = flux::totals(evidence, id);
-    let (mut maps, mut intensity) = (Vec::new(), None);
-    match &scene.sensors[id.index()].kind {
-        SensorKind::Surface(surface) => {
-            maps = map::maps(evidence, id, surface);
-            values.extend(readout::measures(evidence, id, surface, &maps));
-        }
-        SensorKind::Goniometer(goniometer) => {
-            values.extend(angular::measures(evidence, id, goniometer));
-            intensity = Some(angular::table(evidence, id, goniometer));
+    let (mut maps, mut intensities) = (Vec::new(), Vec::new());
+    for light in LightSelection::each(scene) {
+        match &scene.sensors[id.index()].kind {
+            SensorKind::Surface(surface) => {
+                let own = map::maps(evidence, id, surface, light);
+                values.extend(readout::measures(evidence, id, surface, light, &own));
+                maps.extend(own);
+            }
+            SensorKind::Goniometer(goniometer) => {
+                values.extend(angular::measures(evidence, id, goniometer, light));
+                intensities.push(angular::table(evidence, id, goniometer, light));
+            }
         }
     }
     let paths = paths::paths(evidence, id);
-    SensorMeasures { values, maps, intensity, paths }
+    SensorMeasures { values, maps, intensities, paths }
 }
 
 fn one_value(evidence: &Evidence<'_>, id: SensorId, name: &str) -> Option<Measure> {
     flux::totals(evidence, id).swap_remove(name).or_else(|| {
+        let light = LightSelection::of_measure(evidence.scene, name);
         let mut read = match &evidence.scene.sensors[id.index()].kind {
             SensorKind::Surface(surface) => {
-                let maps = map::maps(evidence, id, surface);
-                readout::measures(evidence, id, surface, &maps)
+                let maps = map::maps(evidence, id, surface, light);
+                readout::measures(evidence, id, surface, light, &maps)
             }
-            SensorKind::Goniometer(goniometer) => angular::measures(evidence, id, goniometer),
+            SensorKind::Goniometer(goniometer) => {
+                angular::measures(evidence, id, goniometer, light)
+            }
         };
         read.swap_remove(name)
     })

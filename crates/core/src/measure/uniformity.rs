@@ -94,6 +94,8 @@ pub(crate) struct ValueField<'a> {
     pub(crate) counts: f64,
     /// Number of batches.
     pub(crate) batches: u64,
+    /// Whether no source emits this light: its zeros are exact.
+    pub(crate) is_dark: bool,
 }
 
 impl ValueField<'_> {
@@ -122,13 +124,14 @@ impl ValueField<'_> {
 /// Extremes, their ratios, and the coefficient of variation.
 pub(crate) fn uniformity(field: &ValueField<'_>) -> (Uniformity, Statistic) {
     let status = field.status();
-    let avg = average(field, status);
+    let avg = average(field, if field.is_dark { Status::Ok } else { status });
     if status == Status::NoSignal {
-        let (level, ratio) = (Statistic::unknown(f64::INFINITY), Statistic::unknown(1.0));
-        let max_min = Statistic { value: f64::INFINITY, ..level };
+        let (unknown, ratio) = (Statistic::unknown(f64::INFINITY), Statistic::unknown(1.0));
+        let level = if field.is_dark { avg } else { unknown };
+        let max_min = Statistic { value: f64::INFINITY, ..unknown };
         let dark =
             Uniformity { min: level, max: level, avg, min_avg: ratio, min_max: ratio, max_min };
-        return (dark, level);
+        return (dark, unknown);
     }
     if let [_] = field.cells {
         // A single cell is all three, however noisy it is.
@@ -239,7 +242,7 @@ mod tests {
         let n = cells.len() as f64;
         let avg = cells.iter().map(|cell| cell.read.value).sum::<f64>() / n;
         let error = cells.iter().map(|cell| cell.read.std_error.powi(2)).sum::<f64>().sqrt() / n;
-        ValueField { cells, avg: [avg, error], counts: 1e4, batches: 128 }
+        ValueField { cells, avg: [avg, error], counts: 1e4, batches: 128, is_dark: false }
     }
 
     #[test]

@@ -35,6 +35,8 @@ ids! {
     FinishId,
     /// A source.
     SourceId,
+    /// A light group.
+    LightGroupId,
     /// A sensor.
     SensorId,
     /// Something a ray can hit: a patch, or a triangle of a mesh (numbered after the patches).

@@ -40,7 +40,7 @@ impl Context<'_> {
         let lit = weathers.iter().filter(|weather| weather.iter().copied().any(|m| is_lit(&m)));
         let names = lit.map(|weather| self.weather_name(weather)).collect();
         let groups = groups.into_iter().map(|(name, sources)| LightGroup { name, sources });
-        self.builder.set_light(LightGroups { groups: groups.collect(), weathers: names });
+        self.builder.set_light(LightGroups::new(groups.collect(), names));
     }
 
     /// Groups and sources share one name space, as measures distinguish them by name only.

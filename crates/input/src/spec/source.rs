@@ -110,7 +110,7 @@ pub struct SourceCommonSpec {
     /// What happens to light that meets the emitter.
     #[serde(default)]
     pub body: BodySpec,
-    /// The light group: flux, efficiency, transmission and means are also measured for all sources of a group together.
+    /// The light group: flux, efficiency, transmission, maps, uniformity and intensity are also measured for all sources of a group together.
     pub group: Option<String>,
     /// Whether the source emits. One that does not is dark, as with a flux of 0; its body stays in the way of light.
     #[serde(default = "enabled")]

@@ -7,7 +7,7 @@
 
 use crate::plan::{Estimator, RunPlan};
 use crate::rng::Sampler;
-use crate::scene::{Arrivals, Scene, SensorId};
+use crate::scene::{Arrivals, LightGroups, Scene, SensorId};
 use crate::transport::estimate::Estimate;
 use crate::transport::gather::merge::{Etendues, NO_WINDOW};
 use crate::transport::stop::{Pace, StopSignal};
@@ -139,6 +139,7 @@ impl<'s> Backward<'s> {
             cells: &arrival.cells,
             id,
             layout: self.layout,
+            groups: &self.scene.light,
             mixed_with: match self.weights {
                 Weights::Full => None,
                 Weights::Shared => Some(task.photon_fluxes),
@@ -205,6 +206,7 @@ struct GatherPathCounter<'a> {
     cells: &'a [usize],
     id: SensorId,
     layout: Layout,
+    groups: &'a LightGroups,
     /// Mixed: flux of one photon of each source, lm or W.
     mixed_with: Option<&'a [f64]>,
     readings: &'a mut Readings,
@@ -240,7 +242,7 @@ impl GatherPathCounter<'_> {
         });
         let flux = weight * met.radiance * self.etendue;
         let counted = Counted { flux, depth: path.depth, source: met.source };
-        self.readings.count(&self.layout, self.id, self.cells, &counted);
+        self.readings.count((&self.layout, self.groups), self.id, self.cells, &counted);
     }
 
     fn lose(&mut self, throughput: f64, loss: Loss) {

@@ -96,6 +96,6 @@ impl Mixing<'_, '_> {
         };
         let (flux, source) = (light.flux * weight, light.source);
         let counted = Counted { flux, depth: path.depth, source };
-        self.readings.count(layout, light.sensor, light.cells, &counted);
+        self.readings.count((layout, &scene.light), light.sensor, light.cells, &counted);
     }
 }

@@ -5,7 +5,7 @@ mod surfaces;
 use crate::optics::Side;
 use crate::rng::Sampler;
 use crate::scene::shape::Toward;
-use crate::scene::{CountedLight, FaceId, MediumId, Owner, SensorId, SourceId};
+use crate::scene::{CountedLight, FaceId, LightGroupId, MediumId, Owner, SensorId, SourceId};
 use crate::transport::forward::Forward;
 use crate::transport::stop::Pace;
 use crate::transport::tally::readings::{ClassStep, Counted, SensorReading, Trail, count_totals};
@@ -30,6 +30,8 @@ pub(super) struct PhotonCounter<'r, 's, O> {
     /// Flux of the current photon at throughput 1, lm or W.
     flux: f64,
     pub(super) source: SourceId,
+    /// Light groups of the source.
+    groups: &'s [LightGroupId],
     pub(super) classed: bool,
     travel_start: TravelStart,
     trail: Trail,
@@ -64,6 +66,7 @@ impl<'r, 's, O: Observer> PhotonCounter<'r, 's, O> {
             readings,
             flux: 0.0,
             source: SourceId::new(0),
+            groups: &[],
             classed: false,
             travel_start: TravelStart::Source,
             trail: Trail::new(),
@@ -85,6 +88,7 @@ impl<'r, 's, O: Observer> PhotonCounter<'r, 's, O> {
         let emitted = scene.sources[source.index()].emit(scene, &mut sampler);
         self.flux = flux;
         self.source = source;
+        self.groups = scene.light.of(source);
         self.travel_start = TravelStart::Source;
         self.trail.clear();
         self.last_left = None;
@@ -174,7 +178,7 @@ impl<'r, 's, O: Observer> PhotonCounter<'r, 's, O> {
     #[inline]
     fn count(&mut self, path: &Path, id: SensorId, cell: usize, throughput: f64) {
         self.count_totals(path, id, throughput);
-        self.readings.sensors[id.index()].cells.add(cell, self.flux * throughput);
+        self.readings.sensors[id.index()].add(cell, self.flux * throughput, self.groups);
     }
 
     #[inline]

@@ -81,7 +81,12 @@ impl Collecting<'_, '_> {
         let weights = self.merging.as_ref().map_or([1.0; COUNTED], |merging| merging.weights(met));
         for (readings, weight) in self.windows.iter_mut().zip(estimates(weights)) {
             let light = Counted { flux: flux * weight, depth: path.depth, source: met.source };
-            readings.count(&self.gather.layout, self.id, self.cells, &light);
+            readings.count(
+                (&self.gather.layout, &self.gather.scene.light),
+                self.id,
+                self.cells,
+                &light,
+            );
         }
     }
 

@@ -127,7 +127,12 @@ impl MergedStream<'_, '_> {
         for (readings, weight) in self.stream.windows.iter_mut().zip(weights) {
             let (flux, source) = (light.flux * weight, light.source);
             let counted = Counted { flux, depth: path.depth, source };
-            readings.count(&gather.layout, light.sensor, light.cells, &counted);
+            readings.count(
+                (&gather.layout, &gather.scene.light),
+                light.sensor,
+                light.cells,
+                &counted,
+            );
         }
     }
 }

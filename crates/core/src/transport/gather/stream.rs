@@ -198,7 +198,7 @@ impl<'p, 's> PhotonStream<'p, 's> {
             for (readings, share) in windows.iter_mut().zip(estimates(counted)) {
                 if share != 0.0 {
                     let light = Counted { flux: photon.flux * share, depth, source: photon.source };
-                    readings.count(layout, *sensor, cells, &light);
+                    readings.count((layout, &scene.light), *sensor, cells, &light);
                 }
             }
         });

@@ -5,7 +5,7 @@
 //! Batches are folded in a fixed binary tree over their index: a range of batches gives the same bits wherever it was
 //! traced.
 
-use crate::scene::{Scene, SensorId, SourceId};
+use crate::scene::{LightGroupId, LightGroups, Scene, SensorId, SourceId};
 use crate::tally::Tally;
 use crate::transport::{Cells, Layout, Loss, TAILS};
 use glam::DVec3;
@@ -26,7 +26,7 @@ const CLASS_LIMIT: usize = 256;
 /// Places of leaks that are kept.
 const LEAK_LIMIT: usize = 8;
 /// Format of the serialised readings.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 
 /// Sums over the batches of one group.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -66,6 +66,8 @@ pub struct ClassSum {
 pub struct SensorReading {
     /// Flux per cell, lm or W.
     pub cells: Cells,
+    /// The part of it from each light group.
+    pub groups: Vec<Cells>,
     /// Flux per depth of path, lm or W.
     pub depths: Cells,
     /// Flux by path class.
@@ -114,6 +116,7 @@ impl Readings {
     ) -> Self {
         let sensor = |cells| SensorReading {
             cells: Cells::new(cells),
+            groups: scene.light.ids().map(|_| Cells::new(cells)).collect(),
             depths: Cells::new(DEPTH_BINS),
             classes: BTreeMap::new(),
         };
@@ -147,6 +150,7 @@ impl Readings {
     pub fn close_batch(&mut self) {
         for sensor in &mut self.sensors {
             sensor.cells.close_batch();
+            sensor.groups.iter_mut().for_each(Cells::close_batch);
             sensor.depths.close_batch();
         }
     }
@@ -163,6 +167,9 @@ impl Readings {
         }
         for (own, other) in sum.sensors.iter_mut().zip(&other.sensors) {
             own.cells = own.cells.combined([a, b], &other.cells);
+            for (own, other) in own.groups.iter_mut().zip(&other.groups) {
+                *own = own.combined([a, b], other);
+            }
             own.depths = own.depths.combined([a, b], &other.depths);
         }
         sum
@@ -185,6 +192,7 @@ impl Readings {
         }
         for (own, other) in self.sensors.iter_mut().zip(&later.sensors) {
             own.cells.merge(&other.cells);
+            own.groups.iter_mut().zip(&other.groups).for_each(|(own, other)| own.merge(other));
             own.depths.merge(&other.depths);
             merge_classes(&mut own.classes, &other.classes);
         }
@@ -206,10 +214,17 @@ impl Readings {
     }
 
     /// Counts light that a gather path found for some cells of a sensor, in a batch.
-    pub fn count(&mut self, layout: &Layout, id: SensorId, cells: &[usize], light: &Counted) {
+    /// `groups` are those of the scene.
+    pub fn count(
+        &mut self,
+        (layout, groups): (&Layout, &LightGroups),
+        id: SensorId,
+        cells: &[usize],
+        light: &Counted,
+    ) {
         let reading = &mut self.sensors[id.index()];
         for &cell in cells {
-            reading.cells.add(cell, light.flux);
+            reading.add(cell, light.flux, groups.of(light.source));
         }
         reading.depths.add(SensorReading::depth_bin(light.depth), light.flux);
         count_totals(&mut self.groups[0].sums, layout, id, light);
@@ -291,6 +306,15 @@ pub(crate) fn count_totals(sums: &mut [f64], layout: &Layout, id: SensorId, ligh
 }
 
 impl SensorReading {
+    /// Counts flux in a cell, of all light and of the light groups of its source.
+    #[inline]
+    pub fn add(&mut self, cell: usize, flux: f64, groups: &[LightGroupId]) {
+        self.cells.add(cell, flux);
+        for group in groups {
+            self.groups[group.index()].add(cell, flux);
+        }
+    }
+
     /// The bin of the histogram of depths.
     #[inline]
     pub fn depth_bin(depth: u32) -> usize {

@@ -86,7 +86,7 @@ pub(crate) fn matrix(measures: &Measures) -> Option<LightMatrix> {
 fn uniformities(
     measures: &Measures,
     sensor: &str,
-    shares: &[Share<'_>],
+    shares: &[LightShare<'_>],
 ) -> Vec<(String, Vec<String>)> {
     let is_own = |map: &&SensorMap| map.sensor == sensor && map.light.is_none();
     let maps = measures.maps.iter().filter(is_own).filter(|map| !is_one_cell(map));

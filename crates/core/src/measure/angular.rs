@@ -234,7 +234,7 @@ pub(crate) fn measures(
 /// Flux by zones, and the intensity of single rings.
 fn zones(
     evidence: &Evidence<'_>,
-    sphere: &Sphere<'_>,
+    sphere: &SphereFlux<'_>,
     curve: &[Noisy],
     out: &mut IndexMap<String, Measure>,
 ) {
@@ -275,7 +275,11 @@ fn largest(evidence: &Evidence<'_>, sphere: &SphereFlux<'_>) -> Measure {
 }
 
 /// Beam and field angle on the mean curve over C, and in the planes C0-C180 and C90-C270.
-fn angles(evidence: &Evidence<'_>, sphere: &SphereFlux<'_>, curve: &[Noisy]) -> Vec<(String, Measure)> {
+fn angles(
+    evidence: &Evidence<'_>,
+    sphere: &SphereFlux<'_>,
+    curve: &[Noisy],
+) -> Vec<(String, Measure)> {
     let gammas = ring_gammas(curve.len());
     let mut out = Vec::new();
     let mut profiles = vec![(String::new(), curve.to_vec(), curve.to_vec())];

@@ -3,9 +3,9 @@
 use crate::optics::{Bsdf, Medium};
 use crate::scene::shape::{ChartRect, Flat, Region, Shape};
 use crate::scene::{
-    Builder, CountedLight, Emission, EmitSide, Emitter, FaceSpec, Goniometer, Grid, LightGroup,
-    LightGroups, Owner, Passage, FacePiece, Pixels, Place, Scene, Seeing, Sensor, SensorKind, Sides,
-    Source, SourceId, StartSolids, SurfaceSensor, Views,
+    Builder, CountedLight, Emission, EmitSide, Emitter, FacePiece, FaceSpec, Goniometer, Grid,
+    LightGroup, LightGroups, Owner, Passage, Pixels, Place, Scene, Seeing, Sensor, SensorKind,
+    Sides, Source, SourceId, StartSolids, SurfaceSensor, Views,
 };
 use crate::transport::{Findings, Layout, Readings};
 use glam::{DVec2, DVec3};

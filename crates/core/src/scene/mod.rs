@@ -32,7 +32,7 @@ pub use crossing::accel::Accel;
 pub use crossing::hit::{Hits, Just, PrimHit};
 pub use crossing::inside::Inside;
 pub use crossing::on::On;
-pub use face::{PieceRange, Face, MeshBody, Owner, Patch, FacePiece};
+pub use face::{Face, FacePiece, MeshBody, Owner, Patch, PieceRange};
 pub use ids::{
     FaceId, FinishId, LightGroupId, MediumId, PrimId, SensorId, SmoothId, SolidId, SourceId,
 };

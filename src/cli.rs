@@ -47,19 +47,19 @@ error; 130 stopped by Ctrl-C.";
 enum Command {
     /// Trace a scene and write its report.
     Run(RunArgs),
-    /// Trace all designs of a study and write what follows from them.
+    /// Trace all designs of a study and write the results.
     Batch(BatchArgs),
-    /// Put the parts of a run or of a study together that were computed with --shard.
+    /// Merge the parts of a run or a study that were computed with --shard.
     Merge(MergeArgs),
-    /// Run several estimators and baselines on the same time and compare their errors with a truth.
+    /// Run several estimators and baselines for the same time and compare their errors against a reference value.
     Compare(CompareArgs),
-    /// Hold two reports, of runs or of studies, against each other. Exits with 1 if a measure differs beyond its error.
+    /// Compare two reports, of runs or of studies. Exits with 1 if a measure differs by more than its error allows.
     Diff(DiffArgs),
     /// Validate a scene, print what is in it, and draw a cross-section with 50 traced paths.
     Check(CheckArgs),
     /// Print reflectance and transmittance of the prism films of a scene against the angle.
     Film(FilmArgs),
-    /// Examine a mesh file: is it closed, the right way out, and fine enough? Exits with 1 if it cannot be a solid.
+    /// Examine a mesh file: is it closed, the right way out, and fine enough? Exits with 1 if it is not a valid solid.
     Mesh(MeshArgs),
     /// List scenes and sensor files in a folder.
     List {

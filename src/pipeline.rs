@@ -135,8 +135,8 @@ pub fn compose(job: &Job, findings: &Findings, stop: Stop) -> Report {
         (0..job.scene.sensors.len()).any(|sensor| job.run.request(sensor) == Request::Auto);
     if is_chosen && findings.choices.is_empty() {
         warnings.push(
-            "half of the time was up before the pilot had tried all estimators: sensors without an estimator of their own \
-             are estimated forward"
+            "half of the time limit passed before the pilot had tried all estimators: sensors without their \
+                own estimator are estimated forward"
                 .to_owned(),
         );
     }

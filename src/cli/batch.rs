@@ -38,16 +38,16 @@ pub(super) struct BatchArgs {
     /// Number of threads [default: all cores].
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// Designs in flight at once; they share the threads [default: as many as threads].
+    /// Number of designs computed at once; they share the threads [default: number of threads].
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
-    /// Go on with a batch that was stopped, or that is complete; designs that are done are not repeated.
+    /// Resume a batch that was stopped or is complete; finished designs are not repeated.
     #[arg(long, conflicts_with = "overwrite")]
     resume: bool,
-    /// Begin anew over the results that are there.
+    /// Start again and replace existing results.
     #[arg(long)]
     overwrite: bool,
-    /// Compute only this part of the designs, such as 3/16; `merge` puts the parts together.
+    /// Compute only this part of the designs, such as 3/16; `merge` combines the parts.
     #[arg(long, value_parser = parse_shard, value_name = "PART/OF")]
     shard: Option<Shard>,
     /// Write a JUnit XML file with a test case for each check of each design.
@@ -128,9 +128,9 @@ fn summary(finished: &FinishedStudy) -> String {
     let dir = finished.dir.display();
     let Some(report) = &finished.report else {
         let what = if done < wanted {
-            "the batch was stopped; go on with --resume"
+            "the batch was stopped; use --resume to continue"
         } else {
-            "this part is complete; put all parts together with `lumiduct merge`"
+            "this part is complete; combine all parts with `lumiduct merge`"
         };
         return format!(
             "{}\n{done} of {wanted} designs are done in {dir}: {what}\n",
@@ -139,7 +139,7 @@ fn summary(finished: &FinishedStudy) -> String {
     };
     let state = match &finished.written {
         Written::New => String::new(),
-        Written::Same => " (was there already, the same to the byte)".into(),
+        Written::Same => " (already there, identical to the byte)".into(),
         Written::Nothing { differing } => format!(" (kept; {} would differ)", differing.join(", ")),
     };
     format!("{}report: {dir}/study.md{state}\n", lumiduct_report::study::terminal(report))

@@ -16,10 +16,10 @@ pub(super) struct CheckArgs {
     /// Set a key of the scene.
     #[arg(short = 'D', value_name = "KEY=VALUE")]
     define: Vec<String>,
-    /// The cross-section's PNG [default: NAME.check.png in this folder].
+    /// PNG file of the cross-section [default: NAME.check.png in this folder].
     #[arg(short = 'o', long = "output", value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Replace a FILE that is there; NAME.check.png and NAME.check.html are replaced in any case.
+    /// Replace an existing FILE; NAME.check.png and NAME.check.html are always replaced.
     #[arg(long)]
     overwrite: bool,
     /// Cut along this plane: xz, yz or xy through the middle, xz@y=5 at a place in mm [default: the plane of the guide's
@@ -69,7 +69,7 @@ fn parse_plane(text: &str) -> Result<CutPlane, String> {
         "yz" | "zy" => 0,
         "xz" | "zx" => 1,
         "xy" | "yx" => 2,
-        _ => return Err(format!("`{axes}` is no plane; try xz, yz, xy or xz@y=5")),
+        _ => return Err(format!("`{axes}` is not a plane; try xz, yz, xy or xz@y=5")),
     };
     let Some(place) = place else { return Ok(CutPlane { across, at_mm: None }) };
     let name = ["x", "y", "z"][across];
@@ -79,7 +79,7 @@ fn parse_plane(text: &str) -> Result<CutPlane, String> {
         .and_then(|(_, at)| at.parse::<f64>().ok())
         .filter(|at| at.is_finite())
         .ok_or_else(|| {
-            format!("`{place}` is no place of this plane; try {axes}@{name}=5, in mm")
+            format!("`{place}` is not a position of this plane; try {axes}@{name}=5, in mm")
         })?;
     Ok(CutPlane { across, at_mm: Some(at) })
 }
@@ -92,7 +92,7 @@ fn parse_direction(text: &str) -> Result<DVec3, String> {
     };
     axis_of(axis)
         .map(|axis| sign * DVec3::AXES[axis])
-        .ok_or_else(|| format!("`{text}` is no direction; try x, y, z, -x, -y or -z"))
+        .ok_or_else(|| format!("`{text}` is not a direction; try x, y, z, -x, -y or -z"))
 }
 
 #[cfg(test)]

@@ -23,7 +23,7 @@ pub(super) struct CompareArgs {
     /// The sensor whose flux is compared [default: the only one].
     #[arg(long, value_name = "NAME")]
     sensor: Option<String>,
-    /// What to compare, in the order of the table.
+    /// Estimators to compare, in the order of the table.
     #[arg(
         long,
         required = true,
@@ -32,10 +32,10 @@ pub(super) struct CompareArgs {
         value_parser = words(Method::ALL.map(Method::name), Method::named)
     )]
     estimators: Vec<Method>,
-    /// Time for each of them, all of its runs together, such as 60s or 5min.
+    /// Time for each estimator, all its runs together, such as 60s or 5min.
     #[arg(long, value_parser = parse_time, value_name = "TIME", default_value = "10s")]
     time: Duration,
-    /// Independent runs of each of them, 2 to 1000: they share its time.
+    /// Independent runs of each estimator, 2 to 1000; they share its time.
     #[arg(long, value_parser = clap::value_parser!(u32).range(2..=1000), default_value_t = 8)]
     runs: u32,
     /// The true flux, in lm or W, if it is known.
@@ -53,7 +53,7 @@ pub(super) struct CompareArgs {
     /// Take the true flux from measures.csv of a report, or from truth.csv of a comparison.
     #[arg(long, value_name = "FILE")]
     truth_file: Option<PathBuf>,
-    /// Time for a run that finds the true flux, by the better of forward and backward [default: 10 times --time].
+    /// Time for a run that computes the true flux, by the better of forward and backward [default: 10 times --time].
     #[arg(
         long,
         value_parser = parse_time,
@@ -73,7 +73,7 @@ pub(super) struct CompareArgs {
     /// Number of threads [default: all cores].
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// Replace results that are there.
+    /// Replace existing results.
     #[arg(long)]
     overwrite: bool,
     /// Print nothing but errors.

@@ -20,16 +20,17 @@ pub(super) struct DiffArgs {
     a: PathBuf,
     /// Folder of the second report, of the same kind.
     b: PathBuf,
-    /// A measure differs beyond this many errors of the difference.
+    /// A measure differs if it changes by more than this many errors of the difference.
     #[arg(long, value_parser = parse_sigmas, value_name = "COUNT", default_value = "4")]
     sigmas: f64,
-    /// It must differ by more than this share of its first value, too, such as 1%.
+    /// It must also change by more than this share of its first value, such as 1%.
     #[arg(long, value_parser = parse_percent, value_name = "PERCENT")]
     relative: Option<f64>,
-    /// Maps count, too: one of other cells, or with a cell beyond what noise does once in a thousand maps, differs.
+    /// Compare maps, too: a map differs if its cells are others, or if one cell differs by more than noise causes once in
+    /// a thousand maps.
     #[arg(long)]
     maps: bool,
-    /// Compare only measures whose names begin so, such as `exit.`; may be given several times.
+    /// Compare only measures whose names begin like this, such as `exit.`; may be given several times.
     #[arg(long, value_name = "PATTERN")]
     only: Vec<String>,
     /// Show all measures, not only the worst.
@@ -41,7 +42,7 @@ pub(super) struct DiffArgs {
     /// Write a JUnit XML file with a test case for each measure.
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
-    /// Replace files that are there.
+    /// Replace existing files.
     #[arg(long)]
     overwrite: bool,
     /// Print nothing but errors.

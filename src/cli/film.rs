@@ -35,7 +35,7 @@ pub(super) fn film(args: &FilmArgs) -> ExitCode {
     finish(tables.ok_or_else(|| {
         let scene = args.scene.display();
         Error::Usage(format!(
-            "{scene} has no finish `prism_film` of its own; docs/scene_format.md shows one"
+            "{scene} defines no `prism_film` finish; docs/scene_format.md shows one"
         ))
     }))
 }

@@ -15,7 +15,9 @@ pub(super) fn open_junit(
     let Some(file) = file else { return Ok(None) };
     if output == Some(file) {
         let file = file.display();
-        return Err(Error::Usage(format!("--junit {file}: is the folder after -o; name a file")));
+        return Err(Error::Usage(format!(
+            "--junit {file}: is the folder given by -o; name a file"
+        )));
     }
     JunitFile::open(file, existing).map(Some)
 }

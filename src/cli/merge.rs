@@ -20,10 +20,10 @@ pub(super) struct MergeArgs {
     /// Folder of the whole [default: reports/NAME or reports/studies/NAME below this folder].
     #[arg(short = 'o', long = "output", value_name = "DIR")]
     output: Option<PathBuf>,
-    /// The scene file of a run, if it is not where the parts found it.
+    /// The scene file of a run, if it is no longer where the parts were started with it.
     #[arg(long, value_name = "FILE")]
     scene: Option<PathBuf>,
-    /// Replace a report that is there.
+    /// Replace an existing report.
     #[arg(long)]
     overwrite: bool,
     /// Write a JUnit XML file with a test case for each check.
@@ -54,7 +54,7 @@ pub(super) fn merge(args: &MergeArgs) -> ExitCode {
     if args.parts.iter().all(|dir| has_study(dir)) {
         if args.scene.is_some() {
             return fail(&Error::Usage(
-                "--scene is for the parts of a run, and these are of a study".into(),
+                "--scene is for the parts of a run, but these are of a study".into(),
             ));
         }
         let existing = if args.overwrite { OnExisting::Replace } else { OnExisting::Resume };
@@ -70,9 +70,9 @@ pub(super) fn merge(args: &MergeArgs) -> ExitCode {
     let strange = args.parts.iter().find(|dir| !has_slice(dir) && !has_study(dir));
     fail(&Error::Usage(match strange {
         Some(dir) => format!(
-            "{} holds no part of a run or of a study: neither slice.bin nor batch.json",
+            "{} holds no part of a run or a study: neither slice.bin nor batch.json",
             dir.display()
         ),
-        None => "some of these folders hold parts of a run, others parts of a study".into(),
+        None => "some of these folders hold parts of a run, and others parts of a study".into(),
     }))
 }

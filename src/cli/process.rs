@@ -23,7 +23,7 @@ pub(super) fn on_ctrl_c() -> Interrupt {
     _ = ctrlc::set_handler(move || match on_signal.request() {
         StopAnswer::EndRun => {}
         StopAnswer::EndProgram => {
-            print_error("interrupted: the program ends here, and writes nothing more\n");
+            print_error("interrupted: the program ends and writes nothing more\n");
             std::process::exit(INTERRUPTED.into());
         }
     });

@@ -30,19 +30,20 @@ pub(super) struct RunArgs {
     /// Set a key of the scene, such as `-D solids.pipe.sweep.path.0.straight_mm=20`.
     #[arg(short = 'D', value_name = "KEY=VALUE")]
     define: Vec<String>,
-    /// How flux is estimated; auto chooses for every sensor by a short trial. A sensor with a key `estimator` keeps its own.
+    /// How flux is estimated; auto chooses for each sensor by a short pilot run. A sensor with a key `estimator` keeps
+    /// its own.
     #[arg(long, value_parser = words(Request::ALL.map(Request::name), Request::named))]
     estimator: Option<Request>,
-    /// Stop at this relative standard error of the target measure, such as 0.5%; the first sensor's flux if the scene
-    /// names no measure.
+    /// Stop at this relative standard error of the target measure, such as 0.5%. Without a measure in the scene, the
+    /// target is the first sensor's flux.
     #[arg(long, value_parser = parse_percent, value_name = "PERCENT")]
     target: Option<f64>,
     /// Stop after this many paths, such as 2M: photon paths from the sources, and gather paths from the sensors where the
     /// estimator has them. Rounded up to whole waves: 128 batches, or 16 passes of gathering with some million paths.
     #[arg(long, value_parser = parse_count, value_name = "COUNT")]
     paths: Option<u64>,
-    /// Stop after this time, such as 60s or 5min, the pilot of auto included. What is unfinished then is dropped; the
-    /// report gives the command that repeats the run.
+    /// Stop after this time, such as 60s or 5min, including the pilot of auto. Unfinished batches are dropped; the report
+    /// gives the command that repeats the run.
     #[arg(long, value_parser = parse_time, value_name = "TIME")]
     time: Option<Duration>,
     /// Seed of the random numbers.
@@ -51,16 +52,16 @@ pub(super) struct RunArgs {
     /// Number of threads [default: all cores].
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// Replace a report that is there.
+    /// Replace an existing report.
     #[arg(long)]
     overwrite: bool,
-    /// Keep a checkpoint in the folder of the report as often as this, such as 60s, so that --resume can go on.
+    /// Save a checkpoint in the folder of the report at this interval, such as 60s, for --resume.
     #[arg(long, value_parser = parse_time, value_name = "TIME", conflicts_with = "shard")]
     checkpoint: Option<Duration>,
-    /// Go on from the checkpoint in the folder of the report; without one, begin anew.
+    /// Resume from the checkpoint in the folder of the report; without one, start again.
     #[arg(long, conflicts_with_all = ["shard", "overwrite"])]
     resume: bool,
-    /// Trace only this part of the paths, such as 3/16; `merge` puts the parts together.
+    /// Trace only this part of the paths, such as 3/16; `merge` combines the parts.
     #[arg(long, value_parser = parse_shard, value_name = "PART/OF")]
     shard: Option<Shard>,
     /// Write a JUnit XML file with a test case for each check.
@@ -78,8 +79,8 @@ pub(super) struct RunArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Gather")]
 pub(super) struct GatherArgs {
-    /// Depth at which gather paths end at the latest, up to 1000; the first surface has depth 0 [default: chosen by a
-    /// short trial, as for the other numbers here].
+    /// Largest depth of gather paths, up to 1000; the first surface has depth 0 [default: chosen by a short pilot run,
+    /// like the other numbers here].
     #[arg(long, value_parser = clap::value_parser!(u32).range(..=1000))]
     depth: Option<u32>,
     /// Radius of the window in the first pass, in mm.

@@ -13,7 +13,8 @@ pub(super) fn parse_count(text: &str) -> Result<u64, String> {
         Some((at, 'g' | 'G')) => (&text[..at], 1e9),
         _ => (text, 1.0),
     };
-    let value: f64 = digits.parse().map_err(|_| format!("`{text}` is no count; try 500k or 2M"))?;
+    let value: f64 =
+        digits.parse().map_err(|_| format!("`{text}` is not a count; try 500k or 2M"))?;
     let count = value * factor;
     // Beyond 2^53 a count is no longer exact, and no run is that long.
     if !(1.0..=9e15).contains(&count) {
@@ -21,7 +22,7 @@ pub(super) fn parse_count(text: &str) -> Result<u64, String> {
     }
     // 1.0001k is 1000.1; products of decimal fractions are slightly inexact.
     if (count - count.round()).abs() > 1e-9 * count {
-        return Err(format!("`{text}` is no whole number"));
+        return Err(format!("`{text}` is not a whole number"));
     }
     Ok(count.round() as u64)
 }
@@ -40,7 +41,7 @@ pub(super) fn parse_records(text: &str) -> Result<u64, String> {
 /// A relative error with its percent sign: without one, 0.5 might mean half a percent or a half.
 pub(super) fn parse_percent(text: &str) -> Result<f64, String> {
     let value = text.strip_suffix('%').and_then(|digits| digits.trim().parse::<f64>().ok());
-    let fraction = 0.01 * value.ok_or_else(|| format!("`{text}` is no percentage; try 0.5%"))?;
+    let fraction = 0.01 * value.ok_or_else(|| format!("`{text}` is not a percentage; try 0.5%"))?;
     if fraction > 0.0 && fraction < 1.0 {
         Ok(fraction)
     } else {
@@ -58,7 +59,7 @@ pub(super) fn parse_time(text: &str) -> Result<Duration, String> {
         (text.strip_suffix('s').unwrap_or(text), 1.0)
     };
     let value: f64 =
-        digits.trim().parse().map_err(|_| format!("`{text}` is no time; try 60s or 5min"))?;
+        digits.trim().parse().map_err(|_| format!("`{text}` is not a time; try 60s or 5min"))?;
     let seconds = value * factor;
     if seconds > 0.0
         && let Ok(time) = Duration::try_from_secs_f64(seconds)
@@ -89,7 +90,7 @@ fn parse_between(text: &str, what: &str, below: f64, expected: &str) -> Result<f
 
 /// A finite number.
 pub(super) fn parse_number(text: &str) -> Result<f64, String> {
-    let value: f64 = text.parse().map_err(|_| format!("`{text}` is no number"))?;
+    let value: f64 = text.parse().map_err(|_| format!("`{text}` is not a number"))?;
     if value.is_finite() { Ok(value) } else { Err(format!("`{text}` is not finite")) }
 }
 
@@ -109,7 +110,7 @@ pub(super) fn words<T: Clone + Send + Sync + 'static, const N: usize>(
 
 /// A part of a piece of work: 3/16 is the third of sixteen.
 pub(super) fn parse_shard(text: &str) -> Result<Shard, String> {
-    let wrong = || format!("`{text}` is no part; try 1/4, 2/4, 3/4 and 4/4 for four of them");
+    let wrong = || format!("`{text}` is not a part; try 1/4, 2/4, 3/4 and 4/4 for four parts");
     let (number, count) = text.split_once('/').ok_or_else(wrong)?;
     let parse = |digits: &str| digits.parse::<u64>().map_err(|_| wrong());
     Shard::new(parse(number)?, parse(count)?).ok_or_else(wrong)
@@ -126,7 +127,7 @@ pub(super) fn parse_index(text: &str) -> Result<f64, String> {
 }
 
 fn parse_within(text: &str, [least, most]: [f64; 2]) -> Result<f64, String> {
-    let value: f64 = text.parse().map_err(|_| format!("`{text}` is no number"))?;
+    let value: f64 = text.parse().map_err(|_| format!("`{text}` is not a number"))?;
     if (least..=most).contains(&value) {
         Ok(value)
     } else {

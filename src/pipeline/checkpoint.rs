@@ -79,7 +79,8 @@ impl CheckpointFile {
             }
             (RunStart::Anew, Existing::Replace) => Ok((file, None)),
             (RunStart::Anew, Existing::Keep) => Err(Error::Usage(format!(
-                "{} holds a checkpoint of a run that was stopped; use --resume to go on, or --overwrite to begin anew",
+                "{} holds a checkpoint of a run that was stopped; use --resume to continue it, or \
+                    --overwrite to start again",
                 dir.display()
             ))),
         }
@@ -90,7 +91,8 @@ impl CheckpointFile {
             snapshot::read(&self.path, SnapshotKind::Checkpoint)?;
         if recipe != self.recipe {
             return Err(Error::Usage(format!(
-                "{} is no checkpoint of this run but of {}; use --overwrite to begin anew, or -o for another folder",
+                "{} is not a checkpoint of this run but of {}; use --overwrite to start again, or -o for \
+                    another folder",
                 self.path.display(),
                 self.recipe.difference_of(&recipe)
             )));

@@ -162,7 +162,7 @@ fn sensor(job: &Job, name: Option<&str>) -> Result<SensorId> {
     let place = match (name, names.len()) {
         (_, 0) => return Err(Error::Usage("the scene has no sensor to compare on".into())),
         (Some(name), _) => names.iter().position(|known| *known == name).ok_or_else(|| {
-            Error::Usage(format!("--sensor: there is no sensor `{name}`; there are: {all}"))
+            Error::Usage(format!("--sensor: there is no sensor `{name}`; the sensors are: {all}"))
         })?,
         (None, 1) => 0,
         (None, _) => {

@@ -110,12 +110,12 @@ pub fn merge_slices(
     }
     parts.sort_by_key(|(_, part)| (part.slice.batches.start, part.slice.batches.end));
     let Some((first_path, first)) = parts.first() else {
-        return Err(Error::Usage("there are no parts to put together".into()));
+        return Err(Error::Usage("there are no parts to merge".into()));
     };
     let scene = scene.map_or_else(|| PathBuf::from(&first.scene), Path::to_path_buf);
     if !scene.is_file() {
         return Err(Error::Usage(format!(
-            "{} is a part of a run of {}, and there is no such file here; say where it is with --scene",
+            "{} is a part of a run of {}, and there is no such file here; give its path with --scene",
             first_path.display(),
             scene.display()
         )));
@@ -147,7 +147,7 @@ fn expect_same(wanted: &Recipe, found: &Recipe, of: &str, path: &Path) -> Result
         return Ok(());
     }
     let what = wanted.difference_of(found);
-    Err(Error::Usage(format!("{} does not go with {of}: it is of {what}", path.display())))
+    Err(Error::Usage(format!("{} does not match {of}: it belongs to {what}", path.display())))
 }
 
 /// Makes sure that every batch is in exactly one part.
@@ -157,7 +157,7 @@ fn expect_all(parts: &[(PathBuf, RunPart)]) -> Result<()> {
         let Range { start, end } = part.slice.batches;
         if start < next && end > start {
             return Err(Error::Usage(format!(
-                "{} holds batches that another part has, too: {start} to {}",
+                "{} holds batches that another part also holds: {start} to {}",
                 path.display(),
                 next - 1
             )));
@@ -190,11 +190,11 @@ fn expect_fixed_end(job: &Job) -> Result<()> {
 
 fn refusal(why: Unsliceable) -> Error {
     Error::Usage(match why {
-        Unsliceable::OpenEnd => "a part of a run needs to know where the run ends, which a target or a time leaves open: \
-                                 give --paths"
+        Unsliceable::OpenEnd => "a part of a run needs a fixed number of paths, which a target or a time \
+            leaves open: give --paths"
             .into(),
-        Unsliceable::Stages => "gathering in stages takes smaller windows when all that was found asks for them, which a \
-                                part of a run does not know: use --schedule per-pass, or --estimator forward, backward or \
+        Unsliceable::Stages => "gathering in stages chooses its windows from the results of the whole run, \
+            which a part does not have: use --schedule per-pass, or --estimator forward, backward or \
                                 mix"
             .into(),
     })

@@ -45,7 +45,7 @@ fn expect_light(job: &Job, problems: &mut Problems) {
         )
     } else {
         (
-            "nothing emits light: every source is switched off or has a flux of 0",
+            "nothing emits light: every source is disabled or has a flux of 0",
             "give one of them a flux, or write enabled = true",
         )
     };
@@ -67,7 +67,7 @@ pub(crate) fn expect_measures<'a>(
         let nearest = measure::nearest(name, names.iter().map(String::as_str));
         problems
             .error(&key, format!("there is no measure `{name}`"))
-            .hint(format!("near names: {}", nearest.join(", ")));
+            .hint(format!("nearest names: {}", nearest.join(", ")));
     }
 }
 
@@ -81,7 +81,7 @@ fn expect_sight(job: &Job, problems: &mut Problems) {
     for sensor in blind_sensors(&job.scene, &sensors, job.run.seed) {
         let name = &job.scene.sensors[sensor.index()].name;
         let message = format!(
-            "sees no port: 0 of {BLIND_PATHS} gather paths meet a surface or a source, so that `{}` finds nothing there",
+            "sees no port: 0 of {BLIND_PATHS} gather paths meet a surface or a source, so `{}` finds no light there",
             request(sensor).name()
         );
         problems

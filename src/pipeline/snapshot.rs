@@ -61,12 +61,12 @@ fn framed(kind: SnapshotKind, contents: &[u8]) -> Vec<u8> {
 pub(super) fn read<T: DeserializeOwned>(path: &Path, kind: SnapshotKind) -> Result<T> {
     let bytes = fs::read(path).map_err(|source| Error::io(path, source))?;
     let refuse = |why: &str| {
-        Error::Usage(format!("{} is no {} to go on with: {why}", path.display(), kind.name()))
+        Error::Usage(format!("{} is not a usable {}: {why}", path.display(), kind.name()))
     };
     let line = kind.line();
     let rest = bytes
         .strip_prefix(line.as_bytes())
-        .ok_or_else(|| refuse("it does not begin as one by this version of the program does"))?;
+        .ok_or_else(|| refuse("it does not begin like one of this version of the program"))?;
     let (length, rest) =
         rest.split_at_checked(LENGTH_BYTES).ok_or_else(|| refuse("it was cut off"))?;
     let length = length.iter().rev().fold(0u64, |sum, byte| sum << 8 | u64::from(*byte));
@@ -78,16 +78,16 @@ pub(super) fn read<T: DeserializeOwned>(path: &Path, kind: SnapshotKind) -> Resu
     }
     let (contents, found) = rest.split_at(rest.len() - DIGEST_BYTES);
     if digest(contents).as_bytes() != found {
-        return Err(refuse("it was changed: its digest is not that of its contents"));
+        return Err(refuse("it was changed: its digest does not match its contents"));
     }
     let (build, contents): (String, _) = postcard::take_from_bytes(contents)
-        .map_err(|_| refuse("it is by another version of the program"))?;
+        .map_err(|_| refuse("it is from another version of the program"))?;
     if build != BUILD {
         return Err(refuse(&format!(
-            "it is by another build of the program, {build}, and this is {BUILD}; begin anew, or use that build"
+            "it is from another build of the program, {build}, and this is {BUILD}; start again, or use that build"
         )));
     }
-    postcard::from_bytes(contents).map_err(|_| refuse("it holds something else"))
+    postcard::from_bytes(contents).map_err(|_| refuse("it holds other data"))
 }
 
 fn digest(contents: &[u8]) -> String {

@@ -27,8 +27,10 @@ impl Stop {
             Self::Paths => "all requested paths were traced",
             Self::Time => "the time limit was reached",
             Self::Target => "the target error was reached",
-            Self::Bias => "more paths would not help: the target is below the bias of its measure",
-            Self::Dark => "more paths would hardly help: the target's measure is still nothing",
+            Self::Bias => {
+                "more paths would not help: the target error is below the bias of the measure"
+            }
+            Self::Dark => "more paths would hardly help: the target's measure is still zero",
             Self::Interrupted => "interrupted: this report is partial",
         }
     }

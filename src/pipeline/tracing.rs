@@ -192,12 +192,12 @@ fn first_work(phase: Phase) -> &'static str {
 fn nothing_to_report(during: &str, interrupt: &Interrupt) -> Error {
     Error::Usage(if interrupt.is_raised() {
         format!(
-            "interrupted during {during}: nothing is counted yet, and there is nothing to report"
+            "interrupted during {during}: nothing was counted yet, so there is nothing to report"
         )
     } else {
         format!(
-            "the time was up during {during}: nothing is counted yet, and there is nothing to report; give more time, passes of \
-             fewer --photons and --records, or --estimator forward, whose batches are short"
+            "the time ran out during {during}: nothing was counted yet, so there is nothing to report; give \
+                more time, smaller --photons and --records, or --estimator forward, whose batches are short"
         )
     })
 }

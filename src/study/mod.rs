@@ -115,7 +115,7 @@ pub fn merge_study(
 ) -> Result<FinishedStudy> {
     let stores: Vec<Store> = parts.iter().map(|part| Store::read(part)).collect::<Result<_>>()?;
     let Some(first) = stores.first() else {
-        return Err(Error::Usage("there are no parts to put together".into()));
+        return Err(Error::Usage("there are no parts to merge".into()));
     };
     let facts = first.facts().clone();
     if let Some(other) = stores.iter().find(|other| !other.facts().is_same_study(&facts)) {
@@ -134,8 +134,8 @@ pub fn merge_study(
     let missing: Vec<usize> = (1..=facts.designs).filter(|design| !have.contains(design)).collect();
     if let Some(first) = missing.first() {
         return Err(Error::Usage(format!(
-            "{} of {} designs are in no part, design {first} first: a part is missing or was stopped (batch --resume goes on \
-             with it)",
+            "{} of {} designs are in no part, the first is design {first}: a part is missing or was stopped \
+                (batch --resume continues it)",
             missing.len(),
             facts.designs
         )));
@@ -145,7 +145,7 @@ pub fn merge_study(
     // Merging into one of the parts would clear it before it is read.
     if is_among(&dir, parts) {
         return Err(Error::Usage(format!(
-            "{} is one of the parts; use -o for a folder of the whole",
+            "{} is one of the parts; use -o to name another folder for the whole",
             dir.display()
         )));
     }
@@ -201,7 +201,7 @@ fn expect_measures(study: &Study) -> Result<()> {
         && !study.measures.contains(&ranking.measure)
     {
         let hint = name_hint(&ranking.measure, study.measures.iter().map(String::as_str));
-        let message = format!("`{}` is none of `measures`", ranking.measure);
+        let message = format!("`{}` is not one of `measures`", ranking.measure);
         problems.error(&Key::of(&["ranking", "measure"]), message).hint(hint);
     }
     problems.finish(&study.places).map(|_| ())

@@ -21,9 +21,9 @@ const DESIGNS: &str = "designs";
 const TIMING: &str = "timing.csv";
 
 /// Hint for an invalid record.
-const REMOVE: &str = "remove it, and `batch --resume` computes the design anew";
+const REMOVE: &str = "remove it, and `batch --resume` computes the design again";
 /// Hint for invalid facts.
-const BEGIN_ANEW: &str = "use --overwrite to begin anew, or -o for another folder";
+const BEGIN_ANEW: &str = "use --overwrite to start again, or -o for another folder";
 
 /// What to do with existing results.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -86,14 +86,14 @@ impl Store {
         let dir = self.dir.display();
         if !found.is_same_study(&self.facts) {
             return Err(Error::Usage(format!(
-                "{dir} holds results of another study: the study, its scene, what the command line sets or the numerics \
-                 of the program differ; {BEGIN_ANEW}"
+                "{dir} holds results of another study: the study, its scene, the command line or the \
+                    numerics of the program differ; {BEGIN_ANEW}"
             )));
         }
         match existing {
             OnExisting::Resume | OnExisting::Replace => Ok(()),
             OnExisting::Keep => Err(Error::Usage(format!(
-                "{dir} holds results of this study; use --resume to go on with them, or --overwrite to begin anew"
+                "{dir} holds results of this study; use --resume to continue, or --overwrite to start again"
             ))),
         }
     }
@@ -156,7 +156,7 @@ impl Store {
         let path = dir.join(FACTS);
         let bytes = fs::read(&path).map_err(|source| Error::io(&path, source))?;
         let refuse = |why: &str| {
-            Error::Usage(format!("{} cannot be gone on with: {why}; {BEGIN_ANEW}", path.display()))
+            Error::Usage(format!("{} cannot be resumed: {why}; {BEGIN_ANEW}", path.display()))
         };
         let facts: StudyFacts = unseal(&bytes).map_err(|damage| refuse(&damage.to_string()))?;
         if facts.lumiduct_batch != FACTS_FORMAT {
@@ -239,7 +239,7 @@ impl Store {
             return Ok(());
         }
         Err(Error::Usage(format!(
-            "{} holds files that are no results of a batch; use --overwrite to replace those of the same name, or -o \
+            "{} holds files that are not results of a batch; use --overwrite to replace those of the same name, or -o \
              for another folder",
             self.dir.display()
         )))
@@ -287,7 +287,7 @@ impl Store {
 
 /// Error for a file that is not a record of a design.
 fn refusal(path: &Path, why: &str) -> Error {
-    Error::Usage(format!("{} is no record of this study: {why}; {REMOVE}", path.display()))
+    Error::Usage(format!("{} is not a record of this study: {why}; {REMOVE}", path.display()))
 }
 
 /// Writes an object in JSON with its seal, whole or not at all.

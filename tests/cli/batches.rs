@@ -129,7 +129,7 @@ fn a_killed_batch_goes_on_without_repeating_designs_to_the_same_bytes() {
     place.good("batch study.toml -o cut --resume");
     assert_eq!(stamp(&first), before, "a design that was done was computed again");
     assert_eq!(results(&place.path("whole")), results(&place.path("cut")));
-    assert!(place.good("batch study.toml -o cut --resume").contains("the same to the byte"));
+    assert!(place.good("batch study.toml -o cut --resume").contains("identical to the byte"));
 }
 
 #[test]
@@ -151,7 +151,7 @@ fn two_batches_are_not_at_work_in_one_folder() {
     }
     for more in ["", "--resume", "--overwrite"] {
         let said = place.bad(2, &format!("batch study.toml -o out {more}"));
-        assert!(said.contains("another run or batch is at work"), "{more}: {said}");
+        assert!(said.contains("another run or batch is using"), "{more}: {said}");
     }
     first.kill().unwrap();
     first.wait().unwrap();
@@ -201,7 +201,7 @@ fn a_record_that_is_no_record_is_named() {
     assert_eq!(fs::read_to_string(place.path("out").join("mine.txt")).unwrap(), "mine");
     fs::create_dir(place.path("full")).unwrap();
     fs::write(place.path("full").join("mine.txt"), "mine").unwrap();
-    assert!(place.bad(2, "batch study.toml -o full").contains("no results of a batch"));
+    assert!(place.bad(2, "batch study.toml -o full").contains("not results of a batch"));
     assert_eq!(names(&place.path("full")), ["mine.txt"]);
 }
 
@@ -215,7 +215,9 @@ fn a_design_that_makes_no_scene_is_a_row_with_its_error_and_the_rest_goes_on() {
     assert!(rows[0]["error"].contains("out of range") && rows[0]["exit.efficiency"].is_empty());
     assert!(rows[1]["error"].is_empty() && !rows[1]["exit.efficiency"].is_empty());
     let said = String::from_utf8(output.stdout).unwrap();
-    assert!(said.contains("makes no scene") && !said.contains(&*place.0.path().to_string_lossy()));
+    assert!(
+        said.contains("gives no valid scene") && !said.contains(&*place.0.path().to_string_lossy())
+    );
 }
 
 #[test]
@@ -279,9 +281,9 @@ fn tables_choices_and_whole_reports() {
     fs::write(place.path("study.toml"), &text).unwrap();
     for (table, line, words) in [
         ("index,lenght\nheavy,5\n", 1, "there is no parameter `lenght`"),
-        ("index,length\nlight,5\nheavy,5\n", 3, "`heavy` is none of its choices"),
+        ("index,length\nlight,5\nheavy,5\n", 3, "`heavy` is not one of its choices"),
         ("index,length\nlight,five\n", 2, "`five` is no number"),
-        ("index,length\nlight\n", 2, "another number of cells"),
+        ("index,length\nlight\n", 2, "a different number of cells"),
         ("index,length,length\nlight,5,6\n", 1, "two columns `length`"),
         ("index;length\nlight;5\n", 1, "by commas, not by semicolons"),
         ("index\tlength\nlight\t5\n", 1, "by commas, not by tabs"),
@@ -322,7 +324,7 @@ fn a_file_that_a_choice_names_is_part_of_the_study() {
     place.good("batch study.toml -o out --overwrite");
     fs::write(place.path("fine.toml"), "plane = { cells = [9, 9] }\n").unwrap();
     assert!(place.bad(2, "batch study.toml -o out --resume").contains("another study"));
-    // A choice that makes no scene counts, too: with other parameters it might.
+    // A choice that gives no valid scene counts, too: with other parameters it might.
     fs::write(place.path("fine.toml"), "plane = { cells = [9, 0] }\n").unwrap();
     assert_eq!(code(&place.run("batch study.toml -o out --overwrite")), 1);
     assert_eq!(code(&place.run("batch study.toml -o out --resume")), 1);
@@ -401,7 +403,7 @@ fn bad_studies_are_refused_with_the_line_to_change_and_write_nothing() {
     for (from, to, words) in [
         ("plan = \"grid\"", "plan = \"gird\"", "grid"),
         ("length_mm\"]", "lenght_mm\"]", "length_mm"),
-        ("media.acrylic.index\"]", "media.acrylic.\"]", "no dotted key"),
+        ("media.acrylic.index\"]", "media.acrylic.\"]", "not a dotted key"),
         ("values = [5, 10, 20]", "", "has no values"),
         ("values = [5, 10, 20]", "values = [5]\nchoices = { a = 1 }", "given twice"),
         ("values = [5, 10, 20]", "choices = [5, 10, 20]", "study.toml:10"),
@@ -439,7 +441,7 @@ fn bad_studies_are_refused_with_the_line_to_change_and_write_nothing() {
         (
             "[ranking]\nmeasure = \"exit.efficiency\"",
             "[ranking]\nmeasure = \"exit.flux\"",
-            "none of `measures`",
+            "not one of `measures`",
         ),
         ("paths = 20_000", "paths = 0", "at least 1"),
         ("count = 2", "count = 1", "out of range"),
@@ -449,14 +451,14 @@ fn bad_studies_are_refused_with_the_line_to_change_and_write_nothing() {
             "lumiduct_study = 2",
             "study.toml:2: `lumiduct_study`: format version 2",
         ),
-        ("\"How long a rod?\"", "\"How long\\na rod?\"", "a title is one line"),
+        ("\"How long a rod?\"", "\"How long\\na rod?\"", "a title must be one line"),
         ("lumiduct_study = 1", "lumiduct = 1", "study.toml:2: `lumiduct`: this is a scene"),
         ("media.acrylic.index\"]", "solids.rod.cylinder.length_mm\"]", "sets this key"),
         ("media.acrylic.index\"]", "solids.rod.cylinder\"]", "or a part of it"),
         (
             "values = [5, 10, 20]",
             "spread = { normal = { mean = 5, std_dev = 0.1, from = 6 } }",
-            "leave nothing of the curve",
+            "exclude the whole distribution",
         ),
         ("[run]", "[set]\n\"run.seed\" = 3\n[run]", "under `run` of the study"),
     ] {

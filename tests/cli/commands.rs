@@ -58,7 +58,7 @@ fn a_list_finds_scenes_and_sensor_files_and_no_reports() {
     assert!(said.contains("cell.toml") && said.contains("sensor file: plane"), "{said}");
     assert_eq!(said.lines().count(), 2, "{said}");
     fs::write(place.path("broken.toml"), "lumiduct = 1\ntitle =\n").unwrap();
-    assert!(place.good("list").contains("no valid TOML"), "a broken scene is not passed over");
+    assert!(place.good("list").contains("not valid TOML"), "a broken scene is not passed over");
     assert!(place.bad(2, "list nowhere").contains("nowhere"));
 }
 

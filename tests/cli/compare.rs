@@ -20,7 +20,7 @@ fn a_comparison_writes_a_page_a_table_a_plot_and_its_truth() {
         ["compare.csv", "compare.md", "compare.png", "manifest.json", "truth.csv"]
     );
     let page = fs::read_to_string(place.path("out/compare.md")).unwrap();
-    assert!(page.contains("no part of the reproducible reports"), "{page}");
+    assert!(page.contains("not one of the reproducible reports"), "{page}");
     assert!(page.contains("2 independent runs of 0.1 s"), "{page}");
     let table = fs::read_to_string(place.path("out/compare.csv")).unwrap();
     for name in ALL.split(',') {

@@ -183,19 +183,19 @@ max_std_error = 1e-9
     assert_eq!(failed.name.as_str(), "exit.efficiency (2)");
     let (kind, ty, message) = trouble(failed);
     assert_eq!((kind, ty), (NonSuccessKind::Failure, "failed"));
-    assert!(message.contains("at least 0.99 is wanted"), "{message}");
+    assert!(message.contains("at least 0.99 is required"), "{message}");
     assert_eq!(trouble(undecided).1, "undecided");
     // A later run replaces its own file; a file of others is reported before any work is done.
     assert_eq!(code(&place.run("run rod.toml -q -o b --paths 40k --junit ci/run.xml")), 1);
     assert!(matches!(trouble(&cases(&junit(&place, "ci/run.xml"))[1]), (_, "failed", _)));
     fs::write(place.path("mine.xml"), "<mine/>").unwrap();
     let said = place.bad(2, "run rod.toml -o c --junit mine.xml");
-    assert!(said.contains("holds something else; use --overwrite"), "{said}");
-    assert!(place.bad(2, "run rod.toml -o c --junit ci").contains("is no file"));
+    assert!(said.contains("is not a JUnit file; use --overwrite"), "{said}");
+    assert!(place.bad(2, "run rod.toml -o c --junit ci").contains("is not a regular file"));
     assert!(place.bad(2, "run rod.toml -o c --junit mine.xml/x.xml").contains("mine.xml"));
     assert!(place.bad(2, "run rood.toml -o c --junit new/x.xml").contains("rood.toml"));
     assert!(!place.path("new").exists());
-    assert!(place.bad(2, "run rod.toml -o c --junit c").contains("is the folder after -o"));
+    assert!(place.bad(2, "run rod.toml -o c --junit c").contains("is the folder given by -o"));
     assert!(!place.path("c").exists());
 }
 
@@ -227,7 +227,7 @@ fn the_page_of_a_comparison_has_the_measures_of_checks_first() {
         "<td>exit.share_deeper_than_10</td>",
         "<h2>Flux and efficiency</h2>",
         "<td>exit.flux</td>",
-        "<h2>All other measures, the worst first</h2>",
+        "<h2>All other measures, largest differences first</h2>",
         "<td>balance.emitted</td>",
         "<h2>Maps</h2>",
         "<h2>What was found</h2>",

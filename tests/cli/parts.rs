@@ -41,8 +41,8 @@ fn parts_that_do_not_make_a_whole_are_refused_with_the_reason() {
     place.good("run rod.toml --shard 2/2 --seed 7 -o other");
     assert!(place.bad(2, "merge 1of2 -o merged").contains("a part is missing"));
     assert!(place.bad(2, "merge 2of2 -o merged").contains("a part is missing"));
-    assert!(place.bad(2, "merge 1of2 1of2 2of2 -o merged").contains("another part has, too"));
-    assert!(place.bad(2, "merge 1of2 other -o merged").contains("another seed"));
+    assert!(place.bad(2, "merge 1of2 1of2 2of2 -o merged").contains("another part also holds"));
+    assert!(place.bad(2, "merge 1of2 other -o merged").contains("a different seed"));
     assert!(place.bad(2, "merge 1of2 nowhere -o merged").contains("nowhere holds no part"));
     assert!(place.bad(2, "run rod.toml --shard 1/2 -o 1of2").contains("--overwrite"));
     let said = place.bad(2, "run rod.toml --shard 1/2 --target 1% -o x");
@@ -60,7 +60,7 @@ fn parts_that_do_not_make_a_whole_are_refused_with_the_reason() {
     fs::write(&slice, bytes).unwrap();
     let scene = fs::read_to_string(place.path("rod.toml")).unwrap();
     fs::write(place.path("rod.toml"), scene.replace("length_mm = 10", "length_mm = 11")).unwrap();
-    assert!(place.bad(2, "merge 1of2 2of2 -o merged").contains("another scene"));
+    assert!(place.bad(2, "merge 1of2 2of2 -o merged").contains("a different scene"));
     assert!(!place.path("merged").exists());
 }
 
@@ -103,7 +103,7 @@ fn a_killed_run_goes_on_from_its_checkpoint_to_the_same_bytes() {
         if checkpoint.exists() {
             assert!(place.bad(2, &format!("{run} -o cut")).contains("--resume"));
             let other = place.bad(2, &format!("{run} --seed 5 -o cut --resume"));
-            assert!(other.contains("another seed"), "{other}");
+            assert!(other.contains("a different seed"), "{other}");
         }
         place.good(&format!("{run} -o cut --resume"));
         assert_eq!(contents(&place.path("whole")), contents(&place.path("cut")), "{run}");

@@ -142,7 +142,7 @@ fn a_run_over_its_own_report_leaves_it_alone_and_finds_what_was_changed() {
     place.good("run rod.toml -o out -q");
     let (first, timing) = (contents(&place.path("out")), place.path("out/timing.csv"));
     let seconds = fs::read(&timing).unwrap();
-    assert!(place.good("run rod.toml -o out").contains("the same to the byte"));
+    assert!(place.good("run rod.toml -o out").contains("identical to the byte"));
     assert_eq!((contents(&place.path("out")), fs::read(&timing).unwrap()), (first, seconds));
     fs::write(place.path("out/measures.csv"), "changed").unwrap();
     assert!(place.bad(3, "run rod.toml -o out -q").contains("measures.csv"));

@@ -36,7 +36,7 @@ fn a_design_record_with_a_changed_digit_is_refused_by_its_name() {
     let said = place.bad(2, "batch study.toml -o out --resume");
     assert!(said.contains("0002.json") && said.contains("older version"), "{said}");
     fs::write(&path, bytes).unwrap();
-    assert!(place.good("batch study.toml -o out --resume").contains("the same to the byte"));
+    assert!(place.good("batch study.toml -o out --resume").contains("identical to the byte"));
     let facts = place.path("out/batch.json");
     let text = fs::read_to_string(&facts).unwrap();
     fs::write(&facts, text.replace("Lengths", "Length")).unwrap();
@@ -89,7 +89,7 @@ fn a_report_with_a_file_of_another_run_is_no_report() {
     assert!(place.bad(2, "diff a b").contains("exit.illuminance.csv"));
     fs::remove_file(place.path("a/manifest.json")).unwrap();
     assert!(place.bad(2, "diff a b").contains("no whole report"));
-    assert!(place.bad(2, "run rod.toml -o a").contains("no complete report"));
+    assert!(place.bad(2, "run rod.toml -o a").contains("not a complete report"));
 }
 
 #[test]
@@ -97,7 +97,7 @@ fn two_runs_are_not_at_work_in_one_folder() {
     let place = Place::new();
     let lock = FolderLock::take(&place.path("out")).unwrap();
     for arguments in ["run rod.toml -o out", "run rod.toml -o out --resume --checkpoint 1s"] {
-        assert!(place.bad(2, arguments).contains("another run or batch is at work"));
+        assert!(place.bad(2, arguments).contains("another run or batch is using"));
     }
     assert!(names(&place.path("out")).is_empty());
     drop(lock);

@@ -77,7 +77,7 @@ fn files_that_cannot_be_made_are_mistakes_of_the_command_line() {
         (format!("check rod.toml -o {long}.png"), "too long"),
         (format!("check rod.toml -o new/{long}/a.png"), "too long"),
         ("check rod.toml -o rod.toml/a.png".into(), "rod.toml is a file"),
-        ("check rod.toml -o .".into(), "is no file that could be replaced"),
+        ("check rod.toml -o .".into(), "is not a regular file"),
         ("check rod.toml --html -o a.html".into(), "is the name of the page"),
         (format!("run rod.toml --junit {long}"), "too long"),
         (format!("run rod.toml --junit new/{long}/a.xml"), "too long"),

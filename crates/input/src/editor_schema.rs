@@ -40,8 +40,7 @@ pub fn sensor_file_schema() -> Value {
     if let Value::Object(words) = sensor {
         file.extend(words);
     }
-    let description =
-        "The keys of a sensor that scenes take over with `file`; keys of the scene win.";
+    let description = "The keys of a sensor for scenes to include with `file`; keys in the scene take precedence.";
     file.insert("description".into(), description.into());
     Value::Object(file)
 }

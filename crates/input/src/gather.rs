@@ -56,7 +56,8 @@ pub(crate) fn check_radius(
         None => gather_key().field("radius_mm"),
     };
     let message = format!(
-        "{radius} mm is larger than every solid and sheet: the widest, `{name}`, has {} mm from its middle to its side",
+        "{radius} mm is larger than every solid and sheet: the widest, `{name}`, measures {} mm from its \
+            middle to its side",
         format_value(half)
     );
     problems

@@ -86,7 +86,7 @@ fn read(
         return Err(Refused::Scene);
     }
     if let Some(nested) = entries.shift_remove(FILE) {
-        let message = "a sensor file cannot take keys over from another file";
+        let message = "a sensor file cannot take keys from another file";
         problems.error(&key.field(FILE), message).at(&nested.key);
     }
     Ok((root, errors))

@@ -143,10 +143,10 @@ fn check_estimators(run: &RunPlan, scene: &Scene, problems: &mut Problems) {
         }
         let (other, wish) = (&scene.sensors[alone].name, request(alone).name());
         let message =
-            format!("`mis` here and `{wish}` for the sensor `{other}` do not go together");
-        problems
-            .error(&Key::of(&["sensors", &sensor.name, "estimator"]), message)
-            .hint("give every sensor `mis`, or the others one of `forward`, `backward` and `mix`");
+            format!("`mis` here cannot be combined with `{wish}` for the sensor `{other}`");
+        problems.error(&Key::of(&["sensors", &sensor.name, "estimator"]), message).hint(
+            "use `mis` for every sensor, or one of `forward`, `backward` and `mix` for the others",
+        );
     }
 }
 
@@ -159,8 +159,7 @@ fn apply(settings: &Settings, scene: &Scene, run: &mut RunPlan) -> Result<()> {
     if settings.paths.is_none() && settings.time.is_none() && settings.target.is_none() {
         let is_without_paths = run.stop.batches.is_some() && run.stop.paths.is_none();
         return if is_without_paths {
-            let message =
-                "`run.batches` divides paths, and this run has no number of them: give --paths";
+            let message = "`run.batches` divides a number of paths, which this run does not have: give --paths";
             Err(Error::Usage(message.into()))
         } else {
             Ok(())

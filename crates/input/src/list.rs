@@ -12,7 +12,7 @@ const DEPTH: usize = 4;
 /// A line for each scene and study, with its title, and for each sensor file, in the order of their paths.
 pub fn list(folder: &Path) -> Result<String> {
     if !folder.is_dir() {
-        return Err(Error::Usage(format!("{} is no folder", folder.display())));
+        return Err(Error::Usage(format!("{} is not a folder", folder.display())));
     }
     let mut lines = Vec::new();
     collect(folder, DEPTH, &mut lines)?;
@@ -65,7 +65,7 @@ fn describe(path: &Path) -> Option<String> {
         Err(reason) => return Some(format!("({reason})")),
     };
     let Ok(table) = table else {
-        return Some("(no valid TOML: `lumiduct check` tells where)".to_owned());
+        return Some("(not valid TOML: run `lumiduct check` to see where)".to_owned());
     };
     if table.contains_key("lumiduct") {
         return Some(

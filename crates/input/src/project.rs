@@ -76,11 +76,11 @@ fn read_logo(path: &Path) -> Result<Vec<u8>, String> {
     let found = std::fs::metadata(path).map_err(|reason| format!("cannot be read: {reason}"))?;
     // A pipe or a device may never end.
     if !found.is_file() {
-        return Err("is no file".to_owned());
+        return Err("is not a file".to_owned());
     }
     if found.len() > LARGEST_LOGO as u64 {
         return Err(format!("has {} bytes", found.len()));
     }
     let bytes = std::fs::read(path).map_err(|reason| format!("cannot be read: {reason}"))?;
-    if bytes.starts_with(&PNG_SIGNATURE) { Ok(bytes) } else { Err("is no PNG file".to_owned()) }
+    if bytes.starts_with(&PNG_SIGNATURE) { Ok(bytes) } else { Err("is not a PNG file".to_owned()) }
 }

@@ -222,7 +222,7 @@ impl Reader {
 fn control_message(what: &str, letter: char) -> String {
     let code = u32::from(letter);
     format!(
-        "this {what} holds the control character U+{code:04X}, which terminals and pages act upon; leave it out"
+        "this {what} contains the control character U+{code:04X}, which terminals and pages interpret; remove it"
     )
 }
 

@@ -9,8 +9,9 @@ use lumiduct_core::measure::{Measure, Measures, SensorMap};
 const SEVERAL: usize = 2;
 
 /// Text before the table by source.
-pub(crate) const HEAD: &str = "Efficiency is the part of a source's own light that comes to the sensor. Share is the part \
-    of the sensor's light that comes from the source; that of a source meant for another sensor is the crosstalk.";
+pub(crate) const HEAD: &str = "Efficiency is the fraction of a source's light that reaches the sensor. \
+    Share is the fraction of the sensor's light that comes from the source; for a source meant for another \
+    sensor it is the crosstalk.";
 
 /// A source or light group at a sensor.
 pub(crate) struct LightShare<'a> {
@@ -122,8 +123,9 @@ pub(crate) fn remark_on_weathers(measures: &Measures) -> Option<String> {
     let example = measures.weathers.iter().find(is_measured);
     let example = example.map_or(String::new(), |name| format!(", such as flux.from.{name}"));
     Some(format!(
-        "the totals of all sources are each a {words} that never shine together ({}): flux, illuminance, maps and all \
-         that follows from them; read the measures of one{example}, or give the scene one weather",
+        "totals of all sources are a {words} that never occur together ({}): this holds for flux, \
+            illuminance, maps and everything derived from them; read the measures of one weather{example}, \
+            or give the scene only one",
         measures.weathers.join(", ")
     ))
 }

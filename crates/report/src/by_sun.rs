@@ -60,7 +60,8 @@ pub(crate) fn files(report: &Report) -> Result<Vec<OutputFile>> {
 }
 
 /// Text before the rows of [`BySun`].
-pub(crate) const HEAD: &str = "Transmission, flux that leaves over flux that enters: the tube transmission efficiency of CIE 173:2012.";
+pub(crate) const HEAD: &str = "Transmission is the flux that leaves over the flux that enters: the tube \
+    transmission efficiency of CIE 173:2012.";
 
 /// The transmission of a sensor by the elevation of the sun.
 pub(crate) struct BySun {

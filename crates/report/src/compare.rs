@@ -171,7 +171,7 @@ fn truth_table(comparison: &Comparison) -> Result<OutputFile> {
 fn page(comparison: &Comparison) -> String {
     let Comparison { title, measure, unit, truth, .. } = comparison;
     let mut page = format!("# Comparison of estimators: {title}\n\n");
-    page += "Times depend on the machine and on what else it did: this page is no part of the reproducible reports.\n\n";
+    page += "Times depend on the machine and its load: this page is not one of the reproducible reports.\n\n";
     _ = writeln!(page, "* `{measure}` of {}", comparison.scene);
     let exact = format_with_error(truth.value, truth.std_error);
     _ = writeln!(page, "* truth: {exact} {unit}, {}", truth.origin);
@@ -183,13 +183,13 @@ fn page(comparison: &Comparison) -> String {
         comparison.program
     );
     page += &comparison_table(comparison);
-    page += "\nErrors are relative to the truth. Noise is the standard deviation of a run, bias the mean of the runs less \
-the truth with its standard error, total error the root mean square deviation of a run from the truth. The last column \
-is total error² × time over the least of all.\n";
+    page += "\nErrors are relative to the truth. Noise is the standard deviation of a run, bias is the mean \
+        of the runs minus the truth with its standard error, total error is the root mean square deviation \
+        of a run from the truth. The last column is total error² × time, relative to the lowest.\n";
     for contestant in comparison.contestants.iter().filter(|contestant| contestant.cut > 0.0) {
         _ = writeln!(
             page,
-            "\n`{}` cut off {} of the throughput of its gather paths; light that came that way is missing.",
+            "\n`{}` cut off {} of the throughput of its gather paths; the light on these paths is missing.",
             contestant.name,
             format_percent(contestant.cut)
         );
@@ -340,7 +340,7 @@ mod tests {
         let page = text(3);
         for words in [
             "# Comparison of estimators: Tube &lt;b>",
-            "no part of the reproducible reports",
+            "not one of the reproducible reports",
             "2.000 ± 0.010 lm, by hand",
             "| biased | 1 | 1.00e6 | 1.700 ± 0.010 |",
             "| 15.01 % |",

@@ -234,8 +234,8 @@ fn scene(report: &Report, plots: &mut Plots) -> PagePart {
     }
     let measures = &report.measures;
     let text = format!(
-        "Lengths are in mm, angles in deg, flux in {}; coordinates are those of the scene file. {} paths of light were traced \
-         from the sources, which emit {} {} together.",
+        "Lengths are in mm, angles in deg, flux in {}; coordinates are those of the scene file. {} paths \
+            were traced; the sources together emit {} {}.",
         measures.unit.flux(),
         measures.paths,
         format_value(measures.source_flux),

@@ -29,7 +29,7 @@ pub fn expect_room(folder: &Path) -> Result<()> {
 pub fn expect_file(path: &Path) -> Result<()> {
     let refuse = |why: &str| Err(Error::Usage(format!("{}: {why}", path.display())));
     if path.exists() && !path.is_file() {
-        return refuse("is no file that could be replaced");
+        return refuse("is not a regular file and cannot be replaced");
     }
     let folders = folder_of(path).ancestors().filter(|folder| !folder.as_os_str().is_empty());
     let there = folders.into_iter().find(|folder| folder.exists()).unwrap_or(Path::new("."));

@@ -350,7 +350,7 @@ pub(crate) fn fate(scene: &Scene, track: &Track) -> (Fate, String) {
                 .or(track.counted_by.last())
                 .map_or((Fate::Escaped, "escaped".into()), |id| counted(*id))
         }
-        TrackEnd::Faded => (Fate::Absorbed, "absorbed little by little".into()),
+        TrackEnd::Faded => (Fate::Absorbed, "absorbed gradually".into()),
         TrackEnd::Cut => (Fate::Lost, "not followed to its end".into()),
         TrackEnd::Leaked => (Fate::Lost, "leaked".into()),
     }

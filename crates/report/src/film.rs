@@ -36,8 +36,8 @@ fn is_behind(finish: &Finish, finishes: &[Finish]) -> bool {
 fn table(name: &str, film: &PrismFilm, index: f64, step_deg: f64) -> String {
     let guided = acceptance_angle(film, index).to_degrees();
     let mut text = format!(
-        "Prism film `{name}`\n\nLight that meets the flat face at up to {guided:.3} degrees from the prisms is totally \
-         reflected, whatever its azimuth about them.\n\nShares in percent, angles from the normal of the film, for \
+        "Prism film `{name}`\n\nLight that meets the flat face within {guided:.3} degrees of the prism \
+            direction is totally reflected at every azimuth about it.\n\nShares in percent, angles from the normal of the film, for \
          unpolarised light; R reflected, T transmitted, A absorbed or lost.\n\n"
     );
     for (face, lit) in

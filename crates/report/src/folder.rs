@@ -57,11 +57,11 @@ impl Folder {
                 }
                 (FoundIdentity::Report(found), Some(recipe)) => recipe.difference_of(&found),
                 (FoundIdentity::Report(_), None) => {
-                    "a report, and a run that the clock stops never repeats one"
+                    "a report, and a run with a time limit never repeats one exactly"
                 }
                 (FoundIdentity::Partial, _) => "a report of a run that was stopped",
                 (FoundIdentity::Older, _) => "a report by an older version of the program",
-                (FoundIdentity::Other, _) => "files that are no complete report",
+                (FoundIdentity::Other, _) => "files that are not a complete report",
             };
             return Err(Error::Usage(format!(
                 "{} holds {what}; use --overwrite to replace the files in it, or -o for another folder",
@@ -83,7 +83,8 @@ impl Folder {
             let is_own = name == MANIFEST || files.iter().any(|file| name == *file.name);
             if existing == Existing::Keep && !is_own {
                 return Err(Error::Usage(format!(
-                    "{} is none of these files; use --overwrite to write beside it, or -o for another folder",
+                    "{} is not one of the files to write; use --overwrite to keep it and write beside it, \
+                        or -o for another folder",
                     entry.path().display()
                 )));
             }

@@ -139,7 +139,7 @@ fn finishes(scene: &Scene, outline: &Outline) -> Listing {
 /// The effect of finishes that need no definition.
 fn predefined(name: &str) -> Option<&'static str> {
     match name {
-        "polished" => Some("smooth: reflects and refracts after Fresnel"),
+        "polished" => Some("smooth: reflects and refracts by Fresnel's equations"),
         "black" => Some("absorbs all light"),
         "open" => Some("lets all light pass"),
         _ => None,

@@ -34,7 +34,7 @@ impl JunitFile {
         if path.exists() && existing == Existing::Keep && !is_ours(path)? {
             let file = path.display();
             return Err(failed(&format!(
-                "{file}: holds something else; use --overwrite to replace it, or name another"
+                "{file}: is not a JUnit file; use --overwrite to replace it, or name another file"
             )));
         }
         Ok(Self(path.to_path_buf()))

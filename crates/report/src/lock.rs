@@ -23,7 +23,7 @@ impl FolderLock {
         let Ok(file) = File::open(path) else { return Ok(own(None)) };
         match file.try_lock() {
             Err(TryLockError::WouldBlock) => Err(Error::Usage(format!(
-                "another run or batch is at work in {}; wait for its end, or use -o for another folder",
+                "another run or batch is using {}; wait until it ends, or use -o for another folder",
                 path.display()
             ))),
             // Some file systems have no locks.
@@ -48,7 +48,7 @@ mod tests {
         let copy = lock.clone();
         drop(lock);
         let refused = FolderLock::take(dir.path()).unwrap_err().to_string();
-        assert!(refused.contains("another run or batch is at work"), "{refused}");
+        assert!(refused.contains("another run or batch is using"), "{refused}");
         drop(copy);
         FolderLock::take(dir.path()).unwrap();
     }

@@ -48,7 +48,7 @@ impl Manifest {
         };
         unseal(&bytes).map(Some).map_err(|damage| {
             Error::Usage(format!(
-                "{} is no manifest of a report: {damage}; run the scene or study again with --overwrite",
+                "{} is not a valid manifest of a report: {damage}; run the scene or study again with --overwrite",
                 path.display()
             ))
         })

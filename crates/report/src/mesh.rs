@@ -39,7 +39,7 @@ pub fn mesh_report(name: &str, mesh: &TriangleMesh, health: &MeshHealth) -> Stri
     // Writing to a string cannot fail, here and below.
     _ = writeln!(text, "area    {} mm²\nvolume  {volume} mm³", number(health.area_mm2));
     if health.signed_volume_mm3 < 0.0 {
-        _ = writeln!(text, "        negative: inside out, flip the orientation of its triangles");
+        _ = writeln!(text, "        negative: inside out; flip the orientation of the triangles");
     }
     text.push_str("\nface                    triangles   area, mm²\n");
     // In one pass: an OBJ file may have as many groups as triangles.
@@ -81,14 +81,14 @@ fn facets(text: &mut String, health: &MeshHealth) {
         (None, Some(sagitta)) => {
             _ = writeln!(
                 text,
-                "  smoothed by normals; facets lie up to {} mm beside the surface that these describe",
+                "  smoothed by normals; facets lie up to {} mm from the surface that the normals describe",
                 format_value(sagitta)
             );
         }
         (Some(facets), _) => {
             _ = writeln!(
                 text,
-                "  {:.1} % of the area is in flat facets, {:.0} to a turn: light drifts as it is reflected",
+                "  {:.1} % of the area is flat facets, {:.0} per turn: light drifts as it is reflected",
                 100.0 * facets.area_share,
                 facets.per_turn()
             );

@@ -47,15 +47,15 @@ impl Recipe {
     pub fn difference_of(&self, other: &Self) -> &'static str {
         let (plan, own) = (&other.plan, &self.plan);
         if other.numerics != self.numerics {
-            "a report by other numerics, those of another version of the program"
+            "a report of another version of the program, with other numerics"
         } else if other.scene_hash != self.scene_hash {
-            "a report of another scene: the file, a file that it names, or -D differs"
+            "a report of a different scene: the file, a file that it names, or -D differs"
         } else if method(plan) != method(own) {
-            "a report with another estimator or other settings for it"
+            "a report with a different estimator or different estimator settings"
         } else if plan.seed != own.seed {
-            "a report with another seed"
+            "a report with a different seed"
         } else {
-            "a report with other stop rules"
+            "a report with different stop rules"
         }
     }
 }

@@ -21,8 +21,8 @@ pub fn remarks(measures: &Measures, scene: &Scene) -> Vec<String> {
     let cut = value("balance.cut") / measures.source_flux;
     if cut > CUT_SHARE {
         remarks.push(format!(
-            "{} of the light was still on its way at the bounce limit: see balance.cut; raise run.bounce_limit, or \
-             give walls and media their losses",
+            "{} of the light was cut by the bounce limit: see balance.cut; raise run.bounce_limit, or add \
+                the losses of walls and media",
             format_percent(cut)
         ));
     }
@@ -37,15 +37,15 @@ pub fn remarks(measures: &Measures, scene: &Scene) -> Vec<String> {
         }
         if outside > flux {
             remarks.push(format!(
-                "sensor `{sensor}` counts the light of its aim alone, and more reaches it from elsewhere: see \
-                 {sensor}.flux_outside_aim; aim at all that lights it"
+                "sensor `{sensor}` counts only light from its aim, and more reaches it from elsewhere: see \
+                    {sensor}.flux_outside_aim; aim at everything that lights it"
             ));
         }
         let own = measures.values.get(&format!("{sensor}.flux"));
         if own.is_some_and(|own| own.status == Status::Contradicted) {
             remarks.push(format!(
-                "photons of the same run found more light on sensor `{sensor}` than its gather paths, which hardly ever \
-                 meet one of the sources: use `--estimator forward` or `mix`"
+                "photons of the same run found more light on sensor `{sensor}` than its gather paths, which \
+                    rarely meet one of the sources: use `--estimator forward` or `mix`"
             ));
         }
     }
@@ -79,7 +79,8 @@ pub fn remarks_on_passages(scene: &Scene, measures: &Measures) -> Vec<String> {
         };
         let value = &measures.values[&format!("{name}.{what}")];
         Some(format!(
-            "the {what} of sensor `{name}` is {}, above 1: light passes it more than once and counts each time{way_out}",
+            "the {what} of sensor `{name}` is {}, above 1: light passes the sensor more than once and is \
+                counted each time{way_out}",
             format_with_error(value.value, value.std_error)
         ))
     };
@@ -95,8 +96,8 @@ fn remark_on_other_side(name: &str, scene: &Scene) -> String {
             if surface.counts == CountedLight::Leaving && surface.place == Place::Face =>
         {
             format!(
-                "no light left the side of sensor `{name}` that counts: all that met its face was reflected or let in there; \
-                 see {name}.flux_other_side"
+                "sensor `{name}` counts light that leaves its face, and none did: all light that met the \
+                    face was reflected or entered there; see {name}.flux_other_side"
             )
         }
         Some(SensorKind::Surface(_) | SensorKind::Goniometer(_)) | None => {
@@ -110,9 +111,9 @@ fn remark_on_lost_paths(sensor: &str, lost: LostPaths) -> Option<String> {
     let LostPaths { cut, leaked } = lost;
     (cut + leaked > CUT_SHARE).then(|| {
         format!(
-            "{} of the throughput of gather paths from sensor `{sensor}` was cut by the bounce limit and {} lost through \
-             holes in the geometry, and with it their share of the light they would have met; raise run.bounce_limit, or \
-             mend the geometry",
+            "{} of the throughput of gather paths from sensor `{sensor}` was cut by the bounce limit and {} \
+                was lost through holes in the geometry; the light they would have met is missing; raise \
+                run.bounce_limit, or repair the geometry",
             format_percent(cut),
             format_percent(leaked)
         )
@@ -123,7 +124,8 @@ fn remark_on_lost_paths(sensor: &str, lost: LostPaths) -> Option<String> {
 pub fn remark_on_paths(asked: Option<u64>, traced: u64) -> Option<String> {
     let asked = asked.filter(|&asked| traced > asked + asked / 10)?;
     Some(format!(
-        "{traced} paths were traced where {asked} were asked for: a run ends with a whole wave, of {GROUPS} batches with at \
-         least one path of each source, or of passes with all of their photons and gather paths"
+        "{traced} paths were traced although {asked} were requested: a run ends with a whole wave of \
+            {GROUPS} batches with at least one path from each source, or of passes with all of their \
+            photons and gather paths"
     ))
 }

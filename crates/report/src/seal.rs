@@ -28,9 +28,9 @@ impl fmt::Display for Damage {
             Self::Unsealed => out
                 .write_str("it was cut off, or has the layout of an older version of the program"),
             Self::Changed => {
-                out.write_str("it was changed: its digest is not that of its contents")
+                out.write_str("it was changed: its digest does not match its contents")
             }
-            Self::Foreign(reason) => write!(out, "it holds something else: {reason}"),
+            Self::Foreign(reason) => write!(out, "it holds other data: {reason}"),
         }
     }
 }

@@ -149,7 +149,7 @@ impl View {
             None => format!("cut through {} mm across {}", triple(origin), triple(self.plane.z)),
         };
         if outlines.is_empty() {
-            words += ", which meets nothing here";
+            words += ", which meets nothing";
         }
         words += &format!("; {paths} paths, projected onto it");
         let [low, high] =
@@ -242,7 +242,7 @@ fn axes(scene: &Scene, normal: DVec3, up: Option<DVec3>) -> Result<[DVec3; 2]> {
     let y = wanted - wanted.dot(normal) * normal;
     if y.length() < PARALLEL * wanted.length() {
         return Err(Error::Usage(format!(
-            "--up {}: looks at the picture, whose plane is across {}; name a direction that lies in the plane",
+            "--up {}: is perpendicular to the picture, whose plane is across {}; name a direction in that plane",
             axis_name(wanted),
             axis_name(normal)
         )));

@@ -78,10 +78,10 @@ pub fn terminal(report: &Report, dir: &Path, written: &Written) -> String {
     let page = page.display();
     text + &match written {
         Written::New => format!("report: {page}\n"),
-        Written::Same => format!("report: {page} (was there already, the same to the byte)\n"),
+        Written::Same => format!("report: {page} (already there, identical to the byte)\n"),
         Written::Nothing { differing } => format!(
-            "no report: {} holds one that differs in {}, which is kept; use --overwrite to replace it, or -o for \
-             another folder\n",
+            "no report written: {} holds one that differs in {}; it is kept; use --overwrite to replace it, \
+                or -o for another folder\n",
             dir.display(),
             differing.join(", ")
         ),

@@ -18,21 +18,23 @@ const CLASSES_SHOWN: usize = 8;
 
 /// Text before the rows of [`class_rows`].
 pub(crate) const CLASSES_HEAD: &str =
-    "How photons came (R reflected, T transmitted, steps in a row taken once):";
+    "Paths of the photons (R reflected, T transmitted; repeated steps are listed once):";
 /// Text before the rows of [`choice_row`].
-pub(crate) const CHOICES_HEAD: &str = "A pilot has tried the estimators on each sensor. The table has the time that one \
-    thread would need until the sensor's flux or map is known to 1 %, estimated from counted work \
-    (docs/method.md). Gathering is not chosen where its windows differ by more than noise, or where an \
-    unbiased estimator contradicts it. No estimator is chosen that found significantly less light of a source than another did.";
+pub(crate) const CHOICES_HEAD: &str = "A pilot run tried the estimators on each sensor. The table gives the \
+    time that one thread would need to know the sensor's flux or map to 1 %, estimated from counted work \
+    (docs/method.md). Gathering is rejected if its windows differ by more than noise or if an unbiased \
+    estimator contradicts it. Any estimator is rejected if it found significantly less light from a source \
+    than another did.";
 /// Text after the results.
 pub(crate) const ERRORS: &str = "± is one standard error of the simulation. For fluxes, means and their ratios, the value \
-    that infinitely many paths would give lies within one standard error in 68 of 100 runs and within two in 95. Extremes, \
-    uniformities and angles are not normally distributed and keep a small bias: a bias is an error beside the standard error, \
-    of which only a bound is known, and uniformities have a 95 % interval in brackets. Values that are limited by noise or \
-    have too few counts need more paths. Tolerances of parts and materials are not in these errors.";
+    that infinitely many paths would give lies within one standard error in 68 of 100 runs and within two in 95. \
+        Extremes, uniformities and angles are not normally distributed and keep a small bias: an error in \
+        addition to the standard error, of which only a bound is known. Uniformities have a 95 % interval \
+        in brackets. Values that are limited by noise or have too few counts need more paths. These errors \
+        do not include tolerances of parts and materials.";
 /// Text after the lines of the balance.
 pub(crate) const NO_LINES: &str =
-    "Virtual sensors let light pass: they are no lines of the balance.";
+    "Virtual sensors let light pass and do not appear in the balance.";
 
 /// Distinct names: those that several share are numbered.
 pub(crate) fn numbered(names: &[&str]) -> Vec<String> {
@@ -67,7 +69,7 @@ pub(crate) fn quantity(measure: &Measure) -> String {
 }
 
 /// A beam or field without an edge.
-const BOUNDLESS: &str = "none (the intensity falls below the level nowhere)";
+const BOUNDLESS: &str = "none (the intensity never falls below the level)";
 
 /// Whether a measure is the angle of a beam that has no edge in any direction.
 fn is_boundless(measure: &Measure) -> bool {
@@ -174,7 +176,8 @@ pub(crate) fn entry(entry: &AccountEntry) -> String {
 /// The fate of gather paths that ended prematurely.
 pub(crate) fn lost_paths(lost: LostPaths) -> String {
     format!(
-        "Of the throughput of gather paths from the sensor, {} was cut by the bounce limit and {} lost through holes in the geometry.",
+        "{} of the throughput of gather paths from the sensor was cut by the bounce limit, and {} was lost \
+            through holes in the geometry.",
         format_percent(lost.cut),
         format_percent(lost.leaked)
     )
@@ -188,7 +191,7 @@ pub(crate) fn evenness_head(map: &SensorMap) -> Option<String> {
     }
     let ([width, height], unit) = (summary.cell_size, map.axes.unit());
     Some(format!(
-        "Uniformity over {} cells of {} {unit} x {} {unit}; extremes are corrected for noise, intervals hold 95 %.",
+        "Uniformity over {} cells of {} {unit} x {} {unit}; extremes are corrected for noise, intervals are 95 %.",
         summary.cells,
         format_value(width),
         format_value(height)
@@ -212,7 +215,7 @@ pub(crate) fn evenness_rows(map: &SensorMap) -> Vec<(&'static str, [String; 3])>
 /// The coefficient of variation of a map, in a sentence.
 pub(crate) fn variation(map: &SensorMap) -> String {
     let cv = statistic(&map.summary.cv);
-    format!("CV (standard deviation over mean, noise taken out): {cv}")
+    format!("CV (standard deviation over mean, corrected for noise): {cv}")
 }
 
 fn statistic(value: &Statistic) -> String {
@@ -271,9 +274,10 @@ pub(crate) fn run_lines(report: &Report) -> Vec<String> {
             "{} paths in {} batches, {} segments",
             measures.paths, measures.batches, measures.segments
         ),
-        format!("asked for {}; ended because {}", run.asked, run.stopped),
+        format!("requested: {}; ended because {}", run.asked, run.stopped),
         format!("bounce limit {}", run.bounce_limit),
-        "light is taken as unpolarised at every interface, which makes transmission slightly too low: by 0.7 % for a straight \
+        "light is treated as unpolarised at every interface, which makes transmission slightly too low: by \
+            0.7 % for a straight \
          rod with two polished ends under a Lambertian source, by 3.6 % for a plate of index 1.49 at 75° (examples, not \
          this scene; docs/theory.md, eq. 2)"
             .to_owned(),
@@ -291,7 +295,9 @@ pub(crate) fn run_lines(report: &Report) -> Vec<String> {
         lines.push(format!("overrides: {}", report.scene.overrides.join(", ")));
     }
     if let Some(command) = &run.repeat {
-        lines.push(format!("to repeat these numbers, in the folder of the scene: {command}"));
+        lines.push(format!(
+            "to repeat these numbers, run this in the folder of the scene: {command}"
+        ));
     }
     for leak in &run.leaks {
         lines.push(format!("leak at [{}, {}, {}] mm", leak.x, leak.y, leak.z));

@@ -75,7 +75,8 @@ pub(super) fn find(
     }
     let Some((request, _)) = best else {
         return Err(Error::Usage(format!(
-            "no light was found on `{}` in {:.1} s: give the truth by --truth or --truth-file, or a longer --truth-time",
+            "no light was found on `{}` in {:.1} s: give the truth with --truth or --truth-file, or a \
+                longer --truth-time",
             bench.measure(),
             time.mul_f64(TRIAL).as_secs_f64()
         )));
@@ -100,7 +101,8 @@ fn usable(bench: &Bench<'_>, truth: Truth) -> Result<Truth> {
         return Ok(truth);
     }
     Err(Error::Usage(format!(
-        "the truth of `{}` is {} ± {}, {}: errors are told relative to a truth that is not 0 and has an error",
+        "the truth of `{}` is {} ± {}, {}: errors are relative to the truth, which must not be 0 and must \
+            have an error",
         bench.measure(),
         truth.value,
         truth.std_error,
@@ -128,7 +130,7 @@ fn read(path: &Path, measure: &str) -> Result<Truth> {
         }
         let number = |place: usize| {
             let text = record.get(place).unwrap_or_default();
-            text.parse().map_err(|_| unusable(format!("`{text}` is no number")))
+            text.parse().map_err(|_| unusable(format!("`{text}` is not a number")))
         };
         let origin = format!("from `{}`", path.display());
         return Ok(Truth { value: number(value)?, std_error: number(std_error)?, origin });

@@ -114,15 +114,18 @@ fn limit(measure: &Measure, limit: f64, bound: Bound) -> (CheckOutcome, String) 
     let wanted = wanted.trim_end();
     let error = measure.total_error();
     if !room.is_finite() || !error.is_finite() {
-        return (CheckOutcome::Undecided, format!("{wanted} is wanted, which is not known"));
+        return (
+            CheckOutcome::Undecided,
+            format!("{wanted} is required, but the value is not known"),
+        );
     }
     if room.abs() <= rounding(measure, limit) {
-        return (CheckOutcome::Passed, format!("{wanted} is wanted, met to rounding"));
+        return (CheckOutcome::Passed, format!("{wanted} is required, met to rounding"));
     }
     if room.abs() < LIMIT_ERRORS * error {
         return (
             CheckOutcome::Undecided,
-            format!("{wanted} is wanted, which is within {LIMIT_ERRORS} errors"),
+            format!("{wanted} is required, and the value is within {LIMIT_ERRORS} errors of it"),
         );
     }
     // Infinite for a value without noise.
@@ -130,11 +133,11 @@ fn limit(measure: &Measure, limit: f64, bound: Bound) -> (CheckOutcome, String) 
     let apart =
         if errors < FAR_ERRORS { format!(", {errors:.1} errors away") } else { String::new() };
     if room >= 0.0 {
-        (CheckOutcome::Passed, format!("{wanted} is wanted{apart}"))
+        (CheckOutcome::Passed, format!("{wanted} is required{apart}"))
     } else {
         (
             CheckOutcome::Failed,
-            format!("{wanted} is wanted, missed by {}{apart}", format_value(-room)),
+            format!("{wanted} is required, missed by {}{apart}", format_value(-room)),
         )
     }
 }
@@ -158,7 +161,7 @@ fn equality(check: &Check, measure: &Measure, expected: f64) -> (CheckOutcome, S
     let errors =
         if rounding == 0.0 && z.is_finite() { format!(" ({z:.1} errors)") } else { String::new() };
     let text = format!(
-        "{expected} is expected, off by {}{errors}, {} is allowed",
+        "{expected} is expected; the deviation is {}{errors}, {} is allowed",
         format_value(deviation),
         format_value(allowed)
     );
@@ -166,9 +169,12 @@ fn equality(check: &Check, measure: &Measure, expected: f64) -> (CheckOutcome, S
         && expected != 0.0
         && deviation.abs() > check.within.unwrap_or(0.0)
     {
-        (CheckOutcome::Undecided, format!("{expected} is expected, nothing was counted"))
+        (CheckOutcome::Undecided, format!("{expected} is expected, but nothing was counted"))
     } else if !deviation.is_finite() || !allowed.is_finite() {
-        (CheckOutcome::Undecided, format!("{expected} is expected, its error is not known"))
+        (
+            CheckOutcome::Undecided,
+            format!("{expected} is expected, but the error of the value is not known"),
+        )
     } else if deviation.abs() <= allowed {
         (CheckOutcome::Passed, text)
     } else {
@@ -306,7 +312,7 @@ mod tests {
         let verdict = judge(&least, &measure(0.5, 0.01, "lm"));
         assert_eq!(
             verdict.reason,
-            "exit.flux = 0.500 ± 0.010 lm: at least 0.6 lm is wanted, missed by 0.1, 10.0 errors away"
+            "exit.flux = 0.500 ± 0.010 lm: at least 0.6 lm is required, missed by 0.1, 10.0 errors away"
         );
     }
 

@@ -25,7 +25,7 @@ pub enum MeshError {
     },
     /// The file is a CAD file, which must be converted to a mesh first.
     #[error(
-        "`.{ending}` is a CAD file, which is not read: docs/cad.md tells how to make a mesh of it"
+        "`.{ending}` is a CAD file, which is not read: docs/cad.md explains how to make a mesh of it"
     )]
     CadFile {
         /// The extension, without its dot.

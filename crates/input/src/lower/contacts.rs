@@ -49,7 +49,7 @@ pub(super) fn check_contacts(spec: &SceneSpec, scene: &Scene, problems: &mut Pro
             other.name,
             format_value(widest)
         );
-        let hint = "let one of them reach into the other and give it the higher `priority`, or place it `at` the face";
+        let hint = "let one of them overlap the other and give it the higher `priority`, or place it `at` the face";
         problems.warning(&solid_key(spec, other), message).hint(hint);
     }
 }

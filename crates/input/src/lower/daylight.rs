@@ -69,9 +69,9 @@ impl Context<'_> {
         for (index, &elevation) in elevations.iter().enumerate() {
             let own = format!("{name}_{}", elevation.to_string().replace('.', "_"));
             if self.is_taken(&own) {
-                let message = format!("makes a source `{own}`, and that name is taken");
+                let message = format!("makes a source `{own}`, but that name is taken");
                 let at = key.field("elevations_deg").index(index);
-                let hint = "give each elevation once, and no other thing this name";
+                let hint = "give each elevation once, and do not use this name elsewhere";
                 self.problems.error(&at, message).hint(hint);
             } else {
                 self.add_sun(&own, spec, Sun::new(elevation, azimuth), aim.clone(), key);
@@ -95,8 +95,7 @@ impl Context<'_> {
         let half_angle = spec.half_angle_deg.to_radians();
         let axis = aim.frame.to_local(-world.to_world(sun.toward));
         if aim.kind == EmitterKind::Surface && axis.z <= half_angle.sin() {
-            let message =
-                format!("the sun does not stand before the plane of `{}`", spec.common.aim);
+            let message = format!("the sun is not in front of the plane of `{}`", spec.common.aim);
             let hint = "turn the face to the sun, or aim at a solid or sheet by its name";
             return self.refuse(&key.field("aim"), message, hint);
         }
@@ -148,7 +147,7 @@ impl Context<'_> {
         let sky = Sky::new(model, axes);
         if aim.kind == EmitterKind::Surface && !sky.is_seen_by_surface() {
             let message = format!("`{}` faces the ground and sees no sky", spec.common.aim);
-            let hint = "turn the face up, or say with `up` which way that is";
+            let hint = "turn the face up, or set the direction `up`";
             return self.refuse(&key.field("aim"), message, hint);
         }
         let level = spec.horizontal_illuminance_lx.map(|lx| lx / sky.level_illuminance());

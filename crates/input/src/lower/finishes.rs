@@ -51,7 +51,7 @@ impl<'a> Context<'a> {
         }
         for name in self.spec.finishes.keys().filter(|name| mixing.endless.contains(name.as_str()))
         {
-            let message = "this mixture contains itself, or another one that does";
+            let message = "this mixture contains itself, directly or through another mixture";
             self.problems.certain_error(&Key::of(&["finishes", name]), message);
         }
     }
@@ -109,7 +109,7 @@ impl<'a> Context<'a> {
     ) -> Option<FinishId> {
         let film = front.map(|front| self.behind(front)).filter(|behind| Some(*behind) != front);
         if declared.is_some() && film.is_some() {
-            let hint = "leave this out: light from behind meets the same film";
+            let hint = "remove this: light from behind meets the same film";
             return self.refuse(key, "a prism film has no other finish behind it", hint);
         }
         declared.or(film)
@@ -206,7 +206,7 @@ impl<'a> Context<'a> {
     fn ggx(&mut self, spec: &GgxSpec, key: &Key) -> Option<Bsdf> {
         let facets = match (spec.reflectance, spec.metal) {
             (Some(_), Some(_)) => {
-                let message = "facets are metal or have a reflectance, not both";
+                let message = "facets take a metal or a reflectance, not both";
                 self.problems.error(&key.field("metal"), message);
                 return None;
             }

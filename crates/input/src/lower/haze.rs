@@ -135,7 +135,7 @@ impl Context<'_> {
             && (*first != 0.0 || *last != 90.0)
         {
             let message = format!("go from {first} to {last}, expected 0 to 90");
-            good = self.refuse(&place, message, "say what holds at 0 and at 90 deg, too");
+            good = self.refuse(&place, message, "also give the values at 0 and at 90 deg");
         }
         for (name, values) in columns {
             if values.len() != angles.len() {

@@ -79,19 +79,15 @@ impl Context<'_> {
                 return self.refuse(&old_key, message, "omit it for a flat end");
             }
             (Some(_), Some(_)) => {
-                return self.refuse(
-                    &old_key,
-                    format!("says again what `{name}` says"),
-                    "remove it",
-                );
+                return self.refuse(&old_key, format!("repeats what `{name}` says"), "remove it");
             }
             (None, Some(radius)) => {
                 let word = if radius * convex_sign > 0.0 { "convex" } else { "concave" };
                 let size = radius.abs();
                 self.problems
-                    .warning(&old_key, "is an old key, whose sign says which way the face bulges")
+                    .warning(&old_key, "is an old key whose sign gives the direction of the bulge")
                     .hint(format!(
-                        "write {name} = {{ {word}_radius_mm = {size} }}, which is the same"
+                        "write {name} = {{ {word}_radius_mm = {size} }}, which is equivalent"
                     ));
             }
         }

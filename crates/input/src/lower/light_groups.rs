@@ -51,7 +51,7 @@ impl Context<'_> {
             if !is_wrong && self.builder.scene().sources.iter().any(|source| source.name == *name) {
                 let hint = "sources and light groups share their names: give the group another one";
                 self.problems
-                    .error(key, format!("`{name}` is the name of a source already"))
+                    .error(key, format!("`{name}` is already the name of a source"))
                     .hint(hint);
             }
         }
@@ -80,7 +80,7 @@ impl Context<'_> {
     fn note_taken(&mut self, name: &str, source: SourceId) {
         let source = &self.builder.scene().sources[source.index()].name;
         let message = format!(
-            "shines in the same weather as others, which make a light group `{name}`, and that name is taken"
+            "belongs to a weather whose light group would be `{name}`, but that name is taken"
         );
         self.problems
             .error(&Key::of(&["sources", source]), message)

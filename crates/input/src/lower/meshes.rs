@@ -63,14 +63,14 @@ impl Context<'_> {
         }
         let remarks = [
             (health.degenerate_triangles, "triangles without area"),
-            (health.slivers, "slivers: triangles too thin for a certain direction"),
-            (health.opposed_normals, "triangles with normals that point to their back"),
+            (health.slivers, "slivers: triangles too thin for a reliable normal"),
+            (health.opposed_normals, "triangles with normals that point backward"),
         ];
         for (Defects { count, .. }, what) in remarks.iter().filter(|(defects, _)| defects.count > 0)
         {
             self.problems
                 .warning(key, format!("`{name}` has {count} {what}"))
-                .hint("`lumiduct mesh FILE` tells where");
+                .hint("run `lumiduct mesh FILE` to see where");
         }
         if let Some(facets) = &health.facets {
             let drift = 100.0 * facets.skew_drift(f64::from(DRIFT_BOUNCES));
@@ -78,7 +78,7 @@ impl Context<'_> {
                 .warning(
                     key,
                     format!(
-                        "`{name}` looks curved but its facets are flat: {:.0} to a turn, so skew rays drift by about \
+                        "`{name}` looks curved but its facets are flat: {:.0} per turn, so skew rays drift by about \
                          {drift:.1} % in {DRIFT_BOUNCES} bounces",
                         facets.per_turn()
                     ),
@@ -100,7 +100,7 @@ impl Context<'_> {
         for (&face, &finish) in declared {
             if finish.is_some_and(|finish| self.behind(finish) != finish) {
                 let message =
-                    "a prism film cannot be laid on a mesh: it has no direction along the guide";
+                    "a prism film cannot be put on a mesh: a mesh has no direction along the guide";
                 self.problems.error(&key.field(face), message).hint("use a sweep or a tube");
             }
             match known.iter().position(|name| *name == face) {

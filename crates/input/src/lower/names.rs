@@ -54,8 +54,8 @@ pub(crate) fn check(places: &Places, problems: &mut Problems) {
 pub(crate) fn check_title(title: &str, problems: &mut Problems) {
     if title.contains(char::is_control) {
         problems
-            .certain_error(&Key::of(&["title"]), "a title is one line")
-            .hint("what needs more is for `description`");
+            .certain_error(&Key::of(&["title"]), "a title must be one line")
+            .hint("put longer text into `description`");
     }
 }
 
@@ -66,7 +66,9 @@ pub(crate) fn check_name<'p>(
     problems: &'p mut Problems,
 ) -> Option<&'p mut Problem> {
     if !is_bare(name) {
-        return Some(problems.certain_error(key, "a name is made of letters, digits, `_` and `-`"));
+        return Some(
+            problems.certain_error(key, "a name consists of letters, digits, `_` and `-`"),
+        );
     }
     check_length("name", name, key, problems)
 }

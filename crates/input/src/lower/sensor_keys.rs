@@ -24,7 +24,7 @@ impl Context<'_> {
                 self.problems.error(&key.field(name), message).hint(hint);
             }
         };
-        let message = "a sensor stands at a place or is `on` a face, not both";
+        let message = "a sensor is `at` a position or `on` a face, not both";
         note(on && spec.at.is_some(), "at", message, "remove `at` or `on`");
         let hint = "add counts = \"leaving\" or counts = \"incident\"";
         note(on && spec.counts.is_none(), "on", "a sensor `on` a face needs `counts`", hint);
@@ -62,7 +62,7 @@ impl Context<'_> {
         for (is_given, name) in
             [(on, "on"), (spec.side.is_some(), "side"), (absorbing, "absorbing")]
         {
-            let message = format!("does not go with {what}");
+            let message = format!("cannot be combined with {what}");
             note(is_given, name, &message, &format!("remove `{name}`"));
         }
     }

@@ -81,7 +81,7 @@ impl Context<'_> {
         let Some(frame) = sensor.frame else {
             let message =
                 "a luminance sensor needs a flat face: its directions refer to one normal";
-            let hint = "choose an end face, or a plane of its own by `at`";
+            let hint = "choose an end face, or place a plane with `at`";
             return self.refuse(&key.field("on"), message, hint);
         };
         sensor.seeing = Seeing::Views(views(luminance, &frame));
@@ -171,7 +171,8 @@ impl Context<'_> {
                 ),
                 Division::Cells(_) => (
                     "a curved face of a mesh cannot be unrolled into cells",
-                    "use `plane = {}`, one cell over the whole face, or put a `plane` with cells of its own before it by `at`",
+                    "use `plane = {}`, one cell over the whole face, or place a `plane` with cells before \
+                        it with `at`",
                 ),
             };
             return self.refuse(key, message, hint);
@@ -210,7 +211,8 @@ impl Context<'_> {
         if let Some(relief) = scene.reliefs.iter().find(|relief| relief.name == on) {
             let wall = &scene.faces[relief.wall.index()].name;
             let hint = format!(
-                "put the sensor on `{wall}` or on a plane before it; the balance tells what goes through the relief"
+                "put the sensor on `{wall}` or on a plane before it; the flux balance has the light that \
+                    goes through the relief"
             );
             let message = format!("`{on}` is a relief, which does not unroll into a map");
             return self.refuse(key, message, hint);

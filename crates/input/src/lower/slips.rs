@@ -91,8 +91,8 @@ fn check_cut_solids(spec: &SceneSpec, scene: &Scene, problems: &mut Problems) {
             let Some([inside, outside]) = cut(scene, &faces, SolidId::new(index)) else { continue };
             let [inside, outside] = [inside, outside].map(|point| place(point + scene.origin));
             let message = format!(
-                "cuts through the solid `{}`: at {inside} it stands inside, at {outside} outside; light inside the \
-                 solid meets it, too",
+                "cuts through the solid `{}`: it is inside at {inside} and outside at {outside}; light \
+                    inside the solid also meets it",
                 solid.name
             );
             let hint =
@@ -185,7 +185,7 @@ fn check_sides(spec: &SceneSpec, problems: &mut Problems) {
         if is_alone && !lit_from_outside {
             let message =
                 format!("counts light that {what} at `{on}`, against the light of the guide");
-            let hint = format!("write side = \"{other}\" for the light that the guide brings");
+            let hint = format!("write side = \"{other}\" for the light from the guide");
             problems.warning(&Key::of(&["sensors", name, "side"]), message).hint(hint);
         }
     }

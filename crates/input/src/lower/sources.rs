@@ -118,7 +118,7 @@ impl<'a> Context<'a> {
             self.problems.error(&key.field("at"), message).hint("remove `at`");
         }
         if common.body != BodySpec::Transparent && extent != SourceExtent::Area {
-            let message = format!("a {kind} has no body of its own that light could meet");
+            let message = format!("a {kind} has no body that light could meet");
             self.problems.error(&key.field("body"), message).hint("remove `body`");
         }
     }
@@ -140,7 +140,7 @@ impl<'a> Context<'a> {
         };
         let is_about_normal = matches!(emission, Emission::Lambertian | Emission::CosinePower(_));
         if is_volume && is_about_normal {
-            let message = "a volume has no normal that light could be spread about";
+            let message = "a volume has no normal about which to emit";
             self.problems.error(&key.field("emission"), message).hint("give \"isotropic\"");
         }
         let is_directed = matches!(emission, Emission::Collimated { .. } | Emission::Cone { .. });

@@ -48,14 +48,14 @@ pub(super) fn note_joints(
             && is_of_a_solid(&at.face)
         {
             let no_gap = if at.gap_mm > 0.0 {
-                format!(": a gap of {} mm is none", format_value(at.gap_mm))
+                format!(": a gap of {} mm counts as zero", format_value(at.gap_mm))
             } else {
                 String::new()
             };
             let message =
                 format!("touches `{}` and is joined to it optically, as by glue{no_gap}", at.face);
             problems.warning(&Key::of(&["sources", name, source.kind()]), message).hint(
-                "write contact = \"optical\" if so, contact = \"air\" for a hair of air, or a gap_mm",
+                "write contact = \"optical\" if so, contact = \"air\" for a thin layer of air, or a gap_mm",
             );
         }
     }
@@ -109,10 +109,10 @@ fn check_covered(scene: &Scene, starts: &[Emitted], key: &Key, problems: &mut Pr
         if let (Some(missed), Some(_)) = (missed, starts.iter().find(is_in)) {
             let [x, y, z] = (missed.ray.origin() + scene.origin).to_array();
             let message = format!(
-                "shines in `{}` from one part and outside of it from another, as at [{x:.4}, {y:.4}, {z:.4}] mm",
+                "lies partly inside `{}` and partly outside, as at [{x:.4}, {y:.4}, {z:.4}] mm",
                 solid.name
             );
-            let hint = "move or enlarge the solid, or make two sources of it";
+            let hint = "move or enlarge the solid, or split the source in two";
             problems.error(key, message).hint(hint);
         }
     }

@@ -62,7 +62,7 @@ impl Context<'_> {
         ];
         let is_placed = elevation_deg.is_some() || when.is_some();
         if needs_sun(model) && !is_placed {
-            let message = "is brighter about the sun, and nothing says where that is";
+            let message = "is brighter near the sun, but the position of the sun is not given";
             let hint = "give `elevation_deg` and `azimuth_deg`, or `when`";
             self.problems.error(&key.field("model"), message).hint(hint);
         }
@@ -73,7 +73,7 @@ impl Context<'_> {
                 .hint(hint);
         }
         if let Some((name, _)) = given.iter().find(|(_, given)| *given && !needs_sun(model)) {
-            let message = "this sky is the same on all sides and has no sun";
+            let message = "this sky does not depend on the position of the sun";
             let hint = "remove it; the sun's disk is a source of its own, `sun`";
             self.problems.error(&key.field(name), message).hint(hint);
         }
@@ -105,8 +105,9 @@ impl Context<'_> {
         let position = sun_position(Observation { days, latitude_deg, longitude_deg });
         if position.elevation_deg <= 0.0 {
             let elevation = position.elevation_deg;
-            let message =
-                format!("the sun is below the horizon there and then, at {elevation:.1} deg");
+            let message = format!(
+                "the sun is below the horizon at this time and place, at {elevation:.1} deg"
+            );
             let hint =
                 "check `utc_offset_h`, and the signs of latitude (north +) and longitude (east +)";
             return self.refuse(&key, message, hint);

@@ -108,11 +108,11 @@ impl Context<'_> {
         };
         let key = key.field("mitred");
         if fold_mirror.is_some() {
-            self.problems.error(&key, "says again what `fold_mirror` says").hint("remove it");
+            self.problems.error(&key, "repeats what `fold_mirror` says").hint("remove it");
         } else {
             self.problems
                 .warning(&key, "is the old name of `fold_mirror`")
-                .hint(format!("write fold_mirror = {mitred}, which is the same"));
+                .hint(format!("write fold_mirror = {mitred}, which is equivalent"));
         }
     }
 

@@ -32,7 +32,7 @@ pub(super) fn rows(
             Ok(record) => rows.push(table.row(&record, &columns, parameters)),
             Err(error) => {
                 let at = error.position().map_or(0, |position| position.byte() as usize);
-                table.refuse(at, "this row has another number of cells than the first");
+                table.refuse(at, "this row has a different number of cells from the first");
                 return Vec::new();
             }
         }
@@ -71,7 +71,7 @@ impl Table<'_> {
             && let Some(other) = single.chars().find(|c| [';', '\t'].contains(c))
         {
             let other = if other == ';' { "semicolons" } else { "tabs" };
-            let message = format!("the cells of a table are told apart by commas, not by {other}");
+            let message = format!("the cells of a table are separated by commas, not by {other}");
             self.refuse(0, &message);
             return None;
         }
@@ -88,7 +88,7 @@ impl Table<'_> {
             let mut own = (0..headers.len()).filter(|column| headers.get(*column) == Some(name));
             match (own.next(), own.next()) {
                 (Some(column), None) => columns.push(column),
-                (Some(_), Some(_)) => self.refuse(0, &format!("there are two columns `{name}`")),
+                (Some(_), Some(_)) => self.refuse(0, &format!("the column `{name}` occurs twice")),
                 (None, _) => self.refuse(0, &format!("there is no column `{name}`")),
             }
         }
@@ -128,13 +128,13 @@ fn setting(cell: &str, parameter: &Parameter) -> Result<Setting, String> {
         let known = parameter.choices.keys().map(String::as_str);
         return match parameter.choices.contains_key(cell) {
             true => Ok(Setting::Choice(cell.to_owned())),
-            false => Err(format!("`{cell}` is none of its choices; {}", name_hint(cell, known))),
+            false => Err(format!("`{cell}` is not one of its choices; {}", name_hint(cell, known))),
         };
     }
     match cell.parse::<f64>() {
         Ok(number) if number.is_finite() => {
             Ok(if parameter.whole { Setting::whole(number) } else { Setting::Number(number) })
         }
-        Ok(_) | Err(_) => Err(format!("`{cell}` is no number")),
+        Ok(_) | Err(_) => Err(format!("`{cell}` is not a number")),
     }
 }

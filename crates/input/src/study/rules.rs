@@ -81,7 +81,7 @@ fn check_columns(spec: &StudySpec, problems: &mut Problems) {
     for (index, measure) in spec.measures.iter().enumerate() {
         if spec.measures[..index].contains(measure) {
             let key = Key::of(&["measures"]).index(index);
-            problems.error(&key, format!("`{measure}` is there twice")).hint("leave one out");
+            problems.error(&key, format!("`{measure}` is listed twice")).hint("leave one out");
         }
     }
 }
@@ -142,7 +142,7 @@ fn check_room(spec: &ParameterSpec, key: &Key, problems: &mut Problems) {
         }
     }
     if spec.choices.as_ref().is_some_and(IndexMap::is_empty) {
-        problems.error(&key.field("choices"), "there is nothing to choose from");
+        problems.error(&key.field("choices"), "there are no choices");
     }
 }
 
@@ -169,7 +169,7 @@ pub(super) fn check_levels(parameters: &[Parameter], places: &Places, problems: 
             let given = ["values", "range"].map(|name| table.field(name));
             let key = given.into_iter().find(|key| places.has(key)).unwrap_or(table);
             let how = if parameter.whole { ", rounded to whole numbers" } else { "" };
-            problems.error(&key, format!("{level} is there twice{how}")).hint("leave one out");
+            problems.error(&key, format!("{level} is listed twice{how}")).hint("leave one out");
         }
     }
 }
@@ -177,7 +177,7 @@ pub(super) fn check_levels(parameters: &[Parameter], places: &Places, problems: 
 fn check_key(text: &str, key: &Key, problems: &mut Problems) {
     if parse_key(text).is_none() {
         problems
-            .error(key, format!("`{text}` is no dotted key"))
+            .error(key, format!("`{text}` is not a dotted key"))
             .hint("write it as after -D, such as solids.rod.cylinder.length_mm");
     }
 }
@@ -188,7 +188,8 @@ fn check_limits(spec: &NormalSpec, key: &Key, problems: &mut Problems) {
     let far = FARTHEST_LIMIT * std_dev;
     if from.is_some_and(|from| from > mean + far) || to.is_some_and(|to| to < mean - far) {
         let message = format!(
-            "the limits leave nothing of the curve: they lie more than {FARTHEST_LIMIT} standard deviations beside its mean"
+            "the limits exclude the whole distribution: they lie more than {FARTHEST_LIMIT} standard \
+                deviations from its mean"
         );
         problems.error(key, message);
     }
@@ -209,7 +210,7 @@ fn check_shared_keys(spec: &StudySpec, problems: &mut Problems) {
                 let key = Key::of(&["parameters", name, "keys"]).index(index);
                 problems
                     .error(&key, format!("the parameter `{other}` sets this key, or a part of it"))
-                    .hint("let each parameter have keys of its own");
+                    .hint("give each parameter its own keys");
             }
             known.push((own, name.clone()));
         }
@@ -239,7 +240,7 @@ fn check_overrides(spec: &StudySpec, overrides: &[String], problems: &mut Proble
             let message = format!("this parameter sets what `-D {line}` sets, in every design");
             problems
                 .error(&Key::of(&["parameters", parameter]), message)
-                .hint("leave out the -D, or take the key out of the parameter");
+                .hint("remove the -D, or remove the key from the parameter");
         }
     }
 }
@@ -340,7 +341,10 @@ fn is_about(found: &Diagnostic, label: &str) -> bool {
 pub(super) fn check_clock(base: &Job, problems: &mut Problems) {
     if base.run.stop.time.is_some() {
         problems
-            .error(&Key::of(&["run"]), "the scene stops by the clock, which no design repeats")
+            .error(
+                &Key::of(&["run"]),
+                "the scene stops after a time, which does not repeat from run to run",
+            )
             .hint("give the study `paths` or `target` under [run]");
     }
 }

@@ -133,7 +133,7 @@ impl Walk<'_> {
             );
         }
         match inner {
-            Some((kind, _)) => format!("only `{kind}` may stand here"),
+            Some((kind, _)) => format!("only `{kind}` is allowed here"),
             None => name_hint(name, kinds.iter().map(|(kind, _)| *kind)),
         }
     }

@@ -48,7 +48,7 @@ impl Walk<'_> {
         }
         let other_form = table.forms.iter().find(|form| form["properties"].get(name).is_some());
         if let Some(marker) = other_form.and_then(|form| schema::marker(form, table.forms)) {
-            return format!("`{name}` goes with `{marker}`");
+            return format!("`{name}` is used with `{marker}`");
         }
         if table.outer.is_some_and(|outer| outer.contains_key(name))
             && nearest(name, known.iter().copied()).is_none()

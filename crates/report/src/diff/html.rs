@@ -16,7 +16,7 @@ pub(crate) fn html(diff: &Diff) -> Result<String> {
     let groups = [
         ("Measures of the checks", checked),
         ("Flux and efficiency", light),
-        ("All other measures, the worst first", others),
+        ("All other measures, largest differences first", others),
     ];
     let groups = groups.into_iter().filter(|(_, rows)| !rows.is_empty());
     let mut parts: Vec<PagePart> = groups
@@ -43,7 +43,7 @@ fn verdict(diff: &Diff) -> String {
     let words = findings(diff).pop().unwrap_or_default();
     match maps {
         0 => words,
-        1 => format!("{words}; a map differs by more than noise"),
+        1 => format!("{words}; one map differs by more than noise"),
         count => format!("{words}; {count} maps differ by more than noise"),
     }
 }

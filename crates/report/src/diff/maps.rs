@@ -191,12 +191,12 @@ impl MapDiff {
         };
         let all = difference.values.len();
         if *judged == 0 {
-            return format!("none of {all} cells has counted enough to be judged");
+            return format!("none of {all} cells has enough counts to be judged");
         }
         let [rms, z, bound] = [(rms, 2), (largest, 1), (bound, 1)]
             .map(|(number, decimals)| format_fixed(*number, decimals));
         format!(
-            "rms z {rms}, largest |z| {z}, by noise below {bound}; {judged} of {all} cells counted enough"
+            "rms z {rms}, largest |z| {z}, below {bound} for noise alone; {judged} of {all} cells have enough counts"
         )
     }
 

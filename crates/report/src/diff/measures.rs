@@ -156,7 +156,7 @@ fn doubt(values: &[Measure; 2]) -> Option<String> {
     }
     [("A", a), ("B", b)].into_iter().find_map(|(side, measure)| {
         let why = match measure.status {
-            Status::TooFew => "counted too little",
+            Status::TooFew => "has too few counts",
             Status::NoiseLimited => "is mostly noise",
             Status::BiasNotResolved => "has a bias that is not resolved",
             Status::Contradicted => "is contradicted by photons of the same run",

@@ -69,7 +69,7 @@ pub fn diff(sides: &[ComparedReport; 2], options: &DiffOptions) -> Result<Diff> 
         return Err(Error::Usage(match rows.first() {
             None => nothing_in_common(a, b),
             Some(row) => format!(
-                "none of the {} measures can be judged: {}, for one, {}; trace more paths",
+                "none of the {} measures can be judged: for example, {} {}; trace more paths",
                 rows.len(),
                 row.name,
                 row.doubt.as_deref().unwrap_or_default()
@@ -90,9 +90,7 @@ pub fn diff(sides: &[ComparedReport; 2], options: &DiffOptions) -> Result<Diff> 
 fn nothing_in_common(a: &ComparedReport, b: &ComparedReport) -> String {
     let what = match a.content {
         Content::Run(_) => "no measure in common",
-        Content::Study(_) => {
-            "no design in common, one with the same settings and a measure in both"
-        }
+        Content::Study(_) => "no design in common (same settings, and a measure in both)",
     };
     format!("{} and {} have {what}", a.name, b.name)
 }
@@ -158,7 +156,7 @@ impl Pairs {
                     nearest(pattern, self.both.iter().map(|pair| pair.measure.as_str())).join(", ");
                 let known = if known.is_empty() { "none".to_owned() } else { known };
                 return Err(Error::Usage(format!(
-                    "--only {pattern}: no measure of both reports begins so; near it: {known}"
+                    "--only {pattern}: no measure of both reports begins like this; nearest: {known}"
                 )));
             }
         }

@@ -38,7 +38,7 @@ pub fn diff_table(diff: &Diff, rows: ShownRows) -> String {
     lines.extend(diff.rows[..shown].iter().map(cells));
     let mut text = format!("A: {}\nB: {}\n\n{}", diff.facts[0], diff.facts[1], aligned(&lines));
     if shown < diff.rows.len() {
-        _ = writeln!(text, "and {} more; --all shows them", diff.rows.len() - shown);
+        _ = writeln!(text, "and {} more (use --all to show them)", diff.rows.len() - shown);
     }
     text.push('\n');
     for line in findings(diff) {
@@ -55,7 +55,7 @@ pub(crate) fn markdown(diff: &Diff) -> String {
     for line in findings(diff) {
         _ = writeln!(page, "* {}", markdown_cell(&line));
     }
-    page += "\n## Measures, the worst first\n\n";
+    page += "\n## Measures, largest differences first\n\n";
     _ = writeln!(page, "| {} | |\n|---|--:|--:|--:|--:|--:|---|", HEADER.join(" | "));
     for row in &diff.rows {
         let cells = cells(row).map(|cell| markdown_cell(&cell));
@@ -127,7 +127,7 @@ fn word(judgement: Judgement) -> &'static str {
 pub(crate) fn remark(row: &DiffRow) -> String {
     match row.judgement {
         Judgement::Within => String::new(),
-        Judgement::Tolerated => "too small to matter".to_owned(),
+        Judgement::Tolerated => "within the relative limit".to_owned(),
         Judgement::Beyond => "**beyond the limit**".to_owned(),
         Judgement::Unknown => row.doubt.clone().unwrap_or_default(),
     }
@@ -197,7 +197,7 @@ pub(crate) fn findings(diff: &Diff) -> Vec<String> {
     let tolerated = diff.count(Judgement::Tolerated);
     if tolerated > 0 {
         lines.push(format!(
-            "{} beyond {} sigmas by too little to matter",
+            "{} beyond {} sigmas, but within the relative limit",
             are(tolerated),
             diff.limits.sigmas
         ));
@@ -217,7 +217,7 @@ fn chance(diff: &Diff) -> String {
     let remarkable = remarkable.filter(|row| row.sigmas.abs() > REMARKABLE).count();
     let expected = noisy as f64 * chance_beyond(REMARKABLE);
     format!(
-        "{} compared, {noisy} of them with noise: {remarkable} beyond {REMARKABLE} sigmas, where chance brings {}",
+        "{} compared, {noisy} of them with noise: {remarkable} beyond {REMARKABLE} sigmas, {} expected by chance",
         measures(diff.rows.len()),
         format_value((1e2 * expected).round() / 1e2)
     )

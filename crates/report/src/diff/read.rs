@@ -120,7 +120,7 @@ struct StudySummary {
 pub fn read(folder: &Path) -> Result<ComparedReport> {
     if !folder.is_dir() {
         return Err(Error::Usage(format!(
-            "{} is no folder; name the folder of a report, such as reports/NAME",
+            "{} is not a folder; name the folder of a report, such as reports/NAME",
             folder.display()
         )));
     }
@@ -130,7 +130,7 @@ pub fn read(folder: &Path) -> Result<ComparedReport> {
     match summary_in(folder, study::SUMMARY, study::SUMMARY_FORMAT)? {
         Some((found, _)) => Ok(study_side(found)),
         None => Err(Error::Usage(format!(
-            "{} holds no report: neither summary.json of a run nor study.json of a whole study",
+            "{} holds no report: neither summary.json of a run nor study.json of a complete study",
             folder.display()
         ))),
     }
@@ -153,7 +153,7 @@ fn summary_in<T: DeserializeOwned>(
     let Format { lumiduct_summary: format } = serde_json::from_slice(&bytes).map_err(wrong)?;
     if format != known {
         return Err(Error::Usage(format!(
-            "{} has format {format}, and this version of the program reads {known}; run it again",
+            "{} has format {format}, but this version of the program reads {known}; run it again",
             path.display()
         )));
     }
@@ -185,7 +185,7 @@ fn run_side(folder: &Path, found: RunSummary, manifest: &Manifest) -> Result<Com
             Err(error) if error.kind() == ErrorKind::InvalidData => {
                 let path = path.display();
                 return Err(Error::Usage(format!(
-                    "{path}: not UTF-8 text, so no table of a report"
+                    "{path}: not UTF-8 text, so not a table of a report"
                 )));
             }
             other => other.map_err(|source| Error::io(&path, source))?,

@@ -180,7 +180,7 @@ fn the_worst_comes_first_and_what_is_unknown_last() {
     assert_eq!(found.count(Judgement::Beyond), 2);
     let text = diff_table(&found, ShownRows::All);
     for words in [
-        "4 measures compared, 3 of them with noise: 2 beyond 3 sigmas, where chance brings 0.01",
+        "4 measures compared, 3 of them with noise: 2 beyond 3 sigmas, 0.01 expected by chance",
         "1 measure cannot be judged: a (counted too little in A)",
         "only A has 1 measure: gone",
         "only B has 1 measure: new",

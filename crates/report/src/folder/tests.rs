@@ -75,7 +75,7 @@ fn a_report_of_the_same_recipe_may_be_run_again_and_must_come_out_the_same() {
     assert_eq!(names(dir.path()), own, "a file was written in spite of it");
     // Without its manifest it is not a report.
     fs::remove_file(dir.path().join("manifest.json")).unwrap();
-    assert!(open(Some(&recipe(1))).unwrap_err().to_string().contains("no complete report"));
+    assert!(open(Some(&recipe(1))).unwrap_err().to_string().contains("not a complete report"));
 }
 
 #[test]

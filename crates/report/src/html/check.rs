@@ -14,7 +14,7 @@ use lumiduct_core::transport::Track;
 const MOST_NAMES: usize = 40;
 /// What the tables of axes mean.
 const AXES_WORDS: &str = "u and v are the coordinates of maps, patterns and cells on a face, in mm; n is the normal of its front. \
-The origin is the point with u = v = 0 or, on a face that does not reach so far, the point of the face next to it.";
+The origin is the point with u = v = 0 or, if that is outside the face, the nearest point of the face.";
 
 /// The page of a check. `listed` is the contents of the scene, line by line.
 pub fn check_page(title: &str, scene: &Scene, tracks: &[Track], listed: &str) -> Result<String> {
@@ -38,7 +38,7 @@ pub fn check_page(title: &str, scene: &Scene, tracks: &[Track], listed: &str) ->
         title: title.to_owned(),
         masthead: None,
         description: None,
-        verdict: "A check of the scene: nothing was measured".into(),
+        verdict: "Scene check: nothing was measured".into(),
         standing: Standing::Open,
         parts: vec![
             PagePart { title: "Scene".into(), blocks },

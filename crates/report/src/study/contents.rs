@@ -67,18 +67,19 @@ pub(super) fn verdict(report: &StudyReport) -> String {
         _ = write!(text, ": {passed} pass all checks, {failed} fail, {undecided} undecided");
     }
     if bad.broken > 0 {
-        _ = write!(text, "; {} make no scene that can be traced", bad.broken);
+        _ = write!(text, "; {} do not give a valid scene", bad.broken);
     }
     if bad.off_target > 0 {
-        _ = write!(text, "; {} have not reached their target error", bad.off_target);
+        _ = write!(text, "; {} did not reach their target error", bad.off_target);
     }
     text
 }
 
 fn failures(report: &StudyReport) -> Option<StudyPart> {
     let shares = &report.analysis.failures;
-    let words = "The interval holds the share of all that are ever made so with 95 % (Clopper and Pearson); where the error \
-                 bar of a design leaves a check open, it counts as passed for the low end and as failed for the high end.";
+    let words = "The 95 % interval (Clopper and Pearson) is for the share of all parts produced with these \
+        tolerances. A design that is undecided within its error bar counts as passed for the low end and as \
+        failed for the high end.";
     let head = ["demand", "passed", "failed", "undecided", "fails", "interval"].map(str::to_owned);
     let rows = shares.iter().map(|own| {
         let [low, high] = own.interval.map(format_percent);
@@ -103,8 +104,8 @@ fn ranking(report: &StudyReport) -> Option<StudyPart> {
         Best::Lowest => "lowest",
     };
     let words = format!(
-        "The {word} {} is the best. How much a design is behind is known better than the values, for all designs are traced \
-         with the same random numbers.",
+        "The {word} {} is the best. All designs are traced with the same random numbers, so their \
+            differences are known more precisely than their values.",
         ranking.measure
     );
     let labels = report.facts.parameters.iter().map(ParameterFacts::label);
@@ -137,14 +138,14 @@ fn sensitivities(report: &StudyReport) -> Option<StudyPart> {
     let first = all.first()?;
     let (words, sum) = match first.method {
         SensitivityMethod::FirstOrder => (
-            "First-order Sobol indices: the share of the variance over the grid that a parameter makes on its own. What is \
-             missing to 1 is made by parameters together.",
+            "First-order Sobol indices: the share of the variance over the grid that a parameter causes on \
+                its own. The rest, up to 1, comes from interactions between parameters.",
             "sum",
         ),
         SensitivityMethod::Regression => (
-            "Standardised regression coefficients: by how many standard deviations the measure moves when the parameter \
-             moves by one of its own. R² is the share of the variance that the regression tells; where it is small, a \
-             coefficient says little.",
+            "Standardised regression coefficients: how many standard deviations the measure changes when \
+                the parameter changes by one standard deviation. R² is the share of the variance that the \
+                regression explains; where it is small, the coefficients mean little.",
             "R²",
         ),
     };
@@ -165,10 +166,11 @@ fn sensitivities(report: &StudyReport) -> Option<StudyPart> {
 }
 
 fn effects(report: &StudyReport) -> Option<StudyPart> {
-    let words = "The mean of a measure over designs with the same setting of a parameter. How much it differs from that of the \
-                 first setting is known better than the means, for all designs are traced with the same random numbers. Settings \
-                 without designs that differ from the others in nothing else are left out.";
-    let head = ["measure", "parameter", "setting", "designs", "mean", "against the first"];
+    let words = "The mean of a measure over designs with the same setting of a parameter. All designs are \
+        traced with the same random numbers, so the difference from the first setting is known more \
+        precisely than the means. Only designs that have a partner at every other setting, with all other \
+        parameters equal, are included.";
+    let head = ["measure", "parameter", "setting", "designs", "mean", "difference from the first"];
     let mut rows = Vec::new();
     for effect in &report.analysis.effects {
         let label = report.facts.parameters.iter().find(|own| own.name == effect.parameter);
@@ -211,7 +213,7 @@ fn designs(report: &StudyReport) -> StudyPart {
             }
             DesignOutcome::Failed(reason) => {
                 let rest = vec![String::new(); facts.measures.len().saturating_sub(1)];
-                [format!("no scene: {reason}")].into_iter().chain(rest).collect()
+                [format!("no valid scene: {reason}")].into_iter().chain(rest).collect()
             }
         };
         let verdict = design.verdict().map_or("", outcome_word).to_owned();
@@ -264,7 +266,7 @@ fn domain_words(domain: &Domain) -> String {
             }
             text
         }
-        Domain::Listed => "by the table".into(),
+        Domain::Listed => "from the table".into(),
     }
 }
 
@@ -309,12 +311,12 @@ fn run(report: &StudyReport) -> StudyPart {
             "lumiduct {}, estimator {}, seed {} for all designs",
             facts.version, facts.estimator, facts.seed
         ),
-        format!("each design was asked for {}", facts.asked),
+        format!("requested for each design: {}", facts.asked),
     ];
     for own in &report.analysis.sharpness {
         lines.push(format!(
-            "differences of {} between neighbouring designs have errors {} times smaller than with random numbers of \
-             their own (median of {} pairs)",
+            "differences of {} between neighbouring designs have errors {} times smaller than with \
+                independent random numbers (median of {} pairs)",
             own.measure,
             format_value(own.factor),
             own.pairs

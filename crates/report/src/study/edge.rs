@@ -18,7 +18,8 @@ pub(super) fn edge_remark(report: &StudyReport) -> Option<String> {
     let ranges = if edges.len() == 1 { "that range" } else { "these ranges" };
     (!edges.is_empty()).then(|| {
         format!(
-            "Design {} is the best and lies at the edge of what was tried: {}. The optimum may lie outside of {ranges}.",
+            "Design {} is the best and lies at the edge of the range tried: {}. The optimum may lie outside \
+                {ranges}.",
             best.design,
             edges.join("; ")
         )

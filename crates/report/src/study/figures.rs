@@ -67,7 +67,7 @@ pub(super) fn figures(report: &StudyReport) -> Vec<Figure> {
     if report.designs.len() > 2 {
         figures.push(Figure {
             file: "scatter.png".into(),
-            label: "all parameters and measures, each against each".into(),
+            label: "scatter matrix of all parameters and measures".into(),
             drawing: StudyDrawing::Scatter(scatter(report)),
         });
     }
@@ -126,7 +126,7 @@ fn response(report: &StudyReport, measure: &str) -> Option<LinePlot> {
     }
     let left_out = curves.len().saturating_sub(MOST_CURVES);
     let more = if left_out > 0 {
-        format!("; {left_out} curves more are not drawn")
+        format!("; {left_out} more curves are not drawn")
     } else {
         String::new()
     };
@@ -226,7 +226,7 @@ fn effect_drawing(report: &StudyReport, effect: &Effect) -> StudyDrawing {
     } else if used == report.designs.len() {
         "mean over all designs with the same setting"
     } else {
-        "mean over the designs that differ in nothing else"
+        "mean over designs that differ only in this parameter"
     };
     let points: Option<Vec<SeriesPoint>> = effect
         .points

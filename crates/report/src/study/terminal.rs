@@ -26,7 +26,7 @@ pub fn terminal(report: &StudyReport) -> String {
         }
     }
     if shown.len() > DESIGNS_SHOWN {
-        let words = if ranked.is_empty() { "more" } else { "behind them" };
+        let words = if ranked.is_empty() { "more" } else { "designs ranked lower" };
         text += &format!("  and {} {words}\n", shown.len() - DESIGNS_SHOWN);
     }
     for own in &report.analysis.failures {
@@ -36,7 +36,7 @@ pub fn terminal(report: &StudyReport) -> String {
             count => format!(", {count} undecided"),
         };
         text += &format!(
-            "  {}: {} of {} designs fail{open}; of all that are ever made {low} to {high} (95 %)\n",
+            "  {}: {} of {} designs fail{open}; expected in production: {low} to {high} (95 %)\n",
             own.demand,
             own.failed,
             own.passed + own.failed + own.undecided
@@ -47,10 +47,10 @@ pub fn terminal(report: &StudyReport) -> String {
         DesignOutcome::Done(_) => None,
     });
     for (number, reason) in broken.take(DESIGNS_SHOWN) {
-        text += &format!("  design {number} makes no scene: {reason}\n");
+        text += &format!("  design {number} gives no valid scene: {reason}\n");
     }
     if counts.broken > DESIGNS_SHOWN {
-        text += &format!("  and {} more make none\n", counts.broken - DESIGNS_SHOWN);
+        text += &format!("  and {} more give none\n", counts.broken - DESIGNS_SHOWN);
     }
     text
 }

@@ -34,8 +34,8 @@ pub enum OutlineError {
     NotConvex,
     /// Prisms of this pitch leave a gap.
     #[error(
-        "prisms of {pitch} mm do not close: {fit:.4} of them fit on {length:.6} mm, expected a whole number, such as {nearest} of \
-         {better:.6} mm"
+        "prisms of {pitch} mm do not fit: {fit:.4} of them fit on {length:.6} mm, expected a whole number, \
+            such as {nearest} of {better:.6} mm"
     )]
     Gap {
         /// The pitch, mm.

@@ -57,7 +57,7 @@ pub enum ProfileError {
         y: f64,
     },
     /// The points lie on a line.
-    #[error("the profile has an area of {area} mm², which is nothing at its size")]
+    #[error("the profile has an area of {area} mm², which is zero within rounding")]
     NoArea {
         /// The area, mm².
         area: f64,

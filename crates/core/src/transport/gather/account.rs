@@ -41,8 +41,9 @@ pub(crate) fn account(
     });
     let warning = off_photons.filter(|off| off.abs() > CONTRADICTED).map(|off| {
         format!(
-            "the gathered flux of sensor `{sensor}` is {:.1} errors {} what photons of the same run counted there ({flux}): a \
-             feature of the light is smaller than the windows; take a smaller radius_mm or angle_deg, or another estimator",
+            "the gathered flux of sensor `{sensor}` is {:.1} errors {} the flux that photons of the same \
+                run carried there ({flux}): a feature of the light is smaller than the windows; use a \
+                smaller radius_mm or angle_deg, or another estimator",
             off.abs(),
             if off > 0.0 { "above" } else { "below" },
         )
@@ -82,7 +83,8 @@ fn of_bias(resolution: Resolution) -> &'static str {
             "Bias not resolved from noise: the windows agree within their errors. The value is E0, which is free of a bias that scales with the square of the window."
         }
         Resolution::NotResolved => {
-            "Bias not resolved: the windows differ, but not as the square of their size. The value is E3, that of the smallest window, and |E1 - E2| is no bound."
+            "Bias not resolved: the windows differ, but the bias does not scale with the square of their \
+                size. The value is E3, that of the smallest window, and |E1 - E2| is not a bound."
         }
     }
 }

@@ -36,7 +36,7 @@ impl Context<'_> {
     pub(in crate::lower) fn ground(&mut self, name: &str, key: &Key) -> Option<PatternGround> {
         let faces = self.faces_named(name, key)?;
         let [face] = faces[..] else {
-            let message = format!("`{name}` stands for {} faces, expected one", faces.len());
+            let message = format!("`{name}` names {} faces, expected one", faces.len());
             return self.refuse(key, message, "name one of them, such as `wall_plus_x`");
         };
         let scene = self.builder.scene();

@@ -47,7 +47,7 @@ impl Context<'_> {
         let middle = 0.5 * (ground.rect.min.x + ground.rect.max.x);
         let first = match (spec.around_deg, spec.across_mm, ground.radius) {
             (Some(_), Some(_), _) => {
-                let message = "stands beside across_mm, expected one of them";
+                let message = "is given together with across_mm, expected one of them";
                 self.problems.error(&key.field("around_deg"), message);
                 return None;
             }
@@ -64,7 +64,7 @@ impl Context<'_> {
             (Some(positions), _) => {
                 if let Some(at) = positions.windows(2).position(|pair| pair[0] >= pair[1]) {
                     let key = key.field("positions_mm").index(at + 1);
-                    self.problems.error(&key, "is not above the one before it");
+                    self.problems.error(&key, "is not greater than the one before it");
                     return None;
                 }
                 RowPositions::Listed(positions.iter().map(|position| start + position).collect())
@@ -101,7 +101,7 @@ impl Context<'_> {
             let count = fit.round().max(1.0);
             if (fit - count).abs() > WHOLE * count {
                 let message =
-                    format!("columns {pitch} mm apart do not close: {fit:.4} of them fit around");
+                    format!("columns {pitch} mm apart do not fit: {fit:.4} of them go around");
                 return self.refuse(
                     key,
                     message,
@@ -162,7 +162,7 @@ impl Context<'_> {
                 }
                 let along = TableAlong::table(knots.clone());
                 if along.is_none() {
-                    self.problems.error(key, "the places of the table do not increase");
+                    self.problems.error(key, "the positions of the table do not increase");
                 }
                 along.map(|along| along.shifted(start))
             }
@@ -193,7 +193,7 @@ impl Context<'_> {
             self.problems.error(
                 key,
                 format!(
-                    "[{}, {}] is no part of the face, which goes from {from:.4} to {to:.4} mm",
+                    "[{}, {}] is not within the face, which goes from {from:.4} to {to:.4} mm",
                     given[0], given[1]
                 ),
             );

@@ -68,7 +68,7 @@ impl Context<'_> {
     ) -> Option<(ElementForm, Way)> {
         let height = self.height(&spec.extent, wall, key)?;
         if wall.unrolled.radius.is_some() {
-            let message = "pyramids stand on flat walls, and this one is round";
+            let message = "pyramids need a flat wall, and this one is round";
             let hint = "a round wall takes dimples, bumps, grooves, and ridges as rings";
             return self.refuse(key, message, hint);
         }

@@ -31,7 +31,7 @@ impl<'a> Context<'a> {
         let body = spec.on.split('.').next().unwrap_or_default();
         let name = format!("{body}.{name}");
         if self.faces.contains_key(&name) {
-            let message = format!("`{name}` is a face of the solid already");
+            let message = format!("`{name}` is already a face of the solid");
             return self.refuse(key, message, "give the relief another name");
         }
         self.may_build(key)?;
@@ -72,7 +72,7 @@ impl<'a> Context<'a> {
         if field.count() > MOST_ELEMENTS {
             let count = field.count();
             let message = format!("makes {count} elements, expected at most {MOST_ELEMENTS}");
-            let hint = "each has surfaces of its own; dots of a pattern cost nothing";
+            let hint = "each element has its own surfaces; the dots of a pattern need none";
             return self.refuse(&layout, message, hint);
         }
         self.check_heights(&element, &field, wall, &spec.on, &key.field("element"))?;
@@ -88,7 +88,7 @@ impl<'a> Context<'a> {
             LayoutSpec::Grid(_) | LayoutSpec::Staggered(_) | LayoutSpec::Hexagonal(_) => false,
         };
         if !is_plain {
-            let message = "rings go all around, expected a `row` without a place around";
+            let message = "rings go all around, expected a `row` without a position around";
             let hint = "row = { pitch_mm = ... } or row = { positions_mm = [...] }";
             return self.refuse(key, message, hint);
         }

@@ -7,8 +7,7 @@ use crate::upright::is_lit_from_above;
 use glam::DVec3;
 use lumiduct_base::math::Aabb;
 use lumiduct_core::scene::{
-    Emitter, FaceFacets, FaceId, Fineness, Owner, Scene, SensorKind, SourceId, Triangulation,
-    shape_facets,
+    FaceFacets, FaceId, Fineness, Owner, Scene, SensorKind, SourceId, Triangulation, shape_facets,
 };
 use lumiduct_core::transport::{Track, TrackEnd};
 use serde::Serialize;
@@ -232,16 +231,15 @@ fn sources(scene: &Scene, deviation: f64) -> Vec<DrawnFace> {
     let one_in = scene.sources.len().div_ceil(FACES).max(1);
     for source in scene.sources.iter().step_by(one_in) {
         let mut facets = Triangulation::default();
-        match &source.emitter {
-            Emitter::Surface { shapes, .. } => {
-                shapes.iter().for_each(|(shape, _)| facets.append(shape_facets(shape, deviation)));
-            }
-            Emitter::Line { frame, length } => {
-                let half = 0.5 * length * frame.z;
-                facets.points.extend([frame.origin - half, frame.origin + half]);
-                facets.rims.push(vec![0, 1]);
-            }
-            Emitter::Point(_) | Emitter::Far { .. } | Emitter::Volume { .. } => continue,
+        for (shape, _) in source.emitter.shapes() {
+            facets.append(shape_facets(shape, deviation));
+        }
+        if let Some(ends) = source.emitter.line() {
+            facets.points.extend(ends);
+            facets.rims.push(vec![0, 1]);
+        }
+        if facets.points.is_empty() {
+            continue;
         }
         faces.push(DrawnFace { name: source.name.clone(), role: Role::Source, facets });
     }
@@ -250,13 +248,7 @@ fn sources(scene: &Scene, deviation: f64) -> Vec<DrawnFace> {
 
 /// Sources in the scene without a surface.
 fn small_sources(scene: &Scene) -> impl Iterator<Item = DVec3> {
-    scene.sources.iter().filter_map(|source| match &source.emitter {
-        Emitter::Point(frame) => Some(frame.origin),
-        Emitter::Line { .. }
-        | Emitter::Surface { .. }
-        | Emitter::Far { .. }
-        | Emitter::Volume { .. } => None,
-    })
+    scene.sources.iter().filter_map(|source| Some(source.emitter.point()?.origin))
 }
 
 fn marks(scene: &Scene, faces: &[DrawnFace], paths: &[(SourceId, DrawnPath)]) -> Vec<NameMark> {

@@ -7,8 +7,7 @@
 use glam::DVec3;
 use lumiduct_base::number::format_value;
 use lumiduct_core::scene::{
-    Emission, Emitter, Face, FaceId, MediumId, Owner, Scene, Seeing, Sensor, SensorKind, Source,
-    SunAngles,
+    Emission, Face, FaceId, MediumId, Owner, Scene, Seeing, Sensor, SensorKind, Source, SunAngles,
 };
 use lumiduct_input::Outline;
 use std::collections::BTreeSet;
@@ -285,16 +284,10 @@ fn sources(scene: &Scene, outline: &Outline) -> Listing {
 
 /// Where the file puts a source, its middle, and the position of the sun.
 fn source_place(scene: &Scene, source: &Source, outline: &Outline) -> String {
-    let middle = match &source.emitter {
-        Emitter::Far { .. } => None,
-        Emitter::Point(_)
-        | Emitter::Line { .. }
-        | Emitter::Surface { .. }
-        | Emitter::Volume { .. } => {
-            let bounds = source.emitter.bounds();
-            Some(format!("middle at {}", point(0.5 * (bounds.min + bounds.max) + scene.origin)))
-        }
-    };
+    let middle = (!source.emitter.is_far()).then(|| {
+        let bounds = source.emitter.bounds();
+        format!("middle at {}", point(0.5 * (bounds.min + bounds.max) + scene.origin))
+    });
     let told = outline.field("sources", &source.name, "at");
     let sun = source.sun.map(|SunAngles { elevation, azimuth }| {
         let [elevation, azimuth] = [elevation, azimuth].map(f64::to_degrees);

@@ -1,40 +1,20 @@
 //! Which way is up in a picture by default.
 
-use glam::DVec3;
-use lumiduct_core::scene::{Emission, EmitSide, Emitter, Scene, Source};
+use lumiduct_core::scene::{Emission, Scene, Source};
 
 /// Cosine of the angle to −z within which a source shines down: 60 degrees.
 const DOWN: f64 = 0.5;
 
 /// Whether +z is up: there is daylight, or all sources shine down.
 pub(super) fn is_lit_from_above(scene: &Scene) -> bool {
-    let is_daylight = |source: &Source| {
-        matches!(source.emitter, Emitter::Far { .. }) || matches!(source.emission, Emission::Sky(_))
+    let is_daylight =
+        |source: &Source| source.emitter.is_far() || matches!(source.emission, Emission::Sky(_));
+    let shines_down = |source: &Source| {
+        let is_all_around = matches!(source.emission, Emission::Isotropic);
+        !is_all_around && source.emitter.axis().is_some_and(|axis| axis.z < -DOWN)
     };
-    let shines_down = |source: &Source| axis(source).is_some_and(|axis| axis.z < -DOWN);
     scene.sources.iter().any(is_daylight)
         || !scene.sources.is_empty() && scene.sources.iter().all(shines_down)
-}
-
-/// The direction along which a point or a flat surface shines; `None` for all others.
-fn axis(source: &Source) -> Option<DVec3> {
-    match &source.emitter {
-        Emitter::Point(frame) => {
-            (!matches!(source.emission, Emission::Isotropic)).then_some(frame.z)
-        }
-        Emitter::Surface { shapes, side, .. } => {
-            let [(shape, _)] = shapes.as_slice() else { return None };
-            let normals =
-                [[0.1, 0.1], [0.9, 0.1], [0.5, 0.9]].map(|u| shape.normal(shape.sample(u)));
-            let is_flat = normals.iter().all(|normal| normal.dot(normals[0]) > 1.0 - 1e-9);
-            let along = match side {
-                EmitSide::Front => normals[0],
-                EmitSide::Back => -normals[0],
-            };
-            is_flat.then_some(along)
-        }
-        Emitter::Line { .. } | Emitter::Far { .. } | Emitter::Volume { .. } => None,
-    }
 }
 
 #[cfg(test)]

@@ -45,13 +45,7 @@ impl Context<'_> {
             return self.carried([luminance, flux], &key);
         }
         let (intensity, key) = (common.intensity_cd?, key.field("intensity_cd"));
-        let per_intensity = match emitter {
-            Emitter::Point(_) => law.flux_per_peak_intensity(),
-            Emitter::Line { .. }
-            | Emitter::Surface { .. }
-            | Emitter::Volume { .. }
-            | Emitter::Far { .. } => None,
-        };
+        let per_intensity = emitter.point().and_then(|_| law.flux_per_peak_intensity());
         let Some(per_intensity) = per_intensity else {
             let message = "needs a `point` source that is not collimated";
             return self.refuse(&key, message, "give flux_lm instead");

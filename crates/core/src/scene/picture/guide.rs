@@ -4,7 +4,7 @@
 //! A guide is a body with an entry, an exit, and walls that are large compared with both. Rooms,
 //! panels and boards are not.
 
-use crate::scene::{Emitter, FaceId, PieceRange, Scene, SensorKind};
+use crate::scene::{FaceId, PieceRange, Scene, SensorKind};
 use glam::DVec3;
 use lumiduct_base::math::{Aabb, Frame};
 
@@ -186,12 +186,8 @@ impl Scene {
                 && other.overlaps(&own.grown(reach * size))
         };
         let bodies = bodies.iter().map(|body| body.bounds);
-        let emitters = self.sources.iter().filter_map(|source| match &source.emitter {
-            Emitter::Surface { .. } | Emitter::Line { .. } | Emitter::Point(_) => {
-                Some(source.emitter.bounds())
-            }
-            Emitter::Far { .. } | Emitter::Volume { .. } => None,
-        });
+        let things = self.sources.iter().filter(|source| source.emitter.is_thing());
+        let emitters = things.map(|source| source.emitter.bounds());
         let sensed = self.sensors.iter().map(|sensor| match &sensor.kind {
             SensorKind::Surface(surface) => {
                 let faces = surface.faces.iter();

@@ -155,6 +155,64 @@ impl Emitter {
         }
     }
 
+    /// The frame of a point; `None` for all others.
+    pub fn point(&self) -> Option<&Frame> {
+        match self {
+            Self::Point(frame) => Some(frame),
+            Self::Line { .. } | Self::Surface { .. } | Self::Volume { .. } | Self::Far { .. } => {
+                None
+            }
+        }
+    }
+
+    /// The ends of a line; `None` for all others.
+    pub fn line(&self) -> Option<[DVec3; 2]> {
+        match self {
+            Self::Line { frame, length } => {
+                let half = 0.5 * length * frame.z;
+                Some([frame.origin - half, frame.origin + half])
+            }
+            Self::Point(_) | Self::Surface { .. } | Self::Volume { .. } | Self::Far { .. } => None,
+        }
+    }
+
+    /// The surfaces of a source within the scene; none for all others.
+    pub fn shapes(&self) -> &[(Shape, f64)] {
+        match self {
+            Self::Surface { shapes, .. } => shapes,
+            Self::Point(_) | Self::Line { .. } | Self::Volume { .. } | Self::Far { .. } => &[],
+        }
+    }
+
+    /// The direction along which a point or a flat surface shines; `None` for all others.
+    pub fn axis(&self) -> Option<DVec3> {
+        match self {
+            Self::Point(frame) => Some(frame.z),
+            Self::Surface { shapes, side, .. } => {
+                let [(shape, _)] = shapes.as_slice() else { return None };
+                let normals =
+                    [[0.1, 0.1], [0.9, 0.1], [0.5, 0.9]].map(|u| shape.normal(shape.sample(u)));
+                let is_flat = normals.iter().all(|normal| normal.dot(normals[0]) > 1.0 - 1e-9);
+                let along = match side {
+                    EmitSide::Front => normals[0],
+                    EmitSide::Back => -normals[0],
+                };
+                is_flat.then_some(along)
+            }
+            Self::Line { .. } | Self::Volume { .. } | Self::Far { .. } => None,
+        }
+    }
+
+    /// Whether it is the sky or the sun, outside of everything.
+    pub fn is_far(&self) -> bool {
+        matches!(self, Self::Far { .. })
+    }
+
+    /// Whether it is a thing of its own: not the sky, and not the inside of a solid.
+    pub fn is_thing(&self) -> bool {
+        !matches!(self, Self::Far { .. } | Self::Volume { .. })
+    }
+
     /// Box around the emitter, mm.
     pub fn bounds(&self) -> Aabb {
         match self {

@@ -17,7 +17,7 @@ mod volume;
 
 pub use angle_table::AngleTable;
 pub use film::{FilmFace, FilmMake, Grain, PrismFilm};
-pub use finish::bsdf::Bsdf;
+pub use finish::Bsdf;
 pub use finish::faces::{Faces, scatter_radiance};
 pub use finish::haze::{Haze, HazeBase, HazeSides, integrated_scatter};
 pub use finish::microfacet::{FacetKind, Microfacet};

@@ -3,7 +3,7 @@
 //! Maps, patterns and positions on a face all refer to them; they are found from the chart itself,
 //! whatever the shape.
 
-use crate::scene::shape::{ChartRect, Shape};
+use crate::scene::shape::ChartRect;
 use crate::scene::{FaceId, Patch, Scene};
 use glam::{DVec2, DVec3};
 
@@ -61,20 +61,10 @@ impl Scene {
 }
 
 fn patch_axes(patch: &Patch, rect: ChartRect) -> FaceAxes {
-    let origin = match (&patch.shape, &patch.chart) {
+    let origin = match patch.shape.as_flat() {
         // The middle of a ring is not one of its points.
-        (Shape::Flat(flat), None) => flat.frame().origin,
-        (
-            Shape::Flat(_)
-            | Shape::Cylinder(_)
-            | Shape::Cone(_)
-            | Shape::Torus(_)
-            | Shape::Sphere(_)
-            | Shape::Paraboloid(_)
-            | Shape::ParabolicCylinder(_)
-            | Shape::CompoundParabola(_),
-            _,
-        ) => nearest_to_origin(patch),
+        Some(flat) if patch.chart.is_none() => flat.frame().origin,
+        Some(_) | None => nearest_to_origin(patch),
     };
     let (normal, v) = (patch.shape.normal(origin), patch.along(origin));
     let across = v.cross(normal);

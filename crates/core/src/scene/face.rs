@@ -227,33 +227,29 @@ impl FacePiece {
 impl ReliefWall {
     /// The wall of a patch: a flat one, or a round one all around with its front outside.
     pub fn of(patch: &Patch) -> Option<Self> {
-        match &patch.shape {
-            Shape::Flat(flat) => {
-                let Frame { origin, x, y, z } = *flat.frame();
-                let at = patch.chart(origin);
-                let [by_x, by_y] = [x, y].map(|step| patch.chart(origin + step) - at);
-                let (u, v) = (by_x.x * x + by_y.x * y, by_x.y * x + by_y.y * y);
-                let (u, v) = (u.try_normalize()?, v.try_normalize()?);
-                Some(Self { origin: origin - at.x * u - at.y * v, x: u, y: v, z, radius: None })
-            }
-            Shape::Cylinder(wall) if wall.is_whole() => {
-                let start = patch.shape.sample([0.25, 0.5]);
-                let (at, out) = (patch.chart(start), patch.shape.normal(start));
-                let (along, radius) = (patch.along(start), wall.radius());
-                // u grows counter-clockwise about the axis.
-                let (sin, cos) = (at.x / radius).sin_cos();
-                let around = along.cross(out);
-                let (x, y) = (cos * out - sin * around, sin * out + cos * around);
-                let origin = start - radius * out - at.y * along;
-                Some(Self { origin, x, y, z: along, radius: Some(radius) })
-            }
-            Shape::Cylinder(_)
-            | Shape::Cone(_)
-            | Shape::Torus(_)
-            | Shape::Sphere(_)
-            | Shape::Paraboloid(_)
-            | Shape::ParabolicCylinder(_)
-            | Shape::CompoundParabola(_) => None,
+        if let Some(flat) = patch.shape.as_flat() {
+            let Frame { origin, x, y, z } = *flat.frame();
+            let at = patch.chart(origin);
+            let [by_x, by_y] = [x, y].map(|step| patch.chart(origin + step) - at);
+            let (u, v) = (by_x.x * x + by_y.x * y, by_x.y * x + by_y.y * y);
+            let (u, v) = (u.try_normalize()?, v.try_normalize()?);
+            return Some(Self {
+                origin: origin - at.x * u - at.y * v,
+                x: u,
+                y: v,
+                z,
+                radius: None,
+            });
         }
+        let wall = patch.shape.as_cylinder().filter(|wall| wall.is_whole())?;
+        let start = patch.shape.sample([0.25, 0.5]);
+        let (at, out) = (patch.chart(start), patch.shape.normal(start));
+        let (along, radius) = (patch.along(start), wall.radius());
+        // u grows counter-clockwise about the axis.
+        let (sin, cos) = (at.x / radius).sin_cos();
+        let around = along.cross(out);
+        let (x, y) = (cos * out - sin * around, sin * out + cos * around);
+        let origin = start - radius * out - at.y * along;
+        Some(Self { origin, x, y, z: along, radius: Some(radius) })
     }
 }

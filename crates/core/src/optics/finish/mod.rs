@@ -1,8 +1,12 @@
 //! Finishes: what a face does to light. Each finish has a file that answers every question of
-//! `model` about it; `bsdf` asks the one that a face has, and `faces` joins the two of a face.
+//! `model` about it; `faces` joins the two of a face. Here is the closed set, and the one place that
+//! asks a finish.
+//!
+//! Mirrors and total internal reflection draw no random numbers; a dielectric draws one to choose
+//! between the reflected and the refracted part. A finish absorbs all light that it does not send
+//! on.
 
 mod absorber;
-pub(crate) mod bsdf;
 mod coated;
 pub(crate) mod faces;
 mod gaussian_dielectric;
@@ -20,3 +24,254 @@ mod specular;
 mod tabulated;
 #[cfg(test)]
 mod testing;
+
+use crate::optics::finish::absorber::Absorber;
+use crate::optics::finish::coated::Coated;
+use crate::optics::finish::gaussian_dielectric::GaussianDielectric;
+use crate::optics::finish::gaussian_sheet::GaussianSheet;
+use crate::optics::finish::haze::Haze;
+use crate::optics::finish::lambertian::Lambertian;
+use crate::optics::finish::metal::Metal;
+use crate::optics::finish::microfacet::Microfacet;
+use crate::optics::finish::mixture::Mixture;
+use crate::optics::finish::model::{FinishModel, Spread};
+use crate::optics::finish::open::Open;
+use crate::optics::finish::prism_film::MetFilm;
+use crate::optics::finish::smooth::SmoothInterface;
+use crate::optics::finish::specular::Specular;
+use crate::optics::finish::tabulated::Tabulated;
+use crate::optics::{
+    AngleTable, FilmFace, Gaussian, Incidence, PrismFilm, Scattered, Shares, Side,
+};
+use crate::rng::{Numbers, Sampler};
+use glam::DVec3;
+
+/// A finish: what a face does to light.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Bsdf {
+    /// The smooth interface of the two media: Fresnel for unpolarised light, Snell, total reflection.
+    Smooth,
+    /// A mirror, or a beam splitter, with the same shares at every angle; transmitted light goes straight on.
+    Specular {
+        /// Share that is mirrored, 0..=1.
+        reflectance: f64,
+        /// Share that goes straight on, 0..=1 with the reflectance.
+        transmittance: f64,
+    },
+    /// A bare metal of complex index n + ik.
+    Metal {
+        /// Real part of the index.
+        n: f64,
+        /// Imaginary part of the index, positive.
+        k: f64,
+    },
+    /// Absorbs all light.
+    Absorber,
+    /// No interface: light goes straight on.
+    Open,
+    /// Diffuse reflection and transmission by Lambert's law.
+    Lambertian {
+        /// Share that is reflected, 0..=1.
+        reflectance: f64,
+        /// Share that is transmitted, 0..=1 with the reflectance.
+        transmittance: f64,
+    },
+    /// Gaussian scatter about the mirrored and the straight direction, with shares that do not depend on the angle.
+    GaussianSheet {
+        /// The lobe.
+        lobe: Gaussian,
+        /// Share that is reflected, 0..=1.
+        reflectance: f64,
+        /// Share that is transmitted, 0..=1 with the reflectance.
+        transmittance: f64,
+    },
+    /// A rough dielectric: shares by Fresnel, Gaussian scatter about the mirrored and the refracted direction.
+    GaussianDielectric {
+        /// The lobe.
+        lobe: Gaussian,
+    },
+    /// A mirror or a window with shares by the angle of incidence; transmitted light goes straight on.
+    Tabulated {
+        /// Share that is mirrored.
+        reflectance: AngleTable,
+        /// Share that goes straight on.
+        transmittance: AngleTable,
+    },
+    /// A coated interface of two media: it reflects as the table says, by the angle in the medium
+    /// of the lower index, and refracts the rest; total reflection is unchanged.
+    Coated {
+        /// Share that is mirrored.
+        reflectance: AngleTable,
+    },
+    /// A rough interface or mirror of small facets.
+    Microfacet(Microfacet),
+    /// Haze about discrete directions.
+    Haze(Box<Haze>),
+    /// A thin film with prisms on one face.
+    PrismFilm {
+        /// The film.
+        film: Box<PrismFilm>,
+        /// The face that is met.
+        face: FilmFace,
+    },
+    /// Each photon meets one of several finishes, chosen by weight.
+    Mixture(Vec<(f64, Bsdf)>),
+}
+
+/// The answer of the finish that a [`Bsdf`] is: the one match over all finishes, for all questions.
+macro_rules! ask {
+    ($bsdf:expr, $finish:ident => $answer:expr) => {
+        match $bsdf {
+            Bsdf::Smooth => {
+                let $finish = SmoothInterface;
+                $answer
+            }
+            Bsdf::Specular { reflectance, transmittance } => {
+                let $finish = Specular { shares: both(reflectance, transmittance) };
+                $answer
+            }
+            Bsdf::Metal { n, k } => {
+                let $finish = Metal { n: *n, k: *k };
+                $answer
+            }
+            Bsdf::Absorber => {
+                let $finish = Absorber;
+                $answer
+            }
+            Bsdf::Open => {
+                let $finish = Open;
+                $answer
+            }
+            Bsdf::Lambertian { reflectance, transmittance } => {
+                let $finish = Lambertian { shares: both(reflectance, transmittance) };
+                $answer
+            }
+            Bsdf::GaussianSheet { lobe, reflectance, transmittance } => {
+                let $finish = GaussianSheet { lobe, shares: both(reflectance, transmittance) };
+                $answer
+            }
+            Bsdf::GaussianDielectric { lobe } => {
+                let $finish = GaussianDielectric { lobe };
+                $answer
+            }
+            Bsdf::Tabulated { reflectance, transmittance } => {
+                let $finish = Tabulated { reflectance, transmittance };
+                $answer
+            }
+            Bsdf::Coated { reflectance } => {
+                let $finish = Coated { reflectance };
+                $answer
+            }
+            Bsdf::Microfacet($finish) => $answer,
+            Bsdf::Haze($finish) => $answer,
+            Bsdf::PrismFilm { film, face } => {
+                let $finish = MetFilm { film, face: *face };
+                $answer
+            }
+            Bsdf::Mixture(parts) => {
+                let $finish = Mixture { parts };
+                $answer
+            }
+        }
+    };
+}
+
+impl Bsdf {
+    /// The same finish as met by light from the other side, if it differs there.
+    pub fn from_behind(&self) -> Option<Self> {
+        if let Self::PrismFilm { film, face } = self {
+            return Some(Self::PrismFilm { film: film.clone(), face: face.opposite() });
+        }
+        if let (Self::Mixture(parts), true) = (self, self.has_grain()) {
+            let turned = |part: &Self| part.from_behind().unwrap_or_else(|| part.clone());
+            let parts = parts.iter().map(|(weight, part)| (*weight, turned(part)));
+            return Some(Self::Mixture(parts.collect()));
+        }
+        None
+    }
+
+    /// [`FinishModel::scatter`] out of line, so that the loop around mirrors and smooth faces stays
+    /// small.
+    #[inline(never)]
+    fn scatter_rarely(
+        &self,
+        incidence: &Incidence,
+        sampler: &mut Sampler<impl Numbers>,
+    ) -> Option<Scattered> {
+        ask!(self, finish => finish.scatter(incidence, sampler))
+    }
+}
+
+impl FinishModel for Bsdf {
+    fn shares(&self, incidence: &Incidence) -> Shares {
+        ask!(self, finish => finish.shares(incidence))
+    }
+
+    #[inline(always)]
+    fn scatter(
+        &self,
+        incidence: &Incidence,
+        sampler: &mut Sampler<impl Numbers>,
+    ) -> Option<Scattered> {
+        if let Self::Smooth = self {
+            return SmoothInterface.scatter(incidence, sampler);
+        }
+        if let Self::Specular { reflectance, transmittance } = self {
+            let shares = both(reflectance, transmittance);
+            return Specular { shares }.scatter(incidence, sampler);
+        }
+        // Normalised here rather than copied, so light from mirrors need not go through memory
+        // either.
+        self.scatter_rarely(incidence, sampler).map(Scattered::normalised)
+    }
+
+    fn scatter_radiance(
+        &self,
+        incidence: &Incidence,
+        sampler: &mut Sampler<impl Numbers>,
+    ) -> Option<Scattered> {
+        ask!(self, finish => finish.scatter_radiance(incidence, sampler))
+    }
+
+    fn scatter_toward(
+        &self,
+        side: Side,
+        incidence: &Incidence,
+        sampler: &mut Sampler<impl Numbers>,
+    ) -> Option<Scattered> {
+        ask!(self, finish => finish.scatter_toward(side, incidence, sampler))
+    }
+
+    fn chances(&self, incidence: &Incidence) -> Shares {
+        ask!(self, finish => finish.chances(incidence))
+    }
+
+    fn radiance_chances(&self, incidence: &Incidence) -> Shares {
+        ask!(self, finish => finish.radiance_chances(incidence))
+    }
+
+    fn evaluate(&self, incidence: &Incidence, out: DVec3) -> f64 {
+        ask!(self, finish => finish.evaluate(incidence, out))
+    }
+
+    fn width(&self) -> Option<f64> {
+        ask!(self, finish => finish.width())
+    }
+
+    fn kind(&self) -> Spread {
+        ask!(self, finish => finish.kind())
+    }
+
+    fn passes_straight(&self) -> bool {
+        ask!(self, finish => finish.passes_straight())
+    }
+
+    #[inline]
+    fn has_grain(&self) -> bool {
+        ask!(self, finish => finish.has_grain())
+    }
+}
+
+fn both(reflectance: &f64, transmittance: &f64) -> Shares {
+    Shares { reflected: *reflectance, transmitted: *transmittance }
+}

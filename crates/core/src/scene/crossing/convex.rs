@@ -6,7 +6,7 @@
 //! module does not know other solids.
 
 use crate::scene::crossing::hit::Nearest;
-use crate::scene::shape::{Crossing, Cylinder, Flat, RayStart, Shape, Toward};
+use crate::scene::shape::{Crossing, Cylinder, Flat, RayStart, Toward};
 use crate::scene::{MeshBody, On, Owner, Patch, PrimId, Ray, SolidId};
 use glam::DVec3;
 
@@ -78,20 +78,19 @@ impl Convex {
         let (mut flats, mut round) = (Vec::new(), None);
         for (index, patch) in room.patches.iter().enumerate() {
             let prim = PrimId::new(index);
-            match &patch.shape {
-                _ if patch.owner != owner => {}
-                _ if patch.trim.is_some() => return None,
-                Shape::Flat(flat) => flats.push((prim, flat)),
-                Shape::Cylinder(cylinder) if round.is_none() && cylinder.is_whole() => {
-                    round = Some((prim, cylinder.clone()));
+            if patch.owner != owner {
+                continue;
+            }
+            if patch.trim.is_some() {
+                return None;
+            }
+            let wall = patch.shape.as_cylinder();
+            match (patch.shape.as_flat(), wall) {
+                (Some(flat), _) => flats.push((prim, flat)),
+                (None, Some(wall)) if round.is_none() && wall.is_whole() => {
+                    round = Some((prim, wall.clone()));
                 }
-                Shape::Cylinder(_)
-                | Shape::Cone(_)
-                | Shape::Torus(_)
-                | Shape::Sphere(_)
-                | Shape::Paraboloid(_)
-                | Shape::ParabolicCylinder(_)
-                | Shape::CompoundParabola(_) => return None,
+                (None, Some(_) | None) => return None,
             }
         }
         let mut convex = Self { slabs: Vec::new(), round, solid };
@@ -207,7 +206,7 @@ mod tests {
     use crate::optics::Medium;
     use crate::rng::{Dimension, Sampler};
     use crate::scene::Scene;
-    use crate::scene::shape::Region;
+    use crate::scene::shape::{Region, Shape};
     use crate::scene::{Builder, FacePiece, FaceSpec, Inside, Solid};
     use lumiduct_base::math::{Aabb, Frame, circle, uniform_sphere};
     use lumiduct_base::units::FluxUnit;

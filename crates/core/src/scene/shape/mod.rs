@@ -186,6 +186,34 @@ pub enum Shape {
 }
 
 impl Shape {
+    /// The shape as a flat one; `None` for all others.
+    pub fn as_flat(&self) -> Option<&Flat> {
+        match self {
+            Self::Flat(flat) => Some(flat),
+            Self::Cylinder(_)
+            | Self::Cone(_)
+            | Self::Torus(_)
+            | Self::Sphere(_)
+            | Self::Paraboloid(_)
+            | Self::ParabolicCylinder(_)
+            | Self::CompoundParabola(_) => None,
+        }
+    }
+
+    /// The shape as a cylinder; `None` for all others.
+    pub fn as_cylinder(&self) -> Option<&Cylinder> {
+        match self {
+            Self::Cylinder(cylinder) => Some(cylinder),
+            Self::Flat(_)
+            | Self::Cone(_)
+            | Self::Torus(_)
+            | Self::Sphere(_)
+            | Self::Paraboloid(_)
+            | Self::ParabolicCylinder(_)
+            | Self::CompoundParabola(_) => None,
+        }
+    }
+
     /// A box around the shape, mm.
     pub fn bounds(&self) -> Aabb {
         match self {

@@ -48,23 +48,18 @@ impl WallPart {
                 None
             }
         };
-        match &self.shape {
-            Shape::Cylinder(wall) => turned(Shape::Cylinder(wall.clone().inward()), DVec2::ONE),
-            // Rectangles are the same seen from behind.
-            Shape::Flat(wall) if matches!(wall.region(), Region::Rectangle { .. }) => {
-                let frame = *wall.frame();
-                let behind = Frame { x: -frame.x, z: -frame.z, ..frame };
-                let flat = Flat::new(behind, wall.region().clone());
-                turned(Shape::Flat(flat), DVec2::new(-1.0, 1.0))
-            }
-            Shape::Flat(_)
-            | Shape::Cone(_)
-            | Shape::Torus(_)
-            | Shape::Sphere(_)
-            | Shape::Paraboloid(_)
-            | Shape::ParabolicCylinder(_)
-            | Shape::CompoundParabola(_) => None,
+        if let Some(wall) = self.shape.as_cylinder() {
+            return turned(Shape::Cylinder(wall.clone().inward()), DVec2::ONE);
         }
+        // Rectangles are the same seen from behind.
+        let wall = self.shape.as_flat()?;
+        if !matches!(wall.region(), Region::Rectangle { .. }) {
+            return None;
+        }
+        let frame = *wall.frame();
+        let behind = Frame { x: -frame.x, z: -frame.z, ..frame };
+        let flat = Flat::new(behind, wall.region().clone());
+        turned(Shape::Flat(flat), DVec2::new(-1.0, 1.0))
     }
 
     /// Unrolled coordinates of a point of the part in the chart of the whole sweep, mm: u around the profile, in

@@ -3,7 +3,7 @@
 use crate::keys::Key;
 use crate::lower::context::Context;
 use glam::DVec2;
-use lumiduct_core::scene::shape::{ChartRect, Region, Shape};
+use lumiduct_core::scene::shape::{ChartRect, Cylinder, Flat, Region};
 use lumiduct_core::scene::sweep::WallChart;
 use lumiduct_core::scene::{FaceId, Patch};
 use std::f64::consts::TAU;
@@ -50,7 +50,7 @@ impl Context<'_> {
             let hint = "a pattern needs a face that unrolls without being stretched";
             return self.refuse(key, message, hint);
         };
-        let is_round = matches!(&patches[0].shape, Shape::Cylinder(wall) if wall.is_closed());
+        let is_round = patches[0].shape.as_cylinder().is_some_and(Cylinder::is_closed);
         let radius = is_round.then(|| (rect.max.x - rect.min.x) / TAU);
         Some(PatternGround { face, rect, radius })
     }
@@ -65,15 +65,8 @@ fn is_unrolled_truly(patch: &Patch) -> bool {
             false
         }
     };
-    let is_whole = match &patch.shape {
-        Shape::Flat(flat) => matches!(flat.region(), Region::Rectangle { .. }),
-        Shape::Cylinder(_) => true,
-        Shape::Cone(_)
-        | Shape::Torus(_)
-        | Shape::Sphere(_)
-        | Shape::Paraboloid(_)
-        | Shape::ParabolicCylinder(_)
-        | Shape::CompoundParabola(_) => false,
-    };
+    let is_rectangle = |flat: &Flat| matches!(flat.region(), Region::Rectangle { .. });
+    let is_whole =
+        patch.shape.as_cylinder().is_some() || patch.shape.as_flat().is_some_and(is_rectangle);
     keeps_lengths && is_whole
 }

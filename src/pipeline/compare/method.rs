@@ -1,7 +1,7 @@
 //! The methods that can be compared, and what each of them cannot do.
 
 use lumiduct_baselines::Baseline;
-use lumiduct_core::plan::Request;
+use lumiduct_core::plan::{Estimator, Request};
 
 /// What can be compared: the estimators of this program and baselines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,18 +42,18 @@ impl Method {
     /// Whether it can distinguish the first passage of a path through a sensor from later ones.
     pub(super) fn knows_first_passages(self) -> bool {
         match self {
-            Self::Run(Request::Auto | Request::Forward | Request::Backward | Request::Mix)
-            | Self::Baseline(Baseline::Metropolis) => true,
-            Self::Run(Request::Gather | Request::Mis)
-            | Self::Baseline(Baseline::Sppm | Baseline::Whitted) => false,
+            Self::Run(request) => {
+                request.estimator().is_none_or(Estimator::can_count_first_passages)
+            }
+            Self::Baseline(Baseline::Metropolis) => true,
+            Self::Baseline(Baseline::Sppm | Baseline::Whitted) => false,
         }
     }
 
     /// Whether its gather paths must hit the sources.
     pub(super) fn meets_sources(self) -> bool {
         match self {
-            Self::Run(Request::Auto | Request::Forward | Request::Mix) => false,
-            Self::Run(Request::Backward | Request::Gather | Request::Mis) => true,
+            Self::Run(request) => request.estimator().is_some_and(Estimator::must_meet_sources),
             Self::Baseline(Baseline::Sppm | Baseline::Whitted | Baseline::Metropolis) => true,
         }
     }

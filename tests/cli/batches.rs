@@ -282,7 +282,7 @@ fn tables_choices_and_whole_reports() {
     for (table, line, words) in [
         ("index,lenght\nheavy,5\n", 1, "there is no parameter `lenght`"),
         ("index,length\nlight,5\nheavy,5\n", 3, "`heavy` is not one of its choices"),
-        ("index,length\nlight,five\n", 2, "`five` is no number"),
+        ("index,length\nlight,five\n", 2, "`five` is not a number"),
         ("index,length\nlight\n", 2, "a different number of cells"),
         ("index,length,length\nlight,5,6\n", 1, "two columns `length`"),
         ("index;length\nlight;5\n", 1, "by commas, not by semicolons"),
@@ -410,9 +410,9 @@ fn bad_studies_are_refused_with_the_line_to_change_and_write_nothing() {
         ("values = [5, 10, 20]", "spread = { uniform = { from = 2, to = 1 } }", "not below"),
         ("from = 1.4, to = 1.6", "from = 1.6, to = 1.4", "not below"),
         ("count = 2 }", "count = 2 }\nwhole = true", "no whole number from 1.4 to 1.6"),
-        ("to = 1.6, count = 2 }", "to = 2.4, count = 3 }\nwhole = true", "2 is there twice"),
-        ("values = [5, 10, 20]", "values = [5, 10, 5]", "5 is there twice"),
-        ("values = [5, 10, 20]", "values = [5, 5.2, 6]\nwhole = true", "5 is there twice"),
+        ("to = 1.6, count = 2 }", "to = 2.4, count = 3 }\nwhole = true", "2 is listed twice"),
+        ("values = [5, 10, 20]", "values = [5, 10, 5]", "5 is listed twice"),
+        ("values = [5, 10, 20]", "values = [5, 5.2, 6]\nwhole = true", "5 is listed twice"),
         ("[parameters.length]", "[parameters.\"a/b\"]", "letters, digits"),
         ("[parameters.length]", LONG_PARAMETER, "a name of 67 letters is too long, at most 64"),
         ("unit = \"mm\"", "unit = \"m\\nm\"", "a unit is a few letters"),
@@ -420,7 +420,7 @@ fn bad_studies_are_refused_with_the_line_to_change_and_write_nothing() {
         (
             "[\"exit.efficiency\"",
             "[\"exit.efficiency\", \"exit.efficiency\"",
-            "`exit.efficiency` is there twice",
+            "`exit.efficiency` is listed twice",
         ),
         (
             "keys = [\"media.acrylic.index\"]",

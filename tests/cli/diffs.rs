@@ -142,7 +142,7 @@ fn what_is_no_report_is_refused_with_a_hint() {
     fs::create_dir(place.path("newer")).unwrap();
     fs::write(place.path("newer/summary.json"), "{\"lumiduct_summary\": 99}").unwrap();
     for (arguments, words) in [
-        ("diff a nowhere", "nowhere is no folder"),
+        ("diff a nowhere", "nowhere is not a folder"),
         ("diff a a/summary.json", "name the folder of a report"),
         ("diff a empty", "neither summary.json of a run nor study.json"),
         ("diff broken a", "cannot be read as a report"),

@@ -136,7 +136,7 @@ fn no_page_adds_weathers_up_without_saying_so() {
     fs::write(place.path("tube.toml"), WEATHERS).unwrap();
     let said = place.good("run tube.toml");
     assert!(said.contains("(sum over 2 weathers)"), "{said}");
-    assert!(said.contains("never shine together (overcast, clear_and_sun)"), "{said}");
+    assert!(said.contains("never occur together (overcast, clear_and_sun)"), "{said}");
     assert!(said.contains("from clear_and_sun: efficiency 0."), "{said}");
     let page = page(&place, "tube");
     assert!(page.contains("| value ± standard error, sum over 2 weathers |"), "{page}");

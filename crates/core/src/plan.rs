@@ -42,7 +42,7 @@ pub struct RunPlan {
 /// How flux is estimated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 pub enum Request {
-    /// For every sensor, what a short trial finds best; the report names the choice and its figures.
+    /// For each sensor the best estimator found by a short pilot run; the report names the choice and its figures.
     #[default]
     #[serde(rename = "auto")]
     Auto,
@@ -52,13 +52,14 @@ pub enum Request {
     /// Gather paths from the sensors, followed until they meet a source.
     #[serde(rename = "backward")]
     Backward,
-    /// Forward and backward at once, weighed path by path; sources that paths cannot meet are left to photons.
+    /// Forward and backward at once, weighted path by path; photons alone carry the light of sources that gather paths
+    /// cannot meet.
     #[serde(rename = "mix")]
     Mix,
     /// Gather paths from the sensors that end in records, and photon paths from the sources that are gathered there.
     #[serde(rename = "gather")]
     Gather,
-    /// Forward, backward and gather at once, weighed path by path (multiple importance sampling); for scenes whose
+    /// Forward, backward and gather at once, weighted path by path (multiple importance sampling); for scenes whose
     /// finishes do not scatter.
     #[serde(rename = "mis")]
     Mis,
@@ -121,7 +122,7 @@ pub enum Estimator {
     /// Gather paths from the sensor, followed until they meet a source.
     #[serde(rename = "backward")]
     Backward,
-    /// Forward and backward at once, weighed path by path.
+    /// Forward and backward at once, weighted path by path.
     #[serde(rename = "mix")]
     Mix,
     /// Gather paths from the sensor that end in records, and photon paths that are gathered there.
@@ -159,11 +160,11 @@ impl Estimator {
 /// Largest number of gather paths of a pass that may be set: they must fit into memory.
 pub const MOST_RECORDS: u64 = 1 << 22;
 
-/// Settings of the estimators `gather` and `mis`. What is left out is chosen by a short trial, and reported. The window
-/// of a record is a disk on the surface and a cone of directions; photons inside both are gathered.
+/// Settings of the estimators `gather` and `mis`. Omitted settings are chosen by a short pilot run and reported. The
+/// window of a record is a disk on the surface and a cone of directions; photons inside both are gathered.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 pub struct GatherPlan {
-    /// Depth at which gather paths end at the latest; the first surface they meet has depth 0.
+    /// Largest depth of gather paths; the first surface they meet has depth 0.
     #[schemars(range(max = 1000))]
     pub depth: Option<u32>,
     /// Radius of the window in the first pass.
@@ -216,7 +217,7 @@ pub enum Schedule {
     #[default]
     #[serde(rename = "stages")]
     Stages,
-    /// A little from pass to pass; the value comes from all passes. For comparison: its error bar is less sure.
+    /// A little from pass to pass; the value comes from all passes. For comparison: its error bar is less reliable.
     #[serde(rename = "per-pass")]
     PerPass,
 }
@@ -267,7 +268,7 @@ pub struct Target {
     pub relative_error: f64,
 }
 
-/// What is expected of one measure: a limit (`min`, `max`) or a value (`equals`).
+/// Expectation for one measure: a limit (`min`, `max`) or a value (`equals`).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(extend("anyOf" = [{ "required": ["min"] }, { "required": ["max"] }, { "required": ["equals"] }]))]
 pub struct Check {
@@ -290,7 +291,7 @@ pub struct Check {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub sigmas: Option<f64>,
-    /// Largest standard error with which the check counts as passed, in the unit of the measure.
+    /// Largest standard error with which the check can pass, in the unit of the measure.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub max_std_error: Option<f64>,

@@ -11,18 +11,18 @@ use serde::{Deserialize, Serialize};
     { "required": ["when"] }
 ]))]
 pub struct SunSpec {
-    /// Illuminance by the sun of a plane across its light.
+    /// Illuminance from the sun on a plane perpendicular to its light.
     #[schemars(range(min = 0.0))]
     pub illuminance_lx: f64,
     /// The position of the sun.
     #[serde(flatten)]
     pub place: SunPlaceSpec,
-    /// Several elevations, each a source of its own: of `sun` and 7.5 deg that is `sun_7_5`.
+    /// Several elevations, each a separate source: `sun` at 7.5 deg becomes `sun_7_5`.
     #[schemars(length(min = 1), extend("items" = {
         "type": "number", "exclusiveMinimum": 0.0, "maximum": 90.0
     }))]
     pub elevations_deg: Option<Vec<f64>>,
-    /// Half of the angle under which the disk is seen. Omitted: the mean over the year.
+    /// Half of the angular diameter of the disk. Omitted: the mean over the year.
     #[serde(default = "mean_half_angle")]
     #[schemars(extend("exclusiveMinimum" = 0.0), range(max = 5.0))]
     pub half_angle_deg: f64,
@@ -38,15 +38,15 @@ pub struct SunSpec {
     { "required": ["horizontal_illuminance_lx"] }
 ]))]
 pub struct SkySpec {
-    /// How bright the sky is in which direction.
+    /// Distribution of luminance over the sky.
     pub model: SkyModelSpec,
     /// Luminance of the zenith.
     #[schemars(range(min = 0.0))]
     pub zenith_luminance_cd_m2: Option<f64>,
-    /// Illuminance of a level plane in the open, by the sky alone.
+    /// Illuminance on a horizontal plane in the open, from the sky alone.
     #[schemars(range(min = 0.0))]
     pub horizontal_illuminance_lx: Option<f64>,
-    /// The position of the sun, for a sky that is brighter about it.
+    /// The position of the sun, for a sky that is brighter near it.
     #[serde(flatten)]
     pub place: SunPlaceSpec,
     /// Keys of all daylight.
@@ -57,9 +57,10 @@ pub struct SkySpec {
 /// What the sun and the sky have in common.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct DaylightCommonSpec {
-    /// The light group. Omitted: a sun and the skies about it are one where there is other daylight, or another source.
+    /// The light group. Omitted: a sun and the skies around it form one group if there is other daylight or another
+    /// source.
     pub group: Option<String>,
-    /// Whether it shines. One that does not is dark, as with an amount of 0.
+    /// Whether it emits. A disabled source is dark, as with an amount of 0.
     #[serde(default = "enabled")]
     pub enabled: bool,
     /// What it shines on: a flat face or port such as `duct.entry`, on which its light starts, or a solid or sheet such
@@ -75,7 +76,7 @@ pub struct SunPlaceSpec {
     pub elevation_deg: Option<f64>,
     /// Azimuth from north, clockwise seen from above. Omitted: 180, south.
     pub azimuth_deg: Option<f64>,
-    /// Date, time and place, instead of angles.
+    /// Date, time and place instead of angles.
     pub when: Option<WhenSpec>,
 }
 
@@ -86,8 +87,8 @@ pub struct WhenSpec {
     pub date: String,
     /// Time of the clock as "14:30" or "14:30:15", in quotes.
     pub time: String,
-    /// By how much that clock is ahead of UTC, in hours: 1 for Central European Time, 2 for its summer time, -5 for
-    /// Eastern Standard Time.
+    /// Hours by which that clock is ahead of UTC: 1 for Central European Time, 2 for its summer time, -5 for Eastern
+    /// Standard Time.
     #[schemars(range(min = -12.0, max = 14.0))]
     pub utc_offset_h: f64,
     /// Latitude, north positive.
@@ -112,7 +113,7 @@ pub enum SkyModelSpec {
     CieType(#[schemars(range(min = 1, max = 15))] u32),
 }
 
-/// Sources emit unless they are switched off.
+/// Sources emit unless they are disabled.
 pub(super) fn enabled() -> bool {
     true
 }

@@ -3,14 +3,14 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A medium that light goes through. `air` is predefined with index 1 and no absorption. What an interface of two media
+/// A medium in which light travels. `air` is predefined with index 1 and no absorption. What an interface of two media
 /// transmits follows from their indices, for unpolarised light: see the finish `smooth`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MediumSpec {
     /// Refractive index.
     #[schemars(range(min = 1.0, max = 4.0))]
     pub index: f64,
-    /// Absorption coefficient (natural): a beam falls to exp(-absorption times length).
+    /// Absorption coefficient (natural): a beam decreases to exp(-absorption times length).
     #[serde(default)]
     #[schemars(range(min = 0.0))]
     pub absorption_per_mm: f64,
@@ -21,11 +21,11 @@ pub struct MediumSpec {
 /// Scattering within a medium.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ScatteringSpec {
-    /// Scattering coefficient: one over the mean length of path from one scattering to the next.
+    /// Scattering coefficient: the inverse of the mean free path between scatterings.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub per_mm: f64,
-    /// Mean cosine of the angle by which light is turned, by the law of Henyey and Greenstein: 0 to all sides alike, near 1
-    /// mostly forward, as by particles larger than a wavelength, below 0 mostly back.
+    /// Mean cosine of the scattering angle, for the Henyey-Greenstein phase function: 0 is isotropic, near 1 mostly
+    /// forward (particles larger than a wavelength), below 0 mostly backward.
     #[serde(default)]
     #[schemars(range(min = -0.999, max = 0.999))]
     pub anisotropy: f64,
@@ -35,9 +35,9 @@ pub struct ScatteringSpec {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FinishSpec {
-    /// A smooth interface between two media: Fresnel reflection and refraction, total internal reflection. Light is taken as
-    /// unpolarised at every interface: with its polarisation kept, 0.7 % more would pass the two polished ends of a rod, and
-    /// 3.6 % more a plate of index 1.49 at 75 deg.
+    /// A smooth interface between two media: Fresnel reflection and refraction, total internal reflection. Light is
+    /// treated as unpolarised at every interface. If polarisation were kept, 0.7 % more would pass the two polished ends
+    /// of a rod, and 3.6 % more a plate of index 1.49 at 75 deg.
     Smooth(EmptySpec),
     /// A mirror with a constant reflectance, or a window with a constant transmittance. The rest is absorbed.
     Specular(SpecularSpec),
@@ -45,7 +45,7 @@ pub enum FinishSpec {
     Metal(MetalSpec),
     /// Absorbs everything.
     Absorber(EmptySpec),
-    /// Nothing is there: light passes, unbent.
+    /// No surface: light passes without refraction.
     Open(EmptySpec),
     /// Perfectly diffuse reflection and transmission; together above 0 and at most 1. The rest is absorbed.
     Lambertian(LambertianSpec),
@@ -53,23 +53,23 @@ pub enum FinishSpec {
     /// transmittance given it is a rough interface between two media: the flux is split as at a smooth one, and
     /// scattered about the mirrored and the refracted direction.
     Gaussian(GaussianSpec),
-    /// A rough interface of two media, or a rough mirror, of many small facets (GGX). Light meets one facet; what others
-    /// would have caught is absorbed: of light straight onto a mirror 1 % at a roughness of 0.1, 12 % at 0.3, 31 % at 0.5,
-    /// 69 % at 1; onto acrylic 10 % at 0.3, 24 % at 0.5, 56 % at 1.
+    /// A rough interface of two media, or a rough mirror, made of many small facets (GGX). Light meets one facet; light
+    /// that would meet a second one is absorbed: at normal incidence on a mirror 1 % at a roughness of 0.1, 12 % at 0.3,
+    /// 31 % at 0.5, 69 % at 1; on acrylic 10 % at 0.3, 24 % at 0.5, 56 % at 1.
     Ggx(GgxSpec),
     /// Haze by the `ABg` model, `A/(B + d^g)` in 1/sr: d is the distance of two directions in direction cosines. With
     /// neither reflectance nor transmittance given it is a hazy interface between two media: light is scattered to both
-    /// sides, d counts in index times direction cosine, and what is left is reflected and refracted as by a smooth one.
+    /// sides, d counts in index times direction cosine, and the rest is reflected and refracted as by a smooth one.
     Abg(AbgSpec),
     /// Haze by Harvey's law with a shoulder, `b0 (1 + (d/l)²)^(s/2)` in 1/sr; otherwise as `abg`.
     Harvey(HarveySpec),
-    /// A mirror or window with shares by the angle of incidence, linear between the angles. The rest is absorbed.
+    /// A mirror or window with shares that depend on the angle of incidence, linear between the angles. The rest is
+    /// absorbed.
     Tabulated(TabulatedSpec),
-    /// A smooth interface with a coating, such as one against reflection: it reflects as a table says and refracts the
-    /// rest; total internal reflection stays.
+    /// A smooth interface with a coating, such as an antireflection coating: it reflects according to a table and
+    /// refracts the rest; total internal reflection remains.
     Coated(CoatedSpec),
-    /// A thin film, flat on one face, with prisms side by side on the other. It is the same film from both sides: what
-    /// light meets that comes from behind follows from it.
+    /// A thin film, flat on one face, with prisms side by side on the other. It acts on light from both sides.
     PrismFilm(PrismFilmSpec),
     /// Several finishes side by side on a scale too small to see.
     Mixture(#[schemars(length(min = 1))] Vec<MixturePartSpec>),
@@ -129,7 +129,7 @@ pub struct GaussianSpec {
     pub transmittance: Option<f64>,
 }
 
-/// Small facets with the slopes of GGX.
+/// Small facets with GGX slopes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct GgxSpec {
     /// Roughness: about the slope of the facets.
@@ -168,7 +168,7 @@ pub struct HarveySpec {
     /// Shoulder, in direction cosines.
     #[schemars(range(min = 1e-6))]
     pub l: f64,
-    /// Slope beyond the shoulder on doubly logarithmic paper; -1.5 is common.
+    /// Slope beyond the shoulder in a log-log plot; -1.5 is common.
     #[schemars(range(min = -10.0, max = 0.0))]
     pub s: f64,
     /// What is hazy.
@@ -179,8 +179,8 @@ pub struct HarveySpec {
 /// What is hazy.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct HazeSheetSpec {
-    /// Share of the flux that is reflected, scattered or not. Together with the transmittance above 0 and at most 1; not
-    /// less than is scattered.
+    /// Share of the flux that is reflected, scattered or not. Together with the transmittance above 0 and at most 1; at
+    /// least the scattered share.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub reflectance: Option<f64>,
     /// Share of the flux that is transmitted, scattered or not.
@@ -219,7 +219,7 @@ pub struct TabulatedSpec {
 /// A coating on an interface.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CoatedSpec {
-    /// Angles in the medium of the lower index, from 0 to 90: so the coating is the same from both sides.
+    /// Angles in the medium of the lower index, from 0 to 90; the coating is thus the same from both sides.
     #[schemars(length(min = 2))]
     pub angles_deg: Vec<f64>,
     /// Share of the flux that is mirrored, for each angle.
@@ -227,7 +227,7 @@ pub struct CoatedSpec {
     pub reflectance: Vec<f64>,
 }
 
-/// A prism film. Light goes through one period of it, from a random place, and leaves where it arrived.
+/// A prism film. Light is traced through one period from a random position and leaves at the point where it arrived.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PrismFilmSpec {
     /// Refractive index.
@@ -247,13 +247,13 @@ pub struct PrismFilmSpec {
     #[serde(default)]
     #[schemars(range(min = 0.0))]
     pub absorption_per_mm: f64,
-    /// Share of the facets that is rounded, half of it at the tips and half in the valleys; light that meets it there is
-    /// lost, and counted as absorbed.
+    /// Rounded share of the facets, half at the tips and half in the valleys; light that meets it is lost and counted as
+    /// absorbed.
     #[serde(default)]
     #[schemars(range(min = 0.0), extend("exclusiveMaximum" = 1.0))]
     pub rounded_share: f64,
-    /// Where the prisms are, seen by light that meets this finish: `behind` the flat face or `before` it. From inside a
-    /// duct or a solid, `behind` is the outside.
+    /// Position of the prisms as seen by light that meets this finish: `behind` the flat face or `before` it. From inside
+    /// a duct or a solid, `behind` is the outside.
     #[serde(default)]
     pub prisms: PrismSideSpec,
     /// Which way the prisms run: `along` the guide or `around` it. On a flat sheet these are its local y and x.

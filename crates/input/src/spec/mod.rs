@@ -34,7 +34,7 @@ use source::SourceSpec;
 /// The version of the format that this program reads.
 pub const FORMAT_VERSION: u32 = 1;
 
-/// A scene: a light guide, its sources, the sensors that look at it, and what is expected of it.
+/// A scene: a light guide, its sources, its sensors and the expected results.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(title = "Lumiduct scene")]
 pub struct SceneSpec {
@@ -43,9 +43,9 @@ pub struct SceneSpec {
     pub lumiduct: u32,
     /// One line that names the scene in reports.
     pub title: String,
-    /// What the scene is for, in as many lines as it takes.
+    /// What the scene is for, in any number of lines.
     pub description: Option<String>,
-    /// Whom and what the report is for.
+    /// Project data for the head of the report.
     pub project: Option<ProjectSpec>,
     /// Name of the medium outside every solid.
     #[serde(default = "air")]
@@ -88,28 +88,28 @@ pub struct SceneSpec {
     pub check: Vec<Check>,
 }
 
-/// What stands at the head of the report.
+/// The head of the report.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 pub struct ProjectSpec {
     /// Whom the report is for.
     pub client: Option<String>,
     /// Who made it.
     pub author: Option<String>,
-    /// A date, shown as it is written here: reports know no clock.
+    /// A date, shown as it is written here: reports do not read the clock.
     pub date: Option<String>,
-    /// Number of the drawing that the scene was made after.
+    /// Number of the drawing from which the scene was made.
     pub drawing: Option<String>,
     /// A PNG file of at most 1 MB that is shown at the head of the page; relative to this file.
     pub logo: Option<String>,
 }
 
-/// The medium that is there when nothing is said.
+/// Default medium.
 pub const AIR: &str = "air";
 
-/// Up when nothing is said.
+/// Default direction up.
 pub const UP: [f64; 3] = [0.0, 0.0, 1.0];
 
-/// North when nothing is said.
+/// Default direction north.
 pub const NORTH: [f64; 3] = [0.0, 1.0, 0.0];
 
 /// Media that need no definition.

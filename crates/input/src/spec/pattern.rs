@@ -5,14 +5,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::spec::finish::FinishRef;
 
-/// Holes, dots or patches on a face: elements with a finish of their own that act in its place.
+/// Holes, dots or patches on a face: elements whose own finish replaces that of the face.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PatternSpec {
     /// The face, as `NAME.FACE`: a flat rectangle, or the wall of a straight round tube or rod.
     pub on: String,
     /// Finish of the elements, on both sides: `open` makes holes.
     pub finish: FinishRef,
-    /// What an element looks like.
+    /// Shape of an element.
     pub element: ElementSpec,
     /// Where the elements are.
     pub layout: LayoutSpec,
@@ -63,7 +63,7 @@ pub enum LayoutSpec {
     Grid(GridSpec),
     /// Rows and columns, every other row shifted by half a pitch.
     Staggered(GridSpec),
-    /// Rows and columns of which each element has six neighbours at the same distance.
+    /// A hexagonal grid: each element has six neighbours at the same distance.
     Hexagonal(HexagonalSpec),
 }
 
@@ -78,9 +78,10 @@ pub struct RowSpec {
     pub pitch_mm: Option<AlongSpec>,
     /// Where the row begins and ends along the face, with `pitch_mm`. Omitted: the whole face.
     pub along_mm: Option<[f64; 2]>,
-    /// Place of the row across the face, from its middle line. Omitted: the middle; of a round face `around_deg` is 180 there.
+    /// Position of the row across the face, from its middle line. Omitted: the middle, which on a round face is at
+    /// `around_deg` 180.
     pub across_mm: Option<f64>,
-    /// Place of the row around a round tube or rod, from the local +x toward +y.
+    /// Position of the row around a round tube or rod, from the local +x toward +y.
     pub around_deg: Option<f64>,
 }
 
@@ -132,7 +133,7 @@ pub struct LawSpec {
     /// Length at its end.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub to_mm: f64,
-    /// Power of the share of the way; 1 is a straight line.
+    /// Exponent; 1 is a straight line.
     #[serde(default = "one")]
     #[schemars(extend("exclusiveMinimum" = 0.0), range(max = 100.0))]
     pub power: f64,

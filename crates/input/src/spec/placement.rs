@@ -3,14 +3,13 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Where a thing stands and where it points: in space, or at the face of a solid or sheet. Omitted: at the origin,
-/// along +z.
+/// Position and direction of an object: in space, or at the face of a solid or sheet. Omitted: at the origin, along +z.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum PlacementSpec {
     /// At the centre of a flat face.
     AtFace(FacePlacementSpec),
-    /// Anywhere.
+    /// Anywhere in space.
     InSpace(SpacePlacementSpec),
 }
 
@@ -40,13 +39,13 @@ pub struct FacePlacementSpec {
 /// A place in space.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SpacePlacementSpec {
-    /// Position of the thing's origin.
+    /// Position of the object's origin.
     #[serde(default)]
     pub position_mm: [f64; 3],
     /// Direction of the local +z; any length but zero.
     #[serde(default = "plus_z")]
     pub axis: [f64; 3],
-    /// Direction that the local +x leans to. Omitted: +x for an axis along +z, and a fixed choice for any other.
+    /// Direction toward which the local +x is turned. Omitted: +x for an axis along +z, and a fixed choice for any other.
     pub x_axis: Option<[f64; 3]>,
     /// Turn about the axis.
     #[serde(default)]

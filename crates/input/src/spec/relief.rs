@@ -6,17 +6,18 @@ use serde::{Deserialize, Serialize};
 use crate::spec::finish::FinishRef;
 use crate::spec::pattern::{AlongSpec, LayoutSpec};
 
-/// Dimples, bumps, grooves, ridges or pyramids on a wall of a solid, as parts of its own boundary with exact surfaces. They are a
-/// face of their own, named for the solid and the relief, such as `plate.grooves`: the flux balance has a line for it.
+/// Dimples, bumps, grooves, ridges or pyramids on a wall of a solid, as parts of its boundary with exact surfaces. They
+/// form a separate face, named after the solid and the relief, such as `plate.grooves`, with its own line in the flux
+/// balance.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ReliefSpec {
     /// The wall, as `NAME.FACE`: a flat rectangle, or the wall of a straight round rod.
     pub on: String,
     /// Finish of the elements. Omitted: the smooth interface of the media.
     pub finish: Option<FinishRef>,
-    /// What an element is.
+    /// Shape of an element.
     pub element: ReliefElementSpec,
-    /// Where the elements are: a place is that of the middle of what an element takes of the wall.
+    /// Where the elements are: positions are those of the middle of each element's footprint on the wall.
     pub layout: LayoutSpec,
 }
 
@@ -25,9 +26,9 @@ pub struct ReliefSpec {
 #[schemars(rename = "ReliefElement")]
 #[serde(rename_all = "snake_case")]
 pub enum ReliefElementSpec {
-    /// A part of a ball, at most half of it, sunk into the wall.
+    /// A spherical cap, at most a hemisphere, sunk into the wall.
     Dimple(CapSpec<DepthSpec>),
-    /// A part of a ball, at most half of it, raised from the wall.
+    /// A spherical cap, at most a hemisphere, raised from the wall.
     Bump(CapSpec<HeightSpec>),
     /// A V-groove across the guide.
     Groove(WedgeSpec<DepthSpec>),
@@ -39,7 +40,7 @@ pub enum ReliefElementSpec {
     Pit(PyramidSpec<DepthSpec>),
 }
 
-/// How far an element is sunk into its wall.
+/// Depth of an element in its wall.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(rename = "Sunk")]
 pub struct DepthSpec {
@@ -47,7 +48,7 @@ pub struct DepthSpec {
     pub depth_mm: AlongSpec,
 }
 
-/// How far an element is raised from its wall.
+/// Height of an element above its wall.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(rename = "Raised")]
 pub struct HeightSpec {
@@ -55,7 +56,7 @@ pub struct HeightSpec {
     pub height_mm: AlongSpec,
 }
 
-/// A part of a ball; exactly one of `radius_mm` and `diameter_mm`.
+/// A spherical cap; exactly one of `radius_mm` and `diameter_mm`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(rename = "{Extent}Cap", extend("oneOf" = [{ "required": ["radius_mm"] }, { "required": ["diameter_mm"] }]))]
 pub struct CapSpec<Extent> {
@@ -75,10 +76,10 @@ pub struct WedgeSpec<Extent> {
     /// How deep or high it is.
     #[serde(flatten)]
     pub extent: Extent,
-    /// Angle between its flanks, which are alike.
+    /// Angle between the two equal flanks.
     #[schemars(extend("exclusiveMinimum" = 0.0, "exclusiveMaximum" = 180.0))]
     pub angle_deg: Option<f64>,
-    /// Angles between the wall and the two flanks, that toward the start of the guide first; 90 is upright.
+    /// Angles between the wall and the two flanks, first the flank toward the start of the guide; 90 is upright.
     pub flank_angles_deg: Option<[f64; 2]>,
     /// Length across the guide, on a flat wall. Omitted: the whole width.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
@@ -103,7 +104,7 @@ pub struct PyramidSpec<Extent> {
     pub extent: Extent,
 }
 
-/// How a groove or a ridge goes over a wall.
+/// Course of a groove or a ridge over a wall.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 #[schemars(rename = "Course")]

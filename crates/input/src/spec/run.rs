@@ -4,19 +4,21 @@ use lumiduct_core::plan::{GatherPlan, Request, Target};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How long to compute. The first of `paths`, `time_s` and `target` to be met stops the run; with none of them it is
-/// 2 000 000 paths.
+/// How long to compute. The first of `paths`, `time_s` and `target` to be met stops the run; with none of them the run
+/// has 2 000 000 paths.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RunSpec {
     /// Number of paths: photon paths from the sources, and gather paths from the sensors where the estimator has them.
     /// Rounded up to whole waves, of 128 batches or of 16 passes of gathering (some million paths each wave).
     #[schemars(range(min = 1))]
     pub paths: Option<u64>,
-    /// Number of batches, or passes of gathering, into which `paths` are divided: the run ends after exactly so many. For
-    /// repeating a run that was stopped; its report says which number. Omitted: whole waves of 128 batches or 16 passes.
+    /// Number of batches, or passes of gathering, into which `paths` are divided: the run ends after exactly this many.
+    /// Used to repeat a run that was stopped; its report gives the number. Omitted: whole waves of 128 batches or 16
+    /// passes.
     #[schemars(range(min = 1))]
     pub batches: Option<u64>,
-    /// Time, with the pilot of `auto`. Another run of the same time differs; the report gives the command that repeats it.
+    /// Time limit, including the pilot of `auto`. Another run with the same limit gives different results; the report
+    /// gives the command that repeats the run.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub time_s: Option<f64>,
     /// Uncertainty to reach.
@@ -30,7 +32,7 @@ pub struct RunSpec {
     /// Settings of the estimators `gather` and `mis`, and for `auto` where it gathers.
     #[serde(default)]
     pub gather: GatherPlan,
-    /// Number of surfaces after which a path is given up; the flux that this cuts off is reported.
+    /// Number of surfaces after which a path is cut; the flux that is lost is reported.
     #[serde(default = "bounce_limit")]
     #[schemars(range(min = 1, max = 10_000_000))]
     pub bounce_limit: u32,

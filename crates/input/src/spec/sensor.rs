@@ -16,7 +16,7 @@ use crate::spec::sweep::{CircleSpec, RectangleSpec};
     { "required": ["image"] }
 ]))]
 pub struct SensorSpec {
-    /// A sensor file whose keys are taken over; keys given here win. Relative to the scene file.
+    /// A sensor file whose keys are included; keys given here take precedence. Relative to the scene file.
     pub file: Option<String>,
     /// A map of illuminance over a flat area or a face.
     pub plane: Option<PlaneSpec>,
@@ -24,7 +24,7 @@ pub struct SensorSpec {
     pub goniometer: Option<GoniometerSpec>,
     /// A map of luminance seen from one or more directions.
     pub luminance: Option<LuminanceSpec>,
-    /// An image in luminance, as an imaging luminance meter takes it.
+    /// A luminance image, as an imaging luminance meter takes it.
     pub image: Option<ImageSpec>,
     /// The face that is the sensor, as `NAME.FACE`. For `plane` and `luminance`; not together with `at`.
     pub on: Option<String>,
@@ -32,21 +32,21 @@ pub struct SensorSpec {
     pub counts: Option<CountsSpec>,
     /// The side that counts. Omitted: `front`, and `both` with `counts = "incident"`.
     pub side: Option<SensorSide>,
-    /// Where the sensor stands.
+    /// Position of the sensor.
     pub at: Option<PlacementSpec>,
-    /// Faces through which a remote sensor is lit, as `NAME.FACE`; the rest of its light is reported apart.
+    /// Faces through which a remote sensor is lit, as `NAME.FACE`; the rest of its light is reported separately.
     #[schemars(length(min = 1))]
     pub aim: Option<Vec<String>>,
     /// Whether the sensor absorbs what it counts. Only for a `plane` that is not `on` a face.
     #[serde(default)]
     pub absorbing: bool,
-    /// How its flux is estimated. Omitted: as `run.estimator` or `--estimator` says for all sensors; this key goes over both.
+    /// How its flux is estimated; takes precedence over `run.estimator` and `--estimator`. Omitted: as these say.
     pub estimator: Option<Estimator>,
-    /// Which passages count of light that passes the sensor more than once: `every`, or the `first`, also through the port
-    /// `entering`. Only for a `plane` without `aim`; photons and paths of `backward` and `mix` know it.
+    /// Which passages count for light that passes the sensor more than once: `every`, or only the `first`; applies to the
+    /// port `entering`, too. Only for a `plane` without `aim`; supported by `forward`, `backward` and `mix`.
     #[serde(default)]
     pub passage: PassageSpec,
-    /// The port, as `NAME.FACE`, against whose entering flux `transmission` is counted.
+    /// The port, as `NAME.FACE`, whose entering flux is the reference for `transmission`.
     pub entering: Option<String>,
 }
 
@@ -129,7 +129,7 @@ pub struct GoniometerSpec {
     pub radius_mm: Option<f64>,
 }
 
-/// A grid of cells over a flat area or a face, looked at from one or more directions.
+/// A grid of cells over a flat area or a face, seen from one or more directions.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LuminanceSpec {
     /// The area of its own.
@@ -138,7 +138,7 @@ pub struct LuminanceSpec {
     /// Cells along the local x and y, over the bounding rectangle of the area.
     #[schemars(inner(range(min = 1, max = 100_000_000)))]
     pub cells: [u32; 2],
-    /// Directions to look from.
+    /// Directions of view.
     #[schemars(length(min = 1))]
     pub directions: Vec<DirectionSpec>,
     /// Half-angle of the cone about each direction over which luminance is averaged.
@@ -146,10 +146,10 @@ pub struct LuminanceSpec {
     pub acceptance_half_angle_deg: f64,
 }
 
-/// An image in luminance: an aperture, a `rectangle` or a `disk`, that looks along the axis, and pixels that are
-/// directions. The image is that of a lens without distortion: its pixels are squares of equal size in a plane across
-/// the axis, so that straight lines are straight. It is as the eye sees it, with the local +y up; columns are counted
-/// from the left, rows from below. Choose an aperture that is small against what is to be resolved, as there is no focus.
+/// A luminance image: an aperture, a `rectangle` or a `disk`, that looks along the axis, and pixels that are directions.
+/// The image is that of a lens without distortion: its pixels are squares of equal size in a plane perpendicular to the
+/// axis, so straight lines stay straight. It is as the eye sees it, with the local +y up; columns are counted from the
+/// left, rows from below. There is no focus: choose an aperture that is small compared with the details to resolve.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ImageSpec {
     /// The area of its own.
@@ -179,7 +179,7 @@ pub struct DirectionSpec {
 pub enum CountsSpec {
     /// Light that leaves the face, after it was reflected, refracted or scattered there.
     Leaving,
-    /// Light that arrives at the face, whatever becomes of it.
+    /// Light that arrives at the face, whatever happens to it there.
     Incident,
 }
 
@@ -187,10 +187,10 @@ pub enum CountsSpec {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PassageSpec {
-    /// Each one: the sensor reads the illuminance that is there.
+    /// Every passage: the sensor reads the illuminance at its position.
     #[default]
     Every,
-    /// The first of each path: light that comes back does not count again.
+    /// The first passage of each path: light that returns is not counted again.
     First,
 }
 

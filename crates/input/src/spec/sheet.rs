@@ -70,7 +70,7 @@ pub enum SheetCommon<'a> {
 }
 
 impl<'a> SheetCommon<'a> {
-    /// Where the sheet stands.
+    /// Position of the sheet.
     pub fn at(self) -> Option<&'a PlacementSpec> {
         match self {
             Self::Sheet(common) => common.at.as_ref(),
@@ -96,9 +96,9 @@ pub struct PlainSheetSpec<Shape> {
 pub struct SheetCommonSpec {
     /// Finish of the front, the side that the axis points away from.
     pub finish: FinishRef,
-    /// Finish of the back. Omitted: the same as the front, and behind a prism film that film.
+    /// Finish of the back. Omitted: the same as the front; behind a prism film, that film.
     pub back: Option<FinishRef>,
-    /// Where the sheet stands.
+    /// Position of the sheet.
     pub at: Option<PlacementSpec>,
 }
 
@@ -119,12 +119,12 @@ pub struct DuctSpec<Shape> {
 pub struct DuctCommonSpec {
     /// Finish of the inside.
     pub finish: FinishRef,
-    /// Finish of the outside. Omitted: `black`, and behind a prism film that film.
+    /// Finish of the outside. Omitted: `black`; behind a prism film, that film.
     pub outer: Option<FinishRef>,
     /// Finish of the inside by wall name, where it differs.
     #[serde(default)]
     pub faces: IndexMap<String, FinishRef>,
-    /// Where the duct stands.
+    /// Position of the duct.
     pub at: Option<PlacementSpec>,
 }
 

@@ -20,7 +20,7 @@ pub enum SolidSpec {
     Cylinder(ShapedSolidSpec<CylinderSpec>),
     /// A box, from the position along the axis. Faces `entry`, `exit`, `wall`, and the four walls as for a rectangle.
     Box(ShapedSolidSpec<BoxSpec>),
-    /// A straight tube with a wall of its own, from the position along the axis, which can carry prisms outside. Faces
+    /// A straight tube with a solid wall, from the position along the axis, optionally with prisms on its outside. Faces
     /// `entry` and `exit` (the ends of the wall), `inner` and `outer`; `wall` is both.
     Tube(ShapedSolidSpec<TubeSolidSpec>),
     /// A sphere about the position. Face `surface`.
@@ -84,7 +84,7 @@ pub struct SolidCommonSpec {
     /// Finish by face name. A face that is not named is `polished`.
     #[serde(default)]
     pub faces: IndexMap<String, FinishRef>,
-    /// Where the solid stands.
+    /// Position of the solid.
     pub at: Option<PlacementSpec>,
 }
 
@@ -104,7 +104,7 @@ pub struct TubeSolidSpec {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum TubeOuterSpec {
-    /// As the bore, so much further out.
+    /// Parallel to the bore, at this wall thickness.
     WallMm(#[schemars(extend("exclusiveMinimum" = 0.0))] f64),
     /// Prisms along the tube, side by side all around.
     Prisms(TubePrismsSpec),
@@ -182,13 +182,13 @@ pub struct LensSpec {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum LensFaceSpec {
-    /// Bulges outward, with this radius of curvature.
+    /// Convex, with this radius of curvature.
     ConvexRadiusMm(#[schemars(extend("exclusiveMinimum" = 0.0))] f64),
-    /// Is hollow, with this radius of curvature.
+    /// Concave, with this radius of curvature.
     ConcaveRadiusMm(#[schemars(extend("exclusiveMinimum" = 0.0))] f64),
-    /// Bulges outward, by this height on the axis above the rim.
+    /// Convex, with this height on the axis above the rim.
     DomeHeightMm(#[schemars(extend("exclusiveMinimum" = 0.0))] f64),
-    /// Is hollow, by this depth on the axis below the rim.
+    /// Concave, with this depth on the axis below the rim.
     DishDepthMm(#[schemars(extend("exclusiveMinimum" = 0.0))] f64),
 }
 

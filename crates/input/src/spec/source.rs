@@ -95,7 +95,7 @@ pub struct SourceCommonSpec {
     /// Peak intensity, for `point` only.
     #[schemars(range(min = 0.0))]
     pub intensity_cd: Option<f64>,
-    /// How the light is spread over directions. Omitted: `isotropic` for a `volume`, `lambertian` for all others.
+    /// Distribution of the light over directions. Omitted: `isotropic` for a `volume`, `lambertian` for all others.
     pub emission: Option<EmissionSpec>,
     /// Angle between the axis and the direction of a cone or a collimated beam.
     #[serde(default)]
@@ -112,10 +112,10 @@ pub struct SourceCommonSpec {
     pub body: BodySpec,
     /// The light group: flux, efficiency, transmission, maps, uniformity and intensity are also measured for all sources of a group together.
     pub group: Option<String>,
-    /// Whether the source emits. One that does not is dark, as with a flux of 0; its body stays in the way of light.
+    /// Whether the source emits. A disabled source is dark, as with a flux of 0; its body still blocks light.
     #[serde(default = "enabled")]
     pub enabled: bool,
-    /// Where the source stands. A `face` or `volume` is where its solid is.
+    /// Position of the source. A `face` or `volume` is where its solid is.
     pub at: Option<PlacementSpec>,
 }
 
@@ -155,7 +155,7 @@ pub struct CylinderSourceSpec {
 pub struct FaceSourceSpec {
     /// The face, as `NAME.FACE`.
     pub of: String,
-    /// Side to which it shines: `front` is out of the solid, `back` into it.
+    /// Side to which it emits: `front` is out of the solid, `back` into it.
     #[serde(default)]
     pub side: FaceSide,
 }
@@ -188,7 +188,7 @@ pub enum ContactSpec {
     Air,
 }
 
-/// How light is spread over directions.
+/// Distribution of light over directions.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum EmissionSpec {
@@ -204,7 +204,7 @@ pub enum EmissionSpec {
     ConeHalfAngleDeg(#[schemars(extend("exclusiveMinimum" = 0.0), range(max = 90.0))] f64),
 }
 
-/// What happens to light that meets an emitter: `transparent` lets it pass, `absorbing` takes it, or a finish.
+/// What happens to light that meets an emitter: `transparent` lets it pass, `absorbing` absorbs it; or a finish.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum BodySpec {

@@ -15,7 +15,7 @@ pub const MOST_DESIGNS: usize = 1 << 16;
 /// Most parameters of a study: within the dimensions of the Sobol sequence.
 pub const MOST_PARAMETERS: usize = 200;
 
-/// A study: a scene, what is varied in it and how, what is recorded of every design, and what a good design is.
+/// A study: a scene, the parameters that vary, the measures to record and the criterion for a good design.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(title = "Lumiduct study")]
 pub struct StudySpec {
@@ -24,18 +24,18 @@ pub struct StudySpec {
     pub lumiduct_study: u32,
     /// One line that names the study in reports.
     pub title: String,
-    /// What the study is for, in as many lines as it takes.
+    /// What the study is for, in any number of lines.
     pub description: Option<String>,
     /// The scene file, relative to this file.
     pub scene: String,
-    /// Keys of the scene that are set for all designs, each as dotted key in quotes and value, as after `-D`.
+    /// Keys of the scene that are set for all designs: dotted keys in quotes and values, as after `-D`.
     #[serde(default)]
     pub set: IndexMap<String, Value>,
     /// What is varied, by name.
     pub parameters: IndexMap<String, ParameterSpec>,
     /// Which designs are made of the parameters.
     pub plan: PlanSpec,
-    /// Names of the measures that are recorded of every design, such as `exit.efficiency`.
+    /// Names of the measures to record for every design, such as `exit.efficiency`.
     #[schemars(length(min = 1))]
     pub measures: Vec<String>,
     /// When a design is computed well enough, and with which random numbers.
@@ -43,7 +43,7 @@ pub struct StudySpec {
     pub run: StudyRunSpec,
     /// What the best design is.
     pub ranking: Option<RankingSpec>,
-    /// What every design has to meet, in any number of `[[check]]` tables. Those of the scene are not looked at.
+    /// What every design has to meet, in any number of `[[check]]` tables. The checks of the scene are ignored.
     #[serde(default)]
     pub check: Vec<Check>,
     /// What is kept of each design beside its row.
@@ -58,19 +58,19 @@ pub struct ParameterSpec {
     /// Keys of the scene that the parameter sets, all at once, such as `solids.pipe.sweep.path.0.straight_mm`.
     #[schemars(length(min = 1))]
     pub keys: Vec<TiedKeySpec>,
-    /// Unit for tables and plots, such as `mm`; the keys have theirs in any case.
+    /// Unit for tables and plots, such as `mm`; it does not change the units of the keys.
     pub unit: Option<String>,
-    /// Values, each its own level.
+    /// Values, each a level.
     #[schemars(length(min = 1))]
     pub values: Option<Vec<f64>>,
     /// Values at even steps.
     pub range: Option<RangeSpec>,
-    /// Values with names: numbers, text, lists or tables, whatever the keys take.
+    /// Named values: numbers, text, lists or tables, as the keys require.
     pub choices: Option<IndexMap<String, Value>>,
     /// How the values scatter.
     pub spread: Option<SpreadSpec>,
-    /// Whether values are whole numbers, before factors and offsets: `values` and `range` are rounded, a uniform spread takes every
-    /// whole number within its ends as likely, and a normal one is rounded within its limits.
+    /// Whether values are whole numbers, before factors and offsets: `values` and `range` are rounded, a uniform spread
+    /// gives every whole number within its ends the same probability, and a normal one is rounded within its limits.
     #[serde(default)]
     pub whole: bool,
 }
@@ -125,9 +125,9 @@ pub struct RangeSpec {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SpreadSpec {
-    /// Every value between two ends is as likely.
+    /// Every value between two ends is equally likely.
     Uniform(UniformSpec),
-    /// A bell curve, cut off where `from` or `to` say so.
+    /// A normal distribution, truncated at `from` and `to` if given.
     Normal(NormalSpec),
 }
 
@@ -143,9 +143,9 @@ pub struct UniformSpec {
 /// Values about a mean.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct NormalSpec {
-    /// Mean, of the curve before it is cut off.
+    /// Mean before truncation.
     pub mean: f64,
-    /// Standard deviation, of the curve before it is cut off.
+    /// Standard deviation before truncation.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub std_dev: f64,
     /// Least value.
@@ -190,8 +190,8 @@ pub struct SamplesSpec {
     pub seed: u64,
 }
 
-/// When a design is computed well enough. What is left out is as in the scene; stop rules are taken from one of the two
-/// files alone. All designs use the same random numbers, so that their differences are known better than their values.
+/// When a design is computed well enough. Omitted keys are as in the scene; stop rules come from only one of the two
+/// files. All designs use the same random numbers, so their differences are known more precisely than their values.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 pub struct StudyRunSpec {
     /// Number of paths of a design.
@@ -233,7 +233,7 @@ pub enum KeepSpec {
     /// Its record: settings, measures with errors, checks.
     #[default]
     Records,
-    /// The record, and a whole report with maps and pictures, as `run` writes it.
+    /// The record, and a full report with maps and pictures, as `run` writes it.
     Reports,
 }
 

@@ -105,7 +105,7 @@ pub struct BendSpec {
     /// Radius of the centre line.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub radius_mm: f64,
-    /// Azimuth in the section that the path bends toward: 0 is the local +x, 90 the local +y.
+    /// Azimuth, in the cross-section, toward which the path bends: 0 is the local +x, 90 the local +y.
     #[serde(default)]
     pub toward_deg: f64,
 }
@@ -117,11 +117,11 @@ pub struct CornerSpec {
     /// Angle turned through.
     #[schemars(extend("exclusiveMinimum" = 0.0, "exclusiveMaximum" = 180.0))]
     pub corner_deg: f64,
-    /// Azimuth in the section that the path turns toward: 0 is the local +x, 90 the local +y.
+    /// Azimuth, in the cross-section, toward which the path turns: 0 is the local +x, 90 the local +y.
     #[serde(default)]
     pub toward_deg: f64,
-    /// Whether the outer edge is cut off by a flat facet at half the angle, through the crossing of the centre lines: a fold
-    /// mirror, by its finish in a duct and by total reflection in a solid.
+    /// Whether a flat facet at half the angle, through the crossing of the centre lines, cuts off the outer edge: a fold
+    /// mirror, which reflects by its finish in a duct and by total reflection in a solid.
     pub fold_mirror: Option<bool>,
     /// Old name of `fold_mirror`.
     pub mitred: Option<bool>,
@@ -140,10 +140,10 @@ pub struct CompoundParabolicSpec {
     /// Radius of the small end.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub small_radius_mm: f64,
-    /// Half-angle within which everything that enters the wide end reaches the small one.
+    /// Acceptance half-angle: light that enters the wide end within it reaches the small end.
     #[schemars(extend("exclusiveMinimum" = 0.0, "exclusiveMaximum" = 90.0))]
     pub acceptance_half_angle_deg: f64,
-    /// Length along the axis, cut off at the wide end. Omitted: the full length.
+    /// Length along the axis, truncated at the wide end. Omitted: the full length.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub length_mm: Option<f64>,
 }

@@ -181,7 +181,7 @@ fn the_worst_comes_first_and_what_is_unknown_last() {
     let text = diff_table(&found, ShownRows::All);
     for words in [
         "4 measures compared, 3 of them with noise: 2 beyond 3 sigmas, 0.01 expected by chance",
-        "1 measure cannot be judged: a (counted too little in A)",
+        "1 measure cannot be judged: a (has too few counts in A)",
         "only A has 1 measure: gone",
         "only B has 1 measure: new",
         "2 measures are beyond the limit of 4 sigmas",

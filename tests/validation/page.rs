@@ -81,11 +81,11 @@ pub(crate) fn page(contents: &Contents<'_>) -> String {
     reasons(
         &mut text,
         formulas,
-        "Nothing in the program gives these; none is tested.",
+        "The program does not compute these; they are not tested.",
         &waiting.formula,
     );
     let not_yet = "Not checked yet";
-    reasons(&mut text, not_yet, "What they need is not built.", &waiting.waiting);
+    reasons(&mut text, not_yet, "The required features do not exist yet.", &waiting.waiting);
     text.push_str(BESIDE);
     text
 }
@@ -93,9 +93,9 @@ pub(crate) fn page(contents: &Contents<'_>) -> String {
 const BESIDE: &str = "
 ## Beside the reference
 
-What the reference has no cases for is held against published values and laws by these tests.
+These tests compare features without reference cases with published values and laws.
 
-| what | held against | test |
+| feature | compared with | test |
 |---|---|---|
 | media that scatter | a slab of van de Hulst (0.66096 up, 0.09739 back) and a half space of Giovanelli (0.2600), as in Wang, Jacques & Zheng (1995); mean path 4V/S (Blanco & Fournier 2003); moments of the phase function; luminance in a furnace; all estimators | `tests/agreement/volumes.rs`, `furnace.rs` |
 | reliefs | a flank under 45 deg turns light to 1e-12; volumes; flux on every face of a furnace; grooves against the same profile as a sweep; no leak in a million segments | `tests/relief`, `tests/agreement/reliefs.rs` |
@@ -107,20 +107,19 @@ What the reference has no cases for is held against published values and laws by
 const INTRODUCTION: &str = "\
 # Validation
 
-Values that do not come from this program, and what it makes of them. `cargo xtask validate` traces every value anew, holds
-it against its reference, and fails when this page is not what comes out: seeds are fixed, and results have the same bits on
-any number of threads; `cargo xtask validate --write` writes the page. Citations stand beside the expected values in the
-scene files.
+This page compares results of the program with independent values. `cargo xtask validate` traces every value, compares it
+with its reference, and fails if the result differs from this page: seeds are fixed, and results have the same bits on any
+number of threads. `cargo xtask validate --write` writes the page. The scene files cite the sources of the expected values.
 
-A run goes on until the standard error of each of its values is small enough: 0.07 % for fluxes (class F, and M where the
-reference itself is a Monte Carlo value), 0.3 % for what is local (I), 0.03 % for invariances (X). The value must then lie
-within 4 standard errors or, if that is more, within 0.2 % (F), 1 % (I), 0.1 % (X); for M within 3 errors of both sides
-together and 0.3 %; a limit may be exceeded by 4 standard errors at most. In every run no light may leak and the flux
-balance must close to 1e-9. Sensors count photons, except in the cases about windows (ES): there they gather, and the
-widest window is read, bias and all.
+A run continues until the standard error of each of its values is small enough: 0.07 % for fluxes (class F, and M if the
+reference itself is a Monte Carlo value), 0.3 % for local values (I), 0.03 % for invariances (X). The value must then lie
+within 4 standard errors or, if that is more, within 0.2 % (F), 1 % (I), 0.1 % (X); for M within 3 combined errors of both
+sides and 0.3 %; a limit may be exceeded by 4 standard errors at most. In every run no light may leak and the flux balance
+must close to 1e-9. Sensors count photons, except in the cases about windows (ES): there they gather, and the value is that
+of the widest window, including its bias.
 
-`cargo test` holds every value against its reference, too, with the same limits and errors of 0.15 % (F and M), 0.7 % (I)
-and 0.09 % (X), and checks that this page belongs to the scenes, tables and numerics of the program.
+`cargo test` also compares every value with its reference, with the same limits and errors of 0.15 % (F and M), 0.7 % (I)
+and 0.09 % (X), and checks that this page matches the scenes, tables and numerics of the program.
 ";
 
 fn summary(text: &mut String, contents: &Contents<'_>) {
@@ -170,7 +169,7 @@ fn coarse(text: &mut String, rows: &[Row], results: &Results) {
 }
 
 /// Heading of the values whose table has an error in its third column.
-pub(crate) const COARSE: &str = "\n## Known less well than their class asks";
+pub(crate) const COARSE: &str = "\n## Larger errors than the class requires";
 
 fn formulas(text: &mut String, computed: &[Computed]) {
     text.push_str("\n## Computed by a function\n\nWithout noise; met to 1e-6 of the value.\n\n");

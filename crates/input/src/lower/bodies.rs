@@ -75,7 +75,7 @@ impl Context<'_> {
                 .partition(|body: &PlacedBody<'_>| !body.support().is_some_and(is_waiting));
             if ready.is_empty() {
                 for body in &blocked {
-                    let message = "stands at a face of a thing that stands at its own";
+                    let message = "is placed at a face of an object that is itself placed at one of its faces";
                     let problem = self.problems.error(&body.key().field("at"), message);
                     problem.hint("give one of them a position_mm");
                 }

@@ -129,7 +129,7 @@ mod tests {
         assert!(refused(&path, &slice).contains("does not begin"));
         write(&path, SnapshotKind::Checkpoint, &"other contents").unwrap();
         let other = fs::read(&path).unwrap();
-        assert!(refused(&path, &other).contains("something else"));
+        assert!(refused(&path, &other).contains("other data"));
         let foreign = postcard::to_stdvec(&("0.0.9+1", &numbers)).unwrap();
         fs::write(&path, framed(SnapshotKind::Checkpoint, &foreign)).unwrap();
         let said =

@@ -284,7 +284,7 @@ fn tables_choices_and_whole_reports() {
         ("index,length\nlight,5\nheavy,5\n", 3, "`heavy` is not one of its choices"),
         ("index,length\nlight,five\n", 2, "`five` is not a number"),
         ("index,length\nlight\n", 2, "a different number of cells"),
-        ("index,length,length\nlight,5,6\n", 1, "two columns `length`"),
+        ("index,length,length\nlight,5,6\n", 1, "the column `length` occurs twice"),
         ("index;length\nlight;5\n", 1, "by commas, not by semicolons"),
         ("index\tlength\nlight\t5\n", 1, "by commas, not by tabs"),
         ("index,length\nlight,\"5\nlight,6\n", 2, "a quotation mark is not closed"),

@@ -119,5 +119,5 @@ fn a_cut_that_cannot_be_drawn_says_why() {
     assert!(place.bad(2, "check rod.toml --plane xz@x=5").contains("xz@y=5"));
     assert!(place.bad(2, "check rod.toml --up sideways").contains("try x"));
     let along = place.bad(2, "check rod.toml --plane xz --up y");
-    assert!(along.contains("--up y") && along.contains("in the plane"), "{along}");
+    assert!(along.contains("--up y") && along.contains("in that plane"), "{along}");
 }

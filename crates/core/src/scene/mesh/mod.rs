@@ -2,7 +2,7 @@
 //! surface there.
 //!
 //! Light cannot leak between triangles: both triangles at an edge use identical numbers for the
-//! side of a line ([`Line`]), and a line exactly through an edge or a vertex crosses every triangle
+//! side of a line ([`TriangleLine`]), and a line exactly through an edge or a vertex crosses every triangle
 //! there. A path that leaves a triangle skips that triangle; otherwise orientation decides, not a
 //! small distance. The mesh does not know finishes, media, or the tree that finds the candidates.
 
@@ -112,7 +112,7 @@ impl Mesh {
     }
 
     /// Where the line of a ray crosses a triangle. Edges and vertices belong to all of their
-    /// triangles. For many triangles make the [`Line`] once and call [`Self::crossing_of`].
+    /// triangles. For many triangles make the [`TriangleLine`] once and call [`Self::crossing_of`].
     pub fn crossing(&self, triangle: usize, ray: &Ray) -> Option<Crossing> {
         self.crossing_of(triangle, &TriangleLine::of(ray))
     }

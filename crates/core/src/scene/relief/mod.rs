@@ -1,7 +1,7 @@
 //! Reliefs: dimples, bumps, grooves, ridges and pyramids on the wall of a solid, as parts of its own boundary.
 //!
 //! Sunk elements are removed from the solid, raised ones are added. An element replaces the wall: a
-//! rule decides where ([`Field`]), however many elements there are. Their surfaces are separate
+//! rule decides where ([`ElementField`]), however many elements there are. Their surfaces are separate
 //! patches, which end at the wall by the same numbers. A relief knows only geometry, not its
 //! finish.
 

@@ -2,7 +2,7 @@
 //!
 //! A shape is a trimmed, oriented surface: its normal is the *front*. A shape knows where a ray
 //! crosses it, but not finishes, solids or photons. There are no epsilons: for a ray that starts on
-//! a quadric ([`Start::On`]) the root at the start is removed from the equation, not compared with
+//! a quadric ([`RayStart::On`]) the root at the start is removed from the equation, not compared with
 //! a small number.
 //!
 //! Every shape has a chart: it unrolls the surface into a rectangle of millimetres, for flux maps on curved walls.

@@ -86,7 +86,7 @@ fn port(frame: Frame, region: Region) -> Port {
 }
 
 impl Sweep {
-    /// The rectangle that [`Part::chart`] covers, mm: once around the profile at the entry, and along the path.
+    /// The rectangle that [`WallPart::chart`] covers, mm: once around the profile at the entry, and along the path.
     pub fn chart_bounds(&self) -> ChartRect {
         ChartRect { min: DVec2::ZERO, max: DVec2::new(self.perimeter, self.length) }
     }

@@ -90,12 +90,13 @@ impl Found {
         let total = readings.scalar(slot);
         let (flux, std_error) = (total.mean(), total.std_error());
         let cells = &readings.sensors[0].cells;
-        if cells.len() == 1 {
+        if cells.count() == 1 {
             let (variance, square) = (std_error.powi(2), flux.powi(2));
             return Self { flux, std_error, variance, square, seconds };
         }
         let [mut variance, mut square] = [0.0; 2];
-        for (mean, error) in (0..cells.len()).map(|cell| cells.mean(cell, readings.batch_count())) {
+        for (mean, error) in (0..cells.count()).map(|cell| cells.mean(cell, readings.batch_count()))
+        {
             variance += error * error;
             square += mean * mean - error * error;
         }

@@ -70,11 +70,6 @@ impl FluxUnit {
     }
 }
 
-/// lm/mm² to lx, and lm/(mm² sr) to cd/m².
-pub fn per_mm2_to_per_m2(value: f64) -> f64 {
-    value * MM2_PER_M2
-}
-
 /// lx to lm/mm², and cd/m² to lm/(mm² sr).
 pub fn per_m2_to_per_mm2(value: f64) -> f64 {
     value / MM2_PER_M2

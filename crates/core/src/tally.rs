@@ -26,7 +26,7 @@ impl Tally {
     /// The variance of a mean is proportional to 1/w, with w its weight, so that Σ w (x - mean)² /
     /// ((n - 1) Σ w) is that of the weighted mean (Bevington & Robinson, Data Reduction and Error
     /// Analysis, 3rd ed., eq. 4.22).
-    pub fn weighted(means: impl Iterator<Item = (f64, u64)> + Clone) -> Self {
+    pub(crate) fn weighted(means: impl Iterator<Item = (f64, u64)> + Clone) -> Self {
         let (mut sum, mut weights, mut count) = (0.0, 0.0, 0);
         for (mean, weight) in means.clone() {
             sum += mean * weight as f64;
@@ -61,11 +61,6 @@ impl Tally {
         self.count += other.count;
     }
 
-    /// Number of samples.
-    pub fn count(&self) -> u64 {
-        self.count
-    }
-
     /// Mean of the samples; 0 without any.
     pub fn mean(&self) -> f64 {
         self.mean
@@ -80,7 +75,7 @@ impl Tally {
     }
 
     /// Standard deviation of the samples; infinite with fewer than two.
-    pub fn std_deviation(&self) -> f64 {
+    pub(crate) fn std_deviation(&self) -> f64 {
         self.std_error() * (self.count as f64).sqrt()
     }
 
@@ -112,7 +107,7 @@ mod tests {
         let all = Tally::of((0..100).map(|i| f64::from(i * i % 17)));
         let mut halves = Tally::of((0..37).map(|i| f64::from(i * i % 17)));
         halves.merge(&Tally::of((37..100).map(|i| f64::from(i * i % 17))));
-        assert_eq!(all.count(), halves.count());
+        assert_eq!(all.count, halves.count);
         assert!((all.mean() - halves.mean()).abs() < 1e-13);
         assert!((all.std_error() - halves.std_error()).abs() < 1e-13);
     }

@@ -13,7 +13,7 @@ use crate::tree::{Node, Value};
 
 /// The spec of a tree. A key with an error is left out, and with it an entry that is meaningless
 /// without the key.
-pub fn scene(root: &Node, problems: &mut Problems) -> SceneSpec {
+pub(crate) fn scene(root: &Node, problems: &mut Problems) -> SceneSpec {
     SceneSpec {
         lumiduct: FORMAT_VERSION,
         title: value(root, "title", problems).unwrap_or_default(),
@@ -38,7 +38,7 @@ pub fn scene(root: &Node, problems: &mut Problems) -> SceneSpec {
 }
 
 /// The study of a tree; `None` if that fails, which has then been noted.
-pub fn study(root: &Node, problems: &mut Problems) -> Option<StudySpec> {
+pub(crate) fn study(root: &Node, problems: &mut Problems) -> Option<StudySpec> {
     one(root, &Key::root(), problems)
 }
 

@@ -12,7 +12,7 @@ const FILE: &str = "file";
 
 /// Merges the keys of its file into each sensor that refers to one; keys of the scene win. Returns
 /// the syntax errors of those files.
-pub fn join_sensor_files(
+pub(crate) fn join_sensor_files(
     root: &mut Node,
     sources: &mut Sources,
     problems: &mut Problems,

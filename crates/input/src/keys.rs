@@ -14,7 +14,7 @@ pub struct Key {
 
 /// One step of a key.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum KeySegment {
+pub(crate) enum KeySegment {
     /// Into a table.
     Field(String),
     /// Into an array, from 0.
@@ -23,7 +23,7 @@ pub enum KeySegment {
 
 impl Key {
     /// The whole file.
-    pub fn root() -> Self {
+    pub(crate) fn root() -> Self {
         Self::default()
     }
 
@@ -43,24 +43,24 @@ impl Key {
     }
 
     /// The key one step further.
-    pub fn step(&self, segment: KeySegment) -> Self {
+    pub(crate) fn step(&self, segment: KeySegment) -> Self {
         let mut segments = self.segments.clone();
         segments.push(segment);
         Self { segments }
     }
 
     /// The steps.
-    pub fn segments(&self) -> &[KeySegment] {
+    pub(crate) fn segments(&self) -> &[KeySegment] {
         &self.segments
     }
 
     /// The table or array around it; of the whole file, itself.
-    pub fn parent(&self) -> Self {
+    pub(crate) fn parent(&self) -> Self {
         Self { segments: self.segments[..self.segments.len().saturating_sub(1)].to_vec() }
     }
 
     /// Whether this is `other` or inside it.
-    pub fn is_within(&self, other: &Self) -> bool {
+    pub(crate) fn is_within(&self, other: &Self) -> bool {
         self.segments.starts_with(&other.segments)
     }
 }
@@ -82,7 +82,7 @@ impl fmt::Display for Key {
 }
 
 /// Whether a key needs no quotes: letters, digits, `_` and `-`.
-pub fn is_bare(name: &str) -> bool {
+pub(crate) fn is_bare(name: &str) -> bool {
     !name.is_empty() && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_' || b == b'-')
 }
 
@@ -95,7 +95,7 @@ pub struct Places {
 
 impl Places {
     /// The places of a tree whose texts are `sources`.
-    pub fn new(root: Node, sources: Sources) -> Self {
+    pub(crate) fn new(root: Node, sources: Sources) -> Self {
         Self { root, sources }
     }
 
@@ -105,12 +105,12 @@ impl Places {
     }
 
     /// The texts.
-    pub fn sources(&self) -> &Sources {
+    pub(crate) fn sources(&self) -> &Sources {
         &self.sources
     }
 
     /// The whole text of the file of the tree.
-    pub fn root_text(&self) -> &str {
+    pub(crate) fn root_text(&self) -> &str {
         self.sources.get(self.root.origin.source).text()
     }
 
@@ -120,14 +120,14 @@ impl Places {
     }
 
     /// The node at this key; `None` where the files do not contain it.
-    pub fn node(&self, key: &Key) -> Option<&Node> {
+    pub(crate) fn node(&self, key: &Key) -> Option<&Node> {
         let (node, depth) = self.walk(key);
         (depth == key.segments.len()).then_some(node)
     }
 
     /// The place of the value of a key, or of the innermost existing table around it. `None` if
     /// there is none.
-    pub fn value(&self, key: &Key) -> Option<&Origin> {
+    pub(crate) fn value(&self, key: &Key) -> Option<&Origin> {
         let (node, depth) = self.walk(key);
         (depth > 0).then_some(&node.origin)
     }

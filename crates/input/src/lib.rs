@@ -1,7 +1,7 @@
 //! From a scene file to validated, typed specs.
 //!
 //! The file becomes a tree that knows its places. The tree is validated against the schema and
-//! becomes a [`SceneSpec`], which one pass checks and lowers, topic by topic. Every problem is noted
+//! becomes a `SceneSpec`, which one pass checks and lowers, topic by topic. Every problem is noted
 //! on the way and all are returned together. This crate knows geometry and optics only as far as the
 //! lowering of a spec needs them.
 
@@ -20,24 +20,24 @@ use lumiduct_base::error::{Diagnostic, DiagnosticKind, Error, Result};
 use lumiduct_files::mesh::no_scene;
 use serde_json::Value as Json;
 
-pub mod convert;
+pub(crate) mod convert;
 pub mod diagnostic;
 pub mod editor_schema;
 mod gather;
-pub mod include;
+pub(crate) mod include;
 mod job;
 pub mod keys;
 mod list;
 mod lower;
 mod outline;
-pub mod overrides;
+pub(crate) mod overrides;
 pub mod problems;
 mod project;
 pub mod schema;
-pub mod sources;
-pub mod spec;
+pub(crate) mod sources;
+pub(crate) mod spec;
 mod study;
-pub mod tree;
+pub(crate) mod tree;
 pub mod validate;
 
 pub use job::{Job, Settings, load};
@@ -64,7 +64,7 @@ pub struct Loaded {
 
 /// A scene with the problems found so far.
 #[derive(Debug)]
-pub struct Draft {
+pub(crate) struct Draft {
     /// The content of the files. A key with an error is left out, and so is an entry that is
     /// meaningless without it.
     pub spec: SceneSpec,
@@ -103,7 +103,7 @@ pub fn read(path: &Path, overrides: &[String]) -> Result<Loaded> {
 /// Reads a scene file as far as it fits the schema, so that further problems can be found in the valid part.
 /// Fails only if there is nothing to continue with: the file cannot be read or is of another
 /// format.
-pub fn draft(path: &Path, overrides: &[String]) -> Result<Draft> {
+pub(crate) fn draft(path: &Path, overrides: &[String]) -> Result<Draft> {
     let mut sources = Sources::default();
     let mut problems = Problems::default();
     if let Some(why) = no_scene(path).filter(|_| path.is_file()) {

@@ -9,7 +9,7 @@ use crate::tree::{self, Entry, Node, Value};
 
 /// A value for a key, from the command line.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Override {
+pub(crate) struct Override {
     key: Key,
     /// The place of the key in the argument.
     key_origin: Origin,
@@ -18,7 +18,7 @@ pub struct Override {
 
 impl Override {
     /// Whether it sets the file of a sensor, which must be known before that file is read.
-    pub fn names_a_sensor_file(&self) -> bool {
+    pub(crate) fn names_a_sensor_file(&self) -> bool {
         match self.key.segments() {
             [KeySegment::Field(family), _, KeySegment::Field(key)] => {
                 family == "sensors" && key == "file"
@@ -33,7 +33,11 @@ impl Override {
 
 /// Reads arguments, each `key=value` without the `-D`. The value is TOML; anything else is taken as
 /// text.
-pub fn read(arguments: &[String], sources: &mut Sources, problems: &mut Problems) -> Vec<Override> {
+pub(crate) fn read(
+    arguments: &[String],
+    sources: &mut Sources,
+    problems: &mut Problems,
+) -> Vec<Override> {
     let mut overrides = Vec::new();
     for argument in arguments {
         let source = sources.add_argument(argument);
@@ -80,7 +84,7 @@ fn read_one(
 }
 
 /// A dotted key, as before the `=` of an argument; `None` if it is not a key.
-pub fn parse_key(text: &str) -> Option<Key> {
+pub(crate) fn parse_key(text: &str) -> Option<Key> {
     let (segments, equals) = read_key(&format!("{text}="))?;
     (equals == text.len())
         .then(|| segments.into_iter().fold(Key::root(), |key, segment| key.step(segment)))
@@ -120,7 +124,7 @@ fn read_key(text: &str) -> Option<(Vec<KeySegment>, usize)> {
 
 /// Inserts a value into the tree. The table or array around it must exist, except a table at the
 /// top of the file.
-pub fn apply(one: &Override, root: &mut Node, problems: &mut Problems) {
+pub(crate) fn apply(one: &Override, root: &mut Node, problems: &mut Problems) {
     let Some((last, way)) = one.key.segments().split_last() else { return };
     let mut node = root;
     let mut key = Key::root();

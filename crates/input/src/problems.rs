@@ -5,7 +5,7 @@ use crate::sources::{Origin, Sources};
 use lumiduct_base::error::{Diagnostic, DiagnosticKind, Error, Result};
 
 /// Most problems that are reported; a file with more is entirely wrong.
-pub const MAX_PROBLEMS: usize = 1000;
+pub(crate) const MAX_PROBLEMS: usize = 1000;
 
 /// All problems found so far.
 #[derive(Debug, Default)]
@@ -39,12 +39,12 @@ impl Problem {
     }
 
     /// The key it refers to.
-    pub fn key(&self) -> &Key {
+    pub(crate) fn key(&self) -> &Key {
         &self.key
     }
 
     /// The place, where it is not that of the key's value.
-    pub fn origin(&self) -> Option<&Origin> {
+    pub(crate) fn origin(&self) -> Option<&Origin> {
         self.origin.as_ref()
     }
 
@@ -68,7 +68,7 @@ impl Problems {
     }
 
     /// Notes an error that holds whatever becomes of the other keys of its table.
-    pub fn certain_error(&mut self, key: &Key, message: impl Into<String>) -> &mut Problem {
+    pub(crate) fn certain_error(&mut self, key: &Key, message: impl Into<String>) -> &mut Problem {
         self.keep(Problem::new(DiagnosticKind::Error, key, message.into()))
     }
 
@@ -97,7 +97,7 @@ impl Problems {
     }
 
     /// The keys of the errors, in the order in which they were noted.
-    pub fn error_keys(&self) -> impl Iterator<Item = &Key> {
+    pub(crate) fn error_keys(&self) -> impl Iterator<Item = &Key> {
         let errors = self.list.iter().filter(|problem| problem.kind == DiagnosticKind::Error);
         errors.map(Problem::key)
     }
@@ -105,14 +105,14 @@ impl Problems {
     /// From here on, rules are checked that span several keys. What is noted of a table of an entry
     /// that has a wrong key, or of another key in it, is dropped: it may hold once that one is
     /// corrected.
-    pub fn expect_echoes(&mut self) {
+    pub(crate) fn expect_echoes(&mut self) {
         self.wrong = self.error_keys().cloned().collect();
         let tables = self.wrong.iter().map(Key::parent);
         self.doubtful = tables.filter(|table| table.segments().len() > 1).collect();
     }
 
     /// Whether no key at `key` or inside it was wrong before rules were checked.
-    pub fn is_whole(&self, key: &Key) -> bool {
+    pub(crate) fn is_whole(&self, key: &Key) -> bool {
         self.left_out == 0 && !self.wrong.iter().any(|wrong| wrong.is_within(key))
     }
 
@@ -122,7 +122,7 @@ impl Problems {
     }
 
     /// Adds problems found elsewhere, except echoes of known ones.
-    pub fn append(&mut self, other: Self, is_echo: impl Fn(&Problem) -> bool) {
+    pub(crate) fn append(&mut self, other: Self, is_echo: impl Fn(&Problem) -> bool) {
         for problem in other.list.into_iter().chain(other.spare) {
             if !is_echo(&problem) {
                 self.push(problem);
@@ -139,7 +139,7 @@ impl Problems {
     }
 
     /// Everything in the order of the files.
-    pub fn into_diagnostics(self, places: &Places) -> Vec<Diagnostic> {
+    pub(crate) fn into_diagnostics(self, places: &Places) -> Vec<Diagnostic> {
         let place = |problem: &Problem| {
             problem.origin.clone().or_else(|| places.value(&problem.key).cloned())
         };
@@ -222,7 +222,10 @@ pub fn name_hint<'a>(name: &str, known: impl IntoIterator<Item = &'a str> + Clon
 }
 
 /// The hint for an unknown face: the closest name, and all faces.
-pub fn face_hint<'a>(name: &str, known: impl IntoIterator<Item = &'a str> + Clone) -> String {
+pub(crate) fn face_hint<'a>(
+    name: &str,
+    known: impl IntoIterator<Item = &'a str> + Clone,
+) -> String {
     let list = name_hint("", known.clone()).replacen("known names", "faces", 1);
     match nearest(name, known) {
         Some(near) => format!("did you mean `{near}`? {list}"),

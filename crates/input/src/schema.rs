@@ -155,7 +155,7 @@ pub fn resolve<'a>(root: &'a Value, schema: &'a Value) -> &'a Value {
 }
 
 /// Whether a schema accepts any value.
-pub fn takes_anything(schema: &Value) -> bool {
+pub(crate) fn takes_anything(schema: &Value) -> bool {
     match schema {
         Value::Bool(takes) => *takes,
         Value::Object(words) => words.keys().all(|word| word == "description"),

@@ -9,7 +9,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// Largest readable file, bytes.
-pub const MAX_FILE_BYTES: u64 = 16 << 20;
+pub(crate) const MAX_FILE_BYTES: u64 = 16 << 20;
 
 /// One of the texts of a [`Sources`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -26,7 +26,7 @@ pub struct Origin {
 
 /// Where a text comes from.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum SourceKind {
+pub(crate) enum SourceKind {
     /// A file.
     File(PathBuf),
     /// An argument `-D key=value`; the text is what follows `-D`.
@@ -35,7 +35,7 @@ pub enum SourceKind {
 
 /// A text with its lines.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct SourceText {
+pub(crate) struct SourceText {
     kind: SourceKind,
     text: String,
     /// Offset of the first byte of each line.
@@ -50,18 +50,13 @@ impl SourceText {
         Self { kind, text, line_starts }
     }
 
-    /// Where the text comes from.
-    pub fn kind(&self) -> &SourceKind {
-        &self.kind
-    }
-
     /// The whole text.
-    pub fn text(&self) -> &str {
+    pub(crate) fn text(&self) -> &str {
         &self.text
     }
 
     /// How a message names the text: the path, or the argument.
-    pub fn label(&self) -> PathBuf {
+    pub(crate) fn label(&self) -> PathBuf {
         match &self.kind {
             SourceKind::File(path) => path.clone(),
             SourceKind::Argument => argument_label(&self.text).into(),
@@ -69,7 +64,7 @@ impl SourceText {
     }
 
     /// The line of a byte, from 1; `None` for an argument, which has no lines.
-    pub fn line(&self, offset: usize) -> Option<usize> {
+    pub(crate) fn line(&self, offset: usize) -> Option<usize> {
         match self.kind {
             SourceKind::File(_) => Some(self.line_starts.partition_point(|start| *start <= offset)),
             SourceKind::Argument => None,
@@ -77,7 +72,7 @@ impl SourceText {
     }
 
     /// The bytes of a line counted from 1, without its line end; `None` beyond the last.
-    pub fn line_span(&self, line: usize) -> Option<Range<usize>> {
+    pub(crate) fn line_span(&self, line: usize) -> Option<Range<usize>> {
         let start = *self.line_starts.get(line.checked_sub(1)?)?;
         let end = self.line_starts.get(line).map_or(self.text.len(), |next| next - 1);
         let text = self.text.get(start..end)?;
@@ -93,7 +88,7 @@ pub struct Sources {
 
 impl Sources {
     /// Reads a file, or returns it if it was read before.
-    pub fn add_file(&mut self, path: &Path) -> Result<SourceId, Unreadable> {
+    pub(crate) fn add_file(&mut self, path: &Path) -> Result<SourceId, Unreadable> {
         let known = self
             .list
             .iter()
@@ -108,12 +103,12 @@ impl Sources {
     }
 
     /// Takes a text as that of a file, without looking at the file.
-    pub fn add_text(&mut self, path: &Path, text: &str) -> SourceId {
+    pub(crate) fn add_text(&mut self, path: &Path, text: &str) -> SourceId {
         self.add(SourceKind::File(path.to_path_buf()), text.into())
     }
 
     /// Takes an argument of the command line, without the `-D`.
-    pub fn add_argument(&mut self, text: &str) -> SourceId {
+    pub(crate) fn add_argument(&mut self, text: &str) -> SourceId {
         self.add(SourceKind::Argument, text.into())
     }
 
@@ -123,12 +118,12 @@ impl Sources {
     }
 
     /// One text. Ids of another `Sources` are invalid here.
-    pub fn get(&self, id: SourceId) -> &SourceText {
+    pub(crate) fn get(&self, id: SourceId) -> &SourceText {
         &self.list[id.0]
     }
 
     /// The folder of the file of a place; `None` on the command line.
-    pub fn folder(&self, origin: &Origin) -> Option<&Path> {
+    pub(crate) fn folder(&self, origin: &Origin) -> Option<&Path> {
         match &self.get(origin.source).kind {
             SourceKind::File(path) => path.parent(),
             SourceKind::Argument => None,
@@ -136,12 +131,12 @@ impl Sources {
     }
 
     /// All texts in the order of their first use.
-    pub fn iter(&self) -> impl Iterator<Item = &SourceText> {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = &SourceText> {
         self.list.iter()
     }
 
     /// The text of a file, if it was read.
-    pub fn file(&self, path: &Path) -> Option<&SourceText> {
+    pub(crate) fn file(&self, path: &Path) -> Option<&SourceText> {
         self.list
             .iter()
             .find(|source| matches!(&source.kind, SourceKind::File(file) if file == path))
@@ -149,7 +144,7 @@ impl Sources {
 
     /// The files that diagnostics refer to, read again for their lines. Unreadable files are left
     /// out.
-    pub fn of_files<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Self {
+    pub(crate) fn of_files<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Self {
         let mut sources = Self::default();
         for path in paths {
             // If a file is gone, its message is shown without the line.
@@ -159,7 +154,7 @@ impl Sources {
     }
 
     /// The text at a place, on one line and no longer than 40 characters.
-    pub fn excerpt(&self, origin: &Origin) -> String {
+    pub(crate) fn excerpt(&self, origin: &Origin) -> String {
         let text = self.get(origin.source).text.get(origin.span.clone()).unwrap_or_default();
         let line = text.lines().next().unwrap_or_default();
         if line.chars().count() > EXCERPT_CHARS || line.len() < text.trim_end().len() {
@@ -178,7 +173,7 @@ const EXCERPT_CHARS: usize = 40;
 
 /// Why a file could not be read.
 #[derive(Debug)]
-pub enum Unreadable {
+pub(crate) enum Unreadable {
     /// There is no such file.
     Missing,
     /// It is a directory, a device or a pipe.

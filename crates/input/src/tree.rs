@@ -11,7 +11,7 @@ use crate::sources::{Origin, SourceId, Sources};
 use lumiduct_base::text::is_control;
 
 /// Deepest nesting of tables and arrays.
-pub const MAX_DEPTH: usize = 64;
+pub(crate) const MAX_DEPTH: usize = 64;
 
 /// A value and its place.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,7 +54,7 @@ pub struct Entry {
 
 impl Node {
     /// The entries, if this is a table.
-    pub fn table(&self) -> Option<&IndexMap<String, Entry>> {
+    pub(crate) fn table(&self) -> Option<&IndexMap<String, Entry>> {
         match &self.value {
             Value::Table(entries) => Some(entries),
             Value::Array(_)
@@ -68,12 +68,12 @@ impl Node {
     }
 
     /// The value of a key, if this is a table that has it.
-    pub fn get(&self, key: &str) -> Option<&Self> {
+    pub(crate) fn get(&self, key: &str) -> Option<&Self> {
         Some(&self.table()?.get(key)?.node)
     }
 
     /// The text, if this is text.
-    pub fn text(&self) -> Option<&str> {
+    pub(crate) fn text(&self) -> Option<&str> {
         match &self.value {
             Value::String(text) => Some(text),
             Value::Table(_)
@@ -87,7 +87,7 @@ impl Node {
     }
 
     /// The same tree without places. Dates, non-finite numbers and unreadable values become null.
-    pub fn to_json(&self) -> serde_json::Value {
+    pub(crate) fn to_json(&self) -> serde_json::Value {
         match &self.value {
             Value::Table(entries) => {
                 entries.iter().map(|(key, entry)| (key.clone(), entry.node.to_json())).collect()
@@ -104,7 +104,7 @@ impl Node {
 
 /// A syntax error.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct SyntaxError {
+pub(crate) struct SyntaxError {
     /// Where.
     pub origin: Origin,
     /// The key it refers to, if any.
@@ -115,7 +115,7 @@ pub struct SyntaxError {
 
 /// The tree of a whole text, and all its syntax errors. The tree has everything readable despite
 /// them.
-pub fn parse(sources: &Sources, source: SourceId) -> (Node, Vec<SyntaxError>) {
+pub(crate) fn parse(sources: &Sources, source: SourceId) -> (Node, Vec<SyntaxError>) {
     let text = sources.get(source).text();
     let (table, failures) = DeTable::parse_recoverable(text);
     let mut reader = Reader { source, offset: 0, errors: Vec::new() };
@@ -125,7 +125,7 @@ pub fn parse(sources: &Sources, source: SourceId) -> (Node, Vec<SyntaxError>) {
 }
 
 /// The value in a part of a text, from `offset` to the end; or its syntax errors.
-pub fn parse_value(
+pub(crate) fn parse_value(
     sources: &Sources,
     source: SourceId,
     offset: usize,

@@ -95,7 +95,7 @@ pub struct ErrorRow {
 
 impl ErrorRow {
     /// Whether the bias is more than noise: beyond two of its standard errors.
-    pub fn is_biased(&self) -> bool {
+    pub(crate) fn is_biased(&self) -> bool {
         self.bias.abs() > 2.0 * self.bias_std_error
     }
 }

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 /// Creates a folder and checks that a file can be created in it, which is safer than checking
 /// permissions.
-pub fn expect_room(folder: &Path) -> Result<()> {
+pub(crate) fn expect_room(folder: &Path) -> Result<()> {
     if folder.is_file() {
         return Err(Error::Usage(format!("{} is a file, not a folder", folder.display())));
     }

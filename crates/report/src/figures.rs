@@ -5,8 +5,7 @@ use crate::csv::{intensity_name, map_name, map_words};
 use crate::key_figures::is_one_cell;
 use crate::png::{
     AxisScale, Bar, BarChart, ColourMap, ErrorForm, HeatMap, LinePlot, Look, PlotSeries,
-    PolarCurve, PolarPlot, Pole, SeriesForm, SeriesPoint, bar_chart, heat_map, line_plot,
-    polar_plot,
+    PolarCurve, PolarPlot, SeriesForm, SeriesPoint, bar_chart, heat_map, line_plot, polar_plot,
 };
 use crate::{OutputFile, Report};
 use lumiduct_base::error::Result;
@@ -160,7 +159,6 @@ pub(crate) fn intensity_plot(table: &IntensityTable) -> PolarPlot {
         title: intensity_title(table),
         subtitle: where_and_when(table),
         unit: table.unit.clone(),
-        pole: Pole::Up,
         curves,
     }
 }

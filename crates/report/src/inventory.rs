@@ -63,7 +63,7 @@ impl Listing {
     }
 
     /// How many entries are not shown, in words; `None` where all are.
-    pub fn left_out(&self) -> Option<String> {
+    pub(crate) fn left_out(&self) -> Option<String> {
         let more = self.count.saturating_sub(self.rows.len());
         (more > 0).then(|| format!("The first {} of {}.", self.rows.len(), self.count))
     }

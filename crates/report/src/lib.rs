@@ -27,7 +27,7 @@ mod manifest;
 mod markdown;
 mod mesh;
 mod output;
-pub mod png;
+pub(crate) mod png;
 mod recipe;
 mod record;
 mod remarks;
@@ -42,20 +42,21 @@ mod upright;
 mod words;
 
 pub use compare::{
-    CheckpointSample, Comparison, Contestant, ErrorRow, Truth, comparison_files, comparison_table,
-    rows,
+    CheckpointSample, Comparison, Contestant, Truth, comparison_files, comparison_table, rows,
 };
-pub use destination::{expect_file, expect_room, is_among};
-pub use drawing::{SceneDrawing, drawing};
+pub use destination::{expect_file, is_among};
+pub use drawing::SceneDrawing;
+pub use drawing::drawing;
 pub use film::film_tables;
 pub use folder::{Existing, Folder, Written, write_whole};
 pub use html::check::check_page;
-pub use inventory::{Inventory, Listing};
+pub use inventory::Inventory;
 pub use junit::{JunitFile, diff_junit, run_junit, study_junit};
 pub use leftovers::{is_staged, remove_report};
 pub use leftovers::{remove_if_there, sweep};
 pub use lock::FolderLock;
-pub use manifest::{Manifest, report_files};
+pub(crate) use manifest::Manifest;
+pub use manifest::report_files;
 pub use mesh::mesh_report;
 pub use output::OutputFile;
 pub use recipe::Recipe;

@@ -17,7 +17,7 @@ const FORMAT: u32 = 1;
 
 /// The files of a report.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
-pub struct Manifest {
+pub(crate) struct Manifest {
     #[serde(rename = "lumiduct_manifest")]
     format: u32,
     /// Digests by the names of files within the folder.
@@ -71,7 +71,7 @@ impl Manifest {
     }
 
     /// Checks that a file of the folder is as the report was written.
-    pub fn expect_file(&self, path: &Path, bytes: &[u8]) -> Result<()> {
+    pub(crate) fn expect_file(&self, path: &Path, bytes: &[u8]) -> Result<()> {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         if self.files.get(name.as_ref()).is_some_and(|known| *known == digest(bytes)) {
             return Ok(());

@@ -133,7 +133,7 @@ impl TargetFacts {
     }
 
     /// The wanted and the reached error.
-    pub fn sentence(&self) -> String {
+    pub(crate) fn sentence(&self) -> String {
         let reached = self.reached.map_or("unknown".into(), format_percent);
         format!(
             "target {}: wanted {}, reached {reached}",
@@ -143,7 +143,7 @@ impl TargetFacts {
     }
 
     /// Whether the error is as small as wanted.
-    pub fn is_reached(&self) -> bool {
+    pub(crate) fn is_reached(&self) -> bool {
         self.reached.is_some_and(|reached| reached <= self.wanted)
     }
 }

@@ -67,16 +67,6 @@ impl Frame {
         self.origin + self.to_world(p)
     }
 
-    /// A frame given in this frame, in the parent.
-    pub fn compose(&self, inner: &Self) -> Self {
-        Self {
-            origin: self.point_to_world(inner.origin),
-            x: self.to_world(inner.x),
-            y: self.to_world(inner.y),
-            z: self.to_world(inner.z),
-        }
-    }
-
     /// The same frame at a point shifted by `offset` of the parent.
     pub fn shifted(&self, offset: DVec3) -> Self {
         Self { origin: self.origin + offset, ..*self }

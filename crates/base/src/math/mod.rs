@@ -10,9 +10,9 @@ mod roots;
 mod sampling;
 
 pub use aabb::Aabb;
-pub use cap::{cap_solid_angle_above, projected_cap};
+pub use cap::projected_cap;
 pub use frame::Frame;
-pub use least_squares::{LeastSquares, least_squares};
+pub use least_squares::least_squares;
 pub use roots::{Roots, bracketed_root, convex_roots, cubic, quadratic, quartic};
 pub use sampling::{
     circle, cone_direction, cosine_hemisphere, cosine_power_hemisphere, disk, from_cosine,

@@ -1,10 +1,10 @@
 //! Meshes of simple bodies of known volume and area, for tests and benches.
 //!
 //! Sizes are mm. All functions panic on sizes that are non-finite or beyond
-//! [`MAX_COORDINATE_MM`](crate::mesh::MAX_COORDINATE_MM).
+//! `mesh::MAX_COORDINATE_MM`.
 
 use crate::mesh::{MeshBuilder, TriangleMesh};
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 use std::f64::consts::TAU;
 
 /// Whether a mesh carries the normals of the surface it approximates.
@@ -18,14 +18,14 @@ pub enum Normals {
 
 /// A mesh under construction whose sizes are known to be valid.
 #[derive(Default)]
-struct BodyBuilder(MeshBuilder);
+pub(super) struct BodyBuilder(MeshBuilder);
 
 impl BodyBuilder {
-    fn add(&mut self, corners: [DVec3; 3], normals: Option<[DVec3; 3]>, face: &str) {
+    pub(super) fn add(&mut self, corners: [DVec3; 3], normals: Option<[DVec3; 3]>, face: &str) {
         self.0.add(corners, normals, face).expect("sizes are finite and moderate");
     }
 
-    fn finish(self) -> TriangleMesh {
+    pub(super) fn finish(self) -> TriangleMesh {
         self.0.finish().expect("every body has triangles")
     }
 }
@@ -113,51 +113,6 @@ pub fn rod(radius: f64, length: f64, sides: u32, normals: Normals) -> TriangleMe
         }
         builder.add([DVec3::ZERO, b, a], cap(-DVec3::Z), "entry");
         builder.add([length * DVec3::Z, d, c], cap(DVec3::Z), "exit");
-    }
-    builder.finish()
-}
-
-/// A closed pipe of radius 1.5 along +z whose far end is cut by a plane at 45 degrees, faces entry, wall and mirror.
-pub fn mirror_pipe(sides: u32, normals: Normals) -> TriangleMesh {
-    let mut builder = BodyBuilder::default();
-    // A facet centre, not an edge, lies where the wall meets the plane at 45 degrees.
-    let point = |side: u32, far: bool| {
-        let (sin, cos) = (TAU * (f64::from(side % sides) + 0.5) / f64::from(sides)).sin_cos();
-        let (x, y) = (1.5 * cos, 1.5 * sin);
-        let point = DVec3::new(x, y, if far { 20.0 + x } else { 0.0 });
-        // As in a GLB: single precision, in metres.
-        1000.0 * (1e-3 * point).as_vec3().as_dvec3()
-    };
-    let given = |corners: [DVec3; 3]| (normals == Normals::Smooth).then_some(corners);
-    for side in 0..sides {
-        let [a, b] = [side, side + 1].map(|side| point(side, false));
-        let [d, c] = [side, side + 1].map(|side| point(side, true));
-        for corners in [[a, b, c], [a, c, d]] {
-            let across = corners.map(|p| DVec3::new(p.x, p.y, 0.0).normalize());
-            builder.add(corners, given(across), "wall");
-        }
-        builder.add([DVec3::ZERO, b, a], given([-DVec3::Z; 3]), "entry");
-        let mirror = DVec3::new(-1.0, 0.0, 1.0).normalize();
-        builder.add([20.0 * DVec3::Z, d, c], given([mirror; 3]), "mirror");
-    }
-    builder.finish()
-}
-
-/// A closed prism of length 7 along +z over a counter-clockwise outline, one face, no normals.
-pub fn prism(outline: &[[f64; 2]]) -> TriangleMesh {
-    let mut builder = BodyBuilder::default();
-    let points: Vec<DVec2> = outline.iter().map(|p| DVec2::from(*p)).collect();
-    for triangle in crate::math::planar::triangulate(&points) {
-        let [a, b, c] = triangle.map(|p| p.extend(0.0));
-        builder.add([a, c, b], None, "");
-        builder.add([a, b, c].map(|p| p + 7.0 * DVec3::Z), None, "");
-    }
-    for (index, from) in points.iter().enumerate() {
-        let to = points[(index + 1) % points.len()];
-        let [a, b] = [*from, to].map(|p| p.extend(0.0));
-        let [d, c] = [a, b].map(|p| p + 7.0 * DVec3::Z);
-        builder.add([a, b, c], None, "");
-        builder.add([a, c, d], None, "");
     }
     builder.finish()
 }

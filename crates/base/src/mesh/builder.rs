@@ -27,7 +27,7 @@ pub enum UnusableMesh {
         /// `vertex` or `normal`.
         what: &'static str,
     },
-    /// A vertex lies beyond [`MAX_COORDINATE_MM`].
+    /// A vertex lies beyond `MAX_COORDINATE_MM`.
     #[error("triangle {triangle} has a vertex beyond 1000 km; check the unit of the mesh")]
     TooFar {
         /// The triangle, counted from 1.

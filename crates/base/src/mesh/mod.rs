@@ -11,7 +11,7 @@ mod health;
 pub mod topology;
 
 pub use builder::{MeshBuilder, UnusableMesh};
-pub use health::{CoarseFacets, Defects, MeshHealth, health, normals_agree};
+pub use health::{Defects, MeshHealth, health, normals_agree};
 
 use crate::math::Aabb;
 use glam::DVec3;
@@ -19,7 +19,7 @@ use glam::DVec3;
 /// Most triangles that a mesh may have: 5 GB as a [`TriangleMesh`] with normals.
 pub const MAX_TRIANGLES: usize = 50_000_000;
 /// Largest coordinate, mm: a thousand kilometres. Squares and cubes of it are far from overflow.
-pub const MAX_COORDINATE_MM: f64 = 1.0e9;
+pub(crate) const MAX_COORDINATE_MM: f64 = 1.0e9;
 /// Name of the face of triangles that have neither material nor group.
 pub const UNNAMED_FACE: &str = "surface";
 

@@ -15,7 +15,7 @@ pub struct HalfEdge {
 
 impl HalfEdge {
     /// Whether the triangle walks from `low` to `high`.
-    pub fn is_upward(&self, triangles: &[[u32; 3]]) -> bool {
+    pub(crate) fn is_upward(&self, triangles: &[[u32; 3]]) -> bool {
         triangles[self.triangle as usize][usize::from(self.corner)] == self.low
     }
 
@@ -25,7 +25,7 @@ impl HalfEdge {
     }
 
     /// The corners of the triangle at `low` and at `high`.
-    pub fn corners(&self, triangles: &[[u32; 3]]) -> [usize; 2] {
+    pub(crate) fn corners(&self, triangles: &[[u32; 3]]) -> [usize; 2] {
         let (from, to) = (usize::from(self.corner), usize::from(self.corner + 1) % 3);
         if self.is_upward(triangles) { [from, to] } else { [to, from] }
     }
@@ -59,7 +59,7 @@ pub fn same_edge(one: &HalfEdge, other: &HalfEdge) -> bool {
 }
 
 /// Whether a triangle uses a vertex twice.
-pub fn is_collapsed([a, b, c]: &[u32; 3]) -> bool {
+pub(crate) fn is_collapsed([a, b, c]: &[u32; 3]) -> bool {
     a == b || b == c || c == a
 }
 

@@ -41,12 +41,10 @@ pub use balance::Balance;
 pub use cells::not_below_zero;
 pub use check::{CheckOutcome, Verdict, nearest, verdict};
 pub use map::{MapAxes, SensorMap};
-pub use paths::{
-    Action, ClassExtent, DepthBin, LostPaths, PathClass, PathStep, SensorPaths, strongest,
-};
+pub use paths::{Action, ClassExtent, LostPaths, PathClass, PathStep, SensorPaths, strongest};
 pub use record::{Measure, Status};
 pub use replicates::Replicates;
-pub use uniformity::{Statistic, Uniformity, UniformitySummary};
+pub use uniformity::{Statistic, Uniformity};
 
 use crate::measure::evidence::Evidence;
 use crate::plan::Estimator;

@@ -100,7 +100,7 @@ pub(crate) fn paths(evidence: &Evidence<'_>, id: SensorId) -> SensorPaths {
     let reading = &readings.sensors[id.index()];
     let batches = readings.batch_count();
     let bin = |bin: usize| reading.depths.mean(bin, batches);
-    let lit = (0..reading.depths.len()).rev().find(|&depth| bin(depth).0 != 0.0);
+    let lit = (0..reading.depths.count()).rev().find(|&depth| bin(depth).0 != 0.0);
     let depths = (0..lit.map_or(0, |last| last + 1)).map(|index| {
         let (flux, std_error) = bin(index);
         let (from, to) = depths_of_bin(index);
@@ -175,7 +175,7 @@ fn class(scene: &Scene, trail: &Trail, sum: &ClassSum, total: f64) -> PathClass 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::transport::{DEPTH_BINS, SensorReading};
+    use crate::transport::tally::readings::{DEPTH_BINS, SensorReading};
 
     #[test]
     fn the_strongest_classes_stay_and_the_others_are_one_with_all_their_light() {

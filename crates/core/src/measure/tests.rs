@@ -9,7 +9,8 @@ use crate::scene::{
     Builder, Emission, EmitSide, Emitter, FacePiece, FaceSpec, Owner, Sensor, SensorKind, Sides,
     Source, StartSolids,
 };
-use crate::transport::{Counts, EstimatorFindings, Run, Stage};
+use crate::transport::estimators::EstimatorFindings;
+use crate::transport::{Counts, Run, Stage};
 use glam::DVec3;
 use lumiduct_base::math::Frame;
 use std::f64::consts::TAU;
@@ -36,7 +37,7 @@ fn some_light(scene: &Scene) -> Findings {
         }
         assert!(layout.len() > 50);
         for sensor in &mut batch.sensors {
-            for cell in 0..sensor.cells.len() {
+            for cell in 0..sensor.cells.count() {
                 sensor.cells.add(cell, 1e-4 * ((cell % 3 + 2) as f64 + (index % 2) as f64));
             }
         }

@@ -23,7 +23,7 @@ pub struct Incidence {
 impl Incidence {
     /// Cosine of the angle of incidence, in 0..=1.
     #[inline]
-    pub fn cos(&self) -> f64 {
+    pub(crate) fn cos(&self) -> f64 {
         let cos = -self.dir.dot(self.normal);
         let cos = if cos < 1.0 { cos } else { 1.0 };
         if cos > 0.0 { cos } else { 0.0 }
@@ -131,7 +131,7 @@ impl Shares {
 
     /// The share that leaves to one side, 1.
     #[inline]
-    pub fn of(self, side: Side) -> f64 {
+    pub(crate) fn of(self, side: Side) -> f64 {
         match side {
             Side::Reflected => self.reflected,
             Side::Transmitted => self.transmitted,

@@ -47,7 +47,7 @@ impl Medium {
 
     /// Share of the flux that survives `length` mm: Beer-Lambert, exp(-αl).
     #[inline]
-    pub fn transmittance(&self, wavelength: f64, length: f64) -> f64 {
+    pub(crate) fn transmittance(&self, wavelength: f64, length: f64) -> f64 {
         let absorption = self.absorption(wavelength);
         if absorption == 0.0 { 1.0 } else { (-absorption * length).exp() }
     }

@@ -11,7 +11,7 @@ use std::fmt;
 /// km (IAU 2015 resolution B3) at 149,597,870.7 km; over a year it is 0.262 to 0.271.
 pub const HALF_ANGLE_DEG: f64 = 0.26645;
 /// First and last year for which the formulas are trusted here.
-pub const YEARS: [i32; 2] = [1900, 2100];
+pub(crate) const YEARS: [i32; 2] = [1900, 2100];
 
 /// A moment, and a place on earth.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,7 +48,7 @@ pub enum Misread {
     Form,
     /// There is no such day, or no such time of day.
     Missing,
-    /// The year is outside [`YEARS`].
+    /// The year is outside `YEARS`.
     Year,
 }
 

@@ -46,7 +46,7 @@ impl VolumeScattering {
 
     /// The phase function, 1/sr: the share of scattered light that leaves at an angle of this cosine, per solid angle,
     /// `(1 - g²) / (4π (1 + g² - 2 g cos θ)^(3/2))` (Henyey & Greenstein, Astrophys. J. 93 (1941) 70).
-    pub fn phase(&self, cos: f64) -> f64 {
+    pub(crate) fn phase(&self, cos: f64) -> f64 {
         let g = self.anisotropy;
         let square = 1.0 + g * g - 2.0 * g * cos;
         (1.0 - g * g) / (4.0 * PI * square * square.sqrt())
@@ -54,7 +54,7 @@ impl VolumeScattering {
 
     /// The direction after scattering of light that travels along `dir`, both unit vectors, for
     /// uniform `u`: the cosine by inversion of the integral of the phase function.
-    pub fn scatter(&self, dir: DVec3, u: [f64; 2]) -> DVec3 {
+    pub(crate) fn scatter(&self, dir: DVec3, u: [f64; 2]) -> DVec3 {
         let g = self.anisotropy;
         let cos = if g.abs() < ISOTROPIC {
             1.0 - 2.0 * u[0]

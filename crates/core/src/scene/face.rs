@@ -41,7 +41,7 @@ pub struct Face {
 impl Face {
     /// The finish that it declares for light travelling toward one of its sides.
     #[inline]
-    pub fn finish_against(&self, toward: Toward) -> Option<FinishId> {
+    pub(crate) fn finish_against(&self, toward: Toward) -> Option<FinishId> {
         match toward {
             // Light travelling toward the front meets the back.
             Toward::Front => self.back,
@@ -113,7 +113,7 @@ pub struct Patch {
 impl Patch {
     /// Calls `visit` for every crossing of the ray's whole line with the patch, in any order.
     #[inline]
-    pub fn crossings(&self, ray: &Ray, start: RayStart, mut visit: impl FnMut(Crossing)) {
+    pub(crate) fn crossings(&self, ray: &Ray, start: RayStart, mut visit: impl FnMut(Crossing)) {
         self.shape.crossings(ray, start, |crossing| {
             if self.keeps(ray, &crossing) {
                 visit(crossing);
@@ -123,7 +123,7 @@ impl Patch {
 
     /// The first crossing of the ray's line that is `wanted`.
     #[inline(always)]
-    pub fn first_crossing(
+    pub(crate) fn first_crossing(
         &self,
         ray: &Ray,
         start: RayStart,
@@ -153,13 +153,13 @@ impl Patch {
 
     /// A point, uniform over the area for uniform `u`; `None` where something else occupies the
     /// position.
-    pub fn sample(&self, u: [f64; 2]) -> Option<DVec3> {
+    pub(crate) fn sample(&self, u: [f64; 2]) -> Option<DVec3> {
         let point = self.shape.sample(u);
         self.trim.as_ref().is_none_or(|trim| trim.keeps(point)).then_some(point)
     }
 
     /// Area, mm²; to about a percent for a surface cut off at a round wall.
-    pub fn area(&self) -> f64 {
+    pub(crate) fn area(&self) -> f64 {
         let whole = self.shape.area();
         let Some(trim) = &self.trim else { return whole };
         if trim.is_of_element() {
@@ -181,19 +181,19 @@ impl Patch {
     }
 
     /// Unit tangent at a point along which v of the chart grows at constant u: along the guide.
-    pub fn along(&self, p: DVec3) -> DVec3 {
+    pub(crate) fn along(&self, p: DVec3) -> DVec3 {
         self.chart.as_ref().map_or_else(|| self.shape.along(p), |chart| chart.along(&self.shape, p))
     }
 
     /// The rectangle that the chart covers, mm.
-    pub fn chart_bounds(&self) -> ChartRect {
+    pub(crate) fn chart_bounds(&self) -> ChartRect {
         self.chart
             .as_ref()
             .map_or_else(|| self.shape.chart_bounds(), |chart| chart.bounds(&self.shape))
     }
 
     /// Area of the part whose chart lies in `rect`, mm².
-    pub fn area_in(&self, rect: ChartRect) -> f64 {
+    pub(crate) fn area_in(&self, rect: ChartRect) -> f64 {
         self.chart
             .as_ref()
             .map_or_else(|| self.shape.area_in(rect), |chart| chart.area_in(&self.shape, rect))

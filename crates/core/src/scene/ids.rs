@@ -45,18 +45,12 @@ ids! {
 
 /// A smooth surface: tangent-continuous pieces of a face, or of a mesh, share one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct SmoothId(u64);
+pub(crate) struct SmoothId(u64);
 
 impl SmoothId {
     /// The surface `smooth` of a face or a mesh.
     #[inline]
-    pub const fn of(owner: u32, smooth: u32) -> Self {
+    pub(crate) const fn of(owner: u32, smooth: u32) -> Self {
         Self((owner as u64) << 32 | smooth as u64)
-    }
-
-    /// The number of the surface.
-    #[inline]
-    pub fn key(self) -> u64 {
-        self.0
     }
 }

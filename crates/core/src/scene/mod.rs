@@ -26,22 +26,23 @@ mod source;
 mod start;
 pub mod sweep;
 
-pub use axes::FaceAxes;
 pub use build::{Builder, FaceSpec};
-pub use crossing::accel::Accel;
-pub use crossing::hit::{Hits, Just, PrimHit};
+pub(crate) use crossing::accel::Accel;
+pub use crossing::hit::Just;
+pub use crossing::hit::{Hits, PrimHit};
 pub use crossing::inside::Inside;
 pub use crossing::on::On;
 pub use face::{Face, FacePiece, MeshBody, Owner, Patch, PieceRange};
-pub use ids::{
-    FaceId, FinishId, LightGroupId, MediumId, PrimId, SensorId, SmoothId, SolidId, SourceId,
-};
-pub use meet::interface::{Interface, MeetingPoint, Visibility};
+pub use ids::LightGroupId;
+pub(crate) use ids::SmoothId;
+pub use ids::{FaceId, FinishId, MediumId, PrimId, SensorId, SolidId, SourceId};
+pub(crate) use meet::interface::MeetingPoint;
+pub use meet::interface::{Interface, Visibility};
 pub use meet::pieces::Surface;
-pub use model::{COINCIDENCE, Finish, Scene, Solid};
+pub(crate) use model::COINCIDENCE;
+pub use model::{Finish, Scene, Solid};
 pub use picture::facets::{FaceFacets, Fineness, Triangulation, shape_facets};
-pub use picture::guide::{Guides, NamedBody};
-pub use picture::section::SectionOutline;
+pub use picture::guide::Guides;
 pub use ray::Ray;
 pub use sensor::grid::Grid;
 pub use sensor::pixels::Pixels;

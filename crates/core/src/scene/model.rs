@@ -14,7 +14,7 @@ use lumiduct_base::units::FluxUnit;
 use std::sync::Arc;
 
 /// Relative to the size of the scene: faces closer than this are the same face.
-pub const COINCIDENCE: f64 = 1e-12;
+pub(crate) const COINCIDENCE: f64 = 1e-12;
 
 /// A solid: a closed set of faces around a medium.
 #[derive(Debug, Clone)]
@@ -91,12 +91,12 @@ impl Scene {
     }
 
     /// Flux of some sources, lm or W.
-    pub fn flux_of(&self, sources: &[SourceId]) -> f64 {
+    pub(crate) fn flux_of(&self, sources: &[SourceId]) -> f64 {
         sources.iter().map(|source| self.sources[source.index()].flux).sum()
     }
 
     /// The effective medium at a point inside the given solids.
-    pub fn medium_in(&self, inside: &Inside) -> MediumId {
+    pub(crate) fn medium_in(&self, inside: &Inside) -> MediumId {
         self.medium_of(inside.iter())
     }
 

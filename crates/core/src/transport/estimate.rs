@@ -6,7 +6,7 @@ use serde::Serialize;
 
 /// The estimate of a sensor's light: cells and totals, by source and by light group.
 #[derive(Debug, Clone, Copy)]
-pub struct Estimate<'a> {
+pub(crate) struct Estimate<'a> {
     /// The estimator; photons stand in for one that has not counted anything yet.
     pub estimator: Estimator,
     /// Values with their noise, and their groups of batches for ratios and differences.

@@ -8,7 +8,7 @@
 mod backward;
 mod choose;
 mod estimate;
-mod estimators;
+pub(crate) mod estimators;
 pub mod forward;
 pub mod gather;
 mod run;
@@ -19,20 +19,22 @@ mod trial;
 pub mod walk;
 
 pub use choose::{BLIND_PATHS, EstimatorChoice, blind_sensors};
-pub use estimate::{Account, AccountEntry, Bias, Estimate, Resolution};
-pub use estimators::EstimatorFindings;
+pub(crate) use estimate::Estimate;
+pub use estimate::Resolution;
+pub use estimate::{Account, AccountEntry, Bias};
 pub use forward::{Track, TrackEnd, tracks};
-pub use gather::{GatherSettings, Scatterer, Window, Windows, scatterers, turbid_media};
+pub use gather::{GatherSettings, Window, Windows, scatterers, turbid_media};
 pub use run::{Findings, Phase, Run, RunState, Shard, Slice, Unsliceable, batch_paths};
 pub use stop::{Activity, FIRST_BATCH_GRACE, Interrupt, StopAnswer, StopSignal};
-pub use tally::readings::{
-    ClassStep, ClassSum, DEPTH_BINS, GROUPS, Group, Leak, MIN_LIT_GROUPS, Readings, SensorReading,
-    Trail,
-};
-pub use tally::{Cells, Counts, Layout, Loss, Stage, TAILS};
+pub use tally::Stage;
+pub use tally::readings::ClassSum;
+pub use tally::readings::{GROUPS, Group, Leak, Readings};
+pub(crate) use tally::readings::{MIN_LIT_GROUPS, Trail};
+pub use tally::{Cells, Counts, Layout};
+pub(crate) use tally::{Loss, TAILS};
 pub use trial::{Objection, PhotonPilot, Trial};
 pub use walk::emitters::invisible;
+pub use walk::{Carries, Collision, Departure, Detection, Segment};
 pub use walk::{
-    Carries, Collision, Departure, Detection, Emergence, Event, MetEmission, Observer, Path,
-    ROULETTE_BELOW, Segment, Unobserved, Vertex, WAVELENGTH, walk,
+    Emergence, Event, MetEmission, Observer, Path, ROULETTE_BELOW, Unobserved, Vertex, walk,
 };

@@ -131,12 +131,12 @@ fn relative_variance(
     sensor: SensorId,
 ) -> Option<f64> {
     let cells = &merged.sensors[sensor.index()].cells;
-    if cells.len() == 1 {
+    if cells.count() == 1 {
         let flux = flux(scene, batches, sensor);
         return (flux.mean() != 0.0).then(|| (flux.std_error() / flux.mean()).powi(2));
     }
     let (mut variance, mut square) = (0.0, 0.0);
-    for cell in 0..cells.len() {
+    for cell in 0..cells.count() {
         let (mean, error) = cells.mean(cell, merged.batch_count());
         variance += error * error;
         // Noise adds its own square to that of the mean.

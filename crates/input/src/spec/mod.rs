@@ -8,18 +8,18 @@ use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-pub mod daylight;
-pub mod finish;
-pub mod pattern;
-pub mod placement;
-pub mod relief;
-pub mod run;
-pub mod sensor;
-pub mod sheet;
-pub mod solid;
-pub mod source;
-pub mod study;
-pub mod sweep;
+pub(crate) mod daylight;
+pub(crate) mod finish;
+pub(crate) mod pattern;
+pub(crate) mod placement;
+pub(crate) mod relief;
+pub(crate) mod run;
+pub(crate) mod sensor;
+pub(crate) mod sheet;
+pub(crate) mod solid;
+pub(crate) mod source;
+pub(crate) mod study;
+pub(crate) mod sweep;
 
 use finish::{FinishSpec, MediumSpec};
 use lumiduct_core::plan::Check;
@@ -32,7 +32,7 @@ use solid::SolidSpec;
 use source::SourceSpec;
 
 /// The version of the format that this program reads.
-pub const FORMAT_VERSION: u32 = 1;
+pub(crate) const FORMAT_VERSION: u32 = 1;
 
 /// A scene: a light guide, its sources, its sensors and the expected results.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -104,19 +104,19 @@ pub struct ProjectSpec {
 }
 
 /// Default medium.
-pub const AIR: &str = "air";
+pub(crate) const AIR: &str = "air";
 
 /// Default direction up.
-pub const UP: [f64; 3] = [0.0, 0.0, 1.0];
+pub(crate) const UP: [f64; 3] = [0.0, 0.0, 1.0];
 
 /// Default direction north.
-pub const NORTH: [f64; 3] = [0.0, 1.0, 0.0];
+pub(crate) const NORTH: [f64; 3] = [0.0, 1.0, 0.0];
 
 /// Media that need no definition.
-pub const PREDEFINED_MEDIA: [&str; 1] = [AIR];
+pub(crate) const PREDEFINED_MEDIA: [&str; 1] = [AIR];
 
 /// Finishes that need no definition.
-pub const PREDEFINED_FINISHES: [&str; 3] = ["polished", "black", "open"];
+pub(crate) const PREDEFINED_FINISHES: [&str; 3] = ["polished", "black", "open"];
 
 fn air() -> String {
     AIR.into()

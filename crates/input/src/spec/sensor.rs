@@ -52,7 +52,7 @@ pub struct SensorSpec {
 
 /// The kind of a sensor, with its keys.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum SensorKindSpec<'a> {
+pub(crate) enum SensorKindSpec<'a> {
     /// Illuminance over an area.
     Plane(&'a PlaneSpec),
     /// Intensity over directions.
@@ -65,7 +65,7 @@ pub enum SensorKindSpec<'a> {
 
 impl SensorKindSpec<'_> {
     /// The key of the kind.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Plane(_) => "plane",
             Self::Goniometer(_) => "goniometer",
@@ -77,7 +77,7 @@ impl SensorKindSpec<'_> {
 
 impl SensorSpec {
     /// The kind; `None` in a spec that was never validated.
-    pub fn kind(&self) -> Option<SensorKindSpec<'_>> {
+    pub(crate) fn kind(&self) -> Option<SensorKindSpec<'_>> {
         let plane = self.plane.as_ref().map(SensorKindSpec::Plane);
         let goniometer = self.goniometer.as_ref().map(SensorKindSpec::Goniometer);
         let luminance = self.luminance.as_ref().map(SensorKindSpec::Luminance);

@@ -36,12 +36,12 @@ pub enum SheetSpec {
 
 impl SheetSpec {
     /// The key of the kind, such as `disk`.
-    pub fn kind(&self) -> &'static str {
+    pub(crate) fn kind(&self) -> &'static str {
         self.entry().0
     }
 
     /// The keys that every kind of the sheet's family has.
-    pub fn common(&self) -> SheetCommon<'_> {
+    pub(crate) fn common(&self) -> SheetCommon<'_> {
         self.entry().1
     }
 
@@ -62,7 +62,7 @@ impl SheetSpec {
 
 /// The common keys of a sheet, by family.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum SheetCommon<'a> {
+pub(crate) enum SheetCommon<'a> {
     /// A plain surface with a front and a back.
     Sheet(&'a SheetCommonSpec),
     /// A hollow duct with an inside and an outside.
@@ -71,7 +71,7 @@ pub enum SheetCommon<'a> {
 
 impl<'a> SheetCommon<'a> {
     /// Position of the sheet.
-    pub fn at(self) -> Option<&'a PlacementSpec> {
+    pub(crate) fn at(self) -> Option<&'a PlacementSpec> {
         match self {
             Self::Sheet(common) => common.at.as_ref(),
             Self::Duct(common) => common.at.as_ref(),

@@ -37,12 +37,12 @@ pub enum SolidSpec {
 
 impl SolidSpec {
     /// The key of the kind, such as `sweep`.
-    pub fn kind(&self) -> &'static str {
+    pub(crate) fn kind(&self) -> &'static str {
         self.entry().0
     }
 
     /// The keys that every kind has.
-    pub fn common(&self) -> &SolidCommonSpec {
+    pub(crate) fn common(&self) -> &SolidCommonSpec {
         self.entry().1
     }
 
@@ -181,6 +181,7 @@ pub struct LensSpec {
 /// A spherical face of a lens. A table with exactly one of these keys.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[expect(clippy::enum_variant_names, reason = "a key ends with its unit")]
 pub enum LensFaceSpec {
     /// Convex, with this radius of curvature.
     ConvexRadiusMm(#[schemars(extend("exclusiveMinimum" = 0.0))] f64),
@@ -194,7 +195,7 @@ pub enum LensFaceSpec {
 
 impl LensFaceSpec {
     /// The key, as in the file.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::ConvexRadiusMm(_) => "convex_radius_mm",
             Self::ConcaveRadiusMm(_) => "concave_radius_mm",

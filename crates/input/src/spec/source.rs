@@ -37,12 +37,12 @@ pub enum SourceSpec {
 
 impl SourceSpec {
     /// The key of the kind, such as `disk`.
-    pub fn kind(&self) -> &'static str {
+    pub(crate) fn kind(&self) -> &'static str {
         self.entry().0
     }
 
     /// The keys that all kinds but the sun and the sky have.
-    pub fn common(&self) -> Option<&SourceCommonSpec> {
+    pub(crate) fn common(&self) -> Option<&SourceCommonSpec> {
         self.entry().1
     }
 

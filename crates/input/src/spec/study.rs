@@ -7,18 +7,18 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 /// The version of the format of studies that this program reads.
-pub const STUDY_FORMAT_VERSION: u32 = 1;
+pub(crate) const STUDY_FORMAT_VERSION: u32 = 1;
 
 /// Most designs of a study: as many as the Sobol sequence has.
-pub const MOST_DESIGNS: usize = 1 << 16;
+pub(crate) const MOST_DESIGNS: usize = 1 << 16;
 
 /// Most parameters of a study: within the dimensions of the Sobol sequence.
-pub const MOST_PARAMETERS: usize = 200;
+pub(crate) const MOST_PARAMETERS: usize = 200;
 
 /// A study: a scene, the parameters that vary, the measures to record and the criterion for a good design.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(title = "Lumiduct study")]
-pub struct StudySpec {
+pub(crate) struct StudySpec {
     /// Version of the study format.
     #[schemars(extend("const" = 1))]
     pub lumiduct_study: u32,
@@ -54,7 +54,7 @@ pub struct StudySpec {
 /// A quantity that is varied. `grid` and `one_at_a_time` need `values`, `range` or `choices`; `latin_hypercube` and `sobol`
 /// take any of the four; `tolerance` needs `spread` or `choices`; `list` takes values from its file, and here only `choices`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct ParameterSpec {
+pub(crate) struct ParameterSpec {
     /// Keys of the scene that the parameter sets, all at once, such as `solids.pipe.sweep.path.0.straight_mm`.
     #[schemars(length(min = 1))]
     pub keys: Vec<TiedKeySpec>,
@@ -78,7 +78,7 @@ pub struct ParameterSpec {
 /// A key of the scene that a parameter sets.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
-pub enum TiedKeySpec {
+pub(crate) enum TiedKeySpec {
     /// The key takes the value itself.
     Same(String),
     /// The key takes factor times value plus offset.
@@ -87,7 +87,7 @@ pub enum TiedKeySpec {
 
 impl TiedKeySpec {
     /// The dotted key.
-    pub fn key(&self) -> &str {
+    pub(crate) fn key(&self) -> &str {
         match self {
             Self::Same(key) => key,
             Self::Scaled(own) => &own.key,
@@ -97,7 +97,7 @@ impl TiedKeySpec {
 
 /// A key of the scene that follows a parameter.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct ScaledKeySpec {
+pub(crate) struct ScaledKeySpec {
     /// The dotted key.
     pub key: String,
     /// What the value is multiplied by.
@@ -110,7 +110,7 @@ pub struct ScaledKeySpec {
 
 /// Values at even steps from one end to the other, both included.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct RangeSpec {
+pub(crate) struct RangeSpec {
     /// The first value.
     pub from: f64,
     /// The last value.
@@ -124,7 +124,7 @@ pub struct RangeSpec {
 /// How values scatter.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum SpreadSpec {
+pub(crate) enum SpreadSpec {
     /// Every value between two ends is equally likely.
     Uniform(UniformSpec),
     /// A normal distribution, truncated at `from` and `to` if given.
@@ -133,7 +133,7 @@ pub enum SpreadSpec {
 
 /// Values between two ends.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct UniformSpec {
+pub(crate) struct UniformSpec {
     /// Least value.
     pub from: f64,
     /// Greatest value.
@@ -142,7 +142,7 @@ pub struct UniformSpec {
 
 /// Values about a mean.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct NormalSpec {
+pub(crate) struct NormalSpec {
     /// Mean before truncation.
     pub mean: f64,
     /// Standard deviation before truncation.
@@ -157,7 +157,7 @@ pub struct NormalSpec {
 /// Which designs are made of the parameters.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum PlanSpec {
+pub(crate) enum PlanSpec {
     /// Every combination of all values.
     Grid,
     /// The scene as it is, then every value of every parameter with the others as in the scene.
@@ -174,14 +174,14 @@ pub enum PlanSpec {
 
 /// The designs of a table.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct ListPlanSpec {
+pub(crate) struct ListPlanSpec {
     /// A CSV file, relative to this file: a column for each parameter, a row for each design.
     pub file: String,
 }
 
 /// A number of samples.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct SamplesSpec {
+pub(crate) struct SamplesSpec {
     /// Number of designs.
     #[schemars(range(min = 2, max = MOST_DESIGNS))]
     pub samples: u32,
@@ -193,7 +193,7 @@ pub struct SamplesSpec {
 /// When a design is computed well enough. Omitted keys are as in the scene; stop rules come from only one of the two
 /// files. All designs use the same random numbers, so their differences are known more precisely than their values.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-pub struct StudyRunSpec {
+pub(crate) struct StudyRunSpec {
     /// Number of paths of a design.
     #[schemars(range(min = 1))]
     pub paths: Option<u64>,
@@ -207,7 +207,7 @@ pub struct StudyRunSpec {
 
 /// What the best design is.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct RankingSpec {
+pub(crate) struct RankingSpec {
     /// Name of the measure that decides, one of `measures`.
     pub measure: String,
     /// Whether the highest or the lowest value is the best.
@@ -218,7 +218,7 @@ pub struct RankingSpec {
 /// Which end of a measure is the best.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum BestSpec {
+pub(crate) enum BestSpec {
     /// The highest.
     #[default]
     Highest,
@@ -229,7 +229,7 @@ pub enum BestSpec {
 /// What is kept of each design beside its row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum KeepSpec {
+pub(crate) enum KeepSpec {
     /// Its record: settings, measures with errors, checks.
     #[default]
     Records,

@@ -129,7 +129,7 @@ pub struct CornerSpec {
 
 impl CornerSpec {
     /// Whether the corner has a fold mirror.
-    pub fn has_fold_mirror(&self) -> bool {
+    pub(crate) fn has_fold_mirror(&self) -> bool {
         self.fold_mirror.or(self.mitred).unwrap_or(false)
     }
 }

@@ -20,7 +20,7 @@ type Entries = indexmap::IndexMap<String, Entry>;
 
 /// Whether a tree contains everything in its files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Completeness {
+pub(crate) enum Completeness {
     /// It does: an absent key is missing.
     Whole,
     /// A syntax error may have hidden some keys.
@@ -28,7 +28,7 @@ pub enum Completeness {
 }
 
 /// Notes every difference of a tree from a schema.
-pub fn validate(
+pub(crate) fn validate(
     root: &Node,
     schema: &Json,
     sources: &Sources,

@@ -177,7 +177,7 @@ pub enum MapOutcome {
 
 impl MapDiff {
     /// Whether noise alone may explain the difference; false for maps with different cells.
-    pub fn is_noise(&self) -> bool {
+    pub(crate) fn is_noise(&self) -> bool {
         match &self.outcome {
             MapOutcome::OtherCells => false,
             MapOutcome::Compared { judged, largest, bound, .. } => *judged == 0 || largest <= bound,

@@ -33,7 +33,7 @@ pub enum MapLimit {
 
 impl Limits {
     /// The limits in words.
-    pub fn words(self) -> String {
+    pub(crate) fn words(self) -> String {
         let sigmas = self.sigmas;
         self.relative.map_or(format!("{sigmas} sigmas"), |share| {
             // Undoes the rounding of the conversion from percent.
@@ -93,12 +93,12 @@ pub struct DiffRow {
 
 impl DiffRow {
     /// Dotted name of the measure, without its design.
-    pub fn measure(&self) -> &str {
+    pub(crate) fn measure(&self) -> &str {
         self.name.rsplit(": ").next().unwrap_or(&self.name)
     }
 
     /// The difference as a share of the first value, 1; `None` where that is zero.
-    pub fn relative(&self) -> Option<f64> {
+    pub(crate) fn relative(&self) -> Option<f64> {
         let [a, _] = &self.values;
         (a.value != 0.0 && a.value.is_finite()).then(|| self.difference / a.value.abs())
     }

@@ -12,11 +12,13 @@ mod page;
 mod read;
 mod record;
 
-pub use maps::{MapDiff, MapOutcome, MapTable};
-pub use measures::{DiffRow, Judgement, Limits, MapLimit};
+pub use maps::{MapDiff, MapOutcome};
+pub use measures::{DiffRow, Judgement};
+pub use measures::{Limits, MapLimit};
 pub(crate) use page::sentence;
 pub use page::{ShownRows, diff_table};
-pub use read::{ComparedReport, Content, DesignRow, RunFiles, read};
+pub use read::read;
+pub use read::{ComparedReport, Content, DesignRow};
 pub use record::Diff;
 
 use crate::OutputFile;

@@ -23,7 +23,7 @@ pub struct Diff {
 
 impl Diff {
     /// How many measures have this judgement.
-    pub fn count(&self, wanted: Judgement) -> usize {
+    pub(crate) fn count(&self, wanted: Judgement) -> usize {
         self.rows.iter().filter(|row| row.judgement == wanted).count()
     }
 
@@ -33,7 +33,7 @@ impl Diff {
     }
 
     /// The maps that count.
-    pub fn maps_that_count(&self) -> impl Iterator<Item = &MapDiff> {
+    pub(crate) fn maps_that_count(&self) -> impl Iterator<Item = &MapDiff> {
         let maps = match self.limits.maps {
             MapLimit::Told => &[][..],
             MapLimit::Noise => &self.maps,

@@ -1,5 +1,6 @@
 use super::*;
 use crate::diff::maps::MapTable;
+use crate::diff::read::RunFiles;
 use lumiduct_core::measure::Status;
 use lumiduct_core::plan::Estimator;
 use lumiduct_input::Setting;

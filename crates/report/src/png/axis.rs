@@ -6,7 +6,7 @@ use lumiduct_base::number::{format_fixed, format_value, superscript};
 
 /// Whether equal lengths are equal differences or equal ratios.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum AxisScale {
+pub(crate) enum AxisScale {
     /// Equal differences.
     Linear,
     /// Equal ratios; values of zero and below are beyond the lower end.

@@ -10,7 +10,7 @@ use lumiduct_base::number::{format_percent, format_value, format_with_error};
 
 /// Horizontal bars.
 #[derive(Debug, Clone)]
-pub struct BarChart {
+pub(crate) struct BarChart {
     /// What is shown.
     pub title: String,
     /// How it was found; may be empty.
@@ -25,7 +25,7 @@ pub struct BarChart {
 
 /// One bar.
 #[derive(Debug, Clone)]
-pub struct Bar {
+pub(crate) struct Bar {
     /// Its name; long ones are shortened in the middle.
     pub name: String,
     /// Its value, which may be negative.
@@ -45,7 +45,7 @@ const GAP: f64 = 8.0;
 const MOST_BARS: usize = 40;
 
 /// Draws bars with their names on the left, and value, standard error and percent at their ends.
-pub fn bar_chart(chart: &BarChart) -> Result<Vec<u8>> {
+pub(crate) fn bar_chart(chart: &BarChart) -> Result<Vec<u8>> {
     let bars = shown(&chart.bars);
     let header = Header::new(&chart.title, &chart.subtitle, WIDTH - 2.0 * MARGIN)?;
     let names = bars

@@ -14,7 +14,7 @@ use lumiduct_base::error::Result;
 
 /// A cut through the geometry, seen along its normal.
 #[derive(Debug, Clone)]
-pub struct CrossSection {
+pub(crate) struct CrossSection {
     /// What is shown.
     pub title: String,
     /// Which plane it is; may be empty.
@@ -37,7 +37,7 @@ pub struct CrossSection {
 
 /// A name at a place.
 #[derive(Debug, Clone)]
-pub struct NamedPlace {
+pub(crate) struct NamedPlace {
     /// The name.
     pub name: String,
     /// Where, mm.
@@ -48,7 +48,7 @@ pub struct NamedPlace {
 
 /// What a place is of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum PlaceOf {
+pub(crate) enum PlaceOf {
     /// A source.
     Source,
     /// A sensor.
@@ -66,7 +66,7 @@ impl PlaceOf {
 
 /// A surface in the plane, as dots.
 #[derive(Debug, Clone)]
-pub struct SurfaceDots {
+pub(crate) struct SurfaceDots {
     /// Its name in the legend; may be empty.
     pub name: String,
     /// Outlines of one kind have the same number and colour; 0 is the darkest.
@@ -77,7 +77,7 @@ pub struct SurfaceDots {
 
 /// A path of light.
 #[derive(Debug, Clone)]
-pub struct RayPath {
+pub(crate) struct RayPath {
     /// Its start, its bounces and its end, mm.
     pub points: Vec<[f64; 2]>,
     /// What became of it.
@@ -86,7 +86,7 @@ pub struct RayPath {
 
 /// What became of a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum RayEnd {
+pub(crate) enum RayEnd {
     /// It reached a sensor.
     Sensor,
     /// A surface or a medium absorbed it.
@@ -141,7 +141,7 @@ const NAME_GAP: f64 = 7.0;
 const NAME_STEPS: u32 = 12;
 
 /// Draws outlines as dots and paths of light as thin lines, each path with a mark at its end; then names.
-pub fn cross_section(section: &CrossSection) -> Result<Vec<u8>> {
+pub(crate) fn cross_section(section: &CrossSection) -> Result<Vec<u8>> {
     let axes =
         [section.x_range, section.y_range].map(|[a, b]| PlotAxis::new(a, b, AxisScale::Linear));
     let size = plot_size(axes, MOST, LONGEST);

@@ -16,7 +16,7 @@ use ndarray::Array2;
 
 /// A value per cell of a rectangle.
 #[derive(Debug, Clone)]
-pub struct HeatMap {
+pub(crate) struct HeatMap {
     /// What is shown.
     pub title: String,
     /// How it was found; may be empty.
@@ -56,7 +56,7 @@ const BAR_GAP: f64 = 26.0;
 /// A linear bar ends at zero where the values come near it. Up to one cell in a thousand that
 /// exceeds the others tenfold does not stretch the bar, which then has a tip. A logarithmic bar
 /// spans at most six decades.
-pub fn heat_map(map: &HeatMap) -> Result<Vec<u8>> {
+pub(crate) fn heat_map(map: &HeatMap) -> Result<Vec<u8>> {
     let (axes, size) = map_axes(map);
     let size = whole_cells(size, &map.values);
     let frame = PlotAxes::new(axes, [size.width, size.height])?;

@@ -14,7 +14,7 @@ use range::{Padding, range};
 
 /// Curves over an axis.
 #[derive(Debug, Clone)]
-pub struct LinePlot {
+pub(crate) struct LinePlot {
     /// What is shown.
     pub title: String,
     /// How it was found; may be empty.
@@ -33,7 +33,7 @@ pub struct LinePlot {
 
 /// One curve.
 #[derive(Debug, Clone)]
-pub struct PlotSeries {
+pub(crate) struct PlotSeries {
     /// Its name in the legend; may be empty.
     pub name: String,
     /// Its points, in the order in which they are joined; non-finite values interrupt it.
@@ -48,7 +48,7 @@ pub struct PlotSeries {
 
 /// How a curve is distinguished from the others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Look {
+pub(crate) enum Look {
     /// By the colour and dashes of its index among all.
     InTurn,
     /// Solid, in the colour of a number.
@@ -61,7 +61,7 @@ pub enum Look {
 
 /// A point with a standard error, in the units of the axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SeriesPoint {
+pub(crate) struct SeriesPoint {
     /// Where.
     pub x: f64,
     /// How much.
@@ -72,7 +72,7 @@ pub struct SeriesPoint {
 
 /// How points are joined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SeriesForm {
+pub(crate) enum SeriesForm {
     /// By straight lines.
     Line,
     /// Each is a horizontal step that extends half way to its neighbours, as in a histogram.
@@ -83,7 +83,7 @@ pub enum SeriesForm {
 
 /// How standard errors are shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ErrorForm {
+pub(crate) enum ErrorForm {
     /// Not at all.
     Hidden,
     /// A bar at each point, one standard error to either side.
@@ -100,7 +100,7 @@ const WIDTH: f64 = 900.0;
 const HEIGHT: f64 = 400.0;
 
 /// Draws curves over two axes, with a legend above the frame.
-pub fn line_plot(plot: &LinePlot) -> Result<Vec<u8>> {
+pub(crate) fn line_plot(plot: &LinePlot) -> Result<Vec<u8>> {
     let header = Header::new(&plot.title, &plot.subtitle, WIDTH - 2.0 * MARGIN)?;
     let entries: Vec<(LegendSample, &str)> = plot
         .series

@@ -18,22 +18,25 @@ mod polar_plot;
 mod scatter_matrix;
 mod text;
 
-pub use axis::AxisScale;
-pub use bar_chart::{Bar, BarChart, bar_chart};
+pub(crate) use axis::AxisScale;
+pub(crate) use bar_chart::Bar;
+pub(crate) use bar_chart::{BarChart, bar_chart};
 pub(crate) use colour_bar::BarScale;
-pub use cross_section::{
+pub(crate) use cross_section::{
     CrossSection, NamedPlace, PlaceOf, RayEnd, RayPath, SurfaceDots, cross_section,
 };
 pub(crate) use heat_map::MapFrame;
-pub use heat_map::{HeatMap, heat_map};
-pub use line_plot::{ErrorForm, LinePlot, Look, PlotSeries, SeriesForm, SeriesPoint, line_plot};
+pub(crate) use heat_map::{HeatMap, heat_map};
+pub(crate) use line_plot::{
+    ErrorForm, LinePlot, Look, PlotSeries, SeriesForm, SeriesPoint, line_plot,
+};
 pub(crate) use line_plot::{ink, line_axes};
 pub(crate) use marked_axis::MarkedAxis;
-pub use palette::ColourMap;
+pub(crate) use palette::ColourMap;
 pub(crate) use palette::{SeriesInk, curve_colours, series_ink};
 pub(crate) use polar_plot::dial_axis;
-pub use polar_plot::{PolarCurve, PolarPlot, Pole, polar_plot};
-pub use scatter_matrix::{ScatterColumn, ScatterMatrix, scatter_matrix};
+pub(crate) use polar_plot::{PolarCurve, PolarPlot, polar_plot};
+pub(crate) use scatter_matrix::{ScatterColumn, ScatterMatrix, scatter_matrix};
 
 #[cfg(test)]
 mod tests {
@@ -140,7 +143,6 @@ mod tests {
             title: text("Luminous intensity"),
             subtitle: text("sensor far"),
             unit: text("cd"),
-            pole: Pole::Down,
             curves: vec![PolarCurve { name: text("C0 / C180"), points, std_errors }],
         }
     }

@@ -19,7 +19,7 @@ pub(crate) const NEUTRAL: Rgb = [206, 209, 213];
 
 /// Which map from values to colours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ColourMap {
+pub(crate) enum ColourMap {
     /// From dark to light, for values from nothing to much.
     Sequential,
     /// From blue over white to red, for values on both sides of zero.

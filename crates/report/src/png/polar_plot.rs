@@ -11,31 +11,20 @@ use lumiduct_base::error::Result;
 
 /// Curves of a value over an angle from the axis.
 #[derive(Debug, Clone)]
-pub struct PolarPlot {
+pub(crate) struct PolarPlot {
     /// What is shown.
     pub title: String,
     /// How it was found; may be empty.
     pub subtitle: String,
     /// Unit of the values: "cd".
     pub unit: String,
-    /// Where gamma = 0 is drawn.
-    pub pole: Pole,
     /// The curves, usually one per pair of C half-planes.
     pub curves: Vec<PolarCurve>,
 }
 
-/// Where gamma = 0 is drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Pole {
-    /// At the bottom, as for luminaires that shine down.
-    Down,
-    /// At the top.
-    Up,
-}
-
 /// One curve.
 #[derive(Debug, Clone)]
-pub struct PolarCurve {
+pub(crate) struct PolarCurve {
     /// Its name in the legend: "C0 / C180".
     pub name: String,
     /// Gamma in degrees and its value, in the order in which they are joined. Positive gamma is
@@ -64,7 +53,6 @@ enum CirclePart {
 /// The place of a polar plot on the canvas.
 struct Dial {
     centre: Point,
-    pole: Pole,
     part: CirclePart,
     /// Value at the outermost circle.
     outer: f64,
@@ -73,7 +61,7 @@ struct Dial {
 
 /// Draws curves over the angle in concentric circles, only the half circle where no data lies
 /// beyond 90°.
-pub fn polar_plot(plot: &PolarPlot) -> Result<Vec<u8>> {
+pub(crate) fn polar_plot(plot: &PolarPlot) -> Result<Vec<u8>> {
     let header = Header::new(&plot.title, &plot.subtitle, WIDTH - 2.0 * MARGIN)?;
     let entries: Vec<(LegendSample, &str)> = plot
         .curves
@@ -85,13 +73,12 @@ pub fn polar_plot(plot: &PolarPlot) -> Result<Vec<u8>> {
     let (outer, ticks) = rings(&plot.curves);
     let part = part(&plot.curves);
     let top = MARGIN + header.height() + legend.height();
-    let (above, below) = match (part, plot.pole) {
-        (CirclePart::Whole, Pole::Down | Pole::Up) => (RADIUS + ANGLE_ROOM, RADIUS + ANGLE_ROOM),
-        (CirclePart::Half, Pole::Down) => (2.0 * TICK.line_step(), RADIUS + ANGLE_ROOM),
-        (CirclePart::Half, Pole::Up) => (RADIUS + ANGLE_ROOM, 2.0 * TICK.line_step()),
+    let (above, below) = match part {
+        CirclePart::Whole => (RADIUS + ANGLE_ROOM, RADIUS + ANGLE_ROOM),
+        CirclePart::Half => (RADIUS + ANGLE_ROOM, 2.0 * TICK.line_step()),
     };
     let centre = [0.5 * WIDTH + 0.5, (top + above).round() + 0.5];
-    let dial = Dial { centre, pole: plot.pole, part, outer, ticks };
+    let dial = Dial { centre, part, outer, ticks };
 
     let bottom = (centre[1] + below + MARGIN - 8.0).floor();
 
@@ -112,11 +99,8 @@ pub fn polar_plot(plot: &PolarPlot) -> Result<Vec<u8>> {
     let at = [MARGIN, bottom - MARGIN + 4.0];
     remark(&mut canvas, &circles, at)?;
     if !plot.curves.iter().flat_map(|curve| &curve.points).any(|point| point.1 > 0.0) {
-        let y = match plot.pole {
-            Pole::Down => centre[1] + 0.5 * RADIUS,
-            Pole::Up => centre[1] - 0.5 * RADIUS,
-        };
-        write(&mut canvas, "No values above zero.", [centre[0], y], LABEL, Align::Centre)?;
+        let at = [centre[0], centre[1] - 0.5 * RADIUS];
+        write(&mut canvas, "No values above zero.", at, LABEL, Align::Centre)?;
     }
     canvas.into_png()
 }
@@ -174,11 +158,7 @@ impl Dial {
 
     fn at(&self, gamma_deg: f64, radius: f64) -> Point {
         let (sin, cos) = gamma_deg.to_radians().sin_cos();
-        let down = match self.pole {
-            Pole::Down => cos,
-            Pole::Up => -cos,
-        };
-        [self.centre[0] + radius * sin, self.centre[1] + radius * down]
+        [self.centre[0] + radius * sin, self.centre[1] - radius * cos]
     }
 
     /// Largest |gamma| that is drawn, degrees.
@@ -220,13 +200,9 @@ impl Dial {
                 let text = format!("{gamma}°");
                 let [x, y] = self.at(side * gamma as f64, RADIUS + 8.0);
                 let (sin, cos) = (side * gamma as f64).to_radians().sin_cos();
-                let down = match self.pole {
-                    Pole::Down => cos,
-                    Pole::Up => -cos,
-                };
                 // The label is pushed outward by as much as it extends inward.
                 let half_width = 0.5 * TICK.width(&text)?;
-                let at = [x + half_width * sin, y + 0.5 * TICK.cap_height() * (1.0 + down)];
+                let at = [x + half_width * sin, y + 0.5 * TICK.cap_height() * (1.0 - cos)];
                 write(canvas, &text, at, TICK, Align::Centre)?;
             }
         }
@@ -254,11 +230,9 @@ impl Dial {
     /// The values of the circles: along the straight edge of a half circle, on the right spoke of a
     /// whole one.
     fn draw_values(&self, canvas: &mut Canvas) -> Result<()> {
-        let y = match (self.part, self.pole) {
-            (CirclePart::Half, Pole::Up) => self.centre[1] + 10.0 + TICK.cap_height(),
-            (CirclePart::Half, Pole::Down) | (CirclePart::Whole, Pole::Down | Pole::Up) => {
-                self.centre[1] - 9.0
-            }
+        let y = match self.part {
+            CirclePart::Half => self.centre[1] + 10.0 + TICK.cap_height(),
+            CirclePart::Whole => self.centre[1] - 9.0,
         };
         for tick in self.ticks.major.iter().filter(|tick| tick.value > 0.0) {
             let width = TICK.width(&tick.label)?;
@@ -286,14 +260,13 @@ mod tests {
     use super::*;
     use crate::png::tests::Decoded;
 
-    fn plot(pole: Pole, points: &[(f64, f64)]) -> Decoded {
+    fn plot(points: &[(f64, f64)]) -> Decoded {
         let curve =
             PolarCurve { name: String::new(), points: points.to_vec(), std_errors: Vec::new() };
         let plot = PolarPlot {
             title: "Luminous intensity".to_string(),
             subtitle: String::new(),
             unit: "cd".to_string(),
-            pole,
             curves: vec![curve],
         };
         Decoded::new(&polar_plot(&plot).unwrap())
@@ -308,22 +281,23 @@ mod tests {
     }
 
     #[test]
-    fn positive_gamma_is_right_and_the_pole_is_where_it_was_asked_for() {
+    fn positive_gamma_is_right_and_zero_is_at_the_top() {
         let colour = series_ink(0).colour;
-        let right = plot(Pole::Down, &lobe(1.0, 0.0));
+        let right = plot(&lobe(1.0, 0.0));
         let [left_edge, top, right_edge, bottom] = right.bounds(colour);
         let centre = right.width / 2;
         assert!(left_edge + 3 > centre && right_edge > centre + 190, "{left_edge} {right_edge}");
-        let left = plot(Pole::Down, &lobe(-1.0, 0.0));
+        let left = plot(&lobe(-1.0, 0.0));
         assert!(left.bounds(colour)[2] < centre + 5 && left.bounds(colour)[0] + 190 < centre);
-        let up = plot(Pole::Up, &lobe(1.0, 0.0)).bounds(colour);
-        assert_eq!(up[3] - up[1], bottom - top, "upside down, but otherwise the same");
+        let narrow: Vec<(f64, f64)> = (0..=20).map(|gamma| (f64::from(gamma), 10.0)).collect();
+        let zero = plot(&narrow).bounds(colour);
+        assert!(zero[1] < top && zero[3] < bottom, "{zero:?}");
     }
 
     #[test]
-    fn the_upper_half_is_drawn_only_where_there_is_something() {
-        let half = plot(Pole::Down, &lobe(1.0, 0.0));
-        let whole = plot(Pole::Down, &lobe(1.0, 60.0));
+    fn the_lower_half_is_drawn_only_where_there_is_something() {
+        let half = plot(&lobe(1.0, 0.0));
+        let whole = plot(&lobe(1.0, 60.0));
         assert!(whole.height > half.height + 200);
     }
 

@@ -11,7 +11,7 @@ use lumiduct_base::number::format_value;
 
 /// Several quantities of the same items.
 #[derive(Debug, Clone)]
-pub struct ScatterMatrix {
+pub(crate) struct ScatterMatrix {
     /// What is shown.
     pub title: String,
     /// How it was found; may be empty.
@@ -26,7 +26,7 @@ pub struct ScatterMatrix {
 
 /// One quantity.
 #[derive(Debug, Clone)]
-pub struct ScatterColumn {
+pub(crate) struct ScatterColumn {
     /// Name and unit.
     pub label: String,
     /// A value for each item; non-finite ones are left out.
@@ -44,7 +44,7 @@ const LEFT: f64 = 62.0;
 const PADDING: f64 = 0.06;
 
 /// Draws every quantity against every other; names and ranges are on the diagonal.
-pub fn scatter_matrix(matrix: &ScatterMatrix) -> Result<Vec<u8>> {
+pub(crate) fn scatter_matrix(matrix: &ScatterMatrix) -> Result<Vec<u8>> {
     let columns = &matrix.columns[..matrix.columns.len().min(MOST)];
     let header = Header::new(&matrix.title, &matrix.subtitle, WIDTH - 2.0 * MARGIN)?;
     let entries: Vec<(LegendSample, &str)> = matrix

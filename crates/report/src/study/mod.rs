@@ -12,8 +12,7 @@ mod terminal;
 pub use record::{
     Analysis, DESIGN_FORMAT, DesignOutcome, DesignRecord, DesignResult, Effect, EffectPoint,
     FACTS_FORMAT, FailureShare, Pairing, ParameterFacts, PlanFacts, Ranked, Sensitivity,
-    SensitivityIndex, SensitivityMethod, Sharpness, StudyCounts, StudyFacts, StudyReport,
-    ValueWithError,
+    SensitivityIndex, SensitivityMethod, Sharpness, StudyFacts, StudyReport, ValueWithError,
 };
 
 pub use terminal::terminal;
@@ -27,7 +26,7 @@ use lumiduct_input::Setting;
 use serde::Serialize;
 
 /// Name of the file with everything for programs.
-pub const SUMMARY: &str = "study.json";
+pub(crate) const SUMMARY: &str = "study.json";
 /// Version of the layout of that file.
 pub(crate) const SUMMARY_FORMAT: u32 = 1;
 

@@ -116,7 +116,7 @@ impl ParameterFacts {
     }
 
     /// Name and unit, as for an axis: "length in mm".
-    pub fn label(&self) -> String {
+    pub(crate) fn label(&self) -> String {
         match &self.unit {
             Some(unit) => format!("{} in {unit}", self.name),
             None => self.name.clone(),
@@ -347,7 +347,7 @@ pub struct StudyReport {
 impl StudyReport {
     /// The measure that decides and its best end: from the ranking, or the highest value of the
     /// first measure.
-    pub fn leading(&self) -> (&str, Best) {
+    pub(crate) fn leading(&self) -> (&str, Best) {
         match &self.facts.ranking {
             Some(ranking) => (&ranking.measure, ranking.best),
             None => (self.facts.measures.first().map_or("", String::as_str), Best::Highest),
@@ -355,7 +355,7 @@ impl StudyReport {
     }
 
     /// Unit of a measure, as the designs have it; `1` where none was traced.
-    pub fn unit(&self, measure: &str) -> &str {
+    pub(crate) fn unit(&self, measure: &str) -> &str {
         let found = self.designs.iter().find_map(|design| design.measure(measure));
         found.map_or("1", |measure| &measure.unit)
     }

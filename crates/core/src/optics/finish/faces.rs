@@ -16,7 +16,7 @@ pub struct Faces<'a> {
 /// Sends a gather path on toward the origin of its light, or ends it where there is none (`None`):
 /// [`FinishModel::scatter_radiance`] for both finishes of a face.
 #[inline]
-pub fn scatter_radiance(
+pub(crate) fn scatter_radiance(
     faces: Faces<'_>,
     incidence: &Incidence,
     sampler: &mut Sampler<impl Numbers>,

@@ -21,7 +21,7 @@ const PADDING_ULP: f64 = 8.0;
 
 /// A culling structure over the boxes of all surfaces.
 #[derive(Debug, Clone)]
-pub enum Accel {
+pub(crate) enum Accel {
     /// A scan over this many patches.
     Scan(usize),
     /// A tree over more, or over triangles.
@@ -30,7 +30,7 @@ pub enum Accel {
 
 /// A binary tree of boxes.
 #[derive(Clone)]
-pub struct Tree(Box<Bvh2>);
+pub(crate) struct Tree(Box<Bvh2>);
 
 impl fmt::Debug for Tree {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -41,7 +41,7 @@ impl fmt::Debug for Tree {
 impl Accel {
     /// A structure over `boxes`: the first `patches` belong to patches, the others to triangles.
     /// Ray origins have coordinates up to `largest_coordinate`, mm.
-    pub fn new(boxes: &[Aabb], patches: usize, largest_coordinate: f64) -> Self {
+    pub(crate) fn new(boxes: &[Aabb], patches: usize, largest_coordinate: f64) -> Self {
         if boxes.len() == patches && patches <= SCAN_LIMIT {
             return Self::Scan(patches);
         }
@@ -54,7 +54,7 @@ impl Accel {
     /// Calls `visit` with the index of every surface whose box the ray meets before the distance
     /// that the last `visit` returned.
     #[inline]
-    pub fn visit(&self, ray: &Ray, mut visit: impl FnMut(usize) -> f64) {
+    pub(crate) fn visit(&self, ray: &Ray, mut visit: impl FnMut(usize) -> f64) {
         match self {
             Self::Scan(count) => {
                 for index in 0..*count {
@@ -69,7 +69,7 @@ impl Accel {
 impl Tree {
     /// Like [`Accel::visit`], nearer boxes first.
     #[inline]
-    pub fn visit(&self, ray: &Ray, mut visit: impl FnMut(usize) -> f64) {
+    pub(crate) fn visit(&self, ray: &Ray, mut visit: impl FnMut(usize) -> f64) {
         let tree = &self.0;
         let ray = Ray32::new_inf(ray.origin().as_vec3a(), ray.dir().as_vec3a());
         let mut hit = RayHit::none();

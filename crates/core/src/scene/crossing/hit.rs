@@ -43,19 +43,19 @@ impl Hits {
 
     /// Other surfaces at the same point.
     #[inline]
-    pub fn others(&self) -> &[PrimHit] {
+    pub(crate) fn others(&self) -> &[PrimHit] {
         &self.others
     }
 
     /// All surfaces that meet there.
     #[inline]
-    pub fn all(&self) -> impl Iterator<Item = &PrimHit> {
+    pub(crate) fn all(&self) -> impl Iterator<Item = &PrimHit> {
         iter::once(&self.nearest).chain(&self.others)
     }
 
     /// Whether a face of `solid` is among them.
     #[inline]
-    pub fn meet(&self, solid: SolidId) -> bool {
+    pub(crate) fn meet(&self, solid: SolidId) -> bool {
         self.all().any(|hit| hit.owner == Owner::Solid(solid))
     }
 

@@ -34,13 +34,13 @@ impl Inside {
 
     /// Whether the point lies in no solid, except perhaps `solid`.
     #[inline]
-    pub fn holds_no_other(&self, solid: SolidId) -> bool {
+    pub(crate) fn holds_no_other(&self, solid: SolidId) -> bool {
         self.others.is_empty() && bit(solid).is_some_and(|bit| self.first & !bit == 0)
     }
 
     /// Adds a solid.
     #[inline]
-    pub fn enter(&mut self, solid: SolidId) {
+    pub(crate) fn enter(&mut self, solid: SolidId) {
         match bit(solid) {
             Some(bit) => self.first |= bit,
             None if self.others.contains(&solid) => {}
@@ -50,7 +50,7 @@ impl Inside {
 
     /// Removes a solid.
     #[inline]
-    pub fn leave(&mut self, solid: SolidId) {
+    pub(crate) fn leave(&mut self, solid: SolidId) {
         match bit(solid) {
             Some(bit) => self.first &= !bit,
             None => self.others.retain(|inside| *inside != solid),
@@ -59,7 +59,7 @@ impl Inside {
 
     /// The solids.
     #[inline]
-    pub fn iter(&self) -> impl Iterator<Item = SolidId> + '_ {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = SolidId> + '_ {
         let mut bits = self.first;
         let first = std::iter::from_fn(move || {
             let index = bits.trailing_zeros();

@@ -23,7 +23,7 @@ impl On {
 
     /// Whether the ray starts on this surface.
     #[inline(always)]
-    pub fn contains(&self, prim: PrimId) -> bool {
+    pub(crate) fn contains(&self, prim: PrimId) -> bool {
         self.first == Some(prim) || (!self.others.is_empty() && self.others.contains(&prim))
     }
 

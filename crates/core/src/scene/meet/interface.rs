@@ -35,7 +35,7 @@ pub struct Interface<'h> {
 
 /// Point and direction of an arriving path.
 #[derive(Debug, Clone, Copy)]
-pub struct MeetingPoint {
+pub(crate) struct MeetingPoint {
     /// Position, mm.
     pub point: DVec3,
     /// Unit direction of travel.
@@ -55,7 +55,7 @@ impl Scene {
     /// The interface at a hit, for a path inside `inside` in medium `from` that arrives with
     /// `meeting`.
     #[inline(always)]
-    pub fn interface<'h>(
+    pub(crate) fn interface<'h>(
         &self,
         hits: &'h Hits,
         meeting: &MeetingPoint,
@@ -134,7 +134,7 @@ impl Scene {
     }
 
     /// The finish that acts on light arriving from behind the interface.
-    pub fn finish_behind(&self, interface: &Interface<'_>) -> Option<FinishId> {
+    pub(crate) fn finish_behind(&self, interface: &Interface<'_>) -> Option<FinishId> {
         let Interface { acting, part, .. } = interface;
         self.finish_of_part(acting.face, *part, acting.toward.opposite())
     }

@@ -87,7 +87,7 @@ impl Scene {
 
     /// The face that a surface belongs to.
     #[inline]
-    pub fn face_of(&self, prim: PrimId) -> FaceId {
+    pub(crate) fn face_of(&self, prim: PrimId) -> FaceId {
         self.surface(prim).face()
     }
 
@@ -102,7 +102,7 @@ impl Scene {
 
     /// The smooth surface that a piece belongs to.
     #[inline]
-    pub fn smooth(&self, prim: PrimId) -> SmoothId {
+    pub(crate) fn smooth(&self, prim: PrimId) -> SmoothId {
         match self.surface(prim) {
             // Patches are numbered within their face.
             Surface::Patch(patch) => SmoothId::of(patch.face.index() as u32, patch.smooth),
@@ -116,7 +116,7 @@ impl Scene {
 
     /// Unrolled coordinates of a point on its face, mm.
     #[inline]
-    pub fn chart(&self, prim: PrimId, point: DVec3) -> DVec2 {
+    pub(crate) fn chart(&self, prim: PrimId, point: DVec3) -> DVec2 {
         match self.surface(prim) {
             Surface::Patch(patch) => patch.chart(point),
             Surface::Triangle(body, triangle) => body.planes[body.mesh.face_of(triangle)]

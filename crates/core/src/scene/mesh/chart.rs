@@ -14,7 +14,7 @@ impl Mesh {
     /// The plane of a flat face: origin at the centroid, z outward. `None` if a vertex lies off the
     /// plane by more than single precision explains (2^-22 of the largest coordinate in the file),
     /// or if facets face opposite ways.
-    pub fn chart_plane(&self, face: usize) -> Option<Frame> {
+    pub(crate) fn chart_plane(&self, face: usize) -> Option<Frame> {
         let triangles = || self.face_triangles(face).iter().map(|index| *index as usize);
         let normal = triangles().map(|triangle| area_vector(self.corners[triangle])).sum::<DVec3>();
         let normal = normal.try_normalize()?;
@@ -31,7 +31,7 @@ impl Mesh {
     }
 
     /// The rectangle that a face covers in the plane z = 0 of a frame, mm.
-    pub fn chart_bounds(&self, face: usize, plane: &Frame) -> ChartRect {
+    pub(crate) fn chart_bounds(&self, face: usize, plane: &Frame) -> ChartRect {
         let empty = ChartRect { min: DVec2::INFINITY, max: DVec2::NEG_INFINITY };
         self.outlines(face, plane)
             .flatten()
@@ -39,7 +39,7 @@ impl Mesh {
     }
 
     /// Area of a flat face whose chart in `plane` lies in `rect`, mm².
-    pub fn chart_area_in(&self, face: usize, plane: &Frame, rect: ChartRect) -> f64 {
+    pub(crate) fn chart_area_in(&self, face: usize, plane: &Frame, rect: ChartRect) -> f64 {
         self.outlines(face, plane)
             .map(|triangle| {
                 let outline = clip(triangle.into_iter().collect(), |p| p.x - rect.min.x);

@@ -48,7 +48,7 @@ struct MeshFace {
 
 /// A point of a mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MeshPoint {
+pub(crate) struct MeshPoint {
     /// Its triangle.
     pub triangle: usize,
     /// The point, mm.
@@ -97,7 +97,7 @@ impl Mesh {
 
     /// The three vertices of a triangle, mm; counter-clockwise seen from outside.
     #[inline]
-    pub fn corners(&self, triangle: usize) -> &[DVec3; 3] {
+    pub(crate) fn corners(&self, triangle: usize) -> &[DVec3; 3] {
         &self.corners[triangle]
     }
 
@@ -107,13 +107,13 @@ impl Mesh {
     }
 
     /// Area of a triangle, mm².
-    pub fn area(&self, triangle: usize) -> f64 {
+    pub(crate) fn area(&self, triangle: usize) -> f64 {
         0.5 * area_vector(self.corners[triangle]).length()
     }
 
     /// Where the line of a ray crosses a triangle. Edges and vertices belong to all of their
     /// triangles. For many triangles make the [`TriangleLine`] once and call [`Self::crossing_of`].
-    pub fn crossing(&self, triangle: usize, ray: &Ray) -> Option<Crossing> {
+    pub(crate) fn crossing(&self, triangle: usize, ray: &Ray) -> Option<Crossing> {
         self.crossing_of(triangle, &TriangleLine::of(ray))
     }
 
@@ -127,14 +127,14 @@ impl Mesh {
 
     /// Unit normal of a triangle's plane, outward.
     #[inline]
-    pub fn facet_normal(&self, triangle: usize) -> DVec3 {
+    pub(crate) fn facet_normal(&self, triangle: usize) -> DVec3 {
         self.facet_normals[triangle]
     }
 
     /// Unit normal of the surface that the mesh approximates, outward: the corner normals
     /// interpolated at a point of the triangle (Phong, Commun. ACM 18 (1975) 311), or the facet's
     /// if there are no corner normals or they contradict it.
-    pub fn shading_normal(&self, triangle: usize, point: DVec3) -> DVec3 {
+    pub(crate) fn shading_normal(&self, triangle: usize, point: DVec3) -> DVec3 {
         let facet = self.facet_normals[triangle];
         let Some(normals) = &self.corner_normals else { return facet };
         let weights = weights(&self.corners[triangle], facet, point);
@@ -146,13 +146,13 @@ impl Mesh {
     /// The smooth patch that a triangle belongs to: connected triangles share an id where their corner normals agree
     /// along the common edge, or where they lie in one plane.
     #[inline]
-    pub fn smooth_id(&self, triangle: usize) -> u32 {
+    pub(crate) fn smooth_id(&self, triangle: usize) -> u32 {
         self.smooth_ids[triangle]
     }
 
     /// The face of a triangle; faces are numbered from 0.
     #[inline]
-    pub fn face_of(&self, triangle: usize) -> usize {
+    pub(crate) fn face_of(&self, triangle: usize) -> usize {
         self.face_of[triangle] as usize
     }
 
@@ -162,17 +162,17 @@ impl Mesh {
     }
 
     /// The triangles of a face.
-    pub fn face_triangles(&self, face: usize) -> &[u32] {
+    pub(crate) fn face_triangles(&self, face: usize) -> &[u32] {
         &self.faces[face].triangles
     }
 
     /// Area of a face, mm².
-    pub fn face_area(&self, face: usize) -> f64 {
+    pub(crate) fn face_area(&self, face: usize) -> f64 {
         self.faces[face].area_up_to.last().copied().unwrap_or(0.0)
     }
 
     /// A point of a face, uniform over its area for uniform `u`; `None` for a face without area.
-    pub fn sample(&self, face: usize, u: [f64; 2]) -> Option<MeshPoint> {
+    pub(crate) fn sample(&self, face: usize, u: [f64; 2]) -> Option<MeshPoint> {
         let face = &self.faces[face];
         let total = *face.area_up_to.last().filter(|total| **total > 0.0)?;
         // Below the total even after rounding, so that there is a triangle, and one with an area.

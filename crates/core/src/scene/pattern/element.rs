@@ -161,7 +161,7 @@ impl Element {
     }
 
     /// Whether two elements with their middles `apart` overlap.
-    pub fn overlap(&self, places: [f64; 2], apart: DVec2) -> bool {
+    pub(crate) fn overlap(&self, places: [f64; 2], apart: DVec2) -> bool {
         let [one, other] = places.map(|place| self.size(place));
         let room = 0.5 * (one + other) * (1.0 - 1e-12);
         match &self.form {
@@ -245,7 +245,7 @@ impl Element {
     /// Whether the footprint of an element of a row contains a point of the wall at `from` its
     /// middle, mm.
     #[inline]
-    pub fn contains(&self, place: f64, from: DVec2) -> bool {
+    pub(crate) fn contains(&self, place: f64, from: DVec2) -> bool {
         from.x.abs() <= self.half_width(place, from.y)
     }
 

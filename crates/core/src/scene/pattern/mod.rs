@@ -82,7 +82,7 @@ pub struct Columns {
 
 impl Columns {
     /// Position of an element of a row across the face, mm.
-    pub fn place(&self, row: usize, column: usize) -> f64 {
+    pub(crate) fn place(&self, row: usize, column: usize) -> f64 {
         let first = if row % 2 == 1 { self.first + self.shift } else { self.first };
         first + column as f64 * self.pitch
     }
@@ -118,7 +118,7 @@ impl ElementOutline {
     }
 
     /// Area of an element of a row, mm².
-    pub fn area(&self, place: f64) -> f64 {
+    pub(crate) fn area(&self, place: f64) -> f64 {
         match self {
             Self::Circle { diameter } => 0.25 * std::f64::consts::PI * diameter.at(place).powi(2),
             Self::Rectangle { width, length } => width * length,
@@ -155,13 +155,13 @@ impl ElementOutline {
 
 impl ElementField {
     /// Whether a point of the face, mm, lies in an element.
-    pub fn contains(&self, at: DVec2) -> bool {
+    pub(crate) fn contains(&self, at: DVec2) -> bool {
         self.element(at).is_some()
     }
 
     /// Row and column of the element that contains a point of the face, mm.
     #[inline]
-    pub fn element(&self, at: DVec2) -> Option<(usize, usize)> {
+    pub(crate) fn element(&self, at: DVec2) -> Option<(usize, usize)> {
         self.rows.near(at.y).find_map(|row| {
             let place = self.rows.place(row);
             let (column, across) = self.nearest(at.x, row);
@@ -250,7 +250,12 @@ impl Pattern {
     /// The acting part at a point of the face for light that travels by `slope` across it per mm
     /// through it, mm/mm; `None` for the face itself.
     #[inline]
-    pub fn part(&self, number: usize, at: DVec2, slope: impl Fn() -> DVec2) -> Option<ActingPart> {
+    pub(crate) fn part(
+        &self,
+        number: usize,
+        at: DVec2,
+        slope: impl Fn() -> DVec2,
+    ) -> Option<ActingPart> {
         let Some(wall) = &self.wall else {
             return self.field.contains(at).then_some(ActingPart::Element(number));
         };

@@ -14,7 +14,7 @@ const STEPS: u32 = 128;
 
 impl Element {
     /// Area of the footprint of an element of a row on the wall, mm².
-    pub fn area(&self, place: f64) -> f64 {
+    pub(crate) fn area(&self, place: f64) -> f64 {
         match (&self.form, self.round) {
             (ElementForm::Cap { size, height }, None) => {
                 PI * Cap::new(size, height, place).rim.powi(2)
@@ -61,7 +61,7 @@ impl Element {
     }
 
     /// Volume that an element of a row removes from the solid or adds to it, mm³.
-    pub fn volume(&self, place: f64) -> f64 {
+    pub(crate) fn volume(&self, place: f64) -> f64 {
         match (&self.form, self.round) {
             // Archimedes' cap.
             (ElementForm::Cap { size, height }, None) => {

@@ -71,7 +71,7 @@ pub(super) enum PatchCut {
 
 impl Trim {
     /// Whether a point of the patch exists.
-    pub fn keeps(&self, p: DVec3) -> bool {
+    pub(crate) fn keeps(&self, p: DVec3) -> bool {
         self.cuts.iter().all(|cut| cut.keeps(p))
     }
 

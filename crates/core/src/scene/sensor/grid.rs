@@ -29,7 +29,7 @@ pub enum Grid {
 
 impl Grid {
     /// Number of cells.
-    pub fn cells(&self) -> usize {
+    pub(crate) fn cells(&self) -> usize {
         match self {
             Self::Cartesian { nu, nv, .. } => nu * nv,
             Self::Polar { rings, sectors, .. } => rings * sectors,
@@ -37,7 +37,7 @@ impl Grid {
     }
 
     /// Columns and rows of a table of the cells: (u, v), or (sectors, rings).
-    pub fn shape(&self) -> (usize, usize) {
+    pub(crate) fn shape(&self) -> (usize, usize) {
         match self {
             Self::Cartesian { nu, nv, .. } => (*nu, *nv),
             Self::Polar { rings, sectors, .. } => (*sectors, *rings),
@@ -46,7 +46,7 @@ impl Grid {
 
     /// The cell of a point of the chart; `None` outside the grid.
     #[inline]
-    pub fn cell(&self, uv: DVec2) -> Option<usize> {
+    pub(crate) fn cell(&self, uv: DVec2) -> Option<usize> {
         match self {
             Self::Cartesian { rect, nu, nv } => {
                 let place = (uv - rect.min) / (rect.max - rect.min);
@@ -62,7 +62,7 @@ impl Grid {
     }
 
     /// Middle of a cell: (u, v) in mm, or (radius in mm, angle in rad).
-    pub fn center(&self, cell: usize) -> DVec2 {
+    pub(crate) fn center(&self, cell: usize) -> DVec2 {
         match self {
             Self::Cartesian { rect, nu, nv } => {
                 let place = DVec2::new((cell % nu) as f64 + 0.5, (cell / nu) as f64 + 0.5);
@@ -76,7 +76,7 @@ impl Grid {
     }
 
     /// The rectangle of the chart that the grid covers, mm.
-    pub fn rect(&self) -> ChartRect {
+    pub(crate) fn rect(&self) -> ChartRect {
         match self {
             Self::Cartesian { rect, .. } => *rect,
             Self::Polar { radius, .. } => {

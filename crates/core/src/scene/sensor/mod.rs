@@ -88,7 +88,7 @@ pub enum Passage {
 
 impl SurfaceSensor {
     /// Number of values.
-    pub fn cells(&self) -> usize {
+    pub(crate) fn cells(&self) -> usize {
         self.grid.cells()
             * match &self.seeing {
                 Seeing::All => 1,
@@ -146,7 +146,7 @@ pub enum Sides {
 impl Sides {
     /// Whether light travelling `toward` a side counts, arriving (it comes from the opposite side) or leaving.
     #[inline]
-    pub fn include(self, counts: CountedLight, toward: Toward) -> bool {
+    pub(crate) fn include(self, counts: CountedLight, toward: Toward) -> bool {
         let front = match counts {
             CountedLight::Incident => toward == Toward::Back,
             CountedLight::Leaving => toward == Toward::Front,
@@ -174,7 +174,7 @@ pub struct Views {
 impl Views {
     /// The views that accept light along `away`, a unit vector away from the face.
     #[inline]
-    pub fn accepting(&self, away: DVec3) -> impl Iterator<Item = usize> + Clone + '_ {
+    pub(crate) fn accepting(&self, away: DVec3) -> impl Iterator<Item = usize> + Clone + '_ {
         // |a - b| = 2 sin(θ/2) keeps the digits of narrow cones.
         let reach = 2.0 * (0.5 * self.half_angle).sin();
         self.directions
@@ -200,13 +200,13 @@ pub struct Goniometer {
 
 impl Goniometer {
     /// Number of cells.
-    pub fn cells(&self) -> usize {
+    pub(crate) fn cells(&self) -> usize {
         self.c_cells * self.gamma_cells
     }
 
     /// The cell of a direction of light: ring by ring from the pole.
     #[inline]
-    pub fn cell(&self, dir: DVec3) -> usize {
+    pub(crate) fn cell(&self, dir: DVec3) -> usize {
         let local = self.frame.to_local(dir);
         // atan2 keeps the digits near the poles.
         let gamma = local.truncate().length().atan2(local.z);
@@ -226,7 +226,7 @@ impl Goniometer {
     }
 
     /// Solid angle of a cell, sr.
-    pub fn solid_angle(&self, cell: usize) -> f64 {
+    pub(crate) fn solid_angle(&self, cell: usize) -> f64 {
         let edge =
             |ring: usize| (std::f64::consts::PI * ring as f64 / self.gamma_cells as f64).cos();
         let ring = cell / self.c_cells;
@@ -235,7 +235,7 @@ impl Goniometer {
 
     /// Where a ray leaves the finite sphere within `length`: distance along it, mm, and direction from the centre.
     #[inline]
-    pub fn leaving(&self, ray: &Ray, length: f64) -> Option<(f64, DVec3)> {
+    pub(crate) fn leaving(&self, ray: &Ray, length: f64) -> Option<(f64, DVec3)> {
         let radius = self.radius?;
         let from = ray.origin() - self.frame.origin;
         let half_b = from.dot(ray.dir());

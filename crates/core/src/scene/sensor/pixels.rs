@@ -38,13 +38,13 @@ impl Pixels {
     }
 
     /// Number of pixels.
-    pub fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.grid.cells()
     }
 
     /// The pixel that sees light from the direction `away`, a unit vector away from the aperture.
     #[inline]
-    pub fn pixel(&self, away: DVec3) -> Option<usize> {
+    pub(crate) fn pixel(&self, away: DVec3) -> Option<usize> {
         let depth = away.dot(self.axis);
         if depth <= 0.0 {
             return None;
@@ -54,7 +54,7 @@ impl Pixels {
 
     /// A direction of the image with its pixel and |cos θ| over its density, sr: uniform over the plane of tangents, in
     /// which dω = cos³θ dA.
-    pub fn draw(&self, u: [f64; 2]) -> Option<(DVec3, usize, f64)> {
+    pub(crate) fn draw(&self, u: [f64; 2]) -> Option<(DVec3, usize, f64)> {
         let rect = self.grid.rect();
         let size = rect.max - rect.min;
         let tangents = rect.min + DVec2::from(u) * size;
@@ -65,7 +65,7 @@ impl Pixels {
     }
 
     /// |cos θ| over the density with which [`Pixels::draw`] gives a direction of the image, sr.
-    pub fn projected_toward(&self, dir: DVec3) -> f64 {
+    pub(crate) fn projected_toward(&self, dir: DVec3) -> f64 {
         let rect = self.grid.rect();
         (rect.max - rect.min).element_product() * dir.dot(self.axis).powi(4)
     }

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use lumiduct_base::math::{Aabb, Frame, quadratic};
 
 /// A piece of a cone's wall between two cross-sections; the front is outside unless it has been turned
-/// [`Self::inward`].
+/// `Self::inward`.
 ///
 /// The chart: u = (mean radius) φ from the frame's x axis; v = z along the axis, not along the slant, so that the
 /// charts of a taper and of the straight legs before and behind it join. Hence a cell's area is not its size.
@@ -27,14 +27,14 @@ pub struct Cone {
 impl Cone {
     /// The wall about the z axis of `frame` with radius `radius_start` at z = 0 and `radius_end` at
     /// z = `length`, mm. Neither radius is negative, and at least one is positive.
-    pub fn new(frame: Frame, radius_start: f64, radius_end: f64, length: f64) -> Self {
+    pub(crate) fn new(frame: Frame, radius_start: f64, radius_end: f64, length: f64) -> Self {
         let slope = (radius_end - radius_start) / length;
         let leaving = Toward::Front;
         Self { frame, radius_start, radius_end, length, slope, leaving, wedge: None }
     }
 
     /// The part of [`Self::new`] with azimuths from the frame's x axis counter-clockwise to `angle`, rad.
-    pub fn sector(
+    pub(crate) fn sector(
         frame: Frame,
         radius_start: f64,
         radius_end: f64,
@@ -46,7 +46,7 @@ impl Cone {
     }
 
     /// The same wall with its front toward the axis.
-    pub fn inward(self) -> Self {
+    pub(crate) fn inward(self) -> Self {
         Self { leaving: Toward::Back, ..self }
     }
 

@@ -28,7 +28,6 @@ pub use parabolic_cylinder::ParabolicCylinder;
 pub use paraboloid::Paraboloid;
 pub use sphere::Sphere;
 pub use torus::Torus;
-pub use wedge::Wedge;
 
 use crate::scene::Ray;
 use glam::{DVec2, DVec3};
@@ -54,7 +53,7 @@ pub struct Crossing {
 
 /// The crossings of a ray that matter to the caller.
 #[derive(Debug, Clone, Copy)]
-pub struct CrossingQuery {
+pub(crate) struct CrossingQuery {
     /// Only crossings in this direction.
     pub toward: Option<Toward>,
     /// Smallest distance along the ray, mm.
@@ -66,7 +65,7 @@ pub struct CrossingQuery {
 impl CrossingQuery {
     /// Whether a crossing matters.
     #[inline]
-    pub fn includes(&self, crossing: &Crossing) -> bool {
+    pub(crate) fn includes(&self, crossing: &Crossing) -> bool {
         self.includes_way(crossing.toward) && crossing.t >= self.min && crossing.t <= self.max
     }
 
@@ -88,13 +87,13 @@ pub enum Toward {
 impl Toward {
     /// The side toward which `dir` leaves a surface with `normal`.
     #[inline]
-    pub fn of(dir: DVec3, normal: DVec3) -> Self {
+    pub(crate) fn of(dir: DVec3, normal: DVec3) -> Self {
         if dir.dot(normal) > 0.0 { Self::Front } else { Self::Back }
     }
 
     /// The opposite direction.
     #[inline]
-    pub fn opposite(self) -> Self {
+    pub(crate) fn opposite(self) -> Self {
         match self {
             Self::Front => Self::Back,
             Self::Back => Self::Front,
@@ -104,7 +103,7 @@ impl Toward {
 
 /// The points on one side of a plane: `normal · p <= offset`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HalfSpace {
+pub(crate) struct HalfSpace {
     /// Unit normal, out of the half space.
     pub normal: DVec3,
     /// Distance of the plane from the origin along the normal, mm.
@@ -113,14 +112,14 @@ pub struct HalfSpace {
 
 impl HalfSpace {
     /// The half space behind the plane through `point` with `normal`.
-    pub fn behind(point: DVec3, normal: DVec3) -> Self {
+    pub(crate) fn behind(point: DVec3, normal: DVec3) -> Self {
         let normal = normal.normalize();
         Self { normal, offset: point.dot(normal) }
     }
 
     /// Whether a point is inside or on the plane.
     #[inline]
-    pub fn contains(&self, p: DVec3) -> bool {
+    pub(crate) fn contains(&self, p: DVec3) -> bool {
         self.normal.dot(p) <= self.offset
     }
 }
@@ -141,22 +140,22 @@ impl ChartRect {
     }
 
     /// The common part of both rectangles; empty if they do not overlap.
-    pub fn intersection(&self, other: &Self) -> Self {
+    pub(crate) fn intersection(&self, other: &Self) -> Self {
         Self { min: self.min.max(other.min), max: self.max.min(other.max) }
     }
 
     /// Whether the rectangle has no area.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         !self.min.cmplt(self.max).all()
     }
 
     /// Area of the rectangle itself, mm²; 0 when it is empty.
-    pub fn area(&self) -> f64 {
+    pub(crate) fn area(&self) -> f64 {
         (self.max - self.min).max(DVec2::ZERO).element_product()
     }
 
     /// The corners, counter-clockwise from the smallest.
-    pub fn corners(&self) -> [DVec2; 4] {
+    pub(crate) fn corners(&self) -> [DVec2; 4] {
         let (min, max) = (self.min, self.max);
         [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)]
     }
@@ -246,7 +245,7 @@ impl Shape {
     /// The first crossing of the ray's line that is `wanted`. Planes and cylinders, which are most
     /// of all surfaces, compute it faster than a list of all crossings.
     #[inline(always)]
-    pub fn first_crossing(
+    pub(crate) fn first_crossing(
         &self,
         ray: &Ray,
         start: RayStart,
@@ -276,7 +275,7 @@ impl Shape {
     }
 
     /// Unit normal of the front at a point of the surface.
-    pub fn normal(&self, p: DVec3) -> DVec3 {
+    pub(crate) fn normal(&self, p: DVec3) -> DVec3 {
         match self {
             Self::Flat(shape) => shape.normal(),
             Self::Cylinder(shape) => shape.normal(p),
@@ -293,7 +292,7 @@ impl Shape {
     /// return it in registers; a factor in every arm prevents a normal returned in memory from
     /// spoiling that.
     #[inline(always)]
-    pub fn normal_against(&self, toward: Toward, p: DVec3) -> DVec3 {
+    pub(crate) fn normal_against(&self, toward: Toward, p: DVec3) -> DVec3 {
         let sign = match toward {
             Toward::Front => -1.0,
             Toward::Back => 1.0,
@@ -311,7 +310,7 @@ impl Shape {
     }
 
     /// Unit tangent at a point of the surface along which v of the chart grows at constant u.
-    pub fn along(&self, p: DVec3) -> DVec3 {
+    pub(crate) fn along(&self, p: DVec3) -> DVec3 {
         match self {
             Self::Flat(shape) => shape.frame().y,
             Self::ParabolicCylinder(shape) => shape.along(),
@@ -339,7 +338,7 @@ impl Shape {
     }
 
     /// A point of the surface, uniform over its area for uniform `u`.
-    pub fn sample(&self, u: [f64; 2]) -> DVec3 {
+    pub(crate) fn sample(&self, u: [f64; 2]) -> DVec3 {
         match self {
             Self::Flat(shape) => shape.sample(u),
             Self::Cylinder(shape) => shape.sample(u),
@@ -353,7 +352,7 @@ impl Shape {
     }
 
     /// Unrolled coordinates (u, v) of a point of the surface, mm.
-    pub fn chart(&self, p: DVec3) -> DVec2 {
+    pub(crate) fn chart(&self, p: DVec3) -> DVec2 {
         match self {
             Self::Flat(shape) => shape.chart(p),
             Self::Cylinder(shape) => shape.chart(p),
@@ -381,7 +380,7 @@ impl Shape {
     }
 
     /// Area of the surface whose chart lies in `rect`, mm².
-    pub fn area_in(&self, rect: ChartRect) -> f64 {
+    pub(crate) fn area_in(&self, rect: ChartRect) -> f64 {
         match self {
             Self::Flat(shape) => shape.area_in(rect),
             Self::Cylinder(shape) => shape.area_in(rect),

@@ -1,14 +1,14 @@
 //! A zone of a paraboloid of revolution: the reflector that collimates a point source.
 
 use crate::scene::Ray;
-use crate::scene::shape::support::{across, box_by_reach, front};
+use crate::scene::shape::support::{across, box_by_reach};
 use crate::scene::shape::{ChartRect, Crossing, RayStart, Toward};
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::{Aabb, Frame, quadratic};
 use std::f64::consts::{PI, TAU};
 
-/// The part of the paraboloid z = r² / 4f between two radii; the front is outside, away from axis and focus, or
-/// inside if turned [`Paraboloid::inward`].
+/// The part of the paraboloid z = r² / 4f between two radii; the front is outside, away from axis and
+/// focus.
 ///
 /// The chart: u = `radius_max` φ from the frame's x axis, in [0, 2π `radius_max`); v = z.
 #[derive(Debug, Clone)]
@@ -17,20 +17,13 @@ pub struct Paraboloid {
     focal_length: f64,
     radius_min: f64,
     radius_max: f64,
-    /// Direction in which a ray crosses as it leaves the bowl.
-    leaving: Toward,
 }
 
 impl Paraboloid {
     /// The paraboloid with its vertex at the origin of `frame` and its focus `focal_length` above, for radii in
     /// [`radius_min`, `radius_max`], mm.
     pub fn new(frame: Frame, focal_length: f64, radius_min: f64, radius_max: f64) -> Self {
-        Self { frame, focal_length, radius_min, radius_max, leaving: Toward::Front }
-    }
-
-    /// The same surface with the front on the other side, toward the focus.
-    pub fn inward(self) -> Self {
-        Self { leaving: Toward::Back, ..self }
+        Self { frame, focal_length, radius_min, radius_max }
     }
 
     fn height(&self, radius: f64) -> f64 {
@@ -64,7 +57,7 @@ impl Paraboloid {
             // On the surface c = 0. A ray along the axis has its other root at infinity.
             RayStart::On => {
                 let t = -2.0 * half_b(from) / a;
-                offer(t, if t > 0.0 { self.leaving } else { self.leaving.opposite() });
+                offer(t, if t > 0.0 { Toward::Front } else { Toward::Back });
             }
             RayStart::Elsewhere => {
                 // From the point nearest to the vertex: from far away, r² - 4fz loses digits.
@@ -72,8 +65,8 @@ impl Paraboloid {
                 let near = from + shift * dir;
                 let c = near.truncate().length_squared() - 4.0 * self.focal_length * near.z;
                 if let Some([enter, leave]) = quadratic(a, half_b(near), c) {
-                    offer(shift + enter, self.leaving.opposite());
-                    offer(shift + leave, self.leaving);
+                    offer(shift + enter, Toward::Back);
+                    offer(shift + leave, Toward::Front);
                 }
             }
         }
@@ -96,7 +89,7 @@ impl Paraboloid {
     pub(super) fn normal(&self, p: DVec3) -> DVec3 {
         let p = self.frame.point_to_local(p);
         let outward = p.truncate().extend(-2.0 * self.focal_length).normalize();
-        front(self.frame.to_world(outward), self.leaving)
+        self.frame.to_world(outward)
     }
 
     pub(super) fn area(&self) -> f64 {
@@ -196,28 +189,21 @@ mod tests {
     }
 
     #[test]
-    fn the_focus_is_imaged_to_infinity_and_the_front_turns() {
+    fn the_focus_is_imaged_to_infinity() {
         let frame = tilted(1.0);
-        let outward = Paraboloid::new(frame, 2.0, 0.0, 5.0);
-        let inward = Shape::Paraboloid(outward.clone().inward());
-        let outward = Shape::Paraboloid(outward);
+        let bowl = Shape::Paraboloid(Paraboloid::new(frame, 2.0, 0.0, 5.0));
         let focus = frame.point_to_world(2.0 * DVec3::Z);
         for i in 0..50 {
-            let target = outward.sample([f64::from(i) / 50.0, (f64::from(i) * 0.618).fract()]);
+            let target = bowl.sample([f64::from(i) / 50.0, (f64::from(i) * 0.618).fract()]);
             let ray = Ray::new(focus, target - focus);
-            let hit = *crossings_of(&outward, &ray, RayStart::Elsewhere).last().unwrap();
+            let hit = *crossings_of(&bowl, &ray, RayStart::Elsewhere).last().unwrap();
             assert!((ray.at(hit.t) - target).length() < 1e-13);
             assert_eq!(hit.toward, Toward::Front);
-            assert_eq!(
-                crossings_of(&inward, &ray, RayStart::Elsewhere).last().unwrap().toward,
-                Toward::Back
-            );
-            let normal = inward.normal(target);
-            assert_eq!(normal, -outward.normal(target));
+            let normal = bowl.normal(target);
             let reflected = ray.dir() - 2.0 * ray.dir().dot(normal) * normal;
             assert!((reflected - frame.z).length() < 1e-14);
         }
-        assert_starting_on_it_drops_only_the_start(&inward, 1000);
+        assert_starting_on_it_drops_only_the_start(&bowl, 1000);
     }
 
     #[test]

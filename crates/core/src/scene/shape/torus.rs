@@ -14,7 +14,7 @@ use std::f64::consts::TAU;
 /// arc; u = r φ around the tube's section, in [0, 2πr), where φ counts counter-clockwise about the
 /// direction of the arc, so that it continues the chart of a cylinder with its z axis in the same
 /// direction. φ = 0 is the outermost point, away from the bend axis (R + r), unless set by
-/// [`Torus::with_section_zero`].
+/// `Torus::with_section_zero`.
 #[derive(Debug, Clone)]
 pub struct Torus {
     frame: Frame,
@@ -29,7 +29,7 @@ impl Torus {
     /// The wall of a tube of radius `minor_radius` whose centre line is the arc of radius
     /// `major_radius`, mm, about the z axis of `frame`, from its x axis by `angle`, rad, up to 2π.
     /// The minor radius must be smaller than the major one.
-    pub fn new(frame: Frame, major_radius: f64, minor_radius: f64, angle: f64) -> Self {
+    pub(crate) fn new(frame: Frame, major_radius: f64, minor_radius: f64, angle: f64) -> Self {
         let arc = Wedge::new(angle);
         Self { frame, major_radius, minor_radius, arc, section_zero: 0.0 }
     }
@@ -39,7 +39,7 @@ impl Torus {
     /// To continue the chart of a straight leg whose cylinder frame has the axes x and z = direction of the arc:
     /// `section_zero = (-x·axis).atan2(x·outward)`, where `axis` is the torus frame's z and `outward` points from it to
     /// the centre of the joint.
-    pub fn with_section_zero(self, section_zero: f64) -> Self {
+    pub(crate) fn with_section_zero(self, section_zero: f64) -> Self {
         Self { section_zero, ..self }
     }
 

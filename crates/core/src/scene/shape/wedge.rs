@@ -24,20 +24,20 @@ enum Width {
 
 impl Wedge {
     /// The azimuths in [0, `angle`], rad; `None` for a whole turn, which trims nothing.
-    pub fn new(angle: f64) -> Option<Self> {
+    pub(crate) fn new(angle: f64) -> Option<Self> {
         let width = if angle <= PI { Width::Narrow } else { Width::Wide };
         (angle < TAU).then(|| Self { angle, end: DVec2::from_angle(angle), width })
     }
 
     /// The last azimuth, rad.
     #[inline]
-    pub fn angle(&self) -> f64 {
+    pub(crate) fn angle(&self) -> f64 {
         self.angle
     }
 
     /// Whether a point's azimuth is within the wedge.
     #[inline]
-    pub fn contains(&self, p: DVec2) -> bool {
+    pub(crate) fn contains(&self, p: DVec2) -> bool {
         let (after_start, before_end) = (p.y >= 0.0, self.end.perp_dot(p) <= 0.0);
         match self.width {
             Width::Narrow => after_start && before_end,
@@ -46,7 +46,7 @@ impl Wedge {
     }
 
     /// Azimuth of a point of the wedge, rad; points that rounding has put outside get the nearer end.
-    pub fn azimuth(&self, p: DVec2) -> f64 {
+    pub(crate) fn azimuth(&self, p: DVec2) -> f64 {
         let azimuth = azimuth(p);
         if azimuth <= self.angle {
             azimuth

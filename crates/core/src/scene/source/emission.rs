@@ -37,7 +37,7 @@ pub enum Emission {
 
 impl Emission {
     /// A direction in the frame of the emitter, drawn in proportion to the flux.
-    pub fn sample(&self, kind: EmitterKind, sampler: &mut Sampler) -> DVec3 {
+    pub(crate) fn sample(&self, kind: EmitterKind, sampler: &mut Sampler) -> DVec3 {
         let u = sampler.pair(Dimension::EmitDirection);
         match (self, kind) {
             (Self::Sky(sky), _) => sky.sample(kind, sampler),
@@ -61,7 +61,7 @@ impl Emission {
     /// Density, in 1/sr, with which [`Emission::sample`] draws the unit vector `dir`; 0 where it
     /// never does. `None` for a collimated beam, which has one direction and no density. Lines use
     /// a separate law for Lambertian light.
-    pub fn density(&self, kind: EmitterKind, dir: DVec3) -> Option<f64> {
+    pub(crate) fn density(&self, kind: EmitterKind, dir: DVec3) -> Option<f64> {
         let density = match (self, kind) {
             (Self::Collimated { .. }, _) => return None,
             (Self::Sky(sky), _) => sky.density(kind, dir),

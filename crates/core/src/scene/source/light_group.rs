@@ -36,28 +36,28 @@ impl LightGroups {
     }
 
     /// All groups.
-    pub fn groups(&self) -> &[LightGroup] {
+    pub(crate) fn groups(&self) -> &[LightGroup] {
         &self.groups
     }
 
     /// A group.
-    pub fn group(&self, id: LightGroupId) -> &LightGroup {
+    pub(crate) fn group(&self, id: LightGroupId) -> &LightGroup {
         &self.groups[id.index()]
     }
 
     /// The ids of all groups.
-    pub fn ids(&self) -> impl Iterator<Item = LightGroupId> + use<> {
+    pub(crate) fn ids(&self) -> impl Iterator<Item = LightGroupId> + use<> {
         (0..self.groups.len()).map(LightGroupId::new)
     }
 
     /// Names of the weathers that shine; no two of them shine at the same time.
-    pub fn weathers(&self) -> &[String] {
+    pub(crate) fn weathers(&self) -> &[String] {
         &self.weathers
     }
 
     /// The groups of a source; most have none.
     #[inline]
-    pub fn of(&self, source: SourceId) -> &[LightGroupId] {
+    pub(crate) fn of(&self, source: SourceId) -> &[LightGroupId] {
         self.of_sources.get(source.index()).map_or(&[], Vec::as_slice)
     }
 }

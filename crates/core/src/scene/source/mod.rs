@@ -209,7 +209,7 @@ impl Emitter {
     }
 
     /// Whether it is a thing of its own: not the sky, and not the inside of a solid.
-    pub fn is_thing(&self) -> bool {
+    pub(crate) fn is_thing(&self) -> bool {
         !matches!(self, Self::Far { .. } | Self::Volume { .. })
     }
 

@@ -74,7 +74,7 @@ impl Sky {
     }
 
     /// Density in 1/sr with which [`Sky::sample`] draws the direction of travel `dir`.
-    pub fn density(&self, kind: EmitterKind, dir: DVec3) -> f64 {
+    pub(crate) fn density(&self, kind: EmitterKind, dir: DVec3) -> f64 {
         let cos = match kind {
             EmitterKind::Surface => dir.z.max(0.0),
             EmitterKind::Far | EmitterKind::Point | EmitterKind::Volume => 1.0,
@@ -84,7 +84,7 @@ impl Sky {
 
     /// A direction of travel, in proportion to the flux: by rejection from an even part and a glow
     /// about the sun that together are nowhere less than the sky.
-    pub fn sample(&self, kind: EmitterKind, sampler: &mut Sampler<impl Numbers>) -> DVec3 {
+    pub(crate) fn sample(&self, kind: EmitterKind, sampler: &mut Sampler<impl Numbers>) -> DVec3 {
         let SkyBound { even, glow, decay, sun } = self.model.bound();
         let sun = self.frame.to_world(sun);
         let even_flux = match kind {

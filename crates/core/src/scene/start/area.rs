@@ -74,7 +74,7 @@ impl<'s> FaceArea<'s> {
     /// Density over solid angle, 1/sr, with which a line from the ray's origin to a point drawn
     /// from the area has the ray's direction: Σ t²/(A |cos|) over all points where the ray meets
     /// the area.
-    pub fn density_toward(&self, ray: &Ray) -> f64 {
+    pub(crate) fn density_toward(&self, ray: &Ray) -> f64 {
         let mut sum = 0.0;
         for piece in &self.pieces {
             piece.crossings(ray, |t, normal| {
@@ -89,7 +89,7 @@ impl<'s> FaceArea<'s> {
     /// Density over area across the ray's line, 1/mm², with which a line of its direction through a
     /// point drawn from the area coincides with it: Σ 1/(A |cos|) over all points where the ray
     /// meets the area.
-    pub fn density_across(&self, ray: &Ray) -> f64 {
+    pub(crate) fn density_across(&self, ray: &Ray) -> f64 {
         let mut sum = 0.0;
         for piece in &self.pieces {
             piece.crossings(ray, |t, normal| {

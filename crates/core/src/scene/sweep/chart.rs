@@ -58,7 +58,7 @@ pub struct Sector {
 
 /// Direction in which a sector's azimuth counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Sense {
+pub(crate) enum Sense {
     /// Along the path.
     Forward,
     /// Against the path.

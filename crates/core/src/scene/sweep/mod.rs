@@ -27,9 +27,8 @@ pub use prisms::{OutlineError, PrismNumber, Prisms};
 pub use profile::{Profile, ProfileError};
 pub use wall::{Wall, WallPart};
 
-use crate::scene::shape::{ChartRect, Flat, Region, Shape};
-pub use chart::{Sector, Sense, Trapezoid, WallChart};
-use glam::DVec2;
+use crate::scene::shape::{Flat, Region, Shape};
+pub use chart::{Sector, Trapezoid, WallChart};
 use lumiduct_base::math::Frame;
 
 /// The surfaces of a swept profile.
@@ -83,16 +82,4 @@ pub fn sweep(frame: Frame, profile: &Profile, legs: &[Leg]) -> Result<Sweep, Swe
 
 fn port(frame: Frame, region: Region) -> Port {
     Port { frame, shape: Shape::Flat(Flat::new(frame, region)) }
-}
-
-impl Sweep {
-    /// The rectangle that [`WallPart::chart`] covers, mm: once around the profile at the entry, and along the path.
-    pub fn chart_bounds(&self) -> ChartRect {
-        ChartRect { min: DVec2::ZERO, max: DVec2::new(self.perimeter, self.length) }
-    }
-
-    /// Area of all walls, without the ports, mm².
-    pub fn wall_area(&self) -> f64 {
-        self.parts.iter().map(|part| part.shape.area()).sum()
-    }
 }

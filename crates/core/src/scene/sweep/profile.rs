@@ -118,7 +118,7 @@ impl Profile {
     }
 
     /// Area, mm².
-    pub fn area(&self) -> f64 {
+    pub(crate) fn area(&self) -> f64 {
         match self {
             Self::Circle { radius } => PI * radius * radius,
             Self::Polygon { points } => planar::signed_area(points),
@@ -126,7 +126,7 @@ impl Profile {
     }
 
     /// Length of the outline, mm.
-    pub fn perimeter(&self) -> f64 {
+    pub(crate) fn perimeter(&self) -> f64 {
         match self {
             Self::Circle { radius } => TAU * radius,
             Self::Polygon { points } => planar::edges(points).map(|(a, b)| (b - a).length()).sum(),
@@ -134,7 +134,7 @@ impl Profile {
     }
 
     /// Reach of the profile along `direction`: the largest p · direction over its points.
-    pub fn reach(&self, direction: DVec2) -> f64 {
+    pub(crate) fn reach(&self, direction: DVec2) -> f64 {
         match self {
             Self::Circle { radius } => radius * direction.length(),
             Self::Polygon { points } => {
@@ -144,7 +144,7 @@ impl Profile {
     }
 
     /// The largest distance of a point from the path, mm.
-    pub fn size(&self) -> f64 {
+    pub(crate) fn size(&self) -> f64 {
         match self {
             Self::Circle { radius } => *radius,
             Self::Polygon { points } => points.iter().map(|p| p.length()).fold(0.0, f64::max),

@@ -4,8 +4,8 @@ use super::testing::*;
 use super::*;
 use crate::rng::{Dimension, Sampler};
 use crate::scene::Ray;
-use crate::scene::shape::{RayStart, Toward};
-use glam::DVec3;
+use crate::scene::shape::{ChartRect, RayStart, Toward};
+use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 #[test]
@@ -80,13 +80,15 @@ fn samples_lie_on_their_surface_and_in_its_box() {
 #[test]
 fn cells_of_the_chart_have_the_area_of_the_points_that_fall_into_them() {
     for_all(|name, _, _, sweep| {
-        let bounds = sweep.chart_bounds();
+        let bounds = ChartRect { min: DVec2::ZERO, max: DVec2::new(sweep.perimeter, sweep.length) };
         let n = 5;
         let step = bounds.max / f64::from(n);
         for part in sweep.parts.iter().filter(|part| part.wall != Wall::Mitre) {
             let (mut counts, samples) = (vec![0.0; 25], 4000);
             scan(&part.shape, samples, |p, element| {
-                let at = (part.chart(p) / step).floor().clamp(DVec2::ZERO, DVec2::splat(4.0));
+                let at = (part.chart.of(part.shape.chart(p)) / step)
+                    .floor()
+                    .clamp(DVec2::ZERO, DVec2::splat(4.0));
                 counts[(at.y as usize) * 5 + at.x as usize] += element;
             });
             let (area, mut sum) = (part.shape.area(), 0.0);
@@ -103,7 +105,9 @@ fn cells_of_the_chart_have_the_area_of_the_points_that_fall_into_them() {
                 };
                 let (k, j) = (i % n, i / n);
                 let cell = |u: i32, v: i32| step * DVec2::new(f64::from(u), beyond(v));
-                let exact = part.area_in(ChartRect { min: cell(k, j), max: cell(k + 1, j + 1) });
+                let exact = part
+                    .chart
+                    .area_in(&part.shape, ChartRect { min: cell(k, j), max: cell(k + 1, j + 1) });
                 assert!(
                     (exact - counted).abs() < 0.01 * area,
                     "{name} {i}: {exact} {counted} of {area}"
@@ -149,7 +153,7 @@ fn neighbours_agree_on_the_chart_where_they_meet() {
                     for part in
                         [&sweep.parts[(k - 1) * walls + wall], &sweep.parts[k * walls + wall]]
                     {
-                        let found = part.chart(at(p));
+                        let found = part.chart.of(part.shape.chart(at(p)));
                         assert!((found - expected).length() < 1e-11, "{name}: {found} {expected}");
                     }
                 }
@@ -204,7 +208,7 @@ fn a_round_light_pipe_is_one_smooth_surface_of_known_size() {
     assert!(pipe.parts.iter().all(|part| part.smooth == 0 && part.wall == Wall::Round));
     assert!((pipe.length - length).abs() < 1e-12);
     // The inner and the outer half of a bend compensate each other (Pappus).
-    assert!((pipe.wall_area() - TAU * 1.5 * length).abs() < 1e-11);
+    assert!((wall_area(&pipe) - TAU * 1.5 * length).abs() < 1e-11);
     assert!((pipe.volume - PI * 2.25 * length).abs() < 1e-11);
     let [entry, exit] = &pipe.ports;
     assert_eq!((entry.frame.origin, entry.frame.z), (DVec3::ZERO, -DVec3::Z));
@@ -236,7 +240,7 @@ fn a_right_angled_corner_is_a_square_between_its_legs() {
     let duct = sweep(Frame::WORLD, &Profile::rectangle(1.0, 1.0).unwrap(), &legs).unwrap();
     assert!((duct.volume - 3.0).abs() < 1e-14);
     // Walls of an L of three unit squares, one high: outline 8 less the two ports, and twice 3.
-    assert!((duct.wall_area() - 12.0).abs() < 1e-14);
+    assert!((wall_area(&duct) - 12.0).abs() < 1e-14);
     assert!((duct.ports[1].frame.origin - DVec3::new(1.5, 0.0, 1.5)).length() < 1e-15);
     let legs = [straight(1.0), mitre(FRAC_PI_2, 0.0), straight(1.0)];
     let mitred = sweep(Frame::WORLD, &Profile::rectangle(1.0, 1.0).unwrap(), &legs).unwrap();
@@ -274,4 +278,8 @@ fn random_paths_are_refused_or_closed() {
         }
     }
     assert!(built > 300 && refused > 300, "{built} {refused}");
+}
+
+fn wall_area(sweep: &Sweep) -> f64 {
+    sweep.parts.iter().map(|part| part.shape.area()).sum()
 }

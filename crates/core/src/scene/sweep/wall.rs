@@ -1,8 +1,8 @@
 //! The walls of a sweep: one surface of each piece of the path.
 
-use crate::scene::shape::{ChartRect, Flat, Region, Shape};
+use crate::scene::shape::{Flat, Region, Shape};
 use crate::scene::sweep::chart::WallChart;
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use lumiduct_base::math::Frame;
 
 /// A wall of one piece of the path.
@@ -14,7 +14,10 @@ pub struct WallPart {
     pub wall: Wall,
     /// Parts that continue each other without an edge have the same number.
     pub smooth: u32,
-    /// Maps the chart of the shape to that of the sweep.
+    /// Maps the chart of the shape to that of the sweep, mm: u around the profile, in lengths of the profile at the
+    /// entry, from the azimuth 0 of a circle or point 0 of a polygon; v along the path. A taper stretches the chart, and
+    /// the walls outside of a bend are longer than their share of v. A mitre plate is not part of that chart: its own
+    /// coordinates start at its centre, with v along the bend axis.
     pub chart: WallChart,
 }
 
@@ -60,20 +63,5 @@ impl WallPart {
         let behind = Frame { x: -frame.x, z: -frame.z, ..frame };
         let flat = Flat::new(behind, wall.region().clone());
         turned(Shape::Flat(flat), DVec2::new(-1.0, 1.0))
-    }
-
-    /// Unrolled coordinates of a point of the part in the chart of the whole sweep, mm: u around the profile, in
-    /// lengths of the profile at the entry, from the azimuth 0 of a circle or point 0 of a polygon; v along the path.
-    /// A taper stretches the chart, and the walls outside of a bend are longer than their share of v.
-    ///
-    /// A mitre plate is not part of that chart: its own coordinates start at its centre, with v
-    /// along the bend axis.
-    pub fn chart(&self, p: DVec3) -> DVec2 {
-        self.chart.of(self.shape.chart(p))
-    }
-
-    /// Area of the part whose [`Self::chart`] lies in `rect`, mm².
-    pub fn area_in(&self, rect: ChartRect) -> f64 {
-        self.chart.area_in(&self.shape, rect)
     }
 }

@@ -16,7 +16,7 @@ pub struct EstimatorChoice {
 impl EstimatorChoice {
     /// Seconds of one thread of the reference machine until the chosen estimator has a relative error, 1; `None` where
     /// nothing was found.
-    pub fn time(&self, error: f64) -> Option<f64> {
+    pub(crate) fn time(&self, error: f64) -> Option<f64> {
         self.tried.iter().find(|trial| trial.estimator == self.chosen)?.time(error)
     }
 }

@@ -70,7 +70,7 @@ mod tests {
     use crate::optics::Medium;
     use crate::scene::shape::{Shape, Sphere};
     use crate::scene::{Builder, FacePiece, FaceSpec, Owner, Solid};
-    use crate::transport::WAVELENGTH;
+    use crate::transport::walk::path::WAVELENGTH;
     use lumiduct_base::math::Aabb;
     use lumiduct_base::units::FluxUnit;
 

@@ -21,7 +21,7 @@ pub(crate) mod window;
 
 pub(crate) use account::account;
 pub(crate) use bias::estimate;
-pub use merge::{Scatterer, scatterers, turbid_media};
+pub use merge::{scatterers, turbid_media};
 pub use settings::GatherSettings;
 pub use stages::Windows;
 pub(crate) use trial::trial;

@@ -60,7 +60,7 @@ pub(crate) struct Pass {
 
 impl GatherSettings {
     /// Whether there are stages, each with a smaller window.
-    pub fn has_stages(&self) -> bool {
+    pub(crate) fn has_stages(&self) -> bool {
         self.schedule == Schedule::Stages
     }
 

@@ -4,7 +4,7 @@ use crate::scene::{MediumId, PrimId, Scene, SmoothId};
 use std::collections::BTreeMap;
 
 /// A smooth surface by its index in the list of all, or a medium by its index after them.
-pub type Slot = u32;
+pub(crate) type Slot = u32;
 
 /// The smooth surfaces of a scene, numbered, followed by the media.
 #[derive(Debug)]

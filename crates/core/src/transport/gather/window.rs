@@ -37,7 +37,7 @@ pub(crate) fn estimates(counted: [f64; COUNTED]) -> [f64; ESTIMATES] {
 
 impl Window {
     /// The window shrunk by a factor.
-    pub fn scaled(self, factor: f64) -> Self {
+    pub(crate) fn scaled(self, factor: f64) -> Self {
         Self { radius: factor * self.radius, theta_max: factor * self.theta_max }
     }
 
@@ -56,13 +56,13 @@ impl Window {
     }
 
     /// The window of a stage, from 0: radius and angle shrink by √2 from stage to stage (the bias halves).
-    pub fn of_stage(self, stage: u32) -> Self {
+    pub(crate) fn of_stage(self, stage: u32) -> Self {
         self.scaled(FRAC_1_SQRT_2.powi(stage as i32))
     }
 
     /// The window of pass `pass`, from 0, when it shrinks from pass to pass: `r_i, θ_i ∝ i^-1/8`, the best of the
     /// exponents below 1/4 for which four shrinking dimensions stay consistent.
-    pub fn of_pass(self, pass: u64) -> Self {
+    pub(crate) fn of_pass(self, pass: u64) -> Self {
         self.scaled(((pass + 1) as f64).powf(-0.125))
     }
 
@@ -72,12 +72,12 @@ impl Window {
     }
 
     /// ΔΩ = 2π (1 - cos θ), sr, without cancellation.
-    pub fn solid_angle(self) -> f64 {
+    pub(crate) fn solid_angle(self) -> f64 {
         4.0 * PI * (0.5 * self.theta_max).sin().powi(2)
     }
 
     /// Distance between unit vectors at the rim of the cone, 1.
-    pub fn chord(self) -> f64 {
+    pub(crate) fn chord(self) -> f64 {
         2.0 * (0.5 * self.theta_max).sin()
     }
 }

@@ -38,13 +38,13 @@ impl Findings {
     }
 
     /// The estimate of a sensor.
-    pub fn estimate(&self, scene: &Scene, sensor: SensorId) -> Estimate<'_> {
+    pub(crate) fn estimate(&self, scene: &Scene, sensor: SensorId) -> Estimate<'_> {
         let estimator = self.estimators[sensor.index()];
         estimators::estimate(scene, (estimator, self.by(estimator)), &self.photons, sensor)
     }
 
     /// How the values of a sensor were computed, where there is something to say.
-    pub fn account(&self, scene: &Scene, sensor: SensorId) -> Option<Account> {
+    pub(crate) fn account(&self, scene: &Scene, sensor: SensorId) -> Option<Account> {
         let found = self.by(self.estimators[sensor.index()])?;
         estimators::account(scene, found, &self.photons, sensor)
     }

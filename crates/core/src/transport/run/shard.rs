@@ -15,17 +15,12 @@ impl Shard {
     /// The whole job.
     pub const WHOLE: Self = Self { number: 1, count: 1 };
     /// Largest number of parts.
-    pub const MOST: u64 = 1 << 20;
+    pub(crate) const MOST: u64 = 1 << 20;
 
     /// Part `number` of `count`; `None` where there is no such part.
     pub fn new(number: u64, count: u64) -> Option<Self> {
         let is_one = (1..=Self::MOST).contains(&count) && (1..=count).contains(&number);
         is_one.then_some(Self { number, count })
-    }
-
-    /// Whether it is the whole job.
-    pub fn is_whole(self) -> bool {
-        self.count == 1
     }
 
     /// The indices of this part among `things`; every index is in exactly one part.

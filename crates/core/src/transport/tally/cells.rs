@@ -8,7 +8,7 @@ const DENSE_CELLS: usize = 4096;
 
 /// For every cell: the sum over batches of the batch's count, and the sum of its square.
 ///
-/// A batch itself is an accumulator whose squares are filled in by [`Cells::close_batch`].
+/// A batch itself is an accumulator whose squares are filled in by `Cells::close_batch`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Cells {
     /// Lit cells only, with the total number of cells.
@@ -19,7 +19,7 @@ pub enum Cells {
 
 impl Cells {
     /// Nothing counted yet.
-    pub fn new(cells: usize) -> Self {
+    pub(crate) fn new(cells: usize) -> Self {
         if cells <= DENSE_CELLS {
             Self::Dense(vec![[0.0; 2]; cells])
         } else {
@@ -28,16 +28,11 @@ impl Cells {
     }
 
     /// Number of cells.
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         match self {
             Self::Sparse(cells, _) => *cells,
             Self::Dense(sums) => sums.len(),
         }
-    }
-
-    /// Whether there are no cells.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
     }
 
     /// Counts flux in a cell.
@@ -69,7 +64,7 @@ impl Cells {
     }
 
     /// Ends a batch: its sums become its squares.
-    pub fn close_batch(&mut self) {
+    pub(crate) fn close_batch(&mut self) {
         let square = |sum: &mut [f64; 2]| sum[1] = sum[0] * sum[0];
         match self {
             Self::Sparse(_, sums) => sums.values_mut().for_each(square),
@@ -78,7 +73,7 @@ impl Cells {
     }
 
     /// Adds the sums of the batches that follow.
-    pub fn merge(&mut self, later: &Self) {
+    pub(crate) fn merge(&mut self, later: &Self) {
         match later {
             Self::Sparse(_, sums) => {
                 for (&cell, sum) in sums {

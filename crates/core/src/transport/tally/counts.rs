@@ -30,12 +30,12 @@ impl Counts {
     }
 
     /// All readings.
-    pub fn all(&self) -> &[Readings] {
+    pub(crate) fn all(&self) -> &[Readings] {
         &self.0
     }
 
     /// The batches.
-    pub fn batches(&self) -> &Range<u64> {
+    pub(crate) fn batches(&self) -> &Range<u64> {
         &self.first().batches
     }
 }

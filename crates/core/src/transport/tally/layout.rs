@@ -5,11 +5,11 @@
 use crate::scene::{FaceId, MediumId, Scene, SensorId, SourceId};
 
 /// Depths for which the flux of deeper paths is kept, in interfaces met.
-pub const TAILS: [u32; 6] = [10, 50, 100, 200, 500, 1000];
+pub(crate) const TAILS: [u32; 6] = [10, 50, 100, 200, 500, 1000];
 
 /// A way to lose a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Loss {
+pub(crate) enum Loss {
     /// By the bounce limit.
     Cut,
     /// Through a hole in the geometry.
@@ -37,49 +37,44 @@ impl Layout {
     }
 
     /// Number of scalars.
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.sensor_base(self.sensors)
     }
 
-    /// Whether there are none; never, there is always the balance.
-    pub fn is_empty(&self) -> bool {
-        false
-    }
-
     /// Flux that started, by source.
-    pub fn emitted(&self, source: SourceId) -> usize {
+    pub(crate) fn emitted(&self, source: SourceId) -> usize {
         source.index()
     }
 
     /// Flux absorbed by a face.
     #[inline]
-    pub fn absorbed_by_face(&self, face: FaceId) -> usize {
+    pub(crate) fn absorbed_by_face(&self, face: FaceId) -> usize {
         self.sources + face.index()
     }
 
     /// Flux absorbed in a medium.
     #[inline]
-    pub fn absorbed_in_medium(&self, medium: MediumId) -> usize {
+    pub(crate) fn absorbed_in_medium(&self, medium: MediumId) -> usize {
         self.sources + self.faces + medium.index()
     }
 
     /// Flux that escaped, by the solid face it last left through; `None` if it never left a solid.
-    pub fn escaped(&self, face: Option<FaceId>) -> usize {
+    pub(crate) fn escaped(&self, face: Option<FaceId>) -> usize {
         self.sources + self.faces + self.media + face.map_or(self.faces, FaceId::index)
     }
 
     /// Flux cut by the bounce limit.
-    pub fn cut(&self) -> usize {
+    pub(crate) fn cut(&self) -> usize {
         self.sources + 2 * self.faces + self.media + 1
     }
 
     /// Flux removed by roulette, less the gain of its survivors.
-    pub fn roulette(&self) -> usize {
+    pub(crate) fn roulette(&self) -> usize {
         self.cut() + 1
     }
 
     /// Flux lost through holes in the geometry.
-    pub fn leaked(&self) -> usize {
+    pub(crate) fn leaked(&self) -> usize {
         self.cut() + 2
     }
 
@@ -90,34 +85,34 @@ impl Layout {
     }
 
     /// The scalars that make up the flux on a sensor: one per source.
-    pub fn flux_slots(&self, sensor: SensorId) -> Vec<usize> {
+    pub(crate) fn flux_slots(&self, sensor: SensorId) -> Vec<usize> {
         (0..self.sources).map(|source| self.sensor_flux(sensor, SourceId::new(source))).collect()
     }
 
     /// Flux on a sensor that did not come through its aim.
-    pub fn outside_aim(&self, sensor: SensorId) -> usize {
+    pub(crate) fn outside_aim(&self, sensor: SensorId) -> usize {
         self.sensor_base(sensor.index()) + self.sources
     }
 
     /// Flux on the side of a one-sided sensor that does not count.
-    pub fn other_side(&self, sensor: SensorId) -> usize {
+    pub(crate) fn other_side(&self, sensor: SensorId) -> usize {
         self.outside_aim(sensor) + 1
     }
 
     /// Flux on a sensor times the depth of its paths.
     #[inline]
-    pub fn depth_weighted(&self, sensor: SensorId) -> usize {
+    pub(crate) fn depth_weighted(&self, sensor: SensorId) -> usize {
         self.outside_aim(sensor) + 2
     }
 
     /// Flux on a sensor from paths deeper than entry `tail` of [`TAILS`].
     #[inline]
-    pub fn deeper(&self, sensor: SensorId, tail: usize) -> usize {
+    pub(crate) fn deeper(&self, sensor: SensorId, tail: usize) -> usize {
         self.outside_aim(sensor) + 3 + tail
     }
 
     /// Throughput of the gather paths of a sensor that were lost, per path drawn: a share, not a flux.
-    pub fn lost_paths(&self, sensor: SensorId, loss: Loss) -> usize {
+    pub(crate) fn lost_paths(&self, sensor: SensorId, loss: Loss) -> usize {
         let first = self.deeper(sensor, TAILS.len());
         match loss {
             Loss::Cut => first,
@@ -126,7 +121,7 @@ impl Layout {
     }
 
     /// Flux that entered through the sensor's entry port, by source.
-    pub fn entering(&self, sensor: SensorId, source: SourceId) -> usize {
+    pub(crate) fn entering(&self, sensor: SensorId, source: SourceId) -> usize {
         self.lost_paths(sensor, Loss::Leaked) + 1 + source.index()
     }
 

@@ -8,5 +8,7 @@ pub mod sums;
 pub(crate) mod work;
 
 pub use cells::Cells;
-pub use counts::{Counts, Series, Stage};
-pub use layout::{Layout, Loss, TAILS};
+pub use counts::Stage;
+pub use counts::{Counts, Series};
+pub use layout::Layout;
+pub(crate) use layout::{Loss, TAILS};

@@ -18,9 +18,9 @@ use std::ops::Range;
 pub const GROUPS: u64 = 128;
 /// With fewer groups of batches than this that contain anything, the error bar is not trustworthy:
 /// the spread of ten samples is itself known to a quarter, 1/sqrt(2 · 9).
-pub const MIN_LIT_GROUPS: usize = 10;
+pub(crate) const MIN_LIT_GROUPS: usize = 10;
 /// Bins of the histogram of depths: 0 to 1023 interfaces one by one, then one for each doubling.
-pub const DEPTH_BINS: usize = 1024 + 32;
+pub(crate) const DEPTH_BINS: usize = 1024 + 32;
 /// Path classes kept per sensor; the weakest beyond that are summed as one.
 const CLASS_LIMIT: usize = 256;
 /// Places of leaks that are kept.
@@ -50,7 +50,7 @@ pub struct ClassStep {
 
 /// A path class: the steps of a path, with repeats of a step counted once; `None` ends a trail that
 /// was cut off.
-pub type Trail = SmallVec<[Option<ClassStep>; 8]>;
+pub(crate) type Trail = SmallVec<[Option<ClassStep>; 8]>;
 
 /// Flux of a path class.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -202,7 +202,7 @@ impl Readings {
     }
 
     /// The scalars of all groups except one, without cells.
-    pub fn without_group(&self, left_out: u64) -> Self {
+    pub(crate) fn without_group(&self, left_out: u64) -> Self {
         let kept = self.groups.iter().filter(|group| group.group != left_out);
         Self {
             groups: kept.cloned().collect(),
@@ -242,13 +242,13 @@ impl Readings {
     }
 
     /// Groups of batches in which any of some scalars is not zero.
-    pub fn lit_groups(&self, slots: &[usize]) -> usize {
+    pub(crate) fn lit_groups(&self, slots: &[usize]) -> usize {
         let lit = |sums: &[f64]| slots.iter().any(|&slot| sums[slot] != 0.0);
         self.groups.iter().filter(|group| lit(&group.sums)).count()
     }
 
     /// The sum of some scalars as a mean over groups, with its standard error.
-    pub fn sum(&self, slots: &[usize]) -> Tally {
+    pub(crate) fn sum(&self, slots: &[usize]) -> Tally {
         self.function(|flux| slots.iter().map(|&slot| flux(slot)).sum())
     }
 
@@ -270,7 +270,7 @@ impl Readings {
 
     /// Any smooth function of mean scalars, with its standard error by the delete-one-group
     /// jackknife (Miller, Biometrika 61 (1974) 1): valid for ratios.
-    pub fn jackknife(&self, f: impl Fn(&dyn Fn(usize) -> f64) -> f64) -> (f64, f64) {
+    pub(crate) fn jackknife(&self, f: impl Fn(&dyn Fn(usize) -> f64) -> f64) -> (f64, f64) {
         let batches: u64 = self.groups.iter().map(|group| group.batches).sum();
         let total = |slot: usize| self.groups.iter().map(|group| group.sums[slot]).sum::<f64>();
         let value = f(&|slot| total(slot) / batches as f64);
@@ -308,7 +308,7 @@ pub(crate) fn count_totals(sums: &mut [f64], layout: &Layout, id: SensorId, ligh
 impl SensorReading {
     /// Counts flux in a cell, of all light and of the light groups of its source.
     #[inline]
-    pub fn add(&mut self, cell: usize, flux: f64, groups: &[LightGroupId]) {
+    pub(crate) fn add(&mut self, cell: usize, flux: f64, groups: &[LightGroupId]) {
         self.cells.add(cell, flux);
         for group in groups {
             self.groups[group.index()].add(cell, flux);
@@ -317,7 +317,7 @@ impl SensorReading {
 
     /// The bin of the histogram of depths.
     #[inline]
-    pub fn depth_bin(depth: u32) -> usize {
+    pub(crate) fn depth_bin(depth: u32) -> usize {
         let depth = depth as usize;
         if depth < 1024 { depth } else { 1024 + depth.ilog2() as usize - 10 }
     }

@@ -4,12 +4,10 @@ mod bounce;
 pub mod emitters;
 mod event;
 pub mod follow;
-mod path;
+pub(crate) mod path;
 pub mod scatter;
 
 pub use bounce::walk;
-pub use event::{
-    Carries, Collision, Departure, Detection, Emergence, Event, MetEmission, Observer,
-    ROULETTE_BELOW, Segment, Unobserved, Vertex,
-};
-pub use path::{Path, WAVELENGTH};
+pub use event::{Carries, Collision, Departure, Detection, Segment};
+pub use event::{Emergence, Event, MetEmission, Observer, ROULETTE_BELOW, Unobserved, Vertex};
+pub use path::Path;

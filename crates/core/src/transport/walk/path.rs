@@ -3,7 +3,7 @@
 use crate::scene::{Arrival, Emitted, Inside, MediumId, On, Ray, Scene, SourceId};
 
 /// Wavelength of all light for now, nm: the peak of V(λ), CIE 018:2019.
-pub const WAVELENGTH: f64 = 555.0;
+pub(crate) const WAVELENGTH: f64 = 555.0;
 
 /// The state a path carries from one interface to the next.
 #[derive(Debug, Clone)]

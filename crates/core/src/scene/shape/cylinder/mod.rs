@@ -12,7 +12,7 @@ use glam::{DVec2, DVec3};
 use lumiduct_base::math::{Aabb, Frame, quadratic, unit};
 use unrolled::{Strip, UnrolledWall};
 
-/// A piece of a cylinder's wall; the front is outside unless it has been turned [`Self::inward`].
+/// A piece of a cylinder's wall; the front is outside unless it has been turned `Self::inward`.
 ///
 /// The chart: u = r φ from the frame's x axis, in [0, 2πr) or, of a sector, [0, r angle]; v = z.
 #[derive(Debug, Clone)]
@@ -48,20 +48,26 @@ impl Cylinder {
     }
 
     /// The wall between two oblique planes: only points inside all `cuts` remain. `z_min` and `z_max` must enclose them.
-    pub fn cut(frame: Frame, radius: f64, z_min: f64, z_max: f64, cuts: Vec<HalfSpace>) -> Self {
+    pub(crate) fn cut(
+        frame: Frame,
+        radius: f64,
+        z_min: f64,
+        z_max: f64,
+        cuts: Vec<HalfSpace>,
+    ) -> Self {
         let trims = (!cuts.is_empty()).then(|| Box::new(Trims { wedge: None, cuts }));
         Self { frame, radius, z_min, z_max, leaving: Toward::Front, trims }
     }
 
     /// The wall for z in [`z_min`, `z_max`] and azimuths from the frame's x axis counter-clockwise to `angle`, rad.
-    pub fn sector(frame: Frame, radius: f64, z_min: f64, z_max: f64, angle: f64) -> Self {
+    pub(crate) fn sector(frame: Frame, radius: f64, z_min: f64, z_max: f64, angle: f64) -> Self {
         let trims =
             Wedge::new(angle).map(|wedge| Box::new(Trims { wedge: Some(wedge), cuts: Vec::new() }));
         Self { frame, radius, z_min, z_max, leaving: Toward::Front, trims }
     }
 
     /// The same wall with its front toward the axis.
-    pub fn inward(self) -> Self {
+    pub(crate) fn inward(self) -> Self {
         Self { leaving: Toward::Back, ..self }
     }
 

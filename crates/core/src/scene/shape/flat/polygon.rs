@@ -44,7 +44,7 @@ enum PolygonSide {
 
 impl Polygon {
     /// The polygon of at least three counter-clockwise `vertices`, mm; repeated neighbours are dropped.
-    pub fn new(mut vertices: Vec<DVec2>) -> Self {
+    pub(crate) fn new(mut vertices: Vec<DVec2>) -> Self {
         vertices.dedup();
         if vertices.first() == vertices.last() {
             vertices.pop();
@@ -69,18 +69,18 @@ impl Polygon {
     }
 
     /// The vertices, counter-clockwise.
-    pub fn vertices(&self) -> &[DVec2] {
+    pub(crate) fn vertices(&self) -> &[DVec2] {
         &self.vertices
     }
 
     /// Triangles that fill the polygon.
-    pub fn triangles(&self) -> &[[DVec2; 3]] {
+    pub(crate) fn triangles(&self) -> &[[DVec2; 3]] {
         &self.triangles
     }
 
     /// Whether the polygon contains a point.
     #[inline]
-    pub fn contains(&self, p: DVec2) -> bool {
+    pub(crate) fn contains(&self, p: DVec2) -> bool {
         match self.outline {
             PolygonOutline::Convex => self.edges.iter().all(|edge| edge.side(p) == edge.interior),
             PolygonOutline::Free => {
@@ -92,22 +92,22 @@ impl Polygon {
     }
 
     /// The smallest rectangle around the polygon, mm.
-    pub fn bounds(&self) -> ChartRect {
+    pub(crate) fn bounds(&self) -> ChartRect {
         self.bounds
     }
 
     /// Area, mm².
-    pub fn area(&self) -> f64 {
+    pub(crate) fn area(&self) -> f64 {
         signed_area(&self.vertices)
     }
 
     /// Area within a rectangle, mm².
-    pub fn area_in(&self, rect: ChartRect) -> f64 {
+    pub(crate) fn area_in(&self, rect: ChartRect) -> f64 {
         signed_area(&clip_to_rectangle(&self.vertices, rect.min, rect.max))
     }
 
     /// A point of the polygon, uniform over its area for uniform `u`.
-    pub fn sample(&self, u: [f64; 2]) -> DVec2 {
+    pub(crate) fn sample(&self, u: [f64; 2]) -> DVec2 {
         let target = u[0] * self.areas.last().copied().unwrap_or(0.0);
         let i = self.areas.partition_point(|&area| area <= target).min(self.areas.len() - 1);
         let below = if i == 0 { 0.0 } else { self.areas[i - 1] };

@@ -19,7 +19,7 @@ pub enum Region {
         /// Outer radius, mm.
         outer: f64,
     },
-    /// The part of an annulus within a wedge of azimuths; see [`Region::sector`].
+    /// The part of an annulus within a wedge of azimuths; see `Region::sector`.
     Sector {
         /// Inner radius, mm.
         inner: f64,
@@ -57,19 +57,19 @@ pub struct Holed {
 
 impl Holed {
     /// The region without its hole.
-    pub fn outline(&self) -> &Region {
+    pub(crate) fn outline(&self) -> &Region {
         &self.outline
     }
 
     /// The hole.
-    pub fn hole(&self) -> &Region {
+    pub(crate) fn hole(&self) -> &Region {
         &self.hole
     }
 }
 
 impl Region {
     /// Corners of the outer outline, counter-clockwise; `round` corners for a whole turn.
-    pub fn rim(&self, round: usize) -> Vec<DVec2> {
+    pub(crate) fn rim(&self, round: usize) -> Vec<DVec2> {
         let turn = |part: usize, angle: f64| circle(angle / TAU * part as f64 / round as f64);
         match self {
             Self::Annulus { outer, .. } => (0..round).map(|i| *outer * turn(i, TAU)).collect(),
@@ -97,7 +97,7 @@ impl Region {
 
     /// The annulus between two radii from +x counter-clockwise to `angle`, rad; the whole annulus
     /// from a full turn on.
-    pub fn sector(inner: f64, outer: f64, angle: f64) -> Self {
+    pub(crate) fn sector(inner: f64, outer: f64, angle: f64) -> Self {
         match Wedge::new(angle) {
             Some(wedge) => Self::Sector { inner, outer, wedge },
             None => Self::Annulus { inner, outer },
@@ -105,7 +105,7 @@ impl Region {
     }
 
     /// A simple polygon with at least three counter-clockwise vertices, mm.
-    pub fn polygon(vertices: Vec<DVec2>) -> Self {
+    pub(crate) fn polygon(vertices: Vec<DVec2>) -> Self {
         Self::Polygon(Polygon::new(vertices))
     }
 

@@ -29,7 +29,7 @@ pub(super) struct CompareArgs {
         required = true,
         value_delimiter = ',',
         value_name = "NAMES",
-        value_parser = words(Method::ALL.map(Method::name), Method::named)
+        value_parser = words(Method::all().map(Method::name), Method::named)
     )]
     estimators: Vec<Method>,
     /// Time for each estimator, all its runs together, such as 60s or 5min.

@@ -1,6 +1,6 @@
 //! Values of arguments, with their units.
 
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use lumiduct_core::plan::MOST_RECORDS;
 use lumiduct_core::transport::Shard;
 use std::time::Duration;
@@ -100,11 +100,11 @@ pub(super) fn parse_sigmas(text: &str) -> Result<f64, String> {
 }
 
 /// One of some words, and its value.
-pub(super) fn words<T: Clone + Send + Sync + 'static, const N: usize>(
-    names: [&'static str; N],
+pub(super) fn words<T: Clone + Send + Sync + 'static>(
+    names: impl IntoIterator<Item = &'static str>,
     named: fn(&str) -> Option<T>,
 ) -> impl TypedValueParser<Value = T> {
-    PossibleValuesParser::new(names)
+    PossibleValuesParser::new(names.into_iter().map(PossibleValue::new))
         .try_map(move |name| named(&name).ok_or_else(|| format!("`{name}` is not known")))
 }
 

@@ -1,18 +1,13 @@
 //! Samples of the unit cube, one dimension for each parameter, and what they mean for a parameter.
 
-use lumiduct_core::rng::{Dimension, Sampler};
+use lumiduct_core::rng::{Dimension, Sampler, stream};
 use lumiduct_input::{Domain, Parameter, Samples, Setting};
 use statrs::distribution::{ContinuousCDF, Normal};
-
-/// Streams of random numbers of the samples; light has streams of its own.
-const RANDOM_STREAM: u64 = 5 << 32;
-const PLACE_STREAM: u64 = 6 << 32;
-const ORDER_STREAM: u64 = 7 << 32;
 
 /// Independent random samples.
 pub(crate) fn random(samples: &Samples, dimensions: usize) -> Vec<Vec<f64>> {
     let one = |index| {
-        let mut sampler = Sampler::for_path(samples.seed, RANDOM_STREAM, index);
+        let mut sampler = Sampler::for_path(samples.seed, stream::STUDY_SAMPLES, index);
         (0..dimensions).map(|_| sampler.one(Dimension::Design)).collect()
     };
     (0..u64::from(samples.count)).map(one).collect()
@@ -25,13 +20,13 @@ pub(crate) fn latin_hypercube(samples: &Samples, dimensions: usize) -> Vec<Vec<f
     let mut rows = vec![Vec::with_capacity(dimensions); count];
     for dimension in 0..dimensions as u64 {
         let mut order: Vec<usize> = (0..count).collect();
-        let mut sampler = Sampler::for_path(samples.seed, ORDER_STREAM, dimension);
+        let mut sampler = Sampler::for_path(samples.seed, stream::STUDY_ORDERS, dimension);
         // Fisher & Yates, as in Knuth, TAOCP 2, algorithm 3.4.2P.
         for last in (1..count).rev() {
             let other = (sampler.one(Dimension::Design) * (last + 1) as f64) as usize;
             order.swap(last, other);
         }
-        let mut place = Sampler::for_path(samples.seed, PLACE_STREAM, dimension);
+        let mut place = Sampler::for_path(samples.seed, stream::STUDY_PLACES, dimension);
         for (row, part) in rows.iter_mut().zip(order) {
             row.push((part as f64 + place.one(Dimension::Design)) / count as f64);
         }

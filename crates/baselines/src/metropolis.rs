@@ -9,15 +9,13 @@
 
 use crate::one_sensor::OneSensor;
 use crate::primary::{Mutation, Primary};
-use lumiduct_core::rng::{Numbers, Sampler};
+use lumiduct_core::rng::{Numbers, Sampler, stream};
 use lumiduct_core::transport::tally::readings::Counted;
 use lumiduct_core::transport::walk::follow::follow;
 use lumiduct_core::transport::{Event, Observer, Path, Readings};
 use smallvec::SmallVec;
 use std::ops::ControlFlow;
 
-/// Stream of random numbers of the chains.
-const STREAM: u64 = 7 << 32;
 /// Probability of a large step, 1.
 const LARGE_STEPS: f64 = 0.3;
 /// Share of the paths of a chain among which its first state is chosen, 1.
@@ -39,7 +37,7 @@ impl<'s> Metropolis<'s> {
     /// Runs one chain.
     pub(super) fn chain(&self, batch: u64) -> Readings {
         let mut readings = self.sensor.empty(self.paths, batch);
-        let own = Sampler::for_path(self.sensor.seed, STREAM, batch);
+        let own = Sampler::for_path(self.sensor.seed, stream::BASELINE_CHAINS, batch);
         let mut primary = Primary::new(own);
         let mut chain = Chain {
             metropolis: self,

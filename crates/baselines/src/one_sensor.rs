@@ -1,7 +1,7 @@
 //! The gather paths of one sensor, and batches of them: what all baselines have in common.
 
 use lumiduct_core::plan::RunPlan;
-use lumiduct_core::rng::Sampler;
+use lumiduct_core::rng::{Sampler, stream};
 use lumiduct_core::scene::{Arrival, Arrivals, Scene, SensorId};
 use lumiduct_core::transport::tally::readings::Counted;
 use lumiduct_core::transport::walk::emitters::Emitters;
@@ -12,8 +12,6 @@ use lumiduct_core::transport::{Layout, Path, Readings, Unobserved};
 pub(crate) const BATCH_SEGMENTS: u64 = 1 << 16;
 /// Gather paths from which the mean length is estimated.
 const PILOT_PATHS: u64 = 64;
-/// Stream of random numbers of the pilot.
-const PILOT_STREAM: u64 = 8 << 32;
 
 /// What a batch has counted.
 pub(crate) struct BaselineBatch {
@@ -71,7 +69,7 @@ impl<'s> OneSensor<'s> {
     pub(crate) fn batch_paths(&self) -> u64 {
         let mut segments = 0;
         for index in 0..PILOT_PATHS {
-            let mut sampler = Sampler::for_path(self.seed, PILOT_STREAM, index);
+            let mut sampler = Sampler::for_path(self.seed, stream::BASELINE_PILOT, index);
             if let Some(arrival) = self.arrivals.draw(&mut sampler) {
                 let gathering = self.gathering(self.bounce_limit.min(10_000));
                 segments += follow(gathering, &arrival, &mut sampler, &mut Unobserved);

@@ -9,7 +9,7 @@
 use crate::one_sensor::{BATCH_SEGMENTS, OneSensor};
 use lumiduct_core::optics::{FinishModel, Incidence, Lobe};
 use lumiduct_core::plan::RunPlan;
-use lumiduct_core::rng::Sampler;
+use lumiduct_core::rng::{Sampler, stream};
 use lumiduct_core::scene::Visibility;
 use lumiduct_core::transport::forward::Forward;
 use lumiduct_core::transport::gather::contribution::{NestedWindows, PhotonHit, SurfaceHit};
@@ -29,8 +29,6 @@ use lumiduct_core::transport::{
 use smallvec::SmallVec;
 use std::ops::ControlFlow;
 
-/// Stream of random numbers of the gather paths.
-const PATH_STREAM: u64 = 9 << 32;
 /// α of the radii, 1: squares fall as i^(α-1); 2/3 is best for the mean square error (Knaus & Zwicker 2011).
 const ALPHA: f64 = 2.0 / 3.0;
 /// Gather paths end after this many interfaces.
@@ -110,7 +108,7 @@ impl<'s> Sppm<'s> {
         readings: &mut Readings,
     ) {
         let sensor = &self.sensor;
-        let mut sampler = Sampler::for_path(sensor.seed, PATH_STREAM, index);
+        let mut sampler = Sampler::for_path(sensor.seed, stream::BASELINE_MAP, index);
         let Some(arrival) = sensor.arrivals.draw(&mut sampler) else { return };
         waiting.cells.push(arrival.cells.clone());
         let (etendue, cells) = (sensor.etendue(&arrival) / self.paths as f64, &arrival.cells);

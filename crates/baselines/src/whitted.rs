@@ -7,7 +7,7 @@
 
 use crate::one_sensor::{BaselineBatch, OneSensor};
 use lumiduct_core::optics::{FinishModel, Scattered, Side};
-use lumiduct_core::rng::Sampler;
+use lumiduct_core::rng::{Sampler, stream};
 use lumiduct_core::scene::{On, Ray};
 use lumiduct_core::transport::tally::readings::Counted;
 use lumiduct_core::transport::walk::follow::{follow, follow_on};
@@ -15,9 +15,6 @@ use lumiduct_core::transport::walk::scatter::{facing, scatter_radiance};
 use lumiduct_core::transport::{Event, MetEmission, Observer, Path, Readings, Vertex};
 use std::ops::ControlFlow;
 
-/// Streams of random numbers of the paths and of their choices at interfaces.
-const PATH_STREAM: u64 = 5 << 32;
-const BRANCH_STREAM: u64 = 6 << 32;
 /// Branches of less throughput are cut off, 1.
 const CUT_OFF: f64 = 1e-3;
 /// Branches are cut off after this many interfaces.
@@ -52,7 +49,7 @@ impl<'s> Whitted<'s> {
     /// Traces all branches of a gather path; returns the throughput that was cut off.
     fn trace(&self, index: u64, readings: &mut Readings) -> f64 {
         let Self { sensor, deepest, .. } = self;
-        let mut sampler = Sampler::for_path(sensor.seed, PATH_STREAM, index);
+        let mut sampler = Sampler::for_path(sensor.seed, stream::BASELINE_PATHS, index);
         let Some(arrival) = sensor.arrivals.draw(&mut sampler) else { return 0.0 };
         let mut splitter = Splitter {
             whitted: self,
@@ -60,7 +57,7 @@ impl<'s> Whitted<'s> {
             cells: &arrival.cells,
             factor: 1.0,
             branches: Vec::new(),
-            sampler: Sampler::for_path(sensor.seed, BRANCH_STREAM, index),
+            sampler: Sampler::for_path(sensor.seed, stream::BASELINE_BRANCHES, index),
             cut: 0.0,
             readings,
         };

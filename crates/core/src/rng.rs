@@ -10,6 +10,37 @@
 use rand_core::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
+/// The streams of a run: no two purposes share one under a seed. The lower 32 bits number sensors, where each has a
+/// stream of its own. Photons have stream 0. Samples of a study and the baselines of `compare` never meet in a run.
+pub mod stream {
+    /// Gather paths that are followed to sources.
+    pub(crate) const BACKWARD: u64 = 1 << 32;
+    /// Gather paths that end in records.
+    pub(crate) const GATHER: u64 = 2 << 32;
+    /// Choices at the records of gather paths.
+    pub(crate) const RECORDS: u64 = 3 << 32;
+    /// Gather paths of the pilot that sets windows.
+    pub(crate) const GATHER_PILOT: u64 = 4 << 32;
+    /// Gather paths that tell whether a sensor sees any light.
+    pub(crate) const BLIND: u64 = 10 << 32;
+    /// Gather paths of baselines.
+    pub const BASELINE_PATHS: u64 = 5 << 32;
+    /// Their choices at interfaces.
+    pub const BASELINE_BRANCHES: u64 = 6 << 32;
+    /// Markov chains of baselines.
+    pub const BASELINE_CHAINS: u64 = 7 << 32;
+    /// Pilot of baselines.
+    pub const BASELINE_PILOT: u64 = 8 << 32;
+    /// Gather paths of baselines that map photons.
+    pub const BASELINE_MAP: u64 = 9 << 32;
+    /// Random samples of a study.
+    pub const STUDY_SAMPLES: u64 = 5 << 32;
+    /// Places of samples within the strata of a study.
+    pub const STUDY_PLACES: u64 = 6 << 32;
+    /// Order of the strata of a study.
+    pub const STUDY_ORDERS: u64 = 7 << 32;
+}
+
 /// The purpose of a random number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dimension {

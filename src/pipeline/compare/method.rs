@@ -14,17 +14,9 @@ pub enum Method {
 
 impl Method {
     /// All of them.
-    pub const ALL: [Self; 9] = [
-        Self::Run(Request::Forward),
-        Self::Run(Request::Backward),
-        Self::Run(Request::Mix),
-        Self::Baseline(Baseline::Sppm),
-        Self::Baseline(Baseline::Whitted),
-        Self::Baseline(Baseline::Metropolis),
-        Self::Run(Request::Gather),
-        Self::Run(Request::Mis),
-        Self::Run(Request::Auto),
-    ];
+    pub fn all() -> impl Iterator<Item = Self> {
+        Request::ALL.map(Self::Run).into_iter().chain(Baseline::ALL.map(Self::Baseline))
+    }
 
     /// Its name on the command line and in tables.
     pub fn name(self) -> &'static str {
@@ -36,7 +28,7 @@ impl Method {
 
     /// The method of this name.
     pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|method| method.name() == name)
+        Self::all().find(|method| method.name() == name)
     }
 
     /// Whether it can distinguish the first passage of a path through a sensor from later ones.

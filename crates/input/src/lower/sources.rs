@@ -173,7 +173,7 @@ impl<'a> Context<'a> {
 
     /// Makes the emitter's surfaces a sheet that light meets.
     fn add_body(&mut self, name: &str, emitter: &Emitter, finish: FinishId) -> Vec<PrimId> {
-        let Emitter::Surface { shapes, .. } = emitter else { return Vec::new() };
+        let shapes = emitter.shapes();
         let name = format!("{name}.body");
         let face = self.builder.add_face(FaceSpec {
             name: name.clone(),

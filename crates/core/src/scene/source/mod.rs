@@ -176,7 +176,8 @@ impl Emitter {
         }
     }
 
-    /// The surfaces of a source within the scene; none for all others.
+    /// The surfaces of a source within the scene, which pictures draw and which light meets as its body; none for all
+    /// others.
     pub fn shapes(&self) -> &[(Shape, f64)] {
         match self {
             Self::Surface { shapes, .. } => shapes,
@@ -205,12 +206,20 @@ impl Emitter {
 
     /// Whether it is the sky or the sun, outside of everything.
     pub fn is_far(&self) -> bool {
-        matches!(self, Self::Far { .. })
+        match self {
+            Self::Far { .. } => true,
+            Self::Point(_) | Self::Line { .. } | Self::Surface { .. } | Self::Volume { .. } => {
+                false
+            }
+        }
     }
 
     /// Whether it is a thing of its own: not the sky, and not the inside of a solid.
     pub(crate) fn is_thing(&self) -> bool {
-        !matches!(self, Self::Far { .. } | Self::Volume { .. })
+        match self {
+            Self::Point(_) | Self::Line { .. } | Self::Surface { .. } => true,
+            Self::Volume { .. } | Self::Far { .. } => false,
+        }
     }
 
     /// Box around the emitter, mm.

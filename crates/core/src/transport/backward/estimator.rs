@@ -6,7 +6,7 @@
 //! sensors, and both count by their weights (`mix`).
 
 use crate::plan::{Estimator, RunPlan};
-use crate::rng::Sampler;
+use crate::rng::{Sampler, stream};
 use crate::scene::{Arrivals, LightGroups, Scene, SensorId};
 use crate::transport::estimate::Estimate;
 use crate::transport::gather::merge::{Etendues, NO_WINDOW};
@@ -20,9 +20,6 @@ use crate::transport::walk::follow::{Gathering, follow};
 use crate::transport::{Event, Layout, Loss, MetEmission, Observer, Path, Readings};
 use rayon::prelude::*;
 use std::ops::ControlFlow;
-
-/// Stream of random numbers of the gather paths; each sensor has a separate one from here on.
-const STREAM: u64 = 1 << 32;
 
 /// Gather paths of each sensor that measure their work.
 const PILOT_PATHS: u64 = 64;
@@ -124,7 +121,7 @@ impl<'s> Backward<'s> {
         task: Task<'_>,
         readings: &mut Readings,
     ) {
-        let mut sampler = Sampler::for_path(self.seed, STREAM + id.index() as u64, index);
+        let mut sampler = Sampler::for_path(self.seed, stream::BACKWARD + id.index() as u64, index);
         let Some(arrival) = arrivals.draw(&mut sampler) else { return };
         let gathering = Gathering {
             scene: self.scene,

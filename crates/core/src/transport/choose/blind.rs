@@ -3,7 +3,7 @@
 //! What a sensor sees is sampled, not proved. Whether the light of a source reaches it is not
 //! checked.
 
-use crate::rng::Sampler;
+use crate::rng::{Sampler, stream};
 use crate::scene::{Arrivals, Scene, SensorId};
 use crate::transport::walk::emitters::Emitters;
 use crate::transport::walk::follow::{Gathering, follow};
@@ -12,8 +12,6 @@ use std::ops::ControlFlow;
 
 /// Gather paths tried from a sensor.
 pub const BLIND_PATHS: u64 = 1000;
-/// Stream of random numbers of these.
-const STREAM: u64 = 10 << 32;
 
 /// The sensors for which none of [`BLIND_PATHS`] gather paths meets a surface or a source (beyond
 /// its aim, if it has one).
@@ -27,7 +25,7 @@ fn sees<'s>(scene: &'s Scene, emitters: &Emitters<'s>, sensor: SensorId, seed: u
     let arrivals = Arrivals::new(scene, sensor);
     let gathering = Gathering { scene, emitters, sensor, bounce_limit: u32::MAX, pace: None };
     for index in 0..BLIND_PATHS {
-        let mut sampler = Sampler::for_path(seed, STREAM + sensor.index() as u64, index);
+        let mut sampler = Sampler::for_path(seed, stream::BLIND + sensor.index() as u64, index);
         if let Some(arrival) = arrivals.draw(&mut sampler) {
             let mut sees = false;
             let mut look = |_: &Path, event: Event<'_>| {

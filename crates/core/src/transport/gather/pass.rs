@@ -10,7 +10,7 @@
 //! records. When merged with forward and backward, gather paths continue to the sources, and
 //! everything counts by its weight (`merge`).
 
-use crate::rng::Sampler;
+use crate::rng::{Sampler, stream};
 use crate::scene::Arrival;
 use crate::transport::gather::collect::{Collecting, EndedPaths};
 use crate::transport::gather::estimator::{Gather, WaitingRecords};
@@ -23,11 +23,6 @@ use crate::transport::stop::RECORD_WORK;
 use crate::transport::task::Task;
 use crate::transport::walk::follow::{Gathering, follow};
 use crate::transport::{Path, Readings};
-
-/// Streams of random numbers of the gather paths and of their records; each sensor has a separate
-/// one.
-const PATH_STREAM: u64 = 2 << 32;
-const RECORD_STREAM: u64 = 3 << 32;
 
 impl<'s> Gather<'s> {
     /// Traces the gather paths of a batch, whose records then wait for its photons. `None` if
@@ -54,8 +49,8 @@ impl<'s> Gather<'s> {
                 if pace.spend(RECORD_WORK).is_break() {
                     return None;
                 }
-                let stream = id.index() as u64;
-                let mut sampler = Sampler::for_path(self.seed, PATH_STREAM + stream, index);
+                let offset = id.index() as u64;
+                let mut sampler = Sampler::for_path(self.seed, stream::GATHER + offset, index);
                 let Some(arrival) = arrivals.draw(&mut sampler) else { continue };
                 let Arrival { extent, cells, .. } = &arrival;
                 let etendue = Path::arriving(self.scene, &arrival).etendue(self.scene, *extent);
@@ -68,7 +63,7 @@ impl<'s> Gather<'s> {
                     id: *id,
                     index,
                     cells,
-                    sampler: Sampler::for_path(self.seed, RECORD_STREAM + stream, index),
+                    sampler: Sampler::for_path(self.seed, stream::RECORDS + offset, index),
                     facing: None,
                     found: &mut found,
                     windows,

@@ -3,7 +3,7 @@
 
 use crate::optics::{FinishModel, Spread};
 use crate::plan::{RunPlan, Schedule};
-use crate::rng::Sampler;
+use crate::rng::{Sampler, stream};
 use crate::scene::{Arrivals, Emission, Emitter, FaceId, On, Ray, Scene, SensorId};
 use crate::transport::stop::{Pace, StopSignal};
 use crate::transport::trial::{PASS_SEGMENTS, PhotonPilot};
@@ -17,8 +17,6 @@ use std::f64::consts::PI;
 use std::fmt;
 use std::ops::ControlFlow;
 
-/// Stream of random numbers of the pilot's gather paths.
-const STREAM: u64 = 4 << 32;
 /// Pilot gather paths from each sensor.
 const PILOT_PATHS: u64 = 64;
 /// Radius of the first window over the inradius of the guide, 1 (measured on prototypes; docs/method.md).
@@ -196,7 +194,8 @@ fn sound(
             if pace.spend(1).is_break() {
                 return None;
             }
-            let mut sampler = Sampler::for_path(seed, STREAM + sensor.index() as u64, index);
+            let mut sampler =
+                Sampler::for_path(seed, stream::GATHER_PILOT + sensor.index() as u64, index);
             if let Some(arrival) = arrivals.draw(&mut sampler) {
                 follow(gathering, &arrival, &mut sampler, &mut sounding);
             }

@@ -11,8 +11,12 @@ use rand_core::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// The streams of a run: no two purposes share one under a seed. The lower 32 bits number sensors, where each has a
-/// stream of its own. Photons have stream 0. Samples of a study and the baselines of `compare` never meet in a run.
+/// stream of its own. Samples of a study and the baselines of `compare` never meet in a run.
 pub mod stream {
+    /// Photons.
+    pub(crate) const PHOTONS: u64 = 1;
+    /// Photons whose paths are drawn.
+    pub(crate) const DRAWN: u64 = 2;
     /// Gather paths that are followed to sources.
     pub(crate) const BACKWARD: u64 = 1 << 32;
     /// Gather paths that end in records.

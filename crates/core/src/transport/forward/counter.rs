@@ -3,7 +3,7 @@
 mod surfaces;
 
 use crate::optics::Side;
-use crate::rng::Sampler;
+use crate::rng::{Sampler, stream};
 use crate::scene::shape::Toward;
 use crate::scene::{CountedLight, FaceId, LightGroupId, MediumId, Owner, SensorId, SourceId};
 use crate::transport::forward::Forward;
@@ -15,9 +15,6 @@ use crate::transport::{
 use glam::DVec3;
 use smallvec::SmallVec;
 use std::ops::ControlFlow;
-
-/// Stream of random numbers of the forward photons.
-const STREAM: u64 = 1;
 
 /// Counts one batch.
 pub(super) struct PhotonCounter<'r, 's, O> {
@@ -84,7 +81,7 @@ impl<'r, 's, O: Observer> PhotonCounter<'r, 's, O> {
 
     pub(super) fn trace(&mut self, source: SourceId, flux: f64, index: u64) {
         let scene = self.run.scene;
-        let mut sampler = Sampler::for_path(self.run.seed, STREAM, index);
+        let mut sampler = Sampler::for_path(self.run.seed, stream::PHOTONS, index);
         let emitted = scene.sources[source.index()].emit(scene, &mut sampler);
         self.flux = flux;
         self.source = source;

@@ -1,14 +1,11 @@
 //! A few paths to look at: their course and their end.
 
-use crate::rng::Sampler;
+use crate::rng::{Sampler, stream};
 use crate::scene::{FaceId, Ray, Scene, SensorId, SourceId};
 use crate::transport::forward::Forward;
 use crate::transport::{Event, Path};
 use glam::DVec3;
 use lumiduct_base::math::Aabb;
-
-/// Stream of random numbers of the drawn paths.
-const STREAM: u64 = 2;
 
 /// Largest number of bounces drawn of a path: more only blacken the picture.
 const BOUNCES_DRAWN: u32 = 500;
@@ -54,7 +51,7 @@ pub fn tracks(scene: &Scene, seed: u64, bounce_limit: u32, count: usize) -> Vec<
 
 fn track(forward: &Forward<'_>, source: SourceId, index: usize) -> Track {
     let scene = forward.scene;
-    let mut sampler = Sampler::for_path(forward.seed, STREAM, index as u64);
+    let mut sampler = Sampler::for_path(forward.seed, stream::DRAWN, index as u64);
     let emitted = scene.sources[source.index()].emit(scene, &mut sampler);
     let (mut points, mut end) = (vec![emitted.ray.origin()], TrackEnd::Cut);
     let path = Path::emitted(scene, source, emitted);

@@ -5,7 +5,7 @@ use std::path::Path;
 use annotate_snippets::renderer::DecorStyle;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 
-use crate::sources::Sources;
+use crate::texts::Texts;
 use lumiduct_base::error::{Diagnostic, DiagnosticKind};
 
 /// Whether text contains the colour codes of a terminal.
@@ -18,14 +18,14 @@ pub enum Colour {
 }
 
 /// The files that diagnostics refer to, read for their lines. Unreadable files are left out.
-pub fn sources_of(diagnostics: &[Diagnostic]) -> Sources {
+pub fn sources_of(diagnostics: &[Diagnostic]) -> Texts {
     let with_line = diagnostics.iter().filter(|diagnostic| diagnostic.line.is_some());
-    Sources::of_files(with_line.filter_map(|diagnostic| diagnostic.file.as_deref()))
+    Texts::of_files(with_line.filter_map(|diagnostic| diagnostic.file.as_deref()))
 }
 
 /// All diagnostics, by file and line. The first line of each is `file:line: key: message`; then the line of the file
 /// follows, where `sources` has it, and the hint.
-pub fn render(diagnostics: &[Diagnostic], sources: &Sources, colour: Colour) -> String {
+pub fn render(diagnostics: &[Diagnostic], sources: &Texts, colour: Colour) -> String {
     let mut sorted: Vec<_> = diagnostics.iter().collect();
     sorted.sort_by_key(|diagnostic| {
         let start = diagnostic.span.as_ref().map(|span| span.start);
@@ -34,7 +34,7 @@ pub fn render(diagnostics: &[Diagnostic], sources: &Sources, colour: Colour) -> 
     sorted.into_iter().map(|diagnostic| render_one(diagnostic, sources, colour)).collect()
 }
 
-fn render_one(diagnostic: &Diagnostic, sources: &Sources, colour: Colour) -> String {
+fn render_one(diagnostic: &Diagnostic, sources: &Texts, colour: Colour) -> String {
     let headline = Diagnostic { hint: None, ..diagnostic.clone() }.to_string();
     let level = match diagnostic.kind {
         DiagnosticKind::Error => Level::ERROR,
@@ -70,7 +70,7 @@ struct Cut {
 /// Most bytes of a line that are shown on each side of the underlined part, and of that part.
 const CUT_BYTES: usize = 120;
 
-fn cut(diagnostic: &Diagnostic, file: &Path, sources: &Sources) -> Option<Cut> {
+fn cut(diagnostic: &Diagnostic, file: &Path, sources: &Texts) -> Option<Cut> {
     let source = sources.file(file)?;
     let (line, span) = (diagnostic.line?, diagnostic.span.as_ref()?);
     let whole = source.line_span(line)?;
@@ -105,7 +105,7 @@ mod tests {
     }
 
     fn rendered(text: &str, diagnostics: &[Diagnostic], colour: Colour) -> String {
-        let mut sources = Sources::default();
+        let mut sources = Texts::default();
         sources.add_text(Path::new("rod.toml"), text);
         render(diagnostics, &sources, colour)
     }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::keys::Key;
 use crate::problems::{Problems, nearest};
-use crate::sources::{Origin, Sources, Unreadable};
+use crate::texts::{Origin, Texts, Unreadable};
 use crate::tree::{self, Entry, Node, SyntaxError, Value};
 
 /// The key with the name of another file.
@@ -14,7 +14,7 @@ const FILE: &str = "file";
 /// the syntax errors of those files.
 pub(crate) fn join_sensor_files(
     root: &mut Node,
-    sources: &mut Sources,
+    sources: &mut Texts,
     problems: &mut Problems,
 ) -> Vec<SyntaxError> {
     let mut breaks: Vec<SyntaxError> = Vec::new();
@@ -76,7 +76,7 @@ fn note_refusal(
 fn read(
     path: &Path,
     key: &Key,
-    sources: &mut Sources,
+    sources: &mut Texts,
     problems: &mut Problems,
 ) -> Result<(Node, Vec<SyntaxError>), Refused> {
     let source = sources.add_file(path).map_err(Refused::Unreadable)?;

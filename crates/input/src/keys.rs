@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use crate::sources::{Origin, Sources};
+use crate::texts::{Origin, Texts};
 use crate::tree::{Node, Value};
 
 /// A path through tables and arrays, such as `solids.pipe.sweep.path.0.straight_mm`.
@@ -90,12 +90,12 @@ pub(crate) fn is_bare(name: &str) -> bool {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Places {
     root: Node,
-    sources: Sources,
+    sources: Texts,
 }
 
 impl Places {
     /// The places of a tree whose texts are `sources`.
-    pub(crate) fn new(root: Node, sources: Sources) -> Self {
+    pub(crate) fn new(root: Node, sources: Texts) -> Self {
         Self { root, sources }
     }
 
@@ -105,7 +105,7 @@ impl Places {
     }
 
     /// The texts.
-    pub(crate) fn sources(&self) -> &Sources {
+    pub(crate) fn sources(&self) -> &Texts {
         &self.sources
     }
 

@@ -12,8 +12,8 @@ use crate::keys::{Key, Places};
 use crate::lower::Lowered;
 use crate::lower::context::Scope;
 use crate::problems::Problems;
-use crate::sources::Sources;
 use crate::spec::{FORMAT_VERSION, SceneSpec};
+use crate::texts::Texts;
 use crate::tree::{Node, SyntaxError, Value};
 use crate::validate::Completeness;
 use lumiduct_base::error::{Diagnostic, DiagnosticKind, Error, Result};
@@ -34,9 +34,9 @@ pub(crate) mod overrides;
 pub mod problems;
 mod project;
 pub mod schema;
-pub(crate) mod sources;
 pub(crate) mod spec;
 mod study;
+pub(crate) mod texts;
 pub(crate) mod tree;
 pub mod validate;
 
@@ -104,7 +104,7 @@ pub fn read(path: &Path, overrides: &[String]) -> Result<Loaded> {
 /// Fails only if there is nothing to continue with: the file cannot be read or is of another
 /// format.
 pub(crate) fn draft(path: &Path, overrides: &[String]) -> Result<Draft> {
-    let mut sources = Sources::default();
+    let mut sources = Texts::default();
     let mut problems = Problems::default();
     if let Some(why) = no_scene(path).filter(|_| path.is_file()) {
         return Err(unreadable(path, &why));
@@ -178,13 +178,13 @@ fn completeness(breaks: &[SyntaxError]) -> Completeness {
 fn note_differences(
     root: &Node,
     schema: &Json,
-    sources: &Sources,
+    sources: &Texts,
     breaks: &[SyntaxError],
     problems: &mut Problems,
 ) {
     let mut found = Problems::default();
     validate::validate(root, schema, sources, completeness(breaks), &mut found);
-    let line = |origin: &sources::Origin| {
+    let line = |origin: &texts::Origin| {
         (origin.source, sources.get(origin.source).line(origin.span.start))
     };
     let broken: BTreeSet<_> = breaks.iter().map(|error| line(&error.origin)).collect();

@@ -1,6 +1,6 @@
 //! Lists the scenes, studies and sensor files below a folder.
 
-use crate::sources::{Sources, Unreadable};
+use crate::texts::{Texts, Unreadable};
 use lumiduct_base::error::{Error, Result};
 use lumiduct_base::text::visible;
 use std::fs;
@@ -57,7 +57,7 @@ fn one_line(text: &str) -> String {
 /// The title of a scene or a study, or the kind of a sensor file, or a note that it cannot be read;
 /// `None` for anything else.
 fn describe(path: &Path) -> Option<String> {
-    let mut sources = Sources::default();
+    let mut sources = Texts::default();
     let table = match sources.add_file(path) {
         Ok(source) => sources.get(source).text().parse::<toml::Table>(),
         // A pipe or a device may never end.

@@ -4,7 +4,7 @@
 
 use crate::keys::{Key, KeySegment};
 use crate::problems::{Problems, name_hint};
-use crate::sources::{Origin, SourceId, Sources};
+use crate::texts::{Origin, TextId, Texts};
 use crate::tree::{self, Entry, Node, Value};
 
 /// A value for a key, from the command line.
@@ -35,7 +35,7 @@ impl Override {
 /// text.
 pub(crate) fn read(
     arguments: &[String],
-    sources: &mut Sources,
+    sources: &mut Texts,
     problems: &mut Problems,
 ) -> Vec<Override> {
     let mut overrides = Vec::new();
@@ -51,10 +51,7 @@ pub(crate) fn read(
     overrides
 }
 
-fn read_one(
-    sources: &Sources,
-    source: SourceId,
-) -> Result<Override, (String, std::ops::Range<usize>)> {
+fn read_one(sources: &Texts, source: TextId) -> Result<Override, (String, std::ops::Range<usize>)> {
     let text = sources.get(source).text();
     let usage =
         || ("expected KEY=VALUE, such as sources.led.disk.flux_lm=3".to_owned(), 0..text.len());
@@ -228,7 +225,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.toml");
         std::fs::write(&path, SCENE).unwrap();
-        let (mut sources, mut problems) = (Sources::default(), Problems::default());
+        let (mut sources, mut problems) = (Texts::default(), Problems::default());
         let source = sources.add_file(&path).unwrap();
         let mut root = tree::parse(&sources, source).0;
         let arguments: Vec<_> = arguments.iter().map(|text| (*text).to_owned()).collect();

@@ -1,7 +1,7 @@
 //! The problems of a scene, collected so that all are reported together.
 
 use crate::keys::{Key, Places};
-use crate::sources::{Origin, Sources};
+use crate::texts::{Origin, Texts};
 use lumiduct_base::error::{Diagnostic, DiagnosticKind, Error, Result};
 
 /// Most problems that are reported; a file with more is entirely wrong.
@@ -168,7 +168,7 @@ impl Problems {
     }
 }
 
-fn diagnostic(problem: Problem, origin: Option<Origin>, sources: &Sources) -> Diagnostic {
+fn diagnostic(problem: Problem, origin: Option<Origin>, sources: &Texts) -> Diagnostic {
     let source = origin.as_ref().map(|origin| sources.get(origin.source));
     let line =
         source.zip(origin.as_ref()).and_then(|(source, origin)| source.line(origin.span.start));
@@ -259,10 +259,10 @@ mod tests {
             problems.error(&Key::root().index(i), "wrong");
         }
         let node = crate::tree::Node {
-            origin: Origin { source: Sources::default().add_argument(""), span: 0..0 },
+            origin: Origin { source: Texts::default().add_argument(""), span: 0..0 },
             value: crate::tree::Value::Datetime,
         };
-        let diagnostics = problems.into_diagnostics(&Places::new(node, Sources::default()));
+        let diagnostics = problems.into_diagnostics(&Places::new(node, Texts::default()));
         assert_eq!(diagnostics.len(), MAX_PROBLEMS + 1);
         assert!(diagnostics[MAX_PROBLEMS].message.contains("500 more"));
     }

@@ -7,7 +7,7 @@ use indexmap::IndexMap;
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
-use crate::sources::{Origin, SourceId, Sources};
+use crate::texts::{Origin, TextId, Texts};
 use lumiduct_base::text::is_control;
 
 /// Deepest nesting of tables and arrays.
@@ -115,7 +115,7 @@ pub(crate) struct SyntaxError {
 
 /// The tree of a whole text, and all its syntax errors. The tree has everything readable despite
 /// them.
-pub(crate) fn parse(sources: &Sources, source: SourceId) -> (Node, Vec<SyntaxError>) {
+pub(crate) fn parse(sources: &Texts, source: TextId) -> (Node, Vec<SyntaxError>) {
     let text = sources.get(source).text();
     let (table, failures) = DeTable::parse_recoverable(text);
     let mut reader = Reader { source, offset: 0, errors: Vec::new() };
@@ -126,8 +126,8 @@ pub(crate) fn parse(sources: &Sources, source: SourceId) -> (Node, Vec<SyntaxErr
 
 /// The value in a part of a text, from `offset` to the end; or its syntax errors.
 pub(crate) fn parse_value(
-    sources: &Sources,
-    source: SourceId,
+    sources: &Texts,
+    source: TextId,
     offset: usize,
 ) -> Result<Node, Vec<SyntaxError>> {
     let text = &sources.get(source).text()[offset..];
@@ -139,7 +139,7 @@ pub(crate) fn parse_value(
 }
 
 struct Reader {
-    source: SourceId,
+    source: TextId,
     /// Where the parsed part begins in the text.
     offset: usize,
     errors: Vec<SyntaxError>,
@@ -251,7 +251,7 @@ fn with_decimal_comma(text: &str) -> Option<String> {
 }
 
 /// The first error of each line: the rest are mostly its echoes.
-fn one_per_line(sources: &Sources, mut errors: Vec<SyntaxError>) -> Vec<SyntaxError> {
+fn one_per_line(sources: &Texts, mut errors: Vec<SyntaxError>) -> Vec<SyntaxError> {
     let line = |error: &SyntaxError| sources.get(error.origin.source).line(error.origin.span.start);
     errors.sort_by_key(|error| error.origin.span.start);
     errors.dedup_by_key(|error| line(error));
@@ -266,7 +266,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.toml");
         std::fs::write(&path, text).unwrap();
-        let mut sources = Sources::default();
+        let mut sources = Texts::default();
         let source = sources.add_file(&path).unwrap();
         parse(&sources, source)
     }

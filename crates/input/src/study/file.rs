@@ -2,8 +2,8 @@
 
 use crate::keys::{Key, Places};
 use crate::problems::Problems;
-use crate::sources::{SourceId, Sources};
 use crate::spec::study::{PlanSpec, STUDY_FORMAT_VERSION, StudySpec};
+use crate::texts::{TextId, Texts};
 use crate::tree::{self, Node, Value};
 use crate::{convert, note_breaks, note_differences, schema, unreadable};
 use lumiduct_base::error::{Error, Result};
@@ -14,13 +14,13 @@ pub(super) struct StudyDraft {
     pub(super) spec: StudySpec,
     pub(super) places: Places,
     /// The table of designs.
-    pub(super) table: Option<SourceId>,
+    pub(super) table: Option<TextId>,
     pub(super) problems: Problems,
 }
 
 /// Reads a study file and the table it refers to.
 pub(super) fn read(path: &Path) -> Result<StudyDraft> {
-    let (mut sources, mut problems) = (Sources::default(), Problems::default());
+    let (mut sources, mut problems) = (Texts::default(), Problems::default());
     let source = sources.add_file(path).map_err(|reason| unreadable(path, &reason.to_string()))?;
     let (root, breaks) = tree::parse(&sources, source);
     if is_other_kind(&root, &mut problems) {

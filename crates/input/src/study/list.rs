@@ -2,15 +2,15 @@
 
 use crate::keys::{Key, Places};
 use crate::problems::{Problems, name_hint};
-use crate::sources::{Origin, SourceId};
 use crate::spec::study::MOST_DESIGNS;
 use crate::study::parameters::{Parameter, Setting};
+use crate::texts::{Origin, TextId};
 use csv::{ReaderBuilder, StringRecord, Trim};
 
 /// The rows of a table, a setting for each parameter. An empty cell leaves a parameter as the scene has it.
 pub(super) fn rows(
     places: &Places,
-    table: SourceId,
+    table: TextId,
     parameters: &[Parameter],
     problems: &mut Problems,
 ) -> Vec<Vec<Setting>> {
@@ -49,7 +49,7 @@ pub(super) fn rows(
 
 /// A table that is being read.
 struct Table<'a> {
-    source: SourceId,
+    source: TextId,
     text: &'a str,
     problems: &'a mut Problems,
 }

@@ -12,10 +12,10 @@ pub use parameters::{DESIGN_COLUMN, Domain, OTHER_COLUMNS, Parameter, Setting, T
 use crate::keys::{Key, Places};
 use crate::lower::plan;
 use crate::problems::Problems;
-use crate::sources::argument_label;
 use crate::spec::solid::{ShapedSolidSpec, SolidSpec};
 use crate::spec::study::{BestSpec, KeepSpec, PlanSpec, SamplesSpec, StudyRunSpec, StudySpec};
 use crate::study::file::{StudyDraft, read};
+use crate::texts::argument_label;
 use crate::{Draft, Job, Settings, draft, load};
 use lumiduct_base::digest::Digest;
 use lumiduct_base::error::{Diagnostic, Error, Result};

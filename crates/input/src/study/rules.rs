@@ -5,12 +5,12 @@ use crate::lower::context::Scope;
 use crate::lower::names::{check_length, check_name, check_title};
 use crate::overrides::parse_key;
 use crate::problems::Problems;
-use crate::sources::argument_label;
 use crate::spec::study::{
     MOST_DESIGNS, MOST_PARAMETERS, NormalSpec, ParameterSpec, PlanSpec, SpreadSpec, StudySpec,
     TiedKeySpec,
 };
 use crate::study::parameters::{DESIGN_COLUMN, Domain, OTHER_COLUMNS, Parameter, column};
+use crate::texts::argument_label;
 use crate::{Job, Settings, draft};
 use indexmap::IndexMap;
 use lumiduct_base::error::{Diagnostic, DiagnosticKind, Error};

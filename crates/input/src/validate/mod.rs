@@ -8,7 +8,7 @@ use serde_json::{Map, Value as Json};
 use crate::keys::{Key, KeySegment};
 use crate::problems::{Problem, Problems};
 use crate::schema;
-use crate::sources::{Origin, Sources};
+use crate::texts::{Origin, Texts};
 use crate::tree::{Entry, Node, Value};
 
 mod choice;
@@ -31,7 +31,7 @@ pub(crate) enum Completeness {
 pub(crate) fn validate(
     root: &Node,
     schema: &Json,
-    sources: &Sources,
+    sources: &Texts,
     completeness: Completeness,
     problems: &mut Problems,
 ) {
@@ -43,7 +43,7 @@ pub(crate) fn validate(
 struct Walk<'a> {
     /// The whole schema, for its definitions.
     schema: &'a Json,
-    sources: &'a Sources,
+    sources: &'a Texts,
     completeness: Completeness,
     problems: &'a mut Problems,
 }

@@ -3,7 +3,7 @@
 use serde_json::Value as Json;
 
 use crate::schema::{self, Choice};
-use crate::sources::Sources;
+use crate::texts::Texts;
 use crate::tree::{Node, Value};
 
 /// What a schema expects, with the unit of its numbers: "a number in mm above 0".
@@ -109,7 +109,7 @@ pub(crate) fn count(count: usize) -> String {
 }
 
 /// The value found in a file, with its text where that is short.
-pub(crate) fn found(node: &Node, sources: &Sources) -> String {
+pub(crate) fn found(node: &Node, sources: &Texts) -> String {
     let text = || sources.excerpt(&node.origin);
     match &node.value {
         Value::Table(_) => "a table".into(),

@@ -13,20 +13,20 @@ pub(crate) const MAX_FILE_BYTES: u64 = 16 << 20;
 
 /// One of the texts of a [`Sources`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct SourceId(usize);
+pub struct TextId(usize);
 
 /// A stretch of bytes in one of the texts.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Origin {
     /// The text.
-    pub source: SourceId,
+    pub source: TextId,
     /// Bytes of it.
     pub span: Range<usize>,
 }
 
 /// Where a text comes from.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) enum SourceKind {
+pub(crate) enum TextKind {
     /// A file.
     File(PathBuf),
     /// An argument `-D key=value`; the text is what follows `-D`.
@@ -36,14 +36,14 @@ pub(crate) enum SourceKind {
 /// A text with its lines.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct SourceText {
-    kind: SourceKind,
+    kind: TextKind,
     text: String,
     /// Offset of the first byte of each line.
     line_starts: Vec<usize>,
 }
 
 impl SourceText {
-    fn new(kind: SourceKind, text: String) -> Self {
+    fn new(kind: TextKind, text: String) -> Self {
         let line_starts = std::iter::once(0)
             .chain(text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(i, _)| i + 1));
         let line_starts = line_starts.collect();
@@ -58,16 +58,16 @@ impl SourceText {
     /// How a message names the text: the path, or the argument.
     pub(crate) fn label(&self) -> PathBuf {
         match &self.kind {
-            SourceKind::File(path) => path.clone(),
-            SourceKind::Argument => argument_label(&self.text).into(),
+            TextKind::File(path) => path.clone(),
+            TextKind::Argument => argument_label(&self.text).into(),
         }
     }
 
     /// The line of a byte, from 1; `None` for an argument, which has no lines.
     pub(crate) fn line(&self, offset: usize) -> Option<usize> {
         match self.kind {
-            SourceKind::File(_) => Some(self.line_starts.partition_point(|start| *start <= offset)),
-            SourceKind::Argument => None,
+            TextKind::File(_) => Some(self.line_starts.partition_point(|start| *start <= offset)),
+            TextKind::Argument => None,
         }
     }
 
@@ -82,19 +82,19 @@ impl SourceText {
 
 /// All texts that one scene is made of.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Sources {
+pub struct Texts {
     list: Vec<SourceText>,
 }
 
-impl Sources {
+impl Texts {
     /// Reads a file, or returns it if it was read before.
-    pub(crate) fn add_file(&mut self, path: &Path) -> Result<SourceId, Unreadable> {
+    pub(crate) fn add_file(&mut self, path: &Path) -> Result<TextId, Unreadable> {
         let known = self
             .list
             .iter()
-            .position(|source| matches!(&source.kind, SourceKind::File(file) if file == path));
+            .position(|source| matches!(&source.kind, TextKind::File(file) if file == path));
         match known {
-            Some(index) => Ok(SourceId(index)),
+            Some(index) => Ok(TextId(index)),
             None => {
                 let text = read(path)?;
                 Ok(self.add_text(path, &text))
@@ -103,30 +103,30 @@ impl Sources {
     }
 
     /// Takes a text as that of a file, without looking at the file.
-    pub(crate) fn add_text(&mut self, path: &Path, text: &str) -> SourceId {
-        self.add(SourceKind::File(path.to_path_buf()), text.into())
+    pub(crate) fn add_text(&mut self, path: &Path, text: &str) -> TextId {
+        self.add(TextKind::File(path.to_path_buf()), text.into())
     }
 
     /// Takes an argument of the command line, without the `-D`.
-    pub(crate) fn add_argument(&mut self, text: &str) -> SourceId {
-        self.add(SourceKind::Argument, text.into())
+    pub(crate) fn add_argument(&mut self, text: &str) -> TextId {
+        self.add(TextKind::Argument, text.into())
     }
 
-    fn add(&mut self, kind: SourceKind, text: String) -> SourceId {
+    fn add(&mut self, kind: TextKind, text: String) -> TextId {
         self.list.push(SourceText::new(kind, text));
-        SourceId(self.list.len() - 1)
+        TextId(self.list.len() - 1)
     }
 
     /// One text. Ids of another `Sources` are invalid here.
-    pub(crate) fn get(&self, id: SourceId) -> &SourceText {
+    pub(crate) fn get(&self, id: TextId) -> &SourceText {
         &self.list[id.0]
     }
 
     /// The folder of the file of a place; `None` on the command line.
     pub(crate) fn folder(&self, origin: &Origin) -> Option<&Path> {
         match &self.get(origin.source).kind {
-            SourceKind::File(path) => path.parent(),
-            SourceKind::Argument => None,
+            TextKind::File(path) => path.parent(),
+            TextKind::Argument => None,
         }
     }
 
@@ -137,9 +137,7 @@ impl Sources {
 
     /// The text of a file, if it was read.
     pub(crate) fn file(&self, path: &Path) -> Option<&SourceText> {
-        self.list
-            .iter()
-            .find(|source| matches!(&source.kind, SourceKind::File(file) if file == path))
+        self.list.iter().find(|source| matches!(&source.kind, TextKind::File(file) if file == path))
     }
 
     /// The files that diagnostics refer to, read again for their lines. Unreadable files are left
@@ -236,7 +234,7 @@ mod tests {
 
     #[test]
     fn lines_are_counted_from_one_and_end_before_the_line_break() {
-        let source = SourceText::new(SourceKind::File("a".into()), "one\r\ntwo\nthree".into());
+        let source = SourceText::new(TextKind::File("a".into()), "one\r\ntwo\nthree".into());
         assert_eq!((source.line(0), source.line(4), source.line(5)), (Some(1), Some(1), Some(2)));
         let lines: Vec<_> =
             (0..5).map(|line| source.line_span(line).map(|span| &source.text[span])).collect();
@@ -246,7 +244,7 @@ mod tests {
     #[test]
     fn what_is_no_text_file_is_refused_without_waiting() {
         let folder = tempfile::tempdir().unwrap();
-        let mut sources = Sources::default();
+        let mut sources = Texts::default();
         assert!(matches!(sources.add_file(folder.path()), Err(Unreadable::NotAFile)));
         assert!(matches!(sources.add_file(&folder.path().join("gone")), Err(Unreadable::Missing)));
         let binary = folder.path().join("binary");
@@ -259,7 +257,7 @@ mod tests {
 
     #[test]
     fn excerpts_are_short_and_harmless() {
-        let mut sources = Sources::default();
+        let mut sources = Texts::default();
         let long = sources.add_argument(&"x".repeat(100));
         let bell = sources.add_argument("'\u{1b}[31m'");
         assert_eq!(sources.excerpt(&Origin { source: long, span: 0..100 }).len(), 40);

@@ -29,10 +29,10 @@ fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
 }
 
 /// Traces a job that is interrupted at the given poll.
-fn stopped_at(look: u64, job: &Job) -> (Result<Traced>, u64) {
-    let interrupt = Interrupt::at_look(look);
+fn stopped_at(check: u64, job: &Job) -> (Result<Traced>, u64) {
+    let interrupt = Interrupt::at_check(check);
     let traced = trace(job, &interrupt, &mut |_| ());
-    (traced, interrupt.looks() - look.min(interrupt.looks()))
+    (traced, interrupt.checks() - check.min(interrupt.checks()))
 }
 
 /// The numbers of a run, without how estimators were chosen.
@@ -41,16 +41,16 @@ fn numbers(findings: &Findings) -> Findings {
 }
 
 #[test]
-fn a_stopped_run_ends_at_its_next_looks_and_its_command_repeats_it_on_any_threads() {
+fn a_stopped_run_ends_at_its_next_checks_and_its_command_repeats_it_on_any_threads() {
     let folder = tempfile::tempdir().unwrap();
     for estimator in [Request::Forward, Request::Backward, Request::Mix, Request::Gather] {
         let job = short_rod(folder.path(), &settings(estimator));
         let (mut stopped, mut empty) = (0, 0);
-        for look in [1, 3, 20, 150, 201, 333] {
-            let (traced, late) = on_threads(2, || stopped_at(look, &job));
+        for check in [1, 3, 20, 150, 201, 333] {
+            let (traced, late) = on_threads(2, || stopped_at(check, &job));
             // Batches in progress poll once more, and so does each batch of the piece that had not
             // begun.
-            assert!(late <= 32, "{late} looks after look {look} of {}", estimator.name());
+            assert!(late <= 32, "{late} checks after check {check} of {}", estimator.name());
             let Ok(traced) = traced else {
                 empty += 1;
                 continue;
@@ -107,18 +107,18 @@ fn a_pilot_that_takes_half_of_the_time_is_given_up_and_photons_go_on() {
     };
     let free = Interrupt::default();
     start(&StopSignal::new(&free, None)).unwrap();
-    let whole = free.looks();
-    assert!(whole > 400, "a pilot of {whole} looks");
-    for (looks, is_given_up) in [(whole / 2, true), (whole, true), (3 * whole, false)] {
+    let whole = free.checks();
+    assert!(whole > 400, "a pilot of {whole} checks");
+    for (checks, is_given_up) in [(whole / 2, true), (whole, true), (3 * whole, false)] {
         let clock = Interrupt::default();
-        let mut run = start(&StopSignal::ending_at_look(&clock, looks, 10)).unwrap();
+        let mut run = start(&StopSignal::ending_at_check(&clock, checks, 10)).unwrap();
         if is_given_up {
             // Each batch that had not begun polls once.
-            assert!(clock.looks() <= looks / 2 + 40, "{} of {looks} looks", clock.looks());
+            assert!(clock.checks() <= checks / 2 + 40, "{} of {checks} checks", clock.checks());
         }
         on_threads(1, || run.next_piece());
         let findings = run.findings();
-        assert_eq!(findings.choices.is_empty(), is_given_up, "{looks} looks of {whole}");
+        assert_eq!(findings.choices.is_empty(), is_given_up, "{checks} checks of {whole}");
         assert!(!is_given_up || findings.estimators == [Estimator::Forward]);
     }
 }
@@ -130,14 +130,14 @@ fn passes_of_gathering_fit_into_a_short_time_and_their_command_repeats_them() {
     let options = Settings { estimator: Some(Request::Gather), time, ..Settings::default() };
     let job = short_rod(folder.path(), &options);
     // An automatic pass without a clock has four million segments, which are 3900 polls.
-    let (looks, grace) = (600, 40);
+    let (checks, grace) = (600, 40);
     let clock = Interrupt::default();
-    let signal = StopSignal::ending_at_look(&clock, looks, grace);
+    let signal = StopSignal::ending_at_check(&clock, checks, grace);
     let mut run = on_threads(1, || Run::start(&job.scene, &job.run, &signal, &mut |_| ())).unwrap();
-    while clock.looks() < looks {
+    while clock.checks() < checks {
         on_threads(1, || run.next_piece());
     }
-    assert!(clock.looks() <= looks + 20, "{} looks", clock.looks());
+    assert!(clock.checks() <= checks + 20, "{} checks", clock.checks());
     assert!(run.batches() >= 4, "{} passes", run.batches());
     let findings = run.findings();
 
@@ -164,13 +164,13 @@ fn merged_passes_fit_into_a_short_time_where_paths_never_end() {
     let options = Settings { estimator: Some(Request::Mis), time, ..Settings::default() };
     let job = prepare(&scene, &options).unwrap();
     // A path has 20 polls, and the pilot takes 640 of them.
-    let (looks, clock) = (3000, Interrupt::default());
-    let signal = StopSignal::ending_at_look(&clock, looks, 100);
+    let (checks, clock) = (3000, Interrupt::default());
+    let signal = StopSignal::ending_at_check(&clock, checks, 100);
     let mut run = on_threads(1, || Run::start(&job.scene, &job.run, &signal, &mut |_| ())).unwrap();
-    while clock.looks() < looks {
+    while clock.checks() < checks {
         on_threads(1, || run.next_piece());
     }
-    assert!(clock.looks() <= looks + 20, "{} looks", clock.looks());
+    assert!(clock.checks() <= checks + 20, "{} checks", clock.checks());
     assert!(run.batches() >= 4, "{} passes", run.batches());
 }
 
@@ -197,7 +197,7 @@ fn a_request_ends_tracing_and_lets_files_take_their_places() {
 }
 
 #[test]
-fn a_look_comes_within_a_path_that_never_ends() {
+fn a_check_comes_within_a_path_that_never_ends() {
     let folder = tempfile::tempdir().unwrap();
     let scene = folder.path().join("box.toml");
     std::fs::write(&scene, MIRROR_BOX).unwrap();
@@ -205,11 +205,11 @@ fn a_look_comes_within_a_path_that_never_ends() {
         let options =
             Settings { estimator: Some(estimator), paths: Some(1000), ..Settings::default() };
         let job = prepare(&scene, &options).unwrap();
-        for look in [10, 1400] {
-            let (traced, late) = on_threads(1, || stopped_at(look, &job));
-            assert!(late <= 20, "{late} looks after look {look} of {}", estimator.name());
+        for check in [10, 1400] {
+            let (traced, late) = on_threads(1, || stopped_at(check, &job));
+            assert!(late <= 20, "{late} checks after check {check} of {}", estimator.name());
             match traced {
-                Ok(traced) => assert_eq!((traced.stop, look), (Stop::Interrupted, 1400)),
+                Ok(traced) => assert_eq!((traced.stop, check), (Stop::Interrupted, 1400)),
                 Err(error) => assert!(error.to_string().contains("nothing to report"), "{error}"),
             }
         }

@@ -242,7 +242,7 @@ fn the_command_in_the_report_of_a_stopped_run_repeats_its_numbers() {
     let estimator = Some(Request::Forward);
     let settings = Settings { seed: Some(3), estimator, ..Settings::default() };
     let output = Output::new(Some(place.path("out")), Existing::Keep);
-    let interrupt = Interrupt::at_look(70);
+    let interrupt = Interrupt::at_check(70);
     let scene = place.path("rod.toml");
     pipeline::run_one(&scene, &settings, &output, &interrupt, &mut |_| ()).unwrap();
     let summary = place.summary("out");

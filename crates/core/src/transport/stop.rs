@@ -9,10 +9,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-/// Work between two checks, in straight pieces of paths: a tenth of a millisecond in simple scenes,
+/// Work between two checks, in segments of paths: a tenth of a millisecond in simple scenes,
 /// some milliseconds where a ray is expensive.
-pub(crate) const LOOK_EVERY: u32 = 1024;
-/// Work of a gather path with its records, in straight pieces: it follows from the times in
+pub(crate) const CHECK_EVERY: u32 = 1024;
+/// Work of a gather path with its records, in segments: it follows from the times in
 /// `transport::work`.
 pub(crate) const RECORD_WORK: u32 = 32;
 /// Time by which a run may exceed its limit if it has no finished batch, so that short runs have
@@ -51,7 +51,7 @@ struct Flag {
     /// An [`Activity`].
     activity: AtomicU8,
     /// Checks by runs in progress.
-    looks: AtomicU64,
+    checks: AtomicU64,
     /// The check at which the flag is raised.
     raised_at: u64,
 }
@@ -61,7 +61,7 @@ impl Default for Flag {
         Self {
             raised: AtomicBool::new(false),
             activity: AtomicU8::new(Activity::Computing as u8),
-            looks: AtomicU64::new(0),
+            checks: AtomicU64::new(0),
             raised_at: u64::MAX,
         }
     }
@@ -70,8 +70,8 @@ impl Default for Flag {
 impl Interrupt {
     /// A flag that is raised at the given check of a run, counted from 1: for tests that do not
     /// depend on time.
-    pub fn at_look(look: u64) -> Self {
-        Self(Arc::new(Flag { raised_at: look, ..Flag::default() }))
+    pub fn at_check(check: u64) -> Self {
+        Self(Arc::new(Flag { raised_at: check, ..Flag::default() }))
     }
 
     /// Records the activity of the program from now on.
@@ -98,13 +98,13 @@ impl Interrupt {
     }
 
     /// Number of checks by runs.
-    pub fn looks(&self) -> u64 {
-        self.0.looks.load(Ordering::Relaxed)
+    pub fn checks(&self) -> u64 {
+        self.0.checks.load(Ordering::Relaxed)
     }
 
-    fn look(&self) -> bool {
-        let look = self.0.looks.fetch_add(1, Ordering::Relaxed) + 1;
-        if look >= self.0.raised_at {
+    fn check(&self) -> bool {
+        let check = self.0.checks.fetch_add(1, Ordering::Relaxed) + 1;
+        if check >= self.0.raised_at {
             self.raise();
         }
         self.is_raised()
@@ -124,7 +124,7 @@ enum TimeLimit {
     /// At a time.
     At(Instant),
     /// After this many checks, and some more as grace: a clock that counts work.
-    AtLook { look: u64, grace: u64 },
+    AtCheck { check: u64, grace: u64 },
 }
 
 impl StopSignal {
@@ -135,19 +135,19 @@ impl StopSignal {
 
     /// A time that ends at a check of the interrupt, with some more checks of grace: a clock that
     /// counts work and not time, for tests.
-    pub fn ending_at_look(interrupt: &Interrupt, look: u64, grace: u64) -> Self {
-        Self { interrupt: interrupt.clone(), end: Some(TimeLimit::AtLook { look, grace }) }
+    pub fn ending_at_check(interrupt: &Interrupt, check: u64, grace: u64) -> Self {
+        Self { interrupt: interrupt.clone(), end: Some(TimeLimit::AtCheck { check, grace }) }
     }
 
     /// Whether work must stop.
     pub(crate) fn is_due(&self) -> bool {
-        self.interrupt.look() || self.end.is_some_and(|end| self.is_over(end))
+        self.interrupt.check() || self.end.is_some_and(|end| self.is_over(end))
     }
 
     fn is_over(&self, end: TimeLimit) -> bool {
         match end {
             TimeLimit::At(end) => Instant::now() >= end,
-            TimeLimit::AtLook { look, .. } => self.interrupt.looks() >= look,
+            TimeLimit::AtCheck { check, .. } => self.interrupt.checks() >= check,
         }
     }
 
@@ -155,7 +155,9 @@ impl StopSignal {
     pub(crate) fn with_grace(&self) -> Self {
         self.with_end(|end| match end {
             TimeLimit::At(end) => TimeLimit::At(end.checked_add(FIRST_BATCH_GRACE).unwrap_or(end)),
-            TimeLimit::AtLook { look, grace } => TimeLimit::AtLook { look: look + grace, grace },
+            TimeLimit::AtCheck { check, grace } => {
+                TimeLimit::AtCheck { check: check + grace, grace }
+            }
         })
     }
 
@@ -164,24 +166,24 @@ impl StopSignal {
         let now = Instant::now();
         self.with_end(|end| match end {
             TimeLimit::At(end) => TimeLimit::At(now + end.saturating_duration_since(now) / 2),
-            TimeLimit::AtLook { look, grace } => {
-                let left = look.saturating_sub(self.interrupt.looks());
-                TimeLimit::AtLook { look: look - left / 2, grace }
+            TimeLimit::AtCheck { check, grace } => {
+                let left = check.saturating_sub(self.interrupt.checks());
+                TimeLimit::AtCheck { check: check - left / 2, grace }
             }
         })
     }
 
-    /// Straight pieces of paths that fit in the remaining time; `None` if it is not limited. `time`
-    /// measures the time of a piece, s.
+    /// Segments of paths that fit in the remaining time; `None` if it is not limited. `time`
+    /// measures the time of a segment, s.
     pub(crate) fn work_left(&self, time: impl FnOnce() -> Option<f64>) -> Option<f64> {
         match self.end? {
             TimeLimit::At(end) => {
                 let time = time()?;
                 Some(end.saturating_duration_since(Instant::now()).as_secs_f64() / time)
             }
-            TimeLimit::AtLook { look, .. } => {
-                let left = look.saturating_sub(self.interrupt.looks());
-                Some(left as f64 * f64::from(LOOK_EVERY))
+            TimeLimit::AtCheck { check, .. } => {
+                let left = check.saturating_sub(self.interrupt.checks());
+                Some(left as f64 * f64::from(CHECK_EVERY))
             }
         }
     }
@@ -204,11 +206,11 @@ impl<'a> Pace<'a> {
     /// Checks the signal for the first time.
     pub fn new(signal: &'a StopSignal) -> Self {
         let pace = Self { signal, left: Cell::new(0), is_stopped: Cell::new(false) };
-        _ = pace.look();
+        _ = pace.check();
         pace
     }
 
-    /// Counts work, in straight pieces of paths; a break ends the batch.
+    /// Counts work, in segments of paths; a break ends the batch.
     #[inline(always)]
     pub(crate) fn spend(&self, work: u32) -> ControlFlow<()> {
         let left = self.left.get();
@@ -216,7 +218,7 @@ impl<'a> Pace<'a> {
             self.left.set(left - work);
             return ControlFlow::Continue(());
         }
-        self.look()
+        self.check()
     }
 
     /// Whether the batch must be dropped.
@@ -226,10 +228,10 @@ impl<'a> Pace<'a> {
 
     #[cold]
     #[inline(never)]
-    fn look(&self) -> ControlFlow<()> {
+    fn check(&self) -> ControlFlow<()> {
         // For a stopped batch nothing is left: every further piece of work gets here and ends.
         if !self.is_stopped() && !self.signal.is_due() {
-            self.left.set(LOOK_EVERY);
+            self.left.set(CHECK_EVERY);
             return ControlFlow::Continue(());
         }
         self.left.set(0);
@@ -243,22 +245,22 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_pace_looks_after_a_fixed_amount_of_work_and_stays_stopped() {
-        let interrupt = Interrupt::at_look(4);
+    fn a_pace_checks_after_a_fixed_amount_of_work_and_stays_stopped() {
+        let interrupt = Interrupt::at_check(4);
         let signal = StopSignal::new(&interrupt, None);
         let pace = Pace::new(&signal);
         let mut work = 0;
         while pace.spend(1).is_continue() {
             work += 1;
         }
-        assert_eq!(interrupt.looks(), 4);
-        assert_eq!(work, 3 * LOOK_EVERY - 1, "two looks went by, the third ended it");
+        assert_eq!(interrupt.checks(), 4);
+        assert_eq!(work, 3 * CHECK_EVERY - 1, "two checks went by, the third ended it");
         assert!(pace.is_stopped() && pace.spend(1).is_break());
-        assert_eq!(interrupt.looks(), 4, "a stopped batch does not look again");
+        assert_eq!(interrupt.checks(), 4, "a stopped batch does not check again");
     }
 
     #[test]
-    fn an_end_in_the_past_stops_at_the_first_look_unless_there_is_grace() {
+    fn an_end_in_the_past_stops_at_the_first_check_unless_there_is_grace() {
         let now = Instant::now();
         let signal = StopSignal::new(&Interrupt::default(), Some(now));
         assert!(Pace::new(&signal).is_stopped());

@@ -8,10 +8,10 @@
 #![allow(clippy::print_stdout, reason = "a bench prints its result")]
 
 use glam::DVec3;
-use lumiduct_core::optics::{Bsdf, FinishModel, Incidence, Spread};
+use lumiduct_core::optics::{Finish, FinishModel, Incidence, Spread};
 use lumiduct_core::rng::{Dimension, Sampler};
 use lumiduct_core::scene::shape::Toward;
-use lumiduct_core::scene::{FaceArea, On, Ray, Scene, SensorKind, SourceId};
+use lumiduct_core::scene::{FaceArea, Ray, Scene, SensorKind, SourceId, StartSurfaces};
 use lumiduct_core::tally::Tally;
 use lumiduct_core::transport::{Event, Path, Vertex, walk};
 use lumiduct_input::{self as input, Settings};
@@ -38,7 +38,7 @@ fn flux(scene: &Scene, batch: u64) -> f64 {
     let wall = scene
         .finishes
         .iter()
-        .find(|finish| matches!(finish.bsdf.kind(), Spread::Narrow(_)))
+        .find(|named| matches!(named.finish.spread(), Spread::Narrow(_)))
         .expect("the wall of the scene scatters");
     let SensorKind::Surface(sensor) = &scene.sensors[0].kind else {
         panic!("the sensor of the scene is a cell");
@@ -55,7 +55,7 @@ fn flux(scene: &Scene, batch: u64) -> f64 {
             if let Event::Arrive(vertex) = event {
                 let place = cell.sample(places.pair(Dimension::GatherPosition));
                 let place = place.expect("a cell has an area").point;
-                sum += joined(scene, &wall.bsdf, path, vertex, place, axis) * cell.area();
+                sum += joined(scene, &wall.finish, path, vertex, place, axis) * cell.area();
             }
             ControlFlow::Continue(())
         };
@@ -67,7 +67,7 @@ fn flux(scene: &Scene, batch: u64) -> f64 {
 /// Throughput per area that the wall at a vertex scatters to a point of the cell, 1/mm².
 fn joined(
     scene: &Scene,
-    wall: &Bsdf,
+    wall: &Finish,
     path: &Path,
     vertex: &Vertex<'_>,
     place: DVec3,
@@ -92,7 +92,7 @@ fn joined(
     }
     let ray = Ray::new(vertex.point, dir);
     let blocked = scene
-        .find_next(&ray, &On::hits(vertex.hits), &path.inside)
+        .find_next(&ray, &StartSurfaces::hits(vertex.hits), &path.inside)
         .is_some_and(|hits| hits.distance() < distance);
     if blocked {
         return 0.0;

@@ -4,7 +4,7 @@ use glam::DVec3;
 use lumiduct_base::math::{Aabb, Frame};
 use lumiduct_base::mesh::TriangleMesh;
 use lumiduct_base::units::FluxUnit;
-use lumiduct_core::optics::{Bsdf, Medium};
+use lumiduct_core::optics::{Finish, Medium};
 use lumiduct_core::scene::mesh::Mesh;
 use lumiduct_core::scene::shape::{ChartRect, Cylinder, Flat, Region, Shape};
 use lumiduct_core::scene::{
@@ -69,9 +69,9 @@ pub(crate) const B4: Rod = Rod {
 /// The scene of a tube; its one sensor is on the open exit.
 pub(crate) fn tube_scene(tube: &Tube) -> Scene {
     let mut builder = in_air();
-    let mirror = Bsdf::Specular { reflectance: tube.reflectance, transmittance: 0.0 };
+    let mirror = Finish::Specular { reflectance: tube.reflectance, transmittance: 0.0 };
     let mirror = builder.add_finish("mirror", mirror);
-    let black = builder.add_finish("black", Bsdf::Absorber);
+    let black = builder.add_finish("black", Finish::Absorber);
     builder.add_face(FaceSpec {
         name: "tube.wall".into(),
         owner: Owner::Sheet,

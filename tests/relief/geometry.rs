@@ -3,7 +3,7 @@
 use crate::{BODIES, LAMP, load};
 use glam::DVec3;
 use lumiduct_core::rng::{Dimension, Sampler};
-use lumiduct_core::scene::{Inside, Just, On, Ray, Scene, SolidId};
+use lumiduct_core::scene::{Inside, Ray, Scene, SolidId, StartSide, StartSurfaces};
 
 /// A direction not aligned with any axis.
 fn direction(sampler: &mut Sampler) -> DVec3 {
@@ -32,9 +32,9 @@ fn assert_is(name: &str, relief: &str, min: DVec3, max: DVec3, holds: impl Fn(DV
         let mut sampler = Sampler::for_path(77, 0, line);
         let start = point(&mut sampler, min, max);
         let mut ray = Ray::new(start, direction(&mut sampler));
-        let mut inside = scene.inside_at(&ray, Just::Ahead);
+        let mut inside = scene.inside_at(&ray, StartSide::Ahead);
         assert_eq!(inside.contains(solid), holds(start), "{relief}: {start}");
-        let mut on = On::default();
+        let mut on = StartSurfaces::default();
         while let Some(hits) = scene.find_next(&ray, &on, &inside) {
             // Rounding dominates shorter segments.
             if hits.distance() > 1e-9 {
@@ -47,7 +47,7 @@ fn assert_is(name: &str, relief: &str, min: DVec3, max: DVec3, holds: impl Fn(DV
                 );
             }
             hits.cross(&mut inside);
-            on = On::hits(&hits);
+            on = StartSurfaces::hits(&hits);
             ray = ray.advanced(hits.distance());
             crossed += 1;
         }

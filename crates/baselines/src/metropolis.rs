@@ -10,7 +10,7 @@
 use crate::one_sensor::OneSensor;
 use crate::primary::{Mutation, Primary};
 use lumiduct_core::rng::{Numbers, Sampler, stream};
-use lumiduct_core::transport::tally::readings::Counted;
+use lumiduct_core::transport::tally::readings::DetectedLight;
 use lumiduct_core::transport::walk::follow::follow;
 use lumiduct_core::transport::{Event, Observer, Path, Readings};
 use smallvec::SmallVec;
@@ -66,7 +66,7 @@ impl<'s> Metropolis<'s> {
 #[derive(Debug, Default)]
 struct SeenLight {
     cells: SmallVec<[usize; 1]>,
-    lights: SmallVec<[Counted; 2]>,
+    lights: SmallVec<[DetectedLight; 2]>,
     /// All of it, I, lm or W.
     flux: f64,
     segments: u64,
@@ -131,7 +131,7 @@ impl Chain<'_, '_> {
         }
         self.weight += weight;
         for light in &seen.lights {
-            let light = Counted { flux: weight * light.flux / seen.flux, ..*light };
+            let light = DetectedLight { flux: weight * light.flux / seen.flux, ..*light };
             self.metropolis.sensor.count(self.readings, &seen.cells, &light);
         }
     }
@@ -159,7 +159,7 @@ impl Observer for Looking {
         let Event::Meet(met) = event else { return ControlFlow::Continue(()) };
         let flux = met.radiance * self.etendue;
         self.seen.flux += flux;
-        self.seen.lights.push(Counted { flux, depth: path.depth, source: met.source });
+        self.seen.lights.push(DetectedLight { flux, depth: path.depth, source: met.source });
         ControlFlow::Continue(())
     }
 }

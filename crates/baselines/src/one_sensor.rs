@@ -3,7 +3,7 @@
 use lumiduct_core::plan::RunPlan;
 use lumiduct_core::rng::{Sampler, stream};
 use lumiduct_core::scene::{Arrival, Arrivals, Scene, SensorId};
-use lumiduct_core::transport::tally::readings::Counted;
+use lumiduct_core::transport::tally::readings::DetectedLight;
 use lumiduct_core::transport::walk::emitters::Emitters;
 use lumiduct_core::transport::walk::follow::{Gathering, follow};
 use lumiduct_core::transport::{Layout, Path, Readings, Unobserved};
@@ -61,7 +61,7 @@ impl<'s> OneSensor<'s> {
         Readings::of_batch(self.scene, &self.layout, self.seed, paths, batch)
     }
 
-    pub(crate) fn count(&self, readings: &mut Readings, cells: &[usize], light: &Counted) {
+    pub(crate) fn count(&self, readings: &mut Readings, cells: &[usize], light: &DetectedLight) {
         readings.count((&self.layout, &self.scene.light), self.id, cells, light);
     }
 

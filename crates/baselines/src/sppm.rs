@@ -20,7 +20,7 @@ use lumiduct_core::transport::gather::records::{
 use lumiduct_core::transport::gather::settings::settle;
 use lumiduct_core::transport::gather::surfaces::SurfaceNumbers;
 use lumiduct_core::transport::stop::{Pace, StopSignal};
-use lumiduct_core::transport::tally::readings::Counted;
+use lumiduct_core::transport::tally::readings::DetectedLight;
 use lumiduct_core::transport::walk::follow::follow;
 use lumiduct_core::transport::walk::scatter::facing;
 use lumiduct_core::transport::{
@@ -170,7 +170,7 @@ impl Observer for Gatherer<'_, '_> {
 impl Gatherer<'_, '_> {
     fn meet(&mut self, path: &Path, met: &MetEmission) {
         let (flux, depth) = (met.radiance * self.etendue, path.depth);
-        let light = Counted { flux, depth, source: met.source };
+        let light = DetectedLight { flux, depth, source: met.source };
         self.sppm.sensor.count(self.readings, self.cells, &light);
     }
 
@@ -182,7 +182,7 @@ impl Gatherer<'_, '_> {
             (facing.faces.own, facing.facet, interface.from),
             (facing.faces.behind, -facing.facet, interface.to),
         ];
-        for (bsdf, normal, medium) in sides.into_iter().filter(|side| !side.0.is_specular()) {
+        for (finish, normal, medium) in sides.into_iter().filter(|side| !side.0.is_specular()) {
             // L* of the light that leaves, in the medium of the gather path: docs/method.md, eq. (22), over its n².
             let index = facing.incidence.index_from;
             let value = self.etendue * vertex.throughput / (index * index);
@@ -193,7 +193,7 @@ impl Gatherer<'_, '_> {
                 normal,
                 surface: surfaces.of(interface.acting.prim),
                 medium,
-                kind: RecordKind::Scattered { bsdf, out: -vertex.dir },
+                kind: RecordKind::Scattered { finish, out: -vertex.dir },
                 values,
                 path: RecordPath {
                     place: self.waiting.cells.len() as u32 - 1,
@@ -258,7 +258,7 @@ impl SppmStream<'_, '_> {
             let Some([share, ..]) = nested.flux(record, &photon) else { return };
             let (flux, depth) =
                 (flux * vertex.throughput * share, path.depth + record.path().depth);
-            let light = Counted { flux, depth, source };
+            let light = DetectedLight { flux, depth, source };
             sensor.count(readings, &cells[record.path().place as usize], &light);
         });
     }

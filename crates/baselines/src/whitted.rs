@@ -8,10 +8,10 @@
 use crate::one_sensor::{BaselineBatch, OneSensor};
 use lumiduct_core::optics::{FinishModel, Scattered, Side};
 use lumiduct_core::rng::{Sampler, stream};
-use lumiduct_core::scene::{On, Ray};
-use lumiduct_core::transport::tally::readings::Counted;
+use lumiduct_core::scene::{Ray, StartSurfaces};
+use lumiduct_core::transport::tally::readings::DetectedLight;
 use lumiduct_core::transport::walk::follow::{follow, follow_on};
-use lumiduct_core::transport::walk::scatter::{facing, scatter_radiance};
+use lumiduct_core::transport::walk::scatter::{facing, scatter_gather_path};
 use lumiduct_core::transport::{Event, MetEmission, Observer, Path, Readings, Vertex};
 use std::ops::ControlFlow;
 
@@ -105,7 +105,7 @@ impl Splitter<'_, '_> {
         let mut next = Path {
             ray: Ray::new(vertex.point, out.dir),
             throughput: 1.0,
-            on: On::hits(vertex.hits),
+            on: StartSurfaces::hits(vertex.hits),
             depth: path.depth + 1,
             ..path.clone()
         };
@@ -144,7 +144,7 @@ impl Observer for Splitter<'_, '_> {
 impl Splitter<'_, '_> {
     fn meet(&mut self, path: &Path, met: &MetEmission) {
         let flux = met.radiance * self.factor * self.etendue;
-        let light = Counted { flux, depth: path.depth, source: met.source };
+        let light = DetectedLight { flux, depth: path.depth, source: met.source };
         self.whitted.sensor.count(self.readings, self.cells, &light);
     }
 
@@ -159,7 +159,7 @@ impl Splitter<'_, '_> {
                     self.push(path, vertex, facing.corrected(out));
                 }
             }
-        } else if let Some(out) = scatter_radiance(scene, path, vertex, &mut self.sampler) {
+        } else if let Some(out) = scatter_gather_path(scene, path, vertex, &mut self.sampler) {
             self.push(path, vertex, out);
         }
     }

@@ -2,8 +2,8 @@
 
 use lumiduct_base::number::format_value;
 use lumiduct_core::optics::film::{acceptance_angle, along_prisms};
-use lumiduct_core::optics::{Bsdf, FilmFace, Incidence, PrismFilm, Shares};
-use lumiduct_core::scene::Finish;
+use lumiduct_core::optics::{FilmFace, Finish, Incidence, PrismFilm, Shares};
+use lumiduct_core::scene::NamedFinish;
 use std::f64::consts::FRAC_PI_2;
 use std::fmt::Write;
 
@@ -13,24 +13,24 @@ const PLACES: u32 = 1000;
 /// A table of reflectance, transmittance and loss for each prism film among some finishes, lit from
 /// both sides, in steps of the angle from the normal, in degrees, in the plane along the prisms and
 /// the plane across them; `None` without any film. `index` is that of the medium around them, 1.
-pub fn film_tables(finishes: &[Finish], index: f64, step_deg: f64) -> Option<String> {
+pub fn film_tables(finishes: &[NamedFinish], index: f64, step_deg: f64) -> Option<String> {
     let tables: Vec<String> = finishes
         .iter()
         .enumerate()
-        .filter_map(|(place, finish)| {
-            let Bsdf::PrismFilm { film, .. } = &finish.bsdf else { return None };
+        .filter_map(|(place, named)| {
+            let Finish::PrismFilm { film, .. } = &named.finish else { return None };
             // The back of a film is the same film and is in its table.
-            (!is_behind(finish, &finishes[..place]))
-                .then(|| table(&finish.name, film, index, step_deg))
+            (!is_behind(named, &finishes[..place]))
+                .then(|| table(&named.name, film, index, step_deg))
         })
         .collect();
     (!tables.is_empty()).then(|| tables.join("\n"))
 }
 
 /// Whether a finish is the back of one of those before it.
-fn is_behind(finish: &Finish, finishes: &[Finish]) -> bool {
-    let front = finish.bsdf.from_behind();
-    finishes.iter().any(|other| Some(&other.bsdf) == front.as_ref())
+fn is_behind(named: &NamedFinish, finishes: &[NamedFinish]) -> bool {
+    let front = named.finish.from_behind();
+    finishes.iter().any(|other| Some(&other.finish) == front.as_ref())
 }
 
 fn table(name: &str, film: &PrismFilm, index: f64, step_deg: f64) -> String {

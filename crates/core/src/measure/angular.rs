@@ -8,9 +8,9 @@
 #[cfg(test)]
 mod tests;
 
-use crate::measure::counted::{Noisy, WeightedValue};
-use crate::measure::evidence::{Evidence, counted};
+use crate::measure::evidence::{Evidence, status_by_error};
 use crate::measure::light::LightSelection;
+use crate::measure::noisy::{Noisy, WeightedValue};
 use crate::measure::{Measure, Status, beam, uniformity};
 use crate::scene::{Goniometer, SensorId};
 use indexmap::IndexMap;
@@ -310,7 +310,7 @@ fn angles(
 
 /// A value as a measure; where nothing was counted, its error is one count.
 fn single(evidence: &Evidence<'_>, found: Noisy, unit: &str) -> Measure {
-    let status = counted(found.value, found.std_error);
+    let status = status_by_error(found.value, found.std_error);
     let std_error = if status == Status::NoSignal { found.count } else { found.std_error };
     evidence.measure(found.value, std_error, unit, status)
 }

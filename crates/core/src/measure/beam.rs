@@ -9,9 +9,9 @@
 //! deg.
 
 use crate::measure::Status;
-use crate::measure::counted::{Noisy, NoisySample, WeightedValue};
-use crate::measure::evidence::counted;
+use crate::measure::evidence::status_by_error;
 use crate::measure::noise::Noise;
+use crate::measure::noisy::{Noisy, NoisySample, WeightedValue};
 use crate::measure::smoothing::Smoothing;
 use crate::tally::Tally;
 use std::f64::consts::{PI, TAU};
@@ -61,7 +61,7 @@ pub(crate) fn full_angle(gammas: &[f64], halves: [&[Noisy]; 2], share: f64) -> O
     let averaging = plane.averaging(read);
     let angle = |line: &[f64], averaging: &Averaging| plane.angle(gammas, line, share, averaging);
     let value = angle(read, &averaging);
-    let status = counted(peak.value, peak.std_error);
+    let status = status_by_error(peak.value, peak.std_error);
     let rings =
         plane.split(read, |halves| ring_bias(gammas, halves, |halves| share * highest_of(halves)));
     if plane.parts.iter().any(|part| !part.read.std_error.is_finite()) {

@@ -6,9 +6,9 @@
 //! counts. For the extremes they are merged with their neighbours along the rim until half a cell
 //! is full, so that all light of the sensor counts and the average lies between the extremes.
 
-use crate::measure::counted::{Noisy, WeightedValue};
 use crate::measure::evidence::Evidence;
 use crate::measure::light::LightSelection;
+use crate::measure::noisy::{Noisy, WeightedValue};
 use crate::scene::{Grid, Seeing, SensorId, SurfaceSensor};
 use glam::DVec2;
 use lumiduct_base::units::MM2_PER_M2;

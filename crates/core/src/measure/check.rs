@@ -205,7 +205,7 @@ pub fn nearest<'a>(word: &str, names: impl Iterator<Item = &'a str>) -> Vec<&'a 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measure::record::tests::measure;
+    use crate::measure::value::tests::measure;
 
     fn check() -> Check {
         Check {

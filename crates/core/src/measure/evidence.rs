@@ -169,11 +169,11 @@ impl<'a> Evidence<'a> {
 
 /// Whether a positive value with this error can be relied on.
 fn trust(value: f64, std_error: f64, lit_groups: usize) -> Status {
-    if lit_groups < MIN_LIT_GROUPS { Status::TooFew } else { counted(value, std_error) }
+    if lit_groups < MIN_LIT_GROUPS { Status::TooFew } else { status_by_error(value, std_error) }
 }
 
 /// Whether enough was counted for a positive value: by its relative error.
-pub(crate) fn counted(value: f64, std_error: f64) -> Status {
+pub(crate) fn status_by_error(value: f64, std_error: f64) -> Status {
     if value == 0.0 {
         Status::NoSignal
     } else if std_error * std_error * MIN_COUNTS <= value * value {

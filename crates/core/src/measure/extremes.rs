@@ -11,8 +11,8 @@
 //!
 //! This module does not know sensors. Units are those of its input.
 
-use crate::measure::counted::{NoisySample, WeightedValue};
 use crate::measure::noise::Noise;
+use crate::measure::noisy::{NoisySample, WeightedValue};
 use crate::tally::Tally;
 
 /// Drawings: the error of an error is then 9 %.
@@ -45,7 +45,7 @@ const NONE_COUNTED: f64 = 3.69;
 
 /// A statistic of some values.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Extreme {
+pub(crate) struct CorrectedStatistic {
     /// As read.
     pub(crate) raw: f64,
     /// Corrected.
@@ -73,12 +73,12 @@ pub(crate) struct Evenness<T> {
 }
 
 /// The largest value alone.
-pub(crate) fn maximum(parts: &[WeightedValue]) -> Extreme {
+pub(crate) fn maximum(parts: &[WeightedValue]) -> CorrectedStatistic {
     evenness(parts).max
 }
 
 /// Extremes and spread of at least one value. Neighbours in the list are neighbours on the sensor.
-pub(crate) fn evenness(parts: &[WeightedValue]) -> Evenness<Extreme> {
+pub(crate) fn evenness(parts: &[WeightedValue]) -> Evenness<CorrectedStatistic> {
     let sample = NoisySample::of(parts);
     let raw = statistics(&sample, &sample.values, &sample.values, 0.0);
     if parts.iter().any(|part| !part.read.std_error.is_finite()) {
@@ -101,7 +101,8 @@ pub(crate) fn evenness(parts: &[WeightedValue]) -> Evenness<Extreme> {
         judge(ExtremeSide::Smallest, |one| one.min, &drawn.min).below(mean).not_counted(count),
         judge(ExtremeSide::Largest, |one| one.max, &drawn.max).above(mean),
     ];
-    let relative = |extreme: Extreme, whole: f64| extreme.not_counted(count / whole).below(1.0);
+    let relative =
+        |extreme: CorrectedStatistic, whole: f64| extreme.not_counted(count / whole).below(1.0);
     Evenness {
         min,
         max,
@@ -168,22 +169,22 @@ fn scatter(sample: &NoisySample, means: &[f64]) -> Evenness<Tally> {
 }
 
 /// A statistic of values without noise.
-fn exact(raw: f64) -> Extreme {
-    Extreme { raw, value: raw, std_error: 0.0, bias: 0.0, interval: [raw; 2] }
+fn exact(raw: f64) -> CorrectedStatistic {
+    CorrectedStatistic { raw, value: raw, std_error: 0.0, bias: 0.0, interval: [raw; 2] }
 }
 
 /// A statistic of unknown error.
-fn unknown(raw: f64) -> Extreme {
+fn unknown(raw: f64) -> CorrectedStatistic {
     let interval = [0.0, f64::INFINITY];
-    Extreme { raw, value: raw, std_error: f64::INFINITY, bias: 0.0, interval }
+    CorrectedStatistic { raw, value: raw, std_error: f64::INFINITY, bias: 0.0, interval }
 }
 
 /// The coefficient of variation, from which the variance of the noise is already subtracted. Its
 /// interval is that of the variance, which has no bound at zero.
-fn variation([raw, found]: [&Evenness<f64>; 2], drawn: &Evenness<Tally>) -> Extreme {
+fn variation([raw, found]: [&Evenness<f64>; 2], drawn: &Evenness<Tally>) -> CorrectedStatistic {
     let reach = TWO_SIDED_95 * SCATTER_OF_CV * drawn.variance.std_deviation();
     let root = |variance: f64| variance.max(0.0).sqrt();
-    Extreme {
+    CorrectedStatistic {
         raw: raw.cv,
         value: found.cv,
         std_error: SCATTER_OF_CV * drawn.cv.std_deviation(),
@@ -207,7 +208,7 @@ fn corrected(
     cells: usize,
     [raw, found, centre]: [f64; 3],
     drawn: &Tally,
-) -> Extreme {
+) -> CorrectedStatistic {
     let deviation = drawn.mean() - centre;
     let std_error = (1.0 + SCATTER * (cells as f64).ln()) * drawn.std_deviation();
     let [below, above] = match side {
@@ -217,7 +218,7 @@ fn corrected(
     };
     let value = (found - BIAS_TAKEN * deviation).max(0.0);
     let reach = TWO_SIDED_95 * std_error;
-    Extreme {
+    CorrectedStatistic {
         raw,
         value,
         std_error,
@@ -226,7 +227,7 @@ fn corrected(
     }
 }
 
-impl Extreme {
+impl CorrectedStatistic {
     /// The same, limited to at most this.
     fn below(self, limit: f64) -> Self {
         let value = self.value.min(limit);
@@ -258,7 +259,7 @@ impl Extreme {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measure::counted::Noisy;
+    use crate::measure::noisy::Noisy;
     use crate::measure::trials::counted;
 
     #[test]

@@ -5,9 +5,9 @@
 mod tests;
 
 use crate::measure::cells::SensorCells;
-use crate::measure::counted::{Noisy, WeightedValue};
 use crate::measure::evidence::Evidence;
 use crate::measure::light::LightSelection;
+use crate::measure::noisy::{Noisy, WeightedValue};
 use crate::measure::points;
 use crate::measure::uniformity::{Uniformity, UniformitySummary, ValueField, uniformity};
 use crate::scene::{Grid, Seeing, SensorId, SurfaceSensor};

@@ -11,7 +11,6 @@ mod balance;
 mod beam;
 mod cells;
 mod check;
-mod counted;
 mod evidence;
 mod extremes;
 mod flux;
@@ -21,10 +20,10 @@ mod light;
 mod map;
 mod multiscale;
 mod noise;
+mod noisy;
 mod paths;
 mod points;
 mod readout;
-mod record;
 mod replicates;
 #[cfg(test)]
 pub(crate) mod samples;
@@ -35,6 +34,7 @@ mod tests;
 #[cfg(test)]
 mod trials;
 mod uniformity;
+mod value;
 
 pub use angular::{IntensityTable, PlaneCurve};
 pub use balance::Balance;
@@ -42,9 +42,9 @@ pub use cells::not_below_zero;
 pub use check::{CheckOutcome, Verdict, nearest, verdict};
 pub use map::{MapAxes, SensorMap};
 pub use paths::{Action, ClassExtent, LostPaths, PathClass, PathStep, SensorPaths, strongest};
-pub use record::{Measure, Status};
 pub use replicates::Replicates;
 pub use uniformity::{Statistic, Uniformity};
+pub use value::{Measure, Status};
 
 use crate::measure::evidence::Evidence;
 use crate::plan::Estimator;
@@ -92,7 +92,7 @@ pub struct Measures {
     pub batches: u64,
     /// Paths traced.
     pub paths: u64,
-    /// Straight pieces traced.
+    /// Segments traced.
     pub segments: u64,
 }
 

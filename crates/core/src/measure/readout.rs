@@ -2,10 +2,10 @@
 //! and rings by name; cells and rings for all light only.
 
 use crate::measure::cells::SensorCells;
-use crate::measure::counted::Noisy;
-use crate::measure::evidence::{Evidence, counted};
+use crate::measure::evidence::{Evidence, status_by_error};
 use crate::measure::light::LightSelection;
 use crate::measure::map::{SensorMap, map_grid};
+use crate::measure::noisy::Noisy;
 use crate::measure::uniformity::Statistic;
 use crate::measure::{Measure, Status, points};
 use crate::scene::{Grid, Seeing, SensorId, SurfaceSensor};
@@ -106,7 +106,7 @@ fn cell_measures(
 
 /// A cell as a measure; where nothing was counted, its error is one count.
 fn cell_measure(evidence: &Evidence<'_>, map: &SensorMap, cell: Noisy) -> Measure {
-    let status = counted(cell.value, cell.std_error);
+    let status = status_by_error(cell.value, cell.std_error);
     let std_error = if status == Status::NoSignal { cell.count } else { cell.std_error };
     evidence.measure(cell.value, std_error, &map.unit, status)
 }

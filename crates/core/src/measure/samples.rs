@@ -1,6 +1,6 @@
 //! Scenes and readings made by hand, for the tests of this layer.
 
-use crate::optics::{Bsdf, Medium};
+use crate::optics::{Finish, Medium};
 use crate::scene::shape::{ChartRect, Flat, Region, Shape};
 use crate::scene::{
     Builder, CountedLight, Emission, EmitSide, Emitter, FacePiece, FaceSpec, Goniometer, Grid,
@@ -15,7 +15,7 @@ use lumiduct_base::units::FluxUnit;
 /// A scene with a black sheet `wall.surface` and the named sources and sensors; surface sensors are ports of their own.
 pub(crate) fn scene(sources: &[(&str, f64)], sensors: Vec<(&str, SensorKind)>) -> Scene {
     let mut builder = Builder::new(DVec3::ZERO, Medium::new("air", 1.0, 0.0), FluxUnit::Lumen);
-    let black = builder.add_finish("black", Bsdf::Absorber);
+    let black = builder.add_finish("black", Finish::Absorber);
     let wall = Flat::new(Frame::WORLD, Region::Rectangle { half_x: 1.0, half_y: 1.0 });
     let wall = builder.add_face(FaceSpec {
         name: "wall.surface".into(),

@@ -1,6 +1,6 @@
 //! A curve over rings about the pole, averaged over as many rings as its noise requires.
 
-use crate::measure::counted::NoisySample;
+use crate::measure::noisy::NoisySample;
 
 /// The number of rings on each side over which each ring of a curve is averaged.
 #[derive(Debug, Clone)]
@@ -72,7 +72,7 @@ fn mirrored(rings: usize, at: usize) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measure::counted::{Noisy, WeightedValue};
+    use crate::measure::noisy::{Noisy, WeightedValue};
 
     fn sample(counts: &[f64]) -> NoisySample {
         let read = |&value: &f64| Noisy { value, std_error: value.sqrt(), count: 1.0 };

@@ -5,9 +5,9 @@
 
 use crate::measure::angular::sphere_cells;
 use crate::measure::beam::full_angle;
-use crate::measure::counted::{Noisy, WeightedValue};
-use crate::measure::extremes::{Evenness, Extreme, TWO_SIDED_95, evenness, maximum};
+use crate::measure::extremes::{CorrectedStatistic, Evenness, TWO_SIDED_95, evenness, maximum};
 use crate::measure::noise::Noise;
+use crate::measure::noisy::{Noisy, WeightedValue};
 use crate::tally::Tally;
 use std::f64::consts::PI;
 
@@ -162,7 +162,7 @@ fn field_trials(name: &str, field: &[Cell], counts: f64, trials: usize) -> [Stat
     let mut found = [const { Vec::<StatisticTrial>::new() }; 3];
     for _ in 0..trials {
         let Evenness { min_avg, min_max, cv, .. } = evenness(&counted(field, counts, &mut noise));
-        for (all, Extreme { value, std_error, interval, .. }) in
+        for (all, CorrectedStatistic { value, std_error, interval, .. }) in
             found.iter_mut().zip([min_avg, min_max, cv])
         {
             all.push(StatisticTrial { value, std_error, interval });
@@ -267,7 +267,7 @@ fn peak_trials(power: f64, counts: f64, trials: usize) -> StatisticTrials {
                 WeightedValue { read, weight: size(ring) }
             })
             .collect();
-        let Extreme { value, std_error, interval, .. } = maximum(&parts);
+        let CorrectedStatistic { value, std_error, interval, .. } = maximum(&parts);
         found.push(StatisticTrial { value, std_error, interval });
     }
     let name = format!("cos^{power}, 90 rings of 24 {counts} peak");

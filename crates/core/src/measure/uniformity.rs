@@ -5,9 +5,9 @@
 //! on the size of the cells, and have an interval for 95 of 100 cases. This module knows values and
 //! areas, not sensors.
 
-use crate::measure::counted::WeightedValue;
-use crate::measure::evidence::{Evidence, MIN_COUNTS, counted, enough_batches};
-use crate::measure::extremes::{Extreme, TWO_SIDED_95, evenness, maximum};
+use crate::measure::evidence::{Evidence, MIN_COUNTS, enough_batches, status_by_error};
+use crate::measure::extremes::{CorrectedStatistic, TWO_SIDED_95, evenness, maximum};
+use crate::measure::noisy::WeightedValue;
 use crate::measure::{Measure, Status};
 use serde::Serialize;
 
@@ -114,7 +114,8 @@ impl ValueField<'_> {
         let reads = self.cells.iter().map(|part| part.read);
         match reads.max_by(|a, b| a.value.total_cmp(&b.value)) {
             Some(largest) if status == Status::TooFew => {
-                counted(largest.value, largest.std_error).worst(enough_batches(self.batches))
+                status_by_error(largest.value, largest.std_error)
+                    .worst(enough_batches(self.batches))
             }
             Some(_) | None => status,
         }
@@ -156,7 +157,8 @@ pub(crate) fn largest(cells: &[WeightedValue], batches: u64) -> Statistic {
     let reads = cells.iter().map(|part| part.read);
     match reads.max_by(|a, b| a.value.total_cmp(&b.value)) {
         Some(largest) if largest.value > 0.0 => {
-            let status = counted(largest.value, largest.std_error).worst(enough_batches(batches));
+            let status =
+                status_by_error(largest.value, largest.std_error).worst(enough_batches(batches));
             let found = maximum(cells);
             extreme(&found, HIGH, found.raw, status)
         }
@@ -179,7 +181,7 @@ fn average(field: &ValueField<'_>, status: Status) -> Statistic {
 
 /// A corrected statistic. Where the correction is large against `scale`, noise hides the value, and
 /// it is replaced by a bound of the interval.
-fn extreme(found: &Extreme, end: usize, scale: f64, status: Status) -> Statistic {
+fn extreme(found: &CorrectedStatistic, end: usize, scale: f64, status: Status) -> Statistic {
     let is_hidden = (found.value - found.raw).abs() > NOISE_LIMIT * scale;
     let value = if is_hidden { found.interval[end] } else { found.value };
     Statistic {
@@ -231,8 +233,8 @@ impl Statistic {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measure::counted::Noisy;
     use crate::measure::noise::Noise;
+    use crate::measure::noisy::Noisy;
 
     fn cell(value: f64, std_error: f64) -> WeightedValue {
         WeightedValue { read: Noisy { value, std_error, count: 0.0 }, weight: 1.0 }

@@ -17,9 +17,9 @@ mod volume;
 
 pub use angle_table::AngleTable;
 pub use film::{FilmFace, FilmMake, Grain, PrismFilm};
-pub use finish::Bsdf;
+pub use finish::Finish;
 pub use finish::faces::Faces;
-pub(crate) use finish::faces::scatter_radiance;
+pub(crate) use finish::faces::scatter_at_faces;
 pub use finish::haze::{Haze, HazeBase, HazeSides, integrated_scatter};
 pub use finish::microfacet::{FacetKind, Microfacet};
 pub use finish::model::{FinishModel, Spread};

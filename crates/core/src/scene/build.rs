@@ -1,15 +1,15 @@
 //! Putting a scene together: tables first, then the whole.
 
-use crate::optics::{Bsdf, Medium};
+use crate::optics::{Finish, Medium};
 use crate::scene::crossing::convex::{Convex, ConvexSolids};
 use crate::scene::mesh::Mesh;
 use crate::scene::pattern::Pattern;
 use crate::scene::relief::surfaces::surfaces;
 use crate::scene::relief::{PatchCut, Relief, ReliefWall, Trim};
 use crate::scene::{
-    Accel, COINCIDENCE, Face, FaceId, FacePiece, Finish, FinishId, LightGroups, MediumId, MeshBody,
-    Owner, Patch, PieceRange, PrimId, Scene, Sensor, SensorId, SensorKind, Solid, SolidId, Source,
-    SourceId,
+    Accel, COINCIDENCE, Face, FaceId, FacePiece, FinishId, LightGroups, MediumId, MeshBody,
+    NamedFinish, Owner, Patch, PieceRange, PrimId, Scene, Sensor, SensorId, SensorKind, Solid,
+    SolidId, Source, SourceId,
 };
 use glam::DVec3;
 use lumiduct_base::math::Aabb;
@@ -81,8 +81,8 @@ impl Builder {
     }
 
     /// Adds a finish.
-    pub fn add_finish(&mut self, name: &str, bsdf: Bsdf) -> FinishId {
-        self.scene.finishes.push(Finish { name: name.to_owned(), bsdf });
+    pub fn add_finish(&mut self, name: &str, finish: Finish) -> FinishId {
+        self.scene.finishes.push(NamedFinish { name: name.to_owned(), finish });
         FinishId::new(self.scene.finishes.len() - 1)
     }
 

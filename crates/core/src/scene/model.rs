@@ -1,6 +1,6 @@
 //! Everything a path can meet, and the media and finishes that it is made of.
 
-use crate::optics::{Bsdf, Medium};
+use crate::optics::{Finish, Medium};
 use crate::scene::crossing::convex::Convex;
 use crate::scene::pattern::Pattern;
 use crate::scene::relief::Relief;
@@ -33,11 +33,11 @@ pub struct Solid {
 
 /// A finish with its name.
 #[derive(Debug, Clone)]
-pub struct Finish {
+pub struct NamedFinish {
     /// Name in the scene file, or a description of an inline one.
     pub name: String,
     /// Its scattering function.
-    pub bsdf: Bsdf,
+    pub finish: Finish,
 }
 
 /// Everything a path can meet, ready to be traced. Made by [`Builder`](crate::scene::Builder).
@@ -54,7 +54,7 @@ pub struct Scene {
     /// The medium outside every solid.
     pub surroundings: MediumId,
     /// All finishes.
-    pub finishes: Vec<Finish>,
+    pub finishes: Vec<NamedFinish>,
     /// All solids.
     pub solids: Vec<Solid>,
     /// All faces: of solids, of sheets, and open ports.

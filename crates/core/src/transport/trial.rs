@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 pub(crate) const BATCHES: u64 = 16;
 /// The pilot uses random numbers of another seed, so that its paths do not count again in the run.
 pub(crate) const SEED: u64 = 0x7069_6c6f_7431;
-/// Straight pieces of photon paths in an automatic pass of gathering: seconds of work, so that the
+/// Segments of photon paths in an automatic pass of gathering: seconds of work, so that the
 /// first stage ends soon.
 pub(crate) const PASS_SEGMENTS: f64 = 4e6;
 
@@ -77,20 +77,20 @@ pub(crate) struct Tried {
 /// Measurements by pilot photons.
 #[derive(Debug, Clone, Copy)]
 pub struct PhotonPilot {
-    /// Mean number of straight pieces of a photon path.
+    /// Mean number of segments of a photon path.
     pub(crate) segments_per_path: f64,
-    /// Straight pieces of photon paths in an automatic pass of gathering.
+    /// Segments of photon paths in an automatic pass of gathering.
     pub(crate) pass_segments: f64,
     is_limited: bool,
 }
 
 impl PhotonPilot {
-    /// Photons with this many straight pieces per path, in passes of the usual size.
+    /// Photons with this many segments per path, in passes of the usual size.
     pub fn new(segments_per_path: f64) -> Self {
         Self { segments_per_path, pass_segments: PASS_SEGMENTS, is_limited: false }
     }
 
-    /// The same for a run of limited time, with passes of at most this many straight pieces.
+    /// The same for a run of limited time, with passes of at most this many segments.
     pub(crate) fn with_passes_up_to(self, segments: f64) -> Self {
         Self { pass_segments: self.pass_segments.min(segments), is_limited: true, ..self }
     }

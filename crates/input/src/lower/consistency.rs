@@ -7,7 +7,7 @@ use crate::spec::SceneSpec;
 use glam::DVec3;
 use lumiduct_core::optics::FinishModel;
 use lumiduct_core::rng::{Dimension, Sampler};
-use lumiduct_core::scene::{FinishId, Just, Owner, Ray, Scene, Solid, SolidId};
+use lumiduct_core::scene::{FinishId, Owner, Ray, Scene, Solid, SolidId, StartSide};
 
 /// Points tried in the space common to the boxes of two solids.
 const PROBES: u64 = 512;
@@ -47,7 +47,8 @@ fn common_point(scene: &Scene, first: SolidId, second: SolidId) -> Option<DVec3>
         let w = sampler.one(Dimension::EmitPosition);
         let point = min + DVec3::new(u, v, w) * (max - min);
         // A direction not aligned with any axis.
-        let inside = scene.inside_at(&Ray::new(point, DVec3::new(0.41, 0.57, 0.71)), Just::Ahead);
+        let inside =
+            scene.inside_at(&Ray::new(point, DVec3::new(0.41, 0.57, 0.71)), StartSide::Ahead);
         (inside.contains(first) && inside.contains(second)).then_some(point)
     })
 }
@@ -60,7 +61,7 @@ pub(super) fn check_open_faces(spec: &SceneSpec, scene: &Scene, problems: &mut P
         let solid = &scene.solids[solid.index()];
         let [inside, outside] =
             [solid.medium, scene.surroundings].map(|medium| scene.media[medium.index()].index(0.0));
-        let is_open = scene.finishes[finish.index()].bsdf.passes_straight();
+        let is_open = scene.finishes[finish.index()].finish.passes_straight();
         let step =
             format!("lets light pass straight on, but the index steps from {inside} to {outside}");
         (inside != outside && is_open).then_some((solid, step))

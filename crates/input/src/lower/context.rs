@@ -10,7 +10,7 @@ use glam::DVec3;
 use indexmap::{IndexMap, IndexSet};
 use lumiduct_base::digest::Digest;
 use lumiduct_base::math::Frame;
-use lumiduct_core::optics::Bsdf;
+use lumiduct_core::optics::Finish;
 use lumiduct_core::scene::{Builder, FaceId, FinishId, MediumId};
 
 /// How far to go.
@@ -33,7 +33,7 @@ pub(super) struct Context<'a> {
     pub(super) media: IndexMap<String, MediumId>,
     pub(super) finishes: IndexMap<String, FinishId>,
     /// The named finishes that were looked at so far; `None` for one with a problem.
-    pub(super) bsdfs: IndexMap<String, Option<Bsdf>>,
+    pub(super) named_finishes: IndexMap<String, Option<Finish>>,
     /// The back of finishes, as far as it was requested.
     pub(super) behind: IndexMap<FinishId, FinishId>,
     /// Faces by dotted name; a name such as `duct.wall` may refer to several.
@@ -59,7 +59,7 @@ impl<'a> Context<'a> {
             meshes: Digest::default(),
             media: IndexMap::from([(crate::spec::AIR.to_owned(), MediumId::new(0))]),
             finishes: IndexMap::new(),
-            bsdfs: IndexMap::new(),
+            named_finishes: IndexMap::new(),
             behind: IndexMap::new(),
             faces: IndexMap::new(),
             members: Vec::new(),

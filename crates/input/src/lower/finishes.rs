@@ -9,7 +9,7 @@ use crate::spec::finish::{
 };
 use indexmap::{IndexMap, IndexSet};
 use lumiduct_core::optics::{
-    Bsdf, FacetKind, FilmFace, FilmMake, Gaussian, Grain, Microfacet, PrismFilm,
+    FacetKind, FilmFace, FilmMake, Finish, Gaussian, Grain, Microfacet, PrismFilm,
 };
 use lumiduct_core::scene::FinishId;
 
@@ -35,15 +35,15 @@ struct OpenMixtures<'a> {
 impl<'a> Context<'a> {
     /// Adds the named finishes, the predefined ones first; a definition of the same name wins.
     pub(super) fn lower_finishes(&mut self) {
-        let predefined = [Bsdf::Smooth, Bsdf::Absorber, Bsdf::Open];
-        for (name, bsdf) in PREDEFINED_FINISHES.into_iter().zip(predefined) {
-            let id = self.builder.add_finish(name, bsdf);
+        let predefined = [Finish::Smooth, Finish::Absorber, Finish::Open];
+        for (name, finish) in PREDEFINED_FINISHES.into_iter().zip(predefined) {
+            let id = self.builder.add_finish(name, finish);
             self.finishes.insert(name.to_owned(), id);
         }
         let mut mixing = OpenMixtures::default();
         for (name, spec) in &self.spec.finishes {
-            if let Some(bsdf) = self.named(name, spec, &mut mixing) {
-                let id = self.builder.add_finish(name, bsdf);
+            if let Some(finish) = self.named(name, spec, &mut mixing) {
+                let id = self.builder.add_finish(name, finish);
                 self.finishes.insert(name.clone(), id);
             } else {
                 self.finishes.shift_remove(name);
@@ -68,8 +68,8 @@ impl<'a> Context<'a> {
                 finish
             }
             FinishRef::Inline(spec) => {
-                let bsdf = self.bsdf(spec, key, &mut OpenMixtures::default())?;
-                Some(self.builder.add_finish("in place", bsdf))
+                let finish = self.resolve(spec, key, &mut OpenMixtures::default())?;
+                Some(self.builder.add_finish("in place", finish))
             }
         }
     }
@@ -89,11 +89,11 @@ impl<'a> Context<'a> {
             return *behind;
         }
         let front = &self.builder.scene().finishes[finish.index()];
-        let behind = match front.bsdf.from_behind() {
+        let behind = match front.finish.from_behind() {
             None => finish,
-            Some(bsdf) => {
+            Some(finish) => {
                 let name = format!("{}, from behind", front.name);
-                self.builder.add_finish(&name, bsdf)
+                self.builder.add_finish(&name, finish)
             }
         };
         self.behind.insert(finish, behind);
@@ -120,38 +120,38 @@ impl<'a> Context<'a> {
         name: &'a str,
         spec: &'a FinishSpec,
         mixing: &mut OpenMixtures<'a>,
-    ) -> Option<Bsdf> {
-        if let Some(known) = self.bsdfs.get(name) {
+    ) -> Option<Finish> {
+        if let Some(known) = self.named_finishes.get(name) {
             return known.clone();
         }
         mixing.open.push(name);
-        let bsdf = self.bsdf(spec, &Key::of(&["finishes", name]), mixing);
+        let finish = self.resolve(spec, &Key::of(&["finishes", name]), mixing);
         mixing.open.pop();
-        self.bsdfs.insert(name.to_owned(), bsdf.clone());
-        bsdf
+        self.named_finishes.insert(name.to_owned(), finish.clone());
+        finish
     }
 
-    fn bsdf(
+    fn resolve(
         &mut self,
         spec: &'a FinishSpec,
         key: &Key,
         mixing: &mut OpenMixtures<'a>,
-    ) -> Option<Bsdf> {
+    ) -> Option<Finish> {
         match spec {
-            FinishSpec::Smooth(_) => Some(Bsdf::Smooth),
+            FinishSpec::Smooth(_) => Some(Finish::Smooth),
             FinishSpec::Specular(s) => {
                 let (reflectance, transmittance) = (s.reflectance, s.transmittance);
                 self.check_sum(&key.field("specular"), [reflectance, transmittance], Least::Zero)?;
-                Some(Bsdf::Specular { reflectance, transmittance })
+                Some(Finish::Specular { reflectance, transmittance })
             }
-            FinishSpec::Metal(metal) => Some(Bsdf::Metal { n: metal.n, k: metal.k }),
-            FinishSpec::Absorber(_) => Some(Bsdf::Absorber),
-            FinishSpec::Open(_) => Some(Bsdf::Open),
+            FinishSpec::Metal(metal) => Some(Finish::Metal { n: metal.n, k: metal.k }),
+            FinishSpec::Absorber(_) => Some(Finish::Absorber),
+            FinishSpec::Open(_) => Some(Finish::Open),
             FinishSpec::Lambertian(s) => {
                 let (reflectance, transmittance) = (s.reflectance, s.transmittance);
                 let key = key.field("lambertian");
                 self.check_sum(&key, [reflectance, transmittance], Least::AboveZero)?;
-                Some(Bsdf::Lambertian { reflectance, transmittance })
+                Some(Finish::Lambertian { reflectance, transmittance })
             }
             FinishSpec::Gaussian(spec) => self.gaussian(spec, &key.field("gaussian")),
             FinishSpec::Ggx(spec) => self.ggx(spec, &key.field("ggx")),
@@ -162,7 +162,7 @@ impl<'a> Context<'a> {
                 let (angles, shares) = (&spec.angles_deg, &spec.reflectance);
                 let key = key.field("coated");
                 let [reflectance] = self.table(angles, [("reflectance", shares)], &key)?;
-                Some(Bsdf::Coated { reflectance })
+                Some(Finish::Coated { reflectance })
             }
             FinishSpec::PrismFilm(film) => Some(prism_film(film)),
             FinishSpec::Mixture(parts) => self.mixture(parts, &key.field("mixture"), mixing),
@@ -192,18 +192,18 @@ impl<'a> Context<'a> {
         Some(())
     }
 
-    fn gaussian(&mut self, spec: &GaussianSpec, key: &Key) -> Option<Bsdf> {
+    fn gaussian(&mut self, spec: &GaussianSpec, key: &Key) -> Option<Finish> {
         let lobe = Gaussian::new(spec.sigma_deg.to_radians());
         if let (None, None) = (spec.reflectance, spec.transmittance) {
-            return Some(Bsdf::GaussianDielectric { lobe });
+            return Some(Finish::GaussianDielectric { lobe });
         }
         let reflectance = spec.reflectance.unwrap_or(0.0);
         let transmittance = spec.transmittance.unwrap_or(0.0);
         self.check_sum(key, [reflectance, transmittance], Least::AboveZero)?;
-        Some(Bsdf::GaussianSheet { lobe, reflectance, transmittance })
+        Some(Finish::GaussianSheet { lobe, reflectance, transmittance })
     }
 
-    fn ggx(&mut self, spec: &GgxSpec, key: &Key) -> Option<Bsdf> {
+    fn ggx(&mut self, spec: &GgxSpec, key: &Key) -> Option<Finish> {
         let facets = match (spec.reflectance, spec.metal) {
             (Some(_), Some(_)) => {
                 let message = "facets take a metal or a reflectance, not both";
@@ -214,7 +214,7 @@ impl<'a> Context<'a> {
             (None, Some(metal)) => FacetKind::Metal { n: metal.n, k: metal.k },
             (None, None) => FacetKind::Interface,
         };
-        Some(Bsdf::Microfacet(Microfacet::new(spec.roughness, facets)))
+        Some(Finish::Microfacet(Microfacet::new(spec.roughness, facets)))
     }
 
     fn mixture(
@@ -222,14 +222,14 @@ impl<'a> Context<'a> {
         parts: &'a [MixturePartSpec],
         key: &Key,
         mixing: &mut OpenMixtures<'a>,
-    ) -> Option<Bsdf> {
+    ) -> Option<Finish> {
         let part = |(index, part): (usize, &'a MixturePartSpec)| {
             let key = key.index(index).field("finish");
             Some((part.weight, self.part(&part.finish, &key, mixing)?))
         };
         // All parts are looked at, whatever is wrong with the first.
-        let made: Vec<Option<(f64, Bsdf)>> = parts.iter().enumerate().map(part).collect();
-        let mixture = Bsdf::Mixture(made.into_iter().collect::<Option<_>>()?);
+        let made: Vec<Option<(f64, Finish)>> = parts.iter().enumerate().map(part).collect();
+        let mixture = Finish::Mixture(made.into_iter().collect::<Option<_>>()?);
         if depth(&mixture) > DEEPEST {
             let message = format!("mixtures are more than {DEEPEST} deep in each other");
             self.problems.error(key, message);
@@ -243,9 +243,9 @@ impl<'a> Context<'a> {
         reference: &'a FinishRef,
         key: &Key,
         mixing: &mut OpenMixtures<'a>,
-    ) -> Option<Bsdf> {
+    ) -> Option<Finish> {
         let name = match reference {
-            FinishRef::Inline(spec) => return self.bsdf(spec, key, mixing),
+            FinishRef::Inline(spec) => return self.resolve(spec, key, mixing),
             FinishRef::Name(name) => name.as_str(),
         };
         if mixing.open.contains(&name) || mixing.endless.contains(name) {
@@ -262,19 +262,19 @@ impl<'a> Context<'a> {
             Some((name, spec)) => self.named(name, spec, mixing),
             None => {
                 let finish = self.finish(reference, key)?;
-                Some(self.builder.scene().finishes[finish.index()].bsdf.clone())
+                Some(self.builder.scene().finishes[finish.index()].finish.clone())
             }
         }
     }
 }
 
 /// How many mixtures are inside each other.
-fn depth(bsdf: &Bsdf) -> usize {
-    let Bsdf::Mixture(parts) = bsdf else { return 0 };
+fn depth(finish: &Finish) -> usize {
+    let Finish::Mixture(parts) = finish else { return 0 };
     1 + parts.iter().map(|(_, part)| depth(part)).max().unwrap_or(0)
 }
 
-fn prism_film(spec: &PrismFilmSpec) -> Bsdf {
+fn prism_film(spec: &PrismFilmSpec) -> Finish {
     let make = FilmMake {
         index: spec.index,
         prism_angle: spec.prism_angle_deg.to_radians(),
@@ -291,5 +291,5 @@ fn prism_film(spec: &PrismFilmSpec) -> Bsdf {
         PrismSideSpec::Behind => FilmFace::Flat,
         PrismSideSpec::Before => FilmFace::Prisms,
     };
-    Bsdf::PrismFilm { film: Box::new(PrismFilm::new(&make)), face }
+    Finish::PrismFilm { film: Box::new(PrismFilm::new(&make)), face }
 }

@@ -6,15 +6,15 @@ use crate::lower::finishes::{Least, SUM_TOLERANCE};
 use crate::spec::finish::{AbgSpec, HarveySpec, HazeSheetSpec, HazeSidesSpec, TabulatedSpec};
 use lumiduct_base::number::format_value;
 use lumiduct_core::optics::{
-    AngleTable, Bsdf, Haze, HazeBase, HazeLaw, HazeSides, integrated_scatter,
+    AngleTable, Finish, Haze, HazeBase, HazeLaw, HazeSides, integrated_scatter,
 };
 
 impl Context<'_> {
-    pub(super) fn abg(&mut self, spec: &AbgSpec, key: &Key) -> Option<Bsdf> {
+    pub(super) fn abg(&mut self, spec: &AbgSpec, key: &Key) -> Option<Finish> {
         self.haze(HazeLaw::Abg { a: spec.a, b: spec.b, g: spec.g }, &spec.sheet, "a", key)
     }
 
-    pub(super) fn harvey(&mut self, spec: &HarveySpec, key: &Key) -> Option<Bsdf> {
+    pub(super) fn harvey(&mut self, spec: &HarveySpec, key: &Key) -> Option<Finish> {
         let law = HazeLaw::Harvey { b0: spec.b0, shoulder: spec.l, slope: spec.s };
         self.haze(law, &spec.sheet, "b0", key)
     }
@@ -26,7 +26,7 @@ impl Context<'_> {
         sheet: &HazeSheetSpec,
         strength: &str,
         key: &Key,
-    ) -> Option<Bsdf> {
+    ) -> Option<Finish> {
         let hint = format!("lower `{strength}`");
         let base = match (sheet.reflectance, sheet.transmittance) {
             (None, None) => self.hazy_interface(law, sheet, hint, key)?,
@@ -35,7 +35,7 @@ impl Context<'_> {
                 self.hazy_sheet(law, shares, sheet, &hint, key)?
             }
         };
-        Some(Bsdf::Haze(Box::new(Haze::new(law, base))))
+        Some(Finish::Haze(Box::new(Haze::new(law, base))))
     }
 
     fn hazy_sheet(
@@ -94,12 +94,12 @@ impl Context<'_> {
         sheet.scatters.is_none().then_some(HazeBase::Interface)
     }
 
-    pub(super) fn tabulated(&mut self, spec: &TabulatedSpec, key: &Key) -> Option<Bsdf> {
+    pub(super) fn tabulated(&mut self, spec: &TabulatedSpec, key: &Key) -> Option<Finish> {
         let (angles, reflected) = (&spec.angles_deg, &spec.reflectance);
         let Some(transmitted) = &spec.transmittance else {
             let [reflectance] = self.table(angles, [("reflectance", reflected)], key)?;
             let transmittance = AngleTable::constant(0.0);
-            return Some(Bsdf::Tabulated { reflectance, transmittance });
+            return Some(Finish::Tabulated { reflectance, transmittance });
         };
         let columns = [("reflectance", reflected), ("transmittance", transmitted)];
         let tables = self.table(angles, columns, key);
@@ -114,7 +114,7 @@ impl Context<'_> {
             self.problems.error(key, message);
             return None;
         }
-        tables.map(|[reflectance, transmittance]| Bsdf::Tabulated { reflectance, transmittance })
+        tables.map(|[reflectance, transmittance]| Finish::Tabulated { reflectance, transmittance })
     }
 
     /// Columns of a table against angles that increase from 0 to 90 deg: nothing is extrapolated.

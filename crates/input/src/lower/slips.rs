@@ -9,10 +9,10 @@ use crate::spec::sensor::{CountsSpec, SensorSide, SensorSpec};
 use crate::spec::source::{BodySpec, SourceCommonSpec, SourceSpec};
 use glam::DVec3;
 use lumiduct_base::number::format_value;
-use lumiduct_core::optics::Bsdf;
+use lumiduct_core::optics::Finish;
 use lumiduct_core::rng::{Dimension, Sampler};
 use lumiduct_core::scene::{
-    Emitted, FaceArea, FaceId, FinishId, Just, Owner, Ray, Scene, Solid, SolidId,
+    Emitted, FaceArea, FaceId, FinishId, Owner, Ray, Scene, Solid, SolidId, StartSide,
 };
 
 /// Points tried on a face of a sheet: a cut of a hundredth of it is missed once in ten sheets.
@@ -63,7 +63,7 @@ fn stands_free(source: &SourceSpec, common: &SourceCommonSpec) -> bool {
 /// where the entry is black.
 fn is_a_guide(scene: &Scene, solid: &Solid) -> bool {
     let name = format!("{}.entry", solid.name);
-    let is_black = |finish: FinishId| scene.finishes[finish.index()].bsdf == Bsdf::Absorber;
+    let is_black = |finish: FinishId| scene.finishes[finish.index()].finish == Finish::Absorber;
     let mut faces = scene.faces.iter();
     has_an_index_step(scene, solid)
         && faces.any(|face| face.name == name && !face.back.is_some_and(is_black))
@@ -117,8 +117,8 @@ fn cut(scene: &Scene, faces: &[FaceId], solid: SolidId) -> Option<[DVec3; 2]> {
             let mut sampler = Sampler::for_path(0, u64::MAX, probe);
             let Some(at) = area.sample(sampler.pair(Dimension::EmitPosition)) else { continue };
             let ray = Ray::new(at.point, at.normal);
-            let [ahead, behind] =
-                [Just::Ahead, Just::Behind].map(|side| scene.inside_at(&ray, side).contains(solid));
+            let [ahead, behind] = [StartSide::Ahead, StartSide::Behind]
+                .map(|side| scene.inside_at(&ray, side).contains(solid));
             // They differ on a face of the solid: the sheet lies on it.
             if ahead == behind {
                 found[usize::from(!ahead)].get_or_insert(at.point);

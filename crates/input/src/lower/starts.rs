@@ -10,7 +10,7 @@ use crate::spec::placement::PlacementSpec;
 use crate::spec::source::{SourceCommonSpec, SourceSpec};
 use indexmap::IndexMap;
 use lumiduct_base::number::format_value;
-use lumiduct_core::optics::Bsdf;
+use lumiduct_core::optics::Finish;
 use lumiduct_core::rng::Sampler;
 use lumiduct_core::scene::{Emitted, FaceId, FinishId, Owner, Scene, SolidId, StartSolids};
 
@@ -121,7 +121,7 @@ fn check_covered(scene: &Scene, starts: &[Emitted], key: &Key, problems: &mut Pr
 /// Whether every face of a solid absorbs all light.
 fn is_opaque(scene: &Scene, solid: SolidId) -> bool {
     let absorbs = |finish: Option<FinishId>| {
-        finish.is_some_and(|finish| scene.finishes[finish.index()].bsdf == Bsdf::Absorber)
+        finish.is_some_and(|finish| scene.finishes[finish.index()].finish == Finish::Absorber)
     };
     scene
         .faces

@@ -22,11 +22,11 @@ impl FinishModel for Absorber {
 
 #[cfg(test)]
 mod tests {
-    use crate::optics::Bsdf;
+    use crate::optics::Finish;
     use crate::optics::finish::testing::assert_sound;
 
     #[test]
     fn photons_and_gather_paths_follow_it() {
-        assert_sound(&Bsdf::Absorber);
+        assert_sound(&Finish::Absorber);
     }
 }

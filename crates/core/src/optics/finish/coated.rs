@@ -53,7 +53,7 @@ impl FinishModel for Coated<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::optics::Bsdf;
+    use crate::optics::Finish;
     use crate::optics::finish::testing::{assert_sound, coated, incidence};
     use std::f64::consts::FRAC_PI_2;
 
@@ -64,7 +64,7 @@ mod tests {
 
     #[test]
     fn a_coating_reflects_the_same_from_both_sides_and_keeps_total_reflection() {
-        let coated = Bsdf::Coated {
+        let coated = Finish::Coated {
             reflectance: AngleTable::new(vec![[0.0, 0.005], [1.0, 0.06], [FRAC_PI_2, 1.0]]),
         };
         let shares_at = |angle, indices| coated.shares(&incidence(angle, indices));

@@ -84,7 +84,7 @@ mod tests {
 
     #[test]
     fn gaussian_scatter_is_narrow_up_to_a_tenth_of_a_radian() {
-        assert_eq!(rough(0.099).kind(), Spread::Narrow(0.099));
-        assert_eq!((rough(0.1).kind(), rough(0.1).width()), (Spread::Broad, Some(0.1)));
+        assert_eq!(rough(0.099).spread(), Spread::Narrow(0.099));
+        assert_eq!((rough(0.1).spread(), rough(0.1).width()), (Spread::Broad, Some(0.1)));
     }
 }

@@ -121,7 +121,7 @@ impl FinishModel for Haze {
     }
 
     /// The tails reach over the half space; undisturbed light is separated by its lobe.
-    fn kind(&self) -> Spread {
+    fn spread(&self) -> Spread {
         Spread::Broad
     }
 
@@ -287,7 +287,7 @@ mod tests {
         assert_follows, assert_mean_factors, assert_reciprocal, assert_sound, haze, hazy_sheet,
         incidence,
     };
-    use crate::optics::{Bsdf, fresnel};
+    use crate::optics::{Finish, fresnel};
     use std::f64::consts::PI;
 
     const ABG: HazeLaw = HazeLaw::Abg { a: 0.02, b: 0.01, g: 2.0 };
@@ -295,14 +295,14 @@ mod tests {
     const SHEET: HazeBase =
         HazeBase::Sheet { reflectance: 0.45, transmittance: 0.5, scatters: HazeSides::Both };
 
-    fn all() -> Vec<Bsdf> {
+    fn all() -> Vec<Finish> {
         let through = HazeBase::Sheet {
             reflectance: 0.05,
             transmittance: 0.9,
             scatters: HazeSides::Transmitted,
         };
         [(ABG, SHEET), (HARVEY, through), (ABG, HazeBase::Interface), (HARVEY, HazeBase::Interface)]
-            .map(|(law, base)| Bsdf::Haze(Box::new(Haze::new(law, base))))
+            .map(|(law, base)| Finish::Haze(Box::new(Haze::new(law, base))))
             .to_vec()
     }
 
@@ -315,13 +315,13 @@ mod tests {
 
     #[test]
     fn scattered_light_follows_the_distribution_function_and_its_share_is_told() {
-        for bsdf in all() {
-            let Bsdf::Haze(haze) = &bsdf else { unreachable!() };
+        for finish in all() {
+            let Finish::Haze(haze) = &finish else { unreachable!() };
             for indices in [[1.0, 1.49], [1.49, 1.0], [1.3, 1.3]] {
                 for angle in [0.0, 0.6, 1.2] {
                     let incidence = incidence(angle, indices);
                     for side in [Side::Reflected, Side::Transmitted] {
-                        let integral = assert_follows(&bsdf, &incidence, side);
+                        let integral = assert_follows(&finish, &incidence, side);
                         let told = haze.parts(&incidence).scattered.of(side);
                         let off = (integral - told).abs();
                         assert!(off <= 3e-3 * told, "{side:?} at {angle}: {integral}, {told}");
@@ -333,10 +333,10 @@ mod tests {
 
     #[test]
     fn haze_creates_and_absorbs_nothing_at_any_angle() {
-        for bsdf in all() {
+        for finish in all() {
             for indices in [[1.0, 1.49], [1.49, 1.0], [1.3, 1.3], [4.0, 1.0]] {
                 for angle in [0.0, 0.3, 0.8, 1.3, 1.57] {
-                    let shares = bsdf.shares(&incidence(angle, indices));
+                    let shares = finish.shares(&incidence(angle, indices));
                     let sum = shares.reflected + shares.transmitted;
                     assert!([1.0, 0.95].iter().any(|all| (sum - all).abs() < 1e-12), "{sum}");
                 }
@@ -347,11 +347,11 @@ mod tests {
     #[test]
     fn the_distribution_function_is_reciprocal_between_media() {
         for law in [ABG, HARVEY] {
-            let bsdf = Bsdf::Haze(Box::new(Haze::new(law, HazeBase::Interface)));
+            let finish = Finish::Haze(Box::new(Haze::new(law, HazeBase::Interface)));
             for indices in [[1.0, 1.49], [1.49, 1.0]] {
-                assert_reciprocal(&bsdf, indices);
+                assert_reciprocal(&finish, indices);
             }
-            assert_reciprocal(&Bsdf::Haze(Box::new(Haze::new(law, SHEET))), [1.0, 1.0]);
+            assert_reciprocal(&Finish::Haze(Box::new(Haze::new(law, SHEET))), [1.0, 1.0]);
         }
     }
 

@@ -42,7 +42,7 @@ impl FinishModel for Lambertian {
         self.shares.of(incidence.side_of(out)) / PI
     }
 
-    fn kind(&self) -> Spread {
+    fn spread(&self) -> Spread {
         Spread::Broad
     }
 }

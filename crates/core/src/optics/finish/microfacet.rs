@@ -263,7 +263,7 @@ impl Microfacet {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::optics::Bsdf;
+    use crate::optics::Finish;
     use crate::optics::finish::testing::{
         assert_follows, assert_mean_factors, assert_reciprocal, assert_sound, facets, incidence,
         rough_metal,
@@ -271,11 +271,11 @@ mod tests {
 
     const INDICES: [[f64; 2]; 2] = [[1.0, 1.49], [1.49, 1.0]];
 
-    fn rough(roughness: f64, facets: FacetKind) -> Bsdf {
-        Bsdf::Microfacet(Microfacet::new(roughness, facets))
+    fn rough(roughness: f64, facets: FacetKind) -> Finish {
+        Finish::Microfacet(Microfacet::new(roughness, facets))
     }
 
-    fn all(roughness: f64) -> [Bsdf; 3] {
+    fn all(roughness: f64) -> [Finish; 3] {
         [
             FacetKind::Interface,
             FacetKind::Mirror { reflectance: 0.9 },
@@ -294,13 +294,13 @@ mod tests {
 
     #[test]
     fn scattered_light_follows_the_distribution_function_and_its_share_is_told() {
-        for bsdf in all(0.4).into_iter().chain([rough(0.15, FacetKind::Interface)]) {
+        for finish in all(0.4).into_iter().chain([rough(0.15, FacetKind::Interface)]) {
             for indices in INDICES {
                 for angle in [0.0, 0.6, 1.2] {
                     let incidence = incidence(angle, indices);
                     for side in [Side::Reflected, Side::Transmitted] {
-                        let integral = assert_follows(&bsdf, &incidence, side);
-                        let told = bsdf.shares(&incidence).of(side);
+                        let integral = assert_follows(&finish, &incidence, side);
+                        let told = finish.shares(&incidence).of(side);
                         assert!(
                             (integral - told).abs() < 4e-3,
                             "{side:?} {angle}: {integral}, {told}"
@@ -313,9 +313,9 @@ mod tests {
 
     #[test]
     fn the_distribution_function_is_reciprocal() {
-        for bsdf in all(0.3) {
+        for finish in all(0.3) {
             for indices in INDICES {
-                assert_reciprocal(&bsdf, indices);
+                assert_reciprocal(&finish, indices);
             }
         }
     }
@@ -333,11 +333,12 @@ mod tests {
 
     #[test]
     fn fine_facets_share_light_as_a_smooth_interface() {
-        let bsdf = rough(1e-3, FacetKind::Interface);
+        let finish = rough(1e-3, FacetKind::Interface);
         for indices in INDICES {
             for angle in [0.0, 0.4, 0.6, 0.9, 1.2] {
                 let incidence = incidence(angle, indices);
-                let (fine, smooth) = (bsdf.shares(&incidence), SmoothInterface.shares(&incidence));
+                let (fine, smooth) =
+                    (finish.shares(&incidence), SmoothInterface.shares(&incidence));
                 assert!((fine.reflected - smooth.reflected).abs() < 1e-3, "{fine:?}, {smooth:?}");
                 assert!(
                     (fine.transmitted - smooth.transmitted).abs() < 1e-3,
@@ -367,10 +368,10 @@ mod tests {
 
     #[test]
     fn between_equal_indices_small_facets_do_nothing() {
-        let bsdf = rough(0.4, FacetKind::Interface);
+        let finish = rough(0.4, FacetKind::Interface);
         let incidence = incidence(0.7, [1.3, 1.3]);
         let mut sampler = Sampler::for_path(1, 0, 0);
-        let out = bsdf.scatter(&incidence, &mut sampler).unwrap();
+        let out = finish.scatter(&incidence, &mut sampler).unwrap();
         assert_eq!((out.dir, out.factor, out.side), (incidence.dir, 1.0, Side::Transmitted));
     }
 }

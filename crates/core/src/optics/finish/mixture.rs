@@ -93,8 +93,8 @@ impl<F: FinishModel> FinishModel for Mixture<'_, F> {
         self.finishes().filter_map(F::width).reduce(f64::min)
     }
 
-    fn kind(&self) -> Spread {
-        self.finishes().map(F::kind).fold(Spread::Discrete, Spread::broader)
+    fn spread(&self) -> Spread {
+        self.finishes().map(F::spread).fold(Spread::Discrete, Spread::broader)
     }
 
     fn passes_straight(&self) -> bool {
@@ -109,7 +109,7 @@ impl<F: FinishModel> FinishModel for Mixture<'_, F> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::optics::Bsdf;
+    use crate::optics::Finish;
     use crate::optics::finish::testing::{
         assert_moments, assert_sound, diffuse, mixture, rough, sheet,
     };
@@ -117,18 +117,19 @@ mod tests {
     #[test]
     fn photons_and_gather_paths_follow_it() {
         assert_sound(&mixture());
-        let parts = [diffuse(), sheet(0.3), rough(0.15), Bsdf::Absorber];
-        assert_moments(&Bsdf::Mixture(parts.map(|part| (1.0, part)).to_vec()));
+        let parts = [diffuse(), sheet(0.3), rough(0.15), Finish::Absorber];
+        assert_moments(&Finish::Mixture(parts.map(|part| (1.0, part)).to_vec()));
     }
 
     #[test]
     fn a_mixture_is_as_broad_as_its_broadest_part_and_resolved_by_its_narrowest() {
-        let diffuse = Bsdf::Lambertian { reflectance: 0.5, transmittance: 0.0 };
-        let two = Bsdf::Mixture(vec![(1.0, rough(0.05)), (1.0, Bsdf::Smooth), (1.0, rough(0.02))]);
-        assert_eq!((two.kind(), two.width()), (Spread::Narrow(0.05), Some(0.02)));
-        let all = Bsdf::Mixture(vec![(1.0, diffuse), (1.0, two)]);
-        assert_eq!((all.kind(), all.width()), (Spread::Broad, Some(0.02)));
-        let none = Bsdf::Mixture(vec![(1.0, Bsdf::Smooth), (1.0, Bsdf::Absorber)]);
-        assert_eq!((none.kind(), none.width()), (Spread::Discrete, None));
+        let diffuse = Finish::Lambertian { reflectance: 0.5, transmittance: 0.0 };
+        let two =
+            Finish::Mixture(vec![(1.0, rough(0.05)), (1.0, Finish::Smooth), (1.0, rough(0.02))]);
+        assert_eq!((two.spread(), two.width()), (Spread::Narrow(0.05), Some(0.02)));
+        let all = Finish::Mixture(vec![(1.0, diffuse), (1.0, two)]);
+        assert_eq!((all.spread(), all.width()), (Spread::Broad, Some(0.02)));
+        let none = Finish::Mixture(vec![(1.0, Finish::Smooth), (1.0, Finish::Absorber)]);
+        assert_eq!((none.spread(), none.width()), (Spread::Discrete, None));
     }
 }

@@ -48,7 +48,7 @@ use glam::DVec3;
 
 /// A finish: what a face does to light.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Bsdf {
+pub enum Finish {
     /// The smooth interface of the two media: Fresnel for unpolarised light, Snell, total reflection.
     Smooth,
     /// A mirror, or a beam splitter, with the same shares at every angle; transmitted light goes straight on.
@@ -115,60 +115,60 @@ pub enum Bsdf {
         face: FilmFace,
     },
     /// Each photon meets one of several finishes, chosen by weight.
-    Mixture(Vec<(f64, Bsdf)>),
+    Mixture(Vec<(f64, Finish)>),
 }
 
 /// The answer of the finish that a [`Bsdf`] is: the one match over all finishes, for all questions.
 macro_rules! ask {
-    ($bsdf:expr, $finish:ident => $answer:expr) => {
-        match $bsdf {
-            Bsdf::Smooth => {
+    ($asked:expr, $finish:ident => $answer:expr) => {
+        match $asked {
+            Finish::Smooth => {
                 let $finish = SmoothInterface;
                 $answer
             }
-            Bsdf::Specular { reflectance, transmittance } => {
+            Finish::Specular { reflectance, transmittance } => {
                 let $finish = Specular { shares: both(reflectance, transmittance) };
                 $answer
             }
-            Bsdf::Metal { n, k } => {
+            Finish::Metal { n, k } => {
                 let $finish = Metal { n: *n, k: *k };
                 $answer
             }
-            Bsdf::Absorber => {
+            Finish::Absorber => {
                 let $finish = Absorber;
                 $answer
             }
-            Bsdf::Open => {
+            Finish::Open => {
                 let $finish = Open;
                 $answer
             }
-            Bsdf::Lambertian { reflectance, transmittance } => {
+            Finish::Lambertian { reflectance, transmittance } => {
                 let $finish = Lambertian { shares: both(reflectance, transmittance) };
                 $answer
             }
-            Bsdf::GaussianSheet { lobe, reflectance, transmittance } => {
+            Finish::GaussianSheet { lobe, reflectance, transmittance } => {
                 let $finish = GaussianSheet { lobe, shares: both(reflectance, transmittance) };
                 $answer
             }
-            Bsdf::GaussianDielectric { lobe } => {
+            Finish::GaussianDielectric { lobe } => {
                 let $finish = GaussianDielectric { lobe };
                 $answer
             }
-            Bsdf::Tabulated { reflectance, transmittance } => {
+            Finish::Tabulated { reflectance, transmittance } => {
                 let $finish = Tabulated { reflectance, transmittance };
                 $answer
             }
-            Bsdf::Coated { reflectance } => {
+            Finish::Coated { reflectance } => {
                 let $finish = Coated { reflectance };
                 $answer
             }
-            Bsdf::Microfacet($finish) => $answer,
-            Bsdf::Haze($finish) => $answer,
-            Bsdf::PrismFilm { film, face } => {
+            Finish::Microfacet($finish) => $answer,
+            Finish::Haze($finish) => $answer,
+            Finish::PrismFilm { film, face } => {
                 let $finish = MetFilm { film, face: *face };
                 $answer
             }
-            Bsdf::Mixture(parts) => {
+            Finish::Mixture(parts) => {
                 let $finish = Mixture { parts };
                 $answer
             }
@@ -176,7 +176,7 @@ macro_rules! ask {
     };
 }
 
-impl Bsdf {
+impl Finish {
     /// The same finish as met by light from the other side, if it differs there.
     pub fn from_behind(&self) -> Option<Self> {
         if let Self::PrismFilm { film, face } = self {
@@ -202,7 +202,7 @@ impl Bsdf {
     }
 }
 
-impl FinishModel for Bsdf {
+impl FinishModel for Finish {
     fn shares(&self, incidence: &Incidence) -> Shares {
         ask!(self, finish => finish.shares(incidence))
     }
@@ -258,8 +258,8 @@ impl FinishModel for Bsdf {
         ask!(self, finish => finish.width())
     }
 
-    fn kind(&self) -> Spread {
-        ask!(self, finish => finish.kind())
+    fn spread(&self) -> Spread {
+        ask!(self, finish => finish.spread())
     }
 
     fn passes_straight(&self) -> bool {

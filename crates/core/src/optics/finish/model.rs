@@ -92,7 +92,7 @@ pub trait FinishModel {
 
     /// How far the finish spreads light. A mixture is as broad as its broadest part, whatever its
     /// weight: it can also have discrete directions and narrower lobes.
-    fn kind(&self) -> Spread {
+    fn spread(&self) -> Spread {
         match self.width() {
             None => Spread::Discrete,
             Some(width) if width < NARROW => Spread::Narrow(width),
@@ -112,7 +112,7 @@ pub trait FinishModel {
 
     /// Whether all directions that leave are discrete.
     fn is_specular(&self) -> bool {
-        self.kind() == Spread::Discrete
+        self.spread() == Spread::Discrete
     }
 
     /// Whether light leaves in one discrete direction to each side, or not at all.

@@ -26,11 +26,11 @@ impl FinishModel for Open {
 
 #[cfg(test)]
 mod tests {
-    use crate::optics::Bsdf;
+    use crate::optics::Finish;
     use crate::optics::finish::testing::assert_sound;
 
     #[test]
     fn photons_and_gather_paths_follow_it() {
-        assert_sound(&Bsdf::Open);
+        assert_sound(&Finish::Open);
     }
 }

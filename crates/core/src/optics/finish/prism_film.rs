@@ -66,7 +66,7 @@ impl FinishModel for MetFilm<'_> {
 mod tests {
     use super::*;
     use crate::optics::finish::testing::{assert_adjoint, splitter};
-    use crate::optics::{Bsdf, Faces, FilmMake, Grain};
+    use crate::optics::{Faces, FilmMake, Finish, Grain};
 
     #[test]
     fn films_are_the_same_film_from_both_sides() {
@@ -81,8 +81,8 @@ mod tests {
         };
         let film = Box::new(PrismFilm::new(&make));
         for face in [FilmFace::Flat, FilmFace::Prisms] {
-            let own = Bsdf::PrismFilm { film: film.clone(), face };
-            let mixed = Bsdf::Mixture(vec![(2.0, own.clone()), (1.0, splitter())]);
+            let own = Finish::PrismFilm { film: film.clone(), face };
+            let mixed = Finish::Mixture(vec![(2.0, own.clone()), (1.0, splitter())]);
             for own in [own, mixed] {
                 let behind = own.from_behind().unwrap();
                 assert_adjoint(Faces { own: &own, behind: &behind });

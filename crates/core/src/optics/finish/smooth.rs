@@ -103,12 +103,12 @@ impl FinishModel for SmoothInterface {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::optics::Bsdf;
+    use crate::optics::Finish;
     use crate::optics::finish::testing::{assert_sound, incidence};
 
     #[test]
     fn photons_and_gather_paths_follow_it() {
-        assert_sound(&Bsdf::Smooth);
+        assert_sound(&Finish::Smooth);
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! Properties that the tests of finishes check, and samples of finishes.
 
 use crate::optics::{
-    AngleTable, Bsdf, Faces, FacetKind, FinishModel, Gaussian, Haze, HazeBase, HazeLaw, HazeSides,
-    Incidence, Lobe, Microfacet, Side, scatter_radiance,
+    AngleTable, Faces, FacetKind, Finish, FinishModel, Gaussian, Haze, HazeBase, HazeLaw,
+    HazeSides, Incidence, Lobe, Microfacet, Side, scatter_at_faces,
 };
 use crate::rng::{Dimension, Sampler};
 use crate::tally::Tally;
@@ -12,56 +12,56 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 const INDICES: [[f64; 2]; 3] = [[1.0, 1.49], [1.49, 1.0], [1.3, 1.3]];
 
-pub(crate) fn diffuse() -> Bsdf {
-    Bsdf::Lambertian { reflectance: 0.5, transmittance: 0.4 }
+pub(crate) fn diffuse() -> Finish {
+    Finish::Lambertian { reflectance: 0.5, transmittance: 0.4 }
 }
 
-pub(crate) fn splitter() -> Bsdf {
-    Bsdf::Specular { reflectance: 0.5, transmittance: 0.3 }
+pub(crate) fn splitter() -> Finish {
+    Finish::Specular { reflectance: 0.5, transmittance: 0.3 }
 }
 
-pub(crate) fn metal() -> Bsdf {
-    Bsdf::Metal { n: 0.8, k: 5.9 }
+pub(crate) fn metal() -> Finish {
+    Finish::Metal { n: 0.8, k: 5.9 }
 }
 
-pub(crate) fn sheet(sigma: f64) -> Bsdf {
-    Bsdf::GaussianSheet { lobe: Gaussian::new(sigma), reflectance: 0.6, transmittance: 0.3 }
+pub(crate) fn sheet(sigma: f64) -> Finish {
+    Finish::GaussianSheet { lobe: Gaussian::new(sigma), reflectance: 0.6, transmittance: 0.3 }
 }
 
-pub(crate) fn rough(sigma: f64) -> Bsdf {
-    Bsdf::GaussianDielectric { lobe: Gaussian::new(sigma) }
+pub(crate) fn rough(sigma: f64) -> Finish {
+    Finish::GaussianDielectric { lobe: Gaussian::new(sigma) }
 }
 
-pub(crate) fn tabulated() -> Bsdf {
+pub(crate) fn tabulated() -> Finish {
     let table = |from, to| AngleTable::new(vec![[0.0, from], [FRAC_PI_2, to]]);
-    Bsdf::Tabulated { reflectance: table(0.2, 0.6), transmittance: table(0.7, 0.1) }
+    Finish::Tabulated { reflectance: table(0.2, 0.6), transmittance: table(0.7, 0.1) }
 }
 
-pub(crate) fn coated() -> Bsdf {
-    Bsdf::Coated { reflectance: AngleTable::new(vec![[0.0, 0.01], [1.0, 0.1], [FRAC_PI_2, 1.0]]) }
+pub(crate) fn coated() -> Finish {
+    Finish::Coated { reflectance: AngleTable::new(vec![[0.0, 0.01], [1.0, 0.1], [FRAC_PI_2, 1.0]]) }
 }
 
-pub(crate) fn facets(roughness: f64) -> Bsdf {
-    Bsdf::Microfacet(Microfacet::new(roughness, FacetKind::Interface))
+pub(crate) fn facets(roughness: f64) -> Finish {
+    Finish::Microfacet(Microfacet::new(roughness, FacetKind::Interface))
 }
 
-pub(crate) fn rough_metal() -> Bsdf {
-    Bsdf::Microfacet(Microfacet::new(0.4, FacetKind::Metal { n: 0.8, k: 5.9 }))
+pub(crate) fn rough_metal() -> Finish {
+    Finish::Microfacet(Microfacet::new(0.4, FacetKind::Metal { n: 0.8, k: 5.9 }))
 }
 
-pub(crate) fn haze(base: HazeBase) -> Bsdf {
-    Bsdf::Haze(Box::new(Haze::new(HazeLaw::Abg { a: 0.03, b: 0.02, g: 2.0 }, base)))
+pub(crate) fn haze(base: HazeBase) -> Finish {
+    Finish::Haze(Box::new(Haze::new(HazeLaw::Abg { a: 0.03, b: 0.02, g: 2.0 }, base)))
 }
 
-pub(crate) fn hazy_sheet() -> Bsdf {
+pub(crate) fn hazy_sheet() -> Finish {
     let scatters = HazeSides::Transmitted;
     haze(HazeBase::Sheet { reflectance: 0.2, transmittance: 0.7, scatters })
 }
 
-pub(crate) fn mixture() -> Bsdf {
-    let smooth = Bsdf::Mixture(vec![(1.0, Bsdf::Smooth), (1.0, splitter())]);
-    let parts = [smooth, rough(0.2), sheet(0.1), diffuse(), Bsdf::Absorber];
-    Bsdf::Mixture(parts.map(|part| (0.5, part)).to_vec())
+pub(crate) fn mixture() -> Finish {
+    let smooth = Finish::Mixture(vec![(1.0, Finish::Smooth), (1.0, splitter())]);
+    let parts = [smooth, rough(0.2), sheet(0.1), diffuse(), Finish::Absorber];
+    Finish::Mixture(parts.map(|part| (0.5, part)).to_vec())
 }
 
 /// Light that meets the face z = 0 from above at an angle, rad, between media of two indices.
@@ -78,30 +78,30 @@ fn light() -> [Incidence; 4] {
 }
 
 /// Checks what holds for every finish that is the same from both sides.
-pub(crate) fn assert_sound(bsdf: &Bsdf) {
-    assert_paths_are_sound(bsdf);
-    assert_follows_shares(bsdf);
-    assert_adjoint(Faces { own: bsdf, behind: bsdf });
+pub(crate) fn assert_sound(finish: &Finish) {
+    assert_paths_are_sound(finish);
+    assert_follows_shares(finish);
+    assert_adjoint(Faces { own: finish, behind: finish });
 }
 
 /// No photon gains flux, and photons and gather paths stay finite and leave on the side they say.
-fn assert_paths_are_sound(bsdf: &Bsdf) {
-    let faces = Faces { own: bsdf, behind: bsdf };
+fn assert_paths_are_sound(finish: &Finish) {
+    let faces = Faces { own: finish, behind: finish };
     for indices in INDICES {
         for cos in [0.0, 1e-300, 1e-9, 1e-3, 0.1, 0.5, 0.9, 1.0f64] {
             let dir = DVec3::new((1.0 - cos * cos).sqrt(), 0.0, -cos);
             let incidence = Incidence { dir, ..incidence(0.0, indices) };
             for index in 0..200 {
                 let mut sampler = Sampler::for_path(9, 0, index);
-                let photon = bsdf.scatter(&incidence, &mut sampler);
-                assert!(photon.is_none_or(|out| out.factor <= 1.0), "{bsdf:?} at {cos}");
-                let gathered = scatter_radiance(faces, &incidence, &mut sampler);
+                let photon = finish.scatter(&incidence, &mut sampler);
+                assert!(photon.is_none_or(|out| out.factor <= 1.0), "{finish:?} at {cos}");
+                let gathered = scatter_at_faces(faces, &incidence, &mut sampler);
                 for out in [photon, gathered].into_iter().flatten() {
-                    assert!(out.factor.is_finite() && out.factor >= 0.0, "{bsdf:?} at {cos}");
-                    assert!((out.dir.length() - 1.0).abs() < 1e-12, "{bsdf:?} at {cos}");
+                    assert!(out.factor.is_finite() && out.factor >= 0.0, "{finish:?} at {cos}");
+                    assert!((out.dir.length() - 1.0).abs() < 1e-12, "{finish:?} at {cos}");
                     match out.side {
-                        Side::Reflected => assert!(out.dir.z >= 0.0, "{bsdf:?} at {cos}"),
-                        Side::Transmitted => assert!(out.dir.z <= 0.0, "{bsdf:?} at {cos}"),
+                        Side::Reflected => assert!(out.dir.z >= 0.0, "{finish:?} at {cos}"),
+                        Side::Transmitted => assert!(out.dir.z <= 0.0, "{finish:?} at {cos}"),
                     }
                 }
             }
@@ -110,24 +110,25 @@ fn assert_paths_are_sound(bsdf: &Bsdf) {
 }
 
 /// Photons go to each side in the shares and with the chances that the finish gives.
-fn assert_follows_shares(bsdf: &Bsdf) {
+fn assert_follows_shares(finish: &Finish) {
     for incidence in light() {
         for side in [Side::Reflected, Side::Transmitted] {
             let sent = |worth: fn(f64) -> f64| {
                 Tally::of((0..10_000).map(|index| {
                     let mut sampler = Sampler::for_path(5, 0, index);
-                    bsdf.scatter(&incidence, &mut sampler)
+                    finish
+                        .scatter(&incidence, &mut sampler)
                         .filter(|out| out.side == side)
                         .map_or(0.0, |out| worth(out.factor))
                 }))
             };
-            let flux = (sent(|factor| factor), bsdf.shares(&incidence).of(side));
-            let number = (sent(|_| 1.0), bsdf.chances(&incidence).of(side));
+            let flux = (sent(|factor| factor), finish.shares(&incidence).of(side));
+            let number = (sent(|_| 1.0), finish.chances(&incidence).of(side));
             for (seen, expected) in [flux, number] {
                 // A constant share is exact up to rounding.
                 let met =
                     (seen.mean() - expected).abs() < 1e-9 || seen.sigmas_from(expected).abs() < 4.0;
-                assert!(met, "{bsdf:?}, {incidence:?}, {side:?}: {seen:?}, expected {expected}");
+                assert!(met, "{finish:?}, {incidence:?}, {side:?}: {seen:?}, expected {expected}");
             }
         }
     }
@@ -163,7 +164,7 @@ fn gathered(faces: Faces<'_>, [above, below]: [f64; 2], side: Side) -> Vec<Tally
             index_to: below,
             grain: DVec3::Y,
         };
-        let from = scatter_radiance(faces, &incidence, &mut sampler).filter(|s| s.side == side);
+        let from = scatter_at_faces(faces, &incidence, &mut sampler).filter(|s| s.side == side);
         for (tally, [g, h]) in tallies.iter_mut().zip(PAIRS) {
             let field = from.map_or(0.0, |from| from.factor * WINDOWS[h](from.dir));
             tally.add(above * above * WINDOWS[g](out) * field);
@@ -173,7 +174,7 @@ fn gathered(faces: Faces<'_>, [above, below]: [f64; 2], side: Side) -> Vec<Tally
 }
 
 /// The same by photons that start with basic radiance h(i) on the side they come from.
-fn shone(bsdf: &Bsdf, [above, below]: [f64; 2], side: Side) -> Vec<Tally> {
+fn shone(finish: &Finish, [above, below]: [f64; 2], side: Side) -> Vec<Tally> {
     let (normal, index_from, index_to) = match side {
         Side::Reflected => (DVec3::Z, above, below),
         Side::Transmitted => (DVec3::NEG_Z, below, above),
@@ -183,7 +184,7 @@ fn shone(bsdf: &Bsdf, [above, below]: [f64; 2], side: Side) -> Vec<Tally> {
         let mut sampler = Sampler::for_path(43, 0, index);
         let from = cosine(&mut sampler) * DVec3::new(1.0, 1.0, normal.z);
         let incidence = Incidence { dir: -from, normal, index_from, index_to, grain: DVec3::Y };
-        let out = bsdf.scatter(&incidence, &mut sampler).filter(|out| out.side == side);
+        let out = finish.scatter(&incidence, &mut sampler).filter(|out| out.side == side);
         for (tally, [g, h]) in tallies.iter_mut().zip(PAIRS) {
             let leaving = out.map_or(0.0, |out| out.factor * WINDOWS[g](out.dir));
             tally.add(index_from * index_from * WINDOWS[h](from) * leaving);
@@ -195,8 +196,9 @@ fn shone(bsdf: &Bsdf, [above, below]: [f64; 2], side: Side) -> Vec<Tally> {
 /// Gather paths collect what photons bring.
 pub(crate) fn assert_adjoint(faces: Faces<'_>) {
     for indices in INDICES {
-        for (side, bsdf) in [(Side::Reflected, faces.own), (Side::Transmitted, faces.behind)] {
-            let pairs = gathered(faces, indices, side).into_iter().zip(shone(bsdf, indices, side));
+        for (side, finish) in [(Side::Reflected, faces.own), (Side::Transmitted, faces.behind)] {
+            let pairs =
+                gathered(faces, indices, side).into_iter().zip(shone(finish, indices, side));
             for ((gathered, shone), pair) in pairs.zip(PAIRS) {
                 let error = gathered.std_error().hypot(shone.std_error());
                 let off = (gathered.mean() - shone.mean()).abs();
@@ -210,7 +212,7 @@ pub(crate) fn assert_adjoint(faces: Faces<'_>) {
 }
 
 /// From each direction the mean factor of gather paths is the integral of the distribution function.
-pub(crate) fn assert_mean_factors(bsdf: &Bsdf) {
+pub(crate) fn assert_mean_factors(finish: &Finish) {
     for [above, below] in INDICES {
         for angle in [0.0f64, 0.7, 0.9, 1.3] {
             let met = incidence(angle, [above, below]);
@@ -222,18 +224,18 @@ pub(crate) fn assert_mean_factors(bsdf: &Bsdf) {
                 for (from, weight) in hemisphere(600, 600, z) {
                     let normal = DVec3::Z * z;
                     let photon = Incidence { dir: -from, normal, index_from, index_to, ..met };
-                    expected += bsdf.evaluate(&photon, -met.dir) * weight * (0.5 + 0.5 * from.x);
+                    expected += finish.evaluate(&photon, -met.dir) * weight * (0.5 + 0.5 * from.x);
                 }
                 expected *= index_from * index_from / (above * above);
                 let seen = Tally::of((0..40_000).map(|index| {
                     let mut sampler = Sampler::for_path(47, 0, index);
-                    scatter_radiance(Faces { own: bsdf, behind: bsdf }, &met, &mut sampler)
+                    scatter_at_faces(Faces { own: finish, behind: finish }, &met, &mut sampler)
                         .filter(|from| from.side == side && from.lobe == Lobe::Diffuse)
                         .map_or(0.0, |from| from.factor * (0.5 + 0.5 * from.dir.x))
                 }));
                 assert!(
                     (seen.mean() - expected).abs() <= 4.0 * seen.std_error() + 1e-3 * expected,
-                    "{side:?} of {bsdf:?}, {above} over {below}, at {angle}: {seen:?}, {expected}"
+                    "{side:?} of {finish:?}, {above} over {below}, at {angle}: {seen:?}, {expected}"
                 );
             }
         }
@@ -251,24 +253,24 @@ fn hemisphere(rows: u32, columns: u32, up: f64) -> impl Iterator<Item = (DVec3, 
 }
 
 /// The distribution function integrates to the shares and has the moments of scattered photons.
-pub(crate) fn assert_moments(bsdf: &Bsdf) {
+pub(crate) fn assert_moments(finish: &Finish) {
     for incidence in light() {
         for side in [Side::Reflected, Side::Transmitted] {
-            let what = format!("{bsdf:?}, {incidence:?}, {side:?}");
+            let what = format!("{finish:?}, {incidence:?}, {side:?}");
             // Moments 1, x and z of the light that leaves to the side, per flux that arrives.
             let mut expected = [0.0; 3];
             for (out, weight) in hemisphere(1000, 400, incidence.leaving_normal(side).z) {
-                let share = bsdf.evaluate(&incidence, out) * weight;
+                let share = finish.evaluate(&incidence, out) * weight;
                 for (sum, moment) in expected.iter_mut().zip([1.0, out.x, out.z]) {
                     *sum += share * moment;
                 }
             }
-            let share = bsdf.shares(&incidence).of(side);
+            let share = finish.shares(&incidence).of(side);
             assert!((expected[0] - share).abs() < 2e-4, "{what}: {expected:?}, {share}");
             let mut seen = [Tally::default(); 3];
             for index in 0..40_000 {
                 let mut sampler = Sampler::for_path(6, 0, index);
-                let out = bsdf.scatter(&incidence, &mut sampler).filter(|out| out.side == side);
+                let out = finish.scatter(&incidence, &mut sampler).filter(|out| out.side == side);
                 let (dir, factor) = out.map_or((DVec3::ZERO, 0.0), |out| (out.dir, out.factor));
                 for (tally, moment) in seen.iter_mut().zip([1.0, dir.x, dir.z]) {
                     tally.add(factor * moment);
@@ -289,7 +291,7 @@ const CELLS: usize = 12;
 const POINTS: usize = 60;
 
 /// `∫ f d²β` over the cells of the square about the disk of leaving direction cosines: `cos θ dω = d²β`.
-fn integrals(bsdf: &Bsdf, incidence: &Incidence, side: Side) -> Vec<f64> {
+fn integrals(finish: &Finish, incidence: &Incidence, side: Side) -> Vec<f64> {
     let up = incidence.leaving_normal(side).z;
     let fine = CELLS * POINTS;
     let h = 2.0 / fine as f64;
@@ -300,7 +302,7 @@ fn integrals(bsdf: &Bsdf, incidence: &Incidence, side: Side) -> Vec<f64> {
         let rest = 1.0 - x * x - y * y;
         if rest > 0.0 {
             let out = DVec3::new(x, y, up * rest.sqrt());
-            cells[i / POINTS * CELLS + j / POINTS] += bsdf.evaluate(incidence, out) * h * h;
+            cells[i / POINTS * CELLS + j / POINTS] += finish.evaluate(incidence, out) * h * h;
         }
     }
     cells
@@ -308,13 +310,13 @@ fn integrals(bsdf: &Bsdf, incidence: &Incidence, side: Side) -> Vec<f64> {
 
 /// Compares light that is scattered to a side with the distribution function, by chi-square over
 /// cells of direction cosines, and returns its share, 1.
-pub(crate) fn assert_follows(bsdf: &Bsdf, incidence: &Incidence, side: Side) -> f64 {
-    let expected = integrals(bsdf, incidence, side);
+pub(crate) fn assert_follows(finish: &Finish, incidence: &Incidence, side: Side) -> f64 {
+    let expected = integrals(finish, incidence, side);
     let paths = 60_000u32;
     let (mut sums, mut squares) = (vec![0.0; expected.len()], vec![0.0; expected.len()]);
     for index in 0..paths {
         let mut sampler = Sampler::for_path(77, 0, u64::from(index));
-        let out = bsdf.scatter(incidence, &mut sampler);
+        let out = finish.scatter(incidence, &mut sampler);
         let Some(out) = out.filter(|out| out.side == side && out.lobe == Lobe::Diffuse) else {
             continue;
         };
@@ -338,7 +340,7 @@ pub(crate) fn assert_follows(bsdf: &Bsdf, incidence: &Incidence, side: Side) -> 
 }
 
 /// Compares `f(i→o)/n_o²` with the value for the same path backwards.
-pub(crate) fn assert_reciprocal(bsdf: &Bsdf, indices: [f64; 2]) {
+pub(crate) fn assert_reciprocal(finish: &Finish, indices: [f64; 2]) {
     for (angle, out_angle, turn) in [(0.3f64, 0.5f64, 0.4), (0.9, 0.2, 2.0), (0.6, 1.3, 3.0)] {
         let there = incidence(angle, indices);
         for (side, [index_in, index_out]) in
@@ -358,8 +360,8 @@ pub(crate) fn assert_reciprocal(bsdf: &Bsdf, indices: [f64; 2]) {
                 index_to: other,
                 grain: DVec3::ZERO,
             };
-            let one = bsdf.evaluate(&there, out) / (index_out * index_out);
-            let two = bsdf.evaluate(&back, -there.dir) / (index_in * index_in);
+            let one = finish.evaluate(&there, out) / (index_out * index_out);
+            let two = finish.evaluate(&back, -there.dir) / (index_in * index_in);
             assert!((one - two).abs() <= 1e-12 * one.max(1e-3), "{side:?} {angle}: {one}, {two}");
         }
     }

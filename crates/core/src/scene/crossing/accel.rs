@@ -104,7 +104,7 @@ fn to_f32(bounds: Aabb) -> Box32 {
 mod tests {
     use crate::optics::Medium;
     use crate::scene::mesh::Mesh;
-    use crate::scene::{Builder, Inside, On, Ray, Solid};
+    use crate::scene::{Builder, Inside, Ray, Solid, StartSurfaces};
     use glam::DVec3;
     use lumiduct_base::math::{Aabb, Frame};
     use lumiduct_base::mesh::TriangleMesh;
@@ -131,10 +131,11 @@ mod tests {
         builder.add_mesh("tetrahedron", solid, Mesh::new(&mesh, &Frame::WORLD), &[None]);
         let scene = builder.build();
         let ray = Ray::new(DVec3::new(0.2, 0.3, -1.0), DVec3::Z);
-        let entry = scene.find_next(&ray, &On::default(), &Inside::default()).unwrap();
+        let entry = scene.find_next(&ray, &StartSurfaces::default(), &Inside::default()).unwrap();
         assert!((entry.distance() - 1.0).abs() < 1e-12);
         let within: Inside = [solid].into_iter().collect();
-        let exit = scene.find_next(&ray.advanced(1.0), &On::hits(&entry), &within).unwrap();
+        let exit =
+            scene.find_next(&ray.advanced(1.0), &StartSurfaces::hits(&entry), &within).unwrap();
         assert!((exit.distance() - 0.5).abs() < 1e-12);
     }
 }

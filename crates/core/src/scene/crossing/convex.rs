@@ -7,7 +7,7 @@
 
 use crate::scene::crossing::hit::Nearest;
 use crate::scene::shape::{Crossing, Cylinder, Flat, RayStart, Toward};
-use crate::scene::{MeshBody, On, Owner, Patch, PrimId, Ray, SolidId};
+use crate::scene::{MeshBody, Owner, Patch, PrimId, Ray, SolidId, StartSurfaces};
 use glam::DVec3;
 
 /// Unit normals this close to opposite are opposite up to rounding; 1.
@@ -159,7 +159,7 @@ impl Convex {
     /// Where a ray inside leaves; `None` where rounding has put it beyond a face, or where it
     /// starts on the face that it leaves through: then edges must be tested.
     #[inline(always)]
-    pub(crate) fn exit(&self, ray: &Ray, from: &On, tolerance: f64) -> Option<Nearest> {
+    pub(crate) fn exit(&self, ray: &Ray, from: &StartSurfaces, tolerance: f64) -> Option<Nearest> {
         let mut nearest = Nearest::NONE;
         for slab in &self.slabs {
             let (t, prim) = slab.exit(ray);
@@ -179,7 +179,12 @@ impl Convex {
     /// Where a ray outside enters. A ray that starts on a face has left the solid and does not
     /// return.
     #[inline(always)]
-    pub(crate) fn entry(&self, ray: &Ray, from: &On, tolerance: f64) -> Option<(PrimId, Crossing)> {
+    pub(crate) fn entry(
+        &self,
+        ray: &Ray,
+        from: &StartSurfaces,
+        tolerance: f64,
+    ) -> Option<(PrimId, Crossing)> {
         let (mut enter, mut leave) = (f64::NEG_INFINITY, f64::INFINITY);
         let mut face = None;
         if let Some((prim, round)) = &self.round {
@@ -290,7 +295,7 @@ mod tests {
                     (0.99 * lumiduct_base::math::disk(pair()), pair()[0] * LENGTH);
                 let start = frame().point_to_world(across + along * DVec3::Z);
                 let mut ray = Ray::new(start, uniform_sphere(pair()));
-                let mut on = On::default();
+                let mut on = StartSurfaces::default();
                 // From inside, and from the face that was met, back into the solid.
                 for _ in 0..3 {
                     let found = scene.find_next(&ray, &on, &inside).unwrap();
@@ -302,7 +307,7 @@ mod tests {
                     let apart = found.distance() - expected.distance();
                     assert!((apart * ray.dir().dot(normal)).abs() < 1e-14, "{apart}");
                     let into = uniform_sphere(pair());
-                    on = On::hits(&found);
+                    on = StartSurfaces::hits(&found);
                     ray = Ray::new(point, if into.dot(normal) < 0.0 { into } else { -into });
                 }
             }
@@ -328,8 +333,9 @@ mod tests {
                 } else {
                     Ray::new(start, target - start)
                 };
-                let find =
-                    |scene: &Scene| scene.find_next(&ray, &On::default(), &Inside::default());
+                let find = |scene: &Scene| {
+                    scene.find_next(&ray, &StartSurfaces::default(), &Inside::default())
+                };
                 let (found, expected) = (find(&scene), find(&by_edges));
                 assert_eq!(found.is_some(), expected.is_some());
                 if let (Some(found), Some(expected)) = (found, expected) {
@@ -353,7 +359,11 @@ mod tests {
         for index in 0..2000 {
             let height = f64::from(index) / 2000.0 * LENGTH;
             let edge = f.point_to_world(DVec3::new(RADIUS, RADIUS, height));
-            let hits = scene.find_next(&Ray::new(middle, edge - middle), &On::default(), &inside);
+            let hits = scene.find_next(
+                &Ray::new(middle, edge - middle),
+                &StartSurfaces::default(),
+                &inside,
+            );
             assert!((hits.unwrap().distance() - middle.distance(edge)).abs() < 1e-12);
         }
     }

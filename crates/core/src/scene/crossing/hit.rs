@@ -120,7 +120,7 @@ impl Nearest {
 
 /// The side of a path's start point that a query refers to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Just {
+pub enum StartSide {
     /// Just ahead along its direction: past the face that a source lies on.
     Ahead,
     /// Just behind: light of a source on a face must still cross it.

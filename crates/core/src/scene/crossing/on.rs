@@ -4,13 +4,13 @@ use crate::scene::{Hits, PrimId};
 
 /// Start of a ray: on no surface, on one, or rarely on several that meet there.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct On {
+pub struct StartSurfaces {
     first: Option<PrimId>,
     /// On the heap, so that a test of the usual one costs one comparison.
     others: Box<[PrimId]>,
 }
 
-impl On {
+impl StartSurfaces {
     /// On the surfaces of a hit.
     #[inline(always)]
     pub fn hits(hits: &Hits) -> Self {
@@ -33,7 +33,7 @@ impl On {
     }
 }
 
-impl From<Option<PrimId>> for On {
+impl From<Option<PrimId>> for StartSurfaces {
     fn from(first: Option<PrimId>) -> Self {
         Self { first, others: Box::default() }
     }

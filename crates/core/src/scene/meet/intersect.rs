@@ -7,16 +7,16 @@
 //! the nearest hit are one event.
 
 use crate::scene::crossing::accel::{Accel, Tree};
-use crate::scene::crossing::hit::{Hits, Just, Nearest, PrimHit};
+use crate::scene::crossing::hit::{Hits, Nearest, PrimHit, StartSide};
 use crate::scene::mesh::TriangleLine;
 use crate::scene::shape::{Crossing, CrossingQuery, RayStart, Toward};
-use crate::scene::{Inside, On, Owner, PrimId, Ray, Scene, Surface};
+use crate::scene::{Inside, Owner, PrimId, Ray, Scene, StartSurfaces, Surface};
 use smallvec::SmallVec;
 
 impl Scene {
     /// The next hit of a ray that starts on the surfaces `from`, inside the solids `inside`.
     #[inline(always)]
-    pub fn find_next(&self, ray: &Ray, from: &On, inside: &Inside) -> Option<Hits> {
+    pub fn find_next(&self, ray: &Ray, from: &StartSurfaces, inside: &Inside) -> Option<Hits> {
         let nearest = match &self.accel {
             Accel::Scan(_) => self.nearest_by_scan(ray, from, inside),
             Accel::Tree(tree) => self.nearest_in_tree(tree, &ray.lent(), from, inside),
@@ -35,7 +35,7 @@ impl Scene {
     }
 
     #[inline(always)]
-    fn nearest_by_scan(&self, ray: &Ray, from: &On, inside: &Inside) -> Nearest {
+    fn nearest_by_scan(&self, ray: &Ray, from: &StartSurfaces, inside: &Inside) -> Nearest {
         let mut nearest = Nearest::NONE;
         for convex in &self.convex {
             if !inside.contains(convex.solid()) {
@@ -55,7 +55,7 @@ impl Scene {
 
     /// The same with all edges tested, for a path that rounding has put slightly off its position.
     #[inline(never)]
-    fn nearest_by_edges(&self, ray: &Ray, from: &On, inside: &Inside) -> Nearest {
+    fn nearest_by_edges(&self, ray: &Ray, from: &StartSurfaces, inside: &Inside) -> Nearest {
         let mut nearest = Nearest::NONE;
         self.scan((0..self.patches.len()).map(PrimId::new), ray, from, inside, &mut nearest);
         nearest
@@ -67,7 +67,7 @@ impl Scene {
         &self,
         prims: impl Iterator<Item = PrimId>,
         ray: &Ray,
-        from: &On,
+        from: &StartSurfaces,
         inside: &Inside,
         nearest: &mut Nearest,
     ) {
@@ -82,7 +82,13 @@ impl Scene {
     }
 
     #[inline(never)]
-    fn nearest_in_tree(&self, tree: &Tree, ray: &Ray, from: &On, inside: &Inside) -> Nearest {
+    fn nearest_in_tree(
+        &self,
+        tree: &Tree,
+        ray: &Ray,
+        from: &StartSurfaces,
+        inside: &Inside,
+    ) -> Nearest {
         let line = self.line(ray);
         let mut nearest = Nearest::NONE;
         tree.visit(ray, |index| {
@@ -101,7 +107,7 @@ impl Scene {
     fn find_others(
         &self,
         ray: &Ray,
-        from: &On,
+        from: &StartSurfaces,
         inside: &Inside,
         nearest: &Nearest,
     ) -> Box<[PrimHit]> {
@@ -127,7 +133,7 @@ impl Scene {
         prim: PrimId,
         ray: &Ray,
         line: Option<&TriangleLine>,
-        from: &On,
+        from: &StartSurfaces,
         inside: &Inside,
         limit: f64,
     ) -> Option<Crossing> {
@@ -165,14 +171,14 @@ impl Scene {
     }
 
     /// The solids that contain a path just ahead of its start or just behind.
-    pub fn inside_at(&self, ray: &Ray, when: Just) -> Inside {
+    pub fn inside_at(&self, ray: &Ray, when: StartSide) -> Inside {
         // The nearest crossing of each solid beyond the start decides: leaving it means having been
         // in it.
         let mut nearest: SmallVec<[(f64, Toward); 8]> =
             SmallVec::from_elem((f64::INFINITY, Toward::Back), self.solids.len());
         let beyond = match when {
-            Just::Ahead => self.tolerance,
-            Just::Behind => -self.tolerance,
+            StartSide::Ahead => self.tolerance,
+            StartSide::Behind => -self.tolerance,
         };
         let line = self.line(ray);
         self.accel.visit(ray, |index| {
@@ -215,6 +221,6 @@ impl Scene {
 
 /// Whether a ray that starts on the surfaces `from` starts on this one.
 #[inline(always)]
-fn start_on(prim: PrimId, from: &On) -> RayStart {
+fn start_on(prim: PrimId, from: &StartSurfaces) -> RayStart {
     if from.contains(prim) { RayStart::On } else { RayStart::Elsewhere }
 }

@@ -3,7 +3,7 @@
 //! The plane is scanned by two families of parallel rays; where one family runs along a surface the
 //! other crosses it. That works for every kind of surface, without a formula for each.
 
-use crate::optics::Bsdf;
+use crate::optics::Finish;
 use crate::scene::pattern::ActingPart;
 use crate::scene::shape::{ChartRect, Crossing, RayStart};
 use crate::scene::{FaceId, PrimId, Ray, Scene, Surface};
@@ -68,8 +68,8 @@ impl Scene {
         let mut parts = numbers.iter().filter_map(|&number| {
             let pattern = &self.patterns[number];
             let part = pattern.part(number, patch.chart(point), || DVec2::ZERO)?;
-            Some((part, &self.finishes[pattern.front.index()].bsdf))
+            Some((part, &self.finishes[pattern.front.index()].finish))
         });
-        matches!(parts.next(), Some((ActingPart::Element(_), Bsdf::Open)))
+        matches!(parts.next(), Some((ActingPart::Element(_), Finish::Open)))
     }
 }

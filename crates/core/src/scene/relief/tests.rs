@@ -4,7 +4,8 @@ use crate::rng::{Dimension, Sampler};
 use crate::scene::pattern::{Columns, RowPositions, TableAlong};
 use crate::scene::shape::{Flat, RayStart, Region, Shape};
 use crate::scene::{
-    Accel, Builder, FacePiece, FaceSpec, Inside, On, Owner, PrimId, Ray, Scene, Solid, SolidId,
+    Accel, Builder, FacePiece, FaceSpec, Inside, Owner, PrimId, Ray, Scene, Solid, SolidId,
+    StartSurfaces,
 };
 use lumiduct_base::math::{Aabb, Frame, uniform_sphere};
 use lumiduct_base::units::FluxUnit;
@@ -92,7 +93,7 @@ fn the_tree_finds_what_asking_every_surface_finds() {
             let start = DVec3::new(19.0 * u - 9.5, 19.0 * v - 9.5, height);
             let inside: Inside = solids.into_iter().collect();
             let ray = Ray::new(start, uniform_sphere(pair()));
-            let find = |scene: &Scene| scene.find_next(&ray, &On::default(), &inside);
+            let find = |scene: &Scene| scene.find_next(&ray, &StartSurfaces::default(), &inside);
             let (found, expected) = (find(&scene), find(&by_scan));
             assert_eq!(found.is_some(), expected.is_some());
             if let (Some(found), Some(expected)) = (found, expected) {
@@ -121,7 +122,7 @@ fn fronts_look_out_of_the_solid_and_surfaces_end_at_the_wall() {
                 let out = patch.shape.normal(point);
                 for (sign, expected) in [(1.0, Inside::default()), (-1.0, solid.clone())] {
                     let ray = Ray::new(point + 1e-9 * sign * out, DVec3::new(0.13, 0.24, 0.96));
-                    let inside = scene.inside_at(&ray, crate::scene::Just::Ahead);
+                    let inside = scene.inside_at(&ray, crate::scene::StartSide::Ahead);
                     // Near an edge, a point slightly beyond the surface may be beyond another one.
                     let is_near_an_edge = side < 1e-6 || !(1e-6..0.3 - 1e-6).contains(&side);
                     assert!(inside == expected || is_near_an_edge, "{point} {sign}");
@@ -185,7 +186,7 @@ fn a_ray_on_the_rim_of_an_element_never_slips_between_it_and_the_wall() {
         let target = DVec3::new(-9.3 + 0.001 * f64::from(index), row - 9.75, 1.0);
         let from = DVec3::new(target.x, target.y + 0.01 * f64::from(index % 7), -0.9);
         let ray = Ray::new(from, target - from);
-        let hits = scene.find_next(&ray, &On::default(), &inside).unwrap();
+        let hits = scene.find_next(&ray, &StartSurfaces::default(), &inside).unwrap();
         assert!((hits.distance() - (target - from).length()).abs() < 1e-9, "{target}");
         let mut around = 0;
         for patch in &scene.patches {

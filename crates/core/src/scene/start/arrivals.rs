@@ -5,7 +5,7 @@
 //! on the sensor. This module does not know what the path meets.
 
 use crate::rng::{Dimension, Numbers, Sampler};
-use crate::scene::crossing::hit::Just;
+use crate::scene::crossing::hit::StartSide;
 use crate::scene::shape::Toward;
 use crate::scene::start::area::{AreaPoint, FaceArea};
 use crate::scene::{
@@ -285,7 +285,7 @@ impl<'s> Arrivals<'s> {
         extent: f64,
         cells: SmallVec<[usize; 1]>,
     ) -> Arrival {
-        let inside = self.scene.inside_at(&ray, Just::Ahead);
+        let inside = self.scene.inside_at(&ray, StartSide::Ahead);
         Arrival { ray, inside, on, begins, extent, cells }
     }
 }

@@ -4,7 +4,8 @@ use crate::rng::{Dimension, Sampler};
 use crate::scene::shape::Shape;
 use crate::scene::source::sky::EmitterKind;
 use crate::scene::{
-    Emission, EmitSide, Emitted, Emitter, Inside, Just, Ray, Scene, SolidId, Source, StartSolids,
+    Emission, EmitSide, Emitted, Emitter, Inside, Ray, Scene, SolidId, Source, StartSide,
+    StartSolids,
 };
 use glam::DVec3;
 use lumiduct_base::math::{Aabb, Frame, disk};
@@ -32,8 +33,8 @@ impl Source {
         };
         let inside = match self.start {
             StartSolids::Outside => Inside::default(),
-            StartSolids::Ahead => scene.inside_at(&ray, Just::Ahead),
-            StartSolids::Behind => scene.inside_at(&ray, Just::Behind),
+            StartSolids::Ahead => scene.inside_at(&ray, StartSide::Ahead),
+            StartSolids::Behind => scene.inside_at(&ray, StartSide::Behind),
         };
         // Only surface sources lie on a surface.
         let on = self.on.get(shape).copied();
@@ -101,7 +102,7 @@ impl Source {
             let point = bounds.min + DVec3::new(u, v, w) * (bounds.max - bounds.min);
             let local = self.emission.sample(EmitterKind::Volume, sampler);
             let ray = Ray::new(point, local);
-            if scene.inside_at(&ray, Just::Ahead).contains(solid) {
+            if scene.inside_at(&ray, StartSide::Ahead).contains(solid) {
                 return ray;
             }
         }

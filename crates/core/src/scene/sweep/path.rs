@@ -30,7 +30,7 @@ pub(super) struct Section {
 pub(super) struct PathPiece {
     /// Its leg.
     pub(super) leg: usize,
-    /// Its start. Straight pieces may start before or after this section, as set by their floor.
+    /// Its start. Segments may start before or after this section, as set by their floor.
     pub(super) start: Section,
     pub(super) form: PieceForm,
 }

@@ -11,7 +11,7 @@ use crate::scene::{Arrivals, LightGroups, Scene, SensorId};
 use crate::transport::estimate::Estimate;
 use crate::transport::gather::merge::{Etendues, NO_WINDOW};
 use crate::transport::stop::{Pace, StopSignal};
-use crate::transport::tally::readings::{Counted, MIN_LIT_GROUPS};
+use crate::transport::tally::readings::{DetectedLight, MIN_LIT_GROUPS};
 use crate::transport::tally::work;
 use crate::transport::task::Task;
 use crate::transport::trial::{BATCHES, SEED, Trials, Tried};
@@ -238,7 +238,7 @@ impl GatherPathCounter<'_> {
             weight
         });
         let flux = weight * met.radiance * self.etendue;
-        let counted = Counted { flux, depth: path.depth, source: met.source };
+        let counted = DetectedLight { flux, depth: path.depth, source: met.source };
         self.readings.count((&self.layout, self.groups), self.id, self.cells, &counted);
     }
 

@@ -10,7 +10,7 @@ use crate::transport::backward::estimator::{Backward, Weights, paths_for, work_o
 use crate::transport::forward;
 use crate::transport::gather::merge::{Etendues, NO_WINDOW};
 use crate::transport::stop::Pace;
-use crate::transport::tally::readings::Counted;
+use crate::transport::tally::readings::DetectedLight;
 use crate::transport::tally::work;
 use crate::transport::task::Task;
 use crate::transport::trial::{BATCHES, Trials, Tried};
@@ -95,7 +95,7 @@ impl Mixing<'_, '_> {
             1.0
         };
         let (flux, source) = (light.flux * weight, light.source);
-        let counted = Counted { flux, depth: path.depth, source };
+        let counted = DetectedLight { flux, depth: path.depth, source };
         self.readings.count((layout, &scene.light), light.sensor, light.cells, &counted);
     }
 }

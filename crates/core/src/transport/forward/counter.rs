@@ -8,7 +8,9 @@ use crate::scene::shape::Toward;
 use crate::scene::{CountedLight, FaceId, LightGroupId, MediumId, Owner, SensorId, SourceId};
 use crate::transport::forward::Forward;
 use crate::transport::stop::Pace;
-use crate::transport::tally::readings::{ClassStep, Counted, SensorReading, Trail, count_totals};
+use crate::transport::tally::readings::{
+    ClassStep, DetectedLight, SensorReading, Trail, count_totals,
+};
 use crate::transport::{
     Departure, Emergence, Event, Leak, Observer, Path, Readings, Segment, Vertex, walk,
 };
@@ -39,12 +41,12 @@ pub(super) struct PhotonCounter<'r, 's, O> {
     entered: SmallVec<[SensorId; 2]>,
 }
 
-/// Where a straight piece starts.
+/// Where a segment starts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum TravelStart {
     /// At the source: crossings at its start have not been counted.
     Source,
-    /// At an interface: the previous piece has counted the crossings there.
+    /// At an interface: the previous segment has counted the crossings there.
     Interface,
 }
 
@@ -174,14 +176,14 @@ impl<'r, 's, O: Observer> PhotonCounter<'r, 's, O> {
     /// Counts flux in a cell and in the sensor's totals.
     #[inline]
     fn count(&mut self, path: &Path, id: SensorId, cell: usize, throughput: f64) {
-        self.count_totals(path, id, throughput);
+        self.count_on_sensor(path, id, throughput);
         self.readings.sensors[id.index()].add(cell, self.flux * throughput, self.groups);
     }
 
     #[inline]
-    fn count_totals(&mut self, path: &Path, id: SensorId, throughput: f64) {
+    fn count_on_sensor(&mut self, path: &Path, id: SensorId, throughput: f64) {
         let flux = self.flux * throughput;
-        let light = Counted { flux, depth: path.depth, source: self.source };
+        let light = DetectedLight { flux, depth: path.depth, source: self.source };
         count_totals(&mut self.sums, &self.run.layout, id, &light);
         let reading = &mut self.readings.sensors[id.index()];
         reading.depths.add(SensorReading::depth_bin(path.depth), flux);

@@ -1,6 +1,6 @@
 //! The forward estimator on a tube whose transmission is known.
 
-use crate::optics::{Bsdf, Medium};
+use crate::optics::{Finish, Medium};
 use crate::plan::{GatherPlan, Request, RunPlan, StopRules};
 use crate::scene::shape::{Cylinder, Flat, Region, Shape};
 use crate::scene::{
@@ -20,8 +20,8 @@ use std::ops::ControlFlow;
 /// A mirror tube of radius 5 with a Lambertian disk in its entry and a sensor in its exit.
 fn mirror_tube(reflectance: f64, length: f64) -> Scene {
     let mut builder = Builder::new(DVec3::ZERO, Medium::new("air", 1.0, 0.0), FluxUnit::Lumen);
-    let mirror = builder.add_finish("mirror", Bsdf::Specular { reflectance, transmittance: 0.0 });
-    let black = builder.add_finish("black", Bsdf::Absorber);
+    let mirror = builder.add_finish("mirror", Finish::Specular { reflectance, transmittance: 0.0 });
+    let black = builder.add_finish("black", Finish::Absorber);
     builder.add_face(FaceSpec {
         name: "tube.wall".into(),
         owner: Owner::Sheet,

@@ -5,7 +5,7 @@
 //! the extent of the medium. If a medium bends back into the ball, only the nearer part counts; the
 //! rest is an error that shrinks with the window.
 
-use crate::scene::{Inside, MediumId, MeetingPoint, On, Ray, Scene, Visibility};
+use crate::scene::{Inside, MediumId, MeetingPoint, Ray, Scene, StartSurfaces, Visibility};
 use crate::transport::Path;
 use crate::transport::gather::coverage::GOLDEN_TURN;
 use crate::transport::gather::window::{NESTED, Window};
@@ -43,7 +43,8 @@ pub(crate) fn clipped_volumes(
 /// Distance that a ray stays in the medium of a path, mm, up to a limit.
 fn clear_way(scene: &Scene, path: &Path, ray: &Ray, most: f64) -> f64 {
     let (mut ray, mut way) = (*ray, 0.0);
-    let (mut on, mut inside): (On, Inside) = (On::default(), path.inside.clone());
+    let (mut on, mut inside): (StartSurfaces, Inside) =
+        (StartSurfaces::default(), path.inside.clone());
     let medium: MediumId = path.medium;
     while way < most {
         let Some(hits) = scene.find_next(&ray, &on, &inside) else { return most };
@@ -56,7 +57,7 @@ fn clear_way(scene: &Scene, path: &Path, ray: &Ray, most: f64) -> f64 {
             // bodies.
             Visibility::Invisible => {
                 hits.cross(&mut inside);
-                on = On::hits(&hits);
+                on = StartSurfaces::hits(&hits);
                 ray = Ray::new(point, ray.dir());
             }
         }
@@ -115,7 +116,7 @@ mod tests {
             source: None,
             medium: scene.medium_in(&inside),
             inside,
-            on: On::default(),
+            on: StartSurfaces::default(),
             depth: 0,
         };
         let window = Window { radius, theta_max: 0.1 };

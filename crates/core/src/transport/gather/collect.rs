@@ -1,6 +1,6 @@
 //! One gather path: it counts the light that it meets, and leaves records where it ends.
 
-use crate::optics::{Bsdf, FinishModel, Lobe, Side, Spread};
+use crate::optics::{Finish, FinishModel, Lobe, Side, Spread};
 use crate::rng::{Dimension, Sampler};
 use crate::scene::SensorId;
 use crate::transport::gather::ball::clipped_volumes;
@@ -12,7 +12,7 @@ use crate::transport::gather::records::{
     GatherRecord, RecordKind, RecordPath, SurfaceRecord, VolumeRecord,
 };
 use crate::transport::gather::window::{COUNTED, ESTIMATES, Window, estimates};
-use crate::transport::tally::readings::Counted;
+use crate::transport::tally::readings::DetectedLight;
 use crate::transport::walk::scatter::{MetInterface, facing};
 use crate::transport::{
     Collision, Departure, Event, Loss, MetEmission, Observer, Path, ROULETTE_BELOW, Readings,
@@ -80,7 +80,8 @@ impl Collecting<'_, '_> {
         let flux = met.radiance * self.etendue;
         let weights = self.merging.as_ref().map_or([1.0; COUNTED], |merging| merging.weights(met));
         for (readings, weight) in self.windows.iter_mut().zip(estimates(weights)) {
-            let light = Counted { flux: flux * weight, depth: path.depth, source: met.source };
+            let light =
+                DetectedLight { flux: flux * weight, depth: path.depth, source: met.source };
             readings.count(
                 (&self.gather.layout, &self.gather.scene.light),
                 self.id,
@@ -135,13 +136,13 @@ impl Collecting<'_, '_> {
 /// Whether light from a side is scattered broadly: reflected light by the finish met, transmitted
 /// light by that of the other side.
 fn is_broad(facing: &MetInterface<'_>, side: Side) -> bool {
-    match finish(facing, side).kind() {
+    match finish(facing, side).spread() {
         Spread::Broad => true,
         Spread::Discrete | Spread::Narrow(_) => false,
     }
 }
 
-fn finish<'s>(facing: &MetInterface<'s>, side: Side) -> &'s Bsdf {
+fn finish<'s>(facing: &MetInterface<'s>, side: Side) -> &'s Finish {
     match side {
         Side::Reflected => facing.faces.own,
         Side::Transmitted => facing.faces.behind,
@@ -157,8 +158,8 @@ impl<'s> Collecting<'_, 's> {
         facing: &MetInterface<'s>,
         side: Side,
     ) {
-        let bsdf = finish(facing, side);
-        if bsdf.width().is_none() && bsdf.shares(&facing.incidence).of(side) == 0.0 {
+        let finish = finish(facing, side);
+        if finish.width().is_none() && finish.shares(&facing.incidence).of(side) == 0.0 {
             return;
         }
         // L* of the leaving light, in the medium of the gather path.
@@ -170,7 +171,7 @@ impl<'s> Collecting<'_, 's> {
             facing,
             side,
             value,
-            RecordKind::Scattered { bsdf, out: -vertex.dir },
+            RecordKind::Scattered { finish, out: -vertex.dir },
         );
     }
 
@@ -183,8 +184,8 @@ impl<'s> Collecting<'_, 's> {
         facing: &MetInterface<'s>,
         side: Side,
     ) {
-        let bsdf = finish(facing, side);
-        let Some(out) = bsdf.scatter_toward(side, &facing.incidence, &mut self.sampler) else {
+        let finish = finish(facing, side);
+        let Some(out) = finish.scatter_toward(side, &facing.incidence, &mut self.sampler) else {
             return;
         };
         if out.lobe == Lobe::Diffuse && is_broad(facing, side) {

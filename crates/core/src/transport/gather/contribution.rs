@@ -132,8 +132,8 @@ impl NestedWindows {
                     if inside { agreement * per_angle() } else { 0.0 }
                 }))
             }
-            RecordKind::Scattered { bsdf, out } => {
-                let scattered = agreement * bsdf.evaluate(&photon.incidence, out);
+            RecordKind::Scattered { finish, out } => {
+                let scattered = agreement * finish.evaluate(&photon.incidence, out);
                 Some(each(record.values, |window| if within(window) { scattered } else { 0.0 }))
             }
         }

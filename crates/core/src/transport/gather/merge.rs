@@ -6,7 +6,7 @@
 //! `c_F = N p_e`, `c_B = M p_g` and `c_M = N p_e M p_g G/q` (docs/method.md, eq. 16 to 18). This
 //! module does not trace paths, and does not know the origin of the shares.
 
-use crate::optics::{Bsdf, FinishModel, Incidence, Side};
+use crate::optics::{Finish, FinishModel, Incidence, Side};
 use crate::scene::Scene;
 use crate::transport::gather::window::{COUNTED, Window};
 use crate::transport::walk::scatter::MetInterface;
@@ -54,7 +54,7 @@ impl Etendues {
 /// Light at a face that it meets, and its continuation.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FacePassage<'s> {
-    bsdf: &'s Bsdf,
+    finish: &'s Finish,
     /// Incidence of the light, also when it comes from a gather path.
     incidence: Incidence,
     side: Side,
@@ -63,13 +63,13 @@ pub(crate) struct FacePassage<'s> {
 impl<'s> FacePassage<'s> {
     /// For a photon that meets a face.
     pub(crate) fn of_photon(facing: &MetInterface<'s>, side: Side) -> Self {
-        Self { bsdf: facing.faces.own, incidence: facing.incidence, side }
+        Self { finish: facing.faces.own, incidence: facing.incidence, side }
     }
 
     /// For the light that a gather path at a face would find along `dir`.
     pub(crate) fn of_gather_path(facing: &MetInterface<'s>, dir: DVec3, side: Side) -> Self {
         let own = facing.incidence;
-        let (bsdf, incidence) = match side {
+        let (finish, incidence) = match side {
             Side::Reflected => (facing.faces.own, Incidence { dir: -dir, ..own }),
             Side::Transmitted => (
                 facing.faces.behind,
@@ -82,14 +82,14 @@ impl<'s> FacePassage<'s> {
                 },
             ),
         };
-        Self { bsdf, incidence, side }
+        Self { finish, incidence, side }
     }
 
     /// G/q, mm² sr: n² π r² ∫ cos θ dω over the cone about the light, above the horizon, over the
     /// probability of the path's side. Windows are not clipped: eq. (20).
     pub(crate) fn etendues(&self, window: Window) -> [f64; COUNTED] {
         let Incidence { index_from, .. } = self.incidence;
-        let chance = self.bsdf.chances(&self.incidence).of(self.side).max(LEAST_CHANCE);
+        let chance = self.finish.chances(&self.incidence).of(self.side).max(LEAST_CHANCE);
         let (cos, basic) = (self.incidence.cos(), index_from * index_from / chance);
         window.counted().map(|window| basic * window.area() * projected_cap(cos, window.theta_max))
     }
@@ -173,9 +173,9 @@ pub fn scatterers(scene: &Scene) -> Vec<Scatterer<'_>> {
     });
     sides
         .filter_map(|(face, id)| {
-            let finish = &scene.finishes[id?.index()];
-            let is_new = !finish.bsdf.has_one_direction_a_side() && seen.insert(id);
-            is_new.then(|| Scatterer::Finish { finish: &finish.name, face: &face.name })
+            let named = &scene.finishes[id?.index()];
+            let is_new = !named.finish.has_one_direction_a_side() && seen.insert(id);
+            is_new.then(|| Scatterer::Finish { finish: &named.name, face: &face.name })
         })
         .chain(turbid_media(scene))
         .collect()
@@ -224,7 +224,7 @@ mod tests {
             index_to: 1.0,
             grain: DVec3::ZERO,
         };
-        let faces = crate::optics::Faces { own: &Bsdf::Smooth, behind: &Bsdf::Smooth };
+        let faces = crate::optics::Faces { own: &Finish::Smooth, behind: &Finish::Smooth };
         let out = DVec3::new(index * sin, 0.0, -(1.0 - (index * sin).powi(2)).sqrt());
         (MetInterface { faces, incidence, facet: DVec3::Z }, out)
     }
@@ -255,7 +255,7 @@ mod tests {
                 MetInterface { incidence: light, facet: light.normal, faces: facing.faces };
             let told = FacePassage::of_gather_path(&facing, out, side).etendues(window);
             let expected = FacePassage::of_photon(&photon, side).etendues(window);
-            let chance = Bsdf::Smooth.chances(&light).of(side);
+            let chance = Finish::Smooth.chances(&light).of(side);
             // n² |cos θ| π r² 2π (1 - cos θ_max) / q
             let formula =
                 light.index_from.powi(2) * light.cos() * window.area() * window.solid_angle()
@@ -278,7 +278,7 @@ mod tests {
                 index_to: index_from,
                 grain: DVec3::ZERO,
             };
-            FacePassage { bsdf: &Bsdf::Open, incidence, side: Side::Transmitted }
+            FacePassage { finish: &Finish::Open, incidence, side: Side::Transmitted }
         };
         let mut recent = Recent::new(2);
         for (met, index) in [1.0, 2.0, 3.0, 4.0].into_iter().enumerate() {

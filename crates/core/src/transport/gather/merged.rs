@@ -9,7 +9,7 @@ use crate::scene::Visibility;
 use crate::transport::gather::merge::{Etendues, FacePassage, NO_WINDOW, ROULETTE_BELOW, Recent};
 use crate::transport::gather::stream::{Photon, PhotonStream};
 use crate::transport::gather::window::{COUNTED, ESTIMATES, estimates};
-use crate::transport::tally::readings::Counted;
+use crate::transport::tally::readings::DetectedLight;
 use crate::transport::walk::follow::{arrivals_of, etendue_of};
 use crate::transport::walk::scatter::facing;
 use crate::transport::{
@@ -126,7 +126,7 @@ impl MergedStream<'_, '_> {
         let weights = estimates(etendues.forward());
         for (readings, weight) in self.stream.windows.iter_mut().zip(weights) {
             let (flux, source) = (light.flux * weight, light.source);
-            let counted = Counted { flux, depth: path.depth, source };
+            let counted = DetectedLight { flux, depth: path.depth, source };
             readings.count(
                 (&gather.layout, &gather.scene.light),
                 light.sensor,

@@ -3,7 +3,7 @@
 //!
 //! This module does not know the contribution of a photon to a record.
 
-use crate::optics::{Bsdf, VolumeScattering};
+use crate::optics::{Finish, VolumeScattering};
 use crate::scene::MediumId;
 use crate::transport::gather::index::{Index, Indexed, PhotonKey, TOGETHER};
 use crate::transport::gather::surfaces::{Slot, SurfaceNumbers};
@@ -79,7 +79,7 @@ pub enum RecordKind<'s> {
     /// (22).
     Scattered {
         /// The finish that acts on them.
-        bsdf: &'s Bsdf,
+        finish: &'s Finish,
         /// Unit direction in which the light must leave.
         out: DVec3,
     },

@@ -4,7 +4,7 @@
 use crate::optics::{FinishModel, Spread};
 use crate::plan::{RunPlan, Schedule};
 use crate::rng::{Sampler, stream};
-use crate::scene::{Arrivals, Emission, Emitter, FaceId, On, Ray, Scene, SensorId};
+use crate::scene::{Arrivals, Emission, Emitter, FaceId, Ray, Scene, SensorId, StartSurfaces};
 use crate::transport::stop::{Pace, StopSignal};
 use crate::transport::trial::{PASS_SEGMENTS, PhotonPilot};
 use crate::transport::walk::emitters::Emitters;
@@ -32,7 +32,7 @@ const DEPTH: [f64; 2] = [1.0, 8.0];
 /// Smallest number of photons of an automatic pass: in closed mirrors each has 100,000 straight
 /// pieces.
 const LEAST_PHOTONS: f64 = 32.0;
-/// Cost of a gather path and its records in straight pieces of photon paths, as measured, and their
+/// Cost of a gather path and its records in segments of photon paths, as measured, and their
 /// work as a share of the work of the photons: limited by pairs, noise is least at equal shares;
 /// fewer records are cheaper to look up.
 const RECORD_SEGMENTS: f64 = 50.0;
@@ -144,7 +144,7 @@ fn angle(scene: &Scene, inradius: f64, from_sources: &[f64]) -> f64 {
         }
     });
     let narrowest = sources.fold(PI, f64::min);
-    let scatter = scene.finishes.iter().map(|finish| match finish.bsdf.kind() {
+    let scatter = scene.finishes.iter().map(|named| match named.finish.spread() {
         Spread::Narrow(sigma) => sigma,
         Spread::Discrete | Spread::Broad => 0.0,
     });
@@ -240,7 +240,7 @@ impl Sounding<'_> {
     fn probe(&mut self, path: &Path, vertex: &Vertex<'_>) -> ControlFlow<()> {
         let normal = facing(self.scene, path, vertex).facet;
         let across = Ray::new(vertex.point, normal);
-        let far = self.scene.find_next(&across, &On::hits(vertex.hits), &path.inside);
+        let far = self.scene.find_next(&across, &StartSurfaces::hits(vertex.hits), &path.inside);
         let half_way = far.map_or(f64::INFINITY, |hits| 0.5 * hits.distance());
         let face: FaceId = vertex.interface.acting.face;
         self.across.push(half_way.min((self.scene.face_area(face) / PI).sqrt()));

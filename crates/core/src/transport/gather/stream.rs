@@ -12,7 +12,7 @@ use crate::transport::gather::merge::Etendues;
 use crate::transport::gather::stages::Pass;
 use crate::transport::gather::window::{COUNTED, ESTIMATES, estimates};
 use crate::transport::stop::Pace;
-use crate::transport::tally::readings::Counted;
+use crate::transport::tally::readings::DetectedLight;
 use crate::transport::tally::work::RecordWork;
 use crate::transport::{Collision, Emergence, Event, Observer, Path, Readings, Vertex};
 use glam::DVec3;
@@ -197,7 +197,8 @@ impl<'p, 's> PhotonStream<'p, 's> {
             let counted = std::array::from_fn(|window| shares[window] * weights[window]);
             for (readings, share) in windows.iter_mut().zip(estimates(counted)) {
                 if share != 0.0 {
-                    let light = Counted { flux: photon.flux * share, depth, source: photon.source };
+                    let light =
+                        DetectedLight { flux: photon.flux * share, depth, source: photon.source };
                     readings.count((layout, &scene.light), *sensor, cells, &light);
                 }
             }

@@ -54,7 +54,7 @@ impl Findings {
         self.others.iter().find_map(|found| found.settings.as_ref())
     }
 
-    /// Straight pieces of photon and gather paths, as far as they still count.
+    /// Segments of photon and gather paths, as far as they still count.
     pub fn segments(&self) -> u64 {
         let stages = self.others.iter().flat_map(|found| &found.stages);
         let others: u64 = stages.map(|stage| stage.counts.first().segments).sum();

@@ -17,7 +17,7 @@ use crate::transport::trial::PhotonPilot;
 use crate::transport::{EstimatorChoice, GatherSettings};
 use std::time::{Duration, Instant};
 
-/// Target number of straight pieces of a batch: long enough that summing costs little, short enough
+/// Target number of segments of a batch: long enough that summing costs little, short enough
 /// that little is lost when a run is stopped.
 const BATCH_SEGMENTS: u64 = 1 << 15;
 /// Most paths in a batch.
@@ -140,7 +140,7 @@ fn gathered<'s>(
         return Some(Vec::new());
     }
     let early = signal.with_grace();
-    let work = signal.work_left(|| time_of_piece(scene, plan, &early));
+    let work = signal.work_left(|| time_of_segment(scene, plan, &early));
     let pilot = work.map_or(pilot, |work| pilot.with_passes_up_to(work / PASSES_IN_TIME));
     let mut prepared = Vec::new();
     for (sensors, combination) in [(alone, Combination::Alone), (merged, Combination::Merged)] {
@@ -170,7 +170,7 @@ fn usual_batch(segments_per_path: u64) -> u64 {
     (BATCH_SEGMENTS / segments_per_path).clamp(1, BATCH_PATHS)
 }
 
-/// Mean number of straight pieces of a photon path, from a few of them; `None` if they were
+/// Mean number of segments of a photon path, from a few of them; `None` if they were
 /// stopped.
 fn segments_per_path(scene: &Scene, plan: &RunPlan, signal: &StopSignal) -> Option<u64> {
     let limit = plan.bounce_limit.min(PILOT_BOUNCES);
@@ -183,8 +183,8 @@ fn segments_per_path(scene: &Scene, plan: &RunPlan, signal: &StopSignal) -> Opti
     Some(pilot.segments.div_ceil(pilot.paths().max(1)).max(1) + rest as u64)
 }
 
-/// Time of a straight piece of a photon path, s, by the clock; `None` if stopped.
-fn time_of_piece(scene: &Scene, plan: &RunPlan, signal: &StopSignal) -> Option<f64> {
+/// Time of a segment of a photon path, s, by the clock; `None` if stopped.
+fn time_of_segment(scene: &Scene, plan: &RunPlan, signal: &StopSignal) -> Option<f64> {
     let limit = plan.bounce_limit.min(PILOT_BOUNCES);
     let forward = Forward::new(scene, plan.seed, limit, PILOT_PATHS);
     let (start, mut segments) = (Instant::now(), 0);

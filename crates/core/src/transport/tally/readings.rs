@@ -99,7 +99,7 @@ pub struct Readings {
     pub groups: Vec<Group>,
     /// One for each sensor.
     pub sensors: Vec<SensorReading>,
-    /// Straight pieces traced: the work done.
+    /// Segments traced: the work done.
     pub segments: u64,
     /// The first places of leaks.
     pub leaks: Vec<Leak>,
@@ -220,7 +220,7 @@ impl Readings {
         (layout, groups): (&Layout, &LightGroups),
         id: SensorId,
         cells: &[usize],
-        light: &Counted,
+        light: &DetectedLight,
     ) {
         let reading = &mut self.sensors[id.index()];
         for &cell in cells {
@@ -285,7 +285,7 @@ impl Readings {
 
 /// Light that has reached a sensor.
 #[derive(Debug, Clone, Copy)]
-pub struct Counted {
+pub struct DetectedLight {
     /// Its flux, lm or W.
     pub flux: f64,
     /// Interfaces met before it.
@@ -296,8 +296,8 @@ pub struct Counted {
 
 /// Adds light to the scalars of a sensor.
 #[inline(always)]
-pub(crate) fn count_totals(sums: &mut [f64], layout: &Layout, id: SensorId, light: &Counted) {
-    let &Counted { flux, depth, source } = light;
+pub(crate) fn count_totals(sums: &mut [f64], layout: &Layout, id: SensorId, light: &DetectedLight) {
+    let &DetectedLight { flux, depth, source } = light;
     sums[layout.sensor_flux(id, source)] += flux;
     sums[layout.depth_weighted(id)] += flux * f64::from(depth);
     for (tail, _) in TAILS.iter().enumerate().take_while(|(_, tail)| depth > **tail) {

@@ -5,10 +5,10 @@
 
 use crate::transport::Readings;
 
-/// Per photon path, and per straight piece of one.
+/// Per photon path, and per segment of one.
 const PHOTON_PATH: f64 = 170.0;
 const PHOTON_SEGMENT: f64 = 45.0;
-/// Per gather path, and per straight piece of one.
+/// Per gather path, and per segment of one.
 const GATHER_PATH: f64 = 600.0;
 const GATHER_SEGMENT: f64 = 60.0;
 /// Per gather record, made and indexed; per photon that passes the filter; per photon that a record takes.
@@ -34,17 +34,17 @@ pub(crate) fn of_photons(readings: &Readings) -> f64 {
     PHOTON_PATH * readings.paths() as f64 + PHOTON_SEGMENT * readings.segments as f64
 }
 
-/// Work of a photon path with this many straight pieces.
+/// Work of a photon path with this many segments.
 pub(crate) fn of_photon_path(segments: f64) -> f64 {
     PHOTON_PATH + PHOTON_SEGMENT * segments
 }
 
-/// Work of a gather path with this many straight pieces.
+/// Work of a gather path with this many segments.
 pub(crate) fn of_gather_path(segments: f64) -> f64 {
     GATHER_PATH + GATHER_SEGMENT * segments
 }
 
-/// Work of a gather path with this many straight pieces that ends in a record.
+/// Work of a gather path with this many segments that ends in a record.
 pub(crate) fn of_recorded_path(segments: f64) -> f64 {
     of_gather_path(segments) + RECORD
 }

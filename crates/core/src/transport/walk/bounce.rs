@@ -6,12 +6,12 @@
 
 use crate::optics::{Lobe, Scattered, Side, VolumeScattering};
 use crate::rng::{Dimension, Numbers, Sampler};
-use crate::scene::{Hits, MeetingPoint, On, Ray, Scene, Visibility};
+use crate::scene::{Hits, MeetingPoint, Ray, Scene, StartSurfaces, Visibility};
 use crate::transport::walk::event::{
     Carries, Collision, Departure, Event, Observer, Segment, Vertex,
 };
 use crate::transport::walk::path::Path;
-use crate::transport::walk::scatter::{scatter, scatter_radiance};
+use crate::transport::walk::scatter::{scatter_gather_path, scatter_photon};
 use glam::DVec3;
 use std::ops::ControlFlow;
 
@@ -119,8 +119,8 @@ fn bounce<V: Observer>(
         Visibility::Visible => {
             path.depth += 1;
             let out = match V::CARRIES {
-                Carries::Flux => scatter(scene, path, &interface, point, dir, sampler),
-                Carries::Radiance => scatter_radiance(scene, path, &vertex, sampler),
+                Carries::Flux => scatter_photon(scene, path, &interface, point, dir, sampler),
+                Carries::Radiance => scatter_gather_path(scene, path, &vertex, sampler),
             };
             let Some(out) = out else {
                 observer.see(path, Event::Absorbed(&vertex))?;
@@ -129,7 +129,7 @@ fn bounce<V: Observer>(
             out
         }
     };
-    path.on = On::hits(hits);
+    path.on = StartSurfaces::hits(hits);
     let next = Ray::new(point, out.dir);
     path.ray = next;
     path.throughput *= out.factor;
@@ -156,7 +156,7 @@ fn collide<V: Observer>(
     let collision = Collision { point, dir, medium, scattering, throughput };
     observer.see(path, Event::Collide(&collision))?;
     path.depth += 1;
-    path.on = On::default();
+    path.on = StartSurfaces::default();
     // The phase function depends only on the angle between two directions: it is the same for
     // radiance and flux.
     path.ray = Ray::new(point, scattering.scatter(dir, sampler.pair(Dimension::Scatter)));

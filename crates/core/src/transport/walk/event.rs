@@ -15,7 +15,7 @@ use std::ops::ControlFlow;
 /// measurement: docs/speed.md.
 pub const ROULETTE_BELOW: f64 = 0.1;
 
-/// A straight piece of a path, in one medium.
+/// A straight part of a path, in one medium.
 #[derive(Debug)]
 pub struct Segment<'a> {
     /// Start and direction.

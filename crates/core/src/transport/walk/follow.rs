@@ -33,7 +33,7 @@ pub struct Gathering<'a, 's> {
     pub pace: Option<&'a Pace<'a>>,
 }
 
-/// Follows one gather path; returns its number of straight pieces.
+/// Follows one gather path; returns its number of segments.
 pub fn follow(
     gathering: Gathering<'_, '_>,
     arrival: &Arrival,
@@ -51,7 +51,7 @@ pub fn follow(
     follower.segments
 }
 
-/// Follows one gather path from an interface beyond the aim; returns the number of straight pieces.
+/// Follows one gather path from an interface beyond the aim; returns the number of segments.
 pub fn follow_on(
     gathering: Gathering<'_, '_>,
     path: Path,

@@ -1,6 +1,6 @@
 //! The state of a path.
 
-use crate::scene::{Arrival, Emitted, Inside, MediumId, On, Ray, Scene, SourceId};
+use crate::scene::{Arrival, Emitted, Inside, MediumId, Ray, Scene, SourceId, StartSurfaces};
 
 /// Wavelength of all light for now, nm: the peak of V(λ), CIE 018:2019.
 pub(crate) const WAVELENGTH: f64 = 555.0;
@@ -21,7 +21,7 @@ pub struct Path {
     /// The medium it is in.
     pub medium: MediumId,
     /// The surfaces it starts on.
-    pub on: On,
+    pub on: StartSurfaces,
     /// Number of visible interfaces met, and of scatterings within media, so far.
     pub depth: u32,
 }

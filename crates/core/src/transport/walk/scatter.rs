@@ -2,9 +2,7 @@
 //!
 //! It combines the finish, the normal and the indices; the physics is in `optics`.
 
-use crate::optics::{
-    Bsdf, Faces, FinishModel, Incidence, Scattered, Side, scatter_radiance as adjoint,
-};
+use crate::optics::{Faces, Finish, FinishModel, Incidence, Scattered, Side, scatter_at_faces};
 use crate::rng::{Numbers, Sampler};
 use crate::scene::shape::Toward;
 use crate::scene::{FinishId, Interface, MediumId, Patch, Scene, Surface};
@@ -12,11 +10,11 @@ use crate::transport::{Path, Vertex};
 use glam::DVec3;
 
 /// The smooth interface of two media, where no finish is declared.
-static SMOOTH: Bsdf = Bsdf::Smooth;
+static SMOOTH: Finish = Finish::Smooth;
 
 /// Applies the acting finish.
 #[inline(always)]
-pub(super) fn scatter(
+pub(super) fn scatter_photon(
     scene: &Scene,
     path: &Path,
     interface: &Interface<'_>,
@@ -27,12 +25,12 @@ pub(super) fn scatter(
     let toward = interface.acting.toward;
     let index = |medium: MediumId| scene.media[medium.index()].index(path.wavelength);
     let (index_from, index_to) = (index(interface.from), index(interface.to));
-    let bsdf = finish_of(scene, interface.finish);
+    let finish = finish_of(scene, interface.finish);
     match scene.surface(interface.acting.prim) {
         Surface::Patch(patch) => {
             let normal = patch.shape.normal_against(toward, point);
-            let grain = grain(bsdf, patch, point);
-            bsdf.scatter(&Incidence { dir, normal, index_from, index_to, grain }, sampler)
+            let grain = grain(finish, patch, point);
+            finish.scatter(&Incidence { dir, normal, index_from, index_to, grain }, sampler)
         }
         Surface::Triangle(body, triangle) => {
             let facing = |outward: DVec3| match toward {
@@ -44,7 +42,7 @@ pub(super) fn scatter(
             // An interpolated normal may face away from grazing light; then the facet's normal is
             // used.
             let normal = if shading.dot(dir) < 0.0 { shading } else { facet };
-            let out = bsdf.scatter(
+            let out = finish.scatter(
                 &Incidence { dir, normal, index_from, index_to, grain: DVec3::ZERO },
                 sampler,
             )?;
@@ -56,13 +54,13 @@ pub(super) fn scatter(
 /// The grain direction of a finish on a patch. Meshes have none; finishes with a grain are refused
 /// there.
 #[inline(always)]
-fn grain(bsdf: &Bsdf, patch: &Patch, point: DVec3) -> DVec3 {
-    if bsdf.has_grain() { patch.along(point) } else { DVec3::ZERO }
+fn grain(finish: &Finish, patch: &Patch, point: DVec3) -> DVec3 {
+    if finish.has_grain() { patch.along(point) } else { DVec3::ZERO }
 }
 
 #[inline]
-fn finish_of(scene: &Scene, finish: Option<FinishId>) -> &Bsdf {
-    finish.map_or(&SMOOTH, |finish| &scene.finishes[finish.index()].bsdf)
+fn finish_of(scene: &Scene, finish: Option<FinishId>) -> &Finish {
+    finish.map_or(&SMOOTH, |finish| &scene.finishes[finish.index()].finish)
 }
 
 /// An interface as a gather path meets it.
@@ -114,14 +112,14 @@ pub fn facing<'s>(scene: &'s Scene, path: &Path, vertex: &Vertex<'_>) -> MetInte
 }
 
 /// Sends a gather path on, or absorbs it.
-pub fn scatter_radiance(
+pub fn scatter_gather_path(
     scene: &Scene,
     path: &Path,
     vertex: &Vertex<'_>,
     sampler: &mut Sampler<impl Numbers>,
 ) -> Option<Scattered> {
     let facing = facing(scene, path, vertex);
-    let out = adjoint(facing.faces, &facing.incidence, sampler)?;
+    let out = scatter_at_faces(facing.faces, &facing.incidence, sampler)?;
     Some(facing.corrected(out))
 }
 

@@ -251,7 +251,7 @@ impl<'s, O: Observer> PhotonCounter<'_, 's, O> {
             return;
         }
         _ = self.observer.see(path, Event::Detect(&light(&lit)));
-        self.count_totals(path, id, throughput);
+        self.count_on_sensor(path, id, throughput);
         for &cell in &lit {
             self.readings.sensors[id.index()].add(cell, self.flux * throughput, self.groups);
         }

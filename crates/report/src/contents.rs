@@ -7,8 +7,8 @@ use crate::by_light::{self, LightMatrix, from_light, matrix, remark_on_totals, s
 use crate::csv::{intensity_name, map_name, map_words};
 use crate::figures::{BOUNCES_SHOWN, bounce_plot, intensity_plot, where_and_when};
 use crate::html::data;
-use crate::html::frame::{Block, PagePart, Plots, Standing, table};
 use crate::key_figures::{Listed, is_one_cell, is_shown, key_figures, listed};
+use crate::page::{Block, PagePart, Plots, Standing, table};
 use crate::words::{
     CHOICES_HEAD, CLASSES_HEAD, ERRORS, NO_LINES, balance_lines, choice_row, class_rows, entry,
     evenness_head, evenness_rows, is_silent, lost_paths, measure_cells, outcome_word, quantity,

@@ -27,6 +27,7 @@ mod manifest;
 mod markdown;
 mod mesh;
 mod output;
+mod page;
 pub(crate) mod png;
 mod recipe;
 mod record;

@@ -2,8 +2,8 @@
 
 use crate::Report;
 use crate::contents::{parts, verdict};
-use crate::html::frame::{Block, PagePart, Plots};
 use crate::output::LOGO;
+use crate::page::{Block, PagePart, Plots};
 use lumiduct_base::text::{markdown_cell, markdown_page};
 use lumiduct_input::Project;
 use std::fmt::Write;

@@ -10,7 +10,7 @@ use lumiduct_input::Project;
 use serde::{Deserialize, Serialize};
 
 /// Everything a report says.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone)]
 pub struct Report {
     /// The scene.
     pub scene: SceneFacts,
@@ -22,11 +22,9 @@ pub struct Report {
     pub checks: Vec<CheckResult>,
     /// Remarks on the scene and on the results.
     pub warnings: Vec<String>,
-    /// The drawing of the scene: for pictures only, not part of the record for programs.
-    #[serde(skip)]
+    /// The drawing of the scene, for pictures only.
     pub drawing: SceneDrawing,
-    /// The contents of the scene: for pages only, likewise.
-    #[serde(skip)]
+    /// The contents of the scene, for pages only.
     pub inventory: Inventory,
 }
 

@@ -4,8 +4,9 @@
 
 use crate::Report;
 use crate::contents::{parts, verdict};
-use crate::html::frame::{Page, Plots, render};
+use crate::html::frame::{Page, render};
 use crate::html::masthead;
+use crate::page::Plots;
 use lumiduct_base::error::Result;
 
 /// The whole page.

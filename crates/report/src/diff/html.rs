@@ -3,7 +3,8 @@
 use crate::diff::page::{HEADER, cells, findings, remark, title};
 use crate::diff::{Diff, DiffRow, MapDiff, MapOutcome, maps};
 use crate::html::data::drawn_map;
-use crate::html::frame::{Block, Page, PagePart, Plots, Standing, render};
+use crate::html::frame::{Page, render};
+use crate::page::{Block, PagePart, Plots, Standing};
 use lumiduct_base::error::Result;
 
 /// Rows of a table that are shown; further ones are folded away.

@@ -2,8 +2,9 @@
 
 use crate::drawing::{NameMark, Role, drawing};
 use crate::html::data;
-use crate::html::frame::{Block, Page, PagePart, Plots, Standing, render, table};
+use crate::html::frame::{Page, render};
 use crate::local_axes::{LocalAxes, local_axes};
+use crate::page::{Block, PagePart, Plots, Standing, table};
 use glam::DVec3;
 use lumiduct_base::error::Result;
 use lumiduct_base::number::format_value;

@@ -3,6 +3,7 @@
 //! It knows no report: it turns titles, tables and plots as plain data into one self-contained
 //! file. The page loads nothing; only without scripts it shows the picture files next to it.
 
+use crate::page::{PagePart, Plots, Standing};
 use crate::png::{ColourMap, curve_colours};
 use lumiduct_base::error::{Error, Result};
 use minijinja::syntax::SyntaxConfig;
@@ -58,97 +59,13 @@ pub(crate) struct Masthead {
     pub(crate) logo: Option<String>,
 }
 
-/// A verdict as a status.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub(crate) enum Standing {
-    /// Everything is as requested.
-    Good,
-    /// Something is not.
-    Bad,
-    /// Nothing was requested.
-    Open,
-}
-
-/// A part of a page, with a heading that the table of contents links to.
-#[derive(Debug, Serialize)]
-pub(crate) struct PagePart {
-    /// Its heading.
-    pub(crate) title: String,
-    /// Its contents.
-    pub(crate) blocks: Vec<Block>,
-}
-
-/// Something in a part.
-#[derive(Debug, Serialize)]
-#[serde(tag = "kind", rename_all = "snake_case")]
-pub(crate) enum Block {
-    /// A heading.
-    Heading {
-        /// The words.
-        text: String,
-    },
-    /// A paragraph.
-    Words {
-        /// The words.
-        text: String,
-    },
-    /// A list.
-    List {
-        /// Its lines.
-        items: Vec<String>,
-    },
-    /// A table.
-    Table {
-        /// The heads of its columns.
-        head: Vec<String>,
-        /// Its rows.
-        rows: Vec<Vec<String>>,
-        /// Words to click on, for a table that is folded away.
-        folded: Option<String>,
-    },
-    /// A plot.
-    Plot {
-        /// What is plotted.
-        label: String,
-        /// Its number among the plots of the page.
-        index: usize,
-        /// Name of a picture file next to the page for use without scripts.
-        picture: Option<String>,
-    },
-}
-
-/// The plots of a page: what the scripts draw.
-#[derive(Debug, Default)]
-pub(crate) struct Plots(Vec<serde_json::Value>);
-
-impl Plots {
-    /// Adds a plot and returns its place. The field `plot` of `data` names the script that draws
-    /// it.
-    pub(crate) fn add(
-        &mut self,
-        label: impl Into<String>,
-        data: serde_json::Value,
-        picture: Option<String>,
-    ) -> Block {
-        self.0.push(data);
-        Block::Plot { label: label.into(), index: self.0.len() - 1, picture }
-    }
-}
-
-/// A table that is not folded away.
-pub(crate) fn table(head: &[impl AsRef<str>], rows: Vec<Vec<String>>) -> Block {
-    let head = head.iter().map(|name| name.as_ref().to_owned()).collect();
-    Block::Table { head, rows, folded: None }
-}
-
 /// The page as one file.
 pub(crate) fn render(page: &Page, plots: &Plots) -> Result<String> {
     let failed = |reason: String| Error::Output { what: "report.html".into(), reason };
     let [sequential, diverging] =
         [ColourMap::Sequential, ColourMap::Diverging].map(ColourMap::stops);
     let palettes = serde_json::json!({ "sequential": sequential, "diverging": diverging });
-    let data = serde_json::json!({ "palettes": palettes, "plots": plots.0 });
+    let data = serde_json::json!({ "palettes": palettes, "plots": plots.data() });
     let data = serde_json::to_string(&data).map_err(|reason| failed(reason.to_string()))?;
     let mut environment = Environment::new();
     environment.set_auto_escape_callback(|_| AutoEscape::Html);
@@ -173,6 +90,7 @@ pub(crate) fn render(page: &Page, plots: &Plots) -> Result<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::page::{Block, table};
 
     fn page(text: &str) -> String {
         let mut plots = Plots::default();

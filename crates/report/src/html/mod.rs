@@ -1,6 +1,6 @@
 //! Building blocks of HTML pages: one file each, with nothing to load.
 //!
-//! `frame` makes a page of titles, tables and plots; `data` gives plots as numbers, which the
+//! `frame` makes a page of its parts ([`crate::page`]); `data` gives plots as numbers, which the
 //! scripts in `assets` draw. This module knows no report: each kind has its own module for its
 //! page.
 

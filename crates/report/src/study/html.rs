@@ -1,8 +1,9 @@
 //! `study.html`: the results of a study for a browser, in one file with nothing to load.
 
 use crate::html::data::chart;
-use crate::html::frame::{self, Block, Page, Plots, Standing, render};
+use crate::html::frame::{Page, render};
 use crate::html::masthead;
+use crate::page::{Block, PagePart, Plots, Standing};
 use crate::png::{
     AxisScale, ErrorForm, LinePlot, Look, PlotSeries, ScatterMatrix, SeriesForm, SeriesPoint,
 };
@@ -20,7 +21,7 @@ pub(super) fn html(report: &StudyReport, figures: &[Figure]) -> Result<String> {
     let facts = &report.facts;
     let [before, after] = parts(report).map(|parts| parts.iter().map(part).collect::<Vec<_>>());
     let drawn = figures.iter().flat_map(|figure| blocks(report, figure, &mut plots)).collect();
-    let pictures = frame::PagePart { title: "Plots".into(), blocks: drawn };
+    let pictures = PagePart { title: "Plots".into(), blocks: drawn };
     let page = Page {
         title: facts.title.clone(),
         masthead: masthead(facts.whole_project().as_ref()),
@@ -37,7 +38,7 @@ pub(super) fn html(report: &StudyReport, figures: &[Figure]) -> Result<String> {
     render(&page, &plots)
 }
 
-fn part(part: &StudyPart) -> frame::PagePart {
+fn part(part: &StudyPart) -> PagePart {
     let block = |item: &Item| match item {
         Item::Words(text) => Block::Words { text: text.clone() },
         Item::List(items) => Block::List { items: items.clone() },
@@ -47,7 +48,7 @@ fn part(part: &StudyPart) -> frame::PagePart {
             folded: (rows.len() > ROWS_SHOWN).then(|| format!("{} rows", rows.len())),
         },
     };
-    frame::PagePart { title: part.title.to_owned(), blocks: part.items.iter().map(block).collect() }
+    PagePart { title: part.title.to_owned(), blocks: part.items.iter().map(block).collect() }
 }
 
 fn blocks(report: &StudyReport, figure: &Figure, plots: &mut Plots) -> Vec<Block> {

@@ -28,21 +28,30 @@ impl Walk<'_> {
                     self.wrong_type(node, schema, at);
                 }
             }
-            Value::Array(_) | Value::Integer(_) | Value::Float(_) => {
-                let wants: &[&str] = match node.value {
-                    Value::Array(_) => &["array"],
-                    Value::Integer(_) => &["number", "integer"],
-                    _ => &["number"],
-                };
-                match choices.iter().find_map(|choice| plain(choice, wants)) {
-                    Some(schema) => self.value(node, schema, at),
-                    None => self.wrong_type(node, schema, at),
-                }
+            Value::Array(_) => self.plain_value(node, schema, choices, &["array"], at),
+            Value::Integer(_) => {
+                self.plain_value(node, schema, choices, &["number", "integer"], at);
             }
+            Value::Float(_) => self.plain_value(node, schema, choices, &["number"], at),
             Value::Boolean(_) | Value::Datetime => {
                 self.wrong_type(node, schema, at);
             }
             Value::Unreadable => {}
+        }
+    }
+
+    /// An array or a number, for a choice of one of these types.
+    fn plain_value(
+        &mut self,
+        node: &Node,
+        schema: &Json,
+        choices: &[Choice<'_>],
+        types: &[&str],
+        at: &At<'_>,
+    ) {
+        match choices.iter().find_map(|choice| plain(choice, types)) {
+            Some(schema) => self.value(node, schema, at),
+            None => self.wrong_type(node, schema, at),
         }
     }
 

@@ -22,18 +22,29 @@ use std::time::{Duration, Instant};
 const BATCH_SEGMENTS: u64 = 1 << 15;
 /// Most paths in a batch.
 const BATCH_PATHS: u64 = 4096;
-/// Paths that measure the length of paths before a run, and the number of their bounces that are
-/// traced.
+/// Photon paths that measure the length of paths before a run.
 const PILOT_PATHS: u64 = 64;
+/// Most bounces of these paths.
 const PILOT_BOUNCES: u32 = 10_000;
-/// For a limited time: passes of gathering that it should allow, by the time of photon paths alone,
-/// which records and other programs multiply; and the paths that measure that time.
+/// Passes of gathering for which the remaining time of a run with a time limit should suffice, if a pass took
+/// only the time of its photon paths; records and other programs make it longer.
 const PASSES_IN_TIME: f64 = 16.0;
+/// Time for which photon paths are traced to measure the time of a segment.
 const TIMED: Duration = Duration::from_millis(10);
+/// Most batches of [`PILOT_PATHS`] that are traced for this measurement.
 const TIMED_BATCHES: u64 = 64;
 /// Share of the work for photons where all sensors are estimated backward: for the balance and for
 /// light outside the aim, 1. Otherwise photons and gather paths have half each.
 const PHOTON_SHARE: f64 = 0.1;
+
+/// The work of photons in a batch.
+#[derive(Debug, Clone, Copy)]
+enum PhotonWork {
+    /// All of it, or all but gathering: no gather path is followed to the sources.
+    Alone,
+    /// This share of it; gather paths that are followed to the sources have the rest.
+    Shared(f64),
+}
 
 impl<'s> Run<'s> {
     /// Prepares a run that nothing stops from outside; nothing is counted yet.
@@ -59,27 +70,32 @@ impl<'s> Run<'s> {
         let gathered =
             gathered(scene, plan, (&of(Estimator::Gather), &of(Estimator::Mis)), pilot, signal)?;
         let followed = [of(Estimator::Backward), of(Estimator::Mix)];
-        let share = match (gathered.is_empty(), followed.iter().all(Vec::is_empty)) {
-            (_, true) => 1.0,
+        let work = match (gathered.is_empty(), followed.iter().all(Vec::is_empty)) {
+            (_, true) => PhotonWork::Alone,
             // Photons also count for the sensors that are estimated forward, or mixed.
             (true, false) if of(Estimator::Forward).is_empty() && followed[1].is_empty() => {
-                PHOTON_SHARE
+                PhotonWork::Shared(PHOTON_SHARE)
             }
-            (_, false) => 0.5,
+            (_, false) => PhotonWork::Shared(0.5),
         };
         let usual = plan.batch_paths.unwrap_or(usual_batch(segments));
         let by_pass = gathered.iter().map(|(settings, _)| settings.photons).max();
-        let photons = match (by_pass, plan.stop.paths) {
-            (Some(photons), _) => photons,
-            (None, Some(paths)) if share == 1.0 => paths.div_ceil(
+        let photons = match (by_pass, work, plan.stop.paths) {
+            (Some(photons), ..) => photons,
+            // The requested paths are divided evenly among the batches of whole waves.
+            (None, PhotonWork::Alone, Some(paths)) => paths.div_ceil(
                 plan.stop.batches.unwrap_or(GROUPS * paths.div_ceil(GROUPS * usual).max(1)),
             ),
-            (None, _) => (share * usual as f64).ceil() as u64,
+            (None, PhotonWork::Alone, None) => usual,
+            (None, PhotonWork::Shared(share), _) => (share * usual as f64).ceil() as u64,
         };
         // At least one path of each source.
         let photons = photons.max(scene.sources.len() as u64).max(1);
         let by_photons = photons as f64 * work::of_photon_path(pilot.segments_per_path);
-        let others = (1.0 - share) / share * by_photons;
+        let others = match work {
+            PhotonWork::Alone => 0.0,
+            PhotonWork::Shared(share) => (1.0 - share) / share * by_photons,
+        };
         let mut prepared = backward(scene, plan, &followed, others, &early)?;
         prepared.extend(gathered.into_iter().map(|(_, prepared)| prepared));
         let has_passes = prepared.iter().any(|one| one.portion() == Portion::Pass);

@@ -27,7 +27,8 @@ pub struct RunPlan {
     /// Seed of all random streams.
     #[serde(rename = "seed")]
     pub seed: u64,
-    /// Paths are cut after this many interfaces; the flux they carry is a line of the balance.
+    /// Paths are cut at this depth: after this many interfaces and scatterings within media. The flux they
+    /// carry is a line of the balance.
     #[serde(rename = "bounce_limit")]
     pub bounce_limit: u32,
     /// Photon paths of a batch; `None` chooses it by the length of paths. Runs with the same number
@@ -128,7 +129,7 @@ pub enum Estimator {
     /// Gather paths from the sensor that end in records, and photon paths that are gathered there.
     #[serde(rename = "gather")]
     Gather,
-    /// Forward, backward and gather at once; only where no other sensor may be gathered without it.
+    /// Forward, backward and gather at once, weighted path by path; not where another sensor has `gather` or `auto`.
     #[serde(rename = "mis")]
     Mis,
 }

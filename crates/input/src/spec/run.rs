@@ -8,8 +8,10 @@ use serde::{Deserialize, Serialize};
 /// has 2 000 000 paths.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RunSpec {
-    /// Number of paths: photon paths from the sources, and gather paths from the sensors where the estimator has them.
-    /// Rounded up to whole waves, of 128 batches or of 16 passes of gathering (some million paths each wave).
+    /// Number of paths: photon paths from the sources, and gather paths from the sensors where the estimator
+    /// has them. Rounded up to whole waves, of 128 batches or of 16 passes of gathering (some million paths
+    /// each wave). Where only photons are traced, the size of the batches follows from this number, so that
+    /// they divide it almost evenly.
     #[schemars(range(min = 1))]
     pub paths: Option<u64>,
     /// Number of batches, or passes of gathering, into which `paths` are divided: the run ends after exactly this many.
@@ -32,7 +34,7 @@ pub struct RunSpec {
     /// Settings of the estimators `gather` and `mis`, and for `auto` where it gathers.
     #[serde(default)]
     pub gather: GatherPlan,
-    /// Number of surfaces after which a path is cut; the flux that is lost is reported.
+    /// Number of interfaces and scatterings within media after which a path is cut; the flux that is lost is reported.
     #[serde(default = "bounce_limit")]
     #[schemars(range(min = 1, max = 10_000_000))]
     pub bounce_limit: u32,

@@ -69,7 +69,7 @@ pub struct Diagnostic {
 pub enum DiagnosticKind {
     /// The scene cannot be used.
     Error,
-    /// The scene can be used, but look at this.
+    /// The scene can be used, but may not be what the user means.
     Warning,
 }
 

@@ -1,7 +1,7 @@
 //! The JSON Schemas of scene files and study files, made from the spec types.
 //!
-//! The same schema validates files (`input::validate`) and makes the manual page (`input::manual`), so that the three
-//! cannot disagree.
+//! The same schema validates files (`validate` of this crate) and makes the manual pages (`manual` of `xtask`), so that
+//! types, validation and manual cannot disagree.
 
 use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;

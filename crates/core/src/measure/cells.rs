@@ -107,14 +107,14 @@ impl<'a> SensorCells<'a> {
     /// (Morton 1966), so that neighbours in the list are neighbours on the sensor.
     pub(crate) fn for_extremes(&self) -> Vec<WeightedValue> {
         let full = (0..self.areas.len()).filter(|&cell| self.is_full(cell)).map(|cell| vec![cell]);
-        let mut groups: Vec<Vec<usize>> = full.chain(self.rim()).collect();
+        let mut parts: Vec<Vec<usize>> = full.chain(self.rim()).collect();
         let (columns, _) = self.grid.shape();
-        groups.sort_by_cached_key(|cells| interleaved(cells[0] % columns, cells[0] / columns));
+        parts.sort_by_cached_key(|cells| interleaved(cells[0] % columns, cells[0] / columns));
         let part = |cells: Vec<usize>| WeightedValue {
             weight: cells.iter().map(|&cell| self.areas[cell]).sum(),
             read: self.mean(cells),
         };
-        groups.into_iter().map(part).collect()
+        parts.into_iter().map(part).collect()
     }
 
     /// The cells cut to less than half, ordered by their direction from the middle of the grid, and

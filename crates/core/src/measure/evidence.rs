@@ -9,8 +9,8 @@ use crate::scene::{Scene, SensorId};
 use crate::transport::{Layout, MIN_LIT_GROUPS, Readings};
 use std::ops::Range;
 
-/// With fewer counts than this it is not trustworthy either, 1. n counts of equal flux have a
-/// relative error of 1/sqrt(n).
+/// With fewer counts than this, the error bar of a value is not trustworthy. n counts of equal flux have a
+/// relative error of 1/sqrt(n), so this is a relative error above 32 %.
 pub(crate) const MIN_COUNTS: f64 = 10.0;
 
 /// Variance between batches, relative to the square of the mean, that rounding in a sum of squares
@@ -183,7 +183,7 @@ pub(crate) fn status_by_error(value: f64, std_error: f64) -> Status {
     }
 }
 
-/// Whether there are enough batches for any error bar.
+/// Whether there are enough batches for any error bar: each is a sample, as each group is for a flux.
 pub(crate) fn enough_batches(batches: u64) -> Status {
     if batches < MIN_LIT_GROUPS as u64 { Status::TooFew } else { Status::Ok }
 }

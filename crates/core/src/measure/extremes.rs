@@ -25,7 +25,7 @@ const BIAS_TAKEN: f64 = 0.5;
 /// Scatter of an extreme of n values over that of its drawings, less 1, over ln n: the values that
 /// drawings are made about are slightly too even, the more so the more there are.
 const SCATTER: f64 = 0.05;
-/// Scatter of a CV over that of its drawings.
+/// Real standard deviation of a CV over that of its drawings.
 const SCATTER_OF_CV: f64 = 1.06;
 /// Two-sided 95 % point of the normal distribution.
 pub(crate) const TWO_SIDED_95: f64 = 1.959_964;
@@ -37,13 +37,13 @@ const INWARD: f64 = 1.7;
 const INWARD_OF_BOTH: f64 = 1.8;
 /// Expected counts that are negligible, 1.
 const NEXT_TO_NOTHING: f64 = 0.1;
-/// Posterior standard deviation of the mean of a Poisson count that came out as 0, with Jeffreys' prior: ½^½ (Jeffreys, Theory
-/// of Probability (1961), section 3.1).
+/// Posterior standard deviation of the mean of a Poisson distribution after a count of 0, with Jeffreys'
+/// prior: ½^½ (Jeffreys, Theory of Probability (1961), section 3.1).
 const DEVIATION_OF_NONE: f64 = std::f64::consts::FRAC_1_SQRT_2;
-/// Upper 97.5 % limit of the mean of a Poisson count that came out as 0, -ln 0.025.
+/// Upper 97.5 % limit of the mean of a Poisson distribution after a count of 0, -ln 0.025.
 const NONE_COUNTED: f64 = 3.69;
 
-/// A statistic of some values.
+/// A statistic of some values as read, and corrected for noise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct CorrectedStatistic {
     /// As read.

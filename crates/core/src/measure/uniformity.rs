@@ -148,6 +148,7 @@ pub(crate) fn uniformity(field: &ValueField<'_>) -> (Uniformity, Statistic) {
     let min_avg = extreme(&found.min_avg, LOW, 1.0, status).worst(min.status);
     let both = min.status.worst(max.status);
     let min_max = extreme(&found.min_max, LOW, 1.0, status).worst(both);
+    // An infinite scale: noise is subtracted from a CV, so no correction of it is too large to be trusted.
     let cv = Statistic { bias: None, ..extreme(&found.cv, HIGH, f64::INFINITY, status) };
     (Uniformity { min, max, avg, min_avg, min_max, max_min: min_max.inverse() }, cv)
 }

@@ -1,7 +1,8 @@
-//! What interfaces and media do to light: pure local physics, in a local frame.
+//! What interfaces and media do to light: pure local physics.
 //!
-//! This layer does not know scenes, paths or sensors. Media and finishes take a wavelength, so that
-//! dispersion needs no other interface.
+//! This layer does not know scenes, paths or sensors. Directions and normals are in the coordinates of the
+//! scene. Media take a wavelength, so that dispersion needs no other interface; finishes take the refractive
+//! indices of both sides.
 
 mod angle_table;
 pub mod film;

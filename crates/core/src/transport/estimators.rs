@@ -2,7 +2,7 @@
 //!
 //! Photons are traced in every run, for the balance and for what they count on all sensors; that is
 //! the forward estimator. The others trace gather paths of their own and may observe the photons.
-//! Who asks here knows no windows, weights or records.
+//! Callers need not know windows, weights or records, which differ between estimators.
 
 use crate::plan::Estimator;
 use crate::scene::{Scene, Sensor, SensorId, Source};
@@ -41,7 +41,7 @@ pub struct EstimatorFindings {
     pub stages: Vec<Stage>,
 }
 
-/// The pieces of work that an estimator counts in.
+/// The units of work of an estimator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Portion {
     /// Short batches.
@@ -77,7 +77,7 @@ impl<'s> Prepared<'s> {
         }
     }
 
-    /// The pieces that it counts in.
+    /// Its unit of work.
     pub(crate) fn portion(&self) -> Portion {
         match self {
             Self::Backward(_) | Self::Mix(_) => Portion::Batch,

@@ -1,4 +1,4 @@
-//! External ends of a run, by the user or the clock, and how often tracing checks for them.
+//! What stops a run from outside, the user or the clock, and how often tracing checks for it.
 //!
 //! The interval between two checks is a fixed amount of counted work, not of time. Stopped work is
 //! dropped as a whole: results depend only on the number of finished batches.
@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 /// some milliseconds where a ray is expensive.
 pub(crate) const CHECK_EVERY: u32 = 1024;
 /// Work of a gather path with its records, in segments: it follows from the times in
-/// `transport::work`.
+/// [`crate::transport::tally::work`].
 pub(crate) const RECORD_WORK: u32 = 32;
 /// Time by which a run may exceed its limit if it has no finished batch, so that short runs have
 /// something to report.
@@ -111,7 +111,7 @@ impl Interrupt {
     }
 }
 
-/// External ends of a run: an interrupt, and its time limit.
+/// What stops a run from outside: an interrupt, and its time limit.
 #[derive(Debug, Clone, Default)]
 pub struct StopSignal {
     interrupt: Interrupt,

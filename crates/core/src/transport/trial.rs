@@ -27,7 +27,7 @@ pub struct Trial {
     pub cost: Option<f64>,
     /// Bias over the value, for a biased estimator, 1.
     pub bias: Option<f64>,
-    /// Smallest work for any result, in the same seconds.
+    /// Work before there is any result, in seconds of one thread of the reference machine.
     pub least: f64,
     /// What excludes it, whatever it costs.
     pub objection: Option<Objection>,

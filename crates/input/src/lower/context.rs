@@ -1,5 +1,5 @@
-//! What the topics share: the file, the scene built so far, the names in both, and how far to go.
-//! Does not know how anything is lowered.
+//! The state that the files of `lower` share: the spec of the scene file, the scene built so far, the names
+//! in both, and whether geometry is to be made. This module does not know how anything is lowered.
 
 use crate::keys::{Key, Places};
 use crate::lower::weathers::Member;
@@ -77,8 +77,8 @@ impl<'a> Context<'a> {
         None
     }
 
-    /// Whether geometry is to be made of the keys at and inside `key`: not of one with an error,
-    /// from which others would follow.
+    /// Whether geometry is to be made from the table at `key`. It is not if a key in it has an error, since
+    /// the geometry would cause further errors.
     pub(super) fn may_build(&self, key: &Key) -> Option<()> {
         (self.scope == Scope::Scene && self.problems.is_whole(key)).then_some(())
     }

@@ -1,9 +1,9 @@
 //! From the spec of the file to the scene that is traced, in one pass that also checks it.
 //!
-//! There is a file per topic. A function takes a spec with its key, notes everything that is wrong
-//! with it, and returns what it makes of it, or `None`. What needs a thing that failed is left out
-//! without a word, as the cause is known. So all problems of a file are reported together, and none
-//! twice. Things placed at faces of other things are built after them.
+//! There is a file per topic. A function takes a spec with its key, notes everything that is wrong with it,
+//! and returns what it makes of it, or `None`. If one thing failed, others that need it are left out without
+//! another problem. So all problems of a file are reported together, and none twice. Things placed at faces
+//! of other things are built after them.
 
 mod bodies;
 mod consistency;

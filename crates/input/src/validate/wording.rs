@@ -6,7 +6,7 @@ use crate::schema::{self, Choice};
 use crate::texts::Texts;
 use crate::tree::{Node, Value};
 
-/// What a schema expects, with the unit of its numbers: "a number in mm above 0".
+/// What a schema expects, with the unit of its numbers: "a number in mm, above 0".
 pub(crate) fn expected(root: &Json, schema: &Json, unit: Option<&str>) -> String {
     let choices = schema::choices(root, schema);
     if !choices.is_empty() {

@@ -1,6 +1,6 @@
 //! Finishes: what a face does to light. Each finish has a file that answers every question of
-//! `model` about it; `faces` joins the two of a face. Here is the closed set, and the one place that
-//! asks a finish.
+//! `model` about it; `faces` joins the two finishes of a face. This file has the list of all finishes and passes each
+//! question on to the file of the finish.
 //!
 //! Mirrors and total internal reflection draw no random numbers; a dielectric draws one to choose
 //! between the reflected and the refracted part. A finish absorbs all light that it does not send
@@ -118,7 +118,8 @@ pub enum Finish {
     Mixture(Vec<(f64, Finish)>),
 }
 
-/// The answer of the finish that a [`Bsdf`] is: the one match over all finishes, for all questions.
+/// The answer of a [`Finish`] to a question of [`FinishModel`]: the only match over all finishes. `scatter`
+/// tests for the two most frequent ones before it, for speed.
 macro_rules! ask {
     ($asked:expr, $finish:ident => $answer:expr) => {
         match $asked {

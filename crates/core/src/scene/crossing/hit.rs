@@ -118,11 +118,11 @@ impl Nearest {
     }
 }
 
-/// The side of a path's start point that a query refers to.
+/// A point very near the start of a path, on its line: ahead of the start or behind it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StartSide {
-    /// Just ahead along its direction: past the face that a source lies on.
+    /// Ahead, along its direction: past the face that a source lies on.
     Ahead,
-    /// Just behind: light of a source on a face must still cross it.
+    /// Behind: light of a source on a face must still cross the face.
     Behind,
 }

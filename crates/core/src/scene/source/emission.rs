@@ -16,7 +16,7 @@ pub enum Emission {
     Lambertian,
     /// Intensity ∝ cos^m θ.
     CosinePower(f64),
-    /// The same radiance within a cone, none outside; `tilt` is the cone's axis in the emitter's frame.
+    /// The same radiance within a cone, none outside.
     Cone {
         /// Half-angle of the cone, rad.
         half_angle: f64,
@@ -30,8 +30,7 @@ pub enum Emission {
     },
     /// The same intensity in every direction (of the half space in front of a surface).
     Isotropic,
-    /// The luminance of the sky; `dir` in the emitter's frame is the direction of travel of its
-    /// light.
+    /// The luminance of the sky. Directions in the frame of the emitter are those in which its light travels.
     Sky(Sky),
 }
 

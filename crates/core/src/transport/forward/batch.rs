@@ -43,7 +43,8 @@ impl Forward<'_> {
         Some(counter.finish())
     }
 
-    /// Flux of one photon of each source, lm or W; 0 for dark ones, which have none.
+    /// Flux of one photon of each source, lm or W; 0 for dark sources, which have no photons. The photons of
+    /// a batch share the whole flux of their source, so the mean over batches is a flux.
     pub(crate) fn photon_fluxes(&self) -> Vec<f64> {
         let sources = self.scene.sources.iter().zip(&self.shares);
         sources.map(|(source, &paths)| source.flux / paths.max(1) as f64).collect()

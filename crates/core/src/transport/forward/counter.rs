@@ -30,7 +30,7 @@ pub(super) struct PhotonCounter<'r, 's, O> {
     flux: f64,
     pub(super) source: SourceId,
     /// Light groups of the source.
-    groups: &'s [LightGroupId],
+    light_groups: &'s [LightGroupId],
     pub(super) classed: bool,
     travel_start: TravelStart,
     trail: Trail,
@@ -65,7 +65,7 @@ impl<'r, 's, O: Observer> PhotonCounter<'r, 's, O> {
             readings,
             flux: 0.0,
             source: SourceId::new(0),
-            groups: &[],
+            light_groups: &[],
             classed: false,
             travel_start: TravelStart::Source,
             trail: Trail::new(),
@@ -87,7 +87,7 @@ impl<'r, 's, O: Observer> PhotonCounter<'r, 's, O> {
         let emitted = scene.sources[source.index()].emit(scene, &mut sampler);
         self.flux = flux;
         self.source = source;
-        self.groups = scene.light.of(source);
+        self.light_groups = scene.light.of(source);
         self.travel_start = TravelStart::Source;
         self.trail.clear();
         self.last_left = None;
@@ -177,7 +177,7 @@ impl<'r, 's, O: Observer> PhotonCounter<'r, 's, O> {
     #[inline]
     fn count(&mut self, path: &Path, id: SensorId, cell: usize, throughput: f64) {
         self.count_on_sensor(path, id, throughput);
-        self.readings.sensors[id.index()].add(cell, self.flux * throughput, self.groups);
+        self.readings.sensors[id.index()].add(cell, self.flux * throughput, self.light_groups);
     }
 
     #[inline]
@@ -248,7 +248,8 @@ impl<O: Observer> Observer for PhotonCounter<'_, '_, O> {
                 }
             }
             Event::Cut(throughput) => self.add(layout.cut(), throughput),
-            // It makes these itself, and gather paths alone meet emission.
+            // The bounce loop makes none of these: this counter makes the first two, and only gather paths
+            // meet emission.
             Event::Start(_) | Event::Detect(_) | Event::Meet(_) => {}
             Event::Leaked(ray, throughput) => {
                 self.add(layout.leaked(), throughput);

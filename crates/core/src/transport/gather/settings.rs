@@ -29,8 +29,8 @@ const FILLS: f64 = 0.8;
 const THETA_DEG: [f64; 2] = [0.05, 3.0];
 /// Bounds of the automatic depth.
 const DEPTH: [f64; 2] = [1.0, 8.0];
-/// Smallest number of photons of an automatic pass: in closed mirrors each has 100,000 straight
-/// pieces.
+/// Smallest number of photons of an automatic pass: in closed mirrors each has 100,000
+/// segments.
 const LEAST_PHOTONS: f64 = 32.0;
 /// Cost of a gather path and its records in segments of photon paths, as measured, and their
 /// work as a share of the work of the photons: limited by pairs, noise is least at equal shares;

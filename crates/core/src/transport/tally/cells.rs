@@ -6,7 +6,9 @@ use std::collections::BTreeMap;
 /// A map is kept dense once it is no larger than this many cells, or once a quarter of it is lit.
 const DENSE_CELLS: usize = 4096;
 
-/// For every cell: the sum over batches of the batch's count, and the sum of its square.
+/// For every cell: the sum over batches of the flux that the batch counted, lm or W, and the sum of its square.
+///
+/// Every batch carries the whole flux of the sources, so the mean over batches is the flux in the cell.
 ///
 /// A batch itself is an accumulator whose squares are filled in by `Cells::close_batch`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -63,7 +65,7 @@ impl Cells {
         sum
     }
 
-    /// Ends a batch: its sums become its squares.
+    /// Ends a batch: sets the squares of its sums, which stay.
     pub(crate) fn close_batch(&mut self) {
         let square = |sum: &mut [f64; 2]| sum[1] = sum[0] * sum[0];
         match self {

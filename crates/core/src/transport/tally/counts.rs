@@ -94,8 +94,8 @@ impl Series {
         self.sums.push(batch);
     }
 
-    /// Starts the next stage; the value comes from the one that ends here until the next is as
-    /// good.
+    /// Starts the next stage. The stage that ends here is kept: it gives the values until the next one has no
+    /// larger error.
     pub(crate) fn next_stage(&mut self) {
         let ends = self.in_progress();
         self.finished.drain(..self.finished.len().saturating_sub(1));

@@ -19,7 +19,7 @@ pub const GROUPS: u64 = 128;
 /// With fewer groups of batches than this that contain anything, the error bar is not trustworthy:
 /// the spread of ten samples is itself known to a quarter, 1/sqrt(2 · 9).
 pub(crate) const MIN_LIT_GROUPS: usize = 10;
-/// Bins of the histogram of depths: 0 to 1023 interfaces one by one, then one for each doubling.
+/// Bins of the histogram of depths: depths 0 to 1023 one by one, then one for each doubling.
 pub(crate) const DEPTH_BINS: usize = 1024 + 32;
 /// Path classes kept per sensor; the weakest beyond that are summed as one.
 const CLASS_LIMIT: usize = 256;
@@ -85,6 +85,9 @@ pub struct Leak {
 }
 
 /// Everything counted in a range of batches.
+///
+/// Every batch carries the whole flux of the sources, divided among its paths. So the mean of a sum over
+/// batches is a flux, in lm or W, and nothing is normalised afterwards.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Readings {
     /// Version of this format.
@@ -95,7 +98,7 @@ pub struct Readings {
     pub batch_paths: u64,
     /// The batches counted.
     pub batches: Range<u64>,
-    /// Scalars by group, ascending.
+    /// Scalars by group of batches, ascending. These are not light groups.
     pub groups: Vec<Group>,
     /// One for each sensor.
     pub sensors: Vec<SensorReading>,
@@ -213,8 +216,8 @@ impl Readings {
         }
     }
 
-    /// Counts light that a gather path found for some cells of a sensor, in a batch.
-    /// `groups` are those of the scene.
+    /// Counts light that a gather path found for some cells of a sensor, in a batch. `groups` are the light
+    /// groups of the scene.
     pub fn count(
         &mut self,
         (layout, groups): (&Layout, &LightGroups),
@@ -288,7 +291,7 @@ impl Readings {
 pub struct DetectedLight {
     /// Its flux, lm or W.
     pub flux: f64,
-    /// Interfaces met before it.
+    /// Depth of its path: visible interfaces met before it, and scatterings within media.
     pub depth: u32,
     /// Its source.
     pub source: SourceId,

@@ -1,8 +1,8 @@
 //! The one bounce loop, at interfaces and within media. Observers see events and can only end a
 //! path.
 //!
-//! This module does not know what is counted: the forward estimator counts photons, a gather path
-//! would look for its end.
+//! This module does not know what is counted. Photon paths and gather paths use the same loop: the observer of photon
+//! paths counts flux on sensors, that of gather paths finds their ends and the sources that they meet.
 
 use crate::optics::{Lobe, Scattered, Side, VolumeScattering};
 use crate::rng::{Dimension, Numbers, Sampler};

@@ -1,8 +1,9 @@
 //! Events of a path, and its observers.
 //!
-//! The bounce loop makes most events. What counts photons on sensors adds their start and their
-//! detections, what follows gather paths adds the emission that they meet; both pass the others on.
-//! So one trait serves everything that looks at a path.
+//! The bounce loop makes most events. The photon counter adds `Start` and `Detect`, and the follower of a
+//! gather path adds `Meet`. Both have an observer of their own, and pass on to it only the events that it
+//! needs: the photon counter `Arrive`, `Depart` and `Collide`; the follower, once the path has passed the aim
+//! of its sensor, the same and `Cut` and `Leaked`. One trait serves them all.
 
 use crate::optics::{Lobe, Side, VolumeScattering};
 use crate::scene::{Hits, Interface, MediumId, Ray, SensorId, SourceId};
@@ -11,7 +12,7 @@ use glam::DVec3;
 use std::ops::ControlFlow;
 
 /// Below this throughput a path survives with probability throughput/threshold and then has the
-/// threshold's: the mean is unchanged, and mirrors above it cost no random number. 1. Chosen by
+/// threshold's, 1: the mean is unchanged, and mirrors above it cost no random number. Chosen by
 /// measurement: docs/speed.md.
 pub const ROULETTE_BELOW: f64 = 0.1;
 

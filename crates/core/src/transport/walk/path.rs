@@ -22,7 +22,8 @@ pub struct Path {
     pub medium: MediumId,
     /// The surfaces it starts on.
     pub on: StartSurfaces,
-    /// Number of visible interfaces met, and of scatterings within media, so far.
+    /// Number of visible interfaces met, and of scatterings within media, so far: the depth of its next
+    /// vertex. Interfaces at which light only goes straight on are invisible.
     pub depth: u32,
 }
 
@@ -55,7 +56,8 @@ impl Path {
         }
     }
 
-    /// n² of the medium it is in times |cos θ| dA dω: etendue, mm² sr.
+    /// The etendue that the path represents, mm² sr: n² of its medium times `extent`, the integral of |cos θ|
+    /// dA dω over the part of the sensor that the path stands for, mm² sr.
     pub fn etendue(&self, scene: &Scene, extent: f64) -> f64 {
         let index = scene.media[self.medium.index()].index(self.wavelength);
         index * index * extent

@@ -253,7 +253,7 @@ impl<'s, O: Observer> PhotonCounter<'_, 's, O> {
         _ = self.observer.see(path, Event::Detect(&light(&lit)));
         self.count_on_sensor(path, id, throughput);
         for &cell in &lit {
-            self.readings.sensors[id.index()].add(cell, self.flux * throughput, self.groups);
+            self.readings.sensors[id.index()].add(cell, self.flux * throughput, self.light_groups);
         }
     }
 }

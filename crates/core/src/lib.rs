@@ -2,7 +2,7 @@
 //! come out.
 //!
 //! ```text
-//! Scene -> paths (photons from sources, gather paths from sensors) -> readings -> measures with uncertainty
+//! Scene -> Run -> Findings (Readings of each estimator) -> Estimate -> Measures with errors
 //! ```
 //!
 //! Lengths are millimetres, angles radians, solid angles steradians, flux lumens (watts in radiometric runs), wavelengths

@@ -107,10 +107,10 @@ impl<'r, 's, O: Observer> PhotonCounter<'r, 's, O> {
             let slot = self.run.layout.absorbed_in_medium(segment.medium);
             self.add(slot, segment.throughput - segment.arriving);
         }
-        let watch = &self.run.watch;
-        if watch.ports.iter().any(|port| port.may_be_crossed(segment))
-            || !watch.near.is_empty()
-            || !watch.entry_ports.is_empty()
+        let sensors = &self.run.sensors;
+        if sensors.ports.iter().any(|port| port.may_be_crossed(segment))
+            || !sensors.near.is_empty()
+            || !sensors.entry_ports.is_empty()
         {
             self.travel_watched(path, segment);
         }
@@ -166,7 +166,7 @@ impl<'r, 's, O: Observer> PhotonCounter<'r, 's, O> {
     #[inline(always)]
     fn on_faces(&mut self, path: &Path, vertex: &Vertex<'_>, light: Light) {
         let hits = vertex.hits;
-        if self.run.watch.watched[hits.nearest().face.index()].includes(light.counts)
+        if self.run.sensors.watched[hits.nearest().face.index()].includes(light.counts)
             || !hits.others().is_empty()
         {
             self.on_watched_faces(path, vertex, light);
@@ -237,7 +237,7 @@ impl<O: Observer> Observer for PhotonCounter<'_, '_, O> {
             Event::Roulette(lost) => self.add(layout.roulette(), lost),
             Event::Escaped(throughput) => {
                 self.add(layout.escaped(self.last_left), throughput);
-                for &(id, goniometer) in &self.run.watch.far {
+                for &(id, goniometer) in &self.run.sensors.far {
                     self.count_on_sphere(
                         path,
                         id,

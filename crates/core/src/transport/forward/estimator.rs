@@ -5,14 +5,14 @@
 
 use crate::scene::Scene;
 use crate::transport::Layout;
-use crate::transport::forward::watch::Watch;
+use crate::transport::forward::sensor_table::SensorTable;
 
 /// Shared data of all batches of a run.
 #[derive(Debug)]
 pub struct Forward<'s> {
     pub(crate) scene: &'s Scene,
     pub(crate) layout: Layout,
-    pub(crate) watch: Watch<'s>,
+    pub(crate) sensors: SensorTable<'s>,
     pub(crate) seed: u64,
     pub(crate) bounce_limit: u32,
     /// Paths per batch of each source.
@@ -25,7 +25,7 @@ impl<'s> Forward<'s> {
         Self {
             scene,
             layout: Layout::new(scene),
-            watch: Watch::new(scene),
+            sensors: SensorTable::new(scene),
             seed,
             bounce_limit,
             shares: shares(scene, batch_paths),

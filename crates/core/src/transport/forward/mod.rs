@@ -3,12 +3,12 @@
 mod batch;
 mod counter;
 mod estimator;
+mod sensor_table;
 mod shown;
 #[cfg(test)]
 mod tests;
 mod tracks;
 mod trial;
-mod watch;
 
 pub use estimator::Forward;
 pub use tracks::{Track, TrackEnd, tracks};

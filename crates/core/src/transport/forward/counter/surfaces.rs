@@ -9,7 +9,7 @@ use crate::scene::{
     CountedLight, MediumId, Owner, Passage, PrimHit, Seeing, SensorId, SurfaceSensor,
 };
 use crate::transport::forward::counter::{Light, PhotonCounter, TravelStart};
-use crate::transport::forward::watch::OnPort;
+use crate::transport::forward::sensor_table::OnPort;
 use crate::transport::{Detection, Event, Observer, Path, Segment, Vertex};
 use glam::{DVec2, DVec3};
 use smallvec::SmallVec;
@@ -31,16 +31,16 @@ impl<'s, O: Observer> PhotonCounter<'_, 's, O> {
     #[inline(never)]
     pub(super) fn travel_watched(&mut self, path: &Path, segment: &Segment<'_>) {
         let run = self.run;
-        for port in &run.watch.ports {
+        for port in &run.sensors.ports {
             self.cross_port(path, segment, port);
         }
-        for &(id, goniometer) in &run.watch.near {
+        for &(id, goniometer) in &run.sensors.near {
             if let Some((t, direction)) = goniometer.leaving(segment.ray, segment.length) {
                 let throughput = self.arriving_at(path, segment, t);
                 self.count_on_sphere(path, id, goniometer.cell(direction), t, throughput);
             }
         }
-        for (face, patches) in &run.watch.entry_ports {
+        for (face, patches) in &run.sensors.entry_ports {
             for patch in *patches {
                 patch.crossings(segment.ray, RayStart::Elsewhere, |Crossing { t, toward }| {
                     if toward == Toward::Back && self.within(segment, t) {
@@ -145,7 +145,7 @@ impl<'s, O: Observer> PhotonCounter<'_, 's, O> {
     #[inline(never)]
     pub(super) fn on_watched_faces(&mut self, path: &Path, vertex: &Vertex<'_>, light: Light) {
         for hit in vertex.hits.all() {
-            if self.run.watch.watched[hit.face.index()].includes(light.counts) {
+            if self.run.sensors.watched[hit.face.index()].includes(light.counts) {
                 self.on_face(path, vertex.point, hit, light);
             }
         }
@@ -159,7 +159,7 @@ impl<'s, O: Observer> PhotonCounter<'_, 's, O> {
             self.enter(face, throughput);
         }
         for &(id, sensor) in
-            run.watch.faces[face].iter().filter(|(_, sensor)| sensor.counts == counts)
+            run.sensors.faces[face].iter().filter(|(_, sensor)| sensor.counts == counts)
         {
             let normal = run.scene.normal(hit.prim, point);
             // Light is reflected to the side it came from: its direction tells the side it leaves to.
@@ -180,7 +180,7 @@ impl<'s, O: Observer> PhotonCounter<'_, 's, O> {
     /// Counts light that enters through a face, for the sensors with that entry.
     fn enter(&mut self, face: usize, throughput: f64) {
         let run = self.run;
-        for &id in &run.watch.entries[face] {
+        for &id in &run.sensors.entries[face] {
             if run.scene.sensors[id.index()].counts_first_passage() {
                 if self.entered.contains(&id) {
                     continue;

@@ -1,4 +1,4 @@
-//! Sensors by what they watch: looked up once per run, queried at every event.
+//! The sensors of a scene by the places where light can meet them: found once per run, queried at every event.
 
 use crate::scene::{
     CountedLight, FaceId, Goniometer, Owner, Patch, Place, Scene, SensorId, SensorKind,
@@ -9,7 +9,7 @@ use lumiduct_base::math::Aabb;
 
 /// The sensors of a scene, by where light can meet them.
 #[derive(Debug)]
-pub(crate) struct Watch<'s> {
+pub(crate) struct SensorTable<'s> {
     /// Sensors on ports: every segment is tested against their patches.
     pub(crate) ports: Vec<OnPort<'s>>,
     /// For every face, the light that is counted on it.
@@ -65,10 +65,10 @@ impl OnPort<'_> {
     }
 }
 
-impl<'s> Watch<'s> {
+impl<'s> SensorTable<'s> {
     /// Sorts the sensors of a scene.
     pub(crate) fn new(scene: &'s Scene) -> Self {
-        let mut watch = Self {
+        let mut table = Self {
             ports: Vec::new(),
             watched: Vec::new(),
             faces: vec![Vec::new(); scene.faces.len()],
@@ -80,22 +80,22 @@ impl<'s> Watch<'s> {
         for (index, sensor) in scene.sensors.iter().enumerate() {
             let id = SensorId::new(index);
             match &sensor.kind {
-                SensorKind::Surface(surface) => watch.add_surface(scene, id, surface),
+                SensorKind::Surface(surface) => table.add_surface(scene, id, surface),
                 SensorKind::Goniometer(goniometer) if goniometer.radius.is_some() => {
-                    watch.near.push((id, goniometer));
+                    table.near.push((id, goniometer));
                 }
-                SensorKind::Goniometer(goniometer) => watch.far.push((id, goniometer)),
+                SensorKind::Goniometer(goniometer) => table.far.push((id, goniometer)),
             }
             if let Some(face) = sensor.entering {
                 if scene.faces[face.index()].owner == Owner::Port
-                    && watch.entries[face.index()].is_empty()
+                    && table.entries[face.index()].is_empty()
                 {
-                    watch.entry_ports.push((face, scene.face_patches(face)));
+                    table.entry_ports.push((face, scene.face_patches(face)));
                 }
-                watch.entries[face.index()].push(id);
+                table.entries[face.index()].push(id);
             }
         }
-        watch.watched = (watch.faces.iter().zip(&watch.entries))
+        table.watched = (table.faces.iter().zip(&table.entries))
             .map(|(sensors, entries)| {
                 let any = |counts| sensors.iter().any(|(_, sensor)| sensor.counts == counts);
                 // Light enters where it leaves the face inward.
@@ -105,7 +105,7 @@ impl<'s> Watch<'s> {
                 }
             })
             .collect();
-        watch
+        table
     }
 
     fn add_surface(&mut self, scene: &'s Scene, id: SensorId, sensor: &'s SurfaceSensor) {

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 /// Largest readable file, bytes.
 pub(crate) const MAX_FILE_BYTES: u64 = 16 << 20;
 
-/// One of the texts of a [`Sources`].
+/// One of the [`Texts`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct TextId(usize);
 

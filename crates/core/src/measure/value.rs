@@ -43,7 +43,9 @@ pub enum Status {
     /// Nothing was counted. The error of a flux is then the flux of one path: three of them are the 95 % upper limit
     /// ("rule of three", Hanley & Lippman-Hand, JAMA 249 (1983) 1743).
     NoSignal,
-    /// Fewer than ten batches or paths contribute: the error bar itself is uncertain.
+    /// Too little was counted, so the error bar itself is uncertain. For fluxes: light was found in fewer
+    /// than ten groups of batches, or the relative error is above 32 %, that of ten counts. For maps: fewer
+    /// than ten batches, or fewer than ten counts in an average cell.
     TooFew,
     /// An extreme of a map that is mostly noise: the correction for it exceeds a tenth of the value.
     NoiseLimited,

@@ -129,8 +129,7 @@ fn plot(sensor: &str, lines: &[SunLine<'_>]) -> LinePlot {
         subtitle: "flux that leaves over flux that enters (CIE 173), with standard errors".into(),
         x_label: "elevation of the sun in deg".into(),
         y_label: "transmission".into(),
-        x_scale: AxisScale::Linear,
-        y_scale: AxisScale::Linear,
+        scale: AxisScale::Linear,
         series: [curve, dots].into_iter().chain(others).collect(),
     }
 }

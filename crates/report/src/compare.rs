@@ -273,8 +273,7 @@ fn picture(comparison: &Comparison) -> Result<Vec<u8>> {
         ),
         x_label: "time of a run in s".into(),
         y_label: "error over the truth".into(),
-        x_scale: AxisScale::Log,
-        y_scale: AxisScale::Log,
+        scale: AxisScale::Log,
         series,
     })
 }

@@ -5,7 +5,9 @@
 
 use crate::by_light::{self, LightMatrix, from_light, matrix, remark_on_totals, sum_over_weathers};
 use crate::csv::{intensity_name, map_name, map_words};
-use crate::figures::{BOUNCES_SHOWN, bounce_plot, intensity_plot, where_and_when};
+use crate::figures::{
+    BOUNCES_SHOWN, bounce_plot, directions_map, intensity_plot, sensor_map, where_and_when,
+};
 use crate::html::data;
 use crate::key_figures::{Listed, is_one_cell, is_shown, key_figures, listed};
 use crate::page::{Block, PagePart, Plots, Standing, table};
@@ -119,7 +121,7 @@ fn sensor(report: &Report, name: &str, plots: &mut Plots) -> PagePart {
     let maps = measures.maps.iter().filter(|map| map.sensor == name);
     for map in maps.filter(|map| !is_one_cell(map)) {
         let picture = Some(format!("{}.png", map_name(map)));
-        blocks.push(plots.add(map_words(map), data::map(map), picture));
+        blocks.push(plots.add(map_words(map), data::map(&sensor_map(map)), picture));
         blocks.extend(evenness(map));
     }
     for intensity in measures.intensities.iter().filter(|table| table.sensor == name) {
@@ -128,11 +130,13 @@ fn sensor(report: &Report, name: &str, plots: &mut Plots) -> PagePart {
         let label = format!("intensity{light}, {}", where_and_when(intensity));
         let picture = Some(format!("{}.png", intensity_name(intensity)));
         blocks.push(plots.add(label, polar, picture));
-        let all = data::directions(intensity);
         let sum = sum_over_weathers(intensity.weathers);
         let label = sum.map_or(String::new(), |words| format!(", {words}"));
-        let label = format!("intensity{light} by direction{label}");
-        blocks.extend(all.map(|all| plots.add(label, all, None)));
+        // A goniometer without sectors does not resolve azimuths.
+        if intensity.values.ncols() > 1 {
+            let label = format!("intensity{light} by direction{label}");
+            blocks.push(plots.add(label, data::map(&directions_map(intensity)), None));
+        }
     }
     if let Some(found) = by_sun::by_sun(report, name) {
         let picture = Some(format!("{name}.transmission.png"));

@@ -1,22 +1,23 @@
 //! Tables: one file for each map, intensity distribution and histogram, a row for each cell, units in the header.
 
 use crate::by_light::{from_light, sum_over_weathers};
+use crate::cell_grid::CellGrid;
 use crate::{OutputFile, Report};
 use csv::Writer;
 use lumiduct_base::error::{Error, Result};
 use lumiduct_base::number::format_value;
 use lumiduct_base::text::spreadsheet_cell;
-use lumiduct_core::measure::{IntensityTable, MapAxes, SensorMap};
+use lumiduct_core::measure::{IntensityTable, SensorMap};
 
 /// All tables of a report except those for spreadsheets.
 pub(crate) fn files(report: &Report) -> Result<Vec<OutputFile>> {
     let measures = &report.measures;
     let mut files = Vec::new();
     for map in &measures.maps {
-        files.push(map_table(map)?);
+        files.push(grid_table(&map_name(map), &map.into())?);
     }
     for table in &measures.intensities {
-        files.push(intensity_table(table)?);
+        files.push(grid_table(&intensity_name(table), &table.into())?);
     }
     for paths in &measures.sensor_paths {
         let rows = paths
@@ -61,56 +62,25 @@ pub(crate) fn map_words(map: &SensorMap) -> String {
     format!("{}{light}{view}{from}{weathers}", map.quantity)
 }
 
-fn map_table(map: &SensorMap) -> Result<OutputFile> {
-    let (value, error) =
-        (format!("{}_{}", map.quantity, map.unit), format!("std_error_{}", map.unit));
-    let name = format!("{}.csv", map_name(map));
-    let middle = |edges: &[f64], index: usize| 0.5 * (edges[index] + edges[index + 1]);
-    let (header, rows, columns) = match &map.axes {
-        MapAxes::Cartesian { u_mm, v_mm } => (["u_mm", "v_mm"], v_mm, u_mm),
-        MapAxes::Angular { u_deg, v_deg } => (["u_deg", "v_deg"], v_deg, u_deg),
-        MapAxes::Polar { radius_mm, sector_deg } => {
-            (["sector_deg", "radius_mm"], radius_mm, sector_deg)
-        }
-    };
-    let mut header = vec![header[0].to_owned(), header[1].to_owned(), value, error];
-    header.extend(map.biases.is_some().then(|| bias_column(&map.unit)));
-    header.push("on_sensor".to_owned());
-    let lines =
-        map.values.indexed_iter().filter(|(_, value)| value.is_finite()).map(|(at, value)| {
-            let (row, column) = at;
-            let place = [middle(columns, column), middle(rows, row)];
-            let bias = map.biases.as_ref().map(|biases| biases[at]);
-            let read = [*value, map.std_errors[at]].into_iter().chain(bias);
-            numbers(place.into_iter().chain(read).chain([map.on_sensor[at]]))
-        });
-    table(name, &header, lines)
-}
-
-fn intensity_table(intensity: &IntensityTable) -> Result<OutputFile> {
-    let unit = &intensity.unit;
-    let mut header = vec![
-        "c_from_deg".to_owned(),
-        "c_to_deg".to_owned(),
-        "gamma_from_deg".to_owned(),
-        "gamma_to_deg".to_owned(),
-        format!("intensity_{unit}"),
-        format!("std_error_{unit}"),
-    ];
-    header.extend(intensity.biases.is_some().then(|| bias_column(unit)));
-    let (c, gamma) = (&intensity.c_deg, &intensity.gamma_deg);
-    let rows = intensity.values.indexed_iter().map(|(at, value)| {
-        let (ring, sector) = at;
-        let place = [c[sector], c[sector + 1], gamma[ring], gamma[ring + 1]];
-        let bias = intensity.biases.as_ref().map(|biases| biases[at]);
-        numbers(place.into_iter().chain([*value, intensity.std_errors[at]]).chain(bias))
+/// A row for each cell that has a value.
+fn grid_table(name: &str, grid: &CellGrid<'_>) -> Result<OutputFile> {
+    let CellGrid { kind, quantity, unit, x, y, .. } = grid;
+    let mut header: Vec<String> = kind.columns.iter().map(|name| (*name).to_owned()).collect();
+    header.extend([format!("{quantity}_{unit}"), format!("std_error_{unit}")]);
+    header.extend(grid.biases.map(|_| format!("bias_{unit}")));
+    header.extend(grid.on_sensor.map(|_| "on_sensor".to_owned()));
+    let cells = grid.values.indexed_iter().filter(|(_, value)| value.is_finite());
+    let rows = cells.map(|(at, value)| {
+        let ends = [[x[at.1], x[at.1 + 1]], [y[at.0], y[at.0 + 1]]];
+        let mut row = match kind.columns.len() {
+            2 => ends.map(|[from, to]| 0.5 * (from + to)).to_vec(),
+            _ => ends.concat(),
+        };
+        row.extend([*value, grid.std_errors[at]]);
+        row.extend([grid.biases, grid.on_sensor].into_iter().flatten().map(|of| of[at]));
+        numbers(row)
     });
-    table(format!("{}.csv", intensity_name(intensity)), &header, rows)
-}
-
-/// Header of the column of possible bias on top of the noise.
-fn bias_column(unit: &str) -> String {
-    format!("bias_{unit}")
+    table(format!("{name}.csv"), &header, rows)
 }
 
 /// Numbers as a row, with all their digits.

@@ -1,11 +1,12 @@
 //! The pictures of a report and their contents.
 
 use crate::by_light::{from_light, sum_over_weathers};
+use crate::cell_grid::CellGrid;
 use crate::csv::{intensity_name, map_name, map_words};
 use crate::key_figures::is_one_cell;
 use crate::png::{
-    AxisScale, Bar, BarChart, ColourMap, ErrorForm, HeatMap, LinePlot, Look, PlotSeries,
-    PolarCurve, PolarPlot, SeriesForm, SeriesPoint, bar_chart, heat_map, line_plot, polar_plot,
+    AxisScale, Bar, BarChart, ColourMap, ErrorForm, HeatMap, LinePlot, PlotSeries, PolarCurve,
+    PolarPlot, SeriesForm, SeriesPoint, bar_chart, heat_map, line_plot, polar_plot,
 };
 use crate::{OutputFile, Report};
 use lumiduct_base::error::Result;
@@ -39,46 +40,23 @@ pub(crate) fn files(report: &Report) -> Result<Vec<OutputFile>> {
 
 /// The map of a sensor in the plane of its face, or of its image.
 pub(crate) fn sensor_map(map: &SensorMap) -> HeatMap {
-    let plane = ["u in mm", "v in mm"];
-    let ([x_label, y_label], x_range, y_range, axes) = match &map.axes {
-        MapAxes::Cartesian { u_mm, v_mm } => (plane, ends(u_mm), ends(v_mm), AxisScale::Linear),
-        MapAxes::Angular { u_deg, v_deg } => {
-            (["to the right in deg", "up in deg"], ends(u_deg), ends(v_deg), AxisScale::Tangent)
-        }
-        MapAxes::Polar { radius_mm, .. } => {
-            let [_, reach] = ends(radius_mm);
-            (plane, [-reach, reach], [-reach, reach], AxisScale::Linear)
-        }
-    };
-    HeatMap {
-        title: format!("{}: {}", map.sensor, map_words(map)),
-        subtitle: mean_words(map),
-        x_label: x_label.into(),
-        y_label: y_label.into(),
-        x_range,
-        y_range,
-        axes,
-        values: map.values.mapv(not_below_zero),
-        unit: map.unit.clone(),
-        scale: AxisScale::Linear,
-        colours: ColourMap::Sequential,
-        limits: None,
-    }
+    drawn(&map.into(), format!("{}: {}", map.sensor, map_words(map)), mean_words(map))
 }
 
 /// The intensity of a goniometer by both of its angles.
 pub(crate) fn directions_map(table: &IntensityTable) -> HeatMap {
+    let subtitle = sum_over_weathers(table.weathers).unwrap_or_default();
+    drawn(&table.into(), intensity_title(table), subtitle)
+}
+
+fn drawn(grid: &CellGrid<'_>, title: String, subtitle: String) -> HeatMap {
     HeatMap {
-        title: intensity_title(table),
-        subtitle: sum_over_weathers(table.weathers).unwrap_or_default(),
-        x_label: "C in deg".into(),
-        y_label: "γ in deg".into(),
-        x_range: ends(&table.c_deg),
-        y_range: ends(&table.gamma_deg),
-        axes: AxisScale::Linear,
-        values: table.values.mapv(not_below_zero),
-        unit: table.unit.clone(),
-        scale: AxisScale::Linear,
+        title,
+        subtitle,
+        quantity: grid.quantity.to_owned(),
+        unit: grid.unit.to_owned(),
+        places: grid.kind.places,
+        cells: grid.cells(),
         colours: ColourMap::Sequential,
         limits: None,
     }
@@ -97,36 +75,27 @@ fn map_picture(map: &SensorMap) -> Result<Vec<u8>> {
             subtitle: mean_words(map),
             x_label: "radius in mm".into(),
             y_label: format!("{} in {}", map.quantity, map.unit),
-            x_scale: AxisScale::Linear,
-            y_scale: AxisScale::Linear,
+            scale: AxisScale::Linear,
             series: map
                 .values
                 .axis_iter(Axis(1))
                 .zip(map.std_errors.axis_iter(Axis(1)))
                 .enumerate()
-                .map(|(sector, (values, errors))| PlotSeries {
-                    name: format!("{:.0}° to {:.0}°", sector_deg[sector], sector_deg[sector + 1]),
-                    points: values
-                        .iter()
-                        .zip(errors)
-                        .enumerate()
-                        .map(|(ring, (&y, &std_error))| SeriesPoint {
-                            x: 0.5 * (radius_mm[ring] + radius_mm[ring + 1]),
-                            y: not_below_zero(y),
-                            std_error,
-                        })
-                        .collect(),
-                    form: SeriesForm::Line,
-                    errors: ErrorForm::Bars,
-                    look: Look::InTurn,
+                .map(|(sector, (values, errors))| {
+                    let [from, to] = [sector_deg[sector], sector_deg[sector + 1]];
+                    let rings = radius_mm.windows(2).zip(values.iter().zip(errors));
+                    let point = |(ring, (&y, &std_error)): (&[f64], (&f64, &f64))| SeriesPoint {
+                        x: 0.5 * (ring[0] + ring[1]),
+                        y: not_below_zero(y),
+                        std_error,
+                    };
+                    let points = rings.map(point).collect();
+                    let name = format!("{from:.0}° to {to:.0}°");
+                    PlotSeries::new(name, points, SeriesForm::Line, ErrorForm::Bars)
                 })
                 .collect(),
         }),
     }
-}
-
-fn ends(edges: &[f64]) -> [f64; 2] {
-    [edges.first().copied().unwrap_or(0.0), edges.last().copied().unwrap_or(1.0)]
 }
 
 /// Curves through the planes C0-C180 and C90-C270, or the mean over C of a goniometer without sectors.
@@ -211,15 +180,8 @@ pub(crate) fn bounce_plot(paths: &SensorPaths, unit: &str, share: f64) -> LinePl
         ),
         x_label: "interfaces met".into(),
         y_label: format!("flux in {unit}"),
-        x_scale: AxisScale::Linear,
-        y_scale: AxisScale::Linear,
-        series: vec![PlotSeries {
-            name: paths.sensor.clone(),
-            points,
-            form: SeriesForm::Steps,
-            errors: ErrorForm::Hidden,
-            look: Look::InTurn,
-        }],
+        scale: AxisScale::Linear,
+        series: vec![PlotSeries::new(&paths.sensor, points, SeriesForm::Steps, ErrorForm::Hidden)],
     }
 }
 
@@ -318,16 +280,16 @@ far = { goniometer = { c_step_deg = 90, gamma_step_deg = 30 } }
         assert!(map.values[[0, 0]] < -1.0 && map.std_errors[[0, 0]] >= -map.values[[0, 0]]);
         assert!(intensity.values[[0, 0]] < 0.0);
         assert_eq!(
-            (sensor_map(map).values[[0, 0]], directions_map(intensity).values[[0, 0]]),
+            (sensor_map(map).cells.values[[0, 0]], directions_map(intensity).cells.values[[0, 0]]),
             (0.0, 0.0)
         );
-        assert_eq!(sensor_map(map).values[[1, 1]], map.values[[1, 1]]);
+        assert_eq!(sensor_map(map).cells.values[[1, 1]], map.values[[1, 1]]);
         let lowest = |plot: PolarPlot| {
             let points = plot.curves.into_iter().flat_map(|curve| curve.points);
             points.map(|(_, value)| value).fold(f64::INFINITY, f64::min)
         };
         assert_eq!(lowest(intensity_plot(intensity)), 0.0);
-        assert_eq!(data::map(map)["values"][0], 0.0);
+        assert_eq!(data::map(&sensor_map(map))["values"][0], 0.0);
     }
 
     #[test]

@@ -7,6 +7,7 @@
 mod base64;
 mod by_light;
 mod by_sun;
+mod cell_grid;
 mod compare;
 mod contents;
 mod csv;

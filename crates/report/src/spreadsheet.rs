@@ -3,11 +3,10 @@
 //! They begin with a UTF-8 byte-order mark, without which Excel misreads units such as `mm²`. All
 //! other tables have none; this program reads both.
 
+use crate::cell_grid::CellGrid;
 use crate::csv::{intensity_name, map_name, table};
 use crate::{OutputFile, Report};
 use lumiduct_base::error::Result;
-use lumiduct_core::measure::{IntensityTable, MapAxes, SensorMap};
-use ndarray::Array2;
 
 /// First character of a UTF-8 file for a spreadsheet.
 const BYTE_ORDER_MARK: &str = "\u{feff}";
@@ -16,11 +15,11 @@ const BYTE_ORDER_MARK: &str = "\u{feff}";
 pub(crate) fn files(report: &Report) -> Result<Vec<OutputFile>> {
     let measures = &report.measures;
     let mut files = vec![values(report)?];
-    let matrices = measures.maps.iter().map(map_matrix);
-    for matrix in matrices.chain(measures.intensities.iter().map(intensity_matrix)) {
-        if matrix.values.len() > 1 {
-            files.push(matrix.file()?);
-        }
+    for map in measures.maps.iter().filter(|map| map.values.len() > 1) {
+        files.push(matrix(&map_name(map), &map.into())?);
+    }
+    for table in measures.intensities.iter().filter(|table| table.values.len() > 1) {
+        files.push(matrix(&intensity_name(table), &table.into())?);
     }
     Ok(files)
 }
@@ -45,94 +44,26 @@ fn marked(mut file: OutputFile) -> OutputFile {
 }
 
 /// Values in rows and columns; the cell edges fill two columns on the left and two rows at the top.
-struct SpreadsheetMatrix<'a> {
-    /// File name without its extension.
-    name: String,
-    /// What is shown, with its unit: `illuminance in lx`.
-    quantity: String,
-    /// Coordinate of the rows, with its unit: `v`, `mm`.
-    rows: [&'static str; 2],
-    row_edges: &'a [f64],
-    /// The same of the columns.
-    columns: [&'static str; 2],
-    column_edges: &'a [f64],
-    /// Rows by columns; NaN where there is none.
-    values: &'a Array2<f64>,
-    /// Which row is on top.
-    top: Top,
-}
-
-/// Which row of a matrix is on top.
-#[derive(Clone, Copy)]
-enum Top {
-    /// That of the greatest values, as in a picture.
-    Last,
-    /// That of the least values.
-    First,
-}
-
-fn map_matrix(map: &SensorMap) -> SpreadsheetMatrix<'_> {
-    let (rows, row_edges, columns, column_edges, top) = match &map.axes {
-        MapAxes::Cartesian { u_mm, v_mm } => (["v", "mm"], v_mm, ["u", "mm"], u_mm, Top::Last),
-        MapAxes::Angular { u_deg, v_deg } => {
-            (["up", "deg"], v_deg, ["right", "deg"], u_deg, Top::Last)
-        }
-        MapAxes::Polar { radius_mm, sector_deg } => {
-            (["radius", "mm"], radius_mm, ["sector", "deg"], sector_deg, Top::First)
-        }
+fn matrix(name: &str, grid: &CellGrid<'_>) -> Result<OutputFile> {
+    let CellGrid { kind, x, y, values, .. } = grid;
+    let cells = |label: [String; 2], edges: &[f64]| -> Vec<String> {
+        label.into_iter().chain(edges.iter().map(f64::to_string)).collect()
     };
-    let name = map_name(map);
-    let quantity = format!("{} in {}", map.quantity, map.unit);
-    SpreadsheetMatrix {
-        name,
-        quantity,
-        rows,
-        row_edges,
-        columns,
-        column_edges,
-        values: &map.values,
-        top,
-    }
-}
-
-fn intensity_matrix(intensity: &IntensityTable) -> SpreadsheetMatrix<'_> {
-    SpreadsheetMatrix {
-        name: intensity_name(intensity),
-        quantity: format!("intensity in {}", intensity.unit),
-        rows: ["gamma", "deg"],
-        row_edges: &intensity.gamma_deg,
-        columns: ["c", "deg"],
-        column_edges: &intensity.c_deg,
-        values: &intensity.values,
-        top: Top::First,
-    }
-}
-
-impl SpreadsheetMatrix<'_> {
-    fn file(&self) -> Result<OutputFile> {
-        let cells = |label: [String; 2], edges: &[f64]| -> Vec<String> {
-            label.into_iter().chain(edges.iter().map(f64::to_string)).collect()
-        };
-        let [from, to] = ["from", "to"]
-            .map(|end| [self.rows, self.columns].map(|[of, unit]| format!("{of} {end} in {unit}")));
-        let columns = self.values.ncols();
-        let header = cells([self.quantity.clone(), from[1].clone()], &self.column_edges[..columns]);
-        let lower = cells([String::new(), to[1].clone()], &self.column_edges[1..]);
-        let mut labels = vec![from[0].clone(), to[0].clone()];
-        labels.resize(columns + 2, String::new());
-        let row = |row: usize| -> Vec<String> {
-            let values = self.values.row(row).into_iter().copied();
-            let cell =
-                |value: f64| if value.is_finite() { value.to_string() } else { String::new() };
-            let edges = self.row_edges[row..row + 2].iter().map(f64::to_string);
-            edges.chain(values.map(cell)).collect()
-        };
-        let count = self.values.nrows();
-        let order = (0..count).map(|place| match self.top {
-            Top::Last => count - 1 - place,
-            Top::First => place,
-        });
-        let rows = [lower, labels].into_iter().chain(order.map(row));
-        Ok(marked(table(format!("{}.matrix.csv", self.name), &header, rows)?))
-    }
+    let label = |axis: usize, end: &str| {
+        format!("{} {end} in {}", kind.heads[axis], kind.places.units[axis])
+    };
+    let (count, columns) = values.dim();
+    let quantity = format!("{} in {}", grid.quantity, grid.unit);
+    let header = cells([quantity, label(0, "from")], &x[..columns]);
+    let lower = cells([String::new(), label(0, "to")], &x[1..]);
+    let mut labels = vec![label(1, "from"), label(1, "to")];
+    labels.resize(columns + 2, String::new());
+    let row = |place: usize| -> Vec<String> {
+        let row = if kind.is_rising { count - 1 - place } else { place };
+        let cell = |value: &f64| if value.is_finite() { value.to_string() } else { String::new() };
+        let edges = y[row..row + 2].iter().map(f64::to_string);
+        edges.chain(values.row(row).into_iter().map(cell)).collect()
+    };
+    let rows = [lower, labels].into_iter().chain((0..count).map(row));
+    Ok(marked(table(format!("{name}.matrix.csv"), &header, rows)?))
 }

@@ -2,7 +2,7 @@
 
 use crate::diff::page::{HEADER, cells, findings, remark, title};
 use crate::diff::{Diff, DiffRow, MapDiff, MapOutcome, maps};
-use crate::html::data::drawn_map;
+use crate::html::data;
 use crate::html::frame::{Page, render};
 use crate::page::{Block, PagePart, Plots, Standing};
 use lumiduct_base::error::Result;
@@ -90,8 +90,7 @@ fn measures(rows: &[&DiffRow]) -> Vec<Block> {
 fn differences(diff: &Diff, plots: &mut Plots) -> Option<PagePart> {
     let block = |map: &MapDiff| {
         let MapOutcome::Compared { difference, .. } = &map.outcome else { return None };
-        let (cells, picture) = maps::drawn(map, difference);
-        let data = drawn_map(&cells, &picture, &difference.words());
+        let data = data::map(&maps::drawn(map, difference));
         let label = format!("{}: B − A", map.name);
         let plot = plots.add(label, data, Some(map.picture_name()));
         Some([plot, Block::Words { text: map.sentence() }])

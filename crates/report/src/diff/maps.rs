@@ -1,9 +1,8 @@
 //! Differences of maps, cell by cell. Maps are read from their tables: places, values and errors.
 
 use crate::OutputFile;
-use crate::html::cells::MapCells;
-use crate::html::data::MapWords;
-use crate::png::{AxisScale, ColourMap, HeatMap, heat_map};
+use crate::cell_grid::{ANGLES, GridKind, INTENSITY, RINGS, SURFACE};
+use crate::png::{AxisScale, ColourMap, HeatMap, MapCells, MapGeometry, MapPlaces, heat_map};
 use csv::ReaderBuilder;
 use lumiduct_base::error::Result;
 use lumiduct_base::number::format_fixed;
@@ -21,70 +20,11 @@ const BEYOND_COLOURS: f64 = 0.01;
 /// Places closer than this share of the extent of a map are the same: machines round differently.
 const SAME_PLACE: f64 = 1e-9;
 
-/// The axes of a table.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum AxesKind {
-    Surface,
-    Angles,
-    Rings,
-    Intensity,
-}
-
-impl AxesKind {
-    /// The kind of a table by the names of its first columns; `None` if it is not a map.
-    fn of(header: &[&str]) -> Option<Self> {
-        match header {
-            ["u_mm", "v_mm", ..] => Some(Self::Surface),
-            ["u_deg", "v_deg", ..] => Some(Self::Angles),
-            ["sector_deg", "radius_mm", ..] => Some(Self::Rings),
-            ["c_from_deg", "c_to_deg", "gamma_from_deg", "gamma_to_deg", ..] => {
-                Some(Self::Intensity)
-            }
-            _ => None,
-        }
-    }
-
-    /// Number of columns that say where a cell is.
-    fn places(self) -> usize {
-        match self {
-            Self::Surface | Self::Angles | Self::Rings => 2,
-            Self::Intensity => 4,
-        }
-    }
-
-    fn labels(self) -> [&'static str; 2] {
-        match self {
-            Self::Surface => ["u in mm", "v in mm"],
-            Self::Angles => ["to the right in deg", "up in deg"],
-            Self::Rings => ["sector in deg", "radius in mm"],
-            Self::Intensity => ["C in deg", "γ in deg"],
-        }
-    }
-
-    /// What a page calls places and values.
-    fn words(self) -> MapWords<'static> {
-        let (geometry, names, units) = match self {
-            Self::Surface => ("cartesian", ["u", "v"], ["mm", "mm"]),
-            Self::Angles => ("angular", ["to the right", "up"], ["deg", "deg"]),
-            Self::Rings => ("directions", ["azimuth", "radius"], ["deg", "mm"]),
-            Self::Intensity => ("directions", ["C", "γ"], ["deg", "deg"]),
-        };
-        MapWords { geometry, quantity: "difference B − A", names, units }
-    }
-
-    fn scale(self) -> AxisScale {
-        match self {
-            Self::Angles => AxisScale::Tangent,
-            Self::Surface | Self::Rings | Self::Intensity => AxisScale::Linear,
-        }
-    }
-}
-
 /// A map as in its table.
 #[derive(Debug, Clone)]
 pub struct MapTable {
     name: String,
-    kind: AxesKind,
+    kind: &'static GridKind,
     unit: String,
     /// Middles of the cells, mm or deg.
     places: Vec<[f64; 2]>,
@@ -100,8 +40,10 @@ impl MapTable {
         let mut reader = ReaderBuilder::new().from_reader(text.as_bytes());
         let header = reader.headers().map_err(|reason| reason.to_string())?.clone();
         let header: Vec<&str> = header.iter().collect();
-        let Some(kind) = AxesKind::of(&header) else { return Ok(None) };
-        let first = kind.places();
+        let kinds = [&SURFACE, &ANGLES, &RINGS, &INTENSITY];
+        let kind = kinds.into_iter().find(|kind| header.starts_with(kind.columns));
+        let Some(kind) = kind else { return Ok(None) };
+        let first = kind.columns.len();
         let unit = header.get(first + 1).and_then(|name| name.strip_prefix("std_error_"));
         let unit = unit.ok_or("there is no column of standard errors")?.to_owned();
         let mut map = Self {
@@ -119,19 +61,14 @@ impl MapTable {
                     |_| format!("`{}` are not numbers", row.iter().collect::<Vec<_>>().join(",")),
                 )?;
             let (place, rest) = numbers.split_at(first);
-            map.places.push(match kind {
-                AxesKind::Surface | AxesKind::Angles | AxesKind::Rings => [place[0], place[1]],
-                AxesKind::Intensity => [0.5 * (place[0] + place[1]), 0.5 * (place[2] + place[3])],
+            map.places.push(match place {
+                [x, y] => [*x, *y],
+                _ => [0.5 * (place[0] + place[1]), 0.5 * (place[2] + place[3])],
             });
             map.values.push(rest[0]);
             map.errors.push(rest[1].hypot(rest.get(2).copied().unwrap_or(0.0)));
         }
         Ok(Some(map))
-    }
-
-    /// What a page calls its places and values.
-    pub(crate) fn words(&self) -> MapWords<'static> {
-        self.kind.words()
     }
 
     /// Whether cells, quantity and unit equal those of another map.
@@ -245,16 +182,23 @@ pub(crate) fn pictures(maps: &[MapDiff]) -> Result<Vec<OutputFile>> {
     let mut files = Vec::new();
     for map in maps {
         if let MapOutcome::Compared { difference, .. } = &map.outcome {
-            let (_, picture) = drawn(map, difference);
-            let bytes = heat_map(&picture)?;
+            let bytes = heat_map(&drawn(map, difference))?;
             files.push(OutputFile { name: map.picture_name(), bytes });
         }
     }
     Ok(files)
 }
 
-/// The difference of a map as cells with their errors, and as a picture.
-pub(crate) fn drawn(map: &MapDiff, difference: &MapTable) -> (MapCells, HeatMap) {
+/// The difference of a map for a picture or a page. Rings are unrolled.
+pub(crate) fn drawn(map: &MapDiff, difference: &MapTable) -> HeatMap {
+    let places = match difference.kind.places {
+        rings @ MapPlaces { geometry: MapGeometry::Polar, .. } => MapPlaces {
+            geometry: MapGeometry::Directions,
+            labels: ["sector in deg", "radius in mm"],
+            ..rings
+        },
+        others => others,
+    };
     let columns = lines(&difference.places, 0);
     let rows = lines(&difference.places, 1);
     let mut values = Array2::from_elem((rows.len(), columns.len()), f64::NAN);
@@ -265,32 +209,16 @@ pub(crate) fn drawn(map: &MapDiff, difference: &MapTable) -> (MapCells, HeatMap)
         let at = [index(&rows, place[1]), index(&columns, place[0])];
         (values[at], errors[at]) = (*value, *error);
     }
-    let scale = difference.kind.scale();
+    let scale = places.geometry.scale();
     let [x, y] = [columns, rows].map(|middles| edges(&middles, scale));
-    let picture = picture(map, difference, [&x, &y], &values);
-    (MapCells { x, y, values, errors, biases: None }, picture)
-}
-
-fn picture(
-    map: &MapDiff,
-    difference: &MapTable,
-    edges: [&[f64]; 2],
-    values: &Array2<f64>,
-) -> HeatMap {
-    let [x_label, y_label] = difference.kind.labels().map(str::to_owned);
     let limit = limit(&difference.values);
-    let [x_range, y_range] = edges.map(|edges| [edges[0], edges[edges.len() - 1]]);
     HeatMap {
         title: format!("{}: difference B − A", map.name),
         subtitle: map.sentence(),
-        x_label,
-        y_label,
-        x_range,
-        y_range,
-        axes: difference.kind.scale(),
-        values: values.clone(),
+        quantity: "difference B − A".into(),
         unit: difference.unit.clone(),
-        scale: AxisScale::Linear,
+        places,
+        cells: MapCells { x, y, values, errors, biases: None },
         colours: ColourMap::Diverging,
         limits: Some([-limit, limit]),
     }

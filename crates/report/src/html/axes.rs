@@ -74,19 +74,17 @@ pub(crate) fn ink(ink: SeriesInk) -> [Value; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::png::{ErrorForm, Look, PlotSeries, SeriesForm, SeriesPoint, series_ink};
+    use crate::png::{ErrorForm, PlotSeries, SeriesForm, SeriesPoint, series_ink};
 
     fn plot(points: &[(f64, f64)]) -> LinePlot {
         let points = points.iter().map(|&(x, y)| SeriesPoint { x, y, std_error: 0.0 }).collect();
-        let (form, errors, look) = (SeriesForm::Line, ErrorForm::Hidden, Look::InTurn);
-        let series = PlotSeries { name: "exit".into(), points, form, errors, look };
+        let series = PlotSeries::new("exit", points, SeriesForm::Line, ErrorForm::Hidden);
         LinePlot {
             title: String::new(),
             subtitle: String::new(),
             x_label: "interfaces met".into(),
             y_label: "flux in lm".into(),
-            x_scale: AxisScale::Linear,
-            y_scale: AxisScale::Linear,
+            scale: AxisScale::Linear,
             series: vec![series],
         }
     }

@@ -1,24 +1,10 @@
 //! The cells of a map on a page. Large maps are coarsened; the tables have all cells.
 
+use crate::png::MapCells;
 use ndarray::Array2;
 
 /// Most cells of a map on a page; more would make it slow to open.
 const MOST_CELLS: usize = 40_000;
-
-/// The cells of a map, rows by columns.
-#[derive(Debug, Clone)]
-pub(crate) struct MapCells {
-    /// Edges of the columns.
-    pub(crate) x: Vec<f64>,
-    /// Edges of the rows.
-    pub(crate) y: Vec<f64>,
-    /// Values; NaN where there is none.
-    pub(crate) values: Array2<f64>,
-    /// Standard errors.
-    pub(crate) errors: Array2<f64>,
-    /// Bias indicators, where a bias is possible.
-    pub(crate) biases: Option<Array2<f64>>,
-}
 
 /// How many cells along each side are shown as one; 1 for small maps.
 pub(crate) fn joined(cells: &Array2<f64>) -> usize {

@@ -3,17 +3,15 @@
 //! Numbers have six significant digits, which is more than a plot shows.
 
 use crate::drawing::{Fate, SceneDrawing};
-use crate::figures::{directions_map, sensor_map};
 use crate::html::axes::{chart_axes, dial_axes, ink, map_axes};
-use crate::html::cells::{MapCells, coarse, joined};
+use crate::html::cells::{coarse, joined};
 use crate::local_axes::LocalAxes;
 use crate::png::{
-    self, AxisScale, ErrorForm, HeatMap, LinePlot, MapFrame, PolarPlot, SeriesForm, series_ink,
+    self, AxisScale, ErrorForm, HeatMap, LinePlot, MapCells, MapFrame, MapPlaces, PolarPlot,
+    SeriesForm, series_ink,
 };
 use glam::DVec3;
-use lumiduct_core::measure::{
-    Balance, IntensityTable, MapAxes, Measure, SensorMap, not_below_zero,
-};
+use lumiduct_core::measure::{Balance, Measure};
 use serde_json::{Value, json};
 
 /// Significant digits of numbers.
@@ -51,47 +49,33 @@ fn with_errors<'a>(values: impl Iterator<Item = (&'a f64, &'a f64)>) -> [Value; 
     [shown, errors].map(Value::from)
 }
 
-impl MapCells {
-    /// The data from which scripts draw a map, without its words.
-    fn data(&self) -> Value {
-        let side = joined(&self.values);
-        if side > 1 {
-            let mut data = coarse(self, side).data();
-            let remark = format!("each cell shown is the mean of {side} by {side}");
-            data["remark"] = remark.into();
-            return data;
-        }
-        let [values, errors] = with_errors(self.values.iter().zip(&self.errors));
-        let biases = self.biases.as_ref().map(|biases| numbers(biases, ERROR_DIGITS));
-        json!({
-            "plot": "map", "x": numbers(&self.x, DIGITS), "y": numbers(&self.y, DIGITS),
-            "values": values, "errors": errors, "biases": biases,
-        })
+/// The data from which scripts draw a map, without its words.
+fn cell_data(cells: &MapCells) -> Value {
+    let side = joined(&cells.values);
+    if side > 1 {
+        let mut data = cell_data(&coarse(cells, side));
+        let remark = format!("each cell shown is the mean of {side} by {side}");
+        data["remark"] = remark.into();
+        return data;
     }
-}
-
-/// Subject of a map.
-pub(crate) struct MapWords<'a> {
-    /// How places are drawn: `cartesian`, `angular`, `polar` or `directions`.
-    pub(crate) geometry: &'a str,
-    /// What is mapped, such as `illuminance`.
-    pub(crate) quantity: &'a str,
-    /// Names of both coordinates of a cell.
-    pub(crate) names: [&'a str; 2],
-    /// Their units.
-    pub(crate) units: [&'a str; 2],
+    let [values, errors] = with_errors(cells.values.iter().zip(&cells.errors));
+    let biases = cells.biases.as_ref().map(|biases| numbers(biases, ERROR_DIGITS));
+    json!({
+        "plot": "map", "x": numbers(&cells.x, DIGITS), "y": numbers(&cells.y, DIGITS),
+        "values": values, "errors": errors, "biases": biases,
+    })
 }
 
 /// A map as in its picture, with its cells and their names.
-pub(crate) fn drawn_map(cells: &MapCells, map: &HeatMap, words: &MapWords<'_>) -> Value {
-    let MapWords { geometry, quantity, names, units } = words;
-    let mut data = cells.data();
+pub(crate) fn map(map: &HeatMap) -> Value {
+    let MapPlaces { geometry, names, units, .. } = map.places;
+    let mut data = cell_data(&map.cells);
     data["axes"] = map_axes(&MapFrame::new(map));
+    data["geometry"] = json!(geometry);
     let entries = [
-        ("geometry", *geometry),
         ("title", map.title.as_str()),
-        ("quantity", *quantity),
-        ("unit", map.unit.as_str()),
+        ("quantity", &map.quantity),
+        ("unit", &map.unit),
         ("x_name", names[0]),
         ("y_name", names[1]),
         ("x_unit", units[0]),
@@ -101,49 +85,6 @@ pub(crate) fn drawn_map(cells: &MapCells, map: &HeatMap, words: &MapWords<'_>) -
         data[key] = text.into();
     }
     data
-}
-
-/// The map of a sensor.
-pub(crate) fn map(map: &SensorMap) -> Value {
-    let (x, y, geometry, names, units) = match &map.axes {
-        MapAxes::Cartesian { u_mm, v_mm } => (u_mm, v_mm, "cartesian", ["u", "v"], ["mm", "mm"]),
-        MapAxes::Angular { u_deg, v_deg } => {
-            (u_deg, v_deg, "angular", ["to the right", "up"], ["deg", "deg"])
-        }
-        MapAxes::Polar { radius_mm, sector_deg } => {
-            (sector_deg, radius_mm, "polar", ["azimuth", "radius"], ["deg", "mm"])
-        }
-    };
-    let cells = MapCells {
-        x: x.clone(),
-        y: y.clone(),
-        values: map.values.mapv(not_below_zero),
-        errors: map.std_errors.clone(),
-        biases: map.biases.clone(),
-    };
-    let words = MapWords { geometry, quantity: &map.quantity, names, units };
-    drawn_map(&cells, &sensor_map(map), &words)
-}
-
-/// The intensity of a goniometer by both of its angles; `None` where it does not resolve azimuths.
-pub(crate) fn directions(table: &IntensityTable) -> Option<Value> {
-    if table.values.ncols() < 2 {
-        return None;
-    }
-    let cells = MapCells {
-        x: table.c_deg.clone(),
-        y: table.gamma_deg.clone(),
-        values: table.values.mapv(not_below_zero),
-        errors: table.std_errors.clone(),
-        biases: table.biases.clone(),
-    };
-    let words = MapWords {
-        geometry: "directions",
-        quantity: "intensity",
-        names: ["C", "γ"],
-        units: ["deg", "deg"],
-    };
-    Some(drawn_map(&cells, &directions_map(table), &words))
 }
 
 /// Intensity by angle.

@@ -62,26 +62,19 @@ impl BarScale {
 
 /// A colour bar.
 pub(crate) struct ColourBar {
-    axis: PlotAxis,
-    ticks: Ticks,
-    colours: ColourMap,
+    scale: BarScale,
     width: f64,
-    unit: String,
-    /// Whether there are values below and above the bar.
-    beyond: [bool; 2],
 }
 
 impl ColourBar {
-    /// A bar of a height in pixels.
-    pub(crate) fn new(colouring: &Colouring<'_>, height: f64) -> Result<Self> {
-        let BarScale { axis, colours, beyond } = BarScale::new(colouring, height);
-        let MarkedAxis { axis, ticks, label: unit } = axis;
+    /// A bar of a scale.
+    pub(crate) fn new(scale: BarScale) -> Result<Self> {
         let mut numbers = 0.0f64;
-        for tick in &ticks.major {
+        for tick in &scale.axis.ticks.major {
             numbers = numbers.max(TICK.width(&tick.label)?);
         }
-        let width = (BAR_WIDTH + 10.0 + numbers).max(LABEL.width(&unit)?).ceil();
-        Ok(Self { axis, ticks, colours, width, unit, beyond })
+        let width = (BAR_WIDTH + 10.0 + numbers).max(LABEL.width(&scale.axis.label)?).ceil();
+        Ok(Self { scale, width })
     }
 
     /// Width with the numbers, pixels.
@@ -91,43 +84,46 @@ impl ColourBar {
 
     /// The colour of a value; neutral if non-finite.
     pub(crate) fn colour_of(&self, value: f64) -> Rgb {
-        if value.is_finite() { self.colours.colour(self.axis.fraction(value)) } else { NEUTRAL }
+        let BarScale { axis, colours, .. } = &self.scale;
+        if value.is_finite() { colours.colour(axis.axis.fraction(value)) } else { NEUTRAL }
     }
 
     /// Draws the bar there, with its unit above and its numbers on the right.
     pub(crate) fn draw(&self, canvas: &mut Canvas, bar: Rect) -> Result<()> {
+        let BarScale { axis: MarkedAxis { axis, ticks, label }, colours, beyond } = &self.scale;
         let ink = Ink::opaque(INK);
         let height = bar.height();
-        canvas.bitmap(bar, |_, y| self.colours.colour(1.0 - (y as f64 + 0.5) / height));
+        canvas.bitmap(bar, |_, y| colours.colour(1.0 - (y as f64 + 0.5) / height));
         canvas.border(bar, ink);
         self.draw_tips(canvas, bar);
         let row = |value: f64| {
-            let y = bar.bottom - self.axis.fraction(value) * height;
+            let y = bar.bottom - axis.fraction(value) * height;
             y.floor().clamp(bar.top, bar.bottom - 1.0)
         };
-        for &value in &self.ticks.minor {
+        for &value in &ticks.minor {
             canvas.rect(Rect::new(bar.right + 1.0, row(value), 2.0, 1.0), ink);
         }
-        for tick in &self.ticks.major {
+        for tick in &ticks.major {
             let y = row(tick.value);
             canvas.rect(Rect::new(bar.right + 1.0, y, 4.0, 1.0), ink);
             let at = [bar.right + 9.0, y + 0.5 + 0.5 * TICK.cap_height()];
             write(canvas, &tick.label, at, TICK, Align::Left)?;
         }
-        let tip = if self.beyond[1] { TIP } else { 0.0 };
+        let tip = if beyond[1] { TIP } else { 0.0 };
         let at = [bar.left - 1.0, bar.top - tip - 8.0];
-        write(canvas, &self.unit, at, LABEL, Align::Left)
+        write(canvas, label, at, LABEL, Align::Left)
     }
 
     /// The tips of the bar where there are values beyond it.
     fn draw_tips(&self, canvas: &mut Canvas, bar: Rect) {
+        let BarScale { colours, beyond, .. } = &self.scale;
         let pen = Pen { ink: Ink::opaque(INK), width: 1.0, dash: &[] };
-        let below = (self.beyond[0], bar.bottom + 1.0, 1.0, 0.0);
-        let above = (self.beyond[1], bar.top - 1.0, -1.0, 1.0);
+        let below = (beyond[0], bar.bottom + 1.0, 1.0, 0.0);
+        let above = (beyond[1], bar.top - 1.0, -1.0, 1.0);
         for (_, base, direction, fraction) in [below, above].into_iter().filter(|tip| tip.0) {
             let tip = [0.5 * (bar.left + bar.right), base + direction * (TIP - 2.0)];
             let corners = [[bar.left - 1.0, base], [bar.right + 1.0, base], tip];
-            canvas.area(&corners, Ink::opaque(self.colours.colour(fraction)));
+            canvas.area(&corners, Ink::opaque(colours.colour(fraction)));
             canvas.line(&[corners[0], tip, corners[1]], &pen);
         }
     }

@@ -13,6 +13,7 @@ use crate::png::text::TICK;
 use lumiduct_base::error::Result;
 use lumiduct_base::number::format_value;
 use ndarray::Array2;
+use serde::Serialize;
 
 /// A value per cell of a rectangle.
 #[derive(Debug, Clone)]
@@ -21,27 +22,60 @@ pub(crate) struct HeatMap {
     pub title: String,
     /// How it was found; may be empty.
     pub subtitle: String,
-    /// Name and unit of the horizontal axis: "x in mm".
-    pub x_label: String,
-    /// Name and unit of the vertical axis.
-    pub y_label: String,
-    /// Outer edges of the first and the last column, in the unit of the label.
-    pub x_range: [f64; 2],
-    /// Outer edges of the first and the last row, in the unit of the label.
-    pub y_range: [f64; 2],
-    /// How places become fractions of both axes.
-    pub axes: AxisScale,
-    /// The values, `[[row, column]]`: row 0 is drawn at the bottom, column 0 at the left.
-    /// Non-finite values are outside the sensor and drawn grey.
-    pub values: Array2<f64>,
+    /// What is mapped, such as `illuminance`.
+    pub quantity: String,
     /// Unit of the values; may be empty.
     pub unit: String,
-    /// How values become fractions of the colour bar.
-    pub scale: AxisScale,
+    /// What the places are called.
+    pub places: MapPlaces,
+    /// The cells.
+    pub cells: MapCells,
     /// How fractions become colours.
     pub colours: ColourMap,
     /// Values at the ends of the colour bar; `None` takes them from the data.
     pub limits: Option<[f64; 2]>,
+}
+
+/// The coordinates of a map, across and up.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct MapPlaces {
+    /// How places are drawn.
+    pub geometry: MapGeometry,
+    /// Names and units of the axes: "x in mm".
+    pub labels: [&'static str; 2],
+    /// Names of both coordinates of a cell.
+    pub names: [&'static str; 2],
+    /// Their units.
+    pub units: [&'static str; 2],
+}
+
+/// How the places of a map are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum MapGeometry {
+    /// As they are.
+    Cartesian,
+    /// By the tangents of their angles.
+    Angular,
+    /// Rings and sectors on a disk.
+    Polar,
+    /// Angles as they are.
+    Directions,
+}
+
+/// The cells of a map, `[[row, column]]`: row 0 is drawn at the bottom, column 0 at the left.
+#[derive(Debug, Clone)]
+pub(crate) struct MapCells {
+    /// Edges of the columns.
+    pub x: Vec<f64>,
+    /// Edges of the rows.
+    pub y: Vec<f64>,
+    /// Values; non-finite where there is none, which is drawn grey.
+    pub values: Array2<f64>,
+    /// Standard errors.
+    pub errors: Array2<f64>,
+    /// Bias indicators, where a bias is possible.
+    pub biases: Option<Array2<f64>>,
 }
 
 /// Largest size of the map itself, pixels.
@@ -58,17 +92,10 @@ const BAR_GAP: f64 = 26.0;
 /// spans at most six decades.
 pub(crate) fn heat_map(map: &HeatMap) -> Result<Vec<u8>> {
     let (axes, size) = map_axes(map);
-    let size = whole_cells(size, &map.values);
+    let size = whole_cells(size, &map.cells.values);
     let frame = PlotAxes::new(axes, [size.width, size.height])?;
-    let values = finite(&map.values);
-    let colouring = Colouring {
-        values: &values,
-        unit: &map.unit,
-        scale: map.scale,
-        colours: map.colours,
-        limits: map.limits,
-    };
-    let bar = ColourBar::new(&colouring, size.height)?;
+    let values = finite(&map.cells.values);
+    let bar = ColourBar::new(bar_scale(map, &values, AxisScale::Linear, size))?;
 
     let left = MARGIN + frame.left_margin();
     let content = left + size.width + BAR_GAP + bar.width() + MARGIN;
@@ -84,7 +111,7 @@ pub(crate) fn heat_map(map: &HeatMap) -> Result<Vec<u8>> {
     let mut canvas = Canvas::new(width as usize, height.ceil() as usize);
     let area = Rect::new(left, top, size.width, size.height);
     header.draw(&mut canvas, MARGIN, MARGIN - 4.0)?;
-    draw_cells(&mut canvas, area, &map.values, &bar);
+    draw_cells(&mut canvas, area, &map.cells.values, &bar);
     frame.draw(&mut canvas, area)?;
     bar.draw(&mut canvas, Rect::new(area.right + BAR_GAP, top, BAR_WIDTH, size.height))?;
     for (index, text) in remarks.iter().enumerate() {
@@ -97,11 +124,33 @@ pub(crate) fn heat_map(map: &HeatMap) -> Result<Vec<u8>> {
 
 /// The axes of a map, and the size at which it is drawn, pixels.
 fn map_axes(map: &HeatMap) -> ([MarkedAxis; 2], PlotSize) {
-    let axes = [map.x_range, map.y_range].map(|[min, max]| PlotAxis::new(min, max, map.axes));
-    let size = plot_size(axes, MOST, LONGEST);
-    let [x, y] = axes;
-    let x = MarkedAxis::level(x, &map.x_label, size.width);
-    ([x, MarkedAxis::upright(y, &map.y_label, size.height)], size)
+    let MapCells { x, y, .. } = &map.cells;
+    let ends = |edges: &[f64]| match edges {
+        [first, .., last] => [*first, *last],
+        [_] | [] => [0.0, 1.0],
+    };
+    let scale = map.places.geometry.scale();
+    let ranges = match map.places.geometry {
+        MapGeometry::Polar => [[-ends(y)[1], ends(y)[1]]; 2],
+        MapGeometry::Cartesian | MapGeometry::Angular | MapGeometry::Directions => {
+            [ends(x), ends(y)]
+        }
+    };
+    let [x, y] = ranges.map(|[min, max]| PlotAxis::new(min, max, scale));
+    let size = plot_size([x, y], MOST, LONGEST);
+    let [x_label, y_label] = map.places.labels;
+    let x = MarkedAxis::level(x, x_label, size.width);
+    ([x, MarkedAxis::upright(y, y_label, size.height)], size)
+}
+
+impl MapGeometry {
+    /// How places become fractions of both axes.
+    pub(crate) fn scale(self) -> AxisScale {
+        match self {
+            Self::Angular => AxisScale::Tangent,
+            Self::Cartesian | Self::Polar | Self::Directions => AxisScale::Linear,
+        }
+    }
 }
 
 /// A map without its cells: the description shared by pictures and pages.
@@ -109,7 +158,7 @@ fn map_axes(map: &HeatMap) -> ([MarkedAxis; 2], PlotSize) {
 pub(crate) struct MapFrame {
     /// Its axes.
     pub(crate) axes: [MarkedAxis; 2],
-    /// Its bar on the map's own scale.
+    /// Its bar on a linear scale.
     pub(crate) bar: BarScale,
     /// Its bar on a logarithmic scale; `None` for a map with colours for both sides of zero.
     pub(crate) log_bar: Option<BarScale>,
@@ -119,17 +168,19 @@ impl MapFrame {
     /// The frame of a map.
     pub(crate) fn new(map: &HeatMap) -> Self {
         let (axes, size) = map_axes(map);
-        let values = finite(&map.values);
-        let bar = |scale: AxisScale| {
-            let (unit, colours, limits) = (map.unit.as_str(), map.colours, map.limits);
-            BarScale::new(&Colouring { values: &values, unit, scale, colours, limits }, size.height)
-        };
+        let values = finite(&map.cells.values);
+        let bar = |scale: AxisScale| bar_scale(map, &values, scale, size);
         let log_bar = match map.colours {
             ColourMap::Sequential => Some(bar(AxisScale::Log)),
             ColourMap::Diverging => None,
         };
-        Self { axes, bar: bar(map.scale), log_bar }
+        Self { axes, bar: bar(AxisScale::Linear), log_bar }
     }
+}
+
+fn bar_scale(map: &HeatMap, values: &[f64], scale: AxisScale, size: PlotSize) -> BarScale {
+    let (unit, colours, limits) = (map.unit.as_str(), map.colours, map.limits);
+    BarScale::new(&Colouring { values, unit, scale, colours, limits }, size.height)
 }
 
 /// A size at which every cell has the same number of pixels, if one is close.
@@ -195,21 +246,35 @@ mod tests {
     use crate::png::tests::Decoded;
     use ndarray::array;
 
-    fn map(values: Array2<f64>) -> HeatMap {
-        HeatMap {
-            title: "Illuminance".to_string(),
-            subtitle: String::new(),
-            x_label: "x in mm".to_string(),
-            y_label: "y in mm".to_string(),
-            x_range: [0.0, 3.0],
-            y_range: [0.0, 2.0],
-            axes: AxisScale::Linear,
-            values,
-            unit: "lx".to_string(),
-            scale: AxisScale::Linear,
-            colours: ColourMap::Sequential,
-            limits: None,
+    impl HeatMap {
+        /// A map of lx by mm.
+        pub(crate) fn sample(x: [f64; 2], y: [f64; 2], values: Array2<f64>) -> Self {
+            Self {
+                title: "Illuminance".into(),
+                subtitle: "sensor exit".into(),
+                quantity: "illuminance".into(),
+                unit: "lx".into(),
+                places: MapPlaces {
+                    geometry: MapGeometry::Cartesian,
+                    labels: ["x in mm", "y in mm"],
+                    names: ["x", "y"],
+                    units: ["mm", "mm"],
+                },
+                cells: MapCells {
+                    x: x.to_vec(),
+                    y: y.to_vec(),
+                    errors: values.clone(),
+                    values,
+                    biases: None,
+                },
+                colours: ColourMap::Sequential,
+                limits: None,
+            }
         }
+    }
+
+    fn map(values: Array2<f64>) -> HeatMap {
+        HeatMap::sample([0.0, 3.0], [0.0, 2.0], values)
     }
 
     /// Left, top, right and bottom of the cell of a colour, which fills it: pixels of the colour

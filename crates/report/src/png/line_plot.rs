@@ -23,10 +23,8 @@ pub(crate) struct LinePlot {
     pub x_label: String,
     /// Name and unit of the vertical axis.
     pub y_label: String,
-    /// Horizontal scale; points at zero and below have no place on a logarithmic one.
-    pub x_scale: AxisScale,
-    /// Vertical scale; zero is below the frame of a logarithmic one.
-    pub y_scale: AxisScale,
+    /// Scale of both axes; points at zero and below have no place on a logarithmic one.
+    pub scale: AxisScale,
     /// The curves; those without a name are not in the legend.
     pub series: Vec<PlotSeries>,
 }
@@ -44,6 +42,18 @@ pub(crate) struct PlotSeries {
     pub errors: ErrorForm,
     /// How it is distinguished from the others.
     pub look: Look,
+}
+
+impl PlotSeries {
+    /// A curve that is distinguished by its index.
+    pub(crate) fn new(
+        name: impl Into<String>,
+        points: Vec<SeriesPoint>,
+        form: SeriesForm,
+        errors: ErrorForm,
+    ) -> Self {
+        Self { name: name.into(), points, form, errors, look: Look::InTurn }
+    }
 }
 
 /// How a curve is distinguished from the others.
@@ -111,7 +121,7 @@ pub(crate) fn line_plot(plot: &LinePlot) -> Result<Vec<u8>> {
     let legend = Legend::new(&entries, WIDTH - 2.0 * MARGIN)?;
 
     let top = MARGIN + header.height() + legend.height();
-    let frame = PlotAxes::new(line_axes(plot, plot.y_scale), [WIDTH - 4.0 * MARGIN, HEIGHT])?;
+    let frame = PlotAxes::new(line_axes(plot, plot.scale), [WIDTH - 4.0 * MARGIN, HEIGHT])?;
     let left = MARGIN + frame.left_margin();
     let area = Rect::new(left, top.round(), WIDTH - MARGIN - 6.0 - left, HEIGHT);
     let height = area.bottom + frame.bottom_margin() + MARGIN - 6.0;
@@ -214,7 +224,7 @@ fn data_axes(plot: &LinePlot, y_scale: AxisScale) -> [PlotAxis; 2] {
             }
         }
     }
-    [range(&xs, plot.x_scale, Padding::None), range(&ys, y_scale, Padding::Around)]
+    [range(&xs, plot.scale, Padding::None), range(&ys, y_scale, Padding::Around)]
 }
 
 fn draw_errors(
@@ -289,10 +299,10 @@ mod tests {
     use crate::png::tests::Decoded;
 
     fn axes_of(plot: &LinePlot) -> [PlotAxis; 2] {
-        data_axes(plot, plot.y_scale)
+        data_axes(plot, plot.scale)
     }
 
-    fn plot(y_scale: AxisScale, form: SeriesForm, points: &[[f64; 3]]) -> LinePlot {
+    fn plot(form: SeriesForm, points: &[[f64; 3]]) -> LinePlot {
         let points =
             points.iter().map(|&[x, y, std_error]| SeriesPoint { x, y, std_error }).collect();
         LinePlot {
@@ -300,22 +310,14 @@ mod tests {
             subtitle: String::new(),
             x_label: "bounces".to_string(),
             y_label: "share of the flux".to_string(),
-            x_scale: AxisScale::Linear,
-            y_scale,
-            series: vec![PlotSeries {
-                name: String::new(),
-                points,
-                form,
-                errors: ErrorForm::Band,
-                look: Look::InTurn,
-            }],
+            scale: AxisScale::Linear,
+            series: vec![PlotSeries::new("", points, form, ErrorForm::Band)],
         }
     }
 
     #[test]
     fn curves_that_belong_together_have_one_colour() {
-        let mut plot =
-            plot(AxisScale::Linear, SeriesForm::Line, &[[0.0, 1.0, 0.0], [1.0, 2.0, 0.0]]);
+        let mut plot = plot(SeriesForm::Line, &[[0.0, 1.0, 0.0], [1.0, 2.0, 0.0]]);
         let mut lit = |look: Look| {
             plot.series[0].look = look;
             Decoded::new(&line_plot(&plot).unwrap()).places(paired_colour(1)).len()
@@ -326,11 +328,7 @@ mod tests {
 
     #[test]
     fn steps_reach_half_way_to_their_neighbours() {
-        let plot = plot(
-            AxisScale::Linear,
-            SeriesForm::Steps,
-            &[[0.0, 1.0, 0.0], [1.0, 2.0, 0.0], [3.0, 4.0, 0.0]],
-        );
+        let plot = plot(SeriesForm::Steps, &[[0.0, 1.0, 0.0], [1.0, 2.0, 0.0], [3.0, 4.0, 0.0]]);
         assert_eq!(
             outline(&plot.series[0]),
             [[-0.5, 1.0], [0.5, 1.0], [0.5, 2.0], [2.0, 2.0], [2.0, 4.0], [4.0, 4.0]]
@@ -341,25 +339,17 @@ mod tests {
 
     #[test]
     fn the_frame_holds_the_error_bars_and_begins_at_zero_where_values_come_near_it() {
-        let axes = axes_of(&plot(
-            AxisScale::Linear,
-            SeriesForm::Line,
-            &[[0.0, 2.0, 0.5], [1.0, 8.0, 2.0]],
-        ));
+        let axes = axes_of(&plot(SeriesForm::Line, &[[0.0, 2.0, 0.5], [1.0, 8.0, 2.0]]));
         assert_eq!(axes[1].min(), 0.0);
         assert!(axes[1].max() > 10.0 && axes[1].max() < 11.0);
-        let axes = axes_of(&plot(
-            AxisScale::Linear,
-            SeriesForm::Line,
-            &[[0.0, 98.0, 0.5], [1.0, 99.0, 0.5]],
-        ));
+        let axes = axes_of(&plot(SeriesForm::Line, &[[0.0, 98.0, 0.5], [1.0, 99.0, 0.5]]));
         assert!(axes[1].min() > 97.0 && axes[1].min() < 97.5);
     }
 
     #[test]
     fn zeros_lie_below_a_logarithmic_frame() {
         let points = [[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.01, 0.0]];
-        let axes = axes_of(&plot(AxisScale::Log, SeriesForm::Steps, &points));
+        let axes = data_axes(&plot(SeriesForm::Steps, &points), AxisScale::Log);
         assert!(axes[1].min() > 0.005 && axes[1].min() < 0.01);
         assert!(axes[1].fraction(0.0) < -1.0);
     }
@@ -367,8 +357,7 @@ mod tests {
     #[test]
     fn a_rising_line_is_drawn_from_the_lower_left_to_the_upper_right() {
         let points: Vec<[f64; 3]> = (0..=10).map(|i| [f64::from(i), f64::from(i), 0.0]).collect();
-        let picture =
-            Decoded::new(&line_plot(&plot(AxisScale::Linear, SeriesForm::Line, &points)).unwrap());
+        let picture = Decoded::new(&line_plot(&plot(SeriesForm::Line, &points)).unwrap());
         let mut places = picture.places(series_ink(0).colour);
         places.sort_unstable();
         let (first, last) = (places[0], places[places.len() - 1]);
@@ -384,8 +373,7 @@ mod tests {
             [3.0, 1.0, 0.0],
             [4.0, 1.0, 0.0],
         ];
-        let picture =
-            Decoded::new(&line_plot(&plot(AxisScale::Linear, SeriesForm::Line, &points)).unwrap());
+        let picture = Decoded::new(&line_plot(&plot(SeriesForm::Line, &points)).unwrap());
         let [left, _, right, _] = picture.bounds(series_ink(0).colour);
         let places = picture.places(series_ink(0).colour);
         let middle = left + (right - left) / 2;

@@ -25,8 +25,7 @@ pub(crate) use colour_bar::BarScale;
 pub(crate) use cross_section::{
     CrossSection, NamedPlace, PlaceOf, RayEnd, RayPath, SurfaceDots, cross_section,
 };
-pub(crate) use heat_map::MapFrame;
-pub(crate) use heat_map::{HeatMap, heat_map};
+pub(crate) use heat_map::{HeatMap, MapCells, MapFrame, MapGeometry, MapPlaces, heat_map};
 pub(crate) use line_plot::{
     ErrorForm, LinePlot, Look, PlotSeries, SeriesForm, SeriesPoint, line_plot,
 };
@@ -119,21 +118,9 @@ mod tests {
         words.to_string()
     }
 
-    fn map(one: f64, other: f64, scale: AxisScale) -> HeatMap {
-        HeatMap {
-            title: text("Illuminance"),
-            subtitle: text("sensor exit"),
-            x_label: text("x in mm"),
-            y_label: text("y in mm"),
-            x_range: [one, other],
-            y_range: [0.0, one],
-            axes: AxisScale::Linear,
-            values: Array2::from_shape_vec((1, 2), vec![one, other]).unwrap(),
-            unit: text("lx"),
-            scale,
-            colours: ColourMap::Sequential,
-            limits: None,
-        }
+    fn map(one: f64, other: f64) -> HeatMap {
+        let values = Array2::from_shape_vec((1, 2), vec![one, other]).unwrap();
+        HeatMap::sample([one, other], [0.0, one], values)
     }
 
     fn polar(one: f64, other: f64) -> PolarPlot {
@@ -149,20 +136,16 @@ mod tests {
 
     fn lines(one: f64, other: f64, scale: AxisScale) -> LinePlot {
         let point = |x: f64, y: f64| SeriesPoint { x, y, std_error: other };
-        let series = |form: SeriesForm, errors: ErrorForm| PlotSeries {
-            name: text("section"),
-            points: vec![point(one, other), point(other, one), point(1.0, one)],
-            form,
-            errors,
-            look: Look::InTurn,
+        let series = |form: SeriesForm, errors: ErrorForm| {
+            let points = vec![point(one, other), point(other, one), point(1.0, one)];
+            PlotSeries::new("section", points, form, errors)
         };
         LinePlot {
             title: text("Sections"),
             subtitle: text("sensor exit"),
             x_label: text("x in mm"),
             y_label: text("illuminance in lx"),
-            x_scale: scale,
-            y_scale: scale,
+            scale,
             series: vec![
                 series(SeriesForm::Line, ErrorForm::Bars),
                 series(SeriesForm::Steps, ErrorForm::Band),
@@ -205,7 +188,7 @@ mod tests {
     /// A picture of each kind with `one` and `other` in place of every number.
     fn pictures(one: f64, other: f64, scale: AxisScale) -> [Vec<u8>; 5] {
         [
-            heat_map(&map(one, other, scale)),
+            heat_map(&map(one, other)),
             polar_plot(&polar(one, other)),
             line_plot(&lines(one, other, scale)),
             bar_chart(&bars(one, other)),
@@ -218,7 +201,7 @@ mod tests {
     fn pictures_of_nothing_are_still_pictures() {
         let values = Array2::zeros((0, 0));
         let files = [
-            heat_map(&HeatMap { values, ..map(1.0, 2.0, AxisScale::Linear) }),
+            heat_map(&HeatMap::sample([1.0, 2.0], [0.0, 1.0], values)),
             polar_plot(&PolarPlot { curves: Vec::new(), ..polar(1.0, 2.0) }),
             line_plot(&LinePlot { series: Vec::new(), ..lines(1.0, 2.0, AxisScale::Log) }),
             bar_chart(&BarChart { bars: Vec::new(), ..bars(1.0, 2.0) }),

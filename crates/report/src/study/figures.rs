@@ -132,21 +132,14 @@ fn response(report: &StudyReport, measure: &str) -> Option<LinePlot> {
     };
     let series = curves.into_iter().take(MOST_CURVES).map(|(name, mut points)| {
         points.sort_by(|a, b| a.x.total_cmp(&b.x));
-        PlotSeries {
-            name,
-            points,
-            form: SeriesForm::Line,
-            errors: ErrorForm::Bars,
-            look: Look::InTurn,
-        }
+        PlotSeries::new(name, points, SeriesForm::Line, ErrorForm::Bars)
     });
     Some(LinePlot {
         title: format!("{measure} over {}", across.name),
         subtitle: format!("bars: one standard error, with bias where there is one{more}"),
         x_label: across.label(),
         y_label: measure_label(report, measure),
-        x_scale: AxisScale::Linear,
-        y_scale: AxisScale::Linear,
+        scale: AxisScale::Linear,
         series: series.collect(),
     })
 }
@@ -189,13 +182,8 @@ fn distribution(report: &StudyReport, measure: &str) -> Option<LinePlot> {
         y: *count,
         std_error: count.sqrt(),
     });
-    let mut series = vec![PlotSeries {
-        name: "designs".into(),
-        points: points.collect(),
-        form: SeriesForm::Steps,
-        errors: ErrorForm::Hidden,
-        look: Look::InTurn,
-    }];
+    let (form, errors) = (SeriesForm::Steps, ErrorForm::Hidden);
+    let mut series = vec![PlotSeries::new("designs", points.collect(), form, errors)];
     let own = report.facts.checks.iter().filter(|check| check.measure == measure);
     for limit in own.flat_map(|check| [check.min, check.max].into_iter().flatten()) {
         let at = |y| SeriesPoint { x: limit, y, std_error: 0.0 };
@@ -212,8 +200,7 @@ fn distribution(report: &StudyReport, measure: &str) -> Option<LinePlot> {
         subtitle: format!("{} designs", values.len()),
         x_label: measure_label(report, measure),
         y_label: "designs".into(),
-        x_scale: AxisScale::Linear,
-        y_scale: AxisScale::Linear,
+        scale: AxisScale::Linear,
         series,
     })
 }
@@ -244,15 +231,8 @@ fn effect_drawing(report: &StudyReport, effect: &Effect) -> StudyDrawing {
                 subtitle: subtitle.into(),
                 x_label: facts.map_or(effect.parameter.clone(), ParameterFacts::label),
                 y_label: measure_label(report, &effect.measure),
-                x_scale: AxisScale::Linear,
-                y_scale: AxisScale::Linear,
-                series: vec![PlotSeries {
-                    name: String::new(),
-                    points,
-                    form: SeriesForm::Line,
-                    errors: ErrorForm::Bars,
-                    look: Look::InTurn,
-                }],
+                scale: AxisScale::Linear,
+                series: vec![PlotSeries::new("", points, SeriesForm::Line, ErrorForm::Bars)],
             },
             report.unit(&effect.measure).to_owned(),
         ),

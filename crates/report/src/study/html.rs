@@ -5,7 +5,7 @@ use crate::html::frame::{Page, render};
 use crate::html::masthead;
 use crate::page::{Block, PagePart, Plots, Standing};
 use crate::png::{
-    AxisScale, ErrorForm, LinePlot, Look, PlotSeries, ScatterMatrix, SeriesForm, SeriesPoint,
+    AxisScale, ErrorForm, LinePlot, PlotSeries, ScatterMatrix, SeriesForm, SeriesPoint,
 };
 use crate::study::StudyReport;
 use crate::study::contents::{Item, StudyPart, parts, verdict};
@@ -75,12 +75,9 @@ fn scatter_plots(report: &StudyReport, matrix: &ScatterMatrix) -> Vec<(LinePlot,
     let mut plots = Vec::new();
     for (measure, values) in measures.iter().zip(found) {
         for parameter in parameters {
-            let series = |kind: usize| PlotSeries {
-                name: matrix.kinds[kind].clone(),
-                points: report
-                    .designs
-                    .iter()
-                    .enumerate()
+            let series = |kind: usize| {
+                let designs = report.designs.iter().enumerate();
+                let points = designs
                     .filter(|(place, _)| matrix.kind_of[*place] == kind)
                     .map(|(place, design)| SeriesPoint {
                         x: parameter.values[place],
@@ -88,10 +85,9 @@ fn scatter_plots(report: &StudyReport, matrix: &ScatterMatrix) -> Vec<(LinePlot,
                         std_error: design.measure(measure).map_or(0.0, |own| own.total_error()),
                     })
                     .filter(|point| point.x.is_finite() && point.y.is_finite())
-                    .collect(),
-                form: SeriesForm::Dots,
-                errors: ErrorForm::Bars,
-                look: Look::InTurn,
+                    .collect();
+                let name = &matrix.kinds[kind];
+                PlotSeries::new(name, points, SeriesForm::Dots, ErrorForm::Bars)
             };
             let kinds = (0..matrix.kinds.len()).map(series);
             let plot = LinePlot {
@@ -99,8 +95,7 @@ fn scatter_plots(report: &StudyReport, matrix: &ScatterMatrix) -> Vec<(LinePlot,
                 subtitle: String::new(),
                 x_label: parameter.label.clone(),
                 y_label: values.label.clone(),
-                x_scale: AxisScale::Linear,
-                y_scale: AxisScale::Linear,
+                scale: AxisScale::Linear,
                 series: kinds.filter(|series| !series.points.is_empty()).collect(),
             };
             plots.push((plot, report.unit(measure).to_owned()));

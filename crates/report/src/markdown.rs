@@ -21,7 +21,11 @@ pub(crate) fn markdown(report: &Report) -> String {
         page += "**This report is partial: the run was interrupted.**\n\n";
     }
     // Plots need scripts; Markdown shows their pictures.
-    parts(report, &mut Plots::default()).iter().for_each(|part| add(&mut page, part));
+    for mut part in parts(report, &mut Plots::default()) {
+        let is_empty = |block: &Block| matches!(block, Block::Table { rows, folded: None, .. } if rows.is_empty());
+        part.blocks.retain(|block| !is_empty(block));
+        add(&mut page, &part, usize::MAX);
+    }
     markdown_page(page.trim_end()) + "\n"
 }
 
@@ -33,7 +37,8 @@ pub(crate) fn masthead(project: Option<&Project>) -> String {
     format!("{logo}{}\n\n", lines.collect::<Vec<_>>().join(" · "))
 }
 
-fn add(page: &mut String, part: &PagePart) {
+/// Adds a part, with up to this many rows of each table.
+pub(crate) fn add(page: &mut String, part: &PagePart, most_rows: usize) {
     _ = write!(page, "## {}\n\n", part.title);
     for block in &part.blocks {
         match block {
@@ -46,7 +51,7 @@ fn add(page: &mut String, part: &PagePart) {
             Block::Table { folded: Some(what), .. } => {
                 _ = write!(page, "{what} are in `measures.csv`.\n\n");
             }
-            Block::Table { head, rows, folded: None } => table(page, head, rows),
+            Block::Table { head, rows, folded: None } => table(page, head, rows, most_rows),
             Block::Plot { label, picture: Some(picture), .. } => {
                 _ = write!(page, "![{label}]({picture})\n\n");
             }
@@ -55,16 +60,16 @@ fn add(page: &mut String, part: &PagePart) {
     }
 }
 
-fn table(page: &mut String, head: &[String], rows: &[Vec<String>]) {
-    if rows.is_empty() {
-        return;
-    }
+fn table(page: &mut String, head: &[String], rows: &[Vec<String>], most: usize) {
     let mut line = |cells: &[String]| {
         let cells: Vec<String> = cells.iter().map(|cell| markdown_cell(cell)).collect();
         _ = writeln!(page, "| {} |", cells.join(" | "));
     };
     line(head);
     line(&vec!["---".to_owned(); head.len()]);
-    rows.iter().for_each(|row| line(row));
+    rows.iter().take(most).for_each(|row| line(row));
+    if rows.len() > most {
+        _ = write!(page, "\n{} more rows are in `study.html`.\n", rows.len() - most);
+    }
     page.push('\n');
 }

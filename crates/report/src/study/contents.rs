@@ -1,5 +1,6 @@
 //! The contents of the report of a study, part by part, for any page format.
 
+use crate::page::{Block, PagePart, table};
 use crate::study::edge::edge_remark;
 use crate::study::{
     DesignOutcome, DesignRecord, Pairing, ParameterFacts, PlanFacts, Sensitivity,
@@ -14,26 +15,10 @@ use std::fmt::Write;
 /// Errors of a difference above which a design counts as behind the best, 1.
 const BEHIND_ERRORS: f64 = 3.0;
 
-/// A part of a page.
-pub(super) struct StudyPart {
-    pub(super) title: &'static str,
-    pub(super) items: Vec<Item>,
-}
-
-/// Something in a part.
-pub(super) enum Item {
-    /// A paragraph.
-    Words(String),
-    /// A list.
-    List(Vec<String>),
-    /// A table; long ones may be cut.
-    Table { head: Vec<String>, rows: Vec<Vec<String>> },
-}
-
 /// All parts except the pictures, in order: those before them, up to the first table, and those
 /// after.
-pub(super) fn parts(report: &StudyReport) -> [Vec<StudyPart>; 2] {
-    let mut before: Vec<StudyPart> = [
+pub(super) fn parts(report: &StudyReport) -> [Vec<PagePart>; 2] {
+    let mut before: Vec<PagePart> = [
         failures(report),
         ranking(report),
         sensitivities(report),
@@ -47,10 +32,14 @@ pub(super) fn parts(report: &StudyReport) -> [Vec<StudyPart>; 2] {
     .flatten()
     .collect();
     let has_table =
-        |part: &StudyPart| part.items.iter().any(|item| matches!(item, Item::Table { .. }));
+        |part: &PagePart| part.blocks.iter().any(|block| matches!(block, Block::Table { .. }));
     let first = before.iter().position(has_table).map_or(0, |place| place + 1);
     let after = before.split_off(first);
     [before, after]
+}
+
+fn part(title: &str, blocks: Vec<Block>) -> PagePart {
+    PagePart { title: title.to_owned(), blocks }
 }
 
 /// The outcome, in a sentence.
@@ -75,12 +64,12 @@ pub(super) fn verdict(report: &StudyReport) -> String {
     text
 }
 
-fn failures(report: &StudyReport) -> Option<StudyPart> {
+fn failures(report: &StudyReport) -> Option<PagePart> {
     let shares = &report.analysis.failures;
     let words = "The 95 % interval (Clopper and Pearson) is for the share of all parts produced with these \
         tolerances. A design that is undecided within its error bar counts as passed for the low end and as \
         failed for the high end.";
-    let head = ["demand", "passed", "failed", "undecided", "fails", "interval"].map(str::to_owned);
+    let head = ["demand", "passed", "failed", "undecided", "fails", "interval"];
     let rows = shares.iter().map(|own| {
         let [low, high] = own.interval.map(format_percent);
         let share = if own.undecided == 0 {
@@ -92,12 +81,11 @@ fn failures(report: &StudyReport) -> Option<StudyPart> {
         let row = [own.demand.clone()].into_iter().chain(counts);
         row.chain([share, format!("{low} to {high}")]).collect()
     });
-    let items =
-        vec![Item::Words(words.into()), Item::Table { head: head.to_vec(), rows: rows.collect() }];
-    (!shares.is_empty()).then_some(StudyPart { title: "Share of designs that fail", items })
+    let blocks = vec![Block::Words { text: words.into() }, table(&head, rows.collect())];
+    (!shares.is_empty()).then(|| part("Share of designs that fail", blocks))
 }
 
-fn ranking(report: &StudyReport) -> Option<StudyPart> {
+fn ranking(report: &StudyReport) -> Option<PagePart> {
     let ranking = report.facts.ranking.as_ref()?;
     let word = match ranking.best {
         Best::Highest => "highest",
@@ -110,7 +98,8 @@ fn ranking(report: &StudyReport) -> Option<StudyPart> {
     );
     let labels = report.facts.parameters.iter().map(ParameterFacts::label);
     let head = ["place".to_owned(), "design".to_owned()].into_iter().chain(labels);
-    let head = head.chain([ranking.measure.clone(), "behind the best".to_owned()]).collect();
+    let head: Vec<String> =
+        head.chain([ranking.measure.clone(), "behind the best".to_owned()]).collect();
     let rows = report.analysis.ranked.iter().enumerate().filter_map(|(place, own)| {
         let design = report.designs.iter().find(|design| design.design == own.design)?;
         let value = design.measure(&ranking.measure).map_or(String::new(), quantity);
@@ -118,9 +107,9 @@ fn ranking(report: &StudyReport) -> Option<StudyPart> {
         let row = [(place + 1).to_string(), own.design.to_string()].into_iter();
         Some(row.chain(settings(report, design)).chain([value, behind]).collect())
     });
-    let mut items = vec![Item::Words(words), Item::Table { head, rows: rows.collect() }];
-    items.extend(edge_remark(report).map(Item::Words));
-    Some(StudyPart { title: "Ranking", items })
+    let mut blocks = vec![Block::Words { text: words }, table(&head, rows.collect())];
+    blocks.extend(edge_remark(report).map(|text| Block::Words { text }));
+    Some(part("Ranking", blocks))
 }
 
 fn difference(behind: &ValueWithError) -> String {
@@ -133,7 +122,7 @@ fn difference(behind: &ValueWithError) -> String {
     format!("{number}{told}{}", if is_close { ", difference within error" } else { "" })
 }
 
-fn sensitivities(report: &StudyReport) -> Option<StudyPart> {
+fn sensitivities(report: &StudyReport) -> Option<PagePart> {
     let all = &report.analysis.sensitivities;
     let first = all.first()?;
     let (words, sum) = match first.method {
@@ -150,7 +139,8 @@ fn sensitivities(report: &StudyReport) -> Option<StudyPart> {
         ),
     };
     let names = first.indices.iter().map(|index| index.parameter.clone());
-    let head = ["measure".to_owned()].into_iter().chain(names).chain([sum.to_owned()]).collect();
+    let head = ["measure".to_owned()].into_iter().chain(names).chain([sum.to_owned()]);
+    let head: Vec<String> = head.collect();
     let row = |Sensitivity { measure, indices, explained, .. }: &Sensitivity| {
         let indices = indices.iter().map(|index| match index.std_error.is_finite() {
             true => format_with_error(index.value, index.std_error),
@@ -159,13 +149,11 @@ fn sensitivities(report: &StudyReport) -> Option<StudyPart> {
         [measure.clone()].into_iter().chain(indices).chain([format_value(*explained)]).collect()
     };
     let rows = all.iter().map(row).collect();
-    Some(StudyPart {
-        title: "Sensitivity",
-        items: vec![Item::Words(words.into()), Item::Table { head, rows }],
-    })
+    let blocks = vec![Block::Words { text: words.into() }, table(&head, rows)];
+    Some(part("Sensitivity", blocks))
 }
 
-fn effects(report: &StudyReport) -> Option<StudyPart> {
+fn effects(report: &StudyReport) -> Option<PagePart> {
     let words = "The mean of a measure over designs with the same setting of a parameter. All designs are \
         traced with the same random numbers, so the difference from the first setting is known more \
         precisely than the means. Only designs that have a partner at every other setting, with all other \
@@ -185,9 +173,8 @@ fn effects(report: &StudyReport) -> Option<StudyPart> {
             ]);
         }
     }
-    let table = Item::Table { head: head.map(str::to_owned).to_vec(), rows };
-    let items = vec![Item::Words(words.into()), table];
-    (!report.analysis.effects.is_empty()).then_some(StudyPart { title: "Main effects", items })
+    let blocks = vec![Block::Words { text: words.into() }, table(&head, rows)];
+    (!report.analysis.effects.is_empty()).then(|| part("Main effects", blocks))
 }
 
 /// A setting, without its unit.
@@ -199,11 +186,11 @@ pub(super) fn setting_word(setting: &Setting) -> String {
     }
 }
 
-fn designs(report: &StudyReport) -> StudyPart {
+fn designs(report: &StudyReport) -> PagePart {
     let facts = &report.facts;
     let labels = facts.parameters.iter().map(ParameterFacts::label);
     let head = ["design".to_owned()].into_iter().chain(labels);
-    let head = head.chain(facts.measures.iter().cloned()).chain(["checks".to_owned()]).collect();
+    let head = head.chain(facts.measures.iter().cloned()).chain(["checks".to_owned()]);
     let row = |design: &DesignRecord| {
         let values: Vec<String> = match &design.outcome {
             DesignOutcome::Done(result) => {
@@ -221,7 +208,7 @@ fn designs(report: &StudyReport) -> StudyPart {
         row.chain(values).chain([verdict]).collect()
     };
     let rows = report.designs.iter().map(row).collect();
-    StudyPart { title: "Designs", items: vec![Item::Table { head, rows }] }
+    part("Designs", vec![table(&head.collect::<Vec<_>>(), rows)])
 }
 
 /// The settings of a design as cells of a table.
@@ -240,12 +227,12 @@ fn setting(parameter: &ParameterFacts, design: &DesignRecord) -> String {
     }
 }
 
-fn parameters(report: &StudyReport) -> StudyPart {
-    let head = ["parameter", "values", "keys of the scene"].map(str::to_owned).to_vec();
+fn parameters(report: &StudyReport) -> PagePart {
+    let head = ["parameter", "values", "keys of the scene"];
     let row =
         |own: &ParameterFacts| vec![own.label(), domain_words(&own.domain), own.keys.join(", ")];
     let rows = report.facts.parameters.iter().map(row).collect();
-    StudyPart { title: "Parameters", items: vec![Item::Table { head, rows }] }
+    part("Parameters", vec![table(&head, rows)])
 }
 
 /// The domain of a parameter, in words.
@@ -271,7 +258,7 @@ fn domain_words(domain: &Domain) -> String {
 }
 
 /// Remarks of the designs, each listed once.
-fn remarks(report: &StudyReport) -> Option<StudyPart> {
+fn remarks(report: &StudyReport) -> Option<PagePart> {
     let mut told: Vec<(&str, Vec<usize>)> = Vec::new();
     for design in &report.designs {
         for warning in design.result().into_iter().flat_map(|result| &result.warnings) {
@@ -290,11 +277,11 @@ fn remarks(report: &StudyReport) -> Option<StudyPart> {
         };
         format!("{which}: {warning}")
     };
-    let items = vec![Item::List(told.iter().map(line).collect())];
-    (!told.is_empty()).then_some(StudyPart { title: "Remarks", items })
+    let items = told.iter().map(line).collect();
+    (!told.is_empty()).then(|| part("Remarks", vec![Block::List { items }]))
 }
 
-fn run(report: &StudyReport) -> StudyPart {
+fn run(report: &StudyReport) -> PagePart {
     let facts = &report.facts;
     let plan = match facts.plan {
         PlanFacts::Grid => "grid of all combinations".to_owned(),
@@ -325,5 +312,5 @@ fn run(report: &StudyReport) -> StudyPart {
     if !facts.overrides.is_empty() {
         lines.push(format!("set for all designs: {}", facts.overrides.join(", ")));
     }
-    StudyPart { title: "Run", items: vec![Item::List(lines)] }
+    part("Run", vec![Block::List { items: lines }])
 }

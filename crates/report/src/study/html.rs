@@ -8,7 +8,7 @@ use crate::png::{
     AxisScale, ErrorForm, LinePlot, PlotSeries, ScatterMatrix, SeriesForm, SeriesPoint,
 };
 use crate::study::StudyReport;
-use crate::study::contents::{Item, StudyPart, parts, verdict};
+use crate::study::contents::{parts, verdict};
 use crate::study::figures::{Figure, StudyDrawing};
 use lumiduct_base::error::Result;
 
@@ -19,7 +19,7 @@ const ROWS_SHOWN: usize = 60;
 pub(super) fn html(report: &StudyReport, figures: &[Figure]) -> Result<String> {
     let mut plots = Plots::default();
     let facts = &report.facts;
-    let [before, after] = parts(report).map(|parts| parts.iter().map(part).collect::<Vec<_>>());
+    let [before, after] = parts(report).map(|parts| parts.into_iter().map(folded));
     let drawn = figures.iter().flat_map(|figure| blocks(report, figure, &mut plots)).collect();
     let pictures = PagePart { title: "Plots".into(), blocks: drawn };
     let page = Page {
@@ -32,23 +32,22 @@ pub(super) fn html(report: &StudyReport, figures: &[Figure]) -> Result<String> {
             (true, true) => Standing::Open,
             (false, true) => Standing::Good,
         },
-        parts: before.into_iter().chain([pictures]).chain(after).collect(),
+        parts: before.chain([pictures]).chain(after).collect(),
         footer: format!("lumiduct {}, study {}", facts.version, facts.name),
     };
     render(&page, &plots)
 }
 
-fn part(part: &StudyPart) -> PagePart {
-    let block = |item: &Item| match item {
-        Item::Words(text) => Block::Words { text: text.clone() },
-        Item::List(items) => Block::List { items: items.clone() },
-        Item::Table { head, rows } => Block::Table {
-            head: head.clone(),
-            rows: rows.clone(),
-            folded: (rows.len() > ROWS_SHOWN).then(|| format!("{} rows", rows.len())),
-        },
-    };
-    PagePart { title: part.title.to_owned(), blocks: part.items.iter().map(block).collect() }
+/// Folds long tables away.
+fn folded(mut part: PagePart) -> PagePart {
+    for block in &mut part.blocks {
+        if let Block::Table { rows, folded, .. } = block
+            && rows.len() > ROWS_SHOWN
+        {
+            *folded = Some(format!("{} rows", rows.len()));
+        }
+    }
+    part
 }
 
 fn blocks(report: &StudyReport, figure: &Figure, plots: &mut Plots) -> Vec<Block> {

@@ -7,7 +7,8 @@ use crate::upright::is_lit_from_above;
 use glam::DVec3;
 use lumiduct_base::math::Aabb;
 use lumiduct_core::scene::{
-    FaceFacets, FaceId, Fineness, Owner, Scene, SensorKind, SourceId, Triangulation, shape_facets,
+    Face, FaceFacets, FaceId, Fineness, Owner, Scene, SensorKind, SourceId, Triangulation,
+    shape_facets,
 };
 use lumiduct_core::transport::{Track, TrackEnd};
 use serde::Serialize;
@@ -187,12 +188,7 @@ fn faces(scene: &Scene, fineness: &Fineness, remarks: &mut Vec<String>) -> Vec<D
         if found.one_in > 1 {
             remarks.push(format!("of `{}` one piece in {} is drawn", face.name, found.one_in));
         }
-        let role = match face.owner {
-            _ if sensed.contains(&id) => Role::Sensor,
-            Owner::Solid(_) => Role::Solid,
-            Owner::Sheet => Role::Sheet,
-            Owner::Port => Role::Port,
-        };
+        let role = role(face, sensed.contains(&id));
         faces.push(DrawnFace { name: face.name.clone(), role, facets: found.facets });
     }
     faces
@@ -217,7 +213,17 @@ fn elements(scene: &Scene, remarks: &mut Vec<String>) -> Vec<DrawnFace> {
     drawn
 }
 
-fn sensed_faces(scene: &Scene) -> Vec<FaceId> {
+/// What a face is drawn as.
+pub(crate) fn role(face: &Face, is_sensed: bool) -> Role {
+    match face.owner {
+        _ if is_sensed => Role::Sensor,
+        Owner::Solid(_) => Role::Solid,
+        Owner::Sheet => Role::Sheet,
+        Owner::Port => Role::Port,
+    }
+}
+
+pub(crate) fn sensed_faces(scene: &Scene) -> Vec<FaceId> {
     let of = |kind: &SensorKind| match kind {
         SensorKind::Surface(surface) => surface.faces.clone(),
         SensorKind::Goniometer(_) => Vec::new(),

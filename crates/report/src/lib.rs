@@ -86,6 +86,6 @@ pub fn files(report: &Report, scene_text: &str) -> Result<Vec<OutputFile>> {
     files.push(OutputFile::text("report.md", markdown::markdown(report)));
     files.push(OutputFile::text("report.html", run_page::html(report)?));
     let names: Vec<&str> = files.iter().map(|file| file.name.as_str()).chain([SUMMARY]).collect();
-    files.push(OutputFile::text(SUMMARY, summary::json(report, &names)?));
+    files.push(summary::file(report, &names)?);
     Ok(files)
 }

@@ -1,9 +1,9 @@
 //! The local axes of every face and sensor of a scene, for drawings and tables.
 
-use crate::drawing::Role;
+use crate::drawing::{Role, role, sensed_faces};
 use glam::DVec3;
 use lumiduct_core::scene::shape::ChartRect;
-use lumiduct_core::scene::{FaceId, Owner, Scene, SensorKind};
+use lumiduct_core::scene::{FaceId, Scene, SensorKind};
 
 /// The axes of a face or of a sensor.
 #[derive(Debug, Clone)]
@@ -26,26 +26,13 @@ pub(crate) struct LocalAxes {
 
 /// The axes of all faces that have unrolled coordinates, and of all goniometers.
 pub(crate) fn local_axes(scene: &Scene) -> Vec<LocalAxes> {
-    let sensed: Vec<FaceId> = scene
-        .sensors
-        .iter()
-        .flat_map(|sensor| match &sensor.kind {
-            SensorKind::Surface(surface) => surface.faces.clone(),
-            SensorKind::Goniometer(_) => Vec::new(),
-        })
-        .collect();
+    let sensed = sensed_faces(scene);
     let faces = scene.faces.iter().enumerate().filter_map(|(index, face)| {
         let id = FaceId::new(index);
         let found = scene.face_axes(id)?;
-        let role = match face.owner {
-            _ if sensed.contains(&id) => Role::Sensor,
-            Owner::Solid(_) => Role::Solid,
-            Owner::Sheet => Role::Sheet,
-            Owner::Port => Role::Port,
-        };
         Some(LocalAxes {
             name: face.name.clone(),
-            role,
+            role: role(face, sensed.contains(&id)),
             origin: found.origin + scene.origin,
             u: found.u,
             v: found.v,

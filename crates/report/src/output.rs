@@ -2,6 +2,9 @@
 //!
 //! This module knows neither the contents of the files nor their destination.
 
+use lumiduct_base::error::{Error, Result};
+use serde::Serialize;
+
 /// A file of a report: its name and its bytes.
 #[derive(Debug)]
 pub struct OutputFile {
@@ -15,6 +18,15 @@ impl OutputFile {
     /// A file of text.
     pub(crate) fn text(name: impl Into<String>, text: String) -> Self {
         Self { name: name.into(), bytes: text.into_bytes() }
+    }
+
+    /// A file of JSON.
+    pub(crate) fn json(name: &str, value: &impl Serialize) -> Result<Self> {
+        let failed = |reason: serde_json::Error| Error::Output {
+            what: name.into(),
+            reason: reason.to_string(),
+        };
+        Ok(Self::text(name, serde_json::to_string_pretty(value).map_err(failed)? + "\n"))
     }
 }
 

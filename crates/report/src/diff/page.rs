@@ -254,14 +254,9 @@ fn aligned(lines: &[[String; 6]]) -> String {
     }
     let mut text = String::new();
     for line in lines {
-        text += "  ";
-        text += &line[0];
-        let mut gap = widths[0] - line[0].chars().count();
+        _ = write!(text, "  {:1$}", line[0], widths[0]);
         for (cell, width) in line.iter().zip(widths).skip(1) {
-            gap += 2 + width - cell.chars().count();
-            text += &" ".repeat(gap);
-            text += cell;
-            gap = 0;
+            _ = write!(text, "  {cell:>width$}");
         }
         text.push('\n');
     }

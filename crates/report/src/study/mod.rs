@@ -20,7 +20,7 @@ pub use terminal::terminal;
 use crate::OutputFile;
 use crate::output::LOGO;
 use indexmap::IndexMap;
-use lumiduct_base::error::{Error, Result};
+use lumiduct_base::error::Result;
 use lumiduct_core::measure::{CheckOutcome, Measure};
 use lumiduct_input::Setting;
 use serde::Serialize;
@@ -42,8 +42,7 @@ pub fn study_files(report: &StudyReport, study_text: &str) -> Result<Vec<OutputF
     files.extend(logo.map(|bytes| OutputFile { name: LOGO.to_owned(), bytes }));
     files.push(OutputFile::text("study.md", page::page(report, &figures)));
     files.push(OutputFile::text("study.html", html::html(report, &figures)?));
-    let summary = summary(report, &files)?;
-    files.push(OutputFile::text(SUMMARY, summary));
+    files.push(summary(report, &files)?);
     Ok(files)
 }
 
@@ -85,7 +84,7 @@ impl<'a> DesignSummaryRow<'a> {
     }
 }
 
-fn summary(report: &StudyReport, files: &[OutputFile]) -> Result<String> {
+fn summary(report: &StudyReport, files: &[OutputFile]) -> Result<OutputFile> {
     let summary = StudySummaryRecord {
         lumiduct_study_summary: SUMMARY_FORMAT,
         // The logo has a file of its own.
@@ -94,7 +93,5 @@ fn summary(report: &StudyReport, files: &[OutputFile]) -> Result<String> {
         analysis: &report.analysis,
         files: files.iter().map(|file| file.name.as_str()).chain([SUMMARY]).collect(),
     };
-    serde_json::to_string_pretty(&summary)
-        .map(|text| text + "\n")
-        .map_err(|reason| Error::Output { what: SUMMARY.into(), reason: reason.to_string() })
+    OutputFile::json(SUMMARY, &summary)
 }

@@ -44,9 +44,10 @@ pub use job::{Job, Settings, load};
 pub use list::list;
 pub use outline::Outline;
 pub use project::Project;
+pub use spec::study::{Best, Keep, Ranking, Samples};
 pub use study::{
-    Best, DESIGN_COLUMN, Domain, Keep, OTHER_COLUMNS, Parameter, Plan, Ranking, Samples, Setting,
-    Study, StudySettings, Tie, column, load_study,
+    DESIGN_COLUMN, Domain, OTHER_COLUMNS, Parameter, Plan, Setting, Study, StudySettings, Tie,
+    column, load_study,
 };
 
 /// A scene that was read without errors.

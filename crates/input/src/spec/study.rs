@@ -42,13 +42,13 @@ pub(crate) struct StudySpec {
     #[serde(default)]
     pub run: StudyRunSpec,
     /// What the best design is.
-    pub ranking: Option<RankingSpec>,
+    pub ranking: Option<Ranking>,
     /// What every design has to meet, in any number of `[[check]]` tables. The checks of the scene are ignored.
     #[serde(default)]
     pub check: Vec<Check>,
     /// What is kept of each design beside its row.
     #[serde(default)]
-    pub keep: KeepSpec,
+    pub keep: Keep,
 }
 
 /// A quantity that is varied. `grid` and `one_at_a_time` need `values`, `range` or `choices`; `latin_hypercube` and `sobol`
@@ -165,11 +165,11 @@ pub(crate) enum PlanSpec {
     /// The designs of a table.
     List(ListPlanSpec),
     /// Samples that fill the range of each parameter evenly (Latin hypercube).
-    LatinHypercube(SamplesSpec),
+    LatinHypercube(Samples),
     /// Samples that fill all ranges together evenly: a scrambled Sobol sequence. Best with a power of two of them.
-    Sobol(SamplesSpec),
+    Sobol(Samples),
     /// Independent random samples, as production scatters them; they give the share of designs that pass.
-    Tolerance(SamplesSpec),
+    Tolerance(Samples),
 }
 
 /// The designs of a table.
@@ -181,10 +181,11 @@ pub(crate) struct ListPlanSpec {
 
 /// A number of samples.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub(crate) struct SamplesSpec {
+pub struct Samples {
     /// Number of designs.
+    #[serde(rename = "samples")]
     #[schemars(range(min = 2, max = MOST_DESIGNS))]
-    pub samples: u32,
+    pub count: u32,
     /// Seed of the samples. Light has a seed of its own, in `run`.
     #[serde(default = "seed")]
     pub seed: u64,
@@ -207,18 +208,18 @@ pub(crate) struct StudyRunSpec {
 
 /// What the best design is.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub(crate) struct RankingSpec {
+pub struct Ranking {
     /// Name of the measure that decides, one of `measures`.
     pub measure: String,
     /// Whether the highest or the lowest value is the best.
     #[serde(default)]
-    pub best: BestSpec,
+    pub best: Best,
 }
 
 /// Which end of a measure is the best.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum BestSpec {
+pub enum Best {
     /// The highest.
     #[default]
     Highest,
@@ -229,7 +230,7 @@ pub(crate) enum BestSpec {
 /// What is kept of each design beside its row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum KeepSpec {
+pub enum Keep {
     /// Its record: settings, measures with errors, checks.
     #[default]
     Records,

@@ -13,7 +13,7 @@ use crate::keys::{Key, Places};
 use crate::lower::plan;
 use crate::problems::Problems;
 use crate::spec::solid::{ShapedSolidSpec, SolidSpec};
-use crate::spec::study::{BestSpec, KeepSpec, PlanSpec, SamplesSpec, StudyRunSpec, StudySpec};
+use crate::spec::study::{Keep, PlanSpec, Ranking, Samples, StudyRunSpec, StudySpec};
 use crate::study::file::{StudyDraft, read};
 use crate::texts::argument_label;
 use crate::{Draft, Job, Settings, draft, load};
@@ -21,7 +21,7 @@ use lumiduct_base::digest::Digest;
 use lumiduct_base::error::{Diagnostic, Error, Result};
 use lumiduct_base::text::visible;
 use lumiduct_core::plan::{Check, NUMERICS};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -44,8 +44,7 @@ pub struct StudySettings {
 }
 
 /// How designs are made from the parameters.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Plan {
     /// Every combination of all levels.
     Grid,
@@ -59,44 +58,6 @@ pub enum Plan {
     Sobol(Samples),
     /// Independent random samples.
     Tolerance(Samples),
-}
-
-/// A number of samples.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Samples {
-    /// How many.
-    pub count: u32,
-    /// Seed of their random numbers.
-    pub seed: u64,
-}
-
-/// What the best design is.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Ranking {
-    /// Dotted name of the measure that decides.
-    pub measure: String,
-    /// Which end of it is the best.
-    pub best: Best,
-}
-
-/// Which end of a measure is the best.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Best {
-    /// The highest value.
-    Highest,
-    /// The lowest value.
-    Lowest,
-}
-
-/// What is kept of each design besides its row.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Keep {
-    /// Its record.
-    Records,
-    /// Its record and a whole report.
-    Reports,
 }
 
 /// A study to run.
@@ -176,18 +137,9 @@ pub fn load_study(path: &Path, settings: &StudySettings) -> Result<Study> {
         parameters,
         plan,
         measures: spec.measures,
-        ranking: spec.ranking.map(|ranking| Ranking {
-            measure: ranking.measure,
-            best: match ranking.best {
-                BestSpec::Highest => Best::Highest,
-                BestSpec::Lowest => Best::Lowest,
-            },
-        }),
+        ranking: spec.ranking,
         checks: spec.check.clone(),
-        keep: match spec.keep {
-            KeepSpec::Records => Keep::Records,
-            KeepSpec::Reports => Keep::Reports,
-        },
+        keep: spec.keep,
         text: places.root_text().to_owned(),
         places,
         hash: hash.to_string(),
@@ -286,13 +238,12 @@ fn common_settings(
 
 /// The plan; `rows` are those of its table, if it has one.
 fn lower_plan(spec: &PlanSpec, rows: Vec<Vec<Setting>>) -> Plan {
-    let samples = |own: &SamplesSpec| Samples { count: own.samples, seed: own.seed };
     match spec {
         PlanSpec::Grid => Plan::Grid,
         PlanSpec::OneAtATime => Plan::OneAtATime,
-        PlanSpec::LatinHypercube(own) => Plan::LatinHypercube(samples(own)),
-        PlanSpec::Sobol(own) => Plan::Sobol(samples(own)),
-        PlanSpec::Tolerance(own) => Plan::Tolerance(samples(own)),
+        PlanSpec::LatinHypercube(own) => Plan::LatinHypercube(own.clone()),
+        PlanSpec::Sobol(own) => Plan::Sobol(own.clone()),
+        PlanSpec::Tolerance(own) => Plan::Tolerance(own.clone()),
         PlanSpec::List(_) => Plan::List(rows),
     }
 }

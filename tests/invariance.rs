@@ -3,6 +3,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
 
+mod traced;
+
 use lumiduct_core::measure::{self, Measures};
 use lumiduct_core::plan::Request;
 use lumiduct_core::rng::Sampler;
@@ -11,6 +13,7 @@ use lumiduct_core::transport::{Event, Path as LightPath, Run, walk};
 use lumiduct_input::{self as input, Job, Settings};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
+use traced::measures;
 
 /// Paths of a run: a single path that diverges shows as 1e-5 of the flux.
 const PATHS: u64 = 100_000;
@@ -48,14 +51,6 @@ fn load(path: &Path, overrides: &[&str]) -> Job {
         Ok(job) => job,
         Err(error) => panic!("{}: {error}", path.display()),
     }
-}
-
-fn run(job: &Job) -> Measures {
-    let mut run = Run::new(&job.scene, &job.run);
-    while !run.is_complete() {
-        run.next_wave();
-    }
-    measure::measure(&job.scene, &run.findings())
 }
 
 /// Fluxes and lines of the balance are the same, whatever the size of the scene.
@@ -161,9 +156,9 @@ exit = {{ plane = {{ cells = [4, 4] }}, on = "duct.exit", counts = "leaving" }}
 fn answers_do_not_depend_on_the_size_of_a_scene() {
     let scenes = Scenes::new();
     for scene in [rod, duct] {
-        let expected = run(&scenes.load(&scene(1.0, [0.0; 3])));
+        let expected = measures(&scenes.load(&scene(1.0, [0.0; 3])));
         for scale in [1e3, 1e-3, 25.4] {
-            let found = run(&scenes.load(&scene(scale, [0.0; 3])));
+            let found = measures(&scenes.load(&scene(scale, [0.0; 3])));
             assert_same(&format!("{scale} times"), &expected, &found);
         }
     }
@@ -173,9 +168,9 @@ fn answers_do_not_depend_on_the_size_of_a_scene() {
 fn answers_do_not_depend_on_the_place_of_a_scene() {
     let scenes = Scenes::new();
     for scene in [rod, duct] {
-        let expected = run(&scenes.load(&scene(1.0, [0.0; 3])));
+        let expected = measures(&scenes.load(&scene(1.0, [0.0; 3])));
         for place in [[10_000.0, -10_000.0, 10_000.0], [1234.567, 0.0, -9876.543]] {
-            let found = run(&scenes.load(&scene(1.0, place)));
+            let found = measures(&scenes.load(&scene(1.0, place)));
             assert_same(&format!("at {place:?}"), &expected, &found);
         }
     }

@@ -2,24 +2,17 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
 
-use lumiduct_core::measure::{self, Measures, SensorMap, Status};
+mod traced;
+
+use lumiduct_core::measure::{Measures, SensorMap, Status};
 use lumiduct_core::plan::Request;
-use lumiduct_core::transport::Run;
-use lumiduct_input::{self as input, Settings};
+use lumiduct_input::Settings;
 use std::f64::consts::PI;
 
 fn measures(estimator: Request, paths: u64, text: &str) -> Measures {
-    let dir = tempfile::tempdir().unwrap();
-    let path = dir.path().join("scene.toml");
-    std::fs::write(&path, format!("lumiduct = 1\ntitle = \"Light groups\"\n{text}")).unwrap();
     let settings =
         Settings { paths: Some(paths), estimator: Some(estimator), ..Settings::default() };
-    let job = input::load(&path, &settings).unwrap_or_else(|error| panic!("{error}"));
-    let mut run = Run::new(&job.scene, &job.run);
-    while !run.is_complete() {
-        run.next_wave();
-    }
-    measure::measure(&job.scene, &run.findings())
+    traced::measures(&traced::load(text, &settings))
 }
 
 /// A short rod, lit by three LEDs in two groups.

@@ -2,10 +2,11 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
 
-use lumiduct_core::measure::{self, MapAxes, Measures};
+mod traced;
+
+use lumiduct_core::measure::{MapAxes, Measures};
 use lumiduct_core::plan::Request;
-use lumiduct_core::transport::Run;
-use lumiduct_input::{self as input, Settings};
+use lumiduct_input::Settings;
 use std::f64::consts::PI;
 use std::path::Path;
 
@@ -14,20 +15,9 @@ fn measures(text: &str) -> Measures {
 }
 
 fn measures_by(estimator: Request, paths: u64, text: &str) -> Measures {
-    let dir = tempfile::tempdir().unwrap();
-    let path = dir.path().join("scene.toml");
-    std::fs::write(&path, format!("lumiduct = 1\ntitle = \"Sensors\"\n{text}")).unwrap();
     let settings =
         Settings { paths: Some(paths), estimator: Some(estimator), ..Settings::default() };
-    let job = match input::load(&path, &settings) {
-        Ok(job) => job,
-        Err(error) => panic!("{error}"),
-    };
-    let mut run = Run::new(&job.scene, &job.run);
-    while !run.is_complete() {
-        run.next_wave();
-    }
-    measure::measure(&job.scene, &run.findings())
+    traced::measures(&traced::load(text, &settings))
 }
 
 fn value(measures: &Measures, name: &str) -> f64 {

@@ -25,5 +25,7 @@ mod rims;
 mod sensors;
 mod settings;
 mod sources;
+#[path = "../traced/mod.rs"]
+mod traced;
 mod trial;
 mod volumes;

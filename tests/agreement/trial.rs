@@ -1,9 +1,10 @@
 //! A scene from its text, run by each estimator, and comparisons of its measures.
 
+use crate::traced;
 use lumiduct_core::measure::{self, Measure, Measures, Status};
 use lumiduct_core::plan::{GatherPlan, Request};
 use lumiduct_core::transport::{Findings, Run};
-use lumiduct_input::{self as input, Job, Settings};
+use lumiduct_input::{Job, Settings};
 use std::fmt::Write;
 
 /// Deviation that passes, in standard errors of both sides together.
@@ -108,13 +109,7 @@ impl Way {
 
 /// A scene from its text without the head.
 pub(crate) fn load(text: &str, way: Way) -> Job {
-    let dir = tempfile::tempdir().unwrap();
-    let path = dir.path().join("scene.toml");
-    std::fs::write(&path, format!("lumiduct = 1\ntitle = \"Agreement\"\n{text}")).unwrap();
-    match input::load(&path, &way.settings()) {
-        Ok(job) => job,
-        Err(error) => panic!("{error}"),
-    }
+    traced::load(text, &way.settings())
 }
 
 /// All findings of a run.

@@ -1,9 +1,10 @@
 //! The effect of reliefs on light: exact deflections, uniform fields that stay uniform, the same
 //! guide built in another way, no leaks.
 
+use crate::traced::measures;
 use crate::{BODIES, LAMP, load};
 use glam::DVec3;
-use lumiduct_core::measure::{self, Measures};
+use lumiduct_core::measure;
 use lumiduct_core::rng::Sampler;
 use lumiduct_core::scene::shape::Toward;
 use lumiduct_core::scene::{FaceId, Owner, SourceId};
@@ -14,14 +15,6 @@ use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
 const BOUNCES: u32 = 100_000;
-
-fn measures(job: &Job) -> Measures {
-    let mut run = Run::new(&job.scene, &job.run);
-    while !run.is_complete() {
-        run.next_wave();
-    }
-    measure::measure(&job.scene, &run.findings())
-}
 
 /// Follows photons of all sources.
 fn follow(job: &Job, count: u64, mut see: impl FnMut(&Event<'_>) -> ControlFlow<()>) {

@@ -6,21 +6,16 @@
 
 mod geometry;
 mod light;
+#[path = "../traced/mod.rs"]
+mod traced;
 
 use lumiduct_core::plan::Request;
-use lumiduct_input::{self as input, Job, Settings};
+use lumiduct_input::{Job, Settings};
 
 /// A scene from its text without the head, for this many photons.
 fn load(text: &str, paths: u64) -> Job {
-    let dir = tempfile::tempdir().unwrap();
-    let path = dir.path().join("scene.toml");
-    std::fs::write(&path, format!("lumiduct = 1\ntitle = \"Relief\"\n{text}")).unwrap();
     let estimator = Some(Request::Forward);
-    let settings = Settings { paths: Some(paths), estimator, ..Settings::default() };
-    match input::load(&path, &settings) {
-        Ok(job) => job,
-        Err(error) => panic!("{error}"),
-    }
+    traced::load(text, &Settings { paths: Some(paths), estimator, ..Settings::default() })
 }
 
 /// An arbitrary lamp and sensor, which every scene needs.

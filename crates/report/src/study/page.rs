@@ -1,7 +1,7 @@
 //! `study.md`: the results of a study for a reader.
 
-use crate::page::PagePart;
 use crate::markdown::{add, masthead};
+use crate::page::PagePart;
 use crate::study::StudyReport;
 use crate::study::contents::{parts, verdict};
 use crate::study::figures::Figure;

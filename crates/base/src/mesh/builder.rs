@@ -50,6 +50,11 @@ pub struct MeshBuilder {
 
 impl MeshBuilder {
     /// Adds a triangle: corners in mm, normals of any length.
+    ///
+    /// # Errors
+    ///
+    /// [`UnusableMesh::NotFinite`] for a coordinate or a normal that is not finite, [`UnusableMesh::TooFar`] for a
+    /// vertex beyond 1000 km, [`UnusableMesh::TooManyTriangles`] after [`MAX_TRIANGLES`]. Nothing is added then.
     pub fn add(
         &mut self,
         corners: [DVec3; 3],
@@ -71,6 +76,10 @@ impl MeshBuilder {
     }
 
     /// The mesh; corners without a normal get that of their facet if other corners have one.
+    ///
+    /// # Errors
+    ///
+    /// [`UnusableMesh::NoTriangles`] if none was added.
     pub fn finish(self) -> Result<TriangleMesh, UnusableMesh> {
         if self.triangles.is_empty() {
             return Err(UnusableMesh::NoTriangles);

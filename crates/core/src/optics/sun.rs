@@ -67,6 +67,11 @@ impl fmt::Display for Misread {
 
 impl Date {
     /// Reads `2026-06-21`.
+    ///
+    /// # Errors
+    ///
+    /// [`Misread::Form`] if the text is not of this form, [`Misread::Missing`] if the calendar has no such day,
+    /// [`Misread::Year`] before 1900 and after 2100.
     pub fn read(text: &str) -> Result<Self, Misread> {
         let [year, month, day] = numbers(text, '-', [4, 2, 2]).ok_or(Misread::Form)?;
         let date = Self { year: year as i32, month, day };
@@ -106,6 +111,10 @@ impl Date {
 const JULIAN_2000: f64 = 2_451_545.0;
 
 /// Reads a time of day, `14:30` or `14:30:15`, in hours.
+///
+/// # Errors
+///
+/// [`Misread::Form`] if the text has neither of these forms, [`Misread::Missing`] if a day has no such time.
 pub fn read_time(text: &str) -> Result<f64, Misread> {
     let [hour, minute, second] = numbers(text, ':', [2, 2, 2])
         .or_else(|| numbers(text, ':', [2, 2]).map(|[hour, minute]| [hour, minute, 0]))

@@ -8,6 +8,11 @@ use std::path::Path;
 
 impl MeshFormat {
     /// The format of a file name extension.
+    ///
+    /// # Errors
+    ///
+    /// [`MeshError::CadFile`] for the extension of a CAD file, [`MeshError::UnknownFormat`] for any other unknown
+    /// one.
     pub fn of(path: &Path) -> Result<Self, MeshError> {
         let ending = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
         match ending.as_str() {

@@ -28,6 +28,12 @@ use lumiduct_base::text::visible;
 use std::path::Path;
 
 /// Reads a mesh whose lengths are in `unit`; the file name extension gives the format.
+///
+/// # Errors
+///
+/// As [`MeshFormat::of`]; [`MeshError::Unreadable`], [`MeshError::FileTooLong`] or [`MeshError::BufferFile`] if a
+/// file cannot be read; [`MeshError::Broken`] if it violates its format; [`MeshError::Unsupported`],
+/// [`MeshError::TooManyCopies`] or [`MeshError::Unusable`] if its content makes no mesh that can be traced.
 pub fn read(path: &Path, unit: LengthUnit) -> Result<TriangleMesh, MeshError> {
     let format = MeshFormat::of(path)?;
     let bytes = read_file(path, MAX_FILE_BYTES)?;

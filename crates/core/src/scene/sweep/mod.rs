@@ -60,6 +60,12 @@ pub struct Port {
 ///
 /// The frame rotates only about the bend axes, so that `toward` of each leg refers to the section
 /// as it arrives there.
+///
+/// # Errors
+///
+/// `SweepError` with the leg at fault: a length, a scale or an angle is out of range, a bend is too tight for the
+/// profile, a straight part is too short for its corners, the path closes on itself or runs through itself. Without
+/// a leg if there are none.
 pub fn sweep(frame: Frame, profile: &Profile, legs: &[Leg]) -> Result<Sweep, SweepError> {
     let path = path::trace(frame, profile, legs)?;
     check::check(profile, &path)?;

@@ -64,6 +64,11 @@ const WHOLE: f64 = 1e-6;
 
 impl Profile {
     /// The outline at a distance around this profile, mm; corners stay sharp.
+    ///
+    /// # Errors
+    ///
+    /// [`OutlineError::NotConvex`] for a polygon with an inward corner, [`OutlineError::Profile`] if what results
+    /// is not a valid profile.
     pub fn grown(&self, by: f64) -> Result<Self, OutlineError> {
         match self {
             Self::Circle { radius } => Ok(Self::circle(radius + by)?),
@@ -86,6 +91,12 @@ impl Profile {
 
     /// This outline lined with prisms all around: its corners, or points of a circle, are valleys.
     /// On a circle a pitch is measured along the arc.
+    ///
+    /// # Errors
+    ///
+    /// [`OutlineError::Gap`] if no whole number of prisms fits, [`OutlineError::TooFew`] if fewer than 3 go around
+    /// a circle, [`OutlineError::TooMany`] beyond 500, [`OutlineError::Profile`] if what results is not a valid
+    /// profile.
     pub fn with_prisms(&self, prisms: &Prisms) -> Result<Self, OutlineError> {
         let valleys = match self {
             Self::Circle { radius } => {

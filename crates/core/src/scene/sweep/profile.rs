@@ -83,11 +83,20 @@ const ROUNDING: f64 = 1e-12;
 
 impl Profile {
     /// A disk of `radius`, mm.
+    ///
+    /// # Errors
+    ///
+    /// [`ProfileError::Length`] if the radius is not positive, or beyond 1000 km.
     pub fn circle(radius: f64) -> Result<Self, ProfileError> {
         checked(Self::Circle { radius })
     }
 
     /// A rectangle about the path, mm. Wall 0 is at +x, 1 at +y, 2 at -x, 3 at -y.
+    ///
+    /// # Errors
+    ///
+    /// [`ProfileError::Length`] if a side is not positive, or beyond 1000 km; [`ProfileError::Repeated`] if it is
+    /// zero within rounding compared with the other.
     pub fn rectangle(width: f64, height: f64) -> Result<Self, ProfileError> {
         length("the width", width)?;
         length("the height", height)?;
@@ -98,6 +107,11 @@ impl Profile {
 
     /// A regular polygon whose corners lie on a circle of `circumradius`, mm; point 0 lies at the azimuth `rotation`,
     /// rad.
+    ///
+    /// # Errors
+    ///
+    /// [`ProfileError::Length`] if the radius is not positive, or beyond 1000 km; [`ProfileError::Count`] unless
+    /// there are 3 to 1000 sides; [`ProfileError::NotFinite`] if the rotation is not finite.
     pub fn regular(sides: usize, circumradius: f64, rotation: f64) -> Result<Self, ProfileError> {
         length("the circumscribed radius", circumradius)?;
         if !(MIN_POINTS..=MAX_POINTS).contains(&sides) {
@@ -110,6 +124,11 @@ impl Profile {
 
     /// A simple polygon, mm. Clockwise points are reversed, so that wall `i` is the edge between points n-1-i and
     /// n-2-i of the given list.
+    ///
+    /// # Errors
+    ///
+    /// [`ProfileError::Count`] unless there are 3 to 1000 points; otherwise the first fault of the outline: a
+    /// coordinate that is not finite or beyond 1000 km, a repeated point, edges that cross or touch, no area.
     pub fn polygon(mut points: Vec<DVec2>) -> Result<Self, ProfileError> {
         if planar::signed_area(&points) < 0.0 {
             points.reverse();

@@ -35,7 +35,12 @@ pub enum Unsliceable {
 }
 
 impl Run<'_> {
-    /// Batches of the whole run; an error if the batches of a slice are not known in advance.
+    /// Batches of the whole run, where those of a slice are known in advance.
+    ///
+    /// # Errors
+    ///
+    /// [`Unsliceable::Stages`] if gathering chooses its windows from the findings, [`Unsliceable::OpenEnd`] if the
+    /// run has no number of paths.
     pub fn sliceable_batches(&self) -> Result<u64, Unsliceable> {
         if self.can_reduce_bias() {
             return Err(Unsliceable::Stages);

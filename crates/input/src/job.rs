@@ -79,6 +79,12 @@ pub struct Job {
 }
 
 /// Loads a scene file and everything it refers to.
+///
+/// # Errors
+///
+/// [`Error::Input`] with all problems of the scene file and of the files that it refers to. [`Error::Usage`] if the
+/// settings have a target but the scene no sensor, or if the file divides a number of paths that the run does not
+/// have.
 pub fn load(path: &Path, settings: &Settings) -> Result<Job> {
     let mut draft = draft(path, &settings.overrides)?;
     let mut lowered = draft.lower(Scope::Scene);

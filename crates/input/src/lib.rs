@@ -92,7 +92,11 @@ impl Draft {
 }
 
 /// Reads a scene file and checks its keys and names. Each override is `key=value`, as after `-D` on the command line.
-/// All problems come as one [`Error::Input`].
+///
+/// # Errors
+///
+/// [`Error::Input`] with all problems: the file, or a sensor file that it includes, cannot be read; the syntax is
+/// broken; a key, a value or an override does not fit the schema; a name is not defined.
 pub fn read(path: &Path, overrides: &[String]) -> Result<Loaded> {
     let mut draft = draft(path, overrides)?;
     draft.lower(Scope::Keys);

@@ -10,6 +10,10 @@ use std::path::Path;
 const DEPTH: usize = 4;
 
 /// A line for each scene and study, with its title, and for each sensor file, in the order of their paths.
+///
+/// # Errors
+///
+/// [`Error::Usage`] if it is not a folder, [`Error::Io`] if it or a folder in it cannot be read.
 pub fn list(folder: &Path) -> Result<String> {
     if !folder.is_dir() {
         return Err(Error::Usage(format!("{} is not a folder", folder.display())));

@@ -131,7 +131,11 @@ impl Problems {
         self.left_out += other.left_out.saturating_sub(1);
     }
 
-    /// The warnings if there is no error; else everything as [`Error::Input`]. Both in the order of the files.
+    /// The warnings, in the order of the files.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Input`] if there is an error: errors and warnings, in the same order.
     pub fn finish(self, places: &Places) -> Result<Vec<Diagnostic>> {
         let has_error = self.errors > 0;
         let diagnostics = self.into_diagnostics(places);

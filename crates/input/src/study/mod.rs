@@ -99,6 +99,11 @@ pub struct Study {
 }
 
 /// Loads a study file, its scene and everything they refer to.
+///
+/// # Errors
+///
+/// [`Error::Input`] with all problems of the study, or of its scene and the files that they refer to;
+/// [`Error::Usage`] as [`load`].
 pub fn load_study(path: &Path, settings: &StudySettings) -> Result<Study> {
     let StudyDraft { spec, places, table, mut problems } = read(path)?;
     let scene = path.parent().unwrap_or(Path::new("")).join(&spec.scene);

@@ -127,6 +127,10 @@ fn row(samples: &[CheckpointSample], truth: &Truth) -> ErrorRow {
 
 /// All files of a comparison: `compare.csv`, `compare.png`, `compare.md`, and `truth.csv` for
 /// reuse.
+///
+/// # Errors
+///
+/// `Error::Output` if the picture cannot be drawn or a table cannot be written as CSV.
 pub fn comparison_files(comparison: &Comparison) -> Result<Vec<OutputFile>> {
     Ok(vec![
         csv(comparison)?,

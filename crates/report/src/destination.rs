@@ -26,6 +26,11 @@ pub(crate) fn expect_room(folder: &Path) -> Result<()> {
 
 /// Checks, before any work is done, that a file can be written. Folders are created when there is
 /// something to put into them.
+///
+/// # Errors
+///
+/// [`Error::Usage`] if something other than a regular file is there, a name is too long or a folder of the path
+/// cannot be one; [`Error::Io`] if no file can be created in the last folder of the path that exists.
 pub fn expect_file(path: &Path) -> Result<()> {
     let refuse = |why: &str| Err(Error::Usage(format!("{}: {why}", path.display())));
     if path.exists() && !path.is_file() {

@@ -47,6 +47,11 @@ impl Folder {
     /// Checks, before any work is done, that a report can be written to a folder: it is empty, or
     /// its files may be replaced, or it contains the report of the same `recipe`, whose bytes will
     /// be equal. A run that the clock stops has no recipe. Leftovers of a killed run are removed.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Usage`] if the folder holds anything else; [`Error::Io`] if it cannot be read or a leftover cannot be
+    /// removed.
     pub fn open(lock: FolderLock, existing: Existing, recipe: Option<&Recipe>) -> Result<Self> {
         let path = lock.path();
         sweep(path)?;
@@ -73,6 +78,11 @@ impl Folder {
 
     /// The folder of files derived from other reports, which may therefore exist already. Others
     /// may not, unless they may be replaced.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Usage`] if the folder holds another file that is to be kept; [`Error::Io`] if it cannot be read or a
+    /// leftover cannot be removed.
     pub fn of_derived(lock: FolderLock, existing: Existing, files: &[OutputFile]) -> Result<Self> {
         let path = lock.path();
         sweep(path)?;
@@ -101,6 +111,11 @@ impl Folder {
     /// before all are complete, and the manifest is renamed last. An existing file with the same
     /// bytes is left alone. Where one differs and may not be replaced, none is written. Other files
     /// of an older report are removed where permitted.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Io`] if a file cannot be read, written, renamed or removed. Existing files that differ and are to be
+    /// kept are no error, but [`Written::Nothing`].
     pub fn write(&self, files: &[OutputFile]) -> Result<Written> {
         let manifest = Manifest::of(files).file(MANIFEST)?;
         let (mut staged, mut differing) = (Vec::new(), Vec::new());
@@ -160,6 +175,10 @@ impl Folder {
 
     /// Writes a file outside the reproducible set. An existing one stays, unless it may be
     /// replaced.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Io`] if the file cannot be written.
     pub fn write_beside(&self, name: &str, bytes: &[u8]) -> Result<()> {
         let path = self.path().join(name);
         if self.existing == Existing::Keep && path.exists() {
@@ -183,6 +202,11 @@ fn holds_files(folder: &Path) -> Result<bool> {
 }
 
 /// Writes one file, whole or not at all. An existing file with the same bytes is left alone.
+///
+/// # Errors
+///
+/// [`Error::Usage`] if the file exists with other contents and is to be kept; [`Error::Io`] if it cannot be read or
+/// written, or its folder cannot be created.
 pub fn write_whole(path: &Path, bytes: &[u8], existing: Existing) -> Result<()> {
     match (compare(path, bytes)?, existing) {
         (FileComparison::Same, _) => return Ok(()),

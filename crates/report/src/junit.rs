@@ -25,6 +25,11 @@ pub struct JunitFile(PathBuf);
 impl JunitFile {
     /// Checks, before any work is done, that the file can be written. A file written by this
     /// program or an empty one is replaced; any other only where permitted.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Usage`] if no regular file can be there, or another kind of file is there and is to be kept;
+    /// [`Error::Io`] if it cannot be read or nothing can be written beside it.
     pub fn open(path: &Path, existing: Existing) -> Result<Self> {
         let failed = |why: &str| Error::Usage(format!("--junit {why}"));
         match expect_file(path) {
@@ -41,6 +46,10 @@ impl JunitFile {
     }
 
     /// Writes it, whole or not at all.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Io`] if the file cannot be written.
     pub fn write(&self, xml: &str) -> Result<()> {
         write_whole(&self.0, xml.as_bytes(), Existing::Replace)
     }
@@ -57,6 +66,10 @@ fn is_ours(path: &Path) -> Result<bool> {
 
 /// The checks of a run. A run with checks that is partial or misses its target is not as requested;
 /// each gets a case.
+///
+/// # Errors
+///
+/// [`Error::Output`] if the cases cannot be written as XML.
 pub fn run_junit(report: &Report) -> Result<String> {
     let name = &report.scene.name;
     let mut suite = TestSuite::new(name.as_str());
@@ -72,6 +85,10 @@ pub fn run_junit(report: &Report) -> Result<String> {
 }
 
 /// The checks of every design of a study. A design that makes no scene is an error.
+///
+/// # Errors
+///
+/// [`Error::Output`] if the cases cannot be written as XML.
 pub fn study_junit(report: &StudyReport) -> Result<String> {
     let name = &report.facts.name;
     let mut suite = TestSuite::new(name.as_str());
@@ -93,6 +110,10 @@ pub fn study_junit(report: &StudyReport) -> Result<String> {
 }
 
 /// The measures of a comparison. One that cannot be judged counts as skipped.
+///
+/// # Errors
+///
+/// [`Error::Output`] if the cases cannot be written as XML.
 pub fn diff_junit(diff: &Diff) -> Result<String> {
     let [a, b] = &diff.names;
     let name = if a == b { format!("diff {a}") } else { format!("diff {a} {b}") };

@@ -21,6 +21,10 @@ pub fn is_staged(path: &Path) -> bool {
 
 /// Removes what a killed program left in a folder: files under temporary names, and those of a
 /// report that was never complete. A missing folder counts as empty.
+///
+/// # Errors
+///
+/// [`Error::Io`] if the folder cannot be read or a leftover cannot be removed.
 pub fn sweep(folder: &Path) -> Result<()> {
     let entries = match fs::read_dir(folder) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
@@ -43,6 +47,10 @@ pub fn sweep(folder: &Path) -> Result<()> {
 
 /// Removes an older report: the files that its manifest lists, if that is intact, and the manifest.
 /// Other files stay.
+///
+/// # Errors
+///
+/// [`Error::Io`] if one of its files cannot be removed. A folder without an intact manifest is left as it is.
 pub fn remove_report(folder: &Path) -> Result<()> {
     let Ok(manifest) = Manifest::expect(folder) else { return Ok(()) };
     for name in manifest.names() {
@@ -52,6 +60,10 @@ pub fn remove_report(folder: &Path) -> Result<()> {
 }
 
 /// Removes a file; a missing one is not an error.
+///
+/// # Errors
+///
+/// [`Error::Io`] if the file is there and cannot be removed.
 pub fn remove_if_there(path: &Path) -> Result<()> {
     match fs::remove_file(path) {
         Err(error) if error.kind() != ErrorKind::NotFound => Err(Error::io(path, error)),

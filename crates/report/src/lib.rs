@@ -75,6 +75,10 @@ use crate::output::{LOGO, SUMMARY};
 use lumiduct_base::error::Result;
 
 /// All files of a report, in the reproducible order: pictures and tables first, so that the page can name them.
+///
+/// # Errors
+///
+/// `Error::Output` if a picture cannot be drawn, or a table, a page or the summary cannot be composed.
 pub fn files(report: &Report, scene_text: &str) -> Result<Vec<OutputFile>> {
     let mut files = spreadsheet::files(report)?;
     files.extend(csv::files(report)?);

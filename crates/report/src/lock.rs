@@ -16,7 +16,12 @@ pub struct FolderLock {
 }
 
 impl FolderLock {
-    /// Creates the folder if missing and locks it; an error if another program has the lock.
+    /// Creates the folder if missing and locks it.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Usage`] if another program has the lock, or the path is a file or cannot be made a folder;
+    /// [`Error::Io`] if no file can be created in it.
     pub fn take(path: &Path) -> Result<Self> {
         expect_room(path)?;
         let own = |file| Self { path: path.to_path_buf(), _file: file };

@@ -84,7 +84,12 @@ impl Manifest {
     }
 }
 
-/// The files of the whole report in a folder, the manifest last; an error where one has changed.
+/// The files of the whole report in a folder, the manifest last.
+///
+/// # Errors
+///
+/// [`Error::Usage`] if the folder holds no whole report, or a file is missing or was changed after it was written;
+/// [`Error::Io`] if the manifest cannot be read.
 pub fn report_files(folder: &Path) -> Result<Vec<OutputFile>> {
     let manifest = Manifest::expect(folder)?;
     let mut files = Vec::new();

@@ -43,6 +43,11 @@ pub fn seal(object: &str) -> String {
 }
 
 /// The contents of a sealed file.
+///
+/// # Errors
+///
+/// [`Damage::Unsealed`] if there is no digest at the end, [`Damage::Changed`] if it is not that of the contents,
+/// [`Damage::Foreign`] if the contents are not a `T` in JSON.
 pub fn unseal<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, Damage> {
     let body = bytes.len().checked_sub(HEAD.len() + DIGEST_LETTERS + TAIL.len());
     let (body, end) = body.map(|length| bytes.split_at(length)).ok_or(Damage::Unsealed)?;

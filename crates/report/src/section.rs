@@ -51,6 +51,11 @@ pub struct CutPlane {
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// The cross-section of a scene with some traced paths.
+///
+/// # Errors
+///
+/// [`Error::Usage`] if the part to zoom in on is not in the scene or far away, or the upward direction is
+/// perpendicular to the picture; [`Error::Output`] if the picture cannot be drawn.
 pub fn scene_picture(
     title: &str,
     scene: &Scene,

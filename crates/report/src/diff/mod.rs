@@ -37,6 +37,11 @@ pub struct DiffOptions {
 }
 
 /// Compares two reports of the same kind.
+///
+/// # Errors
+///
+/// [`Error::Usage`] if one is of a run and the other of a study, they have nothing in common, no common measure
+/// begins like an entry of `only`, or no measure can be judged.
 pub fn diff(sides: &[ComparedReport; 2], options: &DiffOptions) -> Result<Diff> {
     let [a, b] = sides;
     let mut pairs = Pairs::default();
@@ -98,6 +103,10 @@ fn nothing_in_common(a: &ComparedReport, b: &ComparedReport) -> String {
 }
 
 /// All files of a comparison: pictures of maps first, so that the page can name them.
+///
+/// # Errors
+///
+/// [`Error::Output`] if a picture cannot be drawn, or the table or the page cannot be composed.
 pub fn diff_files(diff: &Diff) -> Result<Vec<OutputFile>> {
     let mut files = maps::pictures(&diff.maps)?;
     let page = page::markdown(diff);

@@ -117,6 +117,11 @@ struct StudySummary {
 }
 
 /// Reads the report of a run or the results of a study from their folder.
+///
+/// # Errors
+///
+/// [`Error::Usage`] if the folder holds no whole report, the report has the layout of another version, or a file
+/// was changed after it was written; [`Error::Io`] if a file cannot be read.
 pub fn read(folder: &Path) -> Result<ComparedReport> {
     if !folder.is_dir() {
         return Err(Error::Usage(format!(

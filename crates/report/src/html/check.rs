@@ -18,6 +18,10 @@ const AXES_WORDS: &str = "u and v are the coordinates of maps, patterns and cell
 The origin is the point with u = v = 0 or, if that is outside the face, the nearest point of the face.";
 
 /// The page of a check. `listed` is the contents of the scene, line by line.
+///
+/// # Errors
+///
+/// `Error::Output` if the template of pages cannot be filled in.
 pub fn check_page(title: &str, scene: &Scene, tracks: &[Track], listed: &str) -> Result<String> {
     let mut plots = Plots::default();
     let mut drawing = drawing(scene, tracks);

@@ -31,6 +31,10 @@ pub(crate) const SUMMARY: &str = "study.json";
 pub(crate) const SUMMARY_FORMAT: u32 = 1;
 
 /// All files of a study but its manifest and its records, in the reproducible order.
+///
+/// # Errors
+///
+/// `Error::Output` if a figure cannot be drawn, or a table, a page or the summary cannot be composed.
 pub fn study_files(report: &StudyReport, study_text: &str) -> Result<Vec<OutputFile>> {
     let mut files = tables::files(report)?;
     let figures = figures::figures(report);

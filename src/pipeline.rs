@@ -45,6 +45,12 @@ use lumiduct_report::{
 use std::path::{Path, PathBuf};
 
 /// Runs a scene file and writes its report.
+///
+/// # Errors
+///
+/// As [`prepare`] and [`trace`]. Also `Error::Usage` if another program uses the folder of the report, if its files
+/// are to be kept and belong to another run, or if its checkpoint cannot be resumed; `Error::Output` or `Error::Io`
+/// if the report cannot be composed or written.
 pub fn run_one(
     scene: &Path,
     settings: &Settings,
@@ -81,6 +87,11 @@ pub fn run_one(
 }
 
 /// Loads a scene that can be traced.
+///
+/// # Errors
+///
+/// As [`input::load`]. Also `Error::Input` if nothing emits light, a check or the target names no measure of the
+/// scene, or an estimator that was asked for cannot work on the scene.
 pub fn prepare(scene: &Path, settings: &Settings) -> Result<Job> {
     let mut job = input::load(scene, settings)?;
     job.warnings.extend(expect_sense(&job)?);

@@ -41,6 +41,11 @@ pub struct Checked {
 }
 
 /// Validates a scene, lists what is in it, and draws its cross-section with some traced paths.
+///
+/// # Errors
+///
+/// As [`prepare`]. Also [`Error::Usage`] if the section cannot be shown or an existing picture is to be kept;
+/// [`Error::Output`] if the picture or the page cannot be composed; [`Error::Io`] if it cannot be written.
 pub fn check(scene: &Path, settings: &Settings, wished: &CheckPictures) -> Result<Checked> {
     let job = prepare(scene, settings)?;
     let default = PathBuf::from(format!("{}.check.png", job.name));

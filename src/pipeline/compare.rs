@@ -77,6 +77,13 @@ const CHECKPOINTS: i32 = 13;
 const CHECKPOINT_RATIO: f64 = std::f64::consts::SQRT_2;
 
 /// Compares methods on a sensor of a scene file and writes the results.
+///
+/// # Errors
+///
+/// [`Error::Input`] as [`input::load`] and if the scene cannot be traced. [`Error::Usage`] if the sensor is unknown
+/// or ambiguous, a method cannot work on the scene, the truth is missing or unusable, the folder is not free, or a
+/// run ends before anything is counted. [`Error::Output`] or [`Error::Io`] if the results cannot be composed or
+/// written.
 pub fn compare(
     scene: &Path,
     settings: &Settings,

@@ -50,6 +50,11 @@ pub struct SliceWritten {
 }
 
 /// Traces a part of the run of a scene; `watch` receives the share done, 0..=1.
+///
+/// # Errors
+///
+/// As [`prepare`]. Also [`Error::Usage`] if the end of the run is not a number of paths, if it gathers in stages,
+/// or if an existing part is to be kept; [`Error::Io`] if the part cannot be written.
 pub fn run_slice(
     scene: &Path,
     settings: &Settings,
@@ -98,6 +103,12 @@ pub fn has_slice(dir: &Path) -> bool {
 
 /// Merges the parts of a run and writes the report of the whole. The scene is read again, from
 /// where the parts found it or from `scene`.
+///
+/// # Errors
+///
+/// As [`prepare`]. Also [`Error::Usage`] if a part is missing, damaged, of another run, or has batches of another
+/// part, or if the folder is not free; [`Error::Io`] if a file cannot be read or written; [`Error::Output`] if the
+/// report cannot be composed.
 pub fn merge_slices(
     dirs: &[PathBuf],
     scene: Option<&Path>,

@@ -22,8 +22,11 @@ pub struct Traced {
     pub elapsed: Duration,
 }
 
-/// Traces rounds until a stop rule holds; an error if it was stopped before there was anything to
-/// report.
+/// Traces rounds until a stop rule holds.
+///
+/// # Errors
+///
+/// [`Error::Usage`] if the user stops it, or its time runs out, before anything is counted.
 pub fn trace(job: &Job, interrupt: &Interrupt, watch: &mut dyn FnMut(&Progress)) -> Result<Traced> {
     trace_from(job, None, &mut |_| Ok(()), interrupt, watch)
 }

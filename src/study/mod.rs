@@ -66,6 +66,13 @@ pub struct FinishedStudy {
 }
 
 /// Runs a study file and writes its results.
+///
+/// # Errors
+///
+/// [`Error::Input`] or [`Error::Usage`] as [`load_study`], and [`Error::Input`] if the scene lacks a measure of the
+/// study. [`Error::Usage`] if the folder is not free or holds results that cannot be resumed; [`Error::Io`] or
+/// [`Error::Output`] if a record or a report cannot be written. A design that makes no scene is a result, not an
+/// error.
 pub fn run_study(
     path: &Path,
     options: &BatchOptions,
@@ -108,6 +115,12 @@ pub fn has_study(dir: &Path) -> bool {
 }
 
 /// Merges the parts of a study and writes the results of the whole.
+///
+/// # Errors
+///
+/// [`Error::Usage`] if a part holds no results, the parts are of different studies or lack a design, or the folder
+/// of the whole is one of them or not free; [`Error::Io`] or [`Error::Output`] if a file cannot be read, composed
+/// or written.
 pub fn merge_study(
     parts: &[PathBuf],
     dir: Option<&Path>,

@@ -1,4 +1,23 @@
 //! Reads foreign file formats. This crate knows no scenes; it gives the triangle meshes of
 //! [`lumiduct_base`].
+//!
+//! A tetrahedron in centimetres, read as a closed mesh in millimetres:
+//!
+//! ```
+//! use lumiduct_base::mesh::health;
+//! use lumiduct_files::mesh::{LengthUnit, read};
+//!
+//! let obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n\
+//!            usemtl wall\nf 1 3 2\nf 1 2 4\nf 1 4 3\nusemtl exit\nf 2 3 4\n";
+//! let folder = tempfile::tempdir()?;
+//! let path = folder.path().join("corner.obj");
+//! std::fs::write(&path, obj)?;
+//!
+//! let mesh = read(&path, LengthUnit::Centimetre)?;
+//! assert!(health(&mesh).is_sound());
+//! assert_eq!(mesh.faces, ["wall", "exit"]);
+//! assert_eq!(mesh.bounds().max.to_array(), [10.0, 10.0, 10.0]); // mm
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod mesh;

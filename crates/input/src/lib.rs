@@ -4,6 +4,31 @@
 //! becomes a `SceneSpec`, which one pass checks and lowers, topic by topic. Every problem is noted
 //! on the way and all are returned together. This crate knows geometry and optics only as far as the
 //! lowering of a spec needs them.
+//!
+//! A scene with a mistake, then the same with an override that mends it:
+//!
+//! ```
+//! use lumiduct_input::{Settings, load};
+//!
+//! let scene = r#"
+//! lumiduct = 1
+//! title = "Disk"
+//! [sources.led.disk]
+//! radius_mm = 5
+//! flux_lm = -1
+//! [run]
+//! paths = 1000
+//! "#;
+//! let folder = tempfile::tempdir()?;
+//! let path = folder.path().join("disk.toml");
+//! std::fs::write(&path, scene)?;
+//!
+//! let error = load(&path, &Settings::default()).unwrap_err().to_string();
+//! assert!(error.contains("disk.toml:6: `sources.led.disk.flux_lm`"), "{error}");
+//! let mended = Settings { overrides: vec!["sources.led.disk.flux_lm=2.5".into()], ..Settings::default() };
+//! assert_eq!(load(&path, &mended)?.scene.sources[0].flux, 2.5); // lm
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use std::collections::BTreeSet;
 use std::path::Path;

@@ -3,6 +3,25 @@
 //! A report depends on the scene, the seed and the number of paths alone: this crate knows no
 //! clock, thread count or machine, except in `timing.csv` and the comparison of estimators, which
 //! are outside the reproducible set.
+//!
+//! A folder gets the files of a report, with a manifest of their digests, and gives them back:
+//!
+//! ```
+//! use lumiduct_report::{Existing, Folder, FolderLock, OutputFile, Written, report_files};
+//!
+//! let dir = tempfile::tempdir()?;
+//! let table = b"angle_deg,intensity_cd\n0,1.5\n";
+//! let files = [OutputFile { name: "far.csv".into(), bytes: table.to_vec() }];
+//! let folder = Folder::open(FolderLock::take(dir.path())?, Existing::Keep, None)?;
+//! assert_eq!(folder.write(&files)?, Written::New);
+//! assert_eq!(folder.write(&files)?, Written::Same);
+//! assert_eq!(report_files(dir.path())?[0].bytes, table);
+//!
+//! // A file that was changed is no part of the report.
+//! std::fs::write(dir.path().join("far.csv"), "angle_deg,intensity_cd\n0,9.9\n")?;
+//! assert!(report_files(dir.path()).unwrap_err().to_string().contains("far.csv"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod base64;
 mod by_light;

@@ -26,7 +26,31 @@
 //! # Ok::<(), lumiduct::Error>(())
 //! ```
 //!
-//! The same as a report in a folder is [`run_one`]. This crate is the program and a small facade; the parts are
+//! The same as a report in a folder, read back; a changed key of the scene is a `key=value`:
+//!
+//! ```
+//! use lumiduct::pipeline::Output;
+//! use lumiduct::{Interrupt, Settings, read_report, run_one};
+//! use lumiduct_report::{Existing, diff::Content};
+//!
+//! let settings = Settings {
+//!     overrides: vec!["finishes.mirror.specular.reflectance=1".into()],
+//!     paths: Some(20_000),
+//!     ..Settings::default()
+//! };
+//! let folder = tempfile::tempdir()?;
+//! let output = Output::new(Some(folder.path().to_path_buf()), Existing::Keep);
+//! let scene = "scenes/mirror_tube.toml".as_ref();
+//! run_one(scene, &settings, &output, &Interrupt::default(), &mut |_| {})?;
+//!
+//! let report = read_report(folder.path())?;
+//! let Content::Run(run) = &report.content else { unreachable!("it is no study") };
+//! let flux = &run.measures["exit.flux"];
+//! assert_eq!((flux.value.round(), flux.unit.as_ref()), (1.0, "lm")); // a perfect mirror loses nothing
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! This crate is the program and a small facade; the parts are
 //! `lumiduct-base`, `lumiduct-core`, `lumiduct-files`, `lumiduct-input` and `lumiduct-report`.
 //!
 //! Inside, lengths are millimetres, angles radians, solid angles steradians, flux lumens (watts in radiometric runs),

@@ -9,8 +9,8 @@
 //! nanometres. +z of a local frame is the normal; directions are unit vectors. Layers from the bottom up: [`rng`],
 //! [`tally`] and [`plan`]; [`optics`]; [`scene`]; [`transport`]; [`measure`].
 //!
-//! A Lambertian disk of radius 5 mm lights a black disk of the same size, 10 mm in front of it. The share of its flux that
-//! arrives is the form factor of the two, 3 - √8:
+//! A Lambertian disk of radius 5 mm lights a black disk of the same size, 10 mm in front of it. The share of its flux
+//! that arrives is the form factor of the two, 3 - √8:
 //!
 //! ```
 //! use glam::DVec3;
@@ -29,7 +29,6 @@
 //!     start: StartSolids::Outside, on: Vec::new(), elevation: None, sun: None,
 //! });
 //! let scene = builder.build();
-//!
 //! let plan = RunPlan {
 //!     estimator: Request::Forward, sensor_estimators: Vec::new(), gather: GatherPlan::default(), seed: 1,
 //!     bounce_limit: 100, batch_paths: None, stop: StopRules { paths: Some(100_000), ..StopRules::default() },

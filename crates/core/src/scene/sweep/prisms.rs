@@ -94,9 +94,9 @@ impl Profile {
     ///
     /// # Errors
     ///
-    /// [`OutlineError::Gap`] if no whole number of prisms fits, [`OutlineError::TooFew`] if fewer than 3 go around
-    /// a circle, [`OutlineError::TooMany`] beyond 500, [`OutlineError::Profile`] if what results is not a valid
-    /// profile.
+    /// [`OutlineError::Gap`] if no whole number of prisms of the pitch fits, [`OutlineError::TooMany`] if more than
+    /// 500 do, [`OutlineError::TooFew`] if fewer than 3 go around a circle, [`OutlineError::Profile`] if what
+    /// results is not a valid profile.
     pub fn with_prisms(&self, prisms: &Prisms) -> Result<Self, OutlineError> {
         let valleys = match self {
             Self::Circle { radius } => {

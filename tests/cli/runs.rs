@@ -261,7 +261,7 @@ fn what_a_run_did_otherwise_than_asked_is_said() {
     let said = place.good("run rod.toml -o a --paths 1");
     assert!(said.contains("128 paths were traced although 1 were requested"), "{said}");
     let said = place.good("run rod.toml -o b --target 0.0001% --paths 20k");
-    assert!(said.contains("target exit.flux: wanted 1×10⁻⁴ %"), "{said}");
+    assert!(said.contains("target exit.flux: requested 1×10⁻⁴ %"), "{said}");
     let joined = place.run("check rod.toml -D sources.led.disk.at.gap_mm=0");
     assert!(errors(&joined).contains("optically"), "{}", errors(&joined));
 }

@@ -230,10 +230,10 @@ fn trimmed(head: &[&str], rows: Vec<Vec<String>>) -> Block {
 
 fn scene(report: &Report, plots: &mut Plots) -> PagePart {
     let drawing = &report.drawing;
-    let label = format!("the scene with {} paths by where they end", drawing.paths.len());
+    let label = format!("the scene with {} paths, coloured by their end", drawing.paths.len());
     let mut blocks = vec![plots.add(label, data::scene(drawing), None)];
     if !drawing.remarks.is_empty() {
-        let text = format!("Left out of the picture: {}.", drawing.remarks.join("; "));
+        let text = format!("The picture is simplified: {}.", drawing.remarks.join("; "));
         blocks.push(Block::Words { text });
     }
     let measures = &report.measures;

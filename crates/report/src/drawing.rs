@@ -131,7 +131,7 @@ pub fn drawing(scene: &Scene, tracks: &[Track]) -> SceneDrawing {
         .filter(|(_, path)| path.points.len() > 1)
         .collect();
     if tracks.iter().any(|track| track.points.len() > POINTS) {
-        remarks.push(format!("paths are drawn up to their first {POINTS} points"));
+        remarks.push(format!("only the first {POINTS} points of each path are drawn"));
     }
     let marks = marks(scene, &faces, &paths);
     faces.retain(|face| !face.facets.points.is_empty());
@@ -171,7 +171,7 @@ fn faces(scene: &Scene, fineness: &Fineness, remarks: &mut Vec<String>) -> Vec<D
     let mut faces = Vec::new();
     let one_in = scene.faces.len().div_ceil(FACES).max(1);
     if one_in > 1 {
-        remarks.push(format!("of {} faces one in {one_in} is drawn", scene.faces.len()));
+        remarks.push(format!("only one in {one_in} of the {} faces is drawn", scene.faces.len()));
     }
     for (index, face) in scene.faces.iter().enumerate() {
         let id = FaceId::new(index);
@@ -186,7 +186,7 @@ fn faces(scene: &Scene, fineness: &Fineness, remarks: &mut Vec<String>) -> Vec<D
             FaceFacets { facets: Triangulation::default(), one_in: 1 }
         };
         if found.one_in > 1 {
-            remarks.push(format!("of `{}` one piece in {} is drawn", face.name, found.one_in));
+            remarks.push(format!("only one piece in {} of `{}` is drawn", found.one_in, face.name));
         }
         let role = role(face, sensed.contains(&id));
         faces.push(DrawnFace { name: face.name.clone(), role, facets: found.facets });
@@ -201,8 +201,8 @@ fn elements(scene: &Scene, remarks: &mut Vec<String>) -> Vec<DrawnFace> {
         let found = scene.element_outlines(pattern, ELEMENTS);
         if found.one_in > 1 {
             remarks.push(format!(
-                "of the elements of `{}` one in {} is drawn",
-                pattern.name, found.one_in
+                "only one in {} of the elements of `{}` is drawn",
+                found.one_in, pattern.name
             ));
         }
         if !found.facets.points.is_empty() {

@@ -175,7 +175,7 @@ pub(crate) fn bounce_plot(paths: &SensorPaths, unit: &str, share: f64) -> LinePl
     LinePlot {
         title: format!("{}: flux by number of bounces", paths.sensor),
         subtitle: format!(
-            "paths of up to {shown_to} bounces carry {}; the deepest path met {deepest} or fewer",
+            "up to {shown_to} bounces carry {}; the deepest path met {deepest} or fewer",
             format_percent(share)
         ),
         x_label: "interfaces met".into(),

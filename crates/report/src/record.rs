@@ -134,7 +134,7 @@ impl TargetFacts {
     pub(crate) fn sentence(&self) -> String {
         let reached = self.reached.map_or("unknown".into(), format_percent);
         format!(
-            "target {}: wanted {}, reached {reached}",
+            "target {}: requested {}, reached {reached}",
             self.measure,
             format_percent(self.wanted)
         )

@@ -29,10 +29,10 @@ pub fn check_page(title: &str, scene: &Scene, tracks: &[Track], listed: &str) ->
     let axes = local_axes(scene);
     let mut plot = data::scene(&drawing);
     plot["axes"] = data::axes(&drawing, &axes);
-    let label = format!("the scene with {} paths by where they end", drawing.paths.len());
+    let label = format!("the scene with {} paths, coloured by their end", drawing.paths.len());
     let mut blocks = vec![plots.add(label, plot, None)];
     if !drawing.remarks.is_empty() {
-        let text = format!("Left out of the picture: {}.", drawing.remarks.join("; "));
+        let text = format!("The picture is simplified: {}.", drawing.remarks.join("; "));
         blocks.push(Block::Words { text });
     }
     let rows = axes.iter().map(row).collect();

@@ -14,7 +14,7 @@ const ROLES = {
 const NEAR = 5;
 
 function drawScene(figure, data) {
-  const hint = "drag or arrow keys turn, ctrl (or cmd) and the wheel, a pinch, or + and - zoom, shift and drag moves, 0 starts anew";
+  const hint = "drag or arrow keys turn, ctrl (or cmd) and the wheel, a pinch, or + and - zoom, shift and drag moves, 0 resets";
   const { controls, body, readout } = layOut(figure, "scene", hint);
   const canvas = make("canvas", { width: 2 * SCENE.width, height: 2 * SCENE.height, tabindex: "0", role: "img", "aria-label": "the scene" });
   body.append(canvas);
@@ -195,7 +195,7 @@ function paintScale(context, { rows, scale }, { colours, letters }) {
 }
 
 function groupSwitches(state) {
-  const legend = make("div", { class: "legend", role: "group", "aria-label": "paths by where they end" });
+  const legend = make("div", { class: "legend", role: "group", "aria-label": "paths by their end" });
   state.data.groups.forEach(({ name, count }, group) => {
     const swatch = make("span", { class: "swatch", style: `border-color: ${seriesColour(group % 7)}` });
     legend.append(toggle([swatch, `${name} (${count})`], state.hidden, group, state.draw));

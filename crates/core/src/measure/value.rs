@@ -114,9 +114,11 @@ impl Measure {
 }
 
 impl fmt::Display for Measure {
-    /// `0.51084 ± 0.00023 lm`: the value with its total error.
+    /// `0.51084 ± 0.00023 lm`: the value with its standard error, or, where it has a bias,
+    /// `10.0 ± 0.5 lm (total error)`.
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         let error = self.total_error();
+        let has_error = self.value.is_finite() && error.is_finite() && error != 0.0;
         if !self.value.is_finite() {
             write!(out, "unknown")?;
         } else if !error.is_finite() {
@@ -126,7 +128,14 @@ impl fmt::Display for Measure {
         } else {
             write!(out, "{}", format_with_error(self.value, error))?;
         }
-        if self.unit == "1" { Ok(()) } else { write!(out, " {}", self.unit) }
+        if self.unit != "1" {
+            write!(out, " {}", self.unit)?;
+        }
+        // In tables, ± is the standard error alone.
+        if has_error && self.bias.is_some_and(|bias| bias != 0.0) {
+            write!(out, " (total error)")?;
+        }
+        Ok(())
     }
 }
 
@@ -174,5 +183,8 @@ pub(crate) mod tests {
         biased.bias = Some(0.4);
         assert!((biased.total_error() - 0.5).abs() < 1e-15);
         assert!((biased.relative_error() - 0.05).abs() < 1e-15);
+        assert_eq!(biased.to_string(), "10.0 ± 0.5 lm (total error)");
+        biased.bias = Some(0.0);
+        assert_eq!(biased.to_string(), "10.00 ± 0.30 lm");
     }
 }

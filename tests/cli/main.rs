@@ -11,6 +11,7 @@ mod light;
 mod pages;
 mod parts;
 mod refusals;
+mod resumed_batches;
 mod runs;
 mod schemas;
 mod seals;

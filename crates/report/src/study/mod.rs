@@ -1,5 +1,6 @@
 //! The output of a study: one record, and pure functions that turn it into files.
 
+mod analysis;
 mod contents;
 mod edge;
 mod figures;
@@ -9,10 +10,13 @@ mod record;
 mod tables;
 mod terminal;
 
+pub use analysis::{
+    Analysis, Effect, EffectPoint, FailureShare, Pairing, Ranked, Sensitivity, SensitivityIndex,
+    SensitivityMethod, Sharpness, ValueWithError,
+};
 pub use record::{
-    Analysis, DESIGN_FORMAT, DesignOutcome, DesignRecord, DesignResult, Effect, EffectPoint,
-    FACTS_FORMAT, FailureShare, Pairing, ParameterFacts, PlanFacts, Ranked, Sensitivity,
-    SensitivityIndex, SensitivityMethod, Sharpness, StudyFacts, StudyReport, ValueWithError,
+    DESIGN_FORMAT, DesignOutcome, DesignRecord, DesignResult, FACTS_FORMAT, ParameterFacts,
+    PlanFacts, StudyFacts, StudyReport,
 };
 
 pub use terminal::terminal;

@@ -7,8 +7,10 @@
 //!
 //! Every shape has a chart: it unrolls the surface into a rectangle of millimetres, for flux maps on curved walls.
 
+mod chart;
 mod compound_parabola;
 mod cone;
+mod crossing;
 mod cylinder;
 mod flat;
 mod parabolic_cylinder;
@@ -20,8 +22,11 @@ mod testing;
 mod torus;
 mod wedge;
 
+pub use chart::ChartRect;
 pub use compound_parabola::CompoundParabola;
 pub use cone::Cone;
+pub(crate) use crossing::CrossingQuery;
+pub use crossing::{Crossing, RayStart, Toward};
 pub use cylinder::Cylinder;
 pub use flat::{Flat, Polygon, Region};
 pub use parabolic_cylinder::ParabolicCylinder;
@@ -32,74 +37,6 @@ pub use torus::Torus;
 use crate::scene::Ray;
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::Aabb;
-
-/// Whether a ray starts on the surface under test.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum RayStart {
-    /// The origin is elsewhere: every root counts.
-    Elsewhere,
-    /// The origin lies on this surface: the root at the origin does not count.
-    On,
-}
-
-/// A point where a ray crosses a surface.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Crossing {
-    /// Distance along the ray, mm; may be negative.
-    pub t: f64,
-    /// Direction of the crossing.
-    pub toward: Toward,
-}
-
-/// The crossings of a ray that matter to the caller.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct CrossingQuery {
-    /// Only crossings in this direction.
-    pub toward: Option<Toward>,
-    /// Smallest distance along the ray, mm.
-    pub min: f64,
-    /// Largest distance, mm.
-    pub max: f64,
-}
-
-impl CrossingQuery {
-    /// Whether a crossing matters.
-    #[inline]
-    pub(crate) fn includes(&self, crossing: &Crossing) -> bool {
-        self.includes_way(crossing.toward) && crossing.t >= self.min && crossing.t <= self.max
-    }
-
-    #[inline(always)]
-    fn includes_way(&self, toward: Toward) -> bool {
-        self.toward != Some(toward.opposite())
-    }
-}
-
-/// Direction in which a ray crosses a surface.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Toward {
-    /// Along the normal: out of a solid.
-    Front,
-    /// Against the normal: into a solid.
-    Back,
-}
-
-impl Toward {
-    /// The side toward which `dir` leaves a surface with `normal`.
-    #[inline]
-    pub(crate) fn of(dir: DVec3, normal: DVec3) -> Self {
-        if dir.dot(normal) > 0.0 { Self::Front } else { Self::Back }
-    }
-
-    /// The opposite direction.
-    #[inline]
-    pub(crate) fn opposite(self) -> Self {
-        match self {
-            Self::Front => Self::Back,
-            Self::Back => Self::Front,
-        }
-    }
-}
 
 /// The points on one side of a plane: `normal · p <= offset`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -121,43 +58,6 @@ impl HalfSpace {
     #[inline]
     pub(crate) fn contains(&self, p: DVec3) -> bool {
         self.normal.dot(p) <= self.offset
-    }
-}
-
-/// A rectangle of the unrolled surface, mm.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ChartRect {
-    /// Smallest (u, v).
-    pub min: DVec2,
-    /// Largest (u, v).
-    pub max: DVec2,
-}
-
-impl ChartRect {
-    /// The smallest rectangle around both.
-    pub fn union(self, other: Self) -> Self {
-        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
-    }
-
-    /// The common part of both rectangles; empty if they do not overlap.
-    pub(crate) fn intersection(&self, other: &Self) -> Self {
-        Self { min: self.min.max(other.min), max: self.max.min(other.max) }
-    }
-
-    /// Whether the rectangle has no area.
-    pub(crate) fn is_empty(&self) -> bool {
-        !self.min.cmplt(self.max).all()
-    }
-
-    /// Area of the rectangle itself, mm²; 0 when it is empty.
-    pub(crate) fn area(&self) -> f64 {
-        (self.max - self.min).max(DVec2::ZERO).element_product()
-    }
-
-    /// The corners, counter-clockwise from the smallest.
-    pub(crate) fn corners(&self) -> [DVec2; 4] {
-        let (min, max) = (self.min, self.max);
-        [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)]
     }
 }
 

@@ -1,12 +1,11 @@
-//! House rules: no dependency cycles of modules, children never use `super::`, and the files that
-//! the repository promises exist.
+//! House rules: layers use only those below them, no circles of modules, children never use
+//! `super::`, and the files that the repository promises exist.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+#[path = "layers/graph.rs"]
 mod graph;
-#[path = "../package/mod.rs"]
 mod package;
-#[path = "../skip/mod.rs"]
 mod skip;
 
 use graph::{Graph, circles};
@@ -23,6 +22,22 @@ const CRATES: [&str; 7] = [
     "crates/report/src",
     "src",
 ];
+
+/// The crates of this workspace that each crate may use.
+const MAY_USE: [(&str, &[&str]); 8] = [
+    ("crates/base", &[]),
+    ("crates/files", &["base"]),
+    ("crates/core", &["base"]),
+    ("crates/baselines", &["base", "core"]),
+    ("crates/input", &["base", "core", "files"]),
+    ("crates/report", &["base", "core", "input"]),
+    ("xtask", &["input"]),
+    (".", &["base", "baselines", "core", "files", "input", "report"]),
+];
+
+/// The folders of `core` from the bottom: each may use those on lines before its own.
+const CORE: [&[&str]; 5] =
+    [&["plan", "rng", "tally"], &["optics"], &["scene"], &["transport"], &["measure"]];
 
 fn sources(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
@@ -48,6 +63,57 @@ fn code(path: &Path) -> Vec<(usize, String)> {
         .take_while(|(_, line)| !line.ends_with("mod tests {"))
         .map(|(number, line)| (number + 1, line.split("//").next().unwrap_or_default().to_owned()))
         .collect()
+}
+
+/// A manifest below the root of the repository.
+fn manifest(folder: &str) -> toml::Table {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder).join("Cargo.toml");
+    std::fs::read_to_string(path).unwrap().parse().unwrap()
+}
+
+#[test]
+fn a_crate_uses_only_those_below_it() {
+    if package::is_without_reports() {
+        return;
+    }
+    let mut crates: Vec<_> = MAY_USE.map(|(folder, _)| folder.to_owned()).to_vec();
+    crates.sort();
+    assert_eq!(crates, manifest_list("default-members"));
+    for (folder, may_use) in MAY_USE {
+        let manifest = manifest(folder);
+        let used = manifest["dependencies"].as_table().unwrap().keys();
+        let own: Vec<_> = used.filter_map(|name| name.strip_prefix("lumiduct-")).collect();
+        assert_eq!(own, may_use, "{folder}");
+    }
+}
+
+#[test]
+fn folders_of_core_use_only_those_below_them() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let graph = Graph::of_crate(&root.join("crates/core/src"));
+    let layer = |names: &[String]| {
+        let top = names.first()?.as_str();
+        let layer = CORE.iter().position(|folders| folders.contains(&top));
+        assert!(layer.is_some(), "`{top}` has no layer");
+        layer
+    };
+    let arrows = graph.arrows();
+    let upward: Vec<_> = arrows
+        .iter()
+        .filter(|((from, to), _)| layer(from) < layer(to))
+        .map(|((from, to), items)| format!("{} -> {}: {items:?}", from.join("::"), to.join("::")))
+        .collect();
+    assert!(upward.is_empty(), "{upward:#?}");
+}
+
+#[test]
+fn input_makes_scenes_and_plans_but_traces_nothing() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for path in sources(&root.join("crates/input/src")) {
+        for (line, text) in code(&path) {
+            assert!(!text.contains("lumiduct_core::transport"), "{}:{line}", path.display());
+        }
+    }
 }
 
 #[test]
@@ -139,6 +205,19 @@ fn a_circle_through_a_re_export_is_found() {
 }
 
 #[test]
+fn every_source_file_is_short() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folders = ["src", "crates", "tests", "examples", "benches", "xtask"];
+    // A crate that is packaged alone has not all of them.
+    let folders = folders.map(|folder| root.join(folder)).into_iter().filter(|path| path.is_dir());
+    let files: Vec<PathBuf> = folders.flat_map(|folder| sources(&folder)).collect();
+    assert!(files.len() > 30, "{} files", files.len());
+    let lines = |path: &PathBuf| std::fs::read_to_string(path).unwrap().lines().count();
+    let long: Vec<_> = files.iter().filter(|path| lines(path) > 400).collect();
+    assert!(long.is_empty(), "over 400 lines: {long:#?}");
+}
+
+#[test]
 fn children_do_not_reach_up() {
     let mut wrong = Vec::new();
     for folder in ["src", "crates"] {
@@ -156,8 +235,7 @@ fn children_do_not_reach_up() {
 
 /// Entries of a list in the manifest of the workspace.
 fn manifest_list(name: &str) -> Vec<String> {
-    let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml");
-    let manifest: toml::Table = std::fs::read_to_string(manifest).unwrap().parse().unwrap();
+    let manifest = manifest(".");
     let list = manifest["workspace"][name].as_array().unwrap();
     list.iter().map(|entry| entry.as_str().unwrap().to_owned()).collect()
 }

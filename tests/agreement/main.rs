@@ -10,6 +10,7 @@
     reason = "a line for each value, shown by --nocapture and on failure"
 )]
 
+mod connections;
 mod consistency;
 mod daylight;
 mod finishes;

@@ -25,6 +25,10 @@ pub mod stream {
     pub(crate) const RECORDS: u64 = 3 << 32;
     /// Gather paths of the pilot that sets windows.
     pub(crate) const GATHER_PILOT: u64 = 4 << 32;
+    /// Points of sources that gather paths are joined to.
+    pub(crate) const JOINED_SOURCES: u64 = 11 << 32;
+    /// Points of sensors that photons are joined to.
+    pub(crate) const JOINED_SENSORS: u64 = 12 << 32;
     /// Gather paths that tell whether a sensor sees any light.
     pub(crate) const BLIND: u64 = 10 << 32;
     /// Gather paths of baselines.

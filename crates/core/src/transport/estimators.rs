@@ -12,7 +12,7 @@ use crate::transport::estimate::{Account, Estimate};
 use crate::transport::gather::estimator::Gather;
 use crate::transport::gather::merged::MergedStream;
 use crate::transport::gather::stream::PhotonStream;
-use crate::transport::gather::{self, GatherSettings};
+use crate::transport::gather::{self, GatherSettings, scatterers};
 use crate::transport::tally::{Counts, Series, Stage};
 use crate::transport::task::Task;
 use crate::transport::trial::{Trials, Tried};
@@ -292,7 +292,7 @@ impl Estimator {
         let can_meet = |source: &Source| invisible(source, scene).is_none();
         match self {
             Self::Forward => true,
-            Self::Mix => scene.sources.iter().any(can_meet),
+            Self::Mix => scene.sources.iter().any(can_meet) || !scatterers(scene).is_empty(),
             Self::Backward | Self::Gather => scene.sources.iter().all(can_meet),
             Self::Mis => false,
         }

@@ -7,6 +7,7 @@
 
 mod backward;
 mod choose;
+pub(crate) mod connect;
 mod estimate;
 pub(crate) mod estimators;
 pub mod forward;

@@ -4,10 +4,12 @@
 pub(crate) mod grid;
 pub(crate) mod pixels;
 
+use crate::rng::{Dimension, Numbers, Sampler};
 use crate::scene::shape::Toward;
 use crate::scene::{FaceId, Grid, Pixels, Ray};
 use glam::DVec3;
-use lumiduct_base::math::{Aabb, Frame};
+use lumiduct_base::math::{Aabb, Frame, cone_direction};
+use smallvec::SmallVec;
 use std::f64::consts::TAU;
 
 /// A sensor with its name and its aim.
@@ -172,6 +174,32 @@ pub struct Views {
 }
 
 impl Views {
+    /// A direction in the acceptance cone of one of the views, and all views that accept it.
+    pub(crate) fn draw(
+        &self,
+        sampler: &mut Sampler<impl Numbers>,
+    ) -> (DVec3, SmallVec<[usize; 1]>) {
+        let count = self.directions.len();
+        let view = match count {
+            1 => 0,
+            _ => ((sampler.one(Dimension::GatherDirection) * count as f64) as usize).min(count - 1),
+        };
+        let local = cone_direction(self.half_angle, sampler.pair(Dimension::GatherDirection));
+        let away = Frame::from_axis(DVec3::ZERO, self.directions[view]).to_world(local);
+        let mut accepting: SmallVec<[usize; 1]> = self.accepting(away).collect();
+        if accepting.is_empty() {
+            // Drawn exactly on the rim of the cone.
+            accepting.push(view);
+        }
+        (away, accepting)
+    }
+
+    /// Density with which [`Self::draw`] gives a direction that this many views accept, 1/sr.
+    pub(crate) fn density(&self, accepting: usize) -> f64 {
+        let solid_angle = 2.0 * TAU * (0.5 * self.half_angle).sin().powi(2);
+        accepting as f64 / (self.directions.len() as f64 * solid_angle)
+    }
+
     /// The views that accept light along `away`, a unit vector away from the face.
     #[inline]
     pub(crate) fn accepting(&self, away: DVec3) -> impl Iterator<Item = usize> + Clone + '_ {

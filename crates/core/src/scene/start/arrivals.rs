@@ -13,9 +13,9 @@ use crate::scene::{
     Sides, SurfaceSensor, Views,
 };
 use glam::{DVec2, DVec3};
-use lumiduct_base::math::{Aabb, Frame, cone_direction, cosine_hemisphere, disk, uniform_sphere};
+use lumiduct_base::math::{Aabb, Frame, cosine_hemisphere, disk, uniform_sphere};
 use smallvec::{SmallVec, smallvec};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 /// A path that must meet the face it starts in front of starts this far from it, relative to the
 /// size of the scene: far above rounding, far below any manufacturable size.
@@ -26,6 +26,8 @@ const STEP_BACK: f64 = 1e-9;
 pub struct Arrival {
     /// From the sensor, against the light.
     pub ray: Ray,
+    /// Unit normal of the sensor; of a far field, the direction of its light.
+    pub normal: DVec3,
     /// The solids it starts in.
     pub inside: Inside,
     /// The surface of the scene that it starts on.
@@ -165,7 +167,9 @@ impl<'s> Arrivals<'s> {
     ) -> Option<Drawn> {
         match &sensor.seeing {
             Seeing::All => {}
-            Seeing::Views(views) => return view_direction(views, sensor.counts, start, sampler),
+            Seeing::Views(views) => {
+                return Some(view_direction(views, sensor.counts, start, sampler));
+            }
             Seeing::Pixels(pixels) => {
                 let u = sampler.pair(Dimension::GatherDirection);
                 let (dir, pixel, projected) = pixels.draw(u)?;
@@ -219,7 +223,7 @@ impl<'s> Arrivals<'s> {
                 views.into_iter().map(|view| view * sensor.grid.cells() + cell).collect()
             }
         };
-        Some(self.arrival(ray, on, begins, area * projected, cells))
+        Some(self.arrival((ray, start.normal), on, begins, area * projected, cells))
     }
 
     /// A start outside of everything, in a direction of a far-field goniometer.
@@ -243,7 +247,7 @@ impl<'s> Arrivals<'s> {
         let extent = self.across(&ray, around) * 4.0 * PI;
         extent
             .is_finite()
-            .then(|| self.arrival(ray, None, Begins::OnSensor, extent, smallvec![cell]))
+            .then(|| self.arrival((ray, out), None, Begins::OnSensor, extent, smallvec![cell]))
     }
 
     /// A start on a goniometric sphere of finite radius, inward.
@@ -273,20 +277,20 @@ impl<'s> Arrivals<'s> {
         };
         let extent = 4.0 * PI * radius * radius * projected;
         let ray = Ray::new(start.point, dir);
-        Some(self.arrival(ray, None, Begins::OnSensor, extent, smallvec![cell]))
+        Some(self.arrival((ray, out), None, Begins::OnSensor, extent, smallvec![cell]))
     }
 
     /// A start with the solids around it.
     fn arrival(
         &self,
-        ray: Ray,
+        (ray, normal): (Ray, DVec3),
         on: Option<PrimId>,
         begins: Begins,
         extent: f64,
         cells: SmallVec<[usize; 1]>,
     ) -> Arrival {
         let inside = self.scene.inside_at(&ray, StartSide::Ahead);
-        Arrival { ray, inside, on, begins, extent, cells }
+        Arrival { ray, normal, inside, on, begins, extent, cells }
     }
 }
 
@@ -322,29 +326,16 @@ fn view_direction(
     counts: CountedLight,
     start: &AreaPoint,
     sampler: &mut Sampler<impl Numbers>,
-) -> Option<Drawn> {
-    let count = views.directions.len();
-    let view = match count {
-        1 => 0,
-        _ => ((sampler.one(Dimension::GatherDirection) * count as f64) as usize).min(count - 1),
-    };
-    let local = cone_direction(views.half_angle, sampler.pair(Dimension::GatherDirection));
-    let seen = Frame::from_axis(DVec3::ZERO, views.directions[view]).to_world(local);
-    let mut accepting: SmallVec<[usize; 1]> = views.accepting(seen).collect();
-    if accepting.is_empty() {
-        // Drawn exactly on the rim of the cone.
-        accepting.push(view);
-    }
+) -> Drawn {
+    let (seen, accepting) = views.draw(sampler);
     let dir = away(seen, counts);
     let projected = views_projected(views, accepting.len(), dir.dot(start.normal));
-    Some(Drawn { dir, projected, views: accepting })
+    Drawn { dir, projected, views: accepting }
 }
 
 /// |cos θ| over the density of a direction that this many views accept, sr.
 fn views_projected(views: &Views, accepting: usize, cos: f64) -> f64 {
-    let solid_angle = 2.0 * TAU * (0.5 * views.half_angle).sin().powi(2);
-    let density = accepting as f64 / (views.directions.len() as f64 * solid_angle);
-    cos.abs() / density
+    cos.abs() / views.density(accepting)
 }
 
 /// Converts between a direction against the light and a view's direction away from the face.

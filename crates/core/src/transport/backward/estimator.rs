@@ -1,15 +1,20 @@
-//! The backward estimator: gather paths from the sensors, followed until they meet emission.
+//! The backward estimator: gather paths from the sensors, followed until they meet emission, and
+//! joined to sources where they are scattered.
 //!
 //! A gather path carries basic radiance L/n² and represents an etendue of its sensor: the mean of
 //! their product is the flux on the sensor. Points, lines and collimated beams cannot be met; a run
 //! with such sources is refused beforehand. When mixed with forward, photons also count on the
-//! sensors, and both count by their weights (`mix`).
+//! sensors, and all count by their weights (`mix`).
 
 use crate::plan::{Estimator, RunPlan};
 use crate::rng::{Sampler, stream};
-use crate::scene::{Arrivals, LightGroups, Scene, SensorId};
+use crate::scene::{Arrival, Arrivals, Scene, SensorId, SourceId, Visibility};
+use crate::transport::connect::sensors::SensorTargets;
+use crate::transport::connect::sources::{SourcePoint, SourceTargets};
+use crate::transport::connect::vertex::{ScatteringVertex, Turns};
+use crate::transport::connect::way::WayStart;
+use crate::transport::connect::weights::{Etendues, NO_WINDOW};
 use crate::transport::estimate::Estimate;
-use crate::transport::gather::merge::{Etendues, NO_WINDOW};
 use crate::transport::stop::{Pace, StopSignal};
 use crate::transport::tally::readings::{DetectedLight, MIN_LIT_GROUPS};
 use crate::transport::tally::work;
@@ -18,6 +23,7 @@ use crate::transport::trial::{BATCHES, SEED, Trials, Tried};
 use crate::transport::walk::emitters::Emitters;
 use crate::transport::walk::follow::{Gathering, follow};
 use crate::transport::{Event, Layout, Loss, MetEmission, Observer, Path, Readings};
+use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::ControlFlow;
 
@@ -37,8 +43,11 @@ pub(crate) struct Backward<'s> {
     pub(crate) scene: &'s Scene,
     pub(crate) layout: Layout,
     pub(crate) emitters: Emitters<'s>,
+    /// What vertices of gather paths, and of photons, are joined to.
+    pub(crate) joined_sources: SourceTargets<'s>,
+    pub(crate) joined_sensors: SensorTargets<'s>,
     pub(crate) sensors: Vec<(SensorId, Arrivals<'s>)>,
-    seed: u64,
+    pub(crate) seed: u64,
     bounce_limit: u32,
     /// Gather paths per batch of each sensor.
     pub(crate) paths: u64,
@@ -66,6 +75,8 @@ impl<'s> Backward<'s> {
             scene,
             layout: Layout::new(scene),
             emitters: Emitters::new(scene),
+            joined_sources: SourceTargets::new(scene),
+            joined_sensors: SensorTargets::new(scene, sensors.iter().copied()),
             sensors: sensors.iter().map(|&id| (id, Arrivals::new(scene, id))).collect(),
             seed,
             bounce_limit,
@@ -103,12 +114,13 @@ impl<'s> Backward<'s> {
         let Task { batch, pace, .. } = task;
         let mut readings =
             Readings::of_batch(self.scene, &self.layout, self.seed, self.paths, batch);
+        let mut joints = Sampler::for_path(self.seed, stream::JOINED_SOURCES, batch);
         for (id, arrivals) in &self.sensors {
             for index in batch * self.paths..(batch + 1) * self.paths {
                 if pace.spend(1).is_break() {
                     return None;
                 }
-                self.trace_path((*id, arrivals), index, task, &mut readings);
+                self.trace_path((*id, arrivals), index, (task, &mut joints), &mut readings);
             }
         }
         (!pace.is_stopped()).then_some(readings)
@@ -118,7 +130,7 @@ impl<'s> Backward<'s> {
         &self,
         (id, arrivals): (SensorId, &Arrivals<'s>),
         index: u64,
-        task: Task<'_>,
+        (task, joints): (Task<'_>, &mut Sampler),
         readings: &mut Readings,
     ) {
         let mut sampler = Sampler::for_path(self.seed, stream::BACKWARD + id.index() as u64, index);
@@ -132,15 +144,16 @@ impl<'s> Backward<'s> {
         };
         let path = Path::arriving(self.scene, &arrival);
         let mut counter = GatherPathCounter {
+            backward: self,
+            arrival: &arrival,
             etendue: path.etendue(self.scene, arrival.extent) / self.paths as f64,
-            cells: &arrival.cells,
             id,
-            layout: self.layout,
-            groups: &self.scene.light,
-            mixed_with: match self.weights {
+            photon_fluxes: match self.weights {
                 Weights::Full => None,
                 Weights::Shared => Some(task.photon_fluxes),
             },
+            turns: Turns::default(),
+            joints,
             readings,
         };
         let segments = follow(gathering, &arrival, &mut sampler, &mut counter);
@@ -197,29 +210,46 @@ pub(crate) fn estimate<'a>(
 }
 
 /// Counts the light of one gather path.
-struct GatherPathCounter<'a> {
+struct GatherPathCounter<'a, 's> {
+    backward: &'a Backward<'s>,
+    arrival: &'a Arrival,
     /// Etendue of this path per basic radiance, its share of the batch, mm² sr.
     etendue: f64,
-    cells: &'a [usize],
     id: SensorId,
-    layout: Layout,
-    groups: &'a LightGroups,
     /// Mixed: flux of one photon of each source, lm or W.
-    mixed_with: Option<&'a [f64]>,
+    photon_fluxes: Option<&'a [f64]>,
+    turns: Turns<'s>,
+    /// For points of sources that vertices are joined to.
+    joints: &'a mut Sampler,
     readings: &'a mut Readings,
 }
 
-impl Observer for GatherPathCounter<'_> {
+impl Observer for GatherPathCounter<'_, '_> {
     fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
         match event {
             Event::Meet(met) => self.meet(path, met),
             Event::Cut(throughput) => self.lose(throughput, Loss::Cut),
             Event::Leaked(_, throughput) => self.lose(throughput, Loss::Leaked),
+            Event::Arrive(vertex) => {
+                let joint = ScatteringVertex::at_face(self.backward.scene, path, vertex);
+                self.turns.meet(joint, vertex.dir);
+                if let Some(joint) = joint {
+                    let way = |light: DVec3| WayStart::from_face(path, vertex, joint.side(-light));
+                    self.join(path, &joint, vertex.dir, way);
+                }
+            }
+            Event::Collide(collision) => {
+                let joint = ScatteringVertex::in_medium(self.backward.scene, path, collision);
+                self.turns.meet(Some(joint), collision.dir);
+                self.join(path, &joint, collision.dir, |_| WayStart::within(path));
+            }
+            Event::Depart(vertex, departure) => {
+                if vertex.interface.visibility == Visibility::Visible {
+                    self.turns.depart(departure.lobe);
+                }
+            }
             Event::Start(_)
             | Event::Travel(_)
-            | Event::Collide(_)
-            | Event::Arrive(_)
-            | Event::Depart(..)
             | Event::Absorbed(_)
             | Event::Detect(_)
             | Event::Roulette(_)
@@ -229,20 +259,81 @@ impl Observer for GatherPathCounter<'_> {
     }
 }
 
-impl GatherPathCounter<'_> {
+impl GatherPathCounter<'_, '_> {
     fn meet(&mut self, path: &Path, met: &MetEmission) {
-        let weight = self.mixed_with.map_or(1.0, |photon_fluxes| {
-            let photon = photon_fluxes[met.source.index()] / met.emitted;
-            let [weight, ..] =
-                Etendues { photon, gather: self.etendue, window: NO_WINDOW }.backward();
-            weight
-        });
-        let flux = weight * met.radiance * self.etendue;
-        let counted = DetectedLight { flux, depth: path.depth, source: met.source };
-        self.readings.count((&self.layout, self.groups), self.id, self.cells, &counted);
+        let dir = path.ray.dir();
+        let place = SourcePoint {
+            source: met.source,
+            shape: met.shape,
+            point: path.ray.at(met.t),
+            dir: -dir,
+        };
+        let last = self.turns.last(dir).map(against);
+        let joined = self.backward.joined_sources.joined_ratio(last, &place);
+        let etendues = self.etendues(&place, met.emitted, joined, dir);
+        let [weight, ..] = etendues.backward();
+        self.count(path.depth, met.source, weight * met.radiance * self.etendue);
+    }
+
+    /// Joins a vertex to a source: docs/method.md, eq. (26).
+    fn join(
+        &mut self,
+        path: &Path,
+        vertex: &ScatteringVertex<'_>,
+        dir: DVec3,
+        way: impl FnOnce(DVec3) -> WayStart,
+    ) {
+        let Backward { scene, joined_sources, .. } = self.backward;
+        let Some((place, distance)) = joined_sources.draw(vertex.point, self.joints) else {
+            return;
+        };
+        let Some(light) = vertex.scattered(place.dir, -dir) else { return };
+        let Some(kept) = light.kept(self.joints) else { return };
+        let start = way(place.dir);
+        self.readings.segments += 1;
+        let Some(end) = start.go(scene, vertex.point, -place.dir, distance) else { return };
+        let emitted = joined_sources.emitted(&place, end.index).unwrap_or(0.0);
+        let measure = joined_sources.measure(&place, vertex.point, light.index_from);
+        let (true, Some(measure)) = (emitted > 0.0, measure) else { return };
+        let joined = light.adjoint / light.albedo * measure;
+        let etendues = self.etendues(&place, emitted, joined, -place.dir);
+        let [weight, ..] = etendues.backward_joined();
+        let radiance = path.throughput * light.adjoint * emitted * measure * end.transmittance;
+        self.count(path.depth + 1, place.source, weight * radiance * self.etendue / kept);
+    }
+
+    /// Etendues of light from a place that this path has found; `joined` is that of a path joined
+    /// to the source relative to this one's, and the path travels along `dir`.
+    fn etendues(&self, place: &SourcePoint, emitted: f64, joined: f64, dir: DVec3) -> Etendues {
+        let photon = self
+            .photon_fluxes
+            .map_or(f64::INFINITY, |fluxes| fluxes[place.source.index()] / emitted);
+        let Arrival { ray, normal, .. } = self.arrival;
+        let first = self.turns.first(dir).map(against);
+        let at = (ray.origin(), *normal);
+        Etendues {
+            photon,
+            photon_joined: photon * self.backward.joined_sensors.joined_ratio(first, self.id, at),
+            gather: self.etendue,
+            gather_joined: self.etendue * joined,
+            window: NO_WINDOW,
+        }
+    }
+
+    fn count(&mut self, depth: u32, source: SourceId, flux: f64) {
+        let Backward { layout, scene, .. } = self.backward;
+        let light = DetectedLight { flux, depth, source };
+        self.readings.count((layout, &scene.light), self.id, &self.arrival.cells, &light);
     }
 
     fn lose(&mut self, throughput: f64, loss: Loss) {
-        self.readings.count_lost(&self.layout, self.id, throughput, loss);
+        self.readings.count_lost(&self.backward.layout, self.id, throughput, loss);
     }
+}
+
+/// A turn of a gather path as its light takes it.
+fn against(
+    (vertex, [before, after]): (ScatteringVertex<'_>, [DVec3; 2]),
+) -> (ScatteringVertex<'_>, [DVec3; 2]) {
+    (vertex, [-after, -before])
 }

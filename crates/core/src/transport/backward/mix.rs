@@ -1,30 +1,45 @@
-//! Forward and backward mixed: each counts the light of a path in proportion to how well it samples
-//! it.
+//! Forward and backward mixed, with connections: each way of finding the light of a path counts it
+//! in proportion to how well it samples it.
 //!
-//! Both know the ends of every path that they find, and therefore the weights of docs/method.md,
-//! eq. (21), without a window. The path between the ends does not matter, so finishes may scatter.
-//! Sources that rays cannot meet are left to photons. `backward` counts the share of gather paths.
+//! Photons and gather paths know the ends of every path that they find, and therefore the weights
+//! of docs/method.md, eq. (27), without a window. The path between the ends does not matter, so
+//! finishes may scatter. `estimator` counts the share of gather paths.
 
 use crate::plan::Estimator;
+use crate::rng::{Sampler, stream};
+use crate::scene::{Ray, SensorId, SourceId, Visibility};
 use crate::transport::backward::estimator::{Backward, Weights, paths_for, work_of_one};
+use crate::transport::connect::sensors::SensorPoint;
+use crate::transport::connect::sources::SourcePoint;
+use crate::transport::connect::vertex::{ScatteringVertex, Turns};
+use crate::transport::connect::way::WayStart;
+use crate::transport::connect::weights::{Etendues, NO_WINDOW};
 use crate::transport::forward;
-use crate::transport::gather::merge::{Etendues, NO_WINDOW};
 use crate::transport::stop::Pace;
 use crate::transport::tally::readings::DetectedLight;
 use crate::transport::tally::work;
 use crate::transport::task::Task;
 use crate::transport::trial::{BATCHES, Trials, Tried};
-use crate::transport::walk::follow::{arrivals_of, etendue_of};
-use crate::transport::{Detection, Event, Observer, Path, Readings};
+use crate::transport::walk::follow::{arrivals_of, comes_through_aim, etendue_of};
+use crate::transport::{Detection, Emergence, Event, Observer, Path, Readings};
+use glam::DVec3;
 use rayon::prelude::*;
+use smallvec::SmallVec;
 use std::ops::ControlFlow;
 
 /// Counts the share of photons on the mixed sensors, beside that of gather paths.
 pub(crate) struct Mixing<'m, 's> {
     backward: &'m Backward<'s>,
     photon_fluxes: &'m [f64],
-    /// Etendue represented by the current photon, mm² sr; 0 if no gather path could meet it.
+    /// Etendue represented by the current photon, mm² sr; 0 if no gather path could find it.
     photon: f64,
+    /// Where it started.
+    start: SourcePoint,
+    /// Its flux at throughput 1, lm or W.
+    flux: f64,
+    turns: Turns<'s>,
+    /// For points of sensors that vertices are joined to.
+    joints: Sampler,
     /// Counts of the batch, not closed.
     pub(crate) readings: Readings,
 }
@@ -33,7 +48,18 @@ impl<'m, 's> Mixing<'m, 's> {
     /// The gather paths of a batch, traced, and ready for its photons; `None` if stopped.
     pub(crate) fn begin(backward: &'m Backward<'s>, task: Task<'m>) -> Option<Self> {
         let readings = backward.trace(task)?;
-        Some(Self { backward, photon_fluxes: task.photon_fluxes, photon: 0.0, readings })
+        let nowhere =
+            SourcePoint { source: SourceId::new(0), shape: 0, point: DVec3::ZERO, dir: DVec3::Z };
+        Some(Self {
+            backward,
+            photon_fluxes: task.photon_fluxes,
+            photon: 0.0,
+            start: nowhere,
+            flux: 0.0,
+            turns: Turns::default(),
+            joints: Sampler::for_path(backward.seed, stream::JOINED_SENSORS, task.batch),
+            readings,
+        })
     }
 }
 
@@ -60,16 +86,37 @@ pub(crate) fn trial(trials: &Trials<'_>) -> Option<Vec<Tried>> {
 impl Observer for Mixing<'_, '_> {
     fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
         match event {
-            Event::Start(start) => {
-                let emitted = self.backward.emitters.emitted(start.source, path, start.shape);
-                let flux = self.photon_fluxes[start.source.index()];
-                self.photon = if emitted > 0.0 { flux / emitted } else { 0.0 };
+            Event::Start(start) => self.start(path, start),
+            Event::Arrive(vertex) if vertex.interface.visibility == Visibility::Visible => {
+                let joint = ScatteringVertex::at_face(self.backward.scene, path, vertex);
+                self.turns.meet(joint, vertex.dir);
+                if let Some(joint) = joint.filter(|_| self.is_joined()) {
+                    let way = |light: DVec3| WayStart::from_face(path, vertex, joint.side(light));
+                    self.join_drawn(path, &joint, vertex.dir, way);
+                    let mut seen = SmallVec::<[SensorPoint; 1]>::new();
+                    let Backward { scene, joined_sensors, .. } = self.backward;
+                    joined_sensors
+                        .draw_leaving(scene, vertex, &mut self.joints, |place| seen.push(place));
+                    for place in &seen {
+                        self.join(path, &joint, (vertex.dir, place), way);
+                    }
+                }
+            }
+            Event::Collide(collision) => {
+                let joint = ScatteringVertex::in_medium(self.backward.scene, path, collision);
+                self.turns.meet(Some(joint), collision.dir);
+                if self.is_joined() {
+                    self.join_drawn(path, &joint, collision.dir, |_| WayStart::within(path));
+                }
+            }
+            Event::Depart(vertex, departure) => {
+                if vertex.interface.visibility == Visibility::Visible {
+                    self.turns.depart(departure.lobe);
+                }
             }
             Event::Detect(light) => self.detect(path, light),
             Event::Travel(_)
-            | Event::Collide(_)
             | Event::Arrive(_)
-            | Event::Depart(..)
             | Event::Absorbed(_)
             | Event::Meet(_)
             | Event::Roulette(_)
@@ -82,20 +129,104 @@ impl Observer for Mixing<'_, '_> {
 }
 
 impl Mixing<'_, '_> {
+    /// Whether vertices of the current photon are joined to sensors.
+    fn is_joined(&self) -> bool {
+        self.photon > 0.0 && !self.backward.joined_sensors.is_empty()
+    }
+
+    fn start(&mut self, path: &Path, start: &Emergence) {
+        let Backward { scene, emitters, joined_sources, .. } = self.backward;
+        let (point, dir) = (path.ray.origin(), path.ray.dir());
+        self.start = SourcePoint { source: start.source, shape: start.shape, point, dir };
+        self.flux = start.flux;
+        self.turns = Turns::default();
+        let met = emitters.emitted(start.source, path, start.shape);
+        let index = scene.media[path.medium.index()].index(path.wavelength);
+        let emitted =
+            if met > 0.0 { Some(met) } else { joined_sources.emitted(&self.start, index) };
+        let flux = self.photon_fluxes[start.source.index()];
+        self.photon = emitted.filter(|emitted| *emitted > 0.0).map_or(0.0, |one| flux / one);
+    }
+
     fn detect(&mut self, path: &Path, light: &Detection<'_>) {
-        let Backward { scene, layout, sensors, paths, .. } = self.backward;
+        let Backward { scene, sensors, joined_sensors, .. } = self.backward;
         let known = arrivals_of(light, sensors);
         let (Some(arrivals), false) = (known, light.cells.is_empty()) else { return };
         let weight = if self.photon > 0.0 {
-            let gather = etendue_of(light, scene, arrivals, path.wavelength) / *paths as f64;
-            let [weight, ..] =
-                Etendues { photon: self.photon, gather, window: NO_WINDOW }.forward();
+            let gather = etendue_of(light, scene, arrivals, path.wavelength);
+            let last = self.turns.last(light.dir);
+            let joined =
+                joined_sensors.joined_ratio(last, light.sensor, (light.point, light.normal));
+            let [weight, ..] = self.etendues(gather, joined, light.dir).forward();
             weight
         } else {
             1.0
         };
-        let (flux, source) = (light.flux * weight, light.source);
-        let counted = DetectedLight { flux, depth: path.depth, source };
-        self.readings.count((layout, &scene.light), light.sensor, light.cells, &counted);
+        self.count(path.depth, light.sensor, light.cells, light.flux * weight);
+    }
+
+    /// Joins a vertex to a point of a sensor.
+    fn join_drawn(
+        &mut self,
+        path: &Path,
+        vertex: &ScatteringVertex<'_>,
+        dir: DVec3,
+        way: impl FnOnce(DVec3) -> WayStart,
+    ) {
+        let drawn = self.backward.joined_sensors.draw(vertex.point, &mut self.joints);
+        if let Some(place) = drawn {
+            self.join(path, vertex, (dir, &place), way);
+        }
+    }
+
+    /// Joins a vertex to a place of a sensor: docs/method.md, eq. (25).
+    fn join(
+        &mut self,
+        path: &Path,
+        vertex: &ScatteringVertex<'_>,
+        (dir, place): (DVec3, &SensorPoint),
+        way: impl FnOnce(DVec3) -> WayStart,
+    ) {
+        let Backward { scene, sensors, .. } = self.backward;
+        let Some(light) = vertex.scattered(dir, place.dir) else { return };
+        let Some(kept) = light.kept(&mut self.joints) else { return };
+        let start = way(place.dir);
+        let ray = Ray::new(vertex.point, place.dir);
+        if !comes_through_aim(scene, place.sensor, (start.on(), &ray), place.distance) {
+            return;
+        }
+        self.readings.segments += 1;
+        let Some(end) = start.go(scene, vertex.point, place.dir, place.distance) else { return };
+        let known = sensors.iter().find(|(id, _)| *id == place.sensor);
+        let Some((_, arrivals)) = known else { return };
+        let back = Ray::new(place.point, -place.dir);
+        let gather = end.index * end.index * arrivals.extent(&back, place.normal);
+        let joined = light.density / light.albedo * place.solid_angle;
+        let [weight, ..] = self.etendues(gather, joined, place.dir).forward_joined();
+        let flux = self.flux * path.throughput * light.density * place.solid_angle;
+        let flux = flux * end.transmittance * weight / kept;
+        self.count(path.depth + 1, place.sensor, &place.cells, flux);
+    }
+
+    /// Etendues of light of this photon at a sensor; `gather` is that of the sensor's only gather
+    /// path, `joined` that of a photon joined to the sensor relative to this one, which travels
+    /// along `dir`.
+    fn etendues(&self, gather: f64, joined: f64, dir: DVec3) -> Etendues {
+        let Backward { joined_sources, paths, .. } = self.backward;
+        let gather = gather / *paths as f64;
+        let from_source = joined_sources.joined_ratio(self.turns.first(dir), &self.start);
+        Etendues {
+            photon: self.photon,
+            photon_joined: self.photon * joined,
+            gather,
+            gather_joined: gather * from_source,
+            window: NO_WINDOW,
+        }
+    }
+
+    fn count(&mut self, depth: u32, sensor: SensorId, cells: &[usize], flux: f64) {
+        let Backward { layout, scene, .. } = self.backward;
+        let light = DetectedLight { flux, depth, source: self.start.source };
+        self.readings.count((layout, &scene.light), sensor, cells, &light);
     }
 }

@@ -2,8 +2,8 @@
 
 use crate::plan::RunPlan;
 use crate::scene::{Arrivals, Scene, SensorId};
+use crate::transport::connect::weights::Etendues;
 use crate::transport::gather::bias;
-use crate::transport::gather::merge::Etendues;
 use crate::transport::gather::records::Records;
 use crate::transport::gather::settings::{GatherSettings, settle};
 use crate::transport::gather::surfaces::SurfaceNumbers;

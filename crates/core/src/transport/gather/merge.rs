@@ -8,6 +8,7 @@
 
 use crate::optics::{Finish, FinishModel, Incidence, Side};
 use crate::scene::Scene;
+use crate::transport::connect::weights::NO_WINDOW;
 use crate::transport::gather::window::{COUNTED, Window};
 use crate::transport::walk::scatter::MetInterface;
 use glam::DVec3;
@@ -19,38 +20,6 @@ pub(crate) const ROULETTE_BELOW: f64 = 1e-4;
 /// Smallest probability of a lobe, 1: rounding near total reflection must not divide by zero. The
 /// same for all three.
 const LEAST_CHANCE: f64 = 1e-9;
-/// No window: the path has no vertex D.
-pub(crate) const NO_WINDOW: [f64; COUNTED] = [0.0; COUNTED];
-
-/// The etendues that weight a path, mm² sr.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Etendues {
-    /// Etendue of one photon where the path starts, `1/(N p_e)`.
-    pub(crate) photon: f64,
-    /// Etendue of one gather path where it ends, `1/(M p_g)`.
-    pub(crate) gather: f64,
-    /// Etendue of each window at vertex D over the probability of the lobe there, G/q; 0 for paths
-    /// without vertex D.
-    pub(crate) window: [f64; COUNTED],
-}
-
-impl Etendues {
-    /// The share counted by a photon in the sensor's cell, for each window, 1: eq. (21).
-    pub(crate) fn forward(&self) -> [f64; COUNTED] {
-        self.window.map(|window| 1.0 / (1.0 + (self.photon + window) / self.gather))
-    }
-
-    /// The share counted by a gather path that meets emission, for each window, 1: eq. (21).
-    pub(crate) fn backward(&self) -> [f64; COUNTED] {
-        self.window.map(|window| 1.0 / (1.0 + (self.gather + window) / self.photon))
-    }
-
-    /// The share counted by a photon and a record together, for each window, 1: eq. (21).
-    pub(crate) fn pair(&self) -> [f64; COUNTED] {
-        self.window.map(|window| window / (self.photon + self.gather + window))
-    }
-}
-
 /// Light at a face that it meets, and its continuation.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FacePassage<'s> {
@@ -184,13 +153,14 @@ pub fn scatterers(scene: &Scene) -> Vec<Scatterer<'_>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::transport::connect::weights::Etendues;
 
     #[test]
     fn weights_are_the_balance_heuristic_and_add_up_to_one() {
         for (c_f, c_b) in [(1.0, 1.0), (3e6, 20.0), (1e-3, 4e9), (0.25, 1e-12)] {
             for c_m in [[0.0; COUNTED], [1.0, 0.25, 0.0625, 0.5, 0.5], [1e9, 1e3, 1e-9, 1.0, 1e2]] {
                 let [window, ..] = [c_m.map(|c_m| c_m / (c_f * c_b))];
-                let etendues = Etendues { photon: 1.0 / c_f, gather: 1.0 / c_b, window };
+                let etendues = Etendues::unjoined(1.0 / c_f, 1.0 / c_b, window);
                 for (k, c_m) in c_m.into_iter().enumerate() {
                     let sum = c_f + c_b + c_m;
                     let shares =
@@ -207,9 +177,9 @@ mod tests {
     #[test]
     fn a_path_that_only_one_estimator_finds_is_all_its_own() {
         let never = f64::INFINITY;
-        let seen = Etendues { photon: 2.0, gather: never, window: NO_WINDOW };
+        let seen = Etendues::unjoined(2.0, never, NO_WINDOW);
         assert_eq!(seen.forward(), [1.0; COUNTED]);
-        let met = Etendues { photon: never, gather: 3.0, window: NO_WINDOW };
+        let met = Etendues::unjoined(never, 3.0, NO_WINDOW);
         assert_eq!((met.backward(), met.forward()), ([1.0; COUNTED], [0.0; COUNTED]));
     }
 

@@ -6,7 +6,8 @@
 //! module does not know how paths are traced.
 
 use crate::scene::Visibility;
-use crate::transport::gather::merge::{Etendues, FacePassage, NO_WINDOW, ROULETTE_BELOW, Recent};
+use crate::transport::connect::weights::{Etendues, NO_WINDOW};
+use crate::transport::gather::merge::{FacePassage, ROULETTE_BELOW, Recent};
 use crate::transport::gather::stream::{Photon, PhotonStream};
 use crate::transport::gather::window::{COUNTED, ESTIMATES, estimates};
 use crate::transport::tally::readings::DetectedLight;
@@ -41,13 +42,13 @@ impl<'a> Merging<'a> {
     /// Etendues that weight a record of vertex D with this G/q, as far as the gather path knows
     /// them.
     pub(super) fn waiting(&self, window: [f64; COUNTED]) -> Etendues {
-        Etendues { photon: f64::INFINITY, gather: self.etendue, window }
+        Etendues::unjoined(f64::INFINITY, self.etendue, window)
     }
 
     /// Share counted by emission that the path has met, for each window, 1.
     pub(super) fn weights(&self, met: &MetEmission) -> [f64; COUNTED] {
         let photon = self.photon_fluxes[met.source.index()] / met.emitted;
-        Etendues { photon, gather: self.etendue, window: self.window }.backward()
+        Etendues::unjoined(photon, self.etendue, self.window).backward()
     }
 }
 
@@ -118,11 +119,9 @@ impl MergedStream<'_, '_> {
         let known = arrivals_of(light, &gather.sensors);
         let (Some(arrivals), false) = (known, light.cells.is_empty()) else { return };
         let gathered = etendue_of(light, gather.scene, arrivals, path.wavelength);
-        let etendues = Etendues {
-            photon: self.photon,
-            gather: gathered / pass.gather_paths as f64,
-            window: self.recent.etendues(pass.window),
-        };
+        let gathered = gathered / pass.gather_paths as f64;
+        let window = self.recent.etendues(pass.window);
+        let etendues = Etendues::unjoined(self.photon, gathered, window);
         let weights = estimates(etendues.forward());
         for (readings, weight) in self.stream.windows.iter_mut().zip(weights) {
             let (flux, source) = (light.flux * weight, light.source);

@@ -5,10 +5,10 @@
 use crate::optics::Incidence;
 use crate::scene::shape::Toward;
 use crate::scene::{MediumId, PrimHit, PrimId, Scene, SourceId, Visibility};
+use crate::transport::connect::weights::Etendues;
 use crate::transport::gather::contribution::{NestedWindows, PhotonHit, SurfaceHit, VolumeHit};
 use crate::transport::gather::estimator::{Gather, RecordedPath, WaitingRecords};
 use crate::transport::gather::index::{PhotonKey, TOGETHER};
-use crate::transport::gather::merge::Etendues;
 use crate::transport::gather::stages::Pass;
 use crate::transport::gather::window::{COUNTED, ESTIMATES, estimates};
 use crate::transport::stop::Pace;

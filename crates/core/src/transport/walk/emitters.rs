@@ -153,6 +153,7 @@ impl<'s> Emitters<'s> {
                         let emitted = self.volume_radiance(seen, path, -path.ray.dir());
                         visit(MetEmission {
                             source: seen.id,
+                            shape: 0,
                             t: segment.length,
                             radiance,
                             emitted,
@@ -202,6 +203,7 @@ impl<'s> Emitters<'s> {
                         segment.throughput * medium.transmittance(path.wavelength, t.max(0.0));
                     visit(MetEmission {
                         source: seen.id,
+                        shape: place,
                         t,
                         radiance: emitted * arriving,
                         emitted,

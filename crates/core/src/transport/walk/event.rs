@@ -111,6 +111,8 @@ pub struct Detection<'a> {
 pub struct MetEmission {
     /// The source that is met.
     pub source: SourceId,
+    /// The shape of the source that is met; 0 for a volume.
+    pub(crate) shape: usize,
     /// Distance along the segment, mm.
     pub(crate) t: f64,
     /// Basic radiance at the start of the path, lm/(mm² sr): the emitted one times the throughput

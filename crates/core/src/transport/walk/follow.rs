@@ -7,7 +7,7 @@ use crate::rng::{Numbers, Sampler};
 use crate::scene::shape::{Crossing, RayStart, Toward};
 use crate::scene::{
     Arrival, Arrivals, Begins, CountedLight, Owner, Passage, Place, Ray, Scene, SensorId,
-    SensorKind, SurfaceSensor, Visibility,
+    SensorKind, StartSurfaces, SurfaceSensor, Visibility,
 };
 use crate::transport::stop::Pace;
 use crate::transport::walk::emitters::{Emitters, SegmentStart};
@@ -81,6 +81,28 @@ pub(crate) fn etendue_of(
 ) -> f64 {
     let index = scene.media[light.medium.index()].index(wavelength);
     index * index * arrivals.extent(&Ray::new(light.point, -light.dir), light.normal)
+}
+
+/// Whether light that starts on some surfaces along a ray, and meets a sensor at distance `t`, came
+/// through one of the faces or ports it is aimed at.
+pub(crate) fn comes_through_aim(
+    scene: &Scene,
+    sensor: SensorId,
+    (on, ray): (&StartSurfaces, &Ray),
+    t: f64,
+) -> bool {
+    let aim = &scene.sensors[sensor.index()].aim;
+    aim.is_empty()
+        || aim.iter().any(|&face| match scene.faces[face.index()].owner {
+            Owner::Solid(_) | Owner::Sheet => on.iter().any(|prim| scene.face_of(prim) == face),
+            Owner::Port => scene.face_patches(face).iter().any(|patch| {
+                let mut crossed = false;
+                patch.crossings(ray, RayStart::Elsewhere, |crossing| {
+                    crossed |= crossing.t >= -scene.tolerance && crossing.t < t;
+                });
+                crossed
+            }),
+        })
 }
 
 /// Progress of a gather path.

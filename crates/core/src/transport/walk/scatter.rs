@@ -63,7 +63,8 @@ fn finish_of(scene: &Scene, finish: Option<FinishId>) -> &Finish {
     finish.map_or(&SMOOTH, |finish| &scene.finishes[finish.index()].finish)
 }
 
-/// An interface as a gather path meets it.
+/// An interface as a path meets it.
+#[derive(Debug, Clone, Copy)]
 pub struct MetInterface<'s> {
     /// The finishes that act on light from either side.
     pub faces: Faces<'s>,

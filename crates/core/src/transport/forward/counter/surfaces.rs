@@ -5,11 +5,10 @@
 
 use crate::optics::Side;
 use crate::scene::shape::{Crossing, RayStart, Toward};
-use crate::scene::{
-    CountedLight, MediumId, Owner, Passage, PrimHit, Seeing, SensorId, SurfaceSensor,
-};
+use crate::scene::{CountedLight, MediumId, Passage, PrimHit, Seeing, SensorId, SurfaceSensor};
 use crate::transport::forward::counter::{Light, PhotonCounter, TravelStart};
 use crate::transport::forward::sensor_table::OnPort;
+use crate::transport::walk::follow::comes_through_aim;
 use crate::transport::{Detection, Event, Observer, Path, Segment, Vertex};
 use glam::{DVec2, DVec3};
 use smallvec::SmallVec;
@@ -125,21 +124,7 @@ impl<'s, O: Observer> PhotonCounter<'_, 's, O> {
 
     /// Whether light that meets a sensor at distance `t` came through one of the faces or ports it is aimed at.
     fn through_aim(&self, path: &Path, sensor: SensorId, t: f64) -> bool {
-        let scene = self.run.scene;
-        let aim = &scene.sensors[sensor.index()].aim;
-        aim.is_empty()
-            || aim.iter().any(|&face| match scene.faces[face.index()].owner {
-                Owner::Solid(_) | Owner::Sheet => {
-                    path.on.iter().any(|prim| scene.face_of(prim) == face)
-                }
-                Owner::Port => scene.face_patches(face).iter().any(|patch| {
-                    let mut crossed = false;
-                    patch.crossings(&path.ray, RayStart::Elsewhere, |crossing| {
-                        crossed |= crossing.t >= -scene.tolerance && crossing.t < t;
-                    });
-                    crossed
-                }),
-            })
+        comes_through_aim(self.run.scene, sensor, (&path.on, &path.ray), t)
     }
 
     #[inline(never)]

@@ -1,0 +1,255 @@
+//! Sensors that photons are joined to.
+
+use crate::rng::{Dimension, Sampler};
+use crate::scene::shape::Toward;
+use crate::scene::{
+    CountedLight, FaceArea, Goniometer, Passage, Place, Scene, Seeing, SensorId, SensorKind,
+    SurfaceSensor, Views,
+};
+use crate::transport::Vertex;
+use crate::transport::connect::vertex::ScatteringVertex;
+use glam::DVec3;
+use lumiduct_base::math::{Aabb, uniform_sphere};
+use smallvec::{SmallVec, smallvec};
+use std::f64::consts::PI;
+
+/// The sensors of an estimator that points can be drawn on.
+#[derive(Debug)]
+pub(crate) struct SensorTargets<'s> {
+    targets: Vec<SensorTarget<'s>>,
+    /// Those that separate directions of light that leaves their faces.
+    leaving: Vec<LeavingTarget<'s>>,
+}
+
+/// A sensor that sees light in some directions as it leaves a face.
+#[derive(Debug)]
+struct LeavingTarget<'s> {
+    id: SensorId,
+    sensor: &'s SurfaceSensor,
+    views: &'s Views,
+}
+
+/// A sensor that vertices are joined to.
+#[derive(Debug)]
+struct SensorTarget<'s> {
+    id: SensorId,
+    extent: TargetExtent<'s>,
+    /// Its area, mm².
+    area: f64,
+    /// A ball around it, mm.
+    center: DVec3,
+    reach: f64,
+}
+
+#[derive(Debug)]
+enum TargetExtent<'s> {
+    Surface(&'s SurfaceSensor, FaceArea<'s>),
+    Sphere(&'s Goniometer, f64),
+}
+
+/// A point of a sensor, drawn to be joined to a vertex.
+#[derive(Debug, Clone)]
+pub(crate) struct SensorPoint {
+    pub(crate) sensor: SensorId,
+    /// Position, mm.
+    pub(crate) point: DVec3,
+    /// Unit normal of the sensor.
+    pub(crate) normal: DVec3,
+    /// Unit direction of light from the vertex.
+    pub(crate) dir: DVec3,
+    /// Distance from the vertex, mm.
+    pub(crate) distance: f64,
+    /// The cells that count the light.
+    pub(crate) cells: SmallVec<[usize; 1]>,
+    /// Solid angle of the sensor from the vertex over the density of the draw, sr.
+    pub(crate) solid_angle: f64,
+}
+
+impl<'s> SensorTargets<'s> {
+    /// Those of some sensors that can be joined: not those that count light only on its first
+    /// passage or all light that leaves a face, and not the far field.
+    pub(crate) fn new(scene: &'s Scene, sensors: impl Iterator<Item = SensorId> + Clone) -> Self {
+        let targets = sensors.clone().filter_map(|id| target(scene, id)).collect();
+        Self { targets, leaving: sensors.filter_map(|id| leaving_target(scene, id)).collect() }
+    }
+
+    /// Whether there is none.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.targets.is_empty() && self.leaving.is_empty()
+    }
+
+    /// A direction for each sensor that sees light as it leaves the face of a vertex.
+    pub(crate) fn draw_leaving(
+        &self,
+        scene: &Scene,
+        vertex: &Vertex<'_>,
+        sampler: &mut Sampler,
+        mut visit: impl FnMut(SensorPoint),
+    ) {
+        let point = vertex.point;
+        for &LeavingTarget { id, sensor, views } in &self.leaving {
+            for hit in vertex.hits.all().filter(|hit| sensor.faces.contains(&hit.face)) {
+                let Some(cell) = sensor.grid.cell(scene.chart(hit.prim, point)) else { continue };
+                let normal = scene.normal(hit.prim, point);
+                let (dir, accepting) = views.draw(sampler);
+                if !sensor.sides.include(sensor.counts, Toward::of(dir, normal)) {
+                    continue;
+                }
+                let solid_angle = 1.0 / views.density(accepting.len());
+                let cells = accepting.iter().map(|view| view * sensor.grid.cells() + cell);
+                let cells = cells.collect();
+                let distance = 0.0;
+                visit(SensorPoint { sensor: id, point, normal, dir, distance, cells, solid_angle });
+            }
+        }
+    }
+
+    /// A point for a vertex, on a sensor chosen in proportion to what it can receive; `None` where
+    /// it does not count light from there.
+    pub(crate) fn draw(&self, vertex: DVec3, sampler: &mut Sampler) -> Option<SensorPoint> {
+        if self.targets.is_empty() {
+            return None;
+        }
+        let target = self.choose(vertex, sampler)?;
+        let (point, normal, cell) = match &target.extent {
+            TargetExtent::Surface(sensor, area) => {
+                let drawn = area.sample(sampler.pair(Dimension::GatherPosition))?;
+                (drawn.point, drawn.normal, sensor.grid.cell(drawn.uv)?)
+            }
+            TargetExtent::Sphere(goniometer, radius) => {
+                let out = uniform_sphere(sampler.pair(Dimension::GatherPosition));
+                let cell = goniometer.cell(out);
+                (goniometer.frame.origin + radius * out, out, cell)
+            }
+        };
+        let offset = point - vertex;
+        let distance = offset.length();
+        let dir = offset / distance;
+        if !dir.is_finite() {
+            return None;
+        }
+        let cells = target.cells(cell, dir, normal)?;
+        let solid_angle = self.solid_angle(target, vertex, (point, normal), dir);
+        Some(SensorPoint { sensor: target.id, point, normal, dir, distance, cells, solid_angle })
+    }
+
+    /// The etendue of a photon joined to a known point of a sensor over that of one that is counted
+    /// there; infinite if it cannot be joined.
+    pub(crate) fn joined_ratio(
+        &self,
+        turn: Option<(ScatteringVertex<'s>, [DVec3; 2])>,
+        sensor: SensorId,
+        (point, normal): (DVec3, DVec3),
+    ) -> f64 {
+        let ratio = turn.and_then(|(vertex, [arriving, leaving])| {
+            let by_view = self.leaving.iter().find(|target| target.id == sensor);
+            let solid_angle = if let Some(target) = by_view {
+                1.0 / target.views.density(target.views.accepting(leaving).count().max(1))
+            } else {
+                let target = self.targets.iter().find(|target| target.id == sensor)?;
+                self.solid_angle(target, vertex.point, (point, normal), leaving)
+            };
+            let light = vertex.scattered(arriving, leaving)?;
+            Some(light.density / light.albedo * solid_angle)
+        });
+        ratio.unwrap_or(f64::INFINITY)
+    }
+
+    /// `|cos θ| / (d² p)`, sr, with the density p of points per area.
+    fn solid_angle(
+        &self,
+        target: &SensorTarget<'s>,
+        vertex: DVec3,
+        (point, normal): (DVec3, DVec3),
+        dir: DVec3,
+    ) -> f64 {
+        let all: f64 = self.targets.iter().map(|one| one.importance(vertex)).sum();
+        let chosen = target.importance(vertex) / all;
+        dir.dot(normal).abs() * target.area / (chosen * point.distance_squared(vertex))
+    }
+
+    fn choose(&self, vertex: DVec3, sampler: &mut Sampler) -> Option<&SensorTarget<'s>> {
+        if let [only] = self.targets.as_slice() {
+            return Some(only);
+        }
+        let all: f64 = self.targets.iter().map(|one| one.importance(vertex)).sum();
+        let mut left = sampler.one(Dimension::GatherPosition) * all;
+        self.targets.iter().find(|one| {
+            left -= one.importance(vertex);
+            left < 0.0
+        })
+    }
+}
+
+impl SensorTarget<'_> {
+    /// What it can receive from a point: its solid angle, roughly, 1.
+    fn importance(&self, vertex: DVec3) -> f64 {
+        self.area / vertex.distance_squared(self.center).max(self.reach * self.reach)
+    }
+
+    /// The cells that count light along `dir`; `None` if none do.
+    fn cells(&self, cell: usize, dir: DVec3, normal: DVec3) -> Option<SmallVec<[usize; 1]>> {
+        let sensor = match &self.extent {
+            TargetExtent::Surface(sensor, _) => sensor,
+            TargetExtent::Sphere(..) => {
+                return (dir.dot(normal) > 0.0).then(|| smallvec![cell]);
+            }
+        };
+        if !sensor.sides.include(sensor.counts, Toward::of(dir, normal)) {
+            return None;
+        }
+        let away = match sensor.counts {
+            CountedLight::Incident => -dir,
+            CountedLight::Leaving => dir,
+        };
+        let count = sensor.grid.cells();
+        let cells: SmallVec<[usize; 1]> = match &sensor.seeing {
+            Seeing::All => smallvec![cell],
+            Seeing::Views(views) => views.accepting(away).map(|view| view * count + cell).collect(),
+            Seeing::Pixels(pixels) => {
+                pixels.pixel(away).map(|pixel| pixel * count + cell).into_iter().collect()
+            }
+        };
+        (!cells.is_empty()).then_some(cells)
+    }
+}
+
+fn leaving_target(scene: &Scene, id: SensorId) -> Option<LeavingTarget<'_>> {
+    let SensorKind::Surface(sensor) = &scene.sensors[id.index()].kind else { return None };
+    let Seeing::Views(views) = &sensor.seeing else { return None };
+    let leaves = sensor.place == Place::Face && sensor.counts == CountedLight::Leaving;
+    (leaves && sensor.passage == Passage::Every).then_some(LeavingTarget { id, sensor, views })
+}
+
+fn target(scene: &Scene, id: SensorId) -> Option<SensorTarget<'_>> {
+    match &scene.sensors[id.index()].kind {
+        SensorKind::Surface(sensor) => {
+            let arrives = sensor.place == Place::Port || sensor.counts == CountedLight::Incident;
+            if !arrives || sensor.passage == Passage::First {
+                return None;
+            }
+            let bounds = sensor
+                .faces
+                .iter()
+                .fold(Aabb::EMPTY, |bounds, &face| bounds.union(scene.face_bounds(face)));
+            let area = FaceArea::new(scene, &sensor.faces);
+            (area.area() > 0.0).then(|| SensorTarget {
+                id,
+                area: area.area(),
+                extent: TargetExtent::Surface(sensor, area),
+                center: bounds.center(),
+                reach: 0.5 * bounds.diagonal(),
+            })
+        }
+        SensorKind::Goniometer(goniometer) => {
+            let radius = goniometer.radius?;
+            Some(SensorTarget {
+                id,
+                extent: TargetExtent::Sphere(goniometer, radius),
+                area: 4.0 * PI * radius * radius,
+                center: goniometer.frame.origin,
+                reach: radius,
+            })
+        }
+    }
+}

@@ -1,0 +1,309 @@
+//! Sources that gather paths are joined to, those that rays cannot meet included.
+
+use crate::rng::{Dimension, Sampler};
+use crate::scene::shape::{Crossing, RayStart, Shape};
+use crate::scene::{
+    Emission, EmitSide, Emitter, EmitterKind, Ray, Scene, Source, SourceId, StartSolids,
+};
+use crate::transport::connect::vertex::ScatteringVertex;
+use glam::DVec3;
+use lumiduct_base::math::Frame;
+use std::f64::consts::PI;
+
+/// The sources of a scene that vertices can be joined to.
+#[derive(Debug)]
+pub(crate) struct SourceTargets<'s> {
+    targets: Vec<SourceTarget<'s>>,
+}
+
+/// A source that vertices are joined to.
+#[derive(Debug)]
+struct SourceTarget<'s> {
+    id: SourceId,
+    source: &'s Source,
+    extent: TargetExtent<'s>,
+    /// A ball around it, mm; infinite around the sky.
+    center: DVec3,
+    reach: f64,
+}
+
+#[derive(Debug)]
+enum TargetExtent<'s> {
+    Point(&'s Frame),
+    Line(&'s Frame, f64),
+    /// Surfaces whose light has a density of directions.
+    Surface(Surfaces<'s>),
+    /// A flat beam along one direction.
+    Beam(Surfaces<'s>, DVec3),
+    /// The sky, or the sun.
+    Far,
+    /// The far distance along one direction.
+    FarBeam,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Surfaces<'s> {
+    shapes: &'s [(Shape, f64)],
+    side: EmitSide,
+    frame: Option<&'s Frame>,
+    /// Flux per area, lm/mm².
+    exitance: f64,
+}
+
+/// A place of a source from which light travels to a vertex.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SourcePoint {
+    pub(crate) source: SourceId,
+    /// The shape of the source that it lies on; 0 for other sources.
+    pub(crate) shape: usize,
+    /// Position, mm; of no meaning for the sky.
+    pub(crate) point: DVec3,
+    /// Unit direction of its light.
+    pub(crate) dir: DVec3,
+}
+
+impl<'s> SourceTargets<'s> {
+    /// Those of a scene.
+    pub(crate) fn new(scene: &'s Scene) -> Self {
+        let lit = scene.sources.iter().enumerate().filter(|(_, source)| source.is_lit());
+        let targets = lit.filter_map(|(index, source)| target(SourceId::new(index), source));
+        Self { targets: targets.collect() }
+    }
+
+    /// A place for a vertex, on a source chosen in proportion to the light it can send there, and
+    /// its distance, mm; `None` where it sends none.
+    pub(crate) fn draw(&self, vertex: DVec3, sampler: &mut Sampler) -> Option<(SourcePoint, f64)> {
+        let target = self.choose(vertex, sampler)?;
+        let at = |shape: usize, point: DVec3| {
+            let distance = point.distance(vertex);
+            let dir = (vertex - point) / distance;
+            let place = SourcePoint { source: target.id, shape, point, dir };
+            dir.is_finite().then_some((place, distance))
+        };
+        match &target.extent {
+            TargetExtent::Point(frame) => at(0, frame.origin),
+            TargetExtent::Line(frame, length) => {
+                let along = length * (sampler.one(Dimension::EmitPosition) - 0.5);
+                at(0, frame.origin + along * frame.z)
+            }
+            TargetExtent::Surface(surfaces) => {
+                let (shape, point) = surfaces.sample(sampler);
+                at(shape, point)
+            }
+            TargetExtent::Beam(surfaces, dir) => {
+                let (shape, distance) = surfaces.origin(&Ray::new(vertex, -*dir))?;
+                let point = vertex - distance * dir;
+                Some((SourcePoint { source: target.id, shape, point, dir: *dir }, distance))
+            }
+            TargetExtent::Far | TargetExtent::FarBeam => {
+                let dir = target.source.emission.sample(EmitterKind::Far, sampler);
+                let place = SourcePoint { source: target.id, shape: 0, point: vertex, dir };
+                Some((place, f64::INFINITY))
+            }
+        }
+    }
+
+    /// What the etendue of a photon is its flux over, at a place in a medium of this index: basic
+    /// radiance, intensity, intensity per length, or irradiance across a beam, lm per mm² sr, sr,
+    /// mm sr or mm². `None` for a source that no vertex is joined to.
+    pub(crate) fn emitted(&self, place: &SourcePoint, index: f64) -> Option<f64> {
+        let target = self.target(place.source)?;
+        let source = target.source;
+        Some(match &target.extent {
+            TargetExtent::Point(frame) => {
+                let local = frame.to_local(place.dir);
+                source.flux * source.emission.density(EmitterKind::Point, local)?
+            }
+            TargetExtent::Line(frame, length) => {
+                source.flux / length * line_density(&source.emission, frame.to_local(place.dir))?
+            }
+            TargetExtent::Surface(surfaces) => {
+                surfaces.radiance(&source.emission, place) / (index * index)
+            }
+            TargetExtent::Beam(surfaces, _) => {
+                surfaces.exitance / place.dir.dot(surfaces.normal(place)).abs()
+            }
+            TargetExtent::Far => {
+                target.across() * source.emission.density(EmitterKind::Far, place.dir)?
+                    / (index * index)
+            }
+            TargetExtent::FarBeam => target.across(),
+        })
+    }
+
+    /// Normal irradiance at a vertex over n² and [`Self::emitted`], the density of draws
+    /// considered; the vertex has light from a medium of this index.
+    pub(crate) fn measure(&self, place: &SourcePoint, vertex: DVec3, index: f64) -> Option<f64> {
+        let target = self.target(place.source)?;
+        let all: f64 = self.targets.iter().map(|one| one.importance(vertex)).sum();
+        let per_chance = all / target.importance(vertex);
+        let square = place.point.distance_squared(vertex);
+        Some(match &target.extent {
+            TargetExtent::Point(_) => per_chance / (index * index * square),
+            TargetExtent::Line(_, length) => per_chance * length / (index * index * square),
+            TargetExtent::Surface(surfaces) => {
+                let cos = place.dir.dot(surfaces.normal(place)).abs();
+                per_chance * surfaces.area() * cos / square
+            }
+            TargetExtent::Beam(..) | TargetExtent::FarBeam => per_chance / (index * index),
+            TargetExtent::Far => {
+                per_chance / target.source.emission.density(EmitterKind::Far, place.dir)?
+            }
+        })
+    }
+
+    /// The etendue of a gather path joined to a known place over that of one that meets it there;
+    /// infinite if it cannot be joined.
+    pub(crate) fn joined_ratio(
+        &self,
+        turn: Option<(ScatteringVertex<'s>, [DVec3; 2])>,
+        place: &SourcePoint,
+    ) -> f64 {
+        let ratio = turn.and_then(|(vertex, [arriving, leaving])| {
+            let light = vertex.scattered(arriving, leaving)?;
+            let measure = self.measure(place, vertex.point, light.index_from)?;
+            Some(light.adjoint / light.albedo * measure)
+        });
+        ratio.unwrap_or(f64::INFINITY)
+    }
+
+    fn target(&self, id: SourceId) -> Option<&SourceTarget<'s>> {
+        self.targets.iter().find(|target| target.id == id)
+    }
+
+    fn choose(&self, vertex: DVec3, sampler: &mut Sampler) -> Option<&SourceTarget<'s>> {
+        if let [only] = self.targets.as_slice() {
+            return Some(only);
+        }
+        let all: f64 = self.targets.iter().map(|one| one.importance(vertex)).sum();
+        let mut left = sampler.one(Dimension::EmitPosition) * all;
+        self.targets.iter().find(|one| {
+            left -= one.importance(vertex);
+            left < 0.0
+        })
+    }
+}
+
+impl SourceTarget<'_> {
+    /// Normal irradiance that it can give a point, roughly, lm/mm².
+    fn importance(&self, vertex: DVec3) -> f64 {
+        let flux = self.source.flux;
+        match &self.extent {
+            TargetExtent::Far | TargetExtent::FarBeam => self.across(),
+            TargetExtent::Beam(surfaces, _) => surfaces.exitance,
+            TargetExtent::Point(_) | TargetExtent::Line(..) | TargetExtent::Surface(_) => {
+                flux / vertex.distance_squared(self.center).max(self.reach * self.reach)
+            }
+        }
+    }
+
+    /// Flux of the far distance per area across each direction, lm/mm².
+    fn across(&self) -> f64 {
+        self.source.flux / (PI * self.reach * self.reach)
+    }
+}
+
+impl Surfaces<'_> {
+    fn area(&self) -> f64 {
+        self.shapes.last().map_or(0.0, |(_, area)| *area)
+    }
+
+    /// A point, uniform over the area, and its shape.
+    fn sample(&self, sampler: &mut Sampler) -> (usize, DVec3) {
+        let last = self.shapes.len() - 1;
+        let area = sampler.one(Dimension::EmitPosition) * self.area();
+        let shape = self.shapes.partition_point(|(_, up_to)| *up_to <= area).min(last);
+        (shape, self.shapes[shape].0.sample(sampler.pair(Dimension::EmitPosition)))
+    }
+
+    /// The first shape that a ray meets, and its distance, mm.
+    fn origin(&self, ray: &Ray) -> Option<(usize, f64)> {
+        let mut nearest = None;
+        for (shape, (surface, _)) in self.shapes.iter().enumerate() {
+            surface.crossings(ray, RayStart::Elsewhere, |Crossing { t, .. }| {
+                if t > 0.0 && nearest.is_none_or(|(_, other)| t < other) {
+                    nearest = Some((shape, t));
+                }
+            });
+        }
+        nearest
+    }
+
+    /// The unit normal of the side that shines.
+    fn normal(&self, place: &SourcePoint) -> DVec3 {
+        let normal = self.shapes[place.shape].0.normal(place.point);
+        match self.side {
+            EmitSide::Front => normal,
+            EmitSide::Back => -normal,
+        }
+    }
+
+    /// Radiance, lm/(mm² sr).
+    fn radiance(&self, emission: &Emission, place: &SourcePoint) -> f64 {
+        let normal = self.normal(place);
+        let cos = place.dir.dot(normal);
+        if cos <= 0.0 {
+            return 0.0;
+        }
+        let own = || Frame::from_axis(DVec3::ZERO, normal).to_local(place.dir);
+        let local = self.frame.map_or_else(own, |frame| frame.to_local(place.dir));
+        self.exitance * emission.density(EmitterKind::Surface, local).unwrap_or(0.0) / cos
+    }
+}
+
+/// Density over solid angle of the directions of a line along z, 1/sr: a Lambertian one's is
+/// proportional to the sine of the angle to the line.
+fn line_density(emission: &Emission, local: DVec3) -> Option<f64> {
+    match emission {
+        Emission::Lambertian => Some(local.truncate().length() / (PI * PI)),
+        Emission::CosinePower(_)
+        | Emission::Cone { .. }
+        | Emission::Collimated { .. }
+        | Emission::Isotropic
+        | Emission::Sky(_) => emission.density(EmitterKind::Point, local),
+    }
+}
+
+fn target(id: SourceId, source: &Source) -> Option<SourceTarget<'_>> {
+    // Its light must cross a face before it can go anywhere.
+    if source.start == StartSolids::Behind {
+        return None;
+    }
+    let bounds = source.emitter.bounds();
+    let mut ball = (bounds.center(), 0.5 * bounds.diagonal());
+    let beam = match source.emission {
+        Emission::Collimated { axis } => Some(axis),
+        Emission::Lambertian
+        | Emission::CosinePower(_)
+        | Emission::Cone { .. }
+        | Emission::Isotropic
+        | Emission::Sky(_) => None,
+    };
+    let extent = match (&source.emitter, beam) {
+        (Emitter::Point(frame), None) => TargetExtent::Point(frame),
+        (Emitter::Line { frame, length }, None) => TargetExtent::Line(frame, *length),
+        (Emitter::Surface { shapes, side, frame }, beam) => {
+            let frame = frame.as_ref();
+            let exitance = source.flux / source.emitter.area()?;
+            let surfaces = Surfaces { shapes, side: *side, frame, exitance };
+            match beam {
+                None => TargetExtent::Surface(surfaces),
+                Some(axis) => {
+                    let normal = source.emitter.axis();
+                    let own = || Some(Frame::from_axis(DVec3::ZERO, normal?));
+                    let frame = frame.copied().or_else(own)?;
+                    TargetExtent::Beam(surfaces, frame.to_world(axis))
+                }
+            }
+        }
+        (Emitter::Far { center, reach, .. }, beam) => {
+            ball = (*center, *reach);
+            beam.map_or(TargetExtent::Far, |_| TargetExtent::FarBeam)
+        }
+        (Emitter::Volume { .. }, _) | (Emitter::Point(_) | Emitter::Line { .. }, Some(_)) => {
+            return None;
+        }
+    };
+    let (center, reach) = ball;
+    Some(SourceTarget { id, source, extent, center, reach })
+}

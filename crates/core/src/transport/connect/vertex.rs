@@ -1,0 +1,186 @@
+//! Vertices of a path that scatter light into a density of directions, and those at its two ends.
+
+use crate::optics::{FinishModel, Incidence, Lobe, Side, Spread, VolumeScattering};
+use crate::rng::{Dimension, Sampler};
+use crate::scene::{Scene, Visibility};
+use crate::transport::walk::scatter::{MetInterface, facing};
+use crate::transport::{Collision, Path, Vertex};
+use glam::DVec3;
+use std::f64::consts::PI;
+
+/// Density relative to that of a diffuser below which joins are left out at random, 1.
+const WORTHWHILE: f64 = 0.01;
+
+/// A vertex that scatters.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ScatteringVertex<'s> {
+    /// Position, mm.
+    pub(crate) point: DVec3,
+    place: VertexPlace<'s>,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum VertexPlace<'s> {
+    Face(MetInterface<'s>),
+    Medium { scattering: VolumeScattering, index: f64 },
+}
+
+/// Light that a vertex scatters from one direction into another.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ScatteredLight {
+    /// Share of the arriving flux that leaves per solid angle, 1/sr.
+    pub(crate) density: f64,
+    /// Basic radiance that leaves, per solid angle of arriving basic radiance, 1/sr.
+    pub(crate) adjoint: f64,
+    /// Share of the arriving flux that leaves in any direction, 1.
+    pub(crate) albedo: f64,
+    /// Refractive index of the medium that the light comes from.
+    pub(crate) index_from: f64,
+}
+
+impl ScatteredLight {
+    /// The probability with which a join is worth its way, if this one is: where a narrow lobe
+    /// sends next to nothing, most are left out.
+    pub(crate) fn kept(&self, sampler: &mut Sampler) -> Option<f64> {
+        let chance = PI * self.density / (WORTHWHILE * self.albedo);
+        if chance >= 1.0 {
+            return Some(1.0);
+        }
+        (sampler.one(Dimension::Roulette) < chance).then_some(chance)
+    }
+}
+
+impl<'s> ScatteringVertex<'s> {
+    /// The vertex of a path at a face; `None` where only discrete directions leave.
+    pub(crate) fn at_face(scene: &'s Scene, path: &Path, vertex: &Vertex<'_>) -> Option<Self> {
+        let finishes = [vertex.interface.finish, scene.finish_behind(vertex.interface)];
+        let scatters = finishes
+            .into_iter()
+            .flatten()
+            .any(|finish| scene.finishes[finish.index()].finish.spread() != Spread::Discrete);
+        let is_visible = vertex.interface.visibility == Visibility::Visible;
+        (is_visible && scatters).then(|| Self {
+            point: vertex.point,
+            place: VertexPlace::Face(facing(scene, path, vertex)),
+        })
+    }
+
+    /// The vertex of a path within a medium.
+    pub(crate) fn in_medium(scene: &Scene, path: &Path, collision: &Collision<'_>) -> Self {
+        let index = scene.media[collision.medium.index()].index(path.wavelength);
+        let scattering = *collision.scattering;
+        Self { point: collision.point, place: VertexPlace::Medium { scattering, index } }
+    }
+
+    /// What becomes of light that arrives and leaves along these unit directions of travel; `None`
+    /// where the vertex does not scatter it so.
+    pub(crate) fn scattered(&self, arriving: DVec3, leaving: DVec3) -> Option<ScatteredLight> {
+        let light = match &self.place {
+            VertexPlace::Face(met) => at_face(met, arriving, leaving)?,
+            VertexPlace::Medium { scattering, index } => {
+                let density = scattering.phase(arriving.dot(leaving));
+                ScatteredLight { density, adjoint: density, albedo: 1.0, index_from: *index }
+            }
+        };
+        (light.density > 0.0 && light.adjoint.is_finite()).then_some(light)
+    }
+
+    /// The side of its face, as the path met it, to which a direction points.
+    pub(crate) fn side(&self, dir: DVec3) -> Side {
+        match &self.place {
+            VertexPlace::Face(met) if dir.dot(met.facet) <= 0.0 => Side::Transmitted,
+            VertexPlace::Face(_) | VertexPlace::Medium { .. } => Side::Reflected,
+        }
+    }
+}
+
+fn at_face(met: &MetInterface<'_>, arriving: DVec3, leaving: DVec3) -> Option<ScatteredLight> {
+    let Incidence { normal, index_from, index_to, grain, .. } = met.incidence;
+    let (finish, normal, facet, index_from, index_to) = if arriving.dot(met.facet) < 0.0 {
+        (met.faces.own, normal, met.facet, index_from, index_to)
+    } else {
+        (met.faces.behind, -normal, -met.facet, index_to, index_from)
+    };
+    let incidence = Incidence { dir: arriving, normal, index_from, index_to, grain };
+    if arriving.dot(normal) >= 0.0 {
+        return None;
+    }
+    let side = if leaving.dot(facet) > 0.0 { Side::Reflected } else { Side::Transmitted };
+    let toward = |out: DVec3| {
+        let is_there = incidence.side_of(out) == side;
+        if is_there { finish.evaluate(&incidence, out) * out.dot(normal).abs() } else { 0.0 }
+    };
+    let mut density = toward(leaving);
+    if normal != facet {
+        // Light that an interpolated normal sends into the facet is mirrored about the facet.
+        density += toward(leaving - 2.0 * leaving.dot(facet) * facet);
+    }
+    let index_ratio = match side {
+        Side::Reflected => 1.0,
+        Side::Transmitted => index_from / index_to,
+    };
+    let cosines = (arriving.dot(facet) / leaving.dot(facet)).abs();
+    Some(ScatteredLight {
+        density,
+        adjoint: density * cosines * index_ratio * index_ratio,
+        albedo: finish.shares(&incidence).sum(),
+        index_from,
+    })
+}
+
+/// A change of direction of a path.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Turn<'s> {
+    /// Where; `None` at a vertex of discrete directions.
+    pub(crate) vertex: Option<ScatteringVertex<'s>>,
+    /// Unit direction in which the path travelled before it.
+    pub(crate) before: DVec3,
+}
+
+/// The first and the last turn of a path so far.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Turns<'s> {
+    first: Option<Turn<'s>>,
+    /// Unit direction of the path after its first turn, once it is known.
+    after_first: Option<DVec3>,
+    last: Option<Turn<'s>>,
+}
+
+impl<'s> Turns<'s> {
+    /// The path meets a vertex as it travels along `dir`.
+    pub(crate) fn meet(&mut self, vertex: Option<ScatteringVertex<'s>>, dir: DVec3) {
+        let turn = Turn { vertex, before: dir };
+        if self.first.is_some() {
+            self.after_first.get_or_insert(dir);
+        } else {
+            self.first = Some(turn);
+        }
+        self.last = Some(turn);
+    }
+
+    /// The path has left its last vertex.
+    pub(crate) fn depart(&mut self, lobe: Lobe) {
+        if lobe == Lobe::Diffuse {
+            return;
+        }
+        if let Some(last) = &mut self.last {
+            last.vertex = None;
+        }
+        if let (Some(first), None) = (&mut self.first, self.after_first) {
+            first.vertex = None;
+        }
+    }
+
+    /// The first scattering vertex, with the directions of travel before and after it; the path now
+    /// travels along `dir`. `None` if the first vertex has discrete directions.
+    pub(crate) fn first(&self, dir: DVec3) -> Option<(ScatteringVertex<'s>, [DVec3; 2])> {
+        let turn = self.first?;
+        Some((turn.vertex?, [turn.before, self.after_first.unwrap_or(dir)]))
+    }
+
+    /// The last scattering vertex, in the same way.
+    pub(crate) fn last(&self, dir: DVec3) -> Option<(ScatteringVertex<'s>, [DVec3; 2])> {
+        let turn = self.last?;
+        Some((turn.vertex?, [turn.before, dir]))
+    }
+}

@@ -1,0 +1,104 @@
+//! Light that is joined to sensors and sources: exact fields behind one diffuse face.
+
+use crate::trial::{Comparison, Way, measures};
+use std::f64::consts::PI;
+
+/// Largest relative standard error of a joined value, 1: forward as an oracle would need some
+/// 10^7 photons for it.
+const MOST_NOISE: f64 = 0.003;
+
+/// Compares the mixed estimate of some measures with exact values.
+fn assert_exact(what: &str, text: &str, expected: &[(&str, f64)]) {
+    let mut comparison = Comparison::default();
+    let found = measures(text, Way::Mixed);
+    for &(name, expected) in expected {
+        let measure = &found.values[name];
+        comparison.add(&format!("{what}, {name}"), measure, expected, 0.0);
+        let noise = measure.std_error / measure.value;
+        assert!(noise < MOST_NOISE, "{what}, {name}: noise of {noise}");
+    }
+    comparison.assert(what, expected.len());
+}
+
+/// A beam fills a diffuse disc, of which a coaxial disc sees a share by its configuration factor
+/// (Howell, A catalog of radiation heat transfer configuration factors, C-41).
+#[test]
+fn a_disc_sees_a_lit_disc_by_their_configuration_factor() {
+    let text = r#"
+[finishes.white.lambertian]
+reflectance = 0.8
+[sheets.plate.disk]
+radius_mm = 5
+finish = "white"
+[sources.beam.disk]
+radius_mm = 4.999999
+at = { position_mm = [0, 0, 50], axis = [0, 0, -1] }
+emission = "collimated"
+flux_lm = 10
+[sensors.cell]
+plane = { disk = { radius_mm = 2 } }
+at = { position_mm = [0, 0, 10], axis = [0, 0, -1] }
+"#;
+    let [lit, seeing]: [f64; 2] = [5.0 / 10.0, 2.0 / 10.0];
+    let x = 1.0 + (1.0 + seeing * seeing) / (lit * lit);
+    let factor = 0.5 * (x - (x * x - 4.0 * (seeing / lit).powi(2)).sqrt());
+    assert_exact("disc to disc", text, &[("cell.flux", 10.0 * 0.8 * factor)]);
+}
+
+/// Illuminance on the axis below a diffusing sheet under a point: ∫ τ E(r) cos⁴/(π b²) dA with
+/// E(r) = I a/(a² + r²)^(3/2).
+#[test]
+fn a_cell_below_a_sheet_under_a_point_has_the_light_of_the_integral() {
+    let text = r#"
+[finishes.opal.lambertian]
+reflectance = 0.2
+transmittance = 0.6
+[sheets.sheet.disk]
+radius_mm = 20
+finish = "opal"
+[sources.lamp.point]
+at = { position_mm = [0, 0, 10] }
+flux_lm = 100
+[sensors.cell]
+plane = { disk = { radius_mm = 0.05 } }
+at = { position_mm = [0, 0, -15], axis = [0, 0, 1] }
+"#;
+    let (above, below, radius, transmittance): (f64, f64, f64, f64) = (10.0, 15.0, 20.0, 0.6);
+    let intensity = 100.0 / (4.0 * PI);
+    let steps = 200_000;
+    let ring = |k: i32| {
+        let dr = radius / f64::from(steps);
+        let r = (f64::from(k) + 0.5) * dr;
+        let lit = intensity * above / (above * above + r * r).powf(1.5);
+        let seen = below * below / (PI * (below * below + r * r).powi(2));
+        transmittance * lit * seen * 2.0 * PI * r * dr
+    };
+    // Per mm² to lx.
+    let illuminance = 1e6 * (0..steps).map(ring).sum::<f64>();
+    assert_exact("sheet under a point", text, &[("cell.illuminance_avg", illuminance)]);
+}
+
+/// A diffuse face has the luminance τE/π in all directions.
+#[test]
+fn a_lit_sheet_has_the_same_luminance_in_all_directions() {
+    let text = r#"
+[finishes.opal.lambertian]
+reflectance = 0.2
+transmittance = 0.6
+[sheets.sheet.disk]
+radius_mm = 20
+finish = "opal"
+[sources.beam.disk]
+radius_mm = 19.999999
+at = { position_mm = [0, 0, 30], axis = [0, 0, -1] }
+emission = "collimated"
+flux_lm = 10
+[sensors.eye]
+luminance = { acceptance_half_angle_deg = 0.5, directions = [{ theta_deg = 0, phi_deg = 0 }, { theta_deg = 70, phi_deg = 30 }] }
+on = "sheet.surface"
+side = "back"
+"#;
+    let luminance = 1e6 * 0.6 * 10.0 / (PI * 20.0 * 20.0) / PI;
+    let names = ["eye.luminance_avg"];
+    assert_exact("lit sheet", text, &names.map(|name| (name, luminance)));
+}

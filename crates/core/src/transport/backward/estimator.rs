@@ -311,10 +311,11 @@ impl GatherPathCounter<'_, '_> {
         let Arrival { ray, normal, .. } = self.arrival;
         let first = self.turns.first(dir).map(against);
         let at = (ray.origin(), *normal);
+        let meets = self.backward.emitters.meets(place.source);
         Etendues {
             photon,
             photon_joined: photon * self.backward.joined_sensors.joined_ratio(first, self.id, at),
-            gather: self.etendue,
+            gather: if meets { self.etendue } else { f64::INFINITY },
             gather_joined: self.etendue * joined,
             window: NO_WINDOW,
         }

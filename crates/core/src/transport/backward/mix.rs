@@ -212,13 +212,13 @@ impl Mixing<'_, '_> {
     /// path, `joined` that of a photon joined to the sensor relative to this one, which travels
     /// along `dir`.
     fn etendues(&self, gather: f64, joined: f64, dir: DVec3) -> Etendues {
-        let Backward { joined_sources, paths, .. } = self.backward;
+        let Backward { emitters, joined_sources, paths, .. } = self.backward;
         let gather = gather / *paths as f64;
         let from_source = joined_sources.joined_ratio(self.turns.first(dir), &self.start);
         Etendues {
             photon: self.photon,
             photon_joined: self.photon * joined,
-            gather,
+            gather: if emitters.meets(self.start.source) { gather } else { f64::INFINITY },
             gather_joined: gather * from_source,
             window: NO_WINDOW,
         }

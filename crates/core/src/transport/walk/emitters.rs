@@ -132,6 +132,11 @@ impl<'s> Emitters<'s> {
         Self { scene, seen: seen.collect() }
     }
 
+    /// Whether paths can meet the light of a source.
+    pub(crate) fn meets(&self, source: SourceId) -> bool {
+        self.seen.iter().any(|seen| seen.id == source)
+    }
+
     /// Everything that a path meets along a segment.
     pub(crate) fn along(
         &self,

@@ -169,7 +169,10 @@ impl Comparison {
 
     /// The same with a bias allowance.
     fn add_biased(&mut self, what: &str, found: &Measure, [expected, error]: [f64; 2], bias: f64) {
-        let noise = found.std_error.hypot(error);
+        // The variance of a sum of few weights goes with its mean: a run that has met too few of them
+        // finds too little light and too small an error, so its error is that at the expected value.
+        let few = if found.value > 0.0 { (expected / found.value).max(1.0).sqrt() } else { 1.0 };
+        let noise = (few * found.std_error).hypot(error);
         let off = found.value - expected;
         let needed = (off.abs() - SIGMAS * noise).max(0.0);
         let [off_share, bias_share, needed_share] =

@@ -98,6 +98,13 @@ impl FinishModel for Microfacet {
         if share > 0.0 { self.sent(&facet, side, incidence, share) } else { None }
     }
 
+    /// That of a facet without tilt.
+    fn albedo_about(&self, incidence: &Incidence) -> f64 {
+        let frame = Frame::from_axis(DVec3::ZERO, incidence.normal);
+        let level = MetFacet { normal: DVec3::Z, cos: incidence.cos(), frame };
+        self.of_facet(&level, incidence).sum()
+    }
+
     fn chances(&self, incidence: &Incidence) -> Shares {
         self.sides(incidence).1
     }

@@ -72,6 +72,11 @@ impl<F: FinishModel> FinishModel for Mixture<'_, F> {
         self.pick(sampler).scatter_toward(side, incidence, sampler)
     }
 
+    fn albedo_about(&self, incidence: &Incidence) -> f64 {
+        let of = |(weight, part): &(f64, F)| weight * part.albedo_about(incidence);
+        self.parts.iter().map(of).sum::<f64>() / self.total()
+    }
+
     fn chances(&self, incidence: &Incidence) -> Shares {
         self.mean(|part| part.chances(incidence))
     }

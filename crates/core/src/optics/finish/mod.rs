@@ -243,6 +243,10 @@ impl FinishModel for Finish {
         ask!(self, finish => finish.scatter_toward(side, incidence, sampler))
     }
 
+    fn albedo_about(&self, incidence: &Incidence) -> f64 {
+        ask!(self, finish => finish.albedo_about(incidence))
+    }
+
     fn chances(&self, incidence: &Incidence) -> Shares {
         ask!(self, finish => finish.chances(incidence))
     }

@@ -59,6 +59,12 @@ pub trait FinishModel {
         (share > 0.0).then(|| out.unrefracted(incidence))
     }
 
+    /// Share of the light that leaves to either side, 1: roughly, where [`FinishModel::shares`] takes
+    /// long. For weights, which any function serves.
+    fn albedo_about(&self, incidence: &Incidence) -> f64 {
+        self.shares(incidence).sum()
+    }
+
     /// Probabilities with which [`FinishModel::scatter`] sends light that it does not absorb to the
     /// two sides, 1; both are 0 where it always absorbs. The parts of a mixture count by their
     /// weights.

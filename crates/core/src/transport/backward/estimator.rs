@@ -6,12 +6,13 @@
 //! with such sources is refused beforehand. When mixed with forward, photons also count on the
 //! sensors, and all count by their weights (`mix`).
 
+use crate::optics::Lobe;
 use crate::plan::{Estimator, RunPlan};
 use crate::rng::{Sampler, stream};
-use crate::scene::{Arrival, Arrivals, Scene, SensorId, SourceId, Visibility};
+use crate::scene::{Arrival, Arrivals, Scene, SensorId, SourceId};
 use crate::transport::connect::sensors::SensorTargets;
 use crate::transport::connect::sources::{SourcePoint, SourceTargets};
-use crate::transport::connect::vertex::{ScatteringVertex, Turns};
+use crate::transport::connect::vertex::{ScatteringVertex, TurnAt, Turns};
 use crate::transport::connect::way::WayStart;
 use crate::transport::connect::weights::{Etendues, NO_WINDOW};
 use crate::transport::estimate::Estimate;
@@ -106,6 +107,21 @@ impl<'s> Backward<'s> {
     /// Gather paths of all sensors in a batch.
     pub(crate) fn batch_paths(&self) -> u64 {
         self.paths * self.sensors.len() as u64
+    }
+
+    /// The etendue of a gather path joined to a source at a turn over that of one that meets its
+    /// place; infinite if it is not joined.
+    pub(crate) fn joined_to_source(
+        &self,
+        sensor: SensorId,
+        turn: Option<TurnAt<'s>>,
+        place: &SourcePoint,
+    ) -> f64 {
+        // The light of a join could have passed the sensor before.
+        if self.scene.sensors[sensor.index()].counts_first_passage() {
+            return f64::INFINITY;
+        }
+        self.joined_sources.joined_ratio(turn, place)
     }
 
     /// Traces the gather paths of a batch. It is not closed, since photons may contribute to it.
@@ -242,12 +258,9 @@ impl Observer for GatherPathCounter<'_, '_> {
                 let joint = ScatteringVertex::in_medium(self.backward.scene, path, collision);
                 self.turns.meet(Some(joint), collision.dir);
                 self.join(path, &joint, collision.dir, |_| WayStart::within(path));
+                self.turns.depart(Lobe::Diffuse);
             }
-            Event::Depart(vertex, departure) => {
-                if vertex.interface.visibility == Visibility::Visible {
-                    self.turns.depart(departure.lobe);
-                }
-            }
+            Event::Depart(_, departure) => self.turns.depart(departure.lobe),
             Event::Start(_)
             | Event::Travel(_)
             | Event::Absorbed(_)
@@ -269,8 +282,8 @@ impl GatherPathCounter<'_, '_> {
             dir: -dir,
         };
         let last = self.turns.last(dir).map(against);
-        let joined = self.backward.joined_sources.joined_ratio(last, &place);
-        let etendues = self.etendues(&place, met.emitted, joined, dir);
+        let joined = self.backward.joined_to_source(self.id, last, &place);
+        let etendues = self.etendues(&place, met.emitted, joined, self.turns.first(dir));
         let [weight, ..] = etendues.backward();
         self.count(path.depth, met.source, weight * met.radiance * self.etendue);
     }
@@ -284,6 +297,9 @@ impl GatherPathCounter<'_, '_> {
         way: impl FnOnce(DVec3) -> WayStart,
     ) {
         let Backward { scene, joined_sources, .. } = self.backward;
+        if scene.sensors[self.id.index()].counts_first_passage() {
+            return;
+        }
         let Some((place, distance)) = joined_sources.draw(vertex.point, self.joints) else {
             return;
         };
@@ -296,20 +312,27 @@ impl GatherPathCounter<'_, '_> {
         let measure = joined_sources.measure(&place, vertex.point, light.index_from);
         let (true, Some(measure)) = (emitted > 0.0, measure) else { return };
         let joined = light.adjoint / light.albedo * measure;
-        let etendues = self.etendues(&place, emitted, joined, -place.dir);
+        let first = self.turns.first_if_joined(-place.dir);
+        let etendues = self.etendues(&place, emitted, joined, first);
         let [weight, ..] = etendues.backward_joined();
         let radiance = path.throughput * light.adjoint * emitted * measure * end.transmittance;
         self.count(path.depth + 1, place.source, weight * radiance * self.etendue / kept);
     }
 
     /// Etendues of light from a place that this path has found; `joined` is that of a path joined
-    /// to the source relative to this one's, and the path travels along `dir`.
-    fn etendues(&self, place: &SourcePoint, emitted: f64, joined: f64, dir: DVec3) -> Etendues {
+    /// to the source relative to this one's, `first` the first turn of the path.
+    fn etendues(
+        &self,
+        place: &SourcePoint,
+        emitted: f64,
+        joined: f64,
+        first: Option<TurnAt<'_>>,
+    ) -> Etendues {
         let photon = self
             .photon_fluxes
             .map_or(f64::INFINITY, |fluxes| fluxes[place.source.index()] / emitted);
         let Arrival { ray, normal, .. } = self.arrival;
-        let first = self.turns.first(dir).map(against);
+        let first = first.map(against);
         let at = (ray.origin(), *normal);
         let meets = self.backward.emitters.meets(place.source);
         Etendues {
@@ -333,8 +356,6 @@ impl GatherPathCounter<'_, '_> {
 }
 
 /// A turn of a gather path as its light takes it.
-fn against(
-    (vertex, [before, after]): (ScatteringVertex<'_>, [DVec3; 2]),
-) -> (ScatteringVertex<'_>, [DVec3; 2]) {
+fn against((vertex, [before, after]): TurnAt<'_>) -> TurnAt<'_> {
     (vertex, [-after, -before])
 }

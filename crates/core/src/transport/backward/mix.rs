@@ -5,13 +5,14 @@
 //! of docs/method.md, eq. (27), without a window. The path between the ends does not matter, so
 //! finishes may scatter. `estimator` counts the share of gather paths.
 
+use crate::optics::Lobe;
 use crate::plan::Estimator;
 use crate::rng::{Sampler, stream};
 use crate::scene::{Ray, SensorId, SourceId, Visibility};
 use crate::transport::backward::estimator::{Backward, Weights, paths_for, work_of_one};
 use crate::transport::connect::sensors::SensorPoint;
 use crate::transport::connect::sources::SourcePoint;
-use crate::transport::connect::vertex::{ScatteringVertex, Turns};
+use crate::transport::connect::vertex::{ScatteringVertex, TurnAt, Turns};
 use crate::transport::connect::way::WayStart;
 use crate::transport::connect::weights::{Etendues, NO_WINDOW};
 use crate::transport::forward;
@@ -108,12 +109,9 @@ impl Observer for Mixing<'_, '_> {
                 if self.is_joined() {
                     self.join_drawn(path, &joint, collision.dir, |_| WayStart::within(path));
                 }
+                self.turns.depart(Lobe::Diffuse);
             }
-            Event::Depart(vertex, departure) => {
-                if vertex.interface.visibility == Visibility::Visible {
-                    self.turns.depart(departure.lobe);
-                }
-            }
+            Event::Depart(_, departure) => self.turns.depart(departure.lobe),
             Event::Detect(light) => self.detect(path, light),
             Event::Travel(_)
             | Event::Arrive(_)
@@ -157,7 +155,8 @@ impl Mixing<'_, '_> {
             let last = self.turns.last(light.dir);
             let joined =
                 joined_sensors.joined_ratio(last, light.sensor, (light.point, light.normal));
-            let [weight, ..] = self.etendues(gather, joined, light.dir).forward();
+            let first = self.turns.first(light.dir);
+            let [weight, ..] = self.etendues(light.sensor, gather, joined, first).forward();
             weight
         } else {
             1.0
@@ -190,31 +189,37 @@ impl Mixing<'_, '_> {
         let Backward { scene, sensors, .. } = self.backward;
         let Some(light) = vertex.scattered(dir, place.dir) else { return };
         let Some(kept) = light.kept(&mut self.joints) else { return };
-        let start = way(place.dir);
-        let ray = Ray::new(vertex.point, place.dir);
-        if !comes_through_aim(scene, place.sensor, (start.on(), &ray), place.distance) {
+        self.readings.segments += 1;
+        let way = way(place.dir).go(scene, vertex.point, place.dir, place.distance);
+        let Some(end) = way else { return };
+        if !comes_through_aim(scene, place.sensor, (&end.on, &end.ray), end.length) {
             return;
         }
-        self.readings.segments += 1;
-        let Some(end) = start.go(scene, vertex.point, place.dir, place.distance) else { return };
         let known = sensors.iter().find(|(id, _)| *id == place.sensor);
         let Some((_, arrivals)) = known else { return };
         let back = Ray::new(place.point, -place.dir);
         let gather = end.index * end.index * arrivals.extent(&back, place.normal);
         let joined = light.density / light.albedo * place.solid_angle;
-        let [weight, ..] = self.etendues(gather, joined, place.dir).forward_joined();
+        let first = self.turns.first_if_joined(place.dir);
+        let [weight, ..] = self.etendues(place.sensor, gather, joined, first).forward_joined();
         let flux = self.flux * path.throughput * light.density * place.solid_angle;
         let flux = flux * end.transmittance * weight / kept;
         self.count(path.depth + 1, place.sensor, &place.cells, flux);
     }
 
     /// Etendues of light of this photon at a sensor; `gather` is that of the sensor's only gather
-    /// path, `joined` that of a photon joined to the sensor relative to this one, which travels
-    /// along `dir`.
-    fn etendues(&self, gather: f64, joined: f64, dir: DVec3) -> Etendues {
-        let Backward { emitters, joined_sources, paths, .. } = self.backward;
+    /// path, `joined` that of a photon joined to the sensor relative to this one, `first` its first
+    /// turn.
+    fn etendues(
+        &self,
+        sensor: SensorId,
+        gather: f64,
+        joined: f64,
+        first: Option<TurnAt<'_>>,
+    ) -> Etendues {
+        let Backward { emitters, paths, .. } = self.backward;
         let gather = gather / *paths as f64;
-        let from_source = joined_sources.joined_ratio(self.turns.first(dir), &self.start);
+        let from_source = self.backward.joined_to_source(sensor, first, &self.start);
         Etendues {
             photon: self.photon,
             photon_joined: self.photon * joined,

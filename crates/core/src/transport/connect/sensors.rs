@@ -7,7 +7,7 @@ use crate::scene::{
     SurfaceSensor, Views,
 };
 use crate::transport::Vertex;
-use crate::transport::connect::vertex::ScatteringVertex;
+use crate::transport::connect::vertex::TurnAt;
 use glam::DVec3;
 use lumiduct_base::math::{Aabb, uniform_sphere};
 use smallvec::{SmallVec, smallvec};
@@ -137,7 +137,7 @@ impl<'s> SensorTargets<'s> {
     /// there; infinite if it cannot be joined.
     pub(crate) fn joined_ratio(
         &self,
-        turn: Option<(ScatteringVertex<'s>, [DVec3; 2])>,
+        turn: Option<TurnAt<'s>>,
         sensor: SensorId,
         (point, normal): (DVec3, DVec3),
     ) -> f64 {
@@ -163,6 +163,10 @@ impl<'s> SensorTargets<'s> {
         (point, normal): (DVec3, DVec3),
         dir: DVec3,
     ) -> f64 {
+        let normal = match &target.extent {
+            TargetExtent::Surface(..) => normal,
+            TargetExtent::Sphere(sphere, radius) => (point - sphere.frame.origin) / *radius,
+        };
         let all: f64 = self.targets.iter().map(|one| one.importance(vertex)).sum();
         let chosen = target.importance(vertex) / all;
         dir.dot(normal).abs() * target.area / (chosen * point.distance_squared(vertex))

@@ -5,7 +5,7 @@ use crate::scene::shape::{Crossing, RayStart, Shape};
 use crate::scene::{
     Emission, EmitSide, Emitter, EmitterKind, Ray, Scene, Source, SourceId, StartSolids,
 };
-use crate::transport::connect::vertex::ScatteringVertex;
+use crate::transport::connect::vertex::TurnAt;
 use glam::DVec3;
 use lumiduct_base::math::Frame;
 use std::f64::consts::PI;
@@ -154,11 +154,7 @@ impl<'s> SourceTargets<'s> {
 
     /// The etendue of a gather path joined to a known place over that of one that meets it there;
     /// infinite if it cannot be joined.
-    pub(crate) fn joined_ratio(
-        &self,
-        turn: Option<(ScatteringVertex<'s>, [DVec3; 2])>,
-        place: &SourcePoint,
-    ) -> f64 {
+    pub(crate) fn joined_ratio(&self, turn: Option<TurnAt<'s>>, place: &SourcePoint) -> f64 {
         let ratio = turn.and_then(|(vertex, [arriving, leaving])| {
             let light = vertex.scattered(arriving, leaving)?;
             let measure = self.measure(place, vertex.point, light.index_from)?;

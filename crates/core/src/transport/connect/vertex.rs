@@ -32,7 +32,7 @@ pub(crate) struct ScatteredLight {
     pub(crate) density: f64,
     /// Basic radiance that leaves, per solid angle of arriving basic radiance, 1/sr.
     pub(crate) adjoint: f64,
-    /// Share of the arriving flux that leaves in any direction, 1.
+    /// Share of the arriving flux that leaves in any direction, 1: roughly, for weights.
     pub(crate) albedo: f64,
     /// Refractive index of the medium that the light comes from.
     pub(crate) index_from: f64,
@@ -123,7 +123,7 @@ fn at_face(met: &MetInterface<'_>, arriving: DVec3, leaving: DVec3) -> Option<Sc
     Some(ScatteredLight {
         density,
         adjoint: density * cosines * index_ratio * index_ratio,
-        albedo: finish.shares(&incidence).sum(),
+        albedo: finish.albedo_about(&incidence),
         index_from,
     })
 }
@@ -137,50 +137,57 @@ pub(crate) struct Turn<'s> {
     pub(crate) before: DVec3,
 }
 
-/// The first and the last turn of a path so far.
+/// The turns of a path so far: the first, the last, and that at the vertex it has just met.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Turns<'s> {
     first: Option<Turn<'s>>,
-    /// Unit direction of the path after its first turn, once it is known.
+    /// Unit direction of the path after its first turn, once it has met another vertex.
     after_first: Option<DVec3>,
     last: Option<Turn<'s>>,
+    met: Option<Turn<'s>>,
 }
 
 impl<'s> Turns<'s> {
     /// The path meets a vertex as it travels along `dir`.
     pub(crate) fn meet(&mut self, vertex: Option<ScatteringVertex<'s>>, dir: DVec3) {
-        let turn = Turn { vertex, before: dir };
         if self.first.is_some() {
             self.after_first.get_or_insert(dir);
-        } else {
-            self.first = Some(turn);
         }
-        self.last = Some(turn);
+        self.met = Some(Turn { vertex, before: dir });
     }
 
-    /// The path has left its last vertex.
+    /// The path has left the vertex that it met.
     pub(crate) fn depart(&mut self, lobe: Lobe) {
-        if lobe == Lobe::Diffuse {
-            return;
+        let Some(mut met) = self.met.take() else { return };
+        if lobe == Lobe::Specular {
+            met.vertex = None;
         }
-        if let Some(last) = &mut self.last {
-            last.vertex = None;
-        }
-        if let (Some(first), None) = (&mut self.first, self.after_first) {
-            first.vertex = None;
-        }
+        self.first.get_or_insert(met);
+        self.last = Some(met);
     }
 
-    /// The first scattering vertex, with the directions of travel before and after it; the path now
-    /// travels along `dir`. `None` if the first vertex has discrete directions.
-    pub(crate) fn first(&self, dir: DVec3) -> Option<(ScatteringVertex<'s>, [DVec3; 2])> {
-        let turn = self.first?;
-        Some((turn.vertex?, [turn.before, self.after_first.unwrap_or(dir)]))
+    /// The first vertex, if it scatters, with the directions of travel before and after it; the
+    /// path now travels along `dir`.
+    pub(crate) fn first(&self, dir: DVec3) -> Option<TurnAt<'s>> {
+        self.first?.at(self.after_first.unwrap_or(dir))
     }
 
-    /// The last scattering vertex, in the same way.
-    pub(crate) fn last(&self, dir: DVec3) -> Option<(ScatteringVertex<'s>, [DVec3; 2])> {
-        let turn = self.last?;
-        Some((turn.vertex?, [turn.before, dir]))
+    /// The last vertex, in the same way.
+    pub(crate) fn last(&self, dir: DVec3) -> Option<TurnAt<'s>> {
+        self.last?.at(dir)
+    }
+
+    /// The first vertex of a path that turns into `dir` at the vertex it has met.
+    pub(crate) fn first_if_joined(&self, dir: DVec3) -> Option<TurnAt<'s>> {
+        if self.first.is_some() { self.first(dir) } else { self.met?.at(dir) }
+    }
+}
+
+/// A vertex that scatters, with the unit directions of travel before and after it.
+pub(crate) type TurnAt<'s> = (ScatteringVertex<'s>, [DVec3; 2]);
+
+impl<'s> Turn<'s> {
+    fn at(self, after: DVec3) -> Option<TurnAt<'s>> {
+        Some((self.vertex?, [self.before, after]))
     }
 }

@@ -12,12 +12,17 @@ pub(crate) struct WayStart {
 }
 
 /// The end of a straight way.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct WayEnd {
     /// Share of the flux that arrives, 1.
     pub(crate) transmittance: f64,
     /// Refractive index of the medium there.
     pub(crate) index: f64,
+    /// The surfaces that its last piece starts on, and that piece.
+    pub(crate) on: StartSurfaces,
+    pub(crate) ray: Ray,
+    /// Length of that piece, mm.
+    pub(crate) length: f64,
 }
 
 impl WayStart {
@@ -36,11 +41,6 @@ impl WayStart {
         Self { path: Path { on: StartSurfaces::default(), ..path.clone() } }
     }
 
-    /// The surfaces that it starts on.
-    pub(crate) fn on(&self) -> &StartSurfaces {
-        &self.path.on
-    }
-
     /// Goes `length` mm along a unit direction, infinite for a way out of the scene; `None` where a
     /// visible interface is in the way.
     pub(crate) fn go(
@@ -53,25 +53,22 @@ impl WayStart {
         let Path { inside, medium, on, wavelength, .. } = &mut self.path;
         let (mut ray, mut left, mut transmittance) = (Ray::new(from, dir), length, 1.0);
         loop {
-            // Light that leaves a sensor's own face has nowhere to go.
-            if left == 0.0 {
-                let index = scene.media[medium.index()].index(*wavelength);
-                return Some(WayEnd { transmittance, index });
-            }
-            let hits = scene.find_next(&ray, on, inside);
             let own = &scene.media[medium.index()];
-            let distance = hits.as_ref().map_or(f64::INFINITY, Hits::distance);
-            let ends = distance >= left - scene.tolerance || hits.is_none();
-            let piece = if ends { left } else { distance };
+            // Light that leaves a sensor's own face has nowhere to go.
+            let hits = if left > 0.0 { scene.find_next(&ray, on, inside) } else { None };
+            let hits = hits.filter(|hits| hits.distance() < left - scene.tolerance);
+            let piece = hits.as_ref().map_or(left, Hits::distance);
             transmittance *= own.transmittance(*wavelength, piece);
             if let Some(scattering) = own.scattering() {
                 transmittance *= (-scattering.coefficient() * piece).exp();
             }
-            let Some(hits) = hits.filter(|_| !ends) else {
+            let Some(hits) = hits else {
                 let index = own.index(*wavelength);
-                return (transmittance > 0.0).then_some(WayEnd { transmittance, index });
+                let on = std::mem::take(on);
+                let end = WayEnd { transmittance, index, on, ray, length: left };
+                return (transmittance > 0.0).then_some(end);
             };
-            let point = ray.at(distance);
+            let point = ray.at(piece);
             let interface = scene.interface(&hits, &MeetingPoint { point, dir }, inside, *medium);
             if interface.visibility == Visibility::Visible {
                 return None;
@@ -79,7 +76,7 @@ impl WayStart {
             *on = StartSurfaces::hits(&hits);
             *medium = interface.to;
             hits.cross(inside);
-            left -= distance;
+            left -= piece;
             ray = Ray::new(point, dir);
         }
     }

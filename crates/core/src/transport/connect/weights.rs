@@ -83,7 +83,7 @@ impl Etendues {
 
 /// The densities of other techniques over the own: eq. (21).
 fn ratios<const N: usize>(own: f64, others: [f64; N]) -> f64 {
-    others.iter().map(|other| own / other).sum()
+    others.iter().filter(|other| other.is_finite()).map(|other| own / other).sum()
 }
 
 #[cfg(test)]

@@ -33,7 +33,7 @@ struct LeavingTarget<'s> {
 #[derive(Debug)]
 struct SensorTarget<'s> {
     id: SensorId,
-    extent: TargetExtent<'s>,
+    extent: SensorExtent<'s>,
     /// Its area, mm².
     area: f64,
     /// A ball around it, mm.
@@ -42,7 +42,7 @@ struct SensorTarget<'s> {
 }
 
 #[derive(Debug)]
-enum TargetExtent<'s> {
+enum SensorExtent<'s> {
     Surface(&'s SurfaceSensor, FaceArea<'s>),
     Sphere(&'s Goniometer, f64),
 }
@@ -112,11 +112,11 @@ impl<'s> SensorTargets<'s> {
         }
         let target = self.choose(vertex, sampler)?;
         let (point, normal, cell) = match &target.extent {
-            TargetExtent::Surface(sensor, area) => {
+            SensorExtent::Surface(sensor, area) => {
                 let drawn = area.sample(sampler.pair(Dimension::GatherPosition))?;
                 (drawn.point, drawn.normal, sensor.grid.cell(drawn.uv)?)
             }
-            TargetExtent::Sphere(goniometer, radius) => {
+            SensorExtent::Sphere(goniometer, radius) => {
                 let out = uniform_sphere(sampler.pair(Dimension::GatherPosition));
                 let cell = goniometer.cell(out);
                 (goniometer.frame.origin + radius * out, out, cell)
@@ -164,8 +164,8 @@ impl<'s> SensorTargets<'s> {
         dir: DVec3,
     ) -> f64 {
         let normal = match &target.extent {
-            TargetExtent::Surface(..) => normal,
-            TargetExtent::Sphere(sphere, radius) => (point - sphere.frame.origin) / *radius,
+            SensorExtent::Surface(..) => normal,
+            SensorExtent::Sphere(sphere, radius) => (point - sphere.frame.origin) / *radius,
         };
         let all: f64 = self.targets.iter().map(|one| one.importance(vertex)).sum();
         let chosen = target.importance(vertex) / all;
@@ -194,8 +194,8 @@ impl SensorTarget<'_> {
     /// The cells that count light along `dir`; `None` if none do.
     fn cells(&self, cell: usize, dir: DVec3, normal: DVec3) -> Option<SmallVec<[usize; 1]>> {
         let sensor = match &self.extent {
-            TargetExtent::Surface(sensor, _) => sensor,
-            TargetExtent::Sphere(..) => {
+            SensorExtent::Surface(sensor, _) => sensor,
+            SensorExtent::Sphere(..) => {
                 return (dir.dot(normal) > 0.0).then(|| smallvec![cell]);
             }
         };
@@ -240,7 +240,7 @@ fn target(scene: &Scene, id: SensorId) -> Option<SensorTarget<'_>> {
             (area.area() > 0.0).then(|| SensorTarget {
                 id,
                 area: area.area(),
-                extent: TargetExtent::Surface(sensor, area),
+                extent: SensorExtent::Surface(sensor, area),
                 center: bounds.center(),
                 reach: 0.5 * bounds.diagonal(),
             })
@@ -249,7 +249,7 @@ fn target(scene: &Scene, id: SensorId) -> Option<SensorTarget<'_>> {
             let radius = goniometer.radius?;
             Some(SensorTarget {
                 id,
-                extent: TargetExtent::Sphere(goniometer, radius),
+                extent: SensorExtent::Sphere(goniometer, radius),
                 area: 4.0 * PI * radius * radius,
                 center: goniometer.frame.origin,
                 reach: radius,

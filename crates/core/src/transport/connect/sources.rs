@@ -21,14 +21,14 @@ pub(crate) struct SourceTargets<'s> {
 struct SourceTarget<'s> {
     id: SourceId,
     source: &'s Source,
-    extent: TargetExtent<'s>,
+    extent: EmitterExtent<'s>,
     /// A ball around it, mm; infinite around the sky.
     center: DVec3,
     reach: f64,
 }
 
 #[derive(Debug)]
-enum TargetExtent<'s> {
+enum EmitterExtent<'s> {
     Point(&'s Frame),
     Line(&'s Frame, f64),
     /// Surfaces whose light has a density of directions.
@@ -81,21 +81,21 @@ impl<'s> SourceTargets<'s> {
             dir.is_finite().then_some((place, distance))
         };
         match &target.extent {
-            TargetExtent::Point(frame) => at(0, frame.origin),
-            TargetExtent::Line(frame, length) => {
+            EmitterExtent::Point(frame) => at(0, frame.origin),
+            EmitterExtent::Line(frame, length) => {
                 let along = length * (sampler.one(Dimension::EmitPosition) - 0.5);
                 at(0, frame.origin + along * frame.z)
             }
-            TargetExtent::Surface(surfaces) => {
+            EmitterExtent::Surface(surfaces) => {
                 let (shape, point) = surfaces.sample(sampler);
                 at(shape, point)
             }
-            TargetExtent::Beam(surfaces, dir) => {
+            EmitterExtent::Beam(surfaces, dir) => {
                 let (shape, distance) = surfaces.origin(&Ray::new(vertex, -*dir))?;
                 let point = vertex - distance * dir;
                 Some((SourcePoint { source: target.id, shape, point, dir: *dir }, distance))
             }
-            TargetExtent::Far | TargetExtent::FarBeam => {
+            EmitterExtent::Far | EmitterExtent::FarBeam => {
                 let dir = target.source.emission.sample(EmitterKind::Far, sampler);
                 let place = SourcePoint { source: target.id, shape: 0, point: vertex, dir };
                 Some((place, f64::INFINITY))
@@ -110,24 +110,24 @@ impl<'s> SourceTargets<'s> {
         let target = self.target(place.source)?;
         let source = target.source;
         Some(match &target.extent {
-            TargetExtent::Point(frame) => {
+            EmitterExtent::Point(frame) => {
                 let local = frame.to_local(place.dir);
                 source.flux * source.emission.density(EmitterKind::Point, local)?
             }
-            TargetExtent::Line(frame, length) => {
+            EmitterExtent::Line(frame, length) => {
                 source.flux / length * line_density(&source.emission, frame.to_local(place.dir))?
             }
-            TargetExtent::Surface(surfaces) => {
+            EmitterExtent::Surface(surfaces) => {
                 surfaces.radiance(&source.emission, place) / (index * index)
             }
-            TargetExtent::Beam(surfaces, _) => {
+            EmitterExtent::Beam(surfaces, _) => {
                 surfaces.exitance / place.dir.dot(surfaces.normal(place)).abs()
             }
-            TargetExtent::Far => {
+            EmitterExtent::Far => {
                 target.across() * source.emission.density(EmitterKind::Far, place.dir)?
                     / (index * index)
             }
-            TargetExtent::FarBeam => target.across(),
+            EmitterExtent::FarBeam => target.across(),
         })
     }
 
@@ -139,14 +139,14 @@ impl<'s> SourceTargets<'s> {
         let per_chance = all / target.importance(vertex);
         let square = place.point.distance_squared(vertex);
         Some(match &target.extent {
-            TargetExtent::Point(_) => per_chance / (index * index * square),
-            TargetExtent::Line(_, length) => per_chance * length / (index * index * square),
-            TargetExtent::Surface(surfaces) => {
+            EmitterExtent::Point(_) => per_chance / (index * index * square),
+            EmitterExtent::Line(_, length) => per_chance * length / (index * index * square),
+            EmitterExtent::Surface(surfaces) => {
                 let cos = place.dir.dot(surfaces.normal(place)).abs();
                 per_chance * surfaces.area() * cos / square
             }
-            TargetExtent::Beam(..) | TargetExtent::FarBeam => per_chance / (index * index),
-            TargetExtent::Far => {
+            EmitterExtent::Beam(..) | EmitterExtent::FarBeam => per_chance / (index * index),
+            EmitterExtent::Far => {
                 per_chance / target.source.emission.density(EmitterKind::Far, place.dir)?
             }
         })
@@ -185,9 +185,9 @@ impl SourceTarget<'_> {
     fn importance(&self, vertex: DVec3) -> f64 {
         let flux = self.source.flux;
         match &self.extent {
-            TargetExtent::Far | TargetExtent::FarBeam => self.across(),
-            TargetExtent::Beam(surfaces, _) => surfaces.exitance,
-            TargetExtent::Point(_) | TargetExtent::Line(..) | TargetExtent::Surface(_) => {
+            EmitterExtent::Far | EmitterExtent::FarBeam => self.across(),
+            EmitterExtent::Beam(surfaces, _) => surfaces.exitance,
+            EmitterExtent::Point(_) | EmitterExtent::Line(..) | EmitterExtent::Surface(_) => {
                 flux / vertex.distance_squared(self.center).max(self.reach * self.reach)
             }
         }
@@ -276,25 +276,25 @@ fn target(id: SourceId, source: &Source) -> Option<SourceTarget<'_>> {
         | Emission::Sky(_) => None,
     };
     let extent = match (&source.emitter, beam) {
-        (Emitter::Point(frame), None) => TargetExtent::Point(frame),
-        (Emitter::Line { frame, length }, None) => TargetExtent::Line(frame, *length),
+        (Emitter::Point(frame), None) => EmitterExtent::Point(frame),
+        (Emitter::Line { frame, length }, None) => EmitterExtent::Line(frame, *length),
         (Emitter::Surface { shapes, side, frame }, beam) => {
             let frame = frame.as_ref();
             let exitance = source.flux / source.emitter.area()?;
             let surfaces = Surfaces { shapes, side: *side, frame, exitance };
             match beam {
-                None => TargetExtent::Surface(surfaces),
+                None => EmitterExtent::Surface(surfaces),
                 Some(axis) => {
                     let normal = source.emitter.axis();
                     let own = || Some(Frame::from_axis(DVec3::ZERO, normal?));
                     let frame = frame.copied().or_else(own)?;
-                    TargetExtent::Beam(surfaces, frame.to_world(axis))
+                    EmitterExtent::Beam(surfaces, frame.to_world(axis))
                 }
             }
         }
         (Emitter::Far { center, reach, .. }, beam) => {
             ball = (*center, *reach);
-            beam.map_or(TargetExtent::Far, |_| TargetExtent::FarBeam)
+            beam.map_or(EmitterExtent::Far, |_| EmitterExtent::FarBeam)
         }
         (Emitter::Volume { .. }, _) | (Emitter::Point(_) | Emitter::Line { .. }, Some(_)) => {
             return None;

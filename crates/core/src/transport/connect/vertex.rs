@@ -130,7 +130,7 @@ fn at_face(met: &MetInterface<'_>, arriving: DVec3, leaving: DVec3) -> Option<Sc
 
 /// A change of direction of a path.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Turn<'s> {
+pub(crate) struct DirectionChange<'s> {
     /// Where; `None` at a vertex of discrete directions.
     pub(crate) vertex: Option<ScatteringVertex<'s>>,
     /// Unit direction in which the path travelled before it.
@@ -140,11 +140,11 @@ pub(crate) struct Turn<'s> {
 /// The turns of a path so far: the first, the last, and that at the vertex it has just met.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Turns<'s> {
-    first: Option<Turn<'s>>,
+    first: Option<DirectionChange<'s>>,
     /// Unit direction of the path after its first turn, once it has met another vertex.
     after_first: Option<DVec3>,
-    last: Option<Turn<'s>>,
-    met: Option<Turn<'s>>,
+    last: Option<DirectionChange<'s>>,
+    met: Option<DirectionChange<'s>>,
 }
 
 impl<'s> Turns<'s> {
@@ -153,7 +153,7 @@ impl<'s> Turns<'s> {
         if self.first.is_some() {
             self.after_first.get_or_insert(dir);
         }
-        self.met = Some(Turn { vertex, before: dir });
+        self.met = Some(DirectionChange { vertex, before: dir });
     }
 
     /// The path has left the vertex that it met.
@@ -186,7 +186,7 @@ impl<'s> Turns<'s> {
 /// A vertex that scatters, with the unit directions of travel before and after it.
 pub(crate) type TurnAt<'s> = (ScatteringVertex<'s>, [DVec3; 2]);
 
-impl<'s> Turn<'s> {
+impl<'s> DirectionChange<'s> {
     fn at(self, after: DVec3) -> Option<TurnAt<'s>> {
         Some((self.vertex?, [self.before, after]))
     }

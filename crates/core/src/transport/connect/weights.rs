@@ -4,8 +4,8 @@
 //! the techniques sample a path. A density is given as the etendue that one sample of the technique
 //! represents, its reciprocal; infinite for a technique that cannot find the path.
 
-use crate::transport::gather::window::COUNTED;
-
+/// Windows in which pairs are counted.
+pub(crate) const COUNTED: usize = 5;
 /// No window: the path has no record.
 pub(crate) const NO_WINDOW: [f64; COUNTED] = [0.0; COUNTED];
 

@@ -1,5 +1,6 @@
 //! Radius and angle within which photons count for a gather record, and how they shrink.
 
+pub(crate) use crate::transport::connect::weights::COUNTED;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
@@ -18,10 +19,8 @@ pub(crate) const NESTED: usize = 3;
 /// 1/4.
 const SIZES: [f64; NESTED] = [1.0, FRAC_1_SQRT_2, 0.5];
 
-/// Windows in which pairs are counted: the nested ones, one smaller only in position, and one only
-/// in angle.
-pub(crate) const COUNTED: usize = 5;
-/// Indices of their radius and their angle among the nested sizes.
+/// Indices of radius and angle among the nested sizes, for each window in which pairs are counted: the nested ones, one
+/// smaller only in position, and one only in angle.
 pub(crate) const RADIUS_OF: [usize; COUNTED] = [0, 1, 2, 1, 0];
 pub(crate) const ANGLE_OF: [usize; COUNTED] = [0, 1, 2, 0, 1];
 /// Estimates from these windows: E1, E2 and E3 within the nested ones, and E0.

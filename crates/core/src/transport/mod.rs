@@ -2,8 +2,8 @@
 //!
 //! This layer does not know file formats or reports. Its output is one serialisable value,
 //! [`Findings`]. From the bottom up: `stop`, `tally`, `walk`; `task`, `trial` and `estimate`, what
-//! every estimator gets and gives; `forward`, `gather` and `backward`; `estimators`, the one seam in
-//! front of them; `choose`, `run`.
+//! every estimator gets and gives; `connect`; `forward`, `gather` and `backward`; `estimators`, the
+//! one seam in front of them; `choose`, `run`.
 
 mod backward;
 mod choose;

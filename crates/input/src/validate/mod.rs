@@ -1,7 +1,7 @@
 //! Validates a tree against the JSON Schema: every problem, each at its place.
 //!
 //! Knows the keywords of JSON Schema that the spec types produce, but not the meaning of keys.
-//! Rules across several keys are in `input::lower`.
+//! Rules that the schema cannot state are in `input::lower`.
 
 use serde_json::{Map, Value as Json};
 

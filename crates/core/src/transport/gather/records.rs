@@ -65,7 +65,7 @@ pub struct VolumeRecord {
 pub struct RecordPath {
     /// Its place in the list of paths.
     pub place: u32,
-    /// Interfaces met from the sensor to the record, including its own.
+    /// Interfaces met and scatterings within media from the sensor to the record, including its own.
     pub depth: u32,
 }
 

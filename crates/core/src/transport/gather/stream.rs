@@ -24,7 +24,7 @@ pub(crate) struct PhotonStream<'p, 's> {
     nested: NestedWindows,
     waiting: WaitingRecords<'s>,
     pace: &'p Pace<'p>,
-    /// Counts by records: E1, E2, E3 and E0; not yet closed.
+    /// Counts by E1, E2, E3 and E0, with the emission that gather paths met; not yet closed.
     pub(super) windows: [Readings; ESTIMATES],
     pub(super) pass: Pass,
     /// The current photon.

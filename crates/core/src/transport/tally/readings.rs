@@ -216,8 +216,8 @@ impl Readings {
         }
     }
 
-    /// Counts light that a gather path found for some cells of a sensor, in a batch. `groups` are the light
-    /// groups of the scene.
+    /// Counts light that gather paths, or photons at their records, bring to some cells of a sensor, in a
+    /// batch. `groups` are the light groups of the scene.
     pub fn count(
         &mut self,
         (layout, groups): (&Layout, &LightGroups),

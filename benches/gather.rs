@@ -4,8 +4,8 @@
 //!
 //! `cargo bench --bench gather`, with scene names after `--` to restrict it to those. One thread;
 //! the estimators run in turn on each scene, gathering with its automatic settings. The variances
-//! are those of the flux (of an image: Σσ²/Σmean² over its pixels) within the widest window of the
-//! first stage, and of the value extrapolated to remove the bias that scales with the window's
+//! are those of the flux (of an image: Σσ²/Σmean² over its pixels) of second order, within the windows of the
+//! first stage, and of the value without the bias that scales with the window's
 //! square, from four runs of 64 passes with separate seeds. Confidence intervals are those of the
 //! ratio of two variances of normal samples. The truths are long unbiased runs, made once: see
 //! `ROWS`.
@@ -16,7 +16,7 @@ mod clock;
 use clock::cpu_seconds;
 use lumiduct_core::plan::{Estimator, GatherPlan, Request, RunPlan, StopRules, Target};
 use lumiduct_core::scene::{Scene, SensorId, SourceId};
-use lumiduct_core::transport::{Findings, GatherSettings, Layout, Readings, Run, Windows};
+use lumiduct_core::transport::{Findings, GatherSettings, Layout, Orders, Readings, Run};
 use lumiduct_input::{self as input, Job, Settings};
 use rayon::ThreadPoolBuilder;
 use std::path::Path;
@@ -133,8 +133,8 @@ fn compare(row: &Row) -> String {
     let job = input::load(Path::new(&path), &Settings::default()).expect("the scenes are valid");
     let [forward, backward, mix] =
         [Request::Forward, Request::Backward, Request::Mix].map(|request| plain(&job, request));
-    let Gathering { wide, value, look_up } = gathered(&job);
-    let square = wide.square;
+    let Gathering { second, value, look_up } = gathered(&job);
+    let square = second.square;
     let columns = |found: &Found| {
         let ratio = backward.time(square) / found.time(square);
         // The logarithm of a variance from n samples has a standard deviation of √(2/(n - 1)).
@@ -168,7 +168,7 @@ fn compare(row: &Row) -> String {
         row.scene,
         forward.noise(square),
         backward.noise(square),
-        columns(&wide),
+        columns(&second),
         columns(&value),
         if is_true { "" } else { " (biased)" },
         chosen.name(),
@@ -188,29 +188,30 @@ fn plain(job: &Job, request: Request) -> Found {
 
 /// Result of gathering.
 struct Gathering {
-    /// Within the widest window of the first stage, E1.
-    wide: Found,
-    /// Extrapolated: without the bias that scales with the window's square, E0.
+    /// The mean over the windows of the first stage, E1.
+    second: Found,
+    /// Without the bias that scales with the window's square, E0.
     value: Found,
     /// Time of the look-ups over that of the photons alone, 1.
     look_up: f64,
 }
 
 fn gathered(job: &Job) -> Gathering {
-    let (mut wide, mut value, mut look_up) = (Vec::new(), Vec::new(), 0.0);
+    let (mut second, mut value, mut look_up) = (Vec::new(), Vec::new(), 0.0);
     for run in 0..RUNS {
         let waves = PASSES / WAVE_PASSES;
         let (seconds, findings) = traced(&job.scene, &plan(job, Request::Gather, run), waves);
-        let gathered = findings.by(Estimator::Gather).expect("it was asked for");
-        let windows = Windows::of(&gathered.stages[0].counts);
+        let gathered = findings.of_sensor(SensorId::new(0)).expect("it was asked for");
+        let orders = Orders::of(&gathered.stages[0].counts);
         if run == 0 {
-            let streamed = seconds - records_alone(job, findings.gathering().expect("it gathers"));
+            let streamed =
+                seconds - records_alone(job, findings.gathering().next().expect("it gathers").1);
             look_up = streamed / photons_alone(job) - 1.0;
         }
-        wide.push(Found::new(&job.scene, windows.wide, seconds));
-        value.push(Found::new(&job.scene, windows.extrapolated, seconds));
+        second.push(Found::new(&job.scene, orders.second, seconds));
+        value.push(Found::new(&job.scene, orders.fourth, seconds));
     }
-    Gathering { wide: Found::in_all(&wide), value: Found::in_all(&value), look_up }
+    Gathering { second: Found::in_all(&second), value: Found::in_all(&value), look_up }
 }
 
 /// A flux over the truth, with the error of both.

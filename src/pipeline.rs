@@ -167,7 +167,7 @@ pub fn compose(job: &Job, findings: &Findings, stop: Stop) -> Report {
             seed: job.run.seed,
             estimator: job.run.estimator,
             gather: report::requested_gathering(&job.run.gather),
-            gathering: gathering(findings),
+            gathering: gathering(&job.scene, findings),
             partial: stop == Stop::Interrupted,
             asked: report::asked(&job.run.stop),
             stopped: stop.reason().to_owned(),

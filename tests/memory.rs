@@ -50,7 +50,7 @@ fn memory<const N: usize>(photons: u64, passes: [u64; N]) -> [[f64; 2]; N] {
         angle_deg: Some(3.0),
         records: Some(RECORDS),
         photons: Some(photons),
-        schedule: Some(Schedule::PerPass),
+        schedule: Some(Schedule::Fixed),
     };
     let settings = Settings { estimator: Some(Request::Gather), gather, ..Settings::default() };
     let job = input::load(&path, &settings).unwrap_or_else(|error| panic!("{error}"));

@@ -83,10 +83,10 @@ pub(super) struct GatherArgs {
     /// like the other numbers here].
     #[arg(long, value_parser = clap::value_parser!(u32).range(..=1000))]
     depth: Option<u32>,
-    /// Radius of the window in the first pass, in mm.
+    /// Radius of the window in the first stage, in mm.
     #[arg(long, value_parser = parse_radius, value_name = "MM")]
     radius_mm: Option<f64>,
-    /// Half-angle of the window in the first pass, in degrees below 90.
+    /// Half-angle of the window in the first stage, in degrees below 90.
     #[arg(long, value_parser = parse_angle, value_name = "DEG")]
     angle_deg: Option<f64>,
     /// Gather paths in a pass, such as 100k.
@@ -95,7 +95,7 @@ pub(super) struct GatherArgs {
     /// Photon paths in a pass, such as 5M.
     #[arg(long, value_parser = parse_count, value_name = "COUNT")]
     photons: Option<u64>,
-    /// How the window shrinks: in stages of many passes, or a little from pass to pass [default: stages].
+    /// How the window shrinks: in stages of many passes, or not at all [default: stages].
     #[arg(long, value_parser = words(Schedule::ALL.map(Schedule::name), Schedule::named))]
     schedule: Option<Schedule>,
 }

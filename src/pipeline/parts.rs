@@ -201,12 +201,16 @@ fn expect_fixed_end(job: &Job) -> Result<()> {
 
 fn refusal(why: Unsliceable) -> Error {
     Error::Usage(match why {
-        Unsliceable::OpenEnd => "a part of a run needs a fixed number of paths, which a target or a time \
+        Unsliceable::OpenEnd => {
+            "a part of a run needs a fixed number of paths, which a target or a time \
             leaves open: give --paths"
-            .into(),
-        Unsliceable::Stages => "gathering in stages chooses its windows from the results of the whole run, \
-            which a part does not have: use --schedule per-pass, or --estimator forward, backward or \
+                .into()
+        }
+        Unsliceable::Stages => {
+            "gathering in stages chooses its windows from the results of the whole run, \
+            which a part does not have: use --schedule fixed, or --estimator forward, backward or \
                                 mix"
-            .into(),
+            .into()
+        }
     })
 }

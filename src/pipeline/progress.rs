@@ -2,7 +2,8 @@
 
 use lumiduct_core::measure::{self, Measure};
 use lumiduct_core::plan::RunPlan;
-use lumiduct_core::transport::{Findings, Phase, Run};
+use lumiduct_core::scene::{Scene, SensorId};
+use lumiduct_core::transport::{Findings, GatherSettings, Phase, Run};
 use lumiduct_input::Job;
 use std::time::Duration;
 
@@ -120,7 +121,17 @@ impl Progress {
     }
 }
 
-/// Settings of gathering in words; empty where nothing is gathered.
-pub(super) fn gathering(findings: &Findings) -> String {
-    findings.gathering().map_or(String::new(), ToString::to_string)
+/// Settings of gathering in words, for each group of sensors; empty where nothing is gathered.
+pub(super) fn gathering(scene: &Scene, findings: &Findings) -> String {
+    let groups: Vec<_> = findings.gathering().collect();
+    match &groups[..] {
+        [(_, settings)] => settings.to_string(),
+        all => {
+            let of_group = |(sensors, settings): &(&[SensorId], &GatherSettings)| {
+                let names = sensors.iter().map(|id| scene.sensors[id.index()].name.as_str());
+                format!("{}: {settings}", names.collect::<Vec<_>>().join(", "))
+            };
+            all.iter().map(of_group).collect::<Vec<_>>().join("; ")
+        }
+    }
 }

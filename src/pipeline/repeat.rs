@@ -51,10 +51,12 @@ pub(super) fn command(job: &Job, findings: &Findings, stop: Stop) -> Option<Stri
 /// clock ends the run.
 fn pass_size(job: &Job, findings: &Findings) -> [Option<u64>; 2] {
     let asked = &job.settings.gather;
-    match (findings.gathering(), job.run.stop.time) {
-        (Some(own), Some(_)) => [Some(own.photons), Some(own.gather_paths * own.sensors)],
-        (_, None) | (None, Some(_)) => [asked.photons, asked.records],
-    }
+    let Some((_, first)) = findings.gathering().next().filter(|_| job.run.stop.time.is_some())
+    else {
+        return [asked.photons, asked.records];
+    };
+    // All groups have passes of one size, and as many gather paths from each sensor.
+    [Some(first.photons), Some(first.gather_paths * first.all_sensors)]
 }
 
 /// A word quoted for a POSIX shell.

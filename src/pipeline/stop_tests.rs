@@ -142,7 +142,7 @@ fn passes_of_gathering_fit_into_a_short_time_and_their_command_repeats_them() {
     let findings = run.findings();
 
     let command = compose(&job, &findings, Stop::Time).run.repeat.unwrap();
-    let settings = *findings.gathering().unwrap();
+    let (_, settings) = findings.gathering().next().unwrap();
     let [photons, records] = [settings.photons, settings.gather_paths];
     assert!(command.contains(&format!("--records {records} --photons {photons}")), "{command}");
     let plan = run.state().plan(&job.run);

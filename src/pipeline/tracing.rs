@@ -175,7 +175,7 @@ impl<'j> Tracing<'j> {
         let elapsed = self.clock.elapsed();
         let mut progress = Progress::of(&self.job.run, &self.run, elapsed, self.target.clone());
         if !self.is_gathering_reported {
-            progress.gathering = gathering(&self.run.findings());
+            progress.gathering = gathering(&self.job.scene, &self.run.findings());
             self.is_gathering_reported = true;
         }
         progress

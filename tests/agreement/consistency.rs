@@ -1,14 +1,15 @@
 //! The gather method is consistent: against stored truths, bias and noise fall with the stages as predicted.
 //!
-//! The test reads only the widest window, E1, as it has a visible bias. The prediction holds where
+//! The test reads only the estimate of second order, E1, as it has a visible bias. The prediction holds where
 //! light is smooth and pairs of photons and records limit the noise (docs/method.md).
 
 use crate::trial::{Gathering, SIGMAS, Way, bias_allowance, load};
 use lumiduct::pipeline::{self, Stop};
 use lumiduct_core::measure::{self, Measure};
-use lumiduct_core::plan::{Estimator, RunPlan, Schedule, StopRules, Target};
+use lumiduct_core::plan::{RunPlan, StopRules, Target};
+use lumiduct_core::scene::SensorId;
 use lumiduct_core::tally::Tally;
-use lumiduct_core::transport::{Findings, Interrupt, Run, Windows};
+use lumiduct_core::transport::{Findings, Interrupt, Orders, Run};
 use lumiduct_input::Job;
 use rayon::prelude::*;
 
@@ -77,19 +78,17 @@ eye = { luminance = { disk = { radius_mm = 1 }, cells = [1, 1], acceptance_half_
 };
 
 /// The plan of a run of a subject with its own seed.
-fn plan(job: &Job, seed: u64, schedule: Schedule) -> RunPlan {
-    let mut plan = RunPlan { seed, ..job.run.clone() };
-    plan.gather.schedule = Some(schedule);
-    plan
+fn plan(job: &Job, seed: u64) -> RunPlan {
+    RunPlan { seed, ..job.run.clone() }
 }
 
 /// E1 of the stage in progress.
-fn wide(job: &Job, run: &Run<'_>) -> Measure {
+fn second_order(job: &Job, run: &Run<'_>) -> Measure {
     let findings = run.findings();
-    let stages = &findings.by(Estimator::Gather).unwrap().stages;
-    let wide = Windows::of(&stages.last().unwrap().counts).wide;
-    let wide = Findings::forward(wide.clone());
-    measure::value_of(&job.scene, &wide, MEASURE).unwrap()
+    let stages = &findings.of_sensor(SensorId::new(0)).unwrap().stages;
+    let second = Orders::of(&stages.last().unwrap().counts).second;
+    let second = Findings::forward(second.clone());
+    measure::value_of(&job.scene, &second, MEASURE).unwrap()
 }
 
 /// Results of the runs of a subject in a stage, relative to the truth.
@@ -129,14 +128,15 @@ impl Found {
 fn stages(subject: &Subject) -> Vec<Found> {
     let job = load(subject.text, Way::Gather(subject.window));
     let one_run = |seed: u64| -> Vec<(Measure, f64)> {
-        let mut run = Run::new(&job.scene, &plan(&job, seed, Schedule::Stages));
+        let mut run = Run::new(&job.scene, &plan(&job, seed));
         let mut waves = 0;
         (0..STAGES)
             .map(|_| {
                 while !run.may_end_stage() {
                     run.next_wave();
                 }
-                let found = (wide(&job, &run), (PHOTONS * 16 * (run.waves() - waves)) as f64);
+                let found =
+                    (second_order(&job, &run), (PHOTONS * 16 * (run.waves() - waves)) as f64);
                 waves = run.waves();
                 run.next_stage();
                 found
@@ -252,7 +252,7 @@ fn a_run_to_a_target_goes_on_to_windows_small_enough_for_it() {
     job.run.stop = StopRules { target: Some(target), ..StopRules::default() };
     let traced = pipeline::trace(&job, &Interrupt::default(), &mut |_| {}).unwrap();
     let reached = measure::value_of(&job.scene, &traced.findings, MEASURE).unwrap();
-    let stages = &traced.findings.by(Estimator::Gather).unwrap().stages;
+    let stages = &traced.findings.of_sensor(SensorId::new(0)).unwrap().stages;
     println!("{reached}, up to stage {}", stages.last().unwrap().number);
     assert_eq!(traced.stop, Stop::Target);
     assert!(stages.last().unwrap().number >= 1);
@@ -261,35 +261,4 @@ fn a_run_to_a_target_goes_on_to_windows_small_enough_for_it() {
     let bias = bias_allowance(&reached, FOLD.truth[0]);
     println!("off by {off}, bias allowance {bias}");
     assert!(off <= SIGMAS * reached.std_error + bias, "{reached} is off by {off}");
-}
-
-/// Their mean square error should fall as the root of the number of passes, by 4 here; without a bias it would by 16.
-#[test]
-fn windows_that_shrink_from_pass_to_pass_converge_too() {
-    let job = load(FOLD.text, Way::Gather(FOLD.window));
-    let one_run = |seed: u64| -> [Measure; 2] {
-        let mut run = Run::new(&job.scene, &plan(&job, seed, Schedule::PerPass));
-        [4, 64].map(|waves| {
-            while run.waves() < waves {
-                run.next_wave();
-            }
-            wide(&job, &run)
-        })
-    };
-    let runs: Vec<_> = (1..=RUNS).into_par_iter().map(one_run).collect();
-    let [few, many] = [0, 1].map(|which| {
-        let mut found = Found::default();
-        runs.iter().for_each(|run| found.add(&run[which], FOLD.truth[0], 0.0));
-        found
-    });
-    for found in [&few, &many] {
-        println!(
-            "per pass: bias {:+.4} ± {:.4}, total error {:.4}",
-            found.bias()[0],
-            found.bias()[1],
-            found.squares.mean().sqrt()
-        );
-    }
-    let fall = few.squares.mean() / many.squares.mean();
-    assert!((2.0..16.0).contains(&fall), "the mean square error falls by {fall}");
 }

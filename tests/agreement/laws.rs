@@ -3,8 +3,9 @@
 
 use crate::trial::{Comparison, Gathering, SIGMAS, Way, bias_allowance, findings, load, measures};
 use lumiduct_core::measure::{self, Measure};
-use lumiduct_core::plan::{Estimator, GatherPlan, RunPlan};
-use lumiduct_core::transport::{Findings, Run, Windows};
+use lumiduct_core::plan::{GatherPlan, RunPlan};
+use lumiduct_core::scene::SensorId;
+use lumiduct_core::transport::{Findings, Orders, Run};
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 /// A guide and its lamp, without absorption.
@@ -101,15 +102,15 @@ fn guides_without_loss_lose_and_make_no_light() {
     comparison.assert("lossless", 10);
 }
 
-/// The widest window of a gather run: E1.
-fn wide(text: &str, gathering: Gathering, name: &str) -> Measure {
+/// E1 of a gather run.
+fn second_order(text: &str, gathering: Gathering, name: &str) -> Measure {
     let way = Way::Gather(gathering);
     let job = load(text, way);
     let found = findings(&job, way);
-    let stages = &found.by(Estimator::Gather).unwrap().stages;
-    let wide = Windows::of(&stages.last().unwrap().counts).wide;
-    let wide = Findings::forward(wide.clone());
-    measure::value_of(&job.scene, &wide, name).unwrap()
+    let stages = &found.of_sensor(SensorId::new(0)).unwrap().stages;
+    let second = Orders::of(&stages.last().unwrap().counts).second;
+    let second = Findings::forward(second.clone());
+    measure::value_of(&job.scene, &second, name).unwrap()
 }
 
 /// Compares E1 in three windows, each smaller by √2, with its expected value, and its bias with
@@ -131,7 +132,7 @@ fn follows(
             angle_deg: size * window.angle_deg,
             ..window
         };
-        let found = wide(text, window, name);
+        let found = second_order(text, window, name);
         let expected = law(window);
         comparison.add(&format!("{what}, window {step}"), &found, expected, 1e-6 * expected);
         biases.push((found.value - truth, found.std_error));
@@ -230,7 +231,7 @@ fn a_cone_wider_than_the_light_dilutes_it_by_the_ratio_of_solid_angles() {
     {
         let window =
             Gathering { depth: 0, radius_mm: 0.4, angle_deg, records: 20, photons: 50_000 };
-        let found = wide(text, window, "eye.luminance_avg.0");
+        let found = second_order(text, window, "eye.luminance_avg.0");
         comparison.add(&format!("ES-01 at {angle_deg} deg"), &found, 1000.0 * ratio, 0.0);
         if found.std_error > 0.015 * found.value {
             comparison.fail(format!("{found} is too noisy to tell"));
@@ -255,7 +256,7 @@ fn photons_of_the_run_contradict_windows_that_are_wider_than_the_light() {
     assert!(narrow.abs() < 4.0 && wide < -4.0, "{narrow} and {wide} errors");
 }
 
-/// The automatic angle is half the half-width of the light at the records: of the emission where a
+/// The automatic angle is three quarters of the half-width of the light at the records: of the emission where a
 /// source fills the guide, of the source as seen from there where it does not.
 #[test]
 fn automatic_windows_fit_the_light() {
@@ -271,16 +272,45 @@ fn automatic_windows_fit_the_light() {
         let plan = RunPlan { gather: GatherPlan::default(), ..job.run.clone() };
         let mut run = Run::new(&job.scene, &plan);
         run.next_piece();
-        run.findings().gathering().unwrap().window
+        run.findings().gathering().next().unwrap().1.window
     };
     let sun = lamp(5.0, "{ cone_half_angle_deg = 0.5 }");
-    assert!((sun.theta_max.to_degrees() - 0.25).abs() < 1e-9, "{sun:?}");
-    assert!((sun.radius - 1.0).abs() < 1e-6, "0.2 of the inradius: {sun:?}");
+    assert!((sun.theta_max.to_degrees() - 0.375).abs() < 1e-9, "{sun:?}");
+    assert!((sun.radius - 1.5).abs() < 1e-6, "0.3 of the inradius: {sun:?}");
     let wide = lamp(5.0, "\"lambertian\"");
-    assert!((wide.theta_max.to_degrees() - 3.0).abs() < 1e-9, "at most: {wide:?}");
+    assert!((wide.theta_max.to_degrees() - 4.5).abs() < 1e-9, "at most: {wide:?}");
     let led = lamp(0.5, "\"lambertian\"");
-    assert!((led.radius - 0.25).abs() < 1e-6, "half of the source's radius: {led:?}");
+    assert!((led.radius - 0.375).abs() < 1e-6, "three quarters of the source's radius: {led:?}");
     // Seen from 100 to 200 mm.
-    let seen = (2.0 * led.theta_max).tan();
+    let seen = (led.theta_max / 0.75).tan();
     assert!((0.5 / 200.0..0.5 / 100.0).contains(&seen), "{led:?}");
+}
+
+/// Tubes of 20 and 1 mm side by side, each with a lamp and a sensor of its own.
+#[test]
+fn every_sensor_has_the_window_of_its_guide() {
+    let tube = |name: &str, radius_mm: f64, x_mm: f64| {
+        let (length, from, size) = (10.0 * radius_mm, 14.0 * radius_mm, 0.5 * radius_mm);
+        format!(
+            "[sheets.{name}.tube]\nprofile = {{ circle = {{ radius_mm = {radius_mm} }} }}\npath = [{{ straight_mm = {length} }}]\n\
+             finish = \"mirror\"\nat = {{ position_mm = [{x_mm}, 0, 0] }}\n\
+             [sources.lamp_{name}.disk]\nradius_mm = {radius_mm}\nflux_lm = 1\nemission = {{ cone_half_angle_deg = 3 }}\n\
+             at = {{ face = \"{name}.entry\" }}\n\
+             [sensors.at_{name}]\nplane = {{ disk = {{ radius_mm = {size} }} }}\naim = [\"{name}.exit\"]\n\
+             at = {{ position_mm = [{x_mm}, 0, {from}], axis = [0, 0, -1] }}\n"
+        )
+    };
+    let [wide, narrow] = [tube("wide", 20.0, 0.0), tube("narrow", 1.0, 100.0)];
+    let text = format!("[finishes.mirror]\nspecular = {{ reflectance = 0.97 }}\n{wide}{narrow}");
+    let job = load(&text, Way::Gather(Gathering::to_depth(2)));
+    let gather = GatherPlan { records: Some(400), photons: Some(400), ..GatherPlan::default() };
+    let mut run = Run::new(&job.scene, &RunPlan { gather, ..job.run.clone() });
+    run.next_piece();
+    let findings = run.findings();
+    let groups: Vec<_> = findings.gathering().collect();
+    let [(first, wide), (second, narrow)] = groups[..] else { panic!("{groups:?}") };
+    assert_eq!((first, second), (&[SensorId::new(0)][..], &[SensorId::new(1)][..]));
+    assert!((wide.window.radius - 6.0).abs() < 1e-6, "{wide:?}");
+    assert!((narrow.window.radius - 0.3).abs() < 1e-6, "{narrow:?}");
+    assert_eq!((wide.gather_paths, narrow.gather_paths), (200, 200));
 }

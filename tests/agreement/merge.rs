@@ -8,7 +8,7 @@ use crate::trial::{Gathering, Way, agree, findings, load};
 use glam::DVec3;
 use lumiduct_core::rng::Sampler;
 use lumiduct_core::scene::{Arrival, Arrivals, SensorId, SensorKind, SourceId};
-use lumiduct_core::transport::{Layout, Windows};
+use lumiduct_core::transport::{Layout, Orders};
 
 /// Forward, backward, and merged at depths 0, 2 and 8.
 fn all_agree(what: &str, text: &str) {
@@ -191,7 +191,7 @@ seen = {sensor}
     )
 }
 
-/// Relative variances of the flux within the widest window after the same paths: forward, backward, gather, merged.
+/// Relative variances of the flux by the estimate of second order after the same paths: forward, backward, gather, merged.
 fn variances(text: &str, gathering: Gathering) -> [f64; 4] {
     const PASSES: u64 = 64;
     let of = |way: Way| {
@@ -201,7 +201,7 @@ fn variances(text: &str, gathering: Gathering) -> [f64; 4] {
         let slot = layout.sensor_flux(SensorId::new(0), SourceId::new(0));
         let (readings, paths) = match way {
             Way::Forward => (&found.photons, PASSES * gathering.photons),
-            // Of passes, within the widest window.
+            // Of passes, of second order.
             Way::Backward | Way::Mixed | Way::Gather(_) | Way::Merged(_) => {
                 (found.others[0].stages[0].counts.first(), PASSES * gathering.records)
             }
@@ -299,18 +299,18 @@ exit = {{ plane = {{}}, on = "tube.exit", counts = "incident", side = "both" }}
     let job = load(&text, way);
     let found = findings(&job, way);
     let slot = Layout::new(&job.scene).sensor_flux(SensorId::new(0), SourceId::new(0));
-    let windows = Windows::of(&found.others[0].stages[0].counts);
-    for readings in [windows.wide, windows.middle, windows.narrow] {
+    let Orders { second, fourth, sixth } = Orders::of(&found.others[0].stages[0].counts);
+    for (readings, most) in [(second, 0.01), (fourth, 0.01), (sixth, 0.02)] {
         let flux = readings.scalar(slot);
         println!("{what}, depth {depth}: {} ± {}", flux.mean(), flux.std_error());
-        assert!(flux.std_error() < 0.01 * expected, "{what}: {flux:?}");
+        assert!(flux.std_error() < most * expected, "{what}: {flux:?}");
         let z = flux.sigmas_from(expected);
         assert!(z.abs() < 4.0, "{what}, depth {depth}: {flux:?}, not {expected}");
     }
 }
 
 #[test]
-fn shares_of_a_tube_add_up_in_every_window() {
+fn shares_of_a_tube_add_up_in_every_order() {
     for depth in [0, 1, 2] {
         flux_is("tube", "", depth, 10.0);
         let pane = "[sheets.pane.disk]\nradius_mm = 5\nfinish = \"splitter\"\nat = { position_mm = [0, 0, 8] }";

@@ -107,14 +107,14 @@ fn a_far_field_that_is_aimed_at_a_dome_sees_each_of_its_lines_once() {
         r#"
 [media.acrylic]
 index = 1.3
-absorption_per_mm = 0.03
+absorption_per_mm = 0.0075
 [solids.dome.sphere]
-radius_mm = 1.5
+radius_mm = 6
 medium = "acrylic"
 [sources.led.disk]
-radius_mm = 1
+radius_mm = 4
 flux_lm = 10
-at = { position_mm = [0, 0, -2.5] }
+at = { position_mm = [0, 0, -10] }
 [sensors]
 far = { goniometer = { c_step_deg = 180, gamma_step_deg = 30 }, aim = ["dome.surface"] }
 "#,

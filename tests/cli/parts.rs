@@ -8,7 +8,7 @@ use std::time::Duration;
 #[test]
 fn parts_of_a_run_make_the_report_of_the_whole() {
     let place = Place::new();
-    for estimator in ["forward", "backward", "mix", "gather --schedule per-pass"] {
+    for estimator in ["forward", "backward", "mix", "gather --schedule fixed"] {
         let run = format!("run rod.toml --estimator {estimator} --overwrite");
         place.good(&format!("{run} -o whole"));
         for part in ["3/3", "1/3", "2/3"] {
@@ -48,7 +48,7 @@ fn parts_that_do_not_make_a_whole_are_refused_with_the_reason() {
     let said = place.bad(2, "run rod.toml --shard 1/2 --target 1% -o x");
     assert!(said.contains("--paths"), "{said}");
     let said = place.bad(2, "run rod.toml --shard 1/2 --estimator gather -o x");
-    assert!(said.contains("per-pass"), "{said}");
+    assert!(said.contains("fixed"), "{said}");
     for wrong in ["0/2", "3/2", "1", "1/0"] {
         place.bad(2, &format!("run rod.toml --shard {wrong}"));
     }

@@ -284,13 +284,13 @@ fn merged_values_name_their_estimator_and_their_windows() {
 #[test]
 fn settings_of_gathering_are_reported_and_make_another_report() {
     let place = Place::new();
-    let options = "--depth 8 --angle-deg 0.15 --records 10k --photons 1M --schedule per-pass";
+    let options = "--depth 8 --angle-deg 0.15 --records 10k --photons 1M --schedule fixed";
     let output =
         place.run(&format!("run rod.toml -o a --radius-mm 3 --estimator gather {options}"));
     assert_eq!(code(&output), 0);
     assert!(errors(&output).contains("`--radius-mm`: 3 mm is larger"), "{}", errors(&output));
     let told =
-        "depth 8, radius 3 mm, angle 0.15 deg, 10000 records, 1000000 photons, schedule per-pass";
+        "depth 8, radius 3 mm, angle 0.15 deg, 10000 records, 1000000 photons, schedule fixed";
     assert_eq!(place.summary("a")["run"]["estimator"], "gather");
     assert_eq!(place.summary("a")["run"]["gather"], told);
     assert!(fs::read_to_string(place.path("a/report.md")).unwrap().contains(told));

@@ -116,7 +116,7 @@ reference itself is a Monte Carlo value), 0.3 % for local values (I), 0.03 % for
 within 4 standard errors or, if that is more, within 0.2 % (F), 1 % (I), 0.1 % (X); for M within 3 combined errors of both
 sides and 0.3 %; a limit may be exceeded by 4 standard errors at most. In every run no light may leak and the flux balance
 must close to 1e-9. Sensors count photons, except in the cases about windows (ES): there they gather, and the value is that
-of the widest window, including its bias.
+of the estimate of second order, including its bias.
 
 `cargo test` also compares every value with its reference, with the same limits and errors of 0.15 % (F and M), 0.7 % (I)
 and 0.09 % (X), and checks that this page matches the scenes, tables and numerics of the program.

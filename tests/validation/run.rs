@@ -5,7 +5,7 @@ use lumiduct_core::measure::{self, Measure};
 use lumiduct_core::plan::Request;
 use lumiduct_core::plan::{Check, RunPlan, StopRules};
 use lumiduct_core::tally::sigmas;
-use lumiduct_core::transport::{Findings, Run, Windows};
+use lumiduct_core::transport::{Findings, Orders, Run};
 use lumiduct_input::{self as input, Job, Settings};
 use std::path::{Path, PathBuf};
 
@@ -89,7 +89,7 @@ fn load(case: &Case, variant: &Variant, seed: u64) -> Job {
         // The other estimators are compared with forward in tests/agreement.
         estimator: Some(match case.by {
             By::Photons => Request::Forward,
-            By::WideWindow => Request::Gather,
+            By::SecondOrder => Request::Gather,
         }),
         ..Settings::default()
     };
@@ -155,18 +155,18 @@ impl Wanted<'_> {
             By::Photons => read(findings),
             // Photons count as the paths traced; there are few gather paths, and many photons for
             // each.
-            By::WideWindow => read(&wide_window(findings))
-                .map(|wide| Measure { paths: findings.photons.paths(), ..wide }),
+            By::SecondOrder => read(&second_order(findings))
+                .map(|own| Measure { paths: findings.photons.paths(), ..own }),
         };
         found.unwrap_or_else(|| panic!("{}: no measure `{name}`", job.name))
     }
 }
 
-/// The gathered light in the widest window, as ordinary readings.
-fn wide_window(findings: &Findings) -> Findings {
+/// The gathered light by the estimate of second order, as ordinary readings.
+fn second_order(findings: &Findings) -> Findings {
     let gathered = findings.others.first().expect("the case asks for gathering");
     let stage = gathered.stages.last().expect("a wave has been traced");
-    Findings::forward(Windows::of(&stage.counts).wide.clone())
+    Findings::forward(Orders::of(&stage.counts).second.clone())
 }
 
 /// Traces whole rounds until all errors are reached, or too many paths are traced.

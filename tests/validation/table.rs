@@ -42,9 +42,9 @@ pub(crate) enum By {
     /// Photons in the cells of the sensors.
     #[default]
     Photons,
-    /// Gather records in the widest window only, without extrapolation from three: cases about
+    /// The estimate of second order of gathering, E1, whose bias is known: cases about
     /// windows.
-    WideWindow,
+    SecondOrder,
 }
 
 /// A reference value.

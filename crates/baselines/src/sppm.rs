@@ -7,17 +7,19 @@
 //! purely specular scenes they count only the sources they hit.
 
 use crate::one_sensor::{BATCH_SEGMENTS, OneSensor};
+use glam::DVec3;
 use lumiduct_core::optics::{FinishModel, Incidence, Lobe};
 use lumiduct_core::plan::RunPlan;
 use lumiduct_core::rng::{Sampler, stream};
 use lumiduct_core::scene::Visibility;
 use lumiduct_core::transport::forward::Forward;
-use lumiduct_core::transport::gather::contribution::{NestedWindows, PhotonHit, SurfaceHit};
+use lumiduct_core::transport::gather::contribution::{PairWeights, PhotonHit, SurfaceHit};
 use lumiduct_core::transport::gather::index::PhotonKey;
+use lumiduct_core::transport::gather::kernel::Kernels;
 use lumiduct_core::transport::gather::records::{
     GatherRecord, RecordKind, RecordPath, Records, SurfaceRecord,
 };
-use lumiduct_core::transport::gather::settings::settle;
+use lumiduct_core::transport::gather::settings::groups;
 use lumiduct_core::transport::gather::surfaces::SurfaceNumbers;
 use lumiduct_core::transport::stop::{Pace, StopSignal};
 use lumiduct_core::transport::tally::readings::DetectedLight;
@@ -58,8 +60,8 @@ impl<'s> Sppm<'s> {
         let segments = pilot.segments.div_ceil(pilot.paths().max(1)).max(1);
         let photons = (PASS_BATCHES * BATCH_SEGMENTS / segments).max(256);
         let pilot = PhotonPilot::new(segments as f64);
-        let settings = settle(scene, plan, &[sensor.id], pilot, &StopSignal::default());
-        let window = settings.expect("nothing stops it").window;
+        let groups = groups(scene, plan, (&[sensor.id], 1), pilot, &StopSignal::default());
+        let window = groups.expect("nothing stops it")[0].settings.window;
         Self {
             surfaces: SurfaceNumbers::new(scene),
             forward: Forward::new(scene, seed, plan.bounce_limit, photons),
@@ -84,10 +86,10 @@ impl<'s> Sppm<'s> {
         let pace = Pace::new(&signal);
         let records =
             Records::new(records, window, &self.surfaces, &pace).expect("nothing stops it");
-        let nested = NestedWindows::new(window);
+        let weights = PairWeights::new(window);
         let mut stream = SppmStream {
             sppm: self,
-            nested,
+            weights,
             records: &records,
             cells,
             photon: None,
@@ -187,14 +189,16 @@ impl Gatherer<'_, '_> {
             let index = facing.incidence.index_from;
             let value = self.etendue * vertex.throughput / (index * index);
             // The whole disk counts also at rims; that bias vanishes with the radius.
-            let values = self.window.nested().map(|window| value / window.area());
+            let value = value / self.window.area();
             let record = SurfaceRecord {
                 point: vertex.point,
                 normal,
                 surface: surfaces.of(interface.acting.prim),
                 medium,
                 kind: RecordKind::Scattered { finish, out: -vertex.dir },
-                values,
+                value,
+                kernels: Kernels::NONE,
+                slope: DVec3::ZERO,
                 path: RecordPath {
                     place: self.waiting.cells.len() as u32 - 1,
                     depth: path.depth + 1,
@@ -208,7 +212,7 @@ impl Gatherer<'_, '_> {
 /// Photons traced past the records.
 struct SppmStream<'p, 's> {
     sppm: &'p Sppm<'s>,
-    nested: NestedWindows,
+    weights: PairWeights,
     records: &'p Records<'s>,
     /// The current photon.
     photon: Option<Emergence>,
@@ -252,10 +256,10 @@ impl SppmStream<'_, '_> {
         let medium = interface.from;
         let photon = SurfaceHit { surface, medium, point: vertex.point, incidence };
         let photon = PhotonHit::Surface(photon);
-        let Self { nested, cells, readings, .. } = self;
+        let Self { weights, cells, readings, .. } = self;
         let key = PhotonKey { surface, point: vertex.point, dir: vertex.dir };
         self.records.visit(&[key], |_, record| {
-            let Some([share, ..]) = nested.flux(record, &photon) else { return };
+            let Some([share, ..]) = weights.flux(record, &photon) else { return };
             let (flux, depth) =
                 (flux * vertex.throughput * share, path.depth + record.path().depth);
             let light = DetectedLight { flux, depth, source };

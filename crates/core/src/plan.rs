@@ -9,7 +9,7 @@ use std::time::Duration;
 
 /// Version of the numerics. Every change that alters a committed report raises it, so that a
 /// report, a checkpoint or a record from older numerics is never mistaken for a current one.
-pub const NUMERICS: u32 = 4;
+pub const NUMERICS: u32 = 5;
 
 /// How to trace and when to stop. Its names in files are part of the identity of a run, and stay
 /// fixed when the code changes.
@@ -168,10 +168,10 @@ pub struct GatherPlan {
     /// Largest depth of gather paths; the first surface they meet has depth 0.
     #[schemars(range(max = 1000))]
     pub depth: Option<u32>,
-    /// Radius of the window in the first pass.
+    /// Radius of the window in the first stage.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub radius_mm: Option<f64>,
-    /// Half-angle of the window in the first pass.
+    /// Half-angle of the window in the first stage.
     #[schemars(extend("exclusiveMinimum" = 0.0, "exclusiveMaximum" = 90.0))]
     pub angle_deg: Option<f64>,
     /// Number of gather paths in a pass, over all sensors. Each takes about 600 bytes in every thread.
@@ -180,7 +180,7 @@ pub struct GatherPlan {
     /// Number of photon paths in a pass.
     #[schemars(range(min = 1))]
     pub photons: Option<u64>,
-    /// How the window shrinks. Omitted: in stages.
+    /// Size of the window during the run. Omitted: it shrinks in stages.
     pub schedule: Option<Schedule>,
 }
 
@@ -211,27 +211,27 @@ impl GatherPlan {
     }
 }
 
-/// How the window shrinks.
+/// Size of the window during a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 pub enum Schedule {
-    /// In stages of many passes with the same window; the value comes from the last stage alone.
+    /// It shrinks in stages of many passes each; the value comes from the stage with the smallest total error.
     #[default]
     #[serde(rename = "stages")]
     Stages,
-    /// A little from pass to pass; the value comes from all passes. For comparison: its error bar is less reliable.
-    #[serde(rename = "per-pass")]
-    PerPass,
+    /// All passes have the window of the first stage, and the value comes from all of them. For runs in parts.
+    #[serde(rename = "fixed")]
+    Fixed,
 }
 
 impl Schedule {
     /// All schedules.
-    pub const ALL: [Self; 2] = [Self::Stages, Self::PerPass];
+    pub const ALL: [Self; 2] = [Self::Stages, Self::Fixed];
 
     /// Its name in files and on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Stages => "stages",
-            Self::PerPass => "per-pass",
+            Self::Fixed => "fixed",
         }
     }
 
@@ -337,7 +337,7 @@ mod tests {
             angle_deg: Some(6.0),
             records: Some(1000),
             photons: Some(5000),
-            schedule: Some(Schedule::PerPass),
+            schedule: Some(Schedule::Fixed),
         };
         let target = Target { measure: "exit.flux".into(), relative_error: 0.005 };
         let (paths, time) = (Some(20), Some(Duration::from_millis(1500)));
@@ -353,7 +353,7 @@ mod tests {
         let text = serde_json::to_string(&plan).unwrap();
         let expected = concat!(
             r#"{"estimator":"gather","sensor_estimators":[null,"mis"],"gather":{"depth":8,"radius_mm":0.5,"angle_deg":6.0,"records":1000,"#,
-            r#""photons":5000,"schedule":"per-pass"},"seed":7,"bounce_limit":100,"batch_paths":null,"#,
+            r#""photons":5000,"schedule":"fixed"},"seed":7,"bounce_limit":100,"batch_paths":null,"#,
             r#""stop":{"paths":20,"batches":3,"time":{"secs":1,"nanos":500000000},"#,
             r#""target":{"measure":"exit.flux","relative_error":0.005}}}"#
         );

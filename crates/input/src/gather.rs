@@ -12,7 +12,7 @@ use lumiduct_core::scene::{Owner, Scene};
 use std::collections::BTreeMap;
 
 /// Usual first radius, as a share of half the width of a guide.
-const USUAL_RADIUS: f64 = 0.2;
+const USUAL_RADIUS: f64 = 0.3;
 
 /// Notes settings of the file and the command line that the estimator does not use.
 pub(crate) fn check_use(

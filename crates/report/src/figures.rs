@@ -249,7 +249,7 @@ exit = { plane = { rectangle = { width_mm = 1, height_mm = 1 }, cells = [2, 2] }
 far = { goniometer = { c_step_deg = 90, gamma_step_deg = 30 } }
 "#;
 
-    /// Readings of a plane and a goniometer that extrapolation has made negative in the first cell
+    /// Readings of a plane and a goniometer that negative weights have made negative in the first cell
     /// and the first ring.
     fn dim(weathers: &[&str]) -> Measures {
         let folder = tempfile::tempdir().unwrap();

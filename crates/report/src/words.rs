@@ -22,7 +22,7 @@ pub(crate) const CLASSES_HEAD: &str =
 /// Text before the rows of [`choice_row`].
 pub(crate) const CHOICES_HEAD: &str = "A pilot run tried the estimators on each sensor. The table gives the \
     time that one thread would need to know the sensor's flux or map to 1 %, estimated from counted work \
-    (docs/method.md). Gathering is rejected if its windows differ by more than noise or if an unbiased \
+    (docs/method.md). Gathering is rejected if its bias exceeds the target by more than noise or if an unbiased \
     estimator contradicts it. Any estimator is rejected if it found significantly less light from a source \
     than another did.";
 /// Text after the results.

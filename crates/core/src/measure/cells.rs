@@ -19,7 +19,7 @@ const NO_AREA: f64 = 1e-9;
 /// Cells with at least this share of their own area count individually for the extremes.
 const ENOUGH_AREA: f64 = 0.5;
 
-/// A value for a picture: a value that extrapolation made negative is shown as zero.
+/// A value for a picture: a value that negative weights made negative is shown as zero.
 pub fn not_below_zero(value: f64) -> f64 {
     // NaN, off the sensor, stays.
     if value < 0.0 { 0.0 } else { value }

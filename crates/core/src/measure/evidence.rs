@@ -131,7 +131,7 @@ impl<'a> Evidence<'a> {
     }
 
     /// Mean flux of some light over batches with its standard error for some values of a sensor, lm
-    /// or W. A single batch leaves the errors infinite. No flux is negative: where extrapolation makes it
+    /// or W. A single batch leaves the errors infinite. No flux is negative: where negative weights make it
     /// so, its error is at least as large.
     pub(crate) fn cell_flux(
         &self,

@@ -37,7 +37,7 @@ impl Noisy {
         (counts * own + COUNTS_OF_ALL * self.count) / (counts + COUNTS_OF_ALL)
     }
 
-    /// A physically possible value: one that extrapolation made negative is zero.
+    /// A physically possible value: one that negative weights made negative is zero.
     fn lit(&self) -> f64 {
         self.value.max(0.0)
     }

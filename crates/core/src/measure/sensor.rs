@@ -9,6 +9,7 @@ use crate::measure::{
 use crate::scene::{Scene, SensorId, SensorKind};
 use crate::transport::{Bias, Estimate, Findings, Resolution};
 use indexmap::IndexMap;
+use ndarray::{Array2, Zip};
 
 /// The measures of a sensor.
 pub(crate) struct SensorMeasures {
@@ -30,17 +31,18 @@ pub(crate) fn measures(scene: &Scene, findings: &Findings, id: SensorId) -> Sens
         found.values.values_mut().for_each(|measure| judge(measure, &estimate));
         return found;
     };
-    let [one, other] =
-        bias.between.map(|readings| by_evidence(&photons.by(readings, estimate.estimator), id));
+    let other = by_evidence(&photons.by(bias.other, estimate.estimator), id);
     for (name, measure) in &mut found.values {
-        set_bias(measure, &estimate, &bias, [&one.values[name], &other.values[name]]);
+        set_bias(measure, &estimate, &bias, &other.values[name]);
     }
-    for (map, (one, other)) in found.maps.iter_mut().zip(one.maps.iter().zip(&other.maps)) {
-        map.biases = Some((&one.values - &other.values).abs());
+    let of_cells = |own: &Array2<f64>, other: &Array2<f64>| {
+        Some(Zip::from(own).and(other).map_collect(|&own, &other| bias.of(own, other)))
+    };
+    for (own, other) in found.maps.iter_mut().zip(&other.maps) {
+        own.biases = of_cells(&own.values, &other.values);
     }
-    let others = one.intensities.iter().zip(&other.intensities);
-    for (own, (one, other)) in found.intensities.iter_mut().zip(others) {
-        own.biases = Some((&one.values - &other.values).abs());
+    for (own, other) in found.intensities.iter_mut().zip(&other.intensities) {
+        own.biases = of_cells(&own.values, &other.values);
     }
     found
 }
@@ -59,8 +61,7 @@ pub(crate) fn value_of(
     match &estimate.bias {
         None => judge(&mut value, &estimate),
         Some(bias) => {
-            let [one, other] = bias.between.map(of);
-            set_bias(&mut value, &estimate, bias, [&one?, &other?]);
+            set_bias(&mut value, &estimate, bias, &of(bias.other)?);
         }
     }
     Some(value)
@@ -92,19 +93,14 @@ fn judge(measure: &mut Measure, estimate: &Estimate<'_>) {
     }
 }
 
-/// Sets the bias of a measure by the biased estimator from two others of its values.
-fn set_bias(
-    measure: &mut Measure,
-    estimate: &Estimate<'_>,
-    bias: &Bias<'_>,
-    [one, other]: [&Measure; 2],
-) {
+/// Sets the bias of a measure by the biased estimator, from its value by the other estimate.
+fn set_bias(measure: &mut Measure, estimate: &Estimate<'_>, bias: &Bias<'_>, other: &Measure) {
     if measure.estimator != estimate.estimator {
         return;
     }
-    let delta = (one.value - other.value).abs();
-    if delta.is_finite() {
-        measure.bias = Some(measure.bias.unwrap_or(0.0).hypot(delta));
+    let remaining = bias.of(measure.value, other.value);
+    if remaining.is_finite() {
+        measure.bias = Some(measure.bias.unwrap_or(0.0).hypot(remaining));
     }
     measure.status = measure.status.worst(match bias.resolution {
         Resolution::Resolved => Status::Ok,

@@ -232,8 +232,12 @@ fn photons_contradict_gather_paths_beyond_noise_and_rounding() {
     let status = |photons: f64, gather_paths: f64| {
         let counts = Counts::one(every_batch(gather_paths).photons);
         let stages = vec![Stage { number: 0, counts }];
-        let others =
-            vec![EstimatorFindings { estimator: Estimator::Backward, settings: None, stages }];
+        let others = vec![EstimatorFindings {
+            estimator: Estimator::Backward,
+            sensors: vec![SensorId::new(0)],
+            settings: None,
+            stages,
+        }];
         let estimators = vec![Estimator::Backward];
         let findings = Findings { others, estimators, ..every_batch(photons) };
         measure(&scene, &findings).values["exit.flux"].status

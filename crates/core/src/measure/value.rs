@@ -49,11 +49,10 @@ pub enum Status {
     TooFew,
     /// An extreme of a map that is mostly noise: the correction for it exceeds a tenth of the value.
     NoiseLimited,
-    /// Nested windows of a gathered value agree within their noise. The value is that of the
-    /// smallest, and a bias that scales with the square of the window is below the reported error.
+    /// Estimates of second and fourth order of a gathered value agree within two standard errors. Its bias is not known
+    /// better than half of their difference.
     BiasInNoise,
-    /// Nested windows of a gathered value differ, but not as the square of the window. The value is
-    /// that of the smallest, and the reported bias is not a bound.
+    /// Estimates of higher order of a gathered value do not converge, and the stated bias is not a bound.
     BiasNotResolved,
     /// Photons of the same run found more light from a source on the sensor than its estimator did,
     /// by more than four errors: its paths hardly ever meet that source.

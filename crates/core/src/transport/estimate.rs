@@ -17,25 +17,39 @@ pub(crate) struct Estimate<'a> {
     pub is_contradicted: bool,
 }
 
-/// The bias of an estimate: that of any measure is the difference between its values from two other
-/// estimates.
+/// The bias of an estimate: that of any measure is a share of the difference from its value by another estimate, and at
+/// least a share of itself.
 #[derive(Debug, Clone, Copy)]
 pub struct Bias<'a> {
-    /// These two estimates.
-    pub between: [&'a Readings; 2],
-    /// How far this difference can be trusted.
+    /// The other estimate.
+    pub other: &'a Readings,
+    /// The share of the difference that may remain, 1.
+    pub share: f64,
+    /// The least bias as a share of the value, 1: that of the sensor's flux.
+    pub least: f64,
+    /// How far this can be trusted.
     pub resolution: Resolution,
+}
+
+impl Bias<'_> {
+    /// The bias of a value whose other estimate is known.
+    pub(crate) fn of(&self, value: f64, other: f64) -> f64 {
+        if other.is_nan() {
+            return f64::NAN;
+        }
+        (self.share * (value - other).abs()).max(self.least * value.abs())
+    }
 }
 
 /// What is known about the bias of a sensor's values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Resolution {
-    /// It follows its law and has been removed by extrapolation; the rest is smaller.
+    /// The orders of the estimate differ and converge.
     Resolved,
-    /// The estimates agree within their noise; a bias that follows its law would have been removed.
+    /// They agree within their noise.
     InNoise,
-    /// The estimates differ, but not by the law of the bias.
+    /// They differ and do not converge.
     NotResolved,
 }
 

@@ -35,6 +35,8 @@ pub(crate) enum Prepared<'s> {
 pub struct EstimatorFindings {
     /// The estimator.
     pub estimator: Estimator,
+    /// Its sensors.
+    pub sensors: Vec<SensorId>,
     /// Settings of gathering.
     pub settings: Option<GatherSettings>,
     /// The last finished stage and the one after it, as far as it has got.
@@ -128,11 +130,11 @@ impl<'s> Prepared<'s> {
     }
 
     /// Whether bias limits any of its values more than noise does.
-    pub(crate) fn is_limited_by_bias(&self, series: &Series) -> bool {
+    pub(crate) fn is_limited_by_bias(&self, series: &Series, photons: &Readings) -> bool {
         match self {
             Self::Backward(_) | Self::Mix(_) => false,
             Self::Gather(own) | Self::Mis(own) => {
-                series.in_progress().is_some_and(|stage| own.is_limited_by_bias(&stage))
+                series.in_progress().is_some_and(|stage| own.is_limited_by_bias(&stage, photons))
             }
         }
     }
@@ -143,7 +145,16 @@ impl<'s> Prepared<'s> {
             Self::Backward(_) | Self::Mix(_) => None,
             Self::Gather(own) | Self::Mis(own) => Some(own.settings),
         };
-        EstimatorFindings { estimator: self.estimator(), settings, stages: series.stages() }
+        let sensors = match self {
+            Self::Backward(own) | Self::Mix(own) => own.sensors().collect(),
+            Self::Gather(own) | Self::Mis(own) => own.sensors().collect(),
+        };
+        EstimatorFindings {
+            estimator: self.estimator(),
+            sensors,
+            settings,
+            stages: series.stages(),
+        }
     }
 }
 
@@ -162,7 +173,7 @@ impl InProgress<'_, '_> {
             Self::Backward(readings) => Counts::closed([*readings]),
             Self::Mix(mixing) => Counts::closed([mixing.readings]),
             Self::Gather(stream) => Counts::closed(stream.finish().0),
-            Self::Mis(stream) => Counts::closed(stream.finish()),
+            Self::Mis(stream) => Counts::closed(stream.finish().0),
         }
     }
 }
@@ -220,7 +231,7 @@ pub(crate) fn estimate<'a>(
         Estimator::Backward => last().map(|own| backward::estimate(own, photons, &layout, id)),
         Estimator::Mix => last().map(|own| unbiased(estimator, own)),
         Estimator::Gather | Estimator::Mis => {
-            gather::estimate(estimator, stages, &layout.flux_slots(id))
+            gather::estimate(estimator, (stages, photons), &layout.flux_slots(id))
         }
     };
     own.unwrap_or_else(|| unbiased(Estimator::Forward, photons))

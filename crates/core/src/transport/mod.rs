@@ -24,7 +24,7 @@ pub(crate) use estimate::Estimate;
 pub use estimate::Resolution;
 pub use estimate::{Account, AccountEntry, Bias};
 pub use forward::{Track, TrackEnd, tracks};
-pub use gather::{GatherSettings, Window, Windows, scatterers, turbid_media};
+pub use gather::{GatherSettings, Orders, Window, scatterers, turbid_media};
 pub use run::{Findings, Phase, Run, RunState, Shard, Slice, Unsliceable, batch_paths};
 pub use stop::{Activity, FIRST_BATCH_GRACE, Interrupt, StopAnswer, StopSignal};
 pub use tally::Stage;

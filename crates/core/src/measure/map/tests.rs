@@ -67,7 +67,7 @@ fn cells_cut_by_the_rim_are_taken_together_for_the_extremes() {
 }
 
 #[test]
-fn what_extrapolation_makes_negative_has_an_error_that_reaches_zero_and_is_no_extreme() {
+fn what_negative_weights_make_negative_has_an_error_that_reaches_zero_and_is_no_extreme() {
     let dim = |p: DVec2| if p.x < -0.3 && p.y < -0.3 { -2e-6 } else { 3e-6 };
     let planes = [rectangle(1.0, 5, 5), luminance(1.0, 5, 5, &[1.0])];
     for (kind, quantity) in planes.into_iter().zip(["illuminance", "luminance"]) {

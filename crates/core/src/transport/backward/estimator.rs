@@ -14,7 +14,7 @@ use crate::transport::connect::sensors::SensorTargets;
 use crate::transport::connect::sources::{SourcePoint, SourceTargets};
 use crate::transport::connect::vertex::{ScatteringVertex, TurnAt, Turns};
 use crate::transport::connect::way::WayStart;
-use crate::transport::connect::weights::{Etendues, NO_WINDOW};
+use crate::transport::connect::weights::Etendues;
 use crate::transport::estimate::Estimate;
 use crate::transport::stop::{Pace, StopSignal};
 use crate::transport::tally::readings::{DetectedLight, MIN_LIT_GROUPS};
@@ -102,6 +102,11 @@ impl<'s> Backward<'s> {
         let task = Task { batch: PILOT_BATCH, stage: 0, photon_fluxes: &[], pace: &pace };
         let segments = self.trace(task)?.segments;
         Some(work::of_gather_paths(self.batch_paths(), segments) / self.batch_paths() as f64)
+    }
+
+    /// The sensors.
+    pub(crate) fn sensors(&self) -> impl Iterator<Item = SensorId> {
+        self.sensors.iter().map(|(id, _)| *id)
     }
 
     /// Gather paths of all sensors in a batch.
@@ -284,7 +289,7 @@ impl GatherPathCounter<'_, '_> {
         let last = self.turns.last(dir).map(against);
         let joined = self.backward.joined_to_source(self.id, last, &place);
         let etendues = self.etendues(&place, met.emitted, joined, self.turns.first(dir));
-        let [weight, ..] = etendues.backward();
+        let weight = etendues.backward();
         self.count(path.depth, met.source, weight * met.radiance * self.etendue);
     }
 
@@ -314,7 +319,7 @@ impl GatherPathCounter<'_, '_> {
         let joined = light.adjoint / light.albedo * measure;
         let first = self.turns.first_if_joined(-place.dir);
         let etendues = self.etendues(&place, emitted, joined, first);
-        let [weight, ..] = etendues.backward_joined();
+        let weight = etendues.backward_joined();
         let radiance = path.throughput * light.adjoint * emitted * measure * end.transmittance;
         self.count(path.depth + 1, place.source, weight * radiance * self.etendue / kept);
     }
@@ -340,7 +345,7 @@ impl GatherPathCounter<'_, '_> {
             photon_joined: photon * self.backward.joined_sensors.joined_ratio(first, self.id, at),
             gather: if meets { self.etendue } else { f64::INFINITY },
             gather_joined: self.etendue * joined,
-            window: NO_WINDOW,
+            window: 0.0,
         }
     }
 

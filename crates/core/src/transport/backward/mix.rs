@@ -14,7 +14,7 @@ use crate::transport::connect::sensors::SensorPoint;
 use crate::transport::connect::sources::SourcePoint;
 use crate::transport::connect::vertex::{ScatteringVertex, TurnAt, Turns};
 use crate::transport::connect::way::WayStart;
-use crate::transport::connect::weights::{Etendues, NO_WINDOW};
+use crate::transport::connect::weights::Etendues;
 use crate::transport::forward;
 use crate::transport::stop::Pace;
 use crate::transport::tally::readings::DetectedLight;
@@ -156,8 +156,7 @@ impl Mixing<'_, '_> {
             let joined =
                 joined_sensors.joined_ratio(last, light.sensor, (light.point, light.normal));
             let first = self.turns.first(light.dir);
-            let [weight, ..] = self.etendues(light.sensor, gather, joined, first).forward();
-            weight
+            self.etendues(light.sensor, gather, joined, first).forward()
         } else {
             1.0
         };
@@ -201,7 +200,7 @@ impl Mixing<'_, '_> {
         let gather = end.index * end.index * arrivals.extent(&back, place.normal);
         let joined = light.density / light.albedo * place.solid_angle;
         let first = self.turns.first_if_joined(place.dir);
-        let [weight, ..] = self.etendues(place.sensor, gather, joined, first).forward_joined();
+        let weight = self.etendues(place.sensor, gather, joined, first).forward_joined();
         let flux = self.flux * path.throughput * light.density * place.solid_angle;
         let flux = flux * end.transmittance * weight / kept;
         self.count(path.depth + 1, place.sensor, &place.cells, flux);
@@ -225,7 +224,7 @@ impl Mixing<'_, '_> {
             photon_joined: self.photon * joined,
             gather: if emitters.meets(self.start.source) { gather } else { f64::INFINITY },
             gather_joined: gather * from_source,
-            window: NO_WINDOW,
+            window: 0.0,
         }
     }
 

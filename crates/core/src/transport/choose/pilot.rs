@@ -4,9 +4,9 @@
 //! of the passes without which gathering gives no result. The pilot measures it for forward,
 //! backward, their mix and gather with a small part of the budget, in counted work, never in time,
 //! and takes the smallest t. The budget of a run to a target is what the best needs according to a
-//! first, small pilot. Gathering is excluded if there is an objection: nested windows that differ
-//! by more than the target and their noise, or a flux that the best of the unbiased ones
-//! contradicts. Two windows alone cannot see a feature that is smaller than both. An unbiased
+//! first, small pilot. Gathering is excluded if there is an objection: a bias above the target
+//! and its noise, or a flux that the best of the unbiased ones contradicts. Windows alone cannot
+//! see a feature that is smaller than all of them. An unbiased
 //! estimator is excluded if it found too little compared with another: its variance does not
 //! contain what it has missed so far.
 
@@ -33,7 +33,7 @@ const KNOWN: f64 = 0.32;
 const SIGMAS: f64 = 3.0;
 /// Possible relative rounding of a flux, 1.
 const ROUNDING: f64 = 1e-9;
-/// Relative difference allowed between windows if there is no target, 1.
+/// Relative bias allowed if there is no target, 1.
 const USUAL_TARGET: f64 = 0.01;
 
 /// Tries the estimators on all sensors and chooses; `None` if stopped before anything was known.
@@ -209,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn windows_object_when_they_differ_beyond_target_and_noise() {
+    fn a_bias_beyond_target_and_noise_is_an_objection() {
         let target = 0.01;
         let with = |apart| objection(&gathered([1.0; 4], apart), &[], target);
         assert_eq!(with([0.2, 0.21, 0.2, 0.19]), Some(Objection::Biased));

@@ -4,11 +4,6 @@
 //! the techniques sample a path. A density is given as the etendue that one sample of the technique
 //! represents, its reciprocal; infinite for a technique that cannot find the path.
 
-/// Windows in which pairs are counted.
-pub(crate) const COUNTED: usize = 5;
-/// No window: the path has no record.
-pub(crate) const NO_WINDOW: [f64; COUNTED] = [0.0; COUNTED];
-
 /// The etendues that weight a path, mm² sr.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Etendues {
@@ -20,52 +15,50 @@ pub(crate) struct Etendues {
     pub(crate) gather: f64,
     /// Of one gather path that is joined to the source at the first vertex.
     pub(crate) gather_joined: f64,
-    /// Etendue of each window at the record over the probability of the lobe there, G/q; 0 for
+    /// Etendue of the window at the record over the probability of the lobe there, G/q; 0 for
     /// paths without a record.
-    pub(crate) window: [f64; COUNTED],
+    pub(crate) window: f64,
 }
 
 impl Etendues {
     /// Those of a path that no technique joins.
-    pub(crate) fn unjoined(photon: f64, gather: f64, window: [f64; COUNTED]) -> Self {
+    pub(crate) fn unjoined(photon: f64, gather: f64, window: f64) -> Self {
         let never = f64::INFINITY;
         Self { photon, photon_joined: never, gather, gather_joined: never, window }
     }
 
-    /// The share of a photon that the sensor counts, for each window, 1.
-    pub(crate) fn forward(&self) -> [f64; COUNTED] {
+    /// The share of a photon that the sensor counts, 1.
+    pub(crate) fn forward(&self) -> f64 {
         let Self { photon, photon_joined, gather, gather_joined, window } = *self;
         let others = ratios(photon, [photon_joined, gather, gather_joined]);
-        window.map(|window| 1.0 / (1.0 + others + window / gather))
+        1.0 / (1.0 + others + window / gather)
     }
 
-    /// The share of a photon that is joined to the sensor, for each window, 1.
-    pub(crate) fn forward_joined(&self) -> [f64; COUNTED] {
+    /// The share of a photon that is joined to the sensor, 1.
+    pub(crate) fn forward_joined(&self) -> f64 {
         let Self { photon, photon_joined, gather, gather_joined, window } = *self;
         let others = ratios(photon_joined, [photon, gather, gather_joined]);
-        window.map(|window| 1.0 / (1.0 + others + photon_joined / photon * window / gather))
+        1.0 / (1.0 + others + photon_joined / photon * window / gather)
     }
 
-    /// The share of a gather path that meets emission, for each window, 1.
-    pub(crate) fn backward(&self) -> [f64; COUNTED] {
+    /// The share of a gather path that meets emission, 1.
+    pub(crate) fn backward(&self) -> f64 {
         self.mirrored().forward()
     }
 
-    /// The share of a gather path that is joined to the source, for each window, 1.
-    pub(crate) fn backward_joined(&self) -> [f64; COUNTED] {
+    /// The share of a gather path that is joined to the source, 1.
+    pub(crate) fn backward_joined(&self) -> f64 {
         self.mirrored().forward_joined()
     }
 
-    /// The share of a photon and a record together, for each window, 1.
-    pub(crate) fn pair(&self) -> [f64; COUNTED] {
+    /// The share of a photon and a record together, 1.
+    pub(crate) fn pair(&self) -> f64 {
         let Self { photon, photon_joined, gather, gather_joined, window } = *self;
-        window.map(|window| {
-            if window == 0.0 {
-                return 0.0;
-            }
-            let own = photon / window * gather;
-            1.0 / (1.0 + ratios(own, [photon, photon_joined, gather, gather_joined]))
-        })
+        if window == 0.0 {
+            return 0.0;
+        }
+        let own = photon / window * gather;
+        1.0 / (1.0 + ratios(own, [photon, photon_joined, gather, gather_joined]))
     }
 
     /// The same path seen from its other end.
@@ -90,15 +83,25 @@ fn ratios<const N: usize>(own: f64, others: [f64; N]) -> f64 {
 mod tests {
     use super::*;
 
-    /// The shares of all techniques, in the first window.
+    /// The shares of all techniques.
     fn shares(etendues: &Etendues) -> [f64; 5] {
         let Etendues { photon_joined, gather_joined, .. } = *etendues;
-        let [[forward, ..], [joined, ..]] = [etendues.forward(), etendues.forward_joined()];
-        let [[backward, ..], [joined_back, ..]] = [etendues.backward(), etendues.backward_joined()];
-        let [pair, ..] = etendues.pair();
         let if_finite = |etendue: f64, share: f64| if etendue.is_finite() { share } else { 0.0 };
-        let joined = if_finite(photon_joined, joined);
-        [forward, joined, backward, if_finite(gather_joined, joined_back), pair]
+        [
+            etendues.forward(),
+            if_finite(photon_joined, etendues.forward_joined()),
+            etendues.backward(),
+            if_finite(gather_joined, etendues.backward_joined()),
+            etendues.pair(),
+        ]
+    }
+
+    #[test]
+    fn a_path_that_only_one_technique_finds_is_all_its_own() {
+        let never = f64::INFINITY;
+        assert_eq!(Etendues::unjoined(2.0, never, 0.0).forward(), 1.0);
+        let met = Etendues::unjoined(never, 3.0, 0.0);
+        assert_eq!((met.backward(), met.forward()), (1.0, 0.0));
     }
 
     #[test]
@@ -109,13 +112,12 @@ mod tests {
                 [[never, never], [photon, never], [1e-3 * photon, 1e5 * gather], [7.0, 1e-12]]
             {
                 for window in [0.0, 1.0, 1e-9, 1e9] {
-                    let window = [window; COUNTED];
                     let etendues =
                         Etendues { photon, photon_joined, gather, gather_joined, window };
                     let own = shares(&etendues);
                     assert!((own.iter().sum::<f64>() - 1.0).abs() < 1e-12, "{etendues:?}: {own:?}");
                     // In proportion to their densities.
-                    let pair = window[0] / (photon * gather);
+                    let pair = window / (photon * gather);
                     let densities = [
                         1.0 / photon,
                         1.0 / photon_joined,

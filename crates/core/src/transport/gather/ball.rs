@@ -2,13 +2,14 @@
 //! volume.
 //!
 //! From the middle, the medium is probed in some directions: `ΔV = ∫ min(r, d(ω))³/3 dω`, with d(ω)
-//! the extent of the medium. If a medium bends back into the ball, only the nearer part counts; the
+//! the extent of the medium, and likewise the moments of (distance/r)². If a medium bends back into the ball, only the nearer part counts; the
 //! rest is an error that shrinks with the window.
 
 use crate::scene::{Inside, MediumId, MeetingPoint, Ray, Scene, StartSurfaces, Visibility};
 use crate::transport::Path;
 use crate::transport::gather::coverage::GOLDEN_TURN;
-use crate::transport::gather::window::{NESTED, Window};
+use crate::transport::gather::kernel::{Kernels, MOMENTS};
+use crate::transport::gather::window::Window;
 use glam::DVec3;
 use lumiduct_base::math::{Frame, from_cosine};
 use std::f64::consts::PI;
@@ -16,28 +17,38 @@ use std::f64::consts::PI;
 /// Directions in which the medium is probed, on a spiral over the sphere.
 const DIRECTIONS: usize = 48;
 
-/// Volumes, mm³, of the balls of the three nested windows about the position of a path, limited to
-/// its medium; `turn` and `tilt`, uniform in [0, 1), rotate the directions.
-pub(crate) fn clipped_volumes(
+/// A ball, limited to its medium.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct ClippedBall {
+    /// Its volume, mm³.
+    pub(crate) volume: f64,
+    /// Kernels of (distance/r)² over it.
+    pub(crate) kernels: Kernels,
+}
+
+/// The ball of a window about the position of a path, limited to its medium; `turn` and `tilt`, uniform in [0, 1),
+/// rotate the directions.
+pub(crate) fn clipped_ball(
     scene: &Scene,
     path: &Path,
     point: DVec3,
     window: Window,
     [turn, tilt]: [f64; 2],
-) -> [f64; NESTED] {
-    let radii = window.nested().map(|window| window.radius);
+) -> ClippedBall {
     let frame = Frame::from_axis(DVec3::ZERO, from_cosine(1.0 - 2.0 * tilt, turn));
-    let mut volumes = [0.0; NESTED];
+    let mut moments = [0.0; MOMENTS];
     for place in 0..DIRECTIONS {
         let cos = 1.0 - (2 * place + 1) as f64 / DIRECTIONS as f64;
         let turns = (place as f64 * GOLDEN_TURN + turn).fract();
         let dir = frame.to_world(from_cosine(cos, turns));
-        let reach = clear_way(scene, path, &Ray::new(point, dir), radii[0]);
-        for (volume, radius) in volumes.iter_mut().zip(radii) {
-            *volume += 4.0 * PI / 3.0 * reach.min(radius).powi(3) / DIRECTIONS as f64;
+        let reach = clear_way(scene, path, &Ray::new(point, dir), window.radius) / window.radius;
+        for (power, moment) in moments.iter_mut().enumerate() {
+            // ∫ u^(2k) u² du up to the reach.
+            *moment += reach.powi(2 * power as i32 + 3) / (2 * power + 3) as f64;
         }
     }
-    volumes
+    let volume = 4.0 * PI * window.radius.powi(3) * moments[0] / DIRECTIONS as f64;
+    ClippedBall { volume, kernels: Kernels::of_moments(moments) }
 }
 
 /// Distance that a ray stays in the medium of a path, mm, up to a limit.
@@ -103,8 +114,8 @@ mod tests {
         builder.build()
     }
 
-    /// Mean volumes about a point on the x axis, over many turns.
-    fn mean_volumes(x: f64, radius: f64) -> [f64; NESTED] {
+    /// Mean volume about a point on the x axis, over many turns.
+    fn mean_volume(x: f64, radius: f64) -> f64 {
         const TURNS: u32 = 400;
         let scene = glass_ball();
         let point = DVec3::new(x, 0.0, 0.0);
@@ -120,24 +131,18 @@ mod tests {
             depth: 0,
         };
         let window = Window { radius, theta_max: 0.1 };
-        let mut mean = [0.0; NESTED];
-        for turn in 0..TURNS {
+        let volumes = (0..TURNS).map(|turn| {
             let share = f64::from(turn) / f64::from(TURNS);
             let turns = [share, (share * 7.0 + 0.3).fract()];
-            let volumes = clipped_volumes(&scene, &path, point, window, turns);
-            for (mean, volume) in mean.iter_mut().zip(volumes) {
-                *mean += volume / f64::from(TURNS);
-            }
-        }
-        mean
+            clipped_ball(&scene, &path, point, window, turns).volume / f64::from(TURNS)
+        });
+        volumes.sum()
     }
 
     #[test]
     fn a_ball_deep_in_its_medium_is_whole() {
-        let volumes = mean_volumes(1.0, 2.0);
-        for (volume, radius) in volumes.into_iter().zip([2.0, 2f64.sqrt(), 1.0]) {
-            assert!((volume / (4.0 / 3.0 * PI * radius.powi(3)) - 1.0).abs() < 1e-9, "{volume}");
-        }
+        let volume = mean_volume(1.0, 2.0);
+        assert!((volume / (4.0 / 3.0 * PI * 8.0) - 1.0).abs() < 1e-9, "{volume}");
     }
 
     #[test]
@@ -148,8 +153,8 @@ mod tests {
                 * (RADIUS + r - d).powi(2)
                 * (d * d + 2.0 * d * (RADIUS + r) - 3.0 * (RADIUS - r).powi(2))
                 / (12.0 * d);
-            let [wide, ..] = mean_volumes(d, r);
-            assert!((wide / shared - 1.0).abs() < 0.01, "{d}, {r}: {wide}, not {shared}");
+            let volume = mean_volume(d, r);
+            assert!((volume / shared - 1.0).abs() < 0.01, "{d}, {r}: {volume}, not {shared}");
         }
     }
 }

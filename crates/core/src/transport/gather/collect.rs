@@ -3,15 +3,16 @@
 use crate::optics::{Finish, FinishModel, Lobe, Side, Spread};
 use crate::rng::{Dimension, Sampler};
 use crate::scene::SensorId;
-use crate::transport::gather::ball::clipped_volumes;
-use crate::transport::gather::coverage::{Middle, coverage};
+use crate::transport::gather::ball::clipped_ball;
+use crate::transport::gather::coverage::{Coverage, Middle, coverage};
 use crate::transport::gather::estimator::{Gather, RecordedPath};
+use crate::transport::gather::kernel::ORDERS;
 use crate::transport::gather::merge::{self, FacePassage};
 use crate::transport::gather::merged::Merging;
 use crate::transport::gather::records::{
     GatherRecord, RecordKind, RecordPath, SurfaceRecord, VolumeRecord,
 };
-use crate::transport::gather::window::{COUNTED, ESTIMATES, Window, estimates};
+use crate::transport::gather::window::Window;
 use crate::transport::tally::readings::DetectedLight;
 use crate::transport::walk::scatter::{MetInterface, facing};
 use crate::transport::{
@@ -44,7 +45,7 @@ pub(crate) struct Collecting<'c, 's> {
     /// The interface that the path has just met.
     pub(crate) facing: Option<MetInterface<'s>>,
     pub(crate) found: &'c mut EndedPaths<'s>,
-    pub(crate) windows: &'c mut [Readings; ESTIMATES],
+    pub(crate) orders: &'c mut [Readings; ORDERS],
 }
 
 impl Observer for Collecting<'_, '_> {
@@ -77,11 +78,10 @@ impl Observer for Collecting<'_, '_> {
 
 impl Collecting<'_, '_> {
     fn meet(&mut self, path: &Path, met: &MetEmission) {
-        let flux = met.radiance * self.etendue;
-        let weights = self.merging.as_ref().map_or([1.0; COUNTED], |merging| merging.weights(met));
-        for (readings, weight) in self.windows.iter_mut().zip(estimates(weights)) {
-            let light =
-                DetectedLight { flux: flux * weight, depth: path.depth, source: met.source };
+        let weight = self.merging.as_ref().map_or(1.0, |merging| merging.weight(met));
+        let flux = met.radiance * self.etendue * weight;
+        let light = DetectedLight { flux, depth: path.depth, source: met.source };
+        for readings in &mut *self.orders {
             readings.count(
                 (&self.gather.layout, &self.gather.scene.light),
                 self.id,
@@ -92,7 +92,7 @@ impl Collecting<'_, '_> {
     }
 
     fn lose(&mut self, throughput: f64, loss: Loss) {
-        for readings in &mut *self.windows {
+        for readings in &mut *self.orders {
             readings.count_lost(&self.gather.layout, self.id, throughput, loss);
         }
     }
@@ -123,7 +123,7 @@ impl Collecting<'_, '_> {
             && path.depth == self.gather.settings.depth + 1
         {
             let passage = FacePassage::of_gather_path(&facing, departure.dir, departure.side);
-            merging.pass_vertex_d(passage.etendues(self.window));
+            merging.pass_vertex_d(passage.etendue(self.window));
         }
         // The records at the vertex count the light of a broad lobe.
         match departure.lobe {
@@ -202,24 +202,25 @@ impl<'s> Collecting<'_, 's> {
         self.add(path, vertex, facing, side, value, RecordKind::Along(-dir));
         if let (Some(merging), Some(ended)) = (&self.merging, self.found.paths.last_mut()) {
             let passage = FacePassage::of_gather_path(facing, dir, side);
-            ended.etendues = Some(merging.waiting(passage.etendues(self.window)));
+            ended.etendues = Some(merging.waiting(passage.etendue(self.window)));
         }
     }
 
-    /// A record for photons that a medium scatters into the gather path: docs/method.md, eq. (24).
+    /// A record for photons that a medium scatters into the gather path: docs/method.md, eq. (23).
     fn add_collided(&mut self, path: &Path, collision: &Collision<'_>) {
         let Gather { scene, surfaces, .. } = self.gather;
         let &Collision { point, dir, medium, scattering, throughput } = collision;
         let index = scene.media[medium.index()].index(path.wavelength);
         let value = self.etendue * throughput / (index * index * scattering.coefficient());
         let turn = self.sampler.pair(Dimension::GatherPosition);
-        let volumes = clipped_volumes(scene, path, point, self.window, turn);
+        let ball = clipped_ball(scene, path, point, self.window, turn);
         let record = VolumeRecord {
             point,
             medium: surfaces.of_medium(medium),
             scattering: *scattering,
             out: -dir,
-            values: volumes.map(|volume| value / volume),
+            value: value / ball.volume,
+            kernels: ball.kernels,
             path: self.path_of_record(path),
         };
         self.found.records.push(GatherRecord::Volume(record));
@@ -242,14 +243,20 @@ impl<'s> Collecting<'_, 's> {
             Side::Reflected => (facing.facet, interface.from),
             Side::Transmitted => (-facing.facet, interface.to),
         };
-        let middle = Middle { prim, surface: surfaces.of(prim), point: vertex.point, normal };
+        let along = match kind {
+            RecordKind::Along(dir) => Some(dir),
+            RecordKind::Scattered { .. } => None,
+        };
+        let middle =
+            Middle { prim, surface: surfaces.of(prim), point: vertex.point, normal, along };
         let turn = self.sampler.one(Dimension::GatherPosition);
         let covered = coverage(scene, surfaces, &middle, self.window, turn);
-        let nested = self.window.nested();
-        let values = [0, 1, 2].map(|window| value / (covered[window] * nested[window].area()));
+        let value = value / (covered.share * self.window.area());
         let path = self.path_of_record(path);
         let (point, surface) = (vertex.point, middle.surface);
-        let record = SurfaceRecord { point, normal, surface, medium, kind, values, path };
+        let Coverage { kernels, slope, .. } = covered;
+        let record =
+            SurfaceRecord { point, normal, surface, medium, kind, value, kernels, slope, path };
         self.found.records.push(GatherRecord::Surface(record));
     }
 

@@ -1,18 +1,20 @@
 //! The part of a window on its surface: windows at rims are clipped by the true area.
 //!
 //! A window is a disk in the tangent plane of its middle. The part of it with the surface below or
-//! above it is found on a sunflower of points (Vogel, Math. Biosci. 44 (1979) 179), whose inner
-//! parts fill the nested windows evenly.
+//! above it, and its moments, are found on a sunflower of points (Vogel, Math. Biosci. 44 (1979) 179).
 
 use crate::scene::shape::{ChartRect, Crossing, RayStart};
 use crate::scene::{PrimId, Ray, Scene, Surface};
+use crate::transport::gather::kernel::{CutDisk, Kernels};
 use crate::transport::gather::surfaces::{Slot, SurfaceNumbers};
-use crate::transport::gather::window::{NESTED, Window};
+use crate::transport::gather::window::Window;
 use glam::{DVec2, DVec3};
-use lumiduct_base::math::circle;
+use lumiduct_base::math::{Frame, circle};
 
-/// Points in the widest window. Half of them fill the next, a quarter the narrowest.
+/// Points in a window.
 const POINTS: usize = 96;
+/// Points on its rim that show whether it is whole.
+const RIM_POINTS: usize = 8;
 /// Least agreement of the normals of one surface in one window, as a cosine, 1.
 pub(crate) const AGREEING: f64 = 0.9;
 /// Largest height of the surface of a window above or below its tangent plane, in radii, 1: the
@@ -31,35 +33,60 @@ pub(crate) struct Middle {
     pub(crate) prim: PrimId,
     pub(crate) surface: Slot,
     pub(crate) point: DVec3,
-    /// Unit normal of the surface there, of either side.
+    /// Unit normal of the surface there, on the side that photons come from.
     pub(crate) normal: DVec3,
+    /// Unit direction of the photons, if one is wanted: places where it would come from below the
+    /// surface are no part of the window.
+    pub(crate) along: Option<DVec3>,
 }
 
-/// Shares, 1, of the three nested windows that lie on the surface. `turn`, in turns, rotates the points.
+/// What a window covers of its surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Coverage {
+    /// The share of the disk over the surface, 1.
+    pub(crate) share: f64,
+    /// Kernels of (distance/r)² over this part.
+    pub(crate) kernels: Kernels,
+    /// Slope of their linear term, 1/mm.
+    pub(crate) slope: DVec3,
+}
+
+impl Coverage {
+    const WHOLE: Self = Self { share: 1.0, kernels: Kernels::EVEN, slope: DVec3::ZERO };
+}
+
+/// The part of a window that lies on the surface. `turn`, in turns, rotates the points.
 pub(crate) fn coverage(
     scene: &Scene,
     surfaces: &SurfaceNumbers,
     middle: &Middle,
     window: Window,
     turn: f64,
-) -> [f64; NESTED] {
-    if lies_within(scene, middle, window) {
-        return [1.0; NESTED];
+) -> Coverage {
+    let frame = Frame::from_axis(middle.point, middle.normal);
+    let covers = |across: DVec2| {
+        let offset = frame.to_world((window.radius * across).extend(0.0));
+        is_over_surface(scene, surfaces, middle, offset, window.radius)
+    };
+    let mut rim = (0..RIM_POINTS).map(|place| place as f64 / RIM_POINTS as f64);
+    if lies_within(scene, middle, window) && rim.all(|turns| covers(circle(turns))) {
+        return Coverage::WHOLE;
     }
-    let frame = lumiduct_base::math::Frame::from_axis(middle.point, middle.normal);
-    let mut covered = [0usize; NESTED];
+    let mut cut = CutDisk::EMPTY;
     for place in 0..POINTS {
-        let radius = window.radius * ((place as f64 + 0.5) / POINTS as f64).sqrt();
         let turns = (place as f64 * GOLDEN_TURN + turn).fract();
-        let offset = frame.to_world((radius * circle(turns)).extend(0.0));
-        if is_over_surface(scene, surfaces, middle, offset, window.radius) {
-            for (window, covered) in covered.iter_mut().enumerate() {
-                *covered += usize::from(place < POINTS >> window);
-            }
+        let across = ((place as f64 + 0.5) / POINTS as f64).sqrt() * circle(turns);
+        if covers(across) {
+            cut.add(across);
         }
     }
+    if cut.places() == POINTS as f64 {
+        return Coverage::WHOLE;
+    }
+    let (kernels, slope) = cut.kernels();
+    let slope = frame.to_world((slope / window.radius).extend(0.0));
     // The middle itself is on the surface, however thin the surface is there.
-    [0, 1, 2].map(|window| covered[window].max(1) as f64 / (POINTS >> window) as f64)
+    Coverage { share: cut.places().max(1.0) / POINTS as f64, kernels, slope }
 }
 
 /// Whether a square around the window is wholly on an analytic piece that unrolls without stretching.
@@ -87,9 +114,13 @@ fn is_over_surface(
     let reach = HEIGHT * reach;
     let ray = Ray::new(middle.point + offset + reach * middle.normal, -middle.normal);
     let lies = |prim: PrimId, crossing: Crossing| {
-        crossing.t > 0.0
-            && crossing.t < 2.0 * reach
-            && scene.normal(prim, ray.at(crossing.t)).dot(middle.normal).abs() > AGREEING
+        if crossing.t <= 0.0 || crossing.t >= 2.0 * reach {
+            return false;
+        }
+        let normal = scene.normal(prim, ray.at(crossing.t));
+        let agreement = normal.dot(middle.normal);
+        let comes_from_above = |along: DVec3| normal.dot(along) * agreement < 0.0;
+        agreement.abs() > AGREEING && middle.along.is_none_or(comes_from_above)
     };
     let mut found = false;
     let pieces = surfaces.patches(middle.surface);
@@ -112,7 +143,6 @@ mod tests {
     use crate::optics::Medium;
     use crate::scene::shape::{Flat, Region, Shape};
     use crate::scene::{Builder, FacePiece, FaceSpec, Owner};
-    use lumiduct_base::math::Frame;
     use lumiduct_base::units::FluxUnit;
 
     /// A square of 20 mm.
@@ -129,23 +159,20 @@ mod tests {
         builder.build()
     }
 
-    /// Mean shares over turns of a window at a distance inside the edges at +x and +y, mm.
-    fn mean_shares(inside: DVec2, radius: f64) -> [f64; NESTED] {
+    /// Mean share over turns of a window at a distance inside the edges at +x and +y, mm.
+    fn mean_share(inside: DVec2, radius: f64) -> f64 {
         const TURNS: u32 = 200;
         let (scene, prim) = (square(), PrimId::new(0));
         let surfaces = SurfaceNumbers::new(&scene);
         let point = (DVec2::splat(10.0) - inside).extend(0.0);
-        let middle = Middle { prim, surface: surfaces.of(prim), point, normal: DVec3::NEG_Z };
+        let middle =
+            Middle { prim, surface: surfaces.of(prim), point, normal: DVec3::NEG_Z, along: None };
         let window = Window { radius, theta_max: 0.1 };
-        let mut mean = [0.0; NESTED];
-        for turn in 0..TURNS {
+        let shares = (0..TURNS).map(|turn| {
             let turn = f64::from(turn) / f64::from(TURNS);
-            let shares = coverage(&scene, &surfaces, &middle, window, turn);
-            for (mean, share) in mean.iter_mut().zip(shares) {
-                *mean += share / f64::from(TURNS);
-            }
-        }
-        mean
+            coverage(&scene, &surfaces, &middle, window, turn).share / f64::from(TURNS)
+        });
+        shares.sum()
     }
 
     #[test]
@@ -159,19 +186,16 @@ mod tests {
             (1.0, 1.0),
         ];
         for (s, expected) in reference {
-            let [wide, ..] = mean_shares(DVec2::new(s, 10.0), 1.0);
-            assert!((wide / expected - 1.0).abs() < 0.01, "{s}: {wide}, not {expected}");
-            // In a window of double the radius it is the narrowest of three.
-            let [.., narrow] = mean_shares(DVec2::new(s, 10.0), 2.0);
-            assert!((narrow - expected).abs() < 0.02, "{s}: {narrow}, not {expected}");
+            let share = mean_share(DVec2::new(s, 10.0), 1.0);
+            assert!((share / expected - 1.0).abs() < 0.01, "{s}: {share}, not {expected}");
         }
     }
 
     #[test]
     fn a_window_in_a_corner_keeps_a_quarter() {
-        let [wide, ..] = mean_shares(DVec2::splat(1e-9), 1.0);
-        assert!((wide - 0.25).abs() < 0.01, "{wide}");
-        let [wide, ..] = mean_shares(DVec2::splat(3.0), 1.0);
-        assert!((wide - 1.0).abs() < 1e-12, "{wide}");
+        let share = mean_share(DVec2::splat(1e-9), 1.0);
+        assert!((share - 0.25).abs() < 0.01, "{share}");
+        let share = mean_share(DVec2::splat(3.0), 1.0);
+        assert!((share - 1.0).abs() < 1e-12, "{share}");
     }
 }

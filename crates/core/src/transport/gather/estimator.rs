@@ -3,14 +3,13 @@
 use crate::plan::RunPlan;
 use crate::scene::{Arrivals, Scene, SensorId};
 use crate::transport::connect::weights::Etendues;
-use crate::transport::gather::bias;
+use crate::transport::gather::bias::Judged;
 use crate::transport::gather::records::Records;
-use crate::transport::gather::settings::{GatherSettings, settle};
+use crate::transport::gather::settings::{GatherSettings, SensorGroup};
 use crate::transport::gather::surfaces::SurfaceNumbers;
-use crate::transport::stop::StopSignal;
 use crate::transport::trial::PhotonPilot;
 use crate::transport::walk::emitters::Emitters;
-use crate::transport::{Layout, Stage};
+use crate::transport::{Layout, Readings, Stage};
 use smallvec::SmallVec;
 
 /// Shared data of all passes of a run.
@@ -38,27 +37,25 @@ pub(crate) enum Combination {
 }
 
 impl<'s> Gather<'s> {
-    /// Prepares gather paths from some sensors, with settings found by a pilot. `None` if
-    /// stopped.
+    /// Prepares gather paths from a group of sensors, alone or merged.
     pub(crate) fn prepare(
         scene: &'s Scene,
         plan: &RunPlan,
-        (sensors, combination): (&[SensorId], Combination),
+        (group, combination): (&SensorGroup, Combination),
         pilot: PhotonPilot,
-        signal: &StopSignal,
-    ) -> Option<Self> {
-        let mut settings = settle(scene, plan, sensors, pilot, signal)?;
+    ) -> Self {
+        let SensorGroup { sensors, mut settings, .. } = group.clone();
         if combination == Combination::Merged && pilot.is_limited() && plan.gather.records.is_none()
         {
             // Merged gather paths continue as far as photons do.
-            let most = settings.photons / sensors.len() as u64;
+            let most = settings.photons / settings.all_sensors;
             settings.gather_paths = settings.gather_paths.min(most).max(1);
         }
         let merging = match combination {
             Combination::Alone => None,
             Combination::Merged => Some(plan.bounce_limit),
         };
-        Some(Self { merging, ..Self::new(scene, sensors, plan.seed, settings) })
+        Self { merging, ..Self::new(scene, &sensors, plan.seed, settings) }
     }
 
     /// Prepares gather paths from some sensors.
@@ -80,10 +77,16 @@ impl<'s> Gather<'s> {
         }
     }
 
+    /// The sensors.
+    pub(crate) fn sensors(&self) -> impl Iterator<Item = SensorId> {
+        self.sensors.iter().map(|(id, _)| *id)
+    }
+
     /// Whether the bias of any sensor in a stage is above its noise.
-    pub(crate) fn is_limited_by_bias(&self, stage: &Stage) -> bool {
-        let mut sensors = self.sensors.iter();
-        sensors.any(|(id, _)| bias::is_limiting(stage, &self.layout.flux_slots(*id)))
+    pub(crate) fn is_limited_by_bias(&self, stage: &Stage, photons: &Readings) -> bool {
+        self.sensors
+            .iter()
+            .any(|(id, _)| Judged::new(stage, photons, &self.layout.flux_slots(*id)).is_limiting())
     }
 }
 

@@ -86,7 +86,7 @@ struct IndexEntry {
 }
 
 impl Index {
-    /// Indexes records with a common widest window; `None` if stopped.
+    /// Indexes records with a common window; `None` if stopped.
     pub(crate) fn new(
         records: impl Iterator<Item = Indexed>,
         window: Window,

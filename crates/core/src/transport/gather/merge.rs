@@ -8,8 +8,7 @@
 
 use crate::optics::{Finish, FinishModel, Incidence, Side};
 use crate::scene::Scene;
-use crate::transport::connect::weights::NO_WINDOW;
-use crate::transport::gather::window::{COUNTED, Window};
+use crate::transport::gather::window::Window;
 use crate::transport::walk::scatter::MetInterface;
 use glam::DVec3;
 use lumiduct_base::math::projected_cap;
@@ -56,11 +55,11 @@ impl<'s> FacePassage<'s> {
 
     /// G/q, mm² sr: n² π r² ∫ cos θ dω over the cone about the light, above the horizon, over the
     /// probability of the path's side. Windows are not clipped: eq. (20).
-    pub(crate) fn etendues(&self, window: Window) -> [f64; COUNTED] {
+    pub(crate) fn etendue(&self, window: Window) -> f64 {
         let Incidence { index_from, .. } = self.incidence;
         let chance = self.finish.chances(&self.incidence).of(self.side).max(LEAST_CHANCE);
         let (cos, basic) = (self.incidence.cos(), index_from * index_from / chance);
-        window.counted().map(|window| basic * window.area() * projected_cap(cos, window.theta_max))
+        basic * window.area() * projected_cap(cos, window.theta_max)
     }
 }
 
@@ -89,10 +88,10 @@ impl<'s> Recent<'s> {
     }
 
     /// G/q at vertex D, counted back from the photon's position; zero if it has met too few faces.
-    pub(crate) fn etendues(&self, window: Window) -> [f64; COUNTED] {
+    pub(crate) fn etendue(&self, window: Window) -> f64 {
         match self.passages.front() {
-            Some(passage) if self.passages.len() > self.depth => passage.etendues(window),
-            Some(_) | None => NO_WINDOW,
+            Some(passage) if self.passages.len() > self.depth => passage.etendue(window),
+            Some(_) | None => 0.0,
         }
     }
 }
@@ -153,35 +152,6 @@ pub fn scatterers(scene: &Scene) -> Vec<Scatterer<'_>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::transport::connect::weights::Etendues;
-
-    #[test]
-    fn weights_are_the_balance_heuristic_and_add_up_to_one() {
-        for (c_f, c_b) in [(1.0, 1.0), (3e6, 20.0), (1e-3, 4e9), (0.25, 1e-12)] {
-            for c_m in [[0.0; COUNTED], [1.0, 0.25, 0.0625, 0.5, 0.5], [1e9, 1e3, 1e-9, 1.0, 1e2]] {
-                let [window, ..] = [c_m.map(|c_m| c_m / (c_f * c_b))];
-                let etendues = Etendues::unjoined(1.0 / c_f, 1.0 / c_b, window);
-                for (k, c_m) in c_m.into_iter().enumerate() {
-                    let sum = c_f + c_b + c_m;
-                    let shares =
-                        [etendues.forward()[k], etendues.backward()[k], etendues.pair()[k]];
-                    assert!((shares.iter().sum::<f64>() - 1.0).abs() < 1e-12, "{shares:?}");
-                    for (share, c) in shares.into_iter().zip([c_f, c_b, c_m]) {
-                        assert!((share - c / sum).abs() < 1e-12, "{shares:?}, {c} of {sum}");
-                    }
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn a_path_that_only_one_estimator_finds_is_all_its_own() {
-        let never = f64::INFINITY;
-        let seen = Etendues::unjoined(2.0, never, NO_WINDOW);
-        assert_eq!(seen.forward(), [1.0; COUNTED]);
-        let met = Etendues::unjoined(never, 3.0, NO_WINDOW);
-        assert_eq!((met.backward(), met.forward()), ([1.0; COUNTED], [0.0; COUNTED]));
-    }
 
     /// A gather path in glass that meets air, refracted.
     fn refracted() -> (MetInterface<'static>, DVec3) {
@@ -223,17 +193,15 @@ mod tests {
             };
             let photon =
                 MetInterface { incidence: light, facet: light.normal, faces: facing.faces };
-            let told = FacePassage::of_gather_path(&facing, out, side).etendues(window);
-            let expected = FacePassage::of_photon(&photon, side).etendues(window);
+            let told = FacePassage::of_gather_path(&facing, out, side).etendue(window);
+            let expected = FacePassage::of_photon(&photon, side).etendue(window);
             let chance = Finish::Smooth.chances(&light).of(side);
             // n² |cos θ| π r² 2π (1 - cos θ_max) / q
             let formula =
                 light.index_from.powi(2) * light.cos() * window.area() * window.solid_angle()
                     / chance;
-            for (told, expected) in told.into_iter().zip(expected) {
-                assert!((told / expected - 1.0).abs() < 1e-12, "{side:?}: {told}, {expected}");
-            }
-            assert!((told[0] / formula - 1.0).abs() < 1e-3, "{side:?}: {}, {formula}", told[0]);
+            assert!((told / expected - 1.0).abs() < 1e-12, "{side:?}: {told}, {expected}");
+            assert!((told / formula - 1.0).abs() < 1e-3, "{side:?}: {told}, {formula}");
         }
     }
 
@@ -252,13 +220,12 @@ mod tests {
         };
         let mut recent = Recent::new(2);
         for (met, index) in [1.0, 2.0, 3.0, 4.0].into_iter().enumerate() {
-            let [wide, ..] = recent.etendues(window);
-            assert_eq!(wide > 0.0, met > 2, "{met} faces");
+            assert_eq!(recent.etendue(window) > 0.0, met > 2, "{met} faces");
             recent.push(at(index));
         }
         // The third from the end.
-        assert_eq!(recent.etendues(window), at(2.0).etendues(window));
+        assert_eq!(recent.etendue(window), at(2.0).etendue(window));
         recent.clear();
-        assert_eq!(recent.etendues(window), NO_WINDOW);
+        assert_eq!(recent.etendue(window), 0.0);
     }
 }

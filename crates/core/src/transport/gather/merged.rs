@@ -2,15 +2,16 @@
 //! by the weights of `merge`.
 //!
 //! Photons that sensors count, gather paths that meet emission, and pairs of photons and records
-//! belong to the same passes. The readings of the windows contain all light of a sensor. This
+//! belong to the same passes. The readings of each order contain all light of a sensor. This
 //! module does not know how paths are traced.
 
 use crate::scene::Visibility;
-use crate::transport::connect::weights::{Etendues, NO_WINDOW};
+use crate::transport::connect::weights::Etendues;
+use crate::transport::gather::kernel::ORDERS;
 use crate::transport::gather::merge::{FacePassage, ROULETTE_BELOW, Recent};
 use crate::transport::gather::stream::{Photon, PhotonStream};
-use crate::transport::gather::window::{COUNTED, ESTIMATES, estimates};
 use crate::transport::tally::readings::DetectedLight;
+use crate::transport::tally::work::RecordWork;
 use crate::transport::walk::follow::{arrivals_of, etendue_of};
 use crate::transport::walk::scatter::facing;
 use crate::transport::{
@@ -26,27 +27,27 @@ pub(super) struct Merging<'a> {
     /// Flux of one photon of each source, lm or W.
     photon_fluxes: &'a [f64],
     /// G/q of vertex D once the path has passed it, mm² sr.
-    window: [f64; COUNTED],
+    window: f64,
 }
 
 impl<'a> Merging<'a> {
     pub(super) fn new(etendue: f64, photon_fluxes: &'a [f64]) -> Self {
-        Self { etendue, photon_fluxes, window: NO_WINDOW }
+        Self { etendue, photon_fluxes, window: 0.0 }
     }
 
     /// The path has passed vertex D: G/q of the side that it took there, mm² sr.
-    pub(super) fn pass_vertex_d(&mut self, window: [f64; COUNTED]) {
+    pub(super) fn pass_vertex_d(&mut self, window: f64) {
         self.window = window;
     }
 
     /// Etendues that weight a record of vertex D with this G/q, as far as the gather path knows
     /// them.
-    pub(super) fn waiting(&self, window: [f64; COUNTED]) -> Etendues {
+    pub(super) fn waiting(&self, window: f64) -> Etendues {
         Etendues::unjoined(f64::INFINITY, self.etendue, window)
     }
 
-    /// Share counted by emission that the path has met, for each window, 1.
-    pub(super) fn weights(&self, met: &MetEmission) -> [f64; COUNTED] {
+    /// Share counted by emission that the path has met, 1.
+    pub(super) fn weight(&self, met: &MetEmission) -> f64 {
         let photon = self.photon_fluxes[met.source.index()] / met.emitted;
         Etendues::unjoined(photon, self.etendue, self.window).backward()
     }
@@ -68,10 +69,9 @@ impl<'p, 's> MergedStream<'p, 's> {
         Self { stream, photon_fluxes, photon: f64::INFINITY, recent }
     }
 
-    /// The counts, not yet closed.
-    pub(crate) fn finish(self) -> [Readings; ESTIMATES] {
-        let (windows, _) = self.stream.finish();
-        windows
+    /// The counts, not yet closed, and the work in addition to tracing.
+    pub(crate) fn finish(self) -> ([Readings; ORDERS], RecordWork) {
+        self.stream.finish()
     }
 }
 
@@ -120,12 +120,11 @@ impl MergedStream<'_, '_> {
         let (Some(arrivals), false) = (known, light.cells.is_empty()) else { return };
         let gathered = etendue_of(light, gather.scene, arrivals, path.wavelength);
         let gathered = gathered / pass.gather_paths as f64;
-        let window = self.recent.etendues(pass.window);
-        let etendues = Etendues::unjoined(self.photon, gathered, window);
-        let weights = estimates(etendues.forward());
-        for (readings, weight) in self.stream.windows.iter_mut().zip(weights) {
-            let (flux, source) = (light.flux * weight, light.source);
-            let counted = DetectedLight { flux, depth: path.depth, source };
+        let window = self.recent.etendue(pass.window);
+        let weight = Etendues::unjoined(self.photon, gathered, window).forward();
+        let (flux, source) = (light.flux * weight, light.source);
+        let counted = DetectedLight { flux, depth: path.depth, source };
+        for readings in &mut self.stream.orders {
             readings.count(
                 (&gather.layout, &gather.scene.light),
                 light.sensor,

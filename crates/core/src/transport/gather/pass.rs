@@ -14,11 +14,11 @@ use crate::rng::{Sampler, stream};
 use crate::scene::Arrival;
 use crate::transport::gather::collect::{Collecting, EndedPaths};
 use crate::transport::gather::estimator::{Gather, WaitingRecords};
+use crate::transport::gather::kernel::ORDERS;
 use crate::transport::gather::merged::Merging;
 use crate::transport::gather::records::Records;
 use crate::transport::gather::stages::Pass;
 use crate::transport::gather::stream::PhotonStream;
-use crate::transport::gather::window::ESTIMATES;
 use crate::transport::stop::RECORD_WORK;
 use crate::transport::task::Task;
 use crate::transport::walk::follow::{Gathering, follow};
@@ -31,9 +31,9 @@ impl<'s> Gather<'s> {
         let pass = self.settings.pass(task.stage, task.batch);
         let paths = pass.gather_paths;
         let empty = || Readings::of_batch(self.scene, &self.layout, self.seed, paths, pass.batch);
-        let mut windows = [empty(), empty(), empty(), empty()];
-        let waiting = self.gather_paths_of(pass, task, &mut windows)?;
-        Some(PhotonStream::new(self, pass, (waiting, task.pace), windows))
+        let mut orders = [empty(), empty(), empty()];
+        let waiting = self.gather_paths_of(pass, task, &mut orders)?;
+        Some(PhotonStream::new(self, pass, (waiting, task.pace), orders))
     }
 
     /// Traces the gather paths of a pass; `None` if they were stopped.
@@ -41,7 +41,7 @@ impl<'s> Gather<'s> {
         &self,
         pass: Pass,
         Task { photon_fluxes, pace, .. }: Task<'_>,
-        windows: &mut [Readings; ESTIMATES],
+        orders: &mut [Readings; ORDERS],
     ) -> Option<WaitingRecords<'s>> {
         let mut found = EndedPaths::default();
         for (id, arrivals) in &self.sensors {
@@ -66,7 +66,7 @@ impl<'s> Gather<'s> {
                     sampler: Sampler::for_path(self.seed, stream::RECORDS + offset, index),
                     facing: None,
                     found: &mut found,
-                    windows,
+                    orders,
                 };
                 let gathering = Gathering {
                     scene: self.scene,
@@ -76,7 +76,7 @@ impl<'s> Gather<'s> {
                     pace: Some(pace),
                 };
                 let segments = follow(gathering, &arrival, &mut sampler, &mut collecting);
-                windows[0].segments += segments;
+                orders[0].segments += segments;
             }
         }
         let records = Records::new(found.records, pass.window, &self.surfaces, pace)?;

@@ -6,8 +6,9 @@
 use crate::optics::{Finish, VolumeScattering};
 use crate::scene::MediumId;
 use crate::transport::gather::index::{Index, Indexed, PhotonKey, TOGETHER};
+use crate::transport::gather::kernel::Kernels;
 use crate::transport::gather::surfaces::{Slot, SurfaceNumbers};
-use crate::transport::gather::window::{NESTED, Window};
+use crate::transport::gather::window::Window;
 use crate::transport::stop::Pace;
 use glam::DVec3;
 use lumiduct_base::math::Aabb;
@@ -35,14 +36,18 @@ pub struct SurfaceRecord<'s> {
     pub medium: MediumId,
     /// The photons it takes.
     pub kind: RecordKind<'s>,
-    /// Etendue times throughput over n² and the area of the window, clipped at rims: sr (times mm²/mm²), per window.
-    pub values: [f64; NESTED],
+    /// Etendue times throughput over n² and the area of the window, clipped at rims: sr (times mm²/mm²).
+    pub value: f64,
+    /// Kernels of the position in the window.
+    pub kernels: Kernels,
+    /// Slope of their linear term, 1/mm.
+    pub slope: DVec3,
     /// The gather path.
     pub path: RecordPath,
 }
 
 /// A record within a medium. It takes all photons that are scattered there, weighted by the phase
-/// function: docs/method.md, eq. (24).
+/// function: docs/method.md, eq. (23).
 #[derive(Debug, Clone, Copy)]
 pub struct VolumeRecord {
     /// Position, mm.
@@ -53,9 +58,10 @@ pub struct VolumeRecord {
     pub scattering: VolumeScattering,
     /// Unit direction of the light after scattering.
     pub out: DVec3,
-    /// Etendue times throughput over n², the scattering coefficient and the volume of the window, clipped at its bounds,
-    /// per window.
-    pub values: [f64; NESTED],
+    /// Etendue times throughput over n², the scattering coefficient and the volume of the window, clipped at its bounds.
+    pub value: f64,
+    /// Kernels of the position in the window.
+    pub kernels: Kernels,
     /// The gather path.
     pub path: RecordPath,
 }
@@ -130,7 +136,7 @@ struct Reach {
 }
 
 impl<'s> Records<'s> {
-    /// Indexes records with a common widest window; `None` if stopped.
+    /// Indexes records with a common window; `None` if stopped.
     pub fn new(
         all: Vec<GatherRecord<'s>>,
         window: Window,

@@ -1,32 +1,28 @@
 //! Settings of the gather method: the user's values, and automatic values for the rest, from a few
 //! pilot paths.
 
-use crate::optics::{FinishModel, Spread};
-use crate::plan::{RunPlan, Schedule};
-use crate::rng::{Sampler, stream};
-use crate::scene::{Arrivals, Emission, Emitter, FaceId, Ray, Scene, SensorId, StartSurfaces};
+use crate::plan::{GatherPlan, RunPlan, Schedule};
+use crate::scene::{Emission, Emitter, Scene, SensorId};
+use crate::transport::Window;
+use crate::transport::gather::sounding::{Reached, Sounded, sound};
 use crate::transport::stop::{Pace, StopSignal};
 use crate::transport::trial::{PASS_SEGMENTS, PhotonPilot};
-use crate::transport::walk::emitters::Emitters;
-use crate::transport::walk::follow::{Gathering, follow};
-use crate::transport::walk::scatter::facing;
-use crate::transport::{Event, Observer, Path, Vertex, Window};
 use lumiduct_base::number::format_exact;
 use serde::{Deserialize, Serialize};
-use std::f64::consts::PI;
+use std::f64::consts::{PI, SQRT_2};
 use std::fmt;
-use std::ops::ControlFlow;
 
-/// Pilot gather paths from each sensor.
-const PILOT_PATHS: u64 = 64;
 /// Radius of the first window over the inradius of the guide, 1 (measured on prototypes; docs/method.md).
-const RADIUS_PER_INRADIUS: f64 = 0.2;
+const RADIUS_PER_INRADIUS: f64 = 0.3;
 /// Largest radius as a share of the radius of the smallest source, 1.
-const RADIUS_PER_SOURCE: f64 = 0.5;
+const RADIUS_PER_SOURCE: f64 = 0.75;
 /// A source of at least this share of the guide's inradius fills it, 1.
 const FILLS: f64 = 0.8;
+/// The automatic angle over the half-width of the narrowest source, and over the scatter of the walls, 1.
+const THETA_PER_SOURCE: f64 = 0.75;
+const THETA_PER_SCATTER: f64 = 1.5;
 /// Bounds of the automatic angle, deg.
-const THETA_DEG: [f64; 2] = [0.05, 3.0];
+const THETA_DEG: [f64; 2] = [0.075, 4.5];
 /// Bounds of the automatic depth.
 const DEPTH: [f64; 2] = [1.0, 8.0];
 /// Smallest number of photons of an automatic pass: in closed mirrors each has 100,000
@@ -38,35 +34,67 @@ const LEAST_PHOTONS: f64 = 32.0;
 const RECORD_SEGMENTS: f64 = 50.0;
 const RECORD_SHARE: f64 = 0.27;
 
-/// Settings of the gather method in a run.
+/// Windows are similar, and sensors gathered together, up to this ratio of radii and of angles to those of the first, 1.
+const SIMILAR: f64 = SQRT_2;
+/// Most groups of sensors: each group meets every photon.
+const MOST_GROUPS: usize = 8;
+
+/// Sensors that are gathered together, with windows that suit all of them.
+#[derive(Debug, Clone)]
+pub struct SensorGroup {
+    /// The sensors, in their order.
+    pub sensors: Vec<SensorId>,
+    /// Their settings.
+    pub settings: GatherSettings,
+    /// The window of the first of them.
+    first: Window,
+}
+
+/// Settings of the gather method for a group of sensors in a run.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct GatherSettings {
     /// Vertex at which gather paths end, D; the first surface has depth 0.
     pub depth: u32,
     /// Window of the first stage.
     pub window: Window,
-    /// Number of sensors.
+    /// Number of sensors in the group.
     pub sensors: u64,
+    /// Number of sensors that are gathered in the run.
+    pub all_sensors: u64,
     /// Gather paths from each sensor in a pass of the first stage.
     pub gather_paths: u64,
     /// Photons in a pass.
     pub photons: u64,
     /// How the window shrinks.
     pub schedule: Schedule,
-    /// Radius of the largest ball that fits the guide near the records, mm, as estimated.
-    pub inradius: f64,
+}
+
+impl GatherSettings {
+    /// The same with smaller passes, where the plan leaves their size open.
+    pub(crate) fn with_passes_of_size(self, factor: f64, plan: &GatherPlan) -> Self {
+        let scaled = |count: u64, given: Option<u64>| match given {
+            Some(_) => count,
+            None => ((factor * count as f64) as u64).max(1),
+        };
+        Self {
+            photons: scaled(self.photons, plan.photons),
+            gather_paths: scaled(self.gather_paths, plan.records),
+            ..self
+        }
+    }
 }
 
 impl fmt::Display for GatherSettings {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { depth, window, gather_paths, photons, schedule, sensors: _, inradius: _ } = self;
+        let Self { depth, window, gather_paths, photons, schedule, sensors: _, all_sensors: _ } =
+            self;
         let schedule = match schedule {
-            Schedule::Stages => "in stages",
-            Schedule::PerPass => "from pass to pass",
+            Schedule::Stages => "shrinking in stages",
+            Schedule::Fixed => "of fixed size",
         };
         write!(
             out,
-            "depth {depth}, windows from {} mm and {} deg shrinking {schedule}, {photons} photons and {gather_paths} gather \
+            "depth {depth}, windows from {} mm and {} deg {schedule}, {photons} photons and {gather_paths} gather \
              paths from each sensor in the first passes",
             format_exact(window.radius),
             format_exact(window.theta_max.to_degrees())
@@ -82,56 +110,91 @@ impl PhotonPilot {
     }
 }
 
-/// Settings for gathering some sensors; `None` if stopped.
-pub fn settle(
+/// Groups of some sensors by their windows, out of all that are gathered in the run; `None` if stopped.
+pub fn groups(
     scene: &Scene,
     plan: &RunPlan,
-    sensors: &[SensorId],
+    (sensors, all_sensors): (&[SensorId], usize),
     pilot: PhotonPilot,
     signal: &StopSignal,
-) -> Option<GatherSettings> {
+) -> Option<Vec<SensorGroup>> {
     let (seed, plan) = (plan.seed, &plan.gather);
     let depth = plan.depth.unwrap_or_else(|| {
         // K/3 of the K surfaces that a photon meets.
         ((pilot.segments_per_path - 1.0) / 3.0).clamp(DEPTH[0], DEPTH[1]) as u32
     });
-    let pace = Pace::new(signal);
-    let Sounded { inradius, from_sources } = sound(scene, sensors, (seed, depth), &pace)?;
-    let source_radius = scene
-        .sources
-        .iter()
-        .filter(|source| source.is_lit())
-        .map(|source| half_width(&source.emitter))
-        .fold(f64::INFINITY, f64::min);
-    let radius = (RADIUS_PER_INRADIUS * inradius).min(RADIUS_PER_SOURCE * source_radius);
     let photons = plan.photons.unwrap_or_else(|| pilot.photons());
     let share = photons as f64 * pilot.segments_per_path * RECORD_SHARE / RECORD_SEGMENTS;
-    let sensors = sensors.len().max(1) as u64;
-    let gather_paths = plan.records.map_or(share as u64, |records| records) / sensors;
-    Some(GatherSettings {
-        depth,
-        window: Window {
-            radius: plan.radius_mm.unwrap_or(radius),
-            theta_max: plan
-                .angle_deg
-                .map_or_else(|| angle(scene, inradius, &from_sources), f64::to_radians),
-        },
-        sensors,
-        gather_paths: gather_paths.max(1),
-        photons,
-        schedule: plan.schedule.unwrap_or_default(),
-        inradius,
-    })
+    let all_sensors = all_sensors.max(1) as u64;
+    let gather_paths = plan.records.unwrap_or(share as u64) / all_sensors;
+    let pace = Pace::new(signal);
+    let reached = Reached::new(scene, seed, &pace)?;
+    let mut groups: Vec<SensorGroup> = Vec::new();
+    for &sensor in sensors {
+        let sounded = sound(scene, sensor, &reached, (seed, depth), &pace)?;
+        let own = automatic_window(scene, &sounded);
+        let window = Window {
+            radius: plan.radius_mm.unwrap_or(own.radius),
+            theta_max: plan.angle_deg.map_or(own.theta_max, f64::to_radians),
+        };
+        let places = (0..groups.len()).map(|place| (groups[place].log_ratio(window), place));
+        let nearest = places.min_by(|(a, _), (b, _)| a.total_cmp(b));
+        match nearest {
+            Some((log_ratio, place))
+                if log_ratio <= SIMILAR.ln() || groups.len() == MOST_GROUPS =>
+            {
+                groups[place].add(sensor, window);
+            }
+            Some(_) | None => groups.push(SensorGroup {
+                sensors: vec![sensor],
+                settings: GatherSettings {
+                    depth,
+                    window,
+                    sensors: 1,
+                    all_sensors,
+                    gather_paths: gather_paths.max(1),
+                    photons,
+                    schedule: plan.schedule.unwrap_or_default(),
+                },
+                first: window,
+            }),
+        }
+    }
+    Some(groups)
 }
 
-/// Half of the angular half-width of the narrowest source, or the scatter of the walls if that is
-/// more, rad. (Twice the scatter gave a bias of 1.7 %; this gives a quarter of it: docs/method.md.)
-///
-/// A source that fills the guide is as wide as its emission: the images of its rim in the walls
-/// join. A smaller one is seen from the records at its distance in `from_sources`, mm.
-fn angle(scene: &Scene, inradius: f64, from_sources: &[f64]) -> f64 {
-    let lit = scene.sources.iter().zip(from_sources).filter(|(source, _)| source.is_lit());
-    let sources = lit.map(|(source, distance)| {
+impl SensorGroup {
+    /// The larger ratio of radii and angles, as a logarithm, between its first window and another.
+    fn log_ratio(&self, window: Window) -> f64 {
+        let own = self.first;
+        let ratio = |one: f64, other: f64| (one / other).ln().abs();
+        ratio(own.radius, window.radius).max(ratio(own.theta_max, window.theta_max))
+    }
+
+    /// Adds a sensor; the smaller window suits both.
+    fn add(&mut self, sensor: SensorId, window: Window) {
+        self.sensors.push(sensor);
+        self.settings.sensors += 1;
+        let own = &mut self.settings.window;
+        own.radius = own.radius.min(window.radius);
+        own.theta_max = own.theta_max.min(window.theta_max);
+    }
+}
+
+/// The window for what a sensor's pilot found.
+fn automatic_window(scene: &Scene, sounded: &Sounded) -> Window {
+    let Sounded { inradius, index, scatter, to_aperture, from_sources } = sounded;
+    let lit = || {
+        let sources = scene.sources.iter().zip(from_sources);
+        sources
+            .filter(|(source, _)| source.is_lit())
+            .filter_map(|(source, distance)| Some((source, (*distance)?)))
+    };
+    let smallest =
+        lit().map(|(source, _)| half_width(&source.emitter)).fold(f64::INFINITY, f64::min);
+    // A source that fills the guide is as wide as its emission: the images of its rim in the walls
+    // join. A smaller one is seen from the records at its distance.
+    let widths = lit().map(|(source, distance)| {
         let radius = half_width(&source.emitter);
         let seen = if radius < FILLS * inradius { radius / distance } else { 0.5 * PI };
         match source.emission {
@@ -143,14 +206,15 @@ fn angle(scene: &Scene, inradius: f64, from_sources: &[f64]) -> f64 {
             | Emission::Sky(_) => seen,
         }
     });
-    let narrowest = sources.fold(PI, f64::min);
-    let scatter = scene.finishes.iter().map(|named| match named.finish.spread() {
-        Spread::Narrow(sigma) => sigma,
-        Spread::Discrete | Spread::Broad => 0.0,
-    });
-    let widest = scatter.fold(0.0, f64::max);
+    let narrowest = widths.fold(PI, f64::min);
     let [least, most] = THETA_DEG.map(f64::to_radians);
-    (0.5 * narrowest).max(widest).clamp(least, most)
+    // Refraction narrows light that enters a denser medium.
+    let by_source = THETA_PER_SOURCE * narrowest / index;
+    let theta = by_source.max(THETA_PER_SCATTER * scatter).min(*to_aperture);
+    Window {
+        radius: (RADIUS_PER_INRADIUS * inradius).min(RADIUS_PER_SOURCE * smallest),
+        theta_max: theta.clamp(least, most),
+    }
 }
 
 /// Half of the width of a source, mm: for a flat one, of the shorter side; for a round one, the
@@ -161,92 +225,4 @@ fn half_width(emitter: &Emitter) -> f64 {
     extents.sort_by(f64::total_cmp);
     let [_, middle, _] = extents;
     0.5 * middle
-}
-
-/// Pilot measurements of the guide, medians in mm.
-struct Sounded {
-    inradius: f64,
-    /// Distance of the records from each source.
-    from_sources: Vec<f64>,
-}
-
-/// Probes the vertices of pilot paths: half the distance across the guide there, or the radius of a
-/// disk with the area of the face, whichever is less, and the distances of the sources. `None` if
-/// stopped.
-fn sound(
-    scene: &Scene,
-    sensors: &[SensorId],
-    (seed, depth): (u64, u32),
-    pace: &Pace<'_>,
-) -> Option<Sounded> {
-    let emitters = Emitters::new(scene);
-    let mut sounding = Sounding {
-        scene,
-        depth,
-        across: Vec::new(),
-        distances: vec![Vec::new(); scene.sources.len()],
-    };
-    for &sensor in sensors {
-        let arrivals = Arrivals::new(scene, sensor);
-        let (emitters, bounce_limit) = (&emitters, u32::MAX);
-        let gathering = Gathering { scene, emitters, sensor, bounce_limit, pace: Some(pace) };
-        for index in 0..PILOT_PATHS {
-            if pace.spend(1).is_break() {
-                return None;
-            }
-            let mut sampler =
-                Sampler::for_path(seed, stream::GATHER_PILOT + sensor.index() as u64, index);
-            if let Some(arrival) = arrivals.draw(&mut sampler) {
-                follow(gathering, &arrival, &mut sampler, &mut sounding);
-            }
-        }
-    }
-    // Without any vertex there is nothing to gather from, and any window works.
-    let size = scene.bounds.diagonal();
-    let sounded = Sounded {
-        inradius: median(sounding.across).unwrap_or(0.1 * size),
-        from_sources: sounding
-            .distances
-            .into_iter()
-            .map(|of_one| median(of_one).unwrap_or(size))
-            .collect(),
-    };
-    (!pace.is_stopped()).then_some(sounded)
-}
-
-fn median(mut found: Vec<f64>) -> Option<f64> {
-    found.sort_by(f64::total_cmp);
-    found.get(found.len() / 2).copied()
-}
-
-/// Probes the guide where gather paths meet it.
-struct Sounding<'s> {
-    scene: &'s Scene,
-    depth: u32,
-    /// Half the distance across, mm.
-    across: Vec<f64>,
-    /// Distances to each source, mm.
-    distances: Vec<Vec<f64>>,
-}
-
-impl Observer for Sounding<'_> {
-    fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
-        let Event::Arrive(vertex) = event else { return ControlFlow::Continue(()) };
-        self.probe(path, vertex)
-    }
-}
-
-impl Sounding<'_> {
-    fn probe(&mut self, path: &Path, vertex: &Vertex<'_>) -> ControlFlow<()> {
-        let normal = facing(self.scene, path, vertex).facet;
-        let across = Ray::new(vertex.point, normal);
-        let far = self.scene.find_next(&across, &StartSurfaces::hits(vertex.hits), &path.inside);
-        let half_way = far.map_or(f64::INFINITY, |hits| 0.5 * hits.distance());
-        let face: FaceId = vertex.interface.acting.face;
-        self.across.push(half_way.min((self.scene.face_area(face) / PI).sqrt()));
-        for (source, distances) in self.scene.sources.iter().zip(&mut self.distances) {
-            distances.push(source.emitter.bounds().center().distance(vertex.point));
-        }
-        if path.depth < self.depth { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
-    }
 }

@@ -3,14 +3,14 @@
 //! Within a stage radius and angle are fixed, so its passes are independent samples of one quantity
 //! and their spread is a valid error bar. Between stages the window shrinks by √2, the number of
 //! gather paths doubles as far as memory allows and the number of passes grows by 8, since pairs
-//! become rare: bias and standard error both halve. A value comes from one stage alone. With the
-//! schedule `per-pass` there is one stage whose window shrinks from pass to pass.
+//! become rare: the bias of E1 and its standard error both halve. A value comes from one stage
+//! alone. With the schedule `fixed` there is no second stage.
 
 use crate::plan::Schedule;
+use crate::transport::Readings;
 use crate::transport::gather::settings::GatherSettings;
 use crate::transport::gather::window::Window;
 use crate::transport::tally::Counts;
-use crate::transport::{Readings, Stage};
 
 /// Passes of the first stage, and of a wave of passes.
 pub(crate) const FIRST_PASSES: u64 = 16;
@@ -18,35 +18,32 @@ pub(crate) const FIRST_PASSES: u64 = 16;
 /// remains, since the window shrinks in four dimensions, and half the standard error requires four
 /// times as many in total.
 const GROWTH: u64 = 16;
-/// Largest number of gather paths of a pass, from all sensors, that stages grow to: with its record
+/// Largest number of gather paths of a pass, from all sensors of the run, that stages grow to: with its record
 /// and the entries of an index, each takes about 600 bytes.
 const MOST_GATHER_PATHS: u64 = 1 << 20;
 
-/// Readings of the estimates within windows of several sizes, from the same photons and records.
+/// Readings by kernels of several orders, from the same photons and records.
 #[derive(Debug, Clone, Copy)]
-pub struct Windows<'a> {
-    /// Within the whole window, E1.
-    pub wide: &'a Readings,
-    /// Within 1/√2 of radius and angle, E2.
-    pub middle: &'a Readings,
-    /// Within half of them, E3.
-    pub narrow: &'a Readings,
-    /// E0 = 2 E(r/√2, θ) + 2 E(r, θ/√2) - 3 E1: the remainder if the bias scales with the squares
-    /// of radius and angle.
-    pub extrapolated: &'a Readings,
+pub struct Orders<'a> {
+    /// Of second order, E1: the mean over windows.
+    pub second: &'a Readings,
+    /// Of fourth order, E0: without the bias that scales with the squares of radius and angle.
+    pub fourth: &'a Readings,
+    /// Of sixth order, E00: without that of their fourth powers, too.
+    pub sixth: &'a Readings,
 }
 
-impl<'a> Windows<'a> {
-    /// The windows of passes of gathering.
+impl<'a> Orders<'a> {
+    /// The orders of passes of gathering.
     ///
     /// # Panics
     ///
     /// If the counts are of another estimator.
     pub fn of(counts: &'a Counts) -> Self {
-        let [wide, middle, narrow, extrapolated] = counts.all() else {
-            unreachable!("passes of gathering count in four windows")
+        let [second, fourth, sixth] = counts.all() else {
+            unreachable!("passes of gathering count in three orders")
         };
-        Self { wide, middle, narrow, extrapolated }
+        Self { second, fourth, sixth }
     }
 }
 
@@ -66,26 +63,18 @@ impl GatherSettings {
 
     /// The pass of a batch, in a stage.
     pub(crate) fn pass(&self, stage: u32, batch: u64) -> Pass {
-        let window = match self.schedule {
-            Schedule::Stages => self.window.of_stage(stage),
-            Schedule::PerPass => self.window.of_pass(batch),
-        };
+        let window = self.window.of_stage(stage);
         Pass { batch, window, gather_paths: self.gather_paths(stage) }
     }
 
-    /// The last pass of a stage.
-    pub(crate) fn last_pass(&self, stage: &Stage) -> Pass {
-        self.pass(stage.number, stage.counts.batches().end - 1)
-    }
-
     /// Gather paths of a pass from each sensor.
-    fn gather_paths(&self, stage: u32) -> u64 {
+    pub(super) fn gather_paths(&self, stage: u32) -> u64 {
         let grown = self.gather_paths.saturating_mul(1 << stage.min(32));
-        let most = MOST_GATHER_PATHS / self.sensors.max(1);
+        let most = MOST_GATHER_PATHS / self.all_sensors.max(1);
         grown.min(most.max(self.gather_paths))
     }
 
-    /// Gather paths of a pass from all sensors.
+    /// Gather paths of a pass from all sensors of the group.
     pub(crate) fn batch_paths(&self, stage: u32) -> u64 {
         self.gather_paths(stage) * self.sensors
     }
@@ -98,7 +87,7 @@ impl GatherSettings {
                 let growth = self.gather_paths(stage) / self.gather_paths;
                 (FIRST_PASSES * GROWTH.pow(stage.min(14))) / growth
             }
-            Schedule::PerPass => u64::MAX,
+            Schedule::Fixed => u64::MAX,
         }
     }
 

@@ -6,11 +6,11 @@ use crate::optics::Incidence;
 use crate::scene::shape::Toward;
 use crate::scene::{MediumId, PrimHit, PrimId, Scene, SourceId, Visibility};
 use crate::transport::connect::weights::Etendues;
-use crate::transport::gather::contribution::{NestedWindows, PhotonHit, SurfaceHit, VolumeHit};
+use crate::transport::gather::contribution::{PairWeights, PhotonHit, SurfaceHit, VolumeHit};
 use crate::transport::gather::estimator::{Gather, RecordedPath, WaitingRecords};
 use crate::transport::gather::index::{PhotonKey, TOGETHER};
+use crate::transport::gather::kernel::ORDERS;
 use crate::transport::gather::stages::Pass;
-use crate::transport::gather::window::{COUNTED, ESTIMATES, estimates};
 use crate::transport::stop::Pace;
 use crate::transport::tally::readings::DetectedLight;
 use crate::transport::tally::work::RecordWork;
@@ -21,11 +21,11 @@ use std::ops::ControlFlow;
 /// Photons that stream past the records.
 pub(crate) struct PhotonStream<'p, 's> {
     pub(super) gather: &'p Gather<'s>,
-    nested: NestedWindows,
+    weights: PairWeights,
     waiting: WaitingRecords<'s>,
     pace: &'p Pace<'p>,
-    /// Counts by E1, E2, E3 and E0, with the emission that gather paths met; not yet closed.
-    pub(super) windows: [Readings; ESTIMATES],
+    /// Counts by E1, E0 and E00, with the emission that gather paths met; not yet closed.
+    pub(super) orders: [Readings; ORDERS],
     pub(super) pass: Pass,
     /// The current photon.
     pub(super) photon: Photon,
@@ -106,15 +106,15 @@ impl<'p, 's> PhotonStream<'p, 's> {
         gather: &'p Gather<'s>,
         pass: Pass,
         (waiting, pace): (WaitingRecords<'s>, &'p Pace<'p>),
-        windows: [Readings; ESTIMATES],
+        orders: [Readings; ORDERS],
     ) -> Self {
         Self {
             gather,
-            nested: NestedWindows::new(pass.window),
+            weights: PairWeights::new(pass.window),
             work: RecordWork { records: waiting.records.all.len() as u64, ..RecordWork::default() },
             waiting,
             pace,
-            windows,
+            orders,
             pass,
             photon: Photon { flux: 0.0, source: SourceId::new(0), etendue: 0.0 },
             passing: Vec::with_capacity(TOGETHER),
@@ -124,9 +124,9 @@ impl<'p, 's> PhotonStream<'p, 's> {
 
     /// Looks up the remaining photons: the counts, not yet closed, and the work in addition to
     /// tracing.
-    pub(crate) fn finish(mut self) -> ([Readings; ESTIMATES], RecordWork) {
+    pub(crate) fn finish(mut self) -> ([Readings; ORDERS], RecordWork) {
         self.look_up();
-        (self.windows, self.work)
+        (self.orders, self.work)
     }
 
     /// Whether there may be records for a photon.
@@ -168,7 +168,7 @@ impl<'p, 's> PhotonStream<'p, 's> {
 
     fn look_up(&mut self) {
         let Gather { scene, layout, .. } = self.gather;
-        let (nested, windows, work) = (&self.nested, &mut self.windows, &mut self.work);
+        let (weights, orders, work) = (&self.weights, &mut self.orders, &mut self.work);
         let (passing, keys, pace) = (&self.passing, &self.keys, self.pace);
         work.look_ups += passing.len() as u64;
         // Most photons that pass the filter are near no record after all: one bit for each that is.
@@ -185,22 +185,21 @@ impl<'p, 's> PhotonStream<'p, 's> {
             };
             known = Some((index, met));
             near |= 1 << index;
-            let Some(shares) = nested.flux(record, &met) else { return };
+            let Some(shares) = weights.flux(record, &met) else { return };
             work.pairs += 1;
             let own = record.path();
             let RecordedPath { sensor, cells, etendues, .. } =
                 &self.waiting.paths[own.place as usize];
-            let weights = etendues.map_or([1.0; COUNTED], |known| {
-                Etendues { photon: photon.etendue, ..known }.pair()
-            });
+            let weight =
+                etendues.map_or(1.0, |known| Etendues { photon: photon.etendue, ..known }.pair());
             let depth = photon.depth + own.depth;
-            let counted = std::array::from_fn(|window| shares[window] * weights[window]);
-            for (readings, share) in windows.iter_mut().zip(estimates(counted)) {
-                if share != 0.0 {
-                    let light =
-                        DetectedLight { flux: photon.flux * share, depth, source: photon.source };
-                    readings.count((layout, &scene.light), *sensor, cells, &light);
-                }
+            for (readings, share) in orders.iter_mut().zip(shares) {
+                let light = DetectedLight {
+                    flux: photon.flux * share * weight,
+                    depth,
+                    source: photon.source,
+                };
+                readings.count((layout, &scene.light), *sensor, cells, &light);
             }
         });
         work.near += u64::from(near.count_ones());

@@ -32,26 +32,26 @@ impl Findings {
         Self { photons, others: Vec::new(), estimators, choices: Vec::new(), paths }
     }
 
-    /// What an estimator other than forward found.
-    pub fn by(&self, estimator: Estimator) -> Option<&EstimatorFindings> {
-        self.others.iter().find(|found| found.estimator == estimator)
+    /// What the estimator of a sensor found, other than forward.
+    pub fn of_sensor(&self, sensor: SensorId) -> Option<&EstimatorFindings> {
+        self.others.iter().find(|found| found.sensors.contains(&sensor))
     }
 
     /// The estimate of a sensor.
     pub(crate) fn estimate(&self, scene: &Scene, sensor: SensorId) -> Estimate<'_> {
         let estimator = self.estimators[sensor.index()];
-        estimators::estimate(scene, (estimator, self.by(estimator)), &self.photons, sensor)
+        estimators::estimate(scene, (estimator, self.of_sensor(sensor)), &self.photons, sensor)
     }
 
     /// How the values of a sensor were computed, where there is something to say.
     pub(crate) fn account(&self, scene: &Scene, sensor: SensorId) -> Option<Account> {
-        let found = self.by(self.estimators[sensor.index()])?;
+        let found = self.of_sensor(sensor)?;
         estimators::account(scene, found, &self.photons, sensor)
     }
 
-    /// Settings of gathering, if anything is gathered.
-    pub fn gathering(&self) -> Option<&GatherSettings> {
-        self.others.iter().find_map(|found| found.settings.as_ref())
+    /// Settings of gathering, by group of sensors.
+    pub fn gathering(&self) -> impl Iterator<Item = (&[SensorId], &GatherSettings)> {
+        self.others.iter().filter_map(|found| Some((&found.sensors[..], found.settings.as_ref()?)))
     }
 
     /// Segments of photon and gather paths, as far as they still count.

@@ -7,7 +7,9 @@ use crate::transport::choose::pilot::choose;
 use crate::transport::estimators::{Portion, Prepared};
 use crate::transport::forward::Forward;
 use crate::transport::gather::estimator::{Combination, Gather};
+use crate::transport::gather::settings::groups;
 use crate::transport::gather::stages::FIRST_PASSES;
+use crate::transport::gather::trial::{PassWork, pass_work};
 use crate::transport::run::rounds::{Phase, Run};
 use crate::transport::stop::StopSignal;
 use crate::transport::tally::Series;
@@ -26,9 +28,9 @@ const BATCH_PATHS: u64 = 4096;
 const PILOT_PATHS: u64 = 64;
 /// Most bounces of these paths.
 const PILOT_BOUNCES: u32 = 10_000;
-/// Passes of gathering for which the remaining time of a run with a time limit should suffice, if a pass took
-/// only the time of its photon paths; records and other programs make it longer.
-const PASSES_IN_TIME: f64 = 16.0;
+/// Passes of gathering for which the remaining time of a run with a time limit should suffice: more than its first wave,
+/// since other programs make them longer.
+const PASSES_IN_TIME: f64 = 24.0;
 /// Time for which photon paths are traced to measure the time of a segment.
 const TIMED: Duration = Duration::from_millis(10);
 /// Most batches of [`PILOT_PATHS`] that are traced for this measurement.
@@ -156,24 +158,43 @@ fn gathered<'s>(
         return Some(Vec::new());
     }
     let early = signal.with_grace();
-    let work = signal.work_left(|| time_of_segment(scene, plan, &early));
-    let pilot = work.map_or(pilot, |work| pilot.with_passes_up_to(work / PASSES_IN_TIME));
-    let mut prepared = Vec::new();
+    let left = || signal.work_left(|| time_of_segment(scene, plan, &early));
+    let pilot = left().map_or(pilot, |work| pilot.with_passes_up_to(work / PASSES_IN_TIME));
+    let mut gathers = Vec::new();
     for (sensors, combination) in [(alone, Combination::Alone), (merged, Combination::Merged)] {
         if sensors.is_empty() {
             continue;
         }
-        let gather = Gather::prepare(scene, plan, (sensors, combination), pilot, &early)?;
-        let settings = gather.settings;
-        prepared.push((
-            settings,
-            match combination {
-                Combination::Alone => Prepared::Gather(gather),
-                Combination::Merged => Prepared::Mis(gather),
-            },
-        ));
+        for group in groups(scene, plan, (sensors, alone.len() + merged.len()), pilot, &early)? {
+            gathers.push((Gather::prepare(scene, plan, (&group, combination), pilot), combination));
+        }
     }
-    Some(prepared)
+    if let Some(segments) = left() {
+        let work = segments * work::OF_PHOTON_SEGMENT / PASSES_IN_TIME;
+        let all: Option<Vec<PassWork>> =
+            gathers.iter().map(|(own, _)| pass_work(own, plan, pilot, &early)).collect();
+        let factor = size_for(&all?, work);
+        for (own, _) in &mut gathers {
+            own.settings = own.settings.with_passes_of_size(factor, &plan.gather);
+        }
+    }
+    let prepared = gathers.into_iter().map(|(own, combination)| {
+        let settings = own.settings;
+        match combination {
+            Combination::Alone => (settings, Prepared::Gather(own)),
+            Combination::Merged => (settings, Prepared::Mis(own)),
+        }
+    });
+    Some(prepared.collect())
+}
+
+/// Size of passes, at most 1, whose work is this much in total: the positive root of a x + b x² = work.
+fn size_for(passes: &[PassWork], work: f64) -> f64 {
+    let photons = passes.iter().map(|pass| pass.photons).fold(0.0, f64::max);
+    let by_size = photons + passes.iter().map(|pass| pass.by_size).sum::<f64>();
+    let by_square: f64 = passes.iter().map(|pass| pass.by_square).sum();
+    let root = (by_size * by_size + 4.0 * by_square * work).sqrt();
+    (2.0 * work / (by_size + root)).min(1.0)
 }
 
 /// Suitable number of photon paths of a batch for a scene: the default of [`RunPlan::batch_paths`].

@@ -228,7 +228,9 @@ impl<'s> Run<'s> {
 
     /// Whether bias limits the flux of a sensor more than noise does.
     pub fn is_limited_by_bias(&self) -> bool {
-        self.others.iter().any(|(own, series)| own.is_limited_by_bias(series))
+        let Some(photons) = self.photons.in_progress() else { return false };
+        let photons = photons.counts.first();
+        self.others.iter().any(|(own, series)| own.is_limited_by_bias(series, photons))
     }
 
     /// Lets the estimators decide after a round how to go on: where bias limits the run, a stage
@@ -240,10 +242,24 @@ impl<'s> Run<'s> {
         self.round_end()
     }
 
-    /// Starts the next stage of every estimator whose stage may end.
+    /// Starts the next stage of every estimator whose stage may end and whose bias limits the flux of a sensor; where bias
+    /// limits none, a target may still ask for less, and all whose stage may end go on.
     pub fn next_stage(&mut self) {
-        let may_end = self.others.iter_mut().filter(|(own, series)| own.may_end_stage(series));
-        may_end.for_each(|(_, series)| series.next_stage());
+        let Some(photons) = self.photons.in_progress() else { return };
+        let photons = photons.counts.first();
+        let limited: Vec<bool> = self
+            .others
+            .iter()
+            .map(|(own, series)| {
+                own.may_end_stage(series) && own.is_limited_by_bias(series, photons)
+            })
+            .collect();
+        let all = !limited.contains(&true);
+        for ((own, series), limited) in self.others.iter_mut().zip(limited) {
+            if limited || (all && own.may_end_stage(series)) {
+                series.next_stage();
+            }
+        }
     }
 
     /// Everything counted so far. At least one batch has been traced.

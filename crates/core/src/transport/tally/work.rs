@@ -7,7 +7,7 @@ use crate::transport::Readings;
 
 /// Per photon path, and per segment of one.
 const PHOTON_PATH: f64 = 170.0;
-const PHOTON_SEGMENT: f64 = 45.0;
+pub(crate) const OF_PHOTON_SEGMENT: f64 = 45.0;
 /// Per gather path, and per segment of one.
 const GATHER_PATH: f64 = 600.0;
 const GATHER_SEGMENT: f64 = 60.0;
@@ -31,12 +31,12 @@ pub(crate) struct RecordWork {
 
 /// Work of photon paths.
 pub(crate) fn of_photons(readings: &Readings) -> f64 {
-    PHOTON_PATH * readings.paths() as f64 + PHOTON_SEGMENT * readings.segments as f64
+    PHOTON_PATH * readings.paths() as f64 + OF_PHOTON_SEGMENT * readings.segments as f64
 }
 
 /// Work of a photon path with this many segments.
 pub(crate) fn of_photon_path(segments: f64) -> f64 {
-    PHOTON_PATH + PHOTON_SEGMENT * segments
+    PHOTON_PATH + OF_PHOTON_SEGMENT * segments
 }
 
 /// Work of a gather path with this many segments.

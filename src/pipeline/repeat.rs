@@ -55,8 +55,8 @@ fn pass_size(job: &Job, findings: &Findings) -> [Option<u64>; 2] {
     else {
         return [asked.photons, asked.records];
     };
-    // All groups have passes of one size, and as many gather paths from each sensor.
-    [Some(first.photons), Some(first.gather_paths * first.all_sensors)]
+    // The same for all groups.
+    first.pass_size().map(Some)
 }
 
 /// A word quoted for a POSIX shell.

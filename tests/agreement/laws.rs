@@ -7,6 +7,7 @@ use lumiduct_core::plan::{GatherPlan, RunPlan};
 use lumiduct_core::scene::SensorId;
 use lumiduct_core::transport::{Findings, Orders, Run};
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
+use std::time::Duration;
 
 /// A guide and its lamp, without absorption.
 const ROD: &str = r#"
@@ -313,4 +314,33 @@ fn every_sensor_has_the_window_of_its_guide() {
     assert!((wide.window.radius - 6.0).abs() < 1e-6, "{wide:?}");
     assert!((narrow.window.radius - 0.3).abs() < 1e-6, "{narrow:?}");
     assert_eq!((wide.gather_paths, narrow.gather_paths), (200, 200));
+    // Of a run of limited time, a checkpoint keeps the size of a pass over all groups.
+    let mut timed = RunPlan { gather: GatherPlan::default(), ..job.run.clone() };
+    timed.stop.time = Some(Duration::from_secs(60));
+    let again = run.state().plan(&timed).gather;
+    assert_eq!((again.photons, again.records), (Some(400), Some(400)));
+}
+
+/// Light that enters a rod from air fills a cone of asin(1/n) inside. Seen under 84 deg through the other end, the axis of a
+/// window is asin(1/n) - asin(sin 84 deg/n) = 0.28 deg inside this cone; without this limit the window would be 4.5 deg wide.
+#[test]
+fn windows_fit_the_edge_of_the_aperture() {
+    let rod = |theta_deg: f64| {
+        let text = format!(
+            "[media.glass]\nindex = 1.5\n[solids.rod.cylinder]\nradius_mm = 3\nlength_mm = 30\nmedium = \"glass\"\n\
+             [sources.led.disk]\nradius_mm = 2.5\nat = {{ face = \"rod.entry\" }}\ncontact = \"air\"\nflux_lm = 1\n\
+             [sensors.eye]\non = \"rod.exit\"\ncounts = \"leaving\"\nluminance = {{ cells = [1, 1], \
+             directions = [{{ theta_deg = {theta_deg}, phi_deg = 0 }}], acceptance_half_angle_deg = 0.1 }}\n"
+        );
+        let job = load(&text, Way::Gather(Gathering::to_depth(2)));
+        let gather = GatherPlan { records: Some(100), photons: Some(100), ..GatherPlan::default() };
+        let mut run = Run::new(&job.scene, &RunPlan { gather, ..job.run.clone() });
+        run.next_piece();
+        run.findings().gathering().next().unwrap().1.window.theta_max
+    };
+    let margin =
+        |theta_deg: f64| (1.0_f64 / 1.5).asin() - (theta_deg.to_radians().sin() / 1.5).asin();
+    let found = rod(84.0);
+    assert!((margin(84.1)..margin(83.9)).contains(&found), "{found}, not {}", margin(84.0));
+    assert_eq!(rod(10.0), 4.5_f64.to_radians(), "the upper limit");
 }

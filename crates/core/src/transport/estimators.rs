@@ -75,7 +75,7 @@ impl<'s> Prepared<'s> {
     pub(crate) fn batch_paths(&self, stage: u32) -> u64 {
         match self {
             Self::Backward(own) | Self::Mix(own) => own.batch_paths(),
-            Self::Gather(own) | Self::Mis(own) => own.settings.batch_paths(stage),
+            Self::Gather(own) | Self::Mis(own) => own.batch_paths(stage),
         }
     }
 

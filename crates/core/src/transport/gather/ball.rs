@@ -2,8 +2,8 @@
 //! volume.
 //!
 //! From the middle, the medium is probed in some directions: `ΔV = ∫ min(r, d(ω))³/3 dω`, with d(ω)
-//! the extent of the medium, and likewise the moments of (distance/r)². If a medium bends back into the ball, only the nearer part counts; the
-//! rest is an error that shrinks with the window.
+//! the extent of the medium, and likewise the moments of (distance/r)². If a medium bends back into
+//! the ball, only the nearer part counts; the rest is an error that shrinks with the window.
 
 use crate::scene::{Inside, MediumId, MeetingPoint, Ray, Scene, StartSurfaces, Visibility};
 use crate::transport::Path;

@@ -1,13 +1,14 @@
 //! The estimate of gathered light: which stage gives it, and the bias that may remain in it.
 //!
-//! The same pairs give estimates of second, fourth and sixth order, E1, E0 and E00 (`kernel`). The value is E0. Where
-//! light changes by the powers of the window's size that E0 removes, its bias is a small part of E0 - E1. An edge of the
-//! light within windows is what leaves most of it: of a bias in proportion to their size E0 keeps 2/3 of E0 - E1, and 2.8
-//! times E00 - E0. So the stated bias is half of |E0 - E1| where this is noise, and otherwise 2.8 times the sum of |E00 - E0| and its
-//! standard error, within 1/4 and 2/3 of |E0 - E1|; if E00 differs from E0 by more than half of that from E1, higher orders do not converge, and the bias is not resolved.
-//! Shares and stage are decided once per sensor, from its flux, never per cell. Photons of the same run that contradict the
-//! flux set a least bias of it, and its relative bias is the least of every measure of the sensor: orders may agree by
-//! chance, but hardly in all measures.
+//! The same pairs give estimates of second, fourth and sixth order, E1, E0 and E00 (`kernel`). The value is E0. For smooth
+//! light its bias is a small part of E0 - E1. An edge of the light inside the windows leaves the most: if the bias is
+//! proportional to their size, 2/3 of E0 - E1 remains in E0, which is 2.8 times E00 - E0. The stated bias is therefore half
+//! of |E0 - E1| where this is noise, and otherwise 2.8 times the sum of |E00 - E0| and its standard error, within 1/4 and
+//! 2/3 of |E0 - E1|. If |E00 - E0| exceeds half of |E0 - E1|, higher orders do not converge, and the bias is not resolved.
+//!
+//! Share and stage are chosen once per sensor, from its flux, never per cell. If photons of the same run contradict the
+//! flux, its bias is at least that difference. No measure of the sensor has a smaller relative bias than the flux, since
+//! the orders of a single measure may agree by chance.
 
 use crate::plan::Estimator;
 use crate::tally::Tally;
@@ -16,8 +17,8 @@ use crate::transport::gather::stages::Orders;
 use crate::transport::tally::readings::{Group, MIN_LIT_GROUPS};
 use crate::transport::{Readings, Stage};
 
-/// Share of |E0 - E1| that is stated as the bias where it is noise, and at least, 1: by trials in scenes with known values
-/// (docs/method.md).
+/// Share of |E0 - E1| that is stated as the bias where the difference is noise, and the smallest share elsewhere, 1. Chosen
+/// by trials in scenes with known values.
 pub(super) const USUAL_SHARE: f64 = 0.5;
 const LEAST_SHARE: f64 = 0.25;
 /// What E0 keeps of a bias in proportion to the window's size, over |E0 - E1| and over |E00 - E0|, 1: with the means over
@@ -119,8 +120,8 @@ fn bias_share(lower: &Tally, higher: &Tally) -> (f64, Resolution) {
     ((of_higher * at_most).clamp(LEAST_SHARE, of_lower), Resolution::Resolved)
 }
 
-/// The least bias, lm or W, of a flux that differs by so much from that of photons with this error: what exceeds both
-/// errors has a cause.
+/// The least bias, lm or W, of a flux that differs from that of photons by `off`, with the error of the latter: 0 if noise
+/// explains the difference.
 fn bias_by_photons(flux: &Tally, [off, error]: [f64; 2]) -> f64 {
     let both = flux.std_error().hypot(error);
     if off.abs() > OUT_OF_NOISE * both { off.abs() + error } else { 0.0 }

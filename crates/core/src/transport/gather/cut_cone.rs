@@ -1,6 +1,7 @@
 //! Cones of directions that are cut by the horizon of a surface, or where its total reflection begins.
 //!
-//! Radiance may jump at such an edge, so photons beyond it are not counted. A photon counts only on the side of the axis, and kernels follow from the moments of t over that side, each direction by its projected solid angle.
+//! Radiance may jump at such an edge, so only photons on the same side as the axis count. Kernels follow from the moments
+//! of t over that side, with directions weighted by projected solid angle.
 
 use crate::transport::gather::kernel::{Kernels, MOMENTS};
 use std::f64::consts::PI;

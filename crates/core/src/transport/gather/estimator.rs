@@ -77,6 +77,11 @@ impl<'s> Gather<'s> {
         }
     }
 
+    /// Gather paths of a pass from all of its sensors.
+    pub(crate) fn batch_paths(&self, stage: u32) -> u64 {
+        self.settings.gather_paths(stage) * self.sensors.len() as u64
+    }
+
     /// The sensors.
     pub(crate) fn sensors(&self) -> impl Iterator<Item = SensorId> {
         self.sensors.iter().map(|(id, _)| *id)

@@ -57,8 +57,6 @@ pub struct GatherSettings {
     pub depth: u32,
     /// Window of the first stage.
     pub window: Window,
-    /// Number of sensors in the group.
-    pub sensors: u64,
     /// Number of sensors that are gathered in the run.
     pub all_sensors: u64,
     /// Gather paths from each sensor in a pass of the first stage.
@@ -70,6 +68,11 @@ pub struct GatherSettings {
 }
 
 impl GatherSettings {
+    /// Photons of a pass of the first stage, and its gather paths from all sensors of the run.
+    pub fn pass_size(&self) -> [u64; 2] {
+        [self.photons, self.gather_paths * self.all_sensors]
+    }
+
     /// The same with smaller passes, where the plan leaves their size open.
     pub(crate) fn with_passes_of_size(self, factor: f64, plan: &GatherPlan) -> Self {
         let scaled = |count: u64, given: Option<u64>| match given {
@@ -86,8 +89,7 @@ impl GatherSettings {
 
 impl fmt::Display for GatherSettings {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { depth, window, gather_paths, photons, schedule, sensors: _, all_sensors: _ } =
-            self;
+        let Self { depth, window, gather_paths, photons, schedule, all_sensors: _ } = self;
         let schedule = match schedule {
             Schedule::Stages => "shrinking in stages",
             Schedule::Fixed => "of fixed size",
@@ -150,7 +152,6 @@ pub fn groups(
                 settings: GatherSettings {
                     depth,
                     window,
-                    sensors: 1,
                     all_sensors,
                     gather_paths: gather_paths.max(1),
                     photons,
@@ -174,7 +175,6 @@ impl SensorGroup {
     /// Adds a sensor; the smaller window suits both.
     fn add(&mut self, sensor: SensorId, window: Window) {
         self.sensors.push(sensor);
-        self.settings.sensors += 1;
         let own = &mut self.settings.window;
         own.radius = own.radius.min(window.radius);
         own.theta_max = own.theta_max.min(window.theta_max);

@@ -32,9 +32,8 @@ pub(super) struct Sounded {
     pub(super) index: f64,
     /// Widest narrow scatter beyond the records, rad.
     pub(super) scatter: f64,
-    /// Angle, rad, between the paths within a denser medium and the cone of all directions that light from outside can
-    /// take there; infinite without refraction. Light that has entered through such a face, too, ends at this cone. Three
-    /// quarters of the paths are farther from it.
+    /// Smallest angle between a refracted path and the cone of directions that light entering from outside can have, rad:
+    /// lower quartile over paths, infinite without refraction. Light from a similar face at the other end stops at this cone.
     pub(super) to_aperture: f64,
     /// Distance of the records from each source, mm; `None` for sources whose light reaches none of their surfaces.
     pub(super) from_sources: Vec<Option<f64>>,
@@ -53,21 +52,10 @@ impl Reached {
         forward.shares = lit.map(|lit| PHOTONS * lit).collect();
         let mut source = SourceId::new(0);
         let mut watch = |_: &Path, event: Event<'_>| {
-            match event {
-                Event::Start(start) => source = start.source,
-                Event::Arrive(vertex) => {
-                    reached[source.index()].insert(scene.smooth(vertex.interface.acting.prim));
-                }
-                Event::Travel(_)
-                | Event::Collide(_)
-                | Event::Depart(..)
-                | Event::Absorbed(_)
-                | Event::Detect(_)
-                | Event::Meet(_)
-                | Event::Roulette(_)
-                | Event::Escaped(_)
-                | Event::Cut(_)
-                | Event::Leaked(..) => {}
+            if let Event::Start(start) = event {
+                source = start.source;
+            } else if let Event::Arrive(vertex) = event {
+                reached[source.index()].insert(scene.smooth(vertex.interface.acting.prim));
             }
             ControlFlow::Continue(())
         };
@@ -159,23 +147,10 @@ struct Sounding<'s> {
 
 impl Observer for Sounding<'_> {
     fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
-        let vertex = match event {
-            Event::Arrive(vertex) => vertex,
-            Event::Depart(vertex, departure) => {
-                self.probe_aperture(path, vertex, departure);
-                return ControlFlow::Continue(());
-            }
-            Event::Start(_)
-            | Event::Travel(_)
-            | Event::Collide(_)
-            | Event::Absorbed(_)
-            | Event::Detect(_)
-            | Event::Meet(_)
-            | Event::Roulette(_)
-            | Event::Escaped(_)
-            | Event::Cut(_)
-            | Event::Leaked(..) => return ControlFlow::Continue(()),
-        };
+        if let Event::Depart(vertex, departure) = event {
+            self.probe_aperture(path, vertex, departure);
+        }
+        let Event::Arrive(vertex) = event else { return ControlFlow::Continue(()) };
         if path.depth <= self.depth {
             self.probe(path, vertex);
         } else {

@@ -74,11 +74,6 @@ impl GatherSettings {
         grown.min(most.max(self.gather_paths))
     }
 
-    /// Gather paths of a pass from all sensors of the group.
-    pub(crate) fn batch_paths(&self, stage: u32) -> u64 {
-        self.gather_paths(stage) * self.sensors
-    }
-
     /// Passes after which a stage may end.
     pub(crate) fn planned_passes(&self, stage: u32) -> u64 {
         match self.schedule {

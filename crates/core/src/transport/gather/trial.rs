@@ -20,9 +20,8 @@ use std::collections::BTreeMap;
 /// Passes from which gathering is judged: fewer would contain more pairs, but give the variance
 /// less accurately.
 const PASSES: u64 = 8;
-/// Variance of E0 over that of E1 where pairs of the position-and-angle estimate limit both, 1 (`kernel`); more than that
-/// of the other estimates. With the few pairs of a pilot, the latter is
-/// known much better.
+/// Variance of E0 over that of E1 where pairs of the position-and-angle estimate limit both, 1 (`kernel`); it is smaller for
+/// the other estimates. The few pairs of a pilot give the variance of E1 much more accurately.
 const FOURTH_ORDER: f64 = 7.0;
 /// Smallest relative variance of a pass times its photons, or its gather paths: the limit for
 /// unlimited pairs.
@@ -74,7 +73,7 @@ fn group_trial(trials: &Trials<'_>, settings: GatherSettings) -> Option<Vec<Trie
     let passes = passes?;
     let [second, values, bias] = [[1.0, 0.0], [0.0, 1.0], [USUAL_SHARE, -USUAL_SHARE]]
         .map(|factors| combined(&passes, factors));
-    let gathered = gather.settings.batch_paths(0);
+    let gathered = gather.batch_paths(0);
     let works = passes.iter().map(|pass| pass.work_of_whole(gathered, part));
     let work: f64 = works.map(|work| work.photons + work.by_size + work.by_square).sum();
     let seconds = 1e-9 * work / PASSES as f64;
@@ -138,7 +137,7 @@ pub(crate) fn pass_work(
         Gather { merging: gather.merging, ..Gather::new(gather.scene, &sensors, seed, settings) };
     let forward = Forward::new(gather.scene, seed, plan.bounce_limit, scaled(photons));
     let pass = TriedPass::trace(&probe, &forward, 0, signal)?;
-    Some(pass.work_of_whole(probe.settings.batch_paths(0), part))
+    Some(pass.work_of_whole(probe.batch_paths(0), part))
 }
 
 impl TriedPass {
@@ -162,7 +161,7 @@ impl TriedPass {
         (!pace.is_stopped()).then_some(Self { photons, orders, work })
     }
 
-    /// Work of a pass of the run, of which this one, with this many gather paths, is a part.
+    /// Work of a full pass, scaled up from this one, which traced this many gather paths and a `part` of the photons.
     fn work_of_whole(&self, gather_paths: u64, part: f64) -> PassWork {
         let RecordWork { records, look_ups, near, pairs } = self.work;
         let grown = |count: u64, factor: f64| (count as f64 / factor) as u64;

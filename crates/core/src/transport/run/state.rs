@@ -73,7 +73,7 @@ impl Run<'_> {
             others,
             estimators: self.estimators.clone(),
             choices: self.choices.clone(),
-            pass: settings.map(|own| [own.photons, own.gather_paths * own.sensors]),
+            pass: settings.map(|own| own.pass_size()),
         }
     }
 }

@@ -20,7 +20,7 @@ const TRUTH_TIMES: u32 = 10;
 pub(super) struct CompareArgs {
     /// The scene file.
     scene: PathBuf,
-    /// The sensor whose flux is compared [default: the only one].
+    /// The sensor whose flux and cells are compared [default: the only one].
     #[arg(long, value_name = "NAME")]
     sensor: Option<String>,
     /// Estimators to compare, in the order of the table.
@@ -50,10 +50,10 @@ pub(super) struct CompareArgs {
     /// Standard error of the true flux.
     #[arg(long, value_parser = parse_number, value_name = "FLUX", requires = "truth")]
     truth_error: Option<f64>,
-    /// Take the true flux from measures.csv of a report, or from truth.csv of a comparison.
+    /// Take the true flux from measures.csv of a report, or with its cells from truth.csv of a comparison.
     #[arg(long, value_name = "FILE")]
     truth_file: Option<PathBuf>,
-    /// Time for a run that computes the true flux, by the better of forward and backward [default: 10 times --time].
+    /// Time for a run that computes the true flux, by the best of forward, backward and mix [default: 10 times --time].
     #[arg(
         long,
         value_parser = parse_time,

@@ -8,6 +8,7 @@ mod bench;
 mod method;
 mod runner;
 mod truth;
+mod truth_file;
 
 pub use method::Method;
 pub use truth::TruthOption;
@@ -24,7 +25,7 @@ use lumiduct_core::plan::Request;
 use lumiduct_core::scene::SensorId;
 use lumiduct_core::transport::{Activity, Interrupt, invisible, scatterers, turbid_media};
 use lumiduct_input::{self as input, Job, Settings};
-use lumiduct_report::{self as report, Comparison, Contestant, Folder, FolderLock};
+use lumiduct_report::{self as report, Comparison, Contestant, Folder, FolderLock, Truth};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -111,7 +112,7 @@ pub fn compare(
     };
     let mut contestants = Vec::new();
     for &method in &options.methods {
-        contestants.push(contestant(&bench, method, options.repetitions, watch)?);
+        contestants.push(contestant(&bench, method, (options.repetitions, &truth), watch)?);
     }
     let comparison = Comparison {
         title: job.title.clone(),
@@ -121,6 +122,8 @@ pub fn compare(
             job.run.seed,
             rayon::current_num_threads()
         ),
+        sensor: bench.sensor().to_owned(),
+        cells: bench.cells(),
         measure: bench.measure(),
         unit: job.scene.unit.flux().to_owned(),
         truth,
@@ -144,7 +147,7 @@ pub fn compare(
 fn contestant(
     bench: &Bench<'_>,
     method: Method,
-    repetitions: u32,
+    (repetitions, truth): (u32, &Truth),
     watch: &mut dyn FnMut(&str),
 ) -> Result<Contestant> {
     let end = bench.run_time.as_secs_f64();
@@ -154,12 +157,14 @@ fn contestant(
     let (mut runs, mut cut) = (Vec::new(), 0.0);
     for run in 0..repetitions {
         watch(&format!("{}: run {} of {repetitions}", method.name(), run + 1));
-        let stint = Stint { method, run: u64::from(run), checkpoints: &checkpoints };
+        let cells = truth.cells.as_ref();
+        let stint = Stint { method, run: u64::from(run), checkpoints: &checkpoints, cells };
         let traced = trace(bench, &stint)?;
         cut += traced.cut / f64::from(repetitions);
         runs.push(traced.samples);
     }
-    Ok(Contestant { name: method.name().to_owned(), runs, cut })
+    let (name, label) = (method.name().to_owned(), method.label());
+    Ok(Contestant { name, label, origin: method.origin(), runs, cut })
 }
 
 /// The sensor of this name, or the only one.

@@ -103,3 +103,40 @@ counts = "leaving"
     let names = ["eye.luminance_avg.0", "eye.luminance_avg.1"];
     assert_exact("lit sheet", text, &names.map(|name| (name, luminance)));
 }
+
+/// A cell before the hole of a white box (`scenes/white_box.toml`, its lamp at half the height): hardly any gather path
+/// meets the lamp, so the light of `backward` is that of their connections.
+#[test]
+fn gather_paths_joined_to_a_lamp_find_as_much_light_as_photons_do() {
+    let text = r#"
+[finishes.white.lambertian]
+reflectance = 0.9
+[sheets.box.tube]
+profile = { rectangle = { width_mm = 40, height_mm = 40 } }
+path = [{ straight_mm = 40 }]
+finish = "white"
+[sheets.floor.rectangle]
+width_mm = 40
+height_mm = 40
+finish = "white"
+[sheets.lid.annulus]
+inner_radius_mm = 4
+outer_radius_mm = 28.3
+finish = "white"
+at = { position_mm = [0, 0, 40] }
+[sources.led.disk]
+radius_mm = 0.5
+at = { position_mm = [15, 10, 20], axis = [0, 0, -1] }
+flux_lm = 100
+[sensors.cell]
+plane = { rectangle = { width_mm = 2, height_mm = 2 } }
+at = { position_mm = [0, 0, 41], axis = [0, 0, -1] }
+"#;
+    let flux = &measures(text, Way::Backward).values["cell.flux"];
+    let mut comparison = Comparison::default();
+    // This text as scene.toml, `lumiduct run scene.toml --estimator forward --paths 8M --seed 20403`.
+    comparison.add("joined to a lamp", flux, 0.3454, 0.0014);
+    let noise = flux.std_error / flux.value;
+    assert!(noise < 2.0 * MOST_NOISE, "noise of {noise}");
+    comparison.assert("joined to a lamp", 1);
+}

@@ -26,6 +26,17 @@ fn a_comparison_writes_a_page_a_table_a_plot_and_its_truth() {
     for name in ALL.split(',') {
         assert!(table.lines().any(|line| line.starts_with(&format!("{name},"))), "{table}");
     }
+    // The sensor has 16 cells.
+    assert!(page.contains("| error per cell | cost of cells |"), "{page}");
+    assert!(page.contains("* 16 cells"), "{page}");
+    let cell_error = |line: &str| -> f64 { line.rsplit(',').next().unwrap().parse().unwrap() };
+    assert!(table.lines().next().unwrap().ends_with(",error_per_cell"), "{table}");
+    assert!(
+        table.lines().skip(1).map(cell_error).all(|error| 0.0 < error && error < 3.0),
+        "{table}"
+    );
+    let truth = fs::read_to_string(place.path("out/truth.csv")).unwrap();
+    assert_eq!(truth.lines().filter(|line| line.starts_with("exit.cell_flux.")).count(), 16);
 
     // The truth found can be reused, and existing results are kept.
     let again = "compare rod.toml --sensor exit --estimators forward --time 0.1s --runs 2 --truth-file out/truth.csv";
@@ -33,6 +44,48 @@ fn a_comparison_writes_a_page_a_table_a_plot_and_its_truth() {
     place.good(&format!("{again} -q"));
     let page = fs::read_to_string(place.path("reports/rod-compare/compare.md")).unwrap();
     assert!(page.contains("from `out/truth.csv`"), "{page}");
+    assert!(page.contains("| error per cell | cost of cells |"), "{page}");
+    let kept = fs::read_to_string(place.path("reports/rod-compare/truth.csv")).unwrap();
+    assert_eq!(kept, truth);
+}
+
+#[test]
+fn a_truth_without_cells_gives_no_errors_per_cell_and_the_page_says_so() {
+    let place = Place::new();
+    let flux = "measure,value,std_error,unit\nexit.flux,8,0.1,lm\n";
+    fs::write(place.path("flux.csv"), flux).unwrap();
+    for truth in ["--truth 8", "--truth-file flux.csv"] {
+        let arguments = "compare rod.toml --sensor exit --estimators forward --time 0.1s --runs 2";
+        let said = place.good(&format!("{arguments} {truth} -o out --overwrite"));
+        assert!(said.contains("Errors per cell are not known"), "{said}");
+        assert!(!said.contains("cost of cells"), "{said}");
+        let table = fs::read_to_string(place.path("out/compare.csv")).unwrap();
+        assert!(table.lines().skip(1).all(|line| line.ends_with(',')), "{table}");
+    }
+}
+
+#[test]
+fn the_cells_of_a_truth_must_be_those_of_the_sensor() {
+    let place = Place::new();
+    let table = |cells: &str| format!("measure,value,std_error,unit\nexit.flux,8,0.1,lm\n{cells}");
+    let dark: String = (0..16).map(|cell| format!("exit.cell_flux.{cell},0,0,lm\n")).collect();
+    for (cells, words) in [
+        (
+            "exit.cell_flux.0,4,0.1,lm\nexit.cell_flux.1,4,0.1,lm\n",
+            "2 cells of `exit`, which has 16",
+        ),
+        ("exit.cell_flux.1,4,0.1,lm\n", "`exit.cell_flux.1` is where `exit.cell_flux.0` belongs"),
+        ("exit.cell_flux.0,much,0.1,lm\n", "`much` is not a number"),
+        (dark.as_str(), "are dark"),
+    ] {
+        fs::write(place.path("truth.csv"), table(cells)).unwrap();
+        let said = place.bad(
+            2,
+            "compare rod.toml --sensor exit --estimators forward --time 1s --truth-file truth.csv -o out",
+        );
+        assert!(said.contains("--truth-file truth.csv") && said.contains(words), "{said}");
+    }
+    assert_eq!(place.names(), ["rod.toml", "truth.csv"]);
 }
 
 #[test]

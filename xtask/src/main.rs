@@ -2,10 +2,12 @@
 
 #![allow(clippy::print_stdout, reason = "a program for developers")]
 
+mod comparisons;
 mod manual;
 mod validate;
 mod verify;
 
+use crate::comparisons::{CompareTimes, compare};
 use crate::validate::{ResultsPage, validate};
 use crate::verify::verify;
 use clap::Parser;
@@ -28,6 +30,8 @@ enum Chore {
         #[arg(long)]
         program: Option<PathBuf>,
     },
+    /// Compare the estimators in the scenes of docs/comparison and write their folders: about 20 minutes each.
+    Compare(CompareTimes),
     /// Trace the values of docs/validation.md anew and compare the page.
     Validate {
         /// Only one run in ten; the number of commits says which.
@@ -66,6 +70,7 @@ fn main() -> io::Result<ExitCode> {
         Chore::VerifyReports { tenth, program } => {
             Ok(exit_code(verify(Share::new(tenth), program)?))
         }
+        Chore::Compare(times) => Ok(exit_code(compare(&times)?)),
         Chore::Validate { tenth, write } => {
             let page = if write { ResultsPage::Write } else { ResultsPage::Verify };
             Ok(exit_code(validate(Share::new(tenth), page)?))

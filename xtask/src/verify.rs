@@ -95,7 +95,7 @@ fn files(folder: &Path) -> io::Result<Vec<PathBuf>> {
 }
 
 /// Builds the program as the README does.
-fn build() -> io::Result<PathBuf> {
+pub(crate) fn build() -> io::Result<PathBuf> {
     let arguments = ["build", "--release", "--locked", "--package", "lumiduct"];
     let status = Command::new(env!("CARGO")).args(arguments).current_dir(root()).status()?;
     if !status.success() {

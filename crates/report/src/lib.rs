@@ -62,9 +62,11 @@ mod terminal;
 mod upright;
 mod words;
 
-pub use compare::{
-    CheckpointSample, Comparison, Contestant, Truth, comparison_files, comparison_table, rows,
-};
+pub use compare::cells::TrueCells;
+pub use compare::comparison::{CheckpointSample, Comparison, Contestant, MethodOrigin, Truth};
+pub use compare::errors::rows;
+pub use compare::page::comparison_table;
+pub use compare::{cell_prefix, comparison_files};
 pub use destination::{expect_file, is_among};
 pub use drawing::SceneDrawing;
 pub use drawing::drawing;

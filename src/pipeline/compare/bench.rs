@@ -18,7 +18,17 @@ pub(super) struct Bench<'j> {
 impl Bench<'_> {
     /// Dotted name of the measure that is compared.
     pub(super) fn measure(&self) -> String {
-        format!("{}.flux", self.job.scene.sensors[self.id.index()].name)
+        format!("{}.flux", self.sensor())
+    }
+
+    /// Cells of the sensor, in all views.
+    pub(super) fn cells(&self) -> usize {
+        self.job.scene.sensors[self.id.index()].cells()
+    }
+
+    /// Name of the sensor.
+    pub(super) fn sensor(&self) -> &str {
+        &self.job.scene.sensors[self.id.index()].name
     }
 
     /// The plan of an independent run: the job's except for seed and time.

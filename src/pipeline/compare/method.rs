@@ -2,6 +2,7 @@
 
 use lumiduct_baselines::Baseline;
 use lumiduct_core::plan::{Estimator, Request};
+use lumiduct_report::MethodOrigin;
 
 /// What can be compared: the estimators of this program and baselines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,6 +24,29 @@ impl Method {
         match self {
             Self::Run(request) => request.name(),
             Self::Baseline(baseline) => baseline.name(),
+        }
+    }
+
+    /// What it is called in tables and plots: gather paths that are joined to sources are known by another name.
+    pub(super) fn label(self) -> String {
+        match self {
+            Self::Run(Request::Backward) => format!("{} (path tracing)", self.name()),
+            Self::Run(
+                Request::Auto | Request::Forward | Request::Mix | Request::Gather | Request::Mis,
+            )
+            | Self::Baseline(_) => self.name().to_owned(),
+        }
+    }
+
+    /// Whose method it is.
+    pub(super) fn origin(self) -> MethodOrigin {
+        match self {
+            Self::Run(Request::Forward | Request::Backward) | Self::Baseline(_) => {
+                MethodOrigin::Literature
+            }
+            Self::Run(Request::Auto | Request::Mix | Request::Gather | Request::Mis) => {
+                MethodOrigin::Own
+            }
         }
     }
 

@@ -7,7 +7,7 @@ use lumiduct_baselines::BaselineRun;
 use lumiduct_core::measure;
 use lumiduct_core::plan::Request;
 use lumiduct_core::transport::{Findings, Run, StopSignal};
-use lumiduct_report::CheckpointSample;
+use lumiduct_report::{CheckpointSample, TrueCells};
 use std::time::{Duration, Instant};
 
 /// A run to do.
@@ -17,6 +17,8 @@ pub(super) struct Stint<'a> {
     pub(super) run: u64,
     /// When it is sampled; the last is its end.
     pub(super) checkpoints: &'a [Duration],
+    /// What its cells are compared with, where that is known.
+    pub(super) cells: Option<&'a TrueCells>,
 }
 
 /// A run that was done.
@@ -30,16 +32,18 @@ pub(super) struct TracedRun {
 }
 
 /// A value with the error that the run reports.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) struct ReportedValue {
     pub(super) value: f64,
     pub(super) std_error: f64,
+    /// Flux and standard error of each cell.
+    pub(super) cells: Vec<(f64, f64)>,
 }
 
 /// Traces one run until its last checkpoint. Its preparation counts toward its time, sampling it
 /// does not.
 pub(super) fn trace(bench: &Bench<'_>, stint: &Stint<'_>) -> Result<TracedRun> {
-    let Stint { method, run, checkpoints } = *stint;
+    let Stint { method, run, checkpoints, cells } = *stint;
     let start = Instant::now();
     let interrupted = || Error::Usage("interrupted: nothing was written".into());
     let mut runner = Runner::new(bench, method, run).ok_or_else(interrupted)?;
@@ -57,7 +61,7 @@ pub(super) fn trace(bench: &Bench<'_>, stint: &Stint<'_>) -> Result<TracedRun> {
         let place = checkpoints.iter().rposition(|checkpoint| *checkpoint <= spent);
         let is_due = is_over || place.is_some_and(|place| samples[place].is_none());
         if runner.is_readable() && (is_due || runner.is_rarely_readable()) {
-            last = runner.look(bench, spent);
+            last = runner.look(bench, spent, cells);
             if let (Some(place), Some((sample, _))) = (place, &last) {
                 samples[place].get_or_insert(*sample);
             }
@@ -133,6 +137,7 @@ impl<'s> Runner<'s> {
         &self,
         bench: &Bench<'_>,
         spent: Duration,
+        truth: Option<&TrueCells>,
     ) -> Option<(CheckpointSample, ReportedValue)> {
         let (findings, segments) = match self {
             Self::Run { run, .. } => {
@@ -148,8 +153,14 @@ impl<'s> Runner<'s> {
         };
         let measure = measure::value_of(&bench.job.scene, &findings, &bench.measure())?;
         let (value, std_error) = (measure.value, measure.std_error);
-        let sample = CheckpointSample { seconds: spent.as_secs_f64(), segments, value };
-        Some((sample, ReportedValue { value, std_error }))
+        let cells = measure::cell_fluxes(&bench.job.scene, &findings, bench.id);
+        // Only the error is kept of the cells, which may be many.
+        let cell_error = truth.map(|truth| {
+            truth.error_of(&cells.iter().map(|(flux, _)| *flux).collect::<Vec<f64>>())
+        });
+        let seconds = spent.as_secs_f64();
+        let sample = CheckpointSample { seconds, segments, value, cell_error };
+        Some((sample, ReportedValue { value, std_error, cells }))
     }
 
     fn cut(&self) -> f64 {

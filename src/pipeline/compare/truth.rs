@@ -4,12 +4,12 @@
 use crate::pipeline::compare::bench::Bench;
 use crate::pipeline::compare::method::Method;
 use crate::pipeline::compare::runner::{ReportedValue, Stint, trace};
+use crate::pipeline::compare::truth_file::read;
 use lumiduct_base::error::{Error, Result};
 use lumiduct_core::plan::Request;
 use lumiduct_core::transport::invisible;
-use lumiduct_report::Truth;
-use std::fs::File;
-use std::path::{Path, PathBuf};
+use lumiduct_report::{TrueCells, Truth};
+use std::path::PathBuf;
 use std::time::Duration;
 
 /// Where the truth comes from.
@@ -24,7 +24,7 @@ pub enum TruthOption {
     },
     /// A `measures.csv` of a report, or a `truth.csv` of a comparison; lines with `#` are comments.
     File(PathBuf),
-    /// The better of forward and backward for this time.
+    /// The best of forward, backward and mix for this time.
     Run(Duration),
 }
 
@@ -43,14 +43,15 @@ pub(super) fn known(bench: &Bench<'_>, wish: &TruthOption) -> Result<Known> {
     match wish {
         TruthOption::Given { value, std_error } => {
             let origin = "as given on the command line".to_owned();
-            usable(bench, Truth { value: *value, std_error: *std_error, origin }).map(Known::Truth)
+            let truth = Truth { value: *value, std_error: *std_error, origin, cells: None };
+            usable(bench, truth).map(Known::Truth)
         }
-        TruthOption::File(path) => usable(bench, read(path, &bench.measure())?).map(Known::Truth),
+        TruthOption::File(path) => usable(bench, read(path, bench)?).map(Known::Truth),
         TruthOption::Run(time) => Ok(Known::Takes(*time)),
     }
 }
 
-/// Finds the truth by a long run of the unbiased estimator with the smaller error after a short
+/// Finds the truth by a long run of the unbiased estimator with the smallest error after a short
 /// trial.
 pub(super) fn find(
     bench: &Bench<'_>,
@@ -62,8 +63,8 @@ pub(super) fn find(
     // Seeds beyond those of the runs that are compared.
     let seed = u64::from(repetitions);
     let is_visible = scene.sources.iter().all(|source| invisible(source, scene).is_none());
-    let candidates = [Request::Forward, Request::Backward];
-    let able = candidates.into_iter().filter(|request| is_visible || *request == Request::Forward);
+    let candidates = [Request::Forward, Request::Backward, Request::Mix];
+    let able = candidates.into_iter().filter(|request| is_visible || *request != Request::Backward);
     let mut best: Option<(Request, f64)> = None;
     for request in able {
         watch(&format!("truth: trial of {}", request.name()));
@@ -83,7 +84,7 @@ pub(super) fn find(
     };
     let (name, seconds) = (request.name(), time.as_secs_f64());
     watch(&format!("truth: {name} for {seconds:.0} s"));
-    let ReportedValue { value, std_error } = run(bench, request, seed + 1, time)?;
+    let ReportedValue { value, std_error, cells } = run(bench, request, seed + 1, time)?;
     let used = bench.plan(request, seed + 1).seed;
     usable(
         bench,
@@ -91,6 +92,7 @@ pub(super) fn find(
             value,
             std_error,
             origin: format!("by {name} for {seconds:.1} s with seed {used}"),
+            cells: if bench.cells() > 1 { TrueCells::new(cells) } else { None },
         },
     )
 }
@@ -110,36 +112,8 @@ fn usable(bench: &Bench<'_>, truth: Truth) -> Result<Truth> {
     )))
 }
 
-/// The line of a measure in a table.
-fn read(path: &Path, measure: &str) -> Result<Truth> {
-    let file = File::open(path).map_err(|reason| {
-        Error::Usage(format!("--truth-file {}: cannot be read: {reason}", path.display()))
-    })?;
-    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).flexible(true).from_reader(file);
-    let unusable = |why: String| Error::Usage(format!("--truth-file {}: {why}", path.display()));
-    let header = reader.headers().map_err(|reason| unusable(reason.to_string()))?.clone();
-    let column = |name: &str| {
-        let place = header.iter().position(|column| column == name);
-        place.ok_or_else(|| unusable(format!("there is no column `{name}`")))
-    };
-    let (name, value, std_error) = (column("measure")?, column("value")?, column("std_error")?);
-    for record in reader.records() {
-        let record = record.map_err(|reason| unusable(reason.to_string()))?;
-        if record.get(name) != Some(measure) {
-            continue;
-        }
-        let number = |place: usize| {
-            let text = record.get(place).unwrap_or_default();
-            text.parse().map_err(|_| unusable(format!("`{text}` is not a number")))
-        };
-        let origin = format!("from `{}`", path.display());
-        return Ok(Truth { value: number(value)?, std_error: number(std_error)?, origin });
-    }
-    Err(unusable(format!("there is no measure `{measure}`")))
-}
-
 fn run(bench: &Bench<'_>, request: Request, run: u64, time: Duration) -> Result<ReportedValue> {
-    let stint = Stint { method: Method::Run(request), run, checkpoints: &[time] };
-    let nothing = ReportedValue { value: 0.0, std_error: f64::INFINITY };
+    let stint = Stint { method: Method::Run(request), run, checkpoints: &[time], cells: None };
+    let nothing = ReportedValue { value: 0.0, std_error: f64::INFINITY, cells: Vec::new() };
     Ok(trace(bench, &stint)?.last.unwrap_or(nothing))
 }

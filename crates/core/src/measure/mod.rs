@@ -159,6 +159,12 @@ pub fn value_of(scene: &Scene, findings: &Findings, name: &str) -> Option<Measur
     balance::balance(&Evidence::new(scene, &findings.photons)).measures().swap_remove(name)
 }
 
+/// Flux of every cell of a sensor, of every view in turn, with its standard error, lm or W; the error is
+/// infinite after a single batch.
+pub fn cell_fluxes(scene: &Scene, findings: &Findings, id: SensorId) -> Vec<(f64, f64)> {
+    sensor::cell_fluxes(scene, findings, id)
+}
+
 /// The dotted names of all measures of a scene.
 pub fn names(scene: &Scene) -> Vec<String> {
     let nothing = Readings::of_batch(scene, &Layout::new(scene), 0, 1, 0);

@@ -67,6 +67,14 @@ pub(crate) fn value_of(
     Some(value)
 }
 
+/// Flux of every cell of a sensor, view by view, with its standard error, lm or W.
+pub(crate) fn cell_fluxes(scene: &Scene, findings: &Findings, id: SensorId) -> Vec<(f64, f64)> {
+    let photons = Evidence::new(scene, &findings.photons);
+    let estimate = findings.estimate(scene, id);
+    let cells = scene.sensors[id.index()].cells();
+    photons.by(estimate.readings, estimate.estimator).cell_flux(id, LightSelection::All, 0..cells)
+}
+
 /// Values, in single groups of batches, of a measure that follows from scalars alone.
 pub(crate) fn replicates(
     scene: &Scene,

@@ -1,6 +1,8 @@
 //! Curves over an axis: sections of maps, radial profiles, histograms.
 
 mod range;
+#[cfg(test)]
+mod tests;
 
 use crate::png::axis::{AxisScale, PlotAxis};
 use crate::png::canvas::{Canvas, Ink, Pen};
@@ -111,37 +113,74 @@ const HEIGHT: f64 = 400.0;
 
 /// Draws curves over two axes, with a legend above the frame.
 pub(crate) fn line_plot(plot: &LinePlot) -> Result<Vec<u8>> {
-    let header = Header::new(&plot.title, &plot.subtitle, WIDTH - 2.0 * MARGIN)?;
-    let entries: Vec<(LegendSample, &str)> = plot
-        .series
-        .iter()
-        .enumerate()
-        .map(|(index, series)| (sample(series, ink(series, index)), series.name.as_str()))
-        .collect();
-    let legend = Legend::new(&entries, WIDTH - 2.0 * MARGIN)?;
+    stacked_plots(std::slice::from_ref(plot))
+}
 
-    let top = MARGIN + header.height() + legend.height();
-    let frame = PlotAxes::new(line_axes(plot, plot.scale), [WIDTH - 4.0 * MARGIN, HEIGHT])?;
-    let left = MARGIN + frame.left_margin();
-    let area = Rect::new(left, top.round(), WIDTH - MARGIN - 6.0 - left, HEIGHT);
-    let height = area.bottom + frame.bottom_margin() + MARGIN - 6.0;
-
+/// Draws plots of curves in one picture, the first on top.
+pub(crate) fn stacked_plots(plots: &[LinePlot]) -> Result<Vec<u8>> {
+    let panels = plots.iter().map(Panel::new).collect::<Result<Vec<Panel<'_>>>>()?;
+    let height: f64 = panels.iter().map(Panel::height).sum();
     let mut canvas = Canvas::new(WIDTH as usize, height as usize);
-    header.draw(&mut canvas, MARGIN, MARGIN - 4.0)?;
-    legend.draw(&mut canvas, MARGIN, MARGIN + header.height() - 8.0)?;
-    frame.draw_grid(&mut canvas, area);
-    for (index, series) in plot.series.iter().enumerate() {
-        draw_errors(&mut canvas, &frame, area, series, ink(series, index));
-    }
-    for (index, series) in plot.series.iter().enumerate() {
-        draw_curve(&mut canvas, &frame, area, series, ink(series, index));
-    }
-    canvas.clip_to_all();
-    frame.draw(&mut canvas, area)?;
-    if !plot.series.iter().flat_map(|series| &series.points).any(is_drawn) {
-        write(&mut canvas, "No values.", area.middle(), LABEL, Align::Centre)?;
+    let mut top = 0.0;
+    for panel in &panels {
+        panel.draw(&mut canvas, top)?;
+        top += panel.height();
     }
     canvas.into_png()
+}
+
+/// A plot with its place for everything.
+struct Panel<'a> {
+    plot: &'a LinePlot,
+    header: Header,
+    legend: Legend,
+    frame: PlotAxes,
+    /// Place of the frame below the top of the plot, pixels.
+    area: Rect,
+}
+
+impl<'a> Panel<'a> {
+    fn new(plot: &'a LinePlot) -> Result<Self> {
+        let header = Header::new(&plot.title, &plot.subtitle, WIDTH - 2.0 * MARGIN)?;
+        let entries: Vec<(LegendSample, &str)> = plot
+            .series
+            .iter()
+            .enumerate()
+            .map(|(index, series)| (sample(series, ink(series, index)), series.name.as_str()))
+            .collect();
+        let legend = Legend::new(&entries, WIDTH - 2.0 * MARGIN)?;
+        let top = MARGIN + header.height() + legend.height();
+        let frame = PlotAxes::new(line_axes(plot, plot.scale), [WIDTH - 4.0 * MARGIN, HEIGHT])?;
+        let left = MARGIN + frame.left_margin();
+        let area = Rect::new(left, top.round(), WIDTH - MARGIN - 6.0 - left, HEIGHT);
+        Ok(Self { plot, header, legend, frame, area })
+    }
+
+    /// Whole pixels.
+    fn height(&self) -> f64 {
+        (self.area.bottom + self.frame.bottom_margin() + MARGIN - 6.0).floor()
+    }
+
+    fn draw(&self, canvas: &mut Canvas, top: f64) -> Result<()> {
+        let Self { plot, header, legend, frame, area } = self;
+        let area = Rect { top: top + area.top, bottom: top + area.bottom, ..*area };
+        canvas.clip_to_all();
+        header.draw(canvas, MARGIN, top + MARGIN - 4.0)?;
+        legend.draw(canvas, MARGIN, top + MARGIN + header.height() - 8.0)?;
+        frame.draw_grid(canvas, area);
+        for (index, series) in plot.series.iter().enumerate() {
+            draw_errors(canvas, frame, area, series, ink(series, index));
+        }
+        for (index, series) in plot.series.iter().enumerate() {
+            draw_curve(canvas, frame, area, series, ink(series, index));
+        }
+        canvas.clip_to_all();
+        frame.draw(canvas, area)?;
+        if !plot.series.iter().flat_map(|series| &series.points).any(is_drawn) {
+            write(canvas, "No values.", area.middle(), LABEL, Align::Centre)?;
+        }
+        Ok(())
+    }
 }
 
 /// The axes of curves, the vertical one with this scale: the description shared by pictures and
@@ -290,93 +329,5 @@ fn draw_curve(
                 canvas.dot(place, 3.0, Ink::opaque(ink.colour));
             }
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::png::tests::Decoded;
-
-    fn axes_of(plot: &LinePlot) -> [PlotAxis; 2] {
-        data_axes(plot, plot.scale)
-    }
-
-    fn plot(form: SeriesForm, points: &[[f64; 3]]) -> LinePlot {
-        let points =
-            points.iter().map(|&[x, y, std_error]| SeriesPoint { x, y, std_error }).collect();
-        LinePlot {
-            title: "Bounces".to_string(),
-            subtitle: String::new(),
-            x_label: "bounces".to_string(),
-            y_label: "share of the flux".to_string(),
-            scale: AxisScale::Linear,
-            series: vec![PlotSeries::new("", points, form, ErrorForm::Band)],
-        }
-    }
-
-    #[test]
-    fn curves_that_belong_together_have_one_colour() {
-        let mut plot = plot(SeriesForm::Line, &[[0.0, 1.0, 0.0], [1.0, 2.0, 0.0]]);
-        let mut lit = |look: Look| {
-            plot.series[0].look = look;
-            Decoded::new(&line_plot(&plot).unwrap()).places(paired_colour(1)).len()
-        };
-        let [whole, dashed, bound] = [Look::Solid(1), Look::Dashed(1), Look::Bound].map(&mut lit);
-        assert!(dashed > whole / 3 && dashed < whole * 4 / 5 && bound == 0, "{whole} {dashed}");
-    }
-
-    #[test]
-    fn steps_reach_half_way_to_their_neighbours() {
-        let plot = plot(SeriesForm::Steps, &[[0.0, 1.0, 0.0], [1.0, 2.0, 0.0], [3.0, 4.0, 0.0]]);
-        assert_eq!(
-            outline(&plot.series[0]),
-            [[-0.5, 1.0], [0.5, 1.0], [0.5, 2.0], [2.0, 2.0], [2.0, 4.0], [4.0, 4.0]]
-        );
-        let [x, _] = axes_of(&plot);
-        assert_eq!((x.min(), x.max()), (-0.5, 4.0));
-    }
-
-    #[test]
-    fn the_frame_holds_the_error_bars_and_begins_at_zero_where_values_come_near_it() {
-        let axes = axes_of(&plot(SeriesForm::Line, &[[0.0, 2.0, 0.5], [1.0, 8.0, 2.0]]));
-        assert_eq!(axes[1].min(), 0.0);
-        assert!(axes[1].max() > 10.0 && axes[1].max() < 11.0);
-        let axes = axes_of(&plot(SeriesForm::Line, &[[0.0, 98.0, 0.5], [1.0, 99.0, 0.5]]));
-        assert!(axes[1].min() > 97.0 && axes[1].min() < 97.5);
-    }
-
-    #[test]
-    fn zeros_lie_below_a_logarithmic_frame() {
-        let points = [[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.01, 0.0]];
-        let axes = data_axes(&plot(SeriesForm::Steps, &points), AxisScale::Log);
-        assert!(axes[1].min() > 0.005 && axes[1].min() < 0.01);
-        assert!(axes[1].fraction(0.0) < -1.0);
-    }
-
-    #[test]
-    fn a_rising_line_is_drawn_from_the_lower_left_to_the_upper_right() {
-        let points: Vec<[f64; 3]> = (0..=10).map(|i| [f64::from(i), f64::from(i), 0.0]).collect();
-        let picture = Decoded::new(&line_plot(&plot(SeriesForm::Line, &points)).unwrap());
-        let mut places = picture.places(series_ink(0).colour);
-        places.sort_unstable();
-        let (first, last) = (places[0], places[places.len() - 1]);
-        assert!(last.0 - first.0 > 700 && first.1 - last.1 > 340, "{first:?} {last:?}");
-    }
-
-    #[test]
-    fn a_gap_in_the_values_is_a_gap_in_the_curve() {
-        let points = [
-            [0.0, 1.0, 0.0],
-            [1.0, 1.0, 0.0],
-            [2.0, f64::NAN, 0.0],
-            [3.0, 1.0, 0.0],
-            [4.0, 1.0, 0.0],
-        ];
-        let picture = Decoded::new(&line_plot(&plot(SeriesForm::Line, &points)).unwrap());
-        let [left, _, right, _] = picture.bounds(series_ink(0).colour);
-        let places = picture.places(series_ink(0).colour);
-        let middle = left + (right - left) / 2;
-        assert!(places.iter().all(|place| place.0.abs_diff(middle) > (right - left) / 5));
     }
 }

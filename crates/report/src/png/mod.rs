@@ -27,7 +27,7 @@ pub(crate) use cross_section::{
 };
 pub(crate) use heat_map::{HeatMap, MapCells, MapFrame, MapGeometry, MapPlaces, heat_map};
 pub(crate) use line_plot::{
-    ErrorForm, LinePlot, Look, PlotSeries, SeriesForm, SeriesPoint, line_plot,
+    ErrorForm, LinePlot, Look, PlotSeries, SeriesForm, SeriesPoint, line_plot, stacked_plots,
 };
 pub(crate) use line_plot::{ink, line_axes};
 pub(crate) use marked_axis::MarkedAxis;

@@ -53,7 +53,7 @@ const PASSES: u64 = 64;
 const WAVES: u64 = 8;
 /// Groups of batches in a wave, and passes in a wave of passes.
 const GROUPS: f64 = 128.0;
-const WAVE_PASSES: u64 = 16;
+const WAVE_PASSES: u64 = 4;
 /// Relative error that the reported times refer to, 1.
 const ERROR: f64 = 0.01;
 

@@ -34,7 +34,7 @@ exit = { plane = { cells = [16, 16] }, on = "guide.exit", counts = "incident", s
 const RECORDS: u64 = 4000;
 /// Photons of a pass. Kept, those of 1,000 passes would take 100 MB at 50 bytes each, and records 800 MB.
 const PHOTONS: u64 = 2000;
-const WAVE: u64 = 16;
+const WAVE: u64 = 4;
 /// Allowed change of memory, MB: the sums over passes, as many as their number has binary digits,
 /// each of 0.2 MB here.
 const LEEWAY_MB: f64 = 2.0;

@@ -47,12 +47,10 @@ pub(super) fn command(job: &Job, findings: &Findings, stop: Stop) -> Option<Stri
     Some(words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" "))
 }
 
-/// Photons and gather paths of a pass: as on the command line, or as chosen from the time where the
-/// clock ends the run.
+/// Photons and gather paths of a pass, which otherwise would follow from the length of the run.
 fn pass_size(job: &Job, findings: &Findings) -> [Option<u64>; 2] {
-    let asked = &job.settings.gather;
-    let Some((_, first)) = findings.gathering().next().filter(|_| job.run.stop.time.is_some())
-    else {
+    let Some((_, first)) = findings.gathering().next() else {
+        let asked = &job.settings.gather;
         return [asked.photons, asked.records];
     };
     // The same for all groups.

@@ -46,7 +46,7 @@ fn a_stopped_run_ends_at_its_next_checks_and_its_command_repeats_it_on_any_threa
     for estimator in [Request::Forward, Request::Backward, Request::Mix, Request::Gather] {
         let job = short_rod(folder.path(), &settings(estimator));
         let (mut stopped, mut empty) = (0, 0);
-        for check in [1, 3, 20, 150, 201, 333] {
+        for check in [1, 3, 20, 201, 333, 400] {
             let (traced, late) = on_threads(2, || stopped_at(check, &job));
             // Batches in progress poll once more, and so does each batch of the piece that had not
             // begun.
@@ -129,7 +129,7 @@ fn passes_of_gathering_fit_into_a_short_time_and_their_command_repeats_them() {
     let time = Some(std::time::Duration::from_secs(3600));
     let options = Settings { estimator: Some(Request::Gather), time, ..Settings::default() };
     let job = short_rod(folder.path(), &options);
-    // An automatic pass without a clock has four million segments, which are 3900 polls.
+    // An automatic pass of a run of unknown length has four million segments, which are 3900 polls.
     let (checks, grace) = (600, 40);
     let clock = Interrupt::default();
     let signal = StopSignal::ending_at_check(&clock, checks, grace);
@@ -153,6 +153,40 @@ fn passes_of_gathering_fit_into_a_short_time_and_their_command_repeats_them() {
         on_threads(1, || again.next_piece());
     }
     assert!(again.findings() == findings);
+}
+
+#[test]
+fn an_interrupted_run_of_automatic_passes_is_repeated_by_its_command() {
+    let folder = tempfile::tempdir().unwrap();
+    let (asked, estimator) = (60_000, Some(Request::Gather));
+    let options = Settings { estimator, paths: Some(asked), ..Settings::default() };
+    let job = short_rod(folder.path(), &options);
+    let planned = on_threads(2, || Run::new(&job.scene, &job.run)).planned_paths().unwrap();
+    assert!((asked..asked + 48).contains(&planned), "{planned} paths: 24 passes, rounded up");
+
+    let (mut repeated, whole) = (0, Interrupt::default());
+    trace(&job, &whole, &mut |_| ()).unwrap();
+    for share in [0.5, 0.7, 0.9] {
+        let check = (share * whole.checks() as f64) as u64;
+        let Ok(traced) = on_threads(2, || stopped_at(check, &job)).0 else { continue };
+        let command = compose(&job, &traced.findings, traced.stop).run.repeat.unwrap();
+        let word = |flag: &str| {
+            let value = command.split(flag).nth(1).and_then(|rest| rest.split_whitespace().next());
+            value.unwrap().parse::<u64>().unwrap()
+        };
+        let [photons, records] = ["--photons ", "--records "].map(|flag| Some(word(flag)));
+        let again = Settings {
+            gather: GatherPlan { photons, records, ..GatherPlan::default() },
+            paths: Some(word("--paths ")),
+            overrides: vec![format!("run.batches={}", word("run.batches="))],
+            ..options.clone()
+        };
+        let again = short_rod(folder.path(), &again);
+        let same = on_threads(3, || trace(&again, &Interrupt::default(), &mut |_| ())).unwrap();
+        assert!(same.findings == traced.findings, "{command}");
+        repeated += 1;
+    }
+    assert!(repeated >= 2, "{repeated} of 3 runs had begun");
 }
 
 #[test]
@@ -203,7 +237,7 @@ fn a_check_comes_within_a_path_that_never_ends() {
     std::fs::write(&scene, MIRROR_BOX).unwrap();
     for estimator in [Request::Forward, Request::Gather, Request::Auto] {
         let options =
-            Settings { estimator: Some(estimator), paths: Some(1000), ..Settings::default() };
+            Settings { estimator: Some(estimator), paths: Some(100_000), ..Settings::default() };
         let job = prepare(&scene, &options).unwrap();
         for check in [10, 1400] {
             let (traced, late) = on_threads(1, || stopped_at(check, &job));

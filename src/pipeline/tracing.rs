@@ -147,11 +147,7 @@ impl<'j> Tracing<'j> {
         if stop.is_some() && !may_help {
             return stop;
         }
-        let target = &self.target;
-        self.round_end = self.run.end_round(|run| match target {
-            Some(target) => is_limited_by_bias(target),
-            None => run.is_limited_by_bias(),
-        });
+        self.round_end = self.run.end_round(self.target.as_ref().map(is_limited_by_bias));
         None
     }
 

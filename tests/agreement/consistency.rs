@@ -136,7 +136,7 @@ fn stages(subject: &Subject) -> Vec<Found> {
                     run.next_wave();
                 }
                 let found =
-                    (second_order(&job, &run), (PHOTONS * 16 * (run.waves() - waves)) as f64);
+                    (second_order(&job, &run), (PHOTONS * 4 * (run.waves() - waves)) as f64);
                 waves = run.waves();
                 run.next_stage();
                 found

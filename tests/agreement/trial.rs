@@ -16,8 +16,8 @@ const MOST_BIAS: f64 = 0.05;
 const MOST_NOISE_OF_BOUNCES: f64 = 0.05;
 /// Photon paths of a forward run.
 const PHOTONS: u64 = 150_000;
-/// Waves of 16 passes of a gather run: 64 passes, so that errors are known to a tenth.
-const GATHER_WAVES: u64 = 4;
+/// Waves of 4 passes of a gather run: 64 passes, so that errors are known to a tenth.
+const GATHER_WAVES: u64 = 16;
 const SEED: u64 = 3;
 
 /// A window and the work of a gather run.

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 /// Version of the numerics. Every change that alters a committed report raises it, so that a
 /// report, a checkpoint or a record from older numerics is never mistaken for a current one.
-pub const NUMERICS: u32 = 5;
+pub const NUMERICS: u32 = 6;
 
 /// How to trace and when to stop. Its names in files are part of the identity of a run, and stay
 /// fixed when the code changes.
@@ -214,7 +214,7 @@ impl GatherPlan {
 /// Size of the window during a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 pub enum Schedule {
-    /// It shrinks in stages of many passes each; the value comes from the stage with the smallest total error.
+    /// It shrinks in stages of many passes each; the value comes from the stage with the smallest total error, among those with at least ten passes if there are any.
     #[default]
     #[serde(rename = "stages")]
     Stages,
@@ -244,7 +244,7 @@ impl Schedule {
 /// When a run ends. At least one rule is set.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct StopRules {
-    /// After this many paths, rounded up to whole waves (of 128 batches, or 16 passes of gathering).
+    /// After this many paths, rounded up to whole waves (of 128 batches, or 4 passes of gathering).
     #[serde(rename = "paths")]
     pub paths: Option<u64>,
     /// Batches, or passes, into which the paths are divided: such a run ends after exactly this

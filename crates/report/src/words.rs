@@ -22,7 +22,7 @@ pub(crate) const CLASSES_HEAD: &str =
 /// Text before the rows of [`choice_row`].
 pub(crate) const CHOICES_HEAD: &str = "A pilot run tried the estimators on each sensor. The table gives the \
     time that one thread would need to know the sensor's flux or map to 1 %, estimated from counted work \
-    (docs/method.md). Gathering is rejected if its bias exceeds the target by more than noise or if an unbiased \
+    (docs/method.md). Gathering takes at least the time of its first 16 passes. It is rejected if its bias exceeds the target by more than noise or if an unbiased \
     estimator contradicts it. Any estimator is rejected if it found significantly less light from a source \
     than another did.";
 /// Text after the results.
@@ -134,10 +134,12 @@ pub(crate) fn choice_row(choice: &EstimatorChoice) -> Vec<String> {
 
 fn trial_words(trial: &Trial) -> String {
     let time = trial.time(0.01);
+    let is_least = trial.least > 0.0 && time == Some(trial.least);
     let time = time.map_or(FOUND_NOTHING.into(), waiting);
+    let time = if is_least { time + " (its first passes)" } else { time };
     match (trial.objection, trial.bias) {
         (Some(Objection::Biased), Some(bias)) => {
-            format!("{time} (biased by {:.0} %)", 100.0 * bias)
+            format!("{time} (biased by at least {:.0} %)", 100.0 * bias)
         }
         (Some(Objection::Biased), None) | (None, Some(_) | None) => time,
         (Some(Objection::Contradicted), _) => time + " (contradicted)",

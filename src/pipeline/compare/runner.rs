@@ -108,7 +108,7 @@ impl<'s> Runner<'s> {
         match self {
             Self::Run { run, round_end } => {
                 if run.is_between_waves() && run.waves() >= *round_end {
-                    *round_end = run.end_round(Run::is_limited_by_bias);
+                    *round_end = run.end_round(None);
                 }
                 run.next_piece();
             }

@@ -9,13 +9,12 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RunSpec {
     /// Number of paths: photon paths from the sources, and gather paths from the sensors where the estimator
-    /// has them. Rounded up to whole waves, of 128 batches or of 16 passes of gathering (some million paths
-    /// each wave). Where only photons are traced, the size of the batches follows from this number, so that
-    /// they divide it almost evenly.
+    /// has them. Rounded up to whole waves, of 128 batches or of 4 passes of gathering. The size of passes, and of
+    /// batches where only photons are traced, follows from this number.
     #[schemars(range(min = 1))]
     pub paths: Option<u64>,
     /// Number of batches, or passes of gathering, into which `paths` are divided: the run ends after exactly this many.
-    /// Used to repeat a run that was stopped; its report gives the number. Omitted: whole waves of 128 batches or 16
+    /// Used to repeat a run that was stopped; its report gives the number. Omitted: whole waves of 128 batches or 4
     /// passes.
     #[schemars(range(min = 1))]
     pub batches: Option<u64>,

@@ -15,6 +15,7 @@ use crate::scene::{Scene, SensorId};
 use crate::tally::Tally;
 use crate::transport::choose::choice::EstimatorChoice;
 use crate::transport::estimators;
+use crate::transport::gather::settings::passes_in_turn;
 use crate::transport::stop::StopSignal;
 use crate::transport::tally::work;
 use crate::transport::trial::{Objection, PhotonPilot, Trial, Trials, Tried};
@@ -36,24 +37,27 @@ const ROUNDING: f64 = 1e-9;
 /// Relative bias allowed if there is no target, 1.
 const USUAL_TARGET: f64 = 0.01;
 
-/// Tries the estimators on all sensors and chooses; `None` if stopped before anything was known.
-/// `watch` receives the current trial.
+/// Tries the estimators on all sensors and chooses; `None` if stopped before anything was known. If time is limited, `left`
+/// segments of photon paths fit in what remains. `watch` receives the current trial.
 pub(crate) fn choose(
     scene: &Scene,
     plan: &RunPlan,
-    photons: PhotonPilot,
+    (photons, left): (PhotonPilot, Option<f64>),
     signal: &StopSignal,
     watch: &mut dyn FnMut(Estimator),
 ) -> Option<Vec<EstimatorChoice>> {
     let sensors: Vec<SensorId> = (0..scene.sensors.len()).map(SensorId::new).collect();
-    let given = budget(plan, photons);
+    let photons = photons.with_passes_for(plan, left.map(|segments| segments / passes_in_turn()));
+    let left = left.map(|segments| 1e-9 * work::OF_PHOTON_SEGMENT * segments);
+    let given = budget(plan, photons, left);
+    // Work in a second by the clock, over that of the reference machine (`work`).
+    let pace = left.zip(plan.stop.time).map_or(1.0, |(left, time)| left / time.as_secs_f64());
+    let [least, most] = BOUNDS.map(|bound| pace * bound);
     let mut choices = |budget: f64| {
-        let [least, most] = BOUNDS;
         let effort = 1e9 * (SHARE * budget).clamp(least, most) / Estimator::TRIED.len() as f64;
         choices(&Trials { scene, plan, photons, sensors: &sensors, effort, signal }, budget, watch)
     };
     let Some(target) = &plan.stop.target else { return choices(given.unwrap_or(USUAL_BUDGET)) };
-    let [least, _] = BOUNDS;
     let first = choices(least / SHARE)?;
     let time =
         |choice: &EstimatorChoice| choice.time(target.relative_error).unwrap_or(USUAL_BUDGET);
@@ -62,13 +66,12 @@ pub(crate) fn choose(
     Some(second.unwrap_or(first))
 }
 
-/// Budget of a run, in seconds of one thread of the reference machine; `None` if it has only a
-/// target.
-fn budget(plan: &RunPlan, photons: PhotonPilot) -> Option<f64> {
+/// Budget of a run in seconds of one thread of the reference machine; `left` of them remain if time is limited. `None` if
+/// it has only a target.
+fn budget(plan: &RunPlan, photons: PhotonPilot, left: Option<f64>) -> Option<f64> {
     let path = 1e-9 * work::of_photon_path(photons.segments_per_path);
     let by_paths = plan.stop.paths.map(|paths| paths as f64 * path);
-    let by_time = plan.stop.time.map(|time| time.as_secs_f64());
-    by_paths.into_iter().chain(by_time).reduce(f64::min)
+    by_paths.into_iter().chain(left).reduce(f64::min)
 }
 
 /// Tries all permitted estimators on each sensor, for a run of this many seconds; `None` if
@@ -206,6 +209,14 @@ mod tests {
         assert_eq!(choice.time(0.005), Some(4.0));
         assert_eq!(choice.time(0.02), Some(1.5));
         assert!((least_error(&choice.tried, 4.0).unwrap() - 0.005).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_known_bias_lengthens_the_time_to_an_error_below_it() {
+        let gather = Trial { bias: Some(0.02), ..trial(Estimator::Gather, Some(1e-4)) };
+        let time = |error| gather.time(error).unwrap();
+        assert!((time(0.1) - 0.01).abs() < 1e-12, "the error is above the bias");
+        assert!((time(0.01) - 3.0).abs() < 1e-3, "three times as long as by noise alone");
     }
 
     #[test]

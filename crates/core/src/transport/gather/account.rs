@@ -74,7 +74,7 @@ fn origin(settings: &GatherSettings, stage: &Stage) -> String {
 fn of_bias(resolution: Resolution) -> &'static str {
     match resolution {
         Resolution::Resolved => {
-            "Bias resolved: E0 and E1 differ, and nothing in E00 contradicts that higher orders converge. The value is E0, the estimate of fourth order."
+            "Bias resolved: E0 and E1 differ, and E00 gives no sign that higher orders diverge. The value is E0, the estimate of fourth order."
         }
         Resolution::InNoise => {
             "Bias not resolved from noise: E0 and E1 agree within their errors. The value is E0, the estimate of fourth order."

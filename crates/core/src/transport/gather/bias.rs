@@ -30,6 +30,10 @@ const CONVERGING: f64 = 0.5;
 const ROUNDING: f64 = 1e-9;
 /// Standard errors beyond which a difference counts as more than noise.
 const OUT_OF_NOISE: f64 = 2.0;
+/// Standard errors beyond which photons contradict a flux: they are often few, and two errors then happen by chance.
+const CONTRADICTED: f64 = 3.0;
+/// Standard errors above which a bias ends a stage before its planned passes.
+const PLAIN: f64 = 2.0;
 
 /// A stage, and what is known about the bias of a sensor's flux in it.
 #[derive(Debug, Clone, Copy)]
@@ -75,20 +79,33 @@ impl<'a> Judged<'a> {
         if error.is_nan() { f64::INFINITY } else { error }
     }
 
+    /// Whether the bias exceeds two standard errors: enough to end a stage after a few passes.
+    pub(super) fn is_plainly_limiting(&self) -> bool {
+        self.bias > PLAIN * self.flux.std_error()
+    }
+
     /// Whether the bias is above the noise.
     pub(super) fn is_limiting(&self) -> bool {
         self.resolution == Resolution::NotResolved || self.bias > self.flux.std_error()
     }
 }
 
-/// The stage with the smallest total error of the sum of some scalars.
+/// The stage with the smallest total error of the sum of some scalars, of those that have passes enough for an error if
+/// any has.
 pub(super) fn best<'a>(
     stages: &'a [Stage],
     photons: &Readings,
     slots: &[usize],
 ) -> Option<Judged<'a>> {
     let judged = stages.iter().map(|stage| Judged::new(stage, photons, slots));
-    judged.min_by(|a, b| a.total_error().total_cmp(&b.total_error()))
+    let order = |judged: &Judged<'_>| {
+        let passes = judged.orders.fourth.batch_count();
+        (passes < MIN_LIT_GROUPS as u64, judged.total_error())
+    };
+    judged.min_by(|a, b| {
+        let ((a_few, a_error), (b_few, b_error)) = (order(a), order(b));
+        a_few.cmp(&b_few).then(a_error.total_cmp(&b_error))
+    })
 }
 
 /// The estimate of the sensor with these scalars of flux; `None` before the first pass.
@@ -124,7 +141,7 @@ fn bias_share(lower: &Tally, higher: &Tally) -> (f64, Resolution) {
 /// explains the difference.
 fn bias_by_photons(flux: &Tally, [off, error]: [f64; 2]) -> f64 {
     let both = flux.std_error().hypot(error);
-    if off.abs() > OUT_OF_NOISE * both { off.abs() + error } else { 0.0 }
+    if off.abs() > CONTRADICTED * both { off.abs() + error } else { 0.0 }
 }
 
 /// The difference of the sum of some scalars between two readings, pass by pass.
@@ -139,6 +156,7 @@ fn difference([one, other]: [&Readings; 2], slots: &[usize]) -> Tally {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::transport::tally::Counts;
 
     fn tally(mean: f64, std_error: f64) -> Tally {
         Tally::of([mean - std_error, mean + std_error])
@@ -172,9 +190,59 @@ mod tests {
     }
 
     #[test]
-    fn photons_contradict_beyond_two_errors() {
+    fn photons_contradict_beyond_three_errors() {
         let flux = tally(1.0, 0.1);
-        assert_eq!(bias_by_photons(&flux, [0.15, 0.1]), 0.0);
+        assert_eq!(bias_by_photons(&flux, [0.4, 0.1]), 0.0);
         assert!((bias_by_photons(&flux, [-0.5, 0.1]) - 0.6).abs() < 1e-12);
+    }
+    /// Readings of passes with one scalar, which is alternately a little more and less than this.
+    fn readings(flux: f64, scatter: f64, passes: u64) -> Readings {
+        let of_pass = |pass: u64| Group {
+            group: pass,
+            batches: 1,
+            sums: vec![flux + if pass.is_multiple_of(2) { scatter } else { -scatter }],
+        };
+        Readings {
+            format: 0,
+            seed: 0,
+            batch_paths: 1,
+            batches: 0..passes,
+            groups: (0..passes).map(of_pass).collect(),
+            sensors: Vec::new(),
+            segments: 0,
+            leaks: Vec::new(),
+        }
+    }
+
+    /// A stage whose E1 differs from E0 and E00, which agree.
+    fn stage(number: u32, second: f64, scatter: f64, passes: u64) -> Stage {
+        let orders = [second, 1.0, 1.0].map(|flux| readings(flux, scatter, passes));
+        Stage { number, counts: Counts::closed(orders) }
+    }
+
+    #[test]
+    fn a_bias_of_two_errors_is_plain() {
+        let photons = readings(0.0, 0.0, 8);
+        let judged = |second| {
+            let stage = stage(0, second, 0.1, 8);
+            let judged = Judged::new(&stage, &photons, &[0]);
+            [judged.is_limiting(), judged.is_plainly_limiting()]
+        };
+        // Standard error 0.038 of either; a quarter of |E0 - E1| is stated.
+        assert_eq!(judged(1.12), [false, false]);
+        assert_eq!(judged(1.2), [true, false]);
+        assert_eq!(judged(1.4), [true, true]);
+    }
+
+    #[test]
+    fn a_stage_of_few_passes_gives_no_value_while_another_has_more() {
+        let photons = readings(0.0, 0.0, 8);
+        let few = MIN_LIT_GROUPS as u64 - 1;
+        let stages = [stage(0, 1.4, 0.1, 16), stage(1, 1.0, 1e-6, few)];
+        let chosen = |stages| best(stages, &photons, &[0]).map(|judged| judged.stage.number);
+        assert_eq!(chosen(&stages), Some(0));
+        assert_eq!(chosen(&stages[1..]), Some(1));
+        let stages = [stage(0, 1.4, 0.1, 16), stage(1, 1.0, 1e-6, few + 1)];
+        assert_eq!(chosen(&stages), Some(1));
     }
 }

@@ -45,7 +45,9 @@ impl<'s> Gather<'s> {
         pilot: PhotonPilot,
     ) -> Self {
         let SensorGroup { sensors, mut settings, .. } = group.clone();
-        if combination == Combination::Merged && pilot.is_limited() && plan.gather.records.is_none()
+        if combination == Combination::Merged
+            && pilot.pass_work.is_some()
+            && plan.gather.records.is_none()
         {
             // Merged gather paths continue as far as photons do.
             let most = settings.photons / settings.all_sensors;
@@ -87,11 +89,16 @@ impl<'s> Gather<'s> {
         self.sensors.iter().map(|(id, _)| *id)
     }
 
-    /// Whether the bias of any sensor in a stage is above its noise.
+    /// Whether a smaller window would help: the bias of any sensor in a stage is above its noise, by two standard errors if
+    /// the stage has fewer passes than planned.
     pub(crate) fn is_limited_by_bias(&self, stage: &Stage, photons: &Readings) -> bool {
-        self.sensors
-            .iter()
-            .any(|(id, _)| Judged::new(stage, photons, &self.layout.flux_slots(*id)).is_limiting())
+        let passes = stage.counts.first().batch_count();
+        let is_complete = passes >= self.settings.planned_passes(stage.number);
+        let limits = |(id, _): &(SensorId, Arrivals<'_>)| {
+            let judged = Judged::new(stage, photons, &self.layout.flux_slots(*id));
+            if is_complete { judged.is_limiting() } else { judged.is_plainly_limiting() }
+        };
+        self.settings.has_stages() && self.sensors.iter().any(limits)
     }
 }
 

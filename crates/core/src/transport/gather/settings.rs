@@ -6,6 +6,7 @@ use crate::scene::{Emission, Emitter, Scene, SensorId};
 use crate::transport::Window;
 use crate::transport::gather::sounding::{Reached, Sounded, sound};
 use crate::transport::stop::{Pace, StopSignal};
+use crate::transport::tally::work;
 use crate::transport::trial::{PASS_SEGMENTS, PhotonPilot};
 use lumiduct_base::number::format_exact;
 use serde::{Deserialize, Serialize};
@@ -28,11 +29,16 @@ const DEPTH: [f64; 2] = [1.0, 8.0];
 /// Smallest number of photons of an automatic pass: in closed mirrors each has 100,000
 /// segments.
 const LEAST_PHOTONS: f64 = 32.0;
-/// Cost of a gather path and its records in segments of photon paths, as measured, and their
-/// work as a share of the work of the photons: limited by pairs, noise is least at equal shares;
-/// fewer records are cheaper to look up.
+/// Work of a gather path with its records in segments of photon paths, as measured. Limited by pairs, noise is least where
+/// photons and gather paths take equal work.
 const RECORD_SEGMENTS: f64 = 50.0;
-const RECORD_SHARE: f64 = 0.27;
+/// Most segments of photon paths in an automatic pass: its records take some 100 MB in every thread.
+const MOST_PASS_SEGMENTS: f64 = 8e6;
+/// Passes into which a run of known length is divided: enough for an error bar even if they take half as long again as
+/// expected. Fewer and larger passes contain more pairs.
+const PASSES: f64 = 24.0;
+/// Least passes for each thread in a run of limited time, so that threads end at about the same time.
+const PASSES_PER_THREAD: usize = 4;
 
 /// Windows are similar, and sensors gathered together, up to this ratio of radii and of angles to those of the first, 1.
 const SIMILAR: f64 = SQRT_2;
@@ -104,11 +110,33 @@ impl fmt::Display for GatherSettings {
     }
 }
 
+/// Passes, one after the other on each thread, into which a run of limited time is divided.
+pub(crate) fn passes_in_turn() -> f64 {
+    let threads = rayon::current_num_threads();
+    PASSES.max((PASSES_PER_THREAD * threads) as f64) / threads as f64
+}
+
 impl PhotonPilot {
+    /// The same, with passes sized for a run of known length: by its number of paths, and by its time, which allows
+    /// `by_time` segments in a pass.
+    pub(crate) fn with_passes_for(self, plan: &RunPlan, by_time: Option<f64>) -> Self {
+        let by_paths = plan.stop.paths.map(|paths| {
+            let passes = plan.stop.batches.map_or(PASSES, |batches| batches as f64);
+            let gather_paths = self.segments_per_path / RECORD_SEGMENTS;
+            paths as f64 / passes / (1.0 + gather_paths) * self.segments_per_path
+        });
+        let known = by_time.into_iter().chain(by_paths).reduce(f64::min);
+        known.map_or(self, |segments| Self {
+            pass_segments: segments.min(MOST_PASS_SEGMENTS),
+            pass_work: by_time.map(|segments| segments * work::OF_PHOTON_SEGMENT),
+            ..self
+        })
+    }
+
     /// Photons of an automatic pass.
     fn photons(self) -> u64 {
         let least = LEAST_PHOTONS * self.pass_segments / PASS_SEGMENTS;
-        (self.pass_segments / self.segments_per_path).max(least).max(1.0) as u64
+        (self.pass_segments / self.segments_per_path).max(least).max(1.0).ceil() as u64
     }
 }
 
@@ -126,9 +154,9 @@ pub fn groups(
         ((pilot.segments_per_path - 1.0) / 3.0).clamp(DEPTH[0], DEPTH[1]) as u32
     });
     let photons = plan.photons.unwrap_or_else(|| pilot.photons());
-    let share = photons as f64 * pilot.segments_per_path * RECORD_SHARE / RECORD_SEGMENTS;
+    let share = photons as f64 * pilot.segments_per_path / RECORD_SEGMENTS;
     let all_sensors = all_sensors.max(1) as u64;
-    let gather_paths = plan.records.unwrap_or(share as u64) / all_sensors;
+    let gather_paths = plan.records.unwrap_or(share.ceil() as u64).div_ceil(all_sensors);
     let pace = Pace::new(signal);
     let reached = Reached::new(scene, seed, &pace)?;
     let mut groups: Vec<SensorGroup> = Vec::new();

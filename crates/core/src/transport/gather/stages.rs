@@ -12,7 +12,9 @@ use crate::transport::gather::settings::GatherSettings;
 use crate::transport::gather::window::Window;
 use crate::transport::tally::Counts;
 
-/// Passes of the first stage, and of a wave of passes.
+/// Passes of a wave, after which it is first decided whether a stage ends.
+pub(crate) const WAVE_PASSES: u64 = 4;
+/// Planned passes of the first stage.
 pub(crate) const FIRST_PASSES: u64 = 16;
 /// Growth of passes times gather paths from stage to stage. A quarter of the pairs of a pass
 /// remains, since the window shrinks in four dimensions, and half the standard error requires four
@@ -74,7 +76,7 @@ impl GatherSettings {
         grown.min(most.max(self.gather_paths))
     }
 
-    /// Passes after which a stage may end.
+    /// Passes of a stage that is not ended early by a plain bias.
     pub(crate) fn planned_passes(&self, stage: u32) -> u64 {
         match self.schedule {
             // The gather paths of a pass double while memory allows: 8 times the passes, later 16 times.
@@ -86,9 +88,38 @@ impl GatherSettings {
         }
     }
 
-    /// Passes of a stage after which it is next decided whether it ends: they double.
+    /// Passes of a stage after which it is next decided whether it ends: they double. Only the first may end after so few
+    /// that they give no error bar: of a run with 24 passes, enough are then left for the second.
     pub(crate) fn next_decision(&self, stage: u32, passes: u64) -> u64 {
-        let (planned, doubled) = (self.planned_passes(stage), (2 * passes).max(FIRST_PASSES));
+        let first = if stage == 0 { WAVE_PASSES } else { FIRST_PASSES };
+        let (planned, doubled) = (self.planned_passes(stage), (2 * passes).max(first));
         if passes < planned { doubled.min(planned) } else { doubled }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_the_first_stage_may_end_after_a_few_passes() {
+        let window = Window { radius: 1.0, theta_max: 0.1 };
+        let settings = GatherSettings {
+            depth: 1,
+            window,
+            all_sensors: 1,
+            gather_paths: 100,
+            photons: 1000,
+            schedule: Schedule::Stages,
+        };
+        let decisions = |stage| {
+            let mut passes = 0;
+            std::array::from_fn(|_| {
+                passes = settings.next_decision(stage, passes);
+                passes
+            })
+        };
+        assert_eq!(decisions(0), [4, 8, 16, 32]);
+        assert_eq!(decisions(1), [16, 32, 64, 128]);
     }
 }

@@ -19,14 +19,19 @@ use std::collections::BTreeMap;
 
 /// Passes from which gathering is judged: fewer would contain more pairs, but give the variance
 /// less accurately.
-const PASSES: u64 = 8;
+const TRIED_PASSES: u64 = 8;
 /// Variance of E0 over that of E1 where pairs of the position-and-angle estimate limit both, 1 (`kernel`); it is smaller for
 /// the other estimates. The few pairs of a pilot give the variance of E1 much more accurately.
 const FOURTH_ORDER: f64 = 7.0;
-/// Smallest relative variance of a pass times its photons, or its gather paths: the limit for
-/// unlimited pairs.
+/// Smallest relative variance of a pass times its photons, or its gather paths in a cell: the limit for unlimited pairs.
 const PER_PATH: f64 = 4.0;
-
+/// Cost of a run over what the few pairs of a pilot show, 1: they miss rare strong pairs and stages that are given up
+/// (benches/choice.rs).
+const UNSEEN: f64 = 4.0;
+/// Standard errors by which a bias is above what is certain of it, from so few passes.
+const CERTAIN: f64 = 3.0;
+/// Most work of pairs over the rest of a pass, 1: with more of them, a larger pass hardly gains.
+const MOST_PAIR_WORK: f64 = 2.0;
 /// Segments of photon paths of a pass that measures the work of a whole one.
 const PROBED_SEGMENTS: f64 = 1e5;
 
@@ -59,7 +64,7 @@ fn group_trial(trials: &Trials<'_>, settings: GatherSettings) -> Option<Vec<Trie
     let by_photons = settings.photons as f64 * work::of_photon_path(pilot.segments_per_path);
     let all = (settings.gather_paths * sensors.len() as u64) as f64;
     let by_records = all * work::of_recorded_path(f64::from(settings.depth) + 1.0);
-    let part = (effort / PASSES as f64 / (by_photons + by_records)).min(1.0);
+    let part = (effort / TRIED_PASSES as f64 / (by_photons + by_records)).min(1.0);
     let scaled = |count: u64| scaled(count, part);
     let forward = photons_of(trials, scaled(settings.photons));
     let own = GatherSettings {
@@ -69,24 +74,34 @@ fn group_trial(trials: &Trials<'_>, settings: GatherSettings) -> Option<Vec<Trie
     };
     let gather = Gather::new(scene, sensors, plan.seed ^ SEED, own);
     let pass = |batch| TriedPass::trace(&gather, &forward, batch, signal);
-    let passes: Option<Vec<TriedPass>> = (0..PASSES).into_par_iter().map(pass).collect();
+    let passes: Option<Vec<TriedPass>> = (0..TRIED_PASSES).into_par_iter().map(pass).collect();
     let passes = passes?;
     let [second, values, bias] = [[1.0, 0.0], [0.0, 1.0], [USUAL_SHARE, -USUAL_SHARE]]
         .map(|factors| combined(&passes, factors));
     let gathered = gather.batch_paths(0);
-    let works = passes.iter().map(|pass| pass.work_of_whole(gathered, part));
-    let work: f64 = works.map(|work| work.photons + work.by_size + work.by_square).sum();
-    let seconds = 1e-9 * work / PASSES as f64;
-    let least = PER_PATH / settings.photons as f64 + PER_PATH / settings.gather_paths as f64;
+    let works: Vec<PassWork> =
+        passes.iter().map(|pass| pass.work_of_whole(gathered, part)).collect();
+    let whole = PassWork::mean(&works);
+    let is_given = plan.gather.photons.or(plan.gather.records).is_some();
+    let size = if is_given { 1.0 } else { whole.size_for(pilot.pass_work) };
+    let settings = settings.with_passes_of_size(size, &plan.gather);
+    let seconds = 1e-9 * whole.of_size(size);
+    let least = |cells: usize| {
+        PER_PATH / settings.photons as f64 + PER_PATH * cells as f64 / settings.gather_paths as f64
+    };
     let tried = trials.judged(&second, 1e9 * seconds, Estimator::Gather);
     let judged = tried.into_iter().zip(sensors).map(|(mut tried, &sensor): (Tried, &SensorId)| {
         let [second, flux, bias] = [&second, &values, &bias].map(|sums| flux(scene, sums, sensor));
         let trial = &mut tried.trial;
-        trial.bias = (second.mean() != 0.0).then(|| (bias.mean() / second.mean()).abs());
+        let certain = bias.mean().abs() - CERTAIN * bias.std_error();
+        trial.bias = (certain > 0.0).then(|| (certain / second.mean()).abs());
         trial.least = FIRST_PASSES as f64 * seconds;
         // The cost of one pass, and of one of the run's.
-        let of_pass =
-            |cost: f64| (FOURTH_ORDER * cost * PASSES as f64 * part * part).max(seconds * least);
+        let least = least(passes[0].photons.sensors[sensor.index()].cells.count());
+        let of_pass = |cost: f64| {
+            let by_pairs = FOURTH_ORDER * cost * TRIED_PASSES as f64 * (part / size).powi(2);
+            UNSEEN * by_pairs.max(seconds * least)
+        };
         trial.cost = trial.cost.map(of_pass);
         Tried { flux, bias: Some(bias), ..tried }
     });
@@ -118,6 +133,45 @@ pub(crate) struct PassWork {
     pub(crate) by_size: f64,
     /// What grows with the square of their number.
     pub(crate) by_square: f64,
+}
+
+impl PassWork {
+    /// Work of a pass of all groups, which share its photons.
+    pub(crate) fn of_all(groups: &[Self]) -> Self {
+        groups.iter().fold(Self { photons: 0.0, by_size: 0.0, by_square: 0.0 }, |all, own| Self {
+            photons: all.photons.max(own.photons),
+            by_size: all.by_size + own.by_size,
+            by_square: all.by_square + own.by_square,
+        })
+    }
+
+    /// The mean over passes of one group.
+    fn mean(passes: &[Self]) -> Self {
+        let mean = |of: fn(&Self) -> f64| passes.iter().map(of).sum::<f64>() / passes.len() as f64;
+        Self {
+            photons: mean(|pass| pass.photons),
+            by_size: mean(|pass| pass.by_size),
+            by_square: mean(|pass| pass.by_square),
+        }
+    }
+
+    /// Work of a pass of another size, relative to this one, ns.
+    fn of_size(self, size: f64) -> f64 {
+        (self.photons + self.by_size + self.by_square * size) * size
+    }
+
+    /// Suitable size of passes relative to this one, at most 1: pairs take no more than their share, and the whole takes at
+    /// most `work`, ns, if given.
+    pub(crate) fn size_for(self, work: Option<f64>) -> f64 {
+        let by_size = self.photons + self.by_size;
+        // Roots of a x + b x² = work, and of b x² = most a x.
+        let by_work = work.map_or(1.0, |work| {
+            let root = (by_size * by_size + 4.0 * self.by_square * work).sqrt();
+            2.0 * work / (by_size + root)
+        });
+        let by_pairs = MOST_PAIR_WORK * by_size / self.by_square;
+        by_work.min(by_pairs).min(1.0)
+    }
 }
 
 /// Work of a whole pass, from a small one; `None` if stopped.
@@ -184,5 +238,35 @@ impl TriedPass {
             by_size: gathering / part + work::of_records(single),
             by_square: work::of_records(paired),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn groups_share_the_photons_of_a_pass_and_not_its_records() {
+        let group = |photons| PassWork { photons, by_size: 2.0, by_square: 5.0 };
+        let all = PassWork::of_all(&[group(3.0), group(4.0)]);
+        assert_eq!((all.photons, all.by_size, all.by_square), (4.0, 4.0, 10.0));
+    }
+
+    #[test]
+    fn a_pass_takes_the_work_that_its_size_was_found_for() {
+        let pass = PassWork { photons: 30.0, by_size: 10.0, by_square: 20.0 };
+        let size = pass.size_for(Some(25.0));
+        assert!((pass.of_size(size) - 25.0).abs() < 1e-9, "{size}");
+        assert_eq!(pass.size_for(Some(1000.0)), 1.0, "never larger than asked");
+        assert_eq!(pass.size_for(None), 1.0);
+    }
+
+    #[test]
+    fn pairs_take_at_most_two_thirds_of_a_pass() {
+        let pass = PassWork { photons: 30.0, by_size: 10.0, by_square: 800.0 };
+        let size = pass.size_for(None);
+        assert!((pass.by_square * size * size / pass.of_size(size) - 2.0 / 3.0).abs() < 1e-12);
+        let none = PassWork { by_square: 0.0, ..pass };
+        assert_eq!(none.size_for(None), 1.0, "no pairs, no limit");
     }
 }

@@ -7,8 +7,8 @@ use crate::transport::choose::pilot::choose;
 use crate::transport::estimators::{Portion, Prepared};
 use crate::transport::forward::Forward;
 use crate::transport::gather::estimator::{Combination, Gather};
-use crate::transport::gather::settings::groups;
-use crate::transport::gather::stages::FIRST_PASSES;
+use crate::transport::gather::settings::{groups, passes_in_turn};
+use crate::transport::gather::stages::WAVE_PASSES;
 use crate::transport::gather::trial::{PassWork, pass_work};
 use crate::transport::run::rounds::{Phase, Run};
 use crate::transport::stop::StopSignal;
@@ -28,9 +28,6 @@ const BATCH_PATHS: u64 = 4096;
 const PILOT_PATHS: u64 = 64;
 /// Most bounces of these paths.
 const PILOT_BOUNCES: u32 = 10_000;
-/// Passes of gathering for which the remaining time of a run with a time limit should suffice: more than its first wave,
-/// since other programs make them longer.
-const PASSES_IN_TIME: f64 = 24.0;
 /// Time for which photon paths are traced to measure the time of a segment.
 const TIMED: Duration = Duration::from_millis(10);
 /// Most batches of [`PILOT_PATHS`] that are traced for this measurement.
@@ -107,7 +104,7 @@ impl<'s> Run<'s> {
             forward: Forward::new(scene, plan.seed, plan.bounce_limit, photons),
             photons: Series::default(),
             others: prepared.into_iter().map(|one| (one, Series::default())).collect(),
-            wave_batches: if has_passes { FIRST_PASSES } else { GROUPS },
+            wave_batches: if has_passes { WAVE_PASSES } else { GROUPS },
             signal: signal.clone(),
             batches: 0,
             paths: 0,
@@ -158,8 +155,8 @@ fn gathered<'s>(
         return Some(Vec::new());
     }
     let early = signal.with_grace();
-    let left = || signal.work_left(|| time_of_segment(scene, plan, &early));
-    let pilot = left().map_or(pilot, |work| pilot.with_passes_up_to(work / PASSES_IN_TIME));
+    let left = signal.work_left(|| time_of_segment(scene, plan, &early));
+    let pilot = pilot.with_passes_for(plan, left.map(|segments| segments / passes_in_turn()));
     let mut gathers = Vec::new();
     for (sensors, combination) in [(alone, Combination::Alone), (merged, Combination::Merged)] {
         if sensors.is_empty() {
@@ -169,14 +166,11 @@ fn gathered<'s>(
             gathers.push((Gather::prepare(scene, plan, (&group, combination), pilot), combination));
         }
     }
-    if let Some(segments) = left() {
-        let work = segments * work::OF_PHOTON_SEGMENT / PASSES_IN_TIME;
-        let all: Option<Vec<PassWork>> =
-            gathers.iter().map(|(own, _)| pass_work(own, plan, pilot, &early)).collect();
-        let factor = size_for(&all?, work);
-        for (own, _) in &mut gathers {
-            own.settings = own.settings.with_passes_of_size(factor, &plan.gather);
-        }
+    let all: Option<Vec<PassWork>> =
+        gathers.iter().map(|(own, _)| pass_work(own, plan, pilot, &early)).collect();
+    let factor = PassWork::of_all(&all?).size_for(pilot.pass_work);
+    for (own, _) in &mut gathers {
+        own.settings = own.settings.with_passes_of_size(factor, &plan.gather);
     }
     let prepared = gathers.into_iter().map(|(own, combination)| {
         let settings = own.settings;
@@ -186,15 +180,6 @@ fn gathered<'s>(
         }
     });
     Some(prepared.collect())
-}
-
-/// Size of passes, at most 1, whose work is this much in total: the positive root of a x + b x² = work.
-fn size_for(passes: &[PassWork], work: f64) -> f64 {
-    let photons = passes.iter().map(|pass| pass.photons).fold(0.0, f64::max);
-    let by_size = photons + passes.iter().map(|pass| pass.by_size).sum::<f64>();
-    let by_square: f64 = passes.iter().map(|pass| pass.by_square).sum();
-    let root = (by_size * by_size + 4.0 * by_square * work).sqrt();
-    (2.0 * work / (by_size + root)).min(1.0)
 }
 
 /// Suitable number of photon paths of a batch for a scene: the default of [`RunPlan::batch_paths`].
@@ -220,18 +205,22 @@ fn segments_per_path(scene: &Scene, plan: &RunPlan, signal: &StopSignal) -> Opti
     Some(pilot.segments.div_ceil(pilot.paths().max(1)).max(1) + rest as u64)
 }
 
-/// Time of a segment of a photon path, s, by the clock; `None` if stopped.
+/// Time of a segment of a photon path, s, by the clock: the lower quartile of short measurements, since other programs
+/// lengthen some of them. `None` if stopped.
 fn time_of_segment(scene: &Scene, plan: &RunPlan, signal: &StopSignal) -> Option<f64> {
     let limit = plan.bounce_limit.min(PILOT_BOUNCES);
     let forward = Forward::new(scene, plan.seed, limit, PILOT_PATHS);
-    let (start, mut segments) = (Instant::now(), 0);
+    let (start, mut times) = (Instant::now(), Vec::new());
     for batch in 0..TIMED_BATCHES {
-        segments += forward.batch(batch, signal)?.segments;
+        let began = Instant::now();
+        let segments = forward.batch(batch, signal)?.segments.max(1);
+        times.push(began.elapsed().as_secs_f64() / segments as f64);
         if start.elapsed() >= TIMED {
             break;
         }
     }
-    Some(start.elapsed().as_secs_f64() / segments.max(1) as f64)
+    times.sort_by(f64::total_cmp);
+    Some(times[times.len() / 4])
 }
 
 /// The estimator of each sensor: its own, the requested one, or a pilot's choice.
@@ -255,7 +244,8 @@ fn estimators(
         return all(Estimator::Forward);
     }
     let mut tried = |estimator| watch(Phase::Pilot(estimator));
-    let choices = choose(scene, plan, pilot, &signal.with_half(), &mut tried);
+    let left = signal.work_left(|| time_of_segment(scene, plan, &signal.with_grace()));
+    let choices = choose(scene, plan, (pilot, left), &signal.with_half(), &mut tried);
     let Some(mut choices) = choices else {
         // The best is unknown; photons find something everywhere.
         return if signal.is_due() { None } else { all(Estimator::Forward) };

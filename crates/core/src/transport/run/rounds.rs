@@ -72,12 +72,10 @@ pub(super) struct BatchCounts {
 }
 
 impl<'s> Run<'s> {
-    /// Traces the next piece of a wave: a few batches for each thread. If the signal stops it, the
+    /// Traces the next piece of a round: a few batches for each thread. If the signal stops it, the
     /// batches before the first unfinished one count, and the others are dropped.
     pub fn next_piece(&mut self) {
-        let piece = self.piece();
-        let wave_end = (self.waves() + 1) * self.wave_batches;
-        let end = (self.batches + piece).min(wave_end).min(self.batches_asked.unwrap_or(u64::MAX));
+        let end = (self.batches + self.piece()).min(self.piece_limit());
         let signal = match self.batches {
             0 => self.signal.with_grace(),
             _ => self.signal.clone(),
@@ -87,10 +85,26 @@ impl<'s> Run<'s> {
         batches.into_iter().map_while(|batch| batch).for_each(|batch| self.add(batch));
     }
 
+    /// Batches up to which a piece may go: to the end of a wave, or, with passes, of all waves before the next decision.
+    fn piece_limit(&self) -> u64 {
+        let round = if self.has_passes() { self.round_end() } else { 0 };
+        let waves = round.max(self.waves() + 1);
+        let planned = self.planned_paths().map_or(u64::MAX, |paths| {
+            self.batches
+                .saturating_add(paths.saturating_sub(self.paths).div_ceil(self.batch_paths()))
+        });
+        // A run that is complete goes on by whole waves.
+        let planned = if planned > self.batches { planned } else { u64::MAX };
+        (waves * self.wave_batches).min(planned)
+    }
+
+    fn has_passes(&self) -> bool {
+        self.others.iter().any(|(own, _)| own.portion() == Portion::Pass)
+    }
+
     /// Batches that are traced together: a few for each thread.
     pub(super) fn piece(&self) -> u64 {
-        let has_passes = self.others.iter().any(|(own, _)| own.portion() == Portion::Pass);
-        let per_thread = if has_passes { 1 } else { PIECE_BATCHES };
+        let per_thread = if self.has_passes() { 1 } else { PIECE_BATCHES };
         per_thread * rayon::current_num_threads() as u64
     }
 
@@ -226,7 +240,7 @@ impl<'s> Run<'s> {
         self.others.iter().any(|(own, series)| own.may_end_stage(series))
     }
 
-    /// Whether bias limits the flux of a sensor more than noise does.
+    /// Whether bias limits the flux of a sensor more than noise does, and a stage with less may follow.
     pub fn is_limited_by_bias(&self) -> bool {
         let Some(photons) = self.photons.in_progress() else { return false };
         let photons = photons.counts.first();
@@ -234,25 +248,28 @@ impl<'s> Run<'s> {
     }
 
     /// Lets the estimators decide after a round how to go on: where bias limits the run, a stage
-    /// with less bias follows. Returns the waves after which the next round ends.
-    pub fn end_round(&mut self, is_limited_by_bias: impl FnOnce(&Self) -> bool) -> u64 {
-        if self.may_end_stage() && is_limited_by_bias(self) {
+    /// with less bias follows. If the run has a target, the caller knows whether bias limits that one. Returns the waves
+    /// after which the next round ends.
+    pub fn end_round(&mut self, limits_target: Option<bool>) -> u64 {
+        let is_due = match limits_target {
+            Some(limits) => limits && (self.may_end_stage() || self.is_limited_by_bias()),
+            None => self.is_limited_by_bias(),
+        };
+        if is_due {
             self.next_stage();
         }
         self.round_end()
     }
 
-    /// Starts the next stage of every estimator whose stage may end and whose bias limits the flux of a sensor; where bias
-    /// limits none, a target may still ask for less, and all whose stage may end go on.
+    /// Starts the next stage of every estimator whose bias limits the flux of a sensor; where bias limits none, a target may
+    /// still ask for less, and all whose stage may end go on.
     pub fn next_stage(&mut self) {
         let Some(photons) = self.photons.in_progress() else { return };
         let photons = photons.counts.first();
         let limited: Vec<bool> = self
             .others
             .iter()
-            .map(|(own, series)| {
-                own.may_end_stage(series) && own.is_limited_by_bias(series, photons)
-            })
+            .map(|(own, series)| own.is_limited_by_bias(series, photons))
             .collect();
         let all = !limited.contains(&true);
         for ((own, series), limited) in self.others.iter_mut().zip(limited) {

@@ -1,20 +1,21 @@
 //! Work, counted instead of timed: the same on every machine, so that choices based on it are
 //! reproducible.
 //!
-//! The constants are nanoseconds on one thread of the machine of benches/results/2026-11-21.md; only their ratios matter.
+//! The constants are nanoseconds on one thread of the machine of benches/results/2026-11-24.md, in scenes of a usual kind:
+//! plain tubes and rods take less, meshes, bends and prism film up to four times as much. For a choice only their ratios matter.
 
 use crate::transport::Readings;
 
 /// Per photon path, and per segment of one.
-const PHOTON_PATH: f64 = 170.0;
-pub(crate) const OF_PHOTON_SEGMENT: f64 = 45.0;
+const PHOTON_PATH: f64 = 340.0;
+pub(crate) const OF_PHOTON_SEGMENT: f64 = 90.0;
 /// Per gather path, and per segment of one.
-const GATHER_PATH: f64 = 600.0;
-const GATHER_SEGMENT: f64 = 60.0;
+const GATHER_PATH: f64 = 1200.0;
+const GATHER_SEGMENT: f64 = 120.0;
 /// Per gather record, made and indexed; per photon that passes the filter; per photon that a record takes.
-const RECORD: f64 = 1800.0;
-const LOOK_UP: f64 = 200.0;
-const PAIR: f64 = 80.0;
+const RECORD: f64 = 3600.0;
+const LOOK_UP: f64 = 400.0;
+const PAIR: f64 = 160.0;
 
 /// Work of a pass in addition to tracing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -1,0 +1,163 @@
+//! The choice of `auto` against the estimators themselves: 20 scenes, each run by all of them for six seconds of the clock.
+//!
+//! `cargo bench --bench choice`, with scene names after `--` to restrict it to those. One thread. A cost is CPU seconds times
+//! relative variance, of the flux or over the cells, without bias: divided by the square of an error, the time to reach it.
+//! The table gives for each sensor what the pilot predicts over what a run of each estimator needs (*: with an objection), the
+//! CPU time of the pilot with all preparation, and the regret: the cost of the run of `auto`, pilot included, over that of the
+//! best run without an objection. Where a scene has several sensors, they share the runs; the pilot predicts for each alone.
+#![allow(clippy::print_stdout, reason = "a bench prints its table")]
+
+mod clock;
+
+use clock::cpu_seconds;
+use lumiduct_core::plan::{Estimator, Request, RunPlan, StopRules};
+use lumiduct_core::scene::{Scene, SensorId, SourceId};
+use lumiduct_core::transport::{
+    Findings, Interrupt, Layout, Orders, Readings, Run, Stage, StopSignal,
+};
+use lumiduct_input::{self as input, Job, Settings};
+use rayon::ThreadPoolBuilder;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// Surface maps, far fields, remote cells, diffusers, media, several sources, sun and sky.
+const SCENES: [&str; 20] = [
+    "remote_cell_sun",
+    "remote_cell_rod",
+    "remote_cell_long",
+    "remote_cell_bend",
+    "remote_cell_scatter",
+    "remote_cell_led",
+    "luminance_image_scatter",
+    "led_indicator",
+    "colour_indicator",
+    "mirror_tube",
+    "solid_rod",
+    "line_light_holes",
+    "daylight_tube",
+    "daylight_haze",
+    "prismatic_duct_film",
+    "diffuser_rod",
+    "white_box",
+    "opal_desk",
+    "validation/b1_p100_r95",
+    "validation/b3",
+];
+/// In the order of `Estimator::TRIED`.
+const REQUESTS: [Request; 4] = [Request::Forward, Request::Backward, Request::Mix, Request::Gather];
+/// Length of a run, of which the pilot may take a twentieth.
+const LENGTH: Duration = Duration::from_secs(6);
+
+fn main() {
+    let pool = ThreadPoolBuilder::new().num_threads(1).build().expect("one thread can be had");
+    let names = Estimator::TRIED.map(Estimator::name).join(" | ");
+    println!("predicted cost over measured cost\n");
+    println!("| sensor | {names} | pilot | auto takes | regret |");
+    println!("|---|--:|--:|--:|--:|--:|---|--:|");
+    let wanted: Vec<String> = std::env::args().skip(1).filter(|name| name != "--bench").collect();
+    for name in SCENES {
+        if wanted.is_empty() || wanted.iter().any(|one| one == name) {
+            pool.install(|| survey(name));
+        }
+    }
+}
+
+/// Prints the rows of a scene.
+fn survey(name: &str) {
+    let path = format!("scenes/{name}.toml");
+    let job = input::load(Path::new(&path), &Settings::default()).expect("the scenes are valid");
+    let auto = Traced::new(&job, Request::Auto);
+    let measured = REQUESTS.map(|request| Traced::new(&job, request));
+    for (sensor, choice) in auto.findings.choices.iter().enumerate() {
+        let needed = measured
+            .each_ref()
+            .map(|own| Some(own.seconds * variance(&job.scene, &own.findings, sensor)?));
+        let mut best = f64::INFINITY;
+        let mut columns = vec![format!("{name} {}", job.scene.sensors[sensor].name)];
+        for (estimator, needed) in Estimator::TRIED.iter().zip(&needed) {
+            let trial = choice.tried.iter().find(|trial| trial.estimator == *estimator);
+            let predicted = trial.and_then(|trial| trial.cost);
+            let is_fit = trial.is_some_and(|trial| trial.objection.is_none());
+            let objection = if is_fit { "" } else { "*" };
+            best = best.min(needed.filter(|_| is_fit).unwrap_or(f64::INFINITY));
+            columns.push(match (predicted, needed) {
+                (Some(predicted), Some(needed)) => {
+                    format!("{:.2} of {needed:.1e}{objection}", predicted / needed)
+                }
+                (Some(predicted), None) => format!("{predicted:.1e} of none{objection}"),
+                (None, Some(needed)) => format!("none of {needed:.1e}{objection}"),
+                (None, None) => format!("none{objection}"),
+            });
+        }
+        let chosen = variance(&job.scene, &auto.findings, sensor);
+        let regret = chosen.filter(|_| best.is_finite()).map(|chosen| auto.seconds * chosen / best);
+        columns.push(format!("{:.2} s", auto.prepared));
+        columns.push(choice.chosen.name().to_owned());
+        columns.push(regret.map_or("-".to_owned(), |regret| format!("{regret:.2}")));
+        println!("| {} |", columns.join(" | "));
+    }
+}
+
+/// A run of [`LENGTH`].
+struct Traced {
+    /// CPU seconds until the first path counts.
+    prepared: f64,
+    /// All CPU seconds.
+    seconds: f64,
+    findings: Findings,
+}
+
+impl Traced {
+    fn new(job: &Job, estimator: Request) -> Self {
+        let stop = StopRules { time: Some(LENGTH), ..StopRules::default() };
+        let plan = RunPlan { estimator, stop, ..job.run.clone() };
+        let start = Instant::now();
+        let signal = StopSignal::new(&Interrupt::default(), Some(start + LENGTH));
+        let (prepared, run) = cpu_seconds(|| Run::start(&job.scene, &plan, &signal, &mut |_| ()));
+        let mut run = run.expect("time is enough");
+        let (traced, ()) = cpu_seconds(|| {
+            let mut round_end = run.round_end();
+            run.next_piece();
+            while start.elapsed() < LENGTH {
+                if run.is_between_waves() && run.waves() >= round_end {
+                    round_end = run.end_round(None);
+                }
+                run.next_piece();
+            }
+        });
+        Self { prepared, seconds: prepared + traced, findings: run.findings() }
+    }
+}
+
+/// Relative variance of the flux of a sensor, or over its cells of Σσ²/Σmean², in the findings of one estimator.
+fn variance(scene: &Scene, found: &Findings, sensor: usize) -> Option<f64> {
+    let id = SensorId::new(sensor);
+    let Some(own) = found.of_sensor(id) else {
+        return relative_variance(scene, &found.photons, id);
+    };
+    let of_stage = |stage: &Stage| match found.estimators[sensor] {
+        Estimator::Gather => relative_variance(scene, Orders::of(&stage.counts).fourth, id),
+        _ => relative_variance(scene, stage.counts.first(), id),
+    };
+    own.stages.iter().filter_map(of_stage).min_by(f64::total_cmp)
+}
+
+fn relative_variance(scene: &Scene, readings: &Readings, sensor: SensorId) -> Option<f64> {
+    let cells = &readings.sensors[sensor.index()].cells;
+    let [mut variance, mut square] = [0.0; 2];
+    if cells.count() == 1 {
+        let layout = Layout::new(scene);
+        let sources = 0..scene.sources.len();
+        let slots = sources.map(|source| layout.sensor_flux(sensor, SourceId::new(source)));
+        let slots: Vec<usize> = slots.collect();
+        let flux = readings.function(|flux| slots.iter().map(|&slot| flux(slot)).sum());
+        [variance, square] = [flux.std_error().powi(2), flux.mean().powi(2)];
+    } else {
+        for cell in 0..cells.count() {
+            let (mean, error) = cells.mean(cell, readings.batch_count());
+            variance += error * error;
+            square += mean * mean - error * error;
+        }
+    }
+    (square > 0.0).then(|| variance / square)
+}

@@ -1,7 +1,12 @@
 //! Light that is joined to sensors and sources: exact fields behind one diffuse face.
 
+use crate::traced;
 use crate::trial::{Comparison, Way, measures};
+use lumiduct_core::plan::Request;
+use lumiduct_input::{self as input, Job, Settings};
+use rayon::prelude::*;
 use std::f64::consts::PI;
+use std::path::Path;
 
 /// Largest relative standard error of a joined value, 1: forward would need some
 /// 10^7 photons for it.
@@ -20,11 +25,8 @@ fn assert_exact(what: &str, text: &str, expected: &[(&str, f64)]) {
     comparison.assert(what, expected.len());
 }
 
-/// A beam fills a diffuse disc, of which a coaxial disc sees a share by its configuration factor
-/// (Howell, A catalog of radiation heat transfer configuration factors, C-41).
-#[test]
-fn a_disc_sees_a_lit_disc_by_their_configuration_factor() {
-    let text = r#"
+/// A beam fills a diffuse disc, before which lies a smaller one.
+const LIT_DISC: &str = r#"
 [finishes.white.lambertian]
 reflectance = 0.8
 [sheets.plate.disk]
@@ -39,10 +41,49 @@ flux_lm = 10
 plane = { disk = { radius_mm = 2 } }
 at = { position_mm = [0, 0, 10], axis = [0, 0, -1] }
 "#;
+
+/// Flux on the smaller disc by its configuration factor (Howell, A catalog of radiation heat transfer configuration
+/// factors, C-41), lm.
+fn flux_of_lit_disc() -> f64 {
     let [lit, seeing]: [f64; 2] = [5.0 / 10.0, 2.0 / 10.0];
     let x = 1.0 + (1.0 + seeing * seeing) / (lit * lit);
-    let factor = 0.5 * (x - (x * x - 4.0 * (seeing / lit).powi(2)).sqrt());
-    assert_exact("disc to disc", text, &[("cell.flux", 10.0 * 0.8 * factor)]);
+    10.0 * 0.8 * 0.5 * (x - (x * x - 4.0 * (seeing / lit).powi(2)).sqrt())
+}
+
+#[test]
+fn a_disc_sees_a_lit_disc_by_their_configuration_factor() {
+    assert_exact("disc to disc", LIT_DISC, &[("cell.flux", flux_of_lit_disc())]);
+}
+
+/// Over many seeds the deviations from the truth are as large as the errors that the runs state.
+#[test]
+fn errors_of_joined_light_are_calibrated() {
+    const SEEDS: u64 = 200;
+    let disc: fn(&Settings) -> Job = |settings| traced::load(LIT_DISC, settings);
+    let sphere: fn(&Settings) -> Job = |settings| {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/integrating_sphere.toml");
+        input::load(&path, settings).unwrap()
+    };
+    // The scene of the sphere has its exact flux as a check.
+    for (what, load, expected) in
+        [("disc", disc, flux_of_lit_disc()), ("sphere", sphere, 0.1394258)]
+    {
+        let deviation = |seed| {
+            let (estimator, paths) = (Some(Request::Mix), Some(1280));
+            let job = load(&Settings { estimator, seed: Some(seed), paths, ..Settings::default() });
+            let flux = &traced::measures(&job).values["cell.flux"];
+            (flux.value - expected) / flux.std_error
+        };
+        let deviations: Vec<f64> = (1..=SEEDS).into_par_iter().map(deviation).collect();
+        let mean_of =
+            |power| deviations.iter().map(|z: &f64| z.powi(power)).sum::<f64>() / SEEDS as f64;
+        let [mean, square] = [1, 2].map(mean_of);
+        println!("{what}: mean {mean:.3}, mean square {square:.3} over {SEEDS} seeds");
+        // Of normal deviations the mean has an error of 1/√n, the mean square of √(2/n).
+        let error = (SEEDS as f64).sqrt().recip();
+        assert!(mean.abs() < 4.0 * error, "{what}: {mean}");
+        assert!((square - 1.0).abs() < 4.0 * 2f64.sqrt() * error, "{what}: {square}");
+    }
 }
 
 /// Illuminance on the axis below a diffusing sheet under a point: ∫ τ E(r) cos⁴/(π b²) dA with

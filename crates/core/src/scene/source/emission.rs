@@ -58,8 +58,8 @@ impl Emission {
     }
 
     /// Density, in 1/sr, with which [`Emission::sample`] draws the unit vector `dir`; 0 where it
-    /// never does. `None` for a collimated beam, which has one direction and no density. Lines use
-    /// a separate law for Lambertian light.
+    /// never does. `None` for a collimated beam, which has one direction and no density. For lines see
+    /// [`Self::density_of_line`].
     pub(crate) fn density(&self, kind: EmitterKind, dir: DVec3) -> Option<f64> {
         let density = match (self, kind) {
             (Self::Collimated { .. }, _) => return None,
@@ -80,6 +80,18 @@ impl Emission {
             }
         };
         Some(density)
+    }
+
+    /// The same for a line along z: Lambertian light is proportional to the sine of the angle to the line.
+    pub(crate) fn density_of_line(&self, dir: DVec3) -> Option<f64> {
+        match self {
+            Self::Lambertian => Some(dir.truncate().length() / (PI * PI)),
+            Self::CosinePower(_)
+            | Self::Cone { .. }
+            | Self::Collimated { .. }
+            | Self::Isotropic
+            | Self::Sky(_) => self.density(EmitterKind::Point, dir),
+        }
     }
 
     /// Flux per luminance and area of a surface, sr: the projected solid angle ∫ cos θ dω of the law.
@@ -146,6 +158,20 @@ mod tests {
         let solid_angle = 2.0 * PI * (1.0 - half_angle.cos());
         let expected = solid_angle / law.projected_solid_angle().unwrap();
         assert!(mean.sigmas_from(expected).abs() < 4.0, "{mean:?}, expected {expected}");
+    }
+
+    #[test]
+    fn the_density_of_a_line_integrates_to_one() {
+        const STEPS: usize = 1000;
+        for law in [Emission::Lambertian, Emission::Isotropic, Emission::CosinePower(2.0)] {
+            // Over the cosine z by midpoints; the laws are symmetric about the line.
+            let density = |step: usize| {
+                let z = 2.0 * (step as f64 + 0.5) / STEPS as f64 - 1.0;
+                law.density_of_line(DVec3::new((1.0 - z * z).sqrt(), 0.0, z)).unwrap()
+            };
+            let sum = (0..STEPS).map(density).sum::<f64>() * TAU * 2.0 / STEPS as f64;
+            assert!((sum - 1.0).abs() < 1e-4, "{law:?}: {sum}");
+        }
     }
 
     #[test]

@@ -8,6 +8,7 @@
 
 pub(crate) mod sensors;
 pub(crate) mod sources;
+mod target;
 pub(crate) mod vertex;
 pub(crate) mod way;
 pub(crate) mod weights;

@@ -7,6 +7,7 @@ use crate::scene::{
     SurfaceSensor, Views,
 };
 use crate::transport::Vertex;
+use crate::transport::connect::target::{Joinable, choose, total_importance};
 use crate::transport::connect::vertex::TurnAt;
 use glam::DVec3;
 use lumiduct_base::math::{Aabb, uniform_sphere};
@@ -110,7 +111,8 @@ impl<'s> SensorTargets<'s> {
         if self.targets.is_empty() {
             return None;
         }
-        let target = self.choose(vertex, sampler)?;
+        let draw = || sampler.one(Dimension::GatherPosition);
+        let target = choose(&self.targets, vertex, draw)?;
         let (point, normal, cell) = match &target.extent {
             SensorExtent::Surface(sensor, area) => {
                 let drawn = area.sample(sampler.pair(Dimension::GatherPosition))?;
@@ -167,30 +169,19 @@ impl<'s> SensorTargets<'s> {
             SensorExtent::Surface(..) => normal,
             SensorExtent::Sphere(sphere, radius) => (point - sphere.frame.origin) / *radius,
         };
-        let all: f64 = self.targets.iter().map(|one| one.importance(vertex)).sum();
-        let chosen = target.importance(vertex) / all;
+        let chosen = target.importance(vertex) / total_importance(&self.targets, vertex);
         dir.dot(normal).abs() * target.area / (chosen * point.distance_squared(vertex))
-    }
-
-    fn choose(&self, vertex: DVec3, sampler: &mut Sampler) -> Option<&SensorTarget<'s>> {
-        if let [only] = self.targets.as_slice() {
-            return Some(only);
-        }
-        let all: f64 = self.targets.iter().map(|one| one.importance(vertex)).sum();
-        let mut left = sampler.one(Dimension::GatherPosition) * all;
-        self.targets.iter().find(|one| {
-            left -= one.importance(vertex);
-            left < 0.0
-        })
     }
 }
 
-impl SensorTarget<'_> {
+impl Joinable for SensorTarget<'_> {
     /// What it can receive from a point: its solid angle, roughly, 1.
     fn importance(&self, vertex: DVec3) -> f64 {
         self.area / vertex.distance_squared(self.center).max(self.reach * self.reach)
     }
+}
 
+impl SensorTarget<'_> {
     /// The cells that count light along `dir`; `None` if none do.
     fn cells(&self, cell: usize, dir: DVec3, normal: DVec3) -> Option<SmallVec<[usize; 1]>> {
         let sensor = match &self.extent {

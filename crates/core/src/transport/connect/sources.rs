@@ -5,6 +5,7 @@ use crate::scene::shape::{Crossing, RayStart, Shape};
 use crate::scene::{
     Emission, EmitSide, Emitter, EmitterKind, Ray, Scene, Source, SourceId, StartSolids,
 };
+use crate::transport::connect::target::{Joinable, choose, total_importance};
 use crate::transport::connect::vertex::TurnAt;
 use glam::DVec3;
 use lumiduct_base::math::Frame;
@@ -73,7 +74,8 @@ impl<'s> SourceTargets<'s> {
     /// A place for a vertex, on a source chosen in proportion to the light it can send there, and
     /// its distance, mm; `None` where it sends none.
     pub(crate) fn draw(&self, vertex: DVec3, sampler: &mut Sampler) -> Option<(SourcePoint, f64)> {
-        let target = self.choose(vertex, sampler)?;
+        let draw = || sampler.one(Dimension::EmitPosition);
+        let target = choose(&self.targets, vertex, draw)?;
         let at = |shape: usize, point: DVec3| {
             let distance = point.distance(vertex);
             let dir = (vertex - point) / distance;
@@ -115,7 +117,7 @@ impl<'s> SourceTargets<'s> {
                 source.flux * source.emission.density(EmitterKind::Point, local)?
             }
             EmitterExtent::Line(frame, length) => {
-                source.flux / length * line_density(&source.emission, frame.to_local(place.dir))?
+                source.flux / length * source.emission.density_of_line(frame.to_local(place.dir))?
             }
             EmitterExtent::Surface(surfaces) => {
                 surfaces.radiance(&source.emission, place) / (index * index)
@@ -135,8 +137,7 @@ impl<'s> SourceTargets<'s> {
     /// considered; the vertex has light from a medium of this index.
     pub(crate) fn measure(&self, place: &SourcePoint, vertex: DVec3, index: f64) -> Option<f64> {
         let target = self.target(place.source)?;
-        let all: f64 = self.targets.iter().map(|one| one.importance(vertex)).sum();
-        let per_chance = all / target.importance(vertex);
+        let per_chance = total_importance(&self.targets, vertex) / target.importance(vertex);
         let square = place.point.distance_squared(vertex);
         Some(match &target.extent {
             EmitterExtent::Point(_) => per_chance / (index * index * square),
@@ -166,21 +167,9 @@ impl<'s> SourceTargets<'s> {
     fn target(&self, id: SourceId) -> Option<&SourceTarget<'s>> {
         self.targets.iter().find(|target| target.id == id)
     }
-
-    fn choose(&self, vertex: DVec3, sampler: &mut Sampler) -> Option<&SourceTarget<'s>> {
-        if let [only] = self.targets.as_slice() {
-            return Some(only);
-        }
-        let all: f64 = self.targets.iter().map(|one| one.importance(vertex)).sum();
-        let mut left = sampler.one(Dimension::EmitPosition) * all;
-        self.targets.iter().find(|one| {
-            left -= one.importance(vertex);
-            left < 0.0
-        })
-    }
 }
 
-impl SourceTarget<'_> {
+impl Joinable for SourceTarget<'_> {
     /// Normal irradiance that it can give a point, roughly, lm/mm².
     fn importance(&self, vertex: DVec3) -> f64 {
         let flux = self.source.flux;
@@ -192,7 +181,9 @@ impl SourceTarget<'_> {
             }
         }
     }
+}
 
+impl SourceTarget<'_> {
     /// Flux of the far distance per area across each direction, lm/mm².
     fn across(&self) -> f64 {
         self.source.flux / (PI * self.reach * self.reach)
@@ -244,19 +235,6 @@ impl Surfaces<'_> {
         let own = || Frame::from_axis(DVec3::ZERO, normal).to_local(place.dir);
         let local = self.frame.map_or_else(own, |frame| frame.to_local(place.dir));
         self.exitance * emission.density(EmitterKind::Surface, local).unwrap_or(0.0) / cos
-    }
-}
-
-/// Density over solid angle of the directions of a line along z, 1/sr: a Lambertian one's is
-/// proportional to the sine of the angle to the line.
-fn line_density(emission: &Emission, local: DVec3) -> Option<f64> {
-    match emission {
-        Emission::Lambertian => Some(local.truncate().length() / (PI * PI)),
-        Emission::CosinePower(_)
-        | Emission::Cone { .. }
-        | Emission::Collimated { .. }
-        | Emission::Isotropic
-        | Emission::Sky(_) => emission.density(EmitterKind::Point, local),
     }
 }
 

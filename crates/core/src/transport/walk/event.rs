@@ -172,8 +172,9 @@ pub trait Observer {
         ROULETTE_BELOW
     }
 
-    /// Sees an event; a break ends the path, unless another observer passes the event on. Inlined into the loop it saves a tenth of a mirror
-    /// bounce.
+    /// Sees an event; a break ends the path. In a pair of observers, the second does not see an event at which the first ends
+    /// the path.
+    /// Implementations are inlined into the loop, which saves a tenth of a mirror bounce.
     fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()>;
 }
 

@@ -75,7 +75,12 @@ impl<'s> Run<'s> {
     /// Traces the next piece of a round: a few batches for each thread. If the signal stops it, the
     /// batches before the first unfinished one count, and the others are dropped.
     pub fn next_piece(&mut self) {
-        let end = (self.batches + self.piece()).min(self.piece_limit());
+        self.trace_piece(self.piece_limit());
+    }
+
+    /// Traces a piece that ends at this batch at most.
+    fn trace_piece(&mut self, limit: u64) {
+        let end = (self.batches + self.piece()).min(limit);
         let signal = match self.batches {
             0 => self.signal.with_grace(),
             _ => self.signal.clone(),
@@ -95,7 +100,7 @@ impl<'s> Run<'s> {
         });
         // A run that is complete goes on by whole waves.
         let planned = if planned > self.batches { planned } else { u64::MAX };
-        (waves * self.wave_batches).min(planned)
+        (waves * self.wave_batches).min(planned).min(self.batches_asked.unwrap_or(u64::MAX))
     }
 
     fn has_passes(&self) -> bool {
@@ -144,9 +149,11 @@ impl<'s> Run<'s> {
 
     /// Traces the rest of a wave, or a whole one.
     pub fn next_wave(&mut self) {
-        self.next_piece();
+        let wave_end = (self.waves() + 1) * self.wave_batches;
+        let end = wave_end.min(self.batches_asked.unwrap_or(u64::MAX));
+        self.trace_piece(end);
         while !self.is_between_waves() && !self.is_complete() {
-            self.next_piece();
+            self.trace_piece(end);
         }
     }
 

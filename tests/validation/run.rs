@@ -1,9 +1,8 @@
 //! One run of a scene, until every value is as accurate as its class and the precision demand.
 
 use crate::table::{By, Case, Class, Precision, Value, Variant};
-use lumiduct_core::measure::{self, Measure};
-use lumiduct_core::plan::Request;
-use lumiduct_core::plan::{Check, RunPlan, StopRules};
+use lumiduct_core::measure::{self, Measure, Status};
+use lumiduct_core::plan::{Check, Request, RunPlan, StopRules};
 use lumiduct_core::tally::sigmas;
 use lumiduct_core::transport::{Findings, Orders, Run};
 use lumiduct_input::{self as input, Job, Settings};
@@ -142,10 +141,12 @@ struct Wanted<'a> {
 }
 
 impl Wanted<'_> {
-    /// The standard error, over the one that must be reached.
+    /// The standard error, over the one that must be reached. The spread of a few passes of gathering is none.
     fn error_left(&self, job: &Job, findings: &Findings) -> f64 {
-        let error = self.measure(job, findings).total_error();
-        if error.is_finite() { error / self.std_error } else { f64::INFINITY }
+        let measure = self.measure(job, findings);
+        let too_few = self.by == By::SecondOrder && measure.status == Status::TooFew;
+        let error = measure.total_error();
+        if error.is_finite() && !too_few { error / self.std_error } else { f64::INFINITY }
     }
 
     fn measure(&self, job: &Job, findings: &Findings) -> Measure {

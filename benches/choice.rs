@@ -1,4 +1,4 @@
-//! The choice of `auto` against the estimators themselves: 20 scenes, each run by all of them for six seconds of the clock.
+//! The choice of `auto` against the estimators themselves: 20 scenes, each run for six seconds with every estimator.
 //!
 //! `cargo bench --bench choice`, with scene names after `--` to restrict it to those. One thread. A cost is CPU seconds times
 //! relative variance, of the flux or over the cells, without bias: divided by the square of an error, the time to reach it.
@@ -8,14 +8,14 @@
 #![allow(clippy::print_stdout, reason = "a bench prints its table")]
 
 mod clock;
+mod noise;
 
 use clock::cpu_seconds;
 use lumiduct_core::plan::{Estimator, Request, RunPlan, StopRules};
-use lumiduct_core::scene::{Scene, SensorId, SourceId};
-use lumiduct_core::transport::{
-    Findings, Interrupt, Layout, Orders, Readings, Run, Stage, StopSignal,
-};
+use lumiduct_core::scene::{Scene, SensorId};
+use lumiduct_core::transport::{Findings, Interrupt, Orders, Readings, Run, Stage, StopSignal};
 use lumiduct_input::{self as input, Job, Settings};
+use noise::noise;
 use rayon::ThreadPoolBuilder;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -45,7 +45,7 @@ const SCENES: [&str; 20] = [
 ];
 /// In the order of `Estimator::TRIED`.
 const REQUESTS: [Request; 4] = [Request::Forward, Request::Backward, Request::Mix, Request::Gather];
-/// Length of a run, of which the pilot may take a twentieth.
+/// Length of a run. Its pilot should take 5 % of it.
 const LENGTH: Duration = Duration::from_secs(6);
 
 fn main() {
@@ -143,21 +143,6 @@ fn variance(scene: &Scene, found: &Findings, sensor: usize) -> Option<f64> {
 }
 
 fn relative_variance(scene: &Scene, readings: &Readings, sensor: SensorId) -> Option<f64> {
-    let cells = &readings.sensors[sensor.index()].cells;
-    let [mut variance, mut square] = [0.0; 2];
-    if cells.count() == 1 {
-        let layout = Layout::new(scene);
-        let sources = 0..scene.sources.len();
-        let slots = sources.map(|source| layout.sensor_flux(sensor, SourceId::new(source)));
-        let slots: Vec<usize> = slots.collect();
-        let flux = readings.function(|flux| slots.iter().map(|&slot| flux(slot)).sum());
-        [variance, square] = [flux.std_error().powi(2), flux.mean().powi(2)];
-    } else {
-        for cell in 0..cells.count() {
-            let (mean, error) = cells.mean(cell, readings.batch_count());
-            variance += error * error;
-            square += mean * mean - error * error;
-        }
-    }
+    let [variance, square] = noise(scene, readings, sensor);
     (square > 0.0).then(|| variance / square)
 }

@@ -7,45 +7,23 @@
 //! are those of the flux (of an image: Σσ²/Σmean² over its pixels) of second order, within the windows of the
 //! first stage, and of the value without the bias that scales with the window's
 //! square, from four runs of 64 passes with separate seeds. Confidence intervals are those of the
-//! ratio of two variances of normal samples. The truths are long unbiased runs, made once: see
-//! `ROWS`.
+//! ratio of two variances of normal samples. The truths are long unbiased runs, made once: benches/truths.rs.
 #![allow(clippy::print_stdout, reason = "a bench prints its table")]
 
 mod clock;
+mod noise;
+mod truths;
 
 use clock::cpu_seconds;
 use lumiduct_core::plan::{Estimator, GatherPlan, Request, RunPlan, StopRules, Target};
-use lumiduct_core::scene::{Scene, SensorId, SourceId};
-use lumiduct_core::transport::{Findings, GatherSettings, Layout, Orders, Readings, Run};
+use lumiduct_core::scene::{Scene, SensorId};
+use lumiduct_core::transport::{Findings, GatherSettings, Orders, Readings, Run};
 use lumiduct_input::{self as input, Job, Settings};
+use noise::{flux, noise};
 use rayon::ThreadPoolBuilder;
 use std::path::Path;
+use truths::{TRUTHS, Truth};
 
-/// A scene, and the flux on its sensor by long unbiased runs, lm.
-struct Row {
-    scene: &'static str,
-    truth: f64,
-    std_error: f64,
-}
-
-/// Unless noted: `lumiduct run scenes/NAME.toml --estimator backward --paths 60M` with the seeds
-/// named, means weighted by variance.
-const ROWS: [Row; 7] = [
-    // Seeds 20261, 20262, 20263.
-    Row { scene: "remote_cell_sun", truth: 0.10938, std_error: 0.00028 },
-    // Seeds 20261, 20262: 0.035457(154), 0.034725(172); 16M with seed 7: 0.03447(30); 4M with seeds 101 to 124: 0.03510(13).
-    Row { scene: "remote_cell_long", truth: 0.035070, std_error: 0.000082 },
-    // Seeds 20261, 20262, 20263; 30M with seed 7, 80M with seed 20264; forward with 400M and seed 20270.
-    Row { scene: "remote_cell_rod", truth: 0.14020, std_error: 0.00025 },
-    // `cargo bench --bench connected`, seed 20261.
-    Row { scene: "remote_cell_scatter", truth: 0.011507, std_error: 0.000023 },
-    // 24M, seed 20281.
-    Row { scene: "remote_cell_led", truth: 0.0031524, std_error: 0.0000071 },
-    // --time 280s, seed 20291.
-    Row { scene: "remote_cell_bend", truth: 0.00596, std_error: 0.00017 },
-    // The image contains the whole exit, so its flux is that of remote_cell_scatter.
-    Row { scene: "luminance_image_scatter", truth: 0.011507, std_error: 0.000023 },
-];
 /// Runs of each estimator, each with its own seed.
 const RUNS: u64 = 4;
 /// Passes of the gather method in a run; also waves of photons or backward paths.
@@ -65,7 +43,7 @@ fn main() {
     println!("|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|---|--:|");
     let wanted: Vec<String> = std::env::args().skip(1).filter(|name| name != "--bench").collect();
     for row in
-        ROWS.iter().filter(|row| wanted.is_empty() || wanted.iter().any(|name| name == row.scene))
+        TRUTHS.iter().filter(|row| wanted.is_empty() || wanted.iter().any(|name| name == row.scene))
     {
         println!("{}", pool.install(|| compare(row)));
     }
@@ -86,21 +64,10 @@ struct Found {
 impl Found {
     /// Result of one run.
     fn new(scene: &Scene, readings: &Readings, seconds: f64) -> Self {
-        let slot = Layout::new(scene).sensor_flux(SensorId::new(0), SourceId::new(0));
-        let total = readings.scalar(slot);
-        let (flux, std_error) = (total.mean(), total.std_error());
-        let cells = &readings.sensors[0].cells;
-        if cells.count() == 1 {
-            let (variance, square) = (std_error.powi(2), flux.powi(2));
-            return Self { flux, std_error, variance, square, seconds };
-        }
-        let [mut variance, mut square] = [0.0; 2];
-        for (mean, error) in (0..cells.count()).map(|cell| cells.mean(cell, readings.batch_count()))
-        {
-            variance += error * error;
-            square += mean * mean - error * error;
-        }
-        Self { flux, std_error, variance, square, seconds }
+        let sensor = SensorId::new(0);
+        let total = flux(scene, readings, sensor);
+        let [variance, square] = noise(scene, readings, sensor);
+        Self { flux: total.mean(), std_error: total.std_error(), variance, square, seconds }
     }
 
     /// Result of several runs of the same length together.
@@ -128,7 +95,7 @@ impl Found {
     }
 }
 
-fn compare(row: &Row) -> String {
+fn compare(row: &Truth) -> String {
     let path = format!("scenes/{}.toml", row.scene);
     let job = input::load(Path::new(&path), &Settings::default()).expect("the scenes are valid");
     let [forward, backward, mix] =
@@ -215,9 +182,9 @@ fn gathered(job: &Job) -> Gathering {
 }
 
 /// A flux over the truth, with the error of both.
-fn over_truth(row: &Row, found: &Found) -> (f64, f64) {
-    let ratio = found.flux / row.truth;
-    (ratio, ratio * (found.std_error / found.flux).hypot(row.std_error / row.truth))
+fn over_truth(row: &Truth, found: &Found) -> (f64, f64) {
+    let ratio = found.flux / row.flux;
+    (ratio, ratio * (found.std_error / found.flux).hypot(row.std_error / row.flux))
 }
 
 /// Traces some waves of a scene; returns CPU seconds and findings.

@@ -7,7 +7,7 @@ pub(crate) struct Row {
     pub(crate) name: &'static str,
     pub(crate) what: &'static str,
     pub(crate) source: Source,
-    pub(crate) truth: Truth,
+    pub(crate) truth: Reference,
     pub(crate) paths: u64,
 }
 
@@ -20,146 +20,145 @@ pub(crate) enum Source {
 }
 
 /// How the flux on the first sensor is known.
-pub(crate) enum Truth {
-    /// From a committed long run, lm.
-    Known { flux: f64, std_error: f64 },
+pub(crate) enum Reference {
+    /// By a long run: benches/truths.rs.
+    Known,
     /// By this unbiased estimator.
     Traced(Request),
 }
 
-/// The truths that are known are those of `ROWS` in benches/gather.rs.
 pub(crate) const ROWS: [Row; 20] = [
     Row {
         name: "remote_cell_sun",
         what: "mirror tube, sun",
         source: Source::Shipped,
-        truth: Truth::Known { flux: 0.10938, std_error: 0.00028 },
+        truth: Reference::Known,
         paths: 700_000,
     },
     Row {
         name: "remote_cell_rod",
         what: "solid rod, sun",
         source: Source::Shipped,
-        truth: Truth::Known { flux: 0.14020, std_error: 0.00025 },
+        truth: Reference::Known,
         paths: 700_000,
     },
     Row {
         name: "remote_cell_long",
         what: "long mirror tube",
         source: Source::Shipped,
-        truth: Truth::Known { flux: 0.035_070, std_error: 0.000_082 },
+        truth: Reference::Known,
         paths: 200_000,
     },
     Row {
         name: "remote_cell_scatter",
         what: "wall that scatters by 1 deg",
         source: Source::Shipped,
-        truth: Truth::Known { flux: 0.011_507, std_error: 0.000_023 },
+        truth: Reference::Known,
         paths: 700_000,
     },
     Row {
         name: "grazing",
         what: "luminance at 84 deg, rod",
         source: Source::Text(|| GRAZING.to_owned()),
-        truth: Truth::Traced(Request::Backward),
+        truth: Reference::Traced(Request::Backward),
         paths: 3_000_000,
     },
     Row {
         name: "low_index",
         what: "index 1.33, glued emitter",
         source: Source::Text(|| LOW_INDEX.to_owned()),
-        truth: Truth::Traced(Request::Mix),
+        truth: Reference::Traced(Request::Mix),
         paths: 2_000_000,
     },
     Row {
         name: "rough_exit",
         what: "rough exit, 0.3 deg source",
         source: Source::Text(|| ROUGH_EXIT.to_owned()),
-        truth: Truth::Traced(Request::Mix),
+        truth: Reference::Traced(Request::Mix),
         paths: 2_000_000,
     },
     Row {
         name: "rim",
         what: "small mirror, cut windows",
         source: Source::Text(|| RIM.to_owned()),
-        truth: Truth::Traced(Request::Mix),
+        truth: Reference::Traced(Request::Mix),
         paths: 3_000_000,
     },
     Row {
         name: "rod",
         what: "short rod, LED",
         source: Source::Text(|| guide(CYLINDER)),
-        truth: Truth::Traced(Request::Mix),
+        truth: Reference::Traced(Request::Mix),
         paths: 2_000_000,
     },
     Row {
         name: "square_rod",
         what: "rectangular rod",
         source: Source::Text(|| guide(SQUARE)),
-        truth: Truth::Traced(Request::Mix),
+        truth: Reference::Traced(Request::Mix),
         paths: 2_000_000,
     },
     Row {
         name: "taper",
         what: "rod that widens",
         source: Source::Text(|| guide(TAPER)),
-        truth: Truth::Traced(Request::Mix),
+        truth: Reference::Traced(Request::Mix),
         paths: 2_000_000,
     },
     Row {
         name: "bent_rod",
         what: "rod, bend of 90 deg",
         source: Source::Text(|| guide(BEND)),
-        truth: Truth::Traced(Request::Mix),
+        truth: Reference::Traced(Request::Mix),
         paths: 2_000_000,
     },
     Row {
         name: "mitred_corner",
         what: "rod, corner of 60 deg",
         source: Source::Text(|| guide(CORNER)),
-        truth: Truth::Traced(Request::Mix),
+        truth: Reference::Traced(Request::Mix),
         paths: 2_000_000,
     },
     Row {
         name: "dome",
         what: "rod with a dome and a bubble",
         source: Source::Text(|| guide(DOME).replace("pipe.exit\"]", "dome.surface\"]")),
-        truth: Truth::Traced(Request::Mix),
+        truth: Reference::Traced(Request::Mix),
         paths: 2_000_000,
     },
     Row {
         name: "mirror_bend",
         what: "mirror tube, bend of 90 deg",
         source: Source::Text(|| MIRROR_BEND.to_owned()),
-        truth: Truth::Traced(Request::Mix),
+        truth: Reference::Traced(Request::Mix),
         paths: 1_500_000,
     },
     Row {
         name: "duct",
         what: "square mirror duct, its corner",
         source: Source::Text(|| DUCT.to_owned()),
-        truth: Truth::Traced(Request::Mix),
+        truth: Reference::Traced(Request::Mix),
         paths: 1_500_000,
     },
     Row {
         name: "turbid_rod",
         what: "rod with particles",
         source: Source::Text(|| guide(CYLINDER).replace("_per_mm = 0.002", TURBID)),
-        truth: Truth::Traced(Request::Mix),
+        truth: Reference::Traced(Request::Mix),
         paths: 1_500_000,
     },
     Row {
         name: "white_corner",
         what: "white duct",
         source: Source::Text(|| DUCT.replace("specular", "lambertian")),
-        truth: Truth::Traced(Request::Mix),
+        truth: Reference::Traced(Request::Mix),
         paths: 1_500_000,
     },
     Row {
         name: "two_sizes",
         what: "tubes of 1 and 20 mm, rough",
         source: Source::Text(|| TWO_SIZES.to_owned()),
-        truth: Truth::Traced(Request::Mix),
+        truth: Reference::Traced(Request::Mix),
         paths: 1_500_000,
     },
     Row {
@@ -171,7 +170,7 @@ pub(crate) const ROWS: [Row; 20] = [
                 concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/meshes/lightguide.glb"),
             )
         }),
-        truth: Truth::Traced(Request::Mix),
+        truth: Reference::Traced(Request::Mix),
         paths: 1_500_000,
     },
 ];

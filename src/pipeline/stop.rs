@@ -45,7 +45,7 @@ const DARK_PATHS: u64 = 200_000_000;
 /// Whether the target ends a run of this many paths, and why.
 pub(super) fn by_target(target: &TargetProgress, paths: u64) -> Option<Stop> {
     let (reached, wanted) = (&target.reached, target.wanted);
-    // An error from so little may be far too small.
+    // An error estimated from so few passes may be far too small.
     if reached.status == Status::TooFew {
         return None;
     }

@@ -214,7 +214,8 @@ impl GatherPlan {
 /// Size of the window during a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 pub enum Schedule {
-    /// It shrinks in stages of many passes each; the value comes from the stage with the smallest total error, among those with at least ten passes if there are any.
+    /// It shrinks in stages of many passes each; the value comes from the stage with the smallest total error, among those with
+    /// at least ten passes if there are any.
     #[default]
     #[serde(rename = "stages")]
     Stages,

@@ -15,8 +15,8 @@ pub(crate) const SEED: u64 = 0x7069_6c6f_7431;
 /// Segments of photon paths in an automatic pass of gathering where the length of the run is not known.
 pub(crate) const PASS_SEGMENTS: f64 = 4e6;
 
-/// Exponent of the time to an error by the bias that stages take away, log2 3: of the pairs of a pass half remain, and its
-/// gather paths, half of its work, double.
+/// Growth of the time to an error with the bias to be removed, log2 3: a stage with half the bias has half of the pairs in a
+/// pass, and twice the gather paths, which are half of the work.
 const STAGE_COST: f64 = 1.585;
 
 /// Performance of an estimator in a pilot.
@@ -28,7 +28,7 @@ pub struct Trial {
     /// square of a relative error, it is the time to reach that error. `None` where nothing was
     /// found.
     pub cost: Option<f64>,
-    /// Least bias over the value, where three standard errors leave any, 1.
+    /// Bias over the value, less three of its standard errors, 1; `None` where nothing is left.
     pub bias: Option<f64>,
     /// Work before there is any result, in seconds of one thread of the reference machine.
     pub least: f64,
@@ -176,7 +176,7 @@ fn sources(scene: &Scene) -> impl Iterator<Item = SourceId> + Clone + use<> {
 mod tests {
     use super::*;
 
-    /// Cells after batches of which each lights some.
+    /// Sums over some batches; each lights the cells that it lists.
     fn cells(batches: &[&[usize]]) -> Cells {
         let mut all = Cells::new(4);
         for lit in batches {

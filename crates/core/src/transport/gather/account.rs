@@ -12,7 +12,7 @@ use lumiduct_base::number::{format_value, format_with_error};
 
 /// Difference, in errors, between a gathered flux and that of photons above which there is a
 /// warning.
-const CONTRADICTED: f64 = 4.0;
+const WORTH_A_REMARK: f64 = 4.0;
 
 /// How the values of a sensor were computed; `None` before the first pass.
 pub(crate) fn account(
@@ -36,7 +36,7 @@ pub(crate) fn account(
             off.abs()
         )
     });
-    let warning = off_photons.filter(|off| off.abs() > CONTRADICTED).map(|off| {
+    let warning = off_photons.filter(|off| off.abs() > WORTH_A_REMARK).map(|off| {
         format!(
             "the gathered flux of sensor `{sensor}` is {:.1} standard errors {} the flux that photons of the same \
                 run carried there ({flux}); its bias includes this difference: a feature of the light is smaller \

@@ -88,8 +88,8 @@ impl GatherSettings {
         }
     }
 
-    /// Passes of a stage after which it is next decided whether it ends: they double. Only the first may end after so few
-    /// that they give no error bar: of a run with 24 passes, enough are then left for the second.
+    /// Passes of a stage after which it is next decided whether it ends: they double. Only the first stage may end with too
+    /// few passes for an error bar: a run of 24 passes then has enough left for the second.
     pub(crate) fn next_decision(&self, stage: u32, passes: u64) -> u64 {
         let first = if stage == 0 { WAVE_PASSES } else { FIRST_PASSES };
         let (planned, doubled) = (self.planned_passes(stage), (2 * passes).max(first));

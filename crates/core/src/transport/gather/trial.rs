@@ -28,7 +28,7 @@ const PER_PATH: f64 = 4.0;
 /// Cost of a run over what the few pairs of a pilot show, 1: they miss rare strong pairs and stages that are given up
 /// (benches/choice.rs).
 const UNSEEN: f64 = 4.0;
-/// Standard errors by which a bias is above what is certain of it, from so few passes.
+/// Standard errors that are taken off a bias, since the passes of a pilot are few.
 const CERTAIN: f64 = 3.0;
 /// Most work of pairs over the rest of a pass, 1: with more of them, a larger pass hardly gains.
 const MOST_PAIR_WORK: f64 = 2.0;

@@ -1,8 +1,8 @@
 //! Work, counted instead of timed: the same on every machine, so that choices based on it are
 //! reproducible.
 //!
-//! The constants are nanoseconds on one thread of the machine of benches/results/2026-11-24.md, in scenes of a usual kind:
-//! plain tubes and rods take less, meshes, bends and prism film up to four times as much. For a choice only their ratios matter.
+//! The constants are nanoseconds on one thread of the machine of benches/results/2026-11-24.md, in typical scenes:
+//! plain tubes and rods take less, meshes, bends and prism film up to four times as much. A choice depends on their ratios alone.
 
 use crate::transport::Readings;
 

@@ -173,8 +173,7 @@ pub trait Observer {
     }
 
     /// Sees an event; a break ends the path. In a pair of observers, the second does not see an event at which the first ends
-    /// the path.
-    /// Implementations are inlined into the loop, which saves a tenth of a mirror bounce.
+    /// the path. Implementations are inlined into the loop, which saves a tenth of a mirror bounce.
     fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()>;
 }
 

@@ -84,7 +84,7 @@ pub fn run_slice(
         return Ok(nothing(0));
     };
     let of = run.sliceable_batches().map_err(refusal)?;
-    let batches = options.shard.of(of);
+    let batches = run.batches_of_part(options.shard, of);
     let count = (batches.end - batches.start).max(1) as f64;
     let slice = run.slice(batches.clone(), of, &mut |done| watch(done as f64 / count));
     let Some(slice) = slice else { return Ok(nothing(of)) };

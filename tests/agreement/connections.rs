@@ -1,10 +1,10 @@
 //! Light that is joined to sensors and sources: exact fields behind one diffuse face.
 
+use crate::calibration::assert_calibrated;
 use crate::traced;
 use crate::trial::{Comparison, Way, measures};
 use lumiduct_core::plan::Request;
 use lumiduct_input::{self as input, Job, Settings};
-use rayon::prelude::*;
 use std::f64::consts::PI;
 use std::path::Path;
 
@@ -55,10 +55,8 @@ fn a_disc_sees_a_lit_disc_by_their_configuration_factor() {
     assert_exact("disc to disc", LIT_DISC, &[("cell.flux", flux_of_lit_disc())]);
 }
 
-/// Over many seeds the deviations from the truth are as large as the errors that the runs state.
 #[test]
 fn errors_of_joined_light_are_calibrated() {
-    const SEEDS: u64 = 200;
     let disc: fn(&Settings) -> Job = |settings| traced::load(LIT_DISC, settings);
     let sphere: fn(&Settings) -> Job = |settings| {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/integrating_sphere.toml");
@@ -68,21 +66,12 @@ fn errors_of_joined_light_are_calibrated() {
     for (what, load, expected) in
         [("disc", disc, flux_of_lit_disc()), ("sphere", sphere, 0.1394258)]
     {
-        let deviation = |seed| {
+        assert_calibrated(what, 1.0, |seed| {
             let (estimator, paths) = (Some(Request::Mix), Some(1280));
             let job = load(&Settings { estimator, seed: Some(seed), paths, ..Settings::default() });
             let flux = &traced::measures(&job).values["cell.flux"];
             (flux.value - expected) / flux.std_error
-        };
-        let deviations: Vec<f64> = (1..=SEEDS).into_par_iter().map(deviation).collect();
-        let mean_of =
-            |power| deviations.iter().map(|z: &f64| z.powi(power)).sum::<f64>() / SEEDS as f64;
-        let [mean, square] = [1, 2].map(mean_of);
-        println!("{what}: mean {mean:.3}, mean square {square:.3} over {SEEDS} seeds");
-        // Of normal deviations the mean has an error of 1/√n, the mean square of √(2/n).
-        let error = (SEEDS as f64).sqrt().recip();
-        assert!(mean.abs() < 4.0 * error, "{what}: {mean}");
-        assert!((square - 1.0).abs() < 4.0 * 2f64.sqrt() * error, "{what}: {square}");
+        });
     }
 }
 

@@ -10,6 +10,7 @@
     reason = "a line for each value, shown by --nocapture and on failure"
 )]
 
+mod calibration;
 mod connections;
 mod consistency;
 mod daylight;

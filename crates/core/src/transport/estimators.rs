@@ -11,9 +11,10 @@ use crate::transport::backward::mix::{self, Mixing};
 use crate::transport::estimate::{Account, Estimate};
 use crate::transport::gather::estimator::Gather;
 use crate::transport::gather::merged::MergedStream;
+use crate::transport::gather::stages::WAVE_PASSES;
 use crate::transport::gather::stream::PhotonStream;
 use crate::transport::gather::{self, GatherSettings, scatterers};
-use crate::transport::tally::{Counts, Series, Stage};
+use crate::transport::tally::{Counts, Series, Stage, merged};
 use crate::transport::task::Task;
 use crate::transport::trial::{Trials, Tried};
 use crate::transport::walk::emitters::invisible;
@@ -52,12 +53,27 @@ pub(crate) enum Portion {
     Pass,
 }
 
-/// A batch whose gather paths are traced, and which may observe its photons.
-pub(crate) enum InProgress<'b, 's> {
-    Backward(Box<Readings>),
-    Mix(Box<Mixing<'b, 's>>),
-    Gather(Box<PhotonStream<'b, 's>>),
-    Mis(Box<MergedStream<'b, 's>>),
+/// What an estimator does in a block of batches, and in part with their photons.
+pub(crate) enum Block<'b, 's> {
+    Backward {
+        own: &'b Backward<'s>,
+        task: Task<'b>,
+        ended: Vec<Counts>,
+    },
+    Mix {
+        own: &'b Backward<'s>,
+        task: Task<'b>,
+        ended: Vec<Counts>,
+        current: Option<Box<Mixing<'b, 's>>>,
+    },
+    Gather {
+        first: u64,
+        stream: Box<PhotonStream<'b, 's>>,
+    },
+    Mis {
+        first: u64,
+        stream: Box<MergedStream<'b, 's>>,
+    },
 }
 
 impl<'s> Prepared<'s> {
@@ -87,15 +103,26 @@ impl<'s> Prepared<'s> {
         }
     }
 
-    /// Traces the gather paths of a batch; `None` if it was stopped.
-    pub(crate) fn begin<'b>(&'b self, task: Task<'b>) -> Option<InProgress<'b, 's>> {
+    /// Batches that a thread traces together, a block: photons of passes of gathering meet the records of all of them.
+    pub(crate) fn block_batches(&self) -> u64 {
+        match self {
+            Self::Backward(_) | Self::Mix(_) => 1,
+            Self::Gather(_) | Self::Mis(_) => WAVE_PASSES,
+        }
+    }
+
+    /// Begins a block, from the task's batch on; `None` if it was stopped.
+    pub(crate) fn begin<'b>(&'b self, task: Task<'b>, batches: u64) -> Option<Block<'b, 's>> {
+        let ended = Vec::with_capacity(batches as usize);
         Some(match self {
-            Self::Backward(own) => InProgress::Backward(Box::new(own.trace(task)?)),
-            Self::Mix(own) => InProgress::Mix(Box::new(Mixing::begin(own, task)?)),
-            Self::Gather(own) => InProgress::Gather(Box::new(own.begin(task)?)),
+            Self::Backward(own) => Block::Backward { own, task, ended },
+            Self::Mix(own) => Block::Mix { own, task, ended, current: None },
+            Self::Gather(own) => {
+                Block::Gather { first: task.batch, stream: own.begin(task, batches)?.into() }
+            }
             Self::Mis(own) => {
-                let stream = own.begin(task)?;
-                InProgress::Mis(Box::new(MergedStream::new(stream, task.photon_fluxes)))
+                let stream = MergedStream::new(own.begin(task, batches)?, task.photon_fluxes);
+                Block::Mis { first: task.batch, stream: stream.into() }
             }
         })
     }
@@ -158,50 +185,68 @@ impl<'s> Prepared<'s> {
     }
 }
 
-impl InProgress<'_, '_> {
+impl Block<'_, '_> {
+    /// Makes ready for the photons of a batch of the block; `None` if stopped.
+    pub(crate) fn begin_photons(&mut self, batch: u64) -> Option<()> {
+        match self {
+            Self::Backward { own, task, ended } => {
+                ended.push(Counts::closed([own.trace(Task { batch, ..*task })?]));
+            }
+            Self::Mix { own, task, ended, current } => {
+                let next = Mixing::begin(own, Task { batch, ..*task })?;
+                ended.extend(current.replace(Box::new(next)).map(|own| own.into_counts()));
+            }
+            Self::Gather { first, stream } => stream.begin_pass((batch - *first) as usize),
+            Self::Mis { first, stream } => stream.begin_pass((batch - *first) as usize),
+        }
+        Some(())
+    }
+
     /// Whether it observes photons.
     pub(crate) fn observes(&self) -> bool {
         match self {
-            Self::Backward(_) => false,
-            Self::Mix(_) | Self::Gather(_) | Self::Mis(_) => true,
+            Self::Backward { .. } => false,
+            Self::Mix { .. } | Self::Gather { .. } | Self::Mis { .. } => true,
         }
     }
 
-    /// The counts of the batch, after its photons.
+    /// The counts of all batches, after the photons of the last.
     pub(crate) fn finish(self) -> Counts {
         match self {
-            Self::Backward(readings) => Counts::closed([*readings]),
-            Self::Mix(mixing) => Counts::closed([mixing.readings]),
-            Self::Gather(stream) => Counts::closed(stream.finish().0),
-            Self::Mis(stream) => Counts::closed(stream.finish().0),
+            Self::Backward { ended, .. } => merged(ended),
+            Self::Mix { ended, current, .. } => {
+                merged(ended.into_iter().chain(current.map(|own| own.into_counts())))
+            }
+            Self::Gather { stream, .. } => stream.into_counts(),
+            Self::Mis { stream, .. } => stream.into_counts(),
         }
     }
 }
 
-impl Observer for InProgress<'_, '_> {
+impl Observer for Block<'_, '_> {
     #[inline]
     fn roulette_below(&self) -> f64 {
         match self {
-            Self::Backward(_) => ROULETTE_BELOW,
-            Self::Mix(own) => own.roulette_below(),
-            Self::Gather(own) => own.roulette_below(),
-            Self::Mis(own) => own.roulette_below(),
+            Self::Backward { .. } | Self::Mix { current: None, .. } => ROULETTE_BELOW,
+            Self::Mix { current: Some(own), .. } => own.roulette_below(),
+            Self::Gather { stream, .. } => stream.roulette_below(),
+            Self::Mis { stream, .. } => stream.roulette_below(),
         }
     }
 
     #[inline]
     fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
         match self {
-            Self::Backward(_) => ControlFlow::Continue(()),
-            Self::Mix(own) => own.see(path, event),
-            Self::Gather(own) => own.see(path, event),
-            Self::Mis(own) => own.see(path, event),
+            Self::Backward { .. } | Self::Mix { current: None, .. } => ControlFlow::Continue(()),
+            Self::Mix { current: Some(own), .. } => own.see(path, event),
+            Self::Gather { stream, .. } => stream.see(path, event),
+            Self::Mis { stream, .. } => stream.see(path, event),
         }
     }
 }
 
-/// All estimators of a batch, as one observer of its photons.
-pub(crate) struct Observers<'o, 'b, 's>(pub(crate) &'o mut [InProgress<'b, 's>]);
+/// All estimators of a block, as one observer of its photons.
+pub(crate) struct Observers<'o, 'b, 's>(pub(crate) &'o mut [Block<'b, 's>]);
 
 impl Observer for Observers<'_, '_, '_> {
     /// The smallest of all: merged paths have weights that roulette would change.

@@ -13,7 +13,7 @@ pub(crate) const BATCHES: u64 = 16;
 /// The pilot uses random numbers of another seed, so that its paths do not count again in the run.
 pub(crate) const SEED: u64 = 0x7069_6c6f_7431;
 /// Segments of photon paths in an automatic pass of gathering where the length of the run is not known.
-pub(crate) const PASS_SEGMENTS: f64 = 4e6;
+pub(crate) const PASS_SEGMENTS: f64 = 1e6;
 
 /// Growth of the time to an error with the bias to be removed, log2 3: a stage with half the bias has half of the pairs in a
 /// pass, and twice the gather paths, which are half of the work.

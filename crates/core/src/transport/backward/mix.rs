@@ -18,7 +18,7 @@ use crate::transport::connect::weights::Etendues;
 use crate::transport::forward;
 use crate::transport::stop::Pace;
 use crate::transport::tally::readings::DetectedLight;
-use crate::transport::tally::work;
+use crate::transport::tally::{Counts, work};
 use crate::transport::task::Task;
 use crate::transport::trial::{BATCHES, Trials, Tried};
 use crate::transport::walk::follow::{arrivals_of, comes_through_aim, etendue_of};
@@ -42,7 +42,7 @@ pub(crate) struct Mixing<'m, 's> {
     /// For points of sensors that vertices are joined to.
     joints: Sampler,
     /// Counts of the batch, not closed.
-    pub(crate) readings: Readings,
+    readings: Readings,
 }
 
 impl<'m, 's> Mixing<'m, 's> {
@@ -61,6 +61,11 @@ impl<'m, 's> Mixing<'m, 's> {
             joints: Sampler::for_path(backward.seed, stream::JOINED_SENSORS, task.batch),
             readings,
         })
+    }
+
+    /// The counts of the batch, after its photons.
+    pub(crate) fn into_counts(self) -> Counts {
+        Counts::closed([self.readings])
     }
 }
 

@@ -25,6 +25,9 @@ use std::ops::ControlFlow;
 /// Gather paths that have ended, and their records.
 #[derive(Debug, Default)]
 pub(crate) struct EndedPaths<'s> {
+    /// Passes of the block, and the one that is being traced.
+    pub(crate) passes: usize,
+    pub(crate) pass: usize,
     pub(crate) paths: Vec<RecordedPath>,
     pub(crate) records: Vec<GatherRecord<'s>>,
 }
@@ -268,6 +271,7 @@ impl<'s> Collecting<'_, 's> {
             self.found.paths.push(RecordedPath {
                 index: self.index,
                 sensor,
+                pass: self.found.pass,
                 cells,
                 etendues: None,
             });

@@ -115,6 +115,8 @@ pub(super) struct RecordedPath {
     /// Its number among those of its sensor.
     pub(super) index: u64,
     pub(super) sensor: SensorId,
+    /// Its pass in the block.
+    pub(super) pass: usize,
     pub(super) cells: SmallVec<[usize; 1]>,
     /// Merged: the etendues that weight its only record; the photon's part is still missing.
     pub(super) etendues: Option<Etendues>,

@@ -7,32 +7,34 @@
 
 use crate::scene::Visibility;
 use crate::transport::connect::weights::Etendues;
-use crate::transport::gather::kernel::ORDERS;
+use crate::transport::gather::block::BlockCounts;
 use crate::transport::gather::merge::{FacePassage, ROULETTE_BELOW, Recent};
 use crate::transport::gather::stream::{Photon, PhotonStream};
+use crate::transport::tally::Counts;
 use crate::transport::tally::readings::DetectedLight;
 use crate::transport::tally::work::RecordWork;
 use crate::transport::walk::follow::{arrivals_of, etendue_of};
 use crate::transport::walk::scatter::facing;
-use crate::transport::{
-    Departure, Detection, Event, MetEmission, Observer, Path, Readings, Vertex,
-};
+use crate::transport::{Departure, Detection, Event, MetEmission, Observer, Path, Vertex};
 use std::ops::ControlFlow;
 
 /// Weights for the light of one gather path.
 #[derive(Debug)]
 pub(super) struct Merging<'a> {
-    /// Etendue of the path, mm² sr.
+    /// Etendue of the path, its share of the block, mm² sr.
     etendue: f64,
-    /// Flux of one photon of each source, lm or W.
+    /// Flux of one photon of each source, its share of a pass, lm or W.
     photon_fluxes: &'a [f64],
+    /// Passes of the block.
+    passes: f64,
     /// G/q of vertex D once the path has passed it, mm² sr.
     window: f64,
 }
 
 impl<'a> Merging<'a> {
-    pub(super) fn new(etendue: f64, photon_fluxes: &'a [f64]) -> Self {
-        Self { etendue, photon_fluxes, window: 0.0 }
+    /// Weights of a path with this share of its pass, in a block of this many passes.
+    pub(super) fn new(etendue: f64, photon_fluxes: &'a [f64], passes: f64) -> Self {
+        Self { etendue: etendue / passes, photon_fluxes, passes, window: 0.0 }
     }
 
     /// The path has passed vertex D: G/q of the side that it took there, mm² sr.
@@ -48,7 +50,7 @@ impl<'a> Merging<'a> {
 
     /// Share counted by emission that the path has met, 1.
     pub(super) fn weight(&self, met: &MetEmission) -> f64 {
-        let photon = self.photon_fluxes[met.source.index()] / met.emitted;
+        let photon = self.photon_fluxes[met.source.index()] / (met.emitted * self.passes);
         Etendues::unjoined(photon, self.etendue, self.window).backward()
     }
 }
@@ -57,21 +59,31 @@ impl<'a> Merging<'a> {
 pub(crate) struct MergedStream<'p, 's> {
     stream: PhotonStream<'p, 's>,
     photon_fluxes: &'p [f64],
-    /// Etendue represented by the current photon, mm² sr.
+    /// Etendue represented by the current photon, its share of the block, mm² sr.
     photon: f64,
     recent: Recent<'s>,
 }
 
 impl<'p, 's> MergedStream<'p, 's> {
-    /// The records of a pass that wait for its photons.
+    /// The records of a block that wait for its photons.
     pub(crate) fn new(stream: PhotonStream<'p, 's>, photon_fluxes: &'p [f64]) -> Self {
         let recent = Recent::new(stream.gather.settings.depth);
         Self { stream, photon_fluxes, photon: f64::INFINITY, recent }
     }
 
-    /// The counts, not yet closed, and the work in addition to tracing.
-    pub(crate) fn finish(self) -> ([Readings; ORDERS], RecordWork) {
+    /// The counts, and the work in addition to tracing.
+    pub(super) fn finish(self) -> (BlockCounts, RecordWork) {
         self.stream.finish()
+    }
+
+    /// The photons that follow are those of another pass of the block.
+    pub(crate) fn begin_pass(&mut self, place: usize) {
+        self.stream.begin_pass(place);
+    }
+
+    /// The counts of all passes, after their photons.
+    pub(crate) fn into_counts(self) -> Counts {
+        self.stream.into_counts()
     }
 }
 
@@ -86,7 +98,8 @@ impl Observer for MergedStream<'_, '_> {
             Event::Start(start) => {
                 let gather = self.stream.gather;
                 let emitted = gather.emitters.emitted(start.source, path, start.shape);
-                self.photon = self.photon_fluxes[start.source.index()] / emitted;
+                let passes = self.stream.counts.passes() as f64;
+                self.photon = self.photon_fluxes[start.source.index()] / (emitted * passes);
                 self.stream.photon = Photon::of(start, self.photon);
                 self.recent.clear();
             }
@@ -115,16 +128,16 @@ impl MergedStream<'_, '_> {
     }
 
     fn detect(&mut self, path: &Path, light: &Detection<'_>) {
-        let (gather, pass) = (self.stream.gather, self.stream.pass);
+        let PhotonStream { gather, first, counts, current, .. } = &mut self.stream;
         let known = arrivals_of(light, &gather.sensors);
         let (Some(arrivals), false) = (known, light.cells.is_empty()) else { return };
         let gathered = etendue_of(light, gather.scene, arrivals, path.wavelength);
-        let gathered = gathered / pass.gather_paths as f64;
-        let window = self.recent.etendue(pass.window);
+        let gathered = gathered / (first.gather_paths * counts.passes() as u64) as f64;
+        let window = self.recent.etendue(first.window);
         let weight = Etendues::unjoined(self.photon, gathered, window).forward();
         let (flux, source) = (light.flux * weight, light.source);
         let counted = DetectedLight { flux, depth: path.depth, source };
-        for readings in &mut self.stream.orders {
+        for readings in counts.pass(*current) {
             readings.count(
                 (&gather.layout, &gather.scene.light),
                 light.sensor,

@@ -3,6 +3,7 @@
 mod account;
 mod ball;
 mod bias;
+mod block;
 mod collect;
 pub mod contribution;
 mod coverage;

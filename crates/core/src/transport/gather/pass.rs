@@ -12,6 +12,7 @@
 
 use crate::rng::{Sampler, stream};
 use crate::scene::Arrival;
+use crate::transport::gather::block::BlockCounts;
 use crate::transport::gather::collect::{Collecting, EndedPaths};
 use crate::transport::gather::estimator::{Gather, WaitingRecords};
 use crate::transport::gather::kernel::ORDERS;
@@ -25,15 +26,24 @@ use crate::transport::walk::follow::{Gathering, follow};
 use crate::transport::{Path, Readings};
 
 impl<'s> Gather<'s> {
-    /// Traces the gather paths of a batch, whose records then wait for its photons. `None` if
-    /// stopped.
-    pub(crate) fn begin<'g>(&'g self, task: Task<'g>) -> Option<PhotonStream<'g, 's>> {
-        let pass = self.settings.pass(task.stage, task.batch);
-        let paths = pass.gather_paths;
-        let empty = || Readings::of_batch(self.scene, &self.layout, self.seed, paths, pass.batch);
-        let mut orders = [empty(), empty(), empty()];
-        let waiting = self.gather_paths_of(pass, task, &mut orders)?;
-        Some(PhotonStream::new(self, pass, (waiting, task.pace), orders))
+    /// Traces the gather paths of a block of passes, from the task's batch on, whose records then wait for the photons of
+    /// all of them. `None` if stopped.
+    pub(crate) fn begin<'g>(&'g self, task: Task<'g>, passes: u64) -> Option<PhotonStream<'g, 's>> {
+        let passes = passes as usize;
+        let pass_of = |place: usize| self.settings.pass(task.stage, task.batch + place as u64);
+        let first = pass_of(0);
+        let mut counts = BlockCounts::new(passes, self.scene.sensors.len(), |place| {
+            let Pass { gather_paths, batch, .. } = pass_of(place);
+            Readings::of_batch(self.scene, &self.layout, self.seed, gather_paths, batch)
+        });
+        let mut found = EndedPaths { passes, ..EndedPaths::default() };
+        for place in 0..passes {
+            found.pass = place;
+            self.gather_paths_of(pass_of(place), task, counts.pass(place), &mut found)?;
+        }
+        let records = Records::new(found.records, first.window, &self.surfaces, task.pace)?;
+        let waiting = WaitingRecords { paths: found.paths, records };
+        Some(PhotonStream::new(self, first, (waiting, task.pace), counts))
     }
 
     /// Traces the gather paths of a pass; `None` if they were stopped.
@@ -42,8 +52,8 @@ impl<'s> Gather<'s> {
         pass: Pass,
         Task { photon_fluxes, pace, .. }: Task<'_>,
         orders: &mut [Readings; ORDERS],
-    ) -> Option<WaitingRecords<'s>> {
-        let mut found = EndedPaths::default();
+        found: &mut EndedPaths<'s>,
+    ) -> Option<()> {
         for (id, arrivals) in &self.sensors {
             for index in pass.batch * pass.gather_paths..(pass.batch + 1) * pass.gather_paths {
                 if pace.spend(RECORD_WORK).is_break() {
@@ -59,13 +69,15 @@ impl<'s> Gather<'s> {
                     gather: self,
                     window: pass.window,
                     etendue,
-                    merging: self.merging.map(|_| Merging::new(etendue, photon_fluxes)),
+                    merging: self
+                        .merging
+                        .map(|_| Merging::new(etendue, photon_fluxes, found.passes as f64)),
                     id: *id,
                     index,
                     cells,
                     sampler: Sampler::for_path(self.seed, stream::RECORDS + offset, index),
                     facing: None,
-                    found: &mut found,
+                    found,
                     orders,
                 };
                 let gathering = Gathering {
@@ -79,7 +91,6 @@ impl<'s> Gather<'s> {
                 orders[0].segments += segments;
             }
         }
-        let records = Records::new(found.records, pass.window, &self.surfaces, pace)?;
-        Some(WaitingRecords { paths: found.paths, records })
+        Some(())
     }
 }

@@ -5,6 +5,7 @@ use crate::plan::{GatherPlan, RunPlan, Schedule};
 use crate::scene::{Emission, Emitter, Scene, SensorId};
 use crate::transport::Window;
 use crate::transport::gather::sounding::{Reached, Sounded, sound};
+use crate::transport::gather::stages::WAVE_PASSES;
 use crate::transport::stop::{Pace, StopSignal};
 use crate::transport::tally::work;
 use crate::transport::trial::{PASS_SEGMENTS, PhotonPilot};
@@ -29,16 +30,16 @@ const DEPTH: [f64; 2] = [1.0, 8.0];
 /// Smallest number of photons of an automatic pass: in closed mirrors each has 100,000
 /// segments.
 const LEAST_PHOTONS: f64 = 32.0;
-/// Work of a gather path with its records in segments of photon paths, as measured. Limited by pairs, noise is least where
-/// photons and gather paths take equal work.
-const RECORD_SEGMENTS: f64 = 50.0;
-/// Most segments of photon paths in an automatic pass: its records take some 100 MB in every thread.
-const MOST_PASS_SEGMENTS: f64 = 8e6;
+/// Work of a gather path with its records in segments of photon paths, looked up in the filter of records, as measured.
+/// Limited by pairs, noise is least where photons and gather paths take equal work.
+const RECORD_SEGMENTS: f64 = 30.0;
+/// Most segments of photon paths in an automatic pass: the records of a wave take some 100 MB in every thread.
+const MOST_PASS_SEGMENTS: f64 = 2e6;
 /// Passes into which a run of known length is divided: enough for an error bar even if they take half as long again as
 /// expected. Fewer and larger passes contain more pairs.
 const PASSES: f64 = 24.0;
 /// Least passes for each thread in a run of limited time, so that threads end at about the same time.
-const PASSES_PER_THREAD: usize = 4;
+const PASSES_PER_THREAD: usize = 2 * WAVE_PASSES as usize;
 
 /// Windows are similar, and sensors gathered together, up to this ratio of radii and of angles to those of the first, 1.
 const SIMILAR: f64 = SQRT_2;

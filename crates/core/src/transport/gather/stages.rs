@@ -12,8 +12,10 @@ use crate::transport::gather::settings::GatherSettings;
 use crate::transport::gather::window::Window;
 use crate::transport::tally::Counts;
 
-/// Passes of a wave, after which it is first decided whether a stage ends.
+/// Passes of a wave, whose photons meet the records of all of them.
 pub(crate) const WAVE_PASSES: u64 = 4;
+/// Passes after which it is first decided whether the first stage ends: two waves, for as many threads.
+const FIRST_DECISION: u64 = 2 * WAVE_PASSES;
 /// Planned passes of the first stage.
 pub(crate) const FIRST_PASSES: u64 = 16;
 /// Growth of passes times gather paths from stage to stage. A quarter of the pairs of a pass
@@ -21,8 +23,8 @@ pub(crate) const FIRST_PASSES: u64 = 16;
 /// times as many in total.
 const GROWTH: u64 = 16;
 /// Largest number of gather paths of a pass, from all sensors of the run, that stages grow to: with its record
-/// and the entries of an index, each takes about 600 bytes.
-const MOST_GATHER_PATHS: u64 = 1 << 20;
+/// and the entries of an index, each takes about 600 bytes for each pass of a wave.
+const MOST_GATHER_PATHS: u64 = 1 << 18;
 
 /// Readings by kernels of several orders, from the same photons and records.
 #[derive(Debug, Clone, Copy)]
@@ -91,7 +93,7 @@ impl GatherSettings {
     /// Passes of a stage after which it is next decided whether it ends: they double. Only the first stage may end with too
     /// few passes for an error bar: a run of 24 passes then has enough left for the second.
     pub(crate) fn next_decision(&self, stage: u32, passes: u64) -> u64 {
-        let first = if stage == 0 { WAVE_PASSES } else { FIRST_PASSES };
+        let first = if stage == 0 { FIRST_DECISION } else { FIRST_PASSES };
         let (planned, doubled) = (self.planned_passes(stage), (2 * passes).max(first));
         if passes < planned { doubled.min(planned) } else { doubled }
     }
@@ -119,7 +121,7 @@ mod tests {
                 passes
             })
         };
-        assert_eq!(decisions(0), [4, 8, 16, 32]);
+        assert_eq!(decisions(0), [8, 16, 32, 64]);
         assert_eq!(decisions(1), [16, 32, 64, 128]);
     }
 }

@@ -6,15 +6,16 @@ use crate::optics::Incidence;
 use crate::scene::shape::Toward;
 use crate::scene::{MediumId, PrimHit, PrimId, Scene, SourceId, Visibility};
 use crate::transport::connect::weights::Etendues;
+use crate::transport::gather::block::BlockCounts;
 use crate::transport::gather::contribution::{PairWeights, PhotonHit, SurfaceHit, VolumeHit};
 use crate::transport::gather::estimator::{Gather, RecordedPath, WaitingRecords};
 use crate::transport::gather::index::{PhotonKey, TOGETHER};
-use crate::transport::gather::kernel::ORDERS;
 use crate::transport::gather::stages::Pass;
 use crate::transport::stop::Pace;
+use crate::transport::tally::Counts;
 use crate::transport::tally::readings::DetectedLight;
 use crate::transport::tally::work::RecordWork;
-use crate::transport::{Collision, Emergence, Event, Observer, Path, Readings, Vertex};
+use crate::transport::{Collision, Emergence, Event, Observer, Path, Vertex};
 use glam::DVec3;
 use std::ops::ControlFlow;
 
@@ -24,9 +25,12 @@ pub(crate) struct PhotonStream<'p, 's> {
     weights: PairWeights,
     waiting: WaitingRecords<'s>,
     pace: &'p Pace<'p>,
-    /// Counts by E1, E0 and E00, with the emission that gather paths met; not yet closed.
-    pub(super) orders: [Readings; ORDERS],
-    pub(super) pass: Pass,
+    /// Counts by E1, E0 and E00, with the emission that gather paths met.
+    pub(super) counts: BlockCounts,
+    /// The first pass of the block.
+    pub(super) first: Pass,
+    /// Place in the block of the pass whose photons are traced.
+    pub(super) current: usize,
     /// The current photon.
     pub(super) photon: Photon,
     /// Photons to be looked up, and their keys.
@@ -43,7 +47,7 @@ struct Passing {
     flux: f64,
     depth: u32,
     source: SourceId,
-    /// Merged: the etendue it represents, mm² sr.
+    /// Merged: the etendue it represents, its share of the block, mm² sr.
     etendue: f64,
 }
 
@@ -104,29 +108,40 @@ impl Photon {
 impl<'p, 's> PhotonStream<'p, 's> {
     pub(super) fn new(
         gather: &'p Gather<'s>,
-        pass: Pass,
+        first: Pass,
         (waiting, pace): (WaitingRecords<'s>, &'p Pace<'p>),
-        orders: [Readings; ORDERS],
+        counts: BlockCounts,
     ) -> Self {
         Self {
             gather,
-            weights: PairWeights::new(pass.window),
+            weights: PairWeights::new(first.window),
             work: RecordWork { records: waiting.records.all.len() as u64, ..RecordWork::default() },
             waiting,
             pace,
-            orders,
-            pass,
+            counts,
+            first,
+            current: 0,
             photon: Photon { flux: 0.0, source: SourceId::new(0), etendue: 0.0 },
             passing: Vec::with_capacity(TOGETHER),
             keys: Vec::with_capacity(TOGETHER),
         }
     }
 
-    /// Looks up the remaining photons: the counts, not yet closed, and the work in addition to
-    /// tracing.
-    pub(crate) fn finish(mut self) -> ([Readings; ORDERS], RecordWork) {
+    /// The photons that follow are those of another pass of the block.
+    pub(crate) fn begin_pass(&mut self, place: usize) {
         self.look_up();
-        (self.orders, self.work)
+        self.current = place;
+    }
+
+    /// Looks up the remaining photons: the counts, and the work in addition to tracing.
+    pub(super) fn finish(mut self) -> (BlockCounts, RecordWork) {
+        self.look_up();
+        (self.counts, self.work)
+    }
+
+    /// The counts of all passes, after their photons.
+    pub(crate) fn into_counts(self) -> Counts {
+        self.finish().0.into_counts()
     }
 
     /// Whether there may be records for a photon.
@@ -168,7 +183,7 @@ impl<'p, 's> PhotonStream<'p, 's> {
 
     fn look_up(&mut self) {
         let Gather { scene, layout, .. } = self.gather;
-        let (weights, orders, work) = (&self.weights, &mut self.orders, &mut self.work);
+        let (weights, counts, work) = (&self.weights, &mut self.counts, &mut self.work);
         let (passing, keys, pace) = (&self.passing, &self.keys, self.pace);
         work.look_ups += passing.len() as u64;
         // Most photons that pass the filter are near no record after all: one bit for each that is.
@@ -188,19 +203,17 @@ impl<'p, 's> PhotonStream<'p, 's> {
             let Some(shares) = weights.flux(record, &met) else { return };
             work.pairs += 1;
             let own = record.path();
-            let RecordedPath { sensor, cells, etendues, .. } =
+            let RecordedPath { sensor, pass, cells, etendues, .. } =
                 &self.waiting.paths[own.place as usize];
             let weight =
                 etendues.map_or(1.0, |known| Etendues { photon: photon.etendue, ..known }.pair());
             let depth = photon.depth + own.depth;
-            for (readings, share) in orders.iter_mut().zip(shares) {
-                let light = DetectedLight {
-                    flux: photon.flux * share * weight,
-                    depth,
-                    source: photon.source,
-                };
-                readings.count((layout, &scene.light), *sensor, cells, &light);
-            }
+            let light = shares.map(|share| DetectedLight {
+                flux: photon.flux * share * weight,
+                depth,
+                source: photon.source,
+            });
+            counts.count_pair((scene, layout), (*sensor, cells), [*pass, self.current], light);
         });
         work.near += u64::from(near.count_ones());
         self.passing.clear();

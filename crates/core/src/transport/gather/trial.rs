@@ -9,7 +9,7 @@ use crate::transport::gather::estimator::Gather;
 use crate::transport::gather::kernel::ORDERS;
 use crate::transport::gather::merged::MergedStream;
 use crate::transport::gather::settings::{GatherSettings, SensorGroup, groups};
-use crate::transport::gather::stages::FIRST_PASSES;
+use crate::transport::gather::stages::{FIRST_PASSES, WAVE_PASSES};
 use crate::transport::stop::{Pace, StopSignal};
 use crate::transport::tally::work::{self, RecordWork};
 use crate::transport::task::Task;
@@ -32,6 +32,8 @@ const UNSEEN: f64 = 4.0;
 const CERTAIN: f64 = 3.0;
 /// Most work of pairs over the rest of a pass, 1: with more of them, a larger pass hardly gains.
 const MOST_PAIR_WORK: f64 = 2.0;
+/// Passes of a run whose records each photon meets, 1.
+const CROSSED: f64 = WAVE_PASSES as f64;
 /// Segments of photon paths of a pass that measures the work of a whole one.
 const PROBED_SEGMENTS: f64 = 1e5;
 
@@ -99,7 +101,8 @@ fn group_trial(trials: &Trials<'_>, settings: GatherSettings) -> Option<Vec<Trie
         // The cost of one pass, and of one of the run's.
         let least = least(passes[0].photons.sensors[sensor.index()].cells.count());
         let of_pass = |cost: f64| {
-            let by_pairs = FOURTH_ORDER * cost * TRIED_PASSES as f64 * (part / size).powi(2);
+            let by_pairs =
+                FOURTH_ORDER * cost * TRIED_PASSES as f64 * (part / size).powi(2) / CROSSED;
             UNSEEN * by_pairs.max(seconds * least)
         };
         trial.cost = trial.cost.map(of_pass);
@@ -205,13 +208,14 @@ impl TriedPass {
         let pace = Pace::new(signal);
         let photon_fluxes = forward.photon_fluxes();
         let task = Task { batch, stage: 0, photon_fluxes: &photon_fluxes, pace: &pace };
-        let mut stream = gather.begin(task)?;
-        let (photons, (orders, work)) = if gather.merging.is_some() {
+        let mut stream = gather.begin(task, 1)?;
+        let (photons, (counts, work)) = if gather.merging.is_some() {
             let mut stream = MergedStream::new(stream, task.photon_fluxes);
             (forward.batch_observed(batch, &mut stream, &pace)?, stream.finish())
         } else {
             (forward.batch_observed(batch, &mut stream, &pace)?, stream.finish())
         };
+        let orders = counts.into_pass();
         (!pace.is_stopped()).then_some(Self { photons, orders, work })
     }
 
@@ -219,7 +223,8 @@ impl TriedPass {
     fn work_of_whole(&self, gather_paths: u64, part: f64) -> PassWork {
         let RecordWork { records, look_ups, near, pairs } = self.work;
         let grown = |count: u64, factor: f64| (count as f64 / factor) as u64;
-        let near_of_whole = grown(near, part * part).min(grown(self.photons.segments, part));
+        let pairs_part = part * part / CROSSED;
+        let near_of_whole = grown(near, pairs_part).min(grown(self.photons.segments, part));
         // The filter is built for the records, so its errors scale with the photons alone.
         let single = RecordWork {
             records: grown(records, part),
@@ -229,10 +234,11 @@ impl TriedPass {
         let paired = RecordWork {
             look_ups: near_of_whole,
             near: near_of_whole,
-            pairs: grown(pairs, part * part),
+            pairs: grown(pairs, pairs_part),
             records: 0,
         };
-        let gathering = work::of_gather_paths(gather_paths, self.orders[0].segments);
+        let gathering = work::of_gather_paths(gather_paths, self.orders[0].segments)
+            + work::of_filtered(self.photons.segments);
         PassWork {
             photons: work::of_photons(&self.photons) / part,
             by_size: gathering / part + work::of_records(single),

@@ -97,6 +97,7 @@ impl<'s> Run<'s> {
         };
         let mut prepared = backward(scene, plan, &followed, others, &early)?;
         prepared.extend(gathered.into_iter().map(|(_, prepared)| prepared));
+        let block_batches = prepared.iter().map(Prepared::block_batches).max().unwrap_or(1);
         let has_passes = prepared.iter().any(|one| one.portion() == Portion::Pass);
         Some(Self {
             estimators,
@@ -104,6 +105,7 @@ impl<'s> Run<'s> {
             forward: Forward::new(scene, plan.seed, plan.bounce_limit, photons),
             photons: Series::default(),
             others: prepared.into_iter().map(|one| (one, Series::default())).collect(),
+            block_batches,
             wave_batches: if has_passes { WAVE_PASSES } else { GROUPS },
             signal: signal.clone(),
             batches: 0,

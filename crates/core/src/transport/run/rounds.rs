@@ -1,20 +1,22 @@
 //! Rounds of work: bounded waves of batches over all threads, summed in a fixed order.
 //!
 //! A batch holds photon paths and, where sensors are estimated backward or by gathering, gather
-//! paths. A wave is one batch of each group, or, with gathering, some passes; waves are traced in
-//! pieces. A signal stops a run at any time: the batches before the first unfinished one then
+//! paths. A thread traces one batch at a time or, with gathering, a block of passes that share photons
+//! and records. A wave is one batch of each group, or a block of passes; waves are traced in pieces. A signal stops a run at any time: the batches before the first unfinished one then
 //! count, so that a run of that many batches reproduces it.
 
 use crate::plan::Estimator;
-use crate::transport::estimators::{InProgress, Observers, Portion, Prepared};
+use crate::transport::estimators::{Block, Observers, Portion, Prepared};
 use crate::transport::forward::Forward;
 use crate::transport::run::findings::Findings;
 use crate::transport::stop::{Pace, StopSignal};
-use crate::transport::tally::{Counts, Series};
+use crate::transport::tally::sums::Merge;
+use crate::transport::tally::{Counts, Series, merged};
 use crate::transport::task::Task;
 use crate::transport::{EstimatorChoice, Unobserved};
 use rayon::prelude::*;
 use std::fmt;
+use std::ops::Range;
 
 /// Batches of a piece per thread: threads wait for the last batch of a piece.
 pub(super) const PIECE_BATCHES: u64 = 4;
@@ -58,6 +60,8 @@ pub struct Run<'s> {
     pub(super) batches: u64,
     /// Batches of a wave.
     pub(super) wave_batches: u64,
+    /// Batches that a thread traces together.
+    pub(super) block_batches: u64,
     /// Paths so far.
     pub(super) paths: u64,
     pub(super) paths_asked: Option<u64>,
@@ -65,8 +69,8 @@ pub struct Run<'s> {
     pub(super) batches_asked: Option<u64>,
 }
 
-/// Counts of a batch: by photons, and by each of the other estimators.
-pub(super) struct BatchCounts {
+/// Counts of a block of batches: by photons, and by each of the other estimators.
+pub(super) struct BlockCounts {
     pub(super) photons: Counts,
     pub(super) others: Vec<Counts>,
 }
@@ -85,9 +89,16 @@ impl<'s> Run<'s> {
             0 => self.signal.with_grace(),
             _ => self.signal.clone(),
         };
-        let batches: Vec<Option<BatchCounts>> =
-            (self.batches..end).into_par_iter().map(|batch| self.batch(batch, &signal)).collect();
-        batches.into_iter().map_while(|batch| batch).for_each(|batch| self.add(batch));
+        let blocks = self.blocks(self.batches..end);
+        let traced: Vec<Option<BlockCounts>> =
+            blocks.into_par_iter().map(|block| self.block(block, &signal)).collect();
+        traced.into_iter().map_while(|block| block).for_each(|block| self.add(block));
+    }
+
+    /// The blocks of some batches. Apart from the last of a run, all are whole.
+    pub(super) fn blocks(&self, batches: Range<u64>) -> Vec<Range<u64>> {
+        let first = batches.clone().step_by(self.block_batches as usize);
+        first.map(|first| first..(first + self.block_batches).min(batches.end)).collect()
     }
 
     /// Batches up to which a piece may go: to the end of a wave, or, with passes, of all waves before the next decision.
@@ -109,42 +120,48 @@ impl<'s> Run<'s> {
 
     /// Batches that are traced together: a few for each thread.
     pub(super) fn piece(&self) -> u64 {
-        let per_thread = if self.has_passes() { 1 } else { PIECE_BATCHES };
+        let per_thread = if self.has_passes() { self.block_batches } else { PIECE_BATCHES };
         per_thread * rayon::current_num_threads() as u64
     }
 
-    /// Traces one batch: the gather paths of all estimators, then photons past them. `None` if it
-    /// was stopped.
-    pub(super) fn batch(&self, batch: u64, signal: &StopSignal) -> Option<BatchCounts> {
+    /// Traces one block: the gather paths of all estimators, then photons past them, batch by batch. `None` if it was
+    /// stopped.
+    pub(super) fn block(&self, batches: Range<u64>, signal: &StopSignal) -> Option<BlockCounts> {
         let pace = Pace::new(signal);
         let photon_fluxes = self.forward.photon_fluxes();
-        let mut others: Vec<InProgress<'_, 's>> = Vec::with_capacity(self.others.len());
-        for (own, series) in &self.others {
-            let stage = series.stage();
-            others.push(own.begin(Task {
-                batch,
-                stage,
-                photon_fluxes: &photon_fluxes,
-                pace: &pace,
-            })?);
+        let task =
+            Task { batch: batches.start, stage: 0, photon_fluxes: &photon_fluxes, pace: &pace };
+        let count = batches.end - batches.start;
+        let begun = self
+            .others
+            .iter()
+            .map(|(own, series)| own.begin(Task { stage: series.stage(), ..task }, count));
+        let mut others: Vec<Block<'_, 's>> = begun.collect::<Option<_>>()?;
+        let mut photons = Vec::with_capacity(count as usize);
+        for batch in batches {
+            for own in &mut others {
+                own.begin_photons(batch)?;
+            }
+            let traced = if others.iter().any(Block::observes) {
+                self.forward.batch_observed(batch, &mut Observers(&mut others), &pace)?
+            } else {
+                self.forward.batch_observed(batch, &mut Unobserved, &pace)?
+            };
+            photons.push(Counts::one(traced));
         }
-        let photons = if others.iter().any(InProgress::observes) {
-            self.forward.batch_observed(batch, &mut Observers(&mut others), &pace)?
-        } else {
-            self.forward.batch_observed(batch, &mut Unobserved, &pace)?
-        };
-        let others: Vec<Counts> = others.into_iter().map(InProgress::finish).collect();
-        let counts = BatchCounts { photons: Counts::one(photons), others };
+        let others: Vec<Counts> = others.into_iter().map(Block::finish).collect();
+        let counts = BlockCounts { photons: merged(photons), others };
         (!pace.is_stopped()).then_some(counts)
     }
 
-    pub(super) fn add(&mut self, batch: BatchCounts) {
-        self.batches += 1;
-        self.paths += self.batch_paths();
-        for ((_, series), counts) in self.others.iter_mut().zip(batch.others) {
+    pub(super) fn add(&mut self, block: BlockCounts) {
+        let batches = block.photons.batch_count();
+        self.batches += batches;
+        self.paths += batches * self.batch_paths();
+        for ((_, series), counts) in self.others.iter_mut().zip(block.others) {
             series.push(counts);
         }
-        self.photons.push(batch.photons);
+        self.photons.push(block.photons);
     }
 
     /// Traces the rest of a wave, or a whole one.

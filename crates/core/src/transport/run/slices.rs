@@ -4,7 +4,8 @@
 //! of the largest nodes of this tree that lie in it; all slices together contain the same sums as
 //! the run itself.
 
-use crate::transport::run::rounds::{BatchCounts, Run};
+use crate::transport::run::rounds::{BlockCounts, Run};
+use crate::transport::run::shard::Shard;
 use crate::transport::run::state::RunState;
 use crate::transport::tally::Counts;
 use crate::transport::tally::sums::fold_aligned;
@@ -52,7 +53,14 @@ impl Run<'_> {
         Ok(asked.div_ceil(self.wave_batches * self.batch_paths()) * self.wave_batches)
     }
 
-    /// Traces some batches of a run that has `of` in all. `watch` receives the number of finished
+    /// The batches of a part of a run that has `of` in all: whole blocks.
+    pub fn batches_of_part(&self, part: Shard, of: u64) -> Range<u64> {
+        let blocks = part.of(of.div_ceil(self.block_batches));
+        let edge = |block: u64| (block * self.block_batches).min(of);
+        edge(blocks.start)..edge(blocks.end)
+    }
+
+    /// Traces some batches, whole blocks, of a run that has `of` in all. `watch` receives the number of finished
     /// ones. `None` if the signal stopped it.
     pub fn slice(&self, batches: Range<u64>, of: u64, watch: &mut dyn FnMut(u64)) -> Option<Slice> {
         let mut slice = Slice {
@@ -65,9 +73,10 @@ impl Run<'_> {
         let mut first = batches.start;
         while first < batches.end {
             let end = (first + piece).min(batches.end);
-            let traced: Option<Vec<BatchCounts>> =
-                (first..end).into_par_iter().map(|batch| self.batch(batch, &self.signal)).collect();
-            traced?.into_iter().for_each(|batch| slice.add(batch));
+            let blocks = self.blocks(first..end).into_par_iter();
+            let traced: Option<Vec<BlockCounts>> =
+                blocks.map(|block| self.block(block, &self.signal)).collect();
+            traced?.into_iter().for_each(|block| slice.add(block));
             first = end;
             watch(first - batches.start);
         }
@@ -89,9 +98,9 @@ impl Run<'_> {
 }
 
 impl Slice {
-    fn add(&mut self, batch: BatchCounts) {
-        fold_aligned(&mut self.photons, batch.photons);
-        for (nodes, counts) in self.others.iter_mut().zip(batch.others) {
+    fn add(&mut self, block: BlockCounts) {
+        fold_aligned(&mut self.photons, block.photons);
+        for (nodes, counts) in self.others.iter_mut().zip(block.others) {
             fold_aligned(nodes, counts);
         }
     }

@@ -55,6 +55,11 @@ impl Merge for Counts {
     }
 }
 
+/// Counts of batches that follow each other, at least one.
+pub(crate) fn merged(batches: impl IntoIterator<Item = Counts>) -> Counts {
+    batches.into_iter().reduce(|all, own| all.merge(&own)).expect("there is a batch")
+}
+
 /// Counts of a stage: batches with the same settings.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Stage {

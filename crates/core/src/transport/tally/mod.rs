@@ -9,6 +9,7 @@ pub(crate) mod work;
 
 pub use cells::Cells;
 pub use counts::Stage;
+pub(crate) use counts::merged;
 pub use counts::{Counts, Series};
 pub use layout::Layout;
 pub(crate) use layout::{Loss, TAILS};

@@ -12,8 +12,10 @@ pub(crate) const OF_PHOTON_SEGMENT: f64 = 90.0;
 /// Per gather path, and per segment of one.
 const GATHER_PATH: f64 = 1200.0;
 const GATHER_SEGMENT: f64 = 120.0;
-/// Per gather record, made and indexed; per photon that passes the filter; per photon that a record takes.
+/// Per gather record, made and indexed; per segment of a photon, looked up in the filter; per photon that passes the filter;
+/// per photon that a record takes.
 const RECORD: f64 = 3600.0;
+const FILTER: f64 = 60.0;
 const LOOK_UP: f64 = 400.0;
 const PAIR: f64 = 160.0;
 
@@ -33,6 +35,11 @@ pub(crate) struct RecordWork {
 /// Work of photon paths.
 pub(crate) fn of_photons(readings: &Readings) -> f64 {
     PHOTON_PATH * readings.paths() as f64 + OF_PHOTON_SEGMENT * readings.segments as f64
+}
+
+/// Work of photon segments that are looked up in the filter of records.
+pub(crate) fn of_filtered(segments: u64) -> f64 {
+    FILTER * segments as f64
 }
 
 /// Work of a photon path with this many segments.

@@ -1,0 +1,67 @@
+//! The errors that runs state are those they have: over many seeds, deviations from the truth are as large.
+
+use crate::trial::{Gathering, Way, load};
+use lumiduct_core::plan::RunPlan;
+use lumiduct_core::scene::{SensorId, SourceId};
+use lumiduct_core::transport::{Layout, Orders, Run};
+use rayon::prelude::*;
+
+/// Seeds of a comparison.
+pub(crate) const SEEDS: u64 = 200;
+
+/// Checks that deviations over stated errors, one for each seed from 1, have the mean 0 and this mean square.
+pub(crate) fn assert_calibrated(
+    what: &str,
+    expected_square: f64,
+    deviation: impl Fn(u64) -> f64 + Sync,
+) {
+    let deviations: Vec<f64> = (1..=SEEDS).into_par_iter().map(deviation).collect();
+    let mean_of =
+        |power| deviations.iter().map(|z: &f64| z.powi(power)).sum::<f64>() / SEEDS as f64;
+    let [mean, square] = [1, 2].map(mean_of);
+    println!("{what}: mean {mean:.3}, mean square {square:.3} over {SEEDS} seeds");
+    // Of normal deviations the mean has an error of 1/√n, the mean square of √(2/n).
+    let error = (SEEDS as f64).sqrt().recip();
+    assert!(mean.abs() < 4.0 * error, "{what}: {mean}");
+    let off = square / expected_square - 1.0;
+    assert!(off.abs() < 4.0 * 2f64.sqrt() * error, "{what}: {square}");
+}
+
+/// Light that fills a mirror tube: windows have no bias. Limited by records, by photons and by pairs, which four passes
+/// share.
+#[test]
+fn errors_of_gathered_light_are_calibrated() {
+    /// Waves of 4 passes: of t with n - 1 degrees of freedom the mean square is (n - 1)/(n - 3).
+    const WAVES: u64 = 16;
+    let passes = 4.0 * WAVES as f64;
+    let text = r#"
+[finishes]
+mirror = { specular = { reflectance = 1 } }
+[sheets.tube.tube]
+profile = { circle = { radius_mm = 5 } }
+path = [{ straight_mm = 12 }]
+finish = "mirror"
+[sources.lamp.disk]
+radius_mm = 5
+flux_lm = 10
+[sensors]
+exit = { plane = {}, on = "tube.exit", counts = "incident", side = "both" }
+"#;
+    for (limit, [records, photons]) in
+        [("records", [20, 1000]), ("photons", [1000, 20]), ("pairs", [60, 60])]
+    {
+        let gathering = Gathering { depth: 1, radius_mm: 1.0, angle_deg: 10.0, records, photons };
+        for way in [Way::Gather(gathering), Way::Merged(gathering)] {
+            let job = load(text, way);
+            let slot = Layout::new(&job.scene).sensor_flux(SensorId::new(0), SourceId::new(0));
+            let what = format!("{}, limited by {limit}", way.name());
+            assert_calibrated(&what, (passes - 1.0) / (passes - 3.0), |seed| {
+                let mut run = Run::new(&job.scene, &RunPlan { seed, ..job.run.clone() });
+                (0..WAVES).for_each(|_| run.next_wave());
+                let findings = run.findings();
+                let orders = Orders::of(&findings.others[0].stages[0].counts);
+                orders.fourth.scalar(slot).sigmas_from(10.0)
+            });
+        }
+    }
+}

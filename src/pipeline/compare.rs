@@ -23,7 +23,7 @@ use lumiduct_base::error::{Diagnostic, Error, Result};
 use lumiduct_baselines::Baseline;
 use lumiduct_core::plan::Request;
 use lumiduct_core::scene::SensorId;
-use lumiduct_core::transport::{Activity, Interrupt, invisible, scatterers, turbid_media};
+use lumiduct_core::transport::{Activity, Interrupt, invisible, turbid_media};
 use lumiduct_input::{self as input, Job, Settings};
 use lumiduct_report::{self as report, Comparison, Contestant, Folder, FolderLock, Truth};
 use std::path::{Path, PathBuf};
@@ -185,21 +185,15 @@ fn sensor(job: &Job, name: Option<&str>) -> Result<SensorId> {
     Ok(SensorId::new(place))
 }
 
-/// Refuses methods that cannot meet a source, or cannot be merged.
+/// Refuses methods that cannot meet a source, or gather in media.
 fn expect_able(job: &Job, methods: &[Method]) -> Result<()> {
     let unseen = job.scene.sources.iter().find_map(|source| {
         invisible(source, &job.scene).map(|why| format!("the source `{}`: {why}", source.name))
     });
-    let merges = methods.contains(&Method::Run(Request::Mis));
-    if let Some(scatterer) = scatterers(&job.scene).first().filter(|_| merges) {
-        return Err(Error::Usage(format!(
-            "--estimators: mis merges paths of discrete directions only: {scatterer} scatters light; leave it out"
-        )));
-    }
     let maps_photons = methods.contains(&Method::Baseline(Baseline::Sppm));
-    if let Some(scatterer) = turbid_media(&job.scene).next().filter(|_| maps_photons) {
+    if let Some(medium) = turbid_media(&job.scene).next().filter(|_| maps_photons) {
         return Err(Error::Usage(format!(
-            "--estimators: sppm gathers on surfaces only: {scatterer} scatters light; leave it out"
+            "--estimators: sppm gathers on surfaces only: the medium `{medium}` scatters light; leave it out"
         )));
     }
     let blind: Vec<&str> = methods

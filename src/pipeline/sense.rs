@@ -5,7 +5,7 @@ use lumiduct_base::error::{Diagnostic, Result};
 use lumiduct_core::measure;
 use lumiduct_core::plan::{Estimator, Request};
 use lumiduct_core::scene::{Scene, SensorId, Source};
-use lumiduct_core::transport::{BLIND_PATHS, blind_sensors, invisible, scatterers};
+use lumiduct_core::transport::{BLIND_PATHS, blind_sensors, invisible};
 use lumiduct_input::Job;
 use lumiduct_input::keys::Key;
 use lumiduct_input::problems::Problems;
@@ -24,7 +24,6 @@ pub(super) fn expect_sense(job: &Job) -> Result<Vec<Diagnostic>> {
     let mut problems = Problems::default();
     expect_light(job, &mut problems);
     expect_visible_sources(job, &mut problems);
-    expect_discrete_directions(job, &mut problems);
     expect_passages(job, &mut problems);
     expect_measures(&job.scene, target.chain(checks), &mut problems);
     expect_sight(job, &mut problems);
@@ -114,7 +113,7 @@ fn expect_visible_sources(job: &Job, problems: &mut Problems) {
             let (name, wanted) = (&source.name, request.name());
             let message = format!("`{wanted}` paths cannot meet the source `{name}`: {why}");
             problems.error(&key, message).hint(
-                "use `forward`, `mix` or `auto`, or give the source an area and a cone of directions",
+                "use `forward`, `mix`, `mis` or `auto`, or give the source an area and a cone of directions",
             );
         }
     }
@@ -135,22 +134,6 @@ fn expect_passages(job: &Job, problems: &mut Problems) {
         problems
             .error(&Key::of(&["sensors", name, "passage"]), message)
             .hint("use `auto`, `forward`, `backward` or `mix`, or passage = \"every\"");
-    }
-}
-
-/// Refuses merging where a finish scatters.
-fn expect_discrete_directions(job: &Job, problems: &mut Problems) {
-    let requests = requests(job);
-    let is_one = |request| is_asked(request, Estimator::needs_discrete_directions);
-    let Some((key, _)) = requests.iter().find(|(_, request)| is_one(*request)) else {
-        return;
-    };
-    for scatterer in scatterers(&job.scene) {
-        let message =
-            format!("`mis` merges paths of discrete directions only: {scatterer} scatters light");
-        problems
-            .error(key, message)
-            .hint("use `auto`, or one of `forward`, `backward`, `mix` and `gather`");
     }
 }
 

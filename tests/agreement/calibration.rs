@@ -13,7 +13,7 @@ pub(crate) const SEEDS: u64 = 200;
 pub(crate) fn assert_calibrated(
     what: &str,
     expected_square: f64,
-    deviation: impl Fn(u64) -> f64 + Sync,
+    deviation: impl Fn(u64) -> f64 + Sync + Send,
 ) {
     let deviations: Vec<f64> = (1..=SEEDS).into_par_iter().map(deviation).collect();
     let mean_of =

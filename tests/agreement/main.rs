@@ -27,6 +27,7 @@ mod rims;
 mod sensors;
 mod settings;
 mod sources;
+mod techniques;
 #[path = "../traced/mod.rs"]
 mod traced;
 mod trial;

@@ -87,21 +87,6 @@ fn estimators_that_cannot_meet_a_source_are_refused() {
 }
 
 #[test]
-fn merging_is_refused_where_a_finish_scatters() {
-    let dir = tempfile::tempdir().unwrap();
-    let scene = dir.path().join("scene.toml");
-    std::fs::write(&scene, format!("lumiduct = 1\ntitle = \"Refused\"\n{ROD}")).unwrap();
-    let settings = Settings { estimator: Some(Request::Mis), ..Settings::default() };
-    let output = Output::new(Some(dir.path().join("report")), Existing::Replace);
-    let refused = pipeline::run_one(&scene, &settings, &output, &Interrupt::default(), &mut |_| {});
-    let message = refused.unwrap_err().to_string();
-    for word in ["`mis`", "run.estimator", "`rough`", "`film.surface`", "scatters"] {
-        assert!(message.contains(word), "{word}: {message}");
-    }
-    assert!(!output.dir.unwrap().exists());
-}
-
-#[test]
 fn a_sensor_that_sees_nothing_reads_nothing() {
     let text = format!(
         "{ROD}dark = {{ plane = {{ disk = {{ radius_mm = 1 }} }}, at = {{ position_mm = [0, 0, 40] }} }}\n"

@@ -34,7 +34,7 @@ pub(crate) struct Gathering {
 
 impl Gathering {
     /// A usual window for guides of some millimetres.
-    pub(crate) fn to_depth(depth: u32) -> Self {
+    pub(crate) const fn to_depth(depth: u32) -> Self {
         match depth {
             0 => Self { depth, radius_mm: 0.9, angle_deg: 7.0, records: 1500, photons: 3000 },
             _ => Self { depth, radius_mm: 0.6, angle_deg: 5.0, records: 1500, photons: 2000 },
@@ -273,14 +273,23 @@ pub(crate) fn agree(what: &str, text: &str, ways: &[Way]) {
     comparison.assert(what, others.len());
 }
 
-/// Forward, backward, and gathered at depths 0, 2 and 8.
+/// All estimators, forward first.
+const SHALLOW: [Way; 6] = [
+    Way::Forward,
+    Way::Backward,
+    Way::Mixed,
+    Way::Gather(Gathering::to_depth(0)),
+    Way::Gather(Gathering::to_depth(2)),
+    Way::Merged(Gathering { records: 200, photons: 1000, ..Gathering::to_depth(1) }),
+];
+
+/// Forward, backward, mixed, gathered at depths 0, 2 and 8, and merged.
 pub(crate) fn all_agree(what: &str, text: &str) {
-    let [shallow, middle, deep] = [0, 2, 8].map(|depth| Way::Gather(Gathering::to_depth(depth)));
-    agree(what, text, &[Way::Forward, Way::Backward, Way::Mixed, shallow, middle, deep]);
+    let deep = Way::Gather(Gathering::to_depth(8));
+    agree(what, text, &[&SHALLOW[..], &[deep]].concat());
 }
 
 /// The same without the deepest, for scenes where light meets few surfaces.
 pub(crate) fn shallow_agree(what: &str, text: &str) {
-    let [shallow, middle] = [0, 2].map(|depth| Way::Gather(Gathering::to_depth(depth)));
-    agree(what, text, &[Way::Forward, Way::Backward, Way::Mixed, shallow, middle]);
+    agree(what, text, &SHALLOW);
 }

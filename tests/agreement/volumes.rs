@@ -94,7 +94,7 @@ fn light_that_is_not_scattered_falls_off_by_both_coefficients() {
 }
 
 /// A block of a medium, a clear bubble and a white disk in it, lit from below and from inside.
-fn block(scattering: &str) -> String {
+pub(crate) fn block(scattering: &str) -> String {
     format!(
         r#"
 [media.turbid]

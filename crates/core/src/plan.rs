@@ -60,8 +60,8 @@ pub enum Request {
     /// Gather paths from the sensors that end in records, and photon paths from the sources that are gathered there.
     #[serde(rename = "gather")]
     Gather,
-    /// Forward, backward and gather at once, weighted path by path (multiple importance sampling); for scenes whose
-    /// finishes do not scatter.
+    /// Forward, backward and gather at once, weighted path by path (multiple importance sampling), with connections where
+    /// light is scattered.
     #[serde(rename = "mis")]
     Mis,
 }

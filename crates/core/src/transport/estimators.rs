@@ -8,12 +8,14 @@ use crate::plan::Estimator;
 use crate::scene::{Scene, Sensor, SensorId, Source};
 use crate::transport::backward::estimator::{self as backward, Backward};
 use crate::transport::backward::mix::{self, Mixing};
+use crate::transport::connect::vertex::scatters;
+use crate::transport::connect::weights::Sharing;
 use crate::transport::estimate::{Account, Estimate};
 use crate::transport::gather::estimator::Gather;
 use crate::transport::gather::merged::MergedStream;
 use crate::transport::gather::stages::WAVE_PASSES;
 use crate::transport::gather::stream::PhotonStream;
-use crate::transport::gather::{self, GatherSettings, scatterers};
+use crate::transport::gather::{self, GatherSettings};
 use crate::transport::tally::{Counts, Series, Stage, merged};
 use crate::transport::task::Task;
 use crate::transport::trial::{Trials, Tried};
@@ -121,10 +123,20 @@ impl<'s> Prepared<'s> {
                 Block::Gather { first: task.batch, stream: own.begin(task, batches)?.into() }
             }
             Self::Mis(own) => {
-                let stream = MergedStream::new(own.begin(task, batches)?, task.photon_fluxes);
-                Block::Mis { first: task.batch, stream: stream.into() }
+                let stream = MergedStream::begin(own, task, batches)?.into();
+                Block::Mis { first: task.batch, stream }
             }
         })
+    }
+
+    /// Divides the light of paths among techniques in another way.
+    pub(crate) fn share_by(&mut self, sharing: Sharing) {
+        match self {
+            Self::Backward(own) | Self::Mix(own) => own.sharing = sharing,
+            Self::Gather(own) | Self::Mis(own) => {
+                own.merging.iter_mut().for_each(|own| own.sharing = sharing);
+            }
+        }
     }
 
     /// Batches of the stage in progress after which it decides how to go on; `None` if it has no
@@ -321,8 +333,8 @@ impl Estimator {
     /// Whether gather paths must meet a source for its light to count.
     pub fn must_meet_sources(self) -> bool {
         match self {
-            Self::Forward | Self::Mix => false,
-            Self::Backward | Self::Gather | Self::Mis => true,
+            Self::Forward | Self::Mix | Self::Mis => false,
+            Self::Backward | Self::Gather => true,
         }
     }
 
@@ -335,20 +347,12 @@ impl Estimator {
         }
     }
 
-    /// Whether it works only where light takes discrete directions.
-    pub fn needs_discrete_directions(self) -> bool {
-        match self {
-            Self::Forward | Self::Backward | Self::Mix | Self::Gather => false,
-            Self::Mis => true,
-        }
-    }
-
     /// Whether a trial in a scene could find more than photons alone do.
     pub(crate) fn is_worth_a_trial(self, scene: &Scene) -> bool {
         let can_meet = |source: &Source| invisible(source, scene).is_none();
         match self {
             Self::Forward => true,
-            Self::Mix => scene.sources.iter().any(can_meet) || !scatterers(scene).is_empty(),
+            Self::Mix => scene.sources.iter().any(can_meet) || scatters(scene),
             Self::Backward | Self::Gather => scene.sources.iter().all(can_meet),
             Self::Mis => false,
         }

@@ -2,7 +2,7 @@
 //!
 //! This layer does not know file formats or reports. Its output is one serialisable value,
 //! [`Findings`]. From the bottom up: `stop`, `tally`, `walk`; `task`, `trial` and `estimate`, what
-//! every estimator gets and gives; `connect`; `forward`, `gather` and `backward`; `estimators`, the
+//! every estimator gets and gives; `window`; `connect`; `forward`, `gather` and `backward`; `estimators`, the
 //! one seam in front of them; `choose`, `run`.
 
 mod backward;
@@ -18,13 +18,16 @@ pub mod tally;
 mod task;
 mod trial;
 pub mod walk;
+mod window;
 
 pub use choose::{BLIND_PATHS, EstimatorChoice, blind_sensors};
+pub use connect::vertex::turbid_media;
+pub use connect::weights::{Sharing, Technique};
 pub(crate) use estimate::Estimate;
 pub use estimate::Resolution;
 pub use estimate::{Account, AccountEntry, Bias};
 pub use forward::{Track, TrackEnd, tracks};
-pub use gather::{GatherSettings, Orders, Window, scatterers, turbid_media};
+pub use gather::{GatherSettings, Orders};
 pub use run::{Findings, Phase, Run, RunState, Shard, Slice, Unsliceable, batch_paths};
 pub use stop::{Activity, FIRST_BATCH_GRACE, Interrupt, StopAnswer, StopSignal};
 pub use tally::Stage;
@@ -39,3 +42,4 @@ pub use walk::{Carries, Collision, Departure, Detection, Segment};
 pub use walk::{
     Emergence, Event, MetEmission, Observer, Path, ROULETTE_BELOW, Unobserved, Vertex, walk,
 };
+pub use window::Window;

@@ -9,12 +9,13 @@
 use crate::optics::Lobe;
 use crate::plan::{Estimator, RunPlan};
 use crate::rng::{Sampler, stream};
-use crate::scene::{Arrival, Arrivals, Scene, SensorId, SourceId};
+use crate::scene::{Arrival, Arrivals, Scene, SensorId, SourceId, Visibility};
+use crate::transport::connect::passage::{Passage, PassedRecords, RecordPlaces};
 use crate::transport::connect::sensors::SensorTargets;
 use crate::transport::connect::sources::{SourcePoint, SourceTargets};
 use crate::transport::connect::vertex::{ScatteringVertex, TurnAt, Turns};
 use crate::transport::connect::way::WayStart;
-use crate::transport::connect::weights::Etendues;
+use crate::transport::connect::weights::{Etendues, Sharing, Technique};
 use crate::transport::estimate::Estimate;
 use crate::transport::stop::{Pace, StopSignal};
 use crate::transport::tally::readings::{DetectedLight, MIN_LIT_GROUPS};
@@ -23,7 +24,9 @@ use crate::transport::task::Task;
 use crate::transport::trial::{BATCHES, SEED, Trials, Tried};
 use crate::transport::walk::emitters::Emitters;
 use crate::transport::walk::follow::{Gathering, follow};
-use crate::transport::{Event, Layout, Loss, MetEmission, Observer, Path, Readings};
+use crate::transport::{
+    Departure, Event, Layout, Loss, MetEmission, Observer, Path, ROULETTE_BELOW, Readings, Vertex,
+};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::ControlFlow;
@@ -49,10 +52,12 @@ pub(crate) struct Backward<'s> {
     pub(crate) joined_sensors: SensorTargets<'s>,
     pub(crate) sensors: Vec<(SensorId, Arrivals<'s>)>,
     pub(crate) seed: u64,
-    bounce_limit: u32,
+    pub(crate) bounce_limit: u32,
     /// Gather paths per batch of each sensor.
     pub(crate) paths: u64,
     weights: Weights,
+    /// How all techniques that find a path divide its light.
+    pub(crate) sharing: Sharing,
 }
 
 /// How the light of gather paths counts.
@@ -62,6 +67,20 @@ pub(crate) enum Weights {
     Full,
     /// In shares, as photons count the rest.
     Shared,
+}
+
+/// Batches whose photons and gather paths find light together.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Joint {
+    /// Their number.
+    pub(crate) batches: f64,
+    /// Where their gather paths leave records, if they do.
+    pub(crate) places: Option<RecordPlaces>,
+}
+
+impl Joint {
+    /// A batch alone, without records.
+    pub(crate) const ALONE: Self = Self { batches: 1.0, places: None };
 }
 
 impl<'s> Backward<'s> {
@@ -83,6 +102,7 @@ impl<'s> Backward<'s> {
             bounce_limit,
             paths: PILOT_PATHS,
             weights: Weights::Full,
+            sharing: Sharing::default(),
         }
     }
 
@@ -163,22 +183,30 @@ impl<'s> Backward<'s> {
             bounce_limit: self.bounce_limit,
             pace: Some(task.pace),
         };
-        let path = Path::arriving(self.scene, &arrival);
+        let photon_fluxes = match self.weights {
+            Weights::Full => None,
+            Weights::Shared => Some(task.photon_fluxes),
+        };
+        let etendue = self.etendue_of(&arrival, self.paths);
         let mut counter = GatherPathCounter {
             backward: self,
             arrival: &arrival,
-            etendue: path.etendue(self.scene, arrival.extent) / self.paths as f64,
+            etendue,
             id,
-            photon_fluxes: match self.weights {
-                Weights::Full => None,
-                Weights::Shared => Some(task.photon_fluxes),
-            },
+            photon_fluxes,
+            batches: 1.0,
+            records: None,
             turns: Turns::default(),
             joints,
             readings,
         };
         let segments = follow(gathering, &arrival, &mut sampler, &mut counter);
         readings.segments += segments;
+    }
+
+    /// Etendue per basic radiance of one of so many gather paths, mm² sr.
+    fn etendue_of(&self, arrival: &Arrival, paths: u64) -> f64 {
+        Path::arriving(self.scene, arrival).etendue(self.scene, arrival.extent) / paths as f64
     }
 }
 
@@ -231,21 +259,29 @@ pub(crate) fn estimate<'a>(
 }
 
 /// Counts the light of one gather path.
-struct GatherPathCounter<'a, 's> {
-    backward: &'a Backward<'s>,
-    arrival: &'a Arrival,
+pub(crate) struct GatherPathCounter<'a, 's> {
+    pub(crate) backward: &'a Backward<'s>,
+    pub(crate) arrival: &'a Arrival,
     /// Etendue of this path per basic radiance, its share of the batch, mm² sr.
-    etendue: f64,
-    id: SensorId,
+    pub(crate) etendue: f64,
+    pub(crate) id: SensorId,
     /// Mixed: flux of one photon of each source, lm or W.
-    photon_fluxes: Option<&'a [f64]>,
-    turns: Turns<'s>,
+    pub(crate) photon_fluxes: Option<&'a [f64]>,
+    /// Batches whose photons it shares light with.
+    pub(crate) batches: f64,
+    /// The records that it has left.
+    pub(crate) records: Option<PassedRecords>,
+    pub(crate) turns: Turns<'s>,
     /// For points of sources that vertices are joined to.
-    joints: &'a mut Sampler,
-    readings: &'a mut Readings,
+    pub(crate) joints: &'a mut Sampler,
+    pub(crate) readings: &'a mut Readings,
 }
 
 impl Observer for GatherPathCounter<'_, '_> {
+    fn roulette_below(&self) -> f64 {
+        roulette_below(self.records.is_some())
+    }
+
     fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
         match event {
             Event::Meet(met) => self.meet(path, met),
@@ -264,8 +300,11 @@ impl Observer for GatherPathCounter<'_, '_> {
                 self.turns.meet(Some(joint), collision.dir);
                 self.join(path, &joint, collision.dir, |_| WayStart::within(path));
                 self.turns.depart(Lobe::Diffuse);
+                if let Some(records) = &mut self.records {
+                    records.push(|| Passage::Scattered(joint, [-collision.out, -collision.dir]));
+                }
             }
-            Event::Depart(_, departure) => self.turns.depart(departure.lobe),
+            Event::Depart(vertex, departure) => self.depart(path, vertex, departure),
             Event::Start(_)
             | Event::Travel(_)
             | Event::Absorbed(_)
@@ -288,8 +327,10 @@ impl GatherPathCounter<'_, '_> {
         };
         let last = self.turns.last(dir).map(against);
         let joined = self.backward.joined_to_source(self.id, last, &place);
-        let etendues = self.etendues(&place, met.emitted, joined, self.turns.first(dir));
-        let weight = etendues.backward();
+        let windows = self.records.map_or(0.0, |records| records.sum(None));
+        let first = self.turns.first(dir);
+        let etendues = self.etendues(&place, met.emitted, joined, (first, windows));
+        let weight = etendues.share(Technique::GatherPath, self.backward.sharing);
         self.count(path.depth, met.source, weight * met.radiance * self.etendue);
     }
 
@@ -318,24 +359,28 @@ impl GatherPathCounter<'_, '_> {
         let (true, Some(measure)) = (emitted > 0.0, measure) else { return };
         let joined = light.adjoint / light.albedo * measure;
         let first = self.turns.first_if_joined(-place.dir);
-        let etendues = self.etendues(&place, emitted, joined, first);
-        let weight = etendues.backward_joined();
+        let next = || Passage::of_lobe(*vertex, [place.dir, -dir], Lobe::Diffuse);
+        let windows = self.records.map_or(0.0, |records| records.sum(Some(next())));
+        let etendues = self.etendues(&place, emitted, joined, (first, windows));
+        let weight = etendues.share(Technique::JoinedGatherPath, self.backward.sharing);
         let radiance = path.throughput * light.adjoint * emitted * measure * end.transmittance;
         self.count(path.depth + 1, place.source, weight * radiance * self.etendue / kept);
     }
 
     /// Etendues of light from a place that this path has found; `joined` is that of a path joined
-    /// to the source relative to this one's, `first` the first turn of the path.
+    /// to the source relative to this one's, `first` the first turn of the path, `windows` those of its
+    /// records.
     fn etendues(
         &self,
         place: &SourcePoint,
         emitted: f64,
         joined: f64,
-        first: Option<TurnAt<'_>>,
+        (first, windows): (Option<TurnAt<'_>>, f64),
     ) -> Etendues {
-        let photon = self
-            .photon_fluxes
-            .map_or(f64::INFINITY, |fluxes| fluxes[place.source.index()] / emitted);
+        let photon = self.photon_fluxes.map_or(f64::INFINITY, |fluxes| {
+            fluxes[place.source.index()] / (emitted * self.batches)
+        });
+        let gather = self.etendue / self.batches;
         let Arrival { ray, normal, .. } = self.arrival;
         let first = first.map(against);
         let at = (ray.origin(), *normal);
@@ -343,9 +388,22 @@ impl GatherPathCounter<'_, '_> {
         Etendues {
             photon,
             photon_joined: photon * self.backward.joined_sensors.joined_ratio(first, self.id, at),
-            gather: if meets { self.etendue } else { f64::INFINITY },
-            gather_joined: self.etendue * joined,
-            window: 0.0,
+            gather,
+            gather_met: if meets { gather } else { f64::INFINITY },
+            gather_joined: gather * joined,
+            windows,
+        }
+    }
+
+    fn depart(&mut self, path: &Path, vertex: &Vertex<'_>, departure: &Departure) {
+        self.turns.depart(departure.lobe);
+        if let Some(records) = &mut self.records
+            && vertex.interface.visibility == Visibility::Visible
+        {
+            records.push(|| {
+                let met = ScatteringVertex::facing(self.backward.scene, path, vertex);
+                Passage::of_lobe(met, [-departure.dir, -vertex.dir], departure.lobe)
+            });
         }
     }
 
@@ -360,7 +418,14 @@ impl GatherPathCounter<'_, '_> {
     }
 }
 
+/// Throughput below which roulette ends paths that share their light with others, 1. With records it is
+/// low, since roulette would change the density of pairs.
+pub(crate) fn roulette_below(has_records: bool) -> f64 {
+    const WITH_RECORDS: f64 = 1e-4;
+    if has_records { WITH_RECORDS } else { ROULETTE_BELOW }
+}
+
 /// A turn of a gather path as its light takes it.
-fn against((vertex, [before, after]): TurnAt<'_>) -> TurnAt<'_> {
+pub(crate) fn against((vertex, [before, after]): TurnAt<'_>) -> TurnAt<'_> {
     (vertex, [-after, -before])
 }

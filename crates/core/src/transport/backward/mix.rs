@@ -9,12 +9,15 @@ use crate::optics::Lobe;
 use crate::plan::Estimator;
 use crate::rng::{Sampler, stream};
 use crate::scene::{Ray, SensorId, SourceId, Visibility};
-use crate::transport::backward::estimator::{Backward, Weights, paths_for, work_of_one};
+use crate::transport::backward::estimator::{
+    Backward, Joint, Weights, paths_for, roulette_below, work_of_one,
+};
+use crate::transport::connect::passage::{Passage, RecentPassages, VertexWindow};
 use crate::transport::connect::sensors::SensorPoint;
 use crate::transport::connect::sources::SourcePoint;
 use crate::transport::connect::vertex::{ScatteringVertex, TurnAt, Turns};
 use crate::transport::connect::way::WayStart;
-use crate::transport::connect::weights::Etendues;
+use crate::transport::connect::weights::{Etendues, Sharing, Technique};
 use crate::transport::forward;
 use crate::transport::stop::Pace;
 use crate::transport::tally::readings::DetectedLight;
@@ -22,23 +25,44 @@ use crate::transport::tally::{Counts, work};
 use crate::transport::task::Task;
 use crate::transport::trial::{BATCHES, Trials, Tried};
 use crate::transport::walk::follow::{arrivals_of, comes_through_aim, etendue_of};
-use crate::transport::{Detection, Emergence, Event, Observer, Path, Readings};
+use crate::transport::{Departure, Detection, Emergence, Event, Observer, Path, Readings, Vertex};
 use glam::DVec3;
 use rayon::prelude::*;
 use smallvec::SmallVec;
 use std::ops::ControlFlow;
 
+/// A photon at a record, as far as it is known before the pair.
+#[derive(Debug, Clone)]
+pub(crate) struct MergedPhoton {
+    /// Etendue that it represents, its share of all batches, mm² sr; 0 if no gather path could find it.
+    pub(crate) etendue: f64,
+    /// Where it started.
+    pub(crate) start: SourcePoint,
+    /// Etendue of a gather path that is joined to its source at its first vertex, relative to one that meets the
+    /// source; `None` if the record is its first vertex.
+    pub(crate) to_source: Option<f64>,
+    /// G/q of records at its last vertices, the last first.
+    pub(crate) windows: SmallVec<[VertexWindow; 9]>,
+}
+
 /// Counts the share of photons on the mixed sensors, beside that of gather paths.
 pub(crate) struct Mixing<'m, 's> {
     backward: &'m Backward<'s>,
     photon_fluxes: &'m [f64],
-    /// Etendue represented by the current photon, mm² sr; 0 if no gather path could find it.
+    /// Batches that find light together.
+    batches: f64,
+    /// Gather paths of each sensor in all of them.
+    paths: f64,
+    /// Etendue represented by the current photon, its share of these batches, mm² sr; 0 if no gather
+    /// path could find it.
     photon: f64,
     /// Where it started.
     start: SourcePoint,
     /// Its flux at throughput 1, lm or W.
     flux: f64,
     turns: Turns<'s>,
+    /// Its last vertices, where gather paths leave records.
+    recent: Option<RecentPassages<'s>>,
     /// For points of sensors that vertices are joined to.
     joints: Sampler,
     /// Counts of the batch, not closed.
@@ -49,18 +73,48 @@ impl<'m, 's> Mixing<'m, 's> {
     /// The gather paths of a batch, traced, and ready for its photons; `None` if stopped.
     pub(crate) fn begin(backward: &'m Backward<'s>, task: Task<'m>) -> Option<Self> {
         let readings = backward.trace(task)?;
+        Some(Self::new(backward, (task, backward.paths), Joint::ALONE, readings))
+    }
+
+    /// Ready for the photons of a batch, with this many gather paths of each sensor, which have been traced.
+    pub(crate) fn new(
+        backward: &'m Backward<'s>,
+        (task, paths): (Task<'m>, u64),
+        joint: Joint,
+        readings: Readings,
+    ) -> Self {
         let nowhere =
             SourcePoint { source: SourceId::new(0), shape: 0, point: DVec3::ZERO, dir: DVec3::Z };
-        Some(Self {
+        Self {
             backward,
             photon_fluxes: task.photon_fluxes,
+            batches: joint.batches,
+            paths: joint.batches * paths as f64,
             photon: 0.0,
             start: nowhere,
             flux: 0.0,
             turns: Turns::default(),
+            recent: joint.places.map(RecentPassages::new),
             joints: Sampler::for_path(backward.seed, stream::JOINED_SENSORS, task.batch),
             readings,
-        })
+        }
+    }
+
+    /// The current photon as a record finds it.
+    pub(crate) fn photon(&self, dir: DVec3) -> MergedPhoton {
+        let first = self.turns.first(dir).map(Some).or(self.turns.is_begun().then_some(None));
+        MergedPhoton {
+            etendue: self.photon,
+            start: self.start,
+            to_source: first
+                .map(|turn| self.backward.joined_sources.joined_ratio(turn, &self.start)),
+            windows: self.recent.as_ref().map(RecentPassages::windows).unwrap_or_default(),
+        }
+    }
+
+    /// The counts of the batch so far, not closed.
+    pub(crate) fn into_readings(self) -> Readings {
+        self.readings
     }
 
     /// The counts of the batch, after its photons.
@@ -90,6 +144,10 @@ pub(crate) fn trial(trials: &Trials<'_>) -> Option<Vec<Tried>> {
 }
 
 impl Observer for Mixing<'_, '_> {
+    fn roulette_below(&self) -> f64 {
+        roulette_below(self.recent.is_some())
+    }
+
     fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
         match event {
             Event::Start(start) => self.start(path, start),
@@ -115,8 +173,11 @@ impl Observer for Mixing<'_, '_> {
                     self.join_drawn(path, &joint, collision.dir, |_| WayStart::within(path));
                 }
                 self.turns.depart(Lobe::Diffuse);
+                if let Some(recent) = &mut self.recent {
+                    recent.push(Passage::Scattered(joint, [collision.dir, collision.out]));
+                }
             }
-            Event::Depart(_, departure) => self.turns.depart(departure.lobe),
+            Event::Depart(vertex, departure) => self.depart(path, vertex, departure),
             Event::Detect(light) => self.detect(path, light),
             Event::Travel(_)
             | Event::Arrive(_)
@@ -143,11 +204,12 @@ impl Mixing<'_, '_> {
         self.start = SourcePoint { source: start.source, shape: start.shape, point, dir };
         self.flux = start.flux;
         self.turns = Turns::default();
+        self.recent.iter_mut().for_each(RecentPassages::clear);
         let met = emitters.emitted(start.source, path, start.shape);
         let index = scene.media[path.medium.index()].index(path.wavelength);
         let emitted =
             if met > 0.0 { Some(met) } else { joined_sources.emitted(&self.start, index) };
-        let flux = self.photon_fluxes[start.source.index()];
+        let flux = self.photon_fluxes[start.source.index()] / self.batches;
         self.photon = emitted.filter(|emitted| *emitted > 0.0).map_or(0.0, |one| flux / one);
     }
 
@@ -156,14 +218,22 @@ impl Mixing<'_, '_> {
         let known = arrivals_of(light, sensors);
         let (Some(arrivals), false) = (known, light.cells.is_empty()) else { return };
         let weight = if self.photon > 0.0 {
+            let windows = self.recent.as_ref().map_or(0.0, |recent| recent.sum(None));
             let gather = etendue_of(light, scene, arrivals, path.wavelength);
             let last = self.turns.last(light.dir);
             let joined =
                 joined_sensors.joined_ratio(last, light.sensor, (light.point, light.normal));
             let first = self.turns.first(light.dir);
-            self.etendues(light.sensor, gather, joined, first).forward()
+            let etendues = self.etendues(light.sensor, gather, joined, (first, windows));
+            etendues.share(Technique::Photon, self.backward.sharing)
         } else {
-            1.0
+            // Only photons find its light.
+            match self.backward.sharing {
+                Sharing::Balanced => 1.0,
+                Sharing::Only { counts, of } => {
+                    f64::from(u8::from([counts, of] == [Technique::Photon; 2]))
+                }
+            }
         };
         self.count(path.depth, light.sensor, light.cells, light.flux * weight);
     }
@@ -205,7 +275,10 @@ impl Mixing<'_, '_> {
         let gather = end.index * end.index * arrivals.extent(&back, place.normal);
         let joined = light.density / light.albedo * place.solid_angle;
         let first = self.turns.first_if_joined(place.dir);
-        let weight = self.etendues(place.sensor, gather, joined, first).forward_joined();
+        let next = || Some(Passage::of_lobe(*vertex, [dir, place.dir], Lobe::Diffuse));
+        let windows = self.recent.as_ref().map_or(0.0, |recent| recent.sum(next()));
+        let etendues = self.etendues(place.sensor, gather, joined, (first, windows));
+        let weight = etendues.share(Technique::JoinedPhoton, self.backward.sharing);
         let flux = self.flux * path.throughput * light.density * place.solid_angle;
         let flux = flux * end.transmittance * weight / kept;
         self.count(path.depth + 1, place.sensor, &place.cells, flux);
@@ -213,23 +286,34 @@ impl Mixing<'_, '_> {
 
     /// Etendues of light of this photon at a sensor; `gather` is that of the sensor's only gather
     /// path, `joined` that of a photon joined to the sensor relative to this one, `first` its first
-    /// turn.
+    /// turn, `windows` those of records on its path.
     fn etendues(
         &self,
         sensor: SensorId,
         gather: f64,
         joined: f64,
-        first: Option<TurnAt<'_>>,
+        (first, windows): (Option<TurnAt<'_>>, f64),
     ) -> Etendues {
-        let Backward { emitters, paths, .. } = self.backward;
-        let gather = gather / *paths as f64;
+        let Backward { emitters, .. } = self.backward;
+        let gather = gather / self.paths;
         let from_source = self.backward.joined_to_source(sensor, first, &self.start);
         Etendues {
             photon: self.photon,
             photon_joined: self.photon * joined,
-            gather: if emitters.meets(self.start.source) { gather } else { f64::INFINITY },
+            gather,
+            gather_met: if emitters.meets(self.start.source) { gather } else { f64::INFINITY },
             gather_joined: gather * from_source,
-            window: 0.0,
+            windows,
+        }
+    }
+
+    fn depart(&mut self, path: &Path, vertex: &Vertex<'_>, departure: &Departure) {
+        self.turns.depart(departure.lobe);
+        if let Some(recent) = &mut self.recent
+            && vertex.interface.visibility == Visibility::Visible
+        {
+            let met = ScatteringVertex::facing(self.backward.scene, path, vertex);
+            recent.push(Passage::of_lobe(met, [vertex.dir, departure.dir], departure.lobe));
         }
     }
 

@@ -3,9 +3,11 @@
 //!
 //! Photons are joined to sensors, gather paths to sources; docs/method.md has the formulas. A way
 //! is void where it meets a visible interface. One path of light can be found by photons that are
-//! counted, by photons that are joined, by gather paths that meet emission and by gather paths that
-//! are joined; `weights` divides its light among them. This module traces no paths.
+//! counted, by photons that are joined, by gather paths that meet emission, by gather paths that are
+//! joined, and by pairs of photons and records (`passage`); `weights` divides its light among them.
+//! This module traces no paths.
 
+pub(crate) mod passage;
 pub(crate) mod sensors;
 pub(crate) mod sources;
 mod target;

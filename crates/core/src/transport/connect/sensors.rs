@@ -7,12 +7,16 @@ use crate::scene::{
     SurfaceSensor, Views,
 };
 use crate::transport::Vertex;
-use crate::transport::connect::target::{Joinable, choose, total_importance};
+use crate::transport::connect::target::{Joinable, chance, choose};
 use crate::transport::connect::vertex::TurnAt;
 use glam::DVec3;
 use lumiduct_base::math::{Aabb, uniform_sphere};
 use smallvec::{SmallVec, smallvec};
 use std::f64::consts::PI;
+
+/// Share of the joins that are spread evenly over the sensors, 1: each needs joins for an error of its own, also a small
+/// one beside large ones.
+const EVENLY: f64 = 0.5;
 
 /// The sensors of an estimator that points can be drawn on.
 #[derive(Debug)]
@@ -46,19 +50,21 @@ struct SensorTarget<'s> {
 enum SensorExtent<'s> {
     Surface(&'s SurfaceSensor, FaceArea<'s>),
     Sphere(&'s Goniometer, f64),
+    /// The far distance, in all directions.
+    Far(&'s Goniometer),
 }
 
 /// A point of a sensor, drawn to be joined to a vertex.
 #[derive(Debug, Clone)]
 pub(crate) struct SensorPoint {
     pub(crate) sensor: SensorId,
-    /// Position, mm.
+    /// Position, mm; of a far field, that of the vertex.
     pub(crate) point: DVec3,
     /// Unit normal of the sensor.
     pub(crate) normal: DVec3,
     /// Unit direction of light from the vertex.
     pub(crate) dir: DVec3,
-    /// Distance from the vertex, mm.
+    /// Distance from the vertex, mm; infinite for a far field.
     pub(crate) distance: f64,
     /// The cells that count the light.
     pub(crate) cells: SmallVec<[usize; 1]>,
@@ -68,7 +74,7 @@ pub(crate) struct SensorPoint {
 
 impl<'s> SensorTargets<'s> {
     /// Those of some sensors that can be joined: not those that count light only on its first
-    /// passage or all light that leaves a face, and not the far field.
+    /// passage or all light that leaves a face.
     pub(crate) fn new(scene: &'s Scene, sensors: impl Iterator<Item = SensorId> + Clone) -> Self {
         let targets = sensors.clone().filter_map(|id| target(scene, id)).collect();
         Self { targets, leaving: sensors.filter_map(|id| leaving_target(scene, id)).collect() }
@@ -112,7 +118,7 @@ impl<'s> SensorTargets<'s> {
             return None;
         }
         let draw = || sampler.one(Dimension::GatherPosition);
-        let target = choose(&self.targets, vertex, draw)?;
+        let target = choose(&self.targets, vertex, EVENLY, draw)?;
         let (point, normal, cell) = match &target.extent {
             SensorExtent::Surface(sensor, area) => {
                 let drawn = area.sample(sampler.pair(Dimension::GatherPosition))?;
@@ -122,6 +128,18 @@ impl<'s> SensorTargets<'s> {
                 let out = uniform_sphere(sampler.pair(Dimension::GatherPosition));
                 let cell = goniometer.cell(out);
                 (goniometer.frame.origin + radius * out, out, cell)
+            }
+            SensorExtent::Far(goniometer) => {
+                let dir = uniform_sphere(sampler.pair(Dimension::GatherPosition));
+                return Some(SensorPoint {
+                    sensor: target.id,
+                    point: vertex,
+                    normal: dir,
+                    dir,
+                    distance: f64::INFINITY,
+                    cells: smallvec![goniometer.cell(dir)],
+                    solid_angle: self.solid_angle(target, vertex, (vertex, dir), dir),
+                });
             }
         };
         let offset = point - vertex;
@@ -157,7 +175,7 @@ impl<'s> SensorTargets<'s> {
         ratio.unwrap_or(f64::INFINITY)
     }
 
-    /// `|cos θ| / (d² p)`, sr, with the density p of points per area.
+    /// `|cos θ| / (d² p)`, sr, with the density p of points per area; `1/p` of directions, for a far field.
     fn solid_angle(
         &self,
         target: &SensorTarget<'s>,
@@ -165,11 +183,12 @@ impl<'s> SensorTargets<'s> {
         (point, normal): (DVec3, DVec3),
         dir: DVec3,
     ) -> f64 {
+        let chosen = chance(&self.targets, target, vertex, EVENLY);
         let normal = match &target.extent {
             SensorExtent::Surface(..) => normal,
             SensorExtent::Sphere(sphere, radius) => (point - sphere.frame.origin) / *radius,
+            SensorExtent::Far(_) => return 4.0 * PI / chosen,
         };
-        let chosen = target.importance(vertex) / total_importance(&self.targets, vertex);
         dir.dot(normal).abs() * target.area / (chosen * point.distance_squared(vertex))
     }
 }
@@ -177,6 +196,9 @@ impl<'s> SensorTargets<'s> {
 impl Joinable for SensorTarget<'_> {
     /// What it can receive from a point: its solid angle, roughly, 1.
     fn importance(&self, vertex: DVec3) -> f64 {
+        if let SensorExtent::Far(_) = self.extent {
+            return 4.0 * PI;
+        }
         self.area / vertex.distance_squared(self.center).max(self.reach * self.reach)
     }
 }
@@ -186,7 +208,7 @@ impl SensorTarget<'_> {
     fn cells(&self, cell: usize, dir: DVec3, normal: DVec3) -> Option<SmallVec<[usize; 1]>> {
         let sensor = match &self.extent {
             SensorExtent::Surface(sensor, _) => sensor,
-            SensorExtent::Sphere(..) => {
+            SensorExtent::Sphere(..) | SensorExtent::Far(_) => {
                 return (dir.dot(normal) > 0.0).then(|| smallvec![cell]);
             }
         };
@@ -237,14 +259,12 @@ fn target(scene: &Scene, id: SensorId) -> Option<SensorTarget<'_>> {
             })
         }
         SensorKind::Goniometer(goniometer) => {
-            let radius = goniometer.radius?;
-            Some(SensorTarget {
-                id,
-                extent: SensorExtent::Sphere(goniometer, radius),
-                area: 4.0 * PI * radius * radius,
-                center: goniometer.frame.origin,
-                reach: radius,
-            })
+            let (extent, radius) = match goniometer.radius {
+                Some(radius) => (SensorExtent::Sphere(goniometer, radius), radius),
+                None => (SensorExtent::Far(goniometer), f64::INFINITY),
+            };
+            let (area, center) = (4.0 * PI * radius * radius, goniometer.frame.origin);
+            Some(SensorTarget { id, extent, area, center, reach: radius })
         }
     }
 }

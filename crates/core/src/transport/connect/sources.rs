@@ -5,11 +5,14 @@ use crate::scene::shape::{Crossing, RayStart, Shape};
 use crate::scene::{
     Emission, EmitSide, Emitter, EmitterKind, Ray, Scene, Source, SourceId, StartSolids,
 };
-use crate::transport::connect::target::{Joinable, choose, total_importance};
+use crate::transport::connect::target::{Joinable, chance, choose};
 use crate::transport::connect::vertex::TurnAt;
 use glam::DVec3;
 use lumiduct_base::math::Frame;
 use std::f64::consts::PI;
+
+/// Share of the joins that are spread evenly over the sources, 1: what a vertex receives is the sum of all.
+const EVENLY: f64 = 0.0;
 
 /// The sources of a scene that vertices can be joined to.
 #[derive(Debug)]
@@ -75,7 +78,7 @@ impl<'s> SourceTargets<'s> {
     /// its distance, mm; `None` where it sends none.
     pub(crate) fn draw(&self, vertex: DVec3, sampler: &mut Sampler) -> Option<(SourcePoint, f64)> {
         let draw = || sampler.one(Dimension::EmitPosition);
-        let target = choose(&self.targets, vertex, draw)?;
+        let target = choose(&self.targets, vertex, EVENLY, draw)?;
         let at = |shape: usize, point: DVec3| {
             let distance = point.distance(vertex);
             let dir = (vertex - point) / distance;
@@ -137,7 +140,7 @@ impl<'s> SourceTargets<'s> {
     /// considered; the vertex has light from a medium of this index.
     pub(crate) fn measure(&self, place: &SourcePoint, vertex: DVec3, index: f64) -> Option<f64> {
         let target = self.target(place.source)?;
-        let per_chance = total_importance(&self.targets, vertex) / target.importance(vertex);
+        let per_chance = 1.0 / chance(&self.targets, target, vertex, EVENLY);
         let square = place.point.distance_squared(vertex);
         Some(match &target.extent {
             EmitterExtent::Point(_) => per_chance / (index * index * square),

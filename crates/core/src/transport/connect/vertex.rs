@@ -1,15 +1,28 @@
 //! Vertices of a path that scatter light into a density of directions, and those at its two ends.
 
-use crate::optics::{FinishModel, Incidence, Lobe, Side, Spread, VolumeScattering};
+use crate::optics::{FinishModel, Incidence, Lobe, Medium, Side, Spread, VolumeScattering};
 use crate::rng::{Dimension, Sampler};
 use crate::scene::{Scene, Visibility};
 use crate::transport::walk::scatter::{MetInterface, facing};
+use crate::transport::window::Window;
 use crate::transport::{Collision, Path, Vertex};
 use glam::DVec3;
 use std::f64::consts::PI;
 
 /// Density relative to that of a diffuser below which joins are left out at random, 1.
 const WORTHWHILE: f64 = 0.01;
+
+/// Whether anything in a scene scatters light into a density of directions.
+pub(crate) fn scatters(scene: &Scene) -> bool {
+    let finishes = scene.finishes.iter().map(|named| named.finish.spread());
+    finishes.into_iter().any(|spread| spread != Spread::Discrete)
+        || turbid_media(scene).next().is_some()
+}
+
+/// The names of the media of a scene that scatter light.
+pub fn turbid_media(scene: &Scene) -> impl Iterator<Item = &str> {
+    scene.media.iter().filter(|medium| medium.scattering().is_some()).map(Medium::name)
+}
 
 /// A vertex that scatters.
 #[derive(Debug, Clone, Copy)]
@@ -36,6 +49,9 @@ pub(crate) struct ScatteredLight {
     pub(crate) albedo: f64,
     /// Refractive index of the medium that the light comes from.
     pub(crate) index_from: f64,
+    /// Etendue of leaving light per solid angle and area of the face, n² |cos θ|, 1; in a medium, per
+    /// solid angle and volume, n² σ, 1/mm.
+    projected: f64,
 }
 
 impl ScatteredLight {
@@ -59,10 +75,42 @@ impl<'s> ScatteringVertex<'s> {
             .flatten()
             .any(|finish| scene.finishes[finish.index()].finish.spread() != Spread::Discrete);
         let is_visible = vertex.interface.visibility == Visibility::Visible;
-        (is_visible && scatters).then(|| Self {
-            point: vertex.point,
-            place: VertexPlace::Face(facing(scene, path, vertex)),
-        })
+        (is_visible && scatters).then(|| Self::facing(scene, path, vertex))
+    }
+
+    /// The vertex of a path at a visible face, even if only discrete directions leave.
+    pub(crate) fn facing(scene: &'s Scene, path: &Path, vertex: &Vertex<'_>) -> Self {
+        Self { point: vertex.point, place: VertexPlace::Face(facing(scene, path, vertex)) }
+    }
+
+    /// A face at a point, mm.
+    #[cfg(test)]
+    pub(crate) fn at(point: DVec3, met: MetInterface<'s>) -> Self {
+        Self { point, place: VertexPlace::Face(met) }
+    }
+
+    /// The interface, unless it lies within a medium.
+    pub(crate) fn face(&self) -> Option<&MetInterface<'s>> {
+        match &self.place {
+            VertexPlace::Face(met) => Some(met),
+            VertexPlace::Medium { .. } => None,
+        }
+    }
+
+    /// Whether gather paths leave records here for light that arrives with a direction and is scattered.
+    pub(crate) fn is_broad(&self, arriving: DVec3) -> bool {
+        self.face().is_none_or(|met| met.acting_on(arriving).0.spread() == Spread::Broad)
+    }
+
+    /// Etendue of the window of a record for scattered light over the density of its direction, G/q,
+    /// mm² sr: docs/method.md, eq. (30).
+    pub(crate) fn window(&self, [arriving, leaving]: [DVec3; 2], window: Window) -> Option<f64> {
+        let light = self.scattered(arriving, leaving)?;
+        let extent = match &self.place {
+            VertexPlace::Face(_) => window.area(),
+            VertexPlace::Medium { .. } => window.volume(),
+        };
+        Some(light.projected * extent * light.albedo / light.density)
     }
 
     /// The vertex of a path within a medium.
@@ -79,7 +127,14 @@ impl<'s> ScatteringVertex<'s> {
             VertexPlace::Face(met) => at_face(met, arriving, leaving)?,
             VertexPlace::Medium { scattering, index } => {
                 let density = scattering.phase(arriving.dot(leaving));
-                ScatteredLight { density, adjoint: density, albedo: 1.0, index_from: *index }
+                let projected = index * index * scattering.coefficient();
+                ScatteredLight {
+                    density,
+                    adjoint: density,
+                    albedo: 1.0,
+                    index_from: *index,
+                    projected,
+                }
             }
         };
         (light.density > 0.0 && light.adjoint.is_finite()).then_some(light)
@@ -95,13 +150,9 @@ impl<'s> ScatteringVertex<'s> {
 }
 
 fn at_face(met: &MetInterface<'_>, arriving: DVec3, leaving: DVec3) -> Option<ScatteredLight> {
-    let Incidence { normal, index_from, index_to, grain, .. } = met.incidence;
-    let (finish, normal, facet, index_from, index_to) = if arriving.dot(met.facet) < 0.0 {
-        (met.faces.own, normal, met.facet, index_from, index_to)
-    } else {
-        (met.faces.behind, -normal, -met.facet, index_to, index_from)
-    };
-    let incidence = Incidence { dir: arriving, normal, index_from, index_to, grain };
+    let (finish, incidence) = met.acting_on(arriving);
+    let Incidence { normal, index_from, index_to, .. } = incidence;
+    let facet = if arriving.dot(met.facet) < 0.0 { met.facet } else { -met.facet };
     if arriving.dot(normal) >= 0.0 {
         return None;
     }
@@ -115,16 +166,18 @@ fn at_face(met: &MetInterface<'_>, arriving: DVec3, leaving: DVec3) -> Option<Sc
         // Light that an interpolated normal sends into the facet is mirrored about the facet.
         density += toward(leaving - 2.0 * leaving.dot(facet) * facet);
     }
-    let index_ratio = match side {
-        Side::Reflected => 1.0,
-        Side::Transmitted => index_from / index_to,
+    let index = match side {
+        Side::Reflected => index_from,
+        Side::Transmitted => index_to,
     };
-    let cosines = (arriving.dot(facet) / leaving.dot(facet)).abs();
+    let projected = index * index * leaving.dot(facet).abs();
+    let arrived = index_from * index_from * arriving.dot(facet).abs();
     Some(ScatteredLight {
         density,
-        adjoint: density * cosines * index_ratio * index_ratio,
+        adjoint: density * arrived / projected,
         albedo: finish.albedo_about(&incidence),
         index_from,
+        projected,
     })
 }
 
@@ -164,6 +217,11 @@ impl<'s> Turns<'s> {
         }
         self.first.get_or_insert(met);
         self.last = Some(met);
+    }
+
+    /// Whether it has turned at all.
+    pub(crate) fn is_begun(&self) -> bool {
+        self.first.is_some()
     }
 
     /// The first vertex, if it scatters, with the directions of travel before and after it; the

@@ -4,133 +4,165 @@
 //! the techniques sample a path. A density is given as the etendue that one sample of the technique
 //! represents, its reciprocal; infinite for a technique that cannot find the path.
 
+/// A way of finding light.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Technique {
+    /// A photon that a sensor counts, F.
+    Photon,
+    /// A photon that is joined to a sensor, FC.
+    JoinedPhoton,
+    /// A gather path that meets emission, B.
+    GatherPath,
+    /// A gather path that is joined to a source, BC.
+    JoinedGatherPath,
+    /// A photon and a record, M.
+    Pair,
+}
+
+impl Technique {
+    /// All of them.
+    pub const ALL: [Self; 5] =
+        [Self::Photon, Self::JoinedPhoton, Self::GatherPath, Self::JoinedGatherPath, Self::Pair];
+}
+
+/// How the light of a path is divided among the techniques that can find it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Sharing {
+    /// In proportion to their densities.
+    #[default]
+    Balanced,
+    /// One of them counts, in full, the paths that another can find, and no others: to compare both.
+    Only {
+        /// The one that counts.
+        counts: Technique,
+        /// The one whose paths it counts.
+        of: Technique,
+    },
+}
+
 /// The etendues that weight a path, mm² sr.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Etendues {
-    /// Of one photon that is counted, where the path starts: `1/(N p_e)`.
+    /// Of one photon, where the path starts: `1/(N p_e)`.
     pub(crate) photon: f64,
     /// Of one photon that is joined to the sensor at the last vertex.
     pub(crate) photon_joined: f64,
-    /// Of one gather path that meets emission, where the path ends: `1/(M p_g)`.
+    /// Of one gather path, where the path ends: `1/(M p_g)`.
     pub(crate) gather: f64,
+    /// The same if gather paths meet its source.
+    pub(crate) gather_met: f64,
     /// Of one gather path that is joined to the source at the first vertex.
     pub(crate) gather_joined: f64,
-    /// Etendue of the window at the record over the probability of the lobe there, G/q; 0 for
-    /// paths without a record.
-    pub(crate) window: f64,
+    /// G/q of the windows of records at all vertices that may have one.
+    pub(crate) windows: f64,
 }
 
 impl Etendues {
-    /// Those of a path that no technique joins.
-    pub(crate) fn unjoined(photon: f64, gather: f64, window: f64) -> Self {
-        let never = f64::INFINITY;
-        Self { photon, photon_joined: never, gather, gather_joined: never, window }
-    }
-
-    /// The share of a photon that the sensor counts, 1.
-    pub(crate) fn forward(&self) -> f64 {
-        let Self { photon, photon_joined, gather, gather_joined, window } = *self;
-        let others = ratios(photon, [photon_joined, gather, gather_joined]);
-        1.0 / (1.0 + others + window / gather)
-    }
-
-    /// The share of a photon that is joined to the sensor, 1.
-    pub(crate) fn forward_joined(&self) -> f64 {
-        let Self { photon, photon_joined, gather, gather_joined, window } = *self;
-        let others = ratios(photon_joined, [photon, gather, gather_joined]);
-        1.0 / (1.0 + others + photon_joined / photon * window / gather)
-    }
-
-    /// The share of a gather path that meets emission, 1.
-    pub(crate) fn backward(&self) -> f64 {
-        self.mirrored().forward()
-    }
-
-    /// The share of a gather path that is joined to the source, 1.
-    pub(crate) fn backward_joined(&self) -> f64 {
-        self.mirrored().forward_joined()
-    }
-
-    /// The share of a photon and a record together, 1.
-    pub(crate) fn pair(&self) -> f64 {
-        let Self { photon, photon_joined, gather, gather_joined, window } = *self;
-        if window == 0.0 {
-            return 0.0;
-        }
-        let own = photon / window * gather;
-        1.0 / (1.0 + ratios(own, [photon, photon_joined, gather, gather_joined]))
-    }
-
-    /// The same path seen from its other end.
-    fn mirrored(&self) -> Self {
-        let Self { photon, photon_joined, gather, gather_joined, window } = *self;
-        Self {
-            photon: gather,
-            photon_joined: gather_joined,
-            gather: photon,
-            gather_joined: photon_joined,
-            window,
+    /// The share that a technique counts of a path that it has found, 1.
+    pub(crate) fn share(&self, technique: Technique, sharing: Sharing) -> f64 {
+        match sharing {
+            Sharing::Balanced => {
+                let all: f64 = Technique::ALL.iter().map(|&one| self.density(one)).sum();
+                self.density(technique) / all
+            }
+            Sharing::Only { counts, of } => {
+                f64::from(u8::from(counts == technique && self.density(of) > 0.0))
+            }
         }
     }
-}
 
-/// The densities of other techniques over the own: eq. (21).
-fn ratios<const N: usize>(own: f64, others: [f64; N]) -> f64 {
-    others.iter().filter(|other| other.is_finite()).map(|other| own / other).sum()
+    /// The share of a pair at a record with this G/q, one of those of the path, 1.
+    pub(crate) fn share_of_pair(&self, window: f64, sharing: Sharing) -> f64 {
+        if window > 0.0 {
+            self.share(Technique::Pair, sharing) * window / self.windows
+        } else {
+            0.0
+        }
+    }
+
+    /// Samples of a technique per etendue, 1/(mm² sr).
+    fn density(&self, technique: Technique) -> f64 {
+        match technique {
+            Technique::Photon => 1.0 / self.photon,
+            Technique::JoinedPhoton => 1.0 / self.photon_joined,
+            Technique::GatherPath => 1.0 / self.gather_met,
+            Technique::JoinedGatherPath => 1.0 / self.gather_joined,
+            Technique::Pair => self.windows / (self.photon * self.gather),
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// The shares of all techniques.
-    fn shares(etendues: &Etendues) -> [f64; 5] {
-        let Etendues { photon_joined, gather_joined, .. } = *etendues;
-        let if_finite = |etendue: f64, share: f64| if etendue.is_finite() { share } else { 0.0 };
-        [
-            etendues.forward(),
-            if_finite(photon_joined, etendues.forward_joined()),
-            etendues.backward(),
-            if_finite(gather_joined, etendues.backward_joined()),
-            etendues.pair(),
-        ]
-    }
+    const NEVER: f64 = f64::INFINITY;
 
     #[test]
     fn a_path_that_only_one_technique_finds_is_all_its_own() {
-        let never = f64::INFINITY;
-        assert_eq!(Etendues::unjoined(2.0, never, 0.0).forward(), 1.0);
-        let met = Etendues::unjoined(never, 3.0, 0.0);
-        assert_eq!((met.backward(), met.forward()), (1.0, 0.0));
+        let nothing = Etendues {
+            photon: NEVER,
+            photon_joined: NEVER,
+            gather: 3.0,
+            gather_met: NEVER,
+            gather_joined: NEVER,
+            windows: 0.0,
+        };
+        let by_photon = Etendues { photon: 2.0, ..nothing };
+        assert_eq!(by_photon.share(Technique::Photon, Sharing::Balanced), 1.0);
+        let met = Etendues { gather_met: 3.0, windows: 5.0, ..nothing };
+        let share = |technique| met.share(technique, Sharing::Balanced);
+        assert_eq!(Technique::ALL.map(share), [0.0, 0.0, 1.0, 0.0, 0.0]);
     }
 
     #[test]
     fn shares_are_the_balance_heuristic_and_add_up_to_one() {
-        let never = f64::INFINITY;
         for (photon, gather) in [(1.0, 1.0), (3e-6, 20.0), (1e3, 4e-9)] {
             for [photon_joined, gather_joined] in
-                [[never, never], [photon, never], [1e-3 * photon, 1e5 * gather], [7.0, 1e-12]]
+                [[NEVER, NEVER], [photon, NEVER], [1e-3 * photon, 1e5 * gather], [7.0, 1e-12]]
             {
-                for window in [0.0, 1.0, 1e-9, 1e9] {
-                    let etendues =
-                        Etendues { photon, photon_joined, gather, gather_joined, window };
-                    let own = shares(&etendues);
+                for (windows, gather_met) in
+                    [(0.0, gather), (1.0, gather), (1e-9, NEVER), (1e9, gather)]
+                {
+                    let etendues = Etendues {
+                        photon,
+                        photon_joined,
+                        gather,
+                        gather_met,
+                        gather_joined,
+                        windows,
+                    };
+                    let own = Technique::ALL.map(|one| etendues.share(one, Sharing::Balanced));
                     assert!((own.iter().sum::<f64>() - 1.0).abs() < 1e-12, "{etendues:?}: {own:?}");
                     // In proportion to their densities.
-                    let pair = window / (photon * gather);
-                    let densities = [
-                        1.0 / photon,
-                        1.0 / photon_joined,
-                        1.0 / gather,
-                        1.0 / gather_joined,
-                        pair,
-                    ];
-                    let sum: f64 = densities.iter().sum();
-                    for (share, density) in own.into_iter().zip(densities) {
-                        assert!((share - density / sum).abs() < 1e-12, "{etendues:?}: {own:?}");
+                    let sum: f64 = Technique::ALL.map(|one| etendues.density(one)).iter().sum();
+                    for (share, technique) in own.into_iter().zip(Technique::ALL) {
+                        let expected = etendues.density(technique) / sum;
+                        assert!((share - expected).abs() < 1e-12, "{etendues:?}: {own:?}");
                     }
+                    // Records of a path divide the share of pairs.
+                    let parts = [0.3, 0.7]
+                        .map(|part| etendues.share_of_pair(part * windows, Sharing::Balanced));
+                    assert!((parts.iter().sum::<f64>() - own[4]).abs() < 1e-12, "{parts:?}");
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_technique_alone_counts_the_paths_of_another_in_full() {
+        let etendues = Etendues {
+            photon: 2.0,
+            photon_joined: 0.5,
+            gather: 3.0,
+            gather_met: 3.0,
+            gather_joined: NEVER,
+            windows: 0.0,
+        };
+        let share = |counts, of| etendues.share(counts, Sharing::Only { counts, of });
+        assert_eq!(share(Technique::Photon, Technique::JoinedPhoton), 1.0);
+        assert_eq!(share(Technique::Photon, Technique::JoinedGatherPath), 0.0);
+        let other = Sharing::Only { counts: Technique::Photon, of: Technique::Photon };
+        assert_eq!(etendues.share(Technique::GatherPath, other), 0.0);
     }
 }

@@ -9,7 +9,7 @@ use crate::scene::{Inside, MediumId, MeetingPoint, Ray, Scene, StartSurfaces, Vi
 use crate::transport::Path;
 use crate::transport::gather::coverage::GOLDEN_TURN;
 use crate::transport::gather::kernel::{Kernels, MOMENTS};
-use crate::transport::gather::window::Window;
+use crate::transport::window::Window;
 use glam::DVec3;
 use lumiduct_base::math::{Frame, from_cosine};
 use std::f64::consts::PI;

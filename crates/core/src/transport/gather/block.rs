@@ -36,11 +36,6 @@ impl BlockCounts {
         }
     }
 
-    /// Number of passes.
-    pub(super) fn passes(&self) -> usize {
-        self.passes.len()
-    }
-
     /// Counts of one pass by its gather paths, and by photons without records.
     pub(super) fn pass(&mut self, pass: usize) -> &mut [Readings; ORDERS] {
         &mut self.passes[pass]
@@ -68,6 +63,14 @@ impl BlockCounts {
         {
             self.pairs[id.index()][of_record * self.passes.len() + of_photon] += fourth.flux;
         }
+    }
+
+    /// Adds light that was found without records to all orders of a pass.
+    pub(super) fn add(&mut self, pass: usize, other: &Readings) {
+        for own in &mut self.passes[pass] {
+            *own = own.combined([1.0, 1.0], other);
+        }
+        self.passes[pass][0].segments += other.segments;
     }
 
     /// The counts of a single pass, not closed.

@@ -3,22 +3,22 @@
 use crate::optics::{Finish, FinishModel, Lobe, Side, Spread};
 use crate::rng::{Dimension, Sampler};
 use crate::scene::SensorId;
+use crate::transport::connect::vertex::ScatteringVertex;
 use crate::transport::gather::ball::clipped_ball;
 use crate::transport::gather::coverage::{Coverage, Middle, coverage};
 use crate::transport::gather::estimator::{Gather, RecordedPath};
 use crate::transport::gather::kernel::ORDERS;
-use crate::transport::gather::merge::{self, FacePassage};
-use crate::transport::gather::merged::Merging;
+use crate::transport::gather::merged::{MergedPath, MergedRecord};
 use crate::transport::gather::records::{
     GatherRecord, RecordKind, RecordPath, SurfaceRecord, VolumeRecord,
 };
-use crate::transport::gather::window::Window;
 use crate::transport::tally::readings::DetectedLight;
 use crate::transport::walk::scatter::{MetInterface, facing};
+use crate::transport::window::Window;
 use crate::transport::{
-    Collision, Departure, Event, Loss, MetEmission, Observer, Path, ROULETTE_BELOW, Readings,
-    Vertex,
+    Collision, Departure, Event, Loss, MetEmission, Observer, Path, Readings, Vertex,
 };
+use glam::DVec3;
 use smallvec::SmallVec;
 use std::ops::ControlFlow;
 
@@ -28,7 +28,7 @@ pub(crate) struct EndedPaths<'s> {
     /// Passes of the block, and the one that is being traced.
     pub(crate) passes: usize,
     pub(crate) pass: usize,
-    pub(crate) paths: Vec<RecordedPath>,
+    pub(crate) paths: Vec<RecordedPath<'s>>,
     pub(crate) records: Vec<GatherRecord<'s>>,
 }
 
@@ -38,7 +38,8 @@ pub(crate) struct Collecting<'c, 's> {
     pub(crate) window: Window,
     /// Etendue of this path, its share of the pass, mm² sr.
     pub(crate) etendue: f64,
-    pub(crate) merging: Option<Merging<'c>>,
+    /// Merged: what it shares its light by. Others then count what it meets.
+    pub(crate) merged: Option<MergedPath<'s>>,
     pub(crate) id: SensorId,
     /// The number of the path among those of its sensor.
     pub(crate) index: u64,
@@ -51,24 +52,29 @@ pub(crate) struct Collecting<'c, 's> {
     pub(crate) orders: &'c mut [Readings; ORDERS],
 }
 
-impl Observer for Collecting<'_, '_> {
-    fn roulette_below(&self) -> f64 {
-        self.merging.as_ref().map_or(ROULETTE_BELOW, |_| merge::ROULETTE_BELOW)
-    }
+/// A gather path at an interface.
+#[derive(Clone, Copy)]
+struct PathAtFace<'a, 's> {
+    path: &'a Path,
+    vertex: &'a Vertex<'a>,
+    facing: MetInterface<'s>,
+}
 
+impl Observer for Collecting<'_, '_> {
     fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
         match event {
-            Event::Meet(met) => self.meet(path, met),
-            Event::Cut(throughput) => self.lose(throughput, Loss::Cut),
-            Event::Leaked(_, throughput) => self.lose(throughput, Loss::Leaked),
-            Event::Arrive(vertex) => return self.arrive(path, vertex),
-            Event::Depart(_, departure) => return self.depart(path, departure),
-            Event::Collide(collision) => {
-                self.add_collided(path, collision);
-                // The record counts all light that is scattered there.
-                return ControlFlow::Break(());
+            Event::Meet(met) if self.merged.is_none() => self.meet(path, met),
+            Event::Cut(throughput) if self.merged.is_none() => self.lose(throughput, Loss::Cut),
+            Event::Leaked(_, throughput) if self.merged.is_none() => {
+                self.lose(throughput, Loss::Leaked);
             }
-            Event::Start(_)
+            Event::Arrive(vertex) => return self.arrive(path, vertex),
+            Event::Depart(vertex, departure) => return self.depart(vertex, departure),
+            Event::Collide(collision) => return self.collide(path, collision),
+            Event::Meet(_)
+            | Event::Cut(_)
+            | Event::Leaked(..)
+            | Event::Start(_)
             | Event::Travel(_)
             | Event::Absorbed(_)
             | Event::Detect(_)
@@ -81,8 +87,7 @@ impl Observer for Collecting<'_, '_> {
 
 impl Collecting<'_, '_> {
     fn meet(&mut self, path: &Path, met: &MetEmission) {
-        let weight = self.merging.as_ref().map_or(1.0, |merging| merging.weight(met));
-        let flux = met.radiance * self.etendue * weight;
+        let flux = met.radiance * self.etendue;
         let light = DetectedLight { flux, depth: path.depth, source: met.source };
         for readings in &mut *self.orders {
             readings.count(
@@ -101,17 +106,25 @@ impl Collecting<'_, '_> {
     }
 
     fn arrive(&mut self, path: &Path, vertex: &Vertex<'_>) -> ControlFlow<()> {
+        let vertex_d = self.gather.settings.depth;
+        if path.depth > vertex_d {
+            return ControlFlow::Continue(());
+        }
         let facing = facing(self.gather.scene, path, vertex);
+        if let Some(merged) = &mut self.merged {
+            merged.meet(ScatteringVertex::facing(self.gather.scene, path, vertex), vertex.dir);
+        }
+        let at = PathAtFace { path, vertex, facing };
         for side in [Side::Reflected, Side::Transmitted] {
             if is_broad(&facing, side) {
-                self.add_scattered(path, vertex, &facing, side);
+                self.add_scattered(at, side);
             }
         }
-        if path.depth == self.gather.settings.depth {
+        if path.depth == vertex_d {
             for side in [Side::Reflected, Side::Transmitted] {
-                self.add_along(path, vertex, &facing, side);
+                self.add_along(at, side);
             }
-            if self.merging.is_none() {
+            if self.merged.is_none() {
                 return ControlFlow::Break(());
             }
         }
@@ -119,20 +132,35 @@ impl Collecting<'_, '_> {
         ControlFlow::Continue(())
     }
 
-    fn depart(&mut self, path: &Path, departure: &Departure) -> ControlFlow<()> {
+    fn depart(&mut self, vertex: &Vertex<'_>, departure: &Departure) -> ControlFlow<()> {
         // Nothing faces the path where it meets no visible interface.
         let Some(facing) = self.facing.take() else { return ControlFlow::Continue(()) };
-        if let Some(merging) = &mut self.merging
-            && path.depth == self.gather.settings.depth + 1
-        {
-            let passage = FacePassage::of_gather_path(&facing, departure.dir, departure.side);
-            merging.pass_vertex_d(passage.etendue(self.window));
+        if let Some(merged) = &mut self.merged {
+            merged.depart(vertex.dir, departure);
+            return ControlFlow::Continue(());
         }
         // The records at the vertex count the light of a broad lobe.
         match departure.lobe {
             Lobe::Diffuse if is_broad(&facing, departure.side) => ControlFlow::Break(()),
             Lobe::Diffuse | Lobe::Specular => ControlFlow::Continue(()),
         }
+    }
+
+    fn collide(&mut self, path: &Path, collision: &Collision<'_>) -> ControlFlow<()> {
+        if path.depth > self.gather.settings.depth {
+            return ControlFlow::Continue(());
+        }
+        if let Some(merged) = &mut self.merged {
+            let vertex = ScatteringVertex::in_medium(self.gather.scene, path, collision);
+            merged.meet(vertex, collision.dir);
+        }
+        self.add_collided(path, collision);
+        let Some(merged) = &mut self.merged else {
+            // The record counts all light that is scattered there.
+            return ControlFlow::Break(());
+        };
+        merged.collide(collision);
+        ControlFlow::Continue(())
     }
 }
 
@@ -154,44 +182,28 @@ fn finish<'s>(facing: &MetInterface<'s>, side: Side) -> &'s Finish {
 
 impl<'s> Collecting<'_, 's> {
     /// A record for photons that a broad finish scatters into the gather path: docs/method.md, eq. (22).
-    fn add_scattered(
-        &mut self,
-        path: &Path,
-        vertex: &Vertex<'_>,
-        facing: &MetInterface<'s>,
-        side: Side,
-    ) {
-        let finish = finish(facing, side);
+    fn add_scattered(&mut self, at: PathAtFace<'_, 's>, side: Side) {
+        let PathAtFace { vertex, facing, .. } = at;
+        let finish = finish(&facing, side);
         if finish.width().is_none() && finish.shares(&facing.incidence).of(side) == 0.0 {
             return;
         }
         // L* of the leaving light, in the medium of the gather path.
         let index = facing.incidence.index_from;
         let value = self.etendue * vertex.throughput / (index * index);
-        self.add(
-            path,
-            vertex,
-            facing,
-            side,
-            value,
-            RecordKind::Scattered { finish, out: -vertex.dir },
-        );
+        let kind = RecordKind::Scattered { finish, out: -vertex.dir };
+        self.add(at, (side, Lobe::Diffuse), value, kind);
     }
 
     /// A record for photons near the direction in which the gather path would continue:
     /// docs/method.md, eq. (15).
-    fn add_along(
-        &mut self,
-        path: &Path,
-        vertex: &Vertex<'_>,
-        facing: &MetInterface<'s>,
-        side: Side,
-    ) {
-        let finish = finish(facing, side);
+    fn add_along(&mut self, at: PathAtFace<'_, 's>, side: Side) {
+        let PathAtFace { vertex, facing, .. } = at;
+        let finish = finish(&facing, side);
         let Some(out) = finish.scatter_toward(side, &facing.incidence, &mut self.sampler) else {
             return;
         };
-        if out.lobe == Lobe::Diffuse && is_broad(facing, side) {
+        if out.lobe == Lobe::Diffuse && is_broad(&facing, side) {
             return;
         }
         let out = facing.corrected(out);
@@ -201,22 +213,18 @@ impl<'s> Collecting<'_, 's> {
             Side::Transmitted => facing.incidence.index_to,
         };
         let value = self.etendue * vertex.throughput * out.factor / (index * index);
-        let dir = out.dir.normalize();
-        self.add(path, vertex, facing, side, value, RecordKind::Along(-dir));
-        if let (Some(merging), Some(ended)) = (&self.merging, self.found.paths.last_mut()) {
-            let passage = FacePassage::of_gather_path(facing, dir, side);
-            ended.etendues = Some(merging.waiting(passage.etendue(self.window)));
-        }
+        self.add(at, (side, out.lobe), value, RecordKind::Along(-out.dir.normalize()));
     }
 
     /// A record for photons that a medium scatters into the gather path: docs/method.md, eq. (23).
     fn add_collided(&mut self, path: &Path, collision: &Collision<'_>) {
         let Gather { scene, surfaces, .. } = self.gather;
-        let &Collision { point, dir, medium, scattering, throughput } = collision;
+        let &Collision { point, dir, medium, scattering, throughput, .. } = collision;
         let index = scene.media[medium.index()].index(path.wavelength);
         let value = self.etendue * throughput / (index * index * scattering.coefficient());
         let turn = self.sampler.pair(Dimension::GatherPosition);
         let ball = clipped_ball(scene, path, point, self.window, turn);
+        let merged = self.merged_record((dir, Lobe::Diffuse), None);
         let record = VolumeRecord {
             point,
             medium: surfaces.of_medium(medium),
@@ -224,7 +232,7 @@ impl<'s> Collecting<'_, 's> {
             out: -dir,
             value: value / ball.volume,
             kernels: ball.kernels,
-            path: self.path_of_record(path),
+            path: self.path_of_record(path, merged),
         };
         self.found.records.push(GatherRecord::Volume(record));
     }
@@ -232,13 +240,12 @@ impl<'s> Collecting<'_, 's> {
     /// `value` is the etendue of the path times its throughput per flux per area (and solid angle).
     fn add(
         &mut self,
-        path: &Path,
-        vertex: &Vertex<'_>,
-        facing: &MetInterface<'s>,
-        side: Side,
+        at: PathAtFace<'_, 's>,
+        (side, lobe): (Side, Lobe),
         value: f64,
         kind: RecordKind<'s>,
     ) {
+        let PathAtFace { path, vertex, facing } = at;
         let Gather { scene, surfaces, .. } = self.gather;
         let interface = vertex.interface;
         let prim = interface.acting.prim;
@@ -255,7 +262,8 @@ impl<'s> Collecting<'_, 's> {
         let turn = self.sampler.one(Dimension::GatherPosition);
         let covered = coverage(scene, surfaces, &middle, self.window, turn);
         let value = value / (covered.share * self.window.area());
-        let path = self.path_of_record(path);
+        let merged = self.merged_record((vertex.dir, lobe), along);
+        let path = self.path_of_record(path, merged);
         let (point, surface) = (vertex.point, middle.surface);
         let Coverage { kernels, slope, .. } = covered;
         let record =
@@ -263,17 +271,27 @@ impl<'s> Collecting<'_, 's> {
         self.found.records.push(GatherRecord::Surface(record));
     }
 
+    /// What weights a record for light by a lobe into the path, which travels along `dir`.
+    fn merged_record(
+        &self,
+        light: (DVec3, Lobe),
+        along: Option<DVec3>,
+    ) -> Option<MergedRecord<'s>> {
+        let backward = self.gather.merging.as_ref()?;
+        self.merged.as_ref()?.record((backward, self.id), light, along)
+    }
+
     /// This path, as one that ends in records.
-    fn path_of_record(&mut self, path: &Path) -> RecordPath {
-        let of_this = |last: &RecordedPath| (last.sensor, last.index) == (self.id, self.index);
-        if self.merging.is_some() || !self.found.paths.last().is_some_and(of_this) {
+    fn path_of_record(&mut self, path: &Path, merged: Option<MergedRecord<'s>>) -> RecordPath {
+        let of_this = |last: &RecordedPath<'_>| (last.sensor, last.index) == (self.id, self.index);
+        if merged.is_some() || !self.found.paths.last().is_some_and(of_this) {
             let (sensor, cells) = (self.id, self.cells.clone());
             self.found.paths.push(RecordedPath {
                 index: self.index,
                 sensor,
                 pass: self.found.pass,
                 cells,
-                etendues: None,
+                merged,
             });
         }
         RecordPath { place: self.found.paths.len() as u32 - 1, depth: path.depth + 1 }

@@ -21,7 +21,7 @@ use crate::transport::gather::cut_cone::CutCone;
 use crate::transport::gather::kernel::{Kernels, ORDERS, weights_by_order};
 use crate::transport::gather::records::{GatherRecord, RecordKind, SurfaceRecord, VolumeRecord};
 use crate::transport::gather::surfaces::Slot;
-use crate::transport::gather::window::Window;
+use crate::transport::window::Window;
 use glam::DVec3;
 
 /// Cosines that the directions of a cone must stay above for `1/|cos θ_p|` to be used, 1.

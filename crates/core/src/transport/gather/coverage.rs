@@ -7,7 +7,7 @@ use crate::scene::shape::{ChartRect, Crossing, RayStart};
 use crate::scene::{PrimId, Ray, Scene, Surface};
 use crate::transport::gather::kernel::{CutDisk, Kernels};
 use crate::transport::gather::surfaces::{Slot, SurfaceNumbers};
-use crate::transport::gather::window::Window;
+use crate::transport::window::Window;
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::{Frame, circle};
 

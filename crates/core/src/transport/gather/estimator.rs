@@ -2,8 +2,9 @@
 
 use crate::plan::RunPlan;
 use crate::scene::{Arrivals, Scene, SensorId};
-use crate::transport::connect::weights::Etendues;
+use crate::transport::backward::estimator::Backward;
 use crate::transport::gather::bias::Judged;
+use crate::transport::gather::merged::MergedRecord;
 use crate::transport::gather::records::Records;
 use crate::transport::gather::settings::{GatherSettings, SensorGroup};
 use crate::transport::gather::surfaces::SurfaceNumbers;
@@ -22,9 +23,8 @@ pub(crate) struct Gather<'s> {
     pub(super) sensors: Vec<(SensorId, Arrivals<'s>)>,
     pub(super) seed: u64,
     pub(crate) settings: GatherSettings,
-    /// Merged with forward and backward: gather paths continue from vertex D, up to this many
-    /// interfaces.
-    pub(crate) merging: Option<u32>,
+    /// Merged: gather paths go on to the sources, and find light as these do.
+    pub(crate) merging: Option<Backward<'s>>,
 }
 
 /// What gather paths are combined with.
@@ -53,11 +53,17 @@ impl<'s> Gather<'s> {
             let most = settings.photons / settings.all_sensors;
             settings.gather_paths = settings.gather_paths.min(most).max(1);
         }
-        let merging = match combination {
-            Combination::Alone => None,
-            Combination::Merged => Some(plan.bounce_limit),
-        };
-        Self { merging, ..Self::new(scene, &sensors, plan.seed, settings) }
+        let alone = Self::new(scene, &sensors, plan.seed, settings);
+        match combination {
+            Combination::Alone => alone,
+            Combination::Merged => alone.merged(plan.bounce_limit),
+        }
+    }
+
+    /// The same, merged, with gather paths up to this many interfaces.
+    pub(super) fn merged(self, bounce_limit: u32) -> Self {
+        let sensors: Vec<SensorId> = self.sensors().collect();
+        Self { merging: Some(Backward::new(self.scene, &sensors, self.seed, bounce_limit)), ..self }
     }
 
     /// Prepares gather paths from some sensors.
@@ -105,19 +111,19 @@ impl<'s> Gather<'s> {
 /// Gather paths that have ended, and their records, ready for photons.
 #[derive(Debug)]
 pub(super) struct WaitingRecords<'s> {
-    pub(super) paths: Vec<RecordedPath>,
+    pub(super) paths: Vec<RecordedPath<'s>>,
     pub(super) records: Records<'s>,
 }
 
 /// A gather path that has ended in records.
 #[derive(Debug)]
-pub(super) struct RecordedPath {
+pub(super) struct RecordedPath<'s> {
     /// Its number among those of its sensor.
     pub(super) index: u64,
     pub(super) sensor: SensorId,
     /// Its pass in the block.
     pub(super) pass: usize,
     pub(super) cells: SmallVec<[usize; 1]>,
-    /// Merged: the etendues that weight its only record; the photon's part is still missing.
-    pub(super) etendues: Option<Etendues>,
+    /// Merged: what weights its only record.
+    pub(super) merged: Option<MergedRecord<'s>>,
 }

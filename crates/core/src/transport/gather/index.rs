@@ -10,8 +10,8 @@ mod tests;
 
 use crate::transport::gather::coverage::HEIGHT;
 use crate::transport::gather::surfaces::Slot;
-use crate::transport::gather::window::Window;
 use crate::transport::stop::Pace;
+use crate::transport::window::Window;
 use glam::{DVec3, Vec3};
 use smallvec::SmallVec;
 use std::ops::Range;

@@ -8,15 +8,17 @@
 //! photons give all other light, including what could be seen through vertex D. So nothing counts
 //! twice. All sensors share one stream of photons, and no photon is kept: memory scales with the
 //! records. When merged with forward and backward, gather paths continue to the sources, and
-//! everything counts by its weight (`merge`).
+//! everything counts by its weight (`merged`).
 
 use crate::rng::{Sampler, stream};
-use crate::scene::Arrival;
+use crate::transport::backward::estimator::GatherPathCounter;
+use crate::transport::connect::passage::{PassedRecords, RecordPlaces};
+use crate::transport::connect::vertex::Turns;
 use crate::transport::gather::block::BlockCounts;
 use crate::transport::gather::collect::{Collecting, EndedPaths};
 use crate::transport::gather::estimator::{Gather, WaitingRecords};
 use crate::transport::gather::kernel::ORDERS;
-use crate::transport::gather::merged::Merging;
+use crate::transport::gather::merged::MergedPath;
 use crate::transport::gather::records::Records;
 use crate::transport::gather::stages::Pass;
 use crate::transport::gather::stream::PhotonStream;
@@ -29,21 +31,36 @@ impl<'s> Gather<'s> {
     /// Traces the gather paths of a block of passes, from the task's batch on, whose records then wait for the photons of
     /// all of them. `None` if stopped.
     pub(crate) fn begin<'g>(&'g self, task: Task<'g>, passes: u64) -> Option<PhotonStream<'g, 's>> {
+        self.trace_records(task, passes).map(|(stream, _)| stream)
+    }
+
+    /// The same, and by pass the light that merged gather paths have met, without records.
+    pub(super) fn trace_records<'g>(
+        &'g self,
+        task: Task<'g>,
+        passes: u64,
+    ) -> Option<(PhotonStream<'g, 's>, Vec<Readings>)> {
         let passes = passes as usize;
         let pass_of = |place: usize| self.settings.pass(task.stage, task.batch + place as u64);
-        let first = pass_of(0);
-        let mut counts = BlockCounts::new(passes, self.scene.sensors.len(), |place| {
+        let empty = |place| {
             let Pass { gather_paths, batch, .. } = pass_of(place);
             Readings::of_batch(self.scene, &self.layout, self.seed, gather_paths, batch)
-        });
+        };
+        let mut counts = BlockCounts::new(passes, self.scene.sensors.len(), empty);
+        let mut met: Vec<Readings> = Vec::new();
+        if self.merging.is_some() {
+            met.extend((0..passes).map(empty));
+        }
         let mut found = EndedPaths { passes, ..EndedPaths::default() };
         for place in 0..passes {
             found.pass = place;
-            self.gather_paths_of(pass_of(place), task, counts.pass(place), &mut found)?;
+            let readings = (counts.pass(place), met.get_mut(place));
+            self.gather_paths_of(pass_of(place), task, readings, &mut found)?;
         }
+        let first = pass_of(0);
         let records = Records::new(found.records, first.window, &self.surfaces, task.pace)?;
         let waiting = WaitingRecords { paths: found.paths, records };
-        Some(PhotonStream::new(self, first, (waiting, task.pace), counts))
+        Some((PhotonStream::new(self, first, (waiting, task.pace), counts), met))
     }
 
     /// Traces the gather paths of a pass; `None` if they were stopped.
@@ -51,9 +68,12 @@ impl<'s> Gather<'s> {
         &self,
         pass: Pass,
         Task { photon_fluxes, pace, .. }: Task<'_>,
-        orders: &mut [Readings; ORDERS],
+        (orders, mut met): (&mut [Readings; ORDERS], Option<&mut Readings>),
         found: &mut EndedPaths<'s>,
     ) -> Option<()> {
+        let passes = found.passes as f64;
+        let places = self.record_places(pass);
+        let mut joints = Sampler::for_path(self.seed, stream::JOINED_SOURCES, pass.batch);
         for (id, arrivals) in &self.sensors {
             for index in pass.batch * pass.gather_paths..(pass.batch + 1) * pass.gather_paths {
                 if pace.spend(RECORD_WORK).is_break() {
@@ -62,19 +82,18 @@ impl<'s> Gather<'s> {
                 let offset = id.index() as u64;
                 let mut sampler = Sampler::for_path(self.seed, stream::GATHER + offset, index);
                 let Some(arrival) = arrivals.draw(&mut sampler) else { continue };
-                let Arrival { extent, cells, .. } = &arrival;
-                let etendue = Path::arriving(self.scene, &arrival).etendue(self.scene, *extent);
+                let etendue =
+                    Path::arriving(self.scene, &arrival).etendue(self.scene, arrival.extent);
                 let etendue = etendue / pass.gather_paths as f64;
+                let merging = self.merging.as_ref();
                 let mut collecting = Collecting {
                     gather: self,
                     window: pass.window,
                     etendue,
-                    merging: self
-                        .merging
-                        .map(|_| Merging::new(etendue, photon_fluxes, found.passes as f64)),
+                    merged: merging.map(|_| MergedPath::new(&arrival, etendue / passes, places)),
                     id: *id,
                     index,
-                    cells,
+                    cells: &arrival.cells,
                     sampler: Sampler::for_path(self.seed, stream::RECORDS + offset, index),
                     facing: None,
                     found,
@@ -84,13 +103,36 @@ impl<'s> Gather<'s> {
                     scene: self.scene,
                     emitters: &self.emitters,
                     sensor: *id,
-                    bounce_limit: self.merging.unwrap_or(u32::MAX),
+                    bounce_limit: merging.map_or(u32::MAX, |own| own.bounce_limit),
                     pace: Some(pace),
                 };
-                let segments = follow(gathering, &arrival, &mut sampler, &mut collecting);
+                let segments = match (merging, &mut met) {
+                    (Some(backward), Some(readings)) => {
+                        let mut counter = GatherPathCounter {
+                            backward,
+                            arrival: &arrival,
+                            etendue,
+                            id: *id,
+                            photon_fluxes: Some(photon_fluxes),
+                            batches: passes,
+                            records: Some(PassedRecords::new(places)),
+                            turns: Turns::default(),
+                            joints: &mut joints,
+                            readings,
+                        };
+                        let mut both = (&mut counter, &mut collecting);
+                        follow(gathering, &arrival, &mut sampler, &mut both)
+                    }
+                    _ => follow(gathering, &arrival, &mut sampler, &mut collecting),
+                };
                 orders[0].segments += segments;
             }
         }
         Some(())
+    }
+
+    /// Where the gather paths of a pass leave records.
+    pub(super) fn record_places(&self, pass: Pass) -> RecordPlaces {
+        RecordPlaces { window: pass.window, vertex_d: self.settings.depth as usize }
     }
 }

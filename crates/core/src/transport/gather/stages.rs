@@ -9,8 +9,8 @@
 use crate::plan::Schedule;
 use crate::transport::Readings;
 use crate::transport::gather::settings::GatherSettings;
-use crate::transport::gather::window::Window;
 use crate::transport::tally::Counts;
+use crate::transport::window::Window;
 
 /// Passes of a wave, whose photons meet the records of all of them.
 pub(crate) const WAVE_PASSES: u64 = 4;

@@ -5,7 +5,7 @@
 use crate::optics::Incidence;
 use crate::scene::shape::Toward;
 use crate::scene::{MediumId, PrimHit, PrimId, Scene, SourceId, Visibility};
-use crate::transport::connect::weights::Etendues;
+use crate::transport::backward::mix::MergedPhoton;
 use crate::transport::gather::block::BlockCounts;
 use crate::transport::gather::contribution::{PairWeights, PhotonHit, SurfaceHit, VolumeHit};
 use crate::transport::gather::estimator::{Gather, RecordedPath, WaitingRecords};
@@ -32,10 +32,12 @@ pub(crate) struct PhotonStream<'p, 's> {
     /// Place in the block of the pass whose photons are traced.
     pub(super) current: usize,
     /// The current photon.
-    pub(super) photon: Photon,
+    photon: Photon,
     /// Photons to be looked up, and their keys.
     passing: Vec<Passing>,
     keys: Vec<PhotonKey>,
+    /// Merged: what weights these photons.
+    merged: Vec<MergedPhoton>,
     work: RecordWork,
 }
 
@@ -47,8 +49,6 @@ struct Passing {
     flux: f64,
     depth: u32,
     source: SourceId,
-    /// Merged: the etendue it represents, its share of the block, mm² sr.
-    etendue: f64,
 }
 
 /// Location of a photon.
@@ -70,12 +70,42 @@ enum PhotonPlace {
 impl Observer for PhotonStream<'_, '_> {
     #[inline(always)]
     fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
+        self.offer(path, event, |_| None);
+        ControlFlow::Continue(())
+    }
+}
+
+/// A photon as it starts.
+#[derive(Debug, Clone, Copy)]
+struct Photon {
+    /// Flux at throughput 1, lm or W.
+    flux: f64,
+    source: SourceId,
+}
+
+impl<'p, 's> PhotonStream<'p, 's> {
+    /// Takes the photon of an event that may belong to records; `merged` is asked for what weights it, with its
+    /// unit direction.
+    #[inline(always)]
+    pub(super) fn offer(
+        &mut self,
+        path: &Path,
+        event: Event<'_>,
+        merged: impl FnOnce(DVec3) -> Option<MergedPhoton>,
+    ) {
         match event {
-            Event::Start(start) => self.photon = Photon::of(start, 0.0),
-            Event::Arrive(vertex) if self.may_take(vertex) => self.take(path, vertex),
-            Event::Collide(collision) => self.collide(path, collision),
+            Event::Start(&Emergence { flux, source, .. }) => self.photon = Photon { flux, source },
+            Event::Arrive(vertex) if self.may_take(vertex) => {
+                self.merged.extend(merged(vertex.dir));
+                self.take(path, vertex);
+            }
+            Event::Collide(collision) if self.may_take_within(collision) => {
+                self.merged.extend(merged(collision.dir));
+                self.collide(path, collision);
+            }
             Event::Travel(_)
             | Event::Arrive(_)
+            | Event::Collide(_)
             | Event::Depart(..)
             | Event::Absorbed(_)
             | Event::Detect(_)
@@ -85,27 +115,8 @@ impl Observer for PhotonStream<'_, '_> {
             | Event::Cut(_)
             | Event::Leaked(..) => {}
         }
-        ControlFlow::Continue(())
     }
-}
 
-/// A photon as it starts.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Photon {
-    /// Flux at throughput 1, lm or W.
-    flux: f64,
-    source: SourceId,
-    /// Merged: the etendue it represents, mm² sr.
-    etendue: f64,
-}
-
-impl Photon {
-    pub(super) fn of(start: &Emergence, etendue: f64) -> Self {
-        Self { flux: start.flux, source: start.source, etendue }
-    }
-}
-
-impl<'p, 's> PhotonStream<'p, 's> {
     pub(super) fn new(
         gather: &'p Gather<'s>,
         first: Pass,
@@ -121,9 +132,10 @@ impl<'p, 's> PhotonStream<'p, 's> {
             counts,
             first,
             current: 0,
-            photon: Photon { flux: 0.0, source: SourceId::new(0), etendue: 0.0 },
+            photon: Photon { flux: 0.0, source: SourceId::new(0) },
             passing: Vec::with_capacity(TOGETHER),
             keys: Vec::with_capacity(TOGETHER),
+            merged: Vec::new(),
         }
     }
 
@@ -163,26 +175,30 @@ impl<'p, 's> PhotonStream<'p, 's> {
         self.push(path, key, at, vertex.throughput);
     }
 
+    fn may_take_within(&self, collision: &Collision<'_>) -> bool {
+        let &Collision { point, dir, medium, .. } = collision;
+        self.waiting.records.may_take(self.gather.surfaces.of_medium(medium), point, dir)
+    }
+
     fn collide(&mut self, path: &Path, collision: &Collision<'_>) {
         let &Collision { point, dir, medium, throughput, .. } = collision;
         let surface = self.gather.surfaces.of_medium(medium);
-        if self.waiting.records.may_take(surface, point, dir) {
-            self.push(path, PhotonKey { surface, point, dir }, PhotonPlace::Medium, throughput);
-        }
+        self.push(path, PhotonKey { surface, point, dir }, PhotonPlace::Medium, throughput);
     }
 
     fn push(&mut self, path: &Path, key: PhotonKey, at: PhotonPlace, throughput: f64) {
         self.keys.push(key);
-        let Photon { flux, source, etendue } = self.photon;
+        let Photon { flux, source } = self.photon;
         let flux = flux * throughput;
-        self.passing.push(Passing { at, flux, depth: path.depth, source, etendue });
+        self.passing.push(Passing { at, flux, depth: path.depth, source });
         if self.passing.len() == TOGETHER {
             self.look_up();
         }
     }
 
     fn look_up(&mut self) {
-        let Gather { scene, layout, .. } = self.gather;
+        let Gather { scene, layout, merging, .. } = self.gather;
+        let places = self.gather.record_places(self.first);
         let (weights, counts, work) = (&self.weights, &mut self.counts, &mut self.work);
         let (passing, keys, pace) = (&self.passing, &self.keys, self.pace);
         work.look_ups += passing.len() as u64;
@@ -203,10 +219,14 @@ impl<'p, 's> PhotonStream<'p, 's> {
             let Some(shares) = weights.flux(record, &met) else { return };
             work.pairs += 1;
             let own = record.path();
-            let RecordedPath { sensor, pass, cells, etendues, .. } =
+            let RecordedPath { sensor, pass, cells, merged, .. } =
                 &self.waiting.paths[own.place as usize];
-            let weight =
-                etendues.map_or(1.0, |known| Etendues { photon: photon.etendue, ..known }.pair());
+            let weight = match (merging, merged, self.merged.get(index)) {
+                (Some(backward), Some(record), Some(photon)) => {
+                    record.share((backward, *sensor), places, (photon, keys[index].dir))
+                }
+                _ => 1.0,
+            };
             let depth = photon.depth + own.depth;
             let light = shares.map(|share| DetectedLight {
                 flux: photon.flux * share * weight,
@@ -218,6 +238,7 @@ impl<'p, 's> PhotonStream<'p, 's> {
         work.near += u64::from(near.count_ones());
         self.passing.clear();
         self.keys.clear();
+        self.merged.clear();
     }
 }
 

@@ -190,8 +190,8 @@ pub(crate) fn pass_work(
     let sensors: Vec<SensorId> = gather.sensors().collect();
     let settings = GatherSettings { gather_paths: scaled(gather_paths), ..gather.settings };
     let seed = plan.seed ^ SEED;
-    let probe =
-        Gather { merging: gather.merging, ..Gather::new(gather.scene, &sensors, seed, settings) };
+    let alone = Gather::new(gather.scene, &sensors, seed, settings);
+    let probe = if gather.merging.is_some() { alone.merged(plan.bounce_limit) } else { alone };
     let forward = Forward::new(gather.scene, seed, plan.bounce_limit, scaled(photons));
     let pass = TriedPass::trace(&probe, &forward, 0, signal)?;
     Some(pass.work_of_whole(probe.batch_paths(0), part))
@@ -208,11 +208,12 @@ impl TriedPass {
         let pace = Pace::new(signal);
         let photon_fluxes = forward.photon_fluxes();
         let task = Task { batch, stage: 0, photon_fluxes: &photon_fluxes, pace: &pace };
-        let mut stream = gather.begin(task, 1)?;
         let (photons, (counts, work)) = if gather.merging.is_some() {
-            let mut stream = MergedStream::new(stream, task.photon_fluxes);
+            let mut stream = MergedStream::begin(gather, task, 1)?;
+            stream.begin_pass(0);
             (forward.batch_observed(batch, &mut stream, &pace)?, stream.finish())
         } else {
+            let mut stream = gather.begin(task, 1)?;
             (forward.batch_observed(batch, &mut stream, &pace)?, stream.finish())
         };
         let orders = counts.into_pass();

@@ -6,6 +6,7 @@
 //! count, so that a run of that many batches reproduces it.
 
 use crate::plan::Estimator;
+use crate::transport::connect::weights::Sharing;
 use crate::transport::estimators::{Block, Observers, Portion, Prepared};
 use crate::transport::forward::Forward;
 use crate::transport::run::findings::Findings;
@@ -76,6 +77,12 @@ pub(super) struct BlockCounts {
 }
 
 impl<'s> Run<'s> {
+    /// Divides the light of paths among the techniques of `mix` and `mis` in another way, before anything is traced: to
+    /// compare what each finds alone.
+    pub fn share_by(&mut self, sharing: Sharing) {
+        self.others.iter_mut().for_each(|(own, _)| own.share_by(sharing));
+    }
+
     /// Traces the next piece of a round: a few batches for each thread. If the signal stops it, the
     /// batches before the first unfinished one count, and the others are dropped.
     pub fn next_piece(&mut self) {

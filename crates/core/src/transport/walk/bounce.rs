@@ -153,13 +153,14 @@ fn collide<V: Observer>(
     observer: &mut V,
 ) -> ControlFlow<(), Ray> {
     let (dir, medium, throughput) = (path.ray.dir(), path.medium, path.throughput);
-    let collision = Collision { point, dir, medium, scattering, throughput };
+    // The phase function depends only on the angle between two directions: it is the same for
+    // radiance and flux.
+    let next = Ray::new(point, scattering.scatter(dir, sampler.pair(Dimension::Scatter)));
+    let collision = Collision { point, dir, out: next.dir(), medium, scattering, throughput };
     observer.see(path, Event::Collide(&collision))?;
     path.depth += 1;
     path.on = StartSurfaces::default();
-    // The phase function depends only on the angle between two directions: it is the same for
-    // radiance and flux.
-    path.ray = Ray::new(point, scattering.scatter(dir, sampler.pair(Dimension::Scatter)));
+    path.ray = next;
     ControlFlow::Continue(path.ray)
 }
 

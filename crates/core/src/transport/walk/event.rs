@@ -53,6 +53,8 @@ pub struct Collision<'a> {
     pub point: DVec3,
     /// Unit direction of travel before it.
     pub dir: DVec3,
+    /// Unit direction of travel after it.
+    pub out: DVec3,
     /// The medium.
     pub medium: MediumId,
     /// Its scattering.

@@ -124,7 +124,17 @@ pub fn scatter_gather_path(
     Some(facing.corrected(out))
 }
 
-impl MetInterface<'_> {
+impl<'s> MetInterface<'s> {
+    /// The finish that acts on light of this unit direction, from whichever side, and its incidence.
+    pub(crate) fn acting_on(&self, dir: DVec3) -> (&'s Finish, Incidence) {
+        let Incidence { normal, index_from, index_to, grain, .. } = self.incidence;
+        if dir.dot(self.facet) < 0.0 {
+            return (self.faces.own, Incidence { dir, ..self.incidence });
+        }
+        let (index_from, index_to) = (index_to, index_from);
+        (self.faces.behind, Incidence { dir, normal: -normal, index_from, index_to, grain })
+    }
+
     /// Effect of an interpolated normal on basic radiance. Flux through the facet is conserved and
     /// solid angles turn about the acting normal n, so that `L* |cos_f| dω n²` is, with `cos_f` to
     /// the facet: the factor is `|cos_f(i)/cos_n(i)| |cos_n(o)/cos_f(o)|`, i where the path

@@ -24,6 +24,11 @@ impl Window {
         PI * self.radius * self.radius
     }
 
+    /// ΔV = 4π r³ / 3, mm³.
+    pub(crate) fn volume(self) -> f64 {
+        4.0 / 3.0 * PI * self.radius.powi(3)
+    }
+
     /// ΔΩ = 2π (1 - cos θ), sr, without cancellation.
     pub(crate) fn solid_angle(self) -> f64 {
         4.0 * PI * (0.5 * self.theta_max).sin().powi(2)

@@ -238,17 +238,20 @@ impl Mixing<'_, '_> {
         self.count(path.depth, light.sensor, light.cells, light.flux * weight);
     }
 
-    /// Joins a vertex to a point of a sensor.
+    /// Joins a vertex to points of sensors.
     fn join_drawn(
         &mut self,
         path: &Path,
         vertex: &ScatteringVertex<'_>,
         dir: DVec3,
-        way: impl FnOnce(DVec3) -> WayStart,
+        way: impl Fn(DVec3) -> WayStart,
     ) {
-        let drawn = self.backward.joined_sensors.draw(vertex.point, &mut self.joints);
-        if let Some(place) = drawn {
-            self.join(path, vertex, (dir, &place), way);
+        let Backward { joined_sensors, .. } = self.backward;
+        for join in 0..joined_sensors.joins() {
+            let drawn = joined_sensors.draw(vertex.point, join, &mut self.joints);
+            if let Some(place) = drawn {
+                self.join(path, vertex, (dir, &place), &way);
+            }
         }
     }
 

@@ -17,6 +17,8 @@ use std::f64::consts::PI;
 /// Share of the joins that are spread evenly over the sensors, 1: each needs joins for an error of its own, also a small
 /// one beside large ones.
 const EVENLY: f64 = 0.5;
+/// Most joins at a vertex: four take about as long as the path between two vertices, and more would not pay.
+const MOST_JOINS: usize = 4;
 
 /// The sensors of an estimator that points can be drawn on.
 #[derive(Debug)]
@@ -68,7 +70,7 @@ pub(crate) struct SensorPoint {
     pub(crate) distance: f64,
     /// The cells that count the light.
     pub(crate) cells: SmallVec<[usize; 1]>,
-    /// Solid angle of the sensor from the vertex over the density of the draw, sr.
+    /// Solid angle of the sensor from the vertex over the density of the draws, sr.
     pub(crate) solid_angle: f64,
 }
 
@@ -111,13 +113,20 @@ impl<'s> SensorTargets<'s> {
         }
     }
 
-    /// A point for a vertex, on a sensor chosen in proportion to what it can receive; `None` where
-    /// it does not count light from there.
-    pub(crate) fn draw(&self, vertex: DVec3, sampler: &mut Sampler) -> Option<SensorPoint> {
-        if self.targets.is_empty() {
-            return None;
-        }
-        let draw = || sampler.one(Dimension::GatherPosition);
+    /// Joins at a vertex: one for each sensor, up to a few.
+    pub(crate) fn joins(&self) -> usize {
+        self.targets.len().min(MOST_JOINS)
+    }
+
+    /// A point for one of the joins of a vertex, on a sensor chosen by its chance; `None` where it does not
+    /// count light from there.
+    pub(crate) fn draw(
+        &self,
+        vertex: DVec3,
+        join: usize,
+        sampler: &mut Sampler,
+    ) -> Option<SensorPoint> {
+        let draw = || (join as f64 + sampler.one(Dimension::GatherPosition)) / self.joins() as f64;
         let target = choose(&self.targets, vertex, EVENLY, draw)?;
         let (point, normal, cell) = match &target.extent {
             SensorExtent::Surface(sensor, area) => {
@@ -175,7 +184,7 @@ impl<'s> SensorTargets<'s> {
         ratio.unwrap_or(f64::INFINITY)
     }
 
-    /// `|cos θ| / (d² p)`, sr, with the density p of points per area; `1/p` of directions, for a far field.
+    /// `|cos θ| / (d² p)`, sr, with the density p of points of all joins per area; `1/p` of directions, for a far field.
     fn solid_angle(
         &self,
         target: &SensorTarget<'s>,
@@ -183,7 +192,7 @@ impl<'s> SensorTargets<'s> {
         (point, normal): (DVec3, DVec3),
         dir: DVec3,
     ) -> f64 {
-        let chosen = chance(&self.targets, target, vertex, EVENLY);
+        let chosen = chance(&self.targets, target, vertex, EVENLY) * self.joins() as f64;
         let normal = match &target.extent {
             SensorExtent::Surface(..) => normal,
             SensorExtent::Sphere(sphere, radius) => (point - sphere.frame.origin) / *radius,

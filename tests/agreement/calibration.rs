@@ -1,5 +1,6 @@
 //! The errors that runs state are those they have: over many seeds, deviations from the truth are as large.
 
+use crate::connections::{LIT_DISC, flux_of_lit_disc};
 use crate::trial::{Gathering, Way, load};
 use lumiduct_core::plan::RunPlan;
 use lumiduct_core::scene::{SensorId, SourceId};
@@ -27,13 +28,32 @@ pub(crate) fn assert_calibrated(
     assert!(off.abs() < 4.0 * 2f64.sqrt() * error, "{what}: {square}");
 }
 
+/// Waves of 4 passes of a gathered run.
+const WAVES: u64 = 16;
+
+/// Checks the stated errors of gathered runs of a scene with one sensor and one source, whose flux is known.
+fn assert_gathered(what: &str, text: &str, way: Way, flux: f64) {
+    let passes = 4.0 * WAVES as f64;
+    let job = load(text, way);
+    let slot = Layout::new(&job.scene).sensor_flux(SensorId::new(0), SourceId::new(0));
+    // Of t with n - 1 degrees of freedom the mean square is (n - 1)/(n - 3).
+    assert_calibrated(
+        &format!("{}, {what}", way.name()),
+        (passes - 1.0) / (passes - 3.0),
+        |seed| {
+            let mut run = Run::new(&job.scene, &RunPlan { seed, ..job.run.clone() });
+            (0..WAVES).for_each(|_| run.next_wave());
+            let findings = run.findings();
+            let orders = Orders::of(&findings.others[0].stages[0].counts);
+            orders.fourth.scalar(slot).sigmas_from(flux)
+        },
+    );
+}
+
 /// Light that fills a mirror tube: windows have no bias. Limited by records, by photons and by pairs, which four passes
 /// share.
 #[test]
 fn errors_of_gathered_light_are_calibrated() {
-    /// Waves of 4 passes: of t with n - 1 degrees of freedom the mean square is (n - 1)/(n - 3).
-    const WAVES: u64 = 16;
-    let passes = 4.0 * WAVES as f64;
     let text = r#"
 [finishes]
 mirror = { specular = { reflectance = 1 } }
@@ -48,20 +68,19 @@ flux_lm = 10
 exit = { plane = {}, on = "tube.exit", counts = "incident", side = "both" }
 "#;
     for (limit, [records, photons]) in
-        [("records", [20, 1000]), ("photons", [1000, 20]), ("pairs", [60, 60])]
+        [("records", [20, 500]), ("photons", [500, 20]), ("pairs", [60, 60])]
     {
         let gathering = Gathering { depth: 1, radius_mm: 1.0, angle_deg: 10.0, records, photons };
         for way in [Way::Gather(gathering), Way::Merged(gathering)] {
-            let job = load(text, way);
-            let slot = Layout::new(&job.scene).sensor_flux(SensorId::new(0), SourceId::new(0));
-            let what = format!("{}, limited by {limit}", way.name());
-            assert_calibrated(&what, (passes - 1.0) / (passes - 3.0), |seed| {
-                let mut run = Run::new(&job.scene, &RunPlan { seed, ..job.run.clone() });
-                (0..WAVES).for_each(|_| run.next_wave());
-                let findings = run.findings();
-                let orders = Orders::of(&findings.others[0].stages[0].counts);
-                orders.fourth.scalar(slot).sigmas_from(10.0)
-            });
+            assert_gathered(&format!("limited by {limit}"), text, way, 10.0);
         }
     }
+}
+
+/// All five techniques at once, on light that is scattered by one disc.
+#[test]
+fn errors_of_merged_light_are_calibrated() {
+    let gathering =
+        Gathering { depth: 0, radius_mm: 0.5, angle_deg: 10.0, records: 100, photons: 100 };
+    assert_gathered("lit disc", LIT_DISC, Way::Merged(gathering), flux_of_lit_disc());
 }

@@ -1,7 +1,7 @@
 //! Forward and backward mixed: correct where only one of them finds light, and better than both
 //! where each finds some.
 
-use crate::trial::{Way, agree, findings, load};
+use crate::trial::{Gathering, Way, agree, findings, load};
 use lumiduct_core::plan::{Estimator, Request, RunPlan, StopRules};
 use lumiduct_core::scene::{SensorId, SourceId};
 use lumiduct_core::transport::{Layout, Run};
@@ -32,7 +32,8 @@ fn sources_that_paths_cannot_meet_are_left_to_photons() {
     let beam = "[sources.beam.disk]\nradius_mm = 2\nflux_lm = 3\nemission = \"collimated\"\ntilt_deg = 25\n";
     for source in [point, beam] {
         let text = tube(&format!("{SKY}{source}"));
-        agree("sky and what cannot be met", &text, &[Way::Forward, Way::Mixed]);
+        let merged = Way::Merged(Gathering::to_depth(2));
+        agree("sky and what cannot be met", &text, &[Way::Forward, Way::Mixed, merged]);
     }
 }
 

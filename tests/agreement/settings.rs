@@ -72,7 +72,7 @@ fn estimators_that_cannot_meet_a_source_are_refused() {
             "lumiduct = 1\ntitle = \"Refused\"\n[sources.lamp.{source}]\n[sensors]\ncell = {{ plane = {{ disk = {{ radius_mm = 1 }} }}, at = {{ position_mm = [0, 0, 5] }} }}\n"
         );
         std::fs::write(&scene, text).unwrap();
-        for estimator in [Request::Backward, Request::Gather, Request::Mis] {
+        for estimator in [Request::Backward, Request::Gather] {
             let settings = Settings { estimator: Some(estimator), ..Settings::default() };
             let output = Output::new(Some(dir.path().join("report")), Existing::Replace);
             let refused =

@@ -1,5 +1,5 @@
 //! Each technique of `mis` alone, over the paths that it can find, against photons or gather paths that count the same
-//! paths: F, FC, B, BC and M of docs/method.md, eq. (21) and (27).
+//! paths: F, FC, B, BC and M of docs/method.md, eq. (30) and (31).
 
 use crate::finishes::{tube, window};
 use crate::trial::{Gathering, SIGMAS, Way, load};
@@ -75,7 +75,7 @@ fn each_agrees(what: &str, text: &str, lit: usize) {
     let (mut compared, mut failed) = (0, Vec::new());
     for (pair, [own, other]) in PAIRS.iter().zip(&runs) {
         // Gather paths from the far field meet too little to be compared. Joins alone to a sensor, or a source, within a
-        // medium that scatters have no variance, for light that is scattered close to it.
+        // medium that scatters have infinite variance, by light that is scattered close to it.
         let by_photons = [JoinedPhoton, Photon].iter().all(|one| pair.contains(one));
         let by_records = pair.contains(&Pair);
         let is_compared = |name: &str| {

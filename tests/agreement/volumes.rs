@@ -3,8 +3,9 @@
 
 use crate::trial::{Comparison, Gathering, Way, agree, measures, shallow_agree};
 
-/// A thin beam on a wide slab of a medium, from below; counts transmitted and reflected light.
-fn slab(thickness_mm: f64, index: f64, anisotropy: f64) -> String {
+/// A beam of a radius on a wide slab of a medium, at a height above its lower face; counts transmitted and reflected light.
+fn slab([thickness_mm, index, anisotropy]: [f64; 3], [radius_mm, height_mm]: [f64; 2]) -> String {
+    let z_mm = 1.0 + height_mm;
     format!(
         r#"
 [media.turbid]
@@ -16,9 +17,10 @@ size_mm = [400, 400, {thickness_mm}]
 medium = "turbid"
 at = {{ position_mm = [0, 0, 1] }}
 [sources.laser.disk]
-radius_mm = 0.1
+radius_mm = {radius_mm}
 flux_lm = 1
 emission = "collimated"
+at = {{ position_mm = [0, 0, {z_mm}] }}
 [sensors]
 up = {{ plane = {{}}, on = "slab.exit", counts = "leaving" }}
 back = {{ plane = {{}}, on = "slab.entry", counts = "leaving" }}
@@ -31,14 +33,33 @@ fn a_slab_lets_through_and_sends_back_what_is_published() {
     let mut comparison = Comparison::default();
     // van de Hulst, Multiple Light Scattering (1980), table 35, as in Wang, Jacques & Zheng, Comput. Methods Programs
     // Biomed. 47 (1995) 131, table 1: optical thickness 2, albedo 0.9, anisotropy 0.75, equal indices. Five digits.
-    let found = measures(&slab(0.2, 1.0, 0.75), Way::Forward);
-    comparison.add("slab, up", &found.values["up.flux"], 0.66096, 5e-6);
-    comparison.add("slab, back", &found.values["back.flux"], 0.09739, 5e-6);
+    let gathering =
+        Gathering { depth: 1, radius_mm: 0.02, angle_deg: 5.0, records: 2000, photons: 2000 };
+    // A thin beam from outside by photons; a wide one that starts within, so that gather paths are joined to it.
+    for (way, beam) in [
+        (Way::Forward, [0.1, -0.5]),
+        (Way::Mixed, [190.0, 1e-9]),
+        (Way::Merged(gathering), [190.0, 1e-9]),
+    ] {
+        let found = measures(&slab([0.2, 1.0, 0.75], beam), way);
+        comparison.add(
+            &format!("slab, {}, up", way.name()),
+            &found.values["up.flux"],
+            0.66096,
+            5e-6,
+        );
+        comparison.add(
+            &format!("slab, {}, back", way.name()),
+            &found.values["back.flux"],
+            0.09739,
+            5e-6,
+        );
+    }
     // Giovanelli, Opt. Acta 2 (1955) 153, as in table 2 there: half space of index 1.5, albedo 0.9,
     // isotropic, including the reflection of the surface itself. Four digits.
-    let found = measures(&slab(200.0, 1.5, 0.0), Way::Forward);
+    let found = measures(&slab([200.0, 1.5, 0.0], [0.1, -0.5]), Way::Forward);
     comparison.add("half space, back", &found.values["back.flux"], 0.2600, 5e-5);
-    comparison.assert("slab", 3);
+    comparison.assert("slab", 7);
 }
 
 #[test]
@@ -83,7 +104,7 @@ around = {{ face = {{ of = "cube.wall", side = "back", luminance_cd_m2 = 1000 }}
 fn light_that_is_not_scattered_falls_off_by_both_coefficients() {
     // Far ahead a disk as wide as the beam sees only the beam: less than 1e-7 of the scattered
     // light.
-    let text = slab(0.3, 1.0, 0.0).replace(
+    let text = slab([0.3, 1.0, 0.0], [0.1, -0.5]).replace(
         "[sensors]",
         "[sensors]\nahead = { plane = { disk = { radius_mm = 0.11 } }, at = { position_mm = [0, 0, 500], axis = [0, 0, -1] } }",
     );

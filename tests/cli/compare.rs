@@ -89,28 +89,11 @@ fn the_cells_of_a_truth_must_be_those_of_the_sensor() {
 }
 
 #[test]
-fn a_comparison_with_merging_is_refused_where_a_finish_scatters() {
-    let white = "[sheets.screen.disk]\nradius_mm = 3\nfinish = { lambertian = { reflectance = 0.5 } }\nat = { position_mm = [0, 0, 40] }\n";
-    let place = Place::with(white);
-    let said = place.bad(2, "compare rod.toml --estimators forward,mis --sensor exit --time 1s");
-    for words in ["mis", "screen.surface", "scatters"] {
-        assert!(said.contains(words), "no {words} in {said}");
-    }
-    assert_eq!(place.names(), ["rod.toml"]);
-}
-
-#[test]
-fn methods_that_know_no_scattering_media_are_refused_where_there_are_some() {
+fn sppm_is_refused_where_a_medium_scatters() {
     let place = Place::with("[media.acrylic.scattering]\nper_mm = 0.01\n");
-    for (arguments, method) in [
-        ("compare rod.toml --estimators forward,mis --sensor exit --time 1s", "mis"),
-        ("compare rod.toml --estimators forward,sppm --sensor exit --time 1s", "sppm"),
-        ("run rod.toml --estimator mis", "mis"),
-    ] {
-        let said = place.bad(2, arguments);
-        for words in [method, "the medium `acrylic` scatters"] {
-            assert!(said.contains(words), "no {words} in {said}");
-        }
+    let said = place.bad(2, "compare rod.toml --estimators forward,sppm --sensor exit --time 1s");
+    for words in ["sppm", "the medium `acrylic` scatters"] {
+        assert!(said.contains(words), "no {words} in {said}");
     }
     assert_eq!(place.names(), ["rod.toml"]);
 }

@@ -6,18 +6,11 @@ use std::io;
 use std::path::PathBuf;
 use std::process::Command;
 
-/// Estimators where all directions are discrete.
-const CLEAR: &str = "forward,backward,sppm,metropolis,mix,gather,mis,auto";
-/// The same where a finish scatters: such paths cannot be merged.
-const SCATTERING: &str = "forward,backward,sppm,metropolis,mix,gather,auto";
+/// What is compared.
+const ESTIMATORS: &str = "forward,backward,sppm,metropolis,mix,gather,mis,auto";
 /// The scenes that are compared. Each has one sensor, with one cell.
-const SCENES: [(&str, &str); 5] = [
-    ("remote_cell_sun", CLEAR),
-    ("remote_cell_rod", CLEAR),
-    ("remote_cell_led", CLEAR),
-    ("remote_cell_scatter", SCATTERING),
-    ("white_box", SCATTERING),
-];
+const SCENES: [&str; 5] =
+    ["remote_cell_sun", "remote_cell_rod", "remote_cell_led", "remote_cell_scatter", "white_box"];
 /// Divides the cell, so that there are errors per cell.
 const CELLS: &str = "sensors.cell.plane.cells=[4,4]";
 
@@ -25,7 +18,7 @@ const CELLS: &str = "sensors.cell.plane.cells=[4,4]";
 #[derive(Debug, Args)]
 pub(crate) struct CompareTimes {
     /// Scenes [default: all five].
-    #[arg(value_parser = clap::builder::PossibleValuesParser::new(SCENES.map(|(name, _)| name)))]
+    #[arg(value_parser = clap::builder::PossibleValuesParser::new(SCENES))]
     scenes: Vec<String>,
     /// Time for each estimator, all its runs together.
     #[arg(long, default_value = "60s")]
@@ -51,14 +44,14 @@ pub(crate) fn compare(times: &CompareTimes) -> io::Result<bool> {
         None => verify::build()?,
     };
     let mut is_good = true;
-    for (name, estimators) in SCENES {
+    for name in SCENES {
         if !times.scenes.is_empty() && !times.scenes.iter().any(|scene| scene == name) {
             continue;
         }
         println!("{name}");
         let mut command = Command::new(&program);
         command.current_dir(root()).arg("compare").arg(format!("scenes/{name}.toml"));
-        command.args(["-D", CELLS, "--estimators", estimators, "--overwrite"]);
+        command.args(["-D", CELLS, "--estimators", ESTIMATORS, "--overwrite"]);
         command.args(["--time", &times.time, "--truth-time", &times.truth_time]);
         command.args(["--runs", &times.runs]).arg("-o").arg(times.output.join(name));
         is_good &= command.status()?.success();

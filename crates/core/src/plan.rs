@@ -53,8 +53,8 @@ pub enum Request {
     /// Gather paths from the sensors, followed until they meet a source.
     #[serde(rename = "backward")]
     Backward,
-    /// Forward and backward at once, weighted path by path; photons alone carry the light of sources that gather paths
-    /// cannot meet.
+    /// Forward and backward at once, weighted path by path; sources that gather paths cannot meet are found by photons, and
+    /// by connections where light is scattered.
     #[serde(rename = "mix")]
     Mix,
     /// Gather paths from the sensors that end in records, and photon paths from the sources that are gathered there.
@@ -129,7 +129,8 @@ pub enum Estimator {
     /// Gather paths from the sensor that end in records, and photon paths that are gathered there.
     #[serde(rename = "gather")]
     Gather,
-    /// Forward, backward and gather at once, weighted path by path; not where another sensor has `gather` or `auto`.
+    /// Forward, backward and gather at once, weighted path by path, with connections where light is scattered; not where
+    /// another sensor has `gather` or `auto`.
     #[serde(rename = "mis")]
     Mis,
 }

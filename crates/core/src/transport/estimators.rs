@@ -6,14 +6,15 @@
 
 use crate::plan::Estimator;
 use crate::scene::{Scene, Sensor, SensorId, Source};
-use crate::transport::backward::estimator::{self as backward, Backward};
+use crate::transport::backward::estimator as backward;
 use crate::transport::backward::mix::{self, Mixing};
+use crate::transport::backward::paths::Backward;
 use crate::transport::connect::vertex::scatters;
 use crate::transport::connect::weights::Sharing;
 use crate::transport::estimate::{Account, Estimate};
 use crate::transport::gather::estimator::Gather;
 use crate::transport::gather::merged::MergedStream;
-use crate::transport::gather::stages::WAVE_PASSES;
+use crate::transport::gather::settings::WAVE_PASSES;
 use crate::transport::gather::stream::PhotonStream;
 use crate::transport::gather::{self, GatherSettings};
 use crate::transport::tally::{Counts, Series, Stage, merged};
@@ -56,7 +57,7 @@ pub(crate) enum Portion {
 }
 
 /// What an estimator does in a block of batches, and in part with their photons.
-pub(crate) enum Block<'b, 's> {
+pub(crate) enum BatchBlock<'b, 's> {
     Backward {
         own: &'b Backward<'s>,
         task: Task<'b>,
@@ -114,17 +115,17 @@ impl<'s> Prepared<'s> {
     }
 
     /// Begins a block, from the task's batch on; `None` if it was stopped.
-    pub(crate) fn begin<'b>(&'b self, task: Task<'b>, batches: u64) -> Option<Block<'b, 's>> {
+    pub(crate) fn begin<'b>(&'b self, task: Task<'b>, batches: u64) -> Option<BatchBlock<'b, 's>> {
         let ended = Vec::with_capacity(batches as usize);
         Some(match self {
-            Self::Backward(own) => Block::Backward { own, task, ended },
-            Self::Mix(own) => Block::Mix { own, task, ended, current: None },
+            Self::Backward(own) => BatchBlock::Backward { own, task, ended },
+            Self::Mix(own) => BatchBlock::Mix { own, task, ended, current: None },
             Self::Gather(own) => {
-                Block::Gather { first: task.batch, stream: own.begin(task, batches)?.into() }
+                BatchBlock::Gather { first: task.batch, stream: own.begin(task, batches)?.into() }
             }
             Self::Mis(own) => {
                 let stream = MergedStream::begin(own, task, batches)?.into();
-                Block::Mis { first: task.batch, stream }
+                BatchBlock::Mis { first: task.batch, stream }
             }
         })
     }
@@ -197,7 +198,7 @@ impl<'s> Prepared<'s> {
     }
 }
 
-impl Block<'_, '_> {
+impl BatchBlock<'_, '_> {
     /// Makes ready for the photons of a batch of the block; `None` if stopped.
     pub(crate) fn begin_photons(&mut self, batch: u64) -> Option<()> {
         match self {
@@ -235,7 +236,7 @@ impl Block<'_, '_> {
     }
 }
 
-impl Observer for Block<'_, '_> {
+impl Observer for BatchBlock<'_, '_> {
     #[inline]
     fn roulette_below(&self) -> f64 {
         match self {
@@ -258,7 +259,7 @@ impl Observer for Block<'_, '_> {
 }
 
 /// All estimators of a block, as one observer of its photons.
-pub(crate) struct Observers<'o, 'b, 's>(pub(crate) &'o mut [Block<'b, 's>]);
+pub(crate) struct Observers<'o, 'b, 's>(pub(crate) &'o mut [BatchBlock<'b, 's>]);
 
 impl Observer for Observers<'_, '_, '_> {
     /// The smallest of all: merged paths have weights that roulette would change.

@@ -2,7 +2,7 @@
 //!
 //! This layer does not know file formats or reports. Its output is one serialisable value,
 //! [`Findings`]. From the bottom up: `stop`, `tally`, `walk`; `task`, `trial` and `estimate`, what
-//! every estimator gets and gives; `window`; `connect`; `forward`, `gather` and `backward`; `estimators`, the
+//! every estimator gets and gives; `window`; `connect`; `forward`, `backward` and `gather`; `estimators`, the
 //! one seam in front of them; `choose`, `run`.
 
 mod backward;

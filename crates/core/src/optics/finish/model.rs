@@ -120,11 +120,6 @@ pub trait FinishModel {
     fn is_specular(&self) -> bool {
         self.spread() == Spread::Discrete
     }
-
-    /// Whether light leaves in one discrete direction to each side, or not at all.
-    fn has_one_direction_a_side(&self) -> bool {
-        self.is_specular() && !self.has_grain()
-    }
 }
 
 /// How far a finish spreads light, for the choice of windows.

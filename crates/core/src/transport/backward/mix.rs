@@ -2,22 +2,23 @@
 //! in proportion to how well it samples it.
 //!
 //! Photons and gather paths know the ends of every path that they find, and therefore the weights
-//! of docs/method.md, eq. (27), without a window. The path between the ends does not matter, so
-//! finishes may scatter. `estimator` counts the share of gather paths.
+//! of docs/method.md, eq. (27). The path between the ends does not matter, so finishes may scatter.
+//! With records (`mis`), photons also remember their last vertices, eq. (31). `counter` counts the
+//! share of gather paths.
 
 use crate::optics::Lobe;
 use crate::plan::Estimator;
 use crate::rng::{Sampler, stream};
 use crate::scene::{Ray, SensorId, SourceId, Visibility};
-use crate::transport::backward::estimator::{
-    Backward, Joint, Weights, paths_for, roulette_below, work_of_one,
-};
-use crate::transport::connect::passage::{Passage, RecentPassages, VertexWindow};
+use crate::transport::backward::counter::roulette_below;
+use crate::transport::backward::estimator::{paths_for, work_of_one};
+use crate::transport::backward::paths::{Backward, SharedBatches, Weights};
+use crate::transport::connect::passage::{PassedVertex, RecentPassages, VertexWindow};
 use crate::transport::connect::sensors::SensorPoint;
 use crate::transport::connect::sources::SourcePoint;
 use crate::transport::connect::vertex::{ScatteringVertex, TurnAt, Turns};
 use crate::transport::connect::way::WayStart;
-use crate::transport::connect::weights::{Etendues, Sharing, Technique};
+use crate::transport::connect::weights::{Etendues, Technique};
 use crate::transport::forward;
 use crate::transport::stop::Pace;
 use crate::transport::tally::readings::DetectedLight;
@@ -73,14 +74,14 @@ impl<'m, 's> Mixing<'m, 's> {
     /// The gather paths of a batch, traced, and ready for its photons; `None` if stopped.
     pub(crate) fn begin(backward: &'m Backward<'s>, task: Task<'m>) -> Option<Self> {
         let readings = backward.trace(task)?;
-        Some(Self::new(backward, (task, backward.paths), Joint::ALONE, readings))
+        Some(Self::new(backward, (task, backward.paths), SharedBatches::ALONE, readings))
     }
 
     /// Ready for the photons of a batch, with this many gather paths of each sensor, which have been traced.
     pub(crate) fn new(
         backward: &'m Backward<'s>,
         (task, paths): (Task<'m>, u64),
-        joint: Joint,
+        together: SharedBatches,
         readings: Readings,
     ) -> Self {
         let nowhere =
@@ -88,13 +89,13 @@ impl<'m, 's> Mixing<'m, 's> {
         Self {
             backward,
             photon_fluxes: task.photon_fluxes,
-            batches: joint.batches,
-            paths: joint.batches * paths as f64,
+            batches: together.batches,
+            paths: together.batches * paths as f64,
             photon: 0.0,
             start: nowhere,
             flux: 0.0,
             turns: Turns::default(),
-            recent: joint.places.map(RecentPassages::new),
+            recent: together.places.map(RecentPassages::new),
             joints: Sampler::for_path(backward.seed, stream::JOINED_SENSORS, task.batch),
             readings,
         }
@@ -174,7 +175,7 @@ impl Observer for Mixing<'_, '_> {
                 }
                 self.turns.depart(Lobe::Diffuse);
                 if let Some(recent) = &mut self.recent {
-                    recent.push(Passage::Scattered(joint, [collision.dir, collision.out]));
+                    recent.push(PassedVertex::Scattered(joint, [collision.dir, collision.out]));
                 }
             }
             Event::Depart(vertex, departure) => self.depart(path, vertex, departure),
@@ -227,13 +228,7 @@ impl Mixing<'_, '_> {
             let etendues = self.etendues(light.sensor, gather, joined, (first, windows));
             etendues.share(Technique::Photon, self.backward.sharing)
         } else {
-            // Only photons find its light.
-            match self.backward.sharing {
-                Sharing::Balanced => 1.0,
-                Sharing::Only { counts, of } => {
-                    f64::from(u8::from([counts, of] == [Technique::Photon; 2]))
-                }
-            }
+            Etendues::PHOTON_ALONE.share(Technique::Photon, self.backward.sharing)
         };
         self.count(path.depth, light.sensor, light.cells, light.flux * weight);
     }
@@ -278,7 +273,7 @@ impl Mixing<'_, '_> {
         let gather = end.index * end.index * arrivals.extent(&back, place.normal);
         let joined = light.density / light.albedo * place.solid_angle;
         let first = self.turns.first_if_joined(place.dir);
-        let next = || Some(Passage::of_lobe(*vertex, [dir, place.dir], Lobe::Diffuse));
+        let next = || Some(PassedVertex::of_lobe(*vertex, [dir, place.dir], Lobe::Diffuse));
         let windows = self.recent.as_ref().map_or(0.0, |recent| recent.sum(next()));
         let etendues = self.etendues(place.sensor, gather, joined, (first, windows));
         let weight = etendues.share(Technique::JoinedPhoton, self.backward.sharing);
@@ -316,7 +311,7 @@ impl Mixing<'_, '_> {
             && vertex.interface.visibility == Visibility::Visible
         {
             let met = ScatteringVertex::facing(self.backward.scene, path, vertex);
-            recent.push(Passage::of_lobe(met, [vertex.dir, departure.dir], departure.lobe));
+            recent.push(PassedVertex::of_lobe(met, [vertex.dir, departure.dir], departure.lobe));
         }
     }
 

@@ -19,16 +19,16 @@ const LEAST_CHANCE: f64 = 1e-9;
 
 /// A vertex that light has passed.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Passage<'s> {
+pub(crate) enum PassedVertex<'s> {
     /// Into a discrete direction, or close to one.
-    Along(FacePassage<'s>),
+    Along(PassedFace<'s>),
     /// Scattered broadly, with the unit directions of the light before and after.
     Scattered(ScatteringVertex<'s>, [DVec3; 2]),
 }
 
 /// Light at a face that it meets, and the side to which it leaves.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct FacePassage<'s> {
+pub(crate) struct PassedFace<'s> {
     finish: &'s Finish,
     incidence: Incidence,
     side: Side,
@@ -43,7 +43,7 @@ pub(crate) enum VertexWindow {
     Scattered(f64),
 }
 
-impl<'s> Passage<'s> {
+impl<'s> PassedVertex<'s> {
     /// Of a path that left an interface by a lobe, with the unit directions of the light before and
     /// after, whichever path met it.
     pub(crate) fn of_lobe(vertex: ScatteringVertex<'s>, light: [DVec3; 2], lobe: Lobe) -> Self {
@@ -52,7 +52,7 @@ impl<'s> Passage<'s> {
                 let (finish, incidence) = met.acting_on(light[0]);
                 let [before, after] = light.map(|dir| dir.dot(met.facet));
                 let side = if before * after < 0.0 { Side::Reflected } else { Side::Transmitted };
-                Self::Along(FacePassage { finish, incidence, side })
+                Self::Along(PassedFace { finish, incidence, side })
             }
             Some(_) | None => Self::Scattered(vertex, light),
         }
@@ -69,7 +69,7 @@ impl<'s> Passage<'s> {
     }
 }
 
-impl FacePassage<'_> {
+impl PassedFace<'_> {
     /// G/q, mm² sr: n² π r² ∫ cos θ dω over the cone about the light, above the horizon, over the
     /// probability of the path's side. Windows are not clipped: eq. (20).
     fn etendue(&self, window: Window) -> f64 {
@@ -105,7 +105,7 @@ pub(crate) struct RecordPlaces {
 #[derive(Debug)]
 pub(crate) struct RecentPassages<'s> {
     places: RecordPlaces,
-    passages: VecDeque<Passage<'s>>,
+    passages: VecDeque<PassedVertex<'s>>,
 }
 
 impl<'s> RecentPassages<'s> {
@@ -120,7 +120,7 @@ impl<'s> RecentPassages<'s> {
     }
 
     /// The photon has passed a vertex.
-    pub(crate) fn push(&mut self, passage: Passage<'s>) {
+    pub(crate) fn push(&mut self, passage: PassedVertex<'s>) {
         if self.passages.len() > self.places.vertex_d {
             self.passages.pop_front();
         }
@@ -134,13 +134,13 @@ impl<'s> RecentPassages<'s> {
     }
 
     /// G/q of the records on a path from here to a sensor, which passes `next` first if given, mm² sr.
-    pub(crate) fn sum(&self, next: Option<Passage<'s>>) -> f64 {
+    pub(crate) fn sum(&self, next: Option<PassedVertex<'s>>) -> f64 {
         let RecordPlaces { window, vertex_d } = self.places;
         let passed = next.iter().chain(self.passages.iter().rev()).enumerate();
         passed
             .map(|(depth, passage)| match passage {
-                Passage::Along(_) if depth != vertex_d => 0.0,
-                Passage::Along(_) | Passage::Scattered(..) => {
+                PassedVertex::Along(_) if depth != vertex_d => 0.0,
+                PassedVertex::Along(_) | PassedVertex::Scattered(..) => {
                     passage.window(window).at(depth, vertex_d)
                 }
             })
@@ -163,7 +163,7 @@ impl PassedRecords {
     }
 
     /// The path has passed a vertex.
-    pub(crate) fn push<'s>(&mut self, passage: impl FnOnce() -> Passage<'s>) {
+    pub(crate) fn push<'s>(&mut self, passage: impl FnOnce() -> PassedVertex<'s>) {
         if self.vertices <= self.places.vertex_d {
             self.sum = self.sum(Some(passage()));
         }
@@ -176,7 +176,7 @@ impl PassedRecords {
     }
 
     /// G/q of these records, and of that at the next vertex if given, mm² sr.
-    pub(crate) fn sum(&self, next: Option<Passage<'_>>) -> f64 {
+    pub(crate) fn sum(&self, next: Option<PassedVertex<'_>>) -> f64 {
         let RecordPlaces { window, vertex_d } = self.places;
         self.sum + next.map_or(0.0, |next| next.window(window).at(self.vertices, vertex_d))
     }
@@ -197,7 +197,12 @@ mod tests {
     fn met_from_glass(finish: &'static Finish, dir: DVec3) -> MetInterface<'static> {
         let incidence =
             Incidence { dir, normal: DVec3::Z, index_from: 1.5, index_to: 1.0, grain: DVec3::ZERO };
-        MetInterface { faces: Faces { own: finish, behind: finish }, incidence, facet: DVec3::Z }
+        MetInterface {
+            faces: Faces { own: finish, behind: finish },
+            incidence,
+            facet: DVec3::Z,
+            shading: DVec3::Z,
+        }
     }
 
     /// The same face as it is met from air.
@@ -206,7 +211,7 @@ mod tests {
         let Incidence { index_from, index_to, grain, .. } = glass.incidence;
         let (index_from, index_to) = (index_to, index_from);
         let incidence = Incidence { dir, normal: DVec3::NEG_Z, index_from, index_to, grain };
-        MetInterface { incidence, facet: DVec3::NEG_Z, ..glass }
+        MetInterface { incidence, facet: DVec3::NEG_Z, shading: DVec3::NEG_Z, ..glass }
     }
 
     fn at(met: MetInterface<'static>) -> ScatteringVertex<'static> {
@@ -226,7 +231,7 @@ mod tests {
                 own(&Finish::Smooth, dir)
             };
             let [by_photon, by_path] = [before, -after].map(|dir| {
-                let passage = Passage::of_lobe(at(from(dir)), [before, after], Lobe::Specular);
+                let passage = PassedVertex::of_lobe(at(from(dir)), [before, after], Lobe::Specular);
                 passage.window(WINDOW).at(3, 3)
             });
             assert!((by_photon / by_path - 1.0).abs() < 1e-12, "{by_photon}, {by_path}");
@@ -243,24 +248,27 @@ mod tests {
     #[test]
     fn scattered_light_has_records_at_every_vertex_up_to_d() {
         let light = [DVec3::new(0.6, 0.0, -0.8), DVec3::new(0.0, 0.8, -0.6)];
-        let passage = Passage::of_lobe(at(met_from_glass(&WHITE, light[0])), light, Lobe::Diffuse);
+        let passage =
+            PassedVertex::of_lobe(at(met_from_glass(&WHITE, light[0])), light, Lobe::Diffuse);
         let window = passage.window(WINDOW);
         // Transmitted, D/ϱ = 0.2/0.8 |cos θ|/π, into air: π r² π n² / 0.25.
         let expected = WINDOW.area() * PI / 0.25;
         assert!((window.at(0, 2) / expected - 1.0).abs() < 1e-12, "{window:?}, {expected}");
         assert_eq!([window.at(2, 2), window.at(3, 2)], [window.at(0, 2), 0.0]);
         let straight =
-            Passage::of_lobe(at(met_from_glass(&WHITE, light[0])), light, Lobe::Specular);
+            PassedVertex::of_lobe(at(met_from_glass(&WHITE, light[0])), light, Lobe::Specular);
         assert_eq!(straight.window(WINDOW).at(0, 2), 0.0, "left at D alone");
     }
 
     #[test]
     fn both_ends_of_a_path_add_up_the_same_records() {
         let light = [DVec3::new(0.6, 0.0, -0.8), DVec3::new(0.0, 0.8, -0.6)];
-        let passages: Vec<Passage<'_>> =
+        let passages: Vec<PassedVertex<'_>> =
             [Lobe::Diffuse, Lobe::Specular, Lobe::Specular, Lobe::Diffuse]
                 .into_iter()
-                .map(|lobe| Passage::of_lobe(at(met_from_glass(&WHITE, light[0])), light, lobe))
+                .map(|lobe| {
+                    PassedVertex::of_lobe(at(met_from_glass(&WHITE, light[0])), light, lobe)
+                })
                 .collect();
         for vertex_d in 0..5 {
             let places = RecordPlaces { window: WINDOW, vertex_d };

@@ -12,10 +12,9 @@ use std::f64::consts::PI;
 /// Density relative to that of a diffuser below which joins are left out at random, 1.
 const WORTHWHILE: f64 = 0.01;
 
-/// Whether anything in a scene scatters light into a density of directions.
+/// Whether any medium or finish of a scene, on a face or not, scatters light into a density of directions.
 pub(crate) fn scatters(scene: &Scene) -> bool {
-    let finishes = scene.finishes.iter().map(|named| named.finish.spread());
-    finishes.into_iter().any(|spread| spread != Spread::Discrete)
+    scene.finishes.iter().any(|named| named.finish.spread() != Spread::Discrete)
         || turbid_media(scene).next().is_some()
 }
 
@@ -80,11 +79,10 @@ impl<'s> ScatteringVertex<'s> {
 
     /// The vertex of a path at a visible face, even if only discrete directions leave.
     pub(crate) fn facing(scene: &'s Scene, path: &Path, vertex: &Vertex<'_>) -> Self {
-        Self { point: vertex.point, place: VertexPlace::Face(facing(scene, path, vertex)) }
+        Self::at(vertex.point, facing(scene, path, vertex))
     }
 
-    /// A face at a point, mm.
-    #[cfg(test)]
+    /// A face that was met at a point, mm.
     pub(crate) fn at(point: DVec3, met: MetInterface<'s>) -> Self {
         Self { point, place: VertexPlace::Face(met) }
     }
@@ -97,7 +95,8 @@ impl<'s> ScatteringVertex<'s> {
         }
     }
 
-    /// Whether gather paths leave records here for light that arrives with a direction and is scattered.
+    /// Whether gather paths leave a record here for light that arrives along this direction and is scattered: in a medium,
+    /// or by a finish that scatters broadly.
     pub(crate) fn is_broad(&self, arriving: DVec3) -> bool {
         self.face().is_none_or(|met| met.acting_on(arriving).0.spread() == Spread::Broad)
     }

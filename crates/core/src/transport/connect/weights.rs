@@ -49,7 +49,7 @@ pub(crate) struct Etendues {
     pub(crate) photon_joined: f64,
     /// Of one gather path, where the path ends: `1/(M p_g)`.
     pub(crate) gather: f64,
-    /// The same if gather paths meet its source.
+    /// The same; infinite if gather paths cannot meet the source.
     pub(crate) gather_met: f64,
     /// Of one gather path that is joined to the source at the first vertex.
     pub(crate) gather_joined: f64,
@@ -58,6 +58,16 @@ pub(crate) struct Etendues {
 }
 
 impl Etendues {
+    /// Those of light that only photons find.
+    pub(crate) const PHOTON_ALONE: Self = Self {
+        photon: 1.0,
+        photon_joined: f64::INFINITY,
+        gather: f64::INFINITY,
+        gather_met: f64::INFINITY,
+        gather_joined: f64::INFINITY,
+        windows: 0.0,
+    };
+
     /// The share that a technique counts of a path that it has found, 1.
     pub(crate) fn share(&self, technique: Technique, sharing: Sharing) -> f64 {
         match sharing {

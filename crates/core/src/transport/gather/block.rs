@@ -13,7 +13,7 @@ use crate::transport::{Layout, Readings};
 
 /// Counts of the passes of a block; not closed.
 #[derive(Debug)]
-pub(super) struct BlockCounts {
+pub(super) struct CrossedCounts {
     /// By pass: the light that its gather paths met and that its records took.
     passes: Vec<[Readings; ORDERS]>,
     /// By pass: the light that its photons brought to records of all passes. Empty for one pass alone.
@@ -22,7 +22,7 @@ pub(super) struct BlockCounts {
     pairs: Vec<Vec<f64>>,
 }
 
-impl BlockCounts {
+impl CrossedCounts {
     /// Nothing counted yet; `empty` makes readings of a pass, from 0.
     pub(super) fn new(passes: usize, sensors: usize, empty: impl Fn(usize) -> Readings) -> Self {
         let all = |count| -> Vec<[Readings; ORDERS]> {

@@ -1,4 +1,4 @@
-//! One gather path: it counts the light that it meets, and leaves records where it ends.
+//! One gather path: it leaves records, where it ends unless it is merged, and then counts the light that it meets.
 
 use crate::optics::{Finish, FinishModel, Lobe, Side, Spread};
 use crate::rng::{Dimension, Sampler};
@@ -8,10 +8,10 @@ use crate::transport::gather::ball::clipped_ball;
 use crate::transport::gather::coverage::{Coverage, Middle, coverage};
 use crate::transport::gather::estimator::{Gather, RecordedPath};
 use crate::transport::gather::kernel::ORDERS;
-use crate::transport::gather::merged::{MergedPath, MergedRecord};
 use crate::transport::gather::records::{
     GatherRecord, RecordKind, RecordPath, SurfaceRecord, VolumeRecord,
 };
+use crate::transport::gather::shares::{MergedPath, MergedRecord};
 use crate::transport::tally::readings::DetectedLight;
 use crate::transport::walk::scatter::{MetInterface, facing};
 use crate::transport::window::Window;
@@ -38,7 +38,7 @@ pub(crate) struct Collecting<'c, 's> {
     pub(crate) window: Window,
     /// Etendue of this path, its share of the pass, mm² sr.
     pub(crate) etendue: f64,
-    /// Merged: what it shares its light by. Others then count what it meets.
+    /// If merged: what weights its records; another observer then counts the emission it meets.
     pub(crate) merged: Option<MergedPath<'s>>,
     pub(crate) id: SensorId,
     /// The number of the path among those of its sensor.
@@ -112,7 +112,7 @@ impl Collecting<'_, '_> {
         }
         let facing = facing(self.gather.scene, path, vertex);
         if let Some(merged) = &mut self.merged {
-            merged.meet(ScatteringVertex::facing(self.gather.scene, path, vertex), vertex.dir);
+            merged.meet(ScatteringVertex::at(vertex.point, facing), vertex.dir);
         }
         let at = PathAtFace { path, vertex, facing };
         for side in [Side::Reflected, Side::Transmitted] {
@@ -274,11 +274,11 @@ impl<'s> Collecting<'_, 's> {
     /// What weights a record for light by a lobe into the path, which travels along `dir`.
     fn merged_record(
         &self,
-        light: (DVec3, Lobe),
+        (dir, lobe): (DVec3, Lobe),
         along: Option<DVec3>,
     ) -> Option<MergedRecord<'s>> {
         let backward = self.gather.merging.as_ref()?;
-        self.merged.as_ref()?.record((backward, self.id), light, along)
+        Some(self.merged.as_ref()?.record((backward, self.id), (dir, lobe), along))
     }
 
     /// This path, as one that ends in records.

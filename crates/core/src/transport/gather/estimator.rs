@@ -2,11 +2,12 @@
 
 use crate::plan::RunPlan;
 use crate::scene::{Arrivals, Scene, SensorId};
-use crate::transport::backward::estimator::Backward;
+use crate::transport::backward::paths::Backward;
+use crate::transport::connect::vertex::scatters;
 use crate::transport::gather::bias::Judged;
-use crate::transport::gather::merged::MergedRecord;
 use crate::transport::gather::records::Records;
 use crate::transport::gather::settings::{GatherSettings, SensorGroup};
+use crate::transport::gather::shares::MergedRecord;
 use crate::transport::gather::surfaces::SurfaceNumbers;
 use crate::transport::trial::PhotonPilot;
 use crate::transport::walk::emitters::Emitters;
@@ -23,7 +24,7 @@ pub(crate) struct Gather<'s> {
     pub(super) sensors: Vec<(SensorId, Arrivals<'s>)>,
     pub(super) seed: u64,
     pub(crate) settings: GatherSettings,
-    /// Merged: gather paths go on to the sources, and find light as these do.
+    /// Merged: weights and connections of its gather paths beyond their records.
     pub(crate) merging: Option<Backward<'s>>,
 }
 
@@ -45,13 +46,15 @@ impl<'s> Gather<'s> {
         pilot: PhotonPilot,
     ) -> Self {
         let SensorGroup { sensors, mut settings, .. } = group.clone();
-        if combination == Combination::Merged
-            && pilot.pass_work.is_some()
-            && plan.gather.records.is_none()
-        {
+        if combination == Combination::Merged && plan.gather.records.is_none() {
             // Merged gather paths continue as far as photons do.
-            let most = settings.photons / settings.all_sensors;
-            settings.gather_paths = settings.gather_paths.min(most).max(1);
+            let most = match pilot.pass_work {
+                Some(_) => settings.photons / settings.all_sensors,
+                None => u64::MAX,
+            };
+            // Where light is scattered, each may leave records at all vertices up to D.
+            let vertices = if scatters(scene) { u64::from(settings.depth) + 1 } else { 1 };
+            settings.gather_paths = (settings.gather_paths / vertices).min(most).max(1);
         }
         let alone = Self::new(scene, &sensors, plan.seed, settings);
         match combination {

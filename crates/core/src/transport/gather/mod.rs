@@ -15,6 +15,7 @@ pub(crate) mod merged;
 mod pass;
 pub mod records;
 pub mod settings;
+mod shares;
 mod sounding;
 pub(crate) mod stages;
 pub(crate) mod stream;

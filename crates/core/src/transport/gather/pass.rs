@@ -11,21 +11,31 @@
 //! everything counts by its weight (`merged`).
 
 use crate::rng::{Sampler, stream};
-use crate::transport::backward::estimator::GatherPathCounter;
+use crate::scene::{Arrival, SensorId};
+use crate::transport::backward::counter::GatherPathCounter;
 use crate::transport::connect::passage::{PassedRecords, RecordPlaces};
 use crate::transport::connect::vertex::Turns;
-use crate::transport::gather::block::BlockCounts;
+use crate::transport::gather::block::CrossedCounts;
 use crate::transport::gather::collect::{Collecting, EndedPaths};
 use crate::transport::gather::estimator::{Gather, WaitingRecords};
 use crate::transport::gather::kernel::ORDERS;
-use crate::transport::gather::merged::MergedPath;
 use crate::transport::gather::records::Records;
+use crate::transport::gather::shares::MergedPath;
 use crate::transport::gather::stages::Pass;
 use crate::transport::gather::stream::PhotonStream;
 use crate::transport::stop::RECORD_WORK;
 use crate::transport::task::Task;
 use crate::transport::walk::follow::{Gathering, follow};
 use crate::transport::{Path, Readings};
+
+/// A gather path that starts from a sensor.
+struct StartedPath<'a> {
+    id: SensorId,
+    /// Its number among those of its sensor.
+    index: u64,
+    arrival: &'a Arrival,
+    sampler: Sampler,
+}
 
 impl<'s> Gather<'s> {
     /// Traces the gather paths of a block of passes, from the task's batch on, whose records then wait for the photons of
@@ -46,7 +56,7 @@ impl<'s> Gather<'s> {
             let Pass { gather_paths, batch, .. } = pass_of(place);
             Readings::of_batch(self.scene, &self.layout, self.seed, gather_paths, batch)
         };
-        let mut counts = BlockCounts::new(passes, self.scene.sensors.len(), empty);
+        let mut counts = CrossedCounts::new(passes, self.scene.sensors.len(), empty);
         let mut met: Vec<Readings> = Vec::new();
         if self.merging.is_some() {
             met.extend((0..passes).map(empty));
@@ -67,68 +77,77 @@ impl<'s> Gather<'s> {
     fn gather_paths_of(
         &self,
         pass: Pass,
-        Task { photon_fluxes, pace, .. }: Task<'_>,
+        task: Task<'_>,
         (orders, mut met): (&mut [Readings; ORDERS], Option<&mut Readings>),
         found: &mut EndedPaths<'s>,
     ) -> Option<()> {
-        let passes = found.passes as f64;
-        let places = self.record_places(pass);
         let mut joints = Sampler::for_path(self.seed, stream::JOINED_SOURCES, pass.batch);
         for (id, arrivals) in &self.sensors {
             for index in pass.batch * pass.gather_paths..(pass.batch + 1) * pass.gather_paths {
-                if pace.spend(RECORD_WORK).is_break() {
+                if task.pace.spend(RECORD_WORK).is_break() {
                     return None;
                 }
                 let offset = id.index() as u64;
                 let mut sampler = Sampler::for_path(self.seed, stream::GATHER + offset, index);
                 let Some(arrival) = arrivals.draw(&mut sampler) else { continue };
-                let etendue =
-                    Path::arriving(self.scene, &arrival).etendue(self.scene, arrival.extent);
-                let etendue = etendue / pass.gather_paths as f64;
-                let merging = self.merging.as_ref();
-                let mut collecting = Collecting {
-                    gather: self,
-                    window: pass.window,
-                    etendue,
-                    merged: merging.map(|_| MergedPath::new(&arrival, etendue / passes, places)),
-                    id: *id,
-                    index,
-                    cells: &arrival.cells,
-                    sampler: Sampler::for_path(self.seed, stream::RECORDS + offset, index),
-                    facing: None,
-                    found,
-                    orders,
-                };
-                let gathering = Gathering {
-                    scene: self.scene,
-                    emitters: &self.emitters,
-                    sensor: *id,
-                    bounce_limit: merging.map_or(u32::MAX, |own| own.bounce_limit),
-                    pace: Some(pace),
-                };
-                let segments = match (merging, &mut met) {
-                    (Some(backward), Some(readings)) => {
-                        let mut counter = GatherPathCounter {
-                            backward,
-                            arrival: &arrival,
-                            etendue,
-                            id: *id,
-                            photon_fluxes: Some(photon_fluxes),
-                            batches: passes,
-                            records: Some(PassedRecords::new(places)),
-                            turns: Turns::default(),
-                            joints: &mut joints,
-                            readings,
-                        };
-                        let mut both = (&mut counter, &mut collecting);
-                        follow(gathering, &arrival, &mut sampler, &mut both)
-                    }
-                    _ => follow(gathering, &arrival, &mut sampler, &mut collecting),
-                };
-                orders[0].segments += segments;
+                let path = StartedPath { id: *id, index, arrival: &arrival, sampler };
+                let shared = met.as_deref_mut().map(|readings| (readings, &mut joints));
+                self.gather_path(path, (pass, task), (orders, shared), found);
             }
         }
         Some(())
+    }
+
+    /// Traces one gather path: alone it counts in all orders, merged in other readings.
+    fn gather_path(
+        &self,
+        StartedPath { id, index, arrival, mut sampler }: StartedPath<'_>,
+        (pass, task): (Pass, Task<'_>),
+        (orders, shared): (&mut [Readings; ORDERS], Option<(&mut Readings, &mut Sampler)>),
+        found: &mut EndedPaths<'s>,
+    ) {
+        let etendue = Path::arriving(self.scene, arrival).etendue(self.scene, arrival.extent);
+        let etendue = etendue / pass.gather_paths as f64;
+        let (batches, places) = (found.passes as f64, self.record_places(pass));
+        let merging = self.merging.as_ref();
+        let mut collecting = Collecting {
+            gather: self,
+            window: pass.window,
+            etendue,
+            merged: merging.map(|_| MergedPath::new(arrival, etendue / batches, places)),
+            id,
+            index,
+            cells: &arrival.cells,
+            sampler: Sampler::for_path(self.seed, stream::RECORDS + id.index() as u64, index),
+            facing: None,
+            found,
+            orders,
+        };
+        let gathering = Gathering {
+            scene: self.scene,
+            emitters: &self.emitters,
+            sensor: id,
+            bounce_limit: merging.map_or(u32::MAX, |own| own.bounce_limit),
+            pace: Some(task.pace),
+        };
+        let segments = if let (Some(backward), Some((readings, joints))) = (merging, shared) {
+            let mut counter = GatherPathCounter {
+                backward,
+                arrival,
+                etendue,
+                id,
+                photon_fluxes: Some(task.photon_fluxes),
+                batches,
+                records: Some(PassedRecords::new(places)),
+                turns: Turns::default(),
+                joints,
+                readings,
+            };
+            follow(gathering, arrival, &mut sampler, &mut (&mut counter, &mut collecting))
+        } else {
+            follow(gathering, arrival, &mut sampler, &mut collecting)
+        };
+        orders[0].segments += segments;
     }
 
     /// Where the gather paths of a pass leave records.

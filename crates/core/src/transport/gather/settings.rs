@@ -5,15 +5,17 @@ use crate::plan::{GatherPlan, RunPlan, Schedule};
 use crate::scene::{Emission, Emitter, Scene, SensorId};
 use crate::transport::Window;
 use crate::transport::gather::sounding::{Reached, Sounded, sound};
-use crate::transport::gather::stages::WAVE_PASSES;
 use crate::transport::stop::{Pace, StopSignal};
 use crate::transport::tally::work;
 use crate::transport::trial::{PASS_SEGMENTS, PhotonPilot};
+use crate::transport::walk::emitters::invisible;
 use lumiduct_base::number::format_exact;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, SQRT_2};
 use std::fmt;
 
+/// Passes of a wave, whose photons meet the records of all of them.
+pub(crate) const WAVE_PASSES: u64 = 4;
 /// Radius of the first window over the inradius of the guide, 1 (measured on prototypes; docs/method.md).
 const RADIUS_PER_INRADIUS: f64 = 0.3;
 /// Largest radius as a share of the radius of the smallest source, 1.
@@ -219,11 +221,13 @@ fn automatic_window(scene: &Scene, sounded: &Sounded) -> Window {
             .filter(|(source, _)| source.is_lit())
             .filter_map(|(source, distance)| Some((source, (*distance)?)))
     };
-    let smallest =
-        lit().map(|(source, _)| half_width(&source.emitter)).fold(f64::INFINITY, f64::min);
+    // Points, and lines along an axis, have no width.
+    let half_widths = lit().map(|(source, _)| half_width(&source.emitter));
+    let smallest = half_widths.filter(|width| *width > 0.0).fold(f64::INFINITY, f64::min);
     // A source that fills the guide is as wide as its emission: the images of its rim in the walls
     // join. A smaller one is seen from the records at its distance.
-    let widths = lit().map(|(source, distance)| {
+    let seen_by_paths = lit().filter(|(source, _)| invisible(source, scene).is_none());
+    let widths = seen_by_paths.map(|(source, distance)| {
         let radius = half_width(&source.emitter);
         let seen = if radius < FILLS * inradius { radius / distance } else { 0.5 * PI };
         match source.emission {

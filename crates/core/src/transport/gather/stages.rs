@@ -1,20 +1,19 @@
 //! Stages of the gather method: passes within one window, then more passes within a smaller one.
 //!
-//! Within a stage radius and angle are fixed, so its passes are independent samples of one quantity
-//! and their spread is a valid error bar. Between stages the window shrinks by √2, the number of
+//! Within a stage radius and angle are fixed. Passes of a wave share photons and records, and their counts are corrected so that the
+//! spread of passes is a valid error bar (docs/method.md, eq. 29). Between stages the window shrinks by √2, the number of
 //! gather paths doubles as far as memory allows and the number of passes grows by 8, since pairs
 //! become rare: the bias of E1 and its standard error both halve. A value comes from one stage
 //! alone. With the schedule `fixed` there is no second stage.
 
 use crate::plan::Schedule;
 use crate::transport::Readings;
-use crate::transport::gather::settings::GatherSettings;
+use crate::transport::gather::settings::{GatherSettings, WAVE_PASSES};
 use crate::transport::tally::Counts;
 use crate::transport::window::Window;
 
-/// Passes of a wave, whose photons meet the records of all of them.
-pub(crate) const WAVE_PASSES: u64 = 4;
-/// Passes after which it is first decided whether the first stage ends: two waves, for as many threads.
+/// Passes after which it is first decided whether the first stage ends: two waves, each traced by one thread, so that no more
+/// than two threads work until then.
 const FIRST_DECISION: u64 = 2 * WAVE_PASSES;
 /// Planned passes of the first stage.
 pub(crate) const FIRST_PASSES: u64 = 16;

@@ -1,4 +1,4 @@
-//! Photons that stream past the records of a pass: each is counted by every record that takes it.
+//! Photons that stream past the records of a block of passes: each is counted by every record that takes it.
 //!
 //! Photons that may belong to records are buffered and looked up together.
 
@@ -6,7 +6,7 @@ use crate::optics::Incidence;
 use crate::scene::shape::Toward;
 use crate::scene::{MediumId, PrimHit, PrimId, Scene, SourceId, Visibility};
 use crate::transport::backward::mix::MergedPhoton;
-use crate::transport::gather::block::BlockCounts;
+use crate::transport::gather::block::CrossedCounts;
 use crate::transport::gather::contribution::{PairWeights, PhotonHit, SurfaceHit, VolumeHit};
 use crate::transport::gather::estimator::{Gather, RecordedPath, WaitingRecords};
 use crate::transport::gather::index::{PhotonKey, TOGETHER};
@@ -26,7 +26,7 @@ pub(crate) struct PhotonStream<'p, 's> {
     waiting: WaitingRecords<'s>,
     pace: &'p Pace<'p>,
     /// Counts by E1, E0 and E00, with the emission that gather paths met.
-    pub(super) counts: BlockCounts,
+    pub(super) counts: CrossedCounts,
     /// The first pass of the block.
     pub(super) first: Pass,
     /// Place in the block of the pass whose photons are traced.
@@ -121,7 +121,7 @@ impl<'p, 's> PhotonStream<'p, 's> {
         gather: &'p Gather<'s>,
         first: Pass,
         (waiting, pace): (WaitingRecords<'s>, &'p Pace<'p>),
-        counts: BlockCounts,
+        counts: CrossedCounts,
     ) -> Self {
         Self {
             gather,
@@ -146,7 +146,7 @@ impl<'p, 's> PhotonStream<'p, 's> {
     }
 
     /// Looks up the remaining photons: the counts, and the work in addition to tracing.
-    pub(super) fn finish(mut self) -> (BlockCounts, RecordWork) {
+    pub(super) fn finish(mut self) -> (CrossedCounts, RecordWork) {
         self.look_up();
         (self.counts, self.work)
     }
@@ -225,7 +225,9 @@ impl<'p, 's> PhotonStream<'p, 's> {
                 (Some(backward), Some(record), Some(photon)) => {
                     record.share((backward, *sensor), places, (photon, keys[index].dir))
                 }
-                _ => 1.0,
+                // Gathering alone: pairs count all light of photons.
+                (None, None, None) => 1.0,
+                _ => unreachable!("merged paths, records and photons go together"),
             };
             let depth = photon.depth + own.depth;
             let light = shares.map(|share| DetectedLight {

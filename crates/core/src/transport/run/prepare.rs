@@ -2,13 +2,12 @@
 
 use crate::plan::{Estimator, RunPlan};
 use crate::scene::{Scene, SensorId};
-use crate::transport::backward::estimator::{Backward, Weights};
+use crate::transport::backward::paths::{Backward, Weights};
 use crate::transport::choose::pilot::choose;
 use crate::transport::estimators::{Portion, Prepared};
 use crate::transport::forward::Forward;
 use crate::transport::gather::estimator::{Combination, Gather};
-use crate::transport::gather::settings::{groups, passes_in_turn};
-use crate::transport::gather::stages::WAVE_PASSES;
+use crate::transport::gather::settings::{WAVE_PASSES, groups, passes_in_turn};
 use crate::transport::gather::trial::{PassWork, pass_work};
 use crate::transport::run::rounds::{Phase, Run};
 use crate::transport::stop::StopSignal;

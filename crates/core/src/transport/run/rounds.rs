@@ -7,7 +7,7 @@
 
 use crate::plan::Estimator;
 use crate::transport::connect::weights::Sharing;
-use crate::transport::estimators::{Block, Observers, Portion, Prepared};
+use crate::transport::estimators::{BatchBlock, Observers, Portion, Prepared};
 use crate::transport::forward::Forward;
 use crate::transport::run::findings::Findings;
 use crate::transport::stop::{Pace, StopSignal};
@@ -143,20 +143,20 @@ impl<'s> Run<'s> {
             .others
             .iter()
             .map(|(own, series)| own.begin(Task { stage: series.stage(), ..task }, count));
-        let mut others: Vec<Block<'_, 's>> = begun.collect::<Option<_>>()?;
+        let mut others: Vec<BatchBlock<'_, 's>> = begun.collect::<Option<_>>()?;
         let mut photons = Vec::with_capacity(count as usize);
         for batch in batches {
             for own in &mut others {
                 own.begin_photons(batch)?;
             }
-            let traced = if others.iter().any(Block::observes) {
+            let traced = if others.iter().any(BatchBlock::observes) {
                 self.forward.batch_observed(batch, &mut Observers(&mut others), &pace)?
             } else {
                 self.forward.batch_observed(batch, &mut Unobserved, &pace)?
             };
             photons.push(Counts::one(traced));
         }
-        let others: Vec<Counts> = others.into_iter().map(Block::finish).collect();
+        let others: Vec<Counts> = others.into_iter().map(BatchBlock::finish).collect();
         let counts = BlockCounts { photons: merged(photons), others };
         (!pace.is_stopped()).then_some(counts)
     }

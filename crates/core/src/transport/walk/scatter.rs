@@ -72,6 +72,8 @@ pub struct MetInterface<'s> {
     pub incidence: Incidence,
     /// The normal of the surface itself, on the side the path comes from: a facet's, for a mesh.
     pub facet: DVec3,
+    /// The interpolated normal of a mesh on that side, which acts on light that comes from above it; otherwise the same.
+    pub shading: DVec3,
 }
 
 /// An interface as a gather path meets it at a vertex.
@@ -82,7 +84,7 @@ pub fn facing<'s>(scene: &'s Scene, path: &Path, vertex: &Vertex<'_>) -> MetInte
         own: finish_of(scene, interface.finish),
         behind: finish_of(scene, scene.finish_behind(interface)),
     };
-    let (normal, facet, grain) = match scene.surface(interface.acting.prim) {
+    let (shading, facet, grain) = match scene.surface(interface.acting.prim) {
         Surface::Patch(patch) => {
             let normal = patch.shape.normal_against(toward, vertex.point);
             (normal, normal, grain(faces.own, patch, vertex.point))
@@ -93,9 +95,7 @@ pub fn facing<'s>(scene: &'s Scene, path: &Path, vertex: &Vertex<'_>) -> MetInte
                 Toward::Back => 1.0,
             };
             let facet = sign * body.mesh.facet_normal(triangle);
-            let shading = sign * body.mesh.shading_normal(triangle, vertex.point);
-            let normal = if shading.dot(vertex.dir) < 0.0 { shading } else { facet };
-            (normal, facet, DVec3::ZERO)
+            (sign * body.mesh.shading_normal(triangle, vertex.point), facet, DVec3::ZERO)
         }
     };
     let index = |medium: MediumId| scene.media[medium.index()].index(path.wavelength);
@@ -103,13 +103,19 @@ pub fn facing<'s>(scene: &'s Scene, path: &Path, vertex: &Vertex<'_>) -> MetInte
         faces,
         incidence: Incidence {
             dir: vertex.dir,
-            normal,
+            normal: acting_normal(vertex.dir, shading, facet),
             index_from: index(interface.from),
             index_to: index(interface.to),
             grain,
         },
         facet,
+        shading,
     }
+}
+
+/// The normal that acts on light: an interpolated one may face away from grazing light.
+fn acting_normal(dir: DVec3, shading: DVec3, facet: DVec3) -> DVec3 {
+    if shading.dot(dir) < 0.0 { shading } else { facet }
 }
 
 /// Sends a gather path on, or absorbs it.
@@ -127,12 +133,14 @@ pub fn scatter_gather_path(
 impl<'s> MetInterface<'s> {
     /// The finish that acts on light of this unit direction, from whichever side, and its incidence.
     pub(crate) fn acting_on(&self, dir: DVec3) -> (&'s Finish, Incidence) {
-        let Incidence { normal, index_from, index_to, grain, .. } = self.incidence;
+        let Incidence { index_from, index_to, grain, .. } = self.incidence;
         if dir.dot(self.facet) < 0.0 {
-            return (self.faces.own, Incidence { dir, ..self.incidence });
+            let normal = acting_normal(dir, self.shading, self.facet);
+            return (self.faces.own, Incidence { dir, normal, ..self.incidence });
         }
+        let normal = acting_normal(dir, -self.shading, -self.facet);
         let (index_from, index_to) = (index_to, index_from);
-        (self.faces.behind, Incidence { dir, normal: -normal, index_from, index_to, grain })
+        (self.faces.behind, Incidence { dir, normal, index_from, index_to, grain })
     }
 
     /// Effect of an interpolated normal on basic radiance. Flux through the facet is conserved and

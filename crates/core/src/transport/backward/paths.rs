@@ -1,0 +1,116 @@
+//! Gather paths from some sensors: what all batches of a run share.
+//!
+//! This module traces nothing.
+
+use crate::scene::{Arrivals, Scene, SensorId};
+use crate::transport::Layout;
+use crate::transport::connect::passage::RecordPlaces;
+use crate::transport::connect::sensors::SensorTargets;
+use crate::transport::connect::sources::{SourcePoint, SourceTargets};
+use crate::transport::connect::vertex::TurnAt;
+use crate::transport::connect::weights::Sharing;
+use crate::transport::walk::emitters::Emitters;
+
+/// Gather paths of a batch from each sensor where no number is given: they measure their work.
+const PILOT_PATHS: u64 = 64;
+
+/// Shared data of all batches of a run.
+#[derive(Debug)]
+pub(crate) struct Backward<'s> {
+    pub(crate) scene: &'s Scene,
+    pub(crate) layout: Layout,
+    pub(crate) emitters: Emitters<'s>,
+    /// What vertices of gather paths, and of photons, are joined to.
+    pub(crate) joined_sources: SourceTargets<'s>,
+    pub(crate) joined_sensors: SensorTargets<'s>,
+    pub(crate) sensors: Vec<(SensorId, Arrivals<'s>)>,
+    pub(crate) seed: u64,
+    pub(crate) bounce_limit: u32,
+    /// Gather paths per batch of each sensor.
+    pub(crate) paths: u64,
+    pub(crate) weights: Weights,
+    /// How all techniques that find a path divide its light.
+    pub(crate) sharing: Sharing,
+}
+
+/// How the light of gather paths counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Weights {
+    /// In full.
+    Full,
+    /// In shares, as photons count the rest.
+    Shared,
+}
+
+/// Batches whose photons and gather paths find light together.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SharedBatches {
+    /// Their number.
+    pub(crate) batches: f64,
+    /// Where their gather paths leave records, if they do.
+    pub(crate) places: Option<RecordPlaces>,
+}
+
+impl SharedBatches {
+    /// A batch alone, without records.
+    pub(crate) const ALONE: Self = Self { batches: 1.0, places: None };
+}
+
+impl<'s> Backward<'s> {
+    /// Prepares gather paths from some sensors, a few a batch from each.
+    pub(crate) fn new(
+        scene: &'s Scene,
+        sensors: &[SensorId],
+        seed: u64,
+        bounce_limit: u32,
+    ) -> Self {
+        Self {
+            scene,
+            layout: Layout::new(scene),
+            emitters: Emitters::new(scene),
+            joined_sources: SourceTargets::new(scene),
+            joined_sensors: SensorTargets::new(scene, sensors.iter().copied()),
+            sensors: sensors.iter().map(|&id| (id, Arrivals::new(scene, id))).collect(),
+            seed,
+            bounce_limit,
+            paths: PILOT_PATHS,
+            weights: Weights::Full,
+            sharing: Sharing::default(),
+        }
+    }
+
+    /// The same with this many paths per batch from each sensor.
+    pub(crate) fn with_paths(self, paths: u64) -> Self {
+        Self { paths: paths.max(1), ..self }
+    }
+
+    /// The same with other weights.
+    pub(crate) fn with_weights(self, weights: Weights) -> Self {
+        Self { weights, ..self }
+    }
+
+    /// The sensors.
+    pub(crate) fn sensors(&self) -> impl Iterator<Item = SensorId> {
+        self.sensors.iter().map(|(id, _)| *id)
+    }
+
+    /// Gather paths of all sensors in a batch.
+    pub(crate) fn batch_paths(&self) -> u64 {
+        self.paths * self.sensors.len() as u64
+    }
+
+    /// The etendue of a gather path joined to a source at a turn over that of one that meets its
+    /// place; infinite if it is not joined.
+    pub(crate) fn joined_to_source(
+        &self,
+        sensor: SensorId,
+        turn: Option<TurnAt<'s>>,
+        place: &SourcePoint,
+    ) -> f64 {
+        // The light of a join could have passed the sensor before.
+        if self.scene.sensors[sensor.index()].counts_first_passage() {
+            return f64::INFINITY;
+        }
+        self.joined_sources.joined_ratio(turn, place)
+    }
+}

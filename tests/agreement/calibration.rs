@@ -68,7 +68,7 @@ flux_lm = 10
 exit = { plane = {}, on = "tube.exit", counts = "incident", side = "both" }
 "#;
     for (limit, [records, photons]) in
-        [("records", [20, 500]), ("photons", [500, 20]), ("pairs", [60, 60])]
+        [("records", [10, 200]), ("photons", [200, 10]), ("pairs", [40, 40])]
     {
         let gathering = Gathering { depth: 1, radius_mm: 1.0, angle_deg: 10.0, records, photons };
         for way in [Way::Gather(gathering), Way::Merged(gathering)] {

@@ -63,6 +63,8 @@ fn a_disc_sees_a_lit_disc_by_their_configuration_factor() {
 
 #[test]
 fn errors_of_joined_light_are_calibrated() {
+    /// Photons and gather paths of one of 128 batches, about.
+    const BATCH_PATHS: u64 = 60;
     let disc: fn(&Settings) -> Job = |settings| traced::load(LIT_DISC, settings);
     let sphere: fn(&Settings) -> Job = |settings| {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/integrating_sphere.toml");
@@ -74,7 +76,9 @@ fn errors_of_joined_light_are_calibrated() {
     {
         assert_calibrated(what, 1.0, |seed| {
             let (estimator, paths) = (Some(Request::Mix), Some(1280));
-            let job = load(&Settings { estimator, seed: Some(seed), paths, ..Settings::default() });
+            let settings = Settings { estimator, seed: Some(seed), paths, ..Settings::default() };
+            let mut job = load(&settings);
+            job.run.batch_paths = Some(BATCH_PATHS);
             let flux = &traced::measures(&job).values["cell.flux"];
             (flux.value - expected) / flux.std_error
         });

@@ -2,8 +2,8 @@
 //! its photons and records.
 //!
 //! A pass counts what its records take from all photons of the block. Their mean over the block is the value, but their
-//! spread does not contain that of the photons, which they share. To each is therefore added a part of what its own photons
-//! brought to all records, less the mean of that over the block: docs/method.md, eq. (29).
+//! spread does not contain that of the photons, which they share. To each is therefore added a part of what all
+//! records take from its own photons, less the mean of that over the block: docs/method.md, eq. (29).
 
 use crate::scene::{Scene, SensorId};
 use crate::transport::gather::kernel::ORDERS;
@@ -16,7 +16,7 @@ use crate::transport::{Layout, Readings};
 pub(super) struct CrossedCounts {
     /// By pass: the light that its gather paths met and that its records took.
     passes: Vec<[Readings; ORDERS]>,
-    /// By pass: the light that its photons brought to records of all passes. Empty for one pass alone.
+    /// By pass: the light that records of all passes take from its photons. Empty for one pass alone.
     by_photons: Vec<[Readings; ORDERS]>,
     /// Flux of fourth order by sensor, pass of the record and pass of the photon, lm or W.
     pairs: Vec<Vec<f64>>,
@@ -106,7 +106,7 @@ impl CrossedCounts {
     }
 }
 
-/// The share ω of what photons brought that belongs into the spread of passes, 1: ω² is the part of its variance over
+/// The share ω of the light of photons that belongs into the spread of passes, 1: ω² is the part of its variance over
 /// passes of photons that pairs do not explain, by the mean squares of a two-way layout (Scheffé, The Analysis of Variance,
 /// 1959, ch. 7). `pairs` by pass of the record and of the photon.
 fn photon_share(pairs: &[f64], passes: usize) -> f64 {

@@ -17,7 +17,8 @@ use std::f64::consts::PI;
 /// Share of the joins that are spread evenly over the sensors, 1: each needs joins for an error of its own, also a small
 /// one beside large ones.
 const EVENLY: f64 = 0.5;
-/// Most joins at a vertex: four take about as long as the path between two vertices, and more would not pay.
+/// Most joins at a vertex: with four, ten and a hundred sensors cost half as much for the same error as with one
+/// (benches/results/2026-11-24.md).
 const MOST_JOINS: usize = 4;
 
 /// The sensors of an estimator that points can be drawn on.

@@ -46,9 +46,14 @@ pub(super) fn trace(bench: &Bench<'_>, stint: &Stint<'_>) -> Result<TracedRun> {
     let Stint { method, run, checkpoints, cells } = *stint;
     let start = Instant::now();
     let interrupted = || Error::Usage("interrupted: nothing was written".into());
-    let mut runner = Runner::new(bench, method, run).ok_or_else(interrupted)?;
-    let mut spent = start.elapsed();
     let mut samples: Vec<Option<CheckpointSample>> = vec![None; checkpoints.len()];
+    let end = checkpoints.last().and_then(|end| start.checked_add(*end));
+    let Some(mut runner) = Runner::new(bench, (method, run), end) else {
+        // The time ended before anything was counted.
+        let nothing = TracedRun { samples, last: None, cut: 0.0 };
+        return if bench.interrupt.is_raised() { Err(interrupted()) } else { Ok(nothing) };
+    };
+    let mut spent = start.elapsed();
     let mut last: Option<(CheckpointSample, ReportedValue)> = None;
     loop {
         let start = Instant::now();
@@ -87,13 +92,15 @@ enum Runner<'s> {
 }
 
 impl<'s> Runner<'s> {
-    /// `None` if it was interrupted.
-    fn new(bench: &Bench<'s>, method: Method, run: u64) -> Option<Self> {
+    /// `None` if it was interrupted, or not prepared by its end.
+    fn new(bench: &Bench<'s>, (method, run): (Method, u64), end: Option<Instant>) -> Option<Self> {
         Some(match method {
             Method::Run(request) => {
-                let signal = StopSignal::new(bench.interrupt, None);
+                // Pilot and passes fit the time of the run; it then goes on while it is being sampled.
+                let limit = StopSignal::new(bench.interrupt, end);
                 let plan = bench.plan(request, run);
-                let run = Run::start(&bench.job.scene, &plan, &signal, &mut |_| ())?;
+                let mut run = Run::start(&bench.job.scene, &plan, &limit, &mut |_| ())?;
+                run.stop_by(StopSignal::new(bench.interrupt, None));
                 Self::Run { round_end: run.round_end(), run: Box::new(run) }
             }
             Method::Baseline(baseline) => {

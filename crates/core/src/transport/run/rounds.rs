@@ -83,6 +83,11 @@ impl<'s> Run<'s> {
         self.others.iter_mut().for_each(|(own, _)| own.share_by(sharing));
     }
 
+    /// Lets another signal stop the run from now on.
+    pub fn stop_by(&mut self, signal: StopSignal) {
+        self.signal = signal;
+    }
+
     /// Traces the next piece of a round: a few batches for each thread. If the signal stops it, the
     /// batches before the first unfinished one count, and the others are dropped.
     pub fn next_piece(&mut self) {

@@ -26,7 +26,7 @@ use lumiduct_core::transport::tally::readings::DetectedLight;
 use lumiduct_core::transport::walk::follow::follow;
 use lumiduct_core::transport::walk::scatter::facing;
 use lumiduct_core::transport::{
-    Emergence, Event, MetEmission, Observer, Path, PhotonPilot, Readings, Vertex, Window,
+    Emergence, Event, MetEmission, Observer, Path, PhotonPilot, Readings, Stepping, Vertex, Window,
 };
 use smallvec::SmallVec;
 use std::ops::ControlFlow;
@@ -56,11 +56,13 @@ impl<'s> Sppm<'s> {
     pub(super) fn new(sensor: OneSensor<'s>, plan: &RunPlan) -> Self {
         let (scene, seed) = (sensor.scene, plan.seed);
         let pilot = Forward::new(scene, seed, plan.bounce_limit.min(10_000), 64);
-        let pilot = pilot.batch(0, &StopSignal::default()).expect("nothing stops it");
+        let signal = StopSignal::default();
+        let pilot = pilot.batch_observed(0, &mut Stepping, &Pace::new(&signal));
+        let pilot = pilot.expect("nothing stops it");
         let segments = pilot.segments.div_ceil(pilot.paths().max(1)).max(1);
         let photons = (PASS_BATCHES * BATCH_SEGMENTS / segments).max(256);
-        let pilot = PhotonPilot::new(segments as f64);
-        let groups = groups(scene, plan, (&[sensor.id], 1), pilot, &StopSignal::default());
+        let pilot = PhotonPilot::new(segments as f64, segments as f64);
+        let groups = groups(scene, plan, (&[sensor.id], 1), pilot, &signal);
         let window = groups.expect("nothing stops it")[0].settings.window;
         Self {
             surfaces: SurfaceNumbers::new(scene),
@@ -156,6 +158,7 @@ impl Observer for Gatherer<'_, '_> {
             }
             Event::Start(_)
             | Event::Travel(_)
+            | Event::Jump(_)
             | Event::Collide(_)
             | Event::Depart(..)
             | Event::Absorbed(_)
@@ -226,6 +229,7 @@ impl Observer for SppmStream<'_, '_> {
             Event::Start(start) => self.photon = Some(*start),
             Event::Arrive(vertex) => self.arrive(path, vertex),
             Event::Travel(_)
+            | Event::Jump(_)
             | Event::Collide(_)
             | Event::Depart(..)
             | Event::Absorbed(_)

@@ -128,6 +128,7 @@ impl Observer for Splitter<'_, '_> {
             }
             Event::Start(_)
             | Event::Travel(_)
+            | Event::Jump(_)
             | Event::Collide(_)
             | Event::Depart(..)
             | Event::Absorbed(_)

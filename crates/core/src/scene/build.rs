@@ -65,6 +65,7 @@ impl Builder {
             accel: Accel::new(&[], 0, 0.0),
             convex: Vec::new(),
             loose: Vec::new(),
+            legs: Vec::new(),
         };
         Self { scene }
     }
@@ -254,6 +255,7 @@ impl Builder {
         let convex: Vec<PrimId> = scene.convex.iter().flat_map(Convex::faces).collect();
         scene.loose = (0..scene.patches.len()).map(PrimId::new).collect();
         scene.loose.retain(|prim| !convex.contains(prim));
+        scene.legs = scene.plain_legs();
         scene
     }
 }

@@ -5,8 +5,8 @@ use crate::scene::crossing::convex::Convex;
 use crate::scene::pattern::Pattern;
 use crate::scene::relief::Relief;
 use crate::scene::{
-    Accel, Face, Inside, LightGroups, MediumId, MeshBody, Patch, PrimId, Sensor, SolidId, Source,
-    SourceId,
+    Accel, Face, Inside, LightGroups, MediumId, MeshBody, Patch, PlainLeg, PrimId, Sensor, SolidId,
+    Source, SourceId,
 };
 use glam::DVec3;
 use lumiduct_base::math::Aabb;
@@ -82,6 +82,8 @@ pub struct Scene {
     pub(super) convex: Vec<Convex>,
     /// The patches of everything else.
     pub(super) loose: Vec<PrimId>,
+    /// For each patch, where rows of mirror bounces are known in closed form.
+    pub(super) legs: Vec<Option<Box<PlainLeg>>>,
 }
 
 impl Scene {

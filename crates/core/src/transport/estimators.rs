@@ -248,6 +248,15 @@ impl Observer for BatchBlock<'_, '_> {
     }
 
     #[inline]
+    fn allows_jumps(&self) -> bool {
+        match self {
+            Self::Backward { .. } | Self::Mix { current: None, .. } => true,
+            Self::Mix { current: Some(own), .. } => own.allows_jumps(),
+            Self::Gather { .. } | Self::Mis { .. } => false,
+        }
+    }
+
+    #[inline]
     fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
         match self {
             Self::Backward { .. } | Self::Mix { current: None, .. } => ControlFlow::Continue(()),
@@ -266,6 +275,11 @@ impl Observer for Observers<'_, '_, '_> {
     #[inline]
     fn roulette_below(&self) -> f64 {
         self.0.iter().map(Observer::roulette_below).fold(ROULETTE_BELOW, f64::min)
+    }
+
+    #[inline]
+    fn allows_jumps(&self) -> bool {
+        self.0.iter().all(Observer::allows_jumps)
     }
 
     #[inline]

@@ -38,8 +38,9 @@ pub use tally::{Cells, Counts, Layout};
 pub(crate) use tally::{Loss, TAILS};
 pub use trial::{Objection, PhotonPilot, Trial};
 pub use walk::emitters::invisible;
-pub use walk::{Carries, Collision, Departure, Detection, Segment};
+pub use walk::{Carries, Collision, Departure, Detection, Jump, Segment};
 pub use walk::{
-    Emergence, Event, MetEmission, Observer, Path, ROULETTE_BELOW, Unobserved, Vertex, walk,
+    Emergence, Event, MetEmission, Observer, Path, ROULETTE_BELOW, Stepping, Unobserved, Vertex,
+    walk,
 };
 pub use window::Window;

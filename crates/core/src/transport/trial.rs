@@ -82,8 +82,10 @@ pub(crate) struct Tried {
 /// Measurements by pilot photons.
 #[derive(Debug, Clone, Copy)]
 pub struct PhotonPilot {
-    /// Mean number of segments of a photon path.
+    /// Mean number of segments of a photon path, where rows of mirror bounces are taken at once.
     pub(crate) segments_per_path: f64,
+    /// The same step by step, as photons go past records.
+    pub(crate) steps_per_path: f64,
     /// Segments of photon paths in an automatic pass of gathering.
     pub(crate) pass_segments: f64,
     /// Work of an automatic pass of gathering where the time of the run is limited, ns.
@@ -91,9 +93,10 @@ pub struct PhotonPilot {
 }
 
 impl PhotonPilot {
-    /// Photons with this many segments per path, in passes of the usual size.
-    pub fn new(segments_per_path: f64) -> Self {
-        Self { segments_per_path, pass_segments: PASS_SEGMENTS, pass_work: None }
+    /// Photons with this many segments per path, or steps, in passes of the usual size.
+    pub fn new(segments_per_path: f64, steps_per_path: f64) -> Self {
+        let pass_segments = PASS_SEGMENTS;
+        Self { segments_per_path, steps_per_path, pass_segments, pass_work: None }
     }
 }
 

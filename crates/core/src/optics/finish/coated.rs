@@ -40,6 +40,10 @@ impl FinishModel for Coated<'_> {
         self.scatter(incidence, sampler).map(Scattered::normalised)
     }
 
+    fn only_mirrors(&self, incidence: &Incidence) -> bool {
+        self.shares(incidence).transmitted == 0.0
+    }
+
     fn scatter_toward(
         &self,
         side: Side,

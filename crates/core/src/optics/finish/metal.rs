@@ -25,6 +25,10 @@ impl FinishModel for Metal {
         let factor = self.shares(incidence).reflected;
         Some(Scattered::specular(incidence.straight(side), factor, side))
     }
+
+    fn only_mirrors(&self, _incidence: &Incidence) -> bool {
+        true
+    }
 }
 
 #[cfg(test)]

@@ -267,6 +267,10 @@ impl FinishModel for Finish {
         ask!(self, finish => finish.spread())
     }
 
+    fn only_mirrors(&self, incidence: &Incidence) -> bool {
+        ask!(self, finish => finish.only_mirrors(incidence))
+    }
+
     fn passes_straight(&self) -> bool {
         ask!(self, finish => finish.passes_straight())
     }

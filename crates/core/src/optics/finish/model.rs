@@ -106,6 +106,11 @@ pub trait FinishModel {
         }
     }
 
+    /// Whether all light that arrives so and is not absorbed is mirrored, always with the same share.
+    fn only_mirrors(&self, _incidence: &Incidence) -> bool {
+        false
+    }
+
     /// Whether light can go through without being bent, as if both sides were of one index.
     fn passes_straight(&self) -> bool {
         false

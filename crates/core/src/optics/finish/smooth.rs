@@ -72,6 +72,12 @@ impl FinishModel for SmoothInterface {
         Shares { reflected, transmitted: 1.0 - reflected }
     }
 
+    /// Under total reflection.
+    fn only_mirrors(&self, incidence: &Incidence) -> bool {
+        let Incidence { index_from, index_to, .. } = *incidence;
+        fresnel::cos_transmitted(incidence.cos(), index_from, index_to).is_none()
+    }
+
     #[inline]
     fn scatter(
         &self,

@@ -31,6 +31,10 @@ impl FinishModel for Specular {
         self.scatter(incidence, sampler).map(|out| out.unrefracted(incidence))
     }
 
+    fn only_mirrors(&self, incidence: &Incidence) -> bool {
+        self.shares(incidence).transmitted == 0.0
+    }
+
     fn passes_straight(&self) -> bool {
         self.shares.transmitted > 0.0
     }

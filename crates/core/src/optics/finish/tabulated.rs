@@ -27,6 +27,10 @@ impl FinishModel for Tabulated<'_> {
         Some(Scattered::specular(incidence.straight(side), shares.sum(), side))
     }
 
+    fn only_mirrors(&self, incidence: &Incidence) -> bool {
+        self.shares(incidence).transmitted == 0.0
+    }
+
     fn passes_straight(&self) -> bool {
         self.transmittance.greatest() > 0.0
     }

@@ -40,6 +40,10 @@ impl Observer for GatherPathCounter<'_, '_> {
         roulette_below(self.records.is_some())
     }
 
+    fn allows_jumps(&self) -> bool {
+        self.records.is_none()
+    }
+
     fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
         match event {
             Event::Meet(met) => self.meet(path, met),
@@ -66,6 +70,7 @@ impl Observer for GatherPathCounter<'_, '_> {
             Event::Depart(vertex, departure) => self.depart(path, vertex, departure),
             Event::Start(_)
             | Event::Travel(_)
+            | Event::Jump(_)
             | Event::Absorbed(_)
             | Event::Detect(_)
             | Event::Roulette(_)

@@ -149,6 +149,10 @@ impl Observer for Mixing<'_, '_> {
         roulette_below(self.recent.is_some())
     }
 
+    fn allows_jumps(&self) -> bool {
+        self.recent.is_none()
+    }
+
     fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
         match event {
             Event::Start(start) => self.start(path, start),
@@ -181,6 +185,7 @@ impl Observer for Mixing<'_, '_> {
             Event::Depart(vertex, departure) => self.depart(path, vertex, departure),
             Event::Detect(light) => self.detect(path, light),
             Event::Travel(_)
+            | Event::Jump(_)
             | Event::Arrive(_)
             | Event::Absorbed(_)
             | Event::Meet(_)

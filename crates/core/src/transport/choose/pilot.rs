@@ -67,9 +67,9 @@ pub(crate) fn choose(
 }
 
 /// Budget of a run in seconds of one thread of the reference machine; `left` of them remain if time is limited. `None` if
-/// it has only a target.
+/// it has only a target. A number of paths is worth their work step by step: estimators that jump need less of it.
 fn budget(plan: &RunPlan, photons: PhotonPilot, left: Option<f64>) -> Option<f64> {
-    let path = 1e-9 * work::of_photon_path(photons.segments_per_path);
+    let path = 1e-9 * work::of_photon_path(photons.steps_per_path);
     let by_paths = plan.stop.paths.map(|paths| paths as f64 * path);
     by_paths.into_iter().chain(left).reduce(f64::min)
 }

@@ -220,6 +220,11 @@ impl<O: Observer> Observer for PhotonCounter<'_, '_, O> {
     }
 
     #[inline(always)]
+    fn allows_jumps(&self) -> bool {
+        self.observer.allows_jumps()
+    }
+
+    #[inline(always)]
     fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
         let layout = self.run.layout;
         match event {
@@ -230,6 +235,12 @@ impl<O: Observer> Observer for PhotonCounter<'_, '_, O> {
             Event::Arrive(vertex) => self.arrive(path, vertex),
             Event::Depart(vertex, departure) => self.depart(path, vertex, departure),
             Event::Collide(_) => return self.observer.see(path, event),
+            Event::Jump(jump) => {
+                self.readings.segments += 1;
+                self.add(layout.absorbed_in_medium(jump.medium), jump.absorbed_in_medium);
+                self.add(layout.absorbed_by_face(jump.face), jump.absorbed_by_face);
+                return self.pace.spend(1);
+            }
             Event::Absorbed(vertex) => {
                 let face = vertex.interface.acting.face;
                 self.add(layout.absorbed_by_face(face), vertex.throughput);

@@ -149,6 +149,7 @@ impl Observer for Onlooker {
             Event::Depart(..) => self.departed += 1,
             Event::Detect(light) => self.detected += light.cells.len(),
             Event::Travel(_)
+            | Event::Jump(_)
             | Event::Collide(_)
             | Event::Absorbed(_)
             | Event::Meet(_)

@@ -72,6 +72,7 @@ fn track(forward: &Forward<'_>, source: SourceId, index: usize) -> Track {
         }
         Event::Start(_)
         | Event::Travel(_)
+        | Event::Jump(_)
         | Event::Depart(..)
         | Event::Detect(_)
         | Event::Meet(_)

@@ -76,6 +76,7 @@ impl Observer for Collecting<'_, '_> {
             | Event::Leaked(..)
             | Event::Start(_)
             | Event::Travel(_)
+            | Event::Jump(_)
             | Event::Absorbed(_)
             | Event::Detect(_)
             | Event::Roulette(_)

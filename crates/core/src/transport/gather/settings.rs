@@ -125,8 +125,8 @@ impl PhotonPilot {
     pub(crate) fn with_passes_for(self, plan: &RunPlan, by_time: Option<f64>) -> Self {
         let by_paths = plan.stop.paths.map(|paths| {
             let passes = plan.stop.batches.map_or(PASSES, |batches| batches as f64);
-            let gather_paths = self.segments_per_path / RECORD_SEGMENTS;
-            paths as f64 / passes / (1.0 + gather_paths) * self.segments_per_path
+            let gather_paths = self.steps_per_path / RECORD_SEGMENTS;
+            paths as f64 / passes / (1.0 + gather_paths) * self.steps_per_path
         });
         let known = by_time.into_iter().chain(by_paths).reduce(f64::min);
         known.map_or(self, |segments| Self {
@@ -139,7 +139,7 @@ impl PhotonPilot {
     /// Photons of an automatic pass.
     fn photons(self) -> u64 {
         let least = LEAST_PHOTONS * self.pass_segments / PASS_SEGMENTS;
-        (self.pass_segments / self.segments_per_path).max(least).max(1.0).ceil() as u64
+        (self.pass_segments / self.steps_per_path).max(least).max(1.0).ceil() as u64
     }
 }
 
@@ -154,10 +154,10 @@ pub fn groups(
     let (seed, plan) = (plan.seed, &plan.gather);
     let depth = plan.depth.unwrap_or_else(|| {
         // K/3 of the K surfaces that a photon meets.
-        ((pilot.segments_per_path - 1.0) / 3.0).clamp(DEPTH[0], DEPTH[1]) as u32
+        ((pilot.steps_per_path - 1.0) / 3.0).clamp(DEPTH[0], DEPTH[1]) as u32
     });
     let photons = plan.photons.unwrap_or_else(|| pilot.photons());
-    let share = photons as f64 * pilot.segments_per_path / RECORD_SEGMENTS;
+    let share = photons as f64 * pilot.steps_per_path / RECORD_SEGMENTS;
     let all_sensors = all_sensors.max(1) as u64;
     let gather_paths = plan.records.unwrap_or(share.ceil() as u64).div_ceil(all_sensors);
     let pace = Pace::new(signal);

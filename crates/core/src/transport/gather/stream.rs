@@ -104,6 +104,7 @@ impl<'p, 's> PhotonStream<'p, 's> {
                 self.collide(path, collision);
             }
             Event::Travel(_)
+            | Event::Jump(_)
             | Event::Arrive(_)
             | Event::Collide(_)
             | Event::Depart(..)

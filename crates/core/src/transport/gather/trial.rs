@@ -63,7 +63,7 @@ pub(crate) fn trial(trials: &Trials<'_>) -> Option<Vec<Tried>> {
 /// factor. `None` if stopped.
 fn group_trial(trials: &Trials<'_>, settings: GatherSettings) -> Option<Vec<Tried>> {
     let Trials { scene, plan, photons: pilot, sensors, effort, signal } = *trials;
-    let by_photons = settings.photons as f64 * work::of_photon_path(pilot.segments_per_path);
+    let by_photons = settings.photons as f64 * work::of_photon_path(pilot.steps_per_path);
     let all = (settings.gather_paths * sensors.len() as u64) as f64;
     let by_records = all * work::of_recorded_path(f64::from(settings.depth) + 1.0);
     let part = (effort / TRIED_PASSES as f64 / (by_photons + by_records)).min(1.0);
@@ -185,7 +185,7 @@ pub(crate) fn pass_work(
     signal: &StopSignal,
 ) -> Option<PassWork> {
     let GatherSettings { photons, gather_paths, .. } = gather.settings;
-    let part = (PROBED_SEGMENTS / (photons as f64 * pilot.segments_per_path)).min(1.0);
+    let part = (PROBED_SEGMENTS / (photons as f64 * pilot.steps_per_path)).min(1.0);
     let scaled = |count: u64| scaled(count, part);
     let sensors: Vec<SensorId> = gather.sensors().collect();
     let settings = GatherSettings { gather_paths: scaled(gather_paths), ..gather.settings };

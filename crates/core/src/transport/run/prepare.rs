@@ -10,12 +10,12 @@ use crate::transport::gather::estimator::{Combination, Gather};
 use crate::transport::gather::settings::{WAVE_PASSES, groups, passes_in_turn};
 use crate::transport::gather::trial::{PassWork, pass_work};
 use crate::transport::run::rounds::{Phase, Run};
-use crate::transport::stop::StopSignal;
+use crate::transport::stop::{Pace, StopSignal};
 use crate::transport::tally::Series;
 use crate::transport::tally::readings::GROUPS;
 use crate::transport::tally::work;
 use crate::transport::trial::PhotonPilot;
-use crate::transport::{EstimatorChoice, GatherSettings};
+use crate::transport::{EstimatorChoice, GatherSettings, Readings, Stepping};
 use std::time::{Duration, Instant};
 
 /// Target number of segments of a batch: long enough that summing costs little, short enough
@@ -61,8 +61,8 @@ impl<'s> Run<'s> {
         watch: &mut dyn FnMut(Phase),
     ) -> Option<Self> {
         let early = signal.with_grace();
-        let segments = segments_per_path(scene, plan, &early)?;
-        let pilot = PhotonPilot::new(segments as f64);
+        let pilot = photon_pilot(scene, plan, &early)?;
+        let segments = pilot.segments_per_path as u64;
         let (estimators, choices) = estimators(scene, plan, pilot, signal, watch)?;
         let of = |wanted| sensors_of(&estimators, wanted);
         let gathered =
@@ -185,25 +185,28 @@ fn gathered<'s>(
 
 /// Suitable number of photon paths of a batch for a scene: the default of [`RunPlan::batch_paths`].
 pub fn batch_paths(scene: &Scene, plan: &RunPlan) -> u64 {
-    let segments = segments_per_path(scene, plan, &StopSignal::default());
-    usual_batch(segments.expect("nothing stops it"))
+    let pilot = photon_pilot(scene, plan, &StopSignal::default());
+    usual_batch(pilot.expect("nothing stops it").segments_per_path as u64)
 }
 
 fn usual_batch(segments_per_path: u64) -> u64 {
     (BATCH_SEGMENTS / segments_per_path).clamp(1, BATCH_PATHS)
 }
 
-/// Mean number of segments of a photon path, from a few of them; `None` if they were
-/// stopped.
-fn segments_per_path(scene: &Scene, plan: &RunPlan, signal: &StopSignal) -> Option<u64> {
+/// Measures the length of photon paths from a few of them; `None` if they were stopped.
+fn photon_pilot(scene: &Scene, plan: &RunPlan, signal: &StopSignal) -> Option<PhotonPilot> {
     let limit = plan.bounce_limit.min(PILOT_BOUNCES);
     let forward = Forward::new(scene, plan.seed, limit, PILOT_PATHS);
-    let pilot = forward.batch(0, signal)?;
+    let jumped = forward.batch(0, signal)?;
+    let stepped = forward.batch_observed(0, &mut Stepping, &Pace::new(signal))?;
+    let per_path = |pilot: &Readings| pilot.segments.div_ceil(pilot.paths().max(1)).max(1) as f64;
+    let (segments, steps) = (per_path(&jumped), per_path(&stepped));
     // Light that the pilot cuts off continues, at most to the bounce limit of the run.
     let flux = scene.source_flux();
-    let cut = pilot.groups[0].sums[forward.layout.cut()];
+    let cut = stepped.groups[0].sums[forward.layout.cut()];
     let rest = if flux > 0.0 { cut / flux * f64::from(plan.bounce_limit - limit) } else { 0.0 };
-    Some(pilot.segments.div_ceil(pilot.paths().max(1)).max(1) + rest as u64)
+    let rest = rest.floor();
+    Some(PhotonPilot::new((segments + rest * (segments / steps).min(1.0)).floor(), steps + rest))
 }
 
 /// Time of a segment of a photon path, s, by the clock: the lower quartile of short measurements, since other programs

@@ -10,6 +10,7 @@ use crate::scene::{Hits, MeetingPoint, Ray, Scene, StartSurfaces, Visibility};
 use crate::transport::walk::event::{
     Carries, Collision, Departure, Event, Observer, Segment, Vertex,
 };
+use crate::transport::walk::jump::jump;
 use crate::transport::walk::path::Path;
 use crate::transport::walk::scatter::{scatter_gather_path, scatter_photon};
 use glam::DVec3;
@@ -55,7 +56,7 @@ pub fn walk<V: Observer>(
             return;
         };
         let next = match scattered {
-            None => bounce(scene, &mut path, &ray, hits, sampler, observer),
+            None => bounce(scene, &mut path, (&ray, hits), bounce_limit, sampler, observer),
             Some(scattering) => collide(scattering, &mut path, ray.at(length), sampler, observer),
         };
         match next {
@@ -105,8 +106,8 @@ fn roulette<V: Observer>(
 fn bounce<V: Observer>(
     scene: &Scene,
     path: &mut Path,
-    ray: &Ray,
-    hits: &Hits,
+    (ray, hits): (&Ray, &Hits),
+    bounce_limit: u32,
     sampler: &mut Sampler<impl Numbers>,
     observer: &mut V,
 ) -> ControlFlow<(), Ray> {
@@ -139,6 +140,12 @@ fn bounce<V: Observer>(
     if out.side == Side::Transmitted {
         path.medium = interface.to;
         hits.cross(&mut path.inside);
+        return ControlFlow::Continue(next);
+    }
+    if observer.allows_jumps()
+        && let Some(leg) = scene.plain_leg(interface.acting.prim)
+    {
+        return jump(scene, path, (leg, &vertex, &out), bounce_limit, observer);
     }
     ControlFlow::Continue(next)
 }

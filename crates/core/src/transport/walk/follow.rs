@@ -265,11 +265,20 @@ impl<O: Observer> Observer for Follower<'_, '_, '_, O> {
     }
 
     #[inline]
+    fn allows_jumps(&self) -> bool {
+        self.observer.allows_jumps()
+    }
+
+    #[inline]
     fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
         match event {
             Event::Travel(segment) => {
                 self.segments += 1;
                 self.travel_counted(path, segment)?;
+                self.gathering.pace.map_or(ControlFlow::Continue(()), |pace| pace.spend(1))
+            }
+            Event::Jump(_) => {
+                self.segments += 1;
                 self.gathering.pace.map_or(ControlFlow::Continue(()), |pace| pace.spend(1))
             }
             Event::Arrive(vertex) => self.arrive(path, vertex),

@@ -4,10 +4,12 @@ mod bounce;
 pub mod emitters;
 mod event;
 pub mod follow;
+mod jump;
 pub(crate) mod path;
 pub mod scatter;
 
 pub use bounce::walk;
-pub use event::{Carries, Collision, Departure, Detection, Segment};
-pub use event::{Emergence, Event, MetEmission, Observer, ROULETTE_BELOW, Unobserved, Vertex};
+pub use event::{Carries, Collision, Departure, Detection, Jump, Segment};
+pub use event::{Emergence, Event, MetEmission, Observer, ROULETTE_BELOW};
+pub use event::{Stepping, Unobserved, Vertex};
 pub use path::Path;

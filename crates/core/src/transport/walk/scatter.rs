@@ -5,7 +5,7 @@
 use crate::optics::{Faces, Finish, FinishModel, Incidence, Scattered, Side, scatter_at_faces};
 use crate::rng::{Numbers, Sampler};
 use crate::scene::shape::Toward;
-use crate::scene::{FinishId, Interface, MediumId, Patch, Scene, Surface};
+use crate::scene::{FaceId, FinishId, Interface, MediumId, Patch, Scene, Surface};
 use crate::transport::{Path, Vertex};
 use glam::DVec3;
 
@@ -61,6 +61,15 @@ fn grain(finish: &Finish, patch: &Patch, point: DVec3) -> DVec3 {
 #[inline]
 fn finish_of(scene: &Scene, finish: Option<FinishId>) -> &Finish {
     finish.map_or(&SMOOTH, |finish| &scene.finishes[finish.index()].finish)
+}
+
+/// The finishes of a face without patterns, for light travelling toward one of its sides.
+pub(super) fn faces_of(scene: &Scene, face: FaceId, toward: Toward) -> Faces<'_> {
+    let face = &scene.faces[face.index()];
+    Faces {
+        own: finish_of(scene, face.finish_against(toward)),
+        behind: finish_of(scene, face.finish_against(toward.opposite())),
+    }
 }
 
 /// An interface as a path meets it.

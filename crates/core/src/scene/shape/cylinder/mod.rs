@@ -81,6 +81,21 @@ impl Cylinder {
         self.leaving == Toward::Front && self.trims.is_none()
     }
 
+    /// Whether it goes all around between two cross-sections.
+    pub(crate) fn is_uncut(&self) -> bool {
+        self.trims.is_none()
+    }
+
+    /// z is the axis.
+    pub(crate) fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    /// The coordinates along the axis that it lies between, mm.
+    pub(crate) fn heights(&self) -> [f64; 2] {
+        [self.z_min, self.z_max]
+    }
+
     /// Radius, mm.
     pub(crate) fn radius(&self) -> f64 {
         self.radius
@@ -226,7 +241,10 @@ impl Cylinder {
             Toward::Front => 1.0,
             Toward::Back => -1.0,
         };
-        unit((sign / self.radius) * (from - from.dot(self.frame.z) * self.frame.z))
+        let across = from - from.dot(self.frame.z) * self.frame.z;
+        // Far along the axis rounding leaves some of it, which would turn paths a little at every bounce.
+        let across = across - across.dot(self.frame.z) * self.frame.z;
+        unit((sign / self.radius) * across)
     }
 
     pub(super) fn area(&self) -> f64 {

@@ -1,0 +1,350 @@
+//! Rows of mirror bounces along plain walls, taken at once.
+//!
+//! Every bounce on a wall of a row has the same angle of incidence, so after n bounces on a wall of reflectance ρ and a
+//! length ℓ in a medium that absorbs α a throughput w is w exp(-α ℓ) Π ρⁿ, over all walls. Where only walls absorb, or only
+//! the medium, the loss is all theirs. Where both do, all chords of a round wall are of one length, and multiply the
+//! throughput by the same q = τ ρ: the medium has absorbed w (1 - τ) (1 - qⁿ)/(1 - q), and the wall the rest; a row between
+//! flat walls is then taken step by step, as it is where walls of several faces absorb. No number is drawn, so the path
+//! is the one that steps would have made, but for rounding; roulette waits until the end of the row.
+
+use crate::optics::{Faces, FinishModel, Incidence, Lobe, Scattered};
+use crate::scene::{BounceRow, PlainLeg, Ray, Scene, StartSurfaces};
+use crate::transport::walk::event::{Carries, Event, Jump, Observer, Vertex};
+use crate::transport::walk::path::Path;
+use crate::transport::walk::scatter::{faces_of, facing};
+use std::ops::ControlFlow;
+
+/// Takes a path that a vertex on a plain leg has just mirrored to the last bounce of the row that follows: the ray from
+/// there. It stays where it is if there is no row.
+#[inline(never)]
+pub(super) fn jump<V: Observer>(
+    scene: &Scene,
+    path: &mut Path,
+    (leg, vertex, out): (&PlainLeg, &Vertex<'_>, &Scattered),
+    bounce_limit: u32,
+    observer: &mut V,
+) -> ControlFlow<(), Ray> {
+    let stay = ControlFlow::Continue(path.ray);
+    if out.lobe != Lobe::Specular || !vertex.hits.others().is_empty() {
+        return stay;
+    }
+    let Some((row, losses)) = row(scene, path, (leg, vertex), bounce_limit, V::CARRIES) else {
+        return stay;
+    };
+    path.throughput *= losses.kept;
+    path.depth += row.bounces.iter().map(|(_, count)| count).sum::<u32>();
+    path.ray = row.ray;
+    path.on = StartSurfaces::from(Some(row.last));
+    observer.see(path, Event::Jump(&losses.jump))?;
+    ControlFlow::Continue(path.ray)
+}
+
+/// What a row takes from a path.
+struct RowLosses {
+    /// Share of the throughput that is left, 1.
+    kept: f64,
+    jump: Jump,
+}
+
+/// The row that follows a vertex, if all of it is known.
+fn row(
+    scene: &Scene,
+    path: &Path,
+    (leg, vertex): (&PlainLeg, &Vertex<'_>),
+    bounce_limit: u32,
+    carries: Carries,
+) -> Option<(BounceRow, RowLosses)> {
+    let medium = &scene.media[path.medium.index()];
+    let (wall, met) = (vertex.interface.acting.prim, facing(scene, path, vertex));
+    if medium.scattering().is_some() {
+        return None;
+    }
+    let of_wall = mirrored(met.faces, &met.incidence, carries)?;
+    let most = bounce_limit.saturating_sub(path.depth);
+    let row = leg.row(&path.ray, (wall, most))?;
+    let face = vertex.interface.acting.face;
+    let (mut reflected, mut is_one_face) = (1.0, true);
+    for &(prim, count) in &row.bounces {
+        let share = if prim == wall {
+            of_wall
+        } else {
+            let patch = &scene.patches[prim.index()];
+            is_one_face &= patch.face == face;
+            let normal = patch.shape.normal(row.ray.origin());
+            let normal = if normal.dot(row.ray.dir()) < 0.0 { normal } else { -normal };
+            let incidence = Incidence { dir: row.ray.dir(), normal, ..met.incidence };
+            let faces = faces_of(scene, patch.face, vertex.interface.acting.toward);
+            mirrored(faces, &incidence, carries)?
+        };
+        reflected *= share.powi(count as i32);
+    }
+    let (before, transmittance) =
+        (path.throughput, medium.transmittance(path.wavelength, row.length));
+    let kept = transmittance * reflected;
+    let absorbed = before * (1.0 - kept);
+    let absorbed_in_medium = match (&row.bounces[..], transmittance < 1.0, reflected < 1.0) {
+        (_, false, true) if is_one_face => 0.0,
+        (_, _, false) => absorbed,
+        ([(_, count)], true, true) => {
+            let chord = medium.transmittance(path.wavelength, row.length / f64::from(*count));
+            // 1 - q is not small: the wall absorbs.
+            before * (1.0 - chord) * (1.0 - kept) / (1.0 - chord * of_wall)
+        }
+        _ => return None,
+    };
+    let absorbed_by_face = absorbed - absorbed_in_medium;
+    let jump = Jump { face, medium: path.medium, absorbed_by_face, absorbed_in_medium };
+    Some((row, RowLosses { kept, jump }))
+}
+/// The share that a wall mirrors of light that arrives so, if it only mirrors and nothing comes through from behind.
+fn mirrored(faces: Faces<'_>, incidence: &Incidence, carries: Carries) -> Option<f64> {
+    let is_mirror = faces.own.only_mirrors(incidence)
+        && match carries {
+            Carries::Flux => true,
+            Carries::Radiance => faces.behind.radiance_chances(incidence).transmitted == 0.0,
+        };
+    is_mirror.then(|| faces.own.shares(incidence).reflected)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::{Finish, Medium};
+    use crate::rng::{Dimension, Sampler};
+    use crate::scene::shape::{Cylinder, Flat, Region, Shape};
+    use crate::scene::{
+        Builder, FacePiece, FaceSpec, Inside, Owner, Solid, SolidId, StartSurfaces,
+    };
+    use crate::transport::walk::path::WAVELENGTH;
+    use crate::transport::walk::walk;
+    use glam::DVec3;
+    use lumiduct_base::math::{Aabb, Frame, cosine_hemisphere, disk};
+    use lumiduct_base::units::FluxUnit;
+
+    const RADIUS: f64 = 1.5;
+    const LENGTH: f64 = 90.0;
+    const PATHS: u64 = 500;
+    const LIMIT: u32 = 4000;
+
+    fn frame() -> Frame {
+        Frame::from_axis(DVec3::new(0.3, -0.2, 0.5), DVec3::new(0.4, -0.3, 0.8))
+    }
+
+    fn builder(air: f64) -> Builder {
+        Builder::new(DVec3::ZERO, Medium::new("air", 1.0, air), FluxUnit::Lumen)
+    }
+
+    fn add(builder: &mut Builder, owner: Owner, finish: Option<Finish>, shape: Shape) {
+        let finish = finish.map(|finish| builder.add_finish("wall", finish));
+        builder.add_face(FaceSpec {
+            name: "pipe.wall".into(),
+            owner,
+            front: finish,
+            back: finish,
+            pieces: vec![FacePiece::whole(shape)],
+        });
+    }
+
+    fn wall() -> Shape {
+        Shape::Cylinder(Cylinder::new(frame(), RADIUS, LENGTH))
+    }
+
+    /// A disk across the axis.
+    fn across(z: f64, radius: f64) -> Shape {
+        let frame = frame().shifted(z * frame().z);
+        Shape::Flat(Flat::new(frame, Region::Annulus { inner: 0.0, outer: radius }))
+    }
+
+    /// A tube of an angle-dependent mirror in air that absorbs; a small plate stands in its way.
+    fn tube() -> Scene {
+        let mut builder = builder(0.002);
+        add(&mut builder, Owner::Sheet, Some(Finish::Metal { n: 1.2, k: 7.0 }), wall());
+        add(&mut builder, Owner::Sheet, Some(Finish::Open), across(0.4 * LENGTH, 0.3 * RADIUS));
+        builder.build()
+    }
+
+    /// A rod in total reflection, in a wider tube.
+    fn rod() -> Scene {
+        let mut builder = builder(0.0);
+        let mirror = Finish::Specular { reflectance: 0.9, transmittance: 0.0 };
+        let around = Shape::Cylinder(Cylinder::new(frame(), 2.0 * RADIUS, LENGTH));
+        add(&mut builder, Owner::Sheet, Some(mirror), around);
+        let medium = builder.add_medium(Medium::new("glass", 1.5, 0.003));
+        let (name, bounds) = ("pipe".into(), Aabb::EMPTY);
+        let solid = builder.add_solid(Solid { name, medium, priority: 0, bounds, volume: None });
+        let back = Frame { y: -frame().y, z: -frame().z, ..frame() };
+        let entry = Flat::new(back, Region::Annulus { inner: 0.0, outer: RADIUS });
+        for shape in [wall(), across(LENGTH, RADIUS), Shape::Flat(entry)] {
+            add(&mut builder, Owner::Solid(solid), None, shape);
+        }
+        builder.build()
+    }
+
+    /// Four walls of a rectangle about the axis, outward or inward, and its two ends.
+    fn rectangle(half: [f64; 2], inward: bool) -> [Shape; 6] {
+        let f = frame();
+        let middle = f.origin + 0.5 * LENGTH * f.z;
+        let flat = |out: DVec3, along: DVec3, apart: f64, sides: [f64; 2]| {
+            let normal = if inward { -out } else { out };
+            let frame = Frame::from_axis_and_x(middle + apart * out, normal, along).unwrap();
+            let [half_x, half_y] = sides;
+            Shape::Flat(Flat::new(frame, Region::Rectangle { half_x, half_y }))
+        };
+        let [a, b] = half;
+        [
+            flat(f.x, f.z, a, [0.5 * LENGTH, b]),
+            flat(-f.x, f.z, a, [0.5 * LENGTH, b]),
+            flat(f.y, f.z, b, [0.5 * LENGTH, a]),
+            flat(-f.y, f.z, b, [0.5 * LENGTH, a]),
+            flat(f.z, f.x, 0.5 * LENGTH, half),
+            flat(-f.z, f.x, 0.5 * LENGTH, half),
+        ]
+    }
+
+    /// A rectangular duct of a mirror, of one face.
+    fn duct() -> Scene {
+        let mut builder = builder(0.0);
+        let finish = builder.add_finish("wall", Finish::Metal { n: 1.2, k: 7.0 });
+        let [a, b, c, d, ..] = rectangle([1.5 * RADIUS, 1.1 * RADIUS], true);
+        builder.add_face(FaceSpec {
+            name: "duct.wall".into(),
+            owner: Owner::Sheet,
+            front: Some(finish),
+            back: Some(finish),
+            pieces: [a, b, c, d].map(FacePiece::whole).into(),
+        });
+        builder.build()
+    }
+
+    /// A box of an absorbing medium.
+    fn bar() -> Scene {
+        let mut builder = builder(0.0);
+        let medium = builder.add_medium(Medium::new("glass", 1.5, 0.003));
+        let (name, bounds) = ("bar".into(), Aabb::EMPTY);
+        let solid = builder.add_solid(Solid { name, medium, priority: 0, bounds, volume: None });
+        for shape in rectangle([1.3 * RADIUS, 1.1 * RADIUS], false) {
+            add(&mut builder, Owner::Solid(solid), None, shape);
+        }
+        builder.build()
+    }
+
+    /// What becomes of a path.
+    #[derive(Debug, Default)]
+    struct Fate<const JUMPS: bool, const BACK: bool> {
+        events: usize,
+        end: Option<(Ray, f64, u32)>,
+        by_face: f64,
+        in_medium: f64,
+    }
+
+    impl<const JUMPS: bool, const BACK: bool> Observer for Fate<JUMPS, BACK> {
+        const CARRIES: Carries = if BACK { Carries::Radiance } else { Carries::Flux };
+
+        fn roulette_below(&self) -> f64 {
+            0.0
+        }
+
+        fn allows_jumps(&self) -> bool {
+            JUMPS
+        }
+
+        fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
+            self.events += 1;
+            match event {
+                Event::Travel(segment) if segment.length.is_finite() => {
+                    self.in_medium += segment.throughput - segment.arriving;
+                }
+                Event::Depart(vertex, departure) => {
+                    self.by_face += vertex.throughput - departure.throughput;
+                }
+                Event::Jump(jump) => {
+                    self.by_face += jump.absorbed_by_face;
+                    self.in_medium += jump.absorbed_in_medium;
+                }
+                Event::Escaped(_) => self.end = Some((path.ray, path.throughput, path.depth)),
+                _ => {}
+            }
+            ControlFlow::Continue(())
+        }
+    }
+
+    fn fate<const JUMPS: bool, const BACK: bool>(
+        (scene, inside): (&Scene, &Inside),
+        (index, limit): (u64, u32),
+    ) -> Fate<JUMPS, BACK> {
+        let mut sampler = Sampler::for_path(3, 0, index);
+        let at = disk(sampler.pair(Dimension::EmitPosition));
+        let dir = cosine_hemisphere(sampler.pair(Dimension::EmitDirection));
+        let start = frame().point_to_world(0.999 * RADIUS * at + 0.01 * DVec3::Z);
+        let path = Path {
+            ray: Ray::new(start, frame().to_world(dir)),
+            throughput: 1.0,
+            wavelength: WAVELENGTH,
+            source: None,
+            medium: scene.medium_in(inside),
+            inside: inside.clone(),
+            on: StartSurfaces::default(),
+            depth: 0,
+        };
+        let mut fate = Fate::default();
+        walk(scene, path, limit, &mut sampler, &mut fate);
+        fate
+    }
+
+    /// Events with jumps over those without.
+    fn assert_same_fates<const BACK: bool>(scene: &Scene, inside: &Inside) -> f64 {
+        let (mut with, mut without) = (0, 0);
+        for index in 0..PATHS {
+            let jumped = fate::<true, BACK>((scene, inside), (index, LIMIT));
+            let stepped = fate::<false, BACK>((scene, inside), (index, LIMIT));
+            (with, without) = (with + jumped.events, without + stepped.events);
+            let near = |a: f64, b: f64| (a - b).abs() <= 1e-9 * LENGTH;
+            assert!(near(jumped.by_face, stepped.by_face), "{jumped:?} {stepped:?}");
+            assert!(near(jumped.in_medium, stepped.in_medium), "{jumped:?} {stepped:?}");
+            let (Some((ray, throughput, depth)), Some((ray_0, throughput_0, depth_0))) =
+                (jumped.end, stepped.end)
+            else {
+                assert_eq!(jumped.end.is_some(), stepped.end.is_some());
+                continue;
+            };
+
+            assert!(ray.origin().distance(ray_0.origin()) < 1e-9 * LENGTH, "{ray:?} {ray_0:?}");
+            assert!(ray.dir().distance(ray_0.dir()) < 1e-9, "{ray:?} {ray_0:?}");
+            assert!((throughput / throughput_0 - 1.0).abs() < 1e-9 || throughput < 1e-200);
+            assert_eq!(depth, depth_0);
+        }
+        with as f64 / without as f64
+    }
+
+    #[test]
+    fn paths_end_in_the_same_place_with_and_without_jumps() {
+        let outside = Inside::default();
+        let in_rod: Inside = [SolidId::new(0)].into_iter().collect();
+        for events in [
+            assert_same_fates::<false>(&tube(), &outside),
+            assert_same_fates::<true>(&tube(), &outside),
+            assert_same_fates::<false>(&rod(), &in_rod),
+            assert_same_fates::<true>(&rod(), &in_rod),
+            assert_same_fates::<false>(&duct(), &outside),
+            assert_same_fates::<true>(&duct(), &outside),
+            assert_same_fates::<false>(&bar(), &in_rod),
+            assert_same_fates::<true>(&bar(), &in_rod),
+        ] {
+            assert!(events < 0.5, "jumps leave {events} of all events");
+        }
+    }
+
+    #[test]
+    fn a_jump_ends_at_the_bounce_limit() {
+        let outside = Inside::default();
+        for (index, scene) in (0..100).flat_map(|index| [(index, tube()), (index, duct())]) {
+            let fates =
+                [1, 2, 7].map(|limit| fate::<true, false>((&scene, &outside), (index, limit)));
+            let steps =
+                [1, 2, 7].map(|limit| fate::<false, false>((&scene, &outside), (index, limit)));
+            for (jumped, stepped) in fates.iter().zip(&steps) {
+                assert!((jumped.by_face - stepped.by_face).abs() < 1e-12);
+            }
+        }
+    }
+}

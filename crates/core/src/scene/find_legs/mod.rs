@@ -36,7 +36,10 @@ impl PlainLeg {
             | Shape::CompoundParabola(_) => return None,
         };
         let is_bare = |wall: &PrimId| is_bare(scene, &scene.patches[wall.index()]);
-        leg.walls().iter().all(is_bare).then(|| leg.leave_out_all(scene))?;
+        if !leg.walls().iter().all(is_bare) {
+            return None;
+        }
+        leg.leave_out_all(scene);
         (!leg.spans.is_empty()).then_some(leg)
     }
 
@@ -49,35 +52,34 @@ impl PlainLeg {
 
     /// Leaves out every part where something else may be met.
     fn leave_out_all(&mut self, scene: &Scene) {
-        let leg = self;
-        let walls = leg.walls();
+        let walls = self.walls();
         let margin = CLEAR * scene.tolerance;
         let others = scene.patches.iter().enumerate();
         let others = others.filter(|(index, _)| !walls.contains(&PrimId::new(*index)));
         let shapes = others.map(|(_, patch)| &patch.shape);
         let ports = scene.ports.iter().map(|patch| &patch.shape);
         for shape in shapes.chain(ports) {
-            if !leg.is_clear_of(shape, margin) {
-                leg.leave_out(shape.bounds(), margin);
+            if !self.is_clear_of(shape, margin) {
+                self.leave_out(shape.bounds(), margin);
             }
         }
-        scene.meshes.iter().for_each(|body| leg.leave_out(body.bounds(), margin));
+        scene.meshes.iter().for_each(|body| self.leave_out(body.bounds(), margin));
         for source in &scene.sources {
             // Light from far comes from outside of everything.
             if !matches!(source.emitter, Emitter::Far { .. }) {
-                leg.leave_out(source.emitter.bounds(), margin);
+                self.leave_out(source.emitter.bounds(), margin);
             }
         }
         for sensor in &scene.sensors {
             if let SensorKind::Goniometer(goniometer) = &sensor.kind
                 && let Some(radius) = goniometer.radius
-                && leg.may_touch_sphere(goniometer.frame.origin, radius, margin)
+                && self.may_touch_sphere(goniometer.frame.origin, radius, margin)
             {
-                leg.spans.clear();
+                self.spans.clear();
             }
         }
-        leg.spans = leg.spans.iter().map(|[low, high]| [low + margin, high - margin]).collect();
-        leg.spans.retain(|[low, high]| low < high);
+        self.spans = self.spans.iter().map(|[low, high]| [low + margin, high - margin]).collect();
+        self.spans.retain(|[low, high]| low < high);
     }
 
     /// Radius of a circle around the section, mm.

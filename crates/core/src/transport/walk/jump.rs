@@ -155,7 +155,7 @@ mod tests {
         Shape::Flat(Flat::new(frame, Region::Annulus { inner: 0.0, outer: radius }))
     }
 
-    /// A tube of an angle-dependent mirror in air that absorbs; a small plate stands in its way.
+    /// A metal tube filled with absorbing air, with a small open plate across it.
     fn tube() -> Scene {
         let mut builder = builder(0.002);
         add(&mut builder, Owner::Sheet, Some(Finish::Metal { n: 1.2, k: 7.0 }), wall());
@@ -307,7 +307,6 @@ mod tests {
                 assert_eq!(jumped.end.is_some(), stepped.end.is_some());
                 continue;
             };
-
             assert!(ray.origin().distance(ray_0.origin()) < 1e-9, "{ray:?} {ray_0:?}");
             assert!(ray.dir().distance(ray_0.dir()) < 1e-9, "{ray:?} {ray_0:?}");
             assert!((throughput / throughput_0 - 1.0).abs() < 1e-9 || throughput < 1e-200);

@@ -6,7 +6,7 @@
 mod traced;
 
 use lumiduct_core::measure::{self, Measures};
-use lumiduct_core::plan::Request;
+use lumiduct_core::plan::{GatherPlan, Request};
 use lumiduct_core::rng::Sampler;
 use lumiduct_core::scene::SourceId;
 use lumiduct_core::transport::forward::Forward;
@@ -276,6 +276,49 @@ fn rows_of_bounces_taken_at_once_change_no_light_of_a_shipped_scene() {
         saved += stepped.segments - jumped.segments;
     }
     assert!(saved > 100_000, "{saved} segments");
+}
+
+/// A sensor whose sphere every path along a tube of 400 mm meets, so that no row of bounces is taken at once.
+const WATCH: &str = "
+[sensors.watch]
+goniometer = { c_step_deg = 360, gamma_step_deg = 90, radius_mm = 15 }
+at = { position_mm = [0, 0, 10], axis = [0, 0, 1] }
+";
+
+#[test]
+fn photons_and_gather_paths_that_pass_in_rows_meet_the_same_records() {
+    let gather = GatherPlan {
+        depth: Some(5),
+        radius_mm: Some(1.5),
+        angle_deg: Some(0.2),
+        records: Some(3000),
+        photons: Some(3000),
+        ..GatherPlan::default()
+    };
+    let files = Scenes::new();
+    for scene in ["remote_cell_sun", "remote_cell_rod"] {
+        let path = PathBuf::from("scenes").join(scene).with_extension("toml");
+        let found = |more: &str| {
+            let text = std::fs::read_to_string(&path).unwrap() + more;
+            let copy = files.0.path().join("copy.toml");
+            std::fs::write(&copy, text).unwrap();
+            let settings = Settings {
+                overrides: vec!["sensors.cell.estimator=gather".into()],
+                paths: Some(24_000),
+                estimator: Some(Request::Forward),
+                gather,
+                ..Settings::default()
+            };
+            let job = input::load(&copy, &settings).unwrap();
+            measures(&job)
+        };
+        let (jumped, stepped) = (found(""), found(WATCH));
+        let [own, other] = [&jumped, &stepped].map(|all| &all.values["cell.flux"]);
+        for (own, other) in [(own.value, other.value), (own.std_error, other.std_error)] {
+            assert!(own > 0.0 && (own / other - 1.0).abs() < 1e-6, "{scene}: {own} {other}");
+        }
+        assert!(3 * jumped.segments < 2 * stepped.segments, "{scene}: {}", jumped.segments);
+    }
 }
 
 #[test]

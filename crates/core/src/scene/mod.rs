@@ -45,6 +45,7 @@ pub(crate) use model::COINCIDENCE;
 pub use model::{NamedFinish, Scene, Solid};
 pub use picture::facets::{FaceFacets, Fineness, Triangulation, shape_facets};
 pub use picture::guide::Guides;
+pub use plain_leg::RowReach;
 pub(crate) use plain_leg::{BounceRow, PlainLeg};
 pub use ray::Ray;
 pub use sensor::grid::Grid;

@@ -5,7 +5,7 @@
 //! Callers need not know windows, weights or records, which differ between estimators.
 
 use crate::plan::Estimator;
-use crate::scene::{Scene, Sensor, SensorId, Source};
+use crate::scene::{RowReach, Scene, Sensor, SensorId, Source};
 use crate::transport::backward::estimator as backward;
 use crate::transport::backward::mix::{self, Mixing};
 use crate::transport::backward::paths::Backward;
@@ -252,7 +252,16 @@ impl Observer for BatchBlock<'_, '_> {
         match self {
             Self::Backward { .. } | Self::Mix { current: None, .. } => true,
             Self::Mix { current: Some(own), .. } => own.allows_jumps(),
-            Self::Gather { .. } | Self::Mis { .. } => false,
+            Self::Gather { stream, .. } => stream.allows_jumps(),
+            Self::Mis { .. } => false,
+        }
+    }
+
+    #[inline]
+    fn limit_row(&self, path: &Path, reach: &mut RowReach) {
+        match self {
+            Self::Backward { .. } | Self::Mix { .. } | Self::Mis { .. } => {}
+            Self::Gather { stream, .. } => stream.limit_row(path, reach),
         }
     }
 
@@ -280,6 +289,11 @@ impl Observer for Observers<'_, '_, '_> {
     #[inline]
     fn allows_jumps(&self) -> bool {
         self.0.iter().all(Observer::allows_jumps)
+    }
+
+    #[inline]
+    fn limit_row(&self, path: &Path, reach: &mut RowReach) {
+        self.0.iter().for_each(|one| one.limit_row(path, reach));
     }
 
     #[inline]

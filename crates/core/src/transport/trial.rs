@@ -84,7 +84,7 @@ pub(crate) struct Tried {
 pub struct PhotonPilot {
     /// Mean number of segments of a photon path, where rows of mirror bounces are taken at once.
     pub(crate) segments_per_path: f64,
-    /// The same step by step, as photons go past records.
+    /// The same step by step.
     pub(crate) steps_per_path: f64,
     /// Segments of photon paths in an automatic pass of gathering.
     pub(crate) pass_segments: f64,
@@ -97,6 +97,11 @@ impl PhotonPilot {
     pub fn new(segments_per_path: f64, steps_per_path: f64) -> Self {
         let pass_segments = PASS_SEGMENTS;
         Self { segments_per_path, steps_per_path, pass_segments, pass_work: None }
+    }
+
+    /// The same for photons of which every bounce must be seen.
+    pub(crate) fn step_by_step(self) -> Self {
+        Self { segments_per_path: self.steps_per_path, ..self }
     }
 }
 

@@ -9,7 +9,7 @@ use crate::scene::shape::{Cylinder, Shape};
 use crate::scene::{Emitter, Patch, PlainLeg, PrimId, Scene, SensorKind};
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::Aabb;
-use smallvec::{SmallVec, smallvec};
+use smallvec::SmallVec;
 
 /// Tolerances of the scene by which other surfaces must be away.
 const CLEAR: f64 = 4.0;
@@ -41,13 +41,6 @@ impl PlainLeg {
         }
         leg.leave_out_all(scene);
         (!leg.spans.is_empty()).then_some(leg)
-    }
-
-    fn walls(&self) -> SmallVec<[PrimId; 4]> {
-        match &self.section {
-            LegSection::Round { wall, .. } => smallvec![*wall],
-            LegSection::Rectangle { walls, .. } => SmallVec::from(*walls),
-        }
     }
 
     /// Leaves out every part where something else may be met.

@@ -3,13 +3,17 @@
 //!
 //! This module knows where a row ends; not what the wall does to light, nor how legs are found.
 
+mod reach;
 mod row;
 
+use crate::scene::plain_leg::reach::PathInLeg;
+pub use crate::scene::plain_leg::reach::RowReach;
 pub(in crate::scene) use crate::scene::plain_leg::row::LegSection;
-use crate::scene::plain_leg::row::{PathInLeg, RowInLeg};
+use crate::scene::plain_leg::row::RowInLeg;
 use crate::scene::{PrimId, Ray};
+use glam::DVec3;
 use lumiduct_base::math::Frame;
-use smallvec::SmallVec;
+use smallvec::{SmallVec, smallvec};
 
 /// The plain parts within a straight round or rectangular wall.
 #[derive(Debug, Clone)]
@@ -35,15 +39,39 @@ pub(crate) struct BounceRow {
 }
 
 impl PlainLeg {
-    /// The row of bounces of a path that has just been mirrored by a wall, as far as it is plain, `most` at most.
-    pub(crate) fn row(&self, ray: &Ray, (wall, most): (PrimId, u32)) -> Option<BounceRow> {
+    /// How far a row of at most `most` bounces may go from a path that has just been mirrored by a wall; `None` if that is not
+    /// on a plain part.
+    #[inline]
+    pub(crate) fn reach(&self, ray: &Ray, (wall, most): (PrimId, u32)) -> Option<RowReach> {
         let at = self.frame.point_to_local(ray.origin());
         let dir = self.frame.to_local(ray.dir());
         let &[low, high] = self.spans.iter().find(|[low, high]| at.z >= *low && at.z <= *high)?;
         let left = if dir.z < 0.0 { at.z - low } else { high - at.z };
-        let RowInLeg { bounces, last, length, end } =
-            self.section.row(PathInLeg { at, dir }, left, (wall, most))?;
+        Some(RowReach { wall, path: PathInLeg { at, dir }, left, most })
+    }
+
+    /// The row of bounces within a reach.
+    pub(crate) fn row(&self, reach: &RowReach) -> Option<BounceRow> {
+        let RowInLeg { bounces, last, length, end } = self.section.row(reach)?;
         let ray = Ray::new(self.frame.point_to_world(end.at), self.frame.to_world(end.dir));
         Some(BounceRow { bounces, last, length, ray })
+    }
+
+    /// All pieces of its wall.
+    pub(crate) fn walls(&self) -> SmallVec<[PrimId; 4]> {
+        match &self.section {
+            LegSection::Round { wall, .. } => smallvec![*wall],
+            LegSection::Rectangle { walls, .. } => SmallVec::from(*walls),
+        }
+    }
+
+    /// Position of a point along the axis, mm.
+    pub(crate) fn along(&self, point: DVec3) -> f64 {
+        (point - self.frame.origin).dot(self.frame.z)
+    }
+
+    /// Unit vector of the axis.
+    pub(crate) fn axis(&self) -> DVec3 {
+        self.frame.z
     }
 }

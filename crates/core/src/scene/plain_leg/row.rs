@@ -1,14 +1,12 @@
 //! Where a row of mirror bounces within a round or a rectangular wall ends.
 
 use crate::scene::PrimId;
-use glam::{DVec2, DVec3};
+use crate::scene::plain_leg::reach::{LEAST, PathInLeg, RowReach};
+use glam::DVec2;
 use smallvec::{SmallVec, smallvec};
 
 /// Distance from an edge, relative to the section, below which the last bounces on its two sides count as at once, 1.
 const AT_EDGE: f64 = 1e-9;
-
-/// Least bounces of a row: a single one is as quick step by step.
-const LEAST: f64 = 2.0;
 
 /// The cross-section of a wall about the origin, and its pieces.
 #[derive(Debug, Clone)]
@@ -17,13 +15,6 @@ pub(in crate::scene) enum LegSection {
     Round { radius: f64, wall: PrimId },
     /// A rectangle: half of its size, and its walls at -x, +x, -y and +y.
     Rectangle { half: DVec2, walls: [PrimId; 4] },
-}
-
-/// The path within a leg: position, mm, and unit direction, in the frame of the leg.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct PathInLeg {
-    pub(super) at: DVec3,
-    pub(super) dir: DVec3,
 }
 
 /// A row of bounces in the frame of the leg.
@@ -40,17 +31,11 @@ pub(super) struct RowInLeg {
 }
 
 impl LegSection {
-    /// The row of at most `most` bounces of a path that has just been mirrored by a wall, over at most `left` mm along
-    /// the axis.
-    pub(super) fn row(
-        &self,
-        path: PathInLeg,
-        left: f64,
-        (wall, most): (PrimId, u32),
-    ) -> Option<RowInLeg> {
+    /// The row of bounces within a reach.
+    pub(super) fn row(&self, reach: &RowReach) -> Option<RowInLeg> {
         match self {
-            Self::Round { radius: _, wall } => round(path, left, (*wall, most)),
-            Self::Rectangle { half, walls } => rectangle((*half, walls), path, left, (wall, most)),
+            Self::Round { radius: _, wall: _ } => round(reach),
+            Self::Rectangle { half, walls } => rectangle((*half, walls), reach),
         }
     }
 }
@@ -59,8 +44,8 @@ impl LegSection {
 /// angle δ and moves the place along the axis by the same length. With the place p, |p| = r, and the direction d across
 /// the axis, the chord is t = -2 p·d/d², and δ is the angle between p and p + t d: sin δ = t (p×d)/r², cos δ = 1 + t
 /// (p·d)/r². After n bounces both are turned by n δ.
-fn round(path: PathInLeg, left: f64, (wall, most): (PrimId, u32)) -> Option<RowInLeg> {
-    let PathInLeg { at, dir } = path;
+fn round(reach: &RowReach) -> Option<RowInLeg> {
+    let &RowReach { wall, path: PathInLeg { at, dir }, left, most } = reach;
     let (place, across) = (at.truncate(), dir.truncate());
     let inward = place.dot(across);
     let chord = -2.0 * inward / across.length_squared();
@@ -85,12 +70,8 @@ fn round(path: PathInLeg, left: f64, (wall, most): (PrimId, u32)) -> Option<RowI
 
 /// Between two parallel walls a path goes to and fro, whatever it does along the other two directions: the walls of
 /// either pair are met at equal distances along the path, in turn. Unfolded, the path is straight.
-fn rectangle(
-    (half, walls): (DVec2, &[PrimId; 4]),
-    path: PathInLeg,
-    left: f64,
-    (wall, most): (PrimId, u32),
-) -> Option<RowInLeg> {
+fn rectangle((half, walls): (DVec2, &[PrimId; 4]), reach: &RowReach) -> Option<RowInLeg> {
+    let &RowReach { wall, path, left, most } = reach;
     let PathInLeg { at, dir } = path;
     let start = walls.iter().position(|own| *own == wall)?;
     // It has left the wall inward.

@@ -32,6 +32,8 @@ const WORTH_ANOTHER: f64 = 3.0;
 const KNOWN: f64 = 0.32;
 /// Standard errors beyond which a difference is significant.
 const SIGMAS: f64 = 3.0;
+/// The same where any of several estimators may find more light, of any source: there are many differences.
+const SIGMAS_OF_MANY: f64 = 4.0;
 /// Possible relative rounding of a flux, 1.
 const ROUNDING: f64 = 1e-9;
 /// Relative bias allowed if there is no target, 1.
@@ -138,7 +140,7 @@ fn misses_light<'a>(tried: &Tried, mut others: impl Iterator<Item = &'a Tried>) 
     others.any(|other| {
         tried.by_source.iter().zip(&other.by_source).any(|(own, other)| {
             let error = own.std_error().hypot(other.std_error());
-            let room = SIGMAS * error + ROUNDING * own.mean().abs();
+            let room = SIGMAS_OF_MANY * error + ROUNDING * own.mean().abs();
             relative_error(other) < KNOWN && other.mean() - own.mean() > room
         })
     })

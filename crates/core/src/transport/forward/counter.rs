@@ -5,7 +5,9 @@ mod surfaces;
 use crate::optics::Side;
 use crate::rng::{Sampler, stream};
 use crate::scene::shape::Toward;
-use crate::scene::{CountedLight, FaceId, LightGroupId, MediumId, Owner, SensorId, SourceId};
+use crate::scene::{
+    CountedLight, FaceId, LightGroupId, MediumId, Owner, RowReach, SensorId, SourceId,
+};
 use crate::transport::forward::Forward;
 use crate::transport::stop::Pace;
 use crate::transport::tally::readings::{
@@ -222,6 +224,11 @@ impl<O: Observer> Observer for PhotonCounter<'_, '_, O> {
     #[inline(always)]
     fn allows_jumps(&self) -> bool {
         self.observer.allows_jumps()
+    }
+
+    #[inline(always)]
+    fn limit_row(&self, path: &Path, reach: &mut RowReach) {
+        self.observer.limit_row(path, reach);
     }
 
     #[inline(always)]

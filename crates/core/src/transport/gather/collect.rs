@@ -2,7 +2,7 @@
 
 use crate::optics::{Finish, FinishModel, Lobe, Side, Spread};
 use crate::rng::{Dimension, Sampler};
-use crate::scene::SensorId;
+use crate::scene::{RowReach, SensorId};
 use crate::transport::connect::vertex::ScatteringVertex;
 use crate::transport::gather::ball::clipped_ball;
 use crate::transport::gather::coverage::{Coverage, Middle, coverage};
@@ -61,6 +61,15 @@ struct PathAtFace<'a, 's> {
 }
 
 impl Observer for Collecting<'_, '_> {
+    fn allows_jumps(&self) -> bool {
+        self.merged.is_none()
+    }
+
+    fn limit_row(&self, path: &Path, reach: &mut RowReach) {
+        // Plain walls only mirror, so they have records of vertex D alone.
+        reach.end_after(self.gather.settings.depth.saturating_sub(path.depth));
+    }
+
     fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
         match event {
             Event::Meet(met) if self.merged.is_none() => self.meet(path, met),

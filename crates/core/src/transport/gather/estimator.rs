@@ -9,6 +9,7 @@ use crate::transport::gather::records::Records;
 use crate::transport::gather::settings::{GatherSettings, SensorGroup};
 use crate::transport::gather::shares::MergedRecord;
 use crate::transport::gather::surfaces::SurfaceNumbers;
+use crate::transport::gather::watched::WatchedLegs;
 use crate::transport::trial::PhotonPilot;
 use crate::transport::walk::emitters::Emitters;
 use crate::transport::{Layout, Readings, Stage};
@@ -116,6 +117,7 @@ impl<'s> Gather<'s> {
 pub(super) struct WaitingRecords<'s> {
     pub(super) paths: Vec<RecordedPath<'s>>,
     pub(super) records: Records<'s>,
+    pub(super) watched: WatchedLegs,
 }
 
 /// A gather path that has ended in records.

@@ -294,7 +294,7 @@ impl Lattice {
 }
 
 /// Radius of the ball about a record that contains its window on the surface, mm.
-fn ball(window: Window) -> f64 {
+pub(super) fn ball(window: Window) -> f64 {
     window.radius * 1f64.hypot(HEIGHT)
 }
 

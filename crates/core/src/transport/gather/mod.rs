@@ -21,6 +21,7 @@ pub(crate) mod stages;
 pub(crate) mod stream;
 pub mod surfaces;
 pub(crate) mod trial;
+mod watched;
 
 pub(crate) use account::account;
 pub(crate) use bias::estimate;

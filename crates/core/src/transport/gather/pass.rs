@@ -23,6 +23,7 @@ use crate::transport::gather::records::Records;
 use crate::transport::gather::shares::MergedPath;
 use crate::transport::gather::stages::Pass;
 use crate::transport::gather::stream::PhotonStream;
+use crate::transport::gather::watched::WatchedLegs;
 use crate::transport::stop::RECORD_WORK;
 use crate::transport::task::Task;
 use crate::transport::walk::follow::{Gathering, follow};
@@ -69,7 +70,8 @@ impl<'s> Gather<'s> {
         }
         let first = pass_of(0);
         let records = Records::new(found.records, first.window, &self.surfaces, task.pace)?;
-        let waiting = WaitingRecords { paths: found.paths, records };
+        let watched = WatchedLegs::new(self.scene, &self.surfaces, &records.all, first.window);
+        let waiting = WaitingRecords { paths: found.paths, records, watched };
         Some((PhotonStream::new(self, first, (waiting, task.pace), counts), met))
     }
 

@@ -101,7 +101,7 @@ impl GatherRecord<'_> {
     }
 
     /// Its entry in the index, and the direction of the photons it takes if it takes no others.
-    fn indexed(&self, id: usize) -> (Indexed, Option<DVec3>) {
+    pub(super) fn indexed(&self, id: usize) -> (Indexed, Option<DVec3>) {
         let (surface, point, normal, dir) = match self {
             Self::Surface(SurfaceRecord { surface, point, normal, kind, .. }) => {
                 let dir = match kind {

@@ -125,8 +125,9 @@ impl PhotonPilot {
     pub(crate) fn with_passes_for(self, plan: &RunPlan, by_time: Option<f64>) -> Self {
         let by_paths = plan.stop.paths.map(|paths| {
             let passes = plan.stop.batches.map_or(PASSES, |batches| batches as f64);
-            let gather_paths = self.steps_per_path / RECORD_SEGMENTS;
-            paths as f64 / passes / (1.0 + gather_paths) * self.steps_per_path
+            let segments = self.segments_past_records(self.depth(&plan.gather));
+            let gather_paths = segments / RECORD_SEGMENTS;
+            paths as f64 / passes / (1.0 + gather_paths) * segments
         });
         let known = by_time.into_iter().chain(by_paths).reduce(f64::min);
         known.map_or(self, |segments| Self {
@@ -136,10 +137,23 @@ impl PhotonPilot {
         })
     }
 
-    /// Photons of an automatic pass.
-    fn photons(self) -> u64 {
+    /// The depth of gather paths.
+    fn depth(self, plan: &GatherPlan) -> u32 {
+        // K/3 of the K surfaces that a photon meets.
+        let automatic = ((self.steps_per_path - 1.0) / 3.0).clamp(DEPTH[0], DEPTH[1]);
+        plan.depth.unwrap_or(automatic as u32)
+    }
+
+    /// Segments of a photon path past records of gather paths of this depth: up to as many bounces as these have, it is near
+    /// them, and goes step by step.
+    pub(super) fn segments_past_records(self, depth: u32) -> f64 {
+        self.steps_per_path.min(self.segments_per_path + f64::from(depth))
+    }
+
+    /// Photons of an automatic pass, with this many segments each.
+    fn photons(self, segments: f64) -> u64 {
         let least = LEAST_PHOTONS * self.pass_segments / PASS_SEGMENTS;
-        (self.pass_segments / self.steps_per_path).max(least).max(1.0).ceil() as u64
+        (self.pass_segments / segments).max(least).max(1.0).ceil() as u64
     }
 }
 
@@ -152,12 +166,10 @@ pub fn groups(
     signal: &StopSignal,
 ) -> Option<Vec<SensorGroup>> {
     let (seed, plan) = (plan.seed, &plan.gather);
-    let depth = plan.depth.unwrap_or_else(|| {
-        // K/3 of the K surfaces that a photon meets.
-        ((pilot.steps_per_path - 1.0) / 3.0).clamp(DEPTH[0], DEPTH[1]) as u32
-    });
-    let photons = plan.photons.unwrap_or_else(|| pilot.photons());
-    let share = photons as f64 * pilot.steps_per_path / RECORD_SEGMENTS;
+    let depth = pilot.depth(plan);
+    let segments = pilot.segments_past_records(depth);
+    let photons = plan.photons.unwrap_or_else(|| pilot.photons(segments));
+    let share = photons as f64 * segments / RECORD_SEGMENTS;
     let all_sensors = all_sensors.max(1) as u64;
     let gather_paths = plan.records.unwrap_or(share.ceil() as u64).div_ceil(all_sensors);
     let pace = Pace::new(signal);

@@ -4,7 +4,7 @@
 
 use crate::optics::Incidence;
 use crate::scene::shape::Toward;
-use crate::scene::{MediumId, PrimHit, PrimId, Scene, SourceId, Visibility};
+use crate::scene::{MediumId, PrimHit, PrimId, RowReach, Scene, SourceId, Visibility};
 use crate::transport::backward::mix::MergedPhoton;
 use crate::transport::gather::block::CrossedCounts;
 use crate::transport::gather::contribution::{PairWeights, PhotonHit, SurfaceHit, VolumeHit};
@@ -68,6 +68,16 @@ enum PhotonPlace {
 }
 
 impl Observer for PhotonStream<'_, '_> {
+    #[inline(always)]
+    fn allows_jumps(&self) -> bool {
+        true
+    }
+
+    #[inline]
+    fn limit_row(&self, _: &Path, reach: &mut RowReach) {
+        self.waiting.watched.limit(reach);
+    }
+
     #[inline(always)]
     fn see(&mut self, path: &Path, event: Event<'_>) -> ControlFlow<()> {
         self.offer(path, event, |_| None);

@@ -24,7 +24,7 @@ const TRIED_PASSES: u64 = 8;
 /// the other estimates. The few pairs of a pilot give the variance of E1 much more accurately.
 const FOURTH_ORDER: f64 = 7.0;
 /// Smallest relative variance of a pass times its photons, or its gather paths in a cell: the limit for unlimited pairs.
-const PER_PATH: f64 = 4.0;
+const PER_PATH: f64 = 6.0;
 /// Cost of a run over what the few pairs of a pilot show, 1: they miss rare strong pairs and stages that are given up
 /// (benches/choice.rs).
 const UNSEEN: f64 = 4.0;
@@ -63,7 +63,8 @@ pub(crate) fn trial(trials: &Trials<'_>) -> Option<Vec<Tried>> {
 /// factor. `None` if stopped.
 fn group_trial(trials: &Trials<'_>, settings: GatherSettings) -> Option<Vec<Tried>> {
     let Trials { scene, plan, photons: pilot, sensors, effort, signal } = *trials;
-    let by_photons = settings.photons as f64 * work::of_photon_path(pilot.steps_per_path);
+    let segments = pilot.segments_past_records(settings.depth);
+    let by_photons = settings.photons as f64 * work::of_photon_path(segments);
     let all = (settings.gather_paths * sensors.len() as u64) as f64;
     let by_records = all * work::of_recorded_path(f64::from(settings.depth) + 1.0);
     let part = (effort / TRIED_PASSES as f64 / (by_photons + by_records)).min(1.0);
@@ -103,7 +104,7 @@ fn group_trial(trials: &Trials<'_>, settings: GatherSettings) -> Option<Vec<Trie
         let of_pass = |cost: f64| {
             let by_pairs =
                 FOURTH_ORDER * cost * TRIED_PASSES as f64 * (part / size).powi(2) / CROSSED;
-            UNSEEN * by_pairs.max(seconds * least)
+            (UNSEEN * by_pairs).max(seconds * least)
         };
         trial.cost = trial.cost.map(of_pass);
         Tried { flux, bias: Some(bias), ..tried }
@@ -184,8 +185,9 @@ pub(crate) fn pass_work(
     pilot: PhotonPilot,
     signal: &StopSignal,
 ) -> Option<PassWork> {
-    let GatherSettings { photons, gather_paths, .. } = gather.settings;
-    let part = (PROBED_SEGMENTS / (photons as f64 * pilot.steps_per_path)).min(1.0);
+    let GatherSettings { photons, gather_paths, depth, .. } = gather.settings;
+    let segments = photons as f64 * pilot.segments_past_records(depth);
+    let part = (PROBED_SEGMENTS / segments).min(1.0);
     let scaled = |count: u64| scaled(count, part);
     let sensors: Vec<SensorId> = gather.sensors().collect();
     let settings = GatherSettings { gather_paths: scaled(gather_paths), ..gather.settings };

@@ -157,6 +157,7 @@ fn gathered<'s>(
     }
     let early = signal.with_grace();
     let left = signal.work_left(|| time_of_segment(scene, plan, &early));
+    let pilot = if merged.is_empty() { pilot } else { pilot.step_by_step() };
     let pilot = pilot.with_passes_for(plan, left.map(|segments| segments / passes_in_turn()));
     let mut gathers = Vec::new();
     for (sensors, combination) in [(alone, Combination::Alone), (merged, Combination::Merged)] {

@@ -6,7 +6,7 @@
 use crate::rng::{Numbers, Sampler};
 use crate::scene::shape::{Crossing, RayStart, Toward};
 use crate::scene::{
-    Arrival, Arrivals, Begins, CountedLight, Owner, Passage, Place, Ray, Scene, SensorId,
+    Arrival, Arrivals, Begins, CountedLight, Owner, Passage, Place, Ray, RowReach, Scene, SensorId,
     SensorKind, StartSurfaces, SurfaceSensor, Visibility,
 };
 use crate::transport::stop::Pace;
@@ -267,6 +267,11 @@ impl<O: Observer> Observer for Follower<'_, '_, '_, O> {
     #[inline]
     fn allows_jumps(&self) -> bool {
         self.observer.allows_jumps()
+    }
+
+    #[inline]
+    fn limit_row(&self, path: &Path, reach: &mut RowReach) {
+        self.observer.limit_row(path, reach);
     }
 
     #[inline]

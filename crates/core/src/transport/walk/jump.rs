@@ -8,7 +8,7 @@
 //! is the one that steps would have made, but for rounding; roulette waits until the end of the row.
 
 use crate::optics::{Faces, FinishModel, Incidence, Lobe, Scattered};
-use crate::scene::{BounceRow, PlainLeg, Ray, Scene, StartSurfaces};
+use crate::scene::{BounceRow, PlainLeg, Ray, RowReach, Scene, StartSurfaces};
 use crate::transport::walk::event::{Carries, Event, Jump, Observer, Vertex};
 use crate::transport::walk::path::Path;
 use crate::transport::walk::scatter::{faces_of, facing};
@@ -28,7 +28,15 @@ pub(super) fn jump<V: Observer>(
     if out.lobe != Lobe::Specular || !vertex.hits.others().is_empty() {
         return stay;
     }
-    let Some((row, losses)) = row(scene, path, (leg, vertex), bounce_limit, V::CARRIES) else {
+    let most = bounce_limit.saturating_sub(path.depth);
+    let Some(mut reach) = leg.reach(&path.ray, (vertex.interface.acting.prim, most)) else {
+        return stay;
+    };
+    observer.limit_row(path, &mut reach);
+    if reach.is_too_short() {
+        return stay;
+    }
+    let Some((row, losses)) = row(scene, path, vertex, (leg, &reach), V::CARRIES) else {
         return stay;
     };
     path.throughput *= losses.kept;
@@ -50,18 +58,17 @@ struct RowLosses {
 fn row(
     scene: &Scene,
     path: &Path,
-    (leg, vertex): (&PlainLeg, &Vertex<'_>),
-    bounce_limit: u32,
+    vertex: &Vertex<'_>,
+    (leg, reach): (&PlainLeg, &RowReach),
     carries: Carries,
 ) -> Option<(BounceRow, RowLosses)> {
     let medium = &scene.media[path.medium.index()];
-    let (wall, met) = (vertex.interface.acting.prim, facing(scene, path, vertex));
+    let (wall, met) = (reach.wall, facing(scene, path, vertex));
     if medium.scattering().is_some() {
         return None;
     }
     let of_wall = mirrored(met.faces, &met.incidence, carries)?;
-    let most = bounce_limit.saturating_sub(path.depth);
-    let row = leg.row(&path.ray, (wall, most))?;
+    let row = leg.row(reach)?;
     let face = vertex.interface.acting.face;
     let (mut reflected, mut is_one_face) = (1.0, true);
     for &(prim, count) in &row.bounces {

@@ -350,33 +350,33 @@ corner = { plane = { rectangle = { width_mm = 0.8, height_mm = 0.8 } }, at = { p
 const TWO_SIZES: &str = r#"
 [finishes.mirror]
 gaussian = { sigma_deg = 1, reflectance = 0.97 }
-[sheets.big.tube]
+[sheets.wide.tube]
 profile = { circle = { radius_mm = 20 } }
 path = [{ straight_mm = 200 }]
 finish = "mirror"
-[sheets.small.tube]
+[sheets.narrow.tube]
 profile = { circle = { radius_mm = 1 } }
 path = [{ straight_mm = 20 }]
 finish = "mirror"
 at = { position_mm = [100, 0, 0] }
 [sources.a.disk]
 radius_mm = 20
-at = { face = "big.entry" }
+at = { face = "wide.entry" }
 flux_lm = 100
 emission = { cone_half_angle_deg = 3 }
 tilt_deg = 20
 [sources.b.disk]
 radius_mm = 1
-at = { face = "small.entry" }
+at = { face = "narrow.entry" }
 flux_lm = 100
 emission = { cone_half_angle_deg = 3 }
 tilt_deg = 20
 [sensors.small]
 plane = { rectangle = { width_mm = 2, height_mm = 2 } }
 at = { position_mm = [102, 0, 28], axis = [-0.3, 0, -0.954] }
-aim = ["small.exit"]
+aim = ["narrow.exit"]
 [sensors.big]
 plane = { rectangle = { width_mm = 20, height_mm = 20 } }
 at = { position_mm = [20, 0, 280], axis = [-0.3, 0, -0.954] }
-aim = ["big.exit"]
+aim = ["wide.exit"]
 "#;

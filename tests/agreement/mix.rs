@@ -49,7 +49,8 @@ fn auto_takes_the_mix_for_light_of_two_kinds() {
     assert_eq!(found.estimators, [Estimator::Mix], "{:?}", found.choices);
 }
 
-/// Relative variance of the flux times the segments traced for it.
+/// Relative variance of the flux times the segments traced for it; infinite where light of a source was not found, of which the
+/// variance knows nothing.
 fn cost(text: &str, way: Way) -> f64 {
     let job = load(text, way);
     let found = findings(&job, way);
@@ -58,6 +59,9 @@ fn cost(text: &str, way: Way) -> f64 {
     let slots: Vec<usize> = (0..job.scene.sources.len())
         .map(|source| layout.sensor_flux(SensorId::new(0), SourceId::new(source)))
         .collect();
+    if slots.iter().any(|&slot| readings.scalar(slot).mean() == 0.0) {
+        return f64::INFINITY;
+    }
     let flux = readings.function(|flux| slots.iter().map(|&slot| flux(slot)).sum());
     let segments = match way {
         Way::Forward => readings.segments,

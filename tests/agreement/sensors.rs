@@ -1,6 +1,6 @@
 //! Every sensor: planes with cells and rings, on faces and in solids, goniometers and luminance, with aims and without.
 
-use crate::trial::shallow_agree as agree;
+use crate::trial::{shallow_agree as agree, shallow_agree_beside_dark};
 
 /// A mirror tube with a tilted pane in it, a block of glass behind, and sensors. The glass absorbs:
 /// no light arrives along directions of endless total reflection, but a gather path that starts
@@ -89,7 +89,7 @@ near = { goniometer = { c_step_deg = 180, gamma_step_deg = 30, radius_mm = 40 } 
 "#,
         ),
     );
-    agree(
+    shallow_agree_beside_dark(
         "aimed goniometers",
         &scene(
             r#"

@@ -293,3 +293,15 @@ pub(crate) fn all_agree(what: &str, text: &str) {
 pub(crate) fn shallow_agree(what: &str, text: &str) {
     agree(what, text, &SHALLOW);
 }
+
+/// The same with half of the window at depth 0, for cells that are dark beside bright ones: a wider window spills light into
+/// them, as the stated bias says, and no share of a dark value allows for that.
+pub(crate) fn shallow_agree_beside_dark(what: &str, text: &str) {
+    let narrow =
+        Gathering { depth: 0, radius_mm: 0.45, angle_deg: 3.5, records: 3000, photons: 6000 };
+    let ways = SHALLOW.map(|way| match way {
+        Way::Gather(Gathering { depth: 0, .. }) => Way::Gather(narrow),
+        way => way,
+    });
+    agree(what, text, &ways);
+}

@@ -1,6 +1,6 @@
 //! How a source spreads its flux over directions.
 
-use crate::rng::{Dimension, Sampler};
+use crate::rng::{Dimension, Numbers, Sampler};
 use crate::scene::source::sky::{EmitterKind, Sky};
 use glam::DVec3;
 use lumiduct_base::math::{
@@ -36,7 +36,7 @@ pub enum Emission {
 
 impl Emission {
     /// A direction in the frame of the emitter, drawn in proportion to the flux.
-    pub(crate) fn sample(&self, kind: EmitterKind, sampler: &mut Sampler) -> DVec3 {
+    pub(crate) fn sample(&self, kind: EmitterKind, sampler: &mut Sampler<impl Numbers>) -> DVec3 {
         let u = sampler.pair(Dimension::EmitDirection);
         match (self, kind) {
             (Self::Sky(sky), _) => sky.sample(kind, sampler),
@@ -130,7 +130,12 @@ fn in_cone(half_angle: f64, axis: DVec3, dir: DVec3) -> bool {
 }
 
 /// Uniform radiance over a cone in front of a surface: density ∝ cos θ to the normal, by rejection from the cone.
-fn projected_cone(half_angle: f64, axis: DVec3, u: [f64; 2], sampler: &mut Sampler) -> DVec3 {
+fn projected_cone(
+    half_angle: f64,
+    axis: DVec3,
+    u: [f64; 2],
+    sampler: &mut Sampler<impl Numbers>,
+) -> DVec3 {
     let frame = Frame::from_axis(DVec3::ZERO, axis);
     // The largest cosine to the normal within the cone.
     let tilt = axis.z.clamp(-1.0, 1.0).acos();

@@ -1,6 +1,6 @@
 //! Photon paths as sources start them.
 
-use crate::rng::{Dimension, Sampler};
+use crate::rng::{Dimension, Numbers, Sampler};
 use crate::scene::shape::Shape;
 use crate::scene::source::sky::EmitterKind;
 use crate::scene::{
@@ -12,7 +12,7 @@ use lumiduct_base::math::{Aabb, Frame, disk};
 
 impl Source {
     /// Starts a photon path.
-    pub fn emit(&self, scene: &Scene, sampler: &mut Sampler) -> Emitted {
+    pub fn emit(&self, scene: &Scene, sampler: &mut Sampler<impl Numbers>) -> Emitted {
         let (ray, shape) = match &self.emitter {
             Emitter::Point(frame) => {
                 let dir = frame.to_world(self.emission.sample(EmitterKind::Point, sampler));
@@ -41,7 +41,12 @@ impl Source {
         Emitted { ray, inside, on, shape }
     }
 
-    fn emit_from_line(&self, frame: &Frame, length: f64, sampler: &mut Sampler) -> Ray {
+    fn emit_from_line(
+        &self,
+        frame: &Frame,
+        length: f64,
+        sampler: &mut Sampler<impl Numbers>,
+    ) -> Ray {
         let along = length * (sampler.one(Dimension::EmitPosition) - 0.5);
         let local = match self.emission {
             // A coordinate of a uniform point of the disk has density ∝ sqrt(1 - c²) = sin θ: Lambertian for a thin line.
@@ -66,7 +71,7 @@ impl Source {
         shape: &Shape,
         side: EmitSide,
         reference: Option<&Frame>,
-        sampler: &mut Sampler,
+        sampler: &mut Sampler<impl Numbers>,
     ) -> Ray {
         let point = shape.sample(sampler.pair(Dimension::EmitPosition));
         let normal = match side {
@@ -81,7 +86,13 @@ impl Source {
     }
 
     /// A direction from the law alone, and a line drawn evenly over the disk across it.
-    fn emit_from_afar(&self, center: DVec3, radius: f64, reach: f64, sampler: &mut Sampler) -> Ray {
+    fn emit_from_afar(
+        &self,
+        center: DVec3,
+        radius: f64,
+        reach: f64,
+        sampler: &mut Sampler<impl Numbers>,
+    ) -> Ray {
         let dir = self.emission.sample(EmitterKind::Far, sampler);
         let across = reach * disk(sampler.pair(Dimension::EmitPosition));
         let back = (radius * radius - across.length_squared()).sqrt();
@@ -94,7 +105,7 @@ impl Source {
         scene: &Scene,
         solid: SolidId,
         bounds: &Aabb,
-        sampler: &mut Sampler,
+        sampler: &mut Sampler<impl Numbers>,
     ) -> Ray {
         loop {
             let [u, v] = sampler.pair(Dimension::EmitPosition);
@@ -110,7 +121,7 @@ impl Source {
 }
 
 /// One of the shapes, in proportion to their areas; no draw for a single one.
-fn choose_shape(shapes: &[(Shape, f64)], sampler: &mut Sampler) -> usize {
+fn choose_shape(shapes: &[(Shape, f64)], sampler: &mut Sampler<impl Numbers>) -> usize {
     let last = shapes.len() - 1;
     if last == 0 {
         return 0;

@@ -7,7 +7,7 @@
 //! sensors, and all count by their weights (`mix`).
 
 use crate::plan::{Estimator, RunPlan};
-use crate::rng::{Sampler, stream};
+use crate::rng::{Points, Sampler, stream};
 use crate::scene::{Arrivals, SensorId};
 use crate::transport::backward::counter::GatherPathCounter;
 use crate::transport::backward::paths::{Backward, Weights};
@@ -47,11 +47,18 @@ impl<'s> Backward<'s> {
             Readings::of_batch(self.scene, &self.layout, self.seed, self.paths, batch);
         let mut joints = Sampler::for_path(self.seed, stream::JOINED_SOURCES, batch);
         for (id, arrivals) in &self.sensors {
+            let stream = stream::BACKWARD_POINTS + id.index() as u64;
+            let mut points = Points::of_batch((self.seed, stream, batch), self.paths);
             for index in batch * self.paths..(batch + 1) * self.paths {
                 if pace.spend(1).is_break() {
                     return None;
                 }
-                self.trace_path((*id, arrivals), index, (task, &mut joints), &mut readings);
+                self.trace_path(
+                    (*id, arrivals, &mut points),
+                    index,
+                    (task, &mut joints),
+                    &mut readings,
+                );
             }
         }
         (!pace.is_stopped()).then_some(readings)
@@ -59,12 +66,13 @@ impl<'s> Backward<'s> {
 
     fn trace_path(
         &self,
-        (id, arrivals): (SensorId, &Arrivals<'s>),
+        (id, arrivals, points): (SensorId, &Arrivals<'s>, &mut Points),
         index: u64,
         (task, joints): (Task<'_>, &mut Sampler),
         readings: &mut Readings,
     ) {
-        let mut sampler = Sampler::for_path(self.seed, stream::BACKWARD + id.index() as u64, index);
+        let mut fresh = Sampler::for_path(self.seed, stream::BACKWARD + id.index() as u64, index);
+        let mut sampler = points.lead(&mut fresh);
         let Some(arrival) = arrivals.draw(&mut sampler) else { return };
         let gathering = Gathering {
             scene: self.scene,

@@ -79,9 +79,9 @@ impl<'s> Backward<'s> {
         }
     }
 
-    /// The same with this many paths per batch from each sensor.
+    /// The same with about this many paths per batch from each sensor: a power of two, as points fill it most evenly.
     pub(crate) fn with_paths(self, paths: u64) -> Self {
-        Self { paths: paths.max(1), ..self }
+        Self { paths: 1 << (paths.max(1) as f64).log2().round() as u32, ..self }
     }
 
     /// The same with other weights.

@@ -1,5 +1,6 @@
 //! One batch of photons, with an optional observer.
 
+use crate::rng::{Points, stream};
 use crate::scene::SourceId;
 use crate::transport::forward::Forward;
 use crate::transport::forward::counter::PhotonCounter;
@@ -28,12 +29,14 @@ impl Forward<'_> {
         let mut counter = PhotonCounter::new(self, readings, observer, pace);
         let mut index = batch * batch_paths;
         for ((source, &paths), flux) in self.shares.iter().enumerate().zip(self.photon_fluxes()) {
+            let stream = stream::PHOTON_POINTS + source as u64;
+            let mut points = Points::of_batch((self.seed, stream, batch), paths);
             let source = SourceId::new(source);
             for place in 0..paths {
                 // Shifted by the batch, so that a source with few paths also gets its share of
                 // classes.
                 counter.classed = (place + batch).is_multiple_of(CLASS_EVERY);
-                counter.trace(source, flux, index);
+                counter.trace(source, flux, index, &mut points);
                 index += 1;
                 if pace.is_stopped() {
                     return None;

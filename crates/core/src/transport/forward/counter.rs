@@ -3,7 +3,7 @@
 mod surfaces;
 
 use crate::optics::Side;
-use crate::rng::{Sampler, stream};
+use crate::rng::{Points, Sampler, stream};
 use crate::scene::shape::Toward;
 use crate::scene::{
     CountedLight, FaceId, LightGroupId, MediumId, Owner, RowReach, SensorId, SourceId,
@@ -83,9 +83,10 @@ impl<'r, 's, O: Observer> PhotonCounter<'r, 's, O> {
         self.readings
     }
 
-    pub(super) fn trace(&mut self, source: SourceId, flux: f64, index: u64) {
+    pub(super) fn trace(&mut self, source: SourceId, flux: f64, index: u64, points: &mut Points) {
         let scene = self.run.scene;
-        let mut sampler = Sampler::for_path(self.run.seed, stream::PHOTONS, index);
+        let mut fresh = Sampler::for_path(self.run.seed, stream::PHOTONS, index);
+        let mut sampler = points.lead(&mut fresh);
         let emitted = scene.sources[source.index()].emit(scene, &mut sampler);
         self.flux = flux;
         self.source = source;

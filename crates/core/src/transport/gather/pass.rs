@@ -10,7 +10,7 @@
 //! records. When merged with forward and backward, gather paths continue to the sources, and
 //! everything counts by its weight (`merged`).
 
-use crate::rng::{Sampler, stream};
+use crate::rng::{Numbers, Points, Sampler, stream};
 use crate::scene::{Arrival, SensorId};
 use crate::transport::backward::counter::GatherPathCounter;
 use crate::transport::connect::passage::{PassedRecords, RecordPlaces};
@@ -30,12 +30,12 @@ use crate::transport::walk::follow::{Gathering, follow};
 use crate::transport::{Path, Readings};
 
 /// A gather path that starts from a sensor.
-struct StartedPath<'a> {
+struct StartedPath<'a, N> {
     id: SensorId,
     /// Its number among those of its sensor.
     index: u64,
     arrival: &'a Arrival,
-    sampler: Sampler,
+    sampler: Sampler<N>,
 }
 
 impl<'s> Gather<'s> {
@@ -85,12 +85,15 @@ impl<'s> Gather<'s> {
     ) -> Option<()> {
         let mut joints = Sampler::for_path(self.seed, stream::JOINED_SOURCES, pass.batch);
         for (id, arrivals) in &self.sensors {
+            let stream = stream::GATHER_POINTS + id.index() as u64;
+            let mut points = Points::of_batch((self.seed, stream, pass.batch), pass.gather_paths);
             for index in pass.batch * pass.gather_paths..(pass.batch + 1) * pass.gather_paths {
                 if task.pace.spend(RECORD_WORK).is_break() {
                     return None;
                 }
                 let offset = id.index() as u64;
-                let mut sampler = Sampler::for_path(self.seed, stream::GATHER + offset, index);
+                let mut fresh = Sampler::for_path(self.seed, stream::GATHER + offset, index);
+                let mut sampler = points.lead(&mut fresh);
                 let Some(arrival) = arrivals.draw(&mut sampler) else { continue };
                 let path = StartedPath { id: *id, index, arrival: &arrival, sampler };
                 let shared = met.as_deref_mut().map(|readings| (readings, &mut joints));
@@ -103,7 +106,7 @@ impl<'s> Gather<'s> {
     /// Traces one gather path: alone it counts in all orders, merged in other readings.
     fn gather_path(
         &self,
-        StartedPath { id, index, arrival, mut sampler }: StartedPath<'_>,
+        StartedPath { id, index, arrival, mut sampler }: StartedPath<'_, impl Numbers>,
         (pass, task): (Pass, Task<'_>),
         (orders, shared): (&mut [Readings; ORDERS], Option<(&mut Readings, &mut Sampler)>),
         found: &mut EndedPaths<'s>,

@@ -23,6 +23,9 @@ use std::time::{Duration, Instant};
 const BATCH_SEGMENTS: u64 = 1 << 15;
 /// Most paths in a batch.
 const BATCH_PATHS: u64 = 4096;
+/// Most segments and paths of a batch where the number of paths is known: points fill a larger batch more evenly.
+const LARGE_BATCH_SEGMENTS: u64 = 1 << 20;
+const LARGE_BATCH_PATHS: u64 = 1 << 16;
 /// Photon paths that measure the length of paths before a run.
 const PILOT_PATHS: u64 = 64;
 /// Most bounces of these paths.
@@ -80,12 +83,9 @@ impl<'s> Run<'s> {
         let by_pass = gathered.iter().map(|(settings, _)| settings.photons).max();
         let photons = match (by_pass, work, plan.stop.paths) {
             (Some(photons), ..) => photons,
-            // The requested paths are divided evenly among the batches of whole waves.
-            (None, PhotonWork::Alone, Some(paths)) => paths.div_ceil(
-                plan.stop.batches.unwrap_or(GROUPS * paths.div_ceil(GROUPS * usual).max(1)),
-            ),
+            (None, PhotonWork::Alone, Some(paths)) => alone(plan, paths, usual, segments),
             (None, PhotonWork::Alone, None) => usual,
-            (None, PhotonWork::Shared(share), _) => (share * usual as f64).ceil() as u64,
+            (None, PhotonWork::Shared(share), _) => power_of_two((share * usual as f64) as u64),
         };
         // At least one path of each source.
         let photons = photons.max(scene.sources.len() as u64).max(1);
@@ -191,7 +191,24 @@ pub fn batch_paths(scene: &Scene, plan: &RunPlan) -> u64 {
 }
 
 fn usual_batch(segments_per_path: u64) -> u64 {
-    (BATCH_SEGMENTS / segments_per_path).clamp(1, BATCH_PATHS)
+    power_of_two((BATCH_SEGMENTS / segments_per_path).min(BATCH_PATHS))
+}
+
+/// Photon paths of a batch without other paths: the requested ones are divided evenly among the batches of whole waves.
+fn alone(plan: &RunPlan, paths: u64, usual: u64, segments_per_path: u64) -> u64 {
+    let may_end_early = plan.stop.time.is_some() || plan.stop.target.is_some();
+    let most = if may_end_early || plan.batch_paths.is_some() {
+        usual
+    } else {
+        usual.max((LARGE_BATCH_SEGMENTS / segments_per_path).min(LARGE_BATCH_PATHS))
+    };
+    let waves = paths.div_ceil(GROUPS * most).max(1);
+    paths.div_ceil(plan.stop.batches.unwrap_or(GROUPS * waves))
+}
+
+/// The largest power of two that is not above a number, and 1 for 0.
+fn power_of_two(number: u64) -> u64 {
+    1 << number.max(1).ilog2()
 }
 
 /// Measures the length of photon paths from a few of them; `None` if they were stopped.

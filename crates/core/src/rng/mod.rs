@@ -1,12 +1,15 @@
 //! Random numbers that belong to a path, not to a thread.
 //!
 //! Every path has a stream of its own, made from (seed, stream, index), so a result does not depend
-//! on which thread traced it or in what order. Numbers are requested by purpose ([`Dimension`]), so
-//! a low-discrepancy set can later provide the first of them without a change to the callers.
+//! on which thread traced it or in what order. Numbers are requested by purpose ([`Dimension`]). The first of them, with
+//! which a path starts, come from a low-discrepancy set of its batch (`points`).
 //!
 //! Generator: xoshiro256++ (Blackman & Vigna, ACM Trans. Math. Softw. 47 (2021) 36), seeded by `SplitMix64`.
 //! Instead of fresh numbers a path can be given recorded ones ([`Numbers`]), so that it can be repeated and varied.
 
+mod points;
+
+pub(crate) use points::Points;
 use rand_core::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -31,6 +34,11 @@ pub mod stream {
     pub(crate) const JOINED_SENSORS: u64 = 12 << 32;
     /// Gather paths that tell whether a sensor sees any light.
     pub(crate) const BLIND: u64 = 10 << 32;
+    /// Points that lead photons, by source.
+    pub(crate) const PHOTON_POINTS: u64 = 13 << 32;
+    /// Points that lead gather paths that are followed to sources, and that end in records.
+    pub(crate) const BACKWARD_POINTS: u64 = 14 << 32;
+    pub(crate) const GATHER_POINTS: u64 = 15 << 32;
     /// Gather paths of baselines.
     pub const BASELINE_PATHS: u64 = 5 << 32;
     /// Their choices at interfaces.
@@ -87,8 +95,7 @@ pub struct Fresh(Xoshiro256PlusPlus);
 impl Numbers for Fresh {
     #[inline(always)]
     fn next(&mut self) -> f64 {
-        // 2^-53: the spacing of f64 just below 1.
-        (self.0.next_u64() >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
+        unit(self.0.next_u64())
     }
 }
 
@@ -132,6 +139,13 @@ impl<N: Numbers> Sampler<N> {
     pub fn pair(&mut self, dimension: Dimension) -> [f64; 2] {
         [self.one(dimension), self.one(dimension)]
     }
+}
+
+/// A number in [0, 1) by its binary digits.
+#[inline(always)]
+fn unit(digits: u64) -> f64 {
+    // 2^-53: the spacing of f64 just below 1.
+    (digits >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
 }
 
 /// Increment of the state of `SplitMix64` per number: 2^64 over the golden ratio.

@@ -3,15 +3,14 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
 
+mod jumps;
 mod traced;
 
 use lumiduct_core::measure::{self, Measures};
-use lumiduct_core::plan::{GatherPlan, Request};
+use lumiduct_core::plan::Request;
 use lumiduct_core::rng::Sampler;
 use lumiduct_core::scene::SourceId;
-use lumiduct_core::transport::forward::Forward;
-use lumiduct_core::transport::stop::{Pace, StopSignal};
-use lumiduct_core::transport::{Event, Findings, Observer, Path as LightPath, Run, walk};
+use lumiduct_core::transport::{Event, Path as LightPath, Run, walk};
 use lumiduct_input::{self as input, Job, Settings};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -23,7 +22,7 @@ const PATHS: u64 = 100_000;
 /// longest paths now and then: this is the largest share of them. Noise alone would be some
 /// hundreds of paths.
 const ASTRAY: f64 = 5e-5;
-/// Paths that rounding may divert where a few are compared.
+/// Paths that rounding may send elsewhere, in a comparison of a few thousand.
 const FEW_PATHS: f64 = 2.0;
 /// Most bounces where paths with rows of bounces are compared with the same step by step.
 const BOUNCES: u32 = 300;
@@ -229,95 +228,6 @@ fn the_skew_of_a_ray_survives_a_thousand_bounces() {
         let (drift, bounces) = drift_of_skew(&job);
         assert!(bounces >= 1000, "{scene}: only {bounces} bounces");
         assert!(drift <= 1e-12 * radius, "{scene}: drift {drift:e} mm over {bounces} bounces");
-    }
-}
-
-/// Looks at nothing, and ends no path by roulette.
-struct Onlooker {
-    allows_jumps: bool,
-}
-
-impl Observer for Onlooker {
-    fn roulette_below(&self) -> f64 {
-        0.0
-    }
-
-    fn allows_jumps(&self) -> bool {
-        self.allows_jumps
-    }
-
-    fn see(&mut self, _: &LightPath, _: Event<'_>) -> ControlFlow<()> {
-        ControlFlow::Continue(())
-    }
-}
-
-#[test]
-fn rows_of_bounces_taken_at_once_change_no_light_of_a_shipped_scene() {
-    let mut saved = 0;
-    for path in shipped() {
-        let job = load(&path, &[]);
-        let forward = Forward::new(&job.scene, 1, BOUNCES, 512);
-        let signal = StopSignal::default();
-        let found = |allows_jumps| {
-            let pace = Pace::new(&signal);
-            let batches = (0..4).map(|batch| {
-                forward.batch_observed(batch, &mut Onlooker { allows_jumps }, &pace).unwrap()
-            });
-            let readings = batches.reduce(|sum, next| sum.merge(&next)).unwrap();
-            measure::measure(&job.scene, &Findings::forward(readings))
-        };
-        let (stepped, jumped) = (found(false), found(true));
-        let room = FEW_PATHS / (4.0 * 512.0) * job.scene.source_flux();
-        for (name, measure) in stepped.values.iter().filter(|(_, own)| is_flux(&own.unit)) {
-            let other = &jumped.values[name.as_str()];
-            let off = (measure.value - other.value).abs();
-            assert!(off <= room, "{}: {name} {measure} {other}", path.display());
-        }
-        saved += stepped.segments - jumped.segments;
-    }
-    assert!(saved > 100_000, "{saved} segments");
-}
-
-/// A sensor whose sphere every path along a tube of 400 mm meets, so that no row of bounces is taken at once.
-const WATCH: &str = "
-[sensors.watch]
-goniometer = { c_step_deg = 360, gamma_step_deg = 90, radius_mm = 15 }
-at = { position_mm = [0, 0, 10], axis = [0, 0, 1] }
-";
-
-#[test]
-fn photons_and_gather_paths_that_pass_in_rows_meet_the_same_records() {
-    let gather = GatherPlan {
-        depth: Some(5),
-        radius_mm: Some(1.5),
-        angle_deg: Some(0.2),
-        records: Some(3000),
-        photons: Some(3000),
-        ..GatherPlan::default()
-    };
-    let files = Scenes::new();
-    for scene in ["remote_cell_sun", "remote_cell_rod"] {
-        let path = PathBuf::from("scenes").join(scene).with_extension("toml");
-        let found = |more: &str| {
-            let text = std::fs::read_to_string(&path).unwrap() + more;
-            let copy = files.0.path().join("copy.toml");
-            std::fs::write(&copy, text).unwrap();
-            let settings = Settings {
-                overrides: vec!["sensors.cell.estimator=gather".into()],
-                paths: Some(24_000),
-                estimator: Some(Request::Forward),
-                gather,
-                ..Settings::default()
-            };
-            let job = input::load(&copy, &settings).unwrap();
-            measures(&job)
-        };
-        let (jumped, stepped) = (found(""), found(WATCH));
-        let [own, other] = [&jumped, &stepped].map(|all| &all.values["cell.flux"]);
-        for (own, other) in [(own.value, other.value), (own.std_error, other.std_error)] {
-            assert!(own > 0.0 && (own / other - 1.0).abs() < 1e-6, "{scene}: {own} {other}");
-        }
-        assert!(3 * jumped.segments < 2 * stepped.segments, "{scene}: {}", jumped.segments);
     }
 }
 

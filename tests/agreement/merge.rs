@@ -254,6 +254,7 @@ fn noise_where_gather_is_best() {
 
 #[test]
 fn noise_where_backward_is_best() {
+    // About as many as a batch of backward has: Sobol points gain more in larger sets.
     let gathering =
         Gathering { depth: 2, radius_mm: 0.5, angle_deg: 1.0, records: 4096, photons: 2000 };
     noise_is_that_of(Best::Backward, &tube_with(100, "radius_mm = 2.5", CELL), gathering);

@@ -1,6 +1,8 @@
 //! Every sensor: planes with cells and rings, on faces and in solids, goniometers and luminance, with aims and without.
 
-use crate::trial::{shallow_agree as agree, shallow_agree_beside_dark};
+use crate::trial::{
+    Gathering, shallow_agree as agree, shallow_agree_beside_dark, shallow_agree_gathering,
+};
 
 /// A mirror tube with a tilted pane in it, a block of glass behind, and sensors. The glass absorbs:
 /// no light arrives along directions of endless total reflection, but a gather path that starts
@@ -80,7 +82,10 @@ port = { plane = {}, on = "tube.exit", counts = "incident", side = "both" }
 
 #[test]
 fn goniometers() {
-    agree(
+    // Most gather paths from a sphere miss the guide: with the usual number, the flux is known to 20 %, and errors of dark rings
+    // rest on a few pairs.
+    let many = Gathering { records: 6000, photons: 8000, ..Gathering::to_depth(2) };
+    shallow_agree_gathering(
         "goniometers",
         &scene(
             r#"
@@ -88,6 +93,7 @@ far = { goniometer = { c_step_deg = 180, gamma_step_deg = 30 } }
 near = { goniometer = { c_step_deg = 180, gamma_step_deg = 30, radius_mm = 40 } }
 "#,
         ),
+        many,
     );
     shallow_agree_beside_dark(
         "aimed goniometers",

@@ -1,5 +1,5 @@
 //! Each technique of `mis` alone, over the paths that it can find, against photons or gather paths that count the same
-//! paths: F, FC, B, BC and M of docs/method.md, eq. (30) and (31).
+//! paths: F, FC, B, BC and VM of docs/method.md, eq. (30) and (31).
 
 use crate::finishes::{tube, window};
 use crate::trial::{Gathering, SIGMAS, Way, load};

@@ -294,13 +294,18 @@ pub(crate) fn shallow_agree(what: &str, text: &str) {
     agree(what, text, &SHALLOW);
 }
 
-/// The same with half of the window at depth 0, for cells that are dark beside bright ones: a wider window spills light into
-/// them, as the stated bias says, and no share of a dark value allows for that.
+/// The same with a window of half the size at depth 0, for dark cells beside bright ones. A wider window spills light into
+/// them; the stated bias covers it, but here bias is allowed only as a share of the expected value, which is 0.
 pub(crate) fn shallow_agree_beside_dark(what: &str, text: &str) {
     let narrow =
         Gathering { depth: 0, radius_mm: 0.45, angle_deg: 3.5, records: 3000, photons: 6000 };
+    shallow_agree_gathering(what, text, narrow);
+}
+
+/// The same with other gathering at its depth.
+pub(crate) fn shallow_agree_gathering(what: &str, text: &str, own: Gathering) {
     let ways = SHALLOW.map(|way| match way {
-        Way::Gather(Gathering { depth: 0, .. }) => Way::Gather(narrow),
+        Way::Gather(usual) if usual.depth == own.depth => Way::Gather(own),
         way => way,
     });
     agree(what, text, &ways);

@@ -184,7 +184,7 @@ paths = 20_000
 "#;
     fs::write(place.path("bend.toml"), scene).unwrap();
     let said = place.good("run bend.toml");
-    assert!(said.contains("the efficiency of sensor `exit` is 1.1"), "{said}");
+    assert!(said.contains("the efficiency of sensor `exit` is 1."), "{said}");
     assert!(said.contains("write passage = \"first\" in sensors.exit"), "{said}");
     let said = place.good("run bend.toml --overwrite -D sensors.exit.passage=\"first\"");
     assert!(!said.contains("more than once"), "{said}");

@@ -1,8 +1,8 @@
 //! Random numbers that belong to a path, not to a thread.
 //!
 //! Every path has a stream of its own, made from (seed, stream, index), so a result does not depend
-//! on which thread traced it or in what order. Numbers are requested by purpose ([`Dimension`]). The first of them, with
-//! which a path starts, come from a low-discrepancy set of its batch (`points`).
+//! on which thread traced it or in what order. Numbers are requested by purpose ([`Dimension`]). The first few numbers of a path
+//! come from a low-discrepancy set of its batch (`points`).
 //!
 //! Generator: xoshiro256++ (Blackman & Vigna, ACM Trans. Math. Softw. 47 (2021) 36), seeded by `SplitMix64`.
 //! Instead of fresh numbers a path can be given recorded ones ([`Numbers`]), so that it can be repeated and varied.
@@ -34,10 +34,11 @@ pub mod stream {
     pub(crate) const JOINED_SENSORS: u64 = 12 << 32;
     /// Gather paths that tell whether a sensor sees any light.
     pub(crate) const BLIND: u64 = 10 << 32;
-    /// Points that lead photons, by source.
+    /// Sobol points of photons; the lower bits number sources.
     pub(crate) const PHOTON_POINTS: u64 = 13 << 32;
-    /// Points that lead gather paths that are followed to sources, and that end in records.
+    /// Sobol points of gather paths that are followed to sources.
     pub(crate) const BACKWARD_POINTS: u64 = 14 << 32;
+    /// Sobol points of gather paths that end in records.
     pub(crate) const GATHER_POINTS: u64 = 15 << 32;
     /// Gather paths of baselines.
     pub const BASELINE_PATHS: u64 = 5 << 32;

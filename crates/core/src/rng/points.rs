@@ -3,7 +3,10 @@
 //! The points of a batch fill the cube evenly, so that their mean has less variance than that of independent ones. Each
 //! batch has a scramble and a shift of its own: every point is uniform, and batches are independent.
 
-use crate::rng::{Fresh, Numbers, Sampler, split_mix, unit};
+use crate::rng::{Fresh, Numbers, Sampler, unit};
+use rand_core::Rng;
+use smallvec::SmallVec;
+use std::f64::consts::SQRT_2;
 
 /// Dimensions of a point: the start of a path, and its first choices at interfaces.
 const DIMENSIONS: usize = 8;
@@ -38,19 +41,27 @@ impl Points {
     /// The first `count` points of batch `index` of `stream` under `seed`: Sobol's, with a random linear matrix scramble and
     /// a digital shift (Matoušek, J. Complexity 14 (1998) 527).
     pub(crate) fn of_batch((seed, stream, index): (u64, u64, u64), count: u64) -> Self {
-        let mut random = Words(split_mix(split_mix(split_mix(seed) ^ stream) ^ index));
+        let Fresh(mut random) = Sampler::for_path(seed, stream, index).numbers;
         let needed = (u64::BITS - count.leading_zeros()) as usize;
         let mut columns = vec![[0; DIMENSIONS]; needed];
         for dimension in 0..DIMENSIONS {
-            let scramble = random.lower_triangle();
-            for (column, plain) in columns.iter_mut().zip(directions(dimension)) {
+            let scramble: SmallVec<[u64; 16]> =
+                (0..needed).map(|digit| lower_triangle(digit, random.next_u64())).collect();
+            for (column, plain) in columns.iter_mut().zip(directions(dimension, needed)) {
                 column[dimension] = times(&scramble, plain);
             }
         }
-        Self { columns, next: std::array::from_fn(|_| random.next()), index: 0 }
+        Self { columns, next: std::array::from_fn(|_| random.next_u64()), index: 0 }
     }
 
-    /// The next point, whose coordinates are the first of a path's numbers; `sampler` gives those beyond.
+    /// About as many points as asked, at least one, that fill the cube most evenly: a power of two.
+    pub(crate) fn even_count(about: u64) -> u64 {
+        let about = about.max(1);
+        let below = 1 << about.ilog2();
+        if about as f64 > SQRT_2 * below as f64 { 2 * below } else { below }
+    }
+
+    /// The numbers of a path: the coordinates of the next point, and then those of `sampler`.
     #[inline]
     pub(crate) fn lead<'p>(&mut self, sampler: &'p mut Sampler) -> Sampler<Leading<'p>> {
         let point = self.next;
@@ -81,50 +92,37 @@ impl Numbers for Leading<'_> {
     }
 }
 
-/// The columns of Sobol's generator matrix of a dimension: direction numbers, by their recurrence (Bratley & Fox, ACM Trans.
-/// Math. Softw. 14 (1988) 88, eq. 2).
-fn directions(dimension: usize) -> [u64; DIGITS] {
-    let Some(&(degree, inner, first)) = dimension.checked_sub(1).and_then(|place| SOBOL.get(place))
-    else {
-        // Van der Corput: the digits of the index, mirrored at the point.
-        return std::array::from_fn(|digit| 1 << (DIGITS - 1 - digit));
-    };
-    let mut columns = [0; DIGITS];
-    for digit in 0..DIGITS {
-        columns[digit] = match first.get(digit) {
-            Some(number) => number << (DIGITS - 1 - digit),
-            None => {
-                let before: u64 = columns[digit - degree];
+/// The first columns of Sobol's generator matrix of a dimension: direction numbers, by their recurrence (Bratley & Fox, ACM
+/// Trans. Math. Softw. 14 (1988) 88, eq. 2).
+fn directions(dimension: usize, needed: usize) -> SmallVec<[u64; 16]> {
+    let first = |digit: usize| 1u64 << (DIGITS - 1 - digit);
+    let mut columns: SmallVec<[u64; 16]> = SmallVec::new();
+    for digit in 0..needed {
+        columns.push(match dimension.checked_sub(1).and_then(|place| SOBOL.get(place)) {
+            // Van der Corput: the digits of the index, mirrored at the point.
+            None => first(digit),
+            Some((_, _, numbers)) if digit < numbers.len() => numbers[digit] * first(digit),
+            Some(&(degree, inner, _)) => {
+                let before = columns[digit - degree];
                 let between = (1..degree).filter(|step| inner >> (degree - 1 - step) & 1 == 1);
                 between.fold(before ^ (before >> degree), |sum, step| sum ^ columns[digit - step])
             }
-        };
+        });
     }
     columns
 }
 
-/// The product of a matrix, given by its rows, and a vector over the field of two elements.
-fn times(rows: &[u64; DIGITS], vector: u64) -> u64 {
-    rows.iter().fold(0, |digits, row| digits << 1 | u64::from((row & vector).count_ones() & 1))
+/// The column of a random lower triangular matrix with ones on its diagonal, for a digit.
+fn lower_triangle(digit: usize, random: u64) -> u64 {
+    let diagonal = 1 << (DIGITS - 1 - digit);
+    diagonal | (random & (diagonal - 1))
 }
 
-/// Random words.
-struct Words(u64);
-
-impl Words {
-    fn next(&mut self) -> u64 {
-        self.0 = split_mix(self.0);
-        self.0
-    }
-
-    /// Rows of a random lower triangular matrix with ones on its diagonal.
-    fn lower_triangle(&mut self) -> [u64; DIGITS] {
-        std::array::from_fn(|row| {
-            let diagonal = 1u64 << (DIGITS - 1 - row);
-            let before = !(diagonal | (diagonal - 1));
-            (self.next() & before) | diagonal
-        })
-    }
+/// The product of a matrix, given by its first columns, and a vector of no further digits, over the field of two elements.
+fn times(columns: &[u64], vector: u64) -> u64 {
+    let digits = columns.iter().enumerate();
+    let set = digits.filter(|(digit, _)| vector >> (DIGITS - 1 - digit) & 1 == 1);
+    set.fold(0, |sum, (_, column)| sum ^ column)
 }
 
 #[cfg(test)]
@@ -159,7 +157,7 @@ mod tests {
         let mut digits = [0; 3];
         for (index, expected) in (1u32..).zip(published) {
             for (dimension, own) in digits.iter_mut().enumerate() {
-                *own ^= directions(dimension)[index.trailing_zeros() as usize];
+                *own ^= directions(dimension, 3)[index.trailing_zeros() as usize];
             }
             assert_eq!(digits.map(unit), expected, "{index}");
         }
@@ -207,6 +205,14 @@ mod tests {
             let both = mean(&|point| (point[dimension] - 0.5) * (point[with] - 0.5));
             assert!(both.abs() < 4.0 / 12.0 / (BATCHES as f64).sqrt(), "{dimension}: {both}");
         }
+    }
+
+    #[test]
+    fn an_even_count_is_the_nearest_power_of_two() {
+        assert_eq!(
+            [0, 1, 2, 3, 5, 6, 90, 91, 4096].map(Points::even_count),
+            [1, 1, 2, 4, 4, 8, 64, 128, 4096]
+        );
     }
 
     #[test]

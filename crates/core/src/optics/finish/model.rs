@@ -106,7 +106,7 @@ pub trait FinishModel {
         }
     }
 
-    /// Whether all light that arrives so and is not absorbed is mirrored, always with the same share.
+    /// Whether light that arrives in this way is either absorbed or mirrored, always in the same proportion.
     fn only_mirrors(&self, _incidence: &Incidence) -> bool {
         false
     }

@@ -2,7 +2,7 @@
 
 use crate::scene::plain_leg::LegSection;
 use crate::scene::shape::Region;
-use crate::scene::{Patch, PlainLeg, PrimId, Scene};
+use crate::scene::{FaceId, Patch, PlainLeg, PrimId, Scene};
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::Frame;
 use smallvec::SmallVec;
@@ -14,6 +14,7 @@ const SAME: f64 = 1e-12;
 #[derive(Debug, Clone, Copy)]
 struct FlatWall {
     prim: PrimId,
+    face: FaceId,
     middle: DVec3,
     normal: DVec3,
     /// Half of its sides as vectors, mm.
@@ -25,12 +26,27 @@ impl FlatWall {
         let flat = patch.shape.as_flat()?;
         let Region::Rectangle { half_x, half_y } = flat.region() else { return None };
         let Frame { origin, x, y, z } = *flat.frame();
-        Some(Self { prim, middle: origin, normal: z, sides: [*half_x * x, *half_y * y] })
+        Some(Self {
+            prim,
+            face: patch.face,
+            middle: origin,
+            normal: z,
+            sides: [*half_x * x, *half_y * y],
+        })
     }
 
     /// Half of its extent along a unit vector, mm.
     fn extent(&self, along: DVec3) -> f64 {
         self.sides.iter().map(|side| side.dot(along).abs()).sum()
+    }
+
+    /// Whether it may be a side wall of a duct about a middle, of which half of the vector from wall to opposite wall is given.
+    fn is_side_of(&self, middle: DVec3, half: DVec3) -> bool {
+        let (offset, across) = (middle - self.middle, half.normalize());
+        let size = offset.length() + half.length();
+        self.normal.dot(across).abs() < SAME
+            && (self.extent(across) - half.length()).abs() < SAME * size
+            && (offset - offset.dot(self.normal) * self.normal).length() < SAME * size
     }
 
     /// Half of the vector to a parallel wall of the same size that faces it.
@@ -62,7 +78,7 @@ pub(super) fn within(scene: &Scene, prim: PrimId) -> Option<PlainLeg> {
     let mut best: Option<PlainLeg> = None;
     for (opposite, half_x) in pairs(&wall) {
         let middle = wall.middle + half_x;
-        for low in walls.iter().filter(|other| other.normal.dot(wall.normal).abs() < SAME) {
+        for low in walls.iter().filter(|other| other.is_side_of(middle, half_x)) {
             for (high, half_y) in pairs(low) {
                 let leg = duct([wall, opposite, *low, high], middle, [half_x, half_y]);
                 let length = |leg: &PlainLeg| leg.spans[0][1] - leg.spans[0][0];
@@ -90,10 +106,12 @@ fn duct(walls: [FlatWall; 4], middle: DVec3, [half_x, half_y]: [DVec3; 2]) -> Op
         && same(low.extent(x), half.x)
         && same(low.extent(frame.z), length)
         && same(high.extent(frame.z), length);
+    let is_one_face = walls.iter().all(|other| other.face == wall.face);
     let prims = walls.map(|wall| wall.prim);
     fits.then(|| PlainLeg {
         frame,
         section: LegSection::Rectangle { half, walls: prims },
+        is_one_face,
         spans: SmallVec::from_elem([-length, length], 1),
     })
 }

@@ -24,6 +24,7 @@ impl PlainLeg {
             Shape::Cylinder(wall) if wall.is_uncut() => Self {
                 frame: *wall.frame(),
                 section: LegSection::Round { radius: wall.radius(), wall: prim },
+                is_one_face: true,
                 spans: SmallVec::from_elem(wall.heights(), 1),
             },
             Shape::Flat(_) => duct::within(scene, prim)?,

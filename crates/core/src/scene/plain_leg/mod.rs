@@ -1,7 +1,7 @@
-//! Plain legs: parts of straight round or rectangular walls between which a path meets nothing but the wall, so that a
-//! row of mirror bounces there is known in closed form.
+//! Plain legs: parts of a straight round or rectangular wall within which a path meets nothing but that wall, so that a
+//! row of mirror bounces has a closed form.
 //!
-//! This module knows where a row ends; not what the wall does to light, nor how legs are found.
+//! This module computes where such a row ends. It does not know what the wall does to light, nor how legs are found.
 
 mod reach;
 mod row;
@@ -21,6 +21,8 @@ pub(crate) struct PlainLeg {
     /// z is the axis.
     pub(super) frame: Frame,
     pub(super) section: LegSection,
+    /// Whether its walls belong to one face.
+    pub(super) is_one_face: bool,
     /// Where along the axis nothing else is, mm.
     pub(super) spans: SmallVec<[[f64; 2]; 1]>,
 }
@@ -47,7 +49,8 @@ impl PlainLeg {
         let dir = self.frame.to_local(ray.dir());
         let &[low, high] = self.spans.iter().find(|[low, high]| at.z >= *low && at.z <= *high)?;
         let left = if dir.z < 0.0 { at.z - low } else { high - at.z };
-        Some(RowReach { wall, path: PathInLeg { at, dir }, left, most })
+        let is_one_face = self.is_one_face;
+        Some(RowReach { wall, is_one_face, path: PathInLeg { at, dir }, left, most })
     }
 
     /// The row of bounces within a reach.

@@ -13,11 +13,13 @@ pub(super) struct PathInLeg {
     pub(super) dir: DVec3,
 }
 
-/// The reach of a row of mirror bounces: to the end of the plain part of a leg, unless something is to be seen before.
+/// The reach of a row of mirror bounces: to the end of the plain part of its leg, or less if an observer shortens it.
 #[derive(Debug, Clone, Copy)]
 pub struct RowReach {
     /// The wall of the last bounce.
     pub(crate) wall: PrimId,
+    /// Whether all walls of the leg belong to one face.
+    pub(crate) is_one_face: bool,
     pub(super) path: PathInLeg,
     /// Distance along the axis, mm.
     pub(super) left: f64,
@@ -31,8 +33,8 @@ impl RowReach {
         self.path.dir.z
     }
 
-    /// Lets the row end before it enters a part of the leg, from low to high along the axis, mm. From within it there is no
-    /// row.
+    /// Ends the row before it enters a part of the leg, from low to high along the axis, mm. A row that starts within that part
+    /// has no length.
     pub(crate) fn end_before(&mut self, [low, high]: [f64; 2]) {
         let at = self.path.at.z;
         let [ahead, beyond] =
@@ -42,7 +44,7 @@ impl RowReach {
         }
     }
 
-    /// Lets the row end after this many bounces.
+    /// Ends the row after this many bounces.
     pub(crate) fn end_after(&mut self, bounces: u32) {
         self.most = self.most.min(bounces);
     }
@@ -59,7 +61,7 @@ mod tests {
 
     fn reach(at: f64, axial: f64) -> RowReach {
         let path = PathInLeg { at: DVec3::new(1.0, 0.0, at), dir: DVec3::new(-0.8, 0.0, axial) };
-        RowReach { wall: PrimId::new(0), path, left: 100.0, most: 50 }
+        RowReach { wall: PrimId::new(0), is_one_face: true, path, left: 100.0, most: 50 }
     }
 
     #[test]

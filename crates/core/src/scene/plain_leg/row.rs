@@ -5,7 +5,8 @@ use crate::scene::plain_leg::reach::{LEAST, PathInLeg, RowReach};
 use glam::DVec2;
 use smallvec::{SmallVec, smallvec};
 
-/// Distance from an edge, relative to the section, below which the last bounces on its two sides count as at once, 1.
+/// Distance between the last bounces on two adjacent walls, relative to the section, below which the path is taken to end at
+/// their edge, where there is no row, 1.
 const AT_EDGE: f64 = 1e-9;
 
 /// The cross-section of a wall about the origin, and its pieces.
@@ -40,12 +41,12 @@ impl LegSection {
     }
 }
 
-/// Across the axis all chords of a mirrored path in a circle are equal, so a bounce turns place and direction by the same
-/// angle δ and moves the place along the axis by the same length. With the place p, |p| = r, and the direction d across
-/// the axis, the chord is t = -2 p·d/d², and δ is the angle between p and p + t d: sin δ = t (p×d)/r², cos δ = 1 + t
-/// (p·d)/r². After n bounces both are turned by n δ.
+/// Across the axis all chords of a mirrored path in a circle are equal. Every bounce rotates position and direction about the
+/// axis by the same angle δ and moves the position along it by the same length. With the position p, |p| = r, and the
+/// direction d across the axis, the chord is t = -2 p·d/d², and δ is the angle between p and p + t d: sin δ = t (p×d)/r²,
+/// cos δ = 1 + t (p·d)/r². After n bounces both are rotated by n δ.
 fn round(reach: &RowReach) -> Option<RowInLeg> {
-    let &RowReach { wall, path: PathInLeg { at, dir }, left, most } = reach;
+    let &RowReach { wall, is_one_face: _, path: PathInLeg { at, dir }, left, most } = reach;
     let (place, across) = (at.truncate(), dir.truncate());
     let inward = place.dot(across);
     let chord = -2.0 * inward / across.length_squared();
@@ -68,10 +69,10 @@ fn round(reach: &RowReach) -> Option<RowInLeg> {
     })
 }
 
-/// Between two parallel walls a path goes to and fro, whatever it does along the other two directions: the walls of
-/// either pair are met at equal distances along the path, in turn. Unfolded, the path is straight.
+/// Between two parallel walls a path is mirrored to and fro, independently of its motion in the other two directions: it
+/// meets the two walls alternately, at equal distances along the path. Unfolded, the path is straight.
 fn rectangle((half, walls): (DVec2, &[PrimId; 4]), reach: &RowReach) -> Option<RowInLeg> {
-    let &RowReach { wall, path, left, most } = reach;
+    let &RowReach { wall, is_one_face: _, path, left, most } = reach;
     let PathInLeg { at, dir } = path;
     let start = walls.iter().position(|own| *own == wall)?;
     // It has left the wall inward.
@@ -79,11 +80,11 @@ fn rectangle((half, walls): (DVec2, &[PrimId; 4]), reach: &RowReach) -> Option<R
     if (dir[axis] < 0.0) != (is_high == 1) || dir[axis] == 0.0 {
         return None;
     }
-    let pairs = [0, 1].map(|axis| Fro::new(at[axis], dir[axis], half[axis]));
+    let pairs = [0, 1].map(|axis| ParallelWalls::new(at[axis], dir[axis], half[axis]));
     let rate = pairs.iter().map(|pair| 1.0 / pair.period).sum::<f64>();
     // Each pair may be met once more than its rate says.
-    let reach = (left / dir.z.abs()).min((f64::from(most) - 2.0).max(0.0) / rate);
-    let met = pairs.map(|pair| pair.met(reach));
+    let distance = (left / dir.z.abs()).min((f64::from(most) - 2.0).max(0.0) / rate);
+    let met = pairs.map(|pair| pair.met(distance));
     let last = met.map(|met| met.at);
     let ends = usize::from(last[1] > last[0]);
     let count = met.iter().map(|met| met.count).sum::<u32>();
@@ -111,9 +112,9 @@ fn rectangle((half, walls): (DVec2, &[PrimId; 4]), reach: &RowReach) -> Option<R
     Some(RowInLeg { bounces, last: walls[2 * ends + usize::from(!is_low)], length, end })
 }
 
-/// Motion between two parallel walls.
+/// Motion to and fro between two parallel walls.
 #[derive(Debug, Clone, Copy)]
-struct Fro {
+struct ParallelWalls {
     at: f64,
     dir: f64,
     half: f64,
@@ -124,13 +125,13 @@ struct Fro {
 
 /// The bounces on a pair of walls.
 #[derive(Debug, Clone, Copy)]
-struct MetWalls {
+struct WallBounces {
     count: u32,
     /// Distance along the path of the last, mm; 0 without any.
     at: f64,
 }
 
-impl Fro {
+impl ParallelWalls {
     fn new(at: f64, dir: f64, half: f64) -> Self {
         let first = (half.copysign(dir) - at) / dir;
         Self {
@@ -143,16 +144,16 @@ impl Fro {
     }
 
     /// The bounces up to a distance along the path.
-    fn met(&self, reach: f64) -> MetWalls {
-        if reach < self.first {
-            return MetWalls { count: 0, at: 0.0 };
+    fn met(&self, distance: f64) -> WallBounces {
+        if distance < self.first {
+            return WallBounces { count: 0, at: 0.0 };
         }
-        let after_first = ((reach - self.first) / self.period).floor();
-        MetWalls { count: after_first as u32 + 1, at: self.first + after_first * self.period }
+        let after_first = ((distance - self.first) / self.period).floor();
+        WallBounces { count: after_first as u32 + 1, at: self.first + after_first * self.period }
     }
 
     /// Position and direction at a distance along the path, after these bounces.
-    fn after(&self, met: &MetWalls, length: f64) -> (f64, f64) {
+    fn after(&self, met: &WallBounces, length: f64) -> (f64, f64) {
         if met.count == 0 {
             return (self.at + length * self.dir, self.dir);
         }

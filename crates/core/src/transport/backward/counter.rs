@@ -149,14 +149,8 @@ impl GatherPathCounter<'_, '_> {
         let first = first.map(against);
         let at = (ray.origin(), *normal);
         let meets = self.backward.emitters.meets(place.source);
-        Etendues {
-            photon,
-            photon_joined: photon * self.backward.joined_sensors.joined_ratio(first, self.id, at),
-            gather,
-            gather_met: if meets { gather } else { f64::INFINITY },
-            gather_joined: gather * joined,
-            windows,
-        }
+        let to_sensor = self.backward.joined_sensors.joined_ratio(first, self.id, at);
+        Etendues::new([photon, gather], meets, [to_sensor, joined], windows)
     }
 
     fn depart(&mut self, path: &Path, vertex: &Vertex<'_>, departure: &Departure) {

@@ -47,8 +47,8 @@ impl<'s> Backward<'s> {
             Readings::of_batch(self.scene, &self.layout, self.seed, self.paths, batch);
         let mut joints = Sampler::for_path(self.seed, stream::JOINED_SOURCES, batch);
         for (id, arrivals) in &self.sensors {
-            let stream = stream::BACKWARD_POINTS + id.index() as u64;
-            let mut points = Points::of_batch((self.seed, stream, batch), self.paths);
+            let of_sensor = stream::BACKWARD_POINTS + id.index() as u64;
+            let mut points = Points::of_batch((self.seed, of_sensor, batch), self.paths);
             for index in batch * self.paths..(batch + 1) * self.paths {
                 if pace.spend(1).is_break() {
                     return None;
@@ -135,18 +135,27 @@ pub(crate) fn trial(trials: &Trials<'_>) -> Option<Vec<Tried>> {
     Some(trials.judged(&batches, work_of_one(&backward, &batches), Estimator::Backward))
 }
 
-/// The estimate of a sensor: unbiased, unless its gather paths almost never meet a source.
+/// The estimate of a sensor. It is unbiased, but its standard error knows only light that gather paths have met. Where they have
+/// hardly met a source, photons of that source, even a single one, contradict it if they carry more flux than the error
+/// allows.
 pub(crate) fn estimate<'a>(
     own: &'a Readings,
     photons: &Readings,
     layout: &Layout,
     id: SensorId,
 ) -> Estimate<'a> {
-    let is_contradicted = layout.flux_slots(id).iter().any(|&slot| {
+    let slots = layout.flux_slots(id);
+    let is_contradicted = slots.iter().any(|&slot| {
         let [by_photons, by_paths] = [photons, own].map(|one| one.scalar(slot));
-        let error = by_photons.std_error().hypot(by_paths.std_error());
+        let error = if own.lit_groups(&[slot]) < MIN_LIT_GROUPS {
+            own.sum(&slots).std_error()
+        } else if photons.lit_groups(&[slot]) >= MIN_LIT_GROUPS {
+            by_photons.std_error().hypot(by_paths.std_error())
+        } else {
+            return false;
+        };
         let room = CONTRADICTED * error + ROUNDING * by_paths.mean().abs();
-        photons.lit_groups(&[slot]) >= MIN_LIT_GROUPS && by_photons.mean() - by_paths.mean() > room
+        by_photons.mean() - by_paths.mean() > room
     });
     Estimate { estimator: Estimator::Backward, readings: own, bias: None, is_contradicted }
 }

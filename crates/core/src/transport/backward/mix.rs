@@ -32,7 +32,7 @@ use rayon::prelude::*;
 use smallvec::SmallVec;
 use std::ops::ControlFlow;
 
-/// Cost of a run over what a pilot shows, 1: it does not count the work of joins, and misses the rarest strong ones
+/// Cost of a run over that seen by a pilot, 1: a pilot does not count the work of joins, and misses rare strong ones
 /// (benches/choice.rs).
 const UNSEEN: f64 = 1.5;
 
@@ -225,7 +225,7 @@ impl Mixing<'_, '_> {
 
     fn detect(&mut self, path: &Path, light: &Detection<'_>) {
         let Backward { scene, sensors, joined_sensors, .. } = self.backward;
-        let known = arrivals_of(light, sensors);
+        let known = arrivals_of(light.sensor, sensors);
         let (Some(arrivals), false) = (known, light.cells.is_empty()) else { return };
         let weight = if self.photon > 0.0 {
             let windows = self.recent.as_ref().map_or(0.0, |recent| recent.sum(None));
@@ -276,8 +276,7 @@ impl Mixing<'_, '_> {
         if !comes_through_aim(scene, place.sensor, (&end.on, &end.ray), end.length) {
             return;
         }
-        let known = sensors.iter().find(|(id, _)| *id == place.sensor);
-        let Some((_, arrivals)) = known else { return };
+        let Some(arrivals) = arrivals_of(place.sensor, sensors) else { return };
         let back = Ray::new(place.point, -place.dir);
         let gather = end.index * end.index * arrivals.extent(&back, place.normal);
         let joined = light.density / light.albedo * place.solid_angle;
@@ -301,17 +300,10 @@ impl Mixing<'_, '_> {
         joined: f64,
         (first, windows): (Option<TurnAt<'_>>, f64),
     ) -> Etendues {
-        let Backward { emitters, .. } = self.backward;
         let gather = gather / self.paths;
-        let from_source = self.backward.joined_to_source(sensor, first, &self.start);
-        Etendues {
-            photon: self.photon,
-            photon_joined: self.photon * joined,
-            gather,
-            gather_met: if emitters.meets(self.start.source) { gather } else { f64::INFINITY },
-            gather_joined: gather * from_source,
-            windows,
-        }
+        let meets = self.backward.emitters.meets(self.start.source);
+        let to_source = self.backward.joined_to_source(sensor, first, &self.start);
+        Etendues::new([self.photon, gather], meets, [joined, to_source], windows)
     }
 
     fn depart(&mut self, path: &Path, vertex: &Vertex<'_>, departure: &Departure) {

@@ -2,6 +2,7 @@
 //!
 //! This module traces nothing.
 
+use crate::rng::Points;
 use crate::scene::{Arrivals, Scene, SensorId};
 use crate::transport::Layout;
 use crate::transport::connect::passage::RecordPlaces;
@@ -23,6 +24,7 @@ pub(crate) struct Backward<'s> {
     /// What vertices of gather paths, and of photons, are joined to.
     pub(crate) joined_sources: SourceTargets<'s>,
     pub(crate) joined_sensors: SensorTargets<'s>,
+    /// In ascending order.
     pub(crate) sensors: Vec<(SensorId, Arrivals<'s>)>,
     pub(crate) seed: u64,
     pub(crate) bounce_limit: u32,
@@ -64,13 +66,16 @@ impl<'s> Backward<'s> {
         seed: u64,
         bounce_limit: u32,
     ) -> Self {
+        let mut sensors: Vec<_> =
+            sensors.iter().map(|&id| (id, Arrivals::new(scene, id))).collect();
+        sensors.sort_by_key(|(id, _)| *id);
         Self {
             scene,
             layout: Layout::new(scene),
             emitters: Emitters::new(scene),
             joined_sources: SourceTargets::new(scene),
-            joined_sensors: SensorTargets::new(scene, sensors.iter().copied()),
-            sensors: sensors.iter().map(|&id| (id, Arrivals::new(scene, id))).collect(),
+            joined_sensors: SensorTargets::new(scene, sensors.iter().map(|(id, _)| *id)),
+            sensors,
             seed,
             bounce_limit,
             paths: PILOT_PATHS,
@@ -79,9 +84,9 @@ impl<'s> Backward<'s> {
         }
     }
 
-    /// The same with about this many paths per batch from each sensor: a power of two, as points fill it most evenly.
+    /// The same with about this many paths per batch from each sensor.
     pub(crate) fn with_paths(self, paths: u64) -> Self {
-        Self { paths: 1 << (paths.max(1) as f64).log2().round() as u32, ..self }
+        Self { paths: Points::even_count(paths), ..self }
     }
 
     /// The same with other weights.

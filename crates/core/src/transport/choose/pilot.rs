@@ -32,7 +32,7 @@ const WORTH_ANOTHER: f64 = 3.0;
 const KNOWN: f64 = 0.32;
 /// Standard errors beyond which a difference is significant.
 const SIGMAS: f64 = 3.0;
-/// The same where any of several estimators may find more light, of any source: there are many differences.
+/// The same where an estimator is compared with every other, source by source: among many differences some are large by chance.
 const SIGMAS_OF_MANY: f64 = 4.0;
 /// Possible relative rounding of a flux, 1.
 const ROUNDING: f64 = 1e-9;

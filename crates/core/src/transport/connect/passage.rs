@@ -251,7 +251,7 @@ mod tests {
         let passage =
             PassedVertex::of_lobe(at(met_from_glass(&WHITE, light[0])), light, Lobe::Diffuse);
         let window = passage.window(WINDOW);
-        // Transmitted, D/ϱ = 0.2/0.8 |cos θ|/π, into air: π r² π n² / 0.25.
+        // Transmitted, S/ϱ = 0.2/0.8 |cos θ|/π, into air: π r² π n² / 0.25.
         let expected = WINDOW.area() * PI / 0.25;
         assert!((window.at(0, 2) / expected - 1.0).abs() < 1e-12, "{window:?}, {expected}");
         assert_eq!([window.at(2, 2), window.at(3, 2)], [window.at(0, 2), 0.0]);

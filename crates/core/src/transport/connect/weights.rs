@@ -15,7 +15,7 @@ pub enum Technique {
     GatherPath,
     /// A gather path that is joined to a source, BC.
     JoinedGatherPath,
-    /// A photon and a record, M.
+    /// A photon and a record, VM.
     Pair,
 }
 
@@ -67,6 +67,24 @@ impl Etendues {
         gather_joined: f64::INFINITY,
         windows: 0.0,
     };
+
+    /// From those of a photon and of a gather path, and what joining them to the sensor and to the source multiplies these by;
+    /// `meets_source` if gather paths can meet the source.
+    pub(crate) fn new(
+        [photon, gather]: [f64; 2],
+        meets_source: bool,
+        [to_sensor, to_source]: [f64; 2],
+        windows: f64,
+    ) -> Self {
+        Self {
+            photon,
+            photon_joined: photon * to_sensor,
+            gather,
+            gather_met: if meets_source { gather } else { f64::INFINITY },
+            gather_joined: gather * to_source,
+            windows,
+        }
+    }
 
     /// The share that a technique counts of a path that it has found, 1.
     pub(crate) fn share(&self, technique: Technique, sharing: Sharing) -> f64 {

@@ -29,13 +29,14 @@ impl Forward<'_> {
         let mut counter = PhotonCounter::new(self, readings, observer, pace);
         let mut index = batch * batch_paths;
         for ((source, &paths), flux) in self.shares.iter().enumerate().zip(self.photon_fluxes()) {
-            let stream = stream::PHOTON_POINTS + source as u64;
-            let mut points = Points::of_batch((self.seed, stream, batch), paths);
+            let of_source = stream::PHOTON_POINTS + source as u64;
+            let mut points = Points::of_batch((self.seed, of_source, batch), paths);
             let source = SourceId::new(source);
             for place in 0..paths {
-                // Shifted by the batch, so that a source with few paths also gets its share of
-                // classes.
-                counter.classed = (place + batch).is_multiple_of(CLASS_EVERY);
+                // A part of the batch without gaps: every eighth Sobol point would leave out most of the first coordinate.
+                // Another part in every batch, so that a source with few paths also gets its share of classes.
+                let part = CLASS_EVERY * place / paths;
+                counter.classed = (part + batch).is_multiple_of(CLASS_EVERY);
                 counter.trace(source, flux, index, &mut points);
                 index += 1;
                 if pace.is_stopped() {

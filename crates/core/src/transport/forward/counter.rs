@@ -200,7 +200,7 @@ impl<'r, 's, O: Observer> PhotonCounter<'r, 's, O> {
     /// Adds a step to the trail of a path; repeats of a step count once, and a full trail is marked
     /// as cut off.
     fn step(&mut self, step: ClassStep) {
-        if self.trail.last() == Some(&Some(step)) || self.trail.last() == Some(&None) {
+        if self.trail.last() == Some(&Some(step)) || self.is_trail_full() {
             return;
         }
         let full = self.trail.len() == self.trail.inline_size();
@@ -208,6 +208,11 @@ impl<'r, 's, O: Observer> PhotonCounter<'r, 's, O> {
             self.trail.pop();
         }
         self.trail.push((!full).then_some(step));
+    }
+
+    /// Whether the trail is cut off.
+    fn is_trail_full(&self) -> bool {
+        self.trail.last() == Some(&None)
     }
 
     #[inline(always)]
@@ -230,6 +235,10 @@ impl<O: Observer> Observer for PhotonCounter<'_, '_, O> {
     #[inline(always)]
     fn limit_row(&self, path: &Path, reach: &mut RowReach) {
         self.observer.limit_row(path, reach);
+        // The faces are steps of the path's class.
+        if self.classed && !reach.is_one_face && !self.is_trail_full() {
+            reach.end_after(0);
+        }
     }
 
     #[inline(always)]

@@ -11,6 +11,7 @@ use crate::scene::{
 use crate::tally::sigmas;
 use crate::transport::forward::Forward;
 use crate::transport::stop::{Pace, StopSignal};
+use crate::transport::tally::readings::Trail;
 use crate::transport::{Event, Observer, Path, Readings, Run};
 use glam::DVec3;
 use lumiduct_base::math::{Aabb, Frame};
@@ -113,6 +114,25 @@ fn a_mirror_tube_passes_what_the_closed_form_says_and_the_balance_closes() {
             readings.function(|sums| lines.clone().map(sums).sum::<f64>() - sums(first)).mean();
         assert!(lost.abs() < 1e-9, "balance is open by {lost}");
         assert_eq!(readings.scalar(layout.leaked()).mean(), 0.0);
+    }
+}
+
+#[test]
+fn path_classes_are_a_fair_sample() {
+    // Light that meets no wall: the form factor of equal coaxial disks, their radius half of their distance
+    // (Howell, A Catalog of Radiation Heat Transfer Configuration Factors, C-41).
+    let x = 2.0 + 1.0 / 0.25;
+    let direct = 0.5 * (x - (x * x - 4.0_f64).sqrt());
+    let scene = mirror_tube(0.95, 10.0);
+    let layout = crate::transport::Layout::new(&scene);
+    let forward = Forward::new(&scene, 1, 1000, 1 << 15);
+    for batch in 0..4 {
+        let readings = forward.batch(batch, &StopSignal::default()).unwrap();
+        let flux = readings.scalar(layout.sensor_flux(SensorId::new(0), SourceId::new(0))).mean();
+        let classes = &readings.sensors[0].classes;
+        let all: f64 = classes.values().map(|class| class.flux).sum();
+        let share = classes[&Trail::new()].flux / all;
+        assert!((share / (direct / flux) - 1.0).abs() < 0.02, "{share}, not {}", direct / flux);
     }
 }
 

@@ -1,4 +1,4 @@
-//! Counts of a block of passes, whose photons meet the records of all of them: B² times the pairs of a pass, for B times
+//! Counts of a block of W passes, whose photons meet the records of all of them: W² times the pairs of a pass, for W times
 //! its photons and records.
 //!
 //! A pass counts what its records take from all photons of the block. Their mean over the block is the value, but their
@@ -18,8 +18,8 @@ pub(super) struct CrossedCounts {
     passes: Vec<[Readings; ORDERS]>,
     /// By pass: the light that records of all passes take from its photons. Empty for one pass alone.
     by_photons: Vec<[Readings; ORDERS]>,
-    /// Flux of fourth order by sensor, pass of the record and pass of the photon, lm or W.
-    pairs: Vec<Vec<f64>>,
+    /// Flux of each order by sensor, pass of the record and pass of the photon, lm or W.
+    pairs: Vec<Vec<[f64; ORDERS]>>,
 }
 
 impl CrossedCounts {
@@ -32,7 +32,7 @@ impl CrossedCounts {
         Self {
             passes: all(passes),
             by_photons: all(crossed),
-            pairs: vec![vec![0.0; crossed * crossed]; sensors],
+            pairs: vec![vec![[0.0; ORDERS]; crossed * crossed]; sensors],
         }
     }
 
@@ -58,10 +58,9 @@ impl CrossedCounts {
                 readings.count((layout, groups), id, cells, light);
             }
         }
-        if let [_, fourth, _] = light
-            && !self.by_photons.is_empty()
-        {
-            self.pairs[id.index()][of_record * self.passes.len() + of_photon] += fourth.flux;
+        if !self.by_photons.is_empty() {
+            let pair = &mut self.pairs[id.index()][of_record * self.passes.len() + of_photon];
+            pair.iter_mut().zip(&light).for_each(|(sum, light)| *sum += light.flux);
         }
     }
 
@@ -73,40 +72,40 @@ impl CrossedCounts {
         self.passes[pass][0].segments += other.segments;
     }
 
-    /// The counts of a single pass, not closed.
-    ///
-    /// # Panics
-    ///
-    /// If there are several.
-    pub(super) fn into_pass(self) -> [Readings; ORDERS] {
-        let passes: [[Readings; ORDERS]; 1] = self.passes.try_into().expect("one pass alone");
-        let [pass] = passes;
-        pass
-    }
-
     /// The counts of all passes.
     pub(super) fn into_counts(self) -> Counts {
+        merged(self.into_passes().into_iter().map(Counts::closed))
+    }
+
+    /// The counts of each pass, not closed.
+    pub(super) fn into_passes(self) -> Vec<[Readings; ORDERS]> {
         let count = self.passes.len();
-        let share = self.pairs.iter().map(|pairs| photon_share(pairs, count)).fold(0.0, f64::max);
+        let share_of = |order: usize| {
+            let of_sensor = |pairs: &Vec<[f64; ORDERS]>| {
+                let pairs: Vec<f64> = pairs.iter().map(|pair| pair[order]).collect();
+                photon_share(&pairs, count)
+            };
+            self.pairs.iter().map(of_sensor).fold(0.0, f64::max)
+        };
+        let shares: [f64; ORDERS] = std::array::from_fn(share_of);
         let sum = |one: [Readings; ORDERS], other: &[Readings; ORDERS]| {
             std::array::from_fn(|order| one[order].combined([1.0, 1.0], &other[order]))
         };
         let mut photons = self.by_photons.iter();
-        let all = (share > 0.0).then(|| photons.next().cloned()).flatten();
+        let all = photons.next().cloned();
         let all: Option<[Readings; ORDERS]> = all.map(|first| photons.fold(first, sum));
-        let closed = self.passes.into_iter().enumerate().map(|(pass, orders)| {
-            let Some(all) = &all else { return Counts::closed(orders) };
-            let own = &self.by_photons[pass];
-            Counts::closed((0..ORDERS).map(|order| {
-                let with = orders[order].combined([1.0, share], &own[order]);
-                with.combined([1.0, -share / count as f64], &all[order])
-            }))
-        });
-        merged(closed)
+        let Some(all) = all else { return self.passes };
+        let with_photons = |(orders, own): ([Readings; ORDERS], &[Readings; ORDERS])| {
+            std::array::from_fn(|order| {
+                let with = orders[order].combined([1.0, shares[order]], &own[order]);
+                with.combined([1.0, -shares[order] / count as f64], &all[order])
+            })
+        };
+        self.passes.into_iter().zip(&self.by_photons).map(with_photons).collect()
     }
 }
 
-/// The share ω of the light of photons that belongs into the spread of passes, 1: ω² is the part of its variance over
+/// The share η of the light of photons that belongs into the spread of passes, 1: η² is the part of its variance over
 /// passes of photons that pairs do not explain, by the mean squares of a two-way layout (Scheffé, The Analysis of Variance,
 /// 1959, ch. 7). `pairs` by pass of the record and of the photon.
 fn photon_share(pairs: &[f64], passes: usize) -> f64 {
@@ -141,6 +140,7 @@ mod tests {
         assert_eq!(photon_share(&[1.0, 2.0, 1.0, 2.0], 2), 1.0);
         assert_eq!(photon_share(&[1.0, 1.0, 2.0, 2.0], 2), 0.0);
         assert_eq!(photon_share(&[0.0, 5.0, 0.0, 0.0], 2), 0.0);
+        assert_eq!(photon_share(&[1.0, 3.0, 0.0, 0.0], 2), 0.0, "only one pass has records");
         assert_eq!(photon_share(&[0.0; 4], 2), 0.0, "in the dark");
         assert_eq!(photon_share(&[], 1), 0.0, "a pass alone");
         // Mean squares 1 of photons and 1/4 of the rest.

@@ -9,7 +9,7 @@
 //! cone on the side of its axis. It has the same integral, and photons at grazing incidence need
 //! not be left out and have bounded weights.
 //!
-//! Within a medium that scatters, `L*(x,ω) = 1/n² Σ Φ_p p(ω_p→ω) / (σ_s ΔV)` over the photons that
+//! Within a medium that scatters, `L*(x,ω) = 1/n² Σ Φ_p S(ω_p→ω) / (σ_s ΔV)` over the photons that
 //! are scattered in the ball of the window (eq. 23, after Jensen & Christensen, SIGGRAPH 1998, eq.
 //! 15): gather paths are scattered with the same probability there, so their estimate needs no
 //! other factor.

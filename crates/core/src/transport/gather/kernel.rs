@@ -1,12 +1,12 @@
 //! Kernels of higher order: weights of the pairs within one window that remove the bias of smooth light.
 //!
-//! With s = (distance/r)² and t = (1 - cos a)/(1 - cos θ) a window is the unit square. The mean of the light over all
+//! With s = (distance/r)² and t = (1 - cos α)/(1 - cos θₘₐₓ) a window is the unit square. The mean of the light over all
 //! azimuths is a polynomial in s and t, whose value at 0 is wanted. Sums over pairs with the weight 1 give the estimate of
 //! second order, E1, whose bias starts with s and t. The weights
 //!
-//! `K₄ = k(s) + k(t) - 1` and `K₆ = q(s) + q(t) - 1 + (k(s) - 1)(k(t) - 1)`
+//! `K₄ = k₄(s) + k₄(t) - 1` and `K₆ = k₆(s) + k₆(t) - 1 + (k₄(s) - 1)(k₄(t) - 1)`
 //!
-//! have the mean 1, and K₄ no first moments, K₆ no first and second moments, if k and q are the polynomials of first and
+//! have the mean 1, and K₄ no first moments, K₆ no first and second moments, if k₄ and k₆ are the polynomials of first and
 //! second degree with these properties in one variable (docs/method.md, eq. 24). So E0, of fourth order, has no bias of
 //! second order, and E00, of sixth order, none of fourth. A ball, and a cone that is cut, have polynomials of their own
 //! moments; a disk that is cut also has a linear term across, since the light no longer balances about its middle.
@@ -26,7 +26,7 @@ const LEAST_SPREAD: [f64; 2] = [0.02, 0.05];
 const LEAST_PLACES: f64 = 12.0;
 const LEAST_CUT_DETERMINANT: f64 = 1e-5;
 
-/// The polynomials k and q of one variable, by their coefficients.
+/// The polynomials of one variable, k₄ as `k` and k₆ as `q`, by their coefficients.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Kernels {
     k: [f64; 2],
@@ -88,7 +88,7 @@ impl Kernels {
         }
     }
 
-    /// k and q.
+    /// k₄ and k₆.
     #[inline]
     pub(crate) fn at(&self, u: f64) -> [f64; 2] {
         let ([k0, k1], [q0, q1, q2]) = (self.k, self.q);
@@ -96,7 +96,7 @@ impl Kernels {
     }
 }
 
-/// The weights of a pair in E1, E0 and E00 from k and q of its position and of its angle.
+/// The weights of a pair in E1, E0 and E00 from k₄ and k₆ of its position and of its angle.
 #[inline]
 pub(crate) fn weights_by_order([k_s, q_s]: [f64; 2], [k_t, q_t]: [f64; 2]) -> [f64; ORDERS] {
     [1.0, k_s + k_t - 1.0, q_s + q_t - 1.0 + (k_s - 1.0) * (k_t - 1.0)]

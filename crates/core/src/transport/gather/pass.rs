@@ -85,13 +85,14 @@ impl<'s> Gather<'s> {
     ) -> Option<()> {
         let mut joints = Sampler::for_path(self.seed, stream::JOINED_SOURCES, pass.batch);
         for (id, arrivals) in &self.sensors {
-            let stream = stream::GATHER_POINTS + id.index() as u64;
-            let mut points = Points::of_batch((self.seed, stream, pass.batch), pass.gather_paths);
+            let offset = id.index() as u64;
+            let of_sensor = stream::GATHER_POINTS + offset;
+            let mut points =
+                Points::of_batch((self.seed, of_sensor, pass.batch), pass.gather_paths);
             for index in pass.batch * pass.gather_paths..(pass.batch + 1) * pass.gather_paths {
                 if task.pace.spend(RECORD_WORK).is_break() {
                     return None;
                 }
-                let offset = id.index() as u64;
                 let mut fresh = Sampler::for_path(self.seed, stream::GATHER + offset, index);
                 let mut sampler = points.lead(&mut fresh);
                 let Some(arrival) = arrivals.draw(&mut sampler) else { continue };

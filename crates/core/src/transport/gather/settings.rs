@@ -139,13 +139,13 @@ impl PhotonPilot {
 
     /// The depth of gather paths.
     fn depth(self, plan: &GatherPlan) -> u32 {
-        // K/3 of the K surfaces that a photon meets.
+        // A third of the surfaces that a photon meets.
         let automatic = ((self.steps_per_path - 1.0) / 3.0).clamp(DEPTH[0], DEPTH[1]);
         plan.depth.unwrap_or(automatic as u32)
     }
 
-    /// Segments of a photon path past records of gather paths of this depth: up to as many bounces as these have, it is near
-    /// them, and goes step by step.
+    /// Segments of a photon path beside records at this depth. It goes step by step near them, for about as many bounces as a
+    /// gather path has.
     pub(super) fn segments_past_records(self, depth: u32) -> f64 {
         self.steps_per_path.min(self.segments_per_path + f64::from(depth))
     }

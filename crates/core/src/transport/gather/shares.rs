@@ -132,15 +132,12 @@ impl MergedRecord<'_> {
         let to_source = photon
             .to_source
             .unwrap_or_else(|| backward.joined_to_source(sensor, turn, &photon.start));
-        let meets = backward.emitters.meets(photon.start.source);
-        let etendues = Etendues {
-            photon: photon.etendue,
-            photon_joined: photon.etendue * to_sensor,
-            gather: self.gather,
-            gather_met: if meets { self.gather } else { f64::INFINITY },
-            gather_joined: self.gather * to_source,
-            windows: self.passed + own + beyond,
-        };
+        let etendues = Etendues::new(
+            [photon.etendue, self.gather],
+            backward.emitters.meets(photon.start.source),
+            [to_sensor, to_source],
+            self.passed + own + beyond,
+        );
         etendues.share_of_pair(own, backward.sharing)
     }
 }

@@ -17,17 +17,18 @@ use crate::transport::trial::{PhotonPilot, SEED, Trials, Tried, flux};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// Passes from which gathering is judged: fewer would contain more pairs, but give the variance
-/// less accurately.
-const TRIED_PASSES: u64 = 8;
+/// Blocks of passes from which gathering is judged, each like one of a run: fewer passes would contain more pairs, but give the
+/// variance less accurately.
+const TRIED_BLOCKS: u64 = 2;
+/// Passes in these blocks.
+const TRIED_PASSES: u64 = TRIED_BLOCKS * WAVE_PASSES;
 /// Variance of E0 over that of E1 where pairs of the position-and-angle estimate limit both, 1 (`kernel`); it is smaller for
 /// the other estimates. The few pairs of a pilot give the variance of E1 much more accurately.
 const FOURTH_ORDER: f64 = 7.0;
-/// Smallest relative variance of a pass times its photons, or its gather paths in a cell: the limit for unlimited pairs.
-const PER_PATH: f64 = 6.0;
-/// Cost of a run over what the few pairs of a pilot show, 1: they miss rare strong pairs and stages that are given up
-/// (benches/choice.rs).
-const UNSEEN: f64 = 4.0;
+/// Smallest relative variance of a pass times its photons: the limit for unlimited pairs.
+const PER_PHOTON: f64 = 6.0;
+/// Smallest relative variance of a pass times its gather paths in a cell.
+const PER_GATHER_PATH: f64 = 1.0;
 /// Standard errors that are taken off a bias, since the passes of a pilot are few.
 const CERTAIN: f64 = 3.0;
 /// Most work of pairs over the rest of a pass, 1: with more of them, a larger pass hardly gains.
@@ -37,11 +38,14 @@ const CROSSED: f64 = WAVE_PASSES as f64;
 /// Segments of photon paths of a pass that measures the work of a whole one.
 const PROBED_SEGMENTS: f64 = 1e5;
 
-/// A pass of a trial.
-struct TriedPass {
-    photons: Readings,
-    /// E1, E0 and E00; not closed.
-    orders: [Readings; ORDERS],
+/// A block of passes of a trial.
+struct TriedBlock {
+    /// Work of the photons of all passes, ns.
+    photons: f64,
+    /// Segments of the photons of all passes.
+    segments: u64,
+    /// E1, E0 and E00 of each pass; not closed.
+    passes: Vec<[Readings; ORDERS]>,
     work: RecordWork,
 }
 
@@ -76,22 +80,27 @@ fn group_trial(trials: &Trials<'_>, settings: GatherSettings) -> Option<Vec<Trie
         ..settings
     };
     let gather = Gather::new(scene, sensors, plan.seed ^ SEED, own);
-    let pass = |batch| TriedPass::trace(&gather, &forward, batch, signal);
-    let passes: Option<Vec<TriedPass>> = (0..TRIED_PASSES).into_par_iter().map(pass).collect();
-    let passes = passes?;
+    let block =
+        |block| TriedBlock::trace((&gather, &forward), (block * WAVE_PASSES, WAVE_PASSES), signal);
+    let blocks: Option<Vec<TriedBlock>> = (0..TRIED_BLOCKS).into_par_iter().map(block).collect();
+    let blocks = blocks?;
     let [second, values, bias] = [[1.0, 0.0], [0.0, 1.0], [USUAL_SHARE, -USUAL_SHARE]]
-        .map(|factors| combined(&passes, factors));
+        .map(|factors| combined(&blocks, factors));
     let gathered = gather.batch_paths(0);
     let works: Vec<PassWork> =
-        passes.iter().map(|pass| pass.work_of_whole(gathered, part)).collect();
+        blocks.iter().map(|block| block.work_of_whole(gathered, part)).collect();
     let whole = PassWork::mean(&works);
     let is_given = plan.gather.photons.or(plan.gather.records).is_some();
     let size = if is_given { 1.0 } else { whole.size_for(pilot.pass_work) };
     let settings = settings.with_passes_of_size(size, &plan.gather);
     let seconds = 1e-9 * whole.of_size(size);
     let least = |cells: usize| {
-        PER_PATH / settings.photons as f64 + PER_PATH * cells as f64 / settings.gather_paths as f64
+        let in_cell = settings.gather_paths as f64 / cells as f64;
+        PER_PHOTON / settings.photons as f64 + PER_GATHER_PATH / in_cell
     };
+    // A few pairs can agree by chance, but k independent events give their sum a relative variance of at least 1/k. Without
+    // pairs, the gather paths themselves have met all light.
+    let pairs: u64 = blocks.iter().map(|block| block.work.pairs).sum();
     let tried = trials.judged(&second, 1e9 * seconds, Estimator::Gather);
     let judged = tried.into_iter().zip(sensors).map(|(mut tried, &sensor): (Tried, &SensorId)| {
         let [second, flux, bias] = [&second, &values, &bias].map(|sums| flux(scene, sums, sensor));
@@ -100,11 +109,11 @@ fn group_trial(trials: &Trials<'_>, settings: GatherSettings) -> Option<Vec<Trie
         trial.bias = (certain > 0.0).then(|| (certain / second.mean()).abs());
         trial.least = FIRST_PASSES as f64 * seconds;
         // The cost of one pass, and of one of the run's.
-        let least = least(passes[0].photons.sensors[sensor.index()].cells.count());
+        let least = least(blocks[0].passes[0][0].sensors[sensor.index()].cells.count());
         let of_pass = |cost: f64| {
-            let by_pairs =
-                FOURTH_ORDER * cost * TRIED_PASSES as f64 * (part / size).powi(2) / CROSSED;
-            (UNSEEN * by_pairs).max(seconds * least)
+            let cost = if pairs > 0 { cost.max(seconds / pairs as f64) } else { cost };
+            let by_pairs = FOURTH_ORDER * cost * TRIED_PASSES as f64 * (part / size).powi(2);
+            by_pairs.max(seconds * least)
         };
         trial.cost = trial.cost.map(of_pass);
         Tried { flux, bias: Some(bias), ..tried }
@@ -113,14 +122,13 @@ fn group_trial(trials: &Trials<'_>, settings: GatherSettings) -> Option<Vec<Trie
 }
 
 /// Sums of E1 and E0 with factors, pass by pass.
-fn combined(passes: &[TriedPass], factors: [f64; 2]) -> Vec<Readings> {
-    let of_pass = |pass: &TriedPass| {
-        let [second, fourth, _] = &pass.orders;
+fn combined(blocks: &[TriedBlock], factors: [f64; 2]) -> Vec<Readings> {
+    let of_pass = |[second, fourth, _]: &[Readings; ORDERS]| {
         let mut sum = second.combined(factors, fourth);
         sum.close_batch();
         sum
     };
-    passes.iter().map(of_pass).collect()
+    blocks.iter().flat_map(|block| &block.passes).map(of_pass).collect()
 }
 
 /// A part of a number of paths, at least one.
@@ -128,7 +136,7 @@ fn scaled(count: u64, part: f64) -> u64 {
     ((part * count as f64).ceil() as u64).max(1)
 }
 
-/// Work of a pass, ns.
+/// Work of a pass of a block, ns.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PassWork {
     /// Its photons, which all groups share.
@@ -149,9 +157,9 @@ impl PassWork {
         })
     }
 
-    /// The mean over passes of one group.
-    fn mean(passes: &[Self]) -> Self {
-        let mean = |of: fn(&Self) -> f64| passes.iter().map(of).sum::<f64>() / passes.len() as f64;
+    /// The mean over blocks of one group.
+    fn mean(blocks: &[Self]) -> Self {
+        let mean = |of: fn(&Self) -> f64| blocks.iter().map(of).sum::<f64>() / blocks.len() as f64;
         Self {
             photons: mean(|pass| pass.photons),
             by_size: mean(|pass| pass.by_size),
@@ -195,56 +203,72 @@ pub(crate) fn pass_work(
     let alone = Gather::new(gather.scene, &sensors, seed, settings);
     let probe = if gather.merging.is_some() { alone.merged(plan.bounce_limit) } else { alone };
     let forward = Forward::new(gather.scene, seed, plan.bounce_limit, scaled(photons));
-    let pass = TriedPass::trace(&probe, &forward, 0, signal)?;
-    Some(pass.work_of_whole(probe.batch_paths(0), part))
+    let block = TriedBlock::trace((&probe, &forward), (0, 1), signal)?;
+    Some(block.work_of_whole(probe.batch_paths(0), part))
 }
 
-impl TriedPass {
-    /// `None` if stopped.
+impl TriedBlock {
+    /// Traces a block of this many passes, from the first on; `None` if stopped.
     fn trace(
-        gather: &Gather<'_>,
-        forward: &Forward<'_>,
-        batch: u64,
+        (gather, forward): (&Gather<'_>, &Forward<'_>),
+        (first, passes): (u64, u64),
         signal: &StopSignal,
     ) -> Option<Self> {
         let pace = Pace::new(signal);
         let photon_fluxes = forward.photon_fluxes();
-        let task = Task { batch, stage: 0, photon_fluxes: &photon_fluxes, pace: &pace };
-        let (photons, (counts, work)) = if gather.merging.is_some() {
-            let mut stream = MergedStream::begin(gather, task, 1)?;
-            stream.begin_pass(0);
-            (forward.batch_observed(batch, &mut stream, &pace)?, stream.finish())
-        } else {
-            let mut stream = gather.begin(task, 1)?;
-            (forward.batch_observed(batch, &mut stream, &pace)?, stream.finish())
+        let task = Task { batch: first, stage: 0, photon_fluxes: &photon_fluxes, pace: &pace };
+        let (mut photons, mut segments) = (0.0, 0);
+        let mut count = |batch: Readings| {
+            photons += work::of_photons(&batch);
+            segments += batch.segments;
         };
-        let orders = counts.into_pass();
-        (!pace.is_stopped()).then_some(Self { photons, orders, work })
+        let (counts, work) = if gather.merging.is_some() {
+            let mut stream = MergedStream::begin(gather, task, passes)?;
+            for pass in 0..passes {
+                stream.begin_pass(pass as usize);
+                count(forward.batch_observed(first + pass, &mut stream, &pace)?);
+            }
+            stream.finish()
+        } else {
+            let mut stream = gather.begin(task, passes)?;
+            for pass in 0..passes {
+                stream.begin_pass(pass as usize);
+                count(forward.batch_observed(first + pass, &mut stream, &pace)?);
+            }
+            stream.finish()
+        };
+        let passes = counts.into_passes();
+        (!pace.is_stopped()).then_some(Self { photons, segments, passes, work })
     }
 
-    /// Work of a full pass, scaled up from this one, which traced this many gather paths and a `part` of the photons.
+    /// Work of a pass of a whole block, scaled up from this one, whose passes traced this many gather paths and a `part` of
+    /// the photons each.
     fn work_of_whole(&self, gather_paths: u64, part: f64) -> PassWork {
         let RecordWork { records, look_ups, near, pairs } = self.work;
         let grown = |count: u64, factor: f64| (count as f64 / factor) as u64;
-        let pairs_part = part * part / CROSSED;
-        let near_of_whole = grown(near, pairs_part).min(grown(self.photons.segments, part));
+        let passes = self.passes.len() as f64;
+        let all = part * passes;
+        let all_pairs = all * all / CROSSED;
+        let near_of_whole = grown(near, all_pairs).min(grown(self.segments, all));
         // The filter is built for the records, so its errors scale with the photons alone.
         let single = RecordWork {
-            records: grown(records, part),
-            look_ups: grown(look_ups - near, part),
+            records: grown(records, all),
+            look_ups: grown(look_ups - near, all),
             ..RecordWork::default()
         };
         let paired = RecordWork {
             look_ups: near_of_whole,
             near: near_of_whole,
-            pairs: grown(pairs, pairs_part),
+            pairs: grown(pairs, all_pairs),
             records: 0,
         };
-        let gathering = work::of_gather_paths(gather_paths, self.orders[0].segments)
-            + work::of_filtered(self.photons.segments);
+        let of_gathering =
+            |orders: &[Readings; ORDERS]| work::of_gather_paths(gather_paths, orders[0].segments);
+        let gathering =
+            self.passes.iter().map(of_gathering).sum::<f64>() + work::of_filtered(self.segments);
         PassWork {
-            photons: work::of_photons(&self.photons) / part,
-            by_size: gathering / part + work::of_records(single),
+            photons: self.photons / all,
+            by_size: gathering / all + work::of_records(single),
             by_square: work::of_records(paired),
         }
     }

@@ -1,6 +1,7 @@
 //! Decisions before a run: the estimator of each sensor, and the size of its batches.
 
 use crate::plan::{Estimator, RunPlan};
+use crate::rng::Points;
 use crate::scene::{Scene, SensorId};
 use crate::transport::backward::paths::{Backward, Weights};
 use crate::transport::choose::pilot::choose;
@@ -83,9 +84,11 @@ impl<'s> Run<'s> {
         let by_pass = gathered.iter().map(|(settings, _)| settings.photons).max();
         let photons = match (by_pass, work, plan.stop.paths) {
             (Some(photons), ..) => photons,
-            (None, PhotonWork::Alone, Some(paths)) => alone(plan, paths, usual, segments),
+            (None, PhotonWork::Alone, Some(paths)) => photons_for(plan, paths, usual, segments),
             (None, PhotonWork::Alone, None) => usual,
-            (None, PhotonWork::Shared(share), _) => power_of_two((share * usual as f64) as u64),
+            (None, PhotonWork::Shared(share), _) => {
+                Points::even_count((share * usual as f64) as u64)
+            }
         };
         // At least one path of each source.
         let photons = photons.max(scene.sources.len() as u64).max(1);
@@ -184,18 +187,19 @@ fn gathered<'s>(
     Some(prepared.collect())
 }
 
-/// Suitable number of photon paths of a batch for a scene: the default of [`RunPlan::batch_paths`].
+/// Suitable number of photon paths of a batch for a scene, where a run may end after any batch.
 pub fn batch_paths(scene: &Scene, plan: &RunPlan) -> u64 {
     let pilot = photon_pilot(scene, plan, &StopSignal::default());
     usual_batch(pilot.expect("nothing stops it").segments_per_path as u64)
 }
 
 fn usual_batch(segments_per_path: u64) -> u64 {
-    power_of_two((BATCH_SEGMENTS / segments_per_path).min(BATCH_PATHS))
+    Points::even_count((BATCH_SEGMENTS / segments_per_path).min(BATCH_PATHS))
 }
 
-/// Photon paths of a batch without other paths: the requested ones are divided evenly among the batches of whole waves.
-fn alone(plan: &RunPlan, paths: u64, usual: u64, segments_per_path: u64) -> u64 {
+/// Photon paths of a batch without other paths: the requested ones are divided evenly among the batches of whole waves. A power
+/// of two would often need smaller batches, which lose more than it gains.
+fn photons_for(plan: &RunPlan, paths: u64, usual: u64, segments_per_path: u64) -> u64 {
     let may_end_early = plan.stop.time.is_some() || plan.stop.target.is_some();
     let most = if may_end_early || plan.batch_paths.is_some() {
         usual
@@ -204,11 +208,6 @@ fn alone(plan: &RunPlan, paths: u64, usual: u64, segments_per_path: u64) -> u64 
     };
     let waves = paths.div_ceil(GROUPS * most).max(1);
     paths.div_ceil(plan.stop.batches.unwrap_or(GROUPS * waves))
-}
-
-/// The largest power of two that is not above a number, and 1 for 0.
-fn power_of_two(number: u64) -> u64 {
-    1 << number.max(1).ilog2()
 }
 
 /// Measures the length of photon paths from a few of them; `None` if they were stopped.

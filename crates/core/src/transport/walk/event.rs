@@ -195,7 +195,8 @@ pub trait Observer {
         false
     }
 
-    /// Lets a row of mirror bounces end before the first that must be seen. Only asked if it allows jumps.
+    /// Shortens a row of mirror bounces so that it ends before the first bounce that the observer must see. Called only if the
+    /// observer allows jumps.
     #[inline(always)]
     fn limit_row(&self, _path: &Path, _reach: &mut RowReach) {}
 

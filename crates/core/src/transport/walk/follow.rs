@@ -63,12 +63,13 @@ pub fn follow_on(
     follower.segments
 }
 
-/// The gather paths of the sensor that counts some light, if it is among those given.
+/// The gather paths of a sensor, if it is among those given, in ascending order.
 pub(crate) fn arrivals_of<'a, 's>(
-    light: &Detection<'_>,
+    sensor: SensorId,
     sensors: &'a [(SensorId, Arrivals<'s>)],
 ) -> Option<&'a Arrivals<'s>> {
-    sensors.iter().find(|(id, _)| *id == light.sensor).map(|(_, arrivals)| arrivals)
+    let place = sensors.binary_search_by_key(&sensor, |(id, _)| *id).ok()?;
+    Some(&sensors[place].1)
 }
 
 /// Etendue that a gather path back along some light would represent if the sensor had only one,

@@ -1,11 +1,12 @@
-//! Rows of mirror bounces along plain walls, taken at once.
+//! Rows of mirror bounces on plain walls, taken in one step.
 //!
-//! Every bounce on a wall of a row has the same angle of incidence, so after n bounces on a wall of reflectance ρ and a
-//! length ℓ in a medium that absorbs α a throughput w is w exp(-α ℓ) Π ρⁿ, over all walls. Where only walls absorb, or only
-//! the medium, the loss is all theirs. Where both do, all chords of a round wall are of one length, and multiply the
-//! throughput by the same q = τ ρ: the medium has absorbed w (1 - τ) (1 - qⁿ)/(1 - q), and the wall the rest; a row between
-//! flat walls is then taken step by step, as it is where walls of several faces absorb. No number is drawn, so the path
-//! is the one that steps would have made, but for rounding; roulette waits until the end of the row.
+//! All bounces on one wall of a row have the same angle of incidence. After n bounces on a wall of reflectance ρ, and a
+//! length ℓ in a medium of absorption coefficient α, a throughput w is w exp(-α ℓ) Π ρⁿ, over all walls. If only walls
+//! absorb, or only the medium, the whole loss is theirs. If both do, it can be divided for a round wall, whose chords are
+//! all of one length and multiply the throughput by the same q = τ ρ: the medium has absorbed w (1 - τ) (1 - qⁿ)/(1 - q), and
+//! the wall the rest. Between flat walls, and where walls of several faces absorb, such a row is taken step by step. No
+//! random number is drawn, so the path is the same as step by step except for rounding; roulette waits until the end of
+//! the row.
 
 use crate::optics::{Faces, FinishModel, Incidence, Lobe, Scattered};
 use crate::scene::{BounceRow, PlainLeg, Ray, RowReach, Scene, StartSurfaces};
@@ -103,7 +104,8 @@ fn row(
     let jump = Jump { face, medium: path.medium, absorbed_by_face, absorbed_in_medium };
     Some((row, RowLosses { kept, jump }))
 }
-/// The share that a wall mirrors of light that arrives so, if it only mirrors and nothing comes through from behind.
+
+/// The share of arriving light that a wall mirrors, if it only mirrors and no light comes through from behind.
 fn mirrored(faces: Faces<'_>, incidence: &Incidence, carries: Carries) -> Option<f64> {
     let is_mirror = faces.own.only_mirrors(incidence)
         && match carries {

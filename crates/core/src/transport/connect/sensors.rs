@@ -3,15 +3,16 @@
 use crate::rng::{Dimension, Sampler};
 use crate::scene::shape::Toward;
 use crate::scene::{
-    CountedLight, FaceArea, Goniometer, Passage, Place, Scene, Seeing, SensorId, SensorKind,
-    SurfaceSensor, Views,
+    CountedLight, FaceArea, FaceId, Goniometer, Passage, Place, Scene, Seeing, SensorId,
+    SensorKind, SurfaceSensor, Views,
 };
 use crate::transport::Vertex;
-use crate::transport::connect::target::{Joinable, chance, choose};
+use crate::transport::connect::target::{Importance, Joinable, Targets};
 use crate::transport::connect::vertex::TurnAt;
 use glam::DVec3;
 use lumiduct_base::math::{Aabb, uniform_sphere};
 use smallvec::{SmallVec, smallvec};
+use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 /// Share of the joins that are spread evenly over the sensors, 1: each needs joins for an error of its own, also a small
@@ -24,15 +25,16 @@ const MOST_JOINS: usize = 4;
 /// The sensors of an estimator that points can be drawn on.
 #[derive(Debug)]
 pub(crate) struct SensorTargets<'s> {
-    targets: Vec<SensorTarget<'s>>,
+    targets: Targets<SensorTarget<'s>>,
     /// Those that separate directions of light that leaves their faces.
-    leaving: Vec<LeavingTarget<'s>>,
+    leaving: BTreeMap<SensorId, LeavingTarget<'s>>,
+    /// The same by face.
+    leaving_of: BTreeMap<FaceId, Vec<SensorId>>,
 }
 
 /// A sensor that sees light in some directions as it leaves a face.
 #[derive(Debug)]
 struct LeavingTarget<'s> {
-    id: SensorId,
     sensor: &'s SurfaceSensor,
     views: &'s Views,
 }
@@ -79,13 +81,22 @@ impl<'s> SensorTargets<'s> {
     /// Those of some sensors that can be joined: not those that count light only on its first
     /// passage or all light that leaves a face.
     pub(crate) fn new(scene: &'s Scene, sensors: impl Iterator<Item = SensorId> + Clone) -> Self {
-        let targets = sensors.clone().filter_map(|id| target(scene, id)).collect();
-        Self { targets, leaving: sensors.filter_map(|id| leaving_target(scene, id)).collect() }
+        let targets = sensors.clone().filter_map(|id| target(scene, id));
+        let targets = Targets::new(targets, EVENLY);
+        let leaving = sensors.filter_map(|id| Some((id, leaving_target(scene, id)?)));
+        let leaving: BTreeMap<SensorId, LeavingTarget<'_>> = leaving.collect();
+        let mut leaving_of: BTreeMap<FaceId, Vec<SensorId>> = BTreeMap::new();
+        for (&id, target) in &leaving {
+            for &face in &target.sensor.faces {
+                leaving_of.entry(face).or_default().push(id);
+            }
+        }
+        Self { targets, leaving, leaving_of }
     }
 
     /// Whether there is none.
     pub(crate) fn is_empty(&self) -> bool {
-        self.targets.is_empty() && self.leaving.is_empty()
+        self.targets.len() == 0 && self.leaving.is_empty()
     }
 
     /// A direction for each sensor that sees light as it leaves the face of a vertex.
@@ -97,8 +108,9 @@ impl<'s> SensorTargets<'s> {
         mut visit: impl FnMut(SensorPoint),
     ) {
         let point = vertex.point;
-        for &LeavingTarget { id, sensor, views } in &self.leaving {
-            for hit in vertex.hits.all().filter(|hit| sensor.faces.contains(&hit.face)) {
+        for hit in vertex.hits.all() {
+            for &id in self.leaving_of.get(&hit.face).into_iter().flatten() {
+                let LeavingTarget { sensor, views } = self.leaving[&id];
                 let Some(cell) = sensor.grid.cell(scene.chart(hit.prim, point)) else { continue };
                 let normal = scene.normal(hit.prim, point);
                 let (dir, accepting) = views.draw(sampler);
@@ -128,7 +140,7 @@ impl<'s> SensorTargets<'s> {
         sampler: &mut Sampler,
     ) -> Option<SensorPoint> {
         let draw = || (join as f64 + sampler.one(Dimension::GatherPosition)) / self.joins() as f64;
-        let target = choose(&self.targets, vertex, EVENLY, draw)?;
+        let target = self.targets.choose(vertex, draw)?;
         let (point, normal, cell) = match &target.extent {
             SensorExtent::Surface(sensor, area) => {
                 let drawn = area.sample(sampler.pair(Dimension::GatherPosition))?;
@@ -172,11 +184,10 @@ impl<'s> SensorTargets<'s> {
         (point, normal): (DVec3, DVec3),
     ) -> f64 {
         let ratio = turn.and_then(|(vertex, [arriving, leaving])| {
-            let by_view = self.leaving.iter().find(|target| target.id == sensor);
-            let solid_angle = if let Some(target) = by_view {
+            let solid_angle = if let Some(target) = self.leaving.get(&sensor) {
                 1.0 / target.views.density(target.views.accepting(leaving).count().max(1))
             } else {
-                let target = self.targets.iter().find(|target| target.id == sensor)?;
+                let target = self.targets.numbered(sensor.index())?;
                 self.solid_angle(target, vertex.point, (point, normal), leaving)
             };
             let light = vertex.scattered(arriving, leaving)?;
@@ -193,7 +204,7 @@ impl<'s> SensorTargets<'s> {
         (point, normal): (DVec3, DVec3),
         dir: DVec3,
     ) -> f64 {
-        let chosen = chance(&self.targets, target, vertex, EVENLY) * self.joins() as f64;
+        let chosen = self.targets.chance(target, vertex) * self.joins() as f64;
         let normal = match &target.extent {
             SensorExtent::Surface(..) => normal,
             SensorExtent::Sphere(sphere, radius) => (point - sphere.frame.origin) / *radius,
@@ -204,12 +215,19 @@ impl<'s> SensorTargets<'s> {
 }
 
 impl Joinable for SensorTarget<'_> {
-    /// What it can receive from a point: its solid angle, roughly, 1.
-    fn importance(&self, vertex: DVec3) -> f64 {
-        if let SensorExtent::Far(_) = self.extent {
-            return 4.0 * PI;
+    fn number(&self) -> usize {
+        self.id.index()
+    }
+
+    /// What it can receive from a point: its solid angle, roughly, sr.
+    fn importance(&self) -> Importance {
+        let Self { area: strength, center, reach, .. } = *self;
+        match self.extent {
+            SensorExtent::Far(_) => Importance { anywhere: 4.0 * PI, ..Importance::default() },
+            SensorExtent::Surface(..) | SensorExtent::Sphere(..) => {
+                Importance { anywhere: 0.0, strength, center, reach }
+            }
         }
-        self.area / vertex.distance_squared(self.center).max(self.reach * self.reach)
     }
 }
 
@@ -245,7 +263,7 @@ fn leaving_target(scene: &Scene, id: SensorId) -> Option<LeavingTarget<'_>> {
     let SensorKind::Surface(sensor) = &scene.sensors[id.index()].kind else { return None };
     let Seeing::Views(views) = &sensor.seeing else { return None };
     let leaves = sensor.place == Place::Face && sensor.counts == CountedLight::Leaving;
-    (leaves && sensor.passage == Passage::Every).then_some(LeavingTarget { id, sensor, views })
+    (leaves && sensor.passage == Passage::Every).then_some(LeavingTarget { sensor, views })
 }
 
 fn target(scene: &Scene, id: SensorId) -> Option<SensorTarget<'_>> {

@@ -5,7 +5,7 @@ use crate::scene::shape::{Crossing, RayStart, Shape};
 use crate::scene::{
     Emission, EmitSide, Emitter, EmitterKind, Ray, Scene, Source, SourceId, StartSolids,
 };
-use crate::transport::connect::target::{Joinable, chance, choose};
+use crate::transport::connect::target::{Importance, Joinable, Targets};
 use crate::transport::connect::vertex::TurnAt;
 use glam::DVec3;
 use lumiduct_base::math::Frame;
@@ -17,7 +17,7 @@ const EVENLY: f64 = 0.0;
 /// The sources of a scene that vertices can be joined to.
 #[derive(Debug)]
 pub(crate) struct SourceTargets<'s> {
-    targets: Vec<SourceTarget<'s>>,
+    targets: Targets<SourceTarget<'s>>,
 }
 
 /// A source that vertices are joined to.
@@ -26,7 +26,7 @@ struct SourceTarget<'s> {
     id: SourceId,
     source: &'s Source,
     extent: EmitterExtent<'s>,
-    /// A ball around it, mm; infinite around the sky.
+    /// A ball around it, mm; of the far distance, the ball that all its light would pass through.
     center: DVec3,
     reach: f64,
 }
@@ -71,14 +71,14 @@ impl<'s> SourceTargets<'s> {
     pub(crate) fn new(scene: &'s Scene) -> Self {
         let lit = scene.sources.iter().enumerate().filter(|(_, source)| source.is_lit());
         let targets = lit.filter_map(|(index, source)| target(SourceId::new(index), source));
-        Self { targets: targets.collect() }
+        Self { targets: Targets::new(targets, EVENLY) }
     }
 
-    /// A place for a vertex, on a source chosen in proportion to the light it can send there, and
+    /// A place for a vertex, on a source chosen roughly in proportion to the light it can send there, and
     /// its distance, mm; `None` where it sends none.
     pub(crate) fn draw(&self, vertex: DVec3, sampler: &mut Sampler) -> Option<(SourcePoint, f64)> {
         let draw = || sampler.one(Dimension::EmitPosition);
-        let target = choose(&self.targets, vertex, EVENLY, draw)?;
+        let target = self.targets.choose(vertex, draw)?;
         let at = |shape: usize, point: DVec3| {
             let distance = point.distance(vertex);
             let dir = (vertex - point) / distance;
@@ -140,7 +140,7 @@ impl<'s> SourceTargets<'s> {
     /// considered; the vertex has light from a medium of this index.
     pub(crate) fn measure(&self, place: &SourcePoint, vertex: DVec3, index: f64) -> Option<f64> {
         let target = self.target(place.source)?;
-        let per_chance = 1.0 / chance(&self.targets, target, vertex, EVENLY);
+        let per_chance = 1.0 / self.targets.chance(target, vertex);
         let square = place.point.distance_squared(vertex);
         Some(match &target.extent {
             EmitterExtent::Point(_) => per_chance / (index * index * square),
@@ -168,19 +168,24 @@ impl<'s> SourceTargets<'s> {
     }
 
     fn target(&self, id: SourceId) -> Option<&SourceTarget<'s>> {
-        self.targets.iter().find(|target| target.id == id)
+        self.targets.numbered(id.index())
     }
 }
 
 impl Joinable for SourceTarget<'_> {
+    fn number(&self) -> usize {
+        self.id.index()
+    }
+
     /// Normal irradiance that it can give a point, roughly, lm/mm².
-    fn importance(&self, vertex: DVec3) -> f64 {
-        let flux = self.source.flux;
+    fn importance(&self) -> Importance {
+        let Self { center, reach, .. } = *self;
+        let everywhere = |anywhere| Importance { anywhere, ..Importance::default() };
         match &self.extent {
-            EmitterExtent::Far | EmitterExtent::FarBeam => self.across(),
-            EmitterExtent::Beam(surfaces, _) => surfaces.exitance,
+            EmitterExtent::Far | EmitterExtent::FarBeam => everywhere(self.across()),
+            EmitterExtent::Beam(surfaces, _) => everywhere(surfaces.exitance),
             EmitterExtent::Point(_) | EmitterExtent::Line(..) | EmitterExtent::Surface(_) => {
-                flux / vertex.distance_squared(self.center).max(self.reach * self.reach)
+                Importance { anywhere: 0.0, strength: self.source.flux, center, reach }
             }
         }
     }

@@ -180,11 +180,11 @@ flux_lm = 1
 [sensors]
 exit = { plane = {}, on = "duct.exit", counts = "leaving", entering = "duct.entry" }
 [run]
-paths = 20_000
+paths = 200_000
 "#;
     fs::write(place.path("bend.toml"), scene).unwrap();
     let said = place.good("run bend.toml");
-    assert!(said.contains("the efficiency of sensor `exit` is 1."), "{said}");
+    assert!(said.contains("the efficiency of sensor `exit` is 1.1"), "{said}");
     assert!(said.contains("write passage = \"first\" in sensors.exit"), "{said}");
     let said = place.good("run bend.toml --overwrite -D sensors.exit.passage=\"first\"");
     assert!(!said.contains("more than once"), "{said}");

@@ -40,7 +40,7 @@ impl FlatWall {
         self.sides.iter().map(|side| side.dot(along).abs()).sum()
     }
 
-    /// Whether it may be a side wall of a duct about a middle, of which half of the vector from wall to opposite wall is given.
+    /// Whether it could be a side wall of a duct with this middle, if `half` is half of the vector between its first two walls.
     fn is_side_of(&self, middle: DVec3, half: DVec3) -> bool {
         let (offset, across) = (middle - self.middle, half.normalize());
         let size = offset.length() + half.length();

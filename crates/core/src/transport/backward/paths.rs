@@ -24,7 +24,7 @@ pub(crate) struct Backward<'s> {
     /// What vertices of gather paths, and of photons, are joined to.
     pub(crate) joined_sources: SourceTargets<'s>,
     pub(crate) joined_sensors: SensorTargets<'s>,
-    /// In ascending order.
+    /// Sorted by id.
     pub(crate) sensors: Vec<(SensorId, Arrivals<'s>)>,
     pub(crate) seed: u64,
     pub(crate) bounce_limit: u32,

@@ -18,8 +18,8 @@ use std::f64::consts::PI;
 /// Share of the joins that are spread evenly over the sensors, 1: each needs joins for an error of its own, also a small
 /// one beside large ones.
 const EVENLY: f64 = 0.5;
-/// Most joins at a vertex: with four, ten and a hundred sensors cost half as much for the same error as with one
-/// (benches/results/2026-11-24.md).
+/// Largest number of joins at a vertex. With four joins instead of one, scenes with ten and with a hundred sensors reach the
+/// same error in half of the time (benches/results/2026-11-24.md).
 const MOST_JOINS: usize = 4;
 
 /// The sensors of an estimator that points can be drawn on.
@@ -29,11 +29,11 @@ pub(crate) struct SensorTargets<'s> {
     /// Those that separate directions of light that leaves their faces.
     leaving: BTreeMap<SensorId, LeavingTarget<'s>>,
     /// The same by face.
-    leaving_of: BTreeMap<FaceId, Vec<SensorId>>,
+    leaving_of: BTreeMap<FaceId, Vec<(SensorId, LeavingTarget<'s>)>>,
 }
 
 /// A sensor that sees light in some directions as it leaves a face.
-#[derive(Debug)]
+#[derive(Debug, Clone, Copy)]
 struct LeavingTarget<'s> {
     sensor: &'s SurfaceSensor,
     views: &'s Views,
@@ -85,10 +85,10 @@ impl<'s> SensorTargets<'s> {
         let targets = Targets::new(targets, EVENLY);
         let leaving = sensors.filter_map(|id| Some((id, leaving_target(scene, id)?)));
         let leaving: BTreeMap<SensorId, LeavingTarget<'_>> = leaving.collect();
-        let mut leaving_of: BTreeMap<FaceId, Vec<SensorId>> = BTreeMap::new();
+        let mut leaving_of: BTreeMap<FaceId, Vec<_>> = BTreeMap::new();
         for (&id, target) in &leaving {
             for &face in &target.sensor.faces {
-                leaving_of.entry(face).or_default().push(id);
+                leaving_of.entry(face).or_default().push((id, *target));
             }
         }
         Self { targets, leaving, leaving_of }
@@ -109,8 +109,8 @@ impl<'s> SensorTargets<'s> {
     ) {
         let point = vertex.point;
         for hit in vertex.hits.all() {
-            for &id in self.leaving_of.get(&hit.face).into_iter().flatten() {
-                let LeavingTarget { sensor, views } = self.leaving[&id];
+            let targets = self.leaving_of.get(&hit.face).into_iter().flatten();
+            for &(id, LeavingTarget { sensor, views }) in targets {
                 let Some(cell) = sensor.grid.cell(scene.chart(hit.prim, point)) else { continue };
                 let normal = scene.normal(hit.prim, point);
                 let (dir, accepting) = views.draw(sampler);

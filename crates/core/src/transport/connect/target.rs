@@ -1,14 +1,14 @@
 //! The choice of one target among several, for a vertex that is joined to it.
 //!
-//! Targets lie in a binary tree whose nodes stand for all targets in them, so that the work of a choice grows with the
-//! logarithm of their number (Conty Estevez & Kulla, "Importance sampling of many lights with adaptive tree splitting", Proc.
-//! ACM Comput. Graph. Interact. Tech. 1 (2018) 25). Up to eight targets are chosen in proportion to the importance of each; with
-//! more, chances are only roughly so. The chance that is told is exactly that of the choice in both cases.
+//! Targets are kept in a binary tree, so the cost of a choice grows with the logarithm of their number (Conty Estevez & Kulla,
+//! "Importance sampling of many lights with adaptive tree splitting", Proc. ACM Comput. Graph. Interact. Tech. 1 (2018) 25). Up
+//! to eight targets are chosen in proportion to their importance, more than eight approximately so. In either case
+//! [`Targets::chance`] is the exact probability of the choice.
 
 use glam::DVec3;
 use std::ops::Range;
 
-/// Most targets of a leaf.
+/// Largest number of targets in a leaf.
 const LEAF: usize = 8;
 
 /// What a vertex can be joined to.
@@ -38,10 +38,10 @@ pub(super) struct Importance {
 pub(super) struct Targets<T> {
     /// In the order of the leaves, so that the targets of every node are neighbours.
     all: Vec<(T, Importance)>,
-    /// Places in `all`, by number in the scene.
+    /// Index into `all`, by number in the scene.
     places: Vec<Option<usize>>,
     root: Subtree,
-    /// Share of the choices that is the same for all, 1; the rest is by importance.
+    /// Fraction of the choices that are uniform, 1; the others go by importance.
     evenly: f64,
 }
 
@@ -54,7 +54,7 @@ struct Subtree {
 }
 
 impl<T: Joinable> Targets<T> {
-    /// A share `evenly` of the choices, 1, is the same for all targets.
+    /// A tree of targets. A fraction `evenly` of the choices, 1, is uniform.
     pub(super) fn new(targets: impl Iterator<Item = T>, evenly: f64) -> Self {
         let mut all: Vec<(T, Importance)> = targets
             .map(|target| {
@@ -124,7 +124,7 @@ impl<T: Joinable> Targets<T> {
         chosen.map(|(target, _)| target)
     }
 
-    /// The chance of some targets together, with this share of the importance.
+    /// The probability that one of `count` targets is chosen, which together have this share of the importance, 1.
     fn mixed(&self, count: usize, share: f64) -> f64 {
         self.evenly * count as f64 / self.len() as f64 + (1.0 - self.evenly) * share
     }
@@ -142,7 +142,7 @@ fn share_of(importance: f64, total: f64, count: usize) -> f64 {
 }
 
 impl Subtree {
-    /// The node of some neighbours in a list, from this place on, which are put in the order of its leaves.
+    /// The node of these targets, the first of which has the index `first`; sorts them into the order of its leaves.
     fn new<T>(targets: &mut [(T, Importance)], first: usize) -> Self {
         let importance = Importance::of_all(targets.iter().map(|(_, one)| one));
         let places = first..first + targets.len();
@@ -169,7 +169,7 @@ impl Importance {
         self.anywhere + self.strength / square
     }
 
-    /// Of targets together, in a ball around theirs.
+    /// That of several targets together, with a ball that contains theirs.
     fn of_all<'a>(targets: impl Iterator<Item = &'a Self> + Clone) -> Self {
         let near = || targets.clone().filter(|one| one.strength > 0.0);
         let anywhere = targets.clone().map(|one| one.anywhere).sum();

@@ -2,7 +2,6 @@
 
 use crate::plan::{Estimator, RunPlan, Schedule};
 use crate::scene::SensorId;
-use crate::transport::Readings;
 use crate::transport::forward::{Forward, photons_of};
 use crate::transport::gather::bias::USUAL_SHARE;
 use crate::transport::gather::estimator::Gather;
@@ -10,15 +9,18 @@ use crate::transport::gather::kernel::ORDERS;
 use crate::transport::gather::merged::MergedStream;
 use crate::transport::gather::settings::{GatherSettings, SensorGroup, WAVE_PASSES, groups};
 use crate::transport::gather::stages::FIRST_PASSES;
+use crate::transport::gather::stream::PhotonStream;
 use crate::transport::stop::{Pace, StopSignal};
 use crate::transport::tally::work::{self, RecordWork};
 use crate::transport::task::Task;
 use crate::transport::trial::{PhotonPilot, SEED, Trials, Tried, flux};
+use crate::transport::{Observer, Readings};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
+use std::ops::Range;
 
-/// Blocks of passes from which gathering is judged, each like one of a run: fewer passes would contain more pairs, but give the
-/// variance less accurately.
+/// Blocks of passes, each like one of a run, from which gathering is judged. Fewer passes would contain more pairs, but give a less
+/// accurate variance.
 const TRIED_BLOCKS: u64 = 2;
 /// Passes in these blocks.
 const TRIED_PASSES: u64 = TRIED_BLOCKS * WAVE_PASSES;
@@ -94,12 +96,12 @@ fn group_trial(trials: &Trials<'_>, settings: GatherSettings) -> Option<Vec<Trie
     let size = if is_given { 1.0 } else { whole.size_for(pilot.pass_work) };
     let settings = settings.with_passes_of_size(size, &plan.gather);
     let seconds = 1e-9 * whole.of_size(size);
-    let least = |cells: usize| {
+    let limit = |cells: usize| {
         let in_cell = settings.gather_paths as f64 / cells as f64;
         PER_PHOTON / settings.photons as f64 + PER_GATHER_PATH / in_cell
     };
-    // A few pairs can agree by chance, but k independent events give their sum a relative variance of at least 1/k. Without
-    // pairs, the gather paths themselves have met all light.
+    // A few pairs can agree by chance, but the relative variance of a sum over a Poisson number of events of mean k is at
+    // least 1/k: it is E[w²]/(k E[w]²). Without pairs, the gather paths themselves have met all light.
     let pairs: u64 = blocks.iter().map(|block| block.work.pairs).sum();
     let tried = trials.judged(&second, 1e9 * seconds, Estimator::Gather);
     let judged = tried.into_iter().zip(sensors).map(|(mut tried, &sensor): (Tried, &SensorId)| {
@@ -108,14 +110,14 @@ fn group_trial(trials: &Trials<'_>, settings: GatherSettings) -> Option<Vec<Trie
         let certain = bias.mean().abs() - CERTAIN * bias.std_error();
         trial.bias = (certain > 0.0).then(|| (certain / second.mean()).abs());
         trial.least = FIRST_PASSES as f64 * seconds;
-        // The cost of one pass, and of one of the run's.
-        let least = least(blocks[0].passes[0][0].sensors[sensor.index()].cells.count());
-        let of_pass = |cost: f64| {
+        let limit = limit(blocks[0].passes[0][0].sensors[sensor.index()].cells.count());
+        // From the cost of the trial to that of passes of a run.
+        let of_run = |cost: f64| {
             let cost = if pairs > 0 { cost.max(seconds / pairs as f64) } else { cost };
             let by_pairs = FOURTH_ORDER * cost * TRIED_PASSES as f64 * (part / size).powi(2);
-            by_pairs.max(seconds * least)
+            by_pairs.max(seconds * limit)
         };
-        trial.cost = trial.cost.map(of_pass);
+        trial.cost = trial.cost.map(of_run);
         Tried { flux, bias: Some(bias), ..tried }
     });
     Some(judged.collect())
@@ -217,26 +219,16 @@ impl TriedBlock {
         let pace = Pace::new(signal);
         let photon_fluxes = forward.photon_fluxes();
         let task = Task { batch: first, stage: 0, photon_fluxes: &photon_fluxes, pace: &pace };
-        let (mut photons, mut segments) = (0.0, 0);
-        let mut count = |batch: Readings| {
-            photons += work::of_photons(&batch);
-            segments += batch.segments;
-        };
-        let (counts, work) = if gather.merging.is_some() {
+        let photons = (forward, first..first + passes, &pace);
+        let (traced, (counts, work)) = if gather.merging.is_some() {
             let mut stream = MergedStream::begin(gather, task, passes)?;
-            for pass in 0..passes {
-                stream.begin_pass(pass as usize);
-                count(forward.batch_observed(first + pass, &mut stream, &pace)?);
-            }
-            stream.finish()
+            (trace_photons(photons, &mut stream, MergedStream::begin_pass)?, stream.finish())
         } else {
             let mut stream = gather.begin(task, passes)?;
-            for pass in 0..passes {
-                stream.begin_pass(pass as usize);
-                count(forward.batch_observed(first + pass, &mut stream, &pace)?);
-            }
-            stream.finish()
+            (trace_photons(photons, &mut stream, PhotonStream::begin_pass)?, stream.finish())
         };
+        let photons = traced.iter().map(work::of_photons).sum();
+        let segments = traced.iter().map(|batch| batch.segments).sum();
         let passes = counts.into_passes();
         (!pace.is_stopped()).then_some(Self { photons, segments, passes, work })
     }
@@ -272,6 +264,19 @@ impl TriedBlock {
             by_square: work::of_records(paired),
         }
     }
+}
+
+/// Traces the photons of some passes past the records of a stream; `None` if stopped.
+fn trace_photons<O: Observer>(
+    (forward, passes, pace): (&Forward<'_>, Range<u64>, &Pace<'_>),
+    stream: &mut O,
+    begin_pass: impl Fn(&mut O, usize),
+) -> Option<Vec<Readings>> {
+    let trace = |(place, pass)| {
+        begin_pass(stream, place);
+        forward.batch_observed(pass, stream, pace)
+    };
+    passes.enumerate().map(trace).collect()
 }
 
 #[cfg(test)]

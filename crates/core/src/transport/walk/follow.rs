@@ -63,7 +63,7 @@ pub fn follow_on(
     follower.segments
 }
 
-/// The gather paths of a sensor, if it is among those given, in ascending order.
+/// The gather paths of a sensor, if it is among `sensors`, which are sorted by id.
 pub(crate) fn arrivals_of<'a, 's>(
     sensor: SensorId,
     sensors: &'a [(SensorId, Arrivals<'s>)],

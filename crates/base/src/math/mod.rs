@@ -6,6 +6,7 @@ mod cap;
 mod frame;
 mod least_squares;
 pub mod planar;
+mod polynomial;
 mod roots;
 mod sampling;
 
@@ -13,7 +14,8 @@ pub use aabb::Aabb;
 pub use cap::projected_cap;
 pub use frame::Frame;
 pub use least_squares::least_squares;
-pub use roots::{Roots, bracketed_root, convex_roots, cubic, quadratic, quartic};
+pub use polynomial::{Root, SignChange, cubic, quartic};
+pub use roots::{bracketed_root, convex_roots, quadratic};
 pub use sampling::{
     circle, cone_direction, cosine_hemisphere, cosine_power_hemisphere, disk, from_cosine,
     uniform_sphere,

@@ -169,12 +169,16 @@ impl<'s> Prepared<'s> {
         }
     }
 
-    /// Whether bias limits any of its values more than noise does.
-    pub(crate) fn is_limited_by_bias(&self, series: &Series, photons: &Readings) -> bool {
+    /// How many stages ahead the next one should be: 0 where bias limits none of its values more than noise does.
+    pub(crate) fn stages_ahead(&self, series: &Series, photons: &Readings) -> u32 {
         match self {
-            Self::Backward(_) | Self::Mix(_) => false,
+            Self::Backward(_) | Self::Mix(_) => 0,
             Self::Gather(own) | Self::Mis(own) => {
-                series.in_progress().is_some_and(|stage| own.is_limited_by_bias(&stage, photons))
+                if series.batches() > 0 {
+                    own.shrinks(&series.stages(), photons)
+                } else {
+                    0
+                }
             }
         }
     }

@@ -165,6 +165,9 @@ impl Shape {
 
     #[inline(never)]
     fn first_of_all(&self, ray: &Ray, start: RayStart, wanted: &CrossingQuery) -> Option<Crossing> {
+        if let Self::Torus(shape) = self {
+            return shape.first_crossing(ray, start, wanted);
+        }
         let mut first: Option<Crossing> = None;
         self.crossings(ray, start, |crossing| {
             if wanted.includes(&crossing) && first.is_none_or(|first| crossing.t < first.t) {

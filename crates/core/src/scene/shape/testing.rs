@@ -2,7 +2,7 @@
 
 use crate::rng::{Dimension, Sampler};
 use crate::scene::Ray;
-use crate::scene::shape::{ChartRect, Crossing, HalfSpace, RayStart, Shape, Toward};
+use crate::scene::shape::{ChartRect, Crossing, CrossingQuery, HalfSpace, RayStart, Shape, Toward};
 use glam::{DVec2, DVec3};
 use lumiduct_base::math::{Aabb, Frame, uniform_sphere};
 
@@ -39,6 +39,37 @@ fn ray_in(bounds: &Aabb, sampler: &mut Sampler) -> Ray {
     };
     let (from, to) = (point(), point());
     Ray::new(from, to - from)
+}
+
+/// The first crossing that is wanted, within any span and in any direction, is the first such of all crossings; half of the rays
+/// start on the surface, and some of them graze it.
+pub(super) fn assert_first_crossings_are_those_of_all(shape: &Shape, rays: u64) {
+    let bounds = shape.bounds();
+    let size = bounds.diagonal();
+    for path in 0..rays {
+        let mut sampler = Sampler::for_path(SEED, 0, path);
+        let ray = ray_in(&bounds, &mut sampler);
+        let mut number = || sampler.one(Dimension::Lobe);
+        let (ray, start) = if path % 2 == 0 {
+            (ray, RayStart::Elsewhere)
+        } else {
+            let point = shape.sample([number(), number()]);
+            let normal = shape.normal(point);
+            let tilt = if path % 4 == 1 { 1.0 } else { 1e-6 * number() };
+            let along = ray.dir() - ray.dir().dot(normal) * normal;
+            (Ray::new(point, along + tilt * ray.dir().dot(normal) * normal), RayStart::On)
+        };
+        let [min, max] = [-0.3 * size * number(), size * number()];
+        for toward in [None, Some(Toward::Front), Some(Toward::Back)] {
+            let wanted = CrossingQuery { toward, min, max };
+            let first = shape.first_crossing(&ray, start, &wanted).map(|found| found.t);
+            let all = crossings_of(shape, &ray, start);
+            let listed = all.iter().find(|crossing| wanted.includes(crossing)).map(|own| own.t);
+            let apart = first.zip(listed).map_or(0.0, |(first, listed)| (first - listed).abs());
+            let same = first.is_some() == listed.is_some() && apart < 1e-9 * size;
+            assert!(same, "{path}: {first:?}, but {listed:?} in {all:?}");
+        }
+    }
 }
 
 /// Crossings along random lines are those where a dense scan of the implicit function changes its sign.

@@ -45,6 +45,29 @@ impl Wedge {
         }
     }
 
+    /// The part of a line's span in which it may be within the wedge, with a margin for rounding; empty, above its end, if
+    /// there is none. A wide wedge clips nothing.
+    #[inline]
+    pub(crate) fn clip(&self, [lo, hi]: [f64; 2], from: DVec2, dir: DVec2) -> [f64; 2] {
+        const MARGIN: f64 = 1e-9;
+        if self.width == Width::Wide {
+            return [lo, hi];
+        }
+        let clip = |[lo, hi]: [f64; 2], height: f64, slope: f64| {
+            let at = -height / slope;
+            let room = MARGIN * (1.0 + at.abs());
+            if height.abs() <= MARGIN || !at.is_finite() {
+                [lo, hi]
+            } else if slope > 0.0 {
+                [lo.max(at - room), hi]
+            } else {
+                [lo, hi.min(at + room)]
+            }
+        };
+        let span = clip([lo, hi], from.y, dir.y);
+        clip(span, -self.end.perp_dot(from), -self.end.perp_dot(dir))
+    }
+
     /// Azimuth of a point of the wedge, rad; points that rounding has put outside get the nearer end.
     pub(crate) fn azimuth(&self, p: DVec2) -> f64 {
         let azimuth = azimuth(p);

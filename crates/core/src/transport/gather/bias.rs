@@ -2,9 +2,11 @@
 //!
 //! The same pairs give estimates of second, fourth and sixth order, E1, E0 and E00 (`kernel`). The value is E0. For smooth
 //! light its bias is a small part of E0 - E1. An edge of the light inside the windows leaves the most: if the bias is
-//! proportional to their size, 2/3 of E0 - E1 remains in E0, which is 2.8 times E00 - E0. The stated bias is therefore half
-//! of |E0 - E1| where this is noise, and otherwise 2.8 times the sum of |E00 - E0| and its standard error, within 1/4 and
-//! 2/3 of |E0 - E1|. If |E00 - E0| exceeds half of |E0 - E1|, higher orders do not converge, and the bias is not resolved.
+//! proportional to their size, 2/3 of E0 - E1 remains in E0, which is 2.8 times E00 - E0. The stated bias is therefore 2.8
+//! times the sum of |E00 - E0| and its standard error, within 1/4 and 2/3 of |E0 - E1|; where E0 - E1 is noise, half of the
+//! root of the squares of that difference and its error. Where the stage follows another, a bias in proportion to the window would
+//! also have changed E0 from one to the next, which limits it. If |E00 - E0| exceeds half of |E0 - E1|, higher orders do not
+//! converge, and the bias is not resolved.
 //!
 //! Share and stage are chosen once per sensor, from its flux, never per cell. If photons of the same run contradict the
 //! flux, its bias is at least that difference. No measure of the sensor has a smaller relative bias than the flux, since
@@ -13,9 +15,10 @@
 use crate::plan::Estimator;
 use crate::tally::Tally;
 use crate::transport::estimate::{Bias, Estimate, Resolution};
-use crate::transport::gather::stages::Orders;
+use crate::transport::gather::stages::{FIRST_PASSES, Orders};
 use crate::transport::tally::readings::{Group, MIN_LIT_GROUPS};
 use crate::transport::{Readings, Stage};
+use std::f64::consts::SQRT_2;
 
 /// Share of |E0 - E1| that is stated as the bias where the difference is noise, and the smallest share elsewhere, 1. Chosen
 /// by trials in scenes with known values.
@@ -53,13 +56,27 @@ pub(super) struct Judged<'a> {
 }
 
 impl<'a> Judged<'a> {
-    /// Judges the sum of some scalars in a stage; `photons` carried the same light.
-    pub(super) fn new(stage: &'a Stage, photons: &Readings, slots: &[usize]) -> Self {
+    /// Judges the sum of some scalars in a stage, which follows another one or none; `photons` carried the same light.
+    pub(super) fn new(
+        (stage, before): (&'a Stage, Option<&Stage>),
+        photons: &Readings,
+        slots: &[usize],
+    ) -> Self {
         let orders = Orders::of(&stage.counts);
         let flux = orders.fourth.sum(slots);
         let lower = difference([orders.second, orders.fourth], slots);
         let higher = difference([orders.sixth, orders.fourth], slots);
-        let (share, resolution) = bias_share(&lower, &higher);
+        let (mut share, resolution) = bias_share(&lower, &higher);
+        let apart = match resolution {
+            // The orders may agree by chance alone.
+            Resolution::InNoise => lower.mean().hypot(lower.std_error()),
+            Resolution::Resolved | Resolution::NotResolved => lower.mean().abs(),
+        };
+        if let (Resolution::Resolved, Some(before)) = (resolution, before) {
+            let larger = Orders::of(&before.counts).fourth.sum(slots);
+            let left = left_by_stages([&larger, &flux], stage.number - before.number);
+            share = share.min(left / apart).max(LEAST_SHARE);
+        }
         let is_lit = |readings: &Readings| readings.lit_groups(slots) >= MIN_LIT_GROUPS;
         let off_photons = (is_lit(photons) && is_lit(orders.fourth)).then(|| {
             let photons = photons.sum(slots);
@@ -67,7 +84,7 @@ impl<'a> Judged<'a> {
             let is_rounding = off.abs() <= ROUNDING * flux.mean().abs();
             [if is_rounding { 0.0 } else { off }, photons.std_error()]
         });
-        let by_windows = share * lower.mean().abs();
+        let by_windows = share * apart;
         let bias =
             off_photons.map_or(by_windows, |off| by_windows.max(bias_by_photons(&flux, off)));
         Self { stage, orders, resolution, flux, share, bias, off_photons }
@@ -84,6 +101,18 @@ impl<'a> Judged<'a> {
         self.bias > PLAIN * self.flux.std_error()
     }
 
+    /// How often the window should shrink where bias limits: once, or twice where bias and noise together are then smaller.
+    /// A shrink halves the bias, and doubles the variance of a pass. The next stage has at least the passes of a first one.
+    pub(super) fn shrinks(&self) -> u32 {
+        let passes = self.orders.fourth.batch_count() as f64;
+        let variance = self.flux.std_error().powi(2) * passes / passes.max(FIRST_PASSES as f64);
+        let left = |shrinks: i32| {
+            let factor = 2.0_f64.powi(shrinks);
+            (self.bias / factor).powi(2) + factor * variance
+        };
+        if left(2) < left(1) { 2 } else { 1 }
+    }
+
     /// Whether the bias is above the noise.
     pub(super) fn is_limiting(&self) -> bool {
         self.resolution == Resolution::NotResolved || self.bias > self.flux.std_error()
@@ -97,7 +126,10 @@ pub(super) fn best<'a>(
     photons: &Readings,
     slots: &[usize],
 ) -> Option<Judged<'a>> {
-    let judged = stages.iter().map(|stage| Judged::new(stage, photons, slots));
+    let judged = stages.iter().enumerate().map(|(place, stage)| {
+        let before = place.checked_sub(1).map(|place| &stages[place]);
+        Judged::new((stage, before), photons, slots)
+    });
     let order = |judged: &Judged<'_>| {
         let passes = judged.orders.fourth.batch_count();
         (passes < MIN_LIT_GROUPS as u64, judged.total_error())
@@ -135,6 +167,14 @@ fn bias_share(lower: &Tally, higher: &Tally) -> (f64, Resolution) {
     let [of_lower, of_higher] = EDGE;
     let at_most = (higher.mean().abs() + higher.std_error()) / size;
     ((of_higher * at_most).clamp(LEAST_SHARE, of_lower), Resolution::Resolved)
+}
+
+/// The bias that may remain in the second of two fluxes, by stages whose windows shrank this many times between them, lm or W:
+/// a bias at least in proportion to the size of the window would have left that difference, and its error, behind.
+fn left_by_stages([before, now]: [&Tally; 2], shrinks: u32) -> f64 {
+    let ratio = SQRT_2.powi(shrinks as i32);
+    let apart = (before.mean() - now.mean()).abs() + before.std_error().hypot(now.std_error());
+    apart / (ratio - 1.0)
 }
 
 /// The least bias, lm or W, of a flux that differs from that of photons by `off`, with the error of the latter: 0 if noise
@@ -190,11 +230,40 @@ mod tests {
     }
 
     #[test]
+    fn what_a_larger_window_leaves_alone_is_no_bias_of_a_smaller_one() {
+        // In proportion to the window, 1 % of bias would have been 2 % before two shrinks.
+        assert!((left_by_stages([&tally(1.02, 0.0), &tally(1.01, 0.0)], 2) - 0.01).abs() < 1e-12);
+        let noise = left_by_stages([&tally(1.0, 0.003), &tally(1.0, 0.004)], 2);
+        assert!((noise - 0.005).abs() < 1e-12, "{noise}");
+        let photons = readings(0.0, 0.0, 8);
+        let judged = |before: Option<&Stage>| {
+            let orders = [0.9, 1.0, 1.03].map(|flux| readings(flux, 1e-6, 16));
+            let stage = Stage { number: 2, counts: Counts::closed(orders) };
+            Judged::new((&stage, before), &photons, &[0]).bias
+        };
+        assert!((judged(None) - 0.2 / 3.0).abs() < 1e-5, "an edge");
+        assert!((judged(Some(&stage(0, 0.6, 1e-6, 16))) - 0.025).abs() < 1e-5, "none");
+    }
+
+    #[test]
     fn photons_contradict_beyond_three_errors() {
         let flux = tally(1.0, 0.1);
         assert_eq!(bias_by_photons(&flux, [0.4, 0.1]), 0.0);
         assert!((bias_by_photons(&flux, [-0.5, 0.1]) - 0.6).abs() < 1e-12);
     }
+
+    #[test]
+    fn orders_that_agree_by_chance_leave_their_noise_as_bias() {
+        let photons = readings(0.0, 0.0, 8);
+        let alternate = |sign: f64| readings(1.0, sign * 0.1, 9);
+        let counts = Counts::closed([alternate(1.0), alternate(-1.0), alternate(-1.0)]);
+        let stage = Stage { number: 0, counts };
+        let judged = Judged::new((&stage, None), &photons, &[0]);
+        assert_eq!(judged.resolution, Resolution::InNoise);
+        let [mean, error] = [0.2 / 9.0, 0.2 * ((80.0 / 81.0) / 8.0_f64).sqrt()];
+        assert!((judged.bias - USUAL_SHARE * mean.hypot(error)).abs() < 1e-12, "{}", judged.bias);
+    }
+
     /// Readings of passes with one scalar, which is alternately a little more and less than this.
     fn readings(flux: f64, scatter: f64, passes: u64) -> Readings {
         let of_pass = |pass: u64| Group {
@@ -225,13 +294,26 @@ mod tests {
         let photons = readings(0.0, 0.0, 8);
         let judged = |second| {
             let stage = stage(0, second, 0.1, 8);
-            let judged = Judged::new(&stage, &photons, &[0]);
+            let judged = Judged::new((&stage, None), &photons, &[0]);
             [judged.is_limiting(), judged.is_plainly_limiting()]
         };
         // Standard error 0.038 of either; a quarter of |E0 - E1| is stated.
         assert_eq!(judged(1.12), [false, false]);
         assert_eq!(judged(1.2), [true, false]);
         assert_eq!(judged(1.4), [true, true]);
+    }
+
+    #[test]
+    fn a_bias_far_above_the_noise_shrinks_the_window_twice() {
+        let photons = readings(0.0, 0.0, 8);
+        let shrinks = |second, passes| {
+            let stage = stage(0, second, 0.1, passes);
+            Judged::new((&stage, None), &photons, &[0]).shrinks()
+        };
+        // Biases of a quarter of 0.3 and of 0.5. Standard error 0.038 of 8 passes, 0.027 of 16 to come: 0.065 after one shrink
+        // and 0.057 after two for the first, 0.073 and 0.062 for the second.
+        assert_eq!([shrinks(1.3, 8), shrinks(1.5, 8)], [1, 2]);
+        assert_eq!([shrinks(1.3, 64), shrinks(1.5, 64)], [2, 2], "less noise");
     }
 
     #[test]

@@ -99,16 +99,20 @@ impl<'s> Gather<'s> {
         self.sensors.iter().map(|(id, _)| *id)
     }
 
-    /// Whether a smaller window would help: the bias of any sensor in a stage is above its noise, by two standard errors if
-    /// the stage has fewer passes than planned.
-    pub(crate) fn is_limited_by_bias(&self, stage: &Stage, photons: &Readings) -> bool {
+    /// How often the window should shrink before the next stage: 0 where noise limits all sensors, or where the bias of those
+    /// with fewer passes than planned is within two standard errors. The last of the stages is in progress. Of several sensors, the most modest decides.
+    pub(crate) fn shrinks(&self, stages: &[Stage], photons: &Readings) -> u32 {
+        let Some((stage, earlier)) = stages.split_last() else { return 0 };
         let passes = stage.counts.first().batch_count();
         let is_complete = passes >= self.settings.planned_passes(stage.number);
-        let limits = |(id, _): &(SensorId, Arrivals<'_>)| {
-            let judged = Judged::new(stage, photons, &self.layout.flux_slots(*id));
-            if is_complete { judged.is_limiting() } else { judged.is_plainly_limiting() }
-        };
-        self.settings.has_stages() && self.sensors.iter().any(limits)
+        let wanted = self.sensors.iter().filter_map(|(id, _)| {
+            let slots = self.layout.flux_slots(*id);
+            let judged = Judged::new((stage, earlier.last()), photons, &slots);
+            let limits =
+                if is_complete { judged.is_limiting() } else { judged.is_plainly_limiting() };
+            limits.then(|| judged.shrinks())
+        });
+        if self.settings.has_stages() { wanted.min().unwrap_or(0) } else { 0 }
     }
 }
 

@@ -11,6 +11,7 @@ use crate::transport::estimators::{BatchBlock, Observers, Portion, Prepared};
 use crate::transport::forward::Forward;
 use crate::transport::run::findings::Findings;
 use crate::transport::stop::{Pace, StopSignal};
+use crate::transport::tally::readings::MIN_LIT_GROUPS;
 use crate::transport::tally::sums::Merge;
 use crate::transport::tally::{Counts, Series, merged};
 use crate::transport::task::Task;
@@ -276,43 +277,58 @@ impl<'s> Run<'s> {
         self.others.iter().any(|(own, series)| own.may_end_stage(series))
     }
 
-    /// Whether bias limits the flux of a sensor more than noise does, and a stage with less may follow.
-    pub fn is_limited_by_bias(&self) -> bool {
-        let Some(photons) = self.photons.in_progress() else { return false };
-        let photons = photons.counts.first();
-        self.others.iter().any(|(own, series)| own.is_limited_by_bias(series, photons))
+    /// Starts the next stage of every estimator whose stage may end.
+    pub fn next_stage(&mut self) {
+        self.begin_stages(&vec![0; self.others.len()]);
     }
 
     /// Lets the estimators decide after a round how to go on: where bias limits the run, a stage
     /// with less bias follows. If the run has a target, the caller knows whether bias limits that one. Returns the waves
     /// after which the next round ends.
     pub fn end_round(&mut self, limits_target: Option<bool>) -> u64 {
+        let ahead = self.stages_ahead();
+        let is_limited = ahead.iter().any(|&stages| stages > 0);
         let is_due = match limits_target {
-            Some(limits) => limits && (self.may_end_stage() || self.is_limited_by_bias()),
-            None => self.is_limited_by_bias(),
+            Some(limits) => limits && (is_limited || self.may_end_stage()),
+            None => is_limited,
         };
         if is_due {
-            self.next_stage();
+            self.begin_stages(&ahead);
         }
         self.round_end()
     }
 
-    /// Starts the next stage of every estimator whose bias limits the flux of a sensor; where bias limits none, a target may
-    /// still ask for less, and all whose stage may end go on.
-    pub fn next_stage(&mut self) {
-        let Some(photons) = self.photons.in_progress() else { return };
+    /// How many stages ahead each estimator should go on; 0 where noise limits it.
+    fn stages_ahead(&self) -> Vec<u32> {
+        let Some(photons) = self.photons.in_progress() else { return vec![0; self.others.len()] };
         let photons = photons.counts.first();
-        let limited: Vec<bool> = self
-            .others
-            .iter()
-            .map(|(own, series)| own.is_limited_by_bias(series, photons))
-            .collect();
-        let all = !limited.contains(&true);
-        for ((own, series), limited) in self.others.iter_mut().zip(limited) {
-            if limited || (all && own.may_end_stage(series)) {
-                series.next_stage();
+        self.others.iter().map(|(own, series)| own.stages_ahead(series, photons)).collect()
+    }
+
+    /// Starts a stage of every estimator whose bias limits the flux of a sensor; where bias limits none, a target may still
+    /// ask for less, and all whose stage may end go on to the next. The stage is one for which the paths that are left are
+    /// enough; without one, the stage in progress goes on.
+    fn begin_stages(&mut self, ahead: &[u32]) {
+        let is_limited = ahead.iter().any(|&stages| stages > 0);
+        for (place, &stages) in ahead.iter().enumerate() {
+            let (own, series) = &self.others[place];
+            if stages > 0 || (!is_limited && own.may_end_stage(series)) {
+                let next = (1..=stages.max(1)).map(|stages| series.stage() + stages);
+                if let Some(stage) = next.rev().find(|&stage| self.has_paths_for(place, stage)) {
+                    self.others[place].1.begin_stage(stage);
+                }
             }
         }
+    }
+
+    /// Whether the paths that are left make passes enough for an error in this stage of an estimator.
+    fn has_paths_for(&self, place: usize, stage: u32) -> bool {
+        let stages = self.others.iter().enumerate().map(|(other, (own, series))| {
+            own.batch_paths(if other == place { stage } else { series.stage() })
+        });
+        let pass = self.photons_per_batch() + stages.sum::<u64>();
+        let left = self.planned_paths().map(|paths| paths.saturating_sub(self.paths));
+        left.is_none_or(|left| left >= MIN_LIT_GROUPS as u64 * pass)
     }
 
     /// Everything counted so far. At least one batch has been traced.

@@ -99,13 +99,13 @@ impl Series {
         self.sums.push(batch);
     }
 
-    /// Starts the next stage. The stage that ends here is kept: it gives the values until the next one has no
+    /// Starts a later stage. The stage that ends here is kept: it gives the values until the next one has no
     /// larger error.
-    pub(crate) fn next_stage(&mut self) {
+    pub(crate) fn begin_stage(&mut self, stage: u32) {
         let ends = self.in_progress();
         self.finished.drain(..self.finished.len().saturating_sub(1));
         self.finished.extend(ends);
-        self.stage += 1;
+        self.stage = stage;
         self.sums = Sums::default();
     }
 

@@ -8,20 +8,7 @@ use lumiduct_core::transport::{Phase, Run, StopAnswer, StopSignal};
 
 /// The short rod by one estimator, in small batches or passes, with a plan for more than is traced.
 fn settings(estimator: Request) -> Settings {
-    Settings {
-        estimator: Some(estimator),
-        gather: GatherPlan {
-            depth: Some(0),
-            radius_mm: Some(1.0),
-            angle_deg: Some(20.0),
-            records: Some(300),
-            photons: Some(500),
-            schedule: None,
-        },
-        paths: Some(60_000),
-        batch_paths: Some(40),
-        ..Settings::default()
-    }
+    crate::pipeline::tests::settings(estimator, 60_000)
 }
 
 fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {

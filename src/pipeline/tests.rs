@@ -1,8 +1,9 @@
-//! Runs that are saved and resumed.
+//! Runs that are saved and resumed, and the stages of runs of known length.
 
 use super::*;
 use crate::pipeline::checkpoint::Checkpoint;
 use lumiduct_core::plan::GatherPlan;
+use lumiduct_core::scene::SensorId;
 
 /// The short rod of the tests, with a sensor that can be estimated by photons and gathered.
 pub(super) const SCENE: &str = concat!(
@@ -46,17 +47,10 @@ fn resumes_at_every_pause(settings: &Settings, expected: Stop) {
     }
 }
 
-#[test]
-fn a_run_resumes_at_every_pause_to_the_same_end_the_last_pause_included() {
-    let forward = Settings {
-        estimator: Some(Request::Forward),
-        paths: Some(15_000),
-        batch_paths: Some(40),
-        ..Settings::default()
-    };
-    resumes_at_every_pause(&forward, Stop::Paths);
-    let gather = Settings {
-        estimator: Some(Request::Gather),
+/// Small batches, or passes of 800 paths at first with wide windows, whose bias is soon seen.
+pub(super) fn settings(estimator: Request, paths: u64) -> Settings {
+    Settings {
+        estimator: Some(estimator),
         gather: GatherPlan {
             depth: Some(0),
             radius_mm: Some(1.0),
@@ -65,9 +59,33 @@ fn a_run_resumes_at_every_pause_to_the_same_end_the_last_pause_included() {
             photons: Some(500),
             schedule: None,
         },
-        ..forward
-    };
-    resumes_at_every_pause(&gather, Stop::Paths);
+        paths: Some(paths),
+        batch_paths: Some(40),
+        ..Settings::default()
+    }
+}
+
+#[test]
+fn a_run_resumes_at_every_pause_to_the_same_end_the_last_pause_included() {
+    for estimator in [Request::Forward, Request::Gather] {
+        resumes_at_every_pause(&settings(estimator, 15_000), Stop::Paths);
+    }
+}
+
+#[test]
+fn no_stage_begins_that_the_paths_left_cannot_give_an_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut later_stages = 0;
+    for paths in [10_000, 13_000, 16_000, 20_000, 30_000, 60_000] {
+        let (traced, _) = pauses(&job(folder.path(), &settings(Request::Gather, paths)), None);
+        let stages = &traced.findings.of_sensor(SensorId::new(0)).unwrap().stages;
+        for stage in stages.iter().filter(|stage| stage.number > 0) {
+            let passes = stage.counts.first().batch_count();
+            assert!(passes >= 10, "{passes} passes of stage {} of {paths} paths", stage.number);
+            later_stages += 1;
+        }
+    }
+    assert!(later_stages > 0);
 }
 
 #[test]

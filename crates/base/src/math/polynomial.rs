@@ -15,6 +15,16 @@ pub enum SignChange {
     Fall,
 }
 
+impl SignChange {
+    /// The other one.
+    pub fn opposite(self) -> Self {
+        match self {
+            Self::Rise => Self::Fall,
+            Self::Fall => Self::Rise,
+        }
+    }
+}
+
 /// A sign change of a polynomial, and where it is.
 pub type Root = (f64, SignChange);
 
@@ -32,7 +42,7 @@ pub fn cubic(
 }
 
 /// Visits real roots of `Σ coefficients[i] tⁱ`, up to t⁴, in the finite interval [`lo`, `hi`] in ascending order: those of a
-/// wanted sign change, until the visitor breaks.
+/// wanted sign change, until the visitor breaks. An interval that ends before it starts is empty.
 ///
 /// The roots are the places where the sign changes, zero counting as positive: a root of even order
 /// is visited twice or not at all, and a root at an end only if the polynomial is negative next to
@@ -46,22 +56,7 @@ pub fn quartic(
     is_wanted: impl Fn(SignChange) -> bool,
     visit: impl FnMut(Root) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
-    let critical = |[_, d, c, b, a]: [f64; 5], [lo, hi]: [f64; 2]| {
-        let mut critical = [hi; 3];
-        let mut places = critical.iter_mut();
-        let slope = [d, 2.0 * c, 3.0 * b, 4.0 * a];
-        let own = critical_of_cubic([2.0 * c, 3.0 * b, 4.0 * a], lo, hi);
-        let _ = visit_pieces(
-            (&slope, [lo, hi]),
-            &own,
-            |_| true,
-            |(t, _)| {
-                places.next().into_iter().for_each(|place| *place = t);
-                ControlFlow::Continue(())
-            },
-        );
-        critical
-    };
+    let critical = |terms, [lo, hi]: [f64; 2]| critical_of_quartic(terms, lo, hi);
     visit_roots((coefficients, interval), critical, is_wanted, visit)
 }
 
@@ -74,6 +69,9 @@ fn visit_roots<const N: usize, const PIECES: usize>(
     is_wanted: impl Fn(SignChange) -> bool,
     mut visit: impl FnMut(Root) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
+    if lo > hi {
+        return ControlFlow::Continue(());
+    }
     let unit = power_of_two_below(lo.abs().max(hi.abs()));
     let (mut power, mut sum) = (1.0, 0.0);
     for term in &mut terms {
@@ -103,6 +101,21 @@ fn power_of_two_below(x: f64) -> f64 {
 #[inline]
 fn critical_of_cubic([c, b, a]: [f64; 3], lo: f64, hi: f64) -> [f64; 2] {
     quadratic(3.0 * a, b, c).map_or([hi; 2], |all| all.map(|t| t.max(lo).min(hi)))
+}
+
+/// The same of `e + d t + c t² + b t³ + a t⁴`.
+#[inline]
+fn critical_of_quartic([_, d, c, b, a]: [f64; 5], lo: f64, hi: f64) -> [f64; 3] {
+    let slope = [d, 2.0 * c, 3.0 * b, 4.0 * a];
+    let pieces = critical_of_cubic([slope[1], slope[2], slope[3]], lo, hi);
+    let (mut critical, mut found) = ([hi; 3], 0);
+    let keep = |(t, _): Root| {
+        critical[found] = t;
+        found += 1;
+        ControlFlow::Continue(())
+    };
+    let _ = visit_pieces((&slope, [lo, hi]), &pieces, |_| true, keep);
+    critical
 }
 
 /// Visits roots of a polynomial that is monotonic between the ends and the `critical` points.
@@ -248,6 +261,7 @@ mod tests {
     #[test]
     fn only_roots_inside_the_interval_are_given() {
         let coefficients = with_roots(&[-2.0, -1.0, 1.0, 2.0]);
+        assert!(polynomial_roots(&coefficients, 1.5, 0.5).is_empty());
         assert_eq!(polynomial_roots(&coefficients, -1.5, 1.5).as_slice(), [-1.0, 1.0]);
         assert!(polynomial_roots(&coefficients, 3.0, 9.0).is_empty());
     }

@@ -143,7 +143,7 @@ impl Shape {
     }
 
     /// The first crossing of the ray's line that is `wanted`. Planes and cylinders, which are most
-    /// of all surfaces, compute it faster than a list of all crossings.
+    /// of all surfaces, and tori compute it faster than a list of all crossings.
     #[inline(always)]
     pub(crate) fn first_crossing(
         &self,
@@ -154,8 +154,8 @@ impl Shape {
         match self {
             Self::Flat(shape) => shape.first_crossing(ray, start, wanted),
             Self::Cylinder(shape) => shape.first_crossing(ray, start, wanted),
+            Self::Torus(shape) => shape.first_crossing(&ray.lent(), start, wanted),
             Self::Cone(_)
-            | Self::Torus(_)
             | Self::Sphere(_)
             | Self::Paraboloid(_)
             | Self::ParabolicCylinder(_)
@@ -165,9 +165,6 @@ impl Shape {
 
     #[inline(never)]
     fn first_of_all(&self, ray: &Ray, start: RayStart, wanted: &CrossingQuery) -> Option<Crossing> {
-        if let Self::Torus(shape) = self {
-            return shape.first_crossing(ray, start, wanted);
-        }
         let mut first: Option<Crossing> = None;
         self.crossings(ray, start, |crossing| {
             if wanted.includes(&crossing) && first.is_none_or(|first| crossing.t < first.t) {

@@ -45,8 +45,8 @@ impl Wedge {
         }
     }
 
-    /// The part of a line's span in which it may be within the wedge, with a margin for rounding; empty, above its end, if
-    /// there is none. A wide wedge clips nothing.
+    /// The part of a span of a line in which it may be within the wedge, with a margin for rounding, in units of the size of
+    /// the shape; it ends before it starts if there is none. A wide wedge clips nothing.
     #[inline]
     pub(crate) fn clip(&self, [lo, hi]: [f64; 2], from: DVec2, dir: DVec2) -> [f64; 2] {
         const MARGIN: f64 = 1e-9;

@@ -4,9 +4,9 @@
 //! light its bias is a small part of E0 - E1. An edge of the light inside the windows leaves the most: if the bias is
 //! proportional to their size, 2/3 of E0 - E1 remains in E0, which is 2.8 times E00 - E0. The stated bias is therefore 2.8
 //! times the sum of |E00 - E0| and its standard error, within 1/4 and 2/3 of |E0 - E1|; where E0 - E1 is noise, half of the
-//! root of the squares of that difference and its error. Where the stage follows another, a bias in proportion to the window would
-//! also have changed E0 from one to the next, which limits it. If |E00 - E0| exceeds half of |E0 - E1|, higher orders do not
-//! converge, and the bias is not resolved.
+//! root of the squares of that difference and its error. A bias in proportion to the window would also have changed E0 from
+//! the stage before, which limits it. If |E00 - E0| exceeds half of |E0 - E1|, higher orders do not converge, and the bias
+//! is not resolved.
 //!
 //! Share and stage are chosen once per sensor, from its flux, never per cell. If photons of the same run contradict the
 //! flux, its bias is at least that difference. No measure of the sensor has a smaller relative bias than the flux, since
@@ -169,8 +169,8 @@ fn bias_share(lower: &Tally, higher: &Tally) -> (f64, Resolution) {
     ((of_higher * at_most).clamp(LEAST_SHARE, of_lower), Resolution::Resolved)
 }
 
-/// The bias that may remain in the second of two fluxes, by stages whose windows shrank this many times between them, lm or W:
-/// a bias at least in proportion to the size of the window would have left that difference, and its error, behind.
+/// The bias that may remain in the second of two fluxes, lm or W, by stages between which the window shrank this many times:
+/// docs/method.md, eq. (32).
 fn left_by_stages([before, now]: [&Tally; 2], shrinks: u32) -> f64 {
     let ratio = SQRT_2.powi(shrinks as i32);
     let apart = (before.mean() - now.mean()).abs() + before.std_error().hypot(now.std_error());

@@ -99,8 +99,9 @@ impl<'s> Gather<'s> {
         self.sensors.iter().map(|(id, _)| *id)
     }
 
-    /// How often the window should shrink before the next stage: 0 where noise limits all sensors, or where the bias of those
-    /// with fewer passes than planned is within two standard errors. The last of the stages is in progress. Of several sensors, the most modest decides.
+    /// How often the window should shrink after the last of the stages, which is in progress: 0 where noise limits all sensors,
+    /// or, with fewer passes than planned, where the bias of each is within two standard errors. Of several sensors, that
+    /// with the least need decides.
     pub(crate) fn shrinks(&self, stages: &[Stage], photons: &Readings) -> u32 {
         let Some((stage, earlier)) = stages.split_last() else { return 0 };
         let passes = stage.counts.first().batch_count();

@@ -3,7 +3,7 @@
 //! Within a stage radius and angle are fixed. Passes of a wave share photons and records, and their counts are corrected so that the
 //! spread of passes is a valid error bar (docs/method.md, eq. 29). Between stages the window shrinks by √2, the number of
 //! gather paths doubles as far as memory allows and the number of passes grows by 8, since pairs
-//! become rare: the bias of E1 and its standard error both halve. A value comes from one stage
+//! become rare: the bias of E1 and its standard error both halve. A stage is left out where bias is far above noise. A value comes from one stage
 //! alone. With the schedule `fixed` there is no second stage.
 
 use crate::plan::Schedule;

@@ -35,7 +35,7 @@ impl TorusLine {
         let reach = (1.0 + tube) * (1.0 + tube) - nearest.length_squared();
         let half_chord = bracket(reach.max(0.0));
         let span = [(lo - shift).max(-half_chord), (hi - shift).min(half_chord)];
-        if reach < 0.0 || span[0] > span[1] {
+        if reach < 0.0 {
             return ControlFlow::Continue(());
         }
         let across_axis = nearest.truncate();
@@ -106,9 +106,9 @@ impl TorusLine {
             )
         };
         if lo < 0.0 {
-            let is_wanted = |change| is_wanted(reversed(change));
+            let is_wanted = |change: SignChange| is_wanted(change.opposite());
             cubic(coefficients, [lo, hi.min(0.0)], is_wanted, |(t, change)| {
-                visit((polished(t, unsquared), reversed(change)))
+                visit((polished(t, unsquared), change.opposite()))
             })?;
         }
         if hi > 0.0 {
@@ -117,14 +117,6 @@ impl TorusLine {
             })?;
         }
         ControlFlow::Continue(())
-    }
-}
-
-/// The other sign change.
-fn reversed(change: SignChange) -> SignChange {
-    match change {
-        SignChange::Rise => SignChange::Fall,
-        SignChange::Fall => SignChange::Rise,
     }
 }
 

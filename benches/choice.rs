@@ -13,7 +13,7 @@ mod noise;
 use clock::cpu_seconds;
 use lumiduct_core::plan::{Estimator, Request, RunPlan, StopRules};
 use lumiduct_core::scene::{Scene, SensorId};
-use lumiduct_core::transport::{Findings, Interrupt, Orders, Readings, Run, Stage, StopSignal};
+use lumiduct_core::transport::{Findings, Interrupt, Run, StopSignal};
 use lumiduct_input::{self as input, Job, Settings};
 use noise::noise;
 use rayon::ThreadPoolBuilder;
@@ -129,20 +129,9 @@ impl Traced {
     }
 }
 
-/// Relative variance of the flux of a sensor, or over its cells of Σσ²/Σmean², in the findings of one estimator.
+/// Relative variance of the flux of a sensor, or over its cells of Σσ²/Σmean².
 fn variance(scene: &Scene, found: &Findings, sensor: usize) -> Option<f64> {
     let id = SensorId::new(sensor);
-    let Some(own) = found.of_sensor(id) else {
-        return relative_variance(scene, &found.photons, id);
-    };
-    let of_stage = |stage: &Stage| match found.estimators[sensor] {
-        Estimator::Gather => relative_variance(scene, Orders::of(&stage.counts).fourth, id),
-        _ => relative_variance(scene, stage.counts.first(), id),
-    };
-    own.stages.iter().filter_map(of_stage).min_by(f64::total_cmp)
-}
-
-fn relative_variance(scene: &Scene, readings: &Readings, sensor: SensorId) -> Option<f64> {
-    let [variance, square] = noise(scene, readings, sensor);
+    let [variance, square] = noise(scene, found.readings(scene, id), id);
     (square > 0.0).then(|| variance / square)
 }

@@ -171,7 +171,7 @@ pub(crate) const ROWS: [Row; 20] = [
             )
         }),
         truth: Reference::Traced(Request::Mix),
-        paths: 1_500_000,
+        paths: 150_000,
     },
 ];
 

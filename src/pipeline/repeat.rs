@@ -20,6 +20,10 @@ pub(super) fn command(job: &Job, findings: &Findings, stop: Stop) -> Option<Stri
         define(format!("{key}={}", estimator.name()));
     }
     define(format!("run.batches={}", findings.photons.batch_count()));
+    if let (Some(_), Some(planned)) = (findings.gathering().next(), job.run.stop.paths_for_stages())
+    {
+        define(format!("run.planned_paths={planned}"));
+    }
     let gather = &job.settings.gather;
     let [photons, records] = pass_size(job, findings);
     let flags = [

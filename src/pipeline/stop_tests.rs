@@ -3,8 +3,8 @@
 
 use crate::pipeline::tests::job as short_rod;
 use crate::pipeline::*;
-use lumiduct_core::plan::{Estimator, GatherPlan};
-use lumiduct_core::transport::{Phase, Run, StopAnswer, StopSignal};
+use lumiduct_core::plan::{Estimator, GatherPlan, RunPlan};
+use lumiduct_core::transport::{Phase, Run, StopAnswer, StopSignal, batch_paths};
 
 /// The short rod by one estimator, in small batches or passes, with a plan for more than is traced.
 fn settings(estimator: Request) -> Settings {
@@ -145,6 +145,46 @@ fn passes_of_gathering_fit_into_a_short_time_and_their_command_repeats_them() {
 }
 
 #[test]
+fn large_batches_of_a_run_of_limited_time_are_resumed_and_repeated() {
+    let folder = tempfile::tempdir().unwrap();
+    let time = Some(std::time::Duration::from_secs(3600));
+    for estimator in [Request::Forward, Request::Backward, Request::Mix] {
+        let options = Settings { estimator: Some(estimator), time, ..Settings::default() };
+        let job = short_rod(folder.path(), &options);
+        let start = |checks, plan: &RunPlan| {
+            let signal = StopSignal::ending_at_check(&Interrupt::default(), checks, 40);
+            on_threads(2, || Run::start(&job.scene, plan, &signal, &mut |_| ())).unwrap()
+        };
+        let go_on = |run: &mut Run<'_>, pieces| {
+            (0..pieces).for_each(|_| on_threads(2, || run.next_piece()));
+        };
+        let mut run = start(60_000, &job.run);
+        let usual = batch_paths(&job.scene, &job.run);
+        // Half of the work of the mix and a tenth of that of backward are photons.
+        let least = if estimator == Request::Forward { usual } else { usual / 4 };
+        assert!(run.photons_per_batch() > least, "{} photons", run.photons_per_batch());
+        go_on(&mut run, 3);
+        let state = run.state();
+        go_on(&mut run, 2);
+        let mut resumed = start(5_000, &state.plan(&job.run));
+        resumed.restore(state);
+        go_on(&mut resumed, 2);
+        let findings = run.findings();
+        assert!(resumed.findings() == findings, "{}", estimator.name());
+
+        let repeated = Settings {
+            overrides: vec![format!("run.batches={}", run.batches())],
+            paths: Some(run.paths()),
+            time: None,
+            ..options
+        };
+        let again = short_rod(folder.path(), &repeated);
+        let same = on_threads(3, || trace(&again, &Interrupt::default(), &mut |_| ()));
+        assert!(same.unwrap().findings == findings, "{}", estimator.name());
+    }
+}
+
+#[test]
 fn an_interrupted_run_of_automatic_passes_is_repeated_by_its_command() {
     let folder = tempfile::tempdir().unwrap();
     let (asked, estimator) = (60_000, Some(Request::Gather));
@@ -176,6 +216,35 @@ fn an_interrupted_run_of_automatic_passes_is_repeated_by_its_command() {
         repeated += 1;
     }
     assert!(repeated >= 2, "{repeated} of 3 runs had begun");
+}
+
+#[test]
+fn a_run_stopped_soon_after_a_stage_began_is_repeated_by_its_command() {
+    let folder = tempfile::tempdir().unwrap();
+    let options = settings(Request::Gather);
+    let job = short_rod(folder.path(), &options);
+    let (mut repeated, whole) = (0, Interrupt::default());
+    trace(&job, &whole, &mut |_| ()).unwrap();
+    for check in (1..20).map(|part| part * whole.checks() / 40) {
+        let Ok(traced) = on_threads(1, || stopped_at(check, &job)).0 else { continue };
+        let stages = &traced.findings.others[0].stages;
+        let few = stages.last().filter(|stage| stage.number > 0);
+        let Some(stage) = few.filter(|stage| stage.counts.first().batch_count() < 16) else {
+            continue;
+        };
+        let command = compose(&job, &traced.findings, traced.stop).run.repeat.unwrap();
+        let own = ["run.batches", "run.planned_paths"].map(|key| {
+            let word = command.split_whitespace().find(|word| word.starts_with(key));
+            word.unwrap_or_else(|| panic!("no {key} in {command}")).to_owned()
+        });
+        let (overrides, paths) = (own.to_vec(), Some(traced.findings.paths));
+        let again =
+            short_rod(folder.path(), &Settings { overrides, paths, ..settings(Request::Gather) });
+        let same = on_threads(2, || trace(&again, &Interrupt::default(), &mut |_| ())).unwrap();
+        assert!(same.findings == traced.findings, "stage {}: {command}", stage.number);
+        repeated += 1;
+    }
+    assert!(repeated >= 2, "{repeated} stopped early in a stage");
 }
 
 #[test]

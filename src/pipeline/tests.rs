@@ -73,11 +73,17 @@ fn a_run_resumes_at_every_pause_to_the_same_end_the_last_pause_included() {
 }
 
 #[test]
-fn no_stage_begins_that_the_paths_left_cannot_give_an_error() {
+fn a_stage_begins_only_with_paths_for_ten_passes() {
     let folder = tempfile::tempdir().unwrap();
     let mut later_stages = 0;
-    for paths in [10_000, 13_000, 16_000, 20_000, 30_000, 60_000] {
-        let (traced, _) = pauses(&job(folder.path(), &settings(Request::Gather, paths)), None);
+    let usual = [10_000, 13_000, 16_000, 20_000, 30_000, 60_000].map(|paths| ([500, 300], paths));
+    // Twelve passes are left of the first size, and eight of the second.
+    let rounded = [15_300, 16_000, 16_400].map(|paths| ([800, 150], paths));
+    for ([photons, records], paths) in usual.into_iter().chain(rounded) {
+        let own = settings(Request::Gather, paths);
+        let [photons, records] = [photons, records].map(Some);
+        let own = Settings { gather: GatherPlan { photons, records, ..own.gather }, ..own };
+        let (traced, _) = pauses(&job(folder.path(), &own), None);
         let stages = &traced.findings.of_sensor(SensorId::new(0)).unwrap().stages;
         for stage in stages.iter().filter(|stage| stage.number > 0) {
             let passes = stage.counts.first().batch_count();

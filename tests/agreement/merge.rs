@@ -8,7 +8,7 @@ use crate::trial::{Gathering, Way, agree, findings, load};
 use glam::DVec3;
 use lumiduct_core::rng::Sampler;
 use lumiduct_core::scene::{Arrival, Arrivals, SensorId, SensorKind, SourceId};
-use lumiduct_core::transport::{Layout, Orders};
+use lumiduct_core::transport::{Layout, Orders, batch_paths};
 
 /// Forward, backward, and merged at depths 0, 2 and 8.
 fn all_agree(what: &str, text: &str) {
@@ -195,7 +195,9 @@ seen = {sensor}
 fn variances(text: &str, gathering: Gathering) -> [f64; 4] {
     const PASSES: u64 = 64;
     let of = |way: Way| {
-        let job = load(text, way);
+        let mut job = load(text, way);
+        // Points gain more in larger batches: none is larger than a pass.
+        job.run.batch_paths = Some(batch_paths(&job.scene, &job.run));
         let found = findings(&job, way);
         let layout = Layout::new(&job.scene);
         let slot = layout.sensor_flux(SensorId::new(0), SourceId::new(0));

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 /// Version of the numerics. Every change that alters a committed report raises it, so that a
 /// report, a checkpoint or a record from older numerics is never mistaken for a current one.
-pub const NUMERICS: u32 = 11;
+pub const NUMERICS: u32 = 12;
 
 /// How to trace and when to stop. Its names in files are part of the identity of a run, and stay
 /// fixed when the code changes.
@@ -253,12 +253,22 @@ pub struct StopRules {
     /// many. `None` for whole waves.
     #[serde(rename = "batches")]
     pub batches: Option<u64>,
+    /// With `batches`, which repeat a stopped run: the paths that it had been asked for, which decide whether a stage begins.
+    #[serde(rename = "planned_paths")]
+    pub planned_paths: Option<u64>,
     /// After this time.
     #[serde(rename = "time")]
     pub time: Option<Duration>,
     /// When a measure is known accurately enough.
     #[serde(rename = "target")]
     pub target: Option<Target>,
+}
+
+impl StopRules {
+    /// Paths that must suffice for a stage of gathering before it begins; `None` where the end of the run is not known.
+    pub fn paths_for_stages(&self) -> Option<u64> {
+        if self.batches.is_some() { self.planned_paths } else { self.paths }
+    }
 }
 
 /// An uncertainty to reach.
@@ -350,13 +360,19 @@ mod tests {
             seed: 7,
             bounce_limit: 100,
             batch_paths: None,
-            stop: StopRules { paths, batches: Some(3), time, target: Some(target) },
+            stop: StopRules {
+                paths,
+                batches: Some(3),
+                planned_paths: Some(90),
+                time,
+                target: Some(target),
+            },
         };
         let text = serde_json::to_string(&plan).unwrap();
         let expected = concat!(
             r#"{"estimator":"gather","sensor_estimators":[null,"mis"],"gather":{"depth":8,"radius_mm":0.5,"angle_deg":6.0,"records":1000,"#,
             r#""photons":5000,"schedule":"fixed"},"seed":7,"bounce_limit":100,"batch_paths":null,"#,
-            r#""stop":{"paths":20,"batches":3,"time":{"secs":1,"nanos":500000000},"#,
+            r#""stop":{"paths":20,"batches":3,"planned_paths":90,"time":{"secs":1,"nanos":500000000},"#,
             r#""target":{"measure":"exit.flux","relative_error":0.005}}}"#
         );
         assert_eq!(text, expected);

@@ -163,12 +163,15 @@ fn apply(settings: &Settings, scene: &Scene, run: &mut RunPlan) -> Result<()> {
     }
     run.batch_paths = settings.batch_paths;
     if settings.paths.is_none() && settings.time.is_none() && settings.target.is_none() {
-        let is_without_paths = run.stop.batches.is_some() && run.stop.paths.is_none();
-        return if is_without_paths {
-            let message = "`run.batches` divides a number of paths, which this run does not have: give --paths";
-            Err(Error::Usage(message.into()))
-        } else {
-            Ok(())
+        let StopRules { paths, batches, planned_paths, .. } = run.stop;
+        return match (paths, batches, planned_paths) {
+            (None, Some(_), _) => Err(Error::Usage(
+                "`run.batches` divides a number of paths, which this run does not have: give --paths".into(),
+            )),
+            (_, None, Some(_)) => Err(Error::Usage(
+                "`run.planned_paths` is for runs that are repeated with `run.batches`: give it, or remove the key".into(),
+            )),
+            _ => Ok(()),
         };
     }
     let of_file = run.stop.target.as_ref().map(|target| target.measure.clone());
@@ -183,7 +186,9 @@ fn apply(settings: &Settings, scene: &Scene, run: &mut RunPlan) -> Result<()> {
         (None, _) => None,
     };
     // The batches of the file divide the paths of the command line as they do those of the file.
-    let batches = settings.paths.and(run.stop.batches);
-    run.stop = StopRules { paths: settings.paths, batches, time: settings.time, target };
+    let [batches, planned_paths] =
+        [run.stop.batches, run.stop.planned_paths].map(|of_file| settings.paths.and(of_file));
+    let (paths, time) = (settings.paths, settings.time);
+    run.stop = StopRules { paths, batches, planned_paths, time, target };
     Ok(())
 }

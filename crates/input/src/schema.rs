@@ -345,6 +345,7 @@ mod tests {
             "cosine_power",
             "paths",
             "batches",
+            "planned_paths",
             "seed",
             "bounce_limit",
             "depth",

@@ -123,10 +123,12 @@ impl<'s> Runner<'s> {
         }
     }
 
-    /// Whether its readings include all its work: waves are included only when complete.
+    /// Whether its readings include all its work: waves of passes are included only when complete.
     fn is_readable(&self) -> bool {
         match self {
-            Self::Run { run, .. } => run.waves() == 0 || run.is_between_waves(),
+            Self::Run { run, .. } => {
+                !run.has_passes() || run.waves() == 0 || run.is_between_waves()
+            }
             Self::Baseline(_) => true,
         }
     }
@@ -134,7 +136,7 @@ impl<'s> Runner<'s> {
     /// Whether it must be sampled whenever it is readable.
     fn is_rarely_readable(&self) -> bool {
         match self {
-            Self::Run { run, .. } => run.waves() > 0,
+            Self::Run { run, .. } => run.has_passes() && run.waves() > 0,
             Self::Baseline(_) => false,
         }
     }

@@ -15,16 +15,6 @@ pub enum SignChange {
     Fall,
 }
 
-impl SignChange {
-    /// The other one.
-    pub fn opposite(self) -> Self {
-        match self {
-            Self::Rise => Self::Fall,
-            Self::Fall => Self::Rise,
-        }
-    }
-}
-
 /// A sign change of a polynomial, and where it is.
 pub type Root = (f64, SignChange);
 

@@ -101,6 +101,23 @@ impl<'a> Evidence<'a> {
         self.measure(value, std_error, "1", trust(value, std_error, lit))
     }
 
+    /// The mean of a number over the light of a sensor, from the sum of flux times that number. One more count whose number
+    /// differs by 1 is always possible: where all counted ones agree, that is the error.
+    pub(crate) fn mean_number(&self, weighted: &[usize], flux: &[usize]) -> Measure {
+        let mean = self.ratio(weighted, flux);
+        if mean.status == Status::NoSignal {
+            return mean;
+        }
+        let all = self.readings.sum(flux);
+        // n counts of equal flux have a relative error of 1/sqrt(n), and photons have counts of known flux.
+        let by_error = (all.std_error() / all.mean()).powi(2);
+        let one_count = match self.estimator {
+            Estimator::Forward => by_error.max(self.path_flux() / all.mean()),
+            _ => by_error,
+        };
+        Measure { std_error: mean.std_error.hypot(one_count), ..mean }
+    }
+
     /// Flux of a sensor over flux that only photons know.
     pub(crate) fn ratio_to_photons(&self, parts: &[usize], whole: &[usize]) -> Measure {
         if self.estimator == Estimator::Forward {
@@ -148,7 +165,7 @@ impl<'a> Evidence<'a> {
         let known = |mean: f64, error: f64| {
             if error.is_nan() {
                 f64::INFINITY
-            } else if error * error * batches as f64 <= SQUARES_ROUNDING * mean * mean {
+            } else if error <= self.rounding(mean) {
                 0.0
             } else {
                 error
@@ -156,6 +173,11 @@ impl<'a> Evidence<'a> {
         };
         let mean = |cell| cells.mean(cell, batches);
         values.map(mean).map(|(mean, error)| (mean, known(mean, error).max(-mean))).collect()
+    }
+
+    /// Largest standard error of a cell that a sum of squares may hide by rounding.
+    pub(crate) fn rounding(&self, mean: f64) -> f64 {
+        mean.abs() * (SQUARES_ROUNDING / self.readings.batch_count() as f64).sqrt()
     }
 
     /// Flux that one count adds to a cell, lm or W. n counts have a mean of n and a variance of n

@@ -168,7 +168,7 @@ fn density(evidence: &Evidence<'_>, id: SensorId, out: &mut IndexMap<String, Mea
 fn depths(evidence: &Evidence<'_>, id: SensorId, out: &mut IndexMap<String, Measure>) {
     let flux = evidence.layout.flux_slots(id);
     let layout = evidence.layout;
-    out.insert("bounces_mean".into(), evidence.ratio(&[layout.depth_weighted(id)], &flux));
+    out.insert("bounces_mean".into(), evidence.mean_number(&[layout.depth_weighted(id)], &flux));
     for (tail, depth) in TAILS.iter().enumerate() {
         let share = evidence.ratio(&[layout.deeper(id, tail)], &flux);
         out.insert(format!("share_deeper_than_{depth}"), share);

@@ -194,7 +194,8 @@ fn summary(
     }
 }
 
-/// Average over the sensor with its standard error: from groups of batches where scalars have the same light.
+/// Average over the sensor with its standard error: from groups of batches where scalars have the same light, otherwise from
+/// cells, whose errors below rounding are unknown.
 fn average(evidence: &Evidence<'_>, seen: &SensorCells<'_>) -> [f64; 2] {
     if seen.is_dark {
         return [0.0, 0.0];
@@ -204,7 +205,7 @@ fn average(evidence: &Evidence<'_>, seen: &SensorCells<'_>) -> [f64; 2] {
         return [mean.value, mean.std_error];
     }
     let mean = seen.mean(0..seen.areas.len());
-    [mean.value, mean.std_error]
+    [mean.value, mean.std_error.max(evidence.rounding(mean.value))]
 }
 
 fn at_points(points: &[Vec<usize>], seen: &SensorCells<'_>, field: &ValueField<'_>) -> Uniformity {

@@ -43,7 +43,7 @@ pub struct EstimatorFindings {
     pub sensors: Vec<SensorId>,
     /// Settings of gathering.
     pub settings: Option<GatherSettings>,
-    /// The last finished stage and the one after it, as far as it has got.
+    /// Its last stages, at most three; one of the last two gives the values.
     pub stages: Vec<Stage>,
 }
 
@@ -95,6 +95,15 @@ impl<'s> Prepared<'s> {
         match self {
             Self::Backward(own) | Self::Mix(own) => own.batch_paths(),
             Self::Gather(own) | Self::Mis(own) => own.batch_paths(stage),
+        }
+    }
+
+    /// The same with gather paths in a batch in proportion to these numbers, new and old; those of a pass are part of its settings.
+    pub(crate) fn resized(self, sizes: [u64; 2]) -> Self {
+        match self {
+            Self::Backward(own) => Self::Backward(own.resized(sizes)),
+            Self::Mix(own) => Self::Mix(own.resized(sizes)),
+            Self::Gather(_) | Self::Mis(_) => self,
         }
     }
 
@@ -172,26 +181,18 @@ impl<'s> Prepared<'s> {
     /// How many stages ahead the next one should be: 0 where bias limits none of its values more than noise does.
     pub(crate) fn stages_ahead(&self, series: &Series, photons: &Readings) -> u32 {
         match self {
-            Self::Backward(_) | Self::Mix(_) => 0,
-            Self::Gather(own) | Self::Mis(own) => {
-                if series.batches() > 0 {
-                    own.shrinks(&series.stages(), photons)
-                } else {
-                    0
-                }
+            Self::Gather(own) | Self::Mis(own) if series.batches() > 0 => {
+                own.shrinks(&series.stages(), photons)
             }
+            Self::Backward(_) | Self::Mix(_) | Self::Gather(_) | Self::Mis(_) => 0,
         }
     }
 
     /// What it has found so far.
     pub(crate) fn found(&self, series: &Series) -> EstimatorFindings {
-        let settings = match self {
-            Self::Backward(_) | Self::Mix(_) => None,
-            Self::Gather(own) | Self::Mis(own) => Some(own.settings),
-        };
-        let sensors = match self {
-            Self::Backward(own) | Self::Mix(own) => own.sensors().collect(),
-            Self::Gather(own) | Self::Mis(own) => own.sensors().collect(),
+        let (settings, sensors) = match self {
+            Self::Backward(own) | Self::Mix(own) => (None, own.sensors().collect()),
+            Self::Gather(own) | Self::Mis(own) => (Some(own.settings), own.sensors().collect()),
         };
         EstimatorFindings {
             estimator: self.estimator(),

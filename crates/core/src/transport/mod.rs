@@ -1,11 +1,12 @@
 //! Light through a scene: photon paths, the one bounce loop, estimators, and their readings.
 //!
 //! This layer does not know file formats or reports. Its output is one serialisable value,
-//! [`Findings`]. From the bottom up: `stop`, `tally`, `walk`; `task`, `trial` and `estimate`, what
-//! every estimator gets and gives; `window`; `connect`; `forward`, `backward` and `gather`; `estimators`, the
+//! [`Findings`]. From the bottom up: `tally`, `stop`, `walk`; `task`, `trial` and `estimate`, what
+//! every estimator gets and gives; `batches`; `window`; `connect`; `forward`, `backward` and `gather`; `estimators`, the
 //! one seam in front of them; `choose`, `run`.
 
 mod backward;
+mod batches;
 mod choose;
 pub(crate) mod connect;
 mod estimate;

@@ -3,6 +3,7 @@
 //! The interval between two checks is a fixed amount of counted work, not of time. Stopped work is
 //! dropped as a whole: results depend only on the number of finished batches.
 
+use crate::transport::tally::work;
 use std::cell::Cell;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -173,19 +174,23 @@ impl StopSignal {
         })
     }
 
-    /// Segments of paths that fit in the remaining time; `None` if it is not limited. `time`
-    /// measures the time of a segment, s.
-    pub(crate) fn work_left(&self, time: impl FnOnce() -> Option<f64>) -> Option<f64> {
-        match self.end? {
+    /// Whether the clock ends work.
+    pub(crate) fn is_timed(&self) -> bool {
+        matches!(self.end, Some(TimeLimit::At(_)))
+    }
+
+    /// Work of one thread that fits in the remaining time, ns (`work`); `None` if it is not limited. A thread does `speed`
+    /// times as much as that of the reference machine.
+    pub(crate) fn work_left(&self, speed: f64) -> Option<f64> {
+        Some(match self.end? {
             TimeLimit::At(end) => {
-                let time = time()?;
-                Some(end.saturating_duration_since(Instant::now()).as_secs_f64() / time)
+                1e9 * speed * end.saturating_duration_since(Instant::now()).as_secs_f64()
             }
             TimeLimit::AtCheck { check, .. } => {
                 let left = check.saturating_sub(self.interrupt.checks());
-                Some(left as f64 * f64::from(CHECK_EVERY))
+                work::OF_PHOTON_SEGMENT * left as f64 * f64::from(CHECK_EVERY)
             }
-        }
+        })
     }
 
     fn with_end(&self, other: impl FnOnce(TimeLimit) -> TimeLimit) -> Self {

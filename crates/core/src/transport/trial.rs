@@ -10,6 +10,10 @@ use serde::{Deserialize, Serialize};
 
 /// Batches from which an estimator is judged: the error of a variance is then 18 %.
 pub(crate) const BATCHES: u64 = 64;
+/// Work of the smaller batches that are tried first, over that of the trial, 1.
+const SMALL: f64 = 1.0 / 16.0;
+/// Smaller batches that must have found light before their variance counts.
+const LIT_BATCHES: usize = BATCHES as usize / 2;
 /// The pilot uses random numbers of another seed, so that its paths do not count again in the run.
 pub(crate) const SEED: u64 = 0x7069_6c6f_7431;
 /// Segments of photon paths in an automatic pass of gathering where the length of the run is not known.
@@ -24,20 +28,20 @@ const STAGE_COST: f64 = 1.585;
 pub struct Trial {
     /// The estimator.
     pub estimator: Estimator,
-    /// Work × relative variance, in seconds of one thread of the reference machine: divided by the
-    /// square of a relative error, it is the time to reach that error. `None` where nothing was
+    /// Work × relative variance, in seconds of one thread of the reference machine, or of this one if the time of the run is
+    /// limited: divided by the square of a relative error, it is the time to reach that error. `None` where nothing was
     /// found.
     pub cost: Option<f64>,
     /// Bias over the value, less three of its standard errors, 1; `None` where nothing is left.
     pub bias: Option<f64>,
-    /// Work before there is any result, in seconds of one thread of the reference machine.
+    /// Work before there is any result, in seconds of the same thread.
     pub least: f64,
     /// What excludes it, whatever it costs.
     pub objection: Option<Objection>,
 }
 
 impl Trial {
-    /// Seconds of one thread of the reference machine until a relative error is reached, 1; `None` where nothing was found.
+    /// Seconds of the same thread until a relative error is reached, 1; `None` where nothing was found.
     /// A stage of gathering that halves the bias takes about three times as long to the same noise.
     pub fn time(&self, error: f64) -> Option<f64> {
         let stages = self.bias.map_or(1.0, |bias| (bias / error).max(1.0).powf(STAGE_COST));
@@ -63,8 +67,10 @@ pub(crate) struct Trials<'a> {
     pub(crate) plan: &'a RunPlan,
     pub(crate) photons: PhotonPilot,
     pub(crate) sensors: &'a [SensorId],
-    /// Work for each estimator.
+    /// Work for each estimator, ns.
     pub(crate) effort: f64,
+    /// Work of a batch of the run, ns.
+    pub(crate) batch_work: f64,
     /// Stops the trial.
     pub(crate) signal: &'a StopSignal,
 }
@@ -90,13 +96,15 @@ pub struct PhotonPilot {
     pub(crate) pass_segments: f64,
     /// Work of an automatic pass of gathering where the time of the run is limited, ns.
     pub(crate) pass_work: Option<f64>,
+    /// Work of this machine in a second over that of the reference machine, by the clock; 1 where no time is limited.
+    pub(crate) speed: f64,
 }
 
 impl PhotonPilot {
     /// Photons with this many segments per path, or steps, in passes of the usual size.
     pub fn new(segments_per_path: f64, steps_per_path: f64) -> Self {
         let pass_segments = PASS_SEGMENTS;
-        Self { segments_per_path, steps_per_path, pass_segments, pass_work: None }
+        Self { segments_per_path, steps_per_path, pass_segments, pass_work: None, speed: 1.0 }
     }
 
     /// The same where photons go step by step.
@@ -105,7 +113,48 @@ impl PhotonPilot {
     }
 }
 
+/// Batches of paths that have been traced for a trial.
+#[derive(Debug)]
+pub(crate) struct TriedBatches {
+    pub(crate) batches: Vec<Readings>,
+    /// Their work, ns.
+    pub(crate) work: f64,
+    /// The same if a sensor were alone.
+    pub(crate) work_of_one: f64,
+}
+
 impl Trials<'_> {
+    /// Tries an estimator; `trace` traces [`BATCHES`] batches with about as much work as it is given, ns. `None` if stopped.
+    ///
+    /// Small batches come first. They show how much work there really is, and how much more evenly points fill larger ones: a
+    /// variance that falls faster than the work grows is expected to do so up to the batches of the run.
+    pub(crate) fn by_size(
+        &self,
+        estimator: Estimator,
+        trace: impl Fn(f64) -> Option<TriedBatches>,
+    ) -> Option<Vec<Tried>> {
+        let expected = SMALL * self.effort;
+        let small = trace(expected)?;
+        let large = trace(self.effort * expected / small.work)?;
+        let judged =
+            |tried: &TriedBatches| self.judged(&tried.batches, tried.work_of_one, estimator);
+        let [growth, to_run] =
+            [large.work / small.work, BATCHES as f64 * self.batch_work / large.work];
+        let of_sensor = |((mut tried, smaller), sensor): ((Tried, Tried), &SensorId)| {
+            let lit =
+                small.batches.iter().filter(|batch| is_lit(self.scene, batch, *sensor)).count();
+            if let (Some(own), Some(smaller)) = (&mut tried.trial.cost, smaller.trial.cost)
+                && *own > 0.0
+                && lit >= LIT_BATCHES
+            {
+                *own *= to_run.powf(-gain(smaller / *own, growth));
+            }
+            tried
+        };
+        let both = judged(&large).into_iter().zip(judged(&small));
+        Some(both.zip(self.sensors).map(of_sensor).collect())
+    }
+
     /// Performance of an estimator on each sensor with this much work.
     pub(crate) fn judged(
         &self,
@@ -125,6 +174,18 @@ impl Trials<'_> {
         };
         self.sensors.iter().map(of_sensor).collect()
     }
+}
+
+/// The power of the size of batches by which a cost falls: it was this much larger in batches smaller by `growth`. At most
+/// 1, so that the variance falls as the square of the size.
+fn gain(larger: f64, growth: f64) -> f64 {
+    if growth > 1.0 { (larger.ln() / growth.ln()).clamp(0.0, 1.0) } else { 0.0 }
+}
+
+/// Whether a batch has found light on a sensor.
+fn is_lit(scene: &Scene, batch: &Readings, sensor: SensorId) -> bool {
+    let slots = Layout::new(scene).flux_slots(sensor);
+    slots.iter().any(|&slot| batch.groups[0].sums[slot] != 0.0)
 }
 
 /// Relative variance of the mean over all batches: of the flux, or over the cells. `None` in the dark.
@@ -194,6 +255,17 @@ mod tests {
             all.merge(&batch);
         }
         all
+    }
+
+    #[test]
+    fn a_cost_falls_as_far_as_smaller_batches_show() {
+        assert!(
+            (gain(4.0, 16.0) - 0.5).abs() < 1e-12,
+            "a quarter of the cost in 16 times the size"
+        );
+        assert_eq!(gain(0.9, 16.0), 0.0, "noise");
+        assert_eq!(gain(100.0, 16.0), 1.0, "noise");
+        assert_eq!(gain(4.0, 1.0), 0.0, "batches of one size");
     }
 
     #[test]

@@ -24,6 +24,7 @@ pub(super) fn run(spec: &SceneSpec, scene: &Scene) -> RunPlan {
         stop: StopRules {
             paths: if none { Some(DEFAULT_PATHS) } else { run.paths },
             batches: run.batches,
+            planned_paths: run.planned_paths,
             // Validated as positive; a time beyond what a clock can hold is no limit.
             time: run.time_s.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok()),
             target: run.target.clone(),

@@ -9,15 +9,19 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RunSpec {
     /// Number of paths: photon paths from the sources, and gather paths from the sensors where the estimator
-    /// has them. Rounded up to whole waves, of 128 batches or of 4 passes of gathering. The size of passes, and of
-    /// batches where only photons are traced, follows from this number.
+    /// has them. Rounded up to whole waves, of 128 batches or of 4 passes of gathering, or, for long runs of `backward` and `mix`,
+    /// to whole batches. The sizes of batches and of passes follow from this number.
     #[schemars(range(min = 1))]
     pub paths: Option<u64>,
     /// Number of batches, or passes of gathering, into which `paths` are divided: the run ends after exactly this many.
-    /// Used to repeat a run that was stopped; its report gives the number. Omitted: whole waves of 128 batches or 4
-    /// passes.
+    /// Used to repeat a run that was stopped; its report gives the number. Omitted: they follow from
+    /// `paths`.
     #[schemars(range(min = 1))]
     pub batches: Option<u64>,
+    /// Used with `batches` to repeat a gathered run that was stopped before its number of paths: that number, which decided
+    /// whether a stage could begin; its report gives it. With `batches` alone, every stage may begin.
+    #[schemars(range(min = 1))]
+    pub planned_paths: Option<u64>,
     /// Time limit, including the pilot of `auto`. Another run with the same limit gives different results; the report
     /// gives the command that repeats the run.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
@@ -44,6 +48,7 @@ impl Default for RunSpec {
         Self {
             paths: None,
             batches: None,
+            planned_paths: None,
             time_s: None,
             target: None,
             seed: seed(),

@@ -46,7 +46,7 @@ impl Wedge {
     }
 
     /// The part of a span of a line in which it may be within the wedge, with a margin for rounding, in units of the size of
-    /// the shape; it ends before it starts if there is none. A wide wedge clips nothing.
+    /// the shape; it may end before it starts. A line along an end plane, and a wide wedge, clip nothing.
     #[inline]
     pub(crate) fn clip(&self, [lo, hi]: [f64; 2], from: DVec2, dir: DVec2) -> [f64; 2] {
         const MARGIN: f64 = 1e-9;
@@ -137,6 +137,38 @@ mod tests {
             }
         }
         assert!(Wedge::new(TAU).is_none());
+    }
+
+    #[test]
+    fn every_point_of_a_line_in_the_wedge_is_in_the_clipped_span() {
+        for angle in [0.3, 1.0, 0.5 * PI, PI] {
+            let wedge = Wedge::new(angle).unwrap();
+            let end = DVec2::from_angle(angle);
+            let (mut within, mut clipped) = (0, 0);
+            for from in [DVec2::ZERO, DVec2::X, 0.7 * end, DVec2::new(-0.4, 0.8)] {
+                for off in [-1e-9, 0.0, 1e-9] {
+                    for slope in [-1.0, -1e-12, 0.0, 1e-12, 1.0] {
+                        for along in [DVec2::X, -DVec2::X, end, -end] {
+                            let (from, dir) =
+                                (from + off * end.perp(), along + slope * along.perp());
+                            let [lo, hi] = wedge.clip([-2.0, 2.0], from, dir);
+                            clipped += usize::from(lo > -2.0 || hi < 2.0);
+                            for i in 0..=400 {
+                                let t = f64::from(i) / 100.0 - 2.0;
+                                if wedge.contains(from + t * dir) {
+                                    within += 1;
+                                    assert!(
+                                        lo <= t && t <= hi,
+                                        "{t} of [{lo}, {hi}], {from} {dir}"
+                                    );
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+            assert!(within > 1000 && clipped > 30, "{within} within, {clipped} clipped");
+        }
     }
 
     #[test]

@@ -113,6 +113,7 @@ impl GatherPathCounter<'_, '_> {
         let Some((place, distance)) = joined_sources.draw(vertex.point, self.joints) else {
             return;
         };
+        self.readings.joins += 1;
         let Some(light) = vertex.scattered(place.dir, -dir) else { return };
         let Some(kept) = light.kept(self.joints) else { return };
         let start = way(place.dir);

@@ -17,7 +17,7 @@ use crate::transport::stop::{Pace, StopSignal};
 use crate::transport::tally::readings::MIN_LIT_GROUPS;
 use crate::transport::tally::work;
 use crate::transport::task::Task;
-use crate::transport::trial::{BATCHES, SEED, Trials, Tried};
+use crate::transport::trial::{BATCHES, SEED, Trials, Tried, TriedBatches};
 use crate::transport::walk::follow::{Gathering, follow};
 use crate::transport::{Layout, Path, Readings};
 use rayon::prelude::*;
@@ -35,8 +35,8 @@ impl<'s> Backward<'s> {
     pub(crate) fn work_of_path(&self, signal: &StopSignal) -> Option<f64> {
         let pace = Pace::new(signal);
         let task = Task { batch: PILOT_BATCH, stage: 0, photon_fluxes: &[], pace: &pace };
-        let segments = self.trace(task)?.segments;
-        Some(work::of_gather_paths(self.batch_paths(), segments) / self.batch_paths() as f64)
+        let traced = self.trace(task)?;
+        Some(work::of_gather_paths(self.batch_paths(), &traced) / self.batch_paths() as f64)
     }
 
     /// Traces the gather paths of a batch. It is not closed, since photons may contribute to it.
@@ -113,26 +113,32 @@ pub(crate) fn paths_for<'a>(trials: &Trials<'a>, effort: f64) -> Option<Backward
     Some(backward.with_paths(paths as u64))
 }
 
-/// Work of the gather paths of each sensor: its share if it were alone.
-pub(crate) fn work_of_one(backward: &Backward<'_>, batches: &[Readings]) -> f64 {
-    let segments = batches.iter().map(|batch| batch.segments).sum();
-    let work = work::of_gather_paths(BATCHES * backward.batch_paths(), segments);
-    work / backward.sensors.len() as f64
+/// Batches of a trial after `by_photons` ns of work by photons. A sensor that is alone takes its share of the gather paths.
+pub(crate) fn tried_batches(
+    backward: &Backward<'_>,
+    batches: Vec<Readings>,
+    by_photons: f64,
+) -> TriedBatches {
+    let of_batch = |batch: &Readings| work::of_gather_paths(backward.batch_paths(), batch);
+    let by_paths: f64 = batches.iter().map(of_batch).sum();
+    let work_of_one = by_photons + by_paths / backward.sensors.len() as f64;
+    TriedBatches { batches, work: by_photons + by_paths, work_of_one }
 }
 
 /// Tries gather paths that meet the sources; `None` if stopped.
 pub(crate) fn trial(trials: &Trials<'_>) -> Option<Vec<Tried>> {
-    let backward = paths_for(trials, trials.effort)?;
-    let traced = |batch| {
-        let pace = Pace::new(trials.signal);
-        let mut readings =
-            backward.trace(Task { batch, stage: 0, photon_fluxes: &[], pace: &pace })?;
-        readings.close_batch();
-        Some(readings)
-    };
-    let batches: Option<Vec<Readings>> = (0..BATCHES).into_par_iter().map(traced).collect();
-    let batches = batches?;
-    Some(trials.judged(&batches, work_of_one(&backward, &batches), Estimator::Backward))
+    trials.by_size(Estimator::Backward, |effort| {
+        let backward = paths_for(trials, effort)?;
+        let traced = |batch| {
+            let pace = Pace::new(trials.signal);
+            let mut readings =
+                backward.trace(Task { batch, stage: 0, photon_fluxes: &[], pace: &pace })?;
+            readings.close_batch();
+            Some(readings)
+        };
+        let batches: Option<Vec<Readings>> = (0..BATCHES).into_par_iter().map(traced).collect();
+        Some(tried_batches(&backward, batches?, 0.0))
+    })
 }
 
 /// The estimate of a sensor. It is unbiased, but its standard error knows only light that gather paths have met. Where they have

@@ -11,7 +11,7 @@ use crate::plan::Estimator;
 use crate::rng::{Sampler, stream};
 use crate::scene::{Ray, SensorId, SourceId, Visibility};
 use crate::transport::backward::counter::roulette_below;
-use crate::transport::backward::estimator::{paths_for, work_of_one};
+use crate::transport::backward::estimator::{paths_for, tried_batches};
 use crate::transport::backward::paths::{Backward, SharedBatches, Weights};
 use crate::transport::connect::passage::{PassedVertex, RecentPassages, VertexWindow};
 use crate::transport::connect::sensors::SensorPoint;
@@ -31,10 +31,6 @@ use glam::DVec3;
 use rayon::prelude::*;
 use smallvec::SmallVec;
 use std::ops::ControlFlow;
-
-/// Cost of a run over that seen by a pilot, 1: a pilot does not count the work of joins, and misses rare strong ones
-/// (benches/choice.rs).
-const UNSEEN: f64 = 1.5;
 
 /// A photon at a record, as far as it is known before the pair.
 #[derive(Debug, Clone)]
@@ -130,22 +126,23 @@ impl<'m, 's> Mixing<'m, 's> {
 
 /// Tries photons and gather paths with half of the work each; `None` if stopped.
 pub(crate) fn trial(trials: &Trials<'_>) -> Option<Vec<Tried>> {
-    let half = 0.5 * trials.effort;
-    let forward = forward::photons_for(trials, half);
-    let backward = paths_for(trials, half)?.with_weights(Weights::Shared);
-    let photon_fluxes = forward.photon_fluxes();
-    let traced = |batch| {
-        let pace = Pace::new(trials.signal);
-        let task = Task { batch, stage: 0, photon_fluxes: &photon_fluxes, pace: &pace };
-        let mut mixing = Mixing::begin(&backward, task)?;
-        let photons = forward.batch_observed(batch, &mut mixing, &pace)?;
-        mixing.readings.close_batch();
-        Some((work::of_photons(&photons), mixing.readings))
-    };
-    let both: Option<Vec<(f64, Readings)>> = (0..BATCHES).into_par_iter().map(traced).collect();
-    let (by_photons, batches): (Vec<f64>, Vec<Readings>) = both?.into_iter().unzip();
-    let work = by_photons.iter().sum::<f64>() + work_of_one(&backward, &batches);
-    Some(trials.judged(&batches, UNSEEN * work, Estimator::Mix))
+    trials.by_size(Estimator::Mix, |effort| {
+        let half = 0.5 * effort;
+        let forward = forward::photons_for(trials, half);
+        let backward = paths_for(trials, half)?.with_weights(Weights::Shared);
+        let photon_fluxes = forward.photon_fluxes();
+        let traced = |batch| {
+            let pace = Pace::new(trials.signal);
+            let task = Task { batch, stage: 0, photon_fluxes: &photon_fluxes, pace: &pace };
+            let mut mixing = Mixing::begin(&backward, task)?;
+            let photons = forward.batch_observed(batch, &mut mixing, &pace)?;
+            mixing.readings.close_batch();
+            Some((work::of_photons(&photons), mixing.readings))
+        };
+        let both: Option<Vec<(f64, Readings)>> = (0..BATCHES).into_par_iter().map(traced).collect();
+        let (by_photons, batches): (Vec<f64>, Vec<Readings>) = both?.into_iter().unzip();
+        Some(tried_batches(&backward, batches, by_photons.iter().sum()))
+    })
 }
 
 impl Observer for Mixing<'_, '_> {
@@ -268,6 +265,7 @@ impl Mixing<'_, '_> {
         way: impl FnOnce(DVec3) -> WayStart,
     ) {
         let Backward { scene, sensors, .. } = self.backward;
+        self.readings.joins += 1;
         let Some(light) = vertex.scattered(dir, place.dir) else { return };
         let Some(kept) = light.kept(&mut self.joints) else { return };
         self.readings.segments += 1;

@@ -89,6 +89,12 @@ impl<'s> Backward<'s> {
         Self { paths: Points::even_count(paths), ..self }
     }
 
+    /// The same with paths in proportion to these numbers, new and old.
+    pub(crate) fn resized(self, [new, old]: [u64; 2]) -> Self {
+        let paths = self.paths * new / old;
+        self.with_paths(paths)
+    }
+
     /// The same with other weights.
     pub(crate) fn with_weights(self, weights: Weights) -> Self {
         Self { weights, ..self }

@@ -14,7 +14,17 @@ pub struct EstimatorChoice {
 }
 
 impl EstimatorChoice {
-    /// Seconds of one thread of the reference machine until the chosen estimator has a relative error, 1; `None` where
+    /// The same with the costs and times of a machine of this speed, relative to that of the trials.
+    pub(crate) fn at_speed(self, speed: f64) -> Self {
+        let of_machine = |trial: Trial| Trial {
+            cost: trial.cost.map(|cost| cost / speed),
+            least: trial.least / speed,
+            ..trial
+        };
+        Self { tried: self.tried.into_iter().map(of_machine).collect(), ..self }
+    }
+
+    /// Seconds of one thread until the chosen estimator has a relative error, 1; `None` where
     /// nothing was found.
     pub(crate) fn time(&self, error: f64) -> Option<f64> {
         self.tried.iter().find(|trial| trial.estimator == self.chosen)?.time(error)

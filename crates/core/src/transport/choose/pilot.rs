@@ -13,6 +13,7 @@
 use crate::plan::{Estimator, RunPlan};
 use crate::scene::{Scene, SensorId};
 use crate::tally::Tally;
+use crate::transport::batches::BatchSizes;
 use crate::transport::choose::choice::EstimatorChoice;
 use crate::transport::estimators;
 use crate::transport::gather::settings::passes_in_turn;
@@ -20,8 +21,8 @@ use crate::transport::stop::StopSignal;
 use crate::transport::tally::work;
 use crate::transport::trial::{Objection, PhotonPilot, Trial, Trials, Tried};
 
-/// Share of the budget of a run that the pilot may use, 1.
-const SHARE: f64 = 0.05;
+/// Share of the budget of a run that is planned for trials, 1: with their preparation, the pilot takes 5 %.
+const SHARE: f64 = 0.04;
 /// Default budget of a run: a minute of one thread, s.
 const USUAL_BUDGET: f64 = 60.0;
 /// Shortest and longest time of a pilot, s.
@@ -36,11 +37,13 @@ const SIGMAS: f64 = 3.0;
 const SIGMAS_OF_MANY: f64 = 4.0;
 /// Possible relative rounding of a flux, 1.
 const ROUNDING: f64 = 1e-9;
+/// Time of an estimator that has half of the work of a run over that of one which has all of it, 1.
+const SHARED: f64 = 2.0;
 /// Relative bias allowed if there is no target, 1.
 const USUAL_TARGET: f64 = 0.01;
 
 /// Tries the estimators on all sensors and chooses; `None` if stopped before anything was known. If time is limited, `left`
-/// segments of photon paths fit in what remains. `watch` receives the current trial.
+/// ns of work of one thread fit in what remains. `watch` receives the current trial.
 pub(crate) fn choose(
     scene: &Scene,
     plan: &RunPlan,
@@ -49,23 +52,31 @@ pub(crate) fn choose(
     watch: &mut dyn FnMut(Estimator),
 ) -> Option<Vec<EstimatorChoice>> {
     let sensors: Vec<SensorId> = (0..scene.sensors.len()).map(SensorId::new).collect();
-    let photons = photons.with_passes_for(plan, left.map(|segments| segments / passes_in_turn()));
-    let left = left.map(|segments| 1e-9 * work::OF_PHOTON_SEGMENT * segments);
-    let given = budget(plan, photons, left);
-    // Work in a second by the clock, over that of the reference machine (`work`).
-    let pace = left.zip(plan.stop.time).map_or(1.0, |(left, time)| left / time.as_secs_f64());
-    let [least, most] = BOUNDS.map(|bound| pace * bound);
+    let photons = photons.with_passes_for(plan, left.map(|work| work / passes_in_turn()));
+    let batch_work = BatchSizes::new(plan, photons, left).work();
+    let given = budget(plan, photons, left.map(|work| 1e-9 * work));
+    let [least, most] = BOUNDS.map(|bound| photons.speed * bound);
     let mut choices = |budget: f64| {
         let effort = 1e9 * (SHARE * budget).clamp(least, most) / Estimator::TRIED.len() as f64;
-        choices(&Trials { scene, plan, photons, sensors: &sensors, effort, signal }, budget, watch)
+        let sensors = &sensors;
+        let trials = Trials { scene, plan, photons, sensors, effort, batch_work, signal };
+        choices(&trials, budget, watch)
     };
-    let Some(target) = &plan.stop.target else { return choices(given.unwrap_or(USUAL_BUDGET)) };
-    let first = choices(least / SHARE)?;
-    let time =
-        |choice: &EstimatorChoice| choice.time(target.relative_error).unwrap_or(USUAL_BUDGET);
-    let needed = first.iter().map(time).fold(0.0, f64::max).min(given.unwrap_or(f64::INFINITY));
-    let second = if SHARE * needed > WORTH_ANOTHER * least { choices(needed) } else { None };
-    Some(second.unwrap_or(first))
+    let found = match &plan.stop.target {
+        None => choices(given.unwrap_or(USUAL_BUDGET))?,
+        Some(target) => {
+            let first = choices(least / SHARE)?;
+            let time = |choice: &EstimatorChoice| {
+                choice.time(target.relative_error).unwrap_or(USUAL_BUDGET)
+            };
+            let needed = first.iter().map(time).fold(0.0, f64::max);
+            let needed = needed.min(given.unwrap_or(f64::INFINITY));
+            let second =
+                if SHARE * needed > WORTH_ANOTHER * least { choices(needed) } else { None };
+            second.unwrap_or(first)
+        }
+    };
+    Some(found.into_iter().map(|choice| choice.at_speed(photons.speed)).collect())
 }
 
 /// Budget of a run in seconds of one thread of the reference machine; `left` of them remain if time is limited. `None` if
@@ -102,10 +113,62 @@ fn choices(
             ..one.trial.clone()
         });
         let tried: Vec<Trial> = judged.collect();
-        let chosen = best(&tried, target.or_else(|| least_error(&tried, budget)));
-        EstimatorChoice { chosen, tried }
+        let error = target.or_else(|| least_error(&tried, budget));
+        let own = plan.own_estimator(sensor.index());
+        let chosen = own.unwrap_or_else(|| best(&tried, error));
+        Wanted { choice: EstimatorChoice { chosen, tried }, error, is_given: own.is_some() }
     };
-    Some(sensors.iter().map(of_sensor).collect())
+    Some(one_for_all(sensors.iter().map(of_sensor).collect()))
+}
+
+/// The best for a sensor alone.
+struct Wanted {
+    choice: EstimatorChoice,
+    /// The relative error to reach, if anything was found, 1.
+    error: Option<f64>,
+    /// Whether the plan demands it.
+    is_given: bool,
+}
+
+impl Wanted {
+    /// Time with another estimator over that with the chosen one, 1; infinite if it is not permitted.
+    fn longer(&self, estimator: Estimator) -> f64 {
+        let Self { choice, error, is_given } = self;
+        let fit = choice.tried.iter().find(|own| own.estimator == estimator);
+        let fit = fit.filter(|own| own.objection.is_none());
+        match (is_given, fit) {
+            (true, _) => {
+                if choice.chosen == estimator {
+                    1.0
+                } else {
+                    f64::INFINITY
+                }
+            }
+            (false, None) => f64::INFINITY,
+            (false, Some(own)) => {
+                let best = error.and_then(|error| Some((error, choice.time(error)?)));
+                // In the dark all are equal.
+                best.map_or(1.0, |(error, best)| {
+                    own.time(error).map_or(f64::INFINITY, |time| time / best)
+                })
+            }
+        }
+    }
+}
+
+/// The choices. Estimators that differ share the work of the run: one for all is taken where no sensor loses more by it.
+fn one_for_all(wanted: Vec<Wanted>) -> Vec<EstimatorChoice> {
+    let longest =
+        |estimator: Estimator| wanted.iter().map(|own| own.longer(estimator)).fold(1.0, f64::max);
+    let is_one = wanted.windows(2).all(|pair| pair[0].choice.chosen == pair[1].choice.chosen);
+    let all = Estimator::TRIED.into_iter().map(|estimator| (longest(estimator), estimator));
+    let common = all.min_by(|(a, _), (b, _)| a.total_cmp(b)).filter(|(time, _)| *time < SHARED);
+    let common = common.filter(|_| !is_one).map(|(_, estimator)| estimator);
+    let choice = |Wanted { choice, .. }: Wanted| EstimatorChoice {
+        chosen: common.unwrap_or(choice.chosen),
+        ..choice
+    };
+    wanted.into_iter().map(choice).collect()
 }
 
 /// The relative error that the best reaches within a budget, s; `None` where none found anything.
@@ -201,6 +264,55 @@ mod tests {
         trials[0].cost = None;
         assert_eq!(best(&trials, Some(0.01)), Estimator::Forward, "in the dark");
         assert_eq!(best(&trials, None), Estimator::Forward, "in the dark");
+    }
+
+    /// What a sensor wants that costs this much forward and by the mix.
+    fn wanted(costs: [Option<f64>; 2], chosen: Estimator) -> Wanted {
+        let estimators = [Estimator::Forward, Estimator::Mix].into_iter();
+        let tried = estimators.zip(costs).map(|(estimator, cost)| trial(estimator, cost));
+        let error = costs.iter().any(Option::is_some).then_some(0.01);
+        let choice = EstimatorChoice { chosen, tried: tried.collect() };
+        Wanted { choice, error, is_given: false }
+    }
+
+    /// What is chosen for a sensor that slightly prefers the mix, and another one.
+    fn chosen_beside(other: Wanted) -> [Estimator; 2] {
+        let all = vec![wanted([Some(1e-4), Some(9e-5)], Estimator::Mix), other];
+        let chosen: Vec<Estimator> = one_for_all(all).iter().map(|own| own.chosen).collect();
+        chosen.try_into().unwrap()
+    }
+
+    #[test]
+    fn estimators_share_a_run_only_where_each_gains_more_than_it_loses() {
+        let [forward, mix] = [Estimator::Forward, Estimator::Mix];
+        let easy = || wanted([Some(1e-6), Some(5e-6)], forward);
+        assert_eq!(chosen_beside(easy()), [forward; 2], "mix gains a tenth there");
+        assert_eq!(chosen_beside(wanted([Some(5e-6), Some(1e-6)], mix)), [mix; 2]);
+        let far = vec![wanted([Some(1e-4), Some(1e-5)], mix), easy()];
+        let chosen: Vec<Estimator> = one_for_all(far).iter().map(|own| own.chosen).collect();
+        assert_eq!(chosen, [mix, forward]);
+    }
+
+    #[test]
+    fn what_is_rejected_or_not_tried_is_not_taken_for_all() {
+        let [forward, mix] = [Estimator::Forward, Estimator::Mix];
+        let mut rejected = wanted([None, Some(1e-6)], forward);
+        rejected.choice.tried[1].objection = Some(Objection::Contradicted);
+        assert_eq!(chosen_beside(rejected), [forward; 2]);
+        let mut dark = wanted([None, None], forward);
+        dark.choice.tried.truncate(1);
+        assert_eq!(chosen_beside(dark), [forward; 2], "the mix is not possible there");
+        assert_eq!(chosen_beside(wanted([None, None], forward)), [mix; 2], "in the dark");
+    }
+
+    #[test]
+    fn an_estimator_that_the_plan_demands_stays() {
+        let [forward, mix] = [Estimator::Forward, Estimator::Mix];
+        let given =
+            |estimator| Wanted { is_given: true, ..wanted([Some(1e-6), Some(1.1e-6)], estimator) };
+        assert_eq!(chosen_beside(given(forward)), [forward; 2]);
+        assert_eq!(chosen_beside(given(mix)), [mix; 2]);
+        assert_eq!(chosen_beside(given(Estimator::Mis)), [mix, Estimator::Mis]);
     }
 
     #[test]

@@ -31,6 +31,11 @@ impl<'s> Forward<'s> {
             shares: shares(scene, batch_paths),
         }
     }
+
+    /// The same with another number of paths a batch.
+    pub(crate) fn with_paths(&self, batch_paths: u64) -> Self {
+        Self::new(self.scene, self.seed, self.bounce_limit, batch_paths)
+    }
 }
 
 /// Paths per batch of each source, by flux: none for a dark one, at least one for each other, and

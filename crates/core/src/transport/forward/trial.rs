@@ -4,17 +4,19 @@ use crate::plan::Estimator;
 use crate::transport::Readings;
 use crate::transport::forward::Forward;
 use crate::transport::tally::work;
-use crate::transport::trial::{BATCHES, SEED, Trials, Tried};
+use crate::transport::trial::{BATCHES, SEED, Trials, Tried, TriedBatches};
 use rayon::prelude::*;
 
 /// Tries photons counted by the sensors; `None` if stopped.
 pub(crate) fn trial(trials: &Trials<'_>) -> Option<Vec<Tried>> {
-    let forward = photons_for(trials, trials.effort);
-    let traced = |batch| forward.batch(batch, trials.signal);
-    let batches: Option<Vec<Readings>> = (0..BATCHES).into_par_iter().map(traced).collect();
-    let batches = batches?;
-    let work = batches.iter().map(work::of_photons).sum();
-    Some(trials.judged(&batches, work, Estimator::Forward))
+    trials.by_size(Estimator::Forward, |effort| {
+        let forward = photons_for(trials, effort);
+        let traced = |batch| forward.batch(batch, trials.signal);
+        let batches: Option<Vec<Readings>> = (0..BATCHES).into_par_iter().map(traced).collect();
+        let batches = batches?;
+        let work = batches.iter().map(work::of_photons).sum();
+        Some(TriedBatches { batches, work, work_of_one: work })
+    })
 }
 
 /// Batches of photons with this much work in total.

@@ -20,8 +20,8 @@ use crate::transport::tally::readings::{Group, MIN_LIT_GROUPS};
 use crate::transport::{Readings, Stage};
 use std::f64::consts::SQRT_2;
 
-/// Share of |E0 - E1| that is stated as the bias where the difference is noise, and the smallest share elsewhere, 1. Chosen
-/// by trials in scenes with known values.
+/// Share of |E0 - E1|, with its error added in quadrature, that is stated as the bias where the difference is noise, and the
+/// smallest share of |E0 - E1| elsewhere, 1. Chosen by trials in scenes with known values.
 pub(super) const USUAL_SHARE: f64 = 0.5;
 const LEAST_SHARE: f64 = 0.25;
 /// What E0 keeps of a bias in proportion to the window's size, over |E0 - E1| and over |E00 - E0|, 1: with the means over
@@ -35,6 +35,8 @@ const ROUNDING: f64 = 1e-9;
 const OUT_OF_NOISE: f64 = 2.0;
 /// Standard errors beyond which photons contradict a flux: they are often few, and two errors then happen by chance.
 const CONTRADICTED: f64 = 3.0;
+/// The last stages, of which one gives the value.
+const CANDIDATES: usize = 2;
 /// Standard errors above which a bias ends a stage before its planned passes.
 const PLAIN: f64 = 2.0;
 
@@ -46,7 +48,7 @@ pub(super) struct Judged<'a> {
     pub(super) resolution: Resolution,
     /// The value.
     pub(super) flux: Tally,
-    /// Share of |E0 - E1| that is stated as the bias, 1.
+    /// Share that is stated as the bias, 1: of |E0 - E1|, with its error added in quadrature where it is noise.
     share: f64,
     /// The stated bias, lm or W.
     pub(super) bias: f64,
@@ -101,16 +103,15 @@ impl<'a> Judged<'a> {
         self.bias > PLAIN * self.flux.std_error()
     }
 
-    /// How often the window should shrink where bias limits: once, or twice where bias and noise together are then smaller.
-    /// A shrink halves the bias, and doubles the variance of a pass. The next stage has at least the passes of a first one.
-    pub(super) fn shrinks(&self) -> u32 {
+    /// How many times the window should shrink where bias limits: once, or twice where bias and noise together are then
+    /// expected to be smaller. `growth` has the variance of a pass after one and two shrinks over that of now, 1; a shrink is
+    /// taken to halve the bias, as for smooth light. The next stage has at least the passes of a first one.
+    pub(super) fn shrinks(&self, growth: [f64; 2]) -> u32 {
         let passes = self.orders.fourth.batch_count() as f64;
         let variance = self.flux.std_error().powi(2) * passes / passes.max(FIRST_PASSES as f64);
-        let left = |shrinks: i32| {
-            let factor = 2.0_f64.powi(shrinks);
-            (self.bias / factor).powi(2) + factor * variance
-        };
-        if left(2) < left(1) { 2 } else { 1 }
+        let [once, twice] = [(2.0, growth[0]), (4.0, growth[1])]
+            .map(|(factor, growth)| (self.bias / factor).powi(2) + growth * variance);
+        if twice < once { 2 } else { 1 }
     }
 
     /// Whether the bias is above the noise.
@@ -119,14 +120,15 @@ impl<'a> Judged<'a> {
     }
 }
 
-/// The stage with the smallest total error of the sum of some scalars, of those that have passes enough for an error if
-/// any has.
+/// The stage with the smallest total error of the sum of some scalars, out of the last two, or of those of them that have passes
+/// enough for an error if any has.
 pub(super) fn best<'a>(
     stages: &'a [Stage],
     photons: &Readings,
     slots: &[usize],
 ) -> Option<Judged<'a>> {
-    let judged = stages.iter().enumerate().map(|(place, stage)| {
+    let earlier = stages.len().saturating_sub(CANDIDATES);
+    let judged = stages.iter().enumerate().skip(earlier).map(|(place, stage)| {
         let before = place.checked_sub(1).map(|place| &stages[place]);
         Judged::new((stage, before), photons, slots)
     });
@@ -230,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_larger_window_leaves_alone_is_no_bias_of_a_smaller_one() {
+    fn an_earlier_stage_limits_the_stated_bias() {
         // In proportion to the window, 1 % of bias would have been 2 % before two shrinks.
         assert!((left_by_stages([&tally(1.02, 0.0), &tally(1.01, 0.0)], 2) - 0.01).abs() < 1e-12);
         let noise = left_by_stages([&tally(1.0, 0.003), &tally(1.0, 0.004)], 2);
@@ -279,6 +281,7 @@ mod tests {
             groups: (0..passes).map(of_pass).collect(),
             sensors: Vec::new(),
             segments: 0,
+            joins: 0,
             leaks: Vec::new(),
         }
     }
@@ -306,14 +309,16 @@ mod tests {
     #[test]
     fn a_bias_far_above_the_noise_shrinks_the_window_twice() {
         let photons = readings(0.0, 0.0, 8);
-        let shrinks = |second, passes| {
+        let shrinks_where = |second, passes, growth| {
             let stage = stage(0, second, 0.1, passes);
-            Judged::new((&stage, None), &photons, &[0]).shrinks()
+            Judged::new((&stage, None), &photons, &[0]).shrinks(growth)
         };
-        // Biases of a quarter of 0.3 and of 0.5. Standard error 0.038 of 8 passes, 0.027 of 16 to come: 0.065 after one shrink
+        let shrinks = |second, passes| shrinks_where(second, passes, [2.0, 4.0]);
+        // Biases of a quarter of 0.3 and of 0.5. Standard error 0.038 of 8 passes, 0.027 of 16 to come: 0.053 after one shrink
         // and 0.057 after two for the first, 0.073 and 0.062 for the second.
         assert_eq!([shrinks(1.3, 8), shrinks(1.5, 8)], [1, 2]);
         assert_eq!([shrinks(1.3, 64), shrinks(1.5, 64)], [2, 2], "less noise");
+        assert_eq!(shrinks_where(1.5, 8, [4.0, 16.0]), 1, "gather paths that grow no more");
     }
 
     #[test]

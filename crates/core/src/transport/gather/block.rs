@@ -70,6 +70,7 @@ impl CrossedCounts {
             *own = own.combined([1.0, 1.0], other);
         }
         self.passes[pass][0].segments += other.segments;
+        self.passes[pass][0].joins += other.joins;
     }
 
     /// The counts of all passes.

@@ -99,9 +99,9 @@ impl<'s> Gather<'s> {
         self.sensors.iter().map(|(id, _)| *id)
     }
 
-    /// How often the window should shrink after the last of the stages, which is in progress: 0 where noise limits all sensors,
-    /// or, with fewer passes than planned, where the bias of each is within two standard errors. Of several sensors, that
-    /// with the least need decides.
+    /// How many times the window should shrink after the last of the stages, which is in progress: 0 where noise limits all
+    /// sensors, or, with fewer passes than planned, where the bias of each is within two standard errors. Of several sensors
+    /// that bias limits, the smallest number counts.
     pub(crate) fn shrinks(&self, stages: &[Stage], photons: &Readings) -> u32 {
         let Some((stage, earlier)) = stages.split_last() else { return 0 };
         let passes = stage.counts.first().batch_count();
@@ -111,7 +111,7 @@ impl<'s> Gather<'s> {
             let judged = Judged::new((stage, earlier.last()), photons, &slots);
             let limits =
                 if is_complete { judged.is_limiting() } else { judged.is_plainly_limiting() };
-            limits.then(|| judged.shrinks())
+            limits.then(|| judged.shrinks(self.settings.variance_growth(stage.number)))
         });
         if self.settings.has_stages() { wanted.min().unwrap_or(0) } else { 0 }
     }

@@ -121,7 +121,7 @@ pub(crate) fn passes_in_turn() -> f64 {
 
 impl PhotonPilot {
     /// The same, with passes sized for a run of known length: by its number of paths, and by its time, which allows
-    /// `by_time` segments in a pass.
+    /// `by_time` ns of work in a pass.
     pub(crate) fn with_passes_for(self, plan: &RunPlan, by_time: Option<f64>) -> Self {
         let by_paths = plan.stop.paths.map(|paths| {
             let passes = plan.stop.batches.map_or(PASSES, |batches| batches as f64);
@@ -129,10 +129,11 @@ impl PhotonPilot {
             let gather_paths = segments / RECORD_SEGMENTS;
             paths as f64 / passes / (1.0 + gather_paths) * segments
         });
-        let known = by_time.into_iter().chain(by_paths).reduce(f64::min);
+        let segments = by_time.map(|work| work / work::OF_PHOTON_SEGMENT);
+        let known = segments.into_iter().chain(by_paths).reduce(f64::min);
         known.map_or(self, |segments| Self {
             pass_segments: segments.min(MOST_PASS_SEGMENTS),
-            pass_work: by_time.map(|segments| segments * work::OF_PHOTON_SEGMENT),
+            pass_work: by_time,
             ..self
         })
     }

@@ -77,6 +77,13 @@ impl GatherSettings {
         grown.min(most.max(self.gather_paths))
     }
 
+    /// Variance of a pass after one and two shrinks from a stage over that in it, 1: its pairs grow with the gather paths and
+    /// with the fourth power of the window's size.
+    pub(super) fn variance_growth(&self, stage: u32) -> [f64; 2] {
+        let paths = |stage| self.gather_paths(stage) as f64;
+        [(1, 4.0), (2, 16.0)].map(|(shrinks, fewer)| fewer * paths(stage) / paths(stage + shrinks))
+    }
+
     /// Passes of a stage that is not ended early by a plain bias.
     pub(crate) fn planned_passes(&self, stage: u32) -> u64 {
         match self.schedule {
@@ -122,5 +129,8 @@ mod tests {
         };
         assert_eq!(decisions(0), [8, 16, 32, 64]);
         assert_eq!(decisions(1), [16, 32, 64, 128]);
+        assert_eq!(settings.variance_growth(0), [2.0, 4.0]);
+        let grown = GatherSettings { gather_paths: MOST_GATHER_PATHS / 2, ..settings };
+        assert_eq!(grown.variance_growth(0), [2.0, 8.0], "as many gather paths as memory allows");
     }
 }

@@ -53,7 +53,7 @@ struct TriedBlock {
 
 /// Tries all sensors, group by group; `None` if stopped.
 pub(crate) fn trial(trials: &Trials<'_>) -> Option<Vec<Tried>> {
-    let Trials { scene, plan, photons, sensors, effort, signal } = *trials;
+    let Trials { scene, plan, photons, sensors, effort, signal, .. } = *trials;
     let groups = groups(scene, plan, (sensors, sensors.len()), photons, signal)?;
     let effort = effort / groups.len().max(1) as f64;
     let mut all = BTreeMap::new();
@@ -68,7 +68,7 @@ pub(crate) fn trial(trials: &Trials<'_>) -> Option<Vec<Tried>> {
 /// the cost of the run's passes: pairs, and the work they cause, grow with the square of that
 /// factor. `None` if stopped.
 fn group_trial(trials: &Trials<'_>, settings: GatherSettings) -> Option<Vec<Tried>> {
-    let Trials { scene, plan, photons: pilot, sensors, effort, signal } = *trials;
+    let Trials { scene, plan, photons: pilot, sensors, effort, signal, .. } = *trials;
     let segments = pilot.segments_past_records(settings.depth);
     let by_photons = settings.photons as f64 * work::of_photon_path(segments);
     let all = (settings.gather_paths * sensors.len() as u64) as f64;
@@ -255,7 +255,7 @@ impl TriedBlock {
             records: 0,
         };
         let of_gathering =
-            |orders: &[Readings; ORDERS]| work::of_gather_paths(gather_paths, orders[0].segments);
+            |orders: &[Readings; ORDERS]| work::of_gather_paths(gather_paths, &orders[0]);
         let gathering =
             self.passes.iter().map(of_gathering).sum::<f64>() + work::of_filtered(self.segments);
         PassWork {

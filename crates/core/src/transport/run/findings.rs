@@ -43,6 +43,11 @@ impl Findings {
         estimators::estimate(scene, (estimator, self.of_sensor(sensor)), &self.photons, sensor)
     }
 
+    /// The readings from which the values of a sensor are taken.
+    pub fn readings(&self, scene: &Scene, sensor: SensorId) -> &Readings {
+        self.estimate(scene, sensor).readings
+    }
+
     /// How the values of a sensor were computed, where there is something to say.
     pub(crate) fn account(&self, scene: &Scene, sensor: SensorId) -> Option<Account> {
         let found = self.of_sensor(sensor)?;

@@ -4,6 +4,7 @@ use crate::plan::{Estimator, RunPlan};
 use crate::rng::Points;
 use crate::scene::{Scene, SensorId};
 use crate::transport::backward::paths::{Backward, Weights};
+use crate::transport::batches::{BatchSizes, usual_batch};
 use crate::transport::choose::pilot::choose;
 use crate::transport::estimators::{Portion, Prepared};
 use crate::transport::forward::Forward;
@@ -19,19 +20,11 @@ use crate::transport::trial::PhotonPilot;
 use crate::transport::{EstimatorChoice, GatherSettings, Readings, Stepping};
 use std::time::{Duration, Instant};
 
-/// Target number of segments of a batch: long enough that summing costs little, short enough
-/// that little is lost when a run is stopped.
-const BATCH_SEGMENTS: u64 = 1 << 15;
-/// Most paths in a batch.
-const BATCH_PATHS: u64 = 4096;
-/// Most segments and paths of a batch where the number of paths is known: points fill a larger batch more evenly.
-const LARGE_BATCH_SEGMENTS: u64 = 1 << 20;
-const LARGE_BATCH_PATHS: u64 = 1 << 16;
 /// Photon paths that measure the length of paths before a run.
 const PILOT_PATHS: u64 = 64;
 /// Most bounces of these paths.
 const PILOT_BOUNCES: u32 = 10_000;
-/// Time for which photon paths are traced to measure the time of a segment.
+/// Time for which photon paths are traced to measure the speed of the machine.
 const TIMED: Duration = Duration::from_millis(10);
 /// Most batches of [`PILOT_PATHS`] that are traced for this measurement.
 const TIMED_BATCHES: u64 = 64;
@@ -66,7 +59,6 @@ impl<'s> Run<'s> {
     ) -> Option<Self> {
         let early = signal.with_grace();
         let pilot = photon_pilot(scene, plan, &early)?;
-        let segments = pilot.segments_per_path as u64;
         let (estimators, choices) = estimators(scene, plan, pilot, signal, watch)?;
         let of = |wanted| sensors_of(&estimators, wanted);
         let gathered =
@@ -80,24 +72,34 @@ impl<'s> Run<'s> {
             }
             (_, false) => PhotonWork::Shared(0.5),
         };
-        let usual = plan.batch_paths.unwrap_or(usual_batch(segments));
+        let sizes = BatchSizes::new(plan, pilot, signal.work_left(pilot.speed));
         let by_pass = gathered.iter().map(|(settings, _)| settings.photons).max();
-        let photons = match (by_pass, work, plan.stop.paths) {
-            (Some(photons), ..) => photons,
-            (None, PhotonWork::Alone, Some(paths)) => photons_for(plan, paths, usual, segments),
-            (None, PhotonWork::Alone, None) => usual,
-            (None, PhotonWork::Shared(share), _) => {
-                Points::even_count((share * usual as f64) as u64)
+        let mut photons = match (by_pass, work) {
+            (Some(photons), _) => photons,
+            (None, PhotonWork::Alone) => sizes.photons(),
+            (None, PhotonWork::Shared(share)) => {
+                Points::even_count((share * sizes.usual as f64) as u64)
             }
         };
         // At least one path of each source.
-        let photons = photons.max(scene.sources.len() as u64).max(1);
+        photons = photons.max(scene.sources.len() as u64).max(1);
         let by_photons = photons as f64 * work::of_photon_path(pilot.segments_per_path);
-        let others = match work {
-            PhotonWork::Alone => 0.0,
-            PhotonWork::Shared(share) => (1.0 - share) / share * by_photons,
-        };
-        let mut prepared = backward(scene, plan, &followed, others, &early)?;
+        let (mut prepared, mut batches_asked) = (Vec::new(), plan.stop.batches);
+        if let PhotonWork::Shared(share) = work {
+            let others = (1.0 - share) / share * by_photons;
+            let usual = backward(scene, plan, &followed, others, &early)?;
+            let paths =
+                |all: &[Prepared<'_>]| all.iter().map(|own| own.batch_paths(0)).sum::<u64>();
+            let growth = match by_pass {
+                Some(_) => 1,
+                None => sizes.growth(photons + paths(&usual), others + by_photons),
+            };
+            photons *= growth;
+            prepared = usual.into_iter().map(|own| own.resized([growth, 1])).collect();
+            if let (Some(asked), true) = (plan.stop.paths, growth > 1) {
+                batches_asked.get_or_insert(asked.div_ceil(photons + paths(&prepared)));
+            }
+        }
         prepared.extend(gathered.into_iter().map(|(_, prepared)| prepared));
         let block_batches = prepared.iter().map(Prepared::block_batches).max().unwrap_or(1);
         let has_passes = prepared.iter().any(|one| one.portion() == Portion::Pass);
@@ -113,7 +115,8 @@ impl<'s> Run<'s> {
             batches: 0,
             paths: 0,
             paths_asked: plan.stop.paths,
-            batches_asked: plan.stop.batches,
+            batches_asked,
+            paths_planned: plan.stop.paths_for_stages(),
         })
     }
 }
@@ -159,9 +162,9 @@ fn gathered<'s>(
         return Some(Vec::new());
     }
     let early = signal.with_grace();
-    let left = signal.work_left(|| time_of_segment(scene, plan, &early));
+    let left = signal.work_left(pilot.speed);
     let pilot = if merged.is_empty() { pilot } else { pilot.step_by_step() };
-    let pilot = pilot.with_passes_for(plan, left.map(|segments| segments / passes_in_turn()));
+    let pilot = pilot.with_passes_for(plan, left.map(|work| work / passes_in_turn()));
     let mut gathers = Vec::new();
     for (sensors, combination) in [(alone, Combination::Alone), (merged, Combination::Merged)] {
         if sensors.is_empty() {
@@ -190,24 +193,7 @@ fn gathered<'s>(
 /// Suitable number of photon paths of a batch for a scene, where a run may end after any batch.
 pub fn batch_paths(scene: &Scene, plan: &RunPlan) -> u64 {
     let pilot = photon_pilot(scene, plan, &StopSignal::default());
-    usual_batch(pilot.expect("nothing stops it").segments_per_path as u64)
-}
-
-fn usual_batch(segments_per_path: u64) -> u64 {
-    Points::even_count((BATCH_SEGMENTS / segments_per_path).min(BATCH_PATHS))
-}
-
-/// Photon paths of a batch without other paths: the requested ones are divided evenly among the batches of whole waves. A power
-/// of two would often need smaller batches, which lose more than it gains.
-fn photons_for(plan: &RunPlan, paths: u64, usual: u64, segments_per_path: u64) -> u64 {
-    let may_end_early = plan.stop.time.is_some() || plan.stop.target.is_some();
-    let most = if may_end_early || plan.batch_paths.is_some() {
-        usual
-    } else {
-        usual.max((LARGE_BATCH_SEGMENTS / segments_per_path).min(LARGE_BATCH_PATHS))
-    };
-    let waves = paths.div_ceil(GROUPS * most).max(1);
-    paths.div_ceil(plan.stop.batches.unwrap_or(GROUPS * waves))
+    usual_batch(pilot.expect("nothing stops it"))
 }
 
 /// Measures the length of photon paths from a few of them; `None` if they were stopped.
@@ -223,25 +209,27 @@ fn photon_pilot(scene: &Scene, plan: &RunPlan, signal: &StopSignal) -> Option<Ph
     let cut = stepped.groups[0].sums[forward.layout.cut()];
     let rest = if flux > 0.0 { cut / flux * f64::from(plan.bounce_limit - limit) } else { 0.0 };
     let rest = rest.floor();
-    Some(PhotonPilot::new((segments + rest * (segments / steps).min(1.0)).floor(), steps + rest))
+    let speed = if signal.is_timed() { speed(scene, plan, signal)? } else { 1.0 };
+    let per_path = (segments + rest * (segments / steps).min(1.0)).floor();
+    Some(PhotonPilot { speed, ..PhotonPilot::new(per_path, steps + rest) })
 }
 
-/// Time of a segment of a photon path, s, by the clock: the lower quartile of short measurements, since other programs
-/// lengthen some of them. `None` if stopped.
-fn time_of_segment(scene: &Scene, plan: &RunPlan, signal: &StopSignal) -> Option<f64> {
+/// Work of photon paths in a second by the clock, over that of the reference machine (`work`): the upper quartile of short
+/// measurements, since other programs lower some of them. `None` if stopped.
+fn speed(scene: &Scene, plan: &RunPlan, signal: &StopSignal) -> Option<f64> {
     let limit = plan.bounce_limit.min(PILOT_BOUNCES);
     let forward = Forward::new(scene, plan.seed, limit, PILOT_PATHS);
-    let (start, mut times) = (Instant::now(), Vec::new());
+    let (start, mut speeds) = (Instant::now(), Vec::new());
     for batch in 0..TIMED_BATCHES {
         let began = Instant::now();
-        let segments = forward.batch(batch, signal)?.segments.max(1);
-        times.push(began.elapsed().as_secs_f64() / segments as f64);
+        let work = work::of_photons(&forward.batch(batch, signal)?);
+        speeds.push(1e-9 * work / began.elapsed().as_secs_f64().max(1e-9));
         if start.elapsed() >= TIMED {
             break;
         }
     }
-    times.sort_by(f64::total_cmp);
-    Some(times[times.len() / 4])
+    speeds.sort_by(|a, b| b.total_cmp(a));
+    Some(speeds[speeds.len() / 4])
 }
 
 /// The estimator of each sensor: its own, the requested one, or a pilot's choice.
@@ -265,14 +253,11 @@ fn estimators(
         return all(Estimator::Forward);
     }
     let mut tried = |estimator| watch(Phase::Pilot(estimator));
-    let left = signal.work_left(|| time_of_segment(scene, plan, &signal.with_grace()));
+    let left = signal.work_left(pilot.speed);
     let choices = choose(scene, plan, (pilot, left), &signal.with_half(), &mut tried);
-    let Some(mut choices) = choices else {
+    let Some(choices) = choices else {
         // The best is unknown; photons find something everywhere.
         return if signal.is_due() { None } else { all(Estimator::Forward) };
     };
-    for (sensor, choice) in choices.iter_mut().enumerate() {
-        choice.chosen = own(sensor).unwrap_or(choice.chosen);
-    }
     Some((choices.iter().map(|choice| choice.chosen).collect(), choices))
 }

@@ -69,6 +69,8 @@ pub struct Run<'s> {
     pub(super) paths_asked: Option<u64>,
     /// Batches into which the paths are divided; `None` for whole waves.
     pub(super) batches_asked: Option<u64>,
+    /// Paths for which stages are planned; `None` where the end is not known.
+    pub(super) paths_planned: Option<u64>,
 }
 
 /// Counts of a block of batches: by photons, and by each of the other estimators.
@@ -127,7 +129,8 @@ impl<'s> Run<'s> {
         (waves * self.wave_batches).min(planned).min(self.batches_asked.unwrap_or(u64::MAX))
     }
 
-    fn has_passes(&self) -> bool {
+    /// Whether some of its batches are passes, which count evenly only after a whole wave.
+    pub fn has_passes(&self) -> bool {
         self.others.iter().any(|(own, _)| own.portion() == Portion::Pass)
     }
 
@@ -277,7 +280,7 @@ impl<'s> Run<'s> {
         self.others.iter().any(|(own, series)| own.may_end_stage(series))
     }
 
-    /// Starts the next stage of every estimator whose stage may end.
+    /// Starts the next stage of every estimator whose stage may end, if the paths that are left suffice for it.
     pub fn next_stage(&mut self) {
         self.begin_stages(&vec![0; self.others.len()]);
     }
@@ -298,7 +301,7 @@ impl<'s> Run<'s> {
         self.round_end()
     }
 
-    /// How many stages ahead each estimator should go on; 0 where noise limits it.
+    /// By how many stages each estimator should go on; 0 where noise limits it.
     fn stages_ahead(&self) -> Vec<u32> {
         let Some(photons) = self.photons.in_progress() else { return vec![0; self.others.len()] };
         let photons = photons.counts.first();
@@ -327,8 +330,10 @@ impl<'s> Run<'s> {
             own.batch_paths(if other == place { stage } else { series.stage() })
         });
         let pass = self.photons_per_batch() + stages.sum::<u64>();
-        let left = self.planned_paths().map(|paths| paths.saturating_sub(self.paths));
-        left.is_none_or(|left| left >= MIN_LIT_GROUPS as u64 * pass)
+        self.paths_planned.is_none_or(|planned| {
+            let waves = planned.saturating_sub(self.paths).div_ceil(self.wave_batches * pass);
+            waves * self.wave_batches >= MIN_LIT_GROUPS as u64
+        })
     }
 
     /// Everything counted so far. At least one batch has been traced.

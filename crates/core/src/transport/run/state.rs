@@ -2,6 +2,7 @@
 
 use crate::plan::{Estimator, RunPlan};
 use crate::transport::EstimatorChoice;
+use crate::transport::estimators::Prepared;
 use crate::transport::run::rounds::Run;
 use crate::transport::tally::{Counts, Series};
 use serde::{Deserialize, Serialize};
@@ -17,6 +18,9 @@ pub struct RunState {
     /// Its estimators, which depend on the clock if the time of the run is limited.
     estimators: Vec<Estimator>,
     choices: Vec<EstimatorChoice>,
+    /// Photon paths of a batch, and batches of the run if they are known, which depend on the clock, too.
+    photons_per_batch: u64,
+    batches_asked: Option<u64>,
     /// Photons of a pass of gathering, and its gather paths from all sensors in the first stage.
     pass: Option<[u64; 2]>,
 }
@@ -35,7 +39,7 @@ impl RunState {
     }
 }
 
-impl Run<'_> {
+impl<'s> Run<'s> {
     /// The current state.
     pub fn state(&self) -> RunState {
         let others = self.others.iter().map(|(_, series)| series.clone()).collect();
@@ -44,11 +48,25 @@ impl Run<'_> {
 
     /// Restores the state of a run of the same scene and plan; it continues to the same bits.
     pub fn restore(&mut self, state: RunState) {
-        let RunState { batches, paths, photons, others, choices, .. } = state;
+        self.resize_batches(state.photons_per_batch);
+        let RunState { batches, paths, photons, others, choices, batches_asked, .. } = state;
+        self.batches_asked = batches_asked;
         (self.batches, self.paths, self.photons) = (batches, paths, photons);
         self.choices = choices;
         for ((_, own), series) in self.others.iter_mut().zip(others) {
             *own = series;
+        }
+    }
+
+    /// Gives a batch this many photon paths, and other paths in proportion.
+    fn resize_batches(&mut self, photons: u64) {
+        let now = self.photons_per_batch();
+        if photons != now {
+            self.forward = self.forward.with_paths(photons);
+            let others = std::mem::take(&mut self.others);
+            let resized =
+                |(own, series): (Prepared<'s>, Series)| (own.resized([photons, now]), series);
+            self.others = others.into_iter().map(resized).collect();
         }
     }
 
@@ -73,6 +91,8 @@ impl Run<'_> {
             others,
             estimators: self.estimators.clone(),
             choices: self.choices.clone(),
+            photons_per_batch: self.photons_per_batch(),
+            batches_asked: self.batches_asked,
             pass: settings.map(|own| own.pass_size()),
         }
     }

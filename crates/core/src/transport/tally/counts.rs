@@ -69,12 +69,15 @@ pub struct Stage {
     pub counts: Counts,
 }
 
+/// Stages that a report has: two that may give the value, and one before them.
+const KEPT: usize = 3;
+
 /// What an estimator has counted so far, stage by stage. Most estimators have only one stage.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Series {
     stage: u32,
     sums: Sums<Counts>,
-    /// The last two finished stages.
+    /// The last finished stages, at most [`KEPT`].
     finished: Vec<Stage>,
 }
 
@@ -103,17 +106,18 @@ impl Series {
     /// larger error.
     pub(crate) fn begin_stage(&mut self, stage: u32) {
         let ends = self.in_progress();
-        self.finished.drain(..self.finished.len().saturating_sub(1));
+        self.finished.drain(..self.finished.len().saturating_sub(KEPT - 1));
         self.finished.extend(ends);
         self.stage = stage;
         self.sums = Sums::default();
     }
 
-    /// The last finished stage and the one in progress. A stage without a batch does not count, so
-    /// a run that is stopped as it starts one reports the same as a run that ends there.
+    /// The last [`KEPT`] stages, the one in progress among them if it has a batch: a run that is stopped as it starts one
+    /// reports the same as a run that ends there.
     pub(crate) fn stages(&self) -> Vec<Stage> {
         let new = self.in_progress();
-        let skipped = if new.is_some() { self.finished.len().saturating_sub(1) } else { 0 };
+        let kept = KEPT - new.iter().count();
+        let skipped = self.finished.len().saturating_sub(kept);
         self.finished.iter().skip(skipped).cloned().chain(new).collect()
     }
 

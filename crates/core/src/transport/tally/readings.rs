@@ -26,7 +26,7 @@ const CLASS_LIMIT: usize = 256;
 /// Places of leaks that are kept.
 const LEAK_LIMIT: usize = 8;
 /// Format of the serialised readings.
-const FORMAT: u32 = 2;
+const FORMAT: u32 = 3;
 
 /// Sums over the batches of one group.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -104,6 +104,8 @@ pub struct Readings {
     pub sensors: Vec<SensorReading>,
     /// Segments traced: the work done.
     pub segments: u64,
+    /// Places of sources and sensors that vertices were joined to, be they visible or not.
+    pub joins: u64,
     /// The first places of leaks.
     pub leaks: Vec<Leak>,
 }
@@ -135,6 +137,7 @@ impl Readings {
             }],
             sensors: scene.sensors.iter().map(|s| sensor(s.cells())).collect(),
             segments: 0,
+            joins: 0,
             leaks: Vec::new(),
         }
     }
@@ -183,6 +186,7 @@ impl Readings {
         debug_assert_eq!(self.batches.end, later.batches.start, "batches are merged in order");
         self.batches.end = later.batches.end;
         self.segments += later.segments;
+        self.joins += later.joins;
         for group in &later.groups {
             match self.groups.binary_search_by_key(&group.group, |own| own.group) {
                 Ok(place) => {

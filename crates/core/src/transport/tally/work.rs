@@ -12,6 +12,8 @@ pub(crate) const OF_PHOTON_SEGMENT: f64 = 90.0;
 /// Per gather path, and per segment of one.
 const GATHER_PATH: f64 = 1200.0;
 const GATHER_SEGMENT: f64 = 120.0;
+/// Per place that a vertex is joined to, or found not to be.
+const JOIN: f64 = 180.0;
 /// Per gather record, made and indexed; per segment of a photon, looked up in the filter; per photon that passes the filter;
 /// per photon that a record takes.
 const RECORD: f64 = 3600.0;
@@ -57,9 +59,11 @@ pub(crate) fn of_recorded_path(segments: f64) -> f64 {
     of_gather_path(segments) + RECORD
 }
 
-/// Work of gather paths.
-pub(crate) fn of_gather_paths(paths: u64, segments: u64) -> f64 {
-    GATHER_PATH * paths as f64 + GATHER_SEGMENT * segments as f64
+/// Work of this many gather paths, and of what photons and they are joined to.
+pub(crate) fn of_gather_paths(paths: u64, readings: &Readings) -> f64 {
+    GATHER_PATH * paths as f64
+        + GATHER_SEGMENT * readings.segments as f64
+        + JOIN * readings.joins as f64
 }
 
 /// Work of records.

@@ -4,7 +4,7 @@ use glam::DVec3;
 use lumiduct_base::math::{Root, SignChange, cubic, quartic};
 use std::ops::ControlFlow;
 
-/// A line beside the torus of major radius 1 and minor radius `tube`.
+/// A line in the frame of a torus of major radius 1 and minor radius `tube`; lengths are in major radii.
 ///
 /// With A = |p|² + 1 - r² the torus is A² = 4 (x² + y²); outside of it A² is larger.
 pub(super) struct TorusLine {
@@ -14,7 +14,7 @@ pub(super) struct TorusLine {
 }
 
 impl TorusLine {
-    /// Visits the crossings in a span of the line.
+    /// Visits the wanted crossings in a span of the line, which may be infinite, in ascending order.
     ///
     /// From the line's point q nearest to the centre, q·d = 0, the quartic has no cubic term: A(t) = A + d² t². (d² differs
     /// from 1 by the rounding of the frame.)
@@ -33,11 +33,11 @@ impl TorusLine {
         let fine = -near.dot(dir) / dir2;
         let (shift, nearest) = (coarse + fine, near + fine * dir);
         let reach = (1.0 + tube) * (1.0 + tube) - nearest.length_squared();
-        let half_chord = bracket(reach.max(0.0));
-        let span = [(lo - shift).max(-half_chord), (hi - shift).min(half_chord)];
         if reach < 0.0 {
             return ControlFlow::Continue(());
         }
+        let half_chord = bracket(reach);
+        let span = [(lo - shift).max(-half_chord), (hi - shift).min(half_chord)];
         let across_axis = nearest.truncate();
         let distance = across_axis.length();
         let along = across_axis.dot(dir.truncate());
@@ -65,10 +65,11 @@ impl TorusLine {
         })
     }
 
-    /// Visits the crossings in a span of a line that starts on the torus, except the start.
+    /// Visits the wanted crossings in a span of a line that starts on the torus, in ascending order, except the start.
     ///
     /// On the surface A = 2ρ exactly, and the quartic's constant term is zero; what remains is a cubic, here written so
-    /// that its terms are small where the tube is thin. Before the start, it has the opposite sign.
+    /// that its terms are small where the tube is thin. Before the start, its negative
+    /// has the sign of the quartic. A tangent touches the torus at the start, which is no crossing.
     #[inline]
     pub(super) fn visit_others(
         &self,
@@ -94,6 +95,7 @@ impl TorusLine {
         ];
         // For F = (ρ - 1)² + z², the change (F(t) - F(0)) / t, written without that difference, and its
         // derivative.
+        const BESIDE: f64 = 1e-300;
         let unsquared = |t: f64| {
             let now = (across_axis + t * across_dir).length();
             let now_slope = (across_along + t * across_dir2) / now;
@@ -105,14 +107,13 @@ impl TorusLine {
                 rise_slope * sum + rise * now_slope + dir.z * dir.z,
             )
         };
-        if lo < 0.0 {
-            let is_wanted = |change: SignChange| is_wanted(change.opposite());
-            cubic(coefficients, [lo, hi.min(0.0)], is_wanted, |(t, change)| {
-                visit((polished(t, unsquared), change.opposite()))
+        if lo < -BESIDE {
+            cubic(coefficients.map(|c| -c), [lo, hi.min(-BESIDE)], &is_wanted, |(t, change)| {
+                visit((polished(t, unsquared), change))
             })?;
         }
-        if hi > 0.0 {
-            cubic(coefficients, [lo.max(0.0), hi], is_wanted, |(t, change)| {
+        if hi > BESIDE {
+            cubic(coefficients, [lo.max(BESIDE), hi], is_wanted, |(t, change)| {
                 visit((polished(t, unsquared), change))
             })?;
         }

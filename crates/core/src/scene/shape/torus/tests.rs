@@ -115,4 +115,11 @@ fn a_ray_along_the_axis_misses_and_one_through_the_equator_crosses_four_times() 
     assert_eq!(found.len(), 4);
     let from_outermost = Ray::new(9.5 * DVec3::X, -DVec3::X);
     assert_eq!(crossings_of(&shape, &from_outermost, RayStart::On).len(), 3);
+    for tangent in [DVec3::Y, DVec3::Z] {
+        let touching =
+            |x: f64| crossings_of(&shape, &Ray::new(x * DVec3::X, tangent), RayStart::On);
+        assert!(touching(9.5).is_empty(), "only the start");
+        let through = touching(6.5);
+        assert!(through.iter().all(|crossing| crossing.t.abs() > 1.0), "{through:?}");
+    }
 }

@@ -1,0 +1,183 @@
+//! Sizes of batches. Points fill a larger batch more evenly, so that a run of known length has as few batches as its errors
+//! need; a run that may end at any time, with a target, has small ones.
+
+use crate::plan::{RunPlan, StopRules};
+use crate::rng::Points;
+use crate::transport::tally::readings::GROUPS;
+use crate::transport::tally::work;
+use crate::transport::trial::PhotonPilot;
+
+/// Target number of segments of a batch: long enough that summing costs little, short enough
+/// that little is lost when a run is stopped.
+const BATCH_SEGMENTS: u64 = 1 << 15;
+/// Most paths in a batch.
+const BATCH_PATHS: u64 = 4096;
+/// Most segments and paths of a batch where the length of the run is known.
+const LARGE_BATCH_SEGMENTS: u64 = 1 << 20;
+const LARGE_BATCH_PATHS: u64 = 1 << 16;
+/// Least batches of each thread in a run of limited time.
+const BATCHES_PER_THREAD: u64 = 16;
+/// Share of the paths for which time is expected to suffice, 1: a run whose paths take longer still has enough batches.
+const CERTAIN_SHARE: f64 = 0.8;
+
+/// Photon paths of a batch for a scene, where a run may end after any batch.
+pub(crate) fn usual_batch(pilot: PhotonPilot) -> u64 {
+    Points::even_count((BATCH_SEGMENTS / pilot.segments_per_path as u64).min(BATCH_PATHS))
+}
+
+/// Sizes of the batches of a run.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct BatchSizes<'a> {
+    plan: &'a RunPlan,
+    /// Photon paths of a batch where a run may end after any.
+    pub(crate) usual: u64,
+    /// Most photon paths of a batch.
+    most: u64,
+    /// Work of a photon path, ns.
+    path: f64,
+    /// Work of all threads for which time suffices, ns; `None` if time is not limited.
+    by_time: Option<f64>,
+}
+
+impl<'a> BatchSizes<'a> {
+    /// Sizes for a run with `left` ns of work for each thread, if its time is limited.
+    pub(crate) fn new(plan: &'a RunPlan, pilot: PhotonPilot, left: Option<f64>) -> Self {
+        let usual = plan.batch_paths.unwrap_or(usual_batch(pilot));
+        let StopRules { paths, batches, time, target, .. } = &plan.stop;
+        let may_end_early = target.is_some() || (paths.is_some() && time.is_some());
+        let is_known = plan.batch_paths.is_none() && (batches.is_some() || !may_end_early);
+        let large = LARGE_BATCH_SEGMENTS / pilot.segments_per_path as u64;
+        let most = if is_known { usual.max(large.min(LARGE_BATCH_PATHS)) } else { usual };
+        let threads = rayon::current_num_threads() as f64;
+        let left = left.filter(|_| is_known && paths.is_none());
+        let by_time = left.map(|left| CERTAIN_SHARE * threads * left);
+        Self { plan, usual, most, path: work::of_photon_path(pilot.segments_per_path), by_time }
+    }
+
+    /// Photon paths of a batch without other paths: those of the run are divided evenly among the batches of whole waves. A power
+    /// of two would often need smaller batches, which lose more than it gains.
+    pub(crate) fn photons(&self) -> u64 {
+        // Where hardly any time is left, a batch may still take a part of the grace.
+        let by_time = self.by_time.map(|work| ((work / self.path) as u64).max(self.usual));
+        let Some(paths) = self.plan.stop.paths.or(by_time) else { return self.usual };
+        let least = by_time.map_or(1, |_| self.batches_of_threads().div_ceil(GROUPS));
+        let waves = paths.div_ceil(GROUPS * self.most).max(least);
+        paths.div_ceil(self.plan.stop.batches.unwrap_or(GROUPS * waves)).max(1)
+    }
+
+    /// Batches of a run of limited time, which may end while every thread is in one: few of them may be lost.
+    fn batches_of_threads(&self) -> u64 {
+        BATCHES_PER_THREAD * rayon::current_num_threads() as u64
+    }
+
+    /// Work of such a batch, ns.
+    pub(crate) fn work(&self) -> f64 {
+        self.photons() as f64 * self.path
+    }
+
+    /// How many times the usual paths a batch of photons and other paths has: a power of two, so that every path's number is one.
+    /// A usual batch has this many paths, and this much work, ns.
+    pub(crate) fn growth(&self, paths: u64, work: f64) -> u64 {
+        let by_time = self.by_time.map(|all| (all / work) as u64);
+        let by_paths = self.plan.stop.paths.map(|all| all / paths);
+        let Some(batches) = by_paths.or(by_time) else { return 1 };
+        let least = by_time.map_or(GROUPS, |_| GROUPS.max(self.batches_of_threads()));
+        let wanted = batches / self.plan.stop.batches.unwrap_or(least);
+        let most = (self.most / self.usual).max(1);
+        1 << wanted.clamp(1, most).ilog2()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::{GatherPlan, Request, Target};
+    use std::time::Duration;
+
+    fn plan(stop: StopRules) -> RunPlan {
+        RunPlan {
+            estimator: Request::Forward,
+            sensor_estimators: Vec::new(),
+            gather: GatherPlan::default(),
+            seed: 1,
+            bounce_limit: 1000,
+            batch_paths: None,
+            stop,
+        }
+    }
+
+    /// Paths of nine segments take 1150 ns.
+    fn pilot() -> PhotonPilot {
+        PhotonPilot::new(9.0, 20.0)
+    }
+
+    #[test]
+    fn a_run_of_limited_time_has_about_as_many_batches_as_one_of_known_length() {
+        let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+        one.install(|| {
+            let time = Some(Duration::from_secs(1));
+            let plan = plan(StopRules { time, ..StopRules::default() });
+            let none = BatchSizes::new(&plan, pilot(), Some(0.0));
+            assert_eq!(none.photons(), usual_batch(pilot()) / GROUPS, "in the grace");
+            for seconds in [0.1, 1.0, 5.0] {
+                let sizes = BatchSizes::new(&plan, pilot(), Some(1e9 * seconds));
+                let batches = 1e9 * seconds / sizes.work();
+                assert!((150.0..=160.0).contains(&batches), "{batches} in {seconds} s");
+            }
+            let long = BatchSizes::new(&plan, pilot(), Some(1e12));
+            assert!(long.photons() <= LARGE_BATCH_PATHS, "{}", long.photons());
+        });
+    }
+
+    #[test]
+    fn a_run_that_a_target_may_end_has_usual_batches() {
+        let target = Some(Target { measure: "exit.flux".into(), relative_error: 0.01 });
+        let plan = plan(StopRules { target, ..StopRules::default() });
+        let sizes = BatchSizes::new(&plan, pilot(), Some(1e10));
+        assert_eq!((sizes.photons(), sizes.growth(100, 1e3)), (usual_batch(pilot()), 1));
+    }
+
+    #[test]
+    fn the_clock_decides_nothing_where_a_number_of_paths_may_end_the_run() {
+        let time = Some(Duration::from_secs(100));
+        let of = |batches, paths| {
+            let stop = StopRules { paths: Some(paths), batches, time, ..StopRules::default() };
+            let plan = plan(stop);
+            [1e8, 1e12].map(|left| {
+                let sizes = BatchSizes::new(&plan, pilot(), Some(left));
+                (sizes.photons(), sizes.growth(3000, 1e3))
+            })
+        };
+        let [soon, late] = of(None, 75_000_000);
+        assert_eq!(soon, late);
+        assert!(soon.0 <= usual_batch(pilot()));
+        assert_eq!(of(Some(100), 1_000_000), [(10_000, 2); 2]);
+    }
+
+    #[test]
+    fn many_threads_have_batches_enough_each() {
+        let many = rayon::ThreadPoolBuilder::new().num_threads(32).build().unwrap();
+        many.install(|| {
+            let time = Some(Duration::from_secs(1));
+            let plan = plan(StopRules { time, ..StopRules::default() });
+            let sizes = BatchSizes::new(&plan, pilot(), Some(1e8));
+            let batches = 32.0 * 1e8 / sizes.work();
+            assert!(batches > 600.0, "{batches}");
+        });
+    }
+
+    #[test]
+    fn a_stopped_run_is_repeated_with_batches_of_its_size() {
+        let most = BatchSizes::new(&plan(StopRules::default()), pilot(), None).most;
+        for growth in [1, 2, 4, 8] {
+            let asked = |paths, batches| {
+                plan(StopRules { paths: Some(paths), batches, ..StopRules::default() })
+            };
+            let whole = asked(growth * GROUPS * 3000, None);
+            assert!(growth <= most / usual_batch(pilot()));
+            assert_eq!(BatchSizes::new(&whole, pilot(), None).growth(3000, 1.0), growth);
+            let part = asked(growth * 40 * 3000, Some(40));
+            assert_eq!(BatchSizes::new(&part, pilot(), None).growth(3000, 1.0), growth);
+        }
+    }
+}

@@ -39,7 +39,7 @@ pub(super) struct RunArgs {
     #[arg(long, value_parser = parse_percent, value_name = "PERCENT")]
     target: Option<f64>,
     /// Stop after this many paths, such as 2M: photon paths from the sources, and gather paths from the sensors where the
-    /// estimator has them. Rounded up to whole waves: 128 batches, or 4 passes of gathering.
+    /// estimator has them. Rounded up to whole batches, or to waves of them: 128, or 4 passes of gathering.
     #[arg(long, value_parser = parse_count, value_name = "COUNT")]
     paths: Option<u64>,
     /// Stop after this time, such as 60s or 5min, including the pilot of auto. Unfinished batches are dropped; the report

@@ -10,11 +10,15 @@ use lumiduct_input::keys::Key;
 pub(super) fn command(job: &Job, findings: &Findings, stop: Stop) -> Option<String> {
     match stop {
         Stop::Time | Stop::Interrupted => {}
-        Stop::Paths | Stop::Target | Stop::Bias | Stop::Dark => return None,
+        Stop::Paths | Stop::Batches | Stop::Target | Stop::Bias | Stop::Dark => return None,
     }
     let mut words = vec!["lumiduct".into(), "run".into(), format!("{}.toml", job.name)];
     let mut define = |setting: String| words.extend(["-D".to_owned(), setting]);
-    job.settings.overrides.iter().cloned().for_each(&mut define);
+    // Those of a repeated run are given anew.
+    let is_own = |setting: &&String| {
+        !setting.starts_with("run.batches") && !setting.starts_with("run.planned_paths")
+    };
+    job.settings.overrides.iter().filter(is_own).cloned().for_each(&mut define);
     for (sensor, estimator) in job.scene.sensors.iter().zip(&findings.estimators) {
         let key = Key::of(&["sensors", &sensor.name, "estimator"]);
         define(format!("{key}={}", estimator.name()));

@@ -30,6 +30,14 @@ impl SnapshotKind {
         }
     }
 
+    /// What to do about a file that cannot be used.
+    fn remedy(self) -> &'static str {
+        match self {
+            Self::Checkpoint => "to start again, give --overwrite in place of --resume",
+            Self::Slice => "trace the part again, with --overwrite",
+        }
+    }
+
     /// The first line of a file. The number is the version of its layout; the build of the program
     /// is part of the contents.
     fn line(self) -> String {
@@ -61,7 +69,8 @@ fn framed(kind: SnapshotKind, contents: &[u8]) -> Vec<u8> {
 pub(super) fn read<T: DeserializeOwned>(path: &Path, kind: SnapshotKind) -> Result<T> {
     let bytes = fs::read(path).map_err(|source| Error::io(path, source))?;
     let refuse = |why: &str| {
-        Error::Usage(format!("{} is not a usable {}: {why}", path.display(), kind.name()))
+        let (path, name, remedy) = (path.display(), kind.name(), kind.remedy());
+        Error::Usage(format!("{path} is not a usable {name}: {why}; {remedy}"))
     };
     let line = kind.line();
     let rest = bytes
@@ -84,7 +93,7 @@ pub(super) fn read<T: DeserializeOwned>(path: &Path, kind: SnapshotKind) -> Resu
         .map_err(|_| refuse("it is from another version of the program"))?;
     if build != BUILD {
         return Err(refuse(&format!(
-            "it is from another build of the program, {build}, and this is {BUILD}; start again, or use that build"
+            "it is from another build of the program, {build}, and this is {BUILD}; use that build"
         )));
     }
     postcard::from_bytes(contents).map_err(|_| refuse("it holds other data"))

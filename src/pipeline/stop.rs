@@ -8,6 +8,8 @@ use lumiduct_core::measure::Status;
 pub enum Stop {
     /// All requested paths are traced.
     Paths,
+    /// All batches of `run.batches` are traced.
+    Batches,
     /// The time is up.
     Time,
     /// The target is met.
@@ -25,6 +27,7 @@ impl Stop {
     pub fn reason(self) -> &'static str {
         match self {
             Self::Paths => "all requested paths were traced",
+            Self::Batches => "all batches of `run.batches` were traced",
             Self::Time => "the time limit was reached",
             Self::Target => "the target error was reached",
             Self::Bias => {

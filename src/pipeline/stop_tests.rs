@@ -60,7 +60,7 @@ fn a_stopped_run_ends_at_its_next_checks_and_its_command_repeats_it_on_any_threa
                 let same =
                     on_threads(threads, || trace(&again, &Interrupt::default(), &mut |_| ()));
                 let same = same.unwrap();
-                assert_eq!(same.stop, Stop::Paths);
+                assert_eq!(same.stop, Stop::Batches);
                 assert!(same.findings == traced.findings, "{batches} batches, {threads} threads");
             }
         }

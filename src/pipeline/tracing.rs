@@ -154,7 +154,8 @@ impl<'j> Tracing<'j> {
     /// What ends the run before its round is over.
     fn early_stop(&self) -> Option<Stop> {
         if self.run.is_complete() {
-            Some(Stop::Paths)
+            let is_repeated = self.clock.plan.stop.batches.is_some();
+            Some(if is_repeated { Stop::Batches } else { Stop::Paths })
         } else if self.clock.interrupt.is_raised() {
             Some(Stop::Interrupted)
         } else {

@@ -63,6 +63,20 @@ fn a_bad_command_line_ends_with_2_and_writes_nothing() {
 }
 
 #[test]
+fn settings_of_a_repeated_run_are_refused_where_they_would_do_nothing() {
+    let place = Place::new();
+    for (flags, missing) in [
+        ("--time 1s -D run.batches=7", "--paths"),
+        ("--target 1% -D run.batches=7", "--paths"),
+        ("--paths 2k -D run.planned_paths=9000", "run.batches"),
+        ("--time 1s -D run.planned_paths=9000", "run.batches"),
+    ] {
+        let said = place.bad(2, &format!("run rod.toml {flags}"));
+        assert!(said.contains(missing), "{flags}: {said}");
+    }
+}
+
+#[test]
 fn bad_settings_for_gathering_are_refused_with_the_figure_that_is_wrong() {
     let place = Place::new();
     for (flag, key, figure) in [

@@ -246,7 +246,7 @@ impl Schedule {
 /// When a run ends. At least one rule is set.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct StopRules {
-    /// After this many paths, rounded up to whole waves (of 128 batches, or 4 passes of gathering).
+    /// After this many paths, rounded up to whole batches, or to waves of them (128, or 4 passes of gathering).
     #[serde(rename = "paths")]
     pub paths: Option<u64>,
     /// Batches, or passes, into which the paths are divided: such a run ends after exactly this
@@ -281,7 +281,9 @@ pub struct Target {
     pub relative_error: f64,
 }
 
-/// Expectation for one measure: a limit (`min`, `max`) or a value (`equals`).
+/// Expectation for one measure: a limit (`min`, `max`) or a value (`equals`). A check is undecided, which counts as missed,
+/// where the total error (noise and bias) leaves it open: within 3 errors of a limit, up to 3 errors beyond `within`, where
+/// the value cannot be relied on, and above `max_std_error`. More paths decide it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(extend("anyOf" = [{ "required": ["min"] }, { "required": ["max"] }, { "required": ["equals"] }]))]
 pub struct Check {

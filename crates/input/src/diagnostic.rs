@@ -23,8 +23,8 @@ pub fn sources_of(diagnostics: &[Diagnostic]) -> Texts {
     Texts::of_files(with_line.filter_map(|diagnostic| diagnostic.file.as_deref()))
 }
 
-/// All diagnostics, by file and line. The first line of each is `file:line: key: message`; then the line of the file
-/// follows, where `sources` has it, and the hint.
+/// All diagnostics, by file and line. The first line of each is `file:line: key: message`, or `error: ` and the message where
+/// it is about no line; then the line of the file follows, where `sources` has it, and the hint.
 pub fn render(diagnostics: &[Diagnostic], sources: &Texts, colour: Colour) -> String {
     let mut sorted: Vec<_> = diagnostics.iter().collect();
     sorted.sort_by_key(|diagnostic| {
@@ -35,7 +35,9 @@ pub fn render(diagnostics: &[Diagnostic], sources: &Texts, colour: Colour) -> St
 }
 
 fn render_one(diagnostic: &Diagnostic, sources: &Texts, colour: Colour) -> String {
-    let headline = Diagnostic { hint: None, ..diagnostic.clone() }.to_string();
+    let is_marked = diagnostic.line.is_some() || diagnostic.kind == DiagnosticKind::Warning;
+    let mark = if is_marked { "" } else { "error: " };
+    let headline = format!("{mark}{}", Diagnostic { hint: None, ..diagnostic.clone() });
     let level = match diagnostic.kind {
         DiagnosticKind::Error => Level::ERROR,
         DiagnosticKind::Warning => Level::WARNING,
@@ -121,6 +123,13 @@ mod tests {
   = help: did you mean 1.49?
 ";
         assert_eq!(rendered(text, &[diagnostic(2, 21..26)], Colour::Never), expected);
+    }
+
+    #[test]
+    fn what_is_about_no_line_is_called_an_error() {
+        let argument = Diagnostic { file: None, line: None, hint: None, ..diagnostic(1, 0..1) };
+        let text = rendered("", &[argument], Colour::Never);
+        assert_eq!(text, "error: `media.pmma.index`: 0.149 is out of range, expected 1 to 4\n");
     }
 
     #[test]

@@ -163,16 +163,7 @@ fn apply(settings: &Settings, scene: &Scene, run: &mut RunPlan) -> Result<()> {
     }
     run.batch_paths = settings.batch_paths;
     if settings.paths.is_none() && settings.time.is_none() && settings.target.is_none() {
-        let StopRules { paths, batches, planned_paths, .. } = run.stop;
-        return match (paths, batches, planned_paths) {
-            (None, Some(_), _) => Err(Error::Usage(
-                "`run.batches` divides a number of paths, which this run does not have: give --paths".into(),
-            )),
-            (_, None, Some(_)) => Err(Error::Usage(
-                "`run.planned_paths` is for runs that are repeated with `run.batches`: give it, or remove the key".into(),
-            )),
-            _ => Ok(()),
-        };
+        return check_batches(&run.stop);
     }
     let of_file = run.stop.target.as_ref().map(|target| target.measure.clone());
     let measure = settings.target_measure.clone().or(of_file);
@@ -185,10 +176,22 @@ fn apply(settings: &Settings, scene: &Scene, run: &mut RunPlan) -> Result<()> {
         }
         (None, _) => None,
     };
-    // The batches of the file divide the paths of the command line as they do those of the file.
-    let [batches, planned_paths] =
-        [run.stop.batches, run.stop.planned_paths].map(|of_file| settings.paths.and(of_file));
     let (paths, time) = (settings.paths, settings.time);
-    run.stop = StopRules { paths, batches, planned_paths, time, target };
-    Ok(())
+    // The batches of the file divide the paths of the command line as they do those of the file.
+    run.stop = StopRules { paths, time, target, ..run.stop };
+    check_batches(&run.stop)
+}
+
+/// Refuses batches without paths, and what belongs to batches without them.
+fn check_batches(stop: &StopRules) -> Result<()> {
+    let refuse = |why: &str| Err(Error::Usage(why.to_owned()));
+    match stop {
+        StopRules { paths: None, batches: Some(_), .. } => refuse(
+            "`run.batches` divides a number of paths, which this run does not have: give --paths, or remove the key",
+        ),
+        StopRules { batches: None, planned_paths: Some(_), .. } => refuse(
+            "`run.planned_paths` is for runs that are repeated with `run.batches`: give it, or remove the key",
+        ),
+        _ => Ok(()),
+    }
 }

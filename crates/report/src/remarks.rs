@@ -124,8 +124,7 @@ fn remark_on_lost_paths(sensor: &str, lost: LostPaths) -> Option<String> {
 pub fn remark_on_paths(asked: Option<u64>, traced: u64) -> Option<String> {
     let asked = asked.filter(|&asked| traced > asked + asked / 10)?;
     Some(format!(
-        "{traced} paths were traced although {asked} were requested: a run ends with a whole wave of \
-            {GROUPS} batches with at least one path from each source, or of passes with all of their \
-            photons and gather paths"
+        "{traced} paths were traced although {asked} were requested: a run ends with whole batches, often {GROUPS}, each \
+            with at least one path from each source, or with a wave of passes, each with all of its photons and gather paths"
     ))
 }

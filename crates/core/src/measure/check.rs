@@ -49,7 +49,8 @@ pub enum CheckOutcome {
 /// * `min` and `max`: undecided within 3 total errors (noise and bias) of the limit.
 /// * A value without noise meets a limit or an expected value if it differs from it only by
 ///   rounding, a relative 1e-9.
-/// * `equals`: passes within `within`, or within `sigmas` total errors; either suffices. Without both, 4 total errors.
+/// * `equals`: passes within `within`, or within `sigmas` total errors; either suffices. Without both, 4 total errors. With
+///   `within` alone, undecided up to 3 total errors beyond it.
 /// * `max_std_error`: a larger standard error leaves a check undecided that would pass.
 /// * A value that cannot be relied on is undecided, with one exception: nothing counted is at most
 ///   three paths' flux.
@@ -157,6 +158,8 @@ fn equality(check: &Check, measure: &Measure, expected: f64) -> (CheckOutcome, S
     let by_error = if wanted > 0.0 { wanted * error } else { 0.0 };
     let rounding = rounding(measure, expected);
     let allowed = by_error.max(check.within.unwrap_or(0.0)).max(rounding);
+    let open =
+        if check.within.is_some() && check.sigmas.is_none() { LIMIT_ERRORS * error } else { 0.0 };
     let z = sigmas(measure.value, error, expected);
     let errors =
         if rounding == 0.0 && z.is_finite() { format!(" ({z:.1} errors)") } else { String::new() };
@@ -177,6 +180,8 @@ fn equality(check: &Check, measure: &Measure, expected: f64) -> (CheckOutcome, S
         )
     } else if deviation.abs() <= allowed {
         (CheckOutcome::Passed, text)
+    } else if deviation.abs() < allowed + open {
+        (CheckOutcome::Undecided, format!("{text}, within {LIMIT_ERRORS} errors"))
     } else {
         (CheckOutcome::Failed, text)
     }
@@ -274,7 +279,10 @@ mod tests {
         let equals = |within, sigmas| Check { equals: Some(0.5), within, sigmas, ..check() };
         assert_eq!(outcome(&equals(None, None), &value), CheckOutcome::Passed);
         assert_eq!(outcome(&equals(None, Some(2.0)), &value), CheckOutcome::Failed);
-        assert_eq!(outcome(&equals(Some(0.02), None), &value), CheckOutcome::Failed);
+        assert_eq!(outcome(&equals(Some(0.02), None), &value), CheckOutcome::Undecided);
+        assert_eq!(outcome(&equals(Some(0.001), None), &value), CheckOutcome::Undecided);
+        let off = measure(0.535, 0.01, "lm");
+        assert_eq!(outcome(&equals(Some(0.001), None), &off), CheckOutcome::Failed);
         assert_eq!(outcome(&equals(Some(0.031), None), &value), CheckOutcome::Passed);
         assert_eq!(outcome(&equals(Some(0.02), Some(4.0)), &value), CheckOutcome::Passed);
         let exact = Check { equals: Some(0.0), ..check() };

@@ -15,7 +15,7 @@ const BATCH_PATHS: u64 = 4096;
 /// Most segments and paths of a batch where the length of the run is known.
 const LARGE_BATCH_SEGMENTS: u64 = 1 << 20;
 const LARGE_BATCH_PATHS: u64 = 1 << 16;
-/// Least batches of each thread in a run of limited time.
+/// Smallest number of batches for each thread in a run of limited time.
 const BATCHES_PER_THREAD: u64 = 16;
 /// Share of the paths for which time is expected to suffice, 1: a run whose paths take longer still has enough batches.
 const CERTAIN_SHARE: f64 = 0.8;
@@ -54,20 +54,24 @@ impl<'a> BatchSizes<'a> {
         Self { plan, usual, most, path: work::of_photon_path(pilot.segments_per_path), by_time }
     }
 
-    /// Photon paths of a batch without other paths: those of the run are divided evenly among the batches of whole waves. A power
-    /// of two would often need smaller batches, which lose more than it gains.
+    /// Photon paths of a batch without other paths. A number of paths is divided evenly among the batches of whole waves, where
+    /// powers of two would often be much smaller, which loses more than it gains. Where only time is limited, they are
+    /// powers of two.
     pub(crate) fn photons(&self) -> u64 {
-        // Where hardly any time is left, a batch may still take a part of the grace.
-        let by_time = self.by_time.map(|work| ((work / self.path) as u64).max(self.usual));
-        let Some(paths) = self.plan.stop.paths.or(by_time) else { return self.usual };
-        let least = by_time.map_or(1, |_| self.batches_of_threads().div_ceil(GROUPS));
-        let waves = paths.div_ceil(GROUPS * self.most).max(least);
-        paths.div_ceil(self.plan.stop.batches.unwrap_or(GROUPS * waves)).max(1)
+        if let Some(paths) = self.plan.stop.paths {
+            let waves = paths.div_ceil(GROUPS * self.most).max(1);
+            return paths.div_ceil(self.plan.stop.batches.unwrap_or(GROUPS * waves));
+        }
+        self.by_time.map_or(self.usual, |work| {
+            // Where hardly any time is left, a batch may still take a part of the grace.
+            let paths = ((work / self.path) as u64).max(self.usual);
+            1 << (paths / self.least_batches()).clamp(1, self.most).ilog2()
+        })
     }
 
-    /// Batches of a run of limited time, which may end while every thread is in one: few of them may be lost.
-    fn batches_of_threads(&self) -> u64 {
-        BATCHES_PER_THREAD * rayon::current_num_threads() as u64
+    /// Least batches of a run of limited time: it may end while every thread is in one, and few of them may be lost.
+    fn least_batches(&self) -> u64 {
+        GROUPS.max(BATCHES_PER_THREAD * rayon::current_num_threads() as u64)
     }
 
     /// Work of such a batch, ns.
@@ -81,7 +85,7 @@ impl<'a> BatchSizes<'a> {
         let by_time = self.by_time.map(|all| (all / work) as u64);
         let by_paths = self.plan.stop.paths.map(|all| all / paths);
         let Some(batches) = by_paths.or(by_time) else { return 1 };
-        let least = by_time.map_or(GROUPS, |_| GROUPS.max(self.batches_of_threads()));
+        let least = by_time.map_or(GROUPS, |_| self.least_batches());
         let wanted = batches / self.plan.stop.batches.unwrap_or(least);
         let most = (self.most / self.usual).max(1);
         1 << wanted.clamp(1, most).ilog2()
@@ -122,7 +126,8 @@ mod tests {
             for seconds in [0.1, 1.0, 5.0] {
                 let sizes = BatchSizes::new(&plan, pilot(), Some(1e9 * seconds));
                 let batches = 1e9 * seconds / sizes.work();
-                assert!((150.0..=160.0).contains(&batches), "{batches} in {seconds} s");
+                assert!((160.0..=320.0).contains(&batches), "{batches} in {seconds} s");
+                assert!(sizes.photons().is_power_of_two());
             }
             let long = BatchSizes::new(&plan, pilot(), Some(1e12));
             assert!(long.photons() <= LARGE_BATCH_PATHS, "{}", long.photons());

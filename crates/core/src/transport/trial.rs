@@ -144,10 +144,9 @@ impl Trials<'_> {
             let lit =
                 small.batches.iter().filter(|batch| is_lit(self.scene, batch, *sensor)).count();
             if let (Some(own), Some(smaller)) = (&mut tried.trial.cost, smaller.trial.cost)
-                && *own > 0.0
                 && lit >= LIT_BATCHES
             {
-                *own *= to_run.powf(-gain(smaller / *own, growth));
+                *own = extrapolated([*own, smaller], growth, to_run);
             }
             tried
         };
@@ -174,6 +173,12 @@ impl Trials<'_> {
         };
         self.sensors.iter().map(of_sensor).collect()
     }
+}
+
+/// A cost in batches that are larger by `to_run`, from that and the cost in batches smaller by `growth`.
+fn extrapolated([own, smaller]: [f64; 2], growth: f64, to_run: f64) -> f64 {
+    // A flux without noise costs nothing in batches of any size.
+    if own == 0.0 { 0.0 } else { own * to_run.powf(-gain(smaller / own, growth)) }
 }
 
 /// The power of the size of batches by which a cost falls: it was this much larger in batches smaller by `growth`. At most
@@ -266,6 +271,8 @@ mod tests {
         assert_eq!(gain(0.9, 16.0), 0.0, "noise");
         assert_eq!(gain(100.0, 16.0), 1.0, "noise");
         assert_eq!(gain(4.0, 1.0), 0.0, "batches of one size");
+        assert!((extrapolated([2.0, 8.0], 16.0, 4.0) - 1.0).abs() < 1e-12);
+        assert_eq!(extrapolated([0.0, 0.0], 16.0, 4.0), 0.0, "no noise");
     }
 
     #[test]

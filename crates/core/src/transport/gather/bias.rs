@@ -35,7 +35,7 @@ const ROUNDING: f64 = 1e-9;
 const OUT_OF_NOISE: f64 = 2.0;
 /// Standard errors beyond which photons contradict a flux: they are often few, and two errors then happen by chance.
 const CONTRADICTED: f64 = 3.0;
-/// The last stages, of which one gives the value.
+/// Number of stages, counted from the latest, from which the value is taken.
 const CANDIDATES: usize = 2;
 /// Standard errors above which a bias ends a stage before its planned passes.
 const PLAIN: f64 = 2.0;
@@ -273,17 +273,7 @@ mod tests {
             batches: 1,
             sums: vec![flux + if pass.is_multiple_of(2) { scatter } else { -scatter }],
         };
-        Readings {
-            format: 0,
-            seed: 0,
-            batch_paths: 1,
-            batches: 0..passes,
-            groups: (0..passes).map(of_pass).collect(),
-            sensors: Vec::new(),
-            segments: 0,
-            joins: 0,
-            leaks: Vec::new(),
-        }
+        Readings::of_groups((0..passes).map(of_pass).collect())
     }
 
     /// A stage whose E1 differs from E0 and E00, which agree.

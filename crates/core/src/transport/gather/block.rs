@@ -134,6 +134,21 @@ fn photon_share(pairs: &[f64], passes: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::transport::tally::readings::Group;
+
+    #[test]
+    fn work_beside_the_records_is_counted_once_for_each_pass() {
+        let empty = |pass: usize| {
+            Readings::of_groups(vec![Group { group: pass as u64, batches: 1, sums: vec![0.0] }])
+        };
+        let mut counts = CrossedCounts::new(2, 0, empty);
+        for (pass, (segments, joins)) in [(7, 2), (11, 3)].into_iter().enumerate() {
+            let other = Readings { segments, joins, ..empty(pass) };
+            counts.add(pass, &other);
+        }
+        let all = counts.into_counts();
+        assert_eq!((all.first().segments, all.first().joins), (18, 5));
+    }
 
     #[test]
     fn only_what_photons_have_in_common_is_their_share() {

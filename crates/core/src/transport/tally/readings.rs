@@ -142,6 +142,24 @@ impl Readings {
         }
     }
 
+    /// Batches with these sums, and without cells.
+    #[cfg(test)]
+    pub(crate) fn of_groups(groups: Vec<Group>) -> Self {
+        let [first, last] =
+            [groups.first(), groups.last()].map(|group| group.map_or(0, |own| own.group));
+        Self {
+            format: FORMAT,
+            seed: 0,
+            batch_paths: 1,
+            batches: first..last + 1,
+            groups,
+            sensors: Vec::new(),
+            segments: 0,
+            joins: 0,
+            leaks: Vec::new(),
+        }
+    }
+
     /// Number of batches.
     pub fn batch_count(&self) -> u64 {
         self.batches.end - self.batches.start

@@ -77,6 +77,8 @@ impl TorusLine {
         is_wanted: impl Fn(SignChange) -> bool,
         mut visit: impl FnMut(Root) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
+        /// Distance from the start of a root that is the start, in major radii: far below every other one.
+        const AT_START: f64 = 1e-100;
         let Self { from, dir, tube } = *self;
         let dir2 = dir.length_squared();
         let (across_axis, across_dir) = (from.truncate(), dir.truncate());
@@ -95,7 +97,6 @@ impl TorusLine {
         ];
         // For F = (ρ - 1)² + z², the change (F(t) - F(0)) / t, written without that difference, and its
         // derivative.
-        const BESIDE: f64 = 1e-300;
         let unsquared = |t: f64| {
             let now = (across_axis + t * across_dir).length();
             let now_slope = (across_along + t * across_dir2) / now;
@@ -107,15 +108,19 @@ impl TorusLine {
                 rise_slope * sum + rise * now_slope + dir.z * dir.z,
             )
         };
-        if lo < -BESIDE {
-            cubic(coefficients.map(|c| -c), [lo, hi.min(-BESIDE)], &is_wanted, |(t, change)| {
+        // Spans that leave out the start instead would make bends slower by a third.
+        let mut visit = |(t, change): Root| {
+            if coefficients[0] == 0.0 && t.abs() < AT_START {
+                ControlFlow::Continue(())
+            } else {
                 visit((polished(t, unsquared), change))
-            })?;
+            }
+        };
+        if lo < 0.0 {
+            cubic(coefficients.map(|c| -c), [lo, hi.min(0.0)], &is_wanted, &mut visit)?;
         }
-        if hi > BESIDE {
-            cubic(coefficients, [lo.max(BESIDE), hi], is_wanted, |(t, change)| {
-                visit((polished(t, unsquared), change))
-            })?;
+        if hi > 0.0 {
+            cubic(coefficients, [lo.max(0.0), hi], is_wanted, visit)?;
         }
         ControlFlow::Continue(())
     }

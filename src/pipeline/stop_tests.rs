@@ -69,6 +69,16 @@ fn a_stopped_run_ends_at_its_next_checks_and_its_command_repeats_it_on_any_threa
 }
 
 #[test]
+fn more_batches_than_their_paths_need_are_traced_and_end() {
+    let folder = tempfile::tempdir().unwrap();
+    let overrides = vec!["run.batches=300".to_owned()];
+    let options = Settings { overrides, paths: Some(300), ..settings(Request::Backward) };
+    let job = short_rod(folder.path(), &options);
+    let traced = trace(&job, &Interrupt::default(), &mut |_| ()).unwrap();
+    assert_eq!(traced.findings.photons.batch_count(), 300);
+}
+
+#[test]
 fn a_run_stopped_in_the_pilot_says_so_and_one_after_it_repeats_without_a_pilot() {
     let folder = tempfile::tempdir().unwrap();
     let auto = Settings { gather: GatherPlan::default(), ..settings(Request::Auto) };

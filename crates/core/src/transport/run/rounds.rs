@@ -200,10 +200,10 @@ impl<'s> Run<'s> {
         };
         self.others.iter().filter_map(of_estimator).min().unwrap_or_else(|| {
             let next = (waves + 1).max(waves * 5 / 4);
-            let asked = self.paths_asked;
-            asked.map_or(next, |paths| {
-                next.min(paths.div_ceil(self.wave_batches * self.batch_paths()))
-            })
+            let wave = self.wave_batches * self.batch_paths();
+            // Batches that were asked for may have more paths than that.
+            let last = self.paths_asked.map_or(next, |paths| paths.div_ceil(wave));
+            next.min(last.max(waves + 1))
         })
     }
 

@@ -4,6 +4,7 @@ mod batch;
 mod check;
 mod compare;
 mod console;
+mod convert;
 mod diff;
 mod display;
 mod exit;
@@ -19,6 +20,7 @@ use crate::cli::batch::BatchArgs;
 use crate::cli::check::CheckArgs;
 use crate::cli::compare::CompareArgs;
 use crate::cli::console::print_error;
+use crate::cli::convert::ConvertArgs;
 use crate::cli::diff::DiffArgs;
 use crate::cli::exit::finish;
 use crate::cli::film::FilmArgs;
@@ -61,6 +63,8 @@ enum Command {
     Film(FilmArgs),
     /// Examine a mesh file: is it closed, the right way out, and fine enough? Exits with 1 if it is not a valid solid.
     Mesh(MeshArgs),
+    /// Convert a luminaire between IES LM-63 (.ies) and EULUMDAT (.ldt), or describe it.
+    Convert(ConvertArgs),
     /// List scenes and sensor files in a folder.
     List {
         /// The folder to look in.
@@ -104,6 +108,7 @@ pub fn main() -> ExitCode {
         Command::Merge(args) => merge::merge(&args),
         Command::Batch(args) => batch::batch(&args),
         Command::Compare(args) => compare::compare(&args),
+        Command::Convert(args) => convert::convert(&args),
         Command::Diff(args) => diff::run(&args),
         Command::Check(args) => check::check(&args),
         Command::Film(args) => film::film(&args),

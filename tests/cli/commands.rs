@@ -33,6 +33,27 @@ fn a_check_tells_where_the_sun_stands() {
 }
 
 #[test]
+fn luminaires_are_converted_and_described() {
+    let place = Place::new();
+    let lamp = "IESNA91\n[LUMINAIRE] lamp\nTILT=NONE\n2 500 1 3 2 1 2 0.1 0.6 0\n1 1 9\n0 45 90\n0 90\n300 200 0\n280 150 0\n";
+    fs::write(place.path("lamp.ies"), lamp).unwrap();
+    let said = place.good("convert lamp.ies out/lamp.ldt");
+    for words in
+        ["luminaire: lamp", "2 with 1000 lm", "four equal quadrants", "600 mm along C0", "EULUMDAT"]
+    {
+        assert!(said.contains(words), "no {words} in {said}");
+    }
+    place.good("convert out/lamp.ldt back.ies");
+    let description = |file: &str| place.good(&format!("convert {file}"));
+    assert_eq!(description("back.ies"), description("lamp.ies"));
+    fs::write(place.path("back.ies"), "other").unwrap();
+    assert!(place.bad(2, "convert lamp.ies back.ies").contains("--overwrite"));
+    let said = place.bad(2, "convert back.ies");
+    assert!(said.contains("back.ies") && said.contains("line 1"), "{said}");
+    assert!(place.bad(2, "convert lamp.ies lamp.txt").contains(".ies or .ldt"));
+}
+
+#[test]
 fn the_schema_is_json_with_a_title() {
     let schema: Value = serde_json::from_str(&Place::new().good("schema")).unwrap();
     assert!(!schema["title"].as_str().unwrap().is_empty());

@@ -1,5 +1,5 @@
-//! Reads foreign file formats. This crate knows no scenes; it gives the triangle meshes of
-//! [`lumiduct_base`].
+//! Reads and writes foreign file formats: triangle [`mesh`]es, as those of [`lumiduct_base`], and the luminous
+//! intensities of [`luminaire`]s. This crate knows no scenes.
 //!
 //! A tetrahedron in centimetres, read as a closed mesh in millimetres:
 //!
@@ -20,4 +20,6 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod bytes;
+pub mod luminaire;
 pub mod mesh;

@@ -1,9 +1,7 @@
-//! The format of a file by its extension, and reading of its untrusted bytes.
+//! The format of a file by its extension.
 
 use crate::mesh::error::MeshError;
 use crate::mesh::format::MeshFormat;
-use std::fs;
-use std::io::Read;
 use std::path::Path;
 
 impl MeshFormat {
@@ -45,25 +43,9 @@ pub fn no_scene(path: &Path) -> Option<String> {
     }
 }
 
-/// All bytes of a regular file of at most `limit` bytes.
-pub(crate) fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, MeshError> {
-    let about = fs::metadata(path)?;
-    // A pipe or a device may never end.
-    if !about.is_file() {
-        return Err(std::io::Error::other("it is not a regular file").into());
-    }
-    if about.len() > limit {
-        return Err(MeshError::FileTooLong);
-    }
-    let mut bytes = Vec::new();
-    fs::File::open(path)?.take(limit).read_to_end(&mut bytes)?;
-    Ok(bytes)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::error::MAX_FILE_BYTES;
 
     #[test]
     fn the_ending_tells_the_format_and_others_are_named() {
@@ -83,17 +65,5 @@ mod tests {
             assert!(no_scene(Path::new(name)).is_some_and(|text| text.contains(word)), "{name}");
         }
         assert_eq!(no_scene(Path::new("a.toml")), None);
-    }
-
-    #[test]
-    fn a_missing_file_a_folder_and_a_long_file_are_errors() {
-        let folder = tempfile::tempdir().unwrap();
-        for path in [folder.path(), &folder.path().join("missing.stl")] {
-            assert!(matches!(read_file(path, MAX_FILE_BYTES), Err(MeshError::Unreadable(_))));
-        }
-        let path = folder.path().join("long.stl");
-        fs::write(&path, [0; 100]).unwrap();
-        assert!(matches!(read_file(&path, 99), Err(MeshError::FileTooLong)));
-        assert_eq!(read_file(&path, 100).unwrap().len(), 100);
     }
 }

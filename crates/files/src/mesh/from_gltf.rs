@@ -196,8 +196,9 @@ fn unsigned(bytes: &[u8], component: ComponentType) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bytes::tests::mutants;
     use crate::mesh::error::{MAX_COPIES_BYTES, TRIANGLE_BYTES};
-    use crate::mesh::samples::{glb, glb_of, gltf_parts, mutants};
+    use crate::mesh::samples::{glb, glb_of, gltf_parts};
     use lumiduct_base::mesh::bodies::{Normals, rod};
     use lumiduct_base::mesh::health;
     use serde_json::{Value, json};

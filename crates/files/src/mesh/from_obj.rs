@@ -143,7 +143,7 @@ fn fan_start(polygon: &[Corner]) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::samples::mutants;
+    use crate::bytes::tests::mutants;
     use lumiduct_base::mesh::bodies::{Normals, icosphere, rod};
     use lumiduct_base::mesh::health;
     use std::fmt::Write;

@@ -111,7 +111,7 @@ fn broken(problem: String) -> MeshError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::samples::mutants;
+    use crate::bytes::tests::mutants;
     use lumiduct_base::mesh::bodies::block;
     use std::fmt::Write;
 

@@ -1,8 +1,8 @@
 //! The bytes behind a glTF document: the blob of a GLB, data URIs and external files; the bounds of
 //! accessors are checked once, before anything is read.
 
+use crate::bytes::read_file;
 use crate::mesh::error::{MAX_FILE_BYTES, MeshError};
-use crate::mesh::file::read_file;
 use crate::mesh::format::MeshFormat;
 use gltf::json::accessor::{Accessor, ComponentType, Type};
 use gltf::json::validation::Checked;
@@ -139,10 +139,8 @@ fn load_uri(uri: &str, folder: &Path, room: u64) -> Result<Vec<u8>, MeshError> {
     if name.contains(':') || Path::new(&name).is_absolute() {
         return Err(refused());
     }
-    read_file(&folder.join(name), room).map_err(|error| match error {
-        MeshError::Unreadable(source) => MeshError::BufferFile { uri: uri.to_owned(), source },
-        other => other,
-    })
+    let unreadable = |source| MeshError::BufferFile { uri: uri.to_owned(), source };
+    read_file(&folder.join(name), room).map_err(unreadable)?.ok_or(MeshError::FileTooLong)
 }
 
 /// RFC 4648 section 4, with or without padding.

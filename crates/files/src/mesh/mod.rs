@@ -22,7 +22,7 @@ pub use error::{MAX_COPIES_BYTES, MAX_FILE_BYTES, MeshError};
 pub use file::no_scene;
 pub use format::{LengthUnit, MeshFormat};
 
-use crate::mesh::file::read_file;
+use crate::bytes::read_file;
 use lumiduct_base::mesh::TriangleMesh;
 use lumiduct_base::text::visible;
 use std::path::Path;
@@ -36,7 +36,7 @@ use std::path::Path;
 /// [`MeshError::TooManyCopies`] or [`MeshError::Unusable`] if its content makes no mesh that can be traced.
 pub fn read(path: &Path, unit: LengthUnit) -> Result<TriangleMesh, MeshError> {
     let format = MeshFormat::of(path)?;
-    let bytes = read_file(path, MAX_FILE_BYTES)?;
+    let bytes = read_file(path, MAX_FILE_BYTES)?.ok_or(MeshError::FileTooLong)?;
     let mut mesh = match format {
         MeshFormat::Gltf => {
             from_gltf::read(&bytes, path.parent().unwrap_or_else(|| Path::new("")), unit)

@@ -1,35 +1,8 @@
-//! Damaged files, and meshes written as files, for tests.
+//! Meshes written as files, for tests.
 
 use glam::DVec3;
 use lumiduct_base::mesh::TriangleMesh;
-use rand_core::{Rng, SeedableRng};
-use rand_xoshiro::SplitMix64;
 use serde_json::{Value, json};
-
-/// `count` damaged copies of a file: bytes changed, removed or duplicated, or the end missing.
-pub(crate) fn mutants(original: &[u8], count: u64, seed: u64) -> impl Iterator<Item = Vec<u8>> {
-    (0..count).map(move |index| {
-        let mut random = SplitMix64::seed_from_u64(seed << 32 | index);
-        let mut below = |n: usize| (random.next_u64() % n as u64) as usize;
-        let mut bytes = original.to_vec();
-        for _ in 0..=below(8) {
-            if bytes.is_empty() {
-                break;
-            }
-            let at = below(bytes.len());
-            let end = (at + 1 + below(12)).min(bytes.len());
-            match below(6) {
-                0 => bytes[at] = below(256) as u8,
-                1 => bytes[at] ^= 1 << below(8),
-                2 => bytes[at..end].fill([0x00, 0x7f, 0xff, b'9', b'-'][below(5)]),
-                3 => drop(bytes.drain(at..end)),
-                4 => bytes.extend_from_within(at..end),
-                _ => bytes.truncate(at + (bytes.len() - at) * below(4) / 3),
-            }
-        }
-        bytes
-    })
-}
 
 /// A mesh as a glTF document and its buffer: one primitive and one material per face, nothing shared.
 pub(crate) fn gltf_parts(mesh: &TriangleMesh) -> (Value, Vec<u8>) {

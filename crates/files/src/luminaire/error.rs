@@ -1,0 +1,38 @@
+//! Errors of luminaire files, and limits of their size.
+
+use crate::luminaire::format::LuminaireFormat;
+
+/// Longest file that is read, bytes.
+pub const MAX_LUMINAIRE_BYTES: u64 = 32 << 20;
+/// Most planes, and most angles in a plane, of a file.
+pub const MAX_ANGLES: usize = 4096;
+
+/// Why a luminaire file could not be read, or a luminaire not be written.
+#[derive(Debug, thiserror::Error)]
+pub enum LuminaireError {
+    /// The operating system refuses the file.
+    #[error("the file cannot be read: {0}; check the name and the permissions")]
+    Unreadable(#[from] std::io::Error),
+    /// The file name extension is not one of a luminaire format.
+    #[error("`.{ending}` is not the ending of a known luminaire format; use .ies or .ldt")]
+    UnknownLuminaire {
+        /// The extension, without its dot.
+        ending: String,
+    },
+    /// The file is longer than [`MAX_LUMINAIRE_BYTES`].
+    #[error("the file has more than {} MiB, which no luminaire needs", MAX_LUMINAIRE_BYTES >> 20)]
+    TooLong,
+    /// The file violates its format.
+    #[error("not a usable {format} file: line {line}: {problem}")]
+    Violated {
+        /// The format.
+        format: LuminaireFormat,
+        /// The line, from 1.
+        line: usize,
+        /// What is wrong.
+        problem: String,
+    },
+    /// The angles or values make no distribution.
+    #[error("no usable distribution: {0}")]
+    NoDistribution(String),
+}

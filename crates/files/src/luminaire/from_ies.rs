@@ -1,0 +1,253 @@
+//! Reads LM-63 files: ANSI/IES LM-63-1986, -1991, -1995, -2002 and -2019.
+//!
+//! Keywords and their texts come first, then `TILT=`, then numbers in a fixed order, separated by blanks, commas and line
+//! ends. The horizontal angle 0 lies along the length of the opening.
+
+use crate::luminaire::data::{LampFlux, Luminaire, Opening, ReadLuminaire};
+use crate::luminaire::error::{LuminaireError, MAX_ANGLES};
+use crate::luminaire::format::LuminaireFormat;
+use crate::luminaire::intensities::{Intensities, PlaneSymmetry};
+use crate::luminaire::text::whole;
+
+/// Millimetres in a foot.
+const FOOT: f64 = 304.8;
+/// Relative difference of the planes 0 and 360 that is no more than rounding, 1.
+const SAME_PLANE: f64 = 1e-3;
+
+/// Reads the text of a file.
+pub(crate) fn read(text: &str) -> Result<ReadLuminaire, LuminaireError> {
+    let mut remarks = Vec::new();
+    let lines: Vec<&str> = text.lines().collect();
+    let is_tilt = |line: &str| line.trim_start().to_ascii_uppercase().starts_with("TILT");
+    let Some(tilt) = lines.iter().position(|line| is_tilt(line)) else {
+        return Err(violated(lines.len().max(1), "there is no line `TILT=`".to_owned()));
+    };
+    let edition = Edition::of(lines[0]);
+    let texts = texts(&lines[usize::from(edition != Edition::First)..tilt]);
+    let mut numbers = Numbers::new(&lines, tilt + 1);
+    let way = lines[tilt].split('=').nth(1).unwrap_or_default().trim().to_owned();
+    match way.to_ascii_uppercase().as_str() {
+        "NONE" => {}
+        "INCLUDE" => {
+            skip_tilt(&mut numbers)?;
+            remarks.push("the effect of tilt on the lamp is left out".to_owned());
+        }
+        _ => remarks.push(format!("the file of the effect of tilt, `{way}`, is not read")),
+    }
+
+    let lamps = numbers.count("the number of lamps")?;
+    let lamp_flux = numbers.next("the lumens per lamp")?;
+    let multiplier = numbers.next("the multiplier of the intensities")?;
+    let angles = numbers.count("the number of vertical angles")?;
+    let planes = numbers.count("the number of horizontal angles")?;
+    let goniometer = numbers.next("the photometric type")?;
+    if goniometer != 1.0 {
+        let problem = format!(
+            "photometric type {goniometer} (1 is C, 2 is B, 3 is A); only type C is read, convert the file"
+        );
+        return Err(numbers.wrong(problem));
+    }
+    let unit = match numbers.next("the unit of lengths")? {
+        1.0 => FOOT,
+        2.0 => 1000.0,
+        other => {
+            return Err(numbers.wrong(format!("unit {other}, expected 1 (feet) or 2 (metres)")));
+        }
+    };
+    let mut size = || numbers.next("the size of the opening");
+    let [width, length, height] = [size()? * unit, size()? * unit, size()? * unit];
+    let ballast = numbers.next("the ballast factor")?;
+    let second = numbers.next("the second factor")?;
+    let power_w = numbers.next("the input power")?;
+    let second = if edition.has_second_factor() { second } else { 1.0 };
+    let factor = multiplier * ballast * second;
+
+    let angles_deg = numbers.list(angles, "a vertical angle")?;
+    let planes_deg = numbers.list(planes, "a horizontal angle")?;
+    let mut candela = Vec::new();
+    for _ in 0..planes * angles {
+        candela.push(numbers.next("an intensity")? * factor);
+    }
+    numbers.end()?;
+
+    let (symmetry, planes_deg) =
+        symmetry_of(planes_deg).map_err(|problem| numbers.wrong(problem))?;
+    remark_on_repeated_plane((&planes_deg, &angles_deg), &candela, &mut remarks);
+    candela.truncate(planes_deg.len() * angles);
+    let lamps = if lamp_flux < 0.0 {
+        LampFlux::Absolute
+    } else if lamp_flux == 0.0 {
+        remarks.push("the lamps have 0 lm; the photometry is taken as absolute".to_owned());
+        LampFlux::Absolute
+    } else {
+        LampFlux::Relative { count: lamps as u32, flux_lm: lamps as f64 * lamp_flux }
+    };
+    let intensities = Intensities::new(symmetry, planes_deg, angles_deg, candela)?;
+    let opening = opening([width, length, height], &mut remarks);
+    Ok(ReadLuminaire::new(Luminaire { texts, lamps, power_w, opening, intensities }, remarks))
+}
+
+/// The symmetry that horizontal angles mean, and the planes without a repeated one at 360.
+fn symmetry_of(mut planes: Vec<f64>) -> Result<(PlaneSymmetry, Vec<f64>), String> {
+    let symmetry = match [planes[0], planes[planes.len() - 1]] {
+        _ if planes.len() == 1 => return Ok((PlaneSymmetry::Rotational, vec![0.0])),
+        [0.0, 90.0] => PlaneSymmetry::Quadrants,
+        [0.0, 180.0] => PlaneSymmetry::AboutC0,
+        [90.0, 270.0] => PlaneSymmetry::AboutC90,
+        [0.0, last] if last > 180.0 && last <= 360.0 => PlaneSymmetry::None,
+        [first, last] => {
+            let expected = "0 to 0, 90, 180 or 360, or 90 to 270";
+            return Err(format!("horizontal angles from {first} to {last}, expected {expected}"));
+        }
+    };
+    planes.pop_if(|last| *last == 360.0);
+    Ok((symmetry, planes))
+}
+
+/// Remarks where planes 0 and 360 differ.
+fn remark_on_repeated_plane(
+    (planes, angles): (&[f64], &[f64]),
+    candela: &[f64],
+    remarks: &mut Vec<String>,
+) {
+    let (first, repeated) = (&candela[..angles.len()], &candela[planes.len() * angles.len()..]);
+    let peak = first.iter().copied().fold(0.0, f64::max);
+    if first.iter().zip(repeated).any(|(a, b)| (a - b).abs() > SAME_PLANE * peak) {
+        remarks.push("the planes 0 and 360 differ; that of 0 is used".to_owned());
+    }
+}
+
+/// The edition of the format, where it matters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Edition {
+    /// 1986, without a first line of its own.
+    First,
+    /// 1991 and 1995.
+    Factors,
+    /// 2002 and 2019.
+    Current,
+}
+
+impl Edition {
+    fn of(line: &str) -> Self {
+        let line = line.trim().to_ascii_uppercase();
+        if !line.starts_with("IES") {
+            Self::First
+        } else if line.contains("91") || line.contains("LM-63-1995") {
+            Self::Factors
+        } else {
+            Self::Current
+        }
+    }
+
+    /// Whether the second factor is that of ballast and lamp together; later it has another meaning.
+    fn has_second_factor(self) -> bool {
+        match self {
+            Self::First | Self::Factors => true,
+            Self::Current => false,
+        }
+    }
+}
+
+/// Keywords in brackets with their texts, unless empty; `[MORE]` goes on with the text before. Lines without a keyword are of the
+/// first edition.
+fn texts(lines: &[&str]) -> Vec<(String, String)> {
+    let mut texts: Vec<(String, String)> = Vec::new();
+    for line in lines.iter().map(|line| line.trim()).filter(|line| !line.is_empty()) {
+        let bracketed = line.strip_prefix('[').and_then(|rest| rest.split_once(']'));
+        match (bracketed, texts.last_mut()) {
+            (Some((keyword, text)), Some((_, before))) if keyword.eq_ignore_ascii_case("MORE") => {
+                before.push('\n');
+                before.push_str(text.trim());
+            }
+            (Some((keyword, text)), _) => {
+                texts.push((keyword.trim().to_ascii_uppercase(), text.trim().to_owned()));
+            }
+            (None, _) => texts.push(("OTHER".to_owned(), line.to_owned())),
+        }
+    }
+    texts.retain(|(_, text)| !text.is_empty());
+    texts
+}
+
+/// Passes over the orientation of the lamp, and pairs of angles and factors.
+fn skip_tilt(numbers: &mut Numbers<'_>) -> Result<(), LuminaireError> {
+    numbers.next("the geometry of the lamp")?;
+    let pairs = numbers.count("the number of tilts")?;
+    (0..2 * pairs).try_for_each(|_| numbers.next("a tilt or its factor").map(drop))
+}
+
+/// The opening: negative sizes are diameters (LM-63-2002, table 1; in 1995 the length of a circle was 0).
+fn opening([width, length, height]: [f64; 3], remarks: &mut Vec<String>) -> Opening {
+    if height < 0.0 {
+        remarks
+            .push("the opening is round in its height, too; it is taken as a cylinder".to_owned());
+    }
+    let is_round = width < 0.0 || length < 0.0;
+    let [width, length] = [width.abs(), length.abs()];
+    let length = if is_round && length == 0.0 { width } else { length };
+    Opening { is_round, along_c0_mm: length, along_c90_mm: width, height_mm: height.abs() }
+}
+
+/// The numbers of some lines, one after the other.
+struct Numbers<'t> {
+    words: Box<dyn Iterator<Item = (usize, &'t str)> + 't>,
+    /// Line of the last number, from 1.
+    line: usize,
+}
+
+impl<'t> Numbers<'t> {
+    /// Those from a line on, counted from 0.
+    fn new(lines: &'t [&'t str], first: usize) -> Self {
+        let words = lines.iter().enumerate().skip(first).flat_map(|(line, text)| {
+            let is_gap =
+                |letter: char| letter.is_whitespace() || letter == ',' || letter == '\u{1a}';
+            text.split(is_gap).filter(|word| !word.is_empty()).map(move |word| (line + 1, word))
+        });
+        Self { words: Box::new(words), line: first }
+    }
+
+    fn next(&mut self, what: &str) -> Result<f64, LuminaireError> {
+        let Some((line, word)) = self.words.next() else {
+            return Err(self.wrong(format!("the file ends before {what}")));
+        };
+        self.line = line;
+        let value: Option<f64> = word.parse().ok();
+        let value = value.filter(|value| value.is_finite());
+        value.ok_or_else(|| self.wrong(format!("expected {what}, found `{}`", shown(word))))
+    }
+
+    fn count(&mut self, what: &str) -> Result<usize, LuminaireError> {
+        let value = self.next(what)?;
+        let count = whole(value).and_then(|count| usize::try_from(count).ok());
+        let count = count.filter(|count| (1..=MAX_ANGLES).contains(count));
+        count.ok_or_else(|| self.wrong(format!("{what} is {value}, expected 1 to {MAX_ANGLES}")))
+    }
+
+    fn list(&mut self, count: usize, what: &str) -> Result<Vec<f64>, LuminaireError> {
+        (0..count).map(|_| self.next(what)).collect()
+    }
+
+    fn end(&mut self) -> Result<(), LuminaireError> {
+        match self.words.next() {
+            None => Ok(()),
+            Some((line, word)) => {
+                let problem = format!("`{}` follows the last intensity", shown(word));
+                Err(violated(line, problem))
+            }
+        }
+    }
+
+    fn wrong(&self, problem: String) -> LuminaireError {
+        violated(self.line, problem)
+    }
+}
+
+/// The beginning of a word, for a message.
+fn shown(word: &str) -> String {
+    lumiduct_base::number::shorten(word, 30)
+}
+
+fn violated(line: usize, problem: String) -> LuminaireError {
+    LuminaireError::Violated { format: LuminaireFormat::Ies, line, problem }
+}

@@ -1,0 +1,61 @@
+//! Luminaires and lamps from files and to files: ANSI/IES LM-63 (.ies) and EULUMDAT (.ldt).
+//!
+//! Readers never trust a file: whatever it contains, the result is a luminaire or a [`LuminaireError`]. What they assume or leave
+//! out is a remark. Angles C and γ are the same in both formats; but the length of an opening lies along C0 in the first and along
+//! C90 in the second, so [`Opening`] names its axes.
+
+mod data;
+mod error;
+mod format;
+mod from_ies;
+mod from_ldt;
+mod intensities;
+mod text;
+mod to_ies;
+mod to_ldt;
+
+pub use data::{LampFlux, Luminaire, Opening, ReadLuminaire};
+pub use error::{LuminaireError, MAX_ANGLES, MAX_LUMINAIRE_BYTES};
+pub use format::LuminaireFormat;
+pub use intensities::{Intensities, PlaneSymmetry};
+
+use crate::bytes::read_file;
+use crate::luminaire::text::decoded;
+use std::path::Path;
+
+/// Reads a luminaire; the file name extension gives the format.
+///
+/// # Errors
+///
+/// As [`LuminaireFormat::of`] and [`parse`]; [`LuminaireError::Unreadable`] or [`LuminaireError::TooLong`] if the file cannot be
+/// read.
+pub fn read(path: &Path) -> Result<ReadLuminaire, LuminaireError> {
+    let format = LuminaireFormat::of(path)?;
+    let bytes = read_file(path, MAX_LUMINAIRE_BYTES)?.ok_or(LuminaireError::TooLong)?;
+    parse(&bytes, format)
+}
+
+/// Reads the bytes of a file.
+///
+/// # Errors
+///
+/// [`LuminaireError::Violated`] with the line if they violate the format, [`LuminaireError::NoDistribution`] if their angles or
+/// values make no distribution.
+pub fn parse(bytes: &[u8], format: LuminaireFormat) -> Result<ReadLuminaire, LuminaireError> {
+    let text = decoded(bytes);
+    match format {
+        LuminaireFormat::Ies => from_ies::read(&text),
+        LuminaireFormat::Ldt => from_ldt::read(&text),
+    }
+}
+
+/// The text of a file in UTF-8: LM-63-2002 or EULUMDAT, with seven digits.
+pub fn written(luminaire: &Luminaire, format: LuminaireFormat) -> String {
+    match format {
+        LuminaireFormat::Ies => to_ies::write(luminaire),
+        LuminaireFormat::Ldt => to_ldt::write(luminaire),
+    }
+}
+
+#[cfg(test)]
+mod tests;

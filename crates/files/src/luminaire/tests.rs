@@ -1,0 +1,197 @@
+//! Files that are read and written, and files that are not.
+
+use super::*;
+use crate::bytes::tests::mutants;
+
+/// A Lambertian emitter of 1000 cd, every 10°.
+const LAMBERT: &str = "IESNA:LM-63-2002\r\n[TEST] 7\r\n[TESTLAB] none\r\n[ISSUEDATE] 2025\r\n[MANUFAC] Blöd & Söhne\r\n\
+    [LUMCAT] L-10\r\n[OTHER] first\r\n[MORE] second\r\nTILT=NONE\r\n1 -1 1 10 1 1 2 0.05 0.08 0\r\n1 1 12.5\r\n\
+    0 10 20 30 40 50 60 70 80 90\r\n0\r\n1000 984.807753 939.692621 866.025404 766.044443\r\n\
+    642.787610 500 342.020143 173.648178 0\r\n";
+
+fn ies(text: &str) -> Result<ReadLuminaire, LuminaireError> {
+    parse(text.as_bytes(), LuminaireFormat::Ies)
+}
+
+fn luminaire(symmetry: PlaneSymmetry, planes: &[f64]) -> Luminaire {
+    let angles = vec![0.0, 30.0, 60.0, 90.0, 180.0];
+    let of = |plane: f64, angle: f64| 100.0 + plane + 0.3 * angle;
+    let candela =
+        planes.iter().flat_map(|plane| angles.iter().map(|angle| of(*plane, *angle))).collect();
+    Luminaire {
+        texts: [("TEST", "12"), ("MANUFAC", "A°"), ("LUMINAIRE", "lamp"), ("LAMP", "LED")]
+            .map(|(keyword, text)| (keyword.to_owned(), text.to_owned()))
+            .to_vec(),
+        lamps: LampFlux::Relative { count: 2, flux_lm: 3000.0 },
+        power_w: 25.0,
+        opening: Opening {
+            is_round: false,
+            along_c0_mm: 600.0,
+            along_c90_mm: 50.0,
+            height_mm: 10.0,
+        },
+        intensities: Intensities::new(symmetry, planes.to_vec(), angles, candela).unwrap(),
+    }
+}
+
+fn all_symmetries() -> [Luminaire; 5] {
+    [
+        luminaire(PlaneSymmetry::Rotational, &[0.0]),
+        luminaire(PlaneSymmetry::Quadrants, &[0.0, 30.0, 90.0]),
+        luminaire(PlaneSymmetry::AboutC0, &[0.0, 45.0, 90.0, 135.0, 180.0]),
+        luminaire(PlaneSymmetry::AboutC90, &[90.0, 135.0, 180.0, 225.0, 270.0]),
+        luminaire(PlaneSymmetry::None, &[0.0, 50.0, 90.0, 180.0, 270.0]),
+    ]
+}
+
+#[test]
+fn a_lambertian_file_is_read_to_the_last_digit() {
+    let ReadLuminaire { luminaire, remarks } = ies(LAMBERT).unwrap();
+    assert!((luminaire.intensities.flux() - 3133.59342).abs() < 3e-4);
+    assert!((luminaire.intensities.at(200.0, 15.0) - 962.250_186_9).abs() < 1e-5);
+    assert_eq!(luminaire.lamps, LampFlux::Absolute);
+    let Opening { is_round, along_c0_mm, along_c90_mm, .. } = luminaire.opening;
+    assert_eq!(
+        (is_round, along_c0_mm, along_c90_mm),
+        (false, 80.0, 50.0),
+        "the length lies along C0"
+    );
+    assert_eq!(luminaire.text("OTHER"), Some("first\nsecond"));
+    assert_eq!((luminaire.power_w, remarks.len()), (12.5, 0));
+}
+
+#[test]
+fn luminaires_come_back_from_both_formats() {
+    for luminaire in all_symmetries() {
+        for format in [LuminaireFormat::Ies, LuminaireFormat::Ldt] {
+            let text = written(&luminaire, format);
+            assert!(text.lines().all(|line| line.len() < 256), "{format}");
+            let back =
+                parse(text.as_bytes(), format).unwrap_or_else(|error| panic!("{error}\n{text}"));
+            assert_eq!(back.remarks, Vec::<String>::new(), "{format}");
+            let Luminaire { intensities, lamps, opening, power_w, .. } = &back.luminaire;
+            assert_eq!(intensities.symmetry(), luminaire.intensities.symmetry(), "{format}");
+            assert_eq!(intensities.angles_deg(), luminaire.intensities.angles_deg());
+            for (place, plane) in luminaire.intensities.planes_deg().iter().enumerate() {
+                assert_eq!(intensities.planes_deg()[place], *plane, "{format}");
+                let both = intensities.plane(place).iter().zip(luminaire.intensities.plane(place));
+                // Half a unit of the seventh digit.
+                both.for_each(|(own, other)| {
+                    assert!((own / other - 1.0).abs() < 5e-7, "{own}, {other}");
+                });
+            }
+            assert_eq!(
+                (lamps, opening, power_w),
+                (&luminaire.lamps, &luminaire.opening, &25.0),
+                "{format}"
+            );
+            for keyword in ["TEST", "MANUFAC", "LUMINAIRE", "LAMP"] {
+                assert_eq!(back.luminaire.text(keyword), luminaire.text(keyword), "{format}");
+            }
+            assert_eq!(written(&back.luminaire, format), text, "{format}, written again");
+        }
+    }
+}
+
+#[test]
+fn absolute_and_round_luminaires_come_back() {
+    let opening = Opening { is_round: true, along_c0_mm: 80.0, along_c90_mm: 80.0, height_mm: 0.0 };
+    let own = Luminaire { lamps: LampFlux::Absolute, opening, ..all_symmetries()[0].clone() };
+    assert_eq!(
+        (own.light_output_ratio(), all_symmetries()[0].light_output_ratio().is_some()),
+        (None, true)
+    );
+    for format in [LuminaireFormat::Ies, LuminaireFormat::Ldt] {
+        let back = parse(written(&own, format).as_bytes(), format).unwrap().luminaire;
+        assert_eq!((back.lamps, back.opening), (own.lamps, own.opening), "{format}");
+        assert!((back.intensities.flux() / own.intensities.flux() - 1.0).abs() < 1e-6, "{format}");
+    }
+}
+
+#[test]
+fn editions_differ_in_their_factors_and_tilt_is_remarked_on() {
+    let flux = |head: &str, tilt: &str| {
+        let text = format!("{head}{tilt}\n1 -1 2 2 1 1 1 -1 0 0\n0.9 0.5 0\n0 90\n0\n10 10\n");
+        let read = ies(&text).unwrap_or_else(|error| panic!("{error}"));
+        (read.luminaire.intensities.peak(), read.remarks.len(), read.luminaire.opening)
+    };
+    let (peak, remarks, opening) = flux("IESNA:LM-63-2002\n", "TILT=NONE");
+    assert_eq!((peak, remarks), (18.0, 0));
+    assert_eq!(
+        [opening.along_c0_mm, opening.along_c90_mm],
+        [304.8; 2],
+        "a circle of a foot, as in 1995"
+    );
+    assert!(opening.is_round);
+    for head in ["", "A label\n", "IESNA91\n", "IESNA:LM-63-1995\n"] {
+        assert_eq!(flux(head, "TILT=NONE").0, 9.0, "{head}");
+    }
+    assert_eq!(flux("IES:LM-63-2019\n", "TILT = INCLUDE\n1\n2\n0 90\n1 0.8").1, 1);
+    assert_eq!(flux("IES:LM-63-2019\n", "TILT=lamp.tlt").1, 1);
+}
+
+#[test]
+fn eulumdat_with_commas_and_several_sets_is_read() {
+    let own = written(&all_symmetries()[3], LuminaireFormat::Ldt);
+    let mut lines: Vec<String> = own.lines().map(str::to_owned).collect();
+    assert_eq!(lines[25], "1", "sets of lamps");
+    lines[25] = "2".to_owned();
+    let second = ["3", "old", "9000,5", "3000", "80", "70"].map(str::to_owned);
+    lines.splice(32..32, second);
+    let text = lines.join("\n").replace("166.6667", "166,6667");
+    let read = parse(text.as_bytes(), LuminaireFormat::Ldt).unwrap();
+    assert_eq!(read.luminaire.intensities.symmetry(), PlaneSymmetry::AboutC90);
+    assert_eq!(read.luminaire.lamps, all_symmetries()[3].lamps);
+    assert_eq!(read.remarks, ["of 2 sets of lamps the first is used"]);
+}
+
+#[test]
+fn errors_name_the_line_and_what_is_wrong() {
+    for (old, new, line, words) in [
+        ("TILT=NONE", "", 15, "TILT"),
+        ("1 -1 1 10 1 1", "1 -1 1 10 1 2", 10, "type 2"),
+        ("1 -1 1 10", "1 -1 1 11", 15, "ends before"),
+        ("1 -1 1 10", "1 -1 1 1e7", 10, "expected 1 to 4096"),
+        ("342.020143", "x342", 15, "found `x342`"),
+        ("173.648178 0", "173.648178 0 1", 15, "follows"),
+        ("2 0.05", "3 0.05", 10, "expected 1 (feet)"),
+        ("1 1 12.5", "1 nan 12.5", 11, "found `nan`"),
+    ] {
+        let text = LAMBERT.replace(old, new);
+        assert_ne!(text, LAMBERT, "{old}");
+        let error = ies(&text).unwrap_err().to_string();
+        assert!(
+            error.contains(&format!("line {line}: ")) && error.contains(words),
+            "{old}: {error}"
+        );
+    }
+    for (old, new) in [("642.787610", "-3"), ("70 80 90", "80 70 90"), ("80 90", "80 200")] {
+        assert!(
+            matches!(ies(&LAMBERT.replace(old, new)), Err(LuminaireError::NoDistribution(_))),
+            "{new}"
+        );
+    }
+    assert!(matches!(read(Path::new("a.txt")), Err(LuminaireError::UnknownLuminaire { .. })));
+    assert!(matches!(read(Path::new("missing.ies")), Err(LuminaireError::Unreadable(_))));
+}
+
+#[test]
+fn damaged_files_are_luminaires_or_errors() {
+    let ldt = written(&all_symmetries()[2], LuminaireFormat::Ldt);
+    let mut usable = [0, 0];
+    for (kind, (original, format)) in
+        [(LAMBERT, LuminaireFormat::Ies), (&ldt, LuminaireFormat::Ldt)].into_iter().enumerate()
+    {
+        for bytes in mutants(original.as_bytes(), 20_000, kind as u64) {
+            let Ok(read) = parse(&bytes, format) else { continue };
+            usable[kind] += 1;
+            let intensities = &read.luminaire.intensities;
+            assert!(intensities.flux().is_finite() && intensities.flux() >= 0.0);
+            assert!(intensities.at(33.0, 45.0) <= intensities.peak() * (1.0 + 1e-12));
+            // What was read can be written, and read again.
+            let again = parse(written(&read.luminaire, format).as_bytes(), format);
+            assert!(again.is_ok(), "{again:?}");
+        }
+    }
+    assert!(usable.iter().all(|count| *count > 500), "{usable:?}");
+}

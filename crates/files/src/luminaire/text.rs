@@ -1,0 +1,95 @@
+//! Texts of luminaire files: their encoding and their numbers.
+
+/// The text of a file in UTF-8 or, as many files are, in Windows-1252; without a byte-order mark.
+pub(crate) fn decoded(bytes: &[u8]) -> String {
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    match std::str::from_utf8(bytes) {
+        Ok(text) => text.to_owned(),
+        Err(_) => bytes.iter().map(|byte| WINDOWS_1252[usize::from(*byte)]).collect(),
+    }
+}
+
+/// The letters of Windows-1252, which differs from Latin-1 between 0x80 and 0x9f (WHATWG Encoding, index-windows-1252).
+static WINDOWS_1252: [char; 256] = {
+    let special = [
+        '€', '\u{81}', '‚', 'ƒ', '„', '…', '†', '‡', 'ˆ', '‰', 'Š', '‹', 'Œ', '\u{8d}', 'Ž',
+        '\u{8f}', '\u{90}', '‘', '’', '“', '”', '•', '–', '—', '˜', '™', 'š', '›', 'œ', '\u{9d}',
+        'ž', 'Ÿ',
+    ];
+    let mut all = ['\0'; 256];
+    let mut place = 0;
+    while place < 256 {
+        all[place] =
+            if place >= 0x80 && place < 0xa0 { special[place - 0x80] } else { place as u8 as char };
+        place += 1;
+    }
+    all
+};
+
+/// A number with a decimal point, or a decimal comma as in some EULUMDAT files.
+pub(crate) fn number(text: &str) -> Option<f64> {
+    let value: f64 = text.trim().replace(',', ".").parse().ok()?;
+    value.is_finite().then_some(value)
+}
+
+/// A count, which some files write with decimals.
+pub(crate) fn whole(value: f64) -> Option<i64> {
+    (value.fract() == 0.0 && value.abs() < 1e9).then_some(value as i64)
+}
+
+/// A number with seven significant digits, without an exponent: a thousand times finer than any goniometer.
+pub(crate) fn seven_digits(value: f64) -> String {
+    with_digits(value, 7)
+}
+
+/// A number with so many significant digits, without an exponent.
+pub(crate) fn with_digits(value: f64, digits: i32) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return "0".to_owned();
+    }
+    let decimals = (digits - 1 - value.abs().log10().floor() as i32).clamp(0, 12) as usize;
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
+/// A text on one line of at most this many letters.
+pub(crate) fn one_line(text: &str, longest: usize) -> String {
+    let flat: String =
+        text.chars().map(|letter| if letter.is_control() { ' ' } else { letter }).collect();
+    flat.trim().chars().take(longest).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_may_be_in_either_encoding() {
+        assert_eq!(decoded("Leuchte 10° µ".as_bytes()), "Leuchte 10° µ");
+        assert_eq!(decoded(b"Leuchte 10\xb0 \x80\x99"), "Leuchte 10° €™");
+        assert_eq!(decoded(b"\xef\xbb\xbfIESNA"), "IESNA");
+    }
+
+    #[test]
+    fn numbers_have_a_point_or_a_comma_and_are_finite() {
+        assert_eq!(number(" 12,5 "), Some(12.5));
+        assert_eq!(number("1e3"), Some(1000.0));
+        for wrong in ["", "x", "nan", "inf", "1,2,3"] {
+            assert_eq!(number(wrong), None, "{wrong}");
+        }
+        assert_eq!([whole(3.0), whole(3.5), whole(1e12)], [Some(3), None, None]);
+    }
+
+    #[test]
+    fn seven_digits_are_written_without_an_exponent() {
+        assert_eq!(seven_digits(962.250_186_9), "962.2502");
+        assert_eq!(seven_digits(1000.0), "1000");
+        assert_eq!(seven_digits(123_456_789.0), "123456789");
+        assert_eq!(seven_digits(1.5e-5), "0.000015");
+        assert_eq!(seven_digits(0.0), "0");
+    }
+}

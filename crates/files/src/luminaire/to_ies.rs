@@ -1,0 +1,70 @@
+//! Writes ANSI/IESNA LM-63-2002.
+
+use crate::luminaire::data::{LampFlux, Luminaire};
+use crate::luminaire::intensities::PlaneSymmetry;
+use crate::luminaire::text::{one_line, seven_digits};
+use std::fmt::Write;
+
+/// Keywords that every file must have (LM-63-2002, 5.3).
+const REQUIRED: [&str; 4] = ["TEST", "TESTLAB", "ISSUEDATE", "MANUFAC"];
+/// Most letters of a line.
+const LINE: usize = 120;
+/// Most letters of a text after its keyword.
+const TEXT: usize = 230;
+
+/// The text of a file.
+pub(crate) fn write(luminaire: &Luminaire) -> String {
+    let Luminaire { texts, lamps, power_w, opening, intensities } = luminaire;
+    let mut out = "IESNA:LM-63-2002\r\n".to_owned();
+    // A keyword without a text says that it is not known.
+    for keyword in REQUIRED.iter().filter(|keyword| luminaire.text(keyword).is_none()) {
+        _ = write!(out, "[{keyword}]\r\n");
+    }
+    for (keyword, text) in texts {
+        for (place, part) in text.split('\n').enumerate() {
+            let keyword = if place == 0 { keyword.as_str() } else { "MORE" };
+            _ = write!(out, "[{}] {}\r\n", one_line(keyword, TEXT), one_line(part, TEXT));
+        }
+    }
+    out += "TILT=NONE\r\n";
+
+    let (count, flux) = match *lamps {
+        LampFlux::Absolute => (1, "-1".to_owned()),
+        LampFlux::Relative { count, flux_lm } => {
+            let count = count.max(1);
+            (count, seven_digits(flux_lm / f64::from(count)))
+        }
+    };
+    let mut planes: Vec<usize> = (0..intensities.planes_deg().len()).collect();
+    let mut planes_deg = intensities.planes_deg().to_vec();
+    if intensities.symmetry() == PlaneSymmetry::None {
+        planes.push(0);
+        planes_deg.push(360.0);
+    }
+    // Negative sizes are diameters (LM-63-2002, table 1).
+    let sign = if opening.is_round { -1.0 } else { 1.0 };
+    let [width, length] =
+        [opening.along_c90_mm, opening.along_c0_mm].map(|size| sign * size / 1000.0);
+    let sizes = [width, length, opening.height_mm / 1000.0].map(seven_digits).join(" ");
+    let (angles, numbers) = (intensities.angles_deg().len(), planes.len());
+    _ = write!(out, "{count} {flux} 1 {angles} {numbers} 1 2 {sizes}\r\n");
+    _ = write!(out, "1 1 {}\r\n", seven_digits(*power_w));
+    let mut list = |values: &[f64]| {
+        let mut line = String::new();
+        for word in values.iter().map(|value| seven_digits(*value)) {
+            if !line.is_empty() && line.len() + 1 + word.len() > LINE {
+                _ = write!(out, "{line}\r\n");
+                line.clear();
+            }
+            if !line.is_empty() {
+                line.push(' ');
+            }
+            line += &word;
+        }
+        _ = write!(out, "{line}\r\n");
+    };
+    list(intensities.angles_deg());
+    list(&planes_deg);
+    planes.iter().for_each(|place| list(intensities.plane(*place)));
+    out
+}

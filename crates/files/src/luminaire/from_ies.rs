@@ -24,7 +24,7 @@ pub(crate) fn read(text: &str) -> Result<ReadLuminaire, LuminaireError> {
     };
     let edition = Edition::of(lines[0]);
     let texts = texts(&lines[usize::from(edition != Edition::First)..tilt]);
-    let mut numbers = Numbers::new(&lines, tilt + 1);
+    let mut numbers = WordReader::new(&lines, tilt + 1);
     let way = lines[tilt].split('=').nth(1).unwrap_or_default().trim().to_owned();
     match way.to_ascii_uppercase().as_str() {
         "NONE" => {}
@@ -171,7 +171,7 @@ fn texts(lines: &[&str]) -> Vec<(String, String)> {
 }
 
 /// Passes over the orientation of the lamp, and pairs of angles and factors.
-fn skip_tilt(numbers: &mut Numbers<'_>) -> Result<(), LuminaireError> {
+fn skip_tilt(numbers: &mut WordReader<'_>) -> Result<(), LuminaireError> {
     numbers.next("the geometry of the lamp")?;
     let pairs = numbers.count("the number of tilts")?;
     (0..2 * pairs).try_for_each(|_| numbers.next("a tilt or its factor").map(drop))
@@ -189,14 +189,14 @@ fn opening([width, length, height]: [f64; 3], remarks: &mut Vec<String>) -> Open
     Opening { is_round, along_c0_mm: length, along_c90_mm: width, height_mm: height.abs() }
 }
 
-/// The numbers of some lines, one after the other.
-struct Numbers<'t> {
+/// Reads the numbers of some lines, one after the other.
+struct WordReader<'t> {
     words: Box<dyn Iterator<Item = (usize, &'t str)> + 't>,
     /// Line of the last number, from 1.
     line: usize,
 }
 
-impl<'t> Numbers<'t> {
+impl<'t> WordReader<'t> {
     /// Those from a line on, counted from 0.
     fn new(lines: &'t [&'t str], first: usize) -> Self {
         let words = lines.iter().enumerate().skip(first).flat_map(|(line, text)| {

@@ -23,6 +23,22 @@ use crate::bytes::read_file;
 use crate::luminaire::text::decoded;
 use std::path::Path;
 
+impl LuminaireFormat {
+    /// The format of a file name extension.
+    ///
+    /// # Errors
+    ///
+    /// [`LuminaireError::UnknownLuminaire`] for an extension that is neither `ies` nor `ldt`.
+    pub fn of(path: &Path) -> Result<Self, LuminaireError> {
+        let ending = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+        match ending.as_str() {
+            "ies" => Ok(Self::Ies),
+            "ldt" => Ok(Self::Ldt),
+            _ => Err(LuminaireError::UnknownLuminaire { ending }),
+        }
+    }
+}
+
 /// Reads a luminaire; the file name extension gives the format.
 ///
 /// # Errors

@@ -58,6 +58,14 @@ cell = {{ plane = {{ rectangle = {{ width_mm = 4, height_mm = 4 }} }}, at = {{ p
 }
 
 #[test]
+fn a_luminaire_from_a_file() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/luminaires/spot.ies");
+    let lamp =
+        format!("[sources.lamp.luminaire]\nfile = {file:?}\nat = {{ position_mm = [0, 0, -1] }}");
+    all_agree("luminaire", &rod(&lamp));
+}
+
+#[test]
 fn sources_on_faces() {
     all_agree_in_narrow_windows(
         "disk in optical contact",

@@ -308,7 +308,7 @@ fn etendue(scene: &Scene, source: &Source) -> Option<f64> {
             source.emission.projected_solid_angle()
         }
         // Light in every direction of the half space, whatever its distribution.
-        Emission::CosinePower(_) | Emission::Isotropic => Some(PI),
+        Emission::CosinePower(_) | Emission::Isotropic | Emission::Measured(_) => Some(PI),
         Emission::Collimated { .. } => Some(0.0),
     }?;
     let index = scene.media[MediumId::index(scene.surroundings)].index(0.0);

@@ -227,8 +227,8 @@ impl Intensities {
         widths.iter().enumerate().map(of_plane).sum()
     }
 
-    /// The whole circle of planes, deg, each with its place among those stored.
-    pub(crate) fn circle(&self) -> Vec<(f64, usize)> {
+    /// The whole circle of planes from 0, deg, each with its place among those stored; one plane under rotational symmetry.
+    pub fn circle(&self) -> Vec<(f64, usize)> {
         let mut all: Vec<(f64, usize)> = Vec::new();
         for (place, &plane) in self.planes_deg.iter().enumerate() {
             let copies: &[f64] = match self.symmetry {

@@ -26,7 +26,7 @@ impl Context<'_> {
         &mut self,
         common: &SourceCommonSpec,
         emitter: &Emitter,
-        law: Emission,
+        law: &Emission,
         key: &Key,
     ) -> Option<f64> {
         for (name, flux) in [("flux_lm", common.flux_lm), ("flux_w", common.flux_w)] {

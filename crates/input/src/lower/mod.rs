@@ -16,6 +16,7 @@ mod flux;
 mod haze;
 mod lenses;
 mod light_groups;
+mod luminaires;
 mod media;
 mod meshes;
 pub(crate) mod names;

@@ -6,7 +6,8 @@ use crate::lower::emitters::{SourceExtent, patch_range};
 use crate::lower::place::Facing;
 use crate::lower::surfaces::tilted;
 use crate::lower::weathers::{Member, group};
-use crate::spec::source::{BodySpec, ContactSpec, EmissionSpec, SourceCommonSpec, SourceSpec};
+use crate::spec::placement::ContactSpec;
+use crate::spec::source::{BodySpec, EmissionSpec, SourceCommonSpec, SourceSpec};
 use lumiduct_core::scene::{
     Emission, Emitter, FacePiece, FaceSpec, FinishId, Owner, PrimId, Source, StartSolids,
 };
@@ -28,6 +29,8 @@ impl<'a> Context<'a> {
                 self.lower_sun(name, sun, &key);
             } else if let SourceSpec::Sky(sky) = source {
                 self.lower_sky(name, sky, &key);
+            } else if let SourceSpec::Luminaire(luminaire) = source {
+                self.lower_luminaire(name, luminaire, &key);
             } else {
                 self.lower_source(name, source, &key);
             }
@@ -61,7 +64,7 @@ impl<'a> Context<'a> {
         self.may_build(key)?;
         let (emitter, mut on) = emitter?;
         let emission = amount.and(emission)?;
-        let flux = self.flux(common, &emitter, emission, key)?;
+        let flux = self.flux(common, &emitter, &emission, key)?;
         if let Some(finish) = body {
             on = self.add_body(name, &emitter, finish);
         }

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 pub(crate) mod daylight;
 pub(crate) mod finish;
+pub(crate) mod luminaire;
 pub(crate) mod pattern;
 pub(crate) mod placement;
 pub(crate) mod relief;

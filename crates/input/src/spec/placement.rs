@@ -61,3 +61,13 @@ impl Default for SpacePlacementSpec {
 fn plus_z() -> [f64; 3] {
     [0.0, 0.0, 1.0]
 }
+
+/// How light starts where a source touches a face.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ContactSpec {
+    /// Beyond the face, in the medium ahead: a source in optical contact.
+    Optical,
+    /// On the near side: light crosses the face, with its reflection and refraction.
+    Air,
+}

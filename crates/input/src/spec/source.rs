@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::spec::daylight::{SkySpec, SunSpec, enabled};
 use crate::spec::finish::{EmptySpec, FinishRef};
-use crate::spec::placement::PlacementSpec;
+use crate::spec::luminaire::LuminaireSpec;
+use crate::spec::placement::{ContactSpec, PlacementSpec};
 use crate::spec::solid::SphereSpec;
 use crate::spec::sweep::RectangleSpec;
 
@@ -29,6 +30,8 @@ pub enum SourceSpec {
     Face(EmitterSpec<FaceSourceSpec>),
     /// The inside of a solid, evenly filled.
     Volume(EmitterSpec<VolumeSourceSpec>),
+    /// A luminaire from a file.
+    Luminaire(LuminaireSpec),
     /// The sun.
     Sun(SunSpec),
     /// The sky.
@@ -41,7 +44,7 @@ impl SourceSpec {
         self.entry().0
     }
 
-    /// The keys that all kinds but the sun and the sky have.
+    /// The keys that all kinds but luminaires, the sun and the sky have.
     pub(crate) fn common(&self) -> Option<&SourceCommonSpec> {
         self.entry().1
     }
@@ -56,6 +59,7 @@ impl SourceSpec {
             Self::Cylinder(source) => ("cylinder", Some(&source.common)),
             Self::Face(source) => ("face", Some(&source.common)),
             Self::Volume(source) => ("volume", Some(&source.common)),
+            Self::Luminaire(_) => ("luminaire", None),
             Self::Sun(_) => ("sun", None),
             Self::Sky(_) => ("sky", None),
         }
@@ -176,16 +180,6 @@ pub enum FaceSide {
     Front,
     /// The other side.
     Back,
-}
-
-/// How light starts where a source touches a face.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum ContactSpec {
-    /// Beyond the face, in the medium ahead: a source in optical contact.
-    Optical,
-    /// On the near side: light crosses the face, with its reflection and refraction.
-    Air,
 }
 
 /// Distribution of light over directions.

@@ -1,6 +1,7 @@
 //! How a source spreads its flux over directions.
 
 use crate::rng::{Dimension, Numbers, Sampler};
+use crate::scene::source::measured::MeasuredEmission;
 use crate::scene::source::sky::{EmitterKind, Sky};
 use glam::DVec3;
 use lumiduct_base::math::{
@@ -8,9 +9,10 @@ use lumiduct_base::math::{
     uniform_sphere,
 };
 use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
 
 /// A law of emission about an axis (the normal of a surface).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Emission {
     /// The same radiance in every direction of the half space: intensity ∝ cos θ.
     Lambertian,
@@ -32,6 +34,8 @@ pub enum Emission {
     Isotropic,
     /// The luminance of the sky. Directions in the frame of the emitter are those in which its light travels.
     Sky(Sky),
+    /// A measured distribution about the axis of a point, or the normal of a surface.
+    Measured(Arc<MeasuredEmission>),
 }
 
 impl Emission {
@@ -40,6 +44,7 @@ impl Emission {
         let u = sampler.pair(Dimension::EmitDirection);
         match (self, kind) {
             (Self::Sky(sky), _) => sky.sample(kind, sampler),
+            (Self::Measured(table), _) => table.sample(u),
             (Self::Lambertian, _) => cosine_hemisphere(u),
             (Self::CosinePower(power), _) => cosine_power_hemisphere(*power, u),
             (Self::Collimated { axis }, _) => *axis,
@@ -64,6 +69,11 @@ impl Emission {
         let density = match (self, kind) {
             (Self::Collimated { .. }, _) => return None,
             (Self::Sky(sky), _) => sky.density(kind, dir),
+            (Self::Measured(table), EmitterKind::Surface) => above(dir, table.density(dir)),
+            (
+                Self::Measured(table),
+                EmitterKind::Point | EmitterKind::Volume | EmitterKind::Far,
+            ) => table.density(dir),
             (Self::Lambertian, _) => above(dir, dir.z / PI),
             (Self::CosinePower(power), _) => above(dir, (power + 1.0) * dir.z.powf(*power) / TAU),
             (Self::Isotropic, EmitterKind::Point | EmitterKind::Volume | EmitterKind::Far) => {
@@ -90,7 +100,8 @@ impl Emission {
             | Self::Cone { .. }
             | Self::Collimated { .. }
             | Self::Isotropic
-            | Self::Sky(_) => self.density(EmitterKind::Point, dir),
+            | Self::Sky(_)
+            | Self::Measured(_) => self.density(EmitterKind::Point, dir),
         }
     }
 
@@ -102,7 +113,10 @@ impl Emission {
             // A cone of half-angle h that is wholly above the surface, its axis tilted: π sin²h cos(tilt).
             Self::Cone { half_angle, axis } => Some(PI * half_angle.sin().powi(2) * axis.z),
             Self::Sky(sky) => Some(sky.projected_solid_angle(EmitterKind::Surface)),
-            Self::CosinePower(_) | Self::Collimated { .. } | Self::Isotropic => None,
+            Self::CosinePower(_)
+            | Self::Collimated { .. }
+            | Self::Isotropic
+            | Self::Measured(_) => None,
         }
     }
 
@@ -114,6 +128,7 @@ impl Emission {
             // 2π(1 - cos h) without cancellation.
             Self::Cone { half_angle, .. } => Some(4.0 * PI * (0.5 * half_angle).sin().powi(2)),
             Self::Isotropic => Some(4.0 * PI),
+            Self::Measured(table) => Some(1.0 / table.peak()),
             Self::Collimated { .. } | Self::Sky(_) => None,
         }
     }

@@ -2,6 +2,7 @@
 
 pub(crate) mod emission;
 pub(crate) mod light_group;
+pub(crate) mod measured;
 pub(crate) mod sky;
 
 use crate::scene::shape::{Shape, Sphere};

@@ -61,7 +61,8 @@ impl Source {
             | Emission::Cone { .. }
             | Emission::Collimated { .. }
             | Emission::Isotropic
-            | Emission::Sky(_) => self.emission.sample(EmitterKind::Point, sampler),
+            | Emission::Sky(_)
+            | Emission::Measured(_) => self.emission.sample(EmitterKind::Point, sampler),
         };
         Ray::new(frame.origin + along * frame.z, frame.to_world(local))
     }

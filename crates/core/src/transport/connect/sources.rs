@@ -259,7 +259,8 @@ fn target(id: SourceId, source: &Source) -> Option<SourceTarget<'_>> {
         | Emission::CosinePower(_)
         | Emission::Cone { .. }
         | Emission::Isotropic
-        | Emission::Sky(_) => None,
+        | Emission::Sky(_)
+        | Emission::Measured(_) => None,
     };
     let extent = match (&source.emitter, beam) {
         (Emitter::Point(frame), None) => EmitterExtent::Point(frame),

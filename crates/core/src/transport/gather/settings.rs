@@ -249,7 +249,8 @@ fn automatic_window(scene: &Scene, sounded: &Sounded) -> Window {
             Emission::Lambertian
             | Emission::CosinePower(_)
             | Emission::Isotropic
-            | Emission::Sky(_) => seen,
+            | Emission::Sky(_)
+            | Emission::Measured(_) => seen,
         }
     });
     let narrowest = widths.fold(PI, f64::min);

@@ -243,7 +243,9 @@ impl<'s> Run<'s> {
         match self.batches_asked {
             Some(asked) => self.batches >= asked,
             None => {
-                self.is_between_waves() && self.paths_asked.is_some_and(|asked| self.paths >= asked)
+                let is_dark = self.batches > 0 && self.paths == 0;
+                let is_enough = |asked| self.paths >= asked || is_dark;
+                self.is_between_waves() && self.paths_asked.is_some_and(is_enough)
             }
         }
     }

@@ -1,0 +1,145 @@
+//! Luminaires from files: read, placed, and made sources.
+
+use crate::keys::Key;
+use crate::lower::context::Context;
+use crate::lower::place::Facing;
+use crate::lower::weathers::{Member, group};
+use crate::spec::luminaire::{LuminaireExtent, LuminaireSpec};
+use crate::spec::placement::ContactSpec;
+use lumiduct_base::math::Frame;
+use lumiduct_base::number::{format_exact, format_percent};
+use lumiduct_core::scene::shape::{Flat, Region, Shape};
+use lumiduct_core::scene::{Emission, EmitSide, Emitter, MeasuredEmission, Source, StartSolids};
+use lumiduct_files::luminaire::{self, Intensities, Luminaire, Opening, ReadLuminaire};
+use std::sync::Arc;
+
+/// Angle γ up to which a flat opening emits, deg.
+const HORIZON: f64 = 90.0;
+/// Share of the light above the horizon that is no more than rounding, 1.
+const NO_LIGHT: f64 = 1e-6;
+
+impl Context<'_> {
+    pub(super) fn lower_luminaire(
+        &mut self,
+        name: &str,
+        spec: &LuminaireSpec,
+        key: &Key,
+    ) -> Option<()> {
+        let frame = self.place(spec.at.as_ref(), key, Facing::Toward);
+        let luminaire = self.read_luminaire(spec, &key.field("file"));
+        self.may_build(key)?;
+        let Luminaire { opening, intensities, .. } = luminaire?;
+        let (emitter, highest) = self.luminous_extent(spec, &opening, frame?, key);
+        self.check_upward_light(&intensities, highest, key)?;
+        let Some(table) = table(&intensities, highest) else {
+            let message = format!("`{}` emits no light", spec.file);
+            return self.refuse(&key.field("file"), message, "give a file with intensities");
+        };
+        let flux = match spec.flux_lm {
+            Some(flux) => self.carried([flux, flux], &key.field("flux_lm"))?,
+            None => {
+                let flux = intensities.flux_between(0.0, highest);
+                self.carried([flux, flux], &key.field("file"))?
+            }
+        };
+        let start = match spec.contact {
+            Some(ContactSpec::Air) => StartSolids::Behind,
+            Some(ContactSpec::Optical) | None => StartSolids::Ahead,
+        };
+        let source = self.builder.add_source(Source {
+            name: name.to_owned(),
+            flux: if spec.enabled { flux } else { 0.0 },
+            emitter,
+            emission: Emission::Measured(Arc::new(table)),
+            start,
+            on: Vec::new(),
+            elevation: None,
+            sun: None,
+        });
+        let group = group(spec.group.as_ref(), key);
+        self.members.push(Member { source, group, daylight: None });
+        Some(())
+    }
+
+    /// Reads the file; problems and remarks are noted at its key.
+    fn read_luminaire(&mut self, spec: &LuminaireSpec, key: &Key) -> Option<Luminaire> {
+        self.may_build(key)?;
+        let path = self.places.folder(key).join(&spec.file);
+        match luminaire::read(&path) {
+            Ok(ReadLuminaire { luminaire, remarks }) => {
+                for remark in remarks {
+                    self.problems.warning(key, format!("`{}`: {remark}", spec.file));
+                }
+                // The hash of the scene contains what is used of the file.
+                let Luminaire { opening, intensities, .. } = &luminaire;
+                self.meshes.add(format!("{opening:?} {intensities:?}").as_bytes());
+                Some(luminaire)
+            }
+            Err(error) => {
+                self.problems.error(key, format!("`{}`: {error}", spec.file));
+                None
+            }
+        }
+    }
+
+    /// Where its light starts, and up to which angle γ, deg.
+    fn luminous_extent(
+        &mut self,
+        spec: &LuminaireSpec,
+        opening: &Opening,
+        frame: Frame,
+        key: &Key,
+    ) -> (Emitter, f64) {
+        let &Opening { is_round, along_c0_mm, along_c90_mm, height_mm } = opening;
+        let has_area = along_c0_mm > 0.0 && along_c90_mm > 0.0;
+        if spec.extent == LuminaireExtent::Point || !has_area {
+            return (Emitter::Point(frame), 2.0 * HORIZON);
+        }
+        if height_mm > 0.0 {
+            let height = format_exact(height_mm);
+            let message = format!("its opening is {height} mm high and is taken as flat");
+            self.problems.warning(&key.field("file"), message);
+        }
+        let (half_x, half_y) = (0.5 * along_c0_mm, 0.5 * along_c90_mm);
+        let region = match is_round {
+            true if half_x == half_y => Region::Annulus { inner: 0.0, outer: half_x },
+            true => Region::Ellipse { half_x, half_y },
+            false => Region::Rectangle { half_x, half_y },
+        };
+        let shape = Shape::Flat(Flat::new(frame, region));
+        (Emitter::surface(vec![shape], EmitSide::Front, Some(frame)), HORIZON)
+    }
+
+    /// Refuses light that the extent cannot emit.
+    fn check_upward_light(
+        &mut self,
+        intensities: &Intensities,
+        highest: f64,
+        key: &Key,
+    ) -> Option<()> {
+        let lost = intensities.flux_between(highest, 2.0 * HORIZON) / intensities.flux();
+        if lost > NO_LIGHT {
+            let share = format_percent(lost);
+            let message =
+                format!("sends {share} of its light above 90 deg, and its opening is flat");
+            return self.refuse(&key.field("file"), message, "give extent = \"point\"");
+        }
+        Some(())
+    }
+}
+
+/// The distribution up to an angle γ in degrees; `None` without light.
+fn table(intensities: &Intensities, highest: f64) -> Option<MeasuredEmission> {
+    let planes = intensities.circle();
+    let own = intensities.angles_deg();
+    let below = own.iter().copied().filter(|angle| *angle < highest);
+    let cut = own.iter().any(|angle| *angle >= highest).then_some(highest);
+    let angles: Vec<f64> = below.chain(cut).collect();
+    let values = planes
+        .iter()
+        .flat_map(|(plane, _)| angles.iter().map(|angle| intensities.at(*plane, *angle)))
+        .collect();
+    let radians = |degrees: &[f64]| degrees.iter().map(|angle| angle.to_radians()).collect();
+    let planes: Vec<f64> = planes.iter().map(|(plane, _)| *plane).collect();
+    MeasuredEmission::new(radians(&planes), radians(&angles), values)
+}

@@ -1,0 +1,92 @@
+//! Luminaires from files as sources.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
+
+mod traced;
+
+use lumiduct_base::error::DiagnosticKind;
+use lumiduct_core::measure::Measures;
+use lumiduct_core::plan::Request;
+use lumiduct_input::{self as input, Job, Settings};
+
+/// A lamp whose light goes up, too: 10 cd down, 5 cd to the sides and 1 cd up, with an opening.
+const UPWARD: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/bad_input/luminaires/upward.ies");
+/// An opening of 4 mm by 3 mm, whose light differs from plane to plane.
+const SPOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/luminaires/spot.ies");
+
+fn far(source: &str, paths: u64) -> Measures {
+    let text = format!(
+        "{source}\n[sensors]\nfar = {{ goniometer = {{ c_step_deg = 30, gamma_step_deg = 15 }} }}\n"
+    );
+    let estimator = Some(Request::Forward);
+    let settings = Settings { paths: Some(paths), estimator, ..Settings::default() };
+    traced::measures(&traced::load(&text, &settings))
+}
+
+#[test]
+fn a_goniometer_reads_the_intensities_of_the_file() {
+    let file = lumiduct_files::luminaire::read(SPOT.as_ref()).unwrap().luminaire;
+    for extent in ["point", "opening"] {
+        let measures = far(
+            &format!("[sources.lamp.luminaire]\nfile = {SPOT:?}\nextent = {extent:?}"),
+            400_000,
+        );
+        let flux = measures.values["far.flux"].value;
+        assert!((flux / file.intensities.flux() - 1.0).abs() < 1e-9, "{extent}: {flux}");
+        let table = &measures.intensities[0];
+        let mut checked = 0;
+        for ((ring, sector), found) in table.values.indexed_iter() {
+            // The mean of the intensities over the solid angle of the cell; C90 of the file is toward -y.
+            let steps = 40;
+            let part = |n: usize, of: f64| (n as f64 + 0.5) * of / steps as f64;
+            let (mut sum, mut weight) = (0.0, 0.0);
+            for (c, g) in (0..steps * steps).map(|n| (part(n / steps, 30.0), part(n % steps, 15.0)))
+            {
+                let (c, g) = (30.0 * sector as f64 + c, 15.0 * ring as f64 + g);
+                let solid = g.to_radians().sin();
+                (sum, weight) = (sum + solid * file.intensities.at(360.0 - c, g), weight + solid);
+            }
+            let (expected, error) = (sum / weight, table.std_errors[(ring, sector)]);
+            assert!(
+                (found - expected).abs() <= 4.5 * error + 2e-4 * expected,
+                "{extent} {ring} {sector}: {found} {expected} {error}"
+            );
+            checked += usize::from(expected > 0.0);
+        }
+        assert_eq!(checked, 60, "{extent}: cells with light");
+    }
+}
+
+#[test]
+fn its_flux_is_that_of_the_file_or_the_given_one() {
+    let file = lumiduct_files::luminaire::read(UPWARD.as_ref()).unwrap().luminaire;
+    let flux = |keys: &str| {
+        let source =
+            format!("[sources.lamp.luminaire]\nfile = {UPWARD:?}\nextent = \"point\"\n{keys}");
+        far(&source, 2000).values["far.flux"].value
+    };
+    assert!((flux("") / file.intensities.flux() - 1.0).abs() < 1e-9);
+    assert!((flux("flux_lm = 7") - 7.0).abs() < 1e-9);
+    assert_eq!(flux("enabled = false"), 0.0);
+}
+
+#[test]
+fn a_scene_is_another_one_with_another_file_and_remarks_are_warnings() {
+    let folder = tempfile::tempdir().unwrap();
+    let load = |ies: &str| -> Job {
+        std::fs::write(folder.path().join("lamp.ies"), ies).unwrap();
+        let scene =
+            "lumiduct = 1\ntitle = \"Lamp\"\n[sources.lamp.luminaire]\nfile = \"lamp.ies\"\n";
+        let path = folder.path().join("scene.toml");
+        std::fs::write(&path, scene).unwrap();
+        input::load(&path, &Settings::default()).unwrap()
+    };
+    let spot = std::fs::read_to_string(SPOT).unwrap();
+    let jobs = [&spot, &spot.replace("14 12", "15 12"), &spot].map(|text| load(text));
+    assert_ne!(jobs[0].hash, jobs[1].hash);
+    assert_eq!(jobs[0].hash, jobs[2].hash);
+    let warnings = &jobs[0].warnings;
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    assert_eq!(warnings[0].kind, DiagnosticKind::Warning);
+    assert!(warnings[0].message.contains("beyond them the light is taken as 0"));
+}

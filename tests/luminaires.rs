@@ -58,6 +58,28 @@ fn a_goniometer_reads_the_intensities_of_the_file() {
 }
 
 #[test]
+fn planes_about_c90_without_c0_give_the_same_light_by_samples_and_by_radiance() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("lamp.ies");
+    let head = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 4 1 2 0.004 0.004 0\n1 1 0\n0 40 80\n90 150 210 270\n";
+    std::fs::write(&path, format!("{head}9 8 0\n9 2 0\n9 1 0\n9 5 0\n")).unwrap();
+    let text = format!(
+        "[sources.lamp.luminaire]\nfile = {path:?}\n[sensors.cell]\n\
+         plane = {{ rectangle = {{ width_mm = 6, height_mm = 6 }} }}\n\
+         at = {{ position_mm = [6, 1, 10], axis = [0, 0, -1] }}\n"
+    );
+    let flux = |estimator: Request| {
+        let settings =
+            Settings { paths: Some(400_000), estimator: Some(estimator), ..Settings::default() };
+        traced::measures(&traced::load(&text, &settings)).values["cell.flux"].clone()
+    };
+    let [forward, backward] = [Request::Forward, Request::Backward].map(flux);
+    let error = forward.std_error.hypot(backward.std_error);
+    assert!((forward.value - backward.value).abs() < 4.0 * error, "{forward} {backward}");
+    assert!(error < 0.01 * forward.value, "{forward} {backward}");
+}
+
+#[test]
 fn its_flux_is_that_of_the_file_or_the_given_one() {
     let file = lumiduct_files::luminaire::read(UPWARD.as_ref()).unwrap().luminaire;
     let flux = |keys: &str| {

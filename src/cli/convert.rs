@@ -5,7 +5,8 @@ use clap::Args;
 use lumiduct_base::error::{Error, Result};
 use lumiduct_base::number::{format_exact, format_value};
 use lumiduct_files::luminaire::{
-    LampFlux, Luminaire, LuminaireError, LuminaireFormat, ReadLuminaire, read, written,
+    LampFlux, Luminaire, LuminaireError, LuminaireFormat, ReadLuminaire, WrittenLuminaire, read,
+    written,
 };
 use lumiduct_report::{Existing, write_whole};
 use std::fmt::Write;
@@ -42,7 +43,11 @@ fn converted(from: &Path, to: Option<&Path>, existing: Existing) -> Result<Strin
     }
     if let Some(to) = to {
         let format = LuminaireFormat::of(to).map_err(|error| wrong(to, error))?;
-        write_whole(to, written(&luminaire, format).as_bytes(), existing)?;
+        let WrittenLuminaire { text: file, remarks } = written(&luminaire, format);
+        write_whole(to, file.as_bytes(), existing)?;
+        for remark in remarks {
+            _ = writeln!(text, "remark: {remark}");
+        }
         _ = writeln!(text, "written: {} ({format})", to.display());
     }
     Ok(text)

@@ -15,8 +15,9 @@ pub(crate) fn read_file(path: &Path, limit: u64) -> io::Result<Option<Vec<u8>>> 
         return Ok(None);
     }
     let mut bytes = Vec::new();
-    fs::File::open(path)?.take(limit).read_to_end(&mut bytes)?;
-    Ok(Some(bytes))
+    fs::File::open(path)?.take(limit + 1).read_to_end(&mut bytes)?;
+    // It may have grown.
+    Ok((bytes.len() as u64 <= limit).then_some(bytes))
 }
 
 #[cfg(test)]

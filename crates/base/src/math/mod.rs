@@ -7,6 +7,7 @@ mod frame;
 mod least_squares;
 pub mod planar;
 mod polynomial;
+mod ring;
 mod roots;
 mod sampling;
 
@@ -15,6 +16,7 @@ pub use cap::projected_cap;
 pub use frame::Frame;
 pub use least_squares::least_squares;
 pub use polynomial::{Root, SignChange, cubic, quartic};
+pub use ring::linear_over_ring;
 pub use roots::{bracketed_root, convex_roots, quadratic};
 pub use sampling::{
     circle, cone_direction, cosine_hemisphere, cosine_power_hemisphere, disk, from_cosine,

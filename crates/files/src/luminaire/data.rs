@@ -1,6 +1,6 @@
 //! What a luminaire file says.
 
-use crate::luminaire::intensities::Intensities;
+use crate::luminaire::intensities::{Intensities, PlaneSymmetry};
 
 /// A luminaire or lamp: its light, its luminous opening and what else its file says.
 #[derive(Debug, Clone, PartialEq)]
@@ -68,16 +68,52 @@ pub struct ReadLuminaire {
     pub remarks: Vec<String>,
 }
 
+/// Light output ratio above which a file contradicts itself, 1.
+const MOST_OUTPUT: f64 = 1.02;
+
 impl ReadLuminaire {
-    /// A luminaire with remarks, and one more where its angles leave out a part of a half-space.
+    /// A luminaire with remarks, and further ones on its light.
     pub(crate) fn new(luminaire: Luminaire, mut remarks: Vec<String>) -> Self {
-        let angles = luminaire.intensities.angles_deg();
-        let [low, high] = [angles[0], angles[angles.len() - 1]];
+        let Luminaire { intensities, .. } = &luminaire;
+        let ends = |all: &[f64]| [all[0], all[all.len() - 1]];
+        let [low, high] = ends(intensities.angles_deg());
         if !(low == 0.0 || low == 90.0) || !(high == 90.0 || high == 180.0) {
+            let range = format!("angles go from {low}° to {high}°");
+            remarks.push(format!("{range}; beyond them the light is taken as 0"));
+        }
+        let planes = intensities.planes_deg();
+        let step = planes.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+        let [first, last] = ends(planes);
+        let gap = first + 360.0 - last;
+        if intensities.symmetry() == PlaneSymmetry::None && planes.len() > 1 && gap > step {
             remarks.push(format!(
-                "angles go from {low}° to {high}°; beyond them the light is taken as 0"
+                "no plane lies between {last}° and 360°; the light there is interpolated"
             ));
+        }
+        if intensities.flux() == 0.0 {
+            remarks.push("there is no light".to_owned());
+        }
+        if let Some(ratio) = luminaire.light_output_ratio().filter(|ratio| *ratio > MOST_OUTPUT) {
+            let percent = 100.0 * ratio;
+            remarks.push(format!("the luminaire sends {percent:.0} % of the light of its lamps"));
         }
         Self { luminaire, remarks }
     }
+}
+
+/// The input power, W; 0 with a remark for a negative one.
+pub(crate) fn known_power(power_w: f64, remarks: &mut Vec<String>) -> f64 {
+    if power_w < 0.0 {
+        remarks.push(format!("a power of {power_w} W is taken as not known"));
+    }
+    power_w.max(0.0)
+}
+
+/// A luminaire as written, with what the format cannot hold.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct WrittenLuminaire {
+    /// The text of the file, in UTF-8.
+    pub text: String,
+    /// Sentences for the user.
+    pub remarks: Vec<String>,
 }

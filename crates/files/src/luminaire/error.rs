@@ -3,9 +3,17 @@
 use crate::luminaire::format::LuminaireFormat;
 
 /// Longest file that is read, bytes.
-pub const MAX_LUMINAIRE_BYTES: u64 = 32 << 20;
+pub const MAX_LUMINAIRE_BYTES: u64 = 16 << 20;
 /// Most planes, and most angles in a plane, of a file.
 pub const MAX_ANGLES: usize = 4096;
+/// Most intensities of a file.
+pub(crate) const MOST_NODES: usize = 1 << 20;
+/// Largest intensity, cd: far beyond any lamp.
+pub(crate) const MOST_CANDELA: f64 = 1e15;
+/// Largest flux of lamps, lm.
+pub(crate) const MOST_LUMENS: f64 = 1e12;
+/// Largest size of an opening, mm.
+pub(crate) const MOST_SIZE: f64 = 1e7;
 
 /// Why a luminaire file could not be read, or a luminaire not be written.
 #[derive(Debug, thiserror::Error)]

@@ -3,11 +3,14 @@
 //! Keywords and their texts come first, then `TILT=`, then numbers in a fixed order, separated by blanks, commas and line
 //! ends. The horizontal angle 0 lies along the length of the opening.
 
-use crate::luminaire::data::{LampFlux, Luminaire, Opening, ReadLuminaire};
-use crate::luminaire::error::{LuminaireError, MAX_ANGLES};
+use crate::luminaire::data::{LampFlux, Luminaire, Opening, ReadLuminaire, known_power};
+use crate::luminaire::error::{
+    LuminaireError, MAX_ANGLES, MOST_CANDELA, MOST_LUMENS, MOST_NODES, MOST_SIZE,
+};
 use crate::luminaire::format::LuminaireFormat;
 use crate::luminaire::intensities::{Intensities, PlaneSymmetry};
 use crate::luminaire::text::whole;
+use std::ops::RangeInclusive;
 
 /// Millimetres in a foot.
 const FOOT: f64 = 304.8;
@@ -18,12 +21,23 @@ const SAME_PLANE: f64 = 1e-3;
 pub(crate) fn read(text: &str) -> Result<ReadLuminaire, LuminaireError> {
     let mut remarks = Vec::new();
     let lines: Vec<&str> = text.lines().collect();
-    let is_tilt = |line: &str| line.trim_start().to_ascii_uppercase().starts_with("TILT");
-    let Some(tilt) = lines.iter().position(|line| is_tilt(line)) else {
-        return Err(violated(lines.len().max(1), "there is no line `TILT=`".to_owned()));
+    let is_tilt = |line: &str| {
+        let line = line.trim_start().to_ascii_uppercase();
+        line.strip_prefix("TILT").is_some_and(|rest| rest.trim_start().starts_with('='))
     };
-    let edition = Edition::of(lines[0]);
-    let texts = texts(&lines[usize::from(edition != Edition::First)..tilt]);
+    let Some(tilt) = lines.iter().position(|line| is_tilt(line)) else {
+        let problem = match text {
+            _ if text.trim().is_empty() => "the file is empty",
+            _ if text.contains('\0') => "the file is no text",
+            _ => "there is no line that begins with `TILT=`",
+        };
+        return Err(violated(lines.len().max(1), problem.to_owned()));
+    };
+    let labels = &lines[..tilt];
+    let head = labels.iter().position(|line| !line.trim().is_empty());
+    let edition = head.map_or(Edition::First, |head| Edition::of(labels[head]));
+    let first = head.filter(|_| edition != Edition::First).map_or(0, |head| head + 1);
+    let texts = texts(&labels[first..]);
     let mut numbers = WordReader::new(&lines, tilt + 1);
     let way = lines[tilt].split('=').nth(1).unwrap_or_default().trim().to_owned();
     match way.to_ascii_uppercase().as_str() {
@@ -36,8 +50,8 @@ pub(crate) fn read(text: &str) -> Result<ReadLuminaire, LuminaireError> {
     }
 
     let lamps = numbers.count("the number of lamps")?;
-    let lamp_flux = numbers.next("the lumens per lamp")?;
-    let multiplier = numbers.next("the multiplier of the intensities")?;
+    let lamp_flux = numbers.within("the lumens per lamp", -MOST_LUMENS..=MOST_LUMENS)?;
+    let multiplier = numbers.positive("the multiplier of the intensities")?;
     let angles = numbers.count("the number of vertical angles")?;
     let planes = numbers.count("the number of horizontal angles")?;
     let goniometer = numbers.next("the photometric type")?;
@@ -54,33 +68,43 @@ pub(crate) fn read(text: &str) -> Result<ReadLuminaire, LuminaireError> {
             return Err(numbers.wrong(format!("unit {other}, expected 1 (feet) or 2 (metres)")));
         }
     };
-    let mut size = || numbers.next("the size of the opening");
+    let most = MOST_SIZE / unit;
+    let mut size = || numbers.within("the size of the opening", -most..=most);
     let [width, length, height] = [size()? * unit, size()? * unit, size()? * unit];
-    let ballast = numbers.next("the ballast factor")?;
-    let second = numbers.next("the second factor")?;
-    let power_w = numbers.next("the input power")?;
-    let second = if edition.has_second_factor() { second } else { 1.0 };
+    let ballast = numbers.positive("the ballast factor")?;
+    let second = if edition.has_second_factor() {
+        numbers.positive("the ballast-lamp factor")?
+    } else {
+        numbers.next("the number after the ballast factor").map(|_| 1.0)?
+    };
+    let power_w = known_power(numbers.next("the input power")?, &mut remarks);
     let factor = multiplier * ballast * second;
 
-    let angles_deg = numbers.list(angles, "a vertical angle")?;
-    let planes_deg = numbers.list(planes, "a horizontal angle")?;
+    let angles_deg = numbers.increasing(angles, "a vertical angle")?;
+    let planes_deg = numbers.increasing(planes, "a horizontal angle")?;
     let mut candela = Vec::new();
-    for _ in 0..planes * angles {
-        candela.push(numbers.next("an intensity")? * factor);
+    if planes * angles > MOST_NODES {
+        return Err(numbers.wrong(format!("{planes} times {angles} angles are too many")));
     }
-    numbers.end()?;
+    for _ in 0..planes * angles {
+        let what = "an intensity";
+        candela.push(numbers.within(what, 0.0..=MOST_CANDELA)? * factor);
+    }
+    numbers.end([planes, angles])?;
 
     let (symmetry, planes_deg) =
         symmetry_of(planes_deg).map_err(|problem| numbers.wrong(problem))?;
     remark_on_repeated_plane((&planes_deg, &angles_deg), &candela, &mut remarks);
     candela.truncate(planes_deg.len() * angles);
-    let lamps = if lamp_flux < 0.0 {
-        LampFlux::Absolute
-    } else if lamp_flux == 0.0 {
-        remarks.push("the lamps have 0 lm; the photometry is taken as absolute".to_owned());
-        LampFlux::Absolute
-    } else {
+    let lamps = if lamp_flux > 0.0 {
         LampFlux::Relative { count: lamps as u32, flux_lm: lamps as f64 * lamp_flux }
+    } else {
+        // -1 says so.
+        if lamp_flux != -1.0 {
+            let taken = "the photometry is taken as absolute";
+            remarks.push(format!("the lamps have {lamp_flux} lm each; {taken}"));
+        }
+        LampFlux::Absolute
     };
     let intensities = Intensities::new(symmetry, planes_deg, angles_deg, candela)?;
     let opening = opening([width, length, height], &mut remarks);
@@ -122,29 +146,31 @@ fn remark_on_repeated_plane(
 enum Edition {
     /// 1986, without a first line of its own.
     First,
-    /// 1991 and 1995.
-    Factors,
-    /// 2002 and 2019.
-    Current,
+    /// 1991.
+    Second,
+    /// 1995 and later.
+    Later,
 }
 
 impl Edition {
+    /// That of the first line with a text.
     fn of(line: &str) -> Self {
         let line = line.trim().to_ascii_uppercase();
-        if !line.starts_with("IES") {
-            Self::First
-        } else if line.contains("91") || line.contains("LM-63-1995") {
-            Self::Factors
+        if line == "IESNA91" || line.contains("LM-63-1991") {
+            Self::Second
+        } else if line.contains("LM-63-") && !line.contains("LM-63-1986") {
+            Self::Later
         } else {
-            Self::Current
+            Self::First
         }
     }
 
-    /// Whether the second factor is that of ballast and lamp together; later it has another meaning.
+    /// Whether the second factor is that of ballast and lamp together; later it was kept for future use, and in 2019 says how the
+    /// file was made.
     fn has_second_factor(self) -> bool {
         match self {
-            Self::First | Self::Factors => true,
-            Self::Current => false,
+            Self::First | Self::Second => true,
+            Self::Later => false,
         }
     }
 }
@@ -177,13 +203,16 @@ fn skip_tilt(numbers: &mut WordReader<'_>) -> Result<(), LuminaireError> {
     (0..2 * pairs).try_for_each(|_| numbers.next("a tilt or its factor").map(drop))
 }
 
-/// The opening: negative sizes are diameters (LM-63-2002, table 1; in 1995 the length of a circle was 0).
+/// The opening: negative sizes are diameters (LM-63-2002, table 1). A circle has a length of 0 in LM-63-1995, and an ellipse a
+/// positive one.
 fn opening([width, length, height]: [f64; 3], remarks: &mut Vec<String>) -> Opening {
-    if height < 0.0 {
-        remarks
-            .push("the opening is round in its height, too; it is taken as a cylinder".to_owned());
+    let is_flat = height >= 0.0;
+    let is_round = width < 0.0 && (length < 0.0 || is_flat || length == 0.0);
+    if !is_flat || (length < 0.0 && width >= 0.0) {
+        let shape = "is a sphere, a cylinder that lies or a disk that stands";
+        let taken = "its light is taken to start on a horizontal area of its width and length";
+        remarks.push(format!("the opening {shape}; {taken}"));
     }
-    let is_round = width < 0.0 || length < 0.0;
     let [width, length] = [width.abs(), length.abs()];
     let length = if is_round && length == 0.0 { width } else { length };
     Opening { is_round, along_c0_mm: length, along_c90_mm: width, height_mm: height.abs() }
@@ -217,6 +246,24 @@ impl<'t> WordReader<'t> {
         value.ok_or_else(|| self.wrong(format!("expected {what}, found `{}`", shown(word))))
     }
 
+    /// A number above 0: a factor of 0 makes a dark file.
+    fn positive(&mut self, what: &str) -> Result<f64, LuminaireError> {
+        let value = self.next(what)?;
+        if value > 0.0 {
+            return Ok(value);
+        }
+        Err(self.wrong(format!("{what} is {value}, expected a number above 0")))
+    }
+
+    fn within(&mut self, what: &str, range: RangeInclusive<f64>) -> Result<f64, LuminaireError> {
+        let value = self.next(what)?;
+        if range.contains(&value) {
+            return Ok(value);
+        }
+        let (least, most) = range.into_inner();
+        Err(self.wrong(format!("{what} is {value}, expected {least} to {most}")))
+    }
+
     fn count(&mut self, what: &str) -> Result<usize, LuminaireError> {
         let value = self.next(what)?;
         let count = whole(value).and_then(|count| usize::try_from(count).ok());
@@ -224,16 +271,28 @@ impl<'t> WordReader<'t> {
         count.ok_or_else(|| self.wrong(format!("{what} is {value}, expected 1 to {MAX_ANGLES}")))
     }
 
-    fn list(&mut self, count: usize, what: &str) -> Result<Vec<f64>, LuminaireError> {
-        (0..count).map(|_| self.next(what)).collect()
+    /// Angles that increase, deg.
+    fn increasing(&mut self, count: usize, what: &str) -> Result<Vec<f64>, LuminaireError> {
+        let mut angles: Vec<f64> = Vec::new();
+        for _ in 0..count {
+            let angle = self.within(what, -360.0..=360.0)?;
+            if let Some(before) = angles.last().filter(|before| **before >= angle) {
+                let problem = format!("{what} of {angle} follows {before}: they must increase");
+                return Err(self.wrong(problem));
+            }
+            angles.push(angle);
+        }
+        Ok(angles)
     }
 
-    fn end(&mut self) -> Result<(), LuminaireError> {
+    fn end(&mut self, [planes, angles]: [usize; 2]) -> Result<(), LuminaireError> {
         match self.words.next() {
             None => Ok(()),
             Some((line, word)) => {
-                let problem = format!("`{}` follows the last intensity", shown(word));
-                Err(violated(line, problem))
+                let what = format!("`{}` follows the last intensity", shown(word));
+                let counts = format!("of {planes} horizontal times {angles} vertical angles");
+                let cause = "the counts may be wrong, or numbers have decimal commas";
+                Err(violated(line, format!("{what} {counts}: {cause}")))
             }
         }
     }

@@ -4,8 +4,8 @@
 //! A line for each field, in a fixed order. Intensities are in cd per 1000 lm of the lamps. The length of the opening lies along
 //! the axis from C90 to C270.
 
-use crate::luminaire::data::{LampFlux, Luminaire, Opening, ReadLuminaire};
-use crate::luminaire::error::{LuminaireError, MAX_ANGLES};
+use crate::luminaire::data::{LampFlux, Luminaire, Opening, ReadLuminaire, known_power};
+use crate::luminaire::error::{LuminaireError, MAX_ANGLES, MOST_CANDELA, MOST_NODES, MOST_SIZE};
 use crate::luminaire::format::LuminaireFormat;
 use crate::luminaire::intensities::{Intensities, PlaneSymmetry};
 use crate::luminaire::text::{number, whole};
@@ -13,6 +13,10 @@ use lumiduct_base::number::shorten;
 
 /// Most sets of lamps.
 const MOST_SETS: usize = 20;
+/// Difference of angles that is no more than rounding, deg.
+const ROUNDING: f64 = 1e-3;
+/// Relative difference of light output ratios that interpolation explains, 1.
+const SAME_RATIO: f64 = 0.05;
 /// Direct ratios for ten room indices.
 const DIRECT_RATIOS: usize = 10;
 
@@ -27,25 +31,25 @@ pub(crate) fn read(text: &str) -> Result<ReadLuminaire, LuminaireError> {
         }
     };
     keep("MANUFAC", fields.text("the company")?);
-    fields.number("the type of luminaire")?;
+    fields.optional("the type of luminaire")?;
     let symmetry = fields.count("the symmetry", 0..=4)?;
     let planes = fields.count("the number of C planes", 1..=MAX_ANGLES)?;
-    fields.number("the distance of C planes")?;
+    let plane_step = fields.optional("the distance of C planes")?;
     let angles = fields.count("the number of angles", 1..=MAX_ANGLES)?;
-    fields.number("the distance of angles")?;
+    let angle_step = fields.optional("the distance of angles")?;
     keep("TEST", fields.text("the number of the report")?);
     keep("LUMINAIRE", fields.text("the name of the luminaire")?);
     keep("LUMCAT", fields.text("the number of the luminaire")?);
     fields.text("the name of the file")?;
     keep("ISSUEDATE", fields.text("date and user")?);
     for what in ["length", "width", "height"] {
-        fields.number(&format!("the {what} of the luminaire"))?;
+        fields.optional(&format!("the {what} of the luminaire"))?;
     }
     let opening = opening(&mut fields, &mut remarks)?;
-    fields.number("the downward flux fraction")?;
-    fields.number("the light output ratio")?;
-    let conversion = fields.number("the conversion factor")?;
-    if fields.number("the tilt during measurement")? != 0.0 {
+    fields.optional("the downward flux fraction")?;
+    let stated_ratio = fields.optional("the light output ratio")? / 100.0;
+    let conversion = fields.positive("the conversion factor")?;
+    if fields.optional("the tilt during measurement")? != 0.0 {
         remarks.push("the tilt during measurement is left out".to_owned());
     }
     let sets = fields.count("the number of sets of lamps", 1..=MOST_SETS)?;
@@ -61,23 +65,29 @@ pub(crate) fn read(text: &str) -> Result<ReadLuminaire, LuminaireError> {
                     .text("the type of lamps")
                     .map(|text| if first.is_none() { text } else { "" })?,
             );
-            let flux = fields.number("the flux of the lamps")?;
+            let flux = fields.positive("the flux of the lamps")?;
             fields.text("the colour temperature")?;
             fields.text("the colour rendering")?;
-            let power = fields.number("the power")?;
+            let power = fields.optional("the power")?;
             Ok::<_, LuminaireError>(first.or(Some((count, flux, power))))
         })?
         .expect("there is a set");
-    (0..DIRECT_RATIOS).try_for_each(|_| fields.number("a direct ratio").map(drop))?;
-    let all_deg = fields.list(planes, "a C plane")?;
-    let angles_deg = fields.list(angles, "an angle")?;
+    (0..DIRECT_RATIOS).try_for_each(|_| fields.optional("a direct ratio").map(drop))?;
+    let all_deg = fields.increasing(planes, "a C plane")?;
+    let angles_deg = fields.increasing(angles, "an angle")?;
+    remark_on_steps("planes", (plane_step, &all_deg), &mut remarks);
+    remark_on_steps("angles", (angle_step, &angles_deg), &mut remarks);
+    let power_w = known_power(power_w, &mut remarks);
 
     let (symmetry, planes_deg) =
         stored(symmetry, &all_deg).map_err(|problem| fields.wrong(problem))?;
     let factor = conversion * flux_lm / 1000.0;
     let mut by_plane: Vec<(f64, Vec<f64>)> = Vec::new();
+    if planes * angles > MOST_NODES {
+        return Err(fields.wrong(format!("{planes} times {angles} angles are too many")));
+    }
     for plane in planes_deg {
-        let values = fields.list(angles, "an intensity")?;
+        let values = fields.intensities(angles)?;
         by_plane.push((plane, values.iter().map(|value| value * factor).collect()));
     }
     fields.end()?;
@@ -87,24 +97,38 @@ pub(crate) fn read(text: &str) -> Result<ReadLuminaire, LuminaireError> {
     let intensities = Intensities::new(symmetry, planes_deg, angles_deg, candela)?;
     let lamps = match whole(lamps) {
         Some(count) if count < 0 => LampFlux::Absolute,
-        Some(count) if count > 0 && flux_lm > 0.0 => {
-            LampFlux::Relative { count: count as u32, flux_lm }
-        }
-        _ => {
-            remarks.push(format!(
-                "{lamps} lamps of {flux_lm} lm; the photometry is taken as absolute"
-            ));
-            LampFlux::Absolute
+        Some(count) if count > 0 => LampFlux::Relative { count: count as u32, flux_lm },
+        Some(_) | None => {
+            remarks.push(format!("the number of lamps is {lamps}; it is taken as 1"));
+            LampFlux::Relative { count: 1, flux_lm }
         }
     };
+    let ratio = intensities.flux() / flux_lm;
+    if stated_ratio > 0.0 && (ratio / stated_ratio - 1.0).abs() > SAME_RATIO {
+        let [own, stated] = [ratio, stated_ratio].map(|ratio| 100.0 * ratio);
+        let what = "of the light of its lamps, the intensities give";
+        remarks.push(format!("{what} {own:.1} % and the light output ratio is {stated:.1} %"));
+    }
     Ok(ReadLuminaire::new(Luminaire { texts, lamps, power_w, opening, intensities }, remarks))
+}
+
+/// Remarks where angles do not have the step that the file states; 0 states none.
+fn remark_on_steps(what: &str, (step, own): (f64, &[f64]), remarks: &mut Vec<String>) {
+    let is_off = |pair: &[f64]| (pair[1] - pair[0] - step).abs() > ROUNDING;
+    if step != 0.0 && own.windows(2).any(is_off) {
+        remarks.push(format!("the {what} are not {step}° apart, as the file says"));
+    }
 }
 
 /// The luminous area: round if it has no width.
 fn opening(fields: &mut Fields<'_>, remarks: &mut Vec<String>) -> Result<Opening, LuminaireError> {
     let mut sizes = [0.0; 6];
     for size in &mut sizes {
-        *size = fields.number("a size of the luminous area")?;
+        *size = fields.optional("a size of the luminous area")?;
+        if !(0.0..=MOST_SIZE).contains(size) {
+            let problem = format!("a size of the luminous area is {size} mm");
+            return Err(fields.wrong(problem));
+        }
     }
     let [length, width, heights @ ..] = sizes;
     let height = heights.iter().copied().fold(0.0, f64::max);
@@ -167,6 +191,21 @@ impl<'t> Fields<'t> {
         })
     }
 
+    /// A number that may be left out, as 0.
+    fn optional(&mut self, what: &str) -> Result<f64, LuminaireError> {
+        let is_empty = self.lines.get(self.next).is_some_and(|line| line.trim().is_empty());
+        self.next += usize::from(is_empty);
+        if is_empty { Ok(0.0) } else { self.number(what) }
+    }
+
+    fn positive(&mut self, what: &str) -> Result<f64, LuminaireError> {
+        let value = self.number(what)?;
+        if value > 0.0 && value <= MOST_CANDELA {
+            return Ok(value);
+        }
+        Err(self.wrong(format!("{what} is {value}, expected a number above 0")))
+    }
+
     fn count(
         &mut self,
         what: &str,
@@ -179,8 +218,31 @@ impl<'t> Fields<'t> {
         count.filter(|count| range.contains(count)).ok_or_else(wrong)
     }
 
-    fn list(&mut self, count: usize, what: &str) -> Result<Vec<f64>, LuminaireError> {
-        (0..count).map(|_| self.number(what)).collect()
+    /// Angles that increase, deg.
+    fn increasing(&mut self, count: usize, what: &str) -> Result<Vec<f64>, LuminaireError> {
+        let mut angles: Vec<f64> = Vec::new();
+        for _ in 0..count {
+            let angle = self.number(what)?;
+            if let Some(before) = angles.last().filter(|before| **before >= angle) {
+                let problem = format!("{what} of {angle} follows {before}: they must increase");
+                return Err(self.wrong(problem));
+            }
+            angles.push(angle);
+        }
+        Ok(angles)
+    }
+
+    /// Intensities of a plane, cd per 1000 lm.
+    fn intensities(&mut self, count: usize) -> Result<Vec<f64>, LuminaireError> {
+        let mut values = Vec::new();
+        for _ in 0..count {
+            let value = self.number("an intensity")?;
+            if value < 0.0 {
+                return Err(self.wrong(format!("an intensity is {value}, expected 0 or more")));
+            }
+            values.push(value);
+        }
+        Ok(values)
     }
 
     /// Only blank lines may follow.
@@ -191,7 +253,8 @@ impl<'t> Fields<'t> {
             None => Ok(()),
             Some(place) => {
                 self.next += place + 1;
-                Err(self.wrong("something follows the last intensity".to_owned()))
+                let found = shorten(self.lines[self.next - 1].trim(), 30);
+                Err(self.wrong(format!("`{found}` follows the last intensity")))
             }
         }
     }

@@ -1,6 +1,7 @@
 //! A distribution of luminous intensity over half-planes about a vertical axis, interpolated between measured directions.
 
-use crate::luminaire::error::{LuminaireError, MAX_ANGLES};
+use crate::luminaire::error::{LuminaireError, MAX_ANGLES, MOST_CANDELA};
+use lumiduct_base::math::linear_over_ring;
 
 /// Symmetry of a distribution, and so the range of its planes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -130,7 +131,7 @@ impl Intensities {
                 candela.len()
             ));
         }
-        if let Some(value) = candela.iter().find(|value| !(0.0..f64::INFINITY).contains(*value)) {
+        if let Some(value) = candela.iter().find(|value| !(0.0..=MOST_CANDELA).contains(*value)) {
             return refuse(format!("an intensity of {value} cd"));
         }
         Ok(Self { symmetry, planes_deg, angles_deg, candela })
@@ -220,27 +221,26 @@ impl Intensities {
                 let at = |angle: f64| {
                     ends[0] + (ends[1] - ends[0]) * (angle - angles[0]) / (angles[1] - angles[0])
                 };
-                ring(cut.map(f64::to_radians), cut.map(at))
+                linear_over_ring(cut.map(f64::to_radians), cut.map(at))
             });
             width.to_radians() * zone.sum::<f64>()
         };
         widths.iter().enumerate().map(of_plane).sum()
     }
 
-    /// The whole circle of planes from 0, deg, each with its place among those stored; one plane under rotational symmetry.
-    pub fn circle(&self) -> Vec<(f64, usize)> {
-        let mut all: Vec<(f64, usize)> = Vec::new();
-        for (place, &plane) in self.planes_deg.iter().enumerate() {
-            let copies: &[f64] = match self.symmetry {
-                PlaneSymmetry::Rotational | PlaneSymmetry::None => &[plane],
-                PlaneSymmetry::AboutC0 => &[plane, 360.0 - plane],
-                PlaneSymmetry::AboutC90 => &[plane, 540.0 - plane],
-                PlaneSymmetry::Quadrants => &[plane, 180.0 - plane, 180.0 + plane, 360.0 - plane],
-            };
-            all.extend(copies.iter().map(|copy| (copy.rem_euclid(360.0), place)));
-        }
-        all.sort_by(|a, b| a.0.total_cmp(&b.0));
-        all.dedup_by(|a, b| a.0 == b.0);
+    /// The planes of the whole circle, from 0 to below 360, deg; one under rotational symmetry.
+    pub fn circle(&self) -> Vec<f64> {
+        let copies = |plane: f64| match self.symmetry {
+            PlaneSymmetry::Rotational | PlaneSymmetry::None => vec![plane],
+            PlaneSymmetry::AboutC0 => vec![plane, 360.0 - plane],
+            // C0 is among them, even if the file leaves it out.
+            PlaneSymmetry::AboutC90 => vec![plane, 540.0 - plane, 0.0],
+            PlaneSymmetry::Quadrants => vec![plane, 180.0 - plane, 180.0 + plane, 360.0 - plane],
+        };
+        let mut all: Vec<f64> = self.planes_deg.iter().flat_map(|plane| copies(*plane)).collect();
+        all.iter_mut().for_each(|plane| *plane = plane.rem_euclid(360.0));
+        all.sort_by(f64::total_cmp);
+        all.dedup();
         all
     }
 }
@@ -253,12 +253,6 @@ fn between(numbers: &[f64], value: f64) -> (usize, f64) {
         Some(next) => (place, (value - numbers[place]) / (next - numbers[place])),
         None => (place, 0.0),
     }
-}
-
-/// ∫ I(γ) sin γ dγ over an interval in rad, where I is linear between its values at the ends.
-fn ring([from, to]: [f64; 2], [first, last]: [f64; 2]) -> f64 {
-    let slope = (last - first) / (to - from);
-    first * from.cos() - last * to.cos() + slope * (to.sin() - from.sin())
 }
 
 #[cfg(test)]
@@ -300,7 +294,7 @@ mod tests {
             let values = |planes: &[f64]| planes.iter().flat_map(|c| [of(*c); 3]).collect();
             let part = Intensities::new(symmetry, planes.clone(), angles.clone(), values(&planes))
                 .unwrap();
-            let circle: Vec<f64> = part.circle().iter().map(|(plane, _)| *plane).collect();
+            let circle = part.circle();
             let whole =
                 Intensities::new(PlaneSymmetry::None, circle.clone(), angles, values(&circle))
                     .unwrap();

@@ -1,7 +1,7 @@
 //! Luminaires and lamps from files and to files: ANSI/IES LM-63 (.ies) and EULUMDAT (.ldt).
 //!
-//! Readers never trust a file: whatever it contains, the result is a luminaire or a [`LuminaireError`]. What they assume or leave
-//! out is a remark. Angles C and γ are the same in both formats; but the length of an opening lies along C0 in the first and along
+//! Readers never trust a file: whatever it contains, the result is a luminaire or a [`LuminaireError`]. What they assume about
+//! the light is a remark. Angles C and γ are the same in both formats; but the length of an opening lies along C0 in the first and along
 //! C90 in the second, so [`Opening`] names its axes.
 
 mod data;
@@ -14,7 +14,7 @@ mod text;
 mod to_ies;
 mod to_ldt;
 
-pub use data::{LampFlux, Luminaire, Opening, ReadLuminaire};
+pub use data::{LampFlux, Luminaire, Opening, ReadLuminaire, WrittenLuminaire};
 pub use error::{LuminaireError, MAX_ANGLES, MAX_LUMINAIRE_BYTES};
 pub use format::LuminaireFormat;
 pub use intensities::{Intensities, PlaneSymmetry};
@@ -65,8 +65,8 @@ pub fn parse(bytes: &[u8], format: LuminaireFormat) -> Result<ReadLuminaire, Lum
     }
 }
 
-/// The text of a file in UTF-8: LM-63-2002 or EULUMDAT, with seven digits.
-pub fn written(luminaire: &Luminaire, format: LuminaireFormat) -> String {
+/// A file, LM-63-2002 or EULUMDAT, with seven digits.
+pub fn written(luminaire: &Luminaire, format: LuminaireFormat) -> WrittenLuminaire {
     match format {
         LuminaireFormat::Ies => to_ies::write(luminaire),
         LuminaireFormat::Ldt => to_ldt::write(luminaire),

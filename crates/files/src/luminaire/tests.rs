@@ -22,7 +22,7 @@ fn luminaire(symmetry: PlaneSymmetry, planes: &[f64]) -> Luminaire {
         texts: [("TEST", "12"), ("MANUFAC", "A°"), ("LUMINAIRE", "lamp"), ("LAMP", "LED")]
             .map(|(keyword, text)| (keyword.to_owned(), text.to_owned()))
             .to_vec(),
-        lamps: LampFlux::Relative { count: 2, flux_lm: 3000.0 },
+        lamps: LampFlux::Relative { count: 2, flux_lm: 6000.0 },
         power_w: 25.0,
         opening: Opening {
             is_round: false,
@@ -64,7 +64,7 @@ fn a_lambertian_file_is_read_to_the_last_digit() {
 fn luminaires_come_back_from_both_formats() {
     for luminaire in all_symmetries() {
         for format in [LuminaireFormat::Ies, LuminaireFormat::Ldt] {
-            let text = written(&luminaire, format);
+            let text = written(&luminaire, format).text;
             assert!(text.lines().all(|line| line.len() < 256), "{format}");
             let back =
                 parse(text.as_bytes(), format).unwrap_or_else(|error| panic!("{error}\n{text}"));
@@ -88,7 +88,7 @@ fn luminaires_come_back_from_both_formats() {
             for keyword in ["TEST", "MANUFAC", "LUMINAIRE", "LAMP"] {
                 assert_eq!(back.luminaire.text(keyword), luminaire.text(keyword), "{format}");
             }
-            assert_eq!(written(&back.luminaire, format), text, "{format}, written again");
+            assert_eq!(written(&back.luminaire, format).text, text, "{format}, written again");
         }
     }
 }
@@ -102,10 +102,54 @@ fn absolute_and_round_luminaires_come_back() {
         (None, true)
     );
     for format in [LuminaireFormat::Ies, LuminaireFormat::Ldt] {
-        let back = parse(written(&own, format).as_bytes(), format).unwrap().luminaire;
+        let back = parse(written(&own, format).text.as_bytes(), format).unwrap().luminaire;
         assert_eq!((back.lamps, back.opening), (own.lamps, own.opening), "{format}");
         assert!((back.intensities.flux() / own.intensities.flux() - 1.0).abs() < 1e-6, "{format}");
     }
+}
+
+#[test]
+fn planes_that_a_format_cannot_name_are_written_without_symmetry() {
+    let planes = [90.0, 150.0, 210.0, 270.0];
+    let own = luminaire(PlaneSymmetry::AboutC90, &planes);
+    let text = written(&own, LuminaireFormat::Ldt).text;
+    let back = parse(text.as_bytes(), LuminaireFormat::Ldt).unwrap().luminaire.intensities;
+    assert_eq!(back.symmetry(), PlaneSymmetry::None);
+    for plane in (0..36).map(|n| 10.0 * f64::from(n)) {
+        let both = [back.at(plane, 45.0), own.intensities.at(plane, 45.0)];
+        assert!((both[0] / both[1] - 1.0).abs() < 1e-6, "{plane}: {both:?}");
+    }
+}
+
+#[test]
+fn what_contradicts_itself_or_is_lost_is_remarked_on() {
+    let remarks = |old: &str, new: &str| {
+        let text = LAMBERT.replace(old, new);
+        assert_ne!(text, LAMBERT, "{old}");
+        ies(&text).unwrap().remarks.join("; ")
+    };
+    for (old, new, words) in [
+        ("1 -1 1", "1 1000 1", "313 % of the light of its lamps"),
+        ("1 -1 1", "1 -500 1", "-500 lm"),
+        ("1 1 12.5", "1 1 -5", "power of -5 W"),
+        ("0.05 0.08 0", "-0.05 0.08 -0.05", "a cylinder that lies"),
+        ("80 90\r\n", "80 85\r\n", "beyond them the light is taken as 0"),
+    ] {
+        assert!(remarks(old, new).contains(words), "{new}: {}", remarks(old, new));
+    }
+    let ellipse = ies(&LAMBERT.replace("0.05 0.08 0", "-0.05 -0.08 0")).unwrap().luminaire;
+    assert_eq!(written(&ellipse, LuminaireFormat::Ies).remarks.len(), 0);
+    let written = written(&ellipse, LuminaireFormat::Ldt);
+    assert!(written.remarks[0].contains("an ellipse"), "{:?}", written.remarks);
+    let back = parse(written.text.as_bytes(), LuminaireFormat::Ldt).unwrap().luminaire.opening;
+    assert!((back.along_c0_mm - 4000f64.sqrt()).abs() < 1e-4, "{back:?}");
+    let steps = written.text.replacen("\r\n10\r\n10\r\n", "\r\n10\r\n5\r\n", 1);
+    let read = parse(steps.as_bytes(), LuminaireFormat::Ldt).unwrap();
+    assert!(
+        read.remarks.iter().any(|remark| remark.contains("not 5° apart")),
+        "{:?}",
+        read.remarks
+    );
 }
 
 #[test]
@@ -123,7 +167,7 @@ fn editions_differ_in_their_factors_and_tilt_is_remarked_on() {
         "a circle of a foot, as in 1995"
     );
     assert!(opening.is_round);
-    for head in ["", "A label\n", "IESNA91\n", "IESNA:LM-63-1995\n"] {
+    for head in ["", "A label\n", "IESNA91\n", "\nIESNA91\n"] {
         assert_eq!(flux(head, "TILT=NONE").0, 9.0, "{head}");
     }
     assert_eq!(flux("IES:LM-63-2019\n", "TILT = INCLUDE\n1\n2\n0 90\n1 0.8").1, 1);
@@ -132,7 +176,7 @@ fn editions_differ_in_their_factors_and_tilt_is_remarked_on() {
 
 #[test]
 fn eulumdat_with_commas_and_several_sets_is_read() {
-    let own = written(&all_symmetries()[3], LuminaireFormat::Ldt);
+    let own = written(&all_symmetries()[3], LuminaireFormat::Ldt).text;
     let mut lines: Vec<String> = own.lines().map(str::to_owned).collect();
     assert_eq!(lines[25], "1", "sets of lamps");
     lines[25] = "2".to_owned();
@@ -150,7 +194,11 @@ fn errors_name_the_line_and_what_is_wrong() {
     for (old, new, line, words) in [
         ("TILT=NONE", "", 15, "TILT"),
         ("1 -1 1 10 1 1", "1 -1 1 10 1 2", 10, "type 2"),
-        ("1 -1 1 10", "1 -1 1 11", 15, "ends before"),
+        ("1 -1 1 10", "1 -1 1 11", 13, "0 follows 90"),
+        ("\r\n642.787610", "", 14, "ends before"),
+        ("500 342", "-500 342", 15, "-500"),
+        ("70 80 90", "80 70 90", 12, "must increase"),
+        ("1 -1 1 10", "1 -1 0 10", 10, "above 0"),
         ("1 -1 1 10", "1 -1 1 1e7", 10, "expected 1 to 4096"),
         ("342.020143", "x342", 15, "found `x342`"),
         ("173.648178 0", "173.648178 0 1", 15, "follows"),
@@ -165,11 +213,10 @@ fn errors_name_the_line_and_what_is_wrong() {
             "{old}: {error}"
         );
     }
-    for (old, new) in [("642.787610", "-3"), ("70 80 90", "80 70 90"), ("80 90", "80 200")] {
-        assert!(
-            matches!(ies(&LAMBERT.replace(old, new)), Err(LuminaireError::NoDistribution(_))),
-            "{new}"
-        );
+    let high = ies(&LAMBERT.replace("80 90", "80 200"));
+    assert!(matches!(high, Err(LuminaireError::NoDistribution(_))), "{high:?}");
+    for (text, words) in [("", "empty"), ("a\0b", "no text"), ("TILTED lamp\n1 2", "TILT=")] {
+        assert!(ies(text).unwrap_err().to_string().contains(words), "{text}");
     }
     assert!(matches!(read(Path::new("a.txt")), Err(LuminaireError::UnknownLuminaire { .. })));
     assert!(matches!(read(Path::new("missing.ies")), Err(LuminaireError::Unreadable(_))));
@@ -177,7 +224,7 @@ fn errors_name_the_line_and_what_is_wrong() {
 
 #[test]
 fn damaged_files_are_luminaires_or_errors() {
-    let ldt = written(&all_symmetries()[2], LuminaireFormat::Ldt);
+    let ldt = written(&all_symmetries()[2], LuminaireFormat::Ldt).text;
     let mut usable = [0, 0];
     for (kind, (original, format)) in
         [(LAMBERT, LuminaireFormat::Ies), (&ldt, LuminaireFormat::Ldt)].into_iter().enumerate()
@@ -189,7 +236,7 @@ fn damaged_files_are_luminaires_or_errors() {
             assert!(intensities.flux().is_finite() && intensities.flux() >= 0.0);
             assert!(intensities.at(33.0, 45.0) <= intensities.peak() * (1.0 + 1e-12));
             // What was read can be written, and read again.
-            let again = parse(written(&read.luminaire, format).as_bytes(), format);
+            let again = parse(written(&read.luminaire, format).text.as_bytes(), format);
             assert!(again.is_ok(), "{again:?}");
         }
     }

@@ -1,12 +1,22 @@
 //! Texts of luminaire files: their encoding and their numbers.
 
-/// The text of a file in UTF-8 or, as many files are, in Windows-1252; without a byte-order mark.
+/// The text of a file in UTF-8, in UTF-16 with a byte-order mark or, as many files are, in Windows-1252; with any line ends.
 pub(crate) fn decoded(bytes: &[u8]) -> String {
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    match std::str::from_utf8(bytes) {
-        Ok(text) => text.to_owned(),
-        Err(_) => bytes.iter().map(|byte| WINDOWS_1252[usize::from(*byte)]).collect(),
-    }
+    let units = |of: fn([u8; 2]) -> u16| -> Vec<u16> {
+        bytes[2..].as_chunks::<2>().0.iter().map(|unit| of(*unit)).collect()
+    };
+    let text = if bytes.starts_with(b"\xff\xfe") {
+        String::from_utf16_lossy(&units(u16::from_le_bytes))
+    } else if bytes.starts_with(b"\xfe\xff") {
+        String::from_utf16_lossy(&units(u16::from_be_bytes))
+    } else {
+        let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+        match std::str::from_utf8(bytes) {
+            Ok(text) => text.to_owned(),
+            Err(_) => bytes.iter().map(|byte| WINDOWS_1252[usize::from(*byte)]).collect(),
+        }
+    };
+    text.replace("\r\n", "\n").replace('\r', "\n")
 }
 
 /// The letters of Windows-1252, which differs from Latin-1 between 0x80 and 0x9f (WHATWG Encoding, index-windows-1252).
@@ -72,6 +82,9 @@ mod tests {
         assert_eq!(decoded("Leuchte 10° µ".as_bytes()), "Leuchte 10° µ");
         assert_eq!(decoded(b"Leuchte 10\xb0 \x80\x99"), "Leuchte 10° €™");
         assert_eq!(decoded(b"\xef\xbb\xbfIESNA"), "IESNA");
+        assert_eq!(decoded(b"\xff\xfeI\0E\0\r\0"), "IE\n");
+        assert_eq!(decoded(b"\xfe\xff\0I\0E"), "IE");
+        assert_eq!(decoded(b"a\rb\r\nc\n"), "a\nb\nc\n");
     }
 
     #[test]

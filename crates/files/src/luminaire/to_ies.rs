@@ -1,6 +1,6 @@
 //! Writes ANSI/IESNA LM-63-2002.
 
-use crate::luminaire::data::{LampFlux, Luminaire};
+use crate::luminaire::data::{LampFlux, Luminaire, WrittenLuminaire};
 use crate::luminaire::intensities::PlaneSymmetry;
 use crate::luminaire::text::{one_line, seven_digits};
 use std::fmt::Write;
@@ -9,11 +9,12 @@ use std::fmt::Write;
 const REQUIRED: [&str; 4] = ["TEST", "TESTLAB", "ISSUEDATE", "MANUFAC"];
 /// Most letters of a line.
 const LINE: usize = 120;
-/// Most letters of a text after its keyword.
-const TEXT: usize = 230;
+/// Most letters of a keyword, and of the text after it: a line has up to 256 (LM-63-2002, 5.1).
+const KEYWORD: usize = 18;
+const TEXT: usize = 220;
 
-/// The text of a file.
-pub(crate) fn write(luminaire: &Luminaire) -> String {
+/// The file.
+pub(crate) fn write(luminaire: &Luminaire) -> WrittenLuminaire {
     let Luminaire { texts, lamps, power_w, opening, intensities } = luminaire;
     let mut out = "IESNA:LM-63-2002\r\n".to_owned();
     // A keyword without a text says that it is not known.
@@ -23,7 +24,7 @@ pub(crate) fn write(luminaire: &Luminaire) -> String {
     for (keyword, text) in texts {
         for (place, part) in text.split('\n').enumerate() {
             let keyword = if place == 0 { keyword.as_str() } else { "MORE" };
-            _ = write!(out, "[{}] {}\r\n", one_line(keyword, TEXT), one_line(part, TEXT));
+            _ = write!(out, "[{}] {}\r\n", one_line(keyword, KEYWORD), one_line(part, TEXT));
         }
     }
     out += "TILT=NONE\r\n";
@@ -66,5 +67,5 @@ pub(crate) fn write(luminaire: &Luminaire) -> String {
     list(intensities.angles_deg());
     list(&planes_deg);
     planes.iter().for_each(|place| list(intensities.plane(*place)));
-    out
+    WrittenLuminaire { text: out, remarks: Vec::new() }
 }

@@ -1,91 +1,112 @@
 //! Writes EULUMDAT.
 
-use crate::luminaire::data::{LampFlux, Luminaire};
+use crate::luminaire::data::{LampFlux, Luminaire, Opening, WrittenLuminaire};
 use crate::luminaire::intensities::{Intensities, PlaneSymmetry};
 use crate::luminaire::text::{one_line, seven_digits, with_digits};
 
 /// Planes of a rotationally symmetric distribution, as most such files have.
 const PLANES: u32 = 24;
-/// Most letters of a text.
+/// Most letters of a text, and of the type of lamps, in EULUMDAT.
 const TEXT: usize = 78;
+const LAMP: usize = 24;
 /// Digits of intensities per 1000 lm: enough for seven of those in cd.
 const PER_KILOLUMEN_DIGITS: i32 = 9;
 /// Relative difference of steps that are taken as equal, 1.
 const EQUAL_STEPS: f64 = 1e-6;
 
-/// The text of a file. Direct ratios are written as 0, which means that they are not given.
-pub(crate) fn write(luminaire: &Luminaire) -> String {
+/// The file. Direct ratios are written as 0, which means that they are not given.
+pub(crate) fn write(luminaire: &Luminaire) -> WrittenLuminaire {
     let Luminaire { lamps, power_w, opening, intensities, .. } = luminaire;
-    let text = |keyword: &str| one_line(luminaire.text(keyword).unwrap_or_default(), TEXT);
+    let mut remarks = Vec::new();
+    let text =
+        |keyword: &str, longest| one_line(luminaire.text(keyword).unwrap_or_default(), longest);
     let flux = intensities.flux();
     let (count, lamp_flux) = match *lamps {
         LampFlux::Absolute => (-1, flux),
         LampFlux::Relative { count, flux_lm } => (i64::from(count), flux_lm),
     };
-    // As written, so that it belongs to the intensities.
-    let lamp_flux = seven_digits(lamp_flux).parse().unwrap_or(lamp_flux);
-    let circle = match intensities.symmetry() {
-        PlaneSymmetry::Rotational => {
-            (0..PLANES).map(|place| 360.0 * f64::from(place) / f64::from(PLANES)).collect()
-        }
-        _ => intensities.circle().iter().map(|(plane, _)| *plane).collect::<Vec<f64>>(),
-    };
+    // As written, so that it belongs to the intensities; any flux does for a dark luminaire.
+    let lamp_flux = seven_digits(lamp_flux).parse().ok().filter(|flux| *flux > 0.0);
+    let lamp_flux = lamp_flux.unwrap_or(1000.0);
+    let (symmetry, circle, stored) = layout(intensities);
     let angles = intensities.angles_deg();
-    let share = |part: f64, whole: f64| if whole > 0.0 { 100.0 * part / whole } else { 0.0 };
-
-    let mut lines: Vec<String> =
-        vec![text("MANUFAC"), kind(intensities, opening.is_round).to_string()];
-    let mut add = |values: &[f64]| lines.extend(values.iter().map(|value| seven_digits(*value)));
-    let symmetry = match intensities.symmetry() {
-        PlaneSymmetry::None => 0.0,
-        PlaneSymmetry::Rotational => 1.0,
-        PlaneSymmetry::AboutC0 => 2.0,
-        PlaneSymmetry::AboutC90 => 3.0,
-        PlaneSymmetry::Quadrants => 4.0,
+    let percent = |part: f64, whole: f64| {
+        format!("{:.2}", if whole > 0.0 { 100.0 * part / whole } else { 0.0 })
     };
-    add(&[symmetry, circle.len() as f64, step(&circle), angles.len() as f64, step(angles)]);
-    lines.extend(["TEST", "LUMINAIRE", "LUMCAT"].map(text));
-    lines.push(String::new());
-    lines.push(text("ISSUEDATE"));
-    let width = if opening.is_round { 0.0 } else { opening.along_c0_mm };
-    let mut add = |values: &[f64]| lines.extend(values.iter().map(|value| seven_digits(*value)));
+    // A round opening has a diameter and no width.
+    let [length, width] = match opening.is_round {
+        true => [(opening.along_c90_mm * opening.along_c0_mm).sqrt(), 0.0],
+        false => [opening.along_c90_mm, opening.along_c0_mm],
+    };
+    if opening.is_round && opening.along_c0_mm != opening.along_c90_mm {
+        remarks.push("the opening is an ellipse; it is written as a circle of its area".to_owned());
+    }
+    let numbers = |values: &[f64]| -> Vec<String> {
+        values.iter().map(|value| seven_digits(*value)).collect()
+    };
+
+    let kind = kind(intensities, opening);
+    let mut lines = vec![text("MANUFAC", TEXT), kind.to_string(), symmetry.to_string()];
+    let [planes_count, angles_count] = [circle.len(), angles.len()].map(|count| count as f64);
+    lines.extend(numbers(&[planes_count, step(&circle), angles_count, step(angles)]));
+    lines.extend(["TEST", "LUMINAIRE", "LUMCAT"].map(|keyword| text(keyword, TEXT)));
+    lines.extend([String::new(), text("ISSUEDATE", TEXT)]);
     // The luminaire itself, then its luminous area.
-    add(&[opening.along_c90_mm, width, opening.height_mm]);
-    add(&[opening.along_c90_mm, width]);
-    add(&[opening.height_mm; 4]);
-    let shares = [share(intensities.flux_between(0.0, 90.0), flux), share(flux, lamp_flux)];
-    lines.extend(shares.map(|percent| format!("{percent:.2}")));
+    lines.extend(numbers(&[length, width, opening.height_mm, length, width]));
+    lines.extend(numbers(&[opening.height_mm; 4]));
+    lines.extend([percent(intensities.flux_between(0.0, 90.0), flux), percent(flux, lamp_flux)]);
     // Conversion factor, tilt during measurement, and one set of lamps.
     lines.extend(["1", "0", "1"].map(str::to_owned));
-    lines.push(count.to_string());
-    lines.push(text("LAMP"));
-    lines.push(seven_digits(lamp_flux));
-    lines.extend([String::new(), String::new()]);
-    let mut add = |values: &[f64]| lines.extend(values.iter().map(|value| seven_digits(*value)));
-    add(&[*power_w]);
-    add(&[0.0; 10]);
-    add(&circle);
-    add(angles);
-    let per_kilolumen = if lamp_flux > 0.0 { 1000.0 / lamp_flux } else { 0.0 };
-    let count = intensities.planes_deg().len();
-    let order: Vec<usize> = match intensities.symmetry() {
-        // From C270 over C0 to C90, mirrored: from 270 down to 90.
-        PlaneSymmetry::AboutC90 => (0..count).rev().collect(),
-        _ => (0..count).collect(),
-    };
-    for place in order {
-        let values = intensities.plane(place).iter().map(|value| value * per_kilolumen);
+    lines.extend([count.to_string(), text("LAMP", LAMP), seven_digits(lamp_flux)]);
+    lines.extend([String::new(), String::new(), seven_digits(*power_w)]);
+    lines.extend(numbers(&[0.0; 10]));
+    lines.extend(numbers(&circle));
+    lines.extend(numbers(angles));
+    for plane in stored {
+        let values = angles.iter().map(|angle| intensities.at(plane, *angle) * 1000.0 / lamp_flux);
         lines.extend(values.map(|value| with_digits(value, PER_KILOLUMEN_DIGITS)));
     }
-    lines.iter().map(|line| format!("{line}\r\n")).collect()
+    let text = lines.iter().map(|line| format!("{line}\r\n")).collect();
+    WrittenLuminaire { text, remarks }
+}
+
+/// The symmetry, all planes and the planes whose intensities are written, deg.
+fn layout(intensities: &Intensities) -> (u32, Vec<f64>, Vec<f64>) {
+    let circle = intensities.circle();
+    let quarter = circle.len() / 4;
+    match intensities.symmetry() {
+        PlaneSymmetry::None => (0, circle.clone(), circle),
+        PlaneSymmetry::Rotational => {
+            let planes = (0..PLANES).map(|place| 360.0 * f64::from(place) / f64::from(PLANES));
+            (1, planes.collect(), circle)
+        }
+        PlaneSymmetry::AboutC0 => (2, circle.clone(), circle[..=circle.len() / 2].to_vec()),
+        PlaneSymmetry::AboutC90 => {
+            // From C270 over C0 to C90, if they lie where a reader looks for them.
+            let is_even = circle.len() == 4 * quarter
+                && [circle[quarter], circle[3 * quarter]] == [90.0, 270.0];
+            let half = || [&circle[3 * quarter..], &circle[..=quarter]].concat();
+            if is_even { (3, circle.clone(), half()) } else { (0, circle.clone(), circle) }
+        }
+        PlaneSymmetry::Quadrants => (4, circle.clone(), circle[..=quarter].to_vec()),
+    }
 }
 
 /// The type of luminaire: 1 a point with rotational symmetry, 2 linear, 3 any other point.
-fn kind(intensities: &Intensities, is_round: bool) -> u32 {
+fn kind(intensities: &Intensities, opening: &Opening) -> u32 {
+    let has_length = opening.along_c0_mm > 0.0 || opening.along_c90_mm > 0.0;
     match intensities.symmetry() {
         PlaneSymmetry::Rotational => 1,
-        _ if is_round => 3,
-        _ => 2,
+        PlaneSymmetry::Quadrants
+        | PlaneSymmetry::AboutC0
+        | PlaneSymmetry::AboutC90
+        | PlaneSymmetry::None => {
+            if has_length && !opening.is_round {
+                2
+            } else {
+                3
+            }
+        }
     }
 }
 

@@ -70,9 +70,7 @@ impl Context<'_> {
                 for remark in remarks {
                     self.problems.warning(key, format!("`{}`: {remark}", spec.file));
                 }
-                // The hash of the scene contains what is used of the file.
-                let Luminaire { opening, intensities, .. } = &luminaire;
-                self.meshes.add(format!("{opening:?} {intensities:?}").as_bytes());
+                self.add_to_hash(&luminaire);
                 Some(luminaire)
             }
             Err(error) => {
@@ -80,6 +78,20 @@ impl Context<'_> {
                 None
             }
         }
+    }
+
+    /// The hash of the scene contains what is used of the file.
+    fn add_to_hash(&mut self, luminaire: &Luminaire) {
+        let Luminaire { opening, intensities, .. } = luminaire;
+        let &Opening { is_round, along_c0_mm, along_c90_mm, height_mm } = opening;
+        let sizes = [along_c0_mm, along_c90_mm, height_mm, f64::from(u8::from(is_round))];
+        let planes = intensities.circle();
+        let angles = intensities.angles_deg();
+        let values = planes
+            .iter()
+            .flat_map(|plane| angles.iter().map(|angle| intensities.at(*plane, *angle)));
+        let all = sizes.into_iter().chain(planes.iter().copied()).chain(angles.iter().copied());
+        all.chain(values).for_each(|number| self.meshes.add(&number.to_le_bytes()));
     }
 
     /// Where its light starts, and up to which angle γ, deg.
@@ -92,6 +104,11 @@ impl Context<'_> {
     ) -> (Emitter, f64) {
         let &Opening { is_round, along_c0_mm, along_c90_mm, height_mm } = opening;
         let has_area = along_c0_mm > 0.0 && along_c90_mm > 0.0;
+        let is_upright = !has_area && (along_c0_mm > 0.0 || along_c90_mm > 0.0);
+        if spec.extent == LuminaireExtent::Opening && is_upright {
+            let message = "its opening is a line or stands upright; its light is taken to start at the middle";
+            self.problems.warning(&key.field("file"), message).hint("give extent = \"point\"");
+        }
         if spec.extent == LuminaireExtent::Point || !has_area {
             return (Emitter::Point(frame), 2.0 * HORIZON);
         }
@@ -120,8 +137,9 @@ impl Context<'_> {
         let lost = intensities.flux_between(highest, 2.0 * HORIZON) / intensities.flux();
         if lost > NO_LIGHT {
             let share = format_percent(lost);
-            let message =
-                format!("sends {share} of its light above 90 deg, and its opening is flat");
+            let message = format!(
+                "the luminaire sends {share} of its light above 90 deg, and its opening is flat"
+            );
             return self.refuse(&key.field("file"), message, "give extent = \"point\"");
         }
         Some(())
@@ -137,9 +155,8 @@ fn table(intensities: &Intensities, highest: f64) -> Option<MeasuredEmission> {
     let angles: Vec<f64> = below.chain(cut).collect();
     let values = planes
         .iter()
-        .flat_map(|(plane, _)| angles.iter().map(|angle| intensities.at(*plane, *angle)))
+        .flat_map(|plane| angles.iter().map(|angle| intensities.at(*plane, *angle)))
         .collect();
     let radians = |degrees: &[f64]| degrees.iter().map(|angle| angle.to_radians()).collect();
-    let planes: Vec<f64> = planes.iter().map(|(plane, _)| *plane).collect();
     MeasuredEmission::new(radians(&planes), radians(&angles), values)
 }

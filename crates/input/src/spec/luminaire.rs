@@ -6,8 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::spec::daylight::enabled;
 use crate::spec::placement::{ContactSpec, PlacementSpec};
 
-/// A luminaire or lamp, as its file in IES LM-63 (.ies) or EULUMDAT (.ldt) says. Its nadir, γ = 0, is the axis; C0 is toward the local +x
-/// and C90 toward the local -y, counter-clockwise as seen from behind.
+/// A luminaire from a file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LuminaireSpec {
     /// The file. A relative path is relative to the scene file.

@@ -30,7 +30,8 @@ pub enum SourceSpec {
     Face(EmitterSpec<FaceSourceSpec>),
     /// The inside of a solid, evenly filled.
     Volume(EmitterSpec<VolumeSourceSpec>),
-    /// A luminaire from a file.
+    /// A luminaire or lamp from a file in IES LM-63 (.ies) or EULUMDAT (.ldt). Its nadir, γ = 0, is the axis; C0 is toward the local +x and C90
+    /// toward the local -y, counter-clockwise as seen from behind.
     Luminaire(LuminaireSpec),
     /// The sun.
     Sun(SunSpec),

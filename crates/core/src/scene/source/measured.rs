@@ -1,9 +1,10 @@
 //! Emission by a measured distribution of luminous intensity.
 //!
 //! A table over half-planes C and angles γ, linear in both between its nodes. Directions are drawn by exact inversion of its
-//! marginals, so that even points stay even.
+//! marginals, so that stratified points stay stratified.
 
 use glam::DVec3;
+use lumiduct_base::math::linear_over_ring;
 use std::f64::consts::TAU;
 
 /// A distribution over directions: γ is the angle to +z, the nadir of a luminaire; C is 0 toward +x and, counter-clockwise as seen
@@ -20,7 +21,7 @@ pub struct MeasuredEmission {
     up_to_angle: Vec<f64>,
     /// Share of the flux up to each plane, 1; the last is 1.
     up_to_plane: Vec<f64>,
-    /// Peak over the mean of all directions weighted by solid angle, as a density: 1/sr.
+    /// The largest density, 1/sr: peak intensity over flux.
     peak: f64,
 }
 
@@ -33,12 +34,13 @@ impl MeasuredEmission {
     /// If the numbers do not match.
     pub fn new(planes: Vec<f64>, angles: Vec<f64>, intensities: Vec<f64>) -> Option<Self> {
         assert_eq!(intensities.len(), planes.len() * angles.len(), "an intensity for each node");
+        assert_eq!(planes[0], 0.0, "planes begin at 0");
         let mut up_to_angle = Vec::with_capacity(intensities.len());
         for own in intensities.chunks(angles.len()) {
             let mut sum = 0.0;
             up_to_angle.push(0.0);
             for (ends, values) in angles.windows(2).zip(own.windows(2)) {
-                sum += ring([ends[0], ends[1]], [values[0], values[1]]);
+                sum += linear_over_ring([ends[0], ends[1]], [values[0], values[1]]);
                 up_to_angle.push(sum);
             }
         }
@@ -56,7 +58,7 @@ impl MeasuredEmission {
             flux += 0.5 * width * (table.of_plane(place) + table.of_plane(next));
             table.up_to_plane.push(flux);
         }
-        if flux.is_nan() || flux <= 0.0 {
+        if !flux.is_finite() || flux <= 0.0 {
             return None;
         }
         for numbers in [&mut table.density, &mut table.up_to_angle, &mut table.up_to_plane] {
@@ -69,6 +71,11 @@ impl MeasuredEmission {
     /// The largest density, 1/sr: peak intensity over flux.
     pub(crate) fn peak(&self) -> f64 {
         self.peak
+    }
+
+    /// The largest angle to +z at which there may be light, rad.
+    pub fn widest(&self) -> f64 {
+        self.angles[self.angles.len() - 1]
     }
 
     /// Whether it is the same in all planes.
@@ -139,12 +146,6 @@ impl MeasuredEmission {
     }
 }
 
-/// ∫ I(γ) sin γ dγ over an interval, where I is linear between its values at the ends.
-fn ring([from, to]: [f64; 2], [first, last]: [f64; 2]) -> f64 {
-    let slope = (last - first) / (to - from);
-    first * from.cos() - last * to.cos() + slope * (to.sin() - from.sin())
-}
-
 /// Where in 0 to 1 the integral of a linear function with these values at the ends reaches `wanted`.
 fn within_line([first, last]: [f64; 2], wanted: f64) -> f64 {
     let root = (first * first + 2.0 * (last - first) * wanted).max(0.0).sqrt();
@@ -152,7 +153,7 @@ fn within_line([first, last]: [f64; 2], wanted: f64) -> f64 {
     if first + root > 0.0 { (2.0 * wanted / (first + root)).clamp(0.0, 1.0) } else { 0.0 }
 }
 
-/// Where in an interval the integral of [`ring`] reaches `wanted`: Newton's method within a bracket.
+/// Where in an interval the integral of [`linear_over_ring`] reaches `wanted`: Newton's method within a bracket.
 fn within_ring([from, to]: [f64; 2], [first, last]: [f64; 2], wanted: f64) -> f64 {
     /// Steps that suffice by bisection alone.
     const STEPS: usize = 60;
@@ -161,7 +162,7 @@ fn within_ring([from, to]: [f64; 2], [first, last]: [f64; 2], wanted: f64) -> f6
     let mut angle = 0.5 * (from + to);
     for _ in 0..STEPS {
         let value = first + slope * (angle - from);
-        let excess = ring([from, angle], [first, value]) - wanted;
+        let excess = linear_over_ring([from, angle], [first, value]) - wanted;
         if excess < 0.0 {
             low = angle;
         } else {

@@ -7,11 +7,10 @@
 use glam::DVec3;
 use lumiduct_base::number::format_value;
 use lumiduct_core::scene::{
-    Emission, Face, FaceId, MediumId, Owner, Scene, Seeing, Sensor, SensorKind, Source, SunAngles,
+    Face, FaceId, MediumId, Owner, Scene, Seeing, Sensor, SensorKind, Source, SunAngles,
 };
 use lumiduct_input::Outline;
 use std::collections::BTreeSet;
-use std::f64::consts::PI;
 use std::fmt::Write;
 
 /// Entries of a list that are shown.
@@ -303,16 +302,7 @@ fn source_place(scene: &Scene, source: &Source, outline: &Outline) -> String {
 /// Etendue G = n² A Ω (projected) of a source that has an area, mm² sr.
 fn etendue(scene: &Scene, source: &Source) -> Option<f64> {
     let area = source.emitter.area()?;
-    let projected = match &source.emission {
-        Emission::Lambertian | Emission::Cone { .. } | Emission::Sky(_) => {
-            source.emission.projected_solid_angle()
-        }
-        // Light in every direction of the half space, whatever its distribution.
-        Emission::CosinePower(_) | Emission::Isotropic => Some(PI),
-        // All around the normal, up to the last angle with light.
-        Emission::Measured(own) => Some(PI * own.widest().min(0.5 * PI).sin().powi(2)),
-        Emission::Collimated { .. } => Some(0.0),
-    }?;
+    let projected = source.emission.projected_extent();
     let index = scene.media[MediumId::index(scene.surroundings)].index(0.0);
     Some(index * index * area * projected)
 }

@@ -181,7 +181,7 @@ fn equality(check: &Check, measure: &Measure, expected: f64) -> (CheckOutcome, S
     } else if deviation.abs() <= allowed {
         (CheckOutcome::Passed, text)
     } else if deviation.abs() < allowed + open {
-        (CheckOutcome::Undecided, format!("{text}, within {LIMIT_ERRORS} errors"))
+        (CheckOutcome::Undecided, format!("{text}, and {LIMIT_ERRORS} errors leave it open"))
     } else {
         (CheckOutcome::Failed, text)
     }

@@ -10,8 +10,12 @@ pub const MAX_ANGLES: usize = 4096;
 pub(crate) const MOST_NODES: usize = 1 << 20;
 /// Largest intensity, cd: far beyond any lamp.
 pub(crate) const MOST_CANDELA: f64 = 1e15;
-/// Largest flux of lamps, lm.
-pub(crate) const MOST_LUMENS: f64 = 1e12;
+/// Largest flux of lamps, lm: no less than what intensities may make.
+pub(crate) const MOST_LUMENS: f64 = 1e17;
+/// Most lamps.
+pub(crate) const MOST_LAMPS: usize = 10_000;
+/// Largest factor of intensities, 1.
+pub(crate) const MOST_FACTOR: f64 = 1e12;
 /// Largest size of an opening, mm.
 pub(crate) const MOST_SIZE: f64 = 1e7;
 

@@ -5,12 +5,11 @@
 
 use crate::luminaire::data::{LampFlux, Luminaire, Opening, ReadLuminaire, known_power};
 use crate::luminaire::error::{
-    LuminaireError, MAX_ANGLES, MOST_CANDELA, MOST_LUMENS, MOST_NODES, MOST_SIZE,
+    LuminaireError, MAX_ANGLES, MOST_FACTOR, MOST_LAMPS, MOST_LUMENS, MOST_NODES, MOST_SIZE,
 };
+use crate::luminaire::fields::NumberReader;
 use crate::luminaire::format::LuminaireFormat;
 use crate::luminaire::intensities::{Intensities, PlaneSymmetry};
-use crate::luminaire::text::whole;
-use std::ops::RangeInclusive;
 
 /// Millimetres in a foot.
 const FOOT: f64 = 304.8;
@@ -49,17 +48,52 @@ pub(crate) fn read(text: &str) -> Result<ReadLuminaire, LuminaireError> {
         _ => remarks.push(format!("the file of the effect of tilt, `{way}`, is not read")),
     }
 
-    let lamps = numbers.count("the number of lamps")?;
-    let lamp_flux = numbers.within("the lumens per lamp", -MOST_LUMENS..=MOST_LUMENS)?;
-    let multiplier = numbers.positive("the multiplier of the intensities")?;
-    let angles = numbers.count("the number of vertical angles")?;
-    let planes = numbers.count("the number of horizontal angles")?;
+    let head = read_head(&mut numbers, edition)?;
+    let Head { lamps, angles, planes, power_w, .. } = head;
+    let angles_deg = numbers.angles(angles, "a vertical angle")?;
+    let planes_deg = numbers.angles(planes, "a horizontal angle")?;
+    let mut candela = numbers.intensities(planes * angles)?;
+    numbers.end([planes, angles])?;
+    candela.iter_mut().for_each(|value| *value *= head.factor);
+
+    let (symmetry, planes_deg) =
+        symmetry_of(planes_deg).map_err(|problem| numbers.wrong(problem))?;
+    remark_on_repeated_plane((&planes_deg, &angles_deg), &candela, &mut remarks);
+    candela.truncate(planes_deg.len() * angles);
+    let intensities = Intensities::new(symmetry, planes_deg, angles_deg, candela)?;
+    let lamps = lamp_flux(lamps, head.lumens_per_lamp, &mut remarks);
+    let power_w = known_power(power_w, &mut remarks);
+    let opening = opening(head.size_mm, &mut remarks);
+    Ok(ReadLuminaire::new(Luminaire { texts, lamps, power_w, opening, intensities }, remarks))
+}
+
+/// The numbers before the angles.
+struct Head {
+    lamps: usize,
+    lumens_per_lamp: f64,
+    /// Of the intensities, 1.
+    factor: f64,
+    angles: usize,
+    planes: usize,
+    /// Width, length and height; negative ones are diameters.
+    size_mm: [f64; 3],
+    power_w: f64,
+}
+
+fn read_head(numbers: &mut WordReader<'_>, edition: Edition) -> Result<Head, LuminaireError> {
+    let lamps = numbers.count("the number of lamps", 1..=MOST_LAMPS)?;
+    let lumens_per_lamp = numbers.within("the lumens per lamp", -MOST_LUMENS..=MOST_LUMENS)?;
+    let multiplier = numbers.positive("the multiplier of the intensities", MOST_FACTOR)?;
+    let angles = numbers.count("the number of vertical angles", 1..=MAX_ANGLES)?;
+    let planes = numbers.count("the number of horizontal angles", 1..=MAX_ANGLES)?;
+    if planes * angles > MOST_NODES {
+        return Err(numbers.wrong(format!("{planes} times {angles} angles are too many")));
+    }
     let goniometer = numbers.next("the photometric type")?;
     if goniometer != 1.0 {
-        let problem = format!(
+        return Err(numbers.wrong(format!(
             "photometric type {goniometer} (1 is C, 2 is B, 3 is A); only type C is read, convert the file"
-        );
-        return Err(numbers.wrong(problem));
+        )));
     }
     let unit = match numbers.next("the unit of lengths")? {
         1.0 => FOOT,
@@ -70,45 +104,28 @@ pub(crate) fn read(text: &str) -> Result<ReadLuminaire, LuminaireError> {
     };
     let most = MOST_SIZE / unit;
     let mut size = || numbers.within("the size of the opening", -most..=most);
-    let [width, length, height] = [size()? * unit, size()? * unit, size()? * unit];
-    let ballast = numbers.positive("the ballast factor")?;
+    let size_mm = [size()? * unit, size()? * unit, size()? * unit];
+    let ballast = numbers.positive("the ballast factor", MOST_FACTOR)?;
     let second = if edition.has_second_factor() {
-        numbers.positive("the ballast-lamp factor")?
+        numbers.positive("the ballast-lamp factor", MOST_FACTOR)?
     } else {
         numbers.next("the number after the ballast factor").map(|_| 1.0)?
     };
-    let power_w = known_power(numbers.next("the input power")?, &mut remarks);
+    let power_w = numbers.next("the input power")?;
     let factor = multiplier * ballast * second;
+    Ok(Head { lamps, lumens_per_lamp, factor, angles, planes, size_mm, power_w })
+}
 
-    let angles_deg = numbers.increasing(angles, "a vertical angle")?;
-    let planes_deg = numbers.increasing(planes, "a horizontal angle")?;
-    let mut candela = Vec::new();
-    if planes * angles > MOST_NODES {
-        return Err(numbers.wrong(format!("{planes} times {angles} angles are too many")));
+/// The flux of the lamps; -1 lm of each says that the photometry is absolute.
+fn lamp_flux(count: usize, lumens_per_lamp: f64, remarks: &mut Vec<String>) -> LampFlux {
+    if lumens_per_lamp > 0.0 {
+        return LampFlux::Relative { count: count as u32, flux_lm: count as f64 * lumens_per_lamp };
     }
-    for _ in 0..planes * angles {
-        let what = "an intensity";
-        candela.push(numbers.within(what, 0.0..=MOST_CANDELA)? * factor);
+    if lumens_per_lamp != -1.0 {
+        let taken = "the photometry is taken as absolute";
+        remarks.push(format!("the lamps have {lumens_per_lamp} lm each; {taken}"));
     }
-    numbers.end([planes, angles])?;
-
-    let (symmetry, planes_deg) =
-        symmetry_of(planes_deg).map_err(|problem| numbers.wrong(problem))?;
-    remark_on_repeated_plane((&planes_deg, &angles_deg), &candela, &mut remarks);
-    candela.truncate(planes_deg.len() * angles);
-    let lamps = if lamp_flux > 0.0 {
-        LampFlux::Relative { count: lamps as u32, flux_lm: lamps as f64 * lamp_flux }
-    } else {
-        // -1 says so.
-        if lamp_flux != -1.0 {
-            let taken = "the photometry is taken as absolute";
-            remarks.push(format!("the lamps have {lamp_flux} lm each; {taken}"));
-        }
-        LampFlux::Absolute
-    };
-    let intensities = Intensities::new(symmetry, planes_deg, angles_deg, candela)?;
-    let opening = opening([width, length, height], &mut remarks);
-    Ok(ReadLuminaire::new(Luminaire { texts, lamps, power_w, opening, intensities }, remarks))
+    LampFlux::Absolute
 }
 
 /// The symmetry that horizontal angles mean, and the planes without a repeated one at 360.
@@ -199,7 +216,7 @@ fn texts(lines: &[&str]) -> Vec<(String, String)> {
 /// Passes over the orientation of the lamp, and pairs of angles and factors.
 fn skip_tilt(numbers: &mut WordReader<'_>) -> Result<(), LuminaireError> {
     numbers.next("the geometry of the lamp")?;
-    let pairs = numbers.count("the number of tilts")?;
+    let pairs = numbers.count("the number of tilts", 1..=MAX_ANGLES)?;
     (0..2 * pairs).try_for_each(|_| numbers.next("a tilt or its factor").map(drop))
 }
 
@@ -236,55 +253,6 @@ impl<'t> WordReader<'t> {
         Self { words: Box::new(words), line: first }
     }
 
-    fn next(&mut self, what: &str) -> Result<f64, LuminaireError> {
-        let Some((line, word)) = self.words.next() else {
-            return Err(self.wrong(format!("the file ends before {what}")));
-        };
-        self.line = line;
-        let value: Option<f64> = word.parse().ok();
-        let value = value.filter(|value| value.is_finite());
-        value.ok_or_else(|| self.wrong(format!("expected {what}, found `{}`", shown(word))))
-    }
-
-    /// A number above 0: a factor of 0 makes a dark file.
-    fn positive(&mut self, what: &str) -> Result<f64, LuminaireError> {
-        let value = self.next(what)?;
-        if value > 0.0 {
-            return Ok(value);
-        }
-        Err(self.wrong(format!("{what} is {value}, expected a number above 0")))
-    }
-
-    fn within(&mut self, what: &str, range: RangeInclusive<f64>) -> Result<f64, LuminaireError> {
-        let value = self.next(what)?;
-        if range.contains(&value) {
-            return Ok(value);
-        }
-        let (least, most) = range.into_inner();
-        Err(self.wrong(format!("{what} is {value}, expected {least} to {most}")))
-    }
-
-    fn count(&mut self, what: &str) -> Result<usize, LuminaireError> {
-        let value = self.next(what)?;
-        let count = whole(value).and_then(|count| usize::try_from(count).ok());
-        let count = count.filter(|count| (1..=MAX_ANGLES).contains(count));
-        count.ok_or_else(|| self.wrong(format!("{what} is {value}, expected 1 to {MAX_ANGLES}")))
-    }
-
-    /// Angles that increase, deg.
-    fn increasing(&mut self, count: usize, what: &str) -> Result<Vec<f64>, LuminaireError> {
-        let mut angles: Vec<f64> = Vec::new();
-        for _ in 0..count {
-            let angle = self.within(what, -360.0..=360.0)?;
-            if let Some(before) = angles.last().filter(|before| **before >= angle) {
-                let problem = format!("{what} of {angle} follows {before}: they must increase");
-                return Err(self.wrong(problem));
-            }
-            angles.push(angle);
-        }
-        Ok(angles)
-    }
-
     fn end(&mut self, [planes, angles]: [usize; 2]) -> Result<(), LuminaireError> {
         match self.words.next() {
             None => Ok(()),
@@ -295,6 +263,18 @@ impl<'t> WordReader<'t> {
                 Err(violated(line, format!("{what} {counts}: {cause}")))
             }
         }
+    }
+}
+
+impl NumberReader for WordReader<'_> {
+    fn next(&mut self, what: &str) -> Result<f64, LuminaireError> {
+        let Some((line, word)) = self.words.next() else {
+            return Err(self.wrong(format!("the file ends before {what}")));
+        };
+        self.line = line;
+        let value: Option<f64> = word.parse().ok();
+        let value = value.filter(|value| value.is_finite());
+        value.ok_or_else(|| self.wrong(format!("expected {what}, found `{}`", shown(word))))
     }
 
     fn wrong(&self, problem: String) -> LuminaireError {

@@ -5,7 +5,10 @@
 //! the axis from C90 to C270.
 
 use crate::luminaire::data::{LampFlux, Luminaire, Opening, ReadLuminaire, known_power};
-use crate::luminaire::error::{LuminaireError, MAX_ANGLES, MOST_CANDELA, MOST_NODES, MOST_SIZE};
+use crate::luminaire::error::{
+    LuminaireError, MAX_ANGLES, MOST_FACTOR, MOST_LUMENS, MOST_NODES, MOST_SIZE,
+};
+use crate::luminaire::fields::NumberReader;
 use crate::luminaire::format::LuminaireFormat;
 use crate::luminaire::intensities::{Intensities, PlaneSymmetry};
 use crate::luminaire::text::{number, whole};
@@ -23,7 +26,7 @@ const DIRECT_RATIOS: usize = 10;
 /// Reads the text of a file.
 pub(crate) fn read(text: &str) -> Result<ReadLuminaire, LuminaireError> {
     let mut remarks = Vec::new();
-    let mut fields = Fields { lines: text.lines().collect(), next: 0 };
+    let mut fields = Fields { lines: text.lines().collect(), place: 0 };
     let mut texts = Vec::new();
     let mut keep = |keyword: &str, text: &str| {
         if !text.trim().is_empty() {
@@ -48,7 +51,7 @@ pub(crate) fn read(text: &str) -> Result<ReadLuminaire, LuminaireError> {
     let opening = opening(&mut fields, &mut remarks)?;
     fields.optional("the downward flux fraction")?;
     let stated_ratio = fields.optional("the light output ratio")? / 100.0;
-    let conversion = fields.positive("the conversion factor")?;
+    let conversion = fields.positive("the conversion factor", MOST_FACTOR)?;
     if fields.optional("the tilt during measurement")? != 0.0 {
         remarks.push("the tilt during measurement is left out".to_owned());
     }
@@ -56,25 +59,12 @@ pub(crate) fn read(text: &str) -> Result<ReadLuminaire, LuminaireError> {
     if sets > 1 {
         remarks.push(format!("of {sets} sets of lamps the first is used"));
     }
-    let (lamps, flux_lm, power_w) = (0..sets)
-        .try_fold(None, |first, _| {
-            let count = fields.number("the number of lamps")?;
-            keep(
-                "LAMP",
-                fields
-                    .text("the type of lamps")
-                    .map(|text| if first.is_none() { text } else { "" })?,
-            );
-            let flux = fields.positive("the flux of the lamps")?;
-            fields.text("the colour temperature")?;
-            fields.text("the colour rendering")?;
-            let power = fields.optional("the power")?;
-            Ok::<_, LuminaireError>(first.or(Some((count, flux, power))))
-        })?
-        .expect("there is a set");
+    let LampSet { count, kind, flux_lm, power_w } = fields.lamp_set()?;
+    (1..sets).try_for_each(|_| fields.lamp_set().map(drop))?;
+    keep("LAMP", kind);
     (0..DIRECT_RATIOS).try_for_each(|_| fields.optional("a direct ratio").map(drop))?;
-    let all_deg = fields.increasing(planes, "a C plane")?;
-    let angles_deg = fields.increasing(angles, "an angle")?;
+    let all_deg = fields.angles(planes, "a C plane")?;
+    let angles_deg = fields.angles(angles, "an angle")?;
     remark_on_steps("planes", (plane_step, &all_deg), &mut remarks);
     remark_on_steps("angles", (angle_step, &angles_deg), &mut remarks);
     let power_w = known_power(power_w, &mut remarks);
@@ -95,11 +85,11 @@ pub(crate) fn read(text: &str) -> Result<ReadLuminaire, LuminaireError> {
     let planes_deg = by_plane.iter().map(|(plane, _)| *plane).collect();
     let candela = by_plane.into_iter().flat_map(|(_, values)| values).collect();
     let intensities = Intensities::new(symmetry, planes_deg, angles_deg, candela)?;
-    let lamps = match whole(lamps) {
+    let lamps = match whole(count) {
         Some(count) if count < 0 => LampFlux::Absolute,
         Some(count) if count > 0 => LampFlux::Relative { count: count as u32, flux_lm },
         Some(_) | None => {
-            remarks.push(format!("the number of lamps is {lamps}; it is taken as 1"));
+            remarks.push(format!("the number of lamps is {count}; it is taken as 1"));
             LampFlux::Relative { count: 1, flux_lm }
         }
     };
@@ -126,8 +116,7 @@ fn opening(fields: &mut Fields<'_>, remarks: &mut Vec<String>) -> Result<Opening
     for size in &mut sizes {
         *size = fields.optional("a size of the luminous area")?;
         if !(0.0..=MOST_SIZE).contains(size) {
-            let problem = format!("a size of the luminous area is {size} mm");
-            return Err(fields.wrong(problem));
+            return Err(fields.wrong(format!("a size of the luminous area is {size} mm")));
         }
     }
     let [length, width, heights @ ..] = sizes;
@@ -171,98 +160,71 @@ fn half(all: &[f64], first: usize, steps: usize) -> Vec<f64> {
     (first..=first + steps).map(|place| all[place % all.len()]).collect()
 }
 
+/// A set of lamps: negative numbers of them say that the photometry is absolute.
+struct LampSet<'t> {
+    count: f64,
+    kind: &'t str,
+    flux_lm: f64,
+    power_w: f64,
+}
+
 /// The lines of a file, one field after the other.
 struct Fields<'t> {
     lines: Vec<&'t str>,
-    next: usize,
+    place: usize,
 }
 
 impl<'t> Fields<'t> {
     fn text(&mut self, what: &str) -> Result<&'t str, LuminaireError> {
-        let line = self.lines.get(self.next).copied();
-        self.next += 1;
+        let line = self.lines.get(self.place).copied();
+        self.place += 1;
         line.ok_or_else(|| self.wrong(format!("the file ends before {what}")))
-    }
-
-    fn number(&mut self, what: &str) -> Result<f64, LuminaireError> {
-        let text = self.text(what)?;
-        number(text).ok_or_else(|| {
-            self.wrong(format!("expected {what}, found `{}`", shorten(text.trim(), 30)))
-        })
     }
 
     /// A number that may be left out, as 0.
     fn optional(&mut self, what: &str) -> Result<f64, LuminaireError> {
-        let is_empty = self.lines.get(self.next).is_some_and(|line| line.trim().is_empty());
-        self.next += usize::from(is_empty);
-        if is_empty { Ok(0.0) } else { self.number(what) }
+        let is_empty = self.lines.get(self.place).is_some_and(|line| line.trim().is_empty());
+        self.place += usize::from(is_empty);
+        if is_empty { Ok(0.0) } else { self.next(what) }
     }
 
-    fn positive(&mut self, what: &str) -> Result<f64, LuminaireError> {
-        let value = self.number(what)?;
-        if value > 0.0 && value <= MOST_CANDELA {
-            return Ok(value);
-        }
-        Err(self.wrong(format!("{what} is {value}, expected a number above 0")))
-    }
-
-    fn count(
-        &mut self,
-        what: &str,
-        range: std::ops::RangeInclusive<usize>,
-    ) -> Result<usize, LuminaireError> {
-        let value = self.number(what)?;
-        let count = whole(value).and_then(|count| usize::try_from(count).ok());
-        let [least, most] = [range.start(), range.end()];
-        let wrong = || self.wrong(format!("{what} is {value}, expected {least} to {most}"));
-        count.filter(|count| range.contains(count)).ok_or_else(wrong)
-    }
-
-    /// Angles that increase, deg.
-    fn increasing(&mut self, count: usize, what: &str) -> Result<Vec<f64>, LuminaireError> {
-        let mut angles: Vec<f64> = Vec::new();
-        for _ in 0..count {
-            let angle = self.number(what)?;
-            if let Some(before) = angles.last().filter(|before| **before >= angle) {
-                let problem = format!("{what} of {angle} follows {before}: they must increase");
-                return Err(self.wrong(problem));
-            }
-            angles.push(angle);
-        }
-        Ok(angles)
-    }
-
-    /// Intensities of a plane, cd per 1000 lm.
-    fn intensities(&mut self, count: usize) -> Result<Vec<f64>, LuminaireError> {
-        let mut values = Vec::new();
-        for _ in 0..count {
-            let value = self.number("an intensity")?;
-            if value < 0.0 {
-                return Err(self.wrong(format!("an intensity is {value}, expected 0 or more")));
-            }
-            values.push(value);
-        }
-        Ok(values)
+    /// A set of lamps; its colour is left out.
+    fn lamp_set(&mut self) -> Result<LampSet<'t>, LuminaireError> {
+        let count = self.next("the number of lamps")?;
+        let kind = self.text("the type of lamps")?;
+        let flux_lm = self.positive("the flux of the lamps", MOST_LUMENS)?;
+        self.text("the colour temperature")?;
+        self.text("the colour rendering")?;
+        let power_w = self.optional("the power")?;
+        Ok(LampSet { count, kind, flux_lm, power_w })
     }
 
     /// Only blank lines may follow.
     fn end(&mut self) -> Result<(), LuminaireError> {
         let is_rest = |line: &str| !line.trim_matches(['\u{1a}', ' ', '\t', '\0']).is_empty();
-        let rest = self.lines.get(self.next..).unwrap_or_default();
+        let rest = self.lines.get(self.place..).unwrap_or_default();
         match rest.iter().position(|line| is_rest(line)) {
             None => Ok(()),
             Some(place) => {
-                self.next += place + 1;
-                let found = shorten(self.lines[self.next - 1].trim(), 30);
+                self.place += place + 1;
+                let found = shorten(self.lines[self.place - 1].trim(), 30);
                 Err(self.wrong(format!("`{found}` follows the last intensity")))
             }
         }
+    }
+}
+
+impl NumberReader for Fields<'_> {
+    fn next(&mut self, what: &str) -> Result<f64, LuminaireError> {
+        let text = self.text(what)?;
+        let found = || format!("expected {what}, found `{}`", shorten(text.trim(), 30));
+        number(text).ok_or_else(|| self.wrong(found()))
     }
 
     fn wrong(&self, problem: String) -> LuminaireError {
         LuminaireError::Violated {
             format: LuminaireFormat::Ldt,
-            line: self.next.min(self.lines.len()).max(1),
+            line: self.place.min(self.lines.len()).max(1),
             problem,
         }
     }

@@ -6,6 +6,7 @@
 
 mod data;
 mod error;
+mod fields;
 mod format;
 mod from_ies;
 mod from_ldt;

@@ -5,7 +5,7 @@ use crate::scene::source::measured::MeasuredEmission;
 use crate::scene::source::sky::{EmitterKind, Sky};
 use glam::DVec3;
 use lumiduct_base::math::{
-    Frame, cone_direction, cosine_hemisphere, cosine_power_hemisphere, projected_cap,
+    Frame, cone_direction, cosine_hemisphere, cosine_power_hemisphere, disk, projected_cap,
     uniform_sphere,
 };
 use std::f64::consts::{PI, TAU};
@@ -92,7 +92,27 @@ impl Emission {
         Some(density)
     }
 
-    /// The same for a line along z: Lambertian light is proportional to the sine of the angle to the line.
+    /// The same as [`Emission::sample`] for a line along z.
+    pub(crate) fn sample_of_line(&self, sampler: &mut Sampler<impl Numbers>) -> DVec3 {
+        match self {
+            // A coordinate of a uniform point of the disk has density ∝ sqrt(1 - c²) = sin θ: Lambertian for a thin line.
+            Self::Lambertian => {
+                let u = sampler.pair(Dimension::EmitDirection);
+                let cos = disk(u).x;
+                let around = sampler.one(Dimension::EmitDirection) * TAU;
+                let sin = (1.0 - cos * cos).sqrt();
+                DVec3::new(sin * around.cos(), sin * around.sin(), cos)
+            }
+            Self::CosinePower(_)
+            | Self::Cone { .. }
+            | Self::Collimated { .. }
+            | Self::Isotropic
+            | Self::Sky(_)
+            | Self::Measured(_) => self.sample(EmitterKind::Point, sampler),
+        }
+    }
+
+    /// The same as [`Emission::density`] for a line along z: Lambertian light is proportional to the sine of the angle to the line.
     pub(crate) fn density_of_line(&self, dir: DVec3) -> Option<f64> {
         match self {
             Self::Lambertian => Some(dir.truncate().length() / (PI * PI)),
@@ -102,6 +122,44 @@ impl Emission {
             | Self::Isotropic
             | Self::Sky(_)
             | Self::Measured(_) => self.density(EmitterKind::Point, dir),
+        }
+    }
+
+    /// The one direction of a collimated beam, in the frame of the emitter, unit vector.
+    pub(crate) fn beam(&self) -> Option<DVec3> {
+        match self {
+            Self::Collimated { axis } => Some(*axis),
+            Self::Lambertian
+            | Self::CosinePower(_)
+            | Self::Cone { .. }
+            | Self::Isotropic
+            | Self::Sky(_)
+            | Self::Measured(_) => None,
+        }
+    }
+
+    /// Half-angle of the cone that has all of its light, rad; `None` where it may go everywhere.
+    pub(crate) fn half_angle(&self) -> Option<f64> {
+        match self {
+            Self::Cone { half_angle, .. } => Some(*half_angle),
+            Self::Collimated { .. } => Some(0.0),
+            Self::Lambertian
+            | Self::CosinePower(_)
+            | Self::Isotropic
+            | Self::Sky(_)
+            | Self::Measured(_) => None,
+        }
+    }
+
+    /// Projected solid angle of all directions to which a surface may emit, sr, whatever the distribution over them.
+    pub fn projected_extent(&self) -> f64 {
+        match self {
+            Self::Collimated { .. } => 0.0,
+            Self::Measured(own) => PI * own.widest().min(0.5 * PI).sin().powi(2),
+            Self::CosinePower(_) | Self::Isotropic => PI,
+            Self::Lambertian | Self::Cone { .. } | Self::Sky(_) => {
+                self.projected_solid_angle().unwrap_or(PI)
+            }
         }
     }
 

@@ -4,8 +4,7 @@ use crate::rng::{Dimension, Numbers, Sampler};
 use crate::scene::shape::Shape;
 use crate::scene::source::sky::EmitterKind;
 use crate::scene::{
-    Emission, EmitSide, Emitted, Emitter, Inside, Ray, Scene, SolidId, Source, StartSide,
-    StartSolids,
+    EmitSide, Emitted, Emitter, Inside, Ray, Scene, SolidId, Source, StartSide, StartSolids,
 };
 use glam::DVec3;
 use lumiduct_base::math::{Aabb, Frame, disk};
@@ -48,22 +47,7 @@ impl Source {
         sampler: &mut Sampler<impl Numbers>,
     ) -> Ray {
         let along = length * (sampler.one(Dimension::EmitPosition) - 0.5);
-        let local = match self.emission {
-            // A coordinate of a uniform point of the disk has density ∝ sqrt(1 - c²) = sin θ: Lambertian for a thin line.
-            Emission::Lambertian => {
-                let u = sampler.pair(Dimension::EmitDirection);
-                let cos = disk(u).x;
-                let around = sampler.one(Dimension::EmitDirection) * std::f64::consts::TAU;
-                let sin = (1.0 - cos * cos).sqrt();
-                DVec3::new(sin * around.cos(), sin * around.sin(), cos)
-            }
-            Emission::CosinePower(_)
-            | Emission::Cone { .. }
-            | Emission::Collimated { .. }
-            | Emission::Isotropic
-            | Emission::Sky(_)
-            | Emission::Measured(_) => self.emission.sample(EmitterKind::Point, sampler),
-        };
+        let local = self.emission.sample_of_line(sampler);
         Ray::new(frame.origin + along * frame.z, frame.to_world(local))
     }
 

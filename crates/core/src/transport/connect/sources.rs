@@ -253,16 +253,7 @@ fn target(id: SourceId, source: &Source) -> Option<SourceTarget<'_>> {
     }
     let bounds = source.emitter.bounds();
     let mut ball = (bounds.center(), 0.5 * bounds.diagonal());
-    let beam = match source.emission {
-        Emission::Collimated { axis } => Some(axis),
-        Emission::Lambertian
-        | Emission::CosinePower(_)
-        | Emission::Cone { .. }
-        | Emission::Isotropic
-        | Emission::Sky(_)
-        | Emission::Measured(_) => None,
-    };
-    let extent = match (&source.emitter, beam) {
+    let extent = match (&source.emitter, source.emission.beam()) {
         (Emitter::Point(frame), None) => EmitterExtent::Point(frame),
         (Emitter::Line { frame, length }, None) => EmitterExtent::Line(frame, *length),
         (Emitter::Surface { shapes, side, frame }, beam) => {

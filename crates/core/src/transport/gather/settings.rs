@@ -2,7 +2,7 @@
 //! pilot paths.
 
 use crate::plan::{GatherPlan, RunPlan, Schedule};
-use crate::scene::{Emission, Emitter, Scene, SensorId};
+use crate::scene::{Emitter, Scene, SensorId};
 use crate::transport::Window;
 use crate::transport::gather::sounding::{Reached, Sounded, sound};
 use crate::transport::stop::{Pace, StopSignal};
@@ -243,15 +243,7 @@ fn automatic_window(scene: &Scene, sounded: &Sounded) -> Window {
     let widths = seen_by_paths.map(|(source, distance)| {
         let radius = half_width(&source.emitter);
         let seen = if radius < FILLS * inradius { radius / distance } else { 0.5 * PI };
-        match source.emission {
-            Emission::Cone { half_angle, .. } => half_angle.min(seen),
-            Emission::Collimated { .. } => 0.0,
-            Emission::Lambertian
-            | Emission::CosinePower(_)
-            | Emission::Isotropic
-            | Emission::Sky(_)
-            | Emission::Measured(_) => seen,
-        }
+        source.emission.half_angle().map_or(seen, |own| own.min(seen))
     });
     let narrowest = widths.fold(PI, f64::min);
     let [least, most] = THETA_DEG.map(f64::to_radians);

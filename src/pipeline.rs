@@ -3,6 +3,7 @@
 mod check;
 mod checkpoint;
 mod compare;
+mod luminaire;
 mod output;
 mod parts;
 mod progress;
@@ -29,6 +30,7 @@ pub use tracing::{Traced, trace};
 pub(crate) use version::{BUILD, VERSION};
 
 use crate::pipeline::checkpoint::{CheckpointFile, Pause};
+use crate::pipeline::luminaire::{LuminaireFile, luminaires};
 use crate::pipeline::output::output_dir;
 use crate::pipeline::progress::gathering;
 use crate::pipeline::sense::expect_sense;
@@ -59,6 +61,9 @@ pub fn run_one(
     watch: &mut dyn FnMut(&Progress),
 ) -> Result<FinishedRun> {
     let job = prepare(scene, settings)?;
+    let luminaire = output.luminaire.as_ref();
+    let luminaire =
+        luminaire.map(|path| LuminaireFile::open(&job, path, output.existing)).transpose()?;
     let dir = output_dir(scene, output);
     let lock = FolderLock::take(&dir)?;
     let (mut checkpoints, checkpoint) = CheckpointFile::open(&dir, recipe(&job), output)?;
@@ -69,13 +74,16 @@ pub fn run_one(
     let mut save = |pause: &Pause<'_>| checkpoints.save(pause);
     let traced = trace_from(&job, checkpoint, &mut save, interrupt, watch)?;
     interrupt.begin(Activity::Computing);
-    let report = compose(&job, &traced.findings, traced.stop);
+    let report = compose(&job, &traced.findings, traced.stop)?;
     let files = report::files(&report, &job.text)?;
     interrupt.begin(Activity::Writing);
     let written = folder.write(&files)?;
     timing::write(&folder, &traced)?;
     if traced.stop != Stop::Interrupted {
         checkpoints.remove()?;
+    }
+    if let Some(file) = luminaire {
+        file.write(&job, &report)?;
     }
     Ok(FinishedRun {
         report,
@@ -124,7 +132,11 @@ fn repeatable(job: &Job) -> Option<Recipe> {
 }
 
 /// The report of what was counted.
-pub fn compose(job: &Job, findings: &Findings, stop: Stop) -> Report {
+///
+/// # Errors
+///
+/// `Error::Output` if what a goniometer has counted makes no luminaire.
+pub fn compose(job: &Job, findings: &Findings, stop: Stop) -> Result<Report> {
     let measures = measure::measure(&job.scene, findings);
     let checks = job
         .checks
@@ -152,7 +164,9 @@ pub fn compose(job: &Job, findings: &Findings, stop: Stop) -> Report {
         );
     }
     let target = job.run.stop.target.as_ref().map(|target| TargetFacts::new(target, &measures));
-    Report {
+    let luminaires = luminaires(job, &measures)?;
+    warnings.extend(luminaires.iter().flat_map(|found| found.remarks.iter().cloned()));
+    Ok(Report {
         scene: SceneFacts {
             name: job.name.clone(),
             title: job.title.clone(),
@@ -178,10 +192,11 @@ pub fn compose(job: &Job, findings: &Findings, stop: Stop) -> Report {
         },
         measures,
         checks,
+        luminaires,
         warnings,
         drawing: report::drawing(&job.scene, &shown_tracks(job, REPORT_PATHS)),
         inventory: inventory_of(job),
-    }
+    })
 }
 
 /// What is in the scene of a job.

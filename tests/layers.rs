@@ -30,7 +30,7 @@ const MAY_USE: [(&str, &[&str]); 8] = [
     ("crates/core", &["base"]),
     ("crates/baselines", &["base", "core"]),
     ("crates/input", &["base", "core", "files"]),
-    ("crates/report", &["base", "core", "input"]),
+    ("crates/report", &["base", "core", "files", "input"]),
     ("xtask", &["input"]),
     (".", &["base", "baselines", "core", "files", "input", "report"]),
 ];

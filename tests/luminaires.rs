@@ -1,4 +1,4 @@
-//! Luminaires from files as sources.
+//! Luminaires from files as sources, and as files of goniometers.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking, and so do its helpers")]
 
@@ -7,7 +7,9 @@ mod traced;
 use lumiduct_base::error::DiagnosticKind;
 use lumiduct_core::measure::Measures;
 use lumiduct_core::plan::Request;
+use lumiduct_files::luminaire::{LampFlux, LuminaireFormat};
 use lumiduct_input::{self as input, Job, Settings};
+use lumiduct_report::{LuminaireOrigin, MeasuredLuminaire};
 
 /// A lamp whose light goes up, too: 10 cd down, 5 cd to the sides and 1 cd up, with an opening.
 const UPWARD: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/bad_input/luminaires/upward.ies");
@@ -36,7 +38,7 @@ fn a_goniometer_reads_the_intensities_of_the_file() {
         let table = &measures.intensities[0];
         let mut checked = 0;
         for ((ring, sector), found) in table.values.indexed_iter() {
-            // The mean of the intensities over the solid angle of the cell; C90 of the file is toward -y.
+            // The mean of the intensities over the solid angle of the cell.
             let steps = 40;
             let part = |n: usize, of: f64| (n as f64 + 0.5) * of / steps as f64;
             let (mut sum, mut weight) = (0.0, 0.0);
@@ -44,7 +46,7 @@ fn a_goniometer_reads_the_intensities_of_the_file() {
             {
                 let (c, g) = (30.0 * sector as f64 + c, 15.0 * ring as f64 + g);
                 let solid = g.to_radians().sin();
-                (sum, weight) = (sum + solid * file.intensities.at(360.0 - c, g), weight + solid);
+                (sum, weight) = (sum + solid * file.intensities.at(c, g), weight + solid);
             }
             let (expected, error) = (sum / weight, table.std_errors[(ring, sector)]);
             assert!(
@@ -111,4 +113,57 @@ fn a_scene_is_another_one_with_another_file_and_remarks_are_warnings() {
     assert_eq!(warnings.len(), 1, "{warnings:?}");
     assert_eq!(warnings[0].kind, DiagnosticKind::Warning);
     assert!(warnings[0].message.contains("beyond them the light is taken as 0"));
+}
+
+#[test]
+fn a_file_comes_back_from_source_and_goniometer_within_its_errors() {
+    let file = lumiduct_files::luminaire::read(SPOT.as_ref()).unwrap().luminaire.intensities;
+    let text = format!(
+        "[sources.lamp.luminaire]\nfile = {SPOT:?}\nextent = \"point\"\n[sensors.far]\n\
+         goniometer = {{ c_step_deg = 15, gamma_step_deg = 3.75 }}\n\
+         luminaire = {{ c_step_deg = 30, gamma_step_deg = 15, photometry = \"relative\", lamps = 2 }}\n"
+    );
+    let settings = Settings {
+        paths: Some(1_000_000),
+        estimator: Some(Request::Forward),
+        ..Settings::default()
+    };
+    let job = traced::load(&text, &settings);
+    let measures = traced::measures(&job);
+    let origin = LuminaireOrigin { title: "Spot", hash: "1", date: None, version: "0" };
+    let measured = MeasuredLuminaire::new(&job.exports[0], &measures, &origin).unwrap();
+    let table = &measured.luminaire.intensities;
+    assert!((table.flux() / measures.values["far.flux"].value - 1.0).abs() < 1e-9);
+    let (mut sum, mut count) = (0.0, 0);
+    for (plane, c) in table.planes_deg().iter().enumerate() {
+        for (angle, gamma) in table.angles_deg().iter().enumerate() {
+            let (found, expected) = (table.plane(plane)[angle], file.at(*c, *gamma));
+            let error = measured.std_errors[[plane, angle]];
+            // The file ends at 75 deg without light, and beyond there is none.
+            if *gamma > 75.0 {
+                assert_eq!((found, expected), (0.0, 0.0), "C {c}, gamma {gamma}");
+                continue;
+            }
+            let z = (found - expected) / error;
+            assert!(z.abs() < 4.5, "C {c}, gamma {gamma}: {found} {expected} {error}");
+            (sum, count) = (sum + z * z, count + 1);
+        }
+    }
+    // Cells are taken as independent, but directions of a bare point fill them so evenly that sums over cells are known better.
+    assert!((0.0..1.5).contains(&(sum / f64::from(count))), "{sum} of {count}");
+    // With relative photometry of two lamps, and with seven digits, it is read again.
+    let folder = tempfile::tempdir().unwrap();
+    for format in [LuminaireFormat::Ies, LuminaireFormat::Ldt] {
+        let written = measured.file(format);
+        let path = folder.path().join(&written.name);
+        std::fs::write(&path, &written.bytes).unwrap();
+        let again = lumiduct_files::luminaire::read(&path).unwrap();
+        assert!((again.luminaire.intensities.flux() / table.flux() - 1.0).abs() < 1e-6);
+        assert_eq!(again.luminaire.text("LUMINAIRE"), Some("Spot"));
+        let LampFlux::Relative { count, flux_lm } = again.luminaire.lamps else {
+            panic!("absolute")
+        };
+        assert_eq!(count, 2);
+        assert!((flux_lm / measures.source_flux - 1.0).abs() < 1e-6, "{flux_lm}");
+    }
 }

@@ -67,6 +67,10 @@ pub(super) struct RunArgs {
     /// Write a JUnit XML file with a test case for each check.
     #[arg(long, value_name = "FILE", conflicts_with = "shard")]
     junit: Option<PathBuf>,
+    /// Write what the goniometer measures as a luminaire file: .ies (LM-63-2002) or .ldt (EULUMDAT). The key `luminaire` of the
+    /// sensor has the details; without it, the table is the finest that the cells allow. An existing file needs --overwrite.
+    #[arg(long, value_name = "FILE", conflicts_with = "shard")]
+    ies: Option<PathBuf>,
     /// Print nothing but errors.
     #[arg(short, long)]
     quiet: bool,
@@ -141,7 +145,8 @@ pub(super) fn run(args: &RunArgs) -> ExitCode {
     }
     let start = if args.resume { RunStart::Resume } else { RunStart::Anew };
     let (dir, checkpoint_every) = (args.output.clone(), args.checkpoint);
-    let output = Output { dir, existing, checkpoint_every, start };
+    let luminaire = args.ies.clone();
+    let output = Output { dir, existing, checkpoint_every, start, luminaire };
     let mut display = Display::new(args.quiet);
     let outcome = pipeline::run_one(&args.scene, &settings, &output, &interrupt, &mut |progress| {
         display.show(progress);

@@ -15,12 +15,14 @@ pub struct Output {
     pub checkpoint_every: Option<Duration>,
     /// Whether to resume from an existing checkpoint.
     pub start: RunStart,
+    /// A luminaire file of the scene's goniometer, IES or EULUMDAT by its ending.
+    pub luminaire: Option<PathBuf>,
 }
 
 impl Output {
     /// A report in a folder, without checkpoints.
     pub fn new(dir: Option<PathBuf>, existing: Existing) -> Self {
-        Self { dir, existing, checkpoint_every: None, start: RunStart::Anew }
+        Self { dir, existing, checkpoint_every: None, start: RunStart::Anew, luminaire: None }
     }
 }
 

@@ -147,7 +147,7 @@ pub fn merge_slices(
     let mut run = Run::new(&job.scene, &job.run);
     let slices = parts.into_iter().map(|(_, part)| part.slice).collect();
     run.restore(run.state_of_slices(slices));
-    let report = compose(&job, &run.findings(), Stop::Paths);
+    let report = compose(&job, &run.findings(), Stop::Paths)?;
     let written = folder.write(&report::files(&report, &job.text)?)?;
     let dir = folder.path().to_path_buf();
     Ok(FinishedRun { report, written, stop: Stop::Paths, dir, warnings: job.warnings })

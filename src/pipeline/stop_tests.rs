@@ -140,7 +140,7 @@ fn passes_of_gathering_fit_into_a_short_time_and_their_command_repeats_them() {
     assert!(run.batches() >= 4, "{} passes", run.batches());
     let findings = run.findings();
 
-    let command = compose(&job, &findings, Stop::Time).run.repeat.unwrap();
+    let command = compose(&job, &findings, Stop::Time).unwrap().run.repeat.unwrap();
     let (_, settings) = findings.gathering().next().unwrap();
     let [photons, records] = [settings.photons, settings.gather_paths];
     assert!(command.contains(&format!("--records {records} --photons {photons}")), "{command}");
@@ -208,7 +208,7 @@ fn an_interrupted_run_of_automatic_passes_is_repeated_by_its_command() {
     for share in [0.5, 0.7, 0.9] {
         let check = (share * whole.checks() as f64) as u64;
         let Ok(traced) = on_threads(2, || stopped_at(check, &job)).0 else { continue };
-        let command = compose(&job, &traced.findings, traced.stop).run.repeat.unwrap();
+        let command = compose(&job, &traced.findings, traced.stop).unwrap().run.repeat.unwrap();
         let word = |flag: &str| {
             let value = command.split(flag).nth(1).and_then(|rest| rest.split_whitespace().next());
             value.unwrap().parse::<u64>().unwrap()
@@ -242,7 +242,7 @@ fn a_run_stopped_soon_after_a_stage_began_is_repeated_by_its_command() {
         let Some(stage) = few.filter(|stage| stage.counts.first().batch_count() < 16) else {
             continue;
         };
-        let command = compose(&job, &traced.findings, traced.stop).run.repeat.unwrap();
+        let command = compose(&job, &traced.findings, traced.stop).unwrap().run.repeat.unwrap();
         let own = ["run.batches", "run.planned_paths"].map(|key| {
             let word = command.split_whitespace().find(|word| word.starts_with(key));
             word.unwrap_or_else(|| panic!("no {key} in {command}")).to_owned()

@@ -204,7 +204,7 @@ fn trace_job(
     if traced.stop == Stop::Interrupted {
         return Ok(None);
     }
-    let report = pipeline::compose(&job, &traced.findings, traced.stop);
+    let report = pipeline::compose(&job, &traced.findings, traced.stop)?;
     match study.keep {
         Keep::Records => {}
         Keep::Reports => {

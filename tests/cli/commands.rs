@@ -54,6 +54,41 @@ fn luminaires_are_converted_and_described() {
 }
 
 #[test]
+fn a_run_writes_what_its_goniometer_measures_as_a_luminaire_file() {
+    let place = Place::new();
+    place.good("run rod.toml --ies out/lamp.ies -q");
+    let said = place.good("convert out/lamp.ies out/lamp.ldt");
+    assert!(said.contains("luminaire: Short rod"), "{said}");
+    assert!(said.contains("planes: 2 from 0° to 180°"), "{said}");
+    place.good("run rod.toml --ies out/lamp.ies --overwrite -q");
+    assert!(place.bad(2, "run rod.toml -o b --ies out/lamp.ies").contains("--overwrite"));
+    assert!(place.bad(2, "run rod.toml -o b --ies lamp.txt").contains(".ies or .ldt"));
+    assert!(!place.path("b").exists(), "nothing is written");
+    // The key has the details; light that goes up is remarked on.
+    let with = |keys: &str| {
+        let place = Place::new();
+        let text = SCENE.replace("gamma_step_deg = 10 }", &format!("gamma_step_deg = 10{keys}"));
+        fs::write(place.path("rod.toml"), text).unwrap();
+        place
+    };
+    let keys = " }, luminaire = { formats = [\"ldt\"], power_w = 2, opening = { disk = { radius_mm = 2 } } }";
+    let place = with(keys);
+    place.good("run rod.toml -q --ies lamp.ies");
+    let folder = place.path("reports/rod");
+    assert!(folder.join("far.ldt").exists() && !folder.join("far.ies").exists());
+    let page = fs::read_to_string(folder.join("report.md")).unwrap();
+    for words in ["far.ldt: ", "lm/W", "a disk of 4 mm", "leaves above 90 deg", "0° to 90°"] {
+        assert!(page.contains(words), "no {words} in {page}");
+    }
+    assert!(!page.contains("EN 12464-1"), "a flat opening cannot emit upward");
+    assert!(fs::read_to_string(place.path("lamp.ies")).unwrap().contains("1 1 2\r\n"));
+    let near = with(", radius_mm = 99 }");
+    assert!(near.bad(2, "run rod.toml --ies a.ies").contains("no goniometer in the far field"));
+    let two = Place::with("[sensors.near]\ngoniometer = {}\n");
+    assert!(two.bad(2, "run rod.toml --ies a.ies").contains("several goniometers"));
+}
+
+#[test]
 fn the_schema_is_json_with_a_title() {
     let schema: Value = serde_json::from_str(&Place::new().good("schema")).unwrap();
     assert!(!schema["title"].as_str().unwrap().is_empty());

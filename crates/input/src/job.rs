@@ -1,5 +1,6 @@
 //! From a scene file to a job: read, lowered, with the command-line settings applied.
 
+use crate::export::LuminaireExport;
 use crate::gather::{check_radius, check_use};
 use crate::keys::{Key, Places};
 use crate::lower::Lowered;
@@ -64,6 +65,8 @@ pub struct Job {
     pub run: RunPlan,
     /// The checks.
     pub checks: Vec<Check>,
+    /// Luminaire files that goniometers are to write.
+    pub exports: Vec<LuminaireExport>,
     /// The scene file, byte for byte.
     pub text: String,
     /// The places of its keys in the files.
@@ -95,7 +98,7 @@ pub fn load(path: &Path, settings: &Settings) -> Result<Job> {
     let project = project(&spec, &places, &mut problems);
     let warnings = problems.finish(&places)?;
     // If there is no error there is a scene.
-    let Some(Lowered { scene, mut run, checks, meshes }) = lowered else {
+    let Some(Lowered { scene, mut run, checks, meshes, exports }) = lowered else {
         return Err(Error::Input(warnings));
     };
     let mut hash = Digest::default();
@@ -112,6 +115,7 @@ pub fn load(path: &Path, settings: &Settings) -> Result<Job> {
         scene,
         run,
         checks,
+        exports,
         text,
         places,
         overrides: settings.overrides.clone(),

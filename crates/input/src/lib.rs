@@ -48,6 +48,7 @@ use serde_json::Value as Json;
 pub(crate) mod convert;
 pub mod diagnostic;
 pub mod editor_schema;
+mod export;
 mod gather;
 pub(crate) mod include;
 mod job;
@@ -65,6 +66,7 @@ pub(crate) mod texts;
 pub(crate) mod tree;
 pub mod validate;
 
+pub use export::LuminaireExport;
 pub use job::{Job, Settings, load};
 pub use list::list;
 pub use outline::Outline;

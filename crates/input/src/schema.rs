@@ -340,6 +340,7 @@ mod tests {
             "priority",
             "cells",
             "pixels",
+            "lamps",
             "rings",
             "sectors",
             "cosine_power",

@@ -16,7 +16,7 @@ use crate::words::{
     evenness_head, evenness_rows, is_silent, lost_paths, measure_cells, outcome_word, quantity,
     run_lines, variation,
 };
-use crate::{Report, by_sun, record};
+use crate::{Report, by_sun, luminaire, record};
 use lumiduct_base::number::format_value;
 use lumiduct_core::measure::{CheckOutcome, Measure, SensorMap, SensorPaths, Status};
 use lumiduct_core::plan::Estimator;
@@ -138,6 +138,7 @@ fn sensor(report: &Report, name: &str, plots: &mut Plots) -> PagePart {
             blocks.push(plots.add(label, data::map(&directions_map(intensity)), None));
         }
     }
+    blocks.extend(luminaire::page::blocks(&report.luminaires, name));
     if let Some(found) = by_sun::by_sun(report, name) {
         let picture = Some(format!("{name}.transmission.png"));
         let chart = data::chart(&found.plot, "1");

@@ -47,7 +47,7 @@ pub(crate) fn local_axes(scene: &Scene) -> Vec<LocalAxes> {
             role: Role::Sensor,
             origin: goniometer.frame.origin + scene.origin,
             u: goniometer.frame.x,
-            v: goniometer.frame.y,
+            v: -goniometer.frame.y,
             normal: goniometer.frame.z,
             rect: None,
         }),

@@ -29,7 +29,7 @@ pub fn least_squares(inputs: &[Vec<f64>], values: &[f64]) -> Option<LeastSquares
         })
         .collect();
     let scale = rows.iter().enumerate().map(|(i, row)| row[i]).fold(0.0, f64::max);
-    eliminate(&mut rows, SINGULAR * scale)?;
+    solve_rows(&mut rows, SINGULAR * scale)?;
     let coefficients: Vec<f64> = rows.iter().map(|row| row[unknowns]).collect();
     let left_over: f64 = (0..count)
         .map(|place| {
@@ -51,8 +51,9 @@ pub fn least_squares(inputs: &[Vec<f64>], values: &[f64]) -> Option<LeastSquares
 /// A pivot below this share of the largest counts as zero, 1.
 const SINGULAR: f64 = 1e-12;
 
-/// Gauss-Jordan elimination with pivots from the rows below; `None` where there is none above `least`.
-fn eliminate(rows: &mut [Vec<f64>], least: f64) -> Option<()> {
+/// Solves linear equations by Gauss-Jordan elimination with pivots from the rows below: rows begin with those of a square
+/// matrix, and what follows becomes the solutions, one for each further column. `None` where no pivot is above `least`.
+pub fn solve_rows(rows: &mut [Vec<f64>], least: f64) -> Option<()> {
     for step in 0..rows.len() {
         let best = (step..rows.len())
             .max_by(|&a, &b| rows[a][step].abs().total_cmp(&rows[b][step].abs()))?;

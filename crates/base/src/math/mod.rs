@@ -14,7 +14,7 @@ mod sampling;
 pub use aabb::Aabb;
 pub use cap::projected_cap;
 pub use frame::Frame;
-pub use least_squares::least_squares;
+pub use least_squares::{least_squares, solve_rows};
 pub use polynomial::{Root, SignChange, cubic, quartic};
 pub use ring::linear_over_ring;
 pub use roots::{bracketed_root, convex_roots, quadratic};

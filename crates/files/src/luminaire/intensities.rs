@@ -51,7 +51,7 @@ impl PlaneSymmetry {
     }
 
     /// The plane within its range that equals a plane from 0° to 360°, deg.
-    fn folded(self, plane: f64) -> f64 {
+    pub(crate) fn folded(self, plane: f64) -> f64 {
         match self {
             Self::Rotational => 0.0,
             Self::Quadrants => {

@@ -7,6 +7,7 @@
 mod data;
 mod error;
 mod fields;
+mod fit;
 mod format;
 mod from_ies;
 mod from_ldt;
@@ -17,8 +18,10 @@ mod to_ldt;
 
 pub use data::{LampFlux, Luminaire, Opening, ReadLuminaire, WrittenLuminaire};
 pub use error::{LuminaireError, MAX_ANGLES, MAX_LUMINAIRE_BYTES};
+pub use fit::{CellMeans, FittedIntensities, TableLayout, fit};
 pub use format::LuminaireFormat;
 pub use intensities::{Intensities, PlaneSymmetry};
+pub use text::is_keyword;
 
 use crate::bytes::read_file;
 use crate::luminaire::text::decoded;

@@ -66,6 +66,19 @@ pub(crate) fn with_digits(value: f64, digits: i32) -> String {
     }
 }
 
+/// Most letters of a keyword of LM-63 (LM-63-2002, 5.2).
+pub(crate) const KEYWORD: usize = 18;
+
+/// Whether a user may give a text with this keyword of LM-63: capital letters, digits, - and _, and none with a meaning of its own.
+pub fn is_keyword(word: &str) -> bool {
+    let is_letter = |letter: char| {
+        letter.is_ascii_uppercase() || letter.is_ascii_digit() || "-_".contains(letter)
+    };
+    (1..=KEYWORD).contains(&word.len())
+        && word.chars().all(is_letter)
+        && !["MORE", "TILT", "BLOCK", "ENDBLOCK"].contains(&word)
+}
+
 /// A text on one line of at most this many letters.
 pub(crate) fn one_line(text: &str, longest: usize) -> String {
     let flat: String =

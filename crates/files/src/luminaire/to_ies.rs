@@ -2,15 +2,14 @@
 
 use crate::luminaire::data::{LampFlux, Luminaire, WrittenLuminaire};
 use crate::luminaire::intensities::PlaneSymmetry;
-use crate::luminaire::text::{one_line, seven_digits};
+use crate::luminaire::text::{KEYWORD, one_line, seven_digits};
 use std::fmt::Write;
 
 /// Keywords that every file must have (LM-63-2002, 5.3).
 const REQUIRED: [&str; 4] = ["TEST", "TESTLAB", "ISSUEDATE", "MANUFAC"];
 /// Most letters of a line.
 const LINE: usize = 120;
-/// Most letters of a keyword, and of the text after it: a line has up to 256 (LM-63-2002, 5.1).
-const KEYWORD: usize = 18;
+/// Most letters of the text after a keyword: a line has up to 256 (LM-63-2002, 5.1).
 const TEXT: usize = 220;
 
 /// The file.

@@ -1,6 +1,7 @@
 //! The state that the files of `lower` share: the spec of the scene file, the scene built so far, the names
 //! in both, and whether geometry is to be made. This module does not know how anything is lowered.
 
+use crate::export::LuminaireExport;
 use crate::keys::{Key, Places};
 use crate::lower::weathers::Member;
 use crate::problems::{Problems, face_hint, name_hint};
@@ -40,6 +41,8 @@ pub(super) struct Context<'a> {
     pub(super) faces: IndexMap<String, Vec<FaceId>>,
     /// All sources, by what determines their light group.
     pub(super) members: Vec<Member>,
+    /// Luminaire files that goniometers are to write.
+    pub(super) exports: Vec<LuminaireExport>,
 }
 
 impl<'a> Context<'a> {
@@ -63,6 +66,7 @@ impl<'a> Context<'a> {
             behind: IndexMap::new(),
             faces: IndexMap::new(),
             members: Vec::new(),
+            exports: Vec::new(),
         }
     }
 

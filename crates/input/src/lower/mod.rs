@@ -16,6 +16,7 @@ mod flux;
 mod haze;
 mod lenses;
 mod light_groups;
+mod luminaire_exports;
 mod luminaires;
 mod media;
 mod meshes;
@@ -36,6 +37,7 @@ mod surfaces;
 mod tubes;
 mod weathers;
 
+use crate::export::LuminaireExport;
 use crate::keys::Places;
 use crate::lower::context::{Context, Scope};
 use crate::problems::Problems;
@@ -53,6 +55,8 @@ pub(crate) struct Lowered {
     pub(crate) checks: Vec<Check>,
     /// Identifies the contents of the mesh files.
     pub(crate) meshes: Digest,
+    /// Luminaire files that goniometers are to write.
+    pub(crate) exports: Vec<LuminaireExport>,
 }
 
 /// Checks and lowers the spec of a file. `None` if anything is wrong, or if no scene is wanted.
@@ -78,7 +82,7 @@ pub(crate) fn lower(
     context.lower_light_groups();
     context.lower_sensors();
     context.check_measures();
-    let Context { builder, faces, meshes, problems, .. } = context;
+    let Context { builder, faces, meshes, exports, problems, .. } = context;
     plan::checks(&spec.check, problems);
     if scope == Scope::Keys || !problems.is_free_of_errors() {
         return None;
@@ -92,5 +96,6 @@ pub(crate) fn lower(
     consistency::check_open_faces(spec, &scene, problems);
     contacts::check_contacts(spec, &scene, problems);
     slips::check_slips(spec, &scene, problems);
-    problems.is_free_of_errors().then(|| Lowered { scene, run, checks: spec.check.clone(), meshes })
+    let checks = spec.check.clone();
+    problems.is_free_of_errors().then_some(Lowered { scene, run, checks, meshes, exports })
 }

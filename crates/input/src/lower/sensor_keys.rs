@@ -2,7 +2,8 @@
 
 use crate::keys::Key;
 use crate::lower::context::Context;
-use crate::spec::sensor::{AreaSpec, PassageSpec, PlaneSpec, SensorKindSpec, SensorSpec};
+use crate::spec::sensor::{PassageSpec, PlaneSpec, SensorKindSpec, SensorSpec};
+use crate::spec::sweep::AreaSpec;
 use lumiduct_core::scene::shape::Region;
 
 /// Most cells of a sensor.

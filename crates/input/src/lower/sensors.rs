@@ -48,6 +48,11 @@ impl Context<'_> {
                 self.goniometer(spec, goniometer, key).map(SensorKind::Goniometer)
             }
         };
+        let goniometer = match &made {
+            Some(SensorKind::Goniometer(goniometer)) => Some(goniometer),
+            Some(SensorKind::Surface(_)) | None => None,
+        };
+        self.lower_luminaire_export(name, spec, goniometer, key);
         let aim = self.aim(spec, key);
         let entering = spec.entering.as_ref();
         let entering = entering.and_then(|face| self.faces_named(face, &key.field("entering")));

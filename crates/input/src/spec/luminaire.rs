@@ -5,6 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::spec::daylight::enabled;
 use crate::spec::placement::{ContactSpec, PlacementSpec};
+use crate::spec::sweep::AreaSpec;
+use indexmap::IndexMap;
 
 /// A luminaire from a file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -38,4 +40,80 @@ pub enum LuminaireExtent {
     Opening,
     /// At its middle.
     Point,
+}
+
+/// Luminaire files of what a goniometer in the far field measures, for lighting programs: a table of luminous intensities whose
+/// interpolation fits the cells best. The polar axis is the nadir; C0 is along the local +x, C90 along the local -y.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct LuminaireExportSpec {
+    /// The files: `SENSOR.ies` in IES LM-63-2002, `SENSOR.ldt` in EULUMDAT.
+    #[serde(default = "all_formats")]
+    #[schemars(length(min = 1))]
+    pub formats: Vec<ExportFormat>,
+    /// Step of γ in the table; it divides 180 and has two or more cells of the goniometer. Omitted: the smallest such step.
+    #[schemars(extend("exclusiveMinimum" = 0.0), range(max = 180.0))]
+    pub gamma_step_deg: Option<f64>,
+    /// Step of C in the table, likewise of 360. Not used under rotational symmetry.
+    #[schemars(extend("exclusiveMinimum" = 0.0), range(max = 360.0))]
+    pub c_step_deg: Option<f64>,
+    /// The symmetry of the luminaire. Planes that it takes as equal are averaged, and the files list them once. Omitted: `none`;
+    /// `rotational` for a goniometer without sectors.
+    pub symmetry: Option<ExportSymmetry>,
+    /// What intensities refer to: with `relative`, to lamps with the flux of all sources.
+    #[serde(default)]
+    pub photometry: ExportPhotometry,
+    /// Number of lamps. Only for relative photometry. Omitted: 1.
+    #[schemars(range(min = 1, max = 10_000))]
+    pub lamps: Option<u32>,
+    /// The luminous opening: its width along the local x (C0 to C180), its height along the local y (C90 to C270). Omitted: a
+    /// point.
+    pub opening: Option<AreaSpec>,
+    /// Input power in W. Omitted: not known.
+    #[schemars(range(min = 0.0))]
+    pub power_w: Option<f64>,
+    /// Texts by their keyword in LM-63, such as `MANUFAC`, `LUMCAT`, `LUMINAIRE`, `LAMP`, `ISSUEDATE`. Omitted ones: `LUMINAIRE` is the
+    /// title of the scene, `TEST` has its hash.
+    #[serde(default)]
+    pub texts: IndexMap<String, String>,
+}
+
+/// A format of a luminaire file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ExportFormat {
+    /// IES LM-63-2002.
+    Ies,
+    /// EULUMDAT.
+    Ldt,
+}
+
+/// The symmetry of a luminaire.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ExportSymmetry {
+    /// None: planes over the whole circle.
+    None,
+    /// About the axis.
+    Rotational,
+    /// About the planes C0-C180 and C90-C270.
+    Quadrants,
+    /// About the plane C0-C180.
+    AboutC0,
+    /// About the plane C90-C270.
+    AboutC90,
+}
+
+/// What luminous intensities refer to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ExportPhotometry {
+    /// The luminaire itself, as is usual for LEDs.
+    #[default]
+    Absolute,
+    /// Its lamps.
+    Relative,
+}
+
+fn all_formats() -> Vec<ExportFormat> {
+    vec![ExportFormat::Ies, ExportFormat::Ldt]
 }

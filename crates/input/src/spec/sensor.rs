@@ -4,8 +4,9 @@ use lumiduct_core::plan::Estimator;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::spec::luminaire::LuminaireExportSpec;
 use crate::spec::placement::PlacementSpec;
-use crate::spec::sweep::{CircleSpec, RectangleSpec};
+use crate::spec::sweep::AreaSpec;
 
 /// A sensor; exactly one of `plane`, `goniometer`, `luminance` and `image`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -48,6 +49,8 @@ pub struct SensorSpec {
     pub passage: PassageSpec,
     /// The port, as `NAME.FACE`, whose entering flux is the reference for `transmission`.
     pub entering: Option<String>,
+    /// Luminaire files to write from what the sensor measures. Only for a `goniometer` in the far field.
+    pub luminaire: Option<LuminaireExportSpec>,
 }
 
 /// The kind of a sensor, with its keys.
@@ -84,15 +87,6 @@ impl SensorSpec {
         let image = self.image.as_ref().map(SensorKindSpec::Image);
         plane.or(goniometer).or(luminance).or(image)
     }
-}
-
-/// The area of a sensor that is not `on` a face.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct AreaSpec {
-    /// A rectangular area about the position.
-    pub rectangle: Option<RectangleSpec>,
-    /// A round area about the position.
-    pub disk: Option<CircleSpec>,
 }
 
 /// A grid of cells over a flat area or a face: `cells`, or `rings` and `sectors`; one cell without them. A `rectangle` or

@@ -46,6 +46,15 @@ pub struct RectangleSpec {
     pub height_mm: f64,
 }
 
+/// A flat area about a position: of a sensor that is not `on` a face, or of a luminous opening.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct AreaSpec {
+    /// A rectangular area about the position.
+    pub rectangle: Option<RectangleSpec>,
+    /// A round area about the position.
+    pub disk: Option<CircleSpec>,
+}
+
 /// A regular polygon about the axis; exactly one of `radius_mm` and `across_flats_mm`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(extend("oneOf" = [{ "required": ["radius_mm"] }, { "required": ["across_flats_mm"] }]))]

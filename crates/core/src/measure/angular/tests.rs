@@ -3,6 +3,7 @@ use crate::measure::samples::{goniometer, readings, scene};
 use crate::measure::{Status, measure};
 use crate::scene::{Scene, SensorKind};
 use crate::transport::Findings;
+use glam::DVec3;
 use std::f64::consts::PI;
 
 /// Readings without noise of an intensity I(C, γ) [cd], exact over each cell for intensities ∝ cos^m γ.
@@ -86,4 +87,13 @@ fn zones_that_do_not_fit_the_rings_are_left_out() {
     assert!(measures.values.keys().all(|name| !name.contains("zonal_flux")));
     // Three sectors are too few to separate planes.
     assert!(measures.values.keys().all(|name| !name.ends_with(".c0")));
+}
+
+#[test]
+fn c_is_counted_as_in_luminaire_files() {
+    // Counter-clockwise for an eye that looks along the pole, +z: from +x over -y.
+    let SensorKind::Goniometer(sphere) = goniometer(8, 2) else { panic!("no sphere") };
+    for (x, y, sector) in [(1.0, -0.1, 0), (0.1, -1.0, 1), (-0.1, -1.0, 2), (0.1, 1.0, 6)] {
+        assert_eq!(sphere.cell(DVec3::new(x, y, 0.1)), sector, "{x} {y}");
+    }
 }

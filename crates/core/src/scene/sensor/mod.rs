@@ -213,7 +213,8 @@ impl Views {
     }
 }
 
-/// A goniometric sphere of type C: γ from the pole (+z of the frame), C about it from +x.
+/// A goniometric sphere of type C (CIE 121:1996): γ from the pole (+z of the frame), C about it from +x over -y, counter-clockwise
+/// for an eye that looks along the pole, the nadir of a luminaire.
 #[derive(Debug, Clone)]
 pub struct Goniometer {
     /// Centre, pole (+z) and C0 (+x).
@@ -249,7 +250,7 @@ impl Goniometer {
         if self.c_cells == 1 {
             return 0;
         }
-        let c = local.y.atan2(local.x).rem_euclid(TAU);
+        let c = (-local.y).atan2(local.x).rem_euclid(TAU);
         ((c / TAU * self.c_cells as f64) as usize).min(self.c_cells - 1)
     }
 

@@ -1,0 +1,39 @@
+//! Files that sensors are to write.
+
+use lumiduct_core::scene::Goniometer;
+use lumiduct_files::luminaire::{LuminaireFormat, Opening, TableLayout};
+
+/// Luminaire files to write from a goniometer.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LuminaireExport {
+    /// Name of the sensor.
+    pub sensor: String,
+    /// The formats.
+    pub formats: Vec<LuminaireFormat>,
+    /// Layout of the table.
+    pub layout: TableLayout,
+    /// Number of lamps, if intensities refer to lamps with the flux of all sources.
+    pub lamps: Option<u32>,
+    /// The luminous opening; `None` for a point.
+    pub opening: Option<Opening>,
+    /// Input power, W; 0 if it is not known.
+    pub power_w: f64,
+    /// Texts by their keyword.
+    pub texts: Vec<(String, String)>,
+}
+
+impl LuminaireExport {
+    /// The finest table, in every format.
+    pub fn of_goniometer(sensor: &str, goniometer: &Goniometer) -> Self {
+        let &Goniometer { c_cells, gamma_cells, .. } = goniometer;
+        Self {
+            sensor: sensor.to_owned(),
+            formats: vec![LuminaireFormat::Ies, LuminaireFormat::Ldt],
+            layout: TableLayout::finest([gamma_cells, c_cells]),
+            lamps: None,
+            opening: None,
+            power_w: 0.0,
+            texts: Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,164 @@
+//! Luminaire files of what goniometers measured.
+
+pub(crate) mod page;
+
+use crate::OutputFile;
+use lumiduct_base::error::{Error, Result};
+use lumiduct_base::number::{format_percent, format_value};
+use lumiduct_core::measure::{IntensityTable, Measures};
+use lumiduct_files::luminaire::{
+    CellMeans, FittedIntensities, Intensities, LampFlux, Luminaire, LuminaireFormat, fit, written,
+};
+use lumiduct_input::LuminaireExport;
+use ndarray::Array2;
+
+/// Flux of negative cells, or above a flat opening, that needs no remark, as a share of all, 1.
+pub(crate) const NEGLIGIBLE_FLUX: f64 = 1e-3;
+
+/// A luminaire from a goniometer.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeasuredLuminaire {
+    /// Name of the sensor, and of the files.
+    pub sensor: String,
+    /// The formats to write.
+    pub formats: Vec<LuminaireFormat>,
+    /// The luminaire.
+    pub luminaire: Luminaire,
+    /// Standard errors of its intensities, planes by angles, cd.
+    pub std_errors: Array2<f64>,
+    /// Sentences for the user.
+    pub remarks: Vec<String>,
+}
+
+/// What a file says of its making.
+#[derive(Debug, Clone, Copy)]
+pub struct LuminaireOrigin<'a> {
+    /// Title of the scene.
+    pub title: &'a str,
+    /// Its hash.
+    pub hash: &'a str,
+    /// Date of the project.
+    pub date: Option<&'a str>,
+    /// Version of the program.
+    pub version: &'a str,
+}
+
+impl MeasuredLuminaire {
+    /// The luminaire of an export.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Output`] if the readings make no table, such as values that are not finite.
+    pub fn new(
+        export: &LuminaireExport,
+        measures: &Measures,
+        origin: &LuminaireOrigin<'_>,
+    ) -> Result<Self> {
+        let failed = |reason: String| Error::Output {
+            what: format!("luminaire of {}", export.sensor),
+            reason,
+        };
+        let is_own =
+            |table: &&IntensityTable| table.sensor == export.sensor && table.light.is_none();
+        let readings = measures.intensities.iter().find(is_own);
+        let readings = readings.ok_or_else(|| failed("it has no intensities".to_owned()))?;
+        let means =
+            CellMeans { candela: readings.values.view(), std_errors: readings.std_errors.view() };
+        let FittedIntensities { intensities, std_errors, added_share } =
+            fit(&means, &export.layout).map_err(|error| failed(error.to_string()))?;
+        let lamps = match export.lamps {
+            Some(count) => LampFlux::Relative { count, flux_lm: measures.source_flux },
+            None => LampFlux::Absolute,
+        };
+        let mut remarks = remarks(export, readings, &intensities, added_share);
+        let texts = texts(export, origin, &std_errors);
+        let opening = export.opening.unwrap_or_default();
+        let luminaire = Luminaire { texts, lamps, power_w: export.power_w, opening, intensities };
+        for format in &export.formats {
+            let left_out = written(&luminaire, *format).remarks;
+            remarks.extend(left_out.into_iter().map(|text| format!("{format} file: {text}")));
+        }
+        Ok(Self {
+            sensor: export.sensor.clone(),
+            formats: export.formats.clone(),
+            luminaire,
+            std_errors,
+            remarks,
+        })
+    }
+
+    /// Its file in a format.
+    pub fn file(&self, format: LuminaireFormat) -> OutputFile {
+        let ending = match format {
+            LuminaireFormat::Ies => "ies",
+            LuminaireFormat::Ldt => "ldt",
+        };
+        OutputFile::text(format!("{}.{ending}", self.sensor), written(&self.luminaire, format).text)
+    }
+}
+
+/// The files of all luminaires.
+pub(crate) fn files(luminaires: &[MeasuredLuminaire]) -> impl Iterator<Item = OutputFile> {
+    luminaires
+        .iter()
+        .flat_map(|luminaire| luminaire.formats.iter().map(|format| luminaire.file(*format)))
+}
+
+/// What was assumed, and what the files cannot say.
+fn remarks(
+    export: &LuminaireExport,
+    readings: &IntensityTable,
+    intensities: &Intensities,
+    added_share: f64,
+) -> Vec<String> {
+    let mut remarks = Vec::new();
+    let mut remark = |text: String| {
+        remarks.push(format!("luminaire files of `{}`: {text}", export.sensor));
+    };
+    if readings.weathers > 1 {
+        let count = readings.weathers;
+        remark(format!("they contain the sum over {count} weathers, which never occur together"));
+    }
+    if added_share > NEGLIGIBLE_FLUX {
+        let share = format_percent(added_share);
+        remark(format!(
+            "noise made cells negative; they count as dark, so that the files have {share} more light than `flux`"
+        ));
+    }
+    let upward = intensities.flux_between(90.0, 180.0) / intensities.flux();
+    match export.opening {
+        None => remark(
+            "without the key `opening` they state a point, which has no luminance".to_owned(),
+        ),
+        Some(_) if upward > NEGLIGIBLE_FLUX => {
+            let share = format_percent(upward);
+            remark(format!(
+                "{share} of the light leaves above 90 deg, which a flat opening cannot emit; no luminance is given"
+            ));
+        }
+        Some(_) => {}
+    }
+    remarks
+}
+
+/// Texts of the files: those of the user, and what is known without them.
+fn texts(
+    export: &LuminaireExport,
+    origin: &LuminaireOrigin<'_>,
+    std_errors: &Array2<f64>,
+) -> Vec<(String, String)> {
+    let error = std_errors.iter().copied().fold(0.0, f64::max);
+    let error = error.is_finite().then(|| format_value(error));
+    let LuminaireOrigin { title, hash, date, version } = *origin;
+    let own = [
+        ("TEST", Some(format!("scene {hash}, sensor {}", export.sensor))),
+        ("TESTLAB", Some(format!("computed by Lumiduct {version}, not measured"))),
+        ("ISSUEDATE", date.map(str::to_owned)),
+        ("LUMINAIRE", Some(title.to_owned())),
+        ("OTHER", error.map(|error| format!("standard error of an intensity: at most {error} cd"))),
+    ];
+    let is_given = |word: &str| export.texts.iter().any(|(given, _)| given == word);
+    let own = own.into_iter().filter(|(word, _)| !is_given(word));
+    let own = own.filter_map(|(word, text)| Some((word.to_owned(), text?)));
+    own.chain(export.texts.iter().cloned()).collect()
+}

@@ -1,0 +1,188 @@
+//! What the page of a report says of a luminaire: its intensities, its flux by zones, and its luminance.
+
+use crate::luminaire::{MeasuredLuminaire, NEGLIGIBLE_FLUX};
+use crate::page::{Block, table};
+use lumiduct_base::number::{format_exact, format_percent, format_value, format_with_error};
+use lumiduct_files::luminaire::{LampFlux, Luminaire, Opening, PlaneSymmetry};
+use std::f64::consts::PI;
+
+/// Zones of the summary of flux, deg.
+const ZONES: [[f64; 2]; 8] = [
+    [0.0, 30.0],
+    [0.0, 40.0],
+    [0.0, 60.0],
+    [60.0, 90.0],
+    [0.0, 90.0],
+    [90.0, 120.0],
+    [90.0, 180.0],
+    [0.0, 180.0],
+];
+/// Angles γ and planes of the table of luminance, deg.
+const LUMINANCE_ANGLES: [f64; 5] = [45.0, 55.0, 65.0, 75.0, 85.0];
+const LUMINANCE_PLANES: [f64; 3] = [0.0, 45.0, 90.0];
+/// Angle from which luminaires may be mirrored in screens, deg, and the limits of their average luminance there, cd/m²
+/// (EN 12464-1:2021, luminance limits of luminaires for work with display screen equipment).
+const SCREEN_ANGLE: f64 = 65.0;
+const SCREEN_LIMITS: [f64; 3] = [1000.0, 1500.0, 3000.0];
+/// Largest angle at which luminance is judged, deg: a flat opening has no projected area at 90.
+const LAST_ANGLE: f64 = 85.0;
+/// Most planes and angles in a table for reading.
+const MOST_PLANES: usize = 8;
+const MOST_ANGLES: usize = 40;
+
+/// The part of a page on the luminaire files of a sensor.
+pub(crate) fn blocks(luminaires: &[MeasuredLuminaire], sensor: &str) -> Vec<Block> {
+    let Some(found) = luminaires.iter().find(|found| found.sensor == sensor) else {
+        return Vec::new();
+    };
+    let mut blocks = vec![Block::Heading { text: "Luminaire".into() }];
+    blocks.push(Block::Words { text: summary(found) });
+    blocks.push(Block::Words { text: "Luminous intensities in cd:".into() });
+    blocks.push(candela_table(found));
+    blocks.push(zonal_flux(&found.luminaire));
+    blocks.extend(luminances(&found.luminaire));
+    blocks
+}
+
+fn summary(found: &MeasuredLuminaire) -> String {
+    let Luminaire { lamps, opening, intensities, power_w, .. } = &found.luminaire;
+    let files: Vec<String> = found.formats.iter().map(|format| found.file(*format).name).collect();
+    let flux = intensities.flux();
+    let symmetry = match intensities.symmetry() {
+        PlaneSymmetry::None => "without symmetry".to_owned(),
+        symmetry => format!("symmetry: {}", symmetry.name()),
+    };
+    let error = found.std_errors.iter().copied().fold(0.0, f64::max);
+    let error = if error.is_finite() {
+        format!("The standard error of a value is at most {} cd.", format_value(error))
+    } else {
+        "The errors of the values are not known.".to_owned()
+    };
+    let mut text = format!(
+        "{}: {} lm, peak {} cd, {symmetry}. Between the values of the table, intensities are linear in both angles; of all such \
+            tables this one fits the cells of the goniometer best, and it has their flux. {error}",
+        files.join(" and "),
+        format_value(flux),
+        format_value(intensities.peak()),
+    );
+    text += &match lamps {
+        LampFlux::Absolute => " The photometry is absolute.".to_owned(),
+        LampFlux::Relative { count, flux_lm } => {
+            let lamps = if *count == 1 { "1 lamp".to_owned() } else { format!("{count} lamps") };
+            format!(
+                " The photometry is relative to {lamps} with {} lm: light output ratio {}.",
+                format_value(*flux_lm),
+                format_percent(flux / flux_lm)
+            )
+        }
+    };
+    if *power_w > 0.0 {
+        text += &format!(
+            " With {} W it has {} lm/W.",
+            format_exact(*power_w),
+            format_value(flux / power_w)
+        );
+    }
+    let [x, y] = [opening.along_c0_mm, opening.along_c90_mm].map(format_exact);
+    match (opening.is_round, opening.along_c0_mm > 0.0) {
+        (true, true) => text += &format!(" Its opening is a disk of {x} mm."),
+        (false, true) => text += &format!(" Its opening is {x} mm along C0 by {y} mm along C90."),
+        (_, false) => {}
+    }
+    text
+}
+
+/// The intensities at some planes and angles, with the errors of the values.
+fn candela_table(found: &MeasuredLuminaire) -> Block {
+    let intensities = &found.luminaire.intensities;
+    let (planes, angles) = (intensities.planes_deg(), intensities.angles_deg());
+    let is_lit =
+        |angle: usize| (0..planes.len()).any(|plane| intensities.plane(plane)[angle] > 0.0);
+    // Up to the first dark angle above all light.
+    let lit = (0..angles.len()).rposition(is_lit).map_or(0, |last| last + 2).min(angles.len());
+    let shown = |count: usize, most: usize| -> Vec<usize> {
+        (0..count).step_by(count.div_ceil(most).max(1)).collect()
+    };
+    let columns = shown(planes.len(), MOST_PLANES);
+    let rows = shown(lit, MOST_ANGLES);
+    let head: Vec<String> = std::iter::once("γ".to_owned())
+        .chain(columns.iter().map(|place| format!("C{}", format_exact(planes[*place]))))
+        .collect();
+    let row = |angle: &usize| {
+        let values = columns.iter().map(|plane| {
+            format_with_error(intensities.plane(*plane)[*angle], found.std_errors[[*plane, *angle]])
+        });
+        std::iter::once(format!("{}°", format_exact(angles[*angle]))).chain(values).collect()
+    };
+    table(&head, rows.iter().map(row).collect())
+}
+
+fn zonal_flux(luminaire: &Luminaire) -> Block {
+    let Luminaire { lamps, intensities, .. } = luminaire;
+    let all = intensities.flux();
+    let percent = |part: f64, whole: f64| {
+        if whole > 0.0 { format_percent(part / whole) } else { String::new() }
+    };
+    let row = |[from, to]: [f64; 2]| {
+        let flux = intensities.flux_between(from, to);
+        let mut row = vec![
+            format!("{}° to {}°", format_exact(from), format_exact(to)),
+            format!("{} lm", format_value(flux)),
+            percent(flux, all),
+        ];
+        if let LampFlux::Relative { flux_lm, .. } = lamps {
+            row.push(percent(flux, *flux_lm));
+        }
+        row
+    };
+    let mut head = vec!["zone", "flux", "of the luminaire"];
+    if let LampFlux::Relative { .. } = lamps {
+        head.push("of the lamps");
+    }
+    table(&head, ZONES.map(row).into())
+}
+
+/// Average luminance of the opening at steep angles; nothing without an opening, or with light that a flat one cannot emit.
+fn luminances(luminaire: &Luminaire) -> Vec<Block> {
+    let Luminaire { opening, intensities, .. } = luminaire;
+    let upward = intensities.flux_between(90.0, 180.0);
+    let area = area_m2(opening).filter(|_| upward <= NEGLIGIBLE_FLUX * intensities.flux());
+    let Some(area) = area else { return Vec::new() };
+    let luminance =
+        |plane: f64, angle: f64| intensities.at(plane, angle) / (area * angle.to_radians().cos());
+    let rows = LUMINANCE_ANGLES.map(|angle| {
+        let values = LUMINANCE_PLANES.map(|plane| format_value(luminance(plane, angle)));
+        std::iter::once(format!("{}°", format_exact(angle))).chain(values).collect()
+    });
+    let head: Vec<String> = std::iter::once("γ".to_owned())
+        .chain(LUMINANCE_PLANES.map(|plane| format!("C{}", format_exact(plane))))
+        .collect();
+    let steep = intensities.angles_deg().iter().copied();
+    let steep = steep.filter(|angle| (SCREEN_ANGLE..LAST_ANGLE).contains(angle));
+    let most = steep
+        .chain([SCREEN_ANGLE, LAST_ANGLE])
+        .flat_map(|angle| intensities.circle().into_iter().map(move |plane| (plane, angle)))
+        .map(|(plane, angle)| luminance(plane, angle))
+        .fold(0.0, f64::max);
+    let limits = SCREEN_LIMITS.map(|limit| {
+        let word = if most <= limit { "met" } else { "exceeded" };
+        format!("{} {word}", format_exact(limit))
+    });
+    let text = format!(
+        "At the angles of the table from {}° to {}° it is at most {} cd/m². Limits for work with screens (EN 12464-1): {}.",
+        format_exact(SCREEN_ANGLE),
+        format_exact(LAST_ANGLE),
+        format_value(most),
+        limits.join(", ")
+    );
+    let head_text =
+        "Average luminance of the opening in cd/m², the intensity over its projected area:";
+    vec![Block::Words { text: head_text.into() }, table(&head, rows.into()), Block::Words { text }]
+}
+
+/// Area of a flat opening, m²; `None` for a point or a line.
+fn area_m2(opening: &Opening) -> Option<f64> {
+    let box_area = opening.along_c0_mm * opening.along_c90_mm * 1e-6;
+    let area = if opening.is_round { 0.25 * PI * box_area } else { box_area };
+    (area > 0.0).then_some(area)
+}

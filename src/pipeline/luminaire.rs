@@ -1,0 +1,99 @@
+//! Luminaires of goniometers: for the files of a report, and for a file of its own.
+
+use crate::pipeline::version::VERSION;
+use lumiduct_base::error::{Error, Result};
+use lumiduct_base::units::FluxUnit;
+use lumiduct_core::measure::Measures;
+use lumiduct_core::scene::{Goniometer, SensorKind};
+use lumiduct_files::luminaire::LuminaireFormat;
+use lumiduct_input::{Job, LuminaireExport};
+use lumiduct_report::{Existing, LuminaireOrigin, MeasuredLuminaire, Report, write_whole};
+use std::path::{Path, PathBuf};
+
+/// The luminaires of a report.
+pub(super) fn luminaires(job: &Job, measures: &Measures) -> Result<Vec<MeasuredLuminaire>> {
+    job.exports.iter().map(|export| luminaire(job, export, measures)).collect()
+}
+
+fn luminaire(
+    job: &Job,
+    export: &LuminaireExport,
+    measures: &Measures,
+) -> Result<MeasuredLuminaire> {
+    let origin = LuminaireOrigin {
+        title: &job.title,
+        hash: &job.hash,
+        date: job.project.as_ref().and_then(|project| project.date.as_deref()),
+        version: VERSION,
+    };
+    MeasuredLuminaire::new(export, measures, &origin)
+}
+
+/// A luminaire file outside the folder of the report.
+#[derive(Debug)]
+pub(super) struct LuminaireFile {
+    path: PathBuf,
+    format: LuminaireFormat,
+    export: LuminaireExport,
+    existing: Existing,
+}
+
+impl LuminaireFile {
+    /// Checks, before any work is done, that the scene has one luminaire and that the file can be written: that of the only
+    /// sensor with a key `luminaire` or, without such a key, that of the only goniometer in the far field.
+    pub(super) fn open(job: &Job, path: &Path, existing: Existing) -> Result<Self> {
+        let refuse = |why: String| Error::Usage(format!("--ies {}: {why}", path.display()));
+        let format = LuminaireFormat::of(path).map_err(|error| refuse(error.to_string()))?;
+        if path.is_dir() {
+            return Err(refuse("is a folder; name a file".to_owned()));
+        }
+        if existing == Existing::Keep && path.exists() {
+            return Err(refuse("the file exists; use --overwrite to replace it".to_owned()));
+        }
+        let export = match &job.exports[..] {
+            [only] => only.clone(),
+            [] => finest_export(job).map_err(refuse)?,
+            _ => {
+                let why = "several sensors have a key `luminaire`; their files are in the report";
+                return Err(refuse(why.to_owned()));
+            }
+        };
+        Ok(Self { path: path.to_path_buf(), format, export, existing })
+    }
+
+    /// Writes the file.
+    pub(super) fn write(&self, job: &Job, report: &Report) -> Result<()> {
+        let file = match &report.luminaires[..] {
+            [only] => only.file(self.format),
+            _ => luminaire(job, &self.export, &report.measures)?.file(self.format),
+        };
+        write_whole(&self.path, &file.bytes, self.existing)
+    }
+}
+
+/// The export of the only goniometer in the far field, or why there is none.
+fn finest_export(job: &Job) -> std::result::Result<LuminaireExport, String> {
+    if job.scene.unit == FluxUnit::Watt {
+        return Err(
+            "luminous intensities need sources in lm, and those of the scene are in W".to_owned()
+        );
+    }
+    let far = job.scene.sensors.iter().filter_map(|sensor| match &sensor.kind {
+        SensorKind::Goniometer(goniometer @ Goniometer { radius: None, .. }) => {
+            Some((&sensor.name, goniometer))
+        }
+        SensorKind::Goniometer(_) | SensorKind::Surface(_) => None,
+    });
+    let (name, goniometer) = match far.collect::<Vec<_>>()[..] {
+        [only] => only,
+        [] => return Err("the scene has no goniometer in the far field".to_owned()),
+        _ => {
+            return Err("the scene has several goniometers; give one of them the key `luminaire`"
+                .to_owned());
+        }
+    };
+    let export = LuminaireExport::of_goniometer(name, goniometer);
+    let cells = [goniometer.gamma_cells, goniometer.c_cells];
+    let checked = export.layout.expect_cells(cells);
+    checked.map(|()| export).map_err(|error| format!("{error}; give `{name}` smaller steps"))
+}

@@ -150,7 +150,7 @@ fn a_file_comes_back_from_source_and_goniometer_within_its_errors() {
         }
     }
     // Cells are taken as independent, but directions of a bare point fill them so evenly that sums over cells are known better.
-    assert!((0.0..1.5).contains(&(sum / f64::from(count))), "{sum} of {count}");
+    assert!(sum < 1.5 * f64::from(count), "{sum} of {count}");
     // With relative photometry of two lamps, and with seven digits, it is read again.
     let folder = tempfile::tempdir().unwrap();
     for format in [LuminaireFormat::Ies, LuminaireFormat::Ldt] {

@@ -87,6 +87,10 @@ fn each_light_group_has_maps_pages_and_differences_of_its_own() {
     let matrix = place.path("reports/lamps/below_left.illuminance.from_green.matrix.csv");
     assert!(fs::read_to_string(matrix).unwrap().contains("illuminance in lx"));
     assert!(place.path("reports/lamps/far.intensity.from_red.csv").exists());
+    let arrays = fs::read(place.path("reports/lamps/below_left.npz")).unwrap();
+    for name in ["illuminance_lx.npy", "illuminance.from_red.std_error_lx.npy", "u_edges_mm.npy"] {
+        assert!(arrays.windows(name.len()).any(|bytes| bytes == name.as_bytes()), "no {name}");
+    }
     let summary = place.summary("reports/lamps");
     let even = &summary["measures"]["below_left.uniformity_min_avg.from.red"]["value"];
     assert!(even.as_f64().is_some_and(|even| even > 0.0 && even <= 1.0), "{even}");

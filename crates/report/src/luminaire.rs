@@ -89,11 +89,11 @@ impl MeasuredLuminaire {
 
     /// Its file in a format.
     pub fn file(&self, format: LuminaireFormat) -> OutputFile {
-        let ending = match format {
-            LuminaireFormat::Ies => "ies",
-            LuminaireFormat::Ldt => "ldt",
-        };
-        OutputFile::text(format!("{}.{ending}", self.sensor), written(&self.luminaire, format).text)
+        OutputFile::text(self.file_name(format), written(&self.luminaire, format).text)
+    }
+
+    fn file_name(&self, format: LuminaireFormat) -> String {
+        format!("{}.{}", self.sensor, format.ending())
     }
 }
 
@@ -123,6 +123,13 @@ fn remarks(
         let share = format_percent(added_share);
         remark(format!(
             "noise made cells negative; they count as dark, so that the files have {share} more light than `flux`"
+        ));
+    }
+    let bias = readings.biases.iter().flatten().copied().fold(0.0, f64::max);
+    if bias > 0.0 {
+        let bias = format_value(bias);
+        remark(format!(
+            "cells of the goniometer have a bias of up to {bias} cd, which the errors in the files do not contain"
         ));
     }
     let upward = intensities.flux_between(90.0, 180.0) / intensities.flux();

@@ -1,7 +1,8 @@
 //! From mean intensities over the cells of a sphere of directions to a table of luminous intensities.
 //!
 //! Of all tables without negative values, this is the one whose interpolation most likely gives the cell means: the maximum of the
-//! likelihood of Poisson counts, by expectation maximisation (Shepp & Vardi, IEEE Trans. Med. Imaging 1 (1982) 113, eq. 2.13). A
+//! likelihood of Poisson counts, by expectation maximisation (Shepp & Vardi, IEEE Trans. Med. Imaging 1 (1982) 113). From the means yᵢ over
+//! cells of solid angles Ωᵢ, in which nodes have shares aᵢⱼ, the values xⱼ follow by xⱼ ← xⱼ Σᵢ Ωᵢ aᵢⱼ yᵢ / Σₖ aᵢₖ xₖ / Σᵢ Ωᵢ aᵢⱼ. A
 //! distribution that is linear between the nodes is recovered from cells without noise; a dark node between bright ones keeps some
 //! 0.3 % of their intensity. Every step keeps the flux. Errors are those of a fit by least squares, which is linear in the cells.
 
@@ -104,7 +105,7 @@ pub fn fit(
     }
     let step = 180.0 / layout.angle_segments as f64;
     let angles_deg = (0..=layout.angle_segments).map(|place| step * place as f64).collect();
-    let planes = Planes::of(layout, sectors);
+    let planes = Planes::of(layout);
     let values = most_likely(means, layout, &planes);
     let candela = values.into_iter().collect();
     let intensities =
@@ -143,10 +144,9 @@ struct Planes {
 }
 
 impl Planes {
-    fn of(layout: &TableLayout, sectors: usize) -> Self {
+    fn of(layout: &TableLayout) -> Self {
         let count = match layout.symmetry {
-            // Any plane may stand for the others.
-            PlaneSymmetry::Rotational => sectors,
+            PlaneSymmetry::Rotational => 1,
             PlaneSymmetry::None
             | PlaneSymmetry::Quadrants
             | PlaneSymmetry::AboutC0
@@ -211,7 +211,7 @@ fn most_likely(means: &CellMeans<'_>, layout: &TableLayout, planes: &Planes) -> 
         let factors = collected(&ratio) / &solid_angles;
         values *= &factors;
     }
-    // Dark nodes beside bright ones approach zero without end.
+    // Dark nodes beside bright ones shrink with every step and never reach zero.
     let peak = values.iter().copied().fold(0.0, f64::max);
     values.mapv_inplace(|value| if value < ROUNDING * peak { 0.0 } else { value });
     values
@@ -230,37 +230,28 @@ fn std_errors(
         return Ok(Array2::from_elem(shape, f64::INFINITY));
     }
     let along = weights(shape.1, rings, |ring| ring_mean(ring, rings, layout))?;
-    let alike = Array2::from_elem((1, sectors), 1.0 / sectors as f64);
-    let across = match layout.symmetry {
-        PlaneSymmetry::Rotational => alike.clone(),
-        PlaneSymmetry::None
-        | PlaneSymmetry::Quadrants
-        | PlaneSymmetry::AboutC0
-        | PlaneSymmetry::AboutC90 => {
-            let circle = planes.of_circle.len();
-            let all = weights(circle, sectors, |sector| sector_mean(sector, sectors, circle))?;
-            let mut mean = Array2::zeros((shape.0, sectors));
-            for plane in 0..shape.0 {
-                let equal: Vec<usize> =
-                    (0..circle).filter(|place| planes.of_circle[*place] == plane).collect();
-                for place in &equal {
-                    mean.row_mut(plane).scaled_add(1.0 / equal.len() as f64, &all.row(*place));
-                }
-            }
-            mean
+    let circle = planes.of_circle.len();
+    let of_circle = weights(circle, sectors, |sector| sector_mean(sector, sectors, circle))?;
+    let mut across = Array2::zeros((shape.0, sectors));
+    for plane in 0..shape.0 {
+        let equal: Vec<usize> =
+            (0..circle).filter(|place| planes.of_circle[*place] == plane).collect();
+        for place in &equal {
+            across.row_mut(plane).scaled_add(1.0 / equal.len() as f64, &of_circle.row(*place));
         }
-    };
+    }
     let squared = |all: &Array2<f64>| all.mapv(|own| own * own);
     let by_angle = squared(&along).dot(&means.std_errors.mapv(|error| error * error));
     let mut variances = squared(&across).dot(&by_angle.t());
-    let at_poles = squared(&alike).dot(&by_angle.t());
+    // At the poles all sectors count alike.
     for pole in [0, layout.angle_segments] {
-        variances.column_mut(pole).fill(at_poles[[0, pole]]);
+        let mean = by_angle.row(pole).sum() / (sectors * sectors) as f64;
+        variances.column_mut(pole).fill(mean);
     }
     Ok(variances.mapv(f64::sqrt))
 }
 
-/// The mean of a ring.
+/// The mean over a ring.
 fn ring_mean(ring: usize, rings: usize, layout: &TableLayout) -> NodeShares {
     let per_segment = rings / layout.angle_segments;
     let edges = ring_edges(ring, rings);
@@ -272,7 +263,7 @@ fn ring_mean(ring: usize, rings: usize, layout: &TableLayout) -> NodeShares {
     NodeShares { nodes: [segment, segment + 1], shares: [1.0 - next, next], weight: solid_angle }
 }
 
-/// The mean of a sector among planes of the whole circle.
+/// The mean over a sector, with planes over the whole circle.
 fn sector_mean(sector: usize, sectors: usize, planes: usize) -> NodeShares {
     let per_segment = sectors / planes;
     let next = ((sector % per_segment) as f64 + 0.5) / per_segment as f64;

@@ -11,6 +11,16 @@ pub enum LuminaireFormat {
     Ldt,
 }
 
+impl LuminaireFormat {
+    /// The extension of its file names, without the dot.
+    pub fn ending(self) -> &'static str {
+        match self {
+            Self::Ies => "ies",
+            Self::Ldt => "ldt",
+        }
+    }
+}
+
 impl fmt::Display for LuminaireFormat {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         out.write_str(match self {

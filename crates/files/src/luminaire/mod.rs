@@ -35,11 +35,8 @@ impl LuminaireFormat {
     /// [`LuminaireError::UnknownLuminaire`] for an extension that is neither `ies` nor `ldt`.
     pub fn of(path: &Path) -> Result<Self, LuminaireError> {
         let ending = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-        match ending.as_str() {
-            "ies" => Ok(Self::Ies),
-            "ldt" => Ok(Self::Ldt),
-            _ => Err(LuminaireError::UnknownLuminaire { ending }),
-        }
+        let known = [Self::Ies, Self::Ldt].into_iter().find(|format| format.ending() == ending);
+        known.ok_or(LuminaireError::UnknownLuminaire { ending })
     }
 }
 

@@ -46,7 +46,7 @@ pub(crate) fn blocks(luminaires: &[MeasuredLuminaire], sensor: &str) -> Vec<Bloc
 
 fn summary(found: &MeasuredLuminaire) -> String {
     let Luminaire { lamps, opening, intensities, power_w, .. } = &found.luminaire;
-    let files: Vec<String> = found.formats.iter().map(|format| found.file(*format).name).collect();
+    let files: Vec<String> = found.formats.iter().map(|format| found.file_name(*format)).collect();
     let flux = intensities.flux();
     let symmetry = match intensities.symmetry() {
         PlaneSymmetry::None => "without symmetry".to_owned(),
@@ -185,4 +185,67 @@ fn area_m2(opening: &Opening) -> Option<f64> {
     let box_area = opening.along_c0_mm * opening.along_c90_mm * 1e-6;
     let area = if opening.is_round { 0.25 * PI * box_area } else { box_area };
     (area > 0.0).then_some(area)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lumiduct_files::luminaire::Intensities;
+    use ndarray::Array2;
+
+    /// A Lambertian disk of 100 mm with 1000 cd along its axis: the same luminance in all directions, I / (π r²), and sin² γ of its flux
+    /// within γ.
+    fn lambertian(lamps: LampFlux) -> MeasuredLuminaire {
+        let angles: Vec<f64> = (0..=180).map(f64::from).collect();
+        let of = |angle: &f64| if *angle < 90.0 { 1000.0 * angle.to_radians().cos() } else { 0.0 };
+        let candela = angles.iter().map(of).collect();
+        let intensities =
+            Intensities::new(PlaneSymmetry::Rotational, vec![0.0], angles, candela).unwrap();
+        let opening =
+            Opening { is_round: true, along_c0_mm: 100.0, along_c90_mm: 100.0, height_mm: 0.0 };
+        MeasuredLuminaire {
+            sensor: "far".into(),
+            formats: Vec::new(),
+            luminaire: Luminaire { texts: Vec::new(), lamps, power_w: 0.0, opening, intensities },
+            std_errors: Array2::zeros((1, 181)),
+            remarks: Vec::new(),
+        }
+    }
+
+    fn rows(blocks: &[Block]) -> Vec<&Vec<String>> {
+        let rows = blocks.iter().filter_map(|block| match block {
+            Block::Table { rows, .. } => Some(rows),
+            Block::Heading { .. }
+            | Block::Words { .. }
+            | Block::List { .. }
+            | Block::Plot { .. } => None,
+        });
+        rows.flatten().collect()
+    }
+
+    #[test]
+    fn a_lambertian_disk_has_one_luminance_and_its_zones() {
+        let lamps = LampFlux::Relative { count: 1, flux_lm: 4000.0 };
+        let all = blocks(&[lambertian(lamps)], "far");
+        let rows = rows(&all);
+        let row = |head: &str| rows.iter().find(|row| row[0] == head && row.len() > 2).unwrap();
+        // 1000 cd / (π (0.05 m)²) = 127 324 cd/m²; between the angles of the table, lines lie below the cosine.
+        for angle in ["45°", "65°", "85°"] {
+            assert_eq!(row(angle)[1..], ["1.273×10⁵", "1.273×10⁵", "1.273×10⁵"], "{angle}");
+        }
+        // sin² 30° = 1/4, sin² 60° = 3/4; 3141.6 lm of 4000 lm.
+        assert_eq!(row("0° to 30°")[2..], ["25.00 %", "19.63 %"]);
+        assert_eq!(row("0° to 60°")[2..], ["75.00 %", "58.90 %"]);
+        assert_eq!(row("0° to 180°")[2..], ["100.00 %", "78.54 %"]);
+        assert_eq!(row("90° to 180°")[1], "0 lm");
+    }
+
+    #[test]
+    fn a_long_table_is_thinned_and_ends_where_the_light_does() {
+        let found = lambertian(LampFlux::Absolute);
+        let Block::Table { rows, head, .. } = candela_table(&found) else { panic!("no table") };
+        assert_eq!(head, ["γ", "C0"]);
+        assert!((20..=40).contains(&rows.len()), "{} rows", rows.len());
+        assert_eq!([&rows[0][0], &rows[1][0], &rows[rows.len() - 1][0]], ["0°", "3°", "90°"]);
+    }
 }

@@ -1,4 +1,6 @@
 use super::*;
+use rand_core::{Rng, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// Means over cells of a distribution, each from 32 x 32 points.
 fn means(table: &Intensities, rings: usize, sectors: usize) -> Array2<f64> {
@@ -178,4 +180,35 @@ fn the_finest_layout_divides_any_number_of_cells() {
     assert_eq!(of(15, 9), (PlaneSymmetry::None, 5, 3));
     assert_eq!(of(7, 1).0, PlaneSymmetry::Rotational);
     assert!(TableLayout::finest([1, 1]).expect_cells([1, 1]).is_err());
+}
+
+#[test]
+fn values_scatter_by_their_errors_with_noise_of_independent_cells() {
+    let table = sample(PlaneSymmetry::Quadrants, vec![0.0, 30.0, 60.0, 90.0]);
+    let exact = means(&table, 36, 24);
+    let errors = exact.mapv(|value| 0.02 * value);
+    let layout =
+        TableLayout { symmetry: PlaneSymmetry::Quadrants, angle_segments: 18, plane_segments: 12 };
+    let mut random = Xoshiro256PlusPlus::seed_from_u64(1);
+    // The sum of twelve uniform numbers has a variance of 1.
+    let mut normal =
+        || (0..12).map(|_| f64::from(random.next_u32()) / 2f64.powi(32)).sum::<f64>() - 6.0;
+    const RUNS: usize = 40;
+    let (mut inner, mut poles) = (0.0, 0.0);
+    for _ in 0..RUNS {
+        let cells =
+            Array2::from_shape_fn(exact.dim(), |cell| exact[cell] + errors[cell] * normal());
+        let fit =
+            fit(&CellMeans { candela: cells.view(), std_errors: errors.view() }, &layout).unwrap();
+        for ((plane, angle), error) in fit.std_errors.indexed_iter() {
+            let z = (fit.intensities.plane(plane)[angle] - table.plane(plane)[angle]) / error;
+            if angle == 0 || angle == 18 { poles += z * z } else { inner += z * z }
+        }
+    }
+    // 17 angles in four planes; values are correlated, so that some 1000 of them count.
+    let mean = inner / (RUNS * 17 * 4) as f64;
+    assert!((0.85..1.15).contains(&mean), "{mean}");
+    // Two poles in 40 runs, the same in every plane.
+    let mean = poles / (RUNS * 2 * 4) as f64;
+    assert!((0.5..1.5).contains(&mean), "{mean}");
 }

@@ -7,6 +7,7 @@ mod luminaire;
 mod output;
 mod parts;
 mod progress;
+mod rays;
 mod repeat;
 mod sense;
 mod snapshot;
@@ -33,6 +34,7 @@ use crate::pipeline::checkpoint::{CheckpointFile, Pause};
 use crate::pipeline::luminaire::{LuminaireFile, luminaires};
 use crate::pipeline::output::output_dir;
 use crate::pipeline::progress::gathering;
+use crate::pipeline::rays::rays;
 use crate::pipeline::sense::expect_sense;
 use crate::pipeline::tracing::trace_from;
 use lumiduct_base::error::{Diagnostic, Result};
@@ -153,6 +155,7 @@ pub fn compose(job: &Job, findings: &Findings, stop: Stop) -> Result<Report> {
         .collect();
     warnings.extend(report::remarks(&measures, &job.scene));
     warnings.extend(report::remarks_on_passages(&job.scene, &measures));
+    warnings.extend(report::remarks_on_ray_sets(&job.scene, &measures));
     warnings.extend(report::remark_on_paths(job.run.stop.paths, measures.paths));
     let is_chosen =
         (0..job.scene.sensors.len()).any(|sensor| job.run.request(sensor) == Request::Auto);
@@ -166,6 +169,12 @@ pub fn compose(job: &Job, findings: &Findings, stop: Stop) -> Result<Report> {
     let target = job.run.stop.target.as_ref().map(|target| TargetFacts::new(target, &measures));
     let luminaires = luminaires(job, &measures)?;
     warnings.extend(luminaires.iter().flat_map(|found| found.remarks.iter().cloned()));
+    let (rays, remarks) = match stop {
+        // The user wants it to end.
+        Stop::Interrupted => (Vec::new(), Vec::new()),
+        _ => rays(job, &measures),
+    };
+    warnings.extend(remarks);
     Ok(Report {
         scene: SceneFacts {
             name: job.name.clone(),
@@ -193,6 +202,7 @@ pub fn compose(job: &Job, findings: &Findings, stop: Stop) -> Result<Report> {
         measures,
         checks,
         luminaires,
+        rays,
         warnings,
         drawing: report::drawing(&job.scene, &shown_tracks(job, REPORT_PATHS)),
         inventory: inventory_of(job),

@@ -131,7 +131,7 @@ fn a_file_comes_back_from_source_and_goniometer_within_its_errors() {
     let job = traced::load(&text, &settings);
     let measures = traced::measures(&job);
     let origin = LuminaireOrigin { title: "Spot", hash: "1", date: None, version: "0" };
-    let measured = MeasuredLuminaire::new(&job.exports[0], &measures, &origin).unwrap();
+    let measured = MeasuredLuminaire::new(&job.exports.luminaires[0], &measures, &origin).unwrap();
     let table = &measured.luminaire.intensities;
     assert!((table.flux() / measures.values["far.flux"].value - 1.0).abs() < 1e-9);
     let (mut sum, mut count) = (0.0, 0);

@@ -1,107 +1,51 @@
 //! Arguments of `lumiduct convert`.
 
+mod luminaires;
+mod rays;
+
 use crate::cli::exit::{fail, finish};
+use crate::cli::values::parse_count;
 use clap::Args;
 use lumiduct_base::error::{Error, Result};
-use lumiduct_base::number::{format_exact, format_value};
-use lumiduct_files::luminaire::{
-    LampFlux, Luminaire, LuminaireError, LuminaireFormat, ReadLuminaire, WrittenLuminaire, read,
-    written,
-};
-use lumiduct_report::{Existing, write_whole};
-use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use lumiduct_files::rays::RayFormat;
+use lumiduct_report::Existing;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 #[derive(Debug, Args)]
 pub(super) struct ConvertArgs {
-    /// The luminaire: .ies (LM-63-1986 to -2019, goniometer type C) or .ldt (EULUMDAT).
+    /// A luminaire, .ies (LM-63-1986 to -2019, goniometer type C) or .ldt (EULUMDAT); or rays, .tm25ray (IES TM-25), .dat or .sdf (source
+    /// file of OpticStudio) or .csv.
     from: PathBuf,
-    /// The file to write: .ies (LM-63-2002) or .ldt (EULUMDAT). Left out, the luminaire is only described.
+    /// The file to write, of the same kind: .ies (LM-63-2002) or .ldt; .tm25ray, .dat, .sdf or .csv. Left out, the file is only described.
     to: Option<PathBuf>,
+    /// Of a ray file, take no more than this many rays, drawn at random; their fluxes are scaled to the flux of all.
+    #[arg(long, value_name = "COUNT", value_parser = parse_count)]
+    rays: Option<u64>,
+    /// Seed of the drawing.
+    #[arg(long, default_value_t = 0, requires = "rays")]
+    seed: u64,
     /// Replace an existing file.
     #[arg(long)]
     overwrite: bool,
 }
 
 pub(super) fn convert(args: &ConvertArgs) -> ExitCode {
-    let existing = if args.overwrite { Existing::Replace } else { Existing::Keep };
-    match converted(&args.from, args.to.as_deref(), existing) {
+    match converted(args) {
         Ok(text) => finish(Ok(text)),
         Err(error) => fail(&error),
     }
 }
 
-/// Writes the file, and describes the luminaire.
-fn converted(from: &Path, to: Option<&Path>, existing: Existing) -> Result<String> {
-    let wrong =
-        |path: &Path, error: LuminaireError| Error::Usage(format!("{}: {error}", path.display()));
-    let ReadLuminaire { luminaire, remarks } = read(from).map_err(|error| wrong(from, error))?;
-    let mut text = description(&luminaire);
-    for remark in remarks {
-        _ = writeln!(text, "remark: {remark}");
+fn converted(args: &ConvertArgs) -> Result<String> {
+    let ConvertArgs { from, to, rays, seed, overwrite } = args;
+    let existing = if *overwrite { Existing::Replace } else { Existing::Keep };
+    let to = to.as_deref();
+    if RayFormat::of(from).is_ok() {
+        return rays::converted(from, to, rays.map(|count| (count, *seed)), existing);
     }
-    if let Some(to) = to {
-        let format = LuminaireFormat::of(to).map_err(|error| wrong(to, error))?;
-        let WrittenLuminaire { text: file, remarks } = written(&luminaire, format);
-        write_whole(to, file.as_bytes(), existing)?;
-        for remark in remarks {
-            _ = writeln!(text, "remark: {remark}");
-        }
-        _ = writeln!(text, "written: {} ({format})", to.display());
+    if rays.is_some() {
+        return Err(Error::Usage(format!("--rays: {} is not a ray file", from.display())));
     }
-    Ok(text)
-}
-
-/// A luminaire in a few lines.
-fn description(luminaire: &Luminaire) -> String {
-    let Luminaire { lamps, power_w, opening, intensities, .. } = luminaire;
-    let mut text = String::new();
-    for (name, keyword) in
-        [("manufacturer", "MANUFAC"), ("luminaire", "LUMINAIRE"), ("catalogue number", "LUMCAT")]
-    {
-        if let Some(own) = luminaire.text(keyword) {
-            _ = writeln!(text, "{name}: {own}");
-        }
-    }
-    let flux = intensities.flux();
-    _ = writeln!(
-        text,
-        "flux: {} lm, of it {} lm below 90°",
-        format_value(flux),
-        format_value(intensities.flux_between(0.0, 90.0))
-    );
-    _ = match (lamps, luminaire.light_output_ratio()) {
-        (LampFlux::Relative { count, flux_lm }, Some(ratio)) => {
-            writeln!(
-                text,
-                "lamps: {count} with {} lm, light output ratio {}",
-                format_exact(*flux_lm),
-                format_value(ratio)
-            )
-        }
-        _ => writeln!(text, "lamps: absolute photometry"),
-    };
-    let ends = |angles: &[f64]| {
-        format!("{} from {}° to {}°", angles.len(), angles[0], angles[angles.len() - 1])
-    };
-    _ = writeln!(text, "peak: {} cd", format_value(intensities.peak()));
-    _ = writeln!(
-        text,
-        "planes: {}, symmetry {}",
-        ends(intensities.planes_deg()),
-        intensities.symmetry().name()
-    );
-    _ = writeln!(text, "angles: {}", ends(intensities.angles_deg()));
-    let shape = if opening.is_round { "round" } else { "rectangular" };
-    let sizes = [opening.along_c0_mm, opening.along_c90_mm, opening.height_mm].map(format_exact);
-    let [along_c0, along_c90, height] = sizes;
-    _ = writeln!(
-        text,
-        "opening: {shape}, {along_c0} mm along C0, {along_c90} mm along C90, {height} mm high"
-    );
-    if *power_w > 0.0 {
-        _ = writeln!(text, "power: {} W", format_exact(*power_w));
-    }
-    text
+    luminaires::converted(from, to, existing)
 }

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 
 /// The luminaires of a report.
 pub(super) fn luminaires(job: &Job, measures: &Measures) -> Result<Vec<MeasuredLuminaire>> {
-    job.exports.iter().map(|export| luminaire(job, export, measures)).collect()
+    job.exports.luminaires.iter().map(|export| luminaire(job, export, measures)).collect()
 }
 
 fn luminaire(
@@ -50,7 +50,7 @@ impl LuminaireFile {
         if existing == Existing::Keep && path.exists() {
             return Err(refuse("the file exists; use --overwrite to replace it".to_owned()));
         }
-        let export = match &job.exports[..] {
+        let export = match &job.exports.luminaires[..] {
             [only] => only.clone(),
             [] => finest_export(job).map_err(refuse)?,
             _ => {

@@ -10,6 +10,7 @@ mod diffs;
 mod light;
 mod pages;
 mod parts;
+mod rays;
 mod refusals;
 mod resumed_batches;
 mod runs;

@@ -1,7 +1,28 @@
 //! Files that sensors are to write.
 
-use lumiduct_core::scene::Goniometer;
+use lumiduct_core::scene::{Goniometer, SensorId};
 use lumiduct_files::luminaire::{LuminaireFormat, Opening, TableLayout};
+use lumiduct_files::rays::RayFormat;
+
+/// The files that the sensors of a scene are to write.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Exports {
+    /// Luminaire files.
+    pub luminaires: Vec<LuminaireExport>,
+    /// Ray files.
+    pub rays: Vec<RayExport>,
+}
+
+/// Ray files to write from a sensor.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RayExport {
+    /// The sensor.
+    pub sensor: SensorId,
+    /// The formats.
+    pub formats: Vec<RayFormat>,
+    /// Number of rays.
+    pub count: usize,
+}
 
 /// Luminaire files to write from a goniometer.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,6 +1,6 @@
 //! From a scene file to a job: read, lowered, with the command-line settings applied.
 
-use crate::export::LuminaireExport;
+use crate::export::Exports;
 use crate::gather::{check_radius, check_use};
 use crate::keys::{Key, Places};
 use crate::lower::Lowered;
@@ -66,7 +66,7 @@ pub struct Job {
     /// The checks.
     pub checks: Vec<Check>,
     /// Luminaire files that goniometers are to write.
-    pub exports: Vec<LuminaireExport>,
+    pub exports: Exports,
     /// The scene file, byte for byte.
     pub text: String,
     /// The places of its keys in the files.

@@ -66,7 +66,7 @@ pub(crate) mod texts;
 pub(crate) mod tree;
 pub mod validate;
 
-pub use export::LuminaireExport;
+pub use export::{Exports, LuminaireExport, RayExport};
 pub use job::{Job, Settings, load};
 pub use list::list;
 pub use outline::Outline;

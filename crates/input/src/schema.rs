@@ -351,6 +351,7 @@ mod tests {
             "bounce_limit",
             "depth",
             "records",
+            "max_rays",
             "photons",
             "relative_error",
             "min",

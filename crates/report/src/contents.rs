@@ -16,7 +16,7 @@ use crate::words::{
     evenness_head, evenness_rows, is_silent, lost_paths, measure_cells, outcome_word, quantity,
     run_lines, variation,
 };
-use crate::{Report, by_sun, luminaire, record};
+use crate::{Report, by_sun, luminaire, rays, record};
 use lumiduct_base::number::format_value;
 use lumiduct_core::measure::{CheckOutcome, Measure, SensorMap, SensorPaths, Status};
 use lumiduct_core::plan::Estimator;
@@ -139,6 +139,10 @@ fn sensor(report: &Report, name: &str, plots: &mut Plots) -> PagePart {
         }
     }
     blocks.extend(luminaire::page::blocks(&report.luminaires, name));
+    if let Some(text) = rays::sentence(&report.rays, name) {
+        blocks.push(Block::Heading { text: "Rays".into() });
+        blocks.push(Block::Words { text });
+    }
     if let Some(found) = by_sun::by_sun(report, name) {
         let picture = Some(format!("{name}.transmission.png"));
         let chart = data::chart(&found.plot, "1");

@@ -224,6 +224,28 @@ pub fn write_whole(path: &Path, bytes: &[u8], existing: Existing) -> Result<()> 
     Ok(())
 }
 
+/// Writes one file of any length as it is made, whole or not at all.
+///
+/// # Errors
+///
+/// [`Error::Usage`] if the file exists and is to be kept; [`Error::Io`] if it cannot be written, or its folder cannot be created; those of
+/// `make`.
+pub fn write_streamed(
+    path: &Path,
+    existing: Existing,
+    make: impl FnOnce(&mut fs::File) -> Result<()>,
+) -> Result<()> {
+    if existing == Existing::Keep && path.exists() {
+        let name = path.display();
+        return Err(Error::Usage(format!("{name} exists; use --overwrite to replace it")));
+    }
+    let folder = folder_of(path);
+    fs::create_dir_all(folder).map_err(|source| Error::io(folder, source))?;
+    let staged = staged_with(path, make)?;
+    staged.persist(path).map_err(|error| Error::io(path, error.error))?;
+    Ok(())
+}
+
 /// How a file on disk compares with what is to be written.
 enum FileComparison {
     Missing,
@@ -242,6 +264,14 @@ fn compare(path: &Path, bytes: &[u8]) -> Result<FileComparison> {
 
 /// A complete file under a temporary name, with the usual permissions of the user's files.
 fn stage(path: &Path, bytes: &[u8]) -> Result<tempfile::NamedTempFile> {
+    staged_with(path, |file| file.write_all(bytes).map_err(|error| Error::io(path, error)))
+}
+
+/// The same, of contents that are made as they are written.
+fn staged_with(
+    path: &Path,
+    make: impl FnOnce(&mut fs::File) -> Result<()>,
+) -> Result<tempfile::NamedTempFile> {
     let failed = |source| Error::io(path, source);
     let mut builder = tempfile::Builder::new();
     builder.prefix(STAGED);
@@ -254,7 +284,7 @@ fn stage(path: &Path, bytes: &[u8]) -> Result<tempfile::NamedTempFile> {
     // The temporary name would mean nothing to the user.
     let mut file =
         builder.tempfile_in(folder_of(path)).map_err(|error| failed(error.kind().into()))?;
-    file.as_file_mut().write_all(bytes).map_err(failed)?;
+    make(file.as_file_mut())?;
     file.as_file().sync_all().map_err(failed)?;
     Ok(file)
 }

@@ -51,6 +51,7 @@ mod npz;
 mod output;
 mod page;
 pub(crate) mod png;
+mod rays;
 mod recipe;
 mod record;
 mod remarks;
@@ -73,7 +74,7 @@ pub use destination::{expect_file, is_among};
 pub use drawing::SceneDrawing;
 pub use drawing::drawing;
 pub use film::film_tables;
-pub use folder::{Existing, Folder, Written, write_whole};
+pub use folder::{Existing, Folder, Written, write_streamed, write_whole};
 pub use html::check::check_page;
 pub use inventory::Inventory;
 pub use junit::{JunitFile, diff_junit, run_junit, study_junit};
@@ -85,12 +86,13 @@ pub(crate) use manifest::Manifest;
 pub use manifest::report_files;
 pub use mesh::mesh_report;
 pub use output::OutputFile;
+pub use rays::MeasuredRays;
 pub use recipe::Recipe;
 pub use record::{
     CheckResult, Report, RunFacts, RunOutcome, SceneFacts, TargetFacts, asked, leak_places,
     requested_gathering,
 };
-pub use remarks::{remark_on_paths, remarks, remarks_on_passages};
+pub use remarks::{remark_on_paths, remarks, remarks_on_passages, remarks_on_ray_sets};
 pub use seal::{seal, unseal};
 pub use section::{CutPlane, SectionView, scene_picture};
 pub use terminal::terminal;
@@ -110,6 +112,7 @@ pub fn files(report: &Report, scene_text: &str) -> Result<Vec<OutputFile>> {
     files.extend(by_sun::files(report)?);
     files.extend(figures::files(report)?);
     files.extend(luminaire::files(&report.luminaires));
+    files.extend(rays::files(&report.rays)?);
     files.push(OutputFile::text(format!("{}.toml", report.scene.name), scene_text.to_owned()));
     let logo = report.scene.project.as_ref().and_then(|project| project.logo.clone());
     files.extend(logo.map(|bytes| OutputFile { name: LOGO.to_owned(), bytes }));

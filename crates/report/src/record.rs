@@ -1,6 +1,6 @@
 //! The record from which all formats of a report are made.
 
-use crate::{Inventory, MeasuredLuminaire, Recipe, SceneDrawing};
+use crate::{Inventory, MeasuredLuminaire, MeasuredRays, Recipe, SceneDrawing};
 use glam::DVec3;
 use lumiduct_base::number::{format_exact, format_percent};
 use lumiduct_core::measure::{self, Measures, Verdict};
@@ -22,6 +22,8 @@ pub struct Report {
     pub checks: Vec<CheckResult>,
     /// Luminaires of goniometers that write files.
     pub luminaires: Vec<MeasuredLuminaire>,
+    /// Rays of sensors that write files.
+    pub rays: Vec<MeasuredRays>,
     /// Remarks on the scene and on the results.
     pub warnings: Vec<String>,
     /// The drawing of the scene, for pictures only.

@@ -87,6 +87,37 @@ pub fn remarks_on_passages(scene: &Scene, measures: &Measures) -> Vec<String> {
     scene.sensors.iter().filter_map(remark).collect()
 }
 
+/// Remarks on sensors whose flux is less certain than its error says, as the rays of a source are a sample of the light of a lamp.
+pub fn remarks_on_ray_sets(scene: &Scene, measures: &Measures) -> Vec<String> {
+    let per_ray = scene
+        .sources
+        .iter()
+        .filter_map(|source| Some(source.flux / source.emitter.ray_set()?.effective_count()));
+    let per_ray = per_ray.fold(0.0, f64::max);
+    let remark = |sensor: &Sensor| {
+        let flux = measures.values.get(&format!("{}.flux", sensor.name))?;
+        // Rays that reach the sensor with probability p have a flux of variance Φ² p (1 - p) / N, which is at most Φ / N times the flux.
+        let of_rays = (per_ray * flux.value).sqrt();
+        (of_rays > flux.std_error).then(|| {
+            let share = of_rays / flux.value;
+            let cells = match sensor.cells() {
+                1 => String::new(),
+                count => {
+                    let of_cell = share * (count as f64).sqrt();
+                    format!(" (a cell of mean flux, {})", format_percent(of_cell))
+                }
+            };
+            format!(
+                "as an estimate for the lamp, `{}.flux` has an error of up to {}{cells}: its rays are a sample of the lamp's \
+                    light, and stated errors are for these rays",
+                sensor.name,
+                format_percent(share),
+            )
+        })
+    };
+    scene.sensors.iter().filter_map(remark).collect()
+}
+
 /// A remark on a sensor that counted nothing while light met its other side. Light that leaves a
 /// solid inward was reflected or let in there: that is not light from the other side.
 fn remark_on_other_side(name: &str, scene: &Scene) -> String {

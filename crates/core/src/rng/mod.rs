@@ -20,6 +20,8 @@ pub mod stream {
     pub(crate) const PHOTONS: u64 = 1;
     /// Photons whose paths are drawn.
     pub(crate) const DRAWN: u64 = 2;
+    /// Choice of the rays that go into a file.
+    pub(crate) const EXPORTED: u64 = 3;
     /// Gather paths that are followed to sources.
     pub(crate) const BACKWARD: u64 = 1 << 32;
     /// Gather paths that end in records.

@@ -57,6 +57,7 @@ pub use sensor::{
 pub use source::emission::Emission;
 pub use source::light_group::{LightGroup, LightGroups};
 pub use source::measured::MeasuredEmission;
+pub use source::rays::{EmittedRay, RaySet};
 pub use source::sky::{EmitterKind, Sky};
 pub use source::{EmitSide, Emitted, Emitter, Source, StartSolids, SunAngles};
 pub use start::area::{AreaPoint, FaceArea};

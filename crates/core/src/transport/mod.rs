@@ -27,7 +27,7 @@ pub use connect::weights::{Sharing, Technique};
 pub(crate) use estimate::Estimate;
 pub use estimate::Resolution;
 pub use estimate::{Account, AccountEntry, Bias};
-pub use forward::{Track, TrackEnd, tracks};
+pub use forward::{CountedRay, RayCollection, Track, TrackEnd, counted_rays, tracks};
 pub use gather::{GatherSettings, Orders};
 pub use run::{Findings, Phase, Run, RunState, Shard, Slice, Unsliceable, batch_paths};
 pub use stop::{Activity, FIRST_BATCH_GRACE, Interrupt, StopAnswer, StopSignal};

@@ -1,7 +1,7 @@
 //! The state that the files of `lower` share: the spec of the scene file, the scene built so far, the names
 //! in both, and whether geometry is to be made. This module does not know how anything is lowered.
 
-use crate::export::LuminaireExport;
+use crate::export::Exports;
 use crate::keys::{Key, Places};
 use crate::lower::weathers::Member;
 use crate::problems::{Problems, face_hint, name_hint};
@@ -42,7 +42,7 @@ pub(super) struct Context<'a> {
     /// All sources, by what determines their light group.
     pub(super) members: Vec<Member>,
     /// Luminaire files that goniometers are to write.
-    pub(super) exports: Vec<LuminaireExport>,
+    pub(super) exports: Exports,
 }
 
 impl<'a> Context<'a> {
@@ -66,7 +66,7 @@ impl<'a> Context<'a> {
             behind: IndexMap::new(),
             faces: IndexMap::new(),
             members: Vec::new(),
-            exports: Vec::new(),
+            exports: Exports::default(),
         }
     }
 

@@ -1,4 +1,4 @@
-//! What emits: the shape and extent of every kind of source but luminaires, the sun and the sky.
+//! What emits: the shape and extent of every kind of source but luminaires, rays, the sun and the sky.
 
 use crate::keys::Key;
 use crate::lower::context::Context;
@@ -19,7 +19,7 @@ pub(super) enum SourceExtent {
 }
 
 impl SourceExtent {
-    /// That of a source; `None` for luminaires, whose file knows, and for the sun and the sky, which emit from infinity.
+    /// That of a source; `None` for luminaires and rays, whose file knows, and for the sun and the sky, which emit from infinity.
     pub(super) fn of(source: &SourceSpec) -> Option<Self> {
         match source {
             SourceSpec::Point(_) => Some(Self::Point),
@@ -30,7 +30,10 @@ impl SourceExtent {
             | SourceSpec::Cylinder(_) => Some(Self::Area),
             SourceSpec::Face(_) => Some(Self::Face),
             SourceSpec::Volume(_) => Some(Self::Volume),
-            SourceSpec::Luminaire(_) | SourceSpec::Sun(_) | SourceSpec::Sky(_) => None,
+            SourceSpec::Luminaire(_)
+            | SourceSpec::Rays(_)
+            | SourceSpec::Sun(_)
+            | SourceSpec::Sky(_) => None,
         }
     }
 
@@ -79,7 +82,10 @@ impl Context<'_> {
             SourceSpec::Face(face) => self.face_emitter(&face.shape, &key.field("of")),
             SourceSpec::Volume(volume) => self.volume_emitter(&volume.shape.of, &key.field("of")),
             // Lowered on their own.
-            SourceSpec::Luminaire(_) | SourceSpec::Sun(_) | SourceSpec::Sky(_) => None,
+            SourceSpec::Luminaire(_)
+            | SourceSpec::Rays(_)
+            | SourceSpec::Sun(_)
+            | SourceSpec::Sky(_) => None,
         }
     }
 

@@ -16,8 +16,7 @@ const LARGEST_FLUX: f64 = 1e30;
 
 /// Lumens, unless a source is given in watts.
 pub(super) fn unit(spec: &SceneSpec) -> FluxUnit {
-    let is_radiant = |source: &SourceSpec| source.common().is_some_and(|c| c.flux_w.is_some());
-    if spec.sources.values().any(is_radiant) { FluxUnit::Watt } else { FluxUnit::Lumen }
+    if spec.sources.values().any(SourceSpec::is_radiant) { FluxUnit::Watt } else { FluxUnit::Lumen }
 }
 
 impl Context<'_> {

@@ -52,7 +52,7 @@ impl Context<'_> {
         if matches!(opening, Some(None)) {
             return None;
         }
-        self.exports.push(LuminaireExport {
+        self.exports.luminaires.push(LuminaireExport {
             formats: formats.collect(),
             layout,
             lamps: (own.photometry == ExportPhotometry::Relative).then_some(own.lamps.unwrap_or(1)),

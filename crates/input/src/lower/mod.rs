@@ -24,6 +24,7 @@ pub(crate) mod names;
 mod patterns;
 mod place;
 pub(crate) mod plan;
+mod rays;
 mod reliefs;
 mod sensor_keys;
 mod sensors;
@@ -37,7 +38,7 @@ mod surfaces;
 mod tubes;
 mod weathers;
 
-use crate::export::LuminaireExport;
+use crate::export::Exports;
 use crate::keys::Places;
 use crate::lower::context::{Context, Scope};
 use crate::problems::Problems;
@@ -56,7 +57,7 @@ pub(crate) struct Lowered {
     /// Identifies the contents of the mesh files.
     pub(crate) meshes: Digest,
     /// Luminaire files that goniometers are to write.
-    pub(crate) exports: Vec<LuminaireExport>,
+    pub(crate) exports: Exports,
 }
 
 /// Checks and lowers the spec of a file. `None` if anything is wrong, or if no scene is wanted.

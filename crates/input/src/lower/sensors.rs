@@ -58,8 +58,10 @@ impl Context<'_> {
         let entering = entering.and_then(|face| self.faces_named(face, &key.field("entering")));
         let entering = entering.map(|faces| faces[0]);
         self.may_build(key)?;
-        self.builder.add_sensor(Sensor { name: name.to_owned(), kind: made?, aim: aim?, entering });
-        Some(())
+        let kind = made?;
+        let sensor =
+            self.builder.add_sensor(Sensor { name: name.to_owned(), kind, aim: aim?, entering });
+        self.lower_ray_export(spec, sensor, key)
     }
 
     fn aim(&mut self, spec: &SensorSpec, key: &Key) -> Option<Vec<FaceId>> {

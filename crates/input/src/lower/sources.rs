@@ -31,6 +31,8 @@ impl<'a> Context<'a> {
                 self.lower_sky(name, sky, &key);
             } else if let SourceSpec::Luminaire(luminaire) = source {
                 self.lower_luminaire(name, luminaire, &key);
+            } else if let SourceSpec::Rays(rays) = source {
+                self.lower_rays(name, rays, &key);
             } else {
                 self.lower_source(name, source, &key);
             }
@@ -40,10 +42,9 @@ impl<'a> Context<'a> {
     /// Light in lm and light in W cannot be added without spectra.
     fn check_units(&mut self) {
         let sources = || self.spec.sources.iter();
-        let is_radiant = |source: &SourceSpec| source.common().is_some_and(|c| c.flux_w.is_some());
-        let luminous = sources().find(|(_, source)| !is_radiant(source));
+        let luminous = sources().find(|(_, source)| !source.is_radiant());
         let Some((luminous, _)) = luminous else { return };
-        for (name, source) in sources().filter(|(_, source)| is_radiant(source)) {
+        for (name, source) in sources().filter(|(_, source)| source.is_radiant()) {
             let key = Key::of(&["sources", name, source.kind(), "flux_w"]);
             let message = format!(
                 "a scene has sources in W or in lm, not both; `sources.{luminous}` is in lm"

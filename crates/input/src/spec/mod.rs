@@ -13,6 +13,7 @@ pub(crate) mod finish;
 pub(crate) mod luminaire;
 pub(crate) mod pattern;
 pub(crate) mod placement;
+pub(crate) mod rays;
 pub(crate) mod relief;
 pub(crate) mod run;
 pub(crate) mod sensor;

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::spec::luminaire::LuminaireExportSpec;
 use crate::spec::placement::PlacementSpec;
+use crate::spec::rays::RayExportSpec;
 use crate::spec::sweep::AreaSpec;
 
 /// A sensor; exactly one of `plane`, `goniometer`, `luminance` and `image`.
@@ -51,6 +52,8 @@ pub struct SensorSpec {
     pub entering: Option<String>,
     /// Luminaire files to write from what the sensor measures. Only for a `goniometer` in the far field.
     pub luminaire: Option<LuminaireExportSpec>,
+    /// Ray files to write of the light that the sensor counts. Only for a `plane` or a `goniometer`.
+    pub rays: Option<RayExportSpec>,
 }
 
 /// The kind of a sensor, with its keys.

@@ -7,6 +7,7 @@ use crate::spec::daylight::{SkySpec, SunSpec, enabled};
 use crate::spec::finish::{EmptySpec, FinishRef};
 use crate::spec::luminaire::LuminaireSpec;
 use crate::spec::placement::{ContactSpec, PlacementSpec};
+use crate::spec::rays::RaysSpec;
 use crate::spec::solid::SphereSpec;
 use crate::spec::sweep::RectangleSpec;
 
@@ -33,6 +34,9 @@ pub enum SourceSpec {
     /// A luminaire or lamp from a file in IES LM-63 (.ies) or EULUMDAT (.ldt). Its nadir, γ = 0, is the axis; C0 is toward the local +x and C90
     /// toward the local -y, counter-clockwise as seen from behind.
     Luminaire(LuminaireSpec),
+    /// Rays from a file in IES TM-25 (.tm25ray), of OpticStudio (.dat, .sdf), or in CSV (.csv). A run gives results for the rays of the file: what so few of
+    /// them miss of the lamp is not in the errors.
+    Rays(RaysSpec),
     /// The sun.
     Sun(SunSpec),
     /// The sky.
@@ -45,7 +49,15 @@ impl SourceSpec {
         self.entry().0
     }
 
-    /// The keys that all kinds but luminaires, the sun and the sky have.
+    /// Whether its flux is given in W.
+    pub(crate) fn is_radiant(&self) -> bool {
+        match self {
+            Self::Rays(rays) => rays.flux_w.is_some(),
+            _ => self.common().is_some_and(|common| common.flux_w.is_some()),
+        }
+    }
+
+    /// The keys that all kinds but luminaires, rays, the sun and the sky have.
     pub(crate) fn common(&self) -> Option<&SourceCommonSpec> {
         self.entry().1
     }
@@ -61,6 +73,7 @@ impl SourceSpec {
             Self::Face(source) => ("face", Some(&source.common)),
             Self::Volume(source) => ("volume", Some(&source.common)),
             Self::Luminaire(_) => ("luminaire", None),
+            Self::Rays(_) => ("rays", None),
             Self::Sun(_) => ("sun", None),
             Self::Sky(_) => ("sky", None),
         }

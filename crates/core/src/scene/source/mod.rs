@@ -3,12 +3,14 @@
 pub(crate) mod emission;
 pub(crate) mod light_group;
 pub(crate) mod measured;
+pub(crate) mod rays;
 pub(crate) mod sky;
 
 use crate::scene::shape::{Shape, Sphere};
-use crate::scene::{Emission, Inside, PrimId, Ray, SolidId};
+use crate::scene::{Emission, Inside, PrimId, Ray, RaySet, SolidId};
 use glam::DVec3;
 use lumiduct_base::math::{Aabb, Frame};
+use std::sync::Arc;
 
 /// A source of light.
 #[derive(Debug, Clone)]
@@ -19,7 +21,7 @@ pub struct Source {
     pub flux: f64,
     /// The emitting geometry.
     pub emitter: Emitter,
-    /// The directions of its light.
+    /// The directions of its light; not used for rays, which have their own.
     pub emission: Emission,
     /// How the solids around a start point are found.
     pub start: StartSolids,
@@ -79,6 +81,15 @@ pub enum Emitter {
         /// The solid.
         solid: SolidId,
         /// Box around it, mm.
+        bounds: Aabb,
+    },
+    /// Given rays.
+    Rays {
+        /// The rays.
+        rays: Arc<RaySet>,
+        /// The frame that they refer to.
+        frame: Frame,
+        /// Box around their starts, mm.
         bounds: Aabb,
     },
 }
@@ -148,18 +159,28 @@ impl Emitter {
         Self::Far { shapes: [(shape, area)], center, radius, reach }
     }
 
-    /// Emitting area, mm²; `None` for points, lines, volumes and the far distance.
+    /// The emitter of given rays in a frame.
+    pub fn rays(rays: Arc<RaySet>, frame: Frame) -> Self {
+        let bounds = rays.bounds(&frame);
+        Self::Rays { rays, frame, bounds }
+    }
+
+    /// Emitting area, mm²; `None` for points, lines, volumes, rays and the far distance.
     pub fn area(&self) -> Option<f64> {
         match self {
-            Self::Point(_) | Self::Line { .. } | Self::Volume { .. } | Self::Far { .. } => None,
+            Self::Point(_)
+            | Self::Line { .. }
+            | Self::Volume { .. }
+            | Self::Far { .. }
+            | Self::Rays { .. } => None,
             Self::Surface { shapes, .. } => shapes.last().map(|(_, area)| *area),
         }
     }
 
-    /// The frame of a point; `None` for all others.
+    /// The frame of a point or of rays; `None` for all others.
     pub fn point(&self) -> Option<&Frame> {
         match self {
-            Self::Point(frame) => Some(frame),
+            Self::Point(frame) | Self::Rays { frame, .. } => Some(frame),
             Self::Line { .. } | Self::Surface { .. } | Self::Volume { .. } | Self::Far { .. } => {
                 None
             }
@@ -173,7 +194,11 @@ impl Emitter {
                 let half = 0.5 * length * frame.z;
                 Some([frame.origin - half, frame.origin + half])
             }
-            Self::Point(_) | Self::Surface { .. } | Self::Volume { .. } | Self::Far { .. } => None,
+            Self::Point(_)
+            | Self::Surface { .. }
+            | Self::Volume { .. }
+            | Self::Far { .. }
+            | Self::Rays { .. } => None,
         }
     }
 
@@ -182,14 +207,18 @@ impl Emitter {
     pub fn shapes(&self) -> &[(Shape, f64)] {
         match self {
             Self::Surface { shapes, .. } => shapes,
-            Self::Point(_) | Self::Line { .. } | Self::Volume { .. } | Self::Far { .. } => &[],
+            Self::Point(_)
+            | Self::Line { .. }
+            | Self::Volume { .. }
+            | Self::Far { .. }
+            | Self::Rays { .. } => &[],
         }
     }
 
-    /// The direction along which a point or a flat surface shines; `None` for all others.
+    /// The direction along which a point, a flat surface or the axis of rays shines; `None` for all others.
     pub fn axis(&self) -> Option<DVec3> {
         match self {
-            Self::Point(frame) => Some(frame.z),
+            Self::Point(frame) | Self::Rays { frame, .. } => Some(frame.z),
             Self::Surface { shapes, side, .. } => {
                 let [(shape, _)] = shapes.as_slice() else { return None };
                 let normals =
@@ -205,20 +234,34 @@ impl Emitter {
         }
     }
 
+    /// The rays, if it is made of them.
+    pub fn ray_set(&self) -> Option<&RaySet> {
+        match self {
+            Self::Rays { rays, .. } => Some(rays),
+            Self::Point(_)
+            | Self::Line { .. }
+            | Self::Surface { .. }
+            | Self::Volume { .. }
+            | Self::Far { .. } => None,
+        }
+    }
+
     /// Whether it is the sky or the sun, outside of everything.
     pub fn is_far(&self) -> bool {
         match self {
             Self::Far { .. } => true,
-            Self::Point(_) | Self::Line { .. } | Self::Surface { .. } | Self::Volume { .. } => {
-                false
-            }
+            Self::Point(_)
+            | Self::Line { .. }
+            | Self::Surface { .. }
+            | Self::Volume { .. }
+            | Self::Rays { .. } => false,
         }
     }
 
     /// Whether it is a thing of its own: not the sky, and not the inside of a solid.
     pub(crate) fn is_thing(&self) -> bool {
         match self {
-            Self::Point(_) | Self::Line { .. } | Self::Surface { .. } => true,
+            Self::Point(_) | Self::Line { .. } | Self::Surface { .. } | Self::Rays { .. } => true,
             Self::Volume { .. } | Self::Far { .. } => false,
         }
     }
@@ -234,7 +277,7 @@ impl Emitter {
             Self::Surface { shapes, .. } => {
                 shapes.iter().fold(Aabb::EMPTY, |bounds, (shape, _)| bounds.union(shape.bounds()))
             }
-            Self::Volume { bounds, .. } => *bounds,
+            Self::Volume { bounds, .. } | Self::Rays { bounds, .. } => *bounds,
             Self::Far { center, radius, .. } => Aabb::of([*center]).grown(*radius),
         }
     }

@@ -29,6 +29,9 @@ impl Source {
             Emitter::Volume { solid, bounds } => {
                 (self.emit_from_volume(scene, *solid, bounds, sampler), 0)
             }
+            Emitter::Rays { rays, frame, .. } => {
+                (rays.at(frame, sampler.one(Dimension::EmitPosition)), 0)
+            }
         };
         let inside = match self.start {
             StartSolids::Outside => Inside::default(),

@@ -274,7 +274,8 @@ fn target(id: SourceId, source: &Source) -> Option<SourceTarget<'_>> {
             ball = (*center, *reach);
             beam.map_or(EmitterExtent::Far, |_| EmitterExtent::FarBeam)
         }
-        (Emitter::Volume { .. }, _) | (Emitter::Point(_) | Emitter::Line { .. }, Some(_)) => {
+        (Emitter::Volume { .. } | Emitter::Rays { .. }, _)
+        | (Emitter::Point(_) | Emitter::Line { .. }, Some(_)) => {
             return None;
         }
     };

@@ -99,6 +99,7 @@ pub fn invisible(source: &Source, scene: &Scene) -> Option<&'static str> {
     match &source.emitter {
         Emitter::Point(_) => Some("it is a point"),
         Emitter::Line { .. } => Some("it is a line"),
+        Emitter::Rays { .. } => Some("it is a set of rays"),
         Emitter::Surface { .. } | Emitter::Far { .. } => source
             .emission
             .density(EmitterKind::Surface, any)
@@ -324,7 +325,7 @@ fn body<'s>(scene: &'s Scene, source: &'s Source) -> Option<EmittingBody<'s>> {
                 usual_length: volume.cbrt(),
             })
         }
-        Emitter::Point(_) | Emitter::Line { .. } => None,
+        Emitter::Point(_) | Emitter::Line { .. } | Emitter::Rays { .. } => None,
     }
 }
 

@@ -1,0 +1,62 @@
+//! Ray files as a scene file states them.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::spec::daylight::enabled;
+use crate::spec::placement::{ContactSpec, PlacementSpec};
+
+/// Ray files of the light that a sensor counts. Positions and directions are those of the scene.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RayExportSpec {
+    /// Number of rays. Omitted: 100,000.
+    #[schemars(range(min = 1, max = 20_000_000))]
+    pub count: Option<u32>,
+    /// The files, named after the sensor.
+    #[serde(default = "tm25_only")]
+    #[schemars(length(min = 1))]
+    pub formats: Vec<RayExportFormat>,
+}
+
+/// A format of a ray file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RayExportFormat {
+    /// IES TM-25: `SENSOR.tm25ray`.
+    Tm25,
+    /// Binary source file of OpticStudio: `SENSOR.dat`.
+    Zemax,
+    /// CSV: `SENSOR.rays.csv`.
+    Csv,
+}
+
+fn tm25_only() -> Vec<RayExportFormat> {
+    vec![RayExportFormat::Tm25]
+}
+
+/// Rays from a file. Without `flux_lm` and `flux_w` the flux is the luminous one of the file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RaysSpec {
+    /// The file. A relative path is relative to the scene file.
+    pub file: String,
+    /// Total luminous flux.
+    #[schemars(range(min = 0.0))]
+    pub flux_lm: Option<f64>,
+    /// Total radiant flux, in a scene in W.
+    #[schemars(range(min = 0.0))]
+    pub flux_w: Option<f64>,
+    /// Most rays that are kept in memory (32 bytes each): of a longer file, as many are drawn at random, always the same. Omitted: 10
+    /// million.
+    #[schemars(range(min = 1, max = 1_000_000_000))]
+    pub max_rays: Option<u32>,
+    /// How rays start that touch a face: `optical` starts them beyond the face, as through glue; `air` lets them cross
+    /// the face first. Omitted: `optical`.
+    pub contact: Option<ContactSpec>,
+    /// The light group, as of other sources.
+    pub group: Option<String>,
+    /// Whether it emits. A disabled source is dark, as with a flux of 0.
+    #[serde(default = "enabled")]
+    pub enabled: bool,
+    /// The frame of the file: its z axis is the axis, its x axis the local +x.
+    pub at: Option<PlacementSpec>,
+}

@@ -138,7 +138,15 @@ fn what_contradicts_itself_or_is_lost_is_remarked_on() {
         assert!(remarks(old, new).contains(words), "{new}: {}", remarks(old, new));
     }
     let ellipse = ies(&LAMBERT.replace("0.05 0.08 0", "-0.05 -0.08 0")).unwrap().luminaire;
-    assert_eq!(written(&ellipse, LuminaireFormat::Ies).remarks.len(), 0);
+    let remarks = written(&ellipse, LuminaireFormat::Ies).remarks;
+    assert!(remarks.len() == 1 && remarks[0].contains("beyond ASCII"), "{remarks:?}");
+    // Long texts go on in further lines.
+    let mut wordy = ellipse.clone();
+    wordy.texts = vec![("OTHER".to_owned(), "0123456789".repeat(50))];
+    let written_again = written(&wordy, LuminaireFormat::Ies);
+    assert_eq!(written_again.remarks, [""; 0]);
+    let back = ies(&written_again.text).unwrap().luminaire;
+    assert_eq!(back.text("OTHER").unwrap().replace('\n', ""), "0123456789".repeat(50));
     let written = written(&ellipse, LuminaireFormat::Ldt);
     assert!(written.remarks[0].contains("an ellipse"), "{:?}", written.remarks);
     let back = parse(written.text.as_bytes(), LuminaireFormat::Ldt).unwrap().luminaire.opening;

@@ -21,9 +21,10 @@ pub(crate) fn write(luminaire: &Luminaire) -> WrittenLuminaire {
         _ = write!(out, "[{keyword}]\r\n");
     }
     for (keyword, text) in texts {
-        for (place, part) in text.split('\n').enumerate() {
-            let keyword = if place == 0 { keyword.as_str() } else { "MORE" };
-            _ = write!(out, "[{}] {}\r\n", one_line(keyword, KEYWORD), one_line(part, TEXT));
+        let mut keyword = one_line(keyword, KEYWORD);
+        for part in text.split('\n').flat_map(parts) {
+            _ = write!(out, "[{keyword}] {}\r\n", one_line(&part, TEXT));
+            keyword = "MORE".to_owned();
         }
     }
     out += "TILT=NONE\r\n";
@@ -66,5 +67,18 @@ pub(crate) fn write(luminaire: &Luminaire) -> WrittenLuminaire {
     list(intensities.angles_deg());
     list(&planes_deg);
     planes.iter().for_each(|place| list(intensities.plane(*place)));
-    WrittenLuminaire { text: out, remarks: Vec::new() }
+    let mut remarks = Vec::new();
+    if !out.is_ascii() {
+        let remark =
+            "texts have letters beyond ASCII, which are written in UTF-8; LM-63 knows ASCII only";
+        remarks.push(remark.to_owned());
+    }
+    WrittenLuminaire { text: out, remarks }
+}
+
+/// A text in parts that fit into a line; one part for an empty text.
+fn parts(text: &str) -> Vec<String> {
+    let letters: Vec<char> = text.chars().collect();
+    let parts = letters.chunks(TEXT).map(|part| part.iter().collect());
+    if letters.is_empty() { vec![String::new()] } else { parts.collect() }
 }

@@ -6,7 +6,7 @@ use crate::rays::table::RayTable;
 use crate::rays::zemax_text::ZemaxLines;
 use crate::rays::{FileRay, RayFileError, RayFormat, RaySetInfo, tm25, zemax};
 use std::fs::{self, File};
-use std::io::{self, SeekFrom};
+use std::io::{self, Cursor, SeekFrom};
 use std::path::Path;
 
 /// The rays of a file, one after the other. After an error there are no more.
@@ -41,7 +41,16 @@ impl RayReader {
         Self::from_source(Box::new(File::open(path)?), format)
     }
 
-    pub(crate) fn from_source(
+    /// Reads the bytes of a file.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::open`].
+    pub fn of_bytes(bytes: Vec<u8>, format: RayFormat) -> Result<Self, RayFileError> {
+        Self::from_source(Box::new(Cursor::new(bytes)), format)
+    }
+
+    fn from_source(
         mut source: Box<dyn RaySource>,
         format: RayFormat,
     ) -> Result<Self, RayFileError> {

@@ -4,7 +4,6 @@ use crate::rays::sampling::sampled;
 use lumiduct_base::units::FluxUnit;
 use rand_core::{Rng, SeedableRng};
 use rand_xoshiro::SplitMix64;
-use std::io::Cursor;
 
 const FORMATS: [RayFormat; 3] = [RayFormat::Tm25, RayFormat::Zemax, RayFormat::Csv];
 
@@ -41,7 +40,7 @@ fn bytes(format: RayFormat, rays: &[FileRay], unit: FluxUnit) -> Vec<u8> {
 }
 
 fn open(bytes: &[u8], format: RayFormat) -> Result<RayReader, RayFileError> {
-    RayReader::from_source(Box::new(Cursor::new(bytes.to_vec())), format)
+    RayReader::of_bytes(bytes.to_vec(), format)
 }
 
 fn read(bytes: &[u8], format: RayFormat) -> Result<Vec<FileRay>, RayFileError> {

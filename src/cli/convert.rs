@@ -7,6 +7,7 @@ use crate::cli::exit::{fail, finish};
 use crate::cli::values::parse_count;
 use clap::Args;
 use lumiduct_base::error::{Error, Result};
+use lumiduct_files::luminaire::LuminaireFormat;
 use lumiduct_files::rays::RayFormat;
 use lumiduct_report::Existing;
 use std::path::PathBuf;
@@ -14,10 +15,10 @@ use std::process::ExitCode;
 
 #[derive(Debug, Args)]
 pub(super) struct ConvertArgs {
-    /// A luminaire, .ies (LM-63-1986 to -2019, goniometer type C) or .ldt (EULUMDAT); or rays, .tm25ray (IES TM-25), .dat or .sdf (source
+    /// A luminaire, .ies (LM-63-1986 to -2019, goniometer type C) or .ldt (EULUMDAT); or rays, .tm25ray (IES TM-25), .sdf or .dat (source
     /// file of OpticStudio) or .csv.
     from: PathBuf,
-    /// The file to write, of the same kind: .ies (LM-63-2002) or .ldt; .tm25ray, .dat, .sdf or .csv. Left out, the file is only described.
+    /// The file to write, of the same kind: .ies (LM-63-2002) or .ldt; .tm25ray, .sdf, .dat or .csv. Left out, the file is only described.
     to: Option<PathBuf>,
     /// Of a ray file, take no more than this many rays, drawn at random; their fluxes are scaled to the flux of all.
     #[arg(long, value_name = "COUNT", value_parser = parse_count)]
@@ -43,6 +44,12 @@ fn converted(args: &ConvertArgs) -> Result<String> {
     let to = to.as_deref();
     if RayFormat::of(from).is_ok() {
         return rays::converted(from, to, rays.map(|count| (count, *seed)), existing);
+    }
+    if LuminaireFormat::of(from).is_err() {
+        return Err(Error::Usage(format!(
+            "{}: not the ending of a known file; luminaires have .ies or .ldt, rays .tm25ray, .sdf, .dat or .csv",
+            from.display()
+        )));
     }
     if rays.is_some() {
         return Err(Error::Usage(format!("--rays: {} is not a ray file", from.display())));

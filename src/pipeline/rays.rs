@@ -21,10 +21,13 @@ pub(super) fn rays(job: &Job, measures: &Measures) -> (Vec<MeasuredRays>, Vec<St
         );
         if rays.len() < export.count {
             let (found, asked) = (rays.len(), export.count);
-            let file =
-                if found == 0 { "no ray file is written" } else { "its ray files have no more" };
+            let file = if found == 0 {
+                "no ray file is written"
+            } else {
+                "its ray files contain only these"
+            };
             remarks.push(format!(
-                "`{name}` counted only {found} of {asked} rays that were asked for in 256 photons for each: {file}"
+                "`{name}` counted {found} of the {asked} rays requested, after 256 photons for each: {file}"
             ));
         }
         if !rays.is_empty() {

@@ -26,8 +26,8 @@ fn a_run_writes_rays_that_are_converted_thinned_and_traced_again() {
     let report = "reports/lamp/above";
     let flux = place.summary("reports/lamp")["measures"]["above.flux"]["value"].as_f64().unwrap();
     let page = fs::read_to_string(place.path("reports/lamp/report.md")).unwrap();
-    assert!(page.contains("above.tm25ray and above.dat and above.rays.csv: 2000 rays"), "{page}");
-    for ending in ["tm25ray", "dat", "rays.csv"] {
+    assert!(page.contains("above.tm25ray and above.sdf and above.rays.csv: 2000 rays"), "{page}");
+    for ending in ["tm25ray", "sdf", "rays.csv"] {
         let said = place.good(&format!("convert {report}.{ending}"));
         assert!(said.contains("rays: 2000\n") && said.contains("z 1 to 1 mm"), "{said}");
         assert!(said.contains("mean direction: "), "{said}");
@@ -38,7 +38,7 @@ fn a_run_writes_rays_that_are_converted_thinned_and_traced_again() {
     place.good("convert out/again.csv out/last.dat");
     let rays = |file: &str| fs::read(place.path(file)).unwrap()[208..].to_vec();
     assert!(rays("out/again.dat") == rays("out/last.dat"));
-    assert!(rays("out/again.dat") == rays(&format!("{report}.dat")));
+    assert!(rays("out/again.dat") == rays(&format!("{report}.sdf")));
     let said = place.good(&format!("convert {report}.tm25ray out/few.csv --rays 100 --seed 3"));
     assert!(said.contains("rays: 100\n"), "{said}");
     assert!(place.bad(2, "convert out/again.csv out/few.csv").contains("--overwrite"));
@@ -57,7 +57,7 @@ fn a_run_writes_rays_that_are_converted_thinned_and_traced_again() {
     let summary = place.summary("reports/next");
     let again = summary["measures"]["balance.emitted"]["value"].as_f64().unwrap();
     assert!((again / flux - 1.0).abs() < 1e-6, "{again} {flux}");
-    assert!(summary["warnings"].to_string().contains("a sample of the lamp's light"), "{summary}");
+    assert!(summary["warnings"].to_string().contains("a sample of the lamp"), "{summary}");
     let said = place.bad(2, "run next.toml --estimator gather -o out/gather");
     assert!(said.contains("a set of rays"), "{said}");
 }
@@ -68,7 +68,7 @@ fn a_sensor_that_few_photons_reach_writes_fewer_rays_or_none() {
     let small = LAMP.replace("width_mm = 4, height_mm = 4", "width_mm = 0.05, height_mm = 0.05");
     fs::write(place.path("small.toml"), &small).unwrap();
     let said = place.good("run small.toml");
-    assert!(said.contains("rays that were asked for"), "{said}");
+    assert!(said.contains("rays requested"), "{said}");
     assert!(place.path("reports/small/above.tm25ray").exists());
     fs::write(place.path("dark.toml"), small.replace("axis = [0, 0, -1]", "axis = [0, 0, 1]"))
         .unwrap();

@@ -96,7 +96,8 @@ pub fn remarks_on_ray_sets(scene: &Scene, measures: &Measures) -> Vec<String> {
     let per_ray = per_ray.fold(0.0, f64::max);
     let remark = |sensor: &Sensor| {
         let flux = measures.values.get(&format!("{}.flux", sensor.name))?;
-        // Rays that reach the sensor with probability p have a flux of variance Φ² p (1 - p) / N, which is at most Φ / N times the flux.
+        // Rays that reach the sensor with probability p have a flux of variance Φ² p (1 - p) / N, which is at most Φ / N times the flux; of
+        // several sources, the largest Φ / N and the whole flux are still a bound.
         let of_rays = (per_ray * flux.value).sqrt();
         (of_rays > flux.std_error).then(|| {
             let share = of_rays / flux.value;
@@ -104,12 +105,12 @@ pub fn remarks_on_ray_sets(scene: &Scene, measures: &Measures) -> Vec<String> {
                 1 => String::new(),
                 count => {
                     let of_cell = share * (count as f64).sqrt();
-                    format!(" (a cell of mean flux, {})", format_percent(of_cell))
+                    format!(" (a cell with the mean flux: {})", format_percent(of_cell))
                 }
             };
             format!(
-                "as an estimate for the lamp, `{}.flux` has an error of up to {}{cells}: its rays are a sample of the lamp's \
-                    light, and stated errors are for these rays",
+                "as an estimate for the lamp, `{}.flux` has a standard error of up to {}{cells}, because the rays are a sample of the \
+                    lamp's light; the stated errors do not include this",
                 sensor.name,
                 format_percent(share),
             )

@@ -132,7 +132,7 @@ fn description(info: &RaySetInfo, stated: f64, extent: &Extent) -> String {
     });
     _ = writeln!(text, "starts: {} mm", sides.join(", "));
     let mean = extent.direction / extent.flux;
-    let [x, y, z] = mean.to_array();
-    _ = writeln!(text, "mean direction: {x:.4}, {y:.4}, {z:.4}");
+    let mean = mean.to_array().map(format_value).join(", ");
+    _ = writeln!(text, "mean direction: {mean}");
     text
 }

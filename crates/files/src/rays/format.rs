@@ -18,7 +18,7 @@ impl RayFormat {
     pub fn ending(self) -> &'static str {
         match self {
             Self::Tm25 => "tm25ray",
-            Self::Zemax => "dat",
+            Self::Zemax => "sdf",
             Self::Csv => "csv",
         }
     }

@@ -44,18 +44,21 @@ impl RayTable {
             let is_it = |own: &str| unquoted(own).eq_ignore_ascii_case(name);
             head.iter().position(|own| is_it(own.trim_start_matches('\u{feff}')))
         };
-        let needed = |name: &str| {
-            place(name).ok_or_else(|| {
-                let problem = format!(
-                    "there is no column `{name}`; needed are {}, and {LUMENS} or {WATTS}",
-                    COLUMNS.join(", ")
-                );
-                RayFileError::in_line(FORMAT, line, problem)
-            })
+        let missing = |name: &str| {
+            let commas = if head.len() < 7 { "; commas separate columns" } else { "" };
+            let columns = COLUMNS.join(", ");
+            let problem = format!(
+                "there is no column `{name}`; needed are {columns}, and {LUMENS} or {WATTS}{commas}"
+            );
+            RayFileError::in_line(FORMAT, line, problem)
         };
+        let needed = |name: &str| place(name).ok_or_else(|| missing(name));
         let (unit, flux_at) = match place(LUMENS) {
             Some(at) => (FluxUnit::Lumen, at),
-            None => (FluxUnit::Watt, needed(WATTS)?),
+            None => (
+                FluxUnit::Watt,
+                place(WATTS).ok_or_else(|| missing(&format!("{LUMENS}` or `{WATTS}")))?,
+            ),
         };
         let mut places = [flux_at; 7];
         for (place, name) in places.iter_mut().zip(COLUMNS) {

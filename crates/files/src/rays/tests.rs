@@ -101,6 +101,8 @@ fn rays_of_tm25_follow_its_tables_columns_and_text() {
     let reader = open(&file, RayFormat::Tm25).unwrap();
     assert_eq!(reader.remarks(), ["its additional columns and text are not used"]);
     assert_eq!(reader.collect::<Result<Vec<_>, _>>().unwrap(), rays);
+    let later = tm25(&[(4, 2020)], &[]);
+    assert!(open(&later, RayFormat::Tm25).unwrap().remarks()[0].contains("read as 2013"));
     // Luminous flux after radiant flux and a wavelength; luminous flux of the header beside radiant rays.
     let mut file = tm25(&[(256 + 12, 1), (256 + 16, 1)], &[]);
     file.extend(550f32.to_le_bytes());
@@ -209,7 +211,7 @@ fn csv_may_have_comments_any_order_and_any_line_ends() {
     let ray = FileRay { position_mm: [1.0, 2.0, 3.0], direction: [0.0, 0.0, 1.0], flux: 2.5 };
     assert_eq!(reader.collect::<Result<Vec<_>, _>>().unwrap(), [ray]);
     let refuse = |text: &str, parts: &[&str]| refused(text.as_bytes(), RayFormat::Csv, parts);
-    refuse("x_mm,y_mm\n1,2\n", &["line 1", "no column `flux_w`", "flux_lm"]);
+    refuse("x_mm,y_mm\n1,2\n", &["line 1", "no column `flux_lm` or `flux_w`", "commas"]);
     refuse("x_mm,y_mm,flux_w\n1,2,3\n", &["no column `z_mm`"]);
     let head = "x_mm,y_mm,z_mm,dx,dy,dz,flux_lm\n";
     refuse(head, &["no rays follow"]);

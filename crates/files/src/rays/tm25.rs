@@ -20,8 +20,9 @@ const LETTERS: usize = 1000;
 const ALIGNED: u64 = 32;
 /// Bytes of the name of an additional column (section 4.7.5).
 const COLUMN_NAME: u64 = 512;
-/// Version that is written; that of 2020 can be read in the same way.
+/// Version that is written.
 const VERSION: i32 = 2013;
+/// Version whose layout is taken to be the same.
 const LATER_VERSION: i32 = 2020;
 
 /// Reads the header.
@@ -50,6 +51,9 @@ pub(crate) fn open(
     let (start, mut remarks) = (after_tables(&mut source, tables, length)?, Vec::new());
     // Sizes were checked not to be negative.
     let start = start + columns as u64 * COLUMN_NAME + text as u64;
+    if version == LATER_VERSION {
+        remarks.push(format!("its version is {LATER_VERSION}, which is read as {VERSION}"));
+    }
     if tables > 0 || columns_of_rays.has_color {
         remarks.push("its spectra, wavelengths and colours are not used".to_owned());
     }

@@ -33,7 +33,14 @@ pub(crate) fn unit_mm(code: i32) -> Option<f32> {
 
 /// Whether it begins as a binary file does.
 pub(crate) fn is_binary(source: &mut dyn RaySource) -> Result<bool, RayFileError> {
-    let identifier = RayHeader::read(source, FORMAT, 4)?.i32(0)?;
+    let Ok(head) = RayHeader::read(source, FORMAT, 4) else {
+        return Err(RayFileError::at_byte(
+            FORMAT,
+            0,
+            "the file is empty or has fewer than 4 bytes",
+        ));
+    };
+    let identifier = head.i32(0)?;
     source.rewind()?;
     Ok(IDENTIFIERS.contains(&identifier))
 }

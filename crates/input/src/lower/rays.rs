@@ -9,6 +9,7 @@ use crate::spec::placement::ContactSpec;
 use crate::spec::rays::{RayExportFormat, RaysSpec};
 use crate::spec::sensor::SensorSpec;
 use glam::Vec3;
+use lumiduct_base::number::format_value;
 use lumiduct_base::units::FluxUnit;
 use lumiduct_core::scene::{Emission, EmittedRay, Emitter, RaySet, SensorId, Source, StartSolids};
 use lumiduct_files::rays::{RayFormat, RaySample, RaySetInfo, sample};
@@ -80,6 +81,8 @@ impl Context<'_> {
             self.problems.warning(key, message).hint("allow more with `max_rays`");
         }
         // The hash of the scene contains what is used of the file.
+        let fluxes = [sample.info.flux, sample.info.luminous_flux_lm.unwrap_or(0.0)];
+        fluxes.iter().for_each(|flux| self.meshes.add(&flux.to_le_bytes()));
         for ray in &sample.rays {
             let numbers = ray.position_mm.into_iter().chain(ray.direction).chain([ray.flux]);
             numbers.for_each(|number| self.meshes.add(&number.to_le_bytes()));
@@ -121,8 +124,9 @@ impl Context<'_> {
             FluxUnit::Watt => info.luminous_flux_lm,
         };
         let Some(flux) = luminous else {
-            let message = format!("`{}` has radiant flux only, {} W", spec.file, info.flux);
-            let hint = "give `flux_lm`, or `flux_w` for a scene in W";
+            let flux = format_value(info.flux);
+            let message = format!("`{}` has radiant flux only, {flux} W", spec.file);
+            let hint = format!("give `flux_lm`; or, for a scene in W, flux_w = {flux}");
             return self.refuse(&key.field("file"), message, hint);
         };
         self.carried([flux, flux], &key.field("file"))

@@ -24,7 +24,7 @@ pub struct RayExportSpec {
 pub enum RayExportFormat {
     /// IES TM-25: `SENSOR.tm25ray`.
     Tm25,
-    /// Binary source file of OpticStudio: `SENSOR.dat`.
+    /// Binary source file of OpticStudio: `SENSOR.sdf`.
     Zemax,
     /// CSV: `SENSOR.rays.csv`.
     Csv,
@@ -39,14 +39,14 @@ fn tm25_only() -> Vec<RayExportFormat> {
 pub struct RaysSpec {
     /// The file. A relative path is relative to the scene file.
     pub file: String,
-    /// Total luminous flux.
+    /// Total luminous flux. Omitted: that of the file, which must then be in lm.
     #[schemars(range(min = 0.0))]
     pub flux_lm: Option<f64>,
     /// Total radiant flux, in a scene in W.
     #[schemars(range(min = 0.0))]
     pub flux_w: Option<f64>,
-    /// Most rays that are kept in memory (32 bytes each): of a longer file, as many are drawn at random, always the same. Omitted: 10
-    /// million.
+    /// Most rays that are kept in memory (36 bytes each, more while the file is read). If the file has more, that many are drawn at random, the same
+    /// ones in every run. Omitted: 10 million.
     #[schemars(range(min = 1, max = 1_000_000_000))]
     pub max_rays: Option<u32>,
     /// How rays start that touch a face: `optical` starts them beyond the face, as through glue; `air` lets them cross

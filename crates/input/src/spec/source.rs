@@ -34,8 +34,8 @@ pub enum SourceSpec {
     /// A luminaire or lamp from a file in IES LM-63 (.ies) or EULUMDAT (.ldt). Its nadir, γ = 0, is the axis; C0 is toward the local +x and C90
     /// toward the local -y, counter-clockwise as seen from behind.
     Luminaire(LuminaireSpec),
-    /// Rays from a file in IES TM-25 (.tm25ray), of OpticStudio (.dat, .sdf), or in CSV (.csv). A run gives results for the rays of the file: what so few of
-    /// them miss of the lamp is not in the errors.
+    /// Rays from a file in IES TM-25 (.tm25ray), of OpticStudio (.dat, .sdf), or in CSV (.csv). Results hold for the rays of the file; their
+    /// errors do not include that the rays are only a sample of the lamp's light.
     Rays(RaysSpec),
     /// The sun.
     Sun(SunSpec),

@@ -46,6 +46,8 @@ impl MapTable {
         let first = kind.columns.len();
         let unit = header.get(first + 1).and_then(|name| name.strip_prefix("std_error_"));
         let unit = unit.ok_or("there is no column of standard errors")?.to_owned();
+        // The share of a cell on the sensor may follow too; it is no error.
+        let bias = header.iter().skip(first).position(|name| name.starts_with("bias_"));
         let mut map = Self {
             name: name.to_owned(),
             kind,
@@ -66,7 +68,7 @@ impl MapTable {
                 _ => [0.5 * (place[0] + place[1]), 0.5 * (place[2] + place[3])],
             });
             map.values.push(rest[0]);
-            map.errors.push(rest[1].hypot(rest.get(2).copied().unwrap_or(0.0)));
+            map.errors.push(rest[1].hypot(bias.map_or(0.0, |place| rest[place])));
         }
         Ok(Some(map))
     }

@@ -233,6 +233,24 @@ fn maps_are_compared_cell_by_cell() {
 }
 
 #[test]
+fn the_share_of_a_cell_on_the_sensor_is_no_error() {
+    let z = |columns: &str, numbers: &str| {
+        let [a, b] = ["100,3", "105,4"].map(|cell| {
+            let text = format!("u_mm,v_mm,e_lx,std_error_lx{columns}\n0,0,{cell}{numbers}\n");
+            MapTable::parse("exit.illuminance", &text).unwrap().unwrap()
+        });
+        match maps::compare(&[a], &[b])[0].outcome {
+            MapOutcome::Compared { largest, .. } => largest,
+            MapOutcome::OtherCells => panic!("the cells are the same"),
+        }
+    };
+    assert_eq!(z("", ""), 1.0);
+    assert_eq!(z(",on_sensor", ",1"), 1.0);
+    let biased = 5.0 / (9.0f64 + 16.0 + 2.0 * 16.0).sqrt();
+    assert!((z(",bias_lx,on_sensor", ",4,1") - biased).abs() < 1e-12);
+}
+
+#[test]
 fn maps_of_other_cells_are_told_and_other_tables_are_no_maps() {
     let text = "u_mm,v_mm,illuminance_lx,std_error_lx\n-1,-1,1,0.1\n";
     let other = MapTable::parse("exit.illuminance", text).unwrap().unwrap();

@@ -163,14 +163,6 @@ fn photons_of_rays_that_end_in_records_find_the_same_light() {
 }
 
 #[test]
-fn the_rays_of_the_second_scene_are_those_that_the_first_reports() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let [used, reported] = ["scenes/rays/led.tm25ray", "reports/rayfile_led/above.tm25ray"]
-        .map(|file| std::fs::read(root.join(file)).unwrap());
-    assert!(used == reported, "copy the file of the report into scenes/rays");
-}
-
-#[test]
 fn a_sensor_without_light_has_no_rays() {
     let text = format!("[sources.led.disk]\nradius_mm = 1\nflux_lm = 5\n{TUBE}{SENSORS}");
     let turned = text.replace(

@@ -43,9 +43,4 @@ impl RayFileError {
     pub(crate) fn at_byte(format: RayFormat, byte: u64, problem: impl Into<String>) -> Self {
         Self::Violated { format, place: format!("byte {byte}"), problem: problem.into() }
     }
-
-    /// A violation in a line, from 1.
-    pub(crate) fn in_line(format: RayFormat, line: u64, problem: impl Into<String>) -> Self {
-        Self::Violated { format, place: format!("line {line}"), problem: problem.into() }
-    }
 }

@@ -24,6 +24,7 @@
 mod data;
 mod error;
 mod format;
+mod lines;
 mod reader;
 mod records;
 mod sampling;

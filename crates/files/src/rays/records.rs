@@ -142,7 +142,7 @@ impl RayHeader {
         }
     }
 
-    /// A flux; `None` if it is 0 or not a number, which stands for unknown.
+    /// A flux; `None` for 0 and NaN, with which files say that they do not know it.
     pub(crate) fn flux(&self, at: usize) -> Result<Option<f64>, RayFileError> {
         let flux = f64::from(self.f32(at)?);
         if flux < 0.0 || flux.is_infinite() {

@@ -241,8 +241,9 @@ fn errors_of_csv_count_comments_and_blank_lines() {
         refused(text.as_bytes(), RayFormat::Csv, &parts);
         refused(text.replace('\n', "\r\n").as_bytes(), RayFormat::Csv, &parts);
     }
-    let text = [head.as_bytes(), good.as_bytes(), b"# x\n0,0,0,0,0,1,\xff\n"].concat();
-    refused(&text, RayFormat::Csv, &["line 7", "UTF-8"]);
+    // Comments may be in any encoding.
+    let text = [head.as_bytes(), good.as_bytes(), b"# 5\xb0\n0,0,0,0,0,1,\xff\n"].concat();
+    refused(&text, RayFormat::Csv, &["line 7", "is not a number"]);
 }
 
 #[test]

@@ -3,13 +3,12 @@
 use crate::keys::Key;
 use crate::lower::context::Context;
 use crate::lower::place::Facing;
-use crate::lower::weathers::{Member, group};
+use crate::lower::sources::PlacedSource;
 use crate::spec::luminaire::{LuminaireExtent, LuminaireSpec};
-use crate::spec::placement::ContactSpec;
 use lumiduct_base::math::Frame;
 use lumiduct_base::number::{format_exact, format_percent};
 use lumiduct_core::scene::shape::{Flat, Region, Shape};
-use lumiduct_core::scene::{Emission, EmitSide, Emitter, MeasuredEmission, Source, StartSolids};
+use lumiduct_core::scene::{Emission, EmitSide, Emitter, MeasuredEmission};
 use lumiduct_files::luminaire::{self, Intensities, Luminaire, Opening, ReadLuminaire};
 use std::sync::Arc;
 
@@ -42,22 +41,17 @@ impl Context<'_> {
                 self.carried([flux, flux], &key.field("file"))?
             }
         };
-        let start = match spec.contact {
-            Some(ContactSpec::Air) => StartSolids::Behind,
-            Some(ContactSpec::Optical) | None => StartSolids::Ahead,
-        };
-        let source = self.builder.add_source(Source {
-            name: name.to_owned(),
-            flux: if spec.enabled { flux } else { 0.0 },
+        let placed = PlacedSource {
+            name,
+            enabled: spec.enabled,
+            flux,
             emitter,
             emission: Emission::Measured(Arc::new(table)),
-            start,
             on: Vec::new(),
-            elevation: None,
-            sun: None,
-        });
-        let group = group(spec.group.as_ref(), key);
-        self.members.push(Member { source, group, daylight: None });
+            contact: spec.contact,
+            group: spec.group.as_ref(),
+        };
+        self.add_placed(placed, key);
         Some(())
     }
 

@@ -4,14 +4,13 @@ use crate::export::RayExport;
 use crate::keys::Key;
 use crate::lower::context::Context;
 use crate::lower::place::Facing;
-use crate::lower::weathers::{Member, group};
-use crate::spec::placement::ContactSpec;
+use crate::lower::sources::PlacedSource;
 use crate::spec::rays::{RayExportFormat, RaysSpec};
 use crate::spec::sensor::SensorSpec;
 use glam::Vec3;
 use lumiduct_base::number::format_value;
 use lumiduct_base::units::FluxUnit;
-use lumiduct_core::scene::{Emission, EmittedRay, Emitter, RaySet, SensorId, Source, StartSolids};
+use lumiduct_core::scene::{Emission, EmittedRay, Emitter, RaySet, SensorId};
 use lumiduct_files::rays::{RayFormat, RaySample, RaySetInfo, sample};
 use std::sync::Arc;
 
@@ -38,22 +37,18 @@ impl Context<'_> {
             let message = format!("`{}` has no light in the rays that were drawn", spec.file);
             return self.refuse(&key.field("max_rays"), message, "allow more rays");
         };
-        let start = match spec.contact {
-            Some(ContactSpec::Air) => StartSolids::Behind,
-            Some(ContactSpec::Optical) | None => StartSolids::Ahead,
-        };
-        let source = self.builder.add_source(Source {
-            name: name.to_owned(),
-            flux: if spec.enabled { flux } else { 0.0 },
+        let placed = PlacedSource {
+            name,
+            enabled: spec.enabled,
+            flux,
             emitter: Emitter::rays(Arc::new(rays), frame?),
+            // Rays have their own directions.
             emission: Emission::Isotropic,
-            start,
             on: Vec::new(),
-            elevation: None,
-            sun: None,
-        });
-        let group = group(spec.group.as_ref(), key);
-        self.members.push(Member { source, group, daylight: None });
+            contact: spec.contact,
+            group: spec.group.as_ref(),
+        };
+        self.add_placed(placed, key);
         Some(())
     }
 

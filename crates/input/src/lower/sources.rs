@@ -19,6 +19,20 @@ struct SourceKeys<'a> {
     kind: &'static str,
 }
 
+/// A source in its place.
+pub(super) struct PlacedSource<'a> {
+    pub(super) name: &'a str,
+    pub(super) enabled: bool,
+    /// Flux if it is enabled, lm or W.
+    pub(super) flux: f64,
+    pub(super) emitter: Emitter,
+    pub(super) emission: Emission,
+    /// The surfaces that it lies on.
+    pub(super) on: Vec<PrimId>,
+    pub(super) contact: Option<ContactSpec>,
+    pub(super) group: Option<&'a String>,
+}
+
 impl<'a> Context<'a> {
     pub(super) fn lower_sources(&mut self) {
         self.check_units();
@@ -69,31 +83,35 @@ impl<'a> Context<'a> {
         if let Some(finish) = body {
             on = self.add_body(name, &emitter, finish);
         }
+        if common.contact == Some(ContactSpec::Air) {
+            on.clear();
+        }
+        let &SourceCommonSpec { enabled, contact, .. } = common;
+        let group = common.group.as_ref();
+        let placed = PlacedSource { name, enabled, flux, emitter, emission, on, contact, group };
+        self.add_placed(placed, key);
+        Some(())
+    }
+
+    /// Adds a source of the scene that is no daylight.
+    pub(super) fn add_placed(&mut self, placed: PlacedSource<'_>, key: &Key) {
         // Whether the solids at the start must be found for each path is decided when the scene is
         // complete.
-        let start = match common.contact {
+        let start = match placed.contact {
             Some(ContactSpec::Air) => StartSolids::Behind,
             Some(ContactSpec::Optical) | None => StartSolids::Ahead,
         };
-        if start == StartSolids::Behind {
-            on.clear();
-        }
         let source = self.builder.add_source(Source {
-            name: name.to_owned(),
-            flux: if common.enabled { flux } else { 0.0 },
-            emitter,
-            emission,
+            name: placed.name.to_owned(),
+            flux: if placed.enabled { placed.flux } else { 0.0 },
+            emitter: placed.emitter,
+            emission: placed.emission,
             start,
-            on,
+            on: placed.on,
             elevation: None,
             sun: None,
         });
-        self.members.push(Member {
-            source,
-            group: group(common.group.as_ref(), key),
-            daylight: None,
-        });
-        Some(())
+        self.members.push(Member { source, group: group(placed.group, key), daylight: None });
     }
 
     fn check_amount(&mut self, keys: &SourceKeys<'_>, key: &Key) -> Option<()> {

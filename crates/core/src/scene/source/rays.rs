@@ -38,11 +38,6 @@ impl RaySet {
         (sum > 0.0).then_some(Self { rays, up_to })
     }
 
-    /// Number of rays that have light.
-    pub fn count(&self) -> usize {
-        self.rays.len()
-    }
-
     /// Number of equal rays with the same variance of sums: (Σ flux)² / Σ flux² (Kish, Survey Sampling, 1965, section 11.7).
     pub fn effective_count(&self) -> f64 {
         let squares: f64 = self.rays.iter().map(|ray| f64::from(ray.flux).powi(2)).sum();
@@ -79,7 +74,6 @@ mod tests {
     #[test]
     fn shares_fall_on_rays_in_proportion_to_their_flux() {
         let set = RaySet::new([ray(0.0, 1.0), ray(1.0, 0.0), ray(2.0, 3.0)]).unwrap();
-        assert_eq!(set.count(), 2);
         // 16 / 10.
         assert!((set.effective_count() - 1.6).abs() < 1e-12);
         let start = |share| set.at(&Frame::WORLD, share).origin().x;

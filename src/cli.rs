@@ -10,6 +10,7 @@ mod display;
 mod exit;
 mod film;
 mod junit;
+mod measured;
 mod merge;
 mod mesh;
 mod process;

@@ -69,9 +69,14 @@ pub(super) fn parse_time(text: &str) -> Result<Duration, String> {
     Err(format!("`{text}` is out of range, expected a time above 0"))
 }
 
-/// A length above 0, mm.
+/// A radius above 0, mm.
 pub(super) fn parse_radius(text: &str) -> Result<f64, String> {
     parse_between(text, "a radius", f64::INFINITY, "a finite number above 0")
+}
+
+/// A length above 0, mm.
+pub(super) fn parse_length(text: &str) -> Result<f64, String> {
+    parse_between(text, "a length", f64::INFINITY, "a finite number above 0")
 }
 
 /// An angle above 0 and below 90 degrees.

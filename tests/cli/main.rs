@@ -8,6 +8,7 @@ mod commands;
 mod compare;
 mod diffs;
 mod light;
+mod measured;
 mod pages;
 mod parts;
 mod rays;

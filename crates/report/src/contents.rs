@@ -219,7 +219,8 @@ fn folded(table: Block, what: String) -> Block {
         other @ (Block::Heading { .. }
         | Block::Words { .. }
         | Block::List { .. }
-        | Block::Plot { .. }) => other,
+        | Block::Plot { .. }
+        | Block::PlotRow { .. }) => other,
     }
 }
 

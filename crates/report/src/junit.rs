@@ -3,6 +3,7 @@
 //! It holds neither times nor identifiers: the same results give the same bytes. Only this file names `quick_junit`.
 
 use crate::diff::{Diff, DiffRow, Judgement, sentence};
+use crate::measured::{MeasuredDiff, verdict};
 use crate::study::{DesignOutcome, StudyReport};
 use crate::words::numbered;
 use crate::{CheckResult, Existing, Report, TargetFacts, expect_file, write_whole};
@@ -128,6 +129,27 @@ pub fn diff_junit(diff: &Diff) -> Result<String> {
         };
         suite.add_test_case(case(&name, &format!("map {}", map.name), status));
     }
+    written(suite)
+}
+
+/// The rms difference of a measured file. Without a limit it counts as skipped.
+///
+/// # Errors
+///
+/// [`Error::Output`] if the case cannot be written as XML.
+pub fn measured_junit(diff: &MeasuredDiff) -> Result<String> {
+    let name = format!("diff {}", diff.scene);
+    let status = match diff.limit {
+        None => {
+            let mut status = TestCaseStatus::skipped();
+            status.set_message(verdict(diff));
+            status
+        }
+        Some(_) if diff.is_within() => TestCaseStatus::success(),
+        Some(_) => failure("beyond", &verdict(diff)),
+    };
+    let mut suite = TestSuite::new(name.as_str());
+    suite.add_test_case(case(&name, &format!("{} rms difference", diff.name), status));
     written(suite)
 }
 

@@ -40,7 +40,11 @@ pub(crate) fn masthead(project: Option<&Project>) -> String {
 /// Adds a part, with up to this many rows of each table.
 pub(crate) fn add(page: &mut String, part: &PagePart, most_rows: usize) {
     _ = write!(page, "## {}\n\n", part.title);
-    for block in &part.blocks {
+    add_blocks(page, &part.blocks, most_rows);
+}
+
+fn add_blocks(page: &mut String, blocks: &[Block], most_rows: usize) {
+    for block in blocks {
         match block {
             Block::Heading { text } => _ = write!(page, "### {text}\n\n"),
             Block::Words { text } => _ = write!(page, "{text}\n\n"),
@@ -56,6 +60,7 @@ pub(crate) fn add(page: &mut String, part: &PagePart, most_rows: usize) {
                 _ = write!(page, "![{label}]({picture})\n\n");
             }
             Block::Plot { picture: None, .. } => {}
+            Block::PlotRow { plots } => add_blocks(page, plots, most_rows),
         }
     }
 }

@@ -62,6 +62,11 @@ pub(crate) enum Block {
         /// Name of a picture file next to the page for use without scripts.
         picture: Option<String>,
     },
+    /// Plots side by side.
+    PlotRow {
+        /// The plots.
+        plots: Vec<Block>,
+    },
 }
 
 /// The plots of a page, as the data that the scripts of a browser page draw.

@@ -23,9 +23,9 @@ const SAME_PLACE: f64 = 1e-9;
 /// A map as in its table.
 #[derive(Debug, Clone)]
 pub struct MapTable {
-    name: String,
-    kind: &'static GridKind,
-    unit: String,
+    pub(crate) name: String,
+    pub(crate) kind: &'static GridKind,
+    pub(crate) unit: String,
     /// Middles of the cells, mm or deg.
     places: Vec<[f64; 2]>,
     /// In `unit`.
@@ -71,6 +71,22 @@ impl MapTable {
             map.errors.push(rest[1].hypot(bias.map_or(0.0, |place| rest[place])));
         }
         Ok(Some(map))
+    }
+
+    /// Values and errors in rows and columns; NaN where there is no cell.
+    pub(crate) fn cells(&self, scale: AxisScale) -> MapCells {
+        let columns = lines(&self.places, 0);
+        let rows = lines(&self.places, 1);
+        let mut values = Array2::from_elem((rows.len(), columns.len()), f64::NAN);
+        let mut errors = values.clone();
+        let index = |lines: &[f64], at: f64| lines.partition_point(|line| *line < at);
+        for (place, (value, error)) in self.places.iter().zip(self.values.iter().zip(&self.errors))
+        {
+            let at = [index(&rows, place[1]), index(&columns, place[0])];
+            (values[at], errors[at]) = (*value, *error);
+        }
+        let [x, y] = [columns, rows].map(|middles| edges(&middles, scale));
+        MapCells { x, y, values, errors, biases: None }
     }
 
     /// Whether cells, quantity and unit equal those of another map.
@@ -201,18 +217,6 @@ pub(crate) fn drawn(map: &MapDiff, difference: &MapTable) -> HeatMap {
         },
         others => others,
     };
-    let columns = lines(&difference.places, 0);
-    let rows = lines(&difference.places, 1);
-    let mut values = Array2::from_elem((rows.len(), columns.len()), f64::NAN);
-    let mut errors = values.clone();
-    let index = |lines: &[f64], at: f64| lines.partition_point(|line| *line < at);
-    let numbers = difference.values.iter().zip(&difference.errors);
-    for (place, (value, error)) in difference.places.iter().zip(numbers) {
-        let at = [index(&rows, place[1]), index(&columns, place[0])];
-        (values[at], errors[at]) = (*value, *error);
-    }
-    let scale = places.geometry.scale();
-    let [x, y] = [columns, rows].map(|middles| edges(&middles, scale));
     let limit = limit(&difference.values);
     HeatMap {
         title: format!("{}: difference B − A", map.name),
@@ -220,14 +224,14 @@ pub(crate) fn drawn(map: &MapDiff, difference: &MapTable) -> HeatMap {
         quantity: "difference B − A".into(),
         unit: difference.unit.clone(),
         places,
-        cells: MapCells { x, y, values, errors, biases: None },
+        cells: difference.cells(places.geometry.scale()),
         colours: ColourMap::Diverging,
         limits: Some([-limit, limit]),
     }
 }
 
 /// The value at the upper end of the colours; its negative is at the lower end.
-fn limit(values: &[f64]) -> f64 {
+pub(crate) fn limit(values: &[f64]) -> f64 {
     let mut sizes: Vec<f64> =
         values.iter().filter(|value| value.is_finite()).map(|value| value.abs()).collect();
     sizes.sort_by(f64::total_cmp);
@@ -251,7 +255,7 @@ fn lines(places: &[[f64; 2]], axis: usize) -> Vec<f64> {
 
 /// Edges of at least two cells from their middles: half way between them, with the first and last
 /// cell as wide as their neighbours.
-fn edges(middles: &[f64], scale: AxisScale) -> Vec<f64> {
+pub(crate) fn edges(middles: &[f64], scale: AxisScale) -> Vec<f64> {
     let [to, from]: [fn(f64) -> f64; 2] = match scale {
         AxisScale::Linear | AxisScale::Log => [|place| place, |place| place],
         AxisScale::Tangent => [|deg| deg.to_radians().tan(), |tan| tan.atan().to_degrees()],

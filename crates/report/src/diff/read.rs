@@ -125,7 +125,8 @@ struct StudySummary {
 pub fn read(folder: &Path) -> Result<ComparedReport> {
     if !folder.is_dir() {
         return Err(Error::Usage(format!(
-            "{} is not a folder; name the folder of a report, such as reports/NAME",
+            "{} is not a folder; name the folder of a report, such as reports/NAME, and as the \
+             second also a measured .ies, .ldt or .csv file",
             folder.display()
         )));
     }

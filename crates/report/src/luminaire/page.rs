@@ -218,7 +218,8 @@ mod tests {
             Block::Heading { .. }
             | Block::Words { .. }
             | Block::List { .. }
-            | Block::Plot { .. } => None,
+            | Block::Plot { .. }
+            | Block::PlotRow { .. } => None,
         });
         rows.flatten().collect()
     }

@@ -64,7 +64,7 @@ enum Command {
     Film(FilmArgs),
     /// Examine a mesh file: is it closed, the right way out, and fine enough? Exits with 1 if it is not a valid solid.
     Mesh(MeshArgs),
-    /// Convert luminaires (.ies, .ldt) or ray files (.tm25ray, .sdf, .dat, .csv), or describe them.
+    /// Convert luminaires (.ies, .ldt) or ray files (.tm25ray, .sdf, .dat, .csv), or describe them; describe a BSDF (.xml).
     Convert(ConvertArgs),
     /// List scenes and sensor files in a folder.
     List {

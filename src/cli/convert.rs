@@ -2,6 +2,7 @@
 
 mod luminaires;
 mod rays;
+mod scatter;
 
 use crate::cli::exit::{fail, finish};
 use crate::cli::values::parse_count;
@@ -9,6 +10,7 @@ use clap::Args;
 use lumiduct_base::error::{Error, Result};
 use lumiduct_files::luminaire::LuminaireFormat;
 use lumiduct_files::rays::RayFormat;
+use lumiduct_files::scatter::ScatterFormat;
 use lumiduct_report::Existing;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -16,7 +18,7 @@ use std::process::ExitCode;
 #[derive(Debug, Args)]
 pub(super) struct ConvertArgs {
     /// A luminaire, .ies (LM-63-1986 to -2019, goniometer type C) or .ldt (EULUMDAT); or rays, .tm25ray (IES TM-25), .sdf or .dat (source
-    /// file of OpticStudio) or .csv.
+    /// file of OpticStudio) or .csv. A BSDF, .xml, is only described.
     from: PathBuf,
     /// The file to write, of the same kind: .ies (LM-63-2002) or .ldt; .tm25ray, .sdf, .dat or .csv. Left out, the file is only described.
     to: Option<PathBuf>,
@@ -45,9 +47,16 @@ fn converted(args: &ConvertArgs) -> Result<String> {
     if RayFormat::of(from).is_ok() {
         return rays::converted(from, to, rays.map(|count| (count, *seed)), existing);
     }
+    let is_bsdf = ScatterFormat::of(from).is_ok_and(|format| format == ScatterFormat::Xml);
+    if is_bsdf {
+        return match to {
+            None if rays.is_none() => scatter::description(from),
+            _ => Err(Error::Usage(format!("{}: a BSDF is only described", from.display()))),
+        };
+    }
     if LuminaireFormat::of(from).is_err() {
         return Err(Error::Usage(format!(
-            "{}: not the ending of a known file; luminaires have .ies or .ldt, rays .tm25ray, .sdf, .dat or .csv",
+            "{}: not the ending of a known file; luminaires have .ies or .ldt, rays .tm25ray, .sdf, .dat or .csv, BSDFs .xml",
             from.display()
         )));
     }

@@ -59,6 +59,7 @@ mod outline;
 pub(crate) mod overrides;
 pub mod problems;
 mod project;
+mod scatter;
 pub mod schema;
 pub(crate) mod spec;
 mod study;
@@ -71,6 +72,7 @@ pub use job::{Job, Settings, load};
 pub use list::list;
 pub use outline::Outline;
 pub use project::Project;
+pub use scatter::measured_sheet;
 pub use spec::study::{Best, Keep, Ranking, Samples};
 pub use study::{
     DESIGN_COLUMN, Domain, OTHER_COLUMNS, Parameter, Plan, Setting, Study, StudySettings, Tie,

@@ -5,6 +5,7 @@
 //! indices of both sides.
 
 mod angle_table;
+mod bsdf;
 pub mod film;
 mod finish;
 pub mod fresnel;
@@ -17,6 +18,8 @@ pub mod sun;
 mod volume;
 
 pub use angle_table::AngleTable;
+pub use bsdf::sheet::{DirectedTable, MeasuredSheet, SheetSide, SheetTables};
+pub use bsdf::table::BsdfTable;
 pub use film::{FilmFace, FilmMake, Grain, PrismFilm};
 pub use finish::Finish;
 pub use finish::faces::Faces;

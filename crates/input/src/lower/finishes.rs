@@ -83,7 +83,7 @@ impl<'a> Context<'a> {
         faces.iter().map(|(face, of)| (face.as_str(), self.finish(of, &key.field(face)))).collect()
     }
 
-    /// The finish that light from behind meets: a different one for films.
+    /// The finish that light from behind meets: a different one for films and scatter files.
     pub(super) fn behind(&mut self, finish: FinishId) -> FinishId {
         if let Some(behind) = self.behind.get(&finish) {
             return *behind;
@@ -100,19 +100,20 @@ impl<'a> Context<'a> {
         behind
     }
 
-    /// The finish behind one where the file may give it; the back of a film is the film.
+    /// The finish behind one where the scene may give it; the back of a film or of a scatter file is its own.
     pub(super) fn declared_behind(
         &mut self,
         front: Option<FinishId>,
         declared: Option<FinishId>,
         key: &Key,
     ) -> Option<FinishId> {
-        let film = front.map(|front| self.behind(front)).filter(|behind| Some(*behind) != front);
-        if declared.is_some() && film.is_some() {
-            let hint = "remove this: light from behind meets the same film";
-            return self.refuse(key, "a prism film has no other finish behind it", hint);
+        let own = front.map(|front| self.behind(front)).filter(|behind| Some(*behind) != front);
+        if declared.is_some() && own.is_some() {
+            let hint = "remove this: light from behind meets the other side of the same sheet";
+            let message = "a prism film or scatter file has no other finish behind it";
+            return self.refuse(key, message, hint);
         }
-        declared.or(film)
+        declared.or(own)
     }
 
     fn named(
@@ -165,6 +166,7 @@ impl<'a> Context<'a> {
                 Some(Finish::Coated { reflectance })
             }
             FinishSpec::PrismFilm(film) => Some(prism_film(film)),
+            FinishSpec::ScatterFile(spec) => self.scatter_file(spec, &key.field("scatter_file")),
             FinishSpec::Mixture(parts) => self.mixture(parts, &key.field("mixture"), mixing),
         }
     }

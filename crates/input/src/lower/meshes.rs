@@ -99,8 +99,7 @@ impl Context<'_> {
         let mut finishes = vec![None; known.len()];
         for (&face, &finish) in declared {
             if finish.is_some_and(|finish| self.behind(finish) != finish) {
-                let message =
-                    "a prism film cannot be put on a mesh: a mesh has no direction along the guide";
+                let message = "a prism film or scatter file cannot be put on a mesh: a mesh has no direction along the guide";
                 self.problems.error(&key.field(face), message).hint("use a sweep or a tube");
             }
             match known.iter().position(|name| *name == face) {

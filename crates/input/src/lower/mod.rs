@@ -26,6 +26,7 @@ mod place;
 pub(crate) mod plan;
 mod rays;
 mod reliefs;
+mod scatter;
 mod sensor_keys;
 mod sensors;
 mod sheets;

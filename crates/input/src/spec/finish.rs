@@ -71,6 +71,8 @@ pub enum FinishSpec {
     Coated(CoatedSpec),
     /// A thin film, flat on one face, with prisms side by side on the other. It acts on light from both sides.
     PrismFilm(PrismFilmSpec),
+    /// Scatter of a sheet from a file, as measured or as computed by another program. It acts on light from both sides.
+    ScatterFile(ScatterFileSpec),
     /// Several finishes side by side on a scale too small to see.
     Mixture(#[schemars(length(min = 1))] Vec<MixturePartSpec>),
 }
@@ -259,6 +261,33 @@ pub struct PrismFilmSpec {
     /// Which way the prisms run: `along` the guide or `around` it. On a flat sheet these are its local y and x.
     #[serde(default)]
     pub run: GrainSpec,
+}
+
+/// Scatter of a sheet from a file. Values are constant over patches of directions, as in the file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ScatterFileSpec {
+    /// The file, relative to the scene: .xml of Radiance genBSDF or LBNL WINDOW (Klems matrix or tensor tree, visible light),
+    /// or .csv with columns `theta_i_deg`, `theta_s_deg`, `phi_s_deg`, and `brdf_per_sr` or `btdf_per_sr`.
+    pub file: String,
+    /// The side of the file that light meets which meets this finish. In XML the front is the outside of a glazing.
+    #[serde(default)]
+    pub side: ScatterFileSideSpec,
+    /// Angle from the direction along the guide, on a flat sheet its local y, to the upward direction of the file, about the
+    /// normal of the front.
+    #[serde(default)]
+    #[schemars(range(min = -360.0, max = 360.0))]
+    pub turn_deg: f64,
+}
+
+/// A side of a scatter file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ScatterFileSideSpec {
+    /// Front in the file.
+    #[default]
+    Front,
+    /// Back in the file.
+    Back,
 }
 
 /// On which face of a film its prisms are.

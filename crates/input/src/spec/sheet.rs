@@ -94,7 +94,7 @@ pub struct PlainSheetSpec<Shape> {
 /// What every plain surface has.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SheetCommonSpec {
-    /// Finish of the front, the side that the axis points away from.
+    /// Finish of the front, the side into which the axis points.
     pub finish: FinishRef,
     /// Finish of the back. Omitted: the same as the front; behind a prism film, that film.
     pub back: Option<FinishRef>,

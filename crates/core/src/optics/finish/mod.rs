@@ -13,6 +13,7 @@ mod gaussian_dielectric;
 mod gaussian_sheet;
 pub(crate) mod haze;
 mod lambertian;
+mod measured;
 mod metal;
 pub(crate) mod microfacet;
 mod mixture;
@@ -25,12 +26,14 @@ mod tabulated;
 #[cfg(test)]
 mod testing;
 
+use crate::optics::bsdf::sheet::{MeasuredSheet, SheetSide};
 use crate::optics::finish::absorber::Absorber;
 use crate::optics::finish::coated::Coated;
 use crate::optics::finish::gaussian_dielectric::GaussianDielectric;
 use crate::optics::finish::gaussian_sheet::GaussianSheet;
 use crate::optics::finish::haze::Haze;
 use crate::optics::finish::lambertian::Lambertian;
+use crate::optics::finish::measured::MetSheet;
 use crate::optics::finish::metal::Metal;
 use crate::optics::finish::microfacet::Microfacet;
 use crate::optics::finish::mixture::Mixture;
@@ -45,6 +48,7 @@ use crate::optics::{
 };
 use crate::rng::{Numbers, Sampler};
 use glam::DVec3;
+use std::sync::Arc;
 
 /// A finish: what a face does to light.
 #[derive(Debug, Clone, PartialEq)]
@@ -114,6 +118,13 @@ pub enum Finish {
         /// The face that is met.
         face: FilmFace,
     },
+    /// A sheet with measured scatter.
+    MeasuredSheet {
+        /// The sheet.
+        sheet: Arc<MeasuredSheet>,
+        /// The side that is met.
+        met: SheetSide,
+    },
     /// Each photon meets one of several finishes, chosen by weight.
     Mixture(Vec<(f64, Finish)>),
 }
@@ -169,6 +180,10 @@ macro_rules! ask {
                 let $finish = MetFilm { film, face: *face };
                 $answer
             }
+            Finish::MeasuredSheet { sheet, met } => {
+                let $finish = MetSheet { sheet, side: *met };
+                $answer
+            }
             Finish::Mixture(parts) => {
                 let $finish = Mixture { parts };
                 $answer
@@ -183,12 +198,17 @@ impl Finish {
         if let Self::PrismFilm { film, face } = self {
             return Some(Self::PrismFilm { film: film.clone(), face: face.opposite() });
         }
-        if let (Self::Mixture(parts), true) = (self, self.has_grain()) {
-            let turned = |part: &Self| part.from_behind().unwrap_or_else(|| part.clone());
-            let parts = parts.iter().map(|(weight, part)| (*weight, turned(part)));
-            return Some(Self::Mixture(parts.collect()));
+        if let Self::MeasuredSheet { sheet, met } = self {
+            return Some(Self::MeasuredSheet { sheet: sheet.clone(), met: met.opposite() });
         }
-        None
+        let Self::Mixture(parts) = self else { return None };
+        let turned: Vec<_> = parts.iter().map(|(_, part)| part.from_behind()).collect();
+        turned.iter().any(Option::is_some).then(|| {
+            let part = |((weight, part), turned): (&(f64, Self), Option<Self>)| {
+                (*weight, turned.unwrap_or_else(|| part.clone()))
+            };
+            Self::Mixture(parts.iter().zip(turned).map(part).collect())
+        })
     }
 
     /// [`FinishModel::scatter`] out of line, so that the loop around mirrors and smooth faces stays

@@ -195,7 +195,7 @@ impl<'s> Collecting<'_, 's> {
     fn add_scattered(&mut self, at: PathAtFace<'_, 's>, side: Side) {
         let PathAtFace { vertex, facing, .. } = at;
         let finish = finish(&facing, side);
-        if finish.width().is_none() && finish.shares(&facing.incidence).of(side) == 0.0 {
+        if finish.width().is_none() && finish.radiance_chances(&facing.incidence).of(side) == 0.0 {
             return;
         }
         // L* of the leaving light, in the medium of the gather path.

@@ -2,9 +2,9 @@
 //!
 //! Photons that may belong to records are buffered and looked up together.
 
-use crate::optics::Incidence;
+use crate::optics::{FinishModel, Incidence, Spread};
 use crate::scene::shape::Toward;
-use crate::scene::{MediumId, PrimHit, PrimId, RowReach, Scene, SourceId, Visibility};
+use crate::scene::{MediumId, PrimHit, PrimId, RowReach, Scene, SourceId, Surface, Visibility};
 use crate::transport::backward::mix::MergedPhoton;
 use crate::transport::gather::block::CrossedCounts;
 use crate::transport::gather::contribution::{PairWeights, PhotonHit, SurfaceHit, VolumeHit};
@@ -24,6 +24,8 @@ pub(crate) struct PhotonStream<'p, 's> {
     pub(super) gather: &'p Gather<'s>,
     weights: PairWeights,
     waiting: WaitingRecords<'s>,
+    /// Whether records may evaluate a finish with grain.
+    has_grain: bool,
     pace: &'p Pace<'p>,
     /// Counts by E1, E0 and E00, with the emission that gather paths met.
     pub(super) counts: CrossedCounts,
@@ -139,6 +141,7 @@ impl<'p, 's> PhotonStream<'p, 's> {
             weights: PairWeights::new(first.window),
             work: RecordWork { records: waiting.records.all.len() as u64, ..RecordWork::default() },
             waiting,
+            has_grain: records_have_grain(gather.scene),
             pace,
             counts,
             first,
@@ -211,7 +214,8 @@ impl<'p, 's> PhotonStream<'p, 's> {
         let Gather { scene, layout, merging, .. } = self.gather;
         let places = self.gather.record_places(self.first);
         let (weights, counts, work) = (&self.weights, &mut self.counts, &mut self.work);
-        let (passing, keys, pace) = (&self.passing, &self.keys, self.pace);
+        let (passing, keys, pace, has_grain) =
+            (&self.passing, &self.keys, self.pace, self.has_grain);
         work.look_ups += passing.len() as u64;
         // Most photons that pass the filter are near no record after all: one bit for each that is.
         let mut near = 0u64;
@@ -223,7 +227,7 @@ impl<'p, 's> PhotonStream<'p, 's> {
             let photon = &passing[index];
             let met = match known {
                 Some((last, met)) if last == index => met,
-                Some(_) | None => arriving(scene, &keys[index], photon),
+                Some(_) | None => arriving((scene, has_grain), &keys[index], photon),
             };
             known = Some((index, met));
             near |= 1 << index;
@@ -255,8 +259,14 @@ impl<'p, 's> PhotonStream<'p, 's> {
     }
 }
 
-/// A photon in the form that records take.
-fn arriving(scene: &Scene, key: &PhotonKey, photon: &Passing) -> PhotonHit {
+/// Whether records may evaluate a finish with grain.
+fn records_have_grain(scene: &Scene) -> bool {
+    let mut finishes = scene.finishes.iter().map(|named| &named.finish);
+    finishes.any(|finish| finish.has_grain() && finish.spread() == Spread::Broad)
+}
+
+/// A photon in the form that records take, with the grain of its surface if it `has_grain`.
+fn arriving((scene, has_grain): (&Scene, bool), key: &PhotonKey, photon: &Passing) -> PhotonHit {
     let &PhotonKey { surface, point, dir } = key;
     match photon.at {
         PhotonPlace::Medium => PhotonHit::Volume(VolumeHit { medium: surface, point, dir }),
@@ -271,8 +281,10 @@ fn arriving(scene: &Scene, key: &PhotonKey, photon: &Passing) -> PhotonHit {
                 },
                 index_from: index(from),
                 index_to: index(to),
-                // Records evaluate only finishes that scatter, which have no grain.
-                grain: DVec3::ZERO,
+                grain: match scene.surface(prim) {
+                    Surface::Patch(patch) if has_grain => patch.along(point),
+                    Surface::Patch(_) | Surface::Triangle(..) => DVec3::ZERO,
+                },
             };
             PhotonHit::Surface(SurfaceHit { surface, medium: from, point, incidence })
         }

@@ -96,7 +96,9 @@ pub fn facing<'s>(scene: &'s Scene, path: &Path, vertex: &Vertex<'_>) -> MetInte
     let (shading, facet, grain) = match scene.surface(interface.acting.prim) {
         Surface::Patch(patch) => {
             let normal = patch.shape.normal_against(toward, vertex.point);
-            (normal, normal, grain(faces.own, patch, vertex.point))
+            // The finish behind acts on light that comes through.
+            let either = if faces.own.has_grain() { faces.own } else { faces.behind };
+            (normal, normal, grain(either, patch, vertex.point))
         }
         Surface::Triangle(body, triangle) => {
             let sign = match toward {

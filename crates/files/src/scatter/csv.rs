@@ -1,0 +1,130 @@
+//! CSV of an isotropic sample, a row for each pair of directions.
+
+use crate::scatter::angles::SampledScatter;
+use crate::scatter::data::{ScatterFile, ScatterSide};
+use crate::scatter::error::{Violation, value};
+use std::collections::BTreeMap;
+
+const ANGLES: [&str; 3] = ["theta_i_deg", "theta_s_deg", "phi_s_deg"];
+const BRDF: &str = "brdf_per_sr";
+const BTDF: &str = "btdf_per_sr";
+/// Most pairs of directions of a file.
+const MOST_PAIRS: usize = 1 << 22;
+
+/// Values of one kind by incident polar angle, leaving polar angle and azimuth.
+type Samples = BTreeMap<[AngleKey; 3], f64>;
+
+/// An angle in units of 1e-6 deg: what a file means by the same angle.
+type AngleKey = u32;
+
+const UNITS_PER_DEG: f64 = 1e6;
+
+pub(super) fn read(text: &str) -> Result<ScatterFile, Violation> {
+    let lines = text.lines().enumerate().map(|(index, line)| (index + 1, line.trim()));
+    let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
+    let (head_line, head) = lines.next().unwrap_or((1, ""));
+    let names: Vec<&str> = head.split(',').map(str::trim).collect();
+    let place = |name: &str| names.iter().position(|own| own.eq_ignore_ascii_case(name));
+    let missing = |name: &str| {
+        let problem = format!(
+            "there is no column `{name}`; needed are {}, and {BRDF}, {BTDF} or both, separated by commas",
+            ANGLES.join(", ")
+        );
+        Violation::new(head_line, problem)
+    };
+    let mut places = [0; 3];
+    for (at, name) in places.iter_mut().zip(ANGLES) {
+        *at = place(name).ok_or_else(|| missing(name))?;
+    }
+    let kinds = [place(BRDF), place(BTDF)];
+    if kinds == [None, None] {
+        return Err(missing(BRDF));
+    }
+    let mut samples = [Samples::new(), Samples::new()];
+    for (number, line) in lines {
+        let words: Vec<&str> = line.split(',').map(str::trim).collect();
+        if words.len() != names.len() {
+            let problem = format!("it has {} columns instead of {}", words.len(), names.len());
+            return Err(Violation::new(number, problem));
+        }
+        let mut angles = [0; 3];
+        for (axis, at) in places.iter().enumerate() {
+            angles[axis] = angle(words[*at], ANGLES[axis], [90.0, 90.0, 360.0][axis], number)?;
+        }
+        for (own, at) in samples.iter_mut().zip(kinds) {
+            let Some(at) = at else { continue };
+            if own.insert(angles, value(words[at], number)?).is_some() {
+                return Err(Violation::new(number, "the same directions are in a line before"));
+            }
+        }
+        if samples[0].len().max(samples[1].len()) > MOST_PAIRS {
+            return Err(Violation::new(number, format!("more than {MOST_PAIRS} rows")));
+        }
+    }
+    let mut remarks = Vec::new();
+    let mut matrix = |own: &Samples, at: Option<usize>| {
+        at.map(|_| Ok(sampled(own, head_line, &mut remarks)?.matrix())).transpose()
+    };
+    let [brdf, btdf] = samples;
+    let [reflection, transmission] = [matrix(&brdf, kinds[0])?, matrix(&btdf, kinds[1])?];
+    if reflection.is_some() {
+        remarks.push("both sides reflect as measured on one".to_owned());
+    }
+    remarks.dedup();
+    let back = ScatterSide { reflection: reflection.clone(), transmission: None };
+    Ok(ScatterFile { front: ScatterSide { reflection, transmission }, back, remarks })
+}
+
+fn angle(word: &str, name: &str, most: f64, line: usize) -> Result<AngleKey, Violation> {
+    let angle = word.parse::<f64>().ok().filter(|angle| (0.0..=most).contains(angle));
+    let angle = angle.ok_or_else(|| {
+        Violation::new(line, format!("{name} is `{word}`, expected a number from 0 to {most}"))
+    })?;
+    Ok((angle * UNITS_PER_DEG).round() as AngleKey)
+}
+
+/// The values over all combinations of their angles.
+fn sampled(
+    samples: &Samples,
+    head_line: usize,
+    remarks: &mut Vec<String>,
+) -> Result<SampledScatter, Violation> {
+    if samples.is_empty() {
+        return Err(Violation::new(head_line, "no rows follow the names of the columns"));
+    }
+    let axis = |axis: usize| {
+        let mut all: Vec<AngleKey> = samples.keys().map(|angles| angles[axis]).collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    };
+    let keys = [axis(0), axis(1), axis(2)];
+    let mut values = Vec::new();
+    for from in &keys[0] {
+        if values.len() > 2 * MOST_PAIRS {
+            return Err(Violation::new(head_line, "it has too many different angles"));
+        }
+        for to in &keys[1] {
+            for turn in &keys[2] {
+                // At the zenith all azimuths are one direction.
+                let last = if *to == 0 { AngleKey::MAX } else { *turn };
+                let first =
+                    if *to == 0 && !samples.contains_key(&[*from, 0, *turn]) { 0 } else { *turn };
+                let found = samples.range([*from, *to, first]..=[*from, *to, last]).next();
+                let Some((_, value)) = found else {
+                    let [i, s, phi] = [from, to, turn].map(|key| f64::from(*key) / UNITS_PER_DEG);
+                    let problem = format!(
+                        "there is no row for theta_i {i}, theta_s {s} and phi_s {phi} deg; each combination of the angles needs one"
+                    );
+                    return Err(Violation::new(head_line, problem));
+                };
+                values.push(*value);
+            }
+        }
+    }
+    let [incident, polar, azimuth] =
+        keys.map(|keys| keys.into_iter().map(|key| f64::from(key) / UNITS_PER_DEG).collect());
+    let sampled = SampledScatter { incident, polar, azimuth, values };
+    sampled.add_remarks(remarks);
+    Ok(sampled)
+}

@@ -1,0 +1,57 @@
+//! Scatter of sheets from files: the XML of Radiance and WINDOW, over Klems patches or as a tensor tree, and CSV by angles.
+//!
+//! Readers never trust a file: whatever it contains, the result is a [`ScatterFile`] or a [`ScatterError`]. What they assume is a
+//! remark. Values are distribution functions, 1/sr, that are constant over pairs of patches ([`PatchPairs`]): the share of flux that
+//! leaves into a patch is the value times the projected solid angle of the patch. Whether they conserve energy is not checked here.
+//!
+//! [`PatchPairs`]: lumiduct_base::math::PatchPairs
+
+mod angles;
+mod basis;
+mod csv;
+mod data;
+mod error;
+mod tree;
+mod xml;
+
+pub use data::{BsdfMatrix, ScatterFile, ScatterSide};
+pub use error::{MAX_SCATTER_BYTES, ScatterError, ScatterFormat};
+
+use crate::bytes::read_file;
+use crate::scatter::error::Violation;
+use std::path::Path;
+
+/// Reads a file; its name extension gives the format.
+///
+/// # Errors
+///
+/// [`ScatterError::UnknownScatter`] for an extension that is neither `xml` nor `csv`; otherwise as [`parse`], and
+/// [`ScatterError::Unreadable`] or [`ScatterError::TooLong`] if the file cannot be read.
+pub fn read(path: &Path) -> Result<ScatterFile, ScatterError> {
+    let format = ScatterFormat::of(path)?;
+    let bytes = read_file(path, MAX_SCATTER_BYTES)?.ok_or(ScatterError::TooLong)?;
+    parse(&bytes, format)
+}
+
+/// Reads the bytes of a file.
+///
+/// # Errors
+///
+/// [`ScatterError::Violated`] with the line if they violate the format.
+pub fn parse(bytes: &[u8], format: ScatterFormat) -> Result<ScatterFile, ScatterError> {
+    let wrong = |line, problem: String| ScatterError::Violated { format, line, problem };
+    let text = std::str::from_utf8(bytes).map_err(|error| {
+        let before = &bytes[..error.valid_up_to()];
+        let line = 1 + before.iter().filter(|byte| **byte == b'\n').count();
+        wrong(line, "it is not UTF-8 text; save it as UTF-8".to_owned())
+    })?;
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let read = match format {
+        ScatterFormat::Xml => xml::read(text),
+        ScatterFormat::Csv => csv::read(text),
+    };
+    read.map_err(|Violation { line, problem }| wrong(line, problem))
+}
+
+#[cfg(test)]
+mod tests;

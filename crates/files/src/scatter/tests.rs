@@ -1,0 +1,314 @@
+use super::*;
+use crate::bytes::tests::mutants;
+use glam::DVec2;
+use lumiduct_base::math::{DirectionPatches, PatchPairs};
+use std::f64::consts::PI;
+use std::fmt::Write;
+
+const KLEMS_QUARTER: usize = 41;
+
+/// A file with a block for each direction.
+fn xml(layout: &str, definition: &str, blocks: &[(&str, &str, String)]) -> String {
+    let mut text = format!(
+        "<?xml version=\"1.0\"?>\n<WindowElement><Optical><Layer>\n<DataDefinition>\
+         <IncidentDataStructure>{layout}</IncidentDataStructure>{definition}</DataDefinition>\n"
+    );
+    for (direction, basis, data) in blocks {
+        let bases = if layout.starts_with("Tensor") {
+            "<AngleBasis>LBNL/Shirley-Chiu</AngleBasis>".to_owned()
+        } else {
+            format!(
+                "<ColumnAngleBasis>{basis}</ColumnAngleBasis><RowAngleBasis>{basis}</RowAngleBasis>"
+            )
+        };
+        _ = write!(
+            text,
+            "<WavelengthData><Wavelength unit=\"Integral\">Visible</Wavelength>\n<WavelengthDataBlock>\
+             <WavelengthDataDirection>{direction}</WavelengthDataDirection>\n{bases}\
+             <ScatteringData>\n{data}\n</ScatteringData></WavelengthDataBlock></WavelengthData>\n"
+        );
+    }
+    text + "</Layer></Optical></WindowElement>\n"
+}
+
+/// Values by row and column, a row a line.
+fn matrix(size: usize, value: impl Fn(usize, usize) -> f64) -> String {
+    let row = |row| (0..size).map(|column| value(row, column).to_string()).collect::<Vec<_>>();
+    (0..size).map(|number| row(number).join(",\t") + ",\n").collect()
+}
+
+fn quarter(layout: &str) -> String {
+    let data = matrix(KLEMS_QUARTER, |row, column| (row + 100 * column) as f64 / 1e6);
+    xml(layout, "", &[("Transmission Front", "LBNL/Klems Quarter", data)])
+}
+
+fn good(text: &str, format: ScatterFormat) -> ScatterFile {
+    parse(text.as_bytes(), format).unwrap()
+}
+
+fn refused(text: &str, format: ScatterFormat, parts: &[&str]) {
+    let error = parse(text.as_bytes(), format).unwrap_err().to_string();
+    assert!(parts.iter().all(|part| error.contains(part)), "{error}: {parts:?}");
+}
+
+#[test]
+fn columns_are_incident_and_rows_leaving_directions() {
+    let columns = good(&quarter("Columns"), ScatterFormat::Xml);
+    let matrix = columns.front.transmission.unwrap();
+    assert_eq!(matrix.pairs.counts(), [KLEMS_QUARTER; 2]);
+    // Incident patch 3, leaving patch 7.
+    assert!((matrix.values[3 * KLEMS_QUARTER + 7] - 307e-6).abs() < 1e-12);
+    let rows = good(&quarter("Rows"), ScatterFormat::Xml).front.transmission.unwrap();
+    assert!((rows.values[7 * KLEMS_QUARTER + 3] - 307e-6).abs() < 1e-12);
+    assert_eq!(columns.back, ScatterSide::default());
+}
+
+#[test]
+fn klems_bases_have_their_patches() {
+    for (name, count) in [("Full", 145), ("Half", 77), ("Quarter", 41)] {
+        let basis = format!("LBNL/Klems {name}");
+        let file = xml("Columns", "", &[("Reflection Back", &basis, matrix(count, |_, _| 0.1))]);
+        let matrix = good(&file, ScatterFormat::Xml).back.reflection.unwrap();
+        assert_eq!(matrix.pairs.counts(), [count; 2]);
+        let sum: f64 = (0..count).map(|patch| matrix.pairs.leaving_projected(patch)).sum();
+        assert!((sum - PI).abs() < 1e-12);
+    }
+    // The second patch of Klems Full lies about the azimuth 0, between 5 and 15 deg: W6 manual, table of the basis.
+    let file =
+        xml("Columns", "", &[("Reflection Back", "LBNL/Klems Full", matrix(145, |_, _| 0.1))]);
+    let PatchPairs::Fixed { incident, .. } =
+        good(&file, ScatterFormat::Xml).back.reflection.unwrap().pairs
+    else {
+        panic!("a matrix has axes")
+    };
+    let polar = |deg: f64| DVec2::new(deg.to_radians().sin(), 0.0);
+    assert_eq!([4.9, 5.1, 14.9, 15.1].map(|deg| incident.patch(polar(deg))), [0, 1, 1, 9]);
+}
+
+#[test]
+fn a_file_may_define_its_basis() {
+    let block = |from: f64, to: f64, phis: usize| {
+        format!(
+            "<AngleBasisBlock><Theta>0</Theta><nPhis>{phis}</nPhis><ThetaBounds><LowerTheta>{from}</LowerTheta>\
+             <UpperTheta>{to}</UpperTheta></ThetaBounds></AngleBasisBlock>"
+        )
+    };
+    let definition = |blocks: &[String]| {
+        let blocks = blocks.concat();
+        format!("<AngleBasis><AngleBasisName>own</AngleBasisName>{blocks}</AngleBasis>")
+    };
+    let file = |blocks: &[String]| {
+        xml("Columns", &definition(blocks), &[("Reflection Front", "own", matrix(5, |_, _| 0.1))])
+    };
+    let right = [block(0.0, 30.0, 1), block(30.0, 90.0, 4)];
+    let pairs = good(&file(&right), ScatterFormat::Xml).front.reflection.unwrap().pairs;
+    assert!((pairs.leaving_projected(0) - PI * 0.25).abs() < 1e-12);
+    for (wrong, part) in [
+        ([block(0.0, 30.0, 1), block(31.0, 90.0, 4)], "the ring before ends at 30"),
+        ([block(0.0, 30.0, 1), block(30.0, 80.0, 4)], "from 0 to 90 deg"),
+        ([block(0.0, 30.0, 0), block(30.0, 90.0, 4)], "nPhis is `0`"),
+        ([block(0.0, 30.0, 4000), block(30.0, 90.0, 4000)], "more than 4096 patches"),
+        ([block(0.0, f64::NAN, 1), block(30.0, 90.0, 4)], "from 0 to 90 deg"),
+    ] {
+        refused(&file(&wrong), ScatterFormat::Xml, &["line 3", part]);
+    }
+}
+
+#[test]
+fn trees_are_nodes_or_grids() {
+    let tree = |text: &str| {
+        good(&xml("TensorTree4", "", &[("Transmission", "", text.to_owned())]), ScatterFormat::Xml)
+            .front
+            .transmission
+            .unwrap()
+    };
+    let one = tree("{ 0.25 }");
+    assert_eq!((one.pairs.counts(), &one.values[..]), ([1, 1], &[0.25][..]));
+    // Nodes count the first dimension fastest, grids the last one: node 1 is value 8.
+    let nodes: String = (0..16).map(|node| format!("{{ {node} }}\n")).collect();
+    let by_nodes = tree(&format!("{{{nodes}}}"));
+    let number =
+        |value: usize| [0, 1, 2, 3].map(|bit| (value >> bit & 1) << (3 - bit)).iter().sum();
+    let grid: Vec<String> = (0..16)
+        .map(|value| {
+            let node: usize = number(value);
+            node.to_string()
+        })
+        .collect();
+    assert_eq!(by_nodes, tree(&format!("{{ {} }}", grid.join(", "))));
+    assert_eq!(by_nodes.values[8], 1.0);
+    // A divided node is refined, others keep their value.
+    let deeper = nodes.replacen("{ 5 }", &format!("{{{nodes}}}"), 1);
+    let fine = tree(&format!("{{{deeper}}}"));
+    assert_eq!(fine.pairs.counts(), [16, 16]);
+    let mean = |matrix: &BsdfMatrix| matrix.values.iter().sum::<f64>() / matrix.values.len() as f64;
+    assert!((mean(&fine) - (120.0 - 5.0 + 7.5) / 16.0).abs() < 1e-12);
+    // Deeper than what is kept: the mean, and a remark.
+    let mut deep = "{ 3 }".to_owned();
+    for _ in 0..7 {
+        deep = format!("{{ {} }}", deep.clone() + &"{ 0 }".repeat(15));
+    }
+    let file = xml("TensorTree4", "", &[("Transmission", "", deep)]);
+    let file = good(&file, ScatterFormat::Xml);
+    assert!(file.remarks[0].contains("divided 7 times"), "{:?}", file.remarks);
+    let kept = file.front.transmission.unwrap();
+    assert_eq!(kept.pairs.counts(), [1024, 1024]);
+    assert!((kept.values[0] - 3.0 / 256.0).abs() < 1e-15);
+}
+
+#[test]
+fn trees_without_grain_turn_with_the_light() {
+    // Light leaves evenly into half of the directions, those ahead: x > 0 is the half of larger first coordinates.
+    let nodes: String =
+        (0..8).map(|node| if node & 2 == 0 { "{ 0 }" } else { "{ 0.2 }" }).collect();
+    let deeper: String = (0..8)
+        .map(|node| {
+            if node & 2 == 0 { "{ 0 }".to_owned() } else { format!("{{{}}}", "{ 0.2 }".repeat(8)) }
+        })
+        .collect();
+    for text in [nodes, deeper] {
+        let file = xml("TensorTree3", "", &[("Reflection Front", "", format!("{{{text}}}"))]);
+        let matrix = good(&file, ScatterFormat::Xml).front.reflection.unwrap();
+        let PatchPairs::Isotropic { leaving, .. } = &matrix.pairs else { panic!("no grain") };
+        let sectors = leaving.sectors(0);
+        // The square's right half is not the disk's, but its middle sectors are.
+        assert!((matrix.values[0] - 0.2).abs() < 1e-12);
+        assert!(matrix.values[sectors / 2].abs() < 1e-12);
+        let [_, count] = matrix.pairs.counts();
+        let share: f64 =
+            (0..count).map(|at| matrix.values[at] * matrix.pairs.leaving_projected(at)).sum();
+        assert!((share - 0.1 * PI).abs() < 0.01, "{share}");
+    }
+}
+
+fn csv_of(value: impl Fn(f64, f64, f64) -> f64) -> String {
+    let mut text = "# a sample\ntheta_i_deg, theta_s_deg, phi_s_deg, brdf_per_sr\n".to_owned();
+    for i in [0.0, 30.0, 60.0, 80.0] {
+        for s in [0.0, 15.0, 45.0, 90.0] {
+            for phi in [0.0, 90.0, 180.0] {
+                _ = writeln!(text, "{i},{s},{phi},{}", value(i, s, phi));
+            }
+        }
+    }
+    text
+}
+
+#[test]
+fn angles_of_a_csv_are_interpolated_and_turn_with_the_light() {
+    let file = good(&csv_of(|_, s, phi| 0.1 + s * 1e-3 + phi * 1e-4), ScatterFormat::Csv);
+    let matrix = file.front.reflection.clone().unwrap();
+    assert_eq!(file.back.reflection, file.front.reflection);
+    let words = file.remarks.join("; ");
+    for part in ["theta_i of 0 to 80", "mirror image", "both sides"] {
+        assert!(words.contains(part), "{words}");
+    }
+    let PatchPairs::Isotropic { incident, leaving } = &matrix.pairs else { panic!("no grain") };
+    let patches = DirectionPatches::Rings(leaving.clone());
+    let [_, count] = matrix.pairs.counts();
+    for (polar, phi) in [(10.0f64, 3.0f64), (44.0, 90.0), (70.0, 177.0), (70.0, 230.0)] {
+        let (sin, cos) = phi.to_radians().sin_cos();
+        let patch = patches.patch(polar.to_radians().sin() * DVec2::new(cos, sin));
+        let row = incident.ring(0.3);
+        let found = matrix.values[row * count + patch];
+        let mirrored = if phi > 180.0 { 360.0 - phi } else { phi };
+        let expected = 0.1 + polar * 1e-3 + mirrored * 1e-4;
+        assert!((found - expected).abs() < 2.5e-3, "{polar} {phi}: {found}, {expected}");
+    }
+}
+
+#[test]
+fn a_csv_needs_every_combination_but_azimuths_of_the_zenith() {
+    let all = csv_of(|_, _, _| 0.1);
+    let without = |line: &str| all.replacen(&format!("{line}\n"), "", 1);
+    good(&without("30,0,90,0.1"), ScatterFormat::Csv);
+    refused(&without("30,15,90,0.1"), ScatterFormat::Csv, &["theta_i 30, theta_s 15 and phi_s 90"]);
+    for (old, new, parts) in [
+        ("30,15,90,0.1", "30,15,90,-0.1", &["line 19", "negative"][..]),
+        ("30,15,90,0.1", "30,15,90,nan", &["line 19", "usable"]),
+        ("30,15,90,0.1", "30,15,90,x", &["line 19", "`x` is not a number"]),
+        ("30,15,90,0.1", "30,95,90,0.1", &["line 19", "theta_s_deg is `95`", "0 to 90"]),
+        ("30,15,90,0.1", "30,15,0,0.1", &["line 19", "before"]),
+        ("30,15,90,0.1", "30,15,90", &["line 19", "3 columns instead of 4"]),
+        ("brdf_per_sr", "f", &["line 2", "no column `brdf_per_sr`"]),
+        ("theta_s_deg", "theta", &["line 2", "no column `theta_s_deg`"]),
+    ] {
+        refused(&all.replacen(old, new, 1), ScatterFormat::Csv, parts);
+    }
+    refused("theta_i_deg,theta_s_deg,phi_s_deg,btdf_per_sr\n", ScatterFormat::Csv, &["no rows"]);
+    refused("", ScatterFormat::Csv, &["line 1", "theta_i_deg"]);
+}
+
+#[test]
+fn wrong_files_are_refused_with_their_line() {
+    let all = quarter("Columns");
+    for (old, new, parts) in [
+        ("Columns<", "Lines<", &["line 3", "`Lines`", "Columns, Rows"][..]),
+        ("Transmission Front", "Through", &["line 5", "`Through`"]),
+        ("Klems Quarter", "Klems Third", &["Klems Third", "LBNL/Klems Full"]),
+        ("\t0.0001,", "\t-0.0001,", &["line 7", "-0.0001 is negative"]),
+        ("\t0.0001,", "\tnan,", &["line 7", "nan is not a usable value"]),
+        ("\t0.0001,", "\tx,", &["line 7", "`x` is not a number"]),
+        ("\t0.0001,", "", &["line 6", "1680 values", "need 1681"]),
+        ("\t0.0001,", "0.1,\t0.0001,", &["1682 values", "need 1681"]),
+        ("Visible", "Solar", &["no data for visible light"]),
+        ("</ScatteringData>", "", &["line"]),
+        ("DataDefinition", "Data", &["DataDefinition"]),
+        ("<WindowElement>", "<!DOCTYPE x [<!ENTITY a \"b\">]><WindowElement>", &["DTD"]),
+    ] {
+        assert!(all.contains(old), "{old}");
+        let count = if old == "DataDefinition" { 2 } else { 1 };
+        refused(&all.replacen(old, new, count), ScatterFormat::Xml, parts);
+    }
+    let twice = ("Reflection Front", "LBNL/Klems Quarter", matrix(KLEMS_QUARTER, |_, _| 0.1));
+    let twice = xml("Columns", "", &[twice.clone(), twice]);
+    refused(&twice, ScatterFormat::Xml, &["two visible blocks"]);
+    for (text, part) in [
+        ("", "ends before `{`"),
+        ("{ 1 2 }", "a grid of 2 values"),
+        ("{ {1} {2} }", "`}` instead of `{`"),
+        ("{ 1 } 2", "follows"),
+        ("{ -1 }", "-1 is negative"),
+        (&"{".repeat(100_000), "more than 12 times"),
+    ] {
+        let file = xml("TensorTree4", "", &[("Transmission", "", text.to_owned())]);
+        refused(&file, ScatterFormat::Xml, &["line", part]);
+    }
+    assert!(parse(b"\xff<a/>", ScatterFormat::Xml).unwrap_err().to_string().contains("UTF-8"));
+    let unknown = ScatterFormat::of(Path::new("a.bsdf")).unwrap_err().to_string();
+    assert!(unknown.contains(".xml or .csv"), "{unknown}");
+}
+
+#[test]
+fn damaged_files_are_read_or_refused() {
+    let block = |from: u32, to: u32, phis: u32| {
+        format!(
+            "<AngleBasisBlock><nPhis>{phis}</nPhis><ThetaBounds><LowerTheta>{from}</LowerTheta>\
+             <UpperTheta>{to}</UpperTheta></ThetaBounds></AngleBasisBlock>\n"
+        )
+    };
+    let basis = block(0, 40, 1) + &block(40, 90, 2);
+    let basis = format!("<AngleBasis><AngleBasisName>own</AngleBasisName>{basis}</AngleBasis>\n");
+    let small = xml("Columns", &basis, &[("Reflection Front", "own", matrix(3, |_, _| 0.1))]);
+    let tree = format!("{{ {} }}", "{ 0.1 }\n".repeat(8));
+    let tree = xml("TensorTree3", "", &[("Transmission", "", tree)]);
+    // A CSV is averaged over many patches, which takes long without optimisation.
+    for (text, format, count) in [
+        (small, ScatterFormat::Xml, 20_000),
+        (tree, ScatterFormat::Xml, 20_000),
+        (csv_of(|_, s, _| s * 1e-3), ScatterFormat::Csv, 100),
+    ] {
+        let mut usable = 0;
+        for bytes in mutants(text.as_bytes(), count, 18) {
+            let Ok(file) = parse(&bytes, format) else { continue };
+            usable += 1;
+            let sides = [file.front, file.back];
+            for matrix in sides.into_iter().flat_map(|own| [own.reflection, own.transmission]) {
+                let Some(matrix) = matrix else { continue };
+                let [from, to] = matrix.pairs.counts();
+                assert_eq!(matrix.values.len(), from * to);
+                assert!(matrix.values.iter().all(|value| value.is_finite() && *value >= 0.0));
+            }
+        }
+        assert!(0 < usable && usable < count, "{format}: {usable} of {count} are usable");
+    }
+}

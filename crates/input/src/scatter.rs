@@ -1,0 +1,118 @@
+//! Sheets from what files say of their scatter, with checks of energy and reciprocity.
+
+use lumiduct_base::number::{format_fixed, format_percent};
+use lumiduct_core::optics::{BsdfTable, DirectedTable, MeasuredSheet, SheetTables};
+use lumiduct_files::scatter::{BsdfMatrix, ScatterFile, ScatterSide};
+
+/// Excess of the energy that a file may have by rounding and noise, 1: values are then scaled down.
+const MOST_EXCESS: f64 = 0.01;
+/// Difference of paths forwards and backwards that is worth a remark, 1.
+const RECIPROCAL: f64 = 0.01;
+
+/// The sheet of a file, `turn` rad about the normal of its front, and remarks on what is assumed.
+///
+/// # Errors
+///
+/// What is wrong, if more light leaves than arrives.
+pub fn measured_sheet(
+    file: &ScatterFile,
+    turn: f64,
+) -> Result<(MeasuredSheet, Vec<String>), String> {
+    let mut remarks = Vec::new();
+    let sheet = sheet(file, turn, &mut remarks);
+    let sheet = conserving(sheet, &mut remarks)?;
+    remarks.extend(reciprocity_remark(&sheet));
+    Ok((sheet, remarks))
+}
+
+/// The tables of a file. Transmission that is given for one side alone is reciprocal.
+fn sheet(file: &ScatterFile, turn: f64, remarks: &mut Vec<String>) -> MeasuredSheet {
+    let [mut front, mut back] = [&file.front, &file.back].map(tables);
+    let sides = [("front", &mut front.transmission), ("back", &mut back.transmission)];
+    let [(front_name, from_front), (back_name, from_back)] = sides;
+    let (name, given, missing) = match (&from_front, &from_back) {
+        (None, Some(_)) => (front_name, from_back, from_front),
+        _ => (back_name, from_front, from_back),
+    };
+    if let (Some(given), None) = (&given, &missing) {
+        *missing = Some(given.reversed());
+        remarks.push(format!(
+            "it says nothing of light transmitted from the {name}, which is taken to take the given paths backwards"
+        ));
+    }
+    for (name, side) in [("front", &front), ("back", &back)] {
+        if side.reflection.is_none() {
+            remarks.push(format!(
+                "it says nothing of light reflected by the {name}, which is taken to be absorbed"
+            ));
+        }
+    }
+    MeasuredSheet { front, back, turn }
+}
+
+fn tables(side: &ScatterSide) -> SheetTables {
+    let table = |matrix: &Option<BsdfMatrix>| {
+        let BsdfMatrix { pairs, values } = matrix.as_ref()?;
+        BsdfTable::new(pairs.clone(), values).map(DirectedTable::new)
+    };
+    SheetTables { reflection: table(&side.reflection), transmission: table(&side.transmission) }
+}
+
+/// The sheet without excess of energy, or what is wrong.
+fn conserving(sheet: MeasuredSheet, remarks: &mut Vec<String>) -> Result<MeasuredSheet, String> {
+    let sides = [("front", &sheet.front), ("back", &sheet.back)];
+    let most = sides.map(|(name, side)| (name, largest_share(side)));
+    let (name, (share, angle)) = if most[1].1.0 > most[0].1.0 { most[1] } else { most[0] };
+    if share <= 1.0 {
+        return Ok(sheet);
+    }
+    let angle = format_fixed(angle.to_degrees(), 1);
+    let what = format!(
+        "of light that meets the {name} at {angle} deg, {} is reflected and transmitted",
+        format_percent(share)
+    );
+    if share > 1.0 + MOST_EXCESS {
+        return Err(format!("{what}, more than 100 %; its values must be in 1/sr"));
+    }
+    remarks.push(format!("{what}; all values are scaled down to 100 %"));
+    let scaled = |side: SheetTables| {
+        let [reflection, transmission] = [side.reflection, side.transmission]
+            .map(|table| table.map(|table| table.scaled((1.0 - f64::EPSILON) / share)));
+        SheetTables { reflection, transmission }
+    };
+    Ok(MeasuredSheet { front: scaled(sheet.front), back: scaled(sheet.back), turn: sheet.turn })
+}
+
+/// The largest share of light that leaves in any direction, 1, and its angle of incidence, rad.
+fn largest_share(side: &SheetTables) -> (f64, f64) {
+    let tables = [&side.reflection, &side.transmission].map(Option::as_ref);
+    let directions = tables.into_iter().flatten().flat_map(|table| {
+        let [incident, _] = table.directions();
+        incident
+    });
+    let shares = directions.map(|from| {
+        let share: f64 = tables.into_iter().flatten().map(|table| table.share(from)).sum();
+        (share, from.length().min(1.0).asin())
+    });
+    shares.fold((0.0, 0.0), |most, own| if own.0 > most.0 { own } else { most })
+}
+
+/// A remark where light that takes paths backwards meets other values.
+fn reciprocity_remark(sheet: &MeasuredSheet) -> Option<String> {
+    let MeasuredSheet { front, back, .. } = sheet;
+    let pairs = [
+        ("reflection by the front", &front.reflection, &front.reflection),
+        ("reflection by the back", &back.reflection, &back.reflection),
+        ("transmission", &front.transmission, &back.transmission),
+    ];
+    let errors = pairs.into_iter().filter_map(|(what, table, backwards)| {
+        Some((what, table.as_ref()?.reciprocity_error(backwards.as_ref()?)))
+    });
+    let worst = errors.max_by(|a, b| a.1.total_cmp(&b.1));
+    worst.filter(|(_, error)| *error > RECIPROCAL).map(|(what, error)| {
+        format!(
+            "its {what} is not reciprocal: values for paths backwards differ by {} (rms); they are used as they are",
+            format_percent(error)
+        )
+    })
+}

@@ -17,7 +17,7 @@ use std::process::ExitCode;
 
 #[derive(Debug, Args)]
 pub(super) struct ConvertArgs {
-    /// A luminaire, .ies (LM-63-1986 to -2019, goniometer type C) or .ldt (EULUMDAT); or rays, .tm25ray (IES TM-25), .sdf or .dat (source
+    /// A luminaire, .ies (LM-63-1986 to -2019, goniometer types A, B and C) or .ldt (EULUMDAT); or rays, .tm25ray (IES TM-25), .sdf or .dat (source
     /// file of OpticStudio) or .csv. A BSDF, .xml, is only described.
     from: PathBuf,
     /// The file to write, of the same kind: .ies (LM-63-2002) or .ldt; .tm25ray, .sdf, .dat or .csv. Left out, the file is only described.

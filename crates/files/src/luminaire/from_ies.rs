@@ -1,15 +1,19 @@
 //! Reads LM-63 files: ANSI/IES LM-63-1986, -1991, -1995, -2002 and -2019.
 //!
 //! Keywords and their texts come first, then `TILT=`, then numbers in a fixed order, separated by blanks, commas and line
-//! ends. The horizontal angle 0 lies along the length of the opening.
+//! ends. The photometric horizontal, C0, lies along the length of the opening.
 
 use crate::luminaire::data::{LampFlux, Luminaire, Opening, ReadLuminaire, known_power};
 use crate::luminaire::error::{
     LuminaireError, MAX_ANGLES, MOST_FACTOR, MOST_LAMPS, MOST_LUMENS, MOST_NODES, MOST_SIZE,
 };
 use crate::luminaire::fields::NumberReader;
-use crate::luminaire::format::LuminaireFormat;
+use crate::luminaire::front_table::{FrontTable, problem_of_angles};
+use crate::luminaire::ies_edition::Edition;
+use crate::luminaire::ies_words::{WordReader, violated};
 use crate::luminaire::intensities::{Intensities, PlaneSymmetry};
+use crate::luminaire::photometric_type::PhotometricType;
+use crate::luminaire::{type_a, type_b};
 
 /// Millimetres in a foot.
 const FOOT: f64 = 304.8;
@@ -49,22 +53,54 @@ pub(crate) fn read(text: &str) -> Result<ReadLuminaire, LuminaireError> {
     }
 
     let head = read_head(&mut numbers, edition)?;
-    let Head { lamps, angles, planes, power_w, .. } = head;
-    let angles_deg = numbers.angles(angles, "a vertical angle")?;
-    let planes_deg = numbers.angles(planes, "a horizontal angle")?;
-    let mut candela = numbers.intensities(planes * angles)?;
-    numbers.end([planes, angles])?;
-    candela.iter_mut().for_each(|value| *value *= head.factor);
-
-    let (symmetry, planes_deg) =
-        symmetry_of(planes_deg).map_err(|problem| numbers.wrong(problem))?;
-    remark_on_repeated_plane((&planes_deg, &angles_deg), &candela, &mut remarks);
-    candela.truncate(planes_deg.len() * angles);
-    let intensities = Intensities::new(symmetry, planes_deg, angles_deg, candela)?;
+    let Head { lamps, power_w, .. } = head;
+    let intensities = read_intensities(&mut numbers, &head, &mut remarks)?;
     let lamps = lamp_flux(lamps, head.lumens_per_lamp, &mut remarks);
     let power_w = known_power(power_w, &mut remarks);
     let opening = opening(head.size_mm, &mut remarks);
     Ok(ReadLuminaire::new(Luminaire { texts, lamps, power_w, opening, intensities }, remarks))
+}
+
+/// Reads the angles and the intensities, and gives them over C planes.
+fn read_intensities(
+    numbers: &mut WordReader<'_>,
+    head: &Head,
+    remarks: &mut Vec<String>,
+) -> Result<Intensities, LuminaireError> {
+    match head.photometric_type {
+        PhotometricType::A => type_a::over_c_planes(&read_front(numbers, head)?, remarks),
+        PhotometricType::B => type_b::over_c_planes(&read_front(numbers, head)?, remarks),
+        PhotometricType::C => {
+            let angles_deg = numbers.angles(head.angles, "a vertical angle")?;
+            let planes_deg = numbers.angles(head.planes, "a horizontal angle")?;
+            let (symmetry, planes_deg) =
+                symmetry_of(planes_deg).map_err(|problem| numbers.wrong(problem))?;
+            let mut candela = read_values(numbers, head)?;
+            remark_on_repeated_plane((&planes_deg, &angles_deg), &candela, remarks);
+            candela.truncate(planes_deg.len() * angles_deg.len());
+            Intensities::new(symmetry, planes_deg, angles_deg, candela)
+        }
+    }
+}
+
+/// Reads the angles and the intensities of type A or B.
+fn read_front(numbers: &mut WordReader<'_>, head: &Head) -> Result<FrontTable, LuminaireError> {
+    let vertical_deg = numbers.angles(head.angles, "a vertical angle")?;
+    let horizontal_deg = numbers.angles(head.planes, "a horizontal angle")?;
+    if let Some(problem) = problem_of_angles(&horizontal_deg, &vertical_deg) {
+        return Err(numbers.wrong(problem));
+    }
+    let candela = read_values(numbers, head)?;
+    Ok(FrontTable::new(horizontal_deg, vertical_deg, candela))
+}
+
+/// Reads the intensities, which end the file, cd.
+fn read_values(numbers: &mut WordReader<'_>, head: &Head) -> Result<Vec<f64>, LuminaireError> {
+    let &Head { angles, planes, factor, .. } = head;
+    let mut candela = numbers.intensities(planes * angles)?;
+    numbers.end([planes, angles])?;
+    candela.iter_mut().for_each(|value| *value *= factor);
+    Ok(candela)
 }
 
 /// The numbers before the angles.
@@ -75,6 +111,7 @@ struct Head {
     factor: f64,
     angles: usize,
     planes: usize,
+    photometric_type: PhotometricType,
     /// Width, length and height; negative ones are diameters.
     size_mm: [f64; 3],
     power_w: f64,
@@ -89,12 +126,10 @@ fn read_head(numbers: &mut WordReader<'_>, edition: Edition) -> Result<Head, Lum
     if planes * angles > MOST_NODES {
         return Err(numbers.wrong(format!("{planes} times {angles} angles are too many")));
     }
-    let goniometer = numbers.next("the photometric type")?;
-    if goniometer != 1.0 {
-        return Err(numbers.wrong(format!(
-            "photometric type {goniometer} (1 is C, 2 is B, 3 is A); only type C is read, convert the file"
-        )));
-    }
+    let number = numbers.next("the photometric type")?;
+    let photometric_type = PhotometricType::of_number(number).ok_or_else(|| {
+        numbers.wrong(format!("photometric type {number}, expected 1 (C), 2 (B) or 3 (A)"))
+    })?;
     let unit = match numbers.next("the unit of lengths")? {
         1.0 => FOOT,
         2.0 => 1000.0,
@@ -113,7 +148,7 @@ fn read_head(numbers: &mut WordReader<'_>, edition: Edition) -> Result<Head, Lum
     };
     let power_w = numbers.next("the input power")?;
     let factor = multiplier * ballast * second;
-    Ok(Head { lamps, lumens_per_lamp, factor, angles, planes, size_mm, power_w })
+    Ok(Head { lamps, lumens_per_lamp, factor, angles, planes, photometric_type, size_mm, power_w })
 }
 
 /// The flux of the lamps; -1 lm of each says that the photometry is absolute.
@@ -158,40 +193,6 @@ fn remark_on_repeated_plane(
     }
 }
 
-/// The edition of the format, where it matters.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Edition {
-    /// 1986, without a first line of its own.
-    First,
-    /// 1991.
-    Second,
-    /// 1995 and later.
-    Later,
-}
-
-impl Edition {
-    /// That of the first line with a text.
-    fn of(line: &str) -> Self {
-        let line = line.trim().to_ascii_uppercase();
-        if line == "IESNA91" || line.contains("LM-63-1991") {
-            Self::Second
-        } else if line.contains("LM-63-") && !line.contains("LM-63-1986") {
-            Self::Later
-        } else {
-            Self::First
-        }
-    }
-
-    /// Whether the second factor is that of ballast and lamp together; later it was kept for future use, and in 2019 says how the
-    /// file was made.
-    fn has_second_factor(self) -> bool {
-        match self {
-            Self::First | Self::Second => true,
-            Self::Later => false,
-        }
-    }
-}
-
 /// Keywords in brackets with their texts, unless empty; `[MORE]` goes on with the text before. Lines without a keyword are of the
 /// first edition.
 fn texts(lines: &[&str]) -> Vec<(String, String)> {
@@ -233,60 +234,4 @@ fn opening([width, length, height]: [f64; 3], remarks: &mut Vec<String>) -> Open
     let [width, length] = [width.abs(), length.abs()];
     let length = if is_round && length == 0.0 { width } else { length };
     Opening { is_round, along_c0_mm: length, along_c90_mm: width, height_mm: height.abs() }
-}
-
-/// Reads the numbers of some lines, one after the other.
-struct WordReader<'t> {
-    words: Box<dyn Iterator<Item = (usize, &'t str)> + 't>,
-    /// Line of the last number, from 1.
-    line: usize,
-}
-
-impl<'t> WordReader<'t> {
-    /// Those from a line on, counted from 0.
-    fn new(lines: &'t [&'t str], first: usize) -> Self {
-        let words = lines.iter().enumerate().skip(first).flat_map(|(line, text)| {
-            let is_gap =
-                |letter: char| letter.is_whitespace() || letter == ',' || letter == '\u{1a}';
-            text.split(is_gap).filter(|word| !word.is_empty()).map(move |word| (line + 1, word))
-        });
-        Self { words: Box::new(words), line: first }
-    }
-
-    fn end(&mut self, [planes, angles]: [usize; 2]) -> Result<(), LuminaireError> {
-        match self.words.next() {
-            None => Ok(()),
-            Some((line, word)) => {
-                let what = format!("`{}` follows the last intensity", shown(word));
-                let counts = format!("of {planes} horizontal times {angles} vertical angles");
-                let cause = "the counts may be wrong, or numbers have decimal commas";
-                Err(violated(line, format!("{what} {counts}: {cause}")))
-            }
-        }
-    }
-}
-
-impl NumberReader for WordReader<'_> {
-    fn next(&mut self, what: &str) -> Result<f64, LuminaireError> {
-        let Some((line, word)) = self.words.next() else {
-            return Err(self.wrong(format!("the file ends before {what}")));
-        };
-        self.line = line;
-        let value: Option<f64> = word.parse().ok();
-        let value = value.filter(|value| value.is_finite());
-        value.ok_or_else(|| self.wrong(format!("expected {what}, found `{}`", shown(word))))
-    }
-
-    fn wrong(&self, problem: String) -> LuminaireError {
-        violated(self.line, problem)
-    }
-}
-
-/// The beginning of a word, for a message.
-fn shown(word: &str) -> String {
-    lumiduct_base::number::shorten(word, 30)
-}
-
-fn violated(line: usize, problem: String) -> LuminaireError {
-    LuminaireError::Violated { format: LuminaireFormat::Ies, line, problem }
 }

@@ -247,7 +247,7 @@ impl Intensities {
 
 /// The place of the last of some increasing numbers that is not above a value within their range, and the share of the way
 /// to the next, 1.
-fn between(numbers: &[f64], value: f64) -> (usize, f64) {
+pub(crate) fn between(numbers: &[f64], value: f64) -> (usize, f64) {
     let place = numbers.partition_point(|number| *number <= value).saturating_sub(1);
     match numbers.get(place + 1) {
         Some(next) => (place, (value - numbers[place]) / (next - numbers[place])),

@@ -1,8 +1,8 @@
 //! Luminaires and lamps from files and to files: ANSI/IES LM-63 (.ies) and EULUMDAT (.ldt).
 //!
 //! Readers never trust a file: whatever it contains, the result is a luminaire or a [`LuminaireError`]. What they assume about
-//! the light is a remark. Angles C and γ are the same in both formats; but the length of an opening lies along C0 in the first and along
-//! C90 in the second, so [`Opening`] names its axes.
+//! the light is a remark. Angles C and γ are the same in both formats, and tables of goniometer types A and B become tables over
+//! them; but the length of an opening lies along C0 in the first and along C90 in the second, so [`Opening`] names its axes.
 
 mod data;
 mod error;
@@ -11,10 +11,16 @@ mod fit;
 mod format;
 mod from_ies;
 mod from_ldt;
+mod front_table;
+mod ies_edition;
+mod ies_words;
 mod intensities;
+mod photometric_type;
 mod text;
 mod to_ies;
 mod to_ldt;
+mod type_a;
+mod type_b;
 
 pub use data::{LampFlux, Luminaire, Opening, ReadLuminaire, WrittenLuminaire};
 pub use error::{LuminaireError, MAX_ANGLES, MAX_LUMINAIRE_BYTES};

@@ -6,13 +6,13 @@ mod scatter;
 
 use crate::cli::exit::{fail, finish};
 use crate::cli::values::parse_count;
-use clap::Args;
+use clap::{Args, ValueEnum};
 use lumiduct_base::error::{Error, Result};
 use lumiduct_files::luminaire::LuminaireFormat;
 use lumiduct_files::rays::RayFormat;
 use lumiduct_files::scatter::ScatterFormat;
 use lumiduct_report::Existing;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 #[derive(Debug, Args)]
@@ -22,6 +22,9 @@ pub(super) struct ConvertArgs {
     from: PathBuf,
     /// The file to write, of the same kind: .ies (LM-63-2002) or .ldt; .tm25ray, .sdf, .dat or .csv. Left out, the file is only described.
     to: Option<PathBuf>,
+    /// Edition of LM-63 to write; that of 2019 says how the file was made.
+    #[arg(long, value_name = "YEAR", requires = "to")]
+    edition: Option<EditionChoice>,
     /// Of a ray file, take no more than this many rays, drawn at random; their fluxes are scaled to the flux of all.
     #[arg(long, value_name = "COUNT", value_parser = parse_count)]
     rays: Option<u64>,
@@ -33,6 +36,17 @@ pub(super) struct ConvertArgs {
     overwrite: bool,
 }
 
+/// An edition of LM-63.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum EditionChoice {
+    /// LM-63-2002.
+    #[value(name = "2002")]
+    Of2002,
+    /// LM-63-2019.
+    #[value(name = "2019")]
+    Of2019,
+}
+
 pub(super) fn convert(args: &ConvertArgs) -> ExitCode {
     match converted(args) {
         Ok(text) => finish(Ok(text)),
@@ -41,10 +55,14 @@ pub(super) fn convert(args: &ConvertArgs) -> ExitCode {
 }
 
 fn converted(args: &ConvertArgs) -> Result<String> {
-    let ConvertArgs { from, to, rays, seed, overwrite } = args;
+    let ConvertArgs { from, to, edition, rays, seed, overwrite } = args;
     let existing = if *overwrite { Existing::Replace } else { Existing::Keep };
     let to = to.as_deref();
     if RayFormat::of(from).is_ok() {
+        if edition.is_some() {
+            let why = format!("--edition: {} is not a luminaire", from.display());
+            return Err(Error::Usage(why));
+        }
         return rays::converted(from, to, rays.map(|count| (count, *seed)), existing);
     }
     let is_bsdf = ScatterFormat::of(from).is_ok_and(|format| format == ScatterFormat::Xml);
@@ -63,5 +81,21 @@ fn converted(args: &ConvertArgs) -> Result<String> {
     if rays.is_some() {
         return Err(Error::Usage(format!("--rays: {} is not a ray file", from.display())));
     }
+    let to = to.map(|to| Ok((to, format_of(to, *edition)?))).transpose()?;
     luminaires::converted(from, to, existing)
+}
+
+/// The format of a luminaire file to write.
+fn format_of(to: &Path, edition: Option<EditionChoice>) -> Result<LuminaireFormat> {
+    let wrong = |why: String| Error::Usage(format!("{}: {why}", to.display()));
+    let format = LuminaireFormat::of(to).map_err(|error| wrong(error.to_string()))?;
+    match (format, edition) {
+        (LuminaireFormat::Ies, Some(EditionChoice::Of2019)) => Ok(LuminaireFormat::Ies2019),
+        (LuminaireFormat::Ies | LuminaireFormat::Ies2019, _) | (LuminaireFormat::Ldt, None) => {
+            Ok(format)
+        }
+        (LuminaireFormat::Ldt, Some(_)) => {
+            Err(wrong("--edition is for .ies files only; leave it out".to_owned()))
+        }
+    }
 }

@@ -67,8 +67,8 @@ pub(super) struct RunArgs {
     /// Write a JUnit XML file with a test case for each check.
     #[arg(long, value_name = "FILE", conflicts_with = "shard")]
     junit: Option<PathBuf>,
-    /// Write what the goniometer measures as a luminaire file: .ies (LM-63-2002) or .ldt (EULUMDAT). The key `luminaire` of the
-    /// sensor has the details; without it, the table is the finest that the cells allow. An existing file needs --overwrite.
+    /// Write what the goniometer measures as a luminaire file: .ies (LM-63) or .ldt (EULUMDAT). The key `luminaire` of the
+    /// sensor has the details, such as the edition; without it, the table is the finest that the cells allow. An existing file needs --overwrite.
     #[arg(long, value_name = "FILE", conflicts_with = "shard")]
     ies: Option<PathBuf>,
     /// Print nothing but errors.

@@ -58,6 +58,9 @@ impl LuminaireFile {
                 return Err(refuse(why.to_owned()));
             }
         };
+        // The key may ask for another edition of the format that the name has.
+        let has_name = |own: &&LuminaireFormat| own.ending() == format.ending();
+        let format = export.formats.iter().find(has_name).copied().unwrap_or(format);
         Ok(Self { path: path.to_path_buf(), format, export, existing })
     }
 

@@ -51,6 +51,12 @@ fn luminaires_are_converted_and_described() {
     let said = place.bad(2, "convert back.ies");
     assert!(said.contains("back.ies") && said.contains("line 1"), "{said}");
     assert!(place.bad(2, "convert lamp.ies lamp.txt").contains(".ies or .ldt"));
+    // The edition of 2019, there and back.
+    place.good("convert lamp.ies new.ies --edition 2019");
+    let text = fs::read_to_string(place.path("new.ies")).unwrap();
+    assert!(text.starts_with("IES:LM-63-2019\r\n") && text.contains("1 1.00001 9\r\n"), "{text}");
+    let said = place.bad(2, "convert lamp.ies lamp.ldt --edition 2019");
+    assert!(said.contains("for .ies files only"), "{said}");
 }
 
 #[test]
@@ -82,6 +88,14 @@ fn a_run_writes_what_its_goniometer_measures_as_a_luminaire_file() {
     }
     assert!(!page.contains("EN 12464-1"), "a flat opening cannot emit upward");
     assert!(fs::read_to_string(place.path("lamp.ies")).unwrap().contains("1 1 2\r\n"));
+    let latest = with(" }, luminaire = { formats = [\"ies_2019\"], power_w = 2 }");
+    latest.good("run rod.toml -q --ies lamp.ies");
+    let files = [latest.path("lamp.ies"), latest.path("reports/rod/far.ies")];
+    for text in files.map(|path| fs::read_to_string(path).unwrap()) {
+        assert!(text.starts_with("IES:LM-63-2019\r\n"), "{text}");
+        assert!(text.contains("1 1.00010 2\r\n"), "computed, not measured");
+    }
+    assert!(latest.good("convert lamp.ies").contains("intensities: computed"));
     let near = with(", radius_mm = 99 }");
     assert!(near.bad(2, "run rod.toml --ies a.ies").contains("no goniometer in the far field"));
     let two = Place::with("[sensors.near]\ngoniometer = {}\n");

@@ -7,7 +7,8 @@ use lumiduct_base::error::{Error, Result};
 use lumiduct_base::number::{format_percent, format_value};
 use lumiduct_core::measure::{IntensityTable, Measures};
 use lumiduct_files::luminaire::{
-    CellMeans, FittedIntensities, Intensities, LampFlux, Luminaire, LuminaireFormat, fit, written,
+    CellMeans, FileGeneration, FittedIntensities, Intensities, LampFlux, Luminaire,
+    LuminaireFormat, fit, written,
 };
 use lumiduct_input::LuminaireExport;
 use ndarray::Array2;
@@ -73,7 +74,14 @@ impl MeasuredLuminaire {
         let mut remarks = remarks(export, readings, &intensities, added_share);
         let texts = texts(export, origin, &std_errors);
         let opening = export.opening.unwrap_or_default();
-        let luminaire = Luminaire { texts, lamps, power_w: export.power_w, opening, intensities };
+        let luminaire = Luminaire {
+            texts,
+            generation: FileGeneration::Simulated,
+            lamps,
+            power_w: export.power_w,
+            opening,
+            intensities,
+        };
         for format in &export.formats {
             let left_out = written(&luminaire, *format).remarks;
             remarks.extend(left_out.into_iter().map(|text| format!("{format} file: {text}")));

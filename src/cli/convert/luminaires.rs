@@ -11,16 +11,18 @@ use std::fmt::Write;
 use std::path::Path;
 
 /// Writes the file, and describes the luminaire.
-pub(super) fn converted(from: &Path, to: Option<&Path>, existing: Existing) -> Result<String> {
-    let wrong =
-        |path: &Path, error: LuminaireError| Error::Usage(format!("{}: {error}", path.display()));
-    let ReadLuminaire { luminaire, remarks } = read(from).map_err(|error| wrong(from, error))?;
+pub(super) fn converted(
+    from: &Path,
+    to: Option<(&Path, LuminaireFormat)>,
+    existing: Existing,
+) -> Result<String> {
+    let wrong = |error: LuminaireError| Error::Usage(format!("{}: {error}", from.display()));
+    let ReadLuminaire { luminaire, remarks } = read(from).map_err(wrong)?;
     let mut text = description(&luminaire);
     for remark in remarks {
         _ = writeln!(text, "remark: {remark}");
     }
-    if let Some(to) = to {
-        let format = LuminaireFormat::of(to).map_err(|error| wrong(to, error))?;
+    if let Some((to, format)) = to {
         let WrittenLuminaire { text: file, remarks } = written(&luminaire, format);
         write_whole(to, file.as_bytes(), existing)?;
         for remark in remarks {
@@ -33,7 +35,7 @@ pub(super) fn converted(from: &Path, to: Option<&Path>, existing: Existing) -> R
 
 /// A luminaire in a few lines.
 fn description(luminaire: &Luminaire) -> String {
-    let Luminaire { lamps, power_w, opening, intensities, .. } = luminaire;
+    let Luminaire { generation, lamps, power_w, opening, intensities, .. } = luminaire;
     let mut text = String::new();
     for (name, keyword) in
         [("manufacturer", "MANUFAC"), ("luminaire", "LUMINAIRE"), ("catalogue number", "LUMCAT")]
@@ -41,6 +43,9 @@ fn description(luminaire: &Luminaire) -> String {
         if let Some(own) = luminaire.text(keyword) {
             _ = writeln!(text, "{name}: {own}");
         }
+    }
+    if let Some(name) = generation.name() {
+        _ = writeln!(text, "intensities: {name}");
     }
     let flux = intensities.flux();
     _ = writeln!(

@@ -1,5 +1,6 @@
 //! What a luminaire file says.
 
+use crate::luminaire::generation::FileGeneration;
 use crate::luminaire::intensities::{Intensities, PlaneSymmetry};
 
 /// A luminaire or lamp: its light, its luminous opening and what else its file says.
@@ -7,6 +8,8 @@ use crate::luminaire::intensities::{Intensities, PlaneSymmetry};
 pub struct Luminaire {
     /// Texts by their keyword in LM-63, in the order of the file: `TEST`, `MANUFAC`, ... A keyword may occur more than once.
     pub texts: Vec<(String, String)>,
+    /// How the intensities were obtained.
+    pub generation: FileGeneration,
     /// The lamps that the intensities belong to.
     pub lamps: LampFlux,
     /// Input power, W; 0 if it is not known.

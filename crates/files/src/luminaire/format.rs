@@ -5,8 +5,10 @@ use std::fmt;
 /// File formats of luminaires.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LuminaireFormat {
-    /// ANSI/IES LM-63.
+    /// ANSI/IESNA LM-63-2002; when reading, any edition.
     Ies,
+    /// ANSI/IES LM-63-2019; when reading, any edition.
+    Ies2019,
     /// EULUMDAT.
     Ldt,
 }
@@ -15,7 +17,7 @@ impl LuminaireFormat {
     /// The extension of its file names, without the dot.
     pub fn ending(self) -> &'static str {
         match self {
-            Self::Ies => "ies",
+            Self::Ies | Self::Ies2019 => "ies",
             Self::Ldt => "ldt",
         }
     }
@@ -25,6 +27,7 @@ impl fmt::Display for LuminaireFormat {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         out.write_str(match self {
             Self::Ies => "IES",
+            Self::Ies2019 => "IES LM-63-2019",
             Self::Ldt => "EULUMDAT",
         })
     }

@@ -9,7 +9,8 @@ use crate::luminaire::error::{
 };
 use crate::luminaire::fields::NumberReader;
 use crate::luminaire::front_table::{FrontTable, problem_of_angles};
-use crate::luminaire::ies_edition::Edition;
+use crate::luminaire::generation::FileGeneration;
+use crate::luminaire::ies_edition::{Edition, SecondNumber};
 use crate::luminaire::ies_words::{WordReader, violated};
 use crate::luminaire::intensities::{Intensities, PlaneSymmetry};
 use crate::luminaire::photometric_type::PhotometricType;
@@ -52,13 +53,18 @@ pub(crate) fn read(text: &str) -> Result<ReadLuminaire, LuminaireError> {
         _ => remarks.push(format!("the file of the effect of tilt, `{way}`, is not read")),
     }
 
-    let head = read_head(&mut numbers, edition)?;
+    let head = read_head(&mut numbers, edition, &mut remarks)?;
     let Head { lamps, power_w, .. } = head;
     let intensities = read_intensities(&mut numbers, &head, &mut remarks)?;
     let lamps = lamp_flux(lamps, head.lumens_per_lamp, &mut remarks);
     let power_w = known_power(power_w, &mut remarks);
     let opening = opening(head.size_mm, &mut remarks);
-    Ok(ReadLuminaire::new(Luminaire { texts, lamps, power_w, opening, intensities }, remarks))
+    let generation = match head.photometric_type {
+        PhotometricType::A | PhotometricType::C => head.generation,
+        PhotometricType::B => head.generation.interpolated(),
+    };
+    let luminaire = Luminaire { texts, generation, lamps, power_w, opening, intensities };
+    Ok(ReadLuminaire::new(luminaire, remarks))
 }
 
 /// Reads the angles and the intensities, and gives them over C planes.
@@ -114,10 +120,15 @@ struct Head {
     photometric_type: PhotometricType,
     /// Width, length and height; negative ones are diameters.
     size_mm: [f64; 3],
+    generation: FileGeneration,
     power_w: f64,
 }
 
-fn read_head(numbers: &mut WordReader<'_>, edition: Edition) -> Result<Head, LuminaireError> {
+fn read_head(
+    numbers: &mut WordReader<'_>,
+    edition: Edition,
+    remarks: &mut Vec<String>,
+) -> Result<Head, LuminaireError> {
     let lamps = numbers.count("the number of lamps", 1..=MOST_LAMPS)?;
     let lumens_per_lamp = numbers.within("the lumens per lamp", -MOST_LUMENS..=MOST_LUMENS)?;
     let multiplier = numbers.positive("the multiplier of the intensities", MOST_FACTOR)?;
@@ -141,14 +152,42 @@ fn read_head(numbers: &mut WordReader<'_>, edition: Edition) -> Result<Head, Lum
     let mut size = || numbers.within("the size of the opening", -most..=most);
     let size_mm = [size()? * unit, size()? * unit, size()? * unit];
     let ballast = numbers.positive("the ballast factor", MOST_FACTOR)?;
-    let second = if edition.has_second_factor() {
-        numbers.positive("the ballast-lamp factor", MOST_FACTOR)?
-    } else {
-        numbers.next("the number after the ballast factor").map(|_| 1.0)?
+    let (second, generation) = match edition.second_number() {
+        SecondNumber::Factor => {
+            let factor = numbers.positive("the ballast-lamp factor", MOST_FACTOR)?;
+            (factor, FileGeneration::Undefined)
+        }
+        SecondNumber::Unused => {
+            numbers.next("the number after the ballast factor")?;
+            (1.0, FileGeneration::Undefined)
+        }
+        SecondNumber::Generation => {
+            let number = numbers.next("the file generation type")?;
+            (1.0, known_generation(number, remarks))
+        }
     };
     let power_w = numbers.next("the input power")?;
     let factor = multiplier * ballast * second;
-    Ok(Head { lamps, lumens_per_lamp, factor, angles, planes, photometric_type, size_mm, power_w })
+    Ok(Head {
+        lamps,
+        lumens_per_lamp,
+        factor,
+        angles,
+        planes,
+        photometric_type,
+        size_mm,
+        generation,
+        power_w,
+    })
+}
+
+/// How the file was made, with a remark if its number is not one of the standard.
+fn known_generation(number: f64, remarks: &mut Vec<String>) -> FileGeneration {
+    FileGeneration::of_number(number).unwrap_or_else(|| {
+        let taken = "is not one of LM-63-2019; how the file was made is taken as not known";
+        remarks.push(format!("the file generation type {number} {taken}"));
+        FileGeneration::Undefined
+    })
 }
 
 /// The flux of the lamps; -1 lm of each says that the photometry is absolute.

@@ -10,6 +10,7 @@ use crate::luminaire::error::{
 };
 use crate::luminaire::fields::NumberReader;
 use crate::luminaire::format::LuminaireFormat;
+use crate::luminaire::generation::FileGeneration;
 use crate::luminaire::intensities::{Intensities, PlaneSymmetry};
 use crate::luminaire::text::{number, whole};
 use lumiduct_base::number::shorten;
@@ -99,7 +100,9 @@ pub(crate) fn read(text: &str) -> Result<ReadLuminaire, LuminaireError> {
         let what = "of the light of its lamps, the intensities give";
         remarks.push(format!("{what} {own:.1} % and the light output ratio is {stated:.1} %"));
     }
-    Ok(ReadLuminaire::new(Luminaire { texts, lamps, power_w, opening, intensities }, remarks))
+    let generation = FileGeneration::Undefined;
+    let luminaire = Luminaire { texts, generation, lamps, power_w, opening, intensities };
+    Ok(ReadLuminaire::new(luminaire, remarks))
 }
 
 /// Remarks where angles do not have the step that the file states; 0 states none.

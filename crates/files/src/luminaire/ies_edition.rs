@@ -7,8 +7,10 @@ pub(crate) enum Edition {
     First,
     /// 1991.
     Second,
-    /// 1995 and later.
-    Later,
+    /// 1995 and 2002.
+    Third,
+    /// 2019.
+    Latest,
 }
 
 impl Edition {
@@ -17,19 +19,32 @@ impl Edition {
         let line = line.trim().to_ascii_uppercase();
         if line == "IESNA91" || line.contains("LM-63-1991") {
             Self::Second
+        } else if line.contains("LM-63-2019") {
+            Self::Latest
         } else if line.contains("LM-63-") && !line.contains("LM-63-1986") {
-            Self::Later
+            Self::Third
         } else {
             Self::First
         }
     }
 
-    /// Whether the second factor is that of ballast and lamp together; later it was kept for future use, and in 2019 says how the
-    /// file was made.
-    pub(crate) fn has_second_factor(self) -> bool {
+    /// What the number after the ballast factor means.
+    pub(crate) fn second_number(self) -> SecondNumber {
         match self {
-            Self::First | Self::Second => true,
-            Self::Later => false,
+            Self::First | Self::Second => SecondNumber::Factor,
+            Self::Third => SecondNumber::Unused,
+            Self::Latest => SecondNumber::Generation,
         }
     }
+}
+
+/// What the number after the ballast factor means.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum SecondNumber {
+    /// The factor of ballast and lamp together.
+    Factor,
+    /// Nothing: it is kept for future use.
+    Unused,
+    /// How the file was made.
+    Generation,
 }

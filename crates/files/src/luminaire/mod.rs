@@ -12,6 +12,7 @@ mod format;
 mod from_ies;
 mod from_ldt;
 mod front_table;
+mod generation;
 mod ies_edition;
 mod ies_words;
 mod intensities;
@@ -26,15 +27,17 @@ pub use data::{LampFlux, Luminaire, Opening, ReadLuminaire, WrittenLuminaire};
 pub use error::{LuminaireError, MAX_ANGLES, MAX_LUMINAIRE_BYTES};
 pub use fit::{CellMeans, FittedIntensities, TableLayout, fit};
 pub use format::LuminaireFormat;
+pub use generation::FileGeneration;
 pub use intensities::{Intensities, PlaneSymmetry};
 pub use text::is_keyword;
 
 use crate::bytes::read_file;
 use crate::luminaire::text::decoded;
+use crate::luminaire::to_ies::WrittenEdition;
 use std::path::Path;
 
 impl LuminaireFormat {
-    /// The format of a file name extension.
+    /// The format of a file name extension: of those with the same one, the most common.
     ///
     /// # Errors
     ///
@@ -67,15 +70,16 @@ pub fn read(path: &Path) -> Result<ReadLuminaire, LuminaireError> {
 pub fn parse(bytes: &[u8], format: LuminaireFormat) -> Result<ReadLuminaire, LuminaireError> {
     let text = decoded(bytes);
     match format {
-        LuminaireFormat::Ies => from_ies::read(&text),
+        LuminaireFormat::Ies | LuminaireFormat::Ies2019 => from_ies::read(&text),
         LuminaireFormat::Ldt => from_ldt::read(&text),
     }
 }
 
-/// A file, LM-63-2002 or EULUMDAT, with seven digits.
+/// A file, LM-63-2002, LM-63-2019 or EULUMDAT, with seven digits.
 pub fn written(luminaire: &Luminaire, format: LuminaireFormat) -> WrittenLuminaire {
     match format {
-        LuminaireFormat::Ies => to_ies::write(luminaire),
+        LuminaireFormat::Ies => to_ies::write(luminaire, WrittenEdition::Of2002),
+        LuminaireFormat::Ies2019 => to_ies::write(luminaire, WrittenEdition::Of2019),
         LuminaireFormat::Ldt => to_ldt::write(luminaire),
     }
 }

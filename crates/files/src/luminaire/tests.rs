@@ -24,6 +24,7 @@ fn luminaire(symmetry: PlaneSymmetry, planes: &[f64]) -> Luminaire {
         texts: [("TEST", "12"), ("MANUFAC", "A°"), ("LUMINAIRE", "lamp"), ("LAMP", "LED")]
             .map(|(keyword, text)| (keyword.to_owned(), text.to_owned()))
             .to_vec(),
+        generation: FileGeneration::Undefined,
         lamps: LampFlux::Relative { count: 2, flux_lm: 6000.0 },
         power_w: 25.0,
         opening: Opening {
@@ -93,6 +94,40 @@ fn luminaires_come_back_from_both_formats() {
             assert_eq!(written(&back.luminaire, format).text, text, "{format}, written again");
         }
     }
+}
+
+#[test]
+fn the_edition_of_2019_keeps_how_a_file_was_made() {
+    let measured =
+        FileGeneration::Measured { is_accredited: true, is_interpolated: false, is_scaled: true };
+    for (generation, line) in [
+        (measured, "1 1.10100 25"),
+        (FileGeneration::Simulated, "1 1.00010 25"),
+        (FileGeneration::Undefined, "1 1.00001 25"),
+    ] {
+        let own = Luminaire { generation, ..all_symmetries()[1].clone() };
+        let text = written(&own, LuminaireFormat::Ies2019).text;
+        assert!(text.starts_with("IES:LM-63-2019\r\n"), "{text}");
+        assert!(text.lines().any(|own| own == line), "{text}");
+        let back = ies(&text).unwrap();
+        assert_eq!((back.luminaire.generation, back.remarks.len()), (generation, 0));
+        assert_eq!(written(&back.luminaire, LuminaireFormat::Ies2019).text, text);
+        // All else is as in the edition of 2002.
+        let other = written(&own, LuminaireFormat::Ies).text;
+        let back = other.replace("IESNA:LM-63-2002", "IES:LM-63-2019").replace("1 1 25", line);
+        assert_eq!(back, text);
+        assert_eq!(ies(&other).unwrap().luminaire.generation, FileGeneration::Undefined);
+    }
+    let text = written(&all_symmetries()[1], LuminaireFormat::Ies2019).text;
+    let read = ies(&text.replace("1.00001", "1.25")).unwrap();
+    assert!(read.remarks[0].contains("file generation type 1.25"), "{:?}", read.remarks);
+    let wrong = ies(&text.replace("1.00001", "x")).unwrap_err().to_string();
+    assert!(wrong.contains("line 10: expected the file generation type, found `x`"), "{wrong}");
+    // Type B has other angles than were measured.
+    let of_b =
+        of_type(2).replace("IESNA:LM-63-2002", "IES:LM-63-2019").replace("\n1 1 0", "\n1 1.1 0");
+    let name = ies(&of_b).unwrap().luminaire.generation.name().unwrap();
+    assert!(name.contains("interpolated"), "{name}");
 }
 
 #[test]
@@ -180,8 +215,10 @@ fn editions_differ_in_their_factors_and_tilt_is_remarked_on() {
     for head in ["", "A label\n", "IESNA91\n", "\nIESNA91\n"] {
         assert_eq!(flux(head, "TILT=NONE").0, 9.0, "{head}");
     }
-    assert_eq!(flux("IES:LM-63-2019\n", "TILT = INCLUDE\n1\n2\n0 90\n1 0.8").1, 1);
-    assert_eq!(flux("IES:LM-63-2019\n", "TILT=lamp.tlt").1, 1);
+    // Since 2019 the second number is no factor, and 0.5 is none of its values.
+    let (peak, remarks, _) = flux("IES:LM-63-2019\n", "TILT = INCLUDE\n1\n2\n0 90\n1 0.8");
+    assert_eq!((peak, remarks), (18.0, 2));
+    assert_eq!(flux("IESNA:LM-63-2002\n", "TILT=lamp.tlt").1, 1);
 }
 
 /// A file with a photometric type: of three horizontal by three vertical angles.

@@ -1,4 +1,4 @@
-//! Writes ANSI/IESNA LM-63-2002.
+//! Writes ANSI/IESNA LM-63-2002 and ANSI/IES LM-63-2019, which differ in the first line and in the number after the ballast factor.
 
 use crate::luminaire::data::{LampFlux, Luminaire, WrittenLuminaire};
 use crate::luminaire::intensities::PlaneSymmetry;
@@ -12,23 +12,23 @@ const LINE: usize = 120;
 /// Most letters of the text after a keyword: a line has up to 256 (LM-63-2002, 5.1).
 const TEXT: usize = 220;
 
-/// The file.
-pub(crate) fn write(luminaire: &Luminaire) -> WrittenLuminaire {
-    let Luminaire { texts, lamps, power_w, opening, intensities } = luminaire;
-    let mut out = "IESNA:LM-63-2002\r\n".to_owned();
-    // A keyword without a text says that it is not known.
-    for keyword in REQUIRED.iter().filter(|keyword| luminaire.text(keyword).is_none()) {
-        _ = write!(out, "[{keyword}]\r\n");
-    }
-    for (keyword, text) in texts {
-        let mut keyword = one_line(keyword, KEYWORD);
-        for part in text.split('\n').flat_map(parts) {
-            _ = write!(out, "[{keyword}] {}\r\n", one_line(&part, TEXT));
-            keyword = "MORE".to_owned();
-        }
-    }
-    out += "TILT=NONE\r\n";
+/// An edition that is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum WrittenEdition {
+    /// LM-63-2002.
+    Of2002,
+    /// LM-63-2019.
+    Of2019,
+}
 
+/// The file.
+pub(crate) fn write(luminaire: &Luminaire, edition: WrittenEdition) -> WrittenLuminaire {
+    let Luminaire { generation, lamps, power_w, opening, intensities, .. } = luminaire;
+    let (head, second) = match edition {
+        WrittenEdition::Of2002 => ("IESNA:LM-63-2002", "1".to_owned()),
+        WrittenEdition::Of2019 => ("IES:LM-63-2019", generation.number()),
+    };
+    let mut out = format!("{head}\r\n{}TILT=NONE\r\n", keywords(luminaire));
     let (count, flux) = match *lamps {
         LampFlux::Absolute => (1, "-1".to_owned()),
         LampFlux::Relative { count, flux_lm } => {
@@ -49,7 +49,7 @@ pub(crate) fn write(luminaire: &Luminaire) -> WrittenLuminaire {
     let sizes = [width, length, opening.height_mm / 1000.0].map(seven_digits).join(" ");
     let (angles, numbers) = (intensities.angles_deg().len(), planes.len());
     _ = write!(out, "{count} {flux} 1 {angles} {numbers} 1 2 {sizes}\r\n");
-    _ = write!(out, "1 1 {}\r\n", seven_digits(*power_w));
+    _ = write!(out, "1 {second} {}\r\n", seven_digits(*power_w));
     let mut list = |values: &[f64]| {
         let mut line = String::new();
         for word in values.iter().map(|value| seven_digits(*value)) {
@@ -74,6 +74,23 @@ pub(crate) fn write(luminaire: &Luminaire) -> WrittenLuminaire {
         remarks.push(remark.to_owned());
     }
     WrittenLuminaire { text: out, remarks }
+}
+
+/// The lines of keywords.
+fn keywords(luminaire: &Luminaire) -> String {
+    let mut out = String::new();
+    // A keyword without a text says that it is not known.
+    for keyword in REQUIRED.iter().filter(|keyword| luminaire.text(keyword).is_none()) {
+        _ = write!(out, "[{keyword}]\r\n");
+    }
+    for (keyword, text) in &luminaire.texts {
+        let mut keyword = one_line(keyword, KEYWORD);
+        for part in text.split('\n').flat_map(parts) {
+            _ = write!(out, "[{keyword}] {}\r\n", one_line(&part, TEXT));
+            keyword = "MORE".to_owned();
+        }
+    }
+    out
 }
 
 /// A text in parts that fit into a line; one part for an empty text.

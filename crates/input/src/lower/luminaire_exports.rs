@@ -43,17 +43,23 @@ impl Context<'_> {
         let goniometer = goniometer?;
         let finest = LuminaireExport::of_goniometer(name, goniometer);
         let layout = self.layout(own, &finest.layout, goniometer, &key)?;
-        let formats = own.formats.iter().map(|format| match format {
-            ExportFormat::Ies => LuminaireFormat::Ies,
-            ExportFormat::Ldt => LuminaireFormat::Ldt,
-        });
+        let formats: Vec<LuminaireFormat> = own
+            .formats
+            .iter()
+            .map(|format| match format {
+                ExportFormat::Ies => LuminaireFormat::Ies,
+                ExportFormat::Ies2019 => LuminaireFormat::Ies2019,
+                ExportFormat::Ldt => LuminaireFormat::Ldt,
+            })
+            .collect();
+        self.check_file_names(name, &formats, &key.field("formats"));
         let opening = own.opening.as_ref();
         let opening = opening.map(|area| self.luminous_opening(area, &key.field("opening")));
         if matches!(opening, Some(None)) {
             return None;
         }
         self.exports.luminaires.push(LuminaireExport {
-            formats: formats.collect(),
+            formats,
             layout,
             lamps: (own.photometry == ExportPhotometry::Relative).then_some(own.lamps.unwrap_or(1)),
             opening: opening.flatten(),
@@ -62,6 +68,17 @@ impl Context<'_> {
             ..finest
         });
         Some(())
+    }
+
+    /// Refuses formats whose files would have one name.
+    fn check_file_names(&mut self, sensor: &str, formats: &[LuminaireFormat], key: &Key) {
+        for (place, format) in formats.iter().enumerate() {
+            let ending = format.ending();
+            if formats[..place].iter().any(|before| before.ending() == ending) {
+                let message = format!("two of them would write `{sensor}.{ending}`");
+                self.problems.error(key, message).hint("give one of them");
+            }
+        }
     }
 
     /// The layout of the table, if the goniometer has cells for it.

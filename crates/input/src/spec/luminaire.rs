@@ -46,7 +46,8 @@ pub enum LuminaireExtent {
 /// interpolation fits the cells best. The polar axis is the nadir; C0 is along the local +x, C90 along the local -y.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LuminaireExportSpec {
-    /// The files: `SENSOR.ies` in IES LM-63-2002, `SENSOR.ldt` in EULUMDAT.
+    /// The files: `SENSOR.ies` in IES LM-63-2002 or, with `ies_2019`, in LM-63-2019, which says that the values are computed;
+    /// `SENSOR.ldt` in EULUMDAT.
     #[serde(default = "all_formats")]
     #[schemars(length(min = 1))]
     pub formats: Vec<ExportFormat>,
@@ -83,6 +84,9 @@ pub struct LuminaireExportSpec {
 pub enum ExportFormat {
     /// IES LM-63-2002.
     Ies,
+    /// IES LM-63-2019.
+    #[serde(rename = "ies_2019")]
+    Ies2019,
     /// EULUMDAT.
     Ldt,
 }

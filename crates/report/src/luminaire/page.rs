@@ -190,7 +190,7 @@ fn area_m2(opening: &Opening) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use lumiduct_files::luminaire::Intensities;
+    use lumiduct_files::luminaire::{FileGeneration, Intensities};
     use ndarray::Array2;
 
     /// A Lambertian disk of 100 mm with 1000 cd along its axis: the same luminance in all directions, I / (π r²), and sin² γ of its flux
@@ -206,7 +206,14 @@ mod tests {
         MeasuredLuminaire {
             sensor: "far".into(),
             formats: Vec::new(),
-            luminaire: Luminaire { texts: Vec::new(), lamps, power_w: 0.0, opening, intensities },
+            luminaire: Luminaire {
+                texts: Vec::new(),
+                generation: FileGeneration::Simulated,
+                lamps,
+                power_w: 0.0,
+                opening,
+                intensities,
+            },
             std_errors: Array2::zeros((1, 181)),
             remarks: Vec::new(),
         }

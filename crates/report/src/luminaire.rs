@@ -1,6 +1,7 @@
 //! Luminaire files of what goniometers measured.
 
 pub(crate) mod page;
+mod ugr;
 
 use crate::OutputFile;
 use lumiduct_base::error::{Error, Result};

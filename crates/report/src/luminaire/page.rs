@@ -1,8 +1,11 @@
-//! What the page of a report says of a luminaire: its intensities, its flux by zones, and its luminance.
+//! What the page of a report says of a luminaire: its intensities, its flux by zones, its luminance, and its glare in standard rooms.
 
+use crate::luminaire::ugr::{REFLECTANCES, ROOMS, ViewPlane, ratings};
 use crate::luminaire::{MeasuredLuminaire, NEGLIGIBLE_FLUX};
 use crate::page::{Block, table};
-use lumiduct_base::number::{format_exact, format_percent, format_value, format_with_error};
+use lumiduct_base::number::{
+    format_exact, format_fixed, format_percent, format_value, format_with_error,
+};
 use lumiduct_files::luminaire::{LampFlux, Luminaire, Opening, PlaneSymmetry};
 use std::f64::consts::PI;
 
@@ -40,7 +43,10 @@ pub(crate) fn blocks(luminaires: &[MeasuredLuminaire], sensor: &str) -> Vec<Bloc
     blocks.push(Block::Words { text: "Luminous intensities in cd:".into() });
     blocks.push(candela_table(found));
     blocks.push(zonal_flux(&found.luminaire));
-    blocks.extend(luminances(&found.luminaire));
+    if let Some(area) = emitting_area_m2(&found.luminaire) {
+        blocks.extend(luminances(&found.luminaire, area));
+        blocks.extend(ugr_table(&found.luminaire, area));
+    }
     blocks
 }
 
@@ -142,12 +148,9 @@ fn zonal_flux(luminaire: &Luminaire) -> Block {
     table(&head, ZONES.map(row).into())
 }
 
-/// Average luminance of the opening at steep angles; nothing without an opening, or with light that a flat one cannot emit.
-fn luminances(luminaire: &Luminaire) -> Vec<Block> {
-    let Luminaire { opening, intensities, .. } = luminaire;
-    let upward = intensities.flux_between(90.0, 180.0);
-    let area = area_m2(opening).filter(|_| upward <= NEGLIGIBLE_FLUX * intensities.flux());
-    let Some(area) = area else { return Vec::new() };
+/// Average luminance of an opening of this area, m², at steep angles.
+fn luminances(luminaire: &Luminaire, area: f64) -> Vec<Block> {
+    let intensities = &luminaire.intensities;
     let luminance =
         |plane: f64, angle: f64| intensities.at(plane, angle) / (area * angle.to_radians().cos());
     let rows = LUMINANCE_ANGLES.map(|angle| {
@@ -178,6 +181,52 @@ fn luminances(luminaire: &Luminaire) -> Vec<Block> {
     let head_text =
         "Average luminance of the opening in cd/m², the intensity over its projected area:";
     vec![Block::Words { text: head_text.into() }, table(&head, rows.into()), Block::Words { text }]
+}
+
+/// Unified glare ratings in standard rooms with luminaires that have an opening of this area, m²; why there are none without symmetry.
+fn ugr_table(luminaire: &Luminaire, area: f64) -> Vec<Block> {
+    let intensities = &luminaire.intensities;
+    let views: &[(&str, ViewPlane)] = match intensities.symmetry() {
+        PlaneSymmetry::Rotational => &[("", ViewPlane::C0)],
+        PlaneSymmetry::Quadrants => &[("C0 ", ViewPlane::C0), ("C90 ", ViewPlane::C90)],
+        PlaneSymmetry::AboutC0 | PlaneSymmetry::AboutC90 | PlaneSymmetry::None => {
+            let text = "The UGR table is for luminaires that are symmetric about C0 and C90, or rotationally.";
+            return vec![Block::Words { text: text.into() }];
+        }
+    };
+    if intensities.flux() == 0.0 {
+        return Vec::new();
+    }
+    let of_view = |(name, _): &(&str, ViewPlane)| {
+        let name = (*name).to_owned();
+        REFLECTANCES.map(|all| name.clone() + &all.map(format_exact).join("/"))
+    };
+    let head: Vec<String> =
+        std::iter::once("room".to_owned()).chain(views.iter().flat_map(of_view)).collect();
+    let row = |room: [f64; 2]| {
+        let ratings = views.iter().flat_map(|(_, view)| ratings(intensities, area, room, *view));
+        let [width, length] = room.map(format_exact);
+        std::iter::once(format!("{width}H × {length}H"))
+            .chain(ratings.map(|rating| format_fixed(rating, 1)))
+            .collect()
+    };
+    let view = match views {
+        [_] => "",
+        _ => "; C0 or C90 is the plane along the view",
+    };
+    let text = format!(
+        "Unified glare rating (UGR, CIE 117) in the rooms of CIE 190, by the reflectances of ceiling, walls and floor: width across the view by length \
+            along it, for luminaires a quarter of their height H = 2 m above the eye apart{view}. The light of the background is computed by form factors, so \
+            that ratings differ by some 0.2 from those by the tables of CIE 190."
+    );
+    vec![Block::Words { text }, table(&head, ROOMS.map(row).into())]
+}
+
+/// Area of the opening, m², if it emits all light; `None` for a point, a line, or with light that a flat opening cannot emit.
+fn emitting_area_m2(luminaire: &Luminaire) -> Option<f64> {
+    let Luminaire { opening, intensities, .. } = luminaire;
+    let upward = intensities.flux_between(90.0, 180.0);
+    area_m2(opening).filter(|_| upward <= NEGLIGIBLE_FLUX * intensities.flux())
 }
 
 /// Area of a flat opening, m²; `None` for a point or a line.
@@ -246,6 +295,38 @@ mod tests {
         assert_eq!(row("0° to 60°")[2..], ["75.00 %", "58.90 %"]);
         assert_eq!(row("0° to 180°")[2..], ["100.00 %", "78.54 %"]);
         assert_eq!(row("90° to 180°")[1], "0 lm");
+        // The same from all sides: one column for each set of reflectances.
+        assert_eq!(row("4H × 8H").len(), 6);
+    }
+
+    #[test]
+    fn ratings_are_given_for_symmetric_luminaires_with_an_opening() {
+        let words = |found: &MeasuredLuminaire| -> String {
+            let all = blocks(std::slice::from_ref(found), "far");
+            let words = all.iter().filter_map(|block| match block {
+                Block::Words { text } => Some(text.as_str()),
+                Block::Heading { .. }
+                | Block::Table { .. }
+                | Block::List { .. }
+                | Block::Plot { .. } => None,
+            });
+            words.collect::<Vec<_>>().join(" ")
+        };
+        let mut found = lambertian(LampFlux::Absolute);
+        assert!(words(&found).contains("Unified glare rating"));
+        let values = |symmetry, planes: &[f64]| {
+            let candela = vec![1.0; 2 * planes.len()];
+            Intensities::new(symmetry, planes.to_vec(), vec![0.0, 90.0], candela).unwrap()
+        };
+        found.luminaire.intensities = values(PlaneSymmetry::Quadrants, &[0.0, 90.0]);
+        found.std_errors = Array2::zeros((2, 2));
+        assert!(words(&found).contains("C0 or C90 is the plane along the view"));
+        found.luminaire.intensities = values(PlaneSymmetry::AboutC0, &[0.0, 180.0]);
+        let said = words(&found);
+        assert!(said.contains("is for luminaires that are symmetric"), "{said}");
+        found.luminaire.opening = Opening::default();
+        let said = words(&found);
+        assert!(!said.contains("glare") && !said.contains("UGR"), "no opening: {said}");
     }
 
     #[test]

@@ -4,6 +4,7 @@ Usage: luminaires.py PROGRAM, from the folder of the repository. luxpy knows no 
 goniometer types, so neither is among these files.
 """
 
+import copy
 import csv
 import subprocess
 import sys
@@ -101,11 +102,10 @@ def main():
                 worst = difference(own, Table(path))
                 expect(worst < SAME, f"{original} to {name}: {worst:.1e} of the peak")
         # These comparisons notice the sixth digit of one value.
-        changed = Path(folder) / "changed.ies"
-        text = (report / "far.ies").read_text()
-        assert text.count("18.30094") == 1, "the value to change"
-        changed.write_text(text.replace("18.30094", "18.30194"))
-        expect(difference(files[0], Table(changed)) > SAME, "a changed value is noticed")
+        changed = copy.deepcopy(files[0])
+        changed.candela[changed.candela == changed.candela.max()] *= 1 + 5 * SAME
+        expect(difference(files[0], changed) > SAME, "a changed value is noticed")
+
 
 
 main()

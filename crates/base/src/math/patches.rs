@@ -225,7 +225,7 @@ fn disk_of_square(at: DVec2) -> DVec2 {
     radius * circle((angle / 8.0).rem_euclid(1.0))
 }
 
-/// The inverse of [`disk_of_square`].
+/// The point of the unit square for one of the unit disk: the inverse of `disk_of_square`.
 pub fn square_of_disk(at: DVec2) -> DVec2 {
     let radius = at.length();
     // From an eighth of a turn before the azimuth 0.

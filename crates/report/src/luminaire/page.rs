@@ -308,7 +308,8 @@ mod tests {
                 Block::Heading { .. }
                 | Block::Table { .. }
                 | Block::List { .. }
-                | Block::Plot { .. } => None,
+                | Block::Plot { .. }
+                | Block::PlotRow { .. } => None,
             });
             words.collect::<Vec<_>>().join(" ")
         };

@@ -49,8 +49,11 @@ impl CumulativeRows {
     /// is above 0.
     pub(crate) fn sample(&self, row: usize, u: f64) -> (usize, f64) {
         let sums = self.row(row);
-        let at = u * self.total(row);
-        let column = sums.partition_point(|sum| *sum <= at).min(sums.len() - 1);
+        let total = self.total(row);
+        let at = u * total;
+        // The product may round to the sum, which the last column of any weight has as well.
+        let last = sums.partition_point(|sum| *sum < total);
+        let column = sums.partition_point(|sum| *sum <= at).min(last);
         let before = if column > 0 { sums[column - 1] } else { 0.0 };
         let weight = sums[column] - before;
         let rest = if weight > 0.0 { (at - before) / weight } else { 0.5 };

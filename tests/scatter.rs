@@ -30,14 +30,14 @@ fn klems_half() -> (RingPatches, [usize; 7]) {
 
 /// The patch whose light goes up where that of another goes down.
 fn mirrored(rings: &RingPatches, patch: usize) -> usize {
-    let [ring, sector] = rings.place(patch);
+    let [ring, sector] = rings.ring_and_sector(patch);
     let count = rings.sectors(ring);
     rings.first(ring) + (count - sector) % count
 }
 
 /// The transmission of the window from patch to patch, 1/sr.
 fn transmission(rings: &RingPatches, from: usize, to: usize) -> f64 {
-    let solid = rings.projected(rings.place(to)[0]);
+    let solid = rings.projected(rings.ring_and_sector(to)[0]);
     let share = |patch: usize, share: f64| if patch == to { share / solid } else { 0.0 };
     DIFFUSE / PI + share(from, STRAIGHT) + share(mirrored(rings, from), REDIRECTED)
 }

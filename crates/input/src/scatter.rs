@@ -1,5 +1,6 @@
 //! Sheets from what files say of their scatter, with checks of energy and reciprocity.
 
+use lumiduct_base::math::common_directions;
 use lumiduct_base::number::{format_fixed, format_percent};
 use lumiduct_core::optics::{BsdfTable, DirectedTable, MeasuredSheet, SheetTables};
 use lumiduct_files::scatter::{BsdfMatrix, ScatterFile, ScatterSide};
@@ -15,47 +16,45 @@ const RECIPROCAL: f64 = 0.01;
 ///
 /// What is wrong, if more light leaves than arrives.
 pub fn measured_sheet(
-    file: &ScatterFile,
+    file: ScatterFile,
     turn: f64,
 ) -> Result<(MeasuredSheet, Vec<String>), String> {
-    let mut remarks = Vec::new();
-    let sheet = sheet(file, turn, &mut remarks);
+    let ScatterFile { front, back, mut remarks } = file;
+    let sheet = sheet([front, back], turn, &mut remarks);
     let sheet = conserving(sheet, &mut remarks)?;
     remarks.extend(reciprocity_remark(&sheet));
     Ok((sheet, remarks))
 }
 
-/// The tables of a file. Transmission that is given for one side alone is reciprocal.
-fn sheet(file: &ScatterFile, turn: f64, remarks: &mut Vec<String>) -> MeasuredSheet {
-    let [mut front, mut back] = [&file.front, &file.back].map(tables);
-    let sides = [("front", &mut front.transmission), ("back", &mut back.transmission)];
-    let [(front_name, from_front), (back_name, from_back)] = sides;
-    let (name, given, missing) = match (&from_front, &from_back) {
-        (None, Some(_)) => (front_name, from_back, from_front),
-        _ => (back_name, from_front, from_back),
+/// The tables of both sides. Transmission that is given for one side alone is taken as reciprocal.
+fn sheet(sides: [ScatterSide; 2], turn: f64, remarks: &mut Vec<String>) -> MeasuredSheet {
+    let [mut front, mut back] = sides.map(tables);
+    let other = match (&front.transmission, &back.transmission) {
+        (Some(given), None) => Some(("back", "front", given.reversed())),
+        (None, Some(given)) => Some(("front", "back", given.reversed())),
+        (Some(_), Some(_)) | (None, None) => None,
     };
-    if let (Some(given), None) = (&given, &missing) {
-        *missing = Some(given.reversed());
+    if let Some((name, given_name, reversed)) = other {
         remarks.push(format!(
-            "it says nothing of light transmitted from the {name}, which is taken to take the given paths backwards"
+            "no transmission from the {name} is given; it is taken as the reverse of that from the {given_name}"
         ));
+        let missing = if name == "back" { &mut back } else { &mut front };
+        missing.transmission = Some(reversed);
     }
     for (name, side) in [("front", &front), ("back", &back)] {
         if side.reflection.is_none() {
-            remarks.push(format!(
-                "it says nothing of light reflected by the {name}, which is taken to be absorbed"
-            ));
+            remarks.push(format!("no reflection by the {name} is given; it is taken as 0"));
         }
     }
     MeasuredSheet { front, back, turn }
 }
 
-fn tables(side: &ScatterSide) -> SheetTables {
-    let table = |matrix: &Option<BsdfMatrix>| {
-        let BsdfMatrix { pairs, values } = matrix.as_ref()?;
-        BsdfTable::new(pairs.clone(), values).map(DirectedTable::new)
+fn tables(side: ScatterSide) -> SheetTables {
+    let table = |matrix: Option<BsdfMatrix>| {
+        let BsdfMatrix { pairs, values } = matrix?;
+        BsdfTable::new(pairs, &values).map(DirectedTable::new)
     };
-    SheetTables { reflection: table(&side.reflection), transmission: table(&side.transmission) }
+    SheetTables { reflection: table(side.reflection), transmission: table(side.transmission) }
 }
 
 /// The sheet without excess of energy, or what is wrong.
@@ -72,7 +71,10 @@ fn conserving(sheet: MeasuredSheet, remarks: &mut Vec<String>) -> Result<Measure
         format_percent(share)
     );
     if share > 1.0 + MOST_EXCESS {
-        return Err(format!("{what}, more than 100 %; its values must be in 1/sr"));
+        let [front, back] = [&sheet.front, &sheet.back].map(|side| side.transmission.as_ref());
+        let is_reverse = front.zip(back).is_some_and(|(front, back)| front.is_reverse_of(back));
+        let cause = if is_reverse { ", or transmission is not reciprocal" } else { "" };
+        return Err(format!("{what}, more than 100 %; values may not be in 1/sr{cause}"));
     }
     remarks.push(format!("{what}; all values are scaled down to 100 %"));
     let scaled = |side: SheetTables| {
@@ -86,12 +88,10 @@ fn conserving(sheet: MeasuredSheet, remarks: &mut Vec<String>) -> Result<Measure
 /// The largest share of light that leaves in any direction, 1, and its angle of incidence, rad.
 fn largest_share(side: &SheetTables) -> (f64, f64) {
     let tables = [&side.reflection, &side.transmission].map(Option::as_ref);
-    let directions = tables.into_iter().flatten().flat_map(|table| {
-        let [incident, _] = table.directions();
-        incident
-    });
-    let shares = directions.map(|from| {
-        let share: f64 = tables.into_iter().flatten().map(|table| table.share(from)).sum();
+    let tables: Vec<&DirectedTable> = tables.into_iter().flatten().collect();
+    let divisions: Vec<_> = tables.iter().map(|table| table.incident_patches()).collect();
+    let shares = common_directions(&divisions).into_iter().map(|from| {
+        let share: f64 = tables.iter().map(|table| table.share(from)).sum();
         (share, from.length().min(1.0).asin())
     });
     shares.fold((0.0, 0.0), |most, own| if own.0 > most.0 { own } else { most })
@@ -106,12 +106,14 @@ fn reciprocity_remark(sheet: &MeasuredSheet) -> Option<String> {
         ("transmission", &front.transmission, &back.transmission),
     ];
     let errors = pairs.into_iter().filter_map(|(what, table, backwards)| {
-        Some((what, table.as_ref()?.reciprocity_error(backwards.as_ref()?)))
+        let (table, backwards) = (table.as_ref()?, backwards.as_ref()?);
+        // A reverse is reciprocal.
+        (!table.is_reverse_of(backwards)).then(|| (what, table.reciprocity_error(backwards)))
     });
     let worst = errors.max_by(|a, b| a.1.total_cmp(&b.1));
     worst.filter(|(_, error)| *error > RECIPROCAL).map(|(what, error)| {
         format!(
-            "its {what} is not reciprocal: values for paths backwards differ by {} (rms); they are used as they are",
+            "over its patches, its {what} differs from that of the paths backwards by {} (rms); both are used as they are",
             format_percent(error)
         )
     })

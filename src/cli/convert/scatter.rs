@@ -15,7 +15,7 @@ const ANGLES_DEG: [u32; 6] = [0, 15, 30, 45, 60, 75];
 pub(super) fn description(path: &Path) -> Result<String> {
     let wrong = |problem: String| Error::Usage(format!("{}: {problem}", path.display()));
     let file = scatter::read(path).map_err(|error| wrong(error.to_string()))?;
-    let (sheet, remarks) = measured_sheet(&file, 0.0).map_err(wrong)?;
+    let (sheet, remarks) = measured_sheet(file, 0.0).map_err(wrong)?;
     let mut text = format!("{:<26} {:>8}", "share of light, incident", "diffuse");
     for angle in ANGLES_DEG {
         _ = write!(text, " {:>8}", format!("at {angle}°"));
@@ -27,7 +27,7 @@ pub(super) fn description(path: &Path) -> Result<String> {
         row(&mut text, &format!("reflected by the {name}"), reflection.as_ref());
         row(&mut text, &format!("transmitted from the {name}"), transmission.as_ref());
     }
-    for remark in file.remarks.iter().chain(&remarks) {
+    for remark in remarks {
         _ = writeln!(text, "remark: {remark}");
     }
     Ok(text)

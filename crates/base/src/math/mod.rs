@@ -16,7 +16,9 @@ pub use aabb::Aabb;
 pub use cap::projected_cap;
 pub use frame::Frame;
 pub use least_squares::{least_squares, solve_rows};
-pub use patches::{DirectionPatches, PatchPairs, RingPatches, square_of_disk, turns};
+pub use patches::{
+    DirectionPatches, PatchPairs, RingPatches, common_directions, square_of_disk, turns,
+};
 pub use polynomial::{Root, SignChange, cubic, quartic};
 pub use ring::linear_over_ring;
 pub use roots::{bracketed_root, convex_roots, quadratic};

@@ -32,7 +32,7 @@ impl DirectionPatches {
     /// Projected solid angle of a patch, sr.
     pub fn projected(&self, patch: usize) -> f64 {
         match self {
-            Self::Rings(rings) => rings.projected(rings.place(patch)[0]),
+            Self::Rings(rings) => rings.projected(rings.ring_and_sector(patch)[0]),
             Self::Squares { side } => PI / (side * side) as f64,
         }
     }
@@ -56,7 +56,7 @@ impl DirectionPatches {
     pub fn direction(&self, patch: usize, u: [f64; 2]) -> DVec2 {
         match self {
             Self::Rings(rings) => {
-                let [ring, sector] = rings.place(patch);
+                let [ring, sector] = rings.ring_and_sector(patch);
                 rings.radius(ring, u[0]) * circle(rings.turns(ring, sector, u[1]))
             }
             Self::Squares { side } => {
@@ -71,15 +71,15 @@ impl DirectionPatches {
 #[derive(Debug, Clone, PartialEq)]
 pub struct RingPatches {
     /// Squared sines of the polar angles between rings, from 0 to 1.
-    squares: Vec<f64>,
+    sines_squared: Vec<f64>,
     sectors: Vec<usize>,
     /// The first patch of each ring, and the number of all.
     first: Vec<usize>,
 }
 
 impl RingPatches {
-    /// Rings between polar angles that grow from 0 to a right angle, rad, and the number of sectors of each. `None` if they are
-    /// others, or not one number a ring.
+    /// Rings between polar angles that increase from 0 to a right angle, rad, and the number of sectors of each. `None` if the
+    /// angles are not of this form, a ring is too narrow to have an area, or the numbers are not one for each ring.
     pub fn new(angles: &[f64], sectors: Vec<usize>) -> Option<Self> {
         let [from, .., to] = angles else { return None };
         let is_whole = *from == 0.0 && (to - 2.0 * FRAC_PI_4).abs() < 1e-9;
@@ -88,13 +88,16 @@ impl RingPatches {
         if !is_usable || sectors.len() + 1 != angles.len() {
             return None;
         }
-        let mut squares: Vec<f64> = angles.iter().map(|angle| angle.sin().powi(2)).collect();
-        squares[sectors.len()] = 1.0;
+        let mut sines_squared: Vec<f64> = angles.iter().map(|angle| angle.sin().powi(2)).collect();
+        sines_squared[sectors.len()] = 1.0;
+        if sines_squared.windows(2).any(|pair| pair[1] <= pair[0]) {
+            return None;
+        }
         let mut first = vec![0];
         for count in &sectors {
             first.push(first[first.len() - 1] + count);
         }
-        Some(Self { squares, sectors, first })
+        Some(Self { sines_squared, sectors, first })
     }
 
     /// Number of rings.
@@ -119,12 +122,12 @@ impl RingPatches {
 
     /// Projected solid angle of each patch of a ring, sr.
     pub fn projected(&self, ring: usize) -> f64 {
-        PI * (self.squares[ring + 1] - self.squares[ring]) / self.sectors[ring] as f64
+        PI * (self.sines_squared[ring + 1] - self.sines_squared[ring]) / self.sectors[ring] as f64
     }
 
     /// The ring of a direction whose polar angle has this squared sine.
     pub fn ring(&self, square: f64) -> usize {
-        self.squares.partition_point(|edge| *edge <= square).clamp(1, self.rings()) - 1
+        self.sines_squared.partition_point(|edge| *edge <= square).clamp(1, self.rings()) - 1
     }
 
     /// The sector of an azimuth, in whole turns from 0 to 1.
@@ -135,7 +138,7 @@ impl RingPatches {
 
     /// Sine of a polar angle within a ring, uniform in projected solid angle.
     pub fn radius(&self, ring: usize, u: f64) -> f64 {
-        let [from, to] = [self.squares[ring], self.squares[ring + 1]];
+        let [from, to] = [self.sines_squared[ring], self.sines_squared[ring + 1]];
         (from + u * (to - from)).sqrt()
     }
 
@@ -145,7 +148,7 @@ impl RingPatches {
     }
 
     /// Ring and sector of a patch.
-    pub fn place(&self, patch: usize) -> [usize; 2] {
+    pub fn ring_and_sector(&self, patch: usize) -> [usize; 2] {
         let ring = self.first.partition_point(|first| *first <= patch) - 1;
         [ring, patch - self.first[ring]]
     }
@@ -183,7 +186,7 @@ impl PatchPairs {
     pub fn leaving_projected(&self, patch: usize) -> f64 {
         match self {
             Self::Fixed { leaving, .. } => leaving.projected(patch),
-            Self::Isotropic { leaving, .. } => leaving.projected(leaving.place(patch)[0]),
+            Self::Isotropic { leaving, .. } => leaving.projected(leaving.ring_and_sector(patch)[0]),
         }
     }
 
@@ -204,6 +207,41 @@ impl PatchPairs {
             Self::Isotropic { incident, .. } => incident.ring(from.length_squared()),
         }
     }
+}
+
+/// A direction within each overlap of patches of several divisions, also where one is turned by half a turn. Of squares, the middles
+/// of the smallest: others are multiples of them.
+pub fn common_directions(divisions: &[DirectionPatches]) -> Vec<DVec2> {
+    let (mut rings, mut finest) = (Vec::new(), 0);
+    for division in divisions {
+        match division {
+            DirectionPatches::Rings(own) => rings.push(own),
+            DirectionPatches::Squares { side } => finest = finest.max(*side),
+        }
+    }
+    let squares = DirectionPatches::Squares { side: finest };
+    let mut all: Vec<DVec2> =
+        (0..squares.count()).map(|patch| squares.direction(patch, [0.5; 2])).collect();
+    let edges = rings.iter().flat_map(|own| own.sines_squared.iter().copied());
+    for square in middles(edges.collect()) {
+        // Edges are odd multiples of half a sector, and even ones where half a turn is half a sector more.
+        let turns = rings.iter().flat_map(|own| {
+            let halves = 2 * own.sectors[own.ring(square)];
+            (0..=halves).map(move |half| half as f64 / halves as f64)
+        });
+        let turns = turns.collect();
+        all.extend(middles(turns).into_iter().map(|turn| square.sqrt() * circle(turn)));
+    }
+    all
+}
+
+/// Numbers halfway between neighbours, of numbers in any order and several times.
+fn middles(mut edges: Vec<f64>) -> Vec<f64> {
+    /// Edges closer than this are the same.
+    const SAME: f64 = 1e-9;
+    edges.sort_by(f64::total_cmp);
+    let pairs = edges.windows(2).filter(|pair| pair[1] - pair[0] > SAME);
+    pairs.map(|pair| 0.5 * (pair[0] + pair[1])).collect()
 }
 
 /// The azimuth of a direction, in turns from 0 to 1.
@@ -288,6 +326,29 @@ mod tests {
     }
 
     #[test]
+    fn common_directions_are_in_every_overlap() {
+        let rings = |angles: &[f64], sectors: &[usize]| {
+            let angles: Vec<f64> = angles.iter().map(|angle| angle.to_radians()).collect();
+            DirectionPatches::Rings(RingPatches::new(&angles, sectors.to_vec()).unwrap())
+        };
+        let divisions = [
+            rings(&[0.0, 30.0, 90.0], &[1, 5]),
+            rings(&[0.0, 33.0, 90.0], &[4, 6]),
+            rings(&[0.0, 90.0], &[3]),
+        ];
+        let of = |at: DVec2| divisions.each_ref().map(|own| own.patch(at));
+        let turned = |at: DVec2| [divisions[0].patch(-at), divisions[1].patch(at)];
+        let common = common_directions(&divisions);
+        let disk = DirectionPatches::Squares { side: 300 };
+        for at in (0..disk.count()).map(|patch| disk.direction(patch, [0.5; 2])) {
+            assert!(common.iter().any(|own| of(*own) == of(at)), "{at}");
+            assert!(common.iter().any(|own| turned(*own) == turned(at)), "{at}");
+        }
+        let squares = [2, 8].map(|side| DirectionPatches::Squares { side });
+        assert_eq!(common_directions(&squares).len(), 64);
+    }
+
+    #[test]
     fn the_square_map_has_fixed_points_and_an_inverse() {
         let corner = 0.5f64.sqrt();
         for (square, disk) in [
@@ -321,6 +382,7 @@ mod tests {
             (vec![0.0, 1.0, 0.5, 2.0 * FRAC_PI_4], vec![1, 2, 3]),
             (vec![0.0, 2.0 * FRAC_PI_4], vec![0]),
             (vec![0.0, 2.0 * FRAC_PI_4], vec![1, 1]),
+            (vec![0.0, 2.0 * FRAC_PI_4 - 1e-12, 2.0 * FRAC_PI_4], vec![1, 1]),
             (vec![0.0, f64::NAN, 2.0 * FRAC_PI_4], vec![1, 1]),
         ] {
             assert!(RingPatches::new(&angles, sectors.clone()).is_none(), "{angles:?} {sectors:?}");

@@ -50,8 +50,8 @@ impl FrontTable {
         )
     }
 
-    /// Whether it stands for both sides of the vertical plane through C0, as horizontal angles from 0 do (LM-63-2002, section
-    /// 5.15).
+    /// Whether it gives one side of the vertical plane through C0, and the other side is its mirror image: horizontal angles begin at 0
+    /// (LM-63-2002, section 5.15).
     pub(crate) fn is_symmetric(&self) -> bool {
         self.horizontal_deg[0] == 0.0
     }

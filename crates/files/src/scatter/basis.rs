@@ -51,38 +51,38 @@ fn rings(angles_deg: &[f64], sectors: Vec<usize>) -> Option<RingPatches> {
 }
 
 fn defined_basis(node: Node<'_, '_>) -> Result<RingPatches, Violation> {
-    let line = line_of(node);
     let (mut angles, mut sectors, mut count) = (vec![0.0], Vec::new(), 0usize);
     for block in node.children().filter(|child| child.has_tag_name("AngleBasisBlock")) {
-        let line = line_of(block);
+        // Finding a line takes as long as the file.
+        let wrong = |problem: String| Violation::new(line_of(block), problem);
         let bounds = block.children().find(|child| child.has_tag_name("ThetaBounds"));
         let number = |name: &str| {
             let word = bounds.and_then(|bounds| text(bounds, name)).unwrap_or_default();
-            let problem = format!("the {name} of its ThetaBounds, `{word}`, is not a number");
-            word.trim().parse::<f64>().map_err(|_| Violation::new(line, problem))
+            let number = word.trim().parse::<f64>();
+            number.map_err(|_| {
+                wrong(format!("the {name} of its ThetaBounds, `{word}`, is not a number"))
+            })
         };
         let (lower, upper) = (number("LowerTheta")?, number("UpperTheta")?);
-        if (lower - angles[angles.len() - 1]).abs() > 1e-6 {
-            let last = angles[angles.len() - 1];
-            return Err(Violation::new(
-                line,
-                format!("LowerTheta is {lower}, but the ring before ends at {last} deg"),
-            ));
+        let last = angles[angles.len() - 1];
+        if (lower - last).abs() > 1e-6 {
+            let problem = format!("LowerTheta is {lower}, but the ring before ends at {last} deg");
+            return Err(wrong(problem));
         }
         let word = text(block, "nPhis").unwrap_or_default().trim();
         let phis = word.parse::<usize>().ok().filter(|phis| (1..=MOST_PATCHES).contains(phis));
-        let phis = phis.ok_or_else(|| {
-            Violation::new(line, format!("nPhis is `{word}`, expected 1 to {MOST_PATCHES}"))
-        })?;
+        let phis =
+            phis.ok_or_else(|| wrong(format!("nPhis is `{word}`, expected 1 to {MOST_PATCHES}")))?;
         count += phis;
         if count > MOST_PATCHES {
-            return Err(Violation::new(line, format!("more than {MOST_PATCHES} patches")));
+            return Err(wrong(format!("more than {MOST_PATCHES} patches")));
         }
         angles.push(upper);
         sectors.push(phis);
     }
     rings(&angles, sectors).ok_or_else(|| {
-        Violation::new(line, "the rings of the angle basis do not grow from 0 to 90 deg")
+        let problem = "the rings of the angle basis do not grow from 0 to 90 deg";
+        Violation::new(line_of(node), problem)
     })
 }
 

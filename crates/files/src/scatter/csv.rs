@@ -1,7 +1,7 @@
 //! CSV of an isotropic sample, a row for each pair of directions.
 
 use crate::scatter::angles::SampledScatter;
-use crate::scatter::data::{ScatterFile, ScatterSide};
+use crate::scatter::data::{BsdfMatrix, ScatterFile, ScatterSide};
 use crate::scatter::error::{Violation, value};
 use std::collections::BTreeMap;
 
@@ -10,6 +10,9 @@ const BRDF: &str = "brdf_per_sr";
 const BTDF: &str = "btdf_per_sr";
 /// Most pairs of directions of a file.
 const MOST_PAIRS: usize = 1 << 22;
+
+/// Combinations of angles that may be missing in any file, for an error that names one.
+const FEW_PAIRS: usize = 4096;
 
 /// Values of one kind by incident polar angle, leaving polar angle and azimuth.
 type Samples = BTreeMap<[AngleKey; 3], f64>;
@@ -61,16 +64,24 @@ pub(super) fn read(text: &str) -> Result<ScatterFile, Violation> {
             return Err(Violation::new(number, format!("more than {MOST_PAIRS} rows")));
         }
     }
-    let mut remarks = Vec::new();
+    let mut remarks: Vec<String> = Vec::new();
     let mut matrix = |own: &Samples, at: Option<usize>| {
-        at.map(|_| Ok(sampled(own, head_line, &mut remarks)?.matrix())).transpose()
+        at.map(|_| {
+            let (matrix, assumed) = averaged(own, head_line)?;
+            for remark in assumed {
+                if !remarks.contains(&remark) {
+                    remarks.push(remark);
+                }
+            }
+            Ok(matrix)
+        })
+        .transpose()
     };
     let [brdf, btdf] = samples;
     let [reflection, transmission] = [matrix(&brdf, kinds[0])?, matrix(&btdf, kinds[1])?];
     if reflection.is_some() {
         remarks.push("both sides reflect as measured on one".to_owned());
     }
-    remarks.dedup();
     let back = ScatterSide { reflection: reflection.clone(), transmission: None };
     Ok(ScatterFile { front: ScatterSide { reflection, transmission }, back, remarks })
 }
@@ -83,12 +94,8 @@ fn angle(word: &str, name: &str, most: f64, line: usize) -> Result<AngleKey, Vio
     Ok((angle * UNITS_PER_DEG).round() as AngleKey)
 }
 
-/// The values over all combinations of their angles.
-fn sampled(
-    samples: &Samples,
-    head_line: usize,
-    remarks: &mut Vec<String>,
-) -> Result<SampledScatter, Violation> {
+/// The values over patches, and what was assumed.
+fn averaged(samples: &Samples, head_line: usize) -> Result<(BsdfMatrix, Vec<String>), Violation> {
     if samples.is_empty() {
         return Err(Violation::new(head_line, "no rows follow the names of the columns"));
     }
@@ -99,32 +106,43 @@ fn sampled(
         all
     };
     let keys = [axis(0), axis(1), axis(2)];
-    let mut values = Vec::new();
+    let count: usize = keys.iter().map(Vec::len).product();
+    // Only azimuths of the zenith may be missing, which at most doubles the number.
+    if count > 2 * samples.len() + FEW_PAIRS {
+        let [i, s, phi] = keys.map(|own| own.len());
+        let problem = format!(
+            "{} rows for {i} theta_i, {s} theta_s and {phi} phi_s; each combination of the angles needs one",
+            samples.len()
+        );
+        return Err(Violation::new(head_line, problem));
+    }
+    let mut values = Vec::with_capacity(count);
     for from in &keys[0] {
-        if values.len() > 2 * MOST_PAIRS {
-            return Err(Violation::new(head_line, "it has too many different angles"));
-        }
         for to in &keys[1] {
             for turn in &keys[2] {
-                // At the zenith all azimuths are one direction.
-                let last = if *to == 0 { AngleKey::MAX } else { *turn };
-                let first =
-                    if *to == 0 && !samples.contains_key(&[*from, 0, *turn]) { 0 } else { *turn };
-                let found = samples.range([*from, *to, first]..=[*from, *to, last]).next();
-                let Some((_, value)) = found else {
-                    let [i, s, phi] = [from, to, turn].map(|key| f64::from(*key) / UNITS_PER_DEG);
-                    let problem = format!(
-                        "there is no row for theta_i {i}, theta_s {s} and phi_s {phi} deg; each combination of the angles needs one"
-                    );
-                    return Err(Violation::new(head_line, problem));
-                };
-                values.push(*value);
+                let found = value_at(samples, [*from, *to, *turn]);
+                values.push(found.ok_or_else(|| missing([*from, *to, *turn], head_line))?);
             }
         }
     }
     let [incident, polar, azimuth] =
         keys.map(|keys| keys.into_iter().map(|key| f64::from(key) / UNITS_PER_DEG).collect());
-    let sampled = SampledScatter { incident, polar, azimuth, values };
-    sampled.add_remarks(remarks);
-    Ok(sampled)
+    let averaged = SampledScatter { incident, polar, azimuth, values }.matrix();
+    averaged.ok_or_else(|| Violation::new(head_line, "its angles make no patches"))
+}
+
+/// The value of a combination of angles. At the zenith all azimuths are one direction.
+fn value_at(samples: &Samples, [from, to, turn]: [AngleKey; 3]) -> Option<f64> {
+    let own = samples.get(&[from, to, turn]);
+    let any = || samples.range([from, 0, 0]..=[from, 0, AngleKey::MAX]).next();
+    let found = own.or_else(|| if to == 0 { any().map(|(_, value)| value) } else { None });
+    found.copied()
+}
+
+fn missing(keys: [AngleKey; 3], head_line: usize) -> Violation {
+    let [i, s, phi] = keys.map(|key| f64::from(key) / UNITS_PER_DEG);
+    let problem = format!(
+        "there is no row for theta_i {i}, theta_s {s} and phi_s {phi} deg; each combination of the angles needs one"
+    );
+    Violation::new(head_line, problem)
 }

@@ -64,6 +64,14 @@ fn columns_are_incident_and_rows_leaving_directions() {
 }
 
 #[test]
+fn letters_of_directions_and_comments_do_not_matter() {
+    let file = quarter("Columns");
+    let other = file.replace("Transmission Front", "transmission front");
+    let other = other.replace("<ScatteringData>", "<ScatteringData><!-- W/W sr -->");
+    assert_eq!(good(&file, ScatterFormat::Xml), good(&other, ScatterFormat::Xml));
+}
+
+#[test]
 fn klems_bases_have_their_patches() {
     for (name, count) in [("Full", 145), ("Half", 77), ("Quarter", 41)] {
         let basis = format!("LBNL/Klems {name}");
@@ -157,6 +165,22 @@ fn trees_are_nodes_or_grids() {
 }
 
 #[test]
+fn trees_without_grain_keep_the_light_of_every_square() {
+    // One of 8 x 8 squares has light, for the incident angles of the first half.
+    let value = |from: usize, square: usize, lit: usize| {
+        if from < 4 && square == lit { "9" } else { "0" }
+    };
+    for lit in [0, 9, 27, 30, 35, 63] {
+        let all = (0..512).map(|at| value(at / 64, at % 64, lit)).collect::<Vec<_>>().join(" ");
+        let file = xml("TensorTree3", "", &[("Reflection Front", "", format!("{{ {all} }}"))]);
+        let matrix = good(&file, ScatterFormat::Xml).front.reflection.unwrap();
+        for share in shares(&matrix) {
+            assert!((share - 9.0 * PI / 64.0).abs() < 1e-12, "square {lit}: {share}");
+        }
+    }
+}
+
+#[test]
 fn trees_without_grain_turn_with_the_light() {
     // Light leaves evenly into half of the directions, those ahead: x > 0 is the half of larger first coordinates.
     let nodes: String =
@@ -216,6 +240,65 @@ fn angles_of_a_csv_are_interpolated_and_turn_with_the_light() {
     }
 }
 
+/// Light that leaves from each ring of arriving light, 1.
+fn shares(matrix: &BsdfMatrix) -> Vec<f64> {
+    let [_, count] = matrix.pairs.counts();
+    let share = |values: &[f64]| -> f64 {
+        values.iter().zip(0..).map(|(f, at)| f * matrix.pairs.leaving_projected(at)).sum()
+    };
+    matrix.values.chunks(count).map(share).collect()
+}
+
+#[test]
+fn patches_keep_the_light_of_narrow_peaks() {
+    // A cone about the mirrored direction of 45 deg, of 1.5 deg in polar angle and 0.3 deg in azimuth, linear between angles.
+    let polars = [0.0, 44.25, 45.0, 45.75, 90.0];
+    let azimuths = [0.0, 0.15, 180.0];
+    let mut text = "theta_i_deg,theta_s_deg,phi_s_deg,btdf_per_sr\n".to_owned();
+    for polar in polars {
+        for phi in azimuths {
+            let peak = if polar == 45.0 && phi == 0.0 { 5e3 } else { 0.0 };
+            _ = writeln!(text, "45,{polar},{phi},{peak}");
+        }
+    }
+    let file = good(&text, ScatterFormat::Csv);
+    assert!(file.remarks.iter().any(|own| own.contains("averaged over patches of 2 deg")));
+    // The hat over the azimuth has the area 0.15 deg; that over the polar angle by sin θ cos θ = 1/2 cos 2(θ - 45 deg).
+    let half = 0.75f64.to_radians();
+    let ring = (1.0 - (2.0 * half).cos()) / (4.0 * half);
+    let expected = 5e3 * 0.15f64.to_radians() * ring;
+    let shares = shares(&file.front.transmission.unwrap());
+    assert!(shares.len() >= 45);
+    for share in shares {
+        assert!((share / expected - 1.0).abs() < 1e-9, "{share} {expected}");
+    }
+}
+
+#[test]
+fn large_tables_take_little_time_and_space() {
+    // A megabyte of angles of one kind each.
+    let head = "theta_i_deg,theta_s_deg,phi_s_deg,brdf_per_sr\n";
+    let spread = |count: u32, row: fn(f64) -> String| -> String {
+        let rows = (0..count).map(|n| row(89.0 * f64::from(n) / f64::from(count)));
+        head.to_owned() + &rows.collect::<String>()
+    };
+    for (text, most) in [
+        (spread(50_000, |at| format!("{at:.5},0,0,.1\n")), 1 << 20),
+        (spread(50_000, |at| format!("0,{at:.5},0,.1\n")), 1 << 20),
+        (spread(50_000, |at| format!("0,45,{at:.5},.1\n")), 1 << 20),
+        (spread(25_000, |at| format!("0,{at:.5},0,.1\n0,{at:.5},9,.1\n")), 1 << 20),
+    ] {
+        let file = good(&text, ScatterFormat::Csv);
+        let matrix = file.front.reflection.unwrap();
+        assert!(matrix.values.len() < most, "{}", matrix.values.len());
+        assert!(matrix.values.iter().all(|value| (value - 0.1).abs() < 1e-9));
+    }
+    // Angles that make no grid: each row has others.
+    let zenith: String =
+        (0..2900).map(|n| format!("{0},0,0,.1\n0,0,{0},.1\n", 0.03 * f64::from(n + 1))).collect();
+    refused(&(head.to_owned() + &zenith), ScatterFormat::Csv, &["each combination"]);
+}
+
 #[test]
 fn a_csv_needs_every_combination_but_azimuths_of_the_zenith() {
     let all = csv_of(|_, _, _| 0.1);
@@ -250,6 +333,7 @@ fn wrong_files_are_refused_with_their_line() {
         ("\t0.0001,", "\tx,", &["line 7", "`x` is not a number"]),
         ("\t0.0001,", "", &["line 6", "1680 values", "need 1681"]),
         ("\t0.0001,", "0.1,\t0.0001,", &["1682 values", "need 1681"]),
+        ("0.000003,", "<!-- 3\n4 --> 0.000003x,", &["line 11", "`0.000003x`"]),
         ("Visible", "Solar", &["no data for visible light"]),
         ("</ScatteringData>", "", &["line"]),
         ("DataDefinition", "Data", &["DataDefinition"]),

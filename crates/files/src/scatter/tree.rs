@@ -7,6 +7,7 @@
 use crate::scatter::data::BsdfMatrix;
 use crate::scatter::error::{Violation, value};
 use lumiduct_base::math::{DirectionPatches, PatchPairs, RingPatches, square_of_disk};
+use std::f64::consts::PI;
 
 /// Deepest halving that is read.
 const DEEPEST: u32 = 12;
@@ -29,8 +30,8 @@ pub(super) fn tensor_tree(
 ) -> Result<BsdfMatrix, Violation> {
     let mut reader = TreeReader { rest: text, line: first_line, dimensions };
     let root = reader.node(0)?;
-    if !reader.rest.trim_start().is_empty() {
-        return Err(reader.wrong("something follows the tree"));
+    if let Some(found) = reader.peek() {
+        return Err(reader.wrong(format!("`{found}` follows the tree")));
     }
     let depth = root.depth();
     let most = KEPT.iter().find(|(own, _)| *own == dimensions).map_or(0, |(_, most)| *most);
@@ -201,21 +202,30 @@ fn isotropic(grid: &CubeGrid) -> Option<BsdfMatrix> {
     let incident = RingPatches::new(&angles, vec![1; count])?;
     let leaving = RingPatches::new(&angles, (0..count).map(|ring| 8 * (2 * ring + 1)).collect())?;
     let patches = DirectionPatches::Rings(leaving.clone());
-    let mut values = Vec::new();
+    let mut values = Vec::with_capacity(count * patches.count());
     for ring in 0..count {
         // The middle of the ring: half of one less the sine, in lines.
         let from = (count - 1 - ring).min(grid.side - 1);
-        for patch in 0..patches.count() {
+        let at = |line: [usize; 2]| grid.values[grid.place([from, line[0], line[1], 0])];
+        let mean = |patch: usize| {
             let point = |index: usize| {
                 let u = [index / POINTS, index % POINTS]
                     .map(|line| (line as f64 + 0.5) / POINTS as f64);
-                let at = square_of_disk(patches.direction(patch, u)) * grid.side as f64;
-                let line = |at: f64| (at as usize).min(grid.side - 1);
-                grid.values[grid.place([from, line(at.x), line(at.y), 0])]
+                let square = square_of_disk(patches.direction(patch, u)) * grid.side as f64;
+                at([square.x, square.y].map(|at| (at as usize).min(grid.side - 1)))
             };
             let points = POINTS * POINTS;
-            values.push((0..points).map(point).sum::<f64>() / points as f64);
-        }
+            (0..points).map(point).sum::<f64>() / points as f64
+        };
+        let means: Vec<f64> = (0..patches.count()).map(mean).collect();
+        // Points may miss parts of squares; the share of light is that of the tree.
+        let squares = grid.side * grid.side;
+        let slice = (0..squares).map(|place| at([place / grid.side, place % grid.side]));
+        let share = PI * slice.sum::<f64>() / squares as f64;
+        let found = means.iter().zip(0..).map(|(mean, patch)| mean * patches.projected(patch));
+        let found: f64 = found.sum();
+        let factor = if found > 0.0 { share / found } else { 0.0 };
+        values.extend(means.into_iter().map(|mean| factor * mean));
     }
     Some(BsdfMatrix { pairs: PatchPairs::Isotropic { incident, leaving }, values })
 }

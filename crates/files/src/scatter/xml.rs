@@ -84,11 +84,11 @@ fn add_block(
 ) -> Result<(), Violation> {
     let line = line_of(block);
     let direction = text(block, "WavelengthDataDirection").unwrap_or_default().trim();
-    let place = match direction {
-        "Transmission Front" | "Transmission" => &mut file.front.transmission,
-        "Transmission Back" => &mut file.back.transmission,
-        "Reflection Front" => &mut file.front.reflection,
-        "Reflection Back" => &mut file.back.reflection,
+    let place = match direction.to_ascii_lowercase().as_str() {
+        "transmission front" | "transmission" => &mut file.front.transmission,
+        "transmission back" => &mut file.back.transmission,
+        "reflection front" => &mut file.front.reflection,
+        "reflection back" => &mut file.back.reflection,
         _ => {
             let problem = format!(
                 "WavelengthDataDirection is `{direction}`, expected Transmission or Reflection with Front or Back"
@@ -101,7 +101,7 @@ fn add_block(
     }
     let data = block.children().find(|child| child.has_tag_name("ScatteringData"));
     let data = data.ok_or_else(|| Violation::new(line, "it has no element `ScatteringData`"))?;
-    let words = data.text().unwrap_or_default();
+    let words = &text_with_lines(data);
     let first_line = data
         .first_child()
         .map_or(line, |child| child.document().text_pos_at(child.range().start).row as usize);
@@ -123,6 +123,18 @@ fn add_block(
     };
     *place = Some(matrix);
     Ok(())
+}
+
+/// The text of an element without its comments, but with their ends of lines.
+fn text_with_lines(node: Node<'_, '_>) -> String {
+    let mut all = String::new();
+    for child in node.children() {
+        match child.text() {
+            Some(text) if child.is_text() => all.push_str(text),
+            other => all.extend(other.unwrap_or_default().chars().filter(|letter| *letter == '\n')),
+        }
+    }
+    all
 }
 
 /// The patches of a matrix: its columns are incident directions.

@@ -5,7 +5,7 @@ use crate::lower::context::Context;
 use crate::scatter::measured_sheet;
 use crate::spec::finish::{ScatterFileSideSpec, ScatterFileSpec};
 use lumiduct_core::optics::{Finish, SheetSide};
-use lumiduct_files::scatter::{self, ScatterFile};
+use lumiduct_files::scatter::{self, BsdfMatrix, ScatterFile};
 use std::sync::Arc;
 
 impl Context<'_> {
@@ -21,14 +21,14 @@ impl Context<'_> {
             }
         };
         self.add_scatter_to_hash(&file);
-        let (sheet, remarks) = match measured_sheet(&file, spec.turn_deg.to_radians()) {
+        let (sheet, remarks) = match measured_sheet(file, spec.turn_deg.to_radians()) {
             Ok(made) => made,
             Err(problem) => {
                 self.problems.error(&key, format!("`{}`: {problem}", spec.file));
                 return None;
             }
         };
-        for remark in file.remarks.iter().chain(&remarks) {
+        for remark in remarks {
             self.problems.warning(&key, format!("`{}`: {remark}", spec.file));
         }
         let met = match spec.side {
@@ -42,9 +42,13 @@ impl Context<'_> {
     fn add_scatter_to_hash(&mut self, file: &ScatterFile) {
         for side in [&file.front, &file.back] {
             for matrix in [&side.reflection, &side.transmission] {
-                let values = matrix.iter().flat_map(|matrix| &matrix.values);
                 self.meshes.add(&[u8::from(matrix.is_some())]);
-                values.for_each(|value| self.meshes.add(&value.to_le_bytes()));
+                let Some(BsdfMatrix { pairs, values }) = matrix else { continue };
+                let [incident, leaving] = pairs.counts();
+                let sizes = (0..incident).map(|patch| pairs.incident_projected(patch));
+                let sizes = sizes.chain((0..leaving).map(|patch| pairs.leaving_projected(patch)));
+                let all = sizes.chain(values.iter().copied());
+                all.for_each(|number| self.meshes.add(&number.to_le_bytes()));
             }
         }
     }

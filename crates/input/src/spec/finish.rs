@@ -269,11 +269,11 @@ pub struct ScatterFileSpec {
     /// The file, relative to the scene: .xml of Radiance genBSDF or LBNL WINDOW (Klems matrix or tensor tree, visible light),
     /// or .csv with columns `theta_i_deg`, `theta_s_deg`, `phi_s_deg`, and `brdf_per_sr` or `btdf_per_sr`.
     pub file: String,
-    /// The side of the file that light meets which meets this finish. In XML the front is the outside of a glazing.
+    /// The side in the file that faces the light arriving at this finish. In XML the front is the outside of a glazing.
     #[serde(default)]
     pub side: ScatterFileSideSpec,
-    /// Angle from the direction along the guide, on a flat sheet its local y, to the upward direction of the file, about the
-    /// normal of the front.
+    /// Angle from the direction along the guide, on a flat sheet its local y, to the upward direction of the file,
+    /// counter-clockwise seen from the front.
     #[serde(default)]
     #[schemars(range(min = -360.0, max = 360.0))]
     pub turn_deg: f64,

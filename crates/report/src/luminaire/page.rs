@@ -212,12 +212,12 @@ fn ugr_table(luminaire: &Luminaire, area: f64) -> Vec<Block> {
     };
     let view = match views {
         [_] => "",
-        _ => "; C0 or C90 is the plane along the view",
+        _ => "the C plane along the line of sight, and ",
     };
     let text = format!(
-        "Unified glare rating (UGR, CIE 117) in the rooms of CIE 190, by the reflectances of ceiling, walls and floor: width across the view by length \
-            along it, for luminaires a quarter of their height H = 2 m above the eye apart{view}. The light of the background is computed by form factors, so \
-            that ratings differ by some 0.2 from those by the tables of CIE 190."
+        "Unified glare rating (UGR, CIE 117) in the standard rooms of CIE 190. Rows: width across the line of sight by length along it, where H = 2 m is the \
+            height of the luminaires above the eye; the luminaires are 0.25 H apart. Columns: {view}the reflectances of ceiling, walls and floor. The light of the \
+            background is computed by form factors, so ratings differ by about 0.2 from those by the tables of CIE 190."
     );
     vec![Block::Words { text }, table(&head, ROOMS.map(row).into())]
 }

@@ -2,7 +2,7 @@
 
 use crate::optics::bsdf::table::BsdfTable;
 use glam::DVec2;
-use lumiduct_base::math::circle;
+use lumiduct_base::math::{DirectionPatches, circle};
 use std::sync::Arc;
 
 /// Azimuths and rings over which shares are averaged.
@@ -65,6 +65,17 @@ impl DirectedTable {
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         Self { table: Arc::new(self.table.scaled(factor)), is_reversed: self.is_reversed }
+    }
+
+    /// The patches of arriving light, turned by half a turn if all paths are backwards.
+    pub fn incident_patches(&self) -> DirectionPatches {
+        let [incident, leaving] = self.table.divisions();
+        if self.is_reversed { leaving } else { incident }
+    }
+
+    /// Whether it is another table backwards.
+    pub fn is_reverse_of(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.table, &other.table) && self.is_reversed != other.is_reversed
     }
 
     /// A direction within each patch of arriving light, and within each of leaving light.

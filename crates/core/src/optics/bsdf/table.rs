@@ -76,6 +76,16 @@ impl BsdfTable {
         }
     }
 
+    /// The patches of arriving and of leaving light. Without grain the rings alone count.
+    pub fn divisions(&self) -> [DirectionPatches; 2] {
+        match &self.pairs {
+            PatchPairs::Fixed { incident, leaving } => [incident.clone(), leaving.clone()],
+            PatchPairs::Isotropic { incident, leaving } => {
+                [incident, leaving].map(|rings| DirectionPatches::Rings(rings.clone()))
+            }
+        }
+    }
+
     /// All values times a factor.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
@@ -109,7 +119,7 @@ impl BsdfTable {
         match &self.pairs {
             PatchPairs::Fixed { leaving, .. } => leaving.direction(patch, u),
             PatchPairs::Isotropic { leaving, .. } => {
-                let [ring, sector] = leaving.place(patch);
+                let [ring, sector] = leaving.ring_and_sector(patch);
                 let turn = turns(from) + leaving.turns(ring, sector, u[1]);
                 leaving.radius(ring, u[0]) * circle(turn.rem_euclid(1.0))
             }

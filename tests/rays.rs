@@ -173,3 +173,68 @@ fn a_sensor_without_light_has_no_rays() {
     let asked = RayCollection { sensor: SensorId::new(1), count: 10, seed: 7, bounce_limit: 1000 };
     assert_eq!(counted_rays(&job.scene, &asked), []);
 }
+
+/// A sheet of paper beside the light of a lamp, seen by a cell, and the lamp's rays as a source.
+fn paper(path: &Path) -> String {
+    format!(
+        "[sources.lamp.rays]\nfile = {path:?}\nfitted = true\nat = {{ position_mm = [0, 0, -8.5] }}\n\
+         [finishes.paper]\nlambertian = {{ reflectance = 0.8 }}\n\
+         [sheets.card.rectangle]\nwidth_mm = 8\nheight_mm = 8\nfinish = \"paper\"\nat = {{ position_mm = [0, 0, 6], axis = [0.3, 0, -1] }}\n\
+         [sensors]\n\
+         cell = {{ plane = {{ rectangle = {{ width_mm = 3, height_mm = 3 }} }}, at = {{ position_mm = [6, 0, 2], axis = [-1, 0, 1] }} }}\n"
+    )
+}
+
+#[test]
+fn every_estimator_finds_the_same_light_of_a_fit() {
+    let (rays, _) = exit_rays(20_000);
+    let folder = tempfile::tempdir().unwrap();
+    let path = file(folder.path(), RayFormat::Tm25, FluxUnit::Lumen, &in_file(&rays));
+    let found = [Request::Forward, Request::Backward, Request::Mix, Request::Mis, Request::Gather]
+        .map(|estimator| measured(&paper(&path), 1 << 20, estimator).values["cell.flux"].clone());
+    let [forward, others @ ..] = &found;
+    assert!(forward.std_error < 0.01 * forward.value, "{forward}");
+    for (number, other) in others.iter().enumerate() {
+        let error = forward.std_error.hypot(other.total_error());
+        assert!((forward.value - other.value).abs() < 4.0 * error, "{number}: {forward} {other}");
+        assert!(other.total_error() < 0.1 * other.value, "{number}: {other}");
+    }
+}
+
+#[test]
+fn a_fit_shows_the_luminance_of_the_lamp_to_a_lens() {
+    const LENS: &str = r#"
+[sensors.lens]
+luminance = { cells = [5, 5], rectangle = { width_mm = 3, height_mm = 3 }, directions = [
+    { theta_deg = 0, phi_deg = 0 },
+], acceptance_half_angle_deg = 12 }
+at = { position_mm = [0.4, 0, 6], axis = [0, 0, -1] }
+"#;
+    const DISK: &str = "[sources.led.disk]\nradius_mm = 1\nflux_lm = 5\n";
+    const NEAR: &str = "[sensors.near]\nplane = { rectangle = { width_mm = 40, height_mm = 40 } }\nat = { position_mm = [0, 0, 1], axis = [0, 0, -1] }";
+    let job = traced::load(&format!("{DISK}{NEAR}"), &Settings::default());
+    let asked =
+        RayCollection { sensor: SensorId::new(0), count: 40_000, seed: 7, bounce_limit: 1000 };
+    let rays = in_file(&counted_rays(&job.scene, &asked));
+    let folder = tempfile::tempdir().unwrap();
+    let path = file(folder.path(), RayFormat::Tm25, FluxUnit::Lumen, &rays);
+    let of_rays = |keys: &str| {
+        let text = format!("[sources.lamp.rays]\nfile = {path:?}\n{keys}\n{LENS}");
+        measured(&text, 1 << 20, if keys.is_empty() { Request::Forward } else { Request::Backward })
+    };
+    let lamp = format!("{DISK}{LENS}");
+    let lamp = measured(&lamp, 1 << 21, Request::Backward);
+    let [rays, fitted] = [of_rays(""), of_rays("fitted = true")];
+    // Root mean square of the differences of cells without what the errors of both explain, relative to the mean.
+    let difference = |of: &Measures| {
+        let [ours, theirs] = [&of.maps[0], &lamp.maps[0]];
+        let squares = ours.values.indexed_iter().map(|(place, value)| {
+            let errors = ours.std_errors[place].hypot(theirs.std_errors[place]);
+            (value - theirs.values[place]).powi(2) - errors.powi(2)
+        });
+        let mean = theirs.values.mean().unwrap();
+        (squares.sum::<f64>() / ours.values.len() as f64).max(0.0).sqrt() / mean
+    };
+    let [of_rays, of_fit] = [difference(&rays), difference(&fitted)];
+    assert!(of_fit < 0.03 && of_rays > 0.08, "{of_rays} {of_fit}");
+}

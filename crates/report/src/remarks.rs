@@ -5,7 +5,9 @@
 use crate::by_light::remark_on_weathers;
 use lumiduct_base::number::{format_percent, format_with_error};
 use lumiduct_core::measure::{LostPaths, Measures, Status};
-use lumiduct_core::scene::{CountedLight, Place, Scene, Seeing, Sensor, SensorKind};
+use lumiduct_core::scene::{
+    CountedLight, Emitter, Place, Scene, Seeing, Sensor, SensorKind, Source,
+};
 use lumiduct_core::transport::GROUPS;
 
 /// Share of the flux cut by the bounce limit above which there is a remark, 1.
@@ -92,8 +94,14 @@ pub fn remarks_on_ray_sets(scene: &Scene, measures: &Measures) -> Vec<String> {
     let per_ray = scene
         .sources
         .iter()
-        .filter_map(|source| Some(source.flux / source.emitter.ray_set()?.effective_count()));
+        .filter_map(|source| Some(source.flux / source.emitter.effective_rays()?));
+    // A fit gives a cell light from the rays around those that reach it.
+    let has_rays =
+        scene.sources.iter().any(|source| matches!(source.emitter, Emitter::Rays { .. }));
     let per_ray = per_ray.fold(0.0, f64::max);
+    let is_fitted = |source: &Source| matches!(source.emitter, Emitter::Fitted { .. });
+    let smoothed =
+        if scene.sources.iter().any(is_fitted) { ", nor what a fit smooths away" } else { "" };
     let remark = |sensor: &Sensor| {
         let flux = measures.values.get(&format!("{}.flux", sensor.name))?;
         // Rays that reach the sensor with probability p have a flux of variance Φ² p (1 - p) / N, which is at most Φ / N times the flux; of
@@ -103,6 +111,7 @@ pub fn remarks_on_ray_sets(scene: &Scene, measures: &Measures) -> Vec<String> {
             let share = of_rays / flux.value;
             let cells = match sensor.cells() {
                 1 => String::new(),
+                _ if !has_rays => String::new(),
                 count => {
                     let of_cell = share * (count as f64).sqrt();
                     format!(" (a cell with the mean flux: {})", format_percent(of_cell))
@@ -110,7 +119,7 @@ pub fn remarks_on_ray_sets(scene: &Scene, measures: &Measures) -> Vec<String> {
             };
             format!(
                 "as an estimate for the lamp, `{}.flux` has a standard error of up to {}{cells}, because the rays are a sample of the \
-                    lamp's light; the stated errors do not include this",
+                    lamp's light; the stated errors do not include this{smoothed}",
                 sensor.name,
                 format_percent(share),
             )

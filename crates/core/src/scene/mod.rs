@@ -55,8 +55,10 @@ pub use sensor::{
     Views,
 };
 pub use source::emission::Emission;
+pub use source::fitted::{FitQuality, FittedLight};
 pub use source::light_group::{LightGroup, LightGroups};
 pub use source::measured::MeasuredEmission;
+pub(crate) use source::radiance::Radiance;
 pub use source::rays::{EmittedRay, RaySet};
 pub use source::sky::{EmitterKind, Sky};
 pub use source::{EmitSide, Emitted, Emitter, Source, StartSolids, SunAngles};

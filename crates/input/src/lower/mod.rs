@@ -93,6 +93,7 @@ pub(crate) fn lower(
     let run = plan::run(spec, &scene);
     starts::settle_starts(&mut scene);
     starts::note_joints(spec, &scene, &faces, problems);
+    starts::note_fits(&scene, problems);
     starts::check_starts(spec, &scene, problems);
     consistency::check_overlaps(spec, &scene, problems);
     consistency::check_open_faces(spec, &scene, problems);

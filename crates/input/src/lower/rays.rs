@@ -8,9 +8,12 @@ use crate::lower::sources::PlacedSource;
 use crate::spec::rays::{RayExportFormat, RaysSpec};
 use crate::spec::sensor::SensorSpec;
 use glam::Vec3;
-use lumiduct_base::number::format_value;
+use lumiduct_base::math::Frame;
+use lumiduct_base::number::{format_percent, format_value};
 use lumiduct_base::units::FluxUnit;
-use lumiduct_core::scene::{Emission, EmittedRay, Emitter, RaySet, SensorId};
+use lumiduct_core::scene::{
+    Emission, EmittedRay, Emitter, FitQuality, FittedLight, RaySet, SensorId,
+};
 use lumiduct_files::rays::{RayFormat, RaySample, RaySetInfo, sample};
 use std::sync::Arc;
 
@@ -18,6 +21,8 @@ use std::sync::Arc;
 const MAX_RAYS: usize = 10_000_000;
 /// Rays in a file that is written, unless the scene says how many.
 const EXPORTED_RAYS: usize = 100_000;
+/// Share of the flux that a fit may leave out, 1.
+const MOST_LEFT_OUT: f64 = 0.02;
 /// Seed of the drawing, the same for all scenes, so that designs have the same rays.
 const SEED: u64 = 0;
 
@@ -37,11 +42,12 @@ impl Context<'_> {
             let message = format!("`{}` has no light in the rays that were drawn", spec.file);
             return self.refuse(&key.field("max_rays"), message, "allow more rays");
         };
+        let (emitter, share) = self.ray_emitter(rays, frame?, spec, key)?;
         let placed = PlacedSource {
             name,
             enabled: spec.enabled,
-            flux,
-            emitter: Emitter::rays(Arc::new(rays), frame?),
+            flux: flux * share,
+            emitter,
             // Rays have their own directions.
             emission: Emission::Isotropic,
             on: Vec::new(),
@@ -50,6 +56,59 @@ impl Context<'_> {
         };
         self.add_placed(placed, key);
         Some(())
+    }
+
+    /// The emitter, and the share of the flux that it has, 1.
+    fn ray_emitter(
+        &mut self,
+        rays: RaySet,
+        frame: Frame,
+        spec: &RaysSpec,
+        key: &Key,
+    ) -> Option<(Emitter, f64)> {
+        if !spec.fitted {
+            if spec.fitted_at_mm.is_some() {
+                let message = "is for a fitted source only";
+                let hint = "write fitted = true, or remove it";
+                return self.refuse(&key.field("fitted_at_mm"), message, hint);
+            }
+            return Some((Emitter::rays(Arc::new(rays), frame), 1.0));
+        }
+        let key = key.field("fitted");
+        let light = match FittedLight::new(&rays, spec.fitted_at_mm) {
+            Ok(light) => light,
+            Err(reason) => {
+                let message = format!("no luminance can be fitted to `{}`: {reason}", spec.file);
+                return self.refuse(&key, message, "use the rays themselves: fitted = false");
+            }
+        };
+        let FitQuality { boxes, sampling, variation: [place, direction], left_out, .. } =
+            *light.quality();
+        let [sampling, place, direction, out] =
+            [sampling, place, direction, left_out].map(format_percent);
+        let height = format_value(light.middle().z);
+        if left_out > MOST_LEFT_OUT {
+            let message = format!(
+                "{out} of the flux does not cross the plane z = {height} mm of the file near the starts of the rays"
+            );
+            let hint = "give another height with `fitted_at_mm`";
+            return self.refuse(&key, message, hint);
+        }
+        let rest = if left_out > 0.0 {
+            format!(
+                " {out} of the flux crosses the plane far from the starts of the rays and is left out."
+            )
+        } else {
+            String::new()
+        };
+        let message = format!(
+            "luminance over the plane z = {height} mm of `{}` is the mean of 8 densities, each even in some {boxes} boxes of position and \
+             direction. In one box the sampling of the rays leaves an error of {sampling}, and luminance varies by {place} over position and \
+             {direction} over direction (root mean square); the mean, and light from many boxes, is more certain.{rest}",
+            spec.file
+        );
+        self.problems.warning(&key, message).hint("more rays lower all of these");
+        Some((Emitter::fitted(Arc::new(light), frame), 1.0 - left_out))
     }
 
     /// Reads the file; problems and remarks are noted at its key.

@@ -8,11 +8,14 @@ use crate::problems::Problems;
 use crate::spec::SceneSpec;
 use crate::spec::placement::PlacementSpec;
 use crate::spec::source::{SourceCommonSpec, SourceSpec};
-use indexmap::IndexMap;
-use lumiduct_base::number::format_value;
+use indexmap::{IndexMap, IndexSet};
+use lumiduct_base::number::{format_percent, format_value};
 use lumiduct_core::optics::Finish;
 use lumiduct_core::rng::Sampler;
-use lumiduct_core::scene::{Emitted, FaceId, FinishId, Owner, Scene, SolidId, StartSolids};
+use lumiduct_core::scene::shape::Crossing;
+use lumiduct_core::scene::{
+    Emitted, Emitter, FaceId, FinishId, Owner, Ray, Scene, SolidId, StartSolids,
+};
 
 /// Starts tested per source: any part that is missed is less than a hundredth of the source.
 const LOOKS: u64 = 1024;
@@ -56,6 +59,36 @@ pub(super) fn note_joints(
                 format!("touches `{}` and is joined to it optically, as by glue{no_gap}", at.face);
             problems.warning(&Key::of(&["sources", name, source.kind()]), message).hint(
                 "write contact = \"optical\" if so, contact = \"air\" for a thin layer of air, or a gap_mm",
+            );
+        }
+    }
+}
+
+/// Notes fitted sources whose light may meet faces that the rays of the file do not meet, or miss faces that they meet.
+pub(super) fn note_fits(scene: &Scene, problems: &mut Problems) {
+    for source in &scene.sources {
+        let Emitter::Fitted { light, frame, .. } = &source.emitter else { continue };
+        let mut between: IndexMap<&str, usize> = IndexMap::new();
+        for gap in light.gaps() {
+            let [place, start] = gap.map(|point| frame.point_to_world(point));
+            let Some(dir) = (start - place).try_normalize() else { continue };
+            let mut met = IndexSet::new();
+            scene.all_crossings(&Ray::new(place, dir), |prim, Crossing { t, .. }| {
+                if t > scene.tolerance && t < place.distance(start) - scene.tolerance {
+                    let face = scene.surface(prim).face();
+                    met.insert(scene.faces[face.index()].name.as_str());
+                }
+            });
+            met.into_iter().for_each(|face| *between.entry(face).or_default() += 1);
+        }
+        for (face, count) in between {
+            let share = format_percent(count as f64 / light.gaps().len() as f64);
+            let message = format!(
+                "{share} of the rays have `{face}` between the plane of the fit and their starts in the file"
+            );
+            let key = Key::of(&["sources", &source.name, "rays", "fitted"]);
+            problems.warning(&key, message).hint(
+                "light starts at the plane of the fit; move it with `fitted_at_mm` if this is wrong",
             );
         }
     }

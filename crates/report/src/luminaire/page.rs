@@ -321,7 +321,7 @@ mod tests {
         };
         found.luminaire.intensities = values(PlaneSymmetry::Quadrants, &[0.0, 90.0]);
         found.std_errors = Array2::zeros((2, 2));
-        assert!(words(&found).contains("C0 or C90 is the plane along the view"));
+        assert!(words(&found).contains("the C plane along the line of sight"));
         found.luminaire.intensities = values(PlaneSymmetry::AboutC0, &[0.0, 180.0]);
         let said = words(&found);
         assert!(said.contains("is for luminaires that are symmetric"), "{said}");

@@ -19,7 +19,7 @@ pub enum Surface<'s> {
 impl Surface<'_> {
     /// The face that it belongs to.
     #[inline]
-    pub(crate) fn face(self) -> FaceId {
+    pub fn face(self) -> FaceId {
         match self {
             Self::Patch(patch) => patch.face,
             Self::Triangle(body, triangle) => body.faces[body.mesh.face_of(triangle)],

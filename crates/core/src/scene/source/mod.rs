@@ -1,13 +1,15 @@
 //! Sources: where light starts.
 
 pub(crate) mod emission;
+pub(crate) mod fitted;
 pub(crate) mod light_group;
 pub(crate) mod measured;
+pub(crate) mod radiance;
 pub(crate) mod rays;
 pub(crate) mod sky;
 
-use crate::scene::shape::{Shape, Sphere};
-use crate::scene::{Emission, Inside, PrimId, Ray, RaySet, SolidId};
+use crate::scene::shape::{Flat, Region, Shape, Sphere};
+use crate::scene::{Emission, FittedLight, Inside, PrimId, Ray, RaySet, SolidId};
 use glam::DVec3;
 use lumiduct_base::math::{Aabb, Frame};
 use std::sync::Arc;
@@ -21,7 +23,7 @@ pub struct Source {
     pub flux: f64,
     /// The emitting geometry.
     pub emitter: Emitter,
-    /// The directions of its light; not used for rays, which have their own.
+    /// The directions of its light; not used for rays and what is fitted to them, which have their own.
     pub emission: Emission,
     /// How the solids around a start point are found.
     pub start: StartSolids,
@@ -91,6 +93,15 @@ pub enum Emitter {
         frame: Frame,
         /// Box around their starts, mm.
         bounds: Aabb,
+    },
+    /// Light fitted to rays, from both sides of a rectangle.
+    Fitted {
+        /// The light.
+        light: Arc<FittedLight>,
+        /// The frame of the rays.
+        frame: Frame,
+        /// The rectangle with its area, mm².
+        shapes: [(Shape, f64); 1],
     },
 }
 
@@ -165,6 +176,17 @@ impl Emitter {
         Self::Rays { rays, frame, bounds }
     }
 
+    /// The emitter of light fitted to rays in a frame.
+    pub fn fitted(light: Arc<FittedLight>, frame: Frame) -> Self {
+        let [half_x, half_y] = light.half().to_array();
+        let middle = frame.point_to_world(light.middle());
+        let flat =
+            Flat::new(Frame { origin: middle, ..frame }, Region::Rectangle { half_x, half_y });
+        let shape = Shape::Flat(flat);
+        let area = shape.area();
+        Self::Fitted { light, frame, shapes: [(shape, area)] }
+    }
+
     /// Emitting area, mm²; `None` for points, lines, volumes, rays and the far distance.
     pub fn area(&self) -> Option<f64> {
         match self {
@@ -174,6 +196,7 @@ impl Emitter {
             | Self::Far { .. }
             | Self::Rays { .. } => None,
             Self::Surface { shapes, .. } => shapes.last().map(|(_, area)| *area),
+            Self::Fitted { shapes: [(_, area)], .. } => Some(*area),
         }
     }
 
@@ -181,9 +204,11 @@ impl Emitter {
     pub fn point(&self) -> Option<&Frame> {
         match self {
             Self::Point(frame) | Self::Rays { frame, .. } => Some(frame),
-            Self::Line { .. } | Self::Surface { .. } | Self::Volume { .. } | Self::Far { .. } => {
-                None
-            }
+            Self::Line { .. }
+            | Self::Surface { .. }
+            | Self::Fitted { .. }
+            | Self::Volume { .. }
+            | Self::Far { .. } => None,
         }
     }
 
@@ -198,7 +223,8 @@ impl Emitter {
             | Self::Surface { .. }
             | Self::Volume { .. }
             | Self::Far { .. }
-            | Self::Rays { .. } => None,
+            | Self::Rays { .. }
+            | Self::Fitted { .. } => None,
         }
     }
 
@@ -207,6 +233,7 @@ impl Emitter {
     pub fn shapes(&self) -> &[(Shape, f64)] {
         match self {
             Self::Surface { shapes, .. } => shapes,
+            Self::Fitted { shapes, .. } => shapes,
             Self::Point(_)
             | Self::Line { .. }
             | Self::Volume { .. }
@@ -218,7 +245,9 @@ impl Emitter {
     /// The direction along which a point, a flat surface or the axis of rays shines; `None` for all others.
     pub fn axis(&self) -> Option<DVec3> {
         match self {
-            Self::Point(frame) | Self::Rays { frame, .. } => Some(frame.z),
+            Self::Point(frame) | Self::Rays { frame, .. } | Self::Fitted { frame, .. } => {
+                Some(frame.z)
+            }
             Self::Surface { shapes, side, .. } => {
                 let [(shape, _)] = shapes.as_slice() else { return None };
                 let normals =
@@ -234,10 +263,11 @@ impl Emitter {
         }
     }
 
-    /// The rays, if it is made of them.
-    pub fn ray_set(&self) -> Option<&RaySet> {
+    /// Number of equal rays with the same variance of sums, if its light is known by rays alone.
+    pub fn effective_rays(&self) -> Option<f64> {
         match self {
-            Self::Rays { rays, .. } => Some(rays),
+            Self::Rays { rays, .. } => Some(rays.effective_count()),
+            Self::Fitted { light, .. } => Some(light.quality().rays),
             Self::Point(_)
             | Self::Line { .. }
             | Self::Surface { .. }
@@ -254,14 +284,19 @@ impl Emitter {
             | Self::Line { .. }
             | Self::Surface { .. }
             | Self::Volume { .. }
-            | Self::Rays { .. } => false,
+            | Self::Rays { .. }
+            | Self::Fitted { .. } => false,
         }
     }
 
     /// Whether it is a thing of its own: not the sky, and not the inside of a solid.
     pub(crate) fn is_thing(&self) -> bool {
         match self {
-            Self::Point(_) | Self::Line { .. } | Self::Surface { .. } | Self::Rays { .. } => true,
+            Self::Point(_)
+            | Self::Line { .. }
+            | Self::Surface { .. }
+            | Self::Rays { .. }
+            | Self::Fitted { .. } => true,
             Self::Volume { .. } | Self::Far { .. } => false,
         }
     }
@@ -277,6 +312,7 @@ impl Emitter {
             Self::Surface { shapes, .. } => {
                 shapes.iter().fold(Aabb::EMPTY, |bounds, (shape, _)| bounds.union(shape.bounds()))
             }
+            Self::Fitted { shapes: [(shape, _)], .. } => shape.bounds(),
             Self::Volume { bounds, .. } | Self::Rays { bounds, .. } => *bounds,
             Self::Far { center, radius, .. } => Aabb::of([*center]).grown(*radius),
         }

@@ -56,6 +56,16 @@ impl RaySet {
         )
     }
 
+    /// Number of rays.
+    pub(crate) fn len(&self) -> usize {
+        self.rays.len()
+    }
+
+    /// The rays.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = &EmittedRay> {
+        self.rays.iter()
+    }
+
     /// Box around all starts in a frame, mm.
     pub fn bounds(&self, frame: &Frame) -> Aabb {
         Aabb::of(self.rays.iter().map(|ray| frame.point_to_world(ray.position.as_dvec3())))

@@ -32,6 +32,10 @@ impl Source {
             Emitter::Rays { rays, frame, .. } => {
                 (rays.at(frame, sampler.one(Dimension::EmitPosition)), 0)
             }
+            Emitter::Fitted { light, frame, .. } => {
+                let [start, dir] = light.sample(sampler);
+                (Ray::new(frame.point_to_world(start), frame.to_world(dir)), 0)
+            }
         };
         let inside = match self.start {
             StartSolids::Outside => Inside::default(),
@@ -62,10 +66,7 @@ impl Source {
         sampler: &mut Sampler<impl Numbers>,
     ) -> Ray {
         let point = shape.sample(sampler.pair(Dimension::EmitPosition));
-        let normal = match side {
-            EmitSide::Front => shape.normal(point),
-            EmitSide::Back => -shape.normal(point),
-        };
+        let normal = side.of(shape.normal(point));
         let frame = match reference {
             Some(reference) => *reference,
             None => Frame::from_axis(DVec3::ZERO, normal),

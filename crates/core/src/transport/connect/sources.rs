@@ -2,9 +2,7 @@
 
 use crate::rng::{Dimension, Sampler};
 use crate::scene::shape::{Crossing, RayStart, Shape};
-use crate::scene::{
-    Emission, EmitSide, Emitter, EmitterKind, Ray, Scene, Source, SourceId, StartSolids,
-};
+use crate::scene::{Emitter, EmitterKind, Radiance, Ray, Scene, Source, SourceId, StartSolids};
 use crate::transport::connect::target::{Importance, Joinable, Targets};
 use crate::transport::connect::vertex::TurnAt;
 use glam::DVec3;
@@ -48,8 +46,6 @@ enum EmitterExtent<'s> {
 #[derive(Debug, Clone, Copy)]
 struct Surfaces<'s> {
     shapes: &'s [(Shape, f64)],
-    side: EmitSide,
-    frame: Option<&'s Frame>,
     /// Flux per area, lm/mm².
     exitance: f64,
 }
@@ -123,11 +119,12 @@ impl<'s> SourceTargets<'s> {
                 source.flux / length * source.emission.density_of_line(frame.to_local(place.dir))?
             }
             EmitterExtent::Surface(surfaces) => {
-                surfaces.radiance(&source.emission, place) / (index * index)
+                let shape = surfaces.shape(place);
+                let Radiance { exitance, density, cosine } =
+                    source.radiance(shape, place.point, place.dir);
+                exitance * density / cosine / (index * index)
             }
-            EmitterExtent::Beam(surfaces, _) => {
-                surfaces.exitance / place.dir.dot(surfaces.normal(place)).abs()
-            }
+            EmitterExtent::Beam(surfaces, _) => surfaces.exitance / surfaces.cosine(place),
             EmitterExtent::Far => {
                 target.across() * source.emission.density(EmitterKind::Far, place.dir)?
                     / (index * index)
@@ -146,8 +143,7 @@ impl<'s> SourceTargets<'s> {
             EmitterExtent::Point(_) => per_chance / (index * index * square),
             EmitterExtent::Line(_, length) => per_chance * length / (index * index * square),
             EmitterExtent::Surface(surfaces) => {
-                let cos = place.dir.dot(surfaces.normal(place)).abs();
-                per_chance * surfaces.area() * cos / square
+                per_chance * surfaces.area() * surfaces.cosine(place) / square
             }
             EmitterExtent::Beam(..) | EmitterExtent::FarBeam => per_chance / (index * index),
             EmitterExtent::Far => {
@@ -224,25 +220,14 @@ impl Surfaces<'_> {
         nearest
     }
 
-    /// The unit normal of the side that shines.
-    fn normal(&self, place: &SourcePoint) -> DVec3 {
-        let normal = self.shapes[place.shape].0.normal(place.point);
-        match self.side {
-            EmitSide::Front => normal,
-            EmitSide::Back => -normal,
-        }
+    /// The shape that a place is on.
+    fn shape(&self, place: &SourcePoint) -> &Shape {
+        &self.shapes[place.shape].0
     }
 
-    /// Radiance, lm/(mm² sr).
-    fn radiance(&self, emission: &Emission, place: &SourcePoint) -> f64 {
-        let normal = self.normal(place);
-        let cos = place.dir.dot(normal);
-        if cos <= 0.0 {
-            return 0.0;
-        }
-        let own = || Frame::from_axis(DVec3::ZERO, normal).to_local(place.dir);
-        let local = self.frame.map_or_else(own, |frame| frame.to_local(place.dir));
-        self.exitance * emission.density(EmitterKind::Surface, local).unwrap_or(0.0) / cos
+    /// Cosine of the angle between the light and the surface's normal.
+    fn cosine(&self, place: &SourcePoint) -> f64 {
+        place.dir.dot(self.shape(place).normal(place.point)).abs()
     }
 }
 
@@ -256,16 +241,19 @@ fn target(id: SourceId, source: &Source) -> Option<SourceTarget<'_>> {
     let extent = match (&source.emitter, source.emission.beam()) {
         (Emitter::Point(frame), None) => EmitterExtent::Point(frame),
         (Emitter::Line { frame, length }, None) => EmitterExtent::Line(frame, *length),
-        (Emitter::Surface { shapes, side, frame }, beam) => {
-            let frame = frame.as_ref();
+        (Emitter::Fitted { shapes, .. }, _) => {
             let exitance = source.flux / source.emitter.area()?;
-            let surfaces = Surfaces { shapes, side: *side, frame, exitance };
+            EmitterExtent::Surface(Surfaces { shapes, exitance })
+        }
+        (Emitter::Surface { shapes, frame, .. }, beam) => {
+            let exitance = source.flux / source.emitter.area()?;
+            let surfaces = Surfaces { shapes, exitance };
             match beam {
                 None => EmitterExtent::Surface(surfaces),
                 Some(axis) => {
                     let normal = source.emitter.axis();
                     let own = || Some(Frame::from_axis(DVec3::ZERO, normal?));
-                    let frame = frame.copied().or_else(own)?;
+                    let frame = (*frame).or_else(own)?;
                     EmitterExtent::Beam(surfaces, frame.to_world(axis))
                 }
             }

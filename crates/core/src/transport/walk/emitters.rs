@@ -5,13 +5,11 @@
 
 use crate::scene::shape::{Crossing, RayStart, Shape};
 use crate::scene::{
-    Emission, EmitSide, Emitter, EmitterKind, PrimId, Scene, SolidId, Source, SourceId,
-    StartSolids as SourceStart,
+    Emitter, EmitterKind, PrimId, Scene, SolidId, Source, SourceId, StartSolids as SourceStart,
 };
 use crate::transport::{MetEmission, Path, Segment};
 use glam::DVec3;
-use lumiduct_base::math::{Aabb, Frame};
-use std::f64::consts::PI;
+use lumiduct_base::math::Aabb;
 
 /// Light of a source behind a face is met at the start of a segment, up to rounding of this size, relative to the scene.
 const AT_START: f64 = 1e-9;
@@ -27,7 +25,7 @@ pub struct Emitters<'s> {
 #[derive(Debug)]
 struct SeenSource<'s> {
     id: SourceId,
-    emission: &'s Emission,
+    source: &'s Source,
     body: EmittingBody<'s>,
 }
 
@@ -35,7 +33,6 @@ struct SeenSource<'s> {
 enum EmittingBody<'s> {
     Surface {
         shapes: &'s [(Shape, f64)],
-        shining: Shining<'s>,
         on: &'s [PrimId],
         contact: Contact,
         /// Box around the shapes, with room for rounding, mm.
@@ -48,24 +45,6 @@ enum EmittingBody<'s> {
         /// Usual length of a path through it, mm: the side of a cube of its volume.
         usual_length: f64,
     },
-}
-
-/// Emission of the shapes of a source.
-#[derive(Debug, Clone, Copy)]
-struct Shining<'s> {
-    emission: &'s Emission,
-    from: ShinesFrom<'s>,
-    /// Flux per area, lm/mm²; for the far distance, per area across the light.
-    exitance: f64,
-}
-
-/// Geometry of the emission.
-#[derive(Debug, Clone, Copy)]
-enum ShinesFrom<'s> {
-    /// A surface, to one side, with directions in its own frame or about its normal.
-    Surface { side: EmitSide, frame: Option<&'s Frame> },
-    /// The far distance: along lines that pass this middle at no more than this distance, mm.
-    Far { center: DVec3, reach: f64 },
 }
 
 /// Position of a source relative to a face.
@@ -100,6 +79,7 @@ pub fn invisible(source: &Source, scene: &Scene) -> Option<&'static str> {
         Emitter::Point(_) => Some("it is a point"),
         Emitter::Line { .. } => Some("it is a line"),
         Emitter::Rays { .. } => Some("it is a set of rays"),
+        Emitter::Fitted { .. } => None,
         Emitter::Surface { .. } | Emitter::Far { .. } => source
             .emission
             .density(EmitterKind::Surface, any)
@@ -124,11 +104,7 @@ impl<'s> Emitters<'s> {
         let visible =
             visible.filter(|(_, source)| source.is_lit() && invisible(source, scene).is_none());
         let seen = visible.filter_map(|(index, source)| {
-            Some(SeenSource {
-                id: SourceId::new(index),
-                emission: &source.emission,
-                body: body(scene, source)?,
-            })
+            Some(SeenSource { id: SourceId::new(index), source, body: body(scene, source)? })
         });
         Self { scene, seen: seen.collect() }
     }
@@ -178,7 +154,7 @@ impl<'s> Emitters<'s> {
         start: SegmentStart,
         visit: &mut impl FnMut(MetEmission),
     ) {
-        let EmittingBody::Surface { shapes, shining, on, contact, .. } = &seen.body else { return };
+        let EmittingBody::Surface { shapes, on, contact, .. } = &seen.body else { return };
         let (scene, ray) = (self.scene, segment.ray);
         let tolerance = scene.tolerance;
         let medium = &scene.media[segment.medium.index()];
@@ -203,7 +179,8 @@ impl<'s> Emitters<'s> {
                 if t < from || t > to {
                     return;
                 }
-                let emitted = shining.radiance(shape, ray.at(t), -ray.dir(), index);
+                let emitted =
+                    seen.source.radiance(shape, ray.at(t), -ray.dir()).value() / (index * index);
                 if emitted > 0.0 {
                     let arriving =
                         segment.throughput * medium.transmittance(path.wavelength, t.max(0.0));
@@ -225,9 +202,10 @@ impl<'s> Emitters<'s> {
     pub(crate) fn emitted(&self, source: SourceId, path: &Path, shape: usize) -> f64 {
         let Some(seen) = self.seen.iter().find(|seen| seen.id == source) else { return 0.0 };
         match &seen.body {
-            EmittingBody::Surface { shapes, shining, .. } => {
+            EmittingBody::Surface { shapes, .. } => {
                 let index = self.scene.media[path.medium.index()].index(path.wavelength);
-                shining.radiance(&shapes[shape].0, path.ray.origin(), path.ray.dir(), index)
+                let (start, dir) = (path.ray.origin(), path.ray.dir());
+                seen.source.radiance(&shapes[shape].0, start, dir).value() / (index * index)
             }
             EmittingBody::Volume { .. } => self.volume_radiance(seen, path, path.ray.dir()),
         }
@@ -238,7 +216,7 @@ impl<'s> Emitters<'s> {
     fn volume_radiance(&self, seen: &SeenSource<'_>, path: &Path, out: DVec3) -> f64 {
         let EmittingBody::Volume { density, usual_length, .. } = &seen.body else { return 0.0 };
         let index = self.scene.media[path.medium.index()].index(path.wavelength);
-        let law = seen.emission.density(EmitterKind::Volume, out).unwrap_or(0.0);
+        let law = seen.source.emission.density(EmitterKind::Volume, out).unwrap_or(0.0);
         density * law * usual_length / (index * index)
     }
 
@@ -258,65 +236,22 @@ impl<'s> Emitters<'s> {
         } else {
             -(-absorption * segment.length).exp_m1() / absorption
         };
-        let law = seen.emission.density(EmitterKind::Volume, -segment.ray.dir()).unwrap_or(0.0);
+        let law =
+            seen.source.emission.density(EmitterKind::Volume, -segment.ray.dir()).unwrap_or(0.0);
         segment.throughput * density * law * length / (index * index)
     }
 }
 
-impl Shining<'_> {
-    /// Basic radiance from a point on a shape toward `out`, in a medium of an index, lm/(mm² sr).
-    fn radiance(&self, shape: &Shape, point: DVec3, out: DVec3, index: f64) -> f64 {
-        let per_exitance = match self.from {
-            ShinesFrom::Surface { side, frame } => {
-                let normal = match side {
-                    EmitSide::Front => shape.normal(point),
-                    EmitSide::Back => -shape.normal(point),
-                };
-                let cos = out.dot(normal);
-                if cos <= 0.0 {
-                    return 0.0;
-                }
-                let own = || Frame::from_axis(DVec3::ZERO, normal).to_local(out);
-                let local = frame.map_or_else(own, |frame| frame.to_local(out));
-                self.emission.density(EmitterKind::Surface, local).unwrap_or(0.0) / cos
-            }
-            ShinesFrom::Far { center, reach } => {
-                let from = point - center;
-                let is_inward = out.dot(from) < 0.0;
-                if !is_inward || from.reject_from_normalized(out).length() > reach {
-                    return 0.0;
-                }
-                self.emission.density(EmitterKind::Far, out).unwrap_or(0.0)
-            }
-        };
-        self.exitance * per_exitance / (index * index)
-    }
-}
-
 fn body<'s>(scene: &'s Scene, source: &'s Source) -> Option<EmittingBody<'s>> {
+    let surface = |shapes: &'s [(Shape, f64)]| EmittingBody::Surface {
+        shapes,
+        on: &source.on,
+        contact: contact(source),
+        bounds: source.emitter.bounds().grown(2.0 * AT_START * scene.bounds.diagonal()),
+    };
     match &source.emitter {
-        Emitter::Surface { shapes, side, frame } => Some(EmittingBody::Surface {
-            shapes,
-            shining: Shining {
-                emission: &source.emission,
-                from: ShinesFrom::Surface { side: *side, frame: frame.as_ref() },
-                exitance: source.flux / source.emitter.area()?,
-            },
-            on: &source.on,
-            contact: contact(source),
-            bounds: source.emitter.bounds().grown(2.0 * AT_START * scene.bounds.diagonal()),
-        }),
-        Emitter::Far { shapes, center, reach, .. } => Some(EmittingBody::Surface {
-            shapes,
-            shining: Shining {
-                emission: &source.emission,
-                from: ShinesFrom::Far { center: *center, reach: *reach },
-                exitance: source.flux / (PI * reach * reach),
-            },
-            on: &source.on,
-            contact: contact(source),
-            bounds: source.emitter.bounds().grown(2.0 * AT_START * scene.bounds.diagonal()),
-        }),
+        Emitter::Surface { shapes, .. } => Some(surface(shapes)),
+        Emitter::Far { shapes, .. } | Emitter::Fitted { shapes, .. } => Some(surface(shapes)),
         Emitter::Volume { solid, .. } => {
             let volume = scene.solids[solid.index()].volume?;
             Some(EmittingBody::Volume {
@@ -343,8 +278,23 @@ mod tests {
     use crate::optics::Medium;
     use crate::rng::Sampler;
     use crate::scene::shape::{Cylinder, Flat, Region};
-    use crate::scene::{Builder, Ray};
+    use crate::scene::{Builder, Emission, EmitSide, EmittedRay, FittedLight, Ray, RaySet};
+    use lumiduct_base::math::Frame;
     use lumiduct_base::units::FluxUnit;
+    use std::sync::Arc;
+
+    /// Light to both sides of a plane, fitted to a few rays.
+    fn fitted() -> Emitter {
+        let ray = |n: u16| {
+            let [x, y, z] = [7, 11, 13].map(|step| f32::from(n * step % 17) / 17.0 - 0.4);
+            let direction = glam::Vec3::new(x * y, z, x).normalize();
+            EmittedRay { position: glam::Vec3::new(y, x, 0.1 * z), direction, flux: 1.0 + z }
+        };
+        let rays = RaySet::new((0..200).map(ray)).unwrap();
+        let frame =
+            Frame::from_axis(DVec3::new(7.0, 0.0, 5.0), DVec3::new(0.3, 0.1, 1.0).normalize());
+        Emitter::fitted(Arc::new(FittedLight::new(&rays, None).unwrap()), frame)
+    }
 
     #[test]
     fn a_photon_and_the_gather_path_that_meets_its_start_tell_the_same_emission() {
@@ -357,14 +307,17 @@ mod tests {
         let tilted = Frame::from_axis(DVec3::ZERO, DVec3::new(0.3, 0.0, 1.0).normalize());
         let cone = Emission::Cone { half_angle: 0.2, axis: DVec3::Z };
         let wall = Shape::Cylinder(Cylinder::new(Frame::WORLD, 1.0, 3.0));
-        for (shapes, frame, emission) in [
-            (vec![disk(5.0)], Some(tilted), cone),
-            (vec![disk(9.0), wall, disk(20.0)], None, Emission::CosinePower(3.0)),
-        ] {
+        let surface = |shapes, frame| Emitter::surface(shapes, EmitSide::Front, frame);
+        let emitters = [
+            (surface(vec![disk(5.0)], Some(tilted)), cone),
+            (surface(vec![disk(9.0), wall, disk(20.0)], None), Emission::CosinePower(3.0)),
+            (fitted(), Emission::Isotropic),
+        ];
+        for (emitter, emission) in emitters {
             builder.add_source(Source {
                 name: "lamp".into(),
                 flux: 7.0,
-                emitter: Emitter::surface(shapes, EmitSide::Front, frame),
+                emitter,
                 emission,
                 start: SourceStart::Outside,
                 on: Vec::new(),
@@ -374,7 +327,8 @@ mod tests {
         }
         let scene = builder.build();
         let emitters = Emitters::new(&scene);
-        for (source, index) in [0, 1].into_iter().flat_map(|one| (0..200).map(move |i| (one, i))) {
+        for (source, index) in [0, 1, 2].into_iter().flat_map(|one| (0..200).map(move |i| (one, i)))
+        {
             let id = SourceId::new(source);
             let emitted = scene.sources[source].emit(&scene, &mut Sampler::for_path(3, 0, index));
             let shape = emitted.shape;

@@ -5,9 +5,7 @@
 use crate::by_light::remark_on_weathers;
 use lumiduct_base::number::{format_percent, format_with_error};
 use lumiduct_core::measure::{LostPaths, Measures, Status};
-use lumiduct_core::scene::{
-    CountedLight, Emitter, Place, Scene, Seeing, Sensor, SensorKind, Source,
-};
+use lumiduct_core::scene::{CountedLight, Emitter, Place, Scene, Seeing, Sensor, SensorKind};
 use lumiduct_core::transport::GROUPS;
 
 /// Share of the flux cut by the bounce limit above which there is a remark, 1.
@@ -91,17 +89,17 @@ pub fn remarks_on_passages(scene: &Scene, measures: &Measures) -> Vec<String> {
 
 /// Remarks on sensors whose flux is less certain than its error says, as the rays of a source are a sample of the light of a lamp.
 pub fn remarks_on_ray_sets(scene: &Scene, measures: &Measures) -> Vec<String> {
-    let per_ray = scene
-        .sources
-        .iter()
-        .filter_map(|source| Some(source.flux / source.emitter.effective_rays()?));
-    // A fit gives a cell light from the rays around those that reach it.
-    let has_rays =
-        scene.sources.iter().any(|source| matches!(source.emitter, Emitter::Rays { .. }));
+    let lit = || scene.sources.iter().filter(|source| source.is_lit());
+    let per_ray = lit().filter_map(|source| Some(source.flux / source.emitter.effective_rays()?));
     let per_ray = per_ray.fold(0.0, f64::max);
-    let is_fitted = |source: &Source| matches!(source.emitter, Emitter::Fitted { .. });
-    let smoothed =
-        if scene.sources.iter().any(is_fitted) { ", nor what a fit smooths away" } else { "" };
+    // A fit gives a cell light of neighbouring rays, too.
+    let has_rays = lit().any(|source| matches!(source.emitter, Emitter::Rays { .. }));
+    let has_fit = lit().any(|source| matches!(source.emitter, Emitter::Fitted { .. }));
+    let not_in_errors = if has_fit {
+        "include neither this nor the detail that a fit to the rays averages out"
+    } else {
+        "do not include this"
+    };
     let remark = |sensor: &Sensor| {
         let flux = measures.values.get(&format!("{}.flux", sensor.name))?;
         // Rays that reach the sensor with probability p have a flux of variance Φ² p (1 - p) / N, which is at most Φ / N times the flux; of
@@ -119,7 +117,7 @@ pub fn remarks_on_ray_sets(scene: &Scene, measures: &Measures) -> Vec<String> {
             };
             format!(
                 "as an estimate for the lamp, `{}.flux` has a standard error of up to {}{cells}, because the rays are a sample of the \
-                    lamp's light; the stated errors do not include this{smoothed}",
+                    lamp's light; the stated errors {not_in_errors}",
                 sensor.name,
                 format_percent(share),
             )

@@ -22,10 +22,10 @@ pub mod stream {
     pub(crate) const DRAWN: u64 = 2;
     /// Choice of the rays that go into a file.
     pub(crate) const EXPORTED: u64 = 3;
-    /// Rays of a file that a fit holds back.
-    pub(crate) const HELD_BACK: u64 = 4;
-    /// Places at which the boxes of a fit may be cut.
-    pub(crate) const CUTS: u64 = 5;
+    /// Rays of a file that a fit holds out.
+    pub(crate) const HELD_OUT: u64 = 4;
+    /// Candidates for the splits of a fit.
+    pub(crate) const SPLITS: u64 = 5;
     /// Gather paths that are followed to sources.
     pub(crate) const BACKWARD: u64 = 1 << 32;
     /// Gather paths that end in records.
@@ -85,7 +85,7 @@ pub enum Dimension {
     Roulette,
     /// Value of a parameter of a study.
     Design,
-    /// Noise added to a result to find its error.
+    /// Choice or weight of a sample that is used again, or noise added to a result to find its error.
     Resampling,
 }
 

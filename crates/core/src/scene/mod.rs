@@ -55,7 +55,7 @@ pub use sensor::{
     Views,
 };
 pub use source::emission::Emission;
-pub use source::fitted::{FitQuality, FittedLight};
+pub use source::fitted::{FitQuality, FittedLight, NoFit};
 pub use source::light_group::{LightGroup, LightGroups};
 pub use source::measured::MeasuredEmission;
 pub(crate) use source::radiance::Radiance;

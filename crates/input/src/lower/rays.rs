@@ -8,11 +8,10 @@ use crate::lower::sources::PlacedSource;
 use crate::spec::rays::{RayExportFormat, RaysSpec};
 use crate::spec::sensor::SensorSpec;
 use glam::Vec3;
-use lumiduct_base::math::Frame;
 use lumiduct_base::number::{format_percent, format_value};
 use lumiduct_base::units::FluxUnit;
 use lumiduct_core::scene::{
-    Emission, EmittedRay, Emitter, FitQuality, FittedLight, RaySet, SensorId,
+    Emission, EmittedRay, Emitter, FitQuality, FittedLight, NoFit, RaySet, SensorId,
 };
 use lumiduct_files::rays::{RayFormat, RaySample, RaySetInfo, sample};
 use std::sync::Arc;
@@ -23,6 +22,9 @@ const MAX_RAYS: usize = 10_000_000;
 const EXPORTED_RAYS: usize = 100_000;
 /// Share of the flux that a fit may leave out, 1.
 const MOST_LEFT_OUT: f64 = 0.02;
+/// How light that does not cross the plane of a fit may be kept.
+const OTHER_HEIGHT: &str =
+    "give another height with `fitted_at_mm`, or use the rays themselves: fitted = false";
 /// Seed of the drawing, the same for all scenes, so that designs have the same rays.
 const SEED: u64 = 0;
 
@@ -42,11 +44,22 @@ impl Context<'_> {
             let message = format!("`{}` has no light in the rays that were drawn", spec.file);
             return self.refuse(&key.field("max_rays"), message, "allow more rays");
         };
-        let (emitter, share) = self.ray_emitter(rays, frame?, spec, key)?;
+        if !spec.fitted && spec.fitted_at_mm.is_some() {
+            let message = "applies only with fitted = true";
+            return self.refuse(&key.field("fitted_at_mm"), message, "add it, or remove this key");
+        }
+        // A dark source has no light to fit.
+        let (emitter, flux) = if spec.fitted && spec.enabled && flux > 0.0 {
+            let light = self.fit(&rays, spec, &key.field("fitted"))?;
+            let share = 1.0 - light.quality().left_out;
+            (Emitter::fitted(Arc::new(light), frame?), flux * share)
+        } else {
+            (Emitter::rays(Arc::new(rays), frame?), flux)
+        };
         let placed = PlacedSource {
             name,
             enabled: spec.enabled,
-            flux: flux * share,
+            flux,
             emitter,
             // Rays have their own directions.
             emission: Emission::Isotropic,
@@ -58,57 +71,40 @@ impl Context<'_> {
         Some(())
     }
 
-    /// The emitter, and the share of the flux that it has, 1.
-    fn ray_emitter(
-        &mut self,
-        rays: RaySet,
-        frame: Frame,
-        spec: &RaysSpec,
-        key: &Key,
-    ) -> Option<(Emitter, f64)> {
-        if !spec.fitted {
-            if spec.fitted_at_mm.is_some() {
-                let message = "is for a fitted source only";
-                let hint = "write fitted = true, or remove it";
-                return self.refuse(&key.field("fitted_at_mm"), message, hint);
-            }
-            return Some((Emitter::rays(Arc::new(rays), frame), 1.0));
-        }
-        let key = key.field("fitted");
-        let light = match FittedLight::new(&rays, spec.fitted_at_mm) {
+    /// The luminance fitted to rays; problems and its errors are noted at `key`.
+    fn fit(&mut self, rays: &RaySet, spec: &RaysSpec, key: &Key) -> Option<FittedLight> {
+        let file = &spec.file;
+        let light = match FittedLight::new(rays, spec.fitted_at_mm) {
             Ok(light) => light,
             Err(reason) => {
-                let message = format!("no luminance can be fitted to `{}`: {reason}", spec.file);
-                return self.refuse(&key, message, "use the rays themselves: fitted = false");
+                let (message, hint) = reason_without_fit(reason);
+                return self.refuse(key, format!("`{file}`: {message}"), hint);
             }
         };
-        let FitQuality { boxes, sampling, variation: [place, direction], left_out, .. } =
+        let FitQuality { trees, leaves, sampling, variation: [place, direction], left_out, .. } =
             *light.quality();
         let [sampling, place, direction, out] =
             [sampling, place, direction, left_out].map(format_percent);
         let height = format_value(light.middle().z);
         if left_out > MOST_LEFT_OUT {
             let message = format!(
-                "{out} of the flux does not cross the plane z = {height} mm of the file near the starts of the rays"
+                "`{file}`: {out} of the flux crosses z = {height} mm outside the area where the rays start, or not at all"
             );
-            let hint = "give another height with `fitted_at_mm`";
-            return self.refuse(&key, message, hint);
+            return self.refuse(key, message, OTHER_HEIGHT);
         }
-        let rest = if left_out > 0.0 {
-            format!(
-                " {out} of the flux crosses the plane far from the starts of the rays and is left out."
-            )
-        } else {
-            String::new()
-        };
         let message = format!(
-            "luminance over the plane z = {height} mm of `{}` is the mean of 8 densities, each even in some {boxes} boxes of position and \
-             direction. In one box the sampling of the rays leaves an error of {sampling}, and luminance varies by {place} over position and \
-             {direction} over direction (root mean square); the mean, and light from many boxes, is more certain.{rest}",
-            spec.file
+            "luminance on the plane z = {height} mm was fitted to `{file}` as the mean of {trees} piecewise constant densities of about {leaves} cells each. \
+             Within one cell, the sampling error is {sampling} (root mean square); luminance varies by {place} with position and {direction} \
+             with direction, which the fit averages out. Means over many cells are more accurate"
         );
-        self.problems.warning(&key, message).hint("more rays lower all of these");
-        Some((Emitter::fitted(Arc::new(light), frame), 1.0 - left_out))
+        self.problems.warning(key, message).hint("a file with more rays reduces these errors");
+        if left_out > 0.0 {
+            let message = format!(
+                "{out} of the flux of `{file}` crosses z = {height} mm outside the area where the rays start, or not at all; the source is without it"
+            );
+            self.problems.warning(key, message).hint(OTHER_HEIGHT);
+        }
+        Some(light)
     }
 
     /// Reads the file; problems and remarks are noted at its key.
@@ -129,7 +125,7 @@ impl Context<'_> {
         let (used, all) = (sample.rays.len(), sample.info.count);
         if (used as u64) < all {
             let message = format!(
-                "`{}`: {used} of its {all} rays, drawn at random, stand for all",
+                "`{}`: {used} of its {all} rays, drawn at random, are used and carry the flux of all",
                 spec.file
             );
             self.problems.warning(key, message).hint("allow more with `max_rays`");
@@ -184,5 +180,35 @@ impl Context<'_> {
             return self.refuse(&key.field("file"), message, hint);
         };
         self.carried([flux, flux], &key.field("file"))
+    }
+}
+
+/// Why rays have no fit, and what to do.
+fn reason_without_fit(reason: NoFit) -> (String, &'static str) {
+    const NO_FIT: &str = "use the rays themselves: fitted = false";
+    match reason {
+        NoFit::TooFew(rays) => {
+            let found = format_value(rays);
+            (
+                format!("a fit needs at least 100 rays, as an effective number, found {found}"),
+                NO_FIT,
+            )
+        }
+        NoFit::Parallel => {
+            let message = "the rays are parallel, so they have no waist";
+            (message.to_owned(), "give the height of the plane with `fitted_at_mm`")
+        }
+        NoFit::NoneNear(height) => {
+            let height = format_value(height);
+            (
+                format!("no ray crosses z = {height} mm in the area where the rays start"),
+                OTHER_HEIGHT,
+            )
+        }
+        NoFit::NoArea => {
+            let message =
+                "the rays cross the plane in one point or on one line, which has no luminance";
+            (message.to_owned(), NO_FIT)
+        }
     }
 }

@@ -1,5 +1,5 @@
 //! Where the light of sources starts: outside all solids, in one, or partly in one, which is
-//! refused.
+//! refused; and what lies between the starts of rays and the plane of their fit.
 
 use crate::keys::Key;
 use crate::lower::emitters::SourceExtent;
@@ -64,13 +64,13 @@ pub(super) fn note_joints(
     }
 }
 
-/// Notes fitted sources whose light may meet faces that the rays of the file do not meet, or miss faces that they meet.
+/// Notes fitted sources whose light may meet faces that the rays of the file do not meet, or may miss faces that they meet.
 pub(super) fn note_fits(scene: &Scene, problems: &mut Problems) {
     for source in &scene.sources {
         let Emitter::Fitted { light, frame, .. } = &source.emitter else { continue };
         let mut between: IndexMap<&str, usize> = IndexMap::new();
-        for gap in light.gaps() {
-            let [place, start] = gap.map(|point| frame.point_to_world(point));
+        for line in light.crossings_and_starts() {
+            let [place, start] = line.map(|point| frame.point_to_world(point));
             let Some(dir) = (start - place).try_normalize() else { continue };
             let mut met = IndexSet::new();
             scene.all_crossings(&Ray::new(place, dir), |prim, Crossing { t, .. }| {
@@ -82,13 +82,13 @@ pub(super) fn note_fits(scene: &Scene, problems: &mut Problems) {
             met.into_iter().for_each(|face| *between.entry(face).or_default() += 1);
         }
         for (face, count) in between {
-            let share = format_percent(count as f64 / light.gaps().len() as f64);
+            let share = format_percent(count as f64 / light.crossings_and_starts().len() as f64);
             let message = format!(
-                "{share} of the rays have `{face}` between the plane of the fit and their starts in the file"
+                "for {share} of the rays, `{face}` lies between their start points in the file and the fitted plane"
             );
             let key = Key::of(&["sources", &source.name, "rays", "fitted"]);
             problems.warning(&key, message).hint(
-                "light starts at the plane of the fit; move it with `fitted_at_mm` if this is wrong",
+                "light now starts at the plane, so it may meet or miss this face wrongly; choose another plane with `fitted_at_mm`",
             );
         }
     }

@@ -49,11 +49,12 @@ pub struct RaysSpec {
     /// ones in every run. Omitted: 10 million.
     #[schemars(range(min = 1, max = 1_000_000_000))]
     pub max_rays: Option<u32>,
-    /// Whether the source shines as luminance over a plane that is fitted to the rays, instead of along single rays. Paths from sensors can
-    /// meet it, so that `backward` and `gather` work; what the fit may be wrong by is a remark.
+    /// Replaces the individual rays by a luminance distribution on a plane, fitted to them, which paths from sensors can meet, so that `backward` and
+    /// `gather` work. A remark gives the error of the fit. Rays that do not cross the plane where rays start are left out with their flux.
     #[serde(default)]
     pub fitted: bool,
-    /// Height of the plane of the fit along the z axis of the file. Omitted: that of the point to which the rays come closest, as lines.
+    /// Height of the plane of the fit along the z axis of the file. Omitted: the height of the point with the least mean squared distance
+    /// from the rays, extended to lines (their waist).
     pub fitted_at_mm: Option<f64>,
     /// How rays start that touch a face: `optical` starts them beyond the face, as through glue; `air` lets them cross
     /// the face first. Omitted: `optical`.

@@ -187,16 +187,16 @@ impl Emitter {
         Self::Fitted { light, frame, shapes: [(shape, area)] }
     }
 
-    /// Emitting area, mm²; `None` for points, lines, volumes, rays and the far distance.
+    /// Emitting area, mm²; `None` for points, lines, volumes, rays, the rectangle of a fit, which may be dark in parts, and the far distance.
     pub fn area(&self) -> Option<f64> {
         match self {
             Self::Point(_)
             | Self::Line { .. }
             | Self::Volume { .. }
             | Self::Far { .. }
-            | Self::Rays { .. } => None,
+            | Self::Rays { .. }
+            | Self::Fitted { .. } => None,
             Self::Surface { shapes, .. } => shapes.last().map(|(_, area)| *area),
-            Self::Fitted { shapes: [(_, area)], .. } => Some(*area),
         }
     }
 
@@ -263,11 +263,11 @@ impl Emitter {
         }
     }
 
-    /// Number of equal rays with the same variance of sums, if its light is known by rays alone.
+    /// Effective number of rays, as of [`RaySet`], if its light is known by rays alone.
     pub fn effective_rays(&self) -> Option<f64> {
         match self {
             Self::Rays { rays, .. } => Some(rays.effective_count()),
-            Self::Fitted { light, .. } => Some(light.quality().rays),
+            Self::Fitted { light, .. } => Some(light.quality().effective_rays),
             Self::Point(_)
             | Self::Line { .. }
             | Self::Surface { .. }

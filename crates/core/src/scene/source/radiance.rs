@@ -7,14 +7,14 @@ use glam::DVec3;
 use lumiduct_base::math::Frame;
 use std::f64::consts::PI;
 
-/// The factors of a radiance, lm/(mm² sr).
+/// The factors of a radiance, lm/(mm² sr). Estimators multiply them in orders of their own, which determine the last digits of reports.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Radiance {
-    /// Flux per area of the emitter, lm/mm².
+    /// Flux per area of the emitter, lm/mm²; of the far distance, across its light.
     pub(crate) exitance: f64,
-    /// Density of directions, 1/sr.
+    /// Density of directions, 1/sr; where there is no cosine, over projected solid angle.
     pub(crate) density: f64,
-    /// Of the angle to the normal, 1.
+    /// Of the angle to the normal; 1 for the far distance and for a fit.
     pub(crate) cosine: f64,
 }
 

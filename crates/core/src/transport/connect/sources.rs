@@ -242,7 +242,7 @@ fn target(id: SourceId, source: &Source) -> Option<SourceTarget<'_>> {
         (Emitter::Point(frame), None) => EmitterExtent::Point(frame),
         (Emitter::Line { frame, length }, None) => EmitterExtent::Line(frame, *length),
         (Emitter::Fitted { shapes, .. }, _) => {
-            let exitance = source.flux / source.emitter.area()?;
+            let exitance = source.flux / shapes[0].1;
             EmitterExtent::Surface(Surfaces { shapes, exitance })
         }
         (Emitter::Surface { shapes, frame, .. }, beam) => {

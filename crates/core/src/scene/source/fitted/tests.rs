@@ -1,7 +1,10 @@
 use super::*;
+use crate::rng::{Dimension, Sampler};
+use crate::scene::{EmittedRay, RaySet};
 use crate::tally::Tally;
-use glam::Vec3;
-use lumiduct_base::math::disk;
+use glam::{DVec2, DVec3, Vec3};
+use lumiduct_base::math::{cosine_hemisphere, disk};
+use std::f64::consts::PI;
 
 /// Rays of flux 1 from a law for one: start, mm, and unit direction.
 fn rays(count: u64, law: impl Fn(&mut Sampler) -> [DVec3; 2]) -> RaySet {
@@ -145,12 +148,13 @@ fn the_fit_gets_better_with_more_rays_and_is_better_than_it_says_of_a_box() {
 #[test]
 fn rays_that_cannot_be_fitted_are_refused_and_what_is_left_out_is_known() {
     let parallel = rays(100, |sampler| [disk(sampler.pair(Dimension::EmitPosition)), DVec3::Z]);
-    assert_eq!(FittedLight::new(&parallel, None), Err("its rays are parallel"));
+    assert_eq!(FittedLight::new(&parallel, None), Err(NoFit::Parallel));
     let from_a_point = rays(100, |sampler| {
         [DVec3::ZERO, cosine_hemisphere(sampler.pair(Dimension::EmitDirection))]
     });
-    let reason = "its rays cross the plane in a point or a line";
-    assert_eq!(FittedLight::new(&from_a_point, None), Err(reason));
+    assert_eq!(FittedLight::new(&from_a_point, None), Err(NoFit::NoArea));
+    assert_eq!(FittedLight::new(&rays(200, lambertian), Some(90.0)), Err(NoFit::NoneNear(90.0)));
+    assert_eq!(FittedLight::new(&rays(99, lambertian), None), Err(NoFit::TooFew(99.0)));
     // One that crosses far away, and one that never does.
     let mut lamp: Vec<EmittedRay> = rays(998, lambertian).iter().copied().collect();
     lamp.push(ray(Vec3::new(0.0, 0.0, 1.0), Vec3::new(1.0, 0.0, 1e-3).normalize(), 1.0));
@@ -160,12 +164,12 @@ fn rays_that_cannot_be_fitted_are_refused_and_what_is_left_out_is_known() {
 }
 
 #[test]
-fn beams_narrower_than_single_precision_and_few_rays_are_fitted() {
+fn beams_narrower_than_single_precision_and_100_rays_are_fitted() {
     let beam = rays(5_000, |sampler| {
         let across = 1e-5 * disk(sampler.pair(Dimension::EmitDirection));
         [disk(sampler.pair(Dimension::EmitPosition)), (across + DVec3::Z).normalize()]
     });
-    for (lamp, height) in [(beam, 0.0), (rays(20, lambertian), 0.5)] {
+    for (lamp, height) in [(beam, 0.0), (rays(100, lambertian), 0.5)] {
         let light = FittedLight::new(&lamp, Some(height)).unwrap();
         for index in 0..1000 {
             let [place, dir] = light.sample(&mut Sampler::for_path(1, 0, index));
@@ -174,4 +178,38 @@ fn beams_narrower_than_single_precision_and_few_rays_are_fitted() {
             assert!(luminance.is_finite() && luminance > 0.0, "{place} {dir}");
         }
     }
+}
+
+#[test]
+fn rays_of_unequal_flux_give_the_same_luminance() {
+    // The same lamp, by bright rays on the left and by ten times as many dim ones on the right; then one with 5 % of all flux.
+    let mut index = 0;
+    let mut lamp = Vec::new();
+    while lamp.len() < 40_000 {
+        let mut sampler = Sampler::for_path(11, 0, index);
+        index += 1;
+        let [start, dir] = lambertian(&mut sampler);
+        let flux = if (start - (start.z - 0.5) / dir.z * dir).x < 0.0 { 10.0 } else { 1.0 };
+        if sampler.one(Dimension::Roulette) * flux < 1.0 {
+            lamp.push(ray(start.as_vec3(), dir.as_vec3(), flux as f32));
+        }
+    }
+    let light = |lamp: &[EmittedRay]| {
+        FittedLight::new(&RaySet::new(lamp.iter().copied()).unwrap(), Some(0.5)).unwrap()
+    };
+    let means = |light: &FittedLight| {
+        [-0.4, 0.4].map(|x| {
+            Tally::of((0..4_000).map(|index| {
+                let [_, dir] = everywhere(light, 2 * index);
+                light.luminance(DVec3::new(x, 0.2, 0.5), dir) * PI * PI
+            }))
+            .mean()
+        })
+    };
+    let [left, right] = means(&light(&lamp));
+    assert!((left - 1.0).abs() < 0.05 && (right - 1.0).abs() < 0.05, "{left} {right}");
+    let all: f32 = lamp.iter().map(|ray| ray.flux).sum();
+    lamp.push(ray(Vec3::new(0.9, 0.0, 0.5), Vec3::Z, all / 19.0));
+    let [left, right] = means(&light(&lamp));
+    assert!((left - 0.95).abs() < 0.05 && (right - 0.95).abs() < 0.05, "{left} {right}");
 }

@@ -218,6 +218,7 @@ fn add_source(builder: &mut Builder, center: DVec3, radius: f64) {
         emission: Emission::Lambertian,
         start: StartSolids::Outside,
         on: Vec::new(),
+        spectrum: None,
         elevation: None,
         sun: None,
     });

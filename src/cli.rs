@@ -32,6 +32,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use lumiduct_base::error::Error;
 use lumiduct_base::text::visible;
 use lumiduct_input as input;
+use lumiduct_report::library_table;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -62,6 +63,8 @@ enum Command {
     Check(CheckArgs),
     /// Print reflectance and transmittance of the prism films of a scene against the angle.
     Film(FilmArgs),
+    /// Print the media that scenes can name without defining them, with the sources of their numbers.
+    Library,
     /// Examine a mesh file: is it closed, the right way out, and fine enough? Exits with 1 if it is not a valid solid.
     Mesh(MeshArgs),
     /// Convert luminaires (.ies, .ldt) or ray files (.tm25ray, .sdf, .dat, .csv), or describe them; describe a BSDF (.xml).
@@ -113,6 +116,7 @@ pub fn main() -> ExitCode {
         Command::Diff(args) => diff::run(&args),
         Command::Check(args) => check::check(&args),
         Command::Film(args) => film::film(&args),
+        Command::Library => finish(Ok(library_table())),
         Command::Mesh(args) => mesh::mesh(&args),
         Command::List { folder } => finish(input::list(&folder)),
         Command::Schema { of } => {

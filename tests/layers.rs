@@ -37,7 +37,7 @@ const MAY_USE: [(&str, &[&str]); 8] = [
 
 /// The folders of `core` from the bottom: each may use those on lines before its own.
 const CORE: [&[&str]; 5] =
-    [&["plan", "rng", "tally"], &["optics"], &["scene"], &["transport"], &["measure"]];
+    [&["colour", "plan", "rng", "tally"], &["optics"], &["scene"], &["transport"], &["measure"]];
 
 fn sources(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();

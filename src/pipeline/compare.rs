@@ -82,7 +82,7 @@ const CHECKPOINT_RATIO: f64 = std::f64::consts::SQRT_2;
 /// # Errors
 ///
 /// [`Error::Input`] as [`input::load`] and if the scene cannot be traced. [`Error::Usage`] if the sensor is unknown
-/// or ambiguous, a method cannot work on the scene, the truth is missing or unusable, the folder is not free, or a
+/// or ambiguous, a method cannot work on the scene, the light has a spectrum, the truth is missing or unusable, the folder is not free, or a
 /// run ends before anything is counted. [`Error::Output`] or [`Error::Io`] if the results cannot be composed or
 /// written.
 pub fn compare(
@@ -98,6 +98,11 @@ pub fn compare(
         Settings { estimator: Some(Request::Auto), time: Some(options.time), ..settings.clone() };
     let job = input::load(scene, &loading)?;
     expect_sense(&job)?;
+    if job.scene.is_spectral() {
+        let message =
+            "methods are compared without spectra; remove the key `spectrum` of the sources";
+        return Err(Error::Usage(message.into()));
+    }
     let id = sensor(&job, options.sensor.as_deref())?;
     let run_time = options.time.div_f64(f64::from(options.repetitions));
     let bench = Bench { id, job: &job, interrupt, run_time };

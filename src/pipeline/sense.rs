@@ -25,6 +25,7 @@ pub(super) fn expect_sense(job: &Job) -> Result<Vec<Diagnostic>> {
     expect_light(job, &mut problems);
     expect_visible_sources(job, &mut problems);
     expect_passages(job, &mut problems);
+    expect_wavelengths(job, &mut problems);
     expect_measures(&job.scene, target.chain(checks), &mut problems);
     expect_sight(job, &mut problems);
     problems.finish(&job.places)
@@ -123,7 +124,7 @@ fn expect_visible_sources(job: &Job, problems: &mut Problems) {
 fn expect_passages(job: &Job, problems: &mut Problems) {
     for (index, sensor) in job.scene.sensors.iter().enumerate() {
         let request = job.run.request(index);
-        let is_able = !is_asked(request, |one| !one.can_count_first_passages());
+        let is_able = !is_asked(request, Estimator::has_records);
         if is_able || !sensor.counts_first_passage() {
             continue;
         }
@@ -134,6 +135,23 @@ fn expect_passages(job: &Job, problems: &mut Problems) {
         problems
             .error(&Key::of(&["sensors", name, "passage"]), message)
             .hint("use `auto`, `forward`, `backward` or `mix`, or passage = \"every\"");
+    }
+}
+
+/// Refuses estimators that cannot compute light with a spectrum where sources have one.
+fn expect_wavelengths(job: &Job, problems: &mut Problems) {
+    if !job.scene.is_spectral() {
+        return;
+    }
+    for (key, request) in requests(job) {
+        if is_asked(request, Estimator::has_records) {
+            let message = format!(
+                "`{}` cannot compute light with a spectrum: photons and records that meet have different wavelengths",
+                request.name()
+            );
+            let hint = "use `auto`, `forward`, `backward` or `mix`, or remove the spectra";
+            problems.error(&key, message).hint(hint);
+        }
     }
 }
 

@@ -11,6 +11,7 @@
 )]
 
 mod calibration;
+mod colour;
 mod connections;
 mod consistency;
 mod daylight;

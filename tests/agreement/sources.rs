@@ -1,7 +1,7 @@
 //! Every source that gather paths can meet: in free space, on a face, in a solid, and with its own
 //! body.
 
-use crate::trial::{Gathering, Way, agree};
+use crate::trial::{Gathering, Way, agree, measures};
 
 /// All ways; at depth 0 more work compensates for light that meets only a window of the size of the
 /// exit.
@@ -168,4 +168,17 @@ fn emission_of_all_kinds() {
             "[sources.lamp.disk]\nradius_mm = 2\nflux_lm = 10\nat = { position_mm = [0, 0, -1] }\n[sources.side.rectangle]\nwidth_mm = 4\nheight_mm = 2\nflux_lm = 20\nat = { position_mm = [5, 0, 5], axis = [-1, 0, 0] }",
         ),
     );
+}
+
+/// An LED as its data sheet describes it: 500 mcd, viewing angle 60 degrees.
+#[test]
+fn an_led_by_its_peak_intensity_and_viewing_angle() {
+    let text = "[sources.led.point]\nintensity_mcd = 500\nemission = { viewing_angle_deg = 60 }\n[sensors]\nfar = { goniometer = { gamma_step_deg = 1 } }";
+    let found = measures(text, Way::Forward);
+    // I cos^m with cos^m 30° = 1/2 has the flux 2π I/(m + 1).
+    let m = 0.5_f64.ln() / 30.0_f64.to_radians().cos().ln();
+    let flux = std::f64::consts::TAU * 0.5 / (m + 1.0);
+    assert!((found.source_flux / flux - 1.0).abs() < 1e-12, "{}", found.source_flux);
+    let beam = &found.values["far.beam_angle"];
+    assert!((beam.value - 60.0).abs() < 4.0 * beam.total_error() + 0.2, "{beam}");
 }

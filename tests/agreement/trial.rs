@@ -217,12 +217,23 @@ impl Comparison {
     }
 }
 
-/// Whether a measure is a sum or mean of light, which every estimator gives without additional
+/// Whether a measure is a sum, a mean or the colour of light, which every estimator gives without additional
 /// bias.
 fn is_plain(name: &str) -> bool {
     let Some((sensor, rest)) = name.split_once('.') else { return false };
     let rest = rest.split('.').next().unwrap_or(rest);
-    sensor != "balance" && ["flux", "cell", "ring", "luminance_avg", "bounces_mean"].contains(&rest)
+    sensor != "balance"
+        && [
+            "flux",
+            "radiant_flux",
+            "colour_x",
+            "colour_y",
+            "cell",
+            "ring",
+            "luminance_avg",
+            "bounces_mean",
+        ]
+        .contains(&rest)
 }
 
 fn is_dark(measure: &Measure) -> bool {

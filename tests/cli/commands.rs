@@ -191,3 +191,14 @@ fn a_cut_that_cannot_be_drawn_says_why() {
     let along = place.bad(2, "check rod.toml --plane xz --up y");
     assert!(along.contains("--up y") && along.contains("in that plane"), "{along}");
 }
+
+#[test]
+fn the_library_names_its_media_with_their_sources_and_scenes_use_them() {
+    let place = Place::new();
+    let said = place.good("library");
+    for words in ["pmma: poly(methyl methacrylate)", "Abbe number", "Malitson", "CC0 1.0"] {
+        assert!(said.contains(words), "no {words} in {said}");
+    }
+    let said = place.good("check rod.toml -D solids.rod.cylinder.medium=\"pc\"");
+    assert!(said.contains("medium pc: index 1.5"), "{said}");
+}

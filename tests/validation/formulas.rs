@@ -7,7 +7,8 @@ use lumiduct_core::optics::fresnel::{
     Polarised, brewster_angle, conductor, critical_angle, dielectric,
 };
 use lumiduct_core::transport::{Track, TrackEnd, tracks};
-use lumiduct_input::{self as input, Settings};
+use lumiduct_input::{self as input, Job, Settings};
+use std::f64::consts::FRAC_PI_6;
 
 /// Largest relative deviation.
 pub(crate) const LIMIT: f64 = 1e-6;
@@ -20,6 +21,8 @@ const ALUMINIUM: [f64; 2] = [0.789405353, 5.851936501];
 const PLATE_MM: f64 = 20.0;
 /// Length of the rod in which the path length of a ray is measured, mm.
 const ROD_MM: f64 = 10.0;
+/// The scene of the prism, of any spectrum.
+const PRISM: &str = "../dispersion_prism";
 /// Paths that are searched for one that passes straight through.
 const TRACKS: usize = 100;
 
@@ -46,6 +49,7 @@ pub(crate) fn computed() -> Vec<Computed> {
     all.extend(shift());
     all.push(way());
     all.extend(schedule());
+    all.extend(prism());
     all
 }
 
@@ -117,6 +121,41 @@ fn shift() -> Vec<Computed> {
         .collect()
 }
 
+/// FR-07: indices of N-BK7, and how far a prism of 60 degrees turns light, seen on traced paths.
+fn prism() -> Vec<Computed> {
+    [
+        ("C", 656.2725, [1.514322347, 38.4291367, 38.42983932]),
+        ("d", 587.5618, [1.516800035, 38.64669851, 38.64830707]),
+        ("F", 486.1327, [1.52237629, 39.13810874, 39.14318266]),
+    ]
+    .into_iter()
+    .flat_map(|(line, nm, [index, least, at_49]): (_, f64, [f64; 3])| {
+        let spectrum = format!("sources.beam.disk.spectrum={{line_nm={nm}}}");
+        let job = job(PRISM, std::slice::from_ref(&spectrum));
+        let glass = job.scene.media.iter().find(|medium| medium.name() == "bk7");
+        let found = glass.expect("the scene has it").index(nm);
+        let turned = |incidence: f64| {
+            let (y, x) = (incidence - FRAC_PI_6).sin_cos();
+            let axis = format!("sources.beam.disk.at.axis=[{x}, {y}, 0]");
+            // Start, entry, exit and a point behind.
+            let overrides = [spectrum.clone(), axis];
+            let straight = track(PRISM, &overrides, |track| track.points.len() == 4);
+            let [first, last] =
+                [0, 2].map(|at| (straight.points[at + 1] - straight.points[at]).normalize());
+            first.angle_between(last).to_degrees()
+        };
+        // Light parallel to the base turns least.
+        let symmetric = (found * FRAC_PI_6.sin()).asin();
+        [
+            (format!("n_{line}"), index, found),
+            (format!("dmin_{line}"), least, turned(symmetric)),
+            (format!("dev49_{line}"), at_49, turned(49.0_f64.to_radians())),
+        ]
+    })
+    .map(|(name, expected, ours)| Computed { case: "FR-07", name, expected, ours })
+    .collect()
+}
+
 /// SR-02: the path length of a ray through a rod over the rod's length.
 fn way() -> Computed {
     let track = track("sr_02", &["sources.led.face.tilt_deg=40".to_owned()], |track| {
@@ -153,13 +192,18 @@ fn is_at_exit(point: DVec3) -> bool {
 
 /// The first path of a scene that escapes as wanted.
 fn track(scene: &str, overrides: &[String], wanted: impl Fn(&Track) -> bool) -> Track {
-    let settings = Settings { overrides: overrides.to_vec(), ..Settings::default() };
-    let job = match input::load(&scene_file(scene), &settings) {
-        Ok(job) => job,
-        Err(error) => panic!("{error}"),
-    };
+    let job = job(scene, overrides);
     tracks(&job.scene, job.run.seed, job.run.bounce_limit, TRACKS)
         .into_iter()
         .find(|track| track.end == TrackEnd::Escaped && wanted(track))
         .expect("one of many paths goes straight through")
+}
+
+/// A scene with overrides.
+fn job(scene: &str, overrides: &[String]) -> Job {
+    let settings = Settings { overrides: overrides.to_vec(), ..Settings::default() };
+    match input::load(&scene_file(scene), &settings) {
+        Ok(job) => job,
+        Err(error) => panic!("{error}"),
+    }
 }

@@ -39,7 +39,7 @@ impl Family {
     }
 }
 
-static FAMILIES: [Family; 9] = [
+static FAMILIES: [Family; 10] = [
     Family::new("benchmarks", include_str!("benchmarks.toml")),
     Family::new("photometry", include_str!("photometry.toml")),
     Family::new("fresnel", include_str!("fresnel.toml")),
@@ -49,6 +49,7 @@ static FAMILIES: [Family; 9] = [
     Family::new("diffuse", include_str!("diffuse.toml")),
     Family::new("windows", include_str!("windows.toml")),
     Family::new("daylight", include_str!("daylight.toml")),
+    Family::new("colour", include_str!("colour.toml")),
 ];
 
 /// Seeds of a family start at its number times this.

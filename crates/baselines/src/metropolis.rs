@@ -10,7 +10,7 @@
 use crate::one_sensor::OneSensor;
 use crate::primary::{Mutation, Primary};
 use lumiduct_core::rng::{Numbers, Sampler, stream};
-use lumiduct_core::transport::tally::readings::DetectedLight;
+use lumiduct_core::transport::tally::sensor_reading::DetectedLight;
 use lumiduct_core::transport::walk::follow::follow;
 use lumiduct_core::transport::{Event, Observer, Path, Readings};
 use smallvec::SmallVec;
@@ -159,7 +159,12 @@ impl Observer for Looking {
         let Event::Meet(met) = event else { return ControlFlow::Continue(()) };
         let flux = met.radiance * self.etendue;
         self.seen.flux += flux;
-        self.seen.lights.push(DetectedLight { flux, depth: path.depth, source: met.source });
+        self.seen.lights.push(DetectedLight {
+            flux,
+            depth: path.depth,
+            source: met.source,
+            wavelength: path.wavelength,
+        });
         ControlFlow::Continue(())
     }
 }

@@ -3,7 +3,7 @@
 use lumiduct_core::plan::RunPlan;
 use lumiduct_core::rng::{Sampler, stream};
 use lumiduct_core::scene::{Arrival, Arrivals, Scene, SensorId};
-use lumiduct_core::transport::tally::readings::DetectedLight;
+use lumiduct_core::transport::tally::sensor_reading::DetectedLight;
 use lumiduct_core::transport::walk::emitters::Emitters;
 use lumiduct_core::transport::walk::follow::{Gathering, follow};
 use lumiduct_core::transport::{Layout, Path, Readings, Unobserved};

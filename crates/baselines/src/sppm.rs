@@ -22,7 +22,7 @@ use lumiduct_core::transport::gather::records::{
 use lumiduct_core::transport::gather::settings::groups;
 use lumiduct_core::transport::gather::surfaces::SurfaceNumbers;
 use lumiduct_core::transport::stop::{Pace, StopSignal};
-use lumiduct_core::transport::tally::readings::DetectedLight;
+use lumiduct_core::transport::tally::sensor_reading::DetectedLight;
 use lumiduct_core::transport::walk::follow::follow;
 use lumiduct_core::transport::walk::scatter::facing;
 use lumiduct_core::transport::{
@@ -175,7 +175,7 @@ impl Observer for Gatherer<'_, '_> {
 impl Gatherer<'_, '_> {
     fn meet(&mut self, path: &Path, met: &MetEmission) {
         let (flux, depth) = (met.radiance * self.etendue, path.depth);
-        let light = DetectedLight { flux, depth, source: met.source };
+        let light = DetectedLight { flux, depth, source: met.source, wavelength: path.wavelength };
         self.sppm.sensor.count(self.readings, self.cells, &light);
     }
 
@@ -266,7 +266,7 @@ impl SppmStream<'_, '_> {
             let Some([share, ..]) = weights.flux(record, &photon) else { return };
             let (flux, depth) =
                 (flux * vertex.throughput * share, path.depth + record.path().depth);
-            let light = DetectedLight { flux, depth, source };
+            let light = DetectedLight { flux, depth, source, wavelength: path.wavelength };
             sensor.count(readings, &cells[record.path().place as usize], &light);
         });
     }

@@ -9,7 +9,7 @@ use crate::one_sensor::{BaselineBatch, OneSensor};
 use lumiduct_core::optics::{FinishModel, Scattered, Side};
 use lumiduct_core::rng::{Sampler, stream};
 use lumiduct_core::scene::{Ray, StartSurfaces};
-use lumiduct_core::transport::tally::readings::DetectedLight;
+use lumiduct_core::transport::tally::sensor_reading::DetectedLight;
 use lumiduct_core::transport::walk::follow::{follow, follow_on};
 use lumiduct_core::transport::walk::scatter::{facing, scatter_gather_path};
 use lumiduct_core::transport::{Event, MetEmission, Observer, Path, Readings, Vertex};
@@ -145,7 +145,12 @@ impl Observer for Splitter<'_, '_> {
 impl Splitter<'_, '_> {
     fn meet(&mut self, path: &Path, met: &MetEmission) {
         let flux = met.radiance * self.factor * self.etendue;
-        let light = DetectedLight { flux, depth: path.depth, source: met.source };
+        let light = DetectedLight {
+            flux,
+            depth: path.depth,
+            source: met.source,
+            wavelength: path.wavelength,
+        };
         self.whitted.sensor.count(self.readings, self.cells, &light);
     }
 

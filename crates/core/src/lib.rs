@@ -26,7 +26,7 @@
 //! let emitter = Emitter::surface(vec![disk(0.0)], EmitSide::Front, None);
 //! builder.add_source(Source {
 //!     name: "led".into(), flux: 2.0 /* lm */, emitter, emission: Emission::Lambertian,
-//!     start: StartSolids::Outside, on: Vec::new(), elevation: None, sun: None,
+//!     start: StartSolids::Outside, on: Vec::new(), spectrum: None, elevation: None, sun: None,
 //! });
 //! let scene = builder.build();
 //! let plan = RunPlan {
@@ -40,6 +40,7 @@
 //! assert!((absorbed.value - expected).abs() < 4.0 * absorbed.std_error && absorbed.std_error < 0.01);
 //! ```
 
+pub mod colour;
 pub mod measure;
 pub mod optics;
 pub mod plan;

@@ -1,5 +1,5 @@
 //! Reads and writes foreign file formats: triangle [`mesh`]es, as those of [`lumiduct_base`], the luminous
-//! intensities of [`luminaire`]s, the [`rays`] of light sources, and the [`scatter`] of sheets. This crate knows no scenes.
+//! intensities of [`luminaire`]s, the [`rays`] of light sources, the [`scatter`] of sheets, and [`spectral`] tables. This crate knows no scenes.
 //!
 //! A tetrahedron in centimetres, read as a closed mesh in millimetres:
 //!
@@ -25,3 +25,4 @@ pub mod luminaire;
 pub mod mesh;
 pub mod rays;
 pub mod scatter;
+pub mod spectral;

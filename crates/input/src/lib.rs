@@ -53,6 +53,7 @@ mod gather;
 pub(crate) mod include;
 mod job;
 pub mod keys;
+pub mod library;
 mod list;
 mod lower;
 mod outline;

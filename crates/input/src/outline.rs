@@ -8,7 +8,7 @@ use lumiduct_base::number::format_exact;
 use serde_json::Value;
 
 /// Suffixes of keys and their units, the longer ones first.
-const UNITS: [(&str, &str); 12] = [
+const UNITS: [(&str, &str); 14] = [
     ("_cd_m2", "cd/m²"),
     ("_per_mm", "/mm"),
     ("_mm2", "mm²"),
@@ -17,7 +17,9 @@ const UNITS: [(&str, &str); 12] = [
     ("_lm", "lm"),
     ("_lx", "lx"),
     ("_cd", "cd"),
+    ("_mcd", "mcd"),
     ("_nm", "nm"),
+    ("_k", "K"),
     ("_w", "W"),
     ("_h", "h"),
     ("_s", "s"),

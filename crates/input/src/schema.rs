@@ -261,7 +261,7 @@ pub fn unit(key: &str) -> Option<&'static str> {
 }
 
 /// Suffixes of keys and their meaning; the longer of two that fit comes first.
-const UNITS: [(&str, &str); 10] = [
+const UNITS: [(&str, &str); 13] = [
     ("_cd_m2", "cd/m²"),
     ("per_mm", "1/mm"),
     ("_mm", "mm"),
@@ -271,6 +271,9 @@ const UNITS: [(&str, &str); 10] = [
     ("_h", "hours"),
     ("_w", "W"),
     ("_cd", "cd"),
+    ("_mcd", "mcd"),
+    ("_nm", "nm"),
+    ("_k", "K"),
     ("_s", "s"),
 ];
 
@@ -311,56 +314,12 @@ mod tests {
 
     #[test]
     fn every_key_has_a_description_and_every_number_a_unit_or_a_known_meaning() {
-        let pure = [
-            "lumiduct",
-            "index",
-            "reflectance",
-            "transmittance",
-            "n",
-            "k",
-            "weight",
-            "end_scale",
-            "sides",
-            "axis",
-            "x_axis",
-            "up",
-            "north",
-            "cie_type",
-            "rounded_share",
-            "roughness",
-            "anisotropy",
-            "a",
-            "b",
-            "g",
-            "b0",
-            "l",
-            "s",
-            "power",
-            "count",
-            "priority",
-            "cells",
-            "pixels",
-            "lamps",
-            "rings",
-            "sectors",
-            "cosine_power",
-            "paths",
-            "batches",
-            "planned_paths",
-            "seed",
-            "bounce_limit",
-            "depth",
-            "records",
-            "max_rays",
-            "photons",
-            "relative_error",
-            "min",
-            "max",
-            "equals",
-            "within",
-            "sigmas",
-            "max_std_error",
-        ];
+        let pure = "lumiduct index powers cauchy sellmeier share reflectance transmittance n k weight \
+            end_scale sides axis x_axis up north cie_type rounded_share roughness anisotropy a b \
+            g b0 l s power count priority cells pixels lamps rings sectors cosine_power paths \
+            batches planned_paths seed bounce_limit depth records max_rays photons relative_error \
+            min max equals within sigmas max_std_error";
+        let pure: Vec<&str> = pure.split_whitespace().collect();
         walk(&json_schema(), &mut |object| {
             let Some(Value::Object(properties)) = object.get("properties") else { return };
             for (key, schema) in properties {

@@ -6,7 +6,8 @@
 use crate::by_light::{self, LightMatrix, from_light, matrix, remark_on_totals, sum_over_weathers};
 use crate::csv::{intensity_name, map_name, map_words};
 use crate::figures::{
-    BOUNCES_SHOWN, bounce_plot, directions_map, intensity_plot, sensor_map, where_and_when,
+    BOUNCES_SHOWN, bounce_plot, directions_map, intensity_plot, sensor_map, spectrum_plot,
+    where_and_when,
 };
 use crate::html::data;
 use crate::key_figures::{Listed, is_one_cell, is_shown, key_figures, listed};
@@ -137,6 +138,10 @@ fn sensor(report: &Report, name: &str, plots: &mut Plots) -> PagePart {
             let label = format!("intensity{light} by direction{label}");
             blocks.push(plots.add(label, data::map(&directions_map(intensity)), None));
         }
+    }
+    for spectrum in measures.spectra.iter().filter(|spectrum| spectrum.sensor == name) {
+        let chart = data::chart(&spectrum_plot(spectrum), "W/nm");
+        blocks.push(plots.add("spectrum", chart, Some(format!("{name}.spectrum.png"))));
     }
     blocks.extend(luminaire::page::blocks(&report.luminaires, name));
     if let Some(text) = rays::sentence(&report.rays, name) {

@@ -19,6 +19,12 @@ pub(crate) fn files(report: &Report) -> Result<Vec<OutputFile>> {
     for table in &measures.intensities {
         files.push(grid_table(&intensity_name(table), &table.into())?);
     }
+    for spectrum in &measures.spectra {
+        let bands = spectrum.nm.iter().zip(spectrum.values.iter().zip(&spectrum.std_errors));
+        let rows = bands.map(|(nm, (value, error))| numbers([*nm, *value, *error]));
+        let header = ["nm", "radiant_flux_W_per_nm", "std_error_W_per_nm"];
+        files.push(table(format!("{}.spectrum.csv", spectrum.sensor), &header, rows)?);
+    }
     for paths in &measures.sensor_paths {
         let rows = paths
             .depths

@@ -12,7 +12,8 @@ use crate::{OutputFile, Report};
 use lumiduct_base::error::Result;
 use lumiduct_base::number::{format_percent, format_value, format_with_error};
 use lumiduct_core::measure::{
-    Balance, IntensityTable, MapAxes, PlaneCurve, SensorMap, SensorPaths, not_below_zero,
+    Balance, IntensityTable, MapAxes, PlaneCurve, SensorMap, SensorPaths, SensorSpectrum,
+    not_below_zero,
 };
 use ndarray::Axis;
 
@@ -28,6 +29,10 @@ pub(crate) fn files(report: &Report) -> Result<Vec<OutputFile>> {
             name: format!("{}.png", intensity_name(table)),
             bytes: polar_plot(&intensity_plot(table))?,
         });
+    }
+    for spectrum in &measures.spectra {
+        let bytes = line_plot(&spectrum_plot(spectrum))?;
+        files.push(OutputFile { name: format!("{}.spectrum.png", spectrum.sensor), bytes });
     }
     for paths in measures.sensor_paths.iter().filter(|paths| !paths.depths.is_empty()) {
         let bytes = line_plot(&bounce_plot(paths, measures.unit.flux(), BOUNCES_SHOWN))?;
@@ -129,6 +134,20 @@ pub(crate) fn intensity_plot(table: &IntensityTable) -> PolarPlot {
         subtitle: where_and_when(table),
         unit: table.unit.clone(),
         curves,
+    }
+}
+
+/// The spectrum of a sensor's light.
+pub(crate) fn spectrum_plot(spectrum: &SensorSpectrum) -> LinePlot {
+    let bands = spectrum.nm.iter().zip(spectrum.values.iter().zip(&spectrum.std_errors));
+    let points = bands.map(|(&x, (&y, &std_error))| SeriesPoint { x, y, std_error }).collect();
+    LinePlot {
+        title: format!("{}: spectrum", spectrum.sensor),
+        subtitle: "in bands of 5 nm, with one standard error to either side".into(),
+        x_label: "wavelength in nm".into(),
+        y_label: "radiant flux in W/nm".into(),
+        scale: AxisScale::Linear,
+        series: vec![PlotSeries::new("", points, SeriesForm::Steps, ErrorForm::Band)],
     }
 }
 

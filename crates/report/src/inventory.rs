@@ -6,6 +6,7 @@
 
 use glam::DVec3;
 use lumiduct_base::number::format_value;
+use lumiduct_core::optics::{AbsorptionLaw, IndexLaw, Medium, REFERENCE_WAVELENGTH};
 use lumiduct_core::scene::{
     Face, FaceId, MediumId, Owner, Scene, Seeing, Sensor, SensorKind, Source, SunAngles,
 };
@@ -108,11 +109,37 @@ fn media(scene: &Scene) -> Listing {
         let scattering = medium.scattering().map_or(String::new(), |scattering| {
             format!("{} /mm, anisotropy {}", scattering.coefficient(), scattering.anisotropy())
         });
-        let absorption = format!("{} /mm", medium.absorption(0.0));
-        [medium.name().to_owned(), medium.index(0.0).to_string(), absorption, scattering]
+        [medium.name().to_owned(), index(medium), absorption(medium), scattering]
     });
     let head = ["medium", "index", "absorption", "scattering"];
     Listing::new("medium", head, scene.media.len(), rows)
+}
+
+/// The refractive index of a medium in words.
+fn index(medium: &Medium) -> String {
+    let law = medium.index_law();
+    match law {
+        IndexLaw::Constant(index) => index.to_string(),
+        IndexLaw::Cauchy(_) | IndexLaw::Sellmeier(_) | IndexLaw::Powers(_) | IndexLaw::Table(_) => {
+            format!(
+                "{} at {REFERENCE_WAVELENGTH} nm, Abbe number {}",
+                format_value(law.at(REFERENCE_WAVELENGTH)),
+                format_value(law.abbe_number())
+            )
+        }
+    }
+}
+
+/// The absorption coefficient of a medium in words.
+fn absorption(medium: &Medium) -> String {
+    let law = medium.absorption_law();
+    let at = |nm: f64| format_value(law.at(nm));
+    match law {
+        AbsorptionLaw::Constant(absorption) => format!("{absorption} /mm"),
+        AbsorptionLaw::Table(_) => {
+            format!("{}, {} and {} /mm at 450, 550 and 650 nm", at(450.0), at(550.0), at(650.0))
+        }
+    }
 }
 
 /// The finishes of faces and patterns; those without a name are listed by their place.
@@ -303,7 +330,7 @@ fn source_place(scene: &Scene, source: &Source, outline: &Outline) -> String {
 fn etendue(scene: &Scene, source: &Source) -> Option<f64> {
     let area = source.emitter.area()?;
     let projected = source.emission.projected_extent();
-    let index = scene.media[MediumId::index(scene.surroundings)].index(0.0);
+    let index = scene.media[MediumId::index(scene.surroundings)].index(REFERENCE_WAVELENGTH);
     Some(index * index * area * projected)
 }
 

@@ -1,7 +1,7 @@
 //! The figures of a sensor that a reader looks for first, whatever the format of the report.
 
 use lumiduct_base::number::format_value;
-use lumiduct_core::measure::{Measure, Measures, SensorMap};
+use lumiduct_core::measure::{Measure, Measures, SensorMap, Status};
 
 /// A figure: what it is, in words, and its value.
 pub(crate) struct KeyFigure<'r> {
@@ -14,7 +14,7 @@ pub(crate) struct KeyFigure<'r> {
 }
 
 /// The last parts of the names of measures, what a reader calls them, and whether a terminal shows them.
-const FIGURES: [(&str, &str, bool); 8] = [
+const FIGURES: [(&str, &str, bool); 13] = [
     ("flux", "flux", true),
     ("efficiency", "efficiency", true),
     ("transmission", "transmission", true),
@@ -23,6 +23,11 @@ const FIGURES: [(&str, &str, bool); 8] = [
     ("intensity_max", "peak intensity", true),
     ("beam_angle", "beam angle", true),
     ("field_angle", "field angle", false),
+    ("radiant_flux", "radiant flux", false),
+    ("colour_u", "u'", true),
+    ("colour_v", "v'", true),
+    ("colour_temperature", "colour temperature", true),
+    ("colour_rendering_ra", "Ra", false),
 ];
 
 /// Flux, efficiency, and the main figures of the kind of sensor.
@@ -32,6 +37,8 @@ pub(crate) fn key_figures<'r>(measures: &'r Measures, sensor: &str) -> Vec<KeyFi
         .iter()
         .filter_map(|(name, label, is_brief)| {
             let (label, measure) = ((*label).to_owned(), value(name)?);
+            // Saturated colours have no colour temperature.
+            (measure.status != Status::Undefined).then_some(())?;
             Some(KeyFigure { label, measure, is_brief: *is_brief })
         })
         .collect();

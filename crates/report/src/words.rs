@@ -108,6 +108,7 @@ pub(crate) fn remark(status: Status) -> &'static str {
         Status::NoSignal => " (nothing counted)",
         Status::TooFew => " (too few counts for an error bar)",
         Status::NoiseLimited => " (a bound: noise hides the value)",
+        Status::Undefined => " (light of this colour has no such value)",
         Status::BiasInNoise => " (bias not resolved from noise)",
         Status::BiasNotResolved => " (bias not resolved)",
         Status::Contradicted => " (photons found more)",

@@ -58,9 +58,7 @@ impl Method {
     /// Whether it can distinguish the first passage of a path through a sensor from later ones.
     pub(super) fn knows_first_passages(self) -> bool {
         match self {
-            Self::Run(request) => {
-                request.estimator().is_none_or(Estimator::can_count_first_passages)
-            }
+            Self::Run(request) => !request.estimator().is_some_and(Estimator::has_records),
             Self::Baseline(Baseline::Metropolis) => true,
             Self::Baseline(Baseline::Sppm | Baseline::Whitted) => false,
         }

@@ -92,6 +92,7 @@ fn doubt(measure: &Measure) -> Option<&'static str> {
         Status::Ok | Status::BiasInNoise | Status::NoSignal => None,
         Status::TooFew => Some("too little was counted to rely on it"),
         Status::NoiseLimited => Some("it is mostly noise"),
+        Status::Undefined => Some("light of this colour has no such value"),
         Status::BiasNotResolved => Some("its bias is not resolved"),
         Status::Contradicted => {
             Some("photons of the same run found more light there; use `forward` or `mix`")

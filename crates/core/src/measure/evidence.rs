@@ -101,6 +101,24 @@ impl<'a> Evidence<'a> {
         self.measure(value, std_error, "1", trust(value, std_error, lit))
     }
 
+    /// A function of mean scalars that is not defined without `light`, with its error.
+    pub(crate) fn function(
+        &self,
+        light: &[usize],
+        unit: &str,
+        function: impl Fn(&dyn Fn(usize) -> f64) -> f64,
+    ) -> Measure {
+        let lit = self.readings.lit_groups(light);
+        if lit == 0 {
+            return self.measure(0.0, f64::INFINITY, unit, Status::NoSignal);
+        }
+        let (value, std_error) = self.readings.jackknife(function);
+        // Where it is undefined without some group, its error is unknown.
+        let is_known = lit >= MIN_LIT_GROUPS && std_error.is_finite();
+        let status = if is_known { Status::Ok } else { Status::TooFew };
+        self.measure(value, std_error, unit, status)
+    }
+
     /// The mean of a number over the light of a sensor, from the sum of flux times that number. One more count whose number
     /// differs by 1 is always possible: where all counted ones agree, that is the error.
     pub(crate) fn mean_number(&self, weighted: &[usize], flux: &[usize]) -> Measure {

@@ -11,6 +11,7 @@ mod balance;
 mod beam;
 mod cells;
 mod check;
+mod colour;
 mod evidence;
 mod extremes;
 mod flux;
@@ -40,6 +41,7 @@ pub use angular::{IntensityTable, PlaneCurve};
 pub use balance::Balance;
 pub use cells::not_below_zero;
 pub use check::{CheckOutcome, Verdict, nearest, verdict};
+pub use colour::SensorSpectrum;
 pub use map::{MapAxes, SensorMap};
 pub use paths::{Action, ClassExtent, LostPaths, PathClass, PathStep, SensorPaths, strongest};
 pub use replicates::Replicates;
@@ -66,6 +68,9 @@ pub struct Measures {
     pub maps: Vec<SensorMap>,
     /// Intensities of goniometers: of all light, then of each light group.
     pub intensities: Vec<IntensityTable>,
+    /// Spectra of the light on sensors, where light has one. They are tables of their own (`SENSOR.spectrum.csv`).
+    #[serde(skip)]
+    pub spectra: Vec<SensorSpectrum>,
     /// How each sensor was estimated, by its name.
     pub estimators: IndexMap<String, Estimator>,
     /// Findings of the pilot about each sensor; empty unless the run is to choose.
@@ -100,12 +105,13 @@ pub struct Measures {
 pub fn measure(scene: &Scene, findings: &Findings) -> Measures {
     let mut values = IndexMap::new();
     let (mut maps, mut intensities, mut sensor_paths) = (Vec::new(), Vec::new(), Vec::new());
-    let mut estimators = IndexMap::new();
+    let (mut estimators, mut spectra) = (IndexMap::new(), Vec::new());
     for (index, sensor) in scene.sensors.iter().enumerate() {
         let found = sensor::measures(scene, findings, SensorId::new(index));
         add(&mut values, &sensor.name, found.values);
         maps.extend(found.maps);
         intensities.extend(found.intensities);
+        spectra.extend(found.spectrum);
         sensor_paths.push(found.paths);
         estimators.insert(sensor.name.clone(), findings.estimators[index]);
     }
@@ -124,6 +130,7 @@ pub fn measure(scene: &Scene, findings: &Findings) -> Measures {
         balance,
         maps,
         intensities,
+        spectra,
         estimators,
         choices: choices.collect(),
         accounts: accounts(scene, findings),

@@ -175,7 +175,7 @@ fn class(scene: &Scene, trail: &Trail, sum: &ClassSum, total: f64) -> PathClass 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::transport::tally::readings::{DEPTH_BINS, SensorReading};
+    use crate::transport::tally::sensor_reading::{DEPTH_BINS, SensorReading};
 
     #[test]
     fn the_strongest_classes_stay_and_the_others_are_one_with_all_their_light() {

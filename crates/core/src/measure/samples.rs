@@ -33,6 +33,7 @@ pub(crate) fn scene(sources: &[(&str, f64)], sensors: Vec<(&str, SensorKind)>) -
             emission: Emission::Lambertian,
             start: StartSolids::Outside,
             on: Vec::new(),
+            spectrum: None,
             elevation: None,
             sun: None,
         });

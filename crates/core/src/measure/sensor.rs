@@ -3,8 +3,8 @@
 use crate::measure::evidence::Evidence;
 use crate::measure::light::LightSelection;
 use crate::measure::{
-    IntensityTable, Measure, Replicates, SensorMap, SensorPaths, Status, angular, flux, map, paths,
-    readout,
+    IntensityTable, Measure, Replicates, SensorMap, SensorPaths, SensorSpectrum, Status, angular,
+    colour, flux, map, paths, readout,
 };
 use crate::scene::{Scene, SensorId, SensorKind};
 use crate::transport::{Bias, Estimate, Findings, Resolution};
@@ -19,6 +19,8 @@ pub(crate) struct SensorMeasures {
     pub(crate) maps: Vec<SensorMap>,
     /// Tables of a goniometer, likewise.
     pub(crate) intensities: Vec<IntensityTable>,
+    /// Its spectrum, where light has one.
+    pub(crate) spectrum: Option<SensorSpectrum>,
     pub(crate) paths: SensorPaths,
 }
 
@@ -84,12 +86,12 @@ pub(crate) fn replicates(
 ) -> Option<Replicates> {
     let photons = Evidence::new(scene, &findings.photons);
     let Estimate { estimator, readings, .. } = findings.estimate(scene, id);
-    let value = flux::totals(&photons.by(readings, estimator), id).swap_remove(name)?.value;
+    let value = total(&photons.by(readings, estimator), id, name)?.value;
     let without = readings.groups.iter().map(|group| {
         let [own, photons] =
             [readings, &findings.photons].map(|readings| readings.without_group(group.group));
         let evidence = Evidence::new(scene, &photons).by(&own, estimator);
-        Some((group.group, flux::totals(&evidence, id).swap_remove(name)?.value))
+        Some((group.group, total(&evidence, id, name)?.value))
     });
     Some(Replicates::new(value, &without.collect::<Option<Vec<_>>>()?))
 }
@@ -120,6 +122,7 @@ fn set_bias(measure: &mut Measure, estimate: &Estimate<'_>, bias: &Bias<'_>, oth
 fn by_evidence(evidence: &Evidence<'_>, id: SensorId) -> SensorMeasures {
     let scene = evidence.scene;
     let mut values = flux::totals(evidence, id);
+    values.extend(colour::totals(evidence, id));
     let (mut maps, mut intensities) = (Vec::new(), Vec::new());
     for light in LightSelection::each(scene) {
         match &scene.sensors[id.index()].kind {
@@ -135,11 +138,21 @@ fn by_evidence(evidence: &Evidence<'_>, id: SensorId) -> SensorMeasures {
         }
     }
     let paths = paths::paths(evidence, id);
-    SensorMeasures { values, maps, intensities, paths }
+    let spectrum = colour::spectrum(evidence, id);
+    SensorMeasures { values, maps, intensities, spectrum, paths }
+}
+
+/// One measure that follows from scalars alone; colours, which take longer, only where they are asked for.
+fn total(evidence: &Evidence<'_>, id: SensorId, name: &str) -> Option<Measure> {
+    let of_flux = flux::totals(evidence, id).swap_remove(name);
+    of_flux.or_else(|| {
+        let is_colour = colour::NAMES.contains(&name);
+        is_colour.then(|| colour::totals(evidence, id).swap_remove(name))?
+    })
 }
 
 fn one_value(evidence: &Evidence<'_>, id: SensorId, name: &str) -> Option<Measure> {
-    flux::totals(evidence, id).swap_remove(name).or_else(|| {
+    total(evidence, id, name).or_else(|| {
         let light = LightSelection::of_measure(evidence.scene, name);
         let mut read = match &evidence.scene.sensors[id.index()].kind {
             SensorKind::Surface(surface) => {

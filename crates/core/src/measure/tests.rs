@@ -142,6 +142,7 @@ fn facing_square(cells: usize) -> Scene {
         emission: Emission::Lambertian,
         start: StartSolids::Outside,
         on: Vec::new(),
+        spectrum: None,
         elevation: None,
         sun: None,
     });

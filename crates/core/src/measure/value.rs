@@ -49,6 +49,8 @@ pub enum Status {
     TooFew,
     /// An extreme of a map that is mostly noise: the correction for it exceeds a tenth of the value.
     NoiseLimited,
+    /// The light has no such value: colours far from white have no colour temperature.
+    Undefined,
     /// Estimates of second and fourth order of a gathered value agree within two standard errors. Its bias is not known
     /// better than half of their difference.
     BiasInNoise,
@@ -67,23 +69,25 @@ impl Status {
             Self::NoSignal => "no_signal",
             Self::TooFew => "too_few",
             Self::NoiseLimited => "noise_limited",
+            Self::Undefined => "undefined",
             Self::BiasInNoise => "bias_in_noise",
             Self::BiasNotResolved => "bias_not_resolved",
             Self::Contradicted => "contradicted",
         }
     }
 
-    /// The worse of two: the earlier in the order contradicted, no signal, too few, noise limited, bias not
+    /// The worse of two: the earlier in the order contradicted, no signal, undefined, too few, noise limited, bias not
     /// resolved, bias in the noise, good.
     pub(crate) fn worst(self, other: Self) -> Self {
         let rank = |status| match status {
             Self::Contradicted => 0,
             Self::NoSignal => 1,
-            Self::TooFew => 2,
-            Self::NoiseLimited => 3,
-            Self::BiasNotResolved => 4,
-            Self::BiasInNoise => 5,
-            Self::Ok => 6,
+            Self::Undefined => 2,
+            Self::TooFew => 3,
+            Self::NoiseLimited => 4,
+            Self::BiasNotResolved => 5,
+            Self::BiasInNoise => 6,
+            Self::Ok => 7,
         };
         if rank(self) <= rank(other) { self } else { other }
     }
@@ -106,6 +110,7 @@ impl Measure {
             | Status::NoSignal
             | Status::TooFew
             | Status::NoiseLimited
+            | Status::Undefined
             | Status::BiasNotResolved
             | Status::Contradicted => f64::INFINITY,
         }

@@ -1,20 +1,27 @@
 //! Media: refractive index, absorption and scattering.
 
 use crate::optics::VolumeScattering;
+use crate::optics::dispersion::{AbsorptionLaw, IndexLaw};
 
 /// A homogeneous medium.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Medium {
     name: String,
-    index: f64,
-    absorption: f64,
+    index: IndexLaw,
+    absorption: AbsorptionLaw,
     scattering: Option<VolumeScattering>,
 }
 
 impl Medium {
     /// A medium of constant refractive index and absorption coefficient, in 1/mm, (natural logarithm).
     pub fn new(name: &str, index: f64, absorption_per_mm: f64) -> Self {
-        Self { name: name.to_owned(), index, absorption: absorption_per_mm, scattering: None }
+        let absorption = AbsorptionLaw::Constant(absorption_per_mm);
+        Self::dispersive(name, IndexLaw::Constant(index), absorption)
+    }
+
+    /// A medium by its laws.
+    pub fn dispersive(name: &str, index: IndexLaw, absorption: AbsorptionLaw) -> Self {
+        Self { name: name.to_owned(), index, absorption, scattering: None }
     }
 
     /// The same medium, turbid.
@@ -29,14 +36,24 @@ impl Medium {
 
     /// Refractive index at a wavelength, in nm; 1.
     #[inline]
-    pub fn index(&self, _wavelength: f64) -> f64 {
-        self.index
+    pub fn index(&self, wavelength: f64) -> f64 {
+        self.index.at(wavelength)
     }
 
     /// Absorption coefficient at a wavelength, in nm; 1/mm.
     #[inline]
-    pub fn absorption(&self, _wavelength: f64) -> f64 {
-        self.absorption
+    pub fn absorption(&self, wavelength: f64) -> f64 {
+        self.absorption.at(wavelength)
+    }
+
+    /// Its refractive index by wavelength.
+    pub fn index_law(&self) -> &IndexLaw {
+        &self.index
+    }
+
+    /// Its absorption coefficient by wavelength.
+    pub fn absorption_law(&self) -> &AbsorptionLaw {
+        &self.absorption
     }
 
     /// Scattering of the medium; `None` for a clear medium.

@@ -6,6 +6,7 @@
 
 mod angle_table;
 mod bsdf;
+mod dispersion;
 pub mod film;
 mod finish;
 pub mod fresnel;
@@ -20,6 +21,7 @@ mod volume;
 pub use angle_table::AngleTable;
 pub use bsdf::sheet::{DirectedTable, MeasuredSheet, SheetSide, SheetTables};
 pub use bsdf::table::BsdfTable;
+pub use dispersion::{AbsorptionLaw, IndexLaw, REFERENCE_WAVELENGTH};
 pub use film::{FilmFace, FilmMake, Grain, PrismFilm};
 pub use finish::Finish;
 pub use finish::faces::Faces;

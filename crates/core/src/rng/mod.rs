@@ -67,6 +67,8 @@ pub mod stream {
 /// The purpose of a random number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dimension {
+    /// Wavelength of a path.
+    Wavelength,
     /// Start point of a path on a source.
     EmitPosition,
     /// Start direction of a path.

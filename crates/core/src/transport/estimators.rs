@@ -372,12 +372,11 @@ impl Estimator {
         }
     }
 
-    /// Whether it can count only the first passage of a path through a sensor: at a record, the
-    /// sensors that a photon has passed are unknown.
-    pub fn can_count_first_passages(self) -> bool {
+    /// Whether photons meet records. Which sensors a photon has passed is then unknown, and its wavelength is not that of the record.
+    pub fn has_records(self) -> bool {
         match self {
-            Self::Forward | Self::Backward | Self::Mix => true,
-            Self::Gather | Self::Mis => false,
+            Self::Forward | Self::Backward | Self::Mix => false,
+            Self::Gather | Self::Mis => true,
         }
     }
 
@@ -387,13 +386,14 @@ impl Estimator {
         match self {
             Self::Forward => true,
             Self::Mix => scene.sources.iter().any(can_meet) || scatters(scene),
-            Self::Backward | Self::Gather => scene.sources.iter().all(can_meet),
+            Self::Backward => scene.sources.iter().all(can_meet),
+            Self::Gather => !scene.is_spectral() && scene.sources.iter().all(can_meet),
             Self::Mis => false,
         }
     }
 
     /// Whether it can estimate a sensor.
     pub(crate) fn can_estimate(self, sensor: &Sensor) -> bool {
-        self.can_count_first_passages() || !sensor.counts_first_passage()
+        !self.has_records() || !sensor.counts_first_passage()
     }
 }

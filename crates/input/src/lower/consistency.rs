@@ -5,7 +5,7 @@ use crate::keys::Key;
 use crate::problems::Problems;
 use crate::spec::SceneSpec;
 use glam::DVec3;
-use lumiduct_core::optics::FinishModel;
+use lumiduct_core::optics::{FinishModel, REFERENCE_WAVELENGTH};
 use lumiduct_core::rng::{Dimension, Sampler};
 use lumiduct_core::scene::{FinishId, Owner, Ray, Scene, Solid, SolidId, StartSide};
 
@@ -59,8 +59,8 @@ pub(super) fn check_open_faces(spec: &SceneSpec, scene: &Scene, problems: &mut P
     let step = |owner: Owner, finish: FinishId| {
         let Owner::Solid(solid) = owner else { return None };
         let solid = &scene.solids[solid.index()];
-        let [inside, outside] =
-            [solid.medium, scene.surroundings].map(|medium| scene.media[medium.index()].index(0.0));
+        let [inside, outside] = [solid.medium, scene.surroundings]
+            .map(|medium| scene.media[medium.index()].index(REFERENCE_WAVELENGTH));
         let is_open = scene.finishes[finish.index()].finish.passes_straight();
         let step =
             format!("lets light pass straight on, but the index steps from {inside} to {outside}");

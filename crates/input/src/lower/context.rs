@@ -11,8 +11,10 @@ use glam::DVec3;
 use indexmap::{IndexMap, IndexSet};
 use lumiduct_base::digest::Digest;
 use lumiduct_base::math::Frame;
+use lumiduct_core::colour::SpectralDraw;
 use lumiduct_core::optics::Finish;
 use lumiduct_core::scene::{Builder, FaceId, FinishId, MediumId};
+use std::sync::Arc;
 
 /// How far to go.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,6 +41,8 @@ pub(super) struct Context<'a> {
     pub(super) behind: IndexMap<FinishId, FinishId>,
     /// Faces by dotted name; a name such as `duct.wall` may refer to several.
     pub(super) faces: IndexMap<String, Vec<FaceId>>,
+    /// The spectrum of the source that is lowered.
+    pub(super) spectrum: Option<Arc<SpectralDraw>>,
     /// All sources, by what determines their light group.
     pub(super) members: Vec<Member>,
     /// Luminaire files that goniometers are to write.
@@ -65,6 +69,7 @@ impl<'a> Context<'a> {
             named_finishes: IndexMap::new(),
             behind: IndexMap::new(),
             faces: IndexMap::new(),
+            spectrum: None,
             members: Vec::new(),
             exports: Exports::default(),
         }

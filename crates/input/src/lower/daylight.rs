@@ -180,6 +180,7 @@ impl Context<'_> {
             emission,
             start: aim.start,
             on: Vec::new(),
+            spectrum: self.spectrum.clone(),
             elevation,
             sun,
         })

@@ -1,17 +1,33 @@
 //! Media: clear ones and those that scatter.
 
 use crate::keys::Key;
+use crate::library::{self, LibraryMedium};
 use crate::lower::context::Context;
 use crate::spec::PREDEFINED_MEDIA;
-use crate::spec::finish::ScatteringSpec;
-use lumiduct_core::optics::{Medium, VolumeScattering};
+use crate::spec::medium::ScatteringSpec;
+use crate::tree::Node;
+use lumiduct_core::optics::{AbsorptionLaw, IndexLaw, Medium, VolumeScattering};
 use lumiduct_core::scene::MediumId;
+
+/// The names of the library.
+pub(super) fn library_names() -> impl Iterator<Item = &'static str> + Clone {
+    library::media().keys().map(String::as_str)
+}
 
 impl Context<'_> {
     pub(super) fn lower_media(&mut self) {
         let spec = self.spec;
         for (name, medium) in &spec.media {
-            let clear = Medium::new(name, medium.index, medium.absorption_per_mm);
+            let key = Key::of(&["media", name]);
+            let index = self.index_law(&medium.index, &key.field("index"));
+            let absorption = &medium.absorption_per_mm;
+            let absorption = self.absorption_law(absorption, &key.field("absorption_per_mm"));
+            // A medium with a problem is there, so that its name is known.
+            let clear = Medium::dispersive(
+                name,
+                index.unwrap_or(IndexLaw::Constant(1.0)),
+                absorption.unwrap_or(AbsorptionLaw::Constant(0.0)),
+            );
             let made = match medium.scattering {
                 Some(ScatteringSpec { per_mm, anisotropy }) => {
                     clear.with_scattering(VolumeScattering::new(per_mm, anisotropy))
@@ -31,12 +47,29 @@ impl Context<'_> {
         }
     }
 
-    /// The medium of a name.
+    /// Media of the library that solids name.
+    pub(super) fn named_library_media(&self) -> impl Iterator<Item = &'static LibraryMedium> {
+        let solids = self.places.root().get("solids").and_then(Node::table);
+        let kinds = solids.into_iter().flatten().filter_map(|(_, solid)| solid.node.table());
+        let names = kinds.flatten().filter_map(|(_, kind)| kind.node.get("medium")?.text());
+        let names: Vec<&str> = names.filter(|name| !self.spec.media.contains_key(*name)).collect();
+        names.into_iter().filter_map(|name| library::media().get(name))
+    }
+
+    /// The medium of a name: one of the file, or of the library.
     pub(super) fn medium(&mut self, name: &str, key: &Key) -> Option<MediumId> {
-        let medium = self.media.get(name).copied();
-        if medium.is_none() {
-            self.require_known(["medium", "media"], name, &PREDEFINED_MEDIA, key);
+        if let Some(medium) = self.media.get(name) {
+            return Some(*medium);
         }
-        medium
+        let Some(known) = library::media().get(name) else {
+            let predefined: Vec<&str> = library_names().chain(PREDEFINED_MEDIA).collect();
+            self.require_known(["medium", "media"], name, &predefined, key);
+            return None;
+        };
+        let law = self.hashed(known.law());
+        let made = Medium::dispersive(name, law, AbsorptionLaw::Constant(0.0));
+        let medium = self.builder.add_medium(made);
+        self.media.insert(name.to_owned(), medium);
+        Some(medium)
     }
 }

@@ -33,6 +33,7 @@ mod sheets;
 mod slips;
 mod solids;
 mod sources;
+mod spectra;
 mod starts;
 mod sun;
 mod surfaces;
@@ -99,6 +100,8 @@ pub(crate) fn lower(
     consistency::check_open_faces(spec, &scene, problems);
     contacts::check_contacts(spec, &scene, problems);
     slips::check_slips(spec, &scene, problems);
+    spectra::note_tables(spec, &scene, problems);
+    spectra::note_library(spec, &scene, problems);
     let checks = spec.check.clone();
     problems.is_free_of_errors().then_some(Lowered { scene, run, checks, meshes, exports })
 }

@@ -164,19 +164,19 @@ impl Context<'_> {
     }
 
     fn flux_of_rays(&mut self, spec: &RaysSpec, info: &RaySetInfo, key: &Key) -> Option<f64> {
-        for (name, flux) in [("flux_lm", spec.flux_lm), ("flux_w", spec.flux_w)] {
-            if let Some(flux) = flux {
-                return self.carried([flux, flux], &key.field(name));
-            }
+        if let Some(flux) = self.given_flux([spec.flux_lm, spec.flux_w], key) {
+            return flux;
         }
+        let efficacy = self.spectrum.as_ref().map(|own| own.spectrum().efficacy());
         let luminous = match info.unit {
             FluxUnit::Lumen => Some(info.flux),
-            FluxUnit::Watt => info.luminous_flux_lm,
+            FluxUnit::Watt => info.luminous_flux_lm.or(efficacy.map(|one| one * info.flux)),
         };
         let Some(flux) = luminous else {
             let flux = format_value(info.flux);
             let message = format!("`{}` has radiant flux only, {flux} W", spec.file);
-            let hint = format!("give `flux_lm`; or, for a scene in W, flux_w = {flux}");
+            let hint =
+                format!("give `flux_lm` or a `spectrum`; or, for a scene in W, flux_w = {flux}");
             return self.refuse(&key.field("file"), message, hint);
         };
         self.carried([flux, flux], &key.field("file"))

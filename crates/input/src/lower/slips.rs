@@ -9,7 +9,7 @@ use crate::spec::sensor::{CountsSpec, SensorSide, SensorSpec};
 use crate::spec::source::{BodySpec, SourceCommonSpec, SourceSpec};
 use glam::DVec3;
 use lumiduct_base::number::format_value;
-use lumiduct_core::optics::Finish;
+use lumiduct_core::optics::{Finish, REFERENCE_WAVELENGTH};
 use lumiduct_core::rng::{Dimension, Sampler};
 use lumiduct_core::scene::{
     Emitted, FaceArea, FaceId, FinishId, Owner, Ray, Scene, Solid, SolidId, StartSide,
@@ -71,7 +71,9 @@ fn is_a_guide(scene: &Scene, solid: &Solid) -> bool {
 
 /// Whether the medium of a solid differs from the surroundings: if not, its faces have no effect.
 fn has_an_index_step(scene: &Scene, solid: &Solid) -> bool {
-    let index = |medium: lumiduct_core::scene::MediumId| scene.media[medium.index()].index(0.0);
+    let index = |medium: lumiduct_core::scene::MediumId| {
+        scene.media[medium.index()].index(REFERENCE_WAVELENGTH)
+    };
     index(solid.medium) != index(scene.surroundings)
 }
 

@@ -4,6 +4,7 @@ use crate::keys::Key;
 use crate::lower::context::Context;
 use crate::lower::emitters::{SourceExtent, patch_range};
 use crate::lower::place::Facing;
+use crate::lower::spectra::is_spectral;
 use crate::lower::surfaces::tilted;
 use crate::lower::weathers::{Member, group};
 use crate::spec::placement::ContactSpec;
@@ -39,6 +40,7 @@ impl<'a> Context<'a> {
         let spec = self.spec;
         for (name, source) in &spec.sources {
             let key = Key::of(&["sources", name, source.kind()]);
+            self.lower_spectrum(source.spectrum(), &key);
             if let SourceSpec::Sun(sun) = source {
                 self.lower_sun(name, sun, &key);
             } else if let SourceSpec::Sky(sky) = source {
@@ -55,13 +57,16 @@ impl<'a> Context<'a> {
 
     /// Light in lm and light in W cannot be added without spectra.
     fn check_units(&mut self) {
+        if is_spectral(self.spec) {
+            return;
+        }
         let sources = || self.spec.sources.iter();
         let luminous = sources().find(|(_, source)| !source.is_radiant());
         let Some((luminous, _)) = luminous else { return };
         for (name, source) in sources().filter(|(_, source)| source.is_radiant()) {
             let key = Key::of(&["sources", name, source.kind(), "flux_w"]);
             let message = format!(
-                "a scene has sources in W or in lm, not both; `sources.{luminous}` is in lm"
+                "without spectra a scene has sources in W or in lm, not both; `sources.{luminous}` is in lm"
             );
             self.problems.error(&key, message);
         }
@@ -108,6 +113,7 @@ impl<'a> Context<'a> {
             emission: placed.emission,
             start,
             on: placed.on,
+            spectrum: self.spectrum.clone(),
             elevation: None,
             sun: None,
         });
@@ -120,14 +126,20 @@ impl<'a> Context<'a> {
             let message = format!("a {kind} has no area and so no luminance");
             return self.refuse(&key.field("luminance_cd_m2"), message, "give `flux_lm`");
         }
-        if common.intensity_cd.is_some() && extent != SourceExtent::Point {
+        let intensity = common
+            .intensity_cd
+            .map(|_| "intensity_cd")
+            .or(common.intensity_mcd.map(|_| "intensity_mcd"));
+        if let Some(intensity) = intensity
+            && extent != SourceExtent::Point
+        {
             let message = format!("is for a `point` only, found with `{kind}`");
             let hint = if extent.has_area() {
                 "give `flux_lm` or `luminance_cd_m2`"
             } else {
                 "give `flux_lm`"
             };
-            return self.refuse(&key.field("intensity_cd"), message, hint);
+            return self.refuse(&key.field(intensity), message, hint);
         }
         Some(())
     }
@@ -156,6 +168,10 @@ impl<'a> Context<'a> {
             EmissionSpec::Isotropic => Emission::Isotropic,
             EmissionSpec::Collimated => Emission::Collimated { axis },
             EmissionSpec::CosinePower(power) => Emission::CosinePower(power),
+            EmissionSpec::ViewingAngleDeg(full) => {
+                // cos^m of half the angle is a half.
+                Emission::CosinePower(0.5_f64.ln() / (0.5 * full).to_radians().cos().ln())
+            }
             EmissionSpec::ConeHalfAngleDeg(degrees) => {
                 Emission::Cone { half_angle: degrees.to_radians(), axis }
             }

@@ -3,6 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::spec::spectrum::SpectrumSpec;
+
 /// The sun's disk. Exactly one of `elevation_deg`, `elevations_deg` and `when`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(extend("oneOf" = [
@@ -60,6 +62,8 @@ pub struct DaylightCommonSpec {
     /// The light group. Omitted: a sun and the skies around it form one group if there is other daylight or another
     /// source.
     pub group: Option<String>,
+    /// Spectrum of its light, as of other sources.
+    pub spectrum: Option<SpectrumSpec>,
     /// Whether it emits. A disabled source is dark, as with an amount of 0.
     #[serde(default = "enabled")]
     pub enabled: bool,

@@ -1,35 +1,7 @@
-//! Media and finishes as a scene file states them.
+//! Finishes as a scene file states them.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-/// A medium in which light travels. `air` is predefined with index 1 and no absorption. What an interface of two media
-/// transmits follows from their indices, for unpolarised light: see the finish `smooth`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct MediumSpec {
-    /// Refractive index.
-    #[schemars(range(min = 1.0, max = 4.0))]
-    pub index: f64,
-    /// Absorption coefficient (natural): a beam decreases to exp(-absorption times length).
-    #[serde(default)]
-    #[schemars(range(min = 0.0))]
-    pub absorption_per_mm: f64,
-    /// Particles that scatter light, evenly spread, as in diffuser rods; none in a clear medium.
-    pub scattering: Option<ScatteringSpec>,
-}
-
-/// Scattering within a medium.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct ScatteringSpec {
-    /// Scattering coefficient: the inverse of the mean free path between scatterings.
-    #[schemars(extend("exclusiveMinimum" = 0.0))]
-    pub per_mm: f64,
-    /// Mean cosine of the scattering angle, for the Henyey-Greenstein phase function: 0 is isotropic, near 1 mostly
-    /// forward (particles larger than a wavelength), below 0 mostly backward.
-    #[serde(default)]
-    #[schemars(range(min = -0.999, max = 0.999))]
-    pub anisotropy: f64,
-}
 
 /// What a face does to light. A table with exactly one of these keys.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::spec::daylight::enabled;
 use crate::spec::placement::{ContactSpec, PlacementSpec};
+use crate::spec::spectrum::SpectrumSpec;
 use crate::spec::sweep::AreaSpec;
 use indexmap::IndexMap;
 
@@ -19,6 +20,8 @@ pub struct LuminaireSpec {
     /// Where its light starts.
     #[serde(default)]
     pub extent: LuminaireExtent,
+    /// Spectrum of its light, as of other sources.
+    pub spectrum: Option<SpectrumSpec>,
     /// How light starts where the opening touches a face: `optical` starts it beyond the face, as through glue; `air`
     /// lets it cross the face first. Omitted: `optical`.
     pub contact: Option<ContactSpec>,

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::spec::daylight::enabled;
 use crate::spec::placement::{ContactSpec, PlacementSpec};
+use crate::spec::spectrum::SpectrumSpec;
 
 /// Ray files of the light that a sensor counts. Positions and directions are those of the scene.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -39,10 +40,10 @@ fn tm25_only() -> Vec<RayExportFormat> {
 pub struct RaysSpec {
     /// The file. A relative path is relative to the scene file.
     pub file: String,
-    /// Total luminous flux. Omitted: that of the file, which must then be in lm.
+    /// Total luminous flux. Omitted: that of the file, which must then be in lm, or in W with a `spectrum`.
     #[schemars(range(min = 0.0))]
     pub flux_lm: Option<f64>,
-    /// Total radiant flux, in a scene in W.
+    /// Total radiant flux, in a scene in W, or with a `spectrum`.
     #[schemars(range(min = 0.0))]
     pub flux_w: Option<f64>,
     /// Most rays that are kept in memory (36 bytes each, more while the file is read). If the file has more, that many are drawn at random, the same
@@ -56,6 +57,8 @@ pub struct RaysSpec {
     /// Height of the plane of the fit along the z axis of the file. Omitted: the height of the point with the least mean squared distance
     /// from the rays, extended to lines (their waist).
     pub fitted_at_mm: Option<f64>,
+    /// Spectrum of its light, as of other sources.
+    pub spectrum: Option<SpectrumSpec>,
     /// How rays start that touch a face: `optical` starts them beyond the face, as through glue; `air` lets them cross
     /// the face first. Omitted: `optical`.
     pub contact: Option<ContactSpec>,

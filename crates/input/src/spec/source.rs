@@ -9,6 +9,7 @@ use crate::spec::luminaire::LuminaireSpec;
 use crate::spec::placement::{ContactSpec, PlacementSpec};
 use crate::spec::rays::RaysSpec;
 use crate::spec::solid::SphereSpec;
+use crate::spec::spectrum::SpectrumSpec;
 use crate::spec::sweep::RectangleSpec;
 
 /// A light source. A table with exactly one of these keys.
@@ -57,6 +58,17 @@ impl SourceSpec {
         }
     }
 
+    /// Its spectrum, if it has one.
+    pub(crate) fn spectrum(&self) -> Option<&SpectrumSpec> {
+        match self {
+            Self::Luminaire(own) => own.spectrum.as_ref(),
+            Self::Rays(own) => own.spectrum.as_ref(),
+            Self::Sun(own) => own.common.spectrum.as_ref(),
+            Self::Sky(own) => own.common.spectrum.as_ref(),
+            _ => self.common()?.spectrum.as_ref(),
+        }
+    }
+
     /// The keys that all kinds but luminaires, rays, the sun and the sky have.
     pub(crate) fn common(&self) -> Option<&SourceCommonSpec> {
         self.entry().1
@@ -86,7 +98,8 @@ impl SourceSpec {
     { "required": ["flux_lm"] },
     { "required": ["flux_w"] },
     { "required": ["luminance_cd_m2"] },
-    { "required": ["intensity_cd"] }
+    { "required": ["intensity_cd"] },
+    { "required": ["intensity_mcd"] }
 ]))]
 #[schemars(rename = "{Shape}Emitter")]
 pub struct EmitterSpec<Shape> {
@@ -98,13 +111,13 @@ pub struct EmitterSpec<Shape> {
     pub common: SourceCommonSpec,
 }
 
-/// What every source has; exactly one of `flux_lm`, `flux_w`, `luminance_cd_m2` and `intensity_cd`.
+/// What every source has; exactly one of `flux_lm`, `flux_w`, `luminance_cd_m2`, `intensity_cd` and `intensity_mcd`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SourceCommonSpec {
     /// Total luminous flux.
     #[schemars(range(min = 0.0))]
     pub flux_lm: Option<f64>,
-    /// Total radiant flux. A scene has sources in lm or in W, not both.
+    /// Total radiant flux; with a `spectrum`, from 377.5 to 782.5 nm. Without spectra a scene has sources in lm or in W, not both.
     #[schemars(range(min = 0.0))]
     pub flux_w: Option<f64>,
     /// Luminance along the axis or normal, for sources with an area.
@@ -113,6 +126,9 @@ pub struct SourceCommonSpec {
     /// Peak intensity, for `point` only.
     #[schemars(range(min = 0.0))]
     pub intensity_cd: Option<f64>,
+    /// Peak intensity in millicandela, as data sheets of LEDs give it, for `point` only.
+    #[schemars(range(min = 0.0))]
+    pub intensity_mcd: Option<f64>,
     /// Distribution of the light over directions. Omitted: `isotropic` for a `volume`, `lambertian` for all others.
     pub emission: Option<EmissionSpec>,
     /// Angle between the axis and the direction of a cone or a collimated beam.
@@ -125,6 +141,8 @@ pub struct SourceCommonSpec {
     /// How light starts where the source touches a face: `optical` starts it beyond the face, as through glue; `air`
     /// lets it cross the face first. Omitted: `optical`.
     pub contact: Option<ContactSpec>,
+    /// Spectrum of its light. If one source has a spectrum, all must have one; the run then also measures colour.
+    pub spectrum: Option<SpectrumSpec>,
     /// What happens to light that meets the emitter.
     #[serde(default)]
     pub body: BodySpec,
@@ -208,6 +226,11 @@ pub enum EmissionSpec {
     Collimated,
     /// Intensity proportional to this power of the cosine of the angle from the axis or normal; 1 is Lambertian.
     CosinePower(#[schemars(range(min = 0.0))] f64),
+    /// The viewing angle of an LED, the full angle between directions of half of the peak intensity: intensity proportional to a power of the
+    /// cosine. 120 is Lambertian.
+    ViewingAngleDeg(
+        #[schemars(extend("exclusiveMinimum" = 1.0), extend("exclusiveMaximum" = 180.0))] f64,
+    ),
     /// The same luminance within a cone of this half-angle, none outside.
     ConeHalfAngleDeg(#[schemars(extend("exclusiveMinimum" = 0.0), range(max = 90.0))] f64),
 }

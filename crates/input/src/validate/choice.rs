@@ -68,7 +68,11 @@ impl Walk<'_> {
             return;
         }
         if words.is_empty() {
-            return self.wrong_type(node, schema, at);
+            // A number in quotes is meant as one.
+            let number = choices.iter().find_map(|choice| plain(choice, &["number"]));
+            let is_number = text.trim().replacen(',', ".", 1).parse::<f64>().is_ok();
+            let meant = number.filter(|_| is_number).unwrap_or(schema);
+            return self.wrong_type(node, meant, at);
         }
         let kinds: Vec<_> = choices.iter().filter_map(kind).map(|(kind, _)| kind).collect();
         let hint = self.unknown_word(text, &words, &kinds);

@@ -142,6 +142,7 @@ fn error(measure: &Measure) -> f64 {
         Status::Ok
         | Status::TooFew
         | Status::NoiseLimited
+        | Status::Undefined
         | Status::BiasInNoise
         | Status::BiasNotResolved
         | Status::Contradicted => measure.total_error(),
@@ -158,6 +159,7 @@ fn doubt(values: &[Measure; 2]) -> Option<String> {
         let why = match measure.status {
             Status::TooFew => "has too few counts",
             Status::NoiseLimited => "is mostly noise",
+            Status::Undefined => "is not defined for the light",
             Status::BiasNotResolved => "has a bias that is not resolved",
             Status::Contradicted => "is contradicted by photons of the same run",
             Status::Ok | Status::NoSignal | Status::BiasInNoise => {

@@ -2,9 +2,11 @@ use crate::measure::samples::{
     add, disk, goniometer, image, light_groups, luminance, readings, rectangle, rings, scene,
 };
 use crate::measure::{Measures, SensorMap, Status, measure, names, value_of};
+use crate::optics::REFERENCE_WAVELENGTH;
 use crate::rng::{Dimension, Sampler};
 use crate::scene::{Scene, SensorId, SourceId};
-use crate::transport::Findings;
+use crate::transport::tally::sensor_reading::DetectedLight;
+use crate::transport::{Findings, Readings};
 
 /// Groups of the first two of four sources, of three, and of the last, which is dark. The second
 /// source is in two of them.
@@ -25,6 +27,13 @@ fn grouped() -> Scene {
     scene
 }
 
+/// Counts light of a source in a cell.
+fn count(batch: &mut Readings, id: SensorId, cell: usize, of: (f64, SourceId), scene: &Scene) {
+    let (flux, source) = of;
+    let light = DetectedLight { flux, depth: 0, source, wavelength: REFERENCE_WAVELENGTH };
+    batch.sensors[id.index()].add_to_cell(cell, &light, scene.light.of(source));
+}
+
 /// Uneven light of the three sources on every sensor, another for each, with noise.
 fn some_light(scene: &Scene) -> Findings {
     readings(scene, 128, |index, layout, batch| {
@@ -36,7 +45,7 @@ fn some_light(scene: &Scene) -> Findings {
                 for cell in 0..scene.sensors[id.index()].cells() {
                     let level = 1.0 + 0.3 * ((cell * (source + 2)) % 5) as f64;
                     let flux = 1e-5 * level * (0.5 + sampler.one(Dimension::Resampling));
-                    batch.sensors[id.index()].add(cell, flux, scene.light.of(light));
+                    count(batch, id, cell, (flux, light), scene);
                     total += flux;
                 }
                 add(batch, layout.sensor_flux(id, light), total);
@@ -127,8 +136,8 @@ fn a_group_of_all_lit_sources_measures_the_same_as_all_light() {
 fn a_source_of_two_groups_counts_in_both() {
     let scene = grouped();
     let readings = readings(&scene, 16, |_, _, batch| {
-        batch.sensors[0].add(3, 1e-6, scene.light.of(SourceId::new(1)));
-        batch.sensors[0].add(4, 1e-6, scene.light.of(SourceId::new(2)));
+        count(batch, SensorId::new(0), 3, (1e-6, SourceId::new(1)), &scene);
+        count(batch, SensorId::new(0), 4, (1e-6, SourceId::new(2)), &scene);
     });
     let measures = measure(&scene, &readings);
     let lit = |light| map(&measures, "exit", light).values.iter().filter(|it| **it > 0.0).count();

@@ -74,6 +74,7 @@ fn sources_and_sensors_on_the_way_are_not_jumped_over() {
             emission: Emission::Isotropic,
             start: StartSolids::Outside,
             on: Vec::new(),
+            spectrum: None,
             elevation: None,
             sun: None,
         });

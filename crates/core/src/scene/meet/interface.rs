@@ -207,8 +207,6 @@ impl Scene {
 
     /// Two media of equal index at every wavelength make no interface.
     fn same_index(&self, a: MediumId, b: MediumId) -> bool {
-        // The index is constant; the wavelength does not matter.
-        let index = |medium: MediumId| self.media[medium.index()].index(0.0);
-        index(a) == index(b)
+        a == b || self.media[a.index()].index_law() == self.media[b.index()].index_law()
     }
 }

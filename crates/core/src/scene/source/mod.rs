@@ -8,6 +8,7 @@ pub(crate) mod radiance;
 pub(crate) mod rays;
 pub(crate) mod sky;
 
+use crate::colour::SpectralDraw;
 use crate::scene::shape::{Flat, Region, Shape, Sphere};
 use crate::scene::{Emission, FittedLight, Inside, PrimId, Ray, RaySet, SolidId};
 use glam::DVec3;
@@ -25,6 +26,8 @@ pub struct Source {
     pub emitter: Emitter,
     /// The directions of its light; not used for rays and what is fitted to them, which have their own.
     pub emission: Emission,
+    /// Its spectrum; all lit sources of a scene have one, or none has.
+    pub spectrum: Option<Arc<SpectralDraw>>,
     /// How the solids around a start point are found.
     pub start: StartSolids,
     /// For each of its shapes, the surface of the scene that coincides with it, if any: light does
@@ -137,6 +140,8 @@ pub struct Emitted {
     pub on: Option<PrimId>,
     /// The index of the shape of a surface source that it starts on; 0 for other sources.
     pub shape: usize,
+    /// Wavelength, nm.
+    pub wavelength: f64,
 }
 
 impl Source {

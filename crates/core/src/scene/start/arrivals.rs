@@ -4,6 +4,7 @@
 //! and carries the extent that it represents, so that the mean of radiance times extent is the flux
 //! on the sensor. This module does not know what the path meets.
 
+use crate::optics::REFERENCE_WAVELENGTH;
 use crate::rng::{Dimension, Numbers, Sampler};
 use crate::scene::crossing::hit::StartSide;
 use crate::scene::shape::Toward;
@@ -37,6 +38,8 @@ pub struct Arrival {
     /// |cos θ| dA dω over the density of the draw, mm² sr: times radiance it is flux, times n² it
     /// is etendue.
     pub extent: f64,
+    /// Wavelength, nm.
+    pub wavelength: f64,
     /// The values of the sensor that receive its light: cells, or cells of views.
     pub cells: SmallVec<[usize; 1]>,
 }
@@ -98,7 +101,8 @@ impl<'s> Arrivals<'s> {
     /// Draws a start; `None` where the draw misses the sensor or is on a side that does not count:
     /// such a draw represents no light.
     pub fn draw(&self, sampler: &mut Sampler<impl Numbers>) -> Option<Arrival> {
-        match &self.place {
+        let wavelength = self.scene.wavelength(sampler);
+        let arrival = match &self.place {
             StartSet::Surface(sensor, area) => {
                 let start = area.sample(sampler.pair(Dimension::GatherPosition))?;
                 let cell = sensor.grid.cell(start.uv)?;
@@ -109,7 +113,8 @@ impl<'s> Arrivals<'s> {
                 None => self.in_far_field(goniometer, *around, sampler),
                 Some(radius) => self.on_sphere(goniometer, radius, sampler),
             },
-        }
+        };
+        arrival.map(|arrival| Arrival { wavelength, ..arrival })
     }
 
     /// Extent of a draw of a start, as in [`Arrival::extent`], mm² sr, for a start that was not
@@ -280,7 +285,7 @@ impl<'s> Arrivals<'s> {
         Some(self.arrival((ray, out), None, Begins::OnSensor, extent, smallvec![cell]))
     }
 
-    /// A start with the solids around it.
+    /// A start with the solids around it, of light without a spectrum.
     fn arrival(
         &self,
         (ray, normal): (Ray, DVec3),
@@ -290,7 +295,8 @@ impl<'s> Arrivals<'s> {
         cells: SmallVec<[usize; 1]>,
     ) -> Arrival {
         let inside = self.scene.inside_at(&ray, StartSide::Ahead);
-        Arrival { ray, normal, inside, on, begins, extent, cells }
+        let wavelength = REFERENCE_WAVELENGTH;
+        Arrival { ray, normal, inside, on, begins, extent, wavelength, cells }
     }
 }
 

@@ -12,6 +12,7 @@ use lumiduct_base::math::{Aabb, Frame, disk};
 impl Source {
     /// Starts a photon path.
     pub fn emit(&self, scene: &Scene, sampler: &mut Sampler<impl Numbers>) -> Emitted {
+        let wavelength = self.wavelength(sampler);
         let (ray, shape) = match &self.emitter {
             Emitter::Point(frame) => {
                 let dir = frame.to_world(self.emission.sample(EmitterKind::Point, sampler));
@@ -44,7 +45,7 @@ impl Source {
         };
         // Only surface sources lie on a surface.
         let on = self.on.get(shape).copied();
-        Emitted { ray, inside, on, shape }
+        Emitted { ray, inside, on, shape, wavelength }
     }
 
     fn emit_from_line(

@@ -3,3 +3,4 @@
 pub(crate) mod area;
 pub(crate) mod arrivals;
 pub(crate) mod emit;
+mod spectral;

@@ -9,7 +9,7 @@ use crate::transport::connect::sources::SourcePoint;
 use crate::transport::connect::vertex::{ScatteringVertex, TurnAt, Turns};
 use crate::transport::connect::way::WayStart;
 use crate::transport::connect::weights::{Etendues, Technique};
-use crate::transport::tally::readings::DetectedLight;
+use crate::transport::tally::sensor_reading::DetectedLight;
 use crate::transport::{
     Departure, Event, Loss, MetEmission, Observer, Path, ROULETTE_BELOW, Readings, Vertex,
 };
@@ -119,7 +119,7 @@ impl GatherPathCounter<'_, '_> {
         let start = way(place.dir);
         self.readings.segments += 1;
         let Some(end) = start.go(scene, vertex.point, -place.dir, distance) else { return };
-        let emitted = joined_sources.emitted(&place, end.index).unwrap_or(0.0);
+        let emitted = joined_sources.emitted(&place, end.index, path.wavelength).unwrap_or(0.0);
         let measure = joined_sources.measure(&place, vertex.point, light.index_from);
         let (true, Some(measure)) = (emitted > 0.0, measure) else { return };
         let joined = light.adjoint / light.albedo * measure;
@@ -143,7 +143,9 @@ impl GatherPathCounter<'_, '_> {
         (first, windows): (Option<TurnAt<'_>>, f64),
     ) -> Etendues {
         let photon = self.photon_fluxes.map_or(f64::INFINITY, |fluxes| {
-            fluxes[place.source.index()] / (emitted * self.batches)
+            let source = place.source.index();
+            let worth = self.backward.scene.sources[source].photon_worth(self.arrival.wavelength);
+            worth * fluxes[source] / (emitted * self.batches)
         });
         let gather = self.etendue / self.batches;
         let Arrival { ray, normal, .. } = self.arrival;
@@ -168,7 +170,7 @@ impl GatherPathCounter<'_, '_> {
 
     fn count(&mut self, depth: u32, source: SourceId, flux: f64) {
         let Backward { layout, scene, .. } = self.backward;
-        let light = DetectedLight { flux, depth, source };
+        let light = DetectedLight { flux, depth, source, wavelength: self.arrival.wavelength };
         self.readings.count((layout, &scene.light), self.id, &self.arrival.cells, &light);
     }
 

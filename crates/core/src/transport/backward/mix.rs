@@ -21,7 +21,7 @@ use crate::transport::connect::way::WayStart;
 use crate::transport::connect::weights::{Etendues, Technique};
 use crate::transport::forward;
 use crate::transport::stop::Pace;
-use crate::transport::tally::readings::DetectedLight;
+use crate::transport::tally::sensor_reading::DetectedLight;
 use crate::transport::tally::{Counts, work};
 use crate::transport::task::Task;
 use crate::transport::trial::{BATCHES, Trials, Tried};
@@ -214,9 +214,13 @@ impl Mixing<'_, '_> {
         self.recent.iter_mut().for_each(RecentPassages::clear);
         let met = emitters.emitted(start.source, path, start.shape);
         let index = scene.media[path.medium.index()].index(path.wavelength);
-        let emitted =
-            if met > 0.0 { Some(met) } else { joined_sources.emitted(&self.start, index) };
-        let flux = self.photon_fluxes[start.source.index()] / self.batches;
+        let emitted = if met > 0.0 {
+            Some(met)
+        } else {
+            joined_sources.emitted(&self.start, index, path.wavelength)
+        };
+        let worth = scene.sources[start.source.index()].photon_worth(path.wavelength);
+        let flux = worth * self.photon_fluxes[start.source.index()] / self.batches;
         self.photon = emitted.filter(|emitted| *emitted > 0.0).map_or(0.0, |one| flux / one);
     }
 
@@ -236,7 +240,7 @@ impl Mixing<'_, '_> {
         } else {
             Etendues::PHOTON_ALONE.share(Technique::Photon, self.backward.sharing)
         };
-        self.count(path.depth, light.sensor, light.cells, light.flux * weight);
+        self.count((path.depth, path.wavelength), light.sensor, light.cells, light.flux * weight);
     }
 
     /// Joins a vertex to points of sensors.
@@ -285,7 +289,7 @@ impl Mixing<'_, '_> {
         let weight = etendues.share(Technique::JoinedPhoton, self.backward.sharing);
         let flux = self.flux * path.throughput * light.density * place.solid_angle;
         let flux = flux * end.transmittance * weight / kept;
-        self.count(path.depth + 1, place.sensor, &place.cells, flux);
+        self.count((path.depth + 1, path.wavelength), place.sensor, &place.cells, flux);
     }
 
     /// Etendues of light of this photon at a sensor; `gather` is that of the sensor's only gather
@@ -314,9 +318,15 @@ impl Mixing<'_, '_> {
         }
     }
 
-    fn count(&mut self, depth: u32, sensor: SensorId, cells: &[usize], flux: f64) {
+    fn count(
+        &mut self,
+        (depth, wavelength): (u32, f64),
+        sensor: SensorId,
+        cells: &[usize],
+        flux: f64,
+    ) {
         let Backward { layout, scene, .. } = self.backward;
-        let light = DetectedLight { flux, depth, source: self.start.source };
+        let light = DetectedLight { flux, depth, source: self.start.source, wavelength };
         self.readings.count((layout, &scene.light), sensor, cells, &light);
     }
 }

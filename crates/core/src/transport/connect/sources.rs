@@ -15,6 +15,7 @@ const EVENLY: f64 = 0.0;
 /// The sources of a scene that vertices can be joined to.
 #[derive(Debug)]
 pub(crate) struct SourceTargets<'s> {
+    scene: &'s Scene,
     targets: Targets<SourceTarget<'s>>,
 }
 
@@ -67,7 +68,7 @@ impl<'s> SourceTargets<'s> {
     pub(crate) fn new(scene: &'s Scene) -> Self {
         let lit = scene.sources.iter().enumerate().filter(|(_, source)| source.is_lit());
         let targets = lit.filter_map(|(index, source)| target(SourceId::new(index), source));
-        Self { targets: Targets::new(targets, EVENLY) }
+        Self { scene, targets: Targets::new(targets, EVENLY) }
     }
 
     /// A place for a vertex, on a source chosen roughly in proportion to the light it can send there, and
@@ -104,13 +105,13 @@ impl<'s> SourceTargets<'s> {
         }
     }
 
-    /// What the etendue of a photon is its flux over, at a place in a medium of this index: basic
+    /// What the etendue of a photon is its flux over, at a place in a medium of this index and at a wavelength, nm: basic
     /// radiance, intensity, intensity per length, or irradiance across a beam, lm per mm² sr, sr,
     /// mm sr or mm². `None` for a source that no vertex is joined to.
-    pub(crate) fn emitted(&self, place: &SourcePoint, index: f64) -> Option<f64> {
+    pub(crate) fn emitted(&self, place: &SourcePoint, index: f64, wavelength: f64) -> Option<f64> {
         let target = self.target(place.source)?;
         let source = target.source;
-        Some(match &target.extent {
+        let whole = match &target.extent {
             EmitterExtent::Point(frame) => {
                 let local = frame.to_local(place.dir);
                 source.flux * source.emission.density(EmitterKind::Point, local)?
@@ -130,7 +131,8 @@ impl<'s> SourceTargets<'s> {
                     / (index * index)
             }
             EmitterExtent::FarBeam => target.across(),
-        })
+        };
+        Some(self.scene.gathered_worth(place.source, wavelength) * whole)
     }
 
     /// Normal irradiance at a vertex over n² and [`Self::emitted`], the density of draws

@@ -10,9 +10,7 @@ use crate::scene::{
 };
 use crate::transport::forward::Forward;
 use crate::transport::stop::Pace;
-use crate::transport::tally::readings::{
-    ClassStep, DetectedLight, SensorReading, Trail, count_totals,
-};
+use crate::transport::tally::sensor_reading::{ClassStep, DetectedLight, Trail};
 use crate::transport::{
     Departure, Emergence, Event, Leak, Observer, Path, Readings, Segment, Vertex, walk,
 };
@@ -87,7 +85,9 @@ impl<'r, 's, O: Observer> PhotonCounter<'r, 's, O> {
         let scene = self.run.scene;
         let mut fresh = Sampler::for_path(self.run.seed, stream::PHOTONS, index);
         let mut sampler = points.lead(&mut fresh);
-        let emitted = scene.sources[source.index()].emit(scene, &mut sampler);
+        let own = &scene.sources[source.index()];
+        let emitted = own.emit(scene, &mut sampler);
+        let flux = flux * own.photon_worth(emitted.wavelength);
         self.flux = flux;
         self.source = source;
         self.light_groups = scene.light.of(source);
@@ -179,22 +179,23 @@ impl<'r, 's, O: Observer> PhotonCounter<'r, 's, O> {
     /// Counts flux in a cell and in the sensor's totals.
     #[inline]
     fn count(&mut self, path: &Path, id: SensorId, cell: usize, throughput: f64) {
-        self.count_on_sensor(path, id, throughput);
-        self.readings.sensors[id.index()].add(cell, self.flux * throughput, self.light_groups);
+        let light = self.count_on_sensor(path, id, throughput);
+        self.readings.sensors[id.index()].add_to_cell(cell, &light, self.light_groups);
     }
 
     #[inline]
-    fn count_on_sensor(&mut self, path: &Path, id: SensorId, throughput: f64) {
+    fn count_on_sensor(&mut self, path: &Path, id: SensorId, throughput: f64) -> DetectedLight {
         let flux = self.flux * throughput;
-        let light = DetectedLight { flux, depth: path.depth, source: self.source };
-        count_totals(&mut self.sums, &self.run.layout, id, &light);
+        let &Path { depth, wavelength, .. } = path;
+        let light = DetectedLight { flux, depth, source: self.source, wavelength };
         let reading = &mut self.readings.sensors[id.index()];
-        reading.depths.add(SensorReading::depth_bin(path.depth), flux);
+        reading.add(&mut self.sums, &self.run.layout, id, &light);
         if self.classed {
             let class = reading.classes.entry(self.trail.clone()).or_default();
             class.flux += flux;
             class.depth_weighted += flux * f64::from(path.depth);
         }
+        light
     }
 
     /// Adds a step to the trail of a path; repeats of a step count once, and a full trail is marked

@@ -11,7 +11,7 @@ use crate::scene::{
 use crate::tally::sigmas;
 use crate::transport::forward::Forward;
 use crate::transport::stop::{Pace, StopSignal};
-use crate::transport::tally::readings::Trail;
+use crate::transport::tally::sensor_reading::Trail;
 use crate::transport::{Event, Observer, Path, Readings, Run};
 use glam::DVec3;
 use lumiduct_base::math::{Aabb, Frame};
@@ -50,6 +50,7 @@ fn mirror_tube(reflectance: f64, length: f64) -> Scene {
         emission: Emission::Lambertian,
         start: StartSolids::Outside,
         on: Vec::new(),
+        spectrum: None,
         elevation: None,
         sun: None,
     });

@@ -80,9 +80,9 @@ fn clear_way(scene: &Scene, path: &Path, ray: &Ray, most: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::optics::Medium;
+    use crate::optics::REFERENCE_WAVELENGTH;
     use crate::scene::shape::{Shape, Sphere};
     use crate::scene::{Builder, FacePiece, FaceSpec, Owner, Solid};
-    use crate::transport::walk::path::WAVELENGTH;
     use lumiduct_base::math::Aabb;
     use lumiduct_base::units::FluxUnit;
 
@@ -123,7 +123,7 @@ mod tests {
         let path = Path {
             ray: Ray::new(point, DVec3::Z),
             throughput: 1.0,
-            wavelength: WAVELENGTH,
+            wavelength: REFERENCE_WAVELENGTH,
             source: None,
             medium: scene.medium_in(&inside),
             inside,

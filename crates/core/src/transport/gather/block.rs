@@ -7,7 +7,7 @@
 
 use crate::scene::{Scene, SensorId};
 use crate::transport::gather::kernel::ORDERS;
-use crate::transport::tally::readings::DetectedLight;
+use crate::transport::tally::sensor_reading::DetectedLight;
 use crate::transport::tally::{Counts, merged};
 use crate::transport::{Layout, Readings};
 

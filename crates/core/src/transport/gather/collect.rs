@@ -12,7 +12,7 @@ use crate::transport::gather::records::{
     GatherRecord, RecordKind, RecordPath, SurfaceRecord, VolumeRecord,
 };
 use crate::transport::gather::shares::{MergedPath, MergedRecord};
-use crate::transport::tally::readings::DetectedLight;
+use crate::transport::tally::sensor_reading::DetectedLight;
 use crate::transport::walk::scatter::{MetInterface, facing};
 use crate::transport::window::Window;
 use crate::transport::{
@@ -98,7 +98,12 @@ impl Observer for Collecting<'_, '_> {
 impl Collecting<'_, '_> {
     fn meet(&mut self, path: &Path, met: &MetEmission) {
         let flux = met.radiance * self.etendue;
-        let light = DetectedLight { flux, depth: path.depth, source: met.source };
+        let light = DetectedLight {
+            flux,
+            depth: path.depth,
+            source: met.source,
+            wavelength: path.wavelength,
+        };
         for readings in &mut *self.orders {
             readings.count(
                 (&self.gather.layout, &self.gather.scene.light),

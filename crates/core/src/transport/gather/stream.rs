@@ -2,7 +2,7 @@
 //!
 //! Photons that may belong to records are buffered and looked up together.
 
-use crate::optics::{FinishModel, Incidence, Spread};
+use crate::optics::{FinishModel, Incidence, REFERENCE_WAVELENGTH, Spread};
 use crate::scene::shape::Toward;
 use crate::scene::{MediumId, PrimHit, PrimId, RowReach, Scene, SourceId, Surface, Visibility};
 use crate::transport::backward::mix::MergedPhoton;
@@ -13,7 +13,7 @@ use crate::transport::gather::index::{PhotonKey, TOGETHER};
 use crate::transport::gather::stages::Pass;
 use crate::transport::stop::Pace;
 use crate::transport::tally::Counts;
-use crate::transport::tally::readings::DetectedLight;
+use crate::transport::tally::sensor_reading::DetectedLight;
 use crate::transport::tally::work::RecordWork;
 use crate::transport::{Collision, Emergence, Event, Observer, Path, Vertex};
 use glam::DVec3;
@@ -249,6 +249,8 @@ impl<'p, 's> PhotonStream<'p, 's> {
                 flux: photon.flux * share * weight,
                 depth,
                 source: photon.source,
+                // Estimators with records are refused where light has a spectrum.
+                wavelength: REFERENCE_WAVELENGTH,
             });
             counts.count_pair((scene, layout), (*sensor, cells), [*pass, self.current], light);
         });

@@ -3,6 +3,7 @@
 //! The order is fixed by the scene alone, so that readings made elsewhere from the same scene can be added.
 
 use crate::scene::{FaceId, MediumId, Scene, SensorId, SourceId};
+use crate::transport::tally::colour::{SPECTRUM_BINS, Stimulus};
 
 /// Depths for which the flux of deeper paths is kept, in interfaces met.
 pub(crate) const TAILS: [u32; 6] = [10, 50, 100, 200, 500, 1000];
@@ -23,6 +24,8 @@ pub struct Layout {
     faces: usize,
     media: usize,
     sensors: usize,
+    /// Stimuli, and bins of the spectrum, of each sensor: none without spectra.
+    colours: usize,
 }
 
 impl Layout {
@@ -33,6 +36,7 @@ impl Layout {
             faces: scene.faces.len(),
             media: scene.media.len(),
             sensors: scene.sensors.len(),
+            colours: if scene.is_spectral() { Stimulus::ALL.len() + SPECTRUM_BINS } else { 0 },
         }
     }
 
@@ -125,7 +129,26 @@ impl Layout {
         self.lost_paths(sensor, Loss::Leaked) + 1 + source.index()
     }
 
+    /// Whether the colour of light is counted.
+    #[inline]
+    pub(crate) fn has_colours(&self) -> bool {
+        self.colours > 0
+    }
+
+    /// A stimulus of the light on a sensor; only in scenes with spectra.
+    #[inline]
+    pub(crate) fn stimulus(&self, sensor: SensorId, stimulus: Stimulus) -> usize {
+        debug_assert!(self.colours > 0, "the scene has spectra");
+        self.lost_paths(sensor, Loss::Leaked) + 1 + self.sources + stimulus as usize
+    }
+
+    /// Radiant flux on a sensor in a bin of the spectrum, W; only in scenes with spectra.
+    #[inline]
+    pub(crate) fn spectrum(&self, sensor: SensorId, bin: usize) -> usize {
+        self.stimulus(sensor, Stimulus::X) + Stimulus::ALL.len() + bin
+    }
+
     fn sensor_base(&self, sensor: usize) -> usize {
-        self.leaked() + 1 + sensor * (2 * self.sources + 3 + TAILS.len() + 2)
+        self.leaked() + 1 + sensor * (2 * self.sources + 3 + TAILS.len() + 2 + self.colours)
     }
 }

@@ -1,9 +1,11 @@
-//! Counts: cells, scalars by their layout, losses, and sums over batches.
+//! Counts: cells, colour, scalars by their layout, losses, and sums over batches.
 
 mod cells;
+pub(crate) mod colour;
 mod counts;
 mod layout;
 pub mod readings;
+pub mod sensor_reading;
 pub mod sums;
 pub(crate) mod work;
 

@@ -5,13 +5,12 @@
 //! Batches are folded in a fixed binary tree over their index: a range of batches gives the same bits wherever it was
 //! traced.
 
-use crate::scene::{LightGroupId, LightGroups, Scene, SensorId, SourceId};
+use crate::scene::{LightGroups, Scene, SensorId};
 use crate::tally::Tally;
-use crate::transport::{Cells, Layout, Loss, TAILS};
+use crate::transport::tally::sensor_reading::{DetectedLight, SensorReading};
+use crate::transport::{Layout, Loss};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
-use smallvec::SmallVec;
-use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// Number of groups of batches; batch i belongs to group i mod 128. A full set of groups is needed for an error bar.
@@ -19,10 +18,6 @@ pub const GROUPS: u64 = 128;
 /// With fewer groups of batches than this that contain anything, the error bar is not trustworthy:
 /// the spread of ten samples is itself known to a quarter, 1/sqrt(2 · 9).
 pub(crate) const MIN_LIT_GROUPS: usize = 10;
-/// Bins of the histogram of depths: depths 0 to 1023 one by one, then one for each doubling.
-pub(crate) const DEPTH_BINS: usize = 1024 + 32;
-/// Path classes kept per sensor; the weakest beyond that are summed as one.
-const CLASS_LIMIT: usize = 256;
 /// Places of leaks that are kept.
 const LEAK_LIMIT: usize = 8;
 /// Format of the serialised readings.
@@ -37,42 +32,6 @@ pub struct Group {
     pub batches: u64,
     /// The scalars in the order of [`Layout`], lm or W.
     pub sums: Vec<f64>,
-}
-
-/// One step of a path class: a face, and whether the light was reflected or transmitted there.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub struct ClassStep {
-    /// Index of the face.
-    pub face: u32,
-    /// Whether the light was transmitted.
-    pub transmitted: bool,
-}
-
-/// A path class: the steps of a path, with repeats of a step counted once; `None` ends a trail that
-/// was cut off.
-pub(crate) type Trail = SmallVec<[Option<ClassStep>; 8]>;
-
-/// Flux of a path class.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct ClassSum {
-    /// Sum of the flux over batches, lm or W.
-    pub flux: f64,
-    /// Sum of flux times depth.
-    pub depth_weighted: f64,
-}
-
-/// Counts of one sensor.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct SensorReading {
-    /// Flux per cell, lm or W.
-    pub cells: Cells,
-    /// The part of it from each light group.
-    pub groups: Vec<Cells>,
-    /// Flux per depth of path, lm or W.
-    pub depths: Cells,
-    /// Flux by path class.
-    #[serde(with = "pairs")]
-    pub classes: BTreeMap<Trail, ClassSum>,
 }
 
 /// A point where a path was lost.
@@ -119,12 +78,6 @@ impl Readings {
         batch_paths: u64,
         batch: u64,
     ) -> Self {
-        let sensor = |cells| SensorReading {
-            cells: Cells::new(cells),
-            groups: scene.light.ids().map(|_| Cells::new(cells)).collect(),
-            depths: Cells::new(DEPTH_BINS),
-            classes: BTreeMap::new(),
-        };
         Self {
             format: FORMAT,
             seed,
@@ -135,7 +88,11 @@ impl Readings {
                 batches: 1,
                 sums: vec![0.0; layout.len()],
             }],
-            sensors: scene.sensors.iter().map(|s| sensor(s.cells())).collect(),
+            sensors: scene
+                .sensors
+                .iter()
+                .map(|sensor| SensorReading::new(scene, sensor.cells()))
+                .collect(),
             segments: 0,
             joins: 0,
             leaks: Vec::new(),
@@ -172,11 +129,7 @@ impl Readings {
 
     /// Ends a batch: squares are computed.
     pub fn close_batch(&mut self) {
-        for sensor in &mut self.sensors {
-            sensor.cells.close_batch();
-            sensor.groups.iter_mut().for_each(Cells::close_batch);
-            sensor.depths.close_batch();
-        }
+        self.sensors.iter_mut().for_each(SensorReading::close_batch);
     }
 
     /// A batch with `a` times the counts of this one and `b` times those of another of the same
@@ -190,11 +143,7 @@ impl Readings {
                 .for_each(|(own, other)| *own = a * *own + b * other);
         }
         for (own, other) in sum.sensors.iter_mut().zip(&other.sensors) {
-            own.cells = own.cells.combined([a, b], &other.cells);
-            for (own, other) in own.groups.iter_mut().zip(&other.groups) {
-                *own = own.combined([a, b], other);
-            }
-            own.depths = own.depths.combined([a, b], &other.depths);
+            own.combine([a, b], other);
         }
         sum
     }
@@ -215,11 +164,8 @@ impl Readings {
                 Err(place) => self.groups.insert(place, group.clone()),
             }
         }
-        for (own, other) in self.sensors.iter_mut().zip(&later.sensors) {
-            own.cells.merge(&other.cells);
-            own.groups.iter_mut().zip(&other.groups).for_each(|(own, other)| own.merge(other));
-            own.depths.merge(&other.depths);
-            merge_classes(&mut own.classes, &other.classes);
+        for (own, later) in self.sensors.iter_mut().zip(&later.sensors) {
+            own.merge(later);
         }
         let room = LEAK_LIMIT.saturating_sub(self.leaks.len());
         self.leaks.extend(later.leaks.iter().take(room).cloned());
@@ -249,10 +195,9 @@ impl Readings {
     ) {
         let reading = &mut self.sensors[id.index()];
         for &cell in cells {
-            reading.add(cell, light.flux, groups.of(light.source));
+            reading.add_to_cell(cell, light, groups.of(light.source));
         }
-        reading.depths.add(SensorReading::depth_bin(light.depth), light.flux);
-        count_totals(&mut self.groups[0].sums, layout, id, light);
+        reading.add(&mut self.groups[0].sums, layout, id, light);
     }
 
     /// Counts a gather path of this throughput that was lost, as a share of all that were drawn.
@@ -305,87 +250,5 @@ impl Readings {
         // The jackknife's variance is (g - 1)² that of the mean of the leave-one-out values.
         let groups = self.groups.len() as f64;
         (value, without.std_error() * (groups - 1.0))
-    }
-}
-
-/// Light that has reached a sensor.
-#[derive(Debug, Clone, Copy)]
-pub struct DetectedLight {
-    /// Its flux, lm or W.
-    pub flux: f64,
-    /// Depth of its path: visible interfaces met before it, and scatterings within media.
-    pub depth: u32,
-    /// Its source.
-    pub source: SourceId,
-}
-
-/// Adds light to the scalars of a sensor.
-#[inline(always)]
-pub(crate) fn count_totals(sums: &mut [f64], layout: &Layout, id: SensorId, light: &DetectedLight) {
-    let &DetectedLight { flux, depth, source } = light;
-    sums[layout.sensor_flux(id, source)] += flux;
-    sums[layout.depth_weighted(id)] += flux * f64::from(depth);
-    for (tail, _) in TAILS.iter().enumerate().take_while(|(_, tail)| depth > **tail) {
-        sums[layout.deeper(id, tail)] += flux;
-    }
-}
-
-impl SensorReading {
-    /// Counts flux in a cell, of all light and of the light groups of its source.
-    #[inline]
-    pub(crate) fn add(&mut self, cell: usize, flux: f64, groups: &[LightGroupId]) {
-        self.cells.add(cell, flux);
-        for group in groups {
-            self.groups[group.index()].add(cell, flux);
-        }
-    }
-
-    /// The bin of the histogram of depths.
-    #[inline]
-    pub(crate) fn depth_bin(depth: u32) -> usize {
-        let depth = depth as usize;
-        if depth < 1024 { depth } else { 1024 + depth.ilog2() as usize - 10 }
-    }
-}
-
-fn merge_classes(own: &mut BTreeMap<Trail, ClassSum>, other: &BTreeMap<Trail, ClassSum>) {
-    for (trail, sum) in other {
-        let own = own.entry(trail.clone()).or_default();
-        own.flux += sum.flux;
-        own.depth_weighted += sum.depth_weighted;
-    }
-    if own.len() > 2 * CLASS_LIMIT {
-        let mut by_flux: Vec<_> = std::mem::take(own).into_iter().collect();
-        by_flux.sort_by(|a, b| b.1.flux.total_cmp(&a.1.flux).then_with(|| a.0.cmp(&b.0)));
-        for (place, (trail, sum)) in by_flux.into_iter().enumerate() {
-            let key = if place < CLASS_LIMIT { trail } else { SmallVec::from_slice(&[None]) };
-            let own = own.entry(key).or_default();
-            own.flux += sum.flux;
-            own.depth_weighted += sum.depth_weighted;
-        }
-    }
-}
-
-/// Maps with non-string keys, as lists of pairs.
-mod pairs {
-    use serde::{Deserialize, Deserializer, Serialize, Serializer};
-    use std::collections::BTreeMap;
-
-    pub(super) fn serialize<K: Serialize, V: Serialize, S: Serializer>(
-        map: &BTreeMap<K, V>,
-        serializer: S,
-    ) -> Result<S::Ok, S::Error> {
-        serializer.collect_seq(map)
-    }
-
-    pub(super) fn deserialize<
-        'de,
-        K: Deserialize<'de> + Ord,
-        V: Deserialize<'de>,
-        D: Deserializer<'de>,
-    >(
-        deserializer: D,
-    ) -> Result<BTreeMap<K, V>, D::Error> {
-        Ok(Vec::<(K, V)>::deserialize(deserializer)?.into_iter().collect())
     }
 }

@@ -133,13 +133,16 @@ impl<'s> Emitters<'s> {
                     if path.inside.contains(*solid) {
                         let radiance = self.volume(seen, *density, path, segment);
                         let emitted = self.volume_radiance(seen, path, -path.ray.dir());
-                        visit(MetEmission {
-                            source: seen.id,
-                            shape: 0,
-                            t: segment.length,
-                            radiance,
-                            emitted,
-                        });
+                        // A source may be dark at the wavelength of the path.
+                        if emitted > 0.0 {
+                            visit(MetEmission {
+                                source: seen.id,
+                                shape: 0,
+                                t: segment.length,
+                                radiance,
+                                emitted,
+                            });
+                        }
                     }
                 }
             }
@@ -159,6 +162,7 @@ impl<'s> Emitters<'s> {
         let tolerance = scene.tolerance;
         let medium = &scene.media[segment.medium.index()];
         let index = medium.index(path.wavelength);
+        let worth = scene.gathered_worth(seen.id, path.wavelength);
         let (from, to) = match (contact, start) {
             (Contact::Free, SegmentStart::Sensor) => (-tolerance, segment.length),
             (Contact::Free, SegmentStart::Face | SegmentStart::Interface) => {
@@ -179,8 +183,8 @@ impl<'s> Emitters<'s> {
                 if t < from || t > to {
                     return;
                 }
-                let emitted =
-                    seen.source.radiance(shape, ray.at(t), -ray.dir()).value() / (index * index);
+                let emitted = worth * seen.source.radiance(shape, ray.at(t), -ray.dir()).value()
+                    / (index * index);
                 if emitted > 0.0 {
                     let arriving =
                         segment.throughput * medium.transmittance(path.wavelength, t.max(0.0));
@@ -205,7 +209,8 @@ impl<'s> Emitters<'s> {
             EmittingBody::Surface { shapes, .. } => {
                 let index = self.scene.media[path.medium.index()].index(path.wavelength);
                 let (start, dir) = (path.ray.origin(), path.ray.dir());
-                seen.source.radiance(&shapes[shape].0, start, dir).value() / (index * index)
+                let worth = self.scene.gathered_worth(source, path.wavelength);
+                worth * seen.source.radiance(&shapes[shape].0, start, dir).value() / (index * index)
             }
             EmittingBody::Volume { .. } => self.volume_radiance(seen, path, path.ray.dir()),
         }
@@ -217,7 +222,8 @@ impl<'s> Emitters<'s> {
         let EmittingBody::Volume { density, usual_length, .. } = &seen.body else { return 0.0 };
         let index = self.scene.media[path.medium.index()].index(path.wavelength);
         let law = seen.source.emission.density(EmitterKind::Volume, out).unwrap_or(0.0);
-        density * law * usual_length / (index * index)
+        let worth = self.scene.gathered_worth(seen.id, path.wavelength);
+        worth * density * law * usual_length / (index * index)
     }
 
     /// Emission along a segment in a glowing solid: ∫ ε exp(-αs) ds, lm/(mm² sr), over n².
@@ -238,7 +244,8 @@ impl<'s> Emitters<'s> {
         };
         let law =
             seen.source.emission.density(EmitterKind::Volume, -segment.ray.dir()).unwrap_or(0.0);
-        segment.throughput * density * law * length / (index * index)
+        let worth = self.scene.gathered_worth(seen.id, path.wavelength);
+        segment.throughput * worth * density * law * length / (index * index)
     }
 }
 
@@ -321,6 +328,7 @@ mod tests {
                 emission,
                 start: SourceStart::Outside,
                 on: Vec::new(),
+                spectrum: None,
                 elevation: None,
                 sun: None,
             });

@@ -118,13 +118,13 @@ fn mirrored(faces: Faces<'_>, incidence: &Incidence, carries: Carries) -> Option
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::optics::REFERENCE_WAVELENGTH;
     use crate::optics::{Finish, Medium};
     use crate::rng::{Dimension, Sampler};
     use crate::scene::shape::{Cylinder, Flat, Region, Shape};
     use crate::scene::{
         Builder, FacePiece, FaceSpec, Inside, Owner, Solid, SolidId, StartSurfaces,
     };
-    use crate::transport::walk::path::WAVELENGTH;
     use crate::transport::walk::walk;
     use glam::DVec3;
     use lumiduct_base::math::{Aabb, Frame, cosine_hemisphere, disk};
@@ -288,7 +288,7 @@ mod tests {
         let path = Path {
             ray: Ray::new(start, frame().to_world(dir)),
             throughput: 1.0,
-            wavelength: WAVELENGTH,
+            wavelength: REFERENCE_WAVELENGTH,
             source: None,
             medium: scene.medium_in(inside),
             inside: inside.clone(),

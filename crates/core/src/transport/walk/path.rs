@@ -2,9 +2,6 @@
 
 use crate::scene::{Arrival, Emitted, Inside, MediumId, Ray, Scene, SourceId, StartSurfaces};
 
-/// Wavelength of all light for now, nm: the peak of V(λ), CIE 018:2019.
-pub(crate) const WAVELENGTH: f64 = 555.0;
-
 /// The state a path carries from one interface to the next.
 #[derive(Debug, Clone)]
 pub struct Path {
@@ -33,7 +30,7 @@ impl Path {
         Self {
             ray: emitted.ray,
             throughput: 1.0,
-            wavelength: WAVELENGTH,
+            wavelength: emitted.wavelength,
             source: Some(source),
             medium: scene.medium_in(&emitted.inside),
             inside: emitted.inside,
@@ -47,7 +44,7 @@ impl Path {
         Self {
             ray: arrival.ray,
             throughput: 1.0,
-            wavelength: WAVELENGTH,
+            wavelength: arrival.wavelength,
             source: None,
             medium: scene.medium_in(&arrival.inside),
             inside: arrival.inside.clone(),

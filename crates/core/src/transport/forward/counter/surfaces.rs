@@ -236,9 +236,9 @@ impl<'s, O: Observer> PhotonCounter<'_, 's, O> {
             return;
         }
         _ = self.observer.see(path, Event::Detect(&light(&lit)));
-        self.count_on_sensor(path, id, throughput);
+        let seen = self.count_on_sensor(path, id, throughput);
         for &cell in &lit {
-            self.readings.sensors[id.index()].add(cell, self.flux * throughput, self.light_groups);
+            self.readings.sensors[id.index()].add_to_cell(cell, &seen, self.light_groups);
         }
     }
 }

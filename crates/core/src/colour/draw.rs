@@ -1,0 +1,148 @@
+//! Wavelengths drawn from a spectrum.
+
+use crate::colour::observer::{StandardObserver, luminous_efficiency};
+use crate::colour::spectrum::Spectrum;
+
+/// What drawing aims at: luminous flux, the sum of all three colour stimuli, and radiant flux. Luminous flux then has at most
+/// 1/0.6 times its mean weight, and no visible light is missed.
+const AIMS: [f64; 3] = [0.6, 0.3, 0.1];
+
+/// Draws wavelengths in proportion to a spectrum, more of them where they matter most to the eye.
+#[derive(Debug, Clone)]
+pub struct SpectralDraw {
+    spectrum: Spectrum,
+    pieces: Vec<SpectralPiece>,
+    /// Mean of V(λ) over the spectrum, 1.
+    luminous: f64,
+}
+
+/// A range of wavelengths over which the density is a multiple of the spectrum.
+#[derive(Debug, Clone, Copy)]
+struct SpectralPiece {
+    /// Start and end, nm.
+    range: [f64; 2],
+    /// Spectrum there, 1/nm.
+    values: [f64; 2],
+    /// Density over spectrum, 1.
+    emphasis: f64,
+    /// Probability of it and of all pieces before it.
+    up_to: f64,
+}
+
+impl SpectralDraw {
+    /// Prepares drawing from a spectrum.
+    pub fn new(spectrum: Spectrum) -> Self {
+        let observer = StandardObserver::TwoDegree;
+        let [mean_x, mean_y, mean_z] = spectrum.tristimulus(observer);
+        let all = mean_x + mean_y + mean_z;
+        let [luminous, stimuli, radiant] = AIMS;
+        let mut up_to = 0.0;
+        let mut pieces: Vec<SpectralPiece> = Vec::new();
+        for range in spectrum.pieces() {
+            let [low, high] = range;
+            let values = range.map(|nm| spectrum.at(nm));
+            let [x, y, z] = observer.matching(0.5 * (low + high));
+            let emphasis = luminous * y / mean_y + stimuli * (x + y + z) / all + radiant;
+            up_to += 0.5 * (high - low) * (values[0] + values[1]) * emphasis;
+            pieces.push(SpectralPiece { range, values, emphasis, up_to });
+        }
+        // The emphasis at the middle of a piece is not its mean, so probabilities do not add up to 1 by themselves.
+        for piece in &mut pieces {
+            piece.emphasis /= up_to;
+            piece.up_to /= up_to;
+        }
+        Self { spectrum, pieces, luminous: mean_y }
+    }
+
+    /// The spectrum.
+    pub fn spectrum(&self) -> &Spectrum {
+        &self.spectrum
+    }
+
+    /// The wavelength of a number in [0, 1), nm.
+    pub fn sample(&self, u: f64) -> f64 {
+        let last = self.pieces.len() - 1;
+        let place = self.pieces.partition_point(|piece| piece.up_to <= u).min(last);
+        let piece = &self.pieces[place];
+        let before = place.checked_sub(1).map_or(0.0, |before| self.pieces[before].up_to);
+        let share = ((u - before) / (piece.up_to - before)).clamp(0.0, 1.0);
+        let ([low, high], [a, b]) = (piece.range, piece.values);
+        // The cumulative density of a linear one, inverted: t (2a + t (b - a)) = share (a + b).
+        let root = (a * a + share * (b * b - a * a)).max(0.0).sqrt();
+        low + (high - low) * (share * (a + b) / (a + root)).min(1.0)
+    }
+
+    /// Luminous flux at a wavelength, as a share of all luminous flux, 1/nm.
+    pub fn luminous(&self, nm: f64) -> f64 {
+        self.spectrum.at(nm) * luminous_efficiency(nm) / self.luminous
+    }
+
+    /// Luminous flux of a draw over the mean of all draws, 1; 0 at wavelengths that are never drawn.
+    pub fn relative_flux(&self, nm: f64) -> f64 {
+        self.piece(nm)
+            .map_or(0.0, |piece| luminous_efficiency(nm) / (self.luminous * piece.emphasis))
+    }
+
+    /// Probability density of a wavelength, 1/nm.
+    pub fn density(&self, nm: f64) -> f64 {
+        self.piece(nm).map_or(0.0, |piece| piece.emphasis * self.spectrum.at(nm))
+    }
+
+    fn piece(&self, nm: f64) -> Option<&SpectralPiece> {
+        let [first, last] = [self.pieces[0].range[0], self.pieces[self.pieces.len() - 1].range[1]];
+        if !(first..=last).contains(&nm) {
+            return None;
+        }
+        self.pieces.get(self.pieces.partition_point(|piece| piece.range[1] < nm))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::colour::spectrum::NoSpectrum;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn the_mean_of_weighted_draws_is_the_integral(
+            values in proptest::collection::vec(0.0..1.0f64, 2..12),
+            line in 390.0..770.0f64,
+        ) {
+            let step = 405.0 / (values.len() - 1) as f64;
+            let table: Vec<_> = values.iter().enumerate().map(|(i, v)| [377.5 + step * i as f64, 1e-6 + v]).collect();
+            let spectrum = Spectrum::new(&table)
+                .and_then(|even| Spectrum::sum(&[(0.7, even), (0.3, Spectrum::line(line)?)]));
+            let spectrum = spectrum.map_err(|none: NoSpectrum| TestCaseError::fail(none.to_string()))?;
+            let draw = SpectralDraw::new(spectrum.clone());
+            let (count, observer) = (20_000, StandardObserver::TwoDegree);
+            let mut sums = [0.0; 4];
+            for i in 0..count {
+                let nm = draw.sample((f64::from(i) + 0.5) / f64::from(count));
+                let weight = spectrum.at(nm) / draw.density(nm) / f64::from(count);
+                let flux = draw.luminous(nm) / draw.density(nm);
+                prop_assert!((draw.relative_flux(nm) / flux - 1.0).abs() < 1e-9);
+                let [x, y, z] = observer.matching(nm);
+                for (sum, value) in sums.iter_mut().zip([x, y, z, 1.0]) {
+                    *sum += weight * value;
+                }
+            }
+            let [x, y, z] = spectrum.tristimulus(observer);
+            for (sum, expected) in sums.into_iter().zip([x, y, z, 1.0]) {
+                prop_assert!((sum / expected - 1.0).abs() < 2e-3, "{sum} {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn ends_of_the_unit_interval_are_wavelengths_of_the_spectrum() -> Result<(), NoSpectrum> {
+        let draw = SpectralDraw::new(Spectrum::line(600.0)?);
+        for u in [0.0, 0.5, 1.0 - f64::EPSILON] {
+            let nm = draw.sample(u);
+            assert!((nm - 600.0).abs() <= 0.01, "{nm}");
+        }
+        assert!((draw.sample(0.5) - 600.0).abs() < 1e-6);
+        assert_eq!((draw.density(601.0), draw.relative_flux(601.0)), (0.0, 0.0));
+        Ok(())
+    }
+}

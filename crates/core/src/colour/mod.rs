@@ -1,0 +1,25 @@
+//! Spectra, and what standard observers make of them.
+
+mod chromaticity;
+mod dominant;
+mod draw;
+mod observer;
+mod rendering;
+mod spectrum;
+mod standard;
+mod table;
+mod temperature;
+mod tristimulus;
+
+pub use chromaticity::Chromaticity;
+pub use dominant::{DominantWavelength, WavelengthKind, dominant_wavelength};
+pub use draw::SpectralDraw;
+pub use observer::{MAX_EFFICACY, StandardObserver, VISIBLE, luminous_efficiency};
+pub use rendering::{ColourRendering, colour_rendering};
+pub use spectrum::{NoSpectrum, Spectrum};
+pub use standard::{
+    DaylightPhase, blackbody, equal_energy, gaussian, illuminant_a, illuminant_d65,
+};
+pub use table::SpectralTable;
+pub use temperature::{ColourTemperature, correlated_colour_temperature};
+pub use tristimulus::{sampled, tristimulus};

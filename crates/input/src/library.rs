@@ -1,0 +1,83 @@
+//! Media that scenes can name without defining them, with the sources of their numbers.
+
+use indexmap::IndexMap;
+use lumiduct_core::optics::IndexLaw;
+use serde::Deserialize;
+use std::sync::LazyLock;
+
+static MEDIA: LazyLock<IndexMap<String, LibraryMedium>> = LazyLock::new(|| {
+    toml::from_str(include_str!("../library/media.toml")).expect("a test reads the library")
+});
+
+/// A medium of the library.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LibraryMedium {
+    /// What it is.
+    pub description: String,
+    index: LibraryIndex,
+    /// The wavelengths for which its index was measured, nm.
+    pub range_nm: [f64; 2],
+    /// Where its numbers are from.
+    pub source: String,
+    /// The licence of its numbers.
+    pub licence: String,
+}
+
+/// The law of an index, as in a scene.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum LibraryIndex {
+    Sellmeier(Vec<[f64; 2]>),
+    Powers(Vec<(f64, i32)>),
+}
+
+impl LibraryMedium {
+    /// Its index by wavelength.
+    pub fn law(&self) -> IndexLaw {
+        match &self.index {
+            LibraryIndex::Sellmeier(terms) => IndexLaw::Sellmeier(terms.clone()),
+            LibraryIndex::Powers(terms) => IndexLaw::Powers(terms.clone()),
+        }
+    }
+}
+
+/// All media of the library by name, in its order.
+pub fn media() -> &'static IndexMap<String, LibraryMedium> {
+    &MEDIA
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn media_have_the_indices_of_their_sources_at_the_d_line() {
+        let names: Vec<&str> = media().keys().map(String::as_str).collect();
+        assert_eq!(names, ["pmma", "pc", "ps", "bk7", "fused_silica", "water"]);
+        // Catalogue values of index and Abbe number; one-term laws have the index within 1e-3 and the Abbe number within 8 %.
+        for (name, index, abbe) in [
+            ("pmma", 1.4918, 57.4),
+            ("pc", 1.585, 30.0),
+            ("ps", 1.592, 30.9),
+            ("bk7", 1.5168, 64.17),
+            ("fused_silica", 1.45846, 67.8),
+            ("water", 1.33336, 55.7),
+        ] {
+            let law = media()[name].law();
+            let found = [law.at(587.5618), law.abbe_number()];
+            assert!((found[0] - index).abs() < 1.5e-3, "{name}: {found:?}");
+            assert!((found[1] / abbe - 1.0).abs() < 0.08, "{name}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn every_entry_says_where_its_numbers_are_from() {
+        for (name, medium) in media() {
+            let texts = [&medium.description, &medium.source, &medium.licence];
+            assert!(texts.iter().all(|text| text.len() > 5), "{name}");
+            let [first, last] = medium.range_nm;
+            assert!(first < 550.0 && last > 650.0, "{name}");
+        }
+    }
+}

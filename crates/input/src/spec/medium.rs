@@ -1,0 +1,34 @@
+//! Media as a scene file states them.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::spec::spectrum::{AbsorptionSpec, IndexSpec};
+
+/// A medium in which light travels. `air` is predefined with index 1 and no absorption, and so are the media that `lumiduct library` lists, without
+/// absorption; a table of the same name replaces them. What an interface of two media
+/// transmits follows from their indices, for unpolarised light: see the finish `smooth`. Index and absorption may depend on the
+/// wavelength; where sources have no spectrum, light has 555 nm.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct MediumSpec {
+    /// Refractive index.
+    pub index: IndexSpec,
+    /// Absorption coefficient (natural): a beam decreases to exp(-absorption times length).
+    #[serde(default)]
+    pub absorption_per_mm: AbsorptionSpec,
+    /// Particles that scatter light, evenly spread, as in diffuser rods; none in a clear medium.
+    pub scattering: Option<ScatteringSpec>,
+}
+
+/// Scattering within a medium.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ScatteringSpec {
+    /// Scattering coefficient: the inverse of the mean free path between scatterings.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub per_mm: f64,
+    /// Mean cosine of the scattering angle, for the Henyey-Greenstein phase function: 0 is isotropic, near 1 mostly
+    /// forward (particles larger than a wavelength), below 0 mostly backward.
+    #[serde(default)]
+    #[schemars(range(min = -0.999, max = 0.999))]
+    pub anisotropy: f64,
+}

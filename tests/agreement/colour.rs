@@ -108,6 +108,7 @@ fn a_radiant_flux_has_the_lumens_of_its_spectrum() {
     let found = measures(&coloured_rod(lamp), Way::Forward);
     // V(555 nm) is 1 (CIE 018:2019).
     assert!((found.source_flux / (2.0 * 683.002) - 1.0).abs() < 1e-4, "{}", found.source_flux);
+    assert!(found.balance.residual.value.abs() < 1e-9 * found.source_flux, "{:?}", found.balance);
     let efficacy = found.values["exit.luminous_efficacy"].value;
     assert!((efficacy / 683.002 - 1.0).abs() < 1e-4, "{efficacy}");
 }

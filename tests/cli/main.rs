@@ -19,6 +19,7 @@ mod schemas;
 mod seals;
 #[path = "../skip/mod.rs"]
 mod skip;
+mod spectra;
 mod spreadsheets;
 mod streams;
 mod texts;

@@ -20,6 +20,18 @@ pub(crate) fn read_file(path: &Path, limit: u64) -> io::Result<Option<Vec<u8>>> 
     Ok((bytes.len() as u64 <= limit).then_some(bytes))
 }
 
+/// What is wrong with a text that is not UTF-8.
+pub(crate) const NOT_UTF8: &str = "it is not UTF-8 text; save it as UTF-8";
+
+/// The text of a file, without a byte order mark; the line, from 1, of what is not UTF-8.
+pub(crate) fn utf8(bytes: &[u8]) -> Result<&str, usize> {
+    let text = std::str::from_utf8(bytes).map_err(|error| {
+        let before = &bytes[..error.valid_up_to()];
+        1 + before.iter().filter(|byte| **byte == b'\n').count()
+    })?;
+    Ok(text.strip_prefix('\u{feff}').unwrap_or(text))
+}
+
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;

@@ -4,7 +4,7 @@
 //! `lambda_nm` in nm, or `um` or `wavelength_um` in µm. Empty lines and lines that start with # are left out. A reader never
 //! trusts a file: whatever it contains, the result is rows or a [`SpectralError`].
 
-use crate::bytes::read_file;
+use crate::bytes::{NOT_UTF8, read_file, utf8};
 use std::path::Path;
 
 /// Longest file that is read, bytes.
@@ -74,15 +74,12 @@ pub fn read(path: &Path, column: SpectralColumn<'_>) -> Result<SpectralValues, S
 /// [`SpectralError::Violated`] with the line.
 pub fn parse(bytes: &[u8], column: SpectralColumn<'_>) -> Result<SpectralValues, SpectralError> {
     let wrong = |line, problem: String| SpectralError::Violated { line, problem };
-    let text = std::str::from_utf8(bytes).map_err(|error| {
-        let before = &bytes[..error.valid_up_to()];
-        let line = 1 + before.iter().filter(|byte| **byte == b'\n').count();
-        wrong(line, "it is not UTF-8 text; save it as UTF-8".to_owned())
-    })?;
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let text = utf8(bytes).map_err(|line| wrong(line, NOT_UTF8.to_owned()))?;
     let lines = text.lines().enumerate().map(|(index, line)| (index + 1, line.trim()));
     let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
-    let (head_line, head) = lines.next().unwrap_or((1, ""));
+    let Some((head_line, head)) = lines.next() else {
+        return Err(wrong(1, "the file is empty".to_owned()));
+    };
     let names: Vec<&str> = head.split(',').map(str::trim).collect();
     let unit = WAVELENGTHS.iter().find(|(name, _)| names[0].eq_ignore_ascii_case(name));
     let Some((_, unit)) = unit else {
@@ -118,7 +115,7 @@ pub fn parse(bytes: &[u8], column: SpectralColumn<'_>) -> Result<SpectralValues,
         };
         let row = [unit * number(words[0])?, number(words[place])?];
         if row[0] <= 0.0 {
-            return Err(wrong(line, format!("{} is no wavelength", words[0])));
+            return Err(wrong(line, format!("{} is not a wavelength", words[0])));
         }
         if rows.last().is_some_and(|before| before[0] >= row[0]) {
             return Err(wrong(line, "wavelengths must ascend".to_owned()));
@@ -163,7 +160,7 @@ mod tests {
     #[test]
     fn what_is_wrong_is_named_with_its_line() {
         for (text, part) in [
-            ("", "line 1: the first column is ``"),
+            ("", "line 1: the file is empty"),
             ("wavelength,n\n", "line 1: the first column is `wavelength`"),
             ("nm\n400\n", "line 1: there is no column `n`"),
             ("nm,n\n400,1.5\n", "line 1: fewer than two"),
@@ -171,7 +168,7 @@ mod tests {
             ("nm,n\n400,1.5\n500,x\n", "line 3: `x` is not a number"),
             ("nm,n\n400,1.5\n500,inf\n", "line 3: inf is not a finite number"),
             ("nm,n\n500,1.5\n400,1.5\n", "line 3: wavelengths must ascend"),
-            ("nm,n\n0,1.5\n400,1.5\n", "line 2: 0 is no wavelength"),
+            ("nm,n\n0,1.5\n400,1.5\n", "line 2: 0 is not a wavelength"),
         ] {
             let found = problem(text, INDEX);
             assert!(found.contains(part), "{text:?}: {found}");

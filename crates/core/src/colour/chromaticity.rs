@@ -31,12 +31,6 @@ impl Chromaticity {
         let [u, v] = self.uv_1976();
         [u, v * 2.0 / 3.0]
     }
-
-    /// The distance Δu'v' to another chromaticity in the CIE 1976 diagram, 1. About 1e-3 is just noticed side by side.
-    pub fn delta_uv_1976(self, other: Self) -> f64 {
-        let [[u, v], [other_u, other_v]] = [self.uv_1976(), other.uv_1976()];
-        (u - other_u).hypot(v - other_v)
-    }
 }
 
 #[cfg(test)]
@@ -61,14 +55,6 @@ mod tests {
             let [own_u, own_v] = Chromaticity { x, y }.uv_1960();
             assert!((own_u - u).abs() < 1e-8 && (own_v - v).abs() < 1e-8, "{own_u} {own_v}");
         }
-    }
-
-    #[test]
-    fn the_distance_is_symmetric() {
-        let [one, other] = [Chromaticity { x: 0.3, y: 0.4 }, Chromaticity { x: 0.45, y: 0.41 }];
-        assert_eq!(one.delta_uv_1976(other), other.delta_uv_1976(one));
-        assert!(one.delta_uv_1976(other) > 0.05);
-        assert_eq!(one.delta_uv_1976(one), 0.0);
     }
 
     #[test]

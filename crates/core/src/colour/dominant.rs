@@ -1,7 +1,7 @@
 //! Dominant wavelength and excitation purity (CIE 015:2018).
 
 use crate::colour::chromaticity::Chromaticity;
-use crate::colour::observer::StandardObserver;
+use crate::colour::observer::colour_matching;
 use std::sync::LazyLock;
 
 /// The part of the spectrum locus that is used, nm. Above 699 nm its points no longer move, except back and forth by the
@@ -12,7 +12,7 @@ const SLACK: f64 = 1e-9;
 
 /// The spectrum locus, every nm.
 static LOCUS: LazyLock<Vec<Chromaticity>> = LazyLock::new(|| {
-    let colour = |nm| StandardObserver::TwoDegree.matching(f64::from(nm));
+    let colour = |nm| colour_matching(f64::from(nm));
     RANGE.filter_map(|nm| Chromaticity::from_tristimulus(colour(nm))).collect()
 });
 
@@ -114,7 +114,7 @@ mod tests {
     fn mixtures_of_white_and_one_wavelength_have_that_wavelength() {
         for white in WHITES {
             for nm in [400.0, 450.0, 500.5, 520.0, 555.0, 600.25, 640.0] {
-                let sums = StandardObserver::TwoDegree.matching(nm);
+                let sums = colour_matching(nm);
                 let pure = Chromaticity::from_tristimulus(sums).unwrap();
                 for purity in [0.01, 0.4, 1.0] {
                     let mix = |white: f64, pure: f64| white + purity * (pure - white);

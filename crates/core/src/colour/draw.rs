@@ -1,11 +1,11 @@
 //! Wavelengths drawn from a spectrum.
 
-use crate::colour::observer::{StandardObserver, luminous_efficiency};
+use crate::colour::observer::{colour_matching, luminous_efficiency};
 use crate::colour::spectrum::Spectrum;
 
-/// What drawing aims at: luminous flux, the sum of all three colour stimuli, and radiant flux. Luminous flux then has at most
-/// 1/0.6 times its mean weight, and no visible light is missed.
-const AIMS: [f64; 3] = [0.6, 0.3, 0.1];
+/// Shares of the draws in proportion to luminous flux, to the sum of the three tristimulus values, and to radiant flux, 1. A draw
+/// then has at most some 1/0.6 of the mean luminous flux, and no visible light is missed.
+const SHARES: [f64; 3] = [0.6, 0.3, 0.1];
 
 /// Draws wavelengths in proportion to a spectrum, more of them where they matter most to the eye.
 #[derive(Debug, Clone)]
@@ -32,16 +32,15 @@ struct SpectralPiece {
 impl SpectralDraw {
     /// Prepares drawing from a spectrum.
     pub fn new(spectrum: Spectrum) -> Self {
-        let observer = StandardObserver::TwoDegree;
-        let [mean_x, mean_y, mean_z] = spectrum.tristimulus(observer);
+        let [mean_x, mean_y, mean_z] = spectrum.tristimulus();
         let all = mean_x + mean_y + mean_z;
-        let [luminous, stimuli, radiant] = AIMS;
+        let [luminous, stimuli, radiant] = SHARES;
         let mut up_to = 0.0;
         let mut pieces: Vec<SpectralPiece> = Vec::new();
         for range in spectrum.pieces() {
             let [low, high] = range;
             let values = range.map(|nm| spectrum.at(nm));
-            let [x, y, z] = observer.matching(0.5 * (low + high));
+            let [x, y, z] = colour_matching(0.5 * (low + high));
             let emphasis = luminous * y / mean_y + stimuli * (x + y + z) / all + radiant;
             up_to += 0.5 * (high - low) * (values[0] + values[1]) * emphasis;
             pieces.push(SpectralPiece { range, values, emphasis, up_to });
@@ -115,19 +114,19 @@ mod tests {
                 .and_then(|even| Spectrum::sum(&[(0.7, even), (0.3, Spectrum::line(line)?)]));
             let spectrum = spectrum.map_err(|none: NoSpectrum| TestCaseError::fail(none.to_string()))?;
             let draw = SpectralDraw::new(spectrum.clone());
-            let (count, observer) = (20_000, StandardObserver::TwoDegree);
+            let count = 20_000;
             let mut sums = [0.0; 4];
             for i in 0..count {
                 let nm = draw.sample((f64::from(i) + 0.5) / f64::from(count));
                 let weight = spectrum.at(nm) / draw.density(nm) / f64::from(count);
                 let flux = draw.luminous(nm) / draw.density(nm);
                 prop_assert!((draw.relative_flux(nm) / flux - 1.0).abs() < 1e-9);
-                let [x, y, z] = observer.matching(nm);
+                let [x, y, z] = colour_matching(nm);
                 for (sum, value) in sums.iter_mut().zip([x, y, z, 1.0]) {
                     *sum += weight * value;
                 }
             }
-            let [x, y, z] = spectrum.tristimulus(observer);
+            let [x, y, z] = spectrum.tristimulus();
             for (sum, expected) in sums.into_iter().zip([x, y, z, 1.0]) {
                 prop_assert!((sum / expected - 1.0).abs() < 2e-3, "{sum} {expected}");
             }

@@ -1,4 +1,4 @@
-//! Spectra, and what standard observers make of them.
+//! Spectra, and how a standard observer sees them.
 
 mod chromaticity;
 mod dominant;
@@ -14,7 +14,8 @@ mod tristimulus;
 pub use chromaticity::Chromaticity;
 pub use dominant::{DominantWavelength, WavelengthKind, dominant_wavelength};
 pub use draw::SpectralDraw;
-pub use observer::{MAX_EFFICACY, StandardObserver, VISIBLE, luminous_efficiency};
+pub(crate) use observer::colour_matching;
+pub use observer::{MAX_EFFICACY, VISIBLE};
 pub use rendering::{ColourRendering, colour_rendering};
 pub use spectrum::{NoSpectrum, Spectrum};
 pub use standard::{

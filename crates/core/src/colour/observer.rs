@@ -1,4 +1,4 @@
-//! The standard colorimetric observers.
+//! The CIE 1931 standard colorimetric observer, for fields up to 4 degrees wide.
 
 use std::sync::LazyLock;
 
@@ -11,35 +11,19 @@ pub const MAX_EFFICACY: f64 = 683.002;
 /// The first wavelength of the table, nm.
 const FIRST: f64 = 360.0;
 
-/// Every nm from 360 to 830 nm, x, y and z of both observers.
-static TABLE: LazyLock<Vec<[f64; 6]>> =
-    LazyLock::new(|| columns(include_str!("../../data/observers.csv")));
+/// Every nm from 360 to 830 nm, x, y and z.
+static TABLE: LazyLock<Vec<[f64; 3]>> =
+    LazyLock::new(|| columns(include_str!("../../data/observer.csv")));
 
-/// A standard colorimetric observer (ISO/CIE 11664-1:2019).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum StandardObserver {
-    /// CIE 1931, for fields up to 4 degrees wide; its y is V(λ).
-    #[default]
-    TwoDegree,
-    /// CIE 1964, for wider fields.
-    TenDegree,
-}
-
-impl StandardObserver {
-    /// The colour-matching functions x, y, z at a wavelength in nm, 1; 0 beyond 360 to 830 nm.
-    pub fn matching(self, nm: f64) -> [f64; 3] {
-        let first = match self {
-            Self::TwoDegree => 0,
-            Self::TenDegree => 3,
-        };
-        std::array::from_fn(|column| linear(&TABLE, [FIRST, 1.0], nm, |row| row[first + column]))
-    }
+/// The colour-matching functions x, y, z of the CIE 1931 observer at a wavelength in nm, 1; 0 beyond 360 to 830 nm (ISO/CIE
+/// 11664-1:2019). The second is V(λ).
+pub(crate) fn colour_matching(nm: f64) -> [f64; 3] {
+    std::array::from_fn(|column| linear(&TABLE, [FIRST, 1.0], nm, |row| row[column]))
 }
 
 /// The luminous efficiency V(λ) of photopic vision, 1.
-pub fn luminous_efficiency(nm: f64) -> f64 {
-    let [_, y, _] = StandardObserver::TwoDegree.matching(nm);
-    y
+pub(crate) fn luminous_efficiency(nm: f64) -> f64 {
+    linear(&TABLE, [FIRST, 1.0], nm, |[_, y, _]| *y)
 }
 
 /// The value at a wavelength, nm, of a table with a first wavelength and a step, nm; 0 beyond it.
@@ -84,16 +68,12 @@ mod tests {
 
     #[test]
     fn equal_energy_is_white() {
-        for (observer, tolerance) in
-            [(StandardObserver::TwoDegree, 1e-4), (StandardObserver::TenDegree, 2e-4)]
-        {
-            let mut sums = [0.0; 3];
-            for nm in 380..=780 {
-                let own = observer.matching(f64::from(nm));
-                sums.iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
-            }
-            assert!((sums[0] / sums[1] - 1.0).abs() < tolerance, "{sums:?}");
-            assert!((sums[2] / sums[1] - 1.0).abs() < tolerance, "{sums:?}");
+        let mut sums = [0.0; 3];
+        for nm in 380..=780 {
+            let own = colour_matching(f64::from(nm));
+            sums.iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
         }
+        assert!((sums[0] / sums[1] - 1.0).abs() < 1e-4, "{sums:?}");
+        assert!((sums[2] / sums[1] - 1.0).abs() < 1e-4, "{sums:?}");
     }
 }

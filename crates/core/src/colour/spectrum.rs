@@ -1,6 +1,7 @@
 //! The spectrum of light, relative to its whole.
 
-use crate::colour::observer::{MAX_EFFICACY, StandardObserver, VISIBLE, luminous_efficiency};
+use crate::colour::observer::{MAX_EFFICACY, VISIBLE, colour_matching, luminous_efficiency};
+use crate::colour::table::between_rows;
 
 /// Half the width of a spectral line where it is zero, nm: far below what dispersion resolves.
 const LINE_HALF_WIDTH: f64 = 0.01;
@@ -12,7 +13,7 @@ pub struct Spectrum {
     knots: Vec<[f64; 2]>,
 }
 
-/// Why a table is no spectrum.
+/// Why a table is not a spectrum.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum NoSpectrum {
     /// Fewer than two wavelengths.
@@ -49,12 +50,12 @@ impl Spectrum {
         if table.iter().any(|[_, value]| !value.is_finite() || *value < 0.0) {
             return Err(NoSpectrum::Negative);
         }
-        let [first, last] = VISIBLE;
-        let at = |nm: f64| Some([nm, value_at(table, nm)]);
-        let within = table.iter().copied().filter(|[nm, _]| *nm > first && *nm < last);
-        let lowest = at(first).filter(|_| table[0][0] <= first);
-        let highest = at(last).filter(|_| table[table.len() - 1][0] >= last);
-        Self::normalised(lowest.into_iter().chain(within).chain(highest).collect())
+        Self::normalised(visible_part(table))
+    }
+
+    /// The share of the radiant flux of such a table that is visible, 1; not a number if there is none.
+    pub fn visible_share(table: &[[f64; 2]]) -> f64 {
+        trapezium(&visible_part(table)) / trapezium(table)
     }
 
     /// The spectrum of a law, tabulated every nm: radiant flux per wavelength in any unit, at a wavelength in nm.
@@ -108,7 +109,7 @@ impl Spectrum {
     /// Share of the radiant flux per wavelength, 1/nm; 0 outside of the knots.
     pub fn at(&self, nm: f64) -> f64 {
         let inside = nm >= self.knots[0][0] && nm <= self.knots[self.knots.len() - 1][0];
-        if inside { value_at(&self.knots, nm) } else { 0.0 }
+        if inside { between_rows(&self.knots, nm) } else { 0.0 }
     }
 
     /// Luminous efficacy of its radiation of the visible range, lm/W.
@@ -116,21 +117,9 @@ impl Spectrum {
         MAX_EFFICACY * self.integral(luminous_efficiency)
     }
 
-    /// What an observer makes of it: the integrals of its colour-matching functions, 1.
-    pub fn tristimulus(&self, observer: StandardObserver) -> [f64; 3] {
-        std::array::from_fn(|axis| self.integral(|nm| observer.matching(nm)[axis]))
-    }
-
-    /// The wavelengths outside of which it is dark, nm.
-    pub fn range(&self) -> [f64; 2] {
-        let lit = |[_, value]: &&[f64; 2]| *value > 0.0;
-        let first = self.knots.iter().position(|knot| lit(&knot)).unwrap_or(0);
-        let last = self.knots.iter().rposition(|knot| lit(&knot)).unwrap_or(0);
-        // Light rises from the knot before the first one that is lit.
-        [
-            self.knots[first.saturating_sub(1)][0],
-            self.knots[(last + 1).min(self.knots.len() - 1)][0],
-        ]
+    /// Its tristimulus values: the integrals of the spectrum times the colour-matching functions, 1.
+    pub fn tristimulus(&self) -> [f64; 3] {
+        std::array::from_fn(|axis| self.integral(|nm| colour_matching(nm)[axis]))
     }
 
     /// Share of its radiant flux from one wavelength to another, nm.
@@ -164,11 +153,13 @@ impl Spectrum {
     }
 }
 
-/// The value of a table at a wavelength within it, nm.
-fn value_at(table: &[[f64; 2]], nm: f64) -> f64 {
-    let after = table.partition_point(|[place, _]| *place <= nm).clamp(1, table.len() - 1);
-    let ([low, a], [high, b]) = (table[after - 1], table[after]);
-    a + ((nm - low) / (high - low)).clamp(0.0, 1.0) * (b - a)
+/// The part of a table of two or more rows within the visible range.
+fn visible_part(table: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let [first, last] = VISIBLE;
+    let [start, end] = [table[0][0], table[table.len() - 1][0]];
+    let at = |nm: f64| (start <= nm && nm <= end).then(|| [nm, between_rows(table, nm)]);
+    let within = table.iter().copied().filter(|[nm, _]| *nm > first && *nm < last);
+    at(first).into_iter().chain(within).chain(at(last)).collect()
 }
 
 fn trapezium(table: &[[f64; 2]]) -> f64 {
@@ -182,7 +173,8 @@ mod tests {
     #[test]
     fn a_table_is_cut_to_the_visible_range() -> Result<(), NoSpectrum> {
         let spectrum = Spectrum::new(&[[300.0, 1.0], [900.0, 1.0]])?;
-        assert_eq!(spectrum.range(), VISIBLE);
+        let share = Spectrum::visible_share(&[[300.0, 1.0], [900.0, 1.0]]);
+        assert!((share - 405.0 / 600.0).abs() < 1e-12, "{share}");
         assert!((spectrum.at(500.0) - 1.0 / 405.0).abs() < 1e-15);
         assert!((spectrum.share([400.0, 481.0]) - 0.2).abs() < 1e-12);
         assert_eq!(spectrum.at(377.0), 0.0);
@@ -201,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_spectrum_says_why() {
+    fn what_is_not_a_spectrum_says_why() {
         assert_eq!(Spectrum::new(&[[500.0, 1.0]]), Err(NoSpectrum::TooShort));
         assert_eq!(Spectrum::new(&[[500.0, 1.0], [500.0, 1.0]]), Err(NoSpectrum::NotAscending));
         assert_eq!(Spectrum::new(&[[500.0, 1.0], [f64::NAN, 1.0]]), Err(NoSpectrum::NotAscending));

@@ -98,12 +98,12 @@ pub(super) fn planck(nm: f64, kelvin: f64, second_radiation: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::colour::{Chromaticity, StandardObserver, sampled, tristimulus};
+    use crate::colour::{Chromaticity, sampled, tristimulus};
 
     /// By sums every 5 nm.
     fn chromaticity(spectrum: impl Fn(f64) -> f64) -> Chromaticity {
         let values: [f64; 81] = sampled(spectrum);
-        let sums = tristimulus(StandardObserver::TwoDegree, &values);
+        let sums = tristimulus(&values);
         Chromaticity::from_tristimulus(sums).unwrap()
     }
 
@@ -125,7 +125,7 @@ mod tests {
     #[test]
     fn a_black_body_of_2856_k_has_the_reference_efficacy() {
         let values: [f64; 81] = sampled(|nm| blackbody(nm, 2856.0));
-        let [_, y, _] = tristimulus(StandardObserver::TwoDegree, &values);
+        let [_, y, _] = tristimulus(&values);
         let efficacy = 683.002 * y / (5.0 * values.iter().sum::<f64>()); // lm/W inside 380 to 780 nm
         assert!((efficacy - 154.1664118).abs() < 0.05, "{efficacy}");
     }

@@ -38,12 +38,7 @@ impl SpectralTable {
             let row = at as usize;
             return dense[row] + (at - row as f64) * (dense[row + 1] - dense[row]);
         }
-        let after = self.rows.partition_point(|[place, _]| *place <= nm);
-        let Some(&[low, a]) = after.checked_sub(1).and_then(|before| self.rows.get(before)) else {
-            return self.rows[0][1];
-        };
-        let Some(&[high, b]) = self.rows.get(after) else { return a };
-        a + (nm - low) / (high - low) * (b - a)
+        between_rows(&self.rows, nm)
     }
 
     /// The first and the last wavelength, nm.
@@ -55,6 +50,13 @@ impl SpectralTable {
     pub fn rows(&self) -> &[[f64; 2]] {
         &self.rows
     }
+}
+
+/// The value of a table of two or more ascending rows at a wavelength, nm: linear within, constant beyond.
+pub(super) fn between_rows(rows: &[[f64; 2]], nm: f64) -> f64 {
+    let after = rows.partition_point(|[place, _]| *place <= nm).clamp(1, rows.len() - 1);
+    let ([low, a], [high, b]) = (rows[after - 1], rows[after]);
+    a + ((nm - low) / (high - low)).clamp(0.0, 1.0) * (b - a)
 }
 
 #[cfg(test)]

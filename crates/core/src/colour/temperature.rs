@@ -6,7 +6,7 @@
 //! and 780 nm is off the locus by up to 3e-5 in u, v: it seems 2 K colder at 6500 K, and 8 K at 10000 K.
 
 use crate::colour::chromaticity::Chromaticity;
-use crate::colour::observer::StandardObserver;
+use crate::colour::observer::colour_matching;
 use crate::colour::standard::planck;
 use std::sync::LazyLock;
 
@@ -104,7 +104,7 @@ fn planckian(observer: &[(f64, [f64; 3])], kelvin: f64) -> Chromaticity {
 /// The wavelengths from 360 to 830 nm, and the CIE 1931 colour-matching functions there.
 fn observer() -> Vec<(f64, [f64; 3])> {
     let whole = (360..=830).map(f64::from);
-    whole.map(|nm| (nm, StandardObserver::TwoDegree.matching(nm))).collect()
+    whole.map(|nm| (nm, colour_matching(nm))).collect()
 }
 
 #[cfg(test)]
@@ -133,7 +133,7 @@ mod tests {
     fn a_black_body_cut_off_at_the_ends_of_the_visible_has_nearly_its_temperature() {
         for kelvin in [1500.0, 2856.0, 4000.0, 6500.0, 10_000.0] {
             let values: [f64; 401] = sampled(|nm| blackbody(nm, kelvin));
-            let sums = tristimulus(StandardObserver::TwoDegree, &values);
+            let sums = tristimulus(&values);
             let own = Chromaticity::from_tristimulus(sums).unwrap();
             let own = correlated_colour_temperature(own).unwrap();
             assert!((own.kelvin / kelvin - 1.0).abs() < 1e-3, "{kelvin} {own:?}");
@@ -184,7 +184,7 @@ mod tests {
     #[test]
     fn d65_has_its_published_temperature() {
         let values: [f64; 81] = sampled(illuminant_d65);
-        let sums = tristimulus(StandardObserver::TwoDegree, &values);
+        let sums = tristimulus(&values);
         let own = Chromaticity::from_tristimulus(sums).unwrap();
         let own = correlated_colour_temperature(own).unwrap();
         assert!((own.kelvin - 6504.0).abs() < 2.0 && (own.duv - 0.0032).abs() < 5e-5, "{own:?}");

@@ -1,6 +1,6 @@
 //! Tristimulus values of a spectrum.
 
-use crate::colour::observer::StandardObserver;
+use crate::colour::observer::colour_matching;
 
 /// First and last wavelength of sums, nm.
 const SUMMED: [f64; 2] = [380.0, 780.0];
@@ -13,12 +13,12 @@ pub fn sampled<const N: usize>(spectrum: impl Fn(f64) -> f64) -> [f64; N] {
 /// The tristimulus values X, Y, Z of a spectrum given at evenly spaced wavelengths from 380 to 780 nm, in the unit of the
 /// spectrum times nm: sums as in CIE 015:2018, section 7, with k = 1. 683.002 lm/W times Y is a luminous flux if the
 /// spectrum is in W/nm.
-pub fn tristimulus(observer: StandardObserver, values: &[f64]) -> [f64; 3] {
+pub fn tristimulus(values: &[f64]) -> [f64; 3] {
     let [first, last] = SUMMED;
     let step = (last - first) / values.len().saturating_sub(1).max(1) as f64; // nm
     let mut sums = [0.0; 3];
     for (index, value) in values.iter().enumerate() {
-        let matching = observer.matching(wavelength(index, values.len()));
+        let matching = colour_matching(wavelength(index, values.len()));
         sums.iter_mut().zip(matching).for_each(|(sum, matching)| *sum += value * matching * step);
     }
     sums
@@ -45,7 +45,7 @@ mod tests {
         ];
         for (peak, width, x, y, efficacy) in leds {
             let values: [f64; 81] = sampled(|nm| gaussian(nm, peak, width));
-            let sums = tristimulus(StandardObserver::TwoDegree, &values);
+            let sums = tristimulus(&values);
             let own = Chromaticity::from_tristimulus(sums).unwrap();
             assert!((own.x - x).abs() < 1e-6 && (own.y - y).abs() < 1e-6, "{peak}: {own:?}");
             let radiant = values.iter().sum::<f64>() * 5.0;
@@ -55,8 +55,8 @@ mod tests {
 
     #[test]
     fn few_values_have_sums_too() {
-        assert_eq!(tristimulus(StandardObserver::TwoDegree, &[]), [0.0; 3]);
-        let one = tristimulus(StandardObserver::TwoDegree, &[1.0]);
+        assert_eq!(tristimulus(&[]), [0.0; 3]);
+        let one = tristimulus(&[1.0]);
         assert!(one[0] > 0.0 && one[0].is_finite(), "{one:?}");
         assert_eq!(sampled::<1>(|nm| nm), [380.0]);
     }

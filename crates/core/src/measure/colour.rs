@@ -10,45 +10,42 @@ use crate::scene::{SensorId, Source};
 use crate::transport::{BIN_WIDTH, FIRST_BIN, SPECTRUM_BINS, Stimulus};
 use indexmap::IndexMap;
 
-/// The last parts of the dotted names of all of them.
-pub(crate) const NAMES: [&str; 11] = [
-    "radiant_flux",
-    "luminous_efficacy",
-    "colour_x",
-    "colour_y",
-    "colour_u",
-    "colour_v",
-    "dominant_wavelength",
-    "excitation_purity",
-    "colour_temperature",
-    "duv",
-    "colour_rendering_ra",
+/// A function of a chromaticity, which may be undefined.
+type OfChromaticity = fn(Chromaticity) -> Option<f64>;
+
+/// The last parts of the names of measures that follow from the chromaticity, their units and values.
+const CHROMATIC: [(&str, &str, OfChromaticity); 8] = [
+    ("colour_x", "1", |of| Some(of.x)),
+    ("colour_y", "1", |of| Some(of.y)),
+    ("colour_u", "1", |of| Some(of.uv_1976()[0])),
+    ("colour_v", "1", |of| Some(of.uv_1976()[1])),
+    ("dominant_wavelength", "nm", |of| Some(dominant(of)?.nm)),
+    ("excitation_purity", "1", |of| Some(dominant(of)?.purity)),
+    ("colour_temperature", "K", |of| Some(correlated_colour_temperature(of)?.kelvin)),
+    ("duv", "1", |of| Some(correlated_colour_temperature(of)?.duv)),
 ];
 
-/// The colour of a sensor's light, by the last part of their dotted names; nothing without spectra.
+/// All measures of the colour of a sensor's light, by the last part of their dotted names; nothing without spectra.
 pub(crate) fn totals(evidence: &Evidence<'_>, id: SensorId) -> IndexMap<String, Measure> {
-    let mut out = IndexMap::new();
-    if !evidence.scene.is_spectral() {
-        return out;
-    }
+    let chromatic = CHROMATIC.map(|(name, ..)| name);
+    let names = ["radiant_flux", "luminous_efficacy"].into_iter().chain(chromatic);
+    let names = names.chain(["colour_rendering_ra"]);
+    names.filter_map(|name| Some((name.to_owned(), total(evidence, id, name)?))).collect()
+}
+
+/// One of them, at no more cost than it needs.
+pub(crate) fn total(evidence: &Evidence<'_>, id: SensorId, name: &str) -> Option<Measure> {
+    evidence.scene.is_spectral().then_some(())?;
     let stimuli = SensorStimuli { evidence, id };
-    out.insert("radiant_flux".into(), stimuli.radiant_flux());
-    let efficacy = stimuli.measure("lm/W", |[_, y, _], watts| Some(y / watts));
-    out.insert("luminous_efficacy".into(), efficacy);
-    let mut add = |name: &str, unit, value: &dyn Fn(Chromaticity) -> Option<f64>| {
-        let of = |xyz, _| value(Chromaticity::from_tristimulus(xyz)?);
-        out.insert(name.into(), stimuli.measure(unit, of));
-    };
-    add("colour_x", "1", &|of| Some(of.x));
-    add("colour_y", "1", &|of| Some(of.y));
-    add("colour_u", "1", &|of| Some(of.uv_1976()[0]));
-    add("colour_v", "1", &|of| Some(of.uv_1976()[1]));
-    add("dominant_wavelength", "nm", &|of| Some(dominant(of)?.nm));
-    add("excitation_purity", "1", &|of| Some(dominant(of)?.purity));
-    add("colour_temperature", "K", &|of| Some(correlated_colour_temperature(of)?.kelvin));
-    add("duv", "1", &|of| Some(correlated_colour_temperature(of)?.duv));
-    out.insert("colour_rendering_ra".into(), stimuli.general_rendering());
-    out
+    match name {
+        "radiant_flux" => Some(stimuli.radiant_flux()),
+        "luminous_efficacy" => Some(stimuli.measure("lm/W", |[_, y, _], watts| Some(y / watts))),
+        "colour_rendering_ra" => Some(stimuli.general_rendering()),
+        _ => {
+            let (_, unit, value) = CHROMATIC.into_iter().find(|(own, ..)| *own == name)?;
+            Some(stimuli.measure(unit, |xyz, _| value(Chromaticity::from_tristimulus(xyz)?)))
+        }
+    }
 }
 
 /// The dominant wavelength of a colour against equal energy; purples have none.
@@ -76,11 +73,22 @@ pub(crate) fn spectrum(evidence: &Evidence<'_>, id: SensorId) -> Option<SensorSp
         return None;
     }
     let stimuli = SensorStimuli { evidence, id };
-    let band = |bin| stimuli.radiant(evidence.layout.spectrum(id, bin), 1.0 / BIN_WIDTH, "W/nm");
-    let bands: Vec<Measure> = (0..SPECTRUM_BINS).map(band).collect();
+    let nm: Vec<f64> = (0..SPECTRUM_BINS).map(|bin| FIRST_BIN + BIN_WIDTH * bin as f64).collect();
+    let is_dark = |nm: f64| {
+        let range = [nm - 0.5 * BIN_WIDTH, nm + 0.5 * BIN_WIDTH];
+        let spectra = evidence.scene.sources.iter().filter_map(|own| own.spectrum.as_ref());
+        spectra.into_iter().all(|own| own.spectrum().share(range) == 0.0)
+    };
+    let band = |(bin, nm): (usize, &f64)| {
+        if is_dark(*nm) {
+            return evidence.no_light("W/nm");
+        }
+        stimuli.radiant(evidence.layout.spectrum(id, bin), 1.0 / BIN_WIDTH, "W/nm")
+    };
+    let bands: Vec<Measure> = nm.iter().enumerate().map(band).collect();
     Some(SensorSpectrum {
         sensor: evidence.scene.sensors[id.index()].name.clone(),
-        nm: (0..SPECTRUM_BINS).map(|bin| FIRST_BIN + BIN_WIDTH * bin as f64).collect(),
+        nm,
         values: bands.iter().map(|band| band.value).collect(),
         std_errors: bands.iter().map(|band| band.std_error).collect(),
     })

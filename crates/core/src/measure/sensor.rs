@@ -142,13 +142,10 @@ fn by_evidence(evidence: &Evidence<'_>, id: SensorId) -> SensorMeasures {
     SensorMeasures { values, maps, intensities, spectrum, paths }
 }
 
-/// One measure that follows from scalars alone; colours, which take longer, only where they are asked for.
+/// One measure that follows from scalars alone.
 fn total(evidence: &Evidence<'_>, id: SensorId, name: &str) -> Option<Measure> {
     let of_flux = flux::totals(evidence, id).swap_remove(name);
-    of_flux.or_else(|| {
-        let is_colour = colour::NAMES.contains(&name);
-        is_colour.then(|| colour::totals(evidence, id).swap_remove(name))?
-    })
+    of_flux.or_else(|| colour::total(evidence, id, name))
 }
 
 fn one_value(evidence: &Evidence<'_>, id: SensorId, name: &str) -> Option<Measure> {

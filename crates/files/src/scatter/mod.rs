@@ -17,7 +17,7 @@ mod xml;
 pub use data::{BsdfMatrix, ScatterFile, ScatterSide};
 pub use error::{MAX_SCATTER_BYTES, ScatterError, ScatterFormat};
 
-use crate::bytes::read_file;
+use crate::bytes::{NOT_UTF8, read_file, utf8};
 use crate::scatter::error::Violation;
 use std::path::Path;
 
@@ -40,12 +40,7 @@ pub fn read(path: &Path) -> Result<ScatterFile, ScatterError> {
 /// [`ScatterError::Violated`] with the line if they violate the format.
 pub fn parse(bytes: &[u8], format: ScatterFormat) -> Result<ScatterFile, ScatterError> {
     let wrong = |line, problem: String| ScatterError::Violated { format, line, problem };
-    let text = std::str::from_utf8(bytes).map_err(|error| {
-        let before = &bytes[..error.valid_up_to()];
-        let line = 1 + before.iter().filter(|byte| **byte == b'\n').count();
-        wrong(line, "it is not UTF-8 text; save it as UTF-8".to_owned())
-    })?;
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let text = utf8(bytes).map_err(|line| wrong(line, NOT_UTF8.to_owned()))?;
     let read = match format {
         ScatterFormat::Xml => xml::read(text),
         ScatterFormat::Csv => csv::read(text),

@@ -7,7 +7,7 @@ use crate::lower::spectra::whole_nm;
 use crate::spec::finish::{AbgSpec, HarveySpec, HazeSheetSpec, HazeSidesSpec, TabulatedSpec};
 use lumiduct_base::number::format_value;
 use lumiduct_core::optics::{
-    AngleTable, Finish, Haze, HazeBase, HazeLaw, HazeSides, IndexLaw, integrated_scatter,
+    AngleTable, Finish, Haze, HazeBase, HazeLaw, HazeSides, Medium, integrated_scatter,
 };
 
 impl Context<'_> {
@@ -83,11 +83,8 @@ impl Context<'_> {
             );
         }
         // Into the densest medium that may be on either side.
-        let highest = |law: &IndexLaw| whole_nm().map(|nm| law.at(nm)).fold(1.0, f64::max);
-        let own = self.builder.scene().media.iter().map(|medium| highest(medium.index_law()));
-        // Media of the library are added as solids name them, after the finishes.
-        let listed = self.named_library_media().map(|medium| highest(&medium.law()));
-        let index = own.chain(listed).fold(1.0, f64::max);
+        let highest = |medium: &Medium| whole_nm().map(|nm| medium.index(nm)).fold(1.0, f64::max);
+        let index = self.builder.scene().media.iter().map(highest).fold(1.0, f64::max);
         let all = 2.0 * integrated_scatter(law, index);
         if all > 1.0 {
             let found = format_value(all);

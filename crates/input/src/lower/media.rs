@@ -1,11 +1,10 @@
 //! Media: clear ones and those that scatter.
 
 use crate::keys::Key;
-use crate::library::{self, LibraryMedium};
+use crate::library;
 use crate::lower::context::Context;
 use crate::spec::PREDEFINED_MEDIA;
 use crate::spec::medium::ScatteringSpec;
-use crate::tree::Node;
 use lumiduct_core::optics::{AbsorptionLaw, IndexLaw, Medium, VolumeScattering};
 use lumiduct_core::scene::MediumId;
 
@@ -36,6 +35,13 @@ impl Context<'_> {
             };
             self.media.insert(name.clone(), self.builder.add_medium(made));
         }
+        // Media of the library are added before finishes, which depend on the indices beside them.
+        for solid in spec.solids.values() {
+            let name = &solid.common().medium;
+            if library::media().contains_key(name) {
+                self.medium(name, &Key::of(&["solids"]));
+            }
+        }
         let (key, name) = (Key::of(&["surroundings"]), &spec.surroundings);
         if let Some(surroundings) = self.medium(name, &key) {
             self.builder.set_surroundings(surroundings);
@@ -45,15 +51,6 @@ impl Context<'_> {
                 .error(&key, format!("`{name}` scatters: light would never leave the scene"))
                 .hint("put a solid of this medium around the scene");
         }
-    }
-
-    /// Media of the library that solids name.
-    pub(super) fn named_library_media(&self) -> impl Iterator<Item = &'static LibraryMedium> {
-        let solids = self.places.root().get("solids").and_then(Node::table);
-        let kinds = solids.into_iter().flatten().filter_map(|(_, solid)| solid.node.table());
-        let names = kinds.flatten().filter_map(|(_, kind)| kind.node.get("medium")?.text());
-        let names: Vec<&str> = names.filter(|name| !self.spec.media.contains_key(*name)).collect();
-        names.into_iter().filter_map(|name| library::media().get(name))
     }
 
     /// The medium of a name: one of the file, or of the library.

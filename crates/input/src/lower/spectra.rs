@@ -106,14 +106,12 @@ impl Context<'_> {
 
     /// Notes radiant flux of a table that is not visible.
     fn note_left_out(&mut self, rows: &[[f64; 2]], key: &Key) {
-        let area = |pair: &[[f64; 2]]| 0.5 * (pair[1][0] - pair[0][0]) * (pair[0][1] + pair[1][1]);
-        let is_visible = |pair: &&[[f64; 2]]| pair[1][0] > VISIBLE[0] && pair[0][0] < VISIBLE[1];
-        let all: f64 = rows.windows(2).map(area).sum();
-        let visible: f64 = rows.windows(2).filter(is_visible).map(area).sum();
-        if visible > 0.0 && visible < (1.0 - BEYOND) * all {
+        // What is not a spectrum is reported as such.
+        let share = if rows.len() < 2 { 1.0 } else { Spectrum::visible_share(rows) };
+        if share > 0.0 && share < 1.0 - BEYOND {
             let message = format!(
                 "{} of its radiant flux is not visible and left out",
-                format_percent(1.0 - visible / all)
+                format_percent(1.0 - share)
             );
             self.problems
                 .warning(key, message)
@@ -159,7 +157,7 @@ impl Context<'_> {
             IndexSpec::Law(IndexLawSpec::Powers(terms)) => {
                 let key = key.field("powers");
                 let Some(terms) = whole_powers(terms) else {
-                    let message = "has a power that is no whole number from -20 to 20";
+                    let message = "has a power that is not a whole number from -20 to 20";
                     return self.refuse(&key, message, "give pairs of coefficient and power");
                 };
                 (IndexLaw::Powers(terms), key)
@@ -302,15 +300,20 @@ pub(super) fn note_tables(spec: &SceneSpec, scene: &Scene, problems: &mut Proble
                     .hint("give every source a `spectrum`");
             }
             let Some([first, last]) = table.map(SpectralTable::range) else { continue };
-            let inside = |spectrum: &&Spectrum| spectrum.share([first, last]);
-            // Light without a spectrum has the reference wavelength.
-            let dark = if (first..=last).contains(&REFERENCE_WAVELENGTH) { 1.0 } else { 0.0 };
-            let none = if spectra.is_empty() { dark } else { 1.0 };
-            let least = spectra.iter().map(inside).fold(none, f64::min);
             let range = format!("{} to {} nm", format_value(first), format_value(last));
+            if spectra.is_empty() {
+                if !(first..=last).contains(&REFERENCE_WAVELENGTH) {
+                    problems
+                        .error(&key, format!("{range} is without 555 nm"))
+                        .hint("light without a spectrum has this wavelength; tables are in nm");
+                }
+                continue;
+            }
+            let inside = |spectrum: &&Spectrum| spectrum.share([first, last]);
+            let least = spectra.iter().map(inside).fold(1.0, f64::min);
             if least <= 0.0 {
                 problems
-                    .error(&key, format!("no light of a source is within {range}"))
+                    .error(&key, format!("{range} is without any light of a source"))
                     .hint("give values for its wavelengths; they are in nm");
             } else if least < 1.0 - BEYOND {
                 let message = format!(

@@ -1,8 +1,9 @@
-//! Wavelengths of paths, and what they are worth.
+//! Wavelengths of paths, and their weights.
 //!
 //! A path has one wavelength. Photons draw theirs from the spectrum of their source, gather paths from those of all sources
-//! in proportion to their flux. What is drawn too often counts less, so that means are luminous fluxes. In a scene without
-//! spectra every path has the reference wavelength and a worth of 1, and no number is drawn.
+//! in proportion to their flux. The spectral weight makes means of luminous flux independent of
+//! how wavelengths are drawn. In a scene without spectra every path has the reference wavelength and a spectral weight of 1, and no number is
+//! drawn.
 
 use crate::optics::REFERENCE_WAVELENGTH;
 use crate::rng::{Dimension, Numbers, Sampler};
@@ -17,7 +18,7 @@ impl Source {
 
     /// Flux of a photon of this wavelength over the mean of all photons of the source, 1.
     #[inline]
-    pub(crate) fn photon_worth(&self, nm: f64) -> f64 {
+    pub(crate) fn spectral_weight(&self, nm: f64) -> f64 {
         self.spectrum.as_ref().map_or(1.0, |own| own.relative_flux(nm))
     }
 }
@@ -49,7 +50,7 @@ impl Scene {
 
     /// What a gather path of this wavelength sees of the emission of a source over the whole of it, 1.
     #[inline]
-    pub(crate) fn gathered_worth(&self, source: SourceId, nm: f64) -> f64 {
+    pub(crate) fn gathered_spectral_weight(&self, source: SourceId, nm: f64) -> f64 {
         let Some(spectrum) = &self.sources[source.index()].spectrum else { return 1.0 };
         let luminous = spectrum.luminous(nm);
         if luminous == 0.0 {
@@ -59,5 +60,59 @@ impl Scene {
             source.spectrum.as_ref().map_or(0.0, |own| source.flux * own.density(nm))
         };
         luminous * self.source_flux() / self.sources.iter().map(drawn).sum::<f64>()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::colour::{NoSpectrum, SpectralDraw, Spectrum, illuminant_d65};
+    use crate::optics::Medium;
+    use crate::scene::{Builder, Emission, Emitter, StartSolids};
+    use glam::DVec3;
+    use lumiduct_base::math::Frame;
+    use lumiduct_base::units::FluxUnit;
+    use std::sync::Arc;
+
+    /// A white lamp of 3 lm, a dark one, and a line of 1 lm.
+    fn scene() -> Result<Scene, NoSpectrum> {
+        let air = Medium::new("air", 1.0, 0.0);
+        let mut builder = Builder::new(DVec3::ZERO, air, FluxUnit::Lumen);
+        let white = Spectrum::of_law(illuminant_d65)?;
+        let lamps = [(3.0, white.clone()), (0.0, white), (1.0, Spectrum::line(546.1)?)];
+        for (flux, spectrum) in lamps {
+            builder.add_source(Source {
+                name: format!("{flux} lm"),
+                flux,
+                emitter: Emitter::Point(Frame::WORLD),
+                emission: Emission::Isotropic,
+                start: StartSolids::Outside,
+                on: Vec::new(),
+                spectrum: Some(Arc::new(SpectralDraw::new(spectrum))),
+                elevation: None,
+                sun: None,
+            });
+        }
+        Ok(builder.build())
+    }
+
+    #[test]
+    fn the_mean_spectral_weight_is_1_for_photons_and_for_gather_paths() -> Result<(), NoSpectrum> {
+        const COUNT: u64 = 40_000;
+        let scene = scene()?;
+        for (index, source) in scene.sources.iter().enumerate().filter(|(_, own)| own.is_lit()) {
+            let (mut photons, mut paths) = (0.0, 0.0);
+            for path in 0..COUNT {
+                let mut sampler = Sampler::for_path(1, index as u64, path);
+                photons += source.spectral_weight(source.wavelength(&mut sampler));
+                let nm = scene.wavelength(&mut sampler);
+                paths += scene.gathered_spectral_weight(SourceId::new(index), nm);
+            }
+            let [photons, paths] = [photons, paths].map(|sum| sum / COUNT as f64);
+            // Five standard errors: weights of photons scatter by 0.4, those of paths by 1.8, as a quarter of them see the line.
+            assert!((photons - 1.0).abs() < 0.01, "{photons}");
+            assert!((paths - 1.0).abs() < 0.045, "{paths}");
+        }
+        Ok(())
     }
 }

@@ -144,8 +144,9 @@ impl GatherPathCounter<'_, '_> {
     ) -> Etendues {
         let photon = self.photon_fluxes.map_or(f64::INFINITY, |fluxes| {
             let source = place.source.index();
-            let worth = self.backward.scene.sources[source].photon_worth(self.arrival.wavelength);
-            worth * fluxes[source] / (emitted * self.batches)
+            let spectral =
+                self.backward.scene.sources[source].spectral_weight(self.arrival.wavelength);
+            spectral * fluxes[source] / (emitted * self.batches)
         });
         let gather = self.etendue / self.batches;
         let Arrival { ray, normal, .. } = self.arrival;

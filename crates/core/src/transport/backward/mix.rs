@@ -219,8 +219,8 @@ impl Mixing<'_, '_> {
         } else {
             joined_sources.emitted(&self.start, index, path.wavelength)
         };
-        let worth = scene.sources[start.source.index()].photon_worth(path.wavelength);
-        let flux = worth * self.photon_fluxes[start.source.index()] / self.batches;
+        let spectral = scene.sources[start.source.index()].spectral_weight(path.wavelength);
+        let flux = spectral * self.photon_fluxes[start.source.index()] / self.batches;
         self.photon = emitted.filter(|emitted| *emitted > 0.0).map_or(0.0, |one| flux / one);
     }
 

@@ -132,7 +132,7 @@ impl<'s> SourceTargets<'s> {
             }
             EmitterExtent::FarBeam => target.across(),
         };
-        Some(self.scene.gathered_worth(place.source, wavelength) * whole)
+        Some(self.scene.gathered_spectral_weight(place.source, wavelength) * whole)
     }
 
     /// Normal irradiance at a vertex over n² and [`Self::emitted`], the density of draws

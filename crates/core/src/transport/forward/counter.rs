@@ -87,7 +87,7 @@ impl<'r, 's, O: Observer> PhotonCounter<'r, 's, O> {
         let mut sampler = points.lead(&mut fresh);
         let own = &scene.sources[source.index()];
         let emitted = own.emit(scene, &mut sampler);
-        let flux = flux * own.photon_worth(emitted.wavelength);
+        let flux = flux * own.spectral_weight(emitted.wavelength);
         self.flux = flux;
         self.source = source;
         self.light_groups = scene.light.of(source);

@@ -1,6 +1,6 @@
 //! Colour of the light on a sensor, counted beside its flux.
 
-use crate::colour::{MAX_EFFICACY, StandardObserver, VISIBLE};
+use crate::colour::{MAX_EFFICACY, VISIBLE, colour_matching};
 
 /// Width of a bin of the spectrum, nm.
 pub(crate) const BIN_WIDTH: f64 = 5.0;
@@ -48,7 +48,7 @@ impl Stimuli {
     /// Those of a luminous flux at a wavelength, nm.
     #[inline]
     pub(crate) fn of(flux: f64, nm: f64) -> Self {
-        let seen = StandardObserver::TwoDegree.matching(nm);
+        let seen = colour_matching(nm);
         let bin = ((nm - VISIBLE[0]) / BIN_WIDTH) as usize;
         Self {
             values: Stimulus::ALL.map(|stimulus| flux * stimulus.per_lumen(seen)),

@@ -162,7 +162,6 @@ impl<'s> Emitters<'s> {
         let tolerance = scene.tolerance;
         let medium = &scene.media[segment.medium.index()];
         let index = medium.index(path.wavelength);
-        let worth = scene.gathered_worth(seen.id, path.wavelength);
         let (from, to) = match (contact, start) {
             (Contact::Free, SegmentStart::Sensor) => (-tolerance, segment.length),
             (Contact::Free, SegmentStart::Face | SegmentStart::Interface) => {
@@ -183,8 +182,13 @@ impl<'s> Emitters<'s> {
                 if t < from || t > to {
                     return;
                 }
-                let emitted = worth * seen.source.radiance(shape, ray.at(t), -ray.dir()).value()
-                    / (index * index);
+                let whole =
+                    seen.source.radiance(shape, ray.at(t), -ray.dir()).value() / (index * index);
+                if whole <= 0.0 {
+                    return;
+                }
+                let emitted = scene.gathered_spectral_weight(seen.id, path.wavelength) * whole;
+                // A source may be dark at the wavelength of the path.
                 if emitted > 0.0 {
                     let arriving =
                         segment.throughput * medium.transmittance(path.wavelength, t.max(0.0));
@@ -209,8 +213,9 @@ impl<'s> Emitters<'s> {
             EmittingBody::Surface { shapes, .. } => {
                 let index = self.scene.media[path.medium.index()].index(path.wavelength);
                 let (start, dir) = (path.ray.origin(), path.ray.dir());
-                let worth = self.scene.gathered_worth(source, path.wavelength);
-                worth * seen.source.radiance(&shapes[shape].0, start, dir).value() / (index * index)
+                let spectral = self.scene.gathered_spectral_weight(source, path.wavelength);
+                spectral * seen.source.radiance(&shapes[shape].0, start, dir).value()
+                    / (index * index)
             }
             EmittingBody::Volume { .. } => self.volume_radiance(seen, path, path.ray.dir()),
         }
@@ -222,8 +227,8 @@ impl<'s> Emitters<'s> {
         let EmittingBody::Volume { density, usual_length, .. } = &seen.body else { return 0.0 };
         let index = self.scene.media[path.medium.index()].index(path.wavelength);
         let law = seen.source.emission.density(EmitterKind::Volume, out).unwrap_or(0.0);
-        let worth = self.scene.gathered_worth(seen.id, path.wavelength);
-        worth * density * law * usual_length / (index * index)
+        let spectral = self.scene.gathered_spectral_weight(seen.id, path.wavelength);
+        spectral * density * law * usual_length / (index * index)
     }
 
     /// Emission along a segment in a glowing solid: ∫ ε exp(-αs) ds, lm/(mm² sr), over n².
@@ -244,8 +249,8 @@ impl<'s> Emitters<'s> {
         };
         let law =
             seen.source.emission.density(EmitterKind::Volume, -segment.ray.dir()).unwrap_or(0.0);
-        let worth = self.scene.gathered_worth(seen.id, path.wavelength);
-        segment.throughput * worth * density * law * length / (index * index)
+        let spectral = self.scene.gathered_spectral_weight(seen.id, path.wavelength);
+        segment.throughput * spectral * density * law * length / (index * index)
     }
 }
 

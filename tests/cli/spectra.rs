@@ -1,0 +1,77 @@
+//! Spectra: what is refused, what is remarked, and what is reported.
+
+use crate::Place;
+use std::fs;
+
+/// The rod with a spectrum on its lamp, and further lines.
+fn lit_by(spectrum: &str, lines: &str) -> Place {
+    let place = Place::with(lines);
+    let scene = fs::read_to_string(place.path("rod.toml")).unwrap();
+    let lit = scene.replace("flux_lm = 10", &format!("flux_lm = 10\nspectrum = {spectrum}"));
+    fs::write(place.path("rod.toml"), lit).unwrap();
+    place
+}
+
+#[test]
+fn estimators_with_records_and_comparisons_are_refused_where_light_has_a_spectrum() {
+    let place = lit_by("\"cie_a\"", "");
+    for estimator in ["gather", "mis"] {
+        let said = place.bad(2, &format!("run rod.toml --estimator {estimator} -o out"));
+        assert!(said.contains("cannot compute light with a spectrum"), "{said}");
+    }
+    let said = place
+        .bad(2, "compare rod.toml --estimators forward,backward --sensor exit --time 1s -o out");
+    assert!(said.contains("methods are compared without spectra"), "{said}");
+    assert!(!place.names().contains(&"out".to_owned()));
+    place.good("run rod.toml --estimator auto --paths 20k -o auto -q");
+}
+
+#[test]
+fn the_colour_and_the_spectrum_are_reported_and_a_red_has_no_colour_temperature() {
+    let place = lit_by("{ csv = \"red.csv\" }", "");
+    fs::write(place.path("red.csv"), "nm,relative\n610,0\n630,1\n650,0\n").unwrap();
+    place.good("run rod.toml -o out -q");
+    let values = fs::read_to_string(place.path("out/measures.csv")).unwrap();
+    let line = |name: &str| values.lines().find(|line| line.starts_with(name)).unwrap().to_owned();
+    assert!(line("exit.colour_temperature,").contains(",K,undefined,"), "{values}");
+    assert!(line("exit.dominant_wavelength,").contains(",nm,ok,"), "{values}");
+    let spectrum = fs::read_to_string(place.path("out/exit.spectrum.csv")).unwrap();
+    let rows: Vec<Vec<f64>> = spectrum
+        .lines()
+        .skip(1)
+        .map(|row| row.split(',').map(|cell| cell.trim().parse().unwrap()).collect())
+        .collect();
+    assert_eq!((rows.len(), rows[0][0], rows[80][0]), (81, 380.0, 780.0));
+    let watts: f64 = rows.iter().map(|row| 5.0 * row[1]).sum();
+    let radiant: f64 = line("exit.radiant_flux,").split(',').nth(1).unwrap().parse().unwrap();
+    assert!((watts / radiant - 1.0).abs() < 1e-9, "{watts} {radiant}");
+    // Bands without light of the lamp are exactly dark.
+    let is_lit = |row: &Vec<f64>| (607.5..652.5).contains(&row[0]);
+    assert!(rows.iter().all(|row| [row[1] > 0.0, row[2] > 0.0] == [is_lit(row); 2]), "{rows:?}");
+    assert!(fs::read(place.path("out/exit.spectrum.png")).unwrap().starts_with(b"\x89PNG"));
+}
+
+#[test]
+fn what_a_table_or_the_library_leaves_open_is_a_remark() {
+    let check = |spectrum: &str, index: &str| {
+        let place = lit_by(spectrum, "");
+        let output = place.run(&format!("check rod.toml -D media.acrylic.index={index}"));
+        assert_eq!(crate::code(&output), 0, "{}", crate::errors(&output));
+        crate::errors(&output)
+    };
+    for (spectrum, index, words) in [
+        ("\"cie_d65\"", "{by_nm=[[450,1.50],[700,1.48]]}", "is outside of 450 to 700 nm"),
+        ("{blackbody_k=3000}", "{library=\"pmma\"}", "where the index of `pmma` was measured"),
+        ("{by_nm=[[300,1],[900,1]]}", "1.49", "32.50 % of its radiant flux is not visible"),
+    ] {
+        let said = check(spectrum, index);
+        assert!(said.contains(words), "{words}: {said}");
+    }
+    assert_eq!(check("\"equal_energy\"", "1.49"), "");
+    let place = Place::new();
+    let dispersive = "check rod.toml -D media.acrylic.index={by_nm=[[400,1.50],[700,1.48]]}";
+    let said = crate::errors(&place.run(dispersive));
+    assert!(said.contains("no source has a spectrum: its value at 555 nm applies"), "{said}");
+    let in_micrometres = "check rod.toml -D media.acrylic.index={by_nm=[[0.4,1.50],[0.7,1.48]]}";
+    assert!(place.bad(2, in_micrometres).contains("0.4 to 0.7 nm is without 555 nm"));
+}

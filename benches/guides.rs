@@ -250,7 +250,7 @@ fn add_exit_sensor(builder: &mut Builder, face: FaceId, place: Place, half: f64)
     let grid = Grid::Cartesian { rect, nu: MAP_CELLS, nv: MAP_CELLS };
     let area_in = |rect| builder.scene().face_area_in(face, rect);
     let areas = grid.cell_areas(area_in);
-    let covered = grid.cell_cover(&areas, area_in);
+    let covered = grid.cell_cover(|rect| builder.scene().face_charted_in(face, rect));
     // Light passes an open exit and arrives from behind; it leaves a solid to the front.
     let (counts, sides) = match place {
         Place::Port => (CountedLight::Incident, Sides::Back),

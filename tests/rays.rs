@@ -30,6 +30,7 @@ fn file(
         unit,
         flux: rays.iter().map(|ray| f64::from(ray.flux)).sum(),
         luminous_flux_lm: None,
+        is_measured: false,
         texts: Vec::new(),
     };
     let mut out = std::fs::File::create(&path).unwrap();

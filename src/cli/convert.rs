@@ -10,7 +10,7 @@ use clap::{Args, ValueEnum};
 use lumiduct_base::error::{Error, Result};
 use lumiduct_files::luminaire::LuminaireFormat;
 use lumiduct_files::rays::RayFormat;
-use lumiduct_files::scatter::ScatterFormat;
+use lumiduct_files::scatter::{ScatterFormat, is_scatter_table};
 use lumiduct_report::Existing;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -18,9 +18,10 @@ use std::process::ExitCode;
 #[derive(Debug, Args)]
 pub(super) struct ConvertArgs {
     /// A luminaire, .ies (LM-63-1986 to -2019, goniometer types A, B and C) or .ldt (EULUMDAT); or rays, .tm25ray (IES TM-25), .sdf or .dat (source
-    /// file of OpticStudio) or .csv. A BSDF, .xml, is only described.
+    /// file of OpticStudio) or .csv. A BSDF, .xml or .csv by angles, is only described.
     from: PathBuf,
-    /// The file to write, of the same kind: .ies (LM-63-2002) or .ldt; .tm25ray, .sdf, .dat or .csv. Left out, the file is only described.
+    /// The file to write, of the same kind: .ies (LM-63-2002), .ldt or .xml (TM-33, which is written only); .tm25ray, .sdf, .dat or .csv. Left out, the file is
+    /// only described.
     to: Option<PathBuf>,
     /// Edition of LM-63 to write; that of 2019 says how the file was made.
     #[arg(long, value_name = "YEAR", requires = "to")]
@@ -58,23 +59,30 @@ fn converted(args: &ConvertArgs) -> Result<String> {
     let ConvertArgs { from, to, edition, rays, seed, overwrite } = args;
     let existing = if *overwrite { Existing::Replace } else { Existing::Keep };
     let to = to.as_deref();
-    if RayFormat::of(from).is_ok() {
+    let is_bsdf = match ScatterFormat::of(from) {
+        Ok(ScatterFormat::Xml) => true,
+        Ok(ScatterFormat::Csv) => is_scatter_table(from),
+        Err(_) => false,
+    };
+    if RayFormat::of(from).is_ok() && !is_bsdf {
         if edition.is_some() {
             let why = format!("--edition: {} is not a luminaire", from.display());
             return Err(Error::Usage(why));
         }
         return rays::converted(from, to, rays.map(|count| (count, *seed)), existing);
     }
-    let is_bsdf = ScatterFormat::of(from).is_ok_and(|format| format == ScatterFormat::Xml);
     if is_bsdf {
         return match to {
             None if rays.is_none() => scatter::description(from),
-            _ => Err(Error::Usage(format!("{}: a BSDF is only described", from.display()))),
+            _ => Err(Error::Usage(format!(
+                "{}: a BSDF is only described, and TM-33 files are written, not read",
+                from.display()
+            ))),
         };
     }
     if LuminaireFormat::of(from).is_err() {
         return Err(Error::Usage(format!(
-            "{}: not the ending of a known file; luminaires have .ies or .ldt, rays .tm25ray, .sdf, .dat or .csv, BSDFs .xml",
+            "{}: not the ending of a known file; luminaires have .ies or .ldt, rays .tm25ray, .sdf, .dat or .csv, BSDFs .xml or .csv",
             from.display()
         )));
     }
@@ -91,10 +99,9 @@ fn format_of(to: &Path, edition: Option<EditionChoice>) -> Result<LuminaireForma
     let format = LuminaireFormat::of(to).map_err(|error| wrong(error.to_string()))?;
     match (format, edition) {
         (LuminaireFormat::Ies, Some(EditionChoice::Of2019)) => Ok(LuminaireFormat::Ies2019),
-        (LuminaireFormat::Ies | LuminaireFormat::Ies2019, _) | (LuminaireFormat::Ldt, None) => {
-            Ok(format)
-        }
-        (LuminaireFormat::Ldt, Some(_)) => {
+        (LuminaireFormat::Ies | LuminaireFormat::Ies2019, _)
+        | (LuminaireFormat::Ldt | LuminaireFormat::Tm33, None) => Ok(format),
+        (LuminaireFormat::Ldt | LuminaireFormat::Tm33, Some(_)) => {
             Err(wrong("--edition is for .ies files only; leave it out".to_owned()))
         }
     }

@@ -67,7 +67,7 @@ pub(super) struct RunArgs {
     /// Write a JUnit XML file with a test case for each check.
     #[arg(long, value_name = "FILE", conflicts_with = "shard")]
     junit: Option<PathBuf>,
-    /// Write what the goniometer measures as a luminaire file: .ies (LM-63) or .ldt (EULUMDAT). The key `luminaire` of the
+    /// Write what the goniometer measures as a luminaire file: .ies (LM-63), .ldt (EULUMDAT) or .xml (TM-33). The key `luminaire` of the
     /// sensor has the details, such as the edition; without it, the table is the finest that the cells allow. An existing file needs --overwrite.
     #[arg(long, value_name = "FILE", conflicts_with = "shard")]
     ies: Option<PathBuf>,
@@ -155,6 +155,9 @@ pub(super) fn run(args: &RunArgs) -> ExitCode {
     match outcome {
         Ok(finished) => {
             let code = tell(&finished, args.quiet);
+            if let (Some(file), false) = (&args.ies, args.quiet) {
+                _ = print(&format!("luminaire: {}\n", file.display()));
+            }
             write_junit(junit.as_ref(), || run_junit(&finished.report), code)
         }
         Err(error) if interrupt.is_raised() => {
@@ -168,11 +171,12 @@ pub(super) fn run(args: &RunArgs) -> ExitCode {
 /// Prints the results of a run; the exit code says whether it meets what its scene asks for.
 pub(super) fn tell(finished: &FinishedRun, quiet: bool) -> ExitCode {
     let is_kept = matches!(finished.written, Written::Nothing { .. });
-    let text = lumiduct_report::terminal(&finished.report, &finished.dir, &finished.written);
+    let FinishedRun { report, dir, written, warnings, .. } = finished;
+    let text = lumiduct_report::terminal(report, warnings.len(), dir, written);
     let printed = if quiet {
         Ok(())
     } else {
-        warn(&finished.warnings);
+        warn(warnings);
         print(&text)
     };
     match printed {

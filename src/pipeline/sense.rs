@@ -81,7 +81,7 @@ fn expect_sight(job: &Job, problems: &mut Problems) {
     for sensor in blind_sensors(&job.scene, &sensors, job.run.seed) {
         let name = &job.scene.sensors[sensor.index()].name;
         let message = format!(
-            "sees no port: 0 of {BLIND_PATHS} gather paths meet a surface or a source, so `{}` finds no light there",
+            "sees no port: none of {BLIND_PATHS} gather paths meets a surface or a source, so `{}` will hardly find light there",
             request(sensor).name()
         );
         problems

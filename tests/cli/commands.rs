@@ -57,6 +57,19 @@ fn luminaires_are_converted_and_described() {
     assert!(text.starts_with("IES:LM-63-2019\r\n") && text.contains("1 1.00001 9\r\n"), "{text}");
     let said = place.bad(2, "convert lamp.ies lamp.ldt --edition 2019");
     assert!(said.contains("for .ies files only"), "{said}");
+    // TM-33 is written and not read; other files of that ending are BSDFs.
+    let said = place.good("convert lamp.ies lamp.xml");
+    for words in ["with its 2 lamps as one emitter of 1000 lm", "lamp.xml (TM-33)"] {
+        assert!(said.contains(words), "no {words} in {said}");
+    }
+    let text = fs::read_to_string(place.path("lamp.xml")).unwrap();
+    assert!(text.contains("<IntData h=\"270\" v=\"45\">150</IntData>\r\n"), "{text}");
+    for command in ["convert lamp.xml", "convert lamp.xml new.ies --overwrite"] {
+        let said = place.bad(2, command);
+        assert!(said.contains("TM-33") && said.contains("written, not read"), "{said}");
+    }
+    let said = place.bad(2, "convert lamp.ies lamp.xml --edition 2019");
+    assert!(said.contains("for .ies files only"), "{said}");
 }
 
 #[test]
@@ -77,13 +90,17 @@ fn a_run_writes_what_its_goniometer_measures_as_a_luminaire_file() {
         fs::write(place.path("rod.toml"), text).unwrap();
         place
     };
-    let keys = " }, luminaire = { formats = [\"ldt\"], power_w = 2, opening = { disk = { radius_mm = 2 } } }";
+    let keys = " }, luminaire = { formats = [\"ldt\", \"tm33\"], power_w = 2, opening = { disk = { radius_mm = 2 } } }";
     let place = with(keys);
     place.good("run rod.toml -q --ies lamp.ies");
     let folder = place.path("reports/rod");
+    let tm33 = fs::read_to_string(folder.join("far.xml")).unwrap();
+    assert!(tm33.contains("<Simulation>true</Simulation>"), "{tm33}");
     assert!(folder.join("far.ldt").exists() && !folder.join("far.ies").exists());
     let page = fs::read_to_string(folder.join("report.md")).unwrap();
-    for words in ["far.ldt: ", "lm/W", "a disk of 4 mm", "leaves above 90 deg", "0° to 90°"] {
+    for words in
+        ["far.ldt and far.xml: ", "lm/W", "a disk of 4 mm", "leaves above 90 deg", "0° to 90°"]
+    {
         assert!(page.contains(words), "no {words} in {page}");
     }
     assert!(!page.contains("EN 12464-1"), "a flat opening cannot emit upward");

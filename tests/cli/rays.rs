@@ -1,6 +1,6 @@
 //! Ray files: written by a run, converted, thinned and traced again.
 
-use crate::Place;
+use crate::{Place, code, errors};
 use std::fs;
 
 const LAMP: &str = r#"
@@ -52,8 +52,9 @@ fn a_run_writes_rays_that_are_converted_thinned_and_traced_again() {
     let next = "lumiduct = 1\ntitle = \"Next\"\n[sources.lamp.rays]\nfile = \"reports/lamp/above.tm25ray\"\nmax_rays = 1500\n\
          [sensors.above]\nplane = { rectangle = { width_mm = 40, height_mm = 40 } }\nat = { position_mm = [0, 0, 1.5], axis = [0, 0, -1] }\n";
     fs::write(place.path("next.toml"), next).unwrap();
-    let said = place.good("run next.toml --paths 4000 --estimator forward");
-    assert!(said.contains("1500 of its 2000 rays"), "{said}");
+    let output = place.run("run next.toml --paths 4000 --estimator forward");
+    assert_eq!(code(&output), 0);
+    assert!(errors(&output).contains("1500 of its 2000 rays"), "{}", errors(&output));
     let summary = place.summary("reports/next");
     let again = summary["measures"]["balance.emitted"]["value"].as_f64().unwrap();
     assert!((again / flux - 1.0).abs() < 1e-6, "{again} {flux}");

@@ -121,7 +121,7 @@ fn a_sensor_that_sees_no_port_is_told_of() {
         let said = errors(&output);
         assert_eq!(code(&output), 0, "{said}");
         assert!(
-            said.contains("rod.toml:20: warning: `sensors.eye`: sees no port: 0 of 1000"),
+            said.contains("rod.toml:20: warning: `sensors.eye`: sees no port: none of 1000"),
             "{said}"
         );
         let page = fs::read_to_string(away.path(estimator).join("report.md")).unwrap();

@@ -44,7 +44,7 @@ pub struct LuminaireExport {
 }
 
 impl LuminaireExport {
-    /// The finest table, in every format.
+    /// The finest table, in the formats that are written without the key `formats`.
     pub fn of_goniometer(sensor: &str, goniometer: &Goniometer) -> Self {
         let &Goniometer { c_cells, gamma_cells, .. } = goniometer;
         Self {

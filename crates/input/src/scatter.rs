@@ -30,13 +30,22 @@ pub fn measured_sheet(
 fn sheet(sides: [ScatterSide; 2], turn: f64, remarks: &mut Vec<String>) -> MeasuredSheet {
     let [mut front, mut back] = sides.map(tables);
     let other = match (&front.transmission, &back.transmission) {
-        (Some(given), None) => Some(("back", "front", given.reversed())),
-        (None, Some(given)) => Some(("front", "back", given.reversed())),
+        (Some(given), None) => Some(("back", "front", given, given.reversed())),
+        (None, Some(given)) => Some(("front", "back", given, given.reversed())),
         (Some(_), Some(_)) | (None, None) => None,
     };
-    if let Some((name, given_name, reversed)) = other {
+    if let Some((name, given_name, given, reversed)) = other {
+        let unlike = match largest_difference(&reversed, given) {
+            difference if difference > RECIPROCAL => {
+                format!(
+                    ", so that shares differ at equal angles by up to {}",
+                    format_percent(difference)
+                )
+            }
+            _ => String::new(),
+        };
         remarks.push(format!(
-            "no transmission from the {name} is given; it is taken as the reverse of that from the {given_name}"
+            "no transmission from the {name} is given; it is taken as the reverse of that from the {given_name}{unlike}"
         ));
         let missing = if name == "back" { &mut back } else { &mut front };
         missing.transmission = Some(reversed);
@@ -83,6 +92,13 @@ fn conserving(sheet: MeasuredSheet, remarks: &mut Vec<String>) -> Result<Measure
         SheetTables { reflection, transmission }
     };
     Ok(MeasuredSheet { front: scaled(sheet.front), back: scaled(sheet.back), turn: sheet.turn })
+}
+
+/// The largest difference of the shares that two tables pass on from a direction, 1.
+fn largest_difference(a: &DirectedTable, b: &DirectedTable) -> f64 {
+    let directions = common_directions(&[a.incident_patches(), b.incident_patches()]);
+    let differences = directions.into_iter().map(|from| (a.share(from) - b.share(from)).abs());
+    differences.fold(0.0, f64::max)
 }
 
 /// The largest share of light that leaves in any direction, 1, and its angle of incidence, rad.

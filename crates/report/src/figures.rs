@@ -107,7 +107,7 @@ fn map_picture(map: &SensorMap) -> Result<Vec<u8>> {
 pub(crate) fn intensity_plot(table: &IntensityTable) -> PolarPlot {
     let curves = if !table.planes.is_empty() {
         let curve = |plane: &PlaneCurve| PolarCurve {
-            name: format!("C{} to C{}", plane.c_deg, plane.c_deg + 180.0),
+            name: format!("C{} (right) to C{} (left)", plane.c_deg, plane.c_deg + 180.0),
             points: {
                 let values = plane.values.iter().copied().map(not_below_zero);
                 plane.gamma_deg.iter().copied().zip(values).collect()

@@ -14,7 +14,7 @@ pub(crate) struct KeyFigure<'r> {
 }
 
 /// The last parts of the names of measures, what a reader calls them, and whether a terminal shows them.
-const FIGURES: [(&str, &str, bool); 13] = [
+const FIGURES: [(&str, &str, bool); 14] = [
     ("flux", "flux", true),
     ("efficiency", "efficiency", true),
     ("transmission", "transmission", true),
@@ -28,6 +28,7 @@ const FIGURES: [(&str, &str, bool); 13] = [
     ("colour_v", "v'", true),
     ("colour_temperature", "colour temperature", true),
     ("colour_rendering_ra", "Ra", false),
+    ("colour_rendering_r9", "R9", false),
 ];
 
 /// Flux, efficiency, and the main figures of the kind of sensor.

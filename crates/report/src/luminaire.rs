@@ -6,16 +6,19 @@ mod ugr;
 use crate::OutputFile;
 use lumiduct_base::error::{Error, Result};
 use lumiduct_base::number::{format_percent, format_value};
-use lumiduct_core::measure::{IntensityTable, Measures};
+use lumiduct_core::measure::{IntensityTable, Measures, Status};
 use lumiduct_files::luminaire::{
-    CellMeans, FileGeneration, FittedIntensities, Intensities, LampFlux, Luminaire,
-    LuminaireFormat, fit, written,
+    CellMeans, FileGeneration, FittedIntensities, LampFlux, Luminaire, LuminaireColour,
+    LuminaireFormat, asymmetry, fit, written,
 };
 use lumiduct_input::LuminaireExport;
 use ndarray::Array2;
 
 /// Flux of negative cells, or above a flat opening, that needs no remark, as a share of all, 1.
 pub(crate) const NEGLIGIBLE_FLUX: f64 = 1e-3;
+
+/// Difference of planes that are taken as equal that needs no remark, as a share of the intensities, 1.
+const NEGLIGIBLE_ASYMMETRY: f64 = 0.01;
 
 /// A luminaire from a goniometer.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,14 +69,16 @@ impl MeasuredLuminaire {
         let readings = readings.ok_or_else(|| failed("it has no intensities".to_owned()))?;
         let means =
             CellMeans { candela: readings.values.view(), std_errors: readings.std_errors.view() };
-        let FittedIntensities { intensities, std_errors, added_share } =
-            fit(&means, &export.layout).map_err(|error| failed(error.to_string()))?;
+        let fitted = fit(&means, &export.layout).map_err(|error| failed(error.to_string()))?;
         let lamps = match export.lamps {
             Some(count) => LampFlux::Relative { count, flux_lm: measures.source_flux },
             None => LampFlux::Absolute,
         };
-        let mut remarks = remarks(export, readings, &intensities, added_share);
-        let texts = texts(export, origin, &std_errors);
+        let asymmetry = asymmetry(&means, export.layout.symmetry);
+        let mut remarks = remarks(export, readings, &fitted, asymmetry);
+        let FittedIntensities { intensities, std_errors, .. } = fitted;
+        let colour = colour(export, measures);
+        let texts = texts(export, origin, &std_errors, colour);
         let opening = export.opening.unwrap_or_default();
         let luminaire = Luminaire {
             texts,
@@ -81,6 +86,7 @@ impl MeasuredLuminaire {
             lamps,
             power_w: export.power_w,
             opening,
+            colour,
             intensities,
         };
         for format in &export.formats {
@@ -117,9 +123,10 @@ pub(crate) fn files(luminaires: &[MeasuredLuminaire]) -> impl Iterator<Item = Ou
 fn remarks(
     export: &LuminaireExport,
     readings: &IntensityTable,
-    intensities: &Intensities,
-    added_share: f64,
+    fitted: &FittedIntensities,
+    asymmetry: f64,
 ) -> Vec<String> {
+    let &FittedIntensities { ref intensities, added_share, .. } = fitted;
     let mut remarks = Vec::new();
     let mut remark = |text: String| {
         remarks.push(format!("luminaire files of `{}`: {text}", export.sensor));
@@ -132,6 +139,13 @@ fn remarks(
         let share = format_percent(added_share);
         remark(format!(
             "noise made cells negative; they count as dark, so that the files have {share} more light than `flux`"
+        ));
+    }
+    if asymmetry > NEGLIGIBLE_ASYMMETRY {
+        let symmetry = export.layout.symmetry.name();
+        let share = format_percent(asymmetry);
+        remark(format!(
+            "planes that their symmetry ({symmetry}) takes as equal differ from their mean by {share} of the intensities, rms, beyond noise"
         ));
     }
     let bias = readings.biases.iter().flatten().copied().fold(0.0, f64::max);
@@ -157,11 +171,24 @@ fn remarks(
     remarks
 }
 
+/// The colour of the light of the goniometer, if the sources have spectra.
+fn colour(export: &LuminaireExport, measures: &Measures) -> LuminaireColour {
+    let known = |name: &str| {
+        let measure = measures.values.get(&format!("{}.{name}", export.sensor))?;
+        (measure.status == Status::Ok).then_some(measure.value)
+    };
+    LuminaireColour {
+        temperature_k: known("colour_temperature"),
+        rendering_ra: known("colour_rendering_ra"),
+    }
+}
+
 /// Texts of the files: those of the user, and what is known without them.
 fn texts(
     export: &LuminaireExport,
     origin: &LuminaireOrigin<'_>,
     std_errors: &Array2<f64>,
+    LuminaireColour { temperature_k, rendering_ra }: LuminaireColour,
 ) -> Vec<(String, String)> {
     let error = std_errors.iter().copied().fold(0.0, f64::max);
     let error = error.is_finite().then(|| format_value(error));
@@ -172,6 +199,8 @@ fn texts(
         ("ISSUEDATE", date.map(str::to_owned)),
         ("LUMINAIRE", Some(title.to_owned())),
         ("OTHER", error.map(|error| format!("standard error of an intensity: at most {error} cd"))),
+        ("OTHER", temperature_k.map(|kelvin| format!("colour temperature: {kelvin:.0} K"))),
+        ("OTHER", rendering_ra.map(|index| format!("colour rendering: Ra {index:.0}"))),
     ];
     let is_given = |word: &str| export.texts.iter().any(|(given, _)| given == word);
     let own = own.into_iter().filter(|(word, _)| !is_given(word));

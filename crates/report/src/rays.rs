@@ -39,6 +39,7 @@ impl MeasuredRays {
             unit: self.unit,
             flux: self.flux(),
             luminous_flux_lm: None,
+            is_measured: false,
             texts: vec![(RayText::Name, scene), (RayText::Equipment, program)],
         };
         let mut bytes = Vec::new();

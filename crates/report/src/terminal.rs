@@ -49,8 +49,8 @@ fn by_source(measures: &Measures, sensor: &str) -> String {
     text
 }
 
-/// Sensors, checks and the folder of the report.
-pub fn terminal(report: &Report, dir: &Path, written: &Written) -> String {
+/// Sensors, checks, remarks and the folder of the report. The first `told` remarks, those on the scene file, are left out.
+pub fn terminal(report: &Report, told: usize, dir: &Path, written: &Written) -> String {
     let measures = &report.measures;
     let mut text =
         format!("{}\n{} paths, {}\n", report.scene.title, measures.paths, report.run.stopped);
@@ -70,7 +70,7 @@ pub fn terminal(report: &Report, dir: &Path, written: &Written) -> String {
     if let Some(target) = report.run.target.as_ref().filter(|target| !target.is_reached()) {
         text += &format!("  note: {}\n", target.sentence());
     }
-    for warning in &report.warnings {
+    for warning in report.warnings.iter().skip(told) {
         text += &format!("  note: {warning}\n");
     }
     text.extend(choices(measures));

@@ -35,7 +35,7 @@ pub(super) fn converted(
 
 /// A luminaire in a few lines.
 fn description(luminaire: &Luminaire) -> String {
-    let Luminaire { generation, lamps, power_w, opening, intensities, .. } = luminaire;
+    let Luminaire { generation, lamps, power_w, opening, colour, intensities, .. } = luminaire;
     let mut text = String::new();
     for (name, keyword) in
         [("manufacturer", "MANUFAC"), ("luminaire", "LUMINAIRE"), ("catalogue number", "LUMCAT")]
@@ -85,6 +85,12 @@ fn description(luminaire: &Luminaire) -> String {
     );
     if *power_w > 0.0 {
         _ = writeln!(text, "power: {} W", format_exact(*power_w));
+    }
+    if let Some(kelvin) = colour.temperature_k {
+        _ = writeln!(text, "colour temperature: {} K", format_exact(kelvin));
+    }
+    if let Some(index) = colour.rendering_ra {
+        _ = writeln!(text, "colour rendering: Ra {}", format_exact(index));
     }
     text
 }

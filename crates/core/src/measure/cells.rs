@@ -97,7 +97,7 @@ impl<'a> SensorCells<'a> {
         self.cover(cell) >= ENOUGH_AREA
     }
 
-    /// The fraction of a cell's own area that lies on the sensor, 1.
+    /// The fraction of a cell that lies on the sensor, 1.
     pub(crate) fn cover(&self, cell: usize) -> f64 {
         self.covered.map_or(1.0, |covered| covered[cell])
     }

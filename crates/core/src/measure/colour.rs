@@ -1,7 +1,7 @@
 //! Colour of all light on a sensor, from its tristimulus values (CIE 1931 observer).
 
 use crate::colour::{
-    Chromaticity, DominantWavelength, WavelengthKind, colour_rendering,
+    Chromaticity, ColourRendering, DominantWavelength, WavelengthKind, colour_rendering,
     correlated_colour_temperature, dominant_wavelength,
 };
 use crate::measure::evidence::Evidence;
@@ -25,11 +25,18 @@ const CHROMATIC: [(&str, &str, OfChromaticity); 8] = [
     ("duv", "1", |of| Some(correlated_colour_temperature(of)?.duv)),
 ];
 
+/// A colour rendering index of those of a spectrum.
+type OfRendering = fn(&ColourRendering) -> f64;
+
+/// The last parts of the names of colour rendering indices, and their values; R9 is that of saturated red, which Ra leaves out.
+const RENDERING: [(&str, OfRendering); 2] =
+    [("colour_rendering_ra", |of| of.general), ("colour_rendering_r9", |of| of.special[8])];
+
 /// All measures of the colour of a sensor's light, by the last part of their dotted names; nothing without spectra.
 pub(crate) fn totals(evidence: &Evidence<'_>, id: SensorId) -> IndexMap<String, Measure> {
     let chromatic = CHROMATIC.map(|(name, ..)| name);
     let names = ["radiant_flux", "luminous_efficacy"].into_iter().chain(chromatic);
-    let names = names.chain(["colour_rendering_ra"]);
+    let names = names.chain(RENDERING.map(|(name, _)| name));
     names.filter_map(|name| Some((name.to_owned(), total(evidence, id, name)?))).collect()
 }
 
@@ -37,10 +44,12 @@ pub(crate) fn totals(evidence: &Evidence<'_>, id: SensorId) -> IndexMap<String, 
 pub(crate) fn total(evidence: &Evidence<'_>, id: SensorId, name: &str) -> Option<Measure> {
     evidence.scene.is_spectral().then_some(())?;
     let stimuli = SensorStimuli { evidence, id };
+    if let Some((_, index)) = RENDERING.into_iter().find(|(own, _)| *own == name) {
+        return Some(stimuli.rendering(index));
+    }
     match name {
         "radiant_flux" => Some(stimuli.radiant_flux()),
         "luminous_efficacy" => Some(stimuli.measure("lm/W", |[_, y, _], watts| Some(y / watts))),
-        "colour_rendering_ra" => Some(stimuli.general_rendering()),
         _ => {
             let (_, unit, value) = CHROMATIC.into_iter().find(|(own, ..)| *own == name)?;
             Some(stimuli.measure(unit, |xyz, _| value(Chromaticity::from_tristimulus(xyz)?)))
@@ -134,14 +143,13 @@ impl SensorStimuli<'_, '_> {
         self.defined(found)
     }
 
-    /// The general colour rendering index Ra.
-    fn general_rendering(&self) -> Measure {
+    fn rendering(&self, index: OfRendering) -> Measure {
         let &Self { evidence, id } = self;
         let luminous = evidence.layout.flux_slots(id);
         let found = evidence.function(&luminous, "1", |flux| {
             let spectrum =
                 std::array::from_fn(|bin| flux(evidence.layout.spectrum(id, bin)) / BIN_WIDTH);
-            colour_rendering(&spectrum).map_or(f64::NAN, |found| found.general)
+            colour_rendering(&spectrum).map_or(f64::NAN, |found| index(&found))
         });
         self.defined(found)
     }

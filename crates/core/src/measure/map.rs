@@ -40,7 +40,7 @@ pub struct SensorMap {
     pub std_errors: Array2<f64>,
     /// Indicators of bias, same layout; `None` for unbiased estimates.
     pub biases: Option<Array2<f64>>,
-    /// The fraction of each cell's own area that lies on the sensor, 1. Cells with at least half
+    /// The fraction of each cell that lies on the sensor, 1; 0 outside. Cells with at least half
     /// count individually for the extremes, others together with their neighbours along the rim.
     pub on_sensor: Array2<f64>,
     /// Where the cells are.
@@ -140,8 +140,10 @@ fn map(
     let seen = SensorCells::of(evidence, id, sensor, light, view);
     let (columns, rows) = map_grid(sensor).shape();
     let table = |f: &dyn Fn(usize) -> f64| {
-        let at = |cell| if seen.is_on(cell) { f(cell) } else { f64::NAN };
-        Array2::from_shape_fn((rows, columns), |(row, column)| at(row * columns + column))
+        Array2::from_shape_fn((rows, columns), |(row, column)| f(row * columns + column))
+    };
+    let read = |f: fn(Noisy) -> f64| {
+        table(&|cell| if seen.is_on(cell) { f(seen.at(cell)) } else { f64::NAN })
     };
     SensorMap {
         sensor: evidence.scene.sensors[id.index()].name.clone(),
@@ -151,8 +153,8 @@ fn map(
         quantity: quantity.to_owned(),
         weathers: light.weathers(evidence.scene),
         unit: symbol.to_owned(),
-        values: table(&|cell| seen.at(cell).value),
-        std_errors: table(&|cell| seen.at(cell).std_error),
+        values: read(|cell| cell.value),
+        std_errors: read(|cell| cell.std_error),
         biases: None,
         on_sensor: table(&|cell| seen.cover(cell)),
         axes: axes(sensor),

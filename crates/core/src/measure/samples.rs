@@ -105,7 +105,7 @@ pub(crate) fn goniometer(c_cells: usize, gamma_cells: usize) -> SensorKind {
 fn surface(grid: Grid, area_in: impl Fn(ChartRect) -> f64) -> SurfaceSensor {
     let areas = grid.cell_areas(&area_in);
     SurfaceSensor {
-        covered: grid.cell_cover(&areas, area_in),
+        covered: grid.cell_cover(area_in),
         faces: Vec::new(),
         place: Place::Port,
         counts: CountedLight::Incident,

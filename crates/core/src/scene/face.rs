@@ -194,13 +194,29 @@ impl Patch {
 
     /// Area of the part whose chart lies in `rect`, mm².
     pub(crate) fn area_in(&self, rect: ChartRect) -> f64 {
+        self.untrimmed_in(rect) - self.trimmed_in(rect)
+    }
+
+    /// Area of the chart in `rect` that the patch fills, mm².
+    pub(crate) fn charted_in(&self, rect: ChartRect) -> f64 {
+        let charted = self.chart.as_ref().map_or_else(
+            || self.shape.charted_in(rect),
+            |chart| chart.charted_in(&self.shape, rect),
+        );
+        match self.trimmed_in(rect) {
+            0.0 => charted,
+            trimmed => charted * (1.0 - trimmed / self.untrimmed_in(rect)),
+        }
+    }
+
+    fn untrimmed_in(&self, rect: ChartRect) -> f64 {
         self.chart
             .as_ref()
             .map_or_else(|| self.shape.area_in(rect), |chart| chart.area_in(&self.shape, rect))
-            - self
-                .trim
-                .as_ref()
-                .map_or(0.0, |trim| trim.area_in(rect.intersection(&self.chart_bounds())))
+    }
+
+    fn trimmed_in(&self, rect: ChartRect) -> f64 {
+        self.trim.as_ref().map_or(0.0, |trim| trim.area_in(rect.intersection(&self.chart_bounds())))
     }
 }
 

@@ -58,7 +58,6 @@ pub use source::emission::Emission;
 pub use source::fitted::{FitQuality, FittedLight, NoFit};
 pub use source::light_group::{LightGroup, LightGroups};
 pub use source::measured::MeasuredEmission;
-pub(crate) use source::radiance::Radiance;
 pub use source::rays::{EmittedRay, RaySet};
 pub use source::sky::{EmitterKind, Sky};
 pub use source::{EmitSide, Emitted, Emitter, Source, StartSolids, SunAngles};

@@ -2,6 +2,7 @@
 
 use crate::luminaire::generation::FileGeneration;
 use crate::luminaire::intensities::{Intensities, PlaneSymmetry};
+use lumiduct_base::number::format_value;
 
 /// A luminaire or lamp: its light, its luminous opening and what else its file says.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,6 +17,8 @@ pub struct Luminaire {
     pub power_w: f64,
     /// The luminous opening.
     pub opening: Opening,
+    /// The colour of the light.
+    pub colour: LuminaireColour,
     /// Luminous intensities with these lamps.
     pub intensities: Intensities,
 }
@@ -62,6 +65,15 @@ impl Luminaire {
     }
 }
 
+/// The colour of light, where it is known.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct LuminaireColour {
+    /// Correlated colour temperature, K.
+    pub temperature_k: Option<f64>,
+    /// General colour rendering index Ra, 1.
+    pub rendering_ra: Option<f64>,
+}
+
 /// A luminaire as read, with what was assumed or left out.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReadLuminaire {
@@ -70,6 +82,11 @@ pub struct ReadLuminaire {
     /// Sentences for the user, in the order of the file.
     pub remarks: Vec<String>,
 }
+
+/// Spread of the planes at a pole that measurement may leave, as a share of the largest value there, 1.
+const POLE_SPREAD: f64 = 0.02;
+/// Share of the peak below which values at a pole need no care, 1.
+const DARK_POLE: f64 = 1e-3;
 
 /// Light output ratio above which a file contradicts itself, 1.
 const MOST_OUTPUT: f64 = 1.02;
@@ -102,6 +119,28 @@ impl ReadLuminaire {
         }
         Self { luminaire, remarks }
     }
+}
+
+/// Remarks where C planes disagree in the directions that all of them share.
+pub(crate) fn pole_remarks(intensities: &Intensities) -> impl Iterator<Item = String> {
+    let angles = intensities.angles_deg();
+    let planes = || (0..intensities.planes_deg().len()).map(|plane| intensities.plane(plane));
+    let peak = planes().flatten().copied().fold(0.0, f64::max);
+    let poles = [(0, 0.0, "nadir"), (angles.len() - 1, 180.0, "zenith")];
+    poles.into_iter().filter(|(place, angle, _)| angles[*place] == *angle).filter_map(
+        move |(place, angle, name)| {
+            let values = planes().map(|plane| plane[place]);
+            let [low, high] = values.fold([f64::INFINITY, 0.0], |[low, high], value| {
+                [low.min(value), high.max(value)]
+            });
+            (high - low > POLE_SPREAD * high && high > DARK_POLE * peak).then(|| {
+                let [low, high] = [low, high].map(format_value);
+                format!(
+                    "the planes have {low} to {high} cd at {angle}° ({name}), which is one direction; each is used as it is"
+                )
+            })
+        },
+    )
 }
 
 /// The input power, W; 0 with a remark for a negative one.

@@ -26,10 +26,18 @@ pub enum LuminaireError {
     #[error("the file cannot be read: {0}; check the name and the permissions")]
     Unreadable(#[from] std::io::Error),
     /// The file name extension is not one of a luminaire format.
-    #[error("`.{ending}` is not the ending of a known luminaire format; use .ies or .ldt")]
+    #[error(
+        "`.{ending}` is not the ending of a known luminaire format; use .ies or .ldt; .xml (TM-33) is written only"
+    )]
     UnknownLuminaire {
         /// The extension, without its dot.
         ending: String,
+    },
+    /// The format is written only.
+    #[error("{format} files are written, not read; use .ies or .ldt")]
+    WrittenOnly {
+        /// The format.
+        format: LuminaireFormat,
     },
     /// The file is longer than [`MAX_LUMINAIRE_BYTES`].
     #[error("the file has more than {} MiB, which no luminaire needs", MAX_LUMINAIRE_BYTES >> 20)]

@@ -131,7 +131,7 @@ fn flux_of(means: &CellMeans<'_>) -> f64 {
 }
 
 /// Edges of a ring, rad.
-fn ring_edges(ring: usize, rings: usize) -> [f64; 2] {
+pub(crate) fn ring_edges(ring: usize, rings: usize) -> [f64; 2] {
     [ring, ring + 1].map(|edge| std::f64::consts::PI * edge as f64 / rings as f64)
 }
 

@@ -11,6 +11,8 @@ pub enum LuminaireFormat {
     Ies2019,
     /// EULUMDAT.
     Ldt,
+    /// ANSI/IES TM-33-18, which is written and not read.
+    Tm33,
 }
 
 impl LuminaireFormat {
@@ -19,6 +21,7 @@ impl LuminaireFormat {
         match self {
             Self::Ies | Self::Ies2019 => "ies",
             Self::Ldt => "ldt",
+            Self::Tm33 => "xml",
         }
     }
 }
@@ -29,6 +32,7 @@ impl fmt::Display for LuminaireFormat {
             Self::Ies => "IES",
             Self::Ies2019 => "IES LM-63-2019",
             Self::Ldt => "EULUMDAT",
+            Self::Tm33 => "TM-33",
         })
     }
 }

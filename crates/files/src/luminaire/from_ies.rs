@@ -3,7 +3,9 @@
 //! Keywords and their texts come first, then `TILT=`, then numbers in a fixed order, separated by blanks, commas and line
 //! ends. The photometric horizontal, C0, lies along the length of the opening.
 
-use crate::luminaire::data::{LampFlux, Luminaire, Opening, ReadLuminaire, known_power};
+use crate::luminaire::data::{
+    LampFlux, Luminaire, LuminaireColour, Opening, ReadLuminaire, known_power, pole_remarks,
+};
 use crate::luminaire::error::{
     LuminaireError, MAX_ANGLES, MOST_FACTOR, MOST_LAMPS, MOST_LUMENS, MOST_NODES, MOST_SIZE,
 };
@@ -63,7 +65,16 @@ pub(crate) fn read(text: &str) -> Result<ReadLuminaire, LuminaireError> {
         PhotometricType::A | PhotometricType::C => head.generation,
         PhotometricType::B => head.generation.interpolated(),
     };
-    let luminaire = Luminaire { texts, generation, lamps, power_w, opening, intensities };
+    let luminaire = Luminaire {
+        texts,
+        generation,
+        lamps,
+        power_w,
+        opening,
+        // No keyword is for it.
+        colour: LuminaireColour::default(),
+        intensities,
+    };
     Ok(ReadLuminaire::new(luminaire, remarks))
 }
 
@@ -84,7 +95,9 @@ fn read_intensities(
             let mut candela = read_values(numbers, head)?;
             remark_on_repeated_plane((&planes_deg, &angles_deg), &candela, remarks);
             candela.truncate(planes_deg.len() * angles_deg.len());
-            Intensities::new(symmetry, planes_deg, angles_deg, candela)
+            let intensities = Intensities::new(symmetry, planes_deg, angles_deg, candela)?;
+            remarks.extend(pole_remarks(&intensities));
+            Ok(intensities)
         }
     }
 }

@@ -4,7 +4,9 @@
 //! A line for each field, in a fixed order. Intensities are in cd per 1000 lm of the lamps. The length of the opening lies along
 //! the axis from C90 to C270.
 
-use crate::luminaire::data::{LampFlux, Luminaire, Opening, ReadLuminaire, known_power};
+use crate::luminaire::data::{
+    LampFlux, Luminaire, LuminaireColour, Opening, ReadLuminaire, known_power, pole_remarks,
+};
 use crate::luminaire::error::{
     LuminaireError, MAX_ANGLES, MOST_FACTOR, MOST_LUMENS, MOST_NODES, MOST_SIZE,
 };
@@ -60,7 +62,7 @@ pub(crate) fn read(text: &str) -> Result<ReadLuminaire, LuminaireError> {
     if sets > 1 {
         remarks.push(format!("of {sets} sets of lamps the first is used"));
     }
-    let LampSet { count, kind, flux_lm, power_w } = fields.lamp_set()?;
+    let LampSet { count, kind, flux_lm, power_w, colour } = fields.lamp_set()?;
     (1..sets).try_for_each(|_| fields.lamp_set().map(drop))?;
     keep("LAMP", kind);
     (0..DIRECT_RATIOS).try_for_each(|_| fields.optional("a direct ratio").map(drop))?;
@@ -86,6 +88,7 @@ pub(crate) fn read(text: &str) -> Result<ReadLuminaire, LuminaireError> {
     let planes_deg = by_plane.iter().map(|(plane, _)| *plane).collect();
     let candela = by_plane.into_iter().flat_map(|(_, values)| values).collect();
     let intensities = Intensities::new(symmetry, planes_deg, angles_deg, candela)?;
+    remarks.extend(pole_remarks(&intensities));
     let lamps = match whole(count) {
         Some(count) if count < 0 => LampFlux::Absolute,
         Some(count) if count > 0 => LampFlux::Relative { count: count as u32, flux_lm },
@@ -101,7 +104,7 @@ pub(crate) fn read(text: &str) -> Result<ReadLuminaire, LuminaireError> {
         remarks.push(format!("{what} {own:.1} % and the light output ratio is {stated:.1} %"));
     }
     let generation = FileGeneration::Undefined;
-    let luminaire = Luminaire { texts, generation, lamps, power_w, opening, intensities };
+    let luminaire = Luminaire { texts, generation, lamps, power_w, opening, colour, intensities };
     Ok(ReadLuminaire::new(luminaire, remarks))
 }
 
@@ -169,6 +172,18 @@ struct LampSet<'t> {
     kind: &'t str,
     flux_lm: f64,
     power_w: f64,
+    colour: LuminaireColour,
+}
+
+/// Colour temperatures that a text may state, K.
+const COLOUR_TEMPERATURES: [f64; 2] = [1000.0, 100_000.0];
+/// Colour rendering indices, and not groups of them, that a text may state, 1.
+const RENDERING_INDICES: [f64; 2] = [5.0, 100.0];
+
+/// The number in a range with which a text begins, perhaps in K; a text such as `warm white` or `1B` states none.
+fn stated(text: &str, [least, most]: [f64; 2]) -> Option<f64> {
+    let text = text.trim_start_matches(['>', '=', ' ']).trim_end_matches(['K', 'k', ' ']);
+    text.parse().ok().filter(|number| (least..=most).contains(number))
 }
 
 /// The lines of a file, one field after the other.
@@ -196,10 +211,11 @@ impl<'t> Fields<'t> {
         let count = self.next("the number of lamps")?;
         let kind = self.text("the type of lamps")?;
         let flux_lm = self.positive("the flux of the lamps", MOST_LUMENS)?;
-        self.text("the colour temperature")?;
-        self.text("the colour rendering")?;
+        let temperature_k = stated(self.text("the colour temperature")?, COLOUR_TEMPERATURES);
+        let rendering_ra = stated(self.text("the colour rendering")?, RENDERING_INDICES);
         let power_w = self.optional("the power")?;
-        Ok(LampSet { count, kind, flux_lm, power_w })
+        let colour = LuminaireColour { temperature_k, rendering_ra };
+        Ok(LampSet { count, kind, flux_lm, power_w, colour })
     }
 
     /// Only blank lines may follow.

@@ -1,10 +1,12 @@
-//! Luminaires and lamps from files and to files: ANSI/IES LM-63 (.ies) and EULUMDAT (.ldt).
+//! Luminaires and lamps from files and to files: ANSI/IES LM-63 (.ies) and EULUMDAT (.ldt); and to ANSI/IES TM-33 (.xml).
 //!
 //! Readers never trust a file: whatever it contains, the result is a luminaire or a [`LuminaireError`]. What they assume about
 //! the light is a remark. Angles C and γ are the same in both formats, and tables of goniometer types A and B become tables over
 //! them; but the length of an opening lies along C0 in the first and along C90 in the second, so [`Opening`] names its axes.
 
+mod asymmetry;
 mod data;
+mod date;
 mod error;
 mod fields;
 mod fit;
@@ -20,10 +22,13 @@ mod photometric_type;
 mod text;
 mod to_ies;
 mod to_ldt;
+mod to_tm33;
 mod type_a;
 mod type_b;
+mod xml_text;
 
-pub use data::{LampFlux, Luminaire, Opening, ReadLuminaire, WrittenLuminaire};
+pub use asymmetry::asymmetry;
+pub use data::{LampFlux, Luminaire, LuminaireColour, Opening, ReadLuminaire, WrittenLuminaire};
 pub use error::{LuminaireError, MAX_ANGLES, MAX_LUMINAIRE_BYTES};
 pub use fit::{CellMeans, FittedIntensities, TableLayout, fit};
 pub use format::LuminaireFormat;
@@ -41,10 +46,11 @@ impl LuminaireFormat {
     ///
     /// # Errors
     ///
-    /// [`LuminaireError::UnknownLuminaire`] for an extension that is neither `ies` nor `ldt`.
+    /// [`LuminaireError::UnknownLuminaire`] for an extension other than `ies`, `ldt` and `xml`.
     pub fn of(path: &Path) -> Result<Self, LuminaireError> {
         let ending = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-        let known = [Self::Ies, Self::Ldt].into_iter().find(|format| format.ending() == ending);
+        let known =
+            [Self::Ies, Self::Ldt, Self::Tm33].into_iter().find(|format| format.ending() == ending);
         known.ok_or(LuminaireError::UnknownLuminaire { ending })
     }
 }
@@ -66,21 +72,23 @@ pub fn read(path: &Path) -> Result<ReadLuminaire, LuminaireError> {
 /// # Errors
 ///
 /// [`LuminaireError::Violated`] with the line if they violate the format, [`LuminaireError::NoDistribution`] if their angles or
-/// values make no distribution.
+/// values make no distribution, [`LuminaireError::WrittenOnly`] for a format that is not read.
 pub fn parse(bytes: &[u8], format: LuminaireFormat) -> Result<ReadLuminaire, LuminaireError> {
     let text = decoded(bytes);
     match format {
         LuminaireFormat::Ies | LuminaireFormat::Ies2019 => from_ies::read(&text),
         LuminaireFormat::Ldt => from_ldt::read(&text),
+        LuminaireFormat::Tm33 => Err(LuminaireError::WrittenOnly { format }),
     }
 }
 
-/// A file, LM-63-2002, LM-63-2019 or EULUMDAT, with seven digits.
+/// A file, LM-63-2002, LM-63-2019, EULUMDAT or TM-33-18, with seven digits.
 pub fn written(luminaire: &Luminaire, format: LuminaireFormat) -> WrittenLuminaire {
     match format {
         LuminaireFormat::Ies => to_ies::write(luminaire, WrittenEdition::Of2002),
         LuminaireFormat::Ies2019 => to_ies::write(luminaire, WrittenEdition::Of2019),
         LuminaireFormat::Ldt => to_ldt::write(luminaire),
+        LuminaireFormat::Tm33 => to_tm33::write(luminaire),
     }
 }
 

@@ -1,6 +1,8 @@
 //! Files that are read and written, and files that are not.
 
 mod goniometer_types;
+mod tm33;
+mod tm33_schema;
 
 use super::*;
 use crate::bytes::tests::mutants;
@@ -17,7 +19,9 @@ fn ies(text: &str) -> Result<ReadLuminaire, LuminaireError> {
 
 fn luminaire(symmetry: PlaneSymmetry, planes: &[f64]) -> Luminaire {
     let angles = vec![0.0, 30.0, 60.0, 90.0, 180.0];
-    let of = |plane: f64, angle: f64| 100.0 + plane + 0.3 * angle;
+    let is_pole = |angle: f64| angle == 0.0 || angle == 180.0;
+    let of =
+        |plane: f64, angle: f64| 100.0 + 0.3 * angle + if is_pole(angle) { 0.0 } else { plane };
     let candela =
         planes.iter().flat_map(|plane| angles.iter().map(|angle| of(*plane, *angle))).collect();
     Luminaire {
@@ -33,6 +37,7 @@ fn luminaire(symmetry: PlaneSymmetry, planes: &[f64]) -> Luminaire {
             along_c90_mm: 50.0,
             height_mm: 10.0,
         },
+        colour: LuminaireColour { temperature_k: Some(3000.0), rendering_ra: Some(82.0) },
         intensities: Intensities::new(symmetry, planes.to_vec(), angles, candela).unwrap(),
     }
 }
@@ -66,13 +71,17 @@ fn a_lambertian_file_is_read_to_the_last_digit() {
 #[test]
 fn luminaires_come_back_from_both_formats() {
     for luminaire in all_symmetries() {
-        for format in [LuminaireFormat::Ies, LuminaireFormat::Ldt] {
+        let no_colour = LuminaireColour::default();
+        for (format, kept) in
+            [(LuminaireFormat::Ies, no_colour), (LuminaireFormat::Ldt, luminaire.colour)]
+        {
             let text = written(&luminaire, format).text;
             assert!(text.lines().all(|line| line.len() < 256), "{format}");
             let back =
                 parse(text.as_bytes(), format).unwrap_or_else(|error| panic!("{error}\n{text}"));
             assert_eq!(back.remarks, Vec::<String>::new(), "{format}");
-            let Luminaire { intensities, lamps, opening, power_w, .. } = &back.luminaire;
+            let Luminaire { intensities, lamps, opening, power_w, colour, .. } = &back.luminaire;
+            assert_eq!(*colour, kept, "{format}");
             assert_eq!(intensities.symmetry(), luminaire.intensities.symmetry(), "{format}");
             assert_eq!(intensities.angles_deg(), luminaire.intensities.angles_deg());
             for (place, plane) in luminaire.intensities.planes_deg().iter().enumerate() {
@@ -174,6 +183,11 @@ fn what_contradicts_itself_or_is_lost_is_remarked_on() {
     ] {
         assert!(remarks(old, new).contains(words), "{new}: {}", remarks(old, new));
     }
+    // All planes meet at the nadir.
+    let crossing = "IESNA:LM-63-2002\r\nTILT=NONE\r\n1 -1 1 3 2 1 2 0.05 0.08 0\r\n1 1 12.5\r\n0 45 90\r\n0 90\r\n\
+        100 200 0\r\n130 200 0\r\n";
+    let remarks = ies(crossing).unwrap().remarks.join("; ");
+    assert!(remarks.contains("100 to 130 cd at 0° (nadir)"), "{remarks}");
     let ellipse = ies(&LAMBERT.replace("0.05 0.08 0", "-0.05 -0.08 0")).unwrap().luminaire;
     let remarks = written(&ellipse, LuminaireFormat::Ies).remarks;
     assert!(remarks.len() == 1 && remarks[0].contains("beyond ASCII"), "{remarks:?}");
@@ -266,6 +280,17 @@ fn eulumdat_with_commas_and_several_sets_is_read() {
     assert_eq!(read.luminaire.intensities.symmetry(), PlaneSymmetry::AboutC90);
     assert_eq!(read.luminaire.lamps, all_symmetries()[3].lamps);
     assert_eq!(read.remarks, ["of 2 sets of lamps the first is used"]);
+    for (temperature, rendering, expected) in [
+        ("3500 K", "> 80", [Some(3500.0), Some(80.0)]),
+        ("warm white", "1B", [None, None]),
+        ("840", "1", [None, None]),
+    ] {
+        lines[29] = temperature.to_owned();
+        lines[30] = rendering.to_owned();
+        let read = parse(lines.join("\n").as_bytes(), LuminaireFormat::Ldt).unwrap();
+        let LuminaireColour { temperature_k, rendering_ra } = read.luminaire.colour;
+        assert_eq!([temperature_k, rendering_ra], expected, "{temperature}");
+    }
 }
 
 #[test]

@@ -16,7 +16,7 @@ const EQUAL_STEPS: f64 = 1e-6;
 
 /// The file. Direct ratios are written as 0, which means that they are not given.
 pub(crate) fn write(luminaire: &Luminaire) -> WrittenLuminaire {
-    let Luminaire { lamps, power_w, opening, intensities, .. } = luminaire;
+    let Luminaire { lamps, power_w, opening, colour, intensities, .. } = luminaire;
     let mut remarks = Vec::new();
     let text =
         |keyword: &str, longest| one_line(luminaire.text(keyword).unwrap_or_default(), longest);
@@ -58,7 +58,8 @@ pub(crate) fn write(luminaire: &Luminaire) -> WrittenLuminaire {
     // Conversion factor, tilt during measurement, and one set of lamps.
     lines.extend(["1", "0", "1"].map(str::to_owned));
     lines.extend([count.to_string(), text("LAMP", LAMP), seven_digits(lamp_flux)]);
-    lines.extend([String::new(), String::new(), seven_digits(*power_w)]);
+    let whole = |number: Option<f64>| number.map_or(String::new(), |number| format!("{number:.0}"));
+    lines.extend([whole(colour.temperature_k), whole(colour.rendering_ra), seven_digits(*power_w)]);
     lines.extend(numbers(&[0.0; 10]));
     lines.extend(numbers(&circle));
     lines.extend(numbers(angles));

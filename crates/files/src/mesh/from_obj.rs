@@ -236,7 +236,7 @@ mod tests {
     #[test]
     fn mutated_files_never_panic_and_good_results_are_finite() {
         let original = write(&icosphere(1.0, 0, Normals::Smooth)).into_bytes();
-        for bytes in mutants(&original, 400, 5) {
+        for bytes in mutants(&original, 20_000, 5) {
             if let Ok(mesh) = read(&bytes, LengthUnit::Metre) {
                 assert!(mesh.positions.iter().all(|p| p.is_finite()));
             }

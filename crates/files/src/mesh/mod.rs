@@ -31,18 +31,30 @@ use std::path::Path;
 ///
 /// # Errors
 ///
-/// As [`MeshFormat::of`]; [`MeshError::Unreadable`], [`MeshError::FileTooLong`] or [`MeshError::BufferFile`] if a
-/// file cannot be read; [`MeshError::Broken`] if it violates its format; [`MeshError::Unsupported`],
-/// [`MeshError::TooManyCopies`] or [`MeshError::Unusable`] if its content makes no mesh that can be traced.
+/// As [`MeshFormat::of`] and [`parse`]; [`MeshError::Unreadable`] or [`MeshError::FileTooLong`] if the file cannot be read.
 pub fn read(path: &Path, unit: LengthUnit) -> Result<TriangleMesh, MeshError> {
     let format = MeshFormat::of(path)?;
     let bytes = read_file(path, MAX_FILE_BYTES)?.ok_or(MeshError::FileTooLong)?;
+    parse(&bytes, format, path.parent().unwrap_or_else(|| Path::new("")), unit)
+}
+
+/// Reads the bytes of a mesh whose lengths are in `unit`. The buffers of glTF may be files in `folder`.
+///
+/// # Errors
+///
+/// [`MeshError::BufferFile`] if the file of a buffer cannot be read; [`MeshError::Broken`] if the bytes violate their
+/// format; [`MeshError::Unsupported`], [`MeshError::TooManyCopies`] or [`MeshError::Unusable`] if their content makes no
+/// mesh that can be traced.
+pub fn parse(
+    bytes: &[u8],
+    format: MeshFormat,
+    folder: &Path,
+    unit: LengthUnit,
+) -> Result<TriangleMesh, MeshError> {
     let mut mesh = match format {
-        MeshFormat::Gltf => {
-            from_gltf::read(&bytes, path.parent().unwrap_or_else(|| Path::new("")), unit)
-        }
-        MeshFormat::Stl => from_stl::read(&bytes, unit),
-        MeshFormat::Obj => from_obj::read(&bytes, unit),
+        MeshFormat::Gltf => from_gltf::read(bytes, folder, unit),
+        MeshFormat::Stl => from_stl::read(bytes, unit),
+        MeshFormat::Obj => from_obj::read(bytes, unit),
     }?;
     mesh.faces.iter_mut().for_each(|name| *name = visible(name));
     Ok(mesh)

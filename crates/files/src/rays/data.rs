@@ -29,6 +29,8 @@ pub struct RaySetInfo {
     pub flux: f64,
     /// Luminous flux that a file with radiant rays states beside, lm.
     pub luminous_flux_lm: Option<f64>,
+    /// Whether the rays were measured, not computed, as far as the file says.
+    pub is_measured: bool,
     /// Texts.
     pub texts: Vec<(RayText, String)>,
 }
@@ -113,8 +115,8 @@ impl FileRay {
                 "its direction has a length of {length:.4}; a unit vector is needed"
             ));
         }
-        // Single precision leaves unit vectors as they are.
-        let is_unit = (length - 1.0).abs() < 1e-6;
+        // Single precision leaves unit vectors as they are, to a few times its rounding.
+        let is_unit = (length - 1.0).abs() < 4.0 * f64::from(f32::EPSILON);
         let direction = if is_unit {
             [dx, dy, dz]
         } else {

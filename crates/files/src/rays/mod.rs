@@ -8,7 +8,7 @@
 //! use lumiduct_files::rays::{FileRay, RayFormat, RayReader, RaySetInfo, write};
 //!
 //! let ray = FileRay { position_mm: [1.0, 0.0, 0.5], direction: [0.0, 0.6, 0.8], flux: 2.5 };
-//! let info = RaySetInfo { count: 2, unit: FluxUnit::Lumen, flux: 5.0, luminous_flux_lm: None, texts: Vec::new() };
+//! let info = RaySetInfo { count: 2, unit: FluxUnit::Lumen, flux: 5.0, luminous_flux_lm: None, is_measured: false, texts: Vec::new() };
 //! let folder = tempfile::tempdir()?;
 //! let path = folder.path().join("led.tm25ray");
 //! write(&mut std::fs::File::create(&path)?, RayFormat::of(&path)?, &info, [Ok(ray), Ok(ray)])?;

@@ -61,7 +61,14 @@ impl RayTable {
         if columns > places.len() {
             remarks.push("its further columns are not used".to_owned());
         }
-        let info = RaySetInfo { count, unit, flux, luminous_flux_lm: None, texts: Vec::new() };
+        let info = RaySetInfo {
+            count,
+            unit,
+            flux,
+            luminous_flux_lm: None,
+            is_measured: false,
+            texts: Vec::new(),
+        };
         Ok(Opened { info, remarks, rays: table })
     }
 

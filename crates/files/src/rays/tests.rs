@@ -29,6 +29,7 @@ fn info(rays: &[FileRay], unit: FluxUnit) -> RaySetInfo {
         unit,
         flux: rays.iter().map(|ray| f64::from(ray.flux)).sum(),
         luminous_flux_lm: None,
+        is_measured: false,
         texts: vec![(RayText::Name, "LED µ1".into()), (RayText::Operation, "150 mA".into())],
     }
 }
@@ -109,9 +110,16 @@ fn rays_of_tm25_follow_its_tables_columns_and_text() {
     file.extend(2.5f32.to_le_bytes());
     let reader = open(&file, RayFormat::Tm25).unwrap();
     assert_eq!(reader.info().unit, FluxUnit::Lumen);
+    assert!(reader.remarks().iter().any(|own| own.contains("radiant fluxes are not used")));
     assert_eq!(reader.collect::<Result<Vec<_>, _>>().unwrap()[0].flux, 2.5);
     let file = tm25(&[(12, 8f32.to_bits() as i32)], &[]);
     assert_eq!(open(&file, RayFormat::Tm25).unwrap().info().luminous_flux_lm, Some(8.0));
+    // That rays were measured is kept.
+    let measured = open(&tm25(&[(8, 1)], &[]), RayFormat::Tm25).unwrap();
+    assert!(measured.info().is_measured);
+    let mut again = Vec::new();
+    write(&mut again, RayFormat::Tm25, measured.info(), rays.iter().copied().map(Ok)).unwrap();
+    assert_eq!(again[8..12], [1, 0, 0, 0]);
 }
 
 #[test]

@@ -24,6 +24,9 @@ const COLUMN_NAME: u64 = 512;
 const VERSION: i32 = 2013;
 /// Version whose layout is taken to be the same.
 const LATER_VERSION: i32 = 2020;
+/// How the rays were made (section 4.7.1.3).
+const SIMULATED: i32 = 0;
+const MEASURED: i32 = 1;
 
 /// Reads the header.
 pub(crate) fn open(
@@ -57,6 +60,9 @@ pub(crate) fn open(
     if tables > 0 || columns_of_rays.has_color {
         remarks.push("its spectra, wavelengths and colours are not used".to_owned());
     }
+    if columns_of_rays.has_both_fluxes {
+        remarks.push("its radiant fluxes are not used, but its luminous ones".to_owned());
+    }
     if columns_of_rays.has_stokes {
         remarks.push("its polarisation is not used".to_owned());
     }
@@ -72,6 +78,7 @@ pub(crate) fn open(
         unit,
         flux: flux.unwrap_or(0.0),
         luminous_flux_lm: luminous.filter(|_| unit == FluxUnit::Watt),
+        is_measured: header.i32(8)? == MEASURED,
         texts: texts(&header)?,
     };
     let layout = RecordLayout {
@@ -93,6 +100,7 @@ struct RayColumns {
     unit: FluxUnit,
     has_color: bool,
     has_stokes: bool,
+    has_both_fluxes: bool,
 }
 
 impl RayColumns {
@@ -122,7 +130,8 @@ impl RayColumns {
             + u64::from(index)
             + additional;
         let has_color = wavelength || tristimulus || index;
-        Ok(Self { numbers, flux_at, unit, has_color, has_stokes: stokes })
+        let has_both_fluxes = luminous && radiant;
+        Ok(Self { numbers, flux_at, unit, has_color, has_stokes: stokes, has_both_fluxes })
     }
 }
 
@@ -183,6 +192,7 @@ pub(crate) fn write_header(out: &mut dyn Write, info: &RaySetInfo) -> io::Result
     let mut put = |at: usize, value: &[u8]| bytes[at..at + value.len()].copy_from_slice(value);
     put(0, b"TM25");
     put(4, &VERSION.to_le_bytes());
+    put(8, &if info.is_measured { MEASURED } else { SIMULATED }.to_le_bytes());
     put(12, &(luminous as f32).to_le_bytes());
     put(16, &(radiant as f32).to_le_bytes());
     put(20, &info.count.to_le_bytes());

@@ -86,7 +86,7 @@ pub(crate) fn open(
     let name = description.trim().to_owned();
     let texts = if name.is_empty() { Vec::new() } else { vec![(RayText::Name, name)] };
     let flux = header.flux(112)?.unwrap_or(0.0);
-    let info = RaySetInfo { count, unit, flux, luminous_flux_lm: None, texts };
+    let info = RaySetInfo { count, unit, flux, luminous_flux_lm: None, is_measured: false, texts };
     let layout =
         RecordLayout { format: FORMAT, start: HEADER as u64, numbers, flux_at: 6, to_mm, count };
     let rays = RayRecords::begin(source, layout, length)?;

@@ -38,6 +38,7 @@ impl ZemaxLines {
             unit: FluxUnit::Watt,
             flux: 0.0,
             luminous_flux_lm: None,
+            is_measured: false,
             texts: Vec::new(),
         };
         let remarks = vec![

@@ -72,12 +72,12 @@ impl SampledScatter {
         for (name, angles) in [("theta_i", &self.incident), ("theta_s", &self.polar)] {
             if let [angle] = angles[..] {
                 remarks.push(format!(
-                    "its values at {name} of {angle} deg, the only one, are used at all"
+                    "{angle} deg is its only {name}; its values are used at every {name}"
                 ));
             }
         }
         if self.azimuth.len() == 1 {
-            remarks.push("one azimuth is given, so that scatter is the same at all".to_owned());
+            remarks.push("it has one azimuth; its values are used at every azimuth".to_owned());
         } else if is_half {
             remarks.extend(beyond("phi_s", &self.azimuth, last_azimuth));
             remarks.push(

@@ -4,6 +4,7 @@ use crate::scatter::angles::SampledScatter;
 use crate::scatter::data::{BsdfMatrix, ScatterFile, ScatterSide};
 use crate::scatter::error::{Violation, value};
 use std::collections::BTreeMap;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 const ANGLES: [&str; 3] = ["theta_i_deg", "theta_s_deg", "phi_s_deg"];
 const BRDF: &str = "brdf_per_sr";
@@ -22,9 +23,19 @@ type AngleKey = u32;
 
 const UNITS_PER_DEG: f64 = 1e6;
 
-pub(super) fn read(text: &str) -> Result<ScatterFile, Violation> {
+/// Whether the first line of the table names an angle of incidence.
+pub(super) fn has_angles(text: &str) -> bool {
+    rows(text).next().is_some_and(|(_, head)| head.to_ascii_lowercase().contains("theta_i"))
+}
+
+/// Lines with their numbers, without comments and empty ones.
+fn rows(text: &str) -> impl Iterator<Item = (usize, &str)> {
     let lines = text.lines().enumerate().map(|(index, line)| (index + 1, line.trim()));
-    let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
+    lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'))
+}
+
+pub(super) fn read(text: &str) -> Result<ScatterFile, Violation> {
+    let mut lines = rows(text);
     let (head_line, head) = lines.next().unwrap_or((1, ""));
     let names: Vec<&str> = head.split(',').map(str::trim).collect();
     let place = |name: &str| names.iter().position(|own| own.eq_ignore_ascii_case(name));
@@ -47,7 +58,11 @@ pub(super) fn read(text: &str) -> Result<ScatterFile, Violation> {
     for (number, line) in lines {
         let words: Vec<&str> = line.split(',').map(str::trim).collect();
         if words.len() != names.len() {
-            let problem = format!("it has {} columns instead of {}", words.len(), names.len());
+            let problem = format!(
+                "it has {} columns instead of {}; commas separate them, and numbers have a decimal point",
+                words.len(),
+                names.len()
+            );
             return Err(Violation::new(number, problem));
         }
         let mut angles = [0; 3];
@@ -125,10 +140,26 @@ fn averaged(samples: &Samples, head_line: usize) -> Result<(BsdfMatrix, Vec<Stri
             }
         }
     }
+    if let Some((name, last)) = radians(&keys) {
+        let problem =
+            format!("its largest {name} is {last}, as if in radians; angles are in degrees");
+        return Err(Violation::new(head_line, problem));
+    }
     let [incident, polar, azimuth] =
         keys.map(|keys| keys.into_iter().map(|key| f64::from(key) / UNITS_PER_DEG).collect());
     let averaged = SampledScatter { incident, polar, azimuth, values }.matrix();
     averaged.ok_or_else(|| Violation::new(head_line, "its angles make no patches"))
+}
+
+/// An axis whose angles end where they would in radians, and its largest angle.
+fn radians(keys: &[Vec<AngleKey>; 3]) -> Option<(&'static str, f64)> {
+    const ROUNDING: f64 = 0.005;
+    let ends = [&[FRAC_PI_2][..], &[FRAC_PI_2], &[PI, TAU]];
+    let axes = keys.iter().zip(ANGLES).zip(ends).filter(|((keys, _), _)| keys.len() > 1);
+    let mut lasts = axes
+        .map(|((keys, name), ends)| (name, f64::from(keys[keys.len() - 1]) / UNITS_PER_DEG, ends));
+    let found = lasts.find(|(_, last, ends)| ends.iter().any(|end| (last - end).abs() < ROUNDING));
+    found.map(|(name, last, _)| (name, last))
 }
 
 /// The value of a combination of angles. At the zenith all azimuths are one direction.

@@ -319,6 +319,27 @@ fn a_csv_needs_every_combination_but_azimuths_of_the_zenith() {
     }
     refused("theta_i_deg,theta_s_deg,phi_s_deg,btdf_per_sr\n", ScatterFormat::Csv, &["no rows"]);
     refused("", ScatterFormat::Csv, &["line 1", "theta_i_deg"]);
+    let head = "theta_i_deg,theta_s_deg,phi_s_deg,btdf_per_sr\n";
+    let comma = format!("{head}0,5,45,0,0,1\n");
+    refused(&comma, ScatterFormat::Csv, &["line 2", "6 columns instead of 4", "decimal point"]);
+    let radians = format!("{head}0,0,0,0.1\n0,0.7,0,0.1\n0,1.5708,0,0.1\n");
+    refused(&radians, ScatterFormat::Csv, &["theta_s_deg is 1.5708", "in radians"]);
+}
+
+#[test]
+fn a_table_of_scatter_is_told_from_one_of_rays() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.csv");
+    for (text, is_scatter) in [
+        ("# by angles\n\nTheta_i_deg, theta_s_deg\n", true),
+        ("x_mm,y_mm,z_mm,dx,dy,dz,flux_lm\n0,0,0,0,0,1,1\n", false),
+        ("# theta_i_deg\nx_mm\n", false),
+        ("", false),
+    ] {
+        std::fs::write(&path, text).unwrap();
+        assert_eq!(is_scatter_table(&path), is_scatter, "{text}");
+    }
+    assert!(!is_scatter_table(&folder.path().join("none.csv")));
 }
 
 #[test]

@@ -29,6 +29,13 @@ pub(super) fn read(text: &str) -> Result<ScatterFile, Violation> {
         .map_err(|error| Violation::new(error.pos().row as usize, error.to_string()))?;
     let element = |name: &str| document.descendants().find(|node| node.has_tag_name(name));
     let definition = element("DataDefinition").ok_or_else(|| {
+        let root = document.root_element();
+        // The other XML of lighting, of any edition.
+        if root.tag_name().name().starts_with("IESTM33") {
+            let problem =
+                "it is a luminaire in TM-33 and not a BSDF; TM-33 files are written, not read";
+            return Violation::new(line_of(root), problem);
+        }
         Violation::new(1, "it has no element `DataDefinition`: it is not a file of a BSDF")
     })?;
     let layout = layout(definition)?;

@@ -50,6 +50,7 @@ impl Context<'_> {
                 ExportFormat::Ies => LuminaireFormat::Ies,
                 ExportFormat::Ies2019 => LuminaireFormat::Ies2019,
                 ExportFormat::Ldt => LuminaireFormat::Ldt,
+                ExportFormat::Tm33 => LuminaireFormat::Tm33,
             })
             .collect();
         self.check_file_names(name, &formats, &key.field("formats"));

@@ -192,7 +192,8 @@ impl Context<'_> {
             faces.iter().zip(&whole).map(area).sum::<f64>()
         };
         let areas = grid.cell_areas(area_in);
-        let covered = grid.cell_cover(&areas, area_in);
+        let covered = grid
+            .cell_cover(|rect| faces.iter().map(|face| scene.face_charted_in(*face, rect)).sum());
         let seeing = Seeing::All;
         let passage = match spec.passage {
             PassageSpec::Every => Passage::Every,

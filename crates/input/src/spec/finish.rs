@@ -241,7 +241,7 @@ pub struct ScatterFileSpec {
     /// The file, relative to the scene: .xml of Radiance genBSDF or LBNL WINDOW (Klems matrix or tensor tree, visible light),
     /// or .csv with columns `theta_i_deg`, `theta_s_deg`, `phi_s_deg`, and `brdf_per_sr` or `btdf_per_sr`.
     pub file: String,
-    /// The side in the file that faces the light arriving at this finish. In XML the front is the outside of a glazing.
+    /// The side of the file that lies on the front of the sheet. In XML the front is the outside of a glazing.
     #[serde(default)]
     pub side: ScatterFileSideSpec,
     /// Angle from the direction along the guide, on a flat sheet its local y, to the upward direction of the file,

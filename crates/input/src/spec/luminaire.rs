@@ -50,7 +50,7 @@ pub enum LuminaireExtent {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LuminaireExportSpec {
     /// The files: `SENSOR.ies` in IES LM-63-2002 or, with `ies_2019`, in LM-63-2019, which says that the values are computed;
-    /// `SENSOR.ldt` in EULUMDAT.
+    /// `SENSOR.ldt` in EULUMDAT; with `tm33`, `SENSOR.xml` in TM-33-18.
     #[serde(default = "all_formats")]
     #[schemars(length(min = 1))]
     pub formats: Vec<ExportFormat>,
@@ -60,7 +60,7 @@ pub struct LuminaireExportSpec {
     /// Step of C in the table, likewise of 360. Not used under rotational symmetry.
     #[schemars(extend("exclusiveMinimum" = 0.0), range(max = 360.0))]
     pub c_step_deg: Option<f64>,
-    /// The symmetry of the luminaire. Planes that it takes as equal are averaged, and the files list them once. Omitted: `none`;
+    /// The symmetry of the luminaire. Planes that it takes as equal are averaged, and the files but for TM-33 list them once. Omitted: `none`;
     /// `rotational` for a goniometer without sectors.
     pub symmetry: Option<ExportSymmetry>,
     /// What intensities refer to: with `relative`, to lamps with the flux of all sources.
@@ -92,6 +92,8 @@ pub enum ExportFormat {
     Ies2019,
     /// EULUMDAT.
     Ldt,
+    /// ANSI/IES TM-33-18.
+    Tm33,
 }
 
 /// The symmetry of a luminaire.

@@ -239,7 +239,7 @@ fn area_m2(opening: &Opening) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use lumiduct_files::luminaire::{FileGeneration, Intensities};
+    use lumiduct_files::luminaire::{FileGeneration, Intensities, LuminaireColour};
     use ndarray::Array2;
 
     /// A Lambertian disk of 100 mm with 1000 cd along its axis: the same luminance in all directions, I / (π r²), and sin² γ of its flux
@@ -261,6 +261,7 @@ mod tests {
                 lamps,
                 power_w: 0.0,
                 opening,
+                colour: LuminaireColour::default(),
                 intensities,
             },
             std_errors: Array2::zeros((1, 181)),

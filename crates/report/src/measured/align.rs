@@ -11,6 +11,7 @@ use crate::measured::computed::ComputedCells;
 use crate::measured::intensities::MOST_ROTATION;
 use crate::measured::resample::{MeasuredGrid, resampled};
 use lumiduct_base::math::solve_rows;
+use lumiduct_base::number::format_with_error;
 use ndarray::Array2;
 
 /// Share of the size of a map over which a shift is searched to either side, but at least one cell.
@@ -19,6 +20,10 @@ const RANGE: f64 = 0.125;
 const FEWEST_LINES: usize = 5;
 /// Resolution of a shift, as a share of a cell.
 const RESOLUTION: f64 = 1e-6;
+/// Standard errors by which a shift has to differ from 0 to be applied.
+const CLEAR_SHIFT: f64 = 2.0;
+/// Shift of no importance, as a share of a cell.
+const NO_SHIFT: f64 = 1e-3;
 /// Most steps towards a shift; a few suffice.
 const MOST_STEPS: usize = 50;
 /// Step of the derivatives, as a share of a cell.
@@ -43,6 +48,11 @@ impl FoundShift {
     /// Whether an axis was aligned.
     pub(crate) fn is_found(&self, axis: usize) -> bool {
         self.range[axis] > 0.0
+    }
+
+    /// Whether the shift along an axis may be noise.
+    fn is_within_error(&self, axis: usize) -> bool {
+        self.is_found(axis) && self.value[axis].abs() < CLEAR_SHIFT * self.std_errors[axis]
     }
 }
 
@@ -132,6 +142,18 @@ impl MapPair<'_> {
             });
             let Some(axis) = worst else {
                 let shift = FoundShift { value, std_errors, range };
+                if let Some(axis) = [0, 1].into_iter().find(|axis| shift.is_within_error(*axis)) {
+                    is_free[axis] = false;
+                    if value[axis].abs() <= NO_SHIFT * self.cell()[axis] {
+                        continue;
+                    }
+                    let found = format_with_error(value[axis], std_errors[axis]);
+                    remarks.push(format!(
+                        "a shift of {found} {unit} along {} is within its error and is not applied",
+                        names[axis]
+                    ));
+                    continue;
+                }
                 for axis in [0, 1].into_iter().filter(|axis| shift.is_found(*axis)) {
                     if value[axis].abs() >= range[axis] * (1.0 - 1e-9) {
                         let (name, most) = (names[axis], range[axis]);

@@ -217,7 +217,7 @@ fn compared(
     let found = pair.scale(&aligned).ok_or_else(|| {
         Error::Usage(format!("{file} and {} have no light in common", computed.name))
     })?;
-    remarks.extend(turned_remark(&pair, &aligned, shift.value));
+    remarks.splice(0..0, turned_remark(&pair, &[&as_read, &aligned], shift.value));
     let scale = (!options.no_scale).then_some(found);
     let factor = scale.map_or(1.0, |scale| scale.value);
     let values = &computed.cells.values;
@@ -247,7 +247,11 @@ fn facts_of(grid: &MeasuredGrid, computed: &ComputedCells, file: &str) -> String
 }
 
 /// A remark where the measured map would fit much better mirrored or turned.
-fn turned_remark(pair: &MapPair<'_>, aligned: &Array2<f64>, shift: [f64; 2]) -> Option<String> {
+fn turned_remark(
+    pair: &MapPair<'_>,
+    [as_read, aligned]: &[&Array2<f64>; 2],
+    shift: [f64; 2],
+) -> Option<String> {
     /// Share of the mismatch that has to go.
     const BETTER: f64 = 0.5;
     /// Mismatch that is no reason for a remark, 1.
@@ -273,9 +277,10 @@ fn turned_remark(pair: &MapPair<'_>, aligned: &Array2<f64>, shift: [f64; 2]) -> 
         ];
         ways.map(|(axes, words)| (flipped(axes), words.to_owned())).to_vec()
     };
-    let own = pair.loss(aligned);
+    // Turned maps of images and surfaces are not shifted, so that this one is not either.
+    let own = pair.loss(if pair.computed.is_intensity() { aligned } else { as_read });
     let (loss, words) = others.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
-    (own > SMALL && loss < BETTER * own).then(|| {
+    (own > SMALL && loss < BETTER * own && loss < pair.loss(aligned)).then(|| {
         format!(
             "the measured values would fit much better {words}: check the directions of the axes"
         )

@@ -117,6 +117,9 @@ fn options_switch_alignment_and_scale_off_and_wrong_directions_are_remarked() {
     assert_eq!(found.before, found.after);
     let remarks = found.remarks.join("\n");
     assert!(remarks.contains("upside down"), "{remarks}");
+    // A shift to the limit of the search is not the reason.
+    let shifted = outcome(computed([8.0, 6.0], field, 2.0), &flipped, &Default::default());
+    assert!(shifted.remarks[0].contains("upside down"), "{:?}", shifted.remarks);
     let limit = MeasuredOptions { limit: Some(0.01), ..off };
     assert!(!outcome(computed([8.0, 6.0], field, 2.0), &flipped, &limit).is_within());
 }
@@ -124,8 +127,8 @@ fn options_switch_alignment_and_scale_off_and_wrong_directions_are_remarked() {
 #[test]
 fn a_shift_that_nothing_determines_is_left_alone_and_small_maps_are_not_aligned() {
     let slope = |x: f64, _: f64| 10.0 + (0.3 * x).sin();
-    let found =
-        outcome(computed([8.0, 6.0], slope, 1e-3), &grid([8.0, 6.0], slope), &Default::default());
+    let moved = |by: f64| grid([8.0, 6.0], move |x, y| slope(x - by, y));
+    let found = outcome(computed([8.0, 6.0], slope, 1e-3), &moved(0.4), &Default::default());
     assert!(found.shift.is_found(0) && !found.shift.is_found(1));
     assert!(found.remarks.join("\n").contains("no shift is determined along v"));
     let found =

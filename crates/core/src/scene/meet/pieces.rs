@@ -156,6 +156,15 @@ impl Scene {
         }
     }
 
+    /// Area of the chart within `rect` that a face fills, mm²; 0 for a curved face of a mesh, which has no chart.
+    pub fn face_charted_in(&self, face: FaceId, rect: ChartRect) -> f64 {
+        match self.mesh_face(face) {
+            // Charts of flat faces keep areas.
+            Some(_) => self.face_area_in(face, rect),
+            None => self.face_patches(face).iter().map(|patch| patch.charted_in(rect)).sum(),
+        }
+    }
+
     /// The rectangle that a face's chart covers, mm; `None` for a curved face of a mesh.
     pub fn face_rect(&self, face: FaceId) -> Option<ChartRect> {
         match self.mesh_face(face) {

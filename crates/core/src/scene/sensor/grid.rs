@@ -85,16 +85,16 @@ impl Grid {
         }
     }
 
-    /// The part of every cell that lies on the sensor, by area, 1. A cell that spans a hole or the
-    /// rim is compared with the area it would have without it, never with other cells, since outer
-    /// rings are larger and charts of bends and cones stretch. `areas` and `area_in` are those of
-    /// [`Grid::cell_areas`].
-    pub fn cell_cover(&self, areas: &[f64], area_in: impl Fn(ChartRect) -> f64) -> Vec<f64> {
+    /// The share of every cell that lies on the sensor, 1. Outer rings are larger and charts of bends and cones stretch, so
+    /// it is a share of the chart, of which `charted_in` gives the area within a rectangle; surfaces that a rim cuts across
+    /// cells have charts that keep areas.
+    pub fn cell_cover(&self, charted_in: impl Fn(ChartRect) -> f64) -> Vec<f64> {
         match self {
             // The only cell is the whole sensor.
             Self::Cartesian { nu: 1, nv: 1, .. } => vec![1.0],
             Self::Cartesian { .. } => (0..self.cells())
-                .map(|cell| cover(areas[cell], self.cell_rect(cell), &area_in))
+                .map(|cell| self.cell_rect(cell))
+                .map(|rect| cover(charted_in(rect) / rect.area()))
                 .collect(),
             // Rings end at the rim.
             Self::Polar { .. } => vec![1.0; self.cells()],
@@ -134,27 +134,14 @@ impl Grid {
     }
 }
 
-/// The fraction of a cell of the chart that lies on the sensor, by area, 1: of the cell's ninths,
-/// the one with the largest area is assumed whole.
-fn cover(area: f64, rect: ChartRect, area_in: impl Fn(ChartRect) -> f64) -> f64 {
-    const SIDE: u32 = 3;
-    /// Relative accuracy of areas, as a share of that of the rectangle, 1.
+/// A share of a cell without the rounding of areas, 1.
+fn cover(share: f64) -> f64 {
     const ROUNDING: f64 = 1e-9;
-    // Most cells of flat sensors are complete at this point.
-    if (area - rect.area()).abs() <= ROUNDING * rect.area() {
-        return 1.0;
+    match share {
+        share if share >= 1.0 - ROUNDING => 1.0,
+        share if share <= ROUNDING => 0.0,
+        share => share,
     }
-    if area <= ROUNDING * rect.area() {
-        return 0.0;
-    }
-    let step = (rect.max - rect.min) / f64::from(SIDE);
-    let part = |index: u32| {
-        let place = DVec2::new(f64::from(index % SIDE), f64::from(index / SIDE));
-        let min = rect.min + step * place;
-        area_in(ChartRect { min, max: min + step })
-    };
-    let most = (0..SIDE * SIDE).map(part).fold(0.0, f64::max);
-    if most > 0.0 { area / (f64::from(SIDE * SIDE) * most) } else { 0.0 }
 }
 
 /// The bin of a position in 0..=1; the far end belongs to the last bin, up to rounding of points on
@@ -172,6 +159,9 @@ fn bin(place: f64, bins: usize) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::shape::{Cone, Flat, Region, Shape};
+    use lumiduct_base::math::Frame;
+    use std::f64::consts::PI;
 
     #[test]
     fn centres_lie_in_their_cells() {
@@ -194,6 +184,36 @@ mod tests {
         assert_eq!(grid.cell(DVec2::ONE), Some(3));
         assert_eq!(grid.cell(DVec2::new(1.1, 0.5)), None);
         assert_eq!(grid.cell(DVec2::new(0.5, -0.1)), None);
+    }
+
+    #[test]
+    fn the_cover_of_a_cell_is_its_share_of_the_disk() {
+        // A corner cell of 2 x 2 over a disk is covered to π/4, one of 1000 x 1000 hardly or not at all.
+        let disk = Shape::Flat(Flat::new(Frame::WORLD, Region::Annulus { inner: 0.0, outer: 2.0 }));
+        let cover = |cells: usize| {
+            let grid = Grid::Cartesian { rect: disk.chart_bounds(), nu: cells, nv: cells };
+            grid.cell_cover(|rect| disk.charted_in(rect))
+        };
+        assert!((cover(2)[0] - 0.25 * PI).abs() < 1e-12);
+        for cells in [3, 8, 32, 100] {
+            let sum: f64 = cover(cells).iter().sum();
+            assert!((sum / (cells * cells) as f64 - 0.25 * PI).abs() < 1e-9, "{sum}");
+        }
+        // The second cell of 7: what lies above -10/7 mm, by the midpoint rule.
+        let (from, width) = (-10.0 / 7.0, 4.0 / 7.0);
+        let chord = |step: i32| {
+            let u: f64 = from + width * (f64::from(step) + 0.5) / 10_000.0;
+            ((4.0 - u * u).sqrt() + from).max(0.0) / width
+        };
+        let share = (0..10_000).map(chord).sum::<f64>() / 10_000.0;
+        assert!((cover(7)[1] - share).abs() < 1e-6, "{share}");
+    }
+
+    #[test]
+    fn cells_of_stretched_charts_are_whole() {
+        let cone = Shape::Cone(Cone::new(Frame::WORLD, 3.0, 1.0, 5.0));
+        let grid = Grid::Cartesian { rect: cone.chart_bounds(), nu: 5, nv: 4 };
+        assert!(grid.cell_cover(|rect| cone.charted_in(rect)).iter().all(|cover| *cover == 1.0));
     }
 
     #[test]

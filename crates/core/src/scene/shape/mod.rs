@@ -292,6 +292,19 @@ impl Shape {
             Self::CompoundParabola(shape) => shape.area_in(rect),
         }
     }
+
+    /// Area of the chart itself in `rect`, mm²: that of the surface unless the chart stretches it, as those do that fill
+    /// their rectangle.
+    pub(crate) fn charted_in(&self, rect: ChartRect) -> f64 {
+        match self {
+            Self::Flat(_) | Self::Cylinder(_) | Self::Sphere(_) | Self::ParabolicCylinder(_) => {
+                self.area_in(rect)
+            }
+            Self::Cone(_) | Self::Torus(_) | Self::Paraboloid(_) | Self::CompoundParabola(_) => {
+                rect.intersection(&self.chart_bounds()).area()
+            }
+        }
+    }
 }
 
 /// The unit tangent toward larger z of a surface of revolution; any direction perpendicular to the

@@ -1,7 +1,7 @@
 //! From the chart of one surface to the chart of the whole sweep: u around the profile, v along the path.
 
 use crate::scene::shape::{ChartRect, Shape};
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec2Swizzles};
 
 /// The map from the chart of a part's shape to the chart of its sweep.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -113,15 +113,29 @@ impl WallChart {
     /// Area of `shape` whose (u, v) in the sweep's chart lie in `rect`, mm².
     pub(crate) fn area_in(&self, shape: &Shape, rect: ChartRect) -> f64 {
         match self {
-            Self::Along { offset, scale } => {
-                shape.area_in(spanned([rect.min, rect.max].map(|p| (p - offset) / scale)))
-            }
+            Self::Along { offset, scale } => shape.area_in(unscaled(rect, *offset, *scale)),
             Self::Across { offset, scale } => {
-                let corners = [rect.min, rect.max].map(|p| (p - offset) / scale);
-                shape.area_in(spanned(corners.map(|p| DVec2::new(p.y, p.x))))
+                shape.area_in(turned(unscaled(rect, *offset, *scale)))
             }
             Self::Trapezoid { target, trapezoid } => trapezoid.area_of(target.share_in(rect)),
             Self::Sector { target, sector } => sector.area_of(target.share_in(rect)),
+        }
+    }
+
+    /// Area of the sweep's chart in `rect` that `shape` fills, mm².
+    pub(crate) fn charted_in(&self, shape: &Shape, rect: ChartRect) -> f64 {
+        match self {
+            Self::Along { offset, scale } => {
+                let own = unscaled(rect, *offset, *scale);
+                shape.charted_in(own) * scale.element_product().abs()
+            }
+            Self::Across { offset, scale } => {
+                let own = turned(unscaled(rect, *offset, *scale));
+                shape.charted_in(own) * scale.element_product().abs()
+            }
+            Self::Trapezoid { target, .. } | Self::Sector { target, .. } => {
+                target.intersection(&rect).area()
+            }
         }
     }
 }
@@ -186,6 +200,16 @@ impl Sector {
         let mean_radius = first + 0.5 * (share.min.x + share.max.x) * (last - first);
         share.area() * (last - first).abs() * mean_radius * self.angle
     }
+}
+
+/// The rectangle that an offset and factors map to `rect`.
+fn unscaled(rect: ChartRect, offset: DVec2, scale: DVec2) -> ChartRect {
+    spanned([rect.min, rect.max].map(|p| (p - offset) / scale))
+}
+
+/// The rectangle with u and v exchanged.
+fn turned(rect: ChartRect) -> ChartRect {
+    ChartRect { min: rect.min.yx(), max: rect.max.yx() }
 }
 
 /// The rectangle between two opposite corners in any order.

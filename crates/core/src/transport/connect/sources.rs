@@ -2,7 +2,7 @@
 
 use crate::rng::{Dimension, Sampler};
 use crate::scene::shape::{Crossing, RayStart, Shape};
-use crate::scene::{Emitter, EmitterKind, Radiance, Ray, Scene, Source, SourceId, StartSolids};
+use crate::scene::{Emitter, EmitterKind, Ray, Scene, Source, SourceId, StartSolids};
 use crate::transport::connect::target::{Importance, Joinable, Targets};
 use crate::transport::connect::vertex::TurnAt;
 use glam::DVec3;
@@ -120,10 +120,7 @@ impl<'s> SourceTargets<'s> {
                 source.flux / length * source.emission.density_of_line(frame.to_local(place.dir))?
             }
             EmitterExtent::Surface(surfaces) => {
-                let shape = surfaces.shape(place);
-                let Radiance { exitance, density, cosine } =
-                    source.radiance(shape, place.point, place.dir);
-                exitance * density / cosine / (index * index)
+                source.radiance(surfaces.shape(place), place.point, place.dir) / (index * index)
             }
             EmitterExtent::Beam(surfaces, _) => surfaces.exitance / surfaces.cosine(place),
             EmitterExtent::Far => {

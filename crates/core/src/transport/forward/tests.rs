@@ -57,7 +57,7 @@ fn mirror_tube(reflectance: f64, length: f64) -> Scene {
     let grid = Grid::Cartesian { rect: disk(0.0).chart_bounds(), nu: 32, nv: 32 };
     let area_in = |rect| builder.scene().face_area_in(port, rect);
     let areas = grid.cell_areas(area_in);
-    let covered = grid.cell_cover(&areas, area_in);
+    let covered = grid.cell_cover(|rect| builder.scene().face_charted_in(port, rect));
     builder.add_sensor(Sensor {
         name: "exit".into(),
         kind: SensorKind::Surface(SurfaceSensor {

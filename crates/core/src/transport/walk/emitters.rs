@@ -182,8 +182,7 @@ impl<'s> Emitters<'s> {
                 if t < from || t > to {
                     return;
                 }
-                let whole =
-                    seen.source.radiance(shape, ray.at(t), -ray.dir()).value() / (index * index);
+                let whole = seen.source.radiance(shape, ray.at(t), -ray.dir()) / (index * index);
                 if whole <= 0.0 {
                     return;
                 }
@@ -214,8 +213,7 @@ impl<'s> Emitters<'s> {
                 let index = self.scene.media[path.medium.index()].index(path.wavelength);
                 let (start, dir) = (path.ray.origin(), path.ray.dir());
                 let spectral = self.scene.gathered_spectral_weight(source, path.wavelength);
-                spectral * seen.source.radiance(&shapes[shape].0, start, dir).value()
-                    / (index * index)
+                spectral * seen.source.radiance(&shapes[shape].0, start, dir) / (index * index)
             }
             EmittingBody::Volume { .. } => self.volume_radiance(seen, path, path.ray.dir()),
         }

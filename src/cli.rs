@@ -67,7 +67,7 @@ enum Command {
     Library,
     /// Examine a mesh file: is it closed, the right way out, and fine enough? Exits with 1 if it is not a valid solid.
     Mesh(MeshArgs),
-    /// Convert luminaires (.ies, .ldt; to .xml, TM-33) or ray files (.tm25ray, .sdf, .dat, .csv), or describe them; describe a BSDF (.xml).
+    /// Convert luminaires (.ies, .ldt; to .xml, TM-33) or ray files (.tm25ray, .sdf, .dat, .csv), or describe them; describe a BSDF (.xml, .csv).
     Convert(ConvertArgs),
     /// List scenes and sensor files in a folder.
     List {

@@ -22,6 +22,7 @@ mod version;
 
 pub use check::{CheckPage, CheckPictures, Checked, check};
 pub use compare::{CompareOptions, Compared, Method, TruthOption, compare};
+pub use luminaire::WrittenFile;
 pub use output::{Output, RunStart};
 pub use parts::{SliceOptions, SliceWritten, has_slice, merge_slices, run_slice};
 pub use progress::{Progress, TargetProgress};
@@ -84,11 +85,10 @@ pub fn run_one(
     if traced.stop != Stop::Interrupted {
         checkpoints.remove()?;
     }
-    if let Some(file) = luminaire {
-        file.write(&job, &report)?;
-    }
+    let luminaire = luminaire.map(|file| file.write(&job, &report)).transpose()?;
     Ok(FinishedRun {
         report,
+        luminaire,
         written,
         stop: traced.stop,
         dir: folder.path().to_path_buf(),
@@ -119,6 +119,8 @@ pub struct FinishedRun {
     pub stop: Stop,
     /// Folder of the report.
     pub dir: PathBuf,
+    /// The luminaire file that was asked for beside the report.
+    pub luminaire: Option<WrittenFile>,
     /// Remarks on the scene file.
     pub warnings: Vec<Diagnostic>,
 }

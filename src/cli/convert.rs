@@ -74,8 +74,9 @@ fn converted(args: &ConvertArgs) -> Result<String> {
     if is_bsdf {
         return match to {
             None if rays.is_none() => scatter::description(from),
-            _ => Err(Error::Usage(format!(
-                "{}: a BSDF is only described, and TM-33 files are written, not read",
+            None => Err(Error::Usage(format!("--rays: {} is not a ray file", from.display()))),
+            Some(_) => Err(Error::Usage(format!(
+                "{} is read as a BSDF, which is only described: leave the second file out; luminaires are read from .ies and .ldt",
                 from.display()
             ))),
         };

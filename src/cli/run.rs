@@ -9,7 +9,9 @@ use crate::cli::values::{
     parse_angle, parse_count, parse_percent, parse_radius, parse_records, parse_shard, parse_time,
     words,
 };
-use crate::pipeline::{self, FinishedRun, Output, RunStart, SliceOptions, SliceWritten, Stop};
+use crate::pipeline::{
+    self, FinishedRun, Output, RunStart, SliceOptions, SliceWritten, Stop, WrittenFile,
+};
 use clap::Args;
 use lumiduct_core::plan::{GatherPlan, Request, Schedule};
 use lumiduct_core::transport::{Interrupt, Shard};
@@ -155,9 +157,6 @@ pub(super) fn run(args: &RunArgs) -> ExitCode {
     match outcome {
         Ok(finished) => {
             let code = tell(&finished, args.quiet);
-            if let (Some(file), false) = (&args.ies, args.quiet) {
-                _ = print(&format!("luminaire: {}\n", file.display()));
-            }
             write_junit(junit.as_ref(), || run_junit(&finished.report), code)
         }
         Err(error) if interrupt.is_raised() => {
@@ -171,13 +170,18 @@ pub(super) fn run(args: &RunArgs) -> ExitCode {
 /// Prints the results of a run; the exit code says whether it meets what its scene asks for.
 pub(super) fn tell(finished: &FinishedRun, quiet: bool) -> ExitCode {
     let is_kept = matches!(finished.written, Written::Nothing { .. });
-    let FinishedRun { report, dir, written, warnings, .. } = finished;
+    let FinishedRun { report, dir, written, warnings, luminaire, .. } = finished;
     let text = lumiduct_report::terminal(report, warnings.len(), dir, written);
+    let further =
+        luminaire.as_ref().map_or(String::new(), |WrittenFile { path, format, remarks }| {
+            let notes: String = remarks.iter().map(|remark| format!("note: {remark}\n")).collect();
+            format!("written: {} ({format})\n{notes}", path.display())
+        });
     let printed = if quiet {
         Ok(())
     } else {
         warn(warnings);
-        print(&text)
+        print(&format!("{text}{further}"))
     };
     match printed {
         Err(error) => fail(&error),

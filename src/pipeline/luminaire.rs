@@ -29,6 +29,17 @@ fn luminaire(
     MeasuredLuminaire::new(export, measures, &origin)
 }
 
+/// A luminaire file that was written outside the folder of the report.
+#[derive(Debug)]
+pub struct WrittenFile {
+    /// Where it is.
+    pub path: PathBuf,
+    /// Its format.
+    pub format: LuminaireFormat,
+    /// What was assumed, and what it cannot say, as far as the report does not tell.
+    pub remarks: Vec<String>,
+}
+
 /// A luminaire file outside the folder of the report.
 #[derive(Debug)]
 pub(super) struct LuminaireFile {
@@ -64,13 +75,13 @@ impl LuminaireFile {
         Ok(Self { path: path.to_path_buf(), format, export, existing })
     }
 
-    /// Writes the file.
-    pub(super) fn write(&self, job: &Job, report: &Report) -> Result<()> {
-        let file = match &report.luminaires[..] {
-            [only] => only.file(self.format),
-            _ => luminaire(job, &self.export, &report.measures)?.file(self.format),
-        };
-        write_whole(&self.path, &file.bytes, self.existing)
+    /// Writes the file. Of its remarks, those that are in the report are left out.
+    pub(super) fn write(&self, job: &Job, report: &Report) -> Result<WrittenFile> {
+        let export = LuminaireExport { formats: vec![self.format], ..self.export.clone() };
+        let found = luminaire(job, &export, &report.measures)?;
+        write_whole(&self.path, &found.file(self.format).bytes, self.existing)?;
+        let remarks = found.remarks.into_iter().filter(|own| !report.warnings.contains(own));
+        Ok(WrittenFile { path: self.path.clone(), format: self.format, remarks: remarks.collect() })
     }
 }
 

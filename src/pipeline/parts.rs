@@ -150,7 +150,8 @@ pub fn merge_slices(
     let report = compose(&job, &run.findings(), Stop::Paths)?;
     let written = folder.write(&report::files(&report, &job.text)?)?;
     let dir = folder.path().to_path_buf();
-    Ok(FinishedRun { report, written, stop: Stop::Paths, dir, warnings: job.warnings })
+    let (stop, luminaire, warnings) = (Stop::Paths, None, job.warnings);
+    Ok(FinishedRun { report, written, stop, dir, luminaire, warnings })
 }
 
 fn expect_same(wanted: &Recipe, found: &Recipe, of: &str, path: &Path) -> Result<()> {

@@ -64,9 +64,12 @@ fn luminaires_are_converted_and_described() {
     }
     let text = fs::read_to_string(place.path("lamp.xml")).unwrap();
     assert!(text.contains("<IntData h=\"270\" v=\"45\">150</IntData>\r\n"), "{text}");
-    for command in ["convert lamp.xml", "convert lamp.xml new.ies --overwrite"] {
+    for (command, words) in [
+        ("convert lamp.xml", "TM-33 files are written, not read"),
+        ("convert lamp.xml new.ies --overwrite", "luminaires are read from .ies and .ldt"),
+    ] {
         let said = place.bad(2, command);
-        assert!(said.contains("TM-33") && said.contains("written, not read"), "{said}");
+        assert!(said.contains(words), "{said}");
     }
     let said = place.bad(2, "convert lamp.ies lamp.xml --edition 2019");
     assert!(said.contains("for .ies files only"), "{said}");
@@ -75,7 +78,13 @@ fn luminaires_are_converted_and_described() {
 #[test]
 fn a_run_writes_what_its_goniometer_measures_as_a_luminaire_file() {
     let place = Place::new();
-    place.good("run rod.toml --ies out/lamp.ies -q");
+    let said = place.good("run rod.toml --ies out/lamp.ies");
+    assert!(said.contains("\nwritten: out/lamp.ies (IES)\n"), "{said}");
+    assert!(said.contains("note: luminaire files of `far`: without the key `opening`"), "{said}");
+    // The remarks of a file that the report does not have.
+    let said = place.good("run rod.toml --ies lamp.xml --overwrite");
+    assert!(said.contains("note: TM-33 file: TM-33 requires the date of the report"), "{said}");
+    assert!(said.contains("written: lamp.xml (TM-33)"), "{said}");
     let said = place.good("convert out/lamp.ies out/lamp.ldt");
     assert!(said.contains("luminaire: Short rod"), "{said}");
     assert!(said.contains("planes: 2 from 0° to 180°"), "{said}");

@@ -38,7 +38,7 @@ fn sheet(sides: [ScatterSide; 2], turn: f64, remarks: &mut Vec<String>) -> Measu
         let unlike = match largest_difference(&reversed, given) {
             difference if difference > RECIPROCAL => {
                 format!(
-                    ", so that shares differ at equal angles by up to {}",
+                    "; at the same angle of incidence both sides transmit shares that differ by up to {}",
                     format_percent(difference)
                 )
             }

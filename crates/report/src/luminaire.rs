@@ -78,7 +78,7 @@ impl MeasuredLuminaire {
         let mut remarks = remarks(export, readings, &fitted, asymmetry);
         let FittedIntensities { intensities, std_errors, .. } = fitted;
         let colour = colour(export, measures);
-        let texts = texts(export, origin, &std_errors, colour);
+        let texts = texts(export, origin, &std_errors);
         let opening = export.opening.unwrap_or_default();
         let luminaire = Luminaire {
             texts,
@@ -145,7 +145,8 @@ fn remarks(
         let symmetry = export.layout.symmetry.name();
         let share = format_percent(asymmetry);
         remark(format!(
-            "planes that their symmetry ({symmetry}) takes as equal differ from their mean by {share} of the intensities, rms, beyond noise"
+            "the light is less symmetric than `symmetry` says ({symmetry}): planes treated as equal differ from their mean by {share} \
+                rms of the intensities, more than noise explains; choose a lower symmetry"
         ));
     }
     let bias = readings.biases.iter().flatten().copied().fold(0.0, f64::max);
@@ -173,14 +174,13 @@ fn remarks(
 
 /// The colour of the light of the goniometer, if the sources have spectra.
 fn colour(export: &LuminaireExport, measures: &Measures) -> LuminaireColour {
-    let known = |name: &str| {
-        let measure = measures.values.get(&format!("{}.{name}", export.sensor))?;
-        (measure.status == Status::Ok).then_some(measure.value)
+    let whole = |name: &str| {
+        let measure = measures.values.get(&format!("{}.{name}", export.sensor));
+        let known = measure.filter(|measure| measure.status == Status::Ok);
+        known.map_or(String::new(), |measure| format!("{:.0}", measure.value))
     };
-    LuminaireColour {
-        temperature_k: known("colour_temperature"),
-        rendering_ra: known("colour_rendering_ra"),
-    }
+    let (temperature, rendering) = (whole("colour_temperature"), whole("colour_rendering_ra"));
+    LuminaireColour { temperature, rendering }
 }
 
 /// Texts of the files: those of the user, and what is known without them.
@@ -188,7 +188,6 @@ fn texts(
     export: &LuminaireExport,
     origin: &LuminaireOrigin<'_>,
     std_errors: &Array2<f64>,
-    LuminaireColour { temperature_k, rendering_ra }: LuminaireColour,
 ) -> Vec<(String, String)> {
     let error = std_errors.iter().copied().fold(0.0, f64::max);
     let error = error.is_finite().then(|| format_value(error));
@@ -199,10 +198,10 @@ fn texts(
         ("ISSUEDATE", date.map(str::to_owned)),
         ("LUMINAIRE", Some(title.to_owned())),
         ("OTHER", error.map(|error| format!("standard error of an intensity: at most {error} cd"))),
-        ("OTHER", temperature_k.map(|kelvin| format!("colour temperature: {kelvin:.0} K"))),
-        ("OTHER", rendering_ra.map(|index| format!("colour rendering: Ra {index:.0}"))),
     ];
-    let is_given = |word: &str| export.texts.iter().any(|(given, _)| given == word);
+    // OTHER may occur more than once.
+    let is_given =
+        |word: &str| word != "OTHER" && export.texts.iter().any(|(given, _)| given == word);
     let own = own.into_iter().filter(|(word, _)| !is_given(word));
     let own = own.filter_map(|(word, text)| Some((word.to_owned(), text?)));
     own.chain(export.texts.iter().cloned()).collect()

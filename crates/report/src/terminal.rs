@@ -49,8 +49,9 @@ fn by_source(measures: &Measures, sensor: &str) -> String {
     text
 }
 
-/// Sensors, checks, remarks and the folder of the report. The first `told` remarks, those on the scene file, are left out.
-pub fn terminal(report: &Report, told: usize, dir: &Path, written: &Written) -> String {
+/// Sensors, checks, remarks on the results and the folder of the report. Those on the scene file come first in the report, as many
+/// as `on_scene`, and are left out.
+pub fn terminal(report: &Report, on_scene: usize, dir: &Path, written: &Written) -> String {
     let measures = &report.measures;
     let mut text =
         format!("{}\n{} paths, {}\n", report.scene.title, measures.paths, report.run.stopped);
@@ -70,7 +71,7 @@ pub fn terminal(report: &Report, told: usize, dir: &Path, written: &Written) -> 
     if let Some(target) = report.run.target.as_ref().filter(|target| !target.is_reached()) {
         text += &format!("  note: {}\n", target.sentence());
     }
-    for warning in report.warnings.iter().skip(told) {
+    for warning in report.warnings.iter().skip(on_scene) {
         text += &format!("  note: {warning}\n");
     }
     text.extend(choices(measures));

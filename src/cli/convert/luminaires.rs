@@ -3,8 +3,8 @@
 use lumiduct_base::error::{Error, Result};
 use lumiduct_base::number::{format_exact, format_value};
 use lumiduct_files::luminaire::{
-    LampFlux, Luminaire, LuminaireError, LuminaireFormat, ReadLuminaire, WrittenLuminaire, read,
-    written,
+    LampFlux, Luminaire, LuminaireColour, LuminaireError, LuminaireFormat, ReadLuminaire,
+    WrittenLuminaire, read, written,
 };
 use lumiduct_report::{Existing, write_whole};
 use std::fmt::Write;
@@ -86,11 +86,11 @@ fn description(luminaire: &Luminaire) -> String {
     if *power_w > 0.0 {
         _ = writeln!(text, "power: {} W", format_exact(*power_w));
     }
-    if let Some(kelvin) = colour.temperature_k {
-        _ = writeln!(text, "colour temperature: {} K", format_exact(kelvin));
-    }
-    if let Some(index) = colour.rendering_ra {
-        _ = writeln!(text, "colour rendering: Ra {}", format_exact(index));
+    let LuminaireColour { temperature, rendering } = colour;
+    for (name, words) in [("colour temperature", temperature), ("colour rendering", rendering)] {
+        if !words.is_empty() {
+            _ = writeln!(text, "{name}: {words}");
+        }
     }
     text
 }

@@ -27,8 +27,8 @@ pub struct ColourRendering {
 }
 
 /// The colour rendering indices of a spectrum every 5 nm from 380 to 780 nm, in any unit; `None` where its correlated
-/// colour temperature is undefined. Beyond the tolerance of CIE 13.3-1995 the indices are given all the same, as other
-/// programs do, see [`ColourRendering::is_near_reference`].
+/// colour temperature is undefined. Beyond the tolerance of CIE 13.3-1995, 5.4e-3 from the reference illuminant in u, v, the
+/// indices are given all the same, as other programs do.
 pub fn colour_rendering(spectrum: &[f64; 81]) -> Option<ColourRendering> {
     let source = Rendition::of(spectrum)?;
     let temperature = correlated_colour_temperature(source.white)?;

@@ -85,8 +85,9 @@ pub(crate) fn spectrum(evidence: &Evidence<'_>, id: SensorId) -> Option<SensorSp
     let nm: Vec<f64> = (0..SPECTRUM_BINS).map(|bin| FIRST_BIN + BIN_WIDTH * bin as f64).collect();
     let is_dark = |nm: f64| {
         let range = [nm - 0.5 * BIN_WIDTH, nm + 0.5 * BIN_WIDTH];
-        let spectra = evidence.scene.sources.iter().filter_map(|own| own.spectrum.as_ref());
-        spectra.into_iter().all(|own| own.spectrum().share(range) == 0.0)
+        let sources = evidence.scene.sources.iter().filter(|source| source.is_lit());
+        let mut spectra = sources.filter_map(|source| source.spectrum.as_ref());
+        spectra.all(|own| own.spectrum().share(range) == 0.0)
     };
     let band = |(bin, nm): (usize, &f64)| {
         if is_dark(*nm) {

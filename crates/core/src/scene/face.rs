@@ -216,7 +216,11 @@ impl Patch {
     }
 
     fn trimmed_in(&self, rect: ChartRect) -> f64 {
-        self.trim.as_ref().map_or(0.0, |trim| trim.area_in(rect.intersection(&self.chart_bounds())))
+        let own = rect.intersection(&self.chart_bounds());
+        match &self.trim {
+            Some(trim) if !own.is_empty() => trim.area_in(own),
+            Some(_) | None => 0.0,
+        }
     }
 }
 

@@ -1,4 +1,4 @@
-//! How much planes differ that a symmetry takes as equal.
+//! How much the planes that a symmetry treats as equal differ.
 
 use crate::luminaire::fit::{CellMeans, ring_edges};
 use crate::luminaire::intensities::PlaneSymmetry;

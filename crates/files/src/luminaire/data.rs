@@ -65,13 +65,35 @@ impl Luminaire {
     }
 }
 
-/// The colour of light, where it is known.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+/// Colour temperatures that a text may state, K.
+const COLOUR_TEMPERATURES: [f64; 2] = [1000.0, 100_000.0];
+/// Colour rendering indices, and not groups of them, that a text may state, 1.
+const RENDERING_INDICES: [f64; 2] = [5.0, 100.0];
+
+/// The colour of light in the words of a file, empty where it is not known.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct LuminaireColour {
-    /// Correlated colour temperature, K.
-    pub temperature_k: Option<f64>,
-    /// General colour rendering index Ra, 1.
-    pub rendering_ra: Option<f64>,
+    /// Correlated colour temperature: `3000`, `3000 K`, `warm white`.
+    pub temperature: String,
+    /// Colour rendering: an index such as `82`, or a group such as `1B`.
+    pub rendering: String,
+}
+
+impl LuminaireColour {
+    /// Correlated colour temperature, K; `None` if the words state none.
+    pub fn temperature_k(&self) -> Option<f64> {
+        let number = self.temperature.trim_end_matches(['K', 'k', ' ']);
+        within(number, COLOUR_TEMPERATURES)
+    }
+
+    /// General colour rendering index Ra, 1; `None` if the words state none, but a group or a bound.
+    pub fn rendering_ra(&self) -> Option<f64> {
+        within(&self.rendering, RENDERING_INDICES)
+    }
+}
+
+fn within(number: &str, [least, most]: [f64; 2]) -> Option<f64> {
+    number.trim().parse().ok().filter(|number| (least..=most).contains(number))
 }
 
 /// A luminaire as read, with what was assumed or left out.
@@ -136,7 +158,7 @@ pub(crate) fn pole_remarks(intensities: &Intensities) -> impl Iterator<Item = St
             (high - low > POLE_SPREAD * high && high > DARK_POLE * peak).then(|| {
                 let [low, high] = [low, high].map(format_value);
                 format!(
-                    "the planes have {low} to {high} cd at {angle}° ({name}), which is one direction; each is used as it is"
+                    "the planes disagree at {angle}° ({name}), which is a single direction: {low} to {high} cd; each plane is used as given"
                 )
             })
         },

@@ -25,8 +25,10 @@ pub(crate) fn iso_date(text: &str) -> Option<String> {
     let is_separator = |letter: char| !letter.is_alphanumeric();
     let mut words = text.split(is_separator).filter(|word| !word.is_empty());
     let [first, second, third] = [words.next()?, words.next()?, words.next()?];
-    let (year, month, day) = if first.len() == 4 {
-        (number(first)?, number(second)?, number(third)?)
+    let (year, month, day) = if let Some(year) = year(first) {
+        // A time may follow the day.
+        let day = third.split(['T', 't']).next().unwrap_or(third);
+        (year, number(second)?, number(day)?)
     } else if let Some(month) = month(second) {
         (year(third)?, month, number(first)?)
     } else if let Some(month) = month(first) {
@@ -77,6 +79,8 @@ mod tests {
             ("25-NOV-2024", Some("2024-11-25")),
             ("5 September 2019", Some("2019-09-05")),
             ("May 5, 2019", Some("2019-05-05")),
+            ("June 5, 2019", Some("2019-06-05")),
+            ("2024-11-25T10:00:00", Some("2024-11-25")),
             ("11/25/2024", None),
             ("11-05-2024", None),
             ("2023-02-29", None),

@@ -34,7 +34,7 @@ pub enum LuminaireError {
         ending: String,
     },
     /// The format is written only.
-    #[error("{format} files are written, not read; use .ies or .ldt")]
+    #[error("{format} files are only written; luminaires are read from .ies and .ldt")]
     WrittenOnly {
         /// The format.
         format: LuminaireFormat,

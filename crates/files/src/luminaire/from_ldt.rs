@@ -175,17 +175,6 @@ struct LampSet<'t> {
     colour: LuminaireColour,
 }
 
-/// Colour temperatures that a text may state, K.
-const COLOUR_TEMPERATURES: [f64; 2] = [1000.0, 100_000.0];
-/// Colour rendering indices, and not groups of them, that a text may state, 1.
-const RENDERING_INDICES: [f64; 2] = [5.0, 100.0];
-
-/// The number in a range with which a text begins, perhaps in K; a text such as `warm white` or `1B` states none.
-fn stated(text: &str, [least, most]: [f64; 2]) -> Option<f64> {
-    let text = text.trim_start_matches(['>', '=', ' ']).trim_end_matches(['K', 'k', ' ']);
-    text.parse().ok().filter(|number| (least..=most).contains(number))
-}
-
 /// The lines of a file, one field after the other.
 struct Fields<'t> {
     lines: Vec<&'t str>,
@@ -206,15 +195,16 @@ impl<'t> Fields<'t> {
         if is_empty { Ok(0.0) } else { self.next(what) }
     }
 
-    /// A set of lamps; its colour is left out.
+    /// A set of lamps.
     fn lamp_set(&mut self) -> Result<LampSet<'t>, LuminaireError> {
         let count = self.next("the number of lamps")?;
         let kind = self.text("the type of lamps")?;
         let flux_lm = self.positive("the flux of the lamps", MOST_LUMENS)?;
-        let temperature_k = stated(self.text("the colour temperature")?, COLOUR_TEMPERATURES);
-        let rendering_ra = stated(self.text("the colour rendering")?, RENDERING_INDICES);
+        let mut words = |what: &str| self.text(what).map(|text| text.trim().to_owned());
+        let temperature = words("the colour temperature")?;
+        let rendering = words("the colour rendering")?;
         let power_w = self.optional("the power")?;
-        let colour = LuminaireColour { temperature_k, rendering_ra };
+        let colour = LuminaireColour { temperature, rendering };
         Ok(LampSet { count, kind, flux_lm, power_w, colour })
     }
 

@@ -37,7 +37,7 @@ fn luminaire(symmetry: PlaneSymmetry, planes: &[f64]) -> Luminaire {
             along_c90_mm: 50.0,
             height_mm: 10.0,
         },
-        colour: LuminaireColour { temperature_k: Some(3000.0), rendering_ra: Some(82.0) },
+        colour: LuminaireColour { temperature: "3000".to_owned(), rendering: "82".to_owned() },
         intensities: Intensities::new(symmetry, planes.to_vec(), angles, candela).unwrap(),
     }
 }
@@ -73,7 +73,7 @@ fn luminaires_come_back_from_both_formats() {
     for luminaire in all_symmetries() {
         let no_colour = LuminaireColour::default();
         for (format, kept) in
-            [(LuminaireFormat::Ies, no_colour), (LuminaireFormat::Ldt, luminaire.colour)]
+            [(LuminaireFormat::Ies, no_colour), (LuminaireFormat::Ldt, luminaire.colour.clone())]
         {
             let text = written(&luminaire, format).text;
             assert!(text.lines().all(|line| line.len() < 256), "{format}");
@@ -81,7 +81,7 @@ fn luminaires_come_back_from_both_formats() {
                 parse(text.as_bytes(), format).unwrap_or_else(|error| panic!("{error}\n{text}"));
             assert_eq!(back.remarks, Vec::<String>::new(), "{format}");
             let Luminaire { intensities, lamps, opening, power_w, colour, .. } = &back.luminaire;
-            assert_eq!(*colour, kept, "{format}");
+            assert_eq!(colour, &kept, "{format}");
             assert_eq!(intensities.symmetry(), luminaire.intensities.symmetry(), "{format}");
             assert_eq!(intensities.angles_deg(), luminaire.intensities.angles_deg());
             for (place, plane) in luminaire.intensities.planes_deg().iter().enumerate() {
@@ -131,7 +131,7 @@ fn the_edition_of_2019_keeps_how_a_file_was_made() {
     let read = ies(&text.replace("1.00001", "1.25")).unwrap();
     assert!(read.remarks[0].contains("file generation type 1.25"), "{:?}", read.remarks);
     let wrong = ies(&text.replace("1.00001", "x")).unwrap_err().to_string();
-    assert!(wrong.contains("line 10: expected the file generation type, found `x`"), "{wrong}");
+    assert!(wrong.contains("line 12: expected the file generation type, found `x`"), "{wrong}");
     // Type B has other angles than were measured.
     let of_b =
         of_type(2).replace("IESNA:LM-63-2002", "IES:LM-63-2019").replace("\n1 1 0", "\n1 1.1 0");
@@ -187,7 +187,10 @@ fn what_contradicts_itself_or_is_lost_is_remarked_on() {
     let crossing = "IESNA:LM-63-2002\r\nTILT=NONE\r\n1 -1 1 3 2 1 2 0.05 0.08 0\r\n1 1 12.5\r\n0 45 90\r\n0 90\r\n\
         100 200 0\r\n130 200 0\r\n";
     let remarks = ies(crossing).unwrap().remarks.join("; ");
-    assert!(remarks.contains("100 to 130 cd at 0° (nadir)"), "{remarks}");
+    assert!(
+        remarks.contains("disagree at 0° (nadir), which is a single direction: 100 to 130 cd"),
+        "{remarks}"
+    );
     let ellipse = ies(&LAMBERT.replace("0.05 0.08 0", "-0.05 -0.08 0")).unwrap().luminaire;
     let remarks = written(&ellipse, LuminaireFormat::Ies).remarks;
     assert!(remarks.len() == 1 && remarks[0].contains("beyond ASCII"), "{remarks:?}");
@@ -281,15 +284,21 @@ fn eulumdat_with_commas_and_several_sets_is_read() {
     assert_eq!(read.luminaire.lamps, all_symmetries()[3].lamps);
     assert_eq!(read.remarks, ["of 2 sets of lamps the first is used"]);
     for (temperature, rendering, expected) in [
-        ("3500 K", "> 80", [Some(3500.0), Some(80.0)]),
+        ("3500 K", "80", [Some(3500.0), Some(80.0)]),
         ("warm white", "1B", [None, None]),
-        ("840", "1", [None, None]),
+        ("840", ">80", [None, None]),
     ] {
         lines[29] = temperature.to_owned();
         lines[30] = rendering.to_owned();
-        let read = parse(lines.join("\n").as_bytes(), LuminaireFormat::Ldt).unwrap();
-        let LuminaireColour { temperature_k, rendering_ra } = read.luminaire.colour;
-        assert_eq!([temperature_k, rendering_ra], expected, "{temperature}");
+        let read = parse(lines.join("\n").as_bytes(), LuminaireFormat::Ldt).unwrap().luminaire;
+        let stated = [read.colour.temperature_k(), read.colour.rendering_ra()];
+        assert_eq!(stated, expected, "{temperature}");
+        // The words are kept.
+        let again: Vec<String> =
+            written(&read, LuminaireFormat::Ldt).text.lines().map(str::to_owned).collect();
+        assert_eq!(again[29..31], [temperature, rendering]);
+        let ies = written(&read, LuminaireFormat::Ies).text;
+        assert!(ies.contains(&format!("[OTHER] colour rendering: {rendering}")), "{ies}");
     }
 }
 

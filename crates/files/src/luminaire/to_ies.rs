@@ -1,6 +1,6 @@
 //! Writes ANSI/IESNA LM-63-2002 and ANSI/IES LM-63-2019, which differ in the first line and in the number after the ballast factor.
 
-use crate::luminaire::data::{LampFlux, Luminaire, WrittenLuminaire};
+use crate::luminaire::data::{LampFlux, Luminaire, LuminaireColour, WrittenLuminaire};
 use crate::luminaire::intensities::PlaneSymmetry;
 use crate::luminaire::text::{KEYWORD, one_line, seven_digits};
 use std::fmt::Write;
@@ -83,8 +83,12 @@ fn keywords(luminaire: &Luminaire) -> String {
     for keyword in REQUIRED.iter().filter(|keyword| luminaire.text(keyword).is_none()) {
         _ = write!(out, "[{keyword}]\r\n");
     }
-    for (keyword, text) in &luminaire.texts {
-        let mut keyword = one_line(keyword, KEYWORD);
+    let LuminaireColour { temperature, rendering } = &luminaire.colour;
+    let colour = [("colour temperature", temperature), ("colour rendering", rendering)];
+    let colour = colour.into_iter().filter(|(_, words)| !words.is_empty());
+    let colour = colour.map(|(what, words)| ("OTHER".to_owned(), format!("{what}: {words}")));
+    for (keyword, text) in luminaire.texts.iter().cloned().chain(colour) {
+        let mut keyword = one_line(&keyword, KEYWORD);
         for part in text.split('\n').flat_map(parts) {
             _ = write!(out, "[{keyword}] {}\r\n", one_line(&part, TEXT));
             keyword = "MORE".to_owned();

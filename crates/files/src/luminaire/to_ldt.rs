@@ -1,6 +1,6 @@
 //! Writes EULUMDAT.
 
-use crate::luminaire::data::{LampFlux, Luminaire, Opening, WrittenLuminaire};
+use crate::luminaire::data::{LampFlux, Luminaire, LuminaireColour, Opening, WrittenLuminaire};
 use crate::luminaire::intensities::{Intensities, PlaneSymmetry};
 use crate::luminaire::text::{one_line, seven_digits, with_digits};
 
@@ -58,8 +58,9 @@ pub(crate) fn write(luminaire: &Luminaire) -> WrittenLuminaire {
     // Conversion factor, tilt during measurement, and one set of lamps.
     lines.extend(["1", "0", "1"].map(str::to_owned));
     lines.extend([count.to_string(), text("LAMP", LAMP), seven_digits(lamp_flux)]);
-    let whole = |number: Option<f64>| number.map_or(String::new(), |number| format!("{number:.0}"));
-    lines.extend([whole(colour.temperature_k), whole(colour.rendering_ra), seven_digits(*power_w)]);
+    let LuminaireColour { temperature, rendering } = colour;
+    lines.extend([temperature, rendering].map(|words| one_line(words, TEXT)));
+    lines.push(seven_digits(*power_w));
     lines.extend(numbers(&[0.0; 10]));
     lines.extend(numbers(&circle));
     lines.extend(numbers(angles));

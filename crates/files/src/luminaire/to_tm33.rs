@@ -61,8 +61,15 @@ fn header(out: &mut XmlText, luminaire: &Luminaire, remarks: &mut Vec<String>) {
     match &date {
         Some(date) => out.leaf("ReportDate", date),
         None => remarks.push(
-            "the date of the report is missing, which TM-33 requires: give the text ISSUEDATE, such as 2024-11-25"
-                .to_owned(),
+            match text("ISSUEDATE") {
+                none if none.is_empty() => {
+                    "TM-33 requires the date of the report, which is missing: give the text ISSUEDATE, such as 2024-11-25"
+                        .to_owned()
+                }
+                other => format!(
+                    "TM-33 requires the date of the report, and `{other}` is not understood: write ISSUEDATE as 2024-11-25"
+                ),
+            },
         ),
     }
     for (place, (keyword, text)) in luminaire.texts.iter().enumerate() {
@@ -94,10 +101,10 @@ fn emitter(out: &mut XmlText, luminaire: &Luminaire, remarks: &mut Vec<String>) 
         ));
     }
     out.leaf("InputWattage", &seven_digits(*power_w));
-    if let Some(kelvin) = colour.temperature_k {
+    if let Some(kelvin) = colour.temperature_k() {
         out.parent("ColorTemperature", |out| out.leaf("FixedCCT", &format!("{kelvin:.0}")));
     }
-    if let Some(index) = colour.rendering_ra {
+    if let Some(index) = colour.rendering_ra() {
         out.parent("ColorRendering", |out| {
             out.parent("CIE_CRI", |out| out.leaf("Ra", &format!("{index:.0}")));
         });

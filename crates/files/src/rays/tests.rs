@@ -110,7 +110,7 @@ fn rays_of_tm25_follow_its_tables_columns_and_text() {
     file.extend(2.5f32.to_le_bytes());
     let reader = open(&file, RayFormat::Tm25).unwrap();
     assert_eq!(reader.info().unit, FluxUnit::Lumen);
-    assert!(reader.remarks().iter().any(|own| own.contains("radiant fluxes are not used")));
+    assert!(reader.remarks().iter().any(|own| own.contains("the radiant ones are not used")));
     assert_eq!(reader.collect::<Result<Vec<_>, _>>().unwrap()[0].flux, 2.5);
     let file = tm25(&[(12, 8f32.to_bits() as i32)], &[]);
     assert_eq!(open(&file, RayFormat::Tm25).unwrap().info().luminous_flux_lm, Some(8.0));

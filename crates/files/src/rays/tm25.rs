@@ -61,7 +61,8 @@ pub(crate) fn open(
         remarks.push("its spectra, wavelengths and colours are not used".to_owned());
     }
     if columns_of_rays.has_both_fluxes {
-        remarks.push("its radiant fluxes are not used, but its luminous ones".to_owned());
+        remarks
+            .push("it has luminous and radiant fluxes; the radiant ones are not used".to_owned());
     }
     if columns_of_rays.has_stokes {
         remarks.push("its polarisation is not used".to_owned());

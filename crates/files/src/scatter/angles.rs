@@ -72,7 +72,7 @@ impl SampledScatter {
         for (name, angles) in [("theta_i", &self.incident), ("theta_s", &self.polar)] {
             if let [angle] = angles[..] {
                 remarks.push(format!(
-                    "{angle} deg is its only {name}; its values are used at every {name}"
+                    "{name} is given at {angle} deg only; these values are used at all {name}"
                 ));
             }
         }

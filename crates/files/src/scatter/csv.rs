@@ -4,7 +4,7 @@ use crate::scatter::angles::SampledScatter;
 use crate::scatter::data::{BsdfMatrix, ScatterFile, ScatterSide};
 use crate::scatter::error::{Violation, value};
 use std::collections::BTreeMap;
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 const ANGLES: [&str; 3] = ["theta_i_deg", "theta_s_deg", "phi_s_deg"];
 const BRDF: &str = "brdf_per_sr";
@@ -25,6 +25,7 @@ const UNITS_PER_DEG: f64 = 1e6;
 
 /// Whether the first line of the table names an angle of incidence.
 pub(super) fn has_angles(text: &str) -> bool {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     rows(text).next().is_some_and(|(_, head)| head.to_ascii_lowercase().contains("theta_i"))
 }
 
@@ -140,10 +141,10 @@ fn averaged(samples: &Samples, head_line: usize) -> Result<(BsdfMatrix, Vec<Stri
             }
         }
     }
-    if let Some((name, last)) = radians(&keys) {
-        let problem =
-            format!("its largest {name} is {last}, as if in radians; angles are in degrees");
-        return Err(Violation::new(head_line, problem));
+    if may_be_radians(&keys) {
+        let problem = "all its angles could be in radians, and they are in degrees: multiply them by 180/π, or, if they are in \
+            degrees, add rows at a larger angle";
+        return Err(Violation::new(head_line, problem.to_owned()));
     }
     let [incident, polar, azimuth] =
         keys.map(|keys| keys.into_iter().map(|key| f64::from(key) / UNITS_PER_DEG).collect());
@@ -151,15 +152,12 @@ fn averaged(samples: &Samples, head_line: usize) -> Result<(BsdfMatrix, Vec<Stri
     averaged.ok_or_else(|| Violation::new(head_line, "its angles make no patches"))
 }
 
-/// An axis whose angles end where they would in radians, and its largest angle.
-fn radians(keys: &[Vec<AngleKey>; 3]) -> Option<(&'static str, f64)> {
-    const ROUNDING: f64 = 0.005;
-    let ends = [&[FRAC_PI_2][..], &[FRAC_PI_2], &[PI, TAU]];
-    let axes = keys.iter().zip(ANGLES).zip(ends).filter(|((keys, _), _)| keys.len() > 1);
-    let mut lasts = axes
-        .map(|((keys, name), ends)| (name, f64::from(keys[keys.len() - 1]) / UNITS_PER_DEG, ends));
-    let found = lasts.find(|(_, last, ends)| ends.iter().any(|end| (last - end).abs() < ROUNDING));
-    found.map(|(name, last, _)| (name, last))
+/// Whether there are angles beyond 0, none of which is larger than the largest one in radians.
+fn may_be_radians(keys: &[Vec<AngleKey>; 3]) -> bool {
+    const ROUNDING: f64 = 0.01;
+    let lasts = keys.each_ref().map(|keys| f64::from(keys[keys.len() - 1]) / UNITS_PER_DEG);
+    let most = [FRAC_PI_2, FRAC_PI_2, TAU].map(|most| most + ROUNDING);
+    lasts.iter().any(|last| *last > 0.0) && lasts.iter().zip(most).all(|(last, most)| *last <= most)
 }
 
 /// The value of a combination of angles. At the zenith all azimuths are one direction.

@@ -23,15 +23,20 @@ use std::fs::File;
 use std::io::Read as _;
 use std::path::Path;
 
-/// Whether a CSV file begins as one of scatter does: in a line that is neither empty nor a comment, a column has an angle of incidence.
+/// Length of the head of a CSV file in which its columns are looked for, bytes.
+const HEAD_BYTES: u64 = 1 << 16;
+
+/// Whether a CSV file begins as one of scatter does: in the first line that is neither empty nor a comment, a column has an angle of
+/// incidence.
 pub fn is_scatter_table(path: &Path) -> bool {
+    // A pipe may never end.
+    if !path.is_file() {
+        return false;
+    }
     let mut start = Vec::new();
-    let read = File::open(path).map(|file| file.take(MOST_COMMENT_BYTES).read_to_end(&mut start));
+    let read = File::open(path).map(|file| file.take(HEAD_BYTES).read_to_end(&mut start));
     read.is_ok() && csv::has_angles(&String::from_utf8_lossy(&start))
 }
-
-/// Where the head of a CSV file is looked for, bytes.
-const MOST_COMMENT_BYTES: u64 = 1 << 16;
 
 /// Reads a file; its name extension gives the format.
 ///

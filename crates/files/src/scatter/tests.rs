@@ -323,7 +323,10 @@ fn a_csv_needs_every_combination_but_azimuths_of_the_zenith() {
     let comma = format!("{head}0,5,45,0,0,1\n");
     refused(&comma, ScatterFormat::Csv, &["line 2", "6 columns instead of 4", "decimal point"]);
     let radians = format!("{head}0,0,0,0.1\n0,0.7,0,0.1\n0,1.5708,0,0.1\n");
-    refused(&radians, ScatterFormat::Csv, &["theta_s_deg is 1.5708", "in radians"]);
+    refused(&radians, ScatterFormat::Csv, &["line 1", "could be in radians", "180/π"]);
+    // A narrow scan is told apart by its azimuths.
+    let narrow = format!("{head}0,0,0,0.1\n0,1.5,0,0.1\n0,0,180,0.1\n0,1.5,180,0.1\n");
+    good(&narrow, ScatterFormat::Csv);
 }
 
 #[test]
@@ -334,6 +337,7 @@ fn a_table_of_scatter_is_told_from_one_of_rays() {
         ("# by angles\n\nTheta_i_deg, theta_s_deg\n", true),
         ("x_mm,y_mm,z_mm,dx,dy,dz,flux_lm\n0,0,0,0,0,1,1\n", false),
         ("# theta_i_deg\nx_mm\n", false),
+        ("\u{feff}# by angles\ntheta_i_deg,theta_s_deg\n", true),
         ("", false),
     ] {
         std::fs::write(&path, text).unwrap();

@@ -304,7 +304,7 @@ pub(super) fn note_tables(spec: &SceneSpec, scene: &Scene, problems: &mut Proble
             if spectra.is_empty() {
                 if !(first..=last).contains(&REFERENCE_WAVELENGTH) {
                     problems
-                        .error(&key, format!("{range} is without 555 nm"))
+                        .error(&key, format!("{range} does not include 555 nm"))
                         .hint("light without a spectrum has this wavelength; tables are in nm");
                 }
                 continue;
@@ -313,7 +313,7 @@ pub(super) fn note_tables(spec: &SceneSpec, scene: &Scene, problems: &mut Proble
             let least = spectra.iter().map(inside).fold(1.0, f64::min);
             if least <= 0.0 {
                 problems
-                    .error(&key, format!("{range} is without any light of a source"))
+                    .error(&key, format!("a source emits no light at its wavelengths, {range}"))
                     .hint("give values for its wavelengths; they are in nm");
             } else if least < 1.0 - BEYOND {
                 let message = format!(

@@ -60,7 +60,7 @@ pub struct LuminaireExportSpec {
     /// Step of C in the table, likewise of 360. Not used under rotational symmetry.
     #[schemars(extend("exclusiveMinimum" = 0.0), range(max = 360.0))]
     pub c_step_deg: Option<f64>,
-    /// The symmetry of the luminaire. Planes that it takes as equal are averaged, and the files but for TM-33 list them once. Omitted: `none`;
+    /// The symmetry of the luminaire. Planes that it takes as equal are averaged, and all formats except TM-33 list them once. Omitted: `none`;
     /// `rotational` for a goniometer without sectors.
     pub symmetry: Option<ExportSymmetry>,
     /// What intensities refer to: with `relative`, to lamps with the flux of all sources.

@@ -142,16 +142,17 @@ impl MapPair<'_> {
             });
             let Some(axis) = worst else {
                 let shift = FoundShift { value, std_errors, range };
-                if let Some(axis) = [0, 1].into_iter().find(|axis| shift.is_within_error(*axis)) {
+                let within = [0, 1].into_iter().filter(|axis| shift.is_within_error(*axis));
+                let score = |axis: usize| (value[axis] / std_errors[axis]).abs();
+                if let Some(axis) = within.min_by(|a, b| score(*a).total_cmp(&score(*b))) {
                     is_free[axis] = false;
-                    if value[axis].abs() <= NO_SHIFT * self.cell()[axis] {
-                        continue;
+                    if value[axis].abs() > NO_SHIFT * self.cell()[axis] {
+                        let found = format_with_error(value[axis], std_errors[axis]);
+                        let name = names[axis];
+                        remarks.push(format!(
+                            "a shift of {found} {unit} along {name} is less than two standard errors from 0, so it is not applied"
+                        ));
                     }
-                    let found = format_with_error(value[axis], std_errors[axis]);
-                    remarks.push(format!(
-                        "a shift of {found} {unit} along {} is within its error and is not applied",
-                        names[axis]
-                    ));
                     continue;
                 }
                 for axis in [0, 1].into_iter().filter(|axis| shift.is_found(*axis)) {

@@ -109,6 +109,16 @@ fn the_errors_of_shift_and_scale_are_those_of_many_noisy_maps() {
 }
 
 #[test]
+fn a_shift_within_its_error_is_not_applied() {
+    let moved = grid([10.0, 8.0], |x, y| field(x - 0.02, y + 0.4));
+    let found = outcome(computed([8.0, 6.0], field, 25.0), &moved, &MeasuredOptions::default());
+    assert!(!found.shift.is_found(0) && found.shift.is_found(1), "{:?}", found.shift);
+    assert_eq!(found.shift.value[0], 0.0);
+    let remarks = found.remarks.join("\n");
+    assert!(remarks.contains("along u is less than two standard errors from 0"), "{remarks}");
+}
+
+#[test]
 fn options_switch_alignment_and_scale_off_and_wrong_directions_are_remarked() {
     let flipped = grid([8.0, 6.0], |x, y| 0.9 * field(x, -y));
     let off = MeasuredOptions { no_align: true, no_scale: true, ..Default::default() };

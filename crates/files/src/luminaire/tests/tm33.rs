@@ -201,7 +201,7 @@ fn such_files_are_not_read() {
     let path = folder.path().join("lamp.xml");
     std::fs::write(&path, tm33(&all_symmetries()[0])).unwrap();
     let error = read(&path).unwrap_err().to_string();
-    assert!(error.contains("TM-33 files are written, not read"), "{error}");
+    assert!(error.contains("TM-33 files are only written"), "{error}");
     // Nor are they mistaken for scatter, whose files have the same ending.
     let error = crate::scatter::read(&path).unwrap_err().to_string();
     assert!(error.contains("line 2") && error.contains("TM-33"), "{error}");

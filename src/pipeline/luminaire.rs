@@ -77,11 +77,18 @@ impl LuminaireFile {
 
     /// Writes the file. Of its remarks, those that are in the report are left out.
     pub(super) fn write(&self, job: &Job, report: &Report) -> Result<WrittenFile> {
-        let export = LuminaireExport { formats: vec![self.format], ..self.export.clone() };
-        let found = luminaire(job, &export, &report.measures)?;
-        write_whole(&self.path, &found.file(self.format).bytes, self.existing)?;
-        let remarks = found.remarks.into_iter().filter(|own| !report.warnings.contains(own));
-        Ok(WrittenFile { path: self.path.clone(), format: self.format, remarks: remarks.collect() })
+        let (format, export) = (self.format, &self.export);
+        let (file, mut remarks) = match &report.luminaires[..] {
+            [only] => (only.file(format), only.left_out(format)),
+            _ => {
+                let export = LuminaireExport { formats: vec![format], ..export.clone() };
+                let found = luminaire(job, &export, &report.measures)?;
+                (found.file(format), found.remarks)
+            }
+        };
+        write_whole(&self.path, &file.bytes, self.existing)?;
+        remarks.retain(|remark| !report.warnings.contains(remark));
+        Ok(WrittenFile { path: self.path.clone(), format, remarks })
     }
 }
 

@@ -65,7 +65,7 @@ fn luminaires_are_converted_and_described() {
     let text = fs::read_to_string(place.path("lamp.xml")).unwrap();
     assert!(text.contains("<IntData h=\"270\" v=\"45\">150</IntData>\r\n"), "{text}");
     for (command, words) in [
-        ("convert lamp.xml", "TM-33 files are written, not read"),
+        ("convert lamp.xml", "TM-33 files are only written"),
         ("convert lamp.xml new.ies --overwrite", "luminaires are read from .ies and .ldt"),
     ] {
         let said = place.bad(2, command);
@@ -113,6 +113,15 @@ fn a_run_writes_what_its_goniometer_measures_as_a_luminaire_file() {
         assert!(page.contains(words), "no {words} in {page}");
     }
     assert!(!page.contains("EN 12464-1"), "a flat opening cannot emit upward");
+    assert!(!page.contains("less symmetric"), "the light of the rod is symmetric: {page}");
+    // Its axis across the rod, the goniometer sees light on one side.
+    let aside = "run rod.toml -o aside -q -D sensors.far.at={position_mm=[0,0,5],axis=[1,0,0]} -D sensors.far.luminaire.symmetry=\"rotational\"";
+    place.good(aside);
+    let page = fs::read_to_string(place.path("aside/report.md")).unwrap();
+    assert!(
+        page.contains("the light is less symmetric than `symmetry` says (rotational)"),
+        "{page}"
+    );
     assert!(fs::read_to_string(place.path("lamp.ies")).unwrap().contains("1 1 2\r\n"));
     let latest = with(" }, luminaire = { formats = [\"ies_2019\"], power_w = 2 }");
     latest.good("run rod.toml -q --ies lamp.ies");

@@ -55,6 +55,11 @@ fn a_run_writes_rays_that_are_converted_thinned_and_traced_again() {
     let output = place.run("run next.toml --paths 4000 --estimator forward");
     assert_eq!(code(&output), 0);
     assert!(errors(&output).contains("1500 of its 2000 rays"), "{}", errors(&output));
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        !said.contains("1500 of its 2000 rays"),
+        "remarks on the scene are printed once: {said}"
+    );
     let summary = place.summary("reports/next");
     let again = summary["measures"]["balance.emitted"]["value"].as_f64().unwrap();
     assert!((again / flux - 1.0).abs() < 1e-6, "{again} {flux}");

@@ -1,9 +1,11 @@
 //! Whether a solid with relief has the shape given by its elements, tested without its surfaces.
 
 use crate::{BODIES, LAMP, load};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use lumiduct_core::rng::{Dimension, Sampler};
+use lumiduct_core::scene::shape::ChartRect;
 use lumiduct_core::scene::{Inside, Ray, Scene, SolidId, StartSide, StartSurfaces};
+use std::f64::consts::PI;
 
 /// A direction not aligned with any axis.
 fn direction(sampler: &mut Sampler) -> DVec3 {
@@ -121,6 +123,26 @@ fn dimples_and_bumps_on_a_plate_are_balls_taken_out_and_put_on() {
         );
         assert_is("plate", &bumps, MIN, MAX, |p| in_plate(p) || ball(p, 0.0, 1.2));
     }
+}
+
+#[test]
+fn the_chart_of_a_wall_lacks_the_openings_of_its_dimples() {
+    let relief = "[reliefs.a]\non = \"plate.wall_plus_y\"\nelement = { dimple = { radius_mm = 1.2, depth_mm = 0.7 } }\n\
+        layout = { staggered = { across_pitch_mm = 3, pitch_mm = 4 } }\n";
+    let scene = load(&format!("{BODIES}{relief}{LAMP}"), 1).scene;
+    let wall = scene.face_named("plate.wall_plus_y").unwrap();
+    let whole = scene.face_rect(wall).unwrap();
+    // 21 circles with the radius² 1.2² - 0.5².
+    let expected = 12.0 * 30.0 - 21.0 * PI * (1.44 - 0.25);
+    assert!((scene.face_charted_in(wall, whole) - expected).abs() < 1e-6);
+    let step = (whole.max - whole.min) / DVec2::new(5.0, 7.0);
+    let parts = (0..35).map(|cell| {
+        let min = whole.min + step * DVec2::new(f64::from(cell % 5), f64::from(cell / 5));
+        let part = scene.face_charted_in(wall, ChartRect { min, max: min + step });
+        assert!((-1e-9..=step.x * step.y * (1.0 + 1e-9)).contains(&part), "{part}");
+        part
+    });
+    assert!((parts.sum::<f64>() - expected).abs() < 1e-6);
 }
 
 /// A wedge with its middle at z, with a height and two cotangents, above or below a plane at

@@ -3,5 +3,6 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod axes;
+mod charts;
 mod guides;
 mod outlines;

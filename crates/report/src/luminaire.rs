@@ -89,17 +89,17 @@ impl MeasuredLuminaire {
             colour,
             intensities,
         };
-        for format in &export.formats {
-            let left_out = written(&luminaire, *format).remarks;
-            remarks.extend(left_out.into_iter().map(|text| format!("{format} file: {text}")));
-        }
-        Ok(Self {
-            sensor: export.sensor.clone(),
-            formats: export.formats.clone(),
-            luminaire,
-            std_errors,
-            remarks,
-        })
+        let (sensor, formats) = (export.sensor.clone(), export.formats.clone());
+        let mut found = Self { sensor, formats, luminaire, std_errors, remarks: Vec::new() };
+        remarks.extend(export.formats.iter().flat_map(|format| found.left_out(*format)));
+        found.remarks = remarks;
+        Ok(found)
+    }
+
+    /// What its file in a format cannot say.
+    pub fn left_out(&self, format: LuminaireFormat) -> Vec<String> {
+        let remarks = written(&self.luminaire, format).remarks;
+        remarks.into_iter().map(|text| format!("{format} file: {text}")).collect()
     }
 
     /// Its file in a format.

@@ -27,7 +27,7 @@ pub enum LuminaireError {
     Unreadable(#[from] std::io::Error),
     /// The file name extension is not one of a luminaire format.
     #[error(
-        "`.{ending}` is not the ending of a known luminaire format; use .ies or .ldt; .xml (TM-33) is written only"
+        "`.{ending}` is not the ending of a known luminaire format; use .ies or .ldt, or, to write TM-33, .xml"
     )]
     UnknownLuminaire {
         /// The extension, without its dot.

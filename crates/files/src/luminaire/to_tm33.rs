@@ -124,7 +124,7 @@ fn emitter(out: &mut XmlText, luminaire: &Luminaire, remarks: &mut Vec<String>) 
 fn data_generation(out: &mut XmlText, generation: FileGeneration) {
     let mut write = |answers: &[(&str, bool)]| {
         out.parent("DataGeneration", |out| {
-            answers.iter().for_each(|(name, is)| out.leaf(name, truth(*is)));
+            answers.iter().for_each(|(name, is)| out.leaf(name, &is.to_string()));
         });
     };
     match generation {
@@ -145,7 +145,7 @@ fn luminous_intensity(out: &mut XmlText, intensities: &Intensities) {
         planes.push(360.0);
     }
     let angles = intensities.angles_deg();
-    out.leaf("AbsolutePhotometry", truth(true));
+    out.leaf("AbsolutePhotometry", "true");
     out.leaf("NumberMeasured", &(planes.len() * angles.len()).to_string());
     out.leaf("NumberHorz", &planes.len().to_string());
     out.leaf("NumberVert", &angles.len().to_string());
@@ -177,27 +177,26 @@ fn emission_areas(out: &mut XmlText, opening: &Opening, intensities: &Intensitie
     out.parent("EmissionAreas", |out| {
         for (face, _) in faces.iter().filter(|(_, is_lit)| *is_lit) {
             let sizes = [("Length", length), ("Width", width)];
-            emission_face(out, face, &sizes, opening.is_round);
+            let marks: &[&str] = if opening.is_round { &["Circular"] } else { &[] };
+            emission_face(out, face, &sizes, marks);
         }
         // A side is as long as the axis across its plane.
         for (place, side) in sides.iter().enumerate().filter(|_| has_sides) {
             let across =
                 if place.is_multiple_of(2) { ("Length", length) } else { ("Width", width) };
-            emission_face(out, side, &[across, ("Height", height)], false);
+            emission_face(out, side, &[across, ("Height", height)], &[]);
         }
     });
 }
 
-/// A face with one area in its middle.
-fn emission_face(out: &mut XmlText, face: &str, of: &[(&str, f64); 2], is_round: bool) {
+/// A face with one area in its middle, and what is true of the area.
+fn emission_face(out: &mut XmlText, face: &str, of: &[(&str, f64); 2], marks: &[&str]) {
     out.parent(&format!("{face}Face"), |out| {
         out.leaf(&format!("Number{face}"), "1");
         out.parent(&format!("{face}Area"), |out| {
             sizes(out, of);
             of.iter().for_each(|(name, _)| out.leaf(&format!("{name}Offset"), "0"));
-            if is_round {
-                out.leaf("Circular", truth(true));
-            }
+            marks.iter().for_each(|mark| out.leaf(mark, "true"));
         });
     });
 }
@@ -214,8 +213,4 @@ fn horizontal_sizes(opening: &Opening) -> [f64; 2] {
 /// Elements with sizes, given in mm, written in m.
 fn sizes(out: &mut XmlText, of: &[(&str, f64)]) {
     of.iter().for_each(|(name, size_mm)| out.leaf(name, &seven_digits(size_mm / 1000.0)));
-}
-
-fn truth(is: bool) -> &'static str {
-    if is { "true" } else { "false" }
 }

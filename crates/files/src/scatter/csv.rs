@@ -152,7 +152,7 @@ fn averaged(samples: &Samples, head_line: usize) -> Result<(BsdfMatrix, Vec<Stri
     averaged.ok_or_else(|| Violation::new(head_line, "its angles make no patches"))
 }
 
-/// Whether there are angles beyond 0, none of which is larger than the largest one in radians.
+/// Whether all angles are within the range of radians, and some are above 0.
 fn may_be_radians(keys: &[Vec<AngleKey>; 3]) -> bool {
     const ROUNDING: f64 = 0.01;
     let lasts = keys.each_ref().map(|keys| f64::from(keys[keys.len() - 1]) / UNITS_PER_DEG);

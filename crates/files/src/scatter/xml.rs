@@ -32,8 +32,7 @@ pub(super) fn read(text: &str) -> Result<ScatterFile, Violation> {
         let root = document.root_element();
         // The other XML of lighting, of any edition.
         if root.tag_name().name().starts_with("IESTM33") {
-            let problem =
-                "it is a luminaire in TM-33 and not a BSDF; TM-33 files are written, not read";
+            let problem = "it is a luminaire in TM-33, not a BSDF; TM-33 files are only written";
             return Violation::new(line_of(root), problem);
         }
         Violation::new(1, "it has no element `DataDefinition`: it is not a file of a BSDF")

@@ -313,7 +313,10 @@ pub(super) fn note_tables(spec: &SceneSpec, scene: &Scene, problems: &mut Proble
             let least = spectra.iter().map(inside).fold(1.0, f64::min);
             if least <= 0.0 {
                 problems
-                    .error(&key, format!("a source emits no light at its wavelengths, {range}"))
+                    .error(
+                        &key,
+                        format!("a source emits no light from {range}, where it has values"),
+                    )
                     .hint("give values for its wavelengths; they are in nm");
             } else if least < 1.0 - BEYOND {
                 let message = format!(

@@ -85,9 +85,8 @@ impl Grid {
         }
     }
 
-    /// The share of every cell that lies on the sensor, 1. Outer rings are larger and charts of bends and cones stretch, so
-    /// it is a share of the chart, of which `charted_in` gives the area within a rectangle; surfaces that a rim cuts across
-    /// cells have charts that keep areas.
+    /// The share of every cell that lies on the sensor, 1: of the area of the chart, which bends and cones stretch. Where a rim
+    /// cuts cells, the chart keeps areas. `charted_in` gives the area of the chart that the sensor fills within a rectangle.
     pub fn cell_cover(&self, charted_in: impl Fn(ChartRect) -> f64) -> Vec<f64> {
         match self {
             // The only cell is the whole sensor.

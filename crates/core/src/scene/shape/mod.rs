@@ -293,7 +293,7 @@ impl Shape {
         }
     }
 
-    /// Area of the chart itself in `rect`, mm²: that of the surface unless the chart stretches it, as those do that fill
+    /// Area in `rect` that the chart fills, mm²: that of the surface, unless the chart stretches it. Charts that stretch fill
     /// their rectangle.
     pub(crate) fn charted_in(&self, rect: ChartRect) -> f64 {
         match self {
